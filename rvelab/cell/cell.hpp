@@ -1,0 +1,88 @@
+// The periodic cell: lattice matrix, frame, deformation, wrapping, reduction.
+//
+// This room knows geometry only: no grains, contacts, forces or time.
+//
+// Conventions. The columns of the lattice matrix L are the cell vectors a, b, c; L is upper triangular with positive
+// diagonal and is written in the cell frame. The rotation Q takes cell-frame vectors to the laboratory:
+// v_lab = Q v_cell, sigma_lab = Q sigma_cell Q^T. In 2D the third cell vector is (0, 0, thickness): it carries the
+// volume and is never periodic, deformed or reduced. All lengths in m. (Design 4; Qu, Feng and Wang, eq. 1-9.)
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+namespace rvelab {
+
+using Vector3 = Eigen::Vector3d;
+using Matrix3 = Eigen::Matrix3d;
+using Image = std::array<int, 3>;  ///< integer coordinates of a lattice translation L n
+
+/// A periodic cell and its frame.
+struct Cell {
+  int dimension = 3;                       ///< 2 (slab of thickness L_zz) or 3
+  Matrix3 lattice = Matrix3::Identity();   ///< m, upper triangular, positive diagonal, cell frame
+  Matrix3 rotation = Matrix3::Identity();  ///< Q, cell frame to laboratory
+  long increments = 0;                     ///< increments since Q was last renormalised
+
+  double volume() const;  ///< m^3, product of the diagonal
+};
+
+/// One increment of displacement gradient, split in the cell frame: Q^T (I + dH) Q = R U.
+struct FrameSplit {
+  Matrix3 rotation;  ///< R, proper rotation; the new frame is Q R
+  Matrix3 stretch;   ///< U, upper triangular, positive diagonal; the new lattice is U L
+  bool rigid;        ///< max |U - I| <= 8 eps: only the frame changes
+};
+
+/// Splits F_inc = I + dH (laboratory frame, finite, dimensionless). Throws InvalidIncrement if an entry is not
+/// finite, if det(I + dH) <= 0, or, in 2D, if a z-component exceeds 1e-12 + 1e-9 max|dH|.
+FrameSplit split_increment(const Cell& cell, const Matrix3& displacement_gradient);
+
+/// Turns the frame by R and counts the increment; every 100th one renormalises Q by one Newton step.
+void turn_frame(Cell& cell, const Matrix3& frame_rotation);
+
+/// Newton step towards the nearest orthogonal matrix: Q <- Q (3 I - Q^T Q) / 2.
+Matrix3 renormalised(const Matrix3& rotation);
+
+/// Brings a point into the primary cuboid (-L_ii/2, L_ii/2), z first, then y, then x (2D: y, then x), by lattice
+/// vectors. Returns w with x_new = x_old + L w.
+Image wrap(const Cell& cell, Vector3& position);
+
+/// L n for an integer translation n.
+Vector3 translation(const Cell& cell, const Image& image);
+
+/// Perpendicular distances between opposite faces of the parallelepiped, m (2D: third entry infinite).
+Vector3 heights(const Cell& cell);
+
+/// Length of the shortest non-zero lattice vector, m. In 2D only a and b count.
+double shortest_vector(const Cell& cell);
+
+/// A change of basis: L_new = R^T L N with N unimodular (det +1). Every stored cell-frame vector v becomes R^T v, an
+/// image n becomes N^-1 n, and the frame Q becomes Q R.
+struct Reduction {
+  Eigen::Matrix3i basis = Eigen::Matrix3i::Identity();          ///< N
+  Eigen::Matrix3i inverse_basis = Eigen::Matrix3i::Identity();  ///< N^-1
+  Matrix3 rotation = Matrix3::Identity();                       ///< R
+  Matrix3 lattice = Matrix3::Identity();                        ///< the reduced lattice
+  bool changed = false;  ///< false: the basis is already reduced (to the tolerance) and nothing is to be done
+};
+
+/// Full reduction of the lattice: Lagrange-Gauss in 2D, a Minkowski-reduced basis in 3D, with a relative tolerance
+/// (ties at one half would swap for ever) and an iteration cap.
+Reduction reduced(const Cell& cell);
+
+/// Applies a reduction to lattice and frame.
+void apply_reduction(Cell& cell, const Reduction& reduction);
+
+/// Square (2D) or simple cubic (3D) cell of the given volume (m^3), axes along the laboratory's.
+Cell cubic_cell(int dimension, double volume, double thickness = 1.0);
+
+/// 2D cell of the given volume whose lattice repeats under planar pure shear with principal axes x and y: the square
+/// lattice turned by the Kraynik-Reinelt angle (31.72 degrees). (Kraynik and Reinelt 1992.)
+Cell kraynik_reinelt_cell(double volume, double thickness);
+
+/// 3D cell for diagonal (uniaxial, triaxial) flows along the laboratory axes: the lattice of the totally real cubic
+/// field of discriminant 49 (roots of x^3 + x^2 - 2x - 1), scaled to the given volume.
+Cell cubic_field_cell(double volume);
+
+}  // namespace rvelab

@@ -1,0 +1,94 @@
+// Contact parameters as a user states them: materials, law, slip convention, rolling, damping; and what a pair of
+// grains makes of them. Which law does what stands in the law's own file; here are names, units, ranges and mixing.
+//
+// This room knows two grains at a time: no list, no cell, no step loop.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace rvelab {
+
+/// Normal and tangential law of all contacts of a specimen (design 6).
+enum class Law {
+  linear,         ///< kn = 2 Ei ri Ej rj/(Ei ri + Ej rj), kt the same with E nu (linear.hpp)
+  linear_given,   ///< kn, kt in N/m as numbers (linear.hpp)
+  hertz_mindlin,  ///< from E and Poisson's ratio (hertz.hpp)
+  hertz_given     ///< k delta^1.5 with k in N/m^1.5, constant kt in N/m (hertz.hpp)
+};
+
+/// Where the slip of a contact is measured, and where its force acts (slip.hpp).
+enum class Slip { consistent, full_radius, full_radius_ratcheting };
+
+/// Contact dashpot (damping.hpp).
+enum class Dashpot { none, coefficient, restitution, viscoelastic };
+
+/// Form of Cundall's local damping on the fluctuation velocities.
+enum class LocalDampingForm { vector, component };
+
+/// One grain material. Only the fields that the law uses are read; the others keep zero.
+struct Material {
+  std::string name = "grain";
+  double density = 2650;            ///< kg/m^3, > 0
+  double young_modulus = 0;         ///< Pa, > 0 (linear, hertz_mindlin)
+  double stiffness_ratio = 0;       ///< kt/kn of the linear law (its "nu"), 0 to 10
+  double poisson_ratio = 0;         ///< hertz_mindlin, -0.99 to 0.5
+  double normal_stiffness = 0;      ///< N/m (linear_given) or N/m^1.5 (hertz_given), > 0
+  double tangential_stiffness = 0;  ///< N/m, >= 0 (linear_given, hertz_given)
+  double friction = 0;              ///< Coulomb coefficient mu = tan(phi_mu), 0 to 1e6 (1e6: no slip)
+  double rolling_stiffness = 0;     ///< beta of k_r = kt ri rj beta, >= 0
+  double rolling_friction = 0;      ///< eta of the cap min(eta_i ri, eta_j rj) fn, >= 0
+};
+
+/// What holds for every contact of a specimen.
+struct ContactModel {
+  Law law = Law::linear;
+  Slip slip = Slip::consistent;
+  bool rolling = false;         ///< rolling moment between grains (its parameters stand in the materials)
+  bool unload_rescale = true;   ///< hertz_mindlin: f_t scales by sqrt(delta/delta_old) as delta falls
+};
+
+/// Damping, apart from the law. All of it acts on fluctuation velocities v' and spins w'.
+struct Damping {
+  double local = 0;                 ///< Cundall's coefficient for dt > 0, 0 to < 1
+  double local_quasi_static = 0.3;  ///< the same for dt = 0, > 0 to < 1
+  LocalDampingForm local_form = LocalDampingForm::vector;
+  Dashpot dashpot = Dashpot::none;
+  double normal_coefficient = 0;  ///< coefficient: N s/m; viscoelastic: 1/(m s) (force eta sqrt(r* delta) m* v)
+  double restitution = 1;         ///< restitution: coefficient of restitution, 0 < e <= 1
+  double tangential_ratio = 0;    ///< tangential over normal dashpot coefficient, >= 0
+  bool no_tension = false;        ///< cuts the normal force at zero, so that a dashpot never attracts
+  double global_viscous = 0;      ///< N s/m, force -c v' on each grain, dt > 0 only
+};
+
+/// Parameters of one pair of grains, computed once when the pair is listed.
+struct PairParameters {
+  double kn = 0;        ///< linear: N/m; Hertz: N/m^1.5, f_n = kn delta^1.5
+  double kt = 0;        ///< linear, hertz_given: N/m; hertz_mindlin: N/m^1.5, kt = this sqrt(delta)
+  double friction = 0;  ///< the smaller of the two
+  double kr = 0;        ///< rolling: linear, hertz_given: N m; hertz_mindlin: N m/m^0.5, times sqrt(delta)
+  double moment_cap = 0;  ///< min(eta_i ri, eta_j rj), m
+  double cn = 0;          ///< dashpot: c_n = cn delta^dashpot_power
+};
+
+/// Power of the overlap in the dashpot coefficient: 0 (coefficient, linear), 1/2 (viscoelastic), 1/4 (restitution
+/// with a Hertz law, after Tsuji et al. 1992).
+double dashpot_power(Law law, Dashpot dashpot);
+
+/// Mixes two materials for grains of radii ri, rj (m) and masses mi, mj (kg).
+PairParameters mix(const ContactModel& model, const Damping& damping, const Material& a, double ri, double mi,
+                   const Material& b, double rj, double mj);
+
+/// Checks every parameter that the model uses. Throws InputError naming key, value and range, one line each.
+void check(const ContactModel& model, const Damping& damping, const std::vector<Material>& materials);
+
+const char* name(Law);
+const char* name(Slip);
+const char* name(Dashpot);
+const char* name(LocalDampingForm);
+Law law_from(const std::string&);  ///< throws InputError listing the names
+Slip slip_from(const std::string&);
+Dashpot dashpot_from(const std::string&);
+LocalDampingForm local_damping_form_from(const std::string&);
+
+}  // namespace rvelab

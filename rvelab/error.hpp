@@ -1,0 +1,29 @@
+// Errors of the library. Each message names the value found, the value allowed and what to do.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace rvelab {
+
+/// Base of all errors that rvelab throws on purpose.
+struct Error : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// What the caller handed in cannot be used: a file, a key, a parameter (exit code 2 of the program).
+struct InputError : Error {
+  using Error::Error;
+};
+
+/// An increment that is refused before any work: not finite, det(I + dH) <= 0, out of plane.
+struct InvalidIncrement : InputError {
+  using InputError::InputError;
+};
+
+/// An increment that could not be carried out; the RVE is as it was before it (exit code 1 of the program).
+struct IncrementFailed : Error {
+  using Error::Error;
+};
+
+}  // namespace rvelab

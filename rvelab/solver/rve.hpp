@@ -1,0 +1,103 @@
+// The representative volume element: one verb, apply an increment of displacement gradient, get the Cauchy stress.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "rvelab/solver/network.hpp"
+#include "rvelab/solver/specimen.hpp"
+
+namespace rvelab {
+
+/// What a call may ask for beyond the Cauchy stress. What is not asked for is not computed.
+struct Want {
+  bool parts = false;  ///< contact and Reynolds stress apart
+};
+
+/// What was done, and in what state it ended.
+struct Report {
+  long substeps = 0;
+  double unbalanced_ratio = 0;  ///< mean resultant / max(mean contact force, 1e-3 of the reference)
+  double inertial_number = 0;   ///< dt > 0: sqrt(2 e:e) d sqrt(rho/p); dt = 0: zero
+  double held_error = 0;        ///< mixed targets: largest |residual| over its scale, see MixedTarget
+  bool target_held = true;      ///< mixed targets: held_error <= tolerance within the wait
+  bool cell_thin = false;       ///< a cell height is below four mean diameters
+};
+
+struct Response {
+  Matrix3 stress;                                 ///< Cauchy, laboratory frame, tension positive, Pa
+  Matrix3 contact_stress = Matrix3::Zero();       ///< on request
+  Matrix3 reynolds_stress = Matrix3::Zero();      ///< on request; zero at dt = 0
+  Matrix3 displacement_gradient = Matrix3::Zero();  ///< what was applied (mixed targets: what was found)
+  Report report;
+};
+
+/// A mixed target: for each row, A : dE + B : d sigma = c, with dE the symmetric part of the increment of
+/// displacement gradient and d sigma the change of Cauchy stress over the increment (laboratory frame). The skew
+/// part is given. 2D needs 3 rows over xx, yy, xy; 3D needs 6. Rows must be independent.
+struct MixedTarget {
+  struct Row {
+    Matrix3 strain = Matrix3::Zero();  ///< A, dimensionless, symmetric; A : dE sums all nine entries
+    Matrix3 stress = Matrix3::Zero();  ///< B, 1/Pa or dimensionless; units of c decide
+    double value = 0;                  ///< c
+    double scale = 0;                  ///< rows with stress: |residual| <= tolerance * scale counts as held; > 0
+  };
+  std::vector<Row> rows;
+  Matrix3 spin = Matrix3::Zero();  ///< skew part of the increment of displacement gradient
+  double tolerance = 0.005;        ///< relative to each row's scale
+  long wait = 200;                 ///< sub-steps that the end of the increment may wait for the stress
+};
+
+class Rve {
+ public:
+  /// Opens a specimen: checks it (InputError), chooses the compiled scene, lists neighbours. Contacts carry their
+  /// history; touching pairs that `contacts` does not name start without one.
+  explicit Rve(const Specimen& specimen);
+  Rve(const Rve&);
+  Rve& operator=(const Rve&);
+  Rve(Rve&&) noexcept;
+  Rve& operator=(Rve&&) noexcept;
+  ~Rve();
+
+  /// Applies dH_ij = d(du_i)/dx_j (laboratory frame, finite, spin included) over the time dt (s).
+  /// dt > 0: physical masses and rate. dt = 0: quasi-static, the RVE picks its pace; dH = 0 is then the identity.
+  /// Throws InvalidIncrement (refused) or IncrementFailed; the RVE is then exactly as it was.
+  Response apply(const Matrix3& displacement_gradient, double dt, const Want& want = {});
+
+  /// The same with a mixed target: the stress servo runs inside the sub-steps.
+  Response apply(const MixedTarget& target, double dt, const Want& want = {});
+
+  /// Quasi-static steps at fixed cell until the unbalanced ratio is below `unbalanced` or `max_steps` are made.
+  Report relax(double unbalanced, long max_steps);
+
+  Matrix3 stress() const;           ///< Cauchy, laboratory frame, Pa
+  Matrix3 contact_stress() const;   ///< (1/V) sum, laboratory frame, Pa
+  Matrix3 reynolds_stress() const;  ///< -(1/V) sum m v' v', laboratory frame, Pa; zero after dt = 0
+  double unbalanced_ratio() const;
+  const Cell& cell() const;
+  std::size_t size() const;        ///< number of grains
+  double critical_time_step() const;  ///< 2/omega_max with physical masses, s
+  std::uint64_t grain_steps() const;
+
+  Network network() const;
+  Specimen specimen() const;
+
+  /// Changes contact parameters in place (friction for preparation, no slip for probes); history is kept.
+  void set_materials(const std::vector<Material>& materials);
+  /// Sets fluctuation velocities and spins (cell frame, m/s and rad/s), for dt > 0.
+  void set_velocities(const std::vector<Vector3>& velocity, const std::vector<Vector3>& spin);
+  /// Zeroes fluctuation velocities and spins; the kinetic energy is booked under `zeroing`.
+  void zero_velocities();
+
+  /// Bitwise snapshot of everything that decides the next bit (same build layout only) and the way back.
+  std::vector<std::byte> save() const;
+  void restore(std::span<const std::byte> snapshot);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace rvelab

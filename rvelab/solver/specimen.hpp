@@ -1,0 +1,88 @@
+// A specimen: everything that an Rve is opened from and that decides its next bit. A plain value: files write and
+// read it, importers and packers make it, Rve::specimen() returns it.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "rvelab/cell/cell.hpp"
+#include "rvelab/contact/model.hpp"
+#include "rvelab/grains/shape.hpp"
+
+namespace rvelab {
+
+/// Grains, one entry each, in the order of their ids. Vectors are in the cell frame; in 2D z-components of position
+/// and velocity, and x and y of the spin, are zero.
+struct Grains {
+  std::vector<std::int64_t> id;
+  std::vector<double> radius;          ///< m
+  std::vector<std::int32_t> material;  ///< index into Specimen::materials
+  std::vector<Vector3> position;       ///< m
+  std::vector<Vector3> velocity;       ///< m/s, fluctuation v' (at the last half step); dt = 0: m per sub-step
+  std::vector<Vector3> spin;           ///< rad/s, fluctuation w'; dt = 0: rad per sub-step
+  std::size_t size() const { return id.size(); }
+};
+
+/// One touching pair with its history. i and j index Grains, i <= j; the branch is x_j + L image - x_i. Ordered by
+/// (i, j, image). Force and moment are those on grain j, cell frame.
+struct Contact {
+  std::int32_t i = 0, j = 0;
+  Image image{};
+  Vector3 tangential_force = Vector3::Zero();  ///< N, spring part (without dashpot)
+  Vector3 rolling_moment = Vector3::Zero();    ///< N m
+  double last_root_overlap = 0;  ///< sqrt(delta) at the last step, m^0.5 (hertz_mindlin)
+};
+
+/// How the solver goes about its work. Defaults are measured ones (performance figures stand beside each use).
+struct SolverOptions {
+  double skin = 0.1;               ///< Verlet skin over the mean radius, > 0
+  double time_step_factor = 0.7;   ///< fraction of the critical step 2/omega_max, 0 < f < 1
+  double fixed_time_step = 0;      ///< s; > 0: dt > 0 loading uses exactly this step
+  double target_unbalanced = 1e-3; ///< dt = 0: unbalanced ratio that steers the number of sub-steps
+  long fixed_substeps = 0;         ///< dt = 0: > 0: exactly so many sub-steps an increment, no control
+  long max_substeps = 50'000'000;  ///< an increment that needs more fails
+  double min_height = 0;           ///< m; shortest lattice vector allowed; 0: 2 r_max
+  double max_overlap_ratio = 0.25; ///< largest overlap over the smaller radius; more fails
+  bool ledger = false;             ///< keep the energy ledger (measured cost in tools/bench)
+};
+
+/// Energy ledger, J, sums since the specimen was opened first (design 7). Zero when not kept.
+struct EnergyLedger {
+  double boundary_work = 0;
+  double friction = 0, rolling = 0, dashpot = 0;
+  double local_damping = 0, global_damping = 0;
+  double law_loss = 0;  ///< change of f_t^2/2kt at varying kt (Hertz-Mindlin), and M^2/2kr
+  double zeroing = 0;   ///< kinetic energy removed when scaled masses change or the mean velocity is taken out
+};
+
+/// Solver state that decides the next bit, beside grains, contacts and cell.
+struct SolverState {
+  bool has_reference = false;           ///< the list was built from the positions and lattice below
+  std::vector<Vector3> list_positions;  ///< positions when the list was built (wrapped)
+  Matrix3 list_lattice = Matrix3::Zero();
+  double list_travel = 0;      ///< bound on the largest fluctuation displacement since then, m
+  double strain_per_step = 0;  ///< dt = 0: pace of the sub-step controller; 0: not yet known
+  double reference_contact_force = 0;  ///< N, mean contact force at the specimen's own p0; 0: set on opening
+  double reference_pressure = 0;       ///< Pa, the specimen's own p0; 0: set on opening
+  bool quasi_static = true;            ///< units of the stored velocities (see Grains)
+  Matrix3 last_rate = Matrix3::Zero(); ///< D of the last sub-step, cell frame (dashpot forces need it)
+  double last_step = 0;                ///< length of the last sub-step: s, or 1 at dt = 0
+  Vector3 mean_velocity = Vector3::Zero();  ///< mass-weighted mean v' that the next step takes out
+  std::uint64_t grain_steps = 0;            ///< grains times sub-steps made so far
+  std::uint64_t list_builds = 0;
+  EnergyLedger ledger;
+};
+
+struct Specimen {
+  Shape shape = Shape::sphere;
+  Cell cell;
+  std::vector<Material> materials;
+  ContactModel contact;
+  Damping damping;
+  SolverOptions solver;
+  Grains grains;
+  std::vector<Contact> contacts;
+  SolverState state;
+};
+
+}  // namespace rvelab
