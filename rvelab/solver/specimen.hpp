@@ -28,7 +28,8 @@ struct Grains {
 struct Contact {
   std::int32_t i = 0, j = 0;
   Image image{};
-  Vector3 tangential_force = Vector3::Zero();  ///< N, spring part (without dashpot)
+  /// N, spring part (without dashpot). 2D: (f_t, 0, 0) with f_t along t = (-n_y, n_x), which no rotation changes.
+  Vector3 tangential_force = Vector3::Zero();
   Vector3 rolling_moment = Vector3::Zero();    ///< N m
   double last_root_overlap = 0;  ///< sqrt(delta) at the last step, m^0.5 (hertz_mindlin)
 };
@@ -57,17 +58,18 @@ struct EnergyLedger {
 
 /// Solver state that decides the next bit, beside grains, contacts and cell.
 struct SolverState {
-  bool has_reference = false;           ///< the list was built from the positions and lattice below
-  std::vector<Vector3> list_positions;  ///< positions when the list was built (wrapped)
-  Matrix3 list_lattice = Matrix3::Zero();
+  bool has_reference = false;  ///< list_lattice and list_travel say when to list anew
+  Matrix3 list_lattice = Matrix3::Zero();  ///< lattice when the list was built, m
   double list_travel = 0;      ///< bound on the largest fluctuation displacement since then, m
   double strain_per_step = 0;  ///< dt = 0: pace of the sub-step controller; 0: not yet known
+  Matrix3 servo_strain = Matrix3::Zero();  ///< mixed targets: strain per unit of paced strain learnt so far, lab frame
   double reference_contact_force = 0;  ///< N, mean contact force at the specimen's own p0; 0: set on opening
   double reference_pressure = 0;       ///< Pa, the specimen's own p0; 0: set on opening
   bool quasi_static = true;            ///< units of the stored velocities (see Grains)
   Matrix3 last_rate = Matrix3::Zero(); ///< D of the last sub-step, cell frame (dashpot forces need it)
   double last_step = 0;                ///< length of the last sub-step: s, or 1 at dt = 0
   Vector3 mean_velocity = Vector3::Zero();  ///< mass-weighted mean v' that the next step takes out
+  Vector3 mean_spin = Vector3::Zero();      ///< axial(W + Omega) of the last sub-step, rad/s (dt > 0)
   std::uint64_t grain_steps = 0;            ///< grains times sub-steps made so far
   std::uint64_t list_builds = 0;
   EnergyLedger ledger;

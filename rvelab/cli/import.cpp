@@ -1,0 +1,90 @@
+// rvelab import: specimens from the CSV files of YADE and LAMMPS.
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "rvelab/cli/commands.hpp"
+#include "rvelab/cli/report.hpp"
+#include "rvelab/error.hpp"
+#include "rvelab/io/import_csv.hpp"
+#include "rvelab/io/specimen_file.hpp"
+
+namespace rvelab::cli {
+namespace {
+
+struct ImportArguments {
+  std::vector<std::string> inputs;
+  std::vector<double> cell;
+  std::string material, output;
+  std::vector<std::string> settings;
+  bool json = false;
+};
+
+/// Files that end in .json are META.json, the others particles and contacts, in this order.
+struct Inputs {
+  std::string particles;
+  std::optional<std::string> contacts, meta;
+};
+
+Inputs sorted(const std::vector<std::string>& files) {
+  std::vector<std::string> tables, metas;
+  for (const auto& file : files) (file.ends_with(".json") ? metas : tables).push_back(file);
+  if (tables.empty() || tables.size() > 2 || metas.size() > 1) {
+    throw InputError("import was given " + std::to_string(tables.size()) + " CSV and " + std::to_string(metas.size()) +
+                     " JSON files; allowed: PARTICLES.csv [CONTACTS.csv] [META.json]; name these");
+  }
+  Inputs inputs{tables[0], std::nullopt, std::nullopt};
+  if (tables.size() == 2) inputs.contacts = tables[1];
+  if (!metas.empty()) inputs.meta = metas[0];
+  return inputs;
+}
+
+void run_import(const ImportArguments& arguments) {
+  const Inputs inputs = sorted(arguments.inputs);
+  ImportOptions options;
+  if (!arguments.cell.empty()) options.cell = Vector3(arguments.cell[0], arguments.cell[1], arguments.cell[2]);
+  if (!arguments.material.empty()) options.material_path = arguments.material;
+  options.settings = arguments.settings;
+  const Specimen specimen = import_csv(inputs.particles, inputs.contacts, inputs.meta, options);
+  write_specimen(specimen, arguments.output);
+
+  Listing listing;
+  listing.add("file", arguments.output);
+  listing.add("dimension", specimen.cell.dimension);
+  listing.add("grains", specimen.grains.size());
+  listing.add("contacts", specimen.contacts.size());
+  listing.add("contact_law", name(specimen.contact.law));
+  listing.add("slip", name(specimen.contact.slip));
+  listing.add("rolling", specimen.contact.rolling);
+  listing.add("lattice_m", row_major(specimen.cell.lattice), "m");
+  listing.print(arguments.json);
+}
+
+}  // namespace
+
+void add_import(CLI::App& app) {
+  auto arguments = std::make_shared<ImportArguments>();
+  CLI::App* command = app.add_subcommand("import", "Make a specimen from CSV files of YADE or LAMMPS");
+  command->add_option("files", arguments->inputs, "PARTICLES.csv [CONTACTS.csv] [META.json]")
+      ->required()
+      ->expected(1, 3);
+  command->add_option("--cell", arguments->cell, "Lxx,Lyy,Lzz in m of a rectangular cell (2D: Lzz is the thickness)")
+      ->delimiter(',')
+      ->expected(3);
+  command->add_option("--material", arguments->material, "TOML file with [[material]], [contact], [damping], [solver]");
+  command->add_option("--set", arguments->settings, "key=value, for example contact.slip=full_radius_ratcheting")
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->take_all();
+  command->add_option("-o,--output", arguments->output, "specimen file to write, S.h5")->required();
+  command->add_flag("--json", arguments->json, "print one JSON object");
+  command->footer(
+      "Examples:\n"
+      "  rvelab import dense.particles.csv dense.contacts.csv dense.json -o dense.h5\n"
+      "  rvelab import init.csv --cell 2,2,2 --material sand.toml -o loose.h5");
+  command->callback([arguments] { run_import(*arguments); });
+}
+
+}  // namespace rvelab::cli

@@ -1,0 +1,108 @@
+// rvelab inspect: what is in a specimen or record file, and the measures of its state.
+#include <memory>
+#include <string>
+
+#include "rvelab/cli/commands.hpp"
+#include "rvelab/cli/report.hpp"
+#include "rvelab/io/record_file.hpp"
+#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/measure/measures.hpp"
+#include "rvelab/solver/rve.hpp"
+
+namespace rvelab::cli {
+namespace {
+
+void add_state(Listing& listing, const Rve& rve) {
+  const Network network = rve.network();
+  const int dimension = network.dimension();
+  const Matrix3 stress = rve.stress();
+  listing.add("dimension", dimension);
+  listing.add("grains", network.grains.size());
+  listing.add("contacts", network.contacts.size());
+  listing.add("stress_Pa", row_major(stress), "Pa");
+  listing.add("p_Pa", mean_pressure(stress, dimension), "Pa");
+  listing.add("q_Pa", deviatoric_stress(stress, dimension), "Pa");
+  listing.add("void_ratio", void_ratio(network));
+  listing.add("coordination_number", coordination_number(network));
+  listing.add("fabric_anisotropy", fabric_anisotropy(fabric(network), dimension));
+  listing.add("sliding_fraction", sliding_fraction(network));
+  listing.add("unbalanced_force_ratio", unbalanced_force_ratio(network));
+  listing.add("lattice_m", row_major(network.cell.lattice), "m");
+  listing.add("rotation", row_major(network.cell.rotation));
+  listing.add("volume_m3", network.cell.volume(), "m^3");
+}
+
+Json parameters_of(const Material& material, const ContactModel& model) {
+  Json json;
+  json["name"] = material.name;
+  json["density_kg_m3"] = material.density;
+  switch (model.law) {
+    case Law::linear:
+      json["young_modulus_Pa"] = material.young_modulus;
+      json["stiffness_ratio"] = material.stiffness_ratio;
+      break;
+    case Law::hertz_mindlin:
+      json["young_modulus_Pa"] = material.young_modulus;
+      json["poisson_ratio"] = material.poisson_ratio;
+      break;
+    case Law::linear_given:
+    case Law::hertz_given:
+      json[model.law == Law::linear_given ? "normal_stiffness_N_m" : "normal_stiffness_N_m1_5"] =
+          material.normal_stiffness;
+      json["tangential_stiffness_N_m"] = material.tangential_stiffness;
+      break;
+  }
+  json["friction"] = material.friction;
+  if (model.rolling) {
+    json["rolling_stiffness"] = material.rolling_stiffness;
+    json["rolling_friction"] = material.rolling_friction;
+  }
+  return json;
+}
+
+void add_model(Listing& listing, const Specimen& specimen) {
+  listing.add("contact_law", name(specimen.contact.law));
+  listing.add("slip", name(specimen.contact.slip));
+  listing.add("rolling", specimen.contact.rolling);
+  listing.add("unload_rescale", specimen.contact.unload_rescale);
+  listing.add("dashpot", name(specimen.damping.dashpot));
+  listing.add("local_damping", specimen.damping.local);
+  listing.add("reference_pressure_Pa", specimen.state.reference_pressure, "Pa");
+  Json materials = Json::array();
+  for (const Material& material : specimen.materials) materials.push_back(parameters_of(material, specimen.contact));
+  listing.add("materials", std::move(materials));
+}
+
+void run_inspect(const std::string& path, bool as_json) {
+  const bool has_records = file_kind(path) == FileKind::records;
+  const Specimen specimen = read_specimen(path);
+  Listing listing;
+  listing.add("file", path);
+  listing.add("kind", has_records ? "records" : "specimen");
+  if (has_records) {
+    const TestResult result = read_records(path);
+    listing.add("protocol", result.protocol);
+    listing.add("records", result.records.size());
+    listing.add("stages", result.stages);
+  }
+  add_state(listing, Rve(specimen));
+  add_model(listing, specimen);
+  listing.print(as_json);
+}
+
+}  // namespace
+
+void add_inspect(CLI::App& app) {
+  struct Arguments {
+    std::string file;
+    bool json = false;
+  };
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("inspect", "Show a specimen, or the end state of a test");
+  command->add_option("file", arguments->file, "specimen or record file, *.h5")->required();
+  command->add_flag("--json", arguments->json, "print one JSON object");
+  command->footer("Example:\n  rvelab inspect dense.h5 --json");
+  command->callback([arguments] { run_inspect(arguments->file, arguments->json); });
+}
+
+}  // namespace rvelab::cli

@@ -1,0 +1,77 @@
+#include "rvelab/cli/report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <sstream>
+
+namespace rvelab::cli {
+namespace {
+
+/// One value on one line: text without quotation marks, numbers with 9 digits.
+std::string on_one_line(const Json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_float()) {
+    std::ostringstream text;
+    text.precision(9);
+    text << value.get<double>();
+    return text.str();
+  }
+  if (!value.is_structured()) return value.is_null() ? "nan" : value.dump();
+  std::string text;
+  for (const auto& [key, item] : value.items()) {
+    if (!text.empty()) text += value.is_object() ? ", " : "  ";
+    text += (value.is_object() ? key + " " : "") + on_one_line(item);
+  }
+  return text;
+}
+
+bool has_rows(const Json& value) {
+  return value.is_array() && !value.empty() &&
+         std::all_of(value.begin(), value.end(), [](const Json& item) { return item.is_structured(); });
+}
+
+}  // namespace
+
+void Listing::add(const std::string& key, Json value, const std::string& unit) {
+  lines_.push_back({key, std::move(value), unit});
+}
+
+std::string Listing::json() const {
+  Json object = Json::object();
+  for (const auto& line : lines_) object[line.key] = line.value;
+  return object.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string Listing::text() const {
+  std::size_t width = 0;
+  for (const auto& line : lines_) width = std::max(width, line.key.size());
+  std::string text;
+  const auto put = [&](const std::string& key, const std::string& value, const std::string& unit) {
+    text += key + std::string(width + 2 - key.size(), ' ') + value + (unit.empty() ? "" : " " + unit) + "\n";
+  };
+  for (const auto& line : lines_) {
+    if (!has_rows(line.value)) {
+      put(line.key, on_one_line(line.value), line.unit);
+      continue;
+    }
+    for (std::size_t row = 0; row < line.value.size(); ++row) {
+      put(row == 0 ? line.key : "", on_one_line(line.value[row]), line.unit);
+    }
+  }
+  return text;
+}
+
+void Listing::print(bool as_json) const { std::cout << (as_json ? json() : text()) << std::flush; }
+
+Json row_major(const Eigen::MatrixXd& matrix) {
+  Json rows = Json::array();
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    Json row = Json::array();
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j) row.push_back(matrix(i, j));
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+}  // namespace rvelab::cli

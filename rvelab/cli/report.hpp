@@ -1,0 +1,37 @@
+// What a command prints: one JSON object with --json, a plain listing "key  value unit" otherwise.
+#pragma once
+
+#include <Eigen/Core>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace rvelab::cli {
+
+using Json = nlohmann::ordered_json;
+
+/// Results of a command, in the order in which they were added. Numbers keep every bit (up to 17 digits); NaN and
+/// infinities are null in JSON and "nan" in the listing. Arrays are row-major.
+class Listing {
+ public:
+  /// `value`: number, text, truth, array or object. `unit` stands in the listing only ("" for none); JSON keys end in
+  /// their unit.
+  void add(const std::string& key, Json value, const std::string& unit = "");
+  std::string json() const;  ///< one object, indented, ends with a newline
+  std::string text() const;  ///< one line a key; matrices and lists of objects one line a row
+  /// Prints to standard output in the one form or the other.
+  void print(bool as_json) const;
+
+ private:
+  struct Line {
+    std::string key;
+    Json value;
+    std::string unit;
+  };
+  std::vector<Line> lines_;
+};
+
+/// A matrix as an array of rows.
+Json row_major(const Eigen::MatrixXd& matrix);
+
+}  // namespace rvelab::cli

@@ -1,0 +1,79 @@
+// HDF5 behind one small class: typed arrays, text and attributes by name; its errors as rvelab's own.
+//
+// This file knows HDF5 and nothing of grains; no other file includes HDF5's headers. Files are built in memory and
+// written by publish(), so that no HDF5 file is ever open for writing on disc and a full disc is one plain error.
+// HDF5's serial library is not thread-safe: one thread at a time.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace rvelab {
+
+using Shape64 = std::vector<std::uint64_t>;  ///< extents of an array, outermost first; empty: a scalar
+
+/// A dataset as a walk through a file finds it.
+struct Hdf5Entry {
+  std::string name;   ///< full path, for example "/grains/radius_m"
+  std::string type;   ///< float64, int32, int64, uint64, uint8 or text
+  Shape64 shape;      ///< empty: a scalar
+  std::string units;  ///< its attribute `units`; "1" where it is a pure number, "-" where it is none
+};
+
+/// An HDF5 file, move only. Names are full paths; groups between are made as needed. Scalars: double, int32, int64,
+/// uint64, uint8, stored little-endian. All members throw InputError or Error naming file, dataset and remedy.
+class Hdf5File {
+ public:
+  /// Opens an existing file for reading. InputError: missing, not HDF5, truncated.
+  static Hdf5File open(const std::string& path);
+  /// An empty file in memory; `path` serves the messages only.
+  static Hdf5File in_memory(const std::string& path);
+
+  Hdf5File(Hdf5File&& other) noexcept;
+  Hdf5File& operator=(Hdf5File&& other) noexcept;
+  Hdf5File(const Hdf5File&) = delete;
+  Hdf5File& operator=(const Hdf5File&) = delete;
+  ~Hdf5File();
+
+  const std::string& path() const { return path_; }
+
+  /// Writes values, row-major, of the given shape, with the attribute `units`.
+  template <class Scalar>
+  void write(const std::string& name, std::span<const Scalar> values, const Shape64& shape, const std::string& units);
+  void write_text(const std::string& name, const std::vector<std::string>& values, const Shape64& shape);
+
+  /// Reads a dataset whole, row-major. InputError if it is missing, of another kind (text for numbers) or does not
+  /// convert to Scalar without loss of kind (floating for integer).
+  template <class Scalar>
+  std::vector<Scalar> read(const std::string& name) const;
+  std::vector<std::string> read_text(const std::string& name) const;
+
+  bool has(const std::string& name) const;
+  Shape64 shape(const std::string& name) const;
+
+  /// Text attributes of the file itself (of its root group).
+  void set_attribute(const std::string& name, const std::string& value);
+  std::string attribute(const std::string& name) const;
+  std::vector<std::string> attributes() const;
+
+  /// All datasets, in the order of their names.
+  std::vector<Hdf5Entry> entries() const;
+
+  /// The bytes of the file.
+  std::vector<std::byte> image() const;
+
+ private:
+  Hdf5File(std::string path, std::int64_t id) : path_(std::move(path)), id_(id) {}
+  std::string path_;
+  std::int64_t id_ = -1;
+};
+
+/// Builds a file with `fill`, writes it as path.tmp, syncs it to disc and renames it to path: a reader finds the old
+/// file or the new one, whole. The same content gives the same bytes. InputError if the folder does not exist or may
+/// not be written; Error if the writing fails (path.tmp is removed, path is as it was).
+void publish(const std::string& path, const std::function<void(Hdf5File&)>& fill);
+
+}  // namespace rvelab

@@ -1,0 +1,18 @@
+// Contacts of an imported packing: their history, and the check that file and parameters belong together.
+#pragma once
+
+#include <vector>
+
+#include "rvelab/io/csv_table.hpp"
+#include "rvelab/solver/specimen.hpp"
+
+namespace rvelab::io {
+
+/// Reads the contacts of a specimen whose grains, cell and parameters stand; `wraps` holds each grain's wrapping
+/// translation. Errors as import_csv says.
+void read_contacts(const CsvTable& table, const std::vector<Image>& wraps, Specimen& specimen);
+
+/// Sets Contact::last_root_overlap: sqrt(overlap) with hertz_mindlin, else zero.
+void set_root_overlaps(Specimen& specimen);
+
+}  // namespace rvelab::io

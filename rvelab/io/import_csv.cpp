@@ -1,0 +1,174 @@
+#include "rvelab/io/import_csv.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <numeric>
+
+#include "rvelab/cell/givens.hpp"
+#include "rvelab/error.hpp"
+#include "rvelab/io/csv_table.hpp"
+#include "rvelab/io/import_contacts.hpp"
+#include "rvelab/io/import_meta.hpp"
+#include "rvelab/io/material_toml.hpp"
+
+namespace rvelab {
+namespace {
+
+std::string in_words(const Matrix3& matrix) {
+  std::string text;
+  for (int k = 0; k < 9; ++k) {
+    char number[32];
+    std::snprintf(number, sizeof number, "%s%.9g", k == 0 ? "" : k % 3 == 0 ? "; " : " ", matrix(k / 3, k % 3));
+    text += number;
+  }
+  return "[" + text + "]";
+}
+
+/// The cell frame of a cell given by its vectors: H = Q L. An upper triangular H with positive diagonal is kept as
+/// it is.
+void set_cell(Specimen& specimen, int dimension, const Matrix3& vectors, const std::string& source) {
+  const auto factors = triangular_factors(vectors);
+  specimen.shape = dimension == 2 ? Shape::disc : Shape::sphere;
+  specimen.cell.dimension = dimension;
+  specimen.cell.lattice = factors.upper;
+  specimen.cell.rotation = factors.rotation;
+  if (!factors.upper.allFinite() || !(factors.upper.diagonal().array() > 0).all()) {
+    throw InputError(source + ": the cell vectors are the columns of " + in_words(vectors) +
+                     " m; allowed: a right-handed cell of positive volume (2D: positive thickness); correct the cell");
+  }
+}
+
+/// Material of each row: by name where the file has the column, else the only one.
+std::vector<std::int32_t> materials_of(const CsvTable& table, const Specimen& specimen) {
+  std::vector<std::int32_t> index(table.rows(), 0);
+  if (!table.has("material")) {
+    if (specimen.materials.size() > 1) {
+      throw InputError(table.place(0) + ": there are " + std::to_string(specimen.materials.size()) +
+                       " materials and no column `material`; allowed: one material, or the column with a name for "
+                       "each grain; add the column");
+    }
+    return index;
+  }
+  std::map<std::string, std::int32_t, std::less<>> indices;
+  for (const auto& material : specimen.materials) {
+    indices.emplace(material.name, static_cast<std::int32_t>(indices.size()));
+  }
+  const auto column = table.column({"material"});
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const auto found = indices.find(table.text(row, column));
+    if (found == indices.end()) {
+      std::string known;
+      for (const auto& [name, number] : indices) known += (known.empty() ? "" : ", ") + name;
+      throw InputError(table.place(row, column) + " names no material; allowed: " + known + "; correct the name");
+    }
+    index[row] = found->second;
+  }
+  return index;
+}
+
+std::vector<Vector3> positions_of(const CsvTable& table, const Cell& cell) {
+  const auto x = table.column({"x"}), y = table.column({"y"});
+  const auto z = cell.dimension == 3 ? table.column({"z"}) : x;
+  std::vector<Vector3> positions;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const double height = cell.dimension == 3 ? table.number(row, z) : 0;
+    positions.push_back(cell.rotation.transpose() * Vector3(table.number(row, x), table.number(row, y), height));
+  }
+  return positions;
+}
+
+/// Rows of a particle table in the order of their ids.
+std::vector<std::size_t> order_by_id(const CsvTable& table) {
+  const auto column = table.column({"id"});
+  std::vector<std::size_t> order(table.rows());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<std::int64_t> id(table.rows());
+  for (const auto row : order) id[row] = table.integer(row, column);
+  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return id[a] < id[b]; });
+  for (std::size_t k = 1; k < order.size(); ++k) {
+    if (id[order[k]] == id[order[k - 1]]) {
+      throw InputError(table.place(order[k], column) + " is there twice (first at " + table.place(order[k - 1]) +
+                       "); allowed: an id of its own for each grain; renumber one");
+    }
+  }
+  return order;
+}
+
+/// Fills the grains; returns each grain's wrapping translation w, x_new = x_old + L w.
+std::vector<Image> read_grains(const CsvTable& table, Specimen& specimen) {
+  if (table.rows() == 0) {
+    throw InputError(table.path() + ": has no rows; allowed: one row a grain, one at least; give the right file");
+  }
+  const auto positions = positions_of(table, specimen.cell);
+  const auto materials = materials_of(table, specimen);
+  const auto id = table.column({"id"}), radius = table.column({"r", "radius"});
+  std::vector<Image> wraps;
+  Grains& grains = specimen.grains;
+  for (const auto row : order_by_id(table)) {
+    grains.id.push_back(table.integer(row, id));
+    grains.radius.push_back(table.number(row, radius));
+    if (!(grains.radius.back() > 0)) {
+      throw InputError(table.place(row, radius) + " m is not positive; allowed: > 0; correct the radius");
+    }
+    grains.material.push_back(materials[row]);
+    grains.position.push_back(positions[row]);
+    wraps.push_back(wrap(specimen.cell, grains.position.back()));
+  }
+  grains.velocity.assign(grains.size(), Vector3::Zero());
+  grains.spin.assign(grains.size(), Vector3::Zero());
+  return wraps;
+}
+
+}  // namespace
+
+Specimen import_csv(const std::string& particles_path, const std::optional<std::string>& contacts_path,
+                    const std::optional<std::string>& meta_json_path, const ImportOptions& options) {
+  Specimen specimen;
+  const CsvTable particles(particles_path);
+  int dimension = particles.has("z") ? 3 : 2;
+  std::optional<Matrix3> vectors;
+  std::string source = "--cell";
+  if (meta_json_path) {
+    const auto meta = io::read_meta(*meta_json_path, specimen, !options.material_path);
+    dimension = meta.dimension;
+    vectors = meta.cell;
+    source = *meta_json_path;
+    specimen.state.reference_pressure = meta.reference_pressure;
+  }
+  if (options.material_path) {
+    read_material_file(*options.material_path, specimen);
+    check(specimen.contact, specimen.damping, specimen.materials);
+  }
+  if (specimen.materials.empty()) {
+    throw InputError(particles_path +
+                     ": comes without contact parameters; allowed: META.json or --material M.toml; give one of them");
+  }
+  if (vectors && options.cell) {
+    throw InputError("--cell is given and " + source + " has a cell too; allowed: one of the two; leave --cell out");
+  }
+  if (options.cell) {
+    if (!(options.cell->array() > 0).all()) {
+      const Matrix3 given = options.cell->asDiagonal();
+      throw InputError("--cell gives the cell vectors " + in_words(given) + " m; allowed: lengths > 0; correct them");
+    }
+    vectors = options.cell->asDiagonal();
+  }
+  if (!vectors) {
+    throw InputError(particles_path +
+                     ": comes without a cell; allowed: META.json with hSize, or --cell Lxx,Lyy,Lzz in m (2D: Lzz is "
+                     "the thickness); give one of them");
+  }
+  set_cell(specimen, dimension, *vectors, source);
+
+  const auto wraps = read_grains(particles, specimen);
+  if (contacts_path) io::read_contacts(CsvTable(*contacts_path), wraps, specimen);
+
+  for (const auto& setting : options.settings) set_key(specimen, setting);
+  check(specimen.contact, specimen.damping, specimen.materials);
+  io::set_root_overlaps(specimen);
+  return specimen;
+}
+
+}  // namespace rvelab

@@ -1,0 +1,36 @@
+// The table of keys that material_toml.hpp reads by: what each key is called and means, and which field it sets.
+#pragma once
+
+#include <variant>
+#include <vector>
+
+#include "rvelab/io/material_toml.hpp"
+
+namespace rvelab::io {
+
+/// Interval of the values that a number may take.
+struct Range {
+  double low, high;
+  bool low_open = false, high_open = false;
+  bool contains(double value) const;
+  std::string in_words() const;
+};
+
+/// friction_angle_deg sets Material::friction to its tangent.
+struct FrictionAngle {};
+
+/// The field that a key sets.
+using Target =
+    std::variant<std::string Material::*, double Material::*, FrictionAngle, double Damping::*, bool Damping::*,
+                 Dashpot Damping::*, LocalDampingForm Damping::*, double SolverOptions::*, long SolverOptions::*,
+                 bool SolverOptions::*, bool ContactModel::*, Law ContactModel::*, Slip ContactModel::*>;
+
+struct KeyEntry {
+  Key key;
+  Target target;
+  Range range;  ///< numbers only
+};
+
+const std::vector<KeyEntry>& key_entries();
+
+}  // namespace rvelab::io

@@ -1,0 +1,25 @@
+// What every rvelab file begins with, and the description of a specimen that specimen and record files share.
+#pragma once
+
+#include <string>
+
+#include "rvelab/io/hdf5_file.hpp"
+#include "rvelab/io/specimen_file.hpp"
+
+namespace rvelab::io {
+
+/// Version of the layout, major.minor. A later minor version adds; a later major version changes.
+inline constexpr int format_major = 1;
+inline constexpr int format_minor = 0;
+
+/// Sets the file's attributes `format` and `format_version`.
+void stamp(Hdf5File& file, FileKind kind);
+
+/// Checks the attributes and returns the kind. InputError: not rvelab's, or of a newer format.
+FileKind checked_kind(const Hdf5File& file);
+
+/// Writes a specimen under a group ("" for the root), or reads it from there and checks its indices.
+void put_specimen(Hdf5File& file, const std::string& group, const Specimen& specimen);
+Specimen get_specimen(const Hdf5File& file, const std::string& group);
+
+}  // namespace rvelab::io

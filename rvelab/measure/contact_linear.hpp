@@ -1,0 +1,41 @@
+// One contact, linearised: how force and torques of the incremental contact law change with branch and rotations.
+//
+// With b the branch, l its length, n = b/l, R = ri + rj, overlap delta = R - l, F = f_n n + f_t the force on j and M
+// the rolling moment on j (design 6; conventions of Rve):
+//   dn    = (I - n n) db/l,   dl = n . db,   d delta = -dl
+//   d f_n = -k_n dl
+//   d f_t = -n (f_t . dn) + 1/2 (n . (dtheta_i + dtheta_j)) n x f_t        turned with normal and mean spin
+//           - k_t (I - n n) (s db - c_j dtheta_j x n - c_i dtheta_i x n)   stuck
+//           - f_t dl/(2 delta) where Hertz-Mindlin unloads with rescaling
+//   d M   = likewise turned, - k_r (I - n n)(dtheta_j - dtheta_i), rescaled as f_t
+//   T_i   = -a_i n x f_t - M,  T_j = -a_j n x f_t + M,  a = r - delta/2
+// Slip `consistent`: s = 1, c = a; `full_radius`: s = 1, c = r, no turning by the mean spin; `full_radius_ratcheting`:
+// s = R/l, c = r. In 2D the same formulas hold with rotations and moments along z.
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "rvelab/solver/network.hpp"
+
+namespace rvelab {
+
+using ContactMatrix = Eigen::Matrix<double, 3, 9>;
+using ContactRow = Eigen::Matrix<double, 1, 9>;
+
+/// Columns: db (3), dtheta_i (3), dtheta_j (3). Rows as named.
+struct LinearContact {
+  ContactMatrix force;     ///< dF on j, N/m and N
+  ContactMatrix torque_i;  ///< dT on i, N and N m
+  ContactMatrix torque_j;  ///< dT on j
+};
+
+/// The law without rescaling on unloading.
+LinearContact linearised(const ContactState& contact, double ri, double rj, Slip slip);
+
+/// True where the law of the network makes f_t and M fall with sqrt(overlap).
+bool rescales(const Network& network);
+
+/// What unloading adds to `linearised` where dl > 0: terms in dl alone.
+LinearContact unloading_terms(const ContactState& contact, double ri, double rj);
+
+}  // namespace rvelab

@@ -1,0 +1,206 @@
+// Measures of a contact network (design 3, 7).
+#include "rvelab/measure/measures.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace rvelab {
+namespace {
+
+constexpr double not_defined = std::numeric_limits<double>::quiet_NaN();
+
+Matrix3 in_laboratory(const Network& network, const Matrix3& tensor) {
+  const Matrix3& rotation = network.cell.rotation;
+  return rotation * tensor * rotation.transpose();
+}
+
+Matrix3 isotropic(int dimension) {
+  Matrix3 identity = Matrix3::Identity();
+  if (dimension == 2) identity(2, 2) = 0;
+  return identity;
+}
+
+/// Symmetric deviator in the space of the given dimension. In 2D out-of-plane components are left out.
+Matrix3 deviator(const Matrix3& tensor, int dimension) {
+  Matrix3 symmetric = 0.5 * (tensor + tensor.transpose());
+  if (dimension == 2) {
+    symmetric.row(2).setZero();
+    symmetric.col(2).setZero();
+  }
+  return symmetric - symmetric.trace() / dimension * isotropic(dimension);
+}
+
+double solid_volume(const Network& network, const GrainState& grain) {
+  return grain_volume(network.shape, grain.radius, network.cell.lattice(2, 2));
+}
+
+/// (V - Vs)/Vs over the grains for which `counted` is true.
+template <class Counted>
+double void_ratio_of(const Network& network, Counted counted) {
+  double solid = 0;
+  for (std::size_t g = 0; g < network.grains.size(); ++g) {
+    if (counted(g)) solid += solid_volume(network, network.grains[g]);
+  }
+  return solid > 0 ? (network.cell.volume() - solid) / solid : not_defined;
+}
+
+}  // namespace
+
+Matrix3 contact_stress(const Network& network) {
+  Matrix3 sum = Matrix3::Zero();
+  for (const ContactState& contact : network.contacts) sum -= contact.force() * contact.branch.transpose();
+  return in_laboratory(network, sum / network.cell.volume());
+}
+
+Matrix3 reynolds_stress(const Network& network) {
+  if (network.quasi_static) return Matrix3::Zero();
+  Matrix3 sum = Matrix3::Zero();
+  for (const GrainState& grain : network.grains) sum -= grain.mass * grain.velocity * grain.velocity.transpose();
+  return in_laboratory(network, sum / network.cell.volume());
+}
+
+double mean_pressure(const Matrix3& stress, int dimension) {
+  return -(stress(0, 0) + stress(1, 1) + (dimension == 3 ? stress(2, 2) : 0.0)) / dimension;
+}
+
+double deviatoric_stress(const Matrix3& stress, int dimension) {
+  return std::sqrt(dimension == 2 ? 0.5 : 1.5) * deviator(stress, dimension).norm();
+}
+
+double deviatoric_strain(const Matrix3& strain, int dimension) {
+  return std::sqrt(dimension == 2 ? 2.0 : 2.0 / 3.0) * deviator(strain, dimension).norm();
+}
+
+Matrix3 fabric(const Network& network) {
+  Matrix3 sum = Matrix3::Zero();
+  for (const ContactState& contact : network.contacts) sum += contact.normal * contact.normal.transpose();
+  return in_laboratory(network, sum / static_cast<double>(network.contacts.size()));
+}
+
+Matrix3 branch_fabric(const Network& network) {
+  Matrix3 sum = Matrix3::Zero();
+  for (const ContactState& contact : network.contacts) sum += contact.branch * contact.branch.transpose();
+  return in_laboratory(network, sum / sum.trace());
+}
+
+double fabric_anisotropy(const Matrix3& fabric, int dimension) {
+  const Matrix3 difference = fabric - isotropic(dimension) / dimension;
+  return dimension == 2 ? 4 * std::sqrt(0.5) * difference.norm() : 7.5 * std::sqrt(1.5) * difference.norm();
+}
+
+std::vector<int> contact_counts(const Network& network) {
+  std::vector<int> count(network.grains.size(), 0);
+  for (const ContactState& contact : network.contacts) {
+    ++count[contact.i];
+    ++count[contact.j];
+  }
+  return count;
+}
+
+std::vector<bool> rattlers(const Network& network) {
+  std::vector<int> count = contact_counts(network);
+  std::vector<bool> removed(network.grains.size(), false);
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (std::size_t g = 0; g < count.size(); ++g) {
+      if (!removed[g] && count[g] < 2) changed = removed[g] = true;
+    }
+    std::fill(count.begin(), count.end(), 0);
+    for (const ContactState& contact : network.contacts) {
+      if (removed[contact.i] || removed[contact.j]) continue;
+      ++count[contact.i];
+      ++count[contact.j];
+    }
+  }
+  return removed;
+}
+
+double coordination_number(const Network& network) {
+  return network.grains.empty() ? not_defined : 2.0 * network.contacts.size() / network.grains.size();
+}
+
+double mechanical_coordination_number(const Network& network) {
+  const std::vector<bool> removed = rattlers(network);
+  const auto grains = std::count(removed.begin(), removed.end(), false);
+  const auto contacts =
+      std::count_if(network.contacts.begin(), network.contacts.end(),
+                    [&](const ContactState& contact) { return !removed[contact.i] && !removed[contact.j]; });
+  return grains > 0 ? 2.0 * contacts / grains : not_defined;
+}
+
+double void_ratio(const Network& network) {
+  return void_ratio_of(network, [](std::size_t) { return true; });
+}
+
+double mechanical_void_ratio(const Network& network) {
+  const std::vector<bool> removed = rattlers(network);
+  return void_ratio_of(network, [&](std::size_t g) { return !removed[g]; });
+}
+
+double sliding_fraction(const Network& network) {
+  if (network.contacts.empty()) return 0;
+  const auto sliding = std::count_if(network.contacts.begin(), network.contacts.end(), [](const ContactState& contact) {
+    return contact.tangential_force.norm() >= (1 - 1e-6) * contact.friction * std::abs(contact.normal_force);
+  });
+  return static_cast<double>(sliding) / network.contacts.size();
+}
+
+double unbalanced_force_ratio(const Network& network) {
+  double resultant = 0, force = 0;
+  for (const GrainState& grain : network.grains) resultant += grain.resultant.norm();
+  for (const ContactState& contact : network.contacts) force += contact.force().norm();
+  if (!network.grains.empty()) resultant /= network.grains.size();
+  if (!network.contacts.empty()) force /= network.contacts.size();
+  const double scale = std::max(force, 1e-3 * network.reference_contact_force);
+  return scale > 0 ? resultant / scale : 0.0;
+}
+
+double elastic_energy(const Network& network) {
+  double sum = 0;
+  for (const ContactState& contact : network.contacts) sum += contact.elastic_energy;
+  return sum;
+}
+
+double kinetic_energy(const Network& network) {
+  if (network.quasi_static) return 0;
+  double sum = 0;
+  for (const GrainState& grain : network.grains) {
+    sum += 0.5 * (grain.mass * grain.velocity.squaredNorm() + grain.inertia * grain.spin.squaredNorm());
+  }
+  return sum;
+}
+
+double largest_overlap_ratio(const Network& network) {
+  double largest = 0;
+  for (const ContactState& contact : network.contacts) {
+    const double smaller = std::min(network.grains[contact.i].radius, network.grains[contact.j].radius);
+    largest = std::max(largest, contact.overlap / smaller);
+  }
+  return largest;
+}
+
+double mean_diameter(const Network& network) {
+  if (network.grains.empty()) return not_defined;
+  double sum = 0;
+  for (const GrainState& grain : network.grains) sum += 2 * grain.radius;
+  return sum / network.grains.size();
+}
+
+double solid_density(const Network& network) {
+  double mass = 0, volume = 0;
+  for (const GrainState& grain : network.grains) {
+    mass += grain.mass;
+    volume += solid_volume(network, grain);
+  }
+  return volume > 0 ? mass / volume : not_defined;
+}
+
+double inertial_number(const Matrix3& velocity_gradient, int dimension, double diameter, double density,
+                       double pressure) {
+  const double rate = std::sqrt(2.0) * deviator(velocity_gradient, dimension).norm();
+  if (rate == 0) return 0;
+  return pressure > 0 ? rate * diameter * std::sqrt(density / pressure) : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace rvelab

@@ -1,0 +1,87 @@
+// Measures of a contact network: stress, fabric, coordination, void ratio, sliding, energies, dimensionless numbers.
+//
+// This room looks at a Network (or at tensors) and changes nothing; it knows no list, no step and no file. The network
+// stands in the cell frame; every tensor that leaves here is in the laboratory frame. SI units; stress is Cauchy,
+// tension positive; p and q are compression positive as soil mechanics writes them (design 3, 7). 2D: volumes are
+// those of the slab, tensors have zero z-components. A mean over nothing (fabric without a contact, void ratio without
+// a grain) is NaN.
+#pragma once
+
+#include <vector>
+
+#include "rvelab/solver/network.hpp"
+
+namespace rvelab {
+
+/// Stress of the contact forces, Pa: -(1/V) sum F (x) b, sigma_kl with force component k, branch component l; F is the
+/// force on j, b the branch from i to j (Love-Weber). Not symmetrised: the antisymmetric part measures unbalanced torque.
+Matrix3 contact_stress(const Network& network);
+
+/// Stress of the velocity fluctuations, Pa: -(1/V) sum m v' (x) v'. Zero for a quasi-static network.
+Matrix3 reynolds_stress(const Network& network);
+
+/// p = -tr(sigma)/d, Pa, compression positive.
+double mean_pressure(const Matrix3& stress, int dimension);
+
+/// q, Pa, of the symmetric deviator s: 2D sqrt(s:s/2), 3D sqrt(3 s:s/2).
+double deviatoric_stress(const Matrix3& stress, int dimension);
+
+/// eps_q of the symmetric deviator e: 2D sqrt(2 e:e), 3D sqrt(2 e:e/3). Takes rates as well.
+double deviatoric_strain(const Matrix3& strain, int dimension);
+
+/// <n (x) n> over all contacts; trace 1.
+Matrix3 fabric(const Network& network);
+
+/// sum b (x) b / sum b.b over all contacts: fabric weighted with the squared branch length; trace 1.
+Matrix3 branch_fabric(const Network& network);
+
+/// Fa of a fabric tensor of trace 1. 2D: F = 4 (phi - I/2), sqrt(F:F/2), the a of E(theta) = (1 + a cos 2(theta -
+/// theta_a))/2pi; 3D: F = 15/2 (phi - I/3), sqrt(3 F:F/2).
+double fabric_anisotropy(const Matrix3& fabric, int dimension);
+
+/// Number of contacts of each grain; a contact with its own image counts twice.
+std::vector<int> contact_counts(const Network& network);
+
+/// Grains that carry nothing: fewer than two contacts, in 2D and 3D, removed with their contacts until none is left
+/// (Thornton 2000 removes once). Two opposite contacts hold a grain by friction, one never does.
+std::vector<bool> rattlers(const Network& network);
+
+/// Z = 2 Nc/N, all grains counted.
+double coordination_number(const Network& network);
+
+/// Z_mech = 2 Nc/N without rattlers and their contacts.
+double mechanical_coordination_number(const Network& network);
+
+/// e = (V - Vs)/Vs, overlaps not subtracted, all grains counted.
+double void_ratio(const Network& network);
+
+/// The same with rattlers counted as voids.
+double mechanical_void_ratio(const Network& network);
+
+/// Fraction of contacts with |f_t| >= (1 - 1e-6) mu |f_n|; with mu = 0 all slide. Zero without contacts.
+double sliding_fraction(const Network& network);
+
+/// Mean resultant over all grains / max(mean contact force, 1e-3 of the reference force). Zero where both vanish.
+double unbalanced_force_ratio(const Network& network);
+
+/// Energy stored in contacts, J: normal, tangential and rolling springs.
+double elastic_energy(const Network& network);
+
+/// sum m v'^2/2 + I w'^2/2, J. Zero for a quasi-static network.
+double kinetic_energy(const Network& network);
+
+/// Largest overlap over the smaller radius of its pair; zero without contacts.
+double largest_overlap_ratio(const Network& network);
+
+/// Number mean of the grain diameters, m.
+double mean_diameter(const Network& network);
+
+/// Mass over solid volume of all grains, kg/m^3.
+double solid_density(const Network& network);
+
+/// I = sqrt(2 e:e) d sqrt(rho/p) with e the symmetric deviator of the velocity gradient (1/s), d the mean diameter (m),
+/// rho the density of the solid (kg/m^3), p the mean pressure (Pa). Infinite at p <= 0 under strain; zero without.
+double inertial_number(const Matrix3& velocity_gradient, int dimension, double diameter, double density,
+                       double pressure);
+
+}  // namespace rvelab

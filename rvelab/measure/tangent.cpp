@@ -1,0 +1,264 @@
+// Elastic tangent by static condensation of all grain freedoms, and the affine sum (design 7, 8).
+//
+// Unknowns of a grain: displacement (m) and rotation times the mean radius (m), so that every stiffness is in N/m. For
+// a contact, q = (db, dtheta_i, dtheta_j) = P x + (H b, 0, 0), and its forces load the grains by the transpose:
+//   K x = g,  K = -sum P^T A P,  g = sum P^T A (H b, 0, 0),  d sigma = -(1/V) sum (dF (x) b + F (x) db) - sigma tr H.
+#include "rvelab/measure/tangent.hpp"
+
+#include <Eigen/Sparse>
+#include <Eigen/SparseLU>
+#include <array>
+#include <sstream>
+#include <vector>
+
+#include "rvelab/error.hpp"
+#include "rvelab/measure/contact_linear.hpp"
+#include "rvelab/measure/measures.hpp"
+#include "rvelab/measure/tensor_order.hpp"
+
+namespace rvelab {
+namespace {
+
+using Vector = Eigen::VectorXd;
+using Vector9 = Eigen::Matrix<double, 9, 1>;
+using Matrix9 = Eigen::Matrix<double, 9, 9>;
+
+/// A contact with the rows dF, dT_i, dT_j of its law, and the law's share of unloading (rows times dl).
+struct Spring {
+  const ContactState* contact;
+  Matrix9 law;        ///< with half of the unloading terms
+  Vector9 unloading;  ///< half of the unloading terms; the other half is +- |dl|
+};
+
+Matrix9 rows_of(const LinearContact& linear) {
+  Matrix9 rows;
+  rows << linear.force, linear.torque_i, linear.torque_j;
+  return rows;
+}
+
+/// Half of the unloading terms stands in the linear law, so that with r = half the terms per dl the law is
+/// law q + r |dl|: exact for loading (dl < 0: nothing) and for unloading (dl > 0: all).
+Spring spring_of(const Network& network, const ContactState& contact) {
+  const double ri = network.grains[contact.i].radius, rj = network.grains[contact.j].radius;
+  Spring spring{&contact, rows_of(linearised(contact, ri, rj, network.model.slip)), Vector9::Zero()};
+  if (rescales(network)) {
+    const Matrix9 half = 0.5 * rows_of(unloading_terms(contact, ri, rj));
+    spring.law += half;
+    spring.unloading = half.leftCols<3>() * contact.normal;
+  }
+  return spring;
+}
+
+/// d sigma in the cell frame for the strain H and the given contact motions q; `other_force` is the |dl| part of dF.
+class StressChange {
+ public:
+  void add(const ContactState& contact, const Vector3& force_change, const Vector3& branch_change) {
+    sum_ += force_change * contact.branch.transpose() + contact.force() * branch_change.transpose();
+    stress_sum_ += contact.force() * contact.branch.transpose();
+  }
+  Matrix3 value(const Network& network, const Matrix3& strain) const {
+    return (strain.trace() * stress_sum_ - sum_) / network.cell.volume();
+  }
+
+ private:
+  Matrix3 sum_ = Matrix3::Zero(), stress_sum_ = Matrix3::Zero();
+};
+
+/// Column of C for one strain direction from the stress change in the cell frame.
+Vector column_of(const Network& network, const Matrix3& change) {
+  const Matrix3& rotation = network.cell.rotation;
+  return stress_components(rotation * change * rotation.transpose(), network.dimension());
+}
+
+Matrix3 strain_in_cell(const Network& network, int direction) {
+  const Matrix3& rotation = network.cell.rotation;
+  return rotation.transpose() * unit_strain(direction, network.dimension()) * rotation;
+}
+
+/// The network without rattlers, its stiffness factorised.
+class Condensed {
+ public:
+  explicit Condensed(const Network& network) : network_(network) {
+    number_freedoms();
+    for (const ContactState& contact : network.contacts) {
+      if (first_[contact.i] >= 0 && first_[contact.j] >= 0) springs_.push_back(spring_of(network, contact));
+    }
+    factorise();
+  }
+
+  Matrix3 stress_change(const Matrix3& strain) {
+    StressChange change;
+    if (springs_.empty()) return change.value(network_, strain);
+    const Vector x = balance(strain);
+    for (const Spring& spring : springs_) {
+      const Vector9 q = motion(spring, strain, x);
+      const Vector9 response = spring.law * q + spring.unloading * std::abs(elongation(spring, q));
+      change.add(*spring.contact, response.head<3>(), q.head<3>());
+    }
+    return change.value(network_, strain);
+  }
+
+ private:
+  void number_freedoms() {
+    const std::vector<bool> removed = rattlers(network_);
+    freedoms_ = network_.dimension() == 2 ? 3 : 6;
+    first_.assign(removed.size(), -1);
+    for (std::size_t g = 0; g < removed.size(); ++g) {
+      if (removed[g]) continue;
+      first_[g] = count_;
+      count_ += freedoms_;
+      length_ += network_.grains[g].radius;
+    }
+    if (count_ > 0) length_ /= count_ / freedoms_;
+  }
+
+  /// Columns of P for one grain: direction of the k-th freedom in space, and whether it is a rotation.
+  int axis(int k) const { return network_.dimension() == 2 ? (k < 2 ? k : 2) : k % 3; }
+  bool is_rotation(int k) const { return k >= freedoms_ - (network_.dimension() == 2 ? 1 : 3); }
+
+  /// P of one contact, 9 rows, the freedoms of i, then those of j.
+  Eigen::Matrix<double, 9, Eigen::Dynamic> compatibility() const {
+    Eigen::Matrix<double, 9, Eigen::Dynamic> p(9, 2 * freedoms_);
+    p.setZero();
+    for (int k = 0; k < freedoms_; ++k) {
+      if (is_rotation(k)) {
+        p(3 + axis(k), k) = p(6 + axis(k), freedoms_ + k) = 1 / length_;
+      } else {
+        p(axis(k), k) = -1;
+        p(axis(k), freedoms_ + k) = 1;
+      }
+    }
+    return p;
+  }
+
+  int freedom(const ContactState& contact, int k) const {
+    return k < freedoms_ ? first_[contact.i] + k : first_[contact.j] + k - freedoms_;
+  }
+
+  void factorise() {
+    if (springs_.empty()) return;
+    p_ = compatibility();
+    std::vector<Eigen::Triplet<double>> entries;
+    entries.reserve(springs_.size() * 4 * freedoms_ * freedoms_);
+    for (const Spring& spring : springs_) {
+      const Eigen::MatrixXd local = -p_.transpose() * spring.law * p_;
+      for (int a = 0; a < 2 * freedoms_; ++a) {
+        for (int b = 0; b < 2 * freedoms_; ++b) {
+          entries.emplace_back(freedom(*spring.contact, a), freedom(*spring.contact, b), local(a, b));
+        }
+      }
+    }
+    stiffness_.resize(count_, count_);
+    stiffness_.setFromTriplets(entries.begin(), entries.end());
+    // A small spring to the ground on every freedom holds translations and free spins; refinement takes it out again.
+    const double ground = 1e-10 * stiffness_.diagonal().cwiseAbs().maxCoeff();
+    Eigen::SparseMatrix<double> held = stiffness_;
+    for (int k = 0; k < count_; ++k) held.coeffRef(k, k) += ground;
+    held.makeCompressed();
+    solver_.compute(held);
+    if (solver_.info() != Eigen::Success) {
+      throw Error("elastic tangent: the stiffness of the contact network cannot be factorised (" +
+                  std::to_string(springs_.size()) + " contacts, every stiffness must be finite); relax the specimen");
+    }
+  }
+
+  Vector9 motion(const Spring& spring, const Matrix3& strain, const Vector& x) const {
+    Vector local(2 * freedoms_);
+    for (int k = 0; k < 2 * freedoms_; ++k) local[k] = x[freedom(*spring.contact, k)];
+    Vector9 q = p_ * local;
+    q.head<3>() += strain * spring.contact->branch;
+    return q;
+  }
+
+  static double elongation(const Spring& spring, const Vector9& q) { return spring.contact->normal.dot(q.head<3>()); }
+
+  /// Unbalanced load on the freedoms at the motion x.
+  Vector residual(const Matrix3& strain, const Vector& x) const {
+    Vector load = Vector::Zero(count_);
+    for (const Spring& spring : springs_) {
+      const Vector9 q = motion(spring, strain, x);
+      const Vector local = p_.transpose() * (spring.law * q + spring.unloading * std::abs(elongation(spring, q)));
+      for (int k = 0; k < 2 * freedoms_; ++k) load[freedom(*spring.contact, k)] += local[k];
+    }
+    return load;
+  }
+
+  /// The motion at which every grain is balanced. The |dl| terms are small beside the springs, so that iterating with
+  /// the linear part converges; without them this is iterative refinement. Stops where the residual falls no further:
+  /// at round-off, or where a free spin bears what the state itself lacks in balance.
+  Vector balance(const Matrix3& strain) {
+    constexpr int most_iterations = 200;
+    constexpr double exact = 1e-13, sufficient = 1e-6;
+    Vector x = Vector::Zero(count_), best = x;
+    const double load = load_scale(strain);
+    double smallest = residual(strain, x).cwiseAbs().maxCoeff() / load;
+    int idle = 0;
+    for (int iteration = 0; iteration < most_iterations && idle < 2 && smallest > exact; ++iteration) {
+      x += solver_.solve(residual(strain, x));
+      const double found = residual(strain, x).cwiseAbs().maxCoeff() / load;
+      idle = found < 0.7 * smallest ? 0 : idle + 1;
+      if (found < smallest) {
+        smallest = found;
+        best = x;
+      }
+    }
+    if (smallest <= sufficient) return best;
+    std::ostringstream message;
+    message << "elastic tangent: grains are balanced to " << smallest << " of the load only, allowed: " << sufficient
+            << "; relax the specimen, or use the dynamic method";
+    throw Error(message.str());
+  }
+
+  /// Largest force that a contact feels when all grains move with the strain, N.
+  double load_scale(const Matrix3& strain) const {
+    double largest = 0;
+    for (const Spring& spring : springs_) {
+      const Vector3 motion = strain * spring.contact->branch;
+      largest = std::max(largest, (spring.law.topLeftCorner<3, 3>() * motion).cwiseAbs().maxCoeff());
+    }
+    return largest > 0 ? largest : 1.0;
+  }
+
+  const Network& network_;
+  int freedoms_ = 0, count_ = 0;
+  double length_ = 0;
+  std::vector<int> first_;
+  std::vector<Spring> springs_;
+  Eigen::Matrix<double, 9, Eigen::Dynamic> p_;
+  Eigen::SparseMatrix<double> stiffness_;
+  Eigen::SparseLU<Eigen::SparseMatrix<double>> solver_;
+};
+
+}  // namespace
+
+Eigen::MatrixXd elastic_tangent(const Network& network) {
+  const int size = component_count(network.dimension());
+  Eigen::MatrixXd tangent(size, size);
+  Condensed condensed(network);
+  for (int k = 0; k < size; ++k) {
+    const Matrix3 strain = strain_in_cell(network, k);
+    Matrix3 change = condensed.stress_change(strain);
+    if (rescales(network)) change = 0.5 * (change - condensed.stress_change(-strain));
+    tangent.col(k) = column_of(network, change);
+  }
+  return tangent;
+}
+
+Eigen::MatrixXd affine_tangent(const Network& network) {
+  const int size = component_count(network.dimension());
+  Eigen::MatrixXd tangent(size, size);
+  std::vector<StressChange> changes(size);
+  for (const ContactState& contact : network.contacts) {
+    const Matrix3 law = spring_of(network, contact).law.topLeftCorner<3, 3>();
+    for (int k = 0; k < size; ++k) {
+      const Vector3 branch_change = strain_in_cell(network, k) * contact.branch;
+      changes[k].add(contact, law * branch_change, branch_change);
+    }
+  }
+  for (int k = 0; k < size; ++k) {
+    tangent.col(k) = column_of(network, changes[k].value(network, strain_in_cell(network, k)));
+  }
+  return tangent;
+}
+
+}  // namespace rvelab

@@ -1,0 +1,100 @@
+// Assignments of the command line, put into a parsed protocol before it is checked.
+#include <algorithm>
+#include <charconv>
+
+#include "rvelab/error.hpp"
+#include "rvelab/protocol/protocol.hpp"
+
+namespace rvelab {
+namespace {
+
+std::string trimmed(const std::string& text) {
+  const auto first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
+  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
+}
+
+/// "a.b.c" into its parts.
+std::vector<std::string> parts_of(const std::string& key) {
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0; begin <= key.size();) {
+    const auto end = std::min(key.find('.', begin), key.size());
+    parts.push_back(trimmed(key.substr(begin, end - begin)));
+    begin = end + 1;
+  }
+  return parts;
+}
+
+/// The value is TOML; what is not is a word. Under the key "value".
+toml::table parsed_value(const std::string& text) {
+  try {
+    const toml::table parsed = toml::parse("value = " + text);
+    if (parsed.size() == 1) return parsed;
+  } catch (const toml::parse_error&) {
+    // a bare word
+  }
+  return toml::table{{"value", text}};
+}
+
+std::string stage_name(const toml::node& stage) {
+  const toml::table* table = stage.as_table();
+  if (table == nullptr) return "";
+  return (*table)["name"].value_or(std::string((*table)["kind"].value_or("")));
+}
+
+toml::table& find_stage(toml::table& file, const std::string& which, const std::string& assignment) {
+  toml::array* stages = file["stage"].as_array();
+  std::string known;
+  std::vector<toml::table*> found;
+  if (stages != nullptr) {
+    std::size_t wanted = stages->size();
+    const auto [end, error] = std::from_chars(which.data(), which.data() + which.size(), wanted);
+    const bool by_number = error == std::errc() && end == which.data() + which.size();
+    for (std::size_t k = 0; k < stages->size(); ++k) {
+      toml::node& stage = *stages->get(k);
+      known += (known.empty() ? "" : ", ") + std::to_string(k) + " (" + stage_name(stage) + ")";
+      if (stage.is_table() && (by_number ? wanted == k : stage_name(stage) == which)) found.push_back(stage.as_table());
+    }
+  }
+  if (found.size() == 1) return *found[0];
+  throw InputError("--set " + assignment + " names " + (found.empty() ? "no stage" : "several stages") +
+                   "; allowed: " + (known.empty() ? "none, since the protocol has no [[stage]]" : known) +
+                   "; give the name or the number of one");
+}
+
+}  // namespace
+
+void assign(toml::table& file, const std::string& assignment) {
+  const auto equals = assignment.find('=');
+  const std::string key = trimmed(assignment.substr(0, equals));
+  const auto parts = parts_of(key);
+  const bool incomplete = parts.size() < 2 || std::find(parts.begin(), parts.end(), "") != parts.end();
+  if (equals == std::string::npos || trimmed(assignment.substr(equals + 1)).empty() || incomplete) {
+    throw InputError("--set " + assignment +
+                     " is not an assignment; allowed: table.key=value; write for example test.pressure_Pa=2e4");
+  }
+  const toml::table value = parsed_value(trimmed(assignment.substr(equals + 1)));
+  toml::table* table = &file;
+  std::size_t next = 0;
+  if (parts[0] == "stage") {
+    if (parts.size() < 3) {
+      throw InputError("--set " + assignment +
+                       " names no key of a stage; allowed: stage.NAME.key=value; write for example "
+                       "stage.compression.to_strain=0.05");
+    }
+    table = &find_stage(file, parts[1], assignment);
+    next = 2;
+  }
+  for (; next + 1 < parts.size(); ++next) {
+    if (!table->contains(parts[next])) table->insert(parts[next], toml::table{});
+    toml::node* inner = table->get(parts[next]);
+    if (!inner->is_table()) {
+      throw InputError("--set " + assignment + ": " + parts[next] +
+                       " is no table in the protocol; allowed: table.key=value; correct the key");
+    }
+    table = inner->as_table();
+  }
+  // A copied node has no line: it stands in no file.
+  table->insert_or_assign(parts.back(), *value.get("value"));
+}
+
+}  // namespace rvelab

@@ -1,0 +1,13 @@
+// The stages of a protocol, read from their tables. Internal to the room.
+#pragma once
+
+#include "rvelab/protocol/protocol.hpp"
+#include "rvelab/protocol/table_reader.hpp"
+
+namespace rvelab::protocol {
+
+/// Reads one [[stage]] into protocol.stages and its resolved table into `resolved`. Mistakes go to `errors`.
+void read_stage(const toml::table& table, long number, Protocol& protocol, toml::array& resolved,
+                std::vector<KeyError>& errors);
+
+}  // namespace rvelab::protocol

@@ -1,0 +1,402 @@
+#include "rvelab/solver/assembly.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <sstream>
+
+#include "rvelab/error.hpp"
+
+namespace rvelab {
+
+namespace {
+
+constexpr std::size_t lanes_padding = 8;
+
+std::size_t padded_to_lanes(std::size_t n) { return (n / lanes_padding + 1) * lanes_padding; }
+
+[[noreturn]] void refuse(const std::string& what) { throw InputError(what); }
+
+void check_grains(const Specimen& s) {
+  const Grains& g = s.grains;
+  const std::size_t n = g.size();
+  if (n == 0) refuse("specimen: 0 grains; at least 1 is needed");
+  if (n > 100'000'000) refuse("specimen: " + std::to_string(n) + " grains; at most 100000000 fit one cell");
+  if (g.radius.size() != n || g.material.size() != n || g.position.size() != n || g.velocity.size() != n ||
+      g.spin.size() != n)
+    refuse("specimen: the grain arrays differ in length; each needs " + std::to_string(n) + " entries");
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::string who = "grain " + std::to_string(g.id[k]) + ": ";
+    if (k > 0 && g.id[k] <= g.id[k - 1]) refuse(who + "ids must ascend; sort the grains by id, each id once");
+    if (!(g.radius[k] > 0) || !std::isfinite(g.radius[k])) {
+      std::ostringstream text;
+      text << who << "radius " << g.radius[k] << " m; it must be > 0 and finite";
+      refuse(text.str());
+    }
+    if (g.material[k] < 0 || std::size_t(g.material[k]) >= s.materials.size())
+      refuse(who + "material " + std::to_string(g.material[k]) + "; there are " + std::to_string(s.materials.size()));
+    if (!g.position[k].allFinite() || !g.velocity[k].allFinite() || !g.spin[k].allFinite())
+      refuse(who + "a position, velocity or spin is not finite");
+  }
+}
+
+void check_cell(const Specimen& s) {
+  const Matrix3& l = s.cell.lattice;
+  if (s.cell.dimension != dimension_of(s.shape))
+    refuse("specimen: the cell has dimension " + std::to_string(s.cell.dimension) + ", the grains " +
+           std::to_string(dimension_of(s.shape)));
+  if (!l.allFinite() || !(l(0, 0) > 0) || !(l(1, 1) > 0) || !(l(2, 2) > 0) || l(1, 0) != 0 || l(2, 0) != 0 ||
+      l(2, 1) != 0)
+    refuse("specimen: the lattice must be upper triangular with a positive diagonal; turn cell and grains into that "
+           "frame first");
+}
+
+KernelLaw kernel_law(Law law) {
+  switch (law) {
+    case Law::linear:
+    case Law::linear_given:
+      return KernelLaw::linear;
+    case Law::hertz_given:
+      return KernelLaw::hertz_given;
+    case Law::hertz_mindlin:
+      return KernelLaw::hertz_mindlin;
+  }
+  return KernelLaw::linear;
+}
+
+/// A stored contact on its way from one list to the next.
+struct Carried {
+  ListedPair key;
+  Vector3 tangential, moment;
+  double root_overlap;
+};
+
+void store(const Fixture& f, PairTable& pairs, std::size_t p, const Carried& c) {
+  if (f.shape == Shape::disc) {
+    pairs.tangential[0][p] = c.tangential[0];
+    if (f.contact.rolling) pairs.moment[0][p] = c.moment[2];
+  } else {
+    for (int k = 0; k < 3; ++k) pairs.tangential[k][p] = c.tangential[k];
+    if (f.contact.rolling)
+      for (int k = 0; k < 3; ++k) pairs.moment[k][p] = c.moment[k];
+  }
+  if (f.law == KernelLaw::hertz_mindlin) pairs.root_overlap[p] = c.root_overlap;
+}
+
+/// History of the pairs that have any. In 2D `tangential[0]` is the component along t.
+std::vector<Carried> history_of(const Fixture& f, const PairTable& pairs) {
+  std::vector<Carried> all;
+  for (std::size_t p = 0; p < pairs.listed; ++p) {
+    Carried c{{pairs.i[p], pairs.j[p], pairs.image[p]}, Vector3::Zero(), Vector3::Zero(), 0};
+    for (int k = 0; k < f.tangential_components(); ++k) c.tangential[k] = pairs.tangential[k][p];
+    if (f.contact.rolling) {
+      if (f.shape == Shape::disc)
+        c.moment[2] = pairs.moment[0][p];
+      else
+        for (int k = 0; k < 3; ++k) c.moment[k] = pairs.moment[k][p];
+    }
+    if (f.law == KernelLaw::hertz_mindlin) c.root_overlap = pairs.root_overlap[p];
+    if (!c.tangential.isZero(0) || !c.moment.isZero(0) || c.root_overlap != 0) all.push_back(c);
+  }
+  return all;
+}
+
+/// Makes the arrays of a new list and fills in the carried history, which is sorted by key.
+void fill(const Fixture& f, const std::vector<ListedPair>& listed, const std::vector<Carried>& carried,
+          PairTable& pairs) {
+  const std::size_t n = listed.size(), padded = padded_to_lanes(n);
+  const auto outside = std::int32_t(f.size());  // a padding grain: no extent, no mass
+  pairs.listed = n;
+  pairs.i.assign(padded, outside);
+  pairs.j.assign(padded, outside);
+  pairs.image.assign(padded, Image{1, 0, 0});
+  for (std::size_t p = 0; p < n; ++p) {
+    pairs.i[p] = listed[p].i;
+    pairs.j[p] = listed[p].j;
+    pairs.image[p] = listed[p].image;
+  }
+  for (int k = 0; k < f.dimension(); ++k) {
+    pairs.image_number[k].resize(padded);
+    for (std::size_t p = 0; p < padded; ++p) pairs.image_number[k][p] = pairs.image[p][k];
+  }
+  for (int k = 0; k < f.tangential_components(); ++k) {
+    pairs.tangential[k].assign(padded, 0.0);
+    if (f.contact.rolling) pairs.moment[k].assign(padded, 0.0);
+  }
+  if (f.law == KernelLaw::hertz_mindlin) pairs.root_overlap.assign(padded, 0.0);
+  pairs.force.assign(padded * force_row_length(f.shape), 0.0);
+  set_pair_parameters(f, pairs);
+
+  std::size_t p = 0;
+  for (const Carried& c : carried) {
+    while (p < n && listed[p] < c.key) ++p;
+    if (p == n || listed[p] != c.key)
+      throw Error("neighbour list: the contact of grains " + std::to_string(f.id[c.key.i]) + " and " +
+                  std::to_string(f.id[c.key.j]) + " is not listed; do its grains overlap?");
+    store(f, pairs, p, c);
+  }
+
+  const std::size_t rows = padded_to_lanes(f.size());
+  pairs.own_begin.assign(rows + 1, 0);
+  pairs.incoming_begin.assign(rows + 1, 0);
+  for (const ListedPair& pair : listed) {
+    ++pairs.own_begin[pair.i + 1];
+    ++pairs.incoming_begin[pair.j + 1];
+  }
+  std::partial_sum(pairs.own_begin.begin(), pairs.own_begin.end(), pairs.own_begin.begin());
+  std::partial_sum(pairs.incoming_begin.begin(), pairs.incoming_begin.end(), pairs.incoming_begin.begin());
+  pairs.incoming.resize(n);
+  std::vector<std::int32_t> next(pairs.incoming_begin.begin(), pairs.incoming_begin.end() - 1);
+  for (std::size_t q = 0; q < n; ++q) pairs.incoming[next[listed[q].j]++] = std::int32_t(q);
+}
+
+/// The key of a pair after images changed; a grain's own image is kept pointing forward, forces turning round with it.
+void turn_round_if_needed(const Fixture& f, Carried& c) {
+  if (c.key.i != c.key.j || points_forward(c.key.image)) return;
+  for (int& n : c.key.image) n = -n;
+  c.moment = -c.moment;
+  // In 2D the component along t = (-n_y, n_x) keeps its sign: force and t both turn.
+  if (f.shape == Shape::sphere) c.tangential = -c.tangential;
+}
+
+/// A velocity gradient less the rigid spin that cancels its lower triangle. Grains and branches share that spin, so no
+/// contact slips or opens by it; the step kernel takes upper-triangular rates only.
+Matrix3 without_lower_part(const Matrix3& rate) {
+  Matrix3 rest = rate;
+  for (int r = 0; r < 3; ++r)
+    for (int k = 0; k < r; ++k) {
+      rest(k, r) += rate(r, k);
+      rest(r, k) = 0;
+    }
+  return rest;
+}
+
+void rotate_rows(const Fixture& f, const Matrix3& turn, Buffer& rows) {
+  for (std::size_t g = 0; g < f.size(); ++g) {
+    double* row = rows.data() + g * f.row_length();
+    const auto rotate = [&](double* v) {
+      if (f.shape == Shape::disc) {
+        const double x = turn(0, 0) * v[0] + turn(0, 1) * v[1], y = turn(1, 0) * v[0] + turn(1, 1) * v[1];
+        v[0] = x;
+        v[1] = y;
+      } else {
+        const Vector3 turned = turn * Vector3(v[0], v[1], v[2]);
+        for (int k = 0; k < 3; ++k) v[k] = turned[k];
+      }
+    };
+    rotate(row);
+    rotate(row + f.velocity_offset());
+    if (f.shape == Shape::sphere) rotate(row + 8);
+  }
+}
+
+}  // namespace
+
+Vector3 Assembly::position(const Fixture& f, std::size_t g) const {
+  const double* row = rows.data() + g * f.row_length();
+  return {row[0], row[1], f.shape == Shape::disc ? 0.0 : row[2]};
+}
+
+Vector3 Assembly::velocity(const Fixture& f, std::size_t g) const {
+  const double* v = rows.data() + g * f.row_length() + f.velocity_offset();
+  return {v[0], v[1], f.shape == Shape::disc ? 0.0 : v[2]};
+}
+
+Vector3 Assembly::spin(const Fixture& f, std::size_t g) const {
+  const double* row = rows.data() + g * f.row_length();
+  return f.shape == Shape::disc ? Vector3(0, 0, row[4]) : Vector3(row[8], row[9], row[10]);
+}
+
+void Assembly::set_velocity(const Fixture& f, std::size_t g, const Vector3& v, const Vector3& w) {
+  double* row = rows.data() + g * f.row_length();
+  for (int k = 0; k < f.dimension(); ++k) row[f.velocity_offset() + k] = v[k];
+  if (f.shape == Shape::disc) {
+    row[4] = w[2];
+    row[5] = row[6] * w[2];
+  } else {
+    for (int k = 0; k < 3; ++k) row[8 + k] = w[k];
+  }
+}
+
+void set_pair_parameters(const Fixture& f, PairTable& pairs) {
+  const std::size_t padded = pairs.padded();
+  const bool dashpot = f.damping.dashpot != Dashpot::none;
+  for (Buffer* b : {&pairs.kn, &pairs.kt, &pairs.friction}) b->assign(padded, 0.0);
+  if (f.contact.rolling)
+    for (Buffer* b : {&pairs.kr, &pairs.moment_cap}) b->assign(padded, 0.0);
+  if (dashpot) pairs.cn.assign(padded, 0.0);
+  for (std::size_t p = 0; p < pairs.listed; ++p) {
+    const auto i = pairs.i[p], j = pairs.j[p];
+    const PairParameters q = mix(f.contact, f.damping, f.materials[f.material[i]], f.radius[i], f.mass[i],
+                                 f.materials[f.material[j]], f.radius[j], f.mass[j]);
+    pairs.kn[p] = q.kn;
+    pairs.kt[p] = q.kt;
+    pairs.friction[p] = q.friction;
+    if (f.contact.rolling) {
+      pairs.kr[p] = q.kr;
+      pairs.moment_cap[p] = q.moment_cap;
+    }
+    if (dashpot) pairs.cn[p] = q.cn;
+  }
+}
+
+void open(const Specimen& s, Fixture& f, Assembly& a) {
+  check(s.contact, s.damping, s.materials);
+  check_cell(s);
+  check_grains(s);
+  const std::size_t n = s.grains.size(), padded = padded_to_lanes(n);
+  f.shape = s.shape;
+  f.materials = s.materials;
+  f.contact = s.contact;
+  f.damping = s.damping;
+  f.options = s.solver;
+  f.id = s.grains.id;
+  f.material = s.grains.material;
+  f.radius = s.grains.radius;
+  f.law = kernel_law(s.contact.law);
+  f.kernels = kernels_for({f.shape, f.law, f.contact.rolling, f.contact.slip, f.damping.dashpot != Dashpot::none});
+  f.largest_radius = *std::max_element(f.radius.begin(), f.radius.end());
+  f.smallest_radius = *std::min_element(f.radius.begin(), f.radius.end());
+  f.mean_radius = std::accumulate(f.radius.begin(), f.radius.end(), 0.0) / double(n);
+  f.skin = f.options.skin * f.mean_radius;
+  f.min_height = f.options.min_height > 0 ? f.options.min_height : 2 * f.largest_radius;
+  f.mass.resize(n);
+  f.inertia.resize(n);
+
+  a.cell = s.cell;
+  a.state = s.state;
+  a.rows.assign(padded * f.row_length(), 0.0);
+  for (Buffer* b : {&a.mass, &a.inverse_mass, &a.inverse_inertia}) b->assign(padded, 0.0);
+  for (std::size_t g = 0; g < n; ++g) {
+    const Material& m = f.materials[f.material[g]];
+    f.mass[g] = m.density * grain_volume(f.shape, f.radius[g], s.cell.lattice(2, 2));
+    f.inertia[g] = moment_of_inertia(f.shape, f.mass[g], f.radius[g]);
+    double* row = a.rows.data() + g * f.row_length();
+    for (int k = 0; k < f.dimension(); ++k) row[k] = s.grains.position[g][k];
+    row[f.shape == Shape::disc ? 6 : 3] = f.radius[g];
+    a.set_velocity(f, g, s.grains.velocity[g], s.grains.spin[g]);
+  }
+
+  std::vector<Carried> carried;
+  for (const Contact& c : s.contacts) {
+    if (c.i < 0 || c.j < c.i || std::size_t(c.j) >= n)
+      refuse("specimen: contact of grains " + std::to_string(c.i) + " and " + std::to_string(c.j) +
+             "; indices must be 0 <= i <= j < " + std::to_string(n));
+    if (!c.tangential_force.allFinite() || !c.rolling_moment.allFinite() || !std::isfinite(c.last_root_overlap))
+      refuse("specimen: contact of grains " + std::to_string(f.id[c.i]) + " and " + std::to_string(f.id[c.j]) +
+             ": its history is not finite");
+    carried.push_back({{c.i, c.j, c.image}, c.tangential_force, c.rolling_moment, c.last_root_overlap});
+  }
+  std::sort(carried.begin(), carried.end(), [](const Carried& x, const Carried& y) { return x.key < y.key; });
+  fill(f, list_pairs(a.cell, a.rows.data(), f.row_length(), f.radius, f.skin), carried, a.pairs);
+  if (!a.state.has_reference) rebuild(f, a);
+}
+
+Specimen close(const Fixture& f, const Assembly& a) {
+  Specimen s;
+  s.shape = f.shape;
+  s.cell = a.cell;
+  s.materials = f.materials;
+  s.contact = f.contact;
+  s.damping = f.damping;
+  s.solver = f.options;
+  s.state = a.state;
+  s.grains.id = f.id;
+  s.grains.radius = f.radius;
+  s.grains.material = f.material;
+  for (std::size_t g = 0; g < f.size(); ++g) {
+    s.grains.position.push_back(a.position(f, g));
+    s.grains.velocity.push_back(a.velocity(f, g));
+    s.grains.spin.push_back(a.spin(f, g));
+  }
+  for (const Carried& c : history_of(f, a.pairs))
+    s.contacts.push_back({c.key.i, c.key.j, c.key.image, c.tangential, c.moment, c.root_overlap});
+  return s;
+}
+
+Reduction rebuild(const Fixture& f, Assembly& a) {
+  std::vector<Carried> carried = history_of(f, a.pairs);
+  const Reduction reduction = reduced(a.cell);
+  if (reduction.changed) {
+    apply_reduction(a.cell, reduction);
+    const Matrix3 back = reduction.rotation.transpose();
+    rotate_rows(f, back, a.rows);
+    a.state.mean_velocity = back * a.state.mean_velocity;
+    a.state.last_rate = without_lower_part(back * a.state.last_rate * reduction.rotation);
+    for (Carried& c : carried) {
+      const Eigen::Vector3i n = reduction.inverse_basis * Eigen::Vector3i(c.key.image[0], c.key.image[1], c.key.image[2]);
+      c.key.image = {n[0], n[1], n[2]};
+      if (f.shape == Shape::sphere) {
+        c.tangential = back * c.tangential;
+        c.moment = back * c.moment;
+      }
+    }
+  }
+  const double shortest = shortest_vector(a.cell);
+  if (shortest < f.min_height) {
+    std::ostringstream text;
+    text << "cell too thin: the shortest lattice vector is " << shortest << " m, the limit solver.min_height_m is "
+         << f.min_height << " m; deform less, start from an oriented cell, or use a larger specimen";
+    throw IncrementFailed(text.str());
+  }
+  std::vector<Image> moved(f.size());
+  for (std::size_t g = 0; g < f.size(); ++g) {
+    Vector3 x = a.position(f, g);
+    moved[g] = wrap(a.cell, x);
+    double* row = a.rows.data() + g * f.row_length();
+    for (int k = 0; k < f.dimension(); ++k) row[k] = x[k];
+  }
+  for (Carried& c : carried) {
+    for (int k = 0; k < 3; ++k) c.key.image[k] += moved[c.key.i][k] - moved[c.key.j][k];
+    turn_round_if_needed(f, c);
+  }
+  std::sort(carried.begin(), carried.end(), [](const Carried& x, const Carried& y) { return x.key < y.key; });
+  fill(f, list_pairs(a.cell, a.rows.data(), f.row_length(), f.radius, f.skin), carried, a.pairs);
+  a.state.has_reference = true;
+  a.state.list_lattice = a.cell.lattice;
+  a.state.list_travel = 0;
+  ++a.state.list_builds;
+  return reduction;
+}
+
+bool list_is_stale(const Fixture& f, const Assembly& a) {
+  // A pair beyond reach r_i + r_j + skin when listed is, after the affine map F and two displacements of at most
+  // `travel`, still beyond sigma_min(F) reach - 2 |F| travel, with sigma_min >= 1 - |F - I|, |F| <= 1 + |F - I|.
+  const Matrix3 f_since = a.cell.lattice * a.state.list_lattice.triangularView<Eigen::Upper>().solve(Matrix3::Identity());
+  const double strain = (f_since - Matrix3::Identity()).norm();
+  const double reach = 2 * f.largest_radius;
+  return (1 - strain) * (reach + f.skin) - 2 * (1 + strain) * a.state.list_travel < reach;
+}
+
+PairArrays arrays_of(PairTable& t) {
+  PairArrays p;
+  p.i = t.i.data();
+  p.j = t.j.data();
+  for (int k = 0; k < 3; ++k) {
+    p.image[k] = t.image_number[k].data();
+    p.tangential[k] = t.tangential[k].data();
+    p.moment[k] = t.moment[k].data();
+  }
+  p.kn = t.kn.data();
+  p.kt = t.kt.data();
+  p.friction = t.friction.data();
+  p.kr = t.kr.data();
+  p.moment_cap = t.moment_cap.data();
+  p.cn = t.cn.data();
+  p.root_overlap = t.root_overlap.data();
+  p.force = t.force.data();
+  return p;
+}
+
+GrainArrays arrays_of(Assembly& a) {
+  return {a.rows.data(),
+          a.mass.data(),
+          a.inverse_mass.data(),
+          a.inverse_inertia.data(),
+          a.pairs.own_begin.data(),
+          a.pairs.incoming_begin.data(),
+          a.pairs.incoming.data()};
+}
+
+}  // namespace rvelab

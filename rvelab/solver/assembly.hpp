@@ -1,0 +1,112 @@
+// The grain assembly in the layout of the step kernels: one row per grain, one force row per listed pair, CSR gather.
+// Opened from a Specimen and written back to one. Everything here is a plain copyable value, so that a failed increment
+// is undone by assignment.
+#pragma once
+
+#include <vector>
+
+#include "rvelab/solver/buffer.hpp"
+#include "rvelab/solver/neighbour_list.hpp"
+#include "rvelab/solver/scene.hpp"
+#include "rvelab/solver/specimen.hpp"
+
+namespace rvelab {
+
+/// What an increment never changes.
+struct Fixture {
+  Shape shape = Shape::disc;
+  std::vector<Material> materials;
+  ContactModel contact;
+  Damping damping;
+  SolverOptions options;
+  std::vector<std::int64_t> id;
+  std::vector<std::int32_t> material;
+  std::vector<double> radius, mass, inertia;  ///< m, kg, kg m^2 (physical)
+  double mean_radius = 0, largest_radius = 0, smallest_radius = 0, skin = 0;  ///< m
+  double min_height = 0;                                                      ///< m
+  SceneKernels kernels;
+  KernelLaw law = KernelLaw::linear;
+
+  std::size_t size() const { return id.size(); }
+  int dimension() const { return dimension_of(shape); }
+  int row_length() const { return grain_row_length(shape); }
+  int velocity_offset() const { return shape == Shape::disc ? 2 : 4; }
+  int tangential_components() const { return shape == Shape::disc ? 1 : 3; }
+};
+
+/// Listed pairs with their parameters and history, as arrays; padded to a multiple of eight.
+struct PairTable {
+  std::size_t listed = 0;  ///< pairs without the padding
+  std::vector<std::int32_t> i, j;
+  std::vector<Image> image;
+  Buffer image_number[3];
+  Buffer kn, kt, friction, kr, moment_cap, cn;
+  Buffer tangential[3], moment[3], root_overlap, force;
+  std::vector<std::int32_t> own_begin, incoming_begin, incoming;
+
+  std::size_t padded() const { return i.size(); }
+};
+
+/// What an increment changes.
+struct Assembly {
+  Cell cell;
+  Buffer rows;                                    ///< padded grain rows (scene.hpp)
+  Buffer mass, inverse_mass, inverse_inertia;     ///< those in use: physical, or scaled at dt = 0
+  PairTable pairs;
+  SolverState state;
+
+  Vector3 position(const Fixture& f, std::size_t g) const;
+  Vector3 velocity(const Fixture& f, std::size_t g) const;  ///< fluctuation, in the units of the mode in use
+  Vector3 spin(const Fixture& f, std::size_t g) const;
+  void set_velocity(const Fixture& f, std::size_t g, const Vector3& v, const Vector3& w);
+};
+
+/// Checks a specimen and opens it. Throws InputError.
+void open(const Specimen& specimen, Fixture& fixture, Assembly& assembly);
+Specimen close(const Fixture& fixture, const Assembly& assembly);
+
+/// Reduces the lattice where needed, wraps the grains, lists anew, carries history over. Returns the reduction made.
+/// Throws IncrementFailed if the shortest lattice vector is below min_height.
+Reduction rebuild(const Fixture& fixture, Assembly& assembly);
+
+/// Whether a pair that is not listed might touch by now.
+bool list_is_stale(const Fixture& fixture, const Assembly& assembly);
+
+/// Pair parameters from the materials, for all listed pairs (after listing, or when materials change).
+void set_pair_parameters(const Fixture& fixture, PairTable& pairs);
+
+/// Force rows from the stored history; nothing advances.
+void evaluate_forces(const Fixture& fixture, Assembly& assembly);
+
+PairArrays arrays_of(PairTable& pairs);
+GrainArrays arrays_of(Assembly& assembly);
+
+/// Constants that do not change from step to step, filled in; lattice from the cell, rate and step from the state.
+StepConstants base_constants(const Fixture& fixture, const Assembly& assembly);
+
+UpperTriangle upper_triangle(const Matrix3& matrix);
+/// Velocity gradient of the cell (upper triangular, 1/s) and the mean spin that goes with it.
+void set_rate(const Matrix3& rate, StepConstants& constants);
+
+/// (1/V)-less sum of F_on_j (x) b over the pairs, N m, cell frame, from force rows and present positions.
+Matrix3 contact_moment(const Fixture& fixture, const Assembly& assembly);
+
+/// Branch of listed pair p, m, cell frame.
+Vector3 branch_of(const Fixture& fixture, const Assembly& assembly, std::size_t p);
+
+/// Contact force on j of listed pair p as last computed, N.
+Vector3 force_of(const Fixture& fixture, const PairTable& pairs, std::size_t p);
+
+/// Resultant force on each grain, N, and the mean and largest figures that control needs.
+struct Balance {
+  double mean_resultant = 0;      ///< N
+  double mean_contact_force = 0;  ///< N, over touching contacts; 0 without any
+  std::size_t touching = 0;
+  double largest_overlap_ratio = 0;  ///< overlap over the smaller radius
+  double mean_overlap = 0;           ///< m
+  bool finite = true;
+};
+Balance balance_of(const Fixture& fixture, const Assembly& assembly);
+double unbalanced_ratio(const Balance& balance, double reference_contact_force);
+
+}  // namespace rvelab

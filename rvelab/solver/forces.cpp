@@ -1,0 +1,121 @@
+// Contact forces of an assembly as they stand: evaluation, sums over pairs, balance of the grains.
+#include <algorithm>
+#include <cmath>
+
+#include "rvelab/solver/assembly.hpp"
+
+namespace rvelab {
+
+UpperTriangle upper_triangle(const Matrix3& m) { return {m(0, 0), m(0, 1), m(0, 2), m(1, 1), m(1, 2), m(2, 2)}; }
+
+void set_rate(const Matrix3& rate, StepConstants& c) {
+  c.rate = upper_triangle(rate);
+  c.spin[0] = -0.5 * rate(1, 2);
+  c.spin[1] = 0.5 * rate(0, 2);
+  c.spin[2] = -0.5 * rate(0, 1);
+}
+
+StepConstants base_constants(const Fixture& f, const Assembly& a) {
+  StepConstants c;
+  c.dt = a.state.last_step;
+  c.lattice = upper_triangle(a.cell.lattice);
+  set_rate(a.state.last_rate, c);
+  c.global_viscous = f.damping.global_viscous;
+  c.tangential_ratio = f.damping.tangential_ratio;
+  c.dashpot_quarters = int(4 * dashpot_power(f.contact.law, f.damping.dashpot));
+  c.no_tension = f.damping.no_tension;
+  c.unload_rescale = f.contact.unload_rescale;
+  return c;
+}
+
+void evaluate_forces(const Fixture& f, Assembly& a) {
+  const StepConstants c = base_constants(f, a);
+  f.kernels.evaluate(c, arrays_of(a.pairs), a.rows.data(), 0, long(a.pairs.padded()), nullptr);
+}
+
+Vector3 branch_of(const Fixture& f, const Assembly& a, std::size_t p) {
+  const double* xi = a.rows.data() + std::size_t(a.pairs.i[p]) * f.row_length();
+  const double* xj = a.rows.data() + std::size_t(a.pairs.j[p]) * f.row_length();
+  const Image& n = a.pairs.image[p];
+  const Matrix3& l = a.cell.lattice;
+  if (f.shape == Shape::disc)
+    return {(xj[0] - xi[0]) + (l(0, 0) * n[0] + l(0, 1) * n[1]), (xj[1] - xi[1]) + l(1, 1) * n[1], 0};
+  return {(xj[0] - xi[0]) + (l(0, 0) * n[0] + (l(0, 1) * n[1] + l(0, 2) * n[2])),
+          (xj[1] - xi[1]) + (l(1, 1) * n[1] + l(1, 2) * n[2]), (xj[2] - xi[2]) + l(2, 2) * n[2]};
+}
+
+Vector3 force_of(const Fixture& f, const PairTable& pairs, std::size_t p) {
+  const double* row = pairs.force.data() + p * force_row_length(f.shape);
+  return {row[0], row[1], f.shape == Shape::disc ? 0.0 : row[2]};
+}
+
+Matrix3 contact_moment(const Fixture& f, const Assembly& a) {
+  Matrix3 sum = Matrix3::Zero();
+  if (f.shape == Shape::disc) {
+    // Four sums only: this runs every few sub-steps under stress control.
+    const Matrix3& l = a.cell.lattice;
+    const double* rows = a.rows.data();
+    const double* force = a.pairs.force.data();
+    double xx = 0, xy = 0, yx = 0, yy = 0;
+    for (std::size_t p = 0; p < a.pairs.listed; ++p) {
+      const double* xi = rows + 8 * std::size_t(a.pairs.i[p]);
+      const double* xj = rows + 8 * std::size_t(a.pairs.j[p]);
+      const double mx = a.pairs.image_number[0][p], my = a.pairs.image_number[1][p];
+      const double bx = (xj[0] - xi[0]) + (l(0, 0) * mx + l(0, 1) * my), by = (xj[1] - xi[1]) + l(1, 1) * my;
+      xx += force[4 * p] * bx;
+      xy += force[4 * p] * by;
+      yx += force[4 * p + 1] * bx;
+      yy += force[4 * p + 1] * by;
+    }
+    sum(0, 0) = xx;
+    sum(0, 1) = xy;
+    sum(1, 0) = yx;
+    sum(1, 1) = yy;
+    return sum;
+  }
+  for (std::size_t p = 0; p < a.pairs.listed; ++p) {
+    const double* row = a.pairs.force.data() + 8 * p;
+    if (row[0] == 0 && row[1] == 0 && row[2] == 0) continue;
+    const Vector3 b = branch_of(f, a, p);
+    for (int r = 0; r < 3; ++r)
+      for (int k = 0; k < 3; ++k) sum(r, k) += row[r] * b[k];
+  }
+  return sum;
+}
+
+Balance balance_of(const Fixture& f, const Assembly& a) {
+  Balance balance;
+  std::vector<Vector3> resultant(f.size(), Vector3::Zero());
+  double contact_force = 0, overlap_sum = 0;
+  for (std::size_t p = 0; p < a.pairs.listed; ++p) {
+    const auto i = a.pairs.i[p], j = a.pairs.j[p];
+    const Vector3 b = branch_of(f, a, p);
+    const double overlap = (f.radius[i] + f.radius[j]) - std::sqrt(b[0] * b[0] + b[1] * b[1] + b[2] * b[2]);
+    if (!std::isfinite(overlap)) balance.finite = false;
+    if (!(overlap > 0)) continue;
+    const Vector3 force = force_of(f, a.pairs, p);
+    resultant[i] -= force;
+    resultant[j] += force;
+    contact_force += std::sqrt(force[0] * force[0] + force[1] * force[1] + force[2] * force[2]);
+    overlap_sum += overlap;
+    ++balance.touching;
+    balance.largest_overlap_ratio =
+        std::max(balance.largest_overlap_ratio, overlap / std::min(f.radius[i], f.radius[j]));
+  }
+  for (const Vector3& r : resultant)
+    balance.mean_resultant += std::sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]) / double(f.size());
+  if (balance.touching > 0) {
+    balance.mean_contact_force = contact_force / double(balance.touching);
+    balance.mean_overlap = overlap_sum / double(balance.touching);
+  }
+  balance.finite = balance.finite && std::isfinite(balance.mean_resultant) && std::isfinite(contact_force);
+  for (double value : a.rows) balance.finite = balance.finite && std::isfinite(value);
+  return balance;
+}
+
+double unbalanced_ratio(const Balance& balance, double reference_contact_force) {
+  const double scale = std::max(balance.mean_contact_force, 1e-3 * reference_contact_force);
+  return scale > 0 ? balance.mean_resultant / scale : 0.0;
+}
+
+}  // namespace rvelab

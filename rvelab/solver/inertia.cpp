@@ -1,0 +1,175 @@
+#include "rvelab/solver/inertia.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace rvelab {
+
+namespace {
+
+/// Stiffnesses of one contact at an overlap.
+struct ContactStiffness {
+  double normal, tangential, rolling, dashpot;
+};
+
+ContactStiffness stiffness_of(const Fixture& f, const PairTable& pairs, std::size_t p, double overlap) {
+  const double root = std::sqrt(overlap);
+  const double kr = f.contact.rolling ? pairs.kr[p] : 0.0;
+  double cn = 0;
+  if (f.damping.dashpot != Dashpot::none) {
+    const double power = dashpot_power(f.contact.law, f.damping.dashpot);
+    cn = pairs.cn[p] * (power == 0 ? 1.0 : (power == 0.5 ? root : std::sqrt(root)));
+  }
+  switch (f.law) {
+    case KernelLaw::linear:
+      return {pairs.kn[p], pairs.kt[p], kr, cn};
+    case KernelLaw::hertz_given:
+      return {1.5 * pairs.kn[p] * root, pairs.kt[p], kr, cn};
+    case KernelLaw::hertz_mindlin:
+      return {1.5 * pairs.kn[p] * root, pairs.kt[p] * root, kr * root, cn};
+  }
+  return {};
+}
+
+/// Largest eigenvalue of a symmetric matrix. Nothing cheaper that depends on the axes (row sums) will do: the scaled
+/// masses, and with them the path, must not know how the specimen is turned.
+double largest_eigenvalue(const Matrix3& m, int dimension) {
+  if (dimension == 2) {
+    const double half = 0.5 * (m(0, 0) + m(1, 1)), difference = 0.5 * (m(0, 0) - m(1, 1));
+    return half + std::sqrt(difference * difference + m(0, 1) * m(0, 1));
+  }
+  return Eigen::SelfAdjointEigenSolver<Matrix3>(m, Eigen::EigenvaluesOnly).eigenvalues()[2];
+}
+
+double median(std::vector<double>& values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+RowSums row_sums(const Fixture& f, const Assembly& a) {
+  const std::size_t n = f.size();
+  RowSums sums;
+  std::vector<Matrix3> rows(n, Matrix3::Zero());
+  sums.rotation.assign(n, 0.0);
+  sums.translation.assign(n, 0.0);
+  const bool dashpot = f.damping.dashpot != Dashpot::none;
+  if (dashpot) sums.dashpot.assign(n, 0.0);
+  std::vector<double> translations, rotations;
+  for (std::size_t p = 0; p < a.pairs.listed; ++p) {
+    const auto i = a.pairs.i[p], j = a.pairs.j[p];
+    const Vector3 b = branch_of(f, a, p);
+    const double length = std::sqrt(b[0] * b[0] + b[1] * b[1] + b[2] * b[2]);
+    const double overlap = (f.radius[i] + f.radius[j]) - length;
+    if (!(overlap > 0)) continue;
+    const ContactStiffness k = stiffness_of(f, a.pairs, p, overlap);
+    const double normal_force = f.law == KernelLaw::linear ? k.normal * overlap : k.normal * overlap / 1.5;
+    // The force turning with the branch (initial stress) adds f_n / length to the tangential stiffness at most.
+    const double kt = k.tangential + 0.5 * normal_force / length;
+    const Vector3 normal = b / length;
+    Matrix3 row = (2 * k.normal - 4 * kt) * normal * normal.transpose();
+    for (int d = 0; d < f.dimension(); ++d) row(d, d) += 4 * kt;
+    rows[i] += row;
+    rows[j] += row;
+    const double ri = f.radius[i], rj = f.radius[j];
+    const double turn_i = 4 * k.tangential * ri * ri + 2 * k.rolling;
+    const double turn_j = 4 * k.tangential * rj * rj + 2 * k.rolling;
+    sums.rotation[i] += turn_i;
+    sums.rotation[j] += turn_j;
+    if (dashpot) {
+      const double c = 2 * k.dashpot * std::max(1.0, 2 * f.damping.tangential_ratio);
+      sums.dashpot[i] += c;
+      sums.dashpot[j] += c;
+    }
+    translations.push_back(std::max(2 * k.normal, 4 * kt));
+    rotations.push_back(std::max(turn_i / (ri * ri), turn_j / (rj * rj)));
+  }
+  for (std::size_t g = 0; g < n; ++g) sums.translation[g] = largest_eigenvalue(rows[g], f.dimension());
+  if (translations.empty()) {
+    // Nothing touches: what two contacts of typical grains would have at a thousandth of a radius of overlap.
+    const auto typical = std::size_t(std::max_element(f.radius.begin(), f.radius.end()) - f.radius.begin());
+    const Material& m = f.materials[f.material[typical]];
+    PairTable one;
+    const PairParameters q =
+        mix(f.contact, f.damping, m, f.radius[typical], f.mass[typical], m, f.radius[typical], f.mass[typical]);
+    one.kn = {q.kn};
+    one.kt = {q.kt};
+    one.kr = {q.kr};
+    one.cn = {q.cn};
+    const ContactStiffness k = stiffness_of(f, one, 0, 1e-3 * f.radius[typical]);
+    translations.push_back(std::max(2 * k.normal, 4 * k.tangential));
+    rotations.push_back(4 * k.tangential + 2 * k.rolling / (f.radius[typical] * f.radius[typical]));
+  }
+  sums.floor_translation = 2 * median(translations);
+  sums.floor_rotation = 2 * median(rotations);
+  // Without tangential and rolling stiffness nothing turns the grains; any inertia serves.
+  if (sums.floor_rotation == 0) sums.floor_rotation = sums.floor_translation;
+  return sums;
+}
+
+double critical_step(const Fixture& f, const RowSums& sums) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (std::size_t g = 0; g < f.size(); ++g) {
+    const double by_translation = sums.translation[g] / f.mass[g], by_rotation = sums.rotation[g] / f.inertia[g];
+    const double omega = std::sqrt(std::max(by_translation, by_rotation));
+    if (!(omega > 0)) continue;
+    double step = 2 / omega;
+    if (!sums.dashpot.empty()) {
+      const double rate = std::max(sums.dashpot[g] / f.mass[g], sums.dashpot[g] * f.radius[g] * f.radius[g] / f.inertia[g]);
+      const double zeta = rate / (2 * omega);
+      step *= std::sqrt(1 + zeta * zeta) - zeta;
+    }
+    smallest = std::min(smallest, step);
+  }
+  return smallest;
+}
+
+RowSums with_floor(RowSums sums, const Fixture& f) {
+  for (std::size_t g = 0; g < f.size(); ++g) {
+    sums.translation[g] = std::max(sums.translation[g], sums.floor_translation);
+    sums.rotation[g] = std::max(sums.rotation[g], sums.floor_rotation * f.radius[g] * f.radius[g]);
+  }
+  return sums;
+}
+
+namespace {
+
+double scaled(double row_sum, double floor, double factor) {
+  return std::max(row_sum, floor) / (4 * factor * factor);
+}
+
+}  // namespace
+
+void scale_inertia(const Fixture& f, const RowSums& sums, Assembly& a) {
+  const double factor = f.options.time_step_factor;
+  for (std::size_t g = 0; g < f.size(); ++g) {
+    a.mass[g] = scaled(sums.translation[g], sums.floor_translation, factor);
+    const double inertia = scaled(sums.rotation[g], sums.floor_rotation * f.radius[g] * f.radius[g], factor);
+    a.inverse_mass[g] = 1 / a.mass[g];
+    a.inverse_inertia[g] = 1 / inertia;
+  }
+}
+
+bool inertia_outgrown(const Fixture& f, const RowSums& sums, const Assembly& a) {
+  // omega dt = 2 factor when the masses were set; up to 2 it stays stable. Nine tenths of that is the alarm.
+  const double margin = 4 * 0.81;
+  for (std::size_t g = 0; g < f.size(); ++g)
+    if (sums.translation[g] * a.inverse_mass[g] > margin || sums.rotation[g] * a.inverse_inertia[g] > margin)
+      return true;
+  return false;
+}
+
+void use_physical_inertia(const Fixture& f, Assembly& a) {
+  for (std::size_t g = 0; g < f.size(); ++g) {
+    a.mass[g] = f.mass[g];
+    a.inverse_mass[g] = 1 / f.mass[g];
+    a.inverse_inertia[g] = 1 / f.inertia[g];
+  }
+}
+
+}  // namespace rvelab

@@ -1,0 +1,85 @@
+// Turns a SceneKey into compiled kernels: one switch per flag, each ending in a template argument.
+#pragma once
+
+#include "rvelab/solver/kernel_integrate.hpp"
+#include "rvelab/solver/kernel_pairs.hpp"
+
+namespace rvelab {
+namespace {
+
+template <Shape shape, class Law, class T>
+constexpr PairKernel pair_kernel() {
+  if constexpr (shape == Shape::disc)
+    return &disc_pairs<Law, T>;
+  else
+    return &sphere_pairs<Law, T>;
+}
+
+template <Shape shape, class T>
+constexpr GrainKernel grain_kernel() {
+  if constexpr (shape == Shape::disc)
+    return &disc_grains<T>;
+  else
+    return &sphere_grains<T>;
+}
+
+template <Shape shape, int W, bool Advance, bool Ledger, class Law, bool Rolling, bool Dashpot>
+PairKernel by_slip(Slip slip) {
+  switch (slip) {
+    case Slip::consistent:
+      return pair_kernel<shape, Law, PairTraits<W, Rolling, Slip::consistent, Dashpot, Advance, Ledger>>();
+    case Slip::full_radius:
+      return pair_kernel<shape, Law, PairTraits<W, Rolling, Slip::full_radius, Dashpot, Advance, Ledger>>();
+    case Slip::full_radius_ratcheting:
+      return pair_kernel<shape, Law, PairTraits<W, Rolling, Slip::full_radius_ratcheting, Dashpot, Advance, Ledger>>();
+  }
+  return nullptr;
+}
+
+template <Shape shape, int W, bool Advance, bool Ledger, class Law>
+PairKernel by_features(const SceneKey& key) {
+  if (key.rolling)
+    return key.dashpot ? by_slip<shape, W, Advance, Ledger, Law, true, true>(key.slip)
+                       : by_slip<shape, W, Advance, Ledger, Law, true, false>(key.slip);
+  return key.dashpot ? by_slip<shape, W, Advance, Ledger, Law, false, true>(key.slip)
+                     : by_slip<shape, W, Advance, Ledger, Law, false, false>(key.slip);
+}
+
+template <Shape shape, int W, bool Advance, bool Ledger>
+PairKernel pair_kernel_for(const SceneKey& key) {
+  switch (key.law) {
+    case KernelLaw::linear:
+      return by_features<shape, W, Advance, Ledger, LinearLaw>(key);
+    case KernelLaw::hertz_given:
+      return by_features<shape, W, Advance, Ledger, HertzGivenLaw>(key);
+    case KernelLaw::hertz_mindlin:
+      return by_features<shape, W, Advance, Ledger, HertzMindlinLaw>(key);
+  }
+  return nullptr;
+}
+
+template <Shape shape, int W, bool Rolling>
+void set_grain_kernels(SceneKernels& kernels) {
+  constexpr auto none = KernelDamping::none, vector = KernelDamping::vector, component = KernelDamping::component;
+  kernels.quasi_static[0] = grain_kernel<shape, GrainTraits<W, Rolling, false, none>>();
+  kernels.quasi_static[1] = grain_kernel<shape, GrainTraits<W, Rolling, false, vector>>();
+  kernels.quasi_static[2] = grain_kernel<shape, GrainTraits<W, Rolling, false, component>>();
+  kernels.dynamic[0] = grain_kernel<shape, GrainTraits<W, Rolling, true, none>>();
+  kernels.dynamic[1] = grain_kernel<shape, GrainTraits<W, Rolling, true, vector>>();
+  kernels.dynamic[2] = grain_kernel<shape, GrainTraits<W, Rolling, true, component>>();
+}
+
+/// The advancing kernels of one shape at W lanes.
+template <Shape shape, int W>
+void set_kernels(const SceneKey& key, const char* instruction_set, SceneKernels& kernels) {
+  kernels.pairs = pair_kernel_for<shape, W, true, false>(key);
+  if (key.rolling)
+    set_grain_kernels<shape, W, true>(kernels);
+  else
+    set_grain_kernels<shape, W, false>(kernels);
+  kernels.lanes = W;
+  kernels.instruction_set = instruction_set;
+}
+
+}  // namespace
+}  // namespace rvelab

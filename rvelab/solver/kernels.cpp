@@ -1,0 +1,78 @@
+// Chooses the kernels of a scene: what the build has, what the processor can do, what RVELAB_ISA asks for.
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "rvelab/error.hpp"
+#include "rvelab/solver/scene.hpp"
+
+namespace rvelab {
+
+#define RVELAB_DECLARE(isa)                                                     \
+  void set_disc_kernels_##isa(const SceneKey&, const char*, SceneKernels&);    \
+  void set_sphere_kernels_##isa(const SceneKey&, const char*, SceneKernels&)
+RVELAB_DECLARE(scalar);
+RVELAB_DECLARE(baseline);
+#ifdef RVELAB_HAVE_V3
+RVELAB_DECLARE(v3);
+#endif
+#ifdef RVELAB_HAVE_V4
+RVELAB_DECLARE(v4);
+#endif
+#undef RVELAB_DECLARE
+void set_disc_kernels_shared(const SceneKey&, SceneKernels&);
+void set_sphere_kernels_shared(const SceneKey&, SceneKernels&);
+
+namespace {
+
+using Setter = void (*)(const SceneKey&, const char*, SceneKernels&);
+struct InstructionSet {
+  const char* name;
+  bool runs_here;
+  Setter disc, sphere;
+};
+
+/// From widest to plainest.
+const std::vector<InstructionSet>& instruction_sets() {
+  static const std::vector<InstructionSet> sets = [] {
+    std::vector<InstructionSet> found;
+#ifdef RVELAB_HAVE_V4
+    found.push_back({"v4", bool(__builtin_cpu_supports("x86-64-v4")), set_disc_kernels_v4, set_sphere_kernels_v4});
+#endif
+#ifdef RVELAB_HAVE_V3
+    found.push_back({"v3", bool(__builtin_cpu_supports("x86-64-v3")), set_disc_kernels_v3, set_sphere_kernels_v3});
+#endif
+    found.push_back({"baseline", true, set_disc_kernels_baseline, set_sphere_kernels_baseline});
+    found.push_back({"scalar", true, set_disc_kernels_scalar, set_sphere_kernels_scalar});
+    return found;
+  }();
+  return sets;
+}
+
+const InstructionSet& chosen_set() {
+  const auto& sets = instruction_sets();
+  const char* wanted = std::getenv("RVELAB_ISA");
+  std::string names;
+  for (const auto& set : sets) {
+    if (set.runs_here) names += std::string(names.empty() ? "" : ", ") + set.name;
+    if (wanted ? std::string(wanted) == set.name && set.runs_here : set.runs_here) return set;
+  }
+  throw InputError(std::string("RVELAB_ISA=") + wanted + " cannot run here; use one of " + names);
+}
+
+}  // namespace
+
+SceneKernels kernels_for(const SceneKey& key) {
+  const InstructionSet& set = chosen_set();
+  SceneKernels kernels;
+  if (key.shape == Shape::disc) {
+    set_disc_kernels_shared(key, kernels);
+    set.disc(key, set.name, kernels);
+  } else {
+    set_sphere_kernels_shared(key, kernels);
+    set.sphere(key, set.name, kernels);
+  }
+  return kernels;
+}
+
+}  // namespace rvelab

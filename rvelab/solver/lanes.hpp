@@ -1,0 +1,150 @@
+// Lanes: the one place that knows how wide the machine's vectors are. A kernel is written once over Lanes<W>::V, W
+// pairs or grains at a time; W = 1 is the plain scalar reference. Only + - * / sqrt, compare and select are used, each
+// rounded once, so that every W gives the same bits.
+//
+// Quad is a row of four doubles, the unit in which grain rows are loaded: wider than the machine's vectors it would be
+// taken apart element by element (8 times slower on SSE2), so two lanes keep it as two halves.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
+
+namespace rvelab {
+namespace {
+
+using V2 = double __attribute__((vector_size(16)));
+using V4 = double __attribute__((vector_size(32)));
+using V8 = double __attribute__((vector_size(64)));
+
+template <int W>
+struct Lanes;
+
+template <class V>
+inline __attribute__((always_inline)) V load_as(const double* from) {
+  V value;
+  std::memcpy(&value, from, sizeof(V));
+  return value;
+}
+template <class V>
+inline __attribute__((always_inline)) void store_as(double* to, V value) {
+  std::memcpy(to, &value, sizeof(V));
+}
+
+inline __attribute__((always_inline)) double square_root(double v) { return __builtin_sqrt(v); }
+inline __attribute__((always_inline)) V2 square_root(V2 v) {
+#if defined(__SSE2__)
+  return (V2)_mm_sqrt_pd((__m128d)v);
+#else
+  return V2{__builtin_sqrt(v[0]), __builtin_sqrt(v[1])};
+#endif
+}
+#if defined(__AVX__)
+inline __attribute__((always_inline)) V4 square_root(V4 v) { return (V4)_mm256_sqrt_pd((__m256d)v); }
+#endif
+#if defined(__AVX512F__)
+inline __attribute__((always_inline)) V8 square_root(V8 v) { return (V8)_mm512_sqrt_pd((__m512d)v); }
+#endif
+
+template <>
+struct Lanes<1> {
+  using V = double;
+  struct Quad {
+    double at[4];
+  };
+  static inline __attribute__((always_inline)) Quad add(Quad a, Quad b) {
+    return {{a.at[0] + b.at[0], a.at[1] + b.at[1], a.at[2] + b.at[2], a.at[3] + b.at[3]}};
+  }
+  static inline __attribute__((always_inline)) Quad mul(Quad a, Quad b) {
+    return {{a.at[0] * b.at[0], a.at[1] * b.at[1], a.at[2] * b.at[2], a.at[3] * b.at[3]}};
+  }
+  static inline __attribute__((always_inline)) Quad broadcast(double s) { return {{s, s, s, s}}; }
+  static inline __attribute__((always_inline)) void transpose(const Quad* rows, V* columns) {
+    for (int c = 0; c < 4; ++c) columns[c] = rows[0].at[c];
+  }
+  static inline __attribute__((always_inline)) void untranspose(const V* columns, Quad* rows) {
+    for (int c = 0; c < 4; ++c) rows[0].at[c] = columns[c];
+  }
+};
+
+template <>
+struct Lanes<2> {
+  using V = V2;
+  struct Quad {
+    V2 low, high;
+  };
+  static inline __attribute__((always_inline)) Quad add(Quad a, Quad b) { return {a.low + b.low, a.high + b.high}; }
+  static inline __attribute__((always_inline)) Quad mul(Quad a, Quad b) { return {a.low * b.low, a.high * b.high}; }
+  static inline __attribute__((always_inline)) Quad broadcast(double s) { return {V2{s, s}, V2{s, s}}; }
+  static inline __attribute__((always_inline)) void transpose(const Quad* rows, V* columns) {
+    columns[0] = __builtin_shufflevector(rows[0].low, rows[1].low, 0, 2);
+    columns[1] = __builtin_shufflevector(rows[0].low, rows[1].low, 1, 3);
+    columns[2] = __builtin_shufflevector(rows[0].high, rows[1].high, 0, 2);
+    columns[3] = __builtin_shufflevector(rows[0].high, rows[1].high, 1, 3);
+  }
+  static inline __attribute__((always_inline)) void untranspose(const V* columns, Quad* rows) {
+    rows[0] = {__builtin_shufflevector(columns[0], columns[1], 0, 2),
+               __builtin_shufflevector(columns[2], columns[3], 0, 2)};
+    rows[1] = {__builtin_shufflevector(columns[0], columns[1], 1, 3),
+               __builtin_shufflevector(columns[2], columns[3], 1, 3)};
+  }
+};
+
+#if defined(__AVX__)
+inline __attribute__((always_inline)) void transpose_four(const V4* rows, V4* columns) {
+  const V4 a = __builtin_shufflevector(rows[0], rows[1], 0, 4, 2, 6);
+  const V4 b = __builtin_shufflevector(rows[0], rows[1], 1, 5, 3, 7);
+  const V4 c = __builtin_shufflevector(rows[2], rows[3], 0, 4, 2, 6);
+  const V4 d = __builtin_shufflevector(rows[2], rows[3], 1, 5, 3, 7);
+  columns[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
+  columns[1] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+  columns[2] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
+  columns[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+}
+
+template <>
+struct Lanes<4> {
+  using V = V4;
+  using Quad = V4;
+  static inline __attribute__((always_inline)) Quad add(Quad a, Quad b) { return a + b; }
+  static inline __attribute__((always_inline)) Quad mul(Quad a, Quad b) { return a * b; }
+  static inline __attribute__((always_inline)) Quad broadcast(double s) { return V4{s, s, s, s}; }
+  static inline __attribute__((always_inline)) void transpose(const Quad* rows, V* columns) {
+    transpose_four(rows, columns);
+  }
+  static inline __attribute__((always_inline)) void untranspose(const V* columns, Quad* rows) {
+    transpose_four(columns, rows);
+  }
+};
+#endif
+
+#if defined(__AVX512F__)
+template <>
+struct Lanes<8> {
+  using V = V8;
+  using Quad = V4;
+  static inline __attribute__((always_inline)) Quad add(Quad a, Quad b) { return a + b; }
+  static inline __attribute__((always_inline)) Quad mul(Quad a, Quad b) { return a * b; }
+  static inline __attribute__((always_inline)) Quad broadcast(double s) { return V4{s, s, s, s}; }
+  static inline __attribute__((always_inline)) void transpose(const Quad* rows, V* columns) {
+    V4 low[4], high[4];
+    transpose_four(rows, low);
+    transpose_four(rows + 4, high);
+    for (int c = 0; c < 4; ++c) columns[c] = __builtin_shufflevector(low[c], high[c], 0, 1, 2, 3, 4, 5, 6, 7);
+  }
+  static inline __attribute__((always_inline)) void untranspose(const V* columns, Quad* rows) {
+    V4 low[4], high[4];
+    for (int c = 0; c < 4; ++c) {
+      low[c] = __builtin_shufflevector(columns[c], columns[c], 0, 1, 2, 3);
+      high[c] = __builtin_shufflevector(columns[c], columns[c], 4, 5, 6, 7);
+    }
+    transpose_four(low, rows);
+    transpose_four(high, rows + 4);
+  }
+};
+#endif
+
+}  // namespace
+}  // namespace rvelab

@@ -1,0 +1,80 @@
+// Rve::network: the contact network as a value.
+#include <cmath>
+
+#include "rvelab/solver/rve_impl.hpp"
+
+namespace rvelab {
+
+namespace {
+
+/// Elastic stiffnesses and energies of a touching contact, from its pair parameters and history.
+void set_elastic(const Fixture& f, const PairTable& pairs, std::size_t p, ContactState& c) {
+  const double root = std::sqrt(c.overlap), kr = f.contact.rolling ? pairs.kr[p] : 0.0;
+  double normal_energy = 0;
+  if (f.law == KernelLaw::linear) {
+    c.normal_stiffness = pairs.kn[p];
+    normal_energy = 0.5 * pairs.kn[p] * c.overlap * c.overlap;
+  } else {
+    c.normal_stiffness = 1.5 * pairs.kn[p] * root;
+    normal_energy = 0.4 * pairs.kn[p] * c.overlap * c.overlap * root;
+  }
+  const double scale = f.law == KernelLaw::hertz_mindlin ? root : 1.0;
+  c.tangential_stiffness = pairs.kt[p] * scale;
+  c.rolling_stiffness = kr * scale;
+  double spring = 0;
+  for (int k = 0; k < f.tangential_components(); ++k) spring += pairs.tangential[k][p] * pairs.tangential[k][p];
+  c.elastic_energy = normal_energy;
+  if (c.tangential_stiffness > 0) c.elastic_energy += 0.5 * spring / c.tangential_stiffness;
+  if (c.rolling_stiffness > 0) c.elastic_energy += 0.5 * c.rolling_moment.squaredNorm() / c.rolling_stiffness;
+}
+
+}  // namespace
+
+Network Rve::network() const {
+  const Fixture& f = impl_->fixture;
+  const Assembly& a = impl_->now;
+  Network net;
+  net.shape = f.shape;
+  net.cell = a.cell;
+  net.model = f.contact;
+  net.reference_contact_force = a.state.reference_contact_force;
+  net.reference_pressure = a.state.reference_pressure;
+  net.quasi_static = a.state.quasi_static;
+  net.grains.resize(f.size());
+  for (std::size_t g = 0; g < f.size(); ++g)
+    net.grains[g] = {f.radius[g],        f.mass[g],     f.inertia[g],   a.position(f, g),
+                     a.velocity(f, g),   a.spin(f, g),  Vector3::Zero()};
+  for (std::size_t p = 0; p < a.pairs.listed; ++p) {
+    const auto i = a.pairs.i[p], j = a.pairs.j[p];
+    const Vector3 b = branch_of(f, a, p);
+    const double length = b.norm(), overlap = (f.radius[i] + f.radius[j]) - length;
+    if (!(overlap > 0)) continue;
+    ContactState c;
+    c.i = i;
+    c.j = j;
+    c.image = a.pairs.image[p];
+    c.branch = b;
+    c.length = length;
+    c.normal = b / length;
+    c.overlap = overlap;
+    const Vector3 force = force_of(f, a.pairs, p);
+    c.normal_force = force.dot(c.normal);
+    c.tangential_force = force - c.normal_force * c.normal;
+    c.rolling_moment.setZero();
+    if (f.contact.rolling) {
+      if (f.shape == Shape::disc)
+        c.rolling_moment[2] = a.pairs.moment[0][p];
+      else
+        c.rolling_moment = {a.pairs.moment[0][p], a.pairs.moment[1][p], a.pairs.moment[2][p]};
+      c.moment_cap = a.pairs.moment_cap[p];
+    }
+    c.friction = a.pairs.friction[p];
+    set_elastic(f, a.pairs, p, c);
+    net.grains[std::size_t(i)].resultant -= force;
+    net.grains[std::size_t(j)].resultant += force;
+    net.contacts.push_back(c);
+  }
+  return net;
+}
+
+}  // namespace rvelab

@@ -1,0 +1,184 @@
+#include "rvelab/solver/rve.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "rvelab/error.hpp"
+#include "rvelab/solver/rve_impl.hpp"
+
+namespace rvelab {
+
+Rve::Rve(const Specimen& specimen) : impl_(std::make_unique<Impl>()) {
+  Impl& m = *impl_;
+  open(specimen, m.fixture, m.now);
+  use_physical_inertia(m.fixture, m.now);
+  evaluate_forces(m.fixture, m.now);
+  SolverState& state = m.now.state;
+  if (state.reference_contact_force == 0) state.reference_contact_force = balance_of(m.fixture, m.now).mean_contact_force;
+  if (state.reference_pressure == 0) {
+    const Matrix3 s = stress();
+    state.reference_pressure = std::max(0.0, m.fixture.dimension() == 2 ? -0.5 * (s(0, 0) + s(1, 1)) : -s.trace() / 3);
+  }
+}
+
+Rve::Rve(const Rve& other) : impl_(std::make_unique<Impl>(*other.impl_)) {}
+Rve& Rve::operator=(const Rve& other) {
+  if (this != &other) impl_ = std::make_unique<Impl>(*other.impl_);
+  return *this;
+}
+Rve::Rve(Rve&&) noexcept = default;
+Rve& Rve::operator=(Rve&&) noexcept = default;
+Rve::~Rve() = default;
+
+Matrix3 Rve::Impl::contact_stress() const {
+  return to_lab(-contact_moment(fixture, now) / now.cell.volume());
+}
+
+Matrix3 Rve::Impl::reynolds_stress() const {
+  if (now.state.quasi_static) return Matrix3::Zero();
+  return to_lab(kinetic_moment(fixture, now) / now.cell.volume());
+}
+
+Matrix3 Rve::contact_stress() const { return impl_->contact_stress(); }
+Matrix3 Rve::reynolds_stress() const { return impl_->reynolds_stress(); }
+Matrix3 Rve::stress() const { return impl_->contact_stress() + impl_->reynolds_stress(); }
+
+double Rve::unbalanced_ratio() const {
+  return rvelab::unbalanced_ratio(balance_of(impl_->fixture, impl_->now), impl_->now.state.reference_contact_force);
+}
+
+const Cell& Rve::cell() const { return impl_->now.cell; }
+std::size_t Rve::size() const { return impl_->fixture.size(); }
+std::uint64_t Rve::grain_steps() const { return impl_->now.state.grain_steps; }
+
+double Rve::critical_time_step() const {
+  return critical_step(impl_->fixture, row_sums(impl_->fixture, impl_->now));
+}
+
+Response Rve::Impl::respond(const Report& report, const Matrix3& gradient, double dt, const Want& want) const {
+  Response r;
+  r.report = report;
+  r.displacement_gradient = gradient;
+  const Matrix3 contact = contact_stress(), reynolds = reynolds_stress();
+  r.stress = contact + reynolds;
+  if (want.parts) {
+    r.contact_stress = contact;
+    r.reynolds_stress = reynolds;
+  }
+  const int d = fixture.dimension();
+  double thinnest = heights(now.cell).minCoeff();
+  r.report.cell_thin = thinnest < 8 * fixture.mean_radius;
+  r.report.unbalanced_ratio =
+      rvelab::unbalanced_ratio(balance_of(fixture, now), now.state.reference_contact_force);
+  if (dt > 0) {
+    Matrix3 e = 0.5 * (gradient + gradient.transpose());
+    const double mean = e.trace() / d;
+    for (int k = 0; k < d; ++k) e(k, k) -= mean;
+    double mass = 0, solid = 0;
+    for (std::size_t g = 0; g < fixture.size(); ++g) {
+      mass += fixture.mass[g];
+      solid += grain_volume(fixture.shape, fixture.radius[g], now.cell.lattice(2, 2));
+    }
+    double p = 0;
+    for (int k = 0; k < d; ++k) p -= r.stress(k, k) / d;
+    const double rate = std::sqrt(2 * e.squaredNorm()) / dt;
+    if (p > 0) r.report.inertial_number = rate * 2 * fixture.mean_radius * std::sqrt(mass / solid / p);
+  }
+  return r;
+}
+
+Response Rve::apply(const Matrix3& displacement_gradient, double dt, const Want& want) {
+  Impl& m = *impl_;
+  if (!(dt >= 0) || !std::isfinite(dt)) {
+    std::ostringstream text;
+    text << "apply: dt = " << dt << " s; it must be 0 (quasi-static) or a positive time";
+    throw InvalidIncrement(text.str());
+  }
+  const Report report = m.guarded([&] { return m.load(displacement_gradient, dt); });
+  return m.respond(report, displacement_gradient, dt, want);
+}
+
+Response Rve::apply(const MixedTarget& target, double dt, const Want& want) {
+  Impl& m = *impl_;
+  if (!(dt >= 0) || !std::isfinite(dt)) {
+    std::ostringstream text;
+    text << "apply: dt = " << dt << " s; it must be 0 (quasi-static) or a positive time";
+    throw InvalidIncrement(text.str());
+  }
+  Matrix3 gradient = Matrix3::Zero();
+  const Report report = m.guarded([&] { return m.load(target, dt, gradient); });
+  return m.respond(report, gradient, dt, want);
+}
+
+Report Rve::relax(double unbalanced, long max_steps) {
+  Impl& m = *impl_;
+  return m.guarded([&] {
+    Report report;
+    begin_loading(m.fixture, m.now, Loading::quasi_static);
+    constexpr long stretch = 25;
+    const FrameSplit still{Matrix3::Identity(), Matrix3::Identity(), true};
+    while (true) {
+      const Balance balance = m.checked_balance();
+      report.unbalanced_ratio = rvelab::unbalanced_ratio(balance, m.now.state.reference_contact_force);
+      if (report.unbalanced_ratio <= unbalanced || report.substeps >= max_steps) break;
+      if (inertia_outgrown(m.fixture, row_sums(m.fixture, m.now), m.now))
+        begin_loading(m.fixture, m.now, Loading::quasi_static);
+      const long steps = std::min(stretch, max_steps - report.substeps);
+      advance(m.fixture, m.now, {still, steps, 1.0, Loading::quasi_static});
+      report.substeps += steps;
+    }
+    report.target_held = report.unbalanced_ratio <= unbalanced;
+    return report;
+  });
+}
+
+void Rve::set_materials(const std::vector<Material>& materials) {
+  Impl& m = *impl_;
+  if (materials.size() != m.fixture.materials.size())
+    throw InputError("set_materials: " + std::to_string(materials.size()) + " materials; the specimen has " +
+                     std::to_string(m.fixture.materials.size()));
+  check(m.fixture.contact, m.fixture.damping, materials);
+  m.fixture.materials = materials;
+  for (std::size_t g = 0; g < m.fixture.size(); ++g) {
+    const double density = materials[m.fixture.material[g]].density;
+    m.fixture.mass[g] = density * grain_volume(m.fixture.shape, m.fixture.radius[g], m.now.cell.lattice(2, 2));
+    m.fixture.inertia[g] = moment_of_inertia(m.fixture.shape, m.fixture.mass[g], m.fixture.radius[g]);
+  }
+  set_pair_parameters(m.fixture, m.now.pairs);
+  evaluate_forces(m.fixture, m.now);
+}
+
+void Rve::set_velocities(const std::vector<Vector3>& velocity, const std::vector<Vector3>& spin) {
+  Impl& m = *impl_;
+  if (velocity.size() != size() || spin.size() != size())
+    throw InputError("set_velocities: " + std::to_string(velocity.size()) + " velocities and " +
+                     std::to_string(spin.size()) + " spins; the specimen has " + std::to_string(size()) + " grains");
+  begin_loading(m.fixture, m.now, Loading::physical);
+  for (std::size_t g = 0; g < size(); ++g) {
+    if (!velocity[g].allFinite() || !spin[g].allFinite())
+      throw InputError("set_velocities: the velocity or spin of grain " + std::to_string(m.fixture.id[g]) +
+                       " is not finite");
+    m.now.set_velocity(m.fixture, g, velocity[g], spin[g]);
+  }
+  m.now.state.mean_velocity.setZero();
+  evaluate_forces(m.fixture, m.now);
+}
+
+void Rve::zero_velocities() {
+  Impl& m = *impl_;
+  for (std::size_t g = 0; g < size(); ++g) {
+    m.now.state.ledger.zeroing += 0.5 * m.now.mass[g] * m.now.velocity(m.fixture, g).squaredNorm();
+    if (m.now.inverse_inertia[g] > 0)
+      m.now.state.ledger.zeroing += 0.5 * m.now.spin(m.fixture, g).squaredNorm() / m.now.inverse_inertia[g];
+    m.now.set_velocity(m.fixture, g, Vector3::Zero(), Vector3::Zero());
+  }
+  m.now.state.mean_velocity.setZero();
+  evaluate_forces(m.fixture, m.now);
+}
+
+Specimen Rve::specimen() const { return close(impl_->fixture, impl_->now); }
+std::vector<std::byte> Rve::save() const { return to_bytes(specimen()); }
+void Rve::restore(std::span<const std::byte> snapshot) { *this = Rve(from_bytes(snapshot)); }
+
+}  // namespace rvelab

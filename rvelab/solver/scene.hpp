@@ -1,0 +1,114 @@
+// What a step kernel is compiled for (the scene) and what it is handed (plain pointers and constants). The kernels
+// themselves include no Eigen and no containers, so this header holds none.
+//
+// A scene is shape x law x rolling x slip convention x dashpot. It is chosen once, when an Rve is opened; the loops
+// hold no branch over it.
+#pragma once
+
+#include <cstdint>
+
+#include "rvelab/contact/kinds.hpp"
+#include "rvelab/grains/shape.hpp"
+
+namespace rvelab {
+
+/// Force evaluators of the kernel; linear and linear_given differ only in mix().
+enum class KernelLaw { linear, hertz_given, hertz_mindlin };
+
+struct SceneKey {
+  Shape shape = Shape::disc;
+  KernelLaw law = KernelLaw::linear;
+  bool rolling = false;
+  Slip slip = Slip::consistent;
+  bool dashpot = false;
+};
+
+/// Upper-triangular 3x3 matrix, in the order xx, xy, xz, yy, yz, zz.
+struct UpperTriangle {
+  double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+};
+
+/// Energies of one call, J: dissipation between two evaluations of the contact forces.
+struct Dissipation {
+  double friction = 0, rolling = 0, dashpot = 0, law_loss = 0;
+};
+
+/// Constants of one sub-step (all in the cell frame).
+struct StepConstants {
+  double dt = 0;                ///< s; 1 at dt = 0
+  UpperTriangle lattice;        ///< L at the end of the step
+  UpperTriangle rate;           ///< D+ = (L1 - L0)/dt L1^-1: branch velocity = dv' + D+ (b - dt/2 dv')
+  double spin[3] = {};          ///< axial vector of skew D, at mid-step
+  UpperTriangle map;            ///< A = L1 L0^-1
+  UpperTriangle velocity_map;   ///< dt B, B = L_mid L0^-1: x1 = A x0 + dt B v'
+  double momentum_map[9] = {};  ///< P = (I + dt/2 G)^-1 (I - dt/2 G), G = D + 2 Omega (dt > 0 only)
+  double force_map[9] = {};     ///< (I + dt/2 G)^-1
+  double spin_map[9] = {};      ///< the same rotation for spins, Omega only (3D, dt > 0)
+  double spin_shift[3] = {};    ///< added to w' each step (dt > 0): minus the change of axial(W + Omega)
+  double mean_velocity[3] = {}; ///< taken out of v' at the start of the step
+  double local_damping = 0;
+  double global_viscous = 0;    ///< N s/m
+  double tangential_ratio = 0;  ///< tangential over normal dashpot
+  int dashpot_quarters = 0;     ///< power of the overlap in the dashpot coefficient, in quarters
+  bool no_tension = false;
+  bool unload_rescale = true;
+};
+
+/// Listed pairs, ordered by (i, j, image), padded with pairs that never touch to a multiple of eight.
+struct PairArrays {
+  const std::int32_t* i = nullptr;
+  const std::int32_t* j = nullptr;
+  const double* image[3] = {};  ///< image shift, as numbers
+  const double *kn = nullptr, *kt = nullptr, *friction = nullptr;
+  const double *kr = nullptr, *moment_cap = nullptr;  ///< rolling scenes
+  const double* cn = nullptr;                         ///< dashpot scenes
+  double* tangential[3] = {};  ///< history on grain j; 2D: [0] along t = (-n_y, n_x)
+  double* moment[3] = {};      ///< rolling scenes; 2D: [0] about z
+  double* root_overlap = nullptr;  ///< laws that carry sqrt(delta_old)
+  double* force = nullptr;     ///< row per pair: 2D {fx, fy, f_t, f_t delta/2}; 3D {fx, fy, fz, delta/2, n x f_t, 0}
+};
+
+/// Grain rows: 2D 8 doubles {x, y, u, v, w, r w, r, 0}; 3D 12 doubles {x, y, z, r, u, v, w, 0, wx, wy, wz, 0}.
+/// Padded to a multiple of eight with grains of no extent and infinite mass, at least one of them.
+struct GrainArrays {
+  double* rows = nullptr;
+  const double *mass = nullptr, *inverse_mass = nullptr, *inverse_inertia = nullptr;
+  const std::int32_t *own_begin = nullptr;       ///< pairs in which grain g is i: [own_begin[g], own_begin[g + 1])
+  const std::int32_t *incoming_begin = nullptr;  ///< range in incoming of grain g
+  const std::int32_t* incoming = nullptr;        ///< pairs in which grain g is j
+};
+
+/// Sums that the integration leaves behind: momentum (kg m/s), largest |v'|^2, energy taken by local and global damping.
+struct StepSums {
+  double momentum[3] = {};
+  double largest_speed_squared = 0;
+  double local_damping = 0, global_damping = 0;
+};
+
+using PairKernel = void (*)(const StepConstants&, const PairArrays&, const double* grain_rows, long begin, long end,
+                            Dissipation*);
+using GrainKernel = void (*)(const StepConstants&, const GrainArrays&, const PairArrays&, long begin, long end,
+                             StepSums*);
+
+/// Form of local damping that an integration kernel is compiled for.
+enum class KernelDamping { none, vector, component };
+
+/// The compiled kernels of one scene.
+struct SceneKernels {
+  PairKernel pairs = nullptr;         ///< contact forces with their increments
+  PairKernel pairs_ledger = nullptr;  ///< the same, with dissipation (scalar)
+  PairKernel evaluate = nullptr;      ///< contact forces of the stored history, nothing advanced (scalar)
+  GrainKernel quasi_static[3] = {};   ///< by KernelDamping
+  GrainKernel dynamic[3] = {};
+  int lanes = 1;
+  const char* instruction_set = "scalar";
+};
+
+/// Kernels for a scene: the widest that processor and build offer, or what the environment variable RVELAB_ISA names
+/// (scalar, baseline, v3, v4; InputError if it cannot run here). Every choice gives the same bits.
+SceneKernels kernels_for(const SceneKey& key);
+
+constexpr int grain_row_length(Shape shape) { return shape == Shape::disc ? 8 : 12; }
+constexpr int force_row_length(Shape shape) { return shape == Shape::disc ? 4 : 8; }
+
+}  // namespace rvelab

@@ -1,0 +1,45 @@
+// The servo: turns a mixed target A : dE + B : d sigma = c into strain, a few sub-steps at a time.
+//
+// Per segment it solves (A + B C) d eps = r with the affine stiffness C of the contact network and r what the rows still
+// lack: rows of strain in full, rows with stress by half plus the rate learnt so far (proportional and integral). The
+// map from stress error to strain rate is positive real and the specimen is passive, so the loop is stable without any
+// gain to tune.
+#pragma once
+
+#include "rvelab/solver/affine_stiffness.hpp"
+#include "rvelab/solver/rve.hpp"
+
+namespace rvelab {
+
+class Servo {
+ public:
+  /// Checks the target (InputError: wrong number of rows, dependent rows, no scale, not finite).
+  Servo(const MixedTarget& target, int dimension, const Matrix3& stress_at_start);
+
+  /// Renews the gain; stiffness in the laboratory frame. `floor` (Pa) keeps it regular when nothing touches.
+  void set_stiffness(const Matrix6& stiffness, double floor);
+
+  /// Norm of the strain that the whole target asks for by the present gain.
+  double predicted_strain() const;
+
+  /// Strain of the next segment, symmetric: the target's fraction goes from `from` to `to` (both in [0, 1]).
+  /// `learnt` is the part of the strain per unit of paced strain that the integral has found; it is updated.
+  Matrix3 next_strain(double to, double paced_strain, double limit, const Matrix3& strain_so_far, const Matrix3& stress,
+                      Matrix3& learnt);
+
+  /// Largest |residual| / scale over the rows that involve stress, at the end of the target.
+  double held_error(const Matrix3& strain_so_far, const Matrix3& stress) const;
+  bool controls_stress() const;
+
+ private:
+  Vector6 residual(double fraction, const Matrix3& strain, const Matrix3& stress) const;
+
+  int rows_;
+  bool stress_row_[6] = {};
+  double scale_[6] = {};
+  Matrix6 a_ = Matrix6::Zero(), b_ = Matrix6::Zero(), gain_ = Matrix6::Zero();
+  Vector6 c_ = Vector6::Zero(), total_ = Vector6::Zero();
+  Matrix3 start_stress_;
+};
+
+}  // namespace rvelab

@@ -1,0 +1,265 @@
+#include "rvelab/solver/stepping.hpp"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <cmath>
+
+#include "rvelab/error.hpp"
+#include "rvelab/solver/inertia.hpp"
+
+namespace rvelab {
+
+namespace {
+
+Matrix3 upper_inverse(const Matrix3& m) {
+  return m.triangularView<Eigen::Upper>().solve(Matrix3::Identity());
+}
+
+Vector3 axial(const Matrix3& m) {
+  return {0.5 * (m(2, 1) - m(1, 2)), 0.5 * (m(0, 2) - m(2, 0)), 0.5 * (m(1, 0) - m(0, 1))};
+}
+
+Matrix3 cross_matrix(const Vector3& w) {
+  Matrix3 m;
+  m << 0, -w[2], w[1], w[2], 0, -w[0], -w[1], w[0], 0;
+  return m;
+}
+
+void copy_rows(const Matrix3& m, double* to) {
+  for (int r = 0; r < 3; ++r)
+    for (int k = 0; k < 3; ++k) to[3 * r + k] = m(r, k);
+}
+
+/// The straight way of the lattice still to go, and the turn of the frame at its end.
+struct Way {
+  Matrix3 start, target;
+  Matrix3 end_rotation;
+  long done = 0, steps = 1;
+
+  Matrix3 lattice_after(long k) const {
+    return k == steps ? target : Matrix3(start + (double(k) / double(steps)) * (target - start));
+  }
+};
+
+/// After a change of basis the rest of the way is split anew in the new frame; its end is the same cell.
+void turn_way(Way& way, const Matrix3& lattice_before, const Reduction& reduction, const Cell& cell) {
+  const Matrix3 rest = way.target * upper_inverse(lattice_before);
+  const Matrix3& r = reduction.rotation;
+  Cell plain = cell;
+  plain.rotation.setIdentity();
+  const FrameSplit split = split_increment(plain, r.transpose() * rest * r - Matrix3::Identity());
+  way.end_rotation = r.transpose() * way.end_rotation * r * split.rotation;
+  way.start = cell.lattice;
+  way.target = split.stretch * cell.lattice;
+  way.steps -= way.done;
+  way.done = 0;
+}
+
+/// Rate-dependent constants of a step from L0 to L1, with the frame turning at `omega` (rad/s, cell frame).
+void set_step(const Matrix3& l0, const Matrix3& l1, double dt, StepConstants& c, Matrix3& rate_end, Matrix3& rate_mid) {
+  const Matrix3 change = (l1 - l0) / dt;
+  rate_end = change * upper_inverse(l1);
+  const Matrix3 middle = 0.5 * (l0 + l1);
+  rate_mid = change * upper_inverse(middle);
+  const Matrix3 inverse_start = upper_inverse(l0);
+  c.dt = dt;
+  c.lattice = upper_triangle(l1);
+  set_rate(rate_end, c);
+  c.map = upper_triangle(l1 * inverse_start);
+  c.velocity_map = upper_triangle(dt * (middle * inverse_start));
+}
+
+/// Maps of velocity and spin at dt > 0 (design 4): dv'/dt = f/m - (D + 2 Omega) v', dw/dt = T/I with w = w' + axial(W +
+/// Omega) held in axes that turn with Omega.
+void set_frame_terms(const Matrix3& rate_mid, const Vector3& omega, const Vector3& mean_spin_change, StepConstants& c) {
+  const Matrix3 identity = Matrix3::Identity();
+  const Matrix3 g = rate_mid + 2 * cross_matrix(omega);
+  const Matrix3 inverse = (identity + 0.5 * c.dt * g).inverse();
+  copy_rows(inverse * (identity - 0.5 * c.dt * g), c.momentum_map);
+  copy_rows(inverse, c.force_map);
+  const Matrix3 turn = cross_matrix(omega);
+  const Matrix3 back = (identity + 0.5 * c.dt * turn).inverse() * (identity - 0.5 * c.dt * turn);
+  copy_rows(back, c.spin_map);
+  const Vector3 shift = -mean_spin_change - c.dt * omega.cross(axial(rate_mid));
+  for (int k = 0; k < 3; ++k) c.spin_shift[k] = shift[k];
+}
+
+KernelDamping damping_kind(const Damping& d, Loading loading) {
+  const double alpha = loading == Loading::physical ? d.local : d.local_quasi_static;
+  if (alpha == 0) return KernelDamping::none;
+  return d.local_form == LocalDampingForm::vector ? KernelDamping::vector : KernelDamping::component;
+}
+
+}  // namespace
+
+Vector3 rotation_vector(const Matrix3& rotation) {
+  // Quaternion, halved until the angle is small enough for the series of asin.
+  Matrix3 r = rotation;
+  const double trace = r.trace();
+  double w, x, y, z;
+  if (trace > 0) {
+    const double s = std::sqrt(trace + 1) * 2;
+    w = 0.25 * s;
+    x = (r(2, 1) - r(1, 2)) / s;
+    y = (r(0, 2) - r(2, 0)) / s;
+    z = (r(1, 0) - r(0, 1)) / s;
+  } else {
+    int i = 0;
+    if (r(1, 1) > r(0, 0)) i = 1;
+    if (r(2, 2) > r(i, i)) i = 2;
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    const double s = std::sqrt(r(i, i) - r(j, j) - r(k, k) + 1) * 2;
+    double q[3];
+    q[i] = 0.25 * s;
+    q[j] = (r(j, i) + r(i, j)) / s;
+    q[k] = (r(k, i) + r(i, k)) / s;
+    w = (r(k, j) - r(j, k)) / s;
+    x = q[0];
+    y = q[1];
+    z = q[2];
+    if (w < 0) {
+      w = -w;
+      x = -x;
+      y = -y;
+      z = -z;
+    }
+  }
+  double factor = 2;
+  for (int halving = 0; halving < 6; ++halving) {
+    const double half = std::sqrt(0.5 * (1 + w));
+    x /= 2 * half;
+    y /= 2 * half;
+    z /= 2 * half;
+    w = half;
+    factor *= 2;
+  }
+  const double s2 = x * x + y * y + z * z;
+  const double series = 1 + s2 * (1.0 / 6 + s2 * (3.0 / 40 + s2 * (15.0 / 336)));
+  return factor * series * Vector3(x, y, z);
+}
+
+Matrix3 kinetic_moment(const Fixture& f, const Assembly& a) {
+  Matrix3 sum = Matrix3::Zero();
+  for (std::size_t g = 0; g < f.size(); ++g) {
+    const Vector3 v = a.velocity(f, g) - a.state.mean_velocity;
+    for (int r = 0; r < 3; ++r)
+      for (int k = 0; k < 3; ++k) sum(r, k) -= a.mass[g] * (v[r] * v[k]);
+  }
+  return sum;
+}
+
+namespace {
+
+double kinetic_energy(const Fixture& f, const Assembly& a) {
+  double sum = 0;
+  for (std::size_t g = 0; g < f.size(); ++g)
+    sum += 0.5 * (a.velocity(f, g).squaredNorm() * a.mass[g] + a.spin(f, g).squaredNorm() / a.inverse_inertia[g]);
+  return sum;
+}
+
+}  // namespace
+
+void begin_loading(const Fixture& f, Assembly& a, Loading loading) {
+  const bool quasi_static = loading == Loading::quasi_static;
+  if (quasi_static) {
+    const RowSums sums = row_sums(f, a);
+    const double before = f.options.ledger && a.mass[0] > 0 ? kinetic_energy(f, a) : 0;
+    if (!a.state.quasi_static) {
+      // Physical velocities mean nothing to scaled masses: carried over they would be an impact. Their energy is booked.
+      for (std::size_t g = 0; g < f.size(); ++g) a.set_velocity(f, g, Vector3::Zero(), Vector3::Zero());
+      a.state.mean_velocity.setZero();
+      a.state.last_step = 1;
+      a.state.last_rate.setZero();
+      a.state.mean_spin.setZero();
+    }
+    scale_inertia(f, sums, a);
+    if (f.options.ledger) a.state.ledger.zeroing += before - kinetic_energy(f, a);
+  } else if (a.state.quasi_static) {
+    const double before = f.options.ledger && a.mass[0] > 0 ? kinetic_energy(f, a) : 0;
+    for (std::size_t g = 0; g < f.size(); ++g) a.set_velocity(f, g, Vector3::Zero(), Vector3::Zero());
+    a.state.mean_velocity.setZero();
+    a.state.last_rate.setZero();
+    a.state.mean_spin.setZero();
+    use_physical_inertia(f, a);
+    a.state.ledger.zeroing += before;
+  } else {
+    use_physical_inertia(f, a);
+  }
+  a.state.quasi_static = quasi_static;
+}
+
+void advance(const Fixture& f, Assembly& a, const Advance& what) {
+  const bool physical = what.loading == Loading::physical;
+  StepConstants c = base_constants(f, a);
+  c.local_damping = physical ? f.damping.local : f.damping.local_quasi_static;
+  const auto kind = std::size_t(damping_kind(f.damping, what.loading));
+  const GrainKernel move = physical ? f.kernels.dynamic[kind] : f.kernels.quasi_static[kind];
+
+  Way way{a.cell.lattice, what.increment.stretch * a.cell.lattice, what.increment.rotation, 0, what.steps};
+  Vector3 omega = Vector3::Zero();
+  if (physical) omega = rotation_vector(what.increment.rotation) / (what.step * double(what.steps));
+  double total_mass = 0;
+  for (std::size_t g = 0; g < f.size(); ++g) total_mass += a.mass[g];
+  PairArrays pairs = arrays_of(a.pairs);
+  GrainArrays grains = arrays_of(a);
+  const long padded_grains = long(a.mass.size());
+  StepSums sums;
+  Matrix3 rate_end, rate_mid, moment_before = Matrix3::Zero();
+  if (f.options.ledger) moment_before = contact_moment(f, a);
+
+  for (long made = 0; made < what.steps; ++made) {
+    const Matrix3 before = a.cell.lattice;
+    a.cell.lattice = way.lattice_after(++way.done);
+    set_step(before, a.cell.lattice, what.step, c, rate_end, rate_mid);
+    for (int k = 0; k < 3; ++k) c.mean_velocity[k] = a.state.mean_velocity[k];
+    if (physical) {
+      const Vector3 mean_spin = axial(rate_mid) + omega;
+      set_frame_terms(rate_mid, omega, mean_spin - a.state.mean_spin, c);
+      a.state.mean_spin = mean_spin;
+    }
+    move(c, grains, pairs, 0, padded_grains, &sums);
+    for (int k = 0; k < 3; ++k) a.state.mean_velocity[k] = sums.momentum[k] / total_mass;
+    a.state.list_travel += 1.01 * what.step * std::sqrt(sums.largest_speed_squared);
+    a.state.last_rate = rate_end;
+    a.state.last_step = what.step;
+    if (list_is_stale(f, a)) {
+      const Matrix3 lattice_before = a.cell.lattice;
+      const Reduction reduction = rebuild(f, a);
+      if (reduction.changed) {
+        turn_way(way, lattice_before, reduction, a.cell);
+        omega = reduction.rotation.transpose() * omega;
+        a.state.mean_spin = reduction.rotation.transpose() * a.state.mean_spin;
+        rate_mid = reduction.rotation.transpose() * rate_mid * reduction.rotation;
+        c.lattice = upper_triangle(a.cell.lattice);
+        set_rate(a.state.last_rate, c);
+        moment_before = reduction.rotation.transpose() * moment_before * reduction.rotation;
+      }
+      pairs = arrays_of(a.pairs);
+      grains = arrays_of(a);
+    }
+    if (!f.options.ledger) {
+      f.kernels.pairs(c, pairs, a.rows.data(), 0, long(a.pairs.padded()), nullptr);
+      continue;
+    }
+    Dissipation lost;
+    f.kernels.pairs_ledger(c, pairs, a.rows.data(), 0, long(a.pairs.padded()), &lost);
+    EnergyLedger& ledger = a.state.ledger;
+    const Matrix3 moment = contact_moment(f, a);
+    // V sigma = -sum F (x) b - sum m v' v'; the contact part by the trapezium, the kinetic one at the half step.
+    Matrix3 work = -0.5 * (moment_before + moment);
+    if (physical) work += kinetic_moment(f, a);
+    const Matrix3 gradient = rate_mid + cross_matrix(omega);
+    ledger.boundary_work += what.step * work.cwiseProduct(gradient).sum();
+    ledger.friction += lost.friction;
+    ledger.rolling += lost.rolling;
+    ledger.dashpot += lost.dashpot;
+    ledger.law_loss += lost.law_loss;
+    ledger.local_damping += sums.local_damping;
+    ledger.global_damping += sums.global_damping;
+    moment_before = moment;
+  }
+  a.state.grain_steps += std::uint64_t(what.steps) * f.size();
+  turn_frame(a.cell, way.end_rotation);
+}
+
+}  // namespace rvelab

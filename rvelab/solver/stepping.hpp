@@ -1,0 +1,33 @@
+// Sub-steps: the cell goes linearly from one lattice to the next while the grains follow. Everything that loads a
+// specimen is made of calls of `advance`.
+#pragma once
+
+#include "rvelab/solver/assembly.hpp"
+
+namespace rvelab {
+
+enum class Loading { quasi_static, physical };
+
+/// What one call of advance is to do. The increment is F_c = R U in the cell frame (split_increment).
+struct Advance {
+  FrameSplit increment;
+  long steps = 1;
+  double step = 1;  ///< s; 1 at dt = 0
+  Loading loading = Loading::quasi_static;
+};
+
+/// Makes the sub-steps of one Advance: cell, grains, contacts, list, ledger. Afterwards the force rows belong to the new
+/// positions and the frame has turned by R. Throws IncrementFailed (cell too thin).
+void advance(const Fixture& fixture, Assembly& assembly, const Advance& what);
+
+/// Sets the masses and the units of the stored velocities for a kind of loading. Going from physical to quasi-static
+/// loading the velocities, m/s, become m per sub-step by momentum, and back.
+void begin_loading(const Fixture& fixture, Assembly& assembly, Loading loading);
+
+/// Reynolds stress times volume, -sum m v' v', cell frame, with the masses in use.
+Matrix3 kinetic_moment(const Fixture& fixture, const Assembly& assembly);
+
+/// Rotation vector (rad) of a proper rotation matrix, with square roots only.
+Vector3 rotation_vector(const Matrix3& rotation);
+
+}  // namespace rvelab
