@@ -61,8 +61,8 @@ int wrap_along(const Matrix3& lattice, int k, Vector3& position) {
   double total = 0.0;
   for (int pass = 0; pass < 8; ++pass) {
     if (position[k] >= -half && position[k] < half) return static_cast<int>(total);
-    double shift = -std::floor(position[k] / width + 0.5);
-    if (shift == 0.0) shift = position[k] < 0.0 ? 1.0 : -1.0;
+    // Never zero here: beyond a face the quotient rounds to at least 1/2 above, to less than -1/2 below.
+    const double shift = -std::floor(position[k] / width + 0.5);
     total += shift;
     if (!(std::abs(total) <= largest)) break;
     for (int i = 0; i <= k; ++i) position[i] += shift * lattice(i, k);

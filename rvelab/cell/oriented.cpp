@@ -25,8 +25,14 @@ void check_positive(const char* name, const char* unit, double value) {
 // Cube root by Newton's method: the same bits on every machine, which the library's does not promise.
 double cube_root(double value) {
   double scale = 1.0;
-  for (; value >= 8.0; value /= 8.0) scale *= 2.0;
-  for (; value < 1.0; value *= 8.0) scale /= 2.0;
+  while (value >= 8.0) {
+    value /= 8.0;
+    scale *= 2.0;
+  }
+  while (value < 1.0) {
+    value *= 8.0;
+    scale /= 2.0;
+  }
   double root = 1.5;
   for (int k = 0; k < 8; ++k) root = (2.0 * root + value / (root * root)) / 3.0;
   return scale * root;

@@ -29,8 +29,8 @@ struct Material {
 struct ContactModel {
   Law law = Law::linear;
   Slip slip = Slip::consistent;
-  bool rolling = false;         ///< rolling moment between grains (its parameters stand in the materials)
-  bool unload_rescale = true;   ///< hertz_mindlin: f_t scales by sqrt(delta/delta_old) as delta falls
+  bool rolling = false;        ///< rolling moment between grains (its parameters stand in the materials)
+  bool unload_rescale = true;  ///< hertz_mindlin: f_t scales by sqrt(delta/delta_old) as delta falls
 };
 
 /// Damping, apart from the law. All of it acts on fluctuation velocities v' and spins w'.
@@ -48,10 +48,10 @@ struct Damping {
 
 /// Parameters of one pair of grains, computed once when the pair is listed.
 struct PairParameters {
-  double kn = 0;        ///< linear: N/m; Hertz: N/m^1.5, f_n = kn delta^1.5
-  double kt = 0;        ///< linear, hertz_given: N/m; hertz_mindlin: N/m^1.5, kt = this sqrt(delta)
-  double friction = 0;  ///< the smaller of the two
-  double kr = 0;        ///< rolling: linear, hertz_given: N m; hertz_mindlin: N m/m^0.5, times sqrt(delta)
+  double kn = 0;          ///< linear: N/m; Hertz: N/m^1.5, f_n = kn delta^1.5
+  double kt = 0;          ///< linear, hertz_given: N/m; hertz_mindlin: N/m^1.5, kt = this sqrt(delta)
+  double friction = 0;    ///< the smaller of the two
+  double kr = 0;          ///< rolling: linear, hertz_given: N m; hertz_mindlin: N m/m^0.5, times sqrt(delta)
   double moment_cap = 0;  ///< min(eta_i ri, eta_j rj), m
   double cn = 0;          ///< dashpot: c_n = cn delta^dashpot_power
 };

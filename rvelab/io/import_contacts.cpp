@@ -20,11 +20,16 @@ std::string text(double value) {
   return number;
 }
 
+Vector3 branch_of(const Specimen& specimen, const Contact& contact) {
+  const auto& position = specimen.grains.position;
+  return position[static_cast<std::size_t>(contact.j)] + translation(specimen.cell, contact.image) -
+         position[static_cast<std::size_t>(contact.i)];
+}
+
 double overlap_of(const Specimen& specimen, const Contact& contact) {
-  const auto i = static_cast<std::size_t>(contact.i), j = static_cast<std::size_t>(contact.j);
-  const auto& grains = specimen.grains;
-  const Vector3 branch = grains.position[j] + translation(specimen.cell, contact.image) - grains.position[i];
-  return grains.radius[i] + grains.radius[j] - branch.norm();
+  const auto& radius = specimen.grains.radius;
+  return radius[static_cast<std::size_t>(contact.i)] + radius[static_cast<std::size_t>(contact.j)] -
+         branch_of(specimen, contact).norm();
 }
 
 PairParameters parameters_of(const Specimen& specimen, const Contact& contact) {
@@ -117,9 +122,7 @@ void turn_round_if_needed(Contact& contact) {
 
 /// 2D: the in-plane force vector as its component along t = (-n_y, n_x), the form that a specimen stores.
 Vector3 along_tangent(const Specimen& specimen, const Contact& contact) {
-  const auto& x = specimen.grains.position;
-  const Vector3 b = x[static_cast<std::size_t>(contact.j)] - x[static_cast<std::size_t>(contact.i)] +
-                    translation(specimen.cell, contact.image);
+  const Vector3 b = branch_of(specimen, contact);
   const Vector3& f = contact.tangential_force;
   return {(b[0] * f[1] - b[1] * f[0]) / std::sqrt(b[0] * b[0] + b[1] * b[1]), 0, 0};
 }

@@ -109,7 +109,9 @@ Meta read_meta(const std::string& path, Specimen& specimen, bool parameters) {
   meta.dimension = static_cast<int>(dimension);
   if (meta.dimension == 2 && file.has("thickness_m")) meta.thickness = file.number("thickness_m");
   for (const char* key : {"hSize", "hSize_columns_are_cell_vectors"}) {
-    if (file.has(key)) meta.cell = file.matrix(key, meta.dimension);
+    if (!file.has(key)) continue;
+    if (meta.cell) file.fail("both of hSize and hSize_columns_are_cell_vectors are there; allowed: one; remove one");
+    meta.cell = file.matrix(key, meta.dimension);
   }
   if (meta.cell && meta.dimension == 2) {
     if (!meta.thickness) file.fail("the key thickness_m is missing; allowed: the slab's thickness in m; add it");

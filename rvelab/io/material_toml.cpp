@@ -1,8 +1,10 @@
 #include "rvelab/io/material_toml.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <numeric>
 #include <set>
 #include <sstream>
@@ -19,6 +21,11 @@ using io::KeyEntry;
 const std::vector<std::string> table_names{"contact", "damping", "solver", "material"};
 
 std::string written(const toml::node& value) {
+  if (value.is_floating_point()) {
+    char shortest[32];
+    const auto end = std::to_chars(std::begin(shortest), std::end(shortest), value.as_floating_point()->get()).ptr;
+    return {shortest, end};
+  }
   std::ostringstream text;
   value.visit([&](const auto& node) { text << node; });
   return text.str();
@@ -146,19 +153,22 @@ std::vector<Material*> materials_named(Specimen& specimen, const std::string& do
   return found;
 }
 
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
+/// Edit distance times four; letters that the candidate goes on with, such as a unit left out, count one each.
+std::size_t edit_distance(const std::string& word, const std::string& candidate) {
+  std::vector<std::size_t> row(candidate.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
+  for (std::size_t i = 1; i <= word.size(); ++i) {
     std::size_t diagonal = row[0];
     row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t changed = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+    for (std::size_t j = 1; j <= candidate.size(); ++j) {
+      const std::size_t changed = diagonal + (word[i - 1] == candidate[j - 1] ? 0 : 1);
       diagonal = row[j];
       row[j] = std::min({changed, row[j] + 1, row[j - 1] + 1});
     }
   }
-  return row.back();
+  std::size_t least = 4 * row.back();
+  for (std::size_t j = 0; j < candidate.size(); ++j) least = std::min(least, 4 * row[j] + candidate.size() - j);
+  return least;
 }
 
 /// One material from its defaults.

@@ -31,7 +31,8 @@ struct KeyError {
 /// All keys, in the order of the tables.
 const std::vector<Key>& known_keys();
 
-/// The candidate with the smallest edit distance to `word`; the first of several; "" if there are no candidates.
+/// The candidate with the smallest edit distance to `word` (what the word lacks at its end, such as a unit, counts
+/// little); the first of several; "" if there are no candidates.
 std::string nearest(const std::string& word, const std::vector<std::string>& candidates);
 
 /// The known dotted key nearest to this one. A material's name ("material.sand.frictoin") is kept.

@@ -14,7 +14,8 @@
 namespace rvelab {
 
 /// Stress of the contact forces, Pa: -(1/V) sum F (x) b, sigma_kl with force component k, branch component l; F is the
-/// force on j, b the branch from i to j (Love-Weber). Not symmetrised: the antisymmetric part measures unbalanced torque.
+/// force on j, b the branch from i to j (Love-Weber). Not symmetrised: the antisymmetric part measures unbalanced
+/// torque.
 Matrix3 contact_stress(const Network& network);
 
 /// Stress of the velocity fluctuations, Pa: -(1/V) sum m v' (x) v'. Zero for a quasi-static network.

@@ -7,7 +7,8 @@
 
 #include <Eigen/Sparse>
 #include <Eigen/SparseLU>
-#include <array>
+#include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <vector>
 
@@ -49,7 +50,7 @@ Spring spring_of(const Network& network, const ContactState& contact) {
   return spring;
 }
 
-/// d sigma in the cell frame for the strain H and the given contact motions q; `other_force` is the |dl| part of dF.
+/// d sigma in the cell frame, summed over contacts.
 class StressChange {
  public:
   void add(const ContactState& contact, const Vector3& force_change, const Vector3& branch_change) {
@@ -188,7 +189,8 @@ class Condensed {
   /// at round-off, or where a free spin bears what the state itself lacks in balance.
   Vector balance(const Matrix3& strain) {
     constexpr int most_iterations = 200;
-    constexpr double exact = 1e-13, sufficient = 1e-6;
+    constexpr double exact = 1e-13;
+    const double sufficient = std::max(1e-6, unbalanced_force_ratio(network_));
     Vector x = Vector::Zero(count_), best = x;
     const double load = load_scale(strain);
     double smallest = residual(strain, x).cwiseAbs().maxCoeff() / load;

@@ -71,12 +71,15 @@ struct RelaxStage {
   bool record = false;
 };
 
-/// The elastic stiffness of the state, measured on a copy: the test goes on from the state as it was.
+/// The stiffness of the state at small strain, measured on a copy: the test goes on from the state as it was.
 struct ProbeStage {
-  enum class Method { linear, dynamic };
-  double size = 1e-7;  ///< strain of a dynamic probe
-  bool no_slip = false;
-  Method method = Method::linear;
+  enum class Method {
+    dynamic,  ///< increments of +-size, relaxed (probe_stiffness)
+    linear    ///< the contact network solved, every contact stuck (elastic_tangent); size and no_slip mean nothing
+  };
+  double size = 1e-7;    ///< strain of a dynamic probe
+  bool no_slip = false;  ///< friction 1e6 in the probed copy
+  Method method = Method::dynamic;
 };
 
 struct Stage {

@@ -69,10 +69,10 @@ void read_loading(const toml::table& table, Protocol& protocol, toml::table& res
 
 /// Checks the overrides on a specimen that has every material they name; how they fit the real one is seen when it is
 /// there.
-void check_overrides(const toml::table& overrides, std::vector<KeyError>& errors) {
+void check_overrides(const toml::table& file, std::vector<KeyError>& errors) {
   Specimen any;
   any.materials.emplace_back();
-  if (const toml::table* materials = overrides["material"].as_table()) {
+  if (const toml::table* materials = file["material"].as_table()) {
     for (const auto& [key, value] : *materials) {
       if (!value.is_table()) continue;
       any.materials.emplace_back();
@@ -80,7 +80,7 @@ void check_overrides(const toml::table& overrides, std::vector<KeyError>& errors
     }
   }
   for (const char* name : override_tables) {
-    if (const toml::table* table = overrides[name].as_table()) read_table(any, name, *table, errors);
+    if (const toml::table* table = file[name].as_table()) read_table(any, name, *table, errors);
   }
 }
 
@@ -128,10 +128,11 @@ Protocol read_file(toml::table file, const std::string& path, const std::vector<
   }
   for (const char* name : override_tables) {
     if (!file.contains(name)) continue;
-    protocol.overrides.insert(name, table_of(file, name, errors));
-    resolved.insert(name, table_of(file, name, errors));
+    const toml::table& overrides = table_of(file, name, errors);
+    protocol.overrides.insert(name, overrides);
+    resolved.insert(name, overrides);
   }
-  check_overrides(protocol.overrides, errors);
+  check_overrides(file, errors);
   read_stages(file, protocol, resolved, errors);
   raise(path, errors);
 

@@ -108,10 +108,14 @@ RelaxStage read_relax(TableReader& reader) {
 
 ProbeStage read_probe(TableReader& reader) {
   ProbeStage stage;
+  const bool linear = reader.word("method", "dynamic", {"dynamic", "linear"}) == "linear";
+  stage.method = linear ? ProbeStage::Method::linear : ProbeStage::Method::dynamic;
   stage.size = reader.number("size", stage.size, {0, 0.01, true, false});
-  stage.no_slip = reader.truth("no_slip", stage.no_slip);
-  const bool dynamic = reader.word("method", "linear", {"linear", "dynamic"}) == "dynamic";
-  stage.method = dynamic ? ProbeStage::Method::dynamic : ProbeStage::Method::linear;
+  stage.no_slip = reader.truth("no_slip", linear);
+  if (linear && !stage.no_slip) {
+    reader.mistake("no_slip", "contradicts method = \"linear\", in which every contact is stuck; allowed: true with "
+                              "it; remove the key or take method = \"dynamic\"");
+  }
   return stage;
 }
 

@@ -13,9 +13,9 @@ namespace rvelab {
 
 namespace {
 
-constexpr long control_stretch = 25;  ///< sub-steps between looks at the unbalanced ratio
-constexpr long physical_stretch = 50; ///< sub-steps between renewals of the critical step
-constexpr long servo_stretch = 5;     ///< sub-steps between strokes of the servo
+constexpr long control_stretch = 25;   ///< sub-steps between looks at the unbalanced ratio
+constexpr long physical_stretch = 50;  ///< sub-steps between renewals of the critical step
+constexpr long servo_stretch = 5;      ///< sub-steps between strokes of the servo
 
 /// Fewest sub-steps of a quasi-static increment: with fewer the grains cannot leave the affine motion, and the answer
 /// is the stiffer affine one (1 % of the stress increment takes 20, measured).
@@ -121,8 +121,9 @@ Report Rve::Impl::load(const Matrix3& dh, double dt) {
     fraction = steps == steps_left ? 1.0 : fraction + left * double(steps) / double(steps_left);
     const Matrix3 next = done_at(fraction);
     const Matrix3 part = next * done.inverse();
-    advance(fixture, now, {split_increment(now.cell, part - identity), steps, step,
-                           physical ? Loading::physical : Loading::quasi_static});
+    advance(fixture, now,
+            {split_increment(now.cell, part - identity), steps, step,
+             physical ? Loading::physical : Loading::quasi_static});
     done = next;
     report.substeps += steps;
     const Balance balance = checked_balance();
@@ -194,8 +195,9 @@ Report Rve::Impl::load(const MixedTarget& target, double dt, Matrix3& gradient) 
     strain += change;
     gradient = strain + fraction * target.spin;
     const Matrix3 part = (identity + gradient) * (identity + from).inverse();
-    advance(fixture, now, {split_increment(now.cell, part - identity), steps, step,
-                           physical ? Loading::physical : Loading::quasi_static});
+    advance(fixture, now,
+            {split_increment(now.cell, part - identity), steps, step,
+             physical ? Loading::physical : Loading::quasi_static});
     report.substeps += steps;
     if (report.substeps > fixture.options.max_substeps)
       throw IncrementFailed("the increment needs more than " + std::to_string(fixture.options.max_substeps) +

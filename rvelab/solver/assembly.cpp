@@ -48,8 +48,9 @@ void check_cell(const Specimen& s) {
            std::to_string(dimension_of(s.shape)));
   if (!l.allFinite() || !(l(0, 0) > 0) || !(l(1, 1) > 0) || !(l(2, 2) > 0) || l(1, 0) != 0 || l(2, 0) != 0 ||
       l(2, 1) != 0)
-    refuse("specimen: the lattice must be upper triangular with a positive diagonal; turn cell and grains into that "
-           "frame first");
+    refuse(
+        "specimen: the lattice must be upper triangular with a positive diagonal; turn cell and grains into that "
+        "frame first");
 }
 
 KernelLaw kernel_law(Law law) {
@@ -102,6 +103,31 @@ std::vector<Carried> history_of(const Fixture& f, const PairTable& pairs) {
   return all;
 }
 
+/// Blocks of four grains, each with as many slots as the busiest of the four needs on either side.
+void fill_gather_table(std::size_t grains, const std::vector<ListedPair>& listed, PairTable& pairs) {
+  const std::size_t rows = padded_to_lanes(grains), blocks = rows / 4;
+  std::vector<std::int32_t> as_first(rows, 0), as_second(rows, 0);
+  for (const ListedPair& pair : listed) {
+    ++as_first[pair.i];
+    ++as_second[pair.j];
+  }
+  pairs.slot_begin.assign(blocks + 1, 0);
+  for (std::size_t b = 0; b < blocks; ++b) {
+    std::int32_t most = 0;
+    for (std::size_t g = 4 * b; g < 4 * b + 4; ++g) most = std::max({most, as_first[g], as_second[g]});
+    pairs.slot_begin[b + 1] = pairs.slot_begin[b] + most;
+  }
+  const auto nothing = std::int32_t(listed.size());  // the first padding pair
+  pairs.slots.assign(8 * std::size_t(pairs.slot_begin[blocks]), nothing);
+  std::fill(as_first.begin(), as_first.end(), 0);
+  std::fill(as_second.begin(), as_second.end(), 0);
+  for (std::size_t q = 0; q < listed.size(); ++q) {
+    const auto i = std::size_t(listed[q].i), j = std::size_t(listed[q].j);
+    pairs.slots[8 * std::size_t(pairs.slot_begin[j / 4] + as_second[j]++) + j % 4] = std::int32_t(q);
+    pairs.slots[8 * std::size_t(pairs.slot_begin[i / 4] + as_first[i]++) + 4 + i % 4] = std::int32_t(q);
+  }
+}
+
 /// Makes the arrays of a new list and fills in the carried history, which is sorted by key.
 void fill(const Fixture& f, const std::vector<ListedPair>& listed, const std::vector<Carried>& carried,
           PairTable& pairs) {
@@ -137,18 +163,15 @@ void fill(const Fixture& f, const std::vector<ListedPair>& listed, const std::ve
     store(f, pairs, p, c);
   }
 
-  const std::size_t rows = padded_to_lanes(f.size());
-  pairs.own_begin.assign(rows + 1, 0);
-  pairs.incoming_begin.assign(rows + 1, 0);
-  for (const ListedPair& pair : listed) {
-    ++pairs.own_begin[pair.i + 1];
-    ++pairs.incoming_begin[pair.j + 1];
+  if (f.shape == Shape::disc) {
+    pairs.radius_i.assign(padded, 0.0);
+    pairs.radius_j.assign(padded, 0.0);
+    for (std::size_t q = 0; q < n; ++q) {
+      pairs.radius_i[q] = f.radius[listed[q].i];
+      pairs.radius_j[q] = f.radius[listed[q].j];
+    }
   }
-  std::partial_sum(pairs.own_begin.begin(), pairs.own_begin.end(), pairs.own_begin.begin());
-  std::partial_sum(pairs.incoming_begin.begin(), pairs.incoming_begin.end(), pairs.incoming_begin.begin());
-  pairs.incoming.resize(n);
-  std::vector<std::int32_t> next(pairs.incoming_begin.begin(), pairs.incoming_begin.end() - 1);
-  for (std::size_t q = 0; q < n; ++q) pairs.incoming[next[listed[q].j]++] = std::int32_t(q);
+  fill_gather_table(f.size(), listed, pairs);
 }
 
 /// The key of a pair after images changed; a grain's own image is kept pointing forward, forces turning round with it.
@@ -325,7 +348,8 @@ Reduction rebuild(const Fixture& f, Assembly& a) {
     a.state.mean_velocity = back * a.state.mean_velocity;
     a.state.last_rate = without_lower_part(back * a.state.last_rate * reduction.rotation);
     for (Carried& c : carried) {
-      const Eigen::Vector3i n = reduction.inverse_basis * Eigen::Vector3i(c.key.image[0], c.key.image[1], c.key.image[2]);
+      const Eigen::Vector3i n =
+          reduction.inverse_basis * Eigen::Vector3i(c.key.image[0], c.key.image[1], c.key.image[2]);
       c.key.image = {n[0], n[1], n[2]};
       if (f.shape == Shape::sphere) {
         c.tangential = back * c.tangential;
@@ -363,7 +387,8 @@ Reduction rebuild(const Fixture& f, Assembly& a) {
 bool list_is_stale(const Fixture& f, const Assembly& a) {
   // A pair beyond reach r_i + r_j + skin when listed is, after the affine map F and two displacements of at most
   // `travel`, still beyond sigma_min(F) reach - 2 |F| travel, with sigma_min >= 1 - |F - I|, |F| <= 1 + |F - I|.
-  const Matrix3 f_since = a.cell.lattice * a.state.list_lattice.triangularView<Eigen::Upper>().solve(Matrix3::Identity());
+  const Matrix3 f_since =
+      a.cell.lattice * a.state.list_lattice.triangularView<Eigen::Upper>().solve(Matrix3::Identity());
   const double strain = (f_since - Matrix3::Identity()).norm();
   const double reach = 2 * f.largest_radius;
   return (1 - strain) * (reach + f.skin) - 2 * (1 + strain) * a.state.list_travel < reach;
@@ -385,18 +410,16 @@ PairArrays arrays_of(PairTable& t) {
   p.moment_cap = t.moment_cap.data();
   p.cn = t.cn.data();
   p.root_overlap = t.root_overlap.data();
+  p.radius_i = t.radius_i.data();
+  p.radius_j = t.radius_j.data();
   p.force = t.force.data();
   return p;
 }
 
 GrainArrays arrays_of(Assembly& a) {
-  return {a.rows.data(),
-          a.mass.data(),
-          a.inverse_mass.data(),
-          a.inverse_inertia.data(),
-          a.pairs.own_begin.data(),
-          a.pairs.incoming_begin.data(),
-          a.pairs.incoming.data()};
+  return {
+      a.rows.data(),       a.mass.data(), a.inverse_mass.data(), a.inverse_inertia.data(), a.pairs.slot_begin.data(),
+      a.pairs.slots.data()};
 }
 
 }  // namespace rvelab

@@ -21,7 +21,7 @@ struct Fixture {
   SolverOptions options;
   std::vector<std::int64_t> id;
   std::vector<std::int32_t> material;
-  std::vector<double> radius, mass, inertia;  ///< m, kg, kg m^2 (physical)
+  std::vector<double> radius, mass, inertia;                                  ///< m, kg, kg m^2 (physical)
   double mean_radius = 0, largest_radius = 0, smallest_radius = 0, skin = 0;  ///< m
   double min_height = 0;                                                      ///< m
   SceneKernels kernels;
@@ -42,7 +42,8 @@ struct PairTable {
   Buffer image_number[3];
   Buffer kn, kt, friction, kr, moment_cap, cn;
   Buffer tangential[3], moment[3], root_overlap, force;
-  std::vector<std::int32_t> own_begin, incoming_begin, incoming;
+  Buffer radius_i, radius_j;                    ///< 2D
+  std::vector<std::int32_t> slot_begin, slots;  ///< gather table (scene.hpp)
 
   std::size_t padded() const { return i.size(); }
 };
@@ -50,8 +51,8 @@ struct PairTable {
 /// What an increment changes.
 struct Assembly {
   Cell cell;
-  Buffer rows;                                    ///< padded grain rows (scene.hpp)
-  Buffer mass, inverse_mass, inverse_inertia;     ///< those in use: physical, or scaled at dt = 0
+  Buffer rows;                                 ///< padded grain rows (scene.hpp)
+  Buffer mass, inverse_mass, inverse_inertia;  ///< those in use: physical, or scaled at dt = 0
   PairTable pairs;
   SolverState state;
 

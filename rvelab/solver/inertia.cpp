@@ -120,7 +120,8 @@ double critical_step(const Fixture& f, const RowSums& sums) {
     if (!(omega > 0)) continue;
     double step = 2 / omega;
     if (!sums.dashpot.empty()) {
-      const double rate = std::max(sums.dashpot[g] / f.mass[g], sums.dashpot[g] * f.radius[g] * f.radius[g] / f.inertia[g]);
+      const double rate =
+          std::max(sums.dashpot[g] / f.mass[g], sums.dashpot[g] * f.radius[g] * f.radius[g] / f.inertia[g]);
       const double zeta = rate / (2 * omega);
       step *= std::sqrt(1 + zeta * zeta) - zeta;
     }
@@ -139,9 +140,7 @@ RowSums with_floor(RowSums sums, const Fixture& f) {
 
 namespace {
 
-double scaled(double row_sum, double floor, double factor) {
-  return std::max(row_sum, floor) / (4 * factor * factor);
-}
+double scaled(double row_sum, double floor, double factor) { return std::max(row_sum, floor) / (4 * factor * factor); }
 
 }  // namespace
 

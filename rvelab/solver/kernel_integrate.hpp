@@ -46,6 +46,30 @@ inline double largest_of(V v) {
   return largest;
 }
 
+/// Sums of the force rows of eight discs: those of pairs in which they are j, and in which they are i.
+template <int W>
+inline __attribute__((always_inline)) void gather_disc_forces(const GrainArrays& g, const PairArrays& p, long block,
+                                                              typename Lanes<W>::Quad* incoming,
+                                                              typename Lanes<W>::Quad* outgoing) {
+  using L = Lanes<W>;
+  for (int half = 0; half < 2; ++half) {
+    const long b = block / 4 + half;
+    const std::int32_t* slot = g.slots + 8L * g.slot_begin[b];
+    const std::int32_t* last = g.slots + 8L * g.slot_begin[b + 1];
+    typename L::Quad in[4], out[4];
+    for (int k = 0; k < 4; ++k) in[k] = out[k] = L::broadcast(0.0);
+    for (; slot != last; slot += 8)
+      for (int k = 0; k < 4; ++k) {
+        in[k] = L::add(in[k], quad_at<W>(p.force + 4L * slot[k]));
+        out[k] = L::add(out[k], quad_at<W>(p.force + 4L * slot[4 + k]));
+      }
+    for (int k = 0; k < 4; ++k) {
+      incoming[4 * half + k] = in[k];
+      outgoing[4 * half + k] = out[k];
+    }
+  }
+}
+
 /// Discs in 2D.
 template <class T>
 void disc_grains(const StepConstants& c, const GrainArrays& g, const PairArrays& p, long begin, long end,
@@ -54,91 +78,78 @@ void disc_grains(const StepConstants& c, const GrainArrays& g, const PairArrays&
   using L = Lanes<W>;
   using V = typename L::V;
   using Quad = typename L::Quad;
-  const Quad as_first = quad<W>(-1.0, -1.0, 1.0, 1.0);
   const double half_dt = 0.5 * c.dt;
   PartialSums<W> momentum_x, momentum_y, lost_locally, lost_globally;
   V fastest = V{};
-  for (long at = begin; at < end; at += W) {
-    Quad gathered[W], first[W], second[W];
-    double moments[W] = {};
-    for (int k = 0; k < W; ++k) {
-      const long grain = at + k;
-      Quad sum = L::broadcast(0.0);
-      for (std::int32_t q = g.incoming_begin[grain]; q < g.incoming_begin[grain + 1]; ++q)
-        sum = L::add(sum, load_as<Quad>(p.force + 4L * g.incoming[q]));
-      for (std::int32_t q = g.own_begin[grain]; q < g.own_begin[grain + 1]; ++q)
-        sum = L::add(sum, L::mul(as_first, load_as<Quad>(p.force + 4L * q)));
-      gathered[k] = sum;
-      if constexpr (T::Rolling) {
-        double moment = 0;
-        for (std::int32_t q = g.incoming_begin[grain]; q < g.incoming_begin[grain + 1]; ++q)
-          moment += p.moment[0][g.incoming[q]];
-        for (std::int32_t q = g.own_begin[grain]; q < g.own_begin[grain + 1]; ++q) moment -= p.moment[0][q];
-        moments[k] = moment;
+  for (long block = begin; block < end; block += 8) {
+    Quad incoming[8], outgoing[8];
+    gather_disc_forces<W>(g, p, block, incoming, outgoing);
+    for (long at = block; at < block + 8; at += W) {
+      Quad first[W], second[W];
+      for (int k = 0; k < W; ++k) {
+        first[k] = quad_at<W>(g.rows + 8 * (at + k));
+        second[k] = quad_at<W>(g.rows + 8 * (at + k) + 4);
       }
-      first[k] = load_as<Quad>(g.rows + 8 * grain);
-      second[k] = load_as<Quad>(g.rows + 8 * grain + 4);
-    }
-    V f[4], a[4], s[4];
-    L::transpose(gathered, f);
-    L::transpose(first, a);
-    L::transpose(second, s);
-    V fx = f[0], fy = f[1], torque = f[3] - s[2] * f[2];
-    if constexpr (T::Rolling) torque = torque + load_as<V>(moments);
-    const V inverse_mass = load_as<V>(g.inverse_mass + at), inverse_inertia = load_as<V>(g.inverse_inertia + at);
-    V u = a[2] - c.mean_velocity[0], v = a[3] - c.mean_velocity[1], w = s[0];
-    [[maybe_unused]] const V free_x = fx, free_y = fy, free_torque = torque;
-    if constexpr (T::Dynamic) {
-      if (c.global_viscous != 0.0) {
-        fx = fx - c.global_viscous * u;
-        fy = fy - c.global_viscous * v;
-        lost_globally.add(at, c.dt * c.global_viscous * (u * u + v * v));
+      V in[4], out[4], a[4], s[4];
+      L::transpose(incoming + (at - block), in);
+      L::transpose(outgoing + (at - block), out);
+      L::transpose(first, a);
+      L::transpose(second, s);
+      V fx = in[0] - out[0], fy = in[1] - out[1], torque = in[2] + out[3];
+      const V inverse_mass = load_as<V>(g.inverse_mass + at), inverse_inertia = load_as<V>(g.inverse_inertia + at);
+      V u = a[2] - c.mean_velocity[0], v = a[3] - c.mean_velocity[1], w = s[0];
+      [[maybe_unused]] const V free_x = fx, free_y = fy, free_torque = torque;
+      if constexpr (T::Dynamic) {
+        if (c.global_viscous != 0.0) {
+          fx = fx - c.global_viscous * u;
+          fy = fy - c.global_viscous * v;
+          lost_globally.add(at, c.dt * c.global_viscous * (u * u + v * v));
+        }
       }
-    }
-    if constexpr (T::damping != KernelDamping::none) {
-      const V px = u + half_dt * (fx * inverse_mass), py = v + half_dt * (fy * inverse_mass);
-      const V pw = w + half_dt * (torque * inverse_inertia);
-      if constexpr (T::damping == KernelDamping::vector) {
-        const V factor =
-            local_damping_factor(c.local_damping, fx * fx + fy * fy, px * px + py * py, SquareRoot{});
-        fx = fx - factor * px;
-        fy = fy - factor * py;
+      if constexpr (T::damping != KernelDamping::none) {
+        const V px = u + half_dt * (fx * inverse_mass), py = v + half_dt * (fy * inverse_mass);
+        const V pw = w + half_dt * (torque * inverse_inertia);
+        if constexpr (T::damping == KernelDamping::vector) {
+          const V factor = local_damping_factor(c.local_damping, fx * fx + fy * fy, px * px + py * py, SquareRoot{});
+          fx = fx - factor * px;
+          fy = fy - factor * py;
+        } else {
+          fx = damped_component(c.local_damping, fx, px);
+          fy = damped_component(c.local_damping, fy, py);
+        }
+        torque = damped_component(c.local_damping, torque, pw);
+        if constexpr (T::Dynamic)
+          lost_locally.add(at, c.dt * ((free_x - fx) * px + (free_y - fy) * py + (free_torque - torque) * pw));
+      }
+      const V ax = c.dt * (fx * inverse_mass), ay = c.dt * (fy * inverse_mass);
+      if constexpr (T::Dynamic) {
+        const V pu = (c.momentum_map[0] * u + c.momentum_map[1] * v) + (c.force_map[0] * ax + c.force_map[1] * ay);
+        const V pv = (c.momentum_map[3] * u + c.momentum_map[4] * v) + (c.force_map[3] * ax + c.force_map[4] * ay);
+        u = pu;
+        v = pv;
+        w = w + c.spin_shift[2];
       } else {
-        fx = damped_component(c.local_damping, fx, px);
-        fy = damped_component(c.local_damping, fy, py);
+        u = u + ax;
+        v = v + ay;
       }
-      torque = damped_component(c.local_damping, torque, pw);
-      if constexpr (T::Dynamic)
-        lost_locally.add(at, c.dt * ((free_x - fx) * px + (free_y - fy) * py + (free_torque - torque) * pw));
-    }
-    const V ax = c.dt * (fx * inverse_mass), ay = c.dt * (fy * inverse_mass);
-    if constexpr (T::Dynamic) {
-      const V pu = (c.momentum_map[0] * u + c.momentum_map[1] * v) + (c.force_map[0] * ax + c.force_map[1] * ay);
-      const V pv = (c.momentum_map[3] * u + c.momentum_map[4] * v) + (c.force_map[3] * ax + c.force_map[4] * ay);
-      u = pu;
-      v = pv;
-      w = w + c.spin_shift[2];
-    } else {
-      u = u + ax;
-      v = v + ay;
-    }
-    w = w + c.dt * (torque * inverse_inertia);
-    const V mass = load_as<V>(g.mass + at);
-    momentum_x.add(at, mass * u);
-    momentum_y.add(at, mass * v);
-    const V squared = u * u + v * v;
-    fastest = (squared > fastest) ? squared : fastest;
-    a[0] = (c.map.xx * a[0] + c.map.xy * a[1]) + (c.velocity_map.xx * u + c.velocity_map.xy * v);
-    a[1] = c.map.yy * a[1] + c.velocity_map.yy * v;
-    a[2] = u;
-    a[3] = v;
-    s[0] = w;
-    s[1] = s[2] * w;
-    L::untranspose(a, first);
-    L::untranspose(s, second);
-    for (int k = 0; k < W; ++k) {
-      store_as(g.rows + 8 * (at + k), first[k]);
-      store_as(g.rows + 8 * (at + k) + 4, second[k]);
+      w = w + c.dt * (torque * inverse_inertia);
+      const V mass = load_as<V>(g.mass + at);
+      momentum_x.add(at, mass * u);
+      momentum_y.add(at, mass * v);
+      const V squared = u * u + v * v;
+      fastest = (squared > fastest) ? squared : fastest;
+      a[0] = (c.map.xx * a[0] + c.map.xy * a[1]) + (c.velocity_map.xx * u + c.velocity_map.xy * v);
+      a[1] = c.map.yy * a[1] + c.velocity_map.yy * v;
+      a[2] = u;
+      a[3] = v;
+      s[0] = w;
+      s[1] = s[2] * w;
+      L::untranspose(a, first);
+      L::untranspose(s, second);
+      for (int k = 0; k < W; ++k) {
+        store_as(g.rows + 8 * (at + k), first[k]);
+        store_as(g.rows + 8 * (at + k) + 4, second[k]);
+      }
     }
   }
   sums->momentum[0] = momentum_x.total();
@@ -155,6 +166,41 @@ inline __attribute__((always_inline)) V mapped(const double* row, V x, V y, V z)
   return row[0] * x + (row[1] * y + row[2] * z);
 }
 
+/// Resultant forces and torques of eight spheres. Torque on either grain of a pair: -(r - delta/2) n x f_t; the moment
+/// of rolling is minus on i, plus on j.
+template <int W, bool Rolling>
+inline __attribute__((always_inline)) void gather_sphere_forces(const GrainArrays& g, const PairArrays& p, long block,
+                                                                typename Lanes<W>::Quad* forces,
+                                                                typename Lanes<W>::Quad* torques) {
+  using L = Lanes<W>;
+  using Quad = typename L::Quad;
+  const Quad zero = L::broadcast(0.0);
+  for (int half = 0; half < 2; ++half) {
+    const long b = block / 4 + half;
+    const std::int32_t* slot = g.slots + 8L * g.slot_begin[b];
+    const std::int32_t* last = g.slots + 8L * g.slot_begin[b + 1];
+    Quad force[4] = {zero, zero, zero, zero}, turn[4] = {zero, zero, zero, zero}, arm[4] = {zero, zero, zero, zero};
+    double moment[4][4] = {};
+    for (; slot != last; slot += 8)
+      for (int k = 0; k < 4; ++k) {
+        const double *in = p.force + 8L * slot[k], *out = p.force + 8L * slot[4 + k];
+        const Quad turn_in = quad_at<W>(in + 4), turn_out = quad_at<W>(out + 4);
+        force[k] = L::add(force[k], L::sub(quad_at<W>(in), quad_at<W>(out)));
+        turn[k] = L::add(turn[k], L::add(turn_in, turn_out));
+        arm[k] = L::add(arm[k], L::add(L::mul(L::broadcast(in[3]), turn_in), L::mul(L::broadcast(out[3]), turn_out)));
+        if constexpr (Rolling)
+          for (int m = 0; m < 3; ++m) moment[k][m] += p.moment[m][slot[k]] - p.moment[m][slot[4 + k]];
+      }
+    for (int k = 0; k < 4; ++k) {
+      const double radius = g.rows[12 * (block + 4 * half + k) + 3];
+      forces[4 * half + k] = force[k];
+      Quad torque = L::add(arm[k], L::mul(L::broadcast(-radius), turn[k]));
+      if constexpr (Rolling) torque = L::add(torque, quad_at<W>(moment[k]));
+      torques[4 * half + k] = torque;
+    }
+  }
+}
+
 /// Spheres in 3D.
 template <class T>
 void sphere_grains(const StepConstants& c, const GrainArrays& g, const PairArrays& p, long begin, long end,
@@ -163,118 +209,89 @@ void sphere_grains(const StepConstants& c, const GrainArrays& g, const PairArray
   using L = Lanes<W>;
   using V = typename L::V;
   using Quad = typename L::Quad;
-  const Quad minus = L::broadcast(-1.0);
   const double half_dt = 0.5 * c.dt;
   PartialSums<W> momentum_x, momentum_y, momentum_z, lost_locally, lost_globally;
   V fastest = V{};
-  for (long at = begin; at < end; at += W) {
-    Quad forces[W], torques[W], rows[3][W];
-    for (int k = 0; k < W; ++k) {
-      const long grain = at + k;
-      // Torque on either grain: -(r - delta/2) n x f_t; the moment of rolling is minus on i, plus on j.
-      Quad force = L::broadcast(0.0), arm = L::broadcast(0.0), torque = L::broadcast(0.0);
-      for (std::int32_t q = g.incoming_begin[grain]; q < g.incoming_begin[grain + 1]; ++q) {
-        const double* row = p.force + 8L * g.incoming[q];
-        const Quad turn = load_as<Quad>(row + 4);
-        force = L::add(force, load_as<Quad>(row));
-        torque = L::add(torque, turn);
-        arm = L::add(arm, L::mul(L::broadcast(row[3]), turn));
+  for (long block = begin; block < end; block += 8) {
+    Quad forces[8], torques[8];
+    gather_sphere_forces<W, T::Rolling>(g, p, block, forces, torques);
+    for (long at = block; at < block + 8; at += W) {
+      Quad rows[3][W];
+      for (int k = 0; k < W; ++k)
+        for (int part = 0; part < 3; ++part) rows[part][k] = quad_at<W>(g.rows + 12 * (at + k) + 4 * part);
+      V f[4], t[4], x[4], v[4], w[4];
+      L::transpose(forces + (at - block), f);
+      L::transpose(torques + (at - block), t);
+      L::transpose(rows[0], x);
+      L::transpose(rows[1], v);
+      L::transpose(rows[2], w);
+      const V inverse_mass = load_as<V>(g.inverse_mass + at), inverse_inertia = load_as<V>(g.inverse_inertia + at);
+      for (int k = 0; k < 3; ++k) v[k] = v[k] - c.mean_velocity[k];
+      [[maybe_unused]] const V free_f[3] = {f[0], f[1], f[2]}, free_t[3] = {t[0], t[1], t[2]};
+      if constexpr (T::Dynamic) {
+        if (c.global_viscous != 0.0) {
+          for (int k = 0; k < 3; ++k) f[k] = f[k] - c.global_viscous * v[k];
+          lost_globally.add(at, c.dt * c.global_viscous * (v[0] * v[0] + (v[1] * v[1] + v[2] * v[2])));
+        }
       }
-      for (std::int32_t q = g.own_begin[grain]; q < g.own_begin[grain + 1]; ++q) {
-        const double* row = p.force + 8L * q;
-        const Quad turn = load_as<Quad>(row + 4);
-        force = L::add(force, L::mul(minus, load_as<Quad>(row)));
-        torque = L::add(torque, turn);
-        arm = L::add(arm, L::mul(L::broadcast(row[3]), turn));
-      }
-      for (int part = 0; part < 3; ++part) rows[part][k] = load_as<Quad>(g.rows + 12 * grain + 4 * part);
-      const double radius = g.rows[12 * grain + 3];
-      torque = L::add(arm, L::mul(L::broadcast(-radius), torque));
-      if constexpr (T::Rolling) {
-        double moment[4] = {};
-        for (std::int32_t q = g.incoming_begin[grain]; q < g.incoming_begin[grain + 1]; ++q)
-          for (int m = 0; m < 3; ++m) moment[m] += p.moment[m][g.incoming[q]];
-        for (std::int32_t q = g.own_begin[grain]; q < g.own_begin[grain + 1]; ++q)
-          for (int m = 0; m < 3; ++m) moment[m] -= p.moment[m][q];
-        torque = L::add(torque, load_as<Quad>(moment));
-      }
-      forces[k] = force;
-      torques[k] = torque;
-    }
-    V f[4], t[4], x[4], v[4], w[4];
-    L::transpose(forces, f);
-    L::transpose(torques, t);
-    L::transpose(rows[0], x);
-    L::transpose(rows[1], v);
-    L::transpose(rows[2], w);
-    const V inverse_mass = load_as<V>(g.inverse_mass + at), inverse_inertia = load_as<V>(g.inverse_inertia + at);
-    for (int k = 0; k < 3; ++k) v[k] = v[k] - c.mean_velocity[k];
-    [[maybe_unused]] const V free_f[3] = {f[0], f[1], f[2]}, free_t[3] = {t[0], t[1], t[2]};
-    if constexpr (T::Dynamic) {
-      if (c.global_viscous != 0.0) {
-        for (int k = 0; k < 3; ++k) f[k] = f[k] - c.global_viscous * v[k];
-        lost_globally.add(at, c.dt * c.global_viscous * (v[0] * v[0] + (v[1] * v[1] + v[2] * v[2])));
-      }
-    }
-    if constexpr (T::damping != KernelDamping::none) {
-      V pv[3], pw[3];
-      for (int k = 0; k < 3; ++k) {
-        pv[k] = v[k] + half_dt * (f[k] * inverse_mass);
-        pw[k] = w[k] + half_dt * (t[k] * inverse_inertia);
-      }
-      if constexpr (T::damping == KernelDamping::vector) {
-        const V along =
-            local_damping_factor(c.local_damping, f[0] * f[0] + (f[1] * f[1] + f[2] * f[2]),
-                                 pv[0] * pv[0] + (pv[1] * pv[1] + pv[2] * pv[2]), SquareRoot{});
-        const V about =
-            local_damping_factor(c.local_damping, t[0] * t[0] + (t[1] * t[1] + t[2] * t[2]),
-                                 pw[0] * pw[0] + (pw[1] * pw[1] + pw[2] * pw[2]), SquareRoot{});
+      if constexpr (T::damping != KernelDamping::none) {
+        V pv[3], pw[3];
         for (int k = 0; k < 3; ++k) {
-          f[k] = f[k] - along * pv[k];
-          t[k] = t[k] - about * pw[k];
+          pv[k] = v[k] + half_dt * (f[k] * inverse_mass);
+          pw[k] = w[k] + half_dt * (t[k] * inverse_inertia);
+        }
+        if constexpr (T::damping == KernelDamping::vector) {
+          const V along = local_damping_factor(c.local_damping, f[0] * f[0] + (f[1] * f[1] + f[2] * f[2]),
+                                               pv[0] * pv[0] + (pv[1] * pv[1] + pv[2] * pv[2]), SquareRoot{});
+          const V about = local_damping_factor(c.local_damping, t[0] * t[0] + (t[1] * t[1] + t[2] * t[2]),
+                                               pw[0] * pw[0] + (pw[1] * pw[1] + pw[2] * pw[2]), SquareRoot{});
+          for (int k = 0; k < 3; ++k) {
+            f[k] = f[k] - along * pv[k];
+            t[k] = t[k] - about * pw[k];
+          }
+        } else {
+          for (int k = 0; k < 3; ++k) {
+            f[k] = damped_component(c.local_damping, f[k], pv[k]);
+            t[k] = damped_component(c.local_damping, t[k], pw[k]);
+          }
+        }
+        if constexpr (T::Dynamic) {
+          V lost = V{};
+          for (int k = 0; k < 3; ++k) lost = lost + ((free_f[k] - f[k]) * pv[k] + (free_t[k] - t[k]) * pw[k]);
+          lost_locally.add(at, c.dt * lost);
+        }
+      }
+      const V a[3] = {c.dt * (f[0] * inverse_mass), c.dt * (f[1] * inverse_mass), c.dt * (f[2] * inverse_mass)};
+      if constexpr (T::Dynamic) {
+        V next[3], turned[3];
+        for (int k = 0; k < 3; ++k) {
+          next[k] = mapped(c.momentum_map + 3 * k, v[0], v[1], v[2]) + mapped(c.force_map + 3 * k, a[0], a[1], a[2]);
+          turned[k] = mapped(c.spin_map + 3 * k, w[0], w[1], w[2]) + c.spin_shift[k];
+        }
+        for (int k = 0; k < 3; ++k) {
+          v[k] = next[k];
+          w[k] = turned[k];
         }
       } else {
-        for (int k = 0; k < 3; ++k) {
-          f[k] = damped_component(c.local_damping, f[k], pv[k]);
-          t[k] = damped_component(c.local_damping, t[k], pw[k]);
-        }
+        for (int k = 0; k < 3; ++k) v[k] = v[k] + a[k];
       }
-      if constexpr (T::Dynamic) {
-        V lost = V{};
-        for (int k = 0; k < 3; ++k) lost = lost + ((free_f[k] - f[k]) * pv[k] + (free_t[k] - t[k]) * pw[k]);
-        lost_locally.add(at, c.dt * lost);
-      }
+      for (int k = 0; k < 3; ++k) w[k] = w[k] + c.dt * (t[k] * inverse_inertia);
+      const V mass = load_as<V>(g.mass + at);
+      momentum_x.add(at, mass * v[0]);
+      momentum_y.add(at, mass * v[1]);
+      momentum_z.add(at, mass * v[2]);
+      const V squared = v[0] * v[0] + (v[1] * v[1] + v[2] * v[2]);
+      fastest = (squared > fastest) ? squared : fastest;
+      const UpperTriangle &A = c.map, &B = c.velocity_map;
+      x[0] = (A.xx * x[0] + (A.xy * x[1] + A.xz * x[2])) + (B.xx * v[0] + (B.xy * v[1] + B.xz * v[2]));
+      x[1] = (A.yy * x[1] + A.yz * x[2]) + (B.yy * v[1] + B.yz * v[2]);
+      x[2] = A.zz * x[2] + B.zz * v[2];
+      L::untranspose(x, rows[0]);
+      L::untranspose(v, rows[1]);
+      L::untranspose(w, rows[2]);
+      for (int k = 0; k < W; ++k)
+        for (int part = 0; part < 3; ++part) store_as(g.rows + 12 * (at + k) + 4 * part, rows[part][k]);
     }
-    const V a[3] = {c.dt * (f[0] * inverse_mass), c.dt * (f[1] * inverse_mass), c.dt * (f[2] * inverse_mass)};
-    if constexpr (T::Dynamic) {
-      V next[3], turned[3];
-      for (int k = 0; k < 3; ++k) {
-        next[k] = mapped(c.momentum_map + 3 * k, v[0], v[1], v[2]) + mapped(c.force_map + 3 * k, a[0], a[1], a[2]);
-        turned[k] = mapped(c.spin_map + 3 * k, w[0], w[1], w[2]) + c.spin_shift[k];
-      }
-      for (int k = 0; k < 3; ++k) {
-        v[k] = next[k];
-        w[k] = turned[k];
-      }
-    } else {
-      for (int k = 0; k < 3; ++k) v[k] = v[k] + a[k];
-    }
-    for (int k = 0; k < 3; ++k) w[k] = w[k] + c.dt * (t[k] * inverse_inertia);
-    const V mass = load_as<V>(g.mass + at);
-    momentum_x.add(at, mass * v[0]);
-    momentum_y.add(at, mass * v[1]);
-    momentum_z.add(at, mass * v[2]);
-    const V squared = v[0] * v[0] + (v[1] * v[1] + v[2] * v[2]);
-    fastest = (squared > fastest) ? squared : fastest;
-    const UpperTriangle &A = c.map, &B = c.velocity_map;
-    x[0] = (A.xx * x[0] + (A.xy * x[1] + A.xz * x[2])) + (B.xx * v[0] + (B.xy * v[1] + B.xz * v[2]));
-    x[1] = (A.yy * x[1] + A.yz * x[2]) + (B.yy * v[1] + B.yz * v[2]);
-    x[2] = A.zz * x[2] + B.zz * v[2];
-    L::untranspose(x, rows[0]);
-    L::untranspose(v, rows[1]);
-    L::untranspose(w, rows[2]);
-    for (int k = 0; k < W; ++k)
-      for (int part = 0; part < 3; ++part) store_as(g.rows + 12 * (at + k) + 4 * part, rows[part][k]);
   }
   sums->momentum[0] = momentum_x.total();
   sums->momentum[1] = momentum_y.total();

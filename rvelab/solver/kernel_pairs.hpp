@@ -64,6 +64,40 @@ inline __attribute__((always_inline)) double sum_of(V v) {
   return sum;
 }
 
+template <int W>
+inline __attribute__((always_inline)) typename Lanes<W>::Quad quad_at(const double* from) {
+  return load_as<typename Lanes<W>::Quad>(from);
+}
+
+/// First Quad of row j minus that of row i, as columns.
+template <int W, int row_length>
+inline __attribute__((always_inline)) void gather_differences(const double* rows, const std::int32_t* i,
+                                                              const std::int32_t* j, typename Lanes<W>::V* columns) {
+  using L = Lanes<W>;
+  typename L::Quad quads[W];
+  for (int k = 0; k < W; ++k)
+    quads[k] = L::sub(quad_at<W>(rows + long(row_length) * j[k]), quad_at<W>(rows + long(row_length) * i[k]));
+  L::transpose(quads, columns);
+}
+
+/// Sums of {w, r w} of discs i and j, as two columns.
+template <int W>
+inline __attribute__((always_inline)) void gather_spins(const double* rows, const std::int32_t* i,
+                                                        const std::int32_t* j, typename Lanes<W>::V* columns) {
+  V2 sums[W];
+  for (int k = 0; k < W; ++k) sums[k] = load_as<V2>(rows + 8L * j[k] + 4) + load_as<V2>(rows + 8L * i[k] + 4);
+  Lanes<W>::transpose_pairs(sums, columns);
+}
+
+template <int W>
+inline __attribute__((always_inline)) typename Lanes<W>::V gather_spin_difference(const double* rows,
+                                                                                  const std::int32_t* i,
+                                                                                  const std::int32_t* j) {
+  double differences[W];
+  for (int k = 0; k < W; ++k) differences[k] = rows[8L * j[k] + 4] - rows[8L * i[k] + 4];
+  return load_as<typename Lanes<W>::V>(differences);
+}
+
 /// Discs in 2D.
 template <class Law, class T>
 void disc_pairs(const StepConstants& c, const PairArrays& p, const double* rows, long begin, long end,
@@ -71,20 +105,20 @@ void disc_pairs(const StepConstants& c, const PairArrays& p, const double* rows,
   constexpr int W = T::W;
   using L = Lanes<W>;
   using V = typename L::V;
-  const auto difference = L::broadcast(-1.0), sum = L::broadcast(1.0);
   const double half_dt = 0.5 * c.dt;
   for (long at = begin; at < end; at += W) {
     const std::int32_t *i = p.i + at, *j = p.j + at;
-    V d[4], s[4];
-    gather_columns<W, 8>(rows, i, j, 0, difference, d);
-    gather_columns<W, 8>(rows, i, j, 4, sum, s);
+    V d[4];
+    gather_differences<W, 8>(rows, i, j, d);
+    const V radius_i = load_as<V>(p.radius_i + at), radius_j = load_as<V>(p.radius_j + at);
+    const V radii = radius_i + radius_j;
     const V image_x = load_as<V>(p.image[0] + at), image_y = load_as<V>(p.image[1] + at);
     const V bx = d[0] + (c.lattice.xx * image_x + c.lattice.xy * image_y);
     const V by = d[1] + c.lattice.yy * image_y;
     const V length = square_root(bx * bx + by * by);
     const V inverse = 1.0 / length;
     const V nx = bx * inverse, ny = by * inverse;
-    const V overlap = s[2] - length;
+    const V overlap = radii - length;
     const auto touching = overlap > 0.0;
     const V zero = V{};
     V root = zero;
@@ -97,8 +131,10 @@ void disc_pairs(const StepConstants& c, const PairArrays& p, const double* rows,
       const V px = bx - half_dt * d[2], py = by - half_dt * d[3];
       const V vx = d[2] + (c.rate.xx * px + c.rate.xy * py), vy = d[3] + c.rate.yy * py;
       V along = nx * vy - ny * vx;
-      if constexpr (T::slip == Slip::full_radius_ratcheting) along = along * (s[2] * inverse);
-      slip_rate = along - (s[1] + c.spin[2] * s[2]);
+      if constexpr (T::slip == Slip::full_radius_ratcheting) along = along * (radii * inverse);
+      V s[2];  // w_i + w_j and r_i w_i + r_j w_j
+      gather_spins<W>(rows, i, j, s);
+      slip_rate = along - (s[1] + c.spin[2] * radii);
       if constexpr (T::slip == Slip::consistent) slip_rate = slip_rate + half_overlap * (s[0] + 2.0 * c.spin[2]);
       opening = nx * vx + ny * vy;
     }
@@ -135,15 +171,15 @@ void disc_pairs(const StepConstants& c, const PairArrays& p, const double* rows,
     if constexpr (T::Dashpot) total = touching ? tangential - (c.tangential_ratio * c_normal) * slip_rate : zero;
     normal = touching ? normal : zero;
 
+    V moment = zero;
+    if constexpr (T::Rolling) moment = load_as<V>(p.moment[0] + at);
     if constexpr (T::Rolling && T::Advance) {
-      V w[4];
-      gather_columns<W, 8>(rows, i, j, 4, difference, w);
-      V moment = load_as<V>(p.moment[0] + at);
+      const V spin_difference = gather_spin_difference<W>(rows, i, j);
       [[maybe_unused]] const V moment_before = moment;
       const V kr = Law::tangential_stiffness(load_as<V>(p.kr + at), root);
       if constexpr (Law::stores_root_overlap) moment = moment * Law::carried(root, last_root, c.unload_rescale);
       [[maybe_unused]] const V moment_carried = moment;
-      const V moment_trial = moment - kr * (w[0] * c.dt);
+      const V moment_trial = moment - kr * (spin_difference * c.dt);
       const V pushing = (normal > 0.0) ? normal : zero;
       moment = capped_moment(moment_trial, load_as<V>(p.moment_cap + at) * pushing);
       moment = touching ? moment : zero;
@@ -151,8 +187,9 @@ void disc_pairs(const StepConstants& c, const PairArrays& p, const double* rows,
       if constexpr (T::Ledger) {
         if (kr > 0.0) dissipation->rolling += sum_of((moment_trial - moment) * (moment / kr));
         if (kr > 0.0 && touching)
-          dissipation->law_loss += 0.5 * (moment_before * moment_before / (p.kr[at] * (last_root > 0 ? last_root : root)) -
-                                          moment_carried * moment_carried / kr) *
+          dissipation->law_loss += 0.5 *
+                                   (moment_before * moment_before / (p.kr[at] * (last_root > 0 ? last_root : root)) -
+                                    moment_carried * moment_carried / kr) *
                                    double(Law::stores_root_overlap && last_root > 0);
       }
     }
@@ -174,7 +211,8 @@ void disc_pairs(const StepConstants& c, const PairArrays& p, const double* rows,
     }
 
     typename L::Quad out[W];
-    const V columns[4] = {nx * normal - ny * total, ny * normal + nx * total, total, total * half_overlap};
+    const V columns[4] = {nx * normal - ny * total, ny * normal + nx * total,
+                          moment - (radius_j - half_overlap) * total, -moment - (radius_i - half_overlap) * total};
     L::untranspose(columns, out);
     for (int k = 0; k < W; ++k) store_as(p.force + 4 * (at + k), out[k]);
   }

@@ -1,5 +1,5 @@
-// Scalar kernels of disc scenes: the reference that every vector path equals bitwise, the one with the energy ledger, and
-// the evaluation of the stored history on opening.
+// Scalar kernels of disc scenes: the reference that every vector path equals bitwise, the one with the energy ledger,
+// and the evaluation of the stored history on opening.
 #include "rvelab/solver/kernel_table.hpp"
 
 namespace rvelab {

@@ -8,7 +8,7 @@
 namespace rvelab {
 
 void RVELAB_JOIN(set_sphere_kernels_, RVELAB_ISA)(const SceneKey& key, const char* instruction_set,
-                                              SceneKernels& kernels) {
+                                                  SceneKernels& kernels) {
   set_kernels<Shape::sphere, RVELAB_LANES>(key, instruction_set, kernels);
 }
 

@@ -8,8 +8,8 @@
 
 namespace rvelab {
 
-#define RVELAB_DECLARE(isa)                                                     \
-  void set_disc_kernels_##isa(const SceneKey&, const char*, SceneKernels&);    \
+#define RVELAB_DECLARE(isa)                                                 \
+  void set_disc_kernels_##isa(const SceneKey&, const char*, SceneKernels&); \
   void set_sphere_kernels_##isa(const SceneKey&, const char*, SceneKernels&)
 RVELAB_DECLARE(scalar);
 RVELAB_DECLARE(baseline);

@@ -60,7 +60,14 @@ struct Lanes<1> {
   static inline __attribute__((always_inline)) Quad mul(Quad a, Quad b) {
     return {{a.at[0] * b.at[0], a.at[1] * b.at[1], a.at[2] * b.at[2], a.at[3] * b.at[3]}};
   }
+  static inline __attribute__((always_inline)) Quad sub(Quad a, Quad b) {
+    return {{a.at[0] - b.at[0], a.at[1] - b.at[1], a.at[2] - b.at[2], a.at[3] - b.at[3]}};
+  }
   static inline __attribute__((always_inline)) Quad broadcast(double s) { return {{s, s, s, s}}; }
+  static inline __attribute__((always_inline)) void transpose_pairs(const V2* rows, V* columns) {
+    columns[0] = rows[0][0];
+    columns[1] = rows[0][1];
+  }
   static inline __attribute__((always_inline)) void transpose(const Quad* rows, V* columns) {
     for (int c = 0; c < 4; ++c) columns[c] = rows[0].at[c];
   }
@@ -77,7 +84,12 @@ struct Lanes<2> {
   };
   static inline __attribute__((always_inline)) Quad add(Quad a, Quad b) { return {a.low + b.low, a.high + b.high}; }
   static inline __attribute__((always_inline)) Quad mul(Quad a, Quad b) { return {a.low * b.low, a.high * b.high}; }
+  static inline __attribute__((always_inline)) Quad sub(Quad a, Quad b) { return {a.low - b.low, a.high - b.high}; }
   static inline __attribute__((always_inline)) Quad broadcast(double s) { return {V2{s, s}, V2{s, s}}; }
+  static inline __attribute__((always_inline)) void transpose_pairs(const V2* rows, V* columns) {
+    columns[0] = __builtin_shufflevector(rows[0], rows[1], 0, 2);
+    columns[1] = __builtin_shufflevector(rows[0], rows[1], 1, 3);
+  }
   static inline __attribute__((always_inline)) void transpose(const Quad* rows, V* columns) {
     columns[0] = __builtin_shufflevector(rows[0].low, rows[1].low, 0, 2);
     columns[1] = __builtin_shufflevector(rows[0].low, rows[1].low, 1, 3);
@@ -104,13 +116,24 @@ inline __attribute__((always_inline)) void transpose_four(const V4* rows, V4* co
   columns[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
 }
 
+inline __attribute__((always_inline)) void transpose_four_pairs(const V2* rows, V4* columns) {
+  const V4 a = __builtin_shufflevector(rows[0], rows[2], 0, 1, 2, 3);
+  const V4 b = __builtin_shufflevector(rows[1], rows[3], 0, 1, 2, 3);
+  columns[0] = __builtin_shufflevector(a, b, 0, 4, 2, 6);
+  columns[1] = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+}
+
 template <>
 struct Lanes<4> {
   using V = V4;
   using Quad = V4;
   static inline __attribute__((always_inline)) Quad add(Quad a, Quad b) { return a + b; }
   static inline __attribute__((always_inline)) Quad mul(Quad a, Quad b) { return a * b; }
+  static inline __attribute__((always_inline)) Quad sub(Quad a, Quad b) { return a - b; }
   static inline __attribute__((always_inline)) Quad broadcast(double s) { return V4{s, s, s, s}; }
+  static inline __attribute__((always_inline)) void transpose_pairs(const V2* rows, V* columns) {
+    transpose_four_pairs(rows, columns);
+  }
   static inline __attribute__((always_inline)) void transpose(const Quad* rows, V* columns) {
     transpose_four(rows, columns);
   }
@@ -127,7 +150,14 @@ struct Lanes<8> {
   using Quad = V4;
   static inline __attribute__((always_inline)) Quad add(Quad a, Quad b) { return a + b; }
   static inline __attribute__((always_inline)) Quad mul(Quad a, Quad b) { return a * b; }
+  static inline __attribute__((always_inline)) Quad sub(Quad a, Quad b) { return a - b; }
   static inline __attribute__((always_inline)) Quad broadcast(double s) { return V4{s, s, s, s}; }
+  static inline __attribute__((always_inline)) void transpose_pairs(const V2* rows, V* columns) {
+    V4 low[2], high[2];
+    transpose_four_pairs(rows, low);
+    transpose_four_pairs(rows + 4, high);
+    for (int c = 0; c < 2; ++c) columns[c] = __builtin_shufflevector(low[c], high[c], 0, 1, 2, 3, 4, 5, 6, 7);
+  }
   static inline __attribute__((always_inline)) void transpose(const Quad* rows, V* columns) {
     V4 low[4], high[4];
     transpose_four(rows, low);

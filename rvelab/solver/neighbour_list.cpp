@@ -17,14 +17,12 @@ namespace {
 struct Bins {
   int count[3] = {1, 1, 1};
   int reach[3] = {0, 0, 0};
-  std::vector<std::int32_t> begin;    ///< first entry of each bin in `grains`
-  std::vector<std::int32_t> grains;   ///< grain indices bin by bin, ascending within a bin
-  std::vector<Image> bin_of;          ///< bin coordinates of each grain
-  std::vector<Image> period_of;       ///< period in which each grain lies: s = s0 + period, 0 <= s0 < 1
+  std::vector<std::int32_t> begin;   ///< first entry of each bin in `grains`
+  std::vector<std::int32_t> grains;  ///< grain indices bin by bin, ascending within a bin
+  std::vector<Image> bin_of;         ///< bin coordinates of each grain
+  std::vector<Image> period_of;      ///< period in which each grain lies: s = s0 + period, 0 <= s0 < 1
 
-  std::size_t index(const Image& bin) const {
-    return (std::size_t(bin[2]) * count[1] + bin[1]) * count[0] + bin[0];
-  }
+  std::size_t index(const Image& bin) const { return (std::size_t(bin[2]) * count[1] + bin[1]) * count[0] + bin[0]; }
 };
 
 Bins sort_into_bins(const Cell& cell, const double* x, std::size_t stride, std::size_t n, double cutoff) {

@@ -11,13 +11,13 @@ namespace rvelab {
 struct ContactState {
   std::int32_t i = 0, j = 0;
   Image image{};
-  Vector3 branch;            ///< x_j + L image - x_i, m
-  Vector3 normal;            ///< branch / length, from i to j
-  double length = 0;         ///< m
-  double overlap = 0;        ///< m, > 0
-  double normal_force = 0;   ///< N, repulsion positive, dashpot included
-  Vector3 tangential_force;  ///< N, on j, dashpot included
-  Vector3 rolling_moment;    ///< N m, on j
+  Vector3 branch;                   ///< x_j + L image - x_i, m
+  Vector3 normal;                   ///< branch / length, from i to j
+  double length = 0;                ///< m
+  double overlap = 0;               ///< m, > 0
+  double normal_force = 0;          ///< N, repulsion positive, dashpot included
+  Vector3 tangential_force;         ///< N, on j, dashpot included
+  Vector3 rolling_moment;           ///< N m, on j
   double normal_stiffness = 0;      ///< d f_n/d overlap now, N/m
   double tangential_stiffness = 0;  ///< k_t now, N/m
   double rolling_stiffness = 0;     ///< k_r now, N m

@@ -15,7 +15,8 @@ Rve::Rve(const Specimen& specimen) : impl_(std::make_unique<Impl>()) {
   use_physical_inertia(m.fixture, m.now);
   evaluate_forces(m.fixture, m.now);
   SolverState& state = m.now.state;
-  if (state.reference_contact_force == 0) state.reference_contact_force = balance_of(m.fixture, m.now).mean_contact_force;
+  if (state.reference_contact_force == 0)
+    state.reference_contact_force = balance_of(m.fixture, m.now).mean_contact_force;
   if (state.reference_pressure == 0) {
     const Matrix3 s = stress();
     state.reference_pressure = std::max(0.0, m.fixture.dimension() == 2 ? -0.5 * (s(0, 0) + s(1, 1)) : -s.trace() / 3);
@@ -31,9 +32,7 @@ Rve::Rve(Rve&&) noexcept = default;
 Rve& Rve::operator=(Rve&&) noexcept = default;
 Rve::~Rve() = default;
 
-Matrix3 Rve::Impl::contact_stress() const {
-  return to_lab(-contact_moment(fixture, now) / now.cell.volume());
-}
+Matrix3 Rve::Impl::contact_stress() const { return to_lab(-contact_moment(fixture, now) / now.cell.volume()); }
 
 Matrix3 Rve::Impl::reynolds_stress() const {
   if (now.state.quasi_static) return Matrix3::Zero();
@@ -52,9 +51,7 @@ const Cell& Rve::cell() const { return impl_->now.cell; }
 std::size_t Rve::size() const { return impl_->fixture.size(); }
 std::uint64_t Rve::grain_steps() const { return impl_->now.state.grain_steps; }
 
-double Rve::critical_time_step() const {
-  return critical_step(impl_->fixture, row_sums(impl_->fixture, impl_->now));
-}
+double Rve::critical_time_step() const { return critical_step(impl_->fixture, row_sums(impl_->fixture, impl_->now)); }
 
 Response Rve::Impl::respond(const Report& report, const Matrix3& gradient, double dt, const Want& want) const {
   Response r;
@@ -69,8 +66,7 @@ Response Rve::Impl::respond(const Report& report, const Matrix3& gradient, doubl
   const int d = fixture.dimension();
   double thinnest = heights(now.cell).minCoeff();
   r.report.cell_thin = thinnest < 8 * fixture.mean_radius;
-  r.report.unbalanced_ratio =
-      rvelab::unbalanced_ratio(balance_of(fixture, now), now.state.reference_contact_force);
+  r.report.unbalanced_ratio = rvelab::unbalanced_ratio(balance_of(fixture, now), now.state.reference_contact_force);
   if (dt > 0) {
     Matrix3 e = 0.5 * (gradient + gradient.transpose());
     const double mean = e.trace() / d;

@@ -27,9 +27,9 @@ struct Report {
 };
 
 struct Response {
-  Matrix3 stress;                                 ///< Cauchy, laboratory frame, tension positive, Pa
-  Matrix3 contact_stress = Matrix3::Zero();       ///< on request
-  Matrix3 reynolds_stress = Matrix3::Zero();      ///< on request; zero at dt = 0
+  Matrix3 stress;                                   ///< Cauchy, laboratory frame, tension positive, Pa
+  Matrix3 contact_stress = Matrix3::Zero();         ///< on request
+  Matrix3 reynolds_stress = Matrix3::Zero();        ///< on request; zero at dt = 0
   Matrix3 displacement_gradient = Matrix3::Zero();  ///< what was applied (mixed targets: what was found)
   Report report;
 };
@@ -77,7 +77,7 @@ class Rve {
   Matrix3 reynolds_stress() const;  ///< -(1/V) sum m v' v', laboratory frame, Pa; zero after dt = 0
   double unbalanced_ratio() const;
   const Cell& cell() const;
-  std::size_t size() const;        ///< number of grains
+  std::size_t size() const;           ///< number of grains
   double critical_time_step() const;  ///< 2/omega_max with physical masses, s
   std::uint64_t grain_steps() const;
 

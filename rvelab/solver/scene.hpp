@@ -35,17 +35,17 @@ struct Dissipation {
 
 /// Constants of one sub-step (all in the cell frame).
 struct StepConstants {
-  double dt = 0;                ///< s; 1 at dt = 0
-  UpperTriangle lattice;        ///< L at the end of the step
-  UpperTriangle rate;           ///< D+ = (L1 - L0)/dt L1^-1: branch velocity = dv' + D+ (b - dt/2 dv')
-  double spin[3] = {};          ///< axial vector of skew D, at mid-step
-  UpperTriangle map;            ///< A = L1 L0^-1
-  UpperTriangle velocity_map;   ///< dt B, B = L_mid L0^-1: x1 = A x0 + dt B v'
-  double momentum_map[9] = {};  ///< P = (I + dt/2 G)^-1 (I - dt/2 G), G = D + 2 Omega (dt > 0 only)
-  double force_map[9] = {};     ///< (I + dt/2 G)^-1
-  double spin_map[9] = {};      ///< the same rotation for spins, Omega only (3D, dt > 0)
-  double spin_shift[3] = {};    ///< added to w' each step (dt > 0): minus the change of axial(W + Omega)
-  double mean_velocity[3] = {}; ///< taken out of v' at the start of the step
+  double dt = 0;                 ///< s; 1 at dt = 0
+  UpperTriangle lattice;         ///< L at the end of the step
+  UpperTriangle rate;            ///< D+ = (L1 - L0)/dt L1^-1: branch velocity = dv' + D+ (b - dt/2 dv')
+  double spin[3] = {};           ///< axial vector of skew D, at mid-step
+  UpperTriangle map;             ///< A = L1 L0^-1
+  UpperTriangle velocity_map;    ///< dt B, B = L_mid L0^-1: x1 = A x0 + dt B v'
+  double momentum_map[9] = {};   ///< P = (I + dt/2 G)^-1 (I - dt/2 G), G = D + 2 Omega (dt > 0 only)
+  double force_map[9] = {};      ///< (I + dt/2 G)^-1
+  double spin_map[9] = {};       ///< the same rotation for spins, Omega only (3D, dt > 0)
+  double spin_shift[3] = {};     ///< added to w' each step (dt > 0): minus the change of axial(W + Omega)
+  double mean_velocity[3] = {};  ///< taken out of v' at the start of the step
   double local_damping = 0;
   double global_viscous = 0;    ///< N s/m
   double tangential_ratio = 0;  ///< tangential over normal dashpot
@@ -60,12 +60,13 @@ struct PairArrays {
   const std::int32_t* j = nullptr;
   const double* image[3] = {};  ///< image shift, as numbers
   const double *kn = nullptr, *kt = nullptr, *friction = nullptr;
-  const double *kr = nullptr, *moment_cap = nullptr;  ///< rolling scenes
-  const double* cn = nullptr;                         ///< dashpot scenes
-  double* tangential[3] = {};  ///< history on grain j; 2D: [0] along t = (-n_y, n_x)
-  double* moment[3] = {};      ///< rolling scenes; 2D: [0] about z
-  double* root_overlap = nullptr;  ///< laws that carry sqrt(delta_old)
-  double* force = nullptr;     ///< row per pair: 2D {fx, fy, f_t, f_t delta/2}; 3D {fx, fy, fz, delta/2, n x f_t, 0}
+  const double *kr = nullptr, *moment_cap = nullptr;      ///< rolling scenes
+  const double* cn = nullptr;                             ///< dashpot scenes
+  double* tangential[3] = {};                             ///< history on grain j; 2D: [0] along t = (-n_y, n_x)
+  double* moment[3] = {};                                 ///< rolling scenes; 2D: [0] about z
+  double* root_overlap = nullptr;                         ///< laws that carry sqrt(delta_old)
+  const double *radius_i = nullptr, *radius_j = nullptr;  ///< 2D
+  double* force = nullptr;  ///< row per pair: 2D {fx, fy, T_j, T_i}; 3D {fx, fy, fz, delta/2, n x f_t, 0}
 };
 
 /// Grain rows: 2D 8 doubles {x, y, u, v, w, r w, r, 0}; 3D 12 doubles {x, y, z, r, u, v, w, 0, wx, wy, wz, 0}.
@@ -73,12 +74,15 @@ struct PairArrays {
 struct GrainArrays {
   double* rows = nullptr;
   const double *mass = nullptr, *inverse_mass = nullptr, *inverse_inertia = nullptr;
-  const std::int32_t *own_begin = nullptr;       ///< pairs in which grain g is i: [own_begin[g], own_begin[g + 1])
-  const std::int32_t *incoming_begin = nullptr;  ///< range in incoming of grain g
-  const std::int32_t* incoming = nullptr;        ///< pairs in which grain g is j
+  /// Gather table: grains in blocks of four; block b has slots [slot_begin[b], slot_begin[b + 1]) of eight pairs each:
+  /// four in which its grains are j, then four in which they are i. A grain with fewer pairs than its block has slots
+  /// points to a padding pair, whose force is zero: one loop length for four grains saves most mispredicted branches
+  /// (disc_400_linear 18 -> 30 M grain-steps/s on a Cascade Lake core).
+  const std::int32_t *slot_begin = nullptr, *slots = nullptr;
 };
 
-/// Sums that the integration leaves behind: momentum (kg m/s), largest |v'|^2, energy taken by local and global damping.
+/// Sums that the integration leaves behind: momentum (kg m/s), largest |v'|^2, energy taken by local and global
+/// damping.
 struct StepSums {
   double momentum[3] = {};
   double largest_speed_squared = 0;

@@ -27,7 +27,8 @@ Vector6 stress_components(const Matrix3& s) {
 
 }  // namespace
 
-Servo::Servo(const MixedTarget& target, int dimension, const Matrix3& stress_at_start) : start_stress_(stress_at_start) {
+Servo::Servo(const MixedTarget& target, int dimension, const Matrix3& stress_at_start)
+    : start_stress_(stress_at_start) {
   rows_ = dimension == 2 ? 3 : 6;
   if (int(target.rows.size()) != rows_)
     throw InputError("mixed target: " + std::to_string(target.rows.size()) + " rows; " + std::to_string(dimension) +

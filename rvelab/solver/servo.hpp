@@ -1,9 +1,9 @@
 // The servo: turns a mixed target A : dE + B : d sigma = c into strain, a few sub-steps at a time.
 //
-// Per segment it solves (A + B C) d eps = r with the affine stiffness C of the contact network and r what the rows still
-// lack: rows of strain in full, rows with stress by half plus the rate learnt so far (proportional and integral). The
-// map from stress error to strain rate is positive real and the specimen is passive, so the loop is stable without any
-// gain to tune.
+// Per segment it solves (A + B C) d eps = r with the affine stiffness C of the contact network and r what the rows
+// still lack: rows of strain in full, rows with stress by half plus the rate learnt so far (proportional and integral).
+// The map from stress error to strain rate is positive real and the specimen is passive, so the loop is stable without
+// any gain to tune.
 #pragma once
 
 #include "rvelab/solver/affine_stiffness.hpp"

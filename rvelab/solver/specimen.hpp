@@ -30,21 +30,21 @@ struct Contact {
   Image image{};
   /// N, spring part (without dashpot). 2D: (f_t, 0, 0) with f_t along t = (-n_y, n_x), which no rotation changes.
   Vector3 tangential_force = Vector3::Zero();
-  Vector3 rolling_moment = Vector3::Zero();    ///< N m
-  double last_root_overlap = 0;  ///< sqrt(delta) at the last step, m^0.5 (hertz_mindlin)
+  Vector3 rolling_moment = Vector3::Zero();  ///< N m
+  double last_root_overlap = 0;              ///< sqrt(delta) at the last step, m^0.5 (hertz_mindlin)
 };
 
 /// How the solver goes about its work. Defaults are measured ones (performance figures stand beside each use).
 struct SolverOptions {
-  double skin = 0.1;               ///< Verlet skin over the mean radius, > 0
-  double time_step_factor = 0.7;   ///< fraction of the critical step 2/omega_max, 0 < f < 1
-  double fixed_time_step = 0;      ///< s; > 0: dt > 0 loading uses exactly this step
-  double target_unbalanced = 1e-3; ///< dt = 0: unbalanced ratio that steers the number of sub-steps
-  long fixed_substeps = 0;         ///< dt = 0: > 0: exactly so many sub-steps an increment, no control
-  long max_substeps = 50'000'000;  ///< an increment that needs more fails
-  double min_height = 0;           ///< m; shortest lattice vector allowed; 0: 2 r_max
-  double max_overlap_ratio = 0.25; ///< largest overlap over the smaller radius; more fails
-  bool ledger = false;             ///< keep the energy ledger (measured cost in tools/bench)
+  double skin = 0.1;                ///< Verlet skin over the mean radius, > 0
+  double time_step_factor = 0.7;    ///< fraction of the critical step 2/omega_max, 0 < f < 1
+  double fixed_time_step = 0;       ///< s; > 0: dt > 0 loading uses exactly this step
+  double target_unbalanced = 1e-3;  ///< dt = 0: unbalanced ratio that steers the number of sub-steps
+  long fixed_substeps = 0;          ///< dt = 0: > 0: exactly so many sub-steps an increment, no control
+  long max_substeps = 50'000'000;   ///< an increment that needs more fails
+  double min_height = 0;            ///< m; shortest lattice vector allowed; 0: 2 r_max
+  double max_overlap_ratio = 0.25;  ///< largest overlap over the smaller radius; more fails
+  bool ledger = false;              ///< keep the energy ledger (measured cost in tools/bench)
 };
 
 /// Energy ledger, J, sums since the specimen was opened first (design 7). Zero when not kept.
@@ -58,16 +58,16 @@ struct EnergyLedger {
 
 /// Solver state that decides the next bit, beside grains, contacts and cell.
 struct SolverState {
-  bool has_reference = false;  ///< list_lattice and list_travel say when to list anew
-  Matrix3 list_lattice = Matrix3::Zero();  ///< lattice when the list was built, m
-  double list_travel = 0;      ///< bound on the largest fluctuation displacement since then, m
-  double strain_per_step = 0;  ///< dt = 0: pace of the sub-step controller; 0: not yet known
-  Matrix3 servo_strain = Matrix3::Zero();  ///< mixed targets: strain per unit of paced strain learnt so far, lab frame
-  double reference_contact_force = 0;  ///< N, mean contact force at the specimen's own p0; 0: set on opening
-  double reference_pressure = 0;       ///< Pa, the specimen's own p0; 0: set on opening
-  bool quasi_static = true;            ///< units of the stored velocities (see Grains)
-  Matrix3 last_rate = Matrix3::Zero(); ///< D of the last sub-step, cell frame (dashpot forces need it)
-  double last_step = 0;                ///< length of the last sub-step: s, or 1 at dt = 0
+  bool has_reference = false;               ///< list_lattice and list_travel say when to list anew
+  Matrix3 list_lattice = Matrix3::Zero();   ///< lattice when the list was built, m
+  double list_travel = 0;                   ///< bound on the largest fluctuation displacement since then, m
+  double strain_per_step = 0;               ///< dt = 0: pace of the sub-step controller; 0: not yet known
+  Matrix3 servo_strain = Matrix3::Zero();   ///< mixed targets: strain per unit of paced strain learnt so far, lab frame
+  double reference_contact_force = 0;       ///< N, mean contact force at the specimen's own p0; 0: set on opening
+  double reference_pressure = 0;            ///< Pa, the specimen's own p0; 0: set on opening
+  bool quasi_static = true;                 ///< units of the stored velocities (see Grains)
+  Matrix3 last_rate = Matrix3::Zero();      ///< D of the last sub-step, cell frame (dashpot forces need it)
+  double last_step = 0;                     ///< length of the last sub-step: s, or 1 at dt = 0
   Vector3 mean_velocity = Vector3::Zero();  ///< mass-weighted mean v' that the next step takes out
   Vector3 mean_spin = Vector3::Zero();      ///< axial(W + Omega) of the last sub-step, rad/s (dt > 0)
   std::uint64_t grain_steps = 0;            ///< grains times sub-steps made so far

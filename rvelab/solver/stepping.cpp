@@ -11,9 +11,7 @@ namespace rvelab {
 
 namespace {
 
-Matrix3 upper_inverse(const Matrix3& m) {
-  return m.triangularView<Eigen::Upper>().solve(Matrix3::Identity());
-}
+Matrix3 upper_inverse(const Matrix3& m) { return m.triangularView<Eigen::Upper>().solve(Matrix3::Identity()); }
 
 Vector3 axial(const Matrix3& m) {
   return {0.5 * (m(2, 1) - m(1, 2)), 0.5 * (m(0, 2) - m(2, 0)), 0.5 * (m(1, 0) - m(0, 1))};
@@ -165,7 +163,8 @@ void begin_loading(const Fixture& f, Assembly& a, Loading loading) {
     const RowSums sums = row_sums(f, a);
     const double before = f.options.ledger && a.mass[0] > 0 ? kinetic_energy(f, a) : 0;
     if (!a.state.quasi_static) {
-      // Physical velocities mean nothing to scaled masses: carried over they would be an impact. Their energy is booked.
+      // Physical velocities mean nothing to scaled masses: carried over they would be an impact. Their energy is
+      // booked.
       for (std::size_t g = 0; g < f.size(); ++g) a.set_velocity(f, g, Vector3::Zero(), Vector3::Zero());
       a.state.mean_velocity.setZero();
       a.state.last_step = 1;

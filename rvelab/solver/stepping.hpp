@@ -16,8 +16,8 @@ struct Advance {
   Loading loading = Loading::quasi_static;
 };
 
-/// Makes the sub-steps of one Advance: cell, grains, contacts, list, ledger. Afterwards the force rows belong to the new
-/// positions and the frame has turned by R. Throws IncrementFailed (cell too thin).
+/// Makes the sub-steps of one Advance: cell, grains, contacts, list, ledger. Afterwards the force rows belong to the
+/// new positions and the frame has turned by R. Throws IncrementFailed (cell too thin).
 void advance(const Fixture& fixture, Assembly& assembly, const Advance& what);
 
 /// Sets the masses and the units of the stored velocities for a kind of loading. Going from physical to quasi-static

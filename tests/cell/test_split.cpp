@@ -152,7 +152,7 @@ TEST_CASE("Quarter turns are exact and rigid and four of them are none") {
   }
 }
 
-TEST_CASE("A million rigid rotations never deform the cell and keep the frame orthogonal") {
+TEST_CASE("A million rigid rotations never deform the cell and keep the frame orthogonal", "[slow]") {
   Generator generator(6);
   for (const int dimension : {2, 3}) {
     Cell cell = turned_cell(generator, dimension);

@@ -86,8 +86,8 @@ inline Network yade_network(const std::string& name) {
   network.model.unload_rescale = false;
   network.model.rolling = linear && meta.at("beta").get<double>() > 0;
   const double thickness = network.cell.lattice(2, 2), density = meta.at("density");
-  const double friction = linear ? std::tan(meta.at("phi_deg").get<double>() * std::acos(-1.0) / 180)
-                                 : meta.at("mu").get<double>();
+  const double friction =
+      linear ? std::tan(meta.at("phi_deg").get<double>() * std::acos(-1.0) / 180) : meta.at("mu").get<double>();
   for (const Row& row : read_table(name + ".particles.csv")) {
     GrainState grain = grain_at({row.at("x"), row.at("y"), linear ? 0.0 : row.at("z")}, row.at("r"));
     grain.mass = density * grain_volume(network.shape, grain.radius, thickness);
@@ -97,8 +97,7 @@ inline Network yade_network(const std::string& name) {
   for (const Row& row : read_table(name + ".contacts.csv")) {
     const Image image{static_cast<int>(row.at("sx")), static_cast<int>(row.at("sy")),
                       linear ? 0 : static_cast<int>(row.at("sz"))};
-    ContactState contact =
-        touching(network, static_cast<int>(row.at("id1")), static_cast<int>(row.at("id2")), image);
+    ContactState contact = touching(network, static_cast<int>(row.at("id1")), static_cast<int>(row.at("id2")), image);
     contact.normal_force = row.at("fn");
     contact.tangential_force = {row.at("fsx"), row.at("fsy"), linear ? 0.0 : row.at("fsz")};
     contact.friction = friction;

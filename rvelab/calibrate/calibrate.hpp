@@ -1,0 +1,48 @@
+// Calibration: one compression test at several pressures, and the strength of the soil from all of them.
+#pragma once
+
+#include <vector>
+
+#include "rvelab/calibrate/mohr.hpp"
+#include "rvelab/protocol/run.hpp"
+
+namespace rvelab {
+
+/// What one test gives. Pa, compression positive; degrees.
+struct PressureResult {
+  double pressure = 0;
+  PrincipalStresses peak;
+  double peak_strain = 0;
+  double friction_angle_deg = 0;               ///< of the peak
+  double moving_mean_friction_angle_deg = 0;   ///< of the 1 % moving mean
+  double large_strain_friction_angle_deg = 0;  ///< of the mean stresses from 12 to 15 %
+  std::size_t records = 0;
+  std::size_t flagged = 0;  ///< records that could not be held
+  double wall_seconds = 0;
+  unsigned long long grain_steps = 0;
+};
+
+/// What all tests give. Degrees, Pa; NaN where the tests do not reach.
+struct Calibration {
+  double friction_angle_deg = 0;               ///< peaks, t = s sin phi through the origin
+  double friction_angle_moving_mean_deg = 0;   ///< mean over the tests
+  double friction_angle_with_cohesion_deg = 0; ///< peaks, t = s sin phi + c cos phi
+  double cohesion = 0;                         ///< Pa; reported, negative or not, and not used
+  double large_strain_friction_angle_deg = 0;  ///< mean over the tests
+  double bearing_capacity_Nq = 0, local_shear_Nq = 0, wedge_angle_deg = 0;  ///< of friction_angle_deg
+  std::vector<PressureResult> per_pressure;
+};
+
+/// Evaluates the last stages of finished tests of one dimension. InputError without tests or records.
+Calibration calibrate(const std::vector<TestResult>& tests, int dimension);
+
+/// Throws InputError unless the last stage is a compression at constant lateral stress whose pressure is the test's:
+/// what a friction angle can be read from.
+void check_calibratable(const Protocol& protocol);
+
+/// Runs protocol k on specimen k (or on the only one), `threads` at a time (0: as many as there are cores). The results
+/// do not depend on the number of threads. Throws the error of the first test that failed, naming its pressure.
+std::vector<TestRun> run_all(const std::vector<Protocol>& protocols, const std::vector<Specimen>& specimens,
+                             unsigned threads);
+
+}  // namespace rvelab

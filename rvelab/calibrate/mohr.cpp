@@ -1,0 +1,129 @@
+#include "rvelab/calibrate/mohr.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "rvelab/error.hpp"
+
+namespace rvelab {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double degree = pi / 180;
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double strain_slack = 1e-9;  // recorded strains are round numbers up to round-off
+constexpr double range_slack = 1e-3;   // a range of strains counts as covered up to the spacing of records
+
+double median_spacing(std::span<const Record> records) {
+  std::vector<double> spacings;
+  for (std::size_t k = 1; k < records.size(); ++k) {
+    spacings.push_back(std::abs(records[k].strain - records[k - 1].strain));
+  }
+  const auto middle = spacings.begin() + static_cast<long>(spacings.size() / 2);
+  std::nth_element(spacings.begin(), middle, spacings.end());
+  return *middle;
+}
+
+}  // namespace
+
+PrincipalStresses principal_stresses(const Matrix3& stress, int dimension) {
+  const Eigen::MatrixXd compression = -0.5 * (stress + stress.transpose()).topLeftCorner(dimension, dimension);
+  const Eigen::VectorXd values =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(compression, Eigen::EigenvaluesOnly).eigenvalues();
+  return {values[dimension - 1], values[0]};
+}
+
+double friction_angle_deg(const PrincipalStresses& stresses) {
+  return std::asin(stresses.t() / stresses.s()) / degree;
+}
+
+Peak peak(std::span<const Record> records, int dimension) {
+  if (records.empty()) throw InputError("peak: 0 records; allowed: at least 1; give a test that records");
+  Peak highest;
+  for (std::size_t k = 0; k < records.size(); ++k) {
+    const PrincipalStresses stresses = principal_stresses(records[k].stress, dimension);
+    if (k == 0 || stresses.major > highest.stresses.major) highest = {k, records[k].strain, stresses};
+  }
+  return highest;
+}
+
+PrincipalStresses peak_of_moving_mean(std::span<const Record> records, int dimension, double window) {
+  PrincipalStresses highest{nan, nan};
+  const double spacing = records.size() < 2 ? 0 : median_spacing(records);
+  if (spacing <= 0) return highest;
+  const auto width = static_cast<std::size_t>(std::max(1L, std::lround(window / spacing)));
+  std::vector<PrincipalStresses> stresses;
+  for (const auto& record : records) stresses.push_back(principal_stresses(record.stress, dimension));
+  for (std::size_t begin = 0; begin + width <= stresses.size(); ++begin) {
+    PrincipalStresses mean;
+    for (std::size_t k = begin; k < begin + width; ++k) {
+      mean.major += stresses[k].major / static_cast<double>(width);
+      mean.minor += stresses[k].minor / static_cast<double>(width);
+    }
+    // t/s grows with major/minor and needs no division by a minor stress that may vanish.
+    if (begin == 0 || mean.t() * highest.s() > highest.t() * mean.s()) highest = mean;
+  }
+  return highest;
+}
+
+PrincipalStresses large_strain_mean(std::span<const Record> records, int dimension, double from, double to) {
+  PrincipalStresses sum;
+  double count = 0, reached = 0;
+  for (const auto& record : records) {
+    const double strain = std::abs(record.strain);
+    reached = std::max(reached, strain);
+    if (strain < from - strain_slack || strain > to + strain_slack) continue;
+    const PrincipalStresses stresses = principal_stresses(record.stress, dimension);
+    sum.major += stresses.major;
+    sum.minor += stresses.minor;
+    ++count;
+  }
+  if (count == 0 || reached < to - range_slack) return {nan, nan};
+  return {sum.major / count, sum.minor / count};
+}
+
+double friction_angle_through_origin_deg(std::span<const PrincipalStresses> tests) {
+  double st = 0, ss = 0;
+  for (const auto& test : tests) {
+    st += test.s() * test.t();
+    ss += test.s() * test.s();
+  }
+  return std::asin(st / ss) / degree;
+}
+
+CohesionFit fit_with_cohesion(std::span<const PrincipalStresses> tests) {
+  const auto count = static_cast<double>(tests.size());
+  double mean_s = 0, mean_t = 0, st = 0, ss = 0;
+  for (const auto& test : tests) {
+    mean_s += test.s() / count;
+    mean_t += test.t() / count;
+  }
+  for (const auto& test : tests) {
+    st += (test.s() - mean_s) * (test.t() - mean_t);
+    ss += (test.s() - mean_s) * (test.s() - mean_s);
+  }
+  if (tests.size() < 2 || !(ss > 0)) return {nan, nan};
+  const double angle = std::asin(st / ss);
+  return {angle / degree, (mean_t - st / ss * mean_s) / std::cos(angle)};
+}
+
+double bearing_capacity_Nq(double friction_angle_deg) {
+  const double root = std::tan((45 + 0.5 * friction_angle_deg) * degree);
+  return root * root * std::exp(pi * std::tan(friction_angle_deg * degree));
+}
+
+double local_shear_Nq(double friction_angle_deg) {
+  return bearing_capacity_Nq(std::atan(2.0 / 3.0 * std::tan(friction_angle_deg * degree)) / degree);
+}
+
+double wedge_angle_deg(double friction_angle_deg) { return 45 + 0.5 * friction_angle_deg; }
+
+std::span<const Record> last_stage(const TestResult& result) {
+  const auto& records = result.records;
+  std::size_t begin = records.size();
+  while (begin > 0 && records[begin - 1].stage == records.back().stage) --begin;
+  return std::span<const Record>(records).subspan(begin);
+}
+
+}  // namespace rvelab

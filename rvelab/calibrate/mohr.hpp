@@ -1,0 +1,68 @@
+// Mohr circles and what soil mechanics reads off them: peak, friction angle, cohesion, bearing capacity factors.
+//
+// Pure functions of records; this room's calibrate.hpp runs the tests. Everything here is compression positive and in
+// Pa, angles in degrees. s = (sigma_1 + sigma_3)/2, t = (sigma_1 - sigma_3)/2. What cannot be had from the records
+// given (no record in a strain range, a minor stress in tension beyond s) is NaN.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "rvelab/protocol/record.hpp"
+
+namespace rvelab {
+
+/// Largest and smallest principal stress, Pa, compression positive.
+struct PrincipalStresses {
+  double major = 0, minor = 0;
+  double s() const { return 0.5 * (major + minor); }
+  double t() const { return 0.5 * (major - minor); }
+};
+
+/// Of a Cauchy stress (Pa, tension positive), symmetrised; in 2D within the plane.
+PrincipalStresses principal_stresses(const Matrix3& stress, int dimension);
+
+/// asin(t/s), degrees: the circle alone, without cohesion.
+double friction_angle_deg(const PrincipalStresses& stresses);
+
+struct Peak {
+  std::size_t record = 0;  ///< index into the records
+  double strain = 0;
+  PrincipalStresses stresses;
+};
+
+/// The record with the largest major principal stress, unsmoothed; the first of several. InputError without records.
+Peak peak(std::span<const Record> records, int dimension);
+
+/// The moving mean of the principal stresses over `window` of strain (as many records as lie in it at their median
+/// spacing), where its ratio major/minor is largest. NaN if there are fewer records than the window takes.
+PrincipalStresses peak_of_moving_mean(std::span<const Record> records, int dimension, double window = 0.01);
+
+/// Mean of the principal stresses over the records with from <= |strain| <= to. NaN if the records end before `to`.
+PrincipalStresses large_strain_mean(std::span<const Record> records, int dimension, double from = 0.12,
+                                    double to = 0.15);
+
+/// Least squares of t in s over several tests, through the origin: sin phi = sum(s t)/sum(s s). Degrees.
+double friction_angle_through_origin_deg(std::span<const PrincipalStresses> tests);
+
+struct CohesionFit {
+  double friction_angle_deg;
+  double cohesion;  ///< Pa; may come out negative
+};
+
+/// Least squares of t = s sin phi + c cos phi. NaN for fewer than two different s.
+CohesionFit fit_with_cohesion(std::span<const PrincipalStresses> tests);
+
+/// N_q = tan^2(45 + phi/2) exp(pi tan phi) (Prandtl 1920, Reissner 1924), general shear.
+double bearing_capacity_Nq(double friction_angle_deg);
+
+/// N_q with the angle atan(2/3 tan phi) of local shear (Terzaghi 1943).
+double local_shear_Nq(double friction_angle_deg);
+
+/// Angle of the active wedge under a footing against the horizontal, 45 + phi/2.
+double wedge_angle_deg(double friction_angle_deg);
+
+/// The records of the last stage that has any.
+std::span<const Record> last_stage(const TestResult& result);
+
+}  // namespace rvelab

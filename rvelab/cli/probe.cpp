@@ -1,0 +1,74 @@
+// rvelab probe: the stiffness of a specimen at small strain, by increments or from its contact network.
+#include <memory>
+#include <string>
+
+#include "rvelab/cli/commands.hpp"
+#include "rvelab/cli/report.hpp"
+#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/measure/probe.hpp"
+#include "rvelab/measure/tangent.hpp"
+#include "rvelab/solver/rve.hpp"
+
+namespace rvelab::cli {
+namespace {
+
+struct Arguments {
+  std::string file;
+  std::string method = "dynamic";
+  double size = 1e-7;
+  bool no_slip = false;
+  bool json = false;
+};
+
+/// "sxx" and so on for rows; "exx" for columns, "gxy" for engineering shear.
+Json labels(int dimension, bool strain) {
+  Json list = Json::array();
+  for (const std::string& axes : component_names(dimension)) {
+    list.push_back((!strain ? "s" : axes[0] == axes[1] ? "e" : "g") + axes);
+  }
+  return list;
+}
+
+void run_probe(const Arguments& arguments) {
+  Rve rve(read_specimen(arguments.file));
+  if (arguments.no_slip) forbid_slip(rve);
+  const int dimension = rve.cell().dimension;
+  Listing listing;
+  listing.add("file", arguments.file);
+  listing.add("method", arguments.method);
+  listing.add("no_slip", arguments.no_slip || arguments.method == "linear");
+  listing.add("stress_order", labels(dimension, false));
+  listing.add("strain_order", labels(dimension, true));
+  if (arguments.method == "linear") {
+    listing.add("stiffness_Pa", row_major(elastic_tangent(rve.network())), "Pa");
+  } else {
+    const Probe probe = probe_stiffness(rve, arguments.size);
+    listing.add("size", probe.size);
+    listing.add("stiffness_Pa", row_major(probe.stiffness), "Pa");
+    listing.add("plus_minus_difference", probe.plus_minus_difference);
+    listing.add("unbalanced_force_ratio", probe.unbalanced_ratio);
+    listing.add("relaxed", probe.relaxed);
+  }
+  listing.print(arguments.json);
+}
+
+}  // namespace
+
+void add_probe(CLI::App& app) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("probe", "Measure the stiffness of a specimen at small strain");
+  command->add_option("file", arguments->file, "specimen file, *.h5")->required();
+  command->add_option("--size", arguments->size, "strain of each probe, plus and minus")->capture_default_str();
+  command->add_flag("--no-slip", arguments->no_slip, "let no contact slip or roll over (friction 1e6)");
+  command
+      ->add_option("--method", arguments->method,
+                   "dynamic: small increments, relaxed; linear: the elastic tangent of the contact network, all "
+                   "contacts stuck")
+      ->check(CLI::IsMember({"dynamic", "linear"}))
+      ->capture_default_str();
+  command->add_flag("--json", arguments->json, "print one JSON object");
+  command->footer("Example:\n  rvelab probe dense.h5 --size 1e-7 --no-slip --json");
+  command->callback([arguments] { run_probe(*arguments); });
+}
+
+}  // namespace rvelab::cli

@@ -1,0 +1,126 @@
+// rvelab run: one test on one specimen.
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "rvelab/calibrate/mohr.hpp"
+#include "rvelab/cli/commands.hpp"
+#include "rvelab/cli/protocol_input.hpp"
+#include "rvelab/cli/report.hpp"
+#include "rvelab/io/record_file.hpp"
+#include "rvelab/protocol/run.hpp"
+
+namespace rvelab::cli {
+namespace {
+
+struct RunArguments {
+  std::string protocol, specimen, output;
+  std::vector<std::string> settings;
+  unsigned threads = 1;
+  bool json = false;
+};
+
+/// One member of all records as an array.
+template <class Value>
+Json column(const std::vector<Record>& records, Value Record::* member) {
+  Json values = Json::array();
+  for (const Record& record : records) {
+    if constexpr (std::is_same_v<Value, Matrix3>) {
+      values.push_back(row_major(record.*member));
+    } else {
+      values.push_back(record.*member);
+    }
+  }
+  return values;
+}
+
+Json arrays_of(const std::vector<Record>& records) {
+  Json arrays;
+  arrays["stage"] = column(records, &Record::stage);
+  arrays["strain"] = column(records, &Record::strain);
+  arrays["deformation_gradient"] = column(records, &Record::deformation_gradient);
+  arrays["stress_Pa"] = column(records, &Record::stress);
+  arrays["void_ratio"] = column(records, &Record::void_ratio);
+  arrays["coordination_number"] = column(records, &Record::coordination_number);
+  arrays["fabric_anisotropy"] = column(records, &Record::fabric_anisotropy);
+  arrays["sliding_fraction"] = column(records, &Record::sliding_fraction);
+  arrays["unbalanced_force_ratio"] = column(records, &Record::unbalanced_force_ratio);
+  arrays["inertial_number"] = column(records, &Record::inertial_number);
+  arrays["substeps"] = column(records, &Record::substeps);
+  arrays["held_error"] = column(records, &Record::held_error);
+  arrays["target_held"] = column(records, &Record::target_held);
+  return arrays;
+}
+
+void report(const TestRun& run, const RunArguments& arguments) {
+  const TestResult& result = run.result;
+  const int dimension = run.end_state.cell.dimension;
+  long flagged = 0;
+  for (const Record& record : result.records) flagged += record.target_held ? 0 : 1;
+  Listing listing;
+  listing.add("protocol", result.protocol);
+  if (!result.axis.empty()) {
+    listing.add("axis", result.axis);
+    listing.add("pressure_Pa", result.pressure, "Pa");
+  }
+  listing.add("stages", result.stages);
+  if (arguments.json) {
+    listing.add("records", arrays_of(result.records));
+  } else {
+    listing.add("records", result.records.size());
+  }
+  listing.add("flagged", flagged);
+  if (!result.records.empty()) {
+    const auto records = last_stage(result);
+    const Peak highest = peak(records, dimension);
+    listing.add("peak_strain", highest.strain);
+    listing.add("peak_sigma_1_Pa", highest.stresses.major, "Pa");
+    listing.add("peak_sigma_3_Pa", highest.stresses.minor, "Pa");
+    listing.add("end_strain", records.back().strain);
+    listing.add("end_stress_Pa", row_major(records.back().stress), "Pa");
+    listing.add("end_void_ratio", records.back().void_ratio);
+  }
+  for (const ProbeResult& probe : run.probes) {
+    const bool only = run.probes.size() == 1;
+    listing.add(only ? "stiffness_Pa" : "stiffness_Pa_" + probe.stage, row_major(probe.stiffness), "Pa");
+  }
+  if (!arguments.output.empty()) listing.add("file", arguments.output);
+  listing.add("wall_s", result.wall_seconds, "s");
+  listing.add("grain_steps", result.grain_steps);
+  listing.print(arguments.json);
+}
+
+void run_test(const RunArguments& arguments) {
+  const Protocol protocol = read_protocol(arguments.protocol, arguments.settings);
+  const auto specimens =
+      specimens_for(protocol, arguments.specimen.empty() ? std::vector<std::string>{} : std::vector{arguments.specimen});
+  if (!arguments.output.empty()) expect_folder_of(arguments.output);
+  const TestRun run = run_protocol(protocol, specimens.front());
+  if (!arguments.output.empty()) write_records(run.result, run.end_state, protocol.resolved, arguments.output);
+  report(run, arguments);
+}
+
+}  // namespace
+
+void add_run(CLI::App& app) {
+  auto arguments = std::make_shared<RunArguments>();
+  CLI::App* command = app.add_subcommand("run", "Run a test, a protocol in TOML, on a specimen");
+  command->add_option("protocol", arguments->protocol, "PROTOCOL.toml, for example protocols/biaxial.toml")->required();
+  command->add_option("--specimen", arguments->specimen, "specimen (or record file: its end state); else [specimen] file");
+  command->add_option("-o,--output", arguments->output, "record file to write, R.h5");
+  command->add_option("--set", arguments->settings, "key=value, for example test.pressure_Pa=2e4")
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->take_all();
+  command->add_option("--threads", arguments->threads, "at most so many threads; a single specimen runs on one")
+      ->check(CLI::Range(1u, 4096u));
+  command->add_flag("--json", arguments->json, "print one JSON object, records as arrays by name");
+  command->footer(
+      "Examples:\n"
+      "  rvelab run protocols/biaxial.toml --specimen dense.h5 -o R.h5\n"
+      "  rvelab run protocols/biaxial.toml --specimen dense.h5 --set stage.compression.to_strain=0.05 --json");
+  command->callback([arguments] { run_test(*arguments); });
+}
+
+}  // namespace rvelab::cli

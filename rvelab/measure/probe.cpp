@@ -1,0 +1,77 @@
+// Stiffness probes by quasi-static increments.
+#include "rvelab/measure/probe.hpp"
+
+#include <algorithm>
+#include <sstream>
+
+#include "rvelab/error.hpp"
+#include "rvelab/measure/tensor_order.hpp"
+
+namespace rvelab {
+namespace {
+
+/// The stress is read at an unbalanced ratio this low where it can be had, so that what is left (about this times p)
+/// stays far below the change of stress that a small probe makes.
+constexpr double wanted_ratio = 1e-13;
+
+/// Steps at a time towards it: round-off may keep a stiff specimen above, and then nothing is gained by going on.
+constexpr long relaxing_steps = 2000;
+
+double relax_fully(Rve& rve, long max_steps) {
+  double smallest = rve.unbalanced_ratio();
+  for (long made = 0; made < max_steps && smallest > wanted_ratio;) {
+    const Report report = rve.relax(wanted_ratio, std::min(relaxing_steps, max_steps - made));
+    made += std::max(report.substeps, 1L);
+    const bool stalled = report.unbalanced_ratio > 0.5 * smallest && smallest < relaxed_ratio;
+    smallest = std::min(smallest, report.unbalanced_ratio);
+    if (stalled) break;
+  }
+  return rve.unbalanced_ratio();
+}
+
+}  // namespace
+
+Probe probe_stiffness(const Rve& rve, double size, long max_steps) {
+  if (!(size > 0 && size <= 0.01)) {
+    std::ostringstream message;
+    message << "probe size = " << size << " is out of range; allowed: above 0 to 0.01; give 1e-7 for an elastic probe";
+    throw InputError(message.str());
+  }
+  const int dimension = rve.cell().dimension, components = component_count(dimension);
+  const Eigen::VectorXd start = stress_components(rve.stress(), dimension);
+  Probe probe;
+  probe.size = size;
+  Eigen::MatrixXd plus(components, components), minus(components, components);
+  for (int k = 0; k < components; ++k) {
+    for (const int sign : {1, -1}) {
+      Rve copy(rve);
+      copy.apply(sign * size * unit_strain(k, dimension), 0);
+      probe.unbalanced_ratio = std::max(probe.unbalanced_ratio, relax_fully(copy, max_steps));
+      const Eigen::VectorXd change = stress_components(copy.stress(), dimension) - start;
+      (sign > 0 ? plus : minus).col(k) = change / (sign * size);
+    }
+  }
+  probe.stiffness = 0.5 * (plus + minus);
+  const double largest = probe.stiffness.cwiseAbs().maxCoeff();
+  if (largest > 0) probe.plus_minus_difference = (plus - minus).cwiseAbs().maxCoeff() / largest;
+  probe.relaxed = probe.unbalanced_ratio < relaxed_ratio;
+  return probe;
+}
+
+void forbid_slip(Rve& rve) {
+  std::vector<Material> materials = rve.specimen().materials;
+  for (Material& material : materials) material.friction = material.rolling_friction = 1e6;
+  rve.set_materials(materials);
+}
+
+std::vector<std::string> component_names(int dimension) {
+  constexpr char axis[] = "xyz";
+  std::vector<std::string> names;
+  for (int k = 0; k < component_count(dimension); ++k) {
+    const auto [row, column] = component_axes(k, dimension);
+    names.push_back({axis[row], axis[column]});
+  }
+  return names;
+}
+
+}  // namespace rvelab

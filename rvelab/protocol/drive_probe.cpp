@@ -1,0 +1,25 @@
+// Probe stages: the stiffness of the state as it is, measured on copies; the test itself is not moved.
+#include "rvelab/error.hpp"
+#include "rvelab/measure/probe.hpp"
+#include "rvelab/measure/tangent.hpp"
+#include "rvelab/protocol/drive.hpp"
+
+namespace rvelab::protocol {
+
+void drive(RunningTest& test, const ProbeStage& stage) {
+  const std::string& name = test.run.result.stages.back();
+  if (stage.method == ProbeStage::Method::linear) {
+    test.run.probes.push_back({name, elastic_tangent(test.rve.network())});
+    return;
+  }
+  Rve copy(test.rve);
+  if (stage.no_slip) forbid_slip(copy);
+  const Probe probe = probe_stiffness(copy, stage.size);
+  if (!probe.relaxed) {
+    throw test.failed("the probes relaxed to the unbalanced ratio " + std::to_string(probe.unbalanced_ratio) +
+                      " only; allowed: below 1e-10; give a relax stage before, or method = \"linear\"");
+  }
+  test.run.probes.push_back({name, probe.stiffness});
+}
+
+}  // namespace rvelab::protocol

@@ -1,0 +1,131 @@
+// Record files: the records bitwise, the end state as a specimen, and a layout that is the documented one.
+#include "rvelab/io/record_file.hpp"
+
+#include <map>
+#include <sstream>
+
+#include "random_specimen.hpp"
+#include "rvelab/io/hdf5_file.hpp"
+#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/version.hpp"
+#include "tests/catch.hpp"
+
+using namespace rvelab;
+using namespace rvelab::test;
+using Catch::Matchers::Contains;
+
+TEST_CASE("records and end state come back from their file bit for bit") {
+  const Folder folder;
+  const std::string protocol = "[test]\nname = \"biaxial\"\n";
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    const TestResult written = random_result(seed);
+    const Specimen end = random_specimen(seed);
+    write_records(written, end, protocol, folder / "r.h5");
+    const TestResult read = read_records(folder / "r.h5");
+    CHECK(read.records.size() == 23);
+    CHECK(differences(written, read) == 0);
+    CHECK(differences(end, read_specimen(folder / "r.h5")) == 0);
+    CHECK(read_protocol_text(folder / "r.h5") == protocol);
+  }
+  CHECK(file_kind(folder / "r.h5") == FileKind::records);
+  CHECK(differences(random_result(1), random_result(2)) > 200);
+}
+
+TEST_CASE("a test without records is a file all the same") {
+  const Folder folder;
+  write_records(random_result(5, 0), random_specimen(5), "", folder / "r.h5");
+  CHECK(read_records(folder / "r.h5").records.empty());
+}
+
+TEST_CASE("a specimen file has no records, and says so") {
+  const Folder folder;
+  write_specimen(random_specimen(6), folder / "s.h5");
+  CHECK(file_kind(folder / "s.h5") == FileKind::specimen);
+  CHECK_THAT(input_error([&] { read_records(folder / "s.h5"); }), Contains("s.h5") && Contains("no records"));
+}
+
+TEST_CASE("provenance names the version and the compiler, and neither a date nor a host") {
+  const Folder folder;
+  TestResult result = random_result(7);
+  write_records(result, random_specimen(7), "", folder / "a.h5");
+  write_records(result, random_specimen(7), "", folder / "b.h5");
+  CHECK(bytes_of(folder / "a.h5") == bytes_of(folder / "b.h5"));
+  const auto file = Hdf5File::open(folder / "a.h5");
+  CHECK(file.read_text("/provenance/version") == std::vector<std::string>{version});
+  CHECK(file.read_text("/provenance/compiler") == std::vector<std::string>{compiler()});
+  char host[256] = {};
+  REQUIRE(gethostname(host, sizeof host - 1) == 0);
+  if (std::strlen(host) > 5) CHECK(bytes_of(folder / "a.h5").find(host) == std::string::npos);
+}
+
+namespace {
+
+/// Rows of the README's tables that begin with a name like `wanted`: cells by name.
+std::map<std::string, std::vector<std::string>> documented(const std::string& readme, const std::string& first) {
+  std::map<std::string, std::vector<std::string>> rows;
+  std::istringstream text(readme);
+  for (std::string line; std::getline(text, line);) {
+    if (!line.starts_with("| " + first)) continue;
+    std::vector<std::string> cells;
+    std::istringstream row(line.substr(1));
+    for (std::string cell; std::getline(row, cell, '|');) {
+      const auto begin = cell.find_first_not_of(' '), end = cell.find_last_not_of(' ');
+      cells.push_back(begin == std::string::npos ? "" : cell.substr(begin, end - begin + 1));
+    }
+    rows[cells[0]] = cells;
+  }
+  return rows;
+}
+
+/// Extents as the README writes them: numbers, and a letter for each that varies. The letters stand for different
+/// numbers here, so that one for the other is noticed.
+std::string in_readme(const Shape64& shape) {
+  const std::map<std::uint64_t, std::string> letters{{17, "n"}, {31, "c"}, {23, "r"}, {2, "s"}};
+  std::string text;
+  for (const auto extent : shape) {
+    const auto letter = letters.find(extent);
+    text += (text.empty() ? "" : ", ") + (letter == letters.end() ? std::to_string(extent) : letter->second);
+  }
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("the README lists exactly the datasets of a file, with their types, shapes and units") {
+  const Folder folder;
+  write_records(random_result(8), random_specimen(8), "", folder / "r.h5");
+  write_specimen(random_specimen(8), folder / "s.h5");
+  const std::string readme = bytes_of(std::string(RVELAB_SOURCE_DIR) + "/rvelab/io/README.md");
+  auto rows = documented(readme, "/");
+  REQUIRE(rows.size() > 60);
+
+  std::map<std::string, Hdf5Entry> found;
+  for (const auto& entry : Hdf5File::open(folder / "s.h5").entries()) found[entry.name] = entry;
+  for (const auto& entry : Hdf5File::open(folder / "r.h5").entries()) {
+    if (entry.name.starts_with("/specimen/")) {
+      CHECK(found.contains(entry.name.substr(9)));  // the same layout under /specimen
+    } else {
+      found[entry.name] = entry;
+    }
+  }
+  for (const auto& [name, entry] : found) {
+    CAPTURE(name);
+    REQUIRE(rows.contains(name));
+    const auto& row = rows[name];
+    REQUIRE(row.size() == 5);
+    CHECK(row[1] == entry.type);
+    // m, the number of materials, is 3 as a vector's extent is.
+    const std::string shape = name.starts_with("/materials/") ? "m" : in_readme(entry.shape);
+    CHECK(row[2] == shape);
+    CHECK(row[3] == entry.units);
+    CHECK(!row[4].empty());
+  }
+  for (const auto& [name, row] : rows) {
+    CAPTURE(name);
+    CHECK(found.contains(name));
+  }
+  std::vector<std::string> attributes;
+  for (const auto& [name, row] : documented(readme, "format")) attributes.push_back(name);
+  CHECK(Hdf5File::open(folder / "s.h5").attributes() == attributes);
+  CHECK(Hdf5File::open(folder / "r.h5").attributes() == attributes);
+}

@@ -1,0 +1,162 @@
+// Specimen files: out and back bitwise, whole or not at all, and a clear word for what is no specimen.
+#include "rvelab/io/specimen_file.hpp"
+
+#include <sys/stat.h>
+
+#include "random_specimen.hpp"
+#include "rvelab/io/hdf5_file.hpp"
+#include "rvelab/io/record_file.hpp"
+#include "rvelab/io/schema.hpp"
+#include "tests/catch.hpp"
+
+using namespace rvelab;
+using namespace rvelab::test;
+using Catch::Matchers::Contains;
+
+TEST_CASE("a specimen comes back from its file bit for bit, whatever its fields hold") {
+  const Folder folder;
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    const Specimen written = random_specimen(seed);
+    write_specimen(written, folder / "s.h5");
+    const Specimen read = read_specimen(folder / "s.h5");
+    CHECK(differences_in_sizes(written, read) == 0);
+    CHECK(differences(written, read) == 0);
+  }
+  CHECK(differences(random_specimen(1), random_specimen(2)) > 70);  // the comparison sees a difference in each field
+}
+
+TEST_CASE("the comparison of specimens sees one flipped bit") {
+  const Specimen a = random_specimen(3);
+  Specimen b = a;
+  std::uint64_t bits;
+  std::memcpy(&bits, &b.state.mean_spin[2], sizeof bits);
+  bits ^= 1;
+  std::memcpy(&b.state.mean_spin[2], &bits, sizeof bits);
+  CHECK(differences(a, a) == 0);
+  CHECK(differences(a, b) == 1);
+}
+
+TEST_CASE("an empty specimen, without contacts or grains, comes back as it was") {
+  const Folder folder;
+  Specimen written = random_specimen(4, 1, 0);
+  write_specimen(written, folder / "one.h5");
+  CHECK(differences(written, read_specimen(folder / "one.h5")) == 0);
+  CHECK(read_specimen(folder / "one.h5").contacts.empty());
+  written.grains = {};
+  write_specimen(written, folder / "none.h5");
+  CHECK(read_specimen(folder / "none.h5").grains.size() == 0);
+}
+
+TEST_CASE("the same specimen gives the same bytes, at any time and place") {
+  const Folder folder, other;
+  write_specimen(random_specimen(5), folder / "a.h5");
+  write_specimen(random_specimen(5), other / "b.h5");
+  CHECK(bytes_of(folder / "a.h5") == bytes_of(other / "b.h5"));
+  CHECK(!std::filesystem::exists(folder / "a.h5.tmp"));
+}
+
+TEST_CASE("a file that cannot be written leaves the one that was there") {
+  const Folder folder;
+  const Specimen first = random_specimen(6);
+  write_specimen(first, folder / "s.h5");
+  std::filesystem::create_directory(folder / "s.h5.tmp");  // the place of the temporary is taken
+  CHECK_THAT(input_error([&] { write_specimen(random_specimen(7), folder / "s.h5"); }),
+             Contains("s.h5") && Contains("cannot be written"));
+  CHECK(differences(first, read_specimen(folder / "s.h5")) == 0);
+  CHECK_THAT(input_error([&] { write_specimen(first, folder / "missing/s.h5"); }), Contains("existing folder"));
+}
+
+TEST_CASE("a full disc is one error, and the published file stays") {
+  if (!std::filesystem::exists("/dev/full")) return;
+  const Folder folder;
+  std::filesystem::create_symlink("/dev/full", folder / "s.h5.tmp");
+  write_bytes(folder / "s.h5", "what was there");
+  CHECK_THROWS_WITH(write_specimen(random_specimen(8), folder / "s.h5"),
+                    Contains("s.h5") && Contains("No space left") && Contains("untouched"));
+  CHECK(bytes_of(folder / "s.h5") == "what was there");
+}
+
+TEST_CASE("what is no specimen file is refused with its name and the reason") {
+  const Folder folder;
+  const auto message = [&](const std::string& name) { return input_error([&] { read_specimen(folder / name); }); };
+  CHECK_THAT(message("none.h5"), Contains("none.h5") && Contains("no such file"));
+  CHECK_THAT(input_error([&] { read_specimen(folder / ""); }), Contains("not a regular file"));
+  write_bytes(folder / "text.h5", "id,x,y,r\n");
+  CHECK_THAT(message("text.h5"), Contains("text.h5") && Contains("not an HDF5 file"));
+  write_bytes(folder / "empty.h5", "");
+  CHECK_THAT(message("empty.h5"), Contains("not an HDF5 file"));
+  publish(folder / "foreign.h5", [](Hdf5File& file) { file.write_text("/note", {"of another program"}, {}); });
+  CHECK_THAT(message("foreign.h5"), Contains("foreign.h5") && Contains("format is \"\""));
+}
+
+TEST_CASE("a file cut anywhere is refused, never read in part") {
+  const Folder folder;
+  write_specimen(random_specimen(9), folder / "whole.h5");
+  const std::string whole = bytes_of(folder / "whole.h5");
+  for (std::size_t k = 0; k < 40; ++k) {
+    write_bytes(folder / "cut.h5", whole.substr(0, whole.size() * k / 40));
+    CHECK_THAT(input_error([&] { read_specimen(folder / "cut.h5"); }), Contains("cut.h5"));
+  }
+  write_bytes(folder / "cut.h5", whole.substr(0, whole.size() - 1));
+  CHECK_THAT(input_error([&] { read_specimen(folder / "cut.h5"); }), Contains("truncated"));
+}
+
+TEST_CASE("a newer format is refused, an older minor one of the same major is not") {
+  const Folder folder;
+  const auto with_version = [&](const std::string& version) {
+    publish(folder / "v.h5", [&](Hdf5File& file) {
+      file.set_attribute("format", "rvelab specimen");
+      file.set_attribute("format_version", version);
+      io::put_specimen(file, "", random_specimen(10));
+    });
+    return input_error([&] { read_specimen(folder / "v.h5"); });
+  };
+  CHECK(with_version("1.0").empty());
+  CHECK_THAT(with_version("1.1"), Contains("1.1") && Contains("up to 1.0") && Contains("newer rvelab"));
+  CHECK_THAT(with_version("2.0"), Contains("2.0") && Contains("newer rvelab"));
+  CHECK_THAT(with_version("one"), Contains("\"one\"") && Contains("major.minor"));
+}
+
+TEST_CASE("a file whose parts contradict each other is refused") {
+  const Folder folder;
+  const auto message = [&](auto change) {
+    Specimen specimen = random_specimen(11);
+    change(specimen);
+    write_specimen(specimen, folder / "s.h5");
+    return input_error([&] { read_specimen(folder / "s.h5"); });
+  };
+  CHECK(message([](Specimen&) {}).empty());
+  CHECK_THAT(message([](Specimen& s) { s.grains.radius.pop_back(); }), Contains("different lengths"));
+  CHECK_THAT(message([](Specimen& s) { s.grains.material[3] = 3; }), Contains("/grains/material") && Contains("3"));
+  CHECK_THAT(message([](Specimen& s) { s.contacts[2].j = 17; }), Contains("/contacts") && Contains("17"));
+  CHECK_THAT(message([](Specimen& s) { s.contacts[2].i = s.contacts[2].j + 1; }), Contains("i <= j"));
+  CHECK_THAT(message([](Specimen& s) { s.cell.dimension = 4; }), Contains("/cell/dimension is 4"));
+}
+
+TEST_CASE("a dataset that is missing, of another kind or shape is named") {
+  const Folder folder;
+  const auto message = [&](auto extra) {
+    publish(folder / "p.h5", [&](Hdf5File& file) {
+      io::stamp(file, FileKind::specimen);
+      extra(file);
+    });
+    return input_error([&] { read_specimen(folder / "p.h5"); });
+  };
+  CHECK_THAT(message([](Hdf5File&) {}), Contains("/shape") && Contains("missing"));
+  const double number = 2;
+  CHECK_THAT(message([&](Hdf5File& file) {
+               file.write<double>("/shape", {&number, 1}, {}, "1");
+             }),
+             Contains("/shape") && Contains("float64") && Contains("text"));
+  CHECK_THAT(message([&](Hdf5File& file) { file.write_text("/shape", {"cube"}, {}); }),
+             Contains("/shape") && Contains("cube") && Contains("disc, sphere"));
+  CHECK_THAT(message([&](Hdf5File& file) {
+               file.write_text("/shape", {"disc"}, {});
+               file.write<double>("/cell/dimension", {&number, 1}, {}, "1");
+             }),
+             Contains("/cell/dimension") && Contains("integer"));
+  CHECK_THAT(message([&](Hdf5File& file) {
+               file.write_text("/shape", {"disc", "disc"}, {2});
+             }),
+             Contains("/shape") && Contains("shape (2)"));
+}
