@@ -15,7 +15,7 @@ namespace rvelab::cli {
 namespace {
 
 struct ImportArguments {
-  std::vector<std::string> inputs;
+  std::string inputs[3];
   std::vector<double> cell;
   std::string material, output;
   std::vector<std::string> settings;
@@ -28,9 +28,11 @@ struct Inputs {
   std::optional<std::string> contacts, meta;
 };
 
-Inputs sorted(const std::vector<std::string>& files) {
+Inputs sorted(const std::string (&files)[3]) {
   std::vector<std::string> tables, metas;
-  for (const auto& file : files) (file.ends_with(".json") ? metas : tables).push_back(file);
+  for (const auto& file : files) {
+    if (!file.empty()) (file.ends_with(".json") ? metas : tables).push_back(file);
+  }
   if (tables.empty() || tables.size() > 2 || metas.size() > 1) {
     throw InputError("import was given " + std::to_string(tables.size()) + " CSV and " + std::to_string(metas.size()) +
                      " JSON files; allowed: PARTICLES.csv [CONTACTS.csv] [META.json]; name these");
@@ -54,7 +56,7 @@ void run_import(const ImportArguments& arguments) {
   listing.add("file", arguments.output);
   listing.add("dimension", specimen.cell.dimension);
   listing.add("grains", specimen.grains.size());
-  listing.add("contacts", specimen.contacts.size());
+  listing.add("contacts_read", specimen.contacts.size());
   listing.add("contact_law", name(specimen.contact.law));
   listing.add("slip", name(specimen.contact.slip));
   listing.add("rolling", specimen.contact.rolling);
@@ -67,9 +69,9 @@ void run_import(const ImportArguments& arguments) {
 void add_import(CLI::App& app) {
   auto arguments = std::make_shared<ImportArguments>();
   CLI::App* command = app.add_subcommand("import", "Make a specimen from CSV files of YADE or LAMMPS");
-  command->add_option("files", arguments->inputs, "PARTICLES.csv [CONTACTS.csv] [META.json]")
-      ->required()
-      ->expected(1, 3);
+  command->add_option("PARTICLES.csv", arguments->inputs[0], "columns id,x,y[,z] and r or radius")->required();
+  command->add_option("CONTACTS.csv", arguments->inputs[1], "columns id1,id2,sx,sy[,sz],fn,fsx,fsy[,fsz],mz");
+  command->add_option("META.json", arguments->inputs[2], "parameters and cell of the packing");
   command->add_option("--cell", arguments->cell, "Lxx,Lyy,Lzz in m of a rectangular cell (2D: Lzz is the thickness)")
       ->delimiter(',')
       ->expected(3);

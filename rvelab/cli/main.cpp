@@ -3,9 +3,11 @@
 #include <exception>
 #include <iostream>
 #include <string>
+#include <vector>
 
 #include "rvelab/cli/commands.hpp"
 #include "rvelab/error.hpp"
+#include "rvelab/io/material_toml.hpp"
 #include "rvelab/io/version.hpp"
 
 namespace {
@@ -24,6 +26,21 @@ int fail(int code, const char* message) {
   return code;
 }
 
+/// The first argument names a subcommand or is an option; CLI11 would only say that a subcommand is missing.
+void expect_subcommand(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return;
+  const std::string word = argv[1];
+  std::vector<std::string> names;
+  std::string list;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    if (command->get_name() == word) return;
+    names.push_back(command->get_name());
+    list += (list.empty() ? "" : ", ") + names.back();
+  }
+  throw rvelab::InputError("unknown subcommand " + word + "; the nearest is " + rvelab::nearest(word, names) +
+                           "; allowed: " + list + "; see rvelab --help");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -37,6 +54,7 @@ int main(int argc, char** argv) {
   rvelab::cli::add_calibrate(app);
   rvelab::cli::add_bench(app);
   try {
+    expect_subcommand(app, argc, argv);
     app.parse(argc, argv);
     return 0;
   } catch (const CLI::Success& help_or_version) {

@@ -61,14 +61,15 @@ void describe_parameters(Archive& archive, Value& specimen) {
 template <class Archive, class Value>
 void describe_state(Archive& archive, Value& state) {
   auto& [has_reference, list_lattice, list_travel, strain_per_step, servo_strain, reference_contact_force,
-         reference_pressure, quasi_static, last_rate, last_step, mean_velocity, mean_spin, grain_steps, list_builds,
-         ledger] = state;
+         reference_overlap, reference_pressure, quasi_static, last_rate, last_step, mean_velocity, mean_spin,
+         grain_steps, list_builds, ledger] = state;
   archive.field("state/has_reference", has_reference, "1");
   archive.field("state/list_lattice_m", list_lattice, "m");
   archive.field("state/list_travel_m", list_travel, "m");
   archive.field("state/strain_per_step", strain_per_step, "1");
   archive.field("state/servo_strain", servo_strain, "1");
   archive.field("state/reference_contact_force_N", reference_contact_force, "N");
+  archive.field("state/reference_overlap_m", reference_overlap, "m");
   archive.field("state/reference_pressure_Pa", reference_pressure, "Pa");
   archive.field("state/quasi_static", quasi_static, "1");
   archive.field("state/last_rate", last_rate, "1/s or 1/step");

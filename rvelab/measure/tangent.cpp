@@ -50,31 +50,49 @@ Spring spring_of(const Network& network, const ContactState& contact) {
   return spring;
 }
 
-/// d sigma in the cell frame, summed over contacts.
+/// A strain as the cell sees it: I + H = (I + turn)(I + stretch) to first order, stretch upper triangular. The frame
+/// turns by `turn`; in it the grains turn on average with the spin of the stretch. Contact histories are carried in
+/// this frame, which shows in the one slip convention that is not objective (full_radius).
+struct CellStrain {
+  Matrix3 stretch, turn;
+  Vector9 rotations;  ///< mean motion q of two grains without their branch: (0, spin, spin)
+
+  CellStrain(const Network& network, int direction, double sign) {
+    const Matrix3& q = network.cell.rotation;
+    const Matrix3 strain = sign * q.transpose() * unit_strain(direction, network.dimension()) * q;
+    const Matrix3 lower = strain.triangularView<Eigen::StrictlyLower>();
+    turn = lower - lower.transpose();
+    stretch = strain - turn;
+    const Vector3 spin = 0.5 * Vector3(-stretch(1, 2), stretch(0, 2), -stretch(0, 1));
+    rotations << Vector3::Zero(), spin, spin;
+  }
+
+  /// q of a contact whose grains move with the mean.
+  Vector9 mean_motion(const ContactState& contact) const {
+    Vector9 q = rotations;
+    q.head<3>() = stretch * contact.branch;
+    return q;
+  }
+};
+
+/// d sigma, summed over contacts.
 class StressChange {
  public:
   void add(const ContactState& contact, const Vector3& force_change, const Vector3& branch_change) {
-    sum_ += force_change * contact.branch.transpose() + contact.force() * branch_change.transpose();
-    stress_sum_ += contact.force() * contact.branch.transpose();
+    change_ -= force_change * contact.branch.transpose() + contact.force() * branch_change.transpose();
+    stress_ -= contact.force() * contact.branch.transpose();
   }
-  Matrix3 value(const Network& network, const Matrix3& strain) const {
-    return (strain.trace() * stress_sum_ - sum_) / network.cell.volume();
+  /// In the laboratory frame.
+  Matrix3 value(const Network& network, const CellStrain& strain) const {
+    const Matrix3& rotation = network.cell.rotation;
+    const Matrix3 turned = strain.turn * stress_ - stress_ * strain.turn;
+    const Matrix3 change = (change_ + turned - strain.stretch.trace() * stress_) / network.cell.volume();
+    return rotation * change * rotation.transpose();
   }
 
  private:
-  Matrix3 sum_ = Matrix3::Zero(), stress_sum_ = Matrix3::Zero();
+  Matrix3 change_ = Matrix3::Zero(), stress_ = Matrix3::Zero();
 };
-
-/// Column of C for one strain direction from the stress change in the cell frame.
-Vector column_of(const Network& network, const Matrix3& change) {
-  const Matrix3& rotation = network.cell.rotation;
-  return stress_components(rotation * change * rotation.transpose(), network.dimension());
-}
-
-Matrix3 strain_in_cell(const Network& network, int direction) {
-  const Matrix3& rotation = network.cell.rotation;
-  return rotation.transpose() * unit_strain(direction, network.dimension()) * rotation;
-}
 
 /// The network without rattlers, its stiffness factorised.
 class Condensed {
@@ -87,7 +105,7 @@ class Condensed {
     factorise();
   }
 
-  Matrix3 stress_change(const Matrix3& strain) {
+  Matrix3 stress_change(const CellStrain& strain) {
     StressChange change;
     if (springs_.empty()) return change.value(network_, strain);
     const Vector x = balance(strain);
@@ -163,18 +181,16 @@ class Condensed {
     }
   }
 
-  Vector9 motion(const Spring& spring, const Matrix3& strain, const Vector& x) const {
+  Vector9 motion(const Spring& spring, const CellStrain& strain, const Vector& x) const {
     Vector local(2 * freedoms_);
     for (int k = 0; k < 2 * freedoms_; ++k) local[k] = x[freedom(*spring.contact, k)];
-    Vector9 q = p_ * local;
-    q.head<3>() += strain * spring.contact->branch;
-    return q;
+    return strain.mean_motion(*spring.contact) + p_ * local;
   }
 
   static double elongation(const Spring& spring, const Vector9& q) { return spring.contact->normal.dot(q.head<3>()); }
 
   /// Unbalanced load on the freedoms at the motion x.
-  Vector residual(const Matrix3& strain, const Vector& x) const {
+  Vector residual(const CellStrain& strain, const Vector& x) const {
     Vector load = Vector::Zero(count_);
     for (const Spring& spring : springs_) {
       const Vector9 q = motion(spring, strain, x);
@@ -187,7 +203,7 @@ class Condensed {
   /// The motion at which every grain is balanced. The |dl| terms are small beside the springs, so that iterating with
   /// the linear part converges; without them this is iterative refinement. Stops where the residual falls no further:
   /// at round-off, or where a free spin bears what the state itself lacks in balance.
-  Vector balance(const Matrix3& strain) {
+  Vector balance(const CellStrain& strain) {
     constexpr int most_iterations = 200;
     constexpr double exact = 1e-13;
     const double sufficient = std::max(1e-6, unbalanced_force_ratio(network_));
@@ -212,11 +228,11 @@ class Condensed {
   }
 
   /// Largest force that a contact feels when all grains move with the strain, N.
-  double load_scale(const Matrix3& strain) const {
+  double load_scale(const CellStrain& strain) const {
     double largest = 0;
     for (const Spring& spring : springs_) {
-      const Vector3 motion = strain * spring.contact->branch;
-      largest = std::max(largest, (spring.law.topLeftCorner<3, 3>() * motion).cwiseAbs().maxCoeff());
+      const Vector9 q = strain.mean_motion(*spring.contact);
+      largest = std::max(largest, (spring.law.topRows<3>() * q).cwiseAbs().maxCoeff());
     }
     return largest > 0 ? largest : 1.0;
   }
@@ -234,31 +250,28 @@ class Condensed {
 }  // namespace
 
 Eigen::MatrixXd elastic_tangent(const Network& network) {
-  const int size = component_count(network.dimension());
+  const int dimension = network.dimension(), size = component_count(dimension);
   Eigen::MatrixXd tangent(size, size);
   Condensed condensed(network);
   for (int k = 0; k < size; ++k) {
-    const Matrix3 strain = strain_in_cell(network, k);
-    Matrix3 change = condensed.stress_change(strain);
-    if (rescales(network)) change = 0.5 * (change - condensed.stress_change(-strain));
-    tangent.col(k) = column_of(network, change);
+    Matrix3 change = condensed.stress_change(CellStrain(network, k, 1));
+    if (rescales(network)) change = 0.5 * (change - condensed.stress_change(CellStrain(network, k, -1)));
+    tangent.col(k) = stress_components(change, dimension);
   }
   return tangent;
 }
 
 Eigen::MatrixXd affine_tangent(const Network& network) {
-  const int size = component_count(network.dimension());
+  const int dimension = network.dimension(), size = component_count(dimension);
   Eigen::MatrixXd tangent(size, size);
-  std::vector<StressChange> changes(size);
-  for (const ContactState& contact : network.contacts) {
-    const Matrix3 law = spring_of(network, contact).law.topLeftCorner<3, 3>();
-    for (int k = 0; k < size; ++k) {
-      const Vector3 branch_change = strain_in_cell(network, k) * contact.branch;
-      changes[k].add(contact, law * branch_change, branch_change);
-    }
-  }
   for (int k = 0; k < size; ++k) {
-    tangent.col(k) = column_of(network, changes[k].value(network, strain_in_cell(network, k)));
+    const CellStrain strain(network, k, 1);
+    StressChange change;
+    for (const ContactState& contact : network.contacts) {
+      const Vector9 q = strain.mean_motion(contact);
+      change.add(contact, spring_of(network, contact).law.topRows<3>() * q, q.head<3>());
+    }
+    tangent.col(k) = stress_components(change.value(network, strain), dimension);
   }
   return tangent;
 }

@@ -1,4 +1,5 @@
 // Isotropic stages: far changes of pressure in small increments, then rounds of relaxing and correcting.
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <sstream>

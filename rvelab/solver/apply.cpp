@@ -51,18 +51,21 @@ Balance Rve::Impl::checked_balance() const {
 
 double Rve::Impl::initial_pace() const {
   // A thousandth of the mean overlap per diameter and step: the strain that changes contact forces by about as much.
-  const double overlap = balance_of(fixture, now).mean_overlap;
-  const double ratio = overlap > 0 ? overlap / (2 * fixture.mean_radius) : 1e-3;
-  return 1e-3 * std::max(ratio, 1e-7);
+  const double overlap = std::max(balance_of(fixture, now).mean_overlap, 0.1 * now.state.reference_overlap);
+  return 1e-3 * overlap / (2 * fixture.mean_radius);
 }
 
-void Rve::Impl::steer_pace(double unbalanced) {
+void Rve::Impl::steer_pace(const Balance& balance) {
   // n <- n (unb/target)^0.75 within 0.7 to 1.4 (performance: power 0.7; three quarters needs square roots only).
-  const double x = unbalanced / fixture.options.target_unbalanced;
+  const double x =
+      rvelab::unbalanced_ratio(balance, now.state.reference_contact_force) / fixture.options.target_unbalanced;
   const double root = std::sqrt(x);
   const double factor = std::clamp(root * std::sqrt(root), 0.7, 1.4);
-  const double widest = 0.05 * fixture.skin / fixture.mean_radius;
-  now.state.strain_per_step = std::clamp(now.state.strain_per_step / factor, 1e-12, std::max(1e-6, 1e-3 * widest));
+  // Never so fast that a step changes the overlaps by more than a hundredth, nor a tenth of that slow: where grains
+  // flow without a network the ratio stays near one at any pace. Without contacts 1e-5 of a diameter a step.
+  const double overlap = std::max(balance.mean_overlap, 0.1 * now.state.reference_overlap) / (2 * fixture.mean_radius);
+  const double fastest = balance.touching > 0 ? 1e-2 * overlap : 1e-5;
+  now.state.strain_per_step = std::clamp(now.state.strain_per_step / factor, 0.1 * fastest, fastest);
 }
 
 Report Rve::Impl::load(const Matrix3& dh, double dt) {
@@ -129,7 +132,7 @@ Report Rve::Impl::load(const Matrix3& dh, double dt) {
     const Balance balance = checked_balance();
     sums = row_sums(fixture, now);
     if (physical) continue;
-    if (paced) steer_pace(rvelab::unbalanced_ratio(balance, now.state.reference_contact_force));
+    if (paced) steer_pace(balance);
     if (inertia_outgrown(fixture, sums, now)) scale_inertia(fixture, sums, now);
   }
   if (!physical && !(whole.rotation.array() == identity.array()).all()) {
@@ -209,7 +212,7 @@ Report Rve::Impl::load(const MixedTarget& target, double dt, Matrix3& gradient) 
       const Balance balance = checked_balance();
       sums = row_sums(fixture, now);
       if (!physical) {
-        if (!waiting) steer_pace(rvelab::unbalanced_ratio(balance, now.state.reference_contact_force));
+        if (!waiting) steer_pace(balance);
         if (inertia_outgrown(fixture, sums, now)) scale_inertia(fixture, sums, now);
       }
     }

@@ -1,5 +1,6 @@
 #include "rvelab/solver/assembly.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -51,6 +52,27 @@ void check_cell(const Specimen& s) {
     refuse(
         "specimen: the lattice must be upper triangular with a positive diagonal; turn cell and grains into that "
         "frame first");
+  const double from_orthogonal = (s.cell.rotation.transpose() * s.cell.rotation - Matrix3::Identity()).norm();
+  if (!(from_orthogonal < 1e-8) || !(s.cell.rotation.determinant() > 0))
+    refuse("specimen: the rotation of the cell frame must be orthogonal with determinant +1");
+}
+
+void check_options(const SolverOptions& o) {
+  const auto expect = [](bool allowed, const char* key, double value, const char* range) {
+    if (allowed && std::isfinite(value)) return;
+    std::ostringstream text;
+    text << "solver." << key << " = " << value << " is out of range; allowed: " << range;
+    refuse(text.str());
+  };
+  expect(o.skin > 0, "skin", o.skin, "> 0");
+  expect(o.time_step_factor > 0 && o.time_step_factor < 1, "time_step_factor", o.time_step_factor,
+         "above 0 to below 1");
+  expect(o.fixed_time_step >= 0, "fixed_time_step_s", o.fixed_time_step, ">= 0 s");
+  expect(o.target_unbalanced > 0, "target_unbalanced", o.target_unbalanced, "> 0");
+  expect(o.fixed_substeps >= 0, "fixed_substeps", double(o.fixed_substeps), ">= 0");
+  expect(o.max_substeps > 0, "max_substeps", double(o.max_substeps), "> 0");
+  expect(o.min_height >= 0, "min_height_m", o.min_height, ">= 0 m");
+  expect(o.max_overlap_ratio > 0, "max_overlap_ratio", o.max_overlap_ratio, "> 0");
 }
 
 KernelLaw kernel_law(Law law) {
@@ -158,8 +180,10 @@ void fill(const Fixture& f, const std::vector<ListedPair>& listed, const std::ve
   for (const Carried& c : carried) {
     while (p < n && listed[p] < c.key) ++p;
     if (p == n || listed[p] != c.key)
-      throw Error("neighbour list: the contact of grains " + std::to_string(f.id[c.key.i]) + " and " +
-                  std::to_string(f.id[c.key.j]) + " is not listed; do its grains overlap?");
+      throw IncrementFailed("grains " + std::to_string(f.id[c.key.i]) + " and " + std::to_string(f.id[c.key.j]) +
+                            " have a contact history but lie apart by more than the skin: in a specimen the history "
+                            "does not belong to the positions; in a run a grain moved that far in one sub-step, so "
+                            "take smaller ones");
     store(f, pairs, p, c);
   }
 
@@ -266,6 +290,7 @@ void set_pair_parameters(const Fixture& f, PairTable& pairs) {
 
 void open(const Specimen& s, Fixture& f, Assembly& a) {
   check(s.contact, s.damping, s.materials);
+  check_options(s.solver);
   check_cell(s);
   check_grains(s);
   const std::size_t n = s.grains.size(), padded = padded_to_lanes(n);
@@ -313,7 +338,12 @@ void open(const Specimen& s, Fixture& f, Assembly& a) {
   }
   std::sort(carried.begin(), carried.end(), [](const Carried& x, const Carried& y) { return x.key < y.key; });
   fill(f, list_pairs(a.cell, a.rows.data(), f.row_length(), f.radius, f.skin), carried, a.pairs);
-  if (!a.state.has_reference) rebuild(f, a);
+  if (a.state.has_reference) return;
+  try {
+    rebuild(f, a);
+  } catch (const IncrementFailed& error) {
+    refuse(std::string("specimen: ") + error.what());
+  }
 }
 
 Specimen close(const Fixture& f, const Assembly& a) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace rvelab {
 
@@ -50,7 +51,25 @@ double median(std::vector<double>& values) {
   return *middle;
 }
 
+/// Two of the largest grains as a pair table of one, and their radius.
+std::pair<PairTable, double> typical_pair(const Fixture& f) {
+  const auto g = std::size_t(std::max_element(f.radius.begin(), f.radius.end()) - f.radius.begin());
+  const Material& m = f.materials[f.material[g]];
+  const PairParameters q = mix(f.contact, f.damping, m, f.radius[g], f.mass[g], m, f.radius[g], f.mass[g]);
+  PairTable one;
+  one.kn = {q.kn};
+  one.kt = {q.kt};
+  one.kr = {q.kr};
+  one.cn = {q.cn};
+  return {std::move(one), f.radius[g]};
+}
+
 }  // namespace
+
+double typical_normal_force(const Fixture& f, double overlap) {
+  const double stiffness = stiffness_of(f, typical_pair(f).first, 0, overlap).normal;
+  return (f.law == KernelLaw::linear ? stiffness : stiffness / 1.5) * overlap;
+}
 
 RowSums row_sums(const Fixture& f, const Assembly& a) {
   const std::size_t n = f.size();
@@ -86,24 +105,18 @@ RowSums row_sums(const Fixture& f, const Assembly& a) {
       sums.dashpot[i] += c;
       sums.dashpot[j] += c;
     }
-    translations.push_back(std::max(2 * k.normal, 4 * kt));
-    rotations.push_back(std::max(turn_i / (ri * ri), turn_j / (rj * rj)));
+    // Barely touching Hertz contacts are soft but will not stay so: the floor sees them at a quarter of p0's overlap.
+    const ContactStiffness firm = stiffness_of(f, a.pairs, p, std::max(overlap, 0.25 * a.state.reference_overlap));
+    translations.push_back(std::max(2 * firm.normal, 4 * firm.tangential));
+    rotations.push_back(4 * firm.tangential + 2 * firm.rolling / std::min(ri * ri, rj * rj));
   }
   for (std::size_t g = 0; g < n; ++g) sums.translation[g] = largest_eigenvalue(rows[g], f.dimension());
   if (translations.empty()) {
     // Nothing touches: what two contacts of typical grains would have at a thousandth of a radius of overlap.
-    const auto typical = std::size_t(std::max_element(f.radius.begin(), f.radius.end()) - f.radius.begin());
-    const Material& m = f.materials[f.material[typical]];
-    PairTable one;
-    const PairParameters q =
-        mix(f.contact, f.damping, m, f.radius[typical], f.mass[typical], m, f.radius[typical], f.mass[typical]);
-    one.kn = {q.kn};
-    one.kt = {q.kt};
-    one.kr = {q.kr};
-    one.cn = {q.cn};
-    const ContactStiffness k = stiffness_of(f, one, 0, 1e-3 * f.radius[typical]);
+    const auto [one, radius] = typical_pair(f);
+    const ContactStiffness k = stiffness_of(f, one, 0, 1e-3 * radius);
     translations.push_back(std::max(2 * k.normal, 4 * k.tangential));
-    rotations.push_back(4 * k.tangential + 2 * k.rolling / (f.radius[typical] * f.radius[typical]));
+    rotations.push_back(4 * k.tangential + 2 * k.rolling / (radius * radius));
   }
   sums.floor_translation = 2 * median(translations);
   sums.floor_rotation = 2 * median(rotations);

@@ -19,6 +19,9 @@ struct RowSums {
   double floor_rotation = 0;        ///< over r^2, N/m
 };
 
+/// Normal force of two of the largest grains at an overlap (m), N: a scale for specimens without any contact.
+double typical_normal_force(const Fixture& fixture, double overlap);
+
 RowSums row_sums(const Fixture& fixture, const Assembly& assembly);
 
 /// Smallest 2/omega_max over the grains with physical masses (dashpots included: 2/omega (sqrt(1 + zeta^2) - zeta)), s;

@@ -14,9 +14,17 @@ Rve::Rve(const Specimen& specimen) : impl_(std::make_unique<Impl>()) {
   open(specimen, m.fixture, m.now);
   use_physical_inertia(m.fixture, m.now);
   evaluate_forces(m.fixture, m.now);
+  const Balance balance = balance_of(m.fixture, m.now);
+  if (!balance.finite)
+    throw InputError("specimen: contact forces are not finite; do two grains lie at one place?");
+  if (specimen.state.has_reference) return;
+  // First opening: the scales that belong to the specimen's own state, if the specimen does not bring them.
   SolverState& state = m.now.state;
+  if (state.reference_overlap == 0)
+    state.reference_overlap = balance.touching > 0 ? balance.mean_overlap : 1e-2 * m.fixture.mean_radius;
   if (state.reference_contact_force == 0)
-    state.reference_contact_force = balance_of(m.fixture, m.now).mean_contact_force;
+    state.reference_contact_force =
+        balance.touching > 0 ? balance.mean_contact_force : typical_normal_force(m.fixture, state.reference_overlap);
   if (state.reference_pressure == 0) {
     const Matrix3 s = stress();
     state.reference_pressure = std::max(0.0, m.fixture.dimension() == 2 ? -0.5 * (s(0, 0) + s(1, 1)) : -s.trace() / 3);
@@ -150,13 +158,12 @@ void Rve::set_velocities(const std::vector<Vector3>& velocity, const std::vector
   if (velocity.size() != size() || spin.size() != size())
     throw InputError("set_velocities: " + std::to_string(velocity.size()) + " velocities and " +
                      std::to_string(spin.size()) + " spins; the specimen has " + std::to_string(size()) + " grains");
-  begin_loading(m.fixture, m.now, Loading::physical);
-  for (std::size_t g = 0; g < size(); ++g) {
+  for (std::size_t g = 0; g < size(); ++g)
     if (!velocity[g].allFinite() || !spin[g].allFinite())
       throw InputError("set_velocities: the velocity or spin of grain " + std::to_string(m.fixture.id[g]) +
                        " is not finite");
-    m.now.set_velocity(m.fixture, g, velocity[g], spin[g]);
-  }
+  begin_loading(m.fixture, m.now, Loading::physical);
+  for (std::size_t g = 0; g < size(); ++g) m.now.set_velocity(m.fixture, g, velocity[g], spin[g]);
   m.now.state.mean_velocity.setZero();
   evaluate_forces(m.fixture, m.now);
 }

@@ -34,7 +34,7 @@ struct Rve::Impl {
 
   /// Balance after a stretch of steps; throws IncrementFailed on overlap beyond the limit or values not finite.
   Balance checked_balance() const;
-  void steer_pace(double unbalanced);
+  void steer_pace(const Balance& balance);
   double initial_pace() const;
 
   Report load(const Matrix3& displacement_gradient, double dt);

@@ -35,6 +35,8 @@ Servo::Servo(const MixedTarget& target, int dimension, const Matrix3& stress_at_
                      "D needs " + std::to_string(rows_));
   if (!target.spin.allFinite() || (target.spin + target.spin.transpose()).norm() > 1e-12 * (1 + target.spin.norm()))
     throw InputError("mixed target: the spin must be a finite skew matrix");
+  if (!(target.tolerance > 0) || !std::isfinite(target.tolerance))
+    throw InputError("mixed target: the tolerance must be > 0 and finite");
   Eigen::MatrixXd both(rows_, 12);
   for (int r = 0; r < rows_; ++r) {
     const auto& row = target.rows[std::size_t(r)];

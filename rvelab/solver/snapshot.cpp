@@ -93,9 +93,25 @@ void visit(Archive& ar, S& s) {
                     &m.tangential_stiffness, &m.friction, &m.rolling_stiffness, &m.rolling_friction})
       ar(*v);
   }
-  ar(s.contact);
-  ar(s.damping);
-  ar(s.solver);
+  // Field by field: the padding of a struct is no state, and a snapshot must be equal where the states are.
+  ar(s.contact.law);
+  ar(s.contact.slip);
+  ar(s.contact.rolling);
+  ar(s.contact.unload_rescale);
+  auto& damping = s.damping;
+  for (auto* v : {&damping.local, &damping.local_quasi_static, &damping.normal_coefficient, &damping.restitution,
+                  &damping.tangential_ratio, &damping.global_viscous})
+    ar(*v);
+  ar(damping.local_form);
+  ar(damping.dashpot);
+  ar(damping.no_tension);
+  auto& solver = s.solver;
+  for (auto* v : {&solver.skin, &solver.time_step_factor, &solver.fixed_time_step, &solver.target_unbalanced,
+                  &solver.min_height, &solver.max_overlap_ratio})
+    ar(*v);
+  ar(solver.fixed_substeps);
+  ar(solver.max_substeps);
+  ar(solver.ledger);
   each(ar, s.grains.id);
   each(ar, s.grains.radius);
   each(ar, s.grains.material);
@@ -114,7 +130,8 @@ void visit(Archive& ar, S& s) {
   auto& t = s.state;
   ar(t.has_reference);
   for (auto* m : {&t.list_lattice, &t.servo_strain, &t.last_rate}) ar(*m);
-  for (auto* v : {&t.list_travel, &t.strain_per_step, &t.reference_contact_force, &t.reference_pressure, &t.last_step})
+  for (auto* v : {&t.list_travel, &t.strain_per_step, &t.reference_contact_force, &t.reference_overlap,
+                  &t.reference_pressure, &t.last_step})
     ar(*v);
   ar(t.quasi_static);
   ar(t.mean_velocity);

@@ -97,9 +97,9 @@ struct Pairs {
     all(k, k2, l, l2, m, m2, n, n2, o, o2, p, p2, q, q2, r, r2);
   }
   void fields(SolverState& a, SolverState& b) {
-    auto& [k, l, m, n, o, p, q, r, s, t, u, v, w, x, ledger] = a;
-    auto& [k2, l2, m2, n2, o2, p2, q2, r2, s2, t2, u2, v2, w2, x2, ledger2] = b;
-    all(k, k2, l, l2, m, m2, n, n2, o, o2, p, p2, q, q2, r, r2, s, s2, t, t2, u, u2, v, v2, w, w2, x, x2);
+    auto& [k, l, m, n, o, p, q, r, s, t, u, v, w, x, y, ledger] = a;
+    auto& [k2, l2, m2, n2, o2, p2, q2, r2, s2, t2, u2, v2, w2, x2, y2, ledger2] = b;
+    all(k, k2, l, l2, m, m2, n, n2, o, o2, p, p2, q, q2, r, r2, s, s2, t, t2, u, u2, v, v2, w, w2, x, x2, y, y2);
     fields(ledger, ledger2);
   }
   void fields(Record& a, Record& b) {

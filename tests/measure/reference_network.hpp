@@ -17,14 +17,14 @@ namespace rvelab::test {
 using Row = std::map<std::string, double>;
 
 inline nlohmann::json read_json(const std::string& name) {
-  std::ifstream file(std::string(RVELAB_TEST_DATA) + "/" + name);
+  std::ifstream file(std::string(RVELAB_TEST_DATA) + "/yade/" + name);
   if (!file) throw std::runtime_error("missing test data " + name);
   return nlohmann::json::parse(file);
 }
 
 /// Rows of a CSV file by column name; lines that start with # are comments.
 inline std::vector<Row> read_table(const std::string& name) {
-  std::ifstream file(std::string(RVELAB_TEST_DATA) + "/" + name);
+  std::ifstream file(std::string(RVELAB_TEST_DATA) + "/yade/" + name);
   if (!file) throw std::runtime_error("missing test data " + name);
   std::vector<std::string> header;
   std::vector<Row> rows;

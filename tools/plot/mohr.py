@@ -3,8 +3,7 @@
 
 The peak of a test is its record with the largest major principal stress, unsmoothed. The envelope passes through the
 origin: t = s sin phi by least squares over the tests, s = (sigma_1 + sigma_3)/2, t = (sigma_1 - sigma_3)/2. Where all
-tests reach 12 % axial strain, the same line through their mean states from 12 to 15 % is drawn beside it.
-Compression positive.
+tests reach 15 % axial strain, the mean of their angles from 12 to 15 % is drawn beside it. Compression positive.
 """
 
 import argparse
@@ -25,22 +24,19 @@ def peak_state(test):
     return 0.5 * (sigma_1[peak] + sigma_3[peak]), 0.5 * (sigma_1[peak] - sigma_3[peak])
 
 
-def large_strain_state(test):
-    """Mean s and t, Pa, over the large strains; None for a test that ends before them."""
+def large_strain_angle(test):
+    """Friction angle, radians, of the mean state over the large strains; None for a test that ends before 15 %."""
     slack = 1e-9  # recorded strains are round numbers up to round-off
-    inside = (test.strain >= LARGE_STRAIN[0] - slack) & (test.strain <= LARGE_STRAIN[1] + slack)
-    if not inside.any():
+    if test.strain.max() < LARGE_STRAIN[1] - slack:
         return None
-    sigma_1, sigma_3 = test.principal()
-    return 0.5 * np.mean((sigma_1 + sigma_3)[inside]), 0.5 * np.mean((sigma_1 - sigma_3)[inside])
+    inside = (test.strain >= LARGE_STRAIN[0] - slack) & (test.strain <= LARGE_STRAIN[1] + slack)
+    sigma_1, sigma_3 = (stress[inside].mean() for stress in test.principal())
+    return math.asin((sigma_1 - sigma_3) / (sigma_1 + sigma_3))
 
 
-def envelope(axes, states, right, label, **line):
-    """Draws t-s envelope states as the tangent tau = sigma tan phi; returns phi in degrees."""
-    s, t = np.transpose(states)
-    angle = math.asin(records.sine_through_origin(s, t))
+def envelope(axes, angle, right, label, **line):
+    """Draws tau = sigma tan phi, phi in radians."""
     axes.plot([0, right], [0, right * math.tan(angle)], label=f"{label}: $\\varphi$ = {math.degrees(angle):.2f}°", **line)
-    return math.degrees(angle)
 
 
 def draw(tests, options):
@@ -52,14 +48,16 @@ def draw(tests, options):
         x, y = centre + radius * np.cos(around), radius * np.sin(around)
         axes.fill_between(x, 0, y, color=colour, alpha=0.08, linewidth=0)
         axes.plot(x, y, color=colour, label=f"{records.plain(test.pressure / 1e3)} kPa")
-    peak_degrees = envelope(axes, states, right, "peak", color="crimson", linewidth=1.6)
-    text = f"peak friction angle {peak_degrees:.3f} degrees"
-    large = [large_strain_state(test) for test in tests]
-    if all(state is not None for state in large):
-        degrees = envelope(axes, np.array(large) / 1e3, right, "12 to 15 % strain", color="0.35", linestyle=(0, (5, 3)))
-        text += f", at large strain {degrees:.3f} degrees"
+    peak = math.asin(records.sine_through_origin(*states.T))
+    envelope(axes, peak, right, "peak", color="crimson", linewidth=1.6)
+    text = f"peak friction angle {math.degrees(peak):.3f} degrees"
+    large = [large_strain_angle(test) for test in tests]
+    if None not in large:
+        mean = sum(large) / len(large)
+        envelope(axes, mean, right, "12 to 15 % strain", color="0.35", linestyle=(0, (5, 3)))
+        text += f", at large strain {math.degrees(mean):.3f} degrees"
     axes.set_xlim(0, right)
-    axes.set_ylim(0, 1.12 * max(float(states[:, 1].max()), right * math.tan(math.radians(peak_degrees)) * 0.9))
+    axes.set_ylim(0, max(1.12 * float(states[:, 1].max()), right * math.tan(peak)))
     axes.set_aspect("equal", adjustable="box")
     axes.set_xlabel("normal stress $\\sigma$, compression positive (kPa)")
     axes.set_ylabel("shear stress $\\tau$ (kPa)")

@@ -1,0 +1,119 @@
+// rvelab bench: grain-steps per second of the product as a user runs it: apply() in simple shear, integration, list
+// rebuilds and control included, one thread.
+//
+// The packings are made here from fixed recipes: 400 discs and 1000 spheres at 100 kPa, larger cases by repeating them
+// periodically. Each case shears at constant volume with physical masses at inertial number 1e-3 for a fixed number of
+// steps, several times over; the median is reported.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "rvelab/cli/commands.hpp"
+#include "rvelab/cli/report.hpp"
+#include "rvelab/pack/random_packing.hpp"
+#include "rvelab/solver/rve.hpp"
+#include "rvelab/solver/scene.hpp"
+
+namespace rvelab::cli {
+
+namespace {
+
+PackingRecipe discs(bool rolling) {
+  PackingRecipe r;
+  r.material.young_modulus = 8e8;
+  r.material.stiffness_ratio = 0.5;
+  r.material.friction = 0.4245;  // tan 23 degrees (Liang and Zhao 2019, table 2)
+  r.contact.rolling = rolling;
+  if (rolling) {
+    r.material.rolling_stiffness = 1;
+    r.material.rolling_friction = 0.05;
+  }
+  return r;
+}
+
+PackingRecipe spheres() {
+  PackingRecipe r;
+  r.shape = Shape::sphere;
+  r.grains = 1000;
+  r.smallest_radius = 1e-3;
+  r.largest_radius = 2e-3;
+  r.material.young_modulus = 7e9;
+  r.material.poisson_ratio = 0.25;
+  r.material.friction = 0.5;
+  r.contact.law = Law::hertz_mindlin;
+  r.preparation_friction = 0.1;
+  return r;
+}
+
+struct Timing {
+  double median = 0, least = 0, most = 0;
+  double contacts_per_grain = 0;
+};
+
+/// Steps the specimen in simple shear; `steps` sub-steps a repeat.
+Timing time_of(const Specimen& specimen, long steps, int repeats) {
+  Rve rve(specimen);
+  const int d = rve.cell().dimension;
+  const double diameter = [&] {
+    double sum = 0;
+    for (double r : specimen.grains.radius) sum += 2 * r;
+    return sum / double(specimen.grains.size());
+  }();
+  const double pressure = std::max(1.0, -rve.stress()(0, 0));
+  const double rate = 1e-3 / (diameter * std::sqrt(specimen.materials[0].density / pressure));
+  const double dt = 0.7 * rve.critical_time_step() * double(steps);
+  Matrix3 dh = Matrix3::Zero();
+  dh(0, d - 1) = rate * dt;
+  std::vector<double> speeds;
+  rve.apply(dh, dt);  // warms up: caches, clock, the flow itself
+  for (int k = 0; k < repeats; ++k) {
+    const auto before = rve.grain_steps();
+    const auto start = std::chrono::steady_clock::now();
+    rve.apply(dh, dt);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    speeds.push_back(double(rve.grain_steps() - before) / seconds);
+  }
+  std::sort(speeds.begin(), speeds.end());
+  const double contacts = double(rve.network().contacts.size()) / double(rve.size());
+  return {speeds[speeds.size() / 2], speeds.front(), speeds.back(), contacts};
+}
+
+Json entry(const Specimen& specimen, double grain_steps, bool quick) {
+  const double wanted = quick ? 0.2 * grain_steps : grain_steps;
+  const long steps = std::max(20L, long(wanted / double(specimen.grains.size())));
+  const Timing t = time_of(specimen, steps, quick ? 3 : 7);
+  Json out;
+  out["grain_steps_per_second"] = t.median;
+  out["least"] = t.least;
+  out["most"] = t.most;
+  out["grains"] = specimen.grains.size();
+  out["contacts_per_grain"] = t.contacts_per_grain;
+  return out;
+}
+
+void run_bench(bool quick, bool json) {
+  Listing listing;
+  listing.add("instruction_set", kernels_for(SceneKey{}).instruction_set);
+  const Specimen disc = random_packing(discs(false));
+  listing.add("disc_400_linear", entry(disc, 8e6, quick));
+  listing.add("disc_400_rolling", entry(random_packing(discs(true)), 8e6, quick));
+  listing.add("disc_10000_linear", entry(repeated(disc, {5, 5, 1}), 8e6, quick));
+  const Specimen sphere = random_packing(spheres());
+  listing.add("sphere_1000_hertz", entry(sphere, 3e6, quick));
+  listing.add("sphere_32000_hertz", entry(repeated(sphere, {4, 4, 2}), 3e6, quick));
+  listing.add("sphere_256000_hertz", entry(repeated(sphere, {8, 8, 4}), quick ? 25e6 : 10e6, quick));
+  listing.print(json);
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app) {
+  auto* command = app.add_subcommand("bench", "Grain-steps per second of fixed cases, one thread");
+  auto quick = std::make_shared<bool>(false), json = std::make_shared<bool>(false);
+  command->add_flag("--quick", *quick, "A fifth of the work, three repeats");
+  command->add_flag("--json", *json, "Print one JSON object");
+  command->footer("Example: rvelab bench --quick --json");
+  command->callback([=] { run_bench(*quick, *json); });
+}
+
+}  // namespace rvelab::cli

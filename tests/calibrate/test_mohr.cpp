@@ -1,0 +1,167 @@
+// Mohr circles from formulas: principal stresses, fits, bearing capacity factors.
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "rvelab/calibrate/calibrate.hpp"
+#include "rvelab/calibrate/mohr.hpp"
+#include "rvelab/error.hpp"
+#include "tests/catch.hpp"
+
+using namespace rvelab;
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double degree = pi / 180;
+
+Record biaxial_record(double strain, double major, double minor) {
+  Record record;
+  record.strain = strain;
+  record.stress(0, 0) = -minor;
+  record.stress(1, 1) = -major;
+  return record;
+}
+
+/// A state on the line t = s sin phi + c cos phi.
+PrincipalStresses on_envelope(double s, double angle, double cohesion) {
+  const double t = s * std::sin(angle * degree) + cohesion * std::cos(angle * degree);
+  return {s + t, s - t};
+}
+
+/// A test that hardens linearly to the ratio of the angle at 1 % strain and stays there, to 15 %.
+TestResult hardening_test(double pressure, double angle) {
+  TestResult test;
+  test.pressure = pressure;
+  const double ratio = (1 + std::sin(angle * degree)) / (1 - std::sin(angle * degree));
+  for (int k = 0; k <= 300; ++k) {
+    const double strain = 0.0005 * k;
+    test.records.push_back(
+        biaxial_record(strain, pressure * (1 + (ratio - 1) * std::min(1.0, strain / 0.01)), pressure));
+  }
+  return test;
+}
+
+}  // namespace
+
+TEST_CASE("Principal stresses are those of the tensor, compression positive, whatever the axes") {
+  // 2D: circle with centre 30 kPa and radius 13 kPa, axes turned by 22.5 degrees; sigma_zz = 0 takes no part.
+  const double c = 13e3 * std::cos(pi / 4);
+  Matrix3 plane = Matrix3::Zero();
+  plane << -30e3 + c, c, 0, c, -30e3 - c, 0, 0, 0, 0;
+  CHECK(principal_stresses(plane, 2).major == Approx(43e3).epsilon(1e-13));
+  CHECK(principal_stresses(plane, 2).minor == Approx(17e3).epsilon(1e-13));
+  // 3D: the intermediate stress takes no part either.
+  const Matrix3 turn = (Eigen::AngleAxisd(0.7, Vector3::UnitX()) * Eigen::AngleAxisd(-1.1, Vector3::UnitZ())).matrix();
+  const Matrix3 solid = turn * Vector3(-100e3, -300e3, -170e3).asDiagonal() * turn.transpose();
+  CHECK(principal_stresses(solid, 3).major == Approx(300e3).epsilon(1e-13));
+  CHECK(principal_stresses(solid, 3).minor == Approx(100e3).epsilon(1e-13));
+  // Rankine: sigma_1/sigma_3 = 3 is a friction angle of 30 degrees.
+  CHECK(friction_angle_deg(principal_stresses(solid, 3)) == Approx(30).epsilon(1e-13));
+  // An antisymmetric part (unbalanced torque) moves no principal stress.
+  Matrix3 unbalanced = plane;
+  unbalanced(0, 1) += 500;
+  unbalanced(1, 0) -= 500;
+  CHECK(principal_stresses(unbalanced, 2).major == Approx(43e3).epsilon(1e-13));
+}
+
+TEST_CASE("The peak is the record with the largest major principal stress, without smoothing") {
+  std::vector<Record> records;
+  for (int k = 0; k < 40; ++k) records.push_back(biaxial_record(0.001 * k, 20e3 + 100 * k, 10e3));
+  records[17].stress(1, 1) = -60e3;  // one spike
+  records[30].stress(0, 0) = -1e3;   // a larger ratio is no peak
+  const Peak highest = peak(records, 2);
+  CHECK(highest.record == 17);
+  CHECK(highest.strain == Approx(0.017));
+  CHECK(highest.stresses.major == Approx(60e3));
+  CHECK_THROWS_AS(peak({}, 2), InputError);
+}
+
+TEST_CASE("A moving mean over 1 % of strain divides a lone spike by its number of records") {
+  std::vector<Record> records;
+  for (int k = 0; k <= 100; ++k) records.push_back(biaxial_record(0.0005 * k, 30e3, 10e3));
+  records[50].stress(1, 1) = -50e3;
+  CHECK(peak_of_moving_mean(records, 2).major == Approx(30e3 + 20e3 / 20).epsilon(1e-12));
+  CHECK(peak_of_moving_mean(records, 2).minor == Approx(10e3).epsilon(1e-12));
+  CHECK(peak_of_moving_mean(records, 2, 0.005).major == Approx(30e3 + 20e3 / 10).epsilon(1e-12));
+  // A test shorter than the window has none.
+  records.resize(19);
+  CHECK(std::isnan(peak_of_moving_mean(records, 2).major));
+  records.resize(1);
+  CHECK(std::isnan(peak_of_moving_mean(records, 2).major));
+}
+
+TEST_CASE("The large-strain stress is the mean from 12 to 15 % and nothing where a test does not reach it") {
+  std::vector<Record> records;
+  for (int k = 0; k <= 320; ++k) {
+    const double strain = 0.0005 * k;
+    const bool inside = k >= 240 && k <= 300;
+    records.push_back(biaxial_record(strain, inside ? 20e3 + (k - 270) * 50 : 90e3, 10e3));
+  }
+  CHECK(large_strain_mean(records, 2).major == Approx(20e3).epsilon(1e-12));
+  CHECK(large_strain_mean(records, 2).minor == Approx(10e3).epsilon(1e-12));
+  records.resize(290);
+  CHECK(std::isnan(large_strain_mean(records, 2).major));
+}
+
+TEST_CASE("States on a Coulomb envelope give back its angle and cohesion") {
+  for (const double angle : {5.0, 28.1, 44.0}) {
+    std::vector<PrincipalStresses> frictional, cohesive, overshooting;
+    for (const double s : {12e3, 19e3, 41e3, 77e3}) {
+      frictional.push_back(on_envelope(s, angle, 0));
+      cohesive.push_back(on_envelope(s, angle, 2500));
+      overshooting.push_back(on_envelope(s, angle, -700));
+    }
+    CHECK(friction_angle_through_origin_deg(frictional) == Approx(angle).epsilon(1e-12));
+    CHECK(fit_with_cohesion(cohesive).friction_angle_deg == Approx(angle).epsilon(1e-11));
+    CHECK(fit_with_cohesion(cohesive).cohesion == Approx(2500).epsilon(1e-9));
+    CHECK(fit_with_cohesion(overshooting).cohesion == Approx(-700).epsilon(1e-9));
+    CHECK(friction_angle_through_origin_deg(cohesive) > angle);
+  }
+}
+
+TEST_CASE("The fit through the origin weighs tests by least squares of t in s") {
+  // sum(s t)/sum(s s) for (1, 0.5), (2, 0.8): 2.1/5.
+  const std::vector<PrincipalStresses> tests{{1.5, 0.5}, {2.8, 1.2}};
+  CHECK(friction_angle_through_origin_deg(tests) == Approx(std::asin(0.42) / degree).epsilon(1e-13));
+  // One test has no cohesion to tell.
+  CHECK(std::isnan(fit_with_cohesion(std::vector<PrincipalStresses>{{3, 1}}).cohesion));
+}
+
+TEST_CASE("Bearing capacity factors of 28.1 degrees are 14.883 and 6.147, its wedge stands at 59.05 degrees") {
+  CHECK(bearing_capacity_Nq(28.1) == Approx(14.883).margin(5e-4));
+  CHECK(local_shear_Nq(28.1) == Approx(6.147).margin(5e-4));
+  CHECK(wedge_angle_deg(28.1) == Approx(59.05).epsilon(1e-14));
+  CHECK(bearing_capacity_Nq(0) == Approx(1).epsilon(1e-14));  // Prandtl: without friction the surcharge alone
+}
+
+TEST_CASE("Tests of one frictional soil at any pressures calibrate to its angle") {
+  const Calibration found = calibrate({hardening_test(10e3, 30), hardening_test(25e3, 30)}, 2);
+  CHECK(found.friction_angle_deg == Approx(30).epsilon(1e-12));
+  CHECK(found.friction_angle_with_cohesion_deg == Approx(30).epsilon(1e-10));
+  CHECK(found.cohesion == Approx(0).margin(1e-6));
+  CHECK(found.friction_angle_moving_mean_deg == Approx(30).epsilon(1e-12));
+  CHECK(found.large_strain_friction_angle_deg == Approx(30).epsilon(1e-12));
+  // tan^2(60) exp(pi tan 30) = 3 exp(pi/sqrt 3)
+  CHECK(found.bearing_capacity_Nq == Approx(3 * std::exp(pi / std::sqrt(3.0))).epsilon(1e-10));
+  CHECK(found.wedge_angle_deg == Approx(60).epsilon(1e-12));
+  REQUIRE(found.per_pressure.size() == 2);
+  CHECK(found.per_pressure[1].pressure == 25e3);
+  CHECK(found.per_pressure[1].peak.major == Approx(75e3).epsilon(1e-12));
+  CHECK(found.per_pressure[1].peak.minor == Approx(25e3).epsilon(1e-12));
+  CHECK(found.per_pressure[1].records == 301);
+}
+
+TEST_CASE("A calibration looks at the last stage only and counts its flagged records") {
+  TestResult test = hardening_test(10e3, 30);
+  for (auto& record : test.records) record.stage = 1;
+  test.records[5].target_held = false;
+  test.records[9].target_held = false;
+  Record before = biaxial_record(0, 900e3, 10e3);  // a higher stress in the stage before
+  before.target_held = false;
+  test.records.insert(test.records.begin(), before);
+  const Calibration found = calibrate({test}, 2);
+  CHECK(found.friction_angle_deg == Approx(30).epsilon(1e-12));
+  CHECK(found.per_pressure[0].records == 301);
+  CHECK(found.per_pressure[0].flagged == 2);
+  CHECK_THROWS_AS(calibrate({}, 2), InputError);
+}

@@ -1,0 +1,255 @@
+// What must be refused, and that a refusal changes not one bit. Messages name what was found, what is allowed and, of
+// an increment, what to do.
+#include <functional>
+#include <limits>
+
+#include "tests/catch.hpp"
+#include "tests/extreme/specimens.hpp"
+
+using namespace rvelab;
+using namespace rvelab::test;
+
+namespace {
+
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// A loaded specimen with slip in its history, so that there is state to spoil.
+Rve loaded(int dimension) {
+  Rve rve(dimension == 2 ? triangular(4, 2, 1.95, material(stiffness, 0.5 * stiffness, 0.3))
+                         : lone_grain(3, 1.95, material(stiffness, 0.5 * stiffness, 0.3)));
+  rve.apply(entry(0, dimension - 1, 1e-3), 0);
+  return rve;
+}
+
+Specimen lone_grain_of_default_limit(double spacing) {
+  Specimen s = lone_grain(2, spacing);
+  s.solver.min_height = 0;  // 2 r_max
+  return s;
+}
+
+/// One row per component: strain held at zero but `first`, which is the caller's.
+MixedTarget held_strain(const MixedTarget::Row& first) {
+  MixedTarget target;
+  target.rows.push_back(first);
+  target.rows.push_back({entry(1, 1, 1), Matrix3::Zero(), 0, 0});
+  target.rows.push_back({entry(0, 1, 0.5) + entry(1, 0, 0.5), Matrix3::Zero(), 0, 0});
+  return target;
+}
+
+}  // namespace
+
+TEST_CASE("NaN and infinity in an increment are refused and change nothing", "[extreme]") {
+  for (const int d : {2, 3}) {
+    Rve rve = loaded(d);
+    const auto before = rve.save();
+    for (const double bad : {not_a_number, infinity, -infinity})
+      for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k)
+          for (const double dt : {0.0, 1e-6})
+            CHECK(contains(refusal<InvalidIncrement>([&] { rve.apply(entry(i, k, bad), dt); }), "must be finite"));
+    for (const double bad : {not_a_number, infinity, -infinity, -1e-9})
+      CHECK(contains(refusal<InvalidIncrement>([&] { rve.apply(entry(0, 0, 1e-6), bad); }), "dt = "));
+    CHECK((rve.save() == before));
+  }
+}
+
+TEST_CASE("An increment that turns the cell inside out is refused", "[extreme]") {
+  for (const int d : {2, 3}) {
+    Rve rve = loaded(d);
+    const auto before = rve.save();
+    for (const double bad : {-1.0, -1.5, -1e300})
+      CHECK(contains(refusal<InvalidIncrement>([&] { rve.apply(entry(0, 0, bad), 0); }), "det(I + dH)"));
+    CHECK(contains(refusal<InvalidIncrement>([&] { rve.apply(isotropic(d, 1e300), 0); }), "det(I + dH)"));
+    CHECK((rve.save() == before));
+  }
+  Rve plane = loaded(2);
+  const auto before = plane.save();
+  CHECK(contains(refusal<InvalidIncrement>([&] { plane.apply(entry(2, 2, -1e-3), 0); }), "2D"));
+  CHECK(contains(refusal<InvalidIncrement>([&] { plane.apply(entry(0, 2, 1e-9), 0); }), "2D"));
+  CHECK((plane.save() == before));
+}
+
+TEST_CASE("NaN in a mixed target is refused and changes nothing", "[extreme]") {
+  Rve rve = loaded(2);
+  const auto before = rve.save();
+  const MixedTarget::Row good{Matrix3::Zero(), entry(0, 0, 1), -100, 1000};
+  const auto refused = [&](const MixedTarget& target, double dt) {
+    return !refusal<InputError>([&] { rve.apply(target, dt); }).empty();
+  };
+  for (const double bad : {not_a_number, infinity}) {
+    for (const double dt : {bad, -1.0}) CHECK(refused(held_strain(good), dt));
+    for (const double dt : {0.0, 1e-6}) {
+      MixedTarget::Row row = good;
+      row.value = bad;
+      CHECK(refused(held_strain(row), dt));
+      row = good;
+      row.scale = bad;
+      CHECK(refused(held_strain(row), dt));
+      row = good;
+      row.stress(0, 0) = bad;
+      CHECK(refused(held_strain(row), dt));
+      row = good;
+      row.strain(1, 1) = bad;
+      CHECK(refused(held_strain(row), dt));
+      MixedTarget target = held_strain(good);
+      target.spin = entry(0, 1, bad) - entry(1, 0, bad);
+      CHECK(refused(target, dt));
+      target = held_strain(good);
+      target.tolerance = bad;
+      CHECK(refused(target, dt));
+    }
+  }
+  CHECK((rve.save() == before));
+}
+
+TEST_CASE("NaN among new velocities is refused and changes nothing", "[extreme]") {
+  Rve rve = loaded(2);
+  const auto before = rve.save();
+  std::vector<Vector3> velocity(rve.size(), Vector3(1, 0, 0)), spin(rve.size(), Vector3::Zero());
+  velocity.back()[1] = not_a_number;
+  CHECK(contains(refusal<InputError>([&] { rve.set_velocities(velocity, spin); }), "grain 15"));
+  CHECK((rve.save() == before));
+  velocity.back()[1] = 0;
+  spin[3][2] = infinity;
+  CHECK(contains(refusal<InputError>([&] { rve.set_velocities(velocity, spin); }), "grain 3"));
+  CHECK((rve.save() == before));
+}
+
+TEST_CASE("NaN in a specimen is refused with the grain's name", "[extreme]") {
+  const Specimen good = triangular(4, 2, 1.95);
+  for (const double bad : {not_a_number, infinity, -infinity}) {
+    const auto refused = [&](auto spoil) {
+      Specimen s = good;
+      spoil(s);
+      return refusal<InputError>([&] { Rve rve(s); });
+    };
+    CHECK(contains(refused([&](Specimen& s) { s.grains.position[5][1] = bad; }), "grain 5"));
+    CHECK(contains(refused([&](Specimen& s) { s.grains.velocity[5][0] = bad; }), "grain 5"));
+    CHECK(contains(refused([&](Specimen& s) { s.grains.spin[5][2] = bad; }), "grain 5"));
+    CHECK(contains(refused([&](Specimen& s) { s.grains.radius[5] = bad; }), "grain 5: radius"));
+    CHECK(contains(refused([&](Specimen& s) { s.cell.lattice(0, 1) = bad; }), "lattice"));
+    CHECK(contains(refused([&](Specimen& s) { s.cell.lattice(2, 2) = bad; }), "lattice"));
+    CHECK(contains(refused([&](Specimen& s) { s.cell.rotation(1, 0) = bad; }), "rotation"));
+    CHECK(contains(refused([&](Specimen& s) { s.materials[0].density = bad; }), "density"));
+    CHECK(contains(refused([&](Specimen& s) { s.materials[0].normal_stiffness = bad; }), "normal_stiffness"));
+    CHECK(contains(refused([&](Specimen& s) { s.contacts = {{0, 1, {}, {bad, 0, 0}, {0, 0, 0}, 0}}; }), "grains 0"));
+  }
+}
+
+TEST_CASE("A specimen that is none is refused", "[extreme]") {
+  const Specimen good = triangular(4, 2, 1.95);
+  const auto refused = [&](auto spoil) {
+    Specimen s = good;
+    spoil(s);
+    return refusal<InputError>([&] { Rve rve(s); });
+  };
+  CHECK(contains(refused([](Specimen& s) { s.grains = {}; }), "0 grains"));
+  CHECK(contains(refused([](Specimen& s) { s.grains.radius[3] = 0; }), "grain 3: radius 0 m; it must be > 0"));
+  CHECK(contains(refused([](Specimen& s) { s.grains.radius[3] = -1; }), "grain 3: radius -1 m; it must be > 0"));
+  CHECK(contains(refused([](Specimen& s) { s.grains.radius.pop_back(); }), "differ in length"));
+  CHECK(contains(refused([](Specimen& s) { s.grains.id[3] = 2; }), "ids must ascend"));
+  CHECK(contains(refused([](Specimen& s) { s.grains.material[3] = 1; }), "grain 3: material 1"));
+  CHECK(contains(refused([](Specimen& s) { s.cell.lattice(1, 0) = 0.1; }), "upper triangular"));
+  CHECK(contains(refused([](Specimen& s) { s.cell.lattice(1, 1) = 0; }), "positive diagonal"));
+  CHECK(contains(refused([](Specimen& s) { s.cell.dimension = 3; }), "dimension 3"));
+  CHECK(contains(refused([](Specimen& s) { s.cell.rotation *= 1.01; }), "rotation"));
+  CHECK(contains(refused([](Specimen& s) { s.contacts = {{0, 16, {}, {}, {}, 0}}; }), "0 <= i <= j < 16"));
+  CHECK(contains(refused([](Specimen& s) { s.materials.clear(); }), "materials: none given"));
+  // Two grains at one place have no contact normal.
+  CHECK_FALSE(refused([](Specimen& s) { s.grains.position[1] = s.grains.position[0]; }).empty());
+}
+
+TEST_CASE("A parameter out of range stops the opening with its key, value and range", "[extreme]") {
+  struct Case {
+    std::string key, value, range;
+    std::function<void(Specimen&)> spoil;
+  };
+  const std::vector<Case> cases = {
+      {"density", "-1", "> 0 kg/m^3", [](Specimen& s) { s.materials[0].density = -1; }},
+      {"normal_stiffness", "0", "> 0 N/m", [](Specimen& s) { s.materials[0].normal_stiffness = 0; }},
+      {"friction", "-0.5", "0 to 1e6", [](Specimen& s) { s.materials[0].friction = -0.5; }},
+      {"damping.local", "1", "0 to below 1", [](Specimen& s) { s.damping.local = 1; }},
+      {"damping.local_quasi_static", "0", "above 0 to below 1",
+       [](Specimen& s) { s.damping.local_quasi_static = 0; }},
+      {"solver.skin", "0", "> 0", [](Specimen& s) { s.solver.skin = 0; }},
+      {"solver.time_step_factor", "1", "above 0 to below 1", [](Specimen& s) { s.solver.time_step_factor = 1; }},
+      {"solver.time_step_factor", "0", "above 0 to below 1", [](Specimen& s) { s.solver.time_step_factor = 0; }},
+      {"solver.fixed_time_step_s", "-1e-06", ">= 0 s", [](Specimen& s) { s.solver.fixed_time_step = -1e-6; }},
+      {"solver.target_unbalanced", "0", "> 0", [](Specimen& s) { s.solver.target_unbalanced = 0; }},
+      {"solver.fixed_substeps", "-1", ">= 0", [](Specimen& s) { s.solver.fixed_substeps = -1; }},
+      {"solver.max_substeps", "0", "> 0", [](Specimen& s) { s.solver.max_substeps = 0; }},
+      {"solver.min_height_m", "-1", ">= 0 m", [](Specimen& s) { s.solver.min_height = -1; }},
+      {"solver.max_overlap_ratio", "0", "> 0", [](Specimen& s) { s.solver.max_overlap_ratio = 0; }},
+      {"solver.skin", "nan", "> 0", [](Specimen& s) { s.solver.skin = not_a_number; }},
+      {"solver.max_overlap_ratio", "nan", "> 0", [](Specimen& s) { s.solver.max_overlap_ratio = not_a_number; }}};
+  for (const Case& one : cases) {
+    Specimen s = triangular(4, 2, 1.95);
+    one.spoil(s);
+    const std::string text = refusal<InputError>([&] { Rve rve(s); });
+    CAPTURE(one.key, text);
+    CHECK(contains(text, one.key + " = " + one.value));
+    CHECK(contains(text, "allowed: " + one.range));
+  }
+}
+
+TEST_CASE("Compression until grains overlap by a quarter is refused and changes nothing", "[extreme]") {
+  for (const double dt : {0.0, 0.05}) {
+    Rve rve(triangular(4, 2, 1.95));
+    const auto before = rve.save();
+    // Spacing l: overlap over radius is 2 - l; l = 1.75 is reached at a strain of -0.1026.
+    const std::string text = refusal<IncrementFailed>([&] { rve.apply(isotropic(2, -0.11), dt); });
+    CAPTURE(dt, text);
+    CHECK(contains(text, "max_overlap_ratio allows 0.25"));
+    CHECK(contains(text, "compress less"));
+    CHECK((rve.save() == before));
+    const Matrix3 stress = rve.apply(isotropic(2, -0.10), dt).stress;
+    const double spacing = 1.95 * 0.9;
+    const double pressure = std::sqrt(3.0) * stiffness * (2 / spacing - 1) / 0.5;  // design 8, per thickness 0.5 m
+    CHECK(mean_pressure(stress, 2) == Approx(pressure).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("A cell that becomes too slender is refused with vector, limit and remedy", "[extreme]") {
+  // Pure shear of an axis-aligned cell of one grain: b, 4 m long, falls below 2 r_max = 2 m as a grows.
+  for (const double dt : {0.0, 0.5}) {
+    Rve rve(lone_grain_of_default_limit(4.0));
+    const auto before = rve.save();
+    const double squeeze = 0.495;
+    const Matrix3 gradient = Vector3(1 / squeeze - 1, squeeze - 1, 0).asDiagonal();
+    const std::string text = refusal<IncrementFailed>([&] { rve.apply(gradient, dt); });
+    CAPTURE(dt, text);
+    CHECK((rve.save() == before));
+    CHECK(contains(text, "shortest lattice vector is 1.9"));
+    CHECK(contains(text, "solver.min_height_m is 2 m"));
+    CHECK(contains(text, "oriented cell"));
+  }
+  // The same limit holds for what is opened.
+  CHECK(contains(refusal<InputError>([] {
+                   Rve rve(lone_grain_of_default_limit(1.95));
+                 }),
+                 "shortest lattice vector is 1.95 m"));
+}
+
+TEST_CASE("An increment beyond the allowed number of sub-steps is refused and changes nothing", "[extreme]") {
+  Specimen s = triangular(4, 2, 1.95);
+  s.solver.max_substeps = 1000;
+  Rve rve(s);
+  rve.apply(entry(0, 1, 1e-6), 0);
+  const auto before = rve.save();
+  CHECK(contains(refusal<IncrementFailed>([&] { rve.apply(entry(0, 1, 1e-6), 1e6); }), "max_substeps"));
+  CHECK((rve.save() == before));
+}
+
+TEST_CASE("A damaged snapshot is refused and changes nothing", "[extreme]") {
+  Rve rve = loaded(2);
+  const auto before = rve.save();
+  for (const std::size_t at : {std::size_t(0), std::size_t(9), before.size() / 2, before.size() - 1}) {
+    auto damaged = before;
+    damaged[at] ^= std::byte{1};
+    CHECK_FALSE(refusal<InputError>([&] { rve.restore(damaged); }).empty());
+  }
+  for (const std::size_t length : {std::size_t(0), std::size_t(7), std::size_t(15), before.size() - 1})
+    CHECK_FALSE(refusal<InputError>([&] { rve.restore(std::span(before).first(length)); }).empty());
+  CHECK((rve.save() == before));
+}

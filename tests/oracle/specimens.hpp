@@ -1,0 +1,106 @@
+// Specimens and comparisons for the oracles: a few grains in a large cell, crystals, disordered packings, the recorded
+// packings of tests/data.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <random>
+#include <string>
+
+#include "rvelab/io/import_csv.hpp"
+#include "rvelab/solver/rve.hpp"
+#include "tests/catch.hpp"
+
+namespace rvelab::test {
+
+inline const double pi = std::acos(-1.0);
+
+inline Material linear_material(double kn, double kt, double friction) {
+  Material m;
+  m.normal_stiffness = kn;
+  m.tangential_stiffness = kt;
+  m.friction = friction;
+  return m;
+}
+
+inline void add_grain(Specimen& s, const Vector3& position, double radius, int material = 0) {
+  s.grains.id.push_back(std::int64_t(s.grains.size()) + 1);
+  s.grains.radius.push_back(radius);
+  s.grains.material.push_back(material);
+  s.grains.position.push_back(position);
+  s.grains.velocity.push_back(Vector3::Zero());
+  s.grains.spin.push_back(Vector3::Zero());
+}
+
+/// No grains yet: a square or cubic cell of the given edge, linear_given contacts.
+inline Specimen empty_specimen(Shape shape, double edge, const Material& material, Law law = Law::linear_given) {
+  Specimen s;
+  s.shape = shape;
+  s.cell.dimension = dimension_of(shape);
+  s.cell.lattice = Vector3(edge, edge, shape == Shape::disc ? 1.0 : edge).asDiagonal();
+  s.materials = {material};
+  s.contact.law = law;
+  return s;
+}
+
+/// A disordered packing of side^d grains: a crystal with its sites moved by up to `jitter` spacings and radii spread by
+/// a tenth; not at rest yet. Fractions of the spacing throughout.
+inline Specimen disordered(Shape shape, int side, const Material& material, Law law, double radius_over_spacing,
+                           std::uint64_t seed, double jitter = 0.05) {
+  const double spacing = 0.01;
+  Specimen s = empty_specimen(shape, side * spacing, material, law);
+  if (shape == Shape::disc) s.cell.lattice(2, 2) = spacing;
+  s.solver.max_overlap_ratio = 0.5;
+  std::mt19937_64 generator(seed);
+  const auto uniform = [&] { return 2 * double(generator() >> 11) / 9007199254740992.0 - 1; };
+  const int depth = shape == Shape::disc ? 1 : side;
+  for (int k = 0; k < depth; ++k)
+    for (int j = 0; j < side; ++j)
+      for (int i = 0; i < side; ++i) {
+        Vector3 x = Vector3(i, j, k) * spacing - 0.5 * (side - 1) * spacing * Vector3::Ones();
+        for (int c = 0; c < s.cell.dimension; ++c) x[c] += jitter * spacing * uniform();
+        if (shape == Shape::disc) x[2] = 0;
+        add_grain(s, x, radius_over_spacing * spacing * (1 + 0.05 * uniform()));
+      }
+  return s;
+}
+
+/// A disordered packing relaxed at dt = 0.
+inline Rve at_rest(const Specimen& s, double unbalanced = 1e-10) {
+  Rve rve(s);
+  const Report report = rve.relax(unbalanced, 2'000'000);
+  REQUIRE(report.target_held);
+  return rve;
+}
+
+inline Specimen recorded(const std::string& name, const std::vector<std::string>& settings = {}) {
+  const std::string stem = std::string(RVELAB_TEST_DATA) + "/yade/" + name;
+  ImportOptions options;
+  options.settings = settings;
+  return import_csv(stem + ".particles.csv", stem + ".contacts.csv", stem + ".json", options);
+}
+
+inline Matrix3 gradient(double xx, double xy, double yx, double yy) {
+  Matrix3 g = Matrix3::Zero();
+  g(0, 0) = xx;
+  g(0, 1) = xy;
+  g(1, 0) = yx;
+  g(1, 1) = yy;
+  return g;
+}
+
+inline Matrix3 rotation_about_z(double angle) { return Eigen::AngleAxisd(angle, Vector3::UnitZ()).toRotationMatrix(); }
+
+inline bool same_bits(const Matrix3& a, const Matrix3& b) {
+  return std::memcmp(a.data(), b.data(), sizeof(Matrix3)) == 0;
+}
+
+inline double largest(const Matrix3& m) { return m.cwiseAbs().maxCoeff(); }
+
+inline double pressure(const Matrix3& stress, int dimension) {
+  return -(stress(0, 0) + stress(1, 1) + (dimension == 3 ? stress(2, 2) : 0.0)) / dimension;
+}
+
+}  // namespace rvelab::test

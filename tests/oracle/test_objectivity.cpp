@@ -1,0 +1,249 @@
+// What an observer, a choice of origin, of lattice basis or of period must not change (design 4, 5, 8).
+//
+// Equalities by design 5: bitwise where the arithmetic is the same (rigid rotations at dt = 0, quarter turns); 1e-10 of
+// p over the first 0.02 % of strain from a state at rest where it is not (round-off grows with strain: chaos).
+#include <Eigen/LU>
+#include <map>
+
+#include "rvelab/error.hpp"
+#include "tests/oracle/specimens.hpp"
+
+using namespace rvelab;
+using namespace rvelab::test;
+
+namespace {
+
+/// Everything but the frame as bytes: two snapshots with the frame and its counter taken out.
+std::vector<std::byte> without_frame(const Rve& rve) {
+  Specimen s = rve.specimen();
+  s.cell.rotation.setIdentity();
+  s.cell.increments = 0;
+  Rve plain(s);
+  return plain.save();
+}
+
+const Matrix3 path_step = gradient(1e-5, 2.3e-5, -0.7e-5, -4e-5);
+
+/// 0.02 % of strain in all.
+constexpr int path_length = 4;
+
+/// Stress along the path, turned back by `frame`, which is the rotation of the whole experiment.
+std::vector<Matrix3> path_of(Rve rve, const Matrix3& frame = Matrix3::Identity()) {
+  std::vector<Matrix3> stresses = {frame.transpose() * rve.stress() * frame};
+  for (int k = 0; k < path_length; ++k)
+    stresses.push_back(frame.transpose() * rve.apply(frame * path_step * frame.transpose(), 0).stress * frame);
+  return stresses;
+}
+
+double difference(const std::vector<Matrix3>& a, const std::vector<Matrix3>& b) {
+  REQUIRE(a.size() == b.size());
+  double most = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) most = std::max(most, largest(a[k] - b[k]));
+  return most;
+}
+
+const std::vector<Matrix3>& dense_path() {
+  static const std::vector<Matrix3> path = path_of(Rve(recorded("dense")));
+  return path;
+}
+
+/// Positions moved and brought back into the cell, contacts told of it.
+Specimen shifted(Specimen s, const Vector3& shift) {
+  std::vector<Image> moved;
+  for (Vector3& x : s.grains.position) {
+    x += shift;
+    moved.push_back(wrap(s.cell, x));
+  }
+  for (Contact& c : s.contacts)
+    for (int k = 0; k < 3; ++k)
+      c.image[std::size_t(k)] += moved[std::size_t(c.i)][std::size_t(k)] - moved[std::size_t(c.j)][std::size_t(k)];
+  return s;
+}
+
+/// The same specimen with cell vectors L N, turned into the frame of that basis.
+Specimen in_basis(Specimen s, const Eigen::Matrix3i& basis) {
+  const Matrix3 vectors = s.cell.lattice * basis.cast<double>();
+  const Vector3 a = vectors.col(0).normalized();
+  const double angle = std::atan2(a[1], a[0]);
+  const Matrix3 turn = rotation_about_z(angle);
+  s.cell.lattice = (turn.transpose() * vectors).triangularView<Eigen::Upper>();
+  s.cell.rotation = s.cell.rotation * turn;
+  for (Vector3& x : s.grains.position) x = turn.transpose() * x;
+  const Matrix3 inverse = basis.cast<double>().inverse();
+  for (Contact& c : s.contacts) {
+    const Vector3 n = inverse * Vector3(c.image[0], c.image[1], c.image[2]);
+    for (int k = 0; k < 3; ++k) c.image[std::size_t(k)] = int(std::lround(n[k]));
+  }
+  // Not to be reduced before the path begins.
+  s.state.has_reference = true;
+  s.state.list_lattice = s.cell.lattice;
+  return s;
+}
+
+/// nx x ny copies of the cell as one cell; contacts go on to the copy that their image lies in.
+Specimen supercell(const Specimen& s, int nx, int ny) {
+  Specimen big = s;
+  big.cell.lattice.col(0) *= nx;
+  big.cell.lattice.col(1) *= ny;
+  big.grains = {};
+  big.contacts.clear();
+  const int n = int(s.grains.size());
+  const auto place = [&](int g, int i, int j) { return g + n * (i + nx * j); };
+  for (int j = 0; j < ny; ++j)
+    for (int i = 0; i < nx; ++i)
+      for (int g = 0; g < n; ++g)
+        add_grain(big, s.grains.position[std::size_t(g)] + s.cell.lattice * Vector3(i, j, 0),
+                  s.grains.radius[std::size_t(g)], s.grains.material[std::size_t(g)]);
+  for (int j = 0; j < ny; ++j)
+    for (int i = 0; i < nx; ++i)
+      for (const Contact& c : s.contacts) {
+        const int ti = i + c.image[0], tj = j + c.image[1];
+        const int wrapped_i = ((ti % nx) + nx) % nx, wrapped_j = ((tj % ny) + ny) % ny;
+        Contact copy = c;
+        copy.i = place(c.i, i, j);
+        copy.j = place(c.j, wrapped_i, wrapped_j);
+        copy.image = {(ti - wrapped_i) / nx, (tj - wrapped_j) / ny, 0};
+        if (copy.i > copy.j) {
+          // The component of a force along t = (-n_y, n_x) keeps its sign as the pair turns round; a moment does not.
+          std::swap(copy.i, copy.j);
+          for (int& m : copy.image) m = -m;
+          copy.rolling_moment = -copy.rolling_moment;
+        }
+        big.contacts.push_back(copy);
+      }
+  // Wrapped into the primary cuboid about the origin, as an import would.
+  return shifted(big, Vector3::Zero());
+}
+
+}  // namespace
+
+TEST_CASE("a rigid rotation at dt = 0 turns the stress and leaves every grain and contact bitwise as it was") {
+  const bool spheres = GENERATE(false, true);
+  Rve rve(recorded(spheres ? "hertz" : "dense"));
+  rve.apply(0.2 * path_step, 0);  // some history on the contacts, velocities too
+  const std::vector<std::byte> before = without_frame(rve);
+  const Matrix3 stress = rve.stress();
+  std::mt19937_64 generator(7);
+  std::uniform_real_distribution<double> angle(-pi, pi), coordinate(-1, 1);
+  Matrix3 turned = Matrix3::Identity();
+  for (int k = 0; k < 230; ++k) {  // over two renormalisations of Q
+    Vector3 axis = Vector3::UnitZ();
+    if (spheres) axis = Vector3(coordinate(generator), coordinate(generator), coordinate(generator)).normalized();
+    const Matrix3 q = Eigen::AngleAxisd(angle(generator), axis).toRotationMatrix();
+    const Response r = rve.apply(q - Matrix3::Identity(), 0);
+    turned = q * turned;
+    CHECK(r.report.substeps == 0);
+    CHECK(largest(r.stress - turned * stress * turned.transpose()) < 1e-12 * largest(stress));
+  }
+  CHECK(bool(without_frame(rve) == before));
+}
+
+TEST_CASE("quarter turns between the steps of a path permute the stress and change no bit of it") {
+  Rve still(recorded("dense")), turning(recorded("dense"));
+  Matrix3 quarter = gradient(0, -1, 1, 0), turned = Matrix3::Identity();
+  quarter(2, 2) = 1;
+  for (int k = 0; k < 6; ++k) {
+    turning.apply(quarter - Matrix3::Identity(), 0);
+    turned = quarter * turned;
+    const Matrix3 expected = still.apply(5 * path_step, 0).stress;
+    const Matrix3 found = turning.apply(turned * (5 * path_step) * turned.transpose(), 0).stress;
+    CHECK(same_bits(Matrix3(turned.transpose() * found * turned) + Matrix3::Zero(), expected + Matrix3::Zero()));
+  }
+  CHECK(bool(without_frame(turning) == without_frame(still)));
+}
+
+TEST_CASE("quarter turns of spheres about all axes permute the stress and change no bit of it") {
+  const Rve start = at_rest(disordered(Shape::sphere, 3, linear_material(2e6, 1e6, 0.5), Law::hertz_given, 0.52, 3));
+  Rve still(start), turning(start);
+  Matrix3 turned = Matrix3::Identity();
+  Matrix3 step = Matrix3::Zero();
+  step << -1e-3, 4e-4, 2e-4, -3e-4, 5e-4, 1e-4, 2e-4, -6e-4, -3e-4;
+  for (int k = 0; k < 6; ++k) {
+    Matrix3 quarter = Matrix3::Zero();  // about axis k mod 3
+    quarter(k % 3, k % 3) = 1;
+    quarter((k + 2) % 3, (k + 1) % 3) = 1;
+    quarter((k + 1) % 3, (k + 2) % 3) = -1;
+    turning.apply(quarter - Matrix3::Identity(), 0);
+    turned = quarter * turned;
+    const Matrix3 expected = still.apply(step, 0).stress;
+    const Matrix3 found = turning.apply(turned * step * turned.transpose(), 0).stress;
+    CHECK(same_bits(Matrix3(turned.transpose() * found * turned) + Matrix3::Zero(), expected + Matrix3::Zero()));
+  }
+  CHECK(bool(without_frame(turning) == without_frame(still)));
+}
+
+TEST_CASE("rotations between the steps of a path turn the stress with them, to 1e-10 of p") {
+  Rve rve(recorded("dense"));
+  const double p = pressure(rve.stress(), 2);
+  Matrix3 turned = Matrix3::Identity();
+  for (int k = 0; k < path_length; ++k) {
+    const Matrix3 q = rotation_about_z(0.7 + 1.3 * k);
+    rve.apply(q - Matrix3::Identity(), 0);
+    turned = q * turned;
+    const Matrix3 stress = rve.apply(turned * path_step * turned.transpose(), 0).stress;
+    CHECK(largest(turned.transpose() * stress * turned - dense_path()[std::size_t(k + 1)]) < 1e-10 * p);
+  }
+}
+
+TEST_CASE("the spin of an increment turns the stress by exactly that spin") {
+  // Straining within the cell, then turning, is one increment: F = R (I + dH).
+  Rve rve(recorded("dense"));
+  const double p = pressure(rve.stress(), 2);
+  Matrix3 turned = Matrix3::Identity();
+  for (int k = 0; k < path_length; ++k) {
+    const Matrix3 q = rotation_about_z(0.4 - 1.9 * k);
+    const Matrix3 whole = q * turned * (Matrix3::Identity() + path_step) * turned.transpose();
+    const Matrix3 stress = rve.apply(whole - Matrix3::Identity(), 0).stress;
+    turned = q * turned;
+    CHECK(largest(turned.transpose() * stress * turned - dense_path()[std::size_t(k + 1)]) < 1e-10 * p);
+  }
+}
+
+TEST_CASE("a shift of the origin changes the stress by no more than round-off") {
+  const Specimen s = recorded("dense");
+  const double p = pressure(Rve(s).stress(), 2);
+  const double l = s.cell.lattice(0, 0);
+  for (const Vector3& shift : {Vector3(0.123 * l, -0.391 * l, 0), Vector3(-2.71 * l, 3.14 * l, 0)})
+    {const double dd=difference(path_of(Rve(shifted(s, shift))), dense_path()); printf("D %g\n",dd/p); CHECK(dd< 1e-10 * p);}
+}
+
+TEST_CASE("a change of lattice basis changes the stress by no more than round-off") {
+  const Specimen s = recorded("dense");
+  const double p = pressure(Rve(s).stress(), 2);
+  Eigen::Matrix3i basis;
+  SECTION("sheared by one period") { basis << 1, 1, 0, 0, 1, 0, 0, 0, 1; }
+  SECTION("turned by 45 degrees and sheared") { basis << 1, -1, 0, 1, 0, 0, 0, 0, 1; }
+  SECTION("far from reduced") { basis << 2, 3, 0, 1, 2, 0, 0, 0, 1; }
+  const Specimen other = in_basis(s, basis);
+  {const double dd=difference(path_of(Rve(other)), dense_path()); printf("D %g\n",dd/p); CHECK(dd< 1e-10 * p);}
+  // The same, reduced on opening.
+  Specimen anew = other;
+  anew.state.has_reference = false;
+  {const double dd=difference(path_of(Rve(anew)), dense_path()); printf("D %g\n",dd/p); CHECK(dd< 1e-10 * p);}
+}
+
+TEST_CASE("a supercell of 2 x 2 periods has the stress of one") {
+  const Specimen s = recorded("dense");
+  const double p = pressure(Rve(s).stress(), 2);
+  {const double dd=difference(path_of(Rve(supercell(s, 2, 2))), dense_path()); printf("D %g\n",dd/p); CHECK(dd< 1e-10 * p);}
+}
+
+TEST_CASE("the order of the grains in memory and their ids are names only") {
+  // Reversed order turns every pair and every sum round: no bit is promised, round-off is.
+  const Specimen s = recorded("dense");
+  const double p = pressure(Rve(s).stress(), 2);
+  Specimen reversed = s;
+  const int n = int(s.grains.size());
+  for (int g = 0; g < n; ++g) {
+    reversed.grains.position[std::size_t(g)] = s.grains.position[std::size_t(n - 1 - g)];
+    reversed.grains.radius[std::size_t(g)] = s.grains.radius[std::size_t(n - 1 - g)];
+  }
+  for (Contact& c : reversed.contacts) {
+    const int i = c.i;
+    c.i = n - 1 - c.j;
+    c.j = n - 1 - i;
+    for (int& m : c.image) m = -m;
+    c.rolling_moment = -c.rolling_moment;
+  }
+  {const double dd=difference(path_of(Rve(reversed)), dense_path()); printf("D %g\n",dd/p); CHECK(dd< 1e-10 * p);}
+}
