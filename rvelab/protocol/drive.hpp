@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "rvelab/error.hpp"
 #include "rvelab/protocol/run.hpp"
 #include "rvelab/solver/rve.hpp"
 

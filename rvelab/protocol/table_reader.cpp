@@ -52,7 +52,9 @@ double TableReader::checked(const std::string& key, const toml::node& node, cons
   const double value = node.value<double>().value();
   if (!std::isfinite(value)) {
     mistake(key, "is not finite" + allowed + "give a finite number");
-  } else if (!range.contains(value)) {
+    return 0;
+  }
+  if (!range.contains(value)) {
     mistake(key, "is out of range" + allowed + "give a value in this range");
   }
   return value;

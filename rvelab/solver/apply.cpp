@@ -36,6 +36,7 @@ Matrix3 rotation_matrix(const Vector3& vector) {
 }
 
 Balance Rve::Impl::checked_balance() const {
+  check_height(fixture, now.cell);  // the list looks too, but only when it is built anew
   const Balance balance = balance_of(fixture, now);
   if (!balance.finite)
     throw IncrementFailed("the increment led to values that are not finite; apply it in smaller parts");
@@ -74,21 +75,31 @@ Report Rve::Impl::load(const Matrix3& dh, double dt) {
   const bool physical = dt > 0;
   if (!physical && (dh.isZero(0))) return report;
   if (!physical && whole.rigid) {
+    const Matrix3 turned = (Matrix3::Identity() + dh) * now.cell.rotation;
+    const bool quarter_turn = (dh + Matrix3::Identity()).unaryExpr([](double x) { return x * x * x - x; }).isZero(0);
     turn_frame(now.cell, whole.rotation);
+    if (quarter_turn) now.cell.rotation = turned;  // rows change places, no bit of them is lost
     return report;
   }
   begin_loading(fixture, now, physical ? Loading::physical : Loading::quasi_static);
   const Matrix3 identity = Matrix3::Identity(), start_frame = now.cell.rotation;
-  // The part of the increment done at fraction s, in the laboratory: straight in the stretch, geodesic in the rotation
-  // (at dt = 0 the frame turns at the end, since nothing depends on when).
+  // The part of the increment done at fraction s, in the frame of the start (where quarter turns change no bit of it):
+  // straight in the stretch, geodesic in the rotation (at dt = 0 the frame turns at the end, since nothing depends on
+  // when).
   const Vector3 turn = physical ? rotation_vector(whole.rotation) : Vector3::Zero();
   const bool turns = physical && !(whole.rotation.array() == identity.array()).all();
   const auto done_at = [&](double s) -> Matrix3 {
     const Matrix3 stretch = s == 1 ? whole.stretch : Matrix3(identity + s * (whole.stretch - identity));
     const Matrix3 rotation = !turns ? identity : (s == 1 ? whole.rotation : rotation_matrix(s * turn));
-    return start_frame * (rotation * stretch) * start_frame.transpose();
+    return rotation * stretch;
   };
-  const double strain = (whole.stretch - identity).norm();
+  // How the frame has turned since the start; orthogonal to round-off, so that no error of Q feeds on itself.
+  const auto turned_since_start = [&]() -> Matrix3 {
+    if ((now.cell.rotation.array() == start_frame.array()).all()) return identity;
+    return renormalised(start_frame.transpose() * now.cell.rotation);
+  };
+  // Green's strain: the pace must not depend on the frame, as the norm of a triangular stretch does.
+  const double strain = 0.5 * (whole.stretch.transpose() * whole.stretch - identity).norm();
   if (!physical && now.state.strain_per_step == 0) now.state.strain_per_step = initial_pace();
 
   double fraction = 0;
@@ -124,8 +135,10 @@ Report Rve::Impl::load(const Matrix3& dh, double dt) {
     fraction = steps == steps_left ? 1.0 : fraction + left * double(steps) / double(steps_left);
     const Matrix3 next = done_at(fraction);
     const Matrix3 part = next * done.inverse();
+    Cell since_start = now.cell;
+    since_start.rotation = turned_since_start();
     advance(fixture, now,
-            {split_increment(now.cell, part - identity), steps, step,
+            {split_increment(since_start, part - identity), steps, step,
              physical ? Loading::physical : Loading::quasi_static});
     done = next;
     report.substeps += steps;
@@ -136,8 +149,8 @@ Report Rve::Impl::load(const Matrix3& dh, double dt) {
     if (inertia_outgrown(fixture, sums, now)) scale_inertia(fixture, sums, now);
   }
   if (!physical && !(whole.rotation.array() == identity.array()).all()) {
-    const Matrix3 lab_turn = start_frame * whole.rotation * start_frame.transpose();
-    turn_frame(now.cell, now.cell.rotation.transpose() * lab_turn * now.cell.rotation);
+    const Matrix3 turned = turned_since_start();
+    turn_frame(now.cell, turned.transpose() * whole.rotation * turned);
   }
   return report;
 }

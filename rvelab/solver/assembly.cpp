@@ -368,6 +368,16 @@ Specimen close(const Fixture& f, const Assembly& a) {
   return s;
 }
 
+void check_height(const Fixture& f, const Cell& cell) {
+  const double shortest = shortest_vector(cell);
+  if (shortest < f.min_height) {
+    std::ostringstream text;
+    text << "cell too thin: the shortest lattice vector is " << shortest << " m, the limit solver.min_height_m is "
+         << f.min_height << " m; deform less, start from an oriented cell, or use a larger specimen";
+    throw IncrementFailed(text.str());
+  }
+}
+
 Reduction rebuild(const Fixture& f, Assembly& a) {
   std::vector<Carried> carried = history_of(f, a.pairs);
   const Reduction reduction = reduced(a.cell);
@@ -387,13 +397,7 @@ Reduction rebuild(const Fixture& f, Assembly& a) {
       }
     }
   }
-  const double shortest = shortest_vector(a.cell);
-  if (shortest < f.min_height) {
-    std::ostringstream text;
-    text << "cell too thin: the shortest lattice vector is " << shortest << " m, the limit solver.min_height_m is "
-         << f.min_height << " m; deform less, start from an oriented cell, or use a larger specimen";
-    throw IncrementFailed(text.str());
-  }
+  check_height(f, a.cell);
   std::vector<Image> moved(f.size());
   for (std::size_t g = 0; g < f.size(); ++g) {
     Vector3 x = a.position(f, g);

@@ -66,6 +66,9 @@ struct Assembly {
 void open(const Specimen& specimen, Fixture& fixture, Assembly& assembly);
 Specimen close(const Fixture& fixture, const Assembly& assembly);
 
+/// Throws IncrementFailed if the shortest lattice vector is below min_height.
+void check_height(const Fixture& fixture, const Cell& cell);
+
 /// Reduces the lattice where needed, wraps the grains, lists anew, carries history over. Returns the reduction made.
 /// Throws IncrementFailed if the shortest lattice vector is below min_height.
 Reduction rebuild(const Fixture& fixture, Assembly& assembly);

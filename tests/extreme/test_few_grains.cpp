@@ -31,7 +31,9 @@ Specimen centred(int dimension) {
   const double side = (1.8 - 0.08) * 2 / std::sqrt(double(dimension));
   const double quarter = side / 4;
   const Vector3 at(quarter, quarter, dimension == 2 ? 0 : quarter);
-  return specimen_of(cell_of(dimension, side, side, dimension == 2 ? 0.5 : side), {-at, at}, {1.0, 0.8});
+  Specimen s = specimen_of(cell_of(dimension, side, side, dimension == 2 ? 0.5 : side), {-at, at}, {1.0, 0.8});
+  s.solver.min_height = 1.0;  // 3D: the larger grain overlaps with its own images
+  return s;
 }
 
 void follow_random_increments(const Specimen& start, unsigned seed) {

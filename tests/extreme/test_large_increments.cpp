@@ -1,0 +1,195 @@
+// Increments of a half, of 1e-300, alternating ones by the thousand, and rotations by the thousand.
+#include "tests/catch.hpp"
+#include "tests/extreme/specimens.hpp"
+
+using namespace rvelab;
+using namespace rvelab::test;
+
+namespace {
+
+/// The state without the frame that carries it.
+struct CellFrameState {
+  Matrix3 lattice;
+  std::vector<Vector3> position, velocity, spin;
+  std::vector<Contact> contacts;
+
+  explicit CellFrameState(const Rve& rve) {
+    const Specimen s = rve.specimen();
+    lattice = s.cell.lattice;
+    position = s.grains.position;
+    velocity = s.grains.velocity;
+    spin = s.grains.spin;
+    contacts = s.contacts;
+  }
+  bool operator==(const CellFrameState& other) const {
+    bool same = lattice == other.lattice && position == other.position && velocity == other.velocity &&
+                spin == other.spin && contacts.size() == other.contacts.size();
+    for (std::size_t c = 0; same && c < contacts.size(); ++c) {
+      const Contact &a = contacts[c], &b = other.contacts[c];
+      same = a.i == b.i && a.j == b.j && a.image == b.image && a.tangential_force == b.tangential_force &&
+             a.rolling_moment == b.rolling_moment && a.last_root_overlap == b.last_root_overlap;
+    }
+    return same;
+  }
+};
+
+/// Stress of one frictionless grain in the lattice F L0.
+Matrix3 lattice_stress(const Specimen& start, const Matrix3& f) {
+  Specimen s = start;
+  s.cell.lattice = (f * s.cell.lattice).eval();
+  return stress_by_hand(s, stiffness, 9) * (s.cell.volume() / s.cell.lattice.determinant());
+}
+
+/// A disordered, jammed, frictional specimen with slip in its history.
+Rve jammed(int dimension, int count) {
+  const Material rough = material(stiffness, 0.5 * stiffness, 0.5);
+  const auto radii = spread_radii(count, 0.3);
+  Rve rve(packed(gas(dimension, radii, dimension == 2 ? 0.5 : 0.3, 3, rough), dimension == 2 ? 4e4 : 2e4));
+  rve.apply(entry(0, dimension - 1, 1e-3), 0);
+  return rve;
+}
+
+}  // namespace
+
+TEST_CASE("One grain sheared by a half at once has the stress of the sheared lattice", "[extreme]") {
+  // A lattice 1.9 wide and 2.6 high touches along x only; sheared by 0.5 of its height its diagonals stay apart.
+  for (const int d : {2, 3}) {
+    Specimen s = specimen_of(cell_of(d, 1.9, d == 2 ? 2.6 : 2.3, d == 2 ? 0.5 : 2.6), {Vector3::Zero()}, {1.0});
+    s.solver.min_height = 0.5;
+    const Matrix3 gradient = entry(0, d - 1, 0.5), f = Matrix3::Identity() + gradient;
+    Rve once(s), often(s);
+    const Matrix3 stress = once.apply(gradient, 0).stress;
+    for (int k = 0; k < 50; ++k) often.apply(entry(0, d - 1, 0.01), 0);
+    const Matrix3 expected = lattice_stress(s, f);
+    REQUIRE(expected(0, 0) < 0);
+    CHECK(largest(stress - expected) <= 1e-10 * largest(expected));
+    CHECK(largest(often.stress() - expected) <= 1e-10 * largest(expected));
+    CHECK(once.cell().volume() == Approx(s.cell.volume()).epsilon(1e-14));
+  }
+}
+
+TEST_CASE("Shear of a triangular lattice by its period at once comes back to the same stress", "[extreme]") {
+  // One disc per cell, a = (l, 0), b = (l/2, sqrt(3)/2 l): a shear of l over the height maps the lattice onto itself.
+  const double l = 1.96, height = std::sqrt(3.0) / 2 * l;
+  Specimen s = lone_grain(2, l);
+  s.cell.lattice(0, 1) = 0.5 * l;
+  s.cell.lattice(1, 1) = height;
+  Rve rve(s);
+  const double pressure = std::sqrt(3.0) * stiffness * (2 / l - 1) / 0.5;
+  CHECK(mean_pressure(rve.stress(), 2) == Approx(pressure).epsilon(1e-12));
+  const Matrix3 half = rve.apply(entry(0, 1, 0.5 * l / height), 0).stress;
+  CHECK(largest(half - lattice_stress(s, Matrix3::Identity() + entry(0, 1, 0.5 * l / height))) <= 1e-9 * pressure);
+  const Matrix3 whole = rve.apply(entry(0, 1, 0.5 * l / height), 0).stress;
+  CHECK(largest(whole + isotropic(2, pressure)) <= 1e-9 * pressure);
+}
+
+TEST_CASE("Sixteen frictional grains sheared by a half at once: none lost, volume kept, torques balanced",
+          "[extreme]") {
+  for (const int d : {2, 3}) {
+    Rve rve = jammed(d, 16);
+    const double volume = rve.cell().volume();
+    const Response response = rve.apply(entry(0, d - 1, 0.5), 0);
+    const double p = mean_pressure(response.stress, d);
+    CAPTURE(d, p, response.report.substeps, response.report.unbalanced_ratio);
+    CHECK(rve.size() == 16);
+    CHECK(rve.cell().volume() == Approx(volume).epsilon(1e-13));
+    CHECK(response.stress.allFinite());
+    CHECK(p >= 0);
+    CHECK(largest(response.stress - response.stress.transpose()) <=
+          response.report.unbalanced_ratio * std::max(p, 1e-3 * rve.network().reference_pressure));
+    for (const ContactState& c : rve.network().contacts)
+      CHECK(c.tangential_force.norm() <= c.friction * c.normal_force * (1 + 1e-12));
+  }
+}
+
+TEST_CASE("Tension by a half at once leaves a cohesionless packing without stress", "[extreme]") {
+  for (const int d : {2, 3}) {
+    Rve rve = jammed(d, 16);
+    const double volume = rve.cell().volume(), p0 = mean_pressure(rve.stress(), d);
+    const Response response = rve.apply(isotropic(d, 0.5), 0);
+    CHECK(largest(response.stress) <= 1e-6 * p0);
+    CHECK(rve.cell().volume() == Approx(volume * std::pow(1.5, d)).epsilon(1e-13));
+    CHECK(rve.size() == 16);
+    // Recompression jams it again, near the volume where it was jammed before.
+    double volume_jammed = 0;
+    for (int k = 0; k < 400 && volume_jammed == 0; ++k) {
+      rve.apply(isotropic(d, -2e-3), 0);
+      if (mean_pressure(rve.stress(), d) > 0.5 * p0) volume_jammed = rve.cell().volume();
+    }
+    CHECK(volume_jammed == Approx(volume).epsilon(d == 2 ? 0.15 : 0.25));
+  }
+}
+
+TEST_CASE("Compression of a packing by a half at once is refused and changes nothing", "[extreme]") {
+  for (const int d : {2, 3}) {
+    Rve rve = jammed(d, 16);
+    const auto before = rve.save();
+    for (const double dt : {0.0, 0.1})
+      CHECK(contains(refusal<IncrementFailed>([&] { rve.apply(isotropic(d, -0.5), dt); }), "overlap"));
+    CHECK((rve.save() == before));
+  }
+}
+
+TEST_CASE("Increments below the resolution of a number change no grain", "[extreme]") {
+  for (const int d : {2, 3}) {
+    Rve rve = jammed(d, 16);
+    const CellFrameState before(rve);
+    const Matrix3 stress = rve.stress();
+    for (const double size : {1e-300, -1e-300, 4.9e-324, 1e-30, 0.0})
+      for (int k = 0; k < 25; ++k)
+        for (const Matrix3& gradient : {entry(0, d - 1, size), entry(d - 1, 0, size), isotropic(d, size)})
+          rve.apply(gradient, 0);
+    CHECK((CellFrameState(rve) == before));
+    CHECK(largest(rve.stress() - stress) <= 1e-14 * largest(stress));
+    // At dt > 0 the same increments are a rest of the given time: a relaxed crystal stays as it is.
+    Rve crystal(lone_grain(d, 1.95));
+    const Matrix3 at_rest = crystal.stress();
+    crystal.apply(entry(0, d - 1, 1e-300), 1e-3);
+    CHECK(largest(crystal.stress() - at_rest) <= 1e-14 * largest(at_rest));
+  }
+}
+
+TEST_CASE("Ten thousand increments of alternating sign leave an elastic crystal where it was", "[extreme]") {
+  const Material rough = material(stiffness, 0.5 * stiffness, 1e6);
+  for (const double dt : {0.0, 1e-3}) {
+    Specimen s = triangular(2, 1, 1.95, rough);
+    s.solver.min_height = 1.0;
+    s.solver.fixed_time_step = dt;
+    Rve rve(s);
+    const Matrix3 start = rve.stress();
+    Random random(23);
+    double expansion = 1;
+    for (int k = 0; k < 5000; ++k) {
+      Matrix3 gradient = Matrix3::Zero();
+      for (int i = 0; i < 2; ++i)
+        for (int j = 0; j < 2; ++j) gradient(i, j) = random(-1e-4, 1e-4);
+      const Matrix3 back = (Matrix3::Identity() + gradient).inverse() - Matrix3::Identity();
+      rve.apply(gradient, dt);
+      rve.apply(back, dt);
+      expansion *= (Matrix3::Identity() + gradient).determinant() * (Matrix3::Identity() + back).determinant();
+    }
+    CHECK(rve.cell().volume() == Approx(s.cell.volume() * expansion).epsilon(1e-10));
+    CHECK(rve.cell().volume() == Approx(s.cell.volume()).epsilon(1e-10));
+    CHECK(largest(rve.stress() - start) <= 1e-6 * largest(start));
+    CHECK(rve.size() == 4);
+  }
+}
+
+TEST_CASE("Ten thousand rotations change no bit of the grains and turn the stress", "[extreme]") {
+  for (const int d : {2, 3}) {
+    Rve rve = jammed(d, 16);
+    const CellFrameState before(rve);
+    const Matrix3 stress = rve.stress();
+    Matrix3 total = Matrix3::Identity();
+    Random random(29);
+    for (int k = 0; k < 10'000; ++k) {
+      const Vector3 axis = d == 2 ? Vector3(0, 0, 1) : Vector3(random(-1, 1), random(-1, 1), random(0.1, 1));
+      const Matrix3 turn = rotation_about(axis, k % 2 == 0 ? random(-3, 3) : random(-1e-5, 1e-5));
+      rve.apply(turn - Matrix3::Identity(), 0);
+      total = (turn * total).eval();
+      if (k % 100 == 0) total = renormalised(total);
+    }
+    CHECK((CellFrameState(rve) == before));
+    CHECK(largest(rve.stress() - total * stress * total.transpose()) <= 1e-10 * largest(stress));
+  }
+}

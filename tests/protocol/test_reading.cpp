@@ -1,0 +1,240 @@
+// A protocol file says exactly what is run: every mistake in it is told, nothing is guessed.
+#include <filesystem>
+#include <algorithm>
+
+#include "rvelab/error.hpp"
+#include "rvelab/protocol/protocol.hpp"
+#include "tests/catch.hpp"
+
+using namespace rvelab;
+
+namespace {
+
+const std::string biaxial = R"([test]
+name = "biaxial"
+dimension = 2
+pressure_Pa = 20e3
+
+[[stage]]
+kind = "isotropic"
+
+[[stage]]
+kind = "compression"
+to_strain = 0.15
+)";
+
+/// The message of the InputError that the text gives; "" if it gives none.
+std::string message_of(const std::string& text, const std::vector<std::string>& assignments = {}) {
+  try {
+    parse_protocol(text, "test.toml", assignments);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+std::size_t lines(const std::string& text) {
+  return text.empty() ? 0 : 1 + static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+template <class What>
+const What& stage_of(const Protocol& protocol, std::size_t number) {
+  return std::get<What>(protocol.stages.at(number).what);
+}
+
+}  // namespace
+
+TEST_CASE("What a protocol leaves out has the documented defaults") {
+  const Protocol protocol = parse_protocol(biaxial, "test.toml");
+  CHECK(protocol.name == "biaxial");
+  CHECK(protocol.pressure == 20e3);
+  CHECK(protocol.uses_pressure);
+  CHECK_FALSE(protocol.loading.physical);
+  CHECK(protocol.loading.held_tolerance == 0.005);
+  CHECK(protocol.loading.held_wait == 200);
+  REQUIRE(protocol.stages.size() == 2);
+  CHECK(protocol.stages[0].name == "isotropic");
+  const auto& isotropic = stage_of<IsotropicStage>(protocol, 0);
+  CHECK(isotropic.pressure == 20e3);
+  CHECK_FALSE(isotropic.shear_stress_free);
+  CHECK(isotropic.stress_tolerance == 1e-4);
+  CHECK(isotropic.unbalanced == 1e-5);
+  const auto& compression = stage_of<CompressionStage>(protocol, 1);
+  CHECK(compression.axis == "y");
+  CHECK(compression.to_strain == 0.15);
+  CHECK(compression.record_every == 0.0005);
+  CHECK(compression.lateral == CompressionStage::Lateral::constant_stress);
+  CHECK(compression.lateral_pressure == 20e3);
+}
+
+TEST_CASE("A stage's own pressure goes before the test's") {
+  const std::string text = biaxial + "lateral_pressure_Pa = 35e3\n";
+  const Protocol protocol = parse_protocol(text, "test.toml", {"stage.isotropic.pressure_Pa=30e3"});
+  CHECK(stage_of<IsotropicStage>(protocol, 0).pressure == 30e3);
+  CHECK(stage_of<CompressionStage>(protocol, 1).lateral_pressure == 35e3);
+  CHECK_FALSE(protocol.uses_pressure);
+}
+
+TEST_CASE("The resolved text is a protocol that says the same and stays as it is when read again") {
+  const std::string text = biaxial + "[contact]\nslip = \"full_radius\"\n[material]\nfriction = 0.4\n[solver]\nskin = 0.2\n";
+  const Protocol first = parse_protocol(text, "test.toml", {"stage.compression.record_every=0.0007"});
+  const Protocol second = parse_protocol(first.resolved, "resolved.toml");
+  CHECK(second.resolved == first.resolved);
+  CHECK(second.pressure == first.pressure);
+  CHECK(stage_of<CompressionStage>(second, 1).record_every == 0.0007);
+  CHECK(second.overrides["contact"]["slip"].value<std::string>() == "full_radius");
+  for (const char* part : {"held_wait", "stress_tolerance", "unbalanced", "lateral_pressure_Pa", "max_rounds"}) {
+    CHECK(contains(first.resolved, part));
+  }
+}
+
+TEST_CASE("All unknown keys are told at once, with line and nearest known key") {
+  const std::string text = R"([test]
+name = "biaxial"
+presure_Pa = 20e3
+pressure_Pa = 20e3
+[loadings]
+mode = "physical"
+[contact]
+slop = "consistent"
+[[stage]]
+kind = "compression"
+to_strian = 0.1
+to_strain = 0.1
+[specimen]
+fiel = "S.h5"
+file = "S.h5"
+)";
+  const std::string message = message_of(text);
+  CHECK(lines(message) == 5);
+  CHECK(contains(message, "test.toml:3: unknown key test.presure_Pa; the nearest known key is test.pressure_Pa"));
+  CHECK(contains(message, "test.toml:5: unknown key loadings; the nearest known key is loading"));
+  CHECK(contains(message, "test.toml:8: unknown key contact.slop; the nearest known key is contact.slip"));
+  CHECK(contains(message, "test.toml:11: unknown key stage.compression.to_strian; the nearest known key is "
+                          "stage.compression.to_strain"));
+  CHECK(contains(message, "test.toml:14: unknown key specimen.fiel; the nearest known key is specimen.file"));
+}
+
+TEST_CASE("A key of another kind of stage is unknown") {
+  CHECK(contains(message_of(biaxial + "plane = \"xy\"\n"), "unknown key stage.compression.plane"));
+  CHECK(contains(message_of(biaxial, {"stage.isotropic.to_strain=0.1"}), "unknown key stage.isotropic.to_strain"));
+}
+
+TEST_CASE("Missing keys are told by name") {
+  CHECK(contains(message_of("[test]\nname = \"t\"\n"), "no stage"));
+  const std::string message =
+      message_of("[test]\n[[stage]]\nkind = \"compression\"\n[[stage]]\nname = \"b\"\n[[stage]]\nkind = \"isotropic\"\n");
+  CHECK(lines(message) == 5);
+  CHECK(contains(message, "test.name is missing"));
+  CHECK(contains(message, "stage.compression.to_strain is missing"));
+  CHECK(contains(message, "stage.compression.lateral_pressure_Pa is missing, and so is test.pressure_Pa"));
+  CHECK(contains(message, "stage.b.kind is missing; allowed: isotropic, compression, simple_shear, relax, probe"));
+  CHECK(contains(message, "stage.isotropic.pressure_Pa is missing"));
+}
+
+TEST_CASE("Wrong types, numbers that are not finite and values out of range are refused with what is allowed") {
+  const auto refused = [](const std::string& assignment, const std::string& part) {
+    const std::string message = message_of(biaxial, {assignment});
+    INFO(assignment << " -> " << message);
+    CHECK(lines(message) == 1);
+    CHECK(contains(message, part));
+    CHECK(contains(message, "allowed"));
+  };
+  refused("test.pressure_Pa=-5", "test.pressure_Pa = -5 is out of range");
+  refused("test.pressure_Pa=0", "out of range");
+  refused("test.pressure_Pa=nan", "is not finite");
+  refused("test.pressure_Pa=inf", "is not finite");
+  refused("test.pressure_Pa=high", "test.pressure_Pa = 'high' is not a number");
+  refused("test.pressure_Pa=true", "is not a number");
+  refused("test.dimension=4", "out of range");
+  refused("test.dimension=2.0", "is not a whole number");
+  refused("stage.compression.to_strain=1", "out of range");
+  refused("stage.compression.to_strain=0", "goes nowhere");
+  refused("stage.compression.record_every=1e-9", "records");
+  refused("stage.compression.lateral=free", "is not known; allowed: constant_stress, constant_volume");
+  refused("stage.compression.axis=z", "leaves the plane");
+  refused("stage.isotropic.max_rounds=1.5", "is not a whole number");
+  refused("stage.isotropic.record=1", "is neither true nor false");
+  refused("loading.held_tolerance=0", "out of range");
+  refused("contact.slip=sideways", "contact.slip");
+  refused("solver.skin=-1", "solver.skin");
+  refused("material.friction=-0.1", "material.friction");
+}
+
+TEST_CASE("Keys that contradict each other are refused") {
+  const auto refused = [](const std::string& text, const std::string& part) {
+    const std::string message = message_of(text);
+    INFO(message);
+    CHECK(lines(message) == 1);
+    CHECK(contains(message, part));
+  };
+  refused(biaxial + "[loading]\nmode = \"physical\"\nrate_1_s = 0.1\ninertial_number = 1e-3\n", "contradicts");
+  refused(biaxial + "[loading]\nrate_1_s = 0.1\n", "contradicts loading.mode = \"quasi_static\"");
+  refused(biaxial + "[loading]\nmode = \"physical\"\n", "needs a rate");
+  refused(biaxial + "lateral = \"constant_volume\"\nlateral_pressure_Pa = 1e4\n", "contradicts lateral");
+  refused(biaxial + "[[stage]]\nkind = \"simple_shear\"\nto_strain = 0.1\nnormal_pressure_Pa = 1e4\n",
+          "contradicts normal");
+  refused(biaxial + "[[stage]]\nkind = \"probe\"\nmethod = \"linear\"\nno_slip = false\n", "contradicts method");
+  refused(biaxial + "[[stage]]\nkind = \"compression\"\nto_strain = -0.1\n", "is there twice");
+}
+
+TEST_CASE("Assignments act before the file is checked, on stages by name or number, and words need no quotation marks") {
+  const Protocol by_name = parse_protocol(biaxial, "t", {"stage.compression.to_strain=0.05", "test.pressure_Pa=2e4"});
+  CHECK(stage_of<CompressionStage>(by_name, 1).to_strain == 0.05);
+  const Protocol by_number = parse_protocol(biaxial, "t", {"stage.1.lateral=constant_volume", "test.name = a b"});
+  CHECK(stage_of<CompressionStage>(by_number, 1).lateral == CompressionStage::Lateral::constant_volume);
+  CHECK(by_number.name == "a b");
+  const Protocol new_tables =
+      parse_protocol(biaxial, "t", {"contact.slip=full_radius_ratcheting", "material.sand.friction=0.5"});
+  CHECK(new_tables.overrides["contact"]["slip"].value<std::string>() == "full_radius_ratcheting");
+  CHECK(new_tables.overrides["material"]["sand"]["friction"].value<double>() == 0.5);
+  // The later one wins.
+  CHECK(parse_protocol(biaxial, "t", {"test.pressure_Pa=1e4", "test.pressure_Pa=3e4"}).pressure == 3e4);
+  // A mistake in one is told like one in the file.
+  CHECK(contains(message_of(biaxial, {"test.presure_Pa=1"}), "nearest known key is test.pressure_Pa"));
+  CHECK(contains(message_of(biaxial, {"stage.7.to_strain=0.1"}), "allowed: 0 (isotropic), 1 (compression)"));
+  CHECK(contains(message_of(biaxial, {"stage.shear.to_strain=0.1"}), "names no stage"));
+  for (const char* wrong : {"pressure", "test.pressure_Pa", "test.pressure_Pa=", "=3", "pressure_Pa=3", "test..a=1",
+                            "stage.1=3", "test.name.more=1"}) {
+    INFO(wrong);
+    CHECK_THROWS_AS(parse_protocol(biaxial, "t", {wrong}), InputError);
+  }
+}
+
+TEST_CASE("A text that is not TOML is refused with its line") {
+  CHECK(contains(message_of("[test]\nname = \n"), "test.toml:2"));
+  CHECK_THROWS_AS(read_protocol("no/such/file.toml"), InputError);
+}
+
+TEST_CASE("Overrides reach the specimen and must fit it") {
+  Specimen specimen;
+  specimen.shape = Shape::disc;
+  specimen.cell.dimension = 2;
+  specimen.materials.resize(2);
+  specimen.materials[0].name = "sand";
+  specimen.materials[1].name = "steel";
+  const std::string text = biaxial + "[contact]\nslip = \"full_radius\"\n[material]\nfriction = 0.3\nsteel.friction = 0.1\n";
+  const Specimen changed = with_overrides(parse_protocol(text, "t"), specimen);
+  CHECK(changed.contact.slip == Slip::full_radius);
+  CHECK(changed.materials[0].friction == 0.3);
+  CHECK(changed.materials[1].friction == 0.1);
+  CHECK_THROWS_AS(with_overrides(parse_protocol(biaxial + "[material.clay]\nfriction = 0.3\n", "t"), specimen), InputError);
+  specimen.cell.dimension = 3;
+  CHECK_THROWS_AS(with_overrides(parse_protocol(biaxial, "t"), specimen), InputError);
+}
+
+TEST_CASE("Every protocol that comes with rvelab is one, and opens with what it is") {
+  int found = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(RVELAB_SOURCE_DIR "/protocols")) {
+    INFO(entry.path());
+    CHECK_NOTHROW(read_protocol(entry.path().string()));
+    ++found;
+  }
+  CHECK(found >= 4);
+  const Protocol protocol = read_protocol(RVELAB_SOURCE_DIR "/protocols/biaxial.toml");
+  CHECK(protocol.calibration_pressures == std::vector<double>{10e3, 15e3, 20e3, 25e3, 30e3});
+  CHECK(stage_of<CompressionStage>(protocol, 1).to_strain == 0.15);
+  CHECK(stage_of<CompressionStage>(protocol, 1).record_every == 0.0005);
+}
