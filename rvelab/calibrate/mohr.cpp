@@ -34,9 +34,7 @@ PrincipalStresses principal_stresses(const Matrix3& stress, int dimension) {
   return {values[dimension - 1], values[0]};
 }
 
-double friction_angle_deg(const PrincipalStresses& stresses) {
-  return std::asin(stresses.t() / stresses.s()) / degree;
-}
+double friction_angle_deg(const PrincipalStresses& stresses) { return std::asin(stresses.t() / stresses.s()) / degree; }
 
 Peak peak(std::span<const Record> records, int dimension) {
   if (records.empty()) throw InputError("peak: 0 records; allowed: at least 1; give a test that records");

@@ -130,7 +130,8 @@ void run_calibration(const CalibrateArguments& arguments) {
 
 void add_calibrate(CLI::App& app) {
   auto arguments = std::make_shared<CalibrateArguments>();
-  CLI::App* command = app.add_subcommand("calibrate", "Run a compression test at several pressures: friction angle, N_q");
+  CLI::App* command =
+      app.add_subcommand("calibrate", "Run a compression test at several pressures: friction angle, N_q");
   command->add_option("protocol", arguments->protocol, "PROTOCOL.toml, for example protocols/biaxial.toml")->required();
   command->add_option("--specimen", arguments->specimens, "specimen; given several times: one for each pressure")
       ->expected(1)

@@ -23,7 +23,7 @@ struct RunArguments {
 
 /// One member of all records as an array.
 template <class Value>
-Json column(const std::vector<Record>& records, Value Record::* member) {
+Json column(const std::vector<Record>& records, Value Record::*member) {
   Json values = Json::array();
   for (const Record& record : records) {
     if constexpr (std::is_same_v<Value, Matrix3>) {
@@ -93,8 +93,8 @@ void report(const TestRun& run, const RunArguments& arguments) {
 
 void run_test(const RunArguments& arguments) {
   const Protocol protocol = read_protocol(arguments.protocol, arguments.settings);
-  const auto specimens =
-      specimens_for(protocol, arguments.specimen.empty() ? std::vector<std::string>{} : std::vector{arguments.specimen});
+  const auto specimens = specimens_for(
+      protocol, arguments.specimen.empty() ? std::vector<std::string>{} : std::vector{arguments.specimen});
   if (!arguments.output.empty()) expect_folder_of(arguments.output);
   const TestRun run = run_protocol(protocol, specimens.front());
   if (!arguments.output.empty()) write_records(run.result, run.end_state, protocol.resolved, arguments.output);
@@ -107,7 +107,8 @@ void add_run(CLI::App& app) {
   auto arguments = std::make_shared<RunArguments>();
   CLI::App* command = app.add_subcommand("run", "Run a test, a protocol in TOML, on a specimen");
   command->add_option("protocol", arguments->protocol, "PROTOCOL.toml, for example protocols/biaxial.toml")->required();
-  command->add_option("--specimen", arguments->specimen, "specimen (or record file: its end state); else [specimen] file");
+  command->add_option("--specimen", arguments->specimen,
+                      "specimen (or record file: its end state); else [specimen] file");
   command->add_option("-o,--output", arguments->output, "record file to write, R.h5");
   command->add_option("--set", arguments->settings, "key=value, for example test.pressure_Pa=2e4")
       ->expected(1)

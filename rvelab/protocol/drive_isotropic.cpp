@@ -87,8 +87,8 @@ void drive(RunningTest& test, const RelaxStage& stage) {
   const Report report = test.relax(stage.unbalanced, stage.max_steps);
   if (report.unbalanced_ratio > stage.unbalanced) {
     std::ostringstream text;
-    text << "the unbalanced ratio is " << report.unbalanced_ratio << " after " << report.substeps << " steps; wanted: "
-         << stage.unbalanced << "; raise max_steps or unbalanced";
+    text << "the unbalanced ratio is " << report.unbalanced_ratio << " after " << report.substeps
+         << " steps; wanted: " << stage.unbalanced << "; raise max_steps or unbalanced";
     throw test.failed(text.str());
   }
   if (stage.record) test.record_now(0);

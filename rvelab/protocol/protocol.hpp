@@ -17,9 +17,9 @@ namespace rvelab {
 
 /// How driven stages (compression, simple shear) pass through time. All other stages are quasi-static.
 struct Loading {
-  bool physical = false;       ///< false: dt = 0; true: physical masses at the rate below
-  double rate = 0;             ///< 1/s, true rate of the driving strain; 0: from the inertial number
-  double inertial_number = 0;  ///< I = rate d sqrt(rho/p), p at the start of the stage; 0: from the rate
+  bool physical = false;          ///< false: dt = 0; true: physical masses at the rate below
+  double rate = 0;                ///< 1/s, true rate of the driving strain; 0: from the inertial number
+  double inertial_number = 0;     ///< I = rate d sqrt(rho/p), p at the start of the stage; 0: from the rate
   double held_tolerance = 0.005;  ///< a held stress may miss by this times max(|target|, 1 % of the stage's first p)
   long held_wait = 200;           ///< sub-steps that a record waits for the held stress
 };
@@ -27,15 +27,15 @@ struct Loading {
 /// All normal stresses to -pressure. Ends when every stress that is driven is within stress_tolerance of its target
 /// and the unbalanced ratio is below `unbalanced`; Error if that is not reached within max_rounds.
 struct IsotropicStage {
-  double pressure = 0;                 ///< Pa, > 0
-  bool shear_stress_free = false;      ///< false: shear strains stay zero (the cell keeps its angles); true: shear
-                                       ///< stresses are driven to zero
-  double stress_tolerance = 1e-4;      ///< of the pressure
+  double pressure = 0;             ///< Pa, > 0
+  bool shear_stress_free = false;  ///< false: shear strains stay zero (the cell keeps its angles); true: shear
+                                   ///< stresses are driven to zero
+  double stress_tolerance = 1e-4;  ///< of the pressure
   double unbalanced = 1e-5;
-  double largest_change = 0.1;         ///< of the pressure, in one increment
-  long max_rounds = 100;               ///< of relaxing and correcting, at the end
-  long max_steps = 1'000'000;          ///< of one relaxation
-  bool record = false;                 ///< records the state at the start and at the end
+  double largest_change = 0.1;  ///< of the pressure, in one increment
+  long max_rounds = 100;        ///< of relaxing and correcting, at the end
+  long max_steps = 1'000'000;   ///< of one relaxation
+  bool record = false;          ///< records the state at the start and at the end
 };
 
 /// One axis shortened (or lengthened) to a strain 1 - F_aa, with records at fixed strains.
@@ -44,8 +44,8 @@ struct CompressionStage {
     constant_stress,  ///< each lateral normal stress held at -lateral_pressure; shear strains zero
     constant_volume   ///< det F = 1 with equal lateral strains; shear strains zero
   };
-  std::string axis;         ///< "x", "y", "z"; empty: y in 2D, z in 3D
-  double to_strain = 0;     ///< 1 - F_aa, compression positive, below 1, not 0
+  std::string axis;      ///< "x", "y", "z"; empty: y in 2D, z in 3D
+  double to_strain = 0;  ///< 1 - F_aa, compression positive, below 1, not 0
   double record_every = 5e-4;
   Lateral lateral = Lateral::constant_stress;
   double lateral_pressure = 0;  ///< Pa
@@ -91,12 +91,12 @@ struct Stage {
 struct Protocol {
   std::string path;  ///< of its file; relative names in it count from there
   std::string name;
-  int dimension = 0;  ///< 2 or 3; 0: any
+  int dimension = 0;                                           ///< 2 or 3; 0: any
   double pressure = std::numeric_limits<double>::quiet_NaN();  ///< Pa, [test] pressure_Pa
-  bool uses_pressure = false;             ///< a stage takes its pressure from there
-  std::string specimen_file;              ///< empty: given on the command line
-  std::vector<double> calibration_pressures;  ///< Pa, [calibrate] pressures_Pa
-  toml::table overrides;                  ///< [contact], [damping], [solver], [material]
+  bool uses_pressure = false;                                  ///< a stage takes its pressure from there
+  std::string specimen_file;                                   ///< empty: given on the command line
+  std::vector<double> calibration_pressures;                   ///< Pa, [calibrate] pressures_Pa
+  toml::table overrides;                                       ///< [contact], [damping], [solver], [material]
   Loading loading;
   std::vector<Stage> stages;
   std::string resolved;  ///< the protocol with every default and assignment in it, TOML

@@ -23,7 +23,8 @@ const toml::table& table_of(const toml::table& file, const std::string& name, st
   const toml::node* node = file.get(name);
   if (node == nullptr) return nothing;
   if (node->is_table()) return *node->as_table();
-  errors.push_back({line_of(*node), name + " is not a table; allowed: [" + name + "] with its keys below; write it so"});
+  errors.push_back(
+      {line_of(*node), name + " is not a table; allowed: [" + name + "] with its keys below; write it so"});
   return nothing;
 }
 

@@ -113,8 +113,9 @@ ProbeStage read_probe(TableReader& reader) {
   stage.size = reader.number("size", stage.size, {0, 0.01, true, false});
   stage.no_slip = reader.truth("no_slip", linear);
   if (linear && !stage.no_slip) {
-    reader.mistake("no_slip", "contradicts method = \"linear\", in which every contact is stuck; allowed: true with "
-                              "it; remove the key or take method = \"dynamic\"");
+    reader.mistake("no_slip",
+                   "contradicts method = \"linear\", in which every contact is stuck; allowed: true with "
+                   "it; remove the key or take method = \"dynamic\"");
   }
   return stage;
 }
@@ -126,8 +127,7 @@ void read_stage(const toml::table& table, long number, Protocol& protocol, toml:
   const std::string kind_given = table["kind"].value_or(std::string());
   const std::string name = table["name"].value_or(kind_given.empty() ? std::to_string(number) : kind_given);
   TableReader reader(table, "stage." + name, line_of(table), errors);
-  const auto kind =
-      reader.word("kind", std::nullopt, {"isotropic", "compression", "simple_shear", "relax", "probe"});
+  const auto kind = reader.word("kind", std::nullopt, {"isotropic", "compression", "simple_shear", "relax", "probe"});
   if (kind.empty()) return;  // without its kind no other key can be judged
   Stage stage{reader.text("name", kind), {}};
   if (kind == "isotropic") stage.what = read_isotropic(reader, protocol);

@@ -60,16 +60,17 @@ void RunningTest::begin_stage(const Stage& stage) {
   if (loading.physical && loading.inertial_number > 0) {
     const Network network = rve.network();
     // I = rate d sqrt(rho/p), with the driving strain's rate (design 3)
-    rate_ = first_pressure > 0 ? loading.inertial_number * std::sqrt(first_pressure / solid_density(network)) /
-                                     mean_diameter(network)
-                               : 0;
+    rate_ = first_pressure > 0
+                ? loading.inertial_number * std::sqrt(first_pressure / solid_density(network)) / mean_diameter(network)
+                : 0;
   }
 }
 
 double RunningTest::held_scale(double target) const {
   const double scale = std::max(std::abs(target), 0.01 * std::abs(first_pressure));
   if (scale > 0) return scale;
-  throw failed("a stress of 0 Pa cannot be held from a state without pressure; allowed: a pressure > 0; compress first");
+  throw failed(
+      "a stress of 0 Pa cannot be held from a state without pressure; allowed: a pressure > 0; compress first");
 }
 
 double RunningTest::time_for(double strain_increment) const {

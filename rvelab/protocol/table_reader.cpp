@@ -140,8 +140,8 @@ void TableReader::finish() {
     if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
     const std::string prefix = where_.empty() ? "" : where_ + ".";
     errors_.push_back({static_cast<long>(key.source().begin.line),
-                       "unknown key " + prefix + name + "; the nearest known key is " + prefix +
-                           nearest(name, known_) + "; correct the name or remove it"});
+                       "unknown key " + prefix + name + "; the nearest known key is " + prefix + nearest(name, known_) +
+                           "; correct the name or remove it"});
   }
 }
 

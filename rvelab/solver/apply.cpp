@@ -40,10 +40,10 @@ Balance Rve::Impl::checked_balance() const {
   const Balance balance = balance_of(fixture, now);
   if (!balance.finite)
     throw IncrementFailed("the increment led to values that are not finite; apply it in smaller parts");
-  if (balance.largest_overlap_ratio > fixture.options.max_overlap_ratio) {
+  if (balance.largest_overlap_ratio > fixture.overlap_limit) {
     std::ostringstream text;
     text << "grains overlap by " << balance.largest_overlap_ratio
-         << " of the smaller radius; solver.max_overlap_ratio allows " << fixture.options.max_overlap_ratio
+         << " of the smaller radius; solver.max_overlap_ratio allows " << fixture.overlap_limit
          << "; compress less or take stiffer grains";
     throw IncrementFailed(text.str());
   }
@@ -178,7 +178,7 @@ Report Rve::Impl::load(const MixedTarget& target, double dt, Matrix3& gradient) 
     }
     double step = 1;
     long steps = servo_stretch;
-    double advance_by = 0, limit;
+    double advance_by = 0, full_pace;
     const double wanted = servo.predicted_strain() + target.spin.norm();
     if (physical) {
       double longest = fixture.options.fixed_time_step;
@@ -192,11 +192,11 @@ Report Rve::Impl::load(const MixedTarget& target, double dt, Matrix3& gradient) 
       } else {
         step = longest;
       }
-      limit = 3 * std::max(wanted * double(steps) * step / dt, 1e-9);
+      full_pace = std::max(wanted * double(steps) * step / dt, 1e-9);
     } else {
       const double reach = double(servo_stretch) * now.state.strain_per_step;
       advance_by = wanted > 0 ? std::min(1 - fraction, reach / wanted) : 1 - fraction;
-      limit = 3 * reach;
+      full_pace = reach;
     }
     const bool waiting = fraction >= 1;
     if (waiting) {
@@ -206,7 +206,7 @@ Report Rve::Impl::load(const MixedTarget& target, double dt, Matrix3& gradient) 
     }
     fraction = 1 - fraction - advance_by < 1e-12 ? 1.0 : fraction + advance_by;
     const Matrix3 change =
-        servo.next_strain(fraction, advance_by * wanted, limit, strain, stress(), now.state.servo_strain);
+        servo.next_strain(fraction, advance_by * wanted, full_pace, strain, stress(), now.state.servo_strain);
     const Matrix3 from = gradient;
     strain += change;
     gradient = strain + fraction * target.spin;

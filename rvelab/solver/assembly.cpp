@@ -126,7 +126,8 @@ std::vector<Carried> history_of(const Fixture& f, const PairTable& pairs) {
 }
 
 /// Blocks of four grains, each with as many slots as the busiest of the four needs on either side.
-void fill_gather_table(std::size_t grains, const std::vector<ListedPair>& listed, PairTable& pairs) {
+void fill_gather_table(std::size_t grains, std::int32_t force_row, const std::vector<ListedPair>& listed,
+                       PairTable& pairs) {
   const std::size_t rows = padded_to_lanes(grains), blocks = rows / 4;
   std::vector<std::int32_t> as_first(rows, 0), as_second(rows, 0);
   for (const ListedPair& pair : listed) {
@@ -139,14 +140,14 @@ void fill_gather_table(std::size_t grains, const std::vector<ListedPair>& listed
     for (std::size_t g = 4 * b; g < 4 * b + 4; ++g) most = std::max({most, as_first[g], as_second[g]});
     pairs.slot_begin[b + 1] = pairs.slot_begin[b] + most;
   }
-  const auto nothing = std::int32_t(listed.size());  // the first padding pair
+  const auto nothing = force_row * std::int32_t(listed.size());  // the first padding pair
   pairs.slots.assign(8 * std::size_t(pairs.slot_begin[blocks]), nothing);
   std::fill(as_first.begin(), as_first.end(), 0);
   std::fill(as_second.begin(), as_second.end(), 0);
   for (std::size_t q = 0; q < listed.size(); ++q) {
     const auto i = std::size_t(listed[q].i), j = std::size_t(listed[q].j);
-    pairs.slots[8 * std::size_t(pairs.slot_begin[j / 4] + as_second[j]++) + j % 4] = std::int32_t(q);
-    pairs.slots[8 * std::size_t(pairs.slot_begin[i / 4] + as_first[i]++) + 4 + i % 4] = std::int32_t(q);
+    pairs.slots[8 * std::size_t(pairs.slot_begin[j / 4] + as_second[j]++) + j % 4] = force_row * std::int32_t(q);
+    pairs.slots[8 * std::size_t(pairs.slot_begin[i / 4] + as_first[i]++) + 4 + i % 4] = force_row * std::int32_t(q);
   }
 }
 
@@ -163,6 +164,12 @@ void fill(const Fixture& f, const std::vector<ListedPair>& listed, const std::ve
     pairs.i[p] = listed[p].i;
     pairs.j[p] = listed[p].j;
     pairs.image[p] = listed[p].image;
+  }
+  pairs.row_i.resize(padded);
+  pairs.row_j.resize(padded);
+  for (std::size_t p = 0; p < padded; ++p) {
+    pairs.row_i[p] = pairs.i[p] * f.row_length();
+    pairs.row_j[p] = pairs.j[p] * f.row_length();
   }
   for (int k = 0; k < f.dimension(); ++k) {
     pairs.image_number[k].resize(padded);
@@ -195,7 +202,7 @@ void fill(const Fixture& f, const std::vector<ListedPair>& listed, const std::ve
       pairs.radius_j[q] = f.radius[listed[q].j];
     }
   }
-  fill_gather_table(f.size(), listed, pairs);
+  fill_gather_table(f.size(), force_row_length(f.shape), listed, pairs);
 }
 
 /// The key of a pair after images changed; a grain's own image is kept pointing forward, forces turning round with it.
@@ -421,8 +428,7 @@ Reduction rebuild(const Fixture& f, Assembly& a) {
 bool list_is_stale(const Fixture& f, const Assembly& a) {
   // A pair beyond reach r_i + r_j + skin when listed is, after the affine map F and two displacements of at most
   // `travel`, still beyond sigma_min(F) reach - 2 |F| travel, with sigma_min >= 1 - |F - I|, |F| <= 1 + |F - I|.
-  const Matrix3 f_since =
-      a.cell.lattice * a.state.list_lattice.triangularView<Eigen::Upper>().solve(Matrix3::Identity());
+  const Matrix3 f_since = a.cell.lattice * upper_inverse(a.state.list_lattice);
   const double strain = (f_since - Matrix3::Identity()).norm();
   const double reach = 2 * f.largest_radius;
   return (1 - strain) * (reach + f.skin) - 2 * (1 + strain) * a.state.list_travel < reach;
@@ -430,8 +436,8 @@ bool list_is_stale(const Fixture& f, const Assembly& a) {
 
 PairArrays arrays_of(PairTable& t) {
   PairArrays p;
-  p.i = t.i.data();
-  p.j = t.j.data();
+  p.row_i = t.row_i.data();
+  p.row_j = t.row_j.data();
   for (int k = 0; k < 3; ++k) {
     p.image[k] = t.image_number[k].data();
     p.tangential[k] = t.tangential[k].data();

@@ -24,6 +24,7 @@ struct Fixture {
   std::vector<double> radius, mass, inertia;                                  ///< m, kg, kg m^2 (physical)
   double mean_radius = 0, largest_radius = 0, smallest_radius = 0, skin = 0;  ///< m
   double min_height = 0;                                                      ///< m
+  double overlap_limit = 0;  ///< over the smaller radius; a specimen that comes with more keeps that and a hundredth
   SceneKernels kernels;
   KernelLaw law = KernelLaw::linear;
 
@@ -38,6 +39,7 @@ struct Fixture {
 struct PairTable {
   std::size_t listed = 0;  ///< pairs without the padding
   std::vector<std::int32_t> i, j;
+  std::vector<std::int32_t> row_i, row_j;  ///< i, j times the row length
   std::vector<Image> image;
   Buffer image_number[3];
   Buffer kn, kt, friction, kr, moment_cap, cn;
@@ -88,6 +90,8 @@ GrainArrays arrays_of(Assembly& assembly);
 /// Constants that do not change from step to step, filled in; lattice from the cell, rate and step from the state.
 StepConstants base_constants(const Fixture& fixture, const Assembly& assembly);
 
+/// Inverse of an upper-triangular matrix, by hand: it is taken several times a sub-step.
+Matrix3 upper_inverse(const Matrix3& matrix);
 UpperTriangle upper_triangle(const Matrix3& matrix);
 /// Velocity gradient of the cell (upper triangular, 1/s) and the mean spin that goes with it.
 void set_rate(const Matrix3& rate, StepConstants& constants);

@@ -6,6 +6,14 @@
 
 namespace rvelab {
 
+Matrix3 upper_inverse(const Matrix3& m) {
+  const double xx = 1 / m(0, 0), yy = 1 / m(1, 1), zz = 1 / m(2, 2);
+  const double xy = -m(0, 1) * xx * yy, yz = -m(1, 2) * yy * zz;
+  Matrix3 inverse;
+  inverse << xx, xy, -(m(0, 1) * yz + m(0, 2) * zz) * xx, 0, yy, yz, 0, 0, zz;
+  return inverse;
+}
+
 UpperTriangle upper_triangle(const Matrix3& m) { return {m(0, 0), m(0, 1), m(0, 2), m(1, 1), m(1, 2), m(2, 2)}; }
 
 void set_rate(const Matrix3& rate, StepConstants& c) {

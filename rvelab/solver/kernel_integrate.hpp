@@ -60,8 +60,8 @@ inline __attribute__((always_inline)) void gather_disc_forces(const GrainArrays&
     for (int k = 0; k < 4; ++k) in[k] = out[k] = L::broadcast(0.0);
     for (; slot != last; slot += 8)
       for (int k = 0; k < 4; ++k) {
-        in[k] = L::add(in[k], quad_at<W>(p.force + 4L * slot[k]));
-        out[k] = L::add(out[k], quad_at<W>(p.force + 4L * slot[4 + k]));
+        in[k] = L::add(in[k], quad_at<W>(p.force + slot[k]));
+        out[k] = L::add(out[k], quad_at<W>(p.force + slot[4 + k]));
       }
     for (int k = 0; k < 4; ++k) {
       incoming[4 * half + k] = in[k];
@@ -183,13 +183,13 @@ inline __attribute__((always_inline)) void gather_sphere_forces(const GrainArray
     double moment[4][4] = {};
     for (; slot != last; slot += 8)
       for (int k = 0; k < 4; ++k) {
-        const double *in = p.force + 8L * slot[k], *out = p.force + 8L * slot[4 + k];
+        const double *in = p.force + slot[k], *out = p.force + slot[4 + k];
         const Quad turn_in = quad_at<W>(in + 4), turn_out = quad_at<W>(out + 4);
         force[k] = L::add(force[k], L::sub(quad_at<W>(in), quad_at<W>(out)));
         turn[k] = L::add(turn[k], L::add(turn_in, turn_out));
         arm[k] = L::add(arm[k], L::add(L::mul(L::broadcast(in[3]), turn_in), L::mul(L::broadcast(out[3]), turn_out)));
         if constexpr (Rolling)
-          for (int m = 0; m < 3; ++m) moment[k][m] += p.moment[m][slot[k]] - p.moment[m][slot[4 + k]];
+          for (int m = 0; m < 3; ++m) moment[k][m] += p.moment[m][slot[k] / 8] - p.moment[m][slot[4 + k] / 8];
       }
     for (int k = 0; k < 4; ++k) {
       const double radius = g.rows[12 * (block + 4 * half + k) + 3];

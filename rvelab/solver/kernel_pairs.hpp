@@ -35,15 +35,15 @@ struct SquareRoot {
 };
 
 /// Loads one Quad of each of W grain rows and turns them into columns; `sign` multiplies the first set before adding.
-template <int W, int row_length>
+template <int W>
 inline __attribute__((always_inline)) void gather_columns(const double* rows, const std::int32_t* first,
                                                           const std::int32_t* second, int offset,
                                                           typename Lanes<W>::Quad sign, typename Lanes<W>::V* columns) {
   using L = Lanes<W>;
   typename L::Quad quads[W];
   for (int k = 0; k < W; ++k) {
-    const auto a = load_as<typename L::Quad>(rows + long(row_length) * first[k] + offset);
-    const auto b = load_as<typename L::Quad>(rows + long(row_length) * second[k] + offset);
+    const auto a = load_as<typename L::Quad>(rows + first[k] + offset);
+    const auto b = load_as<typename L::Quad>(rows + second[k] + offset);
     quads[k] = L::add(b, L::mul(sign, a));
   }
   L::transpose(quads, columns);
@@ -70,13 +70,12 @@ inline __attribute__((always_inline)) typename Lanes<W>::Quad quad_at(const doub
 }
 
 /// First Quad of row j minus that of row i, as columns.
-template <int W, int row_length>
+template <int W>
 inline __attribute__((always_inline)) void gather_differences(const double* rows, const std::int32_t* i,
                                                               const std::int32_t* j, typename Lanes<W>::V* columns) {
   using L = Lanes<W>;
   typename L::Quad quads[W];
-  for (int k = 0; k < W; ++k)
-    quads[k] = L::sub(quad_at<W>(rows + long(row_length) * j[k]), quad_at<W>(rows + long(row_length) * i[k]));
+  for (int k = 0; k < W; ++k) quads[k] = L::sub(quad_at<W>(rows + j[k]), quad_at<W>(rows + i[k]));
   L::transpose(quads, columns);
 }
 
@@ -85,7 +84,7 @@ template <int W>
 inline __attribute__((always_inline)) void gather_spins(const double* rows, const std::int32_t* i,
                                                         const std::int32_t* j, typename Lanes<W>::V* columns) {
   V2 sums[W];
-  for (int k = 0; k < W; ++k) sums[k] = load_as<V2>(rows + 8L * j[k] + 4) + load_as<V2>(rows + 8L * i[k] + 4);
+  for (int k = 0; k < W; ++k) sums[k] = load_as<V2>(rows + j[k] + 4) + load_as<V2>(rows + i[k] + 4);
   Lanes<W>::transpose_pairs(sums, columns);
 }
 
@@ -94,7 +93,7 @@ inline __attribute__((always_inline)) typename Lanes<W>::V gather_spin_differenc
                                                                                   const std::int32_t* i,
                                                                                   const std::int32_t* j) {
   double differences[W];
-  for (int k = 0; k < W; ++k) differences[k] = rows[8L * j[k] + 4] - rows[8L * i[k] + 4];
+  for (int k = 0; k < W; ++k) differences[k] = rows[j[k] + 4] - rows[i[k] + 4];
   return load_as<typename Lanes<W>::V>(differences);
 }
 
@@ -107,9 +106,9 @@ void disc_pairs(const StepConstants& c, const PairArrays& p, const double* rows,
   using V = typename L::V;
   const double half_dt = 0.5 * c.dt;
   for (long at = begin; at < end; at += W) {
-    const std::int32_t *i = p.i + at, *j = p.j + at;
+    const std::int32_t *i = p.row_i + at, *j = p.row_j + at;
     V d[4];
-    gather_differences<W, 8>(rows, i, j, d);
+    gather_differences<W>(rows, i, j, d);
     const V radius_i = load_as<V>(p.radius_i + at), radius_j = load_as<V>(p.radius_j + at);
     const V radii = radius_i + radius_j;
     const V image_x = load_as<V>(p.image[0] + at), image_y = load_as<V>(p.image[1] + at);
@@ -265,10 +264,10 @@ void sphere_pairs(const StepConstants& c, const PairArrays& p, const double* row
   const auto places = quad<W>(-1.0, -1.0, -1.0, 1.0);
   const double half_dt = 0.5 * c.dt;
   for (long at = begin; at < end; at += W) {
-    const std::int32_t *i = p.i + at, *j = p.j + at;
+    const std::int32_t *i = p.row_i + at, *j = p.row_j + at;
     V d[4], v[4], ws[4], rw[4];
-    gather_columns<W, 12>(rows, i, j, 0, places, d);
-    gather_columns<W, 12>(rows, i, j, 4, difference, v);
+    gather_columns<W>(rows, i, j, 0, places, d);
+    gather_columns<W>(rows, i, j, 4, difference, v);
     const V image_x = load_as<V>(p.image[0] + at), image_y = load_as<V>(p.image[1] + at);
     const V image_z = load_as<V>(p.image[2] + at);
     const Triple<V> b = {d[0] + (c.lattice.xx * image_x + (c.lattice.xy * image_y + c.lattice.xz * image_z)),
@@ -288,10 +287,10 @@ void sphere_pairs(const StepConstants& c, const PairArrays& p, const double* row
     V c_normal = zero, opening = zero, mean_twist = zero;
     if constexpr (T::Advance || T::Dashpot) {
       // Spins enter as w_i + w_j and r_i w_i + r_j w_j; the mean spin of the cell is added to both.
-      gather_columns<W, 12>(rows, i, j, 8, sum, ws);
+      gather_columns<W>(rows, i, j, 8, sum, ws);
       typename L::Quad quads[W];
       for (int k = 0; k < W; ++k) {
-        const double *ri = rows + 12L * i[k], *rj = rows + 12L * j[k];
+        const double *ri = rows + i[k], *rj = rows + j[k];
         quads[k] = L::add(L::mul(L::broadcast(rj[3]), load_as<typename L::Quad>(rj + 8)),
                           L::mul(L::broadcast(ri[3]), load_as<typename L::Quad>(ri + 8)));
       }
@@ -354,7 +353,7 @@ void sphere_pairs(const StepConstants& c, const PairArrays& p, const double* row
 
     if constexpr (T::Rolling && T::Advance) {
       V wd[4];
-      gather_columns<W, 12>(rows, i, j, 8, difference, wd);
+      gather_columns<W>(rows, i, j, 8, difference, wd);
       Triple<V> moment = {load_as<V>(p.moment[0] + at), load_as<V>(p.moment[1] + at), load_as<V>(p.moment[2] + at)};
       [[maybe_unused]] const V moment_before = dot(moment, moment);
       const V kr = Law::tangential_stiffness(load_as<V>(p.kr + at), root);

@@ -15,8 +15,9 @@ Rve::Rve(const Specimen& specimen) : impl_(std::make_unique<Impl>()) {
   use_physical_inertia(m.fixture, m.now);
   evaluate_forces(m.fixture, m.now);
   const Balance balance = balance_of(m.fixture, m.now);
-  if (!balance.finite)
-    throw InputError("specimen: contact forces are not finite; do two grains lie at one place?");
+  if (!balance.finite) throw InputError("specimen: contact forces are not finite; do two grains lie at one place?");
+  const Balance balance = balance_of(m.fixture, m.now);
+  m.fixture.overlap_limit = std::max(m.fixture.options.max_overlap_ratio, 1.01 * balance.largest_overlap_ratio);
   if (specimen.state.has_reference) return;
   // First opening: the scales that belong to the specimen's own state, if the specimen does not bring them.
   SolverState& state = m.now.state;

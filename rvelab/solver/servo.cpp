@@ -91,20 +91,25 @@ Vector6 Servo::residual(double fraction, const Matrix3& strain, const Matrix3& s
   return fraction * c_ - a_ * strain_components(strain) - b_ * stress_components(stress - start_stress_);
 }
 
-Matrix3 Servo::next_strain(double to, double paced_strain, double limit, const Matrix3& strain_so_far,
+Matrix3 Servo::next_strain(double to, double paced_strain, double full_pace, const Matrix3& strain_so_far,
                            const Matrix3& stress, Matrix3& learnt) {
   const Vector6 r = residual(to, strain_so_far, stress);
-  Vector6 prescribed = Vector6::Zero(), error = Vector6::Zero();
-  for (int k = 0; k < rows_; ++k) (stress_row_[k] ? error : prescribed)[k] = r[k];
-  const Matrix3 imposed = strain_matrix(gain_ * prescribed);
+  Vector6 error = Vector6::Zero();
+  for (int k = 0; k < rows_; ++k)
+    if (stress_row_[k]) error[k] = r[k];
   const Matrix3 answer = strain_matrix(gain_ * error);
   Matrix3 held = proportional * answer + paced_strain * learnt;
-  const double size = held.norm();
+  const double size = held.norm(), limit = 3 * full_pace;
   if (size > limit)
     held *= limit / size;
-  else if (paced_strain > 0)
-    learnt += (integral / paced_strain) * answer;
-  return imposed + held;
+  else  // a short last segment says little about the rate: its weight is its share of a full one
+    learnt += (integral * paced_strain / (full_pace * full_pace)) * answer;
+  // Rows of strain get what `held` leaves of them: `learnt` may stem from a target with other rows.
+  Vector6 prescribed = Vector6::Zero();
+  const Vector6 given = a_ * strain_components(held);
+  for (int k = 0; k < rows_; ++k)
+    if (!stress_row_[k]) prescribed[k] = r[k] - given[k];
+  return strain_matrix(gain_ * prescribed) + held;
 }
 
 double Servo::held_error(const Matrix3& strain, const Matrix3& stress) const {

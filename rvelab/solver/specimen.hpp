@@ -64,7 +64,7 @@ struct SolverState {
   double strain_per_step = 0;               ///< dt = 0: pace of the sub-step controller; 0: not yet known
   Matrix3 servo_strain = Matrix3::Zero();   ///< mixed targets: strain per unit of paced strain learnt so far, lab frame
   double reference_contact_force = 0;       ///< N, mean contact force at the specimen's own p0; 0: set on opening
-  double reference_overlap = 0;        ///< m, mean overlap at the specimen's own p0; 0: set on opening
+  double reference_overlap = 0;             ///< m, mean overlap at the specimen's own p0; 0: set on opening
   double reference_pressure = 0;            ///< Pa, the specimen's own p0; 0: set on opening
   bool quasi_static = true;                 ///< units of the stored velocities (see Grains)
   Matrix3 last_rate = Matrix3::Zero();      ///< D of the last sub-step, cell frame (dashpot forces need it)

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 #include "rvelab/error.hpp"
@@ -10,8 +11,6 @@
 namespace rvelab {
 
 namespace {
-
-Matrix3 upper_inverse(const Matrix3& m) { return m.triangularView<Eigen::Upper>().solve(Matrix3::Identity()); }
 
 Vector3 axial(const Matrix3& m) {
   return {0.5 * (m(2, 1) - m(1, 2)), 0.5 * (m(0, 2) - m(2, 0)), 0.5 * (m(1, 0) - m(0, 1))};
@@ -217,6 +216,8 @@ void advance(const Fixture& f, Assembly& a, const Advance& what) {
       a.state.mean_spin = mean_spin;
     }
     move(c, grains, pairs, 0, padded_grains, &sums);
+    // The rows that pad the lanes lose the mean velocity too, step after step; their speed must never count.
+    std::fill(a.rows.begin() + std::ptrdiff_t(f.size()) * f.row_length(), a.rows.end(), 0.0);
     for (int k = 0; k < 3; ++k) a.state.mean_velocity[k] = sums.momentum[k] / total_mass;
     a.state.list_travel += 1.01 * what.step * std::sqrt(sums.largest_speed_squared);
     a.state.last_rate = rate_end;

@@ -185,7 +185,7 @@ inline Specimen packed(const Specimen& loose, double pressure) {
   Rve rve(s);
   const int d = s.cell.dimension;
   while (mean_pressure(rve.stress(), d) < pressure) {
-    rve.apply(isotropic(d, -2e-3), 0);
+    rve.apply(isotropic(d, mean_pressure(rve.stress(), d) < 0.1 * pressure ? -2e-3 : -2e-4), 0);
     rve.relax(1e-3, 20'000);
   }
   rve.relax(1e-12, 400'000);

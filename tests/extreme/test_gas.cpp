@@ -144,7 +144,7 @@ TEST_CASE("A gas compressed to half its size in one increment stays without stre
     Specimen s = lone_grain(d, 5.0);
     Rve rve(s);
     CHECK(rve.apply(isotropic(d, -0.5), 0).stress.isZero(0));
-    CHECK(rve.cell().volume() == Approx(s.cell.volume() * std::pow(0.5, d)).epsilon(1e-14));
+    CHECK(rve.cell().volume() == Approx(s.cell.volume() * std::pow(0.5, d)).epsilon(1e-12));
   }
 }
 
@@ -154,9 +154,10 @@ TEST_CASE("Tension of a crystal without cohesion: stress goes to zero, stays, an
     Rve rve(triangular(4, 2, 1.98, rough));
     const Matrix3 start = rve.stress();
     for (int k = 0; k < 10; ++k) rve.apply(isotropic(2, 0.01), dt);  // contact is lost at 1.01 %
-    CHECK(rve.stress().isZero(0));
+    CHECK(rve.contact_stress().isZero(0));
     CHECK(rve.network().contacts.empty());
-    CHECK(rve.apply(isotropic(2, 0.5), dt).stress.isZero(0));
+    CHECK(rve.apply(isotropic(2, 0.5), dt, {.parts = true}).contact_stress.isZero(0));
+    CHECK(largest(rve.stress()) <= 1e-20 * largest(start));  // dt > 0: round-off in the velocities
     const double back = 1 / (1.5 * std::pow(1.01, 10)) - 1;
     const Matrix3 stress = rve.apply(isotropic(2, back), dt).stress;
     CHECK(largest(stress - start) <= 1e-9 * largest(start));

@@ -43,8 +43,9 @@ Matrix3 lattice_stress(const Specimen& start, const Matrix3& f) {
 /// A disordered, jammed, frictional specimen with slip in its history.
 Rve jammed(int dimension, int count) {
   const Material rough = material(stiffness, 0.5 * stiffness, 0.5);
-  const auto radii = spread_radii(count, 0.3);
-  Rve rve(packed(gas(dimension, radii, dimension == 2 ? 0.5 : 0.3, 3, rough), dimension == 2 ? 4e4 : 2e4));
+  Specimen loose = gas(dimension, spread_radii(count, 0.3), dimension == 2 ? 0.5 : 0.3, 3, rough);
+  loose.solver.min_height = 1.0;  // these cells are three grains wide
+  Rve rve(packed(loose, dimension == 2 ? 4e3 : 2e3));
   rve.apply(entry(0, dimension - 1, 1e-3), 0);
   return rve;
 }
@@ -74,6 +75,7 @@ TEST_CASE("Shear of a triangular lattice by its period at once comes back to the
   Specimen s = lone_grain(2, l);
   s.cell.lattice(0, 1) = 0.5 * l;
   s.cell.lattice(1, 1) = height;
+  s.solver.max_overlap_ratio = 0.5;  // half way the rows stand on top of each other
   Rve rve(s);
   const double pressure = std::sqrt(3.0) * stiffness * (2 / l - 1) / 0.5;
   CHECK(mean_pressure(rve.stress(), 2) == Approx(pressure).epsilon(1e-12));
@@ -124,8 +126,11 @@ TEST_CASE("Compression of a packing by a half at once is refused and changes not
   for (const int d : {2, 3}) {
     Rve rve = jammed(d, 16);
     const auto before = rve.save();
-    for (const double dt : {0.0, 0.1})
-      CHECK(contains(refusal<IncrementFailed>([&] { rve.apply(isotropic(d, -0.5), dt); }), "overlap"));
+    for (const double dt : {0.0, 0.1}) {
+      const std::string text = refusal<IncrementFailed>([&] { rve.apply(isotropic(d, -0.5), dt); });
+      CAPTURE(d, dt, text);
+      CHECK(contains(text, "overlap"));
+    }
     CHECK((rve.save() == before));
   }
 }
@@ -149,12 +154,10 @@ TEST_CASE("Increments below the resolution of a number change no grain", "[extre
   }
 }
 
-TEST_CASE("Ten thousand increments of alternating sign leave an elastic crystal where it was", "[extreme]") {
-  const Material rough = material(stiffness, 0.5 * stiffness, 1e6);
+TEST_CASE("Ten thousand increments there and back leave the stress that the lattice has", "[extreme]") {
   for (const double dt : {0.0, 1e-3}) {
-    Specimen s = triangular(2, 1, 1.95, rough);
+    Specimen s = triangular(2, 1, 1.95);
     s.solver.min_height = 1.0;
-    s.solver.fixed_time_step = dt;
     Rve rve(s);
     const Matrix3 start = rve.stress();
     Random random(23);
@@ -162,7 +165,7 @@ TEST_CASE("Ten thousand increments of alternating sign leave an elastic crystal 
     for (int k = 0; k < 5000; ++k) {
       Matrix3 gradient = Matrix3::Zero();
       for (int i = 0; i < 2; ++i)
-        for (int j = 0; j < 2; ++j) gradient(i, j) = random(-1e-4, 1e-4);
+        for (int j = 0; j < 2; ++j) gradient(i, j) = random(-1e-3, 1e-3);
       const Matrix3 back = (Matrix3::Identity() + gradient).inverse() - Matrix3::Identity();
       rve.apply(gradient, dt);
       rve.apply(back, dt);
@@ -170,9 +173,27 @@ TEST_CASE("Ten thousand increments of alternating sign leave an elastic crystal 
     }
     CHECK(rve.cell().volume() == Approx(s.cell.volume() * expansion).epsilon(1e-10));
     CHECK(rve.cell().volume() == Approx(s.cell.volume()).epsilon(1e-10));
-    CHECK(largest(rve.stress() - start) <= 1e-6 * largest(start));
+    CHECK(largest(rve.stress() - start) <= 1e-9 * largest(start));
     CHECK(rve.size() == 4);
   }
+}
+
+TEST_CASE("Ten thousand shears of alternating sign leave no force in contacts that do not slip", "[extreme]") {
+  // Simple shear retraces its own path, so that the tangential springs come back to zero; grains of a triangular
+  // lattice do not turn against the mean spin. What is left is the error of the sub-steps, and falls with them.
+  const auto drift = [](long substeps) {
+    Specimen s = triangular(2, 1, 1.95, material(stiffness, 0.5 * stiffness, 1e6));
+    s.solver.min_height = 1.0;
+    s.solver.fixed_substeps = substeps;
+    Rve rve(s);
+    const Matrix3 start = rve.stress();
+    for (int k = 0; k < 10'000; ++k) rve.apply(entry(0, 1, k % 2 == 0 ? 1e-4 : -1e-4), 0);
+    CHECK(rve.cell().volume() == Approx(s.cell.volume()).epsilon(1e-12));
+    return largest(rve.stress() - start) / largest(start);
+  };
+  const double coarse = drift(20);
+  CHECK(coarse <= 1e-4);
+  CHECK(drift(80) <= 0.3 * coarse);
 }
 
 TEST_CASE("Ten thousand rotations change no bit of the grains and turn the stress", "[extreme]") {

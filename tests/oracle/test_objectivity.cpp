@@ -197,6 +197,25 @@ TEST_CASE("the spin of an increment turns the stress by exactly that spin") {
   }
 }
 
+TEST_CASE("the frame stays a rotation over any number of increments with spin") {
+  Specimen s = empty_specimen(Shape::sphere, 1, linear_material(1e6, 1e5, 0.3));
+  add_grain(s, Vector3(0, 0, 0), 0.1);
+  Rve rve(s);
+  Matrix3 step, deformation = Matrix3::Identity();
+  step << 0.01, 0.02, -0.01, -0.03, -0.02, 0.02, 0.01, -0.04, 0.01;
+  double off = 0, shape = 0;
+  for (int k = 0; k < 500; ++k) {
+    const Matrix3 increment = k % 2 == 0 ? step : Matrix3((Matrix3::Identity() + step).inverse() - Matrix3::Identity());
+    rve.apply(increment, 0);
+    deformation = (Matrix3::Identity() + increment) * deformation;
+    const Matrix3& q = rve.cell().rotation;
+    off = std::max(off, largest(q.transpose() * q - Matrix3::Identity()));
+    shape = std::max(shape, largest(q * rve.cell().lattice - deformation));
+  }
+  CHECK(off < 1e-13);
+  CHECK(shape < 1e-12);  // no reduction here: the cell vectors are those of the start, deformed
+}
+
 TEST_CASE("a shift of the origin changes the stress by no more than round-off") {
   const Specimen s = recorded("dense");
   const double p = pressure(Rve(s).stress(), 2);

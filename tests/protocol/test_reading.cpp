@@ -1,6 +1,6 @@
 // A protocol file says exactly what is run: every mistake in it is told, nothing is guessed.
-#include <filesystem>
 #include <algorithm>
+#include <filesystem>
 
 #include "rvelab/error.hpp"
 #include "rvelab/protocol/protocol.hpp"
@@ -78,7 +78,8 @@ TEST_CASE("A stage's own pressure goes before the test's") {
 }
 
 TEST_CASE("The resolved text is a protocol that says the same and stays as it is when read again") {
-  const std::string text = biaxial + "[contact]\nslip = \"full_radius\"\n[material]\nfriction = 0.4\n[solver]\nskin = 0.2\n";
+  const std::string text =
+      biaxial + "[contact]\nslip = \"full_radius\"\n[material]\nfriction = 0.4\n[solver]\nskin = 0.2\n";
   const Protocol first = parse_protocol(text, "test.toml", {"stage.compression.record_every=0.0007"});
   const Protocol second = parse_protocol(first.resolved, "resolved.toml");
   CHECK(second.resolved == first.resolved);
@@ -112,8 +113,9 @@ file = "S.h5"
   CHECK(contains(message, "test.toml:3: unknown key test.presure_Pa; the nearest known key is test.pressure_Pa"));
   CHECK(contains(message, "test.toml:5: unknown key loadings; the nearest known key is loading"));
   CHECK(contains(message, "test.toml:8: unknown key contact.slop; the nearest known key is contact.slip"));
-  CHECK(contains(message, "test.toml:11: unknown key stage.compression.to_strian; the nearest known key is "
-                          "stage.compression.to_strain"));
+  CHECK(contains(message,
+                 "test.toml:11: unknown key stage.compression.to_strian; the nearest known key is "
+                 "stage.compression.to_strain"));
   CHECK(contains(message, "test.toml:14: unknown key specimen.fiel; the nearest known key is specimen.file"));
 }
 
@@ -124,8 +126,8 @@ TEST_CASE("A key of another kind of stage is unknown") {
 
 TEST_CASE("Missing keys are told by name") {
   CHECK(contains(message_of("[test]\nname = \"t\"\n"), "no stage"));
-  const std::string message =
-      message_of("[test]\n[[stage]]\nkind = \"compression\"\n[[stage]]\nname = \"b\"\n[[stage]]\nkind = \"isotropic\"\n");
+  const std::string message = message_of(
+      "[test]\n[[stage]]\nkind = \"compression\"\n[[stage]]\nname = \"b\"\n[[stage]]\nkind = \"isotropic\"\n");
   CHECK(lines(message) == 5);
   CHECK(contains(message, "test.name is missing"));
   CHECK(contains(message, "stage.compression.to_strain is missing"));
@@ -180,7 +182,8 @@ TEST_CASE("Keys that contradict each other are refused") {
   refused(biaxial + "[[stage]]\nkind = \"compression\"\nto_strain = -0.1\n", "is there twice");
 }
 
-TEST_CASE("Assignments act before the file is checked, on stages by name or number, and words need no quotation marks") {
+TEST_CASE(
+    "Assignments act before the file is checked, on stages by name or number, and words need no quotation marks") {
   const Protocol by_name = parse_protocol(biaxial, "t", {"stage.compression.to_strain=0.05", "test.pressure_Pa=2e4"});
   CHECK(stage_of<CompressionStage>(by_name, 1).to_strain == 0.05);
   const Protocol by_number = parse_protocol(biaxial, "t", {"stage.1.lateral=constant_volume", "test.name = a b"});
@@ -215,12 +218,14 @@ TEST_CASE("Overrides reach the specimen and must fit it") {
   specimen.materials.resize(2);
   specimen.materials[0].name = "sand";
   specimen.materials[1].name = "steel";
-  const std::string text = biaxial + "[contact]\nslip = \"full_radius\"\n[material]\nfriction = 0.3\nsteel.friction = 0.1\n";
+  const std::string text =
+      biaxial + "[contact]\nslip = \"full_radius\"\n[material]\nfriction = 0.3\nsteel.friction = 0.1\n";
   const Specimen changed = with_overrides(parse_protocol(text, "t"), specimen);
   CHECK(changed.contact.slip == Slip::full_radius);
   CHECK(changed.materials[0].friction == 0.3);
   CHECK(changed.materials[1].friction == 0.1);
-  CHECK_THROWS_AS(with_overrides(parse_protocol(biaxial + "[material.clay]\nfriction = 0.3\n", "t"), specimen), InputError);
+  CHECK_THROWS_AS(with_overrides(parse_protocol(biaxial + "[material.clay]\nfriction = 0.3\n", "t"), specimen),
+                  InputError);
   specimen.cell.dimension = 3;
   CHECK_THROWS_AS(with_overrides(parse_protocol(biaxial, "t"), specimen), InputError);
 }

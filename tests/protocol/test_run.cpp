@@ -31,9 +31,8 @@ void expect_same(const std::vector<Record>& a, const std::vector<Record>& b) {
 }  // namespace
 
 TEST_CASE("Drained compression records at its fixed strains, with the lateral stress held and no shear strain") {
-  const TestRun run =
-      run_text("[[stage]]\nkind = \"compression\"\nto_strain = 0.0033\nrecord_every = 0.0005\n",
-               reference_specimen("dense_p20"));
+  const TestRun run = run_text("[[stage]]\nkind = \"compression\"\nto_strain = 0.0033\nrecord_every = 0.0005\n",
+                               reference_specimen("dense_p20"));
   const auto& records = run.result.records;
   REQUIRE(records.size() == 8);  // 0, 0.05 % ... 0.30 %, and the end
   CHECK(run.result.axis == "y");
@@ -51,6 +50,19 @@ TEST_CASE("Drained compression records at its fixed strains, with the lateral st
   // A dense packing is stiff at first and carries more and more.
   CHECK(records.back().stress(1, 1) < -40e3);
   CHECK(records[0].stress(1, 1) == Approx(-20e3).epsilon(1e-3));
+}
+
+TEST_CASE("What the servo learnt in one stage does not move the strains that the next one prescribes") {
+  const TestRun run = run_text(
+      "[[stage]]\nkind = \"isotropic\"\npressure_Pa = 24e3\n"
+      "[[stage]]\nkind = \"compression\"\nto_strain = 0.003\nlateral_pressure_Pa = 24e3\n",
+      reference_specimen("dense_p20"));
+  REQUIRE(run.result.records.size() == 7);
+  for (const Record& record : run.result.records) {
+    CHECK(record.stage == 1);
+    CHECK(1 - record.deformation_gradient(1, 1) == Approx(record.strain).margin(1e-13));
+    CHECK(std::abs(record.deformation_gradient(0, 1)) < 1e-15);
+  }
 }
 
 TEST_CASE("Constant-volume stages keep the volume to 1e-12") {
@@ -72,9 +84,8 @@ TEST_CASE("Constant-volume stages keep the volume to 1e-12") {
 }
 
 TEST_CASE("Simple shear at constant normal stress lets the height go and nothing else") {
-  const TestRun run = run_text(
-      "[[stage]]\nkind = \"simple_shear\"\nto_strain = 0.004\nnormal = \"constant_stress\"\n",
-      reference_specimen("dense_p20"));
+  const TestRun run = run_text("[[stage]]\nkind = \"simple_shear\"\nto_strain = 0.004\nnormal = \"constant_stress\"\n",
+                               reference_specimen("dense_p20"));
   REQUIRE(run.result.records.size() == 5);
   for (const Record& record : run.result.records) {
     const Matrix3& f = record.deformation_gradient;
@@ -88,7 +99,8 @@ TEST_CASE("Simple shear at constant normal stress lets the height go and nothing
 
 TEST_CASE("An isotropic stage ends at its pressure and at rest") {
   const std::string stage =
-      "[[stage]]\nkind = \"isotropic\"\npressure_Pa = 60e3\nrecord = true\n[[stage]]\nkind = \"probe\"\nmethod = \"linear\"\n";
+      "[[stage]]\nkind = \"isotropic\"\npressure_Pa = 60e3\nrecord = true\n[[stage]]\nkind = \"probe\"\nmethod = "
+      "\"linear\"\n";
   const TestRun run = run_text(stage, reference_specimen("dense"));  // from 100 kPa
   REQUIRE(run.result.records.size() == 2);
   const Record& end = run.result.records[1];
@@ -103,17 +115,19 @@ TEST_CASE("An isotropic stage ends at its pressure and at rest") {
   REQUIRE(run.probes.size() == 1);
   CHECK(run.probes[0].stiffness.rows() == 3);
 
-  const TestRun freed = run_text(
-      "[[stage]]\nkind = \"isotropic\"\npressure_Pa = 60e3\nshear = \"zero_stress\"\nrecord = true\n",
-      reference_specimen("dense"));
+  const TestRun freed =
+      run_text("[[stage]]\nkind = \"isotropic\"\npressure_Pa = 60e3\nshear = \"zero_stress\"\nrecord = true\n",
+               reference_specimen("dense"));
   CHECK(std::abs(freed.result.records[1].stress(0, 1)) <= 1e-4 * 60e3);
   CHECK(std::abs(freed.result.records[1].deformation_gradient(0, 1)) > 1e-9);
 }
 
 TEST_CASE("A specimen that is where a stage wants it is left exactly as it was") {
   const Specimen specimen = reference_specimen("dense_p20");
-  const TestRun run = run_text("[[stage]]\nkind = \"isotropic\"\nstress_tolerance = 1e-3\n[[stage]]\nkind = \"relax\"\n"
-                               "[[stage]]\nkind = \"probe\"\nmethod = \"linear\"\n", specimen);
+  const TestRun run = run_text(
+      "[[stage]]\nkind = \"isotropic\"\nstress_tolerance = 1e-3\n[[stage]]\nkind = \"relax\"\n"
+      "[[stage]]\nkind = \"probe\"\nmethod = \"linear\"\n",
+      specimen);
   const Specimen untouched = Rve(specimen).specimen();
   REQUIRE(run.end_state.grains.size() == untouched.grains.size());
   for (std::size_t g = 0; g < untouched.grains.size(); ++g) {
@@ -156,14 +170,16 @@ TEST_CASE("A stage that cannot reach its end says which stage and what it reache
     }
     return std::string();
   };
-  const std::string relax = message_of("[[stage]]\nname = \"rest\"\nkind = \"relax\"\nunbalanced = 1e-17\nmax_steps = 30\n");
+  const std::string relax =
+      message_of("[[stage]]\nname = \"rest\"\nkind = \"relax\"\nunbalanced = 1e-17\nmax_steps = 30\n");
   CHECK(relax.find("stage \"rest\"") != std::string::npos);
   CHECK(relax.find("unbalanced ratio") != std::string::npos);
   const std::string isotropic = message_of("[[stage]]\nkind = \"isotropic\"\nmax_rounds = 1\nmax_steps = 1\n");
   CHECK(isotropic.find("stage \"isotropic\"") != std::string::npos);
   CHECK(isotropic.find("after 1 rounds") != std::string::npos);
-  CHECK_THROWS_AS(run_text("[[stage]]\nkind = \"compression\"\naxis = \"z\"\nto_strain = 0.1\n",
-                           reference_specimen("dense")), InputError);
+  CHECK_THROWS_AS(
+      run_text("[[stage]]\nkind = \"compression\"\naxis = \"z\"\nto_strain = 0.1\n", reference_specimen("dense")),
+      InputError);
 }
 
 TEST_CASE("Tests at several pressures do not depend on the number of threads") {

@@ -43,7 +43,8 @@ TEST_CASE("An increment that does what was asked leaves no row open, and any oth
       after(2, 2) = -20e3;
     }
     const auto strain_of = [](const Matrix3& h) -> Matrix3 { return 0.5 * (h + h.transpose()); };
-    for (const auto& row : target.rows) CHECK(residual(row, strain_of(done), after - stress) == Approx(0).margin(1e-11));
+    for (const auto& row : target.rows)
+      CHECK(residual(row, strain_of(done), after - stress) == Approx(0).margin(1e-11));
     CHECK((target.spin - 0.5 * (gradient - gradient.transpose())).norm() == 0);
 
     // Independent rows: missing any one component shows.
