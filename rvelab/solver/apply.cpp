@@ -146,8 +146,9 @@ Report Rve::Impl::load(const Matrix3& dh, double dt) {
     sums = row_sums(fixture, now);
     if (physical) continue;
     if (paced) steer_pace(balance);
-    if (inertia_outgrown(fixture, sums, now)) scale_inertia(fixture, sums, now);
+    if (inertia_outgrown(fixture, sums, now)) rescale_inertia(fixture, sums, now);
   }
+  if (!physical && fixture.options.ledger) rescale_inertia(fixture, sums, now);
   if (!physical && !(whole.rotation.array() == identity.array()).all()) {
     const Matrix3 turned = turned_since_start();
     turn_frame(now.cell, turned.transpose() * whole.rotation * turned);
@@ -226,7 +227,7 @@ Report Rve::Impl::load(const MixedTarget& target, double dt, Matrix3& gradient) 
       sums = row_sums(fixture, now);
       if (!physical) {
         if (!waiting) steer_pace(balance);
-        if (inertia_outgrown(fixture, sums, now)) scale_inertia(fixture, sums, now);
+        if (inertia_outgrown(fixture, sums, now)) rescale_inertia(fixture, sums, now);
       }
     }
     if (fraction >= 1) {
@@ -235,6 +236,7 @@ Report Rve::Impl::load(const MixedTarget& target, double dt, Matrix3& gradient) 
     }
   }
   checked_balance();
+  if (!physical && fixture.options.ledger) rescale_inertia(fixture, row_sums(fixture, now), now);
   report.held_error = servo.held_error(strain, stress());
   report.target_held = report.held_error <= target.tolerance;
   return report;

@@ -16,7 +16,6 @@ Rve::Rve(const Specimen& specimen) : impl_(std::make_unique<Impl>()) {
   evaluate_forces(m.fixture, m.now);
   const Balance balance = balance_of(m.fixture, m.now);
   if (!balance.finite) throw InputError("specimen: contact forces are not finite; do two grains lie at one place?");
-  const Balance balance = balance_of(m.fixture, m.now);
   m.fixture.overlap_limit = std::max(m.fixture.options.max_overlap_ratio, 1.01 * balance.largest_overlap_ratio);
   if (specimen.state.has_reference) return;
   // First opening: the scales that belong to the specimen's own state, if the specimen does not bring them.
@@ -127,12 +126,13 @@ Report Rve::relax(double unbalanced, long max_steps) {
       const Balance balance = m.checked_balance();
       report.unbalanced_ratio = rvelab::unbalanced_ratio(balance, m.now.state.reference_contact_force);
       if (report.unbalanced_ratio <= unbalanced || report.substeps >= max_steps) break;
-      if (inertia_outgrown(m.fixture, row_sums(m.fixture, m.now), m.now))
-        begin_loading(m.fixture, m.now, Loading::quasi_static);
+      const RowSums sums = row_sums(m.fixture, m.now);
+      if (inertia_outgrown(m.fixture, sums, m.now)) rescale_inertia(m.fixture, sums, m.now);
       const long steps = std::min(stretch, max_steps - report.substeps);
       advance(m.fixture, m.now, {still, steps, 1.0, Loading::quasi_static});
       report.substeps += steps;
     }
+    if (m.fixture.options.ledger) rescale_inertia(m.fixture, row_sums(m.fixture, m.now), m.now);
     report.target_held = report.unbalanced_ratio <= unbalanced;
     return report;
   });

@@ -156,33 +156,30 @@ double kinetic_energy(const Fixture& f, const Assembly& a) {
 
 }  // namespace
 
+void rescale_inertia(const Fixture& f, const RowSums& sums, Assembly& a) {
+  const double before = f.options.ledger ? kinetic_energy(f, a) : 0;
+  scale_inertia(f, sums, a);
+  if (f.options.ledger) a.state.ledger.zeroing += before - kinetic_energy(f, a);
+}
+
 void begin_loading(const Fixture& f, Assembly& a, Loading loading) {
   const bool quasi_static = loading == Loading::quasi_static;
-  if (quasi_static) {
-    const RowSums sums = row_sums(f, a);
-    const double before = f.options.ledger && a.mass[0] > 0 ? kinetic_energy(f, a) : 0;
-    if (!a.state.quasi_static) {
-      // Physical velocities mean nothing to scaled masses: carried over they would be an impact. Their energy is
-      // booked.
-      for (std::size_t g = 0; g < f.size(); ++g) a.set_velocity(f, g, Vector3::Zero(), Vector3::Zero());
-      a.state.mean_velocity.setZero();
-      a.state.last_step = 1;
-      a.state.last_rate.setZero();
-      a.state.mean_spin.setZero();
-    }
-    scale_inertia(f, sums, a);
-    if (f.options.ledger) a.state.ledger.zeroing += before - kinetic_energy(f, a);
-  } else if (a.state.quasi_static) {
-    const double before = f.options.ledger && a.mass[0] > 0 ? kinetic_energy(f, a) : 0;
+  if (quasi_static != a.state.quasi_static) {
+    // Physical velocities mean nothing to scaled masses, nor the other way: carried over they would be an impact. Their
+    // energy is booked.
+    if (f.options.ledger && !a.state.quasi_static) a.state.ledger.zeroing += kinetic_energy(f, a);
     for (std::size_t g = 0; g < f.size(); ++g) a.set_velocity(f, g, Vector3::Zero(), Vector3::Zero());
     a.state.mean_velocity.setZero();
     a.state.last_rate.setZero();
     a.state.mean_spin.setZero();
-    use_physical_inertia(f, a);
-    a.state.ledger.zeroing += before;
-  } else {
-    use_physical_inertia(f, a);
+    if (quasi_static) a.state.last_step = 1;
+    if (f.damping.dashpot != Dashpot::none) evaluate_forces(f, a);  // no velocity, no dashpot force
   }
+  // Quasi-static loading leaves the masses as its last state asks for (rescale_inertia), so that nothing changes here.
+  if (quasi_static)
+    scale_inertia(f, row_sums(f, a), a);
+  else
+    use_physical_inertia(f, a);
   a.state.quasi_static = quasi_static;
 }
 

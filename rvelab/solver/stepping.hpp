@@ -20,9 +20,13 @@ struct Advance {
 /// new positions and the frame has turned by R. Throws IncrementFailed (cell too thin).
 void advance(const Fixture& fixture, Assembly& assembly, const Advance& what);
 
-/// Sets the masses and the units of the stored velocities for a kind of loading. Going from physical to quasi-static
-/// loading the velocities, m/s, become m per sub-step by momentum, and back.
+/// Sets the masses and the units of the stored velocities for a kind of loading. Velocities end where the kind of
+/// loading changes.
 void begin_loading(const Fixture& fixture, Assembly& assembly, Loading loading);
+
+/// scale_inertia with the change of kinetic energy booked.
+struct RowSums;
+void rescale_inertia(const Fixture& fixture, const RowSums& sums, Assembly& assembly);
 
 /// Reynolds stress times volume, -sum m v' v', cell frame, with the masses in use.
 Matrix3 kinetic_moment(const Fixture& fixture, const Assembly& assembly);

@@ -187,7 +187,7 @@ TEST_CASE("Radii 1 : 20 in one packing: every touching pair is found, forces bal
     std::vector<double> radii(d == 2 ? 300 : 150, 0.05);
     radii.insert(radii.end(), {1.0, 0.6, 0.3, 0.2, 0.1});
     std::sort(radii.rbegin(), radii.rend());
-    Specimen loose = gas(d, radii, d == 2 ? 0.6 : 0.3, 19);
+    Specimen loose = gas(d, radii, d == 2 ? 0.5 : 0.3, 19);
     loose.solver.max_overlap_ratio = 0.5;
     Rve rve(loose);
     for (int k = 0; k < 40; ++k) {

@@ -125,6 +125,7 @@ TEST_CASE(
     const int dimension = rve.cell().dimension;
     const double p = pressure(rve.stress(), dimension);
     for (int k = 0; k < 8; ++k) {
+      CAPTURE(k);
       Rve restored{Specimen(scene.specimen)};
       restored.restore(rve.save());
       for (Rve* each : {&rve, &restored}) {
@@ -151,12 +152,15 @@ TEST_CASE("a damaged snapshot is refused and changes nothing") {
 
 TEST_CASE("a failed or refused increment leaves every bit as it was") {
   const double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
-  for (const Scene& scene : scenes()) {
+  const std::vector<Scene> all = scenes();
+  for (const Scene& scene : {all[0], all[4], all[8]}) {
     CAPTURE(scene.name, scene.specimen.shape == Shape::disc ? "discs" : "spheres");
     const bool discs = scene.specimen.shape == Shape::disc;
     for (const bool physical : {false, true}) {
       Specimen limited = scene.specimen;
       limited.solver.max_overlap_ratio = 0.25;
+      limited.solver.fixed_substeps = 400;
+      limited.solver.max_substeps = 20'000;
       Rve rve(limited);
       // Some path first, so that there is a state to be lost.
       const double dt = physical ? slow_time(rve) : 0;
