@@ -13,9 +13,9 @@ namespace rvelab {
 
 namespace {
 
-constexpr long control_stretch = 25;   ///< sub-steps between looks at the unbalanced ratio
-constexpr long physical_stretch = 50;  ///< sub-steps between renewals of the critical step
-constexpr long servo_stretch = 5;      ///< sub-steps between strokes of the servo
+constexpr long control_stretch = 50;    ///< sub-steps between looks at the unbalanced ratio
+constexpr long physical_stretch = 100;  ///< sub-steps between renewals of the critical step
+constexpr long servo_stretch = 5;       ///< sub-steps between strokes of the servo
 
 /// Fewest sub-steps of a quasi-static increment: with fewer the grains cannot leave the affine motion, and the answer
 /// is the stiffer affine one (1 % of the stress increment takes 20, measured).

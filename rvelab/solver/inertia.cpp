@@ -1,6 +1,5 @@
 #include "rvelab/solver/inertia.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -34,14 +33,18 @@ ContactStiffness stiffness_of(const Fixture& f, const PairTable& pairs, std::siz
   return {};
 }
 
-/// Largest eigenvalue of a symmetric matrix. Nothing cheaper that depends on the axes (row sums) will do: the scaled
-/// masses, and with them the path, must not know how the specimen is turned.
+/// Largest eigenvalue of a symmetric positive matrix, from above: exact in the plane, (tr M^8)^(1/8) in space, at most
+/// 3^(1/8) = 1.15 too much. Nothing that depends on the axes (row sums) will do: the scaled masses, and with them the
+/// path, must not know how the specimen is turned. An eigenvalue solver took a tenth of the stepping time.
 double largest_eigenvalue(const Matrix3& m, int dimension) {
   if (dimension == 2) {
     const double half = 0.5 * (m(0, 0) + m(1, 1)), difference = 0.5 * (m(0, 0) - m(1, 1));
     return half + std::sqrt(difference * difference + m(0, 1) * m(0, 1));
   }
-  return Eigen::SelfAdjointEigenSolver<Matrix3>(m, Eigen::EigenvaluesOnly).eigenvalues()[2];
+  const double scale = m(0, 0) + m(1, 1) + m(2, 2);
+  if (!(scale > 0)) return 0;
+  const Matrix3 one = m / scale, two = one * one, four = two * two;
+  return scale * std::sqrt(std::sqrt(four.norm()));
 }
 
 double median(std::vector<double>& values) {

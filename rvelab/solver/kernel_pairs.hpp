@@ -192,6 +192,11 @@ void disc_pairs(const StepConstants& c, const PairArrays& p, const double* rows,
                                    double(Law::stores_root_overlap && last_root > 0);
       }
     }
+    if constexpr (T::Ledger && T::Advance && T::Dashpot) {
+      if (touching)
+        dissipation->dashpot +=
+            c.dt * (c_normal * opening * opening + c.tangential_ratio * c_normal * slip_rate * slip_rate);
+    }
     if constexpr (T::Ledger && T::Advance) {
       if (touching && kt > 0.0) {
         dissipation->friction += (trial - tangential) * tangential / kt;
@@ -200,9 +205,6 @@ void disc_pairs(const StepConstants& c, const PairArrays& p, const double* rows,
           if (last_root > 0)
             dissipation->law_loss += 0.5 * (before * before / (p.kt[at] * last_root) - carried * carried / kt);
         }
-        if constexpr (T::Dashpot)
-          dissipation->dashpot +=
-              c.dt * (c_normal * opening * opening + c.tangential_ratio * c_normal * slip_rate * slip_rate);
       } else if (!touching && before != 0.0) {
         const double last_kt = Law::stores_root_overlap ? p.kt[at] * last_root : kt;
         if (last_kt > 0) dissipation->friction += 0.5 * before * before / last_kt;
@@ -379,6 +381,9 @@ void sphere_pairs(const StepConstants& c, const PairArrays& p, const double* row
         }
       }
     }
+    if constexpr (T::Ledger && T::Advance && T::Dashpot) {
+      if (touching) dissipation->dashpot += c.dt * (c_normal * opening * opening + viscous * dot(slip_rate, slip_rate));
+    }
     if constexpr (T::Ledger && T::Advance) {
       if (touching && kt > 0.0) {
         dissipation->friction += dot(plus(trial, -one, tangential), tangential) / kt;
@@ -387,8 +392,6 @@ void sphere_pairs(const StepConstants& c, const PairArrays& p, const double* row
           if (last_root > 0)
             dissipation->law_loss += 0.5 * dot(before, before) * (1 / (p.kt[at] * last_root) - scale * scale / kt);
         }
-        if constexpr (T::Dashpot)
-          dissipation->dashpot += c.dt * (c_normal * opening * opening + viscous * dot(slip_rate, slip_rate));
       } else if (!touching) {
         const double last_kt = Law::stores_root_overlap ? p.kt[at] * last_root : kt;
         if (last_kt > 0) dissipation->friction += 0.5 * dot(before, before) / last_kt;

@@ -42,8 +42,9 @@ Network Rve::network() const {
   net.quasi_static = a.state.quasi_static;
   net.grains.resize(f.size());
   for (std::size_t g = 0; g < f.size(); ++g)
-    net.grains[g] = {f.radius[g],      f.mass[g],    f.inertia[g],   a.position(f, g),
-                     a.velocity(f, g), a.spin(f, g), Vector3::Zero()};
+    net.grains[g] = {
+        f.radius[g],  f.mass[g],      f.inertia[g], a.position(f, g), a.velocity(f, g) - a.state.mean_velocity,
+        a.spin(f, g), Vector3::Zero()};
   for (std::size_t p = 0; p < a.pairs.listed; ++p) {
     const auto i = a.pairs.i[p], j = a.pairs.j[p];
     const Vector3 b = branch_of(f, a, p);

@@ -38,8 +38,9 @@ struct Way {
   }
 };
 
-/// After a change of basis the rest of the way is split anew in the new frame; its end is the same cell.
-void turn_way(Way& way, const Matrix3& lattice_before, const Reduction& reduction, const Cell& cell) {
+/// After a change of basis the rest of the way is split anew in the new frame; its end is the same cell. Returns the
+/// rotation by which the new frame turns more than the old one over that rest.
+Matrix3 turn_way(Way& way, const Matrix3& lattice_before, const Reduction& reduction, const Cell& cell) {
   const Matrix3 rest = way.target * upper_inverse(lattice_before);
   const Matrix3& r = reduction.rotation;
   Cell plain = cell;
@@ -50,6 +51,7 @@ void turn_way(Way& way, const Matrix3& lattice_before, const Reduction& reductio
   way.target = split.stretch * cell.lattice;
   way.steps -= way.done;
   way.done = 0;
+  return split.rotation;
 }
 
 /// Rate-dependent constants of a step from L0 to L1, with the frame turning at `omega` (rad/s, cell frame).
@@ -223,10 +225,15 @@ void advance(const Fixture& f, Assembly& a, const Advance& what) {
       const Matrix3 lattice_before = a.cell.lattice;
       const Reduction reduction = rebuild(f, a);
       if (reduction.changed) {
-        turn_way(way, lattice_before, reduction, a.cell);
+        const Matrix3 more = turn_way(way, lattice_before, reduction, a.cell);
         omega = reduction.rotation.transpose() * omega;
         a.state.mean_spin = reduction.rotation.transpose() * a.state.mean_spin;
         rate_mid = reduction.rotation.transpose() * rate_mid * reduction.rotation;
+        if (physical && way.steps > 0) {
+          const Vector3 faster = rotation_vector(more) / (what.step * double(way.steps));
+          omega += faster;
+          rate_mid -= cross_matrix(faster);  // their sum is the velocity gradient of the step just made
+        }
         c.lattice = upper_triangle(a.cell.lattice);
         set_rate(a.state.last_rate, c);
         moment_before = reduction.rotation.transpose() * moment_before * reduction.rotation;

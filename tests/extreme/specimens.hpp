@@ -160,7 +160,8 @@ inline Specimen gas(int dimension, const std::vector<double>& radii, double soli
   std::vector<Vector3> positions;
   for (std::size_t g = 0; g < radii.size(); ++g) {
     bool free = false;
-    while (!free) {
+    for (int trial = 0; !free; ++trial) {
+      if (trial > 100'000) throw Error("no free place is left at this solid fraction");
       Vector3 x = Vector3::Zero();
       for (int k = 0; k < dimension; ++k) x[k] = random(-0.5 * side, 0.5 * side);
       free = true;

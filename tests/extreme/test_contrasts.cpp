@@ -70,11 +70,14 @@ TEST_CASE("Grains 10,000 times stiffer are brought to the same stress, held ther
   const double p0 = 1e5;
   Rve rve(stiffened(1e4));
   const double volume = rve.cell().volume();
-  for (const double pressure : {1e8, 1e7, 1e6, p0}) {
+  for (const double pressure : {3e8, 1e8, 3e7, 1e7, 3e6, 1e6, 3e5, p0}) {
     const Response response = rve.apply(to_pressure(rve, pressure), 0);
     CAPTURE(pressure, response.report.held_error, response.report.substeps);
     CHECK(response.report.target_held);
     CHECK(mean_pressure(response.stress, 2) == Approx(pressure).epsilon(0.01));
+    Specimen s = rve.specimen();
+    s.state = {};  // the pressure reached is from here on the specimen's own
+    rve = Rve(s);
   }
   // Less overlap: the cell has grown by about what the overlaps were, 1e-3 of the grains.
   CHECK(rve.cell().volume() > volume);
@@ -140,16 +143,16 @@ TEST_CASE("Springs 10,000 times unlike in one row share one force", "[extreme]")
   // Contacts of one material: kn, kn/1e4; of two: the harmonic mean. Softest carries the overlap (series).
   const double soft = 1e-4 * stiffness, mixed = 2 * stiffness * soft / (stiffness + soft);
   Specimen s = specimen_of(cell_of(2, 8 - 0.05, 2.5, 0.5),
-                           {{-2.97, 0, 0}, {-0.98, 0, 0}, {1.0, 0, 0}, {2.985, 0, 0}}, {1, 1, 1, 1});
+                           {{-2.97, 0, 0}, {-0.97, 0, 0}, {1.02, 0, 0}, {2.995, 0, 0}}, {1, 1, 1, 1});
   s.materials.push_back(material(soft));
   s.grains.material = {0, 0, 1, 1};
   Rve rve(s);
   CHECK(rve.relax(1e-12, 400'000).target_held);
   const double force = 0.05 / (1 / stiffness + 2 / mixed + 1 / soft);
   CHECK(rve.stress()(0, 0) == Approx(-force / (2.5 * 0.5)).epsilon(1e-9));
-  rve.apply(entry(0, 0, -0.01), 0);
+  rve.apply(entry(0, 0, -0.001), 0);
   CHECK(rve.relax(1e-12, 400'000).target_held);
-  const double more = (0.05 + 0.01 * 7.95) / (1 / stiffness + 2 / mixed + 1 / soft);
+  const double more = (0.05 + 0.001 * 7.95) / (1 / stiffness + 2 / mixed + 1 / soft);
   CHECK(rve.stress()(0, 0) == Approx(-more / (2.5 * 0.5)).epsilon(1e-9));
 }
 
@@ -163,7 +166,7 @@ TEST_CASE("A packing of two stiffnesses 1 : 10,000 gives the stress of its well-
     CHECK(rve.unbalanced_ratio() < 0.05);
     return Matrix3(rve.stress() / p0);
   };
-  Specimen loose = gas(2, spread_radii(30, 0.3), 0.5, 15, material(stiffness, 0.5 * stiffness, 0.5));
+  Specimen loose = gas(2, spread_radii(30, 0.3), 0.4, 15, material(stiffness, 0.5 * stiffness, 0.5));
   loose.materials.push_back(material(1e-4 * stiffness, 0.5e-4 * stiffness, 0.5));
   for (std::size_t g = 0; g < loose.grains.size(); ++g) loose.grains.material[g] = int(g % 2);
   const Specimen s = packed(loose, 1.0);
