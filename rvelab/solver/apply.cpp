@@ -145,7 +145,10 @@ Report Rve::Impl::load(const Matrix3& dh, double dt) {
     const Balance balance = checked_balance();
     sums = row_sums(fixture, now);
     if (physical) continue;
-    if (paced) steer_pace(balance);
+    // Where the fewest steps rule, the pace is not that of these steps, but it may still be found too fast.
+    const bool too_fast =
+        rvelab::unbalanced_ratio(balance, now.state.reference_contact_force) > fixture.options.target_unbalanced;
+    if (paced || (too_fast && fixture.options.fixed_substeps == 0)) steer_pace(balance);
     if (inertia_outgrown(fixture, sums, now)) rescale_inertia(fixture, sums, now);
   }
   if (!physical && fixture.options.ledger) rescale_inertia(fixture, sums, now);
@@ -235,7 +238,9 @@ Report Rve::Impl::load(const MixedTarget& target, double dt, Matrix3& gradient) 
       if (report.held_error <= target.tolerance) break;
     }
   }
-  checked_balance();
+  const Balance balance = checked_balance();
+  // Increments shorter than a stretch would never steer; the calm after a wait says nothing about the pace.
+  if (!physical && waited == 0 && since_control > 0) steer_pace(balance);
   if (!physical && fixture.options.ledger) rescale_inertia(fixture, row_sums(fixture, now), now);
   report.held_error = servo.held_error(strain, stress());
   report.target_held = report.held_error <= target.tolerance;

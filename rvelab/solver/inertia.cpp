@@ -83,11 +83,21 @@ RowSums row_sums(const Fixture& f, const Assembly& a) {
   const bool dashpot = f.damping.dashpot != Dashpot::none;
   if (dashpot) sums.dashpot.assign(n, 0.0);
   std::vector<double> translations, rotations;
+  // A listed pair may touch within the steps to come: a grain that is ready for the stiffest of them stays stable even
+  // where that contact is ten thousand times stiffer than those it has.
+  std::vector<double> stiffest(n, 0.0), stiffest_turn(n, 0.0);
   for (std::size_t p = 0; p < a.pairs.listed; ++p) {
     const auto i = a.pairs.i[p], j = a.pairs.j[p];
     const Vector3 b = branch_of(f, a, p);
     const double length = std::sqrt(b[0] * b[0] + b[1] * b[1] + b[2] * b[2]);
     const double overlap = (f.radius[i] + f.radius[j]) - length;
+    // Barely touching Hertz contacts are soft but will not stay so: floors see them at a quarter of p0's overlap.
+    const ContactStiffness firm = stiffness_of(f, a.pairs, p, std::max(overlap, 0.25 * a.state.reference_overlap));
+    const double firm_translation = std::max(2 * firm.normal, 4 * firm.tangential);
+    for (const auto g : {i, j}) {
+      stiffest[g] = std::max(stiffest[g], firm_translation);
+      stiffest_turn[g] = std::max(stiffest_turn[g], 4 * firm.tangential * f.radius[g] * f.radius[g] + 2 * firm.rolling);
+    }
     if (!(overlap > 0)) continue;
     const ContactStiffness k = stiffness_of(f, a.pairs, p, overlap);
     const double normal_force = f.law == KernelLaw::linear ? k.normal * overlap : k.normal * overlap / 1.5;
@@ -108,12 +118,13 @@ RowSums row_sums(const Fixture& f, const Assembly& a) {
       sums.dashpot[i] += c;
       sums.dashpot[j] += c;
     }
-    // Barely touching Hertz contacts are soft but will not stay so: the floor sees them at a quarter of p0's overlap.
-    const ContactStiffness firm = stiffness_of(f, a.pairs, p, std::max(overlap, 0.25 * a.state.reference_overlap));
-    translations.push_back(std::max(2 * firm.normal, 4 * firm.tangential));
+    translations.push_back(firm_translation);
     rotations.push_back(4 * firm.tangential + 2 * firm.rolling / std::min(ri * ri, rj * rj));
   }
-  for (std::size_t g = 0; g < n; ++g) sums.translation[g] = largest_eigenvalue(rows[g], f.dimension());
+  for (std::size_t g = 0; g < n; ++g) {
+    sums.translation[g] = std::max(largest_eigenvalue(rows[g], f.dimension()), stiffest[g]);
+    sums.rotation[g] = std::max(sums.rotation[g], stiffest_turn[g]);
+  }
   if (translations.empty()) {
     // Nothing touches: what two contacts of typical grains would have at a thousandth of a radius of overlap.
     const auto [one, radius] = typical_pair(f);

@@ -98,7 +98,6 @@ void disc_grains(const StepConstants& c, const GrainArrays& g, const PairArrays&
       V fx = in[0] - out[0], fy = in[1] - out[1], torque = in[2] + out[3];
       const V inverse_mass = load_as<V>(g.inverse_mass + at), inverse_inertia = load_as<V>(g.inverse_inertia + at);
       V u = a[2] - c.mean_velocity[0], v = a[3] - c.mean_velocity[1], w = s[0];
-      [[maybe_unused]] const V free_x = fx, free_y = fy, free_torque = torque;
       if constexpr (T::Dynamic) {
         if (c.global_viscous != 0.0) {
           fx = fx - c.global_viscous * u;
@@ -106,6 +105,7 @@ void disc_grains(const StepConstants& c, const GrainArrays& g, const PairArrays&
           lost_globally.add(at, c.dt * c.global_viscous * (u * u + v * v));
         }
       }
+      [[maybe_unused]] const V free_x = fx, free_y = fy, free_torque = torque;
       if constexpr (T::damping != KernelDamping::none) {
         const V px = u + half_dt * (fx * inverse_mass), py = v + half_dt * (fy * inverse_mass);
         const V pw = w + half_dt * (torque * inverse_inertia);
@@ -174,28 +174,33 @@ inline __attribute__((always_inline)) void gather_sphere_forces(const GrainArray
                                                                 typename Lanes<W>::Quad* torques) {
   using L = Lanes<W>;
   using Quad = typename L::Quad;
-  const Quad zero = L::broadcast(0.0);
   for (int half = 0; half < 2; ++half) {
     const long b = block / 4 + half;
-    const std::int32_t* slot = g.slots + 8L * g.slot_begin[b];
+    const std::int32_t* first = g.slots + 8L * g.slot_begin[b];
     const std::int32_t* last = g.slots + 8L * g.slot_begin[b + 1];
-    Quad force[4] = {zero, zero, zero, zero}, turn[4] = {zero, zero, zero, zero}, arm[4] = {zero, zero, zero, zero};
-    double moment[4][4] = {};
-    for (; slot != last; slot += 8)
-      for (int k = 0; k < 4; ++k) {
-        const double *in = p.force + slot[k], *out = p.force + slot[4 + k];
-        const Quad turn_in = quad_at<W>(in + 4), turn_out = quad_at<W>(out + 4);
-        force[k] = L::add(force[k], L::sub(quad_at<W>(in), quad_at<W>(out)));
-        turn[k] = L::add(turn[k], L::add(turn_in, turn_out));
-        arm[k] = L::add(arm[k], L::add(L::mul(L::broadcast(in[3]), turn_in), L::mul(L::broadcast(out[3]), turn_out)));
-        if constexpr (Rolling)
-          for (int m = 0; m < 3; ++m) moment[k][m] += p.moment[m][slot[k] / 8] - p.moment[m][slot[4 + k] / 8];
-      }
     for (int k = 0; k < 4; ++k) {
+      // Both sides are summed apart: which pairs share a slot depends on the list, and must not show in the sum.
+      Quad in = L::broadcast(0.0), turn_in = in, arm_in = in, out = in, turn_out = in, arm_out = in;
+      double moment_in[4] = {}, moment_out[4] = {};
+      for (const std::int32_t* slot = first + k; slot < last; slot += 8) {
+        const double *row_in = p.force + slot[0], *row_out = p.force + slot[4];
+        const Quad a = quad_at<W>(row_in + 4), c = quad_at<W>(row_out + 4);
+        in = L::add(in, quad_at<W>(row_in));
+        out = L::add(out, quad_at<W>(row_out));
+        turn_in = L::add(turn_in, a);
+        turn_out = L::add(turn_out, c);
+        arm_in = L::add(arm_in, L::mul(L::broadcast(row_in[3]), a));
+        arm_out = L::add(arm_out, L::mul(L::broadcast(row_out[3]), c));
+        if constexpr (Rolling)
+          for (int m = 0; m < 3; ++m) {
+            moment_in[m] += p.moment[m][slot[0] / 8];
+            moment_out[m] += p.moment[m][slot[4] / 8];
+          }
+      }
       const double radius = g.rows[12 * (block + 4 * half + k) + 3];
-      forces[4 * half + k] = force[k];
-      Quad torque = L::add(arm[k], L::mul(L::broadcast(-radius), turn[k]));
-      if constexpr (Rolling) torque = L::add(torque, quad_at<W>(moment[k]));
+      forces[4 * half + k] = L::sub(in, out);
+      Quad torque = L::sub(L::add(arm_in, arm_out), L::mul(L::broadcast(radius), L::add(turn_in, turn_out)));
+      if constexpr (Rolling) torque = L::add(torque, L::sub(quad_at<W>(moment_in), quad_at<W>(moment_out)));
       torques[4 * half + k] = torque;
     }
   }
@@ -227,13 +232,13 @@ void sphere_grains(const StepConstants& c, const GrainArrays& g, const PairArray
       L::transpose(rows[2], w);
       const V inverse_mass = load_as<V>(g.inverse_mass + at), inverse_inertia = load_as<V>(g.inverse_inertia + at);
       for (int k = 0; k < 3; ++k) v[k] = v[k] - c.mean_velocity[k];
-      [[maybe_unused]] const V free_f[3] = {f[0], f[1], f[2]}, free_t[3] = {t[0], t[1], t[2]};
       if constexpr (T::Dynamic) {
         if (c.global_viscous != 0.0) {
           for (int k = 0; k < 3; ++k) f[k] = f[k] - c.global_viscous * v[k];
           lost_globally.add(at, c.dt * c.global_viscous * (v[0] * v[0] + (v[1] * v[1] + v[2] * v[2])));
         }
       }
+      [[maybe_unused]] const V free_f[3] = {f[0], f[1], f[2]}, free_t[3] = {t[0], t[1], t[2]};
       if constexpr (T::damping != KernelDamping::none) {
         V pv[3], pw[3];
         for (int k = 0; k < 3; ++k) {

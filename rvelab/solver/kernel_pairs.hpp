@@ -185,7 +185,7 @@ void disc_pairs(const StepConstants& c, const PairArrays& p, const double* rows,
       store_as(p.moment[0] + at, moment);
       if constexpr (T::Ledger) {
         if (kr > 0.0) dissipation->rolling += sum_of((moment_trial - moment) * (moment / kr));
-        if (kr > 0.0 && touching)
+        if (Law::stores_root_overlap && kr > 0.0 && touching)
           dissipation->law_loss += 0.5 *
                                    (moment_before * moment_before / (p.kr[at] * (last_root > 0 ? last_root : root)) -
                                     moment_carried * moment_carried / kr) *

@@ -36,7 +36,7 @@ struct Contact {
 
 /// How the solver goes about its work. Defaults are measured ones (performance figures stand beside each use).
 struct SolverOptions {
-  double skin = 0.1;                ///< Verlet skin over the mean radius, > 0
+  double skin = 0.15;               ///< Verlet skin over the mean radius, > 0
   double time_step_factor = 0.7;    ///< fraction of the critical step 2/omega_max, 0 < f < 1
   double fixed_time_step = 0;       ///< s; > 0: dt > 0 loading uses exactly this step
   double target_unbalanced = 1e-3;  ///< dt = 0: unbalanced ratio that steers the number of sub-steps
