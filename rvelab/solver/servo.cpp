@@ -99,7 +99,7 @@ Matrix3 Servo::next_strain(double to, double paced_strain, double full_pace, con
     if (stress_row_[k]) error[k] = r[k];
   const Matrix3 answer = strain_matrix(gain_ * error);
   Matrix3 held = proportional * answer + paced_strain * learnt;
-  const double size = held.norm(), limit = 3 * full_pace;
+  const double size = held.norm(), limit = 10 * full_pace;
   if (size > limit)
     held *= limit / size;
   else  // a short last segment says little about the rate: its weight is its share of a full one

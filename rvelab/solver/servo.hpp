@@ -24,7 +24,7 @@ class Servo {
 
   /// Strain of the next segment, symmetric: the target's fraction goes from `from` to `to` (both in [0, 1]).
   /// `paced_strain` is the share of the predicted strain that the segment makes, `full_pace` what a full segment would;
-  /// the answer to stress errors is cut at three times that. `learnt` is the part of the strain per unit of paced
+  /// the answer to stress errors is cut at ten times that. `learnt` is the part of the strain per unit of paced
   /// strain that the integral has found; it is updated.
   Matrix3 next_strain(double to, double paced_strain, double full_pace, const Matrix3& strain_so_far,
                       const Matrix3& stress, Matrix3& learnt);

@@ -108,12 +108,12 @@ inline Matrix3 rotation_about(Vector3 axis, double angle) {
   return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
 }
 
-/// sum m v', kg m/s; the mean that the next step takes out is left out.
+/// sum m v', kg m/s, of the stored velocities: the mean that the last sub-step gave and the next one takes out included.
 inline Vector3 net_momentum(const Rve& rve) {
+  const Specimen s = rve.specimen();
   const Network network = rve.network();
-  const Vector3 mean = rve.specimen().state.mean_velocity;
   Vector3 sum = Vector3::Zero();
-  for (const GrainState& grain : network.grains) sum += grain.mass * (grain.velocity - mean);
+  for (std::size_t g = 0; g < rve.size(); ++g) sum += network.grains[g].mass * s.grains.velocity[g];
   return sum;
 }
 
