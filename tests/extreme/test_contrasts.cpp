@@ -70,7 +70,7 @@ TEST_CASE("Grains 10,000 times stiffer are brought to the same stress, held ther
   const double p0 = 1e5;
   Rve rve(stiffened(1e4));
   const double volume = rve.cell().volume();
-  for (const double pressure : {3e8, 1e8, 3e7, 1e7, 3e6, 1e6, 3e5, p0}) {
+  for (const double pressure : {1e8, 1e7, 1e6, p0}) {
     const Response response = rve.apply(to_pressure(rve, pressure), 0);
     CAPTURE(pressure, response.report.held_error, response.report.substeps);
     CHECK(response.report.target_held);
@@ -83,7 +83,7 @@ TEST_CASE("Grains 10,000 times stiffer are brought to the same stress, held ther
   CHECK(rve.cell().volume() > volume);
   CHECK(rve.cell().volume() < 1.01 * volume);
   // Constant lateral stress, axial compression.
-  for (int k = 0; k < 20; ++k) {
+  for (int k = 0; k < 8; ++k) {
     const Matrix3 stress = rve.stress();
     MixedTarget target;
     target.rows = {stress_row(0, 0, -p0 - stress(0, 0), p0), {entry(1, 1, 1), Matrix3::Zero(), -1e-5, 0},
@@ -187,15 +187,15 @@ TEST_CASE("A grain 20 times smaller in a row with a large one shares its force",
 
 TEST_CASE("Radii 1 : 20 in one packing: every touching pair is found, forces balance", "[extreme]") {
   for (const int d : {2, 3}) {
-    std::vector<double> radii(d == 2 ? 300 : 150, 0.05);
+    std::vector<double> radii(d == 2 ? 300 : 120, 0.05);
     radii.insert(radii.end(), {1.0, 0.6, 0.3, 0.2, 0.1});
     std::sort(radii.rbegin(), radii.rend());
     Specimen loose = gas(d, radii, d == 2 ? 0.5 : 0.3, 19);
     loose.solver.max_overlap_ratio = 0.5;
     Rve rve(loose);
-    for (int k = 0; k < 40; ++k) {
-      rve.apply(isotropic(d, d == 2 ? -2.5e-3 : -5e-3), 0);
-      const Matrix3 expected = stress_by_hand(rve.specimen(), stiffness, 2);
+    for (int k = 0; k < 20; ++k) {
+      rve.apply(isotropic(d, d == 2 ? -5e-3 : -1e-2), 0);
+      const Matrix3 expected = stress_by_hand(rve.specimen(), stiffness, 1);
       REQUIRE(largest(rve.stress() - expected) <= 1e-10 * std::max(largest(expected), 1.0));
     }
     CHECK(rve.size() == radii.size());
