@@ -1,0 +1,90 @@
+// Times far below and far beyond the critical step, and targets that no cohesionless packing can reach.
+#include "tests/catch.hpp"
+#include "tests/extreme/specimens.hpp"
+
+using namespace rvelab;
+using namespace rvelab::test;
+
+namespace {
+
+/// Frictionless, disordered, at rest under about 2e4 Pa.
+Specimen resting() { return packed(gas(2, spread_radii(40, 0.3), 0.4, 31), 2e4); }
+
+MixedTarget::Row stress_row(int i, int k, double change, double scale) {
+  return {Matrix3::Zero(), entry(i, k, 0.5) + entry(k, i, 0.5), change, scale};
+}
+
+const Matrix3 deviator = Vector3(2e-4, -4e-4, 0).asDiagonal();
+
+}  // namespace
+
+TEST_CASE("In a time too short for any grain to move by itself the packing follows the cell", "[extreme]") {
+  const Specimen start = resting();
+  Specimen moved = start;
+  const Matrix3 f = Matrix3::Identity() + deviator;
+  moved.cell.lattice = (f * moved.cell.lattice).eval();
+  for (Vector3& x : moved.grains.position) x = f * x;
+  const Matrix3 expected = stress_by_hand(moved, stiffness, 1);
+  const double critical = Rve(start).critical_time_step();
+  for (const double part : {1e-6, 1e-9, 1e-12}) {
+    Rve rve(start);
+    const Response response = rve.apply(deviator, part * critical, {.parts = true});
+    CAPTURE(part, response.report.substeps);
+    CHECK(largest(response.contact_stress - expected) <= 1e-9 * largest(expected));
+    CHECK(largest(response.reynolds_stress) <= 1e-9 * largest(expected));
+  }
+}
+
+TEST_CASE("In a time of a hundred thousand critical steps loading is quasi-static", "[extreme]") {
+  Specimen slow = resting(), still = slow;
+  slow.damping.local = 0.3;
+  still.solver.fixed_substeps = 100'000;
+  Rve a(slow), b(still);
+  const double critical = a.critical_time_step(), p = mean_pressure(a.stress(), 2);
+  const Response response = a.apply(deviator, 1e5 * critical);
+  b.apply(deviator, 0);
+  CHECK(response.report.substeps >= long(1e5));
+  CHECK(response.report.inertial_number < 1e-5);
+  CHECK(largest(a.stress() - b.stress()) <= 1e-4 * p);
+  CHECK(largest(b.stress() - stress_by_hand(b.specimen(), stiffness, 1)) <= 1e-10 * p);
+}
+
+TEST_CASE("A time step beyond the critical one is found out and refused, the state unchanged", "[extreme]") {
+  Specimen s = resting();
+  s.solver.fixed_time_step = 4 * Rve(s).critical_time_step();
+  Rve rve(s);
+  const auto before = rve.save();
+  CHECK_FALSE(refusal<Error>([&] { rve.apply(deviator, 1000 * s.solver.fixed_time_step); }).empty());
+  CHECK((rve.save() == before));
+}
+
+TEST_CASE("A mixed target that asks for tension is not held, said so, and ends", "[extreme]") {
+  const Specimen start = resting();
+  const double p = mean_pressure(Rve(start).stress(), 2);
+  const double critical = Rve(start).critical_time_step();
+  for (const double dt : {0.0, 2000 * critical}) {
+    for (const bool all_round : {false, true}) {
+      Rve rve(start);
+      const Matrix3 stress = rve.stress();
+      const double volume = rve.cell().volume();
+      MixedTarget target;
+      target.rows = {stress_row(0, 0, 0.5 * p - stress(0, 0), p),
+                     stress_row(1, 1, all_round ? 0.5 * p - stress(1, 1) : 0.0, p),
+                     {entry(0, 1, 0.5) + entry(1, 0, 0.5), Matrix3::Zero(), 0, 0}};
+      const std::string text = refusal<IncrementFailed>([&] {
+        const Response response = rve.apply(target, dt);
+        CAPTURE(dt, all_round, response.report.held_error, response.report.substeps);
+        CHECK_FALSE(response.report.target_held);
+        CHECK(response.report.held_error > target.tolerance);
+        CHECK(response.report.substeps < 5'000'000);
+        CHECK(response.stress(0, 0) <= 1e-9 * p);
+        const double applied = (Matrix3::Identity() + response.displacement_gradient).determinant();
+        CHECK(rve.cell().volume() == Approx(volume * applied).epsilon(1e-10));
+      });
+      CAPTURE(dt, all_round);
+      CHECK(text == "");
+      CHECK(rve.stress().allFinite());
+      CHECK(rve.size() == 40);
+    }
+  }
+}
