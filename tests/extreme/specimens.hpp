@@ -108,7 +108,7 @@ inline Matrix3 rotation_about(Vector3 axis, double angle) {
   return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
 }
 
-/// sum m v', kg m/s, of the stored velocities: the mean that the last sub-step gave and the next one takes out included.
+/// sum m v', kg m/s, of the stored velocities: with the mean that the last sub-step left and the next one takes out.
 inline Vector3 net_momentum(const Rve& rve) {
   const Specimen s = rve.specimen();
   const Network network = rve.network();

@@ -34,7 +34,8 @@ MixedTarget::Row stress_row(int i, int k, double change, double scale) {
 MixedTarget to_pressure(const Rve& rve, double pressure) {
   const Matrix3 stress = rve.stress();
   MixedTarget target;
-  target.rows = {stress_row(0, 0, -pressure - stress(0, 0), pressure), stress_row(1, 1, -pressure - stress(1, 1), pressure),
+  target.rows = {stress_row(0, 0, -pressure - stress(0, 0), pressure),
+                 stress_row(1, 1, -pressure - stress(1, 1), pressure),
                  stress_row(0, 1, -0.5 * (stress(0, 1) + stress(1, 0)), pressure)};
   return target;
 }
@@ -86,7 +87,8 @@ TEST_CASE("Grains 10,000 times stiffer are brought to the same stress, held ther
   for (int k = 0; k < 8; ++k) {
     const Matrix3 stress = rve.stress();
     MixedTarget target;
-    target.rows = {stress_row(0, 0, -p0 - stress(0, 0), p0), {entry(1, 1, 1), Matrix3::Zero(), -1e-5, 0},
+    target.rows = {stress_row(0, 0, -p0 - stress(0, 0), p0),
+                   {entry(1, 1, 1), Matrix3::Zero(), -1e-5, 0},
                    {entry(0, 1, 0.5) + entry(1, 0, 0.5), Matrix3::Zero(), 0, 0}};
     const Response response = rve.apply(target, 0);
     CAPTURE(k, response.report.held_error, response.report.substeps, response.report.unbalanced_ratio);
@@ -142,8 +144,8 @@ TEST_CASE("Friction of 10 is no slip until a contact opens: the stress is that o
 TEST_CASE("Springs 10,000 times unlike in one row share one force", "[extreme]") {
   // Contacts of one material: kn, kn/1e4; of two: the harmonic mean. Softest carries the overlap (series).
   const double soft = 1e-4 * stiffness, mixed = 2 * stiffness * soft / (stiffness + soft);
-  Specimen s = specimen_of(cell_of(2, 8 - 0.05, 2.5, 0.5),
-                           {{-2.97, 0, 0}, {-0.97, 0, 0}, {1.02, 0, 0}, {2.995, 0, 0}}, {1, 1, 1, 1});
+  Specimen s = specimen_of(cell_of(2, 8 - 0.05, 2.5, 0.5), {{-2.97, 0, 0}, {-0.97, 0, 0}, {1.02, 0, 0}, {2.995, 0, 0}},
+                           {1, 1, 1, 1});
   s.materials.push_back(material(soft));
   s.grains.material = {0, 0, 1, 1};
   Rve rve(s);
@@ -231,7 +233,8 @@ TEST_CASE("A restitution of 0.01 leaves a hundredth of the speed of a head-on im
 
 TEST_CASE("Local damping of 0.9 ends at the balance that weak damping finds", "[extreme]") {
   // Frictionless springs: from one disturbed state the same equilibrium, whatever takes the energy out.
-  Specimen s = specimen_of(cell_of(2, 4.2 - 0.03, 2.5, 0.5), {{-1.68, 0, 0}, {0.005, 0, 0}, {1.10, 0, 0}}, {1, 0.7, 0.4});
+  Specimen s =
+      specimen_of(cell_of(2, 4.2 - 0.03, 2.5, 0.5), {{-1.68, 0, 0}, {0.005, 0, 0}, {1.10, 0, 0}}, {1, 0.7, 0.4});
   for (const double damping : {0.01, 0.3, 0.9, 0.99}) {
     Specimen still = s, moving = s;
     still.damping.local_quasi_static = damping;

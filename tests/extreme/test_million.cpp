@@ -61,7 +61,7 @@ TEST_CASE("A million spheres open and deform in memory and time proportional to 
   getrusage(RUSAGE_SELF, &usage);
   const double gibibytes = double(usage.ru_maxrss) / (1024.0 * 1024.0);
   WARN("us per grain at 1e3, 3.3e4, 1e6 spheres: " << 1e6 * few << ", " << 1e6 * some << ", " << 1e6 * many
-                                                    << "; peak memory " << gibibytes << " GiB");
+                                                   << "; peak memory " << gibibytes << " GiB");
   CHECK(gibibytes < 8);
   CHECK(many * 1e6 < 120);
   // 1e3 spheres live in the cache and 1e6 do not; anything beyond O(N) would show as a factor of a thousand.

@@ -170,8 +170,7 @@ TEST_CASE("A parameter out of range stops the opening with its key, value and ra
       {"normal_stiffness", "0", "> 0 N/m", [](Specimen& s) { s.materials[0].normal_stiffness = 0; }},
       {"friction", "-0.5", "0 to 1e6", [](Specimen& s) { s.materials[0].friction = -0.5; }},
       {"damping.local", "1", "0 to below 1", [](Specimen& s) { s.damping.local = 1; }},
-      {"damping.local_quasi_static", "0", "above 0 to below 1",
-       [](Specimen& s) { s.damping.local_quasi_static = 0; }},
+      {"damping.local_quasi_static", "0", "above 0 to below 1", [](Specimen& s) { s.damping.local_quasi_static = 0; }},
       {"solver.skin", "0", "> 0", [](Specimen& s) { s.solver.skin = 0; }},
       {"solver.time_step_factor", "1", "above 0 to below 1", [](Specimen& s) { s.solver.time_step_factor = 1; }},
       {"solver.time_step_factor", "0", "above 0 to below 1", [](Specimen& s) { s.solver.time_step_factor = 0; }},
@@ -225,9 +224,7 @@ TEST_CASE("A cell that becomes too slender is refused with vector, limit and rem
     CHECK(contains(text, "oriented cell"));
   }
   // The same limit holds for what is opened.
-  CHECK(contains(refusal<InputError>([] {
-                   Rve rve(lone_grain_of_default_limit(1.95));
-                 }),
+  CHECK(contains(refusal<InputError>([] { Rve rve(lone_grain_of_default_limit(1.95)); }),
                  "shortest lattice vector is 1.95 m"));
 }
 
