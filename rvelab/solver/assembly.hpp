@@ -75,8 +75,8 @@ void check_height(const Fixture& fixture, const Cell& cell);
 /// Throws IncrementFailed if the shortest lattice vector is below min_height.
 Reduction rebuild(const Fixture& fixture, Assembly& assembly);
 
-/// Whether a pair that is not listed might touch by now.
-bool list_is_stale(const Fixture& fixture, const Assembly& assembly);
+/// Whether a pair that is not listed might touch by now. May tighten the bound that the state keeps on displacements.
+bool list_is_stale(const Fixture& fixture, Assembly& assembly);
 
 /// Pair parameters from the materials, for all listed pairs (after listing, or when materials change).
 void set_pair_parameters(const Fixture& fixture, PairTable& pairs);

@@ -13,98 +13,209 @@ bool points_forward(const Image& image) {
 
 namespace {
 
-/// Bins along the lattice directions: how many, how far the search reaches, and which grains each holds.
-struct Bins {
-  int count[3] = {1, 1, 1};
-  int reach[3] = {0, 0, 0};
-  std::vector<std::int32_t> begin;   ///< first entry of each bin in `grains`
-  std::vector<std::int32_t> grains;  ///< grain indices bin by bin, ascending within a bin
-  std::vector<Image> bin_of;         ///< bin coordinates of each grain
-  std::vector<Image> period_of;      ///< period in which each grain lies: s = s0 + period, 0 <= s0 < 1
-
-  std::size_t index(const Image& bin) const { return (std::size_t(bin[2]) * count[1] + bin[1]) * count[0] + bin[0]; }
+/// A grain as the search sees it: place wrapped into the cell, lattice translation that took it there, bin by bin.
+struct Binned {
+  double x[3], radius;
+  std::int32_t grain;
+  Image period;  ///< position = x + L period
 };
 
-Bins sort_into_bins(const Cell& cell, const double* x, std::size_t stride, std::size_t n, double cutoff) {
-  Bins bins;
-  const Vector3 height = heights(cell);
-  const int d = cell.dimension;
-  // Bins as wide as the cutoff, but never more than about one per grain: an almost empty cell needs no finer mesh.
-  const int most = std::max(1, int(std::floor(d == 2 ? std::sqrt(double(n)) : std::cbrt(double(n)))) * 2);
-  for (int k = 0; k < d; ++k) {
-    bins.count[k] = int(std::clamp(std::floor(height[k] / cutoff), 1.0, double(most)));
-    bins.reach[k] = int(std::ceil(cutoff * bins.count[k] / height[k] * (1 + 1e-12)));
-  }
-  const std::size_t total = std::size_t(bins.count[0]) * bins.count[1] * bins.count[2];
-  bins.begin.assign(total + 1, 0);
-  bins.bin_of.resize(n);
-  bins.period_of.resize(n);
+/// Where a bin coordinate outside the cell lands, and by how many periods.
+struct Landing {
+  int bin, shift;
+};
+
+/// The grains of one size class, sorted into bins along the lattice directions.
+struct SizeClass {
+  double largest_radius = 0;
+  int count[3] = {1, 1, 1};
+  std::vector<std::int32_t> begin;  ///< first of each bin in `grains`
+  std::vector<Binned> grains;       ///< bin by bin, indices ascending within a bin
+
+  std::size_t index(int a, int b, int c) const { return (std::size_t(c) * count[1] + b) * count[0] + a; }
+};
+
+/// Place of a grain in units of the lattice vectors, 0 <= s < 1, and its binned form.
+struct Placed {
+  double s[3];
+  Binned binned;
+};
+
+Placed placed(const Cell& cell, const double* at, double radius, std::size_t grain) {
   const Matrix3& l = cell.lattice;
-  for (std::size_t g = 0; g < n; ++g) {
-    const double* at = x + stride * g;
-    double s[3] = {0, 0, 0};
-    if (d == 3) s[2] = at[2] / l(2, 2);
-    s[1] = (at[1] - (d == 3 ? l(1, 2) * s[2] : 0)) / l(1, 1);
-    s[0] = (at[0] - l(0, 1) * s[1] - (d == 3 ? l(0, 2) * s[2] : 0)) / l(0, 0);
-    for (int k = 0; k < 3; ++k) {
-      const double period = std::floor(s[k]);
-      bins.period_of[g][k] = k < d ? int(period) : 0;
-      bins.bin_of[g][k] = k < d ? std::min(bins.count[k] - 1, int((s[k] - period) * bins.count[k])) : 0;
-    }
-    ++bins.begin[bins.index(bins.bin_of[g]) + 1];
+  const bool space = cell.dimension == 3;
+  Placed p{};
+  p.s[2] = space ? at[2] / l(2, 2) : 0;
+  p.s[1] = (at[1] - (space ? l(1, 2) * p.s[2] : 0)) / l(1, 1);
+  p.s[0] = (at[0] - l(0, 1) * p.s[1] - (space ? l(0, 2) * p.s[2] : 0)) / l(0, 0);
+  for (int k = 0; k < cell.dimension; ++k) {
+    const double period = std::floor(p.s[k]);
+    p.s[k] -= period;
+    p.binned.period[k] = int(period);
   }
-  for (std::size_t b = 0; b < total; ++b) bins.begin[b + 1] += bins.begin[b];
-  bins.grains.resize(n);
-  std::vector<std::int32_t> next(bins.begin.begin(), bins.begin.end() - 1);
-  for (std::size_t g = 0; g < n; ++g) bins.grains[next[bins.index(bins.bin_of[g])]++] = std::int32_t(g);
-  return bins;
+  const Image& n = p.binned.period;
+  p.binned.x[0] = at[0] - (l(0, 0) * n[0] + l(0, 1) * n[1] + l(0, 2) * n[2]);
+  p.binned.x[1] = at[1] - (l(1, 1) * n[1] + l(1, 2) * n[2]);
+  p.binned.x[2] = space ? at[2] - l(2, 2) * n[2] : 0;
+  p.binned.radius = radius;
+  p.binned.grain = std::int32_t(grain);
+  return p;
 }
 
-int floor_divide(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
+int bin_of(double s, int count) { return std::min(count - 1, int(s * count)); }
+
+/// Size classes by halves of the largest radius, so that no grain is looked for in bins much wider than itself:
+/// gradings of 1:50 stay O(N). Eight classes at most; the last holds all that is smaller.
+int size_class(double radius, double largest) {
+  int k = 0;
+  for (double bound = 0.5 * largest; radius < bound && k < 7; bound *= 0.5) ++k;
+  return k;
+}
+
+std::vector<SizeClass> sort_into_bins(const Cell& cell, const std::vector<Placed>& grains,
+                                      const std::vector<double>& radii, double skin, double largest) {
+  std::vector<SizeClass> classes(8);
+  std::vector<std::size_t> members(8, 0);
+  for (const double r : radii) {
+    const int k = size_class(r, largest);
+    classes[k].largest_radius = std::max(classes[k].largest_radius, r);
+    ++members[k];
+  }
+  const Vector3 height = heights(cell);
+  const int d = cell.dimension;
+  for (std::size_t k = 0; k < classes.size(); ++k) {
+    SizeClass& c = classes[k];
+    if (members[k] == 0) continue;
+    // As wide as two of them, but no more bins than grains or so: an almost empty cell needs no finer mesh.
+    const double width = 2 * c.largest_radius + skin, n = double(members[k]);
+    const int most = std::max(1, int(std::floor(d == 2 ? std::sqrt(n) : std::cbrt(n))) * 2);
+    for (int a = 0; a < d; ++a) c.count[a] = int(std::clamp(std::floor(height[a] / width), 1.0, double(most)));
+    c.begin.assign(std::size_t(c.count[0]) * c.count[1] * c.count[2] + 1, 0);
+    c.grains.resize(members[k]);
+  }
+  const auto bin = [&](const Placed& p, const SizeClass& c) {
+    return c.index(bin_of(p.s[0], c.count[0]), bin_of(p.s[1], c.count[1]), bin_of(p.s[2], c.count[2]));
+  };
+  for (const Placed& p : grains) {
+    SizeClass& c = classes[size_class(p.binned.radius, largest)];
+    ++c.begin[bin(p, c) + 1];
+  }
+  std::vector<std::vector<std::int32_t>> next(classes.size());
+  for (std::size_t k = 0; k < classes.size(); ++k) {
+    SizeClass& c = classes[k];
+    for (std::size_t b = 1; b < c.begin.size(); ++b) c.begin[b] += c.begin[b - 1];
+    next[k] = c.begin;
+  }
+  for (const Placed& p : grains) {
+    const int k = size_class(p.binned.radius, largest);
+    classes[k].grains[next[k][bin(p, classes[k])]++] = p.binned;
+  }
+  return classes;
+}
+
+/// Landings of the bin coordinates -reach .. count - 1 + reach.
+void fill_landings(int count, int reach, std::vector<Landing>& landings) {
+  landings.clear();
+  for (int place = -reach; place < count + reach; ++place) {
+    const int shift = place >= 0 ? place / count : -((count - 1 - place) / count);
+    landings.push_back({place - shift * count, shift});
+  }
+}
+
+/// Pairs of one grain with the grains of a class that is not larger; of its own class with those after it.
+class Search {
+ public:
+  Search(const Cell& cell, double skin, std::vector<ListedPair>& pairs)
+      : cell_(cell), height_(heights(cell)), skin_(skin), pairs_(pairs) {}
+
+  /// All partners in `c` of grains with radii up to `radius`.
+  void aim(const SizeClass& c, double radius) {
+    class_ = &c;
+    const double cutoff = radius + c.largest_radius + skin_;
+    for (int k = 0; k < 3; ++k) {
+      reach_[k] = k < cell_.dimension ? int(std::ceil(cutoff * c.count[k] / height_[k] * (1 + 1e-12))) : 0;
+      fill_landings(c.count[k], reach_[k], landings_[k]);
+    }
+  }
+
+  void find(const Placed& p, bool own_class) {
+    const SizeClass& c = *class_;
+    const Landing* first[3];
+    for (int k = 0; k < 3; ++k) first[k] = landings_[k].data() + bin_of(p.s[k], c.count[k]);
+    for (int z = 0; z <= 2 * reach_[2]; ++z)
+      for (int y = 0; y <= 2 * reach_[1]; ++y)
+        for (int x = 0; x <= 2 * reach_[0]; ++x) {
+          const Image shift{first[0][x].shift, first[1][y].shift, first[2][z].shift};
+          look_into(p.binned, c.index(first[0][x].bin, first[1][y].bin, first[2][z].bin), shift, own_class);
+        }
+  }
+
+ private:
+  void look_into(const Binned& i, std::size_t bin, const Image& shift, bool own_class) {
+    const SizeClass& c = *class_;
+    const Matrix3& l = cell_.lattice;
+    const double x = l(0, 0) * shift[0] + l(0, 1) * shift[1] + l(0, 2) * shift[2] - i.x[0];
+    const double y = l(1, 1) * shift[1] + l(1, 2) * shift[2] - i.x[1];
+    const double z = cell_.dimension == 3 ? l(2, 2) * shift[2] - i.x[2] : 0;
+    // From the back: indices ascend, so those before i need no look.
+    for (std::int32_t q = c.begin[bin + 1] - 1; q >= c.begin[bin]; --q) {
+      const Binned& j = c.grains[q];
+      if (own_class && j.grain < i.grain) break;
+      const double dx = j.x[0] + x, dy = j.x[1] + y, dz = j.x[2] + z;
+      const double reach = i.radius + j.radius + skin_;
+      if (!(dx * dx + dy * dy + dz * dz < reach * reach)) continue;
+      Image image;
+      for (int k = 0; k < 3; ++k) image[k] = shift[k] - j.period[k] + i.period[k];
+      if (j.grain == i.grain && !points_forward(image)) continue;
+      if (j.grain >= i.grain)
+        pairs_.push_back({i.grain, j.grain, image});
+      else
+        pairs_.push_back({j.grain, i.grain, {-image[0], -image[1], -image[2]}});
+    }
+  }
+
+  const Cell& cell_;
+  Vector3 height_;
+  double skin_;
+  std::vector<ListedPair>& pairs_;
+  const SizeClass* class_ = nullptr;
+  int reach_[3] = {0, 0, 0};
+  std::vector<Landing> landings_[3];
+};
+
+/// By (i, j, image): counted by i, then the few of each i put in order.
+std::vector<ListedPair> in_order(const std::vector<ListedPair>& found, std::size_t grains) {
+  std::vector<std::uint32_t> begin(grains + 1, 0);
+  for (const ListedPair& pair : found) ++begin[std::size_t(pair.i) + 1];
+  for (std::size_t g = 0; g < grains; ++g) begin[g + 1] += begin[g];
+  std::vector<ListedPair> pairs(found.size());
+  std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
+  for (const ListedPair& pair : found) pairs[next[std::size_t(pair.i)]++] = pair;
+  for (std::size_t g = 0; g < grains; ++g) std::sort(pairs.begin() + begin[g], pairs.begin() + begin[g + 1]);
+  return pairs;
+}
 
 }  // namespace
 
 std::vector<ListedPair> list_pairs(const Cell& cell, const double* x, std::size_t stride,
                                    const std::vector<double>& radii, double skin) {
   const std::size_t n = radii.size();
-  std::vector<ListedPair> pairs;
-  if (n == 0) return pairs;
-  const int d = cell.dimension;
-  const double cutoff = 2 * *std::max_element(radii.begin(), radii.end()) + skin;
-  const Bins bins = sort_into_bins(cell, x, stride, n, cutoff);
-  const Matrix3& l = cell.lattice;
-  pairs.reserve(n * std::size_t(d == 2 ? 4 : 8));
-  const int reach_z = d == 3 ? bins.reach[2] : 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::size_t first = pairs.size();
-    const double* xi = x + stride * i;
-    Image offset, bin, shift{};
-    for (offset[2] = -reach_z; offset[2] <= reach_z; ++offset[2])
-      for (offset[1] = -bins.reach[1]; offset[1] <= bins.reach[1]; ++offset[1])
-        for (offset[0] = -bins.reach[0]; offset[0] <= bins.reach[0]; ++offset[0]) {
-          for (int k = 0; k < 3; ++k) {
-            const int place = bins.bin_of[i][k] + offset[k];
-            shift[k] = floor_divide(place, bins.count[k]);
-            bin[k] = place - shift[k] * bins.count[k];
-          }
-          const std::size_t b = bins.index(bin);
-          for (std::int32_t q = bins.begin[b]; q < bins.begin[b + 1]; ++q) {
-            const std::int32_t j = bins.grains[q];
-            if (j < std::int32_t(i)) continue;
-            Image image;
-            for (int k = 0; k < 3; ++k) image[k] = shift[k] - bins.period_of[j][k] + bins.period_of[i][k];
-            if (j == std::int32_t(i) && !points_forward(image)) continue;
-            const double* xj = x + stride * j;
-            const double reach = radii[i] + radii[j] + skin;
-            const double dx = xj[0] - xi[0] + l(0, 0) * image[0] + l(0, 1) * image[1] + l(0, 2) * image[2];
-            const double dy = xj[1] - xi[1] + l(1, 1) * image[1] + l(1, 2) * image[2];
-            const double dz = d == 3 ? xj[2] - xi[2] + l(2, 2) * image[2] : 0;
-            if (dx * dx + dy * dy + dz * dz < reach * reach) pairs.push_back({std::int32_t(i), j, image});
-          }
-        }
-    std::sort(pairs.begin() + first, pairs.end());
-  }
-  return pairs;
+  if (n == 0) return {};
+  const double largest = *std::max_element(radii.begin(), radii.end());
+  std::vector<Placed> grains(n);
+  for (std::size_t g = 0; g < n; ++g) grains[g] = placed(cell, x + stride * g, radii[g], g);
+  const std::vector<SizeClass> classes = sort_into_bins(cell, grains, radii, skin, largest);
+
+  std::vector<ListedPair> found;
+  found.reserve(n * std::size_t(cell.dimension == 2 ? 4 : 8));
+  Search search(cell, skin, found);
+  for (std::size_t of = 0; of < classes.size(); ++of)
+    for (std::size_t with = of; with < classes.size(); ++with) {
+      if (classes[of].grains.empty() || classes[with].grains.empty()) continue;
+      search.aim(classes[with], classes[of].largest_radius);
+      for (const Binned& b : classes[of].grains) search.find(grains[std::size_t(b.grain)], of == with);
+    }
+  return in_order(found, n);
 }
 
 }  // namespace rvelab

@@ -10,7 +10,7 @@ namespace rvelab {
 
 namespace {
 
-constexpr char magic[8] = {'r', 'v', 'e', 's', 'n', 'a', 'p', '1'};
+constexpr char magic[8] = {'r', 'v', 'e', 's', 'n', 'a', 'p', '2'};
 
 /// FNV-1a over the payload: a flipped bit or a cut is noticed before anything is used.
 std::uint64_t checksum(std::span<const std::byte> bytes) {
@@ -129,6 +129,7 @@ void visit(Archive& ar, S& s) {
   }
   auto& t = s.state;
   ar(t.has_reference);
+  each(ar, t.list_positions);
   for (auto* m : {&t.list_lattice, &t.servo_strain, &t.last_rate}) ar(*m);
   for (auto* v : {&t.list_travel, &t.strain_per_step, &t.reference_contact_force, &t.reference_overlap,
                   &t.reference_pressure, &t.last_step})

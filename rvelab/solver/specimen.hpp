@@ -58,8 +58,9 @@ struct EnergyLedger {
 
 /// Solver state that decides the next bit, beside grains, contacts and cell.
 struct SolverState {
-  bool has_reference = false;               ///< list_lattice and list_travel say when to list anew
+  bool has_reference = false;               ///< the next three say when to list anew
   Matrix3 list_lattice = Matrix3::Zero();   ///< lattice when the list was built, m
+  std::vector<Vector3> list_positions;      ///< positions then, m, cell frame; empty: only the bound below is used
   double list_travel = 0;                   ///< bound on the largest fluctuation displacement since then, m
   double strain_per_step = 0;               ///< dt = 0: pace of the sub-step controller; 0: not yet known
   Matrix3 servo_strain = Matrix3::Zero();   ///< mixed targets: strain per unit of paced strain learnt so far, lab frame
