@@ -68,7 +68,7 @@ Timing time_of(const Specimen& specimen, long steps, int repeats) {
   Matrix3 dh = Matrix3::Zero();
   dh(0, d - 1) = rate * dt;
   std::vector<double> speeds;
-  rve.apply(dh, dt);  // warms up: caches, clock, the flow itself
+  rve.apply(dh, dt);                // warms up: caches, clock, the flow itself
   const auto flowing = rve.save();  // every repeat does the same work
   for (int k = 0; k < repeats; ++k) {
     rve.restore(flowing);
@@ -117,8 +117,8 @@ void run_bench(bool quick, bool json, const std::vector<std::string>& wanted) {
   listing.add("instruction_set", kernels_for(SceneKey{}).instruction_set);
   for (const Case& c : cases()) {
     if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), c.name) == wanted.end()) continue;
-    listing.add(c.name, entry(repeated(random_packing(c.recipe), c.times), quick ? c.quick_grain_steps : c.grain_steps,
-                              quick));
+    listing.add(c.name,
+                entry(repeated(random_packing(c.recipe), c.times), quick ? c.quick_grain_steps : c.grain_steps, quick));
   }
   listing.print(json);
 }
@@ -131,7 +131,8 @@ void add_bench(CLI::App& app) {
   auto wanted = std::make_shared<std::vector<std::string>>();
   std::set<std::string> names;
   for (const Case& c : cases()) names.insert(c.name);
-  command->add_option("--case", *wanted, "Run this case only; may be given more than once")->check(CLI::IsMember(names));
+  command->add_option("--case", *wanted, "Run this case only; may be given more than once")
+      ->check(CLI::IsMember(names));
   command->add_flag("--quick", *quick, "A fifth of the work, three repeats");
   command->add_flag("--json", *json, "Print one JSON object");
   command->footer("Example: rvelab bench --quick --json");

@@ -60,13 +60,15 @@ void describe_parameters(Archive& archive, Value& specimen) {
 
 template <class Archive, class Value>
 void describe_state(Archive& archive, Value& state) {
-  auto& [has_reference, list_lattice, list_positions, list_travel, strain_per_step, servo_strain, reference_contact_force,
-         reference_overlap, reference_pressure, quasi_static, last_rate, last_step, mean_velocity, mean_spin,
-         grain_steps, list_builds, ledger] = state;
+  auto& [has_reference, list_lattice, list_positions, list_travel, list_skin, list_steps, strain_per_step, servo_strain,
+         reference_contact_force, reference_overlap, reference_pressure, quasi_static, last_rate, last_step,
+         mean_velocity, mean_spin, grain_steps, list_builds, ledger] = state;
   archive.field("state/has_reference", has_reference, "1");
   archive.field("state/list_lattice_m", list_lattice, "m");
   archive.field("state/list_positions_m", list_positions, "m");
   archive.field("state/list_travel_m", list_travel, "m");
+  archive.field("state/list_skin_m", list_skin, "m");
+  archive.field("state/list_steps", list_steps, "1");
   archive.field("state/strain_per_step", strain_per_step, "1");
   archive.field("state/servo_strain", servo_strain, "1");
   archive.field("state/reference_contact_force_N", reference_contact_force, "N");

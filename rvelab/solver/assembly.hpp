@@ -21,9 +21,10 @@ struct Fixture {
   SolverOptions options;
   std::vector<std::int64_t> id;
   std::vector<std::int32_t> material;
-  std::vector<double> radius, mass, inertia;                                  ///< m, kg, kg m^2 (physical)
-  double mean_radius = 0, largest_radius = 0, smallest_radius = 0, skin = 0;  ///< m
-  double min_height = 0;                                                      ///< m
+  std::vector<double> radius, mass, inertia;                        ///< m, kg, kg m^2 (physical)
+  double mean_radius = 0, largest_radius = 0, smallest_radius = 0;  ///< m
+  double largest_skin = 0;                                          ///< m
+  double min_height = 0;                                            ///< m
   double overlap_limit = 0;  ///< over the smaller radius; a specimen that comes with more keeps that and a hundredth
   SceneKernels kernels;
   KernelLaw law = KernelLaw::linear;

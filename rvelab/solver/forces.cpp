@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "rvelab/solver/assembly.hpp"
+#include "rvelab/solver/pair_geometry.hpp"
 
 namespace rvelab {
 
@@ -58,22 +58,18 @@ Vector3 force_of(const Fixture& f, const PairTable& pairs, std::size_t p) {
 }
 
 Matrix3 contact_moment(const Fixture& f, const Assembly& a) {
+  // Called every few sub-steps under stress control.
+  const double* force = a.pairs.force.data();
   Matrix3 sum = Matrix3::Zero();
   if (f.shape == Shape::disc) {
-    // Four sums only: this runs every few sub-steps under stress control.
-    const Matrix3& l = a.cell.lattice;
-    const double* rows = a.rows.data();
-    const double* force = a.pairs.force.data();
+    const Branches<2> branch(a);
     double xx = 0, xy = 0, yx = 0, yy = 0;
     for (std::size_t p = 0; p < a.pairs.listed; ++p) {
-      const double* xi = rows + 8 * std::size_t(a.pairs.i[p]);
-      const double* xj = rows + 8 * std::size_t(a.pairs.j[p]);
-      const double mx = a.pairs.image_number[0][p], my = a.pairs.image_number[1][p];
-      const double bx = (xj[0] - xi[0]) + (l(0, 0) * mx + l(0, 1) * my), by = (xj[1] - xi[1]) + l(1, 1) * my;
-      xx += force[4 * p] * bx;
-      xy += force[4 * p] * by;
-      yx += force[4 * p + 1] * bx;
-      yy += force[4 * p + 1] * by;
+      const Branch b = branch(p);
+      xx += force[4 * p] * b.x;
+      xy += force[4 * p] * b.y;
+      yx += force[4 * p + 1] * b.x;
+      yy += force[4 * p + 1] * b.y;
     }
     sum(0, 0) = xx;
     sum(0, 1) = xy;
@@ -81,44 +77,67 @@ Matrix3 contact_moment(const Fixture& f, const Assembly& a) {
     sum(1, 1) = yy;
     return sum;
   }
+  const Branches<3> branch(a);
+  double m[9] = {};
   for (std::size_t p = 0; p < a.pairs.listed; ++p) {
-    const double* row = a.pairs.force.data() + 8 * p;
-    if (row[0] == 0 && row[1] == 0 && row[2] == 0) continue;
-    const Vector3 b = branch_of(f, a, p);
-    for (int r = 0; r < 3; ++r)
-      for (int k = 0; k < 3; ++k) sum(r, k) += row[r] * b[k];
+    const Branch b = branch(p);
+    for (int r = 0; r < 3; ++r) {
+      m[3 * r] += force[8 * p + r] * b.x;
+      m[3 * r + 1] += force[8 * p + r] * b.y;
+      m[3 * r + 2] += force[8 * p + r] * b.z;
+    }
   }
+  for (int k = 0; k < 9; ++k) sum(k / 3, k % 3) = m[k];
   return sum;
 }
 
-Balance balance_of(const Fixture& f, const Assembly& a) {
+namespace {
+
+template <int D>
+Balance balance_in(const Fixture& f, const Assembly& a) {
   Balance balance;
-  std::vector<Vector3> resultant(f.size(), Vector3::Zero());
+  std::vector<double> resultant(3 * f.size(), 0.0);
+  const Branches<D> branch(a);
+  const double* force = a.pairs.force.data();
   double contact_force = 0, overlap_sum = 0;
   for (std::size_t p = 0; p < a.pairs.listed; ++p) {
-    const auto i = a.pairs.i[p], j = a.pairs.j[p];
-    const Vector3 b = branch_of(f, a, p);
-    const double overlap = (f.radius[i] + f.radius[j]) - std::sqrt(b[0] * b[0] + b[1] * b[1] + b[2] * b[2]);
+    const auto i = std::size_t(a.pairs.i[p]), j = std::size_t(a.pairs.j[p]);
+    const double overlap = (f.radius[i] + f.radius[j]) - branch(p).length();
     if (!std::isfinite(overlap)) balance.finite = false;
     if (!(overlap > 0)) continue;
-    const Vector3 force = force_of(f, a.pairs, p);
-    resultant[i] -= force;
-    resultant[j] += force;
-    contact_force += std::sqrt(force[0] * force[0] + force[1] * force[1] + force[2] * force[2]);
+    const double* on_j = force + p * (D == 2 ? 4 : 8);
+    double squared = 0;
+    for (int k = 0; k < D; ++k) {
+      resultant[3 * i + std::size_t(k)] -= on_j[k];
+      resultant[3 * j + std::size_t(k)] += on_j[k];
+      squared += on_j[k] * on_j[k];
+    }
+    contact_force += std::sqrt(squared);
     overlap_sum += overlap;
     ++balance.touching;
     balance.largest_overlap_ratio =
         std::max(balance.largest_overlap_ratio, overlap / std::min(f.radius[i], f.radius[j]));
   }
-  for (const Vector3& r : resultant)
+  for (std::size_t g = 0; g < f.size(); ++g) {
+    const double* r = resultant.data() + 3 * g;
     balance.mean_resultant += std::sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]) / double(f.size());
+  }
   if (balance.touching > 0) {
     balance.mean_contact_force = contact_force / double(balance.touching);
     balance.mean_overlap = overlap_sum / double(balance.touching);
   }
-  balance.finite = balance.finite && std::isfinite(balance.mean_resultant) && std::isfinite(contact_force);
-  for (double value : a.rows) balance.finite = balance.finite && std::isfinite(value);
+  // A sum is finite only if all its terms are, or if infinities cancel, which sums of squares cannot.
+  double squares = 0;
+  for (double value : a.rows) squares += value * value;
+  balance.finite =
+      balance.finite && std::isfinite(balance.mean_resultant) && std::isfinite(contact_force) && std::isfinite(squares);
   return balance;
+}
+
+}  // namespace
+
+Balance balance_of(const Fixture& f, const Assembly& a) {
+  return f.shape == Shape::disc ? balance_in<2>(f, a) : balance_in<3>(f, a);
 }
 
 double unbalanced_ratio(const Balance& balance, double reference_contact_force) {

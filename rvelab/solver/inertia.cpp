@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "rvelab/solver/pair_geometry.hpp"
+
 namespace rvelab {
 
 namespace {
@@ -15,7 +17,8 @@ struct ContactStiffness {
 };
 
 ContactStiffness stiffness_of(const Fixture& f, const PairTable& pairs, std::size_t p, double overlap) {
-  const double root = std::sqrt(overlap);
+  const bool needs_root = f.law != KernelLaw::linear || f.damping.dashpot != Dashpot::none;
+  const double root = needs_root ? std::sqrt(overlap) : 0;
   const double kr = f.contact.rolling ? pairs.kr[p] : 0.0;
   double cn = 0;
   if (f.damping.dashpot != Dashpot::none) {
@@ -33,17 +36,36 @@ ContactStiffness stiffness_of(const Fixture& f, const PairTable& pairs, std::siz
   return {};
 }
 
+/// Symmetric 3x3 matrix; the z entries stay zero in the plane.
+struct Symmetric {
+  double xx = 0, xy = 0, yy = 0, xz = 0, yz = 0, zz = 0;
+};
+
+/// Adds along n n + across I.
+void add_contact(double along, double across, double nx, double ny, double nz, int dimension, Symmetric& m) {
+  m.xx += along * (nx * nx) + across;
+  m.xy += along * (nx * ny);
+  m.yy += along * (ny * ny) + across;
+  if (dimension == 2) return;
+  m.xz += along * (nx * nz);
+  m.yz += along * (ny * nz);
+  m.zz += along * (nz * nz) + across;
+}
+
 /// Largest eigenvalue of a symmetric positive matrix, from above: exact in the plane, (tr M^8)^(1/8) in space, at most
 /// 3^(1/8) = 1.15 too much. Nothing that depends on the axes (row sums) will do: the scaled masses, and with them the
 /// path, must not know how the specimen is turned. An eigenvalue solver took a tenth of the stepping time.
-double largest_eigenvalue(const Matrix3& m, int dimension) {
+double largest_eigenvalue(const Symmetric& m, int dimension) {
   if (dimension == 2) {
-    const double half = 0.5 * (m(0, 0) + m(1, 1)), difference = 0.5 * (m(0, 0) - m(1, 1));
-    return half + std::sqrt(difference * difference + m(0, 1) * m(0, 1));
+    const double half = 0.5 * (m.xx + m.yy), difference = 0.5 * (m.xx - m.yy);
+    return half + std::sqrt(difference * difference + m.xy * m.xy);
   }
-  const double scale = m(0, 0) + m(1, 1) + m(2, 2);
+  const double scale = m.xx + m.yy + m.zz;
   if (!(scale > 0)) return 0;
-  const Matrix3 one = m / scale, two = one * one, four = two * two;
+  Matrix3 one;
+  one << m.xx, m.xy, m.xz, m.xy, m.yy, m.yz, m.xz, m.yz, m.zz;
+  one /= scale;
+  const Matrix3 two = one * one, four = two * two;
   return scale * std::sqrt(std::sqrt(four.norm()));
 }
 
@@ -74,10 +96,13 @@ double typical_normal_force(const Fixture& f, double overlap) {
   return (f.law == KernelLaw::linear ? stiffness : stiffness / 1.5) * overlap;
 }
 
-RowSums row_sums(const Fixture& f, const Assembly& a) {
+namespace {
+
+template <int D>
+RowSums sums_over_pairs(const Fixture& f, const Assembly& a) {
   const std::size_t n = f.size();
   RowSums sums;
-  std::vector<Matrix3> rows(n, Matrix3::Zero());
+  std::vector<Symmetric> rows(n);
   sums.rotation.assign(n, 0.0);
   sums.translation.assign(n, 0.0);
   const bool dashpot = f.damping.dashpot != Dashpot::none;
@@ -86,10 +111,11 @@ RowSums row_sums(const Fixture& f, const Assembly& a) {
   // A listed pair may touch within the steps to come: a grain that is ready for the stiffest of them stays stable even
   // where that contact is ten thousand times stiffer than those it has.
   std::vector<double> stiffest(n, 0.0), stiffest_turn(n, 0.0);
+  const Branches<D> branch(a);
   for (std::size_t p = 0; p < a.pairs.listed; ++p) {
     const auto i = a.pairs.i[p], j = a.pairs.j[p];
-    const Vector3 b = branch_of(f, a, p);
-    const double length = std::sqrt(b[0] * b[0] + b[1] * b[1] + b[2] * b[2]);
+    const Branch b = branch(p);
+    const double length = b.length();
     const double overlap = (f.radius[i] + f.radius[j]) - length;
     // Barely touching Hertz contacts are soft but will not stay so: floors see them at a quarter of p0's overlap.
     const ContactStiffness firm = stiffness_of(f, a.pairs, p, std::max(overlap, 0.25 * a.state.reference_overlap));
@@ -103,11 +129,9 @@ RowSums row_sums(const Fixture& f, const Assembly& a) {
     const double normal_force = f.law == KernelLaw::linear ? k.normal * overlap : k.normal * overlap / 1.5;
     // The force turning with the branch (initial stress) adds f_n / length to the tangential stiffness at most.
     const double kt = k.tangential + 0.5 * normal_force / length;
-    const Vector3 normal = b / length;
-    Matrix3 row = (2 * k.normal - 4 * kt) * normal * normal.transpose();
-    for (int d = 0; d < f.dimension(); ++d) row(d, d) += 4 * kt;
-    rows[i] += row;
-    rows[j] += row;
+    const double nx = b.x / length, ny = b.y / length, nz = b.z / length, along = 2 * k.normal - 4 * kt;
+    add_contact(along, 4 * kt, nx, ny, nz, D, rows[i]);
+    add_contact(along, 4 * kt, nx, ny, nz, D, rows[j]);
     const double ri = f.radius[i], rj = f.radius[j];
     const double turn_i = 4 * k.tangential * ri * ri + 2 * k.rolling;
     const double turn_j = 4 * k.tangential * rj * rj + 2 * k.rolling;
@@ -122,7 +146,7 @@ RowSums row_sums(const Fixture& f, const Assembly& a) {
     rotations.push_back(4 * firm.tangential + 2 * firm.rolling / std::min(ri * ri, rj * rj));
   }
   for (std::size_t g = 0; g < n; ++g) {
-    sums.translation[g] = std::max(largest_eigenvalue(rows[g], f.dimension()), stiffest[g]);
+    sums.translation[g] = std::max(largest_eigenvalue(rows[g], D), stiffest[g]);
     sums.rotation[g] = std::max(sums.rotation[g], stiffest_turn[g]);
   }
   if (translations.empty()) {
@@ -137,6 +161,12 @@ RowSums row_sums(const Fixture& f, const Assembly& a) {
   // Without tangential and rolling stiffness nothing turns the grains; any inertia serves.
   if (sums.floor_rotation == 0) sums.floor_rotation = sums.floor_translation;
   return sums;
+}
+
+}  // namespace
+
+RowSums row_sums(const Fixture& f, const Assembly& a) {
+  return f.shape == Shape::disc ? sums_over_pairs<2>(f, a) : sums_over_pairs<3>(f, a);
 }
 
 double critical_step(const Fixture& f, const RowSums& sums) {

@@ -46,56 +46,70 @@ inline double largest_of(V v) {
   return largest;
 }
 
-/// Sums of the force rows of eight discs: those of pairs in which they are j, and in which they are i.
+/// Grains of one chunk: their resultants stay in the first-level cache between gather and integration.
+constexpr long chunk_grains = 64;
+
+/// A row {x, y, z, 0} or, of discs, {fx, fy, T, -} for every grain of a chunk.
+struct alignas(64) ScratchRows {
+  double at[4 * chunk_grains];
+};
+
+/// Resultants of a chunk of discs: sum of the rows of pairs in which they are j, less forces and plus T_i of those in
+/// which they are i.
 template <int W>
-inline __attribute__((always_inline)) void gather_disc_forces(const GrainArrays& g, const PairArrays& p, long block,
-                                                              typename Lanes<W>::Quad* incoming,
-                                                              typename Lanes<W>::Quad* outgoing) {
+inline __attribute__((always_inline)) void gather_disc_forces(const GrainArrays& g, const PairArrays& p, long first,
+                                                              long count, ScratchRows& resultants) {
   using L = Lanes<W>;
-  for (int half = 0; half < 2; ++half) {
-    const long b = block / 4 + half;
+  using Quad = typename L::Quad;
+  const Quad sign = quad<W>(-1.0, -1.0, 1.0, 1.0);
+  for (long block = 0; block < count; block += 4) {
+    const long b = (first + block) / 4;
     const std::int32_t* slot = g.slots + 8L * g.slot_begin[b];
     const std::int32_t* last = g.slots + 8L * g.slot_begin[b + 1];
-    typename L::Quad in[4], out[4];
+    Quad in[4], out[4];
     for (int k = 0; k < 4; ++k) in[k] = out[k] = L::broadcast(0.0);
     for (; slot != last; slot += 8)
       for (int k = 0; k < 4; ++k) {
         in[k] = L::add(in[k], quad_at<W>(p.force + slot[k]));
         out[k] = L::add(out[k], quad_at<W>(p.force + slot[4 + k]));
       }
-    for (int k = 0; k < 4; ++k) {
-      incoming[4 * half + k] = in[k];
-      outgoing[4 * half + k] = out[k];
-    }
+    for (int k = 0; k < 4; ++k)
+      store_as(resultants.at + 4 * (block + k), L::add(in[k], L::mul(sign, L::swap_last(out[k]))));
   }
 }
 
 /// Discs in 2D.
 template <class T>
-void disc_grains(const StepConstants& c, const GrainArrays& g, const PairArrays& p, long begin, long end,
-                 StepSums* sums) {
+void disc_grains(const StepConstants& constants, const GrainArrays& grains, const PairArrays& pairs, long begin,
+                 long end, StepSums* sums) {
   constexpr int W = T::W;
   using L = Lanes<W>;
   using V = typename L::V;
   using Quad = typename L::Quad;
+  // Copies that no store can change (kernel_pairs.hpp).
+  const StepConstants c = constants;
+  const GrainArrays g = grains;
+  const PairArrays p = pairs;
   const double half_dt = 0.5 * c.dt;
   PartialSums<W> momentum_x, momentum_y, lost_locally, lost_globally;
   V fastest = V{};
-  for (long block = begin; block < end; block += 8) {
-    Quad incoming[8], outgoing[8];
-    gather_disc_forces<W>(g, p, block, incoming, outgoing);
-    for (long at = block; at < block + 8; at += W) {
-      Quad first[W], second[W];
-      for (int k = 0; k < W; ++k) {
-        first[k] = quad_at<W>(g.rows + 8 * (at + k));
-        second[k] = quad_at<W>(g.rows + 8 * (at + k) + 4);
+  ScratchRows resultants;
+  for (long chunk = begin; chunk < end; chunk += chunk_grains) {
+    const long count = end - chunk < chunk_grains ? end - chunk : chunk_grains;
+    gather_disc_forces<W>(g, p, chunk, count, resultants);
+    for (long k = 0; k < count; k += W) {
+      const long at = chunk + k;
+      Quad first[W], second[W], resultant[W];
+      for (int lane = 0; lane < W; ++lane) {
+        first[lane] = quad_at<W>(g.rows + 8 * (at + lane));
+        second[lane] = quad_at<W>(g.rows + 8 * (at + lane) + 4);
+        resultant[lane] = quad_at<W>(resultants.at + 4 * (k + lane));
       }
-      V in[4], out[4], a[4], s[4];
-      L::transpose(incoming + (at - block), in);
-      L::transpose(outgoing + (at - block), out);
+      V f[4], a[4], s[4];
+      L::transpose(resultant, f);
       L::transpose(first, a);
       L::transpose(second, s);
-      V fx = in[0] - out[0], fy = in[1] - out[1], torque = in[2] + out[3];
+      V fx = f[0], fy = f[1], torque = f[2];
       const V inverse_mass = load_as<V>(g.inverse_mass + at), inverse_inertia = load_as<V>(g.inverse_inertia + at);
       V u = a[2] - c.mean_velocity[0], v = a[3] - c.mean_velocity[1], w = s[0];
       if constexpr (T::Dynamic) {
@@ -146,9 +160,9 @@ void disc_grains(const StepConstants& c, const GrainArrays& g, const PairArrays&
       s[1] = s[2] * w;
       L::untranspose(a, first);
       L::untranspose(s, second);
-      for (int k = 0; k < W; ++k) {
-        store_as(g.rows + 8 * (at + k), first[k]);
-        store_as(g.rows + 8 * (at + k) + 4, second[k]);
+      for (int lane = 0; lane < W; ++lane) {
+        store_as(g.rows + 8 * (at + lane), first[lane]);
+        store_as(g.rows + 8 * (at + lane) + 4, second[lane]);
       }
     }
   }
@@ -166,23 +180,22 @@ inline __attribute__((always_inline)) V mapped(const double* row, V x, V y, V z)
   return row[0] * x + (row[1] * y + row[2] * z);
 }
 
-/// Resultant forces and torques of eight spheres. Torque on either grain of a pair: -(r - delta/2) n x f_t; the moment
-/// of rolling is minus on i, plus on j.
+/// Resultant forces and torques of a chunk of spheres. Torque on either grain of a pair: -(r - delta/2) n x f_t; the
+/// moment of rolling is minus on i, plus on j.
 template <int W, bool Rolling>
-inline __attribute__((always_inline)) void gather_sphere_forces(const GrainArrays& g, const PairArrays& p, long block,
-                                                                typename Lanes<W>::Quad* forces,
-                                                                typename Lanes<W>::Quad* torques) {
+inline __attribute__((always_inline)) void gather_sphere_forces(const GrainArrays& g, const PairArrays& p, long first,
+                                                                long count, ScratchRows& forces, ScratchRows& torques) {
   using L = Lanes<W>;
   using Quad = typename L::Quad;
-  for (int half = 0; half < 2; ++half) {
-    const long b = block / 4 + half;
-    const std::int32_t* first = g.slots + 8L * g.slot_begin[b];
+  for (long block = 0; block < count; block += 4) {
+    const long b = (first + block) / 4;
+    const std::int32_t* begin = g.slots + 8L * g.slot_begin[b];
     const std::int32_t* last = g.slots + 8L * g.slot_begin[b + 1];
     for (int k = 0; k < 4; ++k) {
       // Both sides are summed apart: which pairs share a slot depends on the list, and must not show in the sum.
       Quad in = L::broadcast(0.0), turn_in = in, arm_in = in, out = in, turn_out = in, arm_out = in;
       double moment_in[4] = {}, moment_out[4] = {};
-      for (const std::int32_t* slot = first + k; slot < last; slot += 8) {
+      for (const std::int32_t* slot = begin + k; slot < last; slot += 8) {
         const double *row_in = p.force + slot[0], *row_out = p.force + slot[4];
         const Quad a = quad_at<W>(row_in + 4), c = quad_at<W>(row_out + 4);
         in = L::add(in, quad_at<W>(row_in));
@@ -197,36 +210,45 @@ inline __attribute__((always_inline)) void gather_sphere_forces(const GrainArray
             moment_out[m] += p.moment[m][slot[4] / 8];
           }
       }
-      const double radius = g.rows[12 * (block + 4 * half + k) + 3];
-      forces[4 * half + k] = L::sub(in, out);
+      const double radius = g.rows[12 * (first + block + k) + 3];
+      store_as(forces.at + 4 * (block + k), L::sub(in, out));
       Quad torque = L::sub(L::add(arm_in, arm_out), L::mul(L::broadcast(radius), L::add(turn_in, turn_out)));
       if constexpr (Rolling) torque = L::add(torque, L::sub(quad_at<W>(moment_in), quad_at<W>(moment_out)));
-      torques[4 * half + k] = torque;
+      store_as(torques.at + 4 * (block + k), torque);
     }
   }
 }
 
 /// Spheres in 3D.
 template <class T>
-void sphere_grains(const StepConstants& c, const GrainArrays& g, const PairArrays& p, long begin, long end,
-                   StepSums* sums) {
+void sphere_grains(const StepConstants& constants, const GrainArrays& grains, const PairArrays& pairs, long begin,
+                   long end, StepSums* sums) {
   constexpr int W = T::W;
   using L = Lanes<W>;
   using V = typename L::V;
   using Quad = typename L::Quad;
+  // Copies that no store can change (kernel_pairs.hpp).
+  const StepConstants c = constants;
+  const GrainArrays g = grains;
+  const PairArrays p = pairs;
   const double half_dt = 0.5 * c.dt;
   PartialSums<W> momentum_x, momentum_y, momentum_z, lost_locally, lost_globally;
   V fastest = V{};
-  for (long block = begin; block < end; block += 8) {
-    Quad forces[8], torques[8];
-    gather_sphere_forces<W, T::Rolling>(g, p, block, forces, torques);
-    for (long at = block; at < block + 8; at += W) {
-      Quad rows[3][W];
-      for (int k = 0; k < W; ++k)
-        for (int part = 0; part < 3; ++part) rows[part][k] = quad_at<W>(g.rows + 12 * (at + k) + 4 * part);
+  ScratchRows forces, torques;
+  for (long chunk = begin; chunk < end; chunk += chunk_grains) {
+    const long count = end - chunk < chunk_grains ? end - chunk : chunk_grains;
+    gather_sphere_forces<W, T::Rolling>(g, p, chunk, count, forces, torques);
+    for (long place = 0; place < count; place += W) {
+      const long at = chunk + place;
+      Quad force[W], couple[W], rows[3][W];
+      for (int lane = 0; lane < W; ++lane) {
+        force[lane] = quad_at<W>(forces.at + 4 * (place + lane));
+        couple[lane] = quad_at<W>(torques.at + 4 * (place + lane));
+        for (int part = 0; part < 3; ++part) rows[part][lane] = quad_at<W>(g.rows + 12 * (at + lane) + 4 * part);
+      }
       V f[4], t[4], x[4], v[4], w[4];
-      L::transpose(forces + (at - block), f);
-      L::transpose(torques + (at - block), t);
+      L::transpose(force, f);
+      L::transpose(couple, t);
       L::transpose(rows[0], x);
       L::transpose(rows[1], v);
       L::transpose(rows[2], w);
@@ -294,8 +316,8 @@ void sphere_grains(const StepConstants& c, const GrainArrays& g, const PairArray
       L::untranspose(x, rows[0]);
       L::untranspose(v, rows[1]);
       L::untranspose(w, rows[2]);
-      for (int k = 0; k < W; ++k)
-        for (int part = 0; part < 3; ++part) store_as(g.rows + 12 * (at + k) + 4 * part, rows[part][k]);
+      for (int lane = 0; lane < W; ++lane)
+        for (int part = 0; part < 3; ++part) store_as(g.rows + 12 * (at + lane) + 4 * part, rows[part][lane]);
     }
   }
   sums->momentum[0] = momentum_x.total();

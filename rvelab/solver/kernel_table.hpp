@@ -1,8 +1,9 @@
 // Turns a SceneKey into compiled kernels: one switch per flag, each ending in a template argument.
 #pragma once
 
+#include "rvelab/solver/kernel_discs.hpp"
 #include "rvelab/solver/kernel_integrate.hpp"
-#include "rvelab/solver/kernel_pairs.hpp"
+#include "rvelab/solver/kernel_spheres.hpp"
 
 namespace rvelab {
 namespace {

@@ -131,13 +131,14 @@ void visit(Archive& ar, S& s) {
   ar(t.has_reference);
   each(ar, t.list_positions);
   for (auto* m : {&t.list_lattice, &t.servo_strain, &t.last_rate}) ar(*m);
-  for (auto* v : {&t.list_travel, &t.strain_per_step, &t.reference_contact_force, &t.reference_overlap,
+  for (auto* v : {&t.list_travel, &t.list_skin, &t.strain_per_step, &t.reference_contact_force, &t.reference_overlap,
                   &t.reference_pressure, &t.last_step})
     ar(*v);
   ar(t.quasi_static);
   ar(t.mean_velocity);
   ar(t.mean_spin);
   ar(t.grain_steps);
+  ar(t.list_steps);
   ar(t.list_builds);
   ar(t.ledger);
 }

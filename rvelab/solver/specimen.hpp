@@ -36,7 +36,7 @@ struct Contact {
 
 /// How the solver goes about its work. Defaults are measured ones (performance figures stand beside each use).
 struct SolverOptions {
-  double skin = 0.15;               ///< Verlet skin over the mean radius, > 0
+  double skin = 0.15;               ///< largest Verlet skin over the mean radius, > 0; fitted down while steps pass
   double time_step_factor = 0.7;    ///< fraction of the critical step 2/omega_max, 0 < f < 1
   double fixed_time_step = 0;       ///< s; > 0: dt > 0 loading uses exactly this step
   double target_unbalanced = 1e-3;  ///< dt = 0: unbalanced ratio that steers the number of sub-steps
@@ -58,10 +58,12 @@ struct EnergyLedger {
 
 /// Solver state that decides the next bit, beside grains, contacts and cell.
 struct SolverState {
-  bool has_reference = false;               ///< the next three say when to list anew
+  bool has_reference = false;               ///< the next five say when to list anew
   Matrix3 list_lattice = Matrix3::Zero();   ///< lattice when the list was built, m
   std::vector<Vector3> list_positions;      ///< positions then, m, cell frame; empty: only the bound below is used
   double list_travel = 0;                   ///< bound on the largest fluctuation displacement since then, m
+  double list_skin = 0;                     ///< skin that the list was built with, m; 0: solver.skin
+  std::int64_t list_steps = 0;              ///< sub-steps made since then
   double strain_per_step = 0;               ///< dt = 0: pace of the sub-step controller; 0: not yet known
   Matrix3 servo_strain = Matrix3::Zero();   ///< mixed targets: strain per unit of paced strain learnt so far, lab frame
   double reference_contact_force = 0;       ///< N, mean contact force at the specimen's own p0; 0: set on opening

@@ -219,6 +219,7 @@ void advance(const Fixture& f, Assembly& a, const Advance& what) {
     std::fill(a.rows.begin() + std::ptrdiff_t(f.size()) * f.row_length(), a.rows.end(), 0.0);
     for (int k = 0; k < 3; ++k) a.state.mean_velocity[k] = sums.momentum[k] / total_mass;
     a.state.list_travel += 1.01 * what.step * std::sqrt(sums.largest_speed_squared);
+    ++a.state.list_steps;
     a.state.last_rate = rate_end;
     a.state.last_step = what.step;
     if (list_is_stale(f, a)) {
