@@ -165,7 +165,7 @@ Specimen import_csv(const std::string& particles_path, const std::optional<std::
   const auto wraps = read_grains(particles, specimen);
   if (contacts_path) io::read_contacts(CsvTable(*contacts_path), wraps, specimen);
 
-  for (const auto& setting : options.settings) set_key(specimen, setting);
+  set_keys(specimen, options.settings);
   check(specimen.contact, specimen.damping, specimen.materials);
   io::set_root_overlaps(specimen);
   return specimen;
