@@ -134,7 +134,7 @@ void add_bench(CLI::App& app) {
   command->add_option("--case", *wanted, "Run this case only; may be given more than once")->check(CLI::IsMember(names));
   command->add_flag("--quick", *quick, "A fifth of the work, three repeats");
   command->add_flag("--json", *json, "Print one JSON object");
-  command->footer("Example: rvelab bench --quick --json");
+  command->footer("Example:\n  rvelab bench --quick --json");
   command->callback([=] { run_bench(*quick, *json, *wanted); });
 }
 

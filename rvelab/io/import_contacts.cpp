@@ -20,32 +20,6 @@ std::string text(double value) {
   return number;
 }
 
-Vector3 branch_of(const Specimen& specimen, const Contact& contact) {
-  const auto& position = specimen.grains.position;
-  return position[static_cast<std::size_t>(contact.j)] + translation(specimen.cell, contact.image) -
-         position[static_cast<std::size_t>(contact.i)];
-}
-
-double overlap_of(const Specimen& specimen, const Contact& contact) {
-  const auto& radius = specimen.grains.radius;
-  return radius[static_cast<std::size_t>(contact.i)] + radius[static_cast<std::size_t>(contact.j)] -
-         branch_of(specimen, contact).norm();
-}
-
-PairParameters parameters_of(const Specimen& specimen, const Contact& contact) {
-  const auto& grains = specimen.grains;
-  const double thickness = specimen.cell.lattice(2, 2);
-  const auto material = [&](std::size_t k) -> const Material& {
-    return specimen.materials[static_cast<std::size_t>(grains.material[k])];
-  };
-  const auto mass = [&](std::size_t k) {
-    return material(k).density * grain_volume(specimen.shape, grains.radius[k], thickness);
-  };
-  const auto i = static_cast<std::size_t>(contact.i), j = static_cast<std::size_t>(contact.j);
-  return mix(specimen.contact, specimen.damping, material(i), grains.radius[i], mass(i), material(j), grains.radius[j],
-             mass(j));
-}
-
 double normal_force(Law law, double kn, double overlap) {
   if (overlap <= 0) return 0;
   const bool hertz = law == Law::hertz_mindlin || law == Law::hertz_given;
@@ -153,7 +127,7 @@ void check_normal_forces(const CsvTable& table, const std::vector<Contact>& cont
   for (std::size_t row = 0; row < table.rows(); ++row) largest = std::max(largest, table.number(row, columns.fn));
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const double overlap = overlap_of(specimen, contacts[row]);
-    const double computed = normal_force(specimen.contact.law, parameters_of(specimen, contacts[row]).kn, overlap);
+    const double computed = normal_force_of(specimen, contacts[row]);
     if (std::abs(table.number(row, columns.fn) - computed) <= agreement * largest) continue;
     throw InputError(table.place(row, columns.fn) + " N, " + pair_of(table, columns, row) + ": contact.law = " +
                      name(specimen.contact.law) + " gives " + text(computed) + " N at an overlap of " + text(overlap) +
@@ -164,6 +138,36 @@ void check_normal_forces(const CsvTable& table, const std::vector<Contact>& cont
 }
 
 }  // namespace
+
+Vector3 branch_of(const Specimen& specimen, const Contact& contact) {
+  const auto& position = specimen.grains.position;
+  return position[static_cast<std::size_t>(contact.j)] + translation(specimen.cell, contact.image) -
+         position[static_cast<std::size_t>(contact.i)];
+}
+
+double overlap_of(const Specimen& specimen, const Contact& contact) {
+  const auto& radius = specimen.grains.radius;
+  return radius[static_cast<std::size_t>(contact.i)] + radius[static_cast<std::size_t>(contact.j)] -
+         branch_of(specimen, contact).norm();
+}
+
+PairParameters parameters_of(const Specimen& specimen, const Contact& contact) {
+  const auto& grains = specimen.grains;
+  const double thickness = specimen.cell.lattice(2, 2);
+  const auto material = [&](std::size_t k) -> const Material& {
+    return specimen.materials[static_cast<std::size_t>(grains.material[k])];
+  };
+  const auto mass = [&](std::size_t k) {
+    return material(k).density * grain_volume(specimen.shape, grains.radius[k], thickness);
+  };
+  const auto i = static_cast<std::size_t>(contact.i), j = static_cast<std::size_t>(contact.j);
+  return mix(specimen.contact, specimen.damping, material(i), grains.radius[i], mass(i), material(j), grains.radius[j],
+             mass(j));
+}
+
+double normal_force_of(const Specimen& specimen, const Contact& contact) {
+  return normal_force(specimen.contact.law, parameters_of(specimen, contact).kn, overlap_of(specimen, contact));
+}
 
 void read_contacts(const CsvTable& table, const std::vector<Image>& wraps, Specimen& specimen) {
   const ContactColumns columns(table, specimen);
