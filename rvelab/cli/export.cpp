@@ -84,8 +84,10 @@ void add_export(CLI::App& app) {
   command->add_option("file", arguments->file, "specimen or record file, *.h5")->required();
   command
       ->add_option("--format", arguments->format,
-                   "xdmf (ParaView: grains, contacts, cell), lammps (dump, also OVITO), lammps-data (read_data), csv "
-                   "(particles, contacts, parameters: what `rvelab import` and YADE scripts read)")
+                   "xdmf: ParaView (grains, contacts, cell)\n"
+                   "lammps: dump of LAMMPS, also for OVITO\n"
+                   "lammps-data: data file of LAMMPS\n"
+                   "csv: particles, contacts, parameters, as `rvelab import` reads them")
       ->check(CLI::IsMember({"xdmf", "lammps", "lammps-data", "csv"}))
       ->required();
   command->add_option("-o,--output", arguments->output, "file to write; csv: what the names of the files begin with")

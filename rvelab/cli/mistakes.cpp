@@ -34,7 +34,8 @@ std::string joined(const std::vector<std::string>& words) {
   const bool is_main = command.get_parent() == nullptr;
   const std::string help = is_main ? "rvelab --help" : "rvelab " + command.get_name() + " --help";
   throw InputError((is_main ? "" : command.get_name() + ": ") + std::string("unknown option ") + word +
-                   "; the nearest is " + nearest(word, names) + "; allowed: " + joined(names) + "; see " + help);
+                   (word.starts_with("--") ? "; the nearest is " + nearest(word, names) : "") +
+                   "; allowed: " + joined(names) + "; see " + help);
 }
 
 /// -1.5 and -.5 are values.

@@ -63,10 +63,10 @@ Vector3 tangential_force(const Specimen& specimen, const Contact& contact) {
 
 std::string contacts_of(const Specimen& specimen) {
   const int dimension = specimen.cell.dimension;
-  const bool rolling = specimen.contact.rolling, given = specimen.contact.law == Law::hertz_mindlin;
-  const bool hertz = given || specimen.contact.law == Law::hertz_given;
-  std::string text =
-      first_line + "id1,id2" + axes("s", dimension) + ",fn" + axes("fs", dimension) + (hertz ? ",kno,kso" : ",kn,ks");
+  const Law law = specimen.contact.law;
+  const bool rolling = specimen.contact.rolling, hertz = law == Law::hertz_mindlin || law == Law::hertz_given;
+  std::string text = first_line + "id1,id2" + axes("s", dimension) + ",fn" + axes("fs", dimension);
+  text += std::string(dimension == 2 ? ",ft" : "") + (hertz ? ",kno,kso" : ",kn,ks");
   if (rolling) text += (dimension == 3 ? axes("m", 3) : ",mz") + std::string(",kr");
   text += "\n";
   const Matrix3& turn = specimen.cell.rotation;
@@ -77,6 +77,7 @@ std::string contacts_of(const Specimen& specimen) {
     for (int k = 0; k < dimension; ++k) text += "," + std::to_string(contact.image[std::size_t(k)]);
     text += "," + exact(io::normal_force_of(specimen, contact));
     append(text, turn * tangential_force(specimen, contact), dimension);
+    if (dimension == 2) text += "," + exact(contact.tangential_force[0]);
     text += "," + exact(pair.kn) + "," + exact(pair.kt);
     if (rolling) {
       const Vector3 moment = turn * contact.rolling_moment;

@@ -10,8 +10,8 @@ namespace rvelab {
 /// The files of one export, all beginning with the same stem.
 struct CsvExport {
   std::string particles;  ///< STEM.particles.csv: id, x, y[, z], r, material
-  std::string contacts;   ///< STEM.contacts.csv: id1, id2, sx, sy[, sz], fn, fsx, fsy[, fsz], kn, ks (Hertz: kno, kso)
-                          ///< and, with rolling, [mx, my,] mz, kr
+  std::string contacts;   ///< STEM.contacts.csv: id1, id2, sx, sy[, sz], fn, fsx, fsy[, fsz], [ft,] kn, ks (Hertz: kno,
+                          ///< kso) and, with rolling, [mx, my,] mz, kr
   std::string meta;       ///< STEM.json: cell and stress level; law and parameters, if META.json can say them
   std::string material;   ///< STEM.material.toml: every parameter of materials, contact, damping and solver
 };

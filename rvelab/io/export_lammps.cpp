@@ -18,6 +18,12 @@ Vector3 physical(const ExportState& state, const Vector3& velocity) {
   return state.network.quasi_static ? Vector3(Vector3::Zero()) : velocity;
 }
 
+/// LAMMPS counts atoms from 1: ids are moved up where the smallest is below.
+std::string id_of(const ExportState& state, std::size_t grain) {
+  const auto& id = state.specimen.grains.id;  // ascending
+  return std::to_string(id[grain] + std::max<std::int64_t>(0, 1 - id.front()));
+}
+
 std::string type_of(const ExportState& state, std::size_t grain) {
   return std::to_string(state.specimen.grains.material[grain] + 1);
 }
@@ -38,9 +44,8 @@ void append_dump(std::string& text, const ExportState& state) {
   text += "ITEM: ATOMS id type x y z radius vx vy vz\n";
   for (std::size_t g = 0; g < state.network.grains.size(); ++g) {
     const GrainState& grain = state.network.grains[g];
-    text += std::to_string(state.specimen.grains.id[g]) + " " + type_of(state, g) + " " +
-            spaced(box.wrapped(grain.position)) + " " + exact(grain.radius) + " " +
-            spaced(physical(state, grain.velocity)) + "\n";
+    text += id_of(state, g) + " " + type_of(state, g) + " " + spaced(box.wrapped(grain.position)) + " " +
+            exact(grain.radius) + " " + spaced(physical(state, grain.velocity)) + "\n";
   }
 }
 
@@ -66,12 +71,12 @@ void export_lammps_data(const ExportState& state, const std::string& path) {
   text += spaced({l(0, 1), l(0, 2), l(1, 2)}) + " xy xz yz\n\nAtoms # sphere\n\n";
   for (std::size_t g = 0; g < grains.size(); ++g) {
     const Material& material = state.specimen.materials[std::size_t(state.specimen.grains.material[g])];
-    text += std::to_string(state.specimen.grains.id[g]) + " " + type_of(state, g) + " " + exact(2 * grains[g].radius) +
-            " " + exact(material.density) + " " + spaced(box.wrapped(grains[g].position)) + "\n";
+    text += id_of(state, g) + " " + type_of(state, g) + " " + exact(2 * grains[g].radius) + " " +
+            exact(material.density) + " " + spaced(box.wrapped(grains[g].position)) + "\n";
   }
   text += "\nVelocities\n\n";
   for (std::size_t g = 0; g < grains.size(); ++g) {
-    text += std::to_string(state.specimen.grains.id[g]) + " " + spaced(physical(state, grains[g].velocity)) + " " +
+    text += id_of(state, g) + " " + spaced(physical(state, grains[g].velocity)) + " " +
             spaced(physical(state, grains[g].spin)) + "\n";
   }
   io::publish_text(path, text);

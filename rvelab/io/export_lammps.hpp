@@ -15,8 +15,9 @@
 namespace rvelab {
 
 /// Writes a dump (ITEM: BOX BOUNDS xy xz yz pp pp pp; id type x y z radius vx vy vz), one timestep a state, SI units,
-/// every number exact. `type` is the material's number from 1. Velocities are fluctuations v' in m/s, and 0 for
-/// quasi-static states, whose velocities are per sub-step. Errors as publish_text (text_file.hpp).
+/// every number exact. `type` is the material's number from 1; ids are moved up if the smallest is below 1, which
+/// LAMMPS does not allow. Velocities are fluctuations v' in m/s, and 0 for quasi-static states, whose velocities are
+/// per sub-step. Errors as publish_text (text_file.hpp).
 void export_lammps_dump(const std::vector<ExportState>& states, const std::string& path);
 
 /// Writes a data file (read_data, atom_style sphere) with density and spin. LAMMPS makes spheres of what it reads: for

@@ -101,6 +101,20 @@ Vector3 along_tangent(const Specimen& specimen, const Contact& contact) {
   return {(b[0] * f[1] - b[1] * f[0]) / std::sqrt(b[0] * b[0] + b[1] * b[1]), 0, 0};
 }
 
+/// 2D: the tangential force of a row. Where the file has the component itself, `ft`, that one: neither a turned frame
+/// nor a division has touched it. It must be that of the vector beside it.
+Vector3 tangential_component(const CsvTable& table, std::size_t row, const Specimen& specimen, const Contact& contact) {
+  const Vector3 computed = along_tangent(specimen, contact);
+  if (!table.has("ft")) return computed;
+  const auto column = table.column({"ft"});
+  const double given = table.number(row, column);
+  if (std::abs(given - computed[0]) > agreement * contact.tangential_force.norm()) {
+    throw InputError(table.place(row, column) + " N: fsx and fsy give " + text(computed[0]) +
+                     " N along (-n_y, n_x); allowed: equal within 1e-6; correct one or leave the column out");
+  }
+  return {given, 0, 0};
+}
+
 /// The stiffnesses in the file must be those that the parameters give.
 void check_stiffnesses(const CsvTable& table, const std::vector<Contact>& contacts, const Specimen& specimen,
                        const ContactColumns& columns) {
@@ -204,7 +218,7 @@ void read_contacts(const CsvTable& table, const std::vector<Image>& wraps, Speci
                        " is of a grain with itself; allowed: with another grain or a shifted image; remove the row");
     }
     turn_round_if_needed(contact);
-    if (specimen.shape == Shape::disc) contact.tangential_force = along_tangent(specimen, contact);
+    if (specimen.shape == Shape::disc) contact.tangential_force = tangential_component(table, row, specimen, contact);
   }
   check_stiffnesses(table, contacts, specimen, columns);
   check_normal_forces(table, contacts, specimen, columns);
