@@ -9,7 +9,7 @@
 #include "rvelab/io/export_csv.hpp"
 #include "rvelab/io/export_lammps.hpp"
 #include "rvelab/io/export_xdmf.hpp"
-#include "rvelab/io/snapshots.hpp"
+#include "rvelab/io/states.hpp"
 #include "rvelab/solver/rve.hpp"
 
 namespace rvelab::cli {
@@ -20,14 +20,14 @@ struct ExportArguments {
   bool json = false;
 };
 
-ExportState state_of(const Snapshot& snapshot) {
-  Rve rve(snapshot.specimen);
-  return {snapshot.record, snapshot.strain, rve.specimen(), rve.network()};
+ExportState state_of(const StoredState& state) {
+  Rve rve(state.specimen);
+  return {state.record, state.strain, rve.specimen(), rve.network()};
 }
 
 std::vector<ExportState> all_states(const std::string& path) {
   std::vector<ExportState> states;
-  for (const Snapshot& snapshot : read_states(path)) states.push_back(state_of(snapshot));
+  for (const StoredState& state : read_states(path)) states.push_back(state_of(state));
   return states;
 }
 

@@ -1,4 +1,4 @@
-#include "rvelab/io/snapshots.hpp"
+#include "rvelab/io/states.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -40,13 +40,13 @@ std::string group_of(const Hdf5File& file, long number) {
 
 }  // namespace
 
-std::vector<Snapshot> read_states(const std::string& path) {
+std::vector<StoredState> read_states(const std::string& path) {
   if (file_kind(path) == FileKind::specimen) return {{0, 0, read_specimen(path)}};
   const auto records = read_records(path).records;
   const auto strain_of = [&](std::size_t record) {
     return records.empty() ? 0.0 : records[std::min(record, records.size() - 1)].strain;
   };
-  std::vector<Snapshot> states;
+  std::vector<StoredState> states;
   const auto file = Hdf5File::open(path);
   for (const long number : numbers_of(file)) {
     states.push_back({number, strain_of(std::size_t(number)), io::get_specimen(file, group_of(file, number))});

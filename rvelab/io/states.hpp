@@ -8,14 +8,14 @@
 
 namespace rvelab {
 
-struct Snapshot {
+struct StoredState {
   long record = 0;    ///< number of the record; an end state comes after all of them
   double strain = 0;  ///< driving strain there; that of the last record for an end state; 0 without records
   Specimen specimen;
 };
 
-/// The specimen of a specimen file; of a record file each state under /snapshots, in the order of their records, and
-/// the end state. Never empty. InputError as read_specimen.
-std::vector<Snapshot> read_states(const std::string& path);
+/// The specimen of a specimen file; of a record file each state under /snapshots/<number of the record>, in their
+/// order, and the end state. Never empty. InputError as read_specimen.
+std::vector<StoredState> read_states(const std::string& path);
 
 }  // namespace rvelab
