@@ -65,3 +65,22 @@ TEST_CASE("an export never replaces the file that it is made from, and needs a f
   CHECK(here.run("export S.xdmf.h5 --format lammps-data -o S.data").code == 0);
   CHECK_THAT(text_of(here / "S.data"), Contains("400 atoms\n1 atom types\n"));
 }
+
+TEST_CASE("a dump goes out and comes back through the program with the same cell and grains") {
+  const Workplace here;
+  here.import_packing("hertz");
+  REQUIRE(here.run("export S.h5 --format csv -o s").code == 0);  // for its material file
+  REQUIRE(here.run("export S.h5 --format lammps -o s.dump").code == 0);
+  const Outcome imported = here.run("import s.dump --material s.material.toml -o T.h5");
+  INFO(imported.errors);
+  REQUIRE(imported.code == 0);
+  const auto before = nlohmann::json::parse(here.run("inspect S.h5 --json").output);
+  const auto after = nlohmann::json::parse(here.run("inspect T.h5 --json").output);
+  for (const char* key : {"dimension", "grains", "contacts", "lattice_m", "coordination_number"}) {
+    CAPTURE(key);
+    CHECK(after[key] == before[key]);
+  }
+  CHECK(after["void_ratio"].get<double>() == Approx(before["void_ratio"].get<double>()).epsilon(1e-14));
+  expect_mistake(here.run("import s.dump --material s.material.toml --cell 1,1,1 -o T.h5"), "s.dump has a cell too");
+  expect_mistake(here.run("import s.dump -o T.h5"), "comes without contact parameters");
+}

@@ -115,3 +115,15 @@ TEST_CASE("all mistakes of a protocol and its assignments come at once, in the o
   }
   CHECK(std::count(outcome.errors.begin(), outcome.errors.end(), '|') == 5);
 }
+
+TEST_CASE("every mistake of the assignments of an import comes at once") {
+  const Workplace here;
+  const std::string stem = std::string(RVELAB_TEST_DATA) + "/yade/dense";
+  const Outcome outcome =
+      here.run("import " + stem + ".particles.csv " + stem + ".json -o S.h5 --set contact.slop=1 " +
+               "--set solver.skin=0.2 --set material.young_modulus_MPa=800 --set damping.local=nan");
+  expect_mistake(outcome, "unknown key contact.slop; the nearest known key is contact.slip");
+  CHECK_THAT(outcome.errors, Contains(" | material.young_modulus_MPa is not known; write material.young_modulus_Pa, "
+                                      "1 MPa = 1e6 Pa | damping.local = nan is not finite"));
+  CHECK(!std::filesystem::exists(here / "S.h5"));
+}
