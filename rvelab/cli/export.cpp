@@ -43,36 +43,40 @@ void expect_other_than_input(const ExportArguments& arguments, const std::string
                    ", which it is made from; allowed: another name; choose one");
 }
 
+/// Writes the files of one format; their names, and what else there is to say, go into the listing.
+void write_export(const ExportArguments& arguments, Listing& listing) {
+  const std::string& output = arguments.output;
+  if (arguments.format == "csv") {
+    const CsvExport files = export_csv(read_states(arguments.file).back().specimen, stem_of(output));
+    listing.add("written", Json::array({files.particles, files.contacts, files.meta, files.material}));
+    listing.add("import_with", "rvelab import " + files.particles + " " + files.contacts + " " + files.meta +
+                                   " --material " + files.material + " -o S.h5");
+    return;
+  }
+  if (arguments.format == "lammps-data") {
+    export_lammps_data(state_of(read_states(arguments.file).back()), output);
+    listing.add("written", Json::array({output}));
+    return;
+  }
+  const auto states = all_states(arguments.file);
+  listing.add("states", states.size());
+  if (arguments.format == "xdmf") {
+    expect_other_than_input(arguments, output + ".h5");
+    export_xdmf(states, output);
+    listing.add("written", Json::array({output, output + ".h5"}));
+  } else {
+    export_lammps_dump(states, output);
+    listing.add("written", Json::array({output}));
+  }
+}
+
 void run_export(const ExportArguments& arguments) {
   expect_folder_of(arguments.output);
+  expect_other_than_input(arguments, arguments.output);
   Listing listing;
   listing.add("file", arguments.file);
   listing.add("format", arguments.format);
-  Json written = Json::array();
-  expect_other_than_input(arguments, arguments.output);
-  if (arguments.format == "xdmf") {
-    expect_other_than_input(arguments, arguments.output + ".h5");
-    const auto states = all_states(arguments.file);
-    export_xdmf(states, arguments.output);
-    listing.add("states", states.size());
-    written = {arguments.output, arguments.output + ".h5"};
-  } else if (arguments.format == "lammps") {
-    const auto states = all_states(arguments.file);
-    export_lammps_dump(states, arguments.output);
-    listing.add("states", states.size());
-    written = {arguments.output};
-  } else if (arguments.format == "lammps-data") {
-    export_lammps_data(state_of(read_states(arguments.file).back()), arguments.output);
-    written = {arguments.output};
-  } else {
-    const CsvExport files = export_csv(read_states(arguments.file).back().specimen, stem_of(arguments.output));
-    written = {files.particles, files.contacts, files.meta, files.material};
-    listing.add("written", written);
-    listing.add("import_with", "rvelab import " + files.particles + " " + files.contacts + " " + files.meta +
-                                   " --material " + files.material + " -o S.h5");
-    return listing.print(arguments.json);
-  }
-  listing.add("written", written);
+  write_export(arguments, listing);
   listing.print(arguments.json);
 }
 

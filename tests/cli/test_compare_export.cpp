@@ -62,7 +62,11 @@ TEST_CASE("an export never replaces the file that it is made from, and needs a f
   CHECK(text_of(here / "S.xdmf.h5") == before);
   expect_mistake(here.run("export S.xdmf.h5 --format lammps -o no/S.dump"), "the folder no does not exist");
   expect_mistake(here.run("export S.xdmf.h5 --format vtk -o S.vtk"), "vtk not in");
-  CHECK(here.run("export S.xdmf.h5 --format lammps-data -o S.data").code == 0);
+  const auto data = nlohmann::json::parse(here.run("export S.xdmf.h5 --format lammps-data -o S.data --json").output);
+  CHECK(data["written"] == nlohmann::json::array({"S.data"}));
+  const auto xdmf = nlohmann::json::parse(here.run("export S.xdmf.h5 --format xdmf -o T.xdmf --json").output);
+  CHECK(xdmf["written"] == nlohmann::json::array({"T.xdmf", "T.xdmf.h5"}));
+  CHECK(xdmf["states"] == 1);
   CHECK_THAT(text_of(here / "S.data"), Contains("400 atoms\n1 atom types\n"));
 }
 
