@@ -135,7 +135,7 @@ void add_bench(CLI::App& app) {
       ->check(CLI::IsMember(names));
   command->add_flag("--quick", *quick, "A fifth of the work, three repeats");
   command->add_flag("--json", *json, "Print one JSON object");
-  command->footer("Example: rvelab bench --quick --json");
+  command->footer("Example:\n  rvelab bench --quick --json");
   command->callback([=] { run_bench(*quick, *json, *wanted); });
 }
 

@@ -49,7 +49,8 @@ std::vector<double> parsed_pressures(const std::string& list) {
 std::string record_file_name(double pressure) { return "R_" + std::to_string(std::llround(pressure)) + ".h5"; }
 
 std::vector<Protocol> protocols_at(const CalibrateArguments& arguments) {
-  const Protocol general = read_protocol(arguments.protocol, arguments.settings);
+  const std::string path = protocol_path(arguments.protocol);
+  const Protocol general = read_protocol(path, arguments.settings);
   const auto pressures =
       arguments.pressures.empty() ? general.calibration_pressures : parsed_pressures(arguments.pressures);
   if (pressures.empty()) {
@@ -65,7 +66,7 @@ std::vector<Protocol> protocols_at(const CalibrateArguments& arguments) {
     if (!names.insert(record_file_name(pressure)).second) refuse_pressure(assignment.str());
     auto settings = arguments.settings;
     settings.push_back(assignment.str());
-    protocols.push_back(read_protocol(arguments.protocol, settings));
+    protocols.push_back(read_protocol(path, settings));
   }
   check_calibratable(protocols.front());
   return protocols;
@@ -132,7 +133,7 @@ void add_calibrate(CLI::App& app) {
   auto arguments = std::make_shared<CalibrateArguments>();
   CLI::App* command =
       app.add_subcommand("calibrate", "Run a compression test at several pressures: friction angle, N_q");
-  command->add_option("protocol", arguments->protocol, "PROTOCOL.toml, for example protocols/biaxial.toml")->required();
+  command->add_option("protocol", arguments->protocol, "PROTOCOL.toml, or the name of an installed one: biaxial")->required();
   command->add_option("--specimen", arguments->specimens, "specimen; given several times: one for each pressure")
       ->expected(1)
       ->allow_extra_args(false)
@@ -148,8 +149,8 @@ void add_calibrate(CLI::App& app) {
   command->add_flag("--json", arguments->json, "print one JSON object");
   command->footer(
       "Examples:\n"
-      "  rvelab calibrate protocols/biaxial.toml --specimen dense.h5 --pressures 10e3,20e3,30e3\n"
-      "  rvelab calibrate protocols/biaxial.toml --specimen a.h5 --specimen b.h5 --pressures 10e3,20e3 -o records");
+      "  rvelab calibrate biaxial --specimen dense.h5 --pressures 10e3,20e3,30e3\n"
+      "  rvelab calibrate biaxial --specimen a.h5 --specimen b.h5 --pressures 10e3,20e3 -o records");
   command->callback([arguments] { run_calibration(*arguments); });
 }
 

@@ -12,6 +12,10 @@ void add_inspect(CLI::App& app);
 void add_probe(CLI::App& app);
 void add_run(CLI::App& app);
 void add_calibrate(CLI::App& app);
+void add_compare(CLI::App& app);
+void add_export(CLI::App& app);
+void add_keys(CLI::App& app);
+void add_protocols(CLI::App& app);
 void add_bench(CLI::App& app);
 
 }  // namespace rvelab::cli

@@ -1,4 +1,4 @@
-// rvelab import: specimens from the CSV files of YADE and LAMMPS.
+// rvelab import: specimens from CSV files, as YADE scripts write them, and from dumps of LAMMPS.
 #include <algorithm>
 #include <memory>
 #include <optional>
@@ -68,8 +68,11 @@ void run_import(const ImportArguments& arguments) {
 
 void add_import(CLI::App& app) {
   auto arguments = std::make_shared<ImportArguments>();
-  CLI::App* command = app.add_subcommand("import", "Make a specimen from CSV files of YADE or LAMMPS");
-  command->add_option("PARTICLES.csv", arguments->inputs[0], "columns id,x,y[,z] and r or radius")->required();
+  CLI::App* command = app.add_subcommand("import", "Make a specimen from CSV files, or from a dump of LAMMPS");
+  command
+      ->add_option("PARTICLES.csv", arguments->inputs[0],
+                   "columns id,x,y[,z] and r or radius; or a text dump of LAMMPS (SI)")
+      ->required();
   command->add_option("CONTACTS.csv", arguments->inputs[1], "columns id1,id2,sx,sy[,sz],fn,fsx,fsy[,fsz],mz");
   command->add_option("META.json", arguments->inputs[2], "parameters and cell of the packing");
   command->add_option("--cell", arguments->cell, "Lxx,Lyy,Lzz in m of a rectangular cell (2D: Lzz is the thickness)")
@@ -85,7 +88,8 @@ void add_import(CLI::App& app) {
   command->footer(
       "Examples:\n"
       "  rvelab import dense.particles.csv dense.contacts.csv dense.json -o dense.h5\n"
-      "  rvelab import init.csv --cell 2,2,2 --material sand.toml -o loose.h5");
+      "  rvelab import init.csv --cell 2,2,2 --material sand.toml -o loose.h5\n"
+      "  rvelab import relaxed.dump --material sand.toml -o relaxed.h5");
   command->callback([arguments] { run_import(*arguments); });
 }
 

@@ -1,13 +1,12 @@
 // The program `rvelab`: its subcommands, and the one place where errors become exit codes. 0: done; 1: the run failed;
-// 2: a user's mistake. Every error is one line on standard error.
+// 2: a user's mistake. Every error is one line on standard error. No colours, on a terminal or off it.
 #include <exception>
 #include <iostream>
 #include <string>
-#include <vector>
 
 #include "rvelab/cli/commands.hpp"
+#include "rvelab/cli/mistakes.hpp"
 #include "rvelab/error.hpp"
-#include "rvelab/io/material_toml.hpp"
 #include "rvelab/io/version.hpp"
 
 namespace {
@@ -26,21 +25,6 @@ int fail(int code, const char* message) {
   return code;
 }
 
-/// The first argument names a subcommand or is an option; CLI11 would only say that a subcommand is missing.
-void expect_subcommand(const CLI::App& app, int argc, char** argv) {
-  if (argc < 2 || argv[1][0] == '-') return;
-  const std::string word = argv[1];
-  std::vector<std::string> names;
-  std::string list;
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
-    if (command->get_name() == word) return;
-    names.push_back(command->get_name());
-    list += (list.empty() ? "" : ", ") + names.back();
-  }
-  throw rvelab::InputError("unknown subcommand " + word + "; the nearest is " + rvelab::nearest(word, names) +
-                           "; allowed: " + list + "; see rvelab --help");
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -52,16 +36,30 @@ int main(int argc, char** argv) {
   rvelab::cli::add_probe(app);
   rvelab::cli::add_run(app);
   rvelab::cli::add_calibrate(app);
+  rvelab::cli::add_compare(app);
+  rvelab::cli::add_export(app);
+  rvelab::cli::add_protocols(app);
+  rvelab::cli::add_keys(app);
   rvelab::cli::add_bench(app);
+  app.footer(
+      "rvelab SUBCOMMAND --help says more, with examples. A first test:\n"
+      "  rvelab import dense.particles.csv dense.contacts.csv dense.json -o dense.h5\n"
+      "  rvelab run biaxial --specimen dense.h5 -o R.h5");
+  if (argc < 2) {
+    std::cerr << app.help() << std::flush;
+    return users_mistake;
+  }
   try {
-    expect_subcommand(app, argc, argv);
+    rvelab::cli::expect_known_words(app, argc, argv);
     app.parse(argc, argv);
     return 0;
   } catch (const CLI::Success& help_or_version) {
     return app.exit(help_or_version);
-  } catch (const CLI::ParseError& error) {
-    const std::string remedy = std::string(error.what()) + "; see rvelab --help";
-    return fail(users_mistake, remedy.c_str());
+  } catch (const CLI::RuntimeError& outcome) {  // a subcommand's own exit code, said by what it printed
+    std::cout << std::flush;
+    return outcome.get_exit_code();
+  } catch (const CLI::Error& error) {
+    return fail(users_mistake, rvelab::cli::with_remedy(app, error).c_str());
   } catch (const rvelab::InputError& error) {
     return fail(users_mistake, error.what());
   } catch (const std::exception& error) {

@@ -62,8 +62,8 @@ void add_probe(CLI::App& app) {
   command->add_flag("--no-slip", arguments->no_slip, "let no contact slip or roll over (friction 1e6)");
   command
       ->add_option("--method", arguments->method,
-                   "dynamic: small increments, relaxed; linear: the elastic tangent of the contact network, all "
-                   "contacts stuck")
+                   "dynamic: small increments, relaxed\n"
+                   "linear: the elastic tangent of the contact network, all contacts stuck")
       ->check(CLI::IsMember({"dynamic", "linear"}))
       ->capture_default_str();
   command->add_flag("--json", arguments->json, "print one JSON object");

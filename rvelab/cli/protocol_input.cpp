@@ -3,9 +3,39 @@
 #include <filesystem>
 
 #include "rvelab/error.hpp"
+#include "rvelab/io/material_toml.hpp"
 #include "rvelab/io/specimen_file.hpp"
 
 namespace rvelab::cli {
+
+namespace fs = std::filesystem;
+
+std::map<std::string, std::string> installed_protocols() {
+  std::map<std::string, std::string> paths;
+  std::error_code ignored;
+  const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
+  const fs::path folder = program.parent_path().parent_path() / "share/rvelab/protocols";
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    if (entry.path().extension() == ".toml") paths[entry.path().stem().string()] = entry.path().string();
+  }
+  return paths;
+}
+
+std::string protocol_path(const std::string& name_or_path) {
+  if (name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".toml")) return name_or_path;
+  const auto installed = installed_protocols();
+  if (const auto found = installed.find(name_or_path); found != installed.end()) return found->second;
+  std::vector<std::string> names;
+  std::string list;
+  for (const auto& [name, path] : installed) {
+    names.push_back(name);
+    list += name + ", ";
+  }
+  const std::string near = nearest(name_or_path, names);
+  throw InputError("no protocol \"" + name_or_path + "\" is installed" +
+                   (near.empty() ? "" : "; the nearest is " + near) + "; allowed: " + list +
+                   "or the path of a file PROTOCOL.toml; see rvelab protocols");
+}
 
 std::vector<Specimen> specimens_for(const Protocol& protocol, const std::vector<std::string>& files) {
   if (files.empty() && protocol.specimen_file.empty()) {

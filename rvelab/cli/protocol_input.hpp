@@ -1,12 +1,22 @@
-// What `run` and `calibrate` share: the specimens that a protocol runs on, and the folder that results go to.
+// What `run` and `calibrate` share: the protocols that are installed, the specimens that a protocol runs on, and the
+// folder that results go to.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
 #include "rvelab/protocol/protocol.hpp"
 
 namespace rvelab::cli {
+
+/// Paths of the installed protocols by their names: those in ../share/rvelab/protocols beside the program, which is
+/// where installation and build put them.
+std::map<std::string, std::string> installed_protocols();
+
+/// The path of a protocol: what is no path (no separator, no .toml) names an installed one. InputError with the nearest
+/// name if none is called so.
+std::string protocol_path(const std::string& name_or_path);
 
 /// Reads the specimens named on the command line; without any, the protocol's own ([specimen] file, relative to the
 /// protocol's folder). InputError if there is none.

@@ -92,7 +92,7 @@ void report(const TestRun& run, const RunArguments& arguments) {
 }
 
 void run_test(const RunArguments& arguments) {
-  const Protocol protocol = read_protocol(arguments.protocol, arguments.settings);
+  const Protocol protocol = read_protocol(protocol_path(arguments.protocol), arguments.settings);
   const auto specimens = specimens_for(
       protocol, arguments.specimen.empty() ? std::vector<std::string>{} : std::vector{arguments.specimen});
   if (!arguments.output.empty()) expect_folder_of(arguments.output);
@@ -106,7 +106,7 @@ void run_test(const RunArguments& arguments) {
 void add_run(CLI::App& app) {
   auto arguments = std::make_shared<RunArguments>();
   CLI::App* command = app.add_subcommand("run", "Run a test, a protocol in TOML, on a specimen");
-  command->add_option("protocol", arguments->protocol, "PROTOCOL.toml, for example protocols/biaxial.toml")->required();
+  command->add_option("protocol", arguments->protocol, "PROTOCOL.toml, or the name of an installed one: biaxial")->required();
   command->add_option("--specimen", arguments->specimen,
                       "specimen (or record file: its end state); else [specimen] file");
   command->add_option("-o,--output", arguments->output, "record file to write, R.h5");
@@ -119,8 +119,8 @@ void add_run(CLI::App& app) {
   command->add_flag("--json", arguments->json, "print one JSON object, records as arrays by name");
   command->footer(
       "Examples:\n"
-      "  rvelab run protocols/biaxial.toml --specimen dense.h5 -o R.h5\n"
-      "  rvelab run protocols/biaxial.toml --specimen dense.h5 --set stage.compression.to_strain=0.05 --json");
+      "  rvelab run biaxial --specimen dense.h5 -o R.h5\n"
+      "  rvelab run biaxial --specimen dense.h5 --set stage.compression.to_strain=0.05 --json");
   command->callback([arguments] { run_test(*arguments); });
 }
 

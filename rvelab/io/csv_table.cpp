@@ -35,16 +35,20 @@ bool parse(std::string_view text, Value& value) {
   return error == std::errc() && end == text.data() + text.size();
 }
 
-}  // namespace
-
-CsvTable::CsvTable(const std::string& path) : path_(path) {
+std::string whole_file(const std::string& path) {
   if (!std::filesystem::is_regular_file(path)) throw InputError(path + ": no such file; give the path of a CSV file");
   std::ifstream input(path, std::ios::binary);
   std::ostringstream whole;
   whole << input.rdbuf();
   if (!input) throw InputError(path + ": cannot be read; check that it is not empty and its permissions");
-  content_ = std::move(whole).str();
+  return std::move(whole).str();
+}
 
+}  // namespace
+
+CsvTable::CsvTable(const std::string& path) : CsvTable(path, whole_file(path)) {}
+
+CsvTable::CsvTable(const std::string& path, std::string text) : path_(path), content_(std::move(text)) {
   long line_number = 0;
   std::string_view rest = content_;
   while (!rest.empty()) {

@@ -15,6 +15,8 @@ class CsvTable {
   /// Reads a file. InputError: missing, no header, a row with another number of cells than the header, a column name
   /// twice.
   explicit CsvTable(const std::string& path);
+  /// The same of a text; `path` serves the messages only.
+  CsvTable(const std::string& path, std::string text);
   CsvTable(const CsvTable&) = delete;  // cells view the text
   CsvTable& operator=(const CsvTable&) = delete;
 

@@ -106,6 +106,39 @@ std::string type_name(hid_t type) {
   }
 }
 
+/// The same with what type_name leaves open, so that equal names mean equal bytes for equal values.
+std::string exact_type_name(hid_t type) {
+  std::string name = type_name(type);
+  if (H5Tis_variable_str(type) > 0) return name;
+  const bool usual = name.starts_with("float") || name.find("int") != std::string::npos;
+  if (!usual) return name + " of " + std::to_string(H5Tget_size(type)) + " bytes";
+  return H5Tget_order(type) == H5T_ORDER_BE ? name + " big-endian" : name;
+}
+
+/// The values of a dataset or attribute as they are stored. `read(type, buffer)` is H5Dread or H5Aread on it.
+template <class Read>
+StoredValues stored_values(hid_t type, hid_t space, const std::string& what, Read read) {
+  StoredValues values{exact_type_name(type), shape_of(space), {}, {}};
+  const auto number = count(values.shape);
+  const bool text = H5Tis_variable_str(type) > 0;
+  if (!text && (H5Tdetect_class(type, H5T_VLEN) > 0 || H5Tdetect_class(type, H5T_REFERENCE) > 0)) {
+    throw InputError(what +
+                     " holds references to other places; allowed: numbers and text; it is not rvelab's: leave it out");
+  }
+  if (number == 0) return values;
+  if (!text) {
+    values.bytes.resize(number * H5Tget_size(type));
+    if (read(type, values.bytes.data()) < 0) throw InputError(what + " cannot be read (" + hdf5_reason() + ")");
+    return values;
+  }
+  const Handle memory(H5Tcopy(type), H5Tclose);
+  std::vector<char*> texts(number, nullptr);
+  if (read(memory, texts.data()) < 0) throw InputError(what + " cannot be read (" + hdf5_reason() + ")");
+  for (const char* each : texts) values.texts.emplace_back(each == nullptr ? "" : each);
+  H5Dvlen_reclaim(memory, space, H5P_DEFAULT, texts.data());
+  return values;
+}
+
 [[noreturn]] void fail_write(const std::string& path, const std::string& name) {
   throw Error(path + ": " + name + " could not be written (" + hdf5_reason() + "); check the memory left");
 }
@@ -318,6 +351,44 @@ std::vector<Hdf5Entry> Hdf5File::entries() const {
     found.push_back({"/" + name, type_name(type), shape_of(space), read_attribute(dataset, "units")});
   }
   return found;
+}
+
+std::vector<Hdf5Object> Hdf5File::objects() const {
+  std::vector<Hdf5Object> found;
+  const auto collect = [](hid_t, const char* name, const H5O_info_t* info, void* list) -> herr_t {
+    const std::string path = std::string(name) == "." ? "/" : "/" + std::string(name);
+    if (info->type == H5O_TYPE_DATASET || info->type == H5O_TYPE_GROUP) {
+      static_cast<std::vector<Hdf5Object>*>(list)->push_back({path, info->type == H5O_TYPE_DATASET, {}});
+    }
+    return 0;
+  };
+  H5Ovisit2(id_, H5_INDEX_NAME, H5_ITER_INC, collect, &found, H5O_INFO_BASIC);
+  const auto name_attribute = [](hid_t, const char* name, const H5A_info_t*, void* list) -> herr_t {
+    static_cast<std::vector<std::string>*>(list)->emplace_back(name);
+    return 0;
+  };
+  for (auto& object : found) {
+    const Handle opened(H5Oopen(id_, object.name.c_str(), H5P_DEFAULT), H5Oclose);
+    std::vector<std::string> names;
+    hsize_t position = 0;
+    H5Aiterate2(opened, H5_INDEX_NAME, H5_ITER_INC, &position, name_attribute, &names);
+    for (const auto& name : names) {
+      const Handle attribute(H5Aopen(opened, name.c_str(), H5P_DEFAULT), H5Aclose);
+      const Handle type(H5Aget_type(attribute), H5Tclose), space(H5Aget_space(attribute), H5Sclose);
+      object.attributes[name] =
+          stored_values(type, space, path_ + ": attribute " + name + " of " + object.name,
+                        [&](hid_t memory, void* buffer) { return H5Aread(attribute, memory, buffer); });
+    }
+  }
+  return found;
+}
+
+StoredValues Hdf5File::stored(const std::string& name) const {
+  const Handle dataset = open_dataset(id_, path_, name);
+  const Handle type(H5Dget_type(dataset), H5Tclose), space(H5Dget_space(dataset), H5Sclose);
+  return stored_values(type, space, path_ + ": dataset " + name, [&](hid_t memory, void* buffer) {
+    return H5Dread(dataset, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, buffer);
+  });
 }
 
 std::vector<std::byte> Hdf5File::image() const {

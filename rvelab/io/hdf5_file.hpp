@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,6 +22,21 @@ struct Hdf5Entry {
   std::string type;   ///< float64, int32, int64, uint64, uint8 or text
   Shape64 shape;      ///< empty: a scalar
   std::string units;  ///< its attribute `units`; "1" where it is a pure number, "-" where it is none
+};
+
+/// Values as a file stores them, for comparison: bytes in the file's own type, or texts of variable length.
+struct StoredValues {
+  std::string type;  ///< as Hdf5Entry says it, with the byte order or size where they are not the usual ones
+  Shape64 shape;
+  std::vector<std::byte> bytes;
+  std::vector<std::string> texts;
+};
+
+/// A group (the root, "/", among them) or a dataset, with its attributes by name.
+struct Hdf5Object {
+  std::string name;
+  bool is_dataset = false;
+  std::map<std::string, StoredValues> attributes;
 };
 
 /// An HDF5 file, move only. Names are full paths; groups between are made as needed. Scalars: double, int32, int64,
@@ -61,6 +77,12 @@ class Hdf5File {
 
   /// All datasets, in the order of their names.
   std::vector<Hdf5Entry> entries() const;
+
+  /// All groups and datasets, in the order of their names.
+  std::vector<Hdf5Object> objects() const;
+
+  /// A dataset as it is stored. InputError if it is missing or of a type that holds references.
+  StoredValues stored(const std::string& name) const;
 
   /// The bytes of the file.
   std::vector<std::byte> image() const;

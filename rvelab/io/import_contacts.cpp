@@ -20,32 +20,6 @@ std::string text(double value) {
   return number;
 }
 
-Vector3 branch_of(const Specimen& specimen, const Contact& contact) {
-  const auto& position = specimen.grains.position;
-  return position[static_cast<std::size_t>(contact.j)] + translation(specimen.cell, contact.image) -
-         position[static_cast<std::size_t>(contact.i)];
-}
-
-double overlap_of(const Specimen& specimen, const Contact& contact) {
-  const auto& radius = specimen.grains.radius;
-  return radius[static_cast<std::size_t>(contact.i)] + radius[static_cast<std::size_t>(contact.j)] -
-         branch_of(specimen, contact).norm();
-}
-
-PairParameters parameters_of(const Specimen& specimen, const Contact& contact) {
-  const auto& grains = specimen.grains;
-  const double thickness = specimen.cell.lattice(2, 2);
-  const auto material = [&](std::size_t k) -> const Material& {
-    return specimen.materials[static_cast<std::size_t>(grains.material[k])];
-  };
-  const auto mass = [&](std::size_t k) {
-    return material(k).density * grain_volume(specimen.shape, grains.radius[k], thickness);
-  };
-  const auto i = static_cast<std::size_t>(contact.i), j = static_cast<std::size_t>(contact.j);
-  return mix(specimen.contact, specimen.damping, material(i), grains.radius[i], mass(i), material(j), grains.radius[j],
-             mass(j));
-}
-
 double normal_force(Law law, double kn, double overlap) {
   if (overlap <= 0) return 0;
   const bool hertz = law == Law::hertz_mindlin || law == Law::hertz_given;
@@ -127,6 +101,20 @@ Vector3 along_tangent(const Specimen& specimen, const Contact& contact) {
   return {(b[0] * f[1] - b[1] * f[0]) / std::sqrt(b[0] * b[0] + b[1] * b[1]), 0, 0};
 }
 
+/// 2D: the tangential force of a row. Where the file has the component itself, `ft`, that one: neither a turned frame
+/// nor a division has touched it. It must be that of the vector beside it.
+Vector3 tangential_component(const CsvTable& table, std::size_t row, const Specimen& specimen, const Contact& contact) {
+  const Vector3 computed = along_tangent(specimen, contact);
+  if (!table.has("ft")) return computed;
+  const auto column = table.column({"ft"});
+  const double given = table.number(row, column);
+  if (std::abs(given - computed[0]) > agreement * contact.tangential_force.norm()) {
+    throw InputError(table.place(row, column) + " N: fsx and fsy give " + text(computed[0]) +
+                     " N along (-n_y, n_x); allowed: equal within 1e-6; correct one or leave the column out");
+  }
+  return {given, 0, 0};
+}
+
 /// The stiffnesses in the file must be those that the parameters give.
 void check_stiffnesses(const CsvTable& table, const std::vector<Contact>& contacts, const Specimen& specimen,
                        const ContactColumns& columns) {
@@ -153,7 +141,7 @@ void check_normal_forces(const CsvTable& table, const std::vector<Contact>& cont
   for (std::size_t row = 0; row < table.rows(); ++row) largest = std::max(largest, table.number(row, columns.fn));
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const double overlap = overlap_of(specimen, contacts[row]);
-    const double computed = normal_force(specimen.contact.law, parameters_of(specimen, contacts[row]).kn, overlap);
+    const double computed = normal_force_of(specimen, contacts[row]);
     if (std::abs(table.number(row, columns.fn) - computed) <= agreement * largest) continue;
     throw InputError(table.place(row, columns.fn) + " N, " + pair_of(table, columns, row) + ": contact.law = " +
                      name(specimen.contact.law) + " gives " + text(computed) + " N at an overlap of " + text(overlap) +
@@ -164,6 +152,36 @@ void check_normal_forces(const CsvTable& table, const std::vector<Contact>& cont
 }
 
 }  // namespace
+
+Vector3 branch_of(const Specimen& specimen, const Contact& contact) {
+  const auto& position = specimen.grains.position;
+  return position[static_cast<std::size_t>(contact.j)] + translation(specimen.cell, contact.image) -
+         position[static_cast<std::size_t>(contact.i)];
+}
+
+double overlap_of(const Specimen& specimen, const Contact& contact) {
+  const auto& radius = specimen.grains.radius;
+  return radius[static_cast<std::size_t>(contact.i)] + radius[static_cast<std::size_t>(contact.j)] -
+         branch_of(specimen, contact).norm();
+}
+
+PairParameters parameters_of(const Specimen& specimen, const Contact& contact) {
+  const auto& grains = specimen.grains;
+  const double thickness = specimen.cell.lattice(2, 2);
+  const auto material = [&](std::size_t k) -> const Material& {
+    return specimen.materials[static_cast<std::size_t>(grains.material[k])];
+  };
+  const auto mass = [&](std::size_t k) {
+    return material(k).density * grain_volume(specimen.shape, grains.radius[k], thickness);
+  };
+  const auto i = static_cast<std::size_t>(contact.i), j = static_cast<std::size_t>(contact.j);
+  return mix(specimen.contact, specimen.damping, material(i), grains.radius[i], mass(i), material(j), grains.radius[j],
+             mass(j));
+}
+
+double normal_force_of(const Specimen& specimen, const Contact& contact) {
+  return normal_force(specimen.contact.law, parameters_of(specimen, contact).kn, overlap_of(specimen, contact));
+}
 
 void read_contacts(const CsvTable& table, const std::vector<Image>& wraps, Specimen& specimen) {
   const ContactColumns columns(table, specimen);
@@ -200,7 +218,7 @@ void read_contacts(const CsvTable& table, const std::vector<Image>& wraps, Speci
                        " is of a grain with itself; allowed: with another grain or a shifted image; remove the row");
     }
     turn_round_if_needed(contact);
-    if (specimen.shape == Shape::disc) contact.tangential_force = along_tangent(specimen, contact);
+    if (specimen.shape == Shape::disc) contact.tangential_force = tangential_component(table, row, specimen, contact);
   }
   check_stiffnesses(table, contacts, specimen, columns);
   check_normal_forces(table, contacts, specimen, columns);

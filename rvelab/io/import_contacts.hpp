@@ -12,6 +12,13 @@ namespace rvelab::io {
 /// translation. Errors as import_csv says.
 void read_contacts(const CsvTable& table, const std::vector<Image>& wraps, Specimen& specimen);
 
+/// Of one contact, as the law makes it: branch x_j + L image - x_i (m, cell frame), overlap (m), parameters of the
+/// pair, elastic normal force (N, repulsion positive, 0 without overlap).
+Vector3 branch_of(const Specimen& specimen, const Contact& contact);
+double overlap_of(const Specimen& specimen, const Contact& contact);
+PairParameters parameters_of(const Specimen& specimen, const Contact& contact);
+double normal_force_of(const Specimen& specimen, const Contact& contact);
+
 /// Sets Contact::last_root_overlap: sqrt(overlap) with hertz_mindlin, else zero.
 void set_root_overlaps(Specimen& specimen);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <memory>
 #include <numeric>
 
 #include "rvelab/cell/givens.hpp"
@@ -11,6 +12,7 @@
 #include "rvelab/io/csv_table.hpp"
 #include "rvelab/io/import_contacts.hpp"
 #include "rvelab/io/import_meta.hpp"
+#include "rvelab/io/lammps_dump.hpp"
 #include "rvelab/io/material_toml.hpp"
 
 namespace rvelab {
@@ -40,10 +42,26 @@ void set_cell(Specimen& specimen, int dimension, const Matrix3& vectors, const s
   }
 }
 
-/// Material of each row: by name where the file has the column, else the only one.
+/// Material of each row by the number that LAMMPS gives it, from 1.
+std::vector<std::int32_t> materials_by_type(const CsvTable& table, const Specimen& specimen) {
+  std::vector<std::int32_t> index;
+  const auto column = table.column({"type"});
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const auto type = table.integer(row, column);
+    if (type < 1 || type > static_cast<std::int64_t>(specimen.materials.size())) {
+      throw InputError(table.place(row, column) + " is no material; allowed: 1 to " +
+                       std::to_string(specimen.materials.size()) + ", the materials in their order; add the material");
+    }
+    index.push_back(static_cast<std::int32_t>(type - 1));
+  }
+  return index;
+}
+
+/// Material of each row: by name or type where the file has the column, else the only one.
 std::vector<std::int32_t> materials_of(const CsvTable& table, const Specimen& specimen) {
   std::vector<std::int32_t> index(table.rows(), 0);
   if (!table.has("material")) {
+    if (specimen.materials.size() > 1 && table.has("type")) return materials_by_type(table, specimen);
     if (specimen.materials.size() > 1) {
       throw InputError(table.place(0) + ": there are " + std::to_string(specimen.materials.size()) +
                        " materials and no column `material`; allowed: one material, or the column with a name for "
@@ -121,20 +139,47 @@ std::vector<Image> read_grains(const CsvTable& table, Specimen& specimen) {
   return wraps;
 }
 
+/// A CSV file, or a dump of LAMMPS, which brings its cell.
+struct Particles {
+  std::unique_ptr<CsvTable> table;
+  int dimension;
+  std::optional<Matrix3> cell;
+};
+
+Particles read_particles(const std::string& path) {
+  if (io::is_lammps_dump(path)) {
+    auto dump = io::read_lammps_dump(path);
+    return {std::move(dump.atoms), dump.dimension, dump.cell};
+  }
+  auto table = std::make_unique<CsvTable>(path);
+  const int dimension = table->has("z") ? 3 : 2;
+  return {std::move(table), dimension, std::nullopt};
+}
+
+/// The cell that counts when a further source gives one too: none may contradict another.
+void take_cell(std::optional<Matrix3>& cell, std::string& source, const Matrix3& further, const std::string& from,
+               const std::string& what) {
+  if (cell) {
+    throw InputError(from + " gives a cell and " + source + " has a cell too; allowed: one of the two; leave " + what +
+                     " out");
+  }
+  cell = further;
+  source = from;
+}
+
 }  // namespace
 
 Specimen import_csv(const std::string& particles_path, const std::optional<std::string>& contacts_path,
                     const std::optional<std::string>& meta_json_path, const ImportOptions& options) {
   Specimen specimen;
-  const CsvTable particles(particles_path);
-  int dimension = particles.has("z") ? 3 : 2;
-  std::optional<Matrix3> vectors;
-  std::string source = "--cell";
+  const Particles particles = read_particles(particles_path);
+  int dimension = particles.dimension;
+  std::optional<Matrix3> vectors = particles.cell;
+  std::string source = particles_path;
   if (meta_json_path) {
     const auto meta = io::read_meta(*meta_json_path, specimen, !options.material_path);
     dimension = meta.dimension;
-    vectors = meta.cell;
-    source = *meta_json_path;
+    if (meta.cell) take_cell(vectors, source, *meta.cell, *meta_json_path, "its hSize");
     specimen.state.reference_pressure = meta.reference_pressure;
   }
   if (options.material_path) {
@@ -145,15 +190,12 @@ Specimen import_csv(const std::string& particles_path, const std::optional<std::
     throw InputError(particles_path +
                      ": comes without contact parameters; allowed: META.json or --material M.toml; give one of them");
   }
-  if (vectors && options.cell) {
-    throw InputError("--cell is given and " + source + " has a cell too; allowed: one of the two; leave --cell out");
-  }
   if (options.cell) {
     if (!(options.cell->array() > 0).all()) {
       const Matrix3 given = options.cell->asDiagonal();
       throw InputError("--cell gives the cell vectors " + in_words(given) + " m; allowed: lengths > 0; correct them");
     }
-    vectors = options.cell->asDiagonal();
+    take_cell(vectors, source, options.cell->asDiagonal(), "--cell", "--cell");
   }
   if (!vectors) {
     throw InputError(particles_path +
@@ -162,10 +204,10 @@ Specimen import_csv(const std::string& particles_path, const std::optional<std::
   }
   set_cell(specimen, dimension, *vectors, source);
 
-  const auto wraps = read_grains(particles, specimen);
+  const auto wraps = read_grains(*particles.table, specimen);
   if (contacts_path) io::read_contacts(CsvTable(*contacts_path), wraps, specimen);
 
-  for (const auto& setting : options.settings) set_key(specimen, setting);
+  set_keys(specimen, options.settings);
   check(specimen.contact, specimen.damping, specimen.materials);
   io::set_root_overlaps(specimen);
   return specimen;

@@ -40,11 +40,20 @@ std::string allowed(const Range& range) {
   return range.in_words();
 }
 
+template <class Value>
+const char* type_of() {
+  if constexpr (std::is_same_v<Value, bool>) return "truth";
+  if constexpr (std::is_same_v<Value, double>) return "number";
+  if constexpr (std::is_same_v<Value, long>) return "whole number";
+  return std::is_same_v<Value, std::string> ? "text" : "word";
+}
+
 /// The default is that of the struct: it is written nowhere twice.
 template <class Owner, class Value>
 KeyEntry entry(const char* table, const char* name, const char* unit, Value Owner::*member, const Range& range,
                const char* meaning) {
-  return {{table, name, unit, as_toml(Owner{}.*member), allowed<Value>(range), meaning}, member, range};
+  return {
+      {table, name, unit, type_of<Value>(), as_toml(Owner{}.*member), allowed<Value>(range), meaning}, member, range};
 }
 
 std::vector<KeyEntry> materials() {
@@ -62,7 +71,7 @@ std::vector<KeyEntry> materials() {
       entry(t, "tangential_stiffness_N_m", "N/m", &Material::tangential_stiffness, not_negative,
             "linear_given, hertz_given: kt"),
       entry(t, "friction", "1", &Material::friction, {0, 1e6}, "Coulomb coefficient mu; 1e6: no slip"),
-      {{t, "friction_angle_deg", "degree", "", Range{0, 90, false, true}.in_words(),
+      {{t, "friction_angle_deg", "degree", "number", "", Range{0, 90, false, true}.in_words(),
         "in place of friction: mu is its tangent"},
        FrictionAngle{},
        {0, 90, false, true}},
@@ -135,7 +144,11 @@ bool Range::contains(double value) const {
 
 std::string Range::in_words() const {
   std::ostringstream words;
-  if (high == infinity) {
+  if (low == -infinity && high == infinity) {
+    words << "any finite number";
+  } else if (low == -infinity) {
+    words << (high_open ? "below " : "up to ") << high;
+  } else if (high == infinity) {
     words << (low_open ? "> " : ">= ") << low;
   } else {
     words << (low_open ? "above " : "") << low << " to " << (high_open ? "below " : "") << high;

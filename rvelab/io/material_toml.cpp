@@ -11,6 +11,7 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/io/archive.hpp"
+#include "rvelab/io/key_units.hpp"
 #include "rvelab/io/material_keys.hpp"
 
 namespace rvelab {
@@ -33,9 +34,8 @@ std::string written(const toml::node& value) {
 
 [[noreturn]] void refuse(const std::string& dotted, const toml::node& value, const std::string& reason,
                          const KeyEntry& entry, const std::string& remedy) {
-  const bool has_unit = entry.key.unit != "-" && entry.key.unit != "1";
-  throw InputError(dotted + " = " + written(value) + " " + reason + "; allowed: " + entry.key.range +
-                   (has_unit ? " " + entry.key.unit : "") + "; " + remedy);
+  throw InputError(dotted + " = " + written(value) + " " + reason + "; allowed: " + entry.key.allowed() + "; " +
+                   remedy);
 }
 
 void convert(const std::string& dotted, const toml::node& value, const KeyEntry& entry, double& field) {
@@ -171,6 +171,19 @@ std::size_t edit_distance(const std::string& word, const std::string& candidate)
   return least;
 }
 
+/// Throws if the key is a known one in another unit.
+void refuse_other_unit(const std::string& dotted_key, const std::string& dotted, const std::string& material) {
+  const auto dot = dotted.find('.');
+  std::vector<Key> keys = known_keys();
+  if (dot != std::string::npos) {
+    std::erase_if(keys, [&](const Key& key) { return key.table != dotted.substr(0, dot); });
+  }
+  const auto answer = io::in_another_unit(dotted.substr(dot + 1), keys);  // npos + 1 = 0: no table is named
+  if (!answer) return;
+  const std::string table = answer->key.table + (material.empty() ? "" : "." + material);
+  throw InputError(dotted_key + " is not known; write " + table + "." + answer->key.name + ", " + answer->factor);
+}
+
 /// One material from its defaults.
 Material read_material(const Specimen& specimen, const toml::table& table, std::vector<KeyError>& errors) {
   Specimen one;
@@ -180,12 +193,46 @@ Material read_material(const Specimen& specimen, const toml::table& table, std::
   return one.materials[0];
 }
 
+bool is_assigned(const toml::source_region& place) { return place.path && place.path->starts_with(assignment_prefix); }
+
 std::string trimmed(const std::string& text) {
   const auto first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
   return first == std::string::npos ? "" : text.substr(first, last - first + 1);
 }
 
 }  // namespace
+
+std::string Key::allowed() const {
+  const bool has_unit = unit != "-" && unit != "1";
+  return range + (has_unit ? " " + unit : "");
+}
+
+const toml::source_region& place_of(const toml::key& key, const toml::node& value) {
+  return is_assigned(value.source()) ? value.source() : key.source();
+}
+
+KeyError key_error(const toml::source_region& place, const std::string& message) {
+  if (is_assigned(place)) return {0, *place.path + ": " + message, true};
+  return {static_cast<long>(place.begin.line), message};
+}
+
+toml::table parsed_value(const std::string& text, const std::string& assignment) {
+  const std::string source = assignment_prefix + assignment;
+  try {
+    toml::table parsed = toml::parse("value = " + text, source);
+    if (parsed.size() == 1) return parsed;
+  } catch (const toml::parse_error&) {
+    // a bare word
+  }
+  // As a TOML literal, so that the word too comes out of a parse and knows where it is from.
+  const bool quotable = text.find_first_of("'\n\r") == std::string::npos;
+  try {
+    if (quotable) return toml::parse("value = '" + text + "'", source);
+  } catch (const toml::parse_error&) {
+    // control characters
+  }
+  return toml::table{{"value", text}};
+}
 
 const std::vector<Key>& known_keys() {
   static const std::vector<Key> keys = [] {
@@ -221,6 +268,7 @@ void set_key(Specimen& specimen, const std::string& dotted_key, const toml::node
   const auto [dotted, material] = without_material_name(dotted_key);
   const KeyEntry* entry = find_entry(dotted);
   if (entry == nullptr) {
+    refuse_other_unit(dotted_key, dotted, material);
     throw InputError("unknown key " + dotted_key + "; the nearest known key is " + nearest_key(dotted_key) +
                      "; correct the name or remove it");
   }
@@ -237,21 +285,26 @@ void set_key(Specimen& specimen, const std::string& assignment) {
                      " has no value; allowed: key=value; write for example contact.slip=consistent");
   }
   const std::string key = trimmed(assignment.substr(0, equals)), text = trimmed(assignment.substr(equals + 1));
-  toml::table parsed;
-  try {
-    parsed = toml::parse("value = " + text);
-  } catch (const toml::parse_error&) {
-    parsed.clear();
+  set_key(specimen, key, *parsed_value(text, assignment).get("value"));
+}
+
+void set_keys(Specimen& specimen, const std::vector<std::string>& assignments) {
+  std::string mistakes;
+  for (const auto& assignment : assignments) {
+    try {
+      set_key(specimen, assignment);
+    } catch (const InputError& error) {
+      mistakes += (mistakes.empty() ? "" : "\n") + std::string(error.what());
+    }
   }
-  if (parsed.size() != 1) parsed = toml::table{{"value", text}};
-  set_key(specimen, key, *parsed.get("value"));
+  if (!mistakes.empty()) throw InputError(mistakes);
 }
 
 void read_table(Specimen& specimen, const std::string& name, const toml::table& table, std::vector<KeyError>& errors) {
   if (table.contains("friction") && table.contains("friction_angle_deg")) {
-    errors.push_back({static_cast<long>(table.get("friction_angle_deg")->source().begin.line),
-                      name + ".friction and " + name +
-                          ".friction_angle_deg are both given; allowed: one of the two; remove the other"});
+    errors.push_back(key_error(table.get("friction_angle_deg")->source(),
+                               name + ".friction and " + name +
+                                   ".friction_angle_deg are both given; allowed: one of the two; remove the other"));
   }
   for (const auto& [key, value] : table) {
     const std::string dotted = name + "." + std::string(key.str());
@@ -262,7 +315,7 @@ void read_table(Specimen& specimen, const std::string& name, const toml::table& 
     try {
       set_key(specimen, dotted, value);
     } catch (const InputError& error) {
-      errors.push_back({static_cast<long>(key.source().begin.line), error.what()});
+      errors.push_back(key_error(place_of(key, value), error.what()));
     }
   }
 }
@@ -287,10 +340,12 @@ void read_materials(Specimen& specimen, const toml::array& list, std::vector<Key
 
 void raise(const std::string& path, std::vector<KeyError> errors) {
   if (errors.empty()) return;
-  std::stable_sort(errors.begin(), errors.end(), [](const auto& a, const auto& b) { return a.line < b.line; });
+  const auto order = [](const KeyError& error) { return std::pair(error.assigned, error.line); };
+  std::stable_sort(errors.begin(), errors.end(), [&](const auto& a, const auto& b) { return order(a) < order(b); });
   std::string text;
-  for (const auto& [line, message] : errors) {
-    text += (text.empty() ? "" : "\n") + path + (line > 0 ? ":" + std::to_string(line) : "") + ": " + message;
+  for (const auto& error : errors) {
+    const std::string place = error.line > 0 ? ":" + std::to_string(error.line) : "";
+    text += (text.empty() ? "" : "\n") + path + place + ": " + error.message;
   }
   throw InputError(text);
 }

@@ -13,20 +13,36 @@ namespace rvelab {
 
 /// A key that a file or the command line may set, and what there is to say about it.
 struct Key {
-  std::string table;    ///< "contact", "damping", "solver" or "material"
+  std::string table;    ///< "contact", "damping", "solver", "material", or a table of a protocol
   std::string name;     ///< ends in its unit, for example "young_modulus_Pa"
   std::string unit;     ///< "1" for a pure number, "-" for words and truth values
-  std::string initial;  ///< default, as TOML writes it; "" if the key has none of its own
+  std::string type;     ///< "number", "whole number", "truth", "word", "text", "list of numbers"
+  std::string initial;  ///< default, as TOML writes it, or in words; "" if the key has none of its own
   std::string range;    ///< allowed values in words
   std::string meaning;
+  bool required = false;  ///< the file must have it
   std::string dotted() const { return table + "." + name; }
+  std::string allowed() const;  ///< range with its unit
 };
 
-/// A mistake in a file and the line that it stands in (0: unknown).
+/// A mistake in a file and the line that it stands in (0: unknown), or in an assignment of the command line.
 struct KeyError {
   long line;
   std::string message;
+  bool assigned = false;  ///< from the command line; the message names it
 };
+
+/// A mistake at a key or a value of a file, or of an assignment.
+KeyError key_error(const toml::source_region& place, const std::string& message);
+
+/// Where a key was set last: a value that an assignment put over that of the file stands under the file's key.
+const toml::source_region& place_of(const toml::key& key, const toml::node& value);
+
+/// What stands before the text of an assignment in messages, and marks the source of its nodes.
+inline constexpr const char* assignment_prefix = "--set ";
+
+/// The value of an assignment under the key "value": TOML, or a word where it is none. Its nodes know the assignment.
+toml::table parsed_value(const std::string& text, const std::string& assignment);
 
 /// All keys, in the order of the tables.
 const std::vector<Key>& known_keys();
@@ -47,6 +63,9 @@ void set_key(Specimen& specimen, const std::string& dotted_key, const toml::node
 /// taken as a string, so that words need no quotation marks.
 void set_key(Specimen& specimen, const std::string& assignment);
 
+/// All assignments in order. Throws InputError with every mistake, one line each, when the others have been made.
+void set_keys(Specimen& specimen, const std::vector<std::string>& assignments);
+
 /// Reads one table. Every mistake is added to `errors` with its line and the reading goes on. For "material" the keys
 /// act on all materials, and tables in it ([material.NAME]) on the named one. Read "contact" before "material": the
 /// law says which unit a normal stiffness has.
@@ -55,8 +74,8 @@ void read_table(Specimen& specimen, const std::string& name, const toml::table& 
 /// Replaces the materials by those of a list [[material]]; names must differ. Mistakes as in read_table.
 void read_materials(Specimen& specimen, const toml::array& list, std::vector<KeyError>& errors);
 
-/// Throws InputError with all mistakes in the order of their lines, one line of text each: "path:line: message".
-/// Does nothing if there are none.
+/// Throws InputError with all mistakes in the order of their lines, one line of text each: "path:line: message"; those
+/// of the command line come last. Does nothing if there are none.
 void raise(const std::string& path, std::vector<KeyError> errors);
 
 /// Parses a TOML file. InputError naming file, line and column if it is missing or not TOML.

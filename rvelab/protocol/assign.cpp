@@ -3,6 +3,7 @@
 #include <charconv>
 
 #include "rvelab/error.hpp"
+#include "rvelab/io/material_toml.hpp"
 #include "rvelab/protocol/protocol.hpp"
 
 namespace rvelab {
@@ -22,17 +23,6 @@ std::vector<std::string> parts_of(const std::string& key) {
     begin = end + 1;
   }
   return parts;
-}
-
-/// The value is TOML; what is not is a word. Under the key "value".
-toml::table parsed_value(const std::string& text) {
-  try {
-    const toml::table parsed = toml::parse("value = " + text);
-    if (parsed.size() == 1) return parsed;
-  } catch (const toml::parse_error&) {
-    // a bare word
-  }
-  return toml::table{{"value", text}};
 }
 
 std::string stage_name(const toml::node& stage) {
@@ -72,7 +62,7 @@ void assign(toml::table& file, const std::string& assignment) {
     throw InputError("--set " + assignment +
                      " is not an assignment; allowed: table.key=value; write for example test.pressure_Pa=2e4");
   }
-  const toml::table value = parsed_value(trimmed(assignment.substr(equals + 1)));
+  toml::table value = parsed_value(trimmed(assignment.substr(equals + 1)), assignment);
   toml::table* table = &file;
   std::size_t next = 0;
   if (parts[0] == "stage") {
@@ -93,8 +83,10 @@ void assign(toml::table& file, const std::string& assignment) {
     }
     table = inner->as_table();
   }
-  // A copied node has no line: it stands in no file.
-  table->insert_or_assign(parts.back(), *value.get("value"));
+  // A node that is moved keeps its source, so that a mistake in it names the assignment.
+  toml::node& node = *value.get("value");
+  const toml::source_region source = node.source();
+  node.visit([&](auto& concrete) { table->insert_or_assign(toml::key(parts.back(), source), std::move(concrete)); });
 }
 
 }  // namespace rvelab

@@ -1,4 +1,5 @@
 #include <array>
+#include <cmath>
 #include <sstream>
 
 #include "rvelab/error.hpp"
@@ -12,8 +13,6 @@ namespace {
 using protocol::line_of;
 using protocol::TableReader;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr io::Range positive{0, infinity, true, true};
 // [contact] before [material]: the law says which unit a stiffness has.
 constexpr std::array<const char*, 4> override_tables{"contact", "damping", "solver", "material"};
 
@@ -24,33 +23,28 @@ const toml::table& table_of(const toml::table& file, const std::string& name, st
   if (node == nullptr) return nothing;
   if (node->is_table()) return *node->as_table();
   errors.push_back(
-      {line_of(*node), name + " is not a table; allowed: [" + name + "] with its keys below; write it so"});
+      key_error(node->source(), name + " is not a table; allowed: [" + name + "] with its keys below; write it so"));
   return nothing;
 }
 
 void read_test(const toml::table& table, Protocol& protocol, toml::table& resolved, std::vector<KeyError>& errors) {
-  TableReader reader(table, "test", line_of(table), errors);
-  protocol.name = reader.text("name", std::nullopt);
-  if (reader.has("dimension")) {
-    const long dimension = reader.whole_number("dimension", 0, {2, 3});
-    protocol.dimension = dimension == 2 || dimension == 3 ? static_cast<int>(dimension) : 0;
-  }
-  reader.know("dimension");
-  if (reader.has("pressure_Pa")) protocol.pressure = reader.number("pressure_Pa", std::nullopt, positive);
-  reader.know("pressure_Pa");
+  TableReader reader(table, "test", "test", line_of(table), errors);
+  protocol.name = reader.text("name");
+  protocol.dimension = static_cast<int>(reader.optional_whole_number("dimension").value_or(0));
+  if (const auto pressure = reader.optional_number("pressure_Pa")) protocol.pressure = *pressure;
+  // A pressure in another unit is one mistake, not one more for each stage that would have taken it.
+  if (reader.has_in_another_unit("pressure_Pa") && std::isnan(protocol.pressure)) protocol.pressure = 0;
   reader.finish();
   resolved.insert("test", reader.resolved());
 }
 
 void read_loading(const toml::table& table, Protocol& protocol, toml::table& resolved, std::vector<KeyError>& errors) {
-  TableReader reader(table, "loading", line_of(table), errors);
+  TableReader reader(table, "loading", "loading", line_of(table), errors);
   Loading& loading = protocol.loading;
-  loading.physical = reader.word("mode", "quasi_static", {"quasi_static", "physical"}) == "physical";
+  loading.physical = reader.word("mode") == "physical";
   const bool has_rate = reader.has("rate_1_s"), has_number = reader.has("inertial_number");
-  if (has_rate) loading.rate = reader.number("rate_1_s", std::nullopt, positive);
-  if (has_number) loading.inertial_number = reader.number("inertial_number", std::nullopt, positive);
-  reader.know("rate_1_s");
-  reader.know("inertial_number");
+  loading.rate = reader.optional_number("rate_1_s").value_or(0);
+  loading.inertial_number = reader.optional_number("inertial_number").value_or(0);
   if (has_rate && has_number) {
     reader.mistake("inertial_number", "contradicts loading.rate_1_s; allowed: one of the two; remove one");
   }
@@ -59,13 +53,32 @@ void read_loading(const toml::table& table, Protocol& protocol, toml::table& res
                    "contradicts loading.mode = \"quasi_static\", which has no rate; allowed: with mode = \"physical\" "
                    "only; set the mode or remove the key");
   }
-  if (loading.physical && !has_rate && !has_number) {
+  if (loading.physical && !has_rate && !has_number && !reader.has_in_another_unit("rate_1_s")) {
     reader.mistake("mode", "needs a rate; allowed: rate_1_s or inertial_number beside it; add one of them");
   }
-  loading.held_tolerance = reader.number("held_tolerance", loading.held_tolerance, {0, 1, true, true});
-  loading.held_wait = reader.whole_number("held_wait", loading.held_wait, {0, 1e9});
+  loading.held_tolerance = reader.number("held_tolerance");
+  loading.held_wait = reader.whole_number("held_wait");
   reader.finish();
   resolved.insert("loading", reader.resolved());
+}
+
+void read_specimen_name(const toml::table& file, Protocol& protocol, toml::table& resolved,
+                        std::vector<KeyError>& errors) {
+  if (!file.contains("specimen")) return;
+  TableReader reader(table_of(file, "specimen", errors), "specimen", "specimen", line_of(*file.get("specimen")),
+                     errors);
+  protocol.specimen_file = reader.text("file");
+  reader.finish();
+  resolved.insert("specimen", reader.resolved());
+}
+
+void read_calibrate(const toml::table& file, Protocol& protocol, toml::table& resolved, std::vector<KeyError>& errors) {
+  if (!file.contains("calibrate")) return;
+  TableReader reader(table_of(file, "calibrate", errors), "calibrate", "calibrate", line_of(*file.get("calibrate")),
+                     errors);
+  protocol.calibration_pressures = reader.numbers("pressures_Pa");
+  reader.finish();
+  resolved.insert("calibrate", reader.resolved());
 }
 
 /// Checks the overrides on a specimen that has every material they name; how they fit the real one is seen when it is
@@ -89,8 +102,9 @@ void read_stages(const toml::table& file, Protocol& protocol, toml::table& resol
   const toml::node* node = file.get("stage");
   const bool is_list = node != nullptr && node->is_array_of_tables() && !node->as_array()->empty();
   if (!is_list) {
-    errors.push_back({node == nullptr ? 0 : line_of(*node),
-                      "the protocol has no stage; allowed: at least one [[stage]] with its keys below; add it"});
+    const std::string message =
+        "the protocol has no stage; allowed: at least one [[stage]] with its keys below; add it";
+    errors.push_back(node == nullptr ? KeyError{0, message} : key_error(node->source(), message));
     return;
   }
   toml::array stages;
@@ -102,31 +116,22 @@ void read_stages(const toml::table& file, Protocol& protocol, toml::table& resol
 }
 
 Protocol read_file(toml::table file, const std::string& path, const std::vector<std::string>& assignments) {
-  for (const auto& assignment : assignments) assign(file, assignment);
+  std::vector<KeyError> errors;
+  for (const auto& assignment : assignments) {
+    try {
+      assign(file, assignment);
+    } catch (const InputError& error) {
+      errors.push_back({0, error.what(), true});
+    }
+  }
   Protocol protocol;
   protocol.path = path;
-  std::vector<KeyError> errors;
   toml::table resolved;
-
-  TableReader top(file, "", 0, errors);
-  for (const char* name : {"test", "specimen", "loading", "stage", "calibrate"}) top.know(name);
-  for (const char* name : override_tables) top.know(name);
-  top.finish();
-
+  protocol::expect_top_tables(file, errors);
   read_test(table_of(file, "test", errors), protocol, resolved, errors);
   read_loading(table_of(file, "loading", errors), protocol, resolved, errors);
-  if (file.contains("specimen")) {
-    TableReader reader(table_of(file, "specimen", errors), "specimen", line_of(*file.get("specimen")), errors);
-    protocol.specimen_file = reader.text("file", std::nullopt);
-    reader.finish();
-    resolved.insert("specimen", reader.resolved());
-  }
-  if (file.contains("calibrate")) {
-    TableReader reader(table_of(file, "calibrate", errors), "calibrate", line_of(*file.get("calibrate")), errors);
-    protocol.calibration_pressures = reader.numbers("pressures_Pa", positive);
-    reader.finish();
-    resolved.insert("calibrate", reader.resolved());
-  }
+  read_specimen_name(file, protocol, resolved, errors);
+  read_calibrate(file, protocol, resolved, errors);
   for (const char* name : override_tables) {
     if (!file.contains(name)) continue;
     const toml::table& overrides = table_of(file, name, errors);

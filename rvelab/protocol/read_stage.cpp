@@ -5,41 +5,36 @@
 namespace rvelab::protocol {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr io::Range positive{0, infinity, true, true};
-constexpr io::Range ratio{0, 1, true, true};
-constexpr io::Range steps{1, 1e12};
 constexpr double most_records = 1e6;
 
 /// A stage's own pressure, or the test's.
-double pressure_of(TableReader& reader, const std::string& key, Protocol& protocol) {
-  if (reader.has(key)) return reader.number(key, std::nullopt, positive);
-  if (std::isnan(protocol.pressure)) {
-    reader.know(key);
-    reader.mistake(key, "is missing, and so is test.pressure_Pa; allowed: > 0; add one of them");
-    return 0;
+double pressure_of(TableReader& reader, const std::string& name, Protocol& protocol) {
+  if (reader.has(name)) return reader.number(name);
+  const bool nowhere = std::isnan(protocol.pressure);
+  if (nowhere && !reader.has_in_another_unit(name)) {
+    reader.mistake(name, "is missing, and so is test.pressure_Pa; allowed: > 0 Pa; add one of them");
   }
-  protocol.uses_pressure = true;
-  return reader.number(key, protocol.pressure, positive);
+  protocol.uses_pressure = protocol.uses_pressure || !nowhere;
+  return reader.number(name, nowhere ? 0 : protocol.pressure);
 }
 
 /// A pressure that the stage holds nothing at.
-void refuse_pressure(TableReader& reader, const std::string& key, const std::string& other) {
-  reader.know(key);
-  if (reader.has(key)) reader.mistake(key, "contradicts " + other + "; allowed: one of the two; remove one");
+void refuse_pressure(TableReader& reader, const std::string& name, const std::string& other) {
+  reader.leave(name);
+  if (reader.has(name)) reader.mistake(name, "contradicts " + other + "; allowed: one of the two; remove one");
 }
 
-double strain_of(TableReader& reader, const io::Range& range) {
-  const double strain = reader.number("to_strain", std::nullopt, range);
-  if (reader.has("to_strain") && strain == 0) {
+double strain_of(const toml::table& table, TableReader& reader) {
+  const double strain = reader.number("to_strain");
+  if (table["to_strain"].value<double>() == 0.0) {
     reader.mistake("to_strain", "goes nowhere; allowed: not 0; give the strain at which the stage ends");
   }
   return strain;
 }
 
-double spacing_of(TableReader& reader, double initial, double to_strain) {
-  const double spacing = reader.number("record_every", initial, positive);
-  if (spacing > 0 && std::abs(to_strain) / spacing > most_records) {
+double spacing_of(TableReader& reader, double to_strain) {
+  const double spacing = reader.number("record_every");
+  if (std::abs(to_strain) / spacing > most_records) {
     reader.mistake("record_every", "gives " + std::to_string(std::abs(to_strain) / spacing) +
                                        " records; allowed: at most 1000000; give a larger spacing");
   }
@@ -56,24 +51,24 @@ void expect_in_plane(TableReader& reader, const std::string& key, const std::str
 IsotropicStage read_isotropic(TableReader& reader, Protocol& protocol) {
   IsotropicStage stage;
   stage.pressure = pressure_of(reader, "pressure_Pa", protocol);
-  stage.shear_stress_free = reader.word("shear", "zero_strain", {"zero_strain", "zero_stress"}) == "zero_stress";
-  stage.stress_tolerance = reader.number("stress_tolerance", stage.stress_tolerance, ratio);
-  stage.unbalanced = reader.number("unbalanced", stage.unbalanced, ratio);
-  stage.largest_change = reader.number("largest_change", stage.largest_change, {0, 1, true, false});
-  stage.max_rounds = reader.whole_number("max_rounds", stage.max_rounds, steps);
-  stage.max_steps = reader.whole_number("max_steps", stage.max_steps, steps);
-  stage.record = reader.truth("record", stage.record);
+  stage.shear_stress_free = reader.word("shear") == "zero_stress";
+  stage.stress_tolerance = reader.number("stress_tolerance");
+  stage.unbalanced = reader.number("unbalanced");
+  stage.largest_change = reader.number("largest_change");
+  stage.max_rounds = reader.whole_number("max_rounds");
+  stage.max_steps = reader.whole_number("max_steps");
+  stage.record = reader.truth("record");
   return stage;
 }
 
-CompressionStage read_compression(TableReader& reader, Protocol& protocol) {
+CompressionStage read_compression(const toml::table& table, TableReader& reader, Protocol& protocol) {
   CompressionStage stage;
   const char* usual = protocol.dimension == 0 ? "" : protocol.dimension == 2 ? "y" : "z";
-  stage.axis = reader.word("axis", usual, {"x", "y", "z"});
+  stage.axis = reader.word("axis", usual);
   expect_in_plane(reader, "axis", stage.axis, protocol);
-  stage.to_strain = strain_of(reader, {-infinity, 1, true, true});
-  stage.record_every = spacing_of(reader, stage.record_every, stage.to_strain);
-  if (reader.word("lateral", "constant_stress", {"constant_stress", "constant_volume"}) == "constant_volume") {
+  stage.to_strain = strain_of(table, reader);
+  stage.record_every = spacing_of(reader, stage.to_strain);
+  if (reader.word("lateral") == "constant_volume") {
     stage.lateral = CompressionStage::Lateral::constant_volume;
     refuse_pressure(reader, "lateral_pressure_Pa", "lateral = \"constant_volume\"");
   } else {
@@ -82,14 +77,14 @@ CompressionStage read_compression(TableReader& reader, Protocol& protocol) {
   return stage;
 }
 
-SimpleShearStage read_simple_shear(TableReader& reader, Protocol& protocol) {
+SimpleShearStage read_simple_shear(const toml::table& table, TableReader& reader, Protocol& protocol) {
   SimpleShearStage stage;
   const char* usual = protocol.dimension == 0 ? "" : protocol.dimension == 2 ? "xy" : "xz";
-  stage.plane = reader.word("plane", usual, {"xy", "xz", "yz", "yx", "zx", "zy"});
+  stage.plane = reader.word("plane", usual);
   expect_in_plane(reader, "plane", stage.plane, protocol);
-  stage.to_strain = strain_of(reader, {-infinity, infinity, true, true});
-  stage.record_every = spacing_of(reader, stage.record_every, stage.to_strain);
-  if (reader.word("normal", "constant_volume", {"constant_volume", "constant_stress"}) == "constant_volume") {
+  stage.to_strain = strain_of(table, reader);
+  stage.record_every = spacing_of(reader, stage.to_strain);
+  if (reader.word("normal") == "constant_volume") {
     refuse_pressure(reader, "normal_pressure_Pa", "normal = \"constant_volume\"");
   } else {
     stage.normal = SimpleShearStage::Normal::constant_stress;
@@ -100,17 +95,17 @@ SimpleShearStage read_simple_shear(TableReader& reader, Protocol& protocol) {
 
 RelaxStage read_relax(TableReader& reader) {
   RelaxStage stage;
-  stage.unbalanced = reader.number("unbalanced", stage.unbalanced, ratio);
-  stage.max_steps = reader.whole_number("max_steps", stage.max_steps, steps);
-  stage.record = reader.truth("record", stage.record);
+  stage.unbalanced = reader.number("unbalanced");
+  stage.max_steps = reader.whole_number("max_steps");
+  stage.record = reader.truth("record");
   return stage;
 }
 
 ProbeStage read_probe(TableReader& reader) {
   ProbeStage stage;
-  const bool linear = reader.word("method", "dynamic", {"dynamic", "linear"}) == "linear";
+  const bool linear = reader.word("method") == "linear";
   stage.method = linear ? ProbeStage::Method::linear : ProbeStage::Method::dynamic;
-  stage.size = reader.number("size", stage.size, {0, 0.01, true, false});
+  stage.size = reader.number("size");
   stage.no_slip = reader.truth("no_slip", linear);
   if (linear && !stage.no_slip) {
     reader.mistake("no_slip",
@@ -126,13 +121,14 @@ void read_stage(const toml::table& table, long number, Protocol& protocol, toml:
                 std::vector<KeyError>& errors) {
   const std::string kind_given = table["kind"].value_or(std::string());
   const std::string name = table["name"].value_or(kind_given.empty() ? std::to_string(number) : kind_given);
-  TableReader reader(table, "stage." + name, line_of(table), errors);
-  const auto kind = reader.word("kind", std::nullopt, {"isotropic", "compression", "simple_shear", "relax", "probe"});
+  TableReader reader(table, "stage", "stage." + name, line_of(table), errors);
+  const auto kind = reader.word("kind");
   if (kind.empty()) return;  // without its kind no other key can be judged
+  reader.also("stage." + kind);
   Stage stage{reader.text("name", kind), {}};
   if (kind == "isotropic") stage.what = read_isotropic(reader, protocol);
-  if (kind == "compression") stage.what = read_compression(reader, protocol);
-  if (kind == "simple_shear") stage.what = read_simple_shear(reader, protocol);
+  if (kind == "compression") stage.what = read_compression(table, reader, protocol);
+  if (kind == "simple_shear") stage.what = read_simple_shear(table, reader, protocol);
   if (kind == "relax") stage.what = read_relax(reader);
   if (kind == "probe") stage.what = read_probe(reader);
   reader.finish();

@@ -3,16 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <stdexcept>
+
+#include "rvelab/io/key_units.hpp"
 
 namespace rvelab::protocol {
 namespace {
 
-std::string in_words(const std::vector<std::string>& words) {
-  std::string text;
-  for (const auto& word : words) {
-    if (!word.empty()) text += (text.empty() ? "" : ", ") + word;
-  }
-  return text;
+void refuse_unknown(const toml::source_region& place, const std::string& prefix, const std::string& name,
+                    const std::vector<std::string>& known, std::vector<KeyError>& errors) {
+  errors.push_back(key_error(place, "unknown key " + prefix + name + "; the nearest known key is " + prefix +
+                                        nearest(name, known) + "; correct the name or remove it"));
 }
 
 }  // namespace
@@ -25,123 +26,194 @@ std::string written(const toml::node& node) {
   return text.str();
 }
 
-TableReader::TableReader(const toml::table& table, std::string where, long line, std::vector<KeyError>& errors)
-    : table_(table), where_(std::move(where)), line_(line), errors_(errors) {}
+void expect_top_tables(const toml::table& file, std::vector<KeyError>& errors) {
+  const auto& known = top_tables();
+  for (const auto& [key, value] : file) {
+    const std::string name(key.str());
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      refuse_unknown(place_of(key, value), "", name, known, errors);
+    }
+  }
+}
 
-const toml::node* TableReader::find(const std::string& key, bool required, const std::string& allowed) {
-  know(key);
-  const toml::node* node = table_.get(key);
-  if (node == nullptr && required) {
-    errors_.push_back({line_, where_ + "." + key + " is missing; allowed: " + allowed + "; add it"});
+TableReader::TableReader(const toml::table& table, std::string key_table, std::string where, long line,
+                         std::vector<KeyError>& errors)
+    : table_(table), where_(std::move(where)), line_(line), errors_(errors) {
+  also(key_table);
+}
+
+void TableReader::also(const std::string& key_table) {
+  key_tables_.push_back(key_table);
+  for (const auto& entry : protocol_keys()) {
+    if (entry.key.table == key_table) known_.push_back(entry.key);
+  }
+}
+
+const ProtocolKey& TableReader::entry(const std::string& name) {
+  asked_.push_back(name);
+  const auto found = std::find_if(known_.begin(), known_.end(), [&](const Key& key) { return key.name == name; });
+  return protocol_key(found == known_.end() ? key_tables_.back() : found->table, name);
+}
+
+bool TableReader::has_in_another_unit(const std::string& name) const {
+  return std::any_of(table_.begin(), table_.end(), [&](const auto& item) {
+    const auto answer = io::in_another_unit(std::string(item.first.str()), known_);
+    return answer && answer->key.name == name;
+  });
+}
+
+const toml::node* TableReader::find(const ProtocolKey& key, bool required) {
+  const toml::node* node = table_.get(key.key.name);
+  if (node == nullptr && required && !has_in_another_unit(key.key.name)) {
+    errors_.push_back({line_, where_ + "." + key.key.name + " is missing; allowed: " + key.key.allowed() + "; add it"});
   }
   return node;
 }
 
-void TableReader::mistake(const std::string& key, const std::string& text) {
-  const toml::node* node = table_.get(key);
-  const std::string value = node == nullptr ? "" : " = " + written(*node);
-  errors_.push_back({node == nullptr ? line_ : line_of(*node), where_ + "." + key + value + " " + text});
+void TableReader::mistake(const std::string& name, const std::string& text) {
+  const toml::node* node = table_.get(name);
+  if (node == nullptr) {
+    errors_.push_back({line_, where_ + "." + name + " " + text});
+  } else {
+    errors_.push_back(key_error(node->source(), where_ + "." + name + " = " + written(*node) + " " + text));
+  }
 }
 
-double TableReader::checked(const std::string& key, const toml::node& node, const io::Range& range) {
-  const std::string allowed = "; allowed: " + range.in_words() + "; ";
+std::optional<double> TableReader::checked(const ProtocolKey& key, const toml::node& node) {
+  const std::string& name = key.key.name;
+  const std::string allowed = "; allowed: " + key.key.allowed() + "; ";
   if (!node.is_number()) {
-    mistake(key, "is not a number" + allowed + "give a number");
-    return 0;
+    mistake(name, "is not a number" + allowed + "give a number");
+    return std::nullopt;
   }
   const double value = node.value<double>().value();
   if (!std::isfinite(value)) {
-    mistake(key, "is not finite" + allowed + "give a finite number");
-    return 0;
+    mistake(name, "is not finite" + allowed + "give a finite number");
+    return std::nullopt;
   }
-  if (!range.contains(value)) {
-    mistake(key, "is out of range" + allowed + "give a value in this range");
+  if (!key.range.contains(value)) {
+    mistake(name, "is out of range" + allowed + "give a value in this range");
+    return std::nullopt;
   }
   return value;
 }
 
-double TableReader::number(const std::string& key, std::optional<double> initial, const io::Range& range) {
-  const toml::node* node = find(key, !initial, range.in_words());
-  const double value = node != nullptr ? checked(key, *node, range) : initial.value_or(0);
-  resolved_.insert_or_assign(key, value);
+double TableReader::number(const std::string& name, std::optional<double> instead) {
+  const ProtocolKey& key = entry(name);
+  if (!instead && std::holds_alternative<double>(key.initial)) instead = std::get<double>(key.initial);
+  const toml::node* node = find(key, !instead);
+  const double initial = instead.value_or(0);
+  const double value = node != nullptr ? checked(key, *node).value_or(initial) : initial;
+  resolved_.insert_or_assign(name, value);
   return value;
 }
 
-long TableReader::whole_number(const std::string& key, long initial, const io::Range& range) {
-  const toml::node* node = find(key, false, "");
-  long value = initial;
+std::optional<double> TableReader::optional_number(const std::string& name) {
+  if (!has(name)) {
+    leave(name);
+    return std::nullopt;
+  }
+  return number(name);
+}
+
+long TableReader::whole_number(const std::string& name) {
+  const ProtocolKey& key = entry(name);
+  const auto* initial = std::get_if<long>(&key.initial);
+  const toml::node* node = find(key, initial == nullptr);
+  long value = initial == nullptr ? 0 : *initial;
   if (node != nullptr && !node->is_integer()) {
-    mistake(key, "is not a whole number; allowed: " + range.in_words() + "; give a whole number, without a point");
-  } else if (node != nullptr) {
+    mistake(name, "is not a whole number; allowed: " + key.key.allowed() + "; give a whole number, without a point");
+  } else if (node != nullptr && checked(key, *node)) {
     value = node->as_integer()->get();
-    checked(key, *node, range);
   }
-  resolved_.insert_or_assign(key, value);
+  resolved_.insert_or_assign(name, value);
   return value;
 }
 
-bool TableReader::truth(const std::string& key, bool initial) {
-  const toml::node* node = find(key, false, "");
-  bool value = initial;
+std::optional<long> TableReader::optional_whole_number(const std::string& name) {
+  if (!has(name)) {
+    leave(name);
+    return std::nullopt;
+  }
+  return whole_number(name);
+}
+
+bool TableReader::truth(const std::string& name, std::optional<bool> instead) {
+  const ProtocolKey& key = entry(name);
+  if (!instead && std::holds_alternative<bool>(key.initial)) instead = std::get<bool>(key.initial);
+  const toml::node* node = find(key, !instead);
+  bool value = instead.value_or(false);
   if (node != nullptr && !node->is_boolean()) {
-    mistake(key, "is neither true nor false; allowed: true, false; give one of these");
+    mistake(name, "is neither true nor false; allowed: true, false; give one of these");
   } else if (node != nullptr) {
     value = node->as_boolean()->get();
   }
-  resolved_.insert_or_assign(key, value);
+  resolved_.insert_or_assign(name, value);
   return value;
 }
 
-std::string TableReader::text(const std::string& key, std::optional<std::string> initial) {
-  const toml::node* node = find(key, !initial, "any text");
-  std::string value = initial.value_or("");
+std::string TableReader::text(const std::string& name, std::optional<std::string> instead) {
+  const ProtocolKey& key = entry(name);
+  const toml::node* node = find(key, !instead);
+  std::string value = instead.value_or("");
   if (node != nullptr && (!node->is_string() || node->as_string()->get().empty())) {
-    mistake(key, "is not a text; allowed: any text that is not empty; write it in quotation marks");
+    mistake(name, "is not a text; allowed: any text that is not empty; write it in quotation marks");
   } else if (node != nullptr) {
     value = node->as_string()->get();
   }
-  if (!value.empty()) resolved_.insert_or_assign(key, value);
+  if (!value.empty()) resolved_.insert_or_assign(name, value);
   return value;
 }
 
-std::string TableReader::word(const std::string& key, std::optional<std::string> initial,
-                              const std::vector<std::string>& words) {
-  const toml::node* node = find(key, !initial, in_words(words));
-  std::string value = initial.value_or("");
+std::string TableReader::word(const std::string& name, std::optional<std::string> instead) {
+  const ProtocolKey& key = entry(name);
+  if (!instead && std::holds_alternative<std::string>(key.initial)) instead = std::get<std::string>(key.initial);
+  const toml::node* node = find(key, !instead);
+  std::string value = instead.value_or("");
   if (node != nullptr) {
     const bool allowed =
-        node->is_string() && std::find(words.begin(), words.end(), node->as_string()->get()) != words.end();
+        node->is_string() && std::find(key.words.begin(), key.words.end(), node->as_string()->get()) != key.words.end();
     if (allowed) {
       value = node->as_string()->get();
     } else {
-      mistake(key, "is not known; allowed: " + in_words(words) + "; choose one of these");
+      mistake(name, "is not known; allowed: " + key.key.allowed() + "; choose one of these");
     }
   }
-  if (!value.empty()) resolved_.insert_or_assign(key, value);
+  if (!value.empty()) resolved_.insert_or_assign(name, value);
   return value;
 }
 
-std::vector<double> TableReader::numbers(const std::string& key, const io::Range& range) {
-  const toml::node* node = find(key, false, "");
+std::vector<double> TableReader::numbers(const std::string& name) {
+  const ProtocolKey& key = entry(name);
+  const toml::node* node = find(key, false);
   std::vector<double> values;
   if (node == nullptr) return values;
   if (!node->is_array() || node->as_array()->empty()) {
-    mistake(key, "is not a list of numbers; allowed: each " + range.in_words() + "; write it as [1e4, 2e4]");
+    mistake(name, "is not a list of numbers; allowed: " + key.key.allowed() + "; write it as [1e4, 2e4]");
     return values;
   }
-  for (const auto& item : *node->as_array()) values.push_back(checked(key, item, range));
-  resolved_.insert_or_assign(key, *node);
+  for (const auto& item : *node->as_array()) values.push_back(checked(key, item).value_or(0));
+  resolved_.insert_or_assign(name, *node);
   return values;
 }
 
 void TableReader::finish() {
+  std::vector<std::string> names;
+  for (const Key& key : known_) {
+    names.push_back(key.name);
+    if (std::find(asked_.begin(), asked_.end(), key.name) != asked_.end()) continue;
+    throw std::logic_error("the key " + key.dotted() + " stands in protocol_keys.cpp and is not read");
+  }
+  const std::string prefix = where_ + ".";
   for (const auto& [key, value] : table_) {
     const std::string name(key.str());
-    if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
-    const std::string prefix = where_.empty() ? "" : where_ + ".";
-    errors_.push_back({static_cast<long>(key.source().begin.line),
-                       "unknown key " + prefix + name + "; the nearest known key is " + prefix + nearest(name, known_) +
-                           "; correct the name or remove it"});
+    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    if (const auto answer = io::in_another_unit(name, known_)) {
+      errors_.push_back(key_error(place_of(key, value), prefix + name + " is not known; write " + prefix +
+                                                            answer->key.name + ", " + answer->factor));
+    } else {
+      refuse_unknown(place_of(key, value), prefix, name, names, errors_);
+    }
   }
 }
 

@@ -1,4 +1,5 @@
-// One table of a protocol, read key by key: what is read is known; what is left unread at the end is a mistake.
+// One table of a protocol, read key by key from the table of keys (protocol_keys.hpp), which knows kind, default and
+// range of each.
 #pragma once
 
 #include <toml++/toml.h>
@@ -6,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "rvelab/io/material_keys.hpp"
 #include "rvelab/io/material_toml.hpp"
+#include "rvelab/protocol/protocol_keys.hpp"
 
 namespace rvelab::protocol {
 
@@ -17,42 +18,57 @@ long line_of(const toml::node& node);
 /// A node as TOML writes it.
 std::string written(const toml::node& node);
 
+/// Books what is no table of a protocol at its top level.
+void expect_top_tables(const toml::table& file, std::vector<KeyError>& errors);
+
 /// Reads one table. Mistakes are collected with their lines; a reading function then returns the default (or, for a
 /// key without one, zero) so that reading goes on. Every value read, defaults included, goes into `resolved`.
 class TableReader {
  public:
-  /// `where` stands before each key in messages, for example "stage.compression". `line` is said for missing keys.
-  TableReader(const toml::table& table, std::string where, long line, std::vector<KeyError>& errors);
+  /// `key_table`: the table of the key table, which `where` is called in messages: "stage.isotropic" and, with a name
+  /// of its own, "stage.consolidation". `line` is said for missing keys.
+  TableReader(const toml::table& table, std::string key_table, std::string where, long line,
+              std::vector<KeyError>& errors);
 
-  /// No default: the key must be there.
-  double number(const std::string& key, std::optional<double> initial, const io::Range& range);
-  long whole_number(const std::string& key, long initial, const io::Range& range);
-  bool truth(const std::string& key, bool initial);
-  std::string text(const std::string& key, std::optional<std::string> initial);
-  /// One of the words; an empty default is one of them.
-  std::string word(const std::string& key, std::optional<std::string> initial, const std::vector<std::string>& words);
-  std::vector<double> numbers(const std::string& key, const io::Range& range);
+  /// Keys of a further table of the key table may stand here too.
+  void also(const std::string& key_table);
 
-  bool has(const std::string& key) const { return table_.contains(key); }
-  /// A mistake at a key that is there: "where.key = value <reason>; allowed: ...; <remedy>".
-  void mistake(const std::string& key, const std::string& text);
-  /// Declares a key known without reading it.
-  void know(const std::string& key) { known_.push_back(key); }
-  /// Books every key that is not known.
+  // Each key by its name in the key table. A key without a default there must be in the file, unless `instead` is its
+  // computed default or the optional form is asked for.
+  double number(const std::string& name, std::optional<double> instead = std::nullopt);
+  std::optional<double> optional_number(const std::string& name);
+  long whole_number(const std::string& name);
+  std::optional<long> optional_whole_number(const std::string& name);
+  bool truth(const std::string& name, std::optional<bool> instead = std::nullopt);
+  std::string text(const std::string& name, std::optional<std::string> instead = std::nullopt);
+  /// One of the words of the key; "" stands for a computed default that is not known yet.
+  std::string word(const std::string& name, std::optional<std::string> instead = std::nullopt);
+  std::vector<double> numbers(const std::string& name);
+
+  bool has(const std::string& name) const { return table_.contains(name); }
+  /// The key is there, but with another unit of the same quantity.
+  bool has_in_another_unit(const std::string& name) const;
+  /// A mistake at a key: "where.name = value <text>", with its line; the table's if it is not there.
+  void mistake(const std::string& name, const std::string& text);
+  /// Says that a key has no meaning here, so that it is not asked for.
+  void leave(const std::string& name) { entry(name); }
+  /// Books every key that is not known. std::logic_error if a known one was not asked for.
   void finish();
 
   const toml::table& resolved() const { return resolved_; }
-  void resolve(const std::string& key, const toml::node& value) { resolved_.insert_or_assign(key, value); }
 
  private:
-  const toml::node* find(const std::string& key, bool required, const std::string& allowed);
-  double checked(const std::string& key, const toml::node& node, const io::Range& range);
+  const ProtocolKey& entry(const std::string& name);
+  const toml::node* find(const ProtocolKey& key, bool required);
+  std::optional<double> checked(const ProtocolKey& key, const toml::node& node);
 
   const toml::table& table_;
+  std::vector<std::string> key_tables_;
   std::string where_;
   long line_;
   std::vector<KeyError>& errors_;
-  std::vector<std::string> known_;
+  std::vector<Key> known_;
+  std::vector<std::string> asked_;
   toml::table resolved_;
 };
 

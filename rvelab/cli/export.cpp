@@ -1,0 +1,111 @@
+// rvelab export: states of a specimen or a test for other programs.
+#include <filesystem>
+#include <memory>
+
+#include "rvelab/cli/commands.hpp"
+#include "rvelab/cli/protocol_input.hpp"
+#include "rvelab/cli/report.hpp"
+#include "rvelab/error.hpp"
+#include "rvelab/io/export_csv.hpp"
+#include "rvelab/io/export_lammps.hpp"
+#include "rvelab/io/export_xdmf.hpp"
+#include "rvelab/io/states.hpp"
+#include "rvelab/solver/rve.hpp"
+
+namespace rvelab::cli {
+namespace {
+
+struct ExportArguments {
+  std::string file, format, output;
+  bool json = false;
+};
+
+ExportState state_of(const StoredState& state) {
+  Rve rve(state.specimen);
+  return {state.record, state.strain, rve.specimen(), rve.network()};
+}
+
+std::vector<ExportState> all_states(const std::string& path) {
+  std::vector<ExportState> states;
+  for (const StoredState& state : read_states(path)) states.push_back(state_of(state));
+  return states;
+}
+
+/// "out/dense.csv" and "out/dense" both name the files out/dense.particles.csv and so on.
+std::string stem_of(const std::string& output) {
+  return output.ends_with(".csv") ? output.substr(0, output.size() - 4) : output;
+}
+
+void expect_other_than_input(const ExportArguments& arguments, const std::string& written) {
+  std::error_code ignored;
+  if (!std::filesystem::equivalent(arguments.file, written, ignored)) return;
+  throw InputError("-o " + arguments.output + " would replace " + arguments.file +
+                   ", which it is made from; allowed: another name; choose one");
+}
+
+/// Writes the files of one format; their names, and what else there is to say, go into the listing.
+void write_export(const ExportArguments& arguments, Listing& listing) {
+  const std::string& output = arguments.output;
+  if (arguments.format == "csv") {
+    const CsvExport files = export_csv(read_states(arguments.file).back().specimen, stem_of(output));
+    listing.add("written", Json::array({files.particles, files.contacts, files.meta, files.material}));
+    listing.add("import_with", "rvelab import " + files.particles + " " + files.contacts + " " + files.meta +
+                                   " --material " + files.material + " -o S.h5");
+    return;
+  }
+  if (arguments.format == "lammps-data") {
+    export_lammps_data(state_of(read_states(arguments.file).back()), output);
+    listing.add("written", Json::array({output}));
+    return;
+  }
+  const auto states = all_states(arguments.file);
+  listing.add("states", states.size());
+  if (arguments.format == "xdmf") {
+    expect_other_than_input(arguments, output + ".h5");
+    export_xdmf(states, output);
+    listing.add("written", Json::array({output, output + ".h5"}));
+  } else {
+    export_lammps_dump(states, output);
+    listing.add("written", Json::array({output}));
+  }
+}
+
+void run_export(const ExportArguments& arguments) {
+  expect_folder_of(arguments.output);
+  expect_other_than_input(arguments, arguments.output);
+  Listing listing;
+  listing.add("file", arguments.file);
+  listing.add("format", arguments.format);
+  write_export(arguments, listing);
+  listing.print(arguments.json);
+}
+
+}  // namespace
+
+void add_export(CLI::App& app) {
+  auto arguments = std::make_shared<ExportArguments>();
+  CLI::App* command = app.add_subcommand("export", "Write a specimen or a test for ParaView, OVITO, LAMMPS or YADE");
+  command->add_option("file", arguments->file, "specimen or record file, *.h5")->required();
+  command
+      ->add_option("--format", arguments->format,
+                   "xdmf: ParaView (grains, contacts, cell)\n"
+                   "lammps: dump of LAMMPS, also for OVITO\n"
+                   "lammps-data: data file of LAMMPS\n"
+                   "csv: particles, contacts, parameters, as `rvelab import` reads them")
+      ->check(CLI::IsMember({"xdmf", "lammps", "lammps-data", "csv"}))
+      ->required();
+  command->add_option("-o,--output", arguments->output, "file to write; csv: what the names of the files begin with")
+      ->required();
+  command->add_flag("--json", arguments->json, "print one JSON object");
+  command->footer(
+      "xdmf and lammps hold every snapshot of a record file and its end state, the others the last state.\n"
+      "xdmf and csv are in the laboratory frame, lammps in the cell frame, which is upper triangular as LAMMPS "
+      "wants.\n\n"
+      "Examples:\n"
+      "  rvelab export dense.h5 --format csv -o dense\n"
+      "  rvelab export R.h5 --format xdmf -o R.xdmf\n"
+      "  rvelab export R.h5 --format lammps -o R.dump");
+  command->callback([arguments] { run_export(*arguments); });
+}
+
+}  // namespace rvelab::cli

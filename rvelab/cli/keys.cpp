@@ -1,0 +1,91 @@
+// rvelab keys: every key of protocols and material files.
+#include <algorithm>
+#include <cctype>
+#include <iostream>
+#include <memory>
+
+#include "rvelab/cli/commands.hpp"
+#include "rvelab/cli/report.hpp"
+#include "rvelab/error.hpp"
+#include "rvelab/protocol/protocol_keys.hpp"
+
+namespace rvelab::cli {
+namespace {
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char letter) { return std::tolower(letter); });
+  return text;
+}
+
+/// Keys whose dotted name holds the pattern, whatever its case.
+std::vector<Key> keys_with(const std::string& pattern) {
+  std::vector<Key> found;
+  std::vector<std::string> names;
+  for (const Key& key : all_keys()) {
+    names.push_back(key.dotted());
+    if (lower(key.dotted()).find(lower(pattern)) != std::string::npos) found.push_back(key);
+  }
+  if (found.empty()) {
+    throw InputError("no key holds \"" + pattern + "\"; the nearest known key is " + nearest(pattern, names) +
+                     "; give a part of a key, or none to see all");
+  }
+  return found;
+}
+
+Json as_json(const Key& key) {
+  Json json;
+  json["key"] = key.dotted();
+  json["table"] = key.table;
+  json["name"] = key.name;
+  json["unit"] = key.unit;
+  json["type"] = key.type;
+  json["required"] = key.required;
+  json["default"] = key.initial.empty() ? Json() : Json(key.initial);
+  json["range"] = key.range;
+  json["meaning"] = key.meaning;
+  return json;
+}
+
+/// Two lines a key: what may be written, and what it means.
+std::string as_text(const Key& key) {
+  const std::string unit = key.unit == "1" || key.unit == "-" ? "" : " in " + key.unit;
+  const std::string initial = key.required ? "required" : key.initial.empty() ? "no default" : "default " + key.initial;
+  return key.dotted() + "  (" + key.type + unit + ": " + key.range + "; " + initial + ")\n    " + key.meaning + "\n";
+}
+
+void run_keys(const std::string& pattern, bool json) {
+  const auto keys = keys_with(pattern);
+  if (json) {
+    Listing listing;
+    Json list = Json::array();
+    for (const Key& key : keys) list.push_back(as_json(key));
+    listing.add("keys", list);
+    return listing.print(true);
+  }
+  std::string text;
+  for (const Key& key : keys) text += as_text(key);
+  std::cout << text << std::flush;
+}
+
+}  // namespace
+
+void add_keys(CLI::App& app) {
+  struct Arguments {
+    std::string pattern;
+    bool json = false;
+  };
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("keys", "List the keys of protocols and material files");
+  command->add_option("pattern", arguments->pattern, "part of a key, for example pressure or stage.compression");
+  command->add_flag("--json", arguments->json, "print one JSON object");
+  command->footer(
+      "Keys of stages are written below [[stage]] with that kind, and as stage.NAME.key with --set; those of "
+      "[material]\n"
+      "as material.key for all materials or material.NAME.key for one.\n\n"
+      "Examples:\n"
+      "  rvelab keys stage.compression\n"
+      "  rvelab keys pressure --json");
+  command->callback([arguments] { run_keys(arguments->pattern, arguments->json); });
+}
+
+}  // namespace rvelab::cli

@@ -1,0 +1,139 @@
+#include "rvelab/io/export_csv.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "rvelab/error.hpp"
+#include "rvelab/io/import_contacts.hpp"
+#include "rvelab/io/text_file.hpp"
+#include "rvelab/io/version.hpp"
+
+namespace rvelab {
+namespace {
+
+using io::exact;
+using Json = nlohmann::ordered_json;
+
+const std::string first_line =
+    std::string("# rvelab ") + version + "; SI units (m, N, Pa, kg, s); laboratory frame; at rest\n";
+
+void append(std::string& row, const Vector3& vector, int components) {
+  for (int k = 0; k < components; ++k) row += "," + exact(vector[k]);
+}
+
+/// The part before the first row: "a,b,c" with the components of a vector that the dimension has.
+std::string axes(const std::string& stem, int dimension) {
+  std::string text;
+  for (int k = 0; k < dimension; ++k) text += "," + stem + "xyz"[k];
+  return text;
+}
+
+void expect_names(const Specimen& specimen) {
+  std::set<std::string> names;
+  for (const Material& material : specimen.materials) {
+    const std::string& name = material.name;
+    const bool plain = !name.empty() && name.find_first_of(",\n\r\t\"") == std::string::npos && name.front() != ' ' &&
+                       name.back() != ' ';
+    if (!plain || !names.insert(name).second) {
+      throw InputError("material.name = \"" + name +
+                       "\" cannot stand in a CSV file; allowed: names without commas, each once; rename the material");
+    }
+  }
+}
+
+std::string particles_of(const Specimen& specimen) {
+  const int dimension = specimen.cell.dimension;
+  std::string text = first_line + "id" + axes("", dimension) + ",r,material\n";
+  const Grains& grains = specimen.grains;
+  for (std::size_t g = 0; g < grains.size(); ++g) {
+    text += std::to_string(grains.id[g]);
+    append(text, specimen.cell.rotation * grains.position[g], dimension);
+    text += "," + exact(grains.radius[g]) + "," + specimen.materials[std::size_t(grains.material[g])].name + "\n";
+  }
+  return text;
+}
+
+/// The tangential force as a vector, cell frame; 2D: the file holds its component along t = (-n_y, n_x).
+Vector3 tangential_force(const Specimen& specimen, const Contact& contact) {
+  if (specimen.shape == Shape::sphere) return contact.tangential_force;
+  const Vector3 normal = io::branch_of(specimen, contact).normalized();
+  return contact.tangential_force[0] * Vector3(-normal[1], normal[0], 0);
+}
+
+std::string contacts_of(const Specimen& specimen) {
+  const int dimension = specimen.cell.dimension;
+  const Law law = specimen.contact.law;
+  const bool rolling = specimen.contact.rolling, hertz = law == Law::hertz_mindlin || law == Law::hertz_given;
+  std::string text = first_line + "id1,id2" + axes("s", dimension) + ",fn" + axes("fs", dimension);
+  text += std::string(dimension == 2 ? ",ft" : "") + (hertz ? ",kno,kso" : ",kn,ks");
+  if (rolling) text += (dimension == 3 ? axes("m", 3) : ",mz") + std::string(",kr");
+  text += "\n";
+  const Matrix3& turn = specimen.cell.rotation;
+  for (const Contact& contact : specimen.contacts) {
+    const PairParameters pair = io::parameters_of(specimen, contact);
+    text += std::to_string(specimen.grains.id[std::size_t(contact.i)]) + "," +
+            std::to_string(specimen.grains.id[std::size_t(contact.j)]);
+    for (int k = 0; k < dimension; ++k) text += "," + std::to_string(contact.image[std::size_t(k)]);
+    text += "," + exact(io::normal_force_of(specimen, contact));
+    append(text, turn * tangential_force(specimen, contact), dimension);
+    if (dimension == 2) text += "," + exact(contact.tangential_force[0]);
+    text += "," + exact(pair.kn) + "," + exact(pair.kt);
+    if (rolling) {
+      const Vector3 moment = turn * contact.rolling_moment;
+      if (dimension == 3) append(text, moment, 3);
+      if (dimension == 2) text += "," + exact(moment[2]);
+      text += "," + exact(pair.kr);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+/// META.json knows one material and the laws that compute their stiffness.
+void add_parameters(Json& meta, const Specimen& specimen) {
+  const bool linear = specimen.contact.law == Law::linear, hertz = specimen.contact.law == Law::hertz_mindlin;
+  if (specimen.materials.size() != 1 || (!linear && !hertz)) return;
+  const Material& material = specimen.materials[0];
+  meta["density"] = material.density;
+  meta["E_Pa"] = material.young_modulus;
+  meta[linear ? "kt_over_kn" : "nu"] = linear ? material.stiffness_ratio : material.poisson_ratio;
+  meta["mu"] = material.friction;
+  if (specimen.contact.rolling) {
+    meta["beta"] = material.rolling_stiffness;
+    meta["eta"] = material.rolling_friction;
+  }
+}
+
+std::string meta_of(const Specimen& specimen) {
+  const int dimension = specimen.cell.dimension;
+  Json meta;
+  meta["dim"] = dimension;
+  meta["units"] = "SI";
+  meta["n_particles"] = specimen.grains.size();
+  meta["n_contacts"] = specimen.contacts.size();
+  const Matrix3 vectors = specimen.cell.rotation * specimen.cell.lattice;
+  for (int k = 0; k < dimension; ++k) {
+    Json row = Json::array();
+    for (int l = 0; l < dimension; ++l) row.push_back(vectors(k, l));
+    meta["hSize"].push_back(row);
+  }
+  if (dimension == 2) meta["thickness_m"] = specimen.cell.lattice(2, 2);
+  meta["p0_Pa"] = specimen.state.reference_pressure;
+  add_parameters(meta, specimen);
+  return meta.dump(1) + "\n";
+}
+
+}  // namespace
+
+CsvExport export_csv(const Specimen& specimen, const std::string& stem) {
+  expect_names(specimen);
+  const CsvExport files{stem + ".particles.csv", stem + ".contacts.csv", stem + ".json", stem + ".material.toml"};
+  io::publish_text(files.particles, particles_of(specimen));
+  io::publish_text(files.contacts, contacts_of(specimen));
+  io::publish_text(files.meta, meta_of(specimen));
+  io::publish_text(files.material, material_file_text(specimen));
+  return files;
+}
+
+}  // namespace rvelab

@@ -1,0 +1,25 @@
+// Dumps of LAMMPS (and OVITO) as the importer sees them: the cell, and the atoms as a table.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "rvelab/cell/cell.hpp"
+#include "rvelab/io/csv_table.hpp"
+
+namespace rvelab::io {
+
+/// The last timestep of a dump.
+struct LammpsDump {
+  int dimension;                    ///< 2 if every z is the same, as in a 2D simulation, else 3
+  Matrix3 cell;                     ///< m, cell vectors as columns, upper triangular; 2D: (2, 2) is the box' thickness
+  std::unique_ptr<CsvTable> atoms;  ///< columns as in ITEM: ATOMS; places name the dump's own lines
+};
+
+/// Whether a file begins as a text dump does.
+bool is_lammps_dump(const std::string& path);
+
+/// Reads a dump in SI units. InputError naming the line: not a dump, no box, a box that is not periodic.
+LammpsDump read_lammps_dump(const std::string& path);
+
+}  // namespace rvelab::io

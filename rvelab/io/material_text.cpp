@@ -1,0 +1,87 @@
+// The parameters of a specimen as the TOML file that read_material_file reads, from the same table of keys.
+#include <sstream>
+
+#include "rvelab/io/archive.hpp"
+#include "rvelab/io/export_csv.hpp"
+#include "rvelab/io/material_keys.hpp"
+#include "rvelab/io/text_file.hpp"
+
+namespace rvelab {
+namespace {
+
+/// Keys that share a field and not its unit: the one that the law, or the dashpot, reads.
+bool in_use(const Specimen& specimen, const std::string& name) {
+  const bool hertz_given = specimen.contact.law == Law::hertz_given;
+  const bool viscoelastic = specimen.damping.dashpot == Dashpot::viscoelastic;
+  if (name == "normal_stiffness_N_m") return !hertz_given;
+  if (name == "normal_stiffness_N_m1_5") return hertz_given;
+  if (name == "normal_coefficient_N_s_m") return !viscoelastic;
+  if (name == "viscoelastic_1_m_s") return viscoelastic;
+  return true;
+}
+
+/// One line "key = value"; nothing where the field holds a default that no file may state (a modulus of 0).
+struct Line {
+  const io::KeyEntry& entry;
+  const Specimen& specimen;
+  const Material& material;
+
+  template <class Value>
+  std::string of(const Value& value) const {
+    std::ostringstream text;
+    text << entry.key.name << " = ";
+    if constexpr (std::is_same_v<Value, bool>) {
+      text << (value ? "true" : "false");
+    } else if constexpr (std::is_arithmetic_v<Value>) {
+      if (!entry.range.contains(static_cast<double>(value))) return "";
+      if constexpr (std::is_same_v<Value, double>) text << io::exact(value);
+      if constexpr (std::is_same_v<Value, long>) text << value;
+    } else {
+      text << toml::value<std::string>(io::text_of(value));
+    }
+    return text.str() + "\n";
+  }
+  template <class Value>
+  std::string operator()(Value Material::*member) const {
+    return of(material.*member);
+  }
+  template <class Value>
+  std::string operator()(Value ContactModel::*member) const {
+    return of(specimen.contact.*member);
+  }
+  template <class Value>
+  std::string operator()(Value Damping::*member) const {
+    return of(specimen.damping.*member);
+  }
+  template <class Value>
+  std::string operator()(Value SolverOptions::*member) const {
+    return of(specimen.solver.*member);
+  }
+  std::string operator()(io::FrictionAngle) const { return ""; }  // said by friction
+};
+
+std::string table_text(const Specimen& specimen, const Material& material, const std::string& table) {
+  std::string text;
+  for (const auto& entry : io::key_entries()) {
+    if (entry.key.table == table && in_use(specimen, entry.key.name)) {
+      text += std::visit(Line{entry, specimen, material}, entry.target);
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string material_file_text(const Specimen& specimen) {
+  std::string text;
+  const Material none;
+  for (const char* table : {"contact", "damping", "solver"}) {
+    text += std::string("[") + table + "]\n" + table_text(specimen, none, table) + "\n";
+  }
+  for (const Material& material : specimen.materials) {
+    text += "[[material]]\n" + table_text(specimen, material, "material") + "\n";
+  }
+  return text;
+}
+
+}  // namespace rvelab

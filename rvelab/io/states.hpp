@@ -1,0 +1,21 @@
+// The states that a file holds, in order: what an export shows.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "rvelab/solver/specimen.hpp"
+
+namespace rvelab {
+
+struct StoredState {
+  long record = 0;    ///< number of the record; an end state comes after all of them
+  double strain = 0;  ///< driving strain there; that of the last record for an end state; 0 without records
+  Specimen specimen;
+};
+
+/// The specimen of a specimen file; of a record file each state under /snapshots/<number of the record>, in their
+/// order, and the end state. Never empty. InputError as read_specimen.
+std::vector<StoredState> read_states(const std::string& path);
+
+}  // namespace rvelab

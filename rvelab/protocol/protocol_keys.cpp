@@ -1,0 +1,258 @@
+#include "rvelab/protocol/protocol_keys.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+#include "rvelab/protocol/protocol.hpp"
+
+namespace rvelab {
+namespace protocol {
+namespace {
+
+using io::Range;
+using Words = std::vector<std::string>;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr Range any{0, 0};
+constexpr Range positive{0, infinity, true, true};
+constexpr Range ratio{0, 1, true, true};
+constexpr Range steps{1, 1e12};
+
+std::string as_toml(double value) {
+  std::ostringstream text;
+  text.precision(15);
+  text << value;
+  return text.str();
+}
+std::string as_toml(long value) { return std::to_string(value); }
+
+// The default is that of the struct that the key fills: it is written nowhere twice.
+
+ProtocolKey number(const char* table, const char* name, const char* unit, double initial, const Range& range,
+                   const char* meaning) {
+  return {
+      {table, name, unit, "number", as_toml(initial), range.in_words(), meaning}, KeyKind::number, range, {}, initial};
+}
+
+/// Without a default of its own; `initial` says in words what holds instead, "" if nothing does.
+ProtocolKey number(const char* table, const char* name, const char* unit, const char* initial, const Range& range,
+                   const char* meaning) {
+  return {{table, name, unit, "number", initial, range.in_words(), meaning}, KeyKind::number, range, {}, {}};
+}
+
+ProtocolKey whole_number(const char* table, const char* name, long initial, const Range& range, const char* meaning) {
+  return {{table, name, "1", "whole number", as_toml(initial), range.in_words(), meaning},
+          KeyKind::whole_number,
+          range,
+          {},
+          initial};
+}
+
+ProtocolKey truth(const char* table, const char* name, bool initial, const char* meaning) {
+  return {{table, name, "-", "truth", initial ? "true" : "false", "true, false", meaning},
+          KeyKind::truth,
+          any,
+          {},
+          initial};
+}
+
+ProtocolKey text(const char* table, const char* name, const char* initial, const char* meaning) {
+  return {{table, name, "-", "text", initial, "any text", meaning}, KeyKind::text, any, {}, {}};
+}
+
+/// The first word is the default, unless `initial` says something else in words.
+ProtocolKey word(const char* table, const char* name, const Words& words, const char* meaning,
+                 const char* initial = nullptr) {
+  std::string allowed;
+  for (const auto& each : words) allowed += (allowed.empty() ? "" : ", ") + each;
+  ProtocolKey key{{table, name, "-", "word", "", allowed, meaning}, KeyKind::word, any, words, {}};
+  if (initial == nullptr) {
+    key.initial = words.front();
+    key.key.initial = "\"" + words.front() + "\"";
+  } else {
+    key.key.initial = initial;
+  }
+  return key;
+}
+
+ProtocolKey required(ProtocolKey key) {
+  key.key.required = true;
+  return key;
+}
+
+ProtocolKey with_range(ProtocolKey key, const char* words) {
+  key.key.range = words;
+  return key;
+}
+
+std::vector<ProtocolKey> test() {
+  const char* t = "test";
+  return {
+      required(text(t, "name", "", "what the records are called")),
+      with_range({{t, "dimension", "1", "whole number", "(that of the specimen)", "", "dimension of the specimen"},
+                  KeyKind::whole_number,
+                  {2, 3},
+                  {},
+                  {}},
+                 "2, 3"),
+      number(t, "pressure_Pa", "Pa", "", positive,
+             "pressure, compression positive, of every stage that gives none of its own; `rvelab calibrate` sets it"),
+  };
+}
+
+std::vector<ProtocolKey> loading() {
+  const char* t = "loading";
+  const Loading initial;
+  return {
+      word(t, "mode", {"quasi_static", "physical"},
+           "how compression and simple shear pass through time; physical: real masses at the given rate"),
+      number(t, "rate_1_s", "1/s", "", positive, "mode = physical: true rate of the driving strain"),
+      number(t, "inertial_number", "1", "", positive,
+             "mode = physical, in place of rate_1_s: I = rate d sqrt(rho/p) with p at the start of the stage"),
+      number(t, "held_tolerance", "1", initial.held_tolerance, ratio,
+             "a held stress may miss its target by this times the larger of the target's size and 1 % of the stage's "
+             "first p"),
+      whole_number(t, "held_wait", initial.held_wait, {0, 1e9}, "sub-steps that a record waits for the held stress"),
+  };
+}
+
+std::vector<ProtocolKey> specimen_and_calibrate() {
+  return {
+      required(text("specimen", "file", "",
+                    "specimen file that the test runs on, relative to the protocol; --specimen goes before it")),
+      {{"calibrate", "pressures_Pa", "Pa", "list of numbers", "", "each " + positive.in_words(),
+        "pressures of `rvelab calibrate`; --pressures goes before them"},
+       KeyKind::numbers,
+       positive,
+       {},
+       {}},
+  };
+}
+
+std::vector<ProtocolKey> stage() {
+  return {
+      required(word("stage", "kind", {"isotropic", "compression", "simple_shear", "relax", "probe"},
+                    "what the stage does; its other keys are those of [[stage]] with this kind", "")),
+      text("stage", "name", "(its kind)", "name of its own, for --set stage.NAME.key=value and in the records"),
+  };
+}
+
+std::vector<ProtocolKey> isotropic() {
+  const char* t = "stage.isotropic";
+  const IsotropicStage initial;
+  return {
+      number(t, "pressure_Pa", "Pa", "(test.pressure_Pa)", positive, "all normal stresses are brought to minus this"),
+      word(t, "shear", {"zero_strain", "zero_stress"},
+           "zero_strain: the cell keeps its angles; zero_stress: shear stresses are driven to zero"),
+      number(t, "stress_tolerance", "1", initial.stress_tolerance, ratio, "of the pressure; the stage ends within it"),
+      number(t, "unbalanced", "1", initial.unbalanced, ratio, "unbalanced force ratio below which the stage ends"),
+      number(t, "largest_change", "1", initial.largest_change, {0, 1, true, false},
+             "largest change of stress in one increment, over the pressure"),
+      whole_number(t, "max_rounds", initial.max_rounds, steps, "rounds of relaxing and correcting before it fails"),
+      whole_number(t, "max_steps", initial.max_steps, steps, "sub-steps of one relaxation before it fails"),
+      truth(t, "record", initial.record, "records the state at the start and at the end"),
+  };
+}
+
+std::vector<ProtocolKey> compression() {
+  const char* t = "stage.compression";
+  return {
+      word(t, "axis", {"x", "y", "z"}, "laboratory axis that is shortened", "(y in 2D, z in 3D)"),
+      required(with_range(number(t, "to_strain", "1", "", {-infinity, 1, true, true},
+                                 "strain 1 - F_aa at which the stage ends, compression positive"),
+                          "below 1, not 0")),
+      number(t, "record_every", "1", CompressionStage{}.record_every, positive,
+             "strain between records; at most 1e6 records"),
+      word(t, "lateral", {"constant_stress", "constant_volume"},
+           "constant_stress: each lateral normal stress is held (drained); constant_volume: det F = 1 (undrained)"),
+      number(t, "lateral_pressure_Pa", "Pa", "(test.pressure_Pa)", positive,
+             "lateral = constant_stress: lateral normal stresses are held at minus this"),
+  };
+}
+
+std::vector<ProtocolKey> simple_shear() {
+  const char* t = "stage.simple_shear";
+  return {
+      word(t, "plane", {"xy", "xz", "yz", "yx", "zx", "zy"}, "ab: shear dv_a/dx_b", "(xy in 2D, xz in 3D)"),
+      required(with_range(number(t, "to_strain", "1", "", {-infinity, infinity, true, true},
+                                 "gamma = F_ab at which the stage ends, either sign"),
+                          "any finite number but 0")),
+      number(t, "record_every", "1", SimpleShearStage{}.record_every, positive,
+             "gamma between records; at most 1e6 records"),
+      word(t, "normal", {"constant_volume", "constant_stress"},
+           "constant_volume: only the shear moves (undrained); constant_stress: sigma_bb is held (drained)"),
+      number(t, "normal_pressure_Pa", "Pa", "(test.pressure_Pa)", positive,
+             "normal = constant_stress: sigma_bb is held at minus this"),
+  };
+}
+
+std::vector<ProtocolKey> relax_and_probe() {
+  const char *r = "stage.relax", *p = "stage.probe";
+  const RelaxStage relax;
+  const ProbeStage probe;
+  return {
+      number(r, "unbalanced", "1", relax.unbalanced, ratio, "unbalanced force ratio below which the stage ends"),
+      whole_number(r, "max_steps", relax.max_steps, steps, "sub-steps before it fails"),
+      truth(r, "record", relax.record, "records the state at the end"),
+      word(p, "method", {"dynamic", "linear"},
+           "dynamic: increments of +-size, relaxed; linear: the contact network solved, every contact stuck"),
+      number(p, "size", "1", probe.size, {0, 0.01, true, false}, "method = dynamic: strain of each increment"),
+      {{p, "no_slip", "-", "truth", "(true with method = linear, else false)", "true, false",
+        "no contact slips or rolls over in the probed copy (friction 1e6)"},
+       KeyKind::truth,
+       any,
+       {},
+       {}},
+  };
+}
+
+}  // namespace
+
+const std::vector<ProtocolKey>& protocol_keys() {
+  static const std::vector<ProtocolKey> all = [] {
+    std::vector<ProtocolKey> keys;
+    for (const auto& list : {test(), loading(), specimen_and_calibrate(), stage(), isotropic(), compression(),
+                             simple_shear(), relax_and_probe()}) {
+      keys.insert(keys.end(), list.begin(), list.end());
+    }
+    return keys;
+  }();
+  return all;
+}
+
+const ProtocolKey& protocol_key(const std::string& table, const std::string& name) {
+  const auto& keys = protocol_keys();
+  const auto found = std::find_if(
+      keys.begin(), keys.end(), [&](const auto& entry) { return entry.key.table == table && entry.key.name == name; });
+  if (found == keys.end())
+    throw std::logic_error("no entry for the key " + table + "." + name + " in protocol_keys.cpp");
+  return *found;
+}
+
+const std::vector<std::string>& top_tables() {
+  static const std::vector<std::string> tables = [] {
+    std::vector<std::string> list;
+    for (const Key& key : all_keys()) {
+      const std::string top = key.table.substr(0, key.table.find('.'));
+      if (std::find(list.begin(), list.end(), top) == list.end()) list.push_back(top);
+    }
+    return list;
+  }();
+  return tables;
+}
+
+}  // namespace protocol
+
+const std::vector<Key>& all_keys() {
+  static const std::vector<Key> keys = [] {
+    std::vector<Key> list;
+    for (const auto& entry : protocol::protocol_keys()) list.push_back(entry.key);
+    list.insert(list.end(), known_keys().begin(), known_keys().end());
+    return list;
+  }();
+  return keys;
+}
+
+}  // namespace rvelab

@@ -1,0 +1,74 @@
+// The program run as a user runs it, in a folder of its own.
+#pragma once
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "tests/catch.hpp"
+
+namespace rvelab::test {
+
+inline std::string text_of(const std::string& path) {
+  std::ifstream input(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(input), {}};
+}
+
+struct Outcome {
+  int code;
+  std::string output, errors;
+};
+
+/// A folder that vanishes with the test; commands run with it as the working directory.
+class Workplace {
+ public:
+  Workplace() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "rvelab-cli-XXXXXX").string();
+    REQUIRE(mkdtemp(pattern.data()) != nullptr);
+    path_ = pattern;
+  }
+  Workplace(const Workplace&) = delete;
+  Workplace& operator=(const Workplace&) = delete;
+  ~Workplace() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
+
+  Outcome run(const std::string& arguments, const std::string& program = RVELAB_PROGRAM) const {
+    const std::string command =
+        "cd '" + path_.string() + "' && '" + program + "' " + arguments + " >.out 2>.err </dev/null";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(*this / ".out"), text_of(*this / ".err")};
+  }
+
+  /// S.h5 from a reference packing of YADE.
+  void import_packing(const std::string& name, const std::string& file = "S.h5") const {
+    const std::string stem = std::string(RVELAB_TEST_DATA) + "/yade/" + name;
+    const Outcome outcome =
+        run("import " + stem + ".particles.csv " + stem + ".contacts.csv " + stem + ".json -o " + file);
+    INFO(outcome.errors);
+    REQUIRE(outcome.code == 0);
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// Exit code 2, nothing on standard output, one line on standard error that holds `part`.
+inline void expect_mistake(const Outcome& outcome, const std::string& part) {
+  INFO(outcome.errors);
+  CHECK(outcome.code == 2);
+  CHECK(outcome.output.empty());
+  CHECK(outcome.errors.starts_with("rvelab: "));
+  CHECK(std::count(outcome.errors.begin(), outcome.errors.end(), '\n') == 1);
+  CHECK(outcome.errors.find(part) != std::string::npos);
+}
+
+}  // namespace rvelab::test

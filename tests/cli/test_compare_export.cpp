@@ -1,0 +1,90 @@
+// rvelab compare and rvelab export as a user meets them. What the files hold is tested in tests/io.
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/program.hpp"
+
+using namespace rvelab::test;
+using Catch::Matchers::Contains;
+
+TEST_CASE("compare says equal, or the first difference with exit code 1, which is no mistake") {
+  const Workplace here;
+  here.import_packing("dense_p20", "a.h5");
+  here.import_packing("dense_p20", "b.h5");
+  here.import_packing("dense_p10", "c.h5");
+  const Outcome equal = here.run("compare a.h5 b.h5");
+  CHECK(equal.code == 0);
+  CHECK(equal.errors.empty());
+  CHECK_THAT(equal.output, Contains("equal: ") && Contains(" datasets\n"));
+  const Outcome other = here.run("compare a.h5 c.h5");
+  CHECK(other.code == 1);
+  CHECK(other.errors.empty());
+  CHECK(std::count(other.output.begin(), other.output.end(), '\n') == 1);
+  CHECK_THAT(other.output,
+             Contains("/cell/lattice_m[0, 0] differs: ") && Contains(" in a.h5, ") && Contains(" in c.h5"));
+  const auto json = nlohmann::json::parse(here.run("compare a.h5 c.h5 --json").output);
+  CHECK(json["equal"] == false);
+  CHECK(json["difference"].get<std::string>() + "\n" == other.output);
+  CHECK(nlohmann::json::parse(here.run("compare a.h5 b.h5 --json").output)["difference"].is_null());
+  expect_mistake(here.run("compare a.h5 none.h5"), "none.h5: no such file");
+}
+
+TEST_CASE("a specimen exported as CSV and imported again as the export says is the same file") {
+  const Workplace here;
+  for (const char* name : {"dense", "hertz", "noroll"}) {
+    CAPTURE(name);
+    here.import_packing(name);
+    const Outcome exported = here.run("export S.h5 --format csv -o out --json");
+    INFO(exported.errors);
+    REQUIRE(exported.code == 0);
+    const auto json = nlohmann::json::parse(exported.output);
+    CHECK(json["written"].size() == 4);
+    const std::string command = json["import_with"];
+    REQUIRE(command.starts_with("rvelab import "));
+    std::filesystem::rename(here / "S.h5", here / "first.h5");
+    const Outcome imported = here.run(command.substr(7));
+    INFO(imported.errors);
+    REQUIRE(imported.code == 0);
+    const Outcome compared = here.run("compare first.h5 S.h5");
+    CHECK_THAT(compared.output, Contains("equal: "));
+    // One material and a law that META.json can say: the parameters need no file of their own.
+    REQUIRE(here.run("import out.particles.csv out.contacts.csv out.json -o meta.h5").code == 0);
+    CHECK_THAT(here.run("compare first.h5 meta.h5").output, Contains("equal: "));
+  }
+}
+
+TEST_CASE("an export never replaces the file that it is made from, and needs a folder") {
+  const Workplace here;
+  here.import_packing("dense_p20");
+  const std::string before = text_of(here / "S.h5");
+  expect_mistake(here.run("export S.h5 --format lammps -o S.h5"), "would replace S.h5");
+  std::filesystem::rename(here / "S.h5", here / "S.xdmf.h5");
+  expect_mistake(here.run("export S.xdmf.h5 --format xdmf -o S.xdmf"), "would replace S.xdmf.h5");
+  CHECK(text_of(here / "S.xdmf.h5") == before);
+  expect_mistake(here.run("export S.xdmf.h5 --format lammps -o no/S.dump"), "the folder no does not exist");
+  expect_mistake(here.run("export S.xdmf.h5 --format vtk -o S.vtk"), "vtk not in");
+  const auto data = nlohmann::json::parse(here.run("export S.xdmf.h5 --format lammps-data -o S.data --json").output);
+  CHECK(data["written"] == nlohmann::json::array({"S.data"}));
+  const auto xdmf = nlohmann::json::parse(here.run("export S.xdmf.h5 --format xdmf -o T.xdmf --json").output);
+  CHECK(xdmf["written"] == nlohmann::json::array({"T.xdmf", "T.xdmf.h5"}));
+  CHECK(xdmf["states"] == 1);
+  CHECK_THAT(text_of(here / "S.data"), Contains("400 atoms\n1 atom types\n"));
+}
+
+TEST_CASE("a dump goes out and comes back through the program with the same cell and grains") {
+  const Workplace here;
+  here.import_packing("hertz");
+  REQUIRE(here.run("export S.h5 --format csv -o s").code == 0);  // for its material file
+  REQUIRE(here.run("export S.h5 --format lammps -o s.dump").code == 0);
+  const Outcome imported = here.run("import s.dump --material s.material.toml -o T.h5");
+  INFO(imported.errors);
+  REQUIRE(imported.code == 0);
+  const auto before = nlohmann::json::parse(here.run("inspect S.h5 --json").output);
+  const auto after = nlohmann::json::parse(here.run("inspect T.h5 --json").output);
+  for (const char* key : {"dimension", "grains", "contacts", "lattice_m", "coordination_number"}) {
+    CAPTURE(key);
+    CHECK(after[key] == before[key]);
+  }
+  CHECK(after["void_ratio"].get<double>() == Approx(before["void_ratio"].get<double>()).epsilon(1e-14));
+  expect_mistake(here.run("import s.dump --material s.material.toml --cell 1,1,1 -o T.h5"), "s.dump has a cell too");
+  expect_mistake(here.run("import s.dump -o T.h5"), "comes without contact parameters");
+}

@@ -1,0 +1,86 @@
+// rvelab keys and rvelab protocols, and protocols found by their names.
+#include <nlohmann/json.hpp>
+
+#include "rvelab/protocol/protocol_keys.hpp"
+#include "tests/cli/program.hpp"
+
+using namespace rvelab::test;
+using Catch::Matchers::Contains;
+
+TEST_CASE("keys lists every key with unit, type, default, range and meaning") {
+  const Workplace here;
+  const Outcome outcome = here.run("keys --json");
+  REQUIRE(outcome.code == 0);
+  const auto list = nlohmann::json::parse(outcome.output)["keys"];
+  REQUIRE(list.size() == rvelab::all_keys().size());
+  for (const auto& key : list) {
+    CAPTURE(key.dump());
+    for (const char* member : {"key", "table", "name", "unit", "type", "range", "meaning"}) {
+      CHECK(!key[member].get<std::string>().empty());
+    }
+    CHECK(key["required"].is_boolean());
+    CHECK(key.contains("default"));
+  }
+  CHECK(list[0]["key"] == "test.name");
+}
+
+TEST_CASE("keys takes a part of a key, whatever its case, and says when there is none") {
+  const Workplace here;
+  const std::string text = here.run("keys PRESSURE").output;
+  CHECK_THAT(text, Contains("test.pressure_Pa  (number in Pa: > 0; no default)\n    ") &&
+                       Contains("stage.isotropic.pressure_Pa") && Contains("default (test.pressure_Pa)"));
+  CHECK(text.find("friction") == std::string::npos);
+  CHECK(nlohmann::json::parse(here.run("keys stage.probe --json").output)["keys"].size() == 3);
+  expect_mistake(here.run("keys contact.slop"), "the nearest known key is contact.slip");
+}
+
+TEST_CASE("protocols lists the installed ones with what they are, and prints one as it is") {
+  const Workplace here;
+  const auto list = nlohmann::json::parse(here.run("protocols --json").output);
+  std::size_t sources = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(RVELAB_SOURCE_DIR "/protocols")) {
+    const std::string name = entry.path().stem().string();
+    CAPTURE(name);
+    CHECK(list.contains(name));
+    CHECK(here.run("protocols " + name).output == text_of(entry.path().string()));
+    ++sources;
+  }
+  CHECK(list.size() == sources);
+  CHECK(list["biaxial"] == "Drained biaxial compression (2D)");
+  CHECK_THAT(here.run("protocols").output, Contains("triaxial      Drained triaxial compression (3D)\n"));
+}
+
+TEST_CASE("a name without separator and .toml is an installed protocol, anything else a path") {
+  const Workplace here;
+  here.import_packing("dense_p20");
+  const std::string short_test = " --specimen S.h5 --set stage.compression.to_strain=0.001 --json";
+  const Outcome by_name = here.run("run biaxial" + short_test);
+  INFO(by_name.errors);
+  REQUIRE(by_name.code == 0);
+  const Outcome by_path = here.run("run " RVELAB_SOURCE_DIR "/protocols/biaxial.toml" + short_test);
+  REQUIRE(by_path.code == 0);
+  CHECK(nlohmann::json::parse(by_name.output)["records"] == nlohmann::json::parse(by_path.output)["records"]);
+  const Outcome calibration = here.run("calibrate biaxial --pressures 15e3,20e3" + short_test);
+  INFO(calibration.errors);
+  CHECK(calibration.code == 0);
+
+  expect_mistake(here.run("run biaxail --specimen S.h5"),
+                 "no protocol \"biaxail\" is installed; the nearest is biaxial; allowed: biaxial, probe, ");
+  expect_mistake(here.run("run biaxial.toml --specimen S.h5"), "biaxial.toml: no such file");
+  expect_mistake(here.run("run ./biaxial --specimen S.h5"), "./biaxial: no such file");
+}
+
+TEST_CASE("the program finds its protocols from where it is, and says when they are not there") {
+  const Workplace here;
+  namespace fs = std::filesystem;
+  fs::create_directories(here / "moved/bin");
+  fs::copy_file(RVELAB_PROGRAM, here / "moved/bin/rvelab");
+  const std::string moved = here / "moved/bin/rvelab";
+  expect_mistake(here.run("run biaxial", moved), "no protocol \"biaxial\" is installed; allowed: or the path");
+  CHECK(here.run("protocols", moved).output.empty());
+  fs::create_directories(here / "moved/share/rvelab/protocols");
+  fs::copy_file(RVELAB_SOURCE_DIR "/protocols/probe.toml", here / "moved/share/rvelab/protocols/mine.toml");
+  CHECK_THAT(here.run("protocols", moved).output, Contains("mine  The elastic stiffness of a specimen"));
+  fs::create_symlink(moved, here / "linked");
+  CHECK_THAT(here.run("protocols", here / "linked").output, Contains("mine  "));
+}

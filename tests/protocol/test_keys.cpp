@@ -1,0 +1,200 @@
+// One table of keys: what is in it is read, what is read is in it, and the README says the same.
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+
+#include "rvelab/error.hpp"
+#include "rvelab/io/key_units.hpp"
+#include "rvelab/protocol/protocol.hpp"
+#include "rvelab/protocol/protocol_keys.hpp"
+#include "rvelab/protocol/table_reader.hpp"
+#include "tests/catch.hpp"
+
+using namespace rvelab;
+using Catch::Matchers::Contains;
+
+namespace {
+
+const char* const every_table = R"([test]
+name = "all"
+dimension = 3
+pressure_Pa = 1e5
+[loading]
+mode = "physical"
+rate_1_s = 0.1
+[specimen]
+file = "S.h5"
+[calibrate]
+pressures_Pa = [1e4]
+[[stage]]
+kind = "isotropic"
+[[stage]]
+kind = "compression"
+to_strain = 0.1
+[[stage]]
+kind = "simple_shear"
+to_strain = 0.1
+normal = "constant_stress"
+[[stage]]
+kind = "relax"
+[[stage]]
+kind = "probe"
+)";
+
+std::string message_of(const std::string& text, const std::vector<std::string>& assignments = {}) {
+  try {
+    parse_protocol(text, "t.toml", assignments);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// A value of a key's kind and range, as an assignment writes it.
+std::string some_value(const protocol::ProtocolKey& entry) {
+  using protocol::KeyKind;
+  switch (entry.kind) {
+    case KeyKind::truth:
+      return "true";
+    case KeyKind::text:
+      return "words";
+    case KeyKind::word:
+      return entry.words.front();
+    case KeyKind::numbers:
+      return "[1000.0]";
+    case KeyKind::whole_number:
+      return std::to_string(std::lround(std::min(entry.range.high, entry.range.low + 1)));
+    case KeyKind::number:
+      return "0.005";
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("every key of the table is read, and each with the default that it states") {
+  // The readers of all tables run here: each throws std::logic_error if it asks for a key that has no entry, or leaves
+  // one out.
+  const Protocol read = parse_protocol(every_table, "t.toml");
+  CHECK(read.stages.size() == 5);
+  std::set<std::string> names;
+  const auto resolved = toml::parse(read.resolved);
+  for (const auto& entry : protocol::protocol_keys()) {
+    const Key& key = entry.key;
+    CAPTURE(key.dotted());
+    CHECK(names.insert(key.dotted()).second);
+    CHECK((!key.unit.empty() && !key.type.empty() && !key.range.empty() && !key.meaning.empty()));
+    const bool of_stage = key.table.starts_with("stage");
+    if (key.table == "stage") continue;  // kind and name are every stage's own
+    const std::string table = of_stage ? "stage" : key.table;
+    const toml::node* node = nullptr;
+    if (of_stage) {
+      for (const auto& stage : *resolved["stage"].as_array()) {
+        if ("stage." + (*stage.as_table())["kind"].value_or(std::string()) == key.table) {
+          node = stage.as_table()->get(key.name);
+        }
+      }
+    } else {
+      node = resolved[table].as_table()->get(key.name);
+    }
+    if (key.name == "inertial_number") continue;  // one of the two rates only
+    REQUIRE(node != nullptr);
+    if (const auto* number = std::get_if<double>(&entry.initial)) CHECK(node->value<double>() == *number);
+    if (const auto* whole = std::get_if<long>(&entry.initial)) CHECK(node->value<std::int64_t>() == *whole);
+    if (const auto* truth = std::get_if<bool>(&entry.initial)) CHECK(node->value<bool>() == *truth);
+  }
+  for (const Key& key : known_keys()) CHECK(names.insert(key.dotted()).second);
+}
+
+TEST_CASE("every key of a protocol can be set by an assignment, and refuses what is not of its kind") {
+  for (const auto& entry : protocol::protocol_keys()) {
+    const Key& key = entry.key;
+    if (key.table == "stage") continue;
+    CAPTURE(key.dotted());
+    // A value may contradict another key; then the message says so, and not that it is unknown, a wrong type or range.
+    const std::string message = message_of(every_table, {key.dotted() + "=" + some_value(entry)});
+    CAPTURE(message);
+    const bool fits = message.empty() || message.find("contradicts") != std::string::npos;
+    CHECK(fits);
+    const std::string wrong = message_of(every_table, {key.dotted() + "={a = 1}"});
+    CHECK_THAT(wrong, Contains("--set " + key.dotted() + "={a = 1}: ") && Contains("; allowed: "));
+    if (entry.kind == protocol::KeyKind::number) {
+      for (const char* number : {"nan", "inf", "-inf"}) {
+        CHECK_THAT(
+            message_of(every_table, {key.dotted() + "=" + number}),
+            Contains(key.dotted() + " = " + number + " is not finite; allowed: ") && Contains("give a finite number"));
+      }
+    }
+  }
+}
+
+TEST_CASE("whole numbers are accepted where numbers are asked for") {
+  const Protocol protocol =
+      parse_protocol(every_table, "t.toml", {"test.pressure_Pa=20000", "calibrate.pressures_Pa=[1, 2.5]"});
+  CHECK(protocol.pressure == 20000.0);
+  CHECK(protocol.calibration_pressures == std::vector<double>{1, 2.5});
+}
+
+TEST_CASE("a reader that asks for a key without an entry, or leaves one out, is stopped at once") {
+  std::vector<KeyError> errors;
+  const auto table = toml::parse("name = \"t\"\n");
+  protocol::TableReader asks(table, "test", "test", 1, errors);
+  CHECK_THROWS_AS(asks.number("presure_Pa"), std::logic_error);
+  protocol::TableReader leaves_out(table, "test", "test", 1, errors);
+  leaves_out.text("name");
+  leaves_out.optional_number("pressure_Pa");
+  CHECK_THROWS_AS(leaves_out.finish(), std::logic_error);  // dimension
+  leaves_out.optional_whole_number("dimension");
+  CHECK_NOTHROW(leaves_out.finish());
+  CHECK(errors.empty());
+}
+
+TEST_CASE("a key in another unit of its quantity is answered with the right key and the factor") {
+  const auto answer = [](const std::string& assignment) { return message_of(every_table, {assignment}); };
+  CHECK_THAT(answer("test.pressure_kPa=20"),
+             Contains("test.pressure_kPa is not known; write test.pressure_Pa, 1 kPa = 1000 Pa"));
+  CHECK_THAT(answer("test.pressure_bar=1"), Contains("write test.pressure_Pa, 1 bar = 1e5 Pa"));
+  CHECK_THAT(answer("stage.isotropic.pressure_MPa=1"), Contains("write stage.isotropic.pressure_Pa, 1 MPa = 1e6 Pa"));
+  CHECK_THAT(answer("calibrate.pressures_kPa=[1]"), Contains("write calibrate.pressures_Pa, 1 kPa = 1000 Pa"));
+  CHECK_THAT(answer("loading.rate_1_min=1"), Contains("write loading.rate_1_s, 60 1/min = 1 1/s"));
+  CHECK_THAT(answer("stage.compression.to_strain_percent=5"),
+             Contains("write stage.compression.to_strain, 1 percent = 0.01"));
+  CHECK_THAT(answer("solver.min_height_mm=5"), Contains("write solver.min_height_m, 1 mm = 1e-3 m"));
+  CHECK_THAT(answer("solver.fixed_time_step_ms=5"), Contains("write solver.fixed_time_step_s, 1 ms = 1e-3 s"));
+  CHECK_THAT(answer("material.sand.young_modulus_GPa=5"),
+             Contains("write material.sand.young_modulus_Pa, 1 GPa = 1e9 Pa"));
+  CHECK_THAT(answer("material.density_g_cm3=2.6"), Contains("write material.density_kg_m3, 1 g/cm^3 = 1000 kg/m^3"));
+  CHECK_THAT(answer("material.friction_angle_rad=0.4"),
+             Contains("write material.friction_angle_deg, 1 rad = 57.2957795"));
+  CHECK_THAT(answer("material.normal_stiffness_kN_m=4"),
+             Contains("write material.normal_stiffness_N_m, 1 kN/m = 1000 N/m"));
+  // One mistake is one line: no stage complains of the pressure that it did not get.
+  const std::string text =
+      "[test]\nname = \"t\"\npressure_kPa = 20\n[[stage]]\nkind = \"isotropic\"\n"
+      "[[stage]]\nkind = \"compression\"\nto_strain_percent = 1\n";
+  CHECK(message_of(text) ==
+        "t.toml:3: test.pressure_kPa is not known; write test.pressure_Pa, 1 kPa = 1000 Pa\n"
+        "t.toml:8: stage.compression.to_strain_percent is not known; write stage.compression.to_strain, 1 percent = "
+        "0.01");
+  // Another quantity is no unit of this one.
+  CHECK_THAT(answer("test.pressure_mm=1"),
+             Contains("unknown key test.pressure_mm; the nearest known key is test.pressure_Pa"));
+}
+
+TEST_CASE("the README lists every key as the table has it") {
+  std::ifstream readme(RVELAB_SOURCE_DIR "/rvelab/protocol/README.md");
+  std::map<std::string, std::string> rows;
+  for (std::string line; std::getline(readme, line);) {
+    if (!line.starts_with("| ") || line.starts_with("| ---") || line.starts_with("| key ")) continue;
+    CHECK(rows.emplace(line.substr(2, line.find(' ', 2) - 2), line).second);
+  }
+  for (const Key& key : all_keys()) {
+    const std::string initial = key.required ? " required " : key.initial.empty() ? " " : " " + key.initial + " ";
+    CHECK(rows[key.dotted()] == "| " + key.dotted() + " | " + key.unit + " | " + key.type + " |" + initial + "| " +
+                                    key.range + " | " + key.meaning + " |");
+  }
+  CHECK(rows.size() == all_keys().size());
+}
