@@ -7,10 +7,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
+#include <memory>
 #include <set>
 
 #include "rvelab/cli/commands.hpp"
 #include "rvelab/cli/report.hpp"
+#include "rvelab/io/specimen_file.hpp"
 #include "rvelab/pack/random_packing.hpp"
 #include "rvelab/solver/rve.hpp"
 #include "rvelab/solver/scene.hpp"
@@ -51,19 +54,22 @@ struct Timing {
   double contacts_per_grain = 0;
 };
 
+/// Rate of simple shear at inertial number 1e-3, 1/s.
+double shear_rate(const Rve& rve, const Specimen& specimen) {
+  double diameters = 0;
+  for (double r : specimen.grains.radius) diameters += 2 * r;
+  const double diameter = diameters / double(specimen.grains.size());
+  const double pressure = std::max(1.0, -rve.stress()(0, 0));
+  return 1e-3 / (diameter * std::sqrt(specimen.materials[0].density / pressure));
+}
+
 /// Steps the specimen in simple shear; `steps` sub-steps a repeat.
 Timing time_of(const Specimen& specimen, long steps, int repeats) {
   Specimen start = specimen;
   start.damping.local = 0.1;  // as published (Liang and Zhao 2019, table 2)
   Rve rve(start);
   const int d = rve.cell().dimension;
-  const double diameter = [&] {
-    double sum = 0;
-    for (double r : specimen.grains.radius) sum += 2 * r;
-    return sum / double(specimen.grains.size());
-  }();
-  const double pressure = std::max(1.0, -rve.stress()(0, 0));
-  const double rate = 1e-3 / (diameter * std::sqrt(specimen.materials[0].density / pressure));
+  const double rate = shear_rate(rve, specimen);
   const double dt = 0.7 * rve.critical_time_step() * double(steps);
   Matrix3 dh = Matrix3::Zero();
   dh(0, d - 1) = rate * dt;
@@ -112,31 +118,56 @@ std::vector<Case> cases() {
           {"sphere_256000_hertz", spheres(), {8, 8, 4}, 1e7, 5e6}};
 }
 
-void run_bench(bool quick, bool json, const std::vector<std::string>& wanted) {
+struct Arguments {
+  bool quick = false, json = false;
+  std::vector<std::string> wanted;
+  std::string folder;  ///< empty: time the cases; else: write their packings there
+};
+
+void run_bench(const Arguments& arguments) {
   Listing listing;
   listing.add("instruction_set", kernels_for(SceneKey{}).instruction_set);
   for (const Case& c : cases()) {
+    const auto& wanted = arguments.wanted;
     if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), c.name) == wanted.end()) continue;
-    listing.add(c.name,
-                entry(repeated(random_packing(c.recipe), c.times), quick ? c.quick_grain_steps : c.grain_steps, quick));
+    const Specimen specimen = repeated(random_packing(c.recipe), c.times);
+    if (arguments.folder.empty()) {
+      listing.add(c.name, entry(specimen, arguments.quick ? c.quick_grain_steps : c.grain_steps, arguments.quick));
+      continue;
+    }
+    const std::string path = (std::filesystem::path(arguments.folder) / (std::string(c.name) + ".h5")).string();
+    write_specimen(specimen, path);
+    const Rve rve(specimen);
+    Json packing;
+    packing["file"] = path;
+    packing["critical_time_step_s"] = rve.critical_time_step();
+    packing["shear_rate_1_s"] = shear_rate(rve, specimen);
+    listing.add(c.name, packing);
   }
-  listing.print(json);
+  listing.print(arguments.json);
 }
 
 }  // namespace
 
 void add_bench(CLI::App& app) {
   auto* command = app.add_subcommand("bench", "Grain-steps per second of fixed cases, one thread");
-  auto quick = std::make_shared<bool>(false), json = std::make_shared<bool>(false);
-  auto wanted = std::make_shared<std::vector<std::string>>();
+  auto arguments = std::make_shared<Arguments>();
   std::set<std::string> names;
   for (const Case& c : cases()) names.insert(c.name);
-  command->add_option("--case", *wanted, "Run this case only; may be given more than once")
+  command->add_option("--case", arguments->wanted, "this case only; may be given more than once")
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->take_all()
       ->check(CLI::IsMember(names));
-  command->add_flag("--quick", *quick, "A fifth of the work, three repeats");
-  command->add_flag("--json", *json, "Print one JSON object");
-  command->footer("Example:\n  rvelab bench --quick --json");
-  command->callback([=] { run_bench(*quick, *json, *wanted); });
+  command->add_flag("--quick", arguments->quick, "a fifth of the work, three repeats");
+  command->add_option("--packings", arguments->folder, "write the packings of the cases there instead of timing them")
+      ->check(CLI::ExistingDirectory);
+  command->add_flag("--json", arguments->json, "print one JSON object");
+  command->footer(
+      "Examples:\n"
+      "  rvelab bench --quick --json\n"
+      "  rvelab bench --case disc_400_linear --packings .");
+  command->callback([arguments] { run_bench(*arguments); });
 }
 
 }  // namespace rvelab::cli
