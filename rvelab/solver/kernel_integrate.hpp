@@ -69,6 +69,7 @@ inline __attribute__((always_inline)) void gather_disc_forces(const GrainArrays&
     Quad in[4], out[4];
     for (int k = 0; k < 4; ++k) in[k] = out[k] = L::broadcast(0.0);
     for (; slot != last; slot += 8)
+#pragma GCC unroll 4
       for (int k = 0; k < 4; ++k) {
         in[k] = L::add(in[k], quad_at<W>(p.force + slot[k]));
         out[k] = L::add(out[k], quad_at<W>(p.force + slot[4 + k]));
