@@ -8,10 +8,12 @@
 
 namespace rvelab {
 
+/// Grains up to which a thread keeps its scratch state for the next increment (some 10 MB).
+constexpr std::size_t largest_kept_scratch = 20'000;
+
 struct Rve::Impl {
   Fixture fixture;
   Assembly now;
-  Assembly before;  ///< scratch: the state at the start of the increment
 
   Matrix3 to_lab(const Matrix3& cell_frame) const {
     return now.cell.rotation * cell_frame * now.cell.rotation.transpose();
@@ -20,14 +22,22 @@ struct Rve::Impl {
   Matrix3 reynolds_stress() const;
   Response respond(const Report& report, const Matrix3& gradient, double dt, const Want& want) const;
 
-  /// Runs `work`; if it throws, the state is put back and the exception goes on.
+  /// Runs `work`; if it throws, the state is put back and the exception goes on. The copy belongs to the thread, not to
+  /// the Rve: a thousand resting cells keep one state each, and its buffers serve the next increment.
   template <class Work>
   auto guarded(Work work) {
+    thread_local Assembly before;
     before = now;
+    const auto give_back = [&] {
+      if (fixture.size() > largest_kept_scratch) before = Assembly();
+    };
     try {
-      return work();
+      auto result = work();
+      give_back();
+      return result;
     } catch (...) {
       std::swap(now, before);
+      give_back();
       throw;
     }
   }
