@@ -15,6 +15,7 @@
 #include "rvelab/cli/report.hpp"
 #include "rvelab/io/specimen_file.hpp"
 #include "rvelab/pack/random_packing.hpp"
+#include "rvelab/solver/batch.hpp"
 #include "rvelab/solver/rve.hpp"
 #include "rvelab/solver/scene.hpp"
 
@@ -120,11 +121,46 @@ std::vector<Case> cases() {
 
 struct Arguments {
   bool quick = false, json = false;
+  std::size_t batch = 0;  ///< cells; 0: the cases
+  unsigned threads = 1;
   std::vector<std::string> wanted;
   std::string folder;  ///< empty: time the cases; else: write their packings there
 };
 
+/// Many cells of 400 discs, 20 sub-steps each in every round, as a continuum code asks for.
+void run_batch(const Arguments& arguments) {
+  const Specimen specimen = random_packing(discs(false));
+  std::vector<Rve> rves(arguments.batch, Rve(specimen));
+  const double dt = 20 * 0.7 * rves[0].critical_time_step();
+  std::vector<Matrix3> gradients(rves.size(), Matrix3::Zero());
+  for (std::size_t k = 0; k < rves.size(); ++k)  // no two cells go the same way
+    gradients[k](0, 1) = shear_rate(rves[0], specimen) * dt * (1 + double(k) / double(rves.size()));
+  Workers workers(arguments.threads);
+  const auto steps_made = [&] {
+    std::uint64_t steps = 0;
+    for (const Rve& rve : rves) steps += rve.grain_steps();
+    return steps;
+  };
+  std::vector<double> speeds;
+  for (int round = 0; round < (arguments.quick ? 4 : 8); ++round) {
+    const auto before = steps_made();
+    const auto begin = std::chrono::steady_clock::now();
+    for (int increment = 0; increment < 4; ++increment)
+      for (const BatchEntry& entry : apply(rves, gradients, dt, workers))
+        if (entry.failure) std::rethrow_exception(entry.failure);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    if (round > 0) speeds.push_back(double(steps_made() - before) / seconds);  // the first warms up
+  }
+  std::sort(speeds.begin(), speeds.end());
+  Listing listing;
+  listing.add("cells", rves.size());
+  listing.add("threads", workers.threads());
+  listing.add("grain_steps_per_second", speeds[speeds.size() / 2]);
+  listing.print(arguments.json);
+}
+
 void run_bench(const Arguments& arguments) {
+  if (arguments.batch > 0) return run_batch(arguments);
   Listing listing;
   listing.add("instruction_set", kernels_for(SceneKey{}).instruction_set);
   for (const Case& c : cases()) {
@@ -159,6 +195,9 @@ void add_bench(CLI::App& app) {
       ->allow_extra_args(false)
       ->take_all()
       ->check(CLI::IsMember(names));
+  command->add_option("--batch", arguments->batch, "time a batch of so many cells of 400 discs instead of the cases")
+      ->check(CLI::Range(1, 1'000'000));
+  command->add_option("--threads", arguments->threads, "threads of the batch")->check(CLI::Range(1u, 4096u));
   command->add_flag("--quick", arguments->quick, "a fifth of the work, three repeats");
   command->add_option("--packings", arguments->folder, "write the packings of the cases there instead of timing them")
       ->check(CLI::ExistingDirectory);

@@ -56,10 +56,13 @@ double Rve::Impl::initial_pace() const {
   return 1e-3 * overlap / (2 * fixture.mean_radius);
 }
 
+double Rve::Impl::unbalanced(const Balance& balance) const {
+  return rvelab::unbalanced_ratio(balance, now.state.reference_contact_force);
+}
+
 void Rve::Impl::steer_pace(const Balance& balance) {
   // n <- n (unb/target)^0.75 within 0.7 to 1.4 (performance: power 0.7; three quarters needs square roots only).
-  const double x =
-      rvelab::unbalanced_ratio(balance, now.state.reference_contact_force) / fixture.options.target_unbalanced;
+  const double x = unbalanced(balance) / fixture.options.target_unbalanced;
   const double root = std::sqrt(x);
   const double factor = std::clamp(root * std::sqrt(root), 0.7, 1.4);
   // Never so fast that a step changes the overlaps by more than a hundredth, nor a fiftieth of that slow: where grains
@@ -74,6 +77,7 @@ Report Rve::Impl::load(const Matrix3& dh, double dt) {
   Report report;
   const FrameSplit whole = split_increment(now.cell, dh);
   const bool physical = dt > 0;
+  if (!physical && (dh.isZero(0) || whole.rigid)) report.unbalanced_ratio = unbalanced(balance_of(fixture, now));
   if (!physical && (dh.isZero(0))) return report;
   if (!physical && whole.rigid) {
     const Matrix3 turned = (Matrix3::Identity() + dh) * now.cell.rotation;
@@ -105,8 +109,9 @@ Report Rve::Impl::load(const Matrix3& dh, double dt) {
 
   double fraction = 0;
   Matrix3 done = identity;
-  RowSums sums = row_sums(fixture, now);
+  RowSums sums;
   while (fraction < 1) {
+    if (physical) sums = row_sums(fixture, now);
     const double left = 1 - fraction;
     double step = 1;
     long steps_left, stretch;
@@ -144,11 +149,11 @@ Report Rve::Impl::load(const Matrix3& dh, double dt) {
     done = next;
     report.substeps += steps;
     const Balance balance = checked_balance();
-    sums = row_sums(fixture, now);
+    report.unbalanced_ratio = unbalanced(balance);
     if (physical) continue;
+    sums = row_sums(fixture, now);
     // Where the fewest steps rule, the pace is not that of these steps, but it may still be found too fast.
-    const bool too_fast =
-        rvelab::unbalanced_ratio(balance, now.state.reference_contact_force) > fixture.options.target_unbalanced;
+    const bool too_fast = report.unbalanced_ratio > fixture.options.target_unbalanced;
     if (paced || (too_fast && fixture.options.fixed_substeps == 0)) steer_pace(balance);
     if (inertia_outgrown(fixture, sums, now)) rescale_inertia(fixture, sums, now);
   }
@@ -240,6 +245,7 @@ Report Rve::Impl::load(const MixedTarget& target, double dt, Matrix3& gradient) 
     }
   }
   const Balance balance = checked_balance();
+  report.unbalanced_ratio = unbalanced(balance);
   // Increments shorter than a stretch would never steer; the calm after a wait says nothing about the pace.
   if (!physical && waited == 0 && since_control > 0) steer_pace(balance);
   if (!physical && fixture.options.ledger) rescale_inertia(fixture, row_sums(fixture, now), now);

@@ -74,7 +74,6 @@ Response Rve::Impl::respond(const Report& report, const Matrix3& gradient, doubl
   const int d = fixture.dimension();
   double thinnest = heights(now.cell).minCoeff();
   r.report.cell_thin = thinnest < 8 * fixture.mean_radius;
-  r.report.unbalanced_ratio = rvelab::unbalanced_ratio(balance_of(fixture, now), now.state.reference_contact_force);
   if (dt > 0) {
     Matrix3 e = 0.5 * (gradient + gradient.transpose());
     const double mean = e.trace() / d;

@@ -44,6 +44,7 @@ struct Rve::Impl {
 
   /// Balance after a stretch of steps; throws IncrementFailed on overlap beyond the limit or values not finite.
   Balance checked_balance() const;
+  double unbalanced(const Balance& balance) const;  ///< ratio with this specimen's reference force
   void steer_pace(const Balance& balance);
   double initial_pace() const;
 
