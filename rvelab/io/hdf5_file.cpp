@@ -4,6 +4,7 @@
 #include <hdf5.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -132,11 +133,13 @@ std::string read_attribute(hid_t object, const std::string& name) {
   return value;
 }
 
-Handle create_dataset(hid_t file, const std::string& path, const std::string& name, hid_t type, hid_t space) {
+Handle create_dataset(hid_t file, const std::string& path, const std::string& name, hid_t type, hid_t space,
+                      std::vector<hsize_t> chunk = {}) {
   const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
   H5Pset_create_intermediate_group(links, 1);
   const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_obj_track_times(creation, 0);  // no dates: the same content gives the same bytes
+  if (!chunk.empty()) H5Pset_chunk(creation, static_cast<int>(chunk.size()), chunk.data());
   const hid_t dataset = H5Dcreate2(file, name.c_str(), type, space, links, creation, H5P_DEFAULT);
   if (dataset < 0) fail_write(path, name);
   return {dataset, H5Dclose};
@@ -163,6 +166,12 @@ Handle open_dataset(hid_t file, const std::string& path, const std::string& name
 }
 
 }  // namespace
+
+std::string hdf5_version() {
+  unsigned major = 0, minor = 0, release = 0;
+  H5get_libversion(&major, &minor, &release);
+  return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(release);
+}
 
 Hdf5File Hdf5File::open(const std::string& path) {
   silence_hdf5();
@@ -192,6 +201,18 @@ Hdf5File Hdf5File::open(const std::string& path) {
   return {path, id};
 }
 
+Hdf5File Hdf5File::from_image(const std::string& path, std::span<const std::byte> bytes) {
+  silence_hdf5();
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  constexpr std::size_t growth = 1 << 16;
+  H5Pset_fapl_core(access, growth, false);
+  // HDF5 copies the bytes; it only asks for a pointer that it might write to.
+  const bool set = !bytes.empty() && H5Pset_file_image(access, const_cast<std::byte*>(bytes.data()), bytes.size()) >= 0;
+  const hid_t id = set ? H5Fopen(path.c_str(), H5F_ACC_RDONLY, access) : -1;
+  if (id < 0) throw InputError(path + ": holds a part that is not HDF5 (" + hdf5_reason() + "); it is damaged");
+  return {path, id};
+}
+
 Hdf5File Hdf5File::in_memory(const std::string& path) {
   silence_hdf5();
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
@@ -216,9 +237,14 @@ Hdf5File::~Hdf5File() {
 
 template <class Scalar>
 void Hdf5File::write(const std::string& name, std::span<const Scalar> values, const Shape64& shape,
-                     const std::string& units) {
+                     const std::string& units, std::uint64_t chunk_rows) {
   if (values.size() != count(shape)) throw Error(path_ + ": " + name + ": number of values and shape differ");
-  const Handle dataset = create_dataset(id_, path_, name, stored_type<Scalar>(), space_of(shape));
+  std::vector<hsize_t> chunk;
+  if (chunk_rows > 0 && count(shape) > 0 && !shape.empty()) {
+    chunk.assign(shape.begin(), shape.end());
+    chunk.front() = std::min<hsize_t>(chunk.front(), chunk_rows);
+  }
+  const Handle dataset = create_dataset(id_, path_, name, stored_type<Scalar>(), space_of(shape), chunk);
   const bool written =
       values.empty() || H5Dwrite(dataset, native_type<Scalar>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0;
   if (!written) fail_write(path_, name);
@@ -320,6 +346,19 @@ std::vector<Hdf5Entry> Hdf5File::entries() const {
   return found;
 }
 
+std::vector<std::string> Hdf5File::groups(const std::string& group) const {
+  std::vector<std::string> names;
+  if (!has(group)) return names;
+  const auto collect = [](hid_t, const char* name, const H5L_info_t*, void* list) -> herr_t {
+    static_cast<std::vector<std::string>*>(list)->emplace_back(name);
+    return 0;
+  };
+  hsize_t position = 0;
+  const Handle opened(H5Gopen2(id_, group.c_str(), H5P_DEFAULT), H5Gclose);
+  H5Literate(opened, H5_INDEX_NAME, H5_ITER_INC, &position, collect, &names);
+  return names;
+}
+
 std::vector<std::byte> Hdf5File::image() const {
   if (H5Fflush(id_, H5F_SCOPE_GLOBAL) < 0) fail_write(path_, "the file");
   const auto size = H5Fget_file_image(id_, nullptr, 0);
@@ -329,11 +368,16 @@ std::vector<std::byte> Hdf5File::image() const {
   return bytes;
 }
 
-template void Hdf5File::write(const std::string&, std::span<const double>, const Shape64&, const std::string&);
-template void Hdf5File::write(const std::string&, std::span<const std::int32_t>, const Shape64&, const std::string&);
-template void Hdf5File::write(const std::string&, std::span<const std::int64_t>, const Shape64&, const std::string&);
-template void Hdf5File::write(const std::string&, std::span<const std::uint64_t>, const Shape64&, const std::string&);
-template void Hdf5File::write(const std::string&, std::span<const std::uint8_t>, const Shape64&, const std::string&);
+template void Hdf5File::write(const std::string&, std::span<const double>, const Shape64&, const std::string&,
+                              std::uint64_t);
+template void Hdf5File::write(const std::string&, std::span<const std::int32_t>, const Shape64&, const std::string&,
+                              std::uint64_t);
+template void Hdf5File::write(const std::string&, std::span<const std::int64_t>, const Shape64&, const std::string&,
+                              std::uint64_t);
+template void Hdf5File::write(const std::string&, std::span<const std::uint64_t>, const Shape64&, const std::string&,
+                              std::uint64_t);
+template void Hdf5File::write(const std::string&, std::span<const std::uint8_t>, const Shape64&, const std::string&,
+                              std::uint64_t);
 template std::vector<double> Hdf5File::read(const std::string&) const;
 template std::vector<std::int32_t> Hdf5File::read(const std::string&) const;
 template std::vector<std::int64_t> Hdf5File::read(const std::string&) const;

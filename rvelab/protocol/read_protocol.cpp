@@ -68,6 +68,13 @@ void read_loading(const toml::table& table, Protocol& protocol, toml::table& res
   resolved.insert("loading", reader.resolved());
 }
 
+void read_output(const toml::table& table, Protocol& protocol, toml::table& resolved, std::vector<KeyError>& errors) {
+  TableReader reader(table, "output", line_of(table), errors);
+  protocol.snapshots_every = reader.whole_number("snapshots_every", protocol.snapshots_every, {0, 1e9});
+  reader.finish();
+  resolved.insert("output", reader.resolved());
+}
+
 /// Checks the overrides on a specimen that has every material they name; how they fit the real one is seen when it is
 /// there.
 void check_overrides(const toml::table& file, std::vector<KeyError>& errors) {
@@ -109,12 +116,13 @@ Protocol read_file(toml::table file, const std::string& path, const std::vector<
   toml::table resolved;
 
   TableReader top(file, "", 0, errors);
-  for (const char* name : {"test", "specimen", "loading", "stage", "calibrate"}) top.know(name);
+  for (const char* name : {"test", "specimen", "loading", "output", "stage", "calibrate"}) top.know(name);
   for (const char* name : override_tables) top.know(name);
   top.finish();
 
   read_test(table_of(file, "test", errors), protocol, resolved, errors);
   read_loading(table_of(file, "loading", errors), protocol, resolved, errors);
+  read_output(table_of(file, "output", errors), protocol, resolved, errors);
   if (file.contains("specimen")) {
     TableReader reader(table_of(file, "specimen", errors), "specimen", line_of(*file.get("specimen")), errors);
     protocol.specimen_file = reader.text("file", std::nullopt);
