@@ -208,7 +208,8 @@ Hdf5File Hdf5File::from_image(const std::string& path, std::span<const std::byte
   H5Pset_fapl_core(access, growth, false);
   // HDF5 copies the bytes; it only asks for a pointer that it might write to.
   const bool set = !bytes.empty() && H5Pset_file_image(access, const_cast<std::byte*>(bytes.data()), bytes.size()) >= 0;
-  const hid_t id = set ? H5Fopen(path.c_str(), H5F_ACC_RDONLY, access) : -1;
+  // HDF5 refuses an image by the name of a file that exists.
+  const hid_t id = set ? H5Fopen((path + "#part").c_str(), H5F_ACC_RDONLY, access) : -1;
   if (id < 0) throw InputError(path + ": holds a part that is not HDF5 (" + hdf5_reason() + "); it is damaged");
   return {path, id};
 }

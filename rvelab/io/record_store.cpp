@@ -83,12 +83,17 @@ RecordStore::RecordStore(const std::string& path, const io::RunStart& start, Exi
   const std::lock_guard turn(hdf5_turn());
   if (existing == Existing::resume) resume(start);
   if (existing == Existing::resume && (test_.complete || journal_.size() > 0)) return;
-  ::unlink(path.c_str());
-  const auto begin = io::encode_begin(start);
-  journal_.begin();
-  journal_.append(io::begin_frame, begin);
-  journal_.sync();
-  test_ = *io::read_record_journal(journal_.path()).test;
+  try {
+    ::unlink(path.c_str());
+    const auto begin = io::encode_begin(start);
+    journal_.begin();
+    journal_.append(io::begin_frame, begin);
+    journal_.sync();
+    test_ = *io::read_record_journal(journal_.path()).test;
+  } catch (...) {
+    journal_.remove();
+    throw;
+  }
 }
 
 RecordStore::~RecordStore() {
