@@ -179,6 +179,27 @@ void Journal::sync() {
   if (::fsync(file_.number()) != 0) fail(errno);
 }
 
+void Journal::replace(const std::function<void(Journal&)>& fill) {
+  Journal next;
+  next.path_ = path_ + ".tmp";
+  next.file_ = Descriptor(::open(next.path_.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+  try {
+    // Nobody else opens a file of this name while the journal of the old one is locked.
+    if (!next.file_.open() || ::flock(next.file_.number(), LOCK_EX | LOCK_NB) != 0) next.fail(errno);
+    next.begin();
+    fill(next);
+    next.sync();
+    if (::rename(next.path_.c_str(), path_.c_str()) != 0) next.fail(errno);
+  } catch (...) {
+    next.remove();
+    throw;
+  }
+  sync_folder_of(path_);
+  std::swap(file_, next.file_);
+  std::swap(size_, next.size_);
+  next.file_ = Descriptor();
+}
+
 void Journal::remove() {
   ::unlink(path_.c_str());
   file_ = Descriptor();

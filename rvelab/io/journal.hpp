@@ -64,6 +64,10 @@ class Journal {
   std::uint64_t append(std::uint32_t type, std::span<const std::byte> payload);
   /// To the disc itself. Without it a frame survives the end of the process but perhaps not a power loss.
   void sync();
+  /// Puts another journal in the place of this one at once (rename), with the frames that `fill` appends to it: a
+  /// reader finds the old frames or the new ones. The lock goes over to it. Error as append; the old journal then
+  /// stays.
+  void replace(const std::function<void(Journal&)>& fill);
   /// Removes the file. The lock goes with it.
   void remove();
 
@@ -72,6 +76,7 @@ class Journal {
   std::uint64_t size() const { return size_; }
 
  private:
+  Journal() = default;
   [[noreturn]] void fail(int reason);
 
   std::string path_;

@@ -80,6 +80,8 @@ RecordStore::RecordStore(const std::string& path, const io::RunStart& start, Exi
     : path_(path), journal_(place_for(path, existing)), checkpoint_every_(checkpoint_every) {
   if (existing == Existing::refuse) expect_free(path);  // once more, under the lock
   kept_.last = published_.last = Clock::now();
+  // Left by a run that was killed while it wrote them.
+  for (const std::string& whole : {path, journal_.path()}) ::unlink((whole + ".tmp").c_str());
   const std::lock_guard turn(hdf5_turn());
   if (existing == Existing::resume) resume(start);
   if (existing == Existing::resume && (test_.complete || journal_.size() > 0)) return;
@@ -222,7 +224,36 @@ void RecordStore::keep(const Checkpoint& checkpoint) {
   journal_.append(io::checkpoint_frame, payload);
   keeps_something_ = true;
   journal_.sync();
+  drop_old_checkpoints();
   kept_ = {Clock::now(), seconds_since(begin)};
+}
+
+void RecordStore::drop_old_checkpoints() {
+  // A journal is written anew with its last checkpoint only once the others are most of it: what that costs is then
+  // a fraction of what they have cost.
+  constexpr std::uint64_t small = 16 << 20;
+  if (journal_.size() < std::max(small, 4 * size_without_)) return;
+  const std::lock_guard turn(hdf5_turn());
+  auto snapshots = test_.snapshots;
+  journal_.replace([&](io::Journal& next) {
+    io::read_journal(journal_.path(), [&](const io::Frame& frame) {
+      if (frame.type == io::begin_frame) next.append(frame.type, frame.payload);
+    });
+    const TestResult& result = test_.result;
+    for (std::size_t k = 0; k < result.records.size(); ++k) {
+      next.append(io::record_frame, io::encode_record(k, result.records[k]));
+    }
+    for (std::size_t k = 0; k < result.probes.size(); ++k) {
+      next.append(io::probe_frame, io::encode_probe(k, result.probes[k]));
+    }
+    for (Snapshot& snapshot : snapshots) {
+      const auto payload = io::read_payload(journal_.path(), snapshot.payload_at, snapshot.length);
+      snapshot.payload_at = next.append(io::snapshot_frame, payload);
+    }
+    next.append(io::checkpoint_frame, io::encode_checkpoint(test_.checkpoint));
+  });
+  test_.snapshots = snapshots;
+  size_without_ = journal_.size();
 }
 
 void RecordStore::publish_now() {

@@ -65,6 +65,7 @@ class RecordStore {
   void resume(const io::RunStart& start);
   void keep(const Checkpoint& checkpoint);
   void publish_now();
+  void drop_old_checkpoints();
   bool ready(const Pace& pace, double shortest) const;
 
   std::string path_;
@@ -73,7 +74,8 @@ class RecordStore {
   RecordedTest test_;  ///< as it stands in the journal; rows up to made_ belong to the run that is going on
   std::optional<Checkpoint> from_;
   std::size_t made_records_ = 0, made_probes_ = 0;
-  bool keeps_something_ = false;  ///< a record or a checkpoint is in the journal
+  std::uint64_t size_without_ = 0;  ///< bytes of the journal when old checkpoints were dropped last
+  bool keeps_something_ = false;    ///< a record or a checkpoint is in the journal
   Pace kept_, published_;
 };
 
