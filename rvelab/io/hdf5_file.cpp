@@ -87,6 +87,14 @@ Shape64 shape_of(hid_t space) {
   return shape;
 }
 
+/// Transfer of text. HDF5 converts it through a buffer that it clears for each call, by default 1 MiB: most of the time
+/// that a specimen of 400 discs takes to be written (15 ms, 4 ms with this one).
+Handle text_transfer() {
+  const hid_t list = H5Pcreate(H5P_DATASET_XFER);
+  H5Pset_buffer(list, 1 << 14, nullptr, nullptr);
+  return {list, H5Pclose};
+}
+
 std::uint64_t count(const Shape64& shape) {
   std::uint64_t product = 1;
   for (const auto extent : shape) product *= extent;
@@ -217,7 +225,7 @@ Hdf5File Hdf5File::from_image(const std::string& path, std::span<const std::byte
 Hdf5File Hdf5File::in_memory(const std::string& path) {
   silence_hdf5();
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  constexpr std::size_t growth = 1 << 20;
+  constexpr std::size_t growth = 1 << 18;
   H5Pset_fapl_core(access, growth, false);
   const hid_t id = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
   if (id < 0) throw Error(path + ": no HDF5 file could be made in memory (" + hdf5_reason() + ")");
@@ -257,7 +265,7 @@ void Hdf5File::write_text(const std::string& name, const std::vector<std::string
   const Handle dataset = create_dataset(id_, path_, name, type, space_of(shape));
   std::vector<const char*> texts;
   for (const auto& value : values) texts.push_back(value.c_str());
-  if (!texts.empty() && H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, texts.data()) < 0) {
+  if (!texts.empty() && H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, text_transfer(), texts.data()) < 0) {
     fail_write(path_, name);
   }
   write_attribute(path_, dataset, "units", "-");
@@ -286,7 +294,7 @@ std::vector<std::string> Hdf5File::read_text(const std::string& name) const {
   const Handle space(H5Dget_space(dataset), H5Sclose);
   const Handle type = text_type();
   std::vector<char*> texts(count(shape_of(space)), nullptr);
-  if (!texts.empty() && H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, texts.data()) < 0) {
+  if (!texts.empty() && H5Dread(dataset, type, H5S_ALL, H5S_ALL, text_transfer(), texts.data()) < 0) {
     fail_read(path_, name);
   }
   std::vector<std::string> values;

@@ -182,11 +182,19 @@ struct Assembler {
 
 }  // namespace
 
-Bytes encode_begin(const RunStart& start) {
+RecordedTest begun_test(const RunStart& start) {
   RecordedTest test;
+  test.complete = false;
   test.provenance = provenance_of(start.protocol_text, start.specimen);
   test.result.protocol = start.protocol_name;
   test.result.stages = start.stages;
+  test.checkpoint.specimen = start.specimen;
+  test.checkpoint.progress.first_grain_steps = start.specimen.state.grain_steps;
+  return test;
+}
+
+Bytes encode_begin(const RunStart& start) {
+  const RecordedTest test = begun_test(start);
   return image_of([&](Hdf5File& file) {
     RowLayout layout = row_layout();
     Writer writer(file, "");

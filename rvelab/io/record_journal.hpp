@@ -29,6 +29,9 @@ struct RunStart {
   Specimen specimen;  ///< as it was given
 };
 
+/// A test of which nothing has been run.
+RecordedTest begun_test(const RunStart& start);
+
 std::vector<std::byte> encode_begin(const RunStart& start);
 std::vector<std::byte> encode_record(std::size_t number, const Record& record);
 std::vector<std::byte> encode_probe(std::size_t number, const ProbeResult& probe);

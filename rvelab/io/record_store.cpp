@@ -91,7 +91,7 @@ RecordStore::RecordStore(const std::string& path, const io::RunStart& start, Exi
     journal_.begin();
     journal_.append(io::begin_frame, begin);
     journal_.sync();
-    test_ = *io::read_record_journal(journal_.path()).test;
+    test_ = io::begun_test(start);
   } catch (...) {
     journal_.remove();
     throw;

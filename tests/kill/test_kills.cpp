@@ -147,7 +147,7 @@ std::string kill_and_resume(const Victim& victim, const Folder& folder, const st
 
 }  // namespace
 
-TEST_CASE("killed at any moment, a run loses nothing that was recorded and ends as the undisturbed one") {
+TEST_CASE("killed at any moment, a run loses nothing that was recorded and ends as the undisturbed one", "[slow]") {
   const char* const wanted = std::getenv("RVELAB_KILLS");
   const int kills = wanted != nullptr ? std::atoi(wanted) : 50;
   REQUIRE(kills > 0);
