@@ -79,9 +79,10 @@ bool same_bits(const ProbeResult& a, const ProbeResult& b) {
 RecordStore::RecordStore(const std::string& path, const io::RunStart& start, Existing existing, double checkpoint_every)
     : path_(path), journal_(place_for(path, existing)), checkpoint_every_(checkpoint_every) {
   if (existing == Existing::refuse) expect_free(path);  // once more, under the lock
-  kept_.last = published_.last = Clock::now();
+  const auto begin_time = Clock::now();
   // Left by a run that was killed while it wrote them.
   for (const std::string& whole : {path, journal_.path()}) ::unlink((whole + ".tmp").c_str());
+  kept_ = published_ = {begin_time, 0};
   const std::lock_guard turn(hdf5_turn());
   if (existing == Existing::resume) resume(start);
   if (existing == Existing::resume && (test_.complete || journal_.size() > 0)) return;
@@ -92,6 +93,8 @@ RecordStore::RecordStore(const std::string& path, const io::RunStart& start, Exi
     journal_.append(io::begin_frame, begin);
     journal_.sync();
     test_ = io::begun_test(start);
+    // What a checkpoint will cost is not known yet: about as much as this.
+    kept_ = published_ = {Clock::now(), seconds_since(begin_time)};
   } catch (...) {
     journal_.remove();
     throw;
