@@ -26,4 +26,9 @@ struct IncrementFailed : Error {
   using Error::Error;
 };
 
+/// Work that was asked to stop (Rve::watch). The RVE is as it was before the call.
+struct Interrupted : Error {
+  Interrupted() : Error("stopped on request") {}
+};
+
 }  // namespace rvelab

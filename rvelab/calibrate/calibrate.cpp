@@ -36,9 +36,9 @@ std::string at_pressure(const Protocol& protocol, const char* message) {
   return text.str();
 }
 
-TestRun run_one(const Protocol& protocol, const Specimen& specimen) {
+TestRun run_one(std::size_t number, const Protocol& protocol, const Specimen& specimen, const RunOne& run) {
   try {
-    return run_protocol(protocol, specimen);
+    return run ? run(number, protocol, specimen) : run_protocol(protocol, specimen);
   } catch (const InputError& error) {
     throw InputError(at_pressure(protocol, error.what()));
   } catch (const std::exception& error) {
@@ -85,13 +85,17 @@ void check_calibratable(const Protocol& protocol) {
   }
 }
 
-std::vector<TestRun> run_all(const std::vector<Protocol>& protocols, const std::vector<Specimen>& specimens,
-                             unsigned threads) {
+void check_specimens(const std::vector<Protocol>& protocols, const std::vector<Specimen>& specimens) {
   if (specimens.size() != 1 && specimens.size() != protocols.size()) {
     throw InputError("calibrate: " + std::to_string(specimens.size()) + " specimens for " +
                      std::to_string(protocols.size()) +
                      " pressures; allowed: one for all or one for each; give as many as there are pressures");
   }
+}
+
+std::vector<TestRun> run_all(const std::vector<Protocol>& protocols, const std::vector<Specimen>& specimens,
+                             unsigned threads, const RunOne& run) {
+  check_specimens(protocols, specimens);
   if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
   std::vector<TestRun> runs(protocols.size());
   std::vector<std::exception_ptr> errors(protocols.size());
@@ -99,7 +103,7 @@ std::vector<TestRun> run_all(const std::vector<Protocol>& protocols, const std::
   const auto work = [&] {
     for (std::size_t k = next++; k < protocols.size(); k = next++) {
       try {
-        runs[k] = run_one(protocols[k], specimens[specimens.size() == 1 ? 0 : k]);
+        runs[k] = run_one(k, protocols[k], specimens[specimens.size() == 1 ? 0 : k], run);
       } catch (...) {
         errors[k] = std::current_exception();
       }

@@ -1,6 +1,7 @@
 // Calibration: one compression test at several pressures, and the strength of the soil from all of them.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "rvelab/calibrate/mohr.hpp"
@@ -40,9 +41,16 @@ Calibration calibrate(const std::vector<TestResult>& tests, int dimension);
 /// what a friction angle can be read from.
 void check_calibratable(const Protocol& protocol);
 
+/// InputError unless there is one specimen for all protocols, or one for each.
+void check_specimens(const std::vector<Protocol>& protocols, const std::vector<Specimen>& specimens);
+
+/// Does one test, by its number, on a thread that it has to itself.
+using RunOne = std::function<TestRun(std::size_t number, const Protocol&, const Specimen&)>;
+
 /// Runs protocol k on specimen k (or on the only one), `threads` at a time (0: as many as there are cores). The results
 /// do not depend on the number of threads. Throws the error of the first test that failed, naming its pressure.
+/// `run`: instead of run_protocol.
 std::vector<TestRun> run_all(const std::vector<Protocol>& protocols, const std::vector<Specimen>& specimens,
-                             unsigned threads);
+                             unsigned threads, const RunOne& run = {});
 
 }  // namespace rvelab

@@ -1,19 +1,22 @@
 // rvelab calibrate: one compression test at several pressures, and the strength of the soil from all of them.
 #include "rvelab/calibrate/calibrate.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <iostream>
 #include <memory>
 #include <set>
 #include <sstream>
 
 #include "rvelab/cli/commands.hpp"
+#include "rvelab/cli/interrupt.hpp"
 #include "rvelab/cli/protocol_input.hpp"
+#include "rvelab/cli/recording.hpp"
 #include "rvelab/cli/report.hpp"
 #include "rvelab/error.hpp"
-#include "rvelab/io/record_file.hpp"
 
 namespace rvelab::cli {
 namespace {
@@ -22,6 +25,7 @@ struct CalibrateArguments {
   std::string protocol, pressures, folder;
   std::vector<std::string> specimens, settings;
   unsigned threads = 0;
+  RecordingOptions recording;
   bool json = false;
 };
 
@@ -109,20 +113,40 @@ void report(const Calibration& calibration, const Protocol& protocol, double wal
   listing.print(json);
 }
 
+/// Says what the stopped tests left, and ends the program with the code of the signal.
+[[noreturn]] void end_stopped(const std::vector<TestRun>& runs, const std::string& folder) {
+  const auto done = std::count_if(runs.begin(), runs.end(), [](const TestRun& run) { return run.complete; });
+  std::cerr << "rvelab: stopped by " << signal_name() << " with " << done << " of " << runs.size()
+            << " tests complete; " << (folder.empty() ? "their records are not kept without -o" : "go on with --resume")
+            << std::endl;
+  throw Stopped(128 + signal_received());
+}
+
 void run_calibration(const CalibrateArguments& arguments) {
   const auto begin = std::chrono::steady_clock::now();
   const auto protocols = protocols_at(arguments);
+  arguments.recording.expect_output(arguments.folder);
   const auto specimens = specimens_for(protocols.front(), arguments.specimens);
-  const std::filesystem::path folder = arguments.folder;
-  if (!arguments.folder.empty()) expect_folder_of((folder / "R.h5").string());
-  const auto runs = run_all(protocols, specimens, arguments.threads);
-  std::vector<TestResult> results;
-  for (std::size_t k = 0; k < runs.size(); ++k) {
-    results.push_back(runs[k].result);
-    if (arguments.folder.empty()) continue;
-    write_records(runs[k].result, runs[k].end_state, protocols[k].resolved,
-                  (folder / record_file_name(protocols[k].pressure)).string());
+  check_specimens(protocols, specimens);
+  std::vector<std::unique_ptr<RecordStore>> stores(protocols.size());
+  if (!arguments.folder.empty()) {
+    const std::filesystem::path folder = arguments.folder;
+    expect_folder_of((folder / "R.h5").string());
+    for (std::size_t k = 0; k < protocols.size(); ++k) {
+      stores[k] = open_store((folder / record_file_name(protocols[k].pressure)).string(), protocols[k],
+                             specimens[specimens.size() == 1 ? 0 : k], arguments.recording);
+    }
   }
+  Watch watch;
+  watch.stop = &stop_on_signals();
+  const auto runs = run_all(protocols, specimens, arguments.threads,
+                            [&](std::size_t number, const Protocol& protocol, const Specimen& specimen) {
+                              return run_recorded(protocol, specimen, stores[number].get(), watch);
+                            });
+  const bool complete = std::all_of(runs.begin(), runs.end(), [](const TestRun& run) { return run.complete; });
+  if (!complete) end_stopped(runs, arguments.folder);
+  std::vector<TestResult> results;
+  for (const TestRun& run : runs) results.push_back(run.result);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   report(calibrate(results, specimens.front().cell.dimension), protocols.front(), wall.count(), arguments.json);
 }
@@ -146,6 +170,7 @@ void add_calibrate(CLI::App& app) {
       ->take_all();
   command->add_option("--threads", arguments->threads, "tests at a time; else as many as there are cores")
       ->check(CLI::Range(1u, 4096u));
+  arguments->recording.add_to(*command);
   command->add_flag("--json", arguments->json, "print one JSON object");
   command->footer(
       "Examples:\n"

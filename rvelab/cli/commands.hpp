@@ -4,13 +4,21 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <exception>
 
 namespace rvelab::cli {
+
+/// A command that Ctrl-C or SIGTERM ended after it had put its results away and said so: 128 plus the signal's number.
+struct Stopped : std::exception {
+  explicit Stopped(int code) : exit_code(code) {}
+  int exit_code;
+};
 
 void add_import(CLI::App& app);
 void add_inspect(CLI::App& app);
 void add_probe(CLI::App& app);
 void add_run(CLI::App& app);
+void add_recover(CLI::App& app);
 void add_calibrate(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_export(CLI::App& app);

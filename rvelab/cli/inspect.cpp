@@ -1,10 +1,12 @@
 // rvelab inspect: what is in a specimen or record file, and the measures of its state.
+#include <filesystem>
 #include <memory>
 #include <string>
 
 #include "rvelab/cli/commands.hpp"
 #include "rvelab/cli/report.hpp"
-#include "rvelab/io/record_file.hpp"
+#include "rvelab/io/journal.hpp"
+#include "rvelab/io/recorded_test.hpp"
 #include "rvelab/io/specimen_file.hpp"
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/solver/rve.hpp"
@@ -74,16 +76,23 @@ void add_model(Listing& listing, const Specimen& specimen) {
 }
 
 void run_inspect(const std::string& path, bool as_json) {
-  const bool has_records = file_kind(path) == FileKind::records;
-  const Specimen specimen = read_specimen(path);
+  // A run that has published nothing yet has its journal only.
+  const bool only_journal = !std::filesystem::exists(path) && std::filesystem::exists(io::journal_of(path));
+  const bool has_records = only_journal || file_kind(path) == FileKind::records;
   Listing listing;
   listing.add("file", path);
   listing.add("kind", has_records ? "records" : "specimen");
+  Specimen specimen;
   if (has_records) {
-    const TestResult result = read_records(path);
-    listing.add("protocol", result.protocol);
-    listing.add("records", result.records.size());
-    listing.add("stages", result.stages);
+    RecordedTest test = read_recorded_test(path);
+    listing.add("protocol", test.result.protocol);
+    listing.add("complete", test.complete ? 1 : 0);
+    listing.add("records", test.result.records.size());
+    listing.add("snapshots", test.snapshots.size());
+    listing.add("stages", test.result.stages);
+    specimen = std::move(test.checkpoint.specimen);
+  } else {
+    specimen = read_specimen(path);
   }
   add_state(listing, Rve(specimen));
   add_model(listing, specimen);
@@ -98,7 +107,7 @@ void add_inspect(CLI::App& app) {
     bool json = false;
   };
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("inspect", "Show a specimen, or the end state of a test");
+  CLI::App* command = app.add_subcommand("inspect", "Show a specimen, or the end state of a test (so far)");
   command->add_option("file", arguments->file, "specimen or record file, *.h5")->required();
   command->add_flag("--json", arguments->json, "print one JSON object");
   command->footer("Example:\n  rvelab inspect dense.h5 --json");

@@ -35,6 +35,7 @@ int main(int argc, char** argv) {
   rvelab::cli::add_inspect(app);
   rvelab::cli::add_probe(app);
   rvelab::cli::add_run(app);
+  rvelab::cli::add_recover(app);
   rvelab::cli::add_calibrate(app);
   rvelab::cli::add_compare(app);
   rvelab::cli::add_export(app);
@@ -53,6 +54,8 @@ int main(int argc, char** argv) {
     rvelab::cli::expect_known_words(app, argc, argv);
     app.parse(argc, argv);
     return 0;
+  } catch (const rvelab::cli::Stopped& stopped) {
+    return stopped.exit_code;
   } catch (const CLI::Success& help_or_version) {
     return app.exit(help_or_version);
   } catch (const CLI::RuntimeError& outcome) {  // a subcommand's own exit code, said by what it printed

@@ -1,14 +1,16 @@
 // rvelab run: one test on one specimen.
-#include <filesystem>
+#include <iostream>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "rvelab/calibrate/mohr.hpp"
 #include "rvelab/cli/commands.hpp"
+#include "rvelab/cli/interrupt.hpp"
+#include "rvelab/cli/progress_line.hpp"
 #include "rvelab/cli/protocol_input.hpp"
+#include "rvelab/cli/recording.hpp"
 #include "rvelab/cli/report.hpp"
-#include "rvelab/io/record_file.hpp"
 #include "rvelab/protocol/run.hpp"
 
 namespace rvelab::cli {
@@ -17,7 +19,7 @@ namespace {
 struct RunArguments {
   std::string protocol, specimen, output;
   std::vector<std::string> settings;
-  unsigned threads = 1;
+  RecordingOptions recording;
   bool json = false;
 };
 
@@ -81,8 +83,8 @@ void report(const TestRun& run, const RunArguments& arguments) {
     listing.add("end_stress_Pa", row_major(records.back().stress), "Pa");
     listing.add("end_void_ratio", records.back().void_ratio);
   }
-  for (const ProbeResult& probe : run.probes) {
-    const bool only = run.probes.size() == 1;
+  for (const ProbeResult& probe : result.probes) {
+    const bool only = result.probes.size() == 1;
     listing.add(only ? "stiffness_Pa" : "stiffness_Pa_" + probe.stage, row_major(probe.stiffness), "Pa");
   }
   if (!arguments.output.empty()) listing.add("file", arguments.output);
@@ -91,13 +93,38 @@ void report(const TestRun& run, const RunArguments& arguments) {
   listing.print(arguments.json);
 }
 
+/// Says what a stopped run left, and ends the program with the code of its signal.
+[[noreturn]] void end_stopped(const TestRun& run, const std::string& output) {
+  const std::string made = std::to_string(run.result.records.size()) + " records";
+  const std::string kept = output.empty()               ? "they are not kept without -o"
+                           : run.result.records.empty() ? "go on with --resume"
+                                                        : output + " holds them; go on with --resume";
+  std::cerr << "rvelab: stopped by " << signal_name() << " after " << made << "; " << kept << std::endl;
+  throw Stopped(128 + signal_received());
+}
+
 void run_test(const RunArguments& arguments) {
   const Protocol protocol = read_protocol(protocol_path(arguments.protocol), arguments.settings);
+  arguments.recording.expect_output(arguments.output);
   const auto specimens = specimens_for(
       protocol, arguments.specimen.empty() ? std::vector<std::string>{} : std::vector{arguments.specimen});
-  if (!arguments.output.empty()) expect_folder_of(arguments.output);
-  const TestRun run = run_protocol(protocol, specimens.front());
-  if (!arguments.output.empty()) write_records(run.result, run.end_state, protocol.resolved, arguments.output);
+  const Specimen& specimen = specimens.front();
+  std::unique_ptr<RecordStore> store;
+  if (!arguments.output.empty()) {
+    expect_folder_of(arguments.output);
+    with_overrides(protocol, specimen);  // its mistakes are told before a file is touched
+    store = open_store(arguments.output, protocol, specimen, arguments.recording);
+    if (store->complete()) std::cerr << "rvelab: " << arguments.output << " is complete; nothing was run" << std::endl;
+  }
+  TestRun run;
+  {
+    ProgressLine line;
+    Watch watch;
+    watch.on_moment = [&](const Moment& moment) { line.show(moment); };
+    watch.stop = &stop_on_signals();
+    run = run_recorded(protocol, specimen, store.get(), watch);
+  }
+  if (!run.complete) end_stopped(run, arguments.output);
   report(run, arguments);
 }
 
@@ -114,13 +141,15 @@ void add_run(CLI::App& app) {
       ->expected(1)
       ->allow_extra_args(false)
       ->take_all();
-  command->add_option("--threads", arguments->threads, "at most so many threads; a single specimen runs on one")
-      ->check(CLI::Range(1u, 4096u));
+  arguments->recording.add_to(*command);
   command->add_flag("--json", arguments->json, "print one JSON object, records as arrays by name");
   command->footer(
+      "One specimen runs on one thread; `rvelab calibrate --threads` runs several tests at a time. Records go to\n"
+      "R.h5.journal at once and to R.h5 now and then; Ctrl-C and SIGTERM stop the test and keep both.\n"
       "Examples:\n"
       "  rvelab run biaxial --specimen dense.h5 -o R.h5\n"
-      "  rvelab run biaxial --specimen dense.h5 --set stage.compression.to_strain=0.05 --json");
+      "  rvelab run biaxial --specimen dense.h5 --set stage.compression.to_strain=0.05 --json\n"
+      "  rvelab run biaxial --specimen dense.h5 -o R.h5 --resume");
   command->callback([arguments] { run_test(*arguments); });
 }
 

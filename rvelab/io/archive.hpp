@@ -101,10 +101,11 @@ struct Column {
 template <class Item, class Member>
 Column(const char*, Member Item::*, const char*) -> Column<Item, Member>;
 
-/// Writes values under a group of a file.
+/// Writes values under a group of a file. `chunk_rows` > 0: columns of tables are stored in chunks of so many rows.
 class Writer {
  public:
-  Writer(Hdf5File& file, std::string group) : file_(file), group_(std::move(group)) {}
+  Writer(Hdf5File& file, std::string group, std::uint64_t chunk_rows = 0)
+      : file_(file), group_(std::move(group)), chunk_rows_(chunk_rows) {}
 
   template <class Value>
   void field(const std::string& name, const Value& value, const std::string& units) {
@@ -116,6 +117,10 @@ class Writer {
     rows<Value>(
         name, values.size(), [&](std::size_t k) -> const Value& { return values[k]; }, {values.size()}, units);
   }
+  template <class Value>
+  void later_field(const std::string& name, const Value& value, const std::string& units) {
+    field(name, value, units);
+  }
   template <class Item, class... Columns>
   void table(const std::string& group, const std::vector<Item>& items, const Columns&... columns) {
     (column(group, items, columns), ...);
@@ -126,11 +131,13 @@ class Writer {
   void column(const std::string& group, const std::vector<Item>& items, const Column<Item, Member>& column) {
     rows<Member>(
         group + "/" + column.name, items.size(),
-        [&](std::size_t k) -> const Member& { return items[k].*column.member; }, {items.size()}, column.units);
+        [&](std::size_t k) -> const Member& { return items[k].*column.member; }, {items.size()}, column.units,
+        chunk_rows_);
   }
 
   template <class Value, class At>
-  void rows(const std::string& name, std::size_t count, At at, Shape64 shape, const std::string& units) {
+  void rows(const std::string& name, std::size_t count, At at, Shape64 shape, const std::string& units,
+            std::uint64_t chunk_rows = 0) {
     if constexpr (Textual<Value>) {
       std::vector<std::string> texts;
       for (std::size_t k = 0; k < count; ++k) texts.push_back(text_of(at(k)));
@@ -140,12 +147,13 @@ class Writer {
       std::vector<typename Row::Scalar> scalars(count * Row::size);
       for (std::size_t k = 0; k < count; ++k) Row::put(at(k), scalars.data() + k * Row::size);
       for (const auto extent : Row::shape()) shape.push_back(extent);
-      file_.write<typename Row::Scalar>(group_ + "/" + name, scalars, shape, units);
+      file_.write<typename Row::Scalar>(group_ + "/" + name, scalars, shape, units, chunk_rows);
     }
   }
 
   Hdf5File& file_;
   std::string group_;
+  std::uint64_t chunk_rows_;
 };
 
 /// Reads values from under a group of a file. InputError naming file and dataset if one is missing or does not fit.
@@ -163,6 +171,11 @@ class Reader {
     values.resize(leading_extent(name));
     expect_shape<Value>(name, {values.size()});
     rows<Value>(name, values.size(), [&](std::size_t k) -> Value& { return values[k]; });
+  }
+  /// A field that files of earlier versions do not have: left as it is there.
+  template <class Value>
+  void later_field(const std::string& name, Value& value, const std::string& units) {
+    if (file_.has(group_ + "/" + name)) field(name, value, units);
   }
   template <class Item, class First, class... Columns>
   void table(const std::string& group, std::vector<Item>& items, const First& first, const Columns&... columns) {

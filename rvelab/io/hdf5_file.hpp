@@ -45,6 +45,9 @@ class Hdf5File {
  public:
   /// Opens an existing file for reading. InputError: missing, not HDF5, truncated.
   static Hdf5File open(const std::string& path);
+  /// Opens the bytes of a file, as image() gives them, for reading; `path` serves the messages only. InputError: not
+  /// HDF5, damaged.
+  static Hdf5File from_image(const std::string& path, std::span<const std::byte> bytes);
   /// An empty file in memory; `path` serves the messages only.
   static Hdf5File in_memory(const std::string& path);
 
@@ -56,9 +59,11 @@ class Hdf5File {
 
   const std::string& path() const { return path_; }
 
-  /// Writes values, row-major, of the given shape, with the attribute `units`.
+  /// Writes values, row-major, of the given shape, with the attribute `units`; in chunks of at most `chunk_rows` of the
+  /// outermost extent, or (0) in one piece.
   template <class Scalar>
-  void write(const std::string& name, std::span<const Scalar> values, const Shape64& shape, const std::string& units);
+  void write(const std::string& name, std::span<const Scalar> values, const Shape64& shape, const std::string& units,
+             std::uint64_t chunk_rows = 0);
   void write_text(const std::string& name, const std::vector<std::string>& values, const Shape64& shape);
 
   /// Reads a dataset whole, row-major. InputError if it is missing, of another kind (text for numbers) or does not
@@ -84,6 +89,9 @@ class Hdf5File {
   /// A dataset as it is stored. InputError if it is missing or of a type that holds references.
   StoredValues stored(const std::string& name) const;
 
+  /// Names of the members of a group, in order; none if there is no such group.
+  std::vector<std::string> groups(const std::string& group) const;
+
   /// The bytes of the file.
   std::vector<std::byte> image() const;
 
@@ -92,6 +100,9 @@ class Hdf5File {
   std::string path_;
   std::int64_t id_ = -1;
 };
+
+/// Version of the HDF5 library in use, for example "1.10.8".
+std::string hdf5_version();
 
 /// Builds a file with `fill`, writes it as path.tmp, syncs it to disc and renames it to path: a reader finds the old
 /// file or the new one, whole. The same content gives the same bytes. InputError if the folder does not exist or may

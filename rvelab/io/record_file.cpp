@@ -1,38 +1,46 @@
 #include "rvelab/io/record_file.hpp"
 
+#include <toml++/toml.h>
+#include <Eigen/Core>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+
 #include "rvelab/error.hpp"
-#include "rvelab/io/archive.hpp"
+#include "rvelab/io/journal.hpp"
+#include "rvelab/io/record_fields.hpp"
+#include "rvelab/io/record_journal.hpp"
+#include "rvelab/io/recorded_test.hpp"
 #include "rvelab/io/schema.hpp"
 #include "rvelab/io/version.hpp"
 
 namespace rvelab {
 namespace {
 
-using io::Column;
+/// Rows of /records in one chunk: a file of some hundred rows is one chunk a column.
+constexpr std::uint64_t chunk_rows = 512;
 
-/// Every field of a test, once for both directions.
+/// Every field of a test but records and probes, once for both directions.
 template <class Archive, class Value>
-void describe(Archive& archive, Value& result) {
-  archive.field("test/protocol", result.protocol, "-");
-  archive.field("test/axis", result.axis, "-");
-  archive.field("test/pressure_Pa", result.pressure, "Pa");
-  archive.field("test/stages", result.stages, "-");
-  archive.field("test/grain_steps", result.grain_steps, "1");
-  archive.field("provenance/wall_seconds", result.wall_seconds, "s");
-  archive.table("records", result.records,                                               //
-                Column{"stage", &Record::stage, "1"},                                    //
-                Column{"strain", &Record::strain, "1"},                                  //
-                Column{"deformation_gradient", &Record::deformation_gradient, "1"},      //
-                Column{"stress_Pa", &Record::stress, "Pa"},                              //
-                Column{"void_ratio", &Record::void_ratio, "1"},                          //
-                Column{"coordination_number", &Record::coordination_number, "1"},        //
-                Column{"fabric_anisotropy", &Record::fabric_anisotropy, "1"},            //
-                Column{"sliding_fraction", &Record::sliding_fraction, "1"},              //
-                Column{"unbalanced_force_ratio", &Record::unbalanced_force_ratio, "1"},  //
-                Column{"inertial_number", &Record::inertial_number, "1"},                //
-                Column{"substeps", &Record::substeps, "1"},                              //
-                Column{"held_error", &Record::held_error, "1"},                          //
-                Column{"target_held", &Record::target_held, "1"});
+void describe(Archive& archive, Value& test) {
+  archive.field("test/protocol", test.result.protocol, "-");
+  archive.field("test/axis", test.result.axis, "-");
+  archive.field("test/pressure_Pa", test.result.pressure, "Pa");
+  archive.field("test/stages", test.result.stages, "-");
+  archive.field("test/grain_steps", test.result.grain_steps, "1");
+  archive.field("provenance/wall_seconds", test.result.wall_seconds, "s");
+  archive.field("provenance/protocol", test.provenance.protocol, "-");
+  archive.field("provenance/version", test.provenance.version, "-");
+  archive.field("provenance/compiler", test.provenance.compiler, "-");
+  archive.later_field("provenance/packages", test.provenance.packages, "-");
+  archive.later_field("provenance/specimen_crc32c", test.provenance.specimen_crc32c, "1");
+  archive.later_field("complete", test.complete, "1");
+}
+
+std::string snapshot_group(std::size_t record) {
+  char name[32];
+  std::snprintf(name, sizeof name, "/snapshots/%06zu", record);
+  return name;
 }
 
 Hdf5File open_records(const std::string& path) {
@@ -43,34 +51,139 @@ Hdf5File open_records(const std::string& path) {
   return file;
 }
 
+/// The file alone, without its journal.
+RecordedTest read_file(const std::string& path) {
+  const auto file = open_records(path);
+  RecordedTest test;
+  io::Reader reader(file, "");
+  describe(reader, test);
+  io::describe_records(reader, test.result.records);
+  test.result.probes = io::get_probes(file);
+  if (!test.complete) {
+    io::describe_progress(reader, test.checkpoint.progress);
+    test.checkpoint.progress.wall_seconds = test.result.wall_seconds;
+  }
+  test.checkpoint.specimen = io::get_specimen(file, "/specimen");
+  for (const std::string& name : file.groups("/snapshots")) {
+    test.snapshots.push_back({static_cast<std::size_t>(std::stoull(name)), path});
+  }
+  return test;
+}
+
 }  // namespace
 
-void write_records(const TestResult& result, const Specimen& end_state, const std::string& resolved_protocol_text,
-                   const std::string& path) {
+Provenance provenance_of(const std::string& protocol_text, const Specimen& start) {
+  const auto dotted = [](int major, int minor, int patch) {
+    return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(patch);
+  };
+  return {protocol_text,
+          version,
+          compiler(),
+          {"hdf5 " + hdf5_version(), "eigen " + dotted(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION),
+           "toml++ " + dotted(TOML_LIB_MAJOR, TOML_LIB_MINOR, TOML_LIB_PATCH)},
+          io::digest(start)};
+}
+
+void write_recorded_test(const RecordedTest& test, const std::string& path) {
   publish(path, [&](Hdf5File& file) {
     io::stamp(file, FileKind::records);
-    io::Writer writer(file, "");
-    describe(writer, result);
-    writer.field("provenance/protocol", resolved_protocol_text, "-");
-    writer.field("provenance/version", std::string(version), "-");
-    writer.field("provenance/compiler", compiler(), "-");
-    io::put_specimen(file, "/specimen", end_state);
+    io::Writer writer(file, "", chunk_rows);
+    describe(writer, test);
+    io::describe_records(writer, test.result.records);
+    io::put_probes(file, test.result.probes);
+    if (!test.complete) io::describe_progress(writer, test.checkpoint.progress);
+    io::put_specimen(file, "/specimen", test.checkpoint.specimen);
+    for (const Snapshot& snapshot : test.snapshots) {
+      io::put_specimen(file, snapshot_group(snapshot.record), read_snapshot(snapshot));
+    }
   });
 }
 
-TestResult read_records(const std::string& path) {
-  const auto file = open_records(path);
-  TestResult result;
-  io::Reader reader(file, "");
-  describe(reader, result);
-  return result;
+Specimen read_snapshot(const Snapshot& snapshot) {
+  if (snapshot.payload_at == 0) return io::get_specimen(open_records(snapshot.file), snapshot_group(snapshot.record));
+  return io::decode_snapshot(snapshot.file, io::read_payload(snapshot.file, snapshot.payload_at, snapshot.length));
 }
 
-std::string read_protocol_text(const std::string& path) {
-  const auto file = open_records(path);
-  std::string text;
-  io::Reader(file, "").field("provenance/protocol", text, "-");
-  return text;
+RecordedTest read_recorded_test(const std::string& path) {
+  // The journal first: if its writer ends meanwhile, the file found afterwards holds at least as much.
+  const std::string journal_path = io::journal_of(path);
+  const io::RecordJournal journal = io::read_record_journal(journal_path);
+  const bool has_file = std::filesystem::exists(path);
+  if (!has_file && journal.test) return *journal.test;
+  RecordedTest file = read_file(path);  // says so if neither is there
+  if (file.complete || !journal.test) return file;
+  RecordedTest merged = *journal.test;
+  if (merged.provenance.protocol != file.provenance.protocol ||
+      merged.provenance.specimen_crc32c != file.provenance.specimen_crc32c) {
+    throw InputError(path + ": is of another test than " + journal_path +
+                     "; allowed: a record file with its own journal; move one of the two away");
+  }
+  const auto steps = [](const RecordedTest& test) { return test.checkpoint.specimen.state.grain_steps; };
+  if (steps(file) > steps(merged)) {
+    merged.checkpoint = file.checkpoint;
+    merged.result.axis = file.result.axis;
+    merged.result.pressure = file.result.pressure;
+    merged.result.grain_steps = file.result.grain_steps;
+    merged.result.wall_seconds = file.result.wall_seconds;
+  }
+  if (file.result.records.size() > merged.result.records.size()) merged.result.records = file.result.records;
+  if (file.result.probes.size() > merged.result.probes.size()) merged.result.probes = file.result.probes;
+  for (const Snapshot& snapshot : file.snapshots) {
+    const auto same = [&](const Snapshot& other) { return other.record == snapshot.record; };
+    if (std::none_of(merged.snapshots.begin(), merged.snapshots.end(), same)) merged.snapshots.push_back(snapshot);
+  }
+  std::sort(merged.snapshots.begin(), merged.snapshots.end(),
+            [](const Snapshot& a, const Snapshot& b) { return a.record < b.record; });
+  return merged;
 }
 
+void write_records(const TestResult& result, const Specimen& end_state, const std::string& resolved_protocol_text,
+                   const std::string& path) {
+  RecordedTest test;
+  test.provenance = provenance_of(resolved_protocol_text, end_state);
+  test.provenance.specimen_crc32c = 0;
+  test.result = result;
+  test.checkpoint.specimen = end_state;
+  write_recorded_test(test, path);
+}
+
+TestResult read_records(const std::string& path) { return read_recorded_test(path).result; }
+
+std::string read_protocol_text(const std::string& path) { return read_recorded_test(path).provenance.protocol; }
+
+namespace io {
+
+void put_probes(Hdf5File& file, const std::vector<ProbeResult>& probes) {
+  const auto size = probes.empty() ? 0 : static_cast<std::size_t>(probes.front().stiffness.rows());
+  std::vector<std::string> stages;
+  std::vector<double> rows;
+  for (const ProbeResult& probe : probes) {
+    stages.push_back(probe.stage);
+    const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> matrix = probe.stiffness;
+    rows.insert(rows.end(), matrix.data(), matrix.data() + matrix.size());
+  }
+  file.write_text("/probes/stage", stages, {probes.size()});
+  file.write<double>("/probes/stiffness_Pa", rows, {probes.size(), size, size}, "Pa");
+}
+
+std::vector<ProbeResult> get_probes(const Hdf5File& file) {
+  if (!file.has("/probes/stage")) return {};  // version 1.0
+  const auto stages = file.read_text("/probes/stage");
+  const auto rows = file.read<double>("/probes/stiffness_Pa");
+  const Shape64 shape = file.shape("/probes/stiffness_Pa");
+  if (shape.size() != 3 || shape[0] != stages.size() || shape[1] != shape[2]) {
+    throw InputError(file.path() +
+                     ": /probes/stiffness_Pa is not one square matrix for each of /probes/stage; the file "
+                     "is damaged: write it again");
+  }
+  const auto size = static_cast<Eigen::Index>(shape[1]);
+  std::vector<ProbeResult> probes;
+  for (std::size_t k = 0; k < stages.size(); ++k) {
+    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    probes.push_back({stages[k], Eigen::Map<const RowMajor>(rows.data() + k * shape[1] * shape[2], size, size)});
+  }
+  return probes;
+}
+
+}  // namespace io
 }  // namespace rvelab

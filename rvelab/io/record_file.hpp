@@ -1,6 +1,6 @@
 // The records of a test as an HDF5 file, R.h5: one dataset a column under /records, what was run under /test, how it
 // came about under /provenance, and the end state under /specimen, from which a test can go on
-// (rvelab/io/README.md lists them).
+// (rvelab/io/README.md lists them). A running test writes through RecordStore; here is what whole tests need.
 #pragma once
 
 #include <string>
@@ -15,8 +15,8 @@ namespace rvelab {
 void write_records(const TestResult& result, const Specimen& end_state, const std::string& resolved_protocol_text,
                    const std::string& path);
 
-/// Reads the records of a record file, bitwise as they were written. InputError as read_specimen, and if the file
-/// holds a specimen only.
+/// Reads the records of a record file and its journal, bitwise as they were written. InputError as read_specimen, and
+/// if the file holds a specimen only.
 TestResult read_records(const std::string& path);
 
 /// The resolved protocol of a record file.

@@ -10,7 +10,7 @@ namespace rvelab::io {
 
 /// Version of the layout, major.minor. A later minor version adds; a later major version changes.
 inline constexpr int format_major = 1;
-inline constexpr int format_minor = 0;
+inline constexpr int format_minor = 1;
 
 /// Sets the file's attributes `format` and `format_version`.
 void stamp(Hdf5File& file, FileKind kind);
@@ -21,5 +21,8 @@ FileKind checked_kind(const Hdf5File& file);
 /// Writes a specimen under a group ("" for the root), or reads it from there and checks its indices.
 void put_specimen(Hdf5File& file, const std::string& group, const Specimen& specimen);
 Specimen get_specimen(const Hdf5File& file, const std::string& group);
+
+/// CRC-32C over every bit of a specimen, in the order of its description: equal for equal specimens on every machine.
+std::uint32_t digest(const Specimen& specimen);
 
 }  // namespace rvelab::io

@@ -4,6 +4,7 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/io/archive.hpp"
+#include "rvelab/io/crc32c.hpp"
 #include "rvelab/io/schema.hpp"
 
 namespace rvelab {
@@ -150,7 +151,49 @@ void check_indices(const Specimen& specimen, const std::string& path) {
   }
 }
 
+/// An archive that runs every value through a checksum.
+class Digest {
+ public:
+  std::uint32_t sum() const { return sum_; }
+
+  template <class Value>
+  void field(const std::string&, const Value& value, const std::string&) {
+    add(value);
+  }
+  template <class Value>
+  void field(const std::string&, const std::vector<Value>& values, const std::string&) {
+    add(static_cast<std::uint64_t>(values.size()));
+    for (const Value& value : values) add(value);
+  }
+  template <class Item, class... Columns>
+  void table(const std::string&, const std::vector<Item>& items, const Columns&... columns) {
+    add(static_cast<std::uint64_t>(items.size()));
+    for (const Item& item : items) (add(item.*columns.member), ...);
+  }
+
+ private:
+  template <class Value>
+  void add(const Value& value) {
+    if constexpr (Textual<Value>) {
+      const std::string text = text_of(value) + '\0';
+      sum_ = crc32c(std::as_bytes(std::span(text)), sum_);
+    } else {
+      typename Layout<Value>::Scalar scalars[Layout<Value>::size];
+      Layout<Value>::put(value, scalars);
+      sum_ = crc32c(std::as_bytes(std::span(scalars)), sum_);
+    }
+  }
+
+  std::uint32_t sum_ = 0;
+};
+
 }  // namespace
+
+std::uint32_t digest(const Specimen& specimen) {
+  Digest archive;
+  describe(archive, specimen);
+  return archive.sum();
+}
 
 void stamp(Hdf5File& file, FileKind kind) {
   file.set_attribute("format", kind == FileKind::specimen ? specimen_format : records_format);

@@ -14,8 +14,8 @@ struct StoredState {
   Specimen specimen;
 };
 
-/// The specimen of a specimen file; of a record file each state under /snapshots/<number of the record>, in their
-/// order, and the end state. Never empty. InputError as read_specimen.
+/// The specimen of a specimen file; of a record file, with its journal, each snapshot in the order of the records, and
+/// the end state, or the last checkpoint of a test that has not ended. Never empty. InputError as read_specimen.
 std::vector<StoredState> read_states(const std::string& path);
 
 }  // namespace rvelab

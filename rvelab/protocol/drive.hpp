@@ -1,7 +1,11 @@
 // Driving an Rve through one stage: the targets of each increment, and the bookkeeping of a running test. Internal to
 // the room.
+//
+// A drive keeps its place in RunningTest::run.progress (phase, step) and in nothing else, changes it only together with
+// the state that it describes, and so goes on from any moment that it was left at.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "rvelab/error.hpp"
@@ -25,20 +29,45 @@ std::vector<std::pair<int, int>> components(int dimension);
 MixedTarget mixed_target(const Matrix3& displacement_gradient, const std::vector<HeldStress>& held,
                          const Matrix3& stress, int dimension);
 
+/// Strains of the records of a strain-driven stage: 0, multiples of the spacing, then the end.
+std::vector<double> record_strains(double to_strain, double spacing);
+
+/// Records that all stages of a protocol make together.
+std::size_t planned_records(const Protocol& protocol);
+
 /// A test under way.
 class RunningTest {
  public:
-  RunningTest(const Protocol& protocol, const Specimen& specimen, const OnRecord& on_record);
+  RunningTest(const Protocol& protocol, const Specimen& specimen, const Watch& watch);
 
-  /// Strains and the stage's first p count from here.
-  void begin_stage(const Stage& stage);
+  /// Begins a stage (phase 1), unless it is under way: strains and the stage's first p count from here.
+  void enter(const Stage& stage);
+  /// On to the next stage (phase 0).
+  void leave_stage();
 
   /// One increment: held components to their targets, the rest as dH says. Relative tolerance of the held stresses;
   /// dt in s, 0 for quasi-static.
   Report apply(const Matrix3& displacement_gradient, const std::vector<HeldStress>& held, double dt, double tolerance);
+  /// A relaxation, in slices whose length depends on the number of grains alone; goes on with the one under way.
   Report relax(double unbalanced, long max_steps);
+  /// Records at the given strains, the first of them the state as it is, each next one after the increment that
+  /// `increment_to(strain)` applies. progress.step counts the strains done.
+  template <class Increment>
+  void go_through(const std::vector<double>& strains, Increment increment_to) {
+    for (std::int64_t& done = run.progress.step; done < static_cast<std::int64_t>(strains.size());) {
+      const double strain = strains[static_cast<std::size_t>(done)];
+      if (done == 0) record_now(strain);
+      if (done > 0) record(strain, increment_to(strain));
+      ++done;
+      pause();
+    }
+  }
   void record(double strain, const Report& report);
   void record_now(double strain);  ///< a state that no increment led to
+  void probed(const Eigen::MatrixXd& stiffness);
+
+  /// A moment at which the test can be left: shows it to the watcher; throws Interrupted if a stop was asked for.
+  void pause();
 
   /// Scale of a held stress: max(|target|, 1 % of the stage's first p). Error if both vanish.
   double held_scale(double target) const;
@@ -51,15 +80,13 @@ class RunningTest {
   Rve rve;
   const Loading& loading;
   TestRun run;
-  Matrix3 deformation = Matrix3::Identity();  ///< F since the start of the stage
-  Matrix3 stress;                             ///< Pa, now
-  double first_pressure = 0;                  ///< Pa, p at the start of the stage
+  std::function<void()> clock;  ///< brings progress.wall_seconds up to date
 
  private:
-  OnRecord on_record_;
+  const Watch& watch_;
+  long snapshots_every_;
+  std::size_t records_planned_;
   std::string stage_name_;
-  double rate_ = 0;
-  long substeps_ = 0;  ///< since the last record
 };
 
 void drive(RunningTest& test, const IsotropicStage& stage);

@@ -36,54 +36,78 @@ double largest_gap(const std::vector<HeldStress>& driven, const Matrix3& stress)
 
 /// Increments of at most largest_change of the present pressure (geometric), until the rest is one increment.
 void approach(RunningTest& test, const IsotropicStage& stage, const std::vector<HeldStress>& driven) {
-  for (int increment = 0; increment < most_increments; ++increment) {
-    const double present = mean_pressure(test.stress, test.dimension());
+  Progress& at = test.run.progress;
+  while (at.step < most_increments) {
+    const double present = mean_pressure(at.stress, test.dimension());
     const double reach = stage.largest_change * std::max(present, 0.1 * stage.pressure);
-    const double rest = largest_gap(driven, test.stress);
+    const double rest = largest_gap(driven, at.stress);
     if (rest <= reach) return;
     std::vector<HeldStress> held = driven;
     for (auto& component : held) {
-      component.target -= (1 - reach / rest) * gap(component, test.stress);
+      component.target -= (1 - reach / rest) * gap(component, at.stress);
       component.scale = std::max(present, 0.1 * stage.pressure);
     }
     test.apply(Matrix3::Zero(), held, 0, test.loading.held_tolerance);
+    ++at.step;
+    test.pause();
   }
-  throw test.failed("p = " + std::to_string(mean_pressure(test.stress, test.dimension())) + " Pa after " +
+  throw test.failed("p = " + std::to_string(mean_pressure(at.stress, test.dimension())) + " Pa after " +
                     std::to_string(most_increments) + " increments; wanted: " + std::to_string(stage.pressure) +
                     " Pa; give a pressure that this packing can carry");
 }
+
+/// Phases of an isotropic stage (the last two make a round, until both tolerances are met) and of a relax stage (begun,
+/// relaxing).
+enum Phase : std::int32_t { begun = 1, approaching, correcting, relaxing };
 
 }  // namespace
 
 void drive(RunningTest& test, const IsotropicStage& stage) {
   const auto driven = targets(stage, test.dimension());
-  if (stage.record) test.record_now(0);
-  approach(test, stage, driven);
-  double unbalanced = test.rve.unbalanced_ratio();
+  Progress& at = test.run.progress;
+  if (at.phase == begun) {
+    if (stage.record) test.record_now(0);
+    at.phase = approaching;
+  }
+  if (at.phase == approaching) {
+    approach(test, stage, driven);
+    at.unbalanced_ratio = test.rve.unbalanced_ratio();
+    at.phase = correcting;
+    at.step = 0;
+  }
   const auto reached = [&] {
-    return largest_gap(driven, test.stress) <= stage.stress_tolerance * stage.pressure &&
-           unbalanced <= stage.unbalanced;
+    return largest_gap(driven, at.stress) <= stage.stress_tolerance * stage.pressure &&
+           at.unbalanced_ratio <= stage.unbalanced;
   };
-  for (long round = 0; round < stage.max_rounds && !reached(); ++round) {
-    // Half the tolerance: the relaxation that follows moves the stress a little.
-    if (largest_gap(driven, test.stress) > 0.5 * stage.stress_tolerance * stage.pressure) {
-      test.apply(Matrix3::Zero(), driven, 0, 0.5 * stage.stress_tolerance);
+  while (at.phase == relaxing || (at.step < stage.max_rounds && !reached())) {
+    if (at.phase == correcting) {
+      // Half the tolerance: the relaxation that follows moves the stress a little.
+      if (largest_gap(driven, at.stress) > 0.5 * stage.stress_tolerance * stage.pressure) {
+        test.apply(Matrix3::Zero(), driven, 0, 0.5 * stage.stress_tolerance);
+      }
+      at.phase = relaxing;
     }
-    unbalanced = test.relax(stage.unbalanced, stage.max_steps).unbalanced_ratio;
+    at.unbalanced_ratio = test.relax(stage.unbalanced, stage.max_steps).unbalanced_ratio;
+    at.phase = correcting;
+    ++at.step;
+    test.pause();
   }
   if (!reached()) {
     std::ostringstream text;
     text << "the normal stresses miss -" << stage.pressure << " Pa by "
-         << largest_gap(driven, test.stress) / stage.pressure << " of it (allowed " << stage.stress_tolerance
-         << ") at the unbalanced ratio " << unbalanced << " (allowed " << stage.unbalanced << ") after "
+         << largest_gap(driven, at.stress) / stage.pressure << " of it (allowed " << stage.stress_tolerance
+         << ") at the unbalanced ratio " << at.unbalanced_ratio << " (allowed " << stage.unbalanced << ") after "
          << stage.max_rounds << " rounds; raise max_rounds, max_steps or the tolerances";
     throw test.failed(text.str());
   }
-  if (stage.record) test.record_now(1 - test.deformation.determinant());
+  if (stage.record) test.record_now(1 - at.deformation.determinant());
 }
 
 void drive(RunningTest& test, const RelaxStage& stage) {
-  if (stage.record) test.record_now(0);
+  if (test.run.progress.phase == begun) {
+    if (stage.record) test.record_now(0);
+    test.run.progress.phase = relaxing;
+  }
   const Report report = test.relax(stage.unbalanced, stage.max_steps);
   if (report.unbalanced_ratio > stage.unbalanced) {
     std::ostringstream text;

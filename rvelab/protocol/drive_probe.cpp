@@ -7,9 +7,8 @@
 namespace rvelab::protocol {
 
 void drive(RunningTest& test, const ProbeStage& stage) {
-  const std::string& name = test.run.result.stages.back();
   if (stage.method == ProbeStage::Method::linear) {
-    test.run.probes.push_back({name, elastic_tangent(test.rve.network())});
+    test.probed(elastic_tangent(test.rve.network()));
     return;
   }
   Rve copy(test.rve);
@@ -19,7 +18,7 @@ void drive(RunningTest& test, const ProbeStage& stage) {
     throw test.failed("the probes relaxed to the unbalanced ratio " + std::to_string(probe.unbalanced_ratio) +
                       " only; allowed: below 1e-10; give a relax stage before, or method = \"linear\"");
   }
-  test.run.probes.push_back({name, probe.stiffness});
+  test.probed(probe.stiffness);
 }
 
 }  // namespace rvelab::protocol

@@ -98,6 +98,7 @@ struct Protocol {
   std::vector<double> calibration_pressures;                   ///< Pa, [calibrate] pressures_Pa
   toml::table overrides;                                       ///< [contact], [damping], [solver], [material]
   Loading loading;
+  long snapshots_every = 0;  ///< [output]: grains and contacts are kept at every so many records; 0: never
   std::vector<Stage> stages;
   std::string resolved;  ///< the protocol with every default and assignment in it, TOML
 };

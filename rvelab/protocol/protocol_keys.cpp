@@ -118,8 +118,10 @@ std::vector<ProtocolKey> loading() {
   };
 }
 
-std::vector<ProtocolKey> specimen_and_calibrate() {
+std::vector<ProtocolKey> output_specimen_and_calibrate() {
   return {
+      whole_number("output", "snapshots_every", Protocol{}.snapshots_every, {0, 1e9},
+                   "grains and contacts are kept at every so many records, from the first; 0: never"),
       required(text("specimen", "file", "",
                     "specimen file that the test runs on, relative to the protocol; --specimen goes before it")),
       {{"calibrate", "pressures_Pa", "Pa", "list of numbers", "", "each " + positive.in_words(),
@@ -213,7 +215,7 @@ std::vector<ProtocolKey> relax_and_probe() {
 const std::vector<ProtocolKey>& protocol_keys() {
   static const std::vector<ProtocolKey> all = [] {
     std::vector<ProtocolKey> keys;
-    for (const auto& list : {test(), loading(), specimen_and_calibrate(), stage(), isotropic(), compression(),
+    for (const auto& list : {test(), loading(), output_specimen_and_calibrate(), stage(), isotropic(), compression(),
                              simple_shear(), relax_and_probe()}) {
       keys.insert(keys.end(), list.begin(), list.end());
     }

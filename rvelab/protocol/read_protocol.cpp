@@ -81,6 +81,14 @@ void read_calibrate(const toml::table& file, Protocol& protocol, toml::table& re
   resolved.insert("calibrate", reader.resolved());
 }
 
+void read_output(const toml::table& file, Protocol& protocol, toml::table& resolved, std::vector<KeyError>& errors) {
+  if (!file.contains("output")) return;
+  TableReader reader(table_of(file, "output", errors), "output", "output", line_of(*file.get("output")), errors);
+  protocol.snapshots_every = reader.whole_number("snapshots_every");
+  reader.finish();
+  resolved.insert("output", reader.resolved());
+}
+
 /// Checks the overrides on a specimen that has every material they name; how they fit the real one is seen when it is
 /// there.
 void check_overrides(const toml::table& file, std::vector<KeyError>& errors) {
@@ -130,6 +138,7 @@ Protocol read_file(toml::table file, const std::string& path, const std::vector<
   protocol::expect_top_tables(file, errors);
   read_test(table_of(file, "test", errors), protocol, resolved, errors);
   read_loading(table_of(file, "loading", errors), protocol, resolved, errors);
+  read_output(file, protocol, resolved, errors);
   read_specimen_name(file, protocol, resolved, errors);
   read_calibrate(file, protocol, resolved, errors);
   for (const char* name : override_tables) {

@@ -1,6 +1,7 @@
 // One row of a test: what is written at each recorded strain, and the table of a whole test.
 #pragma once
 
+#include <Eigen/Core>
 #include <limits>
 #include <string>
 #include <vector>
@@ -26,13 +27,21 @@ struct Record {
   bool target_held = true;  ///< false: kept, but the held stress was not within the tolerance after the wait
 };
 
+/// What a probe stage measured: stiffness as elastic_tangent() gives it (rvelab/measure/tangent.hpp), Pa; 3x3 in 2D,
+/// 6x6 in 3D.
+struct ProbeResult {
+  std::string stage;  ///< its name
+  Eigen::MatrixXd stiffness;
+};
+
 /// A test that was run: its records in order, and what it was.
 struct TestResult {
-  std::string protocol;             ///< [test] name
-  std::string axis;                 ///< loading axis: "x", "y", "z", or "xy" / "xz" for simple shear
+  std::string protocol;  ///< [test] name
+  std::string axis;      ///< loading axis: "x", "y", "z", or "xy" / "xz" for simple shear
   double pressure = std::numeric_limits<double>::quiet_NaN();  ///< Pa, the stage's first p (held lateral stress)
-  std::vector<std::string> stages;  ///< names, in order
+  std::vector<std::string> stages;                             ///< names, in order
   std::vector<Record> records;
+  std::vector<ProbeResult> probes;
   double wall_seconds = 0;
   unsigned long long grain_steps = 0;
 };

@@ -6,20 +6,67 @@
 #include "rvelab/protocol/drive.hpp"
 
 namespace rvelab {
+namespace {
 
-TestRun run_protocol(const Protocol& protocol, const Specimen& specimen, const OnRecord& on_record) {
+TestRun finish(const Protocol& protocol, protocol::RunningTest& test, double wall_before) {
   const auto begin = std::chrono::steady_clock::now();
-  protocol::RunningTest test(protocol, with_overrides(protocol, specimen), on_record);
-  const auto steps_before = test.rve.grain_steps();
-  test.run.result.protocol = protocol.name;
-  for (const Stage& stage : protocol.stages) {
-    test.begin_stage(stage);
-    std::visit([&](const auto& what) { protocol::drive(test, what); }, stage.what);
+  TestRun& run = test.run;
+  const auto clock = [&] {
+    run.progress.wall_seconds =
+        wall_before + std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
+  test.clock = clock;
+  try {
+    while (run.progress.stage < static_cast<std::int32_t>(protocol.stages.size())) {
+      const Stage& stage = protocol.stages[static_cast<std::size_t>(run.progress.stage)];
+      test.enter(stage);
+      std::visit([&](const auto& what) { protocol::drive(test, what); }, stage.what);
+      test.leave_stage();
+    }
+  } catch (const Interrupted&) {
+    run.complete = false;
   }
-  test.run.result.grain_steps = test.rve.grain_steps() - steps_before;
-  test.run.result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  test.run.end_state = test.rve.specimen();
-  return std::move(test.run);
+  clock();
+  run.result.axis = run.progress.axis;
+  run.result.pressure = run.progress.pressure;
+  run.result.grain_steps = test.rve.grain_steps() - run.progress.first_grain_steps;
+  run.result.wall_seconds = run.progress.wall_seconds;
+  run.end_state = test.rve.specimen();
+  return std::move(run);
+}
+
+}  // namespace
+
+TestRun run_protocol(const Protocol& protocol, const Specimen& specimen, const Watch& watch) {
+  protocol::RunningTest test(protocol, with_overrides(protocol, specimen), watch);
+  test.run.progress.stress = test.rve.stress();
+  test.run.progress.first_grain_steps = test.rve.grain_steps();
+  return finish(protocol, test, 0);
+}
+
+TestRun resume_protocol(const Protocol& protocol, const Checkpoint& checkpoint, TestResult so_far, const Watch& watch) {
+  const Progress& progress = checkpoint.progress;
+  const auto stages = static_cast<std::int32_t>(protocol.stages.size());
+  const auto records = static_cast<std::size_t>(progress.records), probes = static_cast<std::size_t>(progress.probes);
+  if (progress.stage < 0 || progress.stage > stages || progress.records < 0 || progress.probes < 0 ||
+      records > so_far.records.size() || probes > so_far.probes.size()) {
+    throw InputError(protocol.path + ": the checkpoint stands in stage " + std::to_string(progress.stage) + " after " +
+                     std::to_string(progress.records) + " records and " + std::to_string(progress.probes) +
+                     " probes; allowed: at most " + std::to_string(stages) + ", " +
+                     std::to_string(so_far.records.size()) + " and " + std::to_string(so_far.probes.size()) +
+                     "; give the protocol that it was made with");
+  }
+  protocol::RunningTest test(protocol, checkpoint.specimen, watch);
+  test.run.progress = progress;
+  so_far.records.resize(records);
+  so_far.probes.resize(probes);
+  so_far.stages.clear();
+  for (std::int32_t k = 0; k < progress.stage + (progress.phase > 0 ? 1 : 0); ++k) {
+    so_far.stages.push_back(protocol.stages[static_cast<std::size_t>(k)].name);
+  }
+  test.run.result = std::move(so_far);
+  test.run.result.protocol = protocol.name;
+  return finish(protocol, test, progress.wall_seconds);
 }
 
 }  // namespace rvelab

@@ -1,37 +1,61 @@
 // A protocol run on a specimen: every stage through Rve::apply, every record at its strain.
 //
-// This room drives and records; the servo and all error control are inside Rve::apply.
+// This room drives and records; the servo and all error control are inside Rve::apply. It knows no file: who watches a
+// run may keep its records and checkpoints, show its progress, and stop it.
 #pragma once
 
-#include <Eigen/Core>
+#include <atomic>
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "rvelab/protocol/progress.hpp"
 #include "rvelab/protocol/protocol.hpp"
 #include "rvelab/protocol/record.hpp"
+#include "rvelab/solver/rve.hpp"
 
 namespace rvelab {
 
-/// What a probe stage measured: stiffness as elastic_tangent() gives it (rvelab/measure/tangent.hpp), Pa.
-struct ProbeResult {
-  std::string stage;
-  Eigen::MatrixXd stiffness;
-};
-
+/// A test that was run, or stopped.
 struct TestRun {
   TestResult result;
   Specimen end_state;
-  std::vector<ProbeResult> probes;
+  Progress progress;  ///< with end_state the checkpoint from which a stopped test goes on
+  bool complete = true;
 };
 
-/// Called after each record, on the calling thread.
-using OnRecord = std::function<void(const Record&)>;
+/// A running test between two increments, as its watcher sees it. Valid during the call only.
+struct Moment {
+  const Progress& progress;
+  const TestResult& result;  ///< so far
+  const Rve& rve;
+  std::size_t records_planned;  ///< of all stages together
+  Checkpoint checkpoint() const { return {progress, rve.specimen()}; }
+};
+
+/// Who watches a run. All functions may be empty, are called on the thread that runs the test, and change nothing in
+/// it: results depend neither on what they do nor on when. What they throw ends the run.
+struct Watch {
+  std::function<void(const Record&)> on_record;
+  std::function<void(const ProbeResult&)> on_probe;
+  /// The state of a record, by its number from 0, where [output] snapshots_every asks for it.
+  std::function<void(std::size_t record, const Specimen& state)> on_snapshot;
+  /// After each increment, each stage, and about each second of a relaxation: here a checkpoint can be taken.
+  std::function<void(const Moment&)> on_moment;
+  /// Once true, the run ends within a sub-step at the last moment passed (a probe by the linear method ends first).
+  const std::atomic<bool>* stop = nullptr;
+};
 
 /// Runs all stages in order. Records lie at the fixed strains of their stage, none skipped or delayed; a record whose
 /// held stress was not reached within the wait is kept and flagged (target_held = false). Throws InputError if
 /// specimen and protocol do not go together; Error (IncrementFailed among them) if a stage cannot be carried out,
 /// naming the stage and what was reached.
-TestRun run_protocol(const Protocol& protocol, const Specimen& specimen, const OnRecord& on_record = {});
+TestRun run_protocol(const Protocol& protocol, const Specimen& specimen, const Watch& watch = {});
+
+/// Goes on from a checkpoint of the same protocol: what follows is bitwise what the undisturbed run would have made.
+/// `so_far` holds at least the records and probes that the checkpoint counts; those beyond are made again. InputError
+/// if the checkpoint does not fit the protocol.
+TestRun resume_protocol(const Protocol& protocol, const Checkpoint& checkpoint, TestResult so_far,
+                        const Watch& watch = {});
 
 }  // namespace rvelab

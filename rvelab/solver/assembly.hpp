@@ -3,6 +3,7 @@
 // is undone by assignment.
 #pragma once
 
+#include <atomic>
 #include <vector>
 
 #include "rvelab/solver/buffer.hpp"
@@ -28,6 +29,7 @@ struct Fixture {
   double overlap_limit = 0;  ///< over the smaller radius; a specimen that comes with more keeps that and a hundredth
   SceneKernels kernels;
   KernelLaw law = KernelLaw::linear;
+  const std::atomic<bool>* stop = nullptr;  ///< true: advance throws Interrupted (Rve::watch)
 
   std::size_t size() const { return id.size(); }
   int dimension() const { return dimension_of(shape); }

@@ -137,6 +137,8 @@ Report Rve::relax(double unbalanced, long max_steps) {
   });
 }
 
+void Rve::watch(const std::atomic<bool>* stop) { impl_->fixture.stop = stop; }
+
 void Rve::set_materials(const std::vector<Material>& materials) {
   Impl& m = *impl_;
   if (materials.size() != m.fixture.materials.size())

@@ -1,6 +1,7 @@
 // The representative volume element: one verb, apply an increment of displacement gradient, get the Cauchy stress.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -83,6 +84,10 @@ class Rve {
 
   Network network() const;
   Specimen specimen() const;
+
+  /// A flag that apply and relax look at after each sub-step: once it is true they throw Interrupted, and the RVE is as
+  /// it was before the call. Copies look at the same flag. It must outlive them; nullptr: none.
+  void watch(const std::atomic<bool>* stop);
 
   /// Changes contact parameters in place (friction for preparation, no slip for probes); history is kept.
   void set_materials(const std::vector<Material>& materials);

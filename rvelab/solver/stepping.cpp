@@ -205,6 +205,7 @@ void advance(const Fixture& f, Assembly& a, const Advance& what) {
   if (f.options.ledger) moment_before = contact_moment(f, a);
 
   for (long made = 0; made < what.steps; ++made) {
+    if (f.stop != nullptr && f.stop->load(std::memory_order_relaxed)) throw Interrupted();
     const Matrix3 before = a.cell.lattice;
     a.cell.lattice = way.lattice_after(++way.done);
     set_step(before, a.cell.lattice, what.step, c, rate_end, rate_mid);

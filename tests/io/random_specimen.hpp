@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "rvelab/error.hpp"
+#include "rvelab/protocol/progress.hpp"
 #include "rvelab/protocol/record.hpp"
 #include "rvelab/solver/specimen.hpp"
 
@@ -39,11 +40,16 @@ struct Pairs {
     fields(state, state2);
   }
   void operator()(TestResult& a, TestResult& b) {
-    auto& [protocol, axis, pressure, stages, records, wall, steps] = a;
-    auto& [protocol2, axis2, pressure2, stages2, records2, wall2, steps2] = b;
+    auto& [protocol, axis, pressure, stages, records, probes, wall, steps] = a;
+    auto& [protocol2, axis2, pressure2, stages2, records2, probes2, wall2, steps2] = b;
     all(protocol, protocol2, axis, axis2, pressure, pressure2, wall, wall2, steps, steps2);
     visit(stages, stages2);
     lists(records, records2);
+    lists(probes, probes2);
+  }
+  void operator()(Checkpoint& a, Checkpoint& b) {
+    (*this)(a.specimen, b.specimen);
+    fields(a.progress, b.progress);
   }
 
  private:
@@ -102,6 +108,19 @@ struct Pairs {
     all(k, k2, l, l2, m, m2, n, n2, o, o2, p, p2, q, q2, r, r2, s, s2, t, t2, u, u2, v, v2, w, w2, x, x2, y, y2);
     all(z, z2, c, c2, positions, positions2);
     fields(ledger, ledger2);
+  }
+  void fields(ProbeResult& a, ProbeResult& b) {
+    auto& [stage, stiffness] = a;
+    auto& [stage2, stiffness2] = b;
+    visit(stage, stage2);
+    for (Eigen::Index k = 0; k < std::min(stiffness.size(), stiffness2.size()); ++k) {
+      visit(stiffness.data()[k], stiffness2.data()[k]);
+    }
+  }
+  void fields(Progress& a, Progress& b) {
+    auto& [k, l, m, n, o, p, q, r, s, t, u, v, w, x, y, z] = a;
+    auto& [k2, l2, m2, n2, o2, p2, q2, r2, s2, t2, u2, v2, w2, x2, y2, z2] = b;
+    all(k, k2, l, l2, m, m2, n, n2, o, o2, p, p2, q, q2, r, r2, s, s2, t, t2, u, u2, v, v2, w, w2, x, x2, y, y2, z, z2);
   }
   void fields(Record& a, Record& b) {
     auto& [k, l, m, n, o, p, q, r, s, t, u, v, w] = a;
@@ -215,8 +234,17 @@ inline TestResult random_result(unsigned seed, std::size_t record_count = 23) {
   TestResult result;
   result.stages = {"isotropic", "shear"};
   result.records.resize(record_count);
+  result.probes.resize(5);
+  for (ProbeResult& probe : result.probes) probe.stiffness.setZero(6, 6);
   Pairs<RandomFill>{RandomFill(seed)}(result, result);
   return result;
+}
+
+inline Checkpoint random_checkpoint(unsigned seed) {
+  Checkpoint checkpoint{{}, random_specimen(seed)};
+  Checkpoint filled = checkpoint;
+  Pairs<RandomFill>{RandomFill(seed + 1)}(filled, filled);
+  return {filled.progress, checkpoint.specimen};
 }
 
 /// A folder of its own that vanishes with the test.

@@ -6,6 +6,8 @@
 
 #include "random_specimen.hpp"
 #include "rvelab/io/hdf5_file.hpp"
+#include "rvelab/io/record_journal.hpp"
+#include "rvelab/io/recorded_test.hpp"
 #include "rvelab/io/specimen_file.hpp"
 #include "rvelab/io/version.hpp"
 #include "tests/catch.hpp"
@@ -80,7 +82,7 @@ std::map<std::string, std::vector<std::string>> documented(const std::string& re
 /// Extents as the README writes them: numbers, and a letter for each that varies. The letters stand for different
 /// numbers here, so that one for the other is noticed.
 std::string in_readme(const Shape64& shape) {
-  const std::map<std::uint64_t, std::string> letters{{17, "n"}, {31, "c"}, {23, "r"}, {2, "s"}};
+  const std::map<std::uint64_t, std::string> letters{{17, "n"}, {31, "c"}, {23, "r"}, {2, "s"}, {5, "p"}, {6, "k"}};
   std::string text;
   for (const auto extent : shape) {
     const auto letter = letters.find(extent);
@@ -93,28 +95,44 @@ std::string in_readme(const Shape64& shape) {
 
 TEST_CASE("the README lists exactly the datasets of a file, with their types, shapes and units") {
   const Folder folder;
-  write_records(random_result(8), random_specimen(8), "", folder / "r.h5");
   write_specimen(random_specimen(8), folder / "s.h5");
+  // The end state of another file stands for a snapshot.
+  write_records(random_result(8), random_specimen(8), "", folder / "whole.h5");
+  RecordedTest test = read_recorded_test(folder / "whole.h5");
+  test.complete = false;
+  test.checkpoint = random_checkpoint(8);
+  const auto snapshot = io::encode_snapshot(12, random_specimen(8));
+  io::Journal journal(folder / "snapshots");
+  journal.begin();
+  test.snapshots = {{12, folder / "snapshots", journal.append(io::snapshot_frame, snapshot), snapshot.size()}};
+  write_recorded_test(test, folder / "r.h5");
   const std::string readme = bytes_of(std::string(RVELAB_SOURCE_DIR) + "/rvelab/io/README.md");
   auto rows = documented(readme, "/");
   REQUIRE(rows.size() > 60);
 
   std::map<std::string, Hdf5Entry> found;
   for (const auto& entry : Hdf5File::open(folder / "s.h5").entries()) found[entry.name] = entry;
+  const std::size_t of_a_specimen = found.size();
+  std::size_t states = 0;
   for (const auto& entry : Hdf5File::open(folder / "r.h5").entries()) {
-    if (entry.name.starts_with("/specimen/")) {
-      CHECK(found.contains(entry.name.substr(9)));  // the same layout under /specimen
+    const std::string snapshot_group = "/snapshots/000012";
+    const bool is_end = entry.name.starts_with("/specimen/"), is_snapshot = entry.name.starts_with(snapshot_group);
+    if (is_end || is_snapshot) {
+      // the same layout in either group
+      CHECK(found.contains(entry.name.substr(is_end ? std::strlen("/specimen") : snapshot_group.size())));
+      ++states;
     } else {
       found[entry.name] = entry;
     }
   }
+  CHECK(states == 2 * of_a_specimen);
   for (const auto& [name, entry] : found) {
     CAPTURE(name);
     REQUIRE(rows.contains(name));
     const auto& row = rows[name];
     REQUIRE(row.size() == 5);
     CHECK(row[1] == entry.type);
-    // m, the number of materials, is 3 as a vector's extent is.
+    // m, the number of materials, is 3 as a vector's extent is; k, the components of a 3D stiffness, are 6.
     const std::string shape = name.starts_with("/materials/") ? "m" : in_readme(entry.shape);
     CHECK(row[2] == shape);
     CHECK(row[3] == entry.units);
@@ -128,4 +146,36 @@ TEST_CASE("the README lists exactly the datasets of a file, with their types, sh
   for (const auto& [name, row] : documented(readme, "format")) attributes.push_back(name);
   CHECK(Hdf5File::open(folder / "s.h5").attributes() == attributes);
   CHECK(Hdf5File::open(folder / "r.h5").attributes() == attributes);
+
+  write_records(random_result(8), random_specimen(8), "", folder / "c.h5");
+  for (const auto& entry : Hdf5File::open(folder / "c.h5").entries()) CHECK(!entry.name.starts_with("/checkpoint/"));
+}
+
+TEST_CASE("an incomplete test comes back with its checkpoint and its snapshots bit for bit") {
+  const Folder folder;
+  write_records(random_result(9), random_specimen(9), "[test]", folder / "whole.h5");
+  CHECK(read_recorded_test(folder / "whole.h5").complete);
+  RecordedTest test = read_recorded_test(folder / "whole.h5");
+  test.complete = false;
+  test.checkpoint = random_checkpoint(10);
+  test.result.wall_seconds = test.checkpoint.progress.wall_seconds;
+  test.provenance.packages = {"a 1", "b 2"};
+  test.provenance.specimen_crc32c = 77;
+  const auto snapshot = io::encode_snapshot(4, random_specimen(11));
+  {
+    io::Journal journal(folder / "snapshots");
+    journal.begin();
+    test.snapshots = {{4, folder / "snapshots", journal.append(io::snapshot_frame, snapshot), snapshot.size()}};
+  }
+  write_recorded_test(test, folder / "r.h5");
+  const RecordedTest read = read_recorded_test(folder / "r.h5");
+  CHECK(!read.complete);
+  CHECK(differences(test.result, read.result) == 0);
+  CHECK(differences(test.checkpoint, read.checkpoint) == 0);
+  CHECK(read.provenance.packages == test.provenance.packages);
+  CHECK(read.provenance.specimen_crc32c == 77);
+  REQUIRE(read.snapshots.size() == 1);
+  CHECK(read.snapshots[0].record == 4);
+  CHECK(differences(random_specimen(11), read_snapshot(read.snapshots[0])) == 0);
+  CHECK(read_records(folder / "whole.h5").probes.size() == 5);
 }

@@ -112,7 +112,8 @@ TEST_CASE("a newer format is refused, an older minor one of the same major is no
     return input_error([&] { read_specimen(folder / "v.h5"); });
   };
   CHECK(with_version("1.0").empty());
-  CHECK_THAT(with_version("1.1"), Contains("1.1") && Contains("up to 1.0") && Contains("newer rvelab"));
+  CHECK(with_version("1.1").empty());
+  CHECK_THAT(with_version("1.2"), Contains("1.2") && Contains("up to 1.1") && Contains("newer rvelab"));
   CHECK_THAT(with_version("2.0"), Contains("2.0") && Contains("newer rvelab"));
   CHECK_THAT(with_version("one"), Contains("\"one\"") && Contains("major.minor"));
 }

@@ -112,8 +112,8 @@ TEST_CASE("An isotropic stage ends at its pressure and at rest") {
   CHECK(end.strain == Approx(1 - end.deformation_gradient.determinant()));
   // The shear stress is not driven, and stays of the order that it had.
   CHECK(std::abs(end.stress(0, 1)) > 1e-4 * 60e3);
-  REQUIRE(run.probes.size() == 1);
-  CHECK(run.probes[0].stiffness.rows() == 3);
+  REQUIRE(run.result.probes.size() == 1);
+  CHECK(run.result.probes[0].stiffness.rows() == 3);
 
   const TestRun freed =
       run_text("[[stage]]\nkind = \"isotropic\"\npressure_Pa = 60e3\nshear = \"zero_stress\"\nrecord = true\n",
@@ -142,9 +142,9 @@ TEST_CASE("A probe stage moves nothing: the test goes on as without it") {
   const TestRun with = run_text("[[stage]]\nkind = \"probe\"\nno_slip = true\n" + compression, specimen);
   const TestRun without = run_text(compression, specimen);
   expect_same(with.result.records, without.result.records);
-  REQUIRE(with.probes.size() == 1);
+  REQUIRE(with.result.probes.size() == 1);
   // Positive definite: the packing is stable.
-  CHECK(with.probes[0].stiffness.eigenvalues().real().minCoeff() > 0);
+  CHECK(with.result.probes[0].stiffness.eigenvalues().real().minCoeff() > 0);
 }
 
 TEST_CASE("Physical loading runs at the inertial number that was asked for") {

@@ -59,6 +59,10 @@ class Test:
 def read_test(path):
     """Reads one record file; raises ValueError, naming the file, where it is none."""
     path = pathlib.Path(path)
+    journal = path.with_name(path.name + ".journal")
+    if not path.exists() and journal.exists():
+        raise ValueError(f"{path}: there is only the journal of a run that was killed or goes on; make the file with "
+                         f"`rvelab recover {path}`")
     try:
         with h5py.File(path, "r") as file:
             records = {name: file["records/" + name][()] for name in

@@ -1,0 +1,37 @@
+#include "rvelab/cli/interrupt.hpp"
+
+#include <csignal>
+
+namespace rvelab::cli {
+namespace {
+
+// What a signal handler may touch: lock-free atomics.
+std::atomic<bool> stop{false};
+std::atomic<int> received{0};
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
+
+extern "C" void ask_to_stop(int number) {
+  received = number;
+  stop = true;
+  for (const int next : {SIGINT, SIGTERM}) std::signal(next, SIG_DFL);
+}
+
+}  // namespace
+
+const std::atomic<bool>& stop_on_signals() {
+  struct sigaction action {};
+  action.sa_handler = ask_to_stop;
+  action.sa_flags = SA_RESTART;
+  for (const int number : {SIGINT, SIGTERM}) {
+    // A shell starts background jobs with Ctrl-C ignored; that stays so.
+    struct sigaction before {};
+    if (sigaction(number, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) sigaction(number, &action, nullptr);
+  }
+  return stop;
+}
+
+int signal_received() { return received; }
+
+std::string signal_name() { return received == SIGINT ? "Ctrl-C" : "SIGTERM"; }
+
+}  // namespace rvelab::cli

@@ -1,0 +1,37 @@
+// Where a test stands between two increments: with the specimen, all that is needed to go on with it bitwise.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+
+#include "rvelab/solver/specimen.hpp"
+
+namespace rvelab {
+
+/// Scalars of a running test. Laboratory frame, SI; strains count from the start of the stage.
+struct Progress {
+  std::int32_t stage = 0;             ///< row of the stage under way; the number of stages when all are done
+  std::int32_t phase = 0;             ///< of that stage; 0: not begun, others: see the drive of its kind
+  std::int64_t step = 0;              ///< of that phase: records, increments or rounds made
+  std::int64_t relaxation_steps = 0;  ///< sub-steps made of the relaxation under way; 0: none is
+  std::int64_t substeps = 0;          ///< made since the last record
+  std::int64_t records = 0, probes = 0;
+  double unbalanced_ratio = 0;                ///< that the last round of an isotropic stage left
+  double first_pressure = 0;                  ///< Pa, p at the start of the stage
+  double rate = 0;                            ///< 1/s, of the stage's driving strain; 0 when quasi-static
+  Matrix3 deformation = Matrix3::Identity();  ///< F since the start of the stage
+  Matrix3 stress = Matrix3::Zero();           ///< Pa
+  std::string axis;                           ///< of the result so far
+  double pressure = std::numeric_limits<double>::quiet_NaN();  ///< Pa, of the result so far
+  std::uint64_t first_grain_steps = 0;                         ///< the specimen's count when the test began
+  double wall_seconds = 0;                                     ///< spent so far
+};
+
+/// A test in the middle.
+struct Checkpoint {
+  Progress progress;
+  Specimen specimen;
+};
+
+}  // namespace rvelab

@@ -1,0 +1,45 @@
+// Files of earlier versions of the format, as tests/data/compat/make wrote them, are read by this one.
+#include <cmath>
+
+#include "rvelab/io/hdf5_file.hpp"
+#include "rvelab/io/recorded_test.hpp"
+#include "rvelab/io/schema.hpp"
+#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/solver/rve.hpp"
+#include "tests/catch.hpp"
+
+using namespace rvelab;
+
+TEST_CASE("files of every version of the format are read with all that they hold") {
+  for (const std::string version : {"1_0", "1_1"}) {
+    CAPTURE(version);
+    const std::string folder = std::string(RVELAB_TEST_DATA) + "/compat/";
+    const std::string records = folder + "records_" + version + ".h5",
+                      specimen = folder + "specimen_" + version + ".h5";
+    std::string dotted = version;
+    dotted[1] = '.';
+    CHECK(Hdf5File::open(records).attribute("format_version") == dotted);
+
+    const Specimen start = read_specimen(specimen);
+    REQUIRE(start.grains.size() == 9);
+    CHECK(start.grains.radius[7] == 0.00506);
+    CHECK(start.materials.at(0).name == "sand");
+    CHECK(start.materials[0].friction == 0.42);
+
+    const RecordedTest test = read_recorded_test(records);
+    CHECK(test.complete);
+    CHECK(test.result.protocol == "compat");
+    CHECK(test.result.axis == "y");
+    CHECK(test.result.stages == std::vector<std::string>{"relax", "probe", "compression"});
+    REQUIRE(test.result.records.size() == 7);
+    CHECK(test.result.records.back().strain == 0.002);
+    CHECK(test.result.records.back().stress(1, 1) == Approx(-276447.88).epsilon(1e-8));
+    CHECK(test.result.records[3].stage == 2);
+    CHECK(test.result.probes.size() == (version == "1_0" ? 0 : 1));
+    CHECK(test.provenance.protocol.find("constant_volume") != std::string::npos);
+    CHECK(Rve(test.checkpoint.specimen).stress()(1, 1) == Approx(-276447.88).epsilon(1e-8));
+  }
+  // The newest files are of the version that is written now: a step of the version asks for files of its own.
+  CHECK(io::format_major == 1);
+  CHECK(io::format_minor == 1);
+}
