@@ -157,7 +157,8 @@ void add_calibrate(CLI::App& app) {
   auto arguments = std::make_shared<CalibrateArguments>();
   CLI::App* command =
       app.add_subcommand("calibrate", "Run a compression test at several pressures: friction angle, N_q");
-  command->add_option("protocol", arguments->protocol, "PROTOCOL.toml, or the name of an installed one: biaxial")->required();
+  command->add_option("protocol", arguments->protocol, "PROTOCOL.toml, or the name of an installed one: biaxial")
+      ->required();
   command->add_option("--specimen", arguments->specimens, "specimen; given several times: one for each pressure")
       ->expected(1)
       ->allow_extra_args(false)

@@ -133,7 +133,8 @@ void run_test(const RunArguments& arguments) {
 void add_run(CLI::App& app) {
   auto arguments = std::make_shared<RunArguments>();
   CLI::App* command = app.add_subcommand("run", "Run a test, a protocol in TOML, on a specimen");
-  command->add_option("protocol", arguments->protocol, "PROTOCOL.toml, or the name of an installed one: biaxial")->required();
+  command->add_option("protocol", arguments->protocol, "PROTOCOL.toml, or the name of an installed one: biaxial")
+      ->required();
   command->add_option("--specimen", arguments->specimen,
                       "specimen (or record file: its end state); else [specimen] file");
   command->add_option("-o,--output", arguments->output, "record file to write, R.h5");

@@ -118,7 +118,8 @@ std::vector<KeyEntry> damping() {
 std::vector<KeyEntry> solver() {
   const char* t = "solver";
   return {
-      entry(t, "skin", "1", &SolverOptions::skin, positive, "largest Verlet skin over the mean radius; fitted down while steps pass"),
+      entry(t, "skin", "1", &SolverOptions::skin, positive,
+            "largest Verlet skin over the mean radius; fitted down while steps pass"),
       entry(t, "time_step_factor", "1", &SolverOptions::time_step_factor, inside_one,
             "fraction of the critical step 2/omega_max"),
       entry(t, "fixed_time_step_s", "s", &SolverOptions::fixed_time_step, not_negative,

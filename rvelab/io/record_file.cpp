@@ -3,6 +3,7 @@
 #include <toml++/toml.h>
 #include <Eigen/Core>
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
 #include <filesystem>
 
@@ -65,8 +66,17 @@ RecordedTest read_file(const std::string& path) {
   }
   test.checkpoint.specimen = io::get_specimen(file, "/specimen");
   for (const std::string& name : file.groups("/snapshots")) {
-    test.snapshots.push_back({static_cast<std::size_t>(std::stoull(name)), path});
+    std::size_t number = 0;
+    const char* const end = name.data() + name.size();
+    const auto [stop, error] = std::from_chars(name.data(), end, number);
+    if (error != std::errc() || stop != end) {
+      throw InputError(path + ": the group /snapshots/" + name +
+                       " is not named by the number of a record; the file is damaged: write it again");
+    }
+    test.snapshots.push_back({number, path});
   }
+  std::sort(test.snapshots.begin(), test.snapshots.end(),
+            [](const Snapshot& a, const Snapshot& b) { return a.record < b.record; });
   return test;
 }
 

@@ -66,10 +66,10 @@ void describe_state(Archive& archive, Value& state) {
          mean_velocity, mean_spin, grain_steps, list_builds, ledger] = state;
   archive.field("state/has_reference", has_reference, "1");
   archive.field("state/list_lattice_m", list_lattice, "m");
-  archive.field("state/list_positions_m", list_positions, "m");
+  archive.later_field("state/list_positions_m", list_positions, "m");
   archive.field("state/list_travel_m", list_travel, "m");
-  archive.field("state/list_skin_m", list_skin, "m");
-  archive.field("state/list_steps", list_steps, "1");
+  archive.later_field("state/list_skin_m", list_skin, "m");
+  archive.later_field("state/list_steps", list_steps, "1");
   archive.field("state/strain_per_step", strain_per_step, "1");
   archive.field("state/servo_strain", servo_strain, "1");
   archive.field("state/reference_contact_force_N", reference_contact_force, "N");
@@ -164,6 +164,11 @@ class Digest {
   void field(const std::string&, const std::vector<Value>& values, const std::string&) {
     add(static_cast<std::uint64_t>(values.size()));
     for (const Value& value : values) add(value);
+  }
+  /// A later field counts only where it says something: the digest of an older file stays what it was.
+  template <class Value>
+  void later_field(const std::string& name, const Value& value, const std::string& units) {
+    if (value != Value{}) field(name, value, units);
   }
   template <class Item, class... Columns>
   void table(const std::string&, const std::vector<Item>& items, const Columns&... columns) {

@@ -81,9 +81,8 @@ void read_calibrate(const toml::table& file, Protocol& protocol, toml::table& re
   resolved.insert("calibrate", reader.resolved());
 }
 
-void read_output(const toml::table& file, Protocol& protocol, toml::table& resolved, std::vector<KeyError>& errors) {
-  if (!file.contains("output")) return;
-  TableReader reader(table_of(file, "output", errors), "output", "output", line_of(*file.get("output")), errors);
+void read_output(const toml::table& table, Protocol& protocol, toml::table& resolved, std::vector<KeyError>& errors) {
+  TableReader reader(table, "output", "output", line_of(table), errors);
   protocol.snapshots_every = reader.whole_number("snapshots_every");
   reader.finish();
   resolved.insert("output", reader.resolved());
@@ -138,7 +137,7 @@ Protocol read_file(toml::table file, const std::string& path, const std::vector<
   protocol::expect_top_tables(file, errors);
   read_test(table_of(file, "test", errors), protocol, resolved, errors);
   read_loading(table_of(file, "loading", errors), protocol, resolved, errors);
-  read_output(file, protocol, resolved, errors);
+  read_output(table_of(file, "output", errors), protocol, resolved, errors);
   read_specimen_name(file, protocol, resolved, errors);
   read_calibrate(file, protocol, resolved, errors);
   for (const char* name : override_tables) {
