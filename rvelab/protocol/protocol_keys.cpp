@@ -1,91 +1,14 @@
 #include "rvelab/protocol/protocol_keys.hpp"
 
 #include <algorithm>
-#include <limits>
-#include <sstream>
 #include <stdexcept>
 
+#include "rvelab/protocol/key_builders.hpp"
 #include "rvelab/protocol/protocol.hpp"
 
 namespace rvelab {
 namespace protocol {
 namespace {
-
-using io::Range;
-using Words = std::vector<std::string>;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr Range any{0, 0};
-constexpr Range positive{0, infinity, true, true};
-constexpr Range ratio{0, 1, true, true};
-constexpr Range steps{1, 1e12};
-
-std::string as_toml(double value) {
-  std::ostringstream text;
-  text.precision(15);
-  text << value;
-  return text.str();
-}
-std::string as_toml(long value) { return std::to_string(value); }
-
-// The default is that of the struct that the key fills: it is written nowhere twice.
-
-ProtocolKey number(const char* table, const char* name, const char* unit, double initial, const Range& range,
-                   const char* meaning) {
-  return {
-      {table, name, unit, "number", as_toml(initial), range.in_words(), meaning}, KeyKind::number, range, {}, initial};
-}
-
-/// Without a default of its own; `initial` says in words what holds instead, "" if nothing does.
-ProtocolKey number(const char* table, const char* name, const char* unit, const char* initial, const Range& range,
-                   const char* meaning) {
-  return {{table, name, unit, "number", initial, range.in_words(), meaning}, KeyKind::number, range, {}, {}};
-}
-
-ProtocolKey whole_number(const char* table, const char* name, long initial, const Range& range, const char* meaning) {
-  return {{table, name, "1", "whole number", as_toml(initial), range.in_words(), meaning},
-          KeyKind::whole_number,
-          range,
-          {},
-          initial};
-}
-
-ProtocolKey truth(const char* table, const char* name, bool initial, const char* meaning) {
-  return {{table, name, "-", "truth", initial ? "true" : "false", "true, false", meaning},
-          KeyKind::truth,
-          any,
-          {},
-          initial};
-}
-
-ProtocolKey text(const char* table, const char* name, const char* initial, const char* meaning) {
-  return {{table, name, "-", "text", initial, "any text", meaning}, KeyKind::text, any, {}, {}};
-}
-
-/// The first word is the default, unless `initial` says something else in words.
-ProtocolKey word(const char* table, const char* name, const Words& words, const char* meaning,
-                 const char* initial = nullptr) {
-  std::string allowed;
-  for (const auto& each : words) allowed += (allowed.empty() ? "" : ", ") + each;
-  ProtocolKey key{{table, name, "-", "word", "", allowed, meaning}, KeyKind::word, any, words, {}};
-  if (initial == nullptr) {
-    key.initial = words.front();
-    key.key.initial = "\"" + words.front() + "\"";
-  } else {
-    key.key.initial = initial;
-  }
-  return key;
-}
-
-ProtocolKey required(ProtocolKey key) {
-  key.key.required = true;
-  return key;
-}
-
-ProtocolKey with_range(ProtocolKey key, const char* words) {
-  key.key.range = words;
-  return key;
-}
 
 std::vector<ProtocolKey> test() {
   const char* t = "test";
@@ -225,21 +148,23 @@ const std::vector<ProtocolKey>& protocol_keys() {
 }
 
 const ProtocolKey& protocol_key(const std::string& table, const std::string& name) {
-  const auto& keys = protocol_keys();
-  const auto found = std::find_if(
-      keys.begin(), keys.end(), [&](const auto& entry) { return entry.key.table == table && entry.key.name == name; });
-  if (found == keys.end())
-    throw std::logic_error("no entry for the key " + table + "." + name + " in protocol_keys.cpp");
-  return *found;
+  for (const auto* keys : {&protocol_keys(), &recipe_keys()}) {
+    for (const auto& entry : *keys) {
+      if (entry.key.table == table && entry.key.name == name) return entry;
+    }
+  }
+  throw std::logic_error("no entry for the key " + table + "." + name + " in protocol_keys.cpp or recipe_keys.cpp");
 }
 
 const std::vector<std::string>& top_tables() {
   static const std::vector<std::string> tables = [] {
     std::vector<std::string> list;
-    for (const Key& key : all_keys()) {
+    const auto add = [&](const Key& key) {
       const std::string top = key.table.substr(0, key.table.find('.'));
       if (std::find(list.begin(), list.end(), top) == list.end()) list.push_back(top);
-    }
+    };
+    for (const auto& entry : protocol_keys()) add(entry.key);
+    for (const Key& key : known_keys()) add(key);
     return list;
   }();
   return tables;
@@ -251,6 +176,7 @@ const std::vector<Key>& all_keys() {
   static const std::vector<Key> keys = [] {
     std::vector<Key> list;
     for (const auto& entry : protocol::protocol_keys()) list.push_back(entry.key);
+    for (const auto& entry : protocol::recipe_keys()) list.push_back(entry.key);
     list.insert(list.end(), known_keys().begin(), known_keys().end());
     return list;
   }();
