@@ -94,8 +94,11 @@ Json summary_of(const Job& job, const Packing& packing, double seconds) {
   made["seed"] = job.recipe.seed;
   made["void_ratio"] = packing.void_ratio;
   made["stress_Pa"] = row_major(rve.stress().topLeftCorner(dimension, dimension));
+  made["contacts"] = network.contacts.size();
   made["coordination_number"] = coordination_number(network);
   made["fabric_anisotropy"] = network.contacts.empty() ? Json() : Json(fabric_anisotropy(fabric(network), dimension));
+  made["fabric"] =
+      network.contacts.empty() ? Json() : row_major(fabric(network).topLeftCorner(dimension, dimension));
   made["unbalanced_force_ratio"] = rve.unbalanced_ratio();
   made["draw"] = packing.draw;
   made["preparation_friction"] = packing.preparation_friction;
@@ -132,7 +135,7 @@ void report(const RecipeFile& file, const std::vector<Job>& jobs, bool json) {
 }
 
 void run_pack(const PackArguments& arguments) {
-  const RecipeFile file = read_recipe(protocol_path(arguments.recipe), arguments.settings);
+  const RecipeFile file = read_recipe(input_path(arguments.recipe, InputKind::recipe), arguments.settings);
   expect_folder_of(arguments.output);
   std::vector<Job> jobs = jobs_of(file, arguments);
   const unsigned threads = arguments.threads > 0 ? arguments.threads : std::max(1u, std::thread::hardware_concurrency());

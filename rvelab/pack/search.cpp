@@ -93,7 +93,7 @@ class Search {
     }
     if (points.empty()) return low_ + (high_ - low_) * uniform_();
     const double near = fitted_coordinate(points, *recipe_.void_ratio, low_, high_);
-    const double width = 0.05 * (high_ - low_) / (1 + 0.25 * double(known));
+    const double width = 0.03 * (high_ - low_) / (1 + 0.25 * double(known));
     return std::clamp(near + width * (uniform_() - 0.5), low_, high_);
   }
 

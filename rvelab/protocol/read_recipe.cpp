@@ -81,6 +81,7 @@ void read_fraction(const toml::table& table, Recipe& recipe, toml::array& resolv
   fraction.share = reader.number("share");
   const std::size_t mistakes = errors.size();
   fraction.grading = read_grading(reader);
+  const bool grading_read = errors.size() == mistakes;
   const std::string material = reader.text("material", recipe.materials.front().name);
   std::string known;
   bool found = false;
@@ -92,7 +93,7 @@ void read_fraction(const toml::table& table, Recipe& recipe, toml::array& resolv
   }
   if (!found) reader.mistake("material", "is no material of the recipe; allowed: " + known + "; name one of these");
   reader.finish();
-  if (errors.size() == mistakes) {
+  if (grading_read) {
     try {
       check(fraction.grading, where.c_str());
     } catch (const InputError& error) {
