@@ -15,6 +15,9 @@ namespace {
 /// With the friction of the preparation: what counts is how dense the grains lie, not how still.
 constexpr Rest prepared{5e-2, 1e-2, 0.5, 10, 200, 200};
 
+/// Grains that collapse on the way lose their pressure; the cell then shrinks again.
+constexpr int most_attempts = 5;
+
 /// With the final friction: the void ratio is there to a few 1e-4.
 constexpr Rest nearly{5e-3, 1e-3, 0.5, 10, 2000, 200};
 
@@ -57,7 +60,9 @@ Draw draw(const Recipe& recipe, long number, double friction, const std::atomic<
   result.friction = friction;
   if (recipe.stress) {
     StressGoal goal{isotropic_stress(mean_pressure(*recipe.stress, d), recipe.shape), true, d};
-    consolidate(rve, goal, prepared);
+    for (int attempt = 0; !consolidate(rve, goal, prepared) && attempt < most_attempts; ++attempt) {
+      rve = steered(pressed_again(recipe, rve, stop), recipe, stop);
+    }
     rve.set_materials(recipe.materials);
     goal.stress = *recipe.stress;
     consolidate(rve, goal, nearly);
