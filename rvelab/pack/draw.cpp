@@ -21,8 +21,8 @@ constexpr int most_attempts = 5;
 /// With the final friction: the void ratio is there to a few 1e-4.
 constexpr Rest nearly{5e-3, 1e-3, 0.5, 10, 2000, 200};
 
-/// Tolerances from the target beyond which the rest of the way is not worth it.
-constexpr double far_off = 1.5;
+/// What coming to rest may still change in a void ratio; further from the target it is not worth it.
+constexpr double still_to_come = 5e-4;
 
 /// The assembly with a pace that is steered from here on. The overlaps that the pressure will make set its scale, those
 /// of the start would make it idle; how dense it becomes does not depend on the balance that is asked for on the way.
@@ -68,7 +68,7 @@ Draw draw(const Recipe& recipe, long number, double friction, const std::atomic<
     consolidate(rve, goal, nearly);
     result.void_ratio = void_ratio(rve.network());
     const double miss = recipe.void_ratio ? std::abs(result.void_ratio - *recipe.void_ratio) : 0;
-    if (miss > far_off * recipe.void_ratio_tolerance) return result;
+    if (miss > recipe.void_ratio_tolerance + still_to_come) return result;
     Rest rest;
     rest.stress_tolerance = recipe.stress_tolerance;
     rest.unbalanced = recipe.unbalanced;
