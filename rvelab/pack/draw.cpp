@@ -30,6 +30,7 @@ Rve steered(const Rve& rve, const Recipe& recipe, const std::atomic<bool>* stop)
   Specimen s = rve.specimen();
   s.solver = SolverOptions{};
   s.solver.target_unbalanced = 1e-2;
+  s.solver.max_overlap_ratio = 1e3;  // soft grains on their way; what the pressure makes of them is theirs
   s.state = SolverState{};
   if (recipe.stress) {
     const Network network = rve.network();
