@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "rvelab/error.hpp"
+#include "rvelab/solver/gather_table.hpp"
 
 namespace rvelab {
 
@@ -129,32 +130,6 @@ std::vector<Carried> history_of(const Fixture& f, const PairTable& pairs) {
   return all;
 }
 
-/// Blocks of four grains, each with as many slots as the busiest of the four needs on either side.
-void fill_gather_table(std::size_t grains, std::int32_t force_row, const std::vector<ListedPair>& listed,
-                       PairTable& pairs) {
-  const std::size_t rows = padded_to_lanes(grains), blocks = rows / 4;
-  std::vector<std::int32_t> as_first(rows, 0), as_second(rows, 0);
-  for (const ListedPair& pair : listed) {
-    ++as_first[pair.i];
-    ++as_second[pair.j];
-  }
-  pairs.slot_begin.assign(blocks + 1, 0);
-  for (std::size_t b = 0; b < blocks; ++b) {
-    std::int32_t most = 0;
-    for (std::size_t g = 4 * b; g < 4 * b + 4; ++g) most = std::max({most, as_first[g], as_second[g]});
-    pairs.slot_begin[b + 1] = pairs.slot_begin[b] + most;
-  }
-  const auto nothing = force_row * std::int32_t(listed.size());  // the first padding pair
-  pairs.slots.assign(8 * std::size_t(pairs.slot_begin[blocks]), nothing);
-  std::fill(as_first.begin(), as_first.end(), 0);
-  std::fill(as_second.begin(), as_second.end(), 0);
-  for (std::size_t q = 0; q < listed.size(); ++q) {
-    const auto i = std::size_t(listed[q].i), j = std::size_t(listed[q].j);
-    pairs.slots[8 * std::size_t(pairs.slot_begin[j / 4] + as_second[j]++) + j % 4] = force_row * std::int32_t(q);
-    pairs.slots[8 * std::size_t(pairs.slot_begin[i / 4] + as_first[i]++) + 4 + i % 4] = force_row * std::int32_t(q);
-  }
-}
-
 /// What becomes of a history whose pair is not listed: in a run the grains parted in the sub-step just made, and their
 /// force ends with it as that of every contact that opens; in a specimen it is a mistake.
 enum class Lost { dropped, refused };
@@ -210,7 +185,7 @@ void fill(const Fixture& f, const std::vector<ListedPair>& listed, const std::ve
       pairs.radius_j[q] = f.radius[listed[q].j];
     }
   }
-  fill_gather_table(f.size(), force_row_length(f.shape), listed, pairs);
+  fill_gather_table(padded_to_lanes(f.size()), force_row_length(f.shape), pairs);
 }
 
 /// The key of a pair after images changed; a grain's own image is kept pointing forward, forces turning round with it.
@@ -339,6 +314,7 @@ void open(const Specimen& s, Fixture& f, Assembly& a) {
     double* row = a.rows.data() + g * f.row_length();
     for (int k = 0; k < f.dimension(); ++k) row[k] = s.grains.position[g][k];
     row[f.shape == Shape::disc ? 6 : 3] = f.radius[g];
+    if (f.shape == Shape::sphere) row[11] = f.radius[g];
     a.set_velocity(f, g, s.grains.velocity[g], s.grains.spin[g]);
   }
 
@@ -522,9 +498,13 @@ PairArrays arrays_of(PairTable& t) {
 }
 
 GrainArrays arrays_of(Assembly& a) {
-  return {
-      a.rows.data(),       a.mass.data(), a.inverse_mass.data(), a.inverse_inertia.data(), a.pairs.slot_begin.data(),
-      a.pairs.slots.data()};
+  return {a.rows.data(),
+          a.mass.data(),
+          a.inverse_mass.data(),
+          a.inverse_inertia.data(),
+          a.pairs.slot_begin.data(),
+          a.pairs.slots.data(),
+          a.pairs.tasks.data()};
 }
 
 }  // namespace rvelab

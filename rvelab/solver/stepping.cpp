@@ -188,6 +188,7 @@ void begin_loading(const Fixture& f, Assembly& a, Loading loading) {
 void advance(const Fixture& f, Assembly& a, const Advance& what) {
   const bool physical = what.loading == Loading::physical;
   StepConstants c = base_constants(f, a);
+  c.losses = f.options.ledger;
   c.local_damping = physical ? f.damping.local : f.damping.local_quasi_static;
   const auto kind = std::size_t(damping_kind(f.damping, what.loading));
   const GrainKernel move = physical ? f.kernels.dynamic[kind] : f.kernels.quasi_static[kind];
