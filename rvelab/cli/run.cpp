@@ -1,7 +1,9 @@
 // rvelab run: one test on one specimen.
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "rvelab/calibrate/mohr.hpp"
@@ -12,6 +14,7 @@
 #include "rvelab/cli/recording.hpp"
 #include "rvelab/cli/report.hpp"
 #include "rvelab/protocol/run.hpp"
+#include "rvelab/solver/sweep.hpp"
 
 namespace rvelab::cli {
 namespace {
@@ -20,6 +23,7 @@ struct RunArguments {
   std::string protocol, specimen, output;
   std::vector<std::string> settings;
   RecordingOptions recording;
+  unsigned threads = 0;  ///< 0: one per core
   bool json = false;
 };
 
@@ -122,6 +126,12 @@ void run_test(const RunArguments& arguments) {
     Watch watch;
     watch.on_moment = [&](const Moment& moment) { line.show(moment); };
     watch.stop = &stop_on_signals();
+    std::unique_ptr<Workers> team;
+    if (specimen.grains.size() >= least_shared_grains) {
+      const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
+      team = std::make_unique<Workers>(arguments.threads > 0 ? arguments.threads : cores);
+    }
+    watch.team = team.get();
     run = run_recorded(protocol, specimen, store.get(), watch);
   }
   if (!run.complete) end_stopped(run, arguments.output);
@@ -142,10 +152,13 @@ void add_run(CLI::App& app) {
       ->expected(1)
       ->allow_extra_args(false)
       ->take_all();
+  command->add_option("--threads", arguments->threads, "threads of a specimen from 30,000 grains on; else one per core")
+      ->check(CLI::Range(1u, 4096u));
   arguments->recording.add_to(*command);
   command->add_flag("--json", arguments->json, "print one JSON object, records as arrays by name");
   command->footer(
-      "One specimen runs on one thread; `rvelab calibrate --threads` runs several tests at a time. Records go to\n"
+      "A specimen below 30,000 grains runs on one thread; `rvelab calibrate --threads` runs several tests at a time.\n"
+      "The number of threads changes no bit. Records go to\n"
       "R.h5.journal at once and to R.h5 now and then; Ctrl-C and SIGTERM stop the test and keep both.\n"
       "Examples:\n"
       "  rvelab run biaxial --specimen dense.h5 -o R.h5\n"

@@ -53,6 +53,7 @@ RunningTest::RunningTest(const Protocol& protocol, const Specimen& specimen, con
       records_planned_(planned_records(protocol)) {
   run.result.protocol = protocol.name;
   rve.watch(watch.stop);
+  rve.share(watch.team);
 }
 
 Error RunningTest::failed(const std::string& text) const { return Error("stage \"" + stage_name_ + "\": " + text); }

@@ -9,6 +9,8 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/solver/gather_table.hpp"
+#include "rvelab/solver/memory_order.hpp"
+#include "rvelab/solver/sweep.hpp"
 
 namespace rvelab {
 
@@ -60,6 +62,18 @@ void check_cell(const Specimen& s) {
   const double from_orthogonal = (s.cell.rotation.transpose() * s.cell.rotation - Matrix3::Identity()).norm();
   if (!(from_orthogonal < 1e-8) || !(s.cell.rotation.determinant() > 0))
     refuse("specimen: the rotation of the cell frame must be orthogonal with determinant +1");
+}
+
+void check_contacts(const Specimen& s) {
+  const std::size_t n = s.grains.size();
+  for (const Contact& c : s.contacts) {
+    if (c.i < 0 || c.j < c.i || std::size_t(c.j) >= n)
+      refuse("specimen: contact of grains " + std::to_string(c.i) + " and " + std::to_string(c.j) +
+             "; indices must be 0 <= i <= j < " + std::to_string(n));
+    if (!c.tangential_force.allFinite() || !c.rolling_moment.allFinite() || !std::isfinite(c.last_root_overlap))
+      refuse("specimen: contact of grains " + std::to_string(s.grains.id[std::size_t(c.i)]) + " and " +
+             std::to_string(s.grains.id[std::size_t(c.j)]) + ": its history is not finite");
+  }
 }
 
 void check_options(const SolverOptions& o) {
@@ -278,12 +292,20 @@ void set_pair_parameters(const Fixture& f, PairTable& pairs) {
   }
 }
 
-void open(const Specimen& s, Fixture& f, Assembly& a) {
-  check(s.contact, s.damping, s.materials);
-  check_options(s.solver);
-  check_cell(s);
-  check_grains(s);
-  const std::size_t n = s.grains.size(), padded = padded_to_lanes(n);
+void open(const Specimen& specimen, Fixture& f, Assembly& a) {
+  check(specimen.contact, specimen.damping, specimen.materials);
+  check_options(specimen.solver);
+  check_cell(specimen);
+  check_grains(specimen);
+  check_contacts(specimen);
+  const std::size_t n = specimen.grains.size(), padded = padded_to_lanes(n);
+  std::vector<std::int32_t> order = specimen.state.memory_order;
+  if (!order.empty() && !is_permutation(order, n))
+    refuse("specimen: the memory order of the state is no permutation of the " + std::to_string(n) +
+           " grains; leave it empty");
+  if (order.empty() && n >= least_ordered_grains) order = space_filling_order(specimen.cell, specimen.grains.position);
+  const Specimen arranged = order.empty() ? Specimen() : in_memory_order(specimen, order);
+  const Specimen& s = order.empty() ? specimen : arranged;
   f.shape = s.shape;
   f.materials = s.materials;
   f.contact = s.contact;
@@ -304,6 +326,7 @@ void open(const Specimen& s, Fixture& f, Assembly& a) {
 
   a.cell = s.cell;
   a.state = s.state;
+  a.state.memory_order = std::move(order);
   if (!(a.state.list_skin > 0 && a.state.list_skin < f.largest_skin)) a.state.list_skin = f.largest_skin;
   a.rows.assign(padded * f.row_length(), 0.0);
   for (Buffer* b : {&a.mass, &a.inverse_mass, &a.inverse_inertia}) b->assign(padded, 0.0);
@@ -319,15 +342,8 @@ void open(const Specimen& s, Fixture& f, Assembly& a) {
   }
 
   std::vector<Carried> carried;
-  for (const Contact& c : s.contacts) {
-    if (c.i < 0 || c.j < c.i || std::size_t(c.j) >= n)
-      refuse("specimen: contact of grains " + std::to_string(c.i) + " and " + std::to_string(c.j) +
-             "; indices must be 0 <= i <= j < " + std::to_string(n));
-    if (!c.tangential_force.allFinite() || !c.rolling_moment.allFinite() || !std::isfinite(c.last_root_overlap))
-      refuse("specimen: contact of grains " + std::to_string(f.id[c.i]) + " and " + std::to_string(f.id[c.j]) +
-             ": its history is not finite");
+  for (const Contact& c : s.contacts)
     carried.push_back({{c.i, c.j, c.image}, c.tangential_force, c.rolling_moment, c.last_root_overlap});
-  }
   const auto by_key = [](const Carried& x, const Carried& y) { return x.key < y.key; };
   if (!std::is_sorted(carried.begin(), carried.end(), by_key)) std::sort(carried.begin(), carried.end(), by_key);
   fill(f, list_pairs(a.cell, a.rows.data(), f.row_length(), f.radius, a.state.list_skin), carried, Lost::refused,
@@ -359,7 +375,7 @@ Specimen close(const Fixture& f, const Assembly& a) {
   }
   for (const Carried& c : history_of(f, a.pairs))
     s.contacts.push_back({c.key.i, c.key.j, c.key.image, c.tangential, c.moment, c.root_overlap});
-  return s;
+  return in_id_order(std::move(s), a.state.memory_order);
 }
 
 void check_height(const Fixture& f, const Cell& cell) {
@@ -424,7 +440,8 @@ Reduction rebuild(const Fixture& f, Assembly& a) {
   }
   const auto by_key = [](const Carried& x, const Carried& y) { return x.key < y.key; };
   if (!std::is_sorted(carried.begin(), carried.end(), by_key)) std::sort(carried.begin(), carried.end(), by_key);
-  fill(f, list_pairs(a.cell, a.rows.data(), f.row_length(), f.radius, a.state.list_skin), carried, Lost::dropped,
+  Workers* team = f.size() >= least_shared_grains ? f.team : nullptr;
+  fill(f, list_pairs(a.cell, a.rows.data(), f.row_length(), f.radius, a.state.list_skin, team), carried, Lost::dropped,
        a.pairs);
   a.state.has_reference = true;
   a.state.list_lattice = a.cell.lattice;

@@ -10,6 +10,7 @@
 #include "rvelab/solver/neighbour_list.hpp"
 #include "rvelab/solver/scene.hpp"
 #include "rvelab/solver/specimen.hpp"
+#include "rvelab/solver/workers.hpp"
 
 namespace rvelab {
 
@@ -30,6 +31,7 @@ struct Fixture {
   SceneKernels kernels;
   KernelLaw law = KernelLaw::linear;
   const std::atomic<bool>* stop = nullptr;  ///< true: advance throws Interrupted (Rve::watch)
+  Workers* team = nullptr;                  ///< shares the steps of a large assembly (Rve::share)
 
   std::size_t size() const { return id.size(); }
   int dimension() const { return dimension_of(shape); }
@@ -68,7 +70,8 @@ struct Assembly {
   void set_velocity(const Fixture& f, std::size_t g, const Vector3& v, const Vector3& w);
 };
 
-/// Checks a specimen and opens it. Throws InputError.
+/// Checks a specimen and opens it; from some size on its grains are kept in an order of their own (memory_order.hpp),
+/// in which every index of Fixture and Assembly counts. Throws InputError.
 void open(const Specimen& specimen, Fixture& fixture, Assembly& assembly);
 Specimen close(const Fixture& fixture, const Assembly& assembly);
 

@@ -183,39 +183,64 @@ class Search {
   std::vector<Landing> landings_[3];
 };
 
+constexpr std::size_t search_piece = 4096;
+
+/// Calls work(piece, first, last) for pieces of up to search_piece of `count` things, on the team if there is one.
+template <class Work>
+void in_pieces(std::size_t count, Workers* team, const Work& work) {
+  const std::size_t pieces = (count + search_piece - 1) / search_piece;
+  const auto one = [&](std::size_t k) { work(k, k * search_piece, std::min(count, (k + 1) * search_piece)); };
+  if (team != nullptr && pieces > 1)
+    team->run(pieces, [&one](std::size_t k) { one(k); });
+  else
+    for (std::size_t k = 0; k < pieces; ++k) one(k);
+}
+
 /// By (i, j, image): counted by i, then the few of each i put in order.
-std::vector<ListedPair> in_order(const std::vector<ListedPair>& found, std::size_t grains) {
+std::vector<ListedPair> in_order(const std::vector<std::vector<ListedPair>>& found, std::size_t grains, Workers* team) {
   std::vector<std::uint32_t> begin(grains + 1, 0);
-  for (const ListedPair& pair : found) ++begin[std::size_t(pair.i) + 1];
+  for (const auto& of_piece : found)
+    for (const ListedPair& pair : of_piece) ++begin[std::size_t(pair.i) + 1];
   for (std::size_t g = 0; g < grains; ++g) begin[g + 1] += begin[g];
-  std::vector<ListedPair> pairs(found.size());
+  std::vector<ListedPair> pairs(begin[grains]);
   std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
-  for (const ListedPair& pair : found) pairs[next[std::size_t(pair.i)]++] = pair;
-  for (std::size_t g = 0; g < grains; ++g) std::sort(pairs.begin() + begin[g], pairs.begin() + begin[g + 1]);
+  for (const auto& of_piece : found)
+    for (const ListedPair& pair : of_piece) pairs[next[std::size_t(pair.i)]++] = pair;
+  in_pieces(grains, team, [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t g = first; g < last; ++g) std::sort(pairs.begin() + begin[g], pairs.begin() + begin[g + 1]);
+  });
   return pairs;
 }
 
 }  // namespace
 
 std::vector<ListedPair> list_pairs(const Cell& cell, const double* x, std::size_t stride,
-                                   const std::vector<double>& radii, double skin) {
+                                   const std::vector<double>& radii, double skin, Workers* team) {
   const std::size_t n = radii.size();
   if (n == 0) return {};
   const double largest = *std::max_element(radii.begin(), radii.end());
   std::vector<Placed> grains(n);
-  for (std::size_t g = 0; g < n; ++g) grains[g] = placed(cell, x + stride * g, radii[g], g);
+  in_pieces(n, team, [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t g = first; g < last; ++g) grains[g] = placed(cell, x + stride * g, radii[g], g);
+  });
   const std::vector<SizeClass> classes = sort_into_bins(cell, grains, radii, skin, largest);
 
-  std::vector<ListedPair> found;
-  found.reserve(n * std::size_t(cell.dimension == 2 ? 4 : 8));
-  Search search(cell, skin, found);
+  std::vector<std::vector<ListedPair>> found;
   for (std::size_t of = 0; of < classes.size(); ++of)
     for (std::size_t with = of; with < classes.size(); ++with) {
-      if (classes[of].grains.empty() || classes[with].grains.empty()) continue;
-      search.aim(classes[with], classes[of].largest_radius);
-      for (const Binned& b : classes[of].grains) search.find(grains[std::size_t(b.grain)], of == with);
+      const std::vector<Binned>& members = classes[of].grains;
+      if (members.empty() || classes[with].grains.empty()) continue;
+      const std::size_t before = found.size();
+      found.resize(before + (members.size() + search_piece - 1) / search_piece);
+      in_pieces(members.size(), team, [&](std::size_t piece, std::size_t first, std::size_t last) {
+        std::vector<ListedPair>& pairs = found[before + piece];
+        pairs.reserve((last - first) * std::size_t(cell.dimension == 2 ? 4 : 8));
+        Search search(cell, skin, pairs);
+        search.aim(classes[with], classes[of].largest_radius);
+        for (std::size_t k = first; k < last; ++k) search.find(grains[std::size_t(members[k].grain)], of == with);
+      });
     }
-  return in_order(found, n);
+  return in_order(found, n, team);
 }
 
 }  // namespace rvelab

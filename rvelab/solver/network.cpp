@@ -1,6 +1,7 @@
 // Rve::network: the contact network as a value.
 #include <cmath>
 
+#include "rvelab/solver/memory_order.hpp"
 #include "rvelab/solver/rve_impl.hpp"
 
 namespace rvelab {
@@ -75,7 +76,7 @@ Network Rve::network() const {
     net.grains[std::size_t(j)].resultant += force;
     net.contacts.push_back(c);
   }
-  return net;
+  return in_id_order(std::move(net), a.state.memory_order);
 }
 
 }  // namespace rvelab

@@ -137,6 +137,8 @@ Report Rve::relax(double unbalanced, long max_steps) {
   });
 }
 
+void Rve::share(Workers* team) { impl_->fixture.team = team; }
+
 void Rve::watch(const std::atomic<bool>* stop) { impl_->fixture.stop = stop; }
 
 void Rve::set_materials(const std::vector<Material>& materials) {
@@ -160,12 +162,15 @@ void Rve::set_velocities(const std::vector<Vector3>& velocity, const std::vector
   if (velocity.size() != size() || spin.size() != size())
     throw InputError("set_velocities: " + std::to_string(velocity.size()) + " velocities and " +
                      std::to_string(spin.size()) + " spins; the specimen has " + std::to_string(size()) + " grains");
-  for (std::size_t g = 0; g < size(); ++g)
-    if (!velocity[g].allFinite() || !spin[g].allFinite())
-      throw InputError("set_velocities: the velocity or spin of grain " + std::to_string(m.fixture.id[g]) +
+  const auto& order = m.now.state.memory_order;
+  const auto index = [&](std::size_t place) { return order.empty() ? place : std::size_t(order[place]); };
+  for (std::size_t place = 0; place < size(); ++place)
+    if (!velocity[index(place)].allFinite() || !spin[index(place)].allFinite())
+      throw InputError("set_velocities: the velocity or spin of grain " + std::to_string(m.fixture.id[place]) +
                        " is not finite");
   begin_loading(m.fixture, m.now, Loading::physical);
-  for (std::size_t g = 0; g < size(); ++g) m.now.set_velocity(m.fixture, g, velocity[g], spin[g]);
+  for (std::size_t place = 0; place < size(); ++place)
+    m.now.set_velocity(m.fixture, place, velocity[index(place)], spin[index(place)]);
   m.now.state.mean_velocity.setZero();
   evaluate_forces(m.fixture, m.now);
 }
@@ -184,6 +189,11 @@ void Rve::zero_velocities() {
 
 Specimen Rve::specimen() const { return close(impl_->fixture, impl_->now); }
 std::vector<std::byte> Rve::save() const { return to_bytes(specimen()); }
-void Rve::restore(std::span<const std::byte> snapshot) { *this = Rve(from_bytes(snapshot)); }
+void Rve::restore(std::span<const std::byte> snapshot) {
+  Rve restored(from_bytes(snapshot));
+  restored.watch(impl_->fixture.stop);
+  restored.share(impl_->fixture.team);
+  *this = std::move(restored);
+}
 
 }  // namespace rvelab

@@ -9,6 +9,7 @@
 
 #include "rvelab/solver/network.hpp"
 #include "rvelab/solver/specimen.hpp"
+#include "rvelab/solver/workers.hpp"
 
 namespace rvelab {
 
@@ -88,6 +89,11 @@ class Rve {
   /// A flag that apply and relax look at after each sub-step: once it is true they throw Interrupted, and the RVE is as
   /// it was before the call. Copies look at the same flag. It must outlive them; nullptr: none.
   void watch(const std::atomic<bool>* stop);
+
+  /// A team that shares the steps of a large cell, from 30,000 grains on; below, it is left alone. The bits are the
+  /// same on any team and on none. Copies look at the same team, which must outlive them and must not be at work when a
+  /// call is made (an entry of a batch has the thread it runs on); nullptr: none.
+  void share(Workers* team);
 
   /// Changes contact parameters in place (friction for preparation, no slip for probes); history is kept.
   void set_materials(const std::vector<Material>& materials);

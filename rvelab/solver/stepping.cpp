@@ -7,6 +7,7 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/solver/inertia.hpp"
+#include "rvelab/solver/sweep.hpp"
 
 namespace rvelab {
 
@@ -201,6 +202,7 @@ void advance(const Fixture& f, Assembly& a, const Advance& what) {
   PairArrays pairs = arrays_of(a.pairs);
   GrainArrays grains = arrays_of(a);
   const long padded_grains = long(a.mass.size());
+  Workers* team = f.size() >= least_shared_grains ? f.team : nullptr;
   StepSums sums;
   Matrix3 rate_end, rate_mid, moment_before = Matrix3::Zero();
   if (f.options.ledger) moment_before = contact_moment(f, a);
@@ -216,7 +218,7 @@ void advance(const Fixture& f, Assembly& a, const Advance& what) {
       set_frame_terms(rate_mid, omega, mean_spin - a.state.mean_spin, c);
       a.state.mean_spin = mean_spin;
     }
-    move(c, grains, pairs, 0, padded_grains, &sums);
+    sweep_grains(move, c, grains, pairs, padded_grains, team, sums);
     // The rows that pad the lanes lose the mean velocity too, step after step; their speed must never count.
     std::fill(a.rows.begin() + std::ptrdiff_t(f.size()) * f.row_length(), a.rows.end(), 0.0);
     for (int k = 0; k < 3; ++k) a.state.mean_velocity[k] = sums.momentum[k] / total_mass;
@@ -245,7 +247,7 @@ void advance(const Fixture& f, Assembly& a, const Advance& what) {
       grains = arrays_of(a);
     }
     if (!f.options.ledger) {
-      f.kernels.pairs(c, pairs, a.rows.data(), 0, long(a.pairs.padded()), nullptr);
+      sweep_pairs(f.kernels.pairs, c, pairs, a.rows.data(), long(a.pairs.padded()), team);
       continue;
     }
     Dissipation lost;

@@ -103,10 +103,10 @@ struct Pairs {
     all(k, k2, l, l2, m, m2, n, n2, o, o2, p, p2, q, q2, r, r2);
   }
   void fields(SolverState& a, SolverState& b) {
-    auto& [k, l, positions, m, n, o, p, q, r, s, t, u, v, w, x, y, z, c, ledger] = a;
-    auto& [k2, l2, positions2, m2, n2, o2, p2, q2, r2, s2, t2, u2, v2, w2, x2, y2, z2, c2, ledger2] = b;
+    auto& [k, l, positions, m, n, o, p, q, r, s, t, u, v, w, x, y, z, c, order, ledger] = a;
+    auto& [k2, l2, positions2, m2, n2, o2, p2, q2, r2, s2, t2, u2, v2, w2, x2, y2, z2, c2, order2, ledger2] = b;
     all(k, k2, l, l2, m, m2, n, n2, o, o2, p, p2, q, q2, r, r2, s, s2, t, t2, u, u2, v, v2, w, w2, x, x2, y, y2);
-    all(z, z2, c, c2, positions, positions2);
+    all(z, z2, c, c2, positions, positions2, order, order2);
     fields(ledger, ledger2);
   }
   void fields(ProbeResult& a, ProbeResult& b) {
@@ -215,6 +215,7 @@ inline Specimen random_specimen(unsigned seed, std::size_t grain_count = 17, std
   grains.material.resize(grain_count);
   for (auto* vectors : {&grains.position, &grains.velocity, &grains.spin}) vectors->resize(grain_count);
   specimen.state.list_positions.resize(grain_count);
+  specimen.state.memory_order.resize(grain_count);
   specimen.contacts.resize(contact_count);
   specimen.materials.resize(3);
   Pairs<RandomFill>{RandomFill(seed)}(specimen, specimen);
