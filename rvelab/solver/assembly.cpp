@@ -8,17 +8,12 @@
 #include <sstream>
 
 #include "rvelab/error.hpp"
-#include "rvelab/solver/gather_table.hpp"
 #include "rvelab/solver/memory_order.hpp"
 #include "rvelab/solver/sweep.hpp"
 
 namespace rvelab {
 
 namespace {
-
-constexpr std::size_t lanes_padding = 8;
-
-std::size_t padded_to_lanes(std::size_t n) { return (n / lanes_padding + 1) * lanes_padding; }
 
 [[noreturn]] void refuse(const std::string& what) { throw InputError(what); }
 
@@ -162,23 +157,11 @@ void fill(const Fixture& f, const std::vector<ListedPair>& listed, const std::ve
     pairs.j[p] = listed[p].j;
     pairs.image[p] = listed[p].image;
   }
-  pairs.row_i.resize(padded);
-  pairs.row_j.resize(padded);
-  for (std::size_t p = 0; p < padded; ++p) {
-    pairs.row_i[p] = pairs.i[p] * f.row_length();
-    pairs.row_j[p] = pairs.j[p] * f.row_length();
-  }
-  for (int k = 0; k < f.dimension(); ++k) {
-    pairs.image_number[k].resize(padded);
-    for (std::size_t p = 0; p < padded; ++p) pairs.image_number[k][p] = pairs.image[p][k];
-  }
   for (int k = 0; k < f.tangential_components(); ++k) {
     pairs.tangential[k].assign(padded, 0.0);
     if (f.contact.rolling) pairs.moment[k].assign(padded, 0.0);
   }
   if (f.law == KernelLaw::hertz_mindlin) pairs.root_overlap.assign(padded, 0.0);
-  pairs.force.assign(padded * force_row_length(f.shape), 0.0);
-  set_pair_parameters(f, pairs);
 
   std::size_t p = 0;
   for (const Carried& c : carried) {
@@ -191,15 +174,7 @@ void fill(const Fixture& f, const std::vector<ListedPair>& listed, const std::ve
                        "the positions");
   }
 
-  if (f.shape == Shape::disc) {
-    pairs.radius_i.assign(padded, 0.0);
-    pairs.radius_j.assign(padded, 0.0);
-    for (std::size_t q = 0; q < n; ++q) {
-      pairs.radius_i[q] = f.radius[listed[q].i];
-      pairs.radius_j[q] = f.radius[listed[q].j];
-    }
-  }
-  fill_gather_table(padded_to_lanes(f.size()), force_row_length(f.shape), pairs);
+  derive_pairs(f, pairs);
 }
 
 /// The key of a pair after images changed; a grain's own image is kept pointing forward, forces turning round with it.
@@ -270,28 +245,6 @@ void Assembly::set_velocity(const Fixture& f, std::size_t g, const Vector3& v, c
   }
 }
 
-void set_pair_parameters(const Fixture& f, PairTable& pairs) {
-  const std::size_t padded = pairs.padded();
-  const bool dashpot = f.damping.dashpot != Dashpot::none;
-  for (Buffer* b : {&pairs.kn, &pairs.kt, &pairs.friction}) b->assign(padded, 0.0);
-  if (f.contact.rolling)
-    for (Buffer* b : {&pairs.kr, &pairs.moment_cap}) b->assign(padded, 0.0);
-  if (dashpot) pairs.cn.assign(padded, 0.0);
-  for (std::size_t p = 0; p < pairs.listed; ++p) {
-    const auto i = pairs.i[p], j = pairs.j[p];
-    const PairParameters q = mix(f.contact, f.damping, f.materials[f.material[i]], f.radius[i], f.mass[i],
-                                 f.materials[f.material[j]], f.radius[j], f.mass[j]);
-    pairs.kn[p] = q.kn;
-    pairs.kt[p] = q.kt;
-    pairs.friction[p] = q.friction;
-    if (f.contact.rolling) {
-      pairs.kr[p] = q.kr;
-      pairs.moment_cap[p] = q.moment_cap;
-    }
-    if (dashpot) pairs.cn[p] = q.cn;
-  }
-}
-
 void open(const Specimen& specimen, Fixture& f, Assembly& a) {
   check(specimen.contact, specimen.damping, specimen.materials);
   check_options(specimen.solver);
@@ -321,9 +274,7 @@ void open(const Specimen& specimen, Fixture& f, Assembly& a) {
   f.mean_radius = std::accumulate(f.radius.begin(), f.radius.end(), 0.0) / double(n);
   f.largest_skin = f.options.skin * f.mean_radius;
   f.min_height = f.options.min_height > 0 ? f.options.min_height : 2 * f.largest_radius;
-  f.mass.resize(n);
-  f.inertia.resize(n);
-
+  std::vector<double> mass(n), inertia(n);
   a.cell = s.cell;
   a.state = s.state;
   a.state.memory_order = std::move(order);
@@ -332,14 +283,16 @@ void open(const Specimen& specimen, Fixture& f, Assembly& a) {
   for (Buffer* b : {&a.mass, &a.inverse_mass, &a.inverse_inertia}) b->assign(padded, 0.0);
   for (std::size_t g = 0; g < n; ++g) {
     const Material& m = f.materials[f.material[g]];
-    f.mass[g] = m.density * grain_volume(f.shape, f.radius[g], s.cell.lattice(2, 2));
-    f.inertia[g] = moment_of_inertia(f.shape, f.mass[g], f.radius[g]);
+    mass[g] = m.density * grain_volume(f.shape, f.radius[g], s.cell.lattice(2, 2));
+    inertia[g] = moment_of_inertia(f.shape, mass[g], f.radius[g]);
     double* row = a.rows.data() + g * f.row_length();
     for (int k = 0; k < f.dimension(); ++k) row[k] = s.grains.position[g][k];
     row[f.shape == Shape::disc ? 6 : 3] = f.radius[g];
     if (f.shape == Shape::sphere) row[11] = f.radius[g];
     a.set_velocity(f, g, s.grains.velocity[g], s.grains.spin[g]);
   }
+  f.mass = std::move(mass);
+  f.inertia = std::move(inertia);
 
   std::vector<Carried> carried;
   for (const Contact& c : s.contacts)

@@ -32,8 +32,9 @@ void set_elastic(const Fixture& f, const PairTable& pairs, std::size_t p, Contac
 }  // namespace
 
 Network Rve::network() const {
-  const Fixture& f = impl_->fixture;
-  const Assembly& a = impl_->now;
+  const Impl& m = impl_->awake();
+  const Fixture& f = m.fixture;
+  const Assembly& a = m.now;
   Network net;
   net.shape = f.shape;
   net.cell = a.cell;

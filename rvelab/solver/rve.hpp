@@ -52,6 +52,13 @@ struct MixedTarget {
   long wait = 200;                 ///< sub-steps that the end of the increment may wait for the stress
 };
 
+/// Bytes that an RVE holds, without the arrays that its copies share (ids, radii, materials, masses).
+struct Memory {
+  std::size_t state = 0;    ///< places, velocities, contact histories
+  std::size_t list = 0;     ///< neighbour list: pairs, and places when it was built
+  std::size_t working = 0;  ///< what rest() lets go of
+};
+
 class Rve {
  public:
   /// Opens a specimen: checks it (InputError), chooses the compiled scene, lists neighbours. Contacts carry their
@@ -85,6 +92,12 @@ class Rve {
 
   Network network() const;
   Specimen specimen() const;
+
+  /// Lets go of everything that can be made again from state and list, about two thirds of the memory. The next call
+  /// that needs it wakes the Rve, in the time of a few sub-steps; no bit changes. (Const calls wake it too: not two at
+  /// once.)
+  void rest();
+  Memory memory() const;
 
   /// A flag that apply and relax look at after each sub-step: once it is true they throw Interrupted, and the RVE is as
   /// it was before the call. Copies look at the same flag. It must outlive them; nullptr: none.

@@ -14,6 +14,10 @@ constexpr std::size_t largest_kept_scratch = 20'000;
 struct Rve::Impl {
   Fixture fixture;
   Assembly now;
+  bool resting = false;  ///< only what rest() keeps is there
+
+  /// Every public call that looks at forces, parameters or masses comes through here.
+  Impl& awake();
 
   Matrix3 to_lab(const Matrix3& cell_frame) const {
     return now.cell.rotation * cell_frame * now.cell.rotation.transpose();

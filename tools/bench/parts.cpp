@@ -13,6 +13,7 @@
 #include "rvelab/pack/random_packing.hpp"
 #include "rvelab/solver/assembly.hpp"
 #include "rvelab/solver/inertia.hpp"
+#include "rvelab/solver/resting.hpp"
 #include "rvelab/solver/rve.hpp"
 #include "rvelab/solver/sweep.hpp"
 
@@ -116,6 +117,19 @@ void list_rebuild(benchmark::State& state, const std::string& name) {
   per_grain(state, o);
 }
 
+void waking(benchmark::State& state, const std::string& name) {
+  Opened& o = packing(name);
+  for (auto _ : state) {
+    state.PauseTiming();
+    Assembly copy = o.assembly;
+    rest(copy);
+    state.ResumeTiming();
+    wake(o.fixture, copy);
+    benchmark::DoNotOptimize(copy.pairs.listed);
+  }
+  per_grain(state, o);
+}
+
 void look_at_balance(benchmark::State& state, const std::string& name) {
   Opened& o = packing(name);
   for (auto _ : state) benchmark::DoNotOptimize(balance_of(o.fixture, o.assembly));
@@ -141,6 +155,7 @@ int main(int count, char** arguments) {
     benchmark::RegisterBenchmark((name + "/gather_and_integrate_undamped").c_str(), gather_and_integrate, name,
                                  KernelDamping::none);
     add("list_rebuild", list_rebuild);
+    add("waking", waking);
     add("look_at_balance", look_at_balance);
     add("look_at_stress", look_at_stress);
   }
