@@ -139,12 +139,23 @@ Vector3 rotation_vector(const Matrix3& rotation) {
 }
 
 Matrix3 kinetic_moment(const Fixture& f, const Assembly& a) {
-  Matrix3 sum = Matrix3::Zero();
-  for (std::size_t g = 0; g < f.size(); ++g) {
-    const Vector3 v = a.velocity(f, g) - a.state.mean_velocity;
-    for (int r = 0; r < 3; ++r)
-      for (int k = 0; k < 3; ++k) sum(r, k) -= a.mass[g] * (v[r] * v[k]);
+  // Called every few sub-steps under stress control.
+  const double* v = a.rows.data() + f.velocity_offset();
+  const Vector3 mean = a.state.mean_velocity;
+  double xx = 0, yy = 0, zz = 0, yz = 0, xz = 0, xy = 0;
+  for (std::size_t g = 0; g < f.size(); ++g, v += f.row_length()) {
+    const double mass = a.mass[g], x = v[0] - mean[0], y = v[1] - mean[1];
+    xx -= mass * (x * x);
+    yy -= mass * (y * y);
+    xy -= mass * (x * y);
+    if (f.shape == Shape::disc) continue;
+    const double z = v[2] - mean[2];
+    zz -= mass * (z * z);
+    yz -= mass * (y * z);
+    xz -= mass * (x * z);
   }
+  Matrix3 sum;
+  sum << xx, xy, xz, xy, yy, yz, xz, yz, zz;
   return sum;
 }
 
