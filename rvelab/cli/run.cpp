@@ -43,15 +43,28 @@ Json arrays_of(const std::vector<Record>& records) {
   arrays["strain"] = column(records, &Record::strain);
   arrays["deformation_gradient"] = column(records, &Record::deformation_gradient);
   arrays["stress_Pa"] = column(records, &Record::stress);
-  arrays["void_ratio"] = column(records, &Record::void_ratio);
-  arrays["coordination_number"] = column(records, &Record::coordination_number);
-  arrays["fabric_anisotropy"] = column(records, &Record::fabric_anisotropy);
-  arrays["sliding_fraction"] = column(records, &Record::sliding_fraction);
   arrays["unbalanced_force_ratio"] = column(records, &Record::unbalanced_force_ratio);
   arrays["inertial_number"] = column(records, &Record::inertial_number);
   arrays["substeps"] = column(records, &Record::substeps);
   arrays["held_error"] = column(records, &Record::held_error);
   arrays["target_held"] = column(records, &Record::target_held);
+  const std::uint64_t asked = records.empty() ? 0 : records.front().quantities;
+  const auto chosen = [&](Quantity quantity, const char* name, auto member) {
+    if ((asked & quantity) != 0) arrays[name] = column(records, member);
+  };
+  chosen(void_ratio_asked, "void_ratio", &Record::void_ratio);
+  chosen(coordination_number_asked, "coordination_number", &Record::coordination_number);
+  chosen(fabric_anisotropy_asked, "fabric_anisotropy", &Record::fabric_anisotropy);
+  chosen(sliding_fraction_asked, "sliding_fraction", &Record::sliding_fraction);
+  chosen(mechanical_void_ratio_asked, "mechanical_void_ratio", &Record::mechanical_void_ratio);
+  chosen(mechanical_coordination_number_asked, "mechanical_coordination_number",
+         &Record::mechanical_coordination_number);
+  chosen(fabric_asked, "fabric", &Record::fabric);
+  chosen(branch_fabric_asked, "branch_fabric", &Record::branch_fabric);
+  chosen(contact_stress_asked, "contact_stress_Pa", &Record::contact_stress);
+  chosen(reynolds_stress_asked, "reynolds_stress_Pa", &Record::reynolds_stress);
+  chosen(elastic_energy_asked, "elastic_energy_J", &Record::elastic_energy);
+  chosen(kinetic_energy_asked, "kinetic_energy_J", &Record::kinetic_energy);
   return arrays;
 }
 
@@ -81,7 +94,9 @@ void report(const TestRun& run, const RunArguments& arguments) {
     listing.add("peak_sigma_3_Pa", highest.stresses.minor, "Pa");
     listing.add("end_strain", records.back().strain);
     listing.add("end_stress_Pa", row_major(records.back().stress), "Pa");
-    listing.add("end_void_ratio", records.back().void_ratio);
+    if ((records.back().quantities & void_ratio_asked) != 0) {
+      listing.add("end_void_ratio", records.back().void_ratio);
+    }
   }
   for (const ProbeResult& probe : result.probes) {
     const bool only = result.probes.size() == 1;

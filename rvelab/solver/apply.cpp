@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "rvelab/cell/volume.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/solver/rve_impl.hpp"
 #include "rvelab/solver/servo.hpp"
@@ -220,6 +221,10 @@ Report Rve::Impl::load(const MixedTarget& target, double dt, Matrix3& gradient) 
     const Matrix3 from = gradient;
     strain += change;
     gradient = strain + fraction * target.spin;
+    if (target.volume_ratio > 0) {
+      gradient = with_volume_ratio(gradient, 1 + fraction * (target.volume_ratio - 1), fixture.dimension());
+      strain = 0.5 * (gradient + gradient.transpose());
+    }
     const Matrix3 part = (identity + gradient) * (identity + from).inverse();
     advance(fixture, now,
             {split_increment(now.cell, part - identity), steps, step,
