@@ -1,10 +1,12 @@
 // rvelab run: one test on one specimen.
+#include <cmath>
 #include <iostream>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "rvelab/calibrate/mohr.hpp"
+#include "rvelab/calibrate/oedometer.hpp"
 #include "rvelab/cli/commands.hpp"
 #include "rvelab/cli/interrupt.hpp"
 #include "rvelab/cli/progress_line.hpp"
@@ -68,7 +70,29 @@ Json arrays_of(const std::vector<Record>& records) {
   return arrays;
 }
 
-void report(const TestRun& run, const RunArguments& arguments) {
+/// Moduli of oedometer stages that have records at small strain.
+void add_oedometers(const Protocol& protocol, const TestRun& run, Listing& listing) {
+  for (std::size_t k = 0; k < protocol.stages.size(); ++k) {
+    const auto* stage = std::get_if<CompressionStage>(&protocol.stages[k].what);
+    if (stage == nullptr || stage->lateral != CompressionStage::Lateral::zero_strain) continue;
+    std::vector<Record> records;
+    for (const Record& record : run.result.records) {
+      if (record.stage == static_cast<int>(k)) records.push_back(record);
+    }
+    const int dimension = run.end_state.cell.dimension;
+    const std::string axis = !stage->axis.empty() ? stage->axis : dimension == 2 ? "y" : "z";
+    const OedometerStiffness found = oedometer_stiffness(records, axis, dimension);
+    if (!std::isfinite(found.C11)) continue;
+    const std::string stem = "stage_" + protocol.stages[k].name + "_";
+    listing.add(stem + "C11_Pa", found.C11, "Pa");
+    listing.add(stem + "C12_Pa", found.C12, "Pa");
+    listing.add(stem + "G_Pa", found.G, "Pa");
+    listing.add(stem + "K_3D_Pa", found.K_3D, "Pa");
+    listing.add(stem + "K_2D_Pa", found.K_2D, "Pa");
+  }
+}
+
+void report(const Protocol& protocol, const TestRun& run, const RunArguments& arguments) {
   const TestResult& result = run.result;
   const int dimension = run.end_state.cell.dimension;
   long flagged = 0;
@@ -102,6 +126,7 @@ void report(const TestRun& run, const RunArguments& arguments) {
     const bool only = result.probes.size() == 1;
     listing.add(only ? "stiffness_Pa" : "stiffness_Pa_" + probe.stage, row_major(probe.stiffness), "Pa");
   }
+  add_oedometers(protocol, run, listing);
   if (!arguments.output.empty()) listing.add("file", arguments.output);
   listing.add("wall_s", result.wall_seconds, "s");
   listing.add("grain_steps", result.grain_steps);
@@ -140,7 +165,7 @@ void run_test(const RunArguments& arguments) {
     run = run_recorded(protocol, specimen, store.get(), watch);
   }
   if (!run.complete) end_stopped(run, arguments.output);
-  report(run, arguments);
+  report(protocol, run, arguments);
 }
 
 }  // namespace

@@ -8,8 +8,8 @@
 
 namespace rvelab::io {
 
-/// Every column of a record. Value: std::vector<Record>, const or not. Of what [output] quantities chooses, a file holds
-/// the columns that were asked for; a frame of the journal holds all, and which of them count.
+/// Every column of a record. Value: std::vector<Record>, const or not. Of what [output] quantities chooses, a file
+/// holds the columns that were asked for; a frame of the journal holds all, and which of them count.
 template <class Archive, class Value>
 void describe_records(Archive& archive, Value& records) {
   archive.table("records", records,                                                      //
@@ -46,8 +46,8 @@ void describe_records(Archive& archive, Value& records) {
 template <class Archive, class Value>
 void describe_progress(Archive& archive, Value& progress) {
   auto& [stage, phase, step, relaxation_steps, substeps, records, probes, unbalanced_ratio, first_pressure, rate,
-         deformation, stress, strain_sum, first_stress, turns, place, visits, largest, axis, pressure, first_grain_steps,
-         wall_seconds] = progress;
+         deformation, stress, strain_sum, first_stress, turns, place, visits, largest, axis, pressure,
+         first_grain_steps, wall_seconds] = progress;
   static_cast<void>(wall_seconds);
   archive.field("checkpoint/stage", stage, "1");
   archive.field("checkpoint/phase", phase, "1");

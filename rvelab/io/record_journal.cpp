@@ -56,8 +56,8 @@ struct RowWriter {
     for (const Item& item : items) add(item.*column.member);
   }
   template <class Item, class Member, class Mask>
-  void chosen(const std::string& group, const std::vector<Item>& items, const Column<Item, Member>& column, Mask Item::*,
-              Mask) {
+  void chosen(const std::string& group, const std::vector<Item>& items, const Column<Item, Member>& column,
+              Mask Item::*, Mask) {
     choice(group, items, column);
   }
 };

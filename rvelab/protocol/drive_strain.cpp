@@ -65,7 +65,8 @@ namespace {
 
 template <class Stage, class Increment, class DrivingStress>
 void drive_strain(RunningTest& test, const Stage& stage, Increment increment_to, DrivingStress driving_stress) {
-  if (stage.cycles.count == 0) return test.go_through(record_strains(stage.to_strain, stage.record_every), increment_to);
+  if (stage.cycles.count == 0)
+    return test.go_through(record_strains(stage.to_strain, stage.record_every), increment_to);
   test.go_to_and_fro(stage.to_strain, steps_to(stage.to_strain, stage.record_every), stage.cycles, increment_to,
                      driving_stress);
 }

@@ -42,8 +42,7 @@ const std::vector<EventQuantity>& event_quantities() {
       {"void_ratio", [](Test test) { return void_ratio(test.rve.network()); }},
       {"coordination_number", [](Test test) { return coordination_number(test.rve.network()); }},
       {"cycles", [](Test test) { return 0.5 * static_cast<double>(test.run.progress.turns); }},
-      {"visits",
-       [](Test test) {
+      {"visits", [](Test test) {
          const Progress& at = test.run.progress;
          return static_cast<double>(at.visits[static_cast<std::size_t>(at.stage)]);
        }}};

@@ -29,18 +29,19 @@ inline std::string as_toml(long value) { return std::to_string(value); }
 // The default is that of the struct that the key fills: it is written nowhere twice.
 
 inline ProtocolKey number(const char* table, const char* name, const char* unit, double initial, const Range& range,
-                   const char* meaning) {
+                          const char* meaning) {
   return {
       {table, name, unit, "number", as_toml(initial), range.in_words(), meaning}, KeyKind::number, range, {}, initial};
 }
 
 /// Without a default of its own; `initial` says in words what holds instead, "" if nothing does.
-inline ProtocolKey number(const char* table, const char* name, const char* unit, const char* initial, const Range& range,
-                   const char* meaning) {
+inline ProtocolKey number(const char* table, const char* name, const char* unit, const char* initial,
+                          const Range& range, const char* meaning) {
   return {{table, name, unit, "number", initial, range.in_words(), meaning}, KeyKind::number, range, {}, {}};
 }
 
-inline ProtocolKey whole_number(const char* table, const char* name, long initial, const Range& range, const char* meaning) {
+inline ProtocolKey whole_number(const char* table, const char* name, long initial, const Range& range,
+                                const char* meaning) {
   return {{table, name, "1", "whole number", as_toml(initial), range.in_words(), meaning},
           KeyKind::whole_number,
           range,
@@ -62,7 +63,7 @@ inline ProtocolKey text(const char* table, const char* name, const char* initial
 
 /// The first word is the default, unless `initial` says something else in words.
 inline ProtocolKey word(const char* table, const char* name, const Words& words, const char* meaning,
-                 const char* initial = nullptr) {
+                        const char* initial = nullptr) {
   std::string allowed;
   for (const auto& each : words) allowed += (allowed.empty() ? "" : ", ") + each;
   ProtocolKey key{{table, name, "-", "word", "", allowed, meaning}, KeyKind::word, any, words, {}};

@@ -68,8 +68,9 @@ std::vector<ProtocolKey> deviatoric() {
 
 std::vector<ProtocolKey> pressure_path() {
   const char* t = "stage.pressure_path";
-  ProtocolKey pressures = listed(t, "to_Pa", "Pa", "list of numbers", "", KeyKind::numbers,
-                                 "pressures that all normal stresses go to one after the other; shear strains are zero");
+  ProtocolKey pressures =
+      listed(t, "to_Pa", "Pa", "list of numbers", "", KeyKind::numbers,
+             "pressures that all normal stresses go to one after the other; shear strains are zero");
   pressures.range = positive;
   pressures.key.range = "each " + positive.in_words();
   return {required(pressures), whole_number(t, "records_per_point", PressurePathStage{}.records_per_point, {1, 1e6},

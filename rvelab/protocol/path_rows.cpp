@@ -169,9 +169,7 @@ double row_target(const PathStage& stage, const PathRow& row, long step, const M
   const long within = (step - 1) % stage.records_per_point + 1;
   const double end = row.to[static_cast<std::size_t>(point)];
   if (within == stage.records_per_point) return end;
-  const double begin = leg == 0     ? first
-                       : point == 0 ? row.to.back()
-                                    : row.to[static_cast<std::size_t>(point - 1)];
+  const double begin = leg == 0 ? first : point == 0 ? row.to.back() : row.to[static_cast<std::size_t>(point - 1)];
   return begin + (end - begin) * static_cast<double>(within) / static_cast<double>(stage.records_per_point);
 }
 

@@ -85,9 +85,10 @@ struct PathRow {
   bool in_stress() const { return !stress.isZero(0); }
 };
 
-/// Piecewise linear targets of named rows, quasi-static. The value of a row is A : E + B : sigma, tension positive, with
-/// E the sum of the symmetric displacement gradients since the start of the stage (for straight paths the logarithmic
-/// strain). Strain that no row names stays zero. Where the rows say that the volume stays, det F stays to round-off.
+/// Piecewise linear targets of named rows, quasi-static. The value of a row is A : E + B : sigma, tension positive,
+/// with E the sum of the symmetric displacement gradients since the start of the stage (for straight paths the
+/// logarithmic strain). Strain that no row names stays zero. Where the rows say that the volume stays, det F stays to
+/// round-off.
 struct PathStage {
   std::vector<PathRow> rows;
   long points = 1;              ///< of every row that has targets
@@ -132,8 +133,8 @@ struct EnvelopeStage {
   double size = 1e-4;          ///< strain: norm of dE
   double stress_size = 0;      ///< Pa, norm of d sigma
   long directions = 24;
-  long increments = 1;        ///< of each probe
-  double unbalanced = 1e-5;   ///< at which each ends, at fixed cell
+  long increments = 1;       ///< of each probe
+  double unbalanced = 1e-5;  ///< at which each ends, at fixed cell
   long max_steps = 1'000'000;
 };
 

@@ -30,7 +30,8 @@ std::vector<ProtocolKey> loading() {
   const Loading initial;
   return {
       word(t, "mode", {"quasi_static", "physical"},
-           "how compression, simple shear, flow and deformation pass through time; physical: real masses at the given rate"),
+           "how compression, simple shear, flow and deformation pass through time; physical: real masses at the given "
+           "rate"),
       number(t, "rate_1_s", "1/s", "", positive, "mode = physical: true rate of the driving strain"),
       number(t, "inertial_number", "1", "", positive,
              "mode = physical, in place of rate_1_s: I = rate d sqrt(rho/p) with p at the start of the stage"),
@@ -72,8 +73,9 @@ std::vector<ProtocolKey> output_specimen_and_calibrate() {
 
 std::vector<ProtocolKey> stage() {
   return {
-      required(word("stage", "kind", {"isotropic", "compression", "simple_shear", "pressure_path", "deviatoric", "path", "flow",
-                                        "deformation", "envelope", "relax", "probe"},
+      required(word("stage", "kind",
+                    {"isotropic", "compression", "simple_shear", "pressure_path", "deviatoric", "path", "flow",
+                     "deformation", "envelope", "relax", "probe"},
                     "what the stage does; its other keys are those of [[stage]] with this kind", "")),
       text("stage", "name", "(its kind)", "name of its own, for --set stage.NAME.key=value and in the records"),
       text("stage", "then", "(the next)", "name of the stage that follows, \"end\" for none"),

@@ -180,9 +180,9 @@ EnvelopeStage read_envelope(TableReader& reader) {
     reader.mistake("size_Pa", "is missing; allowed with probes = \"stress\": > 0 Pa; add it");
   }
   if (reader.has(stage.stress_probes ? "size" : "size_Pa")) {
-    reader.mistake(stage.stress_probes ? "size" : "size_Pa",
-                   std::string("contradicts probes = \"") + (stage.stress_probes ? "stress" : "strain") +
-                       "\"; allowed: the size of these only; remove it");
+    reader.mistake(stage.stress_probes ? "size" : "size_Pa", std::string("contradicts probes = \"") +
+                                                                 (stage.stress_probes ? "stress" : "strain") +
+                                                                 "\"; allowed: the size of these only; remove it");
   }
   stage.directions = reader.whole_number("directions");
   stage.increments = reader.whole_number("increments");

@@ -4,8 +4,8 @@
 #include <sstream>
 
 #include "rvelab/error.hpp"
-#include "rvelab/protocol/protocol.hpp"
 #include "rvelab/protocol/drive.hpp"
+#include "rvelab/protocol/protocol.hpp"
 #include "rvelab/protocol/read_stage.hpp"
 #include "rvelab/protocol/table_reader.hpp"
 

@@ -26,7 +26,8 @@ std::vector<std::string> TableReader::words(const std::string& name) {
   std::vector<std::string> values;
   if (node == nullptr) return values;
   const auto known = [&](const toml::node& item) {
-    return item.is_string() && std::find(key.words.begin(), key.words.end(), item.as_string()->get()) != key.words.end();
+    return item.is_string() &&
+           std::find(key.words.begin(), key.words.end(), item.as_string()->get()) != key.words.end();
   };
   const bool good = node->is_array() && std::all_of(node->as_array()->begin(), node->as_array()->end(), known);
   if (!good) {
@@ -71,9 +72,8 @@ std::vector<Matrix3> TableReader::matrices(const std::string& name) {
   if (node == nullptr) return list;
   const auto good = [](const toml::node& item) {
     return item.is_array() && (item.as_array()->size() == 4 || item.as_array()->size() == 9) &&
-           std::all_of(item.as_array()->begin(), item.as_array()->end(), [](const toml::node& each) {
-             return each.is_number() && std::isfinite(*each.value<double>());
-           });
+           std::all_of(item.as_array()->begin(), item.as_array()->end(),
+                       [](const toml::node& each) { return each.is_number() && std::isfinite(*each.value<double>()); });
   };
   if (!node->is_array() || node->as_array()->empty() ||
       !std::all_of(node->as_array()->begin(), node->as_array()->end(), good)) {

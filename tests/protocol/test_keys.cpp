@@ -188,7 +188,7 @@ TEST_CASE("every key of the table is read, and each with the default that it sta
     if (key.table == "stage") continue;  // kind and name are every stage's own
     const toml::node* node = of_stage ? found_in(resolved, key) : resolved[key.table].as_table()->get(key.name);
     if (key.name == "cycles" && key.table != "stage.path") continue;  // set above, for reverse_at_Pa
-    if (key.name == "inertial_number") continue;  // one of the two rates only
+    if (key.name == "inertial_number") continue;                      // one of the two rates only
     REQUIRE(node != nullptr);
     if (const auto* number = std::get_if<double>(&entry.initial)) CHECK(node->value<double>() == *number);
     if (const auto* whole = std::get_if<long>(&entry.initial)) CHECK(node->value<std::int64_t>() == *whole);
@@ -212,9 +212,8 @@ TEST_CASE("every key of a protocol can be set by an assignment, and refuses what
     CHECK_THAT(wrong, Contains("--set " + name + "={a = 1}: ") && Contains("; allowed: "));
     if (entry.kind == protocol::KeyKind::number) {
       for (const char* number : {"nan", "inf", "-inf"}) {
-        CHECK_THAT(
-            message_of(every_table, {name + "=" + number}),
-            Contains(said + " = " + number + " is not finite; allowed: ") && Contains("give a finite number"));
+        CHECK_THAT(message_of(every_table, {name + "=" + number}),
+                   Contains(said + " = " + number + " is not finite; allowed: ") && Contains("give a finite number"));
       }
     }
   }
