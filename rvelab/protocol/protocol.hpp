@@ -22,7 +22,7 @@ struct Loading {
   double rate = 0;                ///< 1/s, true rate of the driving strain; 0: from the inertial number
   double inertial_number = 0;     ///< I = rate d sqrt(rho/p), p at the start of the stage; 0: from the rate
   double held_tolerance = 0.005;  ///< a held stress may miss by this times max(|target|, 1 % of the stage's first p)
-  long held_wait = 200;           ///< sub-steps that a record waits for the held stress
+  long held_wait = 200;           ///< sub-steps that a record waits for the held stress, see MixedTarget::wait
 };
 
 /// All normal stresses to -pressure. Ends when every stress that is driven is within stress_tolerance of its target

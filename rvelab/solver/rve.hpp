@@ -50,7 +50,8 @@ struct MixedTarget {
   double volume_ratio = 0;         ///< > 0: det(I + dH), met to round-off by an isotropic strain beside the rows' (of
                                    ///< second order in theirs where they prescribe the volume to first order)
   double tolerance = 0.005;        ///< relative to each row's scale
-  long wait = 200;                 ///< sub-steps that the end of the increment may wait for the stress
+  long wait = 200;                 ///< sub-steps that the end of the increment may wait for the stress, or a quarter of
+                                   ///< those that it took where that is more
 };
 
 class Rve {
