@@ -176,21 +176,23 @@ const std::vector<ProtocolKey>& protocol_keys() {
 }
 
 const ProtocolKey& protocol_key(const std::string& table, const std::string& name) {
-  const auto& keys = protocol_keys();
-  const auto found = std::find_if(
-      keys.begin(), keys.end(), [&](const auto& entry) { return entry.key.table == table && entry.key.name == name; });
-  if (found == keys.end())
-    throw std::logic_error("no entry for the key " + table + "." + name + " in protocol_keys.cpp");
-  return *found;
+  for (const auto* keys : {&protocol_keys(), &recipe_keys()}) {
+    for (const auto& entry : *keys) {
+      if (entry.key.table == table && entry.key.name == name) return entry;
+    }
+  }
+  throw std::logic_error("no entry for the key " + table + "." + name + " in protocol_keys.cpp or recipe_keys.cpp");
 }
 
 const std::vector<std::string>& top_tables() {
   static const std::vector<std::string> tables = [] {
     std::vector<std::string> list;
-    for (const Key& key : all_keys()) {
+    const auto add = [&](const Key& key) {
       const std::string top = key.table.substr(0, key.table.find('.'));
       if (std::find(list.begin(), list.end(), top) == list.end()) list.push_back(top);
-    }
+    };
+    for (const auto& entry : protocol_keys()) add(entry.key);
+    for (const Key& key : known_keys()) add(key);
     return list;
   }();
   return tables;
@@ -202,6 +204,7 @@ const std::vector<Key>& all_keys() {
   static const std::vector<Key> keys = [] {
     std::vector<Key> list;
     for (const auto& entry : protocol::protocol_keys()) list.push_back(entry.key);
+    for (const auto& entry : protocol::recipe_keys()) list.push_back(entry.key);
     list.insert(list.end(), known_keys().begin(), known_keys().end());
     return list;
   }();

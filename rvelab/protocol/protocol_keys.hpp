@@ -13,8 +13,9 @@
 
 namespace rvelab {
 
-/// Every key that a protocol may have, in the order of its tables: those of the protocol itself ("test", "loading",
-/// "stage", "stage.compression", ...), then those of rvelab/io (contact, damping, solver, material).
+/// Every key that a protocol or a recipe may have, in the order of its tables: those of the protocol itself ("test",
+/// "loading", "stage", "stage.compression", ...), those of a recipe ("pack", "grains", "target", "preparation"), then
+/// those of rvelab/io (contact, damping, solver, material).
 const std::vector<Key>& all_keys();
 
 namespace protocol {
@@ -41,6 +42,9 @@ struct ProtocolKey {
 };
 
 const std::vector<ProtocolKey>& protocol_keys();
+
+/// The keys of recipes, beside which contact, damping, solver and material stand (recipe_keys.cpp).
+const std::vector<ProtocolKey>& recipe_keys();
 
 /// The entry of a key. std::logic_error if there is none.
 const ProtocolKey& protocol_key(const std::string& table, const std::string& name);

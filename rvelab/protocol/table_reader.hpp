@@ -19,8 +19,9 @@ long line_of(const toml::node& node);
 /// A node as TOML writes it.
 std::string written(const toml::node& node);
 
-/// Books what is no table of a protocol at its top level.
-void expect_top_tables(const toml::table& file, std::vector<KeyError>& errors);
+/// Books what is no table of a protocol, or of the kind of file that `known` lists, at its top level.
+void expect_top_tables(const toml::table& file, std::vector<KeyError>& errors,
+                       const std::vector<std::string>& known = top_tables());
 
 /// Reads one table. Mistakes are collected with their lines; a reading function then returns the default (or, for a
 /// key without one, zero) so that reading goes on. Every value read, defaults included, goes into `resolved`.
