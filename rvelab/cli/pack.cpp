@@ -33,7 +33,7 @@ struct PackArguments {
 
 /// One specimen to be made, and what became of it.
 struct Job {
-  Recipe recipe;
+  RecipeFile what;
   std::string file;
   Json made;  ///< null: not made
 };
@@ -48,20 +48,19 @@ std::string with_word(const std::string& file, const std::string& word) {
 std::vector<Job> jobs_of(const RecipeFile& file, const PackArguments& arguments) {
   std::vector<Job> jobs;
   const std::size_t digits = std::to_string(arguments.count).size();
-  const auto add = [&](const Recipe& recipe, const std::string& name) {
+  const auto add = [&](std::optional<double> pressure, const std::string& name) {
     for (std::size_t k = 0; k < arguments.count; ++k) {
-      Job job{recipe, name, {}};
-      job.recipe.seed += k;
       const std::string number = std::to_string(k + 1);
-      if (arguments.count > 1) job.file = with_word(name, std::string(digits - number.size(), '0') + number);
-      jobs.push_back(std::move(job));
+      const std::string padded = std::string(digits - number.size(), '0') + number;
+      jobs.push_back(
+          {file.member(file.recipe.seed + k, pressure), arguments.count > 1 ? with_word(name, padded) : name, {}});
     }
   };
-  if (file.pressures.empty()) add(file.recipe, arguments.output);
+  if (file.pressures.empty()) add(std::nullopt, arguments.output);
   for (const double pressure : file.pressures) {
     char digits_of[32];
     const auto end = std::to_chars(digits_of, digits_of + sizeof digits_of, pressure, std::chars_format::fixed).ptr;
-    add(file.member(pressure, file.recipe.seed), with_word(arguments.output, std::string(digits_of, end) + "Pa"));
+    add(pressure, with_word(arguments.output, std::string(digits_of, end) + "Pa"));
   }
   return jobs;
 }
@@ -91,14 +90,13 @@ Json summary_of(const Job& job, const Packing& packing, double seconds) {
   const int dimension = network.dimension();
   Json made;
   made["file"] = job.file;
-  made["seed"] = job.recipe.seed;
+  made["seed"] = job.what.recipe.seed;
   made["void_ratio"] = packing.void_ratio;
   made["stress_Pa"] = row_major(rve.stress().topLeftCorner(dimension, dimension));
   made["contacts"] = network.contacts.size();
   made["coordination_number"] = coordination_number(network);
   made["fabric_anisotropy"] = network.contacts.empty() ? Json() : Json(fabric_anisotropy(fabric(network), dimension));
-  made["fabric"] =
-      network.contacts.empty() ? Json() : row_major(fabric(network).topLeftCorner(dimension, dimension));
+  made["fabric"] = network.contacts.empty() ? Json() : row_major(fabric(network).topLeftCorner(dimension, dimension));
   made["unbalanced_force_ratio"] = rve.unbalanced_ratio();
   made["draw"] = packing.draw;
   made["preparation_friction"] = packing.preparation_friction;
@@ -107,15 +105,15 @@ Json summary_of(const Job& job, const Packing& packing, double seconds) {
 }
 
 /// Makes one specimen and writes it; files one at a time.
-void make(Job& job, const RecipeFile& file, Workers& workers, DrawLine& line, std::mutex& files) {
+void make(Job& job, Workers& workers, DrawLine& line, std::mutex& files) {
   const auto begin = std::chrono::steady_clock::now();
   PackWatch watch;
   watch.stop = &stop_on_signals();
-  watch.on_draw = [&](long draw, double void_ratio) { line.show(job.recipe.seed, draw, void_ratio); };
-  const Packing packing = pack(job.recipe, workers, watch);
+  watch.on_draw = [&](long draw, double void_ratio) { line.show(job.what.recipe.seed, draw, void_ratio); };
+  const Packing packing = pack(job.what.recipe, workers, watch);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
   job.made = summary_of(job, packing, seconds.count());
-  const SpecimenOrigin origin{file.resolved, job.recipe.seed, packing.draw, packing.preparation_friction};
+  const SpecimenOrigin origin{job.what.resolved, job.what.recipe.seed, packing.draw, packing.preparation_friction};
   const std::lock_guard lock(files);
   write_specimen(packing.specimen, job.file, &origin);
 }
@@ -138,25 +136,26 @@ void run_pack(const PackArguments& arguments) {
   const RecipeFile file = read_recipe(input_path(arguments.recipe, InputKind::recipe), arguments.settings);
   expect_folder_of(arguments.output);
   std::vector<Job> jobs = jobs_of(file, arguments);
-  const unsigned threads = arguments.threads > 0 ? arguments.threads : std::max(1u, std::thread::hardware_concurrency());
+  const unsigned threads =
+      arguments.threads > 0 ? arguments.threads : std::max(1u, std::thread::hardware_concurrency());
   DrawLine line;
   std::mutex files;
   try {
     if (jobs.size() == 1) {
       Workers workers(threads);
-      make(jobs.front(), file, workers, line, files);
+      make(jobs.front(), workers, line, files);
     } else {
       Workers workers(unsigned(std::min<std::size_t>(threads, jobs.size())));
       workers.run(jobs.size(), [&](std::size_t k) {
         Workers alone(1);
         try {
-          make(jobs[k], file, alone, line, files);
+          make(jobs[k], alone, line, files);
         } catch (const InputError&) {
           throw;
         } catch (const Interrupted&) {
           throw;
         } catch (const Error& error) {
-          throw Error(jobs[k].file + ", seed " + std::to_string(jobs[k].recipe.seed) + ": " + error.what());
+          throw Error(jobs[k].file + ", seed " + std::to_string(jobs[k].what.recipe.seed) + ": " + error.what());
         }
       });
     }

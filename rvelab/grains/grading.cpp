@@ -87,7 +87,8 @@ void check(const Grading& grading, const char* where) {
   } else if (!(radii.front() > 0) || !ascending(radii)) {
     text << where << ".radii_m is not ascending from above 0; allowed: each larger than the one before; correct it";
   } else if (passing.front() != 0 || passing.back() != 1 || !std::is_sorted(passing.begin(), passing.end())) {
-    text << where << ".passing does not rise from 0 to 1; allowed: 0 first, 1 last, none below the one before; correct it";
+    text << where
+         << ".passing does not rise from 0 to 1; allowed: 0 first, 1 last, none below the one before; correct it";
   }
   if (!text.str().empty()) throw InputError(text.str());
 }

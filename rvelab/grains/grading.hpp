@@ -19,17 +19,17 @@ enum class GradingCurve {
 /// A grading curve: passing(r), 0 at the smallest radius, 1 at the largest.
 struct Grading {
   GradingCurve curve = GradingCurve::uniform;
-  bool by_mass = false;                                 ///< the parts are of the mass; else of the number
+  bool by_mass = false;                                  ///< the parts are of the mass; else of the number
   double smallest_radius = 3e-3, largest_radius = 7e-3;  ///< m; equal: one size. Tabulated: ends of `radii`
-  std::vector<double> radii;                            ///< tabulated: m, ascending, at least two
-  std::vector<double> passing;                          ///< tabulated: ascending, from 0 to 1
+  std::vector<double> radii;                             ///< tabulated: m, ascending, at least two
+  std::vector<double> passing;                           ///< tabulated: ascending, from 0 to 1
 };
 
 /// The curve by number, as a table: radii (m, ascending) and the part of the number that is not larger.
 struct NumberCurve {
   std::vector<double> radii, passing;
-  double radius_at(double part) const;           ///< m; part in [0, 1]
-  double mean_power(int dimension) const;        ///< mean of r^dimension over the number, m^dimension
+  double radius_at(double part) const;     ///< m; part in [0, 1]
+  double mean_power(int dimension) const;  ///< mean of r^dimension over the number, m^dimension
 };
 
 /// Throws InputError naming what is wrong: limits not positive or not ascending, table too short, passing not from 0

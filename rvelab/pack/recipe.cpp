@@ -36,8 +36,9 @@ void check(const Recipe& recipe) {
   if (!recipe.stress && !recipe.void_ratio)
     throw InputError("target has neither a stress nor a void ratio; allowed: one or both; add target.pressure_Pa");
   if (recipe.stress && recipe.void_ratio && recipe.preparation.friction)
-    throw InputError("preparation.friction contradicts target.void_ratio, for which the friction is searched; allowed: "
-                     "one of the two; remove one");
+    throw InputError(
+        "preparation.friction contradicts target.void_ratio, for which the friction is searched; allowed: "
+        "one of the two; remove one");
   check(recipe.contact, recipe.damping, recipe.materials);
   double shares = 0;
   for (const GrainFraction& fraction : recipe.fractions) {

@@ -17,7 +17,7 @@ namespace rvelab {
 /// A part of the grains with a material and a grading of its own.
 struct GrainFraction {
   std::string name = "grains";
-  double share = 1;  ///< of all grains, by number or by mass (Recipe::share_by_mass); all shares add up to 1
+  double share = 1;          ///< of all grains, by number or by mass (Recipe::share_by_mass); all shares add up to 1
   std::size_t material = 0;  ///< row of Recipe::materials
   Grading grading;
 };

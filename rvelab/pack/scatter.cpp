@@ -41,17 +41,21 @@ std::vector<std::size_t> numbers_of(const Recipe& recipe, const std::vector<Numb
 /// Points of a cell in boxes that are at least as wide as the reach of a contact, periodic.
 class Boxes {
  public:
-  Boxes(const Cell& cell, double reach) : cell_(cell), inverse_(cell.lattice.triangularView<Eigen::Upper>().solve(
-                                                           Matrix3::Identity())) {
+  Boxes(const Cell& cell, double reach)
+      : cell_(cell), inverse_(cell.lattice.triangularView<Eigen::Upper>().solve(Matrix3::Identity())) {
     const Vector3 height = heights(cell);
     for (int k = 0; k < cell.dimension; ++k) count_[k] = std::max(1, int(std::min(200.0, height[k] / reach)));
     content_.resize(std::size_t(count_[0]) * count_[1] * count_[2]);
   }
 
-  void add(const Vector3& at, double radius) { content_[index(box_of(at))].push_back({at, radius}); }
+  void add(const Vector3& place, double radius) {
+    const Vector3 at = inside(place);
+    content_[index(box_of(at))].push_back({at, radius});
+  }
 
   /// No point of which any image is nearer than the sum of both radii; own images are the caller's.
-  bool free(const Vector3& at, double radius) const {
+  bool free(const Vector3& place, double radius) const {
+    const Vector3 at = inside(place);
     const std::array<int, 3> centre = box_of(at);
     for (int z = -reach(2); z <= reach(2); ++z)
       for (int y = -reach(1); y <= reach(1); ++y)
@@ -83,13 +87,16 @@ class Boxes {
   std::size_t index(const std::array<int, 3>& box) const {
     return (std::size_t(box[2]) * count_[1] + box[1]) * count_[0] + box[0];
   }
+  /// The image with lattice coordinates from 0 to 1, which the boxes count.
+  Vector3 inside(const Vector3& place) const {
+    Vector3 part = inverse_ * place;
+    for (int k = 0; k < cell_.dimension; ++k) part[k] -= std::floor(part[k]);
+    return cell_.lattice * part;
+  }
   std::array<int, 3> box_of(const Vector3& at) const {
     const Vector3 part = inverse_ * at;
     std::array<int, 3> box{};
-    for (int k = 0; k < cell_.dimension; ++k) {
-      const double fraction = part[k] - std::floor(part[k]);
-      box[k] = std::min(int(fraction * count_[k]), count_[k] - 1);
-    }
+    for (int k = 0; k < cell_.dimension; ++k) box[k] = std::clamp(int(part[k] * count_[k]), 0, count_[k] - 1);
     return box;
   }
 

@@ -13,6 +13,7 @@ namespace rvelab {
 namespace {
 
 constexpr double half_friction = 0.1;  ///< whose coordinate is one half
+constexpr double bandwidth = 0.2;      ///< of the local line, over the range of coordinates
 
 /// Level pieces of the best rising curve.
 struct Level {
@@ -40,14 +41,25 @@ std::vector<Level> rising_fit(std::vector<CurvePoint> points) {
   return levels;
 }
 
+/// Where the fit meets the target.
+double crossing(const std::vector<Level>& levels, double target, double low, double high) {
+  if (levels.empty() || target <= levels.front().void_ratio) return low;
+  for (std::size_t k = 1; k < levels.size(); ++k) {
+    if (target > levels[k].void_ratio) continue;
+    const Level &a = levels[k - 1], &b = levels[k];
+    return a.coordinate + (b.coordinate - a.coordinate) * ((target - a.void_ratio) / (b.void_ratio - a.void_ratio));
+  }
+  return high;
+}
+
 /// The range that the draws reached, and what to do about a target that is out of it.
 Error not_found(const Recipe& recipe, const std::vector<Draw>& draws) {
   const auto order = [](const Draw& a, const Draw& b) { return a.void_ratio < b.void_ratio; };
   const auto [lowest, highest] = std::minmax_element(draws.begin(), draws.end(), order);
   std::ostringstream text;
-  text << "target.void_ratio = " << *recipe.void_ratio << " was not met within " << recipe.void_ratio_tolerance << " in "
-       << draws.size() << " draws; reached: " << lowest->void_ratio << " (preparation friction " << lowest->friction
-       << ") to " << highest->void_ratio << " (" << highest->friction << "); ";
+  text << "target.void_ratio = " << *recipe.void_ratio << " was not met within " << recipe.void_ratio_tolerance
+       << " in " << draws.size() << " draws; reached: " << lowest->void_ratio << " (preparation friction "
+       << lowest->friction << ") to " << highest->void_ratio << " (" << highest->friction << "); ";
   if (*recipe.void_ratio > highest->void_ratio) {
     text << "give a lower void ratio, a lower pressure, rolling friction in the preparation, or raise "
             "preparation.highest_friction";
@@ -163,15 +175,34 @@ double friction_of(double coordinate) {
   return coordinate < 1 ? half_friction * coordinate / (1 - coordinate) : std::numeric_limits<double>::max();
 }
 
-double fitted_coordinate(std::vector<CurvePoint> points, double target, double low, double high) {
-  const std::vector<Level> levels = rising_fit(std::move(points));
-  if (levels.empty() || target <= levels.front().void_ratio) return low;
-  for (std::size_t k = 1; k < levels.size(); ++k) {
-    if (target > levels[k].void_ratio) continue;
-    const Level &a = levels[k - 1], &b = levels[k];
-    return a.coordinate + (b.coordinate - a.coordinate) * ((target - a.void_ratio) / (b.void_ratio - a.void_ratio));
+double fitted_coordinate(const std::vector<CurvePoint>& points, double target, double low, double high) {
+  double at = crossing(rising_fit(points), target, low, high);
+  if (at == low || at == high) return at;
+  // The rising fit follows each point of a close cluster. The straight line of least squares around its answer looks at
+  // the cluster's mean and at its surroundings.
+  for (int round = 0; round < 4; ++round) {
+    double weights = 0, x = 0, e = 0, xx = 0, xe = 0;
+    for (const CurvePoint& point : points) {
+      const double far = (point.coordinate - at) / (bandwidth * (high - low));
+      const double weight = 1 / ((1 + far * far) * (1 + far * far));
+      weights += weight;
+      x += weight * point.coordinate;
+      e += weight * point.void_ratio;
+    }
+    x /= weights;
+    e /= weights;
+    for (const CurvePoint& point : points) {
+      const double far = (point.coordinate - at) / (bandwidth * (high - low));
+      const double weight = 1 / ((1 + far * far) * (1 + far * far)), from = point.coordinate - x;
+      xx += weight * from * from;
+      xe += weight * from * (point.void_ratio - e);
+    }
+    if (!(xe > 0)) return at;
+    const double next = x + (target - e) * xx / xe;
+    at = std::clamp(std::clamp(next, at - 0.5 * bandwidth * (high - low), at + 0.5 * bandwidth * (high - low)), low,
+                    high);
   }
-  return high;
+  return at;
 }
 
 Packing pack(const Recipe& recipe, Workers& workers, const PackWatch& watch) {
@@ -179,8 +210,9 @@ Packing pack(const Recipe& recipe, Workers& workers, const PackWatch& watch) {
   if (recipe.stress && recipe.void_ratio) return Search(recipe, workers, watch).run();
   Draw made = draw(recipe, 1, only_friction(recipe), watch.stop);
   if (!made.at_rest)
-    throw IncrementFailed("packing: the grains did not come to rest at the target stress; raise target.unbalanced or "
-                          "target.stress_tolerance, or give a stress that this packing can carry");
+    throw IncrementFailed(
+        "packing: the grains did not come to rest at the target stress; raise target.unbalanced or "
+        "target.stress_tolerance, or give a stress that this packing can carry");
   if (watch.on_draw) watch.on_draw(1, made.void_ratio);
   return {std::move(made.specimen), 1, made.friction, made.void_ratio};
 }

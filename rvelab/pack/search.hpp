@@ -24,9 +24,9 @@ struct CurvePoint {
   double coordinate = 0, void_ratio = 0;
 };
 
-/// Where the rising curve that fits the points best (least squares, isotonic) meets the target, between `low` and
-/// `high`; one of these where it lies beyond all points.
-double fitted_coordinate(std::vector<CurvePoint> points, double target, double low, double high);
+/// Where the mean curve of the points meets the target, between `low` and `high`; one of these where the target lies
+/// beyond the curve. The curve is the rising one of least squares (isotonic), smoothed by a local line.
+double fitted_coordinate(const std::vector<CurvePoint>& points, double target, double low, double high);
 
 /// Draws made at a time: what the next ones look at does not depend on the number of threads.
 inline constexpr long draws_at_a_time = 4;
@@ -38,8 +38,8 @@ struct PackWatch {
 };
 
 /// Makes the specimen of a recipe. The same recipe gives the same bits, whatever the number of workers. Error naming
-/// the reached range if no draw of a search is within the tolerance; IncrementFailed if the only draw fails; InputError;
-/// Interrupted.
+/// the reached range if no draw of a search is within the tolerance; IncrementFailed if the only draw fails;
+/// InputError; Interrupted.
 Packing pack(const Recipe& recipe, Workers& workers, const PackWatch& watch = {});
 
 }  // namespace rvelab

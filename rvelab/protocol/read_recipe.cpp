@@ -15,8 +15,14 @@ namespace {
 using protocol::line_of;
 using protocol::TableReader;
 
-const std::vector<std::string> tables{"pack",    "grains", "target",  "preparation",
+const std::vector<std::string> tables{"pack",    "grains",  "target", "preparation",
                                       "contact", "damping", "solver", "material"};
+
+std::string text_of(const toml::table& table) {
+  std::ostringstream text;
+  text << toml::toml_formatter{table} << "\n";
+  return text.str();
+}
 
 const toml::table& table_of(const toml::table& file, const std::string& name, std::vector<KeyError>& errors) {
   static const toml::table nothing;
@@ -166,13 +172,14 @@ void read_stress(TableReader& reader, RecipeFile& file) {
                                       ? "is not a stress in 2D; allowed: [xx, yy, xy]; give three numbers"
                                       : "is not a stress in 3D; allowed: [xx, yy, zz, yz, xz, xy]; give six numbers");
     } else if (!(mean_pressure(*recipe.stress, dimension_of(recipe.shape)) > 0)) {
-      reader.mistake("stress_Pa", "has no mean pressure; allowed: tension positive with -(xx + yy [+ zz]) > 0; give "
-                                  "compressive normal stresses as negative numbers");
+      reader.mistake("stress_Pa",
+                     "has no mean pressure; allowed: tension positive with -(xx + yy [+ zz]) > 0; give "
+                     "compressive normal stresses as negative numbers");
     }
   }
   if (!file.pressures.empty() && file.pressures.front() > 0) {
     if (!recipe.stress) recipe.stress = isotropic_stress(1, recipe.shape);
-    recipe = file.member(file.pressures.front(), recipe.seed);
+    *recipe.stress *= file.pressures.front() / mean_pressure(*recipe.stress, dimension_of(recipe.shape));
   }
 }
 
@@ -208,19 +215,22 @@ void read_preparation(const toml::table& table, Recipe& recipe, toml::table& res
   preparation.lowest_friction = reader.number("lowest_friction");
   preparation.highest_friction = reader.number("highest_friction");
   preparation.max_draws = reader.whole_number("max_draws");
-  preparation.first_size = reader.number("first_size");
-  preparation.growth_void_ratio = reader.optional_number("growth_void_ratio");
-  if (preparation.friction && recipe.stress && recipe.void_ratio)
-    reader.mistake("friction", "contradicts target.void_ratio, for which the friction is searched; allowed: one of the "
-                               "two; remove one");
-  if (!(preparation.lowest_friction < preparation.highest_friction))
-    reader.mistake("highest_friction", "is not above preparation.lowest_friction; allowed: above it; correct one");
-  if (!growth && recipe.stress) {
+  if (growth || !recipe.stress) {
+    preparation.first_size = reader.number("first_size");
+    preparation.growth_void_ratio = reader.optional_number("growth_void_ratio");
+  } else {
     for (const char* name : {"first_size", "growth_void_ratio"}) {
+      reader.leave(name);
       if (reader.has(name))
         reader.mistake(name, "contradicts method = \"compression\"; allowed: with method = \"growth\"; remove one");
     }
   }
+  if (preparation.friction && recipe.stress && recipe.void_ratio)
+    reader.mistake("friction",
+                   "contradicts target.void_ratio, for which the friction is searched; allowed: one of the "
+                   "two; remove one");
+  if (!(preparation.lowest_friction < preparation.highest_friction))
+    reader.mistake("highest_friction", "is not above preparation.lowest_friction; allowed: above it; correct one");
   reader.finish();
   resolved.insert("preparation", reader.resolved());
 }
@@ -274,25 +284,24 @@ RecipeFile read_file(toml::table file, const std::string& path, const std::vecto
   } catch (const InputError& error) {
     throw InputError(path + ": " + error.what());
   }
-  std::ostringstream text;
-  text << toml::toml_formatter{resolved} << "\n";
-  read.resolved = text.str();
+  read.resolved = text_of(resolved);
   return read;
 }
 
 }  // namespace
 
-Recipe RecipeFile::with_seed(std::uint64_t seed) const {
-  Recipe changed = recipe;
-  changed.seed = seed;
-  return changed;
-}
-
-Recipe RecipeFile::member(double pressure, std::uint64_t seed) const {
-  Recipe changed = with_seed(seed);
-  const double mean = mean_pressure(*recipe.stress, dimension_of(recipe.shape));
-  changed.stress = *recipe.stress * (pressure / mean);
-  return changed;
+RecipeFile RecipeFile::member(std::uint64_t seed, std::optional<double> pressure) const {
+  RecipeFile one = *this;
+  toml::table table = toml::parse(resolved);
+  one.recipe.seed = seed;
+  table["pack"].as_table()->insert_or_assign("seed", std::int64_t(seed));
+  if (pressure) {
+    one.recipe.stress = *recipe.stress * (*pressure / mean_pressure(*recipe.stress, dimension_of(recipe.shape)));
+    one.pressures = {*pressure};
+    table["target"].as_table()->insert_or_assign("pressures_Pa", toml::array{*pressure});
+  }
+  one.resolved = text_of(table);
+  return one;
 }
 
 RecipeFile read_recipe(const std::string& path, const std::vector<std::string>& assignments) {

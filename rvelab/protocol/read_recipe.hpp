@@ -1,6 +1,7 @@
 // A recipe as data: what `rvelab pack` makes, read from a TOML file and checked whole before anything is made.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,14 +11,14 @@ namespace rvelab {
 
 /// A checked recipe file.
 struct RecipeFile {
-  std::string name;  ///< [pack] name
-  Recipe recipe;     ///< with the first stress of a family
+  std::string name;               ///< [pack] name
+  Recipe recipe;                  ///< with the first stress of a family
   std::vector<double> pressures;  ///< Pa, of a family; else empty
   std::string resolved;           ///< the recipe with every default and assignment in it, TOML
 
-  /// The recipe of one member of the family (mean pressure in Pa; all stresses are scaled), with a seed of its own.
-  Recipe member(double pressure, std::uint64_t seed) const;
-  Recipe with_seed(std::uint64_t seed) const;
+  /// The recipe of one specimen: with a seed of its own and, of a family, its mean pressure (Pa; all stresses are
+  /// scaled).
+  RecipeFile member(std::uint64_t seed, std::optional<double> pressure = std::nullopt) const;
 };
 
 /// Reads a recipe after the assignments "key=value" have been applied to it. Throws InputError with every mistake, as
