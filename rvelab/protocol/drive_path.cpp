@@ -12,9 +12,10 @@
 namespace rvelab::protocol {
 namespace {
 
-/// What a miss of a stress row is relative to, Pa: its target, or a tenth of the stage's first p where that is more.
+/// What a miss of a stress row is relative to, Pa: its value, or the stage's first p where that is more (a row with
+/// targets, which may be small: a tenth of it), times the norm of B.
 double scale_of(const RunningTest& test, const PathRow& row, double target) {
-  const double floor = 0.1 * std::abs(test.run.progress.first_pressure) * row.stress.norm();
+  const double floor = (row.to.empty() ? 1.0 : 0.1) * std::abs(test.run.progress.first_pressure) * row.stress.norm();
   const double scale = std::max(std::abs(target), floor);
   if (scale > 0) return scale;
   throw test.failed("row \"" + row.name +

@@ -213,7 +213,7 @@ PathStage path_of(const DeviatoricStage& stage, int dimension) {
     return path;
   }
   // Deviators, compression positive: axis k has cos(theta_k) with theta_z = theta, theta_x,y = theta -+ 120 degrees.
-  PathRow across{"deviator across", {}, {}, {0}};
+  PathRow across{"deviator across", {}, {}, {}};
   across.strain.setZero();
   across.stress.setZero();
   for (int k = 0; k < 3; ++k) {

@@ -71,12 +71,12 @@ def pressure_held(angle=None):
             theta = [math.radians(angle - 120), math.radians(angle + 120), math.radians(angle)]
             s = np.stack([test.stress[:, k, k] for k in range(3)], axis=1)
             across, along = s @ np.sin(theta), s @ np.cos(theta)
-            # 0.005 of a tenth of p times the norm of the row, 2/3 sin(theta)
+            # 0.005 of p: across is 3/2 of the row's value, whose norm is 2/3 sqrt(3/2)
             miss = test.miss(across, 0, 100e3)
             rows = test.last() & test.held & (along > 0.2 * along.max())
             lode = float(np.max(np.degrees(np.abs(np.arctan2(across[rows], along[rows])))))
             text += f", deviator across at most {miss:.5f} p, Lode angle {angle} within {lode:.2f} degrees"
-            good = good and miss <= 0.00501 * 0.1 * math.sqrt(1.5) + 1e-9
+            good = good and miss <= 0.00501 * math.sqrt(1.5) + 1e-9
         return text, good
     return check
 

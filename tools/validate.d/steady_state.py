@@ -100,7 +100,7 @@ def draw(curve, path):
     axes.axhline(0.5, color="0.6", lw=0.8, ls="--")
     axes.axhline(1e-3, color="0.6", lw=0.8, ls="--")
     axes.annotate("Qu et al. at 0.738: 0.5", (0.3, 0.56), color="0.4", fontsize=8)
-    axes.annotate("Qu et al. at 0.371 and 0.282: below 1e-3", (0.42, 1.1e-3), color="0.4", fontsize=8)
+    axes.annotate("Qu et al. at 0.371 and 0.282: below 1e-3", (0.46, 6.5e-4), color="0.4", fontsize=8)
     axes.set_yscale("log")
     axes.set_xlabel("porosity")
     axes.set_ylabel("tr(Reynolds stress) / tr(contact stress)")
