@@ -114,6 +114,10 @@ TEST_CASE("the README lists exactly the datasets of a file, with their types, sh
   std::map<std::string, Hdf5Entry> found;
   for (const auto& entry : Hdf5File::open(folder / "s.h5").entries()) found[entry.name] = entry;
   const std::size_t of_a_specimen = found.size();
+  const SpecimenOrigin origin{"recipe", 1, 2, 0.5};
+  write_specimen(random_specimen(8), folder / "packed.h5", &origin);
+  for (const auto& entry : Hdf5File::open(folder / "packed.h5").entries()) found[entry.name] = entry;
+  CHECK(found.size() == of_a_specimen + 6);
   std::size_t states = 0;
   for (const auto& entry : Hdf5File::open(folder / "r.h5").entries()) {
     const std::string snapshot_group = "/snapshots/000012";
