@@ -99,7 +99,8 @@ struct PathStage {
 };
 
 /// Deviatoric loading at constant mean stress: eps_q is driven along a fixed direction of the deviatoric plane, the
-/// deviator of stress across it stays as it is, zero at isotropic stress (3D: constant Lode angle), p is held, shear strains are zero.
+/// deviator of stress across it stays as it is, zero at isotropic stress (3D: constant Lode angle), p is held, shear
+/// strains are zero.
 struct DeviatoricStage {
   double lode_angle_deg = 0;  ///< 3D: 0 compression along z, 60 extension along y; principal axes x, y, z
   double to_strain = 0;       ///< eps_q, > 0; 2D: along (x, -y), compression along y

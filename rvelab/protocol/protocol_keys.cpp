@@ -38,7 +38,9 @@ std::vector<ProtocolKey> loading() {
       number(t, "held_tolerance", "1", initial.held_tolerance, ratio,
              "a held stress may miss its target by this times the larger of the target's size and 1 % of the stage's "
              "first p"),
-      whole_number(t, "held_wait", initial.held_wait, {0, 1e9}, "sub-steps that a record waits for the held stress; a quarter of its increment's where that is more"),
+      whole_number(
+          t, "held_wait", initial.held_wait, {0, 1e9},
+          "sub-steps that a record waits for the held stress; a quarter of its increment's where that is more"),
   };
 }
 

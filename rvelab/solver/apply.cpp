@@ -253,8 +253,8 @@ Report Rve::Impl::load(const MixedTarget& target, double dt, Matrix3& gradient) 
         if (inertia_outgrown(fixture, sums, now)) rescale_inertia(fixture, sums, now);
       }
     }
-    // The pace is judged before the wait, whose calm says nothing of it; increments shorter than a stretch have no other
-    // moment.
+    // The pace is judged before the wait, whose calm says nothing of it; increments shorter than a stretch have no
+    // other moment.
     if (fraction >= 1 && !arrived) {
       arrived = true;
       if (!physical && since_control > 0) steer_pace(checked_balance(), servo.controls_stress());
