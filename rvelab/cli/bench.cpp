@@ -14,7 +14,8 @@
 #include "rvelab/cli/commands.hpp"
 #include "rvelab/cli/report.hpp"
 #include "rvelab/io/specimen_file.hpp"
-#include "rvelab/pack/random_packing.hpp"
+#include "rvelab/pack/repeated.hpp"
+#include "rvelab/pack/search.hpp"
 #include "rvelab/solver/batch.hpp"
 #include "rvelab/solver/rve.hpp"
 #include "rvelab/solver/scene.hpp"
@@ -23,31 +24,40 @@ namespace rvelab::cli {
 
 namespace {
 
-PackingRecipe discs(bool rolling) {
-  PackingRecipe r;
-  r.material.young_modulus = 8e8;
-  r.material.stiffness_ratio = 0.5;
-  r.material.friction = 0.4245;  // tan 23 degrees (Liang and Zhao 2019, table 2)
+Recipe discs(bool rolling) {
+  Recipe r;
+  Material& material = r.materials[0];
+  material.young_modulus = 8e8;
+  material.stiffness_ratio = 0.5;
+  material.friction = 0.4245;  // tan 23 degrees (Liang and Zhao 2019, table 2)
   r.contact.rolling = rolling;
   if (rolling) {
-    r.material.rolling_stiffness = 1;
-    r.material.rolling_friction = 0.05;
+    material.rolling_stiffness = 1;
+    material.rolling_friction = 0.05;
   }
+  r.stress = isotropic_stress(1e5, r.shape);
+  r.preparation.friction = 0.02;
   return r;
 }
 
-PackingRecipe spheres() {
-  PackingRecipe r;
+Recipe spheres() {
+  Recipe r;
   r.shape = Shape::sphere;
-  r.grains = 1000;
-  r.smallest_radius = 1e-3;
-  r.largest_radius = 2e-3;
-  r.material.young_modulus = 7e9;
-  r.material.poisson_ratio = 0.25;
-  r.material.friction = 0.5;
+  r.number = 1000;
+  r.fractions[0].grading.smallest_radius = 1e-3;
+  r.fractions[0].grading.largest_radius = 2e-3;
+  r.materials[0].young_modulus = 7e9;
+  r.materials[0].poisson_ratio = 0.25;
+  r.materials[0].friction = 0.5;
   r.contact.law = Law::hertz_mindlin;
-  r.preparation_friction = 0.1;
+  r.stress = isotropic_stress(1e5, r.shape);
+  r.preparation.friction = 0.1;
   return r;
+}
+
+Specimen packed(const Recipe& recipe) {
+  Workers alone(1);
+  return pack(recipe, alone).specimen;
 }
 
 struct Timing {
@@ -120,7 +130,7 @@ Json entry(const Specimen& specimen, double grain_steps, bool quick, Workers& te
 /// A case: which packing, how often repeated along each lattice vector, how much work.
 struct Case {
   const char* name;
-  PackingRecipe recipe;
+  Recipe recipe;
   Image times;
   double grain_steps, quick_grain_steps;
 };
@@ -166,7 +176,7 @@ struct Arguments {
 
 /// Many cells of 400 discs, 20 sub-steps each in every round, as a continuum code asks for.
 void run_batch(const Arguments& arguments) {
-  const Specimen specimen = random_packing(discs(false));
+  const Specimen specimen = packed(discs(false));
   std::vector<Rve> rves(arguments.batch, Rve(specimen));
   const double dt = 20 * 0.7 * rves[0].critical_time_step();
   std::vector<Matrix3> gradients(rves.size(), Matrix3::Zero());
@@ -211,7 +221,7 @@ void run_bench(const Arguments& arguments) {
   for (const Case& c : cases()) {
     const auto& wanted = arguments.wanted;
     if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), c.name) == wanted.end()) continue;
-    const Specimen specimen = repeated(random_packing(c.recipe), c.times);
+    const Specimen specimen = repeated(packed(c.recipe), c.times);
     if (arguments.folder.empty()) {
       listing.add(c.name,
                   entry(specimen, arguments.quick ? c.quick_grain_steps : c.grain_steps, arguments.quick, team));

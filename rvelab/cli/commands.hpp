@@ -15,6 +15,7 @@ struct Stopped : std::exception {
 };
 
 void add_import(CLI::App& app);
+void add_pack(CLI::App& app);
 void add_inspect(CLI::App& app);
 void add_probe(CLI::App& app);
 void add_run(CLI::App& app);

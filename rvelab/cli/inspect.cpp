@@ -93,6 +93,11 @@ void run_inspect(const std::string& path, bool as_json) {
     specimen = std::move(test.checkpoint.specimen);
   } else {
     specimen = read_specimen(path);
+    if (const auto origin = read_origin(path)) {
+      listing.add("seed", origin->seed);
+      listing.add("draw", origin->draw);
+      listing.add("preparation_friction", origin->preparation_friction);
+    }
   }
   add_state(listing, Rve(specimen));
   add_model(listing, specimen);

@@ -1,4 +1,4 @@
-// rvelab keys: every key of protocols and material files.
+// rvelab keys: every key of protocols, recipes and material files.
 #include <algorithm>
 #include <cctype>
 #include <iostream>
@@ -75,7 +75,7 @@ void add_keys(CLI::App& app) {
     bool json = false;
   };
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("keys", "List the keys of protocols and material files");
+  CLI::App* command = app.add_subcommand("keys", "List the keys of protocols, recipes and material files");
   command->add_option("pattern", arguments->pattern, "part of a key, for example pressure or stage.compression");
   command->add_flag("--json", arguments->json, "print one JSON object");
   command->footer(

@@ -31,6 +31,7 @@ int main(int argc, char** argv) {
   CLI::App app("rvelab: granular specimens in a periodic cell, deformed increment by increment", "rvelab");
   app.set_version_flag("--version", std::string("rvelab ") + rvelab::version);
   app.require_subcommand(1);
+  rvelab::cli::add_pack(app);
   rvelab::cli::add_import(app);
   rvelab::cli::add_inspect(app);
   rvelab::cli::add_probe(app);
@@ -44,7 +45,7 @@ int main(int argc, char** argv) {
   rvelab::cli::add_bench(app);
   app.footer(
       "rvelab SUBCOMMAND --help says more, with examples. A first test:\n"
-      "  rvelab import dense.particles.csv dense.contacts.csv dense.json -o dense.h5\n"
+      "  rvelab pack pack_dense -o dense.h5\n"
       "  rvelab run biaxial --specimen dense.h5 -o R.h5");
   if (argc < 2) {
     std::cerr << app.help() << std::flush;

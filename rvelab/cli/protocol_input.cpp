@@ -5,12 +5,17 @@
 #include "rvelab/error.hpp"
 #include "rvelab/io/material_toml.hpp"
 #include "rvelab/io/specimen_file.hpp"
+#include "rvelab/protocol/read_recipe.hpp"
 
 namespace rvelab::cli {
 
 namespace fs = std::filesystem;
 
-std::map<std::string, std::string> installed_protocols() {
+namespace {
+
+InputKind kind_of(const std::string& path) { return is_recipe(path) ? InputKind::recipe : InputKind::protocol; }
+
+std::map<std::string, std::string> all_installed() {
   std::map<std::string, std::string> paths;
   std::error_code ignored;
   const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
@@ -21,20 +26,40 @@ std::map<std::string, std::string> installed_protocols() {
   return paths;
 }
 
-std::string protocol_path(const std::string& name_or_path) {
-  if (name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".toml")) return name_or_path;
-  const auto installed = installed_protocols();
-  if (const auto found = installed.find(name_or_path); found != installed.end()) return found->second;
+/// The path, if the file is of the kind.
+std::string expect_kind(const std::string& path, InputKind kind) {
+  if (kind_of(path) == kind) return path;
+  throw InputError(path + (kind == InputKind::protocol
+                               ? ": is a recipe and no test, it has [pack]; allowed: a protocol with [test]; make "
+                                 "specimens of it with rvelab pack"
+                               : ": is no recipe, it has no [pack]; allowed: a recipe; see rvelab protocols"));
+}
+
+}  // namespace
+
+std::map<std::string, std::string> installed(InputKind kind) {
+  auto paths = all_installed();
+  std::erase_if(paths, [&](const auto& item) { return kind_of(item.second) != kind; });
+  return paths;
+}
+
+std::string input_path(const std::string& name_or_path, InputKind kind) {
+  if (name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".toml")) {
+    return expect_kind(name_or_path, kind);
+  }
+  const auto all = all_installed();
+  if (const auto found = all.find(name_or_path); found != all.end()) return expect_kind(found->second, kind);
   std::vector<std::string> names;
   std::string list;
-  for (const auto& [name, path] : installed) {
+  for (const auto& [name, path] : installed(kind)) {
     names.push_back(name);
     list += name + ", ";
   }
   const std::string near = nearest(name_or_path, names);
-  throw InputError("no protocol \"" + name_or_path + "\" is installed" +
-                   (near.empty() ? "" : "; the nearest is " + near) + "; allowed: " + list +
-                   "or the path of a file PROTOCOL.toml; see rvelab protocols");
+  const bool recipe = kind == InputKind::recipe;
+  throw InputError(std::string("no ") + (recipe ? "recipe" : "protocol") + " \"" + name_or_path + "\" is installed" +
+                   (near.empty() ? "" : "; the nearest is " + near) + "; allowed: " + list + "or the path of a file " +
+                   (recipe ? "RECIPE" : "PROTOCOL") + ".toml; see rvelab protocols");
 }
 
 std::vector<Specimen> specimens_for(const Protocol& protocol, const std::vector<std::string>& files) {

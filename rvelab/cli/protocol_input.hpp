@@ -10,13 +10,19 @@
 
 namespace rvelab::cli {
 
-/// Paths of the installed protocols by their names: those in ../share/rvelab/protocols beside the program, which is
-/// where installation and build put them.
-std::map<std::string, std::string> installed_protocols();
+/// What a file of ../share/rvelab/protocols is: a test for `rvelab run`, or a recipe for `rvelab pack`.
+enum class InputKind { protocol, recipe };
 
-/// The path of a protocol: what is no path (no separator, no .toml) names an installed one. InputError with the nearest
-/// name if none is called so.
-std::string protocol_path(const std::string& name_or_path);
+/// Paths of the installed protocols, or recipes, by their names: those in ../share/rvelab/protocols beside the program,
+/// which is where installation and build put them.
+std::map<std::string, std::string> installed(InputKind kind);
+
+/// The path of a protocol, or recipe: what is no path (no separator, no .toml) names an installed one. InputError with
+/// the nearest name if none is called so, or if it is of the other kind.
+std::string input_path(const std::string& name_or_path, InputKind kind);
+inline std::string protocol_path(const std::string& name_or_path) {
+  return input_path(name_or_path, InputKind::protocol);
+}
 
 /// Reads the specimens named on the command line; without any, the protocol's own ([specimen] file, relative to the
 /// protocol's folder). InputError if there is none.

@@ -1,4 +1,4 @@
-// rvelab protocols: the tests that are installed with the program.
+// rvelab protocols: the tests and the recipes that are installed with the program.
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -33,7 +33,8 @@ std::string first_sentence(const std::string& text) {
 void run_protocols(const std::string& name, bool json) {
   Listing listing;
   if (!name.empty()) {
-    const std::string path = protocol_path(name), text = text_of(path);
+    const bool recipe = installed(InputKind::recipe).contains(name);
+    const std::string path = input_path(name, recipe ? InputKind::recipe : InputKind::protocol), text = text_of(path);
     if (!json) {
       std::cout << text << std::flush;
       return;
@@ -42,8 +43,14 @@ void run_protocols(const std::string& name, bool json) {
     listing.add("text", text);
     return listing.print(true);
   }
-  for (const auto& [installed, path] : installed_protocols()) listing.add(installed, first_sentence(text_of(path)));
+  const auto add = [](Listing& to, InputKind kind) {
+    for (const auto& [each, path] : installed(kind)) to.add(each, first_sentence(text_of(path)));
+  };
+  add(listing, InputKind::protocol);
+  Listing recipes;
+  add(json ? listing : recipes, InputKind::recipe);
   listing.print(json);
+  if (!json && !recipes.empty()) std::cout << "\nRecipes, for rvelab pack:\n" << recipes.text() << std::flush;
 }
 
 }  // namespace
@@ -54,13 +61,14 @@ void add_protocols(CLI::App& app) {
     bool json = false;
   };
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("protocols", "List the tests that come with rvelab, or print one");
+  CLI::App* command = app.add_subcommand("protocols", "List the tests and recipes that come with rvelab, or print one");
   command->add_option("name", arguments->name, "print this one");
   command->add_flag("--json", arguments->json, "print one JSON object");
   command->footer(
       "Examples:\n"
       "  rvelab protocols\n"
-      "  rvelab protocols biaxial > mine.toml");
+      "  rvelab protocols biaxial > mine.toml\n"
+      "  rvelab protocols pack_dense > recipe.toml");
   command->callback([arguments] { run_protocols(arguments->name, arguments->json); });
 }
 

@@ -17,6 +17,7 @@ class Listing {
   /// `value`: number, text, truth, array or object. `unit` stands in the listing only ("" for none); JSON keys end in
   /// their unit.
   void add(const std::string& key, Json value, const std::string& unit = "");
+  bool empty() const { return lines_.empty(); }
   std::string json() const;  ///< one object, indented, ends with a newline
   std::string text() const;  ///< one line a key; matrices and lists of objects one line a row
   /// Prints to standard output in the one form or the other.

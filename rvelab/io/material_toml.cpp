@@ -363,6 +363,20 @@ toml::table parse_toml_file(const std::string& path) {
   }
 }
 
+void read_material_tables(const toml::table& file, Specimen& specimen, std::vector<KeyError>& errors) {
+  for (const auto& name : table_names) {  // [contact] first: see read_table
+    const toml::node* node = file.get(name);
+    if (node == nullptr) continue;
+    if (name == "material" && node->is_array()) {
+      read_materials(specimen, *node->as_array(), errors);
+    } else if (name == "material" && node->is_table()) {
+      specimen.materials = {read_material(specimen, *node->as_table(), errors)};
+    } else if (node->is_table()) {
+      read_table(specimen, name, *node->as_table(), errors);
+    }
+  }
+}
+
 void read_material_file(const std::string& path, Specimen& specimen) {
   const toml::table file = parse_toml_file(path);
   std::vector<KeyError> errors;
@@ -377,17 +391,7 @@ void read_material_file(const std::string& path, Specimen& specimen) {
                                   "] with its keys below; write it so"});
     }
   }
-  for (const auto& name : table_names) {  // [contact] first: see read_table
-    const toml::node* node = file.get(name);
-    if (node == nullptr) continue;
-    if (name == "material" && node->is_array()) {
-      read_materials(specimen, *node->as_array(), errors);
-    } else if (name == "material" && node->is_table()) {
-      specimen.materials = {read_material(specimen, *node->as_table(), errors)};
-    } else if (node->is_table()) {
-      read_table(specimen, name, *node->as_table(), errors);
-    }
-  }
+  read_material_tables(file, specimen, errors);
   raise(path, errors);
 }
 

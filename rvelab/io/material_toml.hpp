@@ -81,6 +81,10 @@ void raise(const std::string& path, std::vector<KeyError> errors);
 /// Parses a TOML file. InputError naming file, line and column if it is missing or not TOML.
 toml::table parse_toml_file(const std::string& path);
 
+/// Reads what there is of [[material]] (or one [material]), [contact], [damping] and [solver] in a file; what else it
+/// holds is the caller's. Mistakes as in read_table.
+void read_material_tables(const toml::table& file, Specimen& specimen, std::vector<KeyError>& errors);
+
 /// Reads a material file: [[material]] (or one [material]), [contact], [damping], [solver], and nothing else.
 void read_material_file(const std::string& path, Specimen& specimen);
 

@@ -6,6 +6,7 @@
 #include "rvelab/io/archive.hpp"
 #include "rvelab/io/crc32c.hpp"
 #include "rvelab/io/schema.hpp"
+#include "rvelab/io/version.hpp"
 
 namespace rvelab {
 namespace io {
@@ -127,6 +128,15 @@ void describe(Archive& archive, Value& specimen) {
   describe_state(archive, specimen.state);
 }
 
+template <class Archive, class Value>
+void describe_origin(Archive& archive, Value& origin) {
+  auto& [recipe, seed, draw, preparation_friction] = origin;
+  archive.field("provenance/recipe", recipe, "-");
+  archive.field("provenance/seed", seed, "1");
+  archive.field("provenance/draw", draw, "1");
+  archive.field("provenance/preparation_friction", preparation_friction, "1");
+}
+
 /// What the datasets must agree on for the indices to point at something.
 void check_indices(const Specimen& specimen, const std::string& path) {
   const auto expect = [&](bool condition, const std::string& what) {
@@ -243,11 +253,26 @@ Specimen get_specimen(const Hdf5File& file, const std::string& group) {
 
 }  // namespace io
 
-void write_specimen(const Specimen& specimen, const std::string& path) {
+void write_specimen(const Specimen& specimen, const std::string& path, const SpecimenOrigin* origin) {
   publish(path, [&](Hdf5File& file) {
     io::stamp(file, FileKind::specimen);
     io::put_specimen(file, "", specimen);
+    if (origin == nullptr) return;
+    io::Writer writer(file, "");
+    io::describe_origin(writer, *origin);
+    writer.field("provenance/version", std::string(version), "-");
+    writer.field("provenance/compiler", compiler(), "-");
   });
+}
+
+std::optional<SpecimenOrigin> read_origin(const std::string& path) {
+  const auto file = Hdf5File::open(path);
+  io::checked_kind(file);
+  if (!file.has("/provenance/recipe")) return std::nullopt;
+  SpecimenOrigin origin;
+  io::Reader reader(file, "");
+  io::describe_origin(reader, origin);
+  return origin;
 }
 
 Specimen read_specimen(const std::string& path) {

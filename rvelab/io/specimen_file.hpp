@@ -2,6 +2,8 @@
 // person can read (rvelab/io/README.md lists them).
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 
 #include "rvelab/solver/specimen.hpp"
@@ -11,9 +13,20 @@ namespace rvelab {
 /// What an rvelab file holds.
 enum class FileKind { specimen, records };
 
-/// Writes a specimen: S.h5.tmp, synced, then renamed to `path`. Throws InputError if the place cannot be written to,
-/// Error if the writing fails; `path` is then as it was.
-void write_specimen(const Specimen& specimen, const std::string& path);
+/// How a specimen was packed: with this it can be made again.
+struct SpecimenOrigin {
+  std::string recipe;  ///< with every default and setting, TOML
+  std::uint64_t seed = 0;
+  std::int64_t draw = 0;            ///< that was accepted, from 1
+  double preparation_friction = 0;  ///< of that draw
+};
+
+/// Writes a specimen, under /provenance how it came about if that is given: S.h5.tmp, synced, then renamed to `path`.
+/// Throws InputError if the place cannot be written to, Error if the writing fails; `path` is then as it was.
+void write_specimen(const Specimen& specimen, const std::string& path, const SpecimenOrigin* origin = nullptr);
+
+/// How the specimen of a specimen file was packed; none if it was not. Throws InputError as read_specimen does.
+std::optional<SpecimenOrigin> read_origin(const std::string& path);
 
 /// Reads the specimen of a specimen file, or the end state of a record file. Throws InputError naming the file and
 /// what is wrong: missing, not HDF5, truncated, of a newer format, not rvelab's, indices out of range.

@@ -26,8 +26,7 @@ std::string written(const toml::node& node) {
   return text.str();
 }
 
-void expect_top_tables(const toml::table& file, std::vector<KeyError>& errors) {
-  const auto& known = top_tables();
+void expect_top_tables(const toml::table& file, std::vector<KeyError>& errors, const std::vector<std::string>& known) {
   for (const auto& [key, value] : file) {
     const std::string name(key.str());
     if (std::find(known.begin(), known.end(), name) == known.end()) {
@@ -44,8 +43,10 @@ TableReader::TableReader(const toml::table& table, std::string key_table, std::s
 
 void TableReader::also(const std::string& key_table) {
   key_tables_.push_back(key_table);
-  for (const auto& entry : protocol_keys()) {
-    if (entry.key.table == key_table) known_.push_back(entry.key);
+  for (const auto* keys : {&protocol_keys(), &recipe_keys()}) {
+    for (const auto& entry : *keys) {
+      if (entry.key.table == key_table) known_.push_back(entry.key);
+    }
   }
 }
 
@@ -183,26 +184,12 @@ std::string TableReader::word(const std::string& name, std::optional<std::string
   return value;
 }
 
-std::vector<double> TableReader::numbers(const std::string& name) {
-  const ProtocolKey& key = entry(name);
-  const toml::node* node = find(key, false);
-  std::vector<double> values;
-  if (node == nullptr) return values;
-  if (!node->is_array() || node->as_array()->empty()) {
-    mistake(name, "is not a list of numbers; allowed: " + key.key.allowed() + "; write it as [1e4, 2e4]");
-    return values;
-  }
-  for (const auto& item : *node->as_array()) values.push_back(checked(key, item).value_or(0));
-  resolved_.insert_or_assign(name, *node);
-  return values;
-}
-
 void TableReader::finish() {
   std::vector<std::string> names;
   for (const Key& key : known_) {
     names.push_back(key.name);
     if (std::find(asked_.begin(), asked_.end(), key.name) != asked_.end()) continue;
-    throw std::logic_error("the key " + key.dotted() + " stands in protocol_keys.cpp and is not read");
+    throw std::logic_error("the key " + key.dotted() + " has an entry and is not read");
   }
   const std::string prefix = where_ + ".";
   for (const auto& [key, value] : table_) {

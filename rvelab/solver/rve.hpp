@@ -48,8 +48,11 @@ struct MixedTarget {
   };
   std::vector<Row> rows;
   Matrix3 spin = Matrix3::Zero();  ///< skew part of the increment of displacement gradient
+  double volume_ratio = 0;         ///< > 0: det(I + dH), met to round-off by an isotropic strain beside the rows' (of
+                                   ///< second order in theirs where they prescribe the volume to first order)
   double tolerance = 0.005;        ///< relative to each row's scale
-  long wait = 200;                 ///< sub-steps that the end of the increment may wait for the stress
+  long wait = 200;                 ///< sub-steps that the end of the increment may wait for the stress, or a quarter of
+                                   ///< those that it took where that is more
 };
 
 /// Bytes that an RVE holds, without the arrays that its copies share (ids, radii, materials, masses).

@@ -33,7 +33,7 @@ TEST_CASE("without arguments the program shows its short help and exits with 2")
   const Outcome outcome = here.run("");
   CHECK(outcome.code == 2);
   CHECK(outcome.output.empty());
-  CHECK_THAT(outcome.errors, Contains("Subcommands:") && Contains("--help") && Contains("rvelab import"));
+  CHECK_THAT(outcome.errors, Contains("Subcommands:") && Contains("--help") && Contains("rvelab pack"));
 }
 
 TEST_CASE("every subcommand has a help with an example of itself, and no colours") {

@@ -82,7 +82,8 @@ std::map<std::string, std::vector<std::string>> documented(const std::string& re
 /// Extents as the README writes them: numbers, and a letter for each that varies. The letters stand for different
 /// numbers here, so that one for the other is noticed.
 std::string in_readme(const Shape64& shape) {
-  const std::map<std::uint64_t, std::string> letters{{17, "n"}, {31, "c"}, {23, "r"}, {2, "s"}, {5, "p"}, {6, "k"}};
+  const std::map<std::uint64_t, std::string> letters{{17, "n"}, {31, "c"}, {23, "r"}, {2, "s"},
+                                                     {5, "p"},  {6, "k"},  {7, "v"}};
   std::string text;
   for (const auto extent : shape) {
     const auto letter = letters.find(extent);
@@ -113,6 +114,10 @@ TEST_CASE("the README lists exactly the datasets of a file, with their types, sh
   std::map<std::string, Hdf5Entry> found;
   for (const auto& entry : Hdf5File::open(folder / "s.h5").entries()) found[entry.name] = entry;
   const std::size_t of_a_specimen = found.size();
+  const SpecimenOrigin origin{"recipe", 1, 2, 0.5};
+  write_specimen(random_specimen(8), folder / "packed.h5", &origin);
+  for (const auto& entry : Hdf5File::open(folder / "packed.h5").entries()) found[entry.name] = entry;
+  CHECK(found.size() == of_a_specimen + 6);
   std::size_t states = 0;
   for (const auto& entry : Hdf5File::open(folder / "r.h5").entries()) {
     const std::string snapshot_group = "/snapshots/000012";

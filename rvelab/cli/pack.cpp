@@ -1,0 +1,198 @@
+// rvelab pack: specimens from a recipe.
+#include <unistd.h>
+
+#include <charconv>
+#include <chrono>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "rvelab/cli/commands.hpp"
+#include "rvelab/cli/interrupt.hpp"
+#include "rvelab/cli/protocol_input.hpp"
+#include "rvelab/cli/report.hpp"
+#include "rvelab/error.hpp"
+#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/measure/measures.hpp"
+#include "rvelab/pack/search.hpp"
+#include "rvelab/protocol/read_recipe.hpp"
+#include "rvelab/solver/rve.hpp"
+
+namespace rvelab::cli {
+namespace {
+
+struct PackArguments {
+  std::string recipe, output;
+  std::vector<std::string> settings;
+  std::size_t count = 1;
+  unsigned threads = 0;
+  bool json = false;
+};
+
+/// One specimen to be made, and what became of it.
+struct Job {
+  RecipeFile what;
+  std::string file;
+  Json made;  ///< null: not made
+};
+
+/// "S.h5" with a word before its extension: "S_20000Pa.h5".
+std::string with_word(const std::string& file, const std::string& word) {
+  const std::filesystem::path path = file;
+  return (path.parent_path() / (path.stem().string() + "_" + word + path.extension().string())).string();
+}
+
+/// The specimens of a family, and of each member the wanted number, with seeds one after the other.
+std::vector<Job> jobs_of(const RecipeFile& file, const PackArguments& arguments) {
+  std::vector<Job> jobs;
+  const std::size_t digits = std::to_string(arguments.count).size();
+  const auto add = [&](std::optional<double> pressure, const std::string& name) {
+    for (std::size_t k = 0; k < arguments.count; ++k) {
+      const std::string number = std::to_string(k + 1);
+      const std::string padded = std::string(digits - number.size(), '0') + number;
+      jobs.push_back(
+          {file.member(file.recipe.seed + k, pressure), arguments.count > 1 ? with_word(name, padded) : name, {}});
+    }
+  };
+  if (file.pressures.empty()) add(std::nullopt, arguments.output);
+  for (const double pressure : file.pressures) {
+    char digits_of[32];
+    const auto end = std::to_chars(digits_of, digits_of + sizeof digits_of, pressure, std::chars_format::fixed).ptr;
+    add(pressure, with_word(arguments.output, std::string(digits_of, end) + "Pa"));
+  }
+  return jobs;
+}
+
+/// Shows on a terminal that something is going on.
+class DrawLine {
+ public:
+  ~DrawLine() {
+    if (shown_) std::cerr << "\r\033[K" << std::flush;
+  }
+  void show(std::uint64_t seed, long draw, double void_ratio) {
+    if (!terminal_) return;
+    const std::lock_guard lock(mutex_);
+    std::cerr << "\rseed " << seed << "  draw " << draw << "  void ratio " << void_ratio << "\033[K" << std::flush;
+    shown_ = true;
+  }
+
+ private:
+  const bool terminal_ = isatty(STDERR_FILENO) == 1;
+  bool shown_ = false;
+  std::mutex mutex_;
+};
+
+Json summary_of(const Job& job, const Packing& packing, double seconds) {
+  const Rve rve(packing.specimen);
+  const Network network = rve.network();
+  const int dimension = network.dimension();
+  Json made;
+  made["file"] = job.file;
+  made["seed"] = job.what.recipe.seed;
+  made["void_ratio"] = packing.void_ratio;
+  made["stress_Pa"] = row_major(rve.stress().topLeftCorner(dimension, dimension));
+  made["contacts"] = network.contacts.size();
+  made["coordination_number"] = coordination_number(network);
+  made["fabric_anisotropy"] = network.contacts.empty() ? Json() : Json(fabric_anisotropy(fabric(network), dimension));
+  made["fabric"] = network.contacts.empty() ? Json() : row_major(fabric(network).topLeftCorner(dimension, dimension));
+  made["unbalanced_force_ratio"] = rve.unbalanced_ratio();
+  made["draw"] = packing.draw;
+  made["preparation_friction"] = packing.preparation_friction;
+  made["wall_s"] = seconds;
+  return made;
+}
+
+/// Makes one specimen and writes it; files one at a time.
+void make(Job& job, Workers& workers, DrawLine& line, std::mutex& files) {
+  const auto begin = std::chrono::steady_clock::now();
+  PackWatch watch;
+  watch.stop = &stop_on_signals();
+  watch.on_draw = [&](long draw, double void_ratio) { line.show(job.what.recipe.seed, draw, void_ratio); };
+  const Packing packing = pack(job.what.recipe, workers, watch);
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+  job.made = summary_of(job, packing, seconds.count());
+  const SpecimenOrigin origin{job.what.resolved, job.what.recipe.seed, packing.draw, packing.preparation_friction};
+  const std::lock_guard lock(files);
+  write_specimen(packing.specimen, job.file, &origin);
+}
+
+void report(const RecipeFile& file, const std::vector<Job>& jobs, bool json) {
+  Listing listing;
+  listing.add("recipe", file.name);
+  if (jobs.size() == 1) {
+    const auto unit = [](const std::string& key) { return key.ends_with("_Pa") ? "Pa" : key == "wall_s" ? "s" : ""; };
+    for (const auto& [key, value] : jobs.front().made.items()) listing.add(key, value, unit(key));
+  } else {
+    Json rows = Json::array();
+    for (const Job& job : jobs) rows.push_back(job.made);
+    listing.add("specimens", std::move(rows));
+  }
+  listing.print(json);
+}
+
+void run_pack(const PackArguments& arguments) {
+  const RecipeFile file = read_recipe(input_path(arguments.recipe, InputKind::recipe), arguments.settings);
+  expect_folder_of(arguments.output);
+  std::vector<Job> jobs = jobs_of(file, arguments);
+  const unsigned threads =
+      arguments.threads > 0 ? arguments.threads : std::max(1u, std::thread::hardware_concurrency());
+  DrawLine line;
+  std::mutex files;
+  try {
+    if (jobs.size() == 1) {
+      Workers workers(threads);
+      make(jobs.front(), workers, line, files);
+    } else {
+      Workers workers(unsigned(std::min<std::size_t>(threads, jobs.size())));
+      workers.run(jobs.size(), [&](std::size_t k) {
+        Workers alone(1);
+        try {
+          make(jobs[k], alone, line, files);
+        } catch (const InputError&) {
+          throw;
+        } catch (const Interrupted&) {
+          throw;
+        } catch (const Error& error) {
+          throw Error(jobs[k].file + ", seed " + std::to_string(jobs[k].what.recipe.seed) + ": " + error.what());
+        }
+      });
+    }
+  } catch (const Interrupted&) {
+    const auto made = std::count_if(jobs.begin(), jobs.end(), [](const Job& job) { return !job.made.is_null(); });
+    std::cerr << "rvelab: stopped by " << signal_name() << " with " << made << " of " << jobs.size()
+              << " specimens made; their files are kept" << std::endl;
+    throw Stopped(128 + signal_received());
+  }
+  report(file, jobs, arguments.json);
+}
+
+}  // namespace
+
+void add_pack(CLI::App& app) {
+  auto arguments = std::make_shared<PackArguments>();
+  CLI::App* command = app.add_subcommand("pack", "Make specimens from a recipe in TOML");
+  command->add_option("recipe", arguments->recipe, "RECIPE.toml, or the name of an installed one: pack_dense")
+      ->required();
+  command->add_option("-o,--output", arguments->output, "specimen file to write, S.h5")->required();
+  command->add_option("--count", arguments->count, "so many specimens, S_1.h5 and on, with seeds one after the other")
+      ->check(CLI::Range(1, 1'000'000));
+  command->add_option("--set", arguments->settings, "key=value, for example target.pressure_Pa=50e3")
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->take_all();
+  command->add_option("--threads", arguments->threads, "specimens or draws at a time; else as many as there are cores")
+      ->check(CLI::Range(1u, 4096u));
+  command->add_flag("--json", arguments->json, "print one JSON object");
+  command->footer(
+      "The same recipe gives the same bits on any number of threads. target.pressures_Pa makes a family, S_20000Pa.h5\n"
+      "and so on. `rvelab keys pack`, `keys grains`, `keys target` and `keys preparation` say what a recipe may hold.\n"
+      "Examples:\n"
+      "  rvelab pack pack_dense -o dense.h5\n"
+      "  rvelab pack pack_loose -o loose.h5 --count 20 --set pack.number=1000\n"
+      "  rvelab pack mine.toml -o S.h5 --set target.void_ratio=0.2 --set pack.seed=7");
+  command->callback([arguments] { run_pack(*arguments); });
+}
+
+}  // namespace rvelab::cli

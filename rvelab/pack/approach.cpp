@@ -1,0 +1,133 @@
+#include "rvelab/pack/approach.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "rvelab/error.hpp"
+#include "rvelab/measure/measures.hpp"
+#include "rvelab/pack/scatter.hpp"
+
+namespace rvelab {
+
+namespace {
+
+/// Solid fraction of grains that are scattered in full size: most find their place at the first tries.
+double scattered_fraction(int dimension) { return dimension == 2 ? 0.45 : 0.25; }
+
+/// Contacts per grain from which grains are no longer on their own.
+double crowded(int dimension) { return 0.25 * dimension; }
+
+constexpr double clearance = 5e-4;  ///< of the radius, left around grains that need not touch
+
+/// An assembly that is being prepared: the pace is fixed, since no network is there whose balance could steer it, and
+/// overlaps are not bounded, since a light grain caught between two others is pushed out again.
+Specimen assembly(const Recipe& recipe, double friction, const Grains& grains, const Cell& cell) {
+  Specimen s;
+  s.shape = recipe.shape;
+  s.cell = cell;
+  s.materials = preparing(recipe, friction);
+  s.contact = recipe.contact;
+  s.solver.fixed_substeps = 50;
+  s.solver.max_overlap_ratio = 1e3;
+  s.grains = grains;
+  return s;
+}
+
+double contacts_per_grain(const Rve& rve) { return double(rve.network().contacts.size()) / double(rve.size()); }
+
+void shrink(Rve& rve, double strain) {
+  Matrix3 gradient = Matrix3::Zero();
+  for (int k = 0; k < rve.cell().dimension; ++k) gradient(k, k) = -strain;
+  rve.apply(gradient, 0);
+}
+
+/// Shrinks until a tenth of the pressure is there when the cell stands still: that of grains on their way falls then. A
+/// step that leads beyond the pressure is taken back and made shorter: stiff grains know no way back from there.
+void press(const Recipe& recipe, Rve& rve) {
+  const int d = dimension_of(recipe.shape);
+  const double pressure = mean_pressure(*recipe.stress, d);
+  const auto settled_part = [&] {
+    if (mean_pressure(rve.stress(), d) < 0.1 * pressure) return 0.0;
+    rve.relax(1e-2, 100);
+    return mean_pressure(rve.stress(), d) / pressure;
+  };
+  double strain = 1e-3;
+  double part = settled_part();
+  for (int round = 0; part < 0.1; ++round) {
+    const Rve before = rve;
+    shrink(rve, strain);
+    part = settled_part();
+    if (part > 1 && strain > 1e-9) {
+      rve = before;
+      strain *= 0.25;
+      part = 0;
+    }
+    if (round == 5000)
+      throw IncrementFailed("packing: no pressure after 5000 compressions; check radii, stiffness, target.pressure_Pa");
+  }
+}
+
+/// The same assembly, at rest, with other radii; contacts keep their history.
+Rve with_radii(const Rve& rve, const std::vector<double>& radii, const std::atomic<bool>* stop) {
+  Specimen s = rve.specimen();
+  s.grains.radius = radii;
+  s.state = SolverState{};
+  for (auto* v : {&s.grains.velocity, &s.grains.spin}) std::fill(v->begin(), v->end(), Vector3::Zero());
+  Rve other(s);
+  other.watch(stop);
+  return other;
+}
+
+std::vector<double> scaled(std::vector<double> radii, double factor) {
+  for (double& radius : radii) radius *= factor;
+  return radii;
+}
+
+}  // namespace
+
+Rve by_compression(const Recipe& recipe, const Grains& graded, double friction, Uniform& uniform,
+                   const std::atomic<bool>* stop) {
+  const int d = dimension_of(recipe.shape);
+  Grains grains = graded;
+  double volume = solid_volume(recipe, grains) / scattered_fraction(d);
+  while (!scatter(cell_of(recipe, volume), 1, grains, uniform)) volume *= 1.1;
+  Rve rve(assembly(recipe, friction, grains, cell_of(recipe, volume)));
+  rve.watch(stop);
+  for (int round = 0; contacts_per_grain(rve) < crowded(d); ++round) {
+    shrink(rve, 1e-2);
+    if (round == 300) throw IncrementFailed("packing: no contacts after 300 compressions by 1 %; check the radii");
+  }
+  press(recipe, rve);
+  return rve;
+}
+
+Rve by_growth(const Recipe& recipe, const Grains& graded, double friction, Uniform& uniform,
+              const std::atomic<bool>* stop) {
+  const int d = dimension_of(recipe.shape);
+  const Preparation& preparation = recipe.preparation;
+  const double volume = solid_volume(recipe, graded) * (1 + growth_void_ratio(recipe));
+  const Cell cell = cell_of(recipe, volume);
+  Grains grains = graded;
+  if (!scatter(cell, preparation.first_size, grains, uniform))
+    throw InputError("preparation.first_size = " + std::to_string(preparation.first_size) +
+                     " leaves no room to scatter the grains; allowed: above 0 to below 1; give a smaller one");
+  const std::vector<double>& radii = graded.radius;
+  grains.radius = scaled(radii, preparation.first_size);
+  Rve rve(assembly(recipe, friction, grains, cell));
+  rve.watch(stop);
+  const double full_size = recipe.stress ? 1 : 1 + clearance;
+  for (double size = preparation.first_size; size < full_size;) {
+    const bool touching = contacts_per_grain(rve) >= crowded(d);
+    size = std::min(full_size, size * (touching ? 1.001 : 1.01));
+    rve = with_radii(rve, scaled(radii, size), stop);
+    rve.relax(1e-3, 50);
+  }
+  if (recipe.stress) {
+    press(recipe, rve);
+    return rve;
+  }
+  rve.relax(recipe.unbalanced, 50'000);
+  return with_radii(rve, radii, stop);
+}
+
+}  // namespace rvelab

@@ -1,0 +1,85 @@
+#include "rvelab/pack/draw.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "rvelab/measure/measures.hpp"
+#include "rvelab/pack/approach.hpp"
+#include "rvelab/pack/consolidation.hpp"
+#include "rvelab/pack/scatter.hpp"
+
+namespace rvelab {
+
+namespace {
+
+/// With the friction of the preparation: what counts is how dense the grains lie, not how still.
+constexpr Rest prepared{5e-2, 1e-2, 0.5, 10, 200, 200};
+
+/// With the final friction: the void ratio is there to a few 1e-4.
+constexpr Rest nearly{5e-3, 1e-3, 0.5, 10, 2000, 200};
+
+/// Tolerances from the target beyond which the rest of the way is not worth it.
+constexpr double far_off = 1.5;
+
+/// The assembly with a pace that is steered from here on. The overlaps that the pressure will make set its scale, those
+/// of the start would make it idle; how dense it becomes does not depend on the balance that is asked for on the way.
+Rve steered(const Rve& rve, const Recipe& recipe, const std::atomic<bool>* stop) {
+  Specimen s = rve.specimen();
+  s.solver = SolverOptions{};
+  s.solver.target_unbalanced = 1e-2;
+  s.state = SolverState{};
+  if (recipe.stress) {
+    const Network network = rve.network();
+    double overlap = 0;
+    for (const ContactState& contact : network.contacts) overlap += contact.overlap;
+    overlap /= std::max(1.0, double(network.contacts.size()));
+    const int d = network.dimension();
+    const double rise = mean_pressure(*recipe.stress, d) / mean_pressure(contact_stress(network), d);
+    s.state.reference_overlap = 3 * overlap * std::clamp(rise, 1.0, 10.0);
+  }
+  Rve other(s);
+  other.watch(stop);
+  return other;
+}
+
+}  // namespace
+
+Draw draw(const Recipe& recipe, long number, double friction, const std::atomic<bool>* stop) {
+  const int d = dimension_of(recipe.shape);
+  Uniform uniform(recipe.seed, std::uint64_t(number));
+  const Grains graded = graded_grains(recipe);
+  const bool growth = recipe.preparation.method == Preparation::Method::growth || !recipe.stress;
+  Rve rve = growth ? by_growth(recipe, graded, friction, uniform, stop)
+                   : by_compression(recipe, graded, friction, uniform, stop);
+
+  rve = steered(rve, recipe, stop);
+  Draw result;
+  result.friction = friction;
+  if (recipe.stress) {
+    StressGoal goal{isotropic_stress(mean_pressure(*recipe.stress, d), recipe.shape), true, d};
+    consolidate(rve, goal, prepared);
+    rve.set_materials(recipe.materials);
+    goal.stress = *recipe.stress;
+    consolidate(rve, goal, nearly);
+    result.void_ratio = void_ratio(rve.network());
+    const double miss = recipe.void_ratio ? std::abs(result.void_ratio - *recipe.void_ratio) : 0;
+    if (miss > far_off * recipe.void_ratio_tolerance) return result;
+    Rest rest;
+    rest.stress_tolerance = recipe.stress_tolerance;
+    rest.unbalanced = recipe.unbalanced;
+    result.at_rest = consolidate(rve, goal, rest);
+  } else {
+    rve.set_materials(recipe.materials);
+    result.at_rest = rve.relax(recipe.unbalanced, 100'000).target_held;
+  }
+  result.void_ratio = void_ratio(rve.network());
+  result.specimen = rve.specimen();
+  result.specimen.damping = recipe.damping;
+  result.specimen.solver = recipe.solver;
+  result.specimen.state = SolverState{};
+  auto& grains = result.specimen.grains;
+  for (auto* v : {&grains.velocity, &grains.spin}) std::fill(v->begin(), v->end(), Vector3::Zero());
+  return result;
+}
+
+}  // namespace rvelab

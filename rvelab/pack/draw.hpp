@@ -1,0 +1,22 @@
+// One draw: grains scattered at random, brought into contact, to the stress, and to rest with their final friction.
+#pragma once
+
+#include <atomic>
+
+#include "rvelab/pack/recipe.hpp"
+
+namespace rvelab {
+
+struct Draw {
+  double friction = 0;    ///< of the preparation
+  double void_ratio = 0;  ///< with the final friction, at the stress
+  bool at_rest = false;   ///< stress and balance within the recipe's tolerances; false: only nearly, since the void
+                          ///< ratio is too far from the target to be worth it
+  Specimen specimen;      ///< of a draw at rest
+};
+
+/// Makes draw `number` (from 1) of a recipe with the given preparation friction; the same bits for the same three.
+/// IncrementFailed if the grains do not come to the stress; Interrupted.
+Draw draw(const Recipe& recipe, long number, double friction, const std::atomic<bool>* stop);
+
+}  // namespace rvelab

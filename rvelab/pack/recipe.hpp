@@ -1,0 +1,83 @@
+// What a specimen is to be: grains, stress, void ratio, and how it is prepared.
+//
+// This room knows how to make specimens; it uses Rve as any client does and knows no file. Pressures and void ratios
+// are those of the finished specimen, with the friction of its materials.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "rvelab/grains/grading.hpp"
+#include "rvelab/solver/specimen.hpp"
+
+namespace rvelab {
+
+/// A part of the grains with a material and a grading of its own.
+struct GrainFraction {
+  std::string name = "grains";
+  double share = 1;          ///< of all grains, by number or by mass (Recipe::share_by_mass); all shares add up to 1
+  std::size_t material = 0;  ///< row of Recipe::materials
+  Grading grading;
+};
+
+/// How a specimen is brought from scattered grains to contact.
+struct Preparation {
+  enum class Method {
+    compression,  ///< scattered without contact, then the cell shrinks
+    growth        ///< scattered small in a cell of the end's size, then the radii grow (Li et al. 2023)
+  };
+  Method method = Method::compression;
+  std::optional<double> friction;  ///< of all contacts while it is prepared; none: that of the materials, or searched
+  double rolling_friction = 0;     ///< eta while it is prepared, where the contact model rolls
+  double lowest_friction = 0, highest_friction = 1e6;  ///< of a search for the void ratio
+  long max_draws = 100;                                ///< of that search
+  double first_size = 0.2;                             ///< growth: radii at the start over those at the end
+  std::optional<double> growth_void_ratio;             ///< growth: of the cell when the grains have grown; none: below
+};
+
+/// A recipe. The same recipe gives the same bits on any number of threads.
+struct Recipe {
+  Shape shape = Shape::disc;
+  std::size_t number = 400;  ///< grains in all
+  std::uint64_t seed = 1;
+  double thickness = 0.1;  ///< m, of the slab, 2D
+  bool oriented = false;   ///< lattice of Kraynik and Reinelt (2D) or of the cubic field (3D); else square or cubic
+  bool share_by_mass = false;
+  std::vector<GrainFraction> fractions{GrainFraction{}};
+  std::vector<Material> materials{Material{}};
+  ContactModel contact;
+  Damping damping;
+  SolverOptions solver;
+
+  std::optional<Matrix3> stress;     ///< Pa, laboratory frame, tension positive, symmetric; none: void_ratio alone
+  std::optional<double> void_ratio;  ///< none: what the preparation gives
+  double void_ratio_tolerance = 1e-3;
+  double stress_tolerance = 5e-4;  ///< of the mean pressure, for each component
+  double unbalanced = 1e-5;
+  Preparation preparation;
+};
+
+/// All stress components of an isotropic pressure (Pa, compression positive).
+Matrix3 isotropic_stress(double pressure, Shape shape);
+
+/// Materials while a specimen is prepared with the given friction.
+std::vector<Material> preparing(const Recipe& recipe, double friction);
+
+/// Void ratio of the cell in which grains grow: as given; without a stress the target's; else 0.1 above the target's,
+/// and without that 0.3 in 2D, 0.9 in 3D.
+double growth_void_ratio(const Recipe& recipe);
+
+/// Throws InputError for what no specimen can be made of.
+void check(const Recipe& recipe);
+
+/// How a specimen came about, beside itself.
+struct Packing {
+  Specimen specimen;
+  long draw = 1;  ///< the one that was accepted, from 1
+  double preparation_friction = 0;
+  double void_ratio = 0;
+};
+
+}  // namespace rvelab

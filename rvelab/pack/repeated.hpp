@@ -1,0 +1,12 @@
+// Larger specimens of smaller ones.
+#pragma once
+
+#include "rvelab/solver/specimen.hpp"
+
+namespace rvelab {
+
+/// A periodic specimen repeated along its cell vectors, contacts with their history copied. InputError: a count
+/// below 1.
+Specimen repeated(const Specimen& specimen, const Image& times);
+
+}  // namespace rvelab

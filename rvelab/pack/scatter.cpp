@@ -1,0 +1,174 @@
+#include "rvelab/pack/scatter.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "rvelab/error.hpp"
+
+namespace rvelab {
+
+namespace {
+
+constexpr int most_tries = 2000;
+
+/// How many grains each fraction gets: whole numbers nearest to the shares that add up to the recipe's number.
+std::vector<std::size_t> numbers_of(const Recipe& recipe, const std::vector<NumberCurve>& curves) {
+  const int d = dimension_of(recipe.shape);
+  std::vector<double> parts;
+  for (std::size_t f = 0; f < curves.size(); ++f) {
+    const GrainFraction& fraction = recipe.fractions[f];
+    const double mass = recipe.materials[fraction.material].density * curves[f].mean_power(d);
+    parts.push_back(recipe.share_by_mass ? fraction.share / mass : fraction.share);
+  }
+  const double sum = std::accumulate(parts.begin(), parts.end(), 0.0);
+  std::vector<std::size_t> numbers;
+  std::vector<std::size_t> order(parts.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::size_t given = 0;
+  for (double& part : parts) {
+    part *= double(recipe.number) / sum;
+    numbers.push_back(std::size_t(part));
+    given += numbers.back();
+    part -= double(numbers.back());
+  }
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return parts[a] > parts[b]; });
+  for (std::size_t k = 0; given < recipe.number; k = (k + 1) % order.size(), ++given) ++numbers[order[k]];
+  return numbers;
+}
+
+/// Points of a cell in boxes that are at least as wide as the reach of a contact, periodic.
+class Boxes {
+ public:
+  Boxes(const Cell& cell, double reach)
+      : cell_(cell), inverse_(cell.lattice.triangularView<Eigen::Upper>().solve(Matrix3::Identity())) {
+    const Vector3 height = heights(cell);
+    for (int k = 0; k < cell.dimension; ++k) count_[k] = std::max(1, int(std::min(200.0, height[k] / reach)));
+    content_.resize(std::size_t(count_[0]) * count_[1] * count_[2]);
+  }
+
+  void add(const Vector3& place, double radius) {
+    const Vector3 at = inside(place);
+    content_[index(box_of(at))].push_back({at, radius});
+  }
+
+  /// No point of which any image is nearer than the sum of both radii; own images are the caller's.
+  bool free(const Vector3& place, double radius) const {
+    const Vector3 at = inside(place);
+    const std::array<int, 3> centre = box_of(at);
+    for (int z = -reach(2); z <= reach(2); ++z)
+      for (int y = -reach(1); y <= reach(1); ++y)
+        for (int x = -reach(0); x <= reach(0); ++x) {
+          const int shift[3] = {x, y, z};
+          std::array<int, 3> box;
+          Image image{};
+          for (int k = 0; k < 3; ++k) {
+            const int place = centre[k] + shift[k];
+            image[k] = place >= 0 ? place / count_[k] : -((count_[k] - 1 - place) / count_[k]);
+            box[k] = place - image[k] * count_[k];
+          }
+          const Vector3 moved = translation(cell_, image) - at;
+          for (const Point& point : content_[index(box)]) {
+            const double distance = radius + point.radius;
+            if ((point.at + moved).squaredNorm() < distance * distance) return false;
+          }
+        }
+    return true;
+  }
+
+ private:
+  struct Point {
+    Vector3 at;
+    double radius;
+  };
+
+  int reach(int axis) const { return axis < cell_.dimension ? 1 : 0; }
+  std::size_t index(const std::array<int, 3>& box) const {
+    return (std::size_t(box[2]) * count_[1] + box[1]) * count_[0] + box[0];
+  }
+  /// The image with lattice coordinates from 0 to 1, which the boxes count.
+  Vector3 inside(const Vector3& place) const {
+    Vector3 part = inverse_ * place;
+    for (int k = 0; k < cell_.dimension; ++k) part[k] -= std::floor(part[k]);
+    return cell_.lattice * part;
+  }
+  std::array<int, 3> box_of(const Vector3& at) const {
+    const Vector3 part = inverse_ * at;
+    std::array<int, 3> box{};
+    for (int k = 0; k < cell_.dimension; ++k) box[k] = std::clamp(int(part[k] * count_[k]), 0, count_[k] - 1);
+    return box;
+  }
+
+  Cell cell_;
+  Matrix3 inverse_;
+  std::array<int, 3> count_{1, 1, 1};
+  std::vector<std::vector<Point>> content_;
+};
+
+}  // namespace
+
+Grains graded_grains(const Recipe& recipe) {
+  const int d = dimension_of(recipe.shape);
+  std::vector<NumberCurve> curves;
+  for (const auto& fraction : recipe.fractions) curves.push_back(number_curve(fraction.grading, d));
+  const auto numbers = numbers_of(recipe, curves);
+  Uniform uniform(recipe.seed);
+  Grains grains;
+  for (std::size_t f = 0; f < curves.size(); ++f) {
+    if (numbers[f] == 0) {
+      throw InputError("grains." + recipe.fractions[f].name + " gets no grain of " + std::to_string(recipe.number) +
+                       "; allowed: at least one for each fraction; raise pack.number or the fraction's share");
+    }
+    for (const double radius : radii_of(curves[f], numbers[f], uniform)) {
+      grains.id.push_back(std::int64_t(grains.id.size()));
+      grains.radius.push_back(radius);
+      grains.material.push_back(std::int32_t(recipe.fractions[f].material));
+    }
+  }
+  grains.position.assign(recipe.number, Vector3::Zero());
+  grains.velocity.assign(recipe.number, Vector3::Zero());
+  grains.spin.assign(recipe.number, Vector3::Zero());
+  return grains;
+}
+
+double solid_volume(const Recipe& recipe, const Grains& grains) {
+  double volume = 0;
+  for (const double radius : grains.radius) volume += grain_volume(recipe.shape, radius, recipe.thickness);
+  return volume;
+}
+
+Cell cell_of(const Recipe& recipe, double volume) {
+  const int d = dimension_of(recipe.shape);
+  if (!recipe.oriented) return cubic_cell(d, volume, recipe.thickness);
+  return d == 2 ? kraynik_reinelt_cell(volume, recipe.thickness) : cubic_field_cell(volume);
+}
+
+bool scatter(const Cell& cell, double size, Grains& grains, Uniform& uniform) {
+  const double largest = size * *std::max_element(grains.radius.begin(), grains.radius.end());
+  if (shortest_vector(cell) < 2 * largest) return false;
+  Boxes boxes(cell, 2 * largest);
+  std::vector<std::size_t> order(grains.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return grains.radius[a] > grains.radius[b]; });
+  for (const std::size_t g : order) {
+    const double radius = size * grains.radius[g];
+    bool placed = false;
+    for (int k = 0; k < most_tries && !placed; ++k) {
+      Vector3 part = Vector3::Zero();
+      for (int axis = 0; axis < cell.dimension; ++axis) part[axis] = uniform() - 0.5;
+      Vector3 at = cell.lattice * part;
+      wrap(cell, at);
+      placed = boxes.free(at, radius);
+      if (placed) {
+        boxes.add(at, radius);
+        grains.position[g] = at;
+      }
+    }
+    if (!placed) return false;
+  }
+  return true;
+}
+
+}  // namespace rvelab

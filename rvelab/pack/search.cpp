@@ -1,0 +1,220 @@
+#include "rvelab/pack/search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <sstream>
+
+#include "rvelab/error.hpp"
+
+namespace rvelab {
+
+namespace {
+
+constexpr double half_friction = 0.1;  ///< whose coordinate is one half
+constexpr double bandwidth = 0.2;      ///< of the local line, over the range of coordinates
+
+/// Level pieces of the best rising curve.
+struct Level {
+  double coordinate = 0, void_ratio = 0;  ///< means
+  double weight = 1;
+};
+
+std::vector<Level> rising_fit(std::vector<CurvePoint> points) {
+  std::stable_sort(points.begin(), points.end(),
+                   [](const CurvePoint& a, const CurvePoint& b) { return a.coordinate < b.coordinate; });
+  std::vector<Level> levels;
+  for (const CurvePoint& point : points) {
+    Level level{point.coordinate, point.void_ratio, 1};
+    // Pool adjacent violators: a level that is not above the one before becomes one with it.
+    while (!levels.empty() && levels.back().void_ratio >= level.void_ratio) {
+      const Level& before = levels.back();
+      const double weight = before.weight + level.weight;
+      level.coordinate = (before.coordinate * before.weight + level.coordinate * level.weight) / weight;
+      level.void_ratio = (before.void_ratio * before.weight + level.void_ratio * level.weight) / weight;
+      level.weight = weight;
+      levels.pop_back();
+    }
+    levels.push_back(level);
+  }
+  return levels;
+}
+
+/// Where the fit meets the target.
+double crossing(const std::vector<Level>& levels, double target, double low, double high) {
+  if (levels.empty() || target <= levels.front().void_ratio) return low;
+  for (std::size_t k = 1; k < levels.size(); ++k) {
+    if (target > levels[k].void_ratio) continue;
+    const Level &a = levels[k - 1], &b = levels[k];
+    return a.coordinate + (b.coordinate - a.coordinate) * ((target - a.void_ratio) / (b.void_ratio - a.void_ratio));
+  }
+  return high;
+}
+
+/// The range that the draws reached, and what to do about a target that is out of it.
+Error not_found(const Recipe& recipe, const std::vector<Draw>& draws) {
+  const auto order = [](const Draw& a, const Draw& b) { return a.void_ratio < b.void_ratio; };
+  const auto [lowest, highest] = std::minmax_element(draws.begin(), draws.end(), order);
+  std::ostringstream text;
+  text << "target.void_ratio = " << *recipe.void_ratio << " was not met within " << recipe.void_ratio_tolerance
+       << " in " << draws.size() << " draws; reached: " << lowest->void_ratio << " (preparation friction "
+       << lowest->friction << ") to " << highest->void_ratio << " (" << highest->friction << "); ";
+  if (*recipe.void_ratio > highest->void_ratio) {
+    text << "give a lower void ratio, a lower pressure, rolling friction in the preparation, or raise "
+            "preparation.highest_friction";
+  } else if (*recipe.void_ratio < lowest->void_ratio) {
+    text << "give a higher void ratio, a higher pressure or a wider grading, or lower preparation.lowest_friction";
+  } else {
+    text << "raise preparation.max_draws, or target.void_ratio_tolerance";
+  }
+  return Error(text.str());
+}
+
+class Search {
+ public:
+  Search(const Recipe& recipe, Workers& workers, const PackWatch& watch)
+      : recipe_(recipe),
+        workers_(workers),
+        watch_(watch),
+        low_(coordinate_of(recipe.preparation.lowest_friction)),
+        high_(coordinate_of(recipe.preparation.highest_friction)),
+        uniform_(recipe.seed, std::numeric_limits<std::uint64_t>::max()) {}
+
+  Packing run() {
+    while (long(draws_.size()) < recipe_.preparation.max_draws) {
+      const std::size_t first = draws_.size();
+      const auto count = std::size_t(std::min(draws_at_a_time, recipe_.preparation.max_draws - long(first)));
+      for (std::size_t k = 0; k < count; ++k) {
+        draws_.emplace_back();
+        draws_.back().friction = std::clamp(friction_of(next_coordinate(first + k, first)),
+                                            recipe_.preparation.lowest_friction, recipe_.preparation.highest_friction);
+      }
+      if (const auto found = make(first, count)) return packing(*found);
+    }
+    throw not_found(recipe_, draws_);
+  }
+
+ private:
+  double next_coordinate(std::size_t number, std::size_t known) {
+    // The first ones over the range, at its middles rather than its ends.
+    if (known == 0) return low_ + (high_ - low_) * ((double(number) + 0.5) / double(draws_at_a_time));
+    std::vector<CurvePoint> points;
+    for (std::size_t k = 0; k < known; ++k) {
+      if (!failed_[k]) points.push_back({coordinate_of(draws_[k].friction), draws_[k].void_ratio});
+    }
+    if (points.empty()) return low_ + (high_ - low_) * uniform_();
+    const double near = fitted_coordinate(points, *recipe_.void_ratio, low_, high_);
+    const double width = 0.03 * (high_ - low_) / (1 + 0.25 * double(known));
+    return std::clamp(near + width * (uniform_() - 0.5), low_, high_);
+  }
+
+  bool accepted(const Draw& draw) const {
+    return draw.at_rest && std::abs(draw.void_ratio - *recipe_.void_ratio) <= recipe_.void_ratio_tolerance;
+  }
+
+  /// Makes some draws; the first that is accepted by number, not by time.
+  std::optional<std::size_t> make(std::size_t first, std::size_t count) {
+    failed_.resize(first + count, 0);
+    std::atomic<std::size_t> found{first + count};
+    workers_.run(count, [&](std::size_t k) {
+      const std::size_t number = first + k;
+      if (number > found) return;  // an earlier one was accepted: nobody will look at this one
+      Draw& made = draws_[number];
+      try {
+        made = draw(recipe_, long(number) + 1, made.friction, watch_.stop);
+      } catch (const IncrementFailed&) {
+        failed_[number] = 1;
+        return;
+      }
+      if (watch_.on_draw) watch_.on_draw(long(number) + 1, made.void_ratio);
+      if (!accepted(made)) {
+        made.specimen = Specimen{};
+        return;
+      }
+      std::size_t earliest = found;
+      while (number < earliest && !found.compare_exchange_weak(earliest, number)) {
+      }
+    });
+    if (found == first + count) return std::nullopt;
+    return found.load();
+  }
+
+  Packing packing(std::size_t number) {
+    Packing packing;
+    packing.draw = long(number) + 1;
+    packing.preparation_friction = draws_[number].friction;
+    packing.void_ratio = draws_[number].void_ratio;
+    packing.specimen = std::move(draws_[number].specimen);
+    return packing;
+  }
+
+  const Recipe& recipe_;
+  Workers& workers_;
+  const PackWatch& watch_;
+  double low_, high_;
+  Uniform uniform_;
+  std::vector<Draw> draws_;
+  std::vector<char> failed_;  ///< a flag for each draw, written by its own thread
+};
+
+/// The friction of a draw that no void ratio is searched with.
+double only_friction(const Recipe& recipe) {
+  if (recipe.preparation.friction) return *recipe.preparation.friction;
+  if (!recipe.stress) return 0;
+  double friction = recipe.materials.front().friction;
+  for (const Material& material : recipe.materials) friction = std::min(friction, material.friction);
+  return friction;
+}
+
+}  // namespace
+
+double coordinate_of(double friction) { return friction / (friction + half_friction); }
+
+double friction_of(double coordinate) {
+  return coordinate < 1 ? half_friction * coordinate / (1 - coordinate) : std::numeric_limits<double>::max();
+}
+
+double fitted_coordinate(const std::vector<CurvePoint>& points, double target, double low, double high) {
+  double at = crossing(rising_fit(points), target, low, high);
+  if (at == low || at == high) return at;
+  // The rising fit follows each point of a close cluster. The straight line of least squares around its answer looks at
+  // the cluster's mean and at its surroundings.
+  for (int round = 0; round < 4; ++round) {
+    double weights = 0, x = 0, e = 0, xx = 0, xe = 0;
+    for (const CurvePoint& point : points) {
+      const double far = (point.coordinate - at) / (bandwidth * (high - low));
+      const double weight = 1 / ((1 + far * far) * (1 + far * far));
+      weights += weight;
+      x += weight * point.coordinate;
+      e += weight * point.void_ratio;
+    }
+    x /= weights;
+    e /= weights;
+    for (const CurvePoint& point : points) {
+      const double far = (point.coordinate - at) / (bandwidth * (high - low));
+      const double weight = 1 / ((1 + far * far) * (1 + far * far)), from = point.coordinate - x;
+      xx += weight * from * from;
+      xe += weight * from * (point.void_ratio - e);
+    }
+    if (!(xe > 0)) return at;
+    const double next = x + (target - e) * xx / xe;
+    at = std::clamp(std::clamp(next, at - 0.5 * bandwidth * (high - low), at + 0.5 * bandwidth * (high - low)), low,
+                    high);
+  }
+  return at;
+}
+
+Packing pack(const Recipe& recipe, Workers& workers, const PackWatch& watch) {
+  check(recipe);
+  if (recipe.stress && recipe.void_ratio) return Search(recipe, workers, watch).run();
+  Draw made = draw(recipe, 1, only_friction(recipe), watch.stop);
+  if (!made.at_rest)
+    throw IncrementFailed(
+        "packing: the grains did not come to rest at the target stress; raise target.unbalanced or "
+        "target.stress_tolerance, or give a stress that this packing can carry");
+  if (watch.on_draw) watch.on_draw(1, made.void_ratio);
+  return {std::move(made.specimen), 1, made.friction, made.void_ratio};
+}
+
+}  // namespace rvelab

@@ -1,0 +1,45 @@
+// The search for a void ratio.
+//
+// How dense a packing becomes depends on the friction that it is prepared with, and by chance: another place of the
+// grains, or a friction that differs by 1e-9 of itself, moves the void ratio by several thousandths. So every draw
+// scatters the grains anew, its friction lies where the mean curve of the draws so far meets the target, and the first
+// draw that falls within the tolerance is taken.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <vector>
+
+#include "rvelab/pack/draw.hpp"
+#include "rvelab/solver/workers.hpp"
+
+namespace rvelab {
+
+/// A friction as a coordinate between 0 and 1, in which the mean curve is well spread: x = mu/(mu + 0.1).
+double coordinate_of(double friction);
+double friction_of(double coordinate);
+
+/// A draw as the fit sees it.
+struct CurvePoint {
+  double coordinate = 0, void_ratio = 0;
+};
+
+/// Where the mean curve of the points meets the target, between `low` and `high`; one of these where the target lies
+/// beyond the curve. The curve is the rising one of least squares (isotonic), smoothed by a local line.
+double fitted_coordinate(const std::vector<CurvePoint>& points, double target, double low, double high);
+
+/// Draws made at a time: what the next ones look at does not depend on the number of threads.
+inline constexpr long draws_at_a_time = 4;
+
+/// How a search is getting on: called after each draw, on any thread.
+struct PackWatch {
+  std::function<void(long draw, double void_ratio)> on_draw;
+  const std::atomic<bool>* stop = nullptr;
+};
+
+/// Makes the specimen of a recipe. The same recipe gives the same bits, whatever the number of workers. Error naming
+/// the reached range if no draw of a search is within the tolerance; IncrementFailed if the only draw fails;
+/// InputError; Interrupted.
+Packing pack(const Recipe& recipe, Workers& workers, const PackWatch& watch = {});
+
+}  // namespace rvelab

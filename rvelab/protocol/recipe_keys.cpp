@@ -1,0 +1,117 @@
+// The key table of recipes: what `rvelab pack` reads.
+#include "rvelab/pack/recipe.hpp"
+#include "rvelab/protocol/key_builders.hpp"
+
+namespace rvelab::protocol {
+namespace {
+
+constexpr Range below_one{0, 1, true, true};
+constexpr Range friction{0, 1e6};
+
+std::vector<ProtocolKey> pack() {
+  const char* t = "pack";
+  const Recipe initial;
+  return {
+      required(text(t, "name", "", "what the recipe is called")),
+      word(t, "shape", {"disc", "sphere"}, "disc: 2D; sphere: 3D"),
+      whole_number(t, "number", long(initial.number), {1, 1e8}, "grains in all"),
+      whole_number(t, "seed", long(initial.seed), {0, 9e15},
+                   "of all that is random; specimens of --count have the following ones"),
+      number(t, "thickness_m", "m", initial.thickness, positive, "shape = disc: thickness of the slab"),
+      word(t, "cell", {"upright", "oriented"},
+           "upright: square or cube; oriented: the lattice that no compression along the axes makes slender (Kraynik "
+           "and Reinelt in 2D, a cubic field in 3D)"),
+      word(t, "share_by", {"number", "mass"}, "what grains.share counts"),
+  };
+}
+
+std::vector<ProtocolKey> grains() {
+  const char* t = "grains";
+  const Grading initial;
+  return {
+      text(t, "name", "\"grains\"", "name of a fraction, for --set grains.NAME.key=value"),
+      text(t, "material", "(the first)", "name of the material"),
+      number(t, "share", "1", GrainFraction{}.share, {0, 1, true, false},
+             "part of all grains by pack.share_by; the shares of all [[grains]] add up to 1"),
+      word(t, "grading", {"uniform", "linear", "tabulated"},
+           "uniform: passing is straight over the radius; linear: straight over its logarithm; tabulated: points, "
+           "straight over the radius between them"),
+      word(t, "passing_by", {"number", "mass"}, "what the grading counts"),
+      number(t, "smallest_radius_m", "m", "", positive, "grading = uniform, linear: where passing is 0"),
+      number(t, "largest_radius_m", "m", "", positive, "grading = uniform, linear: where passing is 1"),
+      {{t, "radii_m", "m", "list of numbers", "", "each " + positive.in_words(),
+        "grading = tabulated: ascending radii"},
+       KeyKind::numbers,
+       positive,
+       {},
+       {}},
+      {{t, "passing", "1", "list of numbers", "", "each 0 to 1",
+        "grading = tabulated: part that is not larger than each radius, 0 first, 1 last"},
+       KeyKind::numbers,
+       {0, 1},
+       {},
+       {}},
+  };
+}
+
+std::vector<ProtocolKey> target() {
+  const char* t = "target";
+  const Recipe initial;
+  return {
+      number(t, "pressure_Pa", "Pa", "", positive, "isotropic stress, compression positive; shear stresses are zero"),
+      {{t, "pressures_Pa", "Pa", "list of numbers", "", "each " + positive.in_words(),
+        "a family: the same grains at each of these pressures"},
+       KeyKind::numbers,
+       positive,
+       {},
+       {}},
+      {{t, "stress_Pa", "Pa", "list of numbers", "", "each any finite number",
+        "full stress, tension positive: xx, yy, xy in 2D, xx, yy, zz, yz, xz, xy in 3D; with pressures_Pa it is scaled "
+        "to each mean pressure"},
+       KeyKind::numbers,
+       every,
+       {},
+       {}},
+      number(t, "void_ratio", "1", "", {-1, infinity, true, true},
+             "of the finished specimen; the preparation friction is then searched. Without a stress: of the cell"),
+      number(t, "porosity", "1", "", {-10, 1, true, true}, "in place of void_ratio: n = e/(1 + e)"),
+      number(t, "void_ratio_tolerance", "1", initial.void_ratio_tolerance, below_one, "that a draw is accepted within"),
+      number(t, "stress_tolerance", "1", initial.stress_tolerance, below_one,
+             "of the mean pressure, for each component"),
+      number(t, "unbalanced", "1", initial.unbalanced, below_one, "unbalanced force ratio of the finished specimen"),
+  };
+}
+
+std::vector<ProtocolKey> preparation() {
+  const char* t = "preparation";
+  const Preparation initial;
+  return {
+      word(t, "method", {"compression", "growth"},
+           "compression: the cell shrinks around scattered grains; growth: the radii grow in a cell that stands still"),
+      number(t, "friction", "1", "(searched, or that of the materials; 0 without a stress)", friction,
+             "of all contacts while the specimen is prepared: low for dense, high for loose"),
+      number(t, "rolling_friction", "1", initial.rolling_friction, {0, infinity, false, true},
+             "the same of eta, where it is below the material's"),
+      number(t, "lowest_friction", "1", initial.lowest_friction, friction, "of the search for target.void_ratio"),
+      number(t, "highest_friction", "1", initial.highest_friction, friction, "of the search for target.void_ratio"),
+      whole_number(t, "max_draws", initial.max_draws, {1, 1e6}, "of that search, before it fails"),
+      number(t, "first_size", "1", initial.first_size, below_one, "method = growth: first radii over the last ones"),
+      number(t, "growth_void_ratio", "1", "(target.void_ratio + 0.1; without one 0.3 in 2D, 0.9 in 3D)",
+             {0, infinity, true, true}, "method = growth: of the cell when the grains have grown"),
+  };
+}
+
+}  // namespace
+
+const std::vector<ProtocolKey>& recipe_keys() {
+  static const std::vector<ProtocolKey> all = [] {
+    std::vector<ProtocolKey> keys;
+    for (const auto& list : {pack(), grains(), target(), preparation()}) {
+      keys.insert(keys.end(), list.begin(), list.end());
+    }
+    return keys;
+  }();
+  return all;
+}
+
+}  // namespace rvelab::protocol

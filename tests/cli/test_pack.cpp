@@ -1,0 +1,112 @@
+// rvelab pack as a user runs it.
+#include <nlohmann/json.hpp>
+
+#include "rvelab/io/specimen_file.hpp"
+#include "tests/cli/program.hpp"
+
+using namespace rvelab::test;
+using Catch::Matchers::Contains;
+
+namespace {
+
+const char* const small = R"([pack]
+name = "small"
+number = 60
+[grains]
+smallest_radius_m = 3e-3
+largest_radius_m = 7e-3
+[target]
+pressure_Pa = 1e5
+void_ratio = 0.2
+void_ratio_tolerance = 2e-3
+[[material]]
+young_modulus_Pa = 8e8
+stiffness_ratio = 0.5
+friction = 0.4
+)";
+
+void write(const Workplace& here, const std::string& name, const std::string& text) {
+  std::ofstream(here / name) << text;
+}
+
+}  // namespace
+
+TEST_CASE("pack writes a specimen that remembers its seed and its recipe, the same on any number of threads") {
+  const Workplace here;
+  write(here, "small.toml", small);
+  const Outcome outcome = here.run("pack small.toml -o S.h5 --set pack.seed=5 --threads 1 --json");
+  INFO(outcome.errors);
+  REQUIRE(outcome.code == 0);
+  const auto made = nlohmann::json::parse(outcome.output);
+  CHECK(made["seed"] == 5);
+  CHECK(made["void_ratio"].get<double>() == Approx(0.2).margin(2e-3));
+  CHECK(made["stress_Pa"][0][0].get<double>() == Approx(-1e5).epsilon(1e-3));
+  CHECK(made["unbalanced_force_ratio"].get<double>() < 1e-5);
+
+  const auto origin = rvelab::read_origin(here / "S.h5");
+  REQUIRE(origin);
+  CHECK(origin->seed == 5);
+  CHECK(origin->draw == made["draw"].get<std::int64_t>());
+  CHECK(origin->preparation_friction == made["preparation_friction"].get<double>());
+
+  // The recipe in the file makes the file again.
+  write(here, "again.toml", origin->recipe);
+  REQUIRE(here.run("pack again.toml -o A.h5 --threads 3").code == 0);
+  const Outcome same = here.run("compare S.h5 A.h5");
+  INFO(same.output);
+  CHECK(same.code == 0);
+  CHECK(nlohmann::json::parse(here.run("inspect S.h5 --json").output)["seed"] == 5);
+}
+
+TEST_CASE("pack makes families over pressures and seeds, each in a file of its own") {
+  const Workplace here;
+  std::string text = small;
+  text.replace(text.find("pressure_Pa = 1e5"), 17, "pressures_Pa = [5e4, 1e5]");
+  text.replace(text.find("void_ratio = 0.2\nvoid_ratio_tolerance = 2e-3\n"), 45, "");
+  write(here, "family.toml", text);
+  const Outcome outcome = here.run("pack family.toml -o F.h5 --count 2 --threads 2 --json");
+  INFO(outcome.errors);
+  REQUIRE(outcome.code == 0);
+  const auto made = nlohmann::json::parse(outcome.output)["specimens"];
+  REQUIRE(made.size() == 4);
+  std::size_t k = 0;
+  for (const double pressure : {5e4, 1e5}) {
+    for (const int number : {1, 2}) {
+      const std::string file =
+          "F_" + std::string(pressure == 5e4 ? "50000" : "100000") + "Pa_" + std::to_string(number) + ".h5";
+      CHECK(made[k]["file"] == file);
+      CHECK(made[k]["seed"] == number);
+      CHECK(made[k]["stress_Pa"][1][1].get<double>() == Approx(-pressure).epsilon(1e-3));
+      CHECK(std::filesystem::exists(here / file));
+      ++k;
+    }
+  }
+}
+
+TEST_CASE("pack says what is wrong before it works, and what was reached after it") {
+  const Workplace here;
+  write(here, "small.toml", small);
+  expect_mistake(here.run("pack small.toml"), "-o");
+  expect_mistake(here.run("pack small.toml -o none/S.h5"), "the folder none does not exist");
+  expect_mistake(here.run("pack smal.toml -o S.h5"), "smal.toml: no such file");
+  expect_mistake(here.run("pack pack_dens -o S.h5"), "no recipe \"pack_dens\" is installed; the nearest is pack_dense");
+  expect_mistake(here.run("pack biaxial -o S.h5"), "is no recipe, it has no [pack]");
+  expect_mistake(here.run("run pack_dense --specimen S.h5"), "is a recipe and no test");
+  expect_mistake(here.run("pack small.toml -o S.h5 --set target.void_rato=0.2"),
+                 "the nearest known key is target.void_ratio");
+  const Outcome outcome =
+      here.run("pack small.toml -o S.h5 --set target.void_ratio=0.05 --set preparation.max_draws=4");
+  CHECK(outcome.code == 1);
+  CHECK_THAT(outcome.errors, Contains("was not met within 0.002 in 4 draws; reached: 0."));
+  CHECK(!std::filesystem::exists(here / "S.h5"));
+}
+
+TEST_CASE("protocols lists recipes apart from tests") {
+  const Workplace here;
+  const std::string text = here.run("protocols").output;
+  const auto recipes = text.find("\nRecipes, for rvelab pack:\n");
+  REQUIRE(recipes != std::string::npos);
+  CHECK(text.find("biaxial") < recipes);
+  CHECK(text.find("pack_dense") > recipes);
+  CHECK(here.run("protocols pack_dense").output == text_of(RVELAB_SOURCE_DIR "/protocols/pack_dense.toml"));
+}

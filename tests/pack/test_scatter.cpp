@@ -1,0 +1,96 @@
+// Grains scattered in a cell: none touches another, their grading is the recipe's.
+#include <cmath>
+#include <map>
+
+#include "rvelab/error.hpp"
+#include "rvelab/pack/scatter.hpp"
+#include "tests/catch.hpp"
+#include "tests/pack/recipes.hpp"
+
+using namespace rvelab;
+using namespace rvelab::test;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// Smallest gap between two grains of a cell over all images near, over the smaller radius.
+double smallest_gap(const Cell& cell, const Grains& grains) {
+  double smallest = 1e300;
+  const int nz = cell.dimension == 3 ? 2 : 0;
+  for (std::size_t i = 0; i < grains.size(); ++i)
+    for (std::size_t j = i; j < grains.size(); ++j)
+      for (int z = -nz; z <= nz; ++z)
+        for (int y = -2; y <= 2; ++y)
+          for (int x = -2; x <= 2; ++x) {
+            if (i == j && x == 0 && y == 0 && z == 0) continue;
+            const Vector3 b = grains.position[j] - grains.position[i] + translation(cell, {x, y, z});
+            const double gap = b.norm() - grains.radius[i] - grains.radius[j];
+            smallest = std::min(smallest, gap / std::min(grains.radius[i], grains.radius[j]));
+          }
+  return smallest;
+}
+
+}  // namespace
+
+TEST_CASE("scattered grains do not touch, across the faces of upright and oriented cells") {
+  for (const bool oriented : {false, true}) {
+    for (Recipe recipe : {discs(60), spheres(60)}) {
+      recipe.oriented = oriented;
+      Grains grains = graded_grains(recipe);
+      const double fraction = recipe.shape == Shape::disc ? 0.45 : 0.25;
+      const Cell cell = cell_of(recipe, solid_volume(recipe, grains) / fraction);
+      Uniform uniform(5);
+      REQUIRE(scatter(cell, 1, grains, uniform));
+      CHECK(smallest_gap(cell, grains) > 0);
+      for (const Vector3& at : grains.position)
+        for (int k = 0; k < cell.dimension; ++k) CHECK(std::abs(at[k]) <= 0.5 * cell.lattice(k, k) * (1 + 1e-12));
+    }
+  }
+}
+
+TEST_CASE("few grains, and one, find their place; too many in too small a cell do not") {
+  for (const std::size_t number : {std::size_t{1}, std::size_t{2}, std::size_t{5}}) {
+    const Recipe recipe = discs(number);
+    Grains grains = graded_grains(recipe);
+    Uniform uniform(1);
+    CHECK(!scatter(cell_of(recipe, 1.01 * solid_volume(recipe, grains)), 1, grains, uniform));
+    REQUIRE(scatter(cell_of(recipe, 4 * solid_volume(recipe, grains)), 1, grains, uniform));
+    CHECK(smallest_gap(cell_of(recipe, 4 * solid_volume(recipe, grains)), grains) > 0);
+  }
+}
+
+TEST_CASE("a mixture has its shares by number or by mass, densities counted") {
+  Recipe recipe = spheres(3000);
+  recipe.materials.push_back(recipe.materials[0]);
+  recipe.materials[1].name = "heavy";
+  recipe.materials[1].density = 2 * recipe.materials[0].density;
+  recipe.fractions = {{"coarse", 0.4, 1, {}}, {"fine", 0.6, 0, {}}};
+  recipe.fractions[0].grading.smallest_radius = recipe.fractions[0].grading.largest_radius = 2e-3;
+  recipe.fractions[1].grading.smallest_radius = recipe.fractions[1].grading.largest_radius = 1e-3;
+  const auto shares = [&](bool by_mass) {
+    recipe.share_by_mass = by_mass;
+    const Grains grains = graded_grains(recipe);
+    std::map<int, double> sum;
+    double all = 0;
+    for (std::size_t g = 0; g < grains.size(); ++g) {
+      const Material& material = recipe.materials[std::size_t(grains.material[g])];
+      const double weight = by_mass ? material.density * std::pow(grains.radius[g], 3) : 1;
+      sum[grains.material[g]] += weight;
+      all += weight;
+    }
+    CHECK(grains.size() == 3000);
+    return sum[1] / all;
+  };
+  CHECK(shares(false) == Approx(0.4).margin(1e-12));
+  CHECK(shares(true) == Approx(0.4).margin(0.002));  // one coarse grain is 16 fine ones
+  recipe.number = 10;
+  CHECK_THROWS_WITH(graded_grains(recipe), Contains("grains.coarse gets no grain of 10"));
+}
+
+TEST_CASE("the grains of a recipe are the same for every draw, and others for another seed") {
+  Recipe recipe = discs();
+  const auto radii = graded_grains(recipe).radius;
+  CHECK(graded_grains(recipe).radius == radii);
+  recipe.seed = 2;
+  CHECK(graded_grains(recipe).radius != radii);
+}
