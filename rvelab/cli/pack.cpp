@@ -1,6 +1,7 @@
 // rvelab pack: specimens from a recipe.
 #include <unistd.h>
 
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <filesystem>
@@ -132,6 +133,11 @@ void report(const RecipeFile& file, const std::vector<Job>& jobs, bool json) {
   listing.print(json);
 }
 
+std::string made_of(const std::vector<Job>& jobs) {
+  const auto made = std::count_if(jobs.begin(), jobs.end(), [](const Job& job) { return !job.made.is_null(); });
+  return std::to_string(made) + " of " + std::to_string(jobs.size()) + " specimens are made, and their files kept";
+}
+
 void run_pack(const PackArguments& arguments) {
   const RecipeFile file = read_recipe(input_path(arguments.recipe, InputKind::recipe), arguments.settings);
   expect_folder_of(arguments.output);
@@ -160,10 +166,13 @@ void run_pack(const PackArguments& arguments) {
       });
     }
   } catch (const Interrupted&) {
-    const auto made = std::count_if(jobs.begin(), jobs.end(), [](const Job& job) { return !job.made.is_null(); });
-    std::cerr << "rvelab: stopped by " << signal_name() << " with " << made << " of " << jobs.size()
-              << " specimens made; their files are kept" << std::endl;
+    std::cerr << "rvelab: stopped by " << signal_name() << "; " << made_of(jobs) << std::endl;
     throw Stopped(128 + signal_received());
+  } catch (const InputError&) {
+    throw;
+  } catch (const Error& error) {
+    if (jobs.size() == 1) throw;
+    throw Error(std::string(error.what()) + "; " + made_of(jobs));
   }
   report(file, jobs, arguments.json);
 }

@@ -19,16 +19,22 @@ double crowded(int dimension) { return 0.25 * dimension; }
 
 constexpr double clearance = 5e-4;  ///< of the radius, left around grains that need not touch
 
-/// An assembly that is being prepared: the pace is fixed, since no network is there whose balance could steer it, and
-/// overlaps are not bounded, since a light grain caught between two others is pushed out again.
+/// While grains find each other the pace is fixed, since no network is there whose balance could steer it, and overlaps
+/// are not bounded, since a light grain caught between two others is pushed out again.
+SolverOptions unsteered() {
+  SolverOptions options;
+  options.fixed_substeps = 50;
+  options.max_overlap_ratio = 1e3;
+  return options;
+}
+
 Specimen assembly(const Recipe& recipe, double friction, const Grains& grains, const Cell& cell) {
   Specimen s;
   s.shape = recipe.shape;
   s.cell = cell;
   s.materials = preparing(recipe, friction);
   s.contact = recipe.contact;
-  s.solver.fixed_substeps = 50;
-  s.solver.max_overlap_ratio = 1e3;
+  s.solver = unsteered();
   s.grains = grains;
   return s;
 }
@@ -42,13 +48,15 @@ void shrink(Rve& rve, double strain) {
 }
 
 /// Shrinks until a tenth of the pressure is there when the cell stands still: that of grains on their way falls then. A
-/// step that leads beyond the pressure is taken back and made shorter: stiff grains know no way back from there.
+/// step that leads beyond the pressure is taken back and made shorter, or stiff grains would be pressed too dense.
 void press(const Recipe& recipe, Rve& rve) {
   const int d = dimension_of(recipe.shape);
   const double pressure = mean_pressure(*recipe.stress, d);
   const auto settled_part = [&] {
-    if (mean_pressure(rve.stress(), d) < 0.1 * pressure) return 0.0;
-    rve.relax(1e-2, 100);
+    for (int slice = 0; slice < 30; ++slice) {
+      if (mean_pressure(rve.stress(), d) < 0.1 * pressure) return 0.0;
+      if (rve.relax(1e-2, 100).target_held) break;
+    }
     return mean_pressure(rve.stress(), d) / pressure;
   };
   double strain = 1e-3;
@@ -99,6 +107,15 @@ Rve by_compression(const Recipe& recipe, const Grains& graded, double friction, 
   }
   press(recipe, rve);
   return rve;
+}
+
+Rve pressed_again(const Recipe& recipe, const Rve& rve, const std::atomic<bool>* stop) {
+  Specimen s = rve.specimen();
+  s.solver = unsteered();
+  Rve other(s);
+  other.watch(stop);
+  press(recipe, other);
+  return other;
 }
 
 Rve by_growth(const Recipe& recipe, const Grains& graded, double friction, Uniform& uniform,

@@ -13,6 +13,9 @@ namespace rvelab {
 Rve by_compression(const Recipe& recipe, const Grains& graded, double friction, Uniform& uniform,
                    const std::atomic<bool>* stop);
 
+/// The cell of an assembly that has lost its pressure shrinks again, as above.
+Rve pressed_again(const Recipe& recipe, const Rve& rve, const std::atomic<bool>* stop);
+
 /// The grains grow, from first_size of their radii, in a cell that stands still; with a stress the cell then shrinks as
 /// above. Without one its void ratio is the recipe's, and grains that can be apart are.
 Rve by_growth(const Recipe& recipe, const Grains& graded, double friction, Uniform& uniform,

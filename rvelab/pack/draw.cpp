@@ -15,11 +15,14 @@ namespace {
 /// With the friction of the preparation: what counts is how dense the grains lie, not how still.
 constexpr Rest prepared{5e-2, 1e-2, 0.5, 10, 200, 200};
 
+/// Grains that collapse on the way lose their pressure; the cell then shrinks again.
+constexpr int most_attempts = 5;
+
 /// With the final friction: the void ratio is there to a few 1e-4.
 constexpr Rest nearly{5e-3, 1e-3, 0.5, 10, 2000, 200};
 
-/// Tolerances from the target beyond which the rest of the way is not worth it.
-constexpr double far_off = 1.5;
+/// What coming to rest may still change in a void ratio; further from the target it is not worth it.
+constexpr double still_to_come = 5e-4;
 
 /// The assembly with a pace that is steered from here on. The overlaps that the pressure will make set its scale, those
 /// of the start would make it idle; how dense it becomes does not depend on the balance that is asked for on the way.
@@ -57,13 +60,15 @@ Draw draw(const Recipe& recipe, long number, double friction, const std::atomic<
   result.friction = friction;
   if (recipe.stress) {
     StressGoal goal{isotropic_stress(mean_pressure(*recipe.stress, d), recipe.shape), true, d};
-    consolidate(rve, goal, prepared);
+    for (int attempt = 0; !consolidate(rve, goal, prepared) && attempt < most_attempts; ++attempt) {
+      rve = steered(pressed_again(recipe, rve, stop), recipe, stop);
+    }
     rve.set_materials(recipe.materials);
     goal.stress = *recipe.stress;
     consolidate(rve, goal, nearly);
     result.void_ratio = void_ratio(rve.network());
     const double miss = recipe.void_ratio ? std::abs(result.void_ratio - *recipe.void_ratio) : 0;
-    if (miss > far_off * recipe.void_ratio_tolerance) return result;
+    if (miss > recipe.void_ratio_tolerance + still_to_come) return result;
     Rest rest;
     rest.stress_tolerance = recipe.stress_tolerance;
     rest.unbalanced = recipe.unbalanced;

@@ -53,13 +53,14 @@ double crossing(const std::vector<Level>& levels, double target, double low, dou
 }
 
 /// The range that the draws reached, and what to do about a target that is out of it.
-Error not_found(const Recipe& recipe, const std::vector<Draw>& draws) {
+Error not_found(const Recipe& recipe, const std::vector<Draw>& draws, std::size_t failed) {
   const auto order = [](const Draw& a, const Draw& b) { return a.void_ratio < b.void_ratio; };
   const auto [lowest, highest] = std::minmax_element(draws.begin(), draws.end(), order);
   std::ostringstream text;
   text << "target.void_ratio = " << *recipe.void_ratio << " was not met within " << recipe.void_ratio_tolerance
-       << " in " << draws.size() << " draws; reached: " << lowest->void_ratio << " (preparation friction "
-       << lowest->friction << ") to " << highest->void_ratio << " (" << highest->friction << "); ";
+       << " in " << draws.size() + failed << " draws" << (failed > 0 ? " (" + std::to_string(failed) + " failed)" : "")
+       << "; reached: " << lowest->void_ratio << " (preparation friction " << lowest->friction << ") to "
+       << highest->void_ratio << " (" << highest->friction << "); ";
   if (*recipe.void_ratio > highest->void_ratio) {
     text << "give a lower void ratio, a lower pressure, rolling friction in the preparation, or raise "
             "preparation.highest_friction";
@@ -92,7 +93,12 @@ class Search {
       }
       if (const auto found = make(first, count)) return packing(*found);
     }
-    throw not_found(recipe_, draws_);
+    std::vector<Draw> made;
+    for (std::size_t k = 0; k < draws_.size(); ++k) {
+      if (failures_[k].empty()) made.push_back(draws_[k]);
+    }
+    if (made.empty()) throw IncrementFailed(failures_.front());
+    throw not_found(recipe_, made, draws_.size() - made.size());
   }
 
  private:
@@ -101,7 +107,7 @@ class Search {
     if (known == 0) return low_ + (high_ - low_) * ((double(number) + 0.5) / double(draws_at_a_time));
     std::vector<CurvePoint> points;
     for (std::size_t k = 0; k < known; ++k) {
-      if (!failed_[k]) points.push_back({coordinate_of(draws_[k].friction), draws_[k].void_ratio});
+      if (failures_[k].empty()) points.push_back({coordinate_of(draws_[k].friction), draws_[k].void_ratio});
     }
     if (points.empty()) return low_ + (high_ - low_) * uniform_();
     const double near = fitted_coordinate(points, *recipe_.void_ratio, low_, high_);
@@ -115,7 +121,7 @@ class Search {
 
   /// Makes some draws; the first that is accepted by number, not by time.
   std::optional<std::size_t> make(std::size_t first, std::size_t count) {
-    failed_.resize(first + count, 0);
+    failures_.resize(first + count);
     std::atomic<std::size_t> found{first + count};
     workers_.run(count, [&](std::size_t k) {
       const std::size_t number = first + k;
@@ -123,8 +129,8 @@ class Search {
       Draw& made = draws_[number];
       try {
         made = draw(recipe_, long(number) + 1, made.friction, watch_.stop);
-      } catch (const IncrementFailed&) {
-        failed_[number] = 1;
+      } catch (const IncrementFailed& failure) {
+        failures_[number] = failure.what();
         return;
       }
       if (watch_.on_draw) watch_.on_draw(long(number) + 1, made.void_ratio);
@@ -155,7 +161,7 @@ class Search {
   double low_, high_;
   Uniform uniform_;
   std::vector<Draw> draws_;
-  std::vector<char> failed_;  ///< a flag for each draw, written by its own thread
+  std::vector<std::string> failures_;  ///< of each draw, written by its own thread; empty: it was made
 };
 
 /// The friction of a draw that no void ratio is searched with.

@@ -124,9 +124,9 @@ TEST_CASE("oriented lattices keep their angle while the specimen is made") {
   CHECK(std::min(std::abs(angle - 31.717), std::abs(angle - 58.283)) < 3);
 }
 
-TEST_CASE("stiffness over pressure of 1e2 and 4e4: soft and stiff grains come to the stress alike") {
+TEST_CASE("stiffness over pressure of 1e2 and 1e6: soft and stiff grains come to the stress alike") {
   // kn/(p thickness) = E r/(p thickness)
-  for (const double pressure : {4e5, 1e3}) {
+  for (const double pressure : {4e5, 40.0}) {
     Recipe recipe = discs(60);
     recipe.stress = isotropic_stress(pressure, Shape::disc);
     recipe.preparation.friction = 0.1;

@@ -81,6 +81,15 @@ TEST_CASE("a void ratio out of reach is told with the range that was reached, an
   }
 }
 
+TEST_CASE("a tolerance below the usual one is met too, with more draws") {
+  Recipe recipe = discs(60);
+  recipe.void_ratio = 0.21;
+  recipe.void_ratio_tolerance = 3e-4;
+  recipe.preparation.max_draws = 2000;
+  Workers workers(1);
+  CHECK(std::abs(pack(recipe, workers).void_ratio - 0.21) <= 3e-4);
+}
+
 TEST_CASE("a stop ends a search within its draws") {
   Recipe recipe = discs(60);
   recipe.void_ratio = 0.1;
