@@ -1,5 +1,5 @@
 // rvelab bench: grain-steps per second of the product as a user runs it: apply() in simple shear, integration, list
-// rebuilds and control included, one thread.
+// rebuilds and control included, one thread unless asked otherwise.
 //
 // The packings are made here from fixed recipes: 400 discs and 1000 spheres at 100 kPa, larger cases by repeating them
 // periodically. Each case shears at constant volume with physical masses at inertial number 1e-3 for a fixed number of
@@ -63,6 +63,8 @@ Specimen packed(const Recipe& recipe) {
 struct Timing {
   double median = 0, least = 0, most = 0;
   double contacts_per_grain = 0;
+  double steps_per_list = 0;
+  Memory memory;
 };
 
 /// Rate of simple shear at inertial number 1e-3, 1/s.
@@ -75,10 +77,11 @@ double shear_rate(const Rve& rve, const Specimen& specimen) {
 }
 
 /// Steps the specimen in simple shear; `steps` sub-steps a repeat.
-Timing time_of(const Specimen& specimen, long steps, int repeats) {
+Timing time_of(const Specimen& specimen, long steps, int repeats, Workers& team) {
   Specimen start = specimen;
   start.damping.local = 0.1;  // as published (Liang and Zhao 2019, table 2)
   Rve rve(start);
+  rve.share(&team);
   const int d = rve.cell().dimension;
   const double rate = shear_rate(rve, specimen);
   const double dt = 0.7 * rve.critical_time_step() * double(steps);
@@ -97,18 +100,30 @@ Timing time_of(const Specimen& specimen, long steps, int repeats) {
   }
   std::sort(speeds.begin(), speeds.end());
   const double contacts = double(rve.network().contacts.size()) / double(rve.size());
-  return {speeds[speeds.size() / 2], speeds.front(), speeds.back(), contacts};
+  const SolverState state = rve.specimen().state;
+  const double made = double(state.grain_steps) / double(rve.size());
+  return {speeds[speeds.size() / 2],
+          speeds.front(),
+          speeds.back(),
+          contacts,
+          made / double(std::max<std::uint64_t>(1, state.list_builds)),
+          rve.memory()};
 }
 
-Json entry(const Specimen& specimen, double grain_steps, bool quick) {
+Json entry(const Specimen& specimen, double grain_steps, bool quick, Workers& team) {
   const long steps = std::max(20L, long(grain_steps / double(specimen.grains.size())));
-  const Timing t = time_of(specimen, steps, quick ? 3 : 7);
+  const Timing t = time_of(specimen, steps, quick ? 3 : 7, team);
   Json out;
   out["grain_steps_per_second"] = t.median;
   out["least"] = t.least;
   out["most"] = t.most;
   out["grains"] = specimen.grains.size();
   out["contacts_per_grain"] = t.contacts_per_grain;
+  out["steps_per_list"] = t.steps_per_list;
+  const double n = double(specimen.grains.size());
+  out["bytes_per_grain"] = {{"state", double(t.memory.state) / n},
+                            {"list", double(t.memory.list) / n},
+                            {"working", double(t.memory.working) / n}};
   return out;
 }
 
@@ -129,7 +144,29 @@ std::vector<Case> cases() {
           {"sphere_256000_hertz", spheres(), {8, 8, 4}, 1e7, 5e6}};
 }
 
+/// About so many grains: packed as they are up to the number of the recipe, above by repeating its packing.
+Specimen of_size(Shape shape, std::size_t grains) {
+  PackingRecipe recipe = shape == Shape::disc ? discs(false) : spheres();
+  if (grains <= recipe.grains) {
+    recipe.grains = grains;
+    return random_packing(recipe);
+  }
+  // Repeated k or k + 1 times along each lattice vector, whichever comes nearest.
+  const double ratio = double(grains) / double(recipe.grains);
+  const int d = dimension_of(shape);
+  const int k = std::max(1, int(std::floor(d == 2 ? std::sqrt(ratio) : std::cbrt(ratio))));
+  Image best{k, k, d == 2 ? 1 : k};
+  const auto off = [&](const Image& n) { return std::abs(std::log(double(n[0]) * n[1] * n[2] / ratio)); };
+  for (Image n = best; n[std::size_t(d - 1)] == k;) {
+    ++n[n[0] == k ? 0 : n[1] == k ? 1 : 2];
+    if (off(n) < off(best)) best = n;
+  }
+  return repeated(random_packing(recipe), best);
+}
+
 struct Arguments {
+  std::size_t grains = 0;  ///< 0: the cases
+  std::string shape = "disc";
   bool quick = false, json = false;
   std::size_t batch = 0;  ///< cells; 0: the cases
   unsigned threads = 1;
@@ -171,14 +208,23 @@ void run_batch(const Arguments& arguments) {
 
 void run_bench(const Arguments& arguments) {
   if (arguments.batch > 0) return run_batch(arguments);
+  Workers team(arguments.threads);
   Listing listing;
   listing.add("instruction_set", kernels_for(SceneKey{}).instruction_set);
+  if (arguments.grains > 0) {
+    const Specimen specimen = of_size(arguments.shape == "disc" ? Shape::disc : Shape::sphere, arguments.grains);
+    const double work = std::max(arguments.quick ? 1e6 : 5e6, 60.0 * double(specimen.grains.size()));
+    listing.add(arguments.shape, entry(specimen, work, arguments.quick, team));
+    listing.print(arguments.json);
+    return;
+  }
   for (const Case& c : cases()) {
     const auto& wanted = arguments.wanted;
     if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), c.name) == wanted.end()) continue;
     const Specimen specimen = repeated(packed(c.recipe), c.times);
     if (arguments.folder.empty()) {
-      listing.add(c.name, entry(specimen, arguments.quick ? c.quick_grain_steps : c.grain_steps, arguments.quick));
+      listing.add(c.name,
+                  entry(specimen, arguments.quick ? c.quick_grain_steps : c.grain_steps, arguments.quick, team));
       continue;
     }
     const std::string path = (std::filesystem::path(arguments.folder) / (std::string(c.name) + ".h5")).string();
@@ -196,7 +242,7 @@ void run_bench(const Arguments& arguments) {
 }  // namespace
 
 void add_bench(CLI::App& app) {
-  auto* command = app.add_subcommand("bench", "Grain-steps per second of fixed cases, one thread");
+  auto* command = app.add_subcommand("bench", "Grain-steps per second of fixed cases");
   auto arguments = std::make_shared<Arguments>();
   std::set<std::string> names;
   for (const Case& c : cases()) names.insert(c.name);
@@ -207,7 +253,11 @@ void add_bench(CLI::App& app) {
       ->check(CLI::IsMember(names));
   command->add_option("--batch", arguments->batch, "time a batch of so many cells of 400 discs instead of the cases")
       ->check(CLI::Range(1, 1'000'000));
-  command->add_option("--threads", arguments->threads, "threads of the batch")->check(CLI::Range(1u, 4096u));
+  command->add_option("--grains", arguments->grains, "time a cell of about so many grains instead of the cases")
+      ->check(CLI::Range(20, 2'000'000));
+  command->add_option("--shape", arguments->shape, "of --grains")->check(CLI::IsMember({"disc", "sphere"}));
+  command->add_option("--threads", arguments->threads, "threads of the batch, and of cases from 30,000 grains on")
+      ->check(CLI::Range(1u, 4096u));
   command->add_flag("--quick", arguments->quick, "a fifth of the work, three repeats");
   command->add_option("--packings", arguments->folder, "write the packings of the cases there instead of timing them")
       ->check(CLI::ExistingDirectory);

@@ -53,9 +53,9 @@ void ProgressLine::show(const Moment& moment) {
   if (seconds(last_) < 0.2) return;
   last_ = now;
 
-  std::string text = result.stages.back();
-  const bool recorded =
-      !result.records.empty() && result.records.back().stage == static_cast<int>(result.stages.size()) - 1;
+  const auto stage = static_cast<std::size_t>(moment.progress.stage);
+  std::string text = stage < result.stages.size() ? result.stages[stage] : std::string("done");
+  const bool recorded = !result.records.empty() && result.records.back().stage == moment.progress.stage;
   char part[128];
   if (recorded) {
     std::snprintf(part, sizeof part, "  strain %.2f %%", 100 * result.records.back().strain);

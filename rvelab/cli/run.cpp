@@ -1,10 +1,14 @@
 // rvelab run: one test on one specimen.
+#include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "rvelab/calibrate/mohr.hpp"
+#include "rvelab/calibrate/oedometer.hpp"
 #include "rvelab/cli/commands.hpp"
 #include "rvelab/cli/interrupt.hpp"
 #include "rvelab/cli/progress_line.hpp"
@@ -12,6 +16,7 @@
 #include "rvelab/cli/recording.hpp"
 #include "rvelab/cli/report.hpp"
 #include "rvelab/protocol/run.hpp"
+#include "rvelab/solver/sweep.hpp"
 
 namespace rvelab::cli {
 namespace {
@@ -20,6 +25,7 @@ struct RunArguments {
   std::string protocol, specimen, output;
   std::vector<std::string> settings;
   RecordingOptions recording;
+  unsigned threads = 0;  ///< 0: one per core
   bool json = false;
 };
 
@@ -43,19 +49,54 @@ Json arrays_of(const std::vector<Record>& records) {
   arrays["strain"] = column(records, &Record::strain);
   arrays["deformation_gradient"] = column(records, &Record::deformation_gradient);
   arrays["stress_Pa"] = column(records, &Record::stress);
-  arrays["void_ratio"] = column(records, &Record::void_ratio);
-  arrays["coordination_number"] = column(records, &Record::coordination_number);
-  arrays["fabric_anisotropy"] = column(records, &Record::fabric_anisotropy);
-  arrays["sliding_fraction"] = column(records, &Record::sliding_fraction);
   arrays["unbalanced_force_ratio"] = column(records, &Record::unbalanced_force_ratio);
   arrays["inertial_number"] = column(records, &Record::inertial_number);
   arrays["substeps"] = column(records, &Record::substeps);
   arrays["held_error"] = column(records, &Record::held_error);
   arrays["target_held"] = column(records, &Record::target_held);
+  const std::uint64_t asked = records.empty() ? 0 : records.front().quantities;
+  const auto chosen = [&](Quantity quantity, const char* name, auto member) {
+    if ((asked & quantity) != 0) arrays[name] = column(records, member);
+  };
+  chosen(void_ratio_asked, "void_ratio", &Record::void_ratio);
+  chosen(coordination_number_asked, "coordination_number", &Record::coordination_number);
+  chosen(fabric_anisotropy_asked, "fabric_anisotropy", &Record::fabric_anisotropy);
+  chosen(sliding_fraction_asked, "sliding_fraction", &Record::sliding_fraction);
+  chosen(mechanical_void_ratio_asked, "mechanical_void_ratio", &Record::mechanical_void_ratio);
+  chosen(mechanical_coordination_number_asked, "mechanical_coordination_number",
+         &Record::mechanical_coordination_number);
+  chosen(fabric_asked, "fabric", &Record::fabric);
+  chosen(branch_fabric_asked, "branch_fabric", &Record::branch_fabric);
+  chosen(contact_stress_asked, "contact_stress_Pa", &Record::contact_stress);
+  chosen(reynolds_stress_asked, "reynolds_stress_Pa", &Record::reynolds_stress);
+  chosen(elastic_energy_asked, "elastic_energy_J", &Record::elastic_energy);
+  chosen(kinetic_energy_asked, "kinetic_energy_J", &Record::kinetic_energy);
   return arrays;
 }
 
-void report(const TestRun& run, const RunArguments& arguments) {
+/// Moduli of oedometer stages that have records at small strain.
+void add_oedometers(const Protocol& protocol, const TestRun& run, Listing& listing) {
+  for (std::size_t k = 0; k < protocol.stages.size(); ++k) {
+    const auto* stage = std::get_if<CompressionStage>(&protocol.stages[k].what);
+    if (stage == nullptr || stage->lateral != CompressionStage::Lateral::zero_strain) continue;
+    std::vector<Record> records;
+    for (const Record& record : run.result.records) {
+      if (record.stage == static_cast<int>(k)) records.push_back(record);
+    }
+    const int dimension = run.end_state.cell.dimension;
+    const std::string axis = !stage->axis.empty() ? stage->axis : dimension == 2 ? "y" : "z";
+    const OedometerStiffness found = oedometer_stiffness(records, axis, dimension);
+    if (!std::isfinite(found.C11)) continue;
+    const std::string stem = "stage_" + protocol.stages[k].name + "_";
+    listing.add(stem + "C11_Pa", found.C11, "Pa");
+    listing.add(stem + "C12_Pa", found.C12, "Pa");
+    listing.add(stem + "G_Pa", found.G, "Pa");
+    listing.add(stem + "K_3D_Pa", found.K_3D, "Pa");
+    listing.add(stem + "K_2D_Pa", found.K_2D, "Pa");
+  }
+}
+
+void report(const Protocol& protocol, const TestRun& run, const RunArguments& arguments) {
   const TestResult& result = run.result;
   const int dimension = run.end_state.cell.dimension;
   long flagged = 0;
@@ -81,12 +122,15 @@ void report(const TestRun& run, const RunArguments& arguments) {
     listing.add("peak_sigma_3_Pa", highest.stresses.minor, "Pa");
     listing.add("end_strain", records.back().strain);
     listing.add("end_stress_Pa", row_major(records.back().stress), "Pa");
-    listing.add("end_void_ratio", records.back().void_ratio);
+    if ((records.back().quantities & void_ratio_asked) != 0) {
+      listing.add("end_void_ratio", records.back().void_ratio);
+    }
   }
   for (const ProbeResult& probe : result.probes) {
     const bool only = result.probes.size() == 1;
     listing.add(only ? "stiffness_Pa" : "stiffness_Pa_" + probe.stage, row_major(probe.stiffness), "Pa");
   }
+  add_oedometers(protocol, run, listing);
   if (!arguments.output.empty()) listing.add("file", arguments.output);
   listing.add("wall_s", result.wall_seconds, "s");
   listing.add("grain_steps", result.grain_steps);
@@ -122,10 +166,16 @@ void run_test(const RunArguments& arguments) {
     Watch watch;
     watch.on_moment = [&](const Moment& moment) { line.show(moment); };
     watch.stop = &stop_on_signals();
+    std::unique_ptr<Workers> team;
+    if (specimen.grains.size() >= least_shared_grains) {
+      const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
+      team = std::make_unique<Workers>(arguments.threads > 0 ? arguments.threads : cores);
+    }
+    watch.team = team.get();
     run = run_recorded(protocol, specimen, store.get(), watch);
   }
   if (!run.complete) end_stopped(run, arguments.output);
-  report(run, arguments);
+  report(protocol, run, arguments);
 }
 
 }  // namespace
@@ -142,10 +192,13 @@ void add_run(CLI::App& app) {
       ->expected(1)
       ->allow_extra_args(false)
       ->take_all();
+  command->add_option("--threads", arguments->threads, "threads of a specimen from 30,000 grains on; else one per core")
+      ->check(CLI::Range(1u, 4096u));
   arguments->recording.add_to(*command);
   command->add_flag("--json", arguments->json, "print one JSON object, records as arrays by name");
   command->footer(
-      "One specimen runs on one thread; `rvelab calibrate --threads` runs several tests at a time. Records go to\n"
+      "A specimen below 30,000 grains runs on one thread; `rvelab calibrate --threads` runs several tests at a time.\n"
+      "The number of threads changes no bit. Records go to\n"
       "R.h5.journal at once and to R.h5 now and then; Ctrl-C and SIGTERM stop the test and keep both.\n"
       "Examples:\n"
       "  rvelab run biaxial --specimen dense.h5 -o R.h5\n"

@@ -125,6 +125,15 @@ class Writer {
   void table(const std::string& group, const std::vector<Item>& items, const Columns&... columns) {
     (column(group, items, columns), ...);
   }
+  /// Which columns count, bit by bit in a member of each item: the columns that are there say it.
+  template <class Item, class Member>
+  void choice(const std::string&, const std::vector<Item>&, const Column<Item, Member>&) {}
+  /// A column that is written where it was chosen; the first item speaks for all.
+  template <class Item, class Member, class Mask>
+  void chosen(const std::string& group, const std::vector<Item>& items, const Column<Item, Member>& column,
+              Mask Item::*mask, Mask bit) {
+    if (((items.empty() ? Item{} : items.front()).*mask & bit) != 0) this->column(group, items, column);
+  }
 
  private:
   template <class Item, class Member>
@@ -182,6 +191,15 @@ class Reader {
     items.assign(leading_extent(group + "/" + first.name), Item{});
     column(group, items, first);
     (column(group, items, columns), ...);
+  }
+  template <class Item, class Member>
+  void choice(const std::string&, std::vector<Item>&, const Column<Item, Member>&) {}
+  template <class Item, class Member, class Mask>
+  void chosen(const std::string& group, std::vector<Item>& items, const Column<Item, Member>& column, Mask Item::*mask,
+              Mask bit) {
+    const bool there = file_.has(group_ + "/" + group + "/" + column.name);
+    if (there) this->column(group, items, column);
+    for (Item& item : items) item.*mask = there ? item.*mask | bit : item.*mask & ~bit;
   }
 
  private:

@@ -27,6 +27,14 @@ struct RowLayout {
     names.emplace_back(column.name);
     bytes.push_back(sizeof(typename Layout<Member>::Scalar) * Layout<Member>::size);
   }
+  template <class Item, class Member>
+  void choice(const std::string&, const std::vector<Item>&, const Column<Item, Member>& column) {
+    add(column);
+  }
+  template <class Item, class Member, class Mask>
+  void chosen(const std::string&, const std::vector<Item>&, const Column<Item, Member>& column, Mask Item::*, Mask) {
+    add(column);
+  }
 };
 
 struct RowWriter {
@@ -42,6 +50,15 @@ struct RowWriter {
     Layout<Member>::put(member, scalars);
     const auto raw = std::as_bytes(std::span(scalars));
     bytes.insert(bytes.end(), raw.begin(), raw.end());
+  }
+  template <class Item, class Member>
+  void choice(const std::string&, const std::vector<Item>& items, const Column<Item, Member>& column) {
+    for (const Item& item : items) add(item.*column.member);
+  }
+  template <class Item, class Member, class Mask>
+  void chosen(const std::string& group, const std::vector<Item>& items, const Column<Item, Member>& column,
+              Mask Item::*, Mask) {
+    choice(group, items, column);
   }
 };
 
@@ -66,6 +83,15 @@ struct RowReader {
       }
       at += size;
     }
+  }
+  template <class Item, class Member>
+  void choice(const std::string&, std::vector<Item>& items, const Column<Item, Member>& column) {
+    for (Item& item : items) get(column.name, item.*column.member);
+  }
+  template <class Item, class Member, class Mask>
+  void chosen(const std::string& group, std::vector<Item>& items, const Column<Item, Member>& column, Mask Item::*,
+              Mask) {
+    choice(group, items, column);
   }
 };
 

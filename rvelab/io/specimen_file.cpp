@@ -64,7 +64,7 @@ template <class Archive, class Value>
 void describe_state(Archive& archive, Value& state) {
   auto& [has_reference, list_lattice, list_positions, list_travel, list_skin, list_steps, strain_per_step, servo_strain,
          reference_contact_force, reference_overlap, reference_pressure, quasi_static, last_rate, last_step,
-         mean_velocity, mean_spin, grain_steps, list_builds, ledger] = state;
+         mean_velocity, mean_spin, grain_steps, list_builds, memory_order, ledger] = state;
   archive.field("state/has_reference", has_reference, "1");
   archive.field("state/list_lattice_m", list_lattice, "m");
   archive.later_field("state/list_positions_m", list_positions, "m");
@@ -83,6 +83,7 @@ void describe_state(Archive& archive, Value& state) {
   archive.field("state/mean_spin_rad_s", mean_spin, "rad/s");
   archive.field("state/grain_steps", grain_steps, "1");
   archive.field("state/list_builds", list_builds, "1");
+  archive.later_field("state/memory_order", memory_order, "1");
 
   auto& [boundary_work, friction, rolling, dashpot, local_damping, global_damping, law_loss, zeroing] = ledger;
   archive.field("state/ledger/boundary_work_J", boundary_work, "J");

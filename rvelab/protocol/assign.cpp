@@ -31,8 +31,9 @@ std::string stage_name(const toml::node& stage) {
   return (*table)["name"].value_or(std::string((*table)["kind"].value_or("")));
 }
 
-toml::table& find_stage(toml::table& file, const std::string& which, const std::string& assignment) {
-  toml::array* stages = file["stage"].as_array();
+/// One table of a list, by its name (a stage without one: its kind) or its number from 0.
+toml::table& find_in(toml::array* stages, const std::string& list, const std::string& which,
+                     const std::string& assignment) {
   std::string known;
   std::vector<toml::table*> found;
   if (stages != nullptr) {
@@ -46,8 +47,8 @@ toml::table& find_stage(toml::table& file, const std::string& which, const std::
     }
   }
   if (found.size() == 1) return *found[0];
-  throw InputError("--set " + assignment + " names " + (found.empty() ? "no stage" : "several stages") +
-                   "; allowed: " + (known.empty() ? "none, since the protocol has no [[stage]]" : known) +
+  throw InputError("--set " + assignment + " names " + (found.empty() ? "no " : "several of ") + list +
+                   "; allowed: " + (known.empty() ? "none, since the protocol has no [[" + list + "]]" : known) +
                    "; give the name or the number of one");
 }
 
@@ -71,12 +72,17 @@ void assign(toml::table& file, const std::string& assignment) {
                        " names no key of a stage; allowed: stage.NAME.key=value; write for example "
                        "stage.compression.to_strain=0.05");
     }
-    table = &find_stage(file, parts[1], assignment);
+    table = &find_in(file["stage"].as_array(), "stage", parts[1], assignment);
     next = 2;
   }
   for (; next + 1 < parts.size(); ++next) {
     if (!table->contains(parts[next])) table->insert(parts[next], toml::table{});
     toml::node* inner = table->get(parts[next]);
+    if (inner->is_array_of_tables() && next + 2 < parts.size()) {
+      table = &find_in(inner->as_array(), parts[next], parts[next + 1], assignment);
+      ++next;
+      continue;
+    }
     if (!inner->is_table()) {
       throw InputError("--set " + assignment + ": " + parts[next] +
                        " is no table in the protocol; allowed: table.key=value; correct the key");

@@ -29,7 +29,7 @@ std::vector<std::pair<int, int>> components(int dimension);
 MixedTarget mixed_target(const Matrix3& displacement_gradient, const std::vector<HeldStress>& held,
                          const Matrix3& stress, int dimension);
 
-/// Strains of the records of a strain-driven stage: 0, multiples of the spacing, then the end.
+/// Strains of the records of a strain-driven stage that goes straight: 0, multiples of the spacing, then the end.
 std::vector<double> record_strains(double to_strain, double spacing);
 
 /// Records that all stages of a protocol make together.
@@ -42,26 +42,55 @@ class RunningTest {
 
   /// Begins a stage (phase 1), unless it is under way: strains and the stage's first p count from here.
   void enter(const Stage& stage);
-  /// On to the next stage (phase 0).
+  /// On to the next stage (phase 0): the one after it, or the one that it, or the event that ended it, names.
   void leave_stage();
 
+  /// One increment of a mixed target whose rows are complete but for tolerance and wait.
+  Report apply(MixedTarget target, double dt, double tolerance);
   /// One increment: held components to their targets, the rest as dH says. Relative tolerance of the held stresses;
   /// dt in s, 0 for quasi-static.
   Report apply(const Matrix3& displacement_gradient, const std::vector<HeldStress>& held, double dt, double tolerance);
   /// A relaxation, in slices whose length depends on the number of grains alone; goes on with the one under way.
   Report relax(double unbalanced, long max_steps);
   /// Records at the given strains, the first of them the state as it is, each next one after the increment that
-  /// `increment_to(strain)` applies. progress.step counts the strains done.
+  /// `increment_to(strain)` applies; until the strains or an event end it. progress.step counts the strains done.
   template <class Increment>
   void go_through(const std::vector<double>& strains, Increment increment_to) {
-    for (std::int64_t& done = run.progress.step; done < static_cast<std::int64_t>(strains.size());) {
+    std::int64_t& done = run.progress.step;
+    while (!ended() && done < static_cast<std::int64_t>(strains.size())) {
       const double strain = strains[static_cast<std::size_t>(done)];
       if (done == 0) record_now(strain);
       if (done > 0) record(strain, increment_to(strain));
-      ++done;
-      pause();
+      step_done();
     }
   }
+  /// To and fro between the strains +-`to_strain`, as `cycles` says, in `steps` equal parts of each amplitude.
+  /// `driving_stress()` grows with the driving strain.
+  template <class Increment, class DrivingStress>
+  void go_to_and_fro(double to_strain, long steps, const Cycles& cycles, Increment increment_to,
+                     DrivingStress driving_stress) {
+    Progress& at = run.progress;
+    const double sign = to_strain < 0 ? -1 : 1;
+    while (!ended()) {
+      const bool forth = at.turns % 2 == 0;
+      if (at.step == 0) {
+        record_now(0);
+      } else {
+        at.place += forth ? 1 : -1;
+        const double strain = to_strain * static_cast<double>(at.place) / static_cast<double>(steps);
+        record(strain, increment_to(strain));
+        const double along = (forth ? sign : -sign) * driving_stress();
+        const bool by_stress = cycles.reverse_at > 0 && along >= cycles.reverse_at;
+        const bool last = at.turns == 2 * cycles.count;
+        if (last && (cycles.reverse_at > 0 ? along >= 0 || at.place == steps : at.place == 0)) at.phase = done_phase;
+        if (!last && (by_stress || at.place == (forth ? steps : -steps))) ++at.turns;
+      }
+      step_done();
+    }
+  }
+  /// Counts a record of a stage, looks at its events, and pauses.
+  void step_done();
+  bool ended() const { return run.progress.phase >= done_phase; }
   void record(double strain, const Report& report);
   void record_now(double strain);  ///< a state that no increment led to
   void probed(const Eigen::MatrixXd& stiffness);
@@ -77,16 +106,25 @@ class RunningTest {
   int dimension() const { return rve.cell().dimension; }
   Error failed(const std::string& text) const;  ///< names the stage
 
+  /// Phases of a stage that was ended: by itself, or by its event number phase - done_phase - 1.
+  static constexpr std::int32_t done_phase = 1000;
+
   Rve rve;
   const Loading& loading;
   TestRun run;
   std::function<void()> clock;  ///< brings progress.wall_seconds up to date
 
  private:
+  template <class Apply>
+  Report applied(Apply apply);
+  void measure(Record& record) const;
+  int stage_number(const std::string& name) const;
+
   const Watch& watch_;
+  const Stage* stage_ = nullptr;  ///< under way
   long snapshots_every_;
+  std::uint64_t quantities_;
   std::size_t records_planned_;
-  std::string stage_name_;
 };
 
 void drive(RunningTest& test, const IsotropicStage& stage);
@@ -94,5 +132,14 @@ void drive(RunningTest& test, const CompressionStage& stage);
 void drive(RunningTest& test, const SimpleShearStage& stage);
 void drive(RunningTest& test, const RelaxStage& stage);
 void drive(RunningTest& test, const ProbeStage& stage);
+void drive(RunningTest& test, const PathStage& stage);
+void drive(RunningTest& test, const DeviatoricStage& stage);
+void drive(RunningTest& test, const PressurePathStage& stage);
+void drive(RunningTest& test, const FlowStage& stage);
+void drive(RunningTest& test, const DeformationStage& stage);
+void drive(RunningTest& test, const EnvelopeStage& stage);
+
+/// InputError if a stage does not go with specimens of this dimension.
+void expect_fits(const Protocol& protocol, int dimension);
 
 }  // namespace rvelab::protocol

@@ -1,20 +1,15 @@
 // Stages driven by a strain: one increment for each record, which ends exactly at the recorded strain.
+#include <algorithm>
 #include <cmath>
 
 #include "rvelab/error.hpp"
 #include "rvelab/protocol/drive.hpp"
+#include "rvelab/protocol/path_rows.hpp"
 
 namespace rvelab::protocol {
 namespace {
 
 int axis_index(char axis) { return axis - 'x'; }
-
-void expect_axes(const RunningTest& test, const std::string& axes, const std::string& key) {
-  if (test.dimension() == 2 && axes.find('z') != std::string::npos) {
-    throw InputError("stage \"" + test.run.result.stages.back() + "\": " + key + " = \"" + axes +
-                     "\" leaves the plane of a 2D specimen; allowed: x and y; change the " + key);
-  }
-}
 
 }  // namespace
 
@@ -28,13 +23,35 @@ std::vector<double> record_strains(double to_strain, double spacing) {
   return strains;
 }
 
+/// Records on the way to one amplitude.
+long steps_to(double to_strain, double spacing) { return std::max(1L, std::lround(std::abs(to_strain) / spacing)); }
+
+/// Of compression or simple shear; where a stress turns it, those that it makes if none does.
+template <class Driven>
+std::size_t driven_records(const Driven& stage) {
+  if (stage.cycles.count == 0) return record_strains(stage.to_strain, stage.record_every).size();
+  return static_cast<std::size_t>(4 * stage.cycles.count * steps_to(stage.to_strain, stage.record_every)) + 1;
+}
+
 std::size_t planned_records(const Protocol& protocol) {
   std::size_t count = 0;
   for (const Stage& stage : protocol.stages) {
     if (const auto* compression = std::get_if<CompressionStage>(&stage.what)) {
-      count += record_strains(compression->to_strain, compression->record_every).size();
+      count += driven_records(*compression);
     } else if (const auto* shear = std::get_if<SimpleShearStage>(&stage.what)) {
-      count += record_strains(shear->to_strain, shear->record_every).size();
+      count += driven_records(*shear);
+    } else if (const auto* path = std::get_if<PathStage>(&stage.what)) {
+      count += static_cast<std::size_t>(path_steps(*path)) + 1;
+    } else if (const auto* deviatoric = std::get_if<DeviatoricStage>(&stage.what)) {
+      count += static_cast<std::size_t>(path_steps(path_of(*deviatoric, 3))) + 1;
+    } else if (const auto* pressures = std::get_if<PressurePathStage>(&stage.what)) {
+      count += static_cast<std::size_t>(path_steps(path_of(*pressures, 2))) + 1;
+    } else if (const auto* flow = std::get_if<FlowStage>(&stage.what)) {
+      count += record_strains(flow->to_strain, flow->record_every).size();
+    } else if (const auto* deformation = std::get_if<DeformationStage>(&stage.what)) {
+      count += deformation->gradients.size() + 1;
+    } else if (const auto* envelope = std::get_if<EnvelopeStage>(&stage.what)) {
+      count += static_cast<std::size_t>(envelope->directions) + 1;
     } else if (const auto* isotropic = std::get_if<IsotropicStage>(&stage.what)) {
       count += isotropic->record ? 2 : 0;
     } else if (const auto* relax = std::get_if<RelaxStage>(&stage.what)) {
@@ -44,12 +61,24 @@ std::size_t planned_records(const Protocol& protocol) {
   return count;
 }
 
+namespace {
+
+template <class Stage, class Increment, class DrivingStress>
+void drive_strain(RunningTest& test, const Stage& stage, Increment increment_to, DrivingStress driving_stress) {
+  if (stage.cycles.count == 0)
+    return test.go_through(record_strains(stage.to_strain, stage.record_every), increment_to);
+  test.go_to_and_fro(stage.to_strain, steps_to(stage.to_strain, stage.record_every), stage.cycles, increment_to,
+                     driving_stress);
+}
+
+}  // namespace
+
 void drive(RunningTest& test, const CompressionStage& stage) {
   const int dimension = test.dimension();
   const std::string axis_name = !stage.axis.empty() ? stage.axis : dimension == 2 ? "y" : "z";
-  expect_axes(test, axis_name, "axis");
   const int axis = axis_index(axis_name[0]);
   const bool hold = stage.lateral == CompressionStage::Lateral::constant_stress;
+  const bool undrained = stage.lateral == CompressionStage::Lateral::constant_volume;
   Progress& at = test.run.progress;
   at.axis = axis_name;
   at.pressure = hold ? stage.lateral_pressure : at.first_pressure;
@@ -58,7 +87,7 @@ void drive(RunningTest& test, const CompressionStage& stage) {
   for (int k = 0; k < dimension && hold; ++k) {
     if (k != axis) held.push_back({k, k, -stage.lateral_pressure, test.held_scale(stage.lateral_pressure)});
   }
-  test.go_through(record_strains(stage.to_strain, stage.record_every), [&](double strain) {
+  const auto increment_to = [&](double strain) {
     // From the accumulated F, so that round-off does not add up over a stage.
     const Matrix3& deformation = at.deformation;
     const double stretch = 1 - strain;
@@ -66,15 +95,21 @@ void drive(RunningTest& test, const CompressionStage& stage) {
     Matrix3 gradient = Matrix3::Zero();
     for (int k = 0; k < dimension; ++k) {
       if (k == axis) gradient(k, k) = stretch / deformation(k, k) - 1;
-      if (k != axis && !hold) gradient(k, k) = lateral_stretch / deformation(k, k) - 1;
+      if (k != axis && undrained) gradient(k, k) = lateral_stretch / deformation(k, k) - 1;
     }
     return test.apply(gradient, held, test.time_for(gradient(axis, axis)), test.loading.held_tolerance);
+  };
+  drive_strain(test, stage, increment_to, [&] {
+    double axial_less_lateral = -at.stress(axis, axis);
+    for (int k = 0; k < dimension; ++k) {
+      if (k != axis) axial_less_lateral += at.stress(k, k) / (dimension - 1);
+    }
+    return axial_less_lateral;
   });
 }
 
 void drive(RunningTest& test, const SimpleShearStage& stage) {
   const std::string plane = !stage.plane.empty() ? stage.plane : test.dimension() == 2 ? "xy" : "xz";
-  expect_axes(test, plane, "plane");
   const int along = axis_index(plane[0]), normal = axis_index(plane[1]);
   const bool hold = stage.normal == SimpleShearStage::Normal::constant_stress;
   Progress& at = test.run.progress;
@@ -83,12 +118,13 @@ void drive(RunningTest& test, const SimpleShearStage& stage) {
 
   std::vector<HeldStress> held;
   if (hold) held.push_back({normal, normal, -stage.normal_pressure, test.held_scale(stage.normal_pressure)});
-  test.go_through(record_strains(stage.to_strain, stage.record_every), [&](double strain) {
+  const auto increment_to = [&](double strain) {
     const Matrix3& deformation = at.deformation;
     Matrix3 gradient = Matrix3::Zero();
     gradient(along, normal) = (strain - deformation(along, normal)) / deformation(normal, normal);
     return test.apply(gradient, held, test.time_for(gradient(along, normal)), test.loading.held_tolerance);
-  });
+  };
+  drive_strain(test, stage, increment_to, [&] { return 0.5 * (at.stress(along, normal) + at.stress(normal, along)); });
 }
 
 }  // namespace rvelab::protocol

@@ -86,4 +86,15 @@ inline ProtocolKey with_range(ProtocolKey key, const char* words) {
   return key;
 }
 
+/// Without a default: what is left out is empty, or not asked for.
+inline ProtocolKey listed(const char* table, const char* name, const char* unit, const char* type, const char* allowed,
+                          KeyKind kind, const char* meaning) {
+  return {{table, name, unit, type, "", allowed, meaning}, kind, every, {}, {}};
+}
+
+inline constexpr const char* symmetric_components = "xx, yy, zz, yz, xz, xy = numbers";
+
+/// Keys of stages that follow paths, flows and envelopes, and of rows and events (path_keys.cpp).
+std::vector<ProtocolKey> path_keys();
+
 }  // namespace rvelab::protocol

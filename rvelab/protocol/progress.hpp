@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "rvelab/solver/specimen.hpp"
 
@@ -22,6 +23,12 @@ struct Progress {
   double rate = 0;                            ///< 1/s, of the stage's driving strain; 0 when quasi-static
   Matrix3 deformation = Matrix3::Identity();  ///< F since the start of the stage
   Matrix3 stress = Matrix3::Zero();           ///< Pa
+  Matrix3 strain_sum = Matrix3::Zero();       ///< of the symmetric displacement gradients since the start of the stage
+  Matrix3 first_stress = Matrix3::Zero();     ///< Pa, at the start of the stage
+  std::int64_t turns = 0;                     ///< cyclic stages: turns of the driving strain so far
+  std::int64_t place = 0;                     ///< cyclic stages: driving strain over the spacing of records
+  std::vector<std::int64_t> visits;           ///< times that each stage of the protocol was begun
+  std::vector<double> largest;                ///< that each event's quantity had in this stage
   std::string axis;                           ///< of the result so far
   double pressure = std::numeric_limits<double>::quiet_NaN();  ///< Pa, of the result so far
   std::uint64_t first_grain_steps = 0;                         ///< the specimen's count when the test began

@@ -30,21 +30,38 @@ std::vector<ProtocolKey> loading() {
   const Loading initial;
   return {
       word(t, "mode", {"quasi_static", "physical"},
-           "how compression and simple shear pass through time; physical: real masses at the given rate"),
+           "how compression, simple shear, flow and deformation pass through time; physical: real masses at the given "
+           "rate"),
       number(t, "rate_1_s", "1/s", "", positive, "mode = physical: true rate of the driving strain"),
       number(t, "inertial_number", "1", "", positive,
              "mode = physical, in place of rate_1_s: I = rate d sqrt(rho/p) with p at the start of the stage"),
       number(t, "held_tolerance", "1", initial.held_tolerance, ratio,
              "a held stress may miss its target by this times the larger of the target's size and 1 % of the stage's "
              "first p"),
-      whole_number(t, "held_wait", initial.held_wait, {0, 1e9}, "sub-steps that a record waits for the held stress"),
+      whole_number(
+          t, "held_wait", initial.held_wait, {0, 1e9},
+          "sub-steps that a record waits for the held stress; a quarter of its increment's where that is more"),
   };
+}
+
+ProtocolKey quantities() {
+  ProtocolKey key = listed("output", "quantities", "-", "list of words", "", KeyKind::words,
+                           "what is measured at each record beside strain and stress; the rest is not computed");
+  for (const QuantityName& each : quantity_names) {
+    key.words.emplace_back(each.name);
+    key.key.range += (key.key.range.empty() ? "" : ", ") + key.words.back();
+    if ((usual_quantities & each.quantity) == 0) continue;
+    key.key.initial += (key.key.initial.empty() ? "[\"" : ", \"") + key.words.back() + "\"";
+  }
+  key.key.initial += "]";
+  return key;
 }
 
 std::vector<ProtocolKey> output_specimen_and_calibrate() {
   return {
       whole_number("output", "snapshots_every", Protocol{}.snapshots_every, {0, 1e9},
                    "grains and contacts are kept at every so many records, from the first; 0: never"),
+      quantities(),
       required(text("specimen", "file", "",
                     "specimen file that the test runs on, relative to the protocol; --specimen goes before it")),
       {{"calibrate", "pressures_Pa", "Pa", "list of numbers", "", "each " + positive.in_words(),
@@ -58,9 +75,14 @@ std::vector<ProtocolKey> output_specimen_and_calibrate() {
 
 std::vector<ProtocolKey> stage() {
   return {
-      required(word("stage", "kind", {"isotropic", "compression", "simple_shear", "relax", "probe"},
+      required(word("stage", "kind",
+                    {"isotropic", "compression", "simple_shear", "pressure_path", "deviatoric", "path", "flow",
+                     "deformation", "envelope", "relax", "probe"},
                     "what the stage does; its other keys are those of [[stage]] with this kind", "")),
       text("stage", "name", "(its kind)", "name of its own, for --set stage.NAME.key=value and in the records"),
+      text("stage", "then", "(the next)", "name of the stage that follows, \"end\" for none"),
+      listed("stage", "until", "-", "list of tables", "[[stage.until]], any number", KeyKind::tables,
+             "events, each of which ends the stage; not with isotropic, relax, probe, envelope"),
   };
 }
 
@@ -90,10 +112,15 @@ std::vector<ProtocolKey> compression() {
                           "below 1, not 0")),
       number(t, "record_every", "1", CompressionStage{}.record_every, positive,
              "strain between records; at most 1e6 records"),
-      word(t, "lateral", {"constant_stress", "constant_volume"},
-           "constant_stress: each lateral normal stress is held (drained); constant_volume: det F = 1 (undrained)"),
+      word(t, "lateral", {"constant_stress", "constant_volume", "zero_strain"},
+           "constant_stress: each lateral normal stress is held (drained); constant_volume: det F = 1 (undrained); "
+           "zero_strain: oedometer"),
       number(t, "lateral_pressure_Pa", "Pa", "(test.pressure_Pa)", positive,
              "lateral = constant_stress: lateral normal stresses are held at minus this"),
+      whole_number(t, "cycles", CompressionStage{}.cycles.count, {0, 1e6},
+                   "0: straight to to_strain; else so many cycles between +-to_strain"),
+      number(t, "reverse_at_Pa", "Pa", "", positive,
+             "cycles > 0: the strain turns where the axial less the mean lateral stress has this size"),
   };
 }
 
@@ -110,6 +137,9 @@ std::vector<ProtocolKey> simple_shear() {
            "constant_volume: only the shear moves (undrained); constant_stress: sigma_bb is held (drained)"),
       number(t, "normal_pressure_Pa", "Pa", "(test.pressure_Pa)", positive,
              "normal = constant_stress: sigma_bb is held at minus this"),
+      whole_number(t, "cycles", SimpleShearStage{}.cycles.count, {0, 1e6},
+                   "0: straight to to_strain; else so many cycles between +-to_strain"),
+      number(t, "reverse_at_Pa", "Pa", "", positive, "cycles > 0: gamma turns where sigma_ab has this size"),
   };
 }
 
@@ -139,7 +169,7 @@ const std::vector<ProtocolKey>& protocol_keys() {
   static const std::vector<ProtocolKey> all = [] {
     std::vector<ProtocolKey> keys;
     for (const auto& list : {test(), loading(), output_specimen_and_calibrate(), stage(), isotropic(), compression(),
-                             simple_shear(), relax_and_probe()}) {
+                             simple_shear(), path_keys(), relax_and_probe()}) {
       keys.insert(keys.end(), list.begin(), list.end());
     }
     return keys;

@@ -20,13 +20,24 @@ const std::vector<Key>& all_keys();
 
 namespace protocol {
 
-enum class KeyKind { number, whole_number, truth, text, word, numbers };
+enum class KeyKind {
+  number,
+  whole_number,
+  truth,
+  text,
+  word,
+  numbers,
+  words,       ///< a list of words
+  components,  ///< a table of components of a tensor: {xx = 1, xy = 0.5}
+  matrices,    ///< a list of lists of numbers
+  tables       ///< [[...]] with keys of their own
+};
 
 struct ProtocolKey {
   Key key;
   KeyKind kind;
   io::Range range;                                                        ///< numbers, each of a list too
-  std::vector<std::string> words;                                         ///< of KeyKind::word
+  std::vector<std::string> words;                                         ///< of word and words
   std::variant<std::monostate, double, long, bool, std::string> initial;  ///< none: required, optional, or computed
 };
 

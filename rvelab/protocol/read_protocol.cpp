@@ -1,8 +1,10 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <sstream>
 
 #include "rvelab/error.hpp"
+#include "rvelab/protocol/drive.hpp"
 #include "rvelab/protocol/protocol.hpp"
 #include "rvelab/protocol/read_stage.hpp"
 #include "rvelab/protocol/table_reader.hpp"
@@ -84,6 +86,11 @@ void read_calibrate(const toml::table& file, Protocol& protocol, toml::table& re
 void read_output(const toml::table& table, Protocol& protocol, toml::table& resolved, std::vector<KeyError>& errors) {
   TableReader reader(table, "output", "output", line_of(table), errors);
   protocol.snapshots_every = reader.whole_number("snapshots_every");
+  const auto names = reader.words("quantities");
+  if (reader.has("quantities")) protocol.quantities = 0;
+  for (const auto& [quantity, name] : quantity_names) {
+    if (std::find(names.begin(), names.end(), name) != names.end()) protocol.quantities |= quantity;
+  }
   reader.finish();
   resolved.insert("output", reader.resolved());
 }
@@ -105,6 +112,23 @@ void check_overrides(const toml::table& file, std::vector<KeyError>& errors) {
   }
 }
 
+/// `then` names stages that are there.
+void expect_followers(const Protocol& protocol, std::vector<KeyError>& errors) {
+  std::string known = "end";
+  for (const Stage& stage : protocol.stages) known += ", " + stage.name;
+  const auto expect = [&](const std::string& where, const std::string& then) {
+    const auto named = [&](const Stage& stage) { return stage.name == then; };
+    if (then.empty() || then == "end" || std::any_of(protocol.stages.begin(), protocol.stages.end(), named)) return;
+    errors.push_back({0, where + ".then = \"" + then + "\" names no stage; allowed: " + known + "; correct the name"});
+  };
+  for (const Stage& stage : protocol.stages) {
+    expect("stage." + stage.name, stage.then);
+    for (std::size_t k = 0; k < stage.until.size(); ++k) {
+      expect("stage." + stage.name + ".until." + std::to_string(k), stage.until[k].then);
+    }
+  }
+}
+
 void read_stages(const toml::table& file, Protocol& protocol, toml::table& resolved, std::vector<KeyError>& errors) {
   const toml::node* node = file.get("stage");
   const bool is_list = node != nullptr && node->is_array_of_tables() && !node->as_array()->empty();
@@ -120,6 +144,7 @@ void read_stages(const toml::table& file, Protocol& protocol, toml::table& resol
     protocol::read_stage(*stage.as_table(), number++, protocol, stages, errors);
   }
   resolved.insert("stage", stages);
+  expect_followers(protocol, errors);
 }
 
 Protocol read_file(toml::table file, const std::string& path, const std::vector<std::string>& assignments) {
@@ -182,6 +207,7 @@ Specimen with_overrides(const Protocol& protocol, Specimen specimen) {
     if (const toml::table* table = protocol.overrides[name].as_table()) read_table(specimen, name, *table, errors);
   }
   raise(protocol.path, errors);
+  protocol::expect_fits(protocol, specimen.cell.dimension);
   return specimen;
 }
 

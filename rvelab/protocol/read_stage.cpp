@@ -2,27 +2,10 @@
 
 #include <cmath>
 
+#include "rvelab/protocol/stage_readers.hpp"
+
 namespace rvelab::protocol {
 namespace {
-
-constexpr double most_records = 1e6;
-
-/// A stage's own pressure, or the test's.
-double pressure_of(TableReader& reader, const std::string& name, Protocol& protocol) {
-  if (reader.has(name)) return reader.number(name);
-  const bool nowhere = std::isnan(protocol.pressure);
-  if (nowhere && !reader.has_in_another_unit(name)) {
-    reader.mistake(name, "is missing, and so is test.pressure_Pa; allowed: > 0 Pa; add one of them");
-  }
-  protocol.uses_pressure = protocol.uses_pressure || !nowhere;
-  return reader.number(name, nowhere ? 0 : protocol.pressure);
-}
-
-/// A pressure that the stage holds nothing at.
-void refuse_pressure(TableReader& reader, const std::string& name, const std::string& other) {
-  reader.leave(name);
-  if (reader.has(name)) reader.mistake(name, "contradicts " + other + "; allowed: one of the two; remove one");
-}
 
 double strain_of(const toml::table& table, TableReader& reader) {
   const double strain = reader.number("to_strain");
@@ -32,20 +15,26 @@ double strain_of(const toml::table& table, TableReader& reader) {
   return strain;
 }
 
-double spacing_of(TableReader& reader, double to_strain) {
-  const double spacing = reader.number("record_every");
-  if (std::abs(to_strain) / spacing > most_records) {
-    reader.mistake("record_every", "gives " + std::to_string(std::abs(to_strain) / spacing) +
-                                       " records; allowed: at most 1000000; give a larger spacing");
-  }
-  return spacing;
-}
-
 /// In 2D nothing moves along z.
 void expect_in_plane(TableReader& reader, const std::string& key, const std::string& value, const Protocol& protocol) {
   if (protocol.dimension == 2 && value.find('z') != std::string::npos) {
     reader.mistake(key, "leaves the plane of test.dimension = 2; allowed: x and y; change one of the two");
   }
+}
+
+Cycles read_cycles(TableReader& reader, double to_strain, double record_every) {
+  Cycles cycles;
+  cycles.count = reader.whole_number("cycles");
+  cycles.reverse_at = reader.optional_number("reverse_at_Pa").value_or(0);
+  if (reader.has("reverse_at_Pa") && cycles.count == 0) {
+    reader.mistake("reverse_at_Pa", "has nothing to turn; allowed: with cycles > 0 only; give cycles, or remove it");
+  }
+  const double records = 4 * static_cast<double>(cycles.count) * std::abs(to_strain) / record_every;
+  if (records > most_records) {
+    reader.mistake("cycles", "gives up to " + std::to_string(records) +
+                                 " records; allowed: at most 1000000; give fewer cycles or a larger record_every");
+  }
+  return cycles;
 }
 
 IsotropicStage read_isotropic(TableReader& reader, Protocol& protocol) {
@@ -68,12 +57,15 @@ CompressionStage read_compression(const toml::table& table, TableReader& reader,
   expect_in_plane(reader, "axis", stage.axis, protocol);
   stage.to_strain = strain_of(table, reader);
   stage.record_every = spacing_of(reader, stage.to_strain);
-  if (reader.word("lateral") == "constant_volume") {
-    stage.lateral = CompressionStage::Lateral::constant_volume;
-    refuse_pressure(reader, "lateral_pressure_Pa", "lateral = \"constant_volume\"");
-  } else {
+  const std::string lateral = reader.word("lateral");
+  if (lateral == "constant_volume") stage.lateral = CompressionStage::Lateral::constant_volume;
+  if (lateral == "zero_strain") stage.lateral = CompressionStage::Lateral::zero_strain;
+  if (stage.lateral == CompressionStage::Lateral::constant_stress) {
     stage.lateral_pressure = pressure_of(reader, "lateral_pressure_Pa", protocol);
+  } else {
+    refuse_pressure(reader, "lateral_pressure_Pa", "lateral = \"" + lateral + "\"");
   }
+  stage.cycles = read_cycles(reader, stage.to_strain, stage.record_every);
   return stage;
 }
 
@@ -90,6 +82,7 @@ SimpleShearStage read_simple_shear(const toml::table& table, TableReader& reader
     stage.normal = SimpleShearStage::Normal::constant_stress;
     stage.normal_pressure = pressure_of(reader, "normal_pressure_Pa", protocol);
   }
+  stage.cycles = read_cycles(reader, stage.to_strain, stage.record_every);
   return stage;
 }
 
@@ -125,12 +118,20 @@ void read_stage(const toml::table& table, long number, Protocol& protocol, toml:
   const auto kind = reader.word("kind");
   if (kind.empty()) return;  // without its kind no other key can be judged
   reader.also("stage." + kind);
-  Stage stage{reader.text("name", kind), {}};
+  Stage stage{reader.text("name", kind), {}, {}, ""};
   if (kind == "isotropic") stage.what = read_isotropic(reader, protocol);
   if (kind == "compression") stage.what = read_compression(table, reader, protocol);
   if (kind == "simple_shear") stage.what = read_simple_shear(table, reader, protocol);
+  if (kind == "deviatoric") stage.what = read_deviatoric(reader, protocol);
+  if (kind == "pressure_path") stage.what = read_pressure_path(reader);
+  if (kind == "path") stage.what = read_path(reader, stage.name, protocol, errors);
+  if (kind == "flow") stage.what = read_flow(reader, protocol);
+  if (kind == "deformation") stage.what = read_deformation(reader, protocol);
+  if (kind == "envelope") stage.what = read_envelope(reader);
   if (kind == "relax") stage.what = read_relax(reader);
   if (kind == "probe") stage.what = read_probe(reader);
+  stage.until = read_until(reader, stage.name, kind, errors);
+  stage.then = reader.text("then", "");
   reader.finish();
   for (const auto& other : protocol.stages) {
     if (other.name != stage.name) continue;

@@ -38,7 +38,8 @@ TestRun finish(const Protocol& protocol, protocol::RunningTest& test, double wal
 }  // namespace
 
 TestRun run_protocol(const Protocol& protocol, const Specimen& specimen, const Watch& watch) {
-  protocol::RunningTest test(protocol, with_overrides(protocol, specimen), watch);
+  const Specimen start = with_overrides(protocol, specimen);
+  protocol::RunningTest test(protocol, start, watch);
   test.run.progress.stress = test.rve.stress();
   test.run.progress.first_grain_steps = test.rve.grain_steps();
   return finish(protocol, test, 0);
@@ -60,10 +61,7 @@ TestRun resume_protocol(const Protocol& protocol, const Checkpoint& checkpoint, 
   test.run.progress = progress;
   so_far.records.resize(records);
   so_far.probes.resize(probes);
-  so_far.stages.clear();
-  for (std::int32_t k = 0; k < progress.stage + (progress.phase > 0 ? 1 : 0); ++k) {
-    so_far.stages.push_back(protocol.stages[static_cast<std::size_t>(k)].name);
-  }
+  so_far.stages = test.run.result.stages;
   test.run.result = std::move(so_far);
   test.run.result.protocol = protocol.name;
   return finish(protocol, test, progress.wall_seconds);

@@ -33,7 +33,7 @@ struct Moment {
   Checkpoint checkpoint() const { return {progress, rve.specimen()}; }
 };
 
-/// Who watches a run. All functions may be empty, are called on the thread that runs the test, and change nothing in
+/// Who watches a run, and who helps. All functions may be empty, are called on the thread that runs the test, and change nothing in
 /// it: results depend neither on what they do nor on when. What they throw ends the run.
 struct Watch {
   std::function<void(const Record&)> on_record;
@@ -44,6 +44,8 @@ struct Watch {
   std::function<void(const Moment&)> on_moment;
   /// Once true, the run ends within a sub-step at the last moment passed (a probe by the linear method ends first).
   const std::atomic<bool>* stop = nullptr;
+  /// Shares the steps of a large specimen (Rve::share).
+  Workers* team = nullptr;
 };
 
 /// Runs all stages in order. Records lie at the fixed strains of their stage, none skipped or delayed; a record whose

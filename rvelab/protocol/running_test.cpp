@@ -1,12 +1,18 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "rvelab/error.hpp"
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/protocol/drive.hpp"
+#include "rvelab/protocol/events.hpp"
+#include "rvelab/protocol/path_rows.hpp"
 
 namespace rvelab::protocol {
 namespace {
+
+/// A protocol whose stages lead back for ever is stopped.
+constexpr std::int64_t most_visits = 1'000'000;
 
 /// E with E : dE = dE_ij for symmetric dE.
 Matrix3 selector(int i, int j) {
@@ -50,20 +56,29 @@ RunningTest::RunningTest(const Protocol& protocol, const Specimen& specimen, con
       loading(protocol.loading),
       watch_(watch),
       snapshots_every_(protocol.snapshots_every),
+      quantities_(protocol.quantities),
       records_planned_(planned_records(protocol)) {
   run.result.protocol = protocol.name;
+  for (const Stage& stage : protocol.stages) run.result.stages.push_back(stage.name);
   rve.watch(watch.stop);
+  rve.share(watch.team);
 }
 
-Error RunningTest::failed(const std::string& text) const { return Error("stage \"" + stage_name_ + "\": " + text); }
+Error RunningTest::failed(const std::string& text) const { return Error("stage \"" + stage_->name + "\": " + text); }
 
 void RunningTest::enter(const Stage& stage) {
-  stage_name_ = stage.name;
+  stage_ = &stage;
   Progress& at = run.progress;
   if (at.phase > 0) return;
-  run.result.stages.push_back(stage.name);
   at.deformation = Matrix3::Identity();
-  at.stress = rve.stress();
+  at.strain_sum = Matrix3::Zero();
+  at.stress = at.first_stress = rve.stress();
+  at.turns = at.place = 0;
+  at.visits.resize(run.result.stages.size());
+  if (++at.visits[static_cast<std::size_t>(at.stage)] > most_visits) {
+    throw failed("was begun " + std::to_string(most_visits) + " times; let an event with quantity = \"visits\" end it");
+  }
+  at.largest.assign(stage.until.size(), std::numeric_limits<double>::lowest());
   at.first_pressure = mean_pressure(at.stress, dimension());
   at.substeps = 0;
   at.rate = loading.rate;
@@ -78,11 +93,25 @@ void RunningTest::enter(const Stage& stage) {
   at.step = 0;
 }
 
+int RunningTest::stage_number(const std::string& name) const {
+  const auto& stages = run.result.stages;
+  if (name.empty()) return run.progress.stage + 1;
+  return static_cast<int>(std::find(stages.begin(), stages.end(), name) - stages.begin());  // "end": their number
+}
+
 void RunningTest::leave_stage() {
   Progress& at = run.progress;
-  ++at.stage;
+  const auto event = static_cast<std::size_t>(at.phase - done_phase - 1);
+  at.stage = stage_number(at.phase > done_phase ? stage_->until.at(event).then : stage_->then);
   at.phase = 0;
   at.step = 0;
+  pause();
+}
+
+void RunningTest::step_done() {
+  const int event = met_event(*this, *stage_);
+  ++run.progress.step;
+  if (event >= 0) run.progress.phase = done_phase + 1 + event;
   pause();
 }
 
@@ -106,26 +135,37 @@ double RunningTest::time_for(double strain_increment) const {
                " Pa; allowed: p > 0 at the start of the stage; give loading.rate_1_s");
 }
 
+Report RunningTest::apply(MixedTarget target, double dt, double tolerance) {
+  target.tolerance = tolerance;
+  target.wait = loading.held_wait;
+  return applied([&] { return rve.apply(target, dt); });
+}
+
 Report RunningTest::apply(const Matrix3& displacement_gradient, const std::vector<HeldStress>& held, double dt,
                           double tolerance) {
+  if (!held.empty()) {
+    return apply(mixed_target(displacement_gradient, held, run.progress.stress, dimension()), dt, tolerance);
+  }
+  return applied([&] {
+    Response response = rve.apply(displacement_gradient, dt);
+    response.displacement_gradient = displacement_gradient;
+    return response;
+  });
+}
+
+template <class Apply>
+Report RunningTest::applied(Apply apply) {
   Response response;
   try {
-    if (held.empty()) {
-      response = rve.apply(displacement_gradient, dt);
-      response.displacement_gradient = displacement_gradient;
-    } else {
-      MixedTarget target = mixed_target(displacement_gradient, held, run.progress.stress, dimension());
-      target.tolerance = tolerance;
-      target.wait = loading.held_wait;
-      response = rve.apply(target, dt);
-    }
+    response = apply();
   } catch (const InvalidIncrement& error) {
-    throw InvalidIncrement("stage \"" + stage_name_ + "\": " + error.what());
+    throw InvalidIncrement("stage \"" + stage_->name + "\": " + error.what());
   } catch (const IncrementFailed& error) {
-    throw IncrementFailed("stage \"" + stage_name_ + "\": " + error.what());
+    throw IncrementFailed("stage \"" + stage_->name + "\": " + error.what());
   }
   Progress& at = run.progress;
   at.deformation = (Matrix3::Identity() + response.displacement_gradient) * at.deformation;
+  at.strain_sum += strain_increment(response.displacement_gradient, dimension());
   at.stress = response.stress;
   at.substeps += response.report.substeps;
   return response.report;
@@ -151,17 +191,33 @@ Report RunningTest::relax(double unbalanced, long max_steps) {
   }
 }
 
-void RunningTest::record(double strain, const Report& report) {
+void RunningTest::measure(Record& record) const {
+  record.quantities = quantities_;
+  if (quantities_ == 0) return;
+  const auto asked = [&](Quantity quantity) { return (quantities_ & quantity) != 0; };
   const Network network = rve.network();
+  if (asked(void_ratio_asked)) record.void_ratio = void_ratio(network);
+  if (asked(coordination_number_asked)) record.coordination_number = coordination_number(network);
+  if (asked(fabric_anisotropy_asked)) record.fabric_anisotropy = fabric_anisotropy(fabric(network), dimension());
+  if (asked(sliding_fraction_asked)) record.sliding_fraction = sliding_fraction(network);
+  if (asked(mechanical_void_ratio_asked)) record.mechanical_void_ratio = mechanical_void_ratio(network);
+  if (asked(mechanical_coordination_number_asked))
+    record.mechanical_coordination_number = mechanical_coordination_number(network);
+  if (asked(fabric_asked)) record.fabric = fabric(network);
+  if (asked(branch_fabric_asked)) record.branch_fabric = branch_fabric(network);
+  if (asked(contact_stress_asked)) record.contact_stress = rve.contact_stress();
+  if (asked(reynolds_stress_asked)) record.reynolds_stress = rve.reynolds_stress();
+  if (asked(elastic_energy_asked)) record.elastic_energy = elastic_energy(network);
+  if (asked(kinetic_energy_asked)) record.kinetic_energy = kinetic_energy(network);
+}
+
+void RunningTest::record(double strain, const Report& report) {
   Record record;
-  record.stage = static_cast<int>(run.result.stages.size()) - 1;
+  record.stage = run.progress.stage;
   record.strain = strain;
   record.deformation_gradient = run.progress.deformation;
   record.stress = run.progress.stress;
-  record.void_ratio = void_ratio(network);
-  record.coordination_number = coordination_number(network);
-  record.fabric_anisotropy = fabric_anisotropy(fabric(network), dimension());
-  record.sliding_fraction = sliding_fraction(network);
+  measure(record);
   record.unbalanced_force_ratio = report.unbalanced_ratio;
   record.inertial_number = report.inertial_number;
   record.substeps = run.progress.substeps;
@@ -178,7 +234,7 @@ void RunningTest::record(double strain, const Report& report) {
 }
 
 void RunningTest::probed(const Eigen::MatrixXd& stiffness) {
-  run.result.probes.push_back({stage_name_, stiffness});
+  run.result.probes.push_back({stage_->name, stiffness});
   ++run.progress.probes;
   if (watch_.on_probe) watch_.on_probe(run.result.probes.back());
 }

@@ -184,20 +184,6 @@ std::string TableReader::word(const std::string& name, std::optional<std::string
   return value;
 }
 
-std::vector<double> TableReader::numbers(const std::string& name) {
-  const ProtocolKey& key = entry(name);
-  const toml::node* node = find(key, false);
-  std::vector<double> values;
-  if (node == nullptr) return values;
-  if (!node->is_array() || node->as_array()->empty()) {
-    mistake(name, "is not a list of numbers; allowed: " + key.key.allowed() + "; write it as [1e4, 2e4]");
-    return values;
-  }
-  for (const auto& item : *node->as_array()) values.push_back(checked(key, item).value_or(0));
-  resolved_.insert_or_assign(name, *node);
-  return values;
-}
-
 void TableReader::finish() {
   std::vector<std::string> names;
   for (const Key& key : known_) {

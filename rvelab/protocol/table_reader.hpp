@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "rvelab/cell/cell.hpp"
 #include "rvelab/io/material_toml.hpp"
 #include "rvelab/protocol/protocol_keys.hpp"
 
@@ -45,6 +46,15 @@ class TableReader {
   /// One of the words of the key; "" stands for a computed default that is not known yet.
   std::string word(const std::string& name, std::optional<std::string> instead = std::nullopt);
   std::vector<double> numbers(const std::string& name);
+  /// Those of the words of the key that stand there; none if the key does not.
+  std::vector<std::string> words(const std::string& name);
+  /// Components of a tensor by their names, zero where none is given; a symmetric one has both halves of a shear.
+  Matrix3 components(const std::string& name, bool symmetric);
+  /// Lists of 4 or 9 numbers, row by row.
+  std::vector<Matrix3> matrices(const std::string& name);
+  /// The tables of [[...]] under this key; what is read of them is put into the resolved table by the caller.
+  std::vector<const toml::table*> tables(const std::string& name);
+  void resolve(const std::string& name, toml::array list) { resolved_.insert_or_assign(name, std::move(list)); }
 
   bool has(const std::string& name) const { return table_.contains(name); }
   /// The key is there, but with another unit of the same quantity.

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "rvelab/solver/pair_geometry.hpp"
+
 namespace rvelab {
 
 Matrix3 strain_matrix(const Vector6& e) {
@@ -16,29 +18,104 @@ Vector6 strain_components(const Matrix3& m) {
   return e;
 }
 
-Matrix6 affine_stiffness(const Fixture& f, const Assembly& a) {
-  Matrix6 sum = Matrix6::Zero();
-  const Matrix3& q = a.cell.rotation;
+namespace {
+
+/// Sums of l^2 (kn - kt) n n n n and l^2 kt n n over the contacts, cell frame: what the stiffness is made of.
+struct Moments {
+  Matrix6 fourth = Matrix6::Zero();  ///< [(i, j), (k, l)] in the order xx yy zz yz xz xy
+  Matrix3 second = Matrix3::Zero();
+};
+
+template <int D>
+Moments moments_of(const Fixture& f, const Assembly& a) {
+  // Monomials of n of degree four and two; the servo renews its gain every few dozen sub-steps.
+  constexpr int degree4 = D == 2 ? 5 : 15;
+  double four[degree4] = {}, two[6] = {};
+  const Branches<D> branch(a);
   for (std::size_t p = 0; p < a.pairs.listed; ++p) {
-    const auto i = a.pairs.i[p], j = a.pairs.j[p];
-    const Vector3 cell_branch = branch_of(f, a, p);
-    const double length = cell_branch.norm(), overlap = (f.radius[i] + f.radius[j]) - length;
+    const Branch b = branch(p);
+    const double squared = b.x * b.x + b.y * b.y + b.z * b.z, length = std::sqrt(squared);
+    const double overlap = (f.radius[std::size_t(a.pairs.i[p])] + f.radius[std::size_t(a.pairs.j[p])]) - length;
     if (!(overlap > 0)) continue;
     double kn = a.pairs.kn[p], kt = a.pairs.kt[p];
     if (f.law != KernelLaw::linear) kn *= 1.5 * std::sqrt(overlap);
     if (f.law == KernelLaw::hertz_mindlin) kt *= std::sqrt(overlap);
-    const Vector3 n = q * cell_branch / length;
-    // Strain of the contact: the branch changes by eps b; along n by n eps n, across by (eps n - n (n eps n)).
-    Vector6 along;
-    along << n[0] * n[0], n[1] * n[1], n[2] * n[2], n[1] * n[2], n[0] * n[2], n[0] * n[1];
-    Eigen::Matrix<double, 3, 6> across;
-    across << n[0], 0, 0, 0, 0.5 * n[2], 0.5 * n[1],  //
-        0, n[1], 0, 0.5 * n[2], 0, 0.5 * n[0],        //
-        0, 0, n[2], 0.5 * n[1], 0.5 * n[0], 0;
-    across -= n * along.transpose();
-    sum += (length * length) * (kn * along * along.transpose() + kt * across.transpose() * across);
+    const double part = (kn - kt) / squared;
+    const double x = b.x, y = b.y, xx = x * x, yy = y * y, xy = x * y;
+    two[0] += kt * xx;
+    two[1] += kt * yy;
+    two[5] += kt * xy;
+    four[0] += part * (xx * xx);
+    four[1] += part * (xx * xy);
+    four[2] += part * (xx * yy);
+    four[3] += part * (xy * yy);
+    four[4] += part * (yy * yy);
+    if constexpr (D == 3) {
+      const double z = b.z, zz = z * z, yz = y * z, xz = x * z;
+      two[2] += kt * zz;
+      two[3] += kt * yz;
+      two[4] += kt * xz;
+      four[5] += part * (zz * zz);
+      four[6] += part * (xx * zz);
+      four[7] += part * (yy * zz);
+      four[8] += part * (xx * yz);
+      four[9] += part * (xx * xz);
+      four[10] += part * (yy * yz);
+      four[11] += part * (yy * xz);
+      four[12] += part * (zz * yz);
+      four[13] += part * (zz * xz);
+      four[14] += part * (zz * xy);
+    }
   }
-  return sum / a.cell.volume();
+  Moments m;
+  m.second << two[0], two[5], two[4], two[5], two[1], two[3], two[4], two[3], two[2];
+  double z4 = 0, xxzz = 0, yyzz = 0, xxyz = 0, xxxz = 0, yyyz = 0, yyxz = 0, zzyz = 0, zzxz = 0, zzxy = 0;
+  if constexpr (D == 3) {
+    z4 = four[5];
+    xxzz = four[6];
+    yyzz = four[7];
+    xxyz = four[8];
+    xxxz = four[9];
+    yyyz = four[10];
+    yyxz = four[11];
+    zzyz = four[12];
+    zzxz = four[13];
+    zzxy = four[14];
+  }
+  const double x4 = four[0], xxxy = four[1], xxyy = four[2], yyxy = four[3], y4 = four[4];
+  m.fourth << x4, xxyy, xxzz, xxyz, xxxz, xxxy,  //
+      xxyy, y4, yyzz, yyyz, yyxz, yyxy,          //
+      xxzz, yyzz, z4, zzyz, zzxz, zzxy,          //
+      xxyz, yyyz, zzyz, yyzz, zzxy, yyxz,        //
+      xxxz, yyxz, zzxz, zzxy, xxzz, xxyz,        //
+      xxxy, yyxy, zzxy, yyxz, xxyz, xxyy;
+  return m;
+}
+
+/// Strain components of the cell frame from those of the laboratory frame, as a matrix.
+Matrix6 strain_turn(const Matrix3& rotation) {
+  Matrix6 turn;
+  for (int k = 0; k < 6; ++k)
+    turn.col(k) = strain_components(rotation.transpose() * strain_matrix(Vector6::Unit(k)) * rotation);
+  return turn;
+}
+
+}  // namespace
+
+Matrix6 affine_stiffness(const Fixture& f, const Assembly& a) {
+  // C_ijkl = (1/V) sum l^2 [(kn - kt) n_i n_j n_k n_l
+  //                         + kt/4 (n_i n_k d_jl + n_i n_l d_jk + n_j n_k d_il + n_j n_l d_ik)], design 8.
+  const Moments m = f.shape == Shape::disc ? moments_of<2>(f, a) : moments_of<3>(f, a);
+  constexpr int first[6] = {0, 1, 2, 1, 0, 0}, second[6] = {0, 1, 2, 2, 2, 1};
+  Matrix6 stiffness = m.fourth;
+  for (int r = 0; r < 6; ++r)
+    for (int c = 0; c < 6; ++c) {
+      const int i = first[r], j = second[r], k = first[c], l = second[c];
+      stiffness(r, c) += 0.25 * ((j == l ? m.second(i, k) : 0) + (j == k ? m.second(i, l) : 0) +
+                                 (i == l ? m.second(j, k) : 0) + (i == k ? m.second(j, l) : 0));
+    }
+  const Matrix6 turn = strain_turn(a.cell.rotation);
+  return turn.transpose() * stiffness * turn / a.cell.volume();
 }
 
 }  // namespace rvelab

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "rvelab/cell/volume.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/solver/rve_impl.hpp"
 #include "rvelab/solver/servo.hpp"
@@ -60,7 +61,7 @@ double Rve::Impl::unbalanced(const Balance& balance) const {
   return rvelab::unbalanced_ratio(balance, now.state.reference_contact_force);
 }
 
-void Rve::Impl::steer_pace(const Balance& balance) {
+void Rve::Impl::steer_pace(const Balance& balance, bool held) {
   // n <- n (unb/target)^0.75 within 0.7 to 1.4 (performance: power 0.7; three quarters needs square roots only).
   const double x = unbalanced(balance) / fixture.options.target_unbalanced;
   const double root = std::sqrt(x);
@@ -70,7 +71,13 @@ void Rve::Impl::steer_pace(const Balance& balance) {
   // Without contacts 1e-5 of a diameter a step.
   const double overlap = std::max(balance.mean_overlap, 0.1 * now.state.reference_overlap) / (2 * fixture.mean_radius);
   const double fastest = balance.touching > 0 ? 1e-2 * overlap : 1e-5;
-  now.state.strain_per_step = std::clamp(now.state.strain_per_step / factor, 0.02 * fastest, fastest);
+  // Where a stress is held far below the specimen's own, the reference would let a step be as large as the overlaps.
+  double slowest = 0.02 * fastest;
+  if (held && balance.touching > 0) {
+    const double own = std::max(balance.mean_overlap, 1e-4 * now.state.reference_overlap) / (2 * fixture.mean_radius);
+    slowest = std::min(slowest, 0.02 * 1e-2 * own);
+  }
+  now.state.strain_per_step = std::clamp(now.state.strain_per_step / factor, slowest, fastest);
 }
 
 Report Rve::Impl::load(const Matrix3& dh, double dt) {
@@ -176,9 +183,10 @@ Report Rve::Impl::load(const MixedTarget& target, double dt, Matrix3& gradient) 
 
   Matrix3 strain = Matrix3::Zero();
   double fraction = 0, since_control = 0;
-  long waited = 0;
+  long waited = 0, longest_wait = target.wait;
   RowSums sums = row_sums(fixture, now);
   double soft = 0;
+  bool arrived = false;
   while (true) {
     if (since_control == 0) {
       // A hundredth of what one typical contact per grain would give keeps the gain regular in a gas.
@@ -210,8 +218,10 @@ Report Rve::Impl::load(const MixedTarget& target, double dt, Matrix3& gradient) 
     }
     const bool waiting = fraction >= 1;
     if (waiting) {
-      if (!servo.controls_stress() || waited >= target.wait) break;
-      steps = std::min(steps, target.wait - waited);
+      // In stiff packings the increment itself takes thousands of sub-steps, and what it stirs up calms as slowly.
+      if (waited == 0) longest_wait = std::max(target.wait, report.substeps / 4);
+      if (!servo.controls_stress() || waited >= longest_wait) break;
+      steps = std::min(steps, longest_wait - waited);
       advance_by = 0;
     }
     fraction = 1 - fraction - advance_by < 1e-12 ? 1.0 : fraction + advance_by;
@@ -220,6 +230,10 @@ Report Rve::Impl::load(const MixedTarget& target, double dt, Matrix3& gradient) 
     const Matrix3 from = gradient;
     strain += change;
     gradient = strain + fraction * target.spin;
+    if (target.volume_ratio > 0) {
+      gradient = with_volume_ratio(gradient, 1 + fraction * (target.volume_ratio - 1), fixture.dimension());
+      strain = 0.5 * (gradient + gradient.transpose());
+    }
     const Matrix3 part = (identity + gradient) * (identity + from).inverse();
     advance(fixture, now,
             {split_increment(now.cell, part - identity), steps, step,
@@ -235,9 +249,15 @@ Report Rve::Impl::load(const MixedTarget& target, double dt, Matrix3& gradient) 
       const Balance balance = checked_balance();
       sums = row_sums(fixture, now);
       if (!physical) {
-        if (!waiting) steer_pace(balance);
+        if (!waiting) steer_pace(balance, servo.controls_stress());
         if (inertia_outgrown(fixture, sums, now)) rescale_inertia(fixture, sums, now);
       }
+    }
+    // The pace is judged before the wait, whose calm says nothing of it; increments shorter than a stretch have no
+    // other moment.
+    if (fraction >= 1 && !arrived) {
+      arrived = true;
+      if (!physical && since_control > 0) steer_pace(checked_balance(), servo.controls_stress());
     }
     if (fraction >= 1) {
       report.held_error = servo.held_error(strain, stress());
@@ -246,8 +266,6 @@ Report Rve::Impl::load(const MixedTarget& target, double dt, Matrix3& gradient) 
   }
   const Balance balance = checked_balance();
   report.unbalanced_ratio = unbalanced(balance);
-  // Increments shorter than a stretch would never steer; the calm after a wait says nothing about the pace.
-  if (!physical && waited == 0 && since_control > 0) steer_pace(balance);
   if (!physical && fixture.options.ledger) rescale_inertia(fixture, row_sums(fixture, now), now);
   report.held_error = servo.held_error(strain, stress());
   report.target_held = report.held_error <= target.tolerance;

@@ -8,14 +8,12 @@
 #include <sstream>
 
 #include "rvelab/error.hpp"
+#include "rvelab/solver/memory_order.hpp"
+#include "rvelab/solver/sweep.hpp"
 
 namespace rvelab {
 
 namespace {
-
-constexpr std::size_t lanes_padding = 8;
-
-std::size_t padded_to_lanes(std::size_t n) { return (n / lanes_padding + 1) * lanes_padding; }
 
 [[noreturn]] void refuse(const std::string& what) { throw InputError(what); }
 
@@ -59,6 +57,18 @@ void check_cell(const Specimen& s) {
   const double from_orthogonal = (s.cell.rotation.transpose() * s.cell.rotation - Matrix3::Identity()).norm();
   if (!(from_orthogonal < 1e-8) || !(s.cell.rotation.determinant() > 0))
     refuse("specimen: the rotation of the cell frame must be orthogonal with determinant +1");
+}
+
+void check_contacts(const Specimen& s) {
+  const std::size_t n = s.grains.size();
+  for (const Contact& c : s.contacts) {
+    if (c.i < 0 || c.j < c.i || std::size_t(c.j) >= n)
+      refuse("specimen: contact of grains " + std::to_string(c.i) + " and " + std::to_string(c.j) +
+             "; indices must be 0 <= i <= j < " + std::to_string(n));
+    if (!c.tangential_force.allFinite() || !c.rolling_moment.allFinite() || !std::isfinite(c.last_root_overlap))
+      refuse("specimen: contact of grains " + std::to_string(s.grains.id[std::size_t(c.i)]) + " and " +
+             std::to_string(s.grains.id[std::size_t(c.j)]) + ": its history is not finite");
+  }
 }
 
 void check_options(const SolverOptions& o) {
@@ -129,32 +139,6 @@ std::vector<Carried> history_of(const Fixture& f, const PairTable& pairs) {
   return all;
 }
 
-/// Blocks of four grains, each with as many slots as the busiest of the four needs on either side.
-void fill_gather_table(std::size_t grains, std::int32_t force_row, const std::vector<ListedPair>& listed,
-                       PairTable& pairs) {
-  const std::size_t rows = padded_to_lanes(grains), blocks = rows / 4;
-  std::vector<std::int32_t> as_first(rows, 0), as_second(rows, 0);
-  for (const ListedPair& pair : listed) {
-    ++as_first[pair.i];
-    ++as_second[pair.j];
-  }
-  pairs.slot_begin.assign(blocks + 1, 0);
-  for (std::size_t b = 0; b < blocks; ++b) {
-    std::int32_t most = 0;
-    for (std::size_t g = 4 * b; g < 4 * b + 4; ++g) most = std::max({most, as_first[g], as_second[g]});
-    pairs.slot_begin[b + 1] = pairs.slot_begin[b] + most;
-  }
-  const auto nothing = force_row * std::int32_t(listed.size());  // the first padding pair
-  pairs.slots.assign(8 * std::size_t(pairs.slot_begin[blocks]), nothing);
-  std::fill(as_first.begin(), as_first.end(), 0);
-  std::fill(as_second.begin(), as_second.end(), 0);
-  for (std::size_t q = 0; q < listed.size(); ++q) {
-    const auto i = std::size_t(listed[q].i), j = std::size_t(listed[q].j);
-    pairs.slots[8 * std::size_t(pairs.slot_begin[j / 4] + as_second[j]++) + j % 4] = force_row * std::int32_t(q);
-    pairs.slots[8 * std::size_t(pairs.slot_begin[i / 4] + as_first[i]++) + 4 + i % 4] = force_row * std::int32_t(q);
-  }
-}
-
 /// What becomes of a history whose pair is not listed: in a run the grains parted in the sub-step just made, and their
 /// force ends with it as that of every contact that opens; in a specimen it is a mistake.
 enum class Lost { dropped, refused };
@@ -173,23 +157,11 @@ void fill(const Fixture& f, const std::vector<ListedPair>& listed, const std::ve
     pairs.j[p] = listed[p].j;
     pairs.image[p] = listed[p].image;
   }
-  pairs.row_i.resize(padded);
-  pairs.row_j.resize(padded);
-  for (std::size_t p = 0; p < padded; ++p) {
-    pairs.row_i[p] = pairs.i[p] * f.row_length();
-    pairs.row_j[p] = pairs.j[p] * f.row_length();
-  }
-  for (int k = 0; k < f.dimension(); ++k) {
-    pairs.image_number[k].resize(padded);
-    for (std::size_t p = 0; p < padded; ++p) pairs.image_number[k][p] = pairs.image[p][k];
-  }
   for (int k = 0; k < f.tangential_components(); ++k) {
     pairs.tangential[k].assign(padded, 0.0);
     if (f.contact.rolling) pairs.moment[k].assign(padded, 0.0);
   }
   if (f.law == KernelLaw::hertz_mindlin) pairs.root_overlap.assign(padded, 0.0);
-  pairs.force.assign(padded * force_row_length(f.shape), 0.0);
-  set_pair_parameters(f, pairs);
 
   std::size_t p = 0;
   for (const Carried& c : carried) {
@@ -202,15 +174,7 @@ void fill(const Fixture& f, const std::vector<ListedPair>& listed, const std::ve
                        "the positions");
   }
 
-  if (f.shape == Shape::disc) {
-    pairs.radius_i.assign(padded, 0.0);
-    pairs.radius_j.assign(padded, 0.0);
-    for (std::size_t q = 0; q < n; ++q) {
-      pairs.radius_i[q] = f.radius[listed[q].i];
-      pairs.radius_j[q] = f.radius[listed[q].j];
-    }
-  }
-  fill_gather_table(f.size(), force_row_length(f.shape), listed, pairs);
+  derive_pairs(f, pairs);
 }
 
 /// The key of a pair after images changed; a grain's own image is kept pointing forward, forces turning round with it.
@@ -281,34 +245,20 @@ void Assembly::set_velocity(const Fixture& f, std::size_t g, const Vector3& v, c
   }
 }
 
-void set_pair_parameters(const Fixture& f, PairTable& pairs) {
-  const std::size_t padded = pairs.padded();
-  const bool dashpot = f.damping.dashpot != Dashpot::none;
-  for (Buffer* b : {&pairs.kn, &pairs.kt, &pairs.friction}) b->assign(padded, 0.0);
-  if (f.contact.rolling)
-    for (Buffer* b : {&pairs.kr, &pairs.moment_cap}) b->assign(padded, 0.0);
-  if (dashpot) pairs.cn.assign(padded, 0.0);
-  for (std::size_t p = 0; p < pairs.listed; ++p) {
-    const auto i = pairs.i[p], j = pairs.j[p];
-    const PairParameters q = mix(f.contact, f.damping, f.materials[f.material[i]], f.radius[i], f.mass[i],
-                                 f.materials[f.material[j]], f.radius[j], f.mass[j]);
-    pairs.kn[p] = q.kn;
-    pairs.kt[p] = q.kt;
-    pairs.friction[p] = q.friction;
-    if (f.contact.rolling) {
-      pairs.kr[p] = q.kr;
-      pairs.moment_cap[p] = q.moment_cap;
-    }
-    if (dashpot) pairs.cn[p] = q.cn;
-  }
-}
-
-void open(const Specimen& s, Fixture& f, Assembly& a) {
-  check(s.contact, s.damping, s.materials);
-  check_options(s.solver);
-  check_cell(s);
-  check_grains(s);
-  const std::size_t n = s.grains.size(), padded = padded_to_lanes(n);
+void open(const Specimen& specimen, Fixture& f, Assembly& a) {
+  check(specimen.contact, specimen.damping, specimen.materials);
+  check_options(specimen.solver);
+  check_cell(specimen);
+  check_grains(specimen);
+  check_contacts(specimen);
+  const std::size_t n = specimen.grains.size(), padded = padded_to_lanes(n);
+  std::vector<std::int32_t> order = specimen.state.memory_order;
+  if (!order.empty() && !is_permutation(order, n))
+    refuse("specimen: the memory order of the state is no permutation of the " + std::to_string(n) +
+           " grains; leave it empty");
+  if (order.empty() && n >= least_ordered_grains) order = space_filling_order(specimen.cell, specimen.grains.position);
+  const Specimen arranged = order.empty() ? Specimen() : in_memory_order(specimen, order);
+  const Specimen& s = order.empty() ? specimen : arranged;
   f.shape = s.shape;
   f.materials = s.materials;
   f.contact = s.contact;
@@ -324,34 +274,29 @@ void open(const Specimen& s, Fixture& f, Assembly& a) {
   f.mean_radius = std::accumulate(f.radius.begin(), f.radius.end(), 0.0) / double(n);
   f.largest_skin = f.options.skin * f.mean_radius;
   f.min_height = f.options.min_height > 0 ? f.options.min_height : 2 * f.largest_radius;
-  f.mass.resize(n);
-  f.inertia.resize(n);
-
+  std::vector<double> mass(n), inertia(n);
   a.cell = s.cell;
   a.state = s.state;
+  a.state.memory_order = std::move(order);
   if (!(a.state.list_skin > 0 && a.state.list_skin < f.largest_skin)) a.state.list_skin = f.largest_skin;
   a.rows.assign(padded * f.row_length(), 0.0);
   for (Buffer* b : {&a.mass, &a.inverse_mass, &a.inverse_inertia}) b->assign(padded, 0.0);
   for (std::size_t g = 0; g < n; ++g) {
     const Material& m = f.materials[f.material[g]];
-    f.mass[g] = m.density * grain_volume(f.shape, f.radius[g], s.cell.lattice(2, 2));
-    f.inertia[g] = moment_of_inertia(f.shape, f.mass[g], f.radius[g]);
+    mass[g] = m.density * grain_volume(f.shape, f.radius[g], s.cell.lattice(2, 2));
+    inertia[g] = moment_of_inertia(f.shape, mass[g], f.radius[g]);
     double* row = a.rows.data() + g * f.row_length();
     for (int k = 0; k < f.dimension(); ++k) row[k] = s.grains.position[g][k];
     row[f.shape == Shape::disc ? 6 : 3] = f.radius[g];
+    if (f.shape == Shape::sphere) row[11] = f.radius[g];
     a.set_velocity(f, g, s.grains.velocity[g], s.grains.spin[g]);
   }
+  f.mass = std::move(mass);
+  f.inertia = std::move(inertia);
 
   std::vector<Carried> carried;
-  for (const Contact& c : s.contacts) {
-    if (c.i < 0 || c.j < c.i || std::size_t(c.j) >= n)
-      refuse("specimen: contact of grains " + std::to_string(c.i) + " and " + std::to_string(c.j) +
-             "; indices must be 0 <= i <= j < " + std::to_string(n));
-    if (!c.tangential_force.allFinite() || !c.rolling_moment.allFinite() || !std::isfinite(c.last_root_overlap))
-      refuse("specimen: contact of grains " + std::to_string(f.id[c.i]) + " and " + std::to_string(f.id[c.j]) +
-             ": its history is not finite");
+  for (const Contact& c : s.contacts)
     carried.push_back({{c.i, c.j, c.image}, c.tangential_force, c.rolling_moment, c.last_root_overlap});
-  }
   const auto by_key = [](const Carried& x, const Carried& y) { return x.key < y.key; };
   if (!std::is_sorted(carried.begin(), carried.end(), by_key)) std::sort(carried.begin(), carried.end(), by_key);
   fill(f, list_pairs(a.cell, a.rows.data(), f.row_length(), f.radius, a.state.list_skin), carried, Lost::refused,
@@ -383,7 +328,7 @@ Specimen close(const Fixture& f, const Assembly& a) {
   }
   for (const Carried& c : history_of(f, a.pairs))
     s.contacts.push_back({c.key.i, c.key.j, c.key.image, c.tangential, c.moment, c.root_overlap});
-  return s;
+  return in_id_order(std::move(s), a.state.memory_order);
 }
 
 void check_height(const Fixture& f, const Cell& cell) {
@@ -448,7 +393,8 @@ Reduction rebuild(const Fixture& f, Assembly& a) {
   }
   const auto by_key = [](const Carried& x, const Carried& y) { return x.key < y.key; };
   if (!std::is_sorted(carried.begin(), carried.end(), by_key)) std::sort(carried.begin(), carried.end(), by_key);
-  fill(f, list_pairs(a.cell, a.rows.data(), f.row_length(), f.radius, a.state.list_skin), carried, Lost::dropped,
+  Workers* team = f.size() >= least_shared_grains ? f.team : nullptr;
+  fill(f, list_pairs(a.cell, a.rows.data(), f.row_length(), f.radius, a.state.list_skin, team), carried, Lost::dropped,
        a.pairs);
   a.state.has_reference = true;
   a.state.list_lattice = a.cell.lattice;
@@ -522,9 +468,13 @@ PairArrays arrays_of(PairTable& t) {
 }
 
 GrainArrays arrays_of(Assembly& a) {
-  return {
-      a.rows.data(),       a.mass.data(), a.inverse_mass.data(), a.inverse_inertia.data(), a.pairs.slot_begin.data(),
-      a.pairs.slots.data()};
+  return {a.rows.data(),
+          a.mass.data(),
+          a.inverse_mass.data(),
+          a.inverse_inertia.data(),
+          a.pairs.slot_begin.data(),
+          a.pairs.slots.data(),
+          a.pairs.tasks.data()};
 }
 
 }  // namespace rvelab

@@ -10,6 +10,7 @@
 #include "rvelab/solver/neighbour_list.hpp"
 #include "rvelab/solver/scene.hpp"
 #include "rvelab/solver/specimen.hpp"
+#include "rvelab/solver/workers.hpp"
 
 namespace rvelab {
 
@@ -20,9 +21,9 @@ struct Fixture {
   ContactModel contact;
   Damping damping;
   SolverOptions options;
-  std::vector<std::int64_t> id;
-  std::vector<std::int32_t> material;
-  std::vector<double> radius, mass, inertia;                        ///< m, kg, kg m^2 (physical)
+  SharedArray<std::int64_t> id;
+  SharedArray<std::int32_t> material;
+  SharedArray<double> radius, mass, inertia;                        ///< m, kg, kg m^2 (physical)
   double mean_radius = 0, largest_radius = 0, smallest_radius = 0;  ///< m
   double largest_skin = 0;                                          ///< m
   double min_height = 0;                                            ///< m
@@ -30,6 +31,7 @@ struct Fixture {
   SceneKernels kernels;
   KernelLaw law = KernelLaw::linear;
   const std::atomic<bool>* stop = nullptr;  ///< true: advance throws Interrupted (Rve::watch)
+  Workers* team = nullptr;                  ///< shares the steps of a large assembly (Rve::share)
 
   std::size_t size() const { return id.size(); }
   int dimension() const { return dimension_of(shape); }
@@ -49,6 +51,7 @@ struct PairTable {
   Buffer tangential[3], moment[3], root_overlap, force;
   Buffer radius_i, radius_j;                    ///< 2D
   std::vector<std::int32_t> slot_begin, slots;  ///< gather table (scene.hpp)
+  std::vector<std::uint8_t> tasks;
 
   std::size_t padded() const { return i.size(); }
 };
@@ -67,7 +70,11 @@ struct Assembly {
   void set_velocity(const Fixture& f, std::size_t g, const Vector3& v, const Vector3& w);
 };
 
-/// Checks a specimen and opens it. Throws InputError.
+/// Room for n grains or pairs in whole blocks of lanes, at least one padding entry.
+constexpr std::size_t padded_to_lanes(std::size_t n) { return (n / 8 + 1) * 8; }
+
+/// Checks a specimen and opens it; from some size on its grains are kept in an order of their own (memory_order.hpp),
+/// in which every index of Fixture and Assembly counts. Throws InputError.
 void open(const Specimen& specimen, Fixture& fixture, Assembly& assembly);
 Specimen close(const Fixture& fixture, const Assembly& assembly);
 
@@ -80,6 +87,10 @@ Reduction rebuild(const Fixture& fixture, Assembly& assembly);
 
 /// Whether a pair that is not listed might touch by now. May tighten the bound that the state keeps on displacements.
 bool list_is_stale(const Fixture& fixture, Assembly& assembly);
+
+/// What follows from list, histories and fixture, made anew: parameters, indices as the kernels want them, gather
+/// table; force rows are zero.
+void derive_pairs(const Fixture& fixture, PairTable& pairs);
 
 /// Pair parameters from the materials, for all listed pairs (after listing, or when materials change).
 void set_pair_parameters(const Fixture& fixture, PairTable& pairs);

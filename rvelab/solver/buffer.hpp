@@ -1,8 +1,10 @@
-// Arrays of doubles on cache-line boundaries, so that no vector load straddles two lines.
+// Arrays of doubles on cache-line boundaries, so that no vector load straddles two lines; arrays that copies share.
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <new>
+#include <utility>
 #include <vector>
 
 namespace rvelab {
@@ -19,5 +21,24 @@ struct CacheLineAllocator {
 };
 
 using Buffer = std::vector<double, CacheLineAllocator<double>>;
+
+/// An array that is set as a whole and shared by all copies: a thousand cells of one specimen hold its radii once.
+template <class T>
+class SharedArray {
+ public:
+  SharedArray() : values_(std::make_shared<const std::vector<T>>()) {}
+  SharedArray& operator=(std::vector<T> values) {
+    values_ = std::make_shared<const std::vector<T>>(std::move(values));
+    return *this;
+  }
+  operator const std::vector<T>&() const { return *values_; }
+  const T& operator[](std::size_t k) const { return (*values_)[k]; }
+  std::size_t size() const { return values_->size(); }
+  auto begin() const { return values_->begin(); }
+  auto end() const { return values_->end(); }
+
+ private:
+  std::shared_ptr<const std::vector<T>> values_;
+};
 
 }  // namespace rvelab

@@ -10,41 +10,63 @@
 namespace rvelab {
 namespace {
 
-/// What the first pass leaves for the second.
+/// What the passes hand on.
 struct DiscScratch {
-  ScratchColumn nx, ny, length, inverse_length;
-  ScratchColumn vx, vy;               ///< velocity of j's centre less that of i's image, over the step
+  ScratchColumn dx, dy, du, dv;       ///< place and velocity of j less those of i
   ScratchColumn spins, radius_spins;  ///< w_i + w_j and r_i w_i + r_j w_j
+  ScratchColumn nx, ny, length;
+  ScratchColumn along, opening;  ///< relative velocity of the centres over the step, along t and along n
 };
 
+/// Grain rows to columns. Shuffles cost the same at every width, so this pass keeps to four lanes.
 template <class T>
-inline __attribute__((always_inline)) void disc_places(const StepConstants& c, const PairArrays& p, const double* rows,
-                                                       long first, long count, DiscScratch& out) {
-  constexpr int W = T::W;
+inline __attribute__((always_inline)) void disc_rows(const PairArrays& p, const double* rows, long first, long count,
+                                                     DiscScratch& out) {
+  constexpr int W = T::W < 4 ? T::W : 4;
   using V = typename Lanes<W>::V;
-  const double half_dt = 0.5 * c.dt;
   for (long k = 0; k < count; k += W) {
-    const long at = first + k;
-    const std::int32_t *i = p.row_i + at, *j = p.row_j + at;
+    const std::int32_t *i = p.row_i + first + k, *j = p.row_j + first + k;
     V d[4];
     gather_differences<W>(rows, i, j, d);
-    const V image_x = load_as<V>(p.image[0] + at), image_y = load_as<V>(p.image[1] + at);
-    const V bx = d[0] + (c.lattice.xx * image_x + c.lattice.xy * image_y);
-    const V by = d[1] + c.lattice.yy * image_y;
-    const V length = square_root(bx * bx + by * by);
-    const V inverse = 1.0 / length;
-    store_as(out.nx.at + k, bx * inverse);
-    store_as(out.ny.at + k, by * inverse);
-    store_as(out.length.at + k, length);
-    if constexpr (T::slip == Slip::full_radius_ratcheting) store_as(out.inverse_length.at + k, inverse);
+    store_as(out.dx.at + k, d[0]);
+    store_as(out.dy.at + k, d[1]);
     if constexpr (T::Advance || T::Dashpot) {
-      const V px = bx - half_dt * d[2], py = by - half_dt * d[3];
-      store_as(out.vx.at + k, d[2] + (c.rate.xx * px + c.rate.xy * py));
-      store_as(out.vy.at + k, d[3] + c.rate.yy * py);
+      store_as(out.du.at + k, d[2]);
+      store_as(out.dv.at + k, d[3]);
       V s[2];
       gather_spins<W>(rows, i, j, s);
       store_as(out.spins.at + k, s[0]);
       store_as(out.radius_spins.at + k, s[1]);
+    }
+  }
+}
+
+/// Branch, normal and the motion of the centres.
+template <class T>
+inline __attribute__((always_inline)) void disc_places(const StepConstants& c, const PairArrays& p, long first,
+                                                       long count, DiscScratch& s) {
+  using V = typename Lanes<T::W>::V;
+  const double half_dt = 0.5 * c.dt;
+  for (long k = 0; k < count; k += T::W) {
+    const long at = first + k;
+    const V image_x = load_as<V>(p.image[0] + at), image_y = load_as<V>(p.image[1] + at);
+    const V bx = load_as<V>(s.dx.at + k) + (c.lattice.xx * image_x + c.lattice.xy * image_y);
+    const V by = load_as<V>(s.dy.at + k) + c.lattice.yy * image_y;
+    const V length = square_root(bx * bx + by * by);
+    const V inverse = 1.0 / length;
+    const V nx = bx * inverse, ny = by * inverse;
+    store_as(s.nx.at + k, nx);
+    store_as(s.ny.at + k, ny);
+    store_as(s.length.at + k, length);
+    if constexpr (T::Advance || T::Dashpot) {
+      const V du = load_as<V>(s.du.at + k), dv = load_as<V>(s.dv.at + k);
+      const V px = bx - half_dt * du, py = by - half_dt * dv;
+      const V vx = du + (c.rate.xx * px + c.rate.xy * py), vy = dv + c.rate.yy * py;
+      V along = nx * vy - ny * vx;
+      if constexpr (T::slip == Slip::full_radius_ratcheting)
+        along = along * ((load_as<V>(p.radius_i + at) + load_as<V>(p.radius_j + at)) * inverse);
+      store_as(s.along.at + k, along);
+      if constexpr (T::Dashpot) store_as(s.opening.at + k, nx * vx + ny * vy);
     }
   }
 }
@@ -54,8 +76,7 @@ inline __attribute__((always_inline)) void disc_forces(const StepConstants& c, c
                                                        long first, long count, const DiscScratch& in,
                                                        Dissipation* dissipation) {
   constexpr int W = T::W;
-  using L = Lanes<W>;
-  using V = typename L::V;
+  using V = typename Lanes<W>::V;
   for (long k = 0; k < count; k += W) {
     const long at = first + k;
     const V nx = load_as<V>(in.nx.at + k), ny = load_as<V>(in.ny.at + k);
@@ -71,16 +92,12 @@ inline __attribute__((always_inline)) void disc_forces(const StepConstants& c, c
     const V half_overlap = 0.5 * overlap;
     V slip_rate = zero, c_normal = zero, opening = zero;
     if constexpr (T::Advance || T::Dashpot) {
-      const V vx = load_as<V>(in.vx.at + k), vy = load_as<V>(in.vy.at + k);
-      V along = nx * vy - ny * vx;
-      if constexpr (T::slip == Slip::full_radius_ratcheting)
-        along = along * (radii * load_as<V>(in.inverse_length.at + k));
-      slip_rate = along - (load_as<V>(in.radius_spins.at + k) + c.spin[2] * radii);
+      slip_rate = load_as<V>(in.along.at + k) - (load_as<V>(in.radius_spins.at + k) + c.spin[2] * radii);
       if constexpr (T::slip == Slip::consistent)
         slip_rate = slip_rate + half_overlap * (load_as<V>(in.spins.at + k) + 2.0 * c.spin[2]);
-      opening = nx * vx + ny * vy;
     }
     if constexpr (T::Dashpot) {
+      opening = load_as<V>(in.opening.at + k);
       c_normal = dashpot_coefficient(load_as<V>(p.cn + at), root, c.dashpot_quarters, SquareRoot{});
       normal = normal - c_normal * opening;
       if (c.no_tension) normal = (normal > 0.0) ? normal : zero;
@@ -92,18 +109,17 @@ inline __attribute__((always_inline)) void disc_forces(const StepConstants& c, c
     [[maybe_unused]] const V before = tangential;
     [[maybe_unused]] V trial = tangential;
     if constexpr (T::Advance) {
-      const V magnitude = (normal < 0.0) ? -normal : normal;
-      const V limit = load_as<V>(p.friction + at) * magnitude;
+      const V limit = load_as<V>(p.friction + at) * magnitude_of(normal);
       if constexpr (Law::stores_root_overlap) tangential = tangential * Law::carried(root, last_root, c.unload_rescale);
       tangential = tangential - kt * (slip_rate * c.dt);
       trial = tangential;
       if constexpr (T::Dashpot) {
         const V viscous = (c.tangential_ratio * c_normal) * slip_rate;
         const V total = tangential - viscous;
-        const V capped = (total > limit) ? limit : ((total < -limit) ? -limit : total);
+        const V capped = clamped(total, limit);
         tangential = ((total > limit) | (total < -limit)) ? capped + viscous : tangential;
       } else {
-        tangential = (tangential > limit) ? limit : ((tangential < -limit) ? -limit : tangential);
+        tangential = clamped(tangential, limit);
       }
       tangential = touching ? tangential : zero;
       store_as(p.tangential[0] + at, tangential);
@@ -154,11 +170,13 @@ inline __attribute__((always_inline)) void disc_forces(const StepConstants& c, c
       }
     }
 
-    typename L::Quad out[W];
-    const V columns[4] = {nx * normal - ny * total, ny * normal + nx * total,
-                          moment - (radius_j - half_overlap) * total, -moment - (radius_i - half_overlap) * total};
-    L::untranspose(columns, out);
-    for (int lane = 0; lane < W; ++lane) store_as(p.force + 4 * (at + lane), out[lane]);
+    V torque_j = (half_overlap - radius_j) * total, torque_i = (half_overlap - radius_i) * total;
+    if constexpr (T::Rolling) {
+      torque_j = torque_j + moment;
+      torque_i = torque_i - moment;
+    }
+    const V columns[4] = {nx * normal - ny * total, ny * normal + nx * total, torque_j, torque_i};
+    rows_of<W>(columns, p.force + 4 * at, 4);
   }
 }
 
@@ -172,7 +190,8 @@ void disc_pairs(const StepConstants& constants, const PairArrays& arrays, const 
   DiscScratch scratch;
   for (long first = begin; first < end; first += chunk_pairs) {
     const long count = end - first < chunk_pairs ? end - first : chunk_pairs;
-    disc_places<T>(c, p, rows, first, count, scratch);
+    disc_rows<T>(p, rows, first, count, scratch);
+    disc_places<T>(c, p, first, count, scratch);
     disc_forces<Law, T>(c, p, rows, first, count, scratch, dissipation);
   }
 }

@@ -46,129 +46,178 @@ inline double largest_of(V v) {
   return largest;
 }
 
-/// Grains of one chunk: their resultants stay in the first-level cache between gather and integration.
-constexpr long chunk_grains = 64;
+/// What the passes over a chunk of discs hand on; the number of lanes is chosen for each pass by itself.
+struct DiscColumns {
+  ScratchColumn fx, fy, torque;  ///< resultants, in the end damped
+  ScratchColumn x, y, u, v, w;
+};
 
-/// A row {x, y, z, 0} or, of discs, {fx, fy, T, -} for every grain of a chunk.
-struct alignas(64) ScratchRows {
-  double at[4 * chunk_grains];
+/// A row of four doubles for every task of a chunk (GrainArrays): grains as j, then grains as i.
+struct alignas(64) TaskRows {
+  double at[2][4 * chunk_grains];
+  inline __attribute__((always_inline)) double* of(int task) { return at[0] + 4 * task; }
 };
 
 /// Resultants of a chunk of discs: sum of the rows of pairs in which they are j, less forces and plus T_i of those in
 /// which they are i.
 template <int W>
 inline __attribute__((always_inline)) void gather_disc_forces(const GrainArrays& g, const PairArrays& p, long first,
-                                                              long count, ScratchRows& resultants) {
+                                                              long count, DiscColumns& out) {
   using L = Lanes<W>;
   using Quad = typename L::Quad;
-  const Quad sign = quad<W>(-1.0, -1.0, 1.0, 1.0);
-  for (long block = 0; block < count; block += 4) {
-    const long b = (first + block) / 4;
-    const std::int32_t* slot = g.slots + 8L * g.slot_begin[b];
-    const std::int32_t* last = g.slots + 8L * g.slot_begin[b + 1];
-    Quad in[4], out[4];
-    for (int k = 0; k < 4; ++k) in[k] = out[k] = L::broadcast(0.0);
-    for (; slot != last; slot += 8)
+  using V = typename L::V;
+  TaskRows sums;
+  const std::int32_t* slot = g.slots + 4L * g.slot_begin[first / 2];
+  for (long block = first / 2; block < (first + count) / 2; ++block) {
+    const std::int32_t* last = g.slots + 4L * g.slot_begin[block + 1];
+    Quad sum[4];
+    for (int k = 0; k < 4; ++k) sum[k] = L::broadcast(0.0);
+    for (; slot != last; slot += 4)
 #pragma GCC unroll 4
-      for (int k = 0; k < 4; ++k) {
-        in[k] = L::add(in[k], quad_at<W>(p.force + slot[k]));
-        out[k] = L::add(out[k], quad_at<W>(p.force + slot[4 + k]));
-      }
-    for (int k = 0; k < 4; ++k)
-      store_as(resultants.at + 4 * (block + k), L::add(in[k], L::mul(sign, L::swap_last(out[k]))));
+      for (int k = 0; k < 4; ++k) sum[k] = L::add(sum[k], quad_at<W>(p.force + slot[k]));
+    for (int k = 0; k < 4; ++k) store_as(sums.of(g.tasks[4 * block + k]), sum[k]);
+  }
+  for (long k = 0; k < count; k += W) {
+    V in[4], back[4];
+    columns_of<W>(sums.at[0] + 4 * k, 4, in);
+    columns_of<W>(sums.at[1] + 4 * k, 4, back);
+    store_as(out.fx.at + k, in[0] - back[0]);
+    store_as(out.fy.at + k, in[1] - back[1]);
+    store_as(out.torque.at + k, in[2] + back[3]);
   }
 }
 
-/// Discs in 2D.
+/// Damps the resultants.
+template <class T>
+inline __attribute__((always_inline)) void damp_discs(const StepConstants& c, const GrainArrays& g, long first,
+                                                      long count, DiscColumns& s, PartialSums<T::W>& lost_locally,
+                                                      PartialSums<T::W>& lost_globally) {
+  using V = typename Lanes<T::W>::V;
+  const double half_dt = 0.5 * c.dt;
+  for (long k = 0; k < count; k += T::W) {
+    const long at = first + k;
+    V fx = load_as<V>(s.fx.at + k), fy = load_as<V>(s.fy.at + k), torque = load_as<V>(s.torque.at + k);
+    const V u = load_as<V>(s.u.at + k) - c.mean_velocity[0], v = load_as<V>(s.v.at + k) - c.mean_velocity[1];
+    if constexpr (T::Dynamic) {
+      if (c.global_viscous != 0.0) {
+        fx = fx - c.global_viscous * u;
+        fy = fy - c.global_viscous * v;
+        if (c.losses) lost_globally.add(at, c.dt * c.global_viscous * (u * u + v * v));
+      }
+    }
+    if constexpr (T::damping != KernelDamping::none) {
+      [[maybe_unused]] const V free_x = fx, free_y = fy, free_torque = torque;
+      const V inverse_mass = load_as<V>(g.inverse_mass + at), inverse_inertia = load_as<V>(g.inverse_inertia + at);
+      const V px = u + half_dt * (fx * inverse_mass), py = v + half_dt * (fy * inverse_mass);
+      const V pw = load_as<V>(s.w.at + k) + half_dt * (torque * inverse_inertia);
+      if constexpr (T::damping == KernelDamping::vector) {
+        const V factor = local_damping_factor(c.local_damping, fx * fx + fy * fy, px * px + py * py, SquareRoot{});
+        fx = fx - factor * px;
+        fy = fy - factor * py;
+      } else {
+        fx = damped_component(c.local_damping, fx, px);
+        fy = damped_component(c.local_damping, fy, py);
+      }
+      torque = damped_component(c.local_damping, torque, pw);
+      if (T::Dynamic && c.losses)
+        lost_locally.add(at, c.dt * ((free_x - fx) * px + (free_y - fy) * py + (free_torque - torque) * pw));
+      store_as(s.torque.at + k, torque);
+    }
+    store_as(s.fx.at + k, fx);
+    store_as(s.fy.at + k, fy);
+  }
+}
+
+/// Velocities and places after the step.
+template <class T>
+inline __attribute__((always_inline)) void move_discs(const StepConstants& c, const GrainArrays& g, long first,
+                                                      long count, DiscColumns& s, PartialSums<T::W>* momentum,
+                                                      typename Lanes<T::W>::V& fastest) {
+  using V = typename Lanes<T::W>::V;
+  for (long k = 0; k < count; k += T::W) {
+    const long at = first + k;
+    const V inverse_mass = load_as<V>(g.inverse_mass + at), inverse_inertia = load_as<V>(g.inverse_inertia + at);
+    V u = load_as<V>(s.u.at + k) - c.mean_velocity[0], v = load_as<V>(s.v.at + k) - c.mean_velocity[1];
+    V w = load_as<V>(s.w.at + k);
+    const V ax = c.dt * (load_as<V>(s.fx.at + k) * inverse_mass), ay = c.dt * (load_as<V>(s.fy.at + k) * inverse_mass);
+    if constexpr (T::Dynamic) {
+      const V pu = (c.momentum_map[0] * u + c.momentum_map[1] * v) + (c.force_map[0] * ax + c.force_map[1] * ay);
+      const V pv = (c.momentum_map[3] * u + c.momentum_map[4] * v) + (c.force_map[3] * ax + c.force_map[4] * ay);
+      u = pu;
+      v = pv;
+      w = w + c.spin_shift[2];
+    } else {
+      u = u + ax;
+      v = v + ay;
+    }
+    w = w + c.dt * (load_as<V>(s.torque.at + k) * inverse_inertia);
+    const V mass = load_as<V>(g.mass + at);
+    momentum[0].add(at, mass * u);
+    momentum[1].add(at, mass * v);
+    const V squared = u * u + v * v;
+    fastest = (squared > fastest) ? squared : fastest;
+    const V x = load_as<V>(s.x.at + k), y = load_as<V>(s.y.at + k);
+    store_as(s.x.at + k, (c.map.xx * x + c.map.xy * y) + (c.velocity_map.xx * u + c.velocity_map.xy * v));
+    store_as(s.y.at + k, c.map.yy * y + c.velocity_map.yy * v);
+    store_as(s.u.at + k, u);
+    store_as(s.v.at + k, v);
+    store_as(s.w.at + k, w);
+  }
+}
+
+/// Grain rows to columns and back; shuffles cost the same at every width, so these keep to four lanes.
+template <int W>
+inline __attribute__((always_inline)) void disc_rows_to_columns(const double* rows, long first, long count,
+                                                                DiscColumns& s) {
+  using V = typename Lanes<W>::V;
+  for (long k = 0; k < count; k += W) {
+    const double* row = rows + 8 * (first + k);
+    V a[4];
+    columns_of<W>(row, 8, a);
+    store_as(s.x.at + k, a[0]);
+    store_as(s.y.at + k, a[1]);
+    store_as(s.u.at + k, a[2]);
+    store_as(s.v.at + k, a[3]);
+    for (int lane = 0; lane < W; ++lane) s.w.at[k + lane] = row[8 * lane + 4];
+  }
+}
+template <int W>
+inline __attribute__((always_inline)) void disc_columns_to_rows(const DiscColumns& s, double* rows, long first,
+                                                                long count) {
+  using V = typename Lanes<W>::V;
+  for (long k = 0; k < count; k += W) {
+    double* row = rows + 8 * (first + k);
+    const V a[4] = {load_as<V>(s.x.at + k), load_as<V>(s.y.at + k), load_as<V>(s.u.at + k), load_as<V>(s.v.at + k)};
+    rows_of<W>(a, row, 8);
+    for (int lane = 0; lane < W; ++lane) {
+      const double w = s.w.at[k + lane];
+      store_as(row + 8 * lane + 4, V2{w, row[8 * lane + 6] * w});
+    }
+  }
+}
+
+/// Discs in 2D. A chunk at a time in passes, as the pair loops (kernel_pairs.hpp).
 template <class T>
 void disc_grains(const StepConstants& constants, const GrainArrays& grains, const PairArrays& pairs, long begin,
                  long end, StepSums* sums) {
-  constexpr int W = T::W;
-  using L = Lanes<W>;
-  using V = typename L::V;
-  using Quad = typename L::Quad;
+  constexpr int W = T::W, narrow = W < 4 ? W : 4;
   // Copies that no store can change (kernel_pairs.hpp).
   const StepConstants c = constants;
   const GrainArrays g = grains;
   const PairArrays p = pairs;
-  const double half_dt = 0.5 * c.dt;
-  PartialSums<W> momentum_x, momentum_y, lost_locally, lost_globally;
-  V fastest = V{};
-  ScratchRows resultants;
+  PartialSums<W> momentum[2], lost_locally, lost_globally;
+  typename Lanes<W>::V fastest = {};
+  DiscColumns s;
   for (long chunk = begin; chunk < end; chunk += chunk_grains) {
     const long count = end - chunk < chunk_grains ? end - chunk : chunk_grains;
-    gather_disc_forces<W>(g, p, chunk, count, resultants);
-    for (long k = 0; k < count; k += W) {
-      const long at = chunk + k;
-      Quad first[W], second[W], resultant[W];
-      for (int lane = 0; lane < W; ++lane) {
-        first[lane] = quad_at<W>(g.rows + 8 * (at + lane));
-        second[lane] = quad_at<W>(g.rows + 8 * (at + lane) + 4);
-        resultant[lane] = quad_at<W>(resultants.at + 4 * (k + lane));
-      }
-      V f[4], a[4], s[4];
-      L::transpose(resultant, f);
-      L::transpose(first, a);
-      L::transpose(second, s);
-      V fx = f[0], fy = f[1], torque = f[2];
-      const V inverse_mass = load_as<V>(g.inverse_mass + at), inverse_inertia = load_as<V>(g.inverse_inertia + at);
-      V u = a[2] - c.mean_velocity[0], v = a[3] - c.mean_velocity[1], w = s[0];
-      if constexpr (T::Dynamic) {
-        if (c.global_viscous != 0.0) {
-          fx = fx - c.global_viscous * u;
-          fy = fy - c.global_viscous * v;
-          lost_globally.add(at, c.dt * c.global_viscous * (u * u + v * v));
-        }
-      }
-      [[maybe_unused]] const V free_x = fx, free_y = fy, free_torque = torque;
-      if constexpr (T::damping != KernelDamping::none) {
-        const V px = u + half_dt * (fx * inverse_mass), py = v + half_dt * (fy * inverse_mass);
-        const V pw = w + half_dt * (torque * inverse_inertia);
-        if constexpr (T::damping == KernelDamping::vector) {
-          const V factor = local_damping_factor(c.local_damping, fx * fx + fy * fy, px * px + py * py, SquareRoot{});
-          fx = fx - factor * px;
-          fy = fy - factor * py;
-        } else {
-          fx = damped_component(c.local_damping, fx, px);
-          fy = damped_component(c.local_damping, fy, py);
-        }
-        torque = damped_component(c.local_damping, torque, pw);
-        if constexpr (T::Dynamic)
-          lost_locally.add(at, c.dt * ((free_x - fx) * px + (free_y - fy) * py + (free_torque - torque) * pw));
-      }
-      const V ax = c.dt * (fx * inverse_mass), ay = c.dt * (fy * inverse_mass);
-      if constexpr (T::Dynamic) {
-        const V pu = (c.momentum_map[0] * u + c.momentum_map[1] * v) + (c.force_map[0] * ax + c.force_map[1] * ay);
-        const V pv = (c.momentum_map[3] * u + c.momentum_map[4] * v) + (c.force_map[3] * ax + c.force_map[4] * ay);
-        u = pu;
-        v = pv;
-        w = w + c.spin_shift[2];
-      } else {
-        u = u + ax;
-        v = v + ay;
-      }
-      w = w + c.dt * (torque * inverse_inertia);
-      const V mass = load_as<V>(g.mass + at);
-      momentum_x.add(at, mass * u);
-      momentum_y.add(at, mass * v);
-      const V squared = u * u + v * v;
-      fastest = (squared > fastest) ? squared : fastest;
-      a[0] = (c.map.xx * a[0] + c.map.xy * a[1]) + (c.velocity_map.xx * u + c.velocity_map.xy * v);
-      a[1] = c.map.yy * a[1] + c.velocity_map.yy * v;
-      a[2] = u;
-      a[3] = v;
-      s[0] = w;
-      s[1] = s[2] * w;
-      L::untranspose(a, first);
-      L::untranspose(s, second);
-      for (int lane = 0; lane < W; ++lane) {
-        store_as(g.rows + 8 * (at + lane), first[lane]);
-        store_as(g.rows + 8 * (at + lane) + 4, second[lane]);
-      }
-    }
+    disc_rows_to_columns<narrow>(g.rows, chunk, count, s);
+    gather_disc_forces<narrow>(g, p, chunk, count, s);
+    damp_discs<T>(c, g, chunk, count, s, lost_locally, lost_globally);
+    move_discs<T>(c, g, chunk, count, s, momentum, fastest);
+    disc_columns_to_rows<narrow>(s, g.rows, chunk, count);
   }
-  sums->momentum[0] = momentum_x.total();
-  sums->momentum[1] = momentum_y.total();
+  sums->momentum[0] = momentum[0].total();
+  sums->momentum[1] = momentum[1].total();
   sums->momentum[2] = 0;
   sums->largest_speed_squared = largest_of(fastest);
   sums->local_damping = lost_locally.total();
@@ -180,43 +229,174 @@ template <class V>
 inline __attribute__((always_inline)) V mapped(const double* row, V x, V y, V z) {
   return row[0] * x + (row[1] * y + row[2] * z);
 }
+template <class V>
+inline __attribute__((always_inline)) Triple<V> mapped(const double* rows, const Triple<V>& v) {
+  return {mapped(rows, v.x, v.y, v.z), mapped(rows + 3, v.x, v.y, v.z), mapped(rows + 6, v.x, v.y, v.z)};
+}
+
+/// What the passes over a chunk of spheres hand on.
+struct SphereColumns {
+  TripleColumn force, torque;  ///< resultants, in the end damped
+  TripleColumn place, velocity, spin;
+  ScratchColumn radius;
+};
 
 /// Resultant forces and torques of a chunk of spheres. Torque on either grain of a pair: -(r - delta/2) n x f_t; the
 /// moment of rolling is minus on i, plus on j.
 template <int W, bool Rolling>
 inline __attribute__((always_inline)) void gather_sphere_forces(const GrainArrays& g, const PairArrays& p, long first,
-                                                                long count, ScratchRows& forces, ScratchRows& torques) {
+                                                                long count, SphereColumns& s) {
   using L = Lanes<W>;
   using Quad = typename L::Quad;
-  for (long block = 0; block < count; block += 4) {
-    const long b = (first + block) / 4;
-    const std::int32_t* begin = g.slots + 8L * g.slot_begin[b];
-    const std::int32_t* last = g.slots + 8L * g.slot_begin[b + 1];
-    for (int k = 0; k < 4; ++k) {
-      // Both sides are summed apart: which pairs share a slot depends on the list, and must not show in the sum.
-      Quad in = L::broadcast(0.0), turn_in = in, arm_in = in, out = in, turn_out = in, arm_out = in;
-      double moment_in[4] = {}, moment_out[4] = {};
-      for (const std::int32_t* slot = begin + k; slot < last; slot += 8) {
-        const double *row_in = p.force + slot[0], *row_out = p.force + slot[4];
-        const Quad a = quad_at<W>(row_in + 4), c = quad_at<W>(row_out + 4);
-        in = L::add(in, quad_at<W>(row_in));
-        out = L::add(out, quad_at<W>(row_out));
-        turn_in = L::add(turn_in, a);
-        turn_out = L::add(turn_out, c);
-        arm_in = L::add(arm_in, L::mul(L::broadcast(row_in[3]), a));
-        arm_out = L::add(arm_out, L::mul(L::broadcast(row_out[3]), c));
+  using V = typename L::V;
+  TaskRows forces, torques;
+  const std::int32_t* slot = g.slots + 4L * g.slot_begin[first / 2];
+  for (long block = first / 2; block < (first + count) / 2; ++block) {
+    const std::int32_t* last = g.slots + 4L * g.slot_begin[block + 1];
+    Quad force[4], turn[4], arm[4];
+    for (int k = 0; k < 4; ++k) force[k] = turn[k] = arm[k] = L::broadcast(0.0);
+    double moment[4][4] = {};
+    for (; slot != last; slot += 4)
+#pragma GCC unroll 4
+      for (int k = 0; k < 4; ++k) {
+        const double* row = p.force + slot[k];
+        const Quad t = quad_at<W>(row + 4);
+        force[k] = L::add(force[k], quad_at<W>(row));
+        turn[k] = L::add(turn[k], t);
+        arm[k] = L::add(arm[k], L::mul(L::broadcast(row[3]), t));
         if constexpr (Rolling)
-          for (int m = 0; m < 3; ++m) {
-            moment_in[m] += p.moment[m][slot[0] / 8];
-            moment_out[m] += p.moment[m][slot[4] / 8];
-          }
+          for (int m = 0; m < 3; ++m) moment[k][m] += p.moment[m][slot[k] / 8];
       }
-      const double radius = g.rows[12 * (first + block + k) + 3];
-      store_as(forces.at + 4 * (block + k), L::sub(in, out));
-      Quad torque = L::sub(L::add(arm_in, arm_out), L::mul(L::broadcast(radius), L::add(turn_in, turn_out)));
-      if constexpr (Rolling) torque = L::add(torque, L::sub(quad_at<W>(moment_in), quad_at<W>(moment_out)));
-      store_as(torques.at + 4 * (block + k), torque);
+    for (int k = 0; k < 4; ++k) {
+      const int task = g.tasks[4 * block + k];
+      const double radius = g.rows[12 * (first + task % chunk_grains) + 3];
+      Quad torque = L::sub(arm[k], L::mul(L::broadcast(radius), turn[k]));
+      if constexpr (Rolling)
+        torque = L::add(torque, L::mul(L::broadcast(task < chunk_grains ? 1.0 : -1.0), quad_at<W>(moment[k])));
+      store_as(forces.of(task), force[k]);
+      store_as(torques.of(task), torque);
     }
+  }
+  for (long k = 0; k < count; k += W) {
+    V in[4], back[4];
+    columns_of<W>(forces.at[0] + 4 * k, 4, in);
+    columns_of<W>(forces.at[1] + 4 * k, 4, back);
+    s.force.store(k, Triple<V>{in[0] - back[0], in[1] - back[1], in[2] - back[2]});
+    columns_of<W>(torques.at[0] + 4 * k, 4, in);
+    columns_of<W>(torques.at[1] + 4 * k, 4, back);
+    s.torque.store(k, Triple<V>{in[0] + back[0], in[1] + back[1], in[2] + back[2]});
+  }
+}
+
+/// Damps the resultants.
+template <class T>
+inline __attribute__((always_inline)) void damp_spheres(const StepConstants& c, const GrainArrays& g, long first,
+                                                        long count, SphereColumns& s, PartialSums<T::W>& lost_locally,
+                                                        PartialSums<T::W>& lost_globally) {
+  using V = typename Lanes<T::W>::V;
+  const V half_dt = V{} + 0.5 * c.dt;
+  const Triple<V> mean = {V{} + c.mean_velocity[0], V{} + c.mean_velocity[1], V{} + c.mean_velocity[2]};
+  for (long k = 0; k < count; k += T::W) {
+    const long at = first + k;
+    const V one = V{} + 1.0;
+    const Triple<V> v = plus(s.velocity.load<V>(k), -one, mean);
+    Triple<V> f = s.force.load<V>(k);
+    if constexpr (T::Dynamic) {
+      if (c.global_viscous != 0.0) {
+        f = plus(f, V{} - c.global_viscous, v);
+        if (c.losses) lost_globally.add(at, c.dt * c.global_viscous * dot(v, v));
+      }
+    }
+    if constexpr (T::damping != KernelDamping::none) {
+      Triple<V> t = s.torque.load<V>(k);
+      [[maybe_unused]] const Triple<V> free_f = f, free_t = t;
+      const V inverse_mass = load_as<V>(g.inverse_mass + at), inverse_inertia = load_as<V>(g.inverse_inertia + at);
+      const Triple<V> pv = plus(v, half_dt, times(inverse_mass, f));
+      const Triple<V> pw = plus(s.spin.load<V>(k), half_dt, times(inverse_inertia, t));
+      if constexpr (T::damping == KernelDamping::vector) {
+        const V along = local_damping_factor(c.local_damping, dot(f, f), dot(pv, pv), SquareRoot{});
+        const V about = local_damping_factor(c.local_damping, dot(t, t), dot(pw, pw), SquareRoot{});
+        f = plus(f, -along, pv);
+        t = plus(t, -about, pw);
+      } else {
+        f = {damped_component(c.local_damping, f.x, pv.x), damped_component(c.local_damping, f.y, pv.y),
+             damped_component(c.local_damping, f.z, pv.z)};
+        t = {damped_component(c.local_damping, t.x, pw.x), damped_component(c.local_damping, t.y, pw.y),
+             damped_component(c.local_damping, t.z, pw.z)};
+      }
+      if (T::Dynamic && c.losses)
+        lost_locally.add(at, c.dt * (dot(plus(free_f, -one, f), pv) + dot(plus(free_t, -one, t), pw)));
+      s.torque.store(k, t);
+    }
+    s.force.store(k, f);
+  }
+}
+
+/// Velocities and places after the step.
+template <class T>
+inline __attribute__((always_inline)) void move_spheres(const StepConstants& c, const GrainArrays& g, long first,
+                                                        long count, SphereColumns& s, PartialSums<T::W>* momentum,
+                                                        typename Lanes<T::W>::V& fastest) {
+  using V = typename Lanes<T::W>::V;
+  const Triple<V> mean = {V{} + c.mean_velocity[0], V{} + c.mean_velocity[1], V{} + c.mean_velocity[2]};
+  const V dt = V{} + c.dt, one = V{} + 1.0;
+  for (long k = 0; k < count; k += T::W) {
+    const long at = first + k;
+    Triple<V> v = plus(s.velocity.load<V>(k), -one, mean), w = s.spin.load<V>(k);
+    const Triple<V> a = times(dt, times(load_as<V>(g.inverse_mass + at), s.force.load<V>(k)));
+    if constexpr (T::Dynamic) {
+      v = plus(mapped(c.momentum_map, v), one, mapped(c.force_map, a));
+      w = mapped(c.spin_map, w);
+      w = {w.x + c.spin_shift[0], w.y + c.spin_shift[1], w.z + c.spin_shift[2]};
+    } else {
+      v = plus(v, one, a);
+    }
+    w = plus(w, dt, times(load_as<V>(g.inverse_inertia + at), s.torque.load<V>(k)));
+    const V mass = load_as<V>(g.mass + at);
+    momentum[0].add(at, mass * v.x);
+    momentum[1].add(at, mass * v.y);
+    momentum[2].add(at, mass * v.z);
+    const V squared = dot(v, v);
+    fastest = (squared > fastest) ? squared : fastest;
+    const UpperTriangle &A = c.map, &B = c.velocity_map;
+    const Triple<V> x = s.place.load<V>(k);
+    s.place.store(k, Triple<V>{(A.xx * x.x + (A.xy * x.y + A.xz * x.z)) + (B.xx * v.x + (B.xy * v.y + B.xz * v.z)),
+                               (A.yy * x.y + A.yz * x.z) + (B.yy * v.y + B.yz * v.z), A.zz * x.z + B.zz * v.z});
+    s.velocity.store(k, v);
+    s.spin.store(k, w);
+  }
+}
+
+/// Grain rows to columns and back, on four lanes at most as those of discs.
+template <int W>
+inline __attribute__((always_inline)) void sphere_rows_to_columns(const double* rows, long first, long count,
+                                                                  SphereColumns& s) {
+  using V = typename Lanes<W>::V;
+  for (long k = 0; k < count; k += W) {
+    const double* row = rows + 12 * (first + k);
+    V a[4];
+    columns_of<W>(row, 12, a);
+    s.place.store(k, Triple<V>{a[0], a[1], a[2]});
+    store_as(s.radius.at + k, a[3]);
+    columns_of<W>(row + 4, 12, a);
+    s.velocity.store(k, Triple<V>{a[0], a[1], a[2]});
+    columns_of<W>(row + 8, 12, a);
+    s.spin.store(k, Triple<V>{a[0], a[1], a[2]});
+  }
+}
+template <int W>
+inline __attribute__((always_inline)) void sphere_columns_to_rows(const SphereColumns& s, double* rows, long first,
+                                                                  long count) {
+  using V = typename Lanes<W>::V;
+  for (long k = 0; k < count; k += W) {
+    double* row = rows + 12 * (first + k);
+    const V radius = load_as<V>(s.radius.at + k);
+    const Triple<V> x = s.place.load<V>(k), v = s.velocity.load<V>(k), w = s.spin.load<V>(k);
+    const V places[4] = {x.x, x.y, x.z, radius}, velocities[4] = {v.x, v.y, v.z, V{}};
+    const V spins[4] = {w.x, w.y, w.z, radius};
+    rows_of<W>(places, row, 12);
+    rows_of<W>(velocities, row + 4, 12);
+    rows_of<W>(spins, row + 8, 12);
   }
 }
 
@@ -224,106 +404,23 @@ inline __attribute__((always_inline)) void gather_sphere_forces(const GrainArray
 template <class T>
 void sphere_grains(const StepConstants& constants, const GrainArrays& grains, const PairArrays& pairs, long begin,
                    long end, StepSums* sums) {
-  constexpr int W = T::W;
-  using L = Lanes<W>;
-  using V = typename L::V;
-  using Quad = typename L::Quad;
+  constexpr int W = T::W, narrow = W < 4 ? W : 4;
   // Copies that no store can change (kernel_pairs.hpp).
   const StepConstants c = constants;
   const GrainArrays g = grains;
   const PairArrays p = pairs;
-  const double half_dt = 0.5 * c.dt;
-  PartialSums<W> momentum_x, momentum_y, momentum_z, lost_locally, lost_globally;
-  V fastest = V{};
-  ScratchRows forces, torques;
+  PartialSums<W> momentum[3], lost_locally, lost_globally;
+  typename Lanes<W>::V fastest = {};
+  SphereColumns s;
   for (long chunk = begin; chunk < end; chunk += chunk_grains) {
     const long count = end - chunk < chunk_grains ? end - chunk : chunk_grains;
-    gather_sphere_forces<W, T::Rolling>(g, p, chunk, count, forces, torques);
-    for (long place = 0; place < count; place += W) {
-      const long at = chunk + place;
-      Quad force[W], couple[W], rows[3][W];
-      for (int lane = 0; lane < W; ++lane) {
-        force[lane] = quad_at<W>(forces.at + 4 * (place + lane));
-        couple[lane] = quad_at<W>(torques.at + 4 * (place + lane));
-        for (int part = 0; part < 3; ++part) rows[part][lane] = quad_at<W>(g.rows + 12 * (at + lane) + 4 * part);
-      }
-      V f[4], t[4], x[4], v[4], w[4];
-      L::transpose(force, f);
-      L::transpose(couple, t);
-      L::transpose(rows[0], x);
-      L::transpose(rows[1], v);
-      L::transpose(rows[2], w);
-      const V inverse_mass = load_as<V>(g.inverse_mass + at), inverse_inertia = load_as<V>(g.inverse_inertia + at);
-      for (int k = 0; k < 3; ++k) v[k] = v[k] - c.mean_velocity[k];
-      if constexpr (T::Dynamic) {
-        if (c.global_viscous != 0.0) {
-          for (int k = 0; k < 3; ++k) f[k] = f[k] - c.global_viscous * v[k];
-          lost_globally.add(at, c.dt * c.global_viscous * (v[0] * v[0] + (v[1] * v[1] + v[2] * v[2])));
-        }
-      }
-      [[maybe_unused]] const V free_f[3] = {f[0], f[1], f[2]}, free_t[3] = {t[0], t[1], t[2]};
-      if constexpr (T::damping != KernelDamping::none) {
-        V pv[3], pw[3];
-        for (int k = 0; k < 3; ++k) {
-          pv[k] = v[k] + half_dt * (f[k] * inverse_mass);
-          pw[k] = w[k] + half_dt * (t[k] * inverse_inertia);
-        }
-        if constexpr (T::damping == KernelDamping::vector) {
-          const V along = local_damping_factor(c.local_damping, f[0] * f[0] + (f[1] * f[1] + f[2] * f[2]),
-                                               pv[0] * pv[0] + (pv[1] * pv[1] + pv[2] * pv[2]), SquareRoot{});
-          const V about = local_damping_factor(c.local_damping, t[0] * t[0] + (t[1] * t[1] + t[2] * t[2]),
-                                               pw[0] * pw[0] + (pw[1] * pw[1] + pw[2] * pw[2]), SquareRoot{});
-          for (int k = 0; k < 3; ++k) {
-            f[k] = f[k] - along * pv[k];
-            t[k] = t[k] - about * pw[k];
-          }
-        } else {
-          for (int k = 0; k < 3; ++k) {
-            f[k] = damped_component(c.local_damping, f[k], pv[k]);
-            t[k] = damped_component(c.local_damping, t[k], pw[k]);
-          }
-        }
-        if constexpr (T::Dynamic) {
-          V lost = V{};
-          for (int k = 0; k < 3; ++k) lost = lost + ((free_f[k] - f[k]) * pv[k] + (free_t[k] - t[k]) * pw[k]);
-          lost_locally.add(at, c.dt * lost);
-        }
-      }
-      const V a[3] = {c.dt * (f[0] * inverse_mass), c.dt * (f[1] * inverse_mass), c.dt * (f[2] * inverse_mass)};
-      if constexpr (T::Dynamic) {
-        V next[3], turned[3];
-        for (int k = 0; k < 3; ++k) {
-          next[k] = mapped(c.momentum_map + 3 * k, v[0], v[1], v[2]) + mapped(c.force_map + 3 * k, a[0], a[1], a[2]);
-          turned[k] = mapped(c.spin_map + 3 * k, w[0], w[1], w[2]) + c.spin_shift[k];
-        }
-        for (int k = 0; k < 3; ++k) {
-          v[k] = next[k];
-          w[k] = turned[k];
-        }
-      } else {
-        for (int k = 0; k < 3; ++k) v[k] = v[k] + a[k];
-      }
-      for (int k = 0; k < 3; ++k) w[k] = w[k] + c.dt * (t[k] * inverse_inertia);
-      const V mass = load_as<V>(g.mass + at);
-      momentum_x.add(at, mass * v[0]);
-      momentum_y.add(at, mass * v[1]);
-      momentum_z.add(at, mass * v[2]);
-      const V squared = v[0] * v[0] + (v[1] * v[1] + v[2] * v[2]);
-      fastest = (squared > fastest) ? squared : fastest;
-      const UpperTriangle &A = c.map, &B = c.velocity_map;
-      x[0] = (A.xx * x[0] + (A.xy * x[1] + A.xz * x[2])) + (B.xx * v[0] + (B.xy * v[1] + B.xz * v[2]));
-      x[1] = (A.yy * x[1] + A.yz * x[2]) + (B.yy * v[1] + B.yz * v[2]);
-      x[2] = A.zz * x[2] + B.zz * v[2];
-      L::untranspose(x, rows[0]);
-      L::untranspose(v, rows[1]);
-      L::untranspose(w, rows[2]);
-      for (int lane = 0; lane < W; ++lane)
-        for (int part = 0; part < 3; ++part) store_as(g.rows + 12 * (at + lane) + 4 * part, rows[part][lane]);
-    }
+    sphere_rows_to_columns<narrow>(g.rows, chunk, count, s);
+    gather_sphere_forces<narrow, T::Rolling>(g, p, chunk, count, s);
+    damp_spheres<T>(c, g, chunk, count, s, lost_locally, lost_globally);
+    move_spheres<T>(c, g, chunk, count, s, momentum, fastest);
+    sphere_columns_to_rows<narrow>(s, g.rows, chunk, count);
   }
-  sums->momentum[0] = momentum_x.total();
-  sums->momentum[1] = momentum_y.total();
-  sums->momentum[2] = momentum_z.total();
+  for (int k = 0; k < 3; ++k) sums->momentum[k] = momentum[k].total();
   sums->largest_speed_squared = largest_of(fastest);
   sums->local_damping = lost_locally.total();
   sums->global_damping = lost_globally.total();

@@ -101,15 +101,46 @@ inline __attribute__((always_inline)) typename Lanes<W>::V gather_spin_differenc
 /// Pairs of one chunk: the scratch of all passes stays in the first-level cache.
 constexpr long chunk_pairs = 64;
 
-/// One quantity of every pair of a chunk.
+/// One quantity of every pair, or grain, of a chunk.
 struct alignas(64) ScratchColumn {
   double at[chunk_pairs];
 };
+
+/// |v|, by its sign bit alone.
+inline __attribute__((always_inline)) double magnitude_of(double v) { return __builtin_fabs(v); }
+template <class V>
+inline __attribute__((always_inline)) V magnitude_of(V v) {
+  using Bits = decltype(v < v);
+  return (V)((Bits)v & (Bits{} + INT64_MAX));
+}
+
+/// v between -limit and limit, limit >= 0; in the forms that compile to one instruction each.
+template <class V>
+inline __attribute__((always_inline)) V clamped(V v, V limit) {
+  const V least = -limit;
+  const V raised = (v > least) ? v : least;
+  return (raised < limit) ? raised : limit;
+}
 
 /// Three columns of a vector quantity.
 template <class V>
 struct Triple {
   V x, y, z;
+};
+/// A vector quantity of every pair, or grain, of a chunk.
+struct TripleColumn {
+  ScratchColumn x, y, z;
+
+  template <class V>
+  inline __attribute__((always_inline)) void store(long at, const Triple<V>& value) {
+    store_as(x.at + at, value.x);
+    store_as(y.at + at, value.y);
+    store_as(z.at + at, value.z);
+  }
+  template <class V>
+  inline __attribute__((always_inline)) Triple<V> load(long at) const {
+    return {load_as<V>(x.at + at), load_as<V>(y.at + at), load_as<V>(z.at + at)};
+  }
 };
 template <class V>
 inline __attribute__((always_inline)) V dot(const Triple<V>& a, const Triple<V>& b) {

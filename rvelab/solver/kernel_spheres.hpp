@@ -1,5 +1,5 @@
-// The pair loop of spheres (kernel_pairs.hpp), in three passes: place and velocity; what the old history and the motion
-// give in the new tangent plane; the capped forces.
+// The pair loop of spheres (kernel_pairs.hpp), in four passes: grain rows to columns; place and velocity; what the old
+// history and the motion give in the new tangent plane; the capped forces.
 #pragma once
 
 #include "rvelab/contact/damping.hpp"
@@ -11,85 +11,69 @@
 namespace rvelab {
 namespace {
 
-struct TripleColumn {
-  ScratchColumn x, y, z;
-
-  template <class V>
-  inline __attribute__((always_inline)) void store(long at, const Triple<V>& value) {
-    store_as(x.at + at, value.x);
-    store_as(y.at + at, value.y);
-    store_as(z.at + at, value.z);
-  }
-  template <class V>
-  inline __attribute__((always_inline)) Triple<V> load(long at) const {
-    return {load_as<V>(x.at + at), load_as<V>(y.at + at), load_as<V>(z.at + at)};
-  }
-};
-
 /// What the passes hand on.
 struct SphereScratch {
-  TripleColumn normal;
+  TripleColumn normal;  ///< first the place of j less that of i
   ScratchColumn length, radii;
-  TripleColumn velocity;             ///< of j's centre less that of i's image, over the step; then the slip rate
+  TripleColumn velocity;             ///< of j less that of i; then of the centres over the step; then the slip rate
   TripleColumn spins, radius_spins;  ///< w_i + w_j and r_i w_i + r_j w_j; then the carried history (and moment)
   TripleColumn spin_difference;      ///< w_j - w_i (rolling)
   ScratchColumn root, opening;       ///< sqrt(overlap), rate at which the centres part
 };
 
+/// Grain rows to columns. Shuffles cost the same at every width, so this pass keeps to four lanes.
 template <class T>
-inline __attribute__((always_inline)) void sphere_places(const StepConstants& c, const PairArrays& p,
-                                                         const double* rows, long first, long count,
-                                                         SphereScratch& out) {
-  constexpr int W = T::W;
-  using L = Lanes<W>;
-  using V = typename L::V;
-  const auto difference = L::broadcast(-1.0), sum = L::broadcast(1.0);
-  const auto places = quad<W>(-1.0, -1.0, -1.0, 1.0);
-  const double half_dt = 0.5 * c.dt;
+inline __attribute__((always_inline)) void sphere_rows(const PairArrays& p, const double* rows, long first, long count,
+                                                       SphereScratch& out) {
+  constexpr int W = T::W < 4 ? T::W : 4;
+  using V = typename Lanes<W>::V;
   for (long k = 0; k < count; k += W) {
-    const long at = first + k;
-    const std::int32_t *i = p.row_i + at, *j = p.row_j + at;
+    const std::int32_t *i = p.row_i + first + k, *j = p.row_j + first + k;
     V d[4];
-    gather_columns<W>(rows, i, j, 0, places, d);
-    const V image_x = load_as<V>(p.image[0] + at), image_y = load_as<V>(p.image[1] + at);
-    const V image_z = load_as<V>(p.image[2] + at);
-    const Triple<V> b = {d[0] + (c.lattice.xx * image_x + (c.lattice.xy * image_y + c.lattice.xz * image_z)),
-                         d[1] + (c.lattice.yy * image_y + c.lattice.yz * image_z), d[2] + c.lattice.zz * image_z};
-    const V length = square_root(dot(b, b));
-    const V inverse = 1.0 / length;
-    out.normal.store(k, times(inverse, b));
-    store_as(out.length.at + k, length);
+    gather_columns<W>(rows, i, j, 0, quad<W>(-1.0, -1.0, -1.0, 1.0), d);
+    out.normal.store(k, Triple<V>{d[0], d[1], d[2]});
     store_as(out.radii.at + k, d[3]);
     if constexpr (T::Advance || T::Dashpot) {
       V v[4];
-      gather_columns<W>(rows, i, j, 4, difference, v);
-      const Triple<V> px = {b.x - half_dt * v[0], b.y - half_dt * v[1], b.z - half_dt * v[2]};
-      out.velocity.store(k, Triple<V>{v[0] + (c.rate.xx * px.x + (c.rate.xy * px.y + c.rate.xz * px.z)),
-                                      v[1] + (c.rate.yy * px.y + c.rate.yz * px.z), v[2] + c.rate.zz * px.z});
+      gather_differences<W>(rows + 4, i, j, v);
+      out.velocity.store(k, Triple<V>{v[0], v[1], v[2]});
     }
   }
-  if constexpr (T::Advance || T::Dashpot) {
-    // Spins enter as w_i + w_j and r_i w_i + r_j w_j; the mean spin of the cell is added to both.
+  if constexpr (T::Advance || T::Dashpot)
     for (long k = 0; k < count; k += W) {
       const std::int32_t *i = p.row_i + first + k, *j = p.row_j + first + k;
-      V ws[4], rw[4];
-      gather_columns<W>(rows, i, j, 8, sum, ws);
-      typename L::Quad quads[W];
-      for (int lane = 0; lane < W; ++lane) {
-        const double *ri = rows + i[lane], *rj = rows + j[lane];
-        quads[lane] = L::add(L::mul(L::broadcast(rj[3]), load_as<typename L::Quad>(rj + 8)),
-                             L::mul(L::broadcast(ri[3]), load_as<typename L::Quad>(ri + 8)));
-      }
-      L::transpose(quads, rw);
-      const V radii = load_as<V>(out.radii.at + k);
-      out.spins.store(k, Triple<V>{ws[0] + 2.0 * c.spin[0], ws[1] + 2.0 * c.spin[1], ws[2] + 2.0 * c.spin[2]});
+      V a[4], b[4];
+      ColumnsOf<W>::load([=](int lane) { return rows + i[lane] + 8; }, a);
+      ColumnsOf<W>::load([=](int lane) { return rows + j[lane] + 8; }, b);
+      out.spins.store(k, Triple<V>{a[0] + b[0], a[1] + b[1], a[2] + b[2]});
       out.radius_spins.store(
-          k, Triple<V>{rw[0] + c.spin[0] * radii, rw[1] + c.spin[1] * radii, rw[2] + c.spin[2] * radii});
-      if constexpr (T::Rolling && T::Advance) {
-        V wd[4];
-        gather_columns<W>(rows, i, j, 8, difference, wd);
-        out.spin_difference.store(k, Triple<V>{wd[0], wd[1], wd[2]});
-      }
+          k, Triple<V>{b[3] * b[0] + a[3] * a[0], b[3] * b[1] + a[3] * a[1], b[3] * b[2] + a[3] * a[2]});
+      if constexpr (T::Rolling && T::Advance)
+        out.spin_difference.store(k, Triple<V>{b[0] - a[0], b[1] - a[1], b[2] - a[2]});
+    }
+}
+
+/// Branch, normal and the motion of the centres.
+template <class T>
+inline __attribute__((always_inline)) void sphere_places(const StepConstants& c, const PairArrays& p, long first,
+                                                         long count, SphereScratch& s) {
+  using V = typename Lanes<T::W>::V;
+  const double half_dt = 0.5 * c.dt;
+  for (long k = 0; k < count; k += T::W) {
+    const long at = first + k;
+    const V image_x = load_as<V>(p.image[0] + at), image_y = load_as<V>(p.image[1] + at);
+    const V image_z = load_as<V>(p.image[2] + at);
+    Triple<V> b = s.normal.load<V>(k);
+    b = {b.x + (c.lattice.xx * image_x + (c.lattice.xy * image_y + c.lattice.xz * image_z)),
+         b.y + (c.lattice.yy * image_y + c.lattice.yz * image_z), b.z + c.lattice.zz * image_z};
+    const V length = square_root(dot(b, b));
+    s.normal.store(k, times(1.0 / length, b));
+    store_as(s.length.at + k, length);
+    if constexpr (T::Advance || T::Dashpot) {
+      const Triple<V> v = s.velocity.load<V>(k);
+      const Triple<V> px = plus(b, V{} - half_dt, v);
+      s.velocity.store(k, Triple<V>{v.x + (c.rate.xx * px.x + (c.rate.xy * px.y + c.rate.xz * px.z)),
+                                    v.y + (c.rate.yy * px.y + c.rate.yz * px.z), v.z + c.rate.zz * px.z});
     }
   }
 }
@@ -113,8 +97,10 @@ inline __attribute__((always_inline)) void sphere_motion(const StepConstants& c,
     }
     V mean_twist = zero;
     if constexpr (T::Advance || T::Dashpot) {
-      const Triple<V> u = s.velocity.load<V>(k), spins = s.spins.load<V>(k);
-      Triple<V> arms = s.radius_spins.load<V>(k);
+      // The mean spin of the cell is added to both grains.
+      const Triple<V> u = s.velocity.load<V>(k), sum = s.spins.load<V>(k), weighted = s.radius_spins.load<V>(k);
+      const Triple<V> spins = {sum.x + 2.0 * c.spin[0], sum.y + 2.0 * c.spin[1], sum.z + 2.0 * c.spin[2]};
+      Triple<V> arms = {weighted.x + c.spin[0] * radii, weighted.y + c.spin[1] * radii, weighted.z + c.spin[2] * radii};
       const V opening = dot(n, u);
       Triple<V> along = plus(u, -opening, n);
       if constexpr (T::slip == Slip::full_radius_ratcheting) along = times(radii / length, along);
@@ -143,8 +129,7 @@ template <class Law, class T>
 inline __attribute__((always_inline)) void sphere_forces(const StepConstants& c, const PairArrays& p, long first,
                                                          long count, const SphereScratch& s, Dissipation* dissipation) {
   constexpr int W = T::W;
-  using L = Lanes<W>;
-  using V = typename L::V;
+  using V = typename Lanes<W>::V;
   const V zero = V{}, one = zero + 1.0;
   for (long k = 0; k < count; k += W) {
     const long at = first + k;
@@ -172,8 +157,7 @@ inline __attribute__((always_inline)) void sphere_forces(const StepConstants& c,
     [[maybe_unused]] const Triple<V> before = tangential;
     [[maybe_unused]] Triple<V> trial = tangential;
     if constexpr (T::Advance) {
-      const V magnitude = (normal < 0.0) ? -normal : normal;
-      const V limit = load_as<V>(p.friction + at) * magnitude;
+      const V limit = load_as<V>(p.friction + at) * magnitude_of(normal);
       tangential = plus(s.spins.load<V>(k), -(kt * c.dt), slip_rate);
       trial = tangential;
       Triple<V> total = tangential;
@@ -243,15 +227,10 @@ inline __attribute__((always_inline)) void sphere_forces(const StepConstants& c,
     }
 
     const Triple<V> torque = cross(n, total);
-    typename L::Quad forces[W], torques[W];
-    const V first[4] = {n.x * normal + total.x, n.y * normal + total.y, n.z * normal + total.z, half_overlap};
-    const V second[4] = {torque.x, torque.y, torque.z, zero};
-    L::untranspose(first, forces);
-    L::untranspose(second, torques);
-    for (int lane = 0; lane < W; ++lane) {
-      store_as(p.force + 8 * (at + lane), forces[lane]);
-      store_as(p.force + 8 * (at + lane) + 4, torques[lane]);
-    }
+    const V first_half[4] = {n.x * normal + total.x, n.y * normal + total.y, n.z * normal + total.z, half_overlap};
+    const V second_half[4] = {torque.x, torque.y, torque.z, zero};
+    rows_of<W>(first_half, p.force + 8 * at, 8);
+    rows_of<W>(second_half, p.force + 8 * at + 4, 8);
   }
 }
 
@@ -264,7 +243,8 @@ void sphere_pairs(const StepConstants& constants, const PairArrays& arrays, cons
   SphereScratch scratch;
   for (long first = begin; first < end; first += chunk_pairs) {
     const long count = end - first < chunk_pairs ? end - first : chunk_pairs;
-    sphere_places<T>(c, p, rows, first, count, scratch);
+    sphere_rows<T>(p, rows, first, count, scratch);
+    sphere_places<T>(c, p, first, count, scratch);
     sphere_motion<Law, T>(c, p, first, count, scratch);
     sphere_forces<Law, T>(c, p, first, count, scratch, dissipation);
   }

@@ -186,5 +186,47 @@ struct Lanes<8> {
 };
 #endif
 
+/// Four doubles of each of W rows, as columns; `row_at(k)` is where the four of row k start.
+template <int W>
+struct ColumnsOf {
+  template <class RowAt>
+  static inline __attribute__((always_inline)) void load(const RowAt& row_at, typename Lanes<W>::V* columns) {
+    typename Lanes<W>::Quad rows[W];
+    for (int k = 0; k < W; ++k) rows[k] = load_as<typename Lanes<W>::Quad>(row_at(k));
+    Lanes<W>::transpose(rows, columns);
+  }
+};
+
+#if defined(__AVX__)
+/// Halves joined while they are loaded: one shuffle a column instead of two.
+template <>
+struct ColumnsOf<4> {
+  template <class RowAt>
+  static inline __attribute__((always_inline)) void load(const RowAt& row_at, V4* columns) {
+    V4 halves[2][2];
+    for (int k = 0; k < 2; ++k)
+      for (int half = 0; half < 2; ++half)
+        halves[half][k] = __builtin_shufflevector(load_as<V2>(row_at(k) + 2 * half),
+                                                  load_as<V2>(row_at(k + 2) + 2 * half), 0, 1, 2, 3);
+    for (int half = 0; half < 2; ++half) {
+      columns[2 * half] = __builtin_shufflevector(halves[half][0], halves[half][1], 0, 4, 2, 6);
+      columns[2 * half + 1] = __builtin_shufflevector(halves[half][0], halves[half][1], 1, 5, 3, 7);
+    }
+  }
+};
+#endif
+
+/// Rows that follow each other, `stride` doubles apart; and columns back to such rows.
+template <int W>
+inline __attribute__((always_inline)) void columns_of(const double* rows, long stride, typename Lanes<W>::V* columns) {
+  ColumnsOf<W>::load([=](int k) { return rows + k * stride; }, columns);
+}
+template <int W>
+inline __attribute__((always_inline)) void rows_of(const typename Lanes<W>::V* columns, double* row, long stride) {
+  typename Lanes<W>::Quad rows[W];
+  Lanes<W>::untranspose(columns, rows);
+  for (int k = 0; k < W; ++k) store_as(row + k * stride, rows[k]);
+}
+
 }  // namespace
 }  // namespace rvelab

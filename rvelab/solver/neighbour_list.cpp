@@ -136,42 +136,72 @@ class Search {
       reach_[k] = k < cell_.dimension ? int(std::ceil(cutoff * c.count[k] / height_[k] * (1 + 1e-12))) : 0;
       fill_landings(c.count[k], reach_[k], landings_[k]);
     }
+    // Bins that follow each other along the first direction do so in memory: they are looked into as one.
+    runs_.assign(std::size_t(c.count[0]), {});
+    for (int home = 0; home < c.count[0]; ++home) {
+      std::vector<Run>& runs = runs_[std::size_t(home)];
+      for (int x = 0; x <= 2 * reach_[0]; ++x) {
+        const Landing& l = landings_[0][std::size_t(home + x)];
+        if (!runs.empty() && runs.back().shift == l.shift && runs.back().last + 1 == l.bin)
+          runs.back().last = l.bin;
+        else
+          runs.push_back({l.bin, l.bin, l.shift});
+      }
+    }
   }
 
   void find(const Placed& p, bool own_class) {
     const SizeClass& c = *class_;
     const Landing* first[3];
-    for (int k = 0; k < 3; ++k) first[k] = landings_[k].data() + bin_of(p.s[k], c.count[k]);
+    for (int k = 1; k < 3; ++k) first[k] = landings_[k].data() + bin_of(p.s[k], c.count[k]);
+    const std::vector<Run>& runs = runs_[std::size_t(bin_of(p.s[0], c.count[0]))];
     for (int z = 0; z <= 2 * reach_[2]; ++z)
       for (int y = 0; y <= 2 * reach_[1]; ++y)
-        for (int x = 0; x <= 2 * reach_[0]; ++x) {
-          const Image shift{first[0][x].shift, first[1][y].shift, first[2][z].shift};
-          look_into(p.binned, c.index(first[0][x].bin, first[1][y].bin, first[2][z].bin), shift, own_class);
-        }
+        for (const Run& run : runs)
+          look_into(p.binned, c.begin[c.index(run.first, first[1][y].bin, first[2][z].bin)],
+                    c.begin[c.index(run.last, first[1][y].bin, first[2][z].bin) + 1],
+                    {run.shift, first[1][y].shift, first[2][z].shift}, own_class);
   }
 
  private:
-  void look_into(const Binned& i, std::size_t bin, const Image& shift, bool own_class) {
-    const SizeClass& c = *class_;
+  /// Neighbouring bins along the first direction with one shift.
+  struct Run {
+    int first, last, shift;
+  };
+
+  void look_into(const Binned& i, std::int32_t begin, std::int32_t end, const Image& shift, bool own_class) {
+    const Binned* grains = class_->grains.data();
     const Matrix3& l = cell_.lattice;
     const double x = l(0, 0) * shift[0] + l(0, 1) * shift[1] + l(0, 2) * shift[2] - i.x[0];
     const double y = l(1, 1) * shift[1] + l(1, 2) * shift[2] - i.x[1];
     const double z = cell_.dimension == 3 ? l(2, 2) * shift[2] - i.x[2] : 0;
-    // From the back: indices ascend, so those before i need no look.
-    for (std::int32_t q = c.begin[bin + 1] - 1; q >= c.begin[bin]; --q) {
-      const Binned& j = c.grains[q];
-      if (own_class && j.grain < i.grain) break;
-      const double dx = j.x[0] + x, dy = j.x[1] + y, dz = j.x[2] + z;
-      const double reach = i.radius + j.radius + skin_;
-      if (!(dx * dx + dy * dy + dz * dz < reach * reach)) continue;
-      Image image;
-      for (int k = 0; k < 3; ++k) image[k] = shift[k] - j.period[k] + i.period[k];
-      if (j.grain == i.grain && !points_forward(image)) continue;
-      if (j.grain >= i.grain)
-        pairs_.push_back({i.grain, j.grain, image});
-      else
-        pairs_.push_back({j.grain, i.grain, {-image[0], -image[1], -image[2]}});
+    const double radius = i.radius + skin_;
+    const std::int32_t least = own_class ? i.grain : 0;
+    // Hits are noted without a branch, since none would be predicted (with runs of bins: a list of 400 discs 24 to 18
+    // steps' time, of 1000 spheres 14 to 10).
+    constexpr std::int32_t most = 64;
+    std::int32_t hits[most];
+    for (std::int32_t from = begin; from < end; from += most) {
+      const std::int32_t to = std::min(end, from + most);
+      int found = 0;
+      for (std::int32_t q = from; q < to; ++q) {
+        const Binned& j = grains[q];
+        const double dx = j.x[0] + x, dy = j.x[1] + y, dz = j.x[2] + z, reach = radius + j.radius;
+        hits[found] = q;
+        found += int(dx * dx + dy * dy + dz * dz < reach * reach) & int(j.grain >= least);
+      }
+      for (int k = 0; k < found; ++k) add(i, grains[hits[k]], shift);
     }
+  }
+
+  void add(const Binned& i, const Binned& j, const Image& shift) {
+    Image image;
+    for (int k = 0; k < 3; ++k) image[k] = shift[k] - j.period[k] + i.period[k];
+    if (j.grain == i.grain && !points_forward(image)) return;
+    if (j.grain >= i.grain)
+      pairs_.push_back({i.grain, j.grain, image});
+    else
+      pairs_.push_back({j.grain, i.grain, {-image[0], -image[1], -image[2]}});
   }
 
   const Cell& cell_;
@@ -181,41 +211,67 @@ class Search {
   const SizeClass* class_ = nullptr;
   int reach_[3] = {0, 0, 0};
   std::vector<Landing> landings_[3];
+  std::vector<std::vector<Run>> runs_;  ///< by bin of the grain along the first direction
 };
 
+constexpr std::size_t search_piece = 4096;
+
+/// Calls work(piece, first, last) for pieces of up to search_piece of `count` things, on the team if there is one.
+template <class Work>
+void in_pieces(std::size_t count, Workers* team, const Work& work) {
+  const std::size_t pieces = (count + search_piece - 1) / search_piece;
+  const auto one = [&](std::size_t k) { work(k, k * search_piece, std::min(count, (k + 1) * search_piece)); };
+  if (team != nullptr && pieces > 1)
+    team->run(pieces, [&one](std::size_t k) { one(k); });
+  else
+    for (std::size_t k = 0; k < pieces; ++k) one(k);
+}
+
 /// By (i, j, image): counted by i, then the few of each i put in order.
-std::vector<ListedPair> in_order(const std::vector<ListedPair>& found, std::size_t grains) {
+std::vector<ListedPair> in_order(const std::vector<std::vector<ListedPair>>& found, std::size_t grains, Workers* team) {
   std::vector<std::uint32_t> begin(grains + 1, 0);
-  for (const ListedPair& pair : found) ++begin[std::size_t(pair.i) + 1];
+  for (const auto& of_piece : found)
+    for (const ListedPair& pair : of_piece) ++begin[std::size_t(pair.i) + 1];
   for (std::size_t g = 0; g < grains; ++g) begin[g + 1] += begin[g];
-  std::vector<ListedPair> pairs(found.size());
+  std::vector<ListedPair> pairs(begin[grains]);
   std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
-  for (const ListedPair& pair : found) pairs[next[std::size_t(pair.i)]++] = pair;
-  for (std::size_t g = 0; g < grains; ++g) std::sort(pairs.begin() + begin[g], pairs.begin() + begin[g + 1]);
+  for (const auto& of_piece : found)
+    for (const ListedPair& pair : of_piece) pairs[next[std::size_t(pair.i)]++] = pair;
+  in_pieces(grains, team, [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t g = first; g < last; ++g) std::sort(pairs.begin() + begin[g], pairs.begin() + begin[g + 1]);
+  });
   return pairs;
 }
 
 }  // namespace
 
 std::vector<ListedPair> list_pairs(const Cell& cell, const double* x, std::size_t stride,
-                                   const std::vector<double>& radii, double skin) {
+                                   const std::vector<double>& radii, double skin, Workers* team) {
   const std::size_t n = radii.size();
   if (n == 0) return {};
   const double largest = *std::max_element(radii.begin(), radii.end());
   std::vector<Placed> grains(n);
-  for (std::size_t g = 0; g < n; ++g) grains[g] = placed(cell, x + stride * g, radii[g], g);
+  in_pieces(n, team, [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t g = first; g < last; ++g) grains[g] = placed(cell, x + stride * g, radii[g], g);
+  });
   const std::vector<SizeClass> classes = sort_into_bins(cell, grains, radii, skin, largest);
 
-  std::vector<ListedPair> found;
-  found.reserve(n * std::size_t(cell.dimension == 2 ? 4 : 8));
-  Search search(cell, skin, found);
+  std::vector<std::vector<ListedPair>> found;
   for (std::size_t of = 0; of < classes.size(); ++of)
     for (std::size_t with = of; with < classes.size(); ++with) {
-      if (classes[of].grains.empty() || classes[with].grains.empty()) continue;
-      search.aim(classes[with], classes[of].largest_radius);
-      for (const Binned& b : classes[of].grains) search.find(grains[std::size_t(b.grain)], of == with);
+      const std::vector<Binned>& members = classes[of].grains;
+      if (members.empty() || classes[with].grains.empty()) continue;
+      const std::size_t before = found.size();
+      found.resize(before + (members.size() + search_piece - 1) / search_piece);
+      in_pieces(members.size(), team, [&](std::size_t piece, std::size_t first, std::size_t last) {
+        std::vector<ListedPair>& pairs = found[before + piece];
+        pairs.reserve((last - first) * std::size_t(cell.dimension == 2 ? 4 : 8));
+        Search search(cell, skin, pairs);
+        search.aim(classes[with], classes[of].largest_radius);
+        for (std::size_t k = first; k < last; ++k) search.find(grains[std::size_t(members[k].grain)], of == with);
+      });
     }
-  return in_order(found, n);
+  return in_order(found, n, team);
 }
 
 }  // namespace rvelab

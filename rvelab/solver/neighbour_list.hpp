@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "rvelab/cell/cell.hpp"
+#include "rvelab/solver/workers.hpp"
 
 namespace rvelab {
 
@@ -21,9 +22,9 @@ struct ListedPair {
 };
 
 /// All pairs with |branch| < r_i + r_j + skin, ordered by (i, j, image).
-/// positions: x[stride * g + component], cell frame, m, anywhere in space; radii: m.
+/// positions: x[stride * g + component], cell frame, m, anywhere in space; radii: m. The list is the same on any team.
 std::vector<ListedPair> list_pairs(const Cell& cell, const double* positions, std::size_t stride,
-                                   const std::vector<double>& radii, double skin);
+                                   const std::vector<double>& radii, double skin, Workers* team = nullptr);
 
 /// True if the first non-zero entry is positive: of a grain and its own image each pair is listed once.
 bool points_forward(const Image& image);

@@ -1,6 +1,7 @@
 // Rve::network: the contact network as a value.
 #include <cmath>
 
+#include "rvelab/solver/memory_order.hpp"
 #include "rvelab/solver/rve_impl.hpp"
 
 namespace rvelab {
@@ -31,8 +32,9 @@ void set_elastic(const Fixture& f, const PairTable& pairs, std::size_t p, Contac
 }  // namespace
 
 Network Rve::network() const {
-  const Fixture& f = impl_->fixture;
-  const Assembly& a = impl_->now;
+  const Impl& m = impl_->awake();
+  const Fixture& f = m.fixture;
+  const Assembly& a = m.now;
   Network net;
   net.shape = f.shape;
   net.cell = a.cell;
@@ -75,7 +77,7 @@ Network Rve::network() const {
     net.grains[std::size_t(j)].resultant += force;
     net.contacts.push_back(c);
   }
-  return net;
+  return in_id_order(std::move(net), a.state.memory_order);
 }
 
 }  // namespace rvelab

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "rvelab/error.hpp"
+#include "rvelab/solver/resting.hpp"
 #include "rvelab/solver/rve_impl.hpp"
 
 namespace rvelab {
@@ -47,19 +48,39 @@ Matrix3 Rve::Impl::reynolds_stress() const {
   return to_lab(kinetic_moment(fixture, now) / now.cell.volume());
 }
 
-Matrix3 Rve::contact_stress() const { return impl_->contact_stress(); }
-Matrix3 Rve::reynolds_stress() const { return impl_->reynolds_stress(); }
-Matrix3 Rve::stress() const { return impl_->contact_stress() + impl_->reynolds_stress(); }
+Rve::Impl& Rve::Impl::awake() {
+  if (resting) wake(fixture, now);
+  resting = false;
+  return *this;
+}
+
+void Rve::rest() {
+  rvelab::rest(impl_->now);
+  impl_->resting = true;
+}
+
+Memory Rve::memory() const { return memory_of(impl_->now); }
+
+Matrix3 Rve::contact_stress() const { return impl_->awake().contact_stress(); }
+Matrix3 Rve::reynolds_stress() const { return impl_->awake().reynolds_stress(); }
+Matrix3 Rve::stress() const {
+  const Impl& m = impl_->awake();
+  return m.contact_stress() + m.reynolds_stress();
+}
 
 double Rve::unbalanced_ratio() const {
-  return rvelab::unbalanced_ratio(balance_of(impl_->fixture, impl_->now), impl_->now.state.reference_contact_force);
+  const Impl& m = impl_->awake();
+  return rvelab::unbalanced_ratio(balance_of(m.fixture, m.now), m.now.state.reference_contact_force);
 }
 
 const Cell& Rve::cell() const { return impl_->now.cell; }
 std::size_t Rve::size() const { return impl_->fixture.size(); }
 std::uint64_t Rve::grain_steps() const { return impl_->now.state.grain_steps; }
 
-double Rve::critical_time_step() const { return critical_step(impl_->fixture, row_sums(impl_->fixture, impl_->now)); }
+double Rve::critical_time_step() const {
+  const Impl& m = impl_->awake();
+  return critical_step(m.fixture, row_sums(m.fixture, m.now));
+}
 
 Response Rve::Impl::respond(const Report& report, const Matrix3& gradient, double dt, const Want& want) const {
   Response r;
@@ -92,7 +113,7 @@ Response Rve::Impl::respond(const Report& report, const Matrix3& gradient, doubl
 }
 
 Response Rve::apply(const Matrix3& displacement_gradient, double dt, const Want& want) {
-  Impl& m = *impl_;
+  Impl& m = impl_->awake();
   if (!(dt >= 0) || !std::isfinite(dt)) {
     std::ostringstream text;
     text << "apply: dt = " << dt << " s; it must be 0 (quasi-static) or a positive time";
@@ -103,7 +124,7 @@ Response Rve::apply(const Matrix3& displacement_gradient, double dt, const Want&
 }
 
 Response Rve::apply(const MixedTarget& target, double dt, const Want& want) {
-  Impl& m = *impl_;
+  Impl& m = impl_->awake();
   if (!(dt >= 0) || !std::isfinite(dt)) {
     std::ostringstream text;
     text << "apply: dt = " << dt << " s; it must be 0 (quasi-static) or a positive time";
@@ -115,7 +136,7 @@ Response Rve::apply(const MixedTarget& target, double dt, const Want& want) {
 }
 
 Report Rve::relax(double unbalanced, long max_steps) {
-  Impl& m = *impl_;
+  Impl& m = impl_->awake();
   return m.guarded([&] {
     Report report;
     begin_loading(m.fixture, m.now, Loading::quasi_static);
@@ -137,41 +158,49 @@ Report Rve::relax(double unbalanced, long max_steps) {
   });
 }
 
+void Rve::share(Workers* team) { impl_->fixture.team = team; }
+
 void Rve::watch(const std::atomic<bool>* stop) { impl_->fixture.stop = stop; }
 
 void Rve::set_materials(const std::vector<Material>& materials) {
-  Impl& m = *impl_;
+  Impl& m = impl_->awake();
   if (materials.size() != m.fixture.materials.size())
     throw InputError("set_materials: " + std::to_string(materials.size()) + " materials; the specimen has " +
                      std::to_string(m.fixture.materials.size()));
   check(m.fixture.contact, m.fixture.damping, materials);
   m.fixture.materials = materials;
+  std::vector<double> mass(m.fixture.size()), inertia(m.fixture.size());
   for (std::size_t g = 0; g < m.fixture.size(); ++g) {
-    const double density = materials[m.fixture.material[g]].density;
-    m.fixture.mass[g] = density * grain_volume(m.fixture.shape, m.fixture.radius[g], m.now.cell.lattice(2, 2));
-    m.fixture.inertia[g] = moment_of_inertia(m.fixture.shape, m.fixture.mass[g], m.fixture.radius[g]);
+    const double density = materials[std::size_t(m.fixture.material[g])].density;
+    mass[g] = density * grain_volume(m.fixture.shape, m.fixture.radius[g], m.now.cell.lattice(2, 2));
+    inertia[g] = moment_of_inertia(m.fixture.shape, mass[g], m.fixture.radius[g]);
   }
+  m.fixture.mass = std::move(mass);
+  m.fixture.inertia = std::move(inertia);
   set_pair_parameters(m.fixture, m.now.pairs);
   evaluate_forces(m.fixture, m.now);
 }
 
 void Rve::set_velocities(const std::vector<Vector3>& velocity, const std::vector<Vector3>& spin) {
-  Impl& m = *impl_;
+  Impl& m = impl_->awake();
   if (velocity.size() != size() || spin.size() != size())
     throw InputError("set_velocities: " + std::to_string(velocity.size()) + " velocities and " +
                      std::to_string(spin.size()) + " spins; the specimen has " + std::to_string(size()) + " grains");
-  for (std::size_t g = 0; g < size(); ++g)
-    if (!velocity[g].allFinite() || !spin[g].allFinite())
-      throw InputError("set_velocities: the velocity or spin of grain " + std::to_string(m.fixture.id[g]) +
+  const auto& order = m.now.state.memory_order;
+  const auto index = [&](std::size_t place) { return order.empty() ? place : std::size_t(order[place]); };
+  for (std::size_t place = 0; place < size(); ++place)
+    if (!velocity[index(place)].allFinite() || !spin[index(place)].allFinite())
+      throw InputError("set_velocities: the velocity or spin of grain " + std::to_string(m.fixture.id[place]) +
                        " is not finite");
   begin_loading(m.fixture, m.now, Loading::physical);
-  for (std::size_t g = 0; g < size(); ++g) m.now.set_velocity(m.fixture, g, velocity[g], spin[g]);
+  for (std::size_t place = 0; place < size(); ++place)
+    m.now.set_velocity(m.fixture, place, velocity[index(place)], spin[index(place)]);
   m.now.state.mean_velocity.setZero();
   evaluate_forces(m.fixture, m.now);
 }
 
 void Rve::zero_velocities() {
-  Impl& m = *impl_;
+  Impl& m = impl_->awake();
   for (std::size_t g = 0; g < size(); ++g) {
     m.now.state.ledger.zeroing += 0.5 * m.now.mass[g] * m.now.velocity(m.fixture, g).squaredNorm();
     if (m.now.inverse_inertia[g] > 0)
@@ -184,6 +213,11 @@ void Rve::zero_velocities() {
 
 Specimen Rve::specimen() const { return close(impl_->fixture, impl_->now); }
 std::vector<std::byte> Rve::save() const { return to_bytes(specimen()); }
-void Rve::restore(std::span<const std::byte> snapshot) { *this = Rve(from_bytes(snapshot)); }
+void Rve::restore(std::span<const std::byte> snapshot) {
+  Rve restored(from_bytes(snapshot));
+  restored.watch(impl_->fixture.stop);
+  restored.share(impl_->fixture.team);
+  *this = std::move(restored);
+}
 
 }  // namespace rvelab

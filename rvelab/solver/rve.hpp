@@ -9,6 +9,7 @@
 
 #include "rvelab/solver/network.hpp"
 #include "rvelab/solver/specimen.hpp"
+#include "rvelab/solver/workers.hpp"
 
 namespace rvelab {
 
@@ -47,8 +48,18 @@ struct MixedTarget {
   };
   std::vector<Row> rows;
   Matrix3 spin = Matrix3::Zero();  ///< skew part of the increment of displacement gradient
+  double volume_ratio = 0;         ///< > 0: det(I + dH), met to round-off by an isotropic strain beside the rows' (of
+                                   ///< second order in theirs where they prescribe the volume to first order)
   double tolerance = 0.005;        ///< relative to each row's scale
-  long wait = 200;                 ///< sub-steps that the end of the increment may wait for the stress
+  long wait = 200;                 ///< sub-steps that the end of the increment may wait for the stress, or a quarter of
+                                   ///< those that it took where that is more
+};
+
+/// Bytes that an RVE holds, without the arrays that its copies share (ids, radii, materials, masses).
+struct Memory {
+  std::size_t state = 0;    ///< places, velocities, contact histories
+  std::size_t list = 0;     ///< neighbour list: pairs, and places when it was built
+  std::size_t working = 0;  ///< what rest() lets go of
 };
 
 class Rve {
@@ -85,9 +96,20 @@ class Rve {
   Network network() const;
   Specimen specimen() const;
 
+  /// Lets go of everything that can be made again from state and list, about two thirds of the memory. The next call
+  /// that needs it wakes the Rve, in the time of a few sub-steps; no bit changes. (Const calls wake it too: not two at
+  /// once.)
+  void rest();
+  Memory memory() const;
+
   /// A flag that apply and relax look at after each sub-step: once it is true they throw Interrupted, and the RVE is as
   /// it was before the call. Copies look at the same flag. It must outlive them; nullptr: none.
   void watch(const std::atomic<bool>* stop);
+
+  /// A team that shares the steps of a large cell, from 30,000 grains on; below, it is left alone. The bits are the
+  /// same on any team and on none. Copies look at the same team, which must outlive them and must not be at work when a
+  /// call is made (an entry of a batch has the thread it runs on); nullptr: none.
+  void share(Workers* team);
 
   /// Changes contact parameters in place (friction for preparation, no slip for probes); history is kept.
   void set_materials(const std::vector<Material>& materials);

@@ -14,6 +14,10 @@ constexpr std::size_t largest_kept_scratch = 20'000;
 struct Rve::Impl {
   Fixture fixture;
   Assembly now;
+  bool resting = false;  ///< only what rest() keeps is there
+
+  /// Every public call that looks at forces, parameters or masses comes through here.
+  Impl& awake();
 
   Matrix3 to_lab(const Matrix3& cell_frame) const {
     return now.cell.rotation * cell_frame * now.cell.rotation.transpose();
@@ -45,7 +49,8 @@ struct Rve::Impl {
   /// Balance after a stretch of steps; throws IncrementFailed on overlap beyond the limit or values not finite.
   Balance checked_balance() const;
   double unbalanced(const Balance& balance) const;  ///< ratio with this specimen's reference force
-  void steer_pace(const Balance& balance);
+  /// `held`: a stress is held, so that overlaps keep their size and the pace may follow them below the reference.
+  void steer_pace(const Balance& balance, bool held = false);
   double initial_pace() const;
 
   Report load(const Matrix3& displacement_gradient, double dt);

@@ -35,6 +35,8 @@ Servo::Servo(const MixedTarget& target, int dimension, const Matrix3& stress_at_
                      "D needs " + std::to_string(rows_));
   if (!target.spin.allFinite() || (target.spin + target.spin.transpose()).norm() > 1e-12 * (1 + target.spin.norm()))
     throw InputError("mixed target: the spin must be a finite skew matrix");
+  if (!(target.volume_ratio >= 0) || !std::isfinite(target.volume_ratio))
+    throw InputError("mixed target: the volume ratio must be > 0 and finite, or 0 for none");
   if (!(target.tolerance > 0) || !std::isfinite(target.tolerance))
     throw InputError("mixed target: the tolerance must be > 0 and finite");
   Eigen::MatrixXd both(rows_, 12);

@@ -140,6 +140,7 @@ void visit(Archive& ar, S& s) {
   ar(t.grain_steps);
   ar(t.list_steps);
   ar(t.list_builds);
+  each(ar, t.memory_order);
   ar(t.ledger);
 }
 

@@ -76,6 +76,8 @@ struct SolverState {
   Vector3 mean_spin = Vector3::Zero();      ///< axial(W + Omega) of the last sub-step, rad/s (dt > 0)
   std::uint64_t grain_steps = 0;            ///< grains times sub-steps made so far
   std::uint64_t list_builds = 0;
+  std::vector<std::int32_t>
+      memory_order;  ///< large assemblies: index into Grains by place in memory (memory_order.hpp)
   EnergyLedger ledger;
 };
 

@@ -7,6 +7,7 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/solver/inertia.hpp"
+#include "rvelab/solver/sweep.hpp"
 
 namespace rvelab {
 
@@ -138,12 +139,23 @@ Vector3 rotation_vector(const Matrix3& rotation) {
 }
 
 Matrix3 kinetic_moment(const Fixture& f, const Assembly& a) {
-  Matrix3 sum = Matrix3::Zero();
-  for (std::size_t g = 0; g < f.size(); ++g) {
-    const Vector3 v = a.velocity(f, g) - a.state.mean_velocity;
-    for (int r = 0; r < 3; ++r)
-      for (int k = 0; k < 3; ++k) sum(r, k) -= a.mass[g] * (v[r] * v[k]);
+  // Called every few sub-steps under stress control.
+  const double* v = a.rows.data() + f.velocity_offset();
+  const Vector3 mean = a.state.mean_velocity;
+  double xx = 0, yy = 0, zz = 0, yz = 0, xz = 0, xy = 0;
+  for (std::size_t g = 0; g < f.size(); ++g, v += f.row_length()) {
+    const double mass = a.mass[g], x = v[0] - mean[0], y = v[1] - mean[1];
+    xx -= mass * (x * x);
+    yy -= mass * (y * y);
+    xy -= mass * (x * y);
+    if (f.shape == Shape::disc) continue;
+    const double z = v[2] - mean[2];
+    zz -= mass * (z * z);
+    yz -= mass * (y * z);
+    xz -= mass * (x * z);
   }
+  Matrix3 sum;
+  sum << xx, xy, xz, xy, yy, yz, xz, yz, zz;
   return sum;
 }
 
@@ -188,6 +200,7 @@ void begin_loading(const Fixture& f, Assembly& a, Loading loading) {
 void advance(const Fixture& f, Assembly& a, const Advance& what) {
   const bool physical = what.loading == Loading::physical;
   StepConstants c = base_constants(f, a);
+  c.losses = f.options.ledger;
   c.local_damping = physical ? f.damping.local : f.damping.local_quasi_static;
   const auto kind = std::size_t(damping_kind(f.damping, what.loading));
   const GrainKernel move = physical ? f.kernels.dynamic[kind] : f.kernels.quasi_static[kind];
@@ -200,6 +213,7 @@ void advance(const Fixture& f, Assembly& a, const Advance& what) {
   PairArrays pairs = arrays_of(a.pairs);
   GrainArrays grains = arrays_of(a);
   const long padded_grains = long(a.mass.size());
+  Workers* team = f.size() >= least_shared_grains ? f.team : nullptr;
   StepSums sums;
   Matrix3 rate_end, rate_mid, moment_before = Matrix3::Zero();
   if (f.options.ledger) moment_before = contact_moment(f, a);
@@ -215,7 +229,7 @@ void advance(const Fixture& f, Assembly& a, const Advance& what) {
       set_frame_terms(rate_mid, omega, mean_spin - a.state.mean_spin, c);
       a.state.mean_spin = mean_spin;
     }
-    move(c, grains, pairs, 0, padded_grains, &sums);
+    sweep_grains(move, c, grains, pairs, padded_grains, team, sums);
     // The rows that pad the lanes lose the mean velocity too, step after step; their speed must never count.
     std::fill(a.rows.begin() + std::ptrdiff_t(f.size()) * f.row_length(), a.rows.end(), 0.0);
     for (int k = 0; k < 3; ++k) a.state.mean_velocity[k] = sums.momentum[k] / total_mass;
@@ -244,7 +258,7 @@ void advance(const Fixture& f, Assembly& a, const Advance& what) {
       grains = arrays_of(a);
     }
     if (!f.options.ledger) {
-      f.kernels.pairs(c, pairs, a.rows.data(), 0, long(a.pairs.padded()), nullptr);
+      sweep_pairs(f.kernels.pairs, c, pairs, a.rows.data(), long(a.pairs.padded()), team);
       continue;
     }
     Dissipation lost;

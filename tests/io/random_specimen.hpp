@@ -21,6 +21,8 @@
 
 namespace rvelab::test {
 
+class RandomFill;
+
 /// Calls visit(a.field, b.field) for every scalar, tensor, text or vector of two values.
 template <class Visit>
 struct Pairs {
@@ -103,10 +105,10 @@ struct Pairs {
     all(k, k2, l, l2, m, m2, n, n2, o, o2, p, p2, q, q2, r, r2);
   }
   void fields(SolverState& a, SolverState& b) {
-    auto& [k, l, positions, m, n, o, p, q, r, s, t, u, v, w, x, y, z, c, ledger] = a;
-    auto& [k2, l2, positions2, m2, n2, o2, p2, q2, r2, s2, t2, u2, v2, w2, x2, y2, z2, c2, ledger2] = b;
+    auto& [k, l, positions, m, n, o, p, q, r, s, t, u, v, w, x, y, z, c, order, ledger] = a;
+    auto& [k2, l2, positions2, m2, n2, o2, p2, q2, r2, s2, t2, u2, v2, w2, x2, y2, z2, c2, order2, ledger2] = b;
     all(k, k2, l, l2, m, m2, n, n2, o, o2, p, p2, q, q2, r, r2, s, s2, t, t2, u, u2, v, v2, w, w2, x, x2, y, y2);
-    all(z, z2, c, c2, positions, positions2);
+    all(z, z2, c, c2, positions, positions2, order, order2);
     fields(ledger, ledger2);
   }
   void fields(ProbeResult& a, ProbeResult& b) {
@@ -118,14 +120,23 @@ struct Pairs {
     }
   }
   void fields(Progress& a, Progress& b) {
-    auto& [k, l, m, n, o, p, q, r, s, t, u, v, w, x, y, z] = a;
-    auto& [k2, l2, m2, n2, o2, p2, q2, r2, s2, t2, u2, v2, w2, x2, y2, z2] = b;
+    auto& [k, l, m, n, o, p, q, r, s, t, u, v, strains, first, turns, place, visits, largest, w, x, y, z] = a;
+    auto& [k2, l2, m2, n2, o2, p2, q2, r2, s2, t2, u2, v2, strains2, first2, turns2, place2, visits2, largest2, w2, x2,
+           y2, z2] = b;
     all(k, k2, l, l2, m, m2, n, n2, o, o2, p, p2, q, q2, r, r2, s, s2, t, t2, u, u2, v, v2, w, w2, x, x2, y, y2, z, z2);
+    all(strains, strains2, first, first2, turns, turns2, place, place2, visits, visits2, largest, largest2);
   }
   void fields(Record& a, Record& b) {
-    auto& [k, l, m, n, o, p, q, r, s, t, u, v, w] = a;
-    auto& [k2, l2, m2, n2, o2, p2, q2, r2, s2, t2, u2, v2, w2] = b;
+    auto& [k, l, m, n, o, p, q, r, s, asked, t, u, v, w, mv, mz, f, bf, cs, rs, ee, ke] = a;
+    auto& [k2, l2, m2, n2, o2, p2, q2, r2, s2, asked2, t2, u2, v2, w2, mv2, mz2, f2, bf2, cs2, rs2, ee2, ke2] = b;
     all(k, k2, l, l2, m, m2, n, n2, o, o2, p, p2, q, q2, r, r2, s, s2, t, t2, u, u2, v, v2, w, w2);
+    all(mv, mv2, mz, mz2, f, f2, bf, bf2, cs, cs2, rs, rs2, ee, ee2, ke, ke2);
+    // What was not asked for is not kept: a record with random bits in all fields has asked for all.
+    if constexpr (std::is_same_v<Visit, RandomFill>) {
+      for (const QuantityName& each : quantity_names) asked |= each.quantity;
+    } else {
+      visit(asked, asked2);
+    }
   }
 };
 
@@ -215,6 +226,7 @@ inline Specimen random_specimen(unsigned seed, std::size_t grain_count = 17, std
   grains.material.resize(grain_count);
   for (auto* vectors : {&grains.position, &grains.velocity, &grains.spin}) vectors->resize(grain_count);
   specimen.state.list_positions.resize(grain_count);
+  specimen.state.memory_order.resize(grain_count);
   specimen.contacts.resize(contact_count);
   specimen.materials.resize(3);
   Pairs<RandomFill>{RandomFill(seed)}(specimen, specimen);
@@ -242,6 +254,8 @@ inline TestResult random_result(unsigned seed, std::size_t record_count = 23) {
 
 inline Checkpoint random_checkpoint(unsigned seed) {
   Checkpoint checkpoint{{}, random_specimen(seed)};
+  checkpoint.progress.visits.resize(2);
+  checkpoint.progress.largest.resize(7);
   Checkpoint filled = checkpoint;
   Pairs<RandomFill>{RandomFill(seed + 1)}(filled, filled);
   return {filled.progress, checkpoint.specimen};

@@ -29,15 +29,67 @@ rate_1_s = 0.1
 file = "S.h5"
 [calibrate]
 pressures_Pa = [1e4]
+[output]
+quantities = ["void_ratio"]
 [[stage]]
 kind = "isotropic"
 [[stage]]
 kind = "compression"
 to_strain = 0.1
+cycles = 2
+reverse_at_Pa = 1e3
+  [[stage.until]]
+  quantity = "q_Pa"
+  above = 1e4
+  then = "simple_shear"
+  [[stage.until]]
+  quantity = "p_Pa"
+  below = 1e3
+  [[stage.until]]
+  quantity = "q_over_p"
+  falls_by = 0.1
 [[stage]]
 kind = "simple_shear"
 to_strain = 0.1
 normal = "constant_stress"
+cycles = 2
+reverse_at_Pa = 1e3
+[[stage]]
+kind = "pressure_path"
+to_Pa = [1e4, 2e4]
+[[stage]]
+kind = "deviatoric"
+to_strain = 0.1
+[[stage]]
+kind = "path"
+axis = "x"
+  [[stage.row]]
+  name = "axial"
+  strain = {zz = -1}
+  to = [0.1]
+  [[stage.row]]
+  name = "lateral"
+  stress = {xx = -1}
+  strain_Pa = {yy = 1e3}
+  to_Pa = [1e4]
+  [[stage.row]]
+  name = "equal"
+  stress = {xx = 1, yy = -1}
+[[stage]]
+kind = "flow"
+gradient = {xz = 1}
+to_strain = 0.1
+[[stage]]
+kind = "deformation"
+gradients = [[1, 0, 0.1, 0, 1, 0, 0, 0, 1]]
+[[stage]]
+name = "strains"
+kind = "envelope"
+[[stage]]
+name = "stresses"
+kind = "envelope"
+probes = "stress"
+size_Pa = 1e3
 [[stage]]
 kind = "relax"
 [[stage]]
@@ -69,8 +121,53 @@ std::string some_value(const protocol::ProtocolKey& entry) {
       return std::to_string(std::lround(std::min(entry.range.high, entry.range.low + 1)));
     case KeyKind::number:
       return "0.005";
+    case KeyKind::words:
+      return "[\"" + entry.words.front() + "\"]";
+    case KeyKind::components:
+      return "{zz = 1.0}";
+    case KeyKind::matrices:
+      return "[[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]]";
+    case KeyKind::tables:
+      return "[{name = \"a\", strain = {xx = 1.0}, to = [0.1]}]";
   }
   return "";
+}
+
+/// The key as an assignment names it in `every_table`: rows, events and stages of which there are several by number.
+std::string assigned_name(const Key& key) {
+  const bool of_stress = key.name == "stress" || key.name == "strain_Pa" || key.name == "to_Pa";
+  if (key.table == "stage.path.row") return std::string("stage.path.row.") + (of_stress ? "1." : "0.") + key.name;
+  const char* event = key.name == "below" ? "1." : key.name == "falls_by" ? "2." : "0.";
+  if (key.table == "stage.until") return std::string("stage.compression.until.") + event + key.name;
+  if (key.table == "stage.envelope") return (key.name == "size_Pa" ? "stage.stresses." : "stage.strains.") + key.name;
+  return key.dotted();
+}
+
+/// How messages call it.
+std::string said_name(const Key& key) {
+  const std::string assigned = assigned_name(key);
+  if (key.table != "stage.path.row") return assigned;
+  return std::string("stage.path.row.") + (assigned.find("row.1.") != std::string::npos ? "lateral." : "axial.") +
+         key.name;
+}
+
+/// The value of a key of the resolved protocol, wherever in its stages, rows and events it stands.
+const toml::node* found_in(const toml::table& resolved, const Key& key) {
+  const toml::node* found = nullptr;
+  const std::string kind = key.table.substr(key.table.find('.') + 1);
+  for (const auto& each : *resolved["stage"].as_array()) {
+    const toml::table& stage = *each.as_table();
+    const auto look = [&](const toml::table& table) {
+      if (table.contains(key.name)) found = table.get(key.name);
+    };
+    if (stage["kind"].value_or(std::string()) == kind) look(stage);
+    for (const char* list : {"row", "until"}) {
+      const bool wanted = key.table == "stage.path.row" ? list[0] == 'r' : key.table == "stage.until" && list[0] == 'u';
+      if (!wanted || !stage.contains(list)) continue;
+      for (const auto& item : *stage[list].as_array()) look(*item.as_table());
+    }
+  }
+  return found;
 }
 
 }  // namespace
@@ -79,7 +176,7 @@ TEST_CASE("every key of the table is read, and each with the default that it sta
   // The readers of all tables run here: each throws std::logic_error if it asks for a key that has no entry, or leaves
   // one out.
   const Protocol read = parse_protocol(every_table, "t.toml");
-  CHECK(read.stages.size() == 5);
+  CHECK(read.stages.size() == 12);
   std::set<std::string> names;
   const auto resolved = toml::parse(read.resolved);
   for (const auto& entry : protocol::protocol_keys()) {
@@ -89,18 +186,9 @@ TEST_CASE("every key of the table is read, and each with the default that it sta
     CHECK((!key.unit.empty() && !key.type.empty() && !key.range.empty() && !key.meaning.empty()));
     const bool of_stage = key.table.starts_with("stage");
     if (key.table == "stage") continue;  // kind and name are every stage's own
-    const std::string table = of_stage ? "stage" : key.table;
-    const toml::node* node = nullptr;
-    if (of_stage) {
-      for (const auto& stage : *resolved["stage"].as_array()) {
-        if ("stage." + (*stage.as_table())["kind"].value_or(std::string()) == key.table) {
-          node = stage.as_table()->get(key.name);
-        }
-      }
-    } else {
-      node = resolved[table].as_table()->get(key.name);
-    }
-    if (key.name == "inertial_number") continue;  // one of the two rates only
+    const toml::node* node = of_stage ? found_in(resolved, key) : resolved[key.table].as_table()->get(key.name);
+    if (key.name == "cycles" && key.table != "stage.path") continue;  // set above, for reverse_at_Pa
+    if (key.name == "inertial_number") continue;                      // one of the two rates only
     REQUIRE(node != nullptr);
     if (const auto* number = std::get_if<double>(&entry.initial)) CHECK(node->value<double>() == *number);
     if (const auto* whole = std::get_if<long>(&entry.initial)) CHECK(node->value<std::int64_t>() == *whole);
@@ -112,20 +200,20 @@ TEST_CASE("every key of the table is read, and each with the default that it sta
 TEST_CASE("every key of a protocol can be set by an assignment, and refuses what is not of its kind") {
   for (const auto& entry : protocol::protocol_keys()) {
     const Key& key = entry.key;
-    if (key.table == "stage") continue;
+    if (key.table == "stage" || key.name == "then") continue;  // names of stages are a test of their own
+    const std::string name = assigned_name(key), said = said_name(key);
     CAPTURE(key.dotted());
     // A value may contradict another key; then the message says so, and not that it is unknown, a wrong type or range.
-    const std::string message = message_of(every_table, {key.dotted() + "=" + some_value(entry)});
+    const std::string message = message_of(every_table, {name + "=" + some_value(entry)});
     CAPTURE(message);
     const bool fits = message.empty() || message.find("contradicts") != std::string::npos;
     CHECK(fits);
-    const std::string wrong = message_of(every_table, {key.dotted() + "={a = 1}"});
-    CHECK_THAT(wrong, Contains("--set " + key.dotted() + "={a = 1}: ") && Contains("; allowed: "));
+    const std::string wrong = message_of(every_table, {name + "={a = 1}"});
+    CHECK_THAT(wrong, Contains("--set " + name + "={a = 1}: ") && Contains("; allowed: "));
     if (entry.kind == protocol::KeyKind::number) {
       for (const char* number : {"nan", "inf", "-inf"}) {
-        CHECK_THAT(
-            message_of(every_table, {key.dotted() + "=" + number}),
-            Contains(key.dotted() + " = " + number + " is not finite; allowed: ") && Contains("give a finite number"));
+        CHECK_THAT(message_of(every_table, {name + "=" + number}),
+                   Contains(said + " = " + number + " is not finite; allowed: ") && Contains("give a finite number"));
       }
     }
   }

@@ -133,7 +133,7 @@ TEST_CASE("Missing keys are told by name") {
   CHECK(contains(message, "test.name is missing"));
   CHECK(contains(message, "stage.compression.to_strain is missing"));
   CHECK(contains(message, "stage.compression.lateral_pressure_Pa is missing, and so is test.pressure_Pa"));
-  CHECK(contains(message, "stage.b.kind is missing; allowed: isotropic, compression, simple_shear, relax, probe"));
+  CHECK(contains(message, "stage.b.kind is missing; allowed: isotropic, compression, simple_shear, pressure_path, "));
   CHECK(contains(message, "stage.isotropic.pressure_Pa is missing"));
 }
 

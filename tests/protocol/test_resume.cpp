@@ -23,6 +23,22 @@ const char* const all_stages =
     "[[stage]]\nkind = \"relax\"\nrecord = true\n"
     "[[stage]]\nkind = \"simple_shear\"\nto_strain = 0.003\n";
 
+/// Those whose place is more than a number of records: events that lead back, cycles, rows, copies.
+const char* const wandering_stages =
+    "[test]\nname = \"wandering\"\npressure_Pa = 20e3\n[output]\nquantities = [\"fabric\", \"void_ratio\"]\n"
+    "[[stage]]\nname = \"forth\"\nkind = \"simple_shear\"\nto_strain = 0.01\nrecord_every = 2e-4\n"
+    "  [[stage.until]]\n  quantity = \"visits\"\n  above = 1\n  then = \"cycles\"\n"
+    "  [[stage.until]]\n  quantity = \"q_Pa\"\n  falls_by = 0.5\n  then = \"end\"\n"
+    "  [[stage.until]]\n  quantity = \"stress_xy_Pa\"\n  above = 2e3\n"
+    "[[stage]]\nname = \"back\"\nkind = \"flow\"\ngradient = {xy = -1}\nto_strain = 2e-4\nrecord_every = 1e-4\n"
+    "then = \"forth\"\n"
+    "[[stage]]\nname = \"cycles\"\nkind = \"compression\"\nlateral = \"constant_volume\"\nto_strain = 0.01\n"
+    "record_every = 2e-4\ncycles = 1\nreverse_at_Pa = 2e3\n"
+    "[[stage]]\nkind = \"envelope\"\ndirections = 2\nsize = 1e-5\n"
+    "[[stage]]\nkind = \"path\"\nrecords_per_point = 3\ncycles = 2\n"
+    "  [[stage.row]]\n  name = \"volume\"\n  strain = {xx = 1, yy = 1}\n"
+    "  [[stage.row]]\n  name = \"q\"\n  stress = {xx = 1, yy = -1}\n  to_Pa = [3e3, 0.0]\n";
+
 Protocol protocol_of(const std::string& text) { return parse_protocol(text, "test.toml"); }
 
 void expect_same(const TestRun& a, const TestRun& b) {
@@ -70,6 +86,23 @@ TEST_CASE("a test gone on with from any of its moments ends with every bit of th
   CHECK((stages_seen >> 6 & 1) == 1);  // the moment after the last stage among them
 }
 
+TEST_CASE("a test whose stages lead back, turn or copy is gone on with from any of its moments") {
+  const Specimen specimen = reference_specimen("dense_p20");
+  const Protocol protocol = protocol_of(wandering_stages);
+  const TestRun undisturbed = run_protocol(protocol, specimen);
+  std::vector<Stop> stops;
+  expect_same(undisturbed, run_keeping(protocol, specimen, stops));
+  REQUIRE(stops.size() > 30);
+  std::int32_t stages_seen = 0;
+  for (std::size_t k = 0; k < stops.size(); ++k) {
+    const Progress& progress = stops[k].checkpoint.progress;
+    CAPTURE(k, progress.stage, progress.phase, progress.step, progress.turns);
+    stages_seen |= 1 << progress.stage;
+    expect_same(undisturbed, resume_protocol(protocol, stops[k].checkpoint, stops[k].result));
+  }
+  CHECK(stages_seen == 63);
+}
+
 TEST_CASE("a test stopped at any time, within an increment too, ends as the undisturbed one when it is gone on with") {
   const Specimen specimen = reference_specimen("dense_p20");
   const Protocol protocol = protocol_of(all_stages);
@@ -101,7 +134,8 @@ TEST_CASE("a relaxation of several slices is gone on with in its middle") {
   specimen.cell.lattice *= 0.995;
   for (auto& position : specimen.grains.position) position *= 0.995;
   const Protocol protocol = protocol_of(
-      "[test]\nname = \"relax\"\n[[stage]]\nkind = \"relax\"\nunbalanced = 2.1e-10\nmax_steps = 200000\nrecord = true\n");
+      "[test]\nname = \"relax\"\n[[stage]]\nkind = \"relax\"\nunbalanced = 2.1e-10\nmax_steps = 200000\nrecord = "
+      "true\n");
   std::vector<Stop> stops;
   TestRun undisturbed;
   try {

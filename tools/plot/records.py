@@ -7,6 +7,7 @@ measure (sigma_1, sigma_3, p, q, eps_v, eps_a) is compression positive.
 import math
 import pathlib
 import sys
+import tomllib
 from dataclasses import dataclass
 
 import h5py
@@ -54,6 +55,79 @@ class Test:
         deviator = self.stress - p[:, None, None] * np.eye(self.dimension)
         factor = 0.5 if self.dimension == 2 else 1.5
         return p, np.sqrt(factor * np.einsum("nij,nij->n", deviator, deviator))
+
+
+@dataclass
+class Stage:
+    """One visit of a stage with records."""
+
+    path: pathlib.Path
+    kind: str
+    label: str
+    axis: str  # loading axis of the file's last driven stage: "y", "xy", ...; may be empty
+    dimension: int
+    strain: np.ndarray
+    stress: np.ndarray  # (n, d, d) Pa, compression positive
+    deformation: np.ndarray  # (n, d, d), F since the start of the stage
+    held: np.ndarray
+    columns: dict  # by the names of the datasets under /records
+
+    invariants = Test.invariants
+
+    def has(self, name):
+        return name in self.columns
+
+    def column(self, name):
+        if name not in self.columns:
+            raise ValueError(f"{self.path}: its records have no {name}; run the test with it in [output] quantities")
+        return self.columns[name]
+
+
+def stages_of(path):
+    """Every visit of a stage with at least two records, in order."""
+    test = read_test(path)  # says what is wrong with the file
+    with h5py.File(path, "r") as file:
+        columns = {name: file["records/" + name][()] for name in file["records"]}
+        names = [name.decode() for name in file["test/stages"][()]]
+        axis = np.ravel(file["test/axis"][()])[0].decode()
+        protocol = tomllib.loads(np.ravel(file["provenance/protocol"][()])[0].decode())
+    kinds = {stage.get("name", stage["kind"]): stage["kind"] for stage in protocol.get("stage", [])}
+    # A stage begins with a record that no sub-step led to.
+    begin = (columns["substeps"] == 0) & np.all(columns["deformation_gradient"] == np.eye(3), axis=(1, 2))
+    change = np.flatnonzero((np.diff(columns["stage"]) != 0) | begin[1:]) + 1
+    stages = []
+    for rows in np.split(np.arange(len(columns["stage"])), change):
+        if len(rows) < 2:
+            continue
+        name = names[columns["stage"][rows[0]]]
+        own = {key: values[rows] for key, values in columns.items()}
+        d = test.dimension
+        stages.append(Stage(pathlib.Path(path), kinds.get(name, ""), name, axis, d, own["strain"],
+                            -own["stress_Pa"][:, :d, :d], own["deformation_gradient"][:, :d, :d],
+                            own["target_held"].astype(bool), own))
+    return stages
+
+
+def read_stages(paths):
+    """The stages of record files, or of all *.h5 of folders; labels name the file where there are several."""
+    files = []
+    for path in map(pathlib.Path, paths):
+        files += sorted(path.glob("*.h5")) if path.is_dir() else [path]
+    stages = [stage for file in files for stage in stages_of(file)]
+    for stage in stages:
+        if len(files) > 1:
+            stage.label = f"{stage.path.stem}: {stage.label}"
+    if not stages:
+        raise ValueError(f"{', '.join(map(str, paths))}: no stage with records there; give record files or their folder")
+    return stages
+
+
+def read_driven_stages(paths):
+    """The same without envelopes and rests, whose records are no curve."""
+    stages = [stage for stage in read_stages(paths) if stage.kind not in ("envelope", "relax", "isotropic")]
+    if not stages:
+        raise ValueError(f"{', '.join(map(str, paths))}: no stage with a curve of records there")
+    return stages
 
 
 def read_test(path):
@@ -108,11 +182,11 @@ def plain(value):
     return f"{value:.4g}"
 
 
-def run(draw, parser):
+def run(draw, parser, read=read_tests):
     """Parses the command line, draws, and turns a user's mistake into one line on stderr and exit code 2."""
     options = parser.parse_args()
     try:
-        tests = read_tests(options.records)
+        tests = read(options.records)
         with plt.rc_context(STYLE):
             print(draw(tests, options))
     except (ValueError, OSError) as error:

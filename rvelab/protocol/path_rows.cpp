@@ -1,0 +1,265 @@
+#include "rvelab/protocol/path_rows.hpp"
+
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+#include "rvelab/error.hpp"
+#include "rvelab/measure/tensor_order.hpp"
+#include "rvelab/protocol/directions.hpp"
+#include "rvelab/protocol/drive.hpp"
+
+namespace rvelab::protocol {
+namespace {
+
+constexpr const char* component_names_3d[] = {"xx", "yy", "zz", "yz", "xz", "xy"};
+
+std::string component_name(int k, int dimension) { return component_names_3d[dimension == 2 && k == 2 ? 5 : k]; }
+
+/// A over the components of strain with engineering shear, as B over those of stress is with every shear once.
+Eigen::VectorXd strain_factors(const Matrix3& a, int dimension) { return stress_components(a, dimension); }
+Eigen::VectorXd stress_factors(const Matrix3& b, int dimension) {
+  Eigen::VectorXd factors = stress_components(b, dimension);
+  for (int k = dimension; k < factors.size(); ++k) factors[k] *= 2;
+  return factors;
+}
+
+/// One row of [A B], each row of unit length.
+Eigen::MatrixXd both_of(const std::vector<PathRow>& rows, int dimension) {
+  const int n = component_count(dimension);
+  Eigen::MatrixXd both(static_cast<Eigen::Index>(rows.size()), 2 * n);
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    both.row(static_cast<Eigen::Index>(r)) << strain_factors(rows[r].strain, dimension).transpose(),
+        stress_factors(rows[r].stress, dimension).transpose();
+  }
+  for (Eigen::Index r = 0; r < both.rows(); ++r) {
+    const double size = both.row(r).norm();
+    if (size > 0) both.row(r) /= size;
+  }
+  return both;
+}
+
+std::string quoted(const std::string& name) { return "\"" + name + "\""; }
+
+/// Names of the rows before `row` that it is a combination of; empty if it is none. Their factors go into `factors`.
+std::string combination(const Eigen::MatrixXd& both, const std::vector<PathRow>& rows, Eigen::Index row,
+                        Eigen::VectorXd& factors) {
+  if (row == 0) return "";
+  const Eigen::MatrixXd before = both.topRows(row).transpose();
+  factors = before.completeOrthogonalDecomposition().solve(both.row(row).transpose());
+  if ((before * factors - both.row(row).transpose()).norm() > 1e-9) return "";
+  std::string names;
+  for (Eigen::Index k = 0; k < row; ++k) {
+    if (std::abs(factors[k]) < 1e-9) continue;
+    names += (names.empty() ? "" : ", ") + quoted(rows[static_cast<std::size_t>(k)].name);
+  }
+  return names;
+}
+
+/// A combination of rows that is met at every point if the others are.
+bool agrees(const std::vector<PathRow>& rows, const Eigen::MatrixXd& both, Eigen::Index row,
+            const Eigen::VectorXd& factors, int dimension, long points) {
+  const auto size_of = [&](std::size_t r) {
+    return std::sqrt(strain_factors(rows[r].strain, dimension).squaredNorm() +
+                     stress_factors(rows[r].stress, dimension).squaredNorm());
+  };
+  const auto at = [&](std::size_t r, long point) {
+    return rows[r].to.empty() ? 0.0 : rows[r].to[static_cast<std::size_t>(point)] / size_of(r);
+  };
+  for (long point = 0; point < points; ++point) {
+    double sum = 0, largest = 0;
+    for (Eigen::Index k = 0; k < row; ++k) {
+      sum += factors[k] * at(static_cast<std::size_t>(k), point);
+      largest = std::max(largest, std::abs(factors[k] * at(static_cast<std::size_t>(k), point)));
+    }
+    const double own = at(static_cast<std::size_t>(row), point);
+    if (std::abs(sum - own) > 1e-9 * std::max(largest, std::abs(own))) return false;
+  }
+  static_cast<void>(both);
+  return true;
+}
+
+/// True if the rows determine the strain increment of a solid, isotropic one as an example.
+bool determine_strain(const std::vector<PathRow>& rows, int dimension) {
+  const int n = component_count(dimension);
+  Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(n, n);
+  for (int k = 0; k < n; ++k) {
+    stiffness(k, k) = k < dimension ? 1.6 : 0.45;
+    for (int l = 0; l < dimension && k < dimension; ++l) stiffness(k, l) += 0.7;
+  }
+  Eigen::MatrixXd system(n, n);
+  for (int r = 0; r < n; ++r) {
+    const PathRow& row = rows[static_cast<std::size_t>(r)];
+    Eigen::RowVectorXd a = strain_factors(row.strain, dimension).transpose();
+    Eigen::RowVectorXd b = stress_factors(row.stress, dimension).transpose() * stiffness;
+    if (row.in_stress() && !row.strain.isZero(0)) b *= a.norm() / std::max(1e-300, b.norm());
+    system.row(r) = a + b;
+    system.row(r) /= std::max(1e-300, system.row(r).norm());
+  }
+  return Eigen::FullPivLU<Eigen::MatrixXd>(system).isInvertible();
+}
+
+double logarithm(double x) {
+  // ln x = 2 (y + y^3/3 + ...), y = (x - 1)/(x + 1): increments are small, and no libm touches state.
+  const double y = (x - 1) / (x + 1), square = y * y;
+  double sum = 0;
+  for (int k = 41; k >= 1; k -= 2) sum = sum * square + 1.0 / k;
+  return 2 * y * sum;
+}
+
+}  // namespace
+
+std::vector<PathRow> completed(const PathStage& stage, int dimension) {
+  std::vector<PathRow> rows = stage.rows;
+  for (int k = 0; k < component_count(dimension); ++k) {
+    const auto [i, j] = component_axes(k, dimension);
+    const bool named = std::any_of(stage.rows.begin(), stage.rows.end(), [&, i = i, j = j](const PathRow& row) {
+      return row.strain(i, j) != 0 || row.stress(i, j) != 0;
+    });
+    if (named) continue;
+    PathRow row;
+    row.name = "strain " + component_name(k, dimension) + " = 0, since no row names it";
+    row.strain(i, j) = row.strain(j, i) = 1;
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+std::string mistake_of_rows(const PathStage& stage, int dimension) {
+  for (const PathRow& row : stage.rows) {
+    if (dimension == 2 && !(row.strain.col(2).isZero(0) && row.stress.col(2).isZero(0))) {
+      return "row " + quoted(row.name) + " names a component along z, which a 2D specimen has not; allowed: xx, yy, xy";
+    }
+  }
+  const std::vector<PathRow> rows = completed(stage, dimension);
+  const Eigen::MatrixXd both = both_of(rows, dimension);
+  for (Eigen::Index r = 0; r < both.rows(); ++r) {
+    Eigen::VectorXd factors;
+    const std::string others = combination(both, rows, r, factors);
+    if (others.empty()) continue;
+    const bool same = agrees(rows, both, r, factors, dimension, stage.points);
+    return "row " + quoted(rows[static_cast<std::size_t>(r)].name) + (same ? " follows from " : " contradicts ") +
+           others + (same ? " (dependent constraints)" : ", from which it would follow with other targets") +
+           "; remove one of them";
+  }
+  const int needed = component_count(dimension);
+  if (static_cast<int>(rows.size()) != needed) {
+    std::string names;
+    for (const PathRow& row : rows) names += (names.empty() ? "" : ", ") + quoted(row.name);
+    return std::to_string(rows.size()) + " constraints (" + names + "); allowed in " + std::to_string(dimension) +
+           "D: " + std::to_string(needed) + "; " + (static_cast<int>(rows.size()) > needed ? "remove" : "add") +
+           " a row";
+  }
+  if (!determine_strain(rows, dimension)) {
+    return "the rows leave a strain open and prescribe others twice; give one row for each component or independent "
+           "combination";
+  }
+  return "";
+}
+
+double row_value(const PathRow& row, const Matrix3& strain_sum, const Matrix3& stress) {
+  return row.strain.cwiseProduct(strain_sum).sum() + row.stress.cwiseProduct(stress).sum();
+}
+
+double row_target(const PathStage& stage, const PathRow& row, long step, const Matrix3& first_stress) {
+  const double first = row_value(row, Matrix3::Zero(), first_stress);
+  if (row.to.empty() || step == 0) return first;
+  const long leg = (step - 1) / stage.records_per_point, point = leg % stage.points;
+  const long within = (step - 1) % stage.records_per_point + 1;
+  const double end = row.to[static_cast<std::size_t>(point)];
+  if (within == stage.records_per_point) return end;
+  const double begin = leg == 0 ? first : point == 0 ? row.to.back() : row.to[static_cast<std::size_t>(point - 1)];
+  return begin + (end - begin) * static_cast<double>(within) / static_cast<double>(stage.records_per_point);
+}
+
+long path_steps(const PathStage& stage) { return stage.cycles * stage.points * stage.records_per_point; }
+
+std::vector<double> volume_factors(const std::vector<PathRow>& rows, int dimension) {
+  Eigen::MatrixXd strains = Eigen::MatrixXd::Zero(component_count(dimension), static_cast<Eigen::Index>(rows.size()));
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    if (!rows[r].in_stress()) strains.col(static_cast<Eigen::Index>(r)) = strain_factors(rows[r].strain, dimension);
+  }
+  Eigen::VectorXd volume = Eigen::VectorXd::Zero(strains.rows());
+  volume.head(dimension).setOnes();
+  const Eigen::VectorXd factors = strains.completeOrthogonalDecomposition().solve(volume);
+  if ((strains * factors - volume).norm() > 1e-12) return {};
+  return {factors.data(), factors.data() + factors.size()};
+}
+
+Matrix3 strain_increment(const Matrix3& displacement_gradient, int dimension) {
+  Matrix3 strain = 0.5 * (displacement_gradient + displacement_gradient.transpose());
+  const double volume = logarithm((Matrix3::Identity() + displacement_gradient).determinant());
+  const double shift = (volume - strain.trace()) / dimension;
+  for (int k = 0; k < dimension; ++k) strain(k, k) += shift;
+  return strain;
+}
+
+PathStage path_of(const DeviatoricStage& stage, int dimension) {
+  PathStage path;
+  PathRow drive{"eps_q", {}, {}, {stage.to_strain}}, pressure{"p", {}, {}, {stage.pressure}};
+  drive.strain.setZero();
+  drive.stress.setZero();
+  pressure.strain.setZero();
+  pressure.stress.setZero();
+  for (int k = 0; k < dimension; ++k) pressure.stress(k, k) = -1.0 / dimension;
+  path.records_per_point = std::max(1L, std::lround(stage.to_strain / stage.record_every));
+  if (dimension == 2) {
+    // e along (1, -1): eps_q = sqrt(2 e:e) = |e_xx - e_yy|
+    drive.strain(0, 0) = 1;
+    drive.strain(1, 1) = -1;
+    path.axis = "y";
+    path.rows = {drive, pressure};
+    return path;
+  }
+  // Deviators, compression positive: axis k has cos(theta_k) with theta_z = theta, theta_x,y = theta -+ 120 degrees.
+  PathRow across{"deviator across", {}, {}, {}};
+  across.strain.setZero();
+  across.stress.setZero();
+  for (int k = 0; k < 3; ++k) {
+    const double turn = stage.lode_angle_deg + (k == 0 ? -120 : k == 1 ? 120 : 0);
+    const UnitVector direction = unit_vector(turn / 360);
+    drive.strain(k, k) = -2.0 / 3 * direction.cosine;
+    across.stress(k, k) = -2.0 / 3 * direction.sine;
+  }
+  path.axis = "z";
+  path.rows = {drive, pressure, across};
+  return path;
+}
+
+PathStage path_of(const PressurePathStage& stage, int dimension) {
+  PathStage path;
+  path.points = static_cast<long>(stage.pressures.size());
+  path.records_per_point = stage.records_per_point;
+  path.isotropic = true;
+  for (int k = 0; k < dimension; ++k) {
+    PathRow row{std::string("pressure ") + "xyz"[k], Matrix3::Zero(), Matrix3::Zero(), stage.pressures};
+    row.stress(k, k) = -1;
+    path.rows.push_back(row);
+  }
+  return path;
+}
+
+void expect_fits(const Protocol& protocol, int dimension) {
+  for (const Stage& stage : protocol.stages) {
+    std::string mistake;
+    if (const auto* path = std::get_if<PathStage>(&stage.what)) mistake = mistake_of_rows(*path, dimension);
+    if (dimension == 2) {
+      const auto* compression = std::get_if<CompressionStage>(&stage.what);
+      const auto* shear = std::get_if<SimpleShearStage>(&stage.what);
+      const auto* flow = std::get_if<FlowStage>(&stage.what);
+      const std::string axes = compression != nullptr ? compression->axis : shear != nullptr ? shear->plane : "";
+      const bool out_of_plane =
+          flow != nullptr && !(flow->gradient.row(2).isZero(0) && flow->gradient.col(2).isZero(0));
+      if (axes.find('z') != std::string::npos || out_of_plane) {
+        mistake = (compression != nullptr ? "axis = \"" + axes + "\""
+                   : shear != nullptr     ? "plane = \"" + axes + "\""
+                                          : std::string("gradient")) +
+                  " leaves the plane of a 2D specimen; allowed: x and y; change it";
+      }
+    }
+    if (!mistake.empty()) throw InputError(protocol.path + ": stage \"" + stage.name + "\": " + mistake);
+  }
+}
+
+}  // namespace rvelab::protocol

@@ -1,0 +1,54 @@
+// What an assembly can make again: the working arrays of its pairs, its masses, its forces. A resting one has let go of
+// them and keeps its list, so that waking searches nothing.
+#include "rvelab/solver/resting.hpp"
+
+#include <utility>
+
+#include "rvelab/solver/inertia.hpp"
+
+namespace rvelab {
+
+namespace {
+
+template <class... Arrays>
+void let_go(Arrays&... arrays) {
+  ((arrays = Arrays()), ...);
+}
+
+template <class Array>
+std::size_t bytes_of(const Array& array) {
+  return array.capacity() * sizeof(array[0]);
+}
+
+}  // namespace
+
+void rest(Assembly& a) {
+  PairTable& t = a.pairs;
+  let_go(t.row_i, t.row_j, t.kn, t.kt, t.friction, t.kr, t.moment_cap, t.cn, t.force, t.radius_i, t.radius_j,
+         t.slot_begin, t.slots, t.tasks, t.image_number[0], t.image_number[1], t.image_number[2]);
+  let_go(a.mass, a.inverse_mass, a.inverse_inertia);
+}
+
+void wake(const Fixture& f, Assembly& a) {
+  derive_pairs(f, a.pairs);
+  for (Buffer* b : {&a.mass, &a.inverse_mass, &a.inverse_inertia}) b->assign(padded_to_lanes(f.size()), 0.0);
+  use_physical_inertia(f, a);
+  evaluate_forces(f, a);
+  if (a.state.quasi_static) scale_inertia(f, row_sums(f, a), a);
+}
+
+Memory memory_of(const Assembly& a) {
+  const PairTable& t = a.pairs;
+  Memory m;
+  m.state = bytes_of(a.rows) + bytes_of(t.root_overlap) + bytes_of(a.state.memory_order);
+  for (int k = 0; k < 3; ++k) m.state += bytes_of(t.tangential[k]) + bytes_of(t.moment[k]);
+  m.list = bytes_of(t.i) + bytes_of(t.j) + bytes_of(t.image) + bytes_of(a.state.list_positions);
+  for (const Buffer* b :
+       {&t.kn, &t.kt, &t.friction, &t.kr, &t.moment_cap, &t.cn, &t.force, &t.radius_i, &t.radius_j, &t.image_number[0],
+        &t.image_number[1], &t.image_number[2], &a.mass, &a.inverse_mass, &a.inverse_inertia})
+    m.working += bytes_of(*b);
+  m.working += bytes_of(t.row_i) + bytes_of(t.row_j) + bytes_of(t.slot_begin) + bytes_of(t.slots) + bytes_of(t.tasks);
+  return m;
+}
+
+}  // namespace rvelab

@@ -1,0 +1,89 @@
+// The protocols that come with the program: each is read, says what it is, and runs (shortened) on a packing.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "rvelab/protocol/run.hpp"
+#include "tests/catch.hpp"
+#include "tests/protocol/reference_specimen.hpp"
+
+using namespace rvelab;
+
+namespace {
+
+std::vector<std::string> protocol_files() {
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(RVELAB_SOURCE_DIR "/protocols")) {
+    const std::string name = entry.path().filename();
+    if (name.ends_with(".toml") && !name.starts_with("pack")) files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// A few records of each stage.
+void shorten(Stage& stage) {
+  constexpr long few = 2;
+  const auto shorter = [](double& to_strain, double every) {
+    to_strain = (to_strain < 0 ? -1 : 1) * std::min(std::abs(to_strain), few * every);
+  };
+  if (auto* compression = std::get_if<CompressionStage>(&stage.what))
+    shorter(compression->to_strain, compression->record_every);
+  if (auto* shear = std::get_if<SimpleShearStage>(&stage.what)) {
+    shorter(shear->to_strain, shear->record_every);
+    shear->cycles.count = std::min(shear->cycles.count, 1L);
+  }
+  if (auto* deviatoric = std::get_if<DeviatoricStage>(&stage.what))
+    shorter(deviatoric->to_strain, deviatoric->record_every);
+  if (auto* flow = std::get_if<FlowStage>(&stage.what)) shorter(flow->to_strain, flow->record_every);
+  if (auto* path = std::get_if<PathStage>(&stage.what)) path->records_per_point = few;
+  if (auto* pressures = std::get_if<PressurePathStage>(&stage.what)) pressures->pressures.resize(1);
+  if (auto* envelope = std::get_if<EnvelopeStage>(&stage.what)) envelope->directions = 3;
+  if (auto* isotropic = std::get_if<IsotropicStage>(&stage.what)) isotropic->stress_tolerance = 1e-2;
+  if (auto* probe = std::get_if<ProbeStage>(&stage.what)) probe->method = ProbeStage::Method::linear;
+}
+
+}  // namespace
+
+TEST_CASE("Every protocol opens with what it is and where its numbers are from") {
+  REQUIRE(protocol_files().size() >= 18);
+  for (const std::string& file : protocol_files()) {
+    CAPTURE(file);
+    std::ifstream text(file);
+    std::string line, opening;
+    while (std::getline(text, line) && line.starts_with("#")) opening += line + "\n";
+    CHECK(opening.find("# Where the numbers are from.") != std::string::npos);
+    CHECK(opening.find("rvelab run ") != std::string::npos);
+    CHECK_FALSE(read_protocol(file).name.empty());
+  }
+}
+
+TEST_CASE("Every protocol runs through all its stages") {
+  const Specimen discs = reference_specimen("dense_p20"), spheres = reference_specimen("hertz");
+  for (const std::string& file : protocol_files()) {
+    CAPTURE(file);
+    Protocol protocol = read_protocol(file, {"test.pressure_Pa=20e3"});
+    for (Stage& stage : protocol.stages) shorten(stage);
+    const bool physical = protocol.loading.physical;
+    // Large shear brings its contacts; those of 3D otherwise start at their own pressure.
+    if (protocol.dimension == 3) {
+      for (Stage& stage : protocol.stages) {
+        if (auto* isotropic = std::get_if<IsotropicStage>(&stage.what)) isotropic->pressure = 100e3;
+        if (auto* compression = std::get_if<CompressionStage>(&stage.what)) compression->lateral_pressure = 100e3;
+      }
+    }
+    if (physical) {
+      protocol.overrides.erase("contact");
+      protocol.overrides.erase("material");
+      protocol.overrides.erase("damping");
+      protocol.overrides.erase("solver");
+      protocol.loading.rate = 50;
+    }
+    const TestRun run = run_protocol(protocol, protocol.dimension == 3 ? spheres : discs);
+    CHECK(run.complete);
+    long flagged = 0;
+    for (const Record& record : run.result.records) flagged += record.target_held ? 0 : 1;
+    CHECK(flagged == 0);
+    if (file.find("probe") == std::string::npos) CHECK(run.result.records.size() >= 3);
+  }
+}

@@ -1,0 +1,90 @@
+// One large cell shared among threads: the bits of a single thread. And the gather table: each pair once on each side,
+// in the order of the pairs.
+#include <atomic>
+#include <random>
+
+#include "rvelab/error.hpp"
+#include "rvelab/solver/gather_table.hpp"
+#include "rvelab/solver/sweep.hpp"
+#include "tests/oracle/specimens.hpp"
+
+using namespace rvelab;
+using namespace rvelab::test;
+
+TEST_CASE("A large cell has the same bits on any team of threads", "[solver]") {
+  for (const Shape shape : {Shape::disc, Shape::sphere}) {
+    Specimen start =
+        disordered(shape, shape == Shape::disc ? 175 : 32, linear_material(2e6, 1e6, 0.4), Law::linear_given, 0.52, 9);
+    REQUIRE(start.grains.size() >= least_shared_grains);
+    start.damping.local = 0.1;
+    start.solver.fixed_substeps = 12;
+    const auto end_state = [&](Workers* team) {
+      Rve rve(start);
+      rve.share(team);
+      rve.apply(gradient(-3e-3, 8e-3, 0, -1e-3), 0);
+      const auto saved = rve.save();
+      rve.restore(saved);
+      rve.apply(gradient(-1e-3, 6e-3, 0, -1e-3), 12 * rve.critical_time_step());
+      CHECK(rve.specimen().state.list_builds >= 3);  // the lists of the way are the team's too
+      return rve.save();
+    };
+    const auto alone = end_state(nullptr);
+    for (const unsigned threads : {1u, 2u, 3u, 5u, 8u}) {
+      Workers team(threads);
+      CHECK(end_state(&team) == alone);
+    }
+  }
+}
+
+TEST_CASE("Coming back to a saved state keeps the stop flag of the Rve", "[solver]") {
+  Rve rve(disordered(Shape::disc, 6, linear_material(2e6, 1e6, 0.4), Law::linear_given, 0.52, 3));
+  const std::atomic<bool> stop{true};
+  rve.watch(&stop);
+  rve.restore(rve.save());
+  CHECK_THROWS_AS(rve.apply(gradient(-1e-4, 0, 0, 0), 0), Interrupted);
+}
+
+TEST_CASE("The gather table names each pair once on either side, in the order of the pairs", "[solver]") {
+  std::mt19937_64 generator(5);
+  for (const std::size_t grains : {1u, 7u, 63u, 64u, 200u}) {
+    const std::size_t padded = (grains / 8 + 1) * 8;
+    constexpr std::int32_t row = 4;
+    PairTable pairs;
+    // A hub with many partners, grains with none, a grain with its own image.
+    for (std::size_t i = 0; i < grains; ++i)
+      for (std::size_t j = i; j < grains; ++j)
+        if ((i == 0 && j % 3 == 0) || (i > 0 && generator() % grains < 3)) {
+          pairs.i.push_back(std::int32_t(i));
+          pairs.j.push_back(std::int32_t(j));
+        }
+    pairs.listed = pairs.i.size();
+    fill_gather_table(padded, row, pairs);
+    REQUIRE(pairs.slot_begin.size() == padded / 2 + 1);
+    REQUIRE(pairs.tasks.size() == 2 * padded);
+    std::vector<std::vector<std::int32_t>> as_j(padded), as_i(padded);
+    std::vector<int> seen(2 * padded, 0);
+    for (std::size_t block = 0; block < padded / 2; ++block) {
+      const std::size_t chunk = 2 * block / std::size_t(chunk_grains) * std::size_t(chunk_grains);
+      for (std::size_t lane = 0; lane < 4; ++lane) {
+        const std::size_t task = pairs.tasks[4 * block + lane];
+        const bool is_i = task >= std::size_t(chunk_grains);
+        const std::size_t grain = chunk + (is_i ? task - std::size_t(chunk_grains) : task);
+        REQUIRE(grain < padded);
+        ++seen[2 * grain + std::size_t(is_i)];
+        for (auto slot = pairs.slot_begin[block]; slot < pairs.slot_begin[block + 1]; ++slot) {
+          const std::int32_t start = pairs.slots[4 * std::size_t(slot) + lane];
+          REQUIRE(start % row == 0);
+          if (std::size_t(start / row) < pairs.listed) (is_i ? as_i : as_j)[grain].push_back(start / row);
+        }
+      }
+    }
+    for (const int times : seen) REQUIRE(times == 1);
+    std::vector<std::vector<std::int32_t>> want_j(padded), want_i(padded);
+    for (std::size_t q = 0; q < pairs.listed; ++q) {
+      want_j[std::size_t(pairs.j[q])].push_back(std::int32_t(q));
+      want_i[std::size_t(pairs.i[q])].push_back(std::int32_t(q));
+    }
+    CHECK(as_j == want_j);
+    CHECK(as_i == want_i);
+  }
+}

@@ -1,0 +1,166 @@
+// What each part of a step costs, a grain: pairs, gather and integration, a list rebuild, the looks at balance and
+// stress.
+//
+//   build/release/bin/rvelab-bench --benchmark_repetitions=5 --benchmark_report_aggregates_only=true
+//
+// Each case is a packing of `rvelab bench` in slow shear. The clock of grain-steps is left alone: nothing moves between
+// two calls, so that every call does the same work.
+#include <benchmark/benchmark.h>
+
+#include <map>
+#include <string>
+
+#include "rvelab/pack/random_packing.hpp"
+#include "rvelab/solver/assembly.hpp"
+#include "rvelab/solver/inertia.hpp"
+#include "rvelab/solver/resting.hpp"
+#include "rvelab/solver/rve.hpp"
+#include "rvelab/solver/sweep.hpp"
+
+namespace {
+
+using namespace rvelab;
+
+struct Opened {
+  Fixture fixture;
+  Assembly assembly;
+  StepConstants constants;
+};
+
+PackingRecipe recipe_of(Shape shape) {
+  PackingRecipe r;
+  r.shape = shape;
+  r.material.friction = 0.5;
+  if (shape == Shape::disc) {
+    r.material.young_modulus = 8e8;
+    r.material.stiffness_ratio = 0.5;
+    return r;
+  }
+  r.grains = 1000;
+  r.smallest_radius = 1e-3;
+  r.largest_radius = 2e-3;
+  r.material.young_modulus = 7e9;
+  r.material.poisson_ratio = 0.25;
+  r.contact.law = Law::hertz_mindlin;
+  r.preparation_friction = 0.1;
+  return r;
+}
+
+/// A packing sheared by 0.1 %, opened.
+Opened opened(Shape shape, const Image& times) {
+  Specimen specimen = repeated(random_packing(recipe_of(shape)), times);
+  specimen.damping.local = 0.1;
+  Rve rve(specimen);
+  Matrix3 shear = Matrix3::Zero();
+  shear(0, dimension_of(shape) - 1) = 1e-3;
+  rve.apply(shear, 500 * rve.critical_time_step());
+  Opened o;
+  open(rve.specimen(), o.fixture, o.assembly);
+  o.constants = base_constants(o.fixture, o.assembly);
+  o.constants.map = {1, 0, 0, 1, 0, 1};
+  o.constants.local_damping = 0.1;
+  // Physical masses, and a step so short that thousands of them move nothing.
+  use_physical_inertia(o.fixture, o.assembly);
+  o.constants.dt = 1e-20;
+  o.constants.velocity_map = {1e-20, 0, 0, 1e-20, 0, 1e-20};
+  for (int k = 0; k < 3; ++k)
+    o.constants.momentum_map[4 * k] = o.constants.force_map[4 * k] = o.constants.spin_map[4 * k] = 1;
+  return o;
+}
+
+/// Packings are made when a benchmark first asks for one.
+Opened& packing(const std::string& name) {
+  static std::map<std::string, Opened> made;
+  const auto found = made.find(name);
+  if (found != made.end()) return found->second;
+  const Shape shape = name.starts_with("disc") ? Shape::disc : Shape::sphere;
+  const Image times = name == "disc_10000" ? Image{5, 5, 1} : name == "sphere_32000" ? Image{4, 4, 2} : Image{1, 1, 1};
+  return made.emplace(name, opened(shape, times)).first->second;
+}
+
+/// Seconds a call, shown for each grain.
+void per_grain(benchmark::State& state, const Opened& o) {
+  using benchmark::Counter;
+  state.counters["s/grain"] = Counter(double(o.fixture.size()), Counter::kIsIterationInvariantRate | Counter::kInvert);
+  state.counters["pairs/grain"] = double(o.assembly.pairs.listed) / double(o.fixture.size());
+}
+
+void pairs(benchmark::State& state, const std::string& name) {
+  Opened& o = packing(name);
+  const PairArrays arrays = arrays_of(o.assembly.pairs);
+  for (auto _ : state)
+    sweep_pairs(o.fixture.kernels.pairs, o.constants, arrays, o.assembly.rows.data(), long(o.assembly.pairs.padded()),
+                nullptr);
+  per_grain(state, o);
+}
+
+void gather_and_integrate(benchmark::State& state, const std::string& name, KernelDamping damping) {
+  Opened& o = packing(name);
+  const Buffer rows = o.assembly.rows;
+  const PairArrays arrays = arrays_of(o.assembly.pairs);
+  const GrainArrays grains = arrays_of(o.assembly);
+  StepSums sums;
+  for (auto _ : state)
+    sweep_grains(o.fixture.kernels.dynamic[std::size_t(damping)], o.constants, grains, arrays,
+                 long(o.assembly.mass.size()), nullptr, sums);
+  o.assembly.rows = rows;
+  per_grain(state, o);
+}
+
+void list_rebuild(benchmark::State& state, const std::string& name) {
+  Opened& o = packing(name);
+  for (auto _ : state) {
+    Assembly copy = o.assembly;
+    rebuild(o.fixture, copy);
+    benchmark::DoNotOptimize(copy.pairs.listed);
+  }
+  per_grain(state, o);
+}
+
+void waking(benchmark::State& state, const std::string& name) {
+  Opened& o = packing(name);
+  for (auto _ : state) {
+    state.PauseTiming();
+    Assembly copy = o.assembly;
+    rest(copy);
+    state.ResumeTiming();
+    wake(o.fixture, copy);
+    benchmark::DoNotOptimize(copy.pairs.listed);
+  }
+  per_grain(state, o);
+}
+
+void look_at_balance(benchmark::State& state, const std::string& name) {
+  Opened& o = packing(name);
+  for (auto _ : state) benchmark::DoNotOptimize(balance_of(o.fixture, o.assembly));
+  per_grain(state, o);
+}
+
+void look_at_stress(benchmark::State& state, const std::string& name) {
+  Opened& o = packing(name);
+  for (auto _ : state) benchmark::DoNotOptimize(contact_moment(o.fixture, o.assembly));
+  per_grain(state, o);
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  for (const std::string name : {"disc_400", "disc_10000", "sphere_1000", "sphere_32000"}) {
+    const auto add = [&](const std::string& part, auto... arguments_of_part) {
+      benchmark::RegisterBenchmark((name + "/" + part).c_str(), arguments_of_part..., name);
+    };
+    add("pairs", pairs);
+    benchmark::RegisterBenchmark((name + "/gather_and_integrate").c_str(), gather_and_integrate, name,
+                                 KernelDamping::vector);
+    benchmark::RegisterBenchmark((name + "/gather_and_integrate_undamped").c_str(), gather_and_integrate, name,
+                                 KernelDamping::none);
+    add("list_rebuild", list_rebuild);
+    add("waking", waking);
+    add("look_at_balance", look_at_balance);
+    add("look_at_stress", look_at_stress);
+  }
+  benchmark::Initialize(&count, arguments);
+  if (benchmark::ReportUnrecognizedArguments(count, arguments)) return 2;
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}

@@ -1,0 +1,63 @@
+#!/usr/bin/env python3
+"""Cyclic loops: loops.py RECORDS.h5 -o loops.png (the last stage that has records).
+
+Left, the driving stress against the driving strain: shear stress for simple shear, axial less lateral stress for
+compression; right, against p: the stress path to liquefaction. Below, p over its start against the number of cycles.
+"""
+
+import argparse
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import records
+
+
+def driving_stress(stage):
+    """Pa, growing with the driving strain."""
+    if len(stage.axis) == 2:
+        a, b = ("xyz".index(letter) for letter in stage.axis)
+        return -0.5 * (stage.stress[:, a, b] + stage.stress[:, b, a]), f"$\\sigma_{{{stage.axis}}}$ (kPa)"
+    axis = "xyz".index(stage.axis) if stage.axis else stage.dimension - 1
+    lateral = [k for k in range(stage.dimension) if k != axis]
+    stress = stage.stress[:, axis, axis] - sum(stage.stress[:, k, k] for k in lateral) / len(lateral)
+    return stress, "axial less lateral stress (kPa)"
+
+
+def cycles_of(strain):
+    """Number of cycles at each record, half a cycle a turn."""
+    direction = np.sign(np.diff(strain))
+    turns = np.concatenate([[0, 0], np.cumsum(direction[1:] != direction[:-1])])
+    return turns / 2
+
+
+def draw(stages, options):
+    stage = stages[-1]
+    stress, label = driving_stress(stage)
+    p, _ = stage.invariants()
+    figure = plt.figure(figsize=(9.5, 6.4))
+    grid = figure.add_gridspec(2, 2, height_ratios=(3, 1.6))
+    loop, path, decay = (figure.add_subplot(place) for place in (grid[0, 0], grid[0, 1], grid[1, :]))
+    loop.plot(100 * stage.strain, stress / 1e3, linewidth=0.8, color="tab:blue")
+    loop.set_xlabel("driving strain (%)")
+    loop.set_ylabel(label)
+    path.plot(p / 1e3, stress / 1e3, linewidth=0.8, color="tab:blue")
+    path.set_xlabel("p (kPa)")
+    path.set_xlim(left=0)
+    cycles = cycles_of(stage.strain)
+    decay.plot(cycles, p / p[0], color="tab:blue")
+    decay.axhline(0.02, color="0.5", linewidth=0.8, linestyle="--")
+    decay.set_xlabel("cycles")
+    decay.set_ylabel("$p/p_0$")
+    decay.set_ylim(bottom=0)
+    figure.suptitle(f"Cyclic loading: {stage.label}", fontsize=11, x=0.12, ha="left")
+    figure.tight_layout()
+    figure.savefig(options.output)
+    return f"{options.output}: {cycles[-1]:.1f} cycles, p from {p[0]:.4g} to {p[-1]:.4g} Pa, lowest {p.min():.4g} Pa"
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(prog="loops.py", description=__doc__.splitlines()[0])
+    parser.add_argument("records", nargs=1, help="record file")
+    parser.add_argument("-o", "--output", default="loops.png", help="figure to write (PNG, PDF or SVG)")
+    records.run(draw, parser, read=records.read_driven_stages)
