@@ -146,13 +146,13 @@ std::vector<Case> cases() {
 
 /// About so many grains: packed as they are up to the number of the recipe, above by repeating its packing.
 Specimen of_size(Shape shape, std::size_t grains) {
-  PackingRecipe recipe = shape == Shape::disc ? discs(false) : spheres();
-  if (grains <= recipe.grains) {
-    recipe.grains = grains;
-    return random_packing(recipe);
+  Recipe recipe = shape == Shape::disc ? discs(false) : spheres();
+  if (grains <= std::size_t(recipe.number)) {
+    recipe.number = decltype(recipe.number)(grains);
+    return packed(recipe);
   }
   // Repeated k or k + 1 times along each lattice vector, whichever comes nearest.
-  const double ratio = double(grains) / double(recipe.grains);
+  const double ratio = double(grains) / double(recipe.number);
   const int d = dimension_of(shape);
   const int k = std::max(1, int(std::floor(d == 2 ? std::sqrt(ratio) : std::cbrt(ratio))));
   Image best{k, k, d == 2 ? 1 : k};
@@ -161,7 +161,7 @@ Specimen of_size(Shape shape, std::size_t grains) {
     ++n[n[0] == k ? 0 : n[1] == k ? 1 : 2];
     if (off(n) < off(best)) best = n;
   }
-  return repeated(random_packing(recipe), best);
+  return repeated(packed(recipe), best);
 }
 
 struct Arguments {

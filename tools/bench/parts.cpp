@@ -10,7 +10,8 @@
 #include <map>
 #include <string>
 
-#include "rvelab/pack/random_packing.hpp"
+#include "rvelab/pack/repeated.hpp"
+#include "rvelab/pack/search.hpp"
 #include "rvelab/solver/assembly.hpp"
 #include "rvelab/solver/inertia.hpp"
 #include "rvelab/solver/resting.hpp"
@@ -27,28 +28,31 @@ struct Opened {
   StepConstants constants;
 };
 
-PackingRecipe recipe_of(Shape shape) {
-  PackingRecipe r;
+Recipe recipe_of(Shape shape) {
+  Recipe r;
   r.shape = shape;
-  r.material.friction = 0.5;
+  r.materials[0].friction = 0.5;
+  r.stress = isotropic_stress(1e5, shape);
   if (shape == Shape::disc) {
-    r.material.young_modulus = 8e8;
-    r.material.stiffness_ratio = 0.5;
+    r.materials[0].young_modulus = 8e8;
+    r.materials[0].stiffness_ratio = 0.5;
+    r.preparation.friction = 0.02;
     return r;
   }
-  r.grains = 1000;
-  r.smallest_radius = 1e-3;
-  r.largest_radius = 2e-3;
-  r.material.young_modulus = 7e9;
-  r.material.poisson_ratio = 0.25;
+  r.number = 1000;
+  r.fractions[0].grading.smallest_radius = 1e-3;
+  r.fractions[0].grading.largest_radius = 2e-3;
+  r.materials[0].young_modulus = 7e9;
+  r.materials[0].poisson_ratio = 0.25;
   r.contact.law = Law::hertz_mindlin;
-  r.preparation_friction = 0.1;
+  r.preparation.friction = 0.1;
   return r;
 }
 
 /// A packing sheared by 0.1 %, opened.
 Opened opened(Shape shape, const Image& times) {
-  Specimen specimen = repeated(random_packing(recipe_of(shape)), times);
+  Workers alone(1);
+  Specimen specimen = repeated(pack(recipe_of(shape), alone).specimen, times);
   specimen.damping.local = 0.1;
   Rve rve(specimen);
   Matrix3 shear = Matrix3::Zero();
