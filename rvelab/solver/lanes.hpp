@@ -64,7 +64,6 @@ struct Lanes<1> {
     return {{a.at[0] - b.at[0], a.at[1] - b.at[1], a.at[2] - b.at[2], a.at[3] - b.at[3]}};
   }
   static inline __attribute__((always_inline)) Quad broadcast(double s) { return {{s, s, s, s}}; }
-  static inline __attribute__((always_inline)) Quad swap_last(Quad a) { return {{a.at[0], a.at[1], a.at[3], a.at[2]}}; }
   static inline __attribute__((always_inline)) void transpose_pairs(const V2* rows, V* columns) {
     columns[0] = rows[0][0];
     columns[1] = rows[0][1];
@@ -87,9 +86,6 @@ struct Lanes<2> {
   static inline __attribute__((always_inline)) Quad mul(Quad a, Quad b) { return {a.low * b.low, a.high * b.high}; }
   static inline __attribute__((always_inline)) Quad sub(Quad a, Quad b) { return {a.low - b.low, a.high - b.high}; }
   static inline __attribute__((always_inline)) Quad broadcast(double s) { return {V2{s, s}, V2{s, s}}; }
-  static inline __attribute__((always_inline)) Quad swap_last(Quad a) {
-    return {a.low, __builtin_shufflevector(a.high, a.high, 1, 0)};
-  }
   static inline __attribute__((always_inline)) void transpose_pairs(const V2* rows, V* columns) {
     columns[0] = __builtin_shufflevector(rows[0], rows[1], 0, 2);
     columns[1] = __builtin_shufflevector(rows[0], rows[1], 1, 3);
@@ -135,9 +131,6 @@ struct Lanes<4> {
   static inline __attribute__((always_inline)) Quad mul(Quad a, Quad b) { return a * b; }
   static inline __attribute__((always_inline)) Quad sub(Quad a, Quad b) { return a - b; }
   static inline __attribute__((always_inline)) Quad broadcast(double s) { return V4{s, s, s, s}; }
-  static inline __attribute__((always_inline)) Quad swap_last(Quad a) {
-    return __builtin_shufflevector(a, a, 0, 1, 3, 2);
-  }
   static inline __attribute__((always_inline)) void transpose_pairs(const V2* rows, V* columns) {
     transpose_four_pairs(rows, columns);
   }
@@ -159,9 +152,6 @@ struct Lanes<8> {
   static inline __attribute__((always_inline)) Quad mul(Quad a, Quad b) { return a * b; }
   static inline __attribute__((always_inline)) Quad sub(Quad a, Quad b) { return a - b; }
   static inline __attribute__((always_inline)) Quad broadcast(double s) { return V4{s, s, s, s}; }
-  static inline __attribute__((always_inline)) Quad swap_last(Quad a) {
-    return __builtin_shufflevector(a, a, 0, 1, 3, 2);
-  }
   static inline __attribute__((always_inline)) void transpose_pairs(const V2* rows, V* columns) {
     V4 low[2], high[2];
     transpose_four_pairs(rows, low);
