@@ -33,8 +33,8 @@ struct Moment {
   Checkpoint checkpoint() const { return {progress, rve.specimen()}; }
 };
 
-/// Who watches a run, and who helps. All functions may be empty, are called on the thread that runs the test, and change nothing in
-/// it: results depend neither on what they do nor on when. What they throw ends the run.
+/// Who watches a run, and who helps. All functions may be empty, are called on the thread that runs the test, and
+/// change nothing in it: results depend neither on what they do nor on when. What they throw ends the run.
 struct Watch {
   std::function<void(const Record&)> on_record;
   std::function<void(const ProbeResult&)> on_probe;
