@@ -49,8 +49,8 @@ struct Rve::Impl {
   /// Balance after a stretch of steps; throws IncrementFailed on overlap beyond the limit or values not finite.
   Balance checked_balance() const;
   double unbalanced(const Balance& balance) const;  ///< ratio with this specimen's reference force
-  /// `held`: a stress is held, so that overlaps keep their size and the pace may follow them below the reference.
-  void steer_pace(const Balance& balance, bool held = false);
+  /// `held_stress`: what a mixed target holds (Servo::held_stress), Pa; the pace may follow it below the reference.
+  void steer_pace(const Balance& balance, double held_stress = 0);
   double initial_pace() const;
 
   Report load(const Matrix3& displacement_gradient, double dt);

@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -119,6 +120,13 @@ double Servo::held_error(const Matrix3& strain, const Matrix3& stress) const {
   double largest = 0;
   for (int k = 0; k < rows_; ++k)
     if (stress_row_[k]) largest = std::max(largest, std::abs(r[k]) / scale_[k]);
+  return largest;
+}
+
+double Servo::held_stress() const {
+  double largest = 0;
+  for (int r = 0; r < rows_; ++r)
+    if (stress_row_[r]) largest = std::max(largest, scale_[r] / b_.row(r).norm());
   return largest;
 }
 
