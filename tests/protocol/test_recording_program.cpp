@@ -240,7 +240,9 @@ TEST_CASE("recover makes a file of what a killed run left; inspect and resume ne
 
 TEST_CASE("a terminal is shown strain, stress ratio, speed and time left; a pipe is not") {
   const Bench bench;
-  const auto command = bench.command("short.toml", {"--set", "stage.compression.record_every=1e-5"});
+  // Some seconds of work: the line appears after a fifth of one.
+  const auto command = bench.command(
+      "short.toml", {"--set", "stage.compression.record_every=1e-5", "--set", "stage.compression.to_strain=0.03"});
   const std::string shown = on_a_terminal(command);
   CHECK_THAT(shown, Contains("compression  strain ") && Contains("q/p ") && Contains("M grain-steps/s") &&
                         Contains(" left") && Contains("\r\x1b[K"));
