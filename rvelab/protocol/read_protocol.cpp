@@ -13,21 +13,11 @@ namespace rvelab {
 namespace {
 
 using protocol::line_of;
+using protocol::table_of;
 using protocol::TableReader;
 
 // [contact] before [material]: the law says which unit a stiffness has.
 constexpr std::array<const char*, 4> override_tables{"contact", "damping", "solver", "material"};
-
-/// A table of the file; an empty one where there is none, a mistake where it is something else.
-const toml::table& table_of(const toml::table& file, const std::string& name, std::vector<KeyError>& errors) {
-  static const toml::table nothing;
-  const toml::node* node = file.get(name);
-  if (node == nullptr) return nothing;
-  if (node->is_table()) return *node->as_table();
-  errors.push_back(
-      key_error(node->source(), name + " is not a table; allowed: [" + name + "] with its keys below; write it so"));
-  return nothing;
-}
 
 void read_test(const toml::table& table, Protocol& protocol, toml::table& resolved, std::vector<KeyError>& errors) {
   TableReader reader(table, "test", "test", line_of(table), errors);

@@ -13,6 +13,7 @@ namespace rvelab {
 namespace {
 
 using protocol::line_of;
+using protocol::table_of;
 using protocol::TableReader;
 
 const std::vector<std::string> tables{"pack",    "grains",  "target", "preparation",
@@ -22,16 +23,6 @@ std::string text_of(const toml::table& table) {
   std::ostringstream text;
   text << toml::toml_formatter{table} << "\n";
   return text.str();
-}
-
-const toml::table& table_of(const toml::table& file, const std::string& name, std::vector<KeyError>& errors) {
-  static const toml::table nothing;
-  const toml::node* node = file.get(name);
-  if (node == nullptr) return nothing;
-  if (node->is_table()) return *node->as_table();
-  errors.push_back(
-      key_error(node->source(), name + " is not a table; allowed: [" + name + "] with its keys below; write it so"));
-  return nothing;
 }
 
 void read_pack(const toml::table& table, RecipeFile& file, toml::table& resolved, std::vector<KeyError>& errors) {

@@ -35,6 +35,16 @@ void expect_top_tables(const toml::table& file, std::vector<KeyError>& errors, c
   }
 }
 
+const toml::table& table_of(const toml::table& file, const std::string& name, std::vector<KeyError>& errors) {
+  static const toml::table nothing;
+  const toml::node* node = file.get(name);
+  if (node == nullptr) return nothing;
+  if (node->is_table()) return *node->as_table();
+  errors.push_back(
+      key_error(node->source(), name + " is not a table; allowed: [" + name + "] with its keys below; write it so"));
+  return nothing;
+}
+
 TableReader::TableReader(const toml::table& table, std::string key_table, std::string where, long line,
                          std::vector<KeyError>& errors)
     : table_(table), where_(std::move(where)), line_(line), errors_(errors) {

@@ -23,6 +23,9 @@ std::string written(const toml::node& node);
 void expect_top_tables(const toml::table& file, std::vector<KeyError>& errors,
                        const std::vector<std::string>& known = top_tables());
 
+/// A table of the file; an empty one where there is none, a mistake where it is something else.
+const toml::table& table_of(const toml::table& file, const std::string& name, std::vector<KeyError>& errors);
+
 /// Reads one table. Mistakes are collected with their lines; a reading function then returns the default (or, for a
 /// key without one, zero) so that reading goes on. Every value read, defaults included, goes into `resolved`.
 class TableReader {
