@@ -32,7 +32,8 @@ Moments moments_of(const Fixture& f, const Assembly& a) {
   constexpr int degree4 = D == 2 ? 5 : 15;
   double four[degree4] = {}, two[6] = {};
   const Branches<D> branch(a);
-  for (std::size_t p = 0; p < a.pairs.listed; ++p) {
+  for (const std::int32_t place : a.pairs.order) {
+    const auto p = std::size_t(place);
     const Branch b = branch(p);
     const double squared = b.x * b.x + b.y * b.y + b.z * b.z, length = std::sqrt(squared);
     const double overlap = (f.radius[std::size_t(a.pairs.i[p])] + f.radius[std::size_t(a.pairs.j[p])]) - length;

@@ -121,10 +121,11 @@ void store(const Fixture& f, PairTable& pairs, std::size_t p, const Carried& c) 
   if (f.law == KernelLaw::hertz_mindlin) pairs.root_overlap[p] = c.root_overlap;
 }
 
-/// History of the pairs that have any. In 2D `tangential[0]` is the component along t.
+/// History of the pairs that have any, in their order. In 2D `tangential[0]` is the component along t.
 std::vector<Carried> history_of(const Fixture& f, const PairTable& pairs) {
   std::vector<Carried> all;
-  for (std::size_t p = 0; p < pairs.listed; ++p) {
+  for (const std::int32_t place : pairs.order) {
+    const auto p = std::size_t(place);
     Carried c{{pairs.i[p], pairs.j[p], pairs.image[p]}, Vector3::Zero(), Vector3::Zero(), 0};
     for (int k = 0; k < f.tangential_components(); ++k) c.tangential[k] = pairs.tangential[k][p];
     if (f.contact.rolling) {
@@ -143,37 +144,65 @@ std::vector<Carried> history_of(const Fixture& f, const PairTable& pairs) {
 /// force ends with it as that of every contact that opens; in a specimen it is a mistake.
 enum class Lost { dropped, refused };
 
+bool touches(const Fixture& f, const Assembly& a, const ListedPair& pair) {
+  const double* xi = a.rows.data() + std::size_t(pair.i) * f.row_length();
+  const double* xj = a.rows.data() + std::size_t(pair.j) * f.row_length();
+  const UpperTriangle l = upper_triangle(a.cell.lattice);
+  const Image& n = pair.image;
+  const double x = xj[0] - xi[0] + l.xx * n[0] + l.xy * n[1] + l.xz * n[2];
+  const double y = xj[1] - xi[1] + l.yy * n[1] + l.yz * n[2];
+  const double z = f.shape == Shape::disc ? 0 : xj[2] - xi[2] + l.zz * n[2];
+  const double radii = f.radius[std::size_t(pair.i)] + f.radius[std::size_t(pair.j)];
+  return x * x + y * y + z * z < radii * radii;
+}
+
+/// Places of the pairs of a new list in memory: first those that touch or have a history.
+void arrange(const Fixture& f, const Assembly& a, const std::vector<ListedPair>& listed,
+             const std::vector<const Carried*>& histories, PairTable& pairs) {
+  const std::size_t n = listed.size();
+  std::vector<std::uint8_t> near(n);
+  for (std::size_t k = 0; k < n; ++k) near[k] = histories[k] != nullptr || touches(f, a, listed[k]);
+  std::int32_t here = 0, beyond = std::int32_t(std::count(near.begin(), near.end(), 1));
+  pairs.near = (std::size_t(beyond) + 7) / 8 * 8;
+  pairs.order.resize(n);
+  for (std::size_t k = 0; k < n; ++k) pairs.order[k] = near[k] ? here++ : beyond++;
+}
+
 /// Makes the arrays of a new list and fills in the carried history, which is sorted by key.
 void fill(const Fixture& f, const std::vector<ListedPair>& listed, const std::vector<Carried>& carried, Lost lost,
-          PairTable& pairs) {
+          Assembly& a) {
   const std::size_t n = listed.size(), padded = padded_to_lanes(n);
-  const auto outside = std::int32_t(f.size());  // a padding grain: no extent, no mass
-  pairs.listed = n;
-  pairs.i.assign(padded, outside);
-  pairs.j.assign(padded, outside);
-  pairs.image.assign(padded, Image{1, 0, 0});
-  for (std::size_t p = 0; p < n; ++p) {
-    pairs.i[p] = listed[p].i;
-    pairs.j[p] = listed[p].j;
-    pairs.image[p] = listed[p].image;
-  }
-  for (int k = 0; k < f.tangential_components(); ++k) {
-    pairs.tangential[k].assign(padded, 0.0);
-    if (f.contact.rolling) pairs.moment[k].assign(padded, 0.0);
-  }
-  if (f.law == KernelLaw::hertz_mindlin) pairs.root_overlap.assign(padded, 0.0);
-
-  std::size_t p = 0;
+  std::vector<const Carried*> histories(n, nullptr);
+  std::size_t k = 0;
   for (const Carried& c : carried) {
-    while (p < n && listed[p] < c.key) ++p;
-    if (p < n && listed[p] == c.key)
-      store(f, pairs, p, c);
+    while (k < n && listed[k] < c.key) ++k;
+    if (k < n && listed[k] == c.key)
+      histories[k] = &c;
     else if (lost == Lost::refused)
       throw InputError("specimen: grains " + std::to_string(f.id[c.key.i]) + " and " + std::to_string(f.id[c.key.j]) +
                        " have a contact history but lie apart by more than the skin: the history does not belong to "
                        "the positions");
   }
 
+  PairTable& pairs = a.pairs;
+  pairs.listed = n;
+  arrange(f, a, listed, histories, pairs);
+  const auto outside = std::int32_t(f.size());  // a padding grain: no extent, no mass
+  pairs.i.assign(padded, outside);
+  pairs.j.assign(padded, outside);
+  pairs.image.assign(padded, Image{1, 0, 0});
+  for (int component = 0; component < f.tangential_components(); ++component) {
+    pairs.tangential[component].assign(padded, 0.0);
+    if (f.contact.rolling) pairs.moment[component].assign(padded, 0.0);
+  }
+  if (f.law == KernelLaw::hertz_mindlin) pairs.root_overlap.assign(padded, 0.0);
+  for (k = 0; k < n; ++k) {
+    const auto p = std::size_t(pairs.order[k]);
+    pairs.i[p] = listed[k].i;
+    pairs.j[p] = listed[k].j;
+    pairs.image[p] = listed[k].image;
+    if (histories[k] != nullptr) store(f, pairs, p, *histories[k]);
+  }
   derive_pairs(f, pairs);
 }
 
@@ -300,7 +329,7 @@ void open(const Specimen& specimen, Fixture& f, Assembly& a) {
   const auto by_key = [](const Carried& x, const Carried& y) { return x.key < y.key; };
   if (!std::is_sorted(carried.begin(), carried.end(), by_key)) std::sort(carried.begin(), carried.end(), by_key);
   fill(f, list_pairs(a.cell, a.rows.data(), f.row_length(), f.radius, a.state.list_skin), carried, Lost::refused,
-       a.pairs);
+       a);
   if (a.state.has_reference) return;
   try {
     rebuild(f, a);
@@ -395,7 +424,7 @@ Reduction rebuild(const Fixture& f, Assembly& a) {
   if (!std::is_sorted(carried.begin(), carried.end(), by_key)) std::sort(carried.begin(), carried.end(), by_key);
   Workers* team = f.size() >= least_shared_grains ? f.team : nullptr;
   fill(f, list_pairs(a.cell, a.rows.data(), f.row_length(), f.radius, a.state.list_skin, team), carried, Lost::dropped,
-       a.pairs);
+       a);
   a.state.has_reference = true;
   a.state.list_lattice = a.cell.lattice;
   a.state.list_travel = 0;
@@ -447,6 +476,8 @@ bool list_is_stale(const Fixture& f, Assembly& a) {
 
 PairArrays arrays_of(PairTable& t) {
   PairArrays p;
+  p.near = long(t.near);
+  p.touched = t.touched.data();
   p.row_i = t.row_i.data();
   p.row_j = t.row_j.data();
   for (int k = 0; k < 3; ++k) {

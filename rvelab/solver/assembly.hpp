@@ -40,9 +40,14 @@ struct Fixture {
   int tangential_components() const { return shape == Shape::disc ? 1 : 3; }
 };
 
-/// Listed pairs with their parameters and history, as arrays; padded to a multiple of eight.
+/// Listed pairs with their parameters and history, as arrays; padded to a multiple of eight. Those that touched when they
+/// were listed stand first, so that the kernels can pass over the others. Every sum over pairs goes by `order`: what
+/// touched then, and with it the place of a pair, is nothing that a restart knows.
 struct PairTable {
   std::size_t listed = 0;  ///< pairs without the padding
+  std::size_t near = 0;    ///< the first of them, computed at every step (scene.hpp)
+  std::vector<std::int32_t> order;     ///< places of the pairs in the order of (i, j, image)
+  std::vector<std::uint8_t> touched;   ///< scene.hpp
   std::vector<std::int32_t> i, j;
   std::vector<std::int32_t> row_i, row_j;  ///< i, j times the row length
   std::vector<Image> image;
@@ -89,7 +94,7 @@ Reduction rebuild(const Fixture& fixture, Assembly& assembly);
 bool list_is_stale(const Fixture& fixture, Assembly& assembly);
 
 /// What follows from list, histories and fixture, made anew: parameters, indices as the kernels want them, gather
-/// table; force rows are zero.
+/// table; force rows are zero. Pairs not computed at every step must have no history unless they touch.
 void derive_pairs(const Fixture& fixture, PairTable& pairs);
 
 /// Pair parameters from the materials, for all listed pairs (after listing, or when materials change).

@@ -64,7 +64,8 @@ Matrix3 contact_moment(const Fixture& f, const Assembly& a) {
   if (f.shape == Shape::disc) {
     const Branches<2> branch(a);
     double xx = 0, xy = 0, yx = 0, yy = 0;
-    for (std::size_t p = 0; p < a.pairs.listed; ++p) {
+    for (const std::int32_t place : a.pairs.order) {
+      const auto p = std::size_t(place);
       const Branch b = branch(p);
       xx += force[4 * p] * b.x;
       xy += force[4 * p] * b.y;
@@ -79,7 +80,8 @@ Matrix3 contact_moment(const Fixture& f, const Assembly& a) {
   }
   const Branches<3> branch(a);
   double m[9] = {};
-  for (std::size_t p = 0; p < a.pairs.listed; ++p) {
+  for (const std::int32_t place : a.pairs.order) {
+    const auto p = std::size_t(place);
     const Branch b = branch(p);
     for (int r = 0; r < 3; ++r) {
       m[3 * r] += force[8 * p + r] * b.x;
@@ -100,7 +102,8 @@ Balance balance_in(const Fixture& f, const Assembly& a) {
   const Branches<D> branch(a);
   const double* force = a.pairs.force.data();
   double contact_force = 0, overlap_sum = 0;
-  for (std::size_t p = 0; p < a.pairs.listed; ++p) {
+  for (const std::int32_t place : a.pairs.order) {
+    const auto p = std::size_t(place);
     const auto i = std::size_t(a.pairs.i[p]), j = std::size_t(a.pairs.j[p]);
     const double overlap = (f.radius[i] + f.radius[j]) - branch(p).length();
     if (!std::isfinite(overlap)) balance.finite = false;

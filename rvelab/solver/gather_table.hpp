@@ -5,7 +5,7 @@
 
 namespace rvelab {
 
-/// Fills slot_begin, slots and tasks of the table for its listed pairs, which are in order; `force_row` doubles a row.
+/// Fills slot_begin, slots and tasks of the table for its listed pairs, in their order; `force_row` doubles a row.
 void fill_gather_table(std::size_t padded_grains, std::int32_t force_row, PairTable& pairs);
 
 }  // namespace rvelab

@@ -112,7 +112,8 @@ RowSums sums_over_pairs(const Fixture& f, const Assembly& a) {
   // where that contact is ten thousand times stiffer than those it has.
   std::vector<double> stiffest(n, 0.0), stiffest_turn(n, 0.0);
   const Branches<D> branch(a);
-  for (std::size_t p = 0; p < a.pairs.listed; ++p) {
+  for (const std::int32_t place : a.pairs.order) {
+    const auto p = std::size_t(place);
     const auto i = a.pairs.i[p], j = a.pairs.j[p];
     const Branch b = branch(p);
     const double length = b.length();

@@ -180,6 +180,25 @@ inline __attribute__((always_inline)) void disc_forces(const StepConstants& c, c
   }
 }
 
+/// Whether one of eight pairs touches.
+template <int W>
+inline __attribute__((always_inline)) bool discs_touch(const StepConstants& c, const PairArrays& p, const double* rows,
+                                                       long first) {
+  using V = typename Lanes<W>::V;
+  auto touching = V{} > 0.0;
+#pragma GCC unroll 8
+  for (long at = first; at < first + 8; at += W) {
+    V d[2];
+    gather_place_differences<W>(rows, p.row_i + at, p.row_j + at, d);
+    const V image_x = load_as<V>(p.image[0] + at), image_y = load_as<V>(p.image[1] + at);
+    const V bx = d[0] + (c.lattice.xx * image_x + c.lattice.xy * image_y);
+    const V by = d[1] + c.lattice.yy * image_y;
+    const V radii = load_as<V>(p.radius_i + at) + load_as<V>(p.radius_j + at);
+    touching = touching | (bx * bx + by * by < radii * radii);
+  }
+  return any_of(touching);
+}
+
 /// Discs in 2D.
 template <class Law, class T>
 void disc_pairs(const StepConstants& constants, const PairArrays& arrays, const double* rows, long begin, long end,
@@ -188,8 +207,10 @@ void disc_pairs(const StepConstants& constants, const PairArrays& arrays, const 
   const StepConstants c = constants;
   const PairArrays p = arrays;
   DiscScratch scratch;
-  for (long first = begin; first < end; first += chunk_pairs) {
-    const long count = end - first < chunk_pairs ? end - first : chunk_pairs;
+  constexpr int narrow = T::W < 4 ? T::W : 4;
+  for (PairRun run{begin, 0, begin}; run.next < end;) {
+    run = next_run(p, run.next, end, [&](long at) { return discs_touch<narrow>(c, p, rows, at); });
+    const long first = run.first, count = run.count;
     disc_rows<T>(p, rows, first, count, scratch);
     disc_places<T>(c, p, first, count, scratch);
     disc_forces<Law, T>(c, p, rows, first, count, scratch, dissipation);

@@ -53,6 +53,16 @@ inline __attribute__((always_inline)) void sphere_rows(const PairArrays& p, cons
     }
 }
 
+/// Branch of pairs, from the places in the cell of j less that of i.
+template <class V>
+inline __attribute__((always_inline)) Triple<V> branch_of(const StepConstants& c, const PairArrays& p, long at,
+                                                          const Triple<V>& d) {
+  const V image_x = load_as<V>(p.image[0] + at), image_y = load_as<V>(p.image[1] + at);
+  const V image_z = load_as<V>(p.image[2] + at);
+  return {d.x + (c.lattice.xx * image_x + (c.lattice.xy * image_y + c.lattice.xz * image_z)),
+          d.y + (c.lattice.yy * image_y + c.lattice.yz * image_z), d.z + c.lattice.zz * image_z};
+}
+
 /// Branch, normal and the motion of the centres.
 template <class T>
 inline __attribute__((always_inline)) void sphere_places(const StepConstants& c, const PairArrays& p, long first,
@@ -61,11 +71,7 @@ inline __attribute__((always_inline)) void sphere_places(const StepConstants& c,
   const double half_dt = 0.5 * c.dt;
   for (long k = 0; k < count; k += T::W) {
     const long at = first + k;
-    const V image_x = load_as<V>(p.image[0] + at), image_y = load_as<V>(p.image[1] + at);
-    const V image_z = load_as<V>(p.image[2] + at);
-    Triple<V> b = s.normal.load<V>(k);
-    b = {b.x + (c.lattice.xx * image_x + (c.lattice.xy * image_y + c.lattice.xz * image_z)),
-         b.y + (c.lattice.yy * image_y + c.lattice.yz * image_z), b.z + c.lattice.zz * image_z};
+    const Triple<V> b = branch_of<V>(c, p, at, s.normal.load<V>(k));
     const V length = square_root(dot(b, b));
     s.normal.store(k, times(1.0 / length, b));
     store_as(s.length.at + k, length);
@@ -234,6 +240,22 @@ inline __attribute__((always_inline)) void sphere_forces(const StepConstants& c,
   }
 }
 
+/// Whether one of eight pairs touches.
+template <int W>
+inline __attribute__((always_inline)) bool spheres_touch(const StepConstants& c, const PairArrays& p,
+                                                         const double* rows, long first) {
+  using V = typename Lanes<W>::V;
+  auto touching = V{} > 0.0;
+#pragma GCC unroll 8
+  for (long at = first; at < first + 8; at += W) {
+    V d[4];
+    gather_columns<W>(rows, p.row_i + at, p.row_j + at, 0, quad<W>(-1.0, -1.0, -1.0, 1.0), d);
+    const Triple<V> b = branch_of<V>(c, p, at, {d[0], d[1], d[2]});
+    touching = touching | (dot(b, b) < d[3] * d[3]);
+  }
+  return any_of(touching);
+}
+
 /// Spheres in 3D.
 template <class Law, class T>
 void sphere_pairs(const StepConstants& constants, const PairArrays& arrays, const double* rows, long begin, long end,
@@ -241,8 +263,10 @@ void sphere_pairs(const StepConstants& constants, const PairArrays& arrays, cons
   const StepConstants c = constants;
   const PairArrays p = arrays;
   SphereScratch scratch;
-  for (long first = begin; first < end; first += chunk_pairs) {
-    const long count = end - first < chunk_pairs ? end - first : chunk_pairs;
+  constexpr int narrow = T::W < 4 ? T::W : 4;
+  for (PairRun run{begin, 0, begin}; run.next < end;) {
+    run = next_run(p, run.next, end, [&](long at) { return spheres_touch<narrow>(c, p, rows, at); });
+    const long first = run.first, count = run.count;
     sphere_rows<T>(p, rows, first, count, scratch);
     sphere_places<T>(c, p, first, count, scratch);
     sphere_motion<Law, T>(c, p, first, count, scratch);

@@ -33,6 +33,17 @@ inline __attribute__((always_inline)) void store_as(double* to, V value) {
   std::memcpy(to, &value, sizeof(V));
 }
 
+/// Whether a comparison held in any lane.
+inline __attribute__((always_inline)) bool any_of(bool held) { return held; }
+template <class Mask>
+inline __attribute__((always_inline)) bool any_of(Mask held) {
+  Mask set = held;
+  std::int64_t lanes[sizeof(Mask) / sizeof(std::int64_t)], any = 0;
+  std::memcpy(lanes, &set, sizeof(Mask));
+  for (std::int64_t lane : lanes) any |= lane;
+  return any != 0;
+}
+
 inline __attribute__((always_inline)) double square_root(double v) { return __builtin_sqrt(v); }
 inline __attribute__((always_inline)) V2 square_root(V2 v) {
 #if defined(__SSE2__)

@@ -47,7 +47,8 @@ Network Rve::network() const {
     net.grains[g] = {
         f.radius[g],  f.mass[g],      f.inertia[g], a.position(f, g), a.velocity(f, g) - a.state.mean_velocity,
         a.spin(f, g), Vector3::Zero()};
-  for (std::size_t p = 0; p < a.pairs.listed; ++p) {
+  for (const std::int32_t place : a.pairs.order) {
+    const auto p = std::size_t(place);
     const auto i = a.pairs.i[p], j = a.pairs.j[p];
     const Vector3 b = branch_of(f, a, p);
     const double length = b.norm(), overlap = (f.radius[i] + f.radius[j]) - length;

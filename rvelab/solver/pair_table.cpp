@@ -45,6 +45,7 @@ void derive_pairs(const Fixture& f, PairTable& pairs) {
       pairs.radius_j[p] = f.radius[std::size_t(pairs.j[p])];
     }
   }
+  pairs.touched.assign(padded / 8, 0);
   pairs.force.assign(padded * std::size_t(force_row_length(f.shape)), 0.0);
   set_pair_parameters(f, pairs);
   fill_gather_table(padded_to_lanes(f.size()), force_row_length(f.shape), pairs);

@@ -55,8 +55,12 @@ struct StepConstants {
   bool losses = false;  ///< dt > 0: sums of what the dampings take are asked for
 };
 
-/// Listed pairs, ordered by (i, j, image), padded with pairs that never touch to a multiple of eight.
+/// Listed pairs, padded with pairs that never touch to a multiple of eight. The first `near` of them touched when they
+/// were listed, or so; they are computed at every step. The others seldom come to touch: eight at a time they are only
+/// looked at, until one does (next_run in kernel_pairs.hpp).
 struct PairArrays {
+  long near = 0;                        ///< a multiple of eight
+  std::uint8_t* touched = nullptr;      ///< by eight pairs: whether one touched when they were computed last
   const std::int32_t* row_i = nullptr;  ///< where the row of grain i starts among the doubles of the grain rows
   const std::int32_t* row_j = nullptr;
   const double* image[3] = {};  ///< image shift, as numbers
