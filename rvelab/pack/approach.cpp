@@ -19,6 +19,11 @@ double crowded(int dimension) { return 0.25 * dimension; }
 
 constexpr double clearance = 5e-4;  ///< of the radius, left around grains that need not touch
 
+/// Steps by which a cell shrinks, per axis: before grains find each other, and until they carry pressure. Where a draw
+/// starts within a step is drawn too: loose grains jam at the end of one, and from one common start their void ratios
+/// would come in steps of d (1 + e) press_step, with nothing between.
+constexpr double approach_step = 1e-2, press_step = 1e-3;
+
 /// While grains find each other the pace is fixed, since no network is there whose balance could steer it, and overlaps
 /// are not bounded, since a light grain caught between two others is pushed out again.
 SolverOptions unsteered() {
@@ -59,7 +64,7 @@ void press(const Recipe& recipe, Rve& rve) {
     }
     return mean_pressure(rve.stress(), d) / pressure;
   };
-  double strain = 1e-3;
+  double strain = press_step;
   double part = settled_part();
   for (int round = 0; part < 0.1; ++round) {
     const Rve before = rve;
@@ -97,12 +102,12 @@ Rve by_compression(const Recipe& recipe, const Grains& graded, double friction, 
                    const std::atomic<bool>* stop) {
   const int d = dimension_of(recipe.shape);
   Grains grains = graded;
-  double volume = solid_volume(recipe, grains) / scattered_fraction(d);
+  double volume = solid_volume(recipe, grains) / scattered_fraction(d) * (1 + d * approach_step * uniform());
   while (!scatter(cell_of(recipe, volume), 1, grains, uniform)) volume *= 1.1;
   Rve rve(assembly(recipe, friction, grains, cell_of(recipe, volume)));
   rve.watch(stop);
   for (int round = 0; contacts_per_grain(rve) < crowded(d); ++round) {
-    shrink(rve, 1e-2);
+    shrink(rve, approach_step);
     if (round == 300) throw IncrementFailed("packing: no contacts after 300 compressions by 1 %; check the radii");
   }
   press(recipe, rve);
@@ -122,7 +127,8 @@ Rve by_growth(const Recipe& recipe, const Grains& graded, double friction, Unifo
               const std::atomic<bool>* stop) {
   const int d = dimension_of(recipe.shape);
   const Preparation& preparation = recipe.preparation;
-  const double volume = solid_volume(recipe, graded) * (1 + growth_void_ratio(recipe));
+  double volume = solid_volume(recipe, graded) * (1 + growth_void_ratio(recipe));
+  if (recipe.stress) volume *= 1 + d * press_step * uniform();
   const Cell cell = cell_of(recipe, volume);
   Grains grains = graded;
   if (!scatter(cell, preparation.first_size, grains, uniform))

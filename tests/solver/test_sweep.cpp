@@ -1,6 +1,8 @@
 // One large cell shared among threads: the bits of a single thread. And the gather table: each pair once on each side,
 // in the order of the pairs.
+#include <algorithm>
 #include <atomic>
+#include <numeric>
 #include <random>
 
 #include "rvelab/error.hpp"
@@ -58,6 +60,10 @@ TEST_CASE("The gather table names each pair once on either side, in the order of
           pairs.j.push_back(std::int32_t(j));
         }
     pairs.listed = pairs.i.size();
+    // The order of the pairs is not that of their places.
+    pairs.order.resize(pairs.listed);
+    std::iota(pairs.order.begin(), pairs.order.end(), 0);
+    std::shuffle(pairs.order.begin(), pairs.order.end(), generator);
     fill_gather_table(padded, row, pairs);
     REQUIRE(pairs.slot_begin.size() == padded / 2 + 1);
     REQUIRE(pairs.tasks.size() == 2 * padded);
@@ -80,9 +86,9 @@ TEST_CASE("The gather table names each pair once on either side, in the order of
     }
     for (const int times : seen) REQUIRE(times == 1);
     std::vector<std::vector<std::int32_t>> want_j(padded), want_i(padded);
-    for (std::size_t q = 0; q < pairs.listed; ++q) {
-      want_j[std::size_t(pairs.j[q])].push_back(std::int32_t(q));
-      want_i[std::size_t(pairs.i[q])].push_back(std::int32_t(q));
+    for (const std::int32_t q : pairs.order) {
+      want_j[std::size_t(pairs.j[std::size_t(q)])].push_back(q);
+      want_i[std::size_t(pairs.i[std::size_t(q)])].push_back(q);
     }
     CHECK(as_j == want_j);
     CHECK(as_i == want_i);
