@@ -19,17 +19,29 @@ Rve::Rve(const Specimen& specimen) : impl_(std::make_unique<Impl>()) {
   if (!balance.finite) throw InputError("specimen: contact forces are not finite; do two grains lie at one place?");
   m.fixture.overlap_limit = std::max(m.fixture.options.max_overlap_ratio, 1.01 * balance.largest_overlap_ratio);
   if (specimen.state.has_reference) return;
-  // First opening: the scales that belong to the specimen's own state, if the specimen does not bring them.
-  SolverState& state = m.now.state;
+  m.set_missing_references(balance);  // first opening
+}
+
+void Rve::Impl::set_missing_references(const Balance& balance) {
+  SolverState& state = now.state;
   if (state.reference_overlap == 0)
-    state.reference_overlap = balance.touching > 0 ? balance.mean_overlap : 1e-2 * m.fixture.mean_radius;
+    state.reference_overlap = balance.touching > 0 ? balance.mean_overlap : 1e-2 * fixture.mean_radius;
   if (state.reference_contact_force == 0)
     state.reference_contact_force =
-        balance.touching > 0 ? balance.mean_contact_force : typical_normal_force(m.fixture, state.reference_overlap);
+        balance.touching > 0 ? balance.mean_contact_force : typical_normal_force(fixture, state.reference_overlap);
   if (state.reference_pressure == 0) {
-    const Matrix3 s = stress();
-    state.reference_pressure = std::max(0.0, m.fixture.dimension() == 2 ? -0.5 * (s(0, 0) + s(1, 1)) : -s.trace() / 3);
+    const Matrix3 s = contact_stress() + reynolds_stress();
+    state.reference_pressure = std::max(0.0, fixture.dimension() == 2 ? -0.5 * (s(0, 0) + s(1, 1)) : -s.trace() / 3);
   }
+}
+
+double Rve::reference_pressure() const { return impl_->now.state.reference_pressure; }
+
+void Rve::take_as_reference() {
+  Impl& m = impl_->awake();
+  SolverState& state = m.now.state;
+  state.reference_overlap = state.reference_contact_force = state.reference_pressure = 0;
+  m.set_missing_references(balance_of(m.fixture, m.now));
 }
 
 Rve::Rve(const Rve& other) : impl_(std::make_unique<Impl>(*other.impl_)) {}

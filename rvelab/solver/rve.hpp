@@ -111,6 +111,12 @@ class Rve {
   /// call is made (an entry of a batch has the thread it runs on); nullptr: none.
   void share(Workers* team);
 
+  /// The state that pace and unbalanced ratio are measured by: mean pressure, Pa; first that in which the specimen was
+  /// opened. Far below it quasi-static loading is faster, against the stress that is there, than target_unbalanced asks.
+  double reference_pressure() const;
+  /// Makes it the present state, with its contact forces and overlaps.
+  void take_as_reference();
+
   /// Changes contact parameters in place (friction for preparation, no slip for probes); history is kept.
   void set_materials(const std::vector<Material>& materials);
   /// Sets fluctuation velocities and spins (cell frame, m/s and rad/s), for dt > 0.

@@ -52,6 +52,8 @@ struct Rve::Impl {
   /// `held_stress`: what a mixed target holds (Servo::held_stress), Pa; the pace may follow it below the reference.
   void steer_pace(const Balance& balance, double held_stress = 0);
   double initial_pace() const;
+  /// Scales of the specimen's own state that it does not bring.
+  void set_missing_references(const Balance& balance);
 
   Report load(const Matrix3& displacement_gradient, double dt);
   Report load(const MixedTarget& target, double dt, Matrix3& gradient);
