@@ -2,13 +2,19 @@
 // stress.
 //
 //   build/release/bin/rvelab-bench --benchmark_repetitions=5 --benchmark_report_aggregates_only=true
+//   build/release/bin/rvelab-bench --widths     # AVX-512 beside AVX2; fails where it takes 1.25 times as long
 //
 // Each case is a packing of `rvelab bench` in slow shear. The clock of grain-steps is left alone: nothing moves between
 // two calls, so that every call does the same work.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "rvelab/pack/repeated.hpp"
 #include "rvelab/pack/search.hpp"
@@ -146,9 +152,66 @@ void look_at_stress(benchmark::State& state, const std::string& name) {
   per_grain(state, o);
 }
 
+/// Eight lanes beside four: time of the AVX-512 kernels over that of the AVX2 ones, median over slices of a millisecond in
+/// turn, so that both see the same clock. Callgrind cannot count AVX-512 (tools/bench/count), and a vector taken apart
+/// lane by lane would cost several times as much. Processors that lower their clock for 512-bit arithmetic come near 1,
+/// and use AVX2 of themselves. Returns the exit code.
+int compare_widths() {
+#if defined(__x86_64__)
+  if (!__builtin_cpu_supports("avx512dq")) {
+    std::puts("widths: this processor has no AVX-512, nothing to compare");
+    return 0;
+  }
+  constexpr double most = 1.25;
+  bool good = true;
+  for (const std::string name : {"disc_400", "sphere_1000"}) {
+    Opened& o = packing(name);
+    const SceneKey key{o.fixture.shape, o.fixture.law, o.fixture.contact.rolling, o.fixture.contact.slip, false};
+    SceneKernels kernels[2];
+    for (const int k : {0, 1}) {
+      setenv("RVELAB_ISA", k == 0 ? "v3" : "v4", 1);
+      kernels[k] = kernels_for(key);
+    }
+    const PairArrays pairs = arrays_of(o.assembly.pairs);
+    const GrainArrays grains = arrays_of(o.assembly);
+    const Buffer rows = o.assembly.rows;
+    StepSums sums;
+    const auto slice = [&](const SceneKernels& of, bool of_pairs) {
+      const auto begin = std::chrono::steady_clock::now();
+      for (int call = 0; call < (o.fixture.size() > 500 ? 15 : 100); ++call) {
+        if (of_pairs)
+          sweep_pairs(of.pairs, o.constants, pairs, o.assembly.rows.data(), long(o.assembly.pairs.padded()), nullptr);
+        else
+          sweep_grains(of.dynamic[std::size_t(KernelDamping::vector)], o.constants, grains, pairs,
+                       long(o.assembly.mass.size()), nullptr, sums);
+      }
+      return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    };
+    for (const bool of_pairs : {true, false}) {
+      std::vector<double> ratios(301);
+      for (double& ratio : ratios) {
+        const double four = slice(kernels[0], of_pairs);
+        ratio = slice(kernels[1], of_pairs) / four;
+      }
+      std::nth_element(ratios.begin(), ratios.begin() + 150, ratios.end());
+      const bool held = ratios[150] <= most;
+      good = good && held;
+      std::printf("%-12s %-22s AVX-512 over AVX2 %.2f%s\n", name.c_str(), of_pairs ? "pairs" : "gather_and_integrate",
+                  ratios[150], held ? "" : "  more than 1.25");
+      o.assembly.rows = rows;
+    }
+  }
+  return good ? 0 : 1;
+#else
+  std::puts("widths: no x86-64, nothing to compare");
+  return 0;
+#endif
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
+  if (count == 2 && std::string(arguments[1]) == "--widths") return compare_widths();
   for (const std::string name : {"disc_400", "disc_10000", "sphere_1000", "sphere_32000"}) {
     const auto add = [&](const std::string& part, auto... arguments_of_part) {
       benchmark::RegisterBenchmark((name + "/" + part).c_str(), arguments_of_part..., name);
