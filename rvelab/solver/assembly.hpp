@@ -34,20 +34,22 @@ struct Fixture {
   Workers* team = nullptr;                  ///< shares the steps of a large assembly (Rve::share)
 
   std::size_t size() const { return id.size(); }
+  /// The team where the assembly is large enough for one, else null.
+  Workers* sharing() const { return size() >= least_shared_grains ? team : nullptr; }
   int dimension() const { return dimension_of(shape); }
   int row_length() const { return grain_row_length(shape); }
   int velocity_offset() const { return shape == Shape::disc ? 2 : 4; }
   int tangential_components() const { return shape == Shape::disc ? 1 : 3; }
 };
 
-/// Listed pairs with their parameters and history, as arrays; padded to a multiple of eight. Those that touched when they
-/// were listed stand first, so that the kernels can pass over the others. Every sum over pairs goes by `order`: what
-/// touched then, and with it the place of a pair, is nothing that a restart knows.
+/// Listed pairs with their parameters and history, as arrays; padded to a multiple of eight. Those that touched when
+/// they were listed stand first, so that the kernels can pass over the others. Every sum over pairs goes by `order`:
+/// what touched then, and with it the place of a pair, is nothing that a restart knows.
 struct PairTable {
-  std::size_t listed = 0;  ///< pairs without the padding
-  std::size_t near = 0;    ///< the first of them, computed at every step (scene.hpp)
-  std::vector<std::int32_t> order;     ///< places of the pairs in the order of (i, j, image)
-  std::vector<std::uint8_t> touched;   ///< scene.hpp
+  std::size_t listed = 0;             ///< pairs without the padding
+  std::size_t near = 0;               ///< the first of them, computed at every step (scene.hpp)
+  std::vector<std::int32_t> order;    ///< places of the pairs in the order of (i, j, image)
+  std::vector<std::uint8_t> touched;  ///< scene.hpp
   std::vector<std::int32_t> i, j;
   std::vector<std::int32_t> row_i, row_j;  ///< i, j times the row length
   std::vector<Image> image;

@@ -214,19 +214,6 @@ class Search {
   std::vector<std::vector<Run>> runs_;  ///< by bin of the grain along the first direction
 };
 
-constexpr std::size_t search_piece = 4096;
-
-/// Calls work(piece, first, last) for pieces of up to search_piece of `count` things, on the team if there is one.
-template <class Work>
-void in_pieces(std::size_t count, Workers* team, const Work& work) {
-  const std::size_t pieces = (count + search_piece - 1) / search_piece;
-  const auto one = [&](std::size_t k) { work(k, k * search_piece, std::min(count, (k + 1) * search_piece)); };
-  if (team != nullptr && pieces > 1)
-    team->run(pieces, [&one](std::size_t k) { one(k); });
-  else
-    for (std::size_t k = 0; k < pieces; ++k) one(k);
-}
-
 /// By (i, j, image): counted by i, then the few of each i put in order.
 std::vector<ListedPair> in_order(const std::vector<std::vector<ListedPair>>& found, std::size_t grains, Workers* team) {
   std::vector<std::uint32_t> begin(grains + 1, 0);
@@ -262,7 +249,7 @@ std::vector<ListedPair> list_pairs(const Cell& cell, const double* x, std::size_
       const std::vector<Binned>& members = classes[of].grains;
       if (members.empty() || classes[with].grains.empty()) continue;
       const std::size_t before = found.size();
-      found.resize(before + (members.size() + search_piece - 1) / search_piece);
+      found.resize(before + pieces_in(members.size()));
       in_pieces(members.size(), team, [&](std::size_t piece, std::size_t first, std::size_t last) {
         std::vector<ListedPair>& pairs = found[before + piece];
         pairs.reserve((last - first) * std::size_t(cell.dimension == 2 ? 4 : 8));

@@ -1,6 +1,8 @@
 // What the working arrays of the pairs follow from: list, materials, grains.
 #include "rvelab/solver/gather_table.hpp"
 
+#include <algorithm>
+
 namespace rvelab {
 
 void set_pair_parameters(const Fixture& f, PairTable& pairs) {
@@ -10,7 +12,7 @@ void set_pair_parameters(const Fixture& f, PairTable& pairs) {
   if (f.contact.rolling)
     for (Buffer* b : {&pairs.kr, &pairs.moment_cap}) b->assign(padded, 0.0);
   if (dashpot) pairs.cn.assign(padded, 0.0);
-  for (std::size_t p = 0; p < pairs.listed; ++p) {
+  const auto set = [&](std::size_t p) {
     const auto i = std::size_t(pairs.i[p]), j = std::size_t(pairs.j[p]);
     const PairParameters q = mix(f.contact, f.damping, f.materials[std::size_t(f.material[i])], f.radius[i], f.mass[i],
                                  f.materials[std::size_t(f.material[j])], f.radius[j], f.mass[j]);
@@ -22,29 +24,34 @@ void set_pair_parameters(const Fixture& f, PairTable& pairs) {
       pairs.moment_cap[p] = q.moment_cap;
     }
     if (dashpot) pairs.cn[p] = q.cn;
-  }
+  };
+  in_pieces(pairs.listed, f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t p = first; p < last; ++p) set(p);
+  });
 }
 
 void derive_pairs(const Fixture& f, PairTable& pairs) {
   const std::size_t padded = pairs.padded();
   pairs.row_i.resize(padded);
   pairs.row_j.resize(padded);
-  for (std::size_t p = 0; p < padded; ++p) {
-    pairs.row_i[p] = pairs.i[p] * f.row_length();
-    pairs.row_j[p] = pairs.j[p] * f.row_length();
-  }
-  for (int k = 0; k < f.dimension(); ++k) {
-    pairs.image_number[k].resize(padded);
-    for (std::size_t p = 0; p < padded; ++p) pairs.image_number[k][p] = pairs.image[p][std::size_t(k)];
-  }
+  for (int k = 0; k < f.dimension(); ++k) pairs.image_number[k].resize(padded);
   if (f.shape == Shape::disc) {
     pairs.radius_i.assign(padded, 0.0);
     pairs.radius_j.assign(padded, 0.0);
-    for (std::size_t p = 0; p < pairs.listed; ++p) {
+  }
+  in_pieces(padded, f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t p = first; p < last; ++p) {
+      pairs.row_i[p] = pairs.i[p] * f.row_length();
+      pairs.row_j[p] = pairs.j[p] * f.row_length();
+    }
+    for (int k = 0; k < f.dimension(); ++k)
+      for (std::size_t p = first; p < last; ++p) pairs.image_number[k][p] = pairs.image[p][std::size_t(k)];
+    if (f.shape == Shape::sphere) return;
+    for (std::size_t p = first; p < std::min(last, pairs.listed); ++p) {
       pairs.radius_i[p] = f.radius[std::size_t(pairs.i[p])];
       pairs.radius_j[p] = f.radius[std::size_t(pairs.j[p])];
     }
-  }
+  });
   pairs.touched.assign(padded / 8, 0);
   pairs.force.assign(padded * std::size_t(force_row_length(f.shape)), 0.0);
   set_pair_parameters(f, pairs);

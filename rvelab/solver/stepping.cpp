@@ -213,7 +213,7 @@ void advance(const Fixture& f, Assembly& a, const Advance& what) {
   PairArrays pairs = arrays_of(a.pairs);
   GrainArrays grains = arrays_of(a);
   const long padded_grains = long(a.mass.size());
-  Workers* team = f.size() >= least_shared_grains ? f.team : nullptr;
+  Workers* team = f.sharing();
   StepSums sums;
   Matrix3 rate_end, rate_mid, moment_before = Matrix3::Zero();
   if (f.options.ledger) moment_before = contact_moment(f, a);

@@ -10,9 +10,6 @@
 
 namespace rvelab {
 
-/// Grains from which a team helps: two hand-overs a step cost some 20 us.
-constexpr std::size_t least_shared_grains = 30'000;
-
 /// `team` may be null.
 void sweep_pairs(PairKernel kernel, const StepConstants& constants, const PairArrays& pairs, const double* grain_rows,
                  long padded_pairs, Workers* team);
