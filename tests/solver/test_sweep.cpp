@@ -1,5 +1,5 @@
-// One large cell shared among threads: the bits of a single thread. And the gather table: each pair once on each side,
-// in the order of the pairs.
+// One large cell shared among threads: the bits of a single thread. Pairs passed over until they touch: the bits of all
+// pairs computed. And the gather table: each pair once on each side, in the order of the pairs.
 #include <algorithm>
 #include <atomic>
 #include <numeric>
@@ -7,6 +7,7 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/solver/gather_table.hpp"
+#include "rvelab/solver/inertia.hpp"
 #include "rvelab/solver/sweep.hpp"
 #include "tests/oracle/specimens.hpp"
 
@@ -35,6 +36,59 @@ TEST_CASE("A large cell has the same bits on any team of threads", "[solver]") {
       Workers team(threads);
       CHECK(end_state(&team) == alone);
     }
+  }
+}
+
+TEST_CASE("Pairs that are passed over come to touch, and to part again, as if they had been computed at every step",
+          "[solver]") {
+  for (const Shape shape : {Shape::disc, Shape::sphere}) {
+    // Loose grains that fly about: contacts open and close among the pairs listed.
+    Specimen start =
+        disordered(shape, shape == Shape::disc ? 12 : 6, linear_material(2e6, 1e6, 0.4), Law::linear_given, 0.47, 4);
+    start.solver.skin = 0.4;
+    start.damping.local = 0.1;
+    std::mt19937_64 generator(8);
+    std::uniform_real_distribution<double> speed(-0.3, 0.3);
+    for (Vector3& v : start.grains.velocity)
+      for (int k = 0; k < start.cell.dimension; ++k) v[k] = speed(generator);
+    Fixture f;
+    Assembly passing, computing;
+    open(start, f, passing);
+    use_physical_inertia(f, passing);
+    computing = passing;
+    computing.pairs.near = computing.pairs.padded();
+    REQUIRE(passing.pairs.near < passing.pairs.listed / 2);
+    StepConstants c = base_constants(f, passing);
+    c.dt = 2e-5;
+    c.map = {1, 0, 0, 1, 0, 1};
+    c.velocity_map = {c.dt, 0, 0, c.dt, 0, c.dt};
+    for (int k = 0; k < 3; ++k) c.momentum_map[4 * k] = c.force_map[4 * k] = c.spin_map[4 * k] = 1;
+    c.local_damping = 0.1;
+    std::size_t asleep = 0, awoken = 0, parted = 0;
+    std::vector<std::uint8_t> before = passing.pairs.touched;
+    for (int step = 0; step < 150; ++step) {
+      for (Assembly* a : {&passing, &computing}) {
+        StepSums sums;
+        sweep_grains(f.kernels.dynamic[1], c, arrays_of(*a), arrays_of(a->pairs), long(a->mass.size()), nullptr, sums);
+        sweep_pairs(f.kernels.pairs, c, arrays_of(a->pairs), a->rows.data(), long(a->pairs.padded()), nullptr);
+      }
+      for (std::size_t unit = passing.pairs.near / 8; unit < before.size(); ++unit) {
+        const bool now = passing.pairs.touched[unit] != 0;
+        asleep += std::size_t(!now);
+        awoken += std::size_t(now && before[unit] == 0);
+        parted += std::size_t(!now && before[unit] != 0);
+      }
+      before = passing.pairs.touched;
+      REQUIRE(passing.rows == computing.rows);
+      // Rows of spheres hold half the overlap too, which is nothing where there is no force.
+      if (shape == Shape::disc) REQUIRE(passing.pairs.force == computing.pairs.force);
+      for (int k = 0; k < f.tangential_components(); ++k)
+        REQUIRE(passing.pairs.tangential[k] == computing.pairs.tangential[k]);
+    }
+    CAPTURE(shape == Shape::disc, asleep, awoken, parted);
+    CHECK(asleep > 100);
+    CHECK(awoken > 3);
+    CHECK(parted > 3);
   }
 }
 
