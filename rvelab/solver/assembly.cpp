@@ -162,13 +162,15 @@ bool touches(const Fixture& f, const Assembly& a, const ListedPair& pair) {
   return x * x + y * y + z * z < radii * radii;
 }
 
-/// Places of the pairs of a new list in memory: first those that touch or have a history.
+/// Places of the pairs of a new list in memory: first those that touch or have a history. The ledger's kernel adds up
+/// what all pairs lose as they lie, so with it they lie in order.
 void arrange(const Fixture& f, const Assembly& a, const std::vector<ListedPair>& listed,
              const std::vector<const Carried*>& histories, PairTable& pairs) {
   const std::size_t n = listed.size();
   std::vector<std::uint8_t> near(n);
   in_pieces(n, f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
-    for (std::size_t k = first; k < last; ++k) near[k] = histories[k] != nullptr || touches(f, a, listed[k]);
+    for (std::size_t k = first; k < last; ++k)
+      near[k] = f.options.ledger || histories[k] != nullptr || touches(f, a, listed[k]);
   });
   std::int32_t here = 0, beyond = std::int32_t(std::count(near.begin(), near.end(), 1));
   pairs.near = (std::size_t(beyond) + 7) / 8 * 8;

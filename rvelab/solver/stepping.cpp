@@ -261,9 +261,8 @@ void advance(const Fixture& f, Assembly& a, const Advance& what) {
       sweep_pairs(f.kernels.pairs, c, pairs, a.rows.data(), long(a.pairs.padded()), team);
       continue;
     }
-    const Dissipation lost =
-        sweep_pairs_with_losses(f.kernels.pairs_ledger, c, pairs, a.rows.data(), a.pairs.order);
-    std::fill(a.pairs.touched.begin(), a.pairs.touched.end(), 1);
+    Dissipation lost;
+    f.kernels.pairs_ledger(c, pairs, a.rows.data(), 0, long(a.pairs.padded()), &lost);
     EnergyLedger& ledger = a.state.ledger;
     const Matrix3 moment = contact_moment(f, a);
     // V sigma = -sum F (x) b - sum m v' v'; the contact part by the trapezium, the kinetic one at the half step.

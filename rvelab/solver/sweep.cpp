@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 
 namespace rvelab {
 
@@ -39,17 +38,6 @@ void sweep_pairs(PairKernel kernel, const StepConstants& constants, const PairAr
     const long begin = long(piece) * piece_pairs;
     kernel(constants, pairs, grain_rows, begin, std::min(padded_pairs, begin + piece_pairs), nullptr);
   });
-}
-
-Dissipation sweep_pairs_with_losses(PairKernel kernel, const StepConstants& constants, PairArrays pairs,
-                                    const double* grain_rows, const std::vector<std::int32_t>& order) {
-  Dissipation lost;
-  pairs.near = std::numeric_limits<long>::max();
-  for (std::size_t first = 0, last = 0; first < order.size(); first = last) {
-    while (last < order.size() && std::size_t(order[last] - order[first]) == last - first) ++last;
-    kernel(constants, pairs, grain_rows, order[first], order[first] + long(last - first), &lost);
-  }
-  return lost;
 }
 
 void sweep_grains(GrainKernel kernel, const StepConstants& constants, const GrainArrays& grains,
