@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "rvelab/error.hpp"
+#include "rvelab/solver/gather_table.hpp"
 #include "rvelab/solver/memory_order.hpp"
 #include "rvelab/solver/sweep.hpp"
 
@@ -216,6 +217,7 @@ void fill(const Fixture& f, const std::vector<ListedPair>& listed, const std::ve
     }
   });
   derive_pairs(f, pairs);
+  fill_gather_table(padded_to_lanes(f.size()), force_row_length(f.shape), pairs);
 }
 
 /// The key of a pair after images changed; a grain's own image is kept pointing forward, forces turning round with it.

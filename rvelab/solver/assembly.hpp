@@ -95,8 +95,8 @@ Reduction rebuild(const Fixture& fixture, Assembly& assembly);
 /// Whether a pair that is not listed might touch by now. May tighten the bound that the state keeps on displacements.
 bool list_is_stale(const Fixture& fixture, Assembly& assembly);
 
-/// What follows from list, histories and fixture, made anew: parameters, indices as the kernels want them, gather
-/// table; force rows are zero. Pairs not computed at every step must have no history unless they touch.
+/// What follows from list and fixture, made anew: parameters, indices as the kernels want them; force rows are zero.
+/// The gather table belongs to the list. Pairs not computed at every step must have no history unless they touch.
 void derive_pairs(const Fixture& fixture, PairTable& pairs);
 
 /// Pair parameters from the materials, for all listed pairs (after listing, or when materials change).

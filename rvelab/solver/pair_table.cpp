@@ -1,7 +1,7 @@
 // What the working arrays of the pairs follow from: list, materials, grains.
-#include "rvelab/solver/gather_table.hpp"
-
 #include <algorithm>
+
+#include "rvelab/solver/assembly.hpp"
 
 namespace rvelab {
 
@@ -55,7 +55,6 @@ void derive_pairs(const Fixture& f, PairTable& pairs) {
   pairs.touched.assign(padded / 8, 0);
   pairs.force.assign(padded * std::size_t(force_row_length(f.shape)), 0.0);
   set_pair_parameters(f, pairs);
-  fill_gather_table(padded_to_lanes(f.size()), force_row_length(f.shape), pairs);
 }
 
 }  // namespace rvelab

@@ -7,7 +7,7 @@ Drained compression through peak and softening, 2D and 3D, at kappa = kn/(p t) (
 - each increment from the state of the record before it (every tenth: "again"), so that both do the same work;
 - the whole path in one run ("path"). A path is chaotic: prescribed to stiff grains after the peak, p drifts by orders
   of magnitude, and with it the pace, so that its cost says little. It is shown and not judged where p at its end is
-  off by more than a half.
+  off by more than a half. Where it has not ended after ten minutes it is given up ("nan").
 
 Bars: at most 1 % of the records flagged; at most 1.3 times the grain-steps.
 """
@@ -30,10 +30,10 @@ SCENES = {"disc": ("dense", lambda kappa: 4e7 / kappa, "y",
 RECORDS = 300
 
 
-def run(program, *arguments):
+def run(program, *arguments, seconds=None):
     # kappa = 1e2 is soft: overlaps are large.
     subprocess.run([program, "run", *map(str, arguments), "--force", "--set", "solver.max_overlap_ratio=1"], check=True,
-                   stdout=subprocess.DEVNULL)
+                   stdout=subprocess.DEVNULL, timeout=seconds)
 
 
 def steps_of(path):
@@ -81,14 +81,20 @@ def case(program, work, scene, kappa):
         held_error, substeps = file["records/held_error"][:], file["records/substeps"][:]
         grains = len(file["specimen/grains/radius_m"])
         controlled, prescribed = again(program, name, file, gradients, substeps, grains)
-    run(program, deformations(pathlib.Path(f"{name}_replay.toml"), gradients[1:]), "--specimen", start, "-o", whole)
-    with h5py.File(whole) as file:
-        drift = np.trace(file["records/stress_Pa"][-1]) / -np.trace(stress[-1])
+    path = drift = np.nan
+    try:
+        run(program, deformations(pathlib.Path(f"{name}_replay.toml"), gradients[1:]), "--specimen", start, "-o", whole,
+            seconds=600)
+        path = steps_of(test) / steps_of(whole)
+        with h5py.File(whole) as file:
+            drift = np.trace(file["records/stress_Pa"][-1]) / -np.trace(stress[-1])
+    except subprocess.TimeoutExpired:
+        pass
     k = 1 if scene == "disc" else 2
     ratio = stress[:, k, k] / stress[:, 0, 0]
     peak = int(np.argmax(ratio))
-    times, path = controlled / prescribed, steps_of(test) / steps_of(whole)
-    good = flagged <= 0.01 and times <= 1.3 and (path <= 1.3 or abs(drift - 1) > 0.5)
+    times = controlled / prescribed
+    good = flagged <= 0.01 and times <= 1.3 and not (path > 1.3 and abs(drift - 1) <= 0.5)
     return (f"{scene:7} {kappa:7.0e} {pressure_of(kappa):12.4g} {ratio[peak]:11.3f} {ends[kappa] / RECORDS * peak:10.4f} "
             f"{ratio[-RECORDS // 5:].mean():11.3f} {flagged:8.2%} {held_error.mean():11.5f} {steps_of(test):12.4g} "
             f"{times:6.2f} {path:6.2f} {drift:8.3g}  {'ok' if good else 'MISSED'}")
