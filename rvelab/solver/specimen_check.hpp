@@ -1,0 +1,11 @@
+// What a specimen must be for an Rve to open it.
+#pragma once
+
+#include "rvelab/solver/specimen.hpp"
+
+namespace rvelab {
+
+/// Throws InputError, which names the grain, contact or key, its value and the remedy.
+void check_specimen(const Specimen& specimen);
+
+}  // namespace rvelab
