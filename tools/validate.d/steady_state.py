@@ -7,6 +7,9 @@ and ratio = tr R / tr P, each within 4 sqrt(se^2 + se_own^2) at porosities 0.738
 from random starts (the fcc start has no unique steady state and is shown only). se: the larger of the standard errors
 of 12 blocks and between the runs. The figure draws ratio against porosity.
 
+Then protocols/complex_loading.toml from the first start of porosity 0.548: the volume is that of its velocity gradient to
+1e-12, and Reynolds over contact stress falls as the spheres come closer.
+
 At 0.282 tr R of one run wanders by a tenth, so each random start is sheared three times, twice with its spheres moved by
 some 1e-9 m: before gamma = 4 chaos has made runs of their own of them. LAMMPS' mean there has a standard error of 3.3 %.
 """
@@ -50,6 +53,28 @@ def make(program, start, work, name):
                     "--set", "stage.shear.record_every=0.002", "--set", "solver.max_overlap_ratio=1"],
                    check=True, stdout=subprocess.DEVNULL)
     return records
+
+
+def complex_loading(program, work):
+    """Lines of text, and whether the bars are met."""
+    records = work / "R_complex_loading.h5"
+    subprocess.run([program, "run", "protocols/complex_loading.toml", "--specimen", work / "n548_s1.h5", "-o", records,
+                    "--resume"], check=True, stdout=subprocess.DEVNULL)
+    with h5py.File(records) as file:
+        strain, void_ratio = file["records/strain"][:], file["records/void_ratio"][:]
+        volume = np.linalg.det(file["records/deformation_gradient"][-1])
+        contact, reynolds = (-np.trace(file[f"records/{name}_stress_Pa"][:], axis1=1, axis2=2)
+                             for name in ("contact", "reynolds"))
+    yield f"\ncomplex loading from n548: volume ratio {volume:.15f}, that of the flow {np.exp(-0.2):.15f}", \
+        abs(volume - np.exp(-0.2)) <= 1e-12
+    before = np.inf
+    yield "gamma     porosity  p, Pa      Reynolds/contact", True
+    for begin, end in ((1, 4), (4, 7), (7, 10)):
+        inside = (strain > begin) & (strain <= end + 1e-9)
+        ratio = reynolds[inside].mean() / contact[inside].mean()
+        porosity = (void_ratio[inside] / (1 + void_ratio[inside])).mean()
+        yield f"{begin:2} to {end:2}  {porosity:.3f}     {contact[inside].mean() / 3:8.1f}   {ratio:.4f}", ratio < before
+        before = ratio
 
 
 def quantities(path):
@@ -101,6 +126,10 @@ def main():
     paper = {"n738": "0.5", "n548": "at least one order below", "n371": "three orders below", "n282": "three orders below"}
     for porosity, case, value, own, expected, se in sorted(curve):
         print(f"{porosity:.3f} {case:7} {value:.4g} +- {own:.2g}   {expected:.4g} +- {se:.2g}   {paper.get(case, '-')}")
+    for text, good in complex_loading(program, work):
+        print(text + ("" if good else "  MISSED"))
+        if not good:
+            failed.append("complex loading")
     if len(sys.argv) > 4:
         draw(curve, sys.argv[4])
     if failed:
