@@ -122,6 +122,23 @@ TEST_CASE("An isotropic stage ends at its pressure and at rest") {
   CHECK(std::abs(freed.result.records[1].deformation_gradient(0, 1)) > 1e-9);
 }
 
+TEST_CASE(
+    "An isotropic stage that ends far from the reference pressure makes its end the reference, and no other does") {
+  const Specimen start = reference_specimen("dense");
+  REQUIRE(start.state.reference_pressure == 1e5);
+  const auto after = [&](double pressure) {
+    const std::string stage = "[[stage]]\nkind = \"isotropic\"\npressure_Pa = " + std::to_string(pressure) + "\n";
+    return run_text(stage, start).end_state.state;
+  };
+  const SolverState near = after(10e3), far = after(1e3);
+  CHECK(near.reference_pressure == 1e5);
+  CHECK(far.reference_pressure == Approx(1e3).epsilon(1e-3));
+  // Linear contacts: overlaps and forces go with the pressure, but for the contacts that open.
+  CHECK(far.reference_overlap < 0.02 * near.reference_overlap);
+  CHECK(far.reference_contact_force < 0.02 * near.reference_contact_force);
+  CHECK(far.reference_contact_force > 0.005 * near.reference_contact_force);
+}
+
 TEST_CASE("A specimen that is where a stage wants it is left exactly as it was") {
   const Specimen specimen = reference_specimen("dense_p20");
   const TestRun run = run_text(
