@@ -5,6 +5,7 @@
 #include "rvelab/error.hpp"
 #include "rvelab/io/material_toml.hpp"
 #include "rvelab/protocol/protocol.hpp"
+#include "rvelab/protocol/table_reader.hpp"
 
 namespace rvelab {
 namespace {
@@ -93,6 +94,17 @@ void assign(toml::table& file, const std::string& assignment) {
   toml::node& node = *value.get("value");
   const toml::source_region source = node.source();
   node.visit([&](auto& concrete) { table->insert_or_assign(toml::key(parts.back(), source), std::move(concrete)); });
+}
+
+void protocol::assign_all(toml::table& file, const std::vector<std::string>& assignments,
+                          std::vector<KeyError>& errors) {
+  for (const std::string& assignment : assignments) {
+    try {
+      assign(file, assignment);
+    } catch (const InputError& error) {
+      errors.push_back({0, error.what(), true});
+    }
+  }
 }
 
 }  // namespace rvelab

@@ -139,13 +139,7 @@ void read_stages(const toml::table& file, Protocol& protocol, toml::table& resol
 
 Protocol read_file(toml::table file, const std::string& path, const std::vector<std::string>& assignments) {
   std::vector<KeyError> errors;
-  for (const auto& assignment : assignments) {
-    try {
-      assign(file, assignment);
-    } catch (const InputError& error) {
-      errors.push_back({0, error.what(), true});
-    }
-  }
+  protocol::assign_all(file, assignments, errors);
   Protocol protocol;
   protocol.path = path;
   toml::table resolved;

@@ -254,13 +254,7 @@ void read_parameters(const toml::table& file, Recipe& recipe, toml::table& resol
 
 RecipeFile read_file(toml::table file, const std::string& path, const std::vector<std::string>& assignments) {
   std::vector<KeyError> errors;
-  for (const auto& assignment : assignments) {
-    try {
-      assign(file, assignment);
-    } catch (const InputError& error) {
-      errors.push_back({0, error.what(), true});
-    }
-  }
+  protocol::assign_all(file, assignments, errors);
   RecipeFile read;
   toml::table resolved;
   protocol::expect_top_tables(file, errors, tables);

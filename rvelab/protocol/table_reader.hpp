@@ -19,6 +19,9 @@ long line_of(const toml::node& node);
 /// A node as TOML writes it.
 std::string written(const toml::node& node);
 
+/// Applies the assignments of the command line (protocol.hpp); a wrong one becomes an error, the others are applied.
+void assign_all(toml::table& file, const std::vector<std::string>& assignments, std::vector<KeyError>& errors);
+
 /// Books what is no table of a protocol, or of the kind of file that `known` lists, at its top level.
 void expect_top_tables(const toml::table& file, std::vector<KeyError>& errors,
                        const std::vector<std::string>& known = top_tables());

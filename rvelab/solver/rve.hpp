@@ -112,7 +112,8 @@ class Rve {
   void share(Workers* team);
 
   /// The state that pace and unbalanced ratio are measured by: mean pressure, Pa; first that in which the specimen was
-  /// opened. Far below it quasi-static loading is faster, against the stress that is there, than target_unbalanced asks.
+  /// opened. Far below it quasi-static loading is faster, against the stress that is there, than target_unbalanced
+  /// asks.
   double reference_pressure() const;
   /// Makes it the present state, with its contact forces and overlaps.
   void take_as_reference();

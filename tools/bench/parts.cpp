@@ -152,10 +152,10 @@ void look_at_stress(benchmark::State& state, const std::string& name) {
   per_grain(state, o);
 }
 
-/// Eight lanes beside four: time of the AVX-512 kernels over that of the AVX2 ones, median over slices of a millisecond in
-/// turn, so that both see the same clock. Callgrind cannot count AVX-512 (tools/bench/count), and a vector taken apart
-/// lane by lane would cost several times as much. Processors that lower their clock for 512-bit arithmetic come near 1,
-/// and use AVX2 of themselves. Returns the exit code.
+/// Eight lanes beside four: time of the AVX-512 kernels over that of the AVX2 ones, median over slices of a millisecond
+/// in turn, so that both see the same clock. Callgrind cannot count AVX-512 (tools/bench/count), and a vector taken
+/// apart lane by lane would cost several times as much. Processors that lower their clock for 512-bit arithmetic come
+/// near 1, and use AVX2 of themselves. Returns the exit code.
 int compare_widths() {
 #if defined(__x86_64__)
   if (!__builtin_cpu_supports("avx512dq")) {
