@@ -92,8 +92,8 @@ void drive(RunningTest& test, const IsotropicStage& stage) {
          << " rounds; raise max_rounds, max_steps or the tolerances";
     throw test.failed(text.str());
   }
-  // Soft, stiff and far-swelled specimens keep the tolerance of what follows by their own pressure, not by the one they
-  // were packed at (discs swelled from 100 kPa to 40 Pa, prescribed strain: p ended sixty times too high).
+  // Pace and tolerance of what follows go by the pressure reached here, not by one that is long left behind (discs
+  // swelled from 100 kPa to 40 Pa, then prescribed strain: p ended sixty times too high).
   const double change = stage.pressure / test.rve.reference_pressure();
   if (!(change > 1 / far_off && change < far_off)) test.rve.take_as_reference();
   if (stage.record) test.record_now(1 - at.deformation.determinant());

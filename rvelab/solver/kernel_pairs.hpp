@@ -120,7 +120,8 @@ struct PairRun {
 /// those of which one touches, by `touches(first)`, or did at the last step, so that its force has to go. A pair for
 /// which this is false holds neither force nor history, and its overlap would come out at 0 or less: with |b|^2 not
 /// below (ri + rj)^2, as rounded, the correctly rounded root of |b|^2 is not below ri + rj.
-/// Spheres with 2.4 contacts and 3.6 listed pairs a grain: 1.25 times the grain-steps a second.
+/// Spheres with 2.4 contacts and 3.6 listed pairs a grain: 469 instructions a grain-step instead of 556 (AVX2), 1.16
+/// times the grain-steps a second.
 template <class Touches>
 inline __attribute__((always_inline)) PairRun next_run(const PairArrays& p, long at, long end, const Touches& touches) {
   if (at < p.near) {
