@@ -140,8 +140,8 @@ std::vector<Case> cases() {
           {"disc_400_rolling", discs(true), {1, 1, 1}, 8e6, 1.6e6},
           {"disc_10000_linear", discs(false), {5, 5, 1}, 8e6, 1.6e6},
           {"sphere_1000_hertz", spheres(), {1, 1, 1}, 3e6, 6e5},
-          {"sphere_32000_hertz", spheres(), {4, 4, 2}, 3e6, 6e5},
-          {"sphere_256000_hertz", spheres(), {8, 8, 4}, 1e7, 5e6}};
+          {"sphere_32000_hertz", spheres(), {4, 4, 2}, 6.4e6, 3.2e6},
+          {"sphere_256000_hertz", spheres(), {8, 8, 4}, 2.56e7, 2.56e7}};
 }
 
 /// About so many grains: packed as they are up to the number of the recipe, above by repeating its packing.

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rvelab/solver/gather_table.hpp"
 #include "rvelab/solver/pair_geometry.hpp"
 
 namespace rvelab {
@@ -57,81 +58,147 @@ Vector3 force_of(const Fixture& f, const PairTable& pairs, std::size_t p) {
   return {row[0], row[1], f.shape == Shape::disc ? 0.0 : row[2]};
 }
 
-Matrix3 contact_moment(const Fixture& f, const Assembly& a) {
-  // Called every few sub-steps under stress control.
+namespace {
+
+/// Moment of the pairs at `order` [first, last).
+template <int D>
+Matrix3 moment_of(const Assembly& a, const Branches<D>& branch, std::size_t first, std::size_t last) {
+  constexpr std::size_t row = D == 2 ? 4 : 8;
   const double* force = a.pairs.force.data();
-  Matrix3 sum = Matrix3::Zero();
-  if (f.shape == Shape::disc) {
-    const Branches<2> branch(a);
-    double xx = 0, xy = 0, yx = 0, yy = 0;
-    for (const std::int32_t place : a.pairs.order) {
-      const auto p = std::size_t(place);
-      const Branch b = branch(p);
-      xx += force[4 * p] * b.x;
-      xy += force[4 * p] * b.y;
-      yx += force[4 * p + 1] * b.x;
-      yy += force[4 * p + 1] * b.y;
-    }
-    sum(0, 0) = xx;
-    sum(0, 1) = xy;
-    sum(1, 0) = yx;
-    sum(1, 1) = yy;
-    return sum;
-  }
-  const Branches<3> branch(a);
   double m[9] = {};
-  for (const std::int32_t place : a.pairs.order) {
-    const auto p = std::size_t(place);
+  for (std::size_t k = first; k < last; ++k) {
+    const auto p = std::size_t(a.pairs.order[k]);
     const Branch b = branch(p);
-    for (int r = 0; r < 3; ++r) {
-      m[3 * r] += force[8 * p + r] * b.x;
-      m[3 * r + 1] += force[8 * p + r] * b.y;
-      m[3 * r + 2] += force[8 * p + r] * b.z;
+    for (int r = 0; r < D; ++r) {
+      m[3 * r] += force[row * p + std::size_t(r)] * b.x;
+      m[3 * r + 1] += force[row * p + std::size_t(r)] * b.y;
+      if constexpr (D == 3) m[3 * r + 2] += force[row * p + std::size_t(r)] * b.z;
     }
   }
+  Matrix3 sum;
   for (int k = 0; k < 9; ++k) sum(k / 3, k % 3) = m[k];
   return sum;
 }
 
+template <int D>
+Matrix3 moment_in(const Fixture& f, const Assembly& a) {
+  const Branches<D> branch(a);
+  std::vector<Matrix3> of_piece(pieces_in(a.pairs.listed));
+  in_pieces(a.pairs.listed, f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
+    of_piece[piece] = moment_of(a, branch, first, last);
+  });
+  Matrix3 sum = Matrix3::Zero();
+  for (const Matrix3& piece : of_piece) sum += piece;
+  return sum;
+}
+
+}  // namespace
+
+Matrix3 contact_moment(const Fixture& f, const Assembly& a) {
+  // Called every few sub-steps under stress control.
+  return f.shape == Shape::disc ? moment_in<2>(f, a) : moment_in<3>(f, a);
+}
+
 namespace {
 
+/// Sums over the contacts of a piece of the pairs.
+struct ContactSums {
+  double force = 0, overlap = 0, largest_overlap_ratio = 0;
+  std::size_t touching = 0;
+  bool finite = true;
+};
+
+/// Adds up the contacts at `order` [first, last), and their forces on each grain unless `resultants` is null.
 template <int D>
-Balance balance_in(const Fixture& f, const Assembly& a) {
-  Balance balance;
-  std::vector<double> resultant(3 * f.size(), 0.0);
-  const Branches<D> branch(a);
+ContactSums contacts_in(const Fixture& f, const Assembly& a, const Branches<D>& branch, std::size_t first,
+                        std::size_t last, double* resultants) {
+  ContactSums sums;
   const double* force = a.pairs.force.data();
-  double contact_force = 0, overlap_sum = 0;
-  for (const std::int32_t place : a.pairs.order) {
-    const auto p = std::size_t(place);
+  for (std::size_t k = first; k < last; ++k) {
+    const auto p = std::size_t(a.pairs.order[k]);
     const auto i = std::size_t(a.pairs.i[p]), j = std::size_t(a.pairs.j[p]);
     const double overlap = (f.radius[i] + f.radius[j]) - branch(p).length();
-    if (!std::isfinite(overlap)) balance.finite = false;
+    if (!std::isfinite(overlap)) sums.finite = false;
     if (!(overlap > 0)) continue;
     const double* on_j = force + p * (D == 2 ? 4 : 8);
     double squared = 0;
-    for (int k = 0; k < D; ++k) {
-      resultant[3 * i + std::size_t(k)] -= on_j[k];
-      resultant[3 * j + std::size_t(k)] += on_j[k];
-      squared += on_j[k] * on_j[k];
-    }
-    contact_force += std::sqrt(squared);
-    overlap_sum += overlap;
-    ++balance.touching;
-    balance.largest_overlap_ratio =
-        std::max(balance.largest_overlap_ratio, overlap / std::min(f.radius[i], f.radius[j]));
+    for (std::size_t c = 0; c < D; ++c) squared += on_j[c] * on_j[c];
+    if (resultants != nullptr && i != j)
+      for (std::size_t c = 0; c < D; ++c) {
+        resultants[D * i + c] -= on_j[c];
+        resultants[D * j + c] += on_j[c];
+      }
+    sums.force += std::sqrt(squared);
+    sums.overlap += overlap;
+    ++sums.touching;
+    sums.largest_overlap_ratio = std::max(sums.largest_overlap_ratio, overlap / std::min(f.radius[i], f.radius[j]));
   }
-  for (std::size_t g = 0; g < f.size(); ++g) {
-    const double* r = resultant.data() + 3 * g;
-    balance.mean_resultant += std::sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]) / double(f.size());
+  return sums;
+}
+
+/// Forces on the grains [first, last), added in the same order as above; pairs that do not touch have none.
+template <int D>
+void gather_resultants(const Assembly& a, std::size_t first, std::size_t last, double* resultants) {
+  const double* force = a.pairs.force.data();
+  each_pair_of_grains<D>(a.pairs, first, last, [&](std::size_t g, std::size_t p, bool as_j) {
+    if (a.pairs.i[p] == a.pairs.j[p]) return;
+    const double* on_j = force + p * (D == 2 ? 4 : 8);
+    double* r = resultants + D * g;
+    for (std::size_t c = 0; c < D; ++c) r[c] = as_j ? r[c] + on_j[c] : r[c] - on_j[c];
+  });
+}
+
+/// Sums over a piece of the grains: |resultant|, and squares of all that their rows hold.
+struct GrainFigures {
+  double resultants = 0, squares = 0;
+};
+
+template <int D>
+GrainFigures grains_in(const Fixture& f, const Assembly& a, std::size_t first, std::size_t last,
+                       const double* resultants) {
+  GrainFigures figures;
+  for (std::size_t g = first; g < last; ++g) {
+    double squared = 0;
+    for (std::size_t c = 0; c < D; ++c) squared += resultants[D * g + c] * resultants[D * g + c];
+    figures.resultants += std::sqrt(squared) / double(f.size());
+  }
+  const auto row = std::size_t(f.row_length());
+  for (std::size_t k = first * row; k < last * row; ++k) figures.squares += a.rows[k] * a.rows[k];
+  return figures;
+}
+
+template <int D>
+Balance balance_in(const Fixture& f, const Assembly& a) {
+  const Branches<D> branch(a);
+  const bool shared = f.sharing() != nullptr;
+  std::vector<double> resultants(D * f.size(), 0.0);
+  std::vector<ContactSums> of_pairs(pieces_in(a.pairs.listed));
+  in_pieces(a.pairs.listed, f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
+    of_pairs[piece] = contacts_in(f, a, branch, first, last, shared ? nullptr : resultants.data());
+  });
+  std::vector<GrainFigures> of_grains(pieces_in(f.size()));
+  in_pieces(f.size(), f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
+    if (shared) gather_resultants<D>(a, first, last, resultants.data());
+    of_grains[piece] = grains_in<D>(f, a, first, last, resultants.data());
+  });
+  Balance balance;
+  double contact_force = 0, overlap_sum = 0, squares = 0;
+  for (const ContactSums& piece : of_pairs) {
+    contact_force += piece.force;
+    overlap_sum += piece.overlap;
+    balance.touching += piece.touching;
+    balance.largest_overlap_ratio = std::max(balance.largest_overlap_ratio, piece.largest_overlap_ratio);
+    balance.finite = balance.finite && piece.finite;
+  }
+  for (const GrainFigures& piece : of_grains) {
+    balance.mean_resultant += piece.resultants;
+    squares += piece.squares;
   }
   if (balance.touching > 0) {
     balance.mean_contact_force = contact_force / double(balance.touching);
     balance.mean_overlap = overlap_sum / double(balance.touching);
   }
   // A sum is finite only if all its terms are, or if infinities cancel, which sums of squares cannot.
-  double squares = 0;
-  for (double value : a.rows) squares += value * value;
   balance.finite =
       balance.finite && std::isfinite(balance.mean_resultant) && std::isfinite(contact_force) && std::isfinite(squares);
   return balance;

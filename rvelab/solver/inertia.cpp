@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "rvelab/solver/gather_table.hpp"
 #include "rvelab/solver/pair_geometry.hpp"
 
 namespace rvelab {
@@ -98,67 +99,137 @@ double typical_normal_force(const Fixture& f, double overlap) {
 
 namespace {
 
+/// What a grain collects from its pairs.
+struct GrainSums {
+  Symmetric stiffness;
+  double rotation = 0, dashpot = 0;
+  // A listed pair may touch within the steps to come: a grain that is ready for the stiffest of them stays stable even
+  // where that contact is ten thousand times stiffer than those it has.
+  double stiffest = 0, stiffest_turn = 0;
+};
+
+/// What a pair gives to each of its grains.
+struct PairTerms {
+  ContactStiffness
+      firm;  ///< barely touching Hertz contacts are soft but will not stay so: at a quarter of p0's overlap
+  double firm_translation = 0;
+  bool touching = false;
+  ContactStiffness now = {};
+  double along = 0, across = 0, nx = 0, ny = 0, nz = 0;
+};
+
+template <int D>
+PairTerms terms_of(const Fixture& f, const Assembly& a, const Branches<D>& branch, std::size_t p) {
+  const Branch b = branch(p);
+  const double length = b.length();
+  const double overlap = (f.radius[std::size_t(a.pairs.i[p])] + f.radius[std::size_t(a.pairs.j[p])]) - length;
+  PairTerms t{stiffness_of(f, a.pairs, p, std::max(overlap, 0.25 * a.state.reference_overlap))};
+  t.firm_translation = std::max(2 * t.firm.normal, 4 * t.firm.tangential);
+  t.touching = overlap > 0;
+  if (!t.touching) return t;
+  t.now = stiffness_of(f, a.pairs, p, overlap);
+  const double normal_force = f.law == KernelLaw::linear ? t.now.normal * overlap : t.now.normal * overlap / 1.5;
+  // The force turning with the branch (initial stress) adds f_n / length to the tangential stiffness at most.
+  const double kt = t.now.tangential + 0.5 * normal_force / length;
+  t.along = 2 * t.now.normal - 4 * kt;
+  t.across = 4 * kt;
+  t.nx = b.x / length;
+  t.ny = b.y / length;
+  t.nz = b.z / length;
+  return t;
+}
+
+template <int D>
+void add(const Fixture& f, const PairTerms& t, std::size_t g, GrainSums& sums) {
+  const double r = f.radius[g];
+  sums.stiffest = std::max(sums.stiffest, t.firm_translation);
+  sums.stiffest_turn = std::max(sums.stiffest_turn, 4 * t.firm.tangential * r * r + 2 * t.firm.rolling);
+  if (!t.touching) return;
+  add_contact(t.along, t.across, t.nx, t.ny, t.nz, D, sums.stiffness);
+  sums.rotation += 4 * t.now.tangential * r * r + 2 * t.now.rolling;
+  if (f.damping.dashpot != Dashpot::none)
+    sums.dashpot += 2 * t.now.dashpot * std::max(1.0, 2 * f.damping.tangential_ratio);
+}
+
+/// Stiffnesses of the contacts, of which floors are medians.
+struct Firmness {
+  std::vector<double> translation, rotation;
+
+  void add(const Fixture& f, const PairTable& pairs, std::size_t p, const PairTerms& t) {
+    if (!t.touching) return;
+    const double ri = f.radius[std::size_t(pairs.i[p])], rj = f.radius[std::size_t(pairs.j[p])];
+    translation.push_back(t.firm_translation);
+    rotation.push_back(4 * t.firm.tangential + 2 * t.firm.rolling / std::min(ri * ri, rj * rj));
+  }
+};
+
+/// Sums of all grains. Each pair is looked at once; by a team once for each of its grains, so that threads share
+/// nothing. A grain adds its pairs in the same order either way.
+template <int D>
+std::vector<GrainSums> sums_of_grains(const Fixture& f, const Assembly& a, Firmness& firmness) {
+  std::vector<GrainSums> sums(f.size());
+  const Branches<D> branch(a);
+  if (f.sharing() == nullptr) {
+    for (const std::int32_t place : a.pairs.order) {
+      const auto p = std::size_t(place);
+      const PairTerms t = terms_of(f, a, branch, p);
+      for (const std::int32_t g : {a.pairs.i[p], a.pairs.j[p]}) add<D>(f, t, std::size_t(g), sums[std::size_t(g)]);
+      firmness.add(f, a.pairs, p, t);
+    }
+    return sums;
+  }
+  std::vector<Firmness> of_piece(pieces_in(f.size()));
+  in_pieces(f.size(), f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
+    each_pair_of_grains<D>(a.pairs, first, last, [&](std::size_t g, std::size_t p, bool as_j) {
+      const bool own_image = a.pairs.i[p] == a.pairs.j[p];
+      if (own_image && as_j) return;  // both at once where the grain is i, as above
+      const PairTerms t = terms_of(f, a, branch, p);
+      add<D>(f, t, g, sums[g]);
+      if (own_image) add<D>(f, t, g, sums[g]);
+      if (!as_j) of_piece[piece].add(f, a.pairs, p, t);
+    });
+  });
+  for (const Firmness& piece : of_piece) {
+    firmness.translation.insert(firmness.translation.end(), piece.translation.begin(), piece.translation.end());
+    firmness.rotation.insert(firmness.rotation.end(), piece.rotation.begin(), piece.rotation.end());
+  }
+  return sums;
+}
+
 template <int D>
 RowSums sums_over_pairs(const Fixture& f, const Assembly& a) {
   const std::size_t n = f.size();
-  RowSums sums;
-  std::vector<Symmetric> rows(n);
-  sums.rotation.assign(n, 0.0);
-  sums.translation.assign(n, 0.0);
   const bool dashpot = f.damping.dashpot != Dashpot::none;
-  if (dashpot) sums.dashpot.assign(n, 0.0);
-  std::vector<double> translations, rotations;
-  // A listed pair may touch within the steps to come: a grain that is ready for the stiffest of them stays stable even
-  // where that contact is ten thousand times stiffer than those it has.
-  std::vector<double> stiffest(n, 0.0), stiffest_turn(n, 0.0);
-  const Branches<D> branch(a);
-  for (const std::int32_t place : a.pairs.order) {
-    const auto p = std::size_t(place);
-    const auto i = a.pairs.i[p], j = a.pairs.j[p];
-    const Branch b = branch(p);
-    const double length = b.length();
-    const double overlap = (f.radius[i] + f.radius[j]) - length;
-    // Barely touching Hertz contacts are soft but will not stay so: floors see them at a quarter of p0's overlap.
-    const ContactStiffness firm = stiffness_of(f, a.pairs, p, std::max(overlap, 0.25 * a.state.reference_overlap));
-    const double firm_translation = std::max(2 * firm.normal, 4 * firm.tangential);
-    for (const auto g : {i, j}) {
-      stiffest[g] = std::max(stiffest[g], firm_translation);
-      stiffest_turn[g] = std::max(stiffest_turn[g], 4 * firm.tangential * f.radius[g] * f.radius[g] + 2 * firm.rolling);
+  Firmness firmness;
+  const std::vector<GrainSums> of_grain = sums_of_grains<D>(f, a, firmness);
+  RowSums sums;
+  sums.rotation.resize(n);
+  sums.translation.resize(n);
+  if (dashpot) sums.dashpot.resize(n);
+  in_pieces(n, f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t g = first; g < last; ++g) {
+      sums.translation[g] = std::max(largest_eigenvalue(of_grain[g].stiffness, D), of_grain[g].stiffest);
+      sums.rotation[g] = std::max(of_grain[g].rotation, of_grain[g].stiffest_turn);
+      if (dashpot) sums.dashpot[g] = of_grain[g].dashpot;
     }
-    if (!(overlap > 0)) continue;
-    const ContactStiffness k = stiffness_of(f, a.pairs, p, overlap);
-    const double normal_force = f.law == KernelLaw::linear ? k.normal * overlap : k.normal * overlap / 1.5;
-    // The force turning with the branch (initial stress) adds f_n / length to the tangential stiffness at most.
-    const double kt = k.tangential + 0.5 * normal_force / length;
-    const double nx = b.x / length, ny = b.y / length, nz = b.z / length, along = 2 * k.normal - 4 * kt;
-    add_contact(along, 4 * kt, nx, ny, nz, D, rows[i]);
-    add_contact(along, 4 * kt, nx, ny, nz, D, rows[j]);
-    const double ri = f.radius[i], rj = f.radius[j];
-    const double turn_i = 4 * k.tangential * ri * ri + 2 * k.rolling;
-    const double turn_j = 4 * k.tangential * rj * rj + 2 * k.rolling;
-    sums.rotation[i] += turn_i;
-    sums.rotation[j] += turn_j;
-    if (dashpot) {
-      const double c = 2 * k.dashpot * std::max(1.0, 2 * f.damping.tangential_ratio);
-      sums.dashpot[i] += c;
-      sums.dashpot[j] += c;
-    }
-    translations.push_back(firm_translation);
-    rotations.push_back(4 * firm.tangential + 2 * firm.rolling / std::min(ri * ri, rj * rj));
-  }
-  for (std::size_t g = 0; g < n; ++g) {
-    sums.translation[g] = std::max(largest_eigenvalue(rows[g], D), stiffest[g]);
-    sums.rotation[g] = std::max(sums.rotation[g], stiffest_turn[g]);
-  }
-  if (translations.empty()) {
+  });
+  if (firmness.translation.empty()) {
     // Nothing touches: what two contacts of typical grains would have at a thousandth of a radius of overlap.
     const auto [one, radius] = typical_pair(f);
     const ContactStiffness k = stiffness_of(f, one, 0, 1e-3 * radius);
-    translations.push_back(std::max(2 * k.normal, 4 * k.tangential));
-    rotations.push_back(4 * k.tangential + 2 * k.rolling / (radius * radius));
+    firmness.translation.push_back(std::max(2 * k.normal, 4 * k.tangential));
+    firmness.rotation.push_back(4 * k.tangential + 2 * k.rolling / (radius * radius));
   }
-  sums.floor_translation = 2 * median(translations);
-  sums.floor_rotation = 2 * median(rotations);
+  double medians[2];
+  const auto find_median = [&](std::size_t which) {
+    medians[which] = median(which == 0 ? firmness.translation : firmness.rotation);
+  };
+  if (f.sharing() != nullptr)
+    f.sharing()->run(2, find_median);
+  else
+    for (const std::size_t which : {0, 1}) find_median(which);
+  sums.floor_translation = 2 * medians[0];
+  sums.floor_rotation = 2 * medians[1];
   // Without tangential and rolling stiffness nothing turns the grains; any inertia serves.
   if (sums.floor_rotation == 0) sums.floor_rotation = sums.floor_translation;
   return sums;

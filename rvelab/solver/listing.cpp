@@ -251,19 +251,33 @@ namespace {
 
 /// Sum of the two largest displacements of grains since the list was built, beside the affine motion, m.
 double measured_displacements(const Fixture& f, const Assembly& a, const Matrix3& f_since) {
-  double most = 0, second = 0;
+  struct Largest {
+    double most = 0, second = 0;
+    void add(double squared) {
+      second = std::max(second, std::min(squared, most));
+      most = std::max(most, squared);
+    }
+  };
   const UpperTriangle m = upper_triangle(f_since);
-  for (std::size_t g = 0; g < f.size(); ++g) {
-    const double* x = a.rows.data() + g * f.row_length();
-    const Vector3& from = a.state.list_positions[g];
-    const double dx = x[0] - (m.xx * from[0] + m.xy * from[1] + m.xz * from[2]);
-    const double dy = x[1] - (m.yy * from[1] + m.yz * from[2]);
-    const double dz = f.shape == Shape::disc ? 0 : x[2] - m.zz * from[2];
-    const double squared = dx * dx + dy * dy + dz * dz;
-    second = std::max(second, std::min(squared, most));
-    most = std::max(most, squared);
+  std::vector<Largest> of_piece(pieces_in(f.size()));
+  in_pieces(f.size(), f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
+    Largest here;
+    for (std::size_t g = first; g < last; ++g) {
+      const double* x = a.rows.data() + g * f.row_length();
+      const Vector3& from = a.state.list_positions[g];
+      const double dx = x[0] - (m.xx * from[0] + m.xy * from[1] + m.xz * from[2]);
+      const double dy = x[1] - (m.yy * from[1] + m.yz * from[2]);
+      const double dz = f.shape == Shape::disc ? 0 : x[2] - m.zz * from[2];
+      here.add(dx * dx + dy * dy + dz * dz);
+    }
+    of_piece[piece] = here;
+  });
+  Largest all;
+  for (const Largest& piece : of_piece) {
+    all.add(piece.most);
+    all.add(piece.second);
   }
-  return std::sqrt(most) + std::sqrt(second);
+  return std::sqrt(all.most) + std::sqrt(all.second);
 }
 
 }  // namespace

@@ -140,22 +140,26 @@ Vector3 rotation_vector(const Matrix3& rotation) {
 
 Matrix3 kinetic_moment(const Fixture& f, const Assembly& a) {
   // Called every few sub-steps under stress control.
-  const double* v = a.rows.data() + f.velocity_offset();
   const Vector3 mean = a.state.mean_velocity;
-  double xx = 0, yy = 0, zz = 0, yz = 0, xz = 0, xy = 0;
-  for (std::size_t g = 0; g < f.size(); ++g, v += f.row_length()) {
-    const double mass = a.mass[g], x = v[0] - mean[0], y = v[1] - mean[1];
-    xx -= mass * (x * x);
-    yy -= mass * (y * y);
-    xy -= mass * (x * y);
-    if (f.shape == Shape::disc) continue;
-    const double z = v[2] - mean[2];
-    zz -= mass * (z * z);
-    yz -= mass * (y * z);
-    xz -= mass * (x * z);
-  }
-  Matrix3 sum;
-  sum << xx, xy, xz, xy, yy, yz, xz, yz, zz;
+  std::vector<Matrix3> of_piece(pieces_in(f.size()));
+  in_pieces(f.size(), f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
+    double xx = 0, yy = 0, zz = 0, yz = 0, xz = 0, xy = 0;
+    const double* v = a.rows.data() + first * f.row_length() + f.velocity_offset();
+    for (std::size_t g = first; g < last; ++g, v += f.row_length()) {
+      const double mass = a.mass[g], x = v[0] - mean[0], y = v[1] - mean[1];
+      xx -= mass * (x * x);
+      yy -= mass * (y * y);
+      xy -= mass * (x * y);
+      if (f.shape == Shape::disc) continue;
+      const double z = v[2] - mean[2];
+      zz -= mass * (z * z);
+      yz -= mass * (y * z);
+      xz -= mass * (x * z);
+    }
+    of_piece[piece] << xx, xy, xz, xy, yy, yz, xz, yz, zz;
+  });
+  Matrix3 sum = Matrix3::Zero();
+  for (const Matrix3& piece : of_piece) sum += piece;
   return sum;
 }
 
