@@ -47,7 +47,6 @@ void Assembly::set_velocity(const Fixture& f, std::size_t g, const Vector3& v, c
   for (int k = 0; k < f.dimension(); ++k) row[f.velocity_offset() + k] = v[k];
   if (f.shape == Shape::disc) {
     row[4] = w[2];
-    row[5] = row[6] * w[2];
   } else {
     for (int k = 0; k < 3; ++k) row[8 + k] = w[k];
   }

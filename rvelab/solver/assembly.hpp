@@ -58,7 +58,7 @@ struct PairTable {
   Buffer tangential[3], moment[3], root_overlap, force;
   Buffer radius_i, radius_j;                    ///< 2D
   std::vector<std::int32_t> slot_begin, slots;  ///< gather table (scene.hpp)
-  std::vector<std::uint8_t> tasks;
+  std::vector<std::uint16_t> tasks;
 
   std::size_t padded() const { return i.size(); }
 };

@@ -44,7 +44,7 @@ void fill_gather_table(std::size_t padded_grains, std::int32_t force_row, PairTa
       const auto task = std::size_t(sorted[k]);
       const std::size_t block = (2 * start + k) / 4;
       if (k % 4 == 0) pairs.slot_begin[block + 1] = pairs.slot_begin[block] + pairs_of[2 * start + task];
-      pairs.tasks[2 * start + k] = std::uint8_t(task < grains ? task : chunk + (task - grains));
+      pairs.tasks[2 * start + k] = std::uint16_t(4 * (task < grains ? task : chunk + (task - grains)));
       next[2 * start + task] = 4 * pairs.slot_begin[block] + std::int32_t(k % 4);
     }
   }

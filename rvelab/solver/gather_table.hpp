@@ -20,7 +20,7 @@ void each_pair_of_grains(const PairTable& pairs, std::size_t first, std::size_t 
     const std::size_t end = std::min(start + chunk, padded);
     for (const bool as_j : {true, false})
       for (std::size_t k = 2 * start; k < 2 * end; ++k) {
-        const std::size_t task = pairs.tasks[k], block = k / 4;
+        const std::size_t task = pairs.tasks[k] / 4, block = k / 4;
         if ((task < chunk) != as_j) continue;
         for (auto slot = pairs.slot_begin[block]; slot < pairs.slot_begin[block + 1]; ++slot) {
           const auto place = std::size_t(pairs.slots[4 * std::size_t(slot) + k % 4] / force_row);

@@ -12,8 +12,8 @@ namespace {
 
 /// What the passes hand on.
 struct DiscScratch {
-  ScratchColumn dx, dy, du, dv;       ///< place and velocity of j less those of i
-  ScratchColumn spins, radius_spins;  ///< w_i + w_j and r_i w_i + r_j w_j
+  ScratchColumn dx, dy, du, dv;  ///< place and velocity of j less those of i
+  ScratchColumn spin_i, spin_j;
   ScratchColumn nx, ny, length;
   ScratchColumn along, opening;  ///< relative velocity of the centres over the step, along t and along n
 };
@@ -25,7 +25,9 @@ inline __attribute__((always_inline)) void disc_rows(const PairArrays& p, const 
   constexpr int W = T::W < 4 ? T::W : 4;
   using V = typename Lanes<W>::V;
   for (long k = 0; k < count; k += W) {
-    const std::int32_t *i = p.row_i + first + k, *j = p.row_j + first + k;
+    // Copies: no store of a column can change them, so each is read once.
+    std::int32_t i[W], j[W];
+    for (int lane = 0; lane < W; ++lane) i[lane] = p.row_i[first + k + lane], j[lane] = p.row_j[first + k + lane];
     V d[4];
     gather_differences<W>(rows, i, j, d);
     store_as(out.dx.at + k, d[0]);
@@ -33,10 +35,8 @@ inline __attribute__((always_inline)) void disc_rows(const PairArrays& p, const 
     if constexpr (T::Advance || T::Dashpot) {
       store_as(out.du.at + k, d[2]);
       store_as(out.dv.at + k, d[3]);
-      V s[2];
-      gather_spins<W>(rows, i, j, s);
-      store_as(out.spins.at + k, s[0]);
-      store_as(out.radius_spins.at + k, s[1]);
+      store_as(out.spin_i.at + k, gather_spins<W>(rows, i));
+      store_as(out.spin_j.at + k, gather_spins<W>(rows, j));
     }
   }
 }
@@ -72,9 +72,8 @@ inline __attribute__((always_inline)) void disc_places(const StepConstants& c, c
 }
 
 template <class Law, class T>
-inline __attribute__((always_inline)) void disc_forces(const StepConstants& c, const PairArrays& p, const double* rows,
-                                                       long first, long count, const DiscScratch& in,
-                                                       Dissipation* dissipation) {
+inline __attribute__((always_inline)) void disc_forces(const StepConstants& c, const PairArrays& p, long first,
+                                                       long count, const DiscScratch& in, Dissipation* dissipation) {
   constexpr int W = T::W;
   using V = typename Lanes<W>::V;
   for (long k = 0; k < count; k += W) {
@@ -91,10 +90,13 @@ inline __attribute__((always_inline)) void disc_forces(const StepConstants& c, c
     V normal = Law::normal_force(load_as<V>(p.kn + at), overlap, root);
     const V half_overlap = 0.5 * overlap;
     V slip_rate = zero, c_normal = zero, opening = zero;
+    [[maybe_unused]] V spin_i = zero, spin_j = zero;
     if constexpr (T::Advance || T::Dashpot) {
-      slip_rate = load_as<V>(in.along.at + k) - (load_as<V>(in.radius_spins.at + k) + c.spin[2] * radii);
+      spin_i = load_as<V>(in.spin_i.at + k);
+      spin_j = load_as<V>(in.spin_j.at + k);
+      slip_rate = load_as<V>(in.along.at + k) - ((radius_j * spin_j + radius_i * spin_i) + c.spin[2] * radii);
       if constexpr (T::slip == Slip::consistent)
-        slip_rate = slip_rate + half_overlap * (load_as<V>(in.spins.at + k) + 2.0 * c.spin[2]);
+        slip_rate = slip_rate + half_overlap * ((spin_j + spin_i) + 2.0 * c.spin[2]);
     }
     if constexpr (T::Dashpot) {
       opening = load_as<V>(in.opening.at + k);
@@ -132,7 +134,7 @@ inline __attribute__((always_inline)) void disc_forces(const StepConstants& c, c
     V moment = zero;
     if constexpr (T::Rolling) moment = load_as<V>(p.moment[0] + at);
     if constexpr (T::Rolling && T::Advance) {
-      const V spin_difference = gather_spin_difference<W>(rows, p.row_i + at, p.row_j + at);
+      const V spin_difference = spin_j - spin_i;
       [[maybe_unused]] const V moment_before = moment;
       const V kr = Law::tangential_stiffness(load_as<V>(p.kr + at), root);
       if constexpr (Law::stores_root_overlap) moment = moment * Law::carried(root, last_root, c.unload_rescale);
@@ -213,7 +215,7 @@ void disc_pairs(const StepConstants& constants, const PairArrays& arrays, const 
     const long first = run.first, count = run.count;
     disc_rows<T>(p, rows, first, count, scratch);
     disc_places<T>(c, p, first, count, scratch);
-    disc_forces<Law, T>(c, p, rows, first, count, scratch, dissipation);
+    disc_forces<Law, T>(c, p, first, count, scratch, dissipation);
   }
 }
 

@@ -20,15 +20,13 @@ struct GrainTraits {
   static constexpr KernelDamping damping = damping_;
 };
 
-/// Eight partial sums, filled W at a time; total() adds them in a fixed order.
+/// Eight partial sums, filled W at a time; total() adds them in a fixed order. Loops over grains go by eights, so that
+/// the part is known when compiled and the sums stay in registers.
 template <int W>
 struct PartialSums {
   using V = typename Lanes<W>::V;
   V part[8 / W] = {};
-  inline __attribute__((always_inline)) void add(long at, V value) {
-    V& here = part[(at / W) % (8 / W)];
-    here = here + value;
-  }
+  inline __attribute__((always_inline)) void add(int which, V value) { part[which] = part[which] + value; }
   double total() const {
     double values[8];
     std::memcpy(values, part, sizeof(values));
@@ -55,7 +53,7 @@ struct DiscColumns {
 /// A row of four doubles for every task of a chunk (GrainArrays): grains as j, then grains as i.
 struct alignas(64) TaskRows {
   double at[2][4 * chunk_grains];
-  inline __attribute__((always_inline)) double* of(int task) { return at[0] + 4 * task; }
+  inline __attribute__((always_inline)) double* of(std::uint16_t task) { return at[0] + task; }
 };
 
 /// Resultants of a chunk of discs: sum of the rows of pairs in which they are j, less forces and plus T_i of those in
@@ -75,15 +73,19 @@ inline __attribute__((always_inline)) void gather_disc_forces(const GrainArrays&
     for (; slot != last; slot += 4)
 #pragma GCC unroll 4
       for (int k = 0; k < 4; ++k) sum[k] = L::add(sum[k], quad_at<W>(p.force + slot[k]));
+#pragma GCC unroll 4
     for (int k = 0; k < 4; ++k) store_as(sums.of(g.tasks[4 * block + k]), sum[k]);
   }
   for (long k = 0; k < count; k += W) {
-    V in[4], back[4];
-    columns_of<W>(sums.at[0] + 4 * k, 4, in);
-    columns_of<W>(sums.at[1] + 4 * k, 4, back);
-    store_as(out.fx.at + k, in[0] - back[0]);
-    store_as(out.fy.at + k, in[1] - back[1]);
-    store_as(out.torque.at + k, in[2] + back[3]);
+    Quad net[W];
+    for (int lane = 0; lane < W; ++lane)
+      net[lane] =
+          L::add(quad_at<W>(sums.at[0] + 4 * (k + lane)), L::seen_from_i(quad_at<W>(sums.at[1] + 4 * (k + lane))));
+    V columns[4];
+    L::transpose(net, columns);
+    store_as(out.fx.at + k, columns[0]);
+    store_as(out.fy.at + k, columns[1]);
+    store_as(out.torque.at + k, columns[2]);
   }
 }
 
@@ -94,38 +96,40 @@ inline __attribute__((always_inline)) void damp_discs(const StepConstants& c, co
                                                       PartialSums<T::W>& lost_globally) {
   using V = typename Lanes<T::W>::V;
   const double half_dt = 0.5 * c.dt;
-  for (long k = 0; k < count; k += T::W) {
-    const long at = first + k;
-    V fx = load_as<V>(s.fx.at + k), fy = load_as<V>(s.fy.at + k), torque = load_as<V>(s.torque.at + k);
-    const V u = load_as<V>(s.u.at + k) - c.mean_velocity[0], v = load_as<V>(s.v.at + k) - c.mean_velocity[1];
-    if constexpr (T::Dynamic) {
-      if (c.global_viscous != 0.0) {
-        fx = fx - c.global_viscous * u;
-        fy = fy - c.global_viscous * v;
-        if (c.losses) lost_globally.add(at, c.dt * c.global_viscous * (u * u + v * v));
+  for (long eight = 0; eight < count; eight += 8)
+#pragma GCC unroll 2
+    for (int part = 0; part < 8 / T::W; ++part) {
+      const long k = eight + part * T::W, at = first + k;
+      V fx = load_as<V>(s.fx.at + k), fy = load_as<V>(s.fy.at + k), torque = load_as<V>(s.torque.at + k);
+      const V u = load_as<V>(s.u.at + k) - c.mean_velocity[0], v = load_as<V>(s.v.at + k) - c.mean_velocity[1];
+      if constexpr (T::Dynamic) {
+        if (c.global_viscous != 0.0) {
+          fx = fx - c.global_viscous * u;
+          fy = fy - c.global_viscous * v;
+          if (c.losses) lost_globally.add(part, c.dt * c.global_viscous * (u * u + v * v));
+        }
       }
-    }
-    if constexpr (T::damping != KernelDamping::none) {
-      [[maybe_unused]] const V free_x = fx, free_y = fy, free_torque = torque;
-      const V inverse_mass = load_as<V>(g.inverse_mass + at), inverse_inertia = load_as<V>(g.inverse_inertia + at);
-      const V px = u + half_dt * (fx * inverse_mass), py = v + half_dt * (fy * inverse_mass);
-      const V pw = load_as<V>(s.w.at + k) + half_dt * (torque * inverse_inertia);
-      if constexpr (T::damping == KernelDamping::vector) {
-        const V factor = local_damping_factor(c.local_damping, fx * fx + fy * fy, px * px + py * py, SquareRoot{});
-        fx = fx - factor * px;
-        fy = fy - factor * py;
-      } else {
-        fx = damped_component(c.local_damping, fx, px);
-        fy = damped_component(c.local_damping, fy, py);
+      if constexpr (T::damping != KernelDamping::none) {
+        [[maybe_unused]] const V free_x = fx, free_y = fy, free_torque = torque;
+        const V inverse_mass = load_as<V>(g.inverse_mass + at), inverse_inertia = load_as<V>(g.inverse_inertia + at);
+        const V px = u + half_dt * (fx * inverse_mass), py = v + half_dt * (fy * inverse_mass);
+        const V pw = load_as<V>(s.w.at + k) + half_dt * (torque * inverse_inertia);
+        if constexpr (T::damping == KernelDamping::vector) {
+          const V factor = local_damping_factor(c.local_damping, fx * fx + fy * fy, px * px + py * py, SquareRoot{});
+          fx = fx - factor * px;
+          fy = fy - factor * py;
+        } else {
+          fx = damped_component(c.local_damping, fx, px);
+          fy = damped_component(c.local_damping, fy, py);
+        }
+        torque = damped_component(c.local_damping, torque, pw);
+        if (T::Dynamic && c.losses)
+          lost_locally.add(part, c.dt * ((free_x - fx) * px + (free_y - fy) * py + (free_torque - torque) * pw));
+        store_as(s.torque.at + k, torque);
       }
-      torque = damped_component(c.local_damping, torque, pw);
-      if (T::Dynamic && c.losses)
-        lost_locally.add(at, c.dt * ((free_x - fx) * px + (free_y - fy) * py + (free_torque - torque) * pw));
-      store_as(s.torque.at + k, torque);
+      store_as(s.fx.at + k, fx);
+      store_as(s.fy.at + k, fy);
     }
-    store_as(s.fx.at + k, fx);
-    store_as(s.fy.at + k, fy);
-  }
 }
 
 /// Velocities and places after the step.
@@ -134,35 +138,38 @@ inline __attribute__((always_inline)) void move_discs(const StepConstants& c, co
                                                       long count, DiscColumns& s, PartialSums<T::W>* momentum,
                                                       typename Lanes<T::W>::V& fastest) {
   using V = typename Lanes<T::W>::V;
-  for (long k = 0; k < count; k += T::W) {
-    const long at = first + k;
-    const V inverse_mass = load_as<V>(g.inverse_mass + at), inverse_inertia = load_as<V>(g.inverse_inertia + at);
-    V u = load_as<V>(s.u.at + k) - c.mean_velocity[0], v = load_as<V>(s.v.at + k) - c.mean_velocity[1];
-    V w = load_as<V>(s.w.at + k);
-    const V ax = c.dt * (load_as<V>(s.fx.at + k) * inverse_mass), ay = c.dt * (load_as<V>(s.fy.at + k) * inverse_mass);
-    if constexpr (T::Dynamic) {
-      const V pu = (c.momentum_map[0] * u + c.momentum_map[1] * v) + (c.force_map[0] * ax + c.force_map[1] * ay);
-      const V pv = (c.momentum_map[3] * u + c.momentum_map[4] * v) + (c.force_map[3] * ax + c.force_map[4] * ay);
-      u = pu;
-      v = pv;
-      w = w + c.spin_shift[2];
-    } else {
-      u = u + ax;
-      v = v + ay;
+  for (long eight = 0; eight < count; eight += 8)
+#pragma GCC unroll 2
+    for (int part = 0; part < 8 / T::W; ++part) {
+      const long k = eight + part * T::W, at = first + k;
+      const V inverse_mass = load_as<V>(g.inverse_mass + at), inverse_inertia = load_as<V>(g.inverse_inertia + at);
+      V u = load_as<V>(s.u.at + k) - c.mean_velocity[0], v = load_as<V>(s.v.at + k) - c.mean_velocity[1];
+      V w = load_as<V>(s.w.at + k);
+      const V ax = c.dt * (load_as<V>(s.fx.at + k) * inverse_mass),
+              ay = c.dt * (load_as<V>(s.fy.at + k) * inverse_mass);
+      if constexpr (T::Dynamic) {
+        const V pu = (c.momentum_map[0] * u + c.momentum_map[1] * v) + (c.force_map[0] * ax + c.force_map[1] * ay);
+        const V pv = (c.momentum_map[3] * u + c.momentum_map[4] * v) + (c.force_map[3] * ax + c.force_map[4] * ay);
+        u = pu;
+        v = pv;
+        w = w + c.spin_shift[2];
+      } else {
+        u = u + ax;
+        v = v + ay;
+      }
+      w = w + c.dt * (load_as<V>(s.torque.at + k) * inverse_inertia);
+      const V mass = load_as<V>(g.mass + at);
+      momentum[0].add(part, mass * u);
+      momentum[1].add(part, mass * v);
+      const V squared = u * u + v * v;
+      fastest = (squared > fastest) ? squared : fastest;
+      const V x = load_as<V>(s.x.at + k), y = load_as<V>(s.y.at + k);
+      store_as(s.x.at + k, (c.map.xx * x + c.map.xy * y) + (c.velocity_map.xx * u + c.velocity_map.xy * v));
+      store_as(s.y.at + k, c.map.yy * y + c.velocity_map.yy * v);
+      store_as(s.u.at + k, u);
+      store_as(s.v.at + k, v);
+      store_as(s.w.at + k, w);
     }
-    w = w + c.dt * (load_as<V>(s.torque.at + k) * inverse_inertia);
-    const V mass = load_as<V>(g.mass + at);
-    momentum[0].add(at, mass * u);
-    momentum[1].add(at, mass * v);
-    const V squared = u * u + v * v;
-    fastest = (squared > fastest) ? squared : fastest;
-    const V x = load_as<V>(s.x.at + k), y = load_as<V>(s.y.at + k);
-    store_as(s.x.at + k, (c.map.xx * x + c.map.xy * y) + (c.velocity_map.xx * u + c.velocity_map.xy * v));
-    store_as(s.y.at + k, c.map.yy * y + c.velocity_map.yy * v);
-    store_as(s.u.at + k, u);
-    store_as(s.v.at + k, v);
-    store_as(s.w.at + k, w);
-  }
 }
 
 /// Grain rows to columns and back; shuffles cost the same at every width, so these keep to four lanes.
@@ -189,10 +196,7 @@ inline __attribute__((always_inline)) void disc_columns_to_rows(const DiscColumn
     double* row = rows + 8 * (first + k);
     const V a[4] = {load_as<V>(s.x.at + k), load_as<V>(s.y.at + k), load_as<V>(s.u.at + k), load_as<V>(s.v.at + k)};
     rows_of<W>(a, row, 8);
-    for (int lane = 0; lane < W; ++lane) {
-      const double w = s.w.at[k + lane];
-      store_as(row + 8 * lane + 4, V2{w, row[8 * lane + 6] * w});
-    }
+    for (int lane = 0; lane < W; ++lane) row[8 * lane + 4] = s.w.at[k + lane];
   }
 }
 
@@ -267,24 +271,29 @@ inline __attribute__((always_inline)) void gather_sphere_forces(const GrainArray
         if constexpr (Rolling)
           for (int m = 0; m < 3; ++m) moment[k][m] += p.moment[m][slot[k] / 8];
       }
+#pragma GCC unroll 4
     for (int k = 0; k < 4; ++k) {
-      const int task = g.tasks[4 * block + k];
-      const double radius = g.rows[12 * (first + task % chunk_grains) + 3];
+      const std::uint16_t task = g.tasks[4 * block + k];
+      const double radius = g.rows[12 * first + 3 * (task % (4 * chunk_grains)) + 3];
       Quad torque = L::sub(arm[k], L::mul(L::broadcast(radius), turn[k]));
       if constexpr (Rolling)
-        torque = L::add(torque, L::mul(L::broadcast(task < chunk_grains ? 1.0 : -1.0), quad_at<W>(moment[k])));
+        torque = L::add(torque, L::mul(L::broadcast(task < 4 * chunk_grains ? 1.0 : -1.0), quad_at<W>(moment[k])));
       store_as(forces.of(task), force[k]);
       store_as(torques.of(task), torque);
     }
   }
   for (long k = 0; k < count; k += W) {
-    V in[4], back[4];
-    columns_of<W>(forces.at[0] + 4 * k, 4, in);
-    columns_of<W>(forces.at[1] + 4 * k, 4, back);
-    s.force.store(k, Triple<V>{in[0] - back[0], in[1] - back[1], in[2] - back[2]});
-    columns_of<W>(torques.at[0] + 4 * k, 4, in);
-    columns_of<W>(torques.at[1] + 4 * k, 4, back);
-    s.torque.store(k, Triple<V>{in[0] + back[0], in[1] + back[1], in[2] + back[2]});
+    Quad force[W], torque[W];
+    for (int lane = 0; lane < W; ++lane) {
+      const long at = 4 * (k + lane);
+      force[lane] = L::sub(quad_at<W>(forces.at[0] + at), quad_at<W>(forces.at[1] + at));
+      torque[lane] = L::add(quad_at<W>(torques.at[0] + at), quad_at<W>(torques.at[1] + at));
+    }
+    V columns[4];
+    L::transpose(force, columns);
+    s.force.store(k, Triple<V>{columns[0], columns[1], columns[2]});
+    L::transpose(torque, columns);
+    s.torque.store(k, Triple<V>{columns[0], columns[1], columns[2]});
   }
 }
 
@@ -296,40 +305,42 @@ inline __attribute__((always_inline)) void damp_spheres(const StepConstants& c, 
   using V = typename Lanes<T::W>::V;
   const V half_dt = V{} + 0.5 * c.dt;
   const Triple<V> mean = {V{} + c.mean_velocity[0], V{} + c.mean_velocity[1], V{} + c.mean_velocity[2]};
-  for (long k = 0; k < count; k += T::W) {
-    const long at = first + k;
-    const V one = V{} + 1.0;
-    const Triple<V> v = plus(s.velocity.load<V>(k), -one, mean);
-    Triple<V> f = s.force.load<V>(k);
-    if constexpr (T::Dynamic) {
-      if (c.global_viscous != 0.0) {
-        f = plus(f, V{} - c.global_viscous, v);
-        if (c.losses) lost_globally.add(at, c.dt * c.global_viscous * dot(v, v));
+  for (long eight = 0; eight < count; eight += 8)
+#pragma GCC unroll 2
+    for (int part = 0; part < 8 / T::W; ++part) {
+      const long k = eight + part * T::W, at = first + k;
+      const V one = V{} + 1.0;
+      const Triple<V> v = plus(s.velocity.load<V>(k), -one, mean);
+      Triple<V> f = s.force.load<V>(k);
+      if constexpr (T::Dynamic) {
+        if (c.global_viscous != 0.0) {
+          f = plus(f, V{} - c.global_viscous, v);
+          if (c.losses) lost_globally.add(part, c.dt * c.global_viscous * dot(v, v));
+        }
       }
-    }
-    if constexpr (T::damping != KernelDamping::none) {
-      Triple<V> t = s.torque.load<V>(k);
-      [[maybe_unused]] const Triple<V> free_f = f, free_t = t;
-      const V inverse_mass = load_as<V>(g.inverse_mass + at), inverse_inertia = load_as<V>(g.inverse_inertia + at);
-      const Triple<V> pv = plus(v, half_dt, times(inverse_mass, f));
-      const Triple<V> pw = plus(s.spin.load<V>(k), half_dt, times(inverse_inertia, t));
-      if constexpr (T::damping == KernelDamping::vector) {
-        const V along = local_damping_factor(c.local_damping, dot(f, f), dot(pv, pv), SquareRoot{});
-        const V about = local_damping_factor(c.local_damping, dot(t, t), dot(pw, pw), SquareRoot{});
-        f = plus(f, -along, pv);
-        t = plus(t, -about, pw);
-      } else {
-        f = {damped_component(c.local_damping, f.x, pv.x), damped_component(c.local_damping, f.y, pv.y),
-             damped_component(c.local_damping, f.z, pv.z)};
-        t = {damped_component(c.local_damping, t.x, pw.x), damped_component(c.local_damping, t.y, pw.y),
-             damped_component(c.local_damping, t.z, pw.z)};
+      if constexpr (T::damping != KernelDamping::none) {
+        Triple<V> t = s.torque.load<V>(k);
+        [[maybe_unused]] const Triple<V> free_f = f, free_t = t;
+        const V inverse_mass = load_as<V>(g.inverse_mass + at), inverse_inertia = load_as<V>(g.inverse_inertia + at);
+        const Triple<V> pv = plus(v, half_dt, times(inverse_mass, f));
+        const Triple<V> pw = plus(s.spin.load<V>(k), half_dt, times(inverse_inertia, t));
+        if constexpr (T::damping == KernelDamping::vector) {
+          const V along = local_damping_factor(c.local_damping, dot(f, f), dot(pv, pv), SquareRoot{});
+          const V about = local_damping_factor(c.local_damping, dot(t, t), dot(pw, pw), SquareRoot{});
+          f = plus(f, -along, pv);
+          t = plus(t, -about, pw);
+        } else {
+          f = {damped_component(c.local_damping, f.x, pv.x), damped_component(c.local_damping, f.y, pv.y),
+               damped_component(c.local_damping, f.z, pv.z)};
+          t = {damped_component(c.local_damping, t.x, pw.x), damped_component(c.local_damping, t.y, pw.y),
+               damped_component(c.local_damping, t.z, pw.z)};
+        }
+        if (T::Dynamic && c.losses)
+          lost_locally.add(part, c.dt * (dot(plus(free_f, -one, f), pv) + dot(plus(free_t, -one, t), pw)));
+        s.torque.store(k, t);
       }
-      if (T::Dynamic && c.losses)
-        lost_locally.add(at, c.dt * (dot(plus(free_f, -one, f), pv) + dot(plus(free_t, -one, t), pw)));
-      s.torque.store(k, t);
+      s.force.store(k, f);
     }
-    s.force.store(k, f);
-  }
 }
 
 /// Velocities and places after the step.
@@ -340,31 +351,33 @@ inline __attribute__((always_inline)) void move_spheres(const StepConstants& c, 
   using V = typename Lanes<T::W>::V;
   const Triple<V> mean = {V{} + c.mean_velocity[0], V{} + c.mean_velocity[1], V{} + c.mean_velocity[2]};
   const V dt = V{} + c.dt, one = V{} + 1.0;
-  for (long k = 0; k < count; k += T::W) {
-    const long at = first + k;
-    Triple<V> v = plus(s.velocity.load<V>(k), -one, mean), w = s.spin.load<V>(k);
-    const Triple<V> a = times(dt, times(load_as<V>(g.inverse_mass + at), s.force.load<V>(k)));
-    if constexpr (T::Dynamic) {
-      v = plus(mapped(c.momentum_map, v), one, mapped(c.force_map, a));
-      w = mapped(c.spin_map, w);
-      w = {w.x + c.spin_shift[0], w.y + c.spin_shift[1], w.z + c.spin_shift[2]};
-    } else {
-      v = plus(v, one, a);
+  for (long eight = 0; eight < count; eight += 8)
+#pragma GCC unroll 2
+    for (int part = 0; part < 8 / T::W; ++part) {
+      const long k = eight + part * T::W, at = first + k;
+      Triple<V> v = plus(s.velocity.load<V>(k), -one, mean), w = s.spin.load<V>(k);
+      const Triple<V> a = times(dt, times(load_as<V>(g.inverse_mass + at), s.force.load<V>(k)));
+      if constexpr (T::Dynamic) {
+        v = plus(mapped(c.momentum_map, v), one, mapped(c.force_map, a));
+        w = mapped(c.spin_map, w);
+        w = {w.x + c.spin_shift[0], w.y + c.spin_shift[1], w.z + c.spin_shift[2]};
+      } else {
+        v = plus(v, one, a);
+      }
+      w = plus(w, dt, times(load_as<V>(g.inverse_inertia + at), s.torque.load<V>(k)));
+      const V mass = load_as<V>(g.mass + at);
+      momentum[0].add(part, mass * v.x);
+      momentum[1].add(part, mass * v.y);
+      momentum[2].add(part, mass * v.z);
+      const V squared = dot(v, v);
+      fastest = (squared > fastest) ? squared : fastest;
+      const UpperTriangle &A = c.map, &B = c.velocity_map;
+      const Triple<V> x = s.place.load<V>(k);
+      s.place.store(k, Triple<V>{(A.xx * x.x + (A.xy * x.y + A.xz * x.z)) + (B.xx * v.x + (B.xy * v.y + B.xz * v.z)),
+                                 (A.yy * x.y + A.yz * x.z) + (B.yy * v.y + B.yz * v.z), A.zz * x.z + B.zz * v.z});
+      s.velocity.store(k, v);
+      s.spin.store(k, w);
     }
-    w = plus(w, dt, times(load_as<V>(g.inverse_inertia + at), s.torque.load<V>(k)));
-    const V mass = load_as<V>(g.mass + at);
-    momentum[0].add(at, mass * v.x);
-    momentum[1].add(at, mass * v.y);
-    momentum[2].add(at, mass * v.z);
-    const V squared = dot(v, v);
-    fastest = (squared > fastest) ? squared : fastest;
-    const UpperTriangle &A = c.map, &B = c.velocity_map;
-    const Triple<V> x = s.place.load<V>(k);
-    s.place.store(k, Triple<V>{(A.xx * x.x + (A.xy * x.y + A.xz * x.z)) + (B.xx * v.x + (B.xy * v.y + B.xz * v.z)),
-                               (A.yy * x.y + A.yz * x.z) + (B.yy * v.y + B.yz * v.z), A.zz * x.z + B.zz * v.z});
-    s.velocity.store(k, v);
-    s.spin.store(k, w);
-  }
 }
 
 /// Grain rows to columns and back, on four lanes at most as those of discs.

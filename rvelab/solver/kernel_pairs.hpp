@@ -90,22 +90,10 @@ inline __attribute__((always_inline)) void gather_place_differences(const double
   Lanes<W>::transpose_pairs(differences, columns);
 }
 
-/// Sums of {w, r w} of discs i and j, as two columns.
+/// Spins of discs, as a column.
 template <int W>
-inline __attribute__((always_inline)) void gather_spins(const double* rows, const std::int32_t* i,
-                                                        const std::int32_t* j, typename Lanes<W>::V* columns) {
-  V2 sums[W];
-  for (int k = 0; k < W; ++k) sums[k] = load_as<V2>(rows + j[k] + 4) + load_as<V2>(rows + i[k] + 4);
-  Lanes<W>::transpose_pairs(sums, columns);
-}
-
-template <int W>
-inline __attribute__((always_inline)) typename Lanes<W>::V gather_spin_difference(const double* rows,
-                                                                                  const std::int32_t* i,
-                                                                                  const std::int32_t* j) {
-  double differences[W];
-  for (int k = 0; k < W; ++k) differences[k] = rows[j[k] + 4] - rows[i[k] + 4];
-  return load_as<typename Lanes<W>::V>(differences);
+inline __attribute__((always_inline)) typename Lanes<W>::V gather_spins(const double* rows, const std::int32_t* grain) {
+  return Lanes<W>::collected([=](int lane) { return rows[grain[lane] + 4]; });
 }
 
 /// Pairs of one chunk: the scratch of all passes stays in the first-level cache.

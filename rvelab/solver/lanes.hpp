@@ -19,6 +19,9 @@ using V2 = double __attribute__((vector_size(16)));
 using V4 = double __attribute__((vector_size(32)));
 using V8 = double __attribute__((vector_size(64)));
 
+/// Lanes<W>: V, W values side by side; Quad, four doubles of a row. Beside arithmetic on Quads: `transpose` of W of
+/// them to four V and back, `transpose_pairs` of W halves to two V; `collected`, a V of W values; `seen_from_i`, the
+/// force row {fx, fy, T_j, T_i} of a disc pair as grain i has it, {-fx, -fy, T_i, T_j}.
 template <int W>
 struct Lanes;
 
@@ -75,6 +78,13 @@ struct Lanes<1> {
     return {{a.at[0] - b.at[0], a.at[1] - b.at[1], a.at[2] - b.at[2], a.at[3] - b.at[3]}};
   }
   static inline __attribute__((always_inline)) Quad broadcast(double s) { return {{s, s, s, s}}; }
+  static inline __attribute__((always_inline)) Quad seen_from_i(Quad a) {
+    return {{-a.at[0], -a.at[1], a.at[3], a.at[2]}};
+  }
+  template <class At>
+  static inline __attribute__((always_inline)) V collected(const At& at) {
+    return at(0);
+  }
   static inline __attribute__((always_inline)) void transpose_pairs(const V2* rows, V* columns) {
     columns[0] = rows[0][0];
     columns[1] = rows[0][1];
@@ -97,6 +107,13 @@ struct Lanes<2> {
   static inline __attribute__((always_inline)) Quad mul(Quad a, Quad b) { return {a.low * b.low, a.high * b.high}; }
   static inline __attribute__((always_inline)) Quad sub(Quad a, Quad b) { return {a.low - b.low, a.high - b.high}; }
   static inline __attribute__((always_inline)) Quad broadcast(double s) { return {V2{s, s}, V2{s, s}}; }
+  static inline __attribute__((always_inline)) Quad seen_from_i(Quad a) {
+    return {-a.low, __builtin_shufflevector(a.high, a.high, 1, 0)};
+  }
+  template <class At>
+  static inline __attribute__((always_inline)) V collected(const At& at) {
+    return V2{at(0), at(1)};
+  }
   static inline __attribute__((always_inline)) void transpose_pairs(const V2* rows, V* columns) {
     columns[0] = __builtin_shufflevector(rows[0], rows[1], 0, 2);
     columns[1] = __builtin_shufflevector(rows[0], rows[1], 1, 3);
@@ -142,6 +159,15 @@ struct Lanes<4> {
   static inline __attribute__((always_inline)) Quad mul(Quad a, Quad b) { return a * b; }
   static inline __attribute__((always_inline)) Quad sub(Quad a, Quad b) { return a - b; }
   static inline __attribute__((always_inline)) Quad broadcast(double s) { return V4{s, s, s, s}; }
+  using Bits = std::int64_t __attribute__((vector_size(32)));
+  static inline __attribute__((always_inline)) Quad seen_from_i(Quad a) {
+    const V4 turned = __builtin_shufflevector(a, a, 0, 1, 3, 2);
+    return (V4)((Bits)turned ^ Bits{INT64_MIN, INT64_MIN, 0, 0});
+  }
+  template <class At>
+  static inline __attribute__((always_inline)) V collected(const At& at) {
+    return V4{at(0), at(1), at(2), at(3)};
+  }
   static inline __attribute__((always_inline)) void transpose_pairs(const V2* rows, V* columns) {
     transpose_four_pairs(rows, columns);
   }

@@ -77,7 +77,7 @@ struct PairArrays {
 /// Grains that are gathered and integrated together: their resultants stay in the first-level cache between.
 constexpr long chunk_grains = 64;
 
-/// Grain rows: 2D 8 doubles {x, y, u, v, w, r w, r, 0}; 3D 12 doubles {x, y, z, r, u, v, w, 0, wx, wy, wz, r}.
+/// Grain rows: 2D 8 doubles {x, y, u, v, w, 0, r, 0}; 3D 12 doubles {x, y, z, r, u, v, w, 0, wx, wy, wz, r}.
 /// Padded to a multiple of eight with grains of no extent and infinite mass, at least one of them.
 struct GrainArrays {
   double* rows = nullptr;
@@ -87,10 +87,10 @@ struct GrainArrays {
   /// [slot_begin[b], slot_begin[b + 1]) of four pairs each, a task with fewer pairs than its block has slots pointing
   /// to a padding pair, whose force is zero. Loop lengths are seldom mispredicted so, and hardly a slot is padding
   /// (against blocks of four neighbouring grains: spheres 32.6 ns a grain instead of 35.7, discs equal). Slots hold
-  /// where the force row of the pair starts, in doubles; tasks, four a block, the place of the grain in its chunk, plus
-  /// chunk_grains for i.
+  /// where the force row of the pair starts, in doubles; tasks, four a block, where the sum of the task goes: four
+  /// times the place of the grain in its chunk, plus 4 chunk_grains for i.
   const std::int32_t *slot_begin = nullptr, *slots = nullptr;
-  const std::uint8_t* tasks = nullptr;
+  const std::uint16_t* tasks = nullptr;
 };
 
 /// Sums that the integration leaves behind: momentum (kg m/s), largest |v'|^2, energy taken by local and global

@@ -126,7 +126,7 @@ TEST_CASE("The gather table names each pair once on either side, in the order of
     for (std::size_t block = 0; block < padded / 2; ++block) {
       const std::size_t chunk = 2 * block / std::size_t(chunk_grains) * std::size_t(chunk_grains);
       for (std::size_t lane = 0; lane < 4; ++lane) {
-        const std::size_t task = pairs.tasks[4 * block + lane];
+        const std::size_t task = pairs.tasks[4 * block + lane] / 4;
         const bool is_i = task >= std::size_t(chunk_grains);
         const std::size_t grain = chunk + (is_i ? task - std::size_t(chunk_grains) : task);
         REQUIRE(grain < padded);
