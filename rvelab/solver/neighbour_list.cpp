@@ -122,7 +122,9 @@ void fill_landings(int count, int reach, std::vector<Landing>& landings) {
   }
 }
 
-/// Pairs of one grain with the grains of a class that is not larger; of its own class with those after it.
+/// Pairs of one grain with the grains of a class that is not larger. Within a class only half of the bins around a
+/// grain are looked into, those that come after its own: a partner before it finds the pair from the other side (a list
+/// of 400 discs takes 0.94 of the time that all bins take, one of 1000 spheres 0.79).
 class Search {
  public:
   Search(const Cell& cell, double skin, std::vector<ListedPair>& pairs)
@@ -136,17 +138,11 @@ class Search {
       reach_[k] = k < cell_.dimension ? int(std::ceil(cutoff * c.count[k] / height_[k] * (1 + 1e-12))) : 0;
       fill_landings(c.count[k], reach_[k], landings_[k]);
     }
-    // Bins that follow each other along the first direction do so in memory: they are looked into as one.
-    runs_.assign(std::size_t(c.count[0]), {});
+    runs_.clear();
+    runs_after_.clear();
     for (int home = 0; home < c.count[0]; ++home) {
-      std::vector<Run>& runs = runs_[std::size_t(home)];
-      for (int x = 0; x <= 2 * reach_[0]; ++x) {
-        const Landing& l = landings_[0][std::size_t(home + x)];
-        if (!runs.empty() && runs.back().shift == l.shift && runs.back().last + 1 == l.bin)
-          runs.back().last = l.bin;
-        else
-          runs.push_back({l.bin, l.bin, l.shift});
-      }
+      runs_.push_back(runs_of(home, 0));
+      runs_after_.push_back(runs_of(home, reach_[0] + 1));
     }
   }
 
@@ -154,13 +150,19 @@ class Search {
     const SizeClass& c = *class_;
     const Landing* first[3];
     for (int k = 1; k < 3; ++k) first[k] = landings_[k].data() + bin_of(p.s[k], c.count[k]);
-    const std::vector<Run>& runs = runs_[std::size_t(bin_of(p.s[0], c.count[0]))];
-    for (int z = 0; z <= 2 * reach_[2]; ++z)
-      for (int y = 0; y <= 2 * reach_[1]; ++y)
-        for (const Run& run : runs)
-          look_into(p.binned, c.begin[c.index(run.first, first[1][y].bin, first[2][z].bin)],
-                    c.begin[c.index(run.last, first[1][y].bin, first[2][z].bin) + 1],
-                    {run.shift, first[1][y].shift, first[2][z].shift}, own_class);
+    const int home = bin_of(p.s[0], c.count[0]);
+    for (int z = own_class ? reach_[2] : 0; z <= 2 * reach_[2]; ++z)
+      for (int y = own_class && z == reach_[2] ? reach_[1] : 0; y <= 2 * reach_[1]; ++y) {
+        const auto look = [&](int bin, int last_bin, int shift, std::int32_t least) {
+          look_into(p.binned, c.begin[c.index(bin, first[1][y].bin, first[2][z].bin)],
+                    c.begin[c.index(last_bin, first[1][y].bin, first[2][z].bin) + 1],
+                    {shift, first[1][y].shift, first[2][z].shift}, least);
+        };
+        const bool own_row = own_class && z == reach_[2] && y == reach_[1];
+        if (own_row) look(home, home, 0, p.binned.grain + 1);
+        for (const Run& run : (own_row ? runs_after_ : runs_)[std::size_t(home)])
+          look(run.first, run.last, run.shift, 0);
+      }
   }
 
  private:
@@ -169,14 +171,28 @@ class Search {
     int first, last, shift;
   };
 
-  void look_into(const Binned& i, std::int32_t begin, std::int32_t end, const Image& shift, bool own_class) {
+  /// Bins around `home` along the first direction, from the given one on. Those that follow each other do so in memory:
+  /// they are looked into as one.
+  std::vector<Run> runs_of(int home, int from) const {
+    std::vector<Run> runs;
+    for (int x = from; x <= 2 * reach_[0]; ++x) {
+      const Landing& l = landings_[0][std::size_t(home + x)];
+      if (!runs.empty() && runs.back().shift == l.shift && runs.back().last + 1 == l.bin)
+        runs.back().last = l.bin;
+      else
+        runs.push_back({l.bin, l.bin, l.shift});
+    }
+    return runs;
+  }
+
+  /// Grains from number `least` on that are near enough, among those binned from `begin` to `end`.
+  void look_into(const Binned& i, std::int32_t begin, std::int32_t end, const Image& shift, std::int32_t least) {
     const Binned* grains = class_->grains.data();
     const Matrix3& l = cell_.lattice;
     const double x = l(0, 0) * shift[0] + l(0, 1) * shift[1] + l(0, 2) * shift[2] - i.x[0];
     const double y = l(1, 1) * shift[1] + l(1, 2) * shift[2] - i.x[1];
     const double z = cell_.dimension == 3 ? l(2, 2) * shift[2] - i.x[2] : 0;
     const double radius = i.radius + skin_;
-    const std::int32_t least = own_class ? i.grain : 0;
     // Hits are noted without a branch, since none would be predicted (with runs of bins: a list of 400 discs 24 to 18
     // steps' time, of 1000 spheres 14 to 10).
     constexpr std::int32_t most = 64;
@@ -197,8 +213,7 @@ class Search {
   void add(const Binned& i, const Binned& j, const Image& shift) {
     Image image;
     for (int k = 0; k < 3; ++k) image[k] = shift[k] - j.period[k] + i.period[k];
-    if (j.grain == i.grain && !points_forward(image)) return;
-    if (j.grain >= i.grain)
+    if (j.grain > i.grain || (j.grain == i.grain && points_forward(image)))
       pairs_.push_back({i.grain, j.grain, image});
     else
       pairs_.push_back({j.grain, i.grain, {-image[0], -image[1], -image[2]}});
@@ -211,7 +226,7 @@ class Search {
   const SizeClass* class_ = nullptr;
   int reach_[3] = {0, 0, 0};
   std::vector<Landing> landings_[3];
-  std::vector<std::vector<Run>> runs_;  ///< by bin of the grain along the first direction
+  std::vector<std::vector<Run>> runs_, runs_after_;  ///< by bin of the grain along the first direction; those after it
 };
 
 /// By (i, j, image): counted by i, then the few of each i put in order.

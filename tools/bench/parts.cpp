@@ -119,8 +119,11 @@ void gather_and_integrate(benchmark::State& state, const std::string& name, Kern
 
 void list_rebuild(benchmark::State& state, const std::string& name) {
   Opened& o = packing(name);
+  Assembly copy;
   for (auto _ : state) {
-    Assembly copy = o.assembly;
+    state.PauseTiming();
+    copy = o.assembly;
+    state.ResumeTiming();
     rebuild(o.fixture, copy);
     benchmark::DoNotOptimize(copy.pairs.listed);
   }
