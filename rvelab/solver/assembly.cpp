@@ -86,8 +86,7 @@ void open(const Specimen& specimen, Fixture& f, Assembly& a) {
     inertia[g] = moment_of_inertia(f.shape, mass[g], f.radius[g]);
     double* row = a.rows.data() + g * f.row_length();
     for (int k = 0; k < f.dimension(); ++k) row[k] = s.grains.position[g][k];
-    row[f.shape == Shape::disc ? 6 : 3] = f.radius[g];
-    if (f.shape == Shape::sphere) row[11] = f.radius[g];
+    if (f.shape == Shape::sphere) row[3] = row[11] = f.radius[g];
     a.set_velocity(f, g, s.grains.velocity[g], s.grains.spin[g]);
   }
   f.mass = std::move(mass);

@@ -110,8 +110,8 @@ struct GrainSums {
 
 /// What a pair gives to each of its grains.
 struct PairTerms {
-  ContactStiffness
-      firm;  ///< barely touching Hertz contacts are soft but will not stay so: at a quarter of p0's overlap
+  /// Barely touching Hertz contacts are soft but will not stay so: at a quarter of p0's overlap at least.
+  ContactStiffness firm;
   double firm_translation = 0;
   bool touching = false;
   ContactStiffness now = {};

@@ -77,7 +77,7 @@ struct PairArrays {
 /// Grains that are gathered and integrated together: their resultants stay in the first-level cache between.
 constexpr long chunk_grains = 64;
 
-/// Grain rows: 2D 8 doubles {x, y, u, v, w, 0, r, 0}; 3D 12 doubles {x, y, z, r, u, v, w, 0, wx, wy, wz, r}.
+/// Grain rows: 2D 8 doubles {x, y, u, v, w, 0, 0, 0}; 3D 12 doubles {x, y, z, r, u, v, w, 0, wx, wy, wz, r}.
 /// Padded to a multiple of eight with grains of no extent and infinite mass, at least one of them.
 struct GrainArrays {
   double* rows = nullptr;

@@ -146,5 +146,15 @@ TEST_CASE("The gather table names each pair once on either side, in the order of
     }
     CHECK(as_j == want_j);
     CHECK(as_i == want_i);
+    // Read back grain by grain: those in which it is j before those in which it is i, each side in order.
+    std::vector<std::vector<std::int32_t>> read_j(padded), read_i(padded);
+    bool j_first = true;
+    each_pair_of_grains<2>(pairs, 0, padded, [&](std::size_t grain, std::size_t place, bool is_j) {
+      j_first = j_first && (!is_j || read_i[grain].empty());
+      (is_j ? read_j : read_i)[grain].push_back(std::int32_t(place));
+    });
+    CHECK(j_first);
+    CHECK(read_j == want_j);
+    CHECK(read_i == want_i);
   }
 }
