@@ -2,7 +2,8 @@
 #pragma once
 
 #include "rvelab/solver/kernel_discs.hpp"
-#include "rvelab/solver/kernel_integrate.hpp"
+#include "rvelab/solver/kernel_integrate_discs.hpp"
+#include "rvelab/solver/kernel_integrate_spheres.hpp"
 #include "rvelab/solver/kernel_spheres.hpp"
 
 namespace rvelab {
