@@ -1,10 +1,18 @@
 // Errors of the library. Each message names the value found, the value allowed and what to do.
 #pragma once
 
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
 namespace rvelab {
+
+/// A number in a message, to six digits.
+inline std::string in_words(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
 
 /// Base of all errors that rvelab throws on purpose.
 struct Error : std::runtime_error {

@@ -29,6 +29,7 @@ void add_state(Listing& listing, const Rve& rve) {
   listing.add("fabric_anisotropy", fabric_anisotropy(fabric(network), dimension));
   listing.add("sliding_fraction", sliding_fraction(network));
   listing.add("unbalanced_force_ratio", unbalanced_force_ratio(network));
+  listing.add("unbalanced_torque_ratio", unbalanced_torque_ratio(network));
   listing.add("lattice_m", row_major(network.cell.lattice), "m");
   listing.add("rotation", row_major(network.cell.rotation));
   listing.add("volume_m3", network.cell.volume(), "m^3");

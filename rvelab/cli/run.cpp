@@ -54,6 +54,7 @@ Json arrays_of(const std::vector<Record>& records) {
   arrays["substeps"] = column(records, &Record::substeps);
   arrays["held_error"] = column(records, &Record::held_error);
   arrays["target_held"] = column(records, &Record::target_held);
+  arrays["quasi_static"] = column(records, &Record::quasi_static);
   const std::uint64_t asked = records.empty() ? 0 : records.front().quantities;
   const auto chosen = [&](Quantity quantity, const char* name, auto member) {
     if ((asked & quantity) != 0) arrays[name] = column(records, member);
@@ -99,8 +100,12 @@ void add_oedometers(const Protocol& protocol, const TestRun& run, Listing& listi
 void report(const Protocol& protocol, const TestRun& run, const RunArguments& arguments) {
   const TestResult& result = run.result;
   const int dimension = run.end_state.cell.dimension;
-  long flagged = 0;
-  for (const Record& record : result.records) flagged += record.target_held ? 0 : 1;
+  long flagged = 0, moving = 0, marked = 0;
+  for (const Record& record : result.records) {
+    flagged += record.target_held ? 0 : 1;
+    moving += record.quasi_static ? 0 : 1;
+    marked += record.target_held && record.quasi_static ? 0 : 1;
+  }
   Listing listing;
   listing.add("protocol", result.protocol);
   if (!result.axis.empty()) {
@@ -114,6 +119,7 @@ void report(const Protocol& protocol, const TestRun& run, const RunArguments& ar
     listing.add("records", result.records.size());
   }
   listing.add("flagged", flagged);
+  listing.add("not_quasi_static", moving);
   if (!result.records.empty()) {
     const auto records = last_stage(result);
     const Peak highest = peak(records, dimension);
@@ -135,6 +141,15 @@ void report(const Protocol& protocol, const TestRun& run, const RunArguments& ar
   listing.add("wall_s", result.wall_seconds, "s");
   listing.add("grain_steps", result.grain_steps);
   listing.print(arguments.json);
+  // A record or two in an avalanche are the specimen's; more are the test's.
+  if (20 * marked > static_cast<long>(result.records.size())) {
+    std::cerr
+        << "rvelab: " << marked << " of " << result.records.size() << " records are flagged: " << flagged
+        << " did not hold their stress, " << moving
+        << " were no equilibrium (target_held, quasi_static in the records); lower solver.target_unbalanced or the "
+           "rate, or raise loading.held_tolerance"
+        << std::endl;
+  }
 }
 
 /// Says what a stopped run left, and ends the program with the code of its signal.

@@ -3,7 +3,10 @@
 // Dashpot: f_n -= c_n v_n, f_t -= (ratio c_n) v_t, with v_n > 0 as the grains part and c_n = cn delta^p:
 //   p = 0    coefficient (any law), restitution with the linear laws (cn = 2 zeta sqrt(m* kn)),
 //   p = 1/2  viscoelastic, cn = eta sqrt(r*) m* (LAMMPS' name and form),
-//   p = 1/4  restitution with Hertz laws (Tsuji et al. 1992, polynomial as in LAMMPS).
+//   p = 1/4  restitution with Hertz laws, cn = sqrt(5) zeta sqrt(m* k); tsuji: cn = alpha sqrt(m* k) with the
+//            polynomial alpha(e) that LAMMPS fits to Tsuji et al. 1992, for its records.
+// zeta from the coefficient of restitution: restitution.hpp. A dashpot acts at dt > 0 only: a sub-step at dt = 0 is no
+// second.
 // Local damping (Liang and Zhao 2019, eq. 29): f <- f - alpha |f| v/|v| on fluctuation velocities, or per component
 // f_k <- f_k - alpha |f_k| sign(v_k), which depends on the axes. v is the velocity half a step ahead, so that a grain
 // at rest feels (1 - alpha) of its force instead of a jump in sign.

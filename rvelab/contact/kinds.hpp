@@ -16,7 +16,7 @@ enum class Law {
 enum class Slip { consistent, full_radius, full_radius_ratcheting };
 
 /// Contact dashpot (damping.hpp).
-enum class Dashpot { none, coefficient, restitution, viscoelastic };
+enum class Dashpot { none, coefficient, restitution, viscoelastic, tsuji };
 
 /// Form of Cundall's local damping on the fluctuation velocities.
 enum class LocalDampingForm { vector, component };

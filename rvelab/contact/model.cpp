@@ -1,9 +1,9 @@
 // Names, ranges and mixing of contact parameters (design 6).
 //
 // Sources: linear law, rolling: Liang and Zhao 2019, eq. 20-28. Hertz-Mindlin: Li et al. 2023, eq. 18-21. Hertz with
-// given constants: Qu, Feng and Wang, eq. 16-17. Dashpots: Tsuji, Tanaka and Ishida 1992 (restitution with a Hertz
-// law), Brilliantov et al. 1996 (viscoelastic). Pair parameters decide the next bit of a specimen, so that nothing
-// here calls the mathematical library but for the square root, which is correctly rounded everywhere.
+// given constants: Qu, Feng and Wang, eq. 16-17. Dashpots: restitution.hpp, Tsuji, Tanaka and Ishida 1992, Brilliantov
+// et al. 1996 (viscoelastic). Pair parameters decide the next bit of a specimen, so that nothing here calls the
+// mathematical library but for the square root, which is correctly rounded everywhere.
 #include "rvelab/contact/model.hpp"
 
 #include <algorithm>
@@ -13,6 +13,7 @@
 #include <sstream>
 #include <utility>
 
+#include "rvelab/contact/restitution.hpp"
 #include "rvelab/error.hpp"
 
 namespace rvelab {
@@ -26,10 +27,11 @@ constexpr std::array<std::pair<Slip, const char*>, 3> slip_names{
     {{Slip::consistent, "consistent"},
      {Slip::full_radius, "full_radius"},
      {Slip::full_radius_ratcheting, "full_radius_ratcheting"}}};
-constexpr std::array<std::pair<Dashpot, const char*>, 4> dashpot_names{{{Dashpot::none, "none"},
+constexpr std::array<std::pair<Dashpot, const char*>, 5> dashpot_names{{{Dashpot::none, "none"},
                                                                         {Dashpot::coefficient, "coefficient"},
                                                                         {Dashpot::restitution, "restitution"},
-                                                                        {Dashpot::viscoelastic, "viscoelastic"}}};
+                                                                        {Dashpot::viscoelastic, "viscoelastic"},
+                                                                        {Dashpot::tsuji, "tsuji"}}};
 constexpr std::array<std::pair<LocalDampingForm, const char*>, 2> local_damping_form_names{
     {{LocalDampingForm::vector, "vector"}, {LocalDampingForm::component, "component"}}};
 
@@ -57,28 +59,9 @@ bool is_hertz(Law law) { return law == Law::hertz_mindlin || law == Law::hertz_g
 /// 2ab/(a + b), zero if either is zero.
 double harmonic_mean(double a, double b) { return a > 0 && b > 0 ? 2 * (a * b) / (a + b) : 0.0; }
 
-/// ln(x) for x > 0 from + - x / alone: x = m 2^k with m near 1, ln m = 2 artanh((m - 1)/(m + 1)).
-double natural_logarithm(double x) {
-  constexpr double ln_2 = 0.693147180559945309417;
-  double power = 0;
-  for (; x < 0.70710678118654752; x *= 2) power -= 1;
-  for (; x > 1.41421356237309505; x /= 2) power += 1;
-  const double z = (x - 1) / (x + 1);
-  double sum = 0;  // |z| <= 0.1716, z^24 < 5e-19
-  for (int term = 23; term >= 1; term -= 2) sum = sum * (z * z) + 1.0 / term;
-  return power * ln_2 + 2 * z * sum;
-}
-
-/// Fraction of the critical dashpot of a linear spring that gives the restitution e: -ln e/sqrt(pi^2 + ln^2 e).
-double critical_fraction(double restitution) {
-  constexpr double pi = 3.14159265358979323846;
-  const double logarithm = natural_logarithm(restitution);
-  return -logarithm / std::sqrt(pi * pi + logarithm * logarithm);
-}
-
 /// Tsuji's factor alpha(e) as the polynomial that LAMMPS fits. Tsuji's mass is that of one grain, LAMMPS' the reduced
-/// one, so that grains rebound faster than e says: at 0.853 of their speed for e = 0.8 (LAMMPS' own records do the
-/// same). The fit leaves 3e-4 at e = 1; an elastic impact has none.
+/// one, so that grains rebound faster than e says: at 0.853 of their speed for e = 0.8, at 0.44 for 0.3 (LAMMPS' own
+/// records do the same). The fit leaves 3e-4 at e = 1; an elastic impact has none.
 double tsuji_factor(double e) {
   if (e >= 1) return 0;
   return 1.2728 + e * (-4.2783 + e * (11.087 + e * (-22.348 + e * (27.467 + e * (-18.022 + e * 4.8218)))));
@@ -91,8 +74,10 @@ double dashpot_constant(Law law, const Damping& damping, double kn, double reduc
     case Dashpot::coefficient:
       return damping.normal_coefficient;
     case Dashpot::restitution:
-      return (is_hertz(law) ? tsuji_factor(damping.restitution) : 2 * critical_fraction(damping.restitution)) *
+      return (is_hertz(law) ? std::sqrt(5.0) : 2.0) * damping_ratio(damping.restitution, damping.no_tension) *
              std::sqrt(reduced_mass * kn);
+    case Dashpot::tsuji:
+      return tsuji_factor(damping.restitution) * std::sqrt(reduced_mass * kn);
     case Dashpot::viscoelastic:
       return damping.normal_coefficient * std::sqrt(reduced_radius) * reduced_mass;
   }
@@ -135,7 +120,11 @@ void check_damping(const ContactModel& model, const Damping& damping, Findings& 
     findings.expect(damping.normal_coefficient >= 0, "damping.normal_coefficient", damping.normal_coefficient,
                     ">= 0 N s/m", "give the dashpot coefficient, or damping.dashpot = none");
   }
-  if (damping.dashpot == Dashpot::restitution) {
+  if (damping.dashpot == Dashpot::tsuji && !is_hertz(model.law)) {
+    findings.add("damping.dashpot = tsuji does not go with contact.law = " + std::string(name(model.law)) +
+                 "; allowed: hertz_mindlin, hertz_given; use damping.dashpot = restitution");
+  }
+  if (damping.dashpot == Dashpot::restitution || damping.dashpot == Dashpot::tsuji) {
     findings.expect(damping.restitution > 0 && damping.restitution <= 1, "damping.restitution", damping.restitution,
                     "above 0 to 1", "give the coefficient of restitution of two grains; 1 is elastic");
   }
@@ -186,7 +175,7 @@ void check_material(const ContactModel& model, const Material& material, Finding
 
 double dashpot_power(Law law, Dashpot dashpot) {
   if (dashpot == Dashpot::viscoelastic) return 0.5;
-  return dashpot == Dashpot::restitution && is_hertz(law) ? 0.25 : 0.0;
+  return (dashpot == Dashpot::restitution || dashpot == Dashpot::tsuji) && is_hertz(law) ? 0.25 : 0.0;
 }
 
 PairParameters mix(const ContactModel& model, const Damping& damping, const Material& a, double ri, double mi,

@@ -40,7 +40,8 @@ struct Damping {
   LocalDampingForm local_form = LocalDampingForm::vector;
   Dashpot dashpot = Dashpot::none;
   double normal_coefficient = 0;  ///< coefficient: N s/m; viscoelastic: 1/(m s) (force eta sqrt(r* delta) m* v)
-  double restitution = 1;         ///< restitution: coefficient of restitution, 0 < e <= 1
+  double restitution = 1;         ///< restitution: coefficient of restitution of two grains, 0 < e <= 1; tsuji: that of
+                                  ///< LAMMPS' fit, which is met at 1 only
   double tangential_ratio = 0;    ///< tangential over normal dashpot coefficient, >= 0
   bool no_tension = false;        ///< cuts the normal force at zero, so that a dashpot never attracts
   double global_viscous = 0;      ///< N s/m, force -c v' on each grain, dt > 0 only
@@ -56,8 +57,8 @@ struct PairParameters {
   double cn = 0;          ///< dashpot: c_n = cn delta^dashpot_power
 };
 
-/// Power of the overlap in the dashpot coefficient: 0 (coefficient, linear), 1/2 (viscoelastic), 1/4 (restitution
-/// with a Hertz law, after Tsuji et al. 1992).
+/// Power of the overlap in the dashpot coefficient: 0 (coefficient, linear), 1/2 (viscoelastic), 1/4 (restitution and
+/// tsuji with a Hertz law).
 double dashpot_power(Law law, Dashpot dashpot);
 
 /// Mixes two materials for grains of radii ri, rj (m) and masses mi, mj (kg).

@@ -118,12 +118,16 @@ class Writer {
         name, values.size(), [&](std::size_t k) -> const Value& { return values[k]; }, {values.size()}, units);
   }
   template <class Value>
-  void later_field(const std::string& name, const Value& value, const std::string& units) {
+  void later_field(const std::string& name, const Value& value, const std::string& units, const Value& = {}) {
     field(name, value, units);
   }
   template <class Item, class... Columns>
   void table(const std::string& group, const std::vector<Item>& items, const Columns&... columns) {
     (column(group, items, columns), ...);
+  }
+  template <class Item, class Member>
+  void later_column(const std::string& group, const std::vector<Item>& items, const Column<Item, Member>& column) {
+    this->column(group, items, column);
   }
   /// Which columns count, bit by bit in a member of each item: the columns that are there say it.
   template <class Item, class Member>
@@ -183,7 +187,7 @@ class Reader {
   }
   /// A field that files of earlier versions do not have: left as it is there.
   template <class Value>
-  void later_field(const std::string& name, Value& value, const std::string& units) {
+  void later_field(const std::string& name, Value& value, const std::string& units, const Value& = {}) {
     if (file_.has(group_ + "/" + name)) field(name, value, units);
   }
   template <class Item, class First, class... Columns>
@@ -191,6 +195,11 @@ class Reader {
     items.assign(leading_extent(group + "/" + first.name), Item{});
     column(group, items, first);
     (column(group, items, columns), ...);
+  }
+  /// A column that files of earlier versions do not have: left as it is there.
+  template <class Item, class Member>
+  void later_column(const std::string& group, std::vector<Item>& items, const Column<Item, Member>& column) {
+    if (file_.has(group_ + "/" + group + "/" + column.name)) this->column(group, items, column);
   }
   template <class Item, class Member>
   void choice(const std::string&, std::vector<Item>&, const Column<Item, Member>&) {}

@@ -89,6 +89,7 @@ void read_parameters(const MetaFile& file, Specimen& specimen) {
     material.rolling_friction = eta;
   }
   specimen.contact.law = linear ? Law::linear : Law::hertz_mindlin;
+  specimen.contact.unload_rescale = false;  // YADE, which writes these files, lets f_t stand on unloading
   specimen.materials = {material};
   try {
     check(specimen.contact, specimen.damping, specimen.materials);

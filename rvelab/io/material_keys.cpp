@@ -35,7 +35,7 @@ std::string allowed(const Range& range) {
   if constexpr (std::is_same_v<Value, std::string>) return "any text, different for each material";
   if constexpr (std::is_same_v<Value, Law>) return "linear, linear_given, hertz_mindlin, hertz_given";
   if constexpr (std::is_same_v<Value, Slip>) return "consistent, full_radius, full_radius_ratcheting";
-  if constexpr (std::is_same_v<Value, Dashpot>) return "none, coefficient, restitution, viscoelastic";
+  if constexpr (std::is_same_v<Value, Dashpot>) return "none, coefficient, restitution, viscoelastic, tsuji";
   if constexpr (std::is_same_v<Value, LocalDampingForm>) return "vector, component";
   return range.in_words();
 }
@@ -63,7 +63,8 @@ std::vector<KeyEntry> materials() {
       entry(t, "density_kg_m3", "kg/m^3", &Material::density, positive, "density of the solid"),
       entry(t, "young_modulus_Pa", "Pa", &Material::young_modulus, positive,
             "linear: E of kn = 2 Ei ri Ej rj/(Ei ri + Ej rj); hertz_mindlin: Young's modulus"),
-      entry(t, "stiffness_ratio", "1", &Material::stiffness_ratio, {0, 10}, "linear: kt/kn"),
+      entry(t, "stiffness_ratio", "1", &Material::stiffness_ratio, {0, 10},
+            "linear: kt/kn; 0 set by a protocol drops the tangential forces that the specimen holds"),
       entry(t, "poisson_ratio", "1", &Material::poisson_ratio, {-0.99, 0.5}, "hertz_mindlin: Poisson's ratio"),
       entry(t, "normal_stiffness_N_m", "N/m", &Material::normal_stiffness, positive, "linear_given: kn"),
       entry(t, "normal_stiffness_N_m1_5", "N/m^1.5", &Material::normal_stiffness, positive,
@@ -99,13 +100,14 @@ std::vector<KeyEntry> damping() {
       entry(t, "local", "1", &Damping::local, below_one, "Cundall's damping for dt > 0"),
       entry(t, "local_quasi_static", "1", &Damping::local_quasi_static, inside_one, "Cundall's damping for dt = 0"),
       entry(t, "local_form", "-", &Damping::local_form, any_words, "component depends on the axes, as YADE"),
-      entry(t, "dashpot", "-", &Damping::dashpot, any_words, "contact dashpot"),
+      entry(t, "dashpot", "-", &Damping::dashpot, any_words, "contact dashpot; acts at dt > 0 only"),
       entry(t, "normal_coefficient_N_s_m", "N s/m", &Damping::normal_coefficient, not_negative,
             "dashpot = coefficient: c_n"),
       entry(t, "viscoelastic_1_m_s", "1/(m s)", &Damping::normal_coefficient, not_negative,
             "dashpot = viscoelastic: eta of c_n = eta sqrt(r* overlap) m*"),
       entry(t, "restitution", "1", &Damping::restitution, {0, 1, true, false},
-            "dashpot = restitution: coefficient of restitution of two grains"),
+            "dashpot = restitution: coefficient of restitution of two grains, linear and Hertz; tsuji: e of LAMMPS' "
+            "polynomial, Hertz only (grains rebound at 0.85 for 0.8, 0.44 for 0.3)"),
       entry(t, "tangential_ratio", "1", &Damping::tangential_ratio, not_negative,
             "tangential over normal dashpot coefficient"),
       entry(t, "no_tension", "-", &Damping::no_tension, any_words,
@@ -123,7 +125,11 @@ std::vector<KeyEntry> solver() {
       entry(t, "time_step_factor", "1", &SolverOptions::time_step_factor, inside_one,
             "fraction of the critical step 2/omega_max"),
       entry(t, "fixed_time_step_s", "s", &SolverOptions::fixed_time_step, not_negative,
-            "dt > 0: exactly this step; 0: from time_step_factor"),
+            "dt > 0: exactly this step; 0: from time_step_factor and collision_steps"),
+      entry(
+          t, "collision_steps", "1", &SolverOptions::collision_steps, {0, 100'000},
+          "dt > 0: sub-steps of a collision where collisions carry the energy, 5 or more; 0: the critical step alone, "
+          "whatever collisions become"),
       entry(t, "target_unbalanced", "1", &SolverOptions::target_unbalanced, positive,
             "dt = 0: unbalanced ratio that steers the number of sub-steps"),
       entry(t, "fixed_substeps", "1", &SolverOptions::fixed_substeps, not_negative,

@@ -22,6 +22,7 @@ void describe_records(Archive& archive, Value& records) {
                 Column{"substeps", &Record::substeps, "1"},                              //
                 Column{"held_error", &Record::held_error, "1"},                          //
                 Column{"target_held", &Record::target_held, "1"});
+  archive.later_column("records", records, Column{"quasi_static", &Record::quasi_static, "1"});
   const auto chosen = [&](Quantity quantity, const auto& column) {
     archive.chosen("records", records, column, &Record::quantities, static_cast<std::uint64_t>(quantity));
   };

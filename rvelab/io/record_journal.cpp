@@ -31,6 +31,10 @@ struct RowLayout {
   void choice(const std::string&, const std::vector<Item>&, const Column<Item, Member>& column) {
     add(column);
   }
+  template <class Item, class Member>
+  void later_column(const std::string& group, const std::vector<Item>& items, const Column<Item, Member>& column) {
+    choice(group, items, column);
+  }
   template <class Item, class Member, class Mask>
   void chosen(const std::string&, const std::vector<Item>&, const Column<Item, Member>& column, Mask Item::*, Mask) {
     add(column);
@@ -54,6 +58,10 @@ struct RowWriter {
   template <class Item, class Member>
   void choice(const std::string&, const std::vector<Item>& items, const Column<Item, Member>& column) {
     for (const Item& item : items) add(item.*column.member);
+  }
+  template <class Item, class Member>
+  void later_column(const std::string& group, const std::vector<Item>& items, const Column<Item, Member>& column) {
+    choice(group, items, column);
   }
   template <class Item, class Member, class Mask>
   void chosen(const std::string& group, const std::vector<Item>& items, const Column<Item, Member>& column,
@@ -87,6 +95,10 @@ struct RowReader {
   template <class Item, class Member>
   void choice(const std::string&, std::vector<Item>& items, const Column<Item, Member>& column) {
     for (Item& item : items) get(column.name, item.*column.member);
+  }
+  template <class Item, class Member>
+  void later_column(const std::string& group, std::vector<Item>& items, const Column<Item, Member>& column) {
+    choice(group, items, column);
   }
   template <class Item, class Member, class Mask>
   void chosen(const std::string& group, std::vector<Item>& items, const Column<Item, Member>& column, Mask Item::*,

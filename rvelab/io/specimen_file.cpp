@@ -47,11 +47,12 @@ void describe_parameters(Archive& archive, Value& specimen) {
   archive.field("damping/no_tension", no_tension, "1");
   archive.field("damping/global_viscous_N_s_m", global_viscous, "N s/m");
 
-  auto& [skin, time_step_factor, fixed_time_step, target_unbalanced, fixed_substeps, max_substeps, min_height,
-         max_overlap_ratio, ledger] = specimen.solver;
+  auto& [skin, time_step_factor, fixed_time_step, collision_steps, target_unbalanced, fixed_substeps, max_substeps,
+         min_height, max_overlap_ratio, ledger] = specimen.solver;
   archive.field("solver/skin", skin, "1");
   archive.field("solver/time_step_factor", time_step_factor, "1");
   archive.field("solver/fixed_time_step_s", fixed_time_step, "s");
+  archive.later_field("solver/collision_steps", collision_steps, "1", SolverOptions{}.collision_steps);
   archive.field("solver/target_unbalanced", target_unbalanced, "1");
   archive.field("solver/fixed_substeps", fixed_substeps, "1");
   archive.field("solver/max_substeps", max_substeps, "1");
@@ -178,8 +179,8 @@ class Digest {
   }
   /// A later field counts only where it says something: the digest of an older file stays what it was.
   template <class Value>
-  void later_field(const std::string& name, const Value& value, const std::string& units) {
-    if (value != Value{}) field(name, value, units);
+  void later_field(const std::string& name, const Value& value, const std::string& units, const Value& initial = {}) {
+    if (value != initial) field(name, value, units);
   }
   template <class Item, class... Columns>
   void table(const std::string&, const std::vector<Item>& items, const Columns&... columns) {

@@ -146,14 +146,28 @@ double sliding_fraction(const Network& network) {
   return static_cast<double>(sliding) / network.contacts.size();
 }
 
-double unbalanced_force_ratio(const Network& network) {
-  double resultant = 0, force = 0;
-  for (const GrainState& grain : network.grains) resultant += grain.resultant.norm();
+namespace {
+
+/// A mean over the grains, over the force scale of the unbalanced ratio.
+template <class OfGrain>
+double unbalanced(const Network& network, const OfGrain& of_grain) {
+  double left = 0, force = 0;
+  for (const GrainState& grain : network.grains) left += of_grain(grain);
   for (const ContactState& contact : network.contacts) force += contact.force().norm();
-  if (!network.grains.empty()) resultant /= network.grains.size();
+  if (!network.grains.empty()) left /= network.grains.size();
   if (!network.contacts.empty()) force /= network.contacts.size();
   const double scale = std::max(force, 1e-3 * network.reference_contact_force);
-  return scale > 0 ? resultant / scale : 0.0;
+  return scale > 0 ? left / scale : 0.0;
+}
+
+}  // namespace
+
+double unbalanced_force_ratio(const Network& network) {
+  return unbalanced(network, [](const GrainState& grain) { return grain.resultant.norm(); });
+}
+
+double unbalanced_torque_ratio(const Network& network) {
+  return unbalanced(network, [](const GrainState& grain) { return grain.torque.norm() / grain.radius; });
 }
 
 double elastic_energy(const Network& network) {

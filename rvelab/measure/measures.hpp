@@ -65,6 +65,10 @@ double sliding_fraction(const Network& network);
 /// Mean resultant over all grains / max(mean contact force, 1e-3 of the reference force). Zero where both vanish.
 double unbalanced_force_ratio(const Network& network);
 
+/// The same of torques over the radius, N: mean |torque|/r over all grains / the same scale. What an Rve reports as its
+/// unbalanced ratio is the larger of the two.
+double unbalanced_torque_ratio(const Network& network);
+
 /// Energy stored in contacts, J: normal, tangential and rolling springs.
 double elastic_energy(const Network& network);
 

@@ -26,8 +26,9 @@ std::vector<std::pair<int, int>> components(int dimension);
 
 /// The mixed target that brings the held components from `stress` to their targets and gives all others the strain of
 /// the displacement gradient dH (dimensionless, relative to the start of the increment). The whole skew part is dH's.
+/// `held_before`: the increment before had the same targets, so that what is lacking was missed by it.
 MixedTarget mixed_target(const Matrix3& displacement_gradient, const std::vector<HeldStress>& held,
-                         const Matrix3& stress, int dimension);
+                         const Matrix3& stress, int dimension, bool held_before);
 
 /// Strains of the records of a strain-driven stage that goes straight: 0, multiples of the spacing, then the end.
 std::vector<double> record_strains(double to_strain, double spacing);

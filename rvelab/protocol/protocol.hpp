@@ -21,8 +21,11 @@ struct Loading {
   bool physical = false;          ///< false: dt = 0; true: physical masses at the rate below
   double rate = 0;                ///< 1/s, true rate of the driving strain; 0: from the inertial number
   double inertial_number = 0;     ///< I = rate d sqrt(rho/p), p at the start of the stage; 0: from the rate
-  double held_tolerance = 0.005;  ///< a held stress may miss by this times max(|target|, 1 % of the stage's first p)
-  long held_wait = 200;           ///< sub-steps that a record waits for the held stress, see MixedTarget::wait
+  double held_tolerance = 0.005;  ///< a held stress may miss by this times max(|target|, 1 % of the stage's first p);
+                                  ///< physical: its mean over an increment may
+  static constexpr double held_tolerance_at_rate =
+      0.05;              ///< where a protocol does not say: collisions make it fluctuate
+  long held_wait = 200;  ///< quasi-static: sub-steps that a record waits for it, see MixedTarget::wait
 };
 
 /// All normal stresses to -pressure. Ends when every stress that is driven is within stress_tolerance of its target

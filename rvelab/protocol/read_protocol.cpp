@@ -8,6 +8,7 @@
 #include "rvelab/protocol/protocol.hpp"
 #include "rvelab/protocol/read_stage.hpp"
 #include "rvelab/protocol/table_reader.hpp"
+#include "rvelab/solver/specimen_check.hpp"
 
 namespace rvelab {
 namespace {
@@ -49,9 +50,13 @@ void read_loading(const toml::table& table, Protocol& protocol, toml::table& res
     reader.mistake("mode", "needs a rate; allowed: rate_1_s or inertial_number beside it; add one of them");
   }
   loading.held_tolerance = reader.number("held_tolerance");
+  const bool usual_tolerance = loading.physical && !reader.has("held_tolerance");
+  if (usual_tolerance) loading.held_tolerance = Loading::held_tolerance_at_rate;
   loading.held_wait = reader.whole_number("held_wait");
   reader.finish();
-  resolved.insert("loading", reader.resolved());
+  toml::table complete = reader.resolved();
+  if (usual_tolerance) complete.insert_or_assign("held_tolerance", loading.held_tolerance);
+  resolved.insert("loading", std::move(complete));
 }
 
 void read_specimen_name(const toml::table& file, Protocol& protocol, toml::table& resolved,
@@ -192,6 +197,7 @@ Specimen with_overrides(const Protocol& protocol, Specimen specimen) {
   }
   raise(protocol.path, errors);
   protocol::expect_fits(protocol, specimen.cell.dimension);
+  clear_forces_without_stiffness(specimen);  // a material that was given none here
   return specimen;
 }
 

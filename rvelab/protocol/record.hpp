@@ -59,9 +59,10 @@ struct Record {
   Matrix3 stress = Matrix3::Zero();                    ///< Cauchy, Pa
   double unbalanced_force_ratio = 0;
   double inertial_number = 0;
-  long substeps = 0;        ///< made since the record before
-  double held_error = 0;    ///< largest error of a held stress over its scale
-  bool target_held = true;  ///< false: kept, but the held stress was not within the tolerance after the wait
+  long substeps = 0;         ///< made since the record before
+  double held_error = 0;     ///< largest error of a held stress over its scale
+  bool target_held = true;   ///< false: kept, but the held stress was not within the tolerance (dt = 0: after the wait)
+  bool quasi_static = true;  ///< dt = 0; false: kept, but no equilibrium (Report::quasi_static); dt > 0: not judged
 
   std::uint64_t quantities = usual_quantities;  ///< which of the following were measured; the others are zero
   double void_ratio = 0;

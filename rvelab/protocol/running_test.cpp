@@ -30,7 +30,7 @@ std::vector<std::pair<int, int>> components(int dimension) {
 }
 
 MixedTarget mixed_target(const Matrix3& displacement_gradient, const std::vector<HeldStress>& held,
-                         const Matrix3& stress, int dimension) {
+                         const Matrix3& stress, int dimension, bool held_before) {
   MixedTarget target;
   target.spin = 0.5 * (displacement_gradient - displacement_gradient.transpose());
   const Matrix3 strain = 0.5 * (displacement_gradient + displacement_gradient.transpose());
@@ -44,6 +44,7 @@ MixedTarget mixed_target(const Matrix3& displacement_gradient, const std::vector
       row.strain.setZero();
       // From the stress as it is: what the increment before missed is made good, not carried on.
       row.value = component.target - 0.5 * (stress(i, j) + stress(j, i));
+      if (held_before) row.missed = row.value;
       row.scale = component.scale;
     }
     target.rows.push_back(row);
@@ -144,7 +145,10 @@ Report RunningTest::apply(MixedTarget target, double dt, double tolerance) {
 Report RunningTest::apply(const Matrix3& displacement_gradient, const std::vector<HeldStress>& held, double dt,
                           double tolerance) {
   if (!held.empty()) {
-    return apply(mixed_target(displacement_gradient, held, run.progress.stress, dimension()), dt, tolerance);
+    // The first increment of a stage (step 1) brings the stress to where the others hold it.
+    const bool held_before = run.progress.step > 1;
+    return apply(mixed_target(displacement_gradient, held, run.progress.stress, dimension(), held_before), dt,
+                 tolerance);
   }
   return applied([&] {
     Response response = rve.apply(displacement_gradient, dt);
@@ -223,6 +227,7 @@ void RunningTest::record(double strain, const Report& report) {
   record.substeps = run.progress.substeps;
   record.held_error = report.held_error;
   record.target_held = report.target_held;
+  record.quasi_static = report.quasi_static;
   run.progress.substeps = 0;
   const std::size_t number = run.result.records.size();
   run.result.records.push_back(record);

@@ -26,8 +26,27 @@ struct Moments {
   Matrix3 second = Matrix3::Zero();
 };
 
-template <int D>
-Moments moments_of(const Fixture& f, const Assembly& a) {
+/// Normal and tangential coefficient of a contact.
+struct Coefficients {
+  double normal, tangential;
+};
+
+Coefficients springs(const Fixture& f, const PairTable& pairs, std::size_t p, double overlap) {
+  Coefficients k{pairs.kn[p], pairs.kt[p]};
+  if (f.law != KernelLaw::linear) k.normal *= 1.5 * std::sqrt(overlap);
+  if (f.law == KernelLaw::hertz_mindlin) k.tangential *= std::sqrt(overlap);
+  return k;
+}
+
+Coefficients dashpots(const Fixture& f, const PairTable& pairs, std::size_t p, double overlap) {
+  const double power = dashpot_power(f.contact.law, f.damping.dashpot);
+  const double root = std::sqrt(overlap);
+  const double c = pairs.cn[p] * (power == 0 ? 1.0 : (power == 0.5 ? root : std::sqrt(root)));
+  return {c, f.damping.tangential_ratio * c};
+}
+
+template <int D, class Of>
+Moments moments_of(const Fixture& f, const Assembly& a, const Of& coefficients) {
   // Monomials of n of degree four and two; the servo renews its gain every few dozen sub-steps.
   constexpr int degree4 = D == 2 ? 5 : 15;
   double four[degree4] = {}, two[6] = {};
@@ -38,9 +57,7 @@ Moments moments_of(const Fixture& f, const Assembly& a) {
     const double squared = b.x * b.x + b.y * b.y + b.z * b.z, length = std::sqrt(squared);
     const double overlap = (f.radius[std::size_t(a.pairs.i[p])] + f.radius[std::size_t(a.pairs.j[p])]) - length;
     if (!(overlap > 0)) continue;
-    double kn = a.pairs.kn[p], kt = a.pairs.kt[p];
-    if (f.law != KernelLaw::linear) kn *= 1.5 * std::sqrt(overlap);
-    if (f.law == KernelLaw::hertz_mindlin) kt *= std::sqrt(overlap);
+    const auto [kn, kt] = coefficients(f, a.pairs, p, overlap);
     const double part = (kn - kt) / squared;
     const double x = b.x, y = b.y, xx = x * x, yy = y * y, xy = x * y;
     two[0] += kt * xx;
@@ -101,12 +118,11 @@ Matrix6 strain_turn(const Matrix3& rotation) {
   return turn;
 }
 
-}  // namespace
-
-Matrix6 affine_stiffness(const Fixture& f, const Assembly& a) {
+template <class Of>
+Matrix6 affine_sum(const Fixture& f, const Assembly& a, const Of& coefficients) {
   // C_ijkl = (1/V) sum l^2 [(kn - kt) n_i n_j n_k n_l
   //                         + kt/4 (n_i n_k d_jl + n_i n_l d_jk + n_j n_k d_il + n_j n_l d_ik)], design 8.
-  const Moments m = f.shape == Shape::disc ? moments_of<2>(f, a) : moments_of<3>(f, a);
+  const Moments m = f.shape == Shape::disc ? moments_of<2>(f, a, coefficients) : moments_of<3>(f, a, coefficients);
   constexpr int first[6] = {0, 1, 2, 1, 0, 0}, second[6] = {0, 1, 2, 2, 2, 1};
   Matrix6 stiffness = m.fourth;
   for (int r = 0; r < 6; ++r)
@@ -117,6 +133,15 @@ Matrix6 affine_stiffness(const Fixture& f, const Assembly& a) {
     }
   const Matrix6 turn = strain_turn(a.cell.rotation);
   return turn.transpose() * stiffness * turn / a.cell.volume();
+}
+
+}  // namespace
+
+Matrix6 affine_stiffness(const Fixture& f, const Assembly& a) { return affine_sum(f, a, springs); }
+
+Matrix6 affine_viscosity(const Fixture& f, const Assembly& a) {
+  if (f.damping.dashpot == Dashpot::none) return Matrix6::Zero();
+  return affine_sum(f, a, dashpots);
 }
 
 }  // namespace rvelab

@@ -68,6 +68,9 @@ void open(const Specimen& specimen, Fixture& f, Assembly& a) {
   f.radius = s.grains.radius;
   f.law = kernel_law(s.contact.law);
   f.kernels = kernels_for({f.shape, f.law, f.contact.rolling, f.contact.slip, f.damping.dashpot != Dashpot::none});
+  f.resting_kernels = f.damping.dashpot == Dashpot::none
+                          ? f.kernels
+                          : kernels_for({f.shape, f.law, f.contact.rolling, f.contact.slip, false});
   f.largest_radius = *std::max_element(f.radius.begin(), f.radius.end());
   f.smallest_radius = *std::min_element(f.radius.begin(), f.radius.end());
   f.mean_radius = std::accumulate(f.radius.begin(), f.radius.end(), 0.0) / double(n);

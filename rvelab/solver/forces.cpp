@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rvelab/error.hpp"
 #include "rvelab/solver/gather_table.hpp"
 #include "rvelab/solver/pair_geometry.hpp"
 
@@ -39,7 +40,7 @@ StepConstants base_constants(const Fixture& f, const Assembly& a) {
 
 void evaluate_forces(const Fixture& f, Assembly& a) {
   const StepConstants c = base_constants(f, a);
-  f.kernels.evaluate(c, arrays_of(a.pairs), a.rows.data(), 0, long(a.pairs.padded()), nullptr);
+  f.kernels_at(a.state.quasi_static).evaluate(c, arrays_of(a.pairs), a.rows.data(), 0, long(a.pairs.padded()), nullptr);
 }
 
 Vector3 branch_of(const Fixture& f, const Assembly& a, std::size_t p) {
@@ -101,6 +102,25 @@ Matrix3 contact_moment(const Fixture& f, const Assembly& a) {
 
 namespace {
 
+/// Doubles that a grain's resultants take: force, then torque over the radius (N).
+template <int D>
+constexpr std::size_t resultant_row = D == 2 ? 3 : 6;
+
+/// Adds what contact p gives to one of its grains.
+template <int D>
+void add_resultant(const Fixture& f, const PairTable& pairs, std::size_t p, std::size_t g, bool as_j, double* r) {
+  const double* row = pairs.force.data() + p * (D == 2 ? 4 : 8);
+  for (std::size_t c = 0; c < D; ++c) r[c] = as_j ? r[c] + row[c] : r[c] - row[c];
+  if constexpr (D == 2) {
+    r[2] += row[as_j ? 2 : 3] / f.radius[g];
+  } else {
+    const double arm = row[3] / f.radius[g] - 1;  // torque -(r - delta/2) n x f_t on either grain
+    for (std::size_t c = 0; c < 3; ++c) r[3 + c] += arm * row[4 + c];
+    if (!f.contact.rolling) return;
+    for (std::size_t c = 0; c < 3; ++c) r[3 + c] += (as_j ? 1 : -1) * pairs.moment[c][p] / f.radius[g];
+  }
+}
+
 /// Sums over the contacts of a piece of the pairs.
 struct ContactSums {
   double force = 0, overlap = 0, largest_overlap_ratio = 0;
@@ -123,11 +143,10 @@ ContactSums contacts_in(const Fixture& f, const Assembly& a, const Branches<D>& 
     const double* on_j = force + p * (D == 2 ? 4 : 8);
     double squared = 0;
     for (std::size_t c = 0; c < D; ++c) squared += on_j[c] * on_j[c];
-    if (resultants != nullptr && i != j)
-      for (std::size_t c = 0; c < D; ++c) {
-        resultants[D * i + c] -= on_j[c];
-        resultants[D * j + c] += on_j[c];
-      }
+    if (resultants != nullptr) {
+      add_resultant<D>(f, a.pairs, p, i, false, resultants + resultant_row<D> * i);
+      add_resultant<D>(f, a.pairs, p, j, true, resultants + resultant_row<D> * j);
+    }
     sums.force += std::sqrt(squared);
     sums.overlap += overlap;
     ++sums.touching;
@@ -136,21 +155,24 @@ ContactSums contacts_in(const Fixture& f, const Assembly& a, const Branches<D>& 
   return sums;
 }
 
-/// Forces on the grains [first, last), added in the same order as above; pairs that do not touch have none.
+/// Resultants of the grains [first, last), added in the same order as above; pairs that do not touch give nothing.
 template <int D>
-void gather_resultants(const Assembly& a, std::size_t first, std::size_t last, double* resultants) {
-  const double* force = a.pairs.force.data();
+void gather_resultants(const Fixture& f, const Assembly& a, const Branches<D>& branch, std::size_t first,
+                       std::size_t last, double* resultants) {
   each_pair_of_grains<D>(a.pairs, first, last, [&](std::size_t g, std::size_t p, bool as_j) {
-    if (a.pairs.i[p] == a.pairs.j[p]) return;
-    const double* on_j = force + p * (D == 2 ? 4 : 8);
-    double* r = resultants + D * g;
-    for (std::size_t c = 0; c < D; ++c) r[c] = as_j ? r[c] + on_j[c] : r[c] - on_j[c];
+    // The place of a pair that opened still holds the moment of rolling until the kernel passes by.
+    const auto i = std::size_t(a.pairs.i[p]), j = std::size_t(a.pairs.j[p]);
+    if (!((f.radius[i] + f.radius[j]) - branch(p).length() > 0)) return;
+    const bool own_image = i == j;
+    if (own_image && as_j) return;  // both at once where the grain is i, as above
+    add_resultant<D>(f, a.pairs, p, g, as_j, resultants + resultant_row<D> * g);
+    if (own_image) add_resultant<D>(f, a.pairs, p, g, true, resultants + resultant_row<D> * g);
   });
 }
 
-/// Sums over a piece of the grains: |resultant|, and squares of all that their rows hold.
+/// Sums over a piece of the grains: |force|, |torque| over radius, and squares of all that their rows hold.
 struct GrainFigures {
-  double resultants = 0, squares = 0;
+  double resultants = 0, couples = 0, squares = 0;
 };
 
 template <int D>
@@ -158,9 +180,12 @@ GrainFigures grains_in(const Fixture& f, const Assembly& a, std::size_t first, s
                        const double* resultants) {
   GrainFigures figures;
   for (std::size_t g = first; g < last; ++g) {
-    double squared = 0;
-    for (std::size_t c = 0; c < D; ++c) squared += resultants[D * g + c] * resultants[D * g + c];
-    figures.resultants += std::sqrt(squared) / double(f.size());
+    const double* r = resultants + resultant_row<D> * g;
+    double force = 0, couple = 0;
+    for (std::size_t c = 0; c < D; ++c) force += r[c] * r[c];
+    for (std::size_t c = D; c < resultant_row<D>; ++c) couple += r[c] * r[c];
+    figures.resultants += std::sqrt(force) / double(f.size());
+    figures.couples += std::sqrt(couple) / double(f.size());
   }
   const auto row = std::size_t(f.row_length());
   for (std::size_t k = first * row; k < last * row; ++k) figures.squares += a.rows[k] * a.rows[k];
@@ -171,14 +196,14 @@ template <int D>
 Balance balance_in(const Fixture& f, const Assembly& a) {
   const Branches<D> branch(a);
   const bool shared = f.sharing() != nullptr;
-  std::vector<double> resultants(D * f.size(), 0.0);
+  std::vector<double> resultants(resultant_row<D> * f.size(), 0.0);
   std::vector<ContactSums> of_pairs(pieces_in(a.pairs.listed));
   in_pieces(a.pairs.listed, f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
     of_pairs[piece] = contacts_in(f, a, branch, first, last, shared ? nullptr : resultants.data());
   });
   std::vector<GrainFigures> of_grains(pieces_in(f.size()));
   in_pieces(f.size(), f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
-    if (shared) gather_resultants<D>(a, first, last, resultants.data());
+    if (shared) gather_resultants<D>(f, a, branch, first, last, resultants.data());
     of_grains[piece] = grains_in<D>(f, a, first, last, resultants.data());
   });
   Balance balance;
@@ -192,6 +217,7 @@ Balance balance_in(const Fixture& f, const Assembly& a) {
   }
   for (const GrainFigures& piece : of_grains) {
     balance.mean_resultant += piece.resultants;
+    balance.mean_couple += piece.couples;
     squares += piece.squares;
   }
   if (balance.touching > 0) {
@@ -199,12 +225,40 @@ Balance balance_in(const Fixture& f, const Assembly& a) {
     balance.mean_overlap = overlap_sum / double(balance.touching);
   }
   // A sum is finite only if all its terms are, or if infinities cancel, which sums of squares cannot.
-  balance.finite =
-      balance.finite && std::isfinite(balance.mean_resultant) && std::isfinite(contact_force) && std::isfinite(squares);
+  balance.finite = balance.finite && std::isfinite(balance.mean_resultant + balance.mean_couple) &&
+                   std::isfinite(contact_force) && std::isfinite(squares);
   return balance;
 }
 
 }  // namespace
+
+namespace {
+
+template <int D>
+std::vector<Resultant> resultants_in(const Fixture& f, const Assembly& a) {
+  const Branches<D> branch(a);
+  std::vector<double> rows(resultant_row<D> * f.size(), 0.0);
+  std::vector<Resultant> resultants(f.size());
+  in_pieces(f.size(), f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
+    gather_resultants<D>(f, a, branch, first, last, rows.data());
+    for (std::size_t g = first; g < last; ++g) {
+      const double* r = rows.data() + resultant_row<D> * g;
+      Resultant& of = resultants[g];
+      if constexpr (D == 2) {
+        of = {{r[0], r[1], 0}, {0, 0, f.radius[g] * r[2]}};
+      } else {
+        of = {{r[0], r[1], r[2]}, f.radius[g] * Vector3(r[3], r[4], r[5])};
+      }
+    }
+  });
+  return resultants;
+}
+
+}  // namespace
+
+std::vector<Resultant> resultants_of(const Fixture& f, const Assembly& a) {
+  return f.shape == Shape::disc ? resultants_in<2>(f, a) : resultants_in<3>(f, a);
+}
 
 Balance balance_of(const Fixture& f, const Assembly& a) {
   return f.shape == Shape::disc ? balance_in<2>(f, a) : balance_in<3>(f, a);
@@ -212,7 +266,16 @@ Balance balance_of(const Fixture& f, const Assembly& a) {
 
 double unbalanced_ratio(const Balance& balance, double reference_contact_force) {
   const double scale = std::max(balance.mean_contact_force, 1e-3 * reference_contact_force);
-  return scale > 0 ? balance.mean_resultant / scale : 0.0;
+  return scale > 0 ? std::max(balance.mean_resultant, balance.mean_couple) / scale : 0.0;
+}
+
+void check_overlaps(const Fixture& f, const Balance& balance) {
+  if (!balance.finite)
+    throw IncrementFailed("the increment led to values that are not finite; apply it in smaller parts");
+  if (balance.largest_overlap_ratio > f.overlap_limit)
+    throw IncrementFailed("grains overlap by " + in_words(balance.largest_overlap_ratio) +
+                          " of the smaller radius; solver.max_overlap_ratio allows " + in_words(f.overlap_limit) +
+                          "; compress less or take stiffer grains");
 }
 
 }  // namespace rvelab

@@ -97,6 +97,15 @@ double typical_normal_force(const Fixture& f, double overlap) {
   return (f.law == KernelLaw::linear ? stiffness : stiffness / 1.5) * overlap;
 }
 
+void set_softest_answer(Fixture& f) {
+  f.softest_answer = 1;
+  if (!f.contact.rolling) return;
+  const auto [one, radius] = typical_pair(f);
+  const ContactStiffness k = stiffness_of(f, one, 0, 1e-3 * radius);
+  const double slip = 4 * k.tangential * radius * radius;
+  if (slip > 0) f.softest_answer = std::sqrt(slip / (slip + 2 * k.rolling));
+}
+
 namespace {
 
 /// What a grain collects from its pairs.

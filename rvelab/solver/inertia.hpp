@@ -22,6 +22,9 @@ struct RowSums {
 /// Normal force of two of the largest grains at an overlap (m), N: a scale for specimens without any contact.
 double typical_normal_force(const Fixture& fixture, double overlap);
 
+/// Sets fixture.softest_answer from two of the largest grains.
+void set_softest_answer(Fixture& fixture);
+
 RowSums row_sums(const Fixture& fixture, const Assembly& assembly);
 
 /// Smallest 2/omega_max over the grains with physical masses (dashpots included: 2/omega (sqrt(1 + zeta^2) - zeta)), s;

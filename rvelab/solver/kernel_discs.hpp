@@ -145,7 +145,11 @@ inline __attribute__((always_inline)) void disc_forces(const StepConstants& c, c
       moment = touching ? moment : zero;
       store_as(p.moment[0] + at, moment);
       if constexpr (T::Ledger) {
-        if (kr > 0.0) dissipation->rolling += sum_of((moment_trial - moment) * (moment / kr));
+        if (touching && kr > 0.0) dissipation->rolling += (moment_trial - moment) * moment / kr;
+        if (!touching && moment_before != 0.0) {
+          const double last_kr = Law::stores_root_overlap ? p.kr[at] * last_root : kr;
+          if (last_kr > 0) dissipation->rolling += 0.5 * moment_before * moment_before / last_kr;
+        }
         if (Law::stores_root_overlap && kr > 0.0 && touching)
           dissipation->law_loss += 0.5 *
                                    (moment_before * moment_before / (p.kr[at] * (last_root > 0 ? last_root : root)) -

@@ -56,15 +56,6 @@ inline __attribute__((always_inline)) typename Lanes<W>::Quad quad(double a, dou
   return load_as<typename Lanes<W>::Quad>(values);
 }
 
-template <class V>
-inline __attribute__((always_inline)) double sum_of(V v) {
-  double values[sizeof(V) / sizeof(double)];
-  std::memcpy(values, &v, sizeof(V));
-  double sum = 0;
-  for (double value : values) sum += value;
-  return sum;
-}
-
 template <int W>
 inline __attribute__((always_inline)) typename Lanes<W>::Quad quad_at(const double* from) {
   return load_as<typename Lanes<W>::Quad>(from);

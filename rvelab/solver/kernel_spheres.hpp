@@ -212,6 +212,9 @@ inline __attribute__((always_inline)) void sphere_forces(const StepConstants& c,
           dissipation->rolling += dot(plus(moment_trial, -one, moment), moment) / kr;
           if (Law::stores_root_overlap && last_root > 0)
             dissipation->law_loss += 0.5 * (moment_before / (p.kr[at] * last_root) - moment_carried / kr);
+        } else if (!touching && moment_before > 0.0) {
+          const double last_kr = Law::stores_root_overlap ? p.kr[at] * last_root : kr;
+          if (last_kr > 0) dissipation->rolling += 0.5 * moment_before / last_kr;
         }
       }
     }

@@ -1,4 +1,5 @@
 // Rve::network: the contact network as a value.
+#include <Eigen/Geometry>
 #include <cmath>
 
 #include "rvelab/solver/memory_order.hpp"
@@ -45,8 +46,8 @@ Network Rve::network() const {
   net.grains.resize(f.size());
   for (std::size_t g = 0; g < f.size(); ++g)
     net.grains[g] = {
-        f.radius[g],  f.mass[g],      f.inertia[g], a.position(f, g), a.velocity(f, g) - a.state.mean_velocity,
-        a.spin(f, g), Vector3::Zero()};
+        f.radius[g],  f.mass[g],       f.inertia[g],   a.position(f, g), a.velocity(f, g) - a.state.mean_velocity,
+        a.spin(f, g), Vector3::Zero(), Vector3::Zero()};
   for (const std::int32_t place : a.pairs.order) {
     const auto p = std::size_t(place);
     const auto i = a.pairs.i[p], j = a.pairs.j[p];
@@ -76,6 +77,9 @@ Network Rve::network() const {
     set_elastic(f, a.pairs, p, c);
     net.grains[std::size_t(i)].resultant -= force;
     net.grains[std::size_t(j)].resultant += force;
+    const Vector3 turning = c.normal.cross(c.tangential_force);
+    net.grains[std::size_t(i)].torque -= (f.radius[i] - 0.5 * overlap) * turning + c.rolling_moment;
+    net.grains[std::size_t(j)].torque -= (f.radius[j] - 0.5 * overlap) * turning - c.rolling_moment;
     net.contacts.push_back(c);
   }
   return in_id_order(std::move(net), a.state.memory_order);

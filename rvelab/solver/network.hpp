@@ -31,6 +31,7 @@ struct GrainState {
   double radius = 0, mass = 0, inertia = 0;  ///< m, kg, kg m^2
   Vector3 position, velocity, spin;          ///< cell frame; fluctuation velocity and spin, physical (dt > 0)
   Vector3 resultant;                         ///< sum of contact forces, N
+  Vector3 torque = Vector3::Zero();          ///< sum of contact torques, moments of rolling included, N m
 };
 
 struct Network {

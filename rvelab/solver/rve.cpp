@@ -13,6 +13,7 @@ namespace rvelab {
 Rve::Rve(const Specimen& specimen) : impl_(std::make_unique<Impl>()) {
   Impl& m = *impl_;
   open(specimen, m.fixture, m.now);
+  set_softest_answer(m.fixture);
   use_physical_inertia(m.fixture, m.now);
   evaluate_forces(m.fixture, m.now);
   const Balance balance = balance_of(m.fixture, m.now);
@@ -189,7 +190,22 @@ void Rve::set_materials(const std::vector<Material>& materials) {
   }
   m.fixture.mass = std::move(mass);
   m.fixture.inertia = std::move(inertia);
-  set_pair_parameters(m.fixture, m.now.pairs);
+  PairTable& pairs = m.now.pairs;
+  const Buffer before = pairs.kt;
+  set_pair_parameters(m.fixture, pairs);
+  // A tangential spring that has lost its stiffness lets go: what it held is booked.
+  for (const std::int32_t place : pairs.order) {
+    const auto p = std::size_t(place);
+    if (pairs.kt[p] > 0 || !(before[p] > 0)) continue;
+    const double root = m.fixture.law == KernelLaw::hertz_mindlin ? pairs.root_overlap[p] : 1.0;
+    double squared = 0;
+    for (int k = 0; k < m.fixture.tangential_components(); ++k) {
+      squared += pairs.tangential[k][p] * pairs.tangential[k][p];
+      pairs.tangential[k][p] = 0;
+    }
+    if (m.fixture.options.ledger && squared > 0) m.now.state.ledger.law_loss += 0.5 * squared / (before[p] * root);
+  }
+  set_softest_answer(m.fixture);
   evaluate_forces(m.fixture, m.now);
 }
 

@@ -21,11 +21,16 @@ struct Want {
 /// What was done, and in what state it ended.
 struct Report {
   long substeps = 0;
-  double unbalanced_ratio = 0;  ///< mean resultant / max(mean contact force, 1e-3 of the reference)
+  double unbalanced_ratio = 0;  ///< mean |resultant force|, or mean |torque|/r where larger, over max(mean contact
+                                ///< force, 1e-3 of the reference)
   double inertial_number = 0;   ///< dt > 0: sqrt(2 e:e) d sqrt(rho/p); dt = 0: zero
-  double held_error = 0;        ///< mixed targets: largest |residual| over its scale, see MixedTarget
-  bool target_held = true;      ///< mixed targets: held_error <= tolerance within the wait
-  bool cell_thin = false;       ///< a cell height is below four mean diameters
+  double held_error = 0;        ///< mixed targets: largest |residual| over its scale (dt > 0: of its mean over the
+                                ///< increment), see MixedTarget
+  bool target_held = true;      ///< mixed targets: held_error <= tolerance; at dt = 0 within the wait
+  bool quasi_static = true;  ///< dt = 0: the state is an equilibrium as far as was asked for: the unbalanced ratio is
+                             ///< within three times its target and the target is held. A state that flows creeps
+                             ///< beyond that: relaxed, its stress falls by some ten times the ratio
+  bool cell_thin = false;    ///< a cell height is below four mean diameters
 };
 
 struct Response {
@@ -45,14 +50,18 @@ struct MixedTarget {
     Matrix3 stress = Matrix3::Zero();  ///< B, 1/Pa or dimensionless; units of c decide
     double value = 0;                  ///< c
     double scale = 0;                  ///< rows with stress: |residual| <= tolerance * scale counts as held; > 0
+    double missed = 0;  ///< part of `value` that the increment before has left; dt > 0: made good as fast
+                        ///< as the control can, the rest goes evenly over the increment
   };
   std::vector<Row> rows;
   Matrix3 spin = Matrix3::Zero();  ///< skew part of the increment of displacement gradient
   double volume_ratio = 0;         ///< > 0: det(I + dH), met to round-off by an isotropic strain beside the rows' (of
                                    ///< second order in theirs where they prescribe the volume to first order)
-  double tolerance = 0.005;        ///< relative to each row's scale
-  long wait = 200;                 ///< sub-steps that the end of the increment may wait for the stress, or a quarter of
-                                   ///< those that it took where that is more
+  double tolerance = 0.005;        ///< relative to each row's scale; dt > 0: of the mean over the increment, since the
+                                   ///< stress of the moment fluctuates with the collisions
+  long wait = 200;                 ///< dt = 0: sub-steps that the end of the increment may wait for the stress, or a
+                    ///< quarter of those that it took where that is more; dt > 0: no wait, since it would
+                    ///< let time pass without strain
 };
 
 /// Bytes that an RVE holds, without the arrays that its copies share (ids, radii, materials, masses).

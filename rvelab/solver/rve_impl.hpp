@@ -11,6 +11,15 @@ namespace rvelab {
 /// Grains up to which a thread keeps its scratch state for the next increment (some 10 MB).
 constexpr std::size_t largest_kept_scratch = 20'000;
 
+constexpr long control_stretch = 50;  ///< sub-steps between looks at the unbalanced ratio
+
+/// The sub-step at dt > 0.
+struct TimeStep {
+  double longest = 0;  ///< s
+  long stretch = 0;    ///< sub-steps until the next look
+  bool deep = false;   ///< see Collisions
+};
+
 struct Rve::Impl {
   Fixture fixture;
   Assembly now;
@@ -51,13 +60,23 @@ struct Rve::Impl {
   double unbalanced(const Balance& balance) const;  ///< ratio with this specimen's reference force
   /// `held_stress`: what a mixed target holds (Servo::held_stress), Pa; the pace may follow it below the reference.
   void steer_pace(const Balance& balance, double held_stress = 0);
+  /// dt = 0: sets report.quasi_static from what it says of balance and target.
+  void judge(Report& report) const;
+  /// dt > 0: for a velocity gradient of the cell (1/s, cell frame) that holds for the `rest` of the increment (s); the
+  /// next look is after `stretch` sub-steps at the latest. `sums` are not looked at where the step is fixed.
+  TimeStep time_step(const RowSums& sums, const Matrix3& rate, long stretch, double rest) const;
   double initial_pace() const;
   /// Scales of the specimen's own state that it does not bring.
   void set_missing_references(const Balance& balance);
 
   Report load(const Matrix3& displacement_gradient, double dt);
   Report load(const MixedTarget& target, double dt, Matrix3& gradient);
+  Report load_at_rate(const MixedTarget& target, double dt, Matrix3& gradient);
+  Report load_quasi_static(const MixedTarget& target, Matrix3& gradient);
 };
+
+/// What advance is to do for an increment in the cell frame.
+Advance loading_of(const FrameSplit& increment, long steps, double step, bool physical, bool deep);
 
 /// Rotation matrix of a rotation vector (rad), by series: no libm in what touches state.
 Matrix3 rotation_matrix(const Vector3& rotation_vector);

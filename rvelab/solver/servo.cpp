@@ -28,7 +28,7 @@ Vector6 stress_components(const Matrix3& s) {
 
 }  // namespace
 
-Servo::Servo(const MixedTarget& target, int dimension, const Matrix3& stress_at_start)
+Servo::Servo(const MixedTarget& target, int dimension, const Matrix3& stress_at_start, Missed missed)
     : start_stress_(stress_at_start) {
   rows_ = dimension == 2 ? 3 : 6;
   if (int(target.rows.size()) != rows_)
@@ -43,7 +43,7 @@ Servo::Servo(const MixedTarget& target, int dimension, const Matrix3& stress_at_
   Eigen::MatrixXd both(rows_, 12);
   for (int r = 0; r < rows_; ++r) {
     const auto& row = target.rows[std::size_t(r)];
-    if (!row.strain.allFinite() || !row.stress.allFinite() || !std::isfinite(row.value))
+    if (!row.strain.allFinite() || !row.stress.allFinite() || !std::isfinite(row.value + row.missed))
       throw InputError("mixed target: row " + std::to_string(r + 1) + " is not finite");
     const Vector6 stress = strain_components(row.stress);  // B : sigma over six components counts shear twice
     Vector6 strain = strain_components(row.strain);
@@ -51,6 +51,7 @@ Servo::Servo(const MixedTarget& target, int dimension, const Matrix3& stress_at_
     a_.row(r) = strain.transpose();
     b_.row(r) = stress.transpose();
     c_[r] = row.value;
+    if (missed == Missed::at_once) at_once_[r] = row.missed;
     stress_row_[r] = !stress.isZero(0);
     scale_[r] = row.scale;
     if (stress_row_[r] && !(row.scale > 0 && std::isfinite(row.scale)))
@@ -85,16 +86,17 @@ void Servo::set_stiffness(const Matrix6& stiffness, double floor) {
   gain_.setZero();
   for (int k = 0; k < rows_; ++k)
     for (int r = 0; r < rows_; ++r) gain_(rows_ == 3 ? plane_components[k] : k, r) = inverse(k, r) * row_scale[r];
-  total_ = gain_ * c_;
+  total_ = gain_ * (c_ - at_once_);
 }
 
 double Servo::predicted_strain() const { return strain_matrix(total_).norm(); }
 
 Vector6 Servo::residual(double fraction, const Matrix3& strain, const Matrix3& stress) const {
-  return fraction * c_ - a_ * strain_components(strain) - b_ * stress_components(stress - start_stress_);
+  return fraction * (c_ - at_once_) + at_once_ - a_ * strain_components(strain) -
+         b_ * stress_components(stress - start_stress_);
 }
 
-Matrix3 Servo::next_strain(double to, double paced_strain, double full_pace, const Matrix3& strain_so_far,
+Matrix3 Servo::next_strain(double to, double paced_strain, double full_pace, double limit, const Matrix3& strain_so_far,
                            const Matrix3& stress, Matrix3& learnt) {
   const Vector6 r = residual(to, strain_so_far, stress);
   Vector6 error = Vector6::Zero();
@@ -102,7 +104,7 @@ Matrix3 Servo::next_strain(double to, double paced_strain, double full_pace, con
     if (stress_row_[k]) error[k] = r[k];
   const Matrix3 answer = strain_matrix(gain_ * error);
   Matrix3 held = proportional * answer + paced_strain * learnt;
-  const double size = held.norm(), limit = 10 * full_pace;
+  const double size = held.norm();
   if (size > limit)
     held *= limit / size;
   else  // a short last segment says little about the rate: its weight is its share of a full one
@@ -116,7 +118,10 @@ Matrix3 Servo::next_strain(double to, double paced_strain, double full_pace, con
 }
 
 double Servo::held_error(const Matrix3& strain, const Matrix3& stress) const {
-  const Vector6 r = residual(1.0, strain, stress);
+  return largest_error(residual(1.0, strain, stress));
+}
+
+double Servo::largest_error(const Vector6& r) const {
   double largest = 0;
   for (int k = 0; k < rows_; ++k)
     if (stress_row_[k]) largest = std::max(largest, std::abs(r[k]) / scale_[k]);

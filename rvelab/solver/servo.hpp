@@ -13,10 +13,14 @@ namespace rvelab {
 
 class Servo {
  public:
-  /// Checks the target (InputError: wrong number of rows, dependent rows, no scale, not finite).
-  Servo(const MixedTarget& target, int dimension, const Matrix3& stress_at_start);
+  /// What an increment before has missed of a row: made good evenly over this one, or as fast as the gain allows.
+  enum class Missed { evenly, at_once };
 
-  /// Renews the gain; stiffness in the laboratory frame. `floor` (Pa) keeps it regular when nothing touches.
+  /// Checks the target (InputError: wrong number of rows, dependent rows, no scale, not finite).
+  Servo(const MixedTarget& target, int dimension, const Matrix3& stress_at_start, Missed missed);
+
+  /// Renews the gain; stiffness in the laboratory frame, that of the dashpots over a stroke included. `floor` (Pa)
+  /// keeps it regular when nothing touches.
   void set_stiffness(const Matrix6& stiffness, double floor);
 
   /// Norm of the strain that the whole target asks for by the present gain.
@@ -24,10 +28,15 @@ class Servo {
 
   /// Strain of the next segment, symmetric: the target's fraction goes from `from` to `to` (both in [0, 1]).
   /// `paced_strain` is the share of the predicted strain that the segment makes, `full_pace` what a full segment would;
-  /// the answer to stress errors is cut at ten times that. `learnt` is the part of the strain per unit of paced
+  /// the answer to stress errors is cut at `limit`. `learnt` is the part of the strain per unit of paced
   /// strain that the integral has found; it is updated.
-  Matrix3 next_strain(double to, double paced_strain, double full_pace, const Matrix3& strain_so_far,
+  Matrix3 next_strain(double to, double paced_strain, double full_pace, double limit, const Matrix3& strain_so_far,
                       const Matrix3& stress, Matrix3& learnt);
+
+  /// What the rows lack at a fraction of the target.
+  Vector6 residual(double fraction, const Matrix3& strain, const Matrix3& stress) const;
+  /// Largest |residual| / scale over the rows that involve stress.
+  double largest_error(const Vector6& residual) const;
 
   /// Largest |residual| / scale over the rows that involve stress, at the end of the target.
   double held_error(const Matrix3& strain_so_far, const Matrix3& stress) const;
@@ -36,13 +45,11 @@ class Servo {
   double held_stress() const;
 
  private:
-  Vector6 residual(double fraction, const Matrix3& strain, const Matrix3& stress) const;
-
   int rows_;
   bool stress_row_[6] = {};
   double scale_[6] = {};
   Matrix6 a_ = Matrix6::Zero(), b_ = Matrix6::Zero(), gain_ = Matrix6::Zero();
-  Vector6 c_ = Vector6::Zero(), total_ = Vector6::Zero();
+  Vector6 c_ = Vector6::Zero(), at_once_ = Vector6::Zero(), total_ = Vector6::Zero();
   Matrix3 start_stress_;
 };
 

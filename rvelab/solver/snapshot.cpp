@@ -10,7 +10,7 @@ namespace rvelab {
 
 namespace {
 
-constexpr char magic[8] = {'r', 'v', 'e', 's', 'n', 'a', 'p', '2'};
+constexpr char magic[8] = {'r', 'v', 'e', 's', 'n', 'a', 'p', '3'};
 
 /// FNV-1a over the payload: a flipped bit or a cut is noticed before anything is used.
 std::uint64_t checksum(std::span<const std::byte> bytes) {
@@ -109,6 +109,7 @@ void visit(Archive& ar, S& s) {
   for (auto* v : {&solver.skin, &solver.time_step_factor, &solver.fixed_time_step, &solver.target_unbalanced,
                   &solver.min_height, &solver.max_overlap_ratio})
     ar(*v);
+  ar(solver.collision_steps);
   ar(solver.fixed_substeps);
   ar(solver.max_substeps);
   ar(solver.ledger);

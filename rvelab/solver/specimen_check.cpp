@@ -55,6 +55,16 @@ void check_cell(const Specimen& s) {
     refuse("specimen: the rotation of the cell frame must be orthogonal with determinant +1");
 }
 
+/// A spring without stiffness holds no force; one that a file brings would act for ever, and no energy would belong to
+/// it.
+bool holds_force_without_stiffness(const Specimen& s, const Contact& c) {
+  if (c.tangential_force.isZero(0)) return false;
+  const auto i = std::size_t(c.i), j = std::size_t(c.j);
+  const Material &a = s.materials[std::size_t(s.grains.material[i])],
+                 &b = s.materials[std::size_t(s.grains.material[j])];
+  return !(mix(s.contact, s.damping, a, s.grains.radius[i], 1, b, s.grains.radius[j], 1).kt > 0);
+}
+
 void check_contacts(const Specimen& s) {
   const std::size_t n = s.grains.size();
   for (const Contact& c : s.contacts) {
@@ -64,6 +74,11 @@ void check_contacts(const Specimen& s) {
     if (!c.tangential_force.allFinite() || !c.rolling_moment.allFinite() || !std::isfinite(c.last_root_overlap))
       refuse("specimen: contact of grains " + std::to_string(s.grains.id[std::size_t(c.i)]) + " and " +
              std::to_string(s.grains.id[std::size_t(c.j)]) + ": its history is not finite");
+    if (holds_force_without_stiffness(s, c))
+      refuse("specimen: contact of grains " + std::to_string(s.grains.id[std::size_t(c.i)]) + " and " +
+             std::to_string(s.grains.id[std::size_t(c.j)]) + " holds a tangential force of " +
+             in_words(c.tangential_force.norm()) +
+             " N, but its tangential stiffness is 0; give a stiffness > 0, or clear the tangential forces");
   }
 }
 
@@ -78,6 +93,8 @@ void check_options(const SolverOptions& o) {
   expect(o.time_step_factor > 0 && o.time_step_factor < 1, "time_step_factor", o.time_step_factor,
          "above 0 to below 1");
   expect(o.fixed_time_step >= 0, "fixed_time_step_s", o.fixed_time_step, ">= 0 s");
+  expect(o.collision_steps == 0 || (o.collision_steps >= 5 && o.collision_steps <= 100'000), "collision_steps",
+         double(o.collision_steps), "0, or 5 to 100000");
   expect(o.target_unbalanced > 0, "target_unbalanced", o.target_unbalanced, "> 0");
   expect(o.fixed_substeps >= 0, "fixed_substeps", double(o.fixed_substeps), ">= 0");
   expect(o.max_substeps > 0, "max_substeps", double(o.max_substeps), "> 0");
@@ -86,6 +103,11 @@ void check_options(const SolverOptions& o) {
 }
 
 }  // namespace
+
+void clear_forces_without_stiffness(Specimen& s) {
+  for (Contact& c : s.contacts)
+    if (holds_force_without_stiffness(s, c)) c.tangential_force.setZero();
+}
 
 void check_specimen(const Specimen& s) {
   check(s.contact, s.damping, s.materials);

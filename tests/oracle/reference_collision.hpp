@@ -52,7 +52,7 @@ inline Specimen collision_specimen(const nlohmann::json& record) {
     s.damping.dashpot = Dashpot::viscoelastic;
     s.damping.normal_coefficient = model.at("eta_n");
   } else {
-    s.damping.dashpot = Dashpot::restitution;
+    s.damping.dashpot = Dashpot::tsuji;
     s.damping.restitution = model.at("eta_n");
   }
   for (const auto& sphere : record.at("spheres")) {

@@ -1,0 +1,172 @@
+// apply with a mixed target: the stress servo runs inside the sub-steps. At dt = 0 the pace follows the unbalanced
+// ratio and the end of the increment waits for the stress; at dt > 0 the increment takes the time that was given, no
+// more.
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "rvelab/cell/volume.hpp"
+#include "rvelab/error.hpp"
+#include "rvelab/solver/collisions.hpp"
+#include "rvelab/solver/rve_impl.hpp"
+#include "rvelab/solver/servo.hpp"
+
+namespace rvelab {
+
+namespace {
+
+constexpr long servo_stretch = 5;  ///< sub-steps between strokes of the servo
+
+/// What keeps the gain regular in a gas, Pa: a hundredth of what one typical contact per grain would give.
+double soft_stiffness(const Fixture& f, const Assembly& a, const RowSums& sums) {
+  const double spacing = f.dimension() == 2 ? a.cell.lattice(2, 2) : 2 * f.mean_radius;
+  return 0.01 * sums.floor_translation / spacing;
+}
+
+/// Strain and gradient of a mixed target so far, and the way from one stroke to the next.
+struct TargetPath {
+  const MixedTarget& target;
+  int dimension;
+  Matrix3 strain = Matrix3::Zero(), gradient = Matrix3::Zero();
+
+  /// Adds a strain; returns the increment, relative to the present configuration, that brings the gradient there.
+  Matrix3 go_on(const Matrix3& change, double fraction) {
+    const Matrix3 identity = Matrix3::Identity(), from = gradient;
+    strain += change;
+    gradient = strain + fraction * target.spin;
+    if (target.volume_ratio > 0) {
+      gradient = with_volume_ratio(gradient, 1 + fraction * (target.volume_ratio - 1), dimension);
+      strain = 0.5 * (gradient + gradient.transpose());
+    }
+    return (identity + gradient) * (identity + from).inverse() - identity;
+  }
+};
+
+}  // namespace
+
+Report Rve::Impl::load(const MixedTarget& target, double dt, Matrix3& gradient) {
+  return dt > 0 ? load_at_rate(target, dt, gradient) : load_quasi_static(target, gradient);
+}
+
+Report Rve::Impl::load_at_rate(const MixedTarget& target, double dt, Matrix3& gradient) {
+  Report report;
+  const auto stress = [&]() -> Matrix3 { return contact_stress() + reynolds_stress(); };
+  Servo servo(target, fixture.dimension(), stress(), Servo::Missed::at_once);
+  begin_loading(fixture, now, Loading::physical);
+
+  TargetPath path{target, fixture.dimension()};
+  Vector6 mean_residual = Vector6::Zero();
+  double fraction = 0, gain_time = 0, soft = 0, overlap_strain = 0;
+  long since_look = 0;
+  TimeStep time_step;
+  Matrix6 stiffness, viscosity;
+  while (fraction < 1) {
+    if (since_look >= time_step.stretch) {
+      since_look = 0;
+      const Balance balance = checked_balance();
+      const RowSums sums = row_sums(fixture, now);
+      time_step = this->time_step(sums, now.state.last_rate, control_stretch, (1 - fraction) * dt);
+      stiffness = affine_stiffness(fixture, now);
+      viscosity = affine_viscosity(fixture, now);
+      soft = soft_stiffness(fixture, now, sums);
+      overlap_strain = balance.mean_overlap / (2 * fixture.mean_radius);
+      gain_time = 0;
+    }
+    const double count = std::max(1.0, std::ceil((1 - fraction) * dt / time_step.longest * (1 - 1e-9)));
+    if (double(report.substeps) + count > double(fixture.options.max_substeps))
+      throw IncrementFailed("the increment needs more than " + std::to_string(fixture.options.max_substeps) +
+                            " sub-steps (solver.max_substeps)");
+    const long steps = long(std::min(double(servo_stretch), count));
+    const double step = (1 - fraction) * dt / count, time = double(steps) * step;
+    // The dashpots answer the rate at which a stroke strains them: without them in the gain a restitution of 0.1 made
+    // the servo swing by 1 to 5 times the stress that it held.
+    if (std::abs(time - gain_time) > 0.1 * gain_time) {
+      servo.set_stiffness(stiffness + viscosity / time, soft);
+      gain_time = time;
+    }
+    const double wanted = servo.predicted_strain() + target.spin.norm();
+    const double advance_by = double(steps) == count ? 1 - fraction : (1 - fraction) * double(steps) / count;
+    const double full_pace = std::max(wanted * time / dt, 1e-300);
+    const double limit = std::max(10 * full_pace, 0.2 * overlap_strain);
+    fraction = double(steps) == count ? 1.0 : fraction + advance_by;
+    const Matrix3 change = servo.next_strain(fraction, advance_by * wanted, full_pace, limit, path.strain, stress(),
+                                             now.state.servo_strain);
+    const Advanced made =
+        advance(fixture, now,
+                loading_of(split_increment(now.cell, path.go_on(change, fraction)), steps, step, true, time_step.deep));
+    report.substeps += made.steps;
+    since_look += made.step < 0.999 * step ? time_step.stretch : made.steps;
+    mean_residual += advance_by * servo.residual(fraction, path.strain, stress());
+  }
+  gradient = path.gradient;
+  report.unbalanced_ratio = unbalanced(checked_balance());
+  report.held_error = servo.largest_error(mean_residual);
+  report.target_held = report.held_error <= target.tolerance;
+  return report;
+}
+
+Report Rve::Impl::load_quasi_static(const MixedTarget& target, Matrix3& gradient) {
+  Report report;
+  const auto stress = [&]() -> Matrix3 { return contact_stress() + reynolds_stress(); };
+  Servo servo(target, fixture.dimension(), stress(), Servo::Missed::evenly);
+  begin_loading(fixture, now, Loading::quasi_static);
+  if (now.state.strain_per_step == 0) now.state.strain_per_step = initial_pace();
+
+  TargetPath path{target, fixture.dimension()};
+  double fraction = 0, since_control = 0;
+  long waited = 0, longest_wait = target.wait;
+  RowSums sums = row_sums(fixture, now);
+  bool arrived = false;
+  while (true) {
+    if (since_control == 0) servo.set_stiffness(affine_stiffness(fixture, now), soft_stiffness(fixture, now, sums));
+    long steps = servo_stretch;
+    const double wanted = servo.predicted_strain() + target.spin.norm();
+    const double full_pace = double(servo_stretch) * now.state.strain_per_step;
+    double advance_by = wanted > 0 ? std::min(1 - fraction, full_pace / wanted) : 1 - fraction;
+    const bool waiting = fraction >= 1;
+    if (waiting) {
+      // In stiff packings the increment itself takes thousands of sub-steps, and what it stirs up calms as slowly.
+      if (waited == 0) longest_wait = std::max(target.wait, report.substeps / 4);
+      if (!servo.controls_stress() || waited >= longest_wait) break;
+      steps = std::min(steps, longest_wait - waited);
+      advance_by = 0;
+    }
+    fraction = 1 - fraction - advance_by < 1e-12 ? 1.0 : fraction + advance_by;
+    const Matrix3 change = servo.next_strain(fraction, advance_by * wanted, full_pace, 10 * full_pace, path.strain,
+                                             stress(), now.state.servo_strain);
+    advance(fixture, now, loading_of(split_increment(now.cell, path.go_on(change, fraction)), steps, 1, false, false));
+    report.substeps += steps;
+    if (report.substeps > fixture.options.max_substeps)
+      throw IncrementFailed("the increment needs more than " + std::to_string(fixture.options.max_substeps) +
+                            " sub-steps (solver.max_substeps)");
+    if (waiting) waited += steps;
+    since_control += double(steps);
+    if (since_control >= double(control_stretch)) {
+      since_control = 0;
+      const Balance balance = checked_balance();
+      sums = row_sums(fixture, now);
+      if (!waiting) steer_pace(balance, servo.held_stress());
+      if (inertia_outgrown(fixture, sums, now)) rescale_inertia(fixture, sums, now);
+    }
+    // The pace is judged before the wait, whose calm says nothing of it; increments shorter than a stretch have no
+    // other moment.
+    if (fraction >= 1 && !arrived) {
+      arrived = true;
+      if (since_control > 0) steer_pace(checked_balance(), servo.held_stress());
+    }
+    if (fraction >= 1) {
+      report.held_error = servo.held_error(path.strain, stress());
+      if (report.held_error <= target.tolerance) break;
+    }
+  }
+  const Balance balance = checked_balance();
+  report.unbalanced_ratio = unbalanced(balance);
+  if (fixture.options.ledger) rescale_inertia(fixture, row_sums(fixture, now), now);
+  report.held_error = servo.held_error(path.strain, stress());
+  report.target_held = report.held_error <= target.tolerance;
+  judge(report);
+  gradient = path.gradient;
+  return report;
+}
+
+}  // namespace rvelab

@@ -1,0 +1,223 @@
+#include "rvelab/solver/collisions.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "rvelab/solver/gather_table.hpp"
+#include "rvelab/solver/pair_geometry.hpp"
+
+namespace rvelab {
+
+double fifth_root(double x) {
+  if (!(x > 0) || !std::isfinite(x)) return x > 0 ? x : 0;
+  int exponent = 0;
+  double mantissa = std::frexp(x, &exponent);  // exact: x = mantissa 2^exponent
+  const int fifths = exponent / 5;
+  mantissa = std::ldexp(mantissa, exponent - 5 * fifths);  // 2^-5 to 2^4
+  double root = 1;
+  for (int k = 0; k < 12; ++k) {
+    const double squared = root * root;
+    root += 0.2 * (mantissa / (squared * squared) - root);
+  }
+  return std::ldexp(root, fifths);
+}
+
+namespace {
+
+/// Error allowed of the velocity after a collision with a dashpot of rate gamma = c/m*. The force knows the velocity of
+/// half a step before: ln e comes out larger by gamma dt/2 of itself. A dashpot that acts at once, at zero overlap,
+/// does so up to half a step too long or too short at either end: +- gamma dt.
+constexpr double restitution_error = 0.02;
+
+/// What a piece of the pairs shows. Sums in the order of the pairs, so that they are the same on any team.
+struct Findings {
+  double elastic = 0, approach = 0;  ///< J
+  /// Linear: largest kn/m*. Hertz: largest (k/m*)^4 v^2, which omega^10 grows with.
+  double stiffness = 0;
+  double impact = 0;  ///< Hertz: the same of the speed alone, without what a spring already holds
+  /// Dashpots, by the power of the overlap in them: largest c/m* (0), c/sqrt(m* k) (1/4), c/k (1/2).
+  double damping = 0;
+  double closing = 0, closed = 0;  ///< m/s, fastest approach by the cell; m, largest overlap at the end of its rest
+  bool deep = false;
+
+  void add(const Findings& other) {
+    elastic += other.elastic;
+    approach += other.approach;
+    stiffness = std::max(stiffness, other.stiffness);
+    impact = std::max(impact, other.impact);
+    damping = std::max(damping, other.damping);
+    closing = std::max(closing, other.closing);
+    closed = std::max(closed, other.closed);
+    deep = deep || other.deep;
+  }
+};
+
+/// Sub-steps in which the deformation of the cell alone may make the largest overlap: the boundary work of a shock from
+/// a gas is then right to 1 % (in one step it was wrong by half).
+constexpr double increment_steps = 32;
+
+/// Part of the skin that a sub-step may cross in flight, and part of it after which collisions are looked for anew.
+constexpr double flight_per_step = 0.05, flight_per_look = 0.5;
+
+constexpr double pi = 3.14159265358979323846;
+
+double square(double x) { return x * x; }
+
+/// Overlap from zero at which a spring has taken up the energy of a mass m* at speed v, m.
+double reach(bool hertz, double k, double mass, double v) {
+  if (!hertz) return v * std::sqrt(mass / k);
+  return square(fifth_root(1.25 * mass * v * v / k));
+}
+
+/// omega of a Hertz collision: omega^2 = 3/2 (k/m*) sqrt(delta), sqrt(delta) = (5/4 m* v^2 / k)^(1/5). 1/s.
+double hertz_frequency(double stiffness) { return std::sqrt(1.5 * fifth_root(1.25 * stiffness)); }
+
+template <int D>
+Findings pairs_in(const Fixture& f, const Assembly& a, const Outlook& outlook, std::size_t first, std::size_t last) {
+  Findings found;
+  const UpperTriangle rate = upper_triangle(outlook.rate);
+  const double horizon = outlook.horizon;
+  const Branches<D> branch(a);
+  const auto offset = std::size_t(f.velocity_offset());
+  const bool hertz = f.law != KernelLaw::linear;
+  const bool dashpot = f.damping.dashpot != Dashpot::none;
+  const double power = dashpot_power(f.contact.law, f.damping.dashpot);
+  for (std::size_t q = first; q < last; ++q) {
+    const auto p = std::size_t(a.pairs.order[q]), i = std::size_t(a.pairs.i[p]), j = std::size_t(a.pairs.j[p]);
+    const Branch b = branch(p);
+    const double length = b.length(), gap = length - (f.radius[i] + f.radius[j]);
+    const double *vi = a.rows.data() + std::size_t(a.pairs.row_i[p]) + offset,
+                 *vj = a.rows.data() + std::size_t(a.pairs.row_j[p]) + offset;
+    double by_cell = b.x * (rate.xx * b.x + rate.xy * b.y) + b.y * (rate.yy * b.y);
+    double by_grains = b.x * (vj[0] - vi[0]) + b.y * (vj[1] - vi[1]);
+    if constexpr (D == 3) {
+      by_cell += (b.x * rate.xz + b.y * rate.yz + b.z * rate.zz) * b.z;
+      by_grains += b.z * (vj[2] - vi[2]);
+    }
+    const double opening = (by_cell + by_grains) / length, closing = -by_cell / length;
+    if (closing * outlook.rest > gap && closing > 0) {
+      found.closing = std::max(found.closing, closing);
+      found.closed = std::max(found.closed, closing * outlook.rest - gap);
+    }
+    const double travel = -opening * horizon;
+    if (gap >= 0 && !(travel > gap)) continue;
+    const double mass = f.mass[i] * f.mass[j] / (f.mass[i] + f.mass[j]), k = a.pairs.kn[p];
+    found.approach += 0.5 * mass * opening * opening;
+    if (gap < 0) found.elastic += hertz ? 0.4 * k * gap * gap * std::sqrt(-gap) : 0.5 * k * gap * gap;
+    const double ratio = k / mass;
+    // A Hertz collision under way has given part of its speed to the spring.
+    const double speed = opening * opening + (hertz && gap < 0 ? 0.8 * ratio * gap * gap * std::sqrt(-gap) : 0.0);
+    found.stiffness = std::max(found.stiffness, hertz ? square(square(ratio)) * speed : ratio);
+    if (hertz) found.impact = std::max(found.impact, square(square(ratio)) * opening * opening);
+    if (dashpot) {
+      const double over = power == 0 ? mass : (power == 0.5 ? k : std::sqrt(mass * k));
+      found.damping = std::max(found.damping, a.pairs.cn[p] / over);
+    }
+    const double limit = f.overlap_limit * std::min(f.radius[i], f.radius[j]);
+    if (travel - gap > limit)
+      found.deep =
+          found.deep || std::min(travel, reach(hertz, k, mass, std::abs(opening))) + std::max(0.0, -gap) > 0.9 * limit;
+  }
+  return found;
+}
+
+/// What a piece of the grains shows.
+struct Motion {
+  double resultants = 0;  ///< J, sum R^2 / 2k: what they can still turn into motion
+  double kinetic = 0;     ///< J
+  double fastest = 0;     ///< m/s, squared
+};
+
+template <int D>
+Motion grains_in(const Fixture& f, const Assembly& a, const RowSums& sums, std::size_t first, std::size_t last) {
+  constexpr std::size_t row = D == 2 ? 4 : 8;
+  double force[piece_length * D] = {};
+  each_pair_of_grains<D>(a.pairs, first, last, [&](std::size_t g, std::size_t p, bool as_j) {
+    if (a.pairs.i[p] == a.pairs.j[p]) return;
+    double* r = force + D * (g - first);
+    const double* on_j = a.pairs.force.data() + p * row;
+    for (std::size_t c = 0; c < D; ++c) r[c] = as_j ? r[c] + on_j[c] : r[c] - on_j[c];
+  });
+  Motion motion;
+  for (std::size_t g = first; g < last; ++g) {
+    const double* v = a.rows.data() + g * std::size_t(f.row_length()) + std::size_t(f.velocity_offset());
+    double resultant = 0, speed = 0;
+    for (std::size_t c = 0; c < D; ++c) {
+      resultant += square(force[D * (g - first) + c]);
+      speed += square(v[c]);
+    }
+    if (resultant > 0) motion.resultants += resultant / sums.translation[g];  // row sums count kn twice
+    motion.kinetic += 0.5 * f.mass[g] * speed;
+    motion.fastest = std::max(motion.fastest, speed);
+  }
+  return motion;
+}
+
+/// Longest sub-step that meets the restitution, s, of collisions of frequency omega.
+double dashpot_step(const Fixture& f, double damping, double omega) {
+  // At the overlap where omega^2 = 3/2 (k/m*) sqrt(delta).
+  const double power = dashpot_power(f.contact.law, f.damping.dashpot);
+  double gamma = damping;
+  if (power == 0.25) gamma = damping * omega / std::sqrt(1.5);
+  if (power == 0.5) gamma = damping * omega * omega / 1.5;
+  const double zeta = std::min(0.85, 0.5 * gamma / omega);
+  const double half_logarithm = 0.5 * pi * zeta / std::sqrt(1 - zeta * zeta);
+  return restitution_error / (gamma * (half_logarithm + (power == 0 ? 1 : 0)));
+}
+
+/// Square root of the part of the energy that moves, 0 to 1.
+double dynamic_share(double moving, double elastic) { return moving < elastic ? std::sqrt(moving / elastic) : 1; }
+
+template <int D>
+Collisions ahead(const Fixture& f, const Assembly& a, const RowSums* known, bool find_step, const Outlook& outlook) {
+  std::vector<Findings> of_pairs(pieces_in(a.pairs.listed));
+  in_pieces(a.pairs.listed, f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
+    of_pairs[piece] = pairs_in<D>(f, a, outlook, first, last);
+  });
+  Findings all;
+  for (const Findings& piece : of_pairs) all.add(piece);
+  Collisions found;
+  found.step = found.look = std::numeric_limits<double>::infinity();
+  found.deep = all.deep;
+  if (!find_step || f.options.collision_steps == 0) return found;
+
+  RowSums fresh;
+  if (known == nullptr) fresh = row_sums(f, a);
+  std::vector<Motion> of_grains(pieces_in(f.size()));
+  in_pieces(f.size(), f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
+    of_grains[piece] = grains_in<D>(f, a, known == nullptr ? fresh : *known, first, last);
+  });
+  Motion motion;
+  for (const Motion& piece : of_grains) {
+    motion.resultants += piece.resultants;
+    motion.kinetic += piece.kinetic;
+    motion.fastest = std::max(motion.fastest, piece.fastest);
+  }
+
+  const double skin = a.state.list_skin;
+  const double speed = 2 * std::sqrt(motion.fastest) + outlook.rate.norm() * (2 * f.largest_radius + skin);
+  const double flight = dynamic_share(motion.kinetic, all.elastic);
+  if (speed * flight > 0) {
+    found.step = flight_per_step * skin / speed / flight;
+    found.look = flight_per_look * skin / speed / flight;
+  }
+  if (all.closing > 0) found.step = std::min(found.step, all.closed / all.closing / increment_steps);
+  const double share = dynamic_share(all.approach + motion.resultants, all.elastic);
+  const double omega = f.law == KernelLaw::linear ? std::sqrt(all.stiffness) : hertz_frequency(all.stiffness);
+  if (!(omega * share > 0)) return found;
+  found.step = std::min(found.step, pi / double(f.options.collision_steps) / omega / share);
+  // A few fast grains among many at rest: half of the step at which the stiffest of their impacts would be unstable.
+  if (all.impact > 0) found.step = std::min(found.step, 1 / hertz_frequency(all.impact));
+  if (all.damping > 0) found.step = std::min(found.step, dashpot_step(f, all.damping, omega) / (share * share));
+  return found;
+}
+
+}  // namespace
+
+Collisions collisions_ahead(const Fixture& f, const Assembly& a, const RowSums* sums, bool find_step,
+                            const Outlook& outlook) {
+  return f.shape == Shape::disc ? ahead<2>(f, a, sums, find_step, outlook) : ahead<3>(f, a, sums, find_step, outlook);
+}
+
+}  // namespace rvelab
