@@ -64,7 +64,7 @@ void describe_parameters(Archive& archive, Value& specimen) {
 template <class Archive, class Value>
 void describe_state(Archive& archive, Value& state) {
   auto& [has_reference, list_lattice, list_positions, list_travel, list_skin, list_steps, strain_per_step, servo_strain,
-         reference_contact_force, reference_overlap, reference_pressure, quasi_static, last_rate, last_step,
+         servo_rate, reference_contact_force, reference_overlap, reference_pressure, quasi_static, last_rate, last_step,
          mean_velocity, mean_spin, grain_steps, list_builds, memory_order, ledger] = state;
   archive.field("state/has_reference", has_reference, "1");
   archive.field("state/list_lattice_m", list_lattice, "m");
@@ -74,6 +74,7 @@ void describe_state(Archive& archive, Value& state) {
   archive.later_field("state/list_steps", list_steps, "1");
   archive.field("state/strain_per_step", strain_per_step, "1");
   archive.field("state/servo_strain", servo_strain, "1");
+  archive.later_field("state/servo_rate_1_s", servo_rate, "1/s", Matrix3(Matrix3::Zero()));
   archive.field("state/reference_contact_force_N", reference_contact_force, "N");
   archive.field("state/reference_overlap_m", reference_overlap, "m");
   archive.field("state/reference_pressure_Pa", reference_pressure, "Pa");

@@ -39,13 +39,13 @@ Balance Rve::Impl::checked_balance() const {
   return balance;
 }
 
-TimeStep Rve::Impl::time_step(const RowSums& sums, const Matrix3& rate, long stretch, double rest) const {
+TimeStep Rve::Impl::time_step(const RowSums& sums, const Matrix3& rate, long stretch, double dt) const {
   const double fixed = fixture.options.fixed_time_step;
   if (fixed > 0)
-    return {fixed, stretch, collisions_ahead(fixture, now, nullptr, false, {rate, double(stretch) * fixed, rest}).deep};
+    return {fixed, stretch, collisions_ahead(fixture, now, nullptr, false, {rate, double(stretch) * fixed, dt}).deep};
   const double stable = fixture.options.time_step_factor * critical_step(fixture, with_floor(sums, fixture));
-  const double horizon = std::min(double(stretch) * stable, rest);
-  const Collisions ahead = collisions_ahead(fixture, now, &sums, true, {rate, horizon, rest});
+  const double horizon = std::min(double(stretch) * stable, dt);
+  const Collisions ahead = collisions_ahead(fixture, now, &sums, true, {rate, horizon, dt});
   const double longest = std::min(stable, ahead.step);
   const double steps = std::clamp(std::ceil(ahead.look / longest), 10.0, double(stretch));
   return {longest, long(steps), ahead.deep};
@@ -144,7 +144,7 @@ Report Rve::Impl::load(const Matrix3& dh, double dt) {
     TimeStep time_step;
     if (physical) {
       const Matrix3 rate = report.substeps == 0 ? Matrix3((whole.stretch - identity) / dt) : now.state.last_rate;
-      time_step = this->time_step(sums, rate, physical_stretch, left * dt);
+      time_step = this->time_step(sums, rate, physical_stretch, dt);
       const double count = std::ceil(left * dt / time_step.longest * (1 - 1e-9));
       steps_left = long(std::clamp(count, 1.0, 1e15));
       step = left * dt / double(steps_left);

@@ -56,19 +56,18 @@ Report Rve::Impl::load_at_rate(const MixedTarget& target, double dt, Matrix3& gr
 
   TargetPath path{target, fixture.dimension()};
   Vector6 mean_residual = Vector6::Zero();
-  double fraction = 0, gain_time = 0, soft = 0, overlap_strain = 0;
+  double fraction = 0, gain_time = 0, overlap_strain = 0;
   long since_look = 0;
   TimeStep time_step;
-  Matrix6 stiffness, viscosity;
+  Matrix6 viscosity;
   while (fraction < 1) {
     if (since_look >= time_step.stretch) {
       since_look = 0;
       const Balance balance = checked_balance();
       const RowSums sums = row_sums(fixture, now);
       time_step = this->time_step(sums, now.state.last_rate, control_stretch, (1 - fraction) * dt);
-      stiffness = affine_stiffness(fixture, now);
+      servo.set_stiffness(affine_stiffness(fixture, now), soft_stiffness(fixture, now, sums));
       viscosity = affine_viscosity(fixture, now);
-      soft = soft_stiffness(fixture, now, sums);
       overlap_strain = balance.mean_overlap / (2 * fixture.mean_radius);
       gain_time = 0;
     }
@@ -78,10 +77,8 @@ Report Rve::Impl::load_at_rate(const MixedTarget& target, double dt, Matrix3& gr
                             " sub-steps (solver.max_substeps)");
     const long steps = long(std::min(double(servo_stretch), count));
     const double step = (1 - fraction) * dt / count, time = double(steps) * step;
-    // The dashpots answer the rate at which a stroke strains them: without them in the gain a restitution of 0.1 made
-    // the servo swing by 1 to 5 times the stress that it held.
     if (std::abs(time - gain_time) > 0.1 * gain_time) {
-      servo.set_stiffness(stiffness + viscosity / time, soft);
+      servo.set_viscosity(viscosity, time);
       gain_time = time;
     }
     const double wanted = servo.predicted_strain() + target.spin.norm();
@@ -89,8 +86,9 @@ Report Rve::Impl::load_at_rate(const MixedTarget& target, double dt, Matrix3& gr
     const double full_pace = std::max(wanted * time / dt, 1e-300);
     const double limit = std::max(10 * full_pace, 0.2 * overlap_strain);
     fraction = double(steps) == count ? 1.0 : fraction + advance_by;
-    const Matrix3 change = servo.next_strain(fraction, advance_by * wanted, full_pace, limit, path.strain, stress(),
-                                             now.state.servo_strain);
+    const Matrix3 change = servo.next_strain_at_rate(fraction, advance_by * wanted, full_pace, limit, path.strain,
+                                                     stress(), now.state.servo_rate, now.state.servo_strain);
+    now.state.servo_rate = change / time;
     const Advanced made =
         advance(fixture, now,
                 loading_of(split_increment(now.cell, path.go_on(change, fraction)), steps, step, true, time_step.deep));
@@ -132,8 +130,8 @@ Report Rve::Impl::load_quasi_static(const MixedTarget& target, Matrix3& gradient
       advance_by = 0;
     }
     fraction = 1 - fraction - advance_by < 1e-12 ? 1.0 : fraction + advance_by;
-    const Matrix3 change = servo.next_strain(fraction, advance_by * wanted, full_pace, 10 * full_pace, path.strain,
-                                             stress(), now.state.servo_strain);
+    const Matrix3 change =
+        servo.next_strain(fraction, advance_by * wanted, full_pace, path.strain, stress(), now.state.servo_strain);
     advance(fixture, now, loading_of(split_increment(now.cell, path.go_on(change, fraction)), steps, 1, false, false));
     report.substeps += steps;
     if (report.substeps > fixture.options.max_substeps)

@@ -38,7 +38,7 @@ struct Findings {
   double impact = 0;  ///< Hertz: the same of the speed alone, without what a spring already holds
   /// Dashpots, by the power of the overlap in them: largest c/m* (0), c/sqrt(m* k) (1/4), c/k (1/2).
   double damping = 0;
-  double closing = 0, closed = 0;  ///< m/s, fastest approach by the cell; m, largest overlap at the end of its rest
+  double closing = 0, closed = 0;  ///< m/s, fastest approach by the cell; m, largest overlap that the increment makes
   bool deep = false;
 
   void add(const Findings& other) {
@@ -96,9 +96,9 @@ Findings pairs_in(const Fixture& f, const Assembly& a, const Outlook& outlook, s
       by_grains += b.z * (vj[2] - vi[2]);
     }
     const double opening = (by_cell + by_grains) / length, closing = -by_cell / length;
-    if (closing * outlook.rest > gap && closing > 0) {
+    if (closing * outlook.increment > gap && closing > 0) {
       found.closing = std::max(found.closing, closing);
-      found.closed = std::max(found.closed, closing * outlook.rest - gap);
+      found.closed = std::max(found.closed, closing * outlook.increment - gap);
     }
     const double travel = -opening * horizon;
     if (gap >= 0 && !(travel > gap)) continue;

@@ -31,7 +31,7 @@ struct Collisions {
 struct Outlook {
   Matrix3 rate = Matrix3::Zero();  ///< velocity gradient of the cell, cell frame, 1/s
   double horizon = 0;              ///< s, until the next look
-  double rest = 0;                 ///< s, until the end of the increment, for which the rate holds
+  double increment = 0;            ///< s, of the whole increment: what the rate makes of the overlaps in it
 };
 
 /// Looks at all listed pairs that touch, or that meet within the horizon at their present velocities. The velocities

@@ -62,9 +62,9 @@ struct Rve::Impl {
   void steer_pace(const Balance& balance, double held_stress = 0);
   /// dt = 0: sets report.quasi_static from what it says of balance and target.
   void judge(Report& report) const;
-  /// dt > 0: for a velocity gradient of the cell (1/s, cell frame) that holds for the `rest` of the increment (s); the
+  /// dt > 0: in an increment of the time dt (s), at the velocity gradient `rate` of the cell (1/s, cell frame); the
   /// next look is after `stretch` sub-steps at the latest. `sums` are not looked at where the step is fixed.
-  TimeStep time_step(const RowSums& sums, const Matrix3& rate, long stretch, double rest) const;
+  TimeStep time_step(const RowSums& sums, const Matrix3& rate, long stretch, double dt) const;
   double initial_pace() const;
   /// Scales of the specimen's own state that it does not bring.
   void set_missing_references(const Balance& balance);

@@ -67,10 +67,8 @@ Servo::Servo(const MixedTarget& target, int dimension, const Matrix3& stress_at_
     throw InputError("mixed target: the rows depend on each other (or one is empty); give independent constraints");
 }
 
-void Servo::set_stiffness(const Matrix6& stiffness, double floor) {
-  Matrix6 c = stiffness;
-  for (int k = 0; k < 6; ++k) c(k, k) += floor * (k < 3 ? 1.0 : 0.5);
-  const Matrix6 full = a_ + b_ * c;
+Matrix6 Servo::inverse_rows(const Matrix6& stiffness) const {
+  const Matrix6 full = a_ + b_ * stiffness;
   Eigen::MatrixXd m(rows_, rows_);
   for (int r = 0; r < rows_; ++r)
     for (int k = 0; k < rows_; ++k) m(r, k) = full(r, rows_ == 3 ? plane_components[k] : k);
@@ -83,10 +81,22 @@ void Servo::set_stiffness(const Matrix6& stiffness, double floor) {
   if (!lu.isInvertible())
     throw InputError("mixed target: the rows do not determine the strain; give independent constraints");
   const Eigen::MatrixXd inverse = lu.inverse();
-  gain_.setZero();
+  Matrix6 strain = Matrix6::Zero();
   for (int k = 0; k < rows_; ++k)
-    for (int r = 0; r < rows_; ++r) gain_(rows_ == 3 ? plane_components[k] : k, r) = inverse(k, r) * row_scale[r];
+    for (int r = 0; r < rows_; ++r) strain(rows_ == 3 ? plane_components[k] : k, r) = inverse(k, r) * row_scale[r];
+  return strain;
+}
+
+void Servo::set_stiffness(const Matrix6& stiffness, double floor) {
+  stiffness_ = stiffness;
+  for (int k = 0; k < 6; ++k) stiffness_(k, k) += floor * (k < 3 ? 1.0 : 0.5);
+  gain_ = inverse_rows(stiffness_);
   total_ = gain_ * (c_ - at_once_);
+}
+
+void Servo::set_viscosity(const Matrix6& viscosity, double time) {
+  viscosity_ = viscosity;
+  quick_gain_ = inverse_rows(stiffness_ + viscosity / time);
 }
 
 double Servo::predicted_strain() const { return strain_matrix(total_).norm(); }
@@ -96,25 +106,45 @@ Vector6 Servo::residual(double fraction, const Matrix3& strain, const Matrix3& s
          b_ * stress_components(stress - start_stress_);
 }
 
-Matrix3 Servo::next_strain(double to, double paced_strain, double full_pace, double limit, const Matrix3& strain_so_far,
+Vector6 Servo::rows_of(bool stress, const Vector6& rows) const {
+  Vector6 part = Vector6::Zero();
+  for (int k = 0; k < rows_; ++k)
+    if (stress_row_[k] == stress) part[k] = rows[k];
+  return part;
+}
+
+Matrix3 Servo::next_strain(double to, double paced_strain, double full_pace, const Matrix3& strain_so_far,
                            const Matrix3& stress, Matrix3& learnt) {
   const Vector6 r = residual(to, strain_so_far, stress);
-  Vector6 error = Vector6::Zero();
-  for (int k = 0; k < rows_; ++k)
-    if (stress_row_[k]) error[k] = r[k];
-  const Matrix3 answer = strain_matrix(gain_ * error);
+  const Matrix3 answer = strain_matrix(gain_ * rows_of(true, r));
   Matrix3 held = proportional * answer + paced_strain * learnt;
-  const double size = held.norm();
+  const double size = held.norm(), limit = 10 * full_pace;
   if (size > limit)
     held *= limit / size;
   else  // a short last segment says little about the rate: its weight is its share of a full one
     learnt += (integral * paced_strain / (full_pace * full_pace)) * answer;
   // Rows of strain get what `held` leaves of them: `learnt` may stem from a target with other rows.
-  Vector6 prescribed = Vector6::Zero();
-  const Vector6 given = a_ * strain_components(held);
-  for (int k = 0; k < rows_; ++k)
-    if (!stress_row_[k]) prescribed[k] = r[k] - given[k];
-  return strain_matrix(gain_ * prescribed) + held;
+  return strain_matrix(gain_ * rows_of(false, r - a_ * strain_components(held))) + held;
+}
+
+Matrix3 Servo::next_strain_at_rate(double to, double paced_strain, double full_pace, double limit,
+                                   const Matrix3& strain_so_far, const Matrix3& stress, const Matrix3& rate,
+                                   Matrix3& learnt) {
+  const Vector6 r = residual(to, strain_so_far, stress);
+  const Matrix3 answer = strain_matrix(gain_ * rows_of(true, r));
+  // The strain that would leave the stress as it is, were there no dashpots; then what brings half of the error beside
+  // it: K (de - steady) + C (de/time - rate) = half of the error, with the rows of strain met.
+  const Vector6 steady = strain_components(
+      paced_strain * learnt + strain_matrix(gain_ * rows_of(false, r - a_ * strain_components(paced_strain * learnt))));
+  const Vector6 wanted = proportional * r + b_ * (stiffness_ * steady + viscosity_ * strain_components(rate));
+  const Matrix3 strain = strain_matrix(quick_gain_ * (rows_of(false, r) + rows_of(true, wanted)));
+  Matrix3 held = strain - strain_matrix(gain_ * rows_of(false, r));
+  const double size = held.norm();
+  if (size > limit)
+    held *= limit / size;
+  else
+    learnt += (integral * paced_strain / (full_pace * full_pace)) * answer;
+  return strain_matrix(gain_ * rows_of(false, r - a_ * strain_components(held))) + held;
 }
 
 double Servo::held_error(const Matrix3& strain, const Matrix3& stress) const {

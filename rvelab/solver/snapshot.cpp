@@ -131,7 +131,7 @@ void visit(Archive& ar, S& s) {
   auto& t = s.state;
   ar(t.has_reference);
   each(ar, t.list_positions);
-  for (auto* m : {&t.list_lattice, &t.servo_strain, &t.last_rate}) ar(*m);
+  for (auto* m : {&t.list_lattice, &t.servo_strain, &t.servo_rate, &t.last_rate}) ar(*m);
   for (auto* v : {&t.list_travel, &t.list_skin, &t.strain_per_step, &t.reference_contact_force, &t.reference_overlap,
                   &t.reference_pressure, &t.last_step})
     ar(*v);

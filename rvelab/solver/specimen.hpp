@@ -68,6 +68,7 @@ struct SolverState {
   std::int64_t list_steps = 0;              ///< sub-steps made since then
   double strain_per_step = 0;               ///< dt = 0: pace of the sub-step controller; 0: not yet known
   Matrix3 servo_strain = Matrix3::Zero();   ///< mixed targets: strain per unit of paced strain learnt so far, lab frame
+  Matrix3 servo_rate = Matrix3::Zero();     ///< dt > 0: rate of strain of its last stroke, 1/s, lab frame
   double reference_contact_force = 0;       ///< N, mean contact force at the specimen's own p0; 0: set on opening
   double reference_overlap = 0;             ///< m, mean overlap at the specimen's own p0; 0: set on opening
   double reference_pressure = 0;            ///< Pa, the specimen's own p0; 0: set on opening

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "rvelab/error.hpp"
 #include "rvelab/solver/collisions.hpp"
@@ -200,6 +201,7 @@ void begin_loading(const Fixture& f, Assembly& a, Loading loading) {
     a.state.mean_velocity.setZero();
     a.state.last_rate.setZero();
     a.state.mean_spin.setZero();
+    a.state.servo_rate.setZero();
     a.state.last_step = quasi_static ? 1 : 0;
     a.state.quasi_static = quasi_static;
     if (f.damping.dashpot != Dashpot::none) evaluate_forces(f, a);  // no velocity, no dashpot force
@@ -338,7 +340,8 @@ Advanced advance(const Fixture& f, Assembly& a, const Advance& what) {
     if (f.options.ledger) book_step(f, a, lost, sums, step, physical, rate_mid, moment_before);
     if (listed_anew && physical) {
       const double rest = step * double(way.steps - way.done);
-      const Collisions ahead = collisions_ahead(f, a, nullptr, what.follow_collisions, {a.state.last_rate, rest, rest});
+      const Collisions ahead = collisions_ahead(f, a, nullptr, what.follow_collisions,
+                                                {a.state.last_rate, rest, std::numeric_limits<double>::infinity()});
       if (what.follow_collisions) divide_rest(f, ahead, a, way, step);
       if (ahead.deep) look_every = deep_look;
     }

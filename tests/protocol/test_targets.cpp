@@ -28,7 +28,7 @@ TEST_CASE("An increment that does what was asked leaves no row open, and any oth
     stress(1, 0) = 600;
     std::vector<HeldStress> held{{0, 0, -20e3, 20e3}};
     if (dimension == 3) held.push_back({2, 2, -20e3, 20e3});
-    const MixedTarget target = mixed_target(gradient, held, stress, dimension);
+    const MixedTarget target = mixed_target(gradient, held, stress, dimension, false);
     REQUIRE(target.rows.size() == (dimension == 2 ? 3 : 6));
 
     // What the specimen does: lateral strains as it likes, lateral stresses to the target, the rest as prescribed.
@@ -67,7 +67,7 @@ TEST_CASE("An increment that does what was asked leaves no row open, and any oth
 TEST_CASE("A held stress is driven from where it is, so that misses do not add up") {
   Matrix3 stress = Matrix3::Zero();
   stress(0, 0) = -20.1e3;
-  const MixedTarget target = mixed_target(Matrix3::Zero(), {{0, 0, -20e3, 20e3}}, stress, 2);
+  const MixedTarget target = mixed_target(Matrix3::Zero(), {{0, 0, -20e3, 20e3}}, stress, 2, false);
   CHECK(target.rows[0].value == Approx(100));
   CHECK(target.rows[0].strain.isZero(0));
 }
