@@ -85,9 +85,9 @@ struct Pairs {
     all(k, k2, l, l2, m, m2, n, n2, o, o2, p, p2, q, q2, r, r2, s, s2);
   }
   void fields(SolverOptions& a, SolverOptions& b) {
-    auto& [k, l, m, n, o, p, q, r, s] = a;
-    auto& [k2, l2, m2, n2, o2, p2, q2, r2, s2] = b;
-    all(k, k2, l, l2, m, m2, n, n2, o, o2, p, p2, q, q2, r, r2, s, s2);
+    auto& [k, l, m, steps, n, o, p, q, r, s] = a;
+    auto& [k2, l2, m2, steps2, n2, o2, p2, q2, r2, s2] = b;
+    all(k, k2, l, l2, m, m2, steps, steps2, n, n2, o, o2, p, p2, q, q2, r, r2, s, s2);
   }
   void fields(Grains& a, Grains& b) {
     auto& [k, l, m, n, o, p] = a;
@@ -105,8 +105,10 @@ struct Pairs {
     all(k, k2, l, l2, m, m2, n, n2, o, o2, p, p2, q, q2, r, r2);
   }
   void fields(SolverState& a, SolverState& b) {
-    auto& [k, l, positions, m, n, o, p, q, r, s, t, u, v, w, x, y, z, c, order, ledger] = a;
-    auto& [k2, l2, positions2, m2, n2, o2, p2, q2, r2, s2, t2, u2, v2, w2, x2, y2, z2, c2, order2, ledger2] = b;
+    auto& [k, l, positions, m, n, o, p, q, servo_rate, r, s, t, u, v, w, x, y, z, c, order, ledger] = a;
+    auto& [k2, l2, positions2, m2, n2, o2, p2, q2, servo_rate2, r2, s2, t2, u2, v2, w2, x2, y2, z2, c2, order2,
+           ledger2] = b;
+    visit(servo_rate, servo_rate2);
     all(k, k2, l, l2, m, m2, n, n2, o, o2, p, p2, q, q2, r, r2, s, s2, t, t2, u, u2, v, v2, w, w2, x, x2, y, y2);
     all(z, z2, c, c2, positions, positions2, order, order2);
     fields(ledger, ledger2);
@@ -127,8 +129,10 @@ struct Pairs {
     all(strains, strains2, first, first2, turns, turns2, place, place2, visits, visits2, largest, largest2);
   }
   void fields(Record& a, Record& b) {
-    auto& [k, l, m, n, o, p, q, r, s, asked, t, u, v, w, mv, mz, f, bf, cs, rs, ee, ke] = a;
-    auto& [k2, l2, m2, n2, o2, p2, q2, r2, s2, asked2, t2, u2, v2, w2, mv2, mz2, f2, bf2, cs2, rs2, ee2, ke2] = b;
+    auto& [k, l, m, n, o, p, q, r, s, balanced, asked, t, u, v, w, mv, mz, f, bf, cs, rs, ee, ke] = a;
+    auto& [k2, l2, m2, n2, o2, p2, q2, r2, s2, balanced2, asked2, t2, u2, v2, w2, mv2, mz2, f2, bf2, cs2, rs2, ee2, ke2] =
+        b;
+    visit(balanced, balanced2);
     all(k, k2, l, l2, m, m2, n, n2, o, o2, p, p2, q, q2, r, r2, s, s2, t, t2, u, u2, v, v2, w, w2);
     all(mv, mv2, mz, mz2, f, f2, bf, bf2, cs, cs2, rs, rs2, ee, ee2, ke, ke2);
     // What was not asked for is not kept: a record with random bits in all fields has asked for all.
@@ -159,7 +163,7 @@ class RandomFill {
   void put(Shape& value) { value = Shape(bits_() % 2); }
   void put(Law& value) { value = Law(bits_() % 4); }
   void put(Slip& value) { value = Slip(bits_() % 3); }
-  void put(Dashpot& value) { value = Dashpot(bits_() % 4); }
+  void put(Dashpot& value) { value = Dashpot(bits_() % 5); }
   void put(LocalDampingForm& value) { value = LocalDampingForm(bits_() % 2); }
   void put(Vector3& value) {
     for (int k = 0; k < 3; ++k) put(value[k]);
