@@ -31,7 +31,7 @@ Specimen soft(const Cell& cell, int count, int dimension) {
   Specimen s = specimen_of(cell, grains.position, grains.radius);
   s.solver.min_height = 0.5;
   s.solver.max_overlap_ratio = 0.9;
-  return packed(s, pressure_at(dimension, 50));
+  return jammed(s, pressure_at(dimension, 50));
 }
 
 double solid(int count, int dimension) {

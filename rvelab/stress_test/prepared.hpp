@@ -11,6 +11,8 @@ namespace rvelab::stress_test {
 /// Pressure at which linear springs of `stiffness` between grains of radius 1 have the stiffness level kappa:
 /// kn/(p thickness) in 2D (thickness 0.5 m), kn/(p d) in 3D. Pa.
 double pressure_at(int dimension, double kappa);
+/// The same of any specimen of grains of radius near 1, (E*/p)^(2/3) for Hertz contacts.
+double pressure_of_level(const Specimen& specimen, double kappa);
 
 /// Jammed grains of radii within 30 % of 1 at rest under an isotropic pressure (Pa), packed without friction in the
 /// cell of `loose`; the friction of the materials acts from there on, no history yet.
