@@ -31,6 +31,7 @@ void asked_for_tension(const Case&, Verdict&);
 // size.cpp: few grains, many, unlike ones, thin cells
 void few_grains(const Case&, Verdict&);
 void unlike_radii(const Case&, Verdict&);
+void grains_in_pores(const Case&, Verdict&);
 void million_grains(const Case&, Verdict&);
 void thin_cell(const Case&, Verdict&);
 // deformation.cpp: far
@@ -83,7 +84,8 @@ inline const std::vector<Experiment>& experiments() {
       {"statics/frictionless", made_frictionless, {{"friction", 0}, {"shear", 1}, {"strain", 1e-4}, {"increments", 1}}},
       {"statics/tension", asked_for_tension, {{"dimension", 2}, {"critical_steps", 0}}},
       {"size/few", few_grains, {{"dimension", 2}, {"grains", 3}, {"strain", 1e-3}, {"increments", 20}}},
-      {"size/contrast", unlike_radii, {{"dimension", 2}, {"ratio", 10}, {"large", 4}, {"small", 400}}},
+      {"size/contrast", unlike_radii, {{"dimension", 2}, {"ratio", 10}, {"large", 4}, {"small", 400}, {"solid_fraction", 0.6}}},
+      {"size/pores", grains_in_pores, {{"side", 8}, {"ratio", 50}}},
       {"size/million", million_grains, {{"side", 100}}},
       {"size/thin", thin_cell, {{"dimension", 2}, {"grains", 4}, {"copies", 4}}},
       {"deformation/shear", sheared_far, {{"dimension", 2}, {"grains", 4}, {"gamma", 100}, {"increment", 0.1}, {"substeps", 0}}},

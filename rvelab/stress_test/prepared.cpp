@@ -22,29 +22,36 @@ double pressure_of_level(const Specimen& s, double kappa) {
 
 namespace {
 
-/// Compresses a gas quickly until it carries about `pressure`. How it gets there is of no matter: it comes to rest
-/// later.
+/// Compresses a gas quickly until it carries `pressure` at rest. How it gets there is of no matter.
 void bring_together(Rve& rve, double pressure) {
   const int d = rve.cell().dimension;
-  for (double p = 0; p < pressure; p = mean_pressure(rve.stress(), d)) {
-    rve.apply(isotropic(d, p > 0.1 * pressure ? -5e-4 : -2e-3), 0);
-    if (mean_pressure(rve.stress(), d) > pressure) rve.relax(1e-2, 2'000);  // a moment's crowding is no pressure
+  const auto p = [&] { return mean_pressure(rve.stress(), d); };
+  double step = 2e-3;
+  while (p() < pressure) {
+    while (p() < pressure) {
+      rve.apply(isotropic(d, -step), 0);
+      if (p() > 0.1 * pressure) step = 5e-4;
+    }
+    rve.relax(1e-4, 20'000);  // a moment's crowding is no pressure
   }
-  rve.relax(1e-4, 50'000);
 }
 
-/// Changes the volume until the pressure is right within 1 %, by a secant: beyond jamming it rises about straight.
-void bring_to(Rve& rve, double pressure, double stiffness_of_volume) {
+/// Changes the volume until the pressure is right within 1 %. Beyond jamming p^power rises about straight with strain
+/// (power 1 for linear springs, 2/3 for Hertz contacts), by `slope`, which is found as one goes.
+void bring_to(Rve& rve, double pressure, double power, double slope) {
   const int d = rve.cell().dimension;
-  double p = mean_pressure(rve.stress(), d), k = stiffness_of_volume;
-  for (int round = 0; round < 100 && std::abs(p / pressure - 1) > 0.01; ++round) {
-    const double aim = std::clamp(pressure, 0.1 * p, 10 * std::max(p, 0.1 * pressure));
-    const double strain = std::clamp((p - aim) / k, -1e-3, 1e-2);
+  const double usual_slope = slope;
+  double p = mean_pressure(rve.stress(), d), lost = 1;
+  for (int round = 0; round < 200 && std::abs(p / pressure - 1) > 0.01; ++round) {
+    const double aim = std::max(pressure, 0.1 * p);
+    const double strain = lost * (std::pow(p, power) - std::pow(aim, power)) / slope;
     rve.apply(isotropic(d, strain), 0);
     rve.relax(1e-5, 50'000);
-    const double now = mean_pressure(rve.stress(), d), found = (p - now) / strain;
-    k = found > 0 && now > 0 ? std::clamp(found, 0.2 * k, 5 * k) : 2 * k;
-    p = now;
+    const double now = std::max(0.0, mean_pressure(rve.stress(), d));
+    lost = now > 1e-3 * pressure ? 1 : 2 * lost;  // out of contact: ever longer steps back
+    const double found = (std::pow(p, power) - std::pow(now, power)) / strain;
+    if (lost == 1) slope = std::clamp(found, 0.05 * usual_slope, 2 * usual_slope);
+    p = lost == 1 ? now : 0;
   }
   if (!(std::abs(p / pressure - 1) <= 0.01)) throw Error("the packing did not come to its pressure");
 }
@@ -57,10 +64,9 @@ Specimen jammed(const Specimen& loose, double pressure) {
   s.solver.fixed_substeps = 100;
   Rve rve(s);
   // Grains are pressed together at a moderate stiffness level first: at a high one any increment is too large.
-  const double contact_stiffness = pressure_of_level(loose, 1.0),
-               at_first = std::max(pressure, pressure_of_level(loose, 1e3));
-  bring_together(rve, at_first);
-  bring_to(rve, pressure, contact_stiffness);
+  const double power = loose.contact.law == Law::linear_given ? 1 : 2.0 / 3;
+  bring_together(rve, std::max(pressure, pressure_of_level(loose, 1e3)));
+  bring_to(rve, pressure, power, std::pow(pressure_of_level(loose, 1), power));
   rve.relax(1e-8, 50'000);
   rve.zero_velocities();
   rve.set_materials(loose.materials);

@@ -62,10 +62,10 @@ void shock_compression(const Case& asked, Verdict& verdict) {
   Specimen s = usual(d, asked("hertz") != 0, 0.5);
   s.solver.ledger = true;
   Tested tested(s, verdict);
-  tested.apply(isotropic(d, asked("strain")), 0);  // a gas
   // The speed at which the sides of a grain come together over that of sound in the packing, about r omega_max.
-  const double rate = asked("mach") / tested.rve().critical_time_step();
-  tested.apply(Matrix3::Zero(), 1e-9 * tested.rve().critical_time_step());  // physical masses from here on
+  const double critical = tested.rve().critical_time_step(), rate = asked("mach") / critical;
+  tested.apply(isotropic(d, asked("strain")), 0);  // a gas
+  tested.apply(Matrix3::Zero(), 1e-9 * critical);  // physical masses from here on
   EnergyBalance energy(tested.rve());
   const int increments = 20;
   double size = 1;

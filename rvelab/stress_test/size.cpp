@@ -66,7 +66,7 @@ void unlike_radii(const Case& asked, Verdict& verdict) {
   const int d = int(asked("dimension"));
   std::vector<double> radii(std::size_t(asked("large")), 1.0);
   radii.insert(radii.end(), std::size_t(asked("small")), 1 / asked("ratio"));
-  Specimen loose = gas(d, radii, d == 2 ? 0.6 : 0.35, 4);
+  Specimen loose = gas(d, radii, asked("solid_fraction"), 4);
   loose.solver.max_overlap_ratio = 0.5;
   const Specimen s = jammed(loose, pressure_at(d, 1e3));
   const double p = mean_pressure(Rve(s).stress(), d);
@@ -78,6 +78,42 @@ void unlike_radii(const Case& asked, Verdict& verdict) {
   path.resolved = 20'000;
   verdict.law("the packing carries a pressure", p > 0);
   compare_with_resolved(s, path, asked.tolerance, verdict);
+}
+
+void grains_in_pores(const Case& asked, Verdict& verdict) {
+  // A crystal of large discs with 19 small ones loose in each of its pores: they carry nothing and must cost little.
+  const int side = int(asked("side"));
+  const double spacing = 1.95, row = std::sqrt(3.0) / 2 * spacing, small = 1 / asked("ratio");
+  const Specimen frame = triangular(2 * side, side, spacing);
+  Specimen s = frame;
+  const auto add = [&](const Vector3& place) {
+    s.grains.id.push_back(std::int64_t(s.grains.id.size()));
+    s.grains.radius.push_back(small);
+    s.grains.material.push_back(0);
+    s.grains.position.push_back(place);
+    s.grains.velocity.push_back(Vector3::Zero());
+    s.grains.spin.push_back(Vector3::Zero());
+  };
+  for (const Vector3& corner : frame.grains.position)
+    for (const double pore : {row * 2 / 3, -row * 2 / 3})  // above and below a disc
+      for (int a = -2; a <= 2; ++a)
+        for (int b = -2; b <= 2; ++b)
+          if (std::abs(a + b) <= 2) add(corner + Vector3(2.2 * small * (a + 0.5 * b), pore + 1.9 * small * b, 0));
+  Tested tested(s, verdict);
+  Specimen moved = frame;
+  for (int k = 0; k < 3; ++k) {
+    const Matrix3 increment = isotropic(2, -1e-4) + 1e-4 * shear_direction(2);
+    const Response response = tested.apply(increment, 0);
+    // A Bravais crystal deforms as its cell does.
+    const Matrix3 f = Matrix3::Identity() + increment;
+    moved.cell.lattice = (f * moved.cell.lattice).eval();
+    for (Vector3& x : moved.grains.position) x = f * x;
+    const Matrix3 expected = stress_by_hand(moved, stiffness, 1);
+    verdict.law("stress of the crystal", largest(response.stress - expected), asked.tolerance * largest(expected));
+  }
+  verdict.law("the grains in the pores carry nothing",
+              tested.rve().network().contacts.size() == 3 * frame.grains.size());
+  tested.check_laws();
 }
 
 void million_grains(const Case& asked, Verdict& verdict) {
