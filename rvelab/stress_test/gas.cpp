@@ -90,7 +90,9 @@ HardGas asked_gas(const Case& asked, double solid_fraction) {
 
 void gas_keeps_energy(const Case& asked, Verdict& verdict) {
   const HardGas hard = asked_gas(asked, int(asked("dimension")) == 2 ? 0.4 : 0.25);
-  Tested tested(specimen_of(hard, asked("hertz") != 0, 0.02), verdict);
+  Specimen s = specimen_of(hard, asked("hertz") != 0, 0.02);
+  s.solver.time_step_factor = asked("time_step_factor");
+  Tested tested(s, verdict);
   tested.rve().set_velocities(thermal_velocities(hard), std::vector<Vector3>(hard.grains, Vector3::Zero()));
   const double start = energy_in(tested.rve());
   const double time = asked("collisions") / hard.collision_rate(1);
@@ -109,6 +111,7 @@ void gas_cools(const Case& asked, Verdict& verdict) {
   const bool hertz = asked("hertz") != 0;
   // Contacts that last 0.3 % of the time between them change the collision rate by about as much.
   Specimen s = specimen_of(hard, hertz, 0.003);
+  s.solver.time_step_factor = asked("time_step_factor");
   Rve mixing(s);
   mixing.set_velocities(thermal_velocities(hard), std::vector<Vector3>(hard.grains, Vector3::Zero()));
   mixing.apply(Matrix3::Zero(), 8 / hard.collision_rate(1));

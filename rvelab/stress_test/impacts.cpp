@@ -70,12 +70,17 @@ double rebound(Specimen s, double speed, double phase, Verdict& verdict) {
 }
 
 /// Stiffness such that grains of 100 m/s overlap by a twentieth of their radius.
-Specimen stiff_pair(int dimension, bool hertz) { return pair_of_grains(dimension, hertz, hertz ? 6e11 : 1e11); }
+Specimen stiff_pair(const Case& asked) {
+  const bool hertz = asked("hertz") != 0;
+  Specimen s = pair_of_grains(int(asked("dimension")), hertz, hertz ? 6e11 : 1e11);
+  s.solver.time_step_factor = asked("time_step_factor");
+  return s;
+}
 
 }  // namespace
 
 void elastic_rebound(const Case& asked, Verdict& verdict) {
-  const Specimen s = stiff_pair(int(asked("dimension")), asked("hertz") != 0);
+  const Specimen s = stiff_pair(asked);
   const int phases = int(asked("phases"));
   for (int k = 0; k < phases; ++k)
     verdict.law("rebound without damping, less one",
@@ -83,7 +88,7 @@ void elastic_rebound(const Case& asked, Verdict& verdict) {
 }
 
 void restitution(const Case& asked, Verdict& verdict) {
-  Specimen s = stiff_pair(int(asked("dimension")), asked("hertz") != 0);
+  Specimen s = stiff_pair(asked);
   const double e = asked("restitution");
   s.damping.dashpot = Dashpot::restitution;
   s.damping.restitution = e;
@@ -103,6 +108,7 @@ void restitution_beside_contact(const Case& asked, Verdict& verdict) {
     Specimen s = specimen_of(cell_of(3, 20, 20, 20), {{-2, 0, 0}, {2, 0, 0}, {-2, 6, 0}, {2, 6, 0}}, {1, 1, 1, 1});
     const double half_mass = 0.5 * mass_of(s);
     s.contact.law = hertz ? Law::hertz_given : Law::linear_given;
+    s.solver.time_step_factor = asked("time_step_factor");
     s.materials[0].normal_stiffness = constant_for(hertz, 0.02, half_mass, 2 * speed);
     const Impact impact = impact_of(hertz, s.materials[0].normal_stiffness, half_mass, 2 * speed);
     if (e < 1) {
@@ -130,6 +136,7 @@ void impact_too_hard(const Case& asked, Verdict& verdict) {
     Specimen s = pair_of_grains(3, hertz, 1e7);
     const double overlap = asked("overlap_over_limit") * s.solver.max_overlap_ratio;
     s.contact.law = hertz ? Law::hertz_given : Law::linear_given;
+    s.solver.time_step_factor = asked("time_step_factor");
     s.materials[0].normal_stiffness = constant_for(hertz, overlap, 0.5 * mass_of(s), 2 * speed);
     const double gap = 0.5 + 0.02 * k;
     s.grains.position = {Vector3(-1 - 0.5 * gap, 0, 0), Vector3(1 + 0.5 * gap, 0, 0)};

@@ -176,8 +176,10 @@ void no_increment(const Case& asked, Verdict& verdict) {
     case 7:
       return require("an increment out of the plane", d == 2 ? entry(0, 2, 1e-3) : entry(0, 0, -2), dt);
     case 8: {
-      MixedTarget target;  // three rows are needed in 2D, six in 3D
-      target.rows = {{Matrix3::Zero(), entry(0, 0, 1), not_a_number, 1}};
+      MixedTarget target;
+      for (int i = 0; i < d; ++i)
+        for (int k = i; k < d; ++k) target.rows.push_back({entry(i, k, 0.5) + entry(k, i, 0.5), Matrix3::Zero(), 0, 0});
+      target.rows[0] = {Matrix3::Zero(), entry(0, 0, 1), not_a_number, 1};
       verdict.refusal("a target that is no number", refused(rve, [&](Rve& r) { r.apply(target, dt); }));
       break;
     }

@@ -41,10 +41,11 @@ void sheared_at_rate(const Case& asked, Verdict& verdict) {
     m.rolling_friction = asked("rolling_stiffness") > 0 ? 0.1 : 0;
   }
   s.contact.rolling = asked("rolling_stiffness") > 0;
+  s.solver.time_step_factor = asked("time_step_factor");
   Tested tested(with_damping(s, asked), verdict);
   const double rate = rate_of(asked("inertial_number"), tested.rve());
   const int increments = 50;
-  const double dt = asked("substeps") * 0.7 * tested.rve().critical_time_step() / increments;
+  const double dt = asked("default_steps") * 0.7 * tested.rve().critical_time_step() / increments;
   EnergyBalance energy(tested.rve());
   for (int k = 0; k < increments; ++k) {
     tested.apply(rate * dt * shear_direction(d), dt);
@@ -61,6 +62,7 @@ void shock_compression(const Case& asked, Verdict& verdict) {
   const int d = int(asked("dimension"));
   Specimen s = usual(d, asked("hertz") != 0, 0.5);
   s.solver.ledger = true;
+  s.solver.time_step_factor = asked("time_step_factor");
   Tested tested(s, verdict);
   // The speed at which the sides of a grain come together over that of sound in the packing, about r omega_max.
   const double critical = tested.rve().critical_time_step(), rate = asked("mach") / critical;

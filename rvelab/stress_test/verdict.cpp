@@ -21,7 +21,7 @@ const char* name(Outcome outcome) {
 bool names_remedy(const std::string& message) {
   // The words in which the library says what to do, or what would do.
   for (const char* word : {"solver.", "smaller", "must be", "allowed", "allows", "use ", "take ", "give ", "apply ",
-                           "compress less", "start ", "correct ", "set ", "choose ", "leave "})
+                           "compress less", "start ", "correct ", "set ", "choose ", "leave ", "needs "})
     if (message.find(word) != std::string::npos) return true;
   return false;
 }
