@@ -109,8 +109,8 @@ void gas_keeps_energy(const Case& asked, Verdict& verdict) {
 void gas_cools(const Case& asked, Verdict& verdict) {
   const HardGas hard = asked_gas(asked, asked("solid_fraction"));
   const bool hertz = asked("hertz") != 0;
-  // Contacts that last 0.3 % of the time between them change the collision rate by about as much.
-  Specimen s = specimen_of(hard, hertz, 0.003);
+  // Haff's law is that of hard grains: contacts that last 0.3 % of the time between them change the rate by as much.
+  Specimen s = specimen_of(hard, hertz, asked("contact_time"));
   s.solver.time_step_factor = asked("time_step_factor");
   Rve mixing(s);
   mixing.set_velocities(thermal_velocities(hard), std::vector<Vector3>(hard.grains, Vector3::Zero()));

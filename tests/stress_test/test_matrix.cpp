@@ -92,7 +92,7 @@ TEST_CASE("a bad matrix file is refused with its lines") {
     std::string text = good_case;
     return mistakes(text.replace(text.find(from), from.size(), to));
   };
-  CHECK_THAT(with("self/right", "self/write"), Contains("m.toml:3: unknown experiment") && Contains("self/right"));
+  CHECK_THAT(with("self/right", "self/ritgh"), Contains("m.toml:3: unknown experiment") && Contains("self/right"));
   CHECK_THAT(with("seconds = 5", "seconds = 500"), Contains("m.toml:8: case.seconds = 500 is out of range"));
   CHECK_THAT(with("tolerance = 1", "tolerance = \"1\""), Contains("m.toml:7: case.tolerance"));
   CHECK_THAT(with("source = \"definition\"\n", ""), Contains("m.toml:1: case.source is missing"));
