@@ -45,9 +45,9 @@ struct HardGas {
 
 /// Frictionless, at random places, with Gaussian velocities of mean zero and temperature 1; contacts last `duration`
 /// times the mean time between collisions of a grain.
-Specimen specimen_of(const HardGas& hard, bool hertz, double duration) {
+Specimen specimen_of(const HardGas& hard, bool hertz, double duration, unsigned seed) {
   const int d = hard.dimension;
-  Specimen s = gas(d, std::vector<double>(hard.grains, 1.0), hard.solid_fraction, 7);
+  Specimen s = gas(d, std::vector<double>(hard.grains, 1.0), hard.solid_fraction, seed);
   const double half_mass = 0.5 * s.materials[0].density * grain_volume(s.shape, 1, s.cell.lattice(2, 2));
   const double speed = 2, contact_time = duration / hard.collision_rate(1);  // a typical speed of approach, 2 sqrt(T)
   const double overlap = hertz ? contact_time * speed / 2.943275 : contact_time * speed / pi;
@@ -57,8 +57,8 @@ Specimen specimen_of(const HardGas& hard, bool hertz, double duration) {
   return s;
 }
 
-std::vector<Vector3> thermal_velocities(const HardGas& hard) {
-  Random random(11);
+std::vector<Vector3> thermal_velocities(const HardGas& hard, unsigned seed) {
+  Random random(100 + seed);
   std::vector<Vector3> velocity(hard.grains, Vector3::Zero());
   Vector3 mean = Vector3::Zero();
   for (Vector3& v : velocity) {
@@ -90,10 +90,10 @@ HardGas asked_gas(const Case& asked, double solid_fraction) {
 
 void gas_keeps_energy(const Case& asked, Verdict& verdict) {
   const HardGas hard = asked_gas(asked, int(asked("dimension")) == 2 ? 0.4 : 0.25);
-  Specimen s = specimen_of(hard, asked("hertz") != 0, 0.02);
+  Specimen s = specimen_of(hard, asked("hertz") != 0, 0.02, 7);
   s.solver.time_step_factor = asked("time_step_factor");
   Tested tested(s, verdict);
-  tested.rve().set_velocities(thermal_velocities(hard), std::vector<Vector3>(hard.grains, Vector3::Zero()));
+  tested.rve().set_velocities(thermal_velocities(hard, 7), std::vector<Vector3>(hard.grains, Vector3::Zero()));
   const double start = energy_in(tested.rve());
   const double time = asked("collisions") / hard.collision_rate(1);
   for (int k = 0; k < 20; ++k) {
@@ -106,14 +106,15 @@ void gas_keeps_energy(const Case& asked, Verdict& verdict) {
               1e-10);
 }
 
-void gas_cools(const Case& asked, Verdict& verdict) {
-  const HardGas hard = asked_gas(asked, asked("solid_fraction"));
-  const bool hertz = asked("hertz") != 0;
-  // Haff's law is that of hard grains: contacts that last 0.3 % of the time between them change the rate by as much.
-  Specimen s = specimen_of(hard, hertz, asked("contact_time"));
+namespace {
+
+/// Rate of cooling of one gas over Haff's. Kept small: in cells wider than some dozen free paths, vortices grow that
+/// cool no more (Goldhirsch and Zanetti 1993).
+double cooling_rate(const HardGas& hard, const Case& asked, unsigned seed, Verdict& verdict) {
+  Specimen s = specimen_of(hard, asked("hertz") != 0, asked("contact_time"), seed);
   s.solver.time_step_factor = asked("time_step_factor");
   Rve mixing(s);
-  mixing.set_velocities(thermal_velocities(hard), std::vector<Vector3>(hard.grains, Vector3::Zero()));
+  mixing.set_velocities(thermal_velocities(hard, seed), std::vector<Vector3>(hard.grains, Vector3::Zero()));
   mixing.apply(Matrix3::Zero(), 8 / hard.collision_rate(1));
   s = mixing.specimen();
   const double e = asked("restitution");
@@ -133,8 +134,21 @@ void gas_cools(const Case& asked, Verdict& verdict) {
     squares += t * t;
   }
   tested.check_laws();
-  verdict.law("rate of cooling over Haff's, less one", std::abs(moment / squares - 1), asked.tolerance);
   verdict.law("energy closes, of what was lost", energy.residual(), 1e-2);
+  return moment / squares;
+}
+
+}  // namespace
+
+void gas_cools(const Case& asked, Verdict& verdict) {
+  // Haff's law is that of hard grains: contacts that last 0.3 % of the time between them lower the rate by about
+  // 0.8 %.
+  // Several small gases, since one scatters by a few percent.
+  const HardGas hard = asked_gas(asked, asked("solid_fraction"));
+  const unsigned gases = unsigned(asked("gases"));
+  double mean = 0;
+  for (unsigned k = 0; k < gases; ++k) mean += cooling_rate(hard, asked, 7 + k, verdict) / gases;
+  verdict.law("rate of cooling over Haff's, less one", std::abs(mean - 1), asked.tolerance);
 }
 
 }  // namespace rvelab::stress_test
