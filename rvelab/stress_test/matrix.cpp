@@ -17,7 +17,9 @@ constexpr double most_seconds = 60, most_memory_MiB = 16'384;
 /// One [[case]] while it is read.
 class CaseReader {
  public:
-  CaseReader(const toml::table& table, std::vector<KeyError>& errors) : table_(table), errors_(errors) {}
+  /// `limits`: [limits] of the file, for what the case does not say.
+  CaseReader(const toml::table& table, const toml::table& limits, std::vector<KeyError>& errors)
+      : table_(table), limits_(limits), errors_(errors) {}
 
   std::vector<Case> cases() {
     one_.name = text("name");
@@ -59,6 +61,7 @@ class CaseReader {
   }
   double number(const char* key) {
     const toml::node* node = table_.get(key);
+    if (node == nullptr) node = limits_.get(key);
     if (node == nullptr) return missing(key), 0;
     if (!node->is_number()) mistake(*node, std::string("case.") + key + " is no number; allowed: a number > 0");
     return node->value_or(0.0);
@@ -72,7 +75,7 @@ class CaseReader {
 
   void expect_limits() {
     const auto expect = [&](const char* key, double value, double most) {
-      const toml::node* node = table_.get(key);
+      const toml::node* node = table_.get(key) != nullptr ? table_.get(key) : limits_.get(key);
       if (node != nullptr && !(value > 0 && value <= most))
         mistake(*node, std::string("case.") + key + " = " + written_number(value) +
                            " is out of range; allowed: above 0 to " + written_number(most));
@@ -191,7 +194,7 @@ class CaseReader {
     }
   }
 
-  const toml::table& table_;
+  const toml::table &table_, &limits_;
   std::vector<KeyError>& errors_;
   const Experiment* experiment_ = nullptr;
   Case one_;
@@ -221,15 +224,23 @@ std::vector<Case> read_matrix(const std::string& path) {
   std::vector<KeyError> errors;
   std::vector<Case> cases;
   std::set<std::string> names;
+  static const toml::table no_limits;
+  const toml::table* limits = file.contains("limits") ? file.get("limits")->as_table() : &no_limits;
+  if (limits == nullptr) limits = &no_limits;
+  for (const auto& [key, value] : *limits)
+    if (key.str() != "seconds" && key.str() != "memory_MiB")
+      errors.push_back(key_error(key.source(), "unknown key limits." + std::string(key.str()) +
+                                                   "; allowed: seconds, memory_MiB; correct the name or remove it"));
   for (const auto& [key, value] : file) {
+    if (key.str() == "limits" && value.is_table()) continue;
     const toml::array* list = value.as_array();
     if (key.str() != "case" || list == nullptr || !list->is_array_of_tables()) {
       errors.push_back(key_error(key.source(), "unknown key " + std::string(key.str()) +
-                                                   "; allowed: [[case]] tables; correct the name or remove it"));
+                                                   "; allowed: [limits], [[case]]; correct the name or remove it"));
       continue;
     }
     for (const toml::node& table : *list) {
-      for (Case& one : CaseReader(*table.as_table(), errors).cases()) {
+      for (Case& one : CaseReader(*table.as_table(), *limits, errors).cases()) {
         if (!names.insert(one.name).second)
           errors.push_back({long(table.source().begin.line), "case \"" + one.name + "\" is there twice; rename one"});
         cases.push_back(std::move(one));

@@ -67,6 +67,7 @@ TEST_CASE("a case with varied parameters is one for each combination") {
   CHECK(cases[3]("value") == 1);
   for (const Case& one : cases) CHECK(one.quick == (one("value") == -2));
   CHECK(read(good_case)[0]("value") == 0);
+  CHECK(read(std::string("[limits]\nseconds = 3\nmemory_MiB = 9\n") + good_case)[0].seconds == 5);
   for (const auto& [value, text] : std::map<double, std::string>{{1e-9, "1e-9"},
                                                                  {1.5e300, "1.5e300"},
                                                                  {5e-324, "4.940656458e-324"},
@@ -80,6 +81,8 @@ TEST_CASE("a bad matrix file is refused with its lines") {
   CHECK_THAT(mistakes("[[case]\n"), Contains("m.toml:1: ") && Contains("is not TOML"));
   CHECK_THAT(mistakes(""), Contains("no [[case]]"));
   CHECK_THAT(mistakes("[[cases]]\n"), Contains("m.toml:1: unknown key cases"));
+  CHECK_THAT(mistakes(std::string("[limits]\nsecond = 3\n") + good_case),
+             Contains("m.toml:2: unknown key limits.second;"));
   CHECK_THAT(mistakes(std::string(good_case) + "tolerence = 2\n"),
              Contains("m.toml:10: unknown key case.tolerence; the nearest is tolerance"));
   CHECK_THAT(mistakes(std::string(good_case) + "with = {valeu = 2}\n"),
