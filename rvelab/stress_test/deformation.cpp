@@ -129,7 +129,7 @@ void gas_and_back(const Case& asked, Verdict& verdict) {
 
 void one_large_increment(const Case& asked, Verdict& verdict) {
   const int d = int(asked("dimension"));
-  Tested tested(usual(d, false, 0), verdict);
+  Tested tested(jammed_linear(d, int(asked("grains")), asked("kappa"), 0.5, 0), verdict);
   const Matrix3 increment =
       asked("shear") * shear_direction(d) + isotropic(d, asked("expansion")) - isotropic(d, asked("compression"));
   if (asked("compression") > 0) {

@@ -128,7 +128,7 @@ inline const std::vector<Experiment>& experiments() {
        {{"dimension", 2}, {"kappa", 1e3}, {"expansion", 0.3}, {"increments", 50}}},
       {"deformation/one_increment",
        one_large_increment,
-       {{"dimension", 2}, {"kappa", 100}, {"compression", 0}, {"shear", 0.5}, {"expansion", 0}}},
+       {{"dimension", 2}, {"grains", 64}, {"kappa", 100}, {"compression", 0}, {"shear", 0.5}, {"expansion", 0}}},
       {"increments/rotations", rotated_often, {{"dimension", 3}, {"rotations", 1e5}}},
       {"increments/small", many_small_increments, {{"grains", 10}, {"increments", 1e6}, {"strain", 1e-9}}},
       {"increments/there_and_back", there_and_back, {{"grains", 16}, {"strain", 1e-6}, {"cycles", 5000}, {"parts", 1}}},
