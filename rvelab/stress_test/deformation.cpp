@@ -1,0 +1,144 @@
+// Far: shear to ten thousand, stretch by e^10, compression until it is refused, expansion to a gas. Frictionless
+// grains, so that the stress is known from their places at any moment.
+#include <algorithm>
+#include <cmath>
+
+#include "rvelab/error.hpp"
+#include "rvelab/grains/uniform.hpp"
+#include "rvelab/measure/measures.hpp"
+#include "rvelab/pack/scatter.hpp"
+#include "rvelab/stress_test/experiments.hpp"
+#include "rvelab/stress_test/prepared.hpp"
+#include "rvelab/stress_test/tested.hpp"
+
+namespace rvelab::stress_test {
+
+namespace {
+
+/// Soft, frictionless, few enough that a far way is a short run.
+Specimen soft(const Cell& cell, int count, int dimension) {
+  Grains grains;
+  for (const double r : spread_radii(count, 0.2)) {
+    grains.id.push_back(std::int64_t(grains.id.size()));
+    grains.radius.push_back(r);
+    grains.material.push_back(0);
+    grains.position.push_back(Vector3::Zero());
+    grains.velocity.push_back(Vector3::Zero());
+    grains.spin.push_back(Vector3::Zero());
+  }
+  Uniform uniform(3);
+  if (!scatter(cell, 1.0, grains, uniform)) throw Error("no free place is left for a grain");
+  Specimen s = specimen_of(cell, grains.position, grains.radius);
+  s.solver.min_height = 0.5;
+  s.solver.max_overlap_ratio = 0.9;
+  return jammed(s, pressure_at(dimension, 50));
+}
+
+double solid(int count, int dimension) {
+  double sum = 0;
+  for (const double r : spread_radii(count, 0.2))
+    sum += grain_volume(dimension == 2 ? Shape::disc : Shape::sphere, r, 0.5);
+  return sum;
+}
+
+Cell cell_for(int count, int dimension, bool oriented) {
+  const double volume = solid(count, dimension) / (dimension == 2 ? 0.4 : 0.25);
+  if (!oriented) return cubic_cell(dimension, volume, 0.5);
+  return dimension == 2 ? kraynik_reinelt_cell(volume, 0.5) : cubic_field_cell(volume);
+}
+
+void compare_with_hand(const Tested& tested, double tolerance, Verdict& verdict) {
+  const Matrix3 expected = stress_by_hand(tested.rve().specimen(), stiffness, 4);
+  verdict.law("stress = sum over all images", largest(tested.rve().stress() - expected),
+              tolerance * std::max(largest(expected), 1.0));
+}
+
+/// `total` times the same increment; laws and stress are looked at twenty times on the way.
+void go(Tested& tested, const Matrix3& increment, long total, double tolerance, Verdict& verdict) {
+  const long look_every = std::max(1L, total / 20);
+  for (long k = 1; k <= total; ++k) {
+    tested.apply(increment, 0);
+    if (k % look_every != 0) continue;
+    tested.check_laws();
+    compare_with_hand(tested, tolerance, verdict);
+  }
+}
+
+}  // namespace
+
+void sheared_far(const Case& asked, Verdict& verdict) {
+  const int d = int(asked("dimension")), count = int(asked("grains"));
+  Specimen s = soft(cell_for(count, d, false), count, d);
+  s.solver.fixed_substeps = long(asked("substeps"));
+  Tested tested(s, verdict);
+  const double increment = asked("increment");
+  go(tested, increment * shear_direction(d), std::lround(asked("gamma") / increment), asked.tolerance, verdict);
+}
+
+void stretched_far(const Case& asked, Verdict& verdict) {
+  const int d = int(asked("dimension")), count = int(asked("grains"));
+  Specimen s = soft(cell_for(count, d, asked("oriented") != 0), count, d);
+  s.solver.min_height = 0;  // the default limit, two radii
+  s.solver.fixed_substeps = long(asked("substeps"));
+  Tested tested(s, verdict);
+  // Isochoric: x shrinks and y grows in 2D; z grows and the others shrink in 3D.
+  const double h = asked("increment");
+  Matrix3 increment = Matrix3::Zero();
+  if (d == 2)
+    increment.diagonal() << std::expm1(-h), std::expm1(h), 0;
+  else
+    increment.diagonal() << std::expm1(-0.5 * h), std::expm1(-0.5 * h), std::expm1(h);
+  go(tested, increment, std::lround(asked("hencky") / h), asked.tolerance, verdict);
+}
+
+void compressed_until_refused(const Case& asked, Verdict& verdict) {
+  const int d = int(asked("dimension"));
+  Tested tested(usual(d, asked("hertz") != 0), verdict);
+  const double strain = asked("increment");
+  const double dt = asked("rate") > 0 ? strain / (asked("rate") / tested.rve().critical_time_step()) : 0;
+  std::optional<Refused> refusal;
+  int made = 0;
+  for (; made * strain < 1 && !refusal; ++made) {
+    refusal = refused(tested.rve(), [&](Rve& rve) { rve.apply(isotropic(d, -strain), dt); });
+    const double overlap = largest_overlap_ratio(tested.rve().network());
+    verdict.law("overlap within the limit", overlap, tested.rve().specimen().solver.max_overlap_ratio);
+  }
+  verdict.refusal("compression without end", refusal);
+}
+
+void gas_and_back(const Case& asked, Verdict& verdict) {
+  const int d = int(asked("dimension")), increments = int(asked("increments"));
+  Tested tested(jammed_linear(d, 64, asked("kappa"), 0.5, 0), verdict);
+  const double expansion = asked("expansion"), before = tested.pressure();
+  tested.apply(isotropic(d, expansion), 0);
+  verdict.law("a gas carries nothing, of p", std::abs(tested.pressure()) / before, 1e-3);
+  double size = 1 + expansion;
+  for (int k = 1; k <= increments; ++k) {
+    const double next = 1 + expansion * (1 - double(k) / increments);
+    tested.apply(isotropic(d, next / size - 1), 0);
+    size = next;
+    tested.check_laws();
+  }
+  compare_with_hand(tested, 1e-10, verdict);
+  // Packed anew by another way, frictionless grains are about as dense; a network pressed at the wrong pace is not.
+  // 64 of them scatter by less than a percent in the volume at which they jam, and p/(kn/t) is the strain beyond it.
+  tested.rve().relax(1e-6, 1'000'000);
+  verdict.agreement("excess pressure after the way back, as a strain",
+                    std::max(0.0, tested.pressure() / before - 1) / asked("kappa"), asked.tolerance);
+}
+
+void one_large_increment(const Case& asked, Verdict& verdict) {
+  const int d = int(asked("dimension"));
+  Tested tested(jammed_linear(d, int(asked("grains")), asked("kappa"), 0.5, 0), verdict);
+  const Matrix3 increment =
+      asked("shear") * shear_direction(d) + isotropic(d, asked("expansion")) - isotropic(d, asked("compression"));
+  if (asked("compression") > 0) {
+    const auto refusal = refused(tested.rve(), [&](Rve& rve) { rve.apply(increment, 0); });
+    return verdict.refusal("compression far beyond the overlap limit", refusal);
+  }
+  tested.apply(increment, 0);
+  tested.check_laws();
+  compare_with_hand(tested, asked.tolerance, verdict);
+}
+
+}  // namespace rvelab::stress_test

@@ -1,0 +1,47 @@
+// The energy of an RVE and its ledger: what boundary work and losses leave must be what is there.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "rvelab/measure/measures.hpp"
+#include "rvelab/solver/rve.hpp"
+
+namespace rvelab::stress_test {
+
+inline double energy_in(const Rve& rve) {
+  const Network network = rve.network();
+  return kinetic_energy(network) + elastic_energy(network);
+}
+
+inline double losses_in(const EnergyLedger& l) {
+  return l.friction + l.rolling + l.dashpot + l.local_damping + l.global_damping + l.law_loss + l.zeroing;
+}
+
+/// From a first look on. SolverOptions::ledger must be on.
+class EnergyBalance {
+ public:
+  explicit EnergyBalance(const Rve& rve) : rve_(&rve), start_(energy_in(rve)), ledger_(rve.specimen().state.ledger) {
+    look();
+  }
+
+  /// Notes the largest work, change and loss so far: the residual is measured by them.
+  void look() {
+    const EnergyLedger now = rve_->specimen().state.ledger;
+    const double work = now.boundary_work - ledger_.boundary_work, loss = losses_in(now) - losses_in(ledger_);
+    const double change = energy_in(*rve_) - start_;
+    residual_ = change - (work - loss);
+    scale_ = std::max({scale_, std::abs(work), std::abs(change), std::abs(loss)});
+  }
+
+  /// |dE - (W - L)| over the largest of |W|, |dE|, |L| at any look. NaN stays NaN.
+  double residual() const { return residual_ == 0 ? 0 : std::abs(residual_) / scale_; }
+
+ private:
+  const Rve* rve_;
+  double start_;
+  EnergyLedger ledger_;
+  double residual_ = 0, scale_ = 0;
+};
+
+}  // namespace rvelab::stress_test

@@ -1,0 +1,83 @@
+// Many: a million increments, a hundred thousand rotations, thousands of cycles. Round-off and pace must not add up.
+#include <Eigen/LU>
+#include <cmath>
+
+#include "rvelab/measure/measures.hpp"
+#include "rvelab/stress_test/experiments.hpp"
+#include "rvelab/stress_test/prepared.hpp"
+#include "rvelab/stress_test/tested.hpp"
+
+namespace rvelab::stress_test {
+
+void rotated_often(const Case& asked, Verdict& verdict) {
+  const int d = int(asked("dimension"));
+  Rve rve(usual(d, d == 3));
+  const Specimen before = rve.specimen();
+  const Matrix3 stress = rve.stress();
+  Matrix3 turned = Matrix3::Identity();
+  Random random(3);
+  for (long k = 0; k < long(asked("rotations")); ++k) {
+    const Vector3 axis = d == 2 ? Vector3(0, 0, 1) : Vector3(random(-1, 1), random(-1, 1), random(-1, 1));
+    const Matrix3 rotation = rotation_about(axis, random(-3, 3));
+    // What the RVE is given is I + dH, which round-off makes differ from the rotation by an ulp.
+    const Matrix3 increment = rotation - Matrix3::Identity();
+    rve.apply(increment, 0);
+    turned = renormalised((Matrix3::Identity() + increment) * turned);
+  }
+  const Specimen after = rve.specimen();
+  verdict.law("grains bitwise where they were in the cell frame",
+              before.grains.position == after.grains.position && before.cell.lattice == after.cell.lattice);
+  const Matrix3 expected = turned * stress * turned.transpose();
+  verdict.law("the stress has turned with the cell", largest(rve.stress() - expected) / largest(stress),
+              asked.tolerance);
+  const Matrix3& q = after.cell.rotation;
+  verdict.law("the frame is orthogonal", largest(q.transpose() * q - Matrix3::Identity()), 1e-14);
+}
+
+void many_small_increments(const Case& asked, Verdict& verdict) {
+  const long increments = long(asked("increments"));
+  const double strain = asked("strain"), total = strain * double(increments);
+  Specimen s = jammed_linear(2, int(asked("grains")), 1e3, 0.5, 0);
+  Rve resting(s);
+  resting.relax(1e-12, 400'000);
+  resting.zero_velocities();
+  s = resting.specimen();
+  Tested tested(s, verdict);
+  for (long k = 0; k < increments; ++k) tested.apply(strain * shear_direction(2), 0);
+  tested.check_laws();
+  Specimen slow = s;
+  slow.solver.fixed_substeps = 1000;
+  Rve resolved(slow);
+  for (int k = 0; k < 100; ++k) resolved.apply(total / 100 * shear_direction(2), 0);
+  const double p = mean_pressure(resolved.stress(), 2);
+  verdict.agreement("stress against 100 resolved increments, of p",
+                    (tested.rve().stress() - resolved.stress()).norm() / p, asked.tolerance);
+  const Matrix3 lattice = tested.rve().cell().rotation * tested.rve().cell().lattice;
+  const Matrix3 expected = (Matrix3::Identity() + total * shear_direction(2)) * s.cell.rotation * s.cell.lattice;
+  verdict.law("the lattice is where F takes it", largest(lattice - expected) / largest(expected),
+              1e-15 * double(increments));
+}
+
+void there_and_back(const Case& asked, Verdict& verdict) {
+  // Frictionless springs far below the strain that changes a contact: the way back ends where it began.
+  Specimen s = jammed_linear(2, int(asked("grains")), 1e3, 0.5, 0);
+  Rve resting(s);
+  resting.relax(1e-12, 400'000);
+  resting.zero_velocities();
+  s = resting.specimen();
+  Tested tested(s, verdict);
+  const Matrix3 first = tested.rve().stress();
+  const double p = tested.pressure();
+  const int parts = int(asked("parts"));
+  const Matrix3 forth = asked("strain") / parts * (shear_direction(2) + biaxial_direction(2));
+  const Matrix3 back = (Matrix3::Identity() + forth).inverse() - Matrix3::Identity();
+  for (long k = 0; k < long(asked("cycles")); ++k) {
+    for (int part = 0; part < parts; ++part) tested.apply(forth, 0);
+    for (int part = 0; part < parts; ++part) tested.apply(back, 0);
+  }
+  tested.check_laws();
+  verdict.agreement("stress against that of the start, of p", (tested.rve().stress() - first).norm() / p,
+                    asked.tolerance);
+}
+
+}  // namespace rvelab::stress_test

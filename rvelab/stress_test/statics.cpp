@@ -1,0 +1,79 @@
+// Quasi-static loading of what is no equilibrium any more: a right answer or a flag, never a silent wrong one.
+#include "rvelab/measure/measures.hpp"
+#include "rvelab/stress_test/experiments.hpp"
+#include "rvelab/stress_test/prepared.hpp"
+#include "rvelab/stress_test/tested.hpp"
+
+namespace rvelab::stress_test {
+
+namespace {
+
+/// Packed with friction: loose, and held up by tangential forces.
+Specimen propped(double friction) {
+  Specimen loose = gas(2, spread_radii(100, 0.3), 0.4, 7, material(stiffness, 0.5 * stiffness, friction));
+  Rve rve(loose);
+  const double pressure = pressure_at(2, 1e3);
+  while (mean_pressure(rve.stress(), 2) < pressure) {
+    rve.apply(isotropic(2, mean_pressure(rve.stress(), 2) < 0.1 * pressure ? -2e-3 : -2e-4), 0);
+    rve.relax(1e-3, 20'000);
+  }
+  rve.relax(1e-10, 400'000);
+  rve.zero_velocities();
+  Specimen s = rve.specimen();
+  s.state = {};
+  return s;
+}
+
+}  // namespace
+
+void made_frictionless(const Case& asked, Verdict& verdict) {
+  // Without the friction that held it the packing falls in; what it falls to depends on the pace, so the run at the
+  // solver's own must agree with a slow one or say that it is none.
+  Specimen s = propped(asked("prepared_with"));
+  const double p = mean_pressure(Rve(s).stress(), 2);
+  for (Material& m : s.materials) m.friction = asked("friction");
+  const Matrix3 direction = asked("shear") != 0 ? shear_direction(2) : biaxial_direction(2);
+  const int increments = int(asked("increments"));
+  const Matrix3 increment = direction * (asked("strain") / increments);
+  Tested tested(s, verdict);
+  for (int k = 0; k < increments; ++k) tested.apply(increment, 0);
+  tested.check_laws();
+  const auto resolved = [&](long substeps) {
+    Specimen slow = s;
+    slow.solver.fixed_substeps = substeps / increments;
+    Rve rve(slow);
+    for (int k = 0; k < increments; ++k) rve.apply(increment, 0);
+    return rve.stress();
+  };
+  // Two resolved runs must agree: then the way down is one and not a matter of chance.
+  const Matrix3 fine = resolved(100'000), coarser = resolved(40'000);
+  verdict.law("the resolved run is resolved, of p", (fine - coarser).norm() / p, asked.tolerance);
+  verdict.agreement("stress against 100,000 sub-steps, of p", (tested.rve().stress() - fine).norm() / p,
+                    asked.tolerance);
+}
+
+void asked_for_tension(const Case& asked, Verdict& verdict) {
+  // Grains without cohesion carry no tension: the target cannot be held, which must be said (or refused), in a bounded
+  // time and without a stress that pretends to.
+  const int d = int(asked("dimension"));
+  Specimen s = usual(d, false, 0);
+  Tested tested(s, verdict);
+  const Matrix3 stress = tested.rve().stress();
+  const double p = mean_pressure(stress, d);
+  MixedTarget target;
+  for (int i = 0; i < d; ++i)
+    for (int k = i; k < d; ++k) {
+      const Matrix3 component = entry(i, k, 0.5) + entry(k, i, 0.5);
+      if (i == k)
+        target.rows.push_back({Matrix3::Zero(), component, 0.5 * p - stress(i, i), p});
+      else
+        target.rows.push_back({component, Matrix3::Zero(), 0, 0});
+    }
+  const Response response = tested.apply(target, asked("critical_steps") * tested.rve().critical_time_step());
+  tested.check_laws();
+  verdict.law("a tension that grains cannot carry is said not to be held", !response.report.target_held);
+  verdict.law("no tension in the answer, of p", std::max(0.0, response.stress.diagonal().maxCoeff()) / p,
+              asked.tolerance);
+}
+
+}  // namespace rvelab::stress_test

@@ -1,0 +1,81 @@
+// From soft grains to rigid ones at dt = 0: the solver's own pace must find what a well-resolved run finds, however
+// unlike the stiffnesses of normal, tangential and rolling springs are.
+#include <cmath>
+
+#include "rvelab/error.hpp"
+#include "rvelab/stress_test/experiments.hpp"
+#include "rvelab/stress_test/prepared.hpp"
+#include "rvelab/stress_test/tested.hpp"
+
+namespace rvelab::stress_test {
+
+namespace {
+
+Path path_of(const Case& asked, int dimension, double kappa) {
+  Path path;
+  path.direction = asked("shear") != 0 ? shear_direction(dimension) : biaxial_direction(dimension);
+  path.strain = asked("strain_times_kappa") / kappa;
+  path.increments = int(asked("increments"));
+  return path;
+}
+
+}  // namespace
+
+void agrees_with_resolved_run(const Case& asked, Verdict& verdict) {
+  const int d = int(asked("dimension"));
+  const double kappa = asked("kappa");
+  Specimen s = jammed_linear(d, int(asked("grains")), kappa, 0.5, asked("friction"));
+  s.contacts.clear();
+  Material& grain = s.materials[0];
+  grain.tangential_stiffness = asked("kt_over_kn") * grain.normal_stiffness;
+  s.contact.rolling = asked("rolling_stiffness") > 0;
+  grain.rolling_stiffness = asked("rolling_stiffness");
+  grain.rolling_friction = s.contact.rolling ? asked("rolling_friction") : 0;
+  s.damping.local_quasi_static = asked("local_damping");
+  if (asked("restitution") < 1) {
+    s.damping.dashpot = Dashpot::restitution;
+    s.damping.restitution = asked("restitution");
+  }
+  compare_with_resolved(s, path_of(asked, d, kappa), asked.tolerance, verdict);
+}
+
+void hertz_agrees_with_resolved_run(const Case& asked, Verdict& verdict) {
+  const int d = int(asked("dimension"));
+  const double young = asked("young_modulus"), nu = asked("poisson_ratio"), p = asked("pressure");
+  const Specimen s = jammed_hertz(d, int(asked("grains")), young, nu, asked("friction"), p);
+  const double kappa = std::pow(pressure_of_level(s, 1) / p, 2.0 / 3);
+  compare_with_resolved(s, path_of(asked, d, kappa), asked.tolerance, verdict);
+}
+
+void does_not_see_density(const Case& asked, Verdict& verdict) {
+  // At dt = 0 inertia is scaled from the contacts: the density must not appear in one bit.
+  const int d = int(asked("dimension"));
+  const Specimen usual_density = usual(d, asked("hertz") != 0);
+  Specimen other = usual_density;
+  for (Material& m : other.materials) m.density = asked("density");
+  Tested a(usual_density, verdict), b(other, verdict);
+  for (int k = 0; k < 20; ++k) {
+    const Matrix3 increment = 5e-4 * biaxial_direction(d) + 1e-4 * shear_direction(d);
+    verdict.law("bitwise the same stress", a.apply(increment, 0).stress == b.apply(increment, 0).stress);
+  }
+  a.check_laws();
+}
+
+void refuses_orphaned_history(const Case&, Verdict& verdict) {
+  // Tangential forces without a spring to carry them: f_t^2/2kt is no energy, and the force could never change.
+  Rve rve(usual(2, false));
+  rve.apply(2e-4 * shear_direction(2), 0);
+  Specimen s = rve.specimen();
+  for (Material& m : s.materials) m.tangential_stiffness = 0;
+  std::string text;
+  try {
+    Rve opened(s);
+  } catch (const Error& error) {
+    text = error.what();
+  }
+  verdict.law("a tangential force where kt = 0 is refused on opening", !text.empty());
+  if (!text.empty()) verdict.refusal("opening", Refused{text, true});
+  if (!text.empty()) verdict.law("the refusal names the contact (" + text + ")", text.find("grains ") != text.npos);
+}
+
+}  // namespace rvelab::stress_test

@@ -1,0 +1,92 @@
+#include "rvelab/stress_test/tested.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "rvelab/error.hpp"
+#include "rvelab/measure/measures.hpp"
+#include "rvelab/stress_test/specimens.hpp"
+
+namespace rvelab::stress_test {
+
+namespace {
+
+/// Above so many grains a snapshot before each increment would cost more than the increment.
+constexpr std::size_t snapshots_up_to = 20'000;
+
+}  // namespace
+
+std::optional<Refused> refused(Rve& rve, const std::function<void(Rve&)>& call) {
+  const auto before = rve.save();
+  try {
+    call(rve);
+  } catch (const Error& error) {
+    return Refused{error.what(), rve.save() == before};
+  }
+  return std::nullopt;
+}
+
+Tested::Tested(const Specimen& specimen, Verdict& verdict)
+    : rve_(specimen), verdict_(&verdict), volume_(rve_.cell().volume()), grains_(rve_.size()) {
+  // A specimen that starts beyond the limit may stay there (Rve opens it so), and no further.
+  const double start = largest_overlap_ratio(rve_.network());
+  overlap_limit_ = std::max(specimen.solver.max_overlap_ratio, 1.01 * start);
+}
+
+template <class Call>
+Response Tested::guarded(const Call& call) {
+  std::vector<std::byte> before;
+  if (grains_ <= snapshots_up_to) before = rve_.save();
+  try {
+    return call();
+  } catch (const Error& error) {
+    throw Refused{error.what(), grains_ > snapshots_up_to || rve_.save() == before};
+  }
+}
+
+void Tested::take(const Response& response, double dt) {
+  volume_ *= (Matrix3::Identity() + response.displacement_gradient).determinant();
+  ++increments_;
+  substeps_ += response.report.substeps;
+  quasi_static_ = dt == 0;
+  last_ = response;
+  verdict_->note(response.report);
+}
+
+Response Tested::apply(const Matrix3& displacement_gradient, double dt) {
+  const Response response = guarded([&] { return rve_.apply(displacement_gradient, dt); });
+  take(response, dt);
+  return response;
+}
+
+Response Tested::apply(const MixedTarget& target, double dt) {
+  const Response response = guarded([&] { return rve_.apply(target, dt); });
+  take(response, dt);
+  return response;
+}
+
+double Tested::pressure() const { return mean_pressure(rve_.stress(), rve_.cell().dimension); }
+
+void Tested::check_laws() {
+  constexpr double round_off = 2.3e-16;
+  const double volume = rve_.cell().volume();
+  // Products of n factors, each rounded a dozen times, in the worst case of one sign; an increment alone is the product
+  // of as many parts as it has stretches of sub-steps.
+  verdict_->law("volume = V0 det F", std::abs(volume / volume_ - 1), 1e-12 + 16 * round_off * double(increments_));
+  verdict_->law("no grain is lost", rve_.size() == grains_);
+  const Network network = rve_.network();
+  bool finite = last_.stress.allFinite();
+  for (const GrainState& grain : network.grains)
+    finite = finite && grain.position.allFinite() && grain.velocity.allFinite() && grain.spin.allFinite();
+  verdict_->law("all places, velocities and stresses are numbers", finite);
+  verdict_->law("overlap within the limit", largest_overlap_ratio(network), overlap_limit_);
+  if (!quasi_static_ || increments_ == 0) return;
+  const Matrix3 stress = rve_.stress();
+  const double p = std::abs(mean_pressure(stress, network.dimension()));
+  const double floor = std::max(p, 1e-3 * rve_.reference_pressure());  // as the unbalanced ratio has it
+  verdict_->law("|sigma - sigma^T| <= 1.5 unbalanced p", largest(stress - stress.transpose()),
+                1.5 * rve_.unbalanced_ratio() * floor + 1e-9 * floor);
+}
+
+}  // namespace rvelab::stress_test

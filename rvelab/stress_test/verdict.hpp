@@ -1,0 +1,77 @@
+// What one case found: the worst of all that was measured against what is allowed, and what became of it.
+//
+// Two kinds of criterion. A law (energy, volume, symmetry, an unchanged state) holds whatever the solver says of
+// itself. An agreement (with a resolved run, with a theory) may be excused by a flag of the solver where the case
+// allows it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "rvelab/solver/rve.hpp"
+
+namespace rvelab::stress_test {
+
+enum class Outcome {
+  right,    ///< did what is asked
+  refused,  ///< refused with a remedy and an unchanged state, where that is asked or allowed
+  wrong
+};
+
+/// "right", "refused", "WRONG".
+const char* name(Outcome);
+
+/// What a case came to.
+struct Answer {
+  Outcome outcome = Outcome::wrong;
+  std::string status = "ok";          ///< "ok", the criterion that failed, a refusal's text, "time limit", "signal 11"
+  std::optional<double> error;        ///< largest measured value over what is allowed; none: nothing was measured
+  std::optional<std::uint64_t> hash;  ///< of the state at the end, where a case asks for bits
+};
+
+/// A call that the RVE refused in an experiment that did not ask for it.
+struct Refused {
+  std::string text;
+  bool unchanged = false;  ///< Rve::save() before and after are the same
+};
+
+/// The solver says of itself that what it returns is not what was asked for. One line more when Report has a
+/// `quasi_static`.
+inline bool flagged(const Report& report) { return !report.target_held; }
+
+/// A message that says what to do or what is allowed, not only what is wrong.
+bool names_remedy(const std::string& message);
+
+/// Collects what an experiment measures.
+class Verdict {
+ public:
+  /// A law: 0 <= measured <= allowed. NaN does not hold.
+  void law(const std::string& what, double measured, double allowed);
+  void law(const std::string& what, bool holds) { law(what, holds ? 0 : 2, 1); }
+  /// An agreement, which a flag may excuse.
+  void agreement(const std::string& what, double measured, double allowed);
+  /// A required refusal: its message, or none if the call was carried out; `unchanged` as in Refused.
+  void refusal(const std::string& what, const std::optional<Refused>& found);
+
+  void note(const Report& report) { flagged_ = flagged_ || flagged(report); }
+  void hash(std::uint64_t value) { hash_ = value; }
+
+  /// The answer of an experiment that came to its end.
+  Answer answer(bool may_flag) const;
+  /// The answer of one that a refusal ended.
+  Answer answer(const Refused& refused, bool may_refuse) const;
+
+ private:
+  struct Worst {
+    double error = -1;
+    std::string what;
+    void take(const std::string& what, double measured, double allowed);
+  };
+  Worst laws_, agreements_;
+  bool flagged_ = false;
+  std::string refusal_;
+  std::optional<std::uint64_t> hash_;
+};
+
+}  // namespace rvelab::stress_test
