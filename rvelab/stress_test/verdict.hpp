@@ -38,7 +38,7 @@ struct Refused {
 
 /// The solver says of itself that what it returns is not what was asked for. One line more when Report has a
 /// `quasi_static`.
-inline bool flagged(const Report& report) { return !report.target_held; }
+inline bool flagged(const Report& report) { return !report.target_held || !report.quasi_static; }
 
 /// A message that says what to do or what is allowed, not only what is wrong.
 bool names_remedy(const std::string& message);

@@ -1,5 +1,6 @@
 // Contact parameters: mixing, dashpots, ranges, names (design 6).
 #include "rvelab/contact/model.hpp"
+#include "rvelab/contact/restitution.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -173,7 +174,36 @@ TEST_CASE("a restitution dashpot gives the rebound of its formula", "[contact][q
       CHECK(std::exp(-pi * zeta / std::sqrt(1 - zeta * zeta)) == Approx(e).epsilon(1e-13));
     }
   }
-  SECTION("Hertz spring, by integration: Tsuji's alpha(e) with the reduced mass in place of one grain's") {
+  SECTION("Hertz spring, by integration") {
+    for (const Law law : {Law::hertz_mindlin, Law::hertz_given}) {
+      for (const double e : {0.05, 0.3, 0.6, 0.8, 0.9}) {
+        damping.restitution = e;
+        const auto pair = mix(model_of(law), damping, quartz(), 1e-3, mi, quartz(), 1e-3, mj);
+        const double rebound = rebound_ratio(pair, 1.5, dashpot_power(law, damping.dashpot), reduced_mass);
+        CHECK(rebound == Approx(e).epsilon(5e-3));
+      }
+    }
+  }
+  SECTION("no_tension: the force ends the contact, and what is left is what was asked for") {
+    damping.no_tension = true;
+    for (const double e : {0.05, 0.3, 0.6, 0.9, 0.99}) {
+      damping.restitution = e;
+      const auto pair = mix(model_of(Law::linear_given), damping, quartz(), 1e-3, mi, quartz(), 1e-3, mj);
+      // m* x'' = -k x - c x' by the midpoint rule, in units of 1/omega, until the force would pull.
+      const double zeta = pair.cn / (2 * std::sqrt(reduced_mass * pair.kn)), dt = 1e-4;
+      double x = 0, v = 1;
+      const auto force = [&](double at, double speed) { return -at - 2 * zeta * speed; };
+      while (v > 0 || force(x, v) > 0) {
+        const double middle_x = x + 0.5 * dt * v, middle_v = v + 0.5 * dt * force(x, v);
+        x += dt * middle_v;
+        v += dt * force(middle_x, middle_v);
+      }
+      CHECK(-v == Approx(e).epsilon(1e-3));
+      CHECK(restitution_of(damping_ratio(e, true), true) == Approx(e).epsilon(1e-12));
+    }
+  }
+  SECTION("tsuji, by integration: the polynomial alpha(e) with the reduced mass in place of one grain's") {
+    damping.dashpot = Dashpot::tsuji;
     for (const Law law : {Law::hertz_mindlin, Law::hertz_given}) {
       for (const double e : {0.3, 0.6, 0.8, 0.9}) {
         damping.restitution = e;
@@ -301,6 +331,9 @@ TEST_CASE("a viscoelastic dashpot needs a Hertz law, a specimen needs a material
   CHECK(contains(finding(model_of(Law::linear_given), damping, {quartz()}), "hertz_mindlin"));
   CHECK(contains(finding(model_of(Law::linear), damping, {quartz()}), "contact.law = linear"));
   CHECK(finding(model_of(Law::hertz_given), damping, {quartz()}).empty());
+  damping.dashpot = Dashpot::tsuji;
+  CHECK(contains(finding(model_of(Law::linear), damping, {quartz()}), "use damping.dashpot = restitution"));
+  CHECK(finding(model_of(Law::hertz_given), damping, {quartz()}).empty());
   CHECK(contains(finding(model_of(Law::linear), {}, {}), "materials"));
 }
 
@@ -311,7 +344,8 @@ TEST_CASE("names go there and back", "[contact][quick]") {
   for (const Slip slip : {Slip::consistent, Slip::full_radius, Slip::full_radius_ratcheting}) {
     CHECK(slip_from(name(slip)) == slip);
   }
-  for (const Dashpot d : {Dashpot::none, Dashpot::coefficient, Dashpot::restitution, Dashpot::viscoelastic}) {
+  for (const Dashpot d :
+       {Dashpot::none, Dashpot::coefficient, Dashpot::restitution, Dashpot::viscoelastic, Dashpot::tsuji}) {
     CHECK(dashpot_from(name(d)) == d);
   }
   for (const LocalDampingForm form : {LocalDampingForm::vector, LocalDampingForm::component}) {

@@ -130,8 +130,8 @@ struct Pairs {
   }
   void fields(Record& a, Record& b) {
     auto& [k, l, m, n, o, p, q, r, s, balanced, asked, t, u, v, w, mv, mz, f, bf, cs, rs, ee, ke] = a;
-    auto& [k2, l2, m2, n2, o2, p2, q2, r2, s2, balanced2, asked2, t2, u2, v2, w2, mv2, mz2, f2, bf2, cs2, rs2, ee2, ke2] =
-        b;
+    auto& [k2, l2, m2, n2, o2, p2, q2, r2, s2, balanced2, asked2, t2, u2, v2, w2, mv2, mz2, f2, bf2, cs2, rs2, ee2,
+           ke2] = b;
     visit(balanced, balanced2);
     all(k, k2, l, l2, m, m2, n, n2, o, o2, p, p2, q, q2, r, r2, s, s2, t, t2, u, u2, v, v2, w, w2);
     all(mv, mv2, mz, mz2, f, f2, bf, bf2, cs, cs2, rs, rs2, ee, ee2, ke, ke2);

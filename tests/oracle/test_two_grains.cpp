@@ -104,7 +104,7 @@ TEST_CASE("a Hertz contact with a dashpot in delta^1/4 rebounds by one ratio at 
   const double alpha = 1.2728 - 4.2783 * x + 11.087 * std::pow(x, 2) - 22.348 * std::pow(x, 3) +
                        27.467 * std::pow(x, 4) - 18.022 * std::pow(x, 5) + 4.8218 * std::pow(x, 6);
   Specimen s = two_grains(Shape::sphere, linear_material(2e7, 0, 0), Law::hertz_given, 1);
-  s.damping.dashpot = Dashpot::restitution;
+  s.damping.dashpot = Dashpot::tsuji;
   s.damping.restitution = parameter;
   const double deepest = std::pow(1.25 * 0.5 * mass_of(s) * speed * speed / 2e7, 0.4);
   const Collision found = collide(s, speed, 2.943275 * deepest / speed, 16000);
