@@ -197,7 +197,8 @@ class Gas:
         self.dimension, self.grains, self.hertz = dimension, grains, hertz
         self.volume = grains * (math.pi if dimension == 2 else 4 / 3 * math.pi) / fraction
         self.side, density = self.volume ** (1 / dimension), grains / self.volume
-        chi = (1 - 7 * fraction / 16) / (1 - fraction) ** 2 if dimension == 2 else (1 - fraction / 2) / (1 - fraction) ** 3
+        free = 1 - fraction
+        chi = (1 - 7 * fraction / 16) / free**2 if dimension == 2 else (1 - fraction / 2) / free**3
         self.rate = 2 * (dimension - 1) * density * 2 ** (dimension - 1) * chi * math.sqrt(math.pi)  # Enskog
         self.contact, self.half = contact_time / self.rate, 0.5 * mass_of(dimension)
         overlap = self.contact * 2 / (HERTZ_TIME if hertz else math.pi)  # at a typical speed of approach, 2
@@ -234,7 +235,8 @@ def gas_energy(case, n, folder):
     dimension = int(case("dimension"))
     gas = Gas(dimension, int(case("grains")), 0.4 if dimension == 2 else 0.25, bool(case("hertz")), 0.02)
     steps = math.ceil(case("collisions") / gas.rate / gas.contact * n / 20) * 20
-    x, v = moved(folder, dimension, gas.box, *gas.start(7), 2 * gas.half, gas.law(), gas.contact / n, steps, steps // 20)
+    x, v = moved(folder, dimension, gas.box, *gas.start(7), 2 * gas.half, gas.law(), gas.contact / n, steps,
+                 steps // 20)
     energy = numpy.array([gas.energy(*frame) for frame in zip(x, v)])
     momentum = numpy.linalg.norm(v[-1].sum(axis=0)) / numpy.linalg.norm(v[-1], axis=1).sum()
     return Answer(max(abs(energy / energy[0] - 1).max() / case.tolerance, momentum / 1e-10))

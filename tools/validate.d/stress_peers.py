@@ -93,7 +93,7 @@ def arguments():
     parser.add_argument("--json", help="what stress-test --json wrote before")
     parser.add_argument("--case", action="append", default=[], help="only cases whose names begin so")
     parser.add_argument("--matrix", default=str(ROOT / "tests/extreme/matrix.toml"))
-    parser.add_argument("--gases", type=int, default=4, help="at most so many gases cool in LAMMPS, a minute each; 0: none")
+    parser.add_argument("--gases", type=int, default=4, help="at most so many cool in LAMMPS, a minute each; 0: none")
     parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)))
     return parser.parse_args()
 
@@ -138,8 +138,8 @@ def main():
     head = ["case", "asked", "outcome", "seconds", "error", "LAMMPS", "at a twentieth"]
     lines = [[row["name"], row["asked"], row["outcome"], f"{row['seconds']:.2f}",
               "-" if row.get("error") is None else f"{row['error']:.3g}", *peer] for row, peer in zip(rows, peers)]
-    print(f"# LAMMPS {version()}, steps of a fiftieth of a collision, and of a twentieth; Hertz contacts have damping "
-          f"tsuji{' and coeff_restitution' if newer else ', this version has no coeff_restitution'}")
+    damping = "tsuji and coeff_restitution" if newer else "tsuji, this version has no coeff_restitution"
+    print(f"# LAMMPS {version()}, steps of a fiftieth of a collision, and of a twentieth; Hertz damping: {damping}")
     cooled = f"of {options.gases} gases at most, +- their statistical error" if options.gases else "not put to LAMMPS"
     print(f"# error: measured over allowed, both programs; cooling (gas/haff...): {cooled}")
     widths = [max(len(line[k]) for line in [head, *lines]) for k in range(len(head))]
