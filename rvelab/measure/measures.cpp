@@ -180,7 +180,8 @@ double kinetic_energy(const Network& network) {
   if (network.quasi_static) return 0;
   double sum = 0;
   for (const GrainState& grain : network.grains) {
-    sum += 0.5 * (grain.mass * grain.velocity.squaredNorm() + grain.inertia * grain.spin.squaredNorm());
+    const Vector3 spin = grain.spin + network.mean_spin;
+    sum += 0.5 * (grain.mass * grain.velocity.squaredNorm() + grain.inertia * spin.squaredNorm());
   }
   return sum;
 }

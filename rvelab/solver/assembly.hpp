@@ -97,6 +97,9 @@ void check_height(const Fixture& fixture, const Cell& cell);
 /// Throws IncrementFailed if the shortest lattice vector is below min_height.
 Reduction rebuild(const Fixture& fixture, Assembly& assembly);
 
+/// Gap up to which every pair is listed, m, whenever the list was made: what lies between depends on the list.
+double listed_gap(const Fixture& fixture, const Assembly& assembly);
+
 /// Whether a pair that is not listed might touch by now. May tighten the bound that the state keeps on displacements.
 bool list_is_stale(const Fixture& fixture, Assembly& assembly);
 

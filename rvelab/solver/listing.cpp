@@ -282,6 +282,12 @@ double measured_displacements(const Fixture& f, const Assembly& a, const Matrix3
 
 }  // namespace
 
+double listed_gap(const Fixture& f, const Assembly& a) {
+  const Matrix3 f_since = a.cell.lattice * upper_inverse(a.state.list_lattice);
+  const double strain = (f_since - Matrix3::Identity()).norm(), reach = 2 * f.largest_radius;
+  return (1 - strain) * (reach + a.state.list_skin) - reach - 2 * (1 + strain) * a.state.list_travel;
+}
+
 bool list_is_stale(const Fixture& f, Assembly& a) {
   // A pair beyond reach r_i + r_j + skin when listed is, after the affine map F and two displacements of at most
   // `travel`, still beyond sigma_min(F) reach - 2 |F| travel, with sigma_min >= 1 - |F - I|, |F| <= 1 + |F - I|.

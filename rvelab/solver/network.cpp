@@ -43,6 +43,7 @@ Network Rve::network() const {
   net.reference_contact_force = a.state.reference_contact_force;
   net.reference_pressure = a.state.reference_pressure;
   net.quasi_static = a.state.quasi_static;
+  if (!net.quasi_static) net.mean_spin = a.state.mean_spin;
   net.grains.resize(f.size());
   for (std::size_t g = 0; g < f.size(); ++g)
     net.grains[g] = {

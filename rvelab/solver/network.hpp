@@ -39,10 +39,12 @@ struct Network {
   Cell cell;
   ContactModel model;
   std::vector<GrainState> grains;
-  std::vector<ContactState> contacts;  ///< ordered by (i, j, image)
-  double reference_contact_force = 0;  ///< N, floor of the unbalanced ratio is 1e-3 of it
-  double reference_pressure = 0;       ///< Pa
-  bool quasi_static = true;            ///< velocities carry scaled masses: no kinetic stress
+  std::vector<ContactState> contacts;   ///< ordered by (i, j, image)
+  double reference_contact_force = 0;   ///< N, floor of the unbalanced ratio is 1e-3 of it
+  double reference_pressure = 0;        ///< Pa
+  Vector3 mean_spin = Vector3::Zero();  ///< axial(W + Omega) of the cell, rad/s, zero at dt = 0: a grain's whole spin
+                                        ///< is this and its fluctuation
+  bool quasi_static = true;  ///< velocities carry scaled masses: no kinetic stress
   int dimension() const { return cell.dimension; }
 };
 

@@ -1,0 +1,156 @@
+#!/usr/bin/python3
+"""The stress test, and its cases put to LAMMPS where LAMMPS can express them.
+
+Both are judged by the case's own criterion and tolerance. LAMMPS knows no step of its own: it gets what its users take,
+a fiftieth of the duration of a collision (linear: pi sqrt(m*/kn), Hertz: 2.943 overlap/speed of the impact), and beside
+it a twentieth. Linear contacts have the exact dashpot of the restitution, Hertz contacts `damping tsuji`. Where a
+refusal is asked for and LAMMPS has no such check, the column says what happens. "-": cannot be expressed. Cases
+at small fixed steps (resolved) ask whether the criterion is one, and are no question to LAMMPS.
+
+    tools/validate.d/stress_peers.py build/release/bin/rvelab             # runs the stress test first, long
+    tools/validate.d/stress_peers.py build/release/bin/rvelab --json FILE # reuses what stress-test --json wrote
+    tools/validate.d/stress_peers.py build/release/bin/rvelab --case impact
+"""
+import argparse
+import collections
+import concurrent.futures
+import copy
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import tomllib
+
+import stress_lammps as grains
+import stress_lammps_boxes as boxes
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+# experiment: what puts it to LAMMPS, and defaults of parameters (rvelab/stress_test/experiments.hpp)
+IMPACT = {"dimension": 3, "hertz": 0, "speed": 0.1, "phases": 20}
+EXPERIMENTS = {
+    "impact/rebound": (grains.rebound, IMPACT),
+    "impact/restitution": (grains.restitution, {**IMPACT, "restitution": 0.5}),
+    "impact/third_contact": (grains.third_contact, {"hertz": 0, "restitution": 0.5, "phases": 50}),
+    "impact/too_hard": (grains.too_hard, {"hertz": 1, "overlap_over_limit": 2}),
+    "gas/energy": (grains.gas_energy, {"dimension": 2, "hertz": 0, "grains": 100, "collisions": 100}),
+    "gas/haff": (grains.gas_cools, {"dimension": 2, "hertz": 0, "grains": 256, "gases": 16, "solid_fraction": 0.1,
+                                    "restitution": 0.9, "duration": 3, "contact_time": 3e-3}),
+    "deformation/compression": (boxes.compressed, {"dimension": 2, "hertz": 0}),
+    "deformation/one_increment": (boxes.one_increment, {"dimension": 2, "compression": 0, "hertz": 0}),
+    "size/million": (boxes.crystal, {"side": 100}),
+    "numbers/units": (boxes.units, {"dimension": 2, "hertz": 0, "length_power": 0, "force_power": 0}),
+    "numbers/length": (boxes.lengths, {"dimension": 2, "hertz": 0, "radius": 1e-6}),
+    "numbers/no_increment": (boxes.no_increment, {"dimension": 2, "kind": 0}),
+}
+
+
+class Case:
+    """One case of the matrix by its full name, .../parameter=value,..."""
+
+    def __init__(self, name, table, gases):
+        head, _, varied = name.rpartition("/") if "=" in name.rpartition("/")[2] else (name, "", "")
+        one = table[head]
+        self.run, defaults = EXPERIMENTS.get(one["experiment"], (None, {}))
+        self.tolerance, self.damping = one["tolerance"], "tsuji"
+        self.values = {**defaults, **one.get("with", {})}
+        self.values.update(pair.split("=") for pair in varied.split(",") if pair)
+        if "time_step_factor" in self.values:
+            self.run = None
+        if one["experiment"] == "gas/haff":
+            self.values["gases"] = min(gases, int(self.values["gases"]))
+            self.run = self.run if gases else None
+
+    def __call__(self, parameter):
+        return float(self.values[parameter])
+
+    def lammps(self, n, newer):
+        """What becomes of it; newer: a second answer with LAMMPS' later damping where restitution is in question."""
+        text = self.answer(n, "tsuji")
+        if newer and self.values.get("hertz") and float(self.values.get("restitution", 1)) < 1 and text != "-":
+            text += f"; coeff_restitution: {self.answer(n, 'coeff_restitution')}"
+        return text
+
+    def answer(self, n, damping):
+        if not self.run:
+            return "-"
+        asked = copy.copy(self)  # both steps may be under way at a time
+        asked.damping = damping
+        with tempfile.TemporaryDirectory() as folder:
+            try:
+                answer = asked.run(asked, n, folder)
+            except grains.Failed as failed:
+                return f"WRONG {failed}"
+        return answer.text() if answer else "-"
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("rvelab", nargs="?", default=str(ROOT / "build/release/bin/rvelab"))
+    parser.add_argument("--json", help="what stress-test --json wrote before")
+    parser.add_argument("--case", action="append", default=[], help="only cases whose names begin so")
+    parser.add_argument("--matrix", default=str(ROOT / "tests/extreme/matrix.toml"))
+    parser.add_argument("--gases", type=int, default=4, help="at most so many cool in LAMMPS, a minute each; 0: none")
+    parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)))
+    return parser.parse_args()
+
+
+def stress_test(options):
+    if options.json:
+        text = pathlib.Path(options.json).read_text()
+    else:
+        words = [word for case in options.case for word in ("--case", case)]
+        done = subprocess.run([options.rvelab, "stress-test", "--matrix", options.matrix, "--json", "--jobs",
+                               str(options.jobs), *words], stdout=subprocess.PIPE, text=True)
+        if done.returncode > 1:  # 1: some are WRONG, which the table says
+            sys.exit("stress_peers: the stress test did not run")
+        text = done.stdout
+    cases = json.loads(text)["cases"]
+    return [case for case in cases if not options.case or case["name"].startswith(tuple(options.case))]
+
+
+def version():
+    text = subprocess.run(["lmp", "-h"], capture_output=True, text=True).stdout
+    return re.search(r"Simulator - (.*)", text).group(1).strip()
+
+
+def count(texts):
+    found = collections.Counter(text.split()[0].strip(":") for text in texts)
+    return ", ".join(f"{found[word]} {word}" for word in ("right", "refused", "WRONG"))
+
+
+def main():
+    options = arguments()
+    rows = stress_test(options)
+    with open(options.matrix, "rb") as file:
+        table = {one["name"]: one for one in tomllib.load(file)["case"]}
+    cases = [Case(row["name"], table, options.gases) for row in rows]
+    with tempfile.TemporaryDirectory() as folder:
+        if not grains.has_damping("tsuji", folder):
+            sys.exit("stress_peers: LAMMPS does not run, or lacks pair_style granular")
+        newer = grains.has_damping("coeff_restitution", folder)
+    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+        fiftieth, twentieth = (pool.map(lambda case, n=n: case.lammps(n, newer), cases) for n in (50, 20))
+        peers = list(zip(fiftieth, twentieth))
+    head = ["case", "asked", "outcome", "seconds", "error", "LAMMPS", "at a twentieth"]
+    lines = [[row["name"], row["asked"], row["outcome"], f"{row['seconds']:.2f}",
+              "-" if row.get("error") is None else f"{row['error']:.3g}", *peer] for row, peer in zip(rows, peers)]
+    damping = "tsuji and coeff_restitution" if newer else "tsuji, this version has no coeff_restitution"
+    print(f"# LAMMPS {version()}, steps of a fiftieth of a collision, and of a twentieth; Hertz damping: {damping}")
+    cooled = f"of {options.gases} gases at most, +- their statistical error" if options.gases else "not put to LAMMPS"
+    print(f"# error: measured over allowed, both programs; cooling (gas/haff...): {cooled}")
+    widths = [max(len(line[k]) for line in [head, *lines]) for k in range(len(head))]
+    for line in [head, *lines]:
+        print("  ".join(word.ljust(width) for word, width in zip(line, widths)).rstrip())
+    put = [peer for peer in peers if peer[0] != "-"]
+    print(f"\nrvelab: {len(rows)} cases: {count(line[2] for line in lines)}")
+    both = [line[2] for line, peer in zip(lines, peers) if peer[0] != "-"]
+    print(f"of the {len(put)} put to LAMMPS: rvelab {count(both)}; LAMMPS {count(p[0] for p in put)}; "
+          f"at a twentieth {count(p[1] for p in put)}")
+
+
+if __name__ == "__main__":
+    main()
