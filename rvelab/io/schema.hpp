@@ -10,7 +10,7 @@ namespace rvelab::io {
 
 /// Version of the layout, major.minor. A later minor version adds; a later major version changes.
 inline constexpr int format_major = 1;
-inline constexpr int format_minor = 2;
+inline constexpr int format_minor = 3;
 
 /// Sets the file's attributes `format` and `format_version`.
 void stamp(Hdf5File& file, FileKind kind);

@@ -43,7 +43,10 @@ TimeStep Rve::Impl::time_step(const RowSums& sums, const Matrix3& rate, long str
   const double fixed = fixture.options.fixed_time_step;
   if (fixed > 0)
     return {fixed, stretch, collisions_ahead(fixture, now, nullptr, false, {rate, double(stretch) * fixed, dt}).deep};
-  const double stable = fixture.options.time_step_factor * critical_step(fixture, with_floor(sums, fixture));
+  double stable = fixture.options.time_step_factor * critical_step(fixture, with_floor(sums, fixture));
+  // Strong local damping takes (1 - alpha) to (1 + alpha) of the force as the motion turns: at 0.99 an eighth of the
+  // energy came from nowhere at the critical step.
+  if (fixture.damping.local > 0.5) stable *= std::sqrt(2 * (1 - fixture.damping.local));
   const double horizon = std::min(double(stretch) * stable, dt);
   const Collisions ahead = collisions_ahead(fixture, now, &sums, true, {rate, horizon, dt});
   const double longest = std::min(stable, ahead.step);
@@ -90,9 +93,9 @@ void Rve::Impl::judge(Report& report) const {
   report.quasi_static = report.unbalanced_ratio <= allowed * fixture.options.target_unbalanced && report.target_held;
 }
 
-Advance loading_of(const FrameSplit& increment, long steps, double step, bool physical, bool deep) {
+Advance loading_of(const Fixture& f, const FrameSplit& increment, long steps, double step, bool physical, bool deep) {
   if (!physical) return {increment, steps, step, Loading::quasi_static};
-  return {increment, steps, step, Loading::physical, true, deep ? deep_look : 0};
+  return {increment, steps, step, Loading::physical, f.options.fixed_time_step == 0, deep ? deep_look : 0};
 }
 
 Report Rve::Impl::load(const Matrix3& dh, double dt) {
@@ -170,7 +173,8 @@ Report Rve::Impl::load(const Matrix3& dh, double dt) {
     Cell since_start = now.cell;
     since_start.rotation = turned_since_start();
     const Advanced made = advance(
-        fixture, now, loading_of(split_increment(since_start, part - identity), steps, step, physical, time_step.deep));
+        fixture, now,
+        loading_of(fixture, split_increment(since_start, part - identity), steps, step, physical, time_step.deep));
     done = next;
     report.substeps += made.steps;
     const Balance balance = checked_balance();

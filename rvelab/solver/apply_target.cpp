@@ -89,9 +89,9 @@ Report Rve::Impl::load_at_rate(const MixedTarget& target, double dt, Matrix3& gr
     const Matrix3 change = servo.next_strain_at_rate(fraction, advance_by * wanted, full_pace, limit, path.strain,
                                                      stress(), now.state.servo_rate, now.state.servo_strain);
     now.state.servo_rate = change / time;
-    const Advanced made =
-        advance(fixture, now,
-                loading_of(split_increment(now.cell, path.go_on(change, fraction)), steps, step, true, time_step.deep));
+    const Advanced made = advance(fixture, now,
+                                  loading_of(fixture, split_increment(now.cell, path.go_on(change, fraction)), steps,
+                                             step, true, time_step.deep));
     report.substeps += made.steps;
     since_look += made.step < 0.999 * step ? time_step.stretch : made.steps;
     mean_residual += advance_by * servo.residual(fraction, path.strain, stress());
@@ -132,7 +132,8 @@ Report Rve::Impl::load_quasi_static(const MixedTarget& target, Matrix3& gradient
     fraction = 1 - fraction - advance_by < 1e-12 ? 1.0 : fraction + advance_by;
     const Matrix3 change =
         servo.next_strain(fraction, advance_by * wanted, full_pace, path.strain, stress(), now.state.servo_strain);
-    advance(fixture, now, loading_of(split_increment(now.cell, path.go_on(change, fraction)), steps, 1, false, false));
+    advance(fixture, now,
+            loading_of(fixture, split_increment(now.cell, path.go_on(change, fraction)), steps, 1, false, false));
     report.substeps += steps;
     if (report.substeps > fixture.options.max_substeps)
       throw IncrementFailed("the increment needs more than " + std::to_string(fixture.options.max_substeps) +

@@ -101,7 +101,9 @@ Reduction rebuild(const Fixture& fixture, Assembly& assembly);
 double listed_gap(const Fixture& fixture, const Assembly& assembly);
 
 /// Whether a pair that is not listed might touch by now. May tighten the bound that the state keeps on displacements.
-bool list_is_stale(const Fixture& fixture, Assembly& assembly);
+/// `margin` (m): asks already while grains are that far from touching, so that those in flight are listed before they
+/// do.
+bool list_is_stale(const Fixture& fixture, Assembly& assembly, double margin = 0);
 
 /// What follows from list and fixture, made anew: parameters, indices as the kernels want them; force rows are zero.
 /// The gather table belongs to the list. Pairs not computed at every step must have no history unless they touch.

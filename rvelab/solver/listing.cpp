@@ -288,13 +288,13 @@ double listed_gap(const Fixture& f, const Assembly& a) {
   return (1 - strain) * (reach + a.state.list_skin) - reach - 2 * (1 + strain) * a.state.list_travel;
 }
 
-bool list_is_stale(const Fixture& f, Assembly& a) {
+bool list_is_stale(const Fixture& f, Assembly& a, double margin) {
   // A pair beyond reach r_i + r_j + skin when listed is, after the affine map F and two displacements of at most
   // `travel`, still beyond sigma_min(F) reach - 2 |F| travel, with sigma_min >= 1 - |F - I|, |F| <= 1 + |F - I|.
   const Matrix3 f_since = a.cell.lattice * upper_inverse(a.state.list_lattice);
   const double strain = (f_since - Matrix3::Identity()).norm();
   const double reach = 2 * f.largest_radius;
-  const double skin = a.state.list_skin, allowed = (1 - strain) * (reach + skin) - reach;
+  const double skin = a.state.list_skin, allowed = (1 - strain) * (reach + skin) - reach - margin;
   if (a.state.list_steps >= old_list && next_skin(f, a.state) < skin) return true;
   if (2 * (1 + strain) * a.state.list_travel < allowed) return false;
   if (a.state.list_positions.size() != f.size()) return true;

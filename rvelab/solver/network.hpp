@@ -44,7 +44,7 @@ struct Network {
   double reference_pressure = 0;        ///< Pa
   Vector3 mean_spin = Vector3::Zero();  ///< axial(W + Omega) of the cell, rad/s, zero at dt = 0: a grain's whole spin
                                         ///< is this and its fluctuation
-  bool quasi_static = true;  ///< velocities carry scaled masses: no kinetic stress
+  bool quasi_static = true;             ///< velocities carry scaled masses: no kinetic stress
   int dimension() const { return cell.dimension; }
 };
 

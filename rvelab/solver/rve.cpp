@@ -219,7 +219,7 @@ void Rve::set_velocities(const std::vector<Vector3>& velocity, const std::vector
   for (std::size_t place = 0; place < size(); ++place)
     if (!velocity[index(place)].allFinite() || !spin[index(place)].allFinite())
       throw InputError("set_velocities: the velocity or spin of grain " + std::to_string(m.fixture.id[place]) +
-                       " is not finite");
+                       " is not finite; give finite numbers");
   begin_loading(m.fixture, m.now, Loading::physical);
   for (std::size_t place = 0; place < size(); ++place)
     m.now.set_velocity(m.fixture, place, velocity[index(place)], spin[index(place)]);

@@ -76,7 +76,8 @@ struct Rve::Impl {
 };
 
 /// What advance is to do for an increment in the cell frame.
-Advance loading_of(const FrameSplit& increment, long steps, double step, bool physical, bool deep);
+Advance loading_of(const Fixture& fixture, const FrameSplit& increment, long steps, double step, bool physical,
+                   bool deep);
 
 /// Rotation matrix of a rotation vector (rad), by series: no libm in what touches state.
 Matrix3 rotation_matrix(const Vector3& rotation_vector);

@@ -44,7 +44,7 @@ Servo::Servo(const MixedTarget& target, int dimension, const Matrix3& stress_at_
   for (int r = 0; r < rows_; ++r) {
     const auto& row = target.rows[std::size_t(r)];
     if (!row.strain.allFinite() || !row.stress.allFinite() || !std::isfinite(row.value + row.missed))
-      throw InputError("mixed target: row " + std::to_string(r + 1) + " is not finite");
+      throw InputError("mixed target: row " + std::to_string(r + 1) + " is not finite; give finite numbers");
     const Vector6 stress = strain_components(row.stress);  // B : sigma over six components counts shear twice
     Vector6 strain = strain_components(row.strain);
     strain.tail<3>() *= 0.5;  // A : eps with engineering shear

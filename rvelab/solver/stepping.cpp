@@ -294,11 +294,12 @@ Advanced advance(const Fixture& f, Assembly& a, const Advance& what) {
     // The rows that pad the lanes lose the mean velocity too, step after step; their speed must never count.
     std::fill(a.rows.begin() + std::ptrdiff_t(f.size()) * f.row_length(), a.rows.end(), 0.0);
     for (int k = 0; k < 3; ++k) a.state.mean_velocity[k] = sums.momentum[k] / total_mass;
-    a.state.list_travel += 1.01 * step * std::sqrt(sums.largest_speed_squared);
+    const double travel = 1.01 * step * std::sqrt(sums.largest_speed_squared);
+    a.state.list_travel += travel;
     ++a.state.list_steps;
     a.state.last_rate = rate_end;
     a.state.last_step = step;
-    const bool listed_anew = list_is_stale(f, a);
+    const bool listed_anew = list_is_stale(f, a, what.follow_collisions ? 2 * travel : 0.0);
     if (listed_anew) {
       const Matrix3 lattice_before = a.cell.lattice;
       const Reduction reduction = rebuild(f, a);

@@ -110,7 +110,7 @@ TEST_CASE("a shock from a gas closes the energy ledger") {
 }
 
 TEST_CASE("a fast shear closes the energy ledger as the step falls") {
-  // What is left was 0.5 to 9 % of the work at any step while the couple of the contacts was counted as boundary work.
+  // What is left was 0.5 to 9 % of the work at any step while kinetic energy was counted with w' alone.
   const double rate = GENERATE(0.3, 3.0);
   Specimen s = packed(gas(2, spread_radii(60, 0.2), 0.6, 3, material(1e6, 5e5, 0.3)), 1e4);
   s.solver.ledger = true;
