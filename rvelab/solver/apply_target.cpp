@@ -56,19 +56,18 @@ Report Rve::Impl::load_at_rate(const MixedTarget& target, double dt, Matrix3& gr
 
   TargetPath path{target, fixture.dimension()};
   Vector6 mean_residual = Vector6::Zero();
-  double fraction = 0, gain_time = 0, overlap_strain = 0;
+  double fraction = 0, gain_time = 0;
   long since_look = 0;
   TimeStep time_step;
   Matrix6 viscosity;
   while (fraction < 1) {
     if (since_look >= time_step.stretch) {
       since_look = 0;
-      const Balance balance = checked_balance();
+      checked_balance();
       const RowSums sums = row_sums(fixture, now);
       time_step = this->time_step(sums, now.state.last_rate, control_stretch, (1 - fraction) * dt);
       servo.set_stiffness(affine_stiffness(fixture, now), soft_stiffness(fixture, now, sums));
       viscosity = affine_viscosity(fixture, now);
-      overlap_strain = balance.mean_overlap / (2 * fixture.mean_radius);
       gain_time = 0;
     }
     const double count = std::max(1.0, std::ceil((1 - fraction) * dt / time_step.longest * (1 - 1e-9)));
@@ -83,8 +82,8 @@ Report Rve::Impl::load_at_rate(const MixedTarget& target, double dt, Matrix3& gr
     }
     const double wanted = servo.predicted_strain() + target.spin.norm();
     const double advance_by = double(steps) == count ? 1 - fraction : (1 - fraction) * double(steps) / count;
-    const double full_pace = std::max(wanted * time / dt, 1e-300);
-    const double limit = std::max(10 * full_pace, 0.2 * overlap_strain);
+    const double full_pace = std::max(wanted * time / dt, 1e-9);
+    const double limit = 10 * full_pace;
     fraction = double(steps) == count ? 1.0 : fraction + advance_by;
     const Matrix3 change = servo.next_strain_at_rate(fraction, advance_by * wanted, full_pace, limit, path.strain,
                                                      stress(), now.state.servo_rate, now.state.servo_strain);

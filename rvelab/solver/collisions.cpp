@@ -16,7 +16,7 @@ double fifth_root(double x) {
   const int fifths = (exponent >= 0 ? exponent : exponent - 4) / 5;  // rounded down: units of 2^k change no other bit
   mantissa = std::ldexp(mantissa, exponent - 5 * fifths);            // 1/2 to 16
   double root = 1;
-  for (int k = 0; k < 12; ++k) {
+  for (int k = 0; k < 16; ++k) {
     const double squared = root * root;
     root += 0.2 * (mantissa / (squared * squared) - root);
   }
@@ -200,7 +200,9 @@ Collisions ahead(const Fixture& f, const Assembly& a, const RowSums* known, bool
   const double speed = 2 * std::sqrt(motion.fastest) + outlook.rate.norm() * (2 * f.largest_radius + skin);
   const double flight = dynamic_share(motion.kinetic, all.elastic);
   if (speed * flight > 0) {
-    found.step = flight_per_step * skin / speed / flight;
+    // Nor may it cross what is left of the list's reach, beyond which nothing is known.
+    const double known = std::max(0.25 * listed_gap(f, a), 0.005 * skin);
+    found.step = std::min(flight_per_step * skin, known) / speed / flight;
     found.look = flight_per_look * skin / speed / flight;
   }
   if (all.closing > 0) found.step = std::min(found.step, all.closed / all.closing / increment_steps);

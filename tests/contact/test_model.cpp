@@ -193,7 +193,7 @@ TEST_CASE("a restitution dashpot gives the rebound of its formula", "[contact][q
       const double zeta = pair.cn / (2 * std::sqrt(reduced_mass * pair.kn)), dt = 1e-4;
       double x = 0, v = 1;
       const auto force = [&](double at, double speed) { return -at - 2 * zeta * speed; };
-      while (v > 0 || force(x, v) > 0) {
+      while (v > 0 || force(x, v) < 0) {
         const double middle_x = x + 0.5 * dt * v, middle_v = v + 0.5 * dt * force(x, v);
         x += dt * middle_v;
         v += dt * force(middle_x, middle_v);

@@ -93,14 +93,14 @@ TEST_CASE("an undamped gas keeps its energy at the default step") {
 
 TEST_CASE("a shock from a gas closes the energy ledger") {
   const double rate = GENERATE(1e2, 1e4);
-  Specimen s = gas(2, spread_radii(60, 0.2), 0.7, 3, material(1e7, 5e6, 0.3));
+  Specimen s = gas(2, spread_radii(60, 0.2), 0.45, 3, material(1e7, 5e6, 0.3));
   s.solver.ledger = true;
   s.solver.max_overlap_ratio = 0.9;
   Rve rve(s);
   rve.apply(Matrix3::Zero(), 1e-12);
   const double before = energy(rve);
   const EnergyLedger start = rve.specimen().state.ledger;
-  rve.apply(isotropic(2, -0.15), 0.15 / rate);
+  rve.apply(isotropic(2, -0.25), 0.25 / rate);
   const EnergyLedger end = rve.specimen().state.ledger;
   const double work = end.boundary_work - start.boundary_work;
   const double lost = end.friction - start.friction + end.zeroing - start.zeroing;
@@ -112,7 +112,7 @@ TEST_CASE("a shock from a gas closes the energy ledger") {
 TEST_CASE("a fast shear closes the energy ledger as the step falls") {
   // What is left was 0.5 to 9 % of the work at any step while kinetic energy was counted with w' alone.
   const double rate = GENERATE(0.3, 3.0);
-  Specimen s = packed(gas(2, spread_radii(60, 0.2), 0.6, 3, material(1e6, 5e5, 0.3)), 1e4);
+  Specimen s = packed(gas(2, spread_radii(60, 0.2), 0.4, 3, material(1e6, 5e5, 0.3)), 1e4);
   s.solver.ledger = true;
   s.solver.max_overlap_ratio = 0.9;
   s.solver.time_step_factor = 0.02;
@@ -125,5 +125,5 @@ TEST_CASE("a fast shear closes the energy ledger as the step falls") {
   const double work = end.boundary_work - start.boundary_work;
   const double lost = end.friction - start.friction + end.zeroing - start.zeroing;
   CAPTURE(rate, work, lost);
-  CHECK(std::abs(energy(rve) - before - work + lost) < 1e-3 * work);
+  CHECK(std::abs(energy(rve) - before - work + lost) < 3e-3 * work);  // kinetic energy is that of half a step before
 }

@@ -189,6 +189,11 @@ TEST_CASE("every key of the table is read, and each with the default that it sta
     const toml::node* node = of_stage ? found_in(resolved, key) : resolved[key.table].as_table()->get(key.name);
     if (key.name == "cycles" && key.table != "stage.path") continue;  // set above, for reverse_at_Pa
     if (key.name == "inertial_number") continue;                      // one of the two rates only
+    if (key.name == "held_tolerance") {  // the test passes through time: collisions make a held stress fluctuate
+      REQUIRE(node != nullptr);
+      CHECK(node->value<double>() == Loading::held_tolerance_at_rate);
+      continue;
+    }
     REQUIRE(node != nullptr);
     if (const auto* number = std::get_if<double>(&entry.initial)) CHECK(node->value<double>() == *number);
     if (const auto* whole = std::get_if<long>(&entry.initial)) CHECK(node->value<std::int64_t>() == *whole);
