@@ -45,8 +45,9 @@ TimeStep Rve::Impl::time_step(const RowSums& sums, const Matrix3& rate, long str
     return {fixed, stretch, collisions_ahead(fixture, now, nullptr, false, {rate, double(stretch) * fixed, dt}).deep};
   double stable = fixture.options.time_step_factor * critical_step(fixture, with_floor(sums, fixture));
   // Strong local damping takes (1 - alpha) to (1 + alpha) of the force as the motion turns: at 0.99 an eighth of the
-  // energy came from nowhere at the critical step.
-  if (fixture.damping.local > 0.5) stable *= std::sqrt(2 * (1 - fixture.damping.local));
+  // energy came from nowhere at the critical step. (2 (1 - alpha))^(3/4): with the root the ledger is open by 1.7 %.
+  const double freedom = 2 * (1 - fixture.damping.local);
+  if (freedom < 1) stable *= std::sqrt(freedom * std::sqrt(freedom));
   const double horizon = std::min(double(stretch) * stable, dt);
   const Collisions ahead = collisions_ahead(fixture, now, &sums, true, {rate, horizon, dt});
   const double longest = std::min(stable, ahead.step);

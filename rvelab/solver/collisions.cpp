@@ -27,7 +27,8 @@ namespace {
 
 /// Half of the 2 % allowed of the velocity after a collision with a dashpot of rate gamma = c/m*. The force knows the
 /// velocity of half a step before: ln e comes out larger by gamma dt/2 of itself. A dashpot that acts at once, at zero
-/// overlap, does so up to half a step too long or too short at either end: +- gamma dt.
+/// overlap, does so up to half a step too long or too short at either end: +- gamma dt; one that grows with the fourth
+/// root of the overlap is nearly as abrupt (without this, restitution 0.05 came out 3.6 % off).
 constexpr double restitution_error = 0.01;
 
 /// What a piece of the pairs shows. Sums in the order of the pairs, so that they are the same on any team.
@@ -162,9 +163,10 @@ double dashpot_step(const Fixture& f, double damping, double omega) {
   double gamma = damping;
   if (power == 0.25) gamma = damping * omega / std::sqrt(1.5);
   if (power == 0.5) gamma = damping * omega * omega / 1.5;
-  const double zeta = std::min(0.85, 0.5 * gamma / omega);
+  // Power 1/4 keeps one restitution at all speeds: ln e = -pi zeta / sqrt(1 - zeta^2), zeta = c / sqrt(5 m* k).
+  const double zeta = std::min(0.85, (power == 0.25 ? std::sqrt(0.3) : 0.5) * gamma / omega);
   const double half_logarithm = 0.5 * pi * zeta / std::sqrt(1 - zeta * zeta);
-  return restitution_error / (gamma * (half_logarithm + (power == 0 ? 1 : 0)));
+  return restitution_error / (gamma * (half_logarithm + (power < 0.5 ? 1 : 0)));
 }
 
 /// Square root of the part of the energy that moves, 0 to 1.

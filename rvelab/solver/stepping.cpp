@@ -167,14 +167,22 @@ Matrix3 kinetic_moment(const Fixture& f, const Assembly& a) {
 
 namespace {
 
+}  // namespace
+
 double kinetic_energy(const Fixture& f, const Assembly& a) {
   double sum = 0;
-  for (std::size_t g = 0; g < f.size(); ++g)
-    sum += 0.5 * (a.velocity(f, g).squaredNorm() * a.mass[g] + a.spin(f, g).squaredNorm() / a.inverse_inertia[g]);
+  for (std::size_t g = 0; g < f.size(); ++g) {
+    sum += 0.5 * a.velocity(f, g).squaredNorm() * a.mass[g];
+    if (a.inverse_inertia[g] > 0) sum += 0.5 * a.spin(f, g).squaredNorm() / a.inverse_inertia[g];
+  }
   return sum;
 }
 
-}  // namespace
+void stop_grains(const Fixture& f, Assembly& a) {
+  a.state.ledger.zeroing += kinetic_energy(f, a);
+  for (std::size_t g = 0; g < f.size(); ++g) a.set_velocity(f, g, Vector3::Zero(), Vector3::Zero());
+  a.state.mean_velocity.setZero();
+}
 
 void rescale_inertia(const Fixture& f, const RowSums& sums, Assembly& a) {
   const double before = f.options.ledger ? kinetic_energy(f, a) : 0;

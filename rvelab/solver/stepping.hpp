@@ -40,6 +40,12 @@ void begin_loading(const Fixture& fixture, Assembly& assembly, Loading loading);
 struct RowSums;
 void rescale_inertia(const Fixture& fixture, const RowSums& sums, Assembly& assembly);
 
+/// Of the fluctuations with the masses in use, in units of the force law's energy (J, also at dt = 0).
+double kinetic_energy(const Fixture& fixture, const Assembly& assembly);
+
+/// Sets all velocities to zero and books their energy.
+void stop_grains(const Fixture& fixture, Assembly& assembly);
+
 /// Reynolds stress times volume, -sum m v' v', cell frame, with the masses in use.
 Matrix3 kinetic_moment(const Fixture& fixture, const Assembly& assembly);
 
