@@ -29,6 +29,7 @@ struct Arguments {
   std::string matrix;  ///< "": the installed one
   std::string child;   ///< the case that this process is to run itself
   unsigned jobs = std::max(1u, std::thread::hardware_concurrency());
+  double patience = 1;
   bool quick = false, json = false, list = false;
 };
 
@@ -57,7 +58,9 @@ std::vector<Case> chosen(const std::vector<Case>& all, const Arguments& argument
     const auto& wanted = arguments.wanted;
     const auto names_it = [&](const std::string& word) { return is_named(one, word); };
     if (!wanted.empty() && std::none_of(wanted.begin(), wanted.end(), names_it)) continue;
-    if (!arguments.quick || one.quick) cases.push_back(one);
+    if (arguments.quick && !one.quick) continue;
+    cases.push_back(one);
+    cases.back().seconds *= arguments.patience;
   }
   if (cases.empty()) throw InputError("stress-test: none of these cases is quick; leave --quick out");
   return cases;
@@ -176,6 +179,8 @@ void add_stress_test(CLI::App& app) {
       ->expected(-1);
   command->add_flag("--quick", arguments->quick, "the quick ones only, about a minute on two cores");
   command->add_option("--jobs", arguments->jobs, "cases at a time; without: one a core")->check(CLI::Range(1u, 1024u));
+  command->add_option("--patience", arguments->patience, "limits on time are multiplied by this: for slow builds")
+      ->check(CLI::Range(1.0, 1000.0));
   command->add_flag("--list", arguments->list, "only list the cases");
   command->add_option("--matrix", arguments->matrix, "another file of cases");
   command->add_flag("--json", arguments->json, "print one JSON object");

@@ -18,6 +18,13 @@ constexpr long physical_stretch = 100;  ///< sub-steps between renewals of the c
 /// is the stiffer affine one (1 % of the stress increment takes 20, measured).
 constexpr long fewest_steps = 20;
 
+/// Strain of a quasi-static sub-step in which no grain touches another.
+constexpr double pace_of_gas = 1e-5;
+
+/// Sub-steps before an increment is refused for the number that the present pace would need: where the contacts open,
+/// the pace of the dense start says little of what follows (of 2e8 expected for an expansion by a tenth 2e5 are made).
+constexpr long settling_steps = 100'000;
+
 }  // namespace
 
 Matrix3 rotation_matrix(const Vector3& vector) {
@@ -72,9 +79,8 @@ void Rve::Impl::steer_pace(const Balance& balance, double held_stress) {
   const double factor = std::clamp(root * std::sqrt(root), 0.7, 1.4);
   // Never so fast that a step changes the overlaps by more than a hundredth, nor a fiftieth of that slow: where grains
   // flow without a network the ratio stays near one at any pace (a tenth made target_unbalanced below 3e-4 idle).
-  // Without contacts 1e-5 of a diameter a step.
   const double overlap = std::max(balance.mean_overlap, 0.1 * now.state.reference_overlap) / (2 * fixture.mean_radius);
-  const double fastest = balance.touching > 0 ? 1e-2 * overlap : 1e-5;
+  const double fastest = balance.touching > 0 ? 1e-2 * overlap : pace_of_gas;
   // Where a stress is held far below the specimen's own, the reference would let a step be as large as the overlaps.
   // They are judged by the stress that is asked for: in an avalanche they vanish, and a pace that followed them would
   // make one record cost as much as the whole test (730,000 sub-steps).
@@ -164,7 +170,9 @@ Report Rve::Impl::load(const Matrix3& dh, double dt) {
       paced = count >= fewest;
       stretch = control_stretch;
     }
-    if (report.substeps + steps_left > fixture.options.max_substeps)
+    const bool hopeless = left * strain / pace_of_gas > double(fixture.options.max_substeps);
+    const bool settled = !paced || hopeless || report.substeps >= settling_steps;
+    if (report.substeps + (settled ? steps_left : 1) > fixture.options.max_substeps)
       throw IncrementFailed("the increment needs " + std::to_string(report.substeps + steps_left) +
                             " sub-steps; solver.max_substeps allows " + std::to_string(fixture.options.max_substeps));
     const long steps = steps_left <= stretch + stretch / 2 ? steps_left : stretch;

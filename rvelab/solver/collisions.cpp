@@ -61,6 +61,10 @@ constexpr double increment_steps = 32;
 /// Part of the skin that a sub-step may cross in flight, and part of it after which collisions are looked for anew.
 constexpr double flight_per_step = 0.05, flight_per_look = 0.5;
 
+/// A Hertz collision is steepest at its end: in as many steps as a linear one a gas of them lost 0.11 % of its energy
+/// in 1,000 collisions a grain, the linear one 0.02 %.
+constexpr double hertz_steps = 1.25;
+
 constexpr double pi = 3.14159265358979323846;
 
 double square(double x) { return x * x; }
@@ -211,7 +215,8 @@ Collisions ahead(const Fixture& f, const Assembly& a, const RowSums* known, bool
   const double share = dynamic_share(all.approach + motion.resultants, all.elastic);
   const double omega = f.law == KernelLaw::linear ? std::sqrt(all.stiffness) : hertz_frequency(all.stiffness);
   if (!(omega * share > 0)) return found;
-  found.step = std::min(found.step, pi / double(f.options.collision_steps) / omega / share);
+  const double steps = double(f.options.collision_steps) * (f.law == KernelLaw::linear ? 1 : hertz_steps);
+  found.step = std::min(found.step, pi / steps / omega / share);
   // A few fast grains among many at rest: half of the step at which the stiffest of their impacts would be unstable.
   if (all.impact > 0) found.step = std::min(found.step, 1 / hertz_frequency(all.impact));
   if (all.damping > 0) found.step = std::min(found.step, dashpot_step(f, all.damping, omega) / (share * share));

@@ -209,7 +209,8 @@ inline __attribute__((always_inline)) void sphere_forces(const StepConstants& c,
       store_as(p.moment[2] + at, moment.z);
       if constexpr (T::Ledger) {
         if (touching && kr > 0.0) {
-          dissipation->rolling += dot(plus(moment_trial, -one, moment), moment) / kr;
+          const Triple<V> both = plus(plus(moment, one, moment_trial), kr * c.dt, bending);
+          dissipation->rolling += 0.5 * dot(plus(moment_trial, -one, moment), both) / kr;
           if (Law::stores_root_overlap && last_root > 0)
             dissipation->law_loss += 0.5 * (moment_before / (p.kr[at] * last_root) - moment_carried / kr);
         } else if (!touching && moment_before > 0.0) {
@@ -223,7 +224,9 @@ inline __attribute__((always_inline)) void sphere_forces(const StepConstants& c,
     }
     if constexpr (T::Ledger && T::Advance) {
       if (touching && kt > 0.0) {
-        dissipation->friction += dot(plus(trial, -one, tangential), tangential) / kt;
+        // Work of the mean of old and new force, as for discs.
+        const Triple<V> both = plus(plus(tangential, one, trial), kt * c.dt, slip_rate);
+        dissipation->friction += 0.5 * dot(plus(trial, -one, tangential), both) / kt;
         if constexpr (Law::stores_root_overlap) {
           const double scale = Law::carried(root, last_root, c.unload_rescale);
           if (last_root > 0)

@@ -39,7 +39,7 @@ struct SolverOptions {
   double skin = 0.15;               ///< largest Verlet skin over the mean radius, > 0; fitted down while steps pass
   double time_step_factor = 0.7;    ///< fraction of the critical step 2/omega_max, 0 < f < 1
   double fixed_time_step = 0;       ///< s; > 0: dt > 0 loading uses exactly this step
-  long collision_steps = 80;        ///< dt > 0: sub-steps of a collision where collisions carry the energy; 0: the
+  long collision_steps = 100;       ///< dt > 0: sub-steps of a collision where collisions carry the energy; 0: the
                                     ///< critical step alone (collisions.hpp)
   double target_unbalanced = 1e-3;  ///< dt = 0: unbalanced ratio that steers the number of sub-steps
   long fixed_substeps = 0;          ///< dt = 0: > 0: exactly so many sub-steps an increment, no control

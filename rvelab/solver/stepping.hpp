@@ -24,7 +24,7 @@ struct Advanced {
   double step = 1;  ///< of the last sub-step
 };
 
-/// Sub-steps between looks at the overlaps while one may come near its limit: of the 80 of a collision every fourth
+/// Sub-steps between looks at the overlaps while one may come near its limit: of the 100 of a collision every fourth
 /// finds the largest overlap to within 1 %.
 constexpr long deep_look = 4;
 

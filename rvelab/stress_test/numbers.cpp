@@ -224,7 +224,7 @@ void kernels_agree(const Case& asked, Verdict& verdict) {
     verdict.law(std::string("bits of RVELAB_ISA=") + instruction_set + " are those of scalar", *hash == *first);
   }
   verdict.law("at least two instruction sets ran", ran >= 2);
-  if (first) verdict.hash(*first);
+  if (first) verdict.bits(*first);
 }
 
 }  // namespace rvelab::stress_test

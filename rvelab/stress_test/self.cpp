@@ -12,7 +12,7 @@ namespace rvelab::stress_test {
 
 void self_right(const Case& asked, Verdict& verdict) {
   verdict.law("a half", 0.5, 1);
-  verdict.hash(std::uint64_t(asked("value")));
+  verdict.bits(std::uint64_t(asked("value")));
 }
 
 void self_wrong(const Case&, Verdict& verdict) { verdict.law("two", 2, 1); }

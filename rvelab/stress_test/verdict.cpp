@@ -1,6 +1,7 @@
 #include "rvelab/stress_test/verdict.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -40,6 +41,16 @@ void Verdict::law(const std::string& what, double measured, double allowed) { la
 
 void Verdict::agreement(const std::string& what, double measured, double allowed) {
   agreements_.take(what, measured, allowed);
+}
+
+void Verdict::bits(std::uint64_t value) {
+  std::uint64_t hash = hash_.value_or(14695981039346656037u);  // FNV-1a, 64 bits
+  for (int byte = 0; byte < 8; ++byte) hash = (hash ^ (value >> 8 * byte & 0xff)) * 1099511628211u;
+  hash_ = hash;
+}
+
+void Verdict::bits(const Matrix3& value) {
+  for (int k = 0; k < 9; ++k) bits(std::bit_cast<std::uint64_t>(value(k / 3, k % 3)));
 }
 
 void Verdict::refusal(const std::string& what, const std::optional<Refused>& found) {

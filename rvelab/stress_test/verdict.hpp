@@ -27,7 +27,7 @@ struct Answer {
   Outcome outcome = Outcome::wrong;
   std::string status = "ok";          ///< "ok", the criterion that failed, a refusal's text, "time limit", "signal 11"
   std::optional<double> error;        ///< largest measured value over what is allowed; none: nothing was measured
-  std::optional<std::uint64_t> hash;  ///< of the state at the end, where a case asks for bits
+  std::optional<std::uint64_t> hash;  ///< of the stress after every increment, or of what a case gives
 };
 
 /// A call that the RVE refused in an experiment that did not ask for it.
@@ -55,7 +55,9 @@ class Verdict {
   void refusal(const std::string& what, const std::optional<Refused>& found);
 
   void note(const Report& report) { flagged_ = flagged_ || flagged(report); }
-  void hash(std::uint64_t value) { hash_ = value; }
+  /// The bits of a number that two builds must agree on are taken into the hash of the answer.
+  void bits(std::uint64_t value);
+  void bits(const Matrix3& value);
 
   /// The answer of an experiment that came to its end.
   Answer answer(bool may_flag) const;
