@@ -185,6 +185,8 @@ TEST_CASE("pack takes material.key for all materials, and material.NAME.key for 
   CHECK(angle.first == Approx(1));
   CHECK(angle.second == Approx(1));
   expect_mistake(here.run("pack two.toml -o S.h5 --set material.frictoin=0.3"), "the nearest known key is");
+  expect_mistake(here.run("pack two.toml -o S.h5 --set material.friction=-1"),
+                 "--set material.friction=-1: material.friction = -1 is out of range");
   expect_mistake(here.run("pack two.toml -o S.h5 --set material.clay.friction=0.3"), "0 (sand), 1 (glass)");
 }
 
