@@ -10,6 +10,8 @@
 #include "rvelab/error.hpp"
 #include "rvelab/io/import_csv.hpp"
 #include "rvelab/io/specimen_file.hpp"
+#include "rvelab/measure/proportions.hpp"
+#include "rvelab/solver/rve.hpp"
 
 namespace rvelab::cli {
 namespace {
@@ -50,6 +52,8 @@ void run_import(const ImportArguments& arguments) {
   if (!arguments.material.empty()) options.material_path = arguments.material;
   options.settings = arguments.settings;
   const Specimen specimen = import_csv(inputs.particles, inputs.contacts, inputs.meta, options);
+  // Opened before it is written: what cannot be opened is no specimen.
+  const Proportions proportions = proportions_of(Rve(specimen).network());
   write_specimen(specimen, arguments.output);
 
   Listing listing;
@@ -61,6 +65,7 @@ void run_import(const ImportArguments& arguments) {
   listing.add("slip", name(specimen.contact.slip));
   listing.add("rolling", specimen.contact.rolling);
   listing.add("lattice_m", row_major(specimen.cell.lattice), "m");
+  add_proportions(listing, proportions);
   listing.print(arguments.json);
 }
 

@@ -37,6 +37,7 @@ struct Job {
   RecipeFile what;
   std::string file;
   Json made;  ///< null: not made
+  Proportions proportions;
 };
 
 /// "S.h5" with a word before its extension: "S_20000Pa.h5".
@@ -54,7 +55,7 @@ std::vector<Job> jobs_of(const RecipeFile& file, const PackArguments& arguments)
       const std::string number = std::to_string(k + 1);
       const std::string padded = std::string(digits - number.size(), '0') + number;
       jobs.push_back(
-          {file.member(file.recipe.seed + k, pressure), arguments.count > 1 ? with_word(name, padded) : name, {}});
+          {file.member(file.recipe.seed + k, pressure), arguments.count > 1 ? with_word(name, padded) : name, {}, {}});
     }
   };
   if (file.pressures.empty()) add(std::nullopt, arguments.output);
@@ -85,10 +86,11 @@ class DrawLine {
   std::mutex mutex_;
 };
 
-Json summary_of(const Job& job, const Packing& packing, double seconds) {
+Json summary_of(Job& job, const Packing& packing, double seconds) {
   const Rve rve(packing.specimen);
   const Network network = rve.network();
   const int dimension = network.dimension();
+  job.proportions = proportions_of(network);
   Json made;
   made["file"] = job.file;
   made["seed"] = job.what.recipe.seed;
@@ -125,9 +127,13 @@ void report(const RecipeFile& file, const std::vector<Job>& jobs, bool json) {
   if (jobs.size() == 1) {
     const auto unit = [](const std::string& key) { return key.ends_with("_Pa") ? "Pa" : key == "wall_s" ? "s" : ""; };
     for (const auto& [key, value] : jobs.front().made.items()) listing.add(key, value, unit(key));
+    add_proportions(listing, jobs.front().proportions);
   } else {
     Json rows = Json::array();
-    for (const Job& job : jobs) rows.push_back(job.made);
+    for (const Job& job : jobs) {
+      rows.push_back(job.made);
+      rows.back().update(as_json(job.proportions));
+    }
     listing.add("specimens", std::move(rows));
   }
   listing.print(json);

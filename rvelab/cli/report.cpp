@@ -39,18 +39,21 @@ void Listing::add(const std::string& key, Json value, const std::string& unit) {
 
 std::string Listing::json() const {
   Json object = Json::object();
-  for (const auto& line : lines_) object[line.key] = line.value;
+  for (const auto& line : lines_)
+    if (line.form != Form::text) object[line.key] = line.value;
   return object.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::string Listing::text() const {
   std::size_t width = 0;
-  for (const auto& line : lines_) width = std::max(width, line.key.size());
+  for (const auto& line : lines_)
+    if (line.form != Form::json) width = std::max(width, line.key.size());
   std::string text;
   const auto put = [&](const std::string& key, const std::string& value, const std::string& unit) {
     text += key + std::string(width + 2 - key.size(), ' ') + value + (unit.empty() ? "" : " " + unit) + "\n";
   };
   for (const auto& line : lines_) {
+    if (line.form == Form::json) continue;
     if (!has_rows(line.value)) {
       put(line.key, on_one_line(line.value), line.unit);
       continue;
@@ -72,6 +75,23 @@ Json row_major(const Eigen::MatrixXd& matrix) {
     rows.push_back(std::move(row));
   }
   return rows;
+}
+
+Json as_json(const Proportions& p) {
+  Json json;
+  json["void_ratio"] = p.void_ratio;
+  json["mean_overlap_ratio"] = p.mean_overlap;
+  json["largest_overlap_ratio"] = p.largest_overlap;
+  json["stiffness_level"] = p.stiffness_level;
+  json["cell_edges_in_diameters"] = Json::array();
+  for (int k = 0; k < p.dimension; ++k) json["cell_edges_in_diameters"].push_back(p.cell_edges[k]);
+  return json;
+}
+
+void add_proportions(Listing& listing, const Proportions& proportions) {
+  listing.add_to_text("proportions", in_words(proportions));
+  const Json json = as_json(proportions);
+  for (const auto& [key, value] : json.items()) listing.add_to_json(key, value);
 }
 
 }  // namespace rvelab::cli

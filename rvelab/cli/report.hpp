@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "rvelab/measure/proportions.hpp"
+
 namespace rvelab::cli {
 
 using Json = nlohmann::ordered_json;
@@ -17,6 +19,9 @@ class Listing {
   /// `value`: number, text, truth, array or object. `unit` stands in the listing only ("" for none); JSON keys end in
   /// their unit.
   void add(const std::string& key, Json value, const std::string& unit = "");
+  /// A line that only the one form or the other has.
+  void add_to_text(const std::string& key, const std::string& text) { lines_.push_back({key, text, "", Form::text}); }
+  void add_to_json(const std::string& key, Json value) { lines_.push_back({key, std::move(value), "", Form::json}); }
   bool empty() const { return lines_.empty(); }
   std::string json() const;  ///< one object, indented, ends with a newline
   std::string text() const;  ///< one line a key; matrices and lists of objects one line a row
@@ -24,15 +29,22 @@ class Listing {
   void print(bool as_json) const;
 
  private:
+  enum class Form { both, text, json };
   struct Line {
     std::string key;
     Json value;
     std::string unit;
+    Form form = Form::both;
   };
   std::vector<Line> lines_;
 };
 
 /// A matrix as an array of rows.
 Json row_major(const Eigen::MatrixXd& matrix);
+
+/// What the numbers of a specimen are to each other: one line of the listing, keys of their own in JSON.
+void add_proportions(Listing& listing, const Proportions& proportions);
+/// Those keys.
+Json as_json(const Proportions& proportions);
 
 }  // namespace rvelab::cli

@@ -1,13 +1,16 @@
 #include "rvelab/io/export_csv.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <tuple>
 
 #include "rvelab/error.hpp"
 #include "rvelab/io/import_contacts.hpp"
 #include "rvelab/io/text_file.hpp"
 #include "rvelab/io/version.hpp"
+#include "rvelab/solver/neighbour_list.hpp"
 
 namespace rvelab {
 namespace {
@@ -61,7 +64,24 @@ Vector3 tangential_force(const Specimen& specimen, const Contact& contact) {
   return contact.tangential_force[0] * Vector3(-normal[1], normal[0], 0);
 }
 
-std::string contacts_of(const Specimen& specimen) {
+/// Contacts of a specimen, and the pairs that touch without a history: without friction, springs or slip that is all of
+/// them.
+std::vector<Contact> touching_contacts(const Specimen& specimen) {
+  const auto key = [](const auto& pair) { return std::tie(pair.i, pair.j, pair.image); };
+  std::vector<Contact> contacts = specimen.contacts;
+  for (const ListedPair& pair :
+       list_pairs(specimen.cell, specimen.grains.position.front().data(), 3, specimen.grains.radius, 0)) {
+    const auto same = std::lower_bound(specimen.contacts.begin(), specimen.contacts.end(), pair,
+                                       [&](const Contact& c, const ListedPair& p) { return key(c) < key(p); });
+    const Contact bare{pair.i, pair.j, pair.image};
+    const bool known = same != specimen.contacts.end() && key(*same) == key(pair);
+    if (!known && io::normal_force_of(specimen, bare) > 0) contacts.push_back(bare);
+  }
+  std::sort(contacts.begin(), contacts.end(), [&](const Contact& a, const Contact& b) { return key(a) < key(b); });
+  return contacts;
+}
+
+std::string text_of(const Specimen& specimen, const std::vector<Contact>& contacts) {
   const int dimension = specimen.cell.dimension;
   const Law law = specimen.contact.law;
   const bool rolling = specimen.contact.rolling, hertz = law == Law::hertz_mindlin || law == Law::hertz_given;
@@ -70,7 +90,7 @@ std::string contacts_of(const Specimen& specimen) {
   if (rolling) text += (dimension == 3 ? axes("m", 3) : ",mz") + std::string(",kr");
   text += "\n";
   const Matrix3& turn = specimen.cell.rotation;
-  for (const Contact& contact : specimen.contacts) {
+  for (const Contact& contact : contacts) {
     const PairParameters pair = io::parameters_of(specimen, contact);
     text += std::to_string(specimen.grains.id[std::size_t(contact.i)]) + "," +
             std::to_string(specimen.grains.id[std::size_t(contact.j)]);
@@ -105,13 +125,13 @@ void add_parameters(Json& meta, const Specimen& specimen) {
   }
 }
 
-std::string meta_of(const Specimen& specimen) {
+std::string meta_of(const Specimen& specimen, std::size_t contacts) {
   const int dimension = specimen.cell.dimension;
   Json meta;
   meta["dim"] = dimension;
   meta["units"] = "SI";
   meta["n_particles"] = specimen.grains.size();
-  meta["n_contacts"] = specimen.contacts.size();
+  meta["n_contacts"] = contacts;
   const Matrix3 vectors = specimen.cell.rotation * specimen.cell.lattice;
   for (int k = 0; k < dimension; ++k) {
     Json row = Json::array();
@@ -130,8 +150,9 @@ CsvExport export_csv(const Specimen& specimen, const std::string& stem) {
   expect_names(specimen);
   const CsvExport files{stem + ".particles.csv", stem + ".contacts.csv", stem + ".json", stem + ".material.toml"};
   io::publish_text(files.particles, particles_of(specimen));
-  io::publish_text(files.contacts, contacts_of(specimen));
-  io::publish_text(files.meta, meta_of(specimen));
+  const std::vector<Contact> contacts = touching_contacts(specimen);
+  io::publish_text(files.contacts, text_of(specimen, contacts));
+  io::publish_text(files.meta, meta_of(specimen, contacts.size()));
   io::publish_text(files.material, material_file_text(specimen));
   return files;
 }

@@ -18,8 +18,9 @@ struct CsvExport {
 
 /// Writes the four files, SI units, laboratory frame, every number exact. `import_csv` with all four gives the same
 /// cell, grains, contacts and parameters: bit for bit where the frame is not turned (rotation I, 3D), else to
-/// round-off; what a resting state does not have (velocities, pace of the solver, ledger) is not carried. InputError if
-/// a material has no name that a CSV cell can hold, or two have the same.
+/// round-off; pairs that touch are contacts, with a history or without. What a resting state does not have (velocities,
+/// pace of the solver, ledger) is not carried. InputError if a material has no name that a CSV cell can hold, or two
+/// have the same.
 CsvExport export_csv(const Specimen& specimen, const std::string& stem);
 
 /// The material file (read_material_file) that says all parameters of the specimen.

@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "rvelab/io/archive.hpp"
+#include "rvelab/solver/list_size.hpp"
 
 namespace rvelab::io {
 namespace {
@@ -120,7 +121,7 @@ std::vector<KeyEntry> damping() {
 std::vector<KeyEntry> solver() {
   const char* t = "solver";
   return {
-      entry(t, "skin", "1", &SolverOptions::skin, positive,
+      entry(t, "skin", "1", &SolverOptions::skin, {0, largest_skin_ratio, true, false},
             "largest Verlet skin over the mean radius; fitted down while steps pass"),
       entry(t, "time_step_factor", "1", &SolverOptions::time_step_factor, inside_one,
             "fraction of the critical step 2/omega_max"),

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "rvelab/measure/measures.hpp"
+#include "rvelab/measure/proportions.hpp"
 #include "rvelab/pack/approach.hpp"
 #include "rvelab/pack/consolidation.hpp"
 #include "rvelab/pack/scatter.hpp"
@@ -46,6 +47,22 @@ Rve steered(const Rve& rve, const Recipe& recipe, const std::atomic<bool>* stop)
   return other;
 }
 
+/// Throws OverlapBeyondLimit if the largest overlap is more than `share` of what the recipe allows.
+void expect_overlaps(const Recipe& recipe, const Rve& rve, double share) {
+  const Network network = rve.network();
+  const double largest = largest_overlap_ratio(network), limit = recipe.solver.max_overlap_ratio;
+  if (largest <= share * limit) return;
+  std::string text = "packing: grains overlap by " + in_words(largest) +
+                     " of the smaller radius; solver.max_overlap_ratio allows " + in_words(limit) + "; ";
+  if (!recipe.stress) throw OverlapBeyondLimit(text + "the cell is too small for its grains: raise target.void_ratio");
+  const double diameter = mean_diameter(network);
+  text += "take stiffer grains or a lower pressure (" + in_words(proportions_of(network)) + ")";
+  if (recipe.shape == Shape::disc && recipe.thickness > 2 * diameter)
+    text += ", or a slab about as thick as a grain: pack.thickness_m = " + in_words(recipe.thickness) + " m is " +
+            in_words(recipe.thickness / diameter) + " mean diameters, and the force on a grain grows with it";
+  throw OverlapBeyondLimit(text + "; check the units of radii and stiffness");
+}
+
 }  // namespace
 
 Draw draw(const Recipe& recipe, long number, double friction, const std::atomic<bool>* stop) {
@@ -64,9 +81,11 @@ Draw draw(const Recipe& recipe, long number, double friction, const std::atomic<
     for (int attempt = 0; !consolidate(rve, goal, prepared) && attempt < most_attempts; ++attempt) {
       rve = steered(pressed_again(recipe, rve, stop), recipe, stop);
     }
+    expect_overlaps(recipe, rve, 1.5);  // what is so far beyond will not come back
     rve.set_materials(recipe.materials);
     goal.stress = *recipe.stress;
     consolidate(rve, goal, nearly);
+    expect_overlaps(recipe, rve, 1);
     result.void_ratio = void_ratio(rve.network());
     const double miss = recipe.void_ratio ? std::abs(result.void_ratio - *recipe.void_ratio) : 0;
     if (miss > recipe.void_ratio_tolerance + still_to_come) return result;
@@ -78,6 +97,7 @@ Draw draw(const Recipe& recipe, long number, double friction, const std::atomic<
     rve.set_materials(recipe.materials);
     result.at_rest = rve.relax(recipe.unbalanced, 100'000).target_held;
   }
+  expect_overlaps(recipe, rve, 1);
   result.void_ratio = void_ratio(rve.network());
   result.specimen = rve.specimen();
   result.specimen.damping = recipe.damping;

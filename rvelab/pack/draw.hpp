@@ -3,9 +3,16 @@
 
 #include <atomic>
 
+#include "rvelab/error.hpp"
 #include "rvelab/pack/recipe.hpp"
 
 namespace rvelab {
+
+/// Grains of a draw overlap by more than the recipe's solver.max_overlap_ratio. Other draws of the recipe will not do
+/// better: the message says what makes grains so soft.
+struct OverlapBeyondLimit : IncrementFailed {
+  using IncrementFailed::IncrementFailed;
+};
 
 struct Draw {
   double friction = 0;    ///< of the preparation
@@ -16,7 +23,7 @@ struct Draw {
 };
 
 /// Makes draw `number` (from 1) of a recipe with the given preparation friction; the same bits for the same three.
-/// IncrementFailed if the grains do not come to the stress; Interrupted.
+/// IncrementFailed if the grains do not come to the stress; OverlapBeyondLimit; Interrupted.
 Draw draw(const Recipe& recipe, long number, double friction, const std::atomic<bool>* stop);
 
 }  // namespace rvelab

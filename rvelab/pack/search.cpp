@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <limits>
 #include <optional>
 #include <sstream>
@@ -12,8 +13,9 @@ namespace rvelab {
 
 namespace {
 
-constexpr double half_friction = 0.1;  ///< whose coordinate is one half
-constexpr double bandwidth = 0.2;      ///< of the local line, over the range of coordinates
+constexpr double half_friction = 0.1;     ///< whose coordinate is one half
+constexpr double least_deviation = 1e-3;  ///< of void ratios of one friction, where few draws show less
+constexpr double bandwidth = 0.2;         ///< of the local line, over the range of coordinates
 
 /// Level pieces of the best rising curve.
 struct Level {
@@ -52,15 +54,19 @@ double crossing(const std::vector<Level>& levels, double target, double low, dou
   return high;
 }
 
+/// Why a search ends without a specimen.
+enum class End { draws_spent, out_of_reach };
+
 /// The range that the draws reached, and what to do about a target that is out of it.
-Error not_found(const Recipe& recipe, const std::vector<Draw>& draws, std::size_t failed) {
+Error not_found(const Recipe& recipe, const std::vector<Draw>& draws, std::size_t failed, End end) {
   const auto order = [](const Draw& a, const Draw& b) { return a.void_ratio < b.void_ratio; };
   const auto [lowest, highest] = std::minmax_element(draws.begin(), draws.end(), order);
   std::ostringstream text;
   text << "target.void_ratio = " << *recipe.void_ratio << " was not met within " << recipe.void_ratio_tolerance
        << " in " << draws.size() + failed << " draws" << (failed > 0 ? " (" + std::to_string(failed) + " failed)" : "")
        << "; reached: " << lowest->void_ratio << " (preparation friction " << lowest->friction << ") to "
-       << highest->void_ratio << " (" << highest->friction << "); ";
+       << highest->void_ratio << " (" << highest->friction << ")"
+       << (end == End::out_of_reach ? ", too far from it for more draws to help; " : "; ");
   if (*recipe.void_ratio > highest->void_ratio) {
     text << "give a lower void ratio, a lower pressure, rolling friction in the preparation, or raise "
             "preparation.highest_friction";
@@ -92,16 +98,44 @@ class Search {
                                             recipe_.preparation.lowest_friction, recipe_.preparation.highest_friction);
       }
       if (const auto found = make(first, count)) return packing(*found);
+      if (made().empty() && overlap_) std::rethrow_exception(overlap_);
+      if (out_of_reach()) throw not_found(recipe_, made(), draws_.size() - made().size(), End::out_of_reach);
     }
-    std::vector<Draw> made;
-    for (std::size_t k = 0; k < draws_.size(); ++k) {
-      if (failures_[k].empty()) made.push_back(draws_[k]);
-    }
-    if (made.empty()) throw IncrementFailed(failures_.front());
-    throw not_found(recipe_, made, draws_.size() - made.size());
+    if (made().empty()) throw IncrementFailed(failures_.front());
+    throw not_found(recipe_, made(), draws_.size() - made().size(), End::draws_spent);
   }
 
  private:
+  std::vector<Draw> made() const {
+    std::vector<Draw> made;
+    for (std::size_t k = 0; k < draws_.size(); ++k)
+      if (failures_[k].empty()) made.push_back(draws_[k]);
+    return made;
+  }
+
+  /// Draws with one friction scatter by thousandths, those of few grains by hundredths. Where those at the end of the
+  /// range that is nearer to the target miss it by many times their standard deviation, no draw to come will meet it:
+  /// ten times of four draws, which know that deviation poorly, towards five times of many.
+  bool out_of_reach() const {
+    const double target = *recipe_.void_ratio, near_end = 0.05 * (high_ - low_);
+    const std::vector<Draw> draws = made();
+    const auto too_low = [&](const Draw& draw) { return draw.void_ratio < target; };
+    const bool above = !draws.empty() && too_low(draws.front());
+    if (!std::all_of(draws.begin(), draws.end(), [&](const Draw& draw) { return too_low(draw) == above; }))
+      return false;
+    double n = 0, sum = 0, squares = 0;
+    for (const Draw& draw : draws) {
+      const double at = coordinate_of(draw.friction), missed = draw.void_ratio - target;
+      if (above ? at < high_ - near_end : at > low_ + near_end) continue;
+      ++n;
+      sum += missed;
+      squares += missed * missed;
+    }
+    if (n < double(draws_at_a_time)) return false;
+    const double mean = sum / n, deviation = std::sqrt(std::max(0.0, squares - n * mean * mean) / (n - 1));
+    return std::abs(mean) > recipe_.void_ratio_tolerance + 5 * (1 + 4 / n) * std::max(deviation, least_deviation);
+  }
+
   double next_coordinate(std::size_t number, std::size_t known) {
     // The first ones over the range, at its middles rather than its ends.
     if (known == 0) return low_ + (high_ - low_) * ((double(number) + 0.5) / double(draws_at_a_time));
@@ -129,6 +163,10 @@ class Search {
       Draw& made = draws_[number];
       try {
         made = draw(recipe_, long(number) + 1, made.friction, watch_.stop);
+      } catch (const OverlapBeyondLimit& failure) {
+        failures_[number] = failure.what();
+        if (number == 0) overlap_ = std::current_exception();
+        return;
       } catch (const IncrementFailed& failure) {
         failures_[number] = failure.what();
         return;
@@ -161,6 +199,7 @@ class Search {
   double low_, high_;
   Uniform uniform_;
   std::vector<Draw> draws_;
+  std::exception_ptr overlap_;         ///< of the first draw, if its grains overlapped too much
   std::vector<std::string> failures_;  ///< of each draw, written by its own thread; empty: it was made
 };
 

@@ -53,6 +53,18 @@ toml::table& find_in(toml::array* stages, const std::string& list, const std::st
                    "; give the name or the number of one");
 }
 
+/// Puts the value of an assignment into a table, in place of what is there.
+void put(toml::table& table, const std::string& key, const std::string& text, const std::string& assignment) {
+  // Of two keys for one quantity the assigned one stands.
+  if (key == "friction") table.erase("friction_angle_deg");
+  if (key == "friction_angle_deg") table.erase("friction");
+  // A node that is moved keeps its source, so that a mistake in it names the assignment.
+  toml::table value = parsed_value(text, assignment);
+  toml::node& node = *value.get("value");
+  const toml::source_region source = node.source();
+  node.visit([&](auto& concrete) { table.insert_or_assign(toml::key(key, source), std::move(concrete)); });
+}
+
 }  // namespace
 
 void assign(toml::table& file, const std::string& assignment) {
@@ -64,7 +76,7 @@ void assign(toml::table& file, const std::string& assignment) {
     throw InputError("--set " + assignment +
                      " is not an assignment; allowed: table.key=value; write for example test.pressure_Pa=2e4");
   }
-  toml::table value = parsed_value(trimmed(assignment.substr(equals + 1)), assignment);
+  const std::string text = trimmed(assignment.substr(equals + 1));
   toml::table* table = &file;
   std::size_t next = 0;
   if (parts[0] == "stage") {
@@ -84,16 +96,17 @@ void assign(toml::table& file, const std::string& assignment) {
       ++next;
       continue;
     }
+    if (inner->is_array_of_tables() && parts[next] == "material") {  // material.key: all of them
+      for (toml::node& material : *inner->as_array()) put(*material.as_table(), parts.back(), text, assignment);
+      return;
+    }
     if (!inner->is_table()) {
       throw InputError("--set " + assignment + ": " + parts[next] +
                        " is no table in the protocol; allowed: table.key=value; correct the key");
     }
     table = inner->as_table();
   }
-  // A node that is moved keeps its source, so that a mistake in it names the assignment.
-  toml::node& node = *value.get("value");
-  const toml::source_region source = node.source();
-  node.visit([&](auto& concrete) { table->insert_or_assign(toml::key(parts.back(), source), std::move(concrete)); });
+  put(*table, parts.back(), text, assignment);
 }
 
 void protocol::assign_all(toml::table& file, const std::vector<std::string>& assignments,

@@ -95,10 +95,9 @@ void open(const Specimen& specimen, Fixture& f, Assembly& a) {
   f.mass = std::move(mass);
   f.inertia = std::move(inertia);
 
-  list_with(f, s.contacts, a);
-  if (a.state.has_reference) return;
   try {
-    rebuild(f, a);
+    list_with(f, s.contacts, a);
+    if (!a.state.has_reference) rebuild(f, a);
   } catch (const IncrementFailed& error) {
     throw InputError(std::string("specimen: ") + error.what());
   }

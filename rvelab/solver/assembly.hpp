@@ -27,8 +27,7 @@ struct Fixture {
   double mean_radius = 0, largest_radius = 0, smallest_radius = 0;  ///< m
   double largest_skin = 0;                                          ///< m
   double min_height = 0;                                            ///< m
-  double overlap_limit = 0;  ///< over the smaller radius; a specimen that comes with more keeps that and a hundredth
-  SceneKernels kernels;      ///< of the scene as stated, for dt > 0
+  SceneKernels kernels;                                             ///< of the scene as stated, for dt > 0
   SceneKernels resting_kernels;  ///< dt = 0: without the dashpot, whose time a sub-step is not
   /// 1 without rolling stiffness; sqrt(4 kt r^2/(4 kt r^2 + 2 kr)) of typical grains: how much slower than the contacts
   /// grains answer that slip about a stiff rolling spring, once their inertia is scaled for that spring.
@@ -94,7 +93,7 @@ Specimen close(const Fixture& fixture, const Assembly& assembly);
 void check_height(const Fixture& fixture, const Cell& cell);
 
 /// Reduces the lattice where needed, wraps the grains, lists anew, carries history over. Returns the reduction made.
-/// Throws IncrementFailed if the shortest lattice vector is below min_height.
+/// Throws IncrementFailed if the shortest lattice vector is below min_height, or if the list would be too long.
 Reduction rebuild(const Fixture& fixture, Assembly& assembly);
 
 /// Gap up to which every pair is listed, m, whenever the list was made: what lies between depends on the list.

@@ -120,7 +120,7 @@ Findings pairs_in(const Fixture& f, const Assembly& a, const Outlook& outlook, s
       const double over = power == 0 ? mass : (power == 0.5 ? k : std::sqrt(mass * k));
       found.damping = std::max(found.damping, a.pairs.cn[p] / over);
     }
-    const double limit = f.overlap_limit * std::min(f.radius[i], f.radius[j]);
+    const double limit = f.options.max_overlap_ratio * std::min(f.radius[i], f.radius[j]);
     if (travel - gap > limit)
       found.deep =
           found.deep || std::min(travel, reach(hertz, k, mass, std::abs(opening))) + std::max(0.0, -gap) > 0.9 * limit;

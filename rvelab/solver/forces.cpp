@@ -272,10 +272,10 @@ double unbalanced_ratio(const Balance& balance, double reference_contact_force) 
 void check_overlaps(const Fixture& f, const Balance& balance) {
   if (!balance.finite)
     throw IncrementFailed("the increment led to values that are not finite; apply it in smaller parts");
-  if (balance.largest_overlap_ratio > f.overlap_limit)
+  if (balance.largest_overlap_ratio > f.options.max_overlap_ratio)
     throw IncrementFailed("grains overlap by " + in_words(balance.largest_overlap_ratio) +
-                          " of the smaller radius; solver.max_overlap_ratio allows " + in_words(f.overlap_limit) +
-                          "; compress less or take stiffer grains");
+                          " of the smaller radius; solver.max_overlap_ratio allows " +
+                          in_words(f.options.max_overlap_ratio) + "; compress less or take stiffer grains");
 }
 
 }  // namespace rvelab

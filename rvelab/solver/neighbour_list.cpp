@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+
+#include "rvelab/solver/bins.hpp"
+#include "rvelab/solver/list_size.hpp"
 
 namespace rvelab {
 
@@ -13,105 +17,10 @@ bool points_forward(const Image& image) {
 
 namespace {
 
-/// A grain as the search sees it: place wrapped into the cell, lattice translation that took it there, bin by bin.
-struct Binned {
-  double x[3], radius;
-  std::int32_t grain;
-  Image period;  ///< position = x + L period
-};
-
 /// Where a bin coordinate outside the cell lands, and by how many periods.
 struct Landing {
   int bin, shift;
 };
-
-/// The grains of one size class, sorted into bins along the lattice directions.
-struct SizeClass {
-  double largest_radius = 0;
-  int count[3] = {1, 1, 1};
-  std::vector<std::int32_t> begin;  ///< first of each bin in `grains`
-  std::vector<Binned> grains;       ///< bin by bin, indices ascending within a bin
-
-  std::size_t index(int a, int b, int c) const { return (std::size_t(c) * count[1] + b) * count[0] + a; }
-};
-
-/// Place of a grain in units of the lattice vectors, 0 <= s < 1, and its binned form.
-struct Placed {
-  double s[3];
-  Binned binned;
-};
-
-Placed placed(const Cell& cell, const double* at, double radius, std::size_t grain) {
-  const Matrix3& l = cell.lattice;
-  const bool space = cell.dimension == 3;
-  Placed p{};
-  p.s[2] = space ? at[2] / l(2, 2) : 0;
-  p.s[1] = (at[1] - (space ? l(1, 2) * p.s[2] : 0)) / l(1, 1);
-  p.s[0] = (at[0] - l(0, 1) * p.s[1] - (space ? l(0, 2) * p.s[2] : 0)) / l(0, 0);
-  for (int k = 0; k < cell.dimension; ++k) {
-    const double period = std::floor(p.s[k]);
-    p.s[k] -= period;
-    p.binned.period[k] = int(period);
-  }
-  const Image& n = p.binned.period;
-  p.binned.x[0] = at[0] - (l(0, 0) * n[0] + l(0, 1) * n[1] + l(0, 2) * n[2]);
-  p.binned.x[1] = at[1] - (l(1, 1) * n[1] + l(1, 2) * n[2]);
-  p.binned.x[2] = space ? at[2] - l(2, 2) * n[2] : 0;
-  p.binned.radius = radius;
-  p.binned.grain = std::int32_t(grain);
-  return p;
-}
-
-int bin_of(double s, int count) { return std::min(count - 1, int(s * count)); }
-
-/// Size classes by halves of the largest radius, so that no grain is looked for in bins much wider than itself:
-/// gradings of 1:50 stay O(N). Eight classes at most; the last holds all that is smaller.
-int size_class(double radius, double largest) {
-  int k = 0;
-  for (double bound = 0.5 * largest; radius < bound && k < 7; bound *= 0.5) ++k;
-  return k;
-}
-
-std::vector<SizeClass> sort_into_bins(const Cell& cell, const std::vector<Placed>& grains,
-                                      const std::vector<double>& radii, double skin, double largest) {
-  std::vector<SizeClass> classes(8);
-  std::vector<std::size_t> members(8, 0);
-  for (const double r : radii) {
-    const int k = size_class(r, largest);
-    classes[k].largest_radius = std::max(classes[k].largest_radius, r);
-    ++members[k];
-  }
-  const Vector3 height = heights(cell);
-  const int d = cell.dimension;
-  for (std::size_t k = 0; k < classes.size(); ++k) {
-    SizeClass& c = classes[k];
-    if (members[k] == 0) continue;
-    // As wide as two of them, but no more bins than grains or so: an almost empty cell needs no finer mesh.
-    const double width = 2 * c.largest_radius + skin, n = double(members[k]);
-    const int most = std::max(1, int(std::floor(d == 2 ? std::sqrt(n) : std::cbrt(n))) * 2);
-    for (int a = 0; a < d; ++a) c.count[a] = int(std::clamp(std::floor(height[a] / width), 1.0, double(most)));
-    c.begin.assign(std::size_t(c.count[0]) * c.count[1] * c.count[2] + 1, 0);
-    c.grains.resize(members[k]);
-  }
-  const auto bin = [&](const Placed& p, const SizeClass& c) {
-    return c.index(bin_of(p.s[0], c.count[0]), bin_of(p.s[1], c.count[1]), bin_of(p.s[2], c.count[2]));
-  };
-  for (const Placed& p : grains) {
-    SizeClass& c = classes[size_class(p.binned.radius, largest)];
-    ++c.begin[bin(p, c) + 1];
-  }
-  std::vector<std::vector<std::int32_t>> next(classes.size());
-  for (std::size_t k = 0; k < classes.size(); ++k) {
-    SizeClass& c = classes[k];
-    for (std::size_t b = 1; b < c.begin.size(); ++b) c.begin[b] += c.begin[b - 1];
-    next[k] = c.begin;
-  }
-  for (const Placed& p : grains) {
-    const int k = size_class(p.binned.radius, largest);
-    classes[k].grains[next[k][bin(p, classes[k])]++] = p.binned;
-  }
-  return classes;
-}
 
 /// Landings of the bin coordinates -reach .. count - 1 + reach.
 void fill_landings(int count, int reach, std::vector<Landing>& landings) {
@@ -122,47 +31,42 @@ void fill_landings(int count, int reach, std::vector<Landing>& landings) {
   }
 }
 
+/// Bins of a class that a cutoff (m) reaches over along lattice direction k.
+double bins_in_reach(const Cell& cell, const Vector3& height, const SizeClass& c, double cutoff, int k) {
+  return k < cell.dimension ? std::ceil(cutoff * c.count[k] / height[k] * (1 + 1e-12)) : 0;
+}
+
 /// Pairs of one grain with the grains of a class that is not larger. Within a class only half of the bins around a
 /// grain are looked into, those that come after its own: a partner before it finds the pair from the other side (a list
 /// of 400 discs takes 0.94 of the time that all bins take, one of 1000 spheres 0.79).
 class Search {
  public:
-  Search(const Cell& cell, double skin, std::vector<ListedPair>& pairs)
-      : cell_(cell), height_(heights(cell)), skin_(skin), pairs_(pairs) {}
-
-  /// All partners in `c` of grains with radii up to `radius`.
-  void aim(const SizeClass& c, double radius) {
-    class_ = &c;
-    const double cutoff = radius + c.largest_radius + skin_;
+  /// Of grains with radii up to `radius` with those of `c`.
+  Search(const Cell& cell, double skin, const SizeClass& c, double radius) : cell_(cell), skin_(skin), class_(c) {
+    const Vector3 height = heights(cell);
     for (int k = 0; k < 3; ++k) {
-      reach_[k] = k < cell_.dimension ? int(std::ceil(cutoff * c.count[k] / height_[k] * (1 + 1e-12))) : 0;
+      reach_[k] = int(bins_in_reach(cell, height, c, radius + c.largest_radius + skin, k));
       fill_landings(c.count[k], reach_[k], landings_[k]);
     }
-    runs_.clear();
-    runs_after_.clear();
     for (int home = 0; home < c.count[0]; ++home) {
       runs_.push_back(runs_of(home, 0));
       runs_after_.push_back(runs_of(home, reach_[0] + 1));
     }
   }
 
-  void find(const Placed& p, bool own_class) {
-    const SizeClass& c = *class_;
-    const Landing* first[3];
-    for (int k = 1; k < 3; ++k) first[k] = landings_[k].data() + bin_of(p.s[k], c.count[k]);
-    const int home = bin_of(p.s[0], c.count[0]);
-    for (int z = own_class ? reach_[2] : 0; z <= 2 * reach_[2]; ++z)
-      for (int y = own_class && z == reach_[2] ? reach_[1] : 0; y <= 2 * reach_[1]; ++y) {
-        const auto look = [&](int bin, int last_bin, int shift, std::int32_t least) {
-          look_into(p.binned, c.begin[c.index(bin, first[1][y].bin, first[2][z].bin)],
-                    c.begin[c.index(last_bin, first[1][y].bin, first[2][z].bin) + 1],
-                    {shift, first[1][y].shift, first[2][z].shift}, least);
-        };
-        const bool own_row = own_class && z == reach_[2] && y == reach_[1];
-        if (own_row) look(home, home, 0, p.binned.grain + 1);
-        for (const Run& run : (own_row ? runs_after_ : runs_)[std::size_t(home)])
-          look(run.first, run.last, run.shift, 0);
-      }
+  void find(const Placed& p, bool own_class, std::vector<ListedPair>& pairs) const {
+    each_row(p, own_class, [&](std::int32_t begin, std::int32_t end, const Image& shift, std::int32_t least) {
+      look_into(p.binned, begin, end, shift, least, pairs);
+    });
+  }
+
+  /// Grains that find() looks at, no fewer than the partners that it finds.
+  std::size_t candidates(const Placed& p, bool own_class) const {
+    std::size_t count = 0;
+    each_row(p, own_class, [&](std::int32_t begin, std::int32_t end, const Image&, std::int32_t) {
+      count += std::size_t(end - begin);
+    });
+    return count;
   }
 
  private:
@@ -170,6 +74,28 @@ class Search {
   struct Run {
     int first, last, shift;
   };
+
+  /// Calls look(begin, end, shift, least) for the grains in rows of bins around one: those from `begin` to `end` of the
+  /// class, with their images by `shift`, of numbers from `least` on.
+  template <class Look>
+  void each_row(const Placed& p, bool own_class, const Look& look) const {
+    const SizeClass& c = class_;
+    const Landing* first[3];
+    for (int k = 1; k < 3; ++k) first[k] = landings_[k].data() + bin_of(p.s[k], c.count[k]);
+    const int home = bin_of(p.s[0], c.count[0]);
+    for (int z = own_class ? reach_[2] : 0; z <= 2 * reach_[2]; ++z)
+      for (int y = own_class && z == reach_[2] ? reach_[1] : 0; y <= 2 * reach_[1]; ++y) {
+        const auto look_at = [&](int bin, int last_bin, int shift, std::int32_t least) {
+          look(c.begin[c.index(bin, first[1][y].bin, first[2][z].bin)],
+               c.begin[c.index(last_bin, first[1][y].bin, first[2][z].bin) + 1],
+               {shift, first[1][y].shift, first[2][z].shift}, least);
+        };
+        const bool own_row = own_class && z == reach_[2] && y == reach_[1];
+        if (own_row) look_at(home, home, 0, p.binned.grain + 1);
+        for (const Run& run : (own_row ? runs_after_ : runs_)[std::size_t(home)])
+          look_at(run.first, run.last, run.shift, 0);
+      }
+  }
 
   /// Bins around `home` along the first direction, from the given one on. Those that follow each other do so in memory:
   /// they are looked into as one.
@@ -186,8 +112,9 @@ class Search {
   }
 
   /// Grains from number `least` on that are near enough, among those binned from `begin` to `end`.
-  void look_into(const Binned& i, std::int32_t begin, std::int32_t end, const Image& shift, std::int32_t least) {
-    const Binned* grains = class_->grains.data();
+  void look_into(const Binned& i, std::int32_t begin, std::int32_t end, const Image& shift, std::int32_t least,
+                 std::vector<ListedPair>& pairs) const {
+    const Binned* grains = class_.grains.data();
     const Matrix3& l = cell_.lattice;
     const double x = l(0, 0) * shift[0] + l(0, 1) * shift[1] + l(0, 2) * shift[2] - i.x[0];
     const double y = l(1, 1) * shift[1] + l(1, 2) * shift[2] - i.x[1];
@@ -206,24 +133,22 @@ class Search {
         hits[found] = q;
         found += int(dx * dx + dy * dy + dz * dz < reach * reach) & int(j.grain >= least);
       }
-      for (int k = 0; k < found; ++k) add(i, grains[hits[k]], shift);
+      for (int k = 0; k < found; ++k) add(i, grains[hits[k]], shift, pairs);
     }
   }
 
-  void add(const Binned& i, const Binned& j, const Image& shift) {
+  static void add(const Binned& i, const Binned& j, const Image& shift, std::vector<ListedPair>& pairs) {
     Image image;
     for (int k = 0; k < 3; ++k) image[k] = shift[k] - j.period[k] + i.period[k];
     if (j.grain > i.grain || (j.grain == i.grain && points_forward(image)))
-      pairs_.push_back({i.grain, j.grain, image});
+      pairs.push_back({i.grain, j.grain, image});
     else
-      pairs_.push_back({j.grain, i.grain, {-image[0], -image[1], -image[2]}});
+      pairs.push_back({j.grain, i.grain, {-image[0], -image[1], -image[2]}});
   }
 
   const Cell& cell_;
-  Vector3 height_;
   double skin_;
-  std::vector<ListedPair>& pairs_;
-  const SizeClass* class_ = nullptr;
+  const SizeClass& class_;
   int reach_[3] = {0, 0, 0};
   std::vector<Landing> landings_[3];
   std::vector<std::vector<Run>> runs_, runs_after_;  ///< by bin of the grain along the first direction; those after it
@@ -245,35 +170,110 @@ std::vector<ListedPair> in_order(const std::vector<std::vector<ListedPair>>& fou
   return pairs;
 }
 
+/// The grains of a list in their bins.
+class Bins {
+ public:
+  Bins(const Cell& cell, const double* x, std::size_t stride, const std::vector<double>& radii, double skin,
+       Workers* team)
+      : cell_(cell), skin_(skin), team_(team), grains_(radii.size()) {
+    in_pieces(radii.size(), team, [&](std::size_t, std::size_t first, std::size_t last) {
+      for (std::size_t g = first; g < last; ++g) grains_[g] = placed(cell, x + stride * g, radii[g], g);
+    });
+    classes_ = sort_into_bins(cell, grains_, radii, skin);
+  }
+
+  /// Bins that the grains look into, at most.
+  double looks() const {
+    const Vector3 height = heights(cell_);
+    double looks = 0;
+    each_pair_of_classes([&](const SizeClass& larger, const SizeClass& smaller) {
+      const double cutoff = larger.largest_radius + smaller.largest_radius + skin_;
+      double around = 1;
+      for (int k = 0; k < cell_.dimension; ++k) around *= 1 + 2 * bins_in_reach(cell_, height, smaller, cutoff, k);
+      // Of each bin along the first direction those around it are put down once.
+      const double rows = double(smaller.count[0]) * (1 + 2 * bins_in_reach(cell_, height, smaller, cutoff, 0));
+      looks += around * double(larger.grains.size()) + rows;
+    });
+    return looks;
+  }
+
+  /// Candidates of all grains: no fewer pairs than there will be.
+  double candidates() const {
+    std::vector<double> of_piece;
+    each_piece(of_piece, [&](Search& search, std::span<const Binned> members, bool own_class, double& count) {
+      for (const Binned& member : members) count += double(search.candidates(grain_of(member), own_class));
+    });
+    double sum = 0;
+    for (const double count : of_piece) sum += count;
+    return sum;
+  }
+
+  std::vector<std::vector<ListedPair>> pairs() const {
+    std::vector<std::vector<ListedPair>> of_piece;
+    each_piece(of_piece, [&](Search& search, std::span<const Binned> members, bool own_class, auto& found) {
+      found.reserve(members.size() * std::size_t(cell_.dimension == 2 ? 4 : 8));
+      for (const Binned& member : members) search.find(grain_of(member), own_class, found);
+    });
+    return of_piece;
+  }
+
+ private:
+  const Placed& grain_of(const Binned& member) const { return grains_[std::size_t(member.grain)]; }
+
+  template <class Work>
+  void each_pair_of_classes(const Work& work) const {
+    for (std::size_t of = 0; of < classes_.size(); ++of)
+      for (std::size_t with = of; with < classes_.size(); ++with)
+        if (!classes_[of].grains.empty() && !classes_[with].grains.empty()) work(classes_[of], classes_[with]);
+  }
+
+  /// Calls work(search, members, own class, result) for pieces of every class with every class that is not larger.
+  template <class Result, class Work>
+  void each_piece(std::vector<Result>& of_piece, const Work& work) const {
+    each_pair_of_classes([&](const SizeClass& larger, const SizeClass& smaller) {
+      const std::span<const Binned> members = larger.grains;
+      const std::size_t before = of_piece.size();
+      of_piece.resize(before + pieces_in(members.size()));
+      in_pieces(members.size(), team_, [&](std::size_t piece, std::size_t first, std::size_t last) {
+        Search search(cell_, skin_, smaller, larger.largest_radius);
+        work(search, members.subspan(first, last - first), &larger == &smaller, of_piece[before + piece]);
+      });
+    });
+  }
+
+  const Cell& cell_;
+  double skin_;
+  Workers* team_;
+  std::vector<Placed> grains_;
+  std::vector<SizeClass> classes_;
+};
+
 }  // namespace
+
+double pairs_at_most(const Cell& cell, const double* x, std::size_t stride, const std::vector<double>& radii,
+                     double skin) {
+  return std::min(Bins(cell, x, stride, radii, skin, nullptr).candidates(), pairs_by_volume(cell, radii, skin));
+}
 
 std::vector<ListedPair> list_pairs(const Cell& cell, const double* x, std::size_t stride,
                                    const std::vector<double>& radii, double skin, Workers* team) {
   const std::size_t n = radii.size();
   if (n == 0) return {};
-  const double largest = *std::max_element(radii.begin(), radii.end());
-  std::vector<Placed> grains(n);
-  in_pieces(n, team, [&](std::size_t, std::size_t first, std::size_t last) {
-    for (std::size_t g = first; g < last; ++g) grains[g] = placed(cell, x + stride * g, radii[g], g);
-  });
-  const std::vector<SizeClass> classes = sort_into_bins(cell, grains, radii, skin, largest);
-
-  std::vector<std::vector<ListedPair>> found;
-  for (std::size_t of = 0; of < classes.size(); ++of)
-    for (std::size_t with = of; with < classes.size(); ++with) {
-      const std::vector<Binned>& members = classes[of].grains;
-      if (members.empty() || classes[with].grains.empty()) continue;
-      const std::size_t before = found.size();
-      found.resize(before + pieces_in(members.size()));
-      in_pieces(members.size(), team, [&](std::size_t piece, std::size_t first, std::size_t last) {
-        std::vector<ListedPair>& pairs = found[before + piece];
-        pairs.reserve((last - first) * std::size_t(cell.dimension == 2 ? 4 : 8));
-        Search search(cell, skin, pairs);
-        search.aim(classes[with], classes[of].largest_radius);
-        for (std::size_t k = first; k < last; ++k) search.find(grains[std::size_t(members[k].grain)], of == with);
-      });
-    }
-  return in_order(found, n, team);
+  expect_computable(cell);
+  // What volumes say costs nothing and is enough for small assemblies; it is the bins that know a large one.
+  const double by_volume = pairs_by_volume(cell, radii, skin);
+  const bool many = !(by_volume <= allowed_pairs(n));
+  const Bins bins(cell, x, stride, radii, skin, team);
+  const double looks = bins.looks();
+  if (!(looks <= allowed_looks(n))) {
+    if (many) refuse_pairs(by_volume, cell, radii, skin);
+    refuse_looks(looks, cell);
+  }
+  if (many) {
+    const double candidates = std::min(bins.candidates(), by_volume);
+    if (!(candidates <= allowed_pairs(n))) refuse_pairs(candidates, cell, radii, skin);
+  }
+  return in_order(bins.pairs(), n, team);
 }
 
 }  // namespace rvelab

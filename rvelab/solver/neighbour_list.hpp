@@ -22,9 +22,14 @@ struct ListedPair {
 };
 
 /// All pairs with |branch| < r_i + r_j + skin, ordered by (i, j, image).
-/// positions: x[stride * g + component], cell frame, m, anywhere in space; radii: m. The list is the same on any team.
+/// positions: x[stride * g + component], cell frame, m, anywhere within 2^30 cells; radii: m. The list is the same on
+/// any team. Throws IncrementFailed, before a pair is made, if there may be more than list_size.hpp allows.
 std::vector<ListedPair> list_pairs(const Cell& cell, const double* positions, std::size_t stride,
                                    const std::vector<double>& radii, double skin, Workers* team = nullptr);
+
+/// No fewer pairs than list_pairs makes of the same, without making one.
+double pairs_at_most(const Cell& cell, const double* positions, std::size_t stride, const std::vector<double>& radii,
+                     double skin);
 
 /// True if the first non-zero entry is positive: of a grain and its own image each pair is listed once.
 bool points_forward(const Image& image);

@@ -11,6 +11,21 @@
 
 namespace rvelab {
 
+namespace {
+
+/// An assembly beyond its limit would fail at its first increment, or hide that it was made with a wrong unit.
+void expect_overlaps(const Balance& balance, double limit) {
+  // A state within the limit is opened again, whatever its last bits became on the way.
+  if (balance.largest_overlap_ratio <= limit * (1 + 1e-9)) return;
+  throw InputError("specimen: grains overlap by " + in_words(balance.largest_overlap_ratio) +
+                   " of the smaller radius; solver.max_overlap_ratio allows " + in_words(limit) +
+                   "; a stiffness too low for the pressure, a slab much thicker than the grains, or mixed units "
+                   "(radii in mm?) lead there: correct them, or raise solver.max_overlap_ratio where grains are "
+                   "meant to be so soft");
+}
+
+}  // namespace
+
 Rve::Rve(const Specimen& specimen) : impl_(std::make_unique<Impl>()) {
   Impl& m = *impl_;
   open(specimen, m.fixture, m.now);
@@ -19,7 +34,7 @@ Rve::Rve(const Specimen& specimen) : impl_(std::make_unique<Impl>()) {
   evaluate_forces(m.fixture, m.now);
   const Balance balance = balance_of(m.fixture, m.now);
   if (!balance.finite) throw InputError("specimen: contact forces are not finite; do two grains lie at one place?");
-  m.fixture.overlap_limit = std::max(m.fixture.options.max_overlap_ratio, 1.01 * balance.largest_overlap_ratio);
+  expect_overlaps(balance, m.fixture.options.max_overlap_ratio);
   if (specimen.state.has_reference) return;
   m.set_missing_references(balance);  // first opening
 }

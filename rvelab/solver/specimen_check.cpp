@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "rvelab/error.hpp"
+#include "rvelab/solver/list_size.hpp"
 #include "rvelab/solver/memory_order.hpp"
 
 namespace rvelab {
@@ -50,6 +51,14 @@ void check_cell(const Specimen& s) {
     refuse(
         "specimen: the lattice must be upper triangular with a positive diagonal; turn cell and grains into that "
         "frame first");
+  // Far from the cell a coordinate holds no place in it, and the number of periods in between no image.
+  constexpr double most_periods = double(1 << 30);
+  for (std::size_t k = 0; k < s.grains.size(); ++k) {
+    const Vector3 periods = l.triangularView<Eigen::Upper>().solve(s.grains.position[k]);
+    if (periods.head(s.cell.dimension).cwiseAbs().maxCoeff() <= most_periods) continue;
+    refuse("grain " + std::to_string(s.grains.id[k]) + ": position " + in_words(s.grains.position[k].norm()) +
+           " m from the origin, more than 2^30 cell widths; give coordinates and cell in m, both of the same packing");
+  }
   const double from_orthogonal = (s.cell.rotation.transpose() * s.cell.rotation - Matrix3::Identity()).norm();
   if (!(from_orthogonal < 1e-8) || !(s.cell.rotation.determinant() > 0))
     refuse("specimen: the rotation of the cell frame must be orthogonal with determinant +1");
@@ -89,7 +98,7 @@ void check_options(const SolverOptions& o) {
     text << "solver." << key << " = " << value << " is out of range; allowed: " << range;
     refuse(text.str());
   };
-  expect(o.skin > 0, "skin", o.skin, "> 0");
+  expect(o.skin > 0 && o.skin <= largest_skin_ratio, "skin", o.skin, "above 0 to 10");
   expect(o.time_step_factor > 0 && o.time_step_factor < 1, "time_step_factor", o.time_step_factor,
          "above 0 to below 1");
   expect(o.fixed_time_step >= 0, "fixed_time_step_s", o.fixed_time_step, ">= 0 s");
@@ -112,8 +121,8 @@ void clear_forces_without_stiffness(Specimen& s) {
 void check_specimen(const Specimen& s) {
   check(s.contact, s.damping, s.materials);
   check_options(s.solver);
-  check_cell(s);
   check_grains(s);
+  check_cell(s);
   check_contacts(s);
   const std::vector<std::int32_t>& order = s.state.memory_order;
   if (!order.empty() && !is_permutation(order, s.grains.size()))

@@ -28,11 +28,11 @@ std::optional<Refused> refused(Rve& rve, const std::function<void(Rve&)>& call) 
 }
 
 Tested::Tested(const Specimen& specimen, Verdict& verdict)
-    : rve_(specimen), verdict_(&verdict), volume_(rve_.cell().volume()), grains_(rve_.size()) {
-  // A specimen that starts beyond the limit may stay there (Rve opens it so), and no further.
-  const double start = largest_overlap_ratio(rve_.network());
-  overlap_limit_ = std::max(specimen.solver.max_overlap_ratio, 1.01 * start);
-}
+    : rve_(specimen),
+      verdict_(&verdict),
+      volume_(rve_.cell().volume()),
+      overlap_limit_(specimen.solver.max_overlap_ratio),
+      grains_(rve_.size()) {}
 
 template <class Call>
 Response Tested::guarded(const Call& call) {

@@ -98,7 +98,7 @@ TEST_CASE("all mistakes of a protocol and its assignments come at once, in the o
       "t.toml:5: unknown key contact.slop; the nearest known key is contact.slip",
       "t.toml:8: stage.isotropic.unbalanced = inf is not finite; allowed: ",
       "t.toml: --set nonsense is not an assignment",
-      "t.toml: --set solver.skin=nan: solver.skin = nan is not finite; allowed: > 0; give a finite number",
+      "t.toml: --set solver.skin=nan: solver.skin = nan is not finite; allowed: above 0 to 10; give a finite number",
       "t.toml: --set stage.isotropic.max_steps=1.5: stage.isotropic.max_steps = 1.5 is not a whole number"};
   std::size_t at = 0;
   for (std::size_t k = 0; k < 4; ++k) {

@@ -171,7 +171,7 @@ TEST_CASE("A parameter out of range stops the opening with its key, value and ra
       {"friction", "-0.5", "0 to 1e6", [](Specimen& s) { s.materials[0].friction = -0.5; }},
       {"damping.local", "1", "0 to below 1", [](Specimen& s) { s.damping.local = 1; }},
       {"damping.local_quasi_static", "0", "above 0 to below 1", [](Specimen& s) { s.damping.local_quasi_static = 0; }},
-      {"solver.skin", "0", "> 0", [](Specimen& s) { s.solver.skin = 0; }},
+      {"solver.skin", "0", "above 0 to 10", [](Specimen& s) { s.solver.skin = 0; }},
       {"solver.time_step_factor", "1", "above 0 to below 1", [](Specimen& s) { s.solver.time_step_factor = 1; }},
       {"solver.time_step_factor", "0", "above 0 to below 1", [](Specimen& s) { s.solver.time_step_factor = 0; }},
       {"solver.fixed_time_step_s", "-1e-06", ">= 0 s", [](Specimen& s) { s.solver.fixed_time_step = -1e-6; }},
@@ -180,7 +180,7 @@ TEST_CASE("A parameter out of range stops the opening with its key, value and ra
       {"solver.max_substeps", "0", "> 0", [](Specimen& s) { s.solver.max_substeps = 0; }},
       {"solver.min_height_m", "-1", ">= 0 m", [](Specimen& s) { s.solver.min_height = -1; }},
       {"solver.max_overlap_ratio", "0", "> 0", [](Specimen& s) { s.solver.max_overlap_ratio = 0; }},
-      {"solver.skin", "nan", "> 0", [](Specimen& s) { s.solver.skin = not_a_number; }},
+      {"solver.skin", "nan", "above 0 to 10", [](Specimen& s) { s.solver.skin = not_a_number; }},
       {"solver.max_overlap_ratio", "nan", "> 0", [](Specimen& s) { s.solver.max_overlap_ratio = not_a_number; }}};
   for (const Case& one : cases) {
     Specimen s = triangular(4, 2, 1.95);

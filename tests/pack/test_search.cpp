@@ -62,21 +62,24 @@ TEST_CASE("a search has the same bits on any number of threads") {
 
 TEST_CASE("a void ratio out of reach is told with the range that was reached, and what to do") {
   Recipe recipe = discs(60);
-  recipe.preparation.max_draws = 8;
   Workers workers(1);
   for (const double target : {0.1, 0.5}) {
     recipe.void_ratio = target;
+    long draws = 0;
+    PackWatch watch;
+    watch.on_draw = [&](long, double) { ++draws; };
     std::string message;
     try {
-      pack(recipe, workers);
+      pack(recipe, workers, watch);
     } catch (const InputError&) {
       FAIL("the file is right; the packing is not there");
     } catch (const Error& error) {
       message = error.what();
     }
     INFO(message);
-    CHECK_THAT(message,
-               Contains("was not met within 0.001 in 8 draws; reached: 0.") && Contains("preparation friction"));
+    CHECK_THAT(message, Contains("was not met within 0.001 in ") && Contains(" draws; reached: 0.") &&
+                            Contains("preparation friction"));
+    CHECK(draws <= 16);  // of the hundred that it may take
     CHECK_THAT(message, Contains(target < 0.2 ? "give a higher void ratio" : "give a lower void ratio"));
   }
 }

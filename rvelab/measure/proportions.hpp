@@ -1,0 +1,26 @@
+// Whether the numbers of a specimen make sense together: what a wrong unit, a thick slab or a soft contact shows in.
+#pragma once
+
+#include <string>
+
+#include "rvelab/solver/network.hpp"
+
+namespace rvelab {
+
+/// Dimensionless; NaN where there is nothing to divide by (no contact, no pressure).
+struct Proportions {
+  int dimension = 3;
+  double void_ratio = 0;
+  double mean_overlap = 0, largest_overlap = 0;  ///< over the smaller radius of the pair
+  /// kn/(p d) in 3D, kn/(p thickness) in 2D, where a slab presses p d thickness through a contact: mean of the present
+  /// normal stiffnesses over the mean pressure and the mean diameter. An overlap is about its inverse, over a diameter.
+  double stiffness_level = 0;
+  Vector3 cell_edges = Vector3::Zero();  ///< lengths of the cell vectors over the mean diameter; 2D: two
+};
+
+Proportions proportions_of(const Network& network);
+
+/// On one line: "void ratio 0.187, overlap 0.0021 r (largest 0.0113 r), kn/(p t) 794, cell 21.3 x 21.0 diameters".
+std::string in_words(const Proportions& proportions);
+
+}  // namespace rvelab

@@ -1,0 +1,229 @@
+// Wrong units, soft grains and lists beyond all bounds, as a user meets them: told in one line, soon, and with a
+// remedy.
+#include <chrono>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/measure/measures.hpp"
+#include "rvelab/solver/rve.hpp"
+#include "tests/cli/program.hpp"
+
+using namespace rvelab::test;
+using Catch::Matchers::Contains;
+using Json = nlohmann::json;
+
+namespace {
+
+const char* const small = R"([pack]
+name = "small"
+number = 60
+[grains]
+smallest_radius_m = 3e-3
+largest_radius_m = 7e-3
+[target]
+pressure_Pa = 1e5
+[preparation]
+friction = 0.1
+[[material]]
+name = "sand"
+young_modulus_Pa = 8e8
+stiffness_ratio = 0.5
+friction_angle_deg = 23
+)";
+
+void write(const Workplace& here, const std::string& name, const std::string& text) {
+  std::ofstream(here / name) << text;
+}
+
+/// Particles of a file with radii `factor` times as large.
+std::string with_radii_times(const std::string& path, double factor) {
+  std::ifstream input(path);
+  std::string line, text;
+  std::size_t column = 0;
+  for (bool header = false; std::getline(input, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    std::vector<std::string> cells;
+    std::istringstream row(line);
+    for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+    if (!header) {
+      while (cells[column] != "r" && cells[column] != "radius") ++column;
+      header = true;
+    } else {
+      std::ostringstream radius;
+      radius.precision(17);
+      radius << factor * std::stod(cells[column]);
+      cells[column] = radius.str();
+    }
+    for (std::size_t k = 0; k < cells.size(); ++k) text += (k > 0 ? "," : "") + cells[k];
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("radii in mm or cm for m are refused by import with the unit in doubt, and nothing is written") {
+  const Workplace here;
+  const std::string stem = std::string(RVELAB_TEST_DATA) + "/yade/dense";
+  for (const double factor : {10.0, 1000.0, 1e8, 1e200}) {
+    CAPTURE(factor);
+    write(here, "p.csv", with_radii_times(stem + ".particles.csv", factor));
+    expect_mistake(here.run("import p.csv " + stem + ".json -o S.h5"), "in mm?");
+    CHECK(!std::filesystem::exists(here / "S.h5"));
+  }
+}
+
+TEST_CASE("all of import, pack and inspect say what the numbers of a specimen are to each other") {
+  const Workplace here;
+  write(here, "small.toml", small);
+  const Outcome packed = here.run("pack small.toml -o P.h5");
+  REQUIRE(packed.code == 0);
+  here.import_packing("hertz");
+  for (const std::string file : {"P.h5", "S.h5"}) {
+    CAPTURE(file);
+    const Outcome shown = here.run("inspect " + file);
+    CHECK_THAT(shown.output, Contains("proportions") && Contains("void ratio ") && Contains("overlap ") &&
+                                 Contains(" r (largest ") && Contains("kn/(p ") && Contains(" diameters\n"));
+    const Json json = Json::parse(here.run("inspect " + file + " --json").output);
+    const rvelab::Network network = rvelab::Rve(rvelab::read_specimen(here / file)).network();
+    const int d = network.dimension();
+    CHECK(json["largest_overlap_ratio"].get<double>() == rvelab::largest_overlap_ratio(network));
+    double overlap = 0, stiffness = 0;
+    for (const auto& c : network.contacts) {
+      overlap += c.overlap / std::min(network.grains[std::size_t(c.i)].radius, network.grains[std::size_t(c.j)].radius);
+      stiffness += c.normal_stiffness;
+    }
+    const double contacts = double(network.contacts.size()), diameter = rvelab::mean_diameter(network);
+    CHECK(json["mean_overlap_ratio"].get<double>() == Approx(overlap / contacts));
+    const double pressure = rvelab::mean_pressure(rvelab::contact_stress(network), d);
+    const double width = d == 2 ? network.cell.lattice(2, 2) : diameter;
+    CHECK(json["stiffness_level"].get<double>() == Approx(stiffness / contacts / (pressure * width)));
+    REQUIRE(json["cell_edges_in_diameters"].size() == std::size_t(d));
+    CHECK(json["cell_edges_in_diameters"][0].get<double>() == Approx(network.cell.lattice.col(0).norm() / diameter));
+    CHECK(json["void_ratio"].get<double>() == Approx(rvelab::void_ratio(network)));
+    CHECK(json.count("proportions") == 0);
+  }
+  // The same line from pack and from import.
+  const std::string shown = here.run("inspect P.h5").output;
+  const auto line = shown.substr(shown.find("void ratio "), shown.find(" diameters\n") - shown.find("void ratio "));
+  CHECK_THAT(packed.output, Contains(line));
+  const std::string stem = std::string(RVELAB_TEST_DATA) + "/yade/hertz";
+  const std::string import = "import " + stem + ".particles.csv " + stem + ".contacts.csv " + stem + ".json -o I.h5";
+  CHECK_THAT(here.run(import).output, Contains("proportions") && Contains("kn/(p d) "));
+  CHECK(Json::parse(here.run(import + " --json").output)["stiffness_level"].get<double>() > 10);
+}
+
+TEST_CASE("pack takes no overlaps beyond the limit, and tells discs in a thick slab why") {
+  const Workplace here;
+  std::string text = small;
+  text.replace(text.find("3e-3"), 4, "1e-3");
+  text.replace(text.find("7e-3"), 4, "2e-3");
+  text.replace(text.find("8e8"), 3, "2e7");
+  write(here, "mm.toml", text);
+  const Outcome thick = here.run("pack mm.toml -o S.h5");
+  INFO(thick.errors);
+  CHECK(thick.code == 1);
+  CHECK(std::count(thick.errors.begin(), thick.errors.end(), '\n') == 1);
+  CHECK_THAT(thick.errors, Contains("solver.max_overlap_ratio allows 0.25") &&
+                               Contains("pack.thickness_m = 0.1 m is") && Contains("stiffer grains"));
+  CHECK(!std::filesystem::exists(here / "S.h5"));
+  // A search does not go on for a hundred draws.
+  write(here, "search.toml",
+        text.substr(0, text.find("[preparation]")) + "void_ratio = 0.2\n" + text.substr(text.find("[[material]]")));
+  const auto begin = std::chrono::steady_clock::now();
+  CHECK_THAT(here.run("pack search.toml -o S.h5 --threads 1").errors, Contains("pack.thickness_m = 0.1 m is"));
+  CHECK(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() < 60);
+  // As thick as a grain they are stiff enough.
+  const Outcome thin = here.run("pack mm.toml -o S.h5 --set pack.thickness_m=3e-3 --json");
+  INFO(thin.errors);
+  REQUIRE(thin.code == 0);
+  CHECK(Json::parse(thin.output)["largest_overlap_ratio"].get<double>() < 0.25);
+}
+
+TEST_CASE("a cell too small for its grains is no packing") {
+  const Workplace here;
+  std::string text = small;
+  text.replace(text.find("pressure_Pa = 1e5"), 17, "void_ratio = -0.4");
+  write(here, "full.toml", text);
+  const Outcome outcome = here.run("pack full.toml -o S.h5");
+  INFO(outcome.errors);
+  CHECK(outcome.code == 1);
+  CHECK_THAT(outcome.errors, Contains("max_overlap_ratio allows 0.25") && Contains("raise target.void_ratio"));
+  CHECK(!std::filesystem::exists(here / "S.h5"));
+}
+
+TEST_CASE("a skin beyond all use is refused by its key before anything is packed or run") {
+  const Workplace here;
+  write(here, "small.toml", small);
+  for (const char* skin : {"100", "1000", "1e10", "2147483648", "4294967296"}) {
+    CAPTURE(skin);
+    expect_mistake(here.run("pack small.toml -o S.h5 --set solver.skin=" + std::string(skin)),
+                   "is out of range; allowed: above 0 to 10");
+  }
+}
+
+TEST_CASE("pack takes material.key for all materials, and material.NAME.key for one, as keys says") {
+  const Workplace here;
+  const std::string text = small + std::string("[[material]]\nname = \"glass\"\nyoung_modulus_Pa = 8e8\n") +
+                           "stiffness_ratio = 0.5\nfriction = 0.4\n";
+  write(here, "two.toml", text);
+  const auto frictions = [&](const std::string& settings) {
+    const Outcome packed = here.run("pack two.toml -o S.h5 --set pack.number=30 " + settings);
+    INFO(packed.errors);
+    REQUIRE(packed.code == 0);
+    const rvelab::Specimen s = rvelab::read_specimen(here / "S.h5");
+    return std::pair(s.materials.at(0).friction, s.materials.at(1).friction);
+  };
+  CHECK(frictions("--set material.friction=0.3") == std::pair(0.3, 0.3));
+  const auto one = frictions("--set material.glass.friction=0.2");
+  CHECK(one.first == Approx(std::tan(23 * 3.14159265358979 / 180)));
+  CHECK(one.second == 0.2);
+  CHECK(frictions("--set material.sand.friction=0.1") == std::pair(0.1, 0.4));
+  const auto angle = frictions("--set material.friction_angle_deg=45");
+  CHECK(angle.first == Approx(1));
+  CHECK(angle.second == Approx(1));
+  expect_mistake(here.run("pack two.toml -o S.h5 --set material.frictoin=0.3"), "the nearest known key is");
+  expect_mistake(here.run("pack two.toml -o S.h5 --set material.friction=-1"),
+                 "--set material.friction=-1: material.friction = -1 is out of range");
+  expect_mistake(here.run("pack two.toml -o S.h5 --set material.clay.friction=0.3"), "0 (sand), 1 (glass)");
+}
+
+TEST_CASE("a void ratio far out of reach is refused after a few rounds of draws, with the range that was reached") {
+  const Workplace here;
+  std::string text = small;
+  text.replace(text.find("[preparation]\nfriction = 0.1\n"), 29, "");
+  write(here, "search.toml", text);
+  for (const char* target : {"0.05", "0.6"}) {
+    CAPTURE(target);
+    const Outcome outcome = here.run("pack search.toml -o S.h5 --set target.void_ratio=" + std::string(target));
+    CHECK(outcome.code == 1);
+    INFO(outcome.errors);
+    const auto at = outcome.errors.find(" draws");
+    REQUIRE(at != std::string::npos);
+    CHECK(std::stoi(outcome.errors.substr(outcome.errors.rfind(' ', at - 1))) <= 16);  // of 100
+    CHECK_THAT(outcome.errors, Contains("; reached: 0.") && Contains("too far from it for more draws") &&
+                                   Contains(target[2] == '0' ? "give a higher void ratio" : "give a lower void ratio"));
+  }
+}
+
+TEST_CASE("a specimen without friction exports every contact that inspect counts") {
+  const Workplace here;
+  write(here, "small.toml", small);
+  REQUIRE(here.run("pack small.toml -o S.h5 --set material.friction=0").code == 0);
+  const long contacts = Json::parse(here.run("inspect S.h5 --json").output)["contacts"];
+  REQUIRE(contacts > 60);
+  const Outcome exported = here.run("export S.h5 --format csv -o out --json");
+  REQUIRE(exported.code == 0);
+  const std::string table = text_of(here / "out.contacts.csv");
+  CHECK(std::count(table.begin(), table.end(), '\n') == contacts + 2);
+  CHECK(Json::parse(text_of(here / "out.json"))["n_contacts"] == contacts);
+  // They come back with the forces of the law, and the stress is the same.
+  const std::string import = Json::parse(exported.output)["import_with"];
+  const double p = Json::parse(here.run("inspect S.h5 --json").output)["p_Pa"];
+  const Outcome imported = here.run(import.substr(7));
+  INFO(imported.errors);
+  REQUIRE(imported.code == 0);
+  CHECK(Json::parse(here.run("inspect S.h5 --json").output)["p_Pa"].get<double>() == Approx(p).epsilon(1e-9));
+}
