@@ -10,13 +10,16 @@ namespace rvelab::cli {
 
 using Json = nlohmann::ordered_json;
 
-/// Results of a command, in the order in which they were added. Numbers keep every bit (up to 17 digits); NaN and
-/// infinities are null in JSON and "nan" in the listing. Arrays are row-major.
+/// Results of a command, in the order in which they were added. Numbers keep every bit (up to 17 digits); NaN, which
+/// is what is not defined, and infinities are null in JSON, and NaN is "-" in the listing. Arrays are row-major.
 class Listing {
  public:
   /// `value`: number, text, truth, array or object. `unit` stands in the listing only ("" for none); JSON keys end in
   /// their unit.
   void add(const std::string& key, Json value, const std::string& unit = "");
+  /// A number that may not be defined: where it is NaN, `why` stands in its place in the listing, and in the object
+  /// "undefined" of the JSON, by the key.
+  void add_or_why(const std::string& key, double value, const std::string& unit, const std::string& why);
   bool empty() const { return lines_.empty(); }
   std::string json() const;  ///< one object, indented, ends with a newline
   std::string text() const;  ///< one line a key; matrices and lists of objects one line a row
@@ -30,7 +33,11 @@ class Listing {
     std::string unit;
   };
   std::vector<Line> lines_;
+  Json undefined_ = Json::object();  ///< reasons by key
 };
+
+/// One line on standard error, "rvelab: text", for what is no error and no result.
+void tell(const std::string& text);
 
 /// A matrix as an array of rows.
 Json row_major(const Eigen::MatrixXd& matrix);
