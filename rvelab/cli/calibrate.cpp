@@ -162,7 +162,9 @@ std::string without_peak(const Calibration& calibration) {
   double end = 0;
   for (const PressureResult& test : calibration.per_pressure) {
     if (!test.rising_at_end) continue;
-    tests += (tests.empty() ? "p = " : ", ") + in_words(test.pressure) + " Pa";
+    tests += tests.empty() ? "" : ", ";
+    if (calibration.per_specimen.size() > 1) tests += "specimen " + std::to_string(test.specimen + 1) + " at ";
+    tests += in_words(test.pressure) + " Pa";
     end = std::max(end, std::abs(test.end_strain));
   }
   if (tests.empty()) return "";

@@ -145,10 +145,11 @@ void ProgressOfTests::show(std::size_t number, const std::string& name, const Mo
     part += each.part;
     made += each.part - each.first_part;
   }
-  std::string text = std::to_string(finished) + " of " + std::to_string(tests_.size()) + " tests done  " + name;
-  text += state_of(moment) + speed_of(grain_steps, seconds(begin_));
+  // What concerns all tests first: a narrow terminal cuts the end.
+  std::string text = std::to_string(finished) + " of " + std::to_string(tests_.size()) + " tests done";
   const double to_make = static_cast<double>(tests_.size()) - part;
   if (made > 0 && to_make > 0) text += "  " + in_words(seconds(begin_) / made * to_make) + " left";
+  text += speed_of(grain_steps, seconds(begin_)) + "  " + name + state_of(moment);
   write_over(text);
   shown_ = true;
 }

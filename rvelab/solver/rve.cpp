@@ -120,9 +120,7 @@ Response Rve::Impl::respond(const Report& report, const Matrix3& gradient, doubl
     double p = 0;
     for (int k = 0; k < d; ++k) p -= r.stress(k, k) / d;
     const double rate = std::sqrt(2 * e.squaredNorm()) / dt;
-    // Units so small that no volume or rate is left in the numbers give none, rather than 0/0 or 0 times infinity.
-    if (p > 0 && solid > 0 && rate > 0 && std::isfinite(rate))
-      r.report.inertial_number = rate * 2 * fixture.mean_radius * std::sqrt(mass / solid / p);
+    if (p > 0) r.report.inertial_number = rate * 2 * fixture.mean_radius * std::sqrt(mass / solid / p);
   }
   return r;
 }

@@ -266,8 +266,8 @@ TEST_CASE(
                                          "--set",
                                          "stage.compression.to_strain=0.03"};
   const std::string shown = on_a_terminal(command);
-  CHECK_THAT(shown, Contains(" of 2 tests done  p = 2") && Contains("strain ") && Contains("M grain-steps/s") &&
-                        Contains(" left") && Contains("\r\x1b[K"));
+  CHECK_THAT(shown, Contains(" of 2 tests done") && Contains("p = 20") && Contains("strain ") &&
+                        Contains("M grain-steps/s") && Contains(" left") && Contains("\r\x1b[K"));
   CHECK_THAT(shown, Contains("friction_angle_deg"));
   CHECK(bench.run(command) == 0);
   CHECK(bench.errors().empty());

@@ -17,8 +17,8 @@ def compressions(stages):
     chosen = [stage for stage in stages if stage.kind in ("pressure_path", "path") or
               stage.kind == "compression" and stage.keys.get("lateral") == "zero_strain"]
     if not chosen:
-        raise ValueError(f"{stages[0].path}: {stages[0].test_in_words().lower() or 'this test'} neither compresses nor swells "
-                         "isotropically or laterally confined; give records of isotropic_compression or oedometer")
+        raise ValueError(f"{stages[0].path}: {stages[0].test_in_words() or stages[0].name}; e against log p needs compression "
+                         "and swelling: give records of isotropic_compression or oedometer")
     return chosen
 
 

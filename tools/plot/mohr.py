@@ -25,8 +25,8 @@ def drained_tests(stages):
     tests = {stage.path: stage for stage in stages if stage.drained and not stage.cyclic}
     for stage in stages:
         if stage.path not in tests:
-            raise ValueError(f"{stage.path}: is {stage.test_in_words().lower() or 'a test'} with no peak at a held lateral "
-                             "stress; give records of biaxial, triaxial or their extensions")
+            raise ValueError(f"{stage.path}: {stage.test_in_words() or stage.name}; the circles need a peak at a held lateral "
+                             "stress: give records of biaxial, triaxial or their extensions")
     return sorted(tests.values(), key=lambda test: test.pressure)
 
 
