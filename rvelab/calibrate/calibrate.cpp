@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <exception>
+#include <map>
 #include <sstream>
 #include <thread>
 
@@ -18,6 +20,8 @@ PressureResult evaluate(const TestResult& test, int dimension) {
   result.pressure = test.pressure;
   result.peak = highest.stresses;
   result.peak_strain = highest.strain;
+  result.end_strain = records.back().strain;
+  result.rising_at_end = rising_at_end(records, highest);
   result.friction_angle_deg = friction_angle_deg(highest.stresses);
   result.moving_mean_friction_angle_deg = friction_angle_deg(peak_of_moving_mean(records, dimension));
   result.large_strain_friction_angle_deg = friction_angle_deg(large_strain_mean(records, dimension));
@@ -41,20 +45,50 @@ TestRun run_one(std::size_t number, const Protocol& protocol, const Specimen& sp
     return run ? run(number, protocol, specimen) : run_protocol(protocol, specimen);
   } catch (const InputError& error) {
     throw InputError(at_pressure(protocol, error.what()));
-  } catch (const std::exception& error) {
+  } catch (const Error& error) {
     throw Error(at_pressure(protocol, error.what()));
   }
 }
 
 }  // namespace
 
-Calibration calibrate(const std::vector<TestResult>& tests, int dimension) {
+Statistics statistics(const std::vector<double>& values) {
+  const auto count = static_cast<double>(values.size());
+  Statistics found;
+  for (const double value : values) found.mean += value / count;
+  double squares = 0;
+  for (const double value : values) squares += (value - found.mean) * (value - found.mean);
+  found.standard_deviation = std::sqrt(squares / (count - 1));  // one value: 0/0, which is NaN
+  found.standard_error = found.standard_deviation / std::sqrt(count);
+  return found;
+}
+
+namespace {
+
+/// Each specimen by itself, and all of them.
+void evaluate_specimens(Calibration& result) {
+  std::map<std::size_t, std::vector<PrincipalStresses>> peaks;
+  for (const PressureResult& test : result.per_pressure) peaks[test.specimen].push_back(test.peak);
+  std::vector<double> angles, factors;
+  for (const auto& [specimen, own] : peaks) {
+    angles.push_back(friction_angle_through_origin_deg(own));
+    factors.push_back(bearing_capacity_Nq(angles.back()));
+    result.per_specimen.push_back({angles.back(), factors.back()});
+  }
+  result.friction_angle_of_specimens = statistics(angles);
+  result.Nq_of_specimens = statistics(factors);
+}
+
+}  // namespace
+
+Calibration calibrate(const std::vector<TestResult>& tests, int dimension, const std::vector<std::size_t>& specimens) {
   if (tests.empty()) throw InputError("calibrate: 0 tests; allowed: at least 1; give a pressure");
   Calibration result;
   std::vector<PrincipalStresses> peaks;
-  for (const auto& test : tests) {
-    result.per_pressure.push_back(evaluate(test, dimension));
-    const PressureResult& one = result.per_pressure.back();
+  for (std::size_t k = 0; k < tests.size(); ++k) {
+    result.per_pressure.push_back(evaluate(tests[k], dimension));
+    PressureResult& one = result.per_pressure.back();
+    if (!specimens.empty()) one.specimen = specimens.at(k);
     peaks.push_back(one.peak);
     result.friction_angle_moving_mean_deg += one.moving_mean_friction_angle_deg / static_cast<double>(tests.size());
     result.large_strain_friction_angle_deg += one.large_strain_friction_angle_deg / static_cast<double>(tests.size());
@@ -66,6 +100,7 @@ Calibration calibrate(const std::vector<TestResult>& tests, int dimension) {
   result.bearing_capacity_Nq = bearing_capacity_Nq(result.friction_angle_deg);
   result.local_shear_Nq = local_shear_Nq(result.friction_angle_deg);
   result.wedge_angle_deg = wedge_angle_deg(result.friction_angle_deg);
+  evaluate_specimens(result);
   return result;
 }
 
@@ -89,13 +124,17 @@ void check_specimens(const std::vector<Protocol>& protocols, const std::vector<S
   if (specimens.size() != 1 && specimens.size() != protocols.size()) {
     throw InputError("calibrate: " + std::to_string(specimens.size()) + " specimens for " +
                      std::to_string(protocols.size()) +
-                     " pressures; allowed: one for all or one for each; give as many as there are pressures");
+                     " pressures; allowed: one for all or one for each; give as many as there are pressures, or "
+                     "--every-pressure to test each specimen at each of them");
   }
 }
 
 std::vector<TestRun> run_all(const std::vector<Protocol>& protocols, const std::vector<Specimen>& specimens,
-                             unsigned threads, const RunOne& run) {
-  check_specimens(protocols, specimens);
+                             unsigned threads, const RunOne& run, const std::vector<std::size_t>& specimen_of) {
+  if (specimen_of.empty()) check_specimens(protocols, specimens);
+  const auto number_of = [&](std::size_t k) {
+    return !specimen_of.empty() ? specimen_of.at(k) : specimens.size() == 1 ? 0 : k;
+  };
   if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
   std::vector<TestRun> runs(protocols.size());
   std::vector<std::exception_ptr> errors(protocols.size());
@@ -103,7 +142,7 @@ std::vector<TestRun> run_all(const std::vector<Protocol>& protocols, const std::
   const auto work = [&] {
     for (std::size_t k = next++; k < protocols.size(); k = next++) {
       try {
-        runs[k] = run_one(k, protocols[k], specimens[specimens.size() == 1 ? 0 : k], run);
+        runs[k] = run_one(k, protocols[k], specimens[number_of(k)], run);
       } catch (...) {
         errors[k] = std::current_exception();
       }

@@ -12,8 +12,11 @@ namespace rvelab {
 /// What one test gives. Pa, compression positive; degrees.
 struct PressureResult {
   double pressure = 0;
+  std::size_t specimen = 0;  ///< its number, from 0
   PrincipalStresses peak;
   double peak_strain = 0;
+  double end_strain = 0;
+  bool rising_at_end = false;                  ///< the largest deviator stands at the end: no peak was passed
   double friction_angle_deg = 0;               ///< of the peak
   double moving_mean_friction_angle_deg = 0;   ///< of the 1 % moving mean
   double large_strain_friction_angle_deg = 0;  ///< of the mean stresses from 12 to 15 %
@@ -21,6 +24,18 @@ struct PressureResult {
   std::size_t flagged = 0;  ///< records that could not be held
   double wall_seconds = 0;
   unsigned long long grain_steps = 0;
+};
+
+/// Over several specimens. NaN: standard deviation and error of fewer than two, or of values that are not all defined.
+struct Statistics {
+  double mean = 0;
+  double standard_deviation = 0;  ///< of the specimens (divided by their number less one)
+  double standard_error = 0;      ///< of the mean
+};
+
+/// What the tests of one specimen give: least squares through the origin over its peaks.
+struct SpecimenResult {
+  double friction_angle_deg = 0, bearing_capacity_Nq = 0;
 };
 
 /// What all tests give. Degrees, Pa; NaN where the tests do not reach.
@@ -32,10 +47,17 @@ struct Calibration {
   double large_strain_friction_angle_deg = 0;   ///< mean over the tests
   double bearing_capacity_Nq = 0, local_shear_Nq = 0, wedge_angle_deg = 0;  ///< of friction_angle_deg
   std::vector<PressureResult> per_pressure;
+  std::vector<SpecimenResult> per_specimen;  ///< one packing is one draw: angles of equal recipes differ by degrees
+  Statistics friction_angle_of_specimens, Nq_of_specimens;
 };
 
-/// Evaluates the last stages of finished tests of one dimension. InputError without tests or records.
-Calibration calibrate(const std::vector<TestResult>& tests, int dimension);
+/// Mean, standard deviation and standard error of at least one value.
+Statistics statistics(const std::vector<double>& values);
+
+/// Evaluates the last stages of finished tests of one dimension. `specimens`: the number, from 0, of the specimen that
+/// each test was made on; none: all on one. InputError without tests or records.
+Calibration calibrate(const std::vector<TestResult>& tests, int dimension,
+                      const std::vector<std::size_t>& specimens = {});
 
 /// Throws InputError unless the last stage is a compression at constant lateral stress whose pressure is the test's:
 /// what a friction angle can be read from.
@@ -49,8 +71,9 @@ using RunOne = std::function<TestRun(std::size_t number, const Protocol&, const 
 
 /// Runs protocol k on specimen k (or on the only one), `threads` at a time (0: as many as there are cores). The results
 /// do not depend on the number of threads. Throws the error of the first test that failed, naming its pressure.
-/// `run`: instead of run_protocol.
+/// `run`: instead of run_protocol. `specimen_of`: the specimen of each protocol by its number, where not its own.
 std::vector<TestRun> run_all(const std::vector<Protocol>& protocols, const std::vector<Specimen>& specimens,
-                             unsigned threads, const RunOne& run = {});
+                             unsigned threads, const RunOne& run = {},
+                             const std::vector<std::size_t>& specimen_of = {});
 
 }  // namespace rvelab

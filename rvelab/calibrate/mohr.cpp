@@ -41,9 +41,14 @@ Peak peak(std::span<const Record> records, int dimension) {
   Peak highest;
   for (std::size_t k = 0; k < records.size(); ++k) {
     const PrincipalStresses stresses = principal_stresses(records[k].stress, dimension);
-    if (k == 0 || stresses.major > highest.stresses.major) highest = {k, records[k].strain, stresses};
+    if (k == 0 || stresses.t() > highest.stresses.t()) highest = {k, records[k].strain, stresses};
   }
   return highest;
+}
+
+bool rising_at_end(std::span<const Record> records, const Peak& peak) {
+  constexpr double end = 0.95;
+  return peak.record > 0 && std::abs(peak.strain) > end * std::abs(records.back().strain);
 }
 
 PrincipalStresses peak_of_moving_mean(std::span<const Record> records, int dimension, double window) {

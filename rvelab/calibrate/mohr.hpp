@@ -31,8 +31,13 @@ struct Peak {
   PrincipalStresses stresses;
 };
 
-/// The record with the largest major principal stress, unsmoothed; the first of several. InputError without records.
+/// The record with the largest deviator sigma_1 - sigma_3, unsmoothed; the first of several. With a held lateral stress
+/// that is the largest axial stress of a compression and the smallest of an extension. InputError without records.
 Peak peak(std::span<const Record> records, int dimension);
+
+/// True if the peak lies within the last twentieth of the strain of the records: still rising at the end, or on a
+/// plateau, the test shows no peak.
+bool rising_at_end(std::span<const Record> records, const Peak& peak);
 
 /// The moving mean of the principal stresses over `window` of strain (as many records as lie in it at their median
 /// spacing), where its ratio major/minor is largest. NaN if there are fewer records than the window takes.

@@ -49,7 +49,15 @@ Matrix3 checked_gradient(int dimension, const Matrix3& gradient) {
 
 [[noreturn]] void refuse_determinant(double determinant) {
   throw InvalidIncrement("det(I + dH) = " + text(determinant) +
-                         "; it must be finite and > 0, beyond round-off: apply a smaller increment");
+                         "; it must be finite and > 0: apply a smaller increment");
+}
+
+// The determinant alone does not tell: a shear of 1e17 keeps it at one, and squares of 1e200 are beyond all numbers.
+[[noreturn]] void refuse_stretch(int k, double stretch, const Matrix3& gradient) {
+  throw InvalidIncrement(std::string("U_") + axis[k] + axis[k] + " = " + text(stretch) +
+                         ", the stretch of I + dH along " + axis[k] + ", with entries of dH up to " +
+                         text(gradient.cwiseAbs().maxCoeff()) +
+                         "; it must be finite and > 0 beyond round-off: apply a smaller increment");
 }
 
 // Moves a point along lattice vector k until its k-th coordinate lies in [-L_kk/2, L_kk/2); returns the number of
@@ -86,7 +94,8 @@ FrameSplit split_increment(const Cell& cell, const Matrix3& displacement_gradien
   const Matrix3 in_frame = frame.transpose() * gradient * frame;
   const TriangularFactors factors = triangular_factors(Matrix3::Identity() + in_frame);
   for (int k = 0; k < 3; ++k)
-    if (!(factors.upper(k, k) > 0.0) || !std::isfinite(factors.upper(k, k))) refuse_determinant(determinant);
+    if (!(factors.upper(k, k) > 0.0) || !std::isfinite(factors.upper(k, k)))
+      refuse_stretch(k, factors.upper(k, k), gradient);
   const double deviation = (factors.upper - Matrix3::Identity()).cwiseAbs().maxCoeff();
   const bool rigid = deviation <= 8.0 * std::numeric_limits<double>::epsilon();
   return {factors.rotation, rigid ? Matrix3(Matrix3::Identity()) : factors.upper, rigid};

@@ -6,13 +6,14 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <iostream>
+#include <limits>
 #include <memory>
 #include <set>
 #include <sstream>
 
 #include "rvelab/cli/commands.hpp"
 #include "rvelab/cli/interrupt.hpp"
+#include "rvelab/cli/progress_line.hpp"
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/recording.hpp"
 #include "rvelab/cli/report.hpp"
@@ -25,8 +26,21 @@ struct CalibrateArguments {
   std::string protocol, pressures, folder;
   std::vector<std::string> specimens, settings;
   unsigned threads = 0;
+  bool every_pressure = false;
   RecordingOptions recording;
   bool json = false;
+};
+
+/// What is to be run: each test has a protocol, which is the general one at its pressure, and a specimen by its number.
+struct Plan {
+  std::vector<Protocol> protocols;
+  std::vector<std::size_t> specimen_of;
+  std::vector<std::string> files;  ///< names of the record files
+
+  std::string name(std::size_t test, bool several_specimens) const {
+    const std::string pressure = "p = " + in_words(protocols[test].pressure) + " Pa";
+    return several_specimens ? "specimen " + std::to_string(specimen_of[test] + 1) + ", " + pressure : pressure;
+  }
 };
 
 [[noreturn]] void refuse_pressure(const std::string& found) {
@@ -76,13 +90,35 @@ std::vector<Protocol> protocols_at(const CalibrateArguments& arguments) {
   return protocols;
 }
 
+/// Every specimen at every pressure where that was asked for or there is one pressure; else one for each, or one for
+/// all.
+Plan plan_of(const std::vector<Protocol>& at_pressures, const std::vector<Specimen>& specimens, bool every_pressure) {
+  const bool cross = every_pressure || at_pressures.size() == 1;
+  if (!cross) check_specimens(at_pressures, specimens);
+  Plan plan;
+  for (std::size_t s = 0; s < (cross ? specimens.size() : 1); ++s) {
+    for (std::size_t k = 0; k < at_pressures.size(); ++k) {
+      const std::size_t specimen = cross ? s : specimens.size() == 1 ? 0 : k;
+      std::string file = record_file_name(at_pressures[k].pressure);
+      if (cross && specimens.size() > 1) file.insert(file.size() - 3, "_" + std::to_string(s + 1));
+      plan.protocols.push_back(at_pressures[k]);
+      plan.specimen_of.push_back(specimen);
+      plan.files.push_back(file);
+    }
+  }
+  return plan;
+}
+
 Json per_pressure(const Calibration& calibration) {
   Json tests = Json::array();
   for (const PressureResult& test : calibration.per_pressure) {
     tests.push_back({{"pressure_Pa", test.pressure},
+                     {"specimen", test.specimen + 1},
                      {"peak_sigma_1_Pa", test.peak.major},
                      {"peak_sigma_3_Pa", test.peak.minor},
                      {"peak_strain", test.peak_strain},
+                     {"end_strain", test.end_strain},
+                     {"rising_at_end", test.rising_at_end},
                      {"friction_angle_deg", test.friction_angle_deg},
                      {"friction_angle_moving_mean_deg", test.moving_mean_friction_angle_deg},
                      {"large_strain_friction_angle_deg", test.large_strain_friction_angle_deg},
@@ -94,19 +130,88 @@ Json per_pressure(const Calibration& calibration) {
   return tests;
 }
 
-void report(const Calibration& calibration, const Protocol& protocol, double wall_seconds, bool json) {
+/// What a user is told of a mean over draws; nothing of a single one, which has no scatter to tell.
+void add_statistics(const Calibration& calibration, const std::vector<std::string>& files, Listing& listing) {
+  listing.add("specimens", calibration.per_specimen.size());
+  if (calibration.per_specimen.size() < 2) return;
+  const std::string why = "a specimen has no friction angle, see per_specimen";
+  const auto add = [&](const std::string& stem, const std::string& end, const Statistics& found,
+                       const std::string& unit) {
+    listing.add_or_why(stem + "_mean" + end, found.mean, unit, why);
+    listing.add_or_why(stem + "_standard_deviation" + end, found.standard_deviation, unit, why);
+    listing.add_or_why(stem + "_standard_error" + end, found.standard_error, unit, why);
+  };
+  add("friction_angle", "_deg", calibration.friction_angle_of_specimens, "degrees");
+  add("bearing_capacity_Nq", "", calibration.Nq_of_specimens, "");
+  Json rows = Json::array();
+  for (std::size_t k = 0; k < calibration.per_specimen.size(); ++k) {
+    const SpecimenResult& one = calibration.per_specimen[k];
+    rows.push_back({{"specimen", k + 1},
+                    {"file", files[k]},
+                    {"friction_angle_deg", one.friction_angle_deg},
+                    {"bearing_capacity_Nq", one.bearing_capacity_Nq}});
+  }
+  listing.add("per_specimen", std::move(rows));
+}
+
+std::string percent(double strain) { return in_words(100 * std::abs(strain)) + " %"; }
+
+/// The tests whose largest deviator stands at their end, in words; empty: all passed a peak.
+std::string without_peak(const Calibration& calibration) {
+  std::string tests;
+  double end = 0;
+  for (const PressureResult& test : calibration.per_pressure) {
+    if (!test.rising_at_end) continue;
+    tests += tests.empty() ? "" : ", ";
+    if (calibration.per_specimen.size() > 1) tests += "specimen " + std::to_string(test.specimen + 1) + " at ";
+    tests += in_words(test.pressure) + " Pa";
+    end = std::max(end, std::abs(test.end_strain));
+  }
+  if (tests.empty()) return "";
+  return tests + ": still rising at the end: no peak; the angle is that of the largest deviator up to " + percent(end) +
+         " strain; let the tests go further (to_strain)";
+}
+
+/// Why the figures that need more of the tests than they give are not there.
+struct Reasons {
+  std::string peak, moving_mean, cohesion, large_strain;
+};
+
+Reasons reasons_of(const Calibration& calibration) {
+  double end = std::numeric_limits<double>::infinity();
+  bool tension = false;
+  for (const PressureResult& test : calibration.per_pressure) {
+    end = std::min(end, std::abs(test.end_strain));
+    tension = tension || !(test.peak.minor > 0);
+  }
+  const std::string no_angle =
+      tension ? "a peak has a minor principal stress of 0 or in tension: no friction alone carries it"
+              : "the peaks give no angle: no principal stress is in compression";
+  return {no_angle, tension ? no_angle : "needs records over 1 % of strain; a test ends at " + percent(end),
+          calibration.per_pressure.size() < 2 ? "needs tests at two pressures or more" : "the peaks lie on no line",
+          "is the mean from 12 to 15 % of strain; a test ends at " + percent(end)};
+}
+
+void report(const Calibration& calibration, const Protocol& protocol, const std::vector<std::string>& specimens,
+            double wall_seconds, bool json) {
   Listing listing;
   unsigned long long grain_steps = 0;
   for (const auto& test : calibration.per_pressure) grain_steps += test.grain_steps;
+  const Reasons why = reasons_of(calibration);
   listing.add("protocol", protocol.name);
-  listing.add("friction_angle_deg", calibration.friction_angle_deg, "degrees");
-  listing.add("friction_angle_moving_mean_deg", calibration.friction_angle_moving_mean_deg, "degrees");
-  listing.add("friction_angle_with_cohesion_deg", calibration.friction_angle_with_cohesion_deg, "degrees");
-  listing.add("cohesion_Pa", calibration.cohesion, "Pa");
-  listing.add("large_strain_friction_angle_deg", calibration.large_strain_friction_angle_deg, "degrees");
-  listing.add("bearing_capacity_Nq", calibration.bearing_capacity_Nq);
-  listing.add("local_shear_Nq", calibration.local_shear_Nq);
-  listing.add("wedge_angle_deg", calibration.wedge_angle_deg, "degrees");
+  listing.add_or_why("friction_angle_deg", calibration.friction_angle_deg, "degrees", why.peak);
+  listing.add_or_why("friction_angle_moving_mean_deg", calibration.friction_angle_moving_mean_deg, "degrees",
+                     why.moving_mean);
+  listing.add_or_why("friction_angle_with_cohesion_deg", calibration.friction_angle_with_cohesion_deg, "degrees",
+                     why.cohesion);
+  listing.add_or_why("cohesion_Pa", calibration.cohesion, "Pa", why.cohesion);
+  listing.add_or_why("large_strain_friction_angle_deg", calibration.large_strain_friction_angle_deg, "degrees",
+                     why.large_strain);
+  listing.add_or_why("bearing_capacity_Nq", calibration.bearing_capacity_Nq, "", why.peak);
+  listing.add_or_why("local_shear_Nq", calibration.local_shear_Nq, "", why.peak);
+  listing.add_or_why("wedge_angle_deg", calibration.wedge_angle_deg, "degrees", why.peak);
+  add_statistics(calibration, specimens, listing);
+  if (const std::string warning = without_peak(calibration); !warning.empty()) listing.add("warning", warning);
   listing.add("per_pressure", per_pressure(calibration));
   listing.add("wall_s", wall_seconds, "s");
   listing.add("grain_steps", grain_steps);
@@ -116,39 +221,52 @@ void report(const Calibration& calibration, const Protocol& protocol, double wal
 /// Says what the stopped tests left, and ends the program with the code of the signal.
 [[noreturn]] void end_stopped(const std::vector<TestRun>& runs, const std::string& folder) {
   const auto done = std::count_if(runs.begin(), runs.end(), [](const TestRun& run) { return run.complete; });
-  std::cerr << "rvelab: stopped by " << signal_name() << " with " << done << " of " << runs.size()
-            << " tests complete; " << (folder.empty() ? "their records are not kept without -o" : "go on with --resume")
-            << std::endl;
+  tell("stopped by " + std::string(signal_name()) + " with " + std::to_string(done) + " of " +
+       std::to_string(runs.size()) + " tests complete; " +
+       (folder.empty() ? "their records are not kept without -o" : "go on with --resume"));
   throw Stopped(128 + signal_received());
 }
 
 void run_calibration(const CalibrateArguments& arguments) {
   const auto begin = std::chrono::steady_clock::now();
-  const auto protocols = protocols_at(arguments);
+  const auto at_pressures = protocols_at(arguments);
   arguments.recording.expect_output(arguments.folder);
-  const auto specimens = specimens_for(protocols.front(), arguments.specimens);
-  check_specimens(protocols, specimens);
-  std::vector<std::unique_ptr<RecordStore>> stores(protocols.size());
+  const auto specimens = specimens_for(at_pressures.front(), arguments.specimens);
+  const Plan plan = plan_of(at_pressures, specimens, arguments.every_pressure);
+  const std::size_t tests = plan.protocols.size();
+  std::vector<std::unique_ptr<RecordStore>> stores(tests);
   if (!arguments.folder.empty()) {
-    const std::filesystem::path folder = arguments.folder;
-    expect_folder_of((folder / "R.h5").string());
-    for (std::size_t k = 0; k < protocols.size(); ++k) {
-      stores[k] = open_store((folder / record_file_name(protocols[k].pressure)).string(), protocols[k],
-                             specimens[specimens.size() == 1 ? 0 : k], arguments.recording);
+    for (std::size_t k = 0; k < tests; ++k) with_overrides(plan.protocols[k], specimens[plan.specimen_of[k]]);
+    make_folder(arguments.folder);
+    for (std::size_t k = 0; k < tests; ++k) {
+      stores[k] = open_store((std::filesystem::path(arguments.folder) / plan.files[k]).string(), plan.protocols[k],
+                             specimens[plan.specimen_of[k]], arguments.recording);
     }
   }
-  Watch watch;
-  watch.stop = &stop_on_signals();
-  const auto runs = run_all(protocols, specimens, arguments.threads,
-                            [&](std::size_t number, const Protocol& protocol, const Specimen& specimen) {
-                              return run_recorded(protocol, specimen, stores[number].get(), watch);
-                            });
+  std::vector<TestRun> runs;
+  {
+    ProgressOfTests progress(tests);
+    runs = run_all(
+        plan.protocols, specimens, arguments.threads,
+        [&](std::size_t number, const Protocol& protocol, const Specimen& specimen) {
+          Watch watch;
+          watch.stop = &stop_on_signals();
+          watch.on_moment = [&, name = plan.name(number, specimens.size() > 1)](const Moment& moment) {
+            progress.show(number, name, moment);
+          };
+          TestRun run = run_recorded(protocol, specimen, stores[number].get(), watch);
+          if (run.complete) progress.done(number);
+          return run;
+        },
+        plan.specimen_of);
+  }
   const bool complete = std::all_of(runs.begin(), runs.end(), [](const TestRun& run) { return run.complete; });
   if (!complete) end_stopped(runs, arguments.folder);
   std::vector<TestResult> results;
   for (const TestRun& run : runs) results.push_back(run.result);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
-  report(calibrate(results, specimens.front().cell.dimension), protocols.front(), wall.count(), arguments.json);
+  report(calibrate(results, specimens.front().cell.dimension, plan.specimen_of), at_pressures.front(),
+         arguments.specimens, wall.count(), arguments.json);
 }
 
 }  // namespace
@@ -159,12 +277,16 @@ void add_calibrate(CLI::App& app) {
       app.add_subcommand("calibrate", "Run a compression test at several pressures: friction angle, N_q");
   command->add_option("protocol", arguments->protocol, "PROTOCOL.toml, or the name of an installed one: biaxial")
       ->required();
-  command->add_option("--specimen", arguments->specimens, "specimen; given several times: one for each pressure")
+  command
+      ->add_option("--specimen", arguments->specimens,
+                   "specimen; given several times: all at one pressure, or one\n"
+                   "for each pressure; with --every-pressure each at all of them")
       ->expected(1)
       ->allow_extra_args(false)
       ->take_all();
   command->add_option("--pressures", arguments->pressures, "Pa, 10e3,15e3,...; else [calibrate] pressures_Pa");
-  command->add_option("-o,--output", arguments->folder, "folder for record files R_<pressure>.h5");
+  command->add_flag("--every-pressure", arguments->every_pressure, "test each of several specimens at every pressure");
+  command->add_option("-o,--output", arguments->folder, "folder for record files R_<pressure>.h5; made if not there");
   command->add_option("--set", arguments->settings, "key=value, for example contact.slip=consistent")
       ->expected(1)
       ->allow_extra_args(false)
@@ -174,9 +296,20 @@ void add_calibrate(CLI::App& app) {
   arguments->recording.add_to(*command);
   command->add_flag("--json", arguments->json, "print one JSON object");
   command->footer(
+      "phi: friction angle, sin phi = (sigma_1 - sigma_3)/(sigma_1 + sigma_3) at the peak, the record with the "
+      "largest\n"
+      "sigma_1 - sigma_3; over several tests by least squares through the origin.\n"
+      "bearing_capacity_Nq: N_q = tan^2(45 + phi/2) exp(pi tan phi), bearing capacity factor of a footing's surcharge "
+      "in\n"
+      "general shear; local_shear_Nq: the same with tan phi reduced to 2/3, for loose soil; wedge_angle_deg: 45 + "
+      "phi/2,\n"
+      "of the active wedge below a footing against the horizontal.\n"
+      "One packing is one draw: equal recipes with other seeds differ by degrees. Of several specimens the mean, the\n"
+      "standard deviation and the standard error of phi and N_q are printed.\n"
       "Examples:\n"
       "  rvelab calibrate biaxial --specimen dense.h5 --pressures 10e3,20e3,30e3\n"
-      "  rvelab calibrate biaxial --specimen a.h5 --specimen b.h5 --pressures 10e3,20e3 -o records");
+      "  rvelab calibrate biaxial --specimen a.h5 --specimen b.h5 --pressures 10e3,20e3 -o records\n"
+      "  rvelab calibrate biaxial --specimen S_1.h5 --specimen S_2.h5 --specimen S_3.h5 --every-pressure");
   command->callback([arguments] { run_calibration(*arguments); });
 }
 

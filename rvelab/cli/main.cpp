@@ -1,12 +1,19 @@
 // The program `rvelab`: its subcommands, and the one place where errors become exit codes. 0: done; 1: the run failed;
-// 2: a user's mistake. Every error is one line on standard error. No colours, on a terminal or off it.
+// 2: a user's mistake. Every error is one line of UTF-8 on standard error, in rvelab's words: what the standard library
+// says for itself names neither file nor remedy. No colours, on a terminal or off it.
+#include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <iostream>
+#include <new>
+#include <stdexcept>
 #include <string>
+#include <system_error>
 
 #include "rvelab/cli/commands.hpp"
 #include "rvelab/cli/mistakes.hpp"
 #include "rvelab/error.hpp"
+#include "rvelab/io/utf8.hpp"
 #include "rvelab/io/version.hpp"
 
 namespace {
@@ -20,9 +27,39 @@ std::string on_one_line(std::string text) {
   return text;
 }
 
-int fail(int code, const char* message) {
-  std::cerr << "rvelab: " << on_one_line(message) << std::endl;
+int fail(int code, const std::string& message) {
+  std::cerr << "rvelab: " << rvelab::io::printable(on_one_line(message)) << std::endl;
   return code;
+}
+
+/// Says it without asking for memory, of which there is none.
+int fail_without_memory(int argc, char** argv) {
+  std::fputs("rvelab: out of memory in", stderr);
+  for (int k = 0; k < argc; ++k) {
+    std::fputc(' ', stderr);
+    const std::string_view word = argv[k];
+    for (std::size_t at = 0; at < word.size();) {
+      const std::size_t length = rvelab::io::utf8_length(word, at);
+      const bool shown = length > 0 && static_cast<unsigned char>(word[at]) >= 0x20;
+      if (shown) std::fwrite(word.data() + at, 1, length, stderr);
+      if (!shown) std::fputc('?', stderr);
+      at += shown ? length : 1;
+    }
+  }
+  std::fputs("; free memory, raise its limit (ulimit -v), or give fewer grains, records or threads\n", stderr);
+  return run_failed;
+}
+
+/// A path that could not even be looked at is the user's; a file system that fails is not.
+int fail_at_path(const std::filesystem::filesystem_error& error) {
+  const bool path_at_fault =
+      error.code() == std::errc::filename_too_long || error.code() == std::errc::not_a_directory ||
+      error.code() == std::errc::too_many_symbolic_link_levels || error.code() == std::errc::permission_denied ||
+      error.code() == std::errc::no_such_file_or_directory || error.code() == std::errc::is_a_directory;
+  const std::string remedy = path_at_fault ? "; give the path of a file in a folder that you may use"
+                                           : "; check the disk, or choose another place";
+  return fail(path_at_fault ? users_mistake : run_failed,
+              error.path1().string() + ": cannot be used (" + error.code().message() + ")" + remedy);
 }
 
 }  // namespace
@@ -64,10 +101,22 @@ int main(int argc, char** argv) {
     std::cout << std::flush;
     return outcome.get_exit_code();
   } catch (const CLI::Error& error) {
-    return fail(users_mistake, rvelab::cli::with_remedy(app, error).c_str());
+    return fail(users_mistake, rvelab::cli::with_remedy(app, error));
   } catch (const rvelab::InputError& error) {
     return fail(users_mistake, error.what());
-  } catch (const std::exception& error) {
+  } catch (const rvelab::Error& error) {
     return fail(run_failed, error.what());
+  } catch (const std::bad_alloc&) {
+    return fail_without_memory(argc, argv);
+  } catch (const std::length_error&) {  // a container longer than any machine's memory
+    return fail_without_memory(argc, argv);
+  } catch (const std::filesystem::filesystem_error& error) {
+    return fail_at_path(error);
+  } catch (const std::system_error& error) {
+    return fail(run_failed, "the system refuses a thread or a file (" + error.code().message() +
+                                "); lower --threads, or raise the limits (ulimit -u, ulimit -n)");
+  } catch (const std::exception& error) {
+    return fail(run_failed, "a fault of rvelab itself (" + std::string(error.what()) +
+                                "); please report it with the command and its input files");
   }
 }

@@ -172,7 +172,7 @@ void run_pack(const PackArguments& arguments) {
       });
     }
   } catch (const Interrupted&) {
-    std::cerr << "rvelab: stopped by " << signal_name() << "; " << made_of(jobs) << std::endl;
+    tell("stopped by " + std::string(signal_name()) + "; " + made_of(jobs));
     throw Stopped(128 + signal_received());
   } catch (const InputError&) {
     throw;

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <chrono>
+#include <mutex>
+#include <string>
+#include <vector>
 
 #include "rvelab/protocol/run.hpp"
 
@@ -26,6 +29,36 @@ class ProgressLine {
   Clock::time_point begin_, last_;
   std::uint64_t first_grain_steps_ = 0;
   std::size_t first_records_ = 0;
+};
+
+/// The same for several tests at a time: how many are done, where the one that was heard of last stands, grain-steps
+/// per second of all, time left. May be called from any thread.
+class ProgressOfTests {
+ public:
+  explicit ProgressOfTests(std::size_t tests);
+  ProgressOfTests(const ProgressOfTests&) = delete;
+  ProgressOfTests& operator=(const ProgressOfTests&) = delete;
+  ~ProgressOfTests();
+
+  /// `name` of the test by its number, from 0.
+  void show(std::size_t number, const std::string& name, const Moment& moment);
+  void done(std::size_t number);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Test {
+    double part = 0;                      ///< of its records, 0 to 1
+    double first_part = 0;                ///< that was there when it began (a resumed test)
+    std::uint64_t first_grain_steps = 0;  ///< of its specimen when it began
+    std::uint64_t grain_steps = 0;        ///< made since
+    bool begun = false, finished = false;
+  };
+  const bool terminal_;
+  bool shown_ = false;
+  const Clock::time_point begin_ = Clock::now();
+  Clock::time_point last_ = begin_;
+  std::vector<Test> tests_;
+  std::mutex mutex_;
 };
 
 }  // namespace rvelab::cli

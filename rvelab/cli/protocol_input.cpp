@@ -15,12 +15,16 @@ namespace {
 
 InputKind kind_of(const std::string& path) { return is_recipe(path) ? InputKind::recipe : InputKind::protocol; }
 
+fs::path installed_folder() {
+  std::error_code ignored;
+  const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
+  return program.parent_path().parent_path() / "share/rvelab/protocols";
+}
+
 std::map<std::string, std::string> all_installed() {
   std::map<std::string, std::string> paths;
   std::error_code ignored;
-  const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
-  const fs::path folder = program.parent_path().parent_path() / "share/rvelab/protocols";
-  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+  for (const auto& entry : fs::directory_iterator(installed_folder(), ignored)) {
     if (entry.path().extension() == ".toml") paths[entry.path().stem().string()] = entry.path().string();
   }
   return paths;
@@ -43,6 +47,14 @@ std::map<std::string, std::string> installed(InputKind kind) {
   return paths;
 }
 
+void expect_installed() {
+  if (!all_installed().empty()) return;
+  throw Error(
+      installed_folder().string() +
+      ": no protocols are installed there, where this program looks for them; install it anew (cmake --install), "
+      "or link to the program rather than copy it");
+}
+
 std::string input_path(const std::string& name_or_path, InputKind kind) {
   if (name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".toml")) {
     return expect_kind(name_or_path, kind);
@@ -55,6 +67,7 @@ std::string input_path(const std::string& name_or_path, InputKind kind) {
     names.push_back(name);
     list += name + ", ";
   }
+  if (all.empty()) list = "none in " + installed_folder().string() + ", which is not there or empty; install it, ";
   const std::string near = nearest(name_or_path, names);
   const bool recipe = kind == InputKind::recipe;
   throw InputError(std::string("no ") + (recipe ? "recipe" : "protocol") + " \"" + name_or_path + "\" is installed" +
@@ -74,6 +87,16 @@ std::vector<Specimen> specimens_for(const Protocol& protocol, const std::vector<
     specimens.push_back(read_specimen((folder / protocol.specimen_file).string()));
   }
   return specimens;
+}
+
+void make_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  std::error_code ignored;
+  if (std::filesystem::is_directory(folder, ignored)) return;
+  throw InputError(folder + ": the folder cannot be made (" +
+                   (error ? error.message() : std::string("a file has this name")) +
+                   "); give one in a place that you may write to");
 }
 
 void expect_folder_of(const std::string& file) {

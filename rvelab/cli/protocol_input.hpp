@@ -17,6 +17,9 @@ enum class InputKind { protocol, recipe };
 /// which is where installation and build put them.
 std::map<std::string, std::string> installed(InputKind kind);
 
+/// Error, naming the folder, if nothing at all is installed there: the installation is broken.
+void expect_installed();
+
 /// The path of a protocol, or recipe: what is no path (no separator, no .toml) names an installed one. InputError with
 /// the nearest name if none is called so, or if it is of the other kind.
 std::string input_path(const std::string& name_or_path, InputKind kind);
@@ -27,6 +30,9 @@ inline std::string protocol_path(const std::string& name_or_path) {
 /// Reads the specimens named on the command line; without any, the protocol's own ([specimen] file, relative to the
 /// protocol's folder). InputError if there is none.
 std::vector<Specimen> specimens_for(const Protocol& protocol, const std::vector<std::string>& files);
+
+/// Makes the folder that results go to, with those above it, unless it is there. InputError if it cannot be made.
+void make_folder(const std::string& folder);
 
 /// InputError unless the folder that a file is to be written to is there: said before the work, not after it.
 void expect_folder_of(const std::string& file);

@@ -31,6 +31,7 @@ std::string first_sentence(const std::string& text) {
 }
 
 void run_protocols(const std::string& name, bool json) {
+  expect_installed();
   Listing listing;
   if (!name.empty()) {
     const bool recipe = installed(InputKind::recipe).contains(name);

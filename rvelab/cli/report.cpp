@@ -5,19 +5,22 @@
 #include <iostream>
 #include <sstream>
 
+#include "rvelab/io/utf8.hpp"
+
 namespace rvelab::cli {
 namespace {
 
 /// One value on one line: text without quotation marks, numbers with 9 digits.
 std::string on_one_line(const Json& value) {
-  if (value.is_string()) return value.get<std::string>();
+  if (value.is_string()) return io::printable(value.get<std::string>());
   if (value.is_number_float()) {
+    if (std::isnan(value.get<double>())) return "-";
     std::ostringstream text;
     text.precision(9);
     text << value.get<double>();
     return text.str();
   }
-  if (!value.is_structured()) return value.is_null() ? "nan" : value.dump();
+  if (!value.is_structured()) return value.is_null() ? "-" : value.dump();
   std::string text;
   for (const auto& [key, item] : value.items()) {
     if (!text.empty()) text += value.is_object() ? ", " : "  ";
@@ -37,10 +40,16 @@ void Listing::add(const std::string& key, Json value, const std::string& unit) {
   lines_.push_back({key, std::move(value), unit});
 }
 
+void Listing::add_or_why(const std::string& key, double value, const std::string& unit, const std::string& why) {
+  add(key, value, unit);
+  if (std::isnan(value)) undefined_[key] = why;
+}
+
 std::string Listing::json() const {
   Json object = Json::object();
   for (const auto& line : lines_)
     if (line.form != Form::text) object[line.key] = line.value;
+  if (!undefined_.empty()) object["undefined"] = undefined_;
   return object.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -54,8 +63,13 @@ std::string Listing::text() const {
   };
   for (const auto& line : lines_) {
     if (line.form == Form::json) continue;
+    if (undefined_.contains(line.key)) {
+      put(line.key, "-  (" + on_one_line(undefined_[line.key]) + ")", "");
+      continue;
+    }
     if (!has_rows(line.value)) {
-      put(line.key, on_one_line(line.value), line.unit);
+      const std::string shown = on_one_line(line.value);
+      put(line.key, shown, shown == "-" ? "" : line.unit);
       continue;
     }
     for (std::size_t row = 0; row < line.value.size(); ++row) {
@@ -66,6 +80,8 @@ std::string Listing::text() const {
 }
 
 void Listing::print(bool as_json) const { std::cout << (as_json ? json() : text()) << std::flush; }
+
+void tell(const std::string& text) { std::cerr << "rvelab: " << io::printable(text) << std::endl; }
 
 Json row_major(const Eigen::MatrixXd& matrix) {
   Json rows = Json::array();

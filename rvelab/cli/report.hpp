@@ -12,8 +12,8 @@ namespace rvelab::cli {
 
 using Json = nlohmann::ordered_json;
 
-/// Results of a command, in the order in which they were added. Numbers keep every bit (up to 17 digits); NaN and
-/// infinities are null in JSON and "nan" in the listing. Arrays are row-major.
+/// Results of a command, in the order in which they were added. Numbers keep every bit (up to 17 digits); NaN, which
+/// is what is not defined, and infinities are null in JSON, and NaN is "-" in the listing. Arrays are row-major.
 class Listing {
  public:
   /// `value`: number, text, truth, array or object. `unit` stands in the listing only ("" for none); JSON keys end in
@@ -22,6 +22,9 @@ class Listing {
   /// A line that only the one form or the other has.
   void add_to_text(const std::string& key, const std::string& text) { lines_.push_back({key, text, "", Form::text}); }
   void add_to_json(const std::string& key, Json value) { lines_.push_back({key, std::move(value), "", Form::json}); }
+  /// A number that may not be defined: where it is NaN, `why` stands in its place in the listing, and in the object
+  /// "undefined" of the JSON, by the key.
+  void add_or_why(const std::string& key, double value, const std::string& unit, const std::string& why);
   bool empty() const { return lines_.empty(); }
   std::string json() const;  ///< one object, indented, ends with a newline
   std::string text() const;  ///< one line a key; matrices and lists of objects one line a row
@@ -37,7 +40,11 @@ class Listing {
     Form form = Form::both;
   };
   std::vector<Line> lines_;
+  Json undefined_ = Json::object();  ///< reasons by key
 };
+
+/// One line on standard error, "rvelab: text", for what is no error and no result.
+void tell(const std::string& text);
 
 /// A matrix as an array of rows.
 Json row_major(const Eigen::MatrixXd& matrix);

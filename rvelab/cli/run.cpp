@@ -1,7 +1,8 @@
 // rvelab run: one test on one specimen.
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
-#include <iostream>
 #include <memory>
 #include <string>
 #include <thread>
@@ -126,6 +127,9 @@ void report(const Protocol& protocol, const TestRun& run, const RunArguments& ar
     listing.add("peak_strain", highest.strain);
     listing.add("peak_sigma_1_Pa", highest.stresses.major, "Pa");
     listing.add("peak_sigma_3_Pa", highest.stresses.minor, "Pa");
+    listing.add_or_why("peak_friction_angle_deg", friction_angle_deg(highest.stresses), "degrees",
+                       "the minor principal stress is in tension, or there is no stress");
+    listing.add("rising_at_end", rising_at_end(records, highest));
     listing.add("end_strain", records.back().strain);
     listing.add("end_stress_Pa", row_major(records.back().stress), "Pa");
     if ((records.back().quantities & void_ratio_asked) != 0) {
@@ -137,18 +141,21 @@ void report(const Protocol& protocol, const TestRun& run, const RunArguments& ar
     listing.add(only ? "stiffness_Pa" : "stiffness_Pa_" + probe.stage, row_major(probe.stiffness), "Pa");
   }
   add_oedometers(protocol, run, listing);
-  if (!arguments.output.empty()) listing.add("file", arguments.output);
+  if (!arguments.output.empty()) {
+    listing.add("file", arguments.output);
+  } else if (!arguments.json && !result.records.empty()) {
+    listing.add("file", "none: the records are not kept without -o R.h5");
+  }
   listing.add("wall_s", result.wall_seconds, "s");
   listing.add("grain_steps", result.grain_steps);
   listing.print(arguments.json);
   // A record or two in an avalanche are the specimen's; more are the test's.
   if (20 * marked > static_cast<long>(result.records.size())) {
-    std::cerr
-        << "rvelab: " << marked << " of " << result.records.size() << " records are flagged: " << flagged
-        << " did not hold their stress, " << moving
-        << " were no equilibrium (target_held, quasi_static in the records); lower solver.target_unbalanced or the "
-           "rate, or raise loading.held_tolerance"
-        << std::endl;
+    tell(std::to_string(marked) + " of " + std::to_string(result.records.size()) +
+         " records are flagged: " + std::to_string(flagged) + " did not hold their stress, " + std::to_string(moving) +
+         " were no equilibrium (target_held, quasi_static in the records); lower solver.target_unbalanced or the rate, "
+         "or "
+         "raise loading.held_tolerance");
   }
 }
 
@@ -158,7 +165,7 @@ void report(const Protocol& protocol, const TestRun& run, const RunArguments& ar
   const std::string kept = output.empty()               ? "they are not kept without -o"
                            : run.result.records.empty() ? "go on with --resume"
                                                         : output + " holds them; go on with --resume";
-  std::cerr << "rvelab: stopped by " << signal_name() << " after " << made << "; " << kept << std::endl;
+  tell("stopped by " + std::string(signal_name()) + " after " + made + "; " + kept);
   throw Stopped(128 + signal_received());
 }
 
@@ -173,7 +180,9 @@ void run_test(const RunArguments& arguments) {
     expect_folder_of(arguments.output);
     with_overrides(protocol, specimen);  // its mistakes are told before a file is touched
     store = open_store(arguments.output, protocol, specimen, arguments.recording);
-    if (store->complete()) std::cerr << "rvelab: " << arguments.output << " is complete; nothing was run" << std::endl;
+    if (store->complete()) tell(arguments.output + " is complete; nothing was run");
+  } else if (!arguments.json && planned_records(protocol) > 0 && isatty(STDERR_FILENO) == 1) {
+    tell("the records will not be kept: no -o R.h5 is given");  // before the work; off a terminal the listing says it
   }
   TestRun run;
   {
@@ -215,6 +224,9 @@ void add_run(CLI::App& app) {
       "A specimen below 30,000 grains runs on one thread; `rvelab calibrate --threads` runs several tests at a time.\n"
       "The number of threads changes no bit. Records go to\n"
       "R.h5.journal at once and to R.h5 now and then; Ctrl-C and SIGTERM stop the test and keep both.\n"
+      "Without -o and --json the records are lost. peak_: of the last stage, where sigma_1 - sigma_3 is largest.\n"
+      "p: mean stress, compression positive; q: deviatoric stress, sqrt(s:s/2) in 2D, sqrt(3 s:s/2) in 3D; eps_q: its\n"
+      "strain, sqrt(2 e:e) and sqrt(2 e:e/3), with s and e the deviators (rvelab/protocol/README.md says more).\n"
       "Examples:\n"
       "  rvelab run biaxial --specimen dense.h5 -o R.h5\n"
       "  rvelab run biaxial --specimen dense.h5 --set stage.compression.to_strain=0.05 --json\n"

@@ -1,9 +1,13 @@
-// A table of comma-separated values with a header line, read whole; cells are asked for by row and column name.
+// A table of values in columns with a header line, read whole; cells are asked for by row and column name.
 //
-// Lines that begin with '#' and empty lines are skipped. Every message names file, line, column and value.
+// Text is UTF-8, with or without a byte order mark, lines end in LF or CRLF. Cells are apart by commas, or by
+// semicolons where the header has those and no commas; numbers then may have a decimal comma. Cells may stand in
+// quotation marks, doubled inside. Names of columns are found whatever their case. Lines that begin with '#' and empty
+// lines are skipped. Every message names file, line, column and value.
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,8 +16,8 @@ namespace rvelab {
 
 class CsvTable {
  public:
-  /// Reads a file. InputError: missing, no header, a row with another number of cells than the header, a column name
-  /// twice.
+  /// Reads a file. InputError: missing, no UTF-8, no header, a row with another number of cells than the header, an
+  /// open quotation mark, a column name twice.
   explicit CsvTable(const std::string& path);
   /// The same of a text; `path` serves the messages only.
   CsvTable(const std::string& path, std::string text);
@@ -37,7 +41,15 @@ class CsvTable {
   std::string place(std::size_t row) const;
 
  private:
+  template <class Put>
+  void split(std::string_view line, long number, Put put);
+  void read_header(std::string_view line, long number);
+  /// Index of a column by its name, else by its name in another case; columns_.size(): none.
+  std::size_t index_of(const std::string& name) const;
+
   std::string path_, content_;
+  char delimiter_ = ',';
+  std::deque<std::string> unquoted_;  // cells that are not in content_ as they are
   std::vector<std::string> columns_;
   std::vector<std::string_view> cells_;  // row-major
   std::vector<long> lines_;              // line number of each row

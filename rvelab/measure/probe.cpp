@@ -22,7 +22,8 @@ double relax_fully(Rve& rve, long max_steps) {
   for (long made = 0; made < max_steps && smallest > wanted_ratio;) {
     const Report report = rve.relax(wanted_ratio, std::min(relaxing_steps, max_steps - made));
     made += std::max(report.substeps, 1L);
-    const bool stalled = report.unbalanced_ratio > 0.5 * smallest && smallest < relaxed_ratio;
+    // A grain that touches down late lifts the ratio again after it was low: then there is more to relax.
+    const bool stalled = report.unbalanced_ratio > 0.5 * smallest && report.unbalanced_ratio < relaxed_ratio;
     smallest = std::min(smallest, report.unbalanced_ratio);
     if (stalled) break;
   }

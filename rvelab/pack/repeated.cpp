@@ -10,7 +10,9 @@ namespace rvelab {
 Specimen repeated(const Specimen& one, const Image& times) {
   const int d = one.cell.dimension;
   for (int k = 0; k < d; ++k)
-    if (times[k] < 1) throw InputError("repeated: each count must be at least 1");
+    if (times[k] < 1)
+      throw InputError("repeated: " + std::to_string(times[k]) + " times along " + "xyz"[k] +
+                       "; allowed: 1 or more; correct it");
   Specimen all = one;
   all.grains = Grains{};
   all.contacts.clear();

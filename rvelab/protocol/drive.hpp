@@ -33,9 +33,6 @@ MixedTarget mixed_target(const Matrix3& displacement_gradient, const std::vector
 /// Strains of the records of a strain-driven stage that goes straight: 0, multiples of the spacing, then the end.
 std::vector<double> record_strains(double to_strain, double spacing);
 
-/// Records that all stages of a protocol make together.
-std::size_t planned_records(const Protocol& protocol);
-
 /// A test under way.
 class RunningTest {
  public:
@@ -98,6 +95,12 @@ class RunningTest {
 
   /// A moment at which the test can be left: shows it to the watcher; throws Interrupted if a stop was asked for.
   void pause();
+
+  /// At the start of a stage that holds a stress: InputError unless the stress `name` (Pa, compression positive) is
+  /// there already, within ten times the tolerance by which it is held. A drained test of the laboratory starts from
+  /// the consolidated state; a stress that jumped within the first record would be a load path that nobody prescribed,
+  /// with the waves and slips of a shock in all that follows.
+  void expect_consolidated(const std::string& name, double found, double held) const;
 
   /// Scale of a held stress: max(|target|, 1 % of the stage's first p). Error if both vanish.
   double held_scale(double target) const;

@@ -100,7 +100,11 @@ void drive(RunningTest& test, const PathStage& stage) {
   }
 }
 
-void drive(RunningTest& test, const DeviatoricStage& stage) { drive(test, path_of(stage, test.dimension())); }
+void drive(RunningTest& test, const DeviatoricStage& stage) {
+  const Progress& at = test.run.progress;
+  if (at.step == 0) test.expect_consolidated("p", at.first_pressure, stage.pressure);
+  drive(test, path_of(stage, test.dimension()));
+}
 
 void drive(RunningTest& test, const PressurePathStage& stage) { drive(test, path_of(stage, test.dimension())); }
 

@@ -15,8 +15,9 @@ void drive(RunningTest& test, const ProbeStage& stage) {
   if (stage.no_slip) forbid_slip(copy);
   const Probe probe = probe_stiffness(copy, stage.size);
   if (!probe.relaxed) {
-    throw test.failed("the probes relaxed to the unbalanced ratio " + std::to_string(probe.unbalanced_ratio) +
-                      " only; allowed: below 1e-10; give a relax stage before, or method = \"linear\"");
+    throw test.failed("the probes relaxed to the unbalanced ratio " + in_words(probe.unbalanced_ratio) +
+                      " only; allowed: below " + in_words(relaxed_ratio) +
+                      "; give a relax stage before, another size, or method = \"linear\"");
   }
   test.probed(probe.stiffness);
 }

@@ -11,6 +11,9 @@ namespace {
 
 int axis_index(char axis) { return axis - 'x'; }
 
+/// "-sigma_xx": what messages call a normal stress, compression positive.
+std::string normal_stress(int k) { return std::string("-sigma_") + "xyz"[k] + "xyz"[k]; }
+
 }  // namespace
 
 std::vector<double> record_strains(double to_strain, double spacing) {
@@ -33,7 +36,12 @@ std::size_t driven_records(const Driven& stage) {
   return static_cast<std::size_t>(4 * stage.cycles.count * steps_to(stage.to_strain, stage.record_every)) + 1;
 }
 
+}  // namespace rvelab::protocol
+
+namespace rvelab {
+
 std::size_t planned_records(const Protocol& protocol) {
+  using namespace protocol;
   std::size_t count = 0;
   for (const Stage& stage : protocol.stages) {
     if (const auto* compression = std::get_if<CompressionStage>(&stage.what)) {
@@ -61,6 +69,9 @@ std::size_t planned_records(const Protocol& protocol) {
   return count;
 }
 
+}  // namespace rvelab
+
+namespace rvelab::protocol {
 namespace {
 
 template <class Stage, class Increment, class DrivingStress>
@@ -85,7 +96,9 @@ void drive(RunningTest& test, const CompressionStage& stage) {
 
   std::vector<HeldStress> held;
   for (int k = 0; k < dimension && hold; ++k) {
-    if (k != axis) held.push_back({k, k, -stage.lateral_pressure, test.held_scale(stage.lateral_pressure)});
+    if (k == axis) continue;
+    if (at.step == 0) test.expect_consolidated(normal_stress(k), -at.first_stress(k, k), stage.lateral_pressure);
+    held.push_back({k, k, -stage.lateral_pressure, test.held_scale(stage.lateral_pressure)});
   }
   const auto increment_to = [&](double strain) {
     // From the accumulated F, so that round-off does not add up over a stage.
@@ -117,6 +130,9 @@ void drive(RunningTest& test, const SimpleShearStage& stage) {
   at.pressure = hold ? stage.normal_pressure : at.first_pressure;
 
   std::vector<HeldStress> held;
+  if (hold && at.step == 0) {
+    test.expect_consolidated(normal_stress(normal), -at.first_stress(normal, normal), stage.normal_pressure);
+  }
   if (hold) held.push_back({normal, normal, -stage.normal_pressure, test.held_scale(stage.normal_pressure)});
   const auto increment_to = [&](double strain) {
     const Matrix3& deformation = at.deformation;

@@ -62,7 +62,8 @@ std::vector<ProtocolKey> deviatoric() {
       number(t, "record_every", "1", initial.record_every, positive, "eps_q between records; at most 1e6 records"),
       number(t, "lode_angle_deg", "degree", initial.lode_angle_deg, {-180, 180},
              "3D: direction in the deviatoric plane; 0 compression along z, 60 extension along y"),
-      number(t, "pressure_Pa", "Pa", "(test.pressure_Pa)", positive, "p, which is held"),
+      number(t, "pressure_Pa", "Pa", "(test.pressure_Pa)", positive,
+             "p, which is held and which the stage starts from"),
   };
 }
 

@@ -169,7 +169,8 @@ double row_target(const PathStage& stage, const PathRow& row, long step, const M
   const long within = (step - 1) % stage.records_per_point + 1;
   const double end = row.to[static_cast<std::size_t>(point)];
   if (within == stage.records_per_point) return end;
-  const double begin = leg == 0 ? first : point == 0 ? row.to.back() : row.to[static_cast<std::size_t>(point - 1)];
+  const double start = std::isnan(row.from) ? first : row.from;
+  const double begin = leg == 0 ? start : point == 0 ? row.to.back() : row.to[static_cast<std::size_t>(point - 1)];
   return begin + (end - begin) * static_cast<double>(within) / static_cast<double>(stage.records_per_point);
 }
 
@@ -197,7 +198,8 @@ Matrix3 strain_increment(const Matrix3& displacement_gradient, int dimension) {
 
 PathStage path_of(const DeviatoricStage& stage, int dimension) {
   PathStage path;
-  PathRow drive{"eps_q", {}, {}, {stage.to_strain}}, pressure{"p", {}, {}, {stage.pressure}};
+  PathRow drive{"eps_q", {}, {}, {stage.to_strain}};
+  PathRow pressure{"p", {}, {}, {stage.pressure}, stage.pressure};  // held: no ramp from the p of the start
   drive.strain.setZero();
   drive.stress.setZero();
   pressure.strain.setZero();

@@ -85,6 +85,8 @@ struct PathRow {
   Matrix3 stress = Matrix3::Zero();  ///< B, symmetric, dimensionless
   std::vector<double> to;            ///< value at each point of the path, in the unit of the row (1 or Pa); empty: it
                                      ///< keeps the value that it has at the start of the stage
+  double from = std::numeric_limits<double>::quiet_NaN();  ///< where the way to the first point begins; NaN: at the
+                                                           ///< value of the start of the stage
   bool in_stress() const { return !stress.isZero(0); }
 };
 
@@ -102,8 +104,8 @@ struct PathStage {
 };
 
 /// Deviatoric loading at constant mean stress: eps_q is driven along a fixed direction of the deviatoric plane, the
-/// deviator of stress across it stays as it is, zero at isotropic stress (3D: constant Lode angle), p is held, shear
-/// strains are zero.
+/// deviator of stress across it stays as it is, zero at isotropic stress (3D: constant Lode angle), p is held from the
+/// first record after the start on, shear strains are zero.
 struct DeviatoricStage {
   double lode_angle_deg = 0;  ///< 3D: 0 compression along z, 60 extension along y; principal axes x, y, z
   double to_strain = 0;       ///< eps_q, > 0; 2D: along (x, -y), compression along y

@@ -117,7 +117,7 @@ std::vector<ProtocolKey> compression() {
            "constant_stress: each lateral normal stress is held (drained); constant_volume: det F = 1 (undrained); "
            "zero_strain: oedometer"),
       number(t, "lateral_pressure_Pa", "Pa", "(test.pressure_Pa)", positive,
-             "lateral = constant_stress: lateral normal stresses are held at minus this"),
+             "lateral = constant_stress: lateral normal stresses are held at minus this, which they start from"),
       whole_number(t, "cycles", CompressionStage{}.cycles.count, {0, 1e6},
                    "0: straight to to_strain; else so many cycles between +-to_strain"),
       number(t, "reverse_at_Pa", "Pa", "", positive,
@@ -137,7 +137,7 @@ std::vector<ProtocolKey> simple_shear() {
       word(t, "normal", {"constant_volume", "constant_stress"},
            "constant_volume: only the shear moves (undrained); constant_stress: sigma_bb is held (drained)"),
       number(t, "normal_pressure_Pa", "Pa", "(test.pressure_Pa)", positive,
-             "normal = constant_stress: sigma_bb is held at minus this"),
+             "normal = constant_stress: sigma_bb is held at minus this, which it starts from"),
       whole_number(t, "cycles", SimpleShearStage{}.cycles.count, {0, 1e6},
                    "0: straight to to_strain; else so many cycles between +-to_strain"),
       number(t, "reverse_at_Pa", "Pa", "", positive, "cycles > 0: gamma turns where sigma_ab has this size"),

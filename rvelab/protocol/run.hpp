@@ -48,10 +48,13 @@ struct Watch {
   Workers* team = nullptr;
 };
 
+/// Records that all stages of a protocol make together, where no event ends one before its end.
+std::size_t planned_records(const Protocol& protocol);
+
 /// Runs all stages in order. Records lie at the fixed strains of their stage, none skipped or delayed; a record whose
 /// held stress was not reached within the wait is kept and flagged (target_held = false). Throws InputError if
-/// specimen and protocol do not go together; Error (IncrementFailed among them) if a stage cannot be carried out,
-/// naming the stage and what was reached.
+/// specimen and protocol do not go together, or if a stage starts far from the stress that it holds; Error
+/// (IncrementFailed among them) if a stage cannot be carried out, naming the stage and what was reached.
 TestRun run_protocol(const Protocol& protocol, const Specimen& specimen, const Watch& watch = {});
 
 /// Goes on from a checkpoint of the same protocol: what follows is bitwise what the undisturbed run would have made.

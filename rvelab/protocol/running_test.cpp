@@ -122,6 +122,17 @@ void RunningTest::pause() {
   if (watch_.stop != nullptr && watch_.stop->load()) throw Interrupted();
 }
 
+void RunningTest::expect_consolidated(const std::string& name, double found, double held) const {
+  const double allowed = std::min(10 * loading.held_tolerance, 1.0) * held;
+  if (std::abs(found - held) <= allowed) return;
+  throw InputError(
+      "stage \"" + stage_->name + "\": " + name + " = " + in_words(found) + " Pa where it starts, and it holds " +
+      in_words(held) + " Pa; allowed: within " + in_words(allowed) +
+      " Pa (ten times loading.held_tolerance), since a stress that jumps within one record is no test; bring "
+      "the specimen there by a stage before it (kind = \"isotropic\", \"pressure_path\" or \"path\"), or "
+      "give the stage the pressure that it starts from");
+}
+
 double RunningTest::held_scale(double target) const {
   const double scale = std::max(std::abs(target), 0.01 * std::abs(run.progress.first_pressure));
   if (scale > 0) return scale;

@@ -64,7 +64,7 @@ TEST_CASE("Principal stresses are those of the tensor, compression positive, wha
   CHECK(principal_stresses(unbalanced, 2).major == Approx(43e3).epsilon(1e-13));
 }
 
-TEST_CASE("The peak is the record with the largest major principal stress, without smoothing") {
+TEST_CASE("The peak is the record with the largest deviator, without smoothing") {
   std::vector<Record> records;
   for (int k = 0; k < 40; ++k) records.push_back(biaxial_record(0.001 * k, 20e3 + 100 * k, 10e3));
   records[17].stress(1, 1) = -60e3;  // one spike
@@ -74,6 +74,50 @@ TEST_CASE("The peak is the record with the largest major principal stress, witho
   CHECK(highest.strain == Approx(0.017));
   CHECK(highest.stresses.major == Approx(60e3));
   CHECK_THROWS_AS(peak({}, 2), InputError);
+}
+
+TEST_CASE("The peak of an extension is where the axial stress is smallest, and has the friction angle of that state") {
+  // The axis is unloaded from 20 kPa until sigma_1/sigma_3 = 3 at 2 % strain, then carries more again.
+  std::vector<Record> records;
+  for (int k = 0; k <= 40; ++k) {
+    const double axial = 20e3 / (k <= 20 ? 1 + 0.1 * k : 3 - 0.02 * (k - 20));
+    records.push_back(biaxial_record(-0.001 * k, axial, 20e3));
+  }
+  const Peak found = peak(records, 2);
+  CHECK(found.strain == Approx(-0.020));
+  CHECK(found.stresses.major == Approx(20e3));
+  CHECK(friction_angle_deg(found.stresses) == Approx(30).epsilon(1e-12));
+  CHECK(!rising_at_end(records, found));
+}
+
+TEST_CASE("A test whose largest deviator stands at its end was still rising") {
+  std::vector<Record> records;
+  for (int k = 0; k <= 40; ++k) records.push_back(biaxial_record(0.001 * k, 20e3 + 100 * k, 10e3));
+  CHECK(rising_at_end(records, peak(records, 2)));
+  records[39].stress(1, 1) = -60e3;
+  CHECK(rising_at_end(records, peak(records, 2)));
+  records[30].stress(1, 1) = -70e3;
+  CHECK(!rising_at_end(records, peak(records, 2)));
+  records.resize(1);
+  CHECK(!rising_at_end(records, peak(records, 2)));
+}
+
+TEST_CASE("Mean, standard deviation and standard error are those of the specimens") {
+  // 2, 4, 4, 6: squares about 4 are 4, 0, 0, 4.
+  const Statistics found = statistics({2, 4, 4, 6});
+  CHECK(found.mean == 4);
+  CHECK(found.standard_deviation == Approx(std::sqrt(8.0 / 3)).epsilon(1e-14));
+  CHECK(found.standard_error == Approx(std::sqrt(8.0 / 3) / 2).epsilon(1e-14));
+  CHECK(std::isnan(statistics({7}).standard_deviation));
+  const Calibration two =
+      calibrate({hardening_test(10e3, 30), hardening_test(20e3, 30), hardening_test(10e3, 24)}, 2, {0, 0, 1});
+  REQUIRE(two.per_specimen.size() == 2);
+  CHECK(two.per_specimen[0].friction_angle_deg == Approx(30));
+  CHECK(two.per_specimen[1].friction_angle_deg == Approx(24));
+  CHECK(two.friction_angle_of_specimens.mean == Approx(27));
+  CHECK(two.friction_angle_of_specimens.standard_deviation == Approx(std::sqrt(18.0)));
+  CHECK(two.friction_angle_of_specimens.standard_error == Approx(3));
+  CHECK(two.Nq_of_specimens.mean == Approx(0.5 * (bearing_capacity_Nq(30) + bearing_capacity_Nq(24))));
 }
 
 TEST_CASE("A moving mean over 1 % of strain divides a lone spike by its number of records") {

@@ -238,6 +238,11 @@ TEST_CASE("Increments that are no deformation are refused") {
   gradient(0, 0) = -2;  // mirrored
   refuses(cell, gradient, "det(I + dH) = -1");
   refuses(cell, Matrix3::Constant(1e200), "det(I + dH)");
+  // The determinant is one, and yet the increment is none: the refusal names what is beyond the numbers.
+  Matrix3 shear = Matrix3::Zero();
+  shear(1, 0) = 1e200;
+  refuses(cell, shear, "U_xx = inf");
+  refuses(cell, shear, "entries of dH up to 1e+200");
   refuses(cell, -2 * Matrix3::Identity(), "det(I + dH) = -1");
 }
 

@@ -76,8 +76,15 @@ TEST_CASE("the program finds its protocols from where it is, and says when they 
   fs::create_directories(here / "moved/bin");
   fs::copy_file(RVELAB_PROGRAM, here / "moved/bin/rvelab");
   const std::string moved = here / "moved/bin/rvelab";
-  expect_mistake(here.run("run biaxial", moved), "no protocol \"biaxial\" is installed; allowed: or the path");
-  CHECK(here.run("protocols", moved).output.empty());
+  expect_mistake(here.run("run biaxial", moved), "no protocol \"biaxial\" is installed; allowed: none in ");
+  for (const char* command : {"protocols", "protocols --json", "protocols biaxial"}) {
+    CAPTURE(command);
+    const Outcome none = here.run(command, moved);
+    CHECK(none.code == 1);
+    CHECK(none.output.empty());
+    CHECK(std::count(none.errors.begin(), none.errors.end(), '\n') == 1);
+    CHECK_THAT(none.errors, Contains("moved/share/rvelab/protocols: no protocols are installed there"));
+  }
   fs::create_directories(here / "moved/share/rvelab/protocols");
   fs::copy_file(RVELAB_SOURCE_DIR "/protocols/probe.toml", here / "moved/share/rvelab/protocols/mine.toml");
   CHECK_THAT(here.run("protocols", moved).output, Contains("mine  The elastic stiffness of a specimen"));

@@ -110,3 +110,15 @@ TEST_CASE("protocols lists recipes apart from tests") {
   CHECK(text.find("pack_dense") > recipes);
   CHECK(here.run("protocols pack_dense").output == text_of(RVELAB_SOURCE_DIR "/protocols/pack_dense.toml"));
 }
+
+TEST_CASE("the shipped recipe of Hertz spheres can be probed by the shipped protocol", "[slow]") {
+  const Workplace here;
+  // In this draw a grain touches down late in a probe.
+  const Outcome packed = here.run("pack pack_hertz -o S.h5 --set pack.number=300");
+  INFO(packed.errors);
+  REQUIRE(packed.code == 0);
+  const Outcome probed = here.run("run probe --specimen S.h5");
+  INFO(probed.errors);
+  CHECK(probed.code == 0);
+  CHECK_THAT(probed.output, Contains("stiffness_Pa"));
+}

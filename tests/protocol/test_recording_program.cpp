@@ -251,6 +251,29 @@ TEST_CASE("a terminal is shown strain, stress ratio, speed and time left; a pipe
   CHECK(bench.errors().empty());
 }
 
+TEST_CASE(
+    "a terminal is shown how the tests of a calibration get on, and that records will not be kept; a pipe is not") {
+  const Bench bench;
+  const std::vector<std::string> command{RVELAB_PROGRAM,
+                                         "calibrate",
+                                         bench.folder / "short.toml",
+                                         "--specimen",
+                                         bench.folder / "s.h5",
+                                         "--pressures",
+                                         "20e3,20.1e3",
+                                         "--set",
+                                         "stage.compression.record_every=1e-5",
+                                         "--set",
+                                         "stage.compression.to_strain=0.03"};
+  const std::string shown = on_a_terminal(command);
+  CHECK_THAT(shown, Contains(" of 2 tests done") && Contains("p = 20") && Contains("strain ") &&
+                        Contains("M grain-steps/s") && Contains(" left") && Contains("\r\x1b[K"));
+  CHECK_THAT(shown, Contains("friction_angle_deg"));
+  CHECK(bench.run(command) == 0);
+  CHECK(bench.errors().empty());
+  CHECK_THAT(on_a_terminal(bench.command("short.toml", {})), Contains("the records will not be kept: no -o R.h5"));
+}
+
 TEST_CASE("snapshots stand in the file as specimens that can be opened") {
   const Bench bench;
   const std::string path = bench.folder / "r.h5";

@@ -7,13 +7,12 @@ The cell is dashed, grains of one cell are drawn once.
 
 import argparse
 
+import records  # first: it says which package is missing
+import state as states
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import LineCollection, PatchCollection
 from matplotlib.patches import Circle, Polygon
-
-import records
-import state as states
 
 
 def draw(found, options):

@@ -9,10 +9,9 @@ direction of the probe.
 import argparse
 import math
 
+import records  # first: it says which package is missing
 import matplotlib.pyplot as plt
 import numpy as np
-
-import records
 
 
 def plane(tensor, dimension):

@@ -7,13 +7,12 @@ coordination number and the fraction of sliding contacts, where the file has the
 
 import argparse
 
+import records  # first: it says which package is missing
 import matplotlib.pyplot as plt
-
-import records
 
 
 def draw(stages, options):
-    extra = [(name, label) for name, label in (("coordination_number", "coordination number Z"),
+    extra = [(name, label) for name, label in (("coordination_number", "coordination number $Z$"),
                                                ("sliding_fraction", "sliding fraction")) if stages[0].has(name)]
     figure, axes = plt.subplots(1 + len(extra), 1, figsize=(7, 3 + 1.8 * len(extra)), sharex=True, squeeze=False)
     rows = axes[:, 0]
@@ -27,7 +26,8 @@ def draw(stages, options):
     for row, (_, label) in zip(rows[1:], extra):
         row.set_ylabel(label)
         row.set_ylim(bottom=0)
-    rows[-1].set_xlabel("driving strain of the stage (%)")
+    strains = list(dict.fromkeys(stage.strain_in_words() for stage in stages))
+    rows[-1].set_xlabel(strains[0] if len(strains) == 1 else "driving strain of the stage (%)")
     rows[0].set_title("Fabric", fontsize=11, loc="left")
     figure.align_ylabels()
     figure.savefig(options.output)

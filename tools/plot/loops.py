@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Cyclic loops: loops.py RECORDS.h5 -o loops.png (the last stage that has records).
+"""Cyclic loops: loops.py RECORDS.h5 -o loops.png (the last cyclic stage with records).
 
 Left, the driving stress against the driving strain: shear stress for simple shear, axial less lateral stress for
 compression; right, against p: the stress path to liquefaction. Below, p over its start against the number of cycles.
@@ -7,21 +7,20 @@ compression; right, against p: the stress path to liquefaction. Below, p over it
 
 import argparse
 
+import records  # first: it says which package is missing
 import matplotlib.pyplot as plt
 import numpy as np
-
-import records
 
 
 def driving_stress(stage):
     """Pa, growing with the driving strain."""
     if len(stage.axis) == 2:
         a, b = ("xyz".index(letter) for letter in stage.axis)
-        return -0.5 * (stage.stress[:, a, b] + stage.stress[:, b, a]), f"$\\sigma_{{{stage.axis}}}$ (kPa)"
+        return -0.5 * (stage.stress[:, a, b] + stage.stress[:, b, a]), f"shear stress $\\sigma_{{{stage.axis}}}$ (kPa)"
     axis = "xyz".index(stage.axis) if stage.axis else stage.dimension - 1
     lateral = [k for k in range(stage.dimension) if k != axis]
     stress = stage.stress[:, axis, axis] - sum(stage.stress[:, k, k] for k in lateral) / len(lateral)
-    return stress, "axial less lateral stress (kPa)"
+    return stress, "axial less lateral stress $\\sigma_a - \\sigma_r$ (kPa)"
 
 
 def cycles_of(strain):
@@ -32,25 +31,32 @@ def cycles_of(strain):
 
 
 def draw(stages, options):
-    stage = stages[-1]
+    cyclic = [stage for stage in stages if stage.cyclic]
+    if not cyclic:
+        raise ValueError(f"{stages[-1].path}: monotonic, its driving strain never turns; give records of cyclic_shear, "
+                         "cyclic_liquefaction or a stage with cycles > 0 (stress_strain.py draws this one)")
+    stage = cyclic[-1]
     stress, label = driving_stress(stage)
     p, _ = stage.invariants()
     figure = plt.figure(figsize=(9.5, 6.4))
     grid = figure.add_gridspec(2, 2, height_ratios=(3, 1.6))
     loop, path, decay = (figure.add_subplot(place) for place in (grid[0, 0], grid[0, 1], grid[1, :]))
     loop.plot(100 * stage.strain, stress / 1e3, linewidth=0.8, color="tab:blue")
-    loop.set_xlabel("driving strain (%)")
+    loop.set_xlabel(stage.strain_in_words())
     loop.set_ylabel(label)
     path.plot(p / 1e3, stress / 1e3, linewidth=0.8, color="tab:blue")
-    path.set_xlabel("p (kPa)")
+    path.set_xlabel("mean stress $p$ (kPa)")
+    path.set_ylabel(label)
     path.set_xlim(left=0)
     cycles = cycles_of(stage.strain)
     decay.plot(cycles, p / p[0], color="tab:blue")
-    decay.axhline(0.02, color="0.5", linewidth=0.8, linestyle="--")
+    if p.min() < 0.5 * p[0]:
+        decay.axhline(0.02, color="0.5", linewidth=0.8, linestyle="--", label="$p/p_0$ = 0.02, liquefied")
+        decay.legend(fontsize=8, loc="upper right")
     decay.set_xlabel("cycles")
     decay.set_ylabel("$p/p_0$")
     decay.set_ylim(bottom=0)
-    figure.suptitle(f"Cyclic loading: {stage.label}", fontsize=11, x=0.12, ha="left")
+    figure.suptitle(f"{stage.test_in_words()}: {stage.label}", fontsize=11, x=0.12, ha="left")
     figure.tight_layout()
     figure.savefig(options.output)
     return f"{options.output}: {cycles[-1]:.1f} cycles, p from {p[0]:.4g} to {p[-1]:.4g} Pa, lowest {p.min():.4g} Pa"

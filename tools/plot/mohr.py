@@ -1,35 +1,52 @@
 #!/usr/bin/env python3
 """Mohr circles at peak and their envelope: mohr.py RECORDS.h5... -o mohr.png (folders stand for their *.h5).
 
-The peak of a test is its record with the largest major principal stress, unsmoothed. The envelope passes through the
-origin: t = s sin phi by least squares over the tests, s = (sigma_1 + sigma_3)/2, t = (sigma_1 - sigma_3)/2. Where all
-tests reach 15 % axial strain, the mean of their angles from 12 to 15 % is drawn beside it. Compression positive.
+Of each file the last drained compression or extension. Its peak is the record with the largest deviator sigma_1 - sigma_3,
+unsmoothed; a test that ends before 15 % strain with its largest deviator at the end has none and is refused. The envelope
+passes through the origin: t = s sin phi by least squares over the tests, s = (sigma_1 + sigma_3)/2, t = (sigma_1 -
+sigma_3)/2. Where all tests reach 15 % axial strain, the mean of their angles from 12 to 15 % is drawn beside it.
+Compression positive.
 """
 
 import argparse
 import math
 
+import records  # first: it says which package is missing
 import matplotlib.pyplot as plt
 import numpy as np
 
-import records
 
 LARGE_STRAIN = (0.12, 0.15)
+SLACK = 1e-9  # recorded strains are round numbers up to round-off
+
+
+def drained_tests(stages):
+    """The last drained compression or extension of each file, in the order of their pressures."""
+    tests = {stage.path: stage for stage in stages if stage.drained and not stage.cyclic}
+    for stage in stages:
+        if stage.path not in tests:
+            raise ValueError(f"{stage.path}: {stage.test_in_words() or stage.name}; the circles need a peak at a held lateral "
+                             "stress: give records of biaxial, triaxial or their extensions")
+    return sorted(tests.values(), key=lambda test: test.pressure)
 
 
 def peak_state(test):
-    """s and t, Pa, of the record with the largest major principal stress."""
+    """s and t, Pa, of the record with the largest deviator."""
     sigma_1, sigma_3 = test.principal()
-    peak = int(np.argmax(sigma_1))
+    peak = int(np.argmax(sigma_1 - sigma_3))
+    end = abs(test.strain[-1])
+    if abs(test.strain[peak]) > 0.95 * end and end < LARGE_STRAIN[1] - SLACK:
+        raise ValueError(f"{test.path}: still rising at the end ({100 * end:.3g} % strain): no peak; run it further "
+                         "(to_strain), to 15 % at most")
     return 0.5 * (sigma_1[peak] + sigma_3[peak]), 0.5 * (sigma_1[peak] - sigma_3[peak])
 
 
 def large_strain_angle(test):
     """Friction angle, radians, of the mean state over the large strains; None for a test that ends before 15 %."""
-    slack = 1e-9  # recorded strains are round numbers up to round-off
-    if test.strain.max() < LARGE_STRAIN[1] - slack:
+    strain = np.abs(test.strain)
+    if strain.max() < LARGE_STRAIN[1] - SLACK:
         return None
-    inside = (test.strain >= LARGE_STRAIN[0] - slack) & (test.strain <= LARGE_STRAIN[1] + slack)
+    inside = (strain >= LARGE_STRAIN[0] - SLACK) & (strain <= LARGE_STRAIN[1] + SLACK)
     sigma_1, sigma_3 = (stress[inside].mean() for stress in test.principal())
     return math.asin((sigma_1 - sigma_3) / (sigma_1 + sigma_3))
 
@@ -39,7 +56,8 @@ def envelope(axes, angle, right, label, **line):
     axes.plot([0, right], [0, right * math.tan(angle)], label=f"{label}: $\\varphi$ = {math.degrees(angle):.2f}°", **line)
 
 
-def draw(tests, options):
+def draw(stages, options):
+    tests = drained_tests(stages)
     figure, axes = plt.subplots(figsize=(8, 4.6))
     states = np.array([peak_state(test) for test in tests]) / 1e3
     right = 1.06 * float(np.max(states.sum(axis=1)))
@@ -61,8 +79,9 @@ def draw(tests, options):
     axes.set_aspect("equal", adjustable="box")
     axes.set_xlabel("normal stress $\\sigma$, compression positive (kPa)")
     axes.set_ylabel("shear stress $\\tau$ (kPa)")
-    axes.legend(title="lateral pressure, envelope", loc="upper left", fontsize=9)
-    axes.set_title("Mohr circles at peak", fontsize=11, loc="left")
+    axes.legend(title="lateral pressure $\\sigma_r$, envelope", loc="upper left", fontsize=9)
+    kinds = " and ".join(dict.fromkeys(test.test_in_words() for test in tests))
+    axes.set_title(f"{kinds}: Mohr circles at peak", fontsize=11, loc="left")
     figure.savefig(options.output)
     return f"{options.output}: {text}"
 

@@ -7,15 +7,25 @@ measure (sigma_1, sigma_3, p, q, eps_v, eps_a) is compression positive.
 import math
 import pathlib
 import sys
-import tomllib
 from dataclasses import dataclass
 
-import h5py
-import matplotlib
+PACKAGES = {"h5py": "python3-h5py", "matplotlib": "python3-matplotlib", "numpy": "python3-numpy",
+            "tomllib": "python3 (3.11 or later)"}
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
-import numpy as np
+try:
+    import tomllib
+
+    import h5py
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    import numpy as np
+except ModuleNotFoundError as missing:
+    print(f"{pathlib.Path(sys.argv[0]).name}: this python3 ({sys.executable}) has no {missing.name}; apt-get install "
+          f"{PACKAGES.get(missing.name, 'python3-' + str(missing.name))}, or run the script with /usr/bin/python3",
+          file=sys.stderr)
+    sys.exit(1)
 
 STYLE = {
     "figure.dpi": 150,
@@ -33,16 +43,55 @@ STYLE = {
 
 
 @dataclass
-class Test:
-    """The last stage of one record file."""
+class Stage:
+    """One visit of a stage with records."""
 
     path: pathlib.Path
+    kind: str
+    name: str
+    label: str  # the name, with that of the file where there are several files
+    keys: dict  # of the stage in the protocol, every default in it
     dimension: int  # 2: stress lies in the x-y plane
-    pressure: float  # Pa, the stage's first p
     strain: np.ndarray  # driving strain of the stage, axial strain compression positive
     stress: np.ndarray  # (n, d, d) Pa, compression positive
-    volumetric_strain: np.ndarray  # 1 - det F, compression positive
-    held: np.ndarray  # the lateral stress was held within tolerance
+    deformation: np.ndarray  # (n, d, d), F since the start of the stage
+    held: np.ndarray  # the held stress was within its tolerance
+    columns: dict  # by the names of the datasets under /records
+
+    @property
+    def axis(self):
+        """Loading axis "y", plane of shear "xy", or "" where there is none."""
+        if self.kind == "compression":
+            return self.keys.get("axis") or "xyz"[self.dimension - 1]
+        if self.kind == "simple_shear":
+            return self.keys.get("plane") or ("xy" if self.dimension == 2 else "xz")
+        return self.keys.get("axis", "") if self.kind == "path" else ""
+
+    @property
+    def drained(self):
+        """The lateral stress of a compression is held."""
+        return self.kind == "compression" and self.keys.get("lateral", "constant_stress") == "constant_stress"
+
+    @property
+    def extension(self):
+        """The axis becomes longer."""
+        return self.kind == "compression" and not self.cyclic and self.strain[-1] < self.strain[0]
+
+    @property
+    def cyclic(self):
+        """The driving strain turns."""
+        step = np.sign(np.diff(self.strain))
+        return bool(np.any(step[1:] * step[:-1] < 0))
+
+    @property
+    def pressure(self):
+        """Pa: the lateral pressure that is held, else p at the start."""
+        return self.keys["lateral_pressure_Pa"] if self.drained and "lateral_pressure_Pa" in self.keys else self.invariants()[0][0]
+
+    @property
+    def volumetric_strain(self):
+        """1 - det F, compression positive."""
+        return 1 - np.linalg.det(self.deformation)
 
     def principal(self):
         """sigma_1 and sigma_3, Pa, one each a record."""
@@ -56,23 +105,32 @@ class Test:
         factor = 0.5 if self.dimension == 2 else 1.5
         return p, np.sqrt(factor * np.einsum("nij,nij->n", deviator, deviator))
 
+    def mobilised(self):
+        """q/p, nan where the stress carries no pressure."""
+        p, q = self.invariants()
+        return np.divide(q, p, out=np.full_like(q, math.nan), where=p > 1e-6 * abs(p[0]))
 
-@dataclass
-class Stage:
-    """One visit of a stage with records."""
+    def test_in_words(self):
+        """What a laboratory calls the stage."""
+        place = "Biaxial" if self.dimension == 2 else "Triaxial"
+        if self.kind == "compression":
+            if self.keys.get("lateral") == "zero_strain":
+                return "Oedometer"
+            return (("Cyclic " + place.lower() + " test") if self.cyclic else
+                    f"{place} {'extension' if self.extension else 'compression'}") + ("" if self.drained else ", undrained")
+        constant = "normal stress" if self.keys.get("normal") == "constant_stress" else "volume"
+        return {"simple_shear": f"{'Cyclic simple' if self.cyclic else 'Simple'} shear at constant {constant}",
+                "deviatoric": "Deviatoric loading at constant p", "pressure_path": "Isotropic compression",
+                "path": "Stress-strain path", "flow": "Flow", "deformation": "Prescribed deformation"}.get(self.kind, "")
 
-    path: pathlib.Path
-    kind: str
-    label: str
-    axis: str  # loading axis of the file's last driven stage: "y", "xy", ...; may be empty
-    dimension: int
-    strain: np.ndarray
-    stress: np.ndarray  # (n, d, d) Pa, compression positive
-    deformation: np.ndarray  # (n, d, d), F since the start of the stage
-    held: np.ndarray
-    columns: dict  # by the names of the datasets under /records
-
-    invariants = Test.invariants
+    def strain_in_words(self):
+        """Label of the driving strain, in per cent."""
+        if self.kind == "compression":
+            return f"axial strain $\\varepsilon_{{{self.axis}}}$ (%), compression positive"
+        if self.kind == "simple_shear":
+            return f"shear strain $\\gamma_{{{self.axis}}}$ (%)"
+        return {"deviatoric": "deviatoric strain $\\varepsilon_q$ (%)",
+                "pressure_path": "volumetric strain $\\varepsilon_v$ (%)"}.get(self.kind, "driving strain of the stage (%)")
 
     def has(self, name):
         return name in self.columns
@@ -83,15 +141,37 @@ class Stage:
         return self.columns[name]
 
 
+def texts(dataset):
+    """Texts of a dataset, as one list."""
+    return [text.decode() if isinstance(text, bytes) else str(text) for text in np.ravel(dataset[()])]
+
+
+def read_columns(path):
+    """The datasets under /records, the names of the stages and the protocol; ValueError, naming the file, if it is none."""
+    path = pathlib.Path(path)
+    journal = path.with_name(path.name + ".journal")
+    if not path.exists() and journal.exists():
+        raise ValueError(f"{path}: there is only the journal of a run that was killed or goes on; make the file with "
+                         f"`rvelab recover {path}`")
+    try:
+        with h5py.File(path, "r") as file:
+            columns = {name: file["records/" + name][()] for name in file["records"]}
+            names = texts(file["test/stages"])
+            protocol = tomllib.loads(texts(file["provenance/protocol"])[0])
+    except (OSError, KeyError, RuntimeError, tomllib.TOMLDecodeError) as error:
+        raise ValueError(f"{path}: not a record file of rvelab ({error}); give one that `rvelab run` or "
+                         "`rvelab calibrate -o` wrote") from error
+    if len(columns["stage"]) == 0:
+        raise ValueError(f"{path}: holds no records; the test made none, or stopped before its first one")
+    return columns, names, protocol
+
+
 def stages_of(path):
     """Every visit of a stage with at least two records, in order."""
-    test = read_test(path)  # says what is wrong with the file
-    with h5py.File(path, "r") as file:
-        columns = {name: file["records/" + name][()] for name in file["records"]}
-        names = [name.decode() for name in file["test/stages"][()]]
-        axis = np.ravel(file["test/axis"][()])[0].decode()
-        protocol = tomllib.loads(np.ravel(file["provenance/protocol"][()])[0].decode())
-    kinds = {stage.get("name", stage["kind"]): stage["kind"] for stage in protocol.get("stage", [])}
+    columns, names, protocol = read_columns(path)
+    # 2D output has sigma_zz = 0: there is no out-of-plane model.
+    d = 2 if np.all(columns["stress_Pa"][:, 2, 2] == 0) else 3
+    keys = {stage.get("name", stage["kind"]): stage for stage in protocol.get("stage", [])}
     # A stage begins with a record that no sub-step led to.
     begin = (columns["substeps"] == 0) & np.all(columns["deformation_gradient"] == np.eye(3), axis=(1, 2))
     change = np.flatnonzero((np.diff(columns["stage"]) != 0) | begin[1:]) + 1
@@ -101,8 +181,8 @@ def stages_of(path):
             continue
         name = names[columns["stage"][rows[0]]]
         own = {key: values[rows] for key, values in columns.items()}
-        d = test.dimension
-        stages.append(Stage(pathlib.Path(path), kinds.get(name, ""), name, axis, d, own["strain"],
+        of_stage = keys.get(name, {})
+        stages.append(Stage(pathlib.Path(path), of_stage.get("kind", ""), name, name, of_stage, d, own["strain"],
                             -own["stress_Pa"][:, :d, :d], own["deformation_gradient"][:, :d, :d],
                             own["target_held"].astype(bool), own))
     return stages
@@ -116,9 +196,11 @@ def read_stages(paths):
     stages = [stage for file in files for stage in stages_of(file)]
     for stage in stages:
         if len(files) > 1:
-            stage.label = f"{stage.path.stem}: {stage.label}"
+            stage.label = f"{stage.path.stem}: {stage.name}"
     if not stages:
         raise ValueError(f"{', '.join(map(str, paths))}: no stage with records there; give record files or their folder")
+    if len({stage.dimension for stage in stages}) > 1:
+        raise ValueError(f"{', '.join(map(str, paths))}: 2D and 3D records, whose p and q are not the same; give one kind")
     return stages
 
 
@@ -126,45 +208,9 @@ def read_driven_stages(paths):
     """The same without envelopes and rests, whose records are no curve."""
     stages = [stage for stage in read_stages(paths) if stage.kind not in ("envelope", "relax", "isotropic")]
     if not stages:
-        raise ValueError(f"{', '.join(map(str, paths))}: no stage with a curve of records there")
+        raise ValueError(f"{', '.join(map(str, paths))}: no stage with a curve of records there; give a test that drives a "
+                         "strain or a stress (biaxial, simple_shear, ...)")
     return stages
-
-
-def read_test(path):
-    """Reads one record file; raises ValueError, naming the file, where it is none."""
-    path = pathlib.Path(path)
-    journal = path.with_name(path.name + ".journal")
-    if not path.exists() and journal.exists():
-        raise ValueError(f"{path}: there is only the journal of a run that was killed or goes on; make the file with "
-                         f"`rvelab recover {path}`")
-    try:
-        with h5py.File(path, "r") as file:
-            records = {name: file["records/" + name][()] for name in
-                       ("stage", "strain", "stress_Pa", "deformation_gradient", "target_held")}
-            pressure = float(np.ravel(file["test/pressure_Pa"][()])[0]) if "test/pressure_Pa" in file else math.nan
-    except (OSError, KeyError) as error:
-        raise ValueError(f"{path}: not a record file of rvelab ({error}); give one that `rvelab run` or "
-                         "`rvelab calibrate -o` wrote") from error
-    if len(records["stage"]) == 0:
-        raise ValueError(f"{path}: holds no records; the test stopped before its first one")
-    last = records["stage"] == records["stage"].max()
-    # 2D output has sigma_zz = 0: there is no out-of-plane model.
-    dimension = 2 if np.all(records["stress_Pa"][:, 2, 2] == 0) else 3
-    test = Test(path, dimension, pressure, records["strain"][last], -records["stress_Pa"][last][:, :dimension, :dimension],
-                1 - np.linalg.det(records["deformation_gradient"][last]), records["target_held"][last].astype(bool))
-    if not math.isfinite(test.pressure):
-        test.pressure = float(test.invariants()[0][0])
-    return test
-
-
-def read_tests(paths):
-    """Reads record files, or all *.h5 of folders, in the order of their pressures."""
-    files = []
-    for path in map(pathlib.Path, paths):
-        files += sorted(path.glob("*.h5")) if path.is_dir() else [path]
-    if not files:
-        raise ValueError(f"{', '.join(map(str, paths))}: no *.h5 file there; give record files or their folder")
-    return sorted(map(read_test, files), key=lambda test: test.pressure)
 
 
 def sine_through_origin(s, t):
@@ -182,13 +228,17 @@ def plain(value):
     return f"{value:.4g}"
 
 
-def run(draw, parser, read=read_tests):
+def run(draw, parser, read=read_driven_stages):
     """Parses the command line, draws, and turns a user's mistake into one line on stderr and exit code 2."""
     options = parser.parse_args()
     try:
         tests = read(options.records)
         with plt.rc_context(STYLE):
             print(draw(tests, options))
-    except (ValueError, OSError) as error:
-        print(f"{parser.prog}: {error}", file=sys.stderr)
+    except OSError as error:
+        print(f"{parser.prog}: {error.filename or options.output}: {error.strerror or error}; give a path in an existing "
+              "folder that you may use", file=sys.stderr)
+        sys.exit(2)
+    except ValueError as error:
+        print(f"{parser.prog}: " + " ".join(str(error).split()), file=sys.stderr)
         sys.exit(2)

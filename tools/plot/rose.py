@@ -9,11 +9,11 @@ is that to the x axis in the plane of x and z, each contact weighted by the part
 import argparse
 import math
 
+import records  # first: it says which package is missing
+import state as states
 import matplotlib.pyplot as plt
 import numpy as np
 
-import records
-import state as states
 
 BARS = 36
 
@@ -22,6 +22,8 @@ def draw(found, options):
     figure = plt.figure(figsize=(9, 4.4 * len(found)))
     lines = []
     for row, state in enumerate(found):
+        if len(state.branch) == 0 or not state.normal_force.sum() > 0:
+            raise ValueError(f"{state.path}: has no contact that carries a force, and so no rose; compress it first")
         normal = state.branch / np.linalg.norm(state.branch, axis=1, keepdims=True)
         plane = normal[:, [0, state.dimension - 1]]
         weight = np.linalg.norm(plane, axis=1)

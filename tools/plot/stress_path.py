@@ -9,10 +9,9 @@ stress against the difference of the normal stresses. Compression positive.
 import argparse
 import math
 
+import records  # first: it says which package is missing
 import matplotlib.pyplot as plt
 import numpy as np
-
-import records
 
 
 def deviatoric_plane(stress):
@@ -35,8 +34,8 @@ def draw(stages, options):
             along = -0.5 * (stage.stress[:, 0, 1] + stage.stress[:, 1, 0])
         plane.plot(across / 1e3, along / 1e3, color=colour)
         plane.plot(across[0] / 1e3, along[0] / 1e3, "o", color=colour, markersize=4)
-    meridian.set_xlabel("p (kPa)")
-    meridian.set_ylabel("q (kPa)")
+    meridian.set_xlabel("mean stress $p$ (kPa)")
+    meridian.set_ylabel("deviatoric stress $q$ (kPa)")
     meridian.set_xlim(left=0)
     meridian.set_ylim(bottom=0)
     meridian.legend(fontsize=8)

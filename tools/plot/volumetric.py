@@ -2,14 +2,14 @@
 """Volumetric curves: volumetric.py RECORDS.h5... -o volumetric.png (folders stand for their *.h5).
 
 Left, void ratio against the driving strain of each stage with records; right, against p (on a logarithmic axis where it
-changes by more than three), where the state goes to the critical state line. Needs void_ratio among [output] quantities, as it is by default.
+changes by more than three), where the state goes to the critical state line. Needs void_ratio among [output] quantities,
+as it is by default.
 """
 
 import argparse
 
+import records  # first: it says which package is missing
 import matplotlib.pyplot as plt
-
-import records
 
 
 def draw(stages, options):
@@ -17,17 +17,18 @@ def draw(stages, options):
     for stage, colour in zip(stages, records.pressure_colours(len(stages))):
         void_ratio = stage.column("void_ratio")
         p, _ = stage.invariants()
-        by_strain.plot(stage.strain, void_ratio, color=colour, label=stage.label)
+        by_strain.plot(100 * stage.strain, void_ratio, color=colour, label=stage.label)
         carried = p > 0
         by_pressure.plot(p[carried] / 1e3, void_ratio[carried], color=colour)
         by_pressure.plot(p[0] / 1e3, void_ratio[0], "o", color=colour, markersize=4)
-    by_strain.set_xlabel("driving strain of the stage")
-    by_strain.set_ylabel("void ratio e")
+    strains = list(dict.fromkeys(stage.strain_in_words() for stage in stages))
+    by_strain.set_xlabel(strains[0] if len(strains) == 1 else "driving strain of the stage (%)")
+    by_strain.set_ylabel("void ratio $e$")
     by_strain.legend(fontsize=8)
     pressures = [p for stage in stages for p in stage.invariants()[0] if p > 0]
     if max(pressures) > 3 * min(pressures):
         by_pressure.set_xscale("log")
-    by_pressure.set_xlabel("p (kPa)")
+    by_pressure.set_xlabel("mean stress $p$ (kPa)")
     figure.suptitle("Volumetric curves", fontsize=11, x=0.12, ha="left")
     figure.tight_layout()
     figure.savefig(options.output)

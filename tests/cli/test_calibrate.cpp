@@ -1,0 +1,105 @@
+// rvelab calibrate as a soil laboratory reads it: scatter of specimens, what is missing and why, peaks that are none.
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/program.hpp"
+
+using namespace rvelab::test;
+using Catch::Matchers::Contains;
+
+namespace {
+
+nlohmann::json calibrated(const Workplace& here, const std::string& arguments) {
+  const Outcome outcome = here.run("calibrate biaxial " + arguments + " --json");
+  INFO(outcome.errors);
+  REQUIRE(outcome.code == 0);
+  return nlohmann::json::parse(outcome.output);
+}
+
+}  // namespace
+
+TEST_CASE("several specimens give mean, standard deviation and standard error of angle and N_q") {
+  const Workplace here;
+  here.import_packing("dense_p20", "A.h5");
+  here.import_packing("medium_p20", "B.h5");
+  here.import_packing("soft_p20", "C.h5");
+  const std::string three = "--specimen A.h5 --specimen B.h5 --specimen C.h5 --set stage.compression.to_strain=0.01 ";
+  const auto found = calibrated(here, three + "--pressures 20e3 -o new/folder");
+  REQUIRE(found["per_specimen"].size() == 3);
+  for (const std::string name : {"friction_angle", "bearing_capacity_Nq"}) {
+    const std::string unit = name == "friction_angle" ? "_deg" : "";
+    double sum = 0, squares = 0;
+    for (const auto& one : found["per_specimen"]) sum += one[name + unit].get<double>() / 3;
+    for (const auto& one : found["per_specimen"]) squares += std::pow(one[name + unit].get<double>() - sum, 2);
+    CHECK(found[name + "_mean" + unit].get<double>() == Approx(sum));
+    CHECK(found[name + "_standard_deviation" + unit].get<double>() == Approx(std::sqrt(squares / 2)));
+    CHECK(found[name + "_standard_error" + unit].get<double>() == Approx(std::sqrt(squares / 2 / 3)));
+    CHECK(squares > 0);
+  }
+  // One specimen alone has the angle that it has among the others.
+  const auto alone = calibrated(here, "--specimen B.h5 --set stage.compression.to_strain=0.01 --pressures 20e3");
+  CHECK(alone["friction_angle_deg"] == found["per_specimen"][1]["friction_angle_deg"]);
+  CHECK(alone["specimens"] == 1);
+  CHECK(!alone.contains("friction_angle_standard_deviation_deg"));
+  for (const char* file : {"R_20000_1.h5", "R_20000_2.h5", "R_20000_3.h5"}) {
+    CHECK(std::filesystem::exists(here / ("new/folder/" + std::string(file))));
+  }
+  // Every one at every pressure where that is asked for; else a number that does not fit is refused with the remedy.
+  const auto all = calibrated(here, three + "--pressures 15e3,20e3 --every-pressure");
+  CHECK(all["per_pressure"].size() == 6);
+  CHECK(all["per_specimen"].size() == 3);
+  expect_mistake(here.run("calibrate biaxial " + three + "--pressures 15e3,20e3"), "--every-pressure");
+  CHECK_THAT(here.run("calibrate biaxial " + three + "--pressures 20e3").output,
+             Contains("friction_angle_mean_deg") && Contains("friction_angle_standard_error_deg"));
+}
+
+TEST_CASE("a figure that cannot be had is no number, and the reason stands beside it") {
+  const Workplace here;
+  here.import_packing("dense_p20");
+  const std::string brief =
+      "calibrate biaxial --specimen S.h5 --pressures 20e3 --set stage.compression.to_strain=0.003";
+  const Outcome shown = here.run(brief);
+  CHECK(shown.code == 0);
+  CHECK(shown.output.find("nan") == std::string::npos);
+  CHECK_THAT(shown.output, Contains("-  (needs records over 1 % of strain; a test ends at 0.3 %)") &&
+                               Contains("-  (needs tests at two pressures or more)") &&
+                               Contains("-  (is the mean from 12 to 15 % of strain; a test ends at 0.3 %)"));
+  const auto json = nlohmann::json::parse(here.run(brief + " --json").output);
+  CHECK(json["cohesion_Pa"].is_null());
+  CHECK(json["undefined"]["cohesion_Pa"] == "needs tests at two pressures or more");
+  CHECK(json["undefined"].size() == 4);
+}
+
+TEST_CASE("a test that is still rising at its end has no peak, and a calibration says so") {
+  const Workplace here;
+  here.import_packing("dense_p20");
+  const auto brief = calibrated(here, "--specimen S.h5 --pressures 15e3,20e3 --set stage.compression.to_strain=0.003");
+  CHECK_THAT(brief["warning"].get<std::string>(), Contains("15000 Pa") && Contains("20000 Pa") &&
+                                                      Contains("still rising at the end: no peak") &&
+                                                      Contains("0.3 % strain") && Contains("to_strain"));
+  CHECK(brief["per_pressure"][0]["rising_at_end"] == true);
+  const auto whole = calibrated(here, "--specimen S.h5 --pressures 20e3 --set stage.compression.to_strain=0.03");
+  CHECK(!whole.contains("warning"));
+  CHECK(whole["per_pressure"][0]["rising_at_end"] == false);
+}
+
+TEST_CASE("the folder of a calibration is made, and told where it cannot be") {
+  const Workplace here;
+  here.import_packing("dense_p20");
+  const std::string brief =
+      "calibrate biaxial --specimen S.h5 --pressures 20e3 --set stage.compression.to_strain=0.001";
+  CHECK(here.run(brief + " -o a/b/c").code == 0);
+  CHECK(std::filesystem::exists(here / "a/b/c/R_20000.h5"));
+  expect_mistake(here.run(brief + " -o S.h5"), "S.h5: the folder cannot be made");
+  expect_mistake(here.run(brief + " -o S.h5/deep"), "S.h5/deep: the folder cannot be made");
+  // A mistake leaves no folder behind.
+  expect_mistake(here.run(brief + " -o none --set material.steel.friction=0.1"), "steel");
+  CHECK(!std::filesystem::exists(here / "none"));
+}
+
+TEST_CASE("the help explains what calibrate and run print") {
+  const Workplace here;
+  CHECK_THAT(here.run("calibrate --help").output,
+             Contains("wedge_angle_deg:") && Contains("local_shear_Nq:") && Contains("standard error"));
+  CHECK_THAT(here.run("run --help").output, Contains("q: deviatoric stress") && Contains("eps_q:"));
+}

@@ -1,0 +1,90 @@
+// What goes wrong outside rvelab is told in its words: one line of UTF-8 with the path and a remedy.
+#include <sys/resource.h>
+
+#include "rvelab/io/utf8.hpp"
+#include "tests/cli/program.hpp"
+
+using namespace rvelab::test;
+using Catch::Matchers::Contains;
+
+namespace {
+
+void expect_one_line_of_text(const Outcome& outcome, int code) {
+  INFO(outcome.errors);
+  CHECK(outcome.code == code);
+  CHECK(std::count(outcome.errors.begin(), outcome.errors.end(), '\n') == 1);
+  CHECK(outcome.errors.starts_with("rvelab: "));
+  CHECK(rvelab::io::first_non_utf8(outcome.errors) == std::string::npos);
+  for (const char* raw : {"std::", "bad_alloc", "_M_", "filesystem error", "length_error", "what()"}) {
+    CHECK(outcome.errors.find(raw) == std::string::npos);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("running out of memory is told with the command and a remedy, exit code 1") {
+  const Workplace here;
+  here.import_packing("dense_p20");
+  // A million grains take more than a hundred megabytes.
+  const Outcome outcome = here.run("-c 'ulimit -v 100000; exec " RVELAB_PROGRAM
+                                   " pack pack_dense -o big.h5 --threads 1 --set pack.number=1000000'",
+                                   "/bin/bash");
+  expect_one_line_of_text(outcome, 1);
+  CHECK_THAT(outcome.errors, Contains("out of memory") && Contains("pack.number=1000000") && Contains("ulimit -v"));
+  CHECK(!std::filesystem::exists(here / "big.h5"));
+}
+
+TEST_CASE("a path that the system does not take is the user's to mend") {
+  const Workplace here;
+  const std::string endless = std::string(300, 'a') + ".h5";
+  const Outcome outcome = here.run("inspect " + endless);
+  expect_one_line_of_text(outcome, 2);
+  CHECK_THAT(outcome.errors, Contains(endless) && Contains("; give the path of a file"));
+}
+
+TEST_CASE("bytes of paths, files and keys that are no UTF-8 are shown as numbers") {
+  const Workplace here;
+  here.import_packing("dense_p20");
+  const std::string bad = "x\xff\x1b[31m";
+  expect_one_line_of_text(here.run("inspect '" + bad + ".h5'"), 2);
+  CHECK_THAT(here.run("inspect '" + bad + ".h5'").errors, Contains("x\\xff\\x1b[31m.h5: no such file"));
+  expect_one_line_of_text(here.run("run biaxial --specimen S.h5 --set 'test.name" + bad + "=1'"), 2);
+  expect_one_line_of_text(here.run("run '" + bad + "' --specimen S.h5"), 2);
+  // On standard output too.
+  std::filesystem::copy_file(here / "S.h5", here / (bad + ".h5"));
+  const Outcome shown = here.run("inspect '" + bad + ".h5'");
+  CHECK(shown.code == 0);
+  CHECK(rvelab::io::first_non_utf8(shown.output) == std::string::npos);
+  CHECK_THAT(shown.output, Contains("x\\xff\\x1b[31m.h5"));
+  std::ofstream(here / "p.csv") << "id,x,y,r\n1,0,0,4.66\xd3\n";
+  const Outcome table = here.run("import p.csv --cell 1,1,1 -o T.h5");
+  expect_one_line_of_text(table, 2);
+}
+
+TEST_CASE("a listing shows what is not defined as a dash, never as a number that is none") {
+  const Workplace here;
+  // Grains apart: no contact, no fabric, no balance of forces to judge.
+  std::ofstream(here / "p.csv") << "ID;X;Y;R\n1;0,1;0,1;0,01\n2;0,5;0,5;0,01\n";
+  std::ofstream(here / "m.toml") << "[contact]\nlaw = \"linear\"\n[[material]]\nname = \"sand\"\ndensity_kg_m3 = 2650\n"
+                                    "young_modulus_Pa = 1e6\nstiffness_ratio = 0.5\nfriction = 0.5\n";
+  const Outcome made = here.run("import p.csv --cell 1,1,1 --material m.toml -o S.h5");
+  INFO(made.errors);
+  REQUIRE(made.code == 0);
+  const Outcome shown = here.run("inspect S.h5");
+  CHECK(shown.code == 0);
+  CHECK(shown.output.find("nan") == std::string::npos);
+  CHECK_THAT(shown.output, Contains("fabric_anisotropy        -\n"));
+  CHECK_THAT(here.run("inspect S.h5 --json").output, Contains("\"fabric_anisotropy\": null"));
+}
+
+TEST_CASE("a run that keeps no records says so, one that keeps or prints them does not") {
+  const Workplace here;
+  here.import_packing("dense_p20");
+  const std::string test = "run biaxial --specimen S.h5 --set stage.compression.to_strain=0.001";
+  const Outcome lost = here.run(test);
+  CHECK(lost.code == 0);
+  CHECK_THAT(lost.output, Contains("none: the records are not kept without -o"));
+  CHECK_THAT(here.run(test + " -o R.h5").output, !Contains("not kept"));
+  CHECK_THAT(here.run(test + " --json").output, !Contains("not kept"));
+  CHECK_THAT(here.run("run probe --specimen S.h5 --set stage.probe.method=linear").output, !Contains("not kept"));
+}
