@@ -17,6 +17,7 @@
 #include "rvelab/cli/recording.hpp"
 #include "rvelab/cli/report.hpp"
 #include "rvelab/error.hpp"
+#include "rvelab/io/publish.hpp"
 
 namespace rvelab::cli {
 namespace {
@@ -132,9 +133,12 @@ void run_calibration(const CalibrateArguments& arguments) {
   if (!arguments.folder.empty()) {
     const std::filesystem::path folder = arguments.folder;
     expect_folder_of((folder / "R.h5").string());
+    auto inputs = specimen_files(protocols.front(), arguments.specimens);
+    inputs.push_back(protocols.front().path);
     for (std::size_t k = 0; k < protocols.size(); ++k) {
-      stores[k] = open_store((folder / record_file_name(protocols[k].pressure)).string(), protocols[k],
-                             specimens[specimens.size() == 1 ? 0 : k], arguments.recording);
+      const std::string file = (folder / record_file_name(protocols[k].pressure)).string();
+      io::expect_place(file, inputs);
+      stores[k] = open_store(file, protocols[k], specimens[specimens.size() == 1 ? 0 : k], arguments.recording);
     }
   }
   Watch watch;

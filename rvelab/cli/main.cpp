@@ -1,5 +1,7 @@
 // The program `rvelab`: its subcommands, and the one place where errors become exit codes. 0: done; 1: the run failed;
 // 2: a user's mistake. Every error is one line on standard error. No colours, on a terminal or off it.
+#include <csignal>
+#include <cstdio>
 #include <exception>
 #include <iostream>
 #include <string>
@@ -25,9 +27,16 @@ int fail(int code, const char* message) {
   return code;
 }
 
+/// The exit code of a command whose output has reached its reader: a full disc must not look like success.
+int done(int code) {
+  if (std::cout.flush() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+  return fail(run_failed, "standard output could not be written; free space or send it elsewhere");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit of `ulimit -f` is an error like any other
   CLI::App app("rvelab: granular specimens in a periodic cell, deformed increment by increment", "rvelab");
   app.set_version_flag("--version", std::string("rvelab ") + rvelab::version);
   app.require_subcommand(1);
@@ -37,6 +46,7 @@ int main(int argc, char** argv) {
   rvelab::cli::add_probe(app);
   rvelab::cli::add_run(app);
   rvelab::cli::add_recover(app);
+  rvelab::cli::add_seal(app);
   rvelab::cli::add_calibrate(app);
   rvelab::cli::add_compare(app);
   rvelab::cli::add_export(app);
@@ -55,14 +65,13 @@ int main(int argc, char** argv) {
   try {
     rvelab::cli::expect_known_words(app, argc, argv);
     app.parse(argc, argv);
-    return 0;
+    return done(0);
   } catch (const rvelab::cli::Stopped& stopped) {
     return stopped.exit_code;
   } catch (const CLI::Success& help_or_version) {
-    return app.exit(help_or_version);
+    return done(app.exit(help_or_version));
   } catch (const CLI::RuntimeError& outcome) {  // a subcommand's own exit code, said by what it printed
-    std::cout << std::flush;
-    return outcome.get_exit_code();
+    return done(outcome.get_exit_code());
   } catch (const CLI::Error& error) {
     return fail(users_mistake, rvelab::cli::with_remedy(app, error).c_str());
   } catch (const rvelab::InputError& error) {

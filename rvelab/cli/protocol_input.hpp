@@ -28,6 +28,9 @@ inline std::string protocol_path(const std::string& name_or_path) {
 /// protocol's folder). InputError if there is none.
 std::vector<Specimen> specimens_for(const Protocol& protocol, const std::vector<std::string>& files);
 
+/// The files that specimens_for reads.
+std::vector<std::string> specimen_files(const Protocol& protocol, const std::vector<std::string>& files);
+
 /// InputError unless the folder that a file is to be written to is there: said before the work, not after it.
 void expect_folder_of(const std::string& file);
 

@@ -126,9 +126,13 @@ std::string meta_of(const Specimen& specimen) {
 
 }  // namespace
 
+CsvExport csv_files(const std::string& stem) {
+  return {stem + ".particles.csv", stem + ".contacts.csv", stem + ".json", stem + ".material.toml"};
+}
+
 CsvExport export_csv(const Specimen& specimen, const std::string& stem) {
   expect_names(specimen);
-  const CsvExport files{stem + ".particles.csv", stem + ".contacts.csv", stem + ".json", stem + ".material.toml"};
+  const CsvExport files = csv_files(stem);
   io::publish_text(files.particles, particles_of(specimen));
   io::publish_text(files.contacts, contacts_of(specimen));
   io::publish_text(files.meta, meta_of(specimen));
