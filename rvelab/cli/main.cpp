@@ -1,9 +1,13 @@
 // The program `rvelab`: its subcommands, and the one place where errors become exit codes. 0: done; 1: the run failed;
 // 2: a user's mistake. Every error is one line on standard error. No colours, on a terminal or off it.
+#include <unistd.h>
+
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <iostream>
+#include <new>
 #include <string>
 
 #include "rvelab/cli/commands.hpp"
@@ -33,9 +37,29 @@ int done(int code) {
   return fail(run_failed, "standard output could not be written; free space or send it elsewhere");
 }
 
-}  // namespace
+/// Without asking for more.
+int say_out_of_memory() {
+  std::fputs("rvelab: out of memory; free some, raise its limit (ulimit -v), or give fewer grains or --threads\n",
+             stderr);
+  return run_failed;
+}
 
-int main(int argc, char** argv) {
+/// Memory may end where no handler is reached: before main, and in destructors of the JSON library, which allocate.
+[[noreturn]] void end() {
+  try {
+    if (const auto error = std::current_exception()) std::rethrow_exception(error);
+  } catch (const std::bad_alloc&) {
+    ::_exit(say_out_of_memory());
+  } catch (...) {
+  }
+  std::abort();
+}
+
+/// Before all other initialisers of the program.
+[[gnu::constructor(101)]] void catch_the_end() { std::set_terminate(end); }
+
+/// The program but for what befalls it where not even a subcommand is there yet.
+int answer(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit of `ulimit -f` is an error like any other
   CLI::App app("rvelab: granular specimens in a periodic cell, deformed increment by increment", "rvelab");
   app.set_version_flag("--version", std::string("rvelab ") + rvelab::version);
@@ -76,7 +100,19 @@ int main(int argc, char** argv) {
     return fail(users_mistake, rvelab::cli::with_remedy(app, error).c_str());
   } catch (const rvelab::InputError& error) {
     return fail(users_mistake, error.what());
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& error) {
     return fail(run_failed, error.what());
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return answer(argc, argv);
+  } catch (const std::bad_alloc&) {
+    return say_out_of_memory();
   }
 }

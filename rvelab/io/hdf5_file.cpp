@@ -36,6 +36,13 @@ hid_t stored_type() {
   throw Error(path + ": " + name + " could not be written (" + raw::reason() + "); check the memory left");
 }
 
+/// Memory for a file in memory to grow by so many bytes: it is copied to a larger place.
+void expect_room(hid_t file, std::uint64_t bytes) {
+  hsize_t size = 0;
+  H5Fget_filesize(file, &size);
+  raw::expect_memory(size + 2 * bytes);
+}
+
 Handle create_dataset(hid_t file, const std::string& path, const std::string& name, hid_t type, hid_t space,
                       std::vector<hsize_t> chunk = {}) {
   const Handle chunked(chunk.empty() ? -1 : H5Pcopy(raw::dataset_creation()), H5Pclose);
@@ -67,6 +74,7 @@ std::string hdf5_version() {
 
 Hdf5File Hdf5File::from_image(const std::string& path, std::span<const std::byte> bytes) {
   raw::silence();
+  raw::expect_memory(3 * bytes.size());  // it copies an image twice
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   constexpr std::size_t growth = 1 << 16;
   H5Pset_fapl_core(access, growth, false);
@@ -80,6 +88,7 @@ Hdf5File Hdf5File::from_image(const std::string& path, std::span<const std::byte
 
 Hdf5File Hdf5File::in_memory(const std::string& path) {
   raw::silence();
+  raw::expect_memory(0);
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   constexpr std::size_t growth = 1 << 18;
   H5Pset_fapl_core(access, growth, false);
@@ -106,6 +115,7 @@ template <class Scalar>
 void Hdf5File::write(const std::string& name, std::span<const Scalar> values, const Shape64& shape,
                      const std::string& units, std::uint64_t chunk_rows) {
   if (values.size() != raw::count(shape)) throw Error(path_ + ": " + name + ": number of values and shape differ");
+  expect_room(id_, values.size_bytes());
   std::vector<hsize_t> chunk;
   if (chunk_rows > 0 && raw::count(shape) > 0 && !shape.empty()) {
     chunk.assign(shape.begin(), shape.end());
@@ -120,6 +130,7 @@ void Hdf5File::write(const std::string& name, std::span<const Scalar> values, co
 
 void Hdf5File::write_text(const std::string& name, const std::vector<std::string>& values, const Shape64& shape) {
   const raw::PaddedTexts texts(values, shape);
+  expect_room(id_, texts.letters.size());
   const Handle dataset = create_dataset(id_, path_, name, texts.type, texts.space);
   const bool written =
       values.empty() || H5Dwrite(dataset, texts.type, H5S_ALL, H5S_ALL, H5P_DEFAULT, texts.letters.data()) >= 0;
@@ -136,6 +147,7 @@ std::vector<Scalar> Hdf5File::read(const std::string& name) const {
   }
   const Handle space(H5Dget_space(dataset), H5Sclose);
   std::vector<Scalar> values(raw::count(raw::shape_of(space)));
+  raw::expect_memory(0);
   const bool done =
       values.empty() || H5Dread(dataset, native_type<Scalar>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0;
   if (!done) fail_read(path_, name);
@@ -176,6 +188,7 @@ void Hdf5File::copy(const Hdf5File& from) {
 }
 
 std::vector<std::byte> Hdf5File::image() const {
+  expect_room(id_, 0);
   if (H5Fflush(id_, H5F_SCOPE_GLOBAL) < 0) fail_write(path_, "the file");
   const auto size = H5Fget_file_image(id_, nullptr, 0);
   if (size <= 0) fail_write(path_, "the file");

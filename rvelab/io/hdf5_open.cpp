@@ -165,6 +165,7 @@ Hdf5File Hdf5File::open(const std::string& path) {
       return in_memory;
     }
     checked().remember_sealed(identity);
+    raw::expect_memory(0);
     const hid_t id = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
     if (id >= 0 && is_open(id, identity)) return {path, id, true};
     if (id >= 0) {

@@ -1,10 +1,19 @@
 #include "rvelab/io/hdf5_raw.hpp"
 
 #include <algorithm>
+#include <cstdlib>
+#include <new>
 
 #include "rvelab/error.hpp"
 
 namespace rvelab::raw {
+
+void expect_memory(std::uint64_t bytes) {
+  constexpr std::uint64_t besides = 8 << 20;  // its caches and conversion buffers, a MiB each
+  void* const found = std::malloc(bytes + besides);
+  if (found == nullptr) throw std::bad_alloc();
+  std::free(found);
+}
 
 void silence() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 

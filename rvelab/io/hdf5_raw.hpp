@@ -29,6 +29,10 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
+/// std::bad_alloc unless so many bytes are to be had, and some more for what HDF5 needs besides. HDF5's library crashes
+/// where it gets no memory: it is asked for before, here.
+void expect_memory(std::uint64_t bytes);
+
 /// HDF5 prints its error stack by default; here it goes into exceptions.
 void silence();
 
