@@ -1,5 +1,5 @@
 // What is in a file, whoever wrote it: its objects as they stand, for comparison, and all of them copied.
-#include <algorithm>
+#include <utility>
 
 #include "rvelab/error.hpp"
 #include "rvelab/io/hdf5_raw.hpp"
@@ -25,15 +25,16 @@ StoredValues dataset_values(hid_t dataset, const std::string& what) {
 }
 
 std::vector<Hdf5Object> objects_of(hid_t file) {
-  std::vector<Hdf5Object> found;
+  raw::Shown<std::pair<std::string, bool>> shown;
   const auto collect = [](hid_t, const char* name, const H5O_info_t* info, void* list) -> herr_t {
-    const std::string path = std::string(name) == "." ? "/" : "/" + std::string(name);
-    if (info->type == H5O_TYPE_DATASET || info->type == H5O_TYPE_GROUP) {
-      static_cast<std::vector<Hdf5Object>*>(list)->push_back({path, info->type == H5O_TYPE_DATASET, {}});
-    }
-    return 0;
+    const bool dataset = info->type == H5O_TYPE_DATASET;
+    if (!dataset && info->type != H5O_TYPE_GROUP) return 0;
+    return static_cast<raw::Shown<std::pair<std::string, bool>>*>(list)->add(name, dataset);
   };
-  if (H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, collect, &found, H5O_INFO_BASIC) < 0) return {};
+  const bool whole = H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, collect, &shown, H5O_INFO_BASIC) >= 0;
+  std::vector<Hdf5Object> found;
+  for (const auto& [name, dataset] : shown.taken()) found.push_back({name == "." ? "/" : "/" + name, dataset, {}});
+  if (!whole) found.clear();
   return found;
 }
 
@@ -158,16 +159,15 @@ std::vector<std::string> Hdf5File::attributes() const {
 }
 
 std::vector<std::string> Hdf5File::groups(const std::string& group) const {
-  std::vector<std::string> names;
-  if (!has(group)) return names;
+  if (!has(group)) return {};
+  raw::Shown<std::string> names;
   const auto collect = [](hid_t, const char* name, const H5L_info_t*, void* list) -> herr_t {
-    static_cast<std::vector<std::string>*>(list)->emplace_back(name);
-    return 0;
+    return static_cast<raw::Shown<std::string>*>(list)->add(name);
   };
   hsize_t position = 0;
   const Handle opened(H5Gopen2(id_, group.c_str(), H5P_DEFAULT), H5Gclose);
   H5Literate(opened, H5_INDEX_NAME, H5_ITER_INC, &position, collect, &names);
-  return names;
+  return names.taken();
 }
 
 }  // namespace rvelab

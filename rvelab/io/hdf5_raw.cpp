@@ -18,14 +18,15 @@ void expect_memory(std::uint64_t bytes) {
 void silence() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
 std::string reason() {
-  std::string reason;
-  const auto first = [](unsigned, const H5E_error2_t* error, void* text) -> herr_t {
-    auto& reason = *static_cast<std::string*>(text);
-    if (reason.empty() && error->desc != nullptr) reason = error->desc;
-    return 0;
+  Shown<std::string> reasons;
+  const auto each = [](unsigned, const H5E_error2_t* error, void* list) -> herr_t {
+    return error->desc == nullptr ? 0 : static_cast<Shown<std::string>*>(list)->add(error->desc);
   };
-  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, first, &reason);
-  return reason.empty() ? "no reason given" : reason;
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, each, &reasons);
+  for (auto& reason : reasons.taken()) {
+    if (!reason.empty()) return std::move(reason);
+  }
+  return "no reason given";
 }
 
 // Property lists that never change are made once: making them for each dataset was a seventh of the time that a file
@@ -149,14 +150,13 @@ std::string read_attribute(hid_t object, const std::string& name) {
 }
 
 std::vector<std::string> attribute_names(hid_t object) {
-  std::vector<std::string> names;
+  Shown<std::string> names;
   const auto collect = [](hid_t, const char* name, const H5A_info_t*, void* list) -> herr_t {
-    static_cast<std::vector<std::string>*>(list)->emplace_back(name);
-    return 0;
+    return static_cast<Shown<std::string>*>(list)->add(name);
   };
   hsize_t position = 0;
   H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_INC, &position, collect, &names);
-  return names;
+  return names.taken();
 }
 
 Handle open_dataset(hid_t file, const std::string& path, const std::string& name) {

@@ -5,6 +5,7 @@
 #include <hdf5.h>
 
 #include <cstdint>
+#include <new>
 #include <string>
 #include <utility>
 #include <vector>
@@ -50,6 +51,28 @@ std::uint64_t count(const Shape64& shape);
 
 /// "float64", "int32", "text" and so on.
 std::string type_name(hid_t type);
+
+/// What HDF5 shows one by one to a function of ours. No exception may pass through its library: it would be left open.
+template <class Item>
+class Shown {
+ public:
+  template <class... Parts>
+  herr_t add(const Parts&... parts) noexcept try {
+    items_.emplace_back(parts...);
+    return 0;
+  } catch (const std::bad_alloc&) {
+    no_memory_ = true;
+    return -1;
+  }
+  std::vector<Item> taken() {
+    if (no_memory_) throw std::bad_alloc();
+    return std::move(items_);
+  }
+
+ private:
+  std::vector<Item> items_;
+  bool no_memory_ = false;
+};
 
 /// Values of a dataset or attribute. `read(memory_type, buffer)` is H5Dread or H5Aread on it, `what` begins a message.
 /// InputError: of a type that holds references, or not readable.
