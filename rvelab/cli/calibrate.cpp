@@ -18,6 +18,7 @@
 #include "rvelab/cli/recording.hpp"
 #include "rvelab/cli/report.hpp"
 #include "rvelab/error.hpp"
+#include "rvelab/io/publish.hpp"
 
 namespace rvelab::cli {
 namespace {
@@ -236,11 +237,14 @@ void run_calibration(const CalibrateArguments& arguments) {
   const std::size_t tests = plan.protocols.size();
   std::vector<std::unique_ptr<RecordStore>> stores(tests);
   if (!arguments.folder.empty()) {
+    auto inputs = specimen_files(at_pressures.front(), arguments.specimens);
+    inputs.push_back(at_pressures.front().path);
     for (std::size_t k = 0; k < tests; ++k) with_overrides(plan.protocols[k], specimens[plan.specimen_of[k]]);
     make_folder(arguments.folder);
     for (std::size_t k = 0; k < tests; ++k) {
-      stores[k] = open_store((std::filesystem::path(arguments.folder) / plan.files[k]).string(), plan.protocols[k],
-                             specimens[plan.specimen_of[k]], arguments.recording);
+      const std::string file = (std::filesystem::path(arguments.folder) / plan.files[k]).string();
+      io::expect_place(file, inputs);
+      stores[k] = open_store(file, plan.protocols[k], specimens[plan.specimen_of[k]], arguments.recording);
     }
   }
   std::vector<TestRun> runs;

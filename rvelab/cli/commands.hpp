@@ -20,6 +20,7 @@ void add_inspect(CLI::App& app);
 void add_probe(CLI::App& app);
 void add_run(CLI::App& app);
 void add_recover(CLI::App& app);
+void add_seal(CLI::App& app);
 void add_calibrate(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_export(CLI::App& app);

@@ -1,14 +1,16 @@
 // rvelab export: states of a specimen or a test for other programs.
-#include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "rvelab/cli/commands.hpp"
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/report.hpp"
-#include "rvelab/error.hpp"
 #include "rvelab/io/export_csv.hpp"
 #include "rvelab/io/export_lammps.hpp"
 #include "rvelab/io/export_xdmf.hpp"
+#include "rvelab/io/journal.hpp"
+#include "rvelab/io/publish.hpp"
 #include "rvelab/io/states.hpp"
 #include "rvelab/solver/rve.hpp"
 
@@ -17,7 +19,7 @@ namespace {
 
 struct ExportArguments {
   std::string file, format, output;
-  bool json = false;
+  bool force = false, json = false;
 };
 
 ExportState state_of(const StoredState& state) {
@@ -36,47 +38,43 @@ std::string stem_of(const std::string& output) {
   return output.ends_with(".csv") ? output.substr(0, output.size() - 4) : output;
 }
 
-void expect_other_than_input(const ExportArguments& arguments, const std::string& written) {
-  std::error_code ignored;
-  if (!std::filesystem::equivalent(arguments.file, written, ignored)) return;
-  throw InputError("-o " + arguments.output + " would replace " + arguments.file +
-                   ", which it is made from; allowed: another name; choose one");
-}
-
-/// Writes the files of one format; their names, and what else there is to say, go into the listing.
-void write_export(const ExportArguments& arguments, Listing& listing) {
+/// The files that an export writes.
+std::vector<std::string> files_of(const ExportArguments& arguments) {
   const std::string& output = arguments.output;
   if (arguments.format == "csv") {
-    const CsvExport files = export_csv(read_states(arguments.file).back().specimen, stem_of(output));
-    listing.add("written", Json::array({files.particles, files.contacts, files.meta, files.material}));
+    const CsvExport files = csv_files(stem_of(output));
+    return {files.particles, files.contacts, files.meta, files.material};
+  }
+  if (arguments.format == "xdmf") return {output, output + ".h5"};
+  return {output};
+}
+
+/// Writes the files of one format; what there is to say goes into the listing.
+void write_export(const ExportArguments& arguments, Listing& listing) {
+  if (arguments.format == "csv") {
+    const CsvExport files = export_csv(read_states(arguments.file).back().specimen, stem_of(arguments.output));
     listing.add("import_with", "rvelab import " + files.particles + " " + files.contacts + " " + files.meta +
                                    " --material " + files.material + " -o S.h5");
-    return;
-  }
-  if (arguments.format == "lammps-data") {
-    export_lammps_data(state_of(read_states(arguments.file).back()), output);
-    listing.add("written", Json::array({output}));
-    return;
-  }
-  const auto states = all_states(arguments.file);
-  listing.add("states", states.size());
-  if (arguments.format == "xdmf") {
-    expect_other_than_input(arguments, output + ".h5");
-    export_xdmf(states, output);
-    listing.add("written", Json::array({output, output + ".h5"}));
+  } else if (arguments.format == "lammps-data") {
+    export_lammps_data(state_of(read_states(arguments.file).back()), arguments.output);
   } else {
-    export_lammps_dump(states, output);
-    listing.add("written", Json::array({output}));
+    const auto states = all_states(arguments.file);
+    listing.add("states", states.size());
+    (arguments.format == "xdmf" ? export_xdmf : export_lammps_dump)(states, arguments.output);
   }
 }
 
 void run_export(const ExportArguments& arguments) {
   expect_folder_of(arguments.output);
-  expect_other_than_input(arguments, arguments.output);
+  const auto files = files_of(arguments);
+  for (const auto& file : files) {
+    io::expect_output(file, arguments.force, {arguments.file, io::journal_of(arguments.file)});
+  }
   Listing listing;
   listing.add("file", arguments.file);
   listing.add("format", arguments.format);
   write_export(arguments, listing);
+  listing.add("written", files);
   listing.print(arguments.json);
 }
 
@@ -96,6 +94,7 @@ void add_export(CLI::App& app) {
       ->required();
   command->add_option("-o,--output", arguments->output, "file to write; csv: what the names of the files begin with")
       ->required();
+  command->add_flag("--force", arguments->force, "overwrite files that are there");
   command->add_flag("--json", arguments->json, "print one JSON object");
   command->footer(
       "xdmf and lammps hold every snapshot of a record file and its end state, the others the last state.\n"

@@ -6,9 +6,11 @@
 #include <vector>
 
 #include "rvelab/cli/commands.hpp"
+#include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/report.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/io/import_csv.hpp"
+#include "rvelab/io/publish.hpp"
 #include "rvelab/io/specimen_file.hpp"
 #include "rvelab/measure/proportions.hpp"
 #include "rvelab/solver/rve.hpp"
@@ -21,7 +23,7 @@ struct ImportArguments {
   std::vector<double> cell;
   std::string material, output;
   std::vector<std::string> settings;
-  bool json = false;
+  bool force = false, json = false;
 };
 
 /// Files that end in .json are META.json, the others particles and contacts, in this order.
@@ -47,6 +49,10 @@ Inputs sorted(const std::string (&files)[3]) {
 
 void run_import(const ImportArguments& arguments) {
   const Inputs inputs = sorted(arguments.inputs);
+  expect_folder_of(arguments.output);
+  std::vector<std::string> files{arguments.material};
+  for (const auto& file : arguments.inputs) files.push_back(file);
+  io::expect_output(arguments.output, arguments.force, files);
   ImportOptions options;
   if (!arguments.cell.empty()) options.cell = Vector3(arguments.cell[0], arguments.cell[1], arguments.cell[2]);
   if (!arguments.material.empty()) options.material_path = arguments.material;
@@ -89,6 +95,7 @@ void add_import(CLI::App& app) {
       ->allow_extra_args(false)
       ->take_all();
   command->add_option("-o,--output", arguments->output, "specimen file to write, S.h5")->required();
+  command->add_flag("--force", arguments->force, "overwrite the output");
   command->add_flag("--json", arguments->json, "print one JSON object");
   command->footer(
       "Examples:\n"

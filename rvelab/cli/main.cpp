@@ -1,13 +1,18 @@
 // The program `rvelab`: its subcommands, and the one place where errors become exit codes. 0: done; 1: the run failed;
 // 2: a user's mistake. Every error is one line of UTF-8 on standard error, in rvelab's words: what the standard library
 // says for itself names neither file nor remedy. No colours, on a terminal or off it.
+#include <unistd.h>
+
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <iostream>
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <system_error>
 
 #include "rvelab/cli/commands.hpp"
@@ -32,12 +37,16 @@ int fail(int code, const std::string& message) {
   return code;
 }
 
+/// The command as it was given, for the one message that cannot ask for memory.
+int word_count = 0;
+char** words = nullptr;
+
 /// Says it without asking for memory, of which there is none.
-int fail_without_memory(int argc, char** argv) {
-  std::fputs("rvelab: out of memory in", stderr);
-  for (int k = 0; k < argc; ++k) {
-    std::fputc(' ', stderr);
-    const std::string_view word = argv[k];
+int fail_without_memory() {
+  std::fputs("rvelab: out of memory", stderr);
+  for (int k = 0; k < word_count; ++k) {
+    std::fputs(k == 0 ? " in " : " ", stderr);
+    const std::string_view word = words[k];
     for (std::size_t at = 0; at < word.size();) {
       const std::size_t length = rvelab::io::utf8_length(word, at);
       const bool shown = length > 0 && static_cast<unsigned char>(word[at]) >= 0x20;
@@ -62,9 +71,29 @@ int fail_at_path(const std::filesystem::filesystem_error& error) {
               error.path1().string() + ": cannot be used (" + error.code().message() + ")" + remedy);
 }
 
-}  // namespace
+/// The exit code of a command whose output has reached its reader: a full disc must not look like success.
+int done(int code) {
+  if (std::cout.flush() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+  return fail(run_failed, "standard output could not be written; free space or send it elsewhere");
+}
 
-int main(int argc, char** argv) {
+/// Memory may end where no handler is reached: before main, and in destructors of the JSON library, which allocate.
+[[noreturn]] void end() {
+  try {
+    if (const auto error = std::current_exception()) std::rethrow_exception(error);
+  } catch (const std::bad_alloc&) {
+    ::_exit(fail_without_memory());
+  } catch (...) {
+  }
+  std::abort();
+}
+
+/// Before all other initialisers of the program.
+[[gnu::constructor(101)]] void catch_the_end() { std::set_terminate(end); }
+
+/// The program but for what befalls it where not even a subcommand is there yet.
+int answer(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit of `ulimit -f` is an error like any other
   CLI::App app("rvelab: granular specimens in a periodic cell, deformed increment by increment", "rvelab");
   app.set_version_flag("--version", std::string("rvelab ") + rvelab::version);
   app.require_subcommand(1);
@@ -74,6 +103,7 @@ int main(int argc, char** argv) {
   rvelab::cli::add_probe(app);
   rvelab::cli::add_run(app);
   rvelab::cli::add_recover(app);
+  rvelab::cli::add_seal(app);
   rvelab::cli::add_calibrate(app);
   rvelab::cli::add_compare(app);
   rvelab::cli::add_export(app);
@@ -92,14 +122,13 @@ int main(int argc, char** argv) {
   try {
     rvelab::cli::expect_known_words(app, argc, argv);
     app.parse(argc, argv);
-    return 0;
+    return done(0);
   } catch (const rvelab::cli::Stopped& stopped) {
     return stopped.exit_code;
   } catch (const CLI::Success& help_or_version) {
-    return app.exit(help_or_version);
+    return done(app.exit(help_or_version));
   } catch (const CLI::RuntimeError& outcome) {  // a subcommand's own exit code, said by what it printed
-    std::cout << std::flush;
-    return outcome.get_exit_code();
+    return done(outcome.get_exit_code());
   } catch (const CLI::Error& error) {
     return fail(users_mistake, rvelab::cli::with_remedy(app, error));
   } catch (const rvelab::InputError& error) {
@@ -107,9 +136,9 @@ int main(int argc, char** argv) {
   } catch (const rvelab::Error& error) {
     return fail(run_failed, error.what());
   } catch (const std::bad_alloc&) {
-    return fail_without_memory(argc, argv);
+    return fail_without_memory();
   } catch (const std::length_error&) {  // a container longer than any machine's memory
-    return fail_without_memory(argc, argv);
+    return fail_without_memory();
   } catch (const std::filesystem::filesystem_error& error) {
     return fail_at_path(error);
   } catch (const std::system_error& error) {
@@ -118,5 +147,17 @@ int main(int argc, char** argv) {
   } catch (const std::exception& error) {
     return fail(run_failed, "a fault of rvelab itself (" + std::string(error.what()) +
                                 "); please report it with the command and its input files");
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  word_count = argc;
+  words = argv;
+  try {
+    return answer(argc, argv);
+  } catch (const std::bad_alloc&) {
+    return fail_without_memory();
   }
 }

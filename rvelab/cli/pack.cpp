@@ -15,6 +15,7 @@
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/report.hpp"
 #include "rvelab/error.hpp"
+#include "rvelab/io/publish.hpp"
 #include "rvelab/io/specimen_file.hpp"
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/pack/search.hpp"
@@ -29,7 +30,7 @@ struct PackArguments {
   std::vector<std::string> settings;
   std::size_t count = 1;
   unsigned threads = 0;
-  bool json = false;
+  bool force = false, json = false;
 };
 
 /// One specimen to be made, and what became of it.
@@ -145,9 +146,11 @@ std::string made_of(const std::vector<Job>& jobs) {
 }
 
 void run_pack(const PackArguments& arguments) {
-  const RecipeFile file = read_recipe(input_path(arguments.recipe, InputKind::recipe), arguments.settings);
+  const std::string recipe = input_path(arguments.recipe, InputKind::recipe);
+  const RecipeFile file = read_recipe(recipe, arguments.settings);
   expect_folder_of(arguments.output);
   std::vector<Job> jobs = jobs_of(file, arguments);
+  for (const Job& job : jobs) io::expect_output(job.file, arguments.force, {recipe});
   const unsigned threads =
       arguments.threads > 0 ? arguments.threads : std::max(1u, std::thread::hardware_concurrency());
   DrawLine line;
@@ -199,6 +202,7 @@ void add_pack(CLI::App& app) {
       ->take_all();
   command->add_option("--threads", arguments->threads, "specimens or draws at a time; else as many as there are cores")
       ->check(CLI::Range(1u, 4096u));
+  command->add_flag("--force", arguments->force, "overwrite specimen files that are there");
   command->add_flag("--json", arguments->json, "print one JSON object");
   command->footer(
       "The same recipe gives the same bits on any number of threads. target.pressures_Pa makes a family, S_20000Pa.h5\n"

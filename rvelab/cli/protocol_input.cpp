@@ -75,17 +75,18 @@ std::string input_path(const std::string& name_or_path, InputKind kind) {
                    (recipe ? "RECIPE" : "PROTOCOL") + ".toml; see rvelab protocols");
 }
 
-std::vector<Specimen> specimens_for(const Protocol& protocol, const std::vector<std::string>& files) {
+std::vector<std::string> specimen_files(const Protocol& protocol, const std::vector<std::string>& files) {
   if (files.empty() && protocol.specimen_file.empty()) {
     throw InputError(protocol.path +
                      ": no specimen is given; allowed: --specimen S.h5 or [specimen] file = \"S.h5\"; name one");
   }
+  if (!files.empty()) return files;
+  return {(fs::path(protocol.path).parent_path() / protocol.specimen_file).string()};
+}
+
+std::vector<Specimen> specimens_for(const Protocol& protocol, const std::vector<std::string>& files) {
   std::vector<Specimen> specimens;
-  for (const auto& file : files) specimens.push_back(read_specimen(file));
-  if (files.empty()) {
-    const auto folder = std::filesystem::path(protocol.path).parent_path();
-    specimens.push_back(read_specimen((folder / protocol.specimen_file).string()));
-  }
+  for (const auto& file : specimen_files(protocol, files)) specimens.push_back(read_specimen(file));
   return specimens;
 }
 

@@ -34,6 +34,9 @@ std::vector<Specimen> specimens_for(const Protocol& protocol, const std::vector<
 /// Makes the folder that results go to, with those above it, unless it is there. InputError if it cannot be made.
 void make_folder(const std::string& folder);
 
+/// The files that specimens_for reads.
+std::vector<std::string> specimen_files(const Protocol& protocol, const std::vector<std::string>& files);
+
 /// InputError unless the folder that a file is to be written to is there: said before the work, not after it.
 void expect_folder_of(const std::string& file);
 

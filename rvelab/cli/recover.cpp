@@ -8,6 +8,7 @@
 #include "rvelab/cli/commands.hpp"
 #include "rvelab/cli/report.hpp"
 #include "rvelab/error.hpp"
+#include "rvelab/io/publish.hpp"
 #include "rvelab/io/record_journal.hpp"
 #include "rvelab/io/recorded_test.hpp"
 
@@ -21,11 +22,9 @@ struct Arguments {
 
 void run_recover(const Arguments& arguments) {
   const std::string journal_path = io::journal_of(arguments.file);
-  const bool elsewhere = !arguments.output.empty() && arguments.output != arguments.file;
+  const bool elsewhere = !arguments.output.empty() && io::followed(arguments.output) != io::followed(arguments.file);
   const std::string output = elsewhere ? arguments.output : arguments.file;
-  if (elsewhere && !arguments.force && std::filesystem::exists(output)) {
-    throw InputError(output + ": is there already; allowed: a new name, or --force to overwrite it");
-  }
+  if (elsewhere) io::expect_output(output, arguments.force, {arguments.file, journal_path});
   if (!std::filesystem::exists(arguments.file) && !std::filesystem::exists(journal_path)) {
     throw InputError(arguments.file + ": no such file, and no " + journal_path +
                      "; give the record file of a run, with or without \".journal\" beside it");

@@ -16,6 +16,7 @@
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/recording.hpp"
 #include "rvelab/cli/report.hpp"
+#include "rvelab/io/publish.hpp"
 #include "rvelab/protocol/run.hpp"
 #include "rvelab/solver/sweep.hpp"
 
@@ -172,13 +173,16 @@ void report(const Protocol& protocol, const TestRun& run, const RunArguments& ar
 void run_test(const RunArguments& arguments) {
   const Protocol protocol = read_protocol(protocol_path(arguments.protocol), arguments.settings);
   arguments.recording.expect_output(arguments.output);
-  const auto specimens = specimens_for(
-      protocol, arguments.specimen.empty() ? std::vector<std::string>{} : std::vector{arguments.specimen});
+  const auto given = arguments.specimen.empty() ? std::vector<std::string>{} : std::vector{arguments.specimen};
+  const auto specimens = specimens_for(protocol, given);
   const Specimen& specimen = specimens.front();
   std::unique_ptr<RecordStore> store;
   if (!arguments.output.empty()) {
     expect_folder_of(arguments.output);
     with_overrides(protocol, specimen);  // its mistakes are told before a file is touched
+    auto inputs = specimen_files(protocol, given);
+    inputs.push_back(protocol.path);
+    io::expect_place(arguments.output, inputs);
     store = open_store(arguments.output, protocol, specimen, arguments.recording);
     if (store->complete()) tell(arguments.output + " is complete; nothing was run");
   } else if (!arguments.json && planned_records(protocol) > 0 && isatty(STDERR_FILENO) == 1) {

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "rvelab/io/hdf5_file.hpp"
+#include "rvelab/io/schema.hpp"
 
 namespace rvelab {
 namespace {
@@ -68,6 +69,9 @@ class Comparer {
 
   Comparison compare() {
     const auto a = Hdf5File::open(path_a_), b = Hdf5File::open(path_b_);
+    for (const auto* file : {&a, &b}) {
+      if (io::is_rvelab(*file)) io::checked_kind(*file);
+    }
     const auto objects_a = compared(a), objects_b = compared(b);
     for (auto in_a = objects_a.begin(), in_b = objects_b.begin(); in_a != objects_a.end() || in_b != objects_b.end();) {
       if (in_b == objects_b.end() || (in_a != objects_a.end() && in_a->first < in_b->first)) {

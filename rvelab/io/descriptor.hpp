@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <utility>
@@ -28,6 +29,9 @@ class Descriptor {
 /// Writes all bytes, however many calls it takes. False with errno set if it cannot: a full disc, a file beyond the
 /// limit of `ulimit -f` (whose signal is ignored from then on, so that it is an error like the others).
 bool write_all(int descriptor, std::span<const std::byte> bytes);
+
+/// Reads up to bytes.size() bytes at an offset; returns how many there were.
+std::size_t read_at(int descriptor, std::uint64_t offset, std::span<std::byte> bytes);
 
 /// Makes a new name in the folder of `path` survive a power loss, where the file system offers it.
 void sync_folder_of(const std::string& path);

@@ -146,9 +146,13 @@ std::string meta_of(const Specimen& specimen, std::size_t contacts) {
 
 }  // namespace
 
+CsvExport csv_files(const std::string& stem) {
+  return {stem + ".particles.csv", stem + ".contacts.csv", stem + ".json", stem + ".material.toml"};
+}
+
 CsvExport export_csv(const Specimen& specimen, const std::string& stem) {
   expect_names(specimen);
-  const CsvExport files{stem + ".particles.csv", stem + ".contacts.csv", stem + ".json", stem + ".material.toml"};
+  const CsvExport files = csv_files(stem);
   io::publish_text(files.particles, particles_of(specimen));
   const std::vector<Contact> contacts = touching_contacts(specimen);
   io::publish_text(files.contacts, text_of(specimen, contacts));

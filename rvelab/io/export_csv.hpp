@@ -16,6 +16,9 @@ struct CsvExport {
   std::string material;   ///< STEM.material.toml: every parameter of materials, contact, damping and solver
 };
 
+/// Their names.
+CsvExport csv_files(const std::string& stem);
+
 /// Writes the four files, SI units, laboratory frame, every number exact. `import_csv` with all four gives the same
 /// cell, grains, contacts and parameters: bit for bit where the frame is not turned (rotation I, 3D), else to
 /// round-off; pairs that touch are contacts, with a history or without. What a resting state does not have (velocities,

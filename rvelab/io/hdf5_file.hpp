@@ -1,7 +1,8 @@
 // HDF5 behind one small class: typed arrays, text and attributes by name; its errors as rvelab's own.
 //
-// This file knows HDF5 and nothing of grains; no other file includes HDF5's headers. Files are built in memory and
-// written by publish(), so that no HDF5 file is ever open for writing on disc and a full disc is one plain error.
+// hdf5_*.cpp know HDF5 and nothing of grains; no other file includes HDF5's headers. Files are built in memory and
+// written by publish(), so that no HDF5 file is ever open for writing on disc and a full disc is one plain error. What
+// is written is sealed (seal.hpp), and nothing that may be damaged is shown to HDF5 in this process (hdf5_open.cpp).
 // HDF5's serial library is not thread-safe: one thread at a time.
 #pragma once
 
@@ -24,7 +25,7 @@ struct Hdf5Entry {
   std::string units;  ///< its attribute `units`; "1" where it is a pure number, "-" where it is none
 };
 
-/// Values as a file stores them, for comparison: bytes in the file's own type, or texts of variable length.
+/// Values as a file stores them, for comparison: bytes in the file's own type, or texts, however long they may be.
 struct StoredValues {
   std::string type;  ///< as Hdf5Entry says it, with the byte order or size where they are not the usual ones
   Shape64 shape;
@@ -43,10 +44,12 @@ struct Hdf5Object {
 /// uint64, uint8, stored little-endian. All members throw InputError or Error naming file, dataset and remedy.
 class Hdf5File {
  public:
-  /// Opens an existing file for reading. InputError: missing, not HDF5, truncated.
+  /// Opens an existing file for reading, once its seal was found to fit its bytes. One without a seal is copied by a
+  /// child process with limits on time and memory, and the copy is opened: whatever is wrong with it, this process
+  /// goes on. InputError: missing, not HDF5, damaged. Error: no memory or process for the child.
   static Hdf5File open(const std::string& path);
-  /// Opens the bytes of a file, as image() gives them, for reading; `path` serves the messages only. InputError: not
-  /// HDF5, damaged.
+  /// Opens bytes that a checksum vouches for, as image() gives them, for reading; `path` serves the messages only.
+  /// InputError: not HDF5.
   static Hdf5File from_image(const std::string& path, std::span<const std::byte> bytes);
   /// An empty file in memory; `path` serves the messages only.
   static Hdf5File in_memory(const std::string& path);
@@ -58,6 +61,8 @@ class Hdf5File {
   ~Hdf5File();
 
   const std::string& path() const { return path_; }
+  /// A checksum vouches for its bytes. False: opened without a seal, or made in memory.
+  bool sealed() const { return sealed_; }
 
   /// Writes values, row-major, of the given shape, with the attribute `units`; in chunks of at most `chunk_rows` of the
   /// outermost extent, or (0) in one piece.
@@ -92,21 +97,24 @@ class Hdf5File {
   /// Names of the members of a group, in order; none if there is no such group.
   std::vector<std::string> groups(const std::string& group) const;
 
-  /// The bytes of the file.
+  /// Writes everything that another file holds, dates aside; this one is empty.
+  void copy(const Hdf5File& from);
+
+  /// The bytes of the file, without a seal.
   std::vector<std::byte> image() const;
 
  private:
-  Hdf5File(std::string path, std::int64_t id) : path_(std::move(path)), id_(id) {}
+  Hdf5File(std::string path, std::int64_t id, bool sealed) : path_(std::move(path)), id_(id), sealed_(sealed) {}
   std::string path_;
   std::int64_t id_ = -1;
+  bool sealed_ = false;
 };
 
 /// Version of the HDF5 library in use, for example "1.10.8".
 std::string hdf5_version();
 
-/// Builds a file with `fill`, writes it as path.tmp, syncs it to disc and renames it to path: a reader finds the old
-/// file or the new one, whole. The same content gives the same bytes. InputError if the folder does not exist or may
-/// not be written; Error if the writing fails (path.tmp is removed, path is as it was).
+/// Builds a file with `fill` and writes it, sealed, as publish_bytes does (publish.hpp). The same content gives the
+/// same bytes.
 void publish(const std::string& path, const std::function<void(Hdf5File&)>& fill);
 
 }  // namespace rvelab

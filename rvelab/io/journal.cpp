@@ -39,18 +39,6 @@ void put_header(std::byte* at, std::uint32_t type, std::span<const std::byte> pa
   put(at + 12, crc32c(payload, crc32c({at, 12})));
 }
 
-/// Reads up to bytes.size() bytes at an offset; returns how many there were.
-std::size_t read_at(int file, std::uint64_t offset, std::span<std::byte> bytes) {
-  std::size_t done = 0;
-  while (done < bytes.size()) {
-    const auto count = ::pread(file, bytes.data() + done, bytes.size() - done, static_cast<off_t>(offset + done));
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) break;
-    done += static_cast<std::size_t>(count);
-  }
-  return done;
-}
-
 [[noreturn]] void refuse_opening(const std::string& path, int reason) {
   throw InputError(path + ": cannot be opened (" + std::strerror(reason) + "); check the permissions");
 }

@@ -13,6 +13,7 @@
 #include "rvelab/io/record_journal.hpp"
 #include "rvelab/io/recorded_test.hpp"
 #include "rvelab/io/schema.hpp"
+#include "rvelab/io/seal_file.hpp"
 #include "rvelab/io/version.hpp"
 
 namespace rvelab {
@@ -53,8 +54,8 @@ Hdf5File open_records(const std::string& path) {
 }
 
 /// The file alone, without its journal.
-RecordedTest read_file(const std::string& path) {
-  const auto file = open_records(path);
+RecordedTest test_in(const Hdf5File& file) {
+  const std::string& path = file.path();
   RecordedTest test;
   io::Reader reader(file, "");
   describe(reader, test);
@@ -109,6 +110,19 @@ void write_recorded_test(const RecordedTest& test, const std::string& path) {
   });
 }
 
+SealedFile seal_file(const std::string& path, const std::string& output) {
+  const auto file = Hdf5File::open(path);
+  const SealedFile found{io::kind_without_seal(file), file.sealed(), file.entries().size()};
+  // What cannot be read as one of rvelab's would only be refused later.
+  if (found.kind == FileKind::specimen) {
+    io::get_specimen(file, "");
+  } else {
+    for (const Snapshot& snapshot : test_in(file).snapshots) io::get_specimen(file, snapshot_group(snapshot.record));
+  }
+  publish(output, [&](Hdf5File& copy) { copy.copy(file); });
+  return found;
+}
+
 Specimen read_snapshot(const Snapshot& snapshot) {
   if (snapshot.payload_at == 0) return io::get_specimen(open_records(snapshot.file), snapshot_group(snapshot.record));
   return io::decode_snapshot(snapshot.file, io::read_payload(snapshot.file, snapshot.payload_at, snapshot.length));
@@ -120,7 +134,7 @@ RecordedTest read_recorded_test(const std::string& path) {
   const io::RecordJournal journal = io::read_record_journal(journal_path);
   const bool has_file = std::filesystem::exists(path);
   if (!has_file && journal.test) return *journal.test;
-  RecordedTest file = read_file(path);  // says so if neither is there
+  RecordedTest file = test_in(open_records(path));  // says so if neither is there
   if (file.complete || !journal.test) return file;
   RecordedTest merged = *journal.test;
   if (merged.provenance.protocol != file.provenance.protocol ||

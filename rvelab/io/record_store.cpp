@@ -58,12 +58,12 @@ void expect_free(const std::string& path) {
   std::error_code ignored;
   const bool has_journal = std::filesystem::file_size(journal, ignored) > 0 && !ignored;
   if (!has_journal && !std::filesystem::exists(path)) return;
-  throw InputError((std::filesystem::exists(path) ? path : journal) +
-                   ": is there already; allowed: a new name, or --resume to go on with it, or --force to overwrite it");
+  io::expect_output(std::filesystem::exists(path) ? path : journal, false, {}, ", or --resume to go on with it");
 }
 
 /// The journal's name, if it may be taken.
 std::string place_for(const std::string& path, Existing existing) {
+  io::expect_place(path);
   if (existing == Existing::refuse) expect_free(path);
   return io::journal_of(path);
 }
@@ -77,17 +77,17 @@ bool same_bits(const ProbeResult& a, const ProbeResult& b) {
 }  // namespace
 
 RecordStore::RecordStore(const std::string& path, const io::RunStart& start, Existing existing, double checkpoint_every)
-    : path_(path), journal_(place_for(path, existing)), checkpoint_every_(checkpoint_every) {
+    : path_(io::followed(path)), journal_(place_for(path, existing)), checkpoint_every_(checkpoint_every) {
   if (existing == Existing::refuse) expect_free(path);  // once more, under the lock
   const auto begin_time = Clock::now();
   // Left by a run that was killed while it wrote them.
-  for (const std::string& whole : {path, journal_.path()}) ::unlink((whole + ".tmp").c_str());
+  for (const std::string& whole : {path_, journal_.path()}) ::unlink((whole + ".tmp").c_str());
   kept_ = published_ = {begin_time, 0};
   const std::lock_guard turn(hdf5_turn());
   if (existing == Existing::resume) resume(start);
   if (existing == Existing::resume && (test_.complete || journal_.size() > 0)) return;
   try {
-    ::unlink(path.c_str());
+    ::unlink(path_.c_str());
     const auto begin = io::encode_begin(start);
     journal_.begin();
     journal_.append(io::begin_frame, begin);

@@ -10,13 +10,20 @@ namespace rvelab::io {
 
 /// Version of the layout, major.minor. A later minor version adds; a later major version changes.
 inline constexpr int format_major = 1;
-inline constexpr int format_minor = 3;
+inline constexpr int format_minor = 4;
+/// Files from this minor version on are sealed.
+inline constexpr int sealed_minor = 4;
 
 /// Sets the file's attributes `format` and `format_version`.
 void stamp(Hdf5File& file, FileKind kind);
 
-/// Checks the attributes and returns the kind. InputError: not rvelab's, or of a newer format.
+/// Checks the attributes and returns the kind. InputError: not rvelab's, of a newer format, or of a format that is
+/// sealed without a seal.
 FileKind checked_kind(const Hdf5File& file);
+/// The same, and a missing seal is taken.
+FileKind kind_without_seal(const Hdf5File& file);
+/// Whether the file says that it is one of rvelab's.
+bool is_rvelab(const Hdf5File& file);
 
 /// Writes a specimen under a group ("" for the root), or reads it from there and checks its indices.
 void put_specimen(Hdf5File& file, const std::string& group, const Specimen& specimen);

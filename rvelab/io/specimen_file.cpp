@@ -218,26 +218,56 @@ void stamp(Hdf5File& file, FileKind kind) {
   file.set_attribute("format_version", std::to_string(format_major) + "." + std::to_string(format_minor));
 }
 
-FileKind checked_kind(const Hdf5File& file) {
-  const std::string format = file.attribute("format");
-  if (format != specimen_format && format != records_format) {
-    throw InputError(file.path() + ": its attribute format is \"" + format + "\"; allowed: \"" + specimen_format +
-                     "\", \"" + records_format + "\"; give a file that rvelab wrote");
-  }
-  const std::string text = file.attribute("format_version");
+namespace {
+
+struct FormatVersion {
   int major = 0, minor = 0;
+};
+
+FormatVersion format_version(const Hdf5File& file) {
+  const std::string text = file.attribute("format_version");
+  FormatVersion found;
   const char* const end = text.data() + text.size();
-  const auto [dot, failed] = std::from_chars(text.data(), end, major);
-  if (failed != std::errc() || dot == end || *dot != '.' || std::from_chars(dot + 1, end, minor).ptr != end) {
+  const auto [dot, failed] = std::from_chars(text.data(), end, found.major);
+  if (failed != std::errc() || dot == end || *dot != '.' || std::from_chars(dot + 1, end, found.minor).ptr != end) {
     throw InputError(file.path() + ": its attribute format_version is \"" + text +
                      "\"; allowed: major.minor; the file is damaged: write it again");
   }
-  if (major > format_major || (major == format_major && minor > format_minor)) {
+  if (found.major > format_major || (found.major == format_major && found.minor > format_minor)) {
     throw InputError(file.path() + ": has the format version " + text + "; allowed: up to " +
                      std::to_string(format_major) + "." + std::to_string(format_minor) +
                      "; open it with a newer rvelab");
   }
+  return found;
+}
+
+}  // namespace
+
+bool is_rvelab(const Hdf5File& file) {
+  const std::string format = file.attribute("format");
+  return format == specimen_format || format == records_format;
+}
+
+FileKind kind_without_seal(const Hdf5File& file) {
+  const std::string format = file.attribute("format");
+  if (!is_rvelab(file)) {
+    throw InputError(file.path() + ": its attribute format is \"" + format + "\"; allowed: \"" + specimen_format +
+                     "\", \"" + records_format + "\"; give a file that rvelab wrote");
+  }
+  format_version(file);
   return format == specimen_format ? FileKind::specimen : FileKind::records;
+}
+
+FileKind checked_kind(const Hdf5File& file) {
+  const FileKind kind = kind_without_seal(file);
+  const auto [major, minor] = format_version(file);
+  if (!file.sealed() && (major > 1 || minor >= sealed_minor)) {
+    throw InputError(file.path() +
+                     ": lacks the checksum at its end: it is truncated, or another program has changed it; copy it "
+                     "again, or, if the change is meant, take it over with `rvelab seal " +
+                     file.path() + " -o NEW.h5`");
+  }
+  return kind;
 }
 
 void put_specimen(Hdf5File& file, const std::string& group, const Specimen& specimen) {

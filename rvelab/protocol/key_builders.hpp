@@ -66,7 +66,17 @@ inline ProtocolKey word(const char* table, const char* name, const Words& words,
                         const char* initial = nullptr) {
   std::string allowed;
   for (const auto& each : words) allowed += (allowed.empty() ? "" : ", ") + each;
-  ProtocolKey key{{table, name, "-", "word", "", allowed, meaning}, KeyKind::word, any, words, {}};
+  // Member by member: of a list in braces gcc 12 frees the texts twice if memory runs out on the way.
+  ProtocolKey key;
+  key.key.table = table;
+  key.key.name = name;
+  key.key.unit = "-";
+  key.key.type = "word";
+  key.key.range = allowed;
+  key.key.meaning = meaning;
+  key.kind = KeyKind::word;
+  key.range = any;
+  key.words = words;
   if (initial == nullptr) {
     key.initial = words.front();
     key.key.initial = "\"" + words.front() + "\"";

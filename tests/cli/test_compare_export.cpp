@@ -33,22 +33,23 @@ TEST_CASE("a specimen exported as CSV and imported again as the export says is t
   for (const char* name : {"dense", "hertz", "noroll"}) {
     CAPTURE(name);
     here.import_packing(name);
-    const Outcome exported = here.run("export S.h5 --format csv -o out --json");
+    const Outcome exported = here.run("export S.h5 --format csv -o out --force --json");
     INFO(exported.errors);
     REQUIRE(exported.code == 0);
     const auto json = nlohmann::json::parse(exported.output);
     CHECK(json["written"].size() == 4);
     const std::string command = json["import_with"];
     REQUIRE(command.starts_with("rvelab import "));
-    std::filesystem::rename(here / "S.h5", here / "first.h5");
+    std::filesystem::rename(here / "S.h5", here / "first.h5");  // the name that the command writes to
     const Outcome imported = here.run(command.substr(7));
     INFO(imported.errors);
     REQUIRE(imported.code == 0);
     const Outcome compared = here.run("compare first.h5 S.h5");
     CHECK_THAT(compared.output, Contains("equal: "));
     // One material and a law that META.json can say: the parameters need no file of their own.
-    REQUIRE(here.run("import out.particles.csv out.contacts.csv out.json -o meta.h5").code == 0);
+    REQUIRE(here.run("import out.particles.csv out.contacts.csv out.json -o meta.h5 --force").code == 0);
     CHECK_THAT(here.run("compare first.h5 meta.h5").output, Contains("equal: "));
+    std::filesystem::remove(here / "S.h5");
   }
 }
 
@@ -85,6 +86,6 @@ TEST_CASE("a dump goes out and comes back through the program with the same cell
     CHECK(after[key] == before[key]);
   }
   CHECK(after["void_ratio"].get<double>() == Approx(before["void_ratio"].get<double>()).epsilon(1e-14));
-  expect_mistake(here.run("import s.dump --material s.material.toml --cell 1,1,1 -o T.h5"), "s.dump has a cell too");
-  expect_mistake(here.run("import s.dump -o T.h5"), "comes without contact parameters");
+  expect_mistake(here.run("import s.dump --material s.material.toml --cell 1,1,1 -o U.h5"), "s.dump has a cell too");
+  expect_mistake(here.run("import s.dump -o U.h5"), "comes without contact parameters");
 }

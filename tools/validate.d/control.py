@@ -50,14 +50,16 @@ def deformations(path, gradients):
 
 def again(program, name, file, gradients, substeps, grains):
     """Grain-steps of every tenth increment, under control and prescribed from the same state."""
-    state, toml, out = (pathlib.Path(f"{name}_one{end}") for end in (".h5", ".toml", "_R.h5"))
+    state, sealed, toml, out = (pathlib.Path(f"{name}_one{end}") for end in (".h5", "_sealed.h5", ".toml", "_R.h5"))
     controlled = prescribed = 0
     for k in range(0, len(gradients) - 1, EVERY):
         with h5py.File(state, "w") as single:
             for key in file[f"snapshots/{k:06d}"]:
                 file.copy(f"snapshots/{k:06d}/{key}", single)
             single.attrs["format"], single.attrs["format_version"] = "rvelab specimen", file.attrs["format_version"]
-        run(program, deformations(toml, [gradients[k + 1] @ np.linalg.inv(gradients[k])]), "--specimen", state, "-o", out)
+        # Made by another program, it has no checksum.
+        subprocess.run([program, "seal", state, "-o", sealed, "--force"], check=True, stdout=subprocess.DEVNULL)
+        run(program, deformations(toml, [gradients[k + 1] @ np.linalg.inv(gradients[k])]), "--specimen", sealed, "-o", out)
         controlled += int(substeps[k + 1]) * grains
         prescribed += steps_of(out)
     return controlled, prescribed

@@ -1,0 +1,29 @@
+// Writing a whole file so that a reader, or a kill at any moment, finds the old one or the new one; and the one rule on
+// what may be written over.
+#pragma once
+
+#include <initializer_list>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace rvelab::io {
+
+/// The file that a path means: symbolic links are followed, to a file that is not there yet too.
+std::string followed(const std::string& path);
+
+/// Refuses an output (InputError) before any work for it is done: one that is among the inputs or beside which an input
+/// has the name that rvelab writes to meanwhile, one that is no regular file (a folder, a device, a pipe), and, without
+/// `force`, one that is there already. `otherwise`: what else than a new name and --force is allowed, ", or ...".
+void expect_output(const std::string& path, bool force, const std::vector<std::string>& inputs,
+                   const std::string& otherwise = "");
+
+/// The same without the last part: what is there is the caller's to judge.
+void expect_place(const std::string& path, const std::vector<std::string>& inputs = {});
+
+/// Writes the parts one after the other as path.tmp, syncs it to disc and renames it to path. A second program that
+/// writes the same name waits for the first. InputError if the folder does not exist or may not be written, or if path
+/// is no regular file; Error if the writing fails (path.tmp is removed, path is as it was).
+void publish_bytes(const std::string& path, std::initializer_list<std::span<const std::byte>> parts);
+
+}  // namespace rvelab::io

@@ -1,0 +1,232 @@
+// Where results go: nothing is written over that was not meant to be, and what could not be written is said.
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
+
+#include <set>
+
+#include "rvelab/io/specimen_file.hpp"
+#include "tests/child.hpp"
+#include "tests/cli/program.hpp"
+
+using namespace rvelab::test;
+using Catch::Matchers::Contains;
+
+namespace {
+
+const std::string yade = std::string(RVELAB_TEST_DATA) + "/yade/dense_p20";
+
+/// Commands that write a file, with OUT in the place of its name, and one that succeeds in a minute's hundredth.
+struct Writer {
+  std::string command;
+  std::vector<std::string> inputs;
+};
+
+const std::vector<Writer> writers{
+    {"import p.csv c.csv m.json -o OUT", {"p.csv", "c.csv", "m.json"}},
+    {"pack tiny.toml -o OUT", {"tiny.toml"}},
+    {"export S.h5 --format lammps -o OUT", {"S.h5"}},
+    {"export S.h5 --format lammps-data -o OUT", {"S.h5"}},
+    {"export S.h5 --format xdmf -o OUT", {"S.h5"}},
+    {"run test.toml --specimen S.h5 -o OUT", {"S.h5", "test.toml"}},
+    {"seal S.h5 -o OUT", {"S.h5"}},
+};
+
+std::string with(std::string command, const std::string& output) {
+  return command.replace(command.find("OUT"), 3, output);
+}
+
+/// A folder with an input of each kind.
+struct Desk : Workplace {
+  Desk() {
+    import_packing("dense_p20");
+    std::filesystem::copy_file(yade + ".particles.csv", *this / "p.csv");
+    std::filesystem::copy_file(yade + ".contacts.csv", *this / "c.csv");
+    std::filesystem::copy_file(yade + ".json", *this / "m.json");
+    std::ofstream(*this / "test.toml") << "[test]\nname = \"t\"\n[[stage]]\nkind = \"simple_shear\"\nto_strain = 1e-5\n"
+                                          "record_every = 1e-5\n";
+    std::ofstream(*this / "tiny.toml") << "[pack]\nname = \"tiny\"\nshape = \"disc\"\nnumber = 16\nthickness_m = 0.1\n"
+                                          "[grains]\ngrading = \"uniform\"\nsmallest_radius_m = 3e-3\n"
+                                          "largest_radius_m = 7e-3\n[target]\npressure_Pa = 100e3\n[contact]\n"
+                                          "law = \"linear\"\n[[material]]\nname = \"sand\"\ndensity_kg_m3 = 2650\n"
+                                          "young_modulus_Pa = 80e6\nstiffness_ratio = 0.5\nfriction = 0.4\n";
+  }
+};
+
+}  // namespace
+
+TEST_CASE("what is there is replaced with --force only, and then whole") {
+  const Desk here;
+  for (const auto& writer : writers) {
+    CAPTURE(writer.command);
+    std::ofstream(here / "foreign") << "years of work";
+    expect_mistake(here.run(with(writer.command, "foreign")), "foreign: is there already; allowed: a new name");
+    CHECK(text_of(here / "foreign") == "years of work");
+    const Outcome forced = here.run(with(writer.command, "foreign --force"));
+    INFO(forced.errors);
+    CHECK(forced.code == 0);
+    CHECK(text_of(here / "foreign") != "years of work");
+    CHECK(!std::filesystem::exists(here / "foreign.tmp"));
+    std::filesystem::remove(here / "foreign");
+    std::filesystem::remove(here / "foreign.h5");
+    REQUIRE(here.run(with(writer.command, "foreign")).code == 0);
+    std::filesystem::remove(here / "foreign");
+    std::filesystem::remove(here / "foreign.h5");
+  }
+  // Every file of an export counts, and every specimen of a family.
+  std::ofstream(here / "out.json") << "mine";
+  expect_mistake(here.run("export S.h5 --format csv -o out"), "out.json: is there already");
+  std::ofstream(here / "out.xdmf.h5") << "mine";
+  expect_mistake(here.run("export S.h5 --format xdmf -o out.xdmf"), "out.xdmf.h5: is there already");
+  std::ofstream(here / "n_2.h5") << "mine";
+  expect_mistake(here.run("pack tiny.toml --count 3 -o n.h5"), "n_2.h5: is there already");
+  CHECK(!std::filesystem::exists(here / "n_1.h5"));
+  for (const char* file : {"out.json", "out.xdmf.h5", "n_2.h5"}) CHECK(text_of(here / file) == "mine");
+}
+
+TEST_CASE("an input is never replaced, under whatever name, with --force or without") {
+  const Desk here;
+  std::filesystem::create_directory(here / "sub");
+  for (const auto& writer : writers) {
+    for (const std::string& input : writer.inputs) {
+      const std::string before = text_of(here / input);
+      std::filesystem::create_symlink("../" + input, here / "sub/link");
+      std::filesystem::create_hard_link(here / input, here / "sub/other");
+      for (const std::string& name : std::vector<std::string>{input, "./" + input, "sub/link", "sub/other"}) {
+        for (const char* force : {"", " --force"}) {
+          CAPTURE(writer.command, name, force);
+          expect_mistake(here.run(with(writer.command, name) + force), "would replace " + input);
+          CHECK(text_of(here / input) == before);
+          CHECK(!std::filesystem::exists(here / (input + ".journal")));
+        }
+      }
+      std::filesystem::remove(here / "sub/link");
+      std::filesystem::remove(here / "sub/other");
+    }
+  }
+  // Neither is one that has the name which is written to meanwhile.
+  std::filesystem::rename(here / "S.h5", here / "R.h5.tmp");
+  const std::string before = text_of(here / "R.h5.tmp");
+  expect_mistake(here.run("run test.toml --specimen R.h5.tmp -o R.h5"), "would replace R.h5.tmp");
+  expect_mistake(here.run("export R.h5.tmp --format lammps -o R.h5"), "would replace R.h5.tmp");
+  CHECK(text_of(here / "R.h5.tmp") == before);
+}
+
+TEST_CASE("links are followed, and folders, pipes and devices never replaced") {
+  const Desk here;
+  std::filesystem::create_directory(here / "store");
+  REQUIRE(mkfifo((here / "pipe").c_str(), 0600) == 0);
+  const bool device = mknod((here / "device").c_str(), S_IFCHR | 0600, makedev(1, 3)) == 0;  // as root only
+  for (const auto& writer : writers) {
+    CAPTURE(writer.command);
+    std::filesystem::create_symlink("store/real", here / "link");  // to nothing yet
+    const Outcome made = here.run(with(writer.command, "link"));
+    INFO(made.errors);
+    CHECK(made.code == 0);
+    CHECK(std::filesystem::is_symlink(here / "link"));
+    CHECK(std::filesystem::is_regular_file(here / "store/real"));
+    expect_mistake(here.run(with(writer.command, "link")), "link: is there already");
+    CHECK(here.run(with(writer.command, "link --force")).code == 0);
+    CHECK(std::filesystem::is_symlink(here / "link"));
+    std::filesystem::remove(here / "link");
+    std::filesystem::remove(here / "link.h5");
+    std::filesystem::remove(here / "store/real");
+    for (const char* force : {"", " --force"}) {
+      expect_mistake(here.run(with(writer.command, "store") + force), "store: is a folder; allowed: a file");
+      expect_mistake(here.run(with(writer.command, "pipe") + force), "pipe: is a pipe; allowed: a file");
+      if (device) expect_mistake(here.run(with(writer.command, "device") + force), "device: is a device");
+    }
+    CHECK(std::filesystem::is_fifo(here / "pipe"));
+    CHECK(std::filesystem::is_directory(here / "store"));
+    if (device) CHECK(std::filesystem::is_character_file(here / "device"));
+  }
+}
+
+TEST_CASE("programs that write one name at the same time each write it whole, or are told") {
+  const Desk here;
+  for (int round = 0; round < 5; ++round) {
+    std::vector<std::unique_ptr<Child>> children;
+    for (int k = 0; k < 4; ++k) {
+      const std::string end = std::to_string(k);
+      children.push_back(std::make_unique<Child>(
+          std::vector<std::string>{RVELAB_PROGRAM, "import", yade + ".particles.csv", yade + ".contacts.csv",
+                                   yade + ".json", "-o", here / "one.h5", "--force"},
+          here / ("out" + end), here / ("err" + end)));
+    }
+    for (auto& child : children) CHECK(child->wait() == 0);
+    CHECK(rvelab::read_specimen(here / "one.h5").grains.size() == 400);
+    CHECK(!std::filesystem::exists(here / "one.h5.tmp"));
+  }
+}
+
+TEST_CASE("output that cannot be written is one line and exit code 1, for every subcommand") {
+  if (!std::filesystem::exists("/dev/full")) return;
+  const Desk here;
+  REQUIRE(here.run("run test.toml --specimen S.h5 -o R.h5").code == 0);
+  REQUIRE(here.run("import p.csv c.csv m.json -o T.h5").code == 0);
+  for (const std::string command :
+       {"--help", "--version", "run --help", "pack tiny.toml -o a.h5", "import p.csv c.csv m.json -o b.h5",
+        "inspect S.h5", "inspect S.h5 --json", "probe S.h5 --method linear", "run test.toml --specimen S.h5 -o c.h5",
+        "recover R.h5 -o d.h5", "seal S.h5 -o e.h5", "compare S.h5 T.h5", "compare S.h5 a.h5",
+        "export S.h5 --format csv -o f", "protocols", "protocols biaxial", "keys", "keys --json",
+        "stress-test --list"}) {
+    CAPTURE(command);
+    const std::string shell =
+        "cd '" + (here / "") + "' && '" RVELAB_PROGRAM "' " + command + " >/dev/full 2>err </dev/null";
+    const int status = std::system(shell.c_str());
+    const std::string errors = text_of(here / "err");
+    CAPTURE(errors);
+    CHECK(WEXITSTATUS(status) == 1);
+    CHECK_THAT(errors, Contains("rvelab: standard output could not be written"));
+    CHECK(std::count(errors.begin(), errors.end(), '\n') == 1);
+  }
+}
+
+TEST_CASE("beyond the limit of a file's size every writer says so in one line and leaves nothing") {
+  const Desk here;
+  for (const auto& writer : writers) {
+    CAPTURE(writer.command);
+    const std::string shell = "cd '" + (here / "") + "' && ulimit -f 8 && exec '" RVELAB_PROGRAM "' " +
+                              with(writer.command, "big") + " >out 2>err </dev/null";
+    const int status = std::system(shell.c_str());
+    const std::string errors = text_of(here / "err");
+    CAPTURE(errors);
+    CHECK(WEXITSTATUS(status) == 1);
+    CHECK_THAT(errors, Contains("could not be written (File too large)"));
+    CHECK(std::count(errors.begin(), errors.end(), '\n') == 1);
+    CHECK(!std::filesystem::exists(here / "big"));
+    CHECK(!std::filesystem::exists(here / "big.tmp"));
+  }
+}
+
+TEST_CASE("without memory every subcommand says so in one line with exit code 1, wherever it ran out") {
+  const Desk here;
+  REQUIRE(here.run("pack tiny.toml -o t.h5").code == 0);
+  const auto outcome_at = [&](const std::string& command, long number) {
+    for (const char* made : {"o", "o.h5", "o.journal"}) std::filesystem::remove(here / made);
+    const std::string shell = "cd '" + (here / "") + "' && RVELAB_NO_MEMORY_FROM=" + std::to_string(number) +
+                              " LD_PRELOAD=" RVELAB_MEMORY_SHIM
+                              " ASAN_OPTIONS=verify_asan_link_order=0 '" RVELAB_PROGRAM "' " +
+                              command + " >out 2>err </dev/null";
+    const int status = std::system(shell.c_str());
+    return Outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(here / "out"), text_of(here / "err")};
+  };
+  for (const std::string command : {"inspect t.h5", "export t.h5 --format xdmf -o o", "import p.csv c.csv m.json -o o",
+                                    "run test.toml --specimen t.h5 -o o", "compare t.h5 S.h5"}) {
+    long number = 1;
+    for (int done = 0; done < 2 && number < 100'000; number += 1 + number / 12) {
+      const Outcome outcome = outcome_at(command, number);
+      CAPTURE(command, number, outcome.errors);
+      if (outcome.code == 0 || (command.starts_with("compare") && outcome.code == 1 && outcome.errors.empty())) {
+        ++done;  // it needs no more than this
+        continue;
+      }
+      CHECK(outcome.code == 1);
+      CHECK_THAT(outcome.errors, Contains("rvelab: ") && (Contains("memory") || Contains("bad_alloc")));
+      CHECK(std::count(outcome.errors.begin(), outcome.errors.end(), '\n') == 1);
+      CHECK(!std::filesystem::exists(here / "o.tmp"));
+      // What a run has recorded before is kept, in whole.
+      if (std::filesystem::exists(here / "o.journal")) CHECK(here.run("recover o -o kept --force").code == 0);
+    }
+    CHECK(number > 100);
+  }
+}
