@@ -86,7 +86,7 @@ class Stage:
     @property
     def pressure(self):
         """Pa: the lateral pressure that is held, else p at the start."""
-        return self.keys["lateral_pressure_Pa"] if self.drained and "lateral_pressure_Pa" in self.keys else self.invariants()[0][0]
+        return self.keys["lateral_pressure_Pa"] if self.drained else self.invariants()[0][0]
 
     @property
     def volumetric_strain(self):
