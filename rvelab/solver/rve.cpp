@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <utility>
 
@@ -136,7 +137,10 @@ Response Rve::Impl::respond(const Report& report, const Matrix3& gradient, doubl
     double p = 0;
     for (int k = 0; k < d; ++k) p -= r.stress(k, k) / d;
     const double rate = std::sqrt(2 * e.squaredNorm()) / dt;
-    if (p > 0) r.report.inertial_number = rate * 2 * fixture.mean_radius * std::sqrt(mass / solid / p);
+    if (p > 0)
+      r.report.inertial_number = rate * 2 * fixture.mean_radius * std::sqrt(mass / solid / p);
+    else if (rate > 0)
+      r.report.inertial_number = std::numeric_limits<double>::infinity();
   }
   return r;
 }

@@ -23,7 +23,7 @@ struct Report {
   long substeps = 0;
   double unbalanced_ratio = 0;  ///< mean |resultant force|, or mean |torque|/r where larger, over max(mean contact
                                 ///< force, 1e-3 of the reference)
-  double inertial_number = 0;   ///< dt > 0: sqrt(2 e:e) d sqrt(rho/p); dt = 0: zero
+  double inertial_number = 0;   ///< dt > 0: sqrt(2 e:e) d sqrt(rho/p), infinite at p <= 0; dt = 0: zero
   double held_error = 0;        ///< mixed targets: largest |residual| over its scale (dt > 0: of its mean over the
                                 ///< increment), see MixedTarget
   bool target_held = true;      ///< mixed targets: held_error <= tolerance; at dt = 0 within the wait

@@ -1,4 +1,6 @@
 // Times far below and far beyond the critical step, and targets that no cohesionless packing can reach.
+#include <limits>
+
 #include "tests/catch.hpp"
 #include "tests/extreme/specimens.hpp"
 
@@ -47,6 +49,15 @@ TEST_CASE("In a time of a hundred thousand critical steps loading is quasi-stati
   CHECK(response.report.inertial_number < 1e-5);
   CHECK(largest(a.stress() - b.stress()) <= 1e-4 * p);
   CHECK(largest(b.stress() - stress_by_hand(b.specimen(), stiffness, 1)) <= 1e-10 * p);
+}
+
+TEST_CASE("Strain at no pressure has an infinite inertial number, not that of a state at rest", "[extreme]") {
+  Rve gas(resting());
+  gas.apply(Vector3(0.05, 0.05, 0).asDiagonal(), 0);
+  REQUIRE(gas.stress().isZero(0));
+  const double critical = gas.critical_time_step();
+  CHECK(gas.apply(1e-6 * deviator, critical).report.inertial_number == std::numeric_limits<double>::infinity());
+  CHECK(gas.apply(Matrix3::Zero(), critical).report.inertial_number == 0);
 }
 
 TEST_CASE("A time step beyond the critical one is found out and refused, the state unchanged", "[extreme]") {
