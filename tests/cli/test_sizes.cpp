@@ -112,7 +112,7 @@ TEST_CASE("all of import, pack and inspect say what the numbers of a specimen ar
   const std::string stem = std::string(RVELAB_TEST_DATA) + "/yade/hertz";
   const std::string import = "import " + stem + ".particles.csv " + stem + ".contacts.csv " + stem + ".json -o I.h5";
   CHECK_THAT(here.run(import).output, Contains("proportions") && Contains("kn/(p d) "));
-  CHECK(Json::parse(here.run(import + " --json").output)["stiffness_level"].get<double>() > 10);
+  CHECK(Json::parse(here.run(import + " --force --json").output)["stiffness_level"].get<double>() > 10);
 }
 
 TEST_CASE("pack takes no overlaps beyond the limit, and tells discs in a thick slab why") {
@@ -170,7 +170,7 @@ TEST_CASE("pack takes material.key for all materials, and material.NAME.key for 
                            "stiffness_ratio = 0.5\nfriction = 0.4\n";
   write(here, "two.toml", text);
   const auto frictions = [&](const std::string& settings) {
-    const Outcome packed = here.run("pack two.toml -o S.h5 --set pack.number=30 " + settings);
+    const Outcome packed = here.run("pack two.toml -o S.h5 --force --set pack.number=30 " + settings);
     INFO(packed.errors);
     REQUIRE(packed.code == 0);
     const rvelab::Specimen s = rvelab::read_specimen(here / "S.h5");
@@ -184,10 +184,10 @@ TEST_CASE("pack takes material.key for all materials, and material.NAME.key for 
   const auto angle = frictions("--set material.friction_angle_deg=45");
   CHECK(angle.first == Approx(1));
   CHECK(angle.second == Approx(1));
-  expect_mistake(here.run("pack two.toml -o S.h5 --set material.frictoin=0.3"), "the nearest known key is");
-  expect_mistake(here.run("pack two.toml -o S.h5 --set material.friction=-1"),
+  expect_mistake(here.run("pack two.toml -o S.h5 --force --set material.frictoin=0.3"), "the nearest known key is");
+  expect_mistake(here.run("pack two.toml -o S.h5 --force --set material.friction=-1"),
                  "--set material.friction=-1: material.friction = -1 is out of range");
-  expect_mistake(here.run("pack two.toml -o S.h5 --set material.clay.friction=0.3"), "0 (sand), 1 (glass)");
+  expect_mistake(here.run("pack two.toml -o S.h5 --force --set material.clay.friction=0.3"), "0 (sand), 1 (glass)");
 }
 
 TEST_CASE("a void ratio far out of reach is refused after a few rounds of draws, with the range that was reached") {
@@ -222,7 +222,7 @@ TEST_CASE("a specimen without friction exports every contact that inspect counts
   // They come back with the forces of the law, and the stress is the same.
   const std::string import = Json::parse(exported.output)["import_with"];
   const double p = Json::parse(here.run("inspect S.h5 --json").output)["p_Pa"];
-  const Outcome imported = here.run(import.substr(7));
+  const Outcome imported = here.run(import.substr(7) + " --force");
   INFO(imported.errors);
   REQUIRE(imported.code == 0);
   CHECK(Json::parse(here.run("inspect S.h5 --json").output)["p_Pa"].get<double>() == Approx(p).epsilon(1e-9));

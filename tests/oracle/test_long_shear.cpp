@@ -31,7 +31,7 @@ Specimen sixteen(Shape shape) {
       add_grain(s, (site + 0.03 * Vector3(uniform(), uniform(), uniform())) * 0.0252, 0.0056 * (1 + 0.05 * uniform()));
     }
   }
-  s.solver.max_overlap_ratio = 0.9;
+  s.solver.max_overlap_ratio = 1;  // soft grains, some pressed between two images of one neighbour
   s.damping.dashpot = Dashpot::restitution;
   s.damping.restitution = 0.5;
   s.damping.tangential_ratio = 0.5;
