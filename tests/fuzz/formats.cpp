@@ -1,7 +1,9 @@
 #include "tests/fuzz/formats.hpp"
 
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <stdexcept>
 
 #include "rvelab/error.hpp"
@@ -41,9 +43,12 @@ Answer answer(Read read) {
 
 std::string text_of(View bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
 
-/// Where inputs that are read by name stand.
+/// Where inputs that are read by name stand: in memory where there is such a place.
 std::string scratch(const std::string& name) {
-  static const test::Folder folder;
+  static const test::Folder folder = [] {
+    if (std::filesystem::is_directory("/dev/shm")) ::setenv("TMPDIR", "/dev/shm", 0);
+    return test::Folder();
+  }();
   return folder / name;
 }
 
