@@ -3,6 +3,7 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/io/material_toml.hpp"
+#include "rvelab/io/record_journal.hpp"
 #include "rvelab/io/seal.hpp"
 #include "rvelab/io/specimen_file.hpp"
 #include "rvelab/protocol/protocol.hpp"
@@ -21,6 +22,19 @@ using test::input_error;
 namespace {
 
 Specimen nine_grains() { return read_specimen(data_file("compat/specimen_1_4.h5")); }
+
+/// An HDF5 file as another program leaves it that changes something in it.
+template <class Change>
+std::string changed(View image, Change change) {
+  const test::Folder folder;
+  const std::string path = folder / "changed.h5";
+  test::write_bytes(path, std::string(reinterpret_cast<const char*>(image.data()), image.size()));
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  REQUIRE(file >= 0);
+  change(file);
+  H5Fclose(file);
+  return test::bytes_of(path);
+}
 
 }  // namespace
 
@@ -41,25 +55,43 @@ TEST_CASE("a whole number that no double holds is a number like any other") {
 
 TEST_CASE("a sealed file whose dataset says that it is larger than what is stored of it is refused by name") {
   const test::Folder folder;
-  const std::string changed = folder / "changed.h5";
   const Bytes whole = seed_file("compat/specimen_1_4.h5");
-  test::write_bytes(changed, std::string(reinterpret_cast<const char*>(whole.data()), whole.size() - io::seal_bytes));
-  const hid_t file = H5Fopen(changed.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
-  REQUIRE(file >= 0);
-  const hsize_t rows = hsize_t{1} << 40, chunk = 1;
-  const hid_t space = H5Screate_simple(1, &rows, nullptr), creation = H5Pcreate(H5P_DATASET_CREATE);
-  H5Pset_chunk(creation, 1, &chunk);
-  H5Ldelete(file, "/grains/radius_m", H5P_DEFAULT);
-  H5Dclose(H5Dcreate2(file, "/grains/radius_m", H5T_IEEE_F64LE, space, H5P_DEFAULT, creation, H5P_DEFAULT));
-  H5Pclose(creation);
-  H5Sclose(space);
-  H5Fclose(file);
-  std::string bytes = test::bytes_of(changed);
+  std::string bytes = changed(View(whole).first(whole.size() - io::seal_bytes), [](hid_t file) {
+    const hsize_t rows = hsize_t{1} << 40, chunk = 1;
+    const hid_t space = H5Screate_simple(1, &rows, nullptr), creation = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_chunk(creation, 1, &chunk);
+    H5Ldelete(file, "/grains/radius_m", H5P_DEFAULT);
+    H5Dclose(H5Dcreate2(file, "/grains/radius_m", H5T_IEEE_F64LE, space, H5P_DEFAULT, creation, H5P_DEFAULT));
+    H5Pclose(creation);
+    H5Sclose(space);
+  });
   const auto seal = io::seal_of(std::as_bytes(std::span(bytes)));
   bytes.append(reinterpret_cast<const char*>(seal.data()), seal.size());
-  test::write_bytes(changed, bytes);
-  CHECK_THAT(input_error([&] { read_specimen(changed); }),
+  test::write_bytes(folder / "s.h5", bytes);
+  CHECK_THAT(input_error([&] { read_specimen(folder / "s.h5"); }),
              Contains("/grains/radius_m says that it is larger than what is stored of it"));
+}
+
+TEST_CASE("a journal whose columns have no width is refused, and no row is read by it") {
+  const test::Folder folder;
+  const Specimen specimen = nine_grains();
+  const std::string begin =
+      changed(io::encode_begin({"test", "[test]\nname = \"test\"\n", {"shear"}, specimen}), [](hid_t file) {
+        const hid_t dataset = H5Dopen2(file, "/journal/column_bytes", H5P_DEFAULT);
+        std::int64_t bytes[256] = {};
+        H5Dread(dataset, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes);
+        bytes[0] = -1;
+        H5Dwrite(dataset, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes);
+        H5Dclose(dataset);
+      });
+  const std::string path = folder / "run.h5.journal";
+  {
+    io::Journal journal(path);
+    journal.begin();
+    journal.append(io::begin_frame, std::as_bytes(std::span(begin)));
+    journal.append(io::record_frame, io::encode_record(0, Record{}));
+  }
+  CHECK_THAT(input_error([&] { io::read_record_journal(path); }), Contains("its list of columns is damaged"));
 }
 
 TEST_CASE("a state whose stress is beyond all numbers is refused when it is opened") {
