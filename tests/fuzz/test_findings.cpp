@@ -2,6 +2,7 @@
 #include <hdf5.h>
 
 #include "rvelab/error.hpp"
+#include "rvelab/io/import_csv.hpp"
 #include "rvelab/io/material_toml.hpp"
 #include "rvelab/io/record_journal.hpp"
 #include "rvelab/io/seal.hpp"
@@ -51,6 +52,13 @@ TEST_CASE("a whole number that no double holds is a number like any other") {
   const std::string path = "[test]\nname = \"t\"\n[[stage]]\nkind = \"deformation\"\n";
   const Protocol far = parse_protocol(path + "gradients = [[9223372036854775807, 0, 0, 1]]\n", "t.toml");
   CHECK(std::get<DeformationStage>(far.stages.at(0).what).gradients.at(0)(0, 0) == 9223372036854775808.0);
+}
+
+TEST_CASE("a number beyond all doubles in META.json is a mistake of the file") {
+  const test::Folder folder;
+  test::write_bytes(folder / "m.json", "{\"dim\": 2, \"thickness_m\": 1e999}");
+  CHECK_THAT(input_error([&] { import_csv(data_file("compat/grains.csv"), {}, folder / "m.json"); }),
+             Contains("m.json: is not JSON") && Contains("1e999"));
 }
 
 TEST_CASE("a sealed file whose dataset says that it is larger than what is stored of it is refused by name") {
