@@ -159,13 +159,31 @@ std::vector<std::string> attribute_names(hid_t object) {
   return names.taken();
 }
 
+namespace {
+
+/// Datasets are stored whole. One in chunks that are not there would be read as zeros, as many as it says.
+bool stored_whole(hid_t dataset) {
+  const Handle type(H5Dget_type(dataset), H5Tclose), space(H5Dget_space(dataset), H5Sclose);
+  const Shape64 shape = shape_of(space);
+  if (std::find(shape.begin(), shape.end(), 0u) != shape.end()) return true;
+  std::uint64_t left = H5Dget_storage_size(dataset) / std::max<std::uint64_t>(1, H5Tget_size(type));
+  for (const auto extent : shape) left /= extent;
+  return left > 0;
+}
+
+}  // namespace
+
 Handle open_dataset(hid_t file, const std::string& path, const std::string& name) {
-  const hid_t dataset = H5Dopen2(file, name.c_str(), H5P_DEFAULT);
+  Handle dataset(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose);
   if (dataset < 0) {
     throw InputError(path + ": dataset " + name +
                      " is missing; the file is not one of rvelab's or is damaged: write it again");
   }
-  return {dataset, H5Dclose};
+  if (!stored_whole(dataset)) {
+    throw InputError(path + ": dataset " + name +
+                     " says that it is larger than what is stored of it; the file is damaged: write it again");
+  }
+  return dataset;
 }
 
 }  // namespace rvelab::raw

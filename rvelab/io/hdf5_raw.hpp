@@ -18,6 +18,7 @@ namespace rvelab::raw {
 class Handle {
  public:
   Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
+  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
   Handle(const Handle&) = delete;
   Handle& operator=(const Handle&) = delete;
   ~Handle() {
@@ -94,6 +95,7 @@ std::string read_attribute(hid_t object, const std::string& name);
 /// Names of the attributes of an object.
 std::vector<std::string> attribute_names(hid_t object);
 
+/// InputError: it is missing, or says that it is larger than what is stored of it.
 Handle open_dataset(hid_t file, const std::string& path, const std::string& name);
 
 /// Writes every group, dataset and attribute of one file to another, which is empty; its text in fixed lengths.

@@ -19,7 +19,7 @@ class MetaFile {
     std::ifstream input(path);
     try {
       json_ = Json::parse(input);
-    } catch (const Json::parse_error& error) {
+    } catch (const Json::exception& error) {  // a number beyond all doubles is no parse error to the library
       fail(std::string("is not JSON (") + error.what() + "); correct the file");
     }
     if (!json_.is_object()) fail("is not a JSON object; allowed: {\"dim\": 2, ...}; give the packing's JSON file");

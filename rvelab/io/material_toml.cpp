@@ -40,7 +40,7 @@ std::string written(const toml::node& value) {
 
 void convert(const std::string& dotted, const toml::node& value, const KeyEntry& entry, double& field) {
   if (!value.is_number()) refuse(dotted, value, "is not a number", entry, "give a number");
-  const double number = value.value<double>().value();
+  const double number = number_in(value);
   if (!std::isfinite(number)) refuse(dotted, value, "is not finite", entry, "give a finite number");
   if (!entry.range.contains(number)) refuse(dotted, value, "is out of range", entry, "give a value in this range");
   field = number;
@@ -232,6 +232,11 @@ toml::table parsed_value(const std::string& text, const std::string& assignment)
     // control characters
   }
   return toml::table{{"value", text}};
+}
+
+double number_in(const toml::node& node) {
+  // toml++ gives no double for a whole number that it would have to round.
+  return node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get();
 }
 
 const std::vector<Key>& known_keys() {

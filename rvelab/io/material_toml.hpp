@@ -44,6 +44,9 @@ inline constexpr const char* assignment_prefix = "--set ";
 /// The value of an assignment under the key "value": TOML, or a word where it is none. Its nodes know the assignment.
 toml::table parsed_value(const std::string& text, const std::string& assignment);
 
+/// The value of a node that is_number(): a whole number that no double holds (beyond 2^53) is rounded.
+double number_in(const toml::node& node);
+
 /// All keys, in the order of the tables.
 const std::vector<Key>& known_keys();
 

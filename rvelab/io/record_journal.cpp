@@ -1,5 +1,6 @@
 #include "rvelab/io/record_journal.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <functional>
 
@@ -197,7 +198,12 @@ struct Assembler {
     Reader reader(file, "");
     layout = {};
     describe_begin(reader, *journal.test, layout);
-    if (layout.names.size() != layout.bytes.size()) throw InputError(path + ": its list of columns is damaged");
+    constexpr std::int64_t widest = 1 << 16;
+    const auto has_width = [](std::int64_t bytes) { return bytes > 0 && bytes <= widest; };
+    if (layout.names.size() != layout.bytes.size() ||
+        !std::all_of(layout.bytes.begin(), layout.bytes.end(), has_width)) {
+      throw InputError(path + ": its list of columns is damaged; start anew with --force");
+    }
     journal.test->checkpoint.specimen = get_specimen(file, "/specimen");
     journal.test->checkpoint.progress.first_grain_steps = journal.test->checkpoint.specimen.state.grain_steps;
   }

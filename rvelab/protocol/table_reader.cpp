@@ -97,7 +97,7 @@ std::optional<double> TableReader::checked(const ProtocolKey& key, const toml::n
     mistake(name, "is not a number" + allowed + "give a number");
     return std::nullopt;
   }
-  const double value = node.value<double>().value();
+  const double value = number_in(node);
   if (!std::isfinite(value)) {
     mistake(name, "is not finite" + allowed + "give a finite number");
     return std::nullopt;

@@ -73,7 +73,7 @@ std::vector<Matrix3> TableReader::matrices(const std::string& name) {
   const auto good = [](const toml::node& item) {
     return item.is_array() && (item.as_array()->size() == 4 || item.as_array()->size() == 9) &&
            std::all_of(item.as_array()->begin(), item.as_array()->end(),
-                       [](const toml::node& each) { return each.is_number() && std::isfinite(*each.value<double>()); });
+                       [](const toml::node& each) { return each.is_number() && std::isfinite(number_in(each)); });
   };
   if (!node->is_array() || node->as_array()->empty() ||
       !std::all_of(node->as_array()->begin(), node->as_array()->end(), good)) {
@@ -84,7 +84,7 @@ std::vector<Matrix3> TableReader::matrices(const std::string& name) {
     const toml::array& numbers = *item.as_array();
     const int size = numbers.size() == 4 ? 2 : 3;
     Matrix3 matrix = Matrix3::Identity();
-    for (int k = 0; k < size * size; ++k) matrix(k / size, k % size) = *numbers.get(std::size_t(k))->value<double>();
+    for (int k = 0; k < size * size; ++k) matrix(k / size, k % size) = number_in(*numbers.get(std::size_t(k)));
     list.push_back(matrix);
   }
   resolved_.insert_or_assign(name, *node);

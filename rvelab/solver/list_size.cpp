@@ -55,9 +55,9 @@ double pairs_by_volume(const Cell& cell, const std::vector<double>& radii, doubl
 
 void expect_computable(const Cell& cell) {
   const double volume = cell.volume();
-  const auto height = heights(cell).head(cell.dimension);
-  const double least = height.minCoeff();
-  if (volume > 0 && std::isfinite(volume) && height.allFinite() && least > 0) return;
+  const Vector3 height = heights(cell);
+  const double least = height.head(cell.dimension).minCoeff();
+  if (volume > 0 && std::isfinite(volume) && height.head(cell.dimension).allFinite() && least > 0) return;
   throw IncrementFailed("a cell of " + edges_in_words(cell) + " m has a volume of " + in_words(volume) +
                         " m^3 and a least height of " + in_words(least) +
                         " m; both must be above 0 and finite: deform less, and give all lengths in m");

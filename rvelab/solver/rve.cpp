@@ -36,6 +36,9 @@ Rve::Rve(const Specimen& specimen) : impl_(std::make_unique<Impl>()) {
   const Balance balance = balance_of(m.fixture, m.now);
   if (!balance.finite) throw InputError("specimen: contact forces are not finite; do two grains lie at one place?");
   expect_overlaps(balance, m.fixture.options.max_overlap_ratio);
+  if (!(m.contact_stress() + m.reynolds_stress()).allFinite())
+    throw InputError("specimen: its stress is not finite (cell volume " + in_words(m.now.cell.volume()) +
+                     " m^3); are cell, masses or velocities in the wrong units? Give all in SI");
   if (specimen.state.has_reference) return;
   m.set_missing_references(balance);  // first opening
 }

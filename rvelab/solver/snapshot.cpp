@@ -56,6 +56,33 @@ struct Reader {
   }
   void operator()(Vector3& v) { raw(v.data(), sizeof(double) * 3); }
   void operator()(Matrix3& v) { raw(v.data(), sizeof(double) * 9); }
+  // A checksum is no proof of what is below it: a kind that is none would choose a kernel that is none.
+  void operator()(bool& v) {
+    std::uint8_t byte = 0;
+    raw(&byte, sizeof byte);
+    if (byte > 1) throw InputError("snapshot: a truth value is " + std::to_string(byte) + "; it was damaged");
+    v = byte == 1;
+  }
+  void operator()(Shape& v) {
+    raw(&v, sizeof v);
+    if (v != Shape::disc && v != Shape::sphere) throw InputError("snapshot: its grains have no shape; it was damaged");
+  }
+  void operator()(Law& v) {
+    raw(&v, sizeof v);
+    v = law_from(name(v));
+  }
+  void operator()(Slip& v) {
+    raw(&v, sizeof v);
+    v = slip_from(name(v));
+  }
+  void operator()(Dashpot& v) {
+    raw(&v, sizeof v);
+    v = dashpot_from(name(v));
+  }
+  void operator()(LocalDampingForm& v) {
+    raw(&v, sizeof v);
+    v = local_damping_form_from(name(v));
+  }
   std::size_t count() {
     std::uint64_t n = 0;
     raw(&n, sizeof n);

@@ -52,20 +52,27 @@ struct Workers::Team {
       if (--busy == 0) end.notify_one();
     }
   }
+
+  void leave() {
+    {
+      const std::lock_guard lock(mutex);
+      leaving = true;
+    }
+    begin.notify_all();
+    for (std::thread& thread : threads) thread.join();
+  }
 };
 
 Workers::Workers(unsigned threads) : team_(std::make_unique<Team>()) {
-  for (unsigned k = 1; k < threads; ++k) team_->threads.emplace_back([team = team_.get()] { team->serve(); });
+  try {
+    for (unsigned k = 1; k < threads; ++k) team_->threads.emplace_back([team = team_.get()] { team->serve(); });
+  } catch (...) {  // no memory or no thread to be had: those that are there would end the program
+    team_->leave();
+    throw;
+  }
 }
 
-Workers::~Workers() {
-  {
-    const std::lock_guard lock(team_->mutex);
-    team_->leaving = true;
-  }
-  team_->begin.notify_all();
-  for (std::thread& thread : team_->threads) thread.join();
-}
+Workers::~Workers() { team_->leave(); }
 
 unsigned Workers::threads() const { return unsigned(team_->threads.size()) + 1; }
 

@@ -202,7 +202,7 @@ TEST_CASE("without memory every subcommand says so in one line with exit code 1,
   const Desk here;
   REQUIRE(here.run("pack tiny.toml -o t.h5").code == 0);
   const auto outcome_at = [&](const std::string& command, long number) {
-    for (const char* made : {"o", "o.h5", "o.journal"}) std::filesystem::remove(here / made);
+    for (const char* made : {"o", "o.h5", "o.journal", "o_1", "o_2"}) std::filesystem::remove(here / made);
     const std::string shell = "cd '" + (here / "") + "' && RVELAB_NO_MEMORY_FROM=" + std::to_string(number) +
                               " LD_PRELOAD=" RVELAB_MEMORY_SHIM
                               " ASAN_OPTIONS=verify_asan_link_order=0 '" RVELAB_PROGRAM "' " +
@@ -211,7 +211,8 @@ TEST_CASE("without memory every subcommand says so in one line with exit code 1,
     return Outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(here / "out"), text_of(here / "err")};
   };
   for (const std::string command : {"inspect t.h5", "export t.h5 --format xdmf -o o", "import p.csv c.csv m.json -o o",
-                                    "run test.toml --specimen t.h5 -o o", "compare t.h5 S.h5"}) {
+                                    "run test.toml --specimen t.h5 -o o", "compare t.h5 S.h5",
+                                    "pack tiny.toml -o o --threads 2", "pack tiny.toml -o o --count 2 --threads 2"}) {
     long number = 1;
     for (int done = 0; done < 2 && number < 100'000; number += 1 + number / 12) {
       const Outcome outcome = outcome_at(command, number);
@@ -223,10 +224,33 @@ TEST_CASE("without memory every subcommand says so in one line with exit code 1,
       CHECK(outcome.code == 1);
       CHECK_THAT(outcome.errors, Contains("rvelab: ") && (Contains("memory") || Contains("bad_alloc")));
       CHECK(std::count(outcome.errors.begin(), outcome.errors.end(), '\n') == 1);
-      CHECK(!std::filesystem::exists(here / "o.tmp"));
+      for (const char* half : {"o.tmp", "o_1.tmp", "o_2.tmp"}) CHECK(!std::filesystem::exists(here / half));
+      // What a family has made before is kept, in whole.
+      for (const char* made : {"o_1", "o_2"}) {
+        if (std::filesystem::exists(here / made)) CHECK(here.run("inspect " + std::string(made)).code == 0);
+      }
       // What a run has recorded before is kept, in whole.
       if (std::filesystem::exists(here / "o.journal")) CHECK(here.run("recover o -o kept --force").code == 0);
     }
     CHECK(number > 100);
   }
 }
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // their runtimes need more than any limit
+TEST_CASE("threads that are not to be had are said in one line with exit code 1") {
+  const Desk here;
+  for (const std::string command :
+       {"pack tiny.toml -o o --threads 64", "pack tiny.toml -o o --count 40 --threads 40"}) {
+    CAPTURE(command);
+    const std::string shell = "cd '" + (here / "") + "' && ulimit -v 150000 && exec '" RVELAB_PROGRAM "' " + command +
+                              " >out 2>err </dev/null";
+    const int status = std::system(shell.c_str());
+    const std::string errors = text_of(here / "err");
+    CAPTURE(errors);
+    CHECK(WIFEXITED(status));
+    CHECK(WEXITSTATUS(status) == 1);
+    CHECK_THAT(errors, Contains("lower --threads"));
+    CHECK(std::count(errors.begin(), errors.end(), '\n') == 1);
+  }
+}
+#endif

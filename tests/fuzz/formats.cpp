@@ -1,0 +1,228 @@
+#include "tests/fuzz/formats.hpp"
+
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <stdexcept>
+
+#include "rvelab/error.hpp"
+#include "rvelab/io/import_csv.hpp"
+#include "rvelab/io/material_toml.hpp"
+#include "rvelab/io/recorded_test.hpp"
+#include "rvelab/io/seal.hpp"
+#include "rvelab/io/seal_file.hpp"
+#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/states.hpp"
+#include "rvelab/measure/measures.hpp"
+#include "rvelab/protocol/protocol.hpp"
+#include "rvelab/protocol/read_recipe.hpp"
+#include "rvelab/solver/rve.hpp"
+#include "tests/fuzz/hdf5_edits.hpp"
+#include "tests/fuzz/journals.hpp"
+#include "tests/fuzz/seeds.hpp"
+#include "tests/io/random_specimen.hpp"
+
+namespace rvelab::fuzz {
+namespace {
+
+void promise(bool kept, const char* broken) {
+  if (!kept) throw std::logic_error(broken);
+}
+
+template <class Read>
+Answer answer(Read read) {
+  try {
+    read();
+    return Answer::taken;
+  } catch (const Error& error) {
+    promise(*error.what() != '\0', "an error says nothing");
+    return Answer::refused;
+  }
+}
+
+std::string text_of(View bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
+
+/// Where inputs that are read by name stand: in memory where there is such a place.
+std::string scratch(const std::string& name) {
+  static const test::Folder folder = [] {
+    if (std::filesystem::is_directory("/dev/shm")) ::setenv("TMPDIR", "/dev/shm", 0);
+    return test::Folder();
+  }();
+  return folder / name;
+}
+
+std::string file_of(const std::string& name, const std::string& content) {
+  const std::string path = scratch(name);
+  test::write_bytes(path, content);
+  return path;
+}
+
+std::string file_of(const std::string& name, View content) { return file_of(name, text_of(content)); }
+
+/// What every command does with a specimen that it has read.
+void open_state(const Specimen& specimen) {
+  const Rve rve(specimen);
+  const Network network = rve.network();
+  promise(rve.stress().allFinite(), "the stress of an opened state is not finite");
+  promise(std::isfinite(void_ratio(network)), "the void ratio of an opened state is not finite");
+  promise(std::isfinite(rve.unbalanced_ratio()), "the unbalanced ratio of an opened state is not finite");
+  Rve other(rve);
+  other.restore(rve.save());
+  promise(other.save() == rve.save(), "a state that was saved and restored is another");
+}
+
+Answer check_protocol(View input) {
+  const std::string text = text_of(input);
+  return answer([&] {
+    const Protocol protocol = parse_protocol(text, "fuzz.toml");
+    promise(parse_protocol(protocol.resolved, "fuzz.toml").resolved == protocol.resolved,
+            "a resolved protocol, read again, is another");
+    static const Specimen specimen = read_specimen(data_file("compat/specimen_1_4.h5"));
+    with_overrides(protocol, specimen);
+  });
+}
+
+Answer check_recipe(View input) {
+  const std::string text = text_of(input);
+  return answer([&] {
+    const RecipeFile recipe = parse_recipe(text, "fuzz.toml");
+    const auto again = [](const std::string& resolved) { return parse_recipe(resolved, "fuzz.toml").resolved; };
+    promise(again(recipe.resolved) == recipe.resolved, "a resolved recipe, read again, is another");
+    const RecipeFile member =
+        recipe.member(7, recipe.pressures.empty() ? std::nullopt : std::optional(recipe.pressures[0]));
+    promise(again(member.resolved) == member.resolved, "a member of a family, read again, is another");
+  });
+}
+
+Answer check_material(View input) {
+  const std::string path = file_of("material.toml", input);
+  return answer([&] {
+    Specimen specimen;
+    specimen.shape = Shape::disc;
+    read_material_file(path, specimen);
+    check(specimen.contact, specimen.damping, specimen.materials);
+  });
+}
+
+Answer check_csv(View input) {
+  const std::vector<std::string> parts = csv_parts(text_of(input));
+  const auto part = [&](std::size_t k, const char* name) {
+    return k < parts.size() ? std::optional(file_of(name, parts[k])) : std::nullopt;
+  };
+  const auto particles = part(0, "p.csv"), contacts = part(1, "c.csv"), meta = part(2, "m.json");
+  ImportOptions options;
+  if (!meta) options.material_path = data_file("compat/soil.toml");
+  if (!meta && !parts[0].starts_with("ITEM:")) options.cell = Vector3(0.04, 0.04, 0.1);
+  return answer([&] { open_state(import_csv(*particles, contacts, meta, options)); });
+}
+
+Answer check_specimen_file(const std::string& path) {
+  return answer([&] {
+    file_kind(path);
+    read_origin(path);
+    open_state(read_specimen(path));
+  });
+}
+
+/// Whatever was taken can be sealed, and what was sealed is taken.
+Answer check_specimen(View input) {
+  const std::string path = file_of("s.h5", input), sealed = scratch("sealed.h5");
+  const Answer answered = check_specimen_file(path);
+  if (answered == Answer::refused) return answered;
+  seal_file(path, sealed);
+  promise(check_specimen_file(sealed) == Answer::taken, "a file that was taken is refused once it is sealed");
+  return answered;
+}
+
+Answer check_test(const std::string& path) {
+  return answer([&] {
+    const RecordedTest test = read_recorded_test(path);
+    for (const StoredState& state : read_states(path)) open_state(state.specimen);
+    write_recorded_test(test, scratch("again.h5"));
+    promise(read_recorded_test(scratch("again.h5")).result.records.size() == test.result.records.size(),
+            "records that were read and written are fewer");
+  });
+}
+
+Answer check_records(View input) { return check_test(file_of("r.h5", input)); }
+
+/// The seed with changes through HDF5's own writer, and with a seal that fits them.
+std::string sealed_edit(const std::string& seed, View input, const std::string& name) {
+  Choices choices(input);
+  const Bytes whole = seed_file(seed);
+  Bytes image = edited(View(whole).first(whole.size() - io::seal_bytes), choices);
+  const auto seal = io::seal_of(image);
+  image.insert(image.end(), seal.begin(), seal.end());
+  return file_of(name, View(image));
+}
+
+Answer check_specimen_values(View input) {
+  return check_specimen_file(sealed_edit("compat/specimen_1_4.h5", input, "s.h5"));
+}
+
+Answer check_record_values(View input) { return check_test(sealed_edit("compat/records_1_4.h5", input, "r.h5")); }
+
+Answer check_journal_file(View bytes) {
+  file_of("run.h5.journal", bytes);
+  return check_test(scratch("run.h5"));
+}
+
+/// As it is, and with checksums that fit where that does not show HDF5 what no checksum vouches for.
+Answer check_journal(View input) {
+  const Answer answered = check_journal_file(input);
+  const Bytes fitting = with_checksums(input);
+  if (text_of(fitting) != text_of(input)) check_journal_file(fitting);
+  return answered;
+}
+
+Answer check_journal_values(View input) {
+  Choices choices(input);
+  return check_journal_file(edited_journal(choices));
+}
+
+Answer check_snapshot_bytes(View bytes) {
+  static Rve rve(read_specimen(data_file("compat/specimen_1_4.h5")));
+  static const Bytes before = rve.save();
+  const Answer answered = answer([&] {
+    rve.restore(bytes);
+    open_state(rve.specimen());
+  });
+  if (answered == Answer::refused && rve.save() == before) return answered;
+  promise(answered == Answer::taken, "a snapshot that is refused has changed the state");
+  rve.restore(before);
+  return answered;
+}
+
+/// As it is, and with a checksum that fits (FNV-1a behind eight bytes of magic).
+Answer check_snapshot(View input) {
+  constexpr std::size_t sum_at = 8, head = 16;
+  const Answer answered = check_snapshot_bytes(input);
+  if (input.size() < head) return answered;
+  Bytes fitting(input.begin(), input.end());
+  std::uint64_t sum = 14695981039346656037ULL;
+  for (const std::byte byte : View(fitting).subspan(head)) sum = (sum ^ std::uint64_t(byte)) * 1099511628211ULL;
+  std::memcpy(fitting.data() + sum_at, &sum, sizeof sum);
+  return check_snapshot_bytes(fitting);
+}
+
+}  // namespace
+
+const std::vector<Format>& formats() {
+  static const std::vector<Format> all{
+      {"protocol", true, check_protocol, protocol_seeds},
+      {"recipe", true, check_recipe, recipe_seeds},
+      {"material", true, check_material, material_seeds},
+      {"csv", true, check_csv, csv_seeds},
+      {"specimen", false, check_specimen, specimen_seeds},
+      {"specimen_values", false, check_specimen_values, choice_seeds},
+      {"records", false, check_records, record_seeds},
+      {"records_values", false, check_record_values, choice_seeds},
+      {"journal", false, check_journal, journal_seeds},
+      {"journal_values", false, check_journal_values, choice_seeds},
+      {"snapshot", false, check_snapshot, snapshot_seeds},
+  };
+  return all;
+}
+
+}  // namespace rvelab::fuzz

@@ -1,0 +1,85 @@
+#include "tests/fuzz/seeds.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/solver/rve.hpp"
+#include "tests/fuzz/journals.hpp"
+#include "tests/io/random_specimen.hpp"
+
+namespace rvelab::fuzz {
+namespace {
+
+Bytes bytes_in(const std::string& path) {
+  const std::string text = test::bytes_of(path);
+  const View bytes = std::as_bytes(std::span(text));
+  return {bytes.begin(), bytes.end()};
+}
+
+/// Files of a folder in the order of their names; with `word`, those that hold it.
+std::vector<Bytes> files_in(const std::string& folder, const std::string& word = "", bool holding = true) {
+  std::vector<std::string> paths;
+  for (const auto& file : std::filesystem::directory_iterator(folder)) paths.push_back(file.path().string());
+  std::sort(paths.begin(), paths.end());
+  std::vector<Bytes> found;
+  for (const auto& path : paths) {
+    const bool holds = test::bytes_of(path).find(word) != std::string::npos;
+    if (holds == holding) found.push_back(bytes_in(path));
+  }
+  return found;
+}
+
+const std::string corpus = RVELAB_SOURCE_DIR "/tests/fuzz/corpus/";
+const std::string shipped = RVELAB_SOURCE_DIR "/protocols";
+
+std::vector<Bytes> joined(std::vector<Bytes> first, const std::vector<Bytes>& second) {
+  first.insert(first.end(), second.begin(), second.end());
+  return first;
+}
+
+}  // namespace
+
+std::string data_file(const std::string& name) { return RVELAB_TEST_DATA "/" + name; }
+
+Bytes seed_file(const std::string& name) { return bytes_in(data_file(name)); }
+
+std::vector<std::string> csv_parts(const std::string& text) {
+  const std::string line = "====\n";
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0;;) {
+    const std::size_t end = text.find(line, begin);
+    parts.push_back(text.substr(begin, end == std::string::npos ? end : end - begin));
+    if (end == std::string::npos) return parts;
+    begin = end + line.size();
+  }
+}
+
+std::vector<Bytes> protocol_seeds() {
+  return joined(joined({seed_file("compat/test.toml")}, files_in(shipped, "[pack]", false)),
+                files_in(corpus + "protocol"));
+}
+std::vector<Bytes> recipe_seeds() { return joined(files_in(shipped, "[pack]"), files_in(corpus + "recipe")); }
+std::vector<Bytes> material_seeds() { return joined({seed_file("compat/soil.toml")}, files_in(corpus + "material")); }
+std::vector<Bytes> csv_seeds() { return joined({seed_file("compat/grains.csv")}, files_in(corpus + "csv")); }
+
+std::vector<Bytes> specimen_seeds() {
+  return {seed_file("compat/specimen_1_4.h5"), seed_file("compat/specimen_1_3.h5"), seed_file("compat/specimen_1_0.h5"),
+          seed_file("damaged/crashes.h5")};
+}
+std::vector<Bytes> record_seeds() {
+  return {seed_file("compat/records_1_4.h5"), seed_file("compat/records_1_3.h5"), seed_file("compat/records_1_0.h5")};
+}
+std::vector<Bytes> journal_seeds() { return {whole_journal()}; }
+std::vector<Bytes> snapshot_seeds() { return {Rve(read_specimen(data_file("compat/specimen_1_4.h5"))).save()}; }
+
+std::vector<Bytes> choice_seeds() {
+  std::vector<Bytes> seeds{{}};
+  for (int first = 0; first < 64; first += 3) {
+    seeds.push_back({});
+    for (int k = 0; k < 12; ++k) seeds.back().push_back(std::byte((first + 7 * k * first) % 251));
+  }
+  return seeds;
+}
+
+}  // namespace rvelab::fuzz

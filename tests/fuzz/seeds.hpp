@@ -1,0 +1,30 @@
+// Inputs to begin with: files of tests/data, the protocols that are shipped, and tests/fuzz/corpus, where what was once
+// a finding stays.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tests/fuzz/formats.hpp"
+
+namespace rvelab::fuzz {
+
+/// Path of a file in tests/data, and its bytes.
+std::string data_file(const std::string& name);
+Bytes seed_file(const std::string& name);
+
+/// Particles, contacts and META.json of one text; at least one part.
+std::vector<std::string> csv_parts(const std::string& text);
+
+std::vector<Bytes> protocol_seeds();
+std::vector<Bytes> recipe_seeds();
+std::vector<Bytes> material_seeds();
+std::vector<Bytes> csv_seeds();
+std::vector<Bytes> specimen_seeds();
+std::vector<Bytes> record_seeds();
+std::vector<Bytes> journal_seeds();
+std::vector<Bytes> snapshot_seeds();
+/// For formats that are choices: none, and each first choice.
+std::vector<Bytes> choice_seeds();
+
+}  // namespace rvelab::fuzz

@@ -1,0 +1,127 @@
+// What fuzzing found, one test for each.
+#include <hdf5.h>
+
+#include "rvelab/error.hpp"
+#include "rvelab/io/import_csv.hpp"
+#include "rvelab/io/material_toml.hpp"
+#include "rvelab/io/record_journal.hpp"
+#include "rvelab/io/seal.hpp"
+#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/protocol/protocol.hpp"
+#include "rvelab/protocol/read_recipe.hpp"
+#include "rvelab/solver/rve.hpp"
+#include "tests/catch.hpp"
+#include "tests/fuzz/formats.hpp"
+#include "tests/fuzz/seeds.hpp"
+#include "tests/io/random_specimen.hpp"
+
+using namespace rvelab;
+using namespace rvelab::fuzz;
+using Catch::Matchers::Contains;
+using test::input_error;
+
+namespace {
+
+Specimen nine_grains() { return read_specimen(data_file("compat/specimen_1_4.h5")); }
+
+/// An HDF5 file as another program leaves it that changes something in it.
+template <class Change>
+std::string changed(View image, Change change) {
+  const test::Folder folder;
+  const std::string path = folder / "changed.h5";
+  test::write_bytes(path, std::string(reinterpret_cast<const char*>(image.data()), image.size()));
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  REQUIRE(file >= 0);
+  change(file);
+  H5Fclose(file);
+  return test::bytes_of(path);
+}
+
+}  // namespace
+
+TEST_CASE("a whole number that no double holds is a number like any other") {
+  Specimen specimen = nine_grains();
+  set_key(specimen, "solver.min_height_m=9007199254740993");
+  CHECK(specimen.solver.min_height == 9007199254740992.0);
+  CHECK_THAT(input_error([&] { set_key(specimen, "damping.local=9223372036854775807"); }),
+             Contains("damping.local = 9223372036854775807 is out of range"));
+
+  const std::string shear = "[test]\nname = \"t\"\n[[stage]]\nkind = \"simple_shear\"\nto_strain = 0.1\n";
+  CHECK_THAT(input_error([&] { parse_protocol(shear + "record_every = -9223372036854775807\n", "t.toml"); }),
+             Contains("t.toml:6") && Contains("record_every = -9223372036854775807 is out of range"));
+  const std::string path = "[test]\nname = \"t\"\n[[stage]]\nkind = \"deformation\"\n";
+  const Protocol far = parse_protocol(path + "gradients = [[9223372036854775807, 0, 0, 1]]\n", "t.toml");
+  CHECK(std::get<DeformationStage>(far.stages.at(0).what).gradients.at(0)(0, 0) == 9223372036854775808.0);
+}
+
+TEST_CASE("a number beyond all doubles in META.json is a mistake of the file") {
+  const test::Folder folder;
+  test::write_bytes(folder / "m.json", "{\"dim\": 2, \"thickness_m\": 1e999}");
+  CHECK_THAT(input_error([&] { import_csv(data_file("compat/grains.csv"), {}, folder / "m.json"); }),
+             Contains("m.json: is not JSON") && Contains("1e999"));
+}
+
+TEST_CASE("a sealed file whose dataset says that it is larger than what is stored of it is refused by name") {
+  const test::Folder folder;
+  const Bytes whole = seed_file("compat/specimen_1_4.h5");
+  std::string bytes = changed(View(whole).first(whole.size() - io::seal_bytes), [](hid_t file) {
+    const hsize_t rows = hsize_t{1} << 40, chunk = 1;
+    const hid_t space = H5Screate_simple(1, &rows, nullptr), creation = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_chunk(creation, 1, &chunk);
+    H5Ldelete(file, "/grains/radius_m", H5P_DEFAULT);
+    H5Dclose(H5Dcreate2(file, "/grains/radius_m", H5T_IEEE_F64LE, space, H5P_DEFAULT, creation, H5P_DEFAULT));
+    H5Pclose(creation);
+    H5Sclose(space);
+  });
+  const auto seal = io::seal_of(std::as_bytes(std::span(bytes)));
+  bytes.append(reinterpret_cast<const char*>(seal.data()), seal.size());
+  test::write_bytes(folder / "s.h5", bytes);
+  CHECK_THAT(input_error([&] { read_specimen(folder / "s.h5"); }),
+             Contains("/grains/radius_m says that it is larger than what is stored of it"));
+}
+
+TEST_CASE("a journal whose columns have no width is refused, and no row is read by it") {
+  const test::Folder folder;
+  const Specimen specimen = nine_grains();
+  const std::string begin =
+      changed(io::encode_begin({"test", "[test]\nname = \"test\"\n", {"shear"}, specimen}), [](hid_t file) {
+        const hid_t dataset = H5Dopen2(file, "/journal/column_bytes", H5P_DEFAULT);
+        std::int64_t bytes[256] = {};
+        H5Dread(dataset, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes);
+        bytes[0] = -1;
+        H5Dwrite(dataset, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes);
+        H5Dclose(dataset);
+      });
+  const std::string path = folder / "run.h5.journal";
+  {
+    io::Journal journal(path);
+    journal.begin();
+    journal.append(io::begin_frame, std::as_bytes(std::span(begin)));
+    journal.append(io::record_frame, io::encode_record(0, Record{}));
+  }
+  CHECK_THAT(input_error([&] { io::read_record_journal(path); }), Contains("its list of columns is damaged"));
+}
+
+TEST_CASE("a state whose stress is beyond all numbers is refused when it is opened") {
+  Specimen specimen = nine_grains();
+  specimen.cell.lattice(2, 2) = 1e-320;  // the thickness
+  CHECK_THAT(input_error([&] { Rve rve(specimen); }), Contains("its stress is not finite"));
+}
+
+TEST_CASE("a snapshot with any one byte another and a checksum that fits is refused, or is a state") {
+  const auto snapshot =
+      std::find_if(formats().begin(), formats().end(), [](const Format& format) { return format.name == "snapshot"; });
+  const Bytes seed = snapshot->seeds().at(0);
+  std::size_t refused = 0;
+  for (std::size_t at = 16; at < seed.size(); ++at) {
+    for (const auto value : {std::byte{0x03}, std::byte{0x07}, std::byte{0xff}}) {
+      Bytes input = seed;
+      input[at] = value;
+      CAPTURE(at, std::to_integer<int>(value));
+      Answer answer = Answer::taken;
+      REQUIRE_NOTHROW(answer = snapshot->check(input));
+      refused += answer == Answer::refused ? 1 : 0;
+    }
+  }
+  CHECK(refused > 0);
+}
