@@ -72,10 +72,9 @@ to_strain = 0.1
 record_every = {spacing}
 """
 # Grains, kappa, inertial number, shear strain.
-FLOWS = (("disc", 1e3, 0.3, 3), ("disc", 1e3, 0.1, 3), ("disc", 1e3, 0.01, 3), ("disc", 1e3, 1e-4, 1),
-         ("disc", 1e4, 0.3, 3), ("disc", 1e4, 0.1, 3), ("disc", 1e4, 0.01, 3), ("disc", 1e4, 0.001, 2),
-         ("disc", 1e6, 0.3, 3), ("disc", 1e6, 0.1, 2), ("sphere", 1e4, 0.1, 3), ("sphere", 1e4, 0.01, 2),
-         ("sphere", 1e4, 0.001, 1.5))
+FLOWS = (("disc", 1e3, 0.3, 3), ("disc", 1e3, 0.1, 3), ("disc", 1e3, 0.01, 3), ("disc", 1e4, 0.3, 3),
+         ("disc", 1e4, 0.1, 3), ("disc", 1e4, 0.01, 2), ("disc", 1e6, 0.3, 2), ("disc", 1e4, 0.001, 1),
+         ("disc", 1e3, 1e-4, 0.4), ("sphere", 1e4, 0.1, 3), ("sphere", 1e4, 0.01, 2), ("sphere", 1e4, 0.001, 1))
 SPACINGS = (1e-4, 5e-4, 2e-3, 5e-3)
 PRESSURE, DIAMETER, DENSITY = 1e4, 0.01, 2650
 
