@@ -177,8 +177,8 @@ Report Rve::relax(double unbalanced, long max_steps) {
     Report report;
     begin_loading(m.fixture, m.now, Loading::quasi_static);
     constexpr long stretch = 25;
-    // Cundall's damping is a part of the force: it hardly takes from a mode without stiffness, such as grains of an even
-    // ring that counter-rotate like gears. Who is not at rest after this many steps is stopped at each peak of the
+    // Cundall's damping is a part of the force: it hardly takes from a mode without stiffness, such as grains of an
+    // even ring that counter-rotate like gears. Who is not at rest after this many steps is stopped at each peak of the
     // kinetic energy (dynamic relaxation: Cundall 1976; Day 1965).
     constexpr long patience = 20'000;
     double kinetic = 0;

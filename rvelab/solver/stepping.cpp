@@ -165,9 +165,7 @@ Matrix3 kinetic_moment(const Fixture& f, const Assembly& a) {
   return sum;
 }
 
-namespace {
-
-}  // namespace
+namespace {}  // namespace
 
 double kinetic_energy(const Fixture& f, const Assembly& a) {
   double sum = 0;

@@ -10,8 +10,8 @@
 namespace rvelab::stress_test {
 
 /// Of the moment that the places belong to, J: kinetic energy is the mean of the half steps before and behind it, the
-/// later one made by a copy. `rate` is the velocity gradient, 1/s, laboratory frame. With one half step alone the energy
-/// in contact would be off by the work of half a step.
+/// later one made by a copy. `rate` is the velocity gradient, 1/s, laboratory frame. With one half step alone the
+/// energy in contact would be off by the work of half a step.
 inline double energy_in(const Rve& rve, const Matrix3& rate = Matrix3::Zero()) {
   const Network network = rve.network();
   double kinetic = kinetic_energy(network);

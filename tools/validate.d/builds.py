@@ -20,6 +20,8 @@ for name, case in first.items():
     hashed += "hash" in case
     if (case["outcome"], case.get("hash")) != (other["outcome"], other.get("hash")):
         differing += 1
-        print(f"{name}: {case['outcome']} {case.get('hash')}, {other['outcome']} {other.get('hash')}: {other['status']}")
-print(f"{len(first)} cases, {hashed} with a hash of their stresses: {differing} differ; the second build has {wrong} WRONG")
+        print(f"{name}: {case['outcome']} {case.get('hash')}, {other['outcome']} {other.get('hash')}: "
+              f"{other['status']}")
+print(f"{len(first)} cases, {hashed} with a hash of their stresses: {differing} differ; "
+      f"the second build has {wrong} WRONG")
 sys.exit(differing > 0 or wrong > 0)
