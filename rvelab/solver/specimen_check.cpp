@@ -68,9 +68,9 @@ void check_volumes(const Specimen& s) {
   double solid = 0;
   for (const double radius : s.grains.radius) solid += grain_volume(s.shape, radius, s.cell.lattice(2, 2));
   const double volume = s.cell.volume();
-  if (!(solid > 0) || !(volume > 0) || !std::isfinite(solid) || !std::isfinite(volume / solid))
+  if (!(solid > 0) || !(volume > 0) || !std::isfinite(volume / solid))
     refuse("specimen: grains of " + in_words(solid) + " m^3 in a cell of " + in_words(volume) +
-           " m^3; both must be above 0 and finite, and their ratio too; give all lengths in m");
+           " m^3; both must be above 0, and their ratio finite; give all lengths in m");
 }
 
 /// A spring without stiffness holds no force; one that a file brings would act for ever, and no energy would belong to
