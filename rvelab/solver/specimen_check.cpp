@@ -64,6 +64,15 @@ void check_cell(const Specimen& s) {
     refuse("specimen: the rotation of the cell frame must be orthogonal with determinant +1");
 }
 
+void check_volumes(const Specimen& s) {
+  double solid = 0;
+  for (const double radius : s.grains.radius) solid += grain_volume(s.shape, radius, s.cell.lattice(2, 2));
+  const double volume = s.cell.volume();
+  if (!(solid > 0) || !(volume > 0) || !std::isfinite(volume / solid))
+    refuse("specimen: grains of " + in_words(solid) + " m^3 in a cell of " + in_words(volume) +
+           " m^3; both must be above 0, and their ratio finite; give all lengths in m");
+}
+
 /// A spring without stiffness holds no force; one that a file brings would act for ever, and no energy would belong to
 /// it.
 bool holds_force_without_stiffness(const Specimen& s, const Contact& c) {
@@ -123,6 +132,7 @@ void check_specimen(const Specimen& s) {
   check_options(s.solver);
   check_grains(s);
   check_cell(s);
+  check_volumes(s);
   check_contacts(s);
   const std::vector<std::int32_t>& order = s.state.memory_order;
   if (!order.empty() && !is_permutation(order, s.grains.size()))

@@ -102,10 +102,15 @@ TEST_CASE("a journal whose columns have no width is refused, and no row is read 
   CHECK_THAT(input_error([&] { io::read_record_journal(path); }), Contains("its list of columns is damaged"));
 }
 
-TEST_CASE("a state whose stress is beyond all numbers is refused when it is opened") {
+TEST_CASE("a state whose stress or void ratio is beyond all numbers is refused when it is opened") {
   Specimen specimen = nine_grains();
-  specimen.cell.lattice(2, 2) = 1e-320;  // the thickness
+  specimen.cell.lattice(2, 2) = 1e-310;  // the thickness
   CHECK_THAT(input_error([&] { Rve rve(specimen); }), Contains("its stress is not finite"));
+  specimen.cell.lattice(2, 2) = 1e-320;
+  CHECK_THAT(input_error([&] { Rve rve(specimen); }), Contains("grains of 0 m^3 in a cell of"));
+  specimen = nine_grains();
+  specimen.grains.radius.assign(specimen.grains.size(), 1e-170);
+  CHECK_THAT(input_error([&] { Rve rve(specimen); }), Contains("grains of 0 m^3 in a cell of 9e-05 m^3"));
 }
 
 TEST_CASE("a snapshot with any one byte another and a checksum that fits is refused, or is a state") {
