@@ -300,14 +300,11 @@ void add_calibrate(CLI::App& app) {
   arguments->recording.add_to(*command);
   command->add_flag("--json", arguments->json, "print one JSON object");
   command->footer(
-      "phi: friction angle, sin phi = (sigma_1 - sigma_3)/(sigma_1 + sigma_3) at the peak, the record with the "
-      "largest\n"
-      "sigma_1 - sigma_3; over several tests by least squares through the origin.\n"
-      "bearing_capacity_Nq: N_q = tan^2(45 + phi/2) exp(pi tan phi), bearing capacity factor of a footing's surcharge "
-      "in\n"
-      "general shear; local_shear_Nq: the same with tan phi reduced to 2/3, for loose soil; wedge_angle_deg: 45 + "
-      "phi/2,\n"
-      "of the active wedge below a footing against the horizontal.\n"
+      "phi: friction angle, sin phi = (sigma_1 - sigma_3)/(sigma_1 + sigma_3) at the peak, the record with the\n"
+      "largest sigma_1 - sigma_3; over several tests by least squares through the origin.\n"
+      "bearing_capacity_Nq: N_q = tan^2(45 + phi/2) exp(pi tan phi), bearing capacity factor of a footing's\n"
+      "surcharge in general shear; local_shear_Nq: the same with tan phi reduced to 2/3, for loose soil;\n"
+      "wedge_angle_deg: 45 + phi/2, of the active wedge below a footing against the horizontal.\n"
       "One packing is one draw: equal recipes with other seeds differ by degrees. Of several specimens the mean, the\n"
       "standard deviation and the standard error of phi and N_q are printed.\n"
       "Examples:\n"

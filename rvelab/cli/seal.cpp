@@ -39,11 +39,10 @@ void add_seal(CLI::App& app) {
   command->add_flag("--force", arguments->force, "overwrite the output");
   command->add_flag("--json", arguments->json, "print one JSON object");
   command->footer(
-      "rvelab's files end in a checksum, and a file whose bytes do not fit it is refused. A program that opens one "
-      "for\n"
-      "writing takes the checksum away. If the change is meant, this command reads the file with care, as far as "
-      "rvelab\n"
-      "knows it, and writes all of it anew. It cannot tell a change that is meant from damage: look at the result.\n"
+      "rvelab's files end in a checksum, and a file whose bytes do not fit it is refused. A program that opens\n"
+      "one for writing takes the checksum away. If the change is meant, this command reads the file with care, as\n"
+      "far as rvelab knows it, and writes all of it anew. It cannot tell a change that is meant from damage: look\n"
+      "at the result.\n"
       "Example:\n"
       "  rvelab seal edited.h5 -o S.h5");
   command->callback([arguments] { run_seal(*arguments); });

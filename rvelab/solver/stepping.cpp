@@ -165,8 +165,6 @@ Matrix3 kinetic_moment(const Fixture& f, const Assembly& a) {
   return sum;
 }
 
-namespace {}  // namespace
-
 double kinetic_energy(const Fixture& f, const Assembly& a) {
   double sum = 0;
   for (std::size_t g = 0; g < f.size(); ++g) {
@@ -176,10 +174,18 @@ double kinetic_energy(const Fixture& f, const Assembly& a) {
   return sum;
 }
 
-void stop_grains(const Fixture& f, Assembly& a) {
-  a.state.ledger.zeroing += kinetic_energy(f, a);
+namespace {
+
+void zero_velocities(const Fixture& f, Assembly& a) {
   for (std::size_t g = 0; g < f.size(); ++g) a.set_velocity(f, g, Vector3::Zero(), Vector3::Zero());
   a.state.mean_velocity.setZero();
+}
+
+}  // namespace
+
+void stop_grains(const Fixture& f, Assembly& a) {
+  if (f.options.ledger) a.state.ledger.zeroing += kinetic_energy(f, a);
+  zero_velocities(f, a);
 }
 
 void rescale_inertia(const Fixture& f, const RowSums& sums, Assembly& a) {
@@ -194,8 +200,7 @@ void begin_loading(const Fixture& f, Assembly& a, Loading loading) {
     // Physical velocities mean nothing to scaled masses, nor the other way: carried over they would be an impact. Their
     // energy is booked.
     if (f.options.ledger && !a.state.quasi_static) a.state.ledger.zeroing += kinetic_energy(f, a);
-    for (std::size_t g = 0; g < f.size(); ++g) a.set_velocity(f, g, Vector3::Zero(), Vector3::Zero());
-    a.state.mean_velocity.setZero();
+    zero_velocities(f, a);
     a.state.last_rate.setZero();
     a.state.mean_spin.setZero();
     a.state.servo_rate.setZero();

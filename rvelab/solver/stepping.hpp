@@ -43,7 +43,7 @@ void rescale_inertia(const Fixture& fixture, const RowSums& sums, Assembly& asse
 /// Of the fluctuations with the masses in use, in units of the force law's energy (J, also at dt = 0).
 double kinetic_energy(const Fixture& fixture, const Assembly& assembly);
 
-/// Sets all velocities to zero and books their energy.
+/// Sets all velocities to zero; books their energy where the ledger is kept.
 void stop_grains(const Fixture& fixture, Assembly& assembly);
 
 /// Reynolds stress times volume, -sum m v' v', cell frame, with the masses in use.

@@ -113,10 +113,12 @@ namespace {
 double cooling_rate(const HardGas& hard, const Case& asked, unsigned seed, Verdict& verdict) {
   Specimen s = specimen_of(hard, asked("hertz") != 0, asked("contact_time"), seed);
   s.solver.time_step_factor = asked("time_step_factor");
+  s.solver.ledger = false;
   Rve mixing(s);
   mixing.set_velocities(thermal_velocities(hard, seed), std::vector<Vector3>(hard.grains, Vector3::Zero()));
   mixing.apply(Matrix3::Zero(), 8 / hard.collision_rate(1));
   s = mixing.specimen();
+  s.solver.ledger = true;
   const double e = asked("restitution");
   s.damping.dashpot = Dashpot::restitution;
   s.damping.restitution = e;

@@ -48,6 +48,8 @@ class Workplace {
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(*this / ".out"), text_of(*this / ".err")};
   }
 
+  void write(const std::string& name, const std::string& text) const { std::ofstream(*this / name) << text; }
+
   /// S.h5 from a reference packing of YADE.
   void import_packing(const std::string& name, const std::string& file = "S.h5") const {
     const std::string stem = std::string(RVELAB_TEST_DATA) + "/yade/" + name;

@@ -25,15 +25,11 @@ stiffness_ratio = 0.5
 friction = 0.4
 )";
 
-void write(const Workplace& here, const std::string& name, const std::string& text) {
-  std::ofstream(here / name) << text;
-}
-
 }  // namespace
 
 TEST_CASE("pack writes a specimen that remembers its seed and its recipe, the same on any number of threads") {
   const Workplace here;
-  write(here, "small.toml", small);
+  here.write("small.toml", small);
   const Outcome outcome = here.run("pack small.toml -o S.h5 --set pack.seed=5 --threads 1 --json");
   INFO(outcome.errors);
   REQUIRE(outcome.code == 0);
@@ -50,7 +46,7 @@ TEST_CASE("pack writes a specimen that remembers its seed and its recipe, the sa
   CHECK(origin->preparation_friction == made["preparation_friction"].get<double>());
 
   // The recipe in the file makes the file again.
-  write(here, "again.toml", origin->recipe);
+  here.write("again.toml", origin->recipe);
   REQUIRE(here.run("pack again.toml -o A.h5 --threads 3").code == 0);
   const Outcome same = here.run("compare S.h5 A.h5");
   INFO(same.output);
@@ -63,7 +59,7 @@ TEST_CASE("pack makes families over pressures and seeds, each in a file of its o
   std::string text = small;
   text.replace(text.find("pressure_Pa = 1e5"), 17, "pressures_Pa = [5e4, 1e5]");
   text.replace(text.find("void_ratio = 0.2\nvoid_ratio_tolerance = 2e-3\n"), 45, "");
-  write(here, "family.toml", text);
+  here.write("family.toml", text);
   const Outcome outcome = here.run("pack family.toml -o F.h5 --count 2 --threads 2 --json");
   INFO(outcome.errors);
   REQUIRE(outcome.code == 0);
@@ -85,7 +81,7 @@ TEST_CASE("pack makes families over pressures and seeds, each in a file of its o
 
 TEST_CASE("pack says what is wrong before it works, and what was reached after it") {
   const Workplace here;
-  write(here, "small.toml", small);
+  here.write("small.toml", small);
   expect_mistake(here.run("pack small.toml"), "-o");
   expect_mistake(here.run("pack small.toml -o none/S.h5"), "the folder none does not exist");
   expect_mistake(here.run("pack smal.toml -o S.h5"), "smal.toml: no such file");

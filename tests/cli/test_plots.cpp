@@ -54,9 +54,9 @@ TEST_CASE("every plot script draws what is its own and refuses the rest in one l
   test("envelope", "envelope.h5", "--set test.pressure_Pa=20e3");
   test("probe", "probe.h5", "--set test.pressure_Pa=20e3 --set stage.probe.method=linear");
 
-  expect_figure(here, "stress_strain", "compression.h5", "Biaxial compression: 1 stages");
-  expect_figure(here, "stress_strain", "extension.h5", "Biaxial extension: 1 stages");
-  expect_figure(here, "stress_strain", "shear.h5", "Simple shear at constant volume: 1 stages");
+  expect_figure(here, "stress_strain", "compression.h5", "Biaxial compression: 1 stage");
+  expect_figure(here, "stress_strain", "extension.h5", "Biaxial extension: 1 stage");
+  expect_figure(here, "stress_strain", "shear.h5", "Simple shear at constant volume: 1 stage");
   expect_figure(here, "stress_strain", "oedometer.h5", "Oedometer: 2 stages");
   expect_refusal(here, "stress_strain", "cyclic.h5", "loops.py");
   expect_refusal(here, "stress_strain", "isotropic.h5", "e_log_p.py");
@@ -75,8 +75,8 @@ TEST_CASE("every plot script draws what is its own and refuses the rest in one l
   expect_refusal(here, "mu_I", "shear.h5", "quasi-static");
   expect_refusal(here, "mu_I", "compression.h5", "no simple shear");
   for (const char* script : {"stress_path", "fabric", "volumetric"}) {
-    expect_figure(here, script, "compression.h5", "1 stages");
-    expect_figure(here, script, "cyclic.h5", "1 stages");
+    expect_figure(here, script, "compression.h5", "1 stage");
+    expect_figure(here, script, "cyclic.h5", "1 stage");
     expect_figure(here, script, "oedometer.h5", "2 stages");
     expect_refusal(here, script, "probe.h5", "holds no records");
     expect_refusal(here, script, "S.h5", "not a record file");

@@ -33,10 +33,6 @@ stiffness_ratio = 0.5
 friction_angle_deg = 23
 )";
 
-void write(const Workplace& here, const std::string& name, const std::string& text) {
-  std::ofstream(here / name) << text;
-}
-
 /// Particles of a file with radii `factor` times as large.
 std::string with_radii_times(const std::string& path, double factor) {
   std::ifstream input(path);
@@ -69,7 +65,7 @@ TEST_CASE("radii in mm or cm for m are refused by import with the unit in doubt,
   const std::string stem = std::string(RVELAB_TEST_DATA) + "/yade/dense";
   for (const double factor : {10.0, 1000.0, 1e8, 1e200}) {
     CAPTURE(factor);
-    write(here, "p.csv", with_radii_times(stem + ".particles.csv", factor));
+    here.write("p.csv", with_radii_times(stem + ".particles.csv", factor));
     expect_mistake(here.run("import p.csv " + stem + ".json -o S.h5"), "in mm?");
     CHECK(!std::filesystem::exists(here / "S.h5"));
   }
@@ -77,7 +73,7 @@ TEST_CASE("radii in mm or cm for m are refused by import with the unit in doubt,
 
 TEST_CASE("all of import, pack and inspect say what the numbers of a specimen are to each other") {
   const Workplace here;
-  write(here, "small.toml", small);
+  here.write("small.toml", small);
   const Outcome packed = here.run("pack small.toml -o P.h5");
   REQUIRE(packed.code == 0);
   here.import_packing("hertz");
@@ -121,7 +117,7 @@ TEST_CASE("pack takes no overlaps beyond the limit, and tells discs in a thick s
   text.replace(text.find("3e-3"), 4, "1e-3");
   text.replace(text.find("7e-3"), 4, "2e-3");
   text.replace(text.find("8e8"), 3, "2e7");
-  write(here, "mm.toml", text);
+  here.write("mm.toml", text);
   const Outcome thick = here.run("pack mm.toml -o S.h5");
   INFO(thick.errors);
   CHECK(thick.code == 1);
@@ -130,8 +126,8 @@ TEST_CASE("pack takes no overlaps beyond the limit, and tells discs in a thick s
                                Contains("pack.thickness_m = 0.1 m is") && Contains("stiffer grains"));
   CHECK(!std::filesystem::exists(here / "S.h5"));
   // A search does not go on for a hundred draws.
-  write(here, "search.toml",
-        text.substr(0, text.find("[preparation]")) + "void_ratio = 0.2\n" + text.substr(text.find("[[material]]")));
+  here.write("search.toml", text.substr(0, text.find("[preparation]")) + "void_ratio = 0.2\n" +
+                                text.substr(text.find("[[material]]")));
   const auto begin = std::chrono::steady_clock::now();
   CHECK_THAT(here.run("pack search.toml -o S.h5 --threads 1").errors, Contains("pack.thickness_m = 0.1 m is"));
   CHECK(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() < 60);
@@ -146,7 +142,7 @@ TEST_CASE("a cell too small for its grains is no packing") {
   const Workplace here;
   std::string text = small;
   text.replace(text.find("pressure_Pa = 1e5"), 17, "void_ratio = -0.4");
-  write(here, "full.toml", text);
+  here.write("full.toml", text);
   const Outcome outcome = here.run("pack full.toml -o S.h5");
   INFO(outcome.errors);
   CHECK(outcome.code == 1);
@@ -156,7 +152,7 @@ TEST_CASE("a cell too small for its grains is no packing") {
 
 TEST_CASE("a skin beyond all use is refused by its key before anything is packed or run") {
   const Workplace here;
-  write(here, "small.toml", small);
+  here.write("small.toml", small);
   for (const char* skin : {"100", "1000", "1e10", "2147483648", "4294967296"}) {
     CAPTURE(skin);
     expect_mistake(here.run("pack small.toml -o S.h5 --set solver.skin=" + std::string(skin)),
@@ -168,7 +164,7 @@ TEST_CASE("pack takes material.key for all materials, and material.NAME.key for 
   const Workplace here;
   const std::string text = small + std::string("[[material]]\nname = \"glass\"\nyoung_modulus_Pa = 8e8\n") +
                            "stiffness_ratio = 0.5\nfriction = 0.4\n";
-  write(here, "two.toml", text);
+  here.write("two.toml", text);
   const auto frictions = [&](const std::string& settings) {
     const Outcome packed = here.run("pack two.toml -o S.h5 --force --set pack.number=30 " + settings);
     INFO(packed.errors);
@@ -194,7 +190,7 @@ TEST_CASE("a void ratio far out of reach is refused after a few rounds of draws,
   const Workplace here;
   std::string text = small;
   text.replace(text.find("[preparation]\nfriction = 0.1\n"), 29, "");
-  write(here, "search.toml", text);
+  here.write("search.toml", text);
   for (const char* target : {"0.05", "0.6"}) {
     CAPTURE(target);
     const Outcome outcome = here.run("pack search.toml -o S.h5 --set target.void_ratio=" + std::string(target));
@@ -210,7 +206,7 @@ TEST_CASE("a void ratio far out of reach is refused after a few rounds of draws,
 
 TEST_CASE("a specimen without friction exports every contact that inspect counts") {
   const Workplace here;
-  write(here, "small.toml", small);
+  here.write("small.toml", small);
   REQUIRE(here.run("pack small.toml -o S.h5 --set material.friction=0").code == 0);
   const long contacts = Json::parse(here.run("inspect S.h5 --json").output)["contacts"];
   REQUIRE(contacts > 60);

@@ -44,7 +44,7 @@ def draw(stages, options):
     figure.suptitle("Response envelopes", fontsize=11, x=0.12, ha="left")
     figure.tight_layout()
     figure.savefig(options.output)
-    return f"{options.output}: {len(stages)} envelopes"
+    return f"{options.output}: {records.counted(len(stages), 'envelope')}"
 
 
 if __name__ == "__main__":

@@ -31,7 +31,7 @@ def draw(stages, options):
     rows[0].set_title("Fabric", fontsize=11, loc="left")
     figure.align_ylabels()
     figure.savefig(options.output)
-    return f"{options.output}: {len(stages)} stages"
+    return f"{options.output}: {records.counted(len(stages), 'stage')}"
 
 
 if __name__ == "__main__":

@@ -228,6 +228,11 @@ def plain(value):
     return f"{value:.4g}"
 
 
+def counted(number, noun):
+    """1 stage, 2 stages."""
+    return f"{number} {noun}" + ("" if number == 1 else "s")
+
+
 def run(draw, parser, read=read_driven_stages):
     """Parses the command line, draws, and turns a user's mistake into one line on stderr and exit code 2."""
     options = parser.parse_args()

@@ -59,7 +59,8 @@ def draw(stages, options):
         volume.set_xlim(right=0)
     figure.align_ylabels()
     figure.savefig(options.output)
-    return f"{options.output}: {', '.join(names)}: {len(stages)} stages, {unheld} records with the held stress missed"
+    made = f"{', '.join(names)}: {records.counted(len(stages), 'stage')}"
+    return f"{options.output}: {made}, {records.counted(unheld, 'record')} with the held stress missed"
 
 
 if __name__ == "__main__":

@@ -32,7 +32,7 @@ def draw(stages, options):
     figure.suptitle("Volumetric curves", fontsize=11, x=0.12, ha="left")
     figure.tight_layout()
     figure.savefig(options.output)
-    return f"{options.output}: {len(stages)} stages"
+    return f"{options.output}: {records.counted(len(stages), 'stage')}"
 
 
 if __name__ == "__main__":
