@@ -177,6 +177,7 @@ inline const std::vector<Experiment>& experiments() {
         {"hertz", 0},
         {"grains", 256},
         {"gases", 16},
+        {"ledgers", 2},
         {"solid_fraction", 0.1},
         {"restitution", 0.9},
         {"duration", 3},
