@@ -18,7 +18,7 @@
 #include "rvelab/pack/search.hpp"
 #include "rvelab/solver/batch.hpp"
 #include "rvelab/solver/rve.hpp"
-#include "rvelab/solver/scene.hpp"
+#include "rvelab/solver/kernels/configuration.hpp"
 
 namespace rvelab::cli {
 
@@ -210,7 +210,7 @@ void run_bench(const Arguments& arguments) {
   if (arguments.batch > 0) return run_batch(arguments);
   Workers team(arguments.threads);
   Listing listing;
-  listing.add("instruction_set", kernels_for(SceneKey{}).instruction_set);
+  listing.add("instruction_set", kernels_for(KernelConfiguration{}).instruction_set);
   if (arguments.grains > 0) {
     const Specimen specimen = of_size(arguments.shape == "disc" ? Shape::disc : Shape::sphere, arguments.grains);
     const double work = std::max(arguments.quick ? 1e6 : 5e6, 60.0 * double(specimen.grains.size()));

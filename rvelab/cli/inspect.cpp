@@ -40,22 +40,8 @@ Json parameters_of(const Material& material, const ContactModel& model) {
   Json json;
   json["name"] = material.name;
   json["density_kg_m3"] = material.density;
-  switch (model.law) {
-    case Law::linear:
-      json["young_modulus_Pa"] = material.young_modulus;
-      json["stiffness_ratio"] = material.stiffness_ratio;
-      break;
-    case Law::hertz_mindlin:
-      json["young_modulus_Pa"] = material.young_modulus;
-      json["poisson_ratio"] = material.poisson_ratio;
-      break;
-    case Law::linear_given:
-    case Law::hertz_given:
-      json[model.law == Law::linear_given ? "normal_stiffness_N_m" : "normal_stiffness_N_m1_5"] =
-          material.normal_stiffness;
-      json["tangential_stiffness_N_m"] = material.tangential_stiffness;
-      break;
-  }
+  for (const LawParameter& each : law_parameters())
+    if (each.law == model.law) json[each.parameter.key] = material.*each.value;
   json["friction"] = material.friction;
   if (model.rolling) {
     json["rolling_stiffness"] = material.rolling_stiffness;

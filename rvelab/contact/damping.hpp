@@ -12,23 +12,24 @@
 // at rest feels (1 - alpha) of its force instead of a jump in sign.
 #pragma once
 
+#include "rvelab/lanes/lanes.hpp"
+
 namespace rvelab {
 
-/// sqrt_of: square root of a lane vector; root = sqrt(overlap).
-template <class V, class Sqrt>
-static inline __attribute__((always_inline)) V dashpot_coefficient(V cn, V root, int quarters_of_power, Sqrt sqrt_of) {
+/// root = sqrt(overlap).
+template <class V>
+static inline __attribute__((always_inline)) V dashpot_coefficient(V cn, V root, int quarters_of_power) {
   if (quarters_of_power == 0) return cn;
   if (quarters_of_power == 2) return cn * root;
-  return cn * sqrt_of(root);
+  return cn * square_root(root);
 }
 
 /// alpha |f| / |v|, zero where v is.
-template <class V, class Sqrt>
-static inline __attribute__((always_inline)) V local_damping_factor(double alpha, V force_squared, V velocity_squared,
-                                                                    Sqrt sqrt_of) {
+template <class V>
+static inline __attribute__((always_inline)) V local_damping_factor(double alpha, V force_squared, V velocity_squared) {
   const V one = V{} + 1.0;
   const V safe = (velocity_squared > 0.0) ? velocity_squared : one;
-  const V factor = alpha * sqrt_of(force_squared / safe);
+  const V factor = alpha * square_root(force_squared / safe);
   return (velocity_squared > 0.0) ? factor : V{};
 }
 

@@ -1,9 +1,8 @@
-// Names, ranges and mixing of contact parameters (design 6).
+// Names, ranges and mixing of contact parameters. What a law reads and makes of it stands in its own file (laws.hpp).
 //
-// Sources: linear law, rolling: Liang and Zhao 2019, eq. 20-28. Hertz-Mindlin: Li et al. 2023, eq. 18-21. Hertz with
-// given constants: Qu, Feng and Wang, eq. 16-17. Dashpots: restitution.hpp, Tsuji, Tanaka and Ishida 1992, Brilliantov
-// et al. 1996 (viscoelastic). Pair parameters decide the next bit of a specimen, so that nothing here calls the
-// mathematical library but for the square root, which is correctly rounded everywhere.
+// Sources: rolling: Liang and Zhao 2019, eq. 24-28. Dashpots: restitution.hpp, Tsuji, Tanaka and Ishida 1992,
+// Brilliantov et al. 1996 (viscoelastic). Pair parameters decide the next bit of a specimen, so that nothing here calls
+// the mathematical library but for the square root, which is correctly rounded everywhere.
 #include "rvelab/contact/model.hpp"
 
 #include <algorithm>
@@ -19,10 +18,6 @@
 namespace rvelab {
 namespace {
 
-constexpr std::array<std::pair<Law, const char*>, 4> law_names{{{Law::linear, "linear"},
-                                                                {Law::linear_given, "linear_given"},
-                                                                {Law::hertz_mindlin, "hertz_mindlin"},
-                                                                {Law::hertz_given, "hertz_given"}}};
 constexpr std::array<std::pair<Slip, const char*>, 3> slip_names{
     {{Slip::consistent, "consistent"},
      {Slip::full_radius, "full_radius"},
@@ -54,10 +49,18 @@ auto value_in(const Table& table, const char* key, const std::string& text) {
                    "; choose one of these");
 }
 
-bool is_hertz(Law law) { return law == Law::hertz_mindlin || law == Law::hertz_given; }
+/// Whether a collision is that of Hertz springs, f_n = k x^(3/2).
+bool stiffens(Law law) {
+  return with_law(law, [](auto each) { return decltype(each)::Force::Impact::stiffens; });
+}
 
-/// 2ab/(a + b), zero if either is zero.
-double harmonic_mean(double a, double b) { return a > 0 && b > 0 ? 2 * (a * b) / (a + b) : 0.0; }
+/// Names of all laws, or of those whose springs stiffen.
+std::string names_of_laws(bool all) {
+  std::string names;
+  for (int k = 0; k < law_count; ++k)
+    if (all || stiffens(Law(k))) names += (names.empty() ? "" : ", ") + std::string(name(Law(k)));
+  return names;
+}
 
 /// Tsuji's factor alpha(e) as the polynomial that LAMMPS fits. Tsuji's mass is that of one grain, LAMMPS' the reduced
 /// one, so that grains rebound faster than e says: at 0.853 of their speed for e = 0.8, at 0.44 for 0.3 (LAMMPS' own
@@ -74,8 +77,8 @@ double dashpot_constant(Law law, const Damping& damping, double kn, double reduc
     case Dashpot::coefficient:
       return damping.normal_coefficient;
     case Dashpot::restitution:
-      return (is_hertz(law) ? std::sqrt(5.0) : 2.0) * damping_ratio(damping.restitution, damping.no_tension) *
-             std::sqrt(reduced_mass * kn);
+      return with_law(law, [](auto each) { return decltype(each)::Force::Impact::restitution_factor; }) *
+             damping_ratio(damping.restitution, damping.no_tension) * std::sqrt(reduced_mass * kn);
     case Dashpot::tsuji:
       return tsuji_factor(damping.restitution) * std::sqrt(reduced_mass * kn);
     case Dashpot::viscoelastic:
@@ -120,18 +123,18 @@ void check_damping(const ContactModel& model, const Damping& damping, Findings& 
     findings.expect(damping.normal_coefficient >= 0, "damping.normal_coefficient", damping.normal_coefficient,
                     ">= 0 N s/m", "give the dashpot coefficient, or damping.dashpot = none");
   }
-  if (damping.dashpot == Dashpot::tsuji && !is_hertz(model.law)) {
+  if (damping.dashpot == Dashpot::tsuji && !stiffens(model.law)) {
     findings.add("damping.dashpot = tsuji does not go with contact.law = " + std::string(name(model.law)) +
-                 "; allowed: hertz_mindlin, hertz_given; use damping.dashpot = restitution");
+                 "; allowed: " + names_of_laws(false) + "; use damping.dashpot = restitution");
   }
   if (damping.dashpot == Dashpot::restitution || damping.dashpot == Dashpot::tsuji) {
     findings.expect(damping.restitution > 0 && damping.restitution <= 1, "damping.restitution", damping.restitution,
                     "above 0 to 1", "give the coefficient of restitution of two grains; 1 is elastic");
   }
   if (damping.dashpot == Dashpot::viscoelastic) {
-    if (!is_hertz(model.law)) {
+    if (!stiffens(model.law)) {
       findings.add("damping.dashpot = viscoelastic does not go with contact.law = " + std::string(name(model.law)) +
-                   "; allowed: hertz_mindlin, hertz_given; use damping.dashpot = restitution or coefficient");
+                   "; allowed: " + names_of_laws(false) + "; use damping.dashpot = restitution or coefficient");
     }
     findings.expect(damping.normal_coefficient >= 0, "damping.normal_coefficient", damping.normal_coefficient,
                     ">= 0 1/(m s)", "give the viscoelastic constant, or damping.dashpot = none");
@@ -142,24 +145,12 @@ void check_material(const ContactModel& model, const Material& material, Finding
   const auto key = [&](const char* field) { return "material \"" + material.name + "\": " + field; };
   findings.expect(material.density > 0, key("density"), material.density, "> 0 kg/m^3",
                   "give the density of the solid, 2650 for quartz");
-  if (model.law == Law::linear || model.law == Law::hertz_mindlin) {
-    findings.expect(material.young_modulus > 0, key("young_modulus"), material.young_modulus, "> 0 Pa",
-                    "give the contact modulus E");
-  }
-  if (model.law == Law::linear) {
-    findings.expect(material.stiffness_ratio >= 0 && material.stiffness_ratio <= 10, key("stiffness_ratio"),
-                    material.stiffness_ratio, "0 to 10", "give kt/kn of the linear law");
-  }
-  if (model.law == Law::hertz_mindlin) {
-    findings.expect(material.poisson_ratio >= -0.99 && material.poisson_ratio <= 0.5, key("poisson_ratio"),
-                    material.poisson_ratio, "-0.99 to 0.5", "give Poisson's ratio of the grains, 0.25 for quartz");
-  }
-  if (model.law == Law::linear_given || model.law == Law::hertz_given) {
-    const bool linear = model.law == Law::linear_given;
-    findings.expect(material.normal_stiffness > 0, key("normal_stiffness"), material.normal_stiffness,
-                    linear ? "> 0 N/m" : "> 0 N/m^1.5", "give the normal stiffness of a contact");
-    findings.expect(material.tangential_stiffness >= 0, key("tangential_stiffness"), material.tangential_stiffness,
-                    ">= 0 N/m", "give the tangential stiffness of a contact, 0 for none");
+  for (const LawParameter& each : law_parameters()) {
+    if (each.law != model.law) continue;
+    const Parameter& p = each.parameter;
+    const std::string unit = p.unit == std::string("1") ? "" : std::string(" ") + p.unit;
+    findings.expect(p.allowed.contains(material.*each.value), key(p.field), material.*each.value,
+                    (in_words(p.allowed) + unit).c_str(), p.remedy);
   }
   findings.expect(material.friction >= 0 && material.friction <= 1e6, key("friction"), material.friction, "0 to 1e6",
                   "give mu, the tangent of the contact friction angle; 1e6 means no slip");
@@ -175,39 +166,34 @@ void check_material(const ContactModel& model, const Material& material, Finding
 
 double dashpot_power(Law law, Dashpot dashpot) {
   if (dashpot == Dashpot::viscoelastic) return 0.5;
-  return (dashpot == Dashpot::restitution || dashpot == Dashpot::tsuji) && is_hertz(law) ? 0.25 : 0.0;
+  if (dashpot != Dashpot::restitution && dashpot != Dashpot::tsuji) return 0;
+  return 0.25 * with_law(law, [](auto each) { return decltype(each)::Force::Impact::restitution_quarters; });
+}
+
+const std::vector<LawParameter>& law_parameters() {
+  static const std::vector<LawParameter> all = [] {
+    std::vector<LawParameter> found;
+    for (int k = 0; k < law_count; ++k)
+      with_law(Law(k), [&](auto law) {
+        decltype(law)::parameters([&](const Parameter& parameter, auto value) {
+          found.push_back({Law(k), parameter, value});
+        });
+      });
+    return found;
+  }();
+  return all;
 }
 
 PairParameters mix(const ContactModel& model, const Damping& damping, const Material& a, double ri, double mi,
-                   const Material& b, double rj, double mj) {
+                   const Material& b, double rj, double mj, double section) {
   const double reduced_radius = ri * rj / (ri + rj);
   const double reduced_mass = mi * mj / (mi + mj);
+  const ContactConstants constants =
+      with_law(model.law, [&](auto law) { return decltype(law)::mix(a, ri, b, rj, section); });
   PairParameters pair;
-  switch (model.law) {
-    case Law::linear: {
-      const double ei = a.young_modulus * ri, ej = b.young_modulus * rj;
-      pair.kn = harmonic_mean(ei, ej);
-      pair.kt = harmonic_mean(ei * a.stiffness_ratio, ej * b.stiffness_ratio);
-      break;
-    }
-    case Law::linear_given:
-    case Law::hertz_given:
-      pair.kn = harmonic_mean(a.normal_stiffness, b.normal_stiffness);
-      pair.kt = harmonic_mean(a.tangential_stiffness, b.tangential_stiffness);
-      break;
-    case Law::hertz_mindlin: {
-      const auto compression = [](const Material& m) {
-        return (1 - m.poisson_ratio * m.poisson_ratio) / m.young_modulus;
-      };
-      const auto shear = [](const Material& m) {
-        return 2 * (2 - m.poisson_ratio) * (1 + m.poisson_ratio) / m.young_modulus;
-      };
-      const double root = std::sqrt(reduced_radius);
-      pair.kn = 4 * root / (3 * (compression(a) + compression(b)));
-      pair.kt = 8 * root / (shear(a) + shear(b));
-      break;
-    }
-  }
+  pair.kn = constants.kn;
+  pair.kt = constants.kt;
+  pair.own = constants.own;
   pair.friction = std::min(a.friction, b.friction);
   if (model.rolling) {
     pair.kr = pair.kt * (ri * rj) * harmonic_mean(a.rolling_stiffness, b.rolling_stiffness);
@@ -225,12 +211,33 @@ void check(const ContactModel& model, const Damping& damping, const std::vector<
   findings.raise();
 }
 
-const char* name(Law law) { return name_in(law_names, law); }
+const char* name(Law law) {
+  return with_law(law, [](auto each) { return decltype(each)::name; });
+}
+std::string in_words(const Interval& i) {
+  std::ostringstream words;
+  if (i.low == -no_bound && i.high == no_bound)
+    words << "any finite number";
+  else if (i.low == -no_bound)
+    words << (i.high_open ? "below " : "up to ") << i.high;
+  else if (i.high == no_bound)
+    words << (i.low_open ? "> " : ">= ") << i.low;
+  else
+    words << (i.low_open ? "above " : "") << i.low << " to " << (i.high_open ? "below " : "") << i.high;
+  return words.str();
+}
+
 const char* name(Slip slip) { return name_in(slip_names, slip); }
 const char* name(Dashpot dashpot) { return name_in(dashpot_names, dashpot); }
 const char* name(LocalDampingForm form) { return name_in(local_damping_form_names, form); }
 
-Law law_from(const std::string& text) { return value_in(law_names, "contact.law", text); }
+std::string law_names() { return names_of_laws(true); }
+
+Law law_from(const std::string& text) {
+  for (int k = 0; k < law_count; ++k)
+    if (text == name(Law(k))) return Law(k);
+  throw InputError("contact.law = \"" + text + "\" is not known; allowed: " + law_names() + "; choose one of these");
+}
 Slip slip_from(const std::string& text) { return value_in(slip_names, "contact.slip", text); }
 Dashpot dashpot_from(const std::string& text) { return value_in(dashpot_names, "damping.dashpot", text); }
 LocalDampingForm local_damping_form_from(const std::string& text) {

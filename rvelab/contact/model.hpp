@@ -8,21 +8,17 @@
 #include <vector>
 
 #include "rvelab/contact/kinds.hpp"
+#include "rvelab/contact/laws.hpp"
 
 namespace rvelab {
 
-/// One grain material. Only the fields that the law uses are read; the others keep zero.
-struct Material {
+/// One grain material. Of the laws' constants only those that the specimen's law uses are read; the others keep zero.
+struct Material : LawConstants {
   std::string name = "grain";
-  double density = 2650;            ///< kg/m^3, > 0
-  double young_modulus = 0;         ///< Pa, > 0 (linear, hertz_mindlin)
-  double stiffness_ratio = 0;       ///< kt/kn of the linear law (its "nu"), 0 to 10
-  double poisson_ratio = 0;         ///< hertz_mindlin, -0.99 to 0.5
-  double normal_stiffness = 0;      ///< N/m (linear_given) or N/m^1.5 (hertz_given), > 0
-  double tangential_stiffness = 0;  ///< N/m, >= 0 (linear_given, hertz_given)
-  double friction = 0;              ///< Coulomb coefficient mu = tan(phi_mu), 0 to 1e6 (1e6: no slip)
-  double rolling_stiffness = 0;     ///< beta of k_r = kt ri rj beta, >= 0
-  double rolling_friction = 0;      ///< eta of the cap min(eta_i ri, eta_j rj) fn, >= 0
+  double density = 2650;         ///< kg/m^3, > 0
+  double friction = 0;           ///< Coulomb coefficient mu = tan(phi_mu), 0 to 1e6 (1e6: no slip)
+  double rolling_stiffness = 0;  ///< beta of k_r = kt ri rj beta, >= 0
+  double rolling_friction = 0;   ///< eta of the cap min(eta_i ri, eta_j rj) fn, >= 0
 };
 
 /// What holds for every contact of a specimen.
@@ -47,12 +43,26 @@ struct Damping {
   double global_viscous = 0;      ///< N s/m, force -c v' on each grain, dt > 0 only
 };
 
+/// A number of a material that a law reads, and where it stands.
+struct LawParameter {
+  Law law;
+  Parameter parameter;
+  double Material::*value;
+};
+
+/// "> 0", "0 to 10", "above 0 to below 1".
+std::string in_words(const Interval& interval);
+
+/// Those of all laws, in the order of the laws.
+const std::vector<LawParameter>& law_parameters();
+
 /// Parameters of one pair of grains, computed once when the pair is listed.
 struct PairParameters {
-  double kn = 0;          ///< linear: N/m; Hertz: N/m^1.5, f_n = kn delta^1.5
-  double kt = 0;          ///< linear, hertz_given: N/m; hertz_mindlin: N/m^1.5, kt = this sqrt(delta)
+  double kn = 0;          ///< constant of f_n: linear N/m, Hertz N/m^1.5 (contact/laws.hpp)
+  double kt = 0;          ///< constant of k_t: N/m; hertz_mindlin N/m^1.5
+  double own = 0;         ///< one more, of laws that have one
   double friction = 0;    ///< the smaller of the two
-  double kr = 0;          ///< rolling: linear, hertz_given: N m; hertz_mindlin: N m/m^0.5, times sqrt(delta)
+  double kr = 0;          ///< constant of k_r = kt ri rj beta: N m; hertz_mindlin N m/m^0.5
   double moment_cap = 0;  ///< min(eta_i ri, eta_j rj), m
   double cn = 0;          ///< dashpot: c_n = cn delta^dashpot_power
 };
@@ -61,9 +71,10 @@ struct PairParameters {
 /// tsuji with a Hertz law).
 double dashpot_power(Law law, Dashpot dashpot);
 
-/// Mixes two materials for grains of radii ri, rj (m) and masses mi, mj (kg).
+/// Mixes two materials for grains of radii ri, rj (m) and masses mi, mj (kg). `section`: cross-section of the smaller
+/// grain, m^2 (grain_section).
 PairParameters mix(const ContactModel& model, const Damping& damping, const Material& a, double ri, double mi,
-                   const Material& b, double rj, double mj);
+                   const Material& b, double rj, double mj, double section);
 
 /// Checks every parameter that the model uses. Throws InputError naming key, value and range, one line each.
 void check(const ContactModel& model, const Damping& damping, const std::vector<Material>& materials);
@@ -73,6 +84,7 @@ const char* name(Slip);
 const char* name(Dashpot);
 const char* name(LocalDampingForm);
 Law law_from(const std::string&);  ///< throws InputError listing the names
+std::string law_names();           ///< "linear, linear_given, ..."
 Slip slip_from(const std::string&);
 Dashpot dashpot_from(const std::string&);
 LocalDampingForm local_damping_form_from(const std::string&);

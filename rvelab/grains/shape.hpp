@@ -14,6 +14,11 @@ constexpr double grain_volume(Shape shape, double radius, double thickness) {
   return shape == Shape::disc ? pi * radius * radius * thickness : 4.0 / 3.0 * pi * radius * radius * radius;
 }
 
+/// Cross-section through the centre, m^2. Disc: 2 r thickness; sphere: pi r^2 (thickness unused).
+constexpr double grain_section(Shape shape, double radius, double thickness) {
+  return shape == Shape::disc ? 2 * radius * thickness : 3.14159265358979323846 * radius * radius;
+}
+
 /// Moment of inertia about the centre (disc: about its axis), kg m^2.
 constexpr double moment_of_inertia(Shape shape, double mass, double radius) {
   return (shape == Shape::disc ? 0.5 : 0.4) * mass * radius * radius;

@@ -75,7 +75,7 @@ std::vector<Contact> touching_contacts(const Specimen& specimen) {
                                        [&](const Contact& c, const ListedPair& p) { return key(c) < key(p); });
     const Contact bare{pair.i, pair.j, pair.image};
     const bool known = same != specimen.contacts.end() && key(*same) == key(pair);
-    if (!known && io::normal_force_of(specimen, bare) > 0) contacts.push_back(bare);
+    if (!known && io::overlap_of(specimen, bare) > 0) contacts.push_back(bare);
   }
   std::sort(contacts.begin(), contacts.end(), [&](const Contact& a, const Contact& b) { return key(a) < key(b); });
   return contacts;
@@ -84,7 +84,8 @@ std::vector<Contact> touching_contacts(const Specimen& specimen) {
 std::string text_of(const Specimen& specimen, const std::vector<Contact>& contacts) {
   const int dimension = specimen.cell.dimension;
   const Law law = specimen.contact.law;
-  const bool rolling = specimen.contact.rolling, hertz = law == Law::hertz_mindlin || law == Law::hertz_given;
+  const bool rolling = specimen.contact.rolling;
+  const bool hertz = with_law(law, [](auto each) { return decltype(each)::Force::Impact::stiffens; });
   std::string text = first_line + "id1,id2" + axes("s", dimension) + ",fn" + axes("fs", dimension);
   text += std::string(dimension == 2 ? ",ft" : "") + (hertz ? ",kno,kso" : ",kn,ks");
   if (rolling) text += (dimension == 3 ? axes("m", 3) : ",mz") + std::string(",kr");

@@ -151,7 +151,7 @@ class Series {
   }
 
   static bool is_sliding(const ContactState& contact) {
-    return contact.tangential_force.norm() >= (1 - 1e-6) * contact.friction * std::abs(contact.normal_force);
+    return contact.tangential_force.norm() >= (1 - 1e-6) * contact.friction * std::abs(contact.pressing_force);
   }
 
   Hdf5File& heavy_;

@@ -20,12 +20,6 @@ std::string text(double value) {
   return number;
 }
 
-double normal_force(Law law, double kn, double overlap) {
-  if (overlap <= 0) return 0;
-  const bool hertz = law == Law::hertz_mindlin || law == Law::hertz_given;
-  return kn * overlap * (hertz ? std::sqrt(overlap) : 1.0);
-}
-
 /// Columns of a contact table, as far as the specimen needs them.
 class ContactColumns {
  public:
@@ -176,11 +170,16 @@ PairParameters parameters_of(const Specimen& specimen, const Contact& contact) {
   };
   const auto i = static_cast<std::size_t>(contact.i), j = static_cast<std::size_t>(contact.j);
   return mix(specimen.contact, specimen.damping, material(i), grains.radius[i], mass(i), material(j), grains.radius[j],
-             mass(j));
+             mass(j), grain_section(specimen.shape, std::min(grains.radius[i], grains.radius[j]), thickness));
 }
 
 double normal_force_of(const Specimen& specimen, const Contact& contact) {
-  return normal_force(specimen.contact.law, parameters_of(specimen, contact).kn, overlap_of(specimen, contact));
+  const double overlap = overlap_of(specimen, contact);
+  if (overlap <= 0) return 0;
+  const PairParameters pair = parameters_of(specimen, contact);
+  return with_law(specimen.contact.law, [&](auto law) {
+    return decltype(law)::Force::normal_force(pair.kn, overlap, std::sqrt(overlap), pair.own);
+  });
 }
 
 void read_contacts(const CsvTable& table, const std::vector<Image>& wraps, Specimen& specimen) {
@@ -242,7 +241,8 @@ void read_contacts(const CsvTable& table, const std::vector<Image>& wraps, Speci
 
 void set_root_overlaps(Specimen& specimen) {
   for (Contact& contact : specimen.contacts) {
-    const bool kept = specimen.contact.law == Law::hertz_mindlin;
+    const bool kept =
+        with_law(specimen.contact.law, [](auto law) { return decltype(law)::Force::stores_root_overlap; });
     contact.last_root_overlap = kept ? std::sqrt(overlap_of(specimen, contact)) : 0;
   }
 }

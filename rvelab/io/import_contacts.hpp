@@ -19,7 +19,7 @@ double overlap_of(const Specimen& specimen, const Contact& contact);
 PairParameters parameters_of(const Specimen& specimen, const Contact& contact);
 double normal_force_of(const Specimen& specimen, const Contact& contact);
 
-/// Sets Contact::last_root_overlap: sqrt(overlap) with hertz_mindlin, else zero.
+/// Sets Contact::last_root_overlap: sqrt(overlap) with laws that store it (hertz_mindlin), else zero.
 void set_root_overlaps(Specimen& specimen);
 
 }  // namespace rvelab::io

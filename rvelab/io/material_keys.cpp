@@ -1,5 +1,6 @@
 #include "rvelab/io/material_keys.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <sstream>
 #include <type_traits>
@@ -34,11 +35,11 @@ template <class Value>
 std::string allowed(const Range& range) {
   if constexpr (std::is_same_v<Value, bool>) return "true, false";
   if constexpr (std::is_same_v<Value, std::string>) return "any text, different for each material";
-  if constexpr (std::is_same_v<Value, Law>) return "linear, linear_given, hertz_mindlin, hertz_given";
+  if constexpr (std::is_same_v<Value, Law>) return law_names();
   if constexpr (std::is_same_v<Value, Slip>) return "consistent, full_radius, full_radius_ratcheting";
   if constexpr (std::is_same_v<Value, Dashpot>) return "none, coefficient, restitution, viscoelastic, tsuji";
   if constexpr (std::is_same_v<Value, LocalDampingForm>) return "vector, component";
-  return range.in_words();
+  return in_words(range);
 }
 
 template <class Value>
@@ -57,23 +58,39 @@ KeyEntry entry(const char* table, const char* name, const char* unit, Value Owne
       {table, name, unit, type_of<Value>(), as_toml(Owner{}.*member), allowed<Value>(range), meaning}, member, range};
 }
 
+/// A key for each number that laws read, with the laws that read it: "linear_given, hertz_given: kt".
+std::vector<KeyEntry> law_constants() {
+  std::vector<KeyEntry> entries;
+  std::vector<std::string> last_meaning;
+  for (const LawParameter& each : law_parameters()) {
+    const Parameter& p = each.parameter;
+    const auto same = std::find_if(entries.begin(), entries.end(), [&](const auto& e) { return e.key.name == p.key; });
+    const std::string law = name(each.law);
+    if (same == entries.end()) {
+      entries.push_back(entry("material", p.key, p.unit, each.value, p.allowed, (law + ": " + p.meaning).c_str()));
+      last_meaning.emplace_back(p.meaning);
+      continue;
+    }
+    std::string& meaning = same->key.meaning;
+    std::string& last = last_meaning[std::size_t(same - entries.begin())];
+    if (last == p.meaning)
+      meaning.insert(meaning.rfind(": " + last), ", " + law);
+    else
+      meaning += "; " + law + ": " + (last = p.meaning);
+  }
+  return entries;
+}
+
 std::vector<KeyEntry> materials() {
   const char* t = "material";
-  return {
+  std::vector<KeyEntry> entries = {
       entry(t, "name", "-", &Material::name, any_words, "name of the material, for --set material.NAME.key"),
-      entry(t, "density_kg_m3", "kg/m^3", &Material::density, positive, "density of the solid"),
-      entry(t, "young_modulus_Pa", "Pa", &Material::young_modulus, positive,
-            "linear: E of kn = 2 Ei ri Ej rj/(Ei ri + Ej rj); hertz_mindlin: Young's modulus"),
-      entry(t, "stiffness_ratio", "1", &Material::stiffness_ratio, {0, 10},
-            "linear: kt/kn; 0 set by a protocol drops the tangential forces that the specimen holds"),
-      entry(t, "poisson_ratio", "1", &Material::poisson_ratio, {-0.99, 0.5}, "hertz_mindlin: Poisson's ratio"),
-      entry(t, "normal_stiffness_N_m", "N/m", &Material::normal_stiffness, positive, "linear_given: kn"),
-      entry(t, "normal_stiffness_N_m1_5", "N/m^1.5", &Material::normal_stiffness, positive,
-            "hertz_given: k of f_n = k overlap^1.5"),
-      entry(t, "tangential_stiffness_N_m", "N/m", &Material::tangential_stiffness, not_negative,
-            "linear_given, hertz_given: kt"),
+      entry(t, "density_kg_m3", "kg/m^3", &Material::density, positive, "density of the solid")};
+  const std::vector<KeyEntry> constants = law_constants();
+  entries.insert(entries.end(), constants.begin(), constants.end());
+  const std::vector<KeyEntry> surface = {
       entry(t, "friction", "1", &Material::friction, {0, 1e6}, "Coulomb coefficient mu; 1e6: no slip"),
-      {{t, "friction_angle_deg", "degree", "number", "", Range{0, 90, false, true}.in_words(),
+      {{t, "friction_angle_deg", "degree", "number", "", in_words(Range{0, 90, false, true}),
         "in place of friction: mu is its tangent"},
        FrictionAngle{},
        {0, 90, false, true}},
@@ -81,6 +98,8 @@ std::vector<KeyEntry> materials() {
       entry(t, "rolling_friction", "1", &Material::rolling_friction, not_negative,
             "eta of the moment cap min(eta_i ri, eta_j rj) fn"),
   };
+  entries.insert(entries.end(), surface.begin(), surface.end());
+  return entries;
 }
 
 std::vector<KeyEntry> contacts() {
@@ -145,24 +164,6 @@ std::vector<KeyEntry> solver() {
 }
 
 }  // namespace
-
-bool Range::contains(double value) const {
-  return (low_open ? value > low : value >= low) && (high_open ? value < high : value <= high);
-}
-
-std::string Range::in_words() const {
-  std::ostringstream words;
-  if (low == -infinity && high == infinity) {
-    words << "any finite number";
-  } else if (low == -infinity) {
-    words << (high_open ? "below " : "up to ") << high;
-  } else if (high == infinity) {
-    words << (low_open ? "> " : ">= ") << low;
-  } else {
-    words << (low_open ? "above " : "") << low << " to " << (high_open ? "below " : "") << high;
-  }
-  return words.str();
-}
 
 const std::vector<KeyEntry>& key_entries() {
   static const std::vector<KeyEntry> all = [] {

@@ -8,13 +8,7 @@
 
 namespace rvelab::io {
 
-/// Interval of the values that a number may take.
-struct Range {
-  double low, high;
-  bool low_open = false, high_open = false;
-  bool contains(double value) const;
-  std::string in_words() const;
-};
+using Range = Interval;
 
 /// friction_angle_deg sets Material::friction to its tangent.
 struct FrictionAngle {};

@@ -1,4 +1,5 @@
 // The parameters of a specimen as the TOML file that read_material_file reads, from the same table of keys.
+#include <algorithm>
 #include <sstream>
 
 #include "rvelab/io/archive.hpp"
@@ -11,10 +12,16 @@ namespace {
 
 /// Keys that share a field and not its unit: the one that the law, or the dashpot, reads.
 bool in_use(const Specimen& specimen, const std::string& name) {
-  const bool hertz_given = specimen.contact.law == Law::hertz_given;
   const bool viscoelastic = specimen.damping.dashpot == Dashpot::viscoelastic;
-  if (name == "normal_stiffness_N_m") return !hertz_given;
-  if (name == "normal_stiffness_N_m1_5") return hertz_given;
+  // Where no law of this name reads the field, the first key of it stands.
+  const auto& all = law_parameters();
+  const auto asked = std::find_if(all.begin(), all.end(), [&](const auto& each) { return name == each.parameter.key; });
+  if (asked != all.end())
+    for (const LawParameter& other : all)
+      if (other.value == asked->value && other.law == specimen.contact.law) return name == other.parameter.key;
+  if (asked != all.end())
+    return name ==
+           std::find_if(all.begin(), all.end(), [&](const auto& e) { return e.value == asked->value; })->parameter.key;
   if (name == "normal_coefficient_N_s_m") return !viscoelastic;
   if (name == "viscoelastic_1_m_s") return viscoelastic;
   return true;

@@ -74,16 +74,17 @@ void convert(const std::string& dotted, const toml::node& value, const KeyEntry&
 
 /// Keys that share a field but not its unit: which one applies is the law's, or the dashpot's, to say.
 void expect_unit(const Specimen& specimen, const std::string& dotted, const KeyEntry& entry) {
-  const auto other = [&](bool wrong, const char* chosen, const char* instead) {
+  const auto other = [&](bool wrong, const std::string& chosen, const std::string& instead) {
     if (wrong) throw InputError(dotted + " does not go with " + chosen + "; allowed: " + instead + "; use that key");
   };
   const auto& name = entry.key.name;
   const auto law = specimen.contact.law;
   const auto dashpot = specimen.damping.dashpot;
-  other(name == "normal_stiffness_N_m" && law == Law::hertz_given, "contact.law = hertz_given",
-        "normal_stiffness_N_m1_5");
-  other(name == "normal_stiffness_N_m1_5" && law == Law::linear_given, "contact.law = linear_given",
-        "normal_stiffness_N_m");
+  const auto& parameters = law_parameters();
+  for (const LawParameter& asked : parameters)
+    for (const LawParameter& read : parameters)
+      other(name == asked.parameter.key && read.law == law && read.value == asked.value && name != read.parameter.key,
+            std::string("contact.law = ") + rvelab::name(law), read.parameter.key);
   other(name == "normal_coefficient_N_s_m" && dashpot == Dashpot::viscoelastic, "damping.dashpot = viscoelastic",
         "viscoelastic_1_m_s");
   other(name == "viscoelastic_1_m_s" && dashpot == Dashpot::coefficient, "damping.dashpot = coefficient",

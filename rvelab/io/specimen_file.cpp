@@ -17,16 +17,16 @@ constexpr const char* records_format = "rvelab records";
 
 template <class Archive, class Value>
 void describe_parameters(Archive& archive, Value& specimen) {
-  archive.table("materials", specimen.materials,                                             //
-                Column{"name", &Material::name, "-"},                                        //
-                Column{"density_kg_m3", &Material::density, "kg/m^3"},                       //
-                Column{"young_modulus_Pa", &Material::young_modulus, "Pa"},                  //
-                Column{"stiffness_ratio", &Material::stiffness_ratio, "1"},                  //
-                Column{"poisson_ratio", &Material::poisson_ratio, "1"},                      //
-                Column{"normal_stiffness", &Material::normal_stiffness, "N/m or N/m^1.5"},   //
-                Column{"tangential_stiffness_N_m", &Material::tangential_stiffness, "N/m"},  //
-                Column{"friction", &Material::friction, "1"},                                //
-                Column{"rolling_stiffness", &Material::rolling_stiffness, "1"},              //
+  archive.table("materials", specimen.materials,                                                               //
+                Column{"name", &Material::name, "-"},                                                          //
+                Column{"density_kg_m3", &Material::density, "kg/m^3"},                                         //
+                Column<Material, double>{"young_modulus_Pa", &Material::young_modulus, "Pa"},                  //
+                Column<Material, double>{"stiffness_ratio", &Material::stiffness_ratio, "1"},                  //
+                Column<Material, double>{"poisson_ratio", &Material::poisson_ratio, "1"},                      //
+                Column<Material, double>{"normal_stiffness", &Material::normal_stiffness, "N/m or N/m^1.5"},   //
+                Column<Material, double>{"tangential_stiffness_N_m", &Material::tangential_stiffness, "N/m"},  //
+                Column{"friction", &Material::friction, "1"},                                                  //
+                Column{"rolling_stiffness", &Material::rolling_stiffness, "1"},                                //
                 Column{"rolling_friction", &Material::rolling_friction, "1"});
 
   auto& [law, slip, rolling, unload_rescale] = specimen.contact;

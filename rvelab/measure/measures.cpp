@@ -141,7 +141,7 @@ double mechanical_void_ratio(const Network& network) {
 double sliding_fraction(const Network& network) {
   if (network.contacts.empty()) return 0;
   const auto sliding = std::count_if(network.contacts.begin(), network.contacts.end(), [](const ContactState& contact) {
-    return contact.tangential_force.norm() >= (1 - 1e-6) * contact.friction * std::abs(contact.normal_force);
+    return contact.tangential_force.norm() >= (1 - 1e-6) * contact.friction * std::abs(contact.pressing_force);
   });
   return static_cast<double>(sliding) / network.contacts.size();
 }

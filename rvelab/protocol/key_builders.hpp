@@ -31,18 +31,18 @@ inline std::string as_toml(long value) { return std::to_string(value); }
 inline ProtocolKey number(const char* table, const char* name, const char* unit, double initial, const Range& range,
                           const char* meaning) {
   return {
-      {table, name, unit, "number", as_toml(initial), range.in_words(), meaning}, KeyKind::number, range, {}, initial};
+      {table, name, unit, "number", as_toml(initial), in_words(range), meaning}, KeyKind::number, range, {}, initial};
 }
 
 /// Without a default of its own; `initial` says in words what holds instead, "" if nothing does.
 inline ProtocolKey number(const char* table, const char* name, const char* unit, const char* initial,
                           const Range& range, const char* meaning) {
-  return {{table, name, unit, "number", initial, range.in_words(), meaning}, KeyKind::number, range, {}, {}};
+  return {{table, name, unit, "number", initial, in_words(range), meaning}, KeyKind::number, range, {}, {}};
 }
 
 inline ProtocolKey whole_number(const char* table, const char* name, long initial, const Range& range,
                                 const char* meaning) {
-  return {{table, name, "1", "whole number", as_toml(initial), range.in_words(), meaning},
+  return {{table, name, "1", "whole number", as_toml(initial), in_words(range), meaning},
           KeyKind::whole_number,
           range,
           {},

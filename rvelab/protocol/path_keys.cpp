@@ -73,7 +73,7 @@ std::vector<ProtocolKey> pressure_path() {
       listed(t, "to_Pa", "Pa", "list of numbers", "", KeyKind::numbers,
              "pressures that all normal stresses go to one after the other; shear strains are zero");
   pressures.range = positive;
-  pressures.key.range = "each " + positive.in_words();
+  pressures.key.range = "each " + in_words(positive);
   return {required(pressures), whole_number(t, "records_per_point", PressurePathStage{}.records_per_point, {1, 1e6},
                                             "records, and increments, on the way to each pressure")};
 }

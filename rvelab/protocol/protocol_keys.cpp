@@ -65,7 +65,7 @@ std::vector<ProtocolKey> output_specimen_and_calibrate() {
       quantities(),
       required(text("specimen", "file", "",
                     "specimen file that the test runs on, relative to the protocol; --specimen goes before it")),
-      {{"calibrate", "pressures_Pa", "Pa", "list of numbers", "", "each " + positive.in_words(),
+      {{"calibrate", "pressures_Pa", "Pa", "list of numbers", "", "each " + in_words(positive),
         "pressures of `rvelab calibrate`; --pressures goes before them"},
        KeyKind::numbers,
        positive,

@@ -39,8 +39,7 @@ std::vector<ProtocolKey> grains() {
       word(t, "passing_by", {"number", "mass"}, "what the grading counts"),
       number(t, "smallest_radius_m", "m", "", positive, "grading = uniform, linear: where passing is 0"),
       number(t, "largest_radius_m", "m", "", positive, "grading = uniform, linear: where passing is 1"),
-      {{t, "radii_m", "m", "list of numbers", "", "each " + positive.in_words(),
-        "grading = tabulated: ascending radii"},
+      {{t, "radii_m", "m", "list of numbers", "", "each " + in_words(positive), "grading = tabulated: ascending radii"},
        KeyKind::numbers,
        positive,
        {},
@@ -59,7 +58,7 @@ std::vector<ProtocolKey> target() {
   const Recipe initial;
   return {
       number(t, "pressure_Pa", "Pa", "", positive, "isotropic stress, compression positive; shear stresses are zero"),
-      {{t, "pressures_Pa", "Pa", "list of numbers", "", "each " + positive.in_words(),
+      {{t, "pressures_Pa", "Pa", "list of numbers", "", "each " + in_words(positive),
         "a family: the same grains at each of these pressures"},
        KeyKind::numbers,
        positive,

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "rvelab/solver/contact_stiffness.hpp"
 #include "rvelab/solver/pair_geometry.hpp"
 
 namespace rvelab {
@@ -31,34 +32,18 @@ struct Coefficients {
   double normal, tangential;
 };
 
-Coefficients springs(const Fixture& f, const PairTable& pairs, std::size_t p, double overlap) {
-  Coefficients k{pairs.kn[p], pairs.kt[p]};
-  if (f.law != KernelLaw::linear) k.normal *= 1.5 * std::sqrt(overlap);
-  if (f.law == KernelLaw::hertz_mindlin) k.tangential *= std::sqrt(overlap);
-  return k;
-}
-
-Coefficients dashpots(const Fixture& f, const PairTable& pairs, std::size_t p, double overlap) {
-  const double power = dashpot_power(f.contact.law, f.damping.dashpot);
-  const double root = std::sqrt(overlap);
-  const double c = pairs.cn[p] * (power == 0 ? 1.0 : (power == 0.5 ? root : std::sqrt(root)));
-  return {c, f.damping.tangential_ratio * c};
-}
-
 template <int D, class Of>
 Moments moments_of(const Fixture& f, const Assembly& a, const Of& coefficients) {
   // Monomials of n of degree four and two; the servo renews its gain every few dozen sub-steps.
   constexpr int degree4 = D == 2 ? 5 : 15;
   double four[degree4] = {}, two[6] = {};
-  const Branches<D> branch(a);
+  const PairGeometry<D> pair(f, a);
   for (const std::int32_t place : a.pairs.order) {
     const auto p = std::size_t(place);
-    const Branch b = branch(p);
-    const double squared = b.x * b.x + b.y * b.y + b.z * b.z, length = std::sqrt(squared);
-    const double overlap = (f.radius[std::size_t(a.pairs.i[p])] + f.radius[std::size_t(a.pairs.j[p])]) - length;
+    const auto [b, length, overlap] = pair(p);
     if (!(overlap > 0)) continue;
-    const auto [kn, kt] = coefficients(f, a.pairs, p, overlap);
-    const double part = (kn - kt) / squared;
+    const auto [kn, kt] = coefficients(p, overlap);
+    const double part = (kn - kt) / (b.x * b.x + b.y * b.y + b.z * b.z);
     const double x = b.x, y = b.y, xx = x * x, yy = y * y, xy = x * y;
     two[0] += kt * xx;
     two[1] += kt * yy;
@@ -137,11 +122,21 @@ Matrix6 affine_sum(const Fixture& f, const Assembly& a, const Of& coefficients) 
 
 }  // namespace
 
-Matrix6 affine_stiffness(const Fixture& f, const Assembly& a) { return affine_sum(f, a, springs); }
+Matrix6 affine_stiffness(const Fixture& f, const Assembly& a) {
+  return with_force(f, [&](auto force) {
+    return affine_sum(f, a, [&](std::size_t p, double overlap) -> Coefficients {
+      const ContactStiffness k = stiffness_of<decltype(force)>(f, parameters_of(f, a.pairs, p), overlap);
+      return {k.normal, k.tangential};
+    });
+  });
+}
 
 Matrix6 affine_viscosity(const Fixture& f, const Assembly& a) {
   if (f.damping.dashpot == Dashpot::none) return Matrix6::Zero();
-  return affine_sum(f, a, dashpots);
+  return affine_sum(f, a, [&](std::size_t p, double overlap) -> Coefficients {
+    const double c = dashpot_now(f, a.pairs.cn[p], std::sqrt(overlap));
+    return {c, f.damping.tangential_ratio * c};
+  });
 }
 
 }  // namespace rvelab

@@ -10,23 +10,6 @@
 
 namespace rvelab {
 
-namespace {
-
-KernelLaw kernel_law(Law law) {
-  switch (law) {
-    case Law::linear:
-    case Law::linear_given:
-      return KernelLaw::linear;
-    case Law::hertz_given:
-      return KernelLaw::hertz_given;
-    case Law::hertz_mindlin:
-      return KernelLaw::hertz_mindlin;
-  }
-  return KernelLaw::linear;
-}
-
-}  // namespace
-
 Vector3 Assembly::position(const Fixture& f, std::size_t g) const {
   const double* row = rows.data() + g * f.row_length();
   return {row[0], row[1], f.shape == Shape::disc ? 0.0 : row[2]};
@@ -51,6 +34,7 @@ void Assembly::set_velocity(const Fixture& f, std::size_t g, const Vector3& v, c
     for (int k = 0; k < 3; ++k) row[8 + k] = w[k];
   }
 }
+
 void open(const Specimen& specimen, Fixture& f, Assembly& a) {
   check_specimen(specimen);
   const std::size_t n = specimen.grains.size(), padded = padded_to_lanes(n);
@@ -66,11 +50,12 @@ void open(const Specimen& specimen, Fixture& f, Assembly& a) {
   f.id = s.grains.id;
   f.material = s.grains.material;
   f.radius = s.grains.radius;
-  f.law = kernel_law(s.contact.law);
-  f.kernels = kernels_for({f.shape, f.law, f.contact.rolling, f.contact.slip, f.damping.dashpot != Dashpot::none});
+  f.thickness = s.cell.lattice(2, 2);
+  f.kernels =
+      kernels_for({f.shape, f.contact.law, f.contact.rolling, f.contact.slip, f.damping.dashpot != Dashpot::none});
   f.resting_kernels = f.damping.dashpot == Dashpot::none
                           ? f.kernels
-                          : kernels_for({f.shape, f.law, f.contact.rolling, f.contact.slip, false});
+                          : kernels_for({f.shape, f.contact.law, f.contact.rolling, f.contact.slip, false});
   f.largest_radius = *std::max_element(f.radius.begin(), f.radius.end());
   f.smallest_radius = *std::min_element(f.radius.begin(), f.radius.end());
   f.mean_radius = std::accumulate(f.radius.begin(), f.radius.end(), 0.0) / double(n);
@@ -85,7 +70,7 @@ void open(const Specimen& specimen, Fixture& f, Assembly& a) {
   for (Buffer* b : {&a.mass, &a.inverse_mass, &a.inverse_inertia}) b->assign(padded, 0.0);
   for (std::size_t g = 0; g < n; ++g) {
     const Material& m = f.materials[f.material[g]];
-    mass[g] = m.density * grain_volume(f.shape, f.radius[g], s.cell.lattice(2, 2));
+    mass[g] = m.density * grain_volume(f.shape, f.radius[g], f.thickness);
     inertia[g] = moment_of_inertia(f.shape, mass[g], f.radius[g]);
     double* row = a.rows.data() + g * f.row_length();
     for (int k = 0; k < f.dimension(); ++k) row[k] = s.grains.position[g][k];
@@ -138,6 +123,7 @@ PairArrays arrays_of(PairTable& t) {
   p.kn = t.kn.data();
   p.kt = t.kt.data();
   p.friction = t.friction.data();
+  p.own = t.own.data();
   p.kr = t.kr.data();
   p.moment_cap = t.moment_cap.data();
   p.cn = t.cn.data();

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "rvelab/solver/buffer.hpp"
+#include "rvelab/solver/kernels/configuration.hpp"
 #include "rvelab/solver/neighbour_list.hpp"
-#include "rvelab/solver/scene.hpp"
 #include "rvelab/solver/specimen.hpp"
 #include "rvelab/solver/workers.hpp"
 
@@ -27,19 +27,23 @@ struct Fixture {
   double mean_radius = 0, largest_radius = 0, smallest_radius = 0;  ///< m
   double largest_skin = 0;                                          ///< m
   double min_height = 0;                                            ///< m
-  SceneKernels kernels;                                             ///< of the scene as stated, for dt > 0
-  SceneKernels resting_kernels;  ///< dt = 0: without the dashpot, whose time a sub-step is not
+  Kernels kernels;                                                  ///< as the specimen states them, for dt > 0
+  Kernels resting_kernels;  ///< dt = 0: without the dashpot, whose time a sub-step is not
   /// 1 without rolling stiffness; sqrt(4 kt r^2/(4 kt r^2 + 2 kr)) of typical grains: how much slower than the contacts
   /// grains answer that slip about a stiff rolling spring, once their inertia is scaled for that spring.
   double softest_answer = 1;
-  KernelLaw law = KernelLaw::linear;
+  double thickness = 0;                     ///< m, 2D
   const std::atomic<bool>* stop = nullptr;  ///< true: advance throws Interrupted (Rve::watch)
   Workers* team = nullptr;                  ///< shares the steps of a large assembly (Rve::share)
 
   std::size_t size() const { return id.size(); }
   /// The team where the assembly is large enough for one, else null.
   Workers* sharing() const { return size() >= least_shared_grains ? team : nullptr; }
-  const SceneKernels& kernels_at(bool quasi_static) const { return quasi_static ? resting_kernels : kernels; }
+  const Kernels& kernels_at(bool quasi_static) const { return quasi_static ? resting_kernels : kernels; }
+  /// Whether contacts keep sqrt(overlap) of the last sub-step.
+  bool stores_root_overlap() const {
+    return with_law(contact.law, [](auto law) { return decltype(law)::Force::stores_root_overlap; });
+  }
   int dimension() const { return dimension_of(shape); }
   int row_length() const { return grain_row_length(shape); }
   int velocity_offset() const { return shape == Shape::disc ? 2 : 4; }
@@ -51,17 +55,17 @@ struct Fixture {
 /// what touched then, and with it the place of a pair, is nothing that a restart knows.
 struct PairTable {
   std::size_t listed = 0;             ///< pairs without the padding
-  std::size_t near = 0;               ///< the first of them, computed at every step (scene.hpp)
+  std::size_t near = 0;               ///< the first of them, computed at every step (kernels/configuration.hpp)
   std::vector<std::int32_t> order;    ///< places of the pairs in the order of (i, j, image)
-  std::vector<std::uint8_t> touched;  ///< scene.hpp
+  std::vector<std::uint8_t> touched;  ///< kernels/configuration.hpp
   std::vector<std::int32_t> i, j;
   std::vector<std::int32_t> row_i, row_j;  ///< i, j times the row length
   std::vector<Image> image;
   Buffer image_number[3];
-  Buffer kn, kt, friction, kr, moment_cap, cn;
+  Buffer kn, kt, own, friction, kr, moment_cap, cn;
   Buffer tangential[3], moment[3], root_overlap, force;
   Buffer radius_i, radius_j;                    ///< 2D
-  std::vector<std::int32_t> slot_begin, slots;  ///< gather table (scene.hpp)
+  std::vector<std::int32_t> slot_begin, slots;  ///< gather table (kernels/configuration.hpp)
   std::vector<std::uint16_t> tasks;
 
   std::size_t padded() const { return i.size(); }
@@ -70,7 +74,7 @@ struct PairTable {
 /// What an increment changes.
 struct Assembly {
   Cell cell;
-  Buffer rows;                                 ///< padded grain rows (scene.hpp)
+  Buffer rows;                                 ///< padded grain rows (kernels/configuration.hpp)
   Buffer mass, inverse_mass, inverse_inertia;  ///< those in use: physical, or scaled at dt = 0
   PairTable pairs;
   SolverState state;
@@ -128,9 +132,6 @@ void set_rate(const Matrix3& rate, StepConstants& constants);
 
 /// (1/V)-less sum of F_on_j (x) b over the pairs, N m, cell frame, from force rows and present positions.
 Matrix3 contact_moment(const Fixture& fixture, const Assembly& assembly);
-
-/// Branch of listed pair p, m, cell frame.
-Vector3 branch_of(const Fixture& fixture, const Assembly& assembly, std::size_t p);
 
 /// Contact force on j of listed pair p as last computed, N.
 Vector3 force_of(const Fixture& fixture, const PairTable& pairs, std::size_t p);

@@ -33,6 +33,7 @@ class SharedArray {
   }
   operator const std::vector<T>&() const { return *values_; }
   const T& operator[](std::size_t k) const { return (*values_)[k]; }
+  const T* data() const { return values_->data(); }
   std::size_t size() const { return values_->size(); }
   auto begin() const { return values_->begin(); }
   auto end() const { return values_->end(); }

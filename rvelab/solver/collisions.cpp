@@ -9,20 +9,6 @@
 
 namespace rvelab {
 
-double fifth_root(double x) {
-  if (!(x > 0) || !std::isfinite(x)) return x > 0 ? x : 0;
-  int exponent = 0;
-  double mantissa = std::frexp(x, &exponent);                        // exact: x = mantissa 2^exponent
-  const int fifths = (exponent >= 0 ? exponent : exponent - 4) / 5;  // rounded down: units of 2^k change no other bit
-  mantissa = std::ldexp(mantissa, exponent - 5 * fifths);            // 1/2 to 16
-  double root = 1;
-  for (int k = 0; k < 16; ++k) {
-    const double squared = root * root;
-    root += 0.2 * (mantissa / (squared * squared) - root);
-  }
-  return std::ldexp(root, fifths);
-}
-
 namespace {
 
 /// Half of the 2 % allowed of the velocity after a collision with a dashpot of rate gamma = c/m*. The force knows the
@@ -34,9 +20,8 @@ constexpr double restitution_error = 0.01;
 /// What a piece of the pairs shows. Sums in the order of the pairs, so that they are the same on any team.
 struct Findings {
   double elastic = 0, approach = 0;  ///< J
-  /// Linear: largest kn/m*. Hertz: largest (k/m*)^4 v^2, which omega^10 grows with.
-  double stiffness = 0;
-  double impact = 0;  ///< Hertz: the same of the speed alone, without what a spring already holds
+  double stiffness = 0;              ///< largest Impact::measure
+  double impact = 0;                 ///< the same of the speed alone, without what a spring already holds
   /// Dashpots, by the power of the overlap in them: largest c/m* (0), c/sqrt(m* k) (1/4), c/k (1/2).
   double damping = 0;
   double closing = 0, closed = 0;  ///< m/s, fastest approach by the cell; m, largest overlap that the increment makes
@@ -61,37 +46,24 @@ constexpr double increment_steps = 32;
 /// Part of the skin that a sub-step may cross in flight, and part of it after which collisions are looked for anew.
 constexpr double flight_per_step = 0.05, flight_per_look = 0.5;
 
-/// A Hertz collision is steepest at its end: in as many steps as a linear one a gas of them lost 0.11 % of its energy
-/// in 1,000 collisions a grain, the linear one 0.02 %.
-constexpr double hertz_steps = 1.25;
-
 constexpr double pi = 3.14159265358979323846;
 
 double square(double x) { return x * x; }
 
-/// Overlap from zero at which a spring has taken up the energy of a mass m* at speed v, m.
-double reach(bool hertz, double k, double mass, double v) {
-  if (!hertz) return v * std::sqrt(mass / k);
-  return square(fifth_root(1.25 * mass * v * v / k));
-}
-
-/// omega of a Hertz collision: omega^2 = 3/2 (k/m*) sqrt(delta), sqrt(delta) = (5/4 m* v^2 / k)^(1/5). 1/s.
-double hertz_frequency(double stiffness) { return std::sqrt(1.5 * fifth_root(1.25 * stiffness)); }
-
-template <int D>
+/// `Impact`: how the law's springs collide (contact/impact.hpp).
+template <int D, class Impact>
 Findings pairs_in(const Fixture& f, const Assembly& a, const Outlook& outlook, std::size_t first, std::size_t last) {
   Findings found;
   const UpperTriangle rate = upper_triangle(outlook.rate);
   const double horizon = outlook.horizon, known_gap = listed_gap(f, a);
-  const Branches<D> branch(a);
+  const PairGeometry<D> pair(f, a);
   const auto offset = std::size_t(f.velocity_offset());
-  const bool hertz = f.law != KernelLaw::linear;
   const bool dashpot = f.damping.dashpot != Dashpot::none;
   const double power = dashpot_power(f.contact.law, f.damping.dashpot);
   for (std::size_t q = first; q < last; ++q) {
     const auto p = std::size_t(a.pairs.order[q]), i = std::size_t(a.pairs.i[p]), j = std::size_t(a.pairs.j[p]);
-    const Branch b = branch(p);
-    const double length = b.length(), gap = length - (f.radius[i] + f.radius[j]);
+    const auto [b, length, overlap] = pair(p);
+    const double gap = -overlap;
     if (gap >= 0 && gap >= known_gap) continue;  // seen when it is listed: what a restart lists must not matter
     const double *vi = a.rows.data() + std::size_t(a.pairs.row_i[p]) + offset,
                  *vj = a.rows.data() + std::size_t(a.pairs.row_j[p]) + offset;
@@ -110,12 +82,12 @@ Findings pairs_in(const Fixture& f, const Assembly& a, const Outlook& outlook, s
     if (gap >= 0 && !(travel > gap)) continue;
     const double mass = f.mass[i] * f.mass[j] / (f.mass[i] + f.mass[j]), k = a.pairs.kn[p];
     found.approach += 0.5 * mass * opening * opening;
-    if (gap < 0) found.elastic += hertz ? 0.4 * k * gap * gap * std::sqrt(-gap) : 0.5 * k * gap * gap;
+    if (overlap > 0) found.elastic += Impact::spring_energy(k, overlap);
     const double ratio = k / mass;
     // A Hertz collision under way has given part of its speed to the spring.
-    const double speed = opening * opening + (hertz && gap < 0 ? 0.8 * ratio * gap * gap * std::sqrt(-gap) : 0.0);
-    found.stiffness = std::max(found.stiffness, hertz ? square(square(ratio)) * speed : ratio);
-    if (hertz) found.impact = std::max(found.impact, square(square(ratio)) * opening * opening);
+    const double speed = opening * opening + (overlap > 0 ? Impact::held_speed_squared(ratio, overlap) : 0.0);
+    found.stiffness = std::max(found.stiffness, Impact::measure(ratio, speed));
+    if (Impact::stiffens) found.impact = std::max(found.impact, Impact::measure(ratio, opening * opening));
     if (dashpot) {
       const double over = power == 0 ? mass : (power == 0.5 ? k : std::sqrt(mass * k));
       found.damping = std::max(found.damping, a.pairs.cn[p] / over);
@@ -123,7 +95,7 @@ Findings pairs_in(const Fixture& f, const Assembly& a, const Outlook& outlook, s
     const double limit = f.options.max_overlap_ratio * std::min(f.radius[i], f.radius[j]);
     if (travel - gap > limit)
       found.deep =
-          found.deep || std::min(travel, reach(hertz, k, mass, std::abs(opening))) + std::max(0.0, -gap) > 0.9 * limit;
+          found.deep || std::min(travel, Impact::reach(k, mass, std::abs(opening))) + std::max(0.0, -gap) > 0.9 * limit;
   }
   return found;
 }
@@ -176,11 +148,11 @@ double dashpot_step(const Fixture& f, double damping, double omega) {
 /// Square root of the part of the energy that moves, 0 to 1.
 double dynamic_share(double moving, double elastic) { return moving < elastic ? std::sqrt(moving / elastic) : 1; }
 
-template <int D>
+template <int D, class Impact>
 Collisions ahead(const Fixture& f, const Assembly& a, const RowSums* known, bool find_step, const Outlook& outlook) {
   std::vector<Findings> of_pairs(pieces_in(a.pairs.listed));
   in_pieces(a.pairs.listed, f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
-    of_pairs[piece] = pairs_in<D>(f, a, outlook, first, last);
+    of_pairs[piece] = pairs_in<D, Impact>(f, a, outlook, first, last);
   });
   Findings all;
   for (const Findings& piece : of_pairs) all.add(piece);
@@ -213,12 +185,12 @@ Collisions ahead(const Fixture& f, const Assembly& a, const RowSums* known, bool
   }
   if (all.closing > 0) found.step = std::min(found.step, all.closed / all.closing / increment_steps);
   const double share = dynamic_share(all.approach + motion.resultants, all.elastic);
-  const double omega = f.law == KernelLaw::linear ? std::sqrt(all.stiffness) : hertz_frequency(all.stiffness);
+  const double omega = Impact::frequency(all.stiffness);
   if (!(omega * share > 0)) return found;
-  const double steps = double(f.options.collision_steps) * (f.law == KernelLaw::linear ? 1 : hertz_steps);
+  const double steps = double(f.options.collision_steps) * Impact::steps;
   found.step = std::min(found.step, pi / steps / omega / share);
   // A few fast grains among many at rest: half of the step at which the stiffest of their impacts would be unstable.
-  if (all.impact > 0) found.step = std::min(found.step, 1 / hertz_frequency(all.impact));
+  if (all.impact > 0) found.step = std::min(found.step, 1 / Impact::frequency(all.impact));
   if (all.damping > 0) found.step = std::min(found.step, dashpot_step(f, all.damping, omega) / (share * share));
   return found;
 }
@@ -227,7 +199,11 @@ Collisions ahead(const Fixture& f, const Assembly& a, const RowSums* known, bool
 
 Collisions collisions_ahead(const Fixture& f, const Assembly& a, const RowSums* sums, bool find_step,
                             const Outlook& outlook) {
-  return f.shape == Shape::disc ? ahead<2>(f, a, sums, find_step, outlook) : ahead<3>(f, a, sums, find_step, outlook);
+  return with_law(f.contact.law, [&](auto law) {
+    using Impact = typename decltype(law)::Force::Impact;
+    return f.shape == Shape::disc ? ahead<2, Impact>(f, a, sums, find_step, outlook)
+                                  : ahead<3, Impact>(f, a, sums, find_step, outlook);
+  });
 }
 
 }  // namespace rvelab

@@ -40,7 +40,4 @@ struct Outlook {
 Collisions collisions_ahead(const Fixture& fixture, const Assembly& assembly, const RowSums* sums, bool find_step,
                             const Outlook& outlook);
 
-/// x^(1/5) for x >= 0, by Newton's method: no libm in what decides the next bit.
-double fifth_root(double x);
-
 }  // namespace rvelab

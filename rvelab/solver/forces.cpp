@@ -43,17 +43,6 @@ void evaluate_forces(const Fixture& f, Assembly& a) {
   f.kernels_at(a.state.quasi_static).evaluate(c, arrays_of(a.pairs), a.rows.data(), 0, long(a.pairs.padded()), nullptr);
 }
 
-Vector3 branch_of(const Fixture& f, const Assembly& a, std::size_t p) {
-  const double* xi = a.rows.data() + std::size_t(a.pairs.i[p]) * f.row_length();
-  const double* xj = a.rows.data() + std::size_t(a.pairs.j[p]) * f.row_length();
-  const Image& n = a.pairs.image[p];
-  const Matrix3& l = a.cell.lattice;
-  if (f.shape == Shape::disc)
-    return {(xj[0] - xi[0]) + (l(0, 0) * n[0] + l(0, 1) * n[1]), (xj[1] - xi[1]) + l(1, 1) * n[1], 0};
-  return {(xj[0] - xi[0]) + (l(0, 0) * n[0] + (l(0, 1) * n[1] + l(0, 2) * n[2])),
-          (xj[1] - xi[1]) + (l(1, 1) * n[1] + l(1, 2) * n[2]), (xj[2] - xi[2]) + l(2, 2) * n[2]};
-}
-
 Vector3 force_of(const Fixture& f, const PairTable& pairs, std::size_t p) {
   const double* row = pairs.force.data() + p * force_row_length(f.shape);
   return {row[0], row[1], f.shape == Shape::disc ? 0.0 : row[2]};
@@ -63,13 +52,13 @@ namespace {
 
 /// Moment of the pairs at `order` [first, last).
 template <int D>
-Matrix3 moment_of(const Assembly& a, const Branches<D>& branch, std::size_t first, std::size_t last) {
+Matrix3 moment_of(const Assembly& a, const PairGeometry<D>& pair, std::size_t first, std::size_t last) {
   constexpr std::size_t row = D == 2 ? 4 : 8;
   const double* force = a.pairs.force.data();
   double m[9] = {};
   for (std::size_t k = first; k < last; ++k) {
     const auto p = std::size_t(a.pairs.order[k]);
-    const Branch b = branch(p);
+    const Branch b = pair.branch(p);
     for (int r = 0; r < D; ++r) {
       m[3 * r] += force[row * p + std::size_t(r)] * b.x;
       m[3 * r + 1] += force[row * p + std::size_t(r)] * b.y;
@@ -83,10 +72,10 @@ Matrix3 moment_of(const Assembly& a, const Branches<D>& branch, std::size_t firs
 
 template <int D>
 Matrix3 moment_in(const Fixture& f, const Assembly& a) {
-  const Branches<D> branch(a);
+  const PairGeometry<D> pair(f, a);
   std::vector<Matrix3> of_piece(pieces_in(a.pairs.listed));
   in_pieces(a.pairs.listed, f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
-    of_piece[piece] = moment_of(a, branch, first, last);
+    of_piece[piece] = moment_of(a, pair, first, last);
   });
   Matrix3 sum = Matrix3::Zero();
   for (const Matrix3& piece : of_piece) sum += piece;
@@ -130,14 +119,14 @@ struct ContactSums {
 
 /// Adds up the contacts at `order` [first, last), and their forces on each grain unless `resultants` is null.
 template <int D>
-ContactSums contacts_in(const Fixture& f, const Assembly& a, const Branches<D>& branch, std::size_t first,
+ContactSums contacts_in(const Fixture& f, const Assembly& a, const PairGeometry<D>& pair, std::size_t first,
                         std::size_t last, double* resultants) {
   ContactSums sums;
   const double* force = a.pairs.force.data();
   for (std::size_t k = first; k < last; ++k) {
     const auto p = std::size_t(a.pairs.order[k]);
     const auto i = std::size_t(a.pairs.i[p]), j = std::size_t(a.pairs.j[p]);
-    const double overlap = (f.radius[i] + f.radius[j]) - branch(p).length();
+    const double overlap = pair(p).overlap;
     if (!std::isfinite(overlap)) sums.finite = false;
     if (!(overlap > 0)) continue;
     const double* on_j = force + p * (D == 2 ? 4 : 8);
@@ -157,13 +146,12 @@ ContactSums contacts_in(const Fixture& f, const Assembly& a, const Branches<D>& 
 
 /// Resultants of the grains [first, last), added in the same order as above; pairs that do not touch give nothing.
 template <int D>
-void gather_resultants(const Fixture& f, const Assembly& a, const Branches<D>& branch, std::size_t first,
+void gather_resultants(const Fixture& f, const Assembly& a, const PairGeometry<D>& pair, std::size_t first,
                        std::size_t last, double* resultants) {
   each_pair_of_grains<D>(a.pairs, first, last, [&](std::size_t g, std::size_t p, bool as_j) {
     // The place of a pair that opened still holds the moment of rolling until the kernel passes by.
-    const auto i = std::size_t(a.pairs.i[p]), j = std::size_t(a.pairs.j[p]);
-    if (!((f.radius[i] + f.radius[j]) - branch(p).length() > 0)) return;
-    const bool own_image = i == j;
+    if (!(pair(p).overlap > 0)) return;
+    const bool own_image = a.pairs.i[p] == a.pairs.j[p];
     if (own_image && as_j) return;  // both at once where the grain is i, as above
     add_resultant<D>(f, a.pairs, p, g, as_j, resultants + resultant_row<D> * g);
     if (own_image) add_resultant<D>(f, a.pairs, p, g, true, resultants + resultant_row<D> * g);
@@ -194,16 +182,16 @@ GrainFigures grains_in(const Fixture& f, const Assembly& a, std::size_t first, s
 
 template <int D>
 Balance balance_in(const Fixture& f, const Assembly& a) {
-  const Branches<D> branch(a);
+  const PairGeometry<D> pair(f, a);
   const bool shared = f.sharing() != nullptr;
   std::vector<double> resultants(resultant_row<D> * f.size(), 0.0);
   std::vector<ContactSums> of_pairs(pieces_in(a.pairs.listed));
   in_pieces(a.pairs.listed, f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
-    of_pairs[piece] = contacts_in(f, a, branch, first, last, shared ? nullptr : resultants.data());
+    of_pairs[piece] = contacts_in(f, a, pair, first, last, shared ? nullptr : resultants.data());
   });
   std::vector<GrainFigures> of_grains(pieces_in(f.size()));
   in_pieces(f.size(), f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
-    if (shared) gather_resultants<D>(f, a, branch, first, last, resultants.data());
+    if (shared) gather_resultants<D>(f, a, pair, first, last, resultants.data());
     of_grains[piece] = grains_in<D>(f, a, first, last, resultants.data());
   });
   Balance balance;
@@ -236,11 +224,11 @@ namespace {
 
 template <int D>
 std::vector<Resultant> resultants_in(const Fixture& f, const Assembly& a) {
-  const Branches<D> branch(a);
+  const PairGeometry<D> pair(f, a);
   std::vector<double> rows(resultant_row<D> * f.size(), 0.0);
   std::vector<Resultant> resultants(f.size());
   in_pieces(f.size(), f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
-    gather_resultants<D>(f, a, branch, first, last, rows.data());
+    gather_resultants<D>(f, a, pair, first, last, rows.data());
     for (std::size_t g = first; g < last; ++g) {
       const double* r = rows.data() + resultant_row<D> * g;
       Resultant& of = resultants[g];

@@ -1,4 +1,5 @@
-// The gather table (scene.hpp, GrainArrays): which force rows each grain adds up, laid out for loops of equal length.
+// The gather table (kernels/configuration.hpp, GrainArrays): which force rows each grain adds up, laid out for loops of
+// equal length.
 #pragma once
 
 #include <algorithm>

@@ -5,37 +5,13 @@
 #include <limits>
 #include <utility>
 
+#include "rvelab/solver/contact_stiffness.hpp"
 #include "rvelab/solver/gather_table.hpp"
 #include "rvelab/solver/pair_geometry.hpp"
 
 namespace rvelab {
 
 namespace {
-
-/// Stiffnesses of one contact at an overlap.
-struct ContactStiffness {
-  double normal, tangential, rolling, dashpot;
-};
-
-ContactStiffness stiffness_of(const Fixture& f, const PairTable& pairs, std::size_t p, double overlap) {
-  const bool needs_root = f.law != KernelLaw::linear || f.damping.dashpot != Dashpot::none;
-  const double root = needs_root ? std::sqrt(overlap) : 0;
-  const double kr = f.contact.rolling ? pairs.kr[p] : 0.0;
-  double cn = 0;
-  if (f.damping.dashpot != Dashpot::none) {
-    const double power = dashpot_power(f.contact.law, f.damping.dashpot);
-    cn = pairs.cn[p] * (power == 0 ? 1.0 : (power == 0.5 ? root : std::sqrt(root)));
-  }
-  switch (f.law) {
-    case KernelLaw::linear:
-      return {pairs.kn[p], pairs.kt[p], kr, cn};
-    case KernelLaw::hertz_given:
-      return {1.5 * pairs.kn[p] * root, pairs.kt[p], kr, cn};
-    case KernelLaw::hertz_mindlin:
-      return {1.5 * pairs.kn[p] * root, pairs.kt[p] * root, kr * root, cn};
-  }
-  return {};
-}
 
 /// Symmetric 3x3 matrix; the z entries stay zero in the plane.
 struct Symmetric {
@@ -77,31 +53,30 @@ double median(std::vector<double>& values) {
   return *middle;
 }
 
-/// Two of the largest grains as a pair table of one, and their radius.
-std::pair<PairTable, double> typical_pair(const Fixture& f) {
+/// Two of the largest grains as a pair, and their radius.
+std::pair<PairParameters, double> typical_pair(const Fixture& f) {
   const auto g = std::size_t(std::max_element(f.radius.begin(), f.radius.end()) - f.radius.begin());
   const Material& m = f.materials[f.material[g]];
-  const PairParameters q = mix(f.contact, f.damping, m, f.radius[g], f.mass[g], m, f.radius[g], f.mass[g]);
-  PairTable one;
-  one.kn = {q.kn};
-  one.kt = {q.kt};
-  one.kr = {q.kr};
-  one.cn = {q.cn};
-  return {std::move(one), f.radius[g]};
+  const double section = grain_section(f.shape, f.radius[g], f.thickness);
+  return {mix(f.contact, f.damping, m, f.radius[g], f.mass[g], m, f.radius[g], f.mass[g], section), f.radius[g]};
+}
+
+ContactStiffness stiffness_of(const Fixture& f, const PairParameters& q, double overlap) {
+  return with_force(f, [&](auto force) { return rvelab::stiffness_of<decltype(force)>(f, q, overlap); });
 }
 
 }  // namespace
 
 double typical_normal_force(const Fixture& f, double overlap) {
-  const double stiffness = stiffness_of(f, typical_pair(f).first, 0, overlap).normal;
-  return (f.law == KernelLaw::linear ? stiffness : stiffness / 1.5) * overlap;
+  return with_force(
+      f, [&](auto force) { return std::abs(normal_force_of<decltype(force)>(typical_pair(f).first, overlap)); });
 }
 
 void set_softest_answer(Fixture& f) {
   f.softest_answer = 1;
   if (!f.contact.rolling) return;
   const auto [one, radius] = typical_pair(f);
-  const ContactStiffness k = stiffness_of(f, one, 0, 1e-3 * radius);
+  const ContactStiffness k = stiffness_of(f, one, 1e-3 * radius);
   const double slip = 4 * k.tangential * radius * radius;
   if (slip > 0) f.softest_answer = std::sqrt(slip / (slip + 2 * k.rolling));
 }
@@ -127,19 +102,17 @@ struct PairTerms {
   double along = 0, across = 0, nx = 0, ny = 0, nz = 0;
 };
 
-template <int D>
-PairTerms terms_of(const Fixture& f, const Assembly& a, const Branches<D>& branch, std::size_t p) {
-  const Branch b = branch(p);
-  const double length = b.length();
-  const double overlap = (f.radius[std::size_t(a.pairs.i[p])] + f.radius[std::size_t(a.pairs.j[p])]) - length;
-  PairTerms t{stiffness_of(f, a.pairs, p, std::max(overlap, 0.25 * a.state.reference_overlap))};
+template <int D, class Force>
+PairTerms terms_of(const Fixture& f, const Assembly& a, const PairGeometry<D>& pair, std::size_t p) {
+  const auto [b, length, overlap] = pair(p);
+  const PairParameters q = parameters_of(f, a.pairs, p);
+  PairTerms t{rvelab::stiffness_of<Force>(f, q, std::max(overlap, 0.25 * a.state.reference_overlap))};
   t.firm_translation = std::max(2 * t.firm.normal, 4 * t.firm.tangential);
   t.touching = overlap > 0;
   if (!t.touching) return t;
-  t.now = stiffness_of(f, a.pairs, p, overlap);
-  const double normal_force = f.law == KernelLaw::linear ? t.now.normal * overlap : t.now.normal * overlap / 1.5;
+  t.now = rvelab::stiffness_of<Force>(f, q, overlap);
   // The force turning with the branch (initial stress) adds f_n / length to the tangential stiffness at most.
-  const double kt = t.now.tangential + 0.5 * normal_force / length;
+  const double kt = t.now.tangential + 0.5 * normal_force_of<Force>(q, overlap) / length;
   t.along = 2 * t.now.normal - 4 * kt;
   t.across = 4 * kt;
   t.nx = b.x / length;
@@ -174,14 +147,14 @@ struct Firmness {
 
 /// Sums of all grains. Each pair is looked at once; by a team once for each of its grains, so that threads share
 /// nothing. A grain adds its pairs in the same order either way.
-template <int D>
+template <int D, class Force>
 std::vector<GrainSums> sums_of_grains(const Fixture& f, const Assembly& a, Firmness& firmness) {
   std::vector<GrainSums> sums(f.size());
-  const Branches<D> branch(a);
+  const PairGeometry<D> pair(f, a);
   if (f.sharing() == nullptr) {
     for (const std::int32_t place : a.pairs.order) {
       const auto p = std::size_t(place);
-      const PairTerms t = terms_of(f, a, branch, p);
+      const PairTerms t = terms_of<D, Force>(f, a, pair, p);
       for (const std::int32_t g : {a.pairs.i[p], a.pairs.j[p]}) add<D>(f, t, std::size_t(g), sums[std::size_t(g)]);
       firmness.add(f, a.pairs, p, t);
     }
@@ -192,7 +165,7 @@ std::vector<GrainSums> sums_of_grains(const Fixture& f, const Assembly& a, Firmn
     each_pair_of_grains<D>(a.pairs, first, last, [&](std::size_t g, std::size_t p, bool as_j) {
       const bool own_image = a.pairs.i[p] == a.pairs.j[p];
       if (own_image && as_j) return;  // both at once where the grain is i, as above
-      const PairTerms t = terms_of(f, a, branch, p);
+      const PairTerms t = terms_of<D, Force>(f, a, pair, p);
       add<D>(f, t, g, sums[g]);
       if (own_image) add<D>(f, t, g, sums[g]);
       if (!as_j) of_piece[piece].add(f, a.pairs, p, t);
@@ -205,12 +178,12 @@ std::vector<GrainSums> sums_of_grains(const Fixture& f, const Assembly& a, Firmn
   return sums;
 }
 
-template <int D>
+template <int D, class Force>
 RowSums sums_over_pairs(const Fixture& f, const Assembly& a) {
   const std::size_t n = f.size();
   const bool dashpot = f.damping.dashpot != Dashpot::none;
   Firmness firmness;
-  const std::vector<GrainSums> of_grain = sums_of_grains<D>(f, a, firmness);
+  const std::vector<GrainSums> of_grain = sums_of_grains<D, Force>(f, a, firmness);
   RowSums sums;
   sums.rotation.resize(n);
   sums.translation.resize(n);
@@ -225,7 +198,7 @@ RowSums sums_over_pairs(const Fixture& f, const Assembly& a) {
   if (firmness.translation.empty()) {
     // Nothing touches: what two contacts of typical grains would have at a thousandth of a radius of overlap.
     const auto [one, radius] = typical_pair(f);
-    const ContactStiffness k = stiffness_of(f, one, 0, 1e-3 * radius);
+    const ContactStiffness k = stiffness_of(f, one, 1e-3 * radius);
     firmness.translation.push_back(std::max(2 * k.normal, 4 * k.tangential));
     firmness.rotation.push_back(4 * k.tangential + 2 * k.rolling / (radius * radius));
   }
@@ -247,7 +220,10 @@ RowSums sums_over_pairs(const Fixture& f, const Assembly& a) {
 }  // namespace
 
 RowSums row_sums(const Fixture& f, const Assembly& a) {
-  return f.shape == Shape::disc ? sums_over_pairs<2>(f, a) : sums_over_pairs<3>(f, a);
+  return with_force(f, [&](auto force) {
+    using Force = decltype(force);
+    return f.shape == Shape::disc ? sums_over_pairs<2, Force>(f, a) : sums_over_pairs<3, Force>(f, a);
+  });
 }
 
 double critical_step(const Fixture& f, const RowSums& sums) {

@@ -28,7 +28,7 @@ void store(const Fixture& f, PairTable& pairs, std::size_t p, const Contact& c) 
     if (f.contact.rolling)
       for (int k = 0; k < 3; ++k) pairs.moment[k][p] = c.rolling_moment[k];
   }
-  if (f.law == KernelLaw::hertz_mindlin) pairs.root_overlap[p] = c.last_root_overlap;
+  if (f.stores_root_overlap()) pairs.root_overlap[p] = c.last_root_overlap;
 }
 
 /// What becomes of a history whose pair is not listed: in a run the grains parted in the sub-step just made, and their
@@ -90,7 +90,7 @@ void fill(const Fixture& f, const std::vector<ListedPair>& listed, const std::ve
     pairs.tangential[component].assign(padded, 0.0);
     if (f.contact.rolling) pairs.moment[component].assign(padded, 0.0);
   }
-  if (f.law == KernelLaw::hertz_mindlin) pairs.root_overlap.assign(padded, 0.0);
+  if (f.stores_root_overlap()) pairs.root_overlap.assign(padded, 0.0);
   in_pieces(n, f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t q = first; q < last; ++q) {
       const auto p = std::size_t(pairs.order[q]);
@@ -157,7 +157,7 @@ std::vector<Contact> contacts_of(const Fixture& f, const PairTable& pairs) {
       else
         for (int k = 0; k < 3; ++k) c.rolling_moment[k] = pairs.moment[k][p];
     }
-    if (f.law == KernelLaw::hertz_mindlin) c.last_root_overlap = pairs.root_overlap[p];
+    if (f.stores_root_overlap()) c.last_root_overlap = pairs.root_overlap[p];
     if (!c.tangential_force.isZero(0) || !c.rolling_moment.isZero(0) || c.last_root_overlap != 0) here.push_back(c);
   };
   in_pieces(pairs.listed, f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {

@@ -2,7 +2,9 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "rvelab/solver/contact_stiffness.hpp"
 #include "rvelab/solver/memory_order.hpp"
+#include "rvelab/solver/pair_geometry.hpp"
 #include "rvelab/solver/rve_impl.hpp"
 
 namespace rvelab {
@@ -11,21 +13,18 @@ namespace {
 
 /// Elastic stiffnesses and energies of a touching contact, from its pair parameters and history.
 void set_elastic(const Fixture& f, const PairTable& pairs, std::size_t p, ContactState& c) {
-  const double root = std::sqrt(c.overlap), kr = f.contact.rolling ? pairs.kr[p] : 0.0;
-  double normal_energy = 0;
-  if (f.law == KernelLaw::linear) {
-    c.normal_stiffness = pairs.kn[p];
-    normal_energy = 0.5 * pairs.kn[p] * c.overlap * c.overlap;
-  } else {
-    c.normal_stiffness = 1.5 * pairs.kn[p] * root;
-    normal_energy = 0.4 * pairs.kn[p] * c.overlap * c.overlap * root;
-  }
-  const double scale = f.law == KernelLaw::hertz_mindlin ? root : 1.0;
-  c.tangential_stiffness = pairs.kt[p] * scale;
-  c.rolling_stiffness = kr * scale;
+  const PairParameters q = parameters_of(f, pairs, p);
+  with_force(f, [&](auto force) {
+    using Force = decltype(force);
+    const ContactStiffness k = stiffness_of<Force>(f, q, c.overlap);
+    c.normal_stiffness = k.normal;
+    c.tangential_stiffness = k.tangential;
+    c.rolling_stiffness = k.rolling;
+    c.pressing_force = Force::pressing_force(c.normal_force, q.own);
+    c.elastic_energy = Force::normal_energy(q.kn, c.overlap, std::sqrt(c.overlap), q.own);
+  });
   double spring = 0;
   for (int k = 0; k < f.tangential_components(); ++k) spring += pairs.tangential[k][p] * pairs.tangential[k][p];
-  c.elastic_energy = normal_energy;
   if (c.tangential_stiffness > 0) c.elastic_energy += 0.5 * spring / c.tangential_stiffness;
   if (c.rolling_stiffness > 0) c.elastic_energy += 0.5 * c.rolling_moment.squaredNorm() / c.rolling_stiffness;
 }
@@ -52,9 +51,9 @@ Network Rve::network() const {
   for (const std::int32_t place : a.pairs.order) {
     const auto p = std::size_t(place);
     const auto i = a.pairs.i[p], j = a.pairs.j[p];
-    const Vector3 b = branch_of(f, a, p);
-    const double length = b.norm(), overlap = (f.radius[i] + f.radius[j]) - length;
+    const auto [branch, length, overlap] = f.shape == Shape::disc ? PairGeometry<2>(f, a)(p) : PairGeometry<3>(f, a)(p);
     if (!(overlap > 0)) continue;
+    const Vector3 b(branch.x, branch.y, branch.z);
     ContactState c;
     c.i = i;
     c.j = j;

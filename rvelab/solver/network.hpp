@@ -16,13 +16,14 @@ struct ContactState {
   double length = 0;                ///< m
   double overlap = 0;               ///< m, > 0
   double normal_force = 0;          ///< N, repulsion positive, dashpot included
+  double pressing_force = 0;        ///< N, what friction goes with: |f_t| <= friction |pressing_force|
   Vector3 tangential_force;         ///< N, on j, dashpot included
   Vector3 rolling_moment;           ///< N m, on j
   double normal_stiffness = 0;      ///< d f_n/d overlap now, N/m
   double tangential_stiffness = 0;  ///< k_t now, N/m
   double rolling_stiffness = 0;     ///< k_r now, N m
   double friction = 0;              ///< mu
-  double moment_cap = 0;            ///< |M| <= moment_cap f_n, m
+  double moment_cap = 0;            ///< |M| <= moment_cap pressing_force, m
   double elastic_energy = 0;        ///< J, normal + tangential + rolling
   Vector3 force() const { return normal_force * normal + tangential_force; }  ///< on j, N
 };

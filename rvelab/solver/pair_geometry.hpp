@@ -1,4 +1,4 @@
-// Branches of listed pairs, inline: control looks at all pairs every few dozen sub-steps.
+// Geometry of listed pairs, inline: control looks at all pairs every few dozen sub-steps.
 #pragma once
 
 #include <cmath>
@@ -13,19 +13,33 @@ struct Branch {
   double length() const { return std::sqrt(x * x + y * y + z * z); }
 };
 
-/// Branches in D dimensions from the arrays of an assembly.
+/// A listed pair as its grains lie now; m, cell frame.
+struct PairPlace {
+  Branch branch;
+  double length, overlap;
+};
+
+/// Pairs in D dimensions from the arrays of an assembly.
 template <int D>
-class Branches {
+class PairGeometry {
  public:
-  explicit Branches(const Assembly& a)
+  PairGeometry(const Fixture& f, const Assembly& a)
       : rows_(a.rows.data()),
+        radius_(f.radius.data()),
         i_(a.pairs.row_i.data()),
         j_(a.pairs.row_j.data()),
+        grain_i_(a.pairs.i.data()),
+        grain_j_(a.pairs.j.data()),
         lattice_(upper_triangle(a.cell.lattice)) {
     for (int k = 0; k < D; ++k) image_[k] = a.pairs.image_number[k].data();
   }
 
-  Branch operator()(std::size_t p) const {
+  PairPlace operator()(std::size_t p) const {
+    const Branch b = branch(p);
+    const double length = b.length();
+    return {b, length, (radius_[grain_i_[p]] + radius_[grain_j_[p]]) - length};
+  }
+  Branch branch(std::size_t p) const {
     const double *xi = rows_ + i_[p], *xj = rows_ + j_[p];
     const double nx = image_[0][p], ny = image_[1][p];
     if constexpr (D == 2)
@@ -36,8 +50,8 @@ class Branches {
   }
 
  private:
-  const double* rows_;
-  const std::int32_t *i_, *j_;
+  const double *rows_, *radius_;
+  const std::int32_t *i_, *j_, *grain_i_, *grain_j_;
   const double* image_[D];
   UpperTriangle lattice_;
 };

@@ -12,12 +12,16 @@ void set_pair_parameters(const Fixture& f, PairTable& pairs) {
   if (f.contact.rolling)
     for (Buffer* b : {&pairs.kr, &pairs.moment_cap}) b->assign(padded, 0.0);
   if (dashpot) pairs.cn.assign(padded, 0.0);
+  const bool own = with_law(f.contact.law, [](auto law) { return decltype(law)::Force::has_own_constant; });
+  if (own) pairs.own.assign(padded, 0.0);
   const auto set = [&](std::size_t p) {
     const auto i = std::size_t(pairs.i[p]), j = std::size_t(pairs.j[p]);
     const PairParameters q = mix(f.contact, f.damping, f.materials[std::size_t(f.material[i])], f.radius[i], f.mass[i],
-                                 f.materials[std::size_t(f.material[j])], f.radius[j], f.mass[j]);
+                                 f.materials[std::size_t(f.material[j])], f.radius[j], f.mass[j],
+                                 grain_section(f.shape, std::min(f.radius[i], f.radius[j]), f.thickness));
     pairs.kn[p] = q.kn;
     pairs.kt[p] = q.kt;
+    if (own) pairs.own[p] = q.own;
     pairs.friction[p] = q.friction;
     if (f.contact.rolling) {
       pairs.kr[p] = q.kr;

@@ -24,8 +24,8 @@ std::size_t bytes_of(const Array& array) {
 
 void rest(Assembly& a) {
   PairTable& t = a.pairs;
-  let_go(t.row_i, t.row_j, t.kn, t.kt, t.friction, t.kr, t.moment_cap, t.cn, t.force, t.radius_i, t.radius_j, t.touched,
-         t.image_number[0], t.image_number[1], t.image_number[2]);
+  let_go(t.row_i, t.row_j, t.kn, t.kt, t.own, t.friction, t.kr, t.moment_cap, t.cn, t.force, t.radius_i, t.radius_j,
+         t.touched, t.image_number[0], t.image_number[1], t.image_number[2]);
   let_go(a.mass, a.inverse_mass, a.inverse_inertia);
 }
 
@@ -45,8 +45,8 @@ Memory memory_of(const Assembly& a) {
   m.list = bytes_of(t.i) + bytes_of(t.j) + bytes_of(t.image) + bytes_of(t.order) + bytes_of(t.slot_begin) +
            bytes_of(t.slots) + bytes_of(t.tasks) + bytes_of(a.state.list_positions);
   for (const Buffer* b :
-       {&t.kn, &t.kt, &t.friction, &t.kr, &t.moment_cap, &t.cn, &t.force, &t.radius_i, &t.radius_j, &t.image_number[0],
-        &t.image_number[1], &t.image_number[2], &a.mass, &a.inverse_mass, &a.inverse_inertia})
+       {&t.kn, &t.kt, &t.own, &t.friction, &t.kr, &t.moment_cap, &t.cn, &t.force, &t.radius_i, &t.radius_j,
+        &t.image_number[0], &t.image_number[1], &t.image_number[2], &a.mass, &a.inverse_mass, &a.inverse_inertia})
     m.working += bytes_of(*b);
   m.working += bytes_of(t.row_i) + bytes_of(t.row_j) + bytes_of(t.touched);
   return m;

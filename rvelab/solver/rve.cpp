@@ -219,7 +219,7 @@ void Rve::set_materials(const std::vector<Material>& materials) {
   std::vector<double> mass(m.fixture.size()), inertia(m.fixture.size());
   for (std::size_t g = 0; g < m.fixture.size(); ++g) {
     const double density = materials[std::size_t(m.fixture.material[g])].density;
-    mass[g] = density * grain_volume(m.fixture.shape, m.fixture.radius[g], m.now.cell.lattice(2, 2));
+    mass[g] = density * grain_volume(m.fixture.shape, m.fixture.radius[g], m.fixture.thickness);
     inertia[g] = moment_of_inertia(m.fixture.shape, mass[g], m.fixture.radius[g]);
   }
   m.fixture.mass = std::move(mass);
@@ -231,7 +231,7 @@ void Rve::set_materials(const std::vector<Material>& materials) {
   for (const std::int32_t place : pairs.order) {
     const auto p = std::size_t(place);
     if (pairs.kt[p] > 0 || !(before[p] > 0)) continue;
-    const double root = m.fixture.law == KernelLaw::hertz_mindlin ? pairs.root_overlap[p] : 1.0;
+    const double root = m.fixture.stores_root_overlap() ? pairs.root_overlap[p] : 1.0;
     double squared = 0;
     for (int k = 0; k < m.fixture.tangential_components(); ++k) {
       squared += pairs.tangential[k][p] * pairs.tangential[k][p];

@@ -74,7 +74,7 @@ struct Memory {
 class Rve {
  public:
   /// Opens a specimen: checks it (InputError; that its neighbour list is of a size to be made, and that no overlap is
-  /// beyond solver.max_overlap_ratio, too), chooses the compiled scene, lists neighbours. Contacts carry their
+  /// beyond solver.max_overlap_ratio, too), chooses the compiled kernels, lists neighbours. Contacts carry their
   /// history; touching pairs that `contacts` does not name start without one.
   explicit Rve(const Specimen& specimen);
   Rve(const Rve&);

@@ -80,7 +80,7 @@ bool holds_force_without_stiffness(const Specimen& s, const Contact& c) {
   const auto i = std::size_t(c.i), j = std::size_t(c.j);
   const Material &a = s.materials[std::size_t(s.grains.material[i])],
                  &b = s.materials[std::size_t(s.grains.material[j])];
-  return !(mix(s.contact, s.damping, a, s.grains.radius[i], 1, b, s.grains.radius[j], 1).kt > 0);
+  return !(mix(s.contact, s.damping, a, s.grains.radius[i], 1, b, s.grains.radius[j], 1, 0).kt > 0);
 }
 
 void check_contacts(const Specimen& s) {

@@ -271,7 +271,7 @@ Advanced advance(const Fixture& f, Assembly& a, const Advance& what) {
   c.losses = f.options.ledger;
   c.local_damping = physical ? f.damping.local : f.damping.local_quasi_static;
   const auto kind = std::size_t(damping_kind(f.damping, what.loading));
-  const SceneKernels& kernels = f.kernels_at(a.state.quasi_static);
+  const Kernels& kernels = f.kernels_at(a.state.quasi_static);
   const GrainKernel move = physical ? kernels.dynamic[kind] : kernels.quasi_static[kind];
 
   Way way{a.cell.lattice, what.increment.stretch * a.cell.lattice, what.increment.rotation, 0, what.steps};

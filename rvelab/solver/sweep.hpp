@@ -3,7 +3,7 @@
 // result has the same bits on any team and on none.
 #pragma once
 
-#include "rvelab/solver/scene.hpp"
+#include "rvelab/solver/kernels/configuration.hpp"
 #include "rvelab/solver/workers.hpp"
 
 namespace rvelab {

@@ -82,7 +82,7 @@ double rebound_ratio(const PairParameters& pair, double power, double dashpot_po
 }  // namespace
 
 TEST_CASE("linear stiffness is that of two springs in series", "[contact][quick]") {
-  const auto pair = mix(model_of(Law::linear), {}, quartz(), 2e-3, 1, rubber(), 5e-3, 1);
+  const auto pair = mix(model_of(Law::linear), {}, quartz(), 2e-3, 1, rubber(), 5e-3, 1, 0);
   const double a = 70e9 * 2e-3, b = 5e6 * 5e-3;
   CHECK(pair.kn == Approx(2 / (1 / a + 1 / b)).epsilon(1e-14));
   CHECK(pair.kt == Approx(2 / (1 / (0.5 * a) + 1 / (0.8 * b))).epsilon(1e-14));
@@ -90,7 +90,7 @@ TEST_CASE("linear stiffness is that of two springs in series", "[contact][quick]
 }
 
 TEST_CASE("linear stiffness of one material is kt = nu kn and kn = 2 E r*", "[contact][quick]") {
-  const auto pair = mix(model_of(Law::linear), {}, quartz(), 2e-3, 1, quartz(), 5e-3, 1);
+  const auto pair = mix(model_of(Law::linear), {}, quartz(), 2e-3, 1, quartz(), 5e-3, 1, 0);
   CHECK(pair.kn == Approx(2 * 70e9 * (2e-3 * 5e-3 / 7e-3)).epsilon(1e-14));
   CHECK(pair.kt == Approx(0.5 * pair.kn).epsilon(1e-14));
 }
@@ -100,22 +100,22 @@ TEST_CASE("a contact with a frictionless spring on one side has no tangential st
   smooth.stiffness_ratio = 0;
   smooth.tangential_stiffness = 0;
   for (const Law law : {Law::linear, Law::linear_given, Law::hertz_given}) {
-    CHECK(mix(model_of(law), {}, quartz(), 1e-3, 1, smooth, 1e-3, 1).kt == 0);
-    CHECK(mix(model_of(law), {}, smooth, 1e-3, 1, smooth, 1e-3, 1).kt == 0);
+    CHECK(mix(model_of(law), {}, quartz(), 1e-3, 1, smooth, 1e-3, 1, 0).kt == 0);
+    CHECK(mix(model_of(law), {}, smooth, 1e-3, 1, smooth, 1e-3, 1, 0).kt == 0);
   }
 }
 
 TEST_CASE("Hertz and Mindlin stiffness from elastic constants", "[contact][quick]") {
   const double ri = 1e-3, rj = 2e-3, reduced = ri * rj / (ri + rj);
   SECTION("one material: 4/3 E/(2(1 - nu^2)) and 4 G/(2 - nu)") {
-    const auto pair = mix(model_of(Law::hertz_mindlin), {}, quartz(), ri, 1, quartz(), rj, 1);
+    const auto pair = mix(model_of(Law::hertz_mindlin), {}, quartz(), ri, 1, quartz(), rj, 1, 0);
     const double shear_modulus = 70e9 / (2 * (1 + 0.2));
     CHECK(pair.kn == Approx(4.0 / 3 * 70e9 / (2 * (1 - 0.04)) * std::sqrt(reduced)).epsilon(1e-14));
     CHECK(pair.kt == Approx(4 * shear_modulus * std::sqrt(reduced) / (2 - 0.2)).epsilon(1e-14));
     CHECK(pair.kt / pair.kn == Approx(2 * (1 - 0.2) / (2 - 0.2) * 1.5).epsilon(1e-14));
   }
   SECTION("two materials: compliances add, sums of (1 - nu^2)/E and (2 - nu)/G") {
-    const auto pair = mix(model_of(Law::hertz_mindlin), {}, quartz(), ri, 1, rubber(), rj, 1);
+    const auto pair = mix(model_of(Law::hertz_mindlin), {}, quartz(), ri, 1, rubber(), rj, 1, 0);
     const double compliance = (1 - 0.04) / 70e9 + (1 - 0.45 * 0.45) / 5e6;
     const double ga = 70e9 / (2 * 1.2), gb = 5e6 / (2 * 1.45);
     CHECK(pair.kn == Approx(4 / (3 * compliance) * std::sqrt(reduced)).epsilon(1e-14));
@@ -125,10 +125,10 @@ TEST_CASE("Hertz and Mindlin stiffness from elastic constants", "[contact][quick
 
 TEST_CASE("given stiffnesses of one material are the contact's own", "[contact][quick]") {
   for (const Law law : {Law::linear_given, Law::hertz_given}) {
-    const auto same = mix(model_of(law), {}, quartz(), 1e-3, 1, quartz(), 2e-3, 1);
+    const auto same = mix(model_of(law), {}, quartz(), 1e-3, 1, quartz(), 2e-3, 1, 0);
     CHECK(same.kn == 3e6);
     CHECK(same.kt == 2e6);
-    const auto unlike = mix(model_of(law), {}, quartz(), 1e-3, 1, rubber(), 2e-3, 1);
+    const auto unlike = mix(model_of(law), {}, quartz(), 1e-3, 1, rubber(), 2e-3, 1, 0);
     CHECK(unlike.kn == Approx(1.5e6).epsilon(1e-14));
     CHECK(unlike.kt == Approx(0.8e6).epsilon(1e-14));
   }
@@ -136,10 +136,10 @@ TEST_CASE("given stiffnesses of one material are the contact's own", "[contact][
 
 TEST_CASE("rolling parameters: k_r = kt ri rj beta, cap min(eta_i ri, eta_j rj)", "[contact][quick]") {
   for (const Law law : {Law::linear, Law::linear_given, Law::hertz_mindlin, Law::hertz_given}) {
-    const auto pair = mix(model_of(law, true), {}, quartz(), 2e-3, 1, rubber(), 6e-3, 1);
+    const auto pair = mix(model_of(law, true), {}, quartz(), 2e-3, 1, rubber(), 6e-3, 1, 0);
     CHECK(pair.kr == Approx(pair.kt * 2e-3 * 6e-3 * 0.4).epsilon(1e-14));
     CHECK(pair.moment_cap == Approx(0.05 * 2e-3).epsilon(1e-14));
-    const auto without = mix(model_of(law, false), {}, quartz(), 2e-3, 1, rubber(), 6e-3, 1);
+    const auto without = mix(model_of(law, false), {}, quartz(), 2e-3, 1, rubber(), 6e-3, 1, 0);
     CHECK(without.kr == 0);
     CHECK(without.moment_cap == 0);
   }
@@ -150,8 +150,8 @@ TEST_CASE("action equals reaction: mixing does not depend on the order of the gr
   damping.dashpot = Dashpot::restitution;
   damping.restitution = 0.6;
   for (const Law law : {Law::linear, Law::linear_given, Law::hertz_mindlin, Law::hertz_given}) {
-    const auto ab = mix(model_of(law, true), damping, quartz(), 2e-3, 0.1, rubber(), 6e-3, 0.3);
-    const auto ba = mix(model_of(law, true), damping, rubber(), 6e-3, 0.3, quartz(), 2e-3, 0.1);
+    const auto ab = mix(model_of(law, true), damping, quartz(), 2e-3, 0.1, rubber(), 6e-3, 0.3, 0);
+    const auto ba = mix(model_of(law, true), damping, rubber(), 6e-3, 0.3, quartz(), 2e-3, 0.1, 0);
     CHECK(ab.kn == ba.kn);
     CHECK(ab.kt == ba.kt);
     CHECK(ab.kr == ba.kr);
@@ -168,7 +168,7 @@ TEST_CASE("a restitution dashpot gives the rebound of its formula", "[contact][q
   SECTION("linear spring, the closed form: v'/v = exp(-pi zeta/sqrt(1 - zeta^2)) over half a damped period") {
     for (const double e : {1e-3, 0.05, 0.3, 0.5, 0.9, 0.99, 1.0}) {
       damping.restitution = e;
-      const auto pair = mix(model_of(Law::linear_given), damping, quartz(), 1e-3, mi, quartz(), 1e-3, mj);
+      const auto pair = mix(model_of(Law::linear_given), damping, quartz(), 1e-3, mi, quartz(), 1e-3, mj, 0);
       const double zeta = pair.cn / (2 * std::sqrt(reduced_mass * pair.kn));
       const double pi = std::acos(-1.0);
       CHECK(std::exp(-pi * zeta / std::sqrt(1 - zeta * zeta)) == Approx(e).epsilon(1e-13));
@@ -178,7 +178,7 @@ TEST_CASE("a restitution dashpot gives the rebound of its formula", "[contact][q
     for (const Law law : {Law::hertz_mindlin, Law::hertz_given}) {
       for (const double e : {0.05, 0.3, 0.6, 0.8, 0.9}) {
         damping.restitution = e;
-        const auto pair = mix(model_of(law), damping, quartz(), 1e-3, mi, quartz(), 1e-3, mj);
+        const auto pair = mix(model_of(law), damping, quartz(), 1e-3, mi, quartz(), 1e-3, mj, 0);
         const double rebound = rebound_ratio(pair, 1.5, dashpot_power(law, damping.dashpot), reduced_mass);
         CHECK(rebound == Approx(e).epsilon(5e-3));
       }
@@ -188,7 +188,7 @@ TEST_CASE("a restitution dashpot gives the rebound of its formula", "[contact][q
     damping.no_tension = true;
     for (const double e : {0.05, 0.3, 0.6, 0.9, 0.99}) {
       damping.restitution = e;
-      const auto pair = mix(model_of(Law::linear_given), damping, quartz(), 1e-3, mi, quartz(), 1e-3, mj);
+      const auto pair = mix(model_of(Law::linear_given), damping, quartz(), 1e-3, mi, quartz(), 1e-3, mj, 0);
       // m* x'' = -k x - c x' by the midpoint rule, in units of 1/omega, until the force would pull.
       const double zeta = pair.cn / (2 * std::sqrt(reduced_mass * pair.kn)), dt = 1e-4;
       double x = 0, v = 1;
@@ -207,7 +207,7 @@ TEST_CASE("a restitution dashpot gives the rebound of its formula", "[contact][q
     for (const Law law : {Law::hertz_mindlin, Law::hertz_given}) {
       for (const double e : {0.3, 0.6, 0.8, 0.9}) {
         damping.restitution = e;
-        const auto pair = mix(model_of(law), damping, quartz(), 1e-3, mi, quartz(), 1e-3, mj);
+        const auto pair = mix(model_of(law), damping, quartz(), 1e-3, mi, quartz(), 1e-3, mj, 0);
         const double pi = std::acos(-1.0), fraction = -std::log(e) / std::hypot(pi, std::log(e)) / std::sqrt(2.0);
         const double expected = std::exp(-pi * fraction / std::sqrt(1 - fraction * fraction));
         const double rebound = rebound_ratio(pair, 1.5, dashpot_power(law, damping.dashpot), reduced_mass);
@@ -219,7 +219,7 @@ TEST_CASE("a restitution dashpot gives the rebound of its formula", "[contact][q
   SECTION("an elastic impact has no dashpot") {
     damping.restitution = 1;
     for (const Law law : {Law::linear, Law::linear_given, Law::hertz_mindlin, Law::hertz_given}) {
-      CHECK(mix(model_of(law), damping, quartz(), 1e-3, mi, quartz(), 1e-3, mj).cn == 0);
+      CHECK(mix(model_of(law), damping, quartz(), 1e-3, mi, quartz(), 1e-3, mj, 0).cn == 0);
     }
   }
 }
@@ -230,7 +230,7 @@ TEST_CASE("dashpot constants as stated", "[contact][quick]") {
   damping.normal_coefficient = 7;
   const auto constant = [&](Law law, Dashpot dashpot) {
     damping.dashpot = dashpot;
-    return mix(model_of(law), damping, quartz(), 1e-3, mi, quartz(), 3e-3, mj).cn;
+    return mix(model_of(law), damping, quartz(), 1e-3, mi, quartz(), 3e-3, mj, 0).cn;
   };
   CHECK(constant(Law::linear, Dashpot::none) == 0);
   CHECK(constant(Law::linear, Dashpot::coefficient) == 7);

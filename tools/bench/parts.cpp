@@ -169,8 +169,8 @@ int compare_widths() {
   bool good = true;
   for (const std::string name : {"disc_400", "sphere_1000"}) {
     Opened& o = packing(name);
-    const SceneKey key{o.fixture.shape, o.fixture.law, o.fixture.contact.rolling, o.fixture.contact.slip, false};
-    SceneKernels kernels[2];
+    const KernelConfiguration key{o.fixture.shape, o.fixture.law, o.fixture.contact.rolling, o.fixture.contact.slip, false};
+    Kernels kernels[2];
     for (const int k : {0, 1}) {
       setenv("RVELAB_ISA", k == 0 ? "v3" : "v4", 1);
       kernels[k] = kernels_for(key);
@@ -179,7 +179,7 @@ int compare_widths() {
     const GrainArrays grains = arrays_of(o.assembly);
     const Buffer rows = o.assembly.rows;
     StepSums sums;
-    const auto slice = [&](const SceneKernels& of, bool of_pairs) {
+    const auto slice = [&](const Kernels& of, bool of_pairs) {
       const auto begin = std::chrono::steady_clock::now();
       for (int call = 0; call < (o.fixture.size() > 500 ? 15 : 100); ++call) {
         if (of_pairs)

@@ -1,7 +1,7 @@
 // The fifth root that sets the sub-step of Hertz collisions.
 #include <cmath>
 
-#include "rvelab/solver/collisions.hpp"
+#include "rvelab/contact/impact.hpp"
 #include "tests/catch.hpp"
 
 using namespace rvelab;

@@ -8,7 +8,7 @@
 // instruction set adds in the same order.
 #pragma once
 
-#include "rvelab/solver/kernel_pairs.hpp"
+#include "rvelab/solver/kernels/pairs.hpp"
 
 namespace rvelab {
 namespace {

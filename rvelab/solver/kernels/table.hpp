@@ -1,10 +1,10 @@
-// Turns a SceneKey into compiled kernels: one switch per flag, each ending in a template argument.
+// Turns a configuration into compiled kernels: one switch per flag, each ending in a template argument.
 #pragma once
 
-#include "rvelab/solver/kernel_discs.hpp"
-#include "rvelab/solver/kernel_integrate_discs.hpp"
-#include "rvelab/solver/kernel_integrate_spheres.hpp"
-#include "rvelab/solver/kernel_spheres.hpp"
+#include "rvelab/solver/kernels/discs.hpp"
+#include "rvelab/solver/kernels/integrate_discs.hpp"
+#include "rvelab/solver/kernels/integrate_spheres.hpp"
+#include "rvelab/solver/kernels/spheres.hpp"
 
 namespace rvelab {
 namespace {
@@ -12,9 +12,9 @@ namespace {
 template <Shape shape, class Law, class T>
 constexpr PairKernel pair_kernel() {
   if constexpr (shape == Shape::disc)
-    return &disc_pairs<Law, T>;
+    return &plane_pairs<Discs, Law, T>;
   else
-    return &sphere_pairs<Law, T>;
+    return &space_pairs<Spheres, Law, T>;
 }
 
 template <Shape shape, class T>
@@ -39,7 +39,7 @@ PairKernel by_slip(Slip slip) {
 }
 
 template <Shape shape, int W, bool Advance, bool Ledger, class Law>
-PairKernel by_features(const SceneKey& key) {
+PairKernel by_features(const KernelConfiguration& key) {
   if (key.rolling)
     return key.dashpot ? by_slip<shape, W, Advance, Ledger, Law, true, true>(key.slip)
                        : by_slip<shape, W, Advance, Ledger, Law, true, false>(key.slip);
@@ -48,20 +48,13 @@ PairKernel by_features(const SceneKey& key) {
 }
 
 template <Shape shape, int W, bool Advance, bool Ledger>
-PairKernel pair_kernel_for(const SceneKey& key) {
-  switch (key.law) {
-    case KernelLaw::linear:
-      return by_features<shape, W, Advance, Ledger, LinearLaw>(key);
-    case KernelLaw::hertz_given:
-      return by_features<shape, W, Advance, Ledger, HertzGivenLaw>(key);
-    case KernelLaw::hertz_mindlin:
-      return by_features<shape, W, Advance, Ledger, HertzMindlinLaw>(key);
-  }
-  return nullptr;
+PairKernel pair_kernel_for(const KernelConfiguration& key) {
+  return with_law(key.law,
+                  [&](auto law) { return by_features<shape, W, Advance, Ledger, typename decltype(law)::Force>(key); });
 }
 
 template <Shape shape, int W, bool Rolling>
-void set_grain_kernels(SceneKernels& kernels) {
+void set_grain_kernels(Kernels& kernels) {
   constexpr auto none = KernelDamping::none, vector = KernelDamping::vector, component = KernelDamping::component;
   kernels.quasi_static[0] = grain_kernel<shape, GrainTraits<W, Rolling, false, none>>();
   kernels.quasi_static[1] = grain_kernel<shape, GrainTraits<W, Rolling, false, vector>>();
@@ -73,7 +66,7 @@ void set_grain_kernels(SceneKernels& kernels) {
 
 /// The advancing kernels of one shape at W lanes.
 template <Shape shape, int W>
-void set_kernels(const SceneKey& key, const char* instruction_set, SceneKernels& kernels) {
+void set_kernels(const KernelConfiguration& key, const char* instruction_set, Kernels& kernels) {
   kernels.pairs = pair_kernel_for<shape, W, true, false>(key);
   if (key.rolling)
     set_grain_kernels<shape, W, true>(kernels);

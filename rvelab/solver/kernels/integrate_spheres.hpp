@@ -2,7 +2,7 @@
 #pragma once
 
 #include "rvelab/contact/damping.hpp"
-#include "rvelab/solver/kernel_integrate.hpp"
+#include "rvelab/solver/kernels/integrate.hpp"
 
 namespace rvelab {
 namespace {
@@ -104,8 +104,8 @@ inline __attribute__((always_inline)) void damp_spheres(const StepConstants& c, 
         const Triple<V> pv = plus(v, half_dt, times(inverse_mass, f));
         const Triple<V> pw = plus(s.spin.load<V>(k), half_dt, times(inverse_inertia, t));
         if constexpr (T::damping == KernelDamping::vector) {
-          const V along = local_damping_factor(c.local_damping, dot(f, f), dot(pv, pv), SquareRoot{});
-          const V about = local_damping_factor(c.local_damping, dot(t, t), dot(pw, pw), SquareRoot{});
+          const V along = local_damping_factor(c.local_damping, dot(f, f), dot(pv, pv));
+          const V about = local_damping_factor(c.local_damping, dot(t, t), dot(pw, pw));
           f = plus(f, -along, pv);
           t = plus(t, -about, pw);
         } else {
@@ -197,7 +197,7 @@ template <class T>
 void sphere_grains(const StepConstants& constants, const GrainArrays& grains, const PairArrays& pairs, long begin,
                    long end, StepSums* sums) {
   constexpr int W = T::W, narrow = W < 4 ? W : 4;
-  // Copies that no store can change (kernel_pairs.hpp).
+  // Copies that no store can change (kernels/pairs.hpp).
   const StepConstants c = constants;
   const GrainArrays g = grains;
   const PairArrays p = pairs;

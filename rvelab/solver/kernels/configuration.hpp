@@ -1,23 +1,21 @@
-// What a step kernel is compiled for (the scene) and what it is handed (plain pointers and constants). The kernels
-// themselves include no Eigen and no containers, so this header holds none.
+// What a step kernel is compiled for (its configuration) and what it is handed (plain pointers and constants). The
+// kernels themselves include no Eigen and no containers, so this header holds none.
 //
-// A scene is shape x law x rolling x slip convention x dashpot. It is chosen once, when an Rve is opened; the loops
-// hold no branch over it.
+// A configuration is shape x law x rolling x slip convention x dashpot. It is chosen once, when an Rve is opened; the
+// loops hold no branch over it.
 #pragma once
 
 #include <cstdint>
 
 #include "rvelab/contact/kinds.hpp"
+#include "rvelab/contact/laws.hpp"
 #include "rvelab/grains/shape.hpp"
 
 namespace rvelab {
 
-/// Force evaluators of the kernel; linear and linear_given differ only in mix().
-enum class KernelLaw { linear, hertz_given, hertz_mindlin };
-
-struct SceneKey {
+struct KernelConfiguration {
   Shape shape = Shape::disc;
-  KernelLaw law = KernelLaw::linear;
+  Law law = Law::linear;
   bool rolling = false;
   Slip slip = Slip::consistent;
   bool dashpot = false;
@@ -57,7 +55,7 @@ struct StepConstants {
 
 /// Listed pairs, padded with pairs that never touch to a multiple of eight. The first `near` of them touched when they
 /// were listed, or so; they are computed at every step. The others seldom come to touch: eight at a time they are only
-/// looked at, until one does (next_run in kernel_pairs.hpp).
+/// looked at, until one does (next_run in kernels/pairs.hpp).
 struct PairArrays {
   long near = 0;                        ///< a multiple of eight
   std::uint8_t* touched = nullptr;      ///< by eight pairs: whether one touched when they were computed last
@@ -65,10 +63,11 @@ struct PairArrays {
   const std::int32_t* row_j = nullptr;
   const double* image[3] = {};  ///< image shift, as numbers
   const double *kn = nullptr, *kt = nullptr, *friction = nullptr;
-  const double *kr = nullptr, *moment_cap = nullptr;      ///< rolling scenes
-  const double* cn = nullptr;                             ///< dashpot scenes
+  const double* own = nullptr;                            ///< laws with a constant of their own
+  const double *kr = nullptr, *moment_cap = nullptr;      ///< with rolling
+  const double* cn = nullptr;                             ///< with a dashpot
   double* tangential[3] = {};                             ///< history on grain j; 2D: [0] along t = (-n_y, n_x)
-  double* moment[3] = {};                                 ///< rolling scenes; 2D: [0] about z
+  double* moment[3] = {};                                 ///< with rolling; 2D: [0] about z
   double* root_overlap = nullptr;                         ///< laws that carry sqrt(delta_old)
   const double *radius_i = nullptr, *radius_j = nullptr;  ///< 2D
   double* force = nullptr;  ///< row per pair: 2D {fx, fy, T_j, T_i}; 3D {fx, fy, fz, delta/2, n x f_t, 0}
@@ -109,8 +108,8 @@ using GrainKernel = void (*)(const StepConstants&, const GrainArrays&, const Pai
 /// Form of local damping that an integration kernel is compiled for.
 enum class KernelDamping { none, vector, component };
 
-/// The compiled kernels of one scene.
-struct SceneKernels {
+/// The compiled kernels of one configuration.
+struct Kernels {
   PairKernel pairs = nullptr;         ///< contact forces with their increments
   PairKernel pairs_ledger = nullptr;  ///< the same, with dissipation (scalar)
   PairKernel evaluate = nullptr;      ///< contact forces of the stored history, nothing advanced (scalar)
@@ -120,9 +119,9 @@ struct SceneKernels {
   const char* instruction_set = "scalar";
 };
 
-/// Kernels for a scene: the widest that processor and build offer, or what the environment variable RVELAB_ISA names
-/// (scalar, baseline, v3, v4; InputError if it cannot run here). Every choice gives the same bits.
-SceneKernels kernels_for(const SceneKey& key);
+/// Kernels for a configuration: the widest that processor and build offer, or what the environment variable RVELAB_ISA
+/// names (scalar, baseline, v3, v4; InputError if it cannot run here). Every choice gives the same bits.
+Kernels kernels_for(const KernelConfiguration& key);
 
 constexpr int grain_row_length(Shape shape) { return shape == Shape::disc ? 8 : 12; }
 constexpr int force_row_length(Shape shape) { return shape == Shape::disc ? 4 : 8; }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "rvelab/contact/damping.hpp"
-#include "rvelab/solver/kernel_integrate.hpp"
+#include "rvelab/solver/kernels/integrate.hpp"
 
 namespace rvelab {
 namespace {
@@ -72,7 +72,7 @@ inline __attribute__((always_inline)) void damp_discs(const StepConstants& c, co
         const V px = u + half_dt * (fx * inverse_mass), py = v + half_dt * (fy * inverse_mass);
         const V pw = load_as<V>(s.w.at + k) + half_dt * (torque * inverse_inertia);
         if constexpr (T::damping == KernelDamping::vector) {
-          const V factor = local_damping_factor(c.local_damping, fx * fx + fy * fy, px * px + py * py, SquareRoot{});
+          const V factor = local_damping_factor(c.local_damping, fx * fx + fy * fy, px * px + py * py);
           fx = fx - factor * px;
           fy = fy - factor * py;
         } else {
@@ -157,12 +157,12 @@ inline __attribute__((always_inline)) void disc_columns_to_rows(const DiscColumn
   }
 }
 
-/// Discs in 2D. A chunk at a time in passes, as the pair loops (kernel_pairs.hpp).
+/// Discs in 2D. A chunk at a time in passes, as the pair loops (kernels/pairs.hpp).
 template <class T>
 void disc_grains(const StepConstants& constants, const GrainArrays& grains, const PairArrays& pairs, long begin,
                  long end, StepSums* sums) {
   constexpr int W = T::W, narrow = W < 4 ? W : 4;
-  // Copies that no store can change (kernel_pairs.hpp).
+  // Copies that no store can change (kernels/pairs.hpp).
   const StepConstants c = constants;
   const GrainArrays g = grains;
   const PairArrays p = pairs;

@@ -1,16 +1,16 @@
-// Chooses the kernels of a scene: what the build has, what the processor can do, what RVELAB_ISA asks for.
+// Chooses the kernels of a configuration: what the build has, what the processor can do, what RVELAB_ISA asks for.
 #include <cstdlib>
 #include <string>
 #include <vector>
 
 #include "rvelab/error.hpp"
-#include "rvelab/solver/scene.hpp"
+#include "rvelab/solver/kernels/configuration.hpp"
 
 namespace rvelab {
 
-#define RVELAB_DECLARE(isa)                                                 \
-  void set_disc_kernels_##isa(const SceneKey&, const char*, SceneKernels&); \
-  void set_sphere_kernels_##isa(const SceneKey&, const char*, SceneKernels&)
+#define RVELAB_DECLARE(isa)                                                       \
+  void set_disc_kernels_##isa(const KernelConfiguration&, const char*, Kernels&); \
+  void set_sphere_kernels_##isa(const KernelConfiguration&, const char*, Kernels&)
 RVELAB_DECLARE(scalar);
 RVELAB_DECLARE(baseline);
 #ifdef RVELAB_HAVE_V3
@@ -20,12 +20,12 @@ RVELAB_DECLARE(v3);
 RVELAB_DECLARE(v4);
 #endif
 #undef RVELAB_DECLARE
-void set_disc_kernels_shared(const SceneKey&, SceneKernels&);
-void set_sphere_kernels_shared(const SceneKey&, SceneKernels&);
+void set_disc_kernels_shared(const KernelConfiguration&, Kernels&);
+void set_sphere_kernels_shared(const KernelConfiguration&, Kernels&);
 
 namespace {
 
-using Setter = void (*)(const SceneKey&, const char*, SceneKernels&);
+using Setter = void (*)(const KernelConfiguration&, const char*, Kernels&);
 struct InstructionSet {
   const char* name;
   bool runs_here;
@@ -75,9 +75,9 @@ const InstructionSet& chosen_set() {
 
 }  // namespace
 
-SceneKernels kernels_for(const SceneKey& key) {
+Kernels kernels_for(const KernelConfiguration& key) {
   const InstructionSet& set = chosen_set();
-  SceneKernels kernels;
+  Kernels kernels;
   if (key.shape == Shape::disc) {
     set_disc_kernels_shared(key, kernels);
     set.disc(key, set.name, kernels);

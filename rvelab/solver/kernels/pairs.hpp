@@ -14,8 +14,8 @@
 // Torques act at r - delta/2 for all of them. In 2D the tangent is t = (-n_y, n_x) and all moments lie along z.
 #pragma once
 
-#include "rvelab/solver/lanes.hpp"
-#include "rvelab/solver/scene.hpp"
+#include "rvelab/lanes/vectors.hpp"
+#include "rvelab/solver/kernels/configuration.hpp"
 
 namespace rvelab {
 namespace {
@@ -26,13 +26,6 @@ struct PairTraits {
   static constexpr int W = W_;
   static constexpr bool Rolling = Rolling_, Dashpot = Dashpot_, Advance = Advance_, Ledger = Ledger_;
   static constexpr Slip slip = slip_;
-};
-
-struct SquareRoot {
-  template <class V>
-  inline __attribute__((always_inline)) V operator()(V v) const {
-    return square_root(v);
-  }
 };
 
 /// Loads one Quad of each of W grain rows and turns them into columns; `sign` multiplies the first set before adding.
@@ -127,27 +120,6 @@ struct alignas(64) ScratchColumn {
   double at[chunk_pairs];
 };
 
-/// |v|, by its sign bit alone.
-inline __attribute__((always_inline)) double magnitude_of(double v) { return __builtin_fabs(v); }
-template <class V>
-inline __attribute__((always_inline)) V magnitude_of(V v) {
-  using Bits = decltype(v < v);
-  return (V)((Bits)v & (Bits{} + INT64_MAX));
-}
-
-/// v between -limit and limit, limit >= 0; in the forms that compile to one instruction each.
-template <class V>
-inline __attribute__((always_inline)) V clamped(V v, V limit) {
-  const V least = -limit;
-  const V raised = (v > least) ? v : least;
-  return (raised < limit) ? raised : limit;
-}
-
-/// Three columns of a vector quantity.
-template <class V>
-struct Triple {
-  V x, y, z;
-};
 /// A vector quantity of every pair, or grain, of a chunk.
 struct TripleColumn {
   ScratchColumn x, y, z;
@@ -163,21 +135,11 @@ struct TripleColumn {
     return {load_as<V>(x.at + at), load_as<V>(y.at + at), load_as<V>(z.at + at)};
   }
 };
-template <class V>
-inline __attribute__((always_inline)) V dot(const Triple<V>& a, const Triple<V>& b) {
-  return a.x * b.x + (a.y * b.y + a.z * b.z);
-}
-template <class V>
-inline __attribute__((always_inline)) Triple<V> cross(const Triple<V>& a, const Triple<V>& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-template <class V>
-inline __attribute__((always_inline)) Triple<V> plus(const Triple<V>& a, V factor, const Triple<V>& b) {
-  return {a.x + factor * b.x, a.y + factor * b.y, a.z + factor * b.z};
-}
-template <class V>
-inline __attribute__((always_inline)) Triple<V> times(V factor, const Triple<V>& b) {
-  return {factor * b.x, factor * b.y, factor * b.z};
+/// The normal force, no smaller than where the surfaces press no more.
+template <class Law, class V>
+inline __attribute__((always_inline)) V without_tension(V normal, V own) {
+  const V pressing = Law::pressing_force(normal, own);
+  return (pressing > 0.0) ? normal : normal - pressing;
 }
 
 /// History vector carried to the new normal: into the tangent plane at its old length, then turned about n by `angle`

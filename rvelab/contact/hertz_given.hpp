@@ -1,0 +1,60 @@
+// Hertz contacts with given constants (Qu, Feng and Wang, eq. 16-17).
+//
+//   f_n = k delta^(3/2) (k in N/m^1.5),   f_t <- f_t - kt du_t (kt in N/m)
+//
+// delta^(3/2) = delta sqrt(delta): no libm in what touches state.
+#pragma once
+
+#include "rvelab/contact/linear_given.hpp"
+
+namespace rvelab {
+
+struct HertzGivenForce {
+  static constexpr bool needs_root_overlap = true;
+  static constexpr bool stores_root_overlap = false;
+  static constexpr bool has_own_constant = false;
+  using Impact = HertzImpact;
+
+  template <class V>
+  static inline __attribute__((always_inline)) V normal_force(V kn, V overlap, V root, V /*own*/) {
+    return kn * (overlap * root);
+  }
+  template <class V>
+  static inline __attribute__((always_inline)) V normal_stiffness(V kn, V root) {
+    return 1.5 * kn * root;
+  }
+  template <class V>
+  static inline __attribute__((always_inline)) V tangential_stiffness(V kt, V /*root*/) {
+    return kt;
+  }
+  template <class V>
+  static inline __attribute__((always_inline)) V carried(V /*root*/, V /*last_root*/, bool /*unload_rescale*/) {
+    return V{} + 1.0;
+  }
+  template <class V>
+  static inline __attribute__((always_inline)) V pressing_force(V normal, V /*own*/) {
+    return normal;
+  }
+  static double normal_energy(double kn, double overlap, double root, double /*own*/) {
+    return 0.4 * kn * overlap * overlap * root;
+  }
+};
+
+struct HertzGivenLaw {
+  static constexpr const char* name = "hertz_given";
+  using Force = HertzGivenForce;
+
+  template <class Each>
+  static void parameters(Each each) {
+    each(Parameter{"normal_stiffness_N_m1_5", "normal_stiffness", "N/m^1.5", positive_number,
+                   "k of f_n = k overlap^1.5", "give the normal stiffness of a contact"},
+         &GivenStiffness::normal_stiffness);
+    each(given_tangential_stiffness, &GivenStiffness::tangential_stiffness);
+  }
+  template <class Material>
+  static ContactConstants mix(const Material& a, double /*ri*/, const Material& b, double /*rj*/, double /*section*/) {
+    return given_stiffness(a, b);
+  }
+};
+
+}  // namespace rvelab

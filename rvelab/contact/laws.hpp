@@ -1,0 +1,44 @@
+// The contact laws there are. A new law is a file of its own, like its neighbours, and three lines here.
+//
+// A law is its name, its parameters, the constants that it makes of two grains, and its Force: f_n, stiffnesses and
+// energy from the overlap, which the step kernels are compiled for.
+#pragma once
+
+#include "rvelab/contact/hertz_given.hpp"
+#include "rvelab/contact/hertz_mindlin.hpp"
+#include "rvelab/contact/linear.hpp"
+#include "rvelab/contact/linear_given.hpp"
+
+namespace rvelab {
+
+/// Normal and tangential law of all contacts of a specimen.
+enum class Law { linear, linear_given, hertz_mindlin, hertz_given };
+
+template <class... Each>
+struct LawList {};
+/// In the order of Law.
+using Laws = LawList<LinearLaw, LinearGivenLaw, HertzMindlinLaw, HertzGivenLaw>;
+
+template <class... Each>
+constexpr int count_of(LawList<Each...>) {
+  return int(sizeof...(Each));
+}
+constexpr int law_count = count_of(Laws{});
+
+/// What the laws read of a material; the others keep zero.
+struct LawConstants : YoungModulus, StiffnessRatio, PoissonRatio, GivenStiffness {};
+
+/// visit(L{}) for the law L of this value.
+template <class Visit, class First, class... Rest>
+static inline __attribute__((always_inline)) auto with_law(Law law, const Visit& visit, LawList<First, Rest...>) {
+  if constexpr (sizeof...(Rest) > 0) {
+    if (law != Law(0)) return with_law(Law(int(law) - 1), visit, LawList<Rest...>{});
+  }
+  return visit(First{});
+}
+template <class Visit>
+static inline __attribute__((always_inline)) auto with_law(Law law, const Visit& visit) {
+  return with_law(law, visit, Laws{});
+}
+
+}  // namespace rvelab

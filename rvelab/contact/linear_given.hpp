@@ -1,0 +1,44 @@
+// Linear contact law with stiffnesses given as numbers (Liang et al. 2023, table 2): f_n = kn delta, f_t <- f_t - kt
+// du_t, kn and kt in N/m, the harmonic mean of unlike grains.
+#pragma once
+
+#include "rvelab/contact/linear.hpp"
+
+namespace rvelab {
+
+struct GivenStiffness {
+  double normal_stiffness = 0;      ///< N/m (linear_given) or N/m^1.5 (hertz_given), > 0
+  double tangential_stiffness = 0;  ///< N/m, >= 0
+};
+
+template <class Material>
+static ContactConstants given_stiffness(const Material& a, const Material& b) {
+  return {harmonic_mean(a.normal_stiffness, b.normal_stiffness),
+          harmonic_mean(a.tangential_stiffness, b.tangential_stiffness)};
+}
+
+constexpr Parameter given_tangential_stiffness{"tangential_stiffness_N_m",
+                                               "tangential_stiffness",
+                                               "N/m",
+                                               number_from_zero,
+                                               "kt",
+                                               "give the tangential stiffness of a contact, 0 for none"};
+
+struct LinearGivenLaw {
+  static constexpr const char* name = "linear_given";
+  using Force = LinearForce;
+
+  template <class Each>
+  static void parameters(Each each) {
+    each(Parameter{"normal_stiffness_N_m", "normal_stiffness", "N/m", positive_number, "kn",
+                   "give the normal stiffness of a contact"},
+         &GivenStiffness::normal_stiffness);
+    each(given_tangential_stiffness, &GivenStiffness::tangential_stiffness);
+  }
+  template <class Material>
+  static ContactConstants mix(const Material& a, double /*ri*/, const Material& b, double /*rj*/, double /*section*/) {
+    return given_stiffness(a, b);
+  }
+};
+
+}  // namespace rvelab

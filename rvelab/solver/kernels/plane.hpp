@@ -1,0 +1,131 @@
+// The contact update in the plane, for every shape and law: spring and slip, dashpot, rolling moment, ledger. The shape
+// gives the geometry: where pairs are, how they overlap, how they move. Moments lie along z, t = (-n_y, n_x).
+#pragma once
+
+#include "rvelab/contact/coulomb.hpp"
+#include "rvelab/contact/damping.hpp"
+#include "rvelab/contact/rolling.hpp"
+#include "rvelab/solver/kernels/ledger.hpp"
+#include "rvelab/solver/kernels/pairs.hpp"
+
+namespace rvelab {
+namespace {
+
+/// Geometry and motion of W pairs.
+template <class V>
+struct PlaneContact {
+  V nx, ny, overlap;
+  V lever_i, lever_j;      ///< torque of a force of 1 along t, m
+  V slip_rate = {};        ///< velocity of j less that of i along t where they touch, m/s
+  V spin_difference = {};  ///< w_j - w_i, rad/s (rolling)
+  V opening = {};          ///< along n, m/s (dashpots)
+};
+
+template <class Shape, class Law, class T>
+inline __attribute__((always_inline)) void plane_forces(const StepConstants& c, const PairArrays& p, long first,
+                                                        long count, const typename Shape::Scratch& in,
+                                                        Dissipation* dissipation) {
+  constexpr int W = T::W;
+  using V = typename Lanes<W>::V;
+  const V zero = V{};
+  for (long k = 0; k < count; k += W) {
+    const long at = first + k;
+    const PlaneContact<V> contact = Shape::template contact<T>(c, p, at, k, in);
+    const V overlap = contact.overlap, slip_rate = contact.slip_rate;
+    const auto touching = overlap > 0.0;
+    V root = zero, own = zero;
+    if constexpr (Law::needs_root_overlap || T::Dashpot) root = square_root(touching ? overlap : zero);
+    if constexpr (Law::has_own_constant) own = load_as<V>(p.own + at);
+
+    V normal = Law::normal_force(load_as<V>(p.kn + at), overlap, root, own);
+    [[maybe_unused]] V c_normal = zero;
+    if constexpr (T::Dashpot) {
+      c_normal = dashpot_coefficient(load_as<V>(p.cn + at), root, c.dashpot_quarters);
+      normal = normal - c_normal * contact.opening;
+      if (c.no_tension) normal = without_tension<Law>(normal, own);
+    }
+    const V pressing = Law::pressing_force(normal, own);
+
+    V tangential = load_as<V>(p.tangential[0] + at);
+    [[maybe_unused]] V last_root = zero, carried = zero;
+    if constexpr (Law::stores_root_overlap) last_root = load_as<V>(p.root_overlap + at);
+    [[maybe_unused]] const V viscous = (c.tangential_ratio * c_normal) * slip_rate;
+    if constexpr (T::Advance) {
+      const V kt = Law::tangential_stiffness(load_as<V>(p.kt + at), root);
+      const V limit = friction_limit(load_as<V>(p.friction + at), pressing);
+      [[maybe_unused]] const V before = tangential;
+      if constexpr (Law::stores_root_overlap) {
+        carried = Law::carried(root, last_root, c.unload_rescale);
+        tangential = tangential * carried;
+      }
+      [[maybe_unused]] const V started = tangential;
+      const V increment = kt * (slip_rate * c.dt);
+      const V trial = tangential - increment;
+      if constexpr (T::Dashpot)
+        tangential = within_friction(trial, limit, viscous);
+      else
+        tangential = within_friction(trial, limit);
+      tangential = touching ? tangential : zero;
+      store_as(p.tangential[0] + at, tangential);
+      if constexpr (Law::stores_root_overlap) store_as(p.root_overlap + at, root);
+      if constexpr (T::Ledger) {
+        const double last_kt = Law::stores_root_overlap ? p.kt[at] * last_root : kt;
+        book_spring<Law::stores_root_overlap>(SpringStep<V>{before, started, trial, tangential, increment, kt, last_kt},
+                                              touching, dissipation->friction, dissipation->law_loss);
+        if (T::Dashpot && touching)
+          dissipation->dashpot += c.dt * (c_normal * contact.opening * contact.opening + viscous * slip_rate);
+      }
+    }
+    V total = tangential;
+    if constexpr (T::Dashpot) total = touching ? tangential - viscous : zero;
+    normal = touching ? normal : zero;
+
+    V moment = zero;
+    if constexpr (T::Rolling) moment = load_as<V>(p.moment[0] + at);
+    if constexpr (T::Rolling && T::Advance) {
+      const V kr = Law::tangential_stiffness(load_as<V>(p.kr + at), root);
+      [[maybe_unused]] const V before = moment;
+      if constexpr (Law::stores_root_overlap) moment = moment * carried;
+      [[maybe_unused]] const V started = moment;
+      const V increment = kr * (contact.spin_difference * c.dt);
+      const V trial = moment - increment;
+      const V pushing = (pressing > 0.0) ? pressing : zero;
+      moment = capped_moment(trial, load_as<V>(p.moment_cap + at) * pushing);
+      moment = touching ? moment : zero;
+      store_as(p.moment[0] + at, moment);
+      if constexpr (T::Ledger) {
+        const double last_kr = Law::stores_root_overlap ? p.kr[at] * last_root : kr;
+        book_spring<Law::stores_root_overlap>(SpringStep<V>{before, started, trial, moment, increment, kr, last_kr},
+                                              touching, dissipation->rolling, dissipation->law_loss);
+      }
+    }
+
+    V torque_j = contact.lever_j * total, torque_i = contact.lever_i * total;
+    if constexpr (T::Rolling) {
+      torque_j = torque_j + moment;
+      torque_i = torque_i - moment;
+    }
+    const V columns[4] = {contact.nx * normal - contact.ny * total, contact.ny * normal + contact.nx * total, torque_j,
+                          torque_i};
+    rows_of<W>(columns, p.force + 4 * at, 4);
+  }
+}
+
+/// The pair loop of a shape in the plane.
+template <class Shape, class Law, class T>
+void plane_pairs(const StepConstants& constants, const PairArrays& arrays, const double* rows, long begin, long end,
+                 Dissipation* dissipation) {
+  // Copies that no store can change: else every store would make the compiler read all pointers again.
+  const StepConstants c = constants;
+  const PairArrays p = arrays;
+  typename Shape::Scratch scratch;
+  constexpr int narrow = T::W < 4 ? T::W : 4;
+  for (PairRun run{begin, 0, begin}; run.next < end;) {
+    run = next_run(p, run.next, end, [&](long at) { return Shape::template may_touch<narrow>(c, p, rows, at); });
+    Shape::template locate<T>(c, p, rows, run.first, run.count, scratch);
+    plane_forces<Shape, Law, T>(c, p, run.first, run.count, scratch, dissipation);
+  }
+}
+
+}  // namespace
+}  // namespace rvelab
