@@ -97,6 +97,8 @@ Calibration calibrate(const std::vector<TestResult>& tests, int dimension, const
   const CohesionFit fit = fit_with_cohesion(peaks);
   result.friction_angle_with_cohesion_deg = fit.friction_angle_deg;
   result.cohesion = fit.cohesion;
+  result.friction_angle_with_cohesion_error_deg = fit.friction_angle_error_deg;
+  result.cohesion_error = fit.cohesion_error;
   result.bearing_capacity_Nq = bearing_capacity_Nq(result.friction_angle_deg);
   result.local_shear_Nq = local_shear_Nq(result.friction_angle_deg);
   result.wedge_angle_deg = wedge_angle_deg(result.friction_angle_deg);

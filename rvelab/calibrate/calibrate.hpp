@@ -44,7 +44,8 @@ struct Calibration {
   double friction_angle_moving_mean_deg = 0;    ///< mean over the tests
   double friction_angle_with_cohesion_deg = 0;  ///< peaks, t = s sin phi + c cos phi
   double cohesion = 0;                          ///< Pa; reported, negative or not, and not used
-  double large_strain_friction_angle_deg = 0;   ///< mean over the tests
+  double friction_angle_with_cohesion_error_deg = 0, cohesion_error = 0;    ///< standard errors of these two
+  double large_strain_friction_angle_deg = 0;                               ///< mean over the tests
   double bearing_capacity_Nq = 0, local_shear_Nq = 0, wedge_angle_deg = 0;  ///< of friction_angle_deg
   std::vector<PressureResult> per_pressure;
   std::vector<SpecimenResult> per_specimen;  ///< one packing is one draw: angles of equal recipes differ by degrees

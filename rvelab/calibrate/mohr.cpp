@@ -106,9 +106,21 @@ CohesionFit fit_with_cohesion(std::span<const PrincipalStresses> tests) {
     st += (test.s() - mean_s) * (test.t() - mean_t);
     ss += (test.s() - mean_s) * (test.s() - mean_s);
   }
-  if (tests.size() < 2 || !(ss > 0)) return {nan, nan};
-  const double angle = std::asin(st / ss);
-  return {angle / degree, (mean_t - st / ss * mean_s) / std::cos(angle)};
+  if (tests.size() < 2 || !(ss > 0)) return {nan, nan, nan, nan};
+  const double slope = st / ss, intercept = mean_t - slope * mean_s;
+  const double angle = std::asin(slope), cosine = std::cos(angle);
+  double squares = 0;
+  for (const auto& test : tests) {
+    const double off = test.t() - (intercept + slope * test.s());
+    squares += off * off;
+  }
+  // c = a/cos phi of intercept a and slope b = sin phi, whose errors go together: cov(a, b) = -mean_s var(b).
+  const double variance = tests.size() > 2 ? squares / (count - 2) : nan, of_slope = variance / ss;
+  const double of_intercept = variance / count + mean_s * mean_s * of_slope;
+  const double by_a = 1 / cosine, by_b = intercept * slope / (cosine * cosine * cosine);
+  const double of_cohesion = by_a * by_a * of_intercept + by_b * by_b * of_slope - 2 * by_a * by_b * mean_s * of_slope;
+  return {angle / degree, intercept / cosine, std::sqrt(of_slope) / cosine / degree,
+          std::sqrt(of_cohesion < 0 ? 0 : of_cohesion)};
 }
 
 double bearing_capacity_Nq(double friction_angle_deg) {

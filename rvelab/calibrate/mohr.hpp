@@ -52,10 +52,12 @@ double friction_angle_through_origin_deg(std::span<const PrincipalStresses> test
 
 struct CohesionFit {
   double friction_angle_deg;
-  double cohesion;  ///< Pa; may come out negative
+  double cohesion;                  ///< Pa; may come out negative
+  double friction_angle_error_deg;  ///< standard errors, from what the points are off the line; NaN below three points
+  double cohesion_error;            ///< Pa
 };
 
-/// Least squares of t = s sin phi + c cos phi. NaN for fewer than two different s.
+/// Straight envelope: least squares of t = s sin phi + c cos phi. NaN for fewer than two different s.
 CohesionFit fit_with_cohesion(std::span<const PrincipalStresses> tests);
 
 /// N_q = tan^2(45 + phi/2) exp(pi tan phi) (Prandtl 1920, Reissner 1924), general shear.

@@ -175,7 +175,7 @@ std::string without_peak(const Calibration& calibration) {
 
 /// Why the figures that need more of the tests than they give are not there.
 struct Reasons {
-  std::string peak, moving_mean, cohesion, large_strain;
+  std::string peak, moving_mean, cohesion, cohesion_error, large_strain;
 };
 
 Reasons reasons_of(const Calibration& calibration) {
@@ -190,6 +190,7 @@ Reasons reasons_of(const Calibration& calibration) {
               : "the peaks give no angle: no principal stress is in compression";
   return {no_angle, tension ? no_angle : "needs records over 1 % of strain; a test ends at " + percent(end),
           calibration.per_pressure.size() < 2 ? "needs tests at two pressures or more" : "the peaks lie on no line",
+          calibration.per_pressure.size() < 3 ? "needs tests at three pressures or more" : "the peaks lie on no line",
           "is the mean from 12 to 15 % of strain; a test ends at " + percent(end)};
 }
 
@@ -205,7 +206,10 @@ void report(const Calibration& calibration, const Protocol& protocol, const std:
                      why.moving_mean);
   listing.add_or_why("friction_angle_with_cohesion_deg", calibration.friction_angle_with_cohesion_deg, "degrees",
                      why.cohesion);
+  listing.add_or_why("friction_angle_with_cohesion_standard_error_deg",
+                     calibration.friction_angle_with_cohesion_error_deg, "degrees", why.cohesion_error);
   listing.add_or_why("cohesion_Pa", calibration.cohesion, "Pa", why.cohesion);
+  listing.add_or_why("cohesion_standard_error_Pa", calibration.cohesion_error, "Pa", why.cohesion_error);
   listing.add_or_why("large_strain_friction_angle_deg", calibration.large_strain_friction_angle_deg, "degrees",
                      why.large_strain);
   listing.add_or_why("bearing_capacity_Nq", calibration.bearing_capacity_Nq, "", why.peak);
@@ -301,7 +305,10 @@ void add_calibrate(CLI::App& app) {
   command->add_flag("--json", arguments->json, "print one JSON object");
   command->footer(
       "phi: friction angle, sin phi = (sigma_1 - sigma_3)/(sigma_1 + sigma_3) at the peak, the record with the\n"
-      "largest sigma_1 - sigma_3; over several tests by least squares through the origin.\n"
+      "largest sigma_1 - sigma_3; over several tests by least squares through the origin. _with_cohesion: the "
+      "straight\n"
+      "envelope of the peaks, t = s sin phi + c cos phi, with the standard errors of phi and c; of grains that stick\n"
+      "(contact.law = linear_adhesive) it is the one to use.\n"
       "bearing_capacity_Nq: N_q = tan^2(45 + phi/2) exp(pi tan phi), bearing capacity factor of a footing's\n"
       "surcharge in general shear; local_shear_Nq: the same with tan phi reduced to 2/3, for loose soil;\n"
       "wedge_angle_deg: 45 + phi/2, of the active wedge below a footing against the horizontal.\n"

@@ -29,6 +29,7 @@ struct HertzMindlinForce : HertzGivenForce {
 
 struct PoissonRatio {
   double poisson_ratio = 0;  ///< -0.99 to 0.5
+  static constexpr StoredConstant<PoissonRatio> stored[] = {{"poisson_ratio", &PoissonRatio::poisson_ratio, "1"}};
 };
 
 struct HertzMindlinLaw {

@@ -7,32 +7,40 @@
 #include "rvelab/contact/hertz_given.hpp"
 #include "rvelab/contact/hertz_mindlin.hpp"
 #include "rvelab/contact/linear.hpp"
+#include "rvelab/contact/linear_adhesive.hpp"
 #include "rvelab/contact/linear_given.hpp"
 
 namespace rvelab {
 
 /// Normal and tangential law of all contacts of a specimen.
-enum class Law { linear, linear_given, hertz_mindlin, hertz_given };
+enum class Law { linear, linear_given, hertz_mindlin, hertz_given, linear_adhesive };
 
 template <class... Each>
-struct LawList {};
+struct TypeList {};
 /// In the order of Law.
-using Laws = LawList<LinearLaw, LinearGivenLaw, HertzMindlinLaw, HertzGivenLaw>;
+using Laws = TypeList<LinearLaw, LinearGivenLaw, HertzMindlinLaw, HertzGivenLaw, LinearAdhesiveLaw>;
 
 template <class... Each>
-constexpr int count_of(LawList<Each...>) {
+constexpr int count_of(TypeList<Each...>) {
   return int(sizeof...(Each));
 }
 constexpr int law_count = count_of(Laws{});
 
-/// What the laws read of a material; the others keep zero.
-struct LawConstants : YoungModulus, StiffnessRatio, PoissonRatio, GivenStiffness {};
+/// What the laws read of a material, in the order of files.
+using ConstantGroups = TypeList<YoungModulus, StiffnessRatio, PoissonRatio, GivenStiffness, Adhesion>;
+
+template <class>
+struct AllOf;
+template <class... Groups>
+struct AllOf<TypeList<Groups...>> : Groups... {};
+/// The constants of all laws; those that a law does not read keep zero.
+using LawConstants = AllOf<ConstantGroups>;
 
 /// visit(L{}) for the law L of this value.
 template <class Visit, class First, class... Rest>
-static inline __attribute__((always_inline)) auto with_law(Law law, const Visit& visit, LawList<First, Rest...>) {
+static inline __attribute__((always_inline)) auto with_law(Law law, const Visit& visit, TypeList<First, Rest...>) {
   if constexpr (sizeof...(Rest) > 0) {
-    if (law != Law(0)) return with_law(Law(int(law) - 1), visit, LawList<Rest...>{});
+    if (law != Law(0)) return with_law(Law(int(law) - 1), visit, TypeList<Rest...>{});
   }
   return visit(First{});
 }

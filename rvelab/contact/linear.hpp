@@ -53,9 +53,12 @@ struct LinearForce {
 
 struct YoungModulus {
   double young_modulus = 0;  ///< Pa, > 0
+  static constexpr StoredConstant<YoungModulus> stored[] = {{"young_modulus_Pa", &YoungModulus::young_modulus, "Pa"}};
 };
 struct StiffnessRatio {
   double stiffness_ratio = 0;  ///< kt/kn, 0 to 10
+  static constexpr StoredConstant<StiffnessRatio> stored[] = {
+      {"stiffness_ratio", &StiffnessRatio::stiffness_ratio, "1"}};
 };
 
 struct LinearLaw {

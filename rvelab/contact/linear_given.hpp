@@ -9,6 +9,9 @@ namespace rvelab {
 struct GivenStiffness {
   double normal_stiffness = 0;      ///< N/m (linear_given) or N/m^1.5 (hertz_given), > 0
   double tangential_stiffness = 0;  ///< N/m, >= 0
+  static constexpr StoredConstant<GivenStiffness> stored[] = {
+      {"normal_stiffness", &GivenStiffness::normal_stiffness, "N/m or N/m^1.5"},
+      {"tangential_stiffness_N_m", &GivenStiffness::tangential_stiffness, "N/m"}};
 };
 
 template <class Material>

@@ -24,4 +24,14 @@ struct Parameter {
   const char *meaning, *remedy;
 };
 
+/// One of a group of constants that materials carry for the laws that read it, as files store it. `later`: files of
+/// earlier versions lack it.
+template <class Group>
+struct StoredConstant {
+  const char* dataset;
+  double Group::*value;
+  const char* unit;
+  bool later = false;
+};
+
 }  // namespace rvelab

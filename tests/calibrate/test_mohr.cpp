@@ -1,6 +1,7 @@
 // Mohr circles from formulas: principal stresses, fits, bearing capacity factors.
 #include <Eigen/Geometry>
 #include <cmath>
+#include <random>
 
 #include "rvelab/calibrate/calibrate.hpp"
 #include "rvelab/calibrate/mohr.hpp"
@@ -145,6 +146,29 @@ TEST_CASE("The large-strain stress is the mean from 12 to 15 % and nothing where
   CHECK(large_strain_mean(records, 2).minor == Approx(10e3).epsilon(1e-12));
   records.resize(290);
   CHECK(std::isnan(large_strain_mean(records, 2).major));
+}
+
+TEST_CASE("The standard errors of a straight envelope are those that scattered peaks have") {
+  // Peaks at the same s with errors of t drawn anew: the fits scatter as each fit says of itself.
+  std::mt19937 random(5);
+  std::normal_distribution<double> error(0, 300);
+  const int draws = 4000;
+  double squares_c = 0, squares_phi = 0, said_c = 0, said_phi = 0;
+  for (int k = 0; k < draws; ++k) {
+    std::vector<PrincipalStresses> tests;
+    for (const double s : {15e3, 22e3, 31e3, 39e3, 50e3}) {
+      const double t = s * std::sin(30 * degree) + 2500 * std::cos(30 * degree) + error(random);
+      tests.push_back({s + t, s - t});
+    }
+    const CohesionFit fit = fit_with_cohesion(tests);
+    squares_c += std::pow(fit.cohesion - 2500, 2) / draws;
+    squares_phi += std::pow(fit.friction_angle_deg - 30, 2) / draws;
+    said_c += std::pow(fit.cohesion_error, 2) / draws;
+    said_phi += std::pow(fit.friction_angle_error_deg, 2) / draws;
+  }
+  CHECK(said_c / squares_c == Approx(1).margin(0.1));
+  CHECK(said_phi / squares_phi == Approx(1).margin(0.1));
+  CHECK(std::isnan(fit_with_cohesion(std::vector<PrincipalStresses>{{3, 1}, {7, 2}}).cohesion_error));
 }
 
 TEST_CASE("States on a Coulomb envelope give back its angle and cohesion") {
