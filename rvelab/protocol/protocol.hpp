@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "rvelab/protocol/record.hpp"
+#include "rvelab/records/record.hpp"
 #include "rvelab/solver/specimen.hpp"
 
 namespace rvelab {
@@ -207,9 +207,6 @@ Protocol read_protocol(const std::string& path, const std::vector<std::string>& 
 /// The same from a text; `path` serves messages and relative names only.
 Protocol parse_protocol(const std::string& text, const std::string& path,
                         const std::vector<std::string>& assignments = {});
-
-/// Applies one assignment to a parsed file. InputError if it has no value, or names no stage that is there.
-void assign(toml::table& file, const std::string& assignment);
 
 /// The specimen with the protocol's overrides. InputError if one does not fit the specimen (a material that it has
 /// not, a stiffness key that its law does not take), or if its dimension is not the protocol's.

@@ -1,16 +1,19 @@
 #include "rvelab/protocol/protocol_keys.hpp"
 
 #include <algorithm>
-#include <stdexcept>
 
-#include "rvelab/protocol/key_builders.hpp"
+#include "rvelab/keys/key_builders.hpp"
+#include "rvelab/keys/material_toml.hpp"
+#include "rvelab/protocol/path_keys.hpp"
 #include "rvelab/protocol/protocol.hpp"
 
 namespace rvelab {
 namespace protocol {
 namespace {
 
-std::vector<ProtocolKey> test() {
+using namespace keys;
+
+std::vector<TableKey> test() {
   const char* t = "test";
   return {
       required(text(t, "name", "", "what the records are called")),
@@ -25,7 +28,7 @@ std::vector<ProtocolKey> test() {
   };
 }
 
-std::vector<ProtocolKey> loading() {
+std::vector<TableKey> loading() {
   const char* t = "loading";
   const Loading initial;
   return {
@@ -45,9 +48,9 @@ std::vector<ProtocolKey> loading() {
   };
 }
 
-ProtocolKey quantities() {
-  ProtocolKey key = listed("output", "quantities", "-", "list of words", "", KeyKind::words,
-                           "what is measured at each record beside strain and stress; the rest is not computed");
+TableKey quantities() {
+  TableKey key = listed("output", "quantities", "-", "list of words", "", KeyKind::words,
+                        "what is measured at each record beside strain and stress; the rest is not computed");
   for (const QuantityName& each : quantity_names) {
     key.words.emplace_back(each.name);
     key.key.range += (key.key.range.empty() ? "" : ", ") + key.words.back();
@@ -58,7 +61,7 @@ ProtocolKey quantities() {
   return key;
 }
 
-std::vector<ProtocolKey> output_specimen_and_calibrate() {
+std::vector<TableKey> output_specimen_and_calibrate() {
   return {
       whole_number("output", "snapshots_every", Protocol{}.snapshots_every, {0, 1e9},
                    "grains and contacts are kept at every so many records, from the first; 0: never"),
@@ -74,7 +77,7 @@ std::vector<ProtocolKey> output_specimen_and_calibrate() {
   };
 }
 
-std::vector<ProtocolKey> stage() {
+std::vector<TableKey> stage() {
   return {
       required(word("stage", "kind",
                     {"isotropic", "compression", "simple_shear", "pressure_path", "deviatoric", "path", "flow",
@@ -87,7 +90,7 @@ std::vector<ProtocolKey> stage() {
   };
 }
 
-std::vector<ProtocolKey> isotropic() {
+std::vector<TableKey> isotropic() {
   const char* t = "stage.isotropic";
   const IsotropicStage initial;
   return {
@@ -104,7 +107,7 @@ std::vector<ProtocolKey> isotropic() {
   };
 }
 
-std::vector<ProtocolKey> compression() {
+std::vector<TableKey> compression() {
   const char* t = "stage.compression";
   return {
       word(t, "axis", {"x", "y", "z"}, "laboratory axis that is shortened", "(y in 2D, z in 3D)"),
@@ -125,7 +128,7 @@ std::vector<ProtocolKey> compression() {
   };
 }
 
-std::vector<ProtocolKey> simple_shear() {
+std::vector<TableKey> simple_shear() {
   const char* t = "stage.simple_shear";
   return {
       word(t, "plane", {"xy", "xz", "yz", "yx", "zx", "zy"}, "ab: shear dv_a/dx_b", "(xy in 2D, xz in 3D)"),
@@ -144,7 +147,7 @@ std::vector<ProtocolKey> simple_shear() {
   };
 }
 
-std::vector<ProtocolKey> relax_and_probe() {
+std::vector<TableKey> relax_and_probe() {
   const char *r = "stage.relax", *p = "stage.probe";
   const RelaxStage relax;
   const ProbeStage probe;
@@ -166,25 +169,16 @@ std::vector<ProtocolKey> relax_and_probe() {
 
 }  // namespace
 
-const std::vector<ProtocolKey>& protocol_keys() {
-  static const std::vector<ProtocolKey> all = [] {
-    std::vector<ProtocolKey> keys;
+const std::vector<TableKey>& protocol_keys() {
+  static const std::vector<TableKey> all = [] {
+    std::vector<TableKey> entries;
     for (const auto& list : {test(), loading(), output_specimen_and_calibrate(), stage(), isotropic(), compression(),
                              simple_shear(), path_keys(), relax_and_probe()}) {
-      keys.insert(keys.end(), list.begin(), list.end());
+      entries.insert(entries.end(), list.begin(), list.end());
     }
-    return keys;
+    return entries;
   }();
   return all;
-}
-
-const ProtocolKey& protocol_key(const std::string& table, const std::string& name) {
-  for (const auto* keys : {&protocol_keys(), &recipe_keys()}) {
-    for (const auto& entry : *keys) {
-      if (entry.key.table == table && entry.key.name == name) return entry;
-    }
-  }
-  throw std::logic_error("no entry for the key " + table + "." + name + " in protocol_keys.cpp or recipe_keys.cpp");
 }
 
 const std::vector<std::string>& top_tables() {

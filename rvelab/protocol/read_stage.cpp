@@ -114,7 +114,7 @@ void read_stage(const toml::table& table, long number, Protocol& protocol, toml:
                 std::vector<KeyError>& errors) {
   const std::string kind_given = table["kind"].value_or(std::string());
   const std::string name = table["name"].value_or(kind_given.empty() ? std::to_string(number) : kind_given);
-  TableReader reader(table, "stage", "stage." + name, line_of(table), errors);
+  TableReader reader(table, protocol_keys(), "stage", "stage." + name, line_of(table), errors);
   const auto kind = reader.word("kind");
   if (kind.empty()) return;  // without its kind no other key can be judged
   reader.also("stage." + kind);

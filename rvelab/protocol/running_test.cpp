@@ -1,3 +1,4 @@
+// The bookkeeping of a running test. Declared in drive.hpp.
 #include <algorithm>
 #include <cmath>
 #include <limits>

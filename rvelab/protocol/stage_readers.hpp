@@ -1,10 +1,14 @@
 // Readers of the kinds of stages, and what they share. Internal to the room.
 #pragma once
 
+#include "rvelab/keys/table_reader.hpp"
 #include "rvelab/protocol/protocol.hpp"
-#include "rvelab/protocol/table_reader.hpp"
+#include "rvelab/protocol/protocol_keys.hpp"
 
 namespace rvelab::protocol {
+
+using keys::line_of;
+using keys::TableReader;
 
 inline constexpr double most_records = 1e6;
 

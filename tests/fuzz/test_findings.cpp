@@ -3,10 +3,10 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/io/import_csv.hpp"
-#include "rvelab/io/material_toml.hpp"
 #include "rvelab/io/record_journal.hpp"
 #include "rvelab/io/seal.hpp"
 #include "rvelab/io/specimen_file.hpp"
+#include "rvelab/keys/material_toml.hpp"
 #include "rvelab/protocol/protocol.hpp"
 #include "rvelab/protocol/read_recipe.hpp"
 #include "rvelab/solver/rve.hpp"

@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "rvelab/error.hpp"
-#include "rvelab/protocol/progress.hpp"
-#include "rvelab/protocol/record.hpp"
+#include "rvelab/records/progress.hpp"
+#include "rvelab/records/record.hpp"
 #include "rvelab/solver/specimen.hpp"
 
 namespace rvelab::test {

@@ -1,5 +1,5 @@
-// One table of a protocol, read key by key from the table of keys (protocol_keys.hpp), which knows kind, default and
-// range of each.
+// One table of a TOML file, read key by key with a table of keys (table_key.hpp), which knows kind, default and range
+// of each.
 #pragma once
 
 #include <toml++/toml.h>
@@ -8,10 +8,9 @@
 #include <vector>
 
 #include "rvelab/cell/cell.hpp"
-#include "rvelab/io/material_toml.hpp"
-#include "rvelab/protocol/protocol_keys.hpp"
+#include "rvelab/keys/table_key.hpp"
 
-namespace rvelab::protocol {
+namespace rvelab::keys {
 
 /// The line of a node in its file; 0 if it came from the command line.
 long line_of(const toml::node& node);
@@ -19,12 +18,8 @@ long line_of(const toml::node& node);
 /// A node as TOML writes it.
 std::string written(const toml::node& node);
 
-/// Applies the assignments of the command line (protocol.hpp); a wrong one becomes an error, the others are applied.
-void assign_all(toml::table& file, const std::vector<std::string>& assignments, std::vector<KeyError>& errors);
-
-/// Books what is no table of a protocol, or of the kind of file that `known` lists, at its top level.
-void expect_top_tables(const toml::table& file, std::vector<KeyError>& errors,
-                       const std::vector<std::string>& known = top_tables());
+/// Books what is none of the tables `known` at the top level of a file.
+void expect_top_tables(const toml::table& file, std::vector<KeyError>& errors, const std::vector<std::string>& known);
 
 /// A table of the file; an empty one where there is none, a mistake where it is something else.
 const toml::table& table_of(const toml::table& file, const std::string& name, std::vector<KeyError>& errors);
@@ -33,12 +28,13 @@ const toml::table& table_of(const toml::table& file, const std::string& name, st
 /// key without one, zero) so that reading goes on. Every value read, defaults included, goes into `resolved`.
 class TableReader {
  public:
-  /// `key_table`: the table of the key table, which `where` is called in messages: "stage.isotropic" and, with a name
-  /// of its own, "stage.consolidation". `line` is said for missing keys.
-  TableReader(const toml::table& table, std::string key_table, std::string where, long line,
-              std::vector<KeyError>& errors);
+  /// `all`: the entries of every table, which outlive the reader. `key_table`: the one of them that is read, which
+  /// `where` is called in messages: "stage.isotropic" and, with a name of its own, "stage.consolidation". `line` is
+  /// said for missing keys.
+  TableReader(const toml::table& table, const std::vector<TableKey>& all, const std::string& key_table,
+              std::string where, long line, std::vector<KeyError>& errors);
 
-  /// Keys of a further table of the key table may stand here too.
+  /// Keys of a further table of the entries may stand here too.
   void also(const std::string& key_table);
 
   // Each key by its name in the key table. A key without a default there must be in the file, unless `instead` is its
@@ -75,11 +71,12 @@ class TableReader {
   const toml::table& resolved() const { return resolved_; }
 
  private:
-  const ProtocolKey& entry(const std::string& name);
-  const toml::node* find(const ProtocolKey& key, bool required);
-  std::optional<double> checked(const ProtocolKey& key, const toml::node& node);
+  const TableKey& entry(const std::string& name);
+  const toml::node* find(const TableKey& key, bool required);
+  std::optional<double> checked(const TableKey& key, const toml::node& node);
 
   const toml::table& table_;
+  const std::vector<TableKey>& all_;
   std::vector<std::string> key_tables_;
   std::string where_;
   long line_;
@@ -89,4 +86,4 @@ class TableReader {
   toml::table resolved_;
 };
 
-}  // namespace rvelab::protocol
+}  // namespace rvelab::keys

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "rvelab/io/material_toml.hpp"
+#include "rvelab/keys/key.hpp"
 
-namespace rvelab::io {
+namespace rvelab::keys {
 
 /// The right key and how the two units go together: "pressure_Pa", "1 kPa = 1000 Pa".
 struct UnitAnswer {
@@ -19,4 +19,4 @@ struct UnitAnswer {
 /// The known key that `name` (without its table) means in another unit; none if it is no known key with another unit.
 std::optional<UnitAnswer> in_another_unit(const std::string& name, const std::vector<Key>& known);
 
-}  // namespace rvelab::io
+}  // namespace rvelab::keys

@@ -1,12 +1,12 @@
 // Keys of materials, contacts, damping and solver: what a user writes reaches its field, and what cannot be used is
 // answered with the key, the value, the range and the line.
-#include "rvelab/io/material_toml.hpp"
+#include "rvelab/keys/material_toml.hpp"
 
 #include <cmath>
 #include <set>
 
-#include "random_specimen.hpp"
 #include "tests/catch.hpp"
+#include "tests/io/random_specimen.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;

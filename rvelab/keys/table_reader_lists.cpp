@@ -1,13 +1,13 @@
-// Keys whose values are lists or tables.
+// Keys whose values are lists or tables. Declared in table_reader.hpp.
 #include <algorithm>
 #include <cmath>
 
-#include "rvelab/protocol/table_reader.hpp"
+#include "rvelab/keys/table_reader.hpp"
 
-namespace rvelab::protocol {
+namespace rvelab::keys {
 
 std::vector<double> TableReader::numbers(const std::string& name) {
-  const ProtocolKey& key = entry(name);
+  const TableKey& key = entry(name);
   const toml::node* node = find(key, false);
   std::vector<double> values;
   if (node == nullptr) return values;
@@ -21,7 +21,7 @@ std::vector<double> TableReader::numbers(const std::string& name) {
 }
 
 std::vector<std::string> TableReader::words(const std::string& name) {
-  const ProtocolKey& key = entry(name);
+  const TableKey& key = entry(name);
   const toml::node* node = find(key, false);
   std::vector<std::string> values;
   if (node == nullptr) return values;
@@ -41,7 +41,7 @@ std::vector<std::string> TableReader::words(const std::string& name) {
 }
 
 Matrix3 TableReader::components(const std::string& name, bool symmetric) {
-  const ProtocolKey& key = entry(name);
+  const TableKey& key = entry(name);
   const toml::node* node = find(key, key.key.required);
   Matrix3 tensor = Matrix3::Zero();
   if (node == nullptr) return tensor;
@@ -66,7 +66,7 @@ Matrix3 TableReader::components(const std::string& name, bool symmetric) {
 }
 
 std::vector<Matrix3> TableReader::matrices(const std::string& name) {
-  const ProtocolKey& key = entry(name);
+  const TableKey& key = entry(name);
   const toml::node* node = find(key, key.key.required);
   std::vector<Matrix3> list;
   if (node == nullptr) return list;
@@ -92,7 +92,7 @@ std::vector<Matrix3> TableReader::matrices(const std::string& name) {
 }
 
 std::vector<const toml::table*> TableReader::tables(const std::string& name) {
-  const ProtocolKey& key = entry(name);
+  const TableKey& key = entry(name);
   const toml::node* node = find(key, key.key.required);
   std::vector<const toml::table*> list;
   if (node == nullptr) return list;
@@ -105,4 +105,4 @@ std::vector<const toml::table*> TableReader::tables(const std::string& name) {
   return list;
 }
 
-}  // namespace rvelab::protocol
+}  // namespace rvelab::keys

@@ -1,13 +1,13 @@
-#include "rvelab/protocol/table_reader.hpp"
+#include "rvelab/keys/table_reader.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
 
-#include "rvelab/io/key_units.hpp"
+#include "rvelab/keys/key_units.hpp"
 
-namespace rvelab::protocol {
+namespace rvelab::keys {
 namespace {
 
 void refuse_unknown(const toml::source_region& place, const std::string& prefix, const std::string& name,
@@ -45,35 +45,36 @@ const toml::table& table_of(const toml::table& file, const std::string& name, st
   return nothing;
 }
 
-TableReader::TableReader(const toml::table& table, std::string key_table, std::string where, long line,
-                         std::vector<KeyError>& errors)
-    : table_(table), where_(std::move(where)), line_(line), errors_(errors) {
+TableReader::TableReader(const toml::table& table, const std::vector<TableKey>& all, const std::string& key_table,
+                         std::string where, long line, std::vector<KeyError>& errors)
+    : table_(table), all_(all), where_(std::move(where)), line_(line), errors_(errors) {
   also(key_table);
 }
 
 void TableReader::also(const std::string& key_table) {
   key_tables_.push_back(key_table);
-  for (const auto* keys : {&protocol_keys(), &recipe_keys()}) {
-    for (const auto& entry : *keys) {
-      if (entry.key.table == key_table) known_.push_back(entry.key);
-    }
+  for (const TableKey& entry : all_) {
+    if (entry.key.table == key_table) known_.push_back(entry.key);
   }
 }
 
-const ProtocolKey& TableReader::entry(const std::string& name) {
+const TableKey& TableReader::entry(const std::string& name) {
   asked_.push_back(name);
-  const auto found = std::find_if(known_.begin(), known_.end(), [&](const Key& key) { return key.name == name; });
-  return protocol_key(found == known_.end() ? key_tables_.back() : found->table, name);
+  for (const TableKey& entry : all_) {
+    const bool here = std::find(key_tables_.begin(), key_tables_.end(), entry.key.table) != key_tables_.end();
+    if (here && entry.key.name == name) return entry;
+  }
+  throw std::logic_error("no entry for the key " + key_tables_.back() + "." + name + " in its table of keys");
 }
 
 bool TableReader::has_in_another_unit(const std::string& name) const {
   return std::any_of(table_.begin(), table_.end(), [&](const auto& item) {
-    const auto answer = io::in_another_unit(std::string(item.first.str()), known_);
+    const auto answer = in_another_unit(std::string(item.first.str()), known_);
     return answer && answer->key.name == name;
   });
 }
 
-const toml::node* TableReader::find(const ProtocolKey& key, bool required) {
+const toml::node* TableReader::find(const TableKey& key, bool required) {
   const toml::node* node = table_.get(key.key.name);
   if (node == nullptr && required && !has_in_another_unit(key.key.name)) {
     errors_.push_back({line_, where_ + "." + key.key.name + " is missing; allowed: " + key.key.allowed() + "; add it"});
@@ -90,7 +91,7 @@ void TableReader::mistake(const std::string& name, const std::string& text) {
   }
 }
 
-std::optional<double> TableReader::checked(const ProtocolKey& key, const toml::node& node) {
+std::optional<double> TableReader::checked(const TableKey& key, const toml::node& node) {
   const std::string& name = key.key.name;
   const std::string allowed = "; allowed: " + key.key.allowed() + "; ";
   if (!node.is_number()) {
@@ -110,7 +111,7 @@ std::optional<double> TableReader::checked(const ProtocolKey& key, const toml::n
 }
 
 double TableReader::number(const std::string& name, std::optional<double> instead) {
-  const ProtocolKey& key = entry(name);
+  const TableKey& key = entry(name);
   if (!instead && std::holds_alternative<double>(key.initial)) instead = std::get<double>(key.initial);
   const toml::node* node = find(key, !instead);
   const double initial = instead.value_or(0);
@@ -128,7 +129,7 @@ std::optional<double> TableReader::optional_number(const std::string& name) {
 }
 
 long TableReader::whole_number(const std::string& name) {
-  const ProtocolKey& key = entry(name);
+  const TableKey& key = entry(name);
   const auto* initial = std::get_if<long>(&key.initial);
   const toml::node* node = find(key, initial == nullptr);
   long value = initial == nullptr ? 0 : *initial;
@@ -150,7 +151,7 @@ std::optional<long> TableReader::optional_whole_number(const std::string& name) 
 }
 
 bool TableReader::truth(const std::string& name, std::optional<bool> instead) {
-  const ProtocolKey& key = entry(name);
+  const TableKey& key = entry(name);
   if (!instead && std::holds_alternative<bool>(key.initial)) instead = std::get<bool>(key.initial);
   const toml::node* node = find(key, !instead);
   bool value = instead.value_or(false);
@@ -164,7 +165,7 @@ bool TableReader::truth(const std::string& name, std::optional<bool> instead) {
 }
 
 std::string TableReader::text(const std::string& name, std::optional<std::string> instead) {
-  const ProtocolKey& key = entry(name);
+  const TableKey& key = entry(name);
   const toml::node* node = find(key, !instead);
   std::string value = instead.value_or("");
   if (node != nullptr && (!node->is_string() || node->as_string()->get().empty())) {
@@ -177,7 +178,7 @@ std::string TableReader::text(const std::string& name, std::optional<std::string
 }
 
 std::string TableReader::word(const std::string& name, std::optional<std::string> instead) {
-  const ProtocolKey& key = entry(name);
+  const TableKey& key = entry(name);
   if (!instead && std::holds_alternative<std::string>(key.initial)) instead = std::get<std::string>(key.initial);
   const toml::node* node = find(key, !instead);
   std::string value = instead.value_or("");
@@ -205,7 +206,7 @@ void TableReader::finish() {
   for (const auto& [key, value] : table_) {
     const std::string name(key.str());
     if (std::find(names.begin(), names.end(), name) != names.end()) continue;
-    if (const auto answer = io::in_another_unit(name, known_)) {
+    if (const auto answer = in_another_unit(name, known_)) {
       errors_.push_back(key_error(place_of(key, value), prefix + name + " is not known; write " + prefix +
                                                             answer->key.name + ", " + answer->factor));
     } else {
@@ -214,4 +215,4 @@ void TableReader::finish() {
   }
 }
 
-}  // namespace rvelab::protocol
+}  // namespace rvelab::keys

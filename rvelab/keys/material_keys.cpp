@@ -1,13 +1,13 @@
-#include "rvelab/io/material_keys.hpp"
+#include "rvelab/keys/material_keys.hpp"
 
 #include <limits>
 #include <sstream>
 #include <type_traits>
 
-#include "rvelab/io/archive.hpp"
+#include "rvelab/keys/words.hpp"
 #include "rvelab/solver/list_size.hpp"
 
-namespace rvelab::io {
+namespace rvelab::keys {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -146,24 +146,6 @@ std::vector<KeyEntry> solver() {
 
 }  // namespace
 
-bool Range::contains(double value) const {
-  return (low_open ? value > low : value >= low) && (high_open ? value < high : value <= high);
-}
-
-std::string Range::in_words() const {
-  std::ostringstream words;
-  if (low == -infinity && high == infinity) {
-    words << "any finite number";
-  } else if (low == -infinity) {
-    words << (high_open ? "below " : "up to ") << high;
-  } else if (high == infinity) {
-    words << (low_open ? "> " : ">= ") << low;
-  } else {
-    words << (low_open ? "above " : "") << low << " to " << (high_open ? "below " : "") << high;
-  }
-  return words.str();
-}
-
 const std::vector<KeyEntry>& key_entries() {
   static const std::vector<KeyEntry> all = [] {
     std::vector<KeyEntry> entries;
@@ -175,4 +157,4 @@ const std::vector<KeyEntry>& key_entries() {
   return all;
 }
 
-}  // namespace rvelab::io
+}  // namespace rvelab::keys

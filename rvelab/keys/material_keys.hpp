@@ -4,17 +4,11 @@
 #include <variant>
 #include <vector>
 
-#include "rvelab/io/material_toml.hpp"
+#include "rvelab/keys/key.hpp"
+#include "rvelab/keys/range.hpp"
+#include "rvelab/solver/specimen.hpp"
 
-namespace rvelab::io {
-
-/// Interval of the values that a number may take.
-struct Range {
-  double low, high;
-  bool low_open = false, high_open = false;
-  bool contains(double value) const;
-  std::string in_words() const;
-};
+namespace rvelab::keys {
 
 /// friction_angle_deg sets Material::friction to its tangent.
 struct FrictionAngle {};
@@ -33,4 +27,4 @@ struct KeyEntry {
 
 const std::vector<KeyEntry>& key_entries();
 
-}  // namespace rvelab::io
+}  // namespace rvelab::keys

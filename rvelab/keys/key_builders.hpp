@@ -1,14 +1,13 @@
-// How entries of the key table are written down. Internal to the room.
+// How entries of a table of keys are written down, in any room that has one.
 #pragma once
 
 #include <limits>
 #include <sstream>
 
-#include "rvelab/protocol/protocol_keys.hpp"
+#include "rvelab/keys/table_key.hpp"
 
-namespace rvelab::protocol {
+namespace rvelab::keys {
 
-using io::Range;
 using Words = std::vector<std::string>;
 
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -28,20 +27,20 @@ inline std::string as_toml(long value) { return std::to_string(value); }
 
 // The default is that of the struct that the key fills: it is written nowhere twice.
 
-inline ProtocolKey number(const char* table, const char* name, const char* unit, double initial, const Range& range,
-                          const char* meaning) {
+inline TableKey number(const char* table, const char* name, const char* unit, double initial, const Range& range,
+                       const char* meaning) {
   return {
       {table, name, unit, "number", as_toml(initial), range.in_words(), meaning}, KeyKind::number, range, {}, initial};
 }
 
 /// Without a default of its own; `initial` says in words what holds instead, "" if nothing does.
-inline ProtocolKey number(const char* table, const char* name, const char* unit, const char* initial,
-                          const Range& range, const char* meaning) {
+inline TableKey number(const char* table, const char* name, const char* unit, const char* initial, const Range& range,
+                       const char* meaning) {
   return {{table, name, unit, "number", initial, range.in_words(), meaning}, KeyKind::number, range, {}, {}};
 }
 
-inline ProtocolKey whole_number(const char* table, const char* name, long initial, const Range& range,
-                                const char* meaning) {
+inline TableKey whole_number(const char* table, const char* name, long initial, const Range& range,
+                             const char* meaning) {
   return {{table, name, "1", "whole number", as_toml(initial), range.in_words(), meaning},
           KeyKind::whole_number,
           range,
@@ -49,7 +48,7 @@ inline ProtocolKey whole_number(const char* table, const char* name, long initia
           initial};
 }
 
-inline ProtocolKey truth(const char* table, const char* name, bool initial, const char* meaning) {
+inline TableKey truth(const char* table, const char* name, bool initial, const char* meaning) {
   return {{table, name, "-", "truth", initial ? "true" : "false", "true, false", meaning},
           KeyKind::truth,
           any,
@@ -57,17 +56,17 @@ inline ProtocolKey truth(const char* table, const char* name, bool initial, cons
           initial};
 }
 
-inline ProtocolKey text(const char* table, const char* name, const char* initial, const char* meaning) {
+inline TableKey text(const char* table, const char* name, const char* initial, const char* meaning) {
   return {{table, name, "-", "text", initial, "any text", meaning}, KeyKind::text, any, {}, {}};
 }
 
 /// The first word is the default, unless `initial` says something else in words.
-inline ProtocolKey word(const char* table, const char* name, const Words& words, const char* meaning,
-                        const char* initial = nullptr) {
+inline TableKey word(const char* table, const char* name, const Words& words, const char* meaning,
+                     const char* initial = nullptr) {
   std::string allowed;
   for (const auto& each : words) allowed += (allowed.empty() ? "" : ", ") + each;
   // Member by member: of a list in braces gcc 12 frees the texts twice if memory runs out on the way.
-  ProtocolKey key;
+  TableKey key;
   key.key.table = table;
   key.key.name = name;
   key.key.unit = "-";
@@ -86,25 +85,22 @@ inline ProtocolKey word(const char* table, const char* name, const Words& words,
   return key;
 }
 
-inline ProtocolKey required(ProtocolKey key) {
+inline TableKey required(TableKey key) {
   key.key.required = true;
   return key;
 }
 
-inline ProtocolKey with_range(ProtocolKey key, const char* words) {
+inline TableKey with_range(TableKey key, const char* words) {
   key.key.range = words;
   return key;
 }
 
 /// Without a default: what is left out is empty, or not asked for.
-inline ProtocolKey listed(const char* table, const char* name, const char* unit, const char* type, const char* allowed,
-                          KeyKind kind, const char* meaning) {
+inline TableKey listed(const char* table, const char* name, const char* unit, const char* type, const char* allowed,
+                       KeyKind kind, const char* meaning) {
   return {{table, name, unit, type, "", allowed, meaning}, kind, every, {}, {}};
 }
 
 inline constexpr const char* symmetric_components = "xx, yy, zz, yz, xz, xy = numbers";
 
-/// Keys of stages that follow paths, flows and envelopes, and of rows and events (path_keys.cpp).
-std::vector<ProtocolKey> path_keys();
-
-}  // namespace rvelab::protocol
+}  // namespace rvelab::keys

@@ -1,12 +1,12 @@
-// The fields of records, probes and progress, once for every way in which they are kept: the datasets of R.h5 and the
-// frames of its journal.
+// The fields of records and of progress, once for every way in which they are kept: the datasets of R.h5 and the frames
+// of its journal. Each description is a template over the archive that writes or reads (rvelab/io/archive.hpp).
 #pragma once
 
-#include "rvelab/io/archive.hpp"
-#include "rvelab/protocol/progress.hpp"
-#include "rvelab/protocol/record.hpp"
+#include "rvelab/records/column.hpp"
+#include "rvelab/records/progress.hpp"
+#include "rvelab/records/record.hpp"
 
-namespace rvelab::io {
+namespace rvelab::records {
 
 /// Every column of a record. Value: std::vector<Record>, const or not. Of what [output] quantities chooses, a file
 /// holds the columns that were asked for; a frame of the journal holds all, and which of them count.
@@ -73,8 +73,4 @@ void describe_progress(Archive& archive, Value& progress) {
   archive.field("checkpoint/first_grain_steps", first_grain_steps, "1");
 }
 
-/// Probe results: the names of their stages, and one square matrix each (all of one size).
-void put_probes(Hdf5File& file, const std::vector<ProbeResult>& probes);
-std::vector<ProbeResult> get_probes(const Hdf5File& file);
-
-}  // namespace rvelab::io
+}  // namespace rvelab::records

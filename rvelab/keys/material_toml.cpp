@@ -1,23 +1,21 @@
-#include "rvelab/io/material_toml.hpp"
+#include "rvelab/keys/material_toml.hpp"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
 #include <iterator>
-#include <numeric>
 #include <set>
 #include <sstream>
 
 #include "rvelab/error.hpp"
-#include "rvelab/io/archive.hpp"
-#include "rvelab/io/key_units.hpp"
-#include "rvelab/io/material_keys.hpp"
+#include "rvelab/keys/key_units.hpp"
+#include "rvelab/keys/material_keys.hpp"
+#include "rvelab/keys/words.hpp"
 
 namespace rvelab {
 namespace {
 
-using io::KeyEntry;
+using keys::KeyEntry;
 
 const std::vector<std::string> table_names{"contact", "damping", "solver", "material"};
 
@@ -66,7 +64,7 @@ void convert(const std::string& dotted, const toml::node& value, const KeyEntry&
   if (!value.is_string()) refuse(dotted, value, "is not a word", entry, "give one of these");
   const std::string& word = value.as_string()->get();
   try {
-    io::from_text(word, field);
+    keys::from_text(word, field);
   } catch (const InputError&) {
     refuse(dotted, value, "is not known", entry, "choose one of these");
   }
@@ -104,7 +102,7 @@ struct Assignment {
     convert(dotted, value, entry, converted.*member);
     for (Material* material : materials) material->*member = converted.*member;
   }
-  void operator()(io::FrictionAngle) const {
+  void operator()(keys::FrictionAngle) const {
     constexpr double degree = 3.14159265358979323846 / 180;
     double angle = 0;
     convert(dotted, value, entry, angle);
@@ -132,7 +130,7 @@ std::pair<std::string, std::string> without_material_name(const std::string& dot
 }
 
 const KeyEntry* find_entry(const std::string& dotted) {
-  const auto& entries = io::key_entries();
+  const auto& entries = keys::key_entries();
   const auto found =
       std::find_if(entries.begin(), entries.end(), [&](const KeyEntry& entry) { return entry.key.dotted() == dotted; });
   return found == entries.end() ? nullptr : &*found;
@@ -153,24 +151,6 @@ std::vector<Material*> materials_named(Specimen& specimen, const std::string& do
   return found;
 }
 
-/// Edit distance times four; letters that the candidate goes on with, such as a unit left out, count one each.
-std::size_t edit_distance(const std::string& word, const std::string& candidate) {
-  std::vector<std::size_t> row(candidate.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= word.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= candidate.size(); ++j) {
-      const std::size_t changed = diagonal + (word[i - 1] == candidate[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({changed, row[j] + 1, row[j - 1] + 1});
-    }
-  }
-  std::size_t least = 4 * row.back();
-  for (std::size_t j = 0; j < candidate.size(); ++j) least = std::min(least, 4 * row[j] + candidate.size() - j);
-  return least;
-}
-
 /// Throws if the key is a known one in another unit.
 void refuse_other_unit(const std::string& dotted_key, const std::string& dotted, const std::string& material) {
   const auto dot = dotted.find('.');
@@ -178,7 +158,7 @@ void refuse_other_unit(const std::string& dotted_key, const std::string& dotted,
   if (dot != std::string::npos) {
     std::erase_if(keys, [&](const Key& key) { return key.table != dotted.substr(0, dot); });
   }
-  const auto answer = io::in_another_unit(dotted.substr(dot + 1), keys);  // npos + 1 = 0: no table is named
+  const auto answer = keys::in_another_unit(dotted.substr(dot + 1), keys);  // npos + 1 = 0: no table is named
   if (!answer) return;
   const std::string table = answer->key.table + (material.empty() ? "" : "." + material);
   throw InputError(dotted_key + " is not known; write " + table + "." + answer->key.name + ", " + answer->factor);
@@ -193,8 +173,6 @@ Material read_material(const Specimen& specimen, const toml::table& table, std::
   return one.materials[0];
 }
 
-bool is_assigned(const toml::source_region& place) { return place.path && place.path->starts_with(assignment_prefix); }
-
 std::string trimmed(const std::string& text) {
   const auto first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
   return first == std::string::npos ? "" : text.substr(first, last - first + 1);
@@ -202,57 +180,13 @@ std::string trimmed(const std::string& text) {
 
 }  // namespace
 
-std::string Key::allowed() const {
-  const bool has_unit = unit != "-" && unit != "1";
-  return range + (has_unit ? " " + unit : "");
-}
-
-const toml::source_region& place_of(const toml::key& key, const toml::node& value) {
-  return is_assigned(value.source()) ? value.source() : key.source();
-}
-
-KeyError key_error(const toml::source_region& place, const std::string& message) {
-  if (is_assigned(place)) return {0, *place.path + ": " + message, true};
-  return {static_cast<long>(place.begin.line), message};
-}
-
-toml::table parsed_value(const std::string& text, const std::string& assignment) {
-  const std::string source = assignment_prefix + assignment;
-  try {
-    toml::table parsed = toml::parse("value = " + text, source);
-    if (parsed.size() == 1) return parsed;
-  } catch (const toml::parse_error&) {
-    // a bare word
-  }
-  // As a TOML literal, so that the word too comes out of a parse and knows where it is from.
-  const bool quotable = text.find_first_of("'\n\r") == std::string::npos;
-  try {
-    if (quotable) return toml::parse("value = '" + text + "'", source);
-  } catch (const toml::parse_error&) {
-    // control characters
-  }
-  return toml::table{{"value", text}};
-}
-
-double number_in(const toml::node& node) {
-  // toml++ gives no double for a whole number that it would have to round.
-  return node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get();
-}
-
 const std::vector<Key>& known_keys() {
   static const std::vector<Key> keys = [] {
     std::vector<Key> list;
-    for (const auto& entry : io::key_entries()) list.push_back(entry.key);
+    for (const auto& entry : keys::key_entries()) list.push_back(entry.key);
     return list;
   }();
   return keys;
-}
-
-std::string nearest(const std::string& word, const std::vector<std::string>& candidates) {
-  const auto distance = [&](const std::string& candidate) { return edit_distance(word, candidate); };
-  const auto found = std::min_element(candidates.begin(), candidates.end(),
-                                      [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
-  return found == candidates.end() ? "" : *found;
 }
 
 std::string nearest_key(const std::string& dotted_key) {
@@ -341,31 +275,6 @@ void read_materials(Specimen& specimen, const toml::array& list, std::vector<Key
     }
   }
   specimen.materials = materials;
-}
-
-void raise(const std::string& path, std::vector<KeyError> errors) {
-  if (errors.empty()) return;
-  const auto order = [](const KeyError& error) { return std::pair(error.assigned, error.line); };
-  std::stable_sort(errors.begin(), errors.end(), [&](const auto& a, const auto& b) { return order(a) < order(b); });
-  std::string text;
-  for (const auto& error : errors) {
-    const std::string place = error.line > 0 ? ":" + std::to_string(error.line) : "";
-    text += (text.empty() ? "" : "\n") + path + place + ": " + error.message;
-  }
-  throw InputError(text);
-}
-
-toml::table parse_toml_file(const std::string& path) {
-  if (!std::filesystem::is_regular_file(path)) {
-    throw InputError(path + ": no such file; give the path of a TOML file");
-  }
-  try {
-    return toml::parse_file(path);
-  } catch (const toml::parse_error& error) {
-    const auto& begin = error.source().begin;
-    throw InputError(path + ":" + std::to_string(begin.line) + ": column " + std::to_string(begin.column) +
-                     ": is not TOML (" + std::string(error.description()) + "); correct the line");
-  }
 }
 
 void read_material_tables(const toml::table& file, Specimen& specimen, std::vector<KeyError>& errors) {

@@ -1,6 +1,6 @@
-#include "rvelab/io/key_units.hpp"
+#include "rvelab/keys/key_units.hpp"
 
-namespace rvelab::io {
+namespace rvelab::keys {
 namespace {
 
 /// A unit that a user may think in, as a key ends in it, and what one of it is in the unit of the key.
@@ -81,4 +81,4 @@ std::optional<UnitAnswer> in_another_unit(const std::string& name, const std::ve
   return std::nullopt;
 }
 
-}  // namespace rvelab::io
+}  // namespace rvelab::keys
