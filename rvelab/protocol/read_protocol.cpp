@@ -87,8 +87,8 @@ void read_output(const toml::table& table, Protocol& protocol, toml::table& reso
   protocol.snapshots_every = reader.whole_number("snapshots_every");
   const auto names = reader.words("quantities");
   if (reader.has("quantities")) protocol.quantities = 0;
-  for (const auto& [quantity, name] : quantity_names) {
-    if (std::find(names.begin(), names.end(), name) != names.end()) protocol.quantities |= quantity;
+  for (const records::QuantityRow& row : records::quantity_rows) {
+    if (std::find(names.begin(), names.end(), row.text.name) != names.end()) protocol.quantities |= row.bit;
   }
   reader.finish();
   resolved.insert("output", reader.resolved());

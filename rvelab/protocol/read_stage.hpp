@@ -1,7 +1,7 @@
 // The stages of a protocol, read from their tables. Internal to the room.
 #pragma once
 
-#include "rvelab/keys/table_reader.hpp"
+#include "rvelab/keys/key.hpp"
 #include "rvelab/protocol/protocol.hpp"
 
 namespace rvelab::protocol {

@@ -8,51 +8,12 @@
 #include <vector>
 
 #include "rvelab/cell/cell.hpp"
+#include "rvelab/records/quantities.hpp"
 
 namespace rvelab {
 
-/// What may be measured at a record beyond stress and strain: [output] quantities. What is not asked for is neither
-/// computed nor in the file.
-enum Quantity : std::uint64_t {
-  void_ratio_asked = 1,
-  coordination_number_asked = 2,
-  fabric_anisotropy_asked = 4,
-  sliding_fraction_asked = 8,
-  mechanical_void_ratio_asked = 16,
-  mechanical_coordination_number_asked = 32,
-  fabric_asked = 64,
-  branch_fabric_asked = 128,
-  contact_stress_asked = 256,
-  reynolds_stress_asked = 512,
-  elastic_energy_asked = 1024,
-  kinetic_energy_asked = 2048
-};
-
-struct QuantityName {
-  Quantity quantity;
-  const char* name;  ///< in protocols, and of the dataset under /records
-};
-
-inline constexpr QuantityName quantity_names[] = {
-    {void_ratio_asked, "void_ratio"},
-    {coordination_number_asked, "coordination_number"},
-    {fabric_anisotropy_asked, "fabric_anisotropy"},
-    {sliding_fraction_asked, "sliding_fraction"},
-    {mechanical_void_ratio_asked, "mechanical_void_ratio"},
-    {mechanical_coordination_number_asked, "mechanical_coordination_number"},
-    {fabric_asked, "fabric"},
-    {branch_fabric_asked, "branch_fabric"},
-    {contact_stress_asked, "contact_stress_Pa"},
-    {reynolds_stress_asked, "reynolds_stress_Pa"},
-    {elastic_energy_asked, "elastic_energy_J"},
-    {kinetic_energy_asked, "kinetic_energy_J"}};
-
-/// Measured where a protocol does not say.
-inline constexpr std::uint64_t usual_quantities =
-    void_ratio_asked | coordination_number_asked | fabric_anisotropy_asked | sliding_fraction_asked;
-
-/// A recorded state. Laboratory frame; stress tension positive. Strains count from the start of the stage.
-struct Record {
+/// What every record says. Laboratory frame; stress tension positive. Strains count from the start of the stage.
+struct RecordedState {
   std::int32_t stage = 0;  ///< row of the protocol's stages
   double strain = 0;       ///< the stage's driving strain: axial (compression positive, 1 - F_aa), gamma, ... (README)
   Matrix3 deformation_gradient = Matrix3::Identity();  ///< F since the start of the stage
@@ -64,20 +25,12 @@ struct Record {
   bool target_held = true;   ///< false: kept, but the held stress was not within the tolerance (dt = 0: after the wait)
   bool quasi_static = true;  ///< dt = 0; false: kept, but no equilibrium (Report::quasi_static); dt > 0: not judged
 
-  std::uint64_t quantities = usual_quantities;  ///< which of the following were measured; the others are zero
-  double void_ratio = 0;
-  double coordination_number = 0;
-  double fabric_anisotropy = 0;
-  double sliding_fraction = 0;
-  double mechanical_void_ratio = 0;           ///< rattlers counted as voids
-  double mechanical_coordination_number = 0;  ///< without rattlers
-  Matrix3 fabric = Matrix3::Zero();           ///< <n (x) n>
-  Matrix3 branch_fabric = Matrix3::Zero();    ///< sum b (x) b / sum b.b
-  Matrix3 contact_stress = Matrix3::Zero();   ///< Pa
-  Matrix3 reynolds_stress = Matrix3::Zero();  ///< Pa; zero when quasi-static
-  double elastic_energy = 0;                  ///< J
-  double kinetic_energy = 0;                  ///< J, of the fluctuations
+  std::uint64_t quantities = records::usual_quantities;  ///< bits of those that were measured
 };
+
+/// A recorded state with the quantities measured at it (quantities.hpp), each a member by its name; those that were not
+/// asked for are zero.
+struct Record : RecordedState, records::Quantities {};
 
 /// What a probe stage measured: stiffness as elastic_tangent() gives it (rvelab/measure/tangent.hpp), Pa; 3x3 in 2D,
 /// 6x6 in 3D.
@@ -98,4 +51,10 @@ struct TestResult {
   unsigned long long grain_steps = 0;
 };
 
+namespace records {
+
+/// Measures what record.quantities asks for at the state of an Rve.
+void measure_quantities(Record& record, const Rve& rve);
+
+}  // namespace records
 }  // namespace rvelab

@@ -8,38 +8,35 @@
 
 namespace rvelab::records {
 
-/// Every column of a record. Value: std::vector<Record>, const or not. Of what [output] quantities chooses, a file
-/// holds the columns that were asked for; a frame of the journal holds all, and which of them count.
+/// A member of a part of the record as one of the record.
+template <class Part, class Member>
+constexpr Member Record::*in_record(Member Part::*member) {
+  return member;
+}
+
+/// Every column of a record. Value: std::vector<Record>, const or not. Of the quantities (quantities.hpp) a file holds
+/// the columns that were asked for; a frame of the journal holds all, and which of them count.
 template <class Archive, class Value>
 void describe_records(Archive& archive, Value& records) {
-  archive.table("records", records,                                                      //
-                Column{"stage", &Record::stage, "1"},                                    //
-                Column{"strain", &Record::strain, "1"},                                  //
-                Column{"deformation_gradient", &Record::deformation_gradient, "1"},      //
-                Column{"stress_Pa", &Record::stress, "Pa"},                              //
-                Column{"unbalanced_force_ratio", &Record::unbalanced_force_ratio, "1"},  //
-                Column{"inertial_number", &Record::inertial_number, "1"},                //
-                Column{"substeps", &Record::substeps, "1"},                              //
-                Column{"held_error", &Record::held_error, "1"},                          //
-                Column{"target_held", &Record::target_held, "1"});
-  archive.later_column("records", records, Column{"quasi_static", &Record::quasi_static, "1"});
-  const auto chosen = [&](Quantity quantity, const auto& column) {
-    archive.chosen("records", records, column, &Record::quantities, static_cast<std::uint64_t>(quantity));
+  const auto column = [](const char* name, auto member, const char* unit) {
+    return Column{name, in_record(member), unit};
   };
-  archive.choice("records", records, Column{"quantities", &Record::quantities, "1"});
-  chosen(void_ratio_asked, Column{"void_ratio", &Record::void_ratio, "1"});
-  chosen(coordination_number_asked, Column{"coordination_number", &Record::coordination_number, "1"});
-  chosen(fabric_anisotropy_asked, Column{"fabric_anisotropy", &Record::fabric_anisotropy, "1"});
-  chosen(sliding_fraction_asked, Column{"sliding_fraction", &Record::sliding_fraction, "1"});
-  chosen(mechanical_void_ratio_asked, Column{"mechanical_void_ratio", &Record::mechanical_void_ratio, "1"});
-  chosen(mechanical_coordination_number_asked,
-         Column{"mechanical_coordination_number", &Record::mechanical_coordination_number, "1"});
-  chosen(fabric_asked, Column{"fabric", &Record::fabric, "1"});
-  chosen(branch_fabric_asked, Column{"branch_fabric", &Record::branch_fabric, "1"});
-  chosen(contact_stress_asked, Column{"contact_stress_Pa", &Record::contact_stress, "Pa"});
-  chosen(reynolds_stress_asked, Column{"reynolds_stress_Pa", &Record::reynolds_stress, "Pa"});
-  chosen(elastic_energy_asked, Column{"elastic_energy_J", &Record::elastic_energy, "J"});
-  chosen(kinetic_energy_asked, Column{"kinetic_energy_J", &Record::kinetic_energy, "J"});
+  archive.table("records", records,                                                      //
+                column("stage", &Record::stage, "1"),                                    //
+                column("strain", &Record::strain, "1"),                                  //
+                column("deformation_gradient", &Record::deformation_gradient, "1"),      //
+                column("stress_Pa", &Record::stress, "Pa"),                              //
+                column("unbalanced_force_ratio", &Record::unbalanced_force_ratio, "1"),  //
+                column("inertial_number", &Record::inertial_number, "1"),                //
+                column("substeps", &Record::substeps, "1"),                              //
+                column("held_error", &Record::held_error, "1"),                          //
+                column("target_held", &Record::target_held, "1"));
+  archive.later_column("records", records, column("quasi_static", &Record::quasi_static, "1"));
+  archive.choice("records", records, column("quantities", &Record::quantities, "1"));
+  Quantities::for_each([&]<class Quantity>(std::type_identity<Quantity>, std::uint64_t bit) {
+    archive.chosen("records", records, column(Quantity::text.name, Quantity::member, Quantity::text.unit),
+                   in_record(&Record::quantities), bit);
+  });
 }
 
 /// Every field of a running test's progress; a structured binding, so that a new one does not compile until it is here.

@@ -51,7 +51,7 @@ TEST_CASE("a whole number that no double holds is a number like any other") {
              Contains("t.toml:6") && Contains("record_every = -9223372036854775807 is out of range"));
   const std::string path = "[test]\nname = \"t\"\n[[stage]]\nkind = \"deformation\"\n";
   const Protocol far = parse_protocol(path + "gradients = [[9223372036854775807, 0, 0, 1]]\n", "t.toml");
-  CHECK(std::get<DeformationStage>(far.stages.at(0).what).gradients.at(0)(0, 0) == 9223372036854775808.0);
+  CHECK(std::any_cast<const DeformationStage&>(far.stages.at(0).what).gradients.at(0)(0, 0) == 9223372036854775808.0);
 }
 
 TEST_CASE("a number beyond all doubles in META.json is a mistake of the file") {

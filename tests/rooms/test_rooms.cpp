@@ -155,7 +155,9 @@ TEST_CASE("a source without a header of its name says which header declares it")
     // The program's main is declared nowhere; the solver's sources are one class in parts.
     if (path.extension() != ".cpp" || path.filename() == "main.cpp" || file.starts_with("rvelab/solver/")) continue;
     if (std::filesystem::exists(std::filesystem::path(path).replace_extension(".hpp"))) continue;
-    const std::string text = text_of(path), head = text.substr(0, text.find('#'));
+    const std::string text = text_of(path);
+    std::string head = text.substr(0, text.find('#'));
+    for (auto at = head.find("\n// "); at != std::string::npos; at = head.find("\n// ")) head.replace(at, 4, " ");
     const auto said = head.find("eclared in ");
     if (said == std::string::npos) {
       FAIL_CHECK(file << " has no header; write one, or \"Declared in NAME.hpp.\" at its head");
