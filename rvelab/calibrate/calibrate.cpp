@@ -108,12 +108,9 @@ Calibration calibrate(const std::vector<TestResult>& tests, int dimension, const
 
 void check_calibratable(const Protocol& protocol) {
   const Stage& last = protocol.stages.back();
-  const auto* compression = std::get_if<CompressionStage>(&last.what);
-  if (compression == nullptr || compression->lateral != CompressionStage::Lateral::constant_stress ||
-      compression->to_strain < 0) {
+  if (role_of(last).gives != StageRole::Gives::strength) {
     throw InputError(protocol.path + ": the last stage, \"" + last.name +
-                     "\", gives no friction angle; allowed: kind = \"compression\" with lateral = \"constant_stress\" "
-                     "and to_strain > 0; calibrate with such a protocol");
+                     "\", gives no friction angle; allowed: " + strength_stages() + "; calibrate with such a protocol");
   }
   if (!protocol.uses_pressure) {
     throw InputError(protocol.path +

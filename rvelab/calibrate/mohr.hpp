@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "rvelab/protocol/record.hpp"
+#include "rvelab/records/record.hpp"
 
 namespace rvelab {
 

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "rvelab/protocol/record.hpp"
+#include "rvelab/records/record.hpp"
 
 namespace rvelab {
 

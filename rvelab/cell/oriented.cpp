@@ -4,6 +4,7 @@
 // coordinates of a vector is a norm, at least one in size for all but zero, and a diagonal flow of constant volume
 // keeps it. By the inequality of means every vector is then at least sqrt(d) long where the cell has the volume
 // sqrt(discriminant): sqrt(2)/5^(1/4) = 0.9457 of V^(1/2) in 2D, sqrt(3)/7^(1/3) = 0.9054 of V^(1/3) in 3D, for ever.
+// Declared in cell.hpp.
 #include <cmath>
 #include <cstdio>
 #include <string>

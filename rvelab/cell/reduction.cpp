@@ -5,7 +5,7 @@
 //
 // Vectors are shortened in place, the longer by the shorter, never reordered: every step adds multiples of other
 // basis vectors, so det N = +1 throughout, and a cell whose basis is reduced in some order keeps its axes. A vector is
-// replaced only by one shorter by more than the tolerance, so that ties at one half end.
+// replaced only by one shorter by more than the tolerance, so that ties at one half end. Declared in cell.hpp.
 #include <cmath>
 #include <cstdint>
 #include <cstdio>

@@ -3,7 +3,7 @@
 //
 // The packings are made here from fixed recipes: 400 discs and 1000 spheres at 100 kPa, larger cases by repeating them
 // periodically. Each case shears at constant volume with physical masses at inertial number 1e-3 for a fixed number of
-// steps, several times over; the median is reported.
+// steps, several times over; the median is reported. Declared in commands.hpp.
 #include <algorithm>
 #include <chrono>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "rvelab/error.hpp"
-#include "rvelab/io/material_toml.hpp"
+#include "rvelab/keys/key.hpp"
 
 namespace rvelab::cli {
 namespace {

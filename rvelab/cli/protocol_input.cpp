@@ -3,8 +3,8 @@
 #include <filesystem>
 
 #include "rvelab/error.hpp"
-#include "rvelab/io/material_toml.hpp"
 #include "rvelab/io/specimen_file.hpp"
+#include "rvelab/keys/key.hpp"
 #include "rvelab/protocol/read_recipe.hpp"
 
 namespace rvelab::cli {

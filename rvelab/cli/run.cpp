@@ -1,4 +1,4 @@
-// rvelab run: one test on one specimen.
+// rvelab run: one test on one specimen. Declared in commands.hpp.
 #include <unistd.h>
 
 #include <algorithm>
@@ -18,6 +18,7 @@
 #include "rvelab/cli/report.hpp"
 #include "rvelab/io/publish.hpp"
 #include "rvelab/protocol/run.hpp"
+#include "rvelab/records/record_fields.hpp"
 #include "rvelab/solver/sweep.hpp"
 
 namespace rvelab::cli {
@@ -31,63 +32,58 @@ struct RunArguments {
   bool json = false;
 };
 
-/// One member of all records as an array.
-template <class Value>
-Json column(const std::vector<Record>& records, Value Record::*member) {
-  Json values = Json::array();
-  for (const Record& record : records) {
-    if constexpr (std::is_same_v<Value, Matrix3>) {
-      values.push_back(row_major(record.*member));
-    } else {
-      values.push_back(record.*member);
+/// An archive for records::describe_records: each column becomes an array by its name.
+struct ArraysOfColumns {
+  Json& arrays;
+
+  template <class Member>
+  void column(const std::vector<Record>& records, const records::Column<Record, Member>& column) {
+    Json values = Json::array();
+    for (const Record& record : records) {
+      if constexpr (std::is_same_v<Member, Matrix3>) {
+        values.push_back(row_major(record.*column.member));
+      } else {
+        values.push_back(record.*column.member);
+      }
     }
+    arrays[column.name] = std::move(values);
   }
-  return values;
-}
+  template <class... Columns>
+  void table(const std::string&, const std::vector<Record>& records, const Columns&... columns) {
+    (column(records, columns), ...);
+  }
+  template <class Member>
+  void later_column(const std::string&, const std::vector<Record>& records,
+                    const records::Column<Record, Member>& column) {
+    this->column(records, column);
+  }
+  template <class Member>
+  void choice(const std::string&, const std::vector<Record>&, const records::Column<Record, Member>&) {}
+  template <class Member>
+  void chosen(const std::string&, const std::vector<Record>& records, const records::Column<Record, Member>& column,
+              std::uint64_t Record::*mask, std::uint64_t bit) {
+    if (!records.empty() && (records.front().*mask & bit) != 0) this->column(records, column);
+  }
+};
 
 Json arrays_of(const std::vector<Record>& records) {
   Json arrays;
-  arrays["stage"] = column(records, &Record::stage);
-  arrays["strain"] = column(records, &Record::strain);
-  arrays["deformation_gradient"] = column(records, &Record::deformation_gradient);
-  arrays["stress_Pa"] = column(records, &Record::stress);
-  arrays["unbalanced_force_ratio"] = column(records, &Record::unbalanced_force_ratio);
-  arrays["inertial_number"] = column(records, &Record::inertial_number);
-  arrays["substeps"] = column(records, &Record::substeps);
-  arrays["held_error"] = column(records, &Record::held_error);
-  arrays["target_held"] = column(records, &Record::target_held);
-  arrays["quasi_static"] = column(records, &Record::quasi_static);
-  const std::uint64_t asked = records.empty() ? 0 : records.front().quantities;
-  const auto chosen = [&](Quantity quantity, const char* name, auto member) {
-    if ((asked & quantity) != 0) arrays[name] = column(records, member);
-  };
-  chosen(void_ratio_asked, "void_ratio", &Record::void_ratio);
-  chosen(coordination_number_asked, "coordination_number", &Record::coordination_number);
-  chosen(fabric_anisotropy_asked, "fabric_anisotropy", &Record::fabric_anisotropy);
-  chosen(sliding_fraction_asked, "sliding_fraction", &Record::sliding_fraction);
-  chosen(mechanical_void_ratio_asked, "mechanical_void_ratio", &Record::mechanical_void_ratio);
-  chosen(mechanical_coordination_number_asked, "mechanical_coordination_number",
-         &Record::mechanical_coordination_number);
-  chosen(fabric_asked, "fabric", &Record::fabric);
-  chosen(branch_fabric_asked, "branch_fabric", &Record::branch_fabric);
-  chosen(contact_stress_asked, "contact_stress_Pa", &Record::contact_stress);
-  chosen(reynolds_stress_asked, "reynolds_stress_Pa", &Record::reynolds_stress);
-  chosen(elastic_energy_asked, "elastic_energy_J", &Record::elastic_energy);
-  chosen(kinetic_energy_asked, "kinetic_energy_J", &Record::kinetic_energy);
+  ArraysOfColumns archive{arrays};
+  records::describe_records(archive, records);
   return arrays;
 }
 
 /// Moduli of oedometer stages that have records at small strain.
 void add_oedometers(const Protocol& protocol, const TestRun& run, Listing& listing) {
   for (std::size_t k = 0; k < protocol.stages.size(); ++k) {
-    const auto* stage = std::get_if<CompressionStage>(&protocol.stages[k].what);
-    if (stage == nullptr || stage->lateral != CompressionStage::Lateral::zero_strain) continue;
+    const StageRole role = role_of(protocol.stages[k]);
+    if (role.gives != StageRole::Gives::oedometric_stiffness) continue;
     std::vector<Record> records;
     for (const Record& record : run.result.records) {
       if (record.stage == static_cast<int>(k)) records.push_back(record);
     }
     const int dimension = run.end_state.cell.dimension;
-    const std::string axis = !stage->axis.empty() ? stage->axis : dimension == 2 ? "y" : "z";
+    const std::string axis = !role.axis.empty() ? role.axis : dimension == 2 ? "y" : "z";
     const OedometerStiffness found = oedometer_stiffness(records, axis, dimension);
     if (!std::isfinite(found.C11)) continue;
     const std::string stem = "stage_" + protocol.stages[k].name + "_";
@@ -133,7 +129,7 @@ void report(const Protocol& protocol, const TestRun& run, const RunArguments& ar
     listing.add("rising_at_end", rising_at_end(records, highest));
     listing.add("end_strain", records.back().strain);
     listing.add("end_stress_Pa", row_major(records.back().stress), "Pa");
-    if ((records.back().quantities & void_ratio_asked) != 0) {
+    if ((records.back().quantities & records::asked<records::VoidRatio>) != 0) {
       listing.add("end_void_ratio", records.back().void_ratio);
     }
   }

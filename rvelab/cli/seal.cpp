@@ -1,4 +1,5 @@
 // rvelab seal: takes over a file that another program has changed, or one of an earlier version, with a checksum.
+// Declared in commands.hpp.
 #include <memory>
 #include <string>
 

@@ -1,4 +1,4 @@
-// rvelab stress-test: the matrix of stiff and extreme cases, each in a process of its own.
+// rvelab stress-test: the matrix of stiff and extreme cases, each in a process of its own. Declared in commands.hpp.
 #include "rvelab/stress_test/runner.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 #include "rvelab/cli/interrupt.hpp"
 #include "rvelab/cli/report.hpp"
 #include "rvelab/error.hpp"
-#include "rvelab/io/material_toml.hpp"
+#include "rvelab/keys/key.hpp"
 #include "rvelab/stress_test/run_case.hpp"
 
 namespace rvelab::cli {

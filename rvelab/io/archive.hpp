@@ -9,41 +9,22 @@
 #pragma once
 
 #include <algorithm>
-#include <concepts>
 #include <string>
 #include <type_traits>
 #include <vector>
 
 #include "rvelab/cell/cell.hpp"
-#include "rvelab/contact/model.hpp"
 #include "rvelab/error.hpp"
-#include "rvelab/grains/shape.hpp"
 #include "rvelab/io/hdf5_file.hpp"
+#include "rvelab/keys/words.hpp"
+#include "rvelab/records/column.hpp"
 
 namespace rvelab::io {
 
-/// Text in the file for a value that is text or an enumeration, and the way back (InputError listing the names).
-inline std::string text_of(const std::string& value) { return value; }
-inline std::string text_of(Shape shape) { return shape == Shape::disc ? "disc" : "sphere"; }
-template <class Enumeration>
-std::string text_of(Enumeration value) {
-  return name(value);
-}
-
-inline void from_text(const std::string& text, std::string& value) { value = text; }
-inline void from_text(const std::string& text, Law& value) { value = law_from(text); }
-inline void from_text(const std::string& text, Slip& value) { value = slip_from(text); }
-inline void from_text(const std::string& text, Dashpot& value) { value = dashpot_from(text); }
-inline void from_text(const std::string& text, LocalDampingForm& value) { value = local_damping_form_from(text); }
-inline void from_text(const std::string& text, Shape& value) {
-  if (text != "disc" && text != "sphere") {
-    throw InputError("shape = \"" + text + "\" is not known; allowed: disc, sphere; choose one of these");
-  }
-  value = text == "disc" ? Shape::disc : Shape::sphere;
-}
-
-template <class Value>
-concept Textual = std::is_enum_v<Value> || std::same_as<Value, std::string>;
+using keys::from_text;
+using keys::text_of;
+using keys::Textual;
+using records::Column;
 
 /// How one numeric value lies in a file: the scalar's type, and the extents of one value.
 template <class Value>
@@ -90,16 +71,6 @@ struct Layout<Matrix3> {
     for (int k = 0; k < 9; ++k) value(k / 3, k % 3) = row[k];
   }
 };
-
-/// One member of a struct as a dataset over a list of such structs.
-template <class Item, class Member>
-struct Column {
-  const char* name;
-  Member Item::*member;
-  const char* units;
-};
-template <class Item, class Member>
-Column(const char*, Member Item::*, const char*) -> Column<Item, Member>;
 
 /// Writes values under a group of a file. `chunk_rows` > 0: columns of tables are stored in chunks of so many rows.
 class Writer {

@@ -8,6 +8,7 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/io/import_contacts.hpp"
+#include "rvelab/io/material_text.hpp"
 #include "rvelab/io/text_file.hpp"
 #include "rvelab/io/version.hpp"
 #include "rvelab/solver/neighbour_list.hpp"

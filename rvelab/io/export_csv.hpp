@@ -26,7 +26,4 @@ CsvExport csv_files(const std::string& stem);
 /// have the same.
 CsvExport export_csv(const Specimen& specimen, const std::string& stem);
 
-/// The material file (read_material_file) that says all parameters of the specimen.
-std::string material_file_text(const Specimen& specimen);
-
 }  // namespace rvelab

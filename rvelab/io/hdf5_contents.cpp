@@ -1,7 +1,9 @@
 // What is in a file, whoever wrote it: its objects as they stand, for comparison, and all of them copied.
+// Declared in hdf5_file.hpp.
 #include <utility>
 
 #include "rvelab/error.hpp"
+#include "rvelab/io/hdf5_file.hpp"
 #include "rvelab/io/hdf5_raw.hpp"
 
 namespace rvelab {

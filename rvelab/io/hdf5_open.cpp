@@ -2,6 +2,7 @@
 // or kept it busy for ever. So it is shown a sealed file only after its checksum was found to fit. A file without a
 // seal (of a version before 1.4, or changed by another program) is read by a child process with limits on time and
 // memory, which copies what it finds; if the child fails, the file is refused, and nothing happened to this process.
+// Declared in hdf5_file.hpp.
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
@@ -19,6 +20,7 @@
 #include "rvelab/error.hpp"
 #include "rvelab/io/descriptor.hpp"
 #include "rvelab/io/guarded.hpp"
+#include "rvelab/io/hdf5_file.hpp"
 #include "rvelab/io/hdf5_raw.hpp"
 #include "rvelab/io/seal.hpp"
 

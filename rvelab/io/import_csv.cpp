@@ -13,7 +13,7 @@
 #include "rvelab/io/import_contacts.hpp"
 #include "rvelab/io/import_meta.hpp"
 #include "rvelab/io/lammps_dump.hpp"
-#include "rvelab/io/material_toml.hpp"
+#include "rvelab/keys/material_toml.hpp"
 
 namespace rvelab {
 namespace {

@@ -1,11 +1,11 @@
-// The parameters of a specimen as the TOML file that read_material_file reads, from the same table of keys.
+#include "rvelab/io/material_text.hpp"
+
 #include <algorithm>
 #include <sstream>
 
-#include "rvelab/io/archive.hpp"
-#include "rvelab/io/export_csv.hpp"
-#include "rvelab/io/material_keys.hpp"
 #include "rvelab/io/text_file.hpp"
+#include "rvelab/keys/material_keys.hpp"
+#include "rvelab/keys/words.hpp"
 
 namespace rvelab {
 namespace {
@@ -29,7 +29,7 @@ bool in_use(const Specimen& specimen, const std::string& name) {
 
 /// One line "key = value"; nothing where the field holds a default that no file may state (a modulus of 0).
 struct Line {
-  const io::KeyEntry& entry;
+  const keys::KeyEntry& entry;
   const Specimen& specimen;
   const Material& material;
 
@@ -44,7 +44,7 @@ struct Line {
       if constexpr (std::is_same_v<Value, double>) text << io::exact(value);
       if constexpr (std::is_same_v<Value, long>) text << value;
     } else {
-      text << toml::value<std::string>(io::text_of(value));
+      text << toml::value<std::string>(keys::text_of(value));
     }
     return text.str() + "\n";
   }
@@ -64,12 +64,12 @@ struct Line {
   std::string operator()(Value SolverOptions::*member) const {
     return of(specimen.solver.*member);
   }
-  std::string operator()(io::FrictionAngle) const { return ""; }  // said by friction
+  std::string operator()(keys::FrictionAngle) const { return ""; }  // said by friction
 };
 
 std::string table_text(const Specimen& specimen, const Material& material, const std::string& table) {
   std::string text;
-  for (const auto& entry : io::key_entries()) {
+  for (const auto& entry : keys::key_entries()) {
     if (entry.key.table == table && in_use(specimen, entry.key.name)) {
       text += std::visit(Line{entry, specimen, material}, entry.target);
     }

@@ -8,13 +8,15 @@
 #include <filesystem>
 
 #include "rvelab/error.hpp"
+#include "rvelab/io/archive.hpp"
 #include "rvelab/io/journal.hpp"
-#include "rvelab/io/record_fields.hpp"
+#include "rvelab/io/probe_results.hpp"
 #include "rvelab/io/record_journal.hpp"
 #include "rvelab/io/recorded_test.hpp"
 #include "rvelab/io/schema.hpp"
 #include "rvelab/io/seal_file.hpp"
 #include "rvelab/io/version.hpp"
+#include "rvelab/records/record_fields.hpp"
 
 namespace rvelab {
 namespace {
@@ -59,10 +61,10 @@ RecordedTest test_in(const Hdf5File& file) {
   RecordedTest test;
   io::Reader reader(file, "");
   describe(reader, test);
-  io::describe_records(reader, test.result.records);
+  records::describe_records(reader, test.result.records);
   test.result.probes = io::get_probes(file);
   if (!test.complete) {
-    io::describe_progress(reader, test.checkpoint.progress);
+    records::describe_progress(reader, test.checkpoint.progress);
     test.checkpoint.progress.wall_seconds = test.result.wall_seconds;
   }
   test.checkpoint.specimen = io::get_specimen(file, "/specimen");
@@ -100,9 +102,9 @@ void write_recorded_test(const RecordedTest& test, const std::string& path) {
     io::stamp(file, FileKind::records);
     io::Writer writer(file, "", chunk_rows);
     describe(writer, test);
-    io::describe_records(writer, test.result.records);
+    records::describe_records(writer, test.result.records);
     io::put_probes(file, test.result.probes);
-    if (!test.complete) io::describe_progress(writer, test.checkpoint.progress);
+    if (!test.complete) records::describe_progress(writer, test.checkpoint.progress);
     io::put_specimen(file, "/specimen", test.checkpoint.specimen);
     for (const Snapshot& snapshot : test.snapshots) {
       io::put_specimen(file, snapshot_group(snapshot.record), read_snapshot(snapshot));
@@ -175,39 +177,4 @@ TestResult read_records(const std::string& path) { return read_recorded_test(pat
 
 std::string read_protocol_text(const std::string& path) { return read_recorded_test(path).provenance.protocol; }
 
-namespace io {
-
-void put_probes(Hdf5File& file, const std::vector<ProbeResult>& probes) {
-  const auto size = probes.empty() ? 0 : static_cast<std::size_t>(probes.front().stiffness.rows());
-  std::vector<std::string> stages;
-  std::vector<double> rows;
-  for (const ProbeResult& probe : probes) {
-    stages.push_back(probe.stage);
-    const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> matrix = probe.stiffness;
-    rows.insert(rows.end(), matrix.data(), matrix.data() + matrix.size());
-  }
-  file.write_text("/probes/stage", stages, {probes.size()});
-  file.write<double>("/probes/stiffness_Pa", rows, {probes.size(), size, size}, "Pa");
-}
-
-std::vector<ProbeResult> get_probes(const Hdf5File& file) {
-  if (!file.has("/probes/stage")) return {};  // version 1.0
-  const auto stages = file.read_text("/probes/stage");
-  const auto rows = file.read<double>("/probes/stiffness_Pa");
-  const Shape64 shape = file.shape("/probes/stiffness_Pa");
-  if (shape.size() != 3 || shape[0] != stages.size() || shape[1] != shape[2]) {
-    throw InputError(file.path() +
-                     ": /probes/stiffness_Pa is not one square matrix for each of /probes/stage; the file "
-                     "is damaged: write it again");
-  }
-  const auto size = static_cast<Eigen::Index>(shape[1]);
-  std::vector<ProbeResult> probes;
-  for (std::size_t k = 0; k < stages.size(); ++k) {
-    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    probes.push_back({stages[k], Eigen::Map<const RowMajor>(rows.data() + k * shape[1] * shape[2], size, size)});
-  }
-  return probes;
-}
-
-}  // namespace io
 }  // namespace rvelab

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "rvelab/protocol/record.hpp"
+#include "rvelab/records/record.hpp"
 #include "rvelab/solver/specimen.hpp"
 
 namespace rvelab {

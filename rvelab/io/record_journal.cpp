@@ -5,12 +5,16 @@
 #include <functional>
 
 #include "rvelab/error.hpp"
-#include "rvelab/io/record_fields.hpp"
+#include "rvelab/io/archive.hpp"
+#include "rvelab/io/probe_results.hpp"
 #include "rvelab/io/schema.hpp"
+#include "rvelab/records/record_fields.hpp"
 
 namespace rvelab::io {
 namespace {
 
+using records::describe_progress;
+using records::describe_records;
 using Bytes = std::vector<std::byte>;
 
 /// Columns of a packed record, in their order. It stands in the begin frame, so that a reader of another version finds

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "rvelab/protocol/progress.hpp"
-#include "rvelab/protocol/record.hpp"
+#include "rvelab/records/progress.hpp"
+#include "rvelab/records/record.hpp"
 
 namespace rvelab {
 

@@ -1,11 +1,9 @@
-// Assignments of the command line, put into a parsed protocol before it is checked.
+#include "rvelab/protocol/assign.hpp"
+
 #include <algorithm>
 #include <charconv>
 
 #include "rvelab/error.hpp"
-#include "rvelab/io/material_toml.hpp"
-#include "rvelab/protocol/protocol.hpp"
-#include "rvelab/protocol/table_reader.hpp"
 
 namespace rvelab {
 namespace {

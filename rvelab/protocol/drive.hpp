@@ -121,7 +121,6 @@ class RunningTest {
  private:
   template <class Apply>
   Report applied(Apply apply);
-  void measure(Record& record) const;
   int stage_number(const std::string& name) const;
 
   const Watch& watch_;
@@ -131,17 +130,8 @@ class RunningTest {
   std::size_t records_planned_;
 };
 
-void drive(RunningTest& test, const IsotropicStage& stage);
-void drive(RunningTest& test, const CompressionStage& stage);
-void drive(RunningTest& test, const SimpleShearStage& stage);
-void drive(RunningTest& test, const RelaxStage& stage);
-void drive(RunningTest& test, const ProbeStage& stage);
-void drive(RunningTest& test, const PathStage& stage);
-void drive(RunningTest& test, const DeviatoricStage& stage);
-void drive(RunningTest& test, const PressurePathStage& stage);
-void drive(RunningTest& test, const FlowStage& stage);
-void drive(RunningTest& test, const DeformationStage& stage);
-void drive(RunningTest& test, const EnvelopeStage& stage);
+/// Carries a stage out, as its kind does.
+void drive(RunningTest& test, const Stage& stage);
 
 /// InputError if a stage does not go with specimens of this dimension.
 void expect_fits(const Protocol& protocol, int dimension);

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "rvelab/keys/table_reader.hpp"
 #include "rvelab/protocol/drive.hpp"
 
 namespace rvelab::protocol {
@@ -14,7 +15,14 @@ struct EventQuantity {
   double (*value)(const RunningTest&);
 };
 
+/// Those of a running test, and every number of the table of measured quantities (rvelab/records/quantities.hpp).
 const std::vector<EventQuantity>& event_quantities();
+
+/// Keys of [[stage.until]].
+std::vector<keys::TableKey> event_keys();
+
+/// The events of a stage; the stages that they name are looked up once all are read.
+std::vector<Event> read_events(keys::TableReader& reader, const Stage& stage, std::vector<KeyError>& errors);
 
 /// The first event of the stage that its last record meets, from 0; -1: none. Renews progress.largest.
 int met_event(RunningTest& test, const Stage& stage);

@@ -5,10 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "rvelab/error.hpp"
 #include "rvelab/measure/tensor_order.hpp"
-#include "rvelab/protocol/directions.hpp"
-#include "rvelab/protocol/drive.hpp"
 
 namespace rvelab::protocol {
 namespace {
@@ -194,74 +191,6 @@ Matrix3 strain_increment(const Matrix3& displacement_gradient, int dimension) {
   const double shift = (volume - strain.trace()) / dimension;
   for (int k = 0; k < dimension; ++k) strain(k, k) += shift;
   return strain;
-}
-
-PathStage path_of(const DeviatoricStage& stage, int dimension) {
-  PathStage path;
-  PathRow drive{"eps_q", {}, {}, {stage.to_strain}};
-  PathRow pressure{"p", {}, {}, {stage.pressure}, stage.pressure};  // held: no ramp from the p of the start
-  drive.strain.setZero();
-  drive.stress.setZero();
-  pressure.strain.setZero();
-  pressure.stress.setZero();
-  for (int k = 0; k < dimension; ++k) pressure.stress(k, k) = -1.0 / dimension;
-  path.records_per_point = std::max(1L, std::lround(stage.to_strain / stage.record_every));
-  if (dimension == 2) {
-    // e along (1, -1): eps_q = sqrt(2 e:e) = |e_xx - e_yy|
-    drive.strain(0, 0) = 1;
-    drive.strain(1, 1) = -1;
-    path.axis = "y";
-    path.rows = {drive, pressure};
-    return path;
-  }
-  // Deviators, compression positive: axis k has cos(theta_k) with theta_z = theta, theta_x,y = theta -+ 120 degrees.
-  PathRow across{"deviator across", {}, {}, {}};
-  across.strain.setZero();
-  across.stress.setZero();
-  for (int k = 0; k < 3; ++k) {
-    const double turn = stage.lode_angle_deg + (k == 0 ? -120 : k == 1 ? 120 : 0);
-    const UnitVector direction = unit_vector(turn / 360);
-    drive.strain(k, k) = -2.0 / 3 * direction.cosine;
-    across.stress(k, k) = -2.0 / 3 * direction.sine;
-  }
-  path.axis = "z";
-  path.rows = {drive, pressure, across};
-  return path;
-}
-
-PathStage path_of(const PressurePathStage& stage, int dimension) {
-  PathStage path;
-  path.points = static_cast<long>(stage.pressures.size());
-  path.records_per_point = stage.records_per_point;
-  path.isotropic = true;
-  for (int k = 0; k < dimension; ++k) {
-    PathRow row{std::string("pressure ") + "xyz"[k], Matrix3::Zero(), Matrix3::Zero(), stage.pressures};
-    row.stress(k, k) = -1;
-    path.rows.push_back(row);
-  }
-  return path;
-}
-
-void expect_fits(const Protocol& protocol, int dimension) {
-  for (const Stage& stage : protocol.stages) {
-    std::string mistake;
-    if (const auto* path = std::get_if<PathStage>(&stage.what)) mistake = mistake_of_rows(*path, dimension);
-    if (dimension == 2) {
-      const auto* compression = std::get_if<CompressionStage>(&stage.what);
-      const auto* shear = std::get_if<SimpleShearStage>(&stage.what);
-      const auto* flow = std::get_if<FlowStage>(&stage.what);
-      const std::string axes = compression != nullptr ? compression->axis : shear != nullptr ? shear->plane : "";
-      const bool out_of_plane =
-          flow != nullptr && !(flow->gradient.row(2).isZero(0) && flow->gradient.col(2).isZero(0));
-      if (axes.find('z') != std::string::npos || out_of_plane) {
-        mistake = (compression != nullptr ? "axis = \"" + axes + "\""
-                   : shear != nullptr     ? "plane = \"" + axes + "\""
-                                          : std::string("gradient")) +
-                  " leaves the plane of a 2D specimen; allowed: x and y; change it";
-      }
-    }
-    if (!mistake.empty()) throw InputError(protocol.path + ": stage \"" + stage.name + "\": " + mistake);
-  }
 }
 
 }  // namespace rvelab::protocol

@@ -34,8 +34,4 @@ std::vector<double> volume_factors(const std::vector<PathRow>& rows, int dimensi
 /// of its change of volume.
 Matrix3 strain_increment(const Matrix3& displacement_gradient, int dimension);
 
-/// Stages that are paths of certain rows, as these.
-PathStage path_of(const DeviatoricStage& stage, int dimension);
-PathStage path_of(const PressurePathStage& stage, int dimension);
-
 }  // namespace rvelab::protocol

@@ -1,16 +1,20 @@
 #include "rvelab/protocol/protocol_keys.hpp"
 
 #include <algorithm>
-#include <stdexcept>
 
-#include "rvelab/protocol/key_builders.hpp"
+#include "rvelab/keys/key_builders.hpp"
+#include "rvelab/keys/material_toml.hpp"
+#include "rvelab/protocol/events.hpp"
 #include "rvelab/protocol/protocol.hpp"
+#include "rvelab/protocol/stage_kinds.hpp"
 
 namespace rvelab {
 namespace protocol {
 namespace {
 
-std::vector<ProtocolKey> test() {
+using namespace keys;
+
+std::vector<TableKey> test() {
   const char* t = "test";
   return {
       required(text(t, "name", "", "what the records are called")),
@@ -25,7 +29,7 @@ std::vector<ProtocolKey> test() {
   };
 }
 
-std::vector<ProtocolKey> loading() {
+std::vector<TableKey> loading() {
   const char* t = "loading";
   const Loading initial;
   return {
@@ -45,20 +49,20 @@ std::vector<ProtocolKey> loading() {
   };
 }
 
-ProtocolKey quantities() {
-  ProtocolKey key = listed("output", "quantities", "-", "list of words", "", KeyKind::words,
-                           "what is measured at each record beside strain and stress; the rest is not computed");
-  for (const QuantityName& each : quantity_names) {
-    key.words.emplace_back(each.name);
+TableKey quantities() {
+  TableKey key = listed("output", "quantities", "-", "list of words", "", KeyKind::words,
+                        "what is measured at each record beside strain and stress; the rest is not computed");
+  for (const records::QuantityRow& row : records::quantity_rows) {
+    key.words.emplace_back(row.text.name);
     key.key.range += (key.key.range.empty() ? "" : ", ") + key.words.back();
-    if ((usual_quantities & each.quantity) == 0) continue;
+    if (!row.text.usual) continue;
     key.key.initial += (key.key.initial.empty() ? "[\"" : ", \"") + key.words.back() + "\"";
   }
   key.key.initial += "]";
   return key;
 }
 
-std::vector<ProtocolKey> output_specimen_and_calibrate() {
+std::vector<TableKey> output_specimen_and_calibrate() {
   return {
       whole_number("output", "snapshots_every", Protocol{}.snapshots_every, {0, 1e9},
                    "grains and contacts are kept at every so many records, from the first; 0: never"),
@@ -74,117 +78,32 @@ std::vector<ProtocolKey> output_specimen_and_calibrate() {
   };
 }
 
-std::vector<ProtocolKey> stage() {
+std::vector<TableKey> stage() {
+  Words kinds;
+  for (const StageKind& kind : stage_kinds()) kinds.push_back(kind.name);
+  const std::string events = "events, each of which ends the stage; not with " + kinds_with_events(false);
   return {
-      required(word("stage", "kind",
-                    {"isotropic", "compression", "simple_shear", "pressure_path", "deviatoric", "path", "flow",
-                     "deformation", "envelope", "relax", "probe"},
-                    "what the stage does; its other keys are those of [[stage]] with this kind", "")),
+      required(word("stage", "kind", kinds, "what the stage does; its other keys are those of [[stage]] with this kind",
+                    "")),
       text("stage", "name", "(its kind)", "name of its own, for --set stage.NAME.key=value and in the records"),
       text("stage", "then", "(the next)", "name of the stage that follows, \"end\" for none"),
-      listed("stage", "until", "-", "list of tables", "[[stage.until]], any number", KeyKind::tables,
-             "events, each of which ends the stage; not with isotropic, relax, probe, envelope"),
-  };
-}
-
-std::vector<ProtocolKey> isotropic() {
-  const char* t = "stage.isotropic";
-  const IsotropicStage initial;
-  return {
-      number(t, "pressure_Pa", "Pa", "(test.pressure_Pa)", positive, "all normal stresses are brought to minus this"),
-      word(t, "shear", {"zero_strain", "zero_stress"},
-           "zero_strain: the cell keeps its angles; zero_stress: shear stresses are driven to zero"),
-      number(t, "stress_tolerance", "1", initial.stress_tolerance, ratio, "of the pressure; the stage ends within it"),
-      number(t, "unbalanced", "1", initial.unbalanced, ratio, "unbalanced force ratio below which the stage ends"),
-      number(t, "largest_change", "1", initial.largest_change, {0, 1, true, false},
-             "largest change of stress in one increment, over the pressure"),
-      whole_number(t, "max_rounds", initial.max_rounds, steps, "rounds of relaxing and correcting before it fails"),
-      whole_number(t, "max_steps", initial.max_steps, steps, "sub-steps of one relaxation before it fails"),
-      truth(t, "record", initial.record, "records the state at the start and at the end"),
-  };
-}
-
-std::vector<ProtocolKey> compression() {
-  const char* t = "stage.compression";
-  return {
-      word(t, "axis", {"x", "y", "z"}, "laboratory axis that is shortened", "(y in 2D, z in 3D)"),
-      required(with_range(number(t, "to_strain", "1", "", {-infinity, 1, true, true},
-                                 "strain 1 - F_aa at which the stage ends, compression positive"),
-                          "below 1, not 0")),
-      number(t, "record_every", "1", CompressionStage{}.record_every, positive,
-             "strain between records; at most 1e6 records"),
-      word(t, "lateral", {"constant_stress", "constant_volume", "zero_strain"},
-           "constant_stress: each lateral normal stress is held (drained); constant_volume: det F = 1 (undrained); "
-           "zero_strain: oedometer"),
-      number(t, "lateral_pressure_Pa", "Pa", "(test.pressure_Pa)", positive,
-             "lateral = constant_stress: lateral normal stresses are held at minus this, which they start from"),
-      whole_number(t, "cycles", CompressionStage{}.cycles.count, {0, 1e6},
-                   "0: straight to to_strain; else so many cycles between +-to_strain"),
-      number(t, "reverse_at_Pa", "Pa", "", positive,
-             "cycles > 0: the strain turns where the axial less the mean lateral stress has this size"),
-  };
-}
-
-std::vector<ProtocolKey> simple_shear() {
-  const char* t = "stage.simple_shear";
-  return {
-      word(t, "plane", {"xy", "xz", "yz", "yx", "zx", "zy"}, "ab: shear dv_a/dx_b", "(xy in 2D, xz in 3D)"),
-      required(with_range(number(t, "to_strain", "1", "", {-infinity, infinity, true, true},
-                                 "gamma = F_ab at which the stage ends, either sign"),
-                          "any finite number but 0")),
-      number(t, "record_every", "1", SimpleShearStage{}.record_every, positive,
-             "gamma between records; at most 1e6 records"),
-      word(t, "normal", {"constant_volume", "constant_stress"},
-           "constant_volume: only the shear moves (undrained); constant_stress: sigma_bb is held (drained)"),
-      number(t, "normal_pressure_Pa", "Pa", "(test.pressure_Pa)", positive,
-             "normal = constant_stress: sigma_bb is held at minus this, which it starts from"),
-      whole_number(t, "cycles", SimpleShearStage{}.cycles.count, {0, 1e6},
-                   "0: straight to to_strain; else so many cycles between +-to_strain"),
-      number(t, "reverse_at_Pa", "Pa", "", positive, "cycles > 0: gamma turns where sigma_ab has this size"),
-  };
-}
-
-std::vector<ProtocolKey> relax_and_probe() {
-  const char *r = "stage.relax", *p = "stage.probe";
-  const RelaxStage relax;
-  const ProbeStage probe;
-  return {
-      number(r, "unbalanced", "1", relax.unbalanced, ratio, "unbalanced force ratio below which the stage ends"),
-      whole_number(r, "max_steps", relax.max_steps, steps, "sub-steps before it fails"),
-      truth(r, "record", relax.record, "records the state at the end"),
-      word(p, "method", {"dynamic", "linear"},
-           "dynamic: increments of +-size, relaxed; linear: the contact network solved, every contact stuck"),
-      number(p, "size", "1", probe.size, {0, 0.01, true, false}, "method = dynamic: strain of each increment"),
-      {{p, "no_slip", "-", "truth", "(true with method = linear, else false)", "true, false",
-        "no contact slips or rolls over in the probed copy (friction 1e6)"},
-       KeyKind::truth,
-       any,
-       {},
-       {}},
+      listed("stage", "until", "-", "list of tables", "[[stage.until]], any number", KeyKind::tables, events.c_str()),
   };
 }
 
 }  // namespace
 
-const std::vector<ProtocolKey>& protocol_keys() {
-  static const std::vector<ProtocolKey> all = [] {
-    std::vector<ProtocolKey> keys;
-    for (const auto& list : {test(), loading(), output_specimen_and_calibrate(), stage(), isotropic(), compression(),
-                             simple_shear(), path_keys(), relax_and_probe()}) {
-      keys.insert(keys.end(), list.begin(), list.end());
-    }
-    return keys;
+const std::vector<TableKey>& protocol_keys() {
+  static const std::vector<TableKey> all = [] {
+    std::vector<TableKey> entries;
+    const auto add = [&](const std::vector<TableKey>& list) {
+      entries.insert(entries.end(), list.begin(), list.end());
+    };
+    for (const auto& list : {test(), loading(), output_specimen_and_calibrate(), stage(), event_keys()}) add(list);
+    for (const StageKind& kind : stage_kinds()) add(kind.keys);
+    return entries;
   }();
   return all;
-}
-
-const ProtocolKey& protocol_key(const std::string& table, const std::string& name) {
-  for (const auto* keys : {&protocol_keys(), &recipe_keys()}) {
-    for (const auto& entry : *keys) {
-      if (entry.key.table == table && entry.key.name == name) return entry;
-    }
-  }
-  throw std::logic_error("no entry for the key " + table + "." + name + " in protocol_keys.cpp or recipe_keys.cpp");
 }
 
 const std::vector<std::string>& top_tables() {

@@ -1,27 +1,31 @@
+// Reads a protocol, table by table. Declared in protocol.hpp.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <sstream>
 
 #include "rvelab/error.hpp"
+#include "rvelab/keys/material_toml.hpp"
+#include "rvelab/keys/table_reader.hpp"
+#include "rvelab/protocol/assign.hpp"
 #include "rvelab/protocol/drive.hpp"
 #include "rvelab/protocol/protocol.hpp"
+#include "rvelab/protocol/protocol_keys.hpp"
 #include "rvelab/protocol/read_stage.hpp"
-#include "rvelab/protocol/table_reader.hpp"
 #include "rvelab/solver/specimen_check.hpp"
 
 namespace rvelab {
 namespace {
 
-using protocol::line_of;
-using protocol::table_of;
-using protocol::TableReader;
+using keys::line_of;
+using keys::table_of;
+using keys::TableReader;
 
 // [contact] before [material]: the law says which unit a stiffness has.
 constexpr std::array<const char*, 4> override_tables{"contact", "damping", "solver", "material"};
 
 void read_test(const toml::table& table, Protocol& protocol, toml::table& resolved, std::vector<KeyError>& errors) {
-  TableReader reader(table, "test", "test", line_of(table), errors);
+  TableReader reader(table, protocol::protocol_keys(), "test", "test", line_of(table), errors);
   protocol.name = reader.text("name");
   protocol.dimension = static_cast<int>(reader.optional_whole_number("dimension").value_or(0));
   if (const auto pressure = reader.optional_number("pressure_Pa")) protocol.pressure = *pressure;
@@ -32,7 +36,7 @@ void read_test(const toml::table& table, Protocol& protocol, toml::table& resolv
 }
 
 void read_loading(const toml::table& table, Protocol& protocol, toml::table& resolved, std::vector<KeyError>& errors) {
-  TableReader reader(table, "loading", "loading", line_of(table), errors);
+  TableReader reader(table, protocol::protocol_keys(), "loading", "loading", line_of(table), errors);
   Loading& loading = protocol.loading;
   loading.physical = reader.word("mode") == "physical";
   const bool has_rate = reader.has("rate_1_s"), has_number = reader.has("inertial_number");
@@ -62,8 +66,8 @@ void read_loading(const toml::table& table, Protocol& protocol, toml::table& res
 void read_specimen_name(const toml::table& file, Protocol& protocol, toml::table& resolved,
                         std::vector<KeyError>& errors) {
   if (!file.contains("specimen")) return;
-  TableReader reader(table_of(file, "specimen", errors), "specimen", "specimen", line_of(*file.get("specimen")),
-                     errors);
+  TableReader reader(table_of(file, "specimen", errors), protocol::protocol_keys(), "specimen", "specimen",
+                     line_of(*file.get("specimen")), errors);
   protocol.specimen_file = reader.text("file");
   reader.finish();
   resolved.insert("specimen", reader.resolved());
@@ -71,20 +75,20 @@ void read_specimen_name(const toml::table& file, Protocol& protocol, toml::table
 
 void read_calibrate(const toml::table& file, Protocol& protocol, toml::table& resolved, std::vector<KeyError>& errors) {
   if (!file.contains("calibrate")) return;
-  TableReader reader(table_of(file, "calibrate", errors), "calibrate", "calibrate", line_of(*file.get("calibrate")),
-                     errors);
+  TableReader reader(table_of(file, "calibrate", errors), protocol::protocol_keys(), "calibrate", "calibrate",
+                     line_of(*file.get("calibrate")), errors);
   protocol.calibration_pressures = reader.numbers("pressures_Pa");
   reader.finish();
   resolved.insert("calibrate", reader.resolved());
 }
 
 void read_output(const toml::table& table, Protocol& protocol, toml::table& resolved, std::vector<KeyError>& errors) {
-  TableReader reader(table, "output", "output", line_of(table), errors);
+  TableReader reader(table, protocol::protocol_keys(), "output", "output", line_of(table), errors);
   protocol.snapshots_every = reader.whole_number("snapshots_every");
   const auto names = reader.words("quantities");
   if (reader.has("quantities")) protocol.quantities = 0;
-  for (const auto& [quantity, name] : quantity_names) {
-    if (std::find(names.begin(), names.end(), name) != names.end()) protocol.quantities |= quantity;
+  for (const records::QuantityRow& row : records::quantity_rows) {
+    if (std::find(names.begin(), names.end(), row.text.name) != names.end()) protocol.quantities |= row.bit;
   }
   reader.finish();
   resolved.insert("output", reader.resolved());
@@ -148,7 +152,7 @@ Protocol read_file(toml::table file, const std::string& path, const std::vector<
   Protocol protocol;
   protocol.path = path;
   toml::table resolved;
-  protocol::expect_top_tables(file, errors);
+  keys::expect_top_tables(file, errors, protocol::top_tables());
   read_test(table_of(file, "test", errors), protocol, resolved, errors);
   read_loading(table_of(file, "loading", errors), protocol, resolved, errors);
   read_output(table_of(file, "output", errors), protocol, resolved, errors);

@@ -5,16 +5,18 @@
 #include <sstream>
 
 #include "rvelab/error.hpp"
+#include "rvelab/keys/material_toml.hpp"
+#include "rvelab/keys/table_reader.hpp"
 #include "rvelab/measure/measures.hpp"
-#include "rvelab/protocol/protocol.hpp"
-#include "rvelab/protocol/table_reader.hpp"
+#include "rvelab/protocol/assign.hpp"
+#include "rvelab/protocol/protocol_keys.hpp"
 
 namespace rvelab {
 namespace {
 
-using protocol::line_of;
-using protocol::table_of;
-using protocol::TableReader;
+using keys::line_of;
+using keys::table_of;
+using keys::TableReader;
 
 const std::vector<std::string> tables{"pack",    "grains",  "target", "preparation",
                                       "contact", "damping", "solver", "material"};
@@ -26,7 +28,7 @@ std::string text_of(const toml::table& table) {
 }
 
 void read_pack(const toml::table& table, RecipeFile& file, toml::table& resolved, std::vector<KeyError>& errors) {
-  TableReader reader(table, "pack", "pack", line_of(table), errors);
+  TableReader reader(table, protocol::recipe_keys(), "pack", "pack", line_of(table), errors);
   Recipe& recipe = file.recipe;
   file.name = reader.text("name");
   recipe.shape = reader.word("shape") == "disc" ? Shape::disc : Shape::sphere;
@@ -73,7 +75,8 @@ Grading read_grading(TableReader& reader) {
 void read_fraction(const toml::table& table, Recipe& recipe, toml::array& resolved, std::vector<KeyError>& errors) {
   GrainFraction fraction;
   const std::string where = "grains." + table["name"].value_or(fraction.name);
-  TableReader reader(table, "grains", table.contains("name") ? where : "grains", line_of(table), errors);
+  TableReader reader(table, protocol::recipe_keys(), "grains", table.contains("name") ? where : "grains",
+                     line_of(table), errors);
   fraction.name = reader.text("name", fraction.name);
   fraction.share = reader.number("share");
   const std::size_t mistakes = errors.size();
@@ -175,7 +178,7 @@ void read_stress(TableReader& reader, RecipeFile& file) {
 }
 
 void read_target(const toml::table& table, RecipeFile& file, toml::table& resolved, std::vector<KeyError>& errors) {
-  TableReader reader(table, "target", "target", line_of(table), errors);
+  TableReader reader(table, protocol::recipe_keys(), "target", "target", line_of(table), errors);
   Recipe& recipe = file.recipe;
   read_stress(reader, file);
   recipe.void_ratio = reader.optional_number("void_ratio");
@@ -197,7 +200,7 @@ void read_target(const toml::table& table, RecipeFile& file, toml::table& resolv
 }
 
 void read_preparation(const toml::table& table, Recipe& recipe, toml::table& resolved, std::vector<KeyError>& errors) {
-  TableReader reader(table, "preparation", "preparation", line_of(table), errors);
+  TableReader reader(table, protocol::recipe_keys(), "preparation", "preparation", line_of(table), errors);
   Preparation& preparation = recipe.preparation;
   const bool growth = reader.word("method") == "growth";
   preparation.method = growth ? Preparation::Method::growth : Preparation::Method::compression;
@@ -257,7 +260,7 @@ RecipeFile read_file(toml::table file, const std::string& path, const std::vecto
   protocol::assign_all(file, assignments, errors);
   RecipeFile read;
   toml::table resolved;
-  protocol::expect_top_tables(file, errors, tables);
+  keys::expect_top_tables(file, errors, tables);
   read_pack(table_of(file, "pack", errors), read, resolved, errors);
   read_parameters(file, read.recipe, resolved, errors);
   read_grains(file, read.recipe, resolved, errors);

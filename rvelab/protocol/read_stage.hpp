@@ -1,8 +1,8 @@
 // The stages of a protocol, read from their tables. Internal to the room.
 #pragma once
 
+#include "rvelab/keys/key.hpp"
 #include "rvelab/protocol/protocol.hpp"
-#include "rvelab/protocol/table_reader.hpp"
 
 namespace rvelab::protocol {
 

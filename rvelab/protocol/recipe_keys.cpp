@@ -1,14 +1,17 @@
-// The key table of recipes: what `rvelab pack` reads.
+// The key table of recipes: what `rvelab pack` reads. Declared in protocol_keys.hpp.
+#include "rvelab/keys/key_builders.hpp"
 #include "rvelab/pack/recipe.hpp"
-#include "rvelab/protocol/key_builders.hpp"
+#include "rvelab/protocol/protocol_keys.hpp"
 
 namespace rvelab::protocol {
 namespace {
 
-constexpr Range below_one{0, 1, true, true};
-constexpr Range friction{0, 1e6};
+using namespace keys;
 
-std::vector<ProtocolKey> pack() {
+constexpr Interval below_one{0, 1, true, true};
+constexpr Interval friction{0, 1e6};
+
+std::vector<TableKey> pack() {
   const char* t = "pack";
   const Recipe initial;
   return {
@@ -25,7 +28,7 @@ std::vector<ProtocolKey> pack() {
   };
 }
 
-std::vector<ProtocolKey> grains() {
+std::vector<TableKey> grains() {
   const char* t = "grains";
   const Grading initial;
   return {
@@ -53,7 +56,7 @@ std::vector<ProtocolKey> grains() {
   };
 }
 
-std::vector<ProtocolKey> target() {
+std::vector<TableKey> target() {
   const char* t = "target";
   const Recipe initial;
   return {
@@ -81,7 +84,7 @@ std::vector<ProtocolKey> target() {
   };
 }
 
-std::vector<ProtocolKey> preparation() {
+std::vector<TableKey> preparation() {
   const char* t = "preparation";
   const Preparation initial;
   return {
@@ -102,9 +105,9 @@ std::vector<ProtocolKey> preparation() {
 
 }  // namespace
 
-const std::vector<ProtocolKey>& recipe_keys() {
-  static const std::vector<ProtocolKey> all = [] {
-    std::vector<ProtocolKey> keys;
+const std::vector<TableKey>& recipe_keys() {
+  static const std::vector<TableKey> all = [] {
+    std::vector<TableKey> keys;
     for (const auto& list : {pack(), grains(), target(), preparation()}) {
       keys.insert(keys.end(), list.begin(), list.end());
     }

@@ -20,7 +20,7 @@ TestRun finish(const Protocol& protocol, protocol::RunningTest& test, double wal
     while (run.progress.stage < static_cast<std::int32_t>(protocol.stages.size())) {
       const Stage& stage = protocol.stages[static_cast<std::size_t>(run.progress.stage)];
       test.enter(stage);
-      std::visit([&](const auto& what) { protocol::drive(test, what); }, stage.what);
+      protocol::drive(test, stage);
       test.leave_stage();
     }
   } catch (const Interrupted&) {

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "rvelab/protocol/progress.hpp"
 #include "rvelab/protocol/protocol.hpp"
-#include "rvelab/protocol/record.hpp"
+#include "rvelab/records/progress.hpp"
+#include "rvelab/records/record.hpp"
 #include "rvelab/solver/rve.hpp"
 
 namespace rvelab {

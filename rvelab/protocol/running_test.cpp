@@ -1,3 +1,4 @@
+// The bookkeeping of a running test. Declared in drive.hpp.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -206,33 +207,14 @@ Report RunningTest::relax(double unbalanced, long max_steps) {
   }
 }
 
-void RunningTest::measure(Record& record) const {
-  record.quantities = quantities_;
-  if (quantities_ == 0) return;
-  const auto asked = [&](Quantity quantity) { return (quantities_ & quantity) != 0; };
-  const Network network = rve.network();
-  if (asked(void_ratio_asked)) record.void_ratio = void_ratio(network);
-  if (asked(coordination_number_asked)) record.coordination_number = coordination_number(network);
-  if (asked(fabric_anisotropy_asked)) record.fabric_anisotropy = fabric_anisotropy(fabric(network), dimension());
-  if (asked(sliding_fraction_asked)) record.sliding_fraction = sliding_fraction(network);
-  if (asked(mechanical_void_ratio_asked)) record.mechanical_void_ratio = mechanical_void_ratio(network);
-  if (asked(mechanical_coordination_number_asked))
-    record.mechanical_coordination_number = mechanical_coordination_number(network);
-  if (asked(fabric_asked)) record.fabric = fabric(network);
-  if (asked(branch_fabric_asked)) record.branch_fabric = branch_fabric(network);
-  if (asked(contact_stress_asked)) record.contact_stress = rve.contact_stress();
-  if (asked(reynolds_stress_asked)) record.reynolds_stress = rve.reynolds_stress();
-  if (asked(elastic_energy_asked)) record.elastic_energy = elastic_energy(network);
-  if (asked(kinetic_energy_asked)) record.kinetic_energy = kinetic_energy(network);
-}
-
 void RunningTest::record(double strain, const Report& report) {
   Record record;
   record.stage = run.progress.stage;
   record.strain = strain;
   record.deformation_gradient = run.progress.deformation;
   record.stress = run.progress.stress;
-  measure(record);
+  record.quantities = quantities_;
+  records::measure_quantities(record, rve);
   record.unbalanced_force_ratio = report.unbalanced_ratio;
   record.inertial_number = report.inertial_number;
   record.substeps = run.progress.substeps;

@@ -1,5 +1,5 @@
 // Far: shear to ten thousand, stretch by e^10, compression until it is refused, expansion to a gas. Frictionless
-// grains, so that the stress is known from their places at any moment.
+// grains, so that the stress is known from their places at any moment. Declared in experiments.hpp.
 #include <algorithm>
 #include <cmath>
 

@@ -1,5 +1,6 @@
 // Gases of grains: energy over many collisions, and cooling against Haff's law (J. Fluid Mech. 134, 1983) with the
 // collision rate of Enskog and Carnahan and Starling (3D) or Henderson (2D), and the a2 of van Noije and Ernst (1998).
+// Declared in experiments.hpp.
 #include <algorithm>
 #include <cmath>
 #include <optional>

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <set>
 
-#include "rvelab/io/material_toml.hpp"
+#include "rvelab/keys/key.hpp"
 #include "rvelab/stress_test/experiments.hpp"
 
 namespace rvelab::stress_test {

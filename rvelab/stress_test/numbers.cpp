@@ -1,4 +1,5 @@
 // Numbers at the edge: units, denormals, what is no number, and the same bits from every instruction set.
+// Declared in experiments.hpp.
 #include <sys/wait.h>
 #include <unistd.h>
 

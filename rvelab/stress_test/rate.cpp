@@ -1,4 +1,5 @@
 // Physical rates, dt > 0: from creeping to faster than the grains can follow. Energy and momentum are the judges.
+// Declared in experiments.hpp.
 #include <algorithm>
 #include <cmath>
 

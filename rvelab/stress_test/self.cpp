@@ -1,4 +1,5 @@
 // Cases that test the runner: what it makes of each way in which a child can end. The matrix does not hold them.
+// Declared in experiments.hpp.
 #include <csignal>
 #include <memory>
 #include <thread>

@@ -1,5 +1,6 @@
 // How many grains, how unlike, in how thin a cell. Stresses are known from positions alone (frictionless grains, the
 // sum over all images), from a crystal, or from a supercell in which no pair needs more than one image.
+// Declared in experiments.hpp.
 #include <algorithm>
 #include <cmath>
 

@@ -1,4 +1,5 @@
 // Quasi-static loading of what is no equilibrium any more: a right answer or a flag, never a silent wrong one.
+// Declared in experiments.hpp.
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/stress_test/experiments.hpp"
 #include "rvelab/stress_test/prepared.hpp"

@@ -8,12 +8,12 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/io/import_csv.hpp"
-#include "rvelab/io/material_toml.hpp"
 #include "rvelab/io/recorded_test.hpp"
 #include "rvelab/io/seal.hpp"
 #include "rvelab/io/seal_file.hpp"
 #include "rvelab/io/specimen_file.hpp"
 #include "rvelab/io/states.hpp"
+#include "rvelab/keys/material_toml.hpp"
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/protocol/protocol.hpp"
 #include "rvelab/protocol/read_recipe.hpp"

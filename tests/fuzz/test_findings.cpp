@@ -3,10 +3,10 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/io/import_csv.hpp"
-#include "rvelab/io/material_toml.hpp"
 #include "rvelab/io/record_journal.hpp"
 #include "rvelab/io/seal.hpp"
 #include "rvelab/io/specimen_file.hpp"
+#include "rvelab/keys/material_toml.hpp"
 #include "rvelab/protocol/protocol.hpp"
 #include "rvelab/protocol/read_recipe.hpp"
 #include "rvelab/solver/rve.hpp"
@@ -51,7 +51,7 @@ TEST_CASE("a whole number that no double holds is a number like any other") {
              Contains("t.toml:6") && Contains("record_every = -9223372036854775807 is out of range"));
   const std::string path = "[test]\nname = \"t\"\n[[stage]]\nkind = \"deformation\"\n";
   const Protocol far = parse_protocol(path + "gradients = [[9223372036854775807, 0, 0, 1]]\n", "t.toml");
-  CHECK(std::get<DeformationStage>(far.stages.at(0).what).gradients.at(0)(0, 0) == 9223372036854775808.0);
+  CHECK(std::any_cast<const DeformationStage&>(far.stages.at(0).what).gradients.at(0)(0, 0) == 9223372036854775808.0);
 }
 
 TEST_CASE("a number beyond all doubles in META.json is a mistake of the file") {

@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "rvelab/error.hpp"
-#include "rvelab/protocol/progress.hpp"
-#include "rvelab/protocol/record.hpp"
+#include "rvelab/records/progress.hpp"
+#include "rvelab/records/record.hpp"
 #include "rvelab/solver/specimen.hpp"
 
 namespace rvelab::test {
@@ -129,15 +129,16 @@ struct Pairs {
     all(strains, strains2, first, first2, turns, turns2, place, place2, visits, visits2, largest, largest2);
   }
   void fields(Record& a, Record& b) {
-    auto& [k, l, m, n, o, p, q, r, s, balanced, asked, t, u, v, w, mv, mz, f, bf, cs, rs, ee, ke] = a;
-    auto& [k2, l2, m2, n2, o2, p2, q2, r2, s2, balanced2, asked2, t2, u2, v2, w2, mv2, mz2, f2, bf2, cs2, rs2, ee2,
-           ke2] = b;
+    auto& [k, l, m, n, o, p, q, r, s, balanced, asked] = static_cast<RecordedState&>(a);
+    auto& [k2, l2, m2, n2, o2, p2, q2, r2, s2, balanced2, asked2] = static_cast<RecordedState&>(b);
     visit(balanced, balanced2);
-    all(k, k2, l, l2, m, m2, n, n2, o, o2, p, p2, q, q2, r, r2, s, s2, t, t2, u, u2, v, v2, w, w2);
-    all(mv, mv2, mz, mz2, f, f2, bf, bf2, cs, cs2, rs, rs2, ee, ee2, ke, ke2);
+    all(k, k2, l, l2, m, m2, n, n2, o, o2, p, p2, q, q2, r, r2, s, s2);
+    records::Quantities::for_each([&]<class Quantity>(std::type_identity<Quantity>, std::uint64_t) {
+      visit(a.*Quantity::member, b.*Quantity::member);
+    });
     // What was not asked for is not kept: a record with random bits in all fields has asked for all.
     if constexpr (std::is_same_v<Visit, RandomFill>) {
-      for (const QuantityName& each : quantity_names) asked |= each.quantity;
+      asked |= records::all_quantities;
     } else {
       visit(asked, asked2);
     }

@@ -27,20 +27,20 @@ void shorten(Stage& stage) {
   const auto shorter = [](double& to_strain, double every) {
     to_strain = (to_strain < 0 ? -1 : 1) * std::min(std::abs(to_strain), few * every);
   };
-  if (auto* compression = std::get_if<CompressionStage>(&stage.what))
+  if (auto* compression = std::any_cast<CompressionStage>(&stage.what))
     shorter(compression->to_strain, compression->record_every);
-  if (auto* shear = std::get_if<SimpleShearStage>(&stage.what)) {
+  if (auto* shear = std::any_cast<SimpleShearStage>(&stage.what)) {
     shorter(shear->to_strain, shear->record_every);
     shear->cycles.count = std::min(shear->cycles.count, 1L);
   }
-  if (auto* deviatoric = std::get_if<DeviatoricStage>(&stage.what))
+  if (auto* deviatoric = std::any_cast<DeviatoricStage>(&stage.what))
     shorter(deviatoric->to_strain, deviatoric->record_every);
-  if (auto* flow = std::get_if<FlowStage>(&stage.what)) shorter(flow->to_strain, flow->record_every);
-  if (auto* path = std::get_if<PathStage>(&stage.what)) path->records_per_point = few;
-  if (auto* pressures = std::get_if<PressurePathStage>(&stage.what)) pressures->pressures.resize(1);
-  if (auto* envelope = std::get_if<EnvelopeStage>(&stage.what)) envelope->directions = 3;
-  if (auto* isotropic = std::get_if<IsotropicStage>(&stage.what)) isotropic->stress_tolerance = 1e-2;
-  if (auto* probe = std::get_if<ProbeStage>(&stage.what)) probe->method = ProbeStage::Method::linear;
+  if (auto* flow = std::any_cast<FlowStage>(&stage.what)) shorter(flow->to_strain, flow->record_every);
+  if (auto* path = std::any_cast<PathStage>(&stage.what)) path->records_per_point = few;
+  if (auto* pressures = std::any_cast<PressurePathStage>(&stage.what)) pressures->pressures.resize(1);
+  if (auto* envelope = std::any_cast<EnvelopeStage>(&stage.what)) envelope->directions = 3;
+  if (auto* isotropic = std::any_cast<IsotropicStage>(&stage.what)) isotropic->stress_tolerance = 1e-2;
+  if (auto* probe = std::any_cast<ProbeStage>(&stage.what)) probe->method = ProbeStage::Method::linear;
 }
 
 }  // namespace
@@ -68,8 +68,8 @@ TEST_CASE("Every protocol runs through all its stages") {
     // Large shear brings its contacts; those of 3D otherwise start at their own pressure.
     if (protocol.dimension == 3) {
       for (Stage& stage : protocol.stages) {
-        if (auto* isotropic = std::get_if<IsotropicStage>(&stage.what)) isotropic->pressure = 100e3;
-        if (auto* compression = std::get_if<CompressionStage>(&stage.what)) compression->lateral_pressure = 100e3;
+        if (auto* isotropic = std::any_cast<IsotropicStage>(&stage.what)) isotropic->pressure = 100e3;
+        if (auto* compression = std::any_cast<CompressionStage>(&stage.what)) compression->lateral_pressure = 100e3;
       }
     }
     if (physical) {

@@ -7,10 +7,11 @@
 #include <stdexcept>
 
 #include "rvelab/error.hpp"
-#include "rvelab/io/key_units.hpp"
+#include "rvelab/keys/key_units.hpp"
+#include "rvelab/keys/material_toml.hpp"
+#include "rvelab/keys/table_reader.hpp"
 #include "rvelab/protocol/protocol.hpp"
 #include "rvelab/protocol/protocol_keys.hpp"
-#include "rvelab/protocol/table_reader.hpp"
 #include "tests/catch.hpp"
 
 using namespace rvelab;
@@ -106,8 +107,8 @@ std::string message_of(const std::string& text, const std::vector<std::string>& 
 }
 
 /// A value of a key's kind and range, as an assignment writes it.
-std::string some_value(const protocol::ProtocolKey& entry) {
-  using protocol::KeyKind;
+std::string some_value(const keys::TableKey& entry) {
+  using keys::KeyKind;
   switch (entry.kind) {
     case KeyKind::truth:
       return "true";
@@ -215,7 +216,7 @@ TEST_CASE("every key of a protocol can be set by an assignment, and refuses what
     CHECK(fits);
     const std::string wrong = message_of(every_table, {name + "={a = 1}"});
     CHECK_THAT(wrong, Contains("--set " + name + "={a = 1}: ") && Contains("; allowed: "));
-    if (entry.kind == protocol::KeyKind::number) {
+    if (entry.kind == keys::KeyKind::number) {
       for (const char* number : {"nan", "inf", "-inf"}) {
         CHECK_THAT(message_of(every_table, {name + "=" + number}),
                    Contains(said + " = " + number + " is not finite; allowed: ") && Contains("give a finite number"));
@@ -234,9 +235,9 @@ TEST_CASE("whole numbers are accepted where numbers are asked for") {
 TEST_CASE("a reader that asks for a key without an entry, or leaves one out, is stopped at once") {
   std::vector<KeyError> errors;
   const auto table = toml::parse("name = \"t\"\n");
-  protocol::TableReader asks(table, "test", "test", 1, errors);
+  keys::TableReader asks(table, protocol::protocol_keys(), "test", "test", 1, errors);
   CHECK_THROWS_AS(asks.number("presure_Pa"), std::logic_error);
-  protocol::TableReader leaves_out(table, "test", "test", 1, errors);
+  keys::TableReader leaves_out(table, protocol::protocol_keys(), "test", "test", 1, errors);
   leaves_out.text("name");
   leaves_out.optional_number("pressure_Pa");
   CHECK_THROWS_AS(leaves_out.finish(), std::logic_error);  // dimension

@@ -42,7 +42,7 @@ std::size_t lines(const std::string& text) {
 
 template <class What>
 const What& stage_of(const Protocol& protocol, std::size_t number) {
-  return std::get<What>(protocol.stages.at(number).what);
+  return std::any_cast<const What&>(protocol.stages.at(number).what);
 }
 
 }  // namespace

@@ -224,7 +224,8 @@ TEST_CASE("A record measures what is asked for and nothing else; the parts of th
       "[[stage]]\nkind = \"simple_shear\"\nto_strain = 0.004\n",
       reference_specimen("dense_p20"));
   const Record& end = run.result.records.back();
-  CHECK(end.quantities == (contact_stress_asked | reynolds_stress_asked | fabric_asked | kinetic_energy_asked));
+  using namespace records;
+  CHECK(end.quantities == (asked<ContactStress> | asked<ReynoldsStress> | asked<Fabric> | asked<KineticEnergy>));
   CHECK((end.contact_stress + end.reynolds_stress - end.stress).norm() < 1e-12 * end.stress.norm());
   CHECK(end.reynolds_stress.trace() < 0);
   CHECK(end.fabric.trace() == Approx(1));

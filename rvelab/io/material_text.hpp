@@ -1,0 +1,13 @@
+// The parameters of a specimen as the TOML file that read_material_file reads, from the same table of keys.
+#pragma once
+
+#include <string>
+
+#include "rvelab/solver/specimen.hpp"
+
+namespace rvelab {
+
+/// The material file (read_material_file) that says all parameters of the specimen.
+std::string material_file_text(const Specimen& specimen);
+
+}  // namespace rvelab

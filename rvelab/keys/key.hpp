@@ -1,0 +1,58 @@
+// A key of a TOML file: what there is to say about it, and the mistakes that are told of keys and values, each with its
+// line or with the assignment of the command line that made it.
+#pragma once
+
+#include <toml++/toml.h>
+#include <string>
+#include <vector>
+
+namespace rvelab {
+
+/// A key that a file or the command line may set, and what there is to say about it.
+struct Key {
+  std::string table;    ///< "contact", "damping", "solver", "material", or a table of a protocol
+  std::string name;     ///< ends in its unit, for example "young_modulus_Pa"
+  std::string unit;     ///< "1" for a pure number, "-" for words and truth values
+  std::string type;     ///< "number", "whole number", "truth", "word", "text", "list of numbers"
+  std::string initial;  ///< default, as TOML writes it, or in words; "" if the key has none of its own
+  std::string range;    ///< allowed values in words
+  std::string meaning;
+  bool required = false;  ///< the file must have it
+  std::string dotted() const { return table + "." + name; }
+  std::string allowed() const;  ///< range with its unit
+};
+
+/// A mistake in a file and the line that it stands in (0: unknown), or in an assignment of the command line.
+struct KeyError {
+  long line;
+  std::string message;
+  bool assigned = false;  ///< from the command line; the message names it
+};
+
+/// A mistake at a key or a value of a file, or of an assignment.
+KeyError key_error(const toml::source_region& place, const std::string& message);
+
+/// Where a key was set last: a value that an assignment put over that of the file stands under the file's key.
+const toml::source_region& place_of(const toml::key& key, const toml::node& value);
+
+/// What stands before the text of an assignment in messages, and marks the source of its nodes.
+inline constexpr const char* assignment_prefix = "--set ";
+
+/// The value of an assignment under the key "value": TOML, or a word where it is none. Its nodes know the assignment.
+toml::table parsed_value(const std::string& text, const std::string& assignment);
+
+/// The value of a node that is_number(): a whole number that no double holds (beyond 2^53) is rounded.
+double number_in(const toml::node& node);
+
+/// The candidate with the smallest edit distance to `word` (what the word lacks at its end, such as a unit, counts
+/// little); the first of several; "" if there are no candidates.
+std::string nearest(const std::string& word, const std::vector<std::string>& candidates);
+
+/// Throws InputError with all mistakes in the order of their lines, one line of text each: "path:line: message"; those
+/// of the command line come last. Does nothing if there are none.
+void raise(const std::string& path, std::vector<KeyError> errors);
+
+/// Parses a TOML file. InputError naming file, line and column if it is missing or not TOML.
+toml::table parse_toml_file(const std::string& path);
+
+}  // namespace rvelab

@@ -1,0 +1,106 @@
+// How entries of a table of keys are written down, in any room that has one.
+#pragma once
+
+#include <limits>
+#include <sstream>
+
+#include "rvelab/keys/table_key.hpp"
+
+namespace rvelab::keys {
+
+using Words = std::vector<std::string>;
+
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
+inline constexpr Interval any{0, 0};
+inline constexpr Interval every{-infinity, infinity, true, true};
+inline constexpr Interval positive{0, infinity, true, true};
+inline constexpr Interval ratio{0, 1, true, true};
+inline constexpr Interval steps{1, 1e12};
+
+inline std::string as_toml(double value) {
+  std::ostringstream text;
+  text.precision(15);
+  text << value;
+  return text.str();
+}
+inline std::string as_toml(long value) { return std::to_string(value); }
+
+// The default is that of the struct that the key fills: it is written nowhere twice.
+
+inline TableKey number(const char* table, const char* name, const char* unit, double initial, const Interval& range,
+                       const char* meaning) {
+  return {
+      {table, name, unit, "number", as_toml(initial), in_words(range), meaning}, KeyKind::number, range, {}, initial};
+}
+
+/// Without a default of its own; `initial` says in words what holds instead, "" if nothing does.
+inline TableKey number(const char* table, const char* name, const char* unit, const char* initial,
+                       const Interval& range, const char* meaning) {
+  return {{table, name, unit, "number", initial, in_words(range), meaning}, KeyKind::number, range, {}, {}};
+}
+
+inline TableKey whole_number(const char* table, const char* name, long initial, const Interval& range,
+                             const char* meaning) {
+  return {{table, name, "1", "whole number", as_toml(initial), in_words(range), meaning},
+          KeyKind::whole_number,
+          range,
+          {},
+          initial};
+}
+
+inline TableKey truth(const char* table, const char* name, bool initial, const char* meaning) {
+  return {{table, name, "-", "truth", initial ? "true" : "false", "true, false", meaning},
+          KeyKind::truth,
+          any,
+          {},
+          initial};
+}
+
+inline TableKey text(const char* table, const char* name, const char* initial, const char* meaning) {
+  return {{table, name, "-", "text", initial, "any text", meaning}, KeyKind::text, any, {}, {}};
+}
+
+/// The first word is the default, unless `initial` says something else in words.
+inline TableKey word(const char* table, const char* name, const Words& words, const char* meaning,
+                     const char* initial = nullptr) {
+  std::string allowed;
+  for (const auto& each : words) allowed += (allowed.empty() ? "" : ", ") + each;
+  // Member by member: of a list in braces gcc 12 frees the texts twice if memory runs out on the way.
+  TableKey key;
+  key.key.table = table;
+  key.key.name = name;
+  key.key.unit = "-";
+  key.key.type = "word";
+  key.key.range = allowed;
+  key.key.meaning = meaning;
+  key.kind = KeyKind::word;
+  key.range = any;
+  key.words = words;
+  if (initial == nullptr) {
+    key.initial = words.front();
+    key.key.initial = "\"" + words.front() + "\"";
+  } else {
+    key.key.initial = initial;
+  }
+  return key;
+}
+
+inline TableKey required(TableKey key) {
+  key.key.required = true;
+  return key;
+}
+
+inline TableKey with_range(TableKey key, const char* words) {
+  key.key.range = words;
+  return key;
+}
+
+/// Without a default: what is left out is empty, or not asked for.
+inline TableKey listed(const char* table, const char* name, const char* unit, const char* type, const char* allowed,
+                       KeyKind kind, const char* meaning) {
+  return {{table, name, unit, type, "", allowed, meaning}, kind, every, {}, {}};
+}
+
+inline constexpr const char* symmetric_components = "xx, yy, zz, yz, xz, xy = numbers";
+
+}  // namespace rvelab::keys

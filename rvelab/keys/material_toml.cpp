@@ -1,0 +1,313 @@
+#include "rvelab/keys/material_toml.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <iterator>
+#include <set>
+#include <sstream>
+
+#include "rvelab/error.hpp"
+#include "rvelab/keys/key_units.hpp"
+#include "rvelab/keys/material_keys.hpp"
+#include "rvelab/keys/words.hpp"
+
+namespace rvelab {
+namespace {
+
+using keys::KeyEntry;
+
+const std::vector<std::string> table_names{"contact", "damping", "solver", "material"};
+
+std::string written(const toml::node& value) {
+  if (value.is_floating_point()) {
+    char shortest[32];
+    const auto end = std::to_chars(std::begin(shortest), std::end(shortest), value.as_floating_point()->get()).ptr;
+    return {shortest, end};
+  }
+  std::ostringstream text;
+  value.visit([&](const auto& node) { text << node; });
+  return text.str();
+}
+
+[[noreturn]] void refuse(const std::string& dotted, const toml::node& value, const std::string& reason,
+                         const KeyEntry& entry, const std::string& remedy) {
+  throw InputError(dotted + " = " + written(value) + " " + reason + "; allowed: " + entry.key.allowed() + "; " +
+                   remedy);
+}
+
+void convert(const std::string& dotted, const toml::node& value, const KeyEntry& entry, double& field) {
+  if (!value.is_number()) refuse(dotted, value, "is not a number", entry, "give a number");
+  const double number = number_in(value);
+  if (!std::isfinite(number)) refuse(dotted, value, "is not finite", entry, "give a finite number");
+  if (!entry.range.contains(number)) refuse(dotted, value, "is out of range", entry, "give a value in this range");
+  field = number;
+}
+
+void convert(const std::string& dotted, const toml::node& value, const KeyEntry& entry, long& field) {
+  if (!value.is_integer())
+    refuse(dotted, value, "is not a whole number", entry, "give a whole number, without a point");
+  const auto number = value.as_integer()->get();
+  if (!entry.range.contains(static_cast<double>(number))) {
+    refuse(dotted, value, "is out of range", entry, "give a value in this range");
+  }
+  field = number;
+}
+
+void convert(const std::string& dotted, const toml::node& value, const KeyEntry& entry, bool& field) {
+  if (!value.is_boolean()) refuse(dotted, value, "is neither true nor false", entry, "give true or false");
+  field = value.as_boolean()->get();
+}
+
+template <class Word>
+void convert(const std::string& dotted, const toml::node& value, const KeyEntry& entry, Word& field) {
+  if (!value.is_string()) refuse(dotted, value, "is not a word", entry, "give one of these");
+  const std::string& word = value.as_string()->get();
+  try {
+    keys::from_text(word, field);
+  } catch (const InputError&) {
+    refuse(dotted, value, "is not known", entry, "choose one of these");
+  }
+}
+
+/// Keys that share a field but not its unit: which one applies is the law's, or the dashpot's, to say.
+void expect_unit(const Specimen& specimen, const std::string& dotted, const KeyEntry& entry) {
+  const auto other = [&](bool wrong, const std::string& chosen, const std::string& instead) {
+    if (wrong) throw InputError(dotted + " does not go with " + chosen + "; allowed: " + instead + "; use that key");
+  };
+  const auto& name = entry.key.name;
+  const auto law = specimen.contact.law;
+  const auto dashpot = specimen.damping.dashpot;
+  const auto& parameters = law_parameters();
+  for (const LawParameter& asked : parameters)
+    for (const LawParameter& read : parameters)
+      other(name == asked.parameter.key && read.law == law && read.value == asked.value && name != read.parameter.key,
+            std::string("contact.law = ") + rvelab::name(law), read.parameter.key);
+  other(name == "normal_coefficient_N_s_m" && dashpot == Dashpot::viscoelastic, "damping.dashpot = viscoelastic",
+        "viscoelastic_1_m_s");
+  other(name == "viscoelastic_1_m_s" && dashpot == Dashpot::coefficient, "damping.dashpot = coefficient",
+        "normal_coefficient_N_s_m");
+}
+
+/// Sets the field of the struct that the member belongs to.
+struct Assignment {
+  const std::string& dotted;
+  const toml::node& value;
+  const KeyEntry& entry;
+  Specimen& specimen;
+  const std::vector<Material*>& materials;
+
+  template <class Value>
+  void operator()(Value Material::*member) const {
+    Material converted;
+    convert(dotted, value, entry, converted.*member);
+    for (Material* material : materials) material->*member = converted.*member;
+  }
+  void operator()(keys::FrictionAngle) const {
+    constexpr double degree = 3.14159265358979323846 / 180;
+    double angle = 0;
+    convert(dotted, value, entry, angle);
+    for (Material* material : materials) material->friction = std::tan(angle * degree);
+  }
+  template <class Value>
+  void operator()(Value Damping::*member) const {
+    convert(dotted, value, entry, specimen.damping.*member);
+  }
+  template <class Value>
+  void operator()(Value SolverOptions::*member) const {
+    convert(dotted, value, entry, specimen.solver.*member);
+  }
+  template <class Value>
+  void operator()(Value ContactModel::*member) const {
+    convert(dotted, value, entry, specimen.contact.*member);
+  }
+};
+
+/// "material.sand.friction" into {"material.friction", "sand"}; other keys have no middle.
+std::pair<std::string, std::string> without_material_name(const std::string& dotted) {
+  const auto first = dotted.find('.'), last = dotted.rfind('.');
+  if (first == last || dotted.compare(0, first, "material") != 0) return {dotted, ""};
+  return {dotted.substr(0, first) + dotted.substr(last), dotted.substr(first + 1, last - first - 1)};
+}
+
+const KeyEntry* find_entry(const std::string& dotted) {
+  const auto& entries = keys::key_entries();
+  const auto found =
+      std::find_if(entries.begin(), entries.end(), [&](const KeyEntry& entry) { return entry.key.dotted() == dotted; });
+  return found == entries.end() ? nullptr : &*found;
+}
+
+std::vector<Material*> materials_named(Specimen& specimen, const std::string& dotted, const std::string& material) {
+  std::vector<Material*> found;
+  std::string known;
+  for (auto& each : specimen.materials) {
+    if (material.empty() || each.name == material) found.push_back(&each);
+    known += (known.empty() ? "" : ", ") + each.name;
+  }
+  if (found.empty()) {
+    throw InputError(dotted + ": no material " + (material.empty() ? "is" : "\"" + material + "\" is") +
+                     " in the specimen; allowed: " + (known.empty() ? "none, since it has no materials" : known) +
+                     "; name one of them");
+  }
+  return found;
+}
+
+/// Throws if the key is a known one in another unit.
+void refuse_other_unit(const std::string& dotted_key, const std::string& dotted, const std::string& material) {
+  const auto dot = dotted.find('.');
+  std::vector<Key> keys = known_keys();
+  if (dot != std::string::npos) {
+    std::erase_if(keys, [&](const Key& key) { return key.table != dotted.substr(0, dot); });
+  }
+  const auto answer = keys::in_another_unit(dotted.substr(dot + 1), keys);  // npos + 1 = 0: no table is named
+  if (!answer) return;
+  const std::string table = answer->key.table + (material.empty() ? "" : "." + material);
+  throw InputError(dotted_key + " is not known; write " + table + "." + answer->key.name + ", " + answer->factor);
+}
+
+/// One material from its defaults.
+Material read_material(const Specimen& specimen, const toml::table& table, std::vector<KeyError>& errors) {
+  Specimen one;
+  one.contact = specimen.contact;
+  one.materials.resize(1);
+  read_table(one, "material", table, errors);
+  return one.materials[0];
+}
+
+std::string trimmed(const std::string& text) {
+  const auto first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
+  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
+}
+
+}  // namespace
+
+const std::vector<Key>& known_keys() {
+  static const std::vector<Key> keys = [] {
+    std::vector<Key> list;
+    for (const auto& entry : keys::key_entries()) list.push_back(entry.key);
+    return list;
+  }();
+  return keys;
+}
+
+std::string nearest_key(const std::string& dotted_key) {
+  const auto [dotted, material] = without_material_name(dotted_key);
+  const bool has_table = dotted.find('.') != std::string::npos;  // "friction" alone means some table's friction
+  std::vector<std::string> names;
+  for (const auto& key : known_keys()) names.push_back(has_table ? key.dotted() : key.name);
+  std::string found = nearest(dotted, names);
+  if (!has_table) {
+    const auto same = std::find(names.begin(), names.end(), found);
+    return known_keys()[static_cast<std::size_t>(same - names.begin())].dotted();
+  }
+  if (!material.empty() && found.starts_with("material.")) found.insert(9, material + ".");
+  return found;
+}
+
+void set_key(Specimen& specimen, const std::string& dotted_key, const toml::node& value) {
+  const auto [dotted, material] = without_material_name(dotted_key);
+  const KeyEntry* entry = find_entry(dotted);
+  if (entry == nullptr) {
+    refuse_other_unit(dotted_key, dotted, material);
+    throw InputError("unknown key " + dotted_key + "; the nearest known key is " + nearest_key(dotted_key) +
+                     "; correct the name or remove it");
+  }
+  expect_unit(specimen, dotted_key, *entry);
+  std::vector<Material*> materials;
+  if (entry->key.table == "material") materials = materials_named(specimen, dotted_key, material);
+  std::visit(Assignment{dotted_key, value, *entry, specimen, materials}, entry->target);
+}
+
+void set_key(Specimen& specimen, const std::string& assignment) {
+  const auto equals = assignment.find('=');
+  if (equals == std::string::npos) {
+    throw InputError("--set " + assignment +
+                     " has no value; allowed: key=value; write for example contact.slip=consistent");
+  }
+  const std::string key = trimmed(assignment.substr(0, equals)), text = trimmed(assignment.substr(equals + 1));
+  set_key(specimen, key, *parsed_value(text, assignment).get("value"));
+}
+
+void set_keys(Specimen& specimen, const std::vector<std::string>& assignments) {
+  std::string mistakes;
+  for (const auto& assignment : assignments) {
+    try {
+      set_key(specimen, assignment);
+    } catch (const InputError& error) {
+      mistakes += (mistakes.empty() ? "" : "\n") + std::string(error.what());
+    }
+  }
+  if (!mistakes.empty()) throw InputError(mistakes);
+}
+
+void read_table(Specimen& specimen, const std::string& name, const toml::table& table, std::vector<KeyError>& errors) {
+  if (table.contains("friction") && table.contains("friction_angle_deg")) {
+    errors.push_back(key_error(table.get("friction_angle_deg")->source(),
+                               name + ".friction and " + name +
+                                   ".friction_angle_deg are both given; allowed: one of the two; remove the other"));
+  }
+  for (const auto& [key, value] : table) {
+    const std::string dotted = name + "." + std::string(key.str());
+    if (name == "material" && value.is_table()) {
+      read_table(specimen, dotted, *value.as_table(), errors);
+      continue;
+    }
+    try {
+      set_key(specimen, dotted, value);
+    } catch (const InputError& error) {
+      errors.push_back(key_error(place_of(key, value), error.what()));
+    }
+  }
+}
+
+void read_materials(Specimen& specimen, const toml::array& list, std::vector<KeyError>& errors) {
+  std::vector<Material> materials;
+  std::set<std::string> names;
+  for (const auto& item : list) {
+    const auto line = static_cast<long>(item.source().begin.line);
+    if (!item.is_table()) {
+      errors.push_back({line, "material holds " + written(item) + "; allowed: tables; write [[material]] above each"});
+      continue;
+    }
+    materials.push_back(read_material(specimen, *item.as_table(), errors));
+    if (!names.insert(materials.back().name).second) {
+      errors.push_back({line, "material.name = \"" + materials.back().name +
+                                  "\" is there twice; allowed: a name of its own for each; rename one"});
+    }
+  }
+  specimen.materials = materials;
+}
+
+void read_material_tables(const toml::table& file, Specimen& specimen, std::vector<KeyError>& errors) {
+  for (const auto& name : table_names) {  // [contact] first: see read_table
+    const toml::node* node = file.get(name);
+    if (node == nullptr) continue;
+    if (name == "material" && node->is_array()) {
+      read_materials(specimen, *node->as_array(), errors);
+    } else if (name == "material" && node->is_table()) {
+      specimen.materials = {read_material(specimen, *node->as_table(), errors)};
+    } else if (node->is_table()) {
+      read_table(specimen, name, *node->as_table(), errors);
+    }
+  }
+}
+
+void read_material_file(const std::string& path, Specimen& specimen) {
+  const toml::table file = parse_toml_file(path);
+  std::vector<KeyError> errors;
+  for (const auto& [key, value] : file) {
+    const std::string name(key.str());
+    const auto line = static_cast<long>(key.source().begin.line);
+    if (std::find(table_names.begin(), table_names.end(), name) == table_names.end()) {
+      errors.push_back({line, "unknown table [" + name + "]; the nearest known one is [" + nearest(name, table_names) +
+                                  "]; correct the name or remove it"});
+    } else if (!value.is_table() && !(name == "material" && value.is_array())) {
+      errors.push_back({line, name + " = " + written(value) + " is not a table; allowed: [" + name +
+                                  "] with its keys below; write it so"});
+    }
+  }
+  read_material_tables(file, specimen, errors);
+  raise(path, errors);
+}
+
+}  // namespace rvelab

@@ -1,0 +1,48 @@
+// The tables [contact], [damping], [solver] and [[material]] of a TOML file, and assignments "table.key=value" of the
+// command line, into the fields of a specimen. Reader, messages and documentation live from one table of keys
+// (material_keys.cpp): key with its unit, default, range, meaning.
+#pragma once
+
+#include <toml++/toml.h>
+#include <string>
+#include <vector>
+
+#include "rvelab/keys/key.hpp"
+#include "rvelab/solver/specimen.hpp"
+
+namespace rvelab {
+
+/// All keys, in the order of the tables.
+const std::vector<Key>& known_keys();
+
+/// The known dotted key nearest to this one. A material's name ("material.sand.frictoin") is kept.
+std::string nearest_key(const std::string& dotted_key);
+
+/// Sets one field. `dotted_key`: "contact.slip"; "material.friction" for all materials, "material.NAME.friction" for
+/// one. Integers are accepted for floats, numbers must be finite. Throws InputError naming key, value, range and, for
+/// an unknown key, the nearest known one; the specimen is then as it was.
+void set_key(Specimen& specimen, const std::string& dotted_key, const toml::node& value);
+
+/// The same from an assignment as in --set: "contact.slip=full_radius_ratcheting". The value is TOML; what is not is
+/// taken as a string, so that words need no quotation marks.
+void set_key(Specimen& specimen, const std::string& assignment);
+
+/// All assignments in order. Throws InputError with every mistake, one line each, when the others have been made.
+void set_keys(Specimen& specimen, const std::vector<std::string>& assignments);
+
+/// Reads one table. Every mistake is added to `errors` with its line and the reading goes on. For "material" the keys
+/// act on all materials, and tables in it ([material.NAME]) on the named one. Read "contact" before "material": the
+/// law says which unit a normal stiffness has.
+void read_table(Specimen& specimen, const std::string& name, const toml::table& table, std::vector<KeyError>& errors);
+
+/// Replaces the materials by those of a list [[material]]; names must differ. Mistakes as in read_table.
+void read_materials(Specimen& specimen, const toml::array& list, std::vector<KeyError>& errors);
+
+/// Reads what there is of [[material]] (or one [material]), [contact], [damping] and [solver] in a file; what else it
+/// holds is the caller's. Mistakes as in read_table.
+void read_material_tables(const toml::table& file, Specimen& specimen, std::vector<KeyError>& errors);
+
+/// Reads a material file: [[material]] (or one [material]), [contact], [damping], [solver], and nothing else.
+void read_material_file(const std::string& path, Specimen& specimen);
+
+}  // namespace rvelab

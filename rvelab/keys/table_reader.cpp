@@ -1,0 +1,218 @@
+#include "rvelab/keys/table_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "rvelab/keys/key_units.hpp"
+
+namespace rvelab::keys {
+namespace {
+
+void refuse_unknown(const toml::source_region& place, const std::string& prefix, const std::string& name,
+                    const std::vector<std::string>& known, std::vector<KeyError>& errors) {
+  errors.push_back(key_error(place, "unknown key " + prefix + name + "; the nearest known key is " + prefix +
+                                        nearest(name, known) + "; correct the name or remove it"));
+}
+
+}  // namespace
+
+long line_of(const toml::node& node) { return static_cast<long>(node.source().begin.line); }
+
+std::string written(const toml::node& node) {
+  std::ostringstream text;
+  node.visit([&](const auto& value) { text << value; });
+  return text.str();
+}
+
+void expect_top_tables(const toml::table& file, std::vector<KeyError>& errors, const std::vector<std::string>& known) {
+  for (const auto& [key, value] : file) {
+    const std::string name(key.str());
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      refuse_unknown(place_of(key, value), "", name, known, errors);
+    }
+  }
+}
+
+const toml::table& table_of(const toml::table& file, const std::string& name, std::vector<KeyError>& errors) {
+  static const toml::table nothing;
+  const toml::node* node = file.get(name);
+  if (node == nullptr) return nothing;
+  if (node->is_table()) return *node->as_table();
+  errors.push_back(
+      key_error(node->source(), name + " is not a table; allowed: [" + name + "] with its keys below; write it so"));
+  return nothing;
+}
+
+TableReader::TableReader(const toml::table& table, const std::vector<TableKey>& all, const std::string& key_table,
+                         std::string where, long line, std::vector<KeyError>& errors)
+    : table_(table), all_(all), where_(std::move(where)), line_(line), errors_(errors) {
+  also(key_table);
+}
+
+void TableReader::also(const std::string& key_table) {
+  key_tables_.push_back(key_table);
+  for (const TableKey& entry : all_) {
+    if (entry.key.table == key_table) known_.push_back(entry.key);
+  }
+}
+
+const TableKey& TableReader::entry(const std::string& name) {
+  asked_.push_back(name);
+  for (const TableKey& entry : all_) {
+    const bool here = std::find(key_tables_.begin(), key_tables_.end(), entry.key.table) != key_tables_.end();
+    if (here && entry.key.name == name) return entry;
+  }
+  throw std::logic_error("no entry for the key " + key_tables_.back() + "." + name + " in its table of keys");
+}
+
+bool TableReader::has_in_another_unit(const std::string& name) const {
+  return std::any_of(table_.begin(), table_.end(), [&](const auto& item) {
+    const auto answer = in_another_unit(std::string(item.first.str()), known_);
+    return answer && answer->key.name == name;
+  });
+}
+
+const toml::node* TableReader::find(const TableKey& key, bool required) {
+  const toml::node* node = table_.get(key.key.name);
+  if (node == nullptr && required && !has_in_another_unit(key.key.name)) {
+    errors_.push_back({line_, where_ + "." + key.key.name + " is missing; allowed: " + key.key.allowed() + "; add it"});
+  }
+  return node;
+}
+
+void TableReader::mistake(const std::string& name, const std::string& text) {
+  const toml::node* node = table_.get(name);
+  if (node == nullptr) {
+    errors_.push_back({line_, where_ + "." + name + " " + text});
+  } else {
+    errors_.push_back(key_error(node->source(), where_ + "." + name + " = " + written(*node) + " " + text));
+  }
+}
+
+std::optional<double> TableReader::checked(const TableKey& key, const toml::node& node) {
+  const std::string& name = key.key.name;
+  const std::string allowed = "; allowed: " + key.key.allowed() + "; ";
+  if (!node.is_number()) {
+    mistake(name, "is not a number" + allowed + "give a number");
+    return std::nullopt;
+  }
+  const double value = number_in(node);
+  if (!std::isfinite(value)) {
+    mistake(name, "is not finite" + allowed + "give a finite number");
+    return std::nullopt;
+  }
+  if (!key.range.contains(value)) {
+    mistake(name, "is out of range" + allowed + "give a value in this range");
+    return std::nullopt;
+  }
+  return value;
+}
+
+double TableReader::number(const std::string& name, std::optional<double> instead) {
+  const TableKey& key = entry(name);
+  if (!instead && std::holds_alternative<double>(key.initial)) instead = std::get<double>(key.initial);
+  const toml::node* node = find(key, !instead);
+  const double initial = instead.value_or(0);
+  const double value = node != nullptr ? checked(key, *node).value_or(initial) : initial;
+  resolved_.insert_or_assign(name, value);
+  return value;
+}
+
+std::optional<double> TableReader::optional_number(const std::string& name) {
+  if (!has(name)) {
+    leave(name);
+    return std::nullopt;
+  }
+  return number(name);
+}
+
+long TableReader::whole_number(const std::string& name) {
+  const TableKey& key = entry(name);
+  const auto* initial = std::get_if<long>(&key.initial);
+  const toml::node* node = find(key, initial == nullptr);
+  long value = initial == nullptr ? 0 : *initial;
+  if (node != nullptr && !node->is_integer()) {
+    mistake(name, "is not a whole number; allowed: " + key.key.allowed() + "; give a whole number, without a point");
+  } else if (node != nullptr && checked(key, *node)) {
+    value = node->as_integer()->get();
+  }
+  resolved_.insert_or_assign(name, value);
+  return value;
+}
+
+std::optional<long> TableReader::optional_whole_number(const std::string& name) {
+  if (!has(name)) {
+    leave(name);
+    return std::nullopt;
+  }
+  return whole_number(name);
+}
+
+bool TableReader::truth(const std::string& name, std::optional<bool> instead) {
+  const TableKey& key = entry(name);
+  if (!instead && std::holds_alternative<bool>(key.initial)) instead = std::get<bool>(key.initial);
+  const toml::node* node = find(key, !instead);
+  bool value = instead.value_or(false);
+  if (node != nullptr && !node->is_boolean()) {
+    mistake(name, "is neither true nor false; allowed: true, false; give one of these");
+  } else if (node != nullptr) {
+    value = node->as_boolean()->get();
+  }
+  resolved_.insert_or_assign(name, value);
+  return value;
+}
+
+std::string TableReader::text(const std::string& name, std::optional<std::string> instead) {
+  const TableKey& key = entry(name);
+  const toml::node* node = find(key, !instead);
+  std::string value = instead.value_or("");
+  if (node != nullptr && (!node->is_string() || node->as_string()->get().empty())) {
+    mistake(name, "is not a text; allowed: any text that is not empty; write it in quotation marks");
+  } else if (node != nullptr) {
+    value = node->as_string()->get();
+  }
+  if (!value.empty()) resolved_.insert_or_assign(name, value);
+  return value;
+}
+
+std::string TableReader::word(const std::string& name, std::optional<std::string> instead) {
+  const TableKey& key = entry(name);
+  if (!instead && std::holds_alternative<std::string>(key.initial)) instead = std::get<std::string>(key.initial);
+  const toml::node* node = find(key, !instead);
+  std::string value = instead.value_or("");
+  if (node != nullptr) {
+    const bool allowed =
+        node->is_string() && std::find(key.words.begin(), key.words.end(), node->as_string()->get()) != key.words.end();
+    if (allowed) {
+      value = node->as_string()->get();
+    } else {
+      mistake(name, "is not known; allowed: " + key.key.allowed() + "; choose one of these");
+    }
+  }
+  if (!value.empty()) resolved_.insert_or_assign(name, value);
+  return value;
+}
+
+void TableReader::finish() {
+  std::vector<std::string> names;
+  for (const Key& key : known_) {
+    names.push_back(key.name);
+    if (std::find(asked_.begin(), asked_.end(), key.name) != asked_.end()) continue;
+    throw std::logic_error("the key " + key.dotted() + " has an entry and is not read");
+  }
+  const std::string prefix = where_ + ".";
+  for (const auto& [key, value] : table_) {
+    const std::string name(key.str());
+    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    if (const auto answer = in_another_unit(name, known_)) {
+      errors_.push_back(key_error(place_of(key, value), prefix + name + " is not known; write " + prefix +
+                                                            answer->key.name + ", " + answer->factor));
+    } else {
+      refuse_unknown(place_of(key, value), prefix, name, names, errors_);
+    }
+  }
+}
+
+}  // namespace rvelab::keys

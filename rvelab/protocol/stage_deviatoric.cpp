@@ -1,0 +1,93 @@
+// Deviatoric loading at constant mean stress, in 3D at a constant Lode angle. Declared in stage_kinds.hpp.
+#include <cmath>
+
+#include "rvelab/keys/key_builders.hpp"
+#include "rvelab/protocol/directions.hpp"
+#include "rvelab/protocol/drive.hpp"
+#include "rvelab/protocol/path_driven.hpp"
+#include "rvelab/protocol/stage_kinds.hpp"
+#include "rvelab/protocol/stage_readers.hpp"
+
+namespace rvelab::protocol {
+namespace {
+
+using namespace keys;
+
+std::vector<TableKey> entries() {
+  const char* t = "stage.deviatoric";
+  const DeviatoricStage initial;
+  return {
+      required(number(t, "to_strain", "1", "", positive, "eps_q at which the stage ends")),
+      number(t, "record_every", "1", initial.record_every, positive, "eps_q between records; at most 1e6 records"),
+      number(t, "lode_angle_deg", "degree", initial.lode_angle_deg, {-180, 180},
+             "3D: direction in the deviatoric plane; 0 compression along z, 60 extension along y"),
+      number(t, "pressure_Pa", "Pa", "(test.pressure_Pa)", positive,
+             "p, which is held and which the stage starts from"),
+  };
+}
+
+DeviatoricStage read(StageSource& source) {
+  TableReader& reader = source.reader;
+  Protocol& protocol = source.protocol;
+  DeviatoricStage stage;
+  stage.to_strain = reader.number("to_strain");
+  stage.record_every = spacing_of(reader, stage.to_strain);
+  stage.lode_angle_deg = reader.number("lode_angle_deg");
+  stage.pressure = pressure_of(reader, "pressure_Pa", protocol);
+  if (protocol.dimension == 2 && reader.has("lode_angle_deg")) {
+    reader.mistake("lode_angle_deg", "means nothing with test.dimension = 2; allowed: in 3D only; remove it");
+  }
+  return stage;
+}
+
+PathStage path_of(const DeviatoricStage& stage, int dimension) {
+  PathStage path;
+  PathRow drive{"eps_q", {}, {}, {stage.to_strain}};
+  PathRow pressure{"p", {}, {}, {stage.pressure}, stage.pressure};  // held: no ramp from the p of the start
+  drive.strain.setZero();
+  drive.stress.setZero();
+  pressure.strain.setZero();
+  pressure.stress.setZero();
+  for (int k = 0; k < dimension; ++k) pressure.stress(k, k) = -1.0 / dimension;
+  path.records_per_point = std::max(1L, std::lround(stage.to_strain / stage.record_every));
+  if (dimension == 2) {
+    // e along (1, -1): eps_q = sqrt(2 e:e) = |e_xx - e_yy|
+    drive.strain(0, 0) = 1;
+    drive.strain(1, 1) = -1;
+    path.axis = "y";
+    path.rows = {drive, pressure};
+    return path;
+  }
+  // Deviators, compression positive: axis k has cos(theta_k) with theta_z = theta, theta_x,y = theta -+ 120 degrees.
+  PathRow across{"deviator across", {}, {}, {}};
+  across.strain.setZero();
+  across.stress.setZero();
+  for (int k = 0; k < 3; ++k) {
+    const double turn = stage.lode_angle_deg + (k == 0 ? -120 : k == 1 ? 120 : 0);
+    const UnitVector direction = unit_vector(turn / 360);
+    drive.strain(k, k) = -2.0 / 3 * direction.cosine;
+    across.stress(k, k) = -2.0 / 3 * direction.sine;
+  }
+  path.axis = "z";
+  path.rows = {drive, pressure, across};
+  return path;
+}
+
+void drive(RunningTest& test, const DeviatoricStage& stage) {
+  const Progress& at = test.run.progress;
+  if (at.step == 0) test.expect_consolidated("p", at.first_pressure, stage.pressure);
+  follow_path(test, path_of(stage, test.dimension()));
+}
+
+}  // namespace
+
+StageKind deviatoric_kind() {
+  return KindOf<DeviatoricStage>{
+      .name = "deviatoric",
+      .keys = entries,
+      .read = read,
+      .drive = drive,
+      .planned_records = [](const DeviatoricStage& stage) { return path_records(path_of(stage, 3)); }};
+}
+
+}  // namespace rvelab::protocol

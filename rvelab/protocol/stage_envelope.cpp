@@ -1,0 +1,146 @@
+// Response envelopes: equal probes in every direction of a plane, each from the same state. Declared in
+// stage_kinds.hpp.
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "rvelab/error.hpp"
+#include "rvelab/keys/key_builders.hpp"
+#include "rvelab/protocol/directions.hpp"
+#include "rvelab/protocol/drive.hpp"
+#include "rvelab/protocol/stage_kinds.hpp"
+
+namespace rvelab::protocol {
+namespace {
+
+using namespace keys;
+
+std::vector<TableKey> entries() {
+  const char* t = "stage.envelope";
+  const EnvelopeStage initial;
+  return {
+      word(t, "probes", {"strain", "stress"}, "what is the same in every direction"),
+      number(t, "size", "1", initial.size, {0, 0.1, true, false}, "probes = strain: norm of the strain"),
+      number(t, "size_Pa", "Pa", "", positive, "probes = stress: norm of the change of stress"),
+      whole_number(t, "directions", initial.directions, {1, 1e4},
+                   "of the plane y, x in 2D, z and the two others together in 3D, from compression along the axis"),
+      whole_number(t, "increments", initial.increments, {1, 1e6}, "of each probe"),
+      number(t, "unbalanced", "1", initial.unbalanced, ratio, "unbalanced force ratio to which each probe is relaxed"),
+      whole_number(t, "max_steps", initial.max_steps, steps, "sub-steps of that before it fails"),
+  };
+}
+
+EnvelopeStage read(StageSource& source) {
+  TableReader& reader = source.reader;
+  EnvelopeStage stage;
+  stage.stress_probes = reader.word("probes") == "stress";
+  stage.size = reader.number("size");
+  stage.stress_size = reader.optional_number("size_Pa").value_or(0);
+  if (stage.stress_probes && !reader.has("size_Pa") && !reader.has_in_another_unit("size_Pa")) {
+    reader.mistake("size_Pa", "is missing; allowed with probes = \"stress\": > 0 Pa; add it");
+  }
+  if (reader.has(stage.stress_probes ? "size" : "size_Pa")) {
+    reader.mistake(stage.stress_probes ? "size" : "size_Pa", std::string("contradicts probes = \"") +
+                                                                 (stage.stress_probes ? "stress" : "strain") +
+                                                                 "\"; allowed: the size of these only; remove it");
+  }
+  stage.directions = reader.whole_number("directions");
+  stage.increments = reader.whole_number("increments");
+  stage.unbalanced = reader.number("unbalanced");
+  stage.max_steps = reader.whole_number("max_steps");
+  return stage;
+}
+
+/// The probe's tensor, of norm one, compression along the axis first: 2D in the plane of y and x, 3D in that of z and
+/// the two lateral axes together (Rendulic).
+Matrix3 direction(double turns, int dimension) {
+  const UnitVector unit = unit_vector(turns);
+  Matrix3 tensor = Matrix3::Zero();
+  if (dimension == 2) {
+    tensor(1, 1) = -unit.cosine;
+    tensor(0, 0) = -unit.sine;
+  } else {
+    tensor(2, 2) = -unit.cosine;
+    tensor(0, 0) = tensor(1, 1) = -unit.sine * std::sqrt(0.5);
+  }
+  return tensor;
+}
+
+Report probe(RunningTest& test, const EnvelopeStage& stage, const Matrix3& along) {
+  const Progress& at = test.run.progress;
+  const double part = 1 / static_cast<double>(stage.increments);
+  Report worst;
+  for (long k = 1; k <= stage.increments; ++k) {
+    Report report;
+    if (!stage.stress_probes) {
+      report = test.apply(part * stage.size * along, {}, 0, test.loading.held_tolerance);
+    } else {
+      // A probe of stress misses by no more than a fraction of itself.
+      std::vector<HeldStress> held;
+      for (int i = 0; i < test.dimension(); ++i) {
+        const double target = at.first_stress(i, i) + static_cast<double>(k) * part * stage.stress_size * along(i, i);
+        held.push_back({i, i, target, stage.stress_size});
+      }
+      report = test.apply(Matrix3::Zero(), held, 0, test.loading.held_tolerance);
+    }
+    worst.held_error = std::max(worst.held_error, report.held_error);
+    worst.target_held = worst.target_held && report.target_held;
+  }
+  // Not in slices: a test is not left in the middle of a probe.
+  const Report rest = test.rve.relax(stage.unbalanced, stage.max_steps);
+  test.run.progress.stress = test.rve.stress();
+  test.run.progress.substeps += rest.substeps;
+  worst.unbalanced_ratio = rest.unbalanced_ratio;
+  if (rest.unbalanced_ratio > stage.unbalanced) {
+    std::ostringstream text;
+    text << "a probe's unbalanced ratio is " << rest.unbalanced_ratio << " after " << rest.substeps
+         << " steps; wanted: " << stage.unbalanced << "; raise max_steps or unbalanced";
+    throw test.failed(text.str());
+  }
+  return worst;
+}
+
+void drive(RunningTest& test, const EnvelopeStage& stage) {
+  Progress& at = test.run.progress;
+  at.axis = test.dimension() == 2 ? "y" : "z";
+  at.pressure = at.first_pressure;
+  while (at.step <= stage.directions) {
+    if (at.step == 0) {
+      test.record_now(0);
+    } else {
+      const double turns = static_cast<double>(at.step - 1) / static_cast<double>(stage.directions);
+      const Rve start(test.rve);
+      const Progress before = at;
+      const auto put_back = [&] {
+        const std::int64_t records = at.records;
+        test.rve = start;
+        at = before;
+        at.records = records;
+      };
+      try {
+        const Report report = probe(test, stage, direction(turns, test.dimension()));
+        test.record(turns, report);
+      } catch (...) {
+        put_back();
+        throw;
+      }
+      put_back();
+    }
+    ++at.step;
+    test.pause();
+  }
+}
+
+}  // namespace
+
+StageKind envelope_kind() {
+  return KindOf<EnvelopeStage>{
+      .name = "envelope",
+      .keys = entries,
+      .read = read,
+      .drive = drive,
+      .planned_records = [](const EnvelopeStage& stage) { return static_cast<std::size_t>(stage.directions) + 1; },
+      .takes_events = false};
+}
+
+}  // namespace rvelab::protocol

@@ -1,0 +1,60 @@
+// Pressure paths: isotropic compression and swelling from pressure to pressure. Declared in stage_kinds.hpp.
+#include "rvelab/keys/key_builders.hpp"
+#include "rvelab/protocol/drive.hpp"
+#include "rvelab/protocol/path_driven.hpp"
+#include "rvelab/protocol/stage_kinds.hpp"
+
+namespace rvelab::protocol {
+namespace {
+
+using namespace keys;
+
+std::vector<TableKey> entries() {
+  const char* t = "stage.pressure_path";
+  TableKey pressures = listed(t, "to_Pa", "Pa", "list of numbers", "", KeyKind::numbers,
+                              "pressures that all normal stresses go to one after the other; shear strains are zero");
+  pressures.range = positive;
+  pressures.key.range = "each " + in_words(positive);
+  return {required(pressures), whole_number(t, "records_per_point", PressurePathStage{}.records_per_point, {1, 1e6},
+                                            "records, and increments, on the way to each pressure")};
+}
+
+PressurePathStage read(StageSource& source) {
+  TableReader& reader = source.reader;
+  PressurePathStage stage;
+  stage.pressures = reader.numbers("to_Pa");
+  if (stage.pressures.empty() && !reader.has("to_Pa") && !reader.has_in_another_unit("to_Pa")) {
+    reader.mistake("to_Pa", "is missing; allowed: each > 0 Pa; add it");
+  }
+  stage.records_per_point = reader.whole_number("records_per_point");
+  return stage;
+}
+
+/// The pressures as a path of one row for each normal stress.
+PathStage path_of(const PressurePathStage& stage, int dimension) {
+  PathStage path;
+  path.points = static_cast<long>(stage.pressures.size());
+  path.records_per_point = stage.records_per_point;
+  path.isotropic = true;
+  for (int k = 0; k < dimension; ++k) {
+    PathRow row{std::string("pressure ") + "xyz"[k], Matrix3::Zero(), Matrix3::Zero(), stage.pressures};
+    row.stress(k, k) = -1;
+    path.rows.push_back(row);
+  }
+  return path;
+}
+
+void drive(RunningTest& test, const PressurePathStage& stage) { follow_path(test, path_of(stage, test.dimension())); }
+
+}  // namespace
+
+StageKind pressure_path_kind() {
+  return KindOf<PressurePathStage>{
+      .name = "pressure_path",
+      .keys = entries,
+      .read = read,
+      .drive = drive,
+      .planned_records = [](const PressurePathStage& stage) { return path_records(path_of(stage, 2)); }};
+}
+
+}  // namespace rvelab::protocol

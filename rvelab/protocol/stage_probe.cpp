@@ -1,0 +1,68 @@
+// Probe stages: the stiffness of the state as it is, measured on copies; the test itself is not moved. Declared in
+// stage_kinds.hpp.
+#include "rvelab/error.hpp"
+#include "rvelab/keys/key_builders.hpp"
+#include "rvelab/measure/probe.hpp"
+#include "rvelab/measure/tangent.hpp"
+#include "rvelab/protocol/drive.hpp"
+#include "rvelab/protocol/stage_kinds.hpp"
+
+namespace rvelab::protocol {
+namespace {
+
+using namespace keys;
+
+std::vector<TableKey> entries() {
+  const char* t = "stage.probe";
+  const ProbeStage initial;
+  return {
+      word(t, "method", {"dynamic", "linear"},
+           "dynamic: increments of +-size, relaxed; linear: the contact network solved, every contact stuck"),
+      number(t, "size", "1", initial.size, {0, 0.01, true, false}, "method = dynamic: strain of each increment"),
+      {{t, "no_slip", "-", "truth", "(true with method = linear, else false)", "true, false",
+        "no contact slips or rolls over in the probed copy (friction 1e6)"},
+       KeyKind::truth,
+       any,
+       {},
+       {}},
+  };
+}
+
+ProbeStage read(StageSource& source) {
+  TableReader& reader = source.reader;
+  ProbeStage stage;
+  const bool linear = reader.word("method") == "linear";
+  stage.method = linear ? ProbeStage::Method::linear : ProbeStage::Method::dynamic;
+  stage.size = reader.number("size");
+  stage.no_slip = reader.truth("no_slip", linear);
+  if (linear && !stage.no_slip) {
+    reader.mistake("no_slip",
+                   "contradicts method = \"linear\", in which every contact is stuck; allowed: true with "
+                   "it; remove the key or take method = \"dynamic\"");
+  }
+  return stage;
+}
+
+void drive(RunningTest& test, const ProbeStage& stage) {
+  if (stage.method == ProbeStage::Method::linear) {
+    test.probed(elastic_tangent(test.rve.network()));
+    return;
+  }
+  Rve copy(test.rve);
+  if (stage.no_slip) forbid_slip(copy);
+  const Probe probe = probe_stiffness(copy, stage.size);
+  if (!probe.relaxed) {
+    throw test.failed("the probes relaxed to the unbalanced ratio " + in_words(probe.unbalanced_ratio) +
+                      " only; allowed: below " + in_words(relaxed_ratio) +
+                      "; give a relax stage before, another size, or method = \"linear\"");
+  }
+  test.probed(probe.stiffness);
+}
+
+}  // namespace
+
+StageKind probe_kind() {
+  return KindOf<ProbeStage>{.name = "probe", .keys = entries, .read = read, .drive = drive, .takes_events = false};
+}
+
+}  // namespace rvelab::protocol

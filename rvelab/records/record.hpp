@@ -1,0 +1,60 @@
+// One row of a test: what is written at each recorded strain, and the table of a whole test.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "rvelab/cell/cell.hpp"
+#include "rvelab/records/quantities.hpp"
+
+namespace rvelab {
+
+/// What every record says. Laboratory frame; stress tension positive. Strains count from the start of the stage.
+struct RecordedState {
+  std::int32_t stage = 0;  ///< row of the protocol's stages
+  double strain = 0;       ///< the stage's driving strain: axial (compression positive, 1 - F_aa), gamma, ... (README)
+  Matrix3 deformation_gradient = Matrix3::Identity();  ///< F since the start of the stage
+  Matrix3 stress = Matrix3::Zero();                    ///< Cauchy, Pa
+  double unbalanced_force_ratio = 0;
+  double inertial_number = 0;
+  long substeps = 0;         ///< made since the record before
+  double held_error = 0;     ///< largest error of a held stress over its scale
+  bool target_held = true;   ///< false: kept, but the held stress was not within the tolerance (dt = 0: after the wait)
+  bool quasi_static = true;  ///< dt = 0; false: kept, but no equilibrium (Report::quasi_static); dt > 0: not judged
+
+  std::uint64_t quantities = records::usual_quantities;  ///< bits of those that were measured
+};
+
+/// A recorded state with the quantities measured at it (quantities.hpp), each a member by its name; those that were not
+/// asked for are zero.
+struct Record : RecordedState, records::Quantities {};
+
+/// What a probe stage measured: stiffness as elastic_tangent() gives it (rvelab/measure/tangent.hpp), Pa; 3x3 in 2D,
+/// 6x6 in 3D.
+struct ProbeResult {
+  std::string stage;  ///< its name
+  Eigen::MatrixXd stiffness;
+};
+
+/// A test that was run: its records in order, and what it was.
+struct TestResult {
+  std::string protocol;  ///< [test] name
+  std::string axis;      ///< loading axis: "x", "y", "z", or "xy" / "xz" for simple shear; empty: none
+  double pressure = std::numeric_limits<double>::quiet_NaN();  ///< Pa, the stage's first p (held lateral stress)
+  std::vector<std::string> stages;                             ///< names of all stages of the protocol
+  std::vector<Record> records;
+  std::vector<ProbeResult> probes;
+  double wall_seconds = 0;
+  unsigned long long grain_steps = 0;
+};
+
+namespace records {
+
+/// Measures what record.quantities asks for at the state of an Rve.
+void measure_quantities(Record& record, const Rve& rve);
+
+}  // namespace records
+}  // namespace rvelab

@@ -1,0 +1,47 @@
+// The table of the kinds of stages: each stands in it once, with its own keys and its chapter of the README.
+#include <fstream>
+#include <set>
+#include <stdexcept>
+#include <string>
+
+#include "rvelab/protocol/stage_kinds.hpp"
+#include "tests/catch.hpp"
+
+using namespace rvelab;
+using Catch::Matchers::Contains;
+
+TEST_CASE("each kind of stage stands in the table once, with keys of its own and its chapter in the README") {
+  std::ifstream readme(RVELAB_SOURCE_DIR "/rvelab/protocol/README.md");
+  std::set<std::string> lines, names;
+  for (std::string line; std::getline(readme, line);) lines.insert(line);
+  for (const protocol::StageKind& kind : protocol::stage_kinds()) {
+    CAPTURE(kind.name);
+    CHECK(names.insert(kind.name).second);
+    CHECK(&protocol::kind_named(kind.name) == &kind);
+    CHECK(lines.contains("### [[stage]] kind = \"" + kind.name + "\""));
+    CHECK(!kind.keys.empty());
+    const std::string table = "stage." + kind.name;
+    for (const keys::TableKey& entry : kind.keys) {
+      CAPTURE(entry.key.dotted());
+      CHECK((entry.key.table == table || entry.key.table.starts_with(table + ".")));
+    }
+  }
+  CHECK_THROWS_AS(protocol::kind_named("compresion"), std::logic_error);
+}
+
+TEST_CASE("a stage says what calibration may read from its records") {
+  const auto role = [](const std::string& stage) {
+    const Protocol protocol = parse_protocol("[test]\nname = \"t\"\npressure_Pa = 1e4\n[[stage]]\n" + stage, "t.toml");
+    return role_of(protocol.stages.front());
+  };
+  using Gives = StageRole::Gives;
+  CHECK(role("kind = \"compression\"\nto_strain = 0.1\n").gives == Gives::strength);
+  CHECK(role("kind = \"compression\"\nto_strain = -0.1\n").gives == Gives::nothing);
+  CHECK(role("kind = \"compression\"\nto_strain = 0.1\nlateral = \"constant_volume\"\n").gives == Gives::nothing);
+  const StageRole oedometer =
+      role("kind = \"compression\"\nto_strain = 0.1\nlateral = \"zero_strain\"\naxis = \"x\"\n");
+  CHECK(oedometer.gives == Gives::oedometric_stiffness);
+  CHECK(oedometer.axis == "x");
+  CHECK(role("kind = \"relax\"\n").gives == Gives::nothing);
+  CHECK_THAT(strength_stages(), Contains("kind = \"compression\" with lateral = \"constant_stress\""));
+}

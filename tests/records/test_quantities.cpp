@@ -1,0 +1,81 @@
+// The table of measured quantities: what is in it is measured, kept and documented, each by itself.
+#include <fstream>
+#include <set>
+#include <string>
+
+#include "rvelab/measure/measures.hpp"
+#include "rvelab/records/record.hpp"
+#include "tests/catch.hpp"
+#include "tests/protocol/reference_specimen.hpp"
+
+using namespace rvelab;
+using namespace rvelab::records;
+
+namespace {
+
+/// Whether a value was measured: none of the reference specimen's is zero.
+bool is_there(double value) { return value != 0; }
+bool is_there(const Matrix3& value) { return !value.isZero(0); }
+
+}  // namespace
+
+TEST_CASE("a record measures each quantity by itself, by the function of its name") {
+  const Rve rve(reference_specimen("dense_p20"));
+  const Network network = rve.network();
+  for (const QuantityRow& row : quantity_rows) {
+    CAPTURE(row.text.name);
+    Record record;
+    record.quantities = row.bit;
+    measure_quantities(record, rve);
+    Quantities::for_each([&]<class Quantity>(std::type_identity<Quantity>, std::uint64_t bit) {
+      if (bit != row.bit) CHECK(!is_there(record.*Quantity::member));
+    });
+  }
+  Record record;
+  record.quantities = all_quantities;
+  measure_quantities(record, rve);
+  CHECK(record.void_ratio == void_ratio(network));
+  CHECK(record.coordination_number == coordination_number(network));
+  CHECK(record.fabric == fabric(network));
+  CHECK(record.fabric_anisotropy == fabric_anisotropy(fabric(network), 2));
+  CHECK(record.contact_stress == rve.contact_stress());
+  CHECK(record.elastic_energy == elastic_energy(network));
+  CHECK(is_there(record.mechanical_void_ratio));
+  CHECK(is_there(record.branch_fabric));
+  CHECK(!is_there(record.kinetic_energy));  // at rest
+}
+
+TEST_CASE("quantities keep the bits that journals of earlier versions name them by") {
+  const char* const names[] = {"void_ratio",
+                               "coordination_number",
+                               "fabric_anisotropy",
+                               "sliding_fraction",
+                               "mechanical_void_ratio",
+                               "mechanical_coordination_number",
+                               "fabric",
+                               "branch_fabric",
+                               "contact_stress_Pa",
+                               "reynolds_stress_Pa",
+                               "elastic_energy_J",
+                               "kinetic_energy_J"};
+  REQUIRE(quantity_rows.size() >= std::size(names));
+  for (std::size_t k = 0; k < std::size(names); ++k) {
+    CHECK(quantity_rows[k].text.name == std::string(names[k]));
+    CHECK(quantity_rows[k].bit == std::uint64_t{1} << k);
+  }
+  CHECK(usual_quantities == 15);
+  CHECK(asked<KineticEnergy> == 2048);
+}
+
+TEST_CASE("the README of the files has each quantity as the table has it") {
+  std::ifstream readme(RVELAB_SOURCE_DIR "/rvelab/io/README.md");
+  std::set<std::string> lines;
+  for (std::string line; std::getline(readme, line);) lines.insert(line);
+  for (const QuantityRow& row : quantity_rows) {
+    const std::string shape = row.tensor ? "r, 3, 3" : "r";
+    const std::string wanted = std::string("| /records/") + row.text.name + " | float64 | " + shape + " | " +
+                               row.text.unit + " | " + row.text.meaning + " |";
+    CAPTURE(wanted);
+    CHECK(lines.contains(wanted));
+  }
+}

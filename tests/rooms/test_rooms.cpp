@@ -1,0 +1,174 @@
+// The rooms are used in the order that README.md prints: the table there is read, and every include is held against it.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/catch.hpp"
+
+namespace {
+
+const std::filesystem::path root = RVELAB_SOURCE_DIR;
+
+std::string text_of(const std::filesystem::path& path) {
+  std::ifstream input(path);
+  return {std::istreambuf_iterator<char>(input), {}};
+}
+
+/// First cells of the table below "## Rooms" that name code, in their order: files and folders from the root on.
+std::vector<std::string> order_in(const std::string& readme) {
+  std::vector<std::string> rooms;
+  std::istringstream lines(readme);
+  bool below = false;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("## ")) below = line == "## Rooms";
+    if (below && line.starts_with("| rvelab/")) rooms.push_back(line.substr(2, line.find(" |", 2) - 2));
+  }
+  return rooms;
+}
+
+/// Row that a file belongs to: the longest name that is the file or a folder above it; the number of rows: none.
+std::size_t row_of(const std::vector<std::string>& order, const std::string& file) {
+  std::size_t found = order.size(), longest = 0;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const bool holds = file == order[k] || file.starts_with(order[k] + "/");
+    if (holds && order[k].size() > longest) {
+      found = k;
+      longest = order[k].size();
+    }
+  }
+  return found;
+}
+
+bool against_order(const std::vector<std::string>& order, const std::string& file, const std::string& included) {
+  const std::size_t to = row_of(order, included);
+  return to == order.size() || to > row_of(order, file);
+}
+
+/// Sources and headers under a folder, from the root on, in the order of their names.
+std::vector<std::string> code_under(const std::string& folder) {
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
+    const auto extension = entry.path().extension();
+    if (extension != ".cpp" && extension != ".hpp") continue;
+    files.push_back(std::filesystem::relative(entry.path(), root).generic_string());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// What a file includes, in quotation marks or (`open` = '<') in angle brackets.
+std::vector<std::string> includes_of(const std::string& file, char open = '"') {
+  std::vector<std::string> found;
+  std::istringstream lines(text_of(root / file));
+  const char close = open == '<' ? '>' : open;
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("#")) continue;
+    const auto begin = line.find(open), word = line.find("include");
+    if (word == std::string::npos || begin == std::string::npos || begin < word) continue;
+    found.push_back(line.substr(begin + 1, line.find(close, begin + 1) - begin - 1));
+  }
+  return found;
+}
+
+}  // namespace
+
+TEST_CASE("an include against the order is seen, in a folder within a room too") {
+  const auto order = order_in(
+      "# p\n| rvelab/before | |\n## Rooms\n\n| folder | what |\n| --- | --- |\n| rvelab/error.hpp | a |\n"
+      "| rvelab/cell | b |\n| rvelab/solver/kernels | c |\n| rvelab/solver | d |\n| tests | e |\n## Limits\n| rvelab/x "
+      "| |\n");
+  REQUIRE(order ==
+          std::vector<std::string>{"rvelab/error.hpp", "rvelab/cell", "rvelab/solver/kernels", "rvelab/solver"});
+  CHECK(!against_order(order, "rvelab/cell/cell.hpp", "rvelab/error.hpp"));
+  CHECK(!against_order(order, "rvelab/cell/cell.cpp", "rvelab/cell/givens.hpp"));
+  CHECK(!against_order(order, "rvelab/solver/rve.cpp", "rvelab/solver/kernels/discs.hpp"));
+  CHECK(!against_order(order, "rvelab/solver/loading/servo.cpp", "rvelab/solver/rve.hpp"));  // a folder without a row
+  CHECK(against_order(order, "rvelab/solver/kernels/discs.hpp", "rvelab/solver/rve.hpp"));
+  CHECK(against_order(order, "rvelab/error.hpp", "rvelab/cell/cell.hpp"));
+  CHECK(against_order(order, "rvelab/cell/cell.hpp", "rvelab/solver/rve.hpp"));
+  CHECK(against_order(order, "rvelab/solver/rve.hpp", "rvelab/cellar/wine.hpp"));  // of no room
+}
+
+TEST_CASE("each room includes only those above it in README.md") {
+  const auto order = order_in(text_of(root / "README.md"));
+  REQUIRE(order.size() > 10);
+  CHECK(std::set(order.begin(), order.end()).size() == order.size());
+  for (const std::string& room : order) {
+    CAPTURE(room);
+    CHECK(std::filesystem::exists(root / room));
+  }
+  std::size_t includes = 0;
+  for (const std::string& file : code_under("rvelab")) {
+    if (row_of(order, file) == order.size()) FAIL_CHECK(file << " is in no room of README.md");
+    for (const std::string& included : includes_of(file)) {
+      ++includes;
+      if (against_order(order, file, included))
+        FAIL_CHECK(file << " includes " << included << ", which is not above it");
+    }
+  }
+  CHECK(includes > 500);
+}
+
+TEST_CASE("tests and tools include headers that are there") {
+  for (const char* folder : {"rvelab", "tests", "tools"}) {
+    for (const std::string& file : code_under(folder)) {
+      for (const std::string& included : includes_of(file)) {
+        const bool beside = std::filesystem::exists((root / file).parent_path() / included);
+        if (!beside && !std::filesystem::exists(root / included)) FAIL_CHECK(file << " includes " << included);
+      }
+    }
+  }
+}
+
+TEST_CASE("no header includes itself by way of others") {
+  std::map<std::string, bool> done;  // false: under way
+  const auto visit = [&](const auto& self, const std::string& file, const std::string& from) -> void {
+    const auto [place, first] = done.emplace(file, false);
+    if (!first && !place->second) FAIL_CHECK(from << " includes " << file << ", which leads back to it");
+    if (!first) return;
+    for (const std::string& included : includes_of(file)) self(self, included, file);
+    done[file] = true;
+  };
+  for (const std::string& file : code_under("rvelab")) visit(visit, file, "");
+  CHECK(done.size() > 200);
+}
+
+TEST_CASE("HDF5 is known to the files that wrap it alone") {
+  int wrapping = 0;
+  for (const std::string& file : code_under("rvelab")) {
+    const auto names = includes_of(file, '<');
+    if (std::none_of(names.begin(), names.end(), [](const auto& name) { return name.starts_with("hdf5"); })) continue;
+    ++wrapping;
+    if (!file.starts_with("rvelab/io/hdf5_")) FAIL_CHECK(file << " includes HDF5's headers");
+  }
+  CHECK(wrapping > 0);
+}
+
+TEST_CASE("a source without a header of its name says which header declares it") {
+  for (const std::string& file : code_under("rvelab")) {
+    const std::filesystem::path path = root / file;
+    // The program's main is declared nowhere; the solver's sources are one class in parts.
+    if (path.extension() != ".cpp" || path.filename() == "main.cpp" || file.starts_with("rvelab/solver/")) continue;
+    if (std::filesystem::exists(std::filesystem::path(path).replace_extension(".hpp"))) continue;
+    const std::string text = text_of(path);
+    std::string head = text.substr(0, text.find('#'));
+    for (auto at = head.find("\n// "); at != std::string::npos; at = head.find("\n// ")) head.replace(at, 4, " ");
+    const auto said = head.find("eclared in ");
+    if (said == std::string::npos) {
+      FAIL_CHECK(file << " has no header; write one, or \"Declared in NAME.hpp.\" at its head");
+      continue;
+    }
+    const auto begin = said + std::string("eclared in ").size();
+    const std::string header = head.substr(begin, head.find(".hpp", begin) + 4 - begin);
+    const auto included = includes_of(file);
+    const bool there = std::any_of(included.begin(), included.end(), [&](const std::string& name) {
+      return name == std::filesystem::path(file).parent_path().generic_string() + "/" + header;
+    });
+    if (!there) FAIL_CHECK(file << " says that " << header << " declares it, and does not include it");
+  }
+}
