@@ -12,34 +12,34 @@ namespace rvelab::io {
 /// holds the columns that were asked for; a frame of the journal holds all, and which of them count.
 template <class Archive, class Value>
 void describe_records(Archive& archive, Value& records) {
-  archive.table("records", records,                                                      //
-                Column{"stage", &Record::stage, "1"},                                    //
-                Column{"strain", &Record::strain, "1"},                                  //
-                Column{"deformation_gradient", &Record::deformation_gradient, "1"},      //
-                Column{"stress_Pa", &Record::stress, "Pa"},                              //
-                Column{"unbalanced_force_ratio", &Record::unbalanced_force_ratio, "1"},  //
-                Column{"inertial_number", &Record::inertial_number, "1"},                //
-                Column{"substeps", &Record::substeps, "1"},                              //
-                Column{"held_error", &Record::held_error, "1"},                          //
-                Column{"target_held", &Record::target_held, "1"});
-  archive.later_column("records", records, Column{"quasi_static", &Record::quasi_static, "1"});
+  archive.table("records", records,                                                     //
+                Field{"stage", &Record::stage, "1"},                                    //
+                Field{"strain", &Record::strain, "1"},                                  //
+                Field{"deformation_gradient", &Record::deformation_gradient, "1"},      //
+                Field{"stress_Pa", &Record::stress, "Pa"},                              //
+                Field{"unbalanced_force_ratio", &Record::unbalanced_force_ratio, "1"},  //
+                Field{"inertial_number", &Record::inertial_number, "1"},                //
+                Field{"substeps", &Record::substeps, "1"},                              //
+                Field{"held_error", &Record::held_error, "1"},                          //
+                Field{"target_held", &Record::target_held, "1"},                        //
+                Field{"quasi_static", &Record::quasi_static, "1", fields::Rows::one, InFiles::added_later});
   const auto chosen = [&](Quantity quantity, const auto& column) {
     archive.chosen("records", records, column, &Record::quantities, static_cast<std::uint64_t>(quantity));
   };
-  archive.choice("records", records, Column{"quantities", &Record::quantities, "1"});
-  chosen(void_ratio_asked, Column{"void_ratio", &Record::void_ratio, "1"});
-  chosen(coordination_number_asked, Column{"coordination_number", &Record::coordination_number, "1"});
-  chosen(fabric_anisotropy_asked, Column{"fabric_anisotropy", &Record::fabric_anisotropy, "1"});
-  chosen(sliding_fraction_asked, Column{"sliding_fraction", &Record::sliding_fraction, "1"});
-  chosen(mechanical_void_ratio_asked, Column{"mechanical_void_ratio", &Record::mechanical_void_ratio, "1"});
+  archive.choice("records", records, Field{"quantities", &Record::quantities, "1"});
+  chosen(void_ratio_asked, Field{"void_ratio", &Record::void_ratio, "1"});
+  chosen(coordination_number_asked, Field{"coordination_number", &Record::coordination_number, "1"});
+  chosen(fabric_anisotropy_asked, Field{"fabric_anisotropy", &Record::fabric_anisotropy, "1"});
+  chosen(sliding_fraction_asked, Field{"sliding_fraction", &Record::sliding_fraction, "1"});
+  chosen(mechanical_void_ratio_asked, Field{"mechanical_void_ratio", &Record::mechanical_void_ratio, "1"});
   chosen(mechanical_coordination_number_asked,
-         Column{"mechanical_coordination_number", &Record::mechanical_coordination_number, "1"});
-  chosen(fabric_asked, Column{"fabric", &Record::fabric, "1"});
-  chosen(branch_fabric_asked, Column{"branch_fabric", &Record::branch_fabric, "1"});
-  chosen(contact_stress_asked, Column{"contact_stress_Pa", &Record::contact_stress, "Pa"});
-  chosen(reynolds_stress_asked, Column{"reynolds_stress_Pa", &Record::reynolds_stress, "Pa"});
-  chosen(elastic_energy_asked, Column{"elastic_energy_J", &Record::elastic_energy, "J"});
-  chosen(kinetic_energy_asked, Column{"kinetic_energy_J", &Record::kinetic_energy, "J"});
+         Field{"mechanical_coordination_number", &Record::mechanical_coordination_number, "1"});
+  chosen(fabric_asked, Field{"fabric", &Record::fabric, "1"});
+  chosen(branch_fabric_asked, Field{"branch_fabric", &Record::branch_fabric, "1"});
+  chosen(contact_stress_asked, Field{"contact_stress_Pa", &Record::contact_stress, "Pa"});
+  chosen(reynolds_stress_asked, Field{"reynolds_stress_Pa", &Record::reynolds_stress, "Pa"});
+  chosen(elastic_energy_asked, Field{"elastic_energy_J", &Record::elastic_energy, "J"});
+  chosen(kinetic_energy_asked, Field{"kinetic_energy_J", &Record::kinetic_energy, "J"});
 }
 
 /// Every field of a running test's progress; a structured binding, so that a new one does not compile until it is here.
