@@ -37,7 +37,7 @@ struct ArraysOfColumns {
   Json& arrays;
 
   template <class Member>
-  void column(const std::vector<Record>& records, const records::Column<Record, Member>& column) {
+  void column(const std::vector<Record>& records, const fields::Field<Record, Member>& column) {
     Json values = Json::array();
     for (const Record& record : records) {
       if constexpr (std::is_same_v<Member, Matrix3>) {
@@ -53,14 +53,9 @@ struct ArraysOfColumns {
     (column(records, columns), ...);
   }
   template <class Member>
-  void later_column(const std::string&, const std::vector<Record>& records,
-                    const records::Column<Record, Member>& column) {
-    this->column(records, column);
-  }
+  void choice(const std::string&, const std::vector<Record>&, const fields::Field<Record, Member>&) {}
   template <class Member>
-  void choice(const std::string&, const std::vector<Record>&, const records::Column<Record, Member>&) {}
-  template <class Member>
-  void chosen(const std::string&, const std::vector<Record>& records, const records::Column<Record, Member>& column,
+  void chosen(const std::string&, const std::vector<Record>& records, const fields::Field<Record, Member>& column,
               std::uint64_t Record::*mask, std::uint64_t bit) {
     if (!records.empty() && (records.front().*mask & bit) != 0) this->column(records, column);
   }

@@ -1,74 +1,44 @@
 // One description of a value, two directions: Writer and Reader carry the same fields to and from an HDF5 file, so
 // that what is written and what is read cannot differ. A description is a template over the archive and calls
 //
-//     archive.field("grains/radius_m", grains.radius, "m");                       // one dataset, a value or a vector
-//     archive.table("contacts", contacts, Column{"i", &Contact::i, "1"}, ...);    // one dataset a column
+//     archive.field("grains/radius_m", grains.radius, "m");                      // one dataset, a value or a vector
+//     archive.table("contacts", contacts, Field{"i", &Contact::i, "1"}, ...);    // one dataset a column
 //
-// Doubles keep every bit. Truth values are uint8, enumerations their names, vectors and images rows of three, 3x3
-// matrices row-major.
+// A specimen is shown to an archive by its own description (Described). How one value lies in a dataset: Layout.
 #pragma once
 
-#include <algorithm>
 #include <string>
-#include <type_traits>
 #include <vector>
 
-#include "rvelab/cell/cell.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/io/hdf5_file.hpp"
-#include "rvelab/keys/words.hpp"
-#include "rvelab/records/column.hpp"
+#include "rvelab/solver/described.hpp"
 
 namespace rvelab::io {
 
-using keys::from_text;
-using keys::text_of;
-using keys::Textual;
-using records::Column;
+using fields::Field;
+using fields::from_text;
+using fields::InFiles;
+using fields::Layout;
+using fields::text_of;
+using fields::Textual;
 
-/// How one numeric value lies in a file: the scalar's type, and the extents of one value.
-template <class Value>
-struct Layout {
-  static_assert(std::is_arithmetic_v<Value>);
-  using Integer = std::conditional_t<sizeof(Value) == 4, std::int32_t,
-                                     std::conditional_t<std::is_signed_v<Value>, std::int64_t, std::uint64_t>>;
-  using Scalar = std::conditional_t<std::is_same_v<Value, bool>, std::uint8_t,
-                                    std::conditional_t<std::is_floating_point_v<Value>, double, Integer>>;
-  static_assert(sizeof(Scalar) == sizeof(Value));
-  static constexpr std::size_t size = 1;
-  static Shape64 shape() { return {}; }
-  static void put(const Value& value, Scalar* row) { row[0] = static_cast<Scalar>(value); }
-  static void get(const Scalar* row, Value& value) { value = static_cast<Value>(row[0]); }
-};
+/// Shows the fields of a specimen (specimen_fields.hpp) to an archive, each under its path.
+template <class Archive>
+struct Described {
+  Archive& archive;
 
-template <>
-struct Layout<Vector3> {
-  using Scalar = double;
-  static constexpr std::size_t size = 3;
-  static Shape64 shape() { return {3}; }
-  static void put(const Vector3& value, double* row) { std::copy_n(value.data(), 3, row); }
-  static void get(const double* row, Vector3& value) { std::copy_n(row, 3, value.data()); }
-};
-
-template <>
-struct Layout<Image> {
-  using Scalar = std::int32_t;
-  static constexpr std::size_t size = 3;
-  static Shape64 shape() { return {3}; }
-  static void put(const Image& value, std::int32_t* row) { std::copy_n(value.data(), 3, row); }
-  static void get(const std::int32_t* row, Image& value) { std::copy_n(row, 3, value.data()); }
-};
-
-template <>
-struct Layout<Matrix3> {
-  using Scalar = double;
-  static constexpr std::size_t size = 9;
-  static Shape64 shape() { return {3, 3}; }
-  static void put(const Matrix3& value, double* row) {
-    for (int k = 0; k < 9; ++k) row[k] = value(k / 3, k % 3);
+  template <class Value, class Owner, class Member>
+  void field(const fields::Path& path, Value& value, const Field<Owner, Member>& field) {
+    if (field.in_files == InFiles::always) {
+      archive.field(path.text(), value, field.units);
+    } else {
+      archive.later_field(path.text(), value, field.units, Owner{}.*field.member);
+    }
   }
-  static void get(const double* row, Matrix3& value) {
-    for (int k = 0; k < 9; ++k) value(k / 3, k % 3) = row[k];
+  template <class Items, class... Columns>
+  void table(const fields::Path& path, Items& items, const Columns&... columns) {
+    archive.table(path.text(), items, columns...);
   }
 };
 
@@ -96,23 +66,19 @@ class Writer {
   void table(const std::string& group, const std::vector<Item>& items, const Columns&... columns) {
     (column(group, items, columns), ...);
   }
-  template <class Item, class Member>
-  void later_column(const std::string& group, const std::vector<Item>& items, const Column<Item, Member>& column) {
-    this->column(group, items, column);
-  }
   /// Which columns count, bit by bit in a member of each item: the columns that are there say it.
   template <class Item, class Member>
-  void choice(const std::string&, const std::vector<Item>&, const Column<Item, Member>&) {}
+  void choice(const std::string&, const std::vector<Item>&, const Field<Item, Member>&) {}
   /// A column that is written where it was chosen; the first item speaks for all.
   template <class Item, class Member, class Mask>
-  void chosen(const std::string& group, const std::vector<Item>& items, const Column<Item, Member>& column,
+  void chosen(const std::string& group, const std::vector<Item>& items, const Field<Item, Member>& column,
               Mask Item::*mask, Mask bit) {
     if (((items.empty() ? Item{} : items.front()).*mask & bit) != 0) this->column(group, items, column);
   }
 
  private:
   template <class Item, class Member>
-  void column(const std::string& group, const std::vector<Item>& items, const Column<Item, Member>& column) {
+  void column(const std::string& group, const std::vector<Item>& items, const Field<Item, Member>& column) {
     rows<Member>(
         group + "/" + column.name, items.size(),
         [&](std::size_t k) -> const Member& { return items[k].*column.member; }, {items.size()}, column.units,
@@ -130,7 +96,7 @@ class Writer {
       using Row = Layout<Value>;
       std::vector<typename Row::Scalar> scalars(count * Row::size);
       for (std::size_t k = 0; k < count; ++k) Row::put(at(k), scalars.data() + k * Row::size);
-      for (const auto extent : Row::shape()) shape.push_back(extent);
+      shape.insert(shape.end(), Row::extents.begin(), Row::extents.end());
       file_.write<typename Row::Scalar>(group_ + "/" + name, scalars, shape, units, chunk_rows);
     }
   }
@@ -161,21 +127,17 @@ class Reader {
   void later_field(const std::string& name, Value& value, const std::string& units, const Value& = {}) {
     if (file_.has(group_ + "/" + name)) field(name, value, units);
   }
+  /// Columns that files of earlier versions do not have keep the default of their item; the first is always there.
   template <class Item, class First, class... Columns>
   void table(const std::string& group, std::vector<Item>& items, const First& first, const Columns&... columns) {
     items.assign(leading_extent(group + "/" + first.name), Item{});
     column(group, items, first);
     (column(group, items, columns), ...);
   }
-  /// A column that files of earlier versions do not have: left as it is there.
   template <class Item, class Member>
-  void later_column(const std::string& group, std::vector<Item>& items, const Column<Item, Member>& column) {
-    if (file_.has(group_ + "/" + group + "/" + column.name)) this->column(group, items, column);
-  }
-  template <class Item, class Member>
-  void choice(const std::string&, std::vector<Item>&, const Column<Item, Member>&) {}
+  void choice(const std::string&, std::vector<Item>&, const Field<Item, Member>&) {}
   template <class Item, class Member, class Mask>
-  void chosen(const std::string& group, std::vector<Item>& items, const Column<Item, Member>& column, Mask Item::*mask,
+  void chosen(const std::string& group, std::vector<Item>& items, const Field<Item, Member>& column, Mask Item::*mask,
               Mask bit) {
     const bool there = file_.has(group_ + "/" + group + "/" + column.name);
     if (there) this->column(group, items, column);
@@ -184,8 +146,9 @@ class Reader {
 
  private:
   template <class Item, class Member>
-  void column(const std::string& group, std::vector<Item>& items, const Column<Item, Member>& column) {
+  void column(const std::string& group, std::vector<Item>& items, const Field<Item, Member>& column) {
     const std::string name = group + "/" + column.name;
+    if (column.in_files == InFiles::added_later && !file_.has(group_ + "/" + name)) return;
     expect_shape<Member>(name, {items.size()});
     rows<Member>(name, items.size(), [&](std::size_t k) -> Member& { return items[k].*column.member; });
   }
@@ -198,7 +161,7 @@ class Reader {
   template <class Value>
   void expect_shape(const std::string& name, Shape64 expected) const {
     if constexpr (!Textual<Value>) {
-      for (const auto extent : Layout<Value>::shape()) expected.push_back(extent);
+      expected.insert(expected.end(), Layout<Value>::extents.begin(), Layout<Value>::extents.end());
     }
     const Shape64 found = file_.shape(group_ + "/" + name);
     if (found != expected) {

@@ -28,20 +28,16 @@ struct RowLayout {
     (add(columns), ...);
   }
   template <class Item, class Member>
-  void add(const Column<Item, Member>& column) {
+  void add(const Field<Item, Member>& column) {
     names.emplace_back(column.name);
     bytes.push_back(sizeof(typename Layout<Member>::Scalar) * Layout<Member>::size);
   }
   template <class Item, class Member>
-  void choice(const std::string&, const std::vector<Item>&, const Column<Item, Member>& column) {
+  void choice(const std::string&, const std::vector<Item>&, const Field<Item, Member>& column) {
     add(column);
   }
-  template <class Item, class Member>
-  void later_column(const std::string& group, const std::vector<Item>& items, const Column<Item, Member>& column) {
-    choice(group, items, column);
-  }
   template <class Item, class Member, class Mask>
-  void chosen(const std::string&, const std::vector<Item>&, const Column<Item, Member>& column, Mask Item::*, Mask) {
+  void chosen(const std::string&, const std::vector<Item>&, const Field<Item, Member>& column, Mask Item::*, Mask) {
     add(column);
   }
 };
@@ -61,16 +57,12 @@ struct RowWriter {
     bytes.insert(bytes.end(), raw.begin(), raw.end());
   }
   template <class Item, class Member>
-  void choice(const std::string&, const std::vector<Item>& items, const Column<Item, Member>& column) {
+  void choice(const std::string&, const std::vector<Item>& items, const Field<Item, Member>& column) {
     for (const Item& item : items) add(item.*column.member);
   }
-  template <class Item, class Member>
-  void later_column(const std::string& group, const std::vector<Item>& items, const Column<Item, Member>& column) {
-    choice(group, items, column);
-  }
   template <class Item, class Member, class Mask>
-  void chosen(const std::string& group, const std::vector<Item>& items, const Column<Item, Member>& column,
-              Mask Item::*, Mask) {
+  void chosen(const std::string& group, const std::vector<Item>& items, const Field<Item, Member>& column, Mask Item::*,
+              Mask) {
     choice(group, items, column);
   }
 };
@@ -98,15 +90,11 @@ struct RowReader {
     }
   }
   template <class Item, class Member>
-  void choice(const std::string&, std::vector<Item>& items, const Column<Item, Member>& column) {
+  void choice(const std::string&, std::vector<Item>& items, const Field<Item, Member>& column) {
     for (Item& item : items) get(column.name, item.*column.member);
   }
-  template <class Item, class Member>
-  void later_column(const std::string& group, std::vector<Item>& items, const Column<Item, Member>& column) {
-    choice(group, items, column);
-  }
   template <class Item, class Member, class Mask>
-  void chosen(const std::string& group, std::vector<Item>& items, const Column<Item, Member>& column, Mask Item::*,
+  void chosen(const std::string& group, std::vector<Item>& items, const Field<Item, Member>& column, Mask Item::*,
               Mask) {
     choice(group, items, column);
   }

@@ -2,9 +2,9 @@
 // of its journal. Each description is a template over the archive that writes or reads (rvelab/io/archive.hpp).
 #pragma once
 
-#include "rvelab/records/column.hpp"
 #include "rvelab/records/progress.hpp"
 #include "rvelab/records/record.hpp"
+#include "rvelab/solver/described.hpp"
 
 namespace rvelab::records {
 
@@ -19,7 +19,10 @@ constexpr Member Record::*in_record(Member Part::*member) {
 template <class Archive, class Value>
 void describe_records(Archive& archive, Value& records) {
   const auto column = [](const char* name, auto member, const char* unit) {
-    return Column{name, in_record(member), unit};
+    return fields::Field{name, in_record(member), unit};
+  };
+  const auto later_column = [](const char* name, auto member, const char* unit) {
+    return fields::Field{name, in_record(member), unit, fields::Rows::one, fields::InFiles::added_later};
   };
   archive.table("records", records,                                                      //
                 column("stage", &Record::stage, "1"),                                    //
@@ -30,8 +33,8 @@ void describe_records(Archive& archive, Value& records) {
                 column("inertial_number", &Record::inertial_number, "1"),                //
                 column("substeps", &Record::substeps, "1"),                              //
                 column("held_error", &Record::held_error, "1"),                          //
-                column("target_held", &Record::target_held, "1"));
-  archive.later_column("records", records, column("quasi_static", &Record::quasi_static, "1"));
+                column("target_held", &Record::target_held, "1"),                        //
+                later_column("quasi_static", &Record::quasi_static, "1"));
   archive.choice("records", records, column("quantities", &Record::quantities, "1"));
   Quantities::for_each([&]<class Quantity>(std::type_identity<Quantity>, std::uint64_t bit) {
     archive.chosen("records", records, column(Quantity::text.name, Quantity::member, Quantity::text.unit),

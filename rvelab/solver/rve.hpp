@@ -135,7 +135,10 @@ class Rve {
   /// Zeroes fluctuation velocities and spins; the kinetic energy is booked under `zeroing`.
   void zero_velocities();
 
-  /// Bitwise snapshot of everything that decides the next bit (same build layout only) and the way back.
+  /// Bitwise snapshot of everything that decides the next bit, for builds whose specimens have the same fields (a
+  /// specimen file carries a state further), and the way back. The flag of watch() and the team of share() stay.
+  /// restore throws InputError, and the RVE is then exactly as it was: the bytes are no snapshot, of a build with other
+  /// fields, cut short or damaged, or their state is one that cannot be opened (Rve(specimen)).
   std::vector<std::byte> save() const;
   void restore(std::span<const std::byte> snapshot);
 

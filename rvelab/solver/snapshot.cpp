@@ -1,201 +1,267 @@
-// Snapshots: a specimen as bytes, for this build's layout, and back.
-#include <cstdint>
-#include <cstring>
+// Snapshots: a specimen as bytes, for builds with the same fields, and back.
+#include "rvelab/solver/snapshot.hpp"
+
+#include <string>
 #include <type_traits>
 
 #include "rvelab/error.hpp"
 #include "rvelab/solver/rve_impl.hpp"
+#include "rvelab/solver/specimen_fields.hpp"
 
 namespace rvelab {
 
 namespace {
 
-constexpr char magic[8] = {'r', 'v', 'e', 's', 'n', 'a', 'p', '3'};
+using fields::Field;
+using fields::Layout;
+using fields::Listed;
+using fields::Path;
+using fields::Textual;
 
-/// FNV-1a over the payload: a flipped bit or a cut is noticed before anything is used.
-std::uint64_t checksum(std::span<const std::byte> bytes) {
-  std::uint64_t sum = 14695981039346656037ULL;
-  for (std::byte b : bytes) sum = (sum ^ std::uint64_t(b)) * 1099511628211ULL;
+constexpr char magic[8] = {'r', 'v', 'e', 's', 'n', 'a', 'p', '4'};
+
+/// Bytes of one value; of a text, those of its length at least.
+template <class Value>
+constexpr std::size_t least_bytes() {
+  if constexpr (Textual<Value>) {
+    return sizeof(std::uint64_t);
+  } else {
+    return sizeof(typename Layout<Value>::Scalar) * Layout<Value>::size;
+  }
+}
+
+/// The fields of a build in words.
+struct LayoutWords {
+  std::string words = std::endian::native == std::endian::little ? "little-endian\n" : "big-endian\n";
+
+  template <class Value, class Described>
+  void field(const Path& path, const Value&, const Described& field) {
+    add<Value>(path.text(), field.units);
+  }
+  template <class Item, class... Columns>
+  void table(const Path& path, const std::vector<Item>&, const Columns&... columns) {
+    words += path.text() + "[]\n";
+    (add_column(columns), ...);
+  }
+
+ private:
+  template <class Item, class Value>
+  void add_column(const Field<Item, Value>& column) {
+    add<Value>(column.name, column.units);
+  }
+  template <class Value>
+  void add(const std::string& name, const char* units) {
+    using Entry = typename Listed<Value>::Entry;
+    words += name + " " + units + " ";
+    if constexpr (Textual<Entry>) {
+      words += "text";
+    } else {
+      using Scalar = typename Layout<Entry>::Scalar;
+      words += std::is_floating_point_v<Scalar> ? "float" : std::is_signed_v<Scalar> ? "int" : "uint";
+      words += std::to_string(8 * sizeof(Scalar)) + " x " + std::to_string(Layout<Entry>::size);
+    }
+    words += Listed<Value>::is_list ? "[]\n" : "\n";
+  }
+};
+
+std::uint64_t layout_of_this_build() {
+  static const std::uint64_t sum = [] {
+    LayoutWords layout;
+    const Specimen any;
+    fields::visit(layout, any);
+    return snapshot_checksum(std::as_bytes(std::span(layout.words)));
+  }();
   return sum;
 }
 
+/// Puts the fields one behind the other; without a place for them (nullptr) it counts their bytes.
 struct Writer {
-  std::vector<std::byte> bytes;
-  void raw(const void* from, std::size_t n) {
-    const auto* p = static_cast<const std::byte*>(from);
-    bytes.insert(bytes.end(), p, p + n);
+  std::byte* to = nullptr;
+  std::size_t size = 0;
+
+  template <class Value, class Described>
+  void field(const Path&, const Value& value, const Described&) {
+    put(value);
   }
-  template <class T>
-  void operator()(const T& v) {
-    static_assert(std::is_trivially_copyable_v<T>);
-    raw(&v, sizeof v);
+  template <class Item, class... Columns>
+  void table(const Path&, const std::vector<Item>& items, const Columns&... columns) {
+    put(std::uint64_t(items.size()));
+    (column(items, columns), ...);
   }
-  void operator()(const Vector3& v) { raw(v.data(), sizeof(double) * 3); }
-  void operator()(const Matrix3& v) { raw(v.data(), sizeof(double) * 9); }
-  void operator()(const std::string& s) {
-    (*this)(std::uint64_t(s.size()));
-    raw(s.data(), s.size());
+
+ private:
+  /// Room for the next bytes; nullptr: they are only counted.
+  std::byte* next(std::size_t bytes) {
+    std::byte* const at = to == nullptr ? nullptr : to + size;
+    size += bytes;
+    return at;
   }
-  template <class T>
-  void sequence(const std::vector<T>& v) {
-    (*this)(std::uint64_t(v.size()));
+  template <class Value>
+  static void store(const Value& value, std::byte* at) {
+    typename Layout<Value>::Scalar scalars[Layout<Value>::size];
+    Layout<Value>::put(value, scalars);
+    std::memcpy(at, scalars, sizeof scalars);
+  }
+  template <class Value>
+  void put(const Value& value) {
+    if constexpr (Textual<Value>) {
+      const std::string text = fields::text_of(value);
+      put(std::uint64_t(text.size()));
+      if (std::byte* const at = next(text.size()); at != nullptr && !text.empty())
+        std::memcpy(at, text.data(), text.size());
+    } else if (std::byte* const at = next(least_bytes<Value>())) {
+      store(value, at);
+    }
+  }
+  template <class Value>
+  void put(const std::vector<Value>& values) {
+    put(std::uint64_t(values.size()));
+    std::byte* const at = next(values.size() * least_bytes<Value>());
+    static_assert(Layout<Value>::in_order, "say here how a list of these is put");
+    if (at != nullptr && !values.empty())
+      std::memcpy(at, static_cast<const void*>(values.data()), values.size() * least_bytes<Value>());
+  }
+  template <class Item, class Value>
+  void column(const std::vector<Item>& items, const Field<Item, Value>& column) {
+    if constexpr (Textual<Value>) {
+      for (const Item& item : items) put(item.*column.member);
+    } else if (std::byte* at = next(items.size() * least_bytes<Value>())) {
+      for (const Item& item : items) {
+        store(item.*column.member, at);
+        at += least_bytes<Value>();
+      }
+    }
   }
 };
 
+/// Takes the fields off the front. A checksum is no proof of what is below it: lengths are held against the bytes that
+/// are left before there is room made for them, and words and truth values against those that there are.
 struct Reader {
-  std::span<const std::byte> bytes;
-  void raw(void* to, std::size_t n) {
-    if (n > bytes.size()) throw InputError("snapshot: it ends too early; it was cut short");
-    std::memcpy(to, bytes.data(), n);
-    bytes = bytes.subspan(n);
+  std::span<const std::byte> left;
+
+  template <class Value, class Described>
+  void field(const Path& path, Value& value, const Described&) {
+    get(path, value);
   }
-  template <class T>
-  void operator()(T& v) {
-    static_assert(std::is_trivially_copyable_v<T>);
-    raw(&v, sizeof v);
+  template <class Item, class... Columns>
+  void table(const Path& path, std::vector<Item>& items, const Columns&... columns) {
+    items.resize(count(path, (least_bytes_of(columns) + ...)));
+    (column(path, items, columns), ...);
   }
-  void operator()(Vector3& v) { raw(v.data(), sizeof(double) * 3); }
-  void operator()(Matrix3& v) { raw(v.data(), sizeof(double) * 9); }
-  // A checksum is no proof of what is below it: a kind that is none would choose a kernel that is none.
-  void operator()(bool& v) {
-    std::uint8_t byte = 0;
-    raw(&byte, sizeof byte);
-    if (byte > 1) throw InputError("snapshot: a truth value is " + std::to_string(byte) + "; it was damaged");
-    v = byte == 1;
+
+ private:
+  [[noreturn]] static void refuse(const Path& path, const std::string& what) {
+    throw InputError("snapshot: " + path.text() + " " + what + "; it was damaged: save it again");
   }
-  void operator()(Shape& v) {
-    raw(&v, sizeof v);
-    if (v != Shape::disc && v != Shape::sphere) throw InputError("snapshot: its grains have no shape; it was damaged");
+  const std::byte* next(const Path& path, std::size_t bytes) {
+    if (bytes > left.size()) refuse(path, "is beyond its end");
+    const std::byte* const at = left.data();
+    left = left.subspan(bytes);
+    return at;
   }
-  void operator()(Law& v) {
-    raw(&v, sizeof v);
-    v = law_from(name(v));
+  /// Length of what follows, each entry at least so many bytes.
+  std::size_t count(const Path& path, std::size_t bytes_each) {
+    std::uint64_t entries = 0;
+    std::memcpy(&entries, next(path, sizeof entries), sizeof entries);
+    if (entries > left.size() / bytes_each) {
+      refuse(path,
+             "says that it has " + std::to_string(entries) + " entries, more than the bytes that are left can hold");
+    }
+    return std::size_t(entries);
   }
-  void operator()(Slip& v) {
-    raw(&v, sizeof v);
-    v = slip_from(name(v));
+  template <class Item, class Value>
+  static constexpr std::size_t least_bytes_of(const Field<Item, Value>&) {
+    return least_bytes<Value>();
   }
-  void operator()(Dashpot& v) {
-    raw(&v, sizeof v);
-    v = dashpot_from(name(v));
+  template <class Value>
+  static void load(const Path& path, const std::byte* at, Value& value) {
+    typename Layout<Value>::Scalar scalars[Layout<Value>::size];
+    std::memcpy(scalars, at, sizeof scalars);
+    if constexpr (std::is_same_v<Value, bool>) {
+      if (scalars[0] > 1) refuse(path, "is " + std::to_string(scalars[0]) + "; allowed: 0, 1");
+    }
+    Layout<Value>::get(scalars, value);
   }
-  void operator()(LocalDampingForm& v) {
-    raw(&v, sizeof v);
-    v = local_damping_form_from(name(v));
+  template <class Value>
+  void get(const Path& path, Value& value) {
+    if constexpr (Textual<Value>) {
+      const std::size_t letters = count(path, 1);
+      const auto* const text = reinterpret_cast<const char*>(next(path, letters));
+      try {
+        fields::from_text({text, letters}, value);
+      } catch (const InputError& error) {
+        refuse(path, std::string("holds no word that is known: ") + error.what());
+      }
+    } else {
+      load(path, next(path, least_bytes<Value>()), value);
+    }
   }
-  std::size_t count() {
-    std::uint64_t n = 0;
-    raw(&n, sizeof n);
-    if (n > bytes.size()) throw InputError("snapshot: an array is longer than the snapshot; it was damaged");
-    return std::size_t(n);
+  template <class Value>
+  void get(const Path& path, std::vector<Value>& values) {
+    values.resize(count(path, least_bytes<Value>()));
+    const std::byte* const at = next(path, values.size() * least_bytes<Value>());
+    static_assert(Layout<Value>::in_order, "say here how a list of these is taken");
+    if (!values.empty()) std::memcpy(static_cast<void*>(values.data()), at, values.size() * least_bytes<Value>());
   }
-  void operator()(std::string& s) {
-    s.resize(count());
-    raw(s.data(), s.size());
-  }
-  template <class T>
-  void sequence(std::vector<T>& v) {
-    v.resize(count());
+  template <class Item, class Value>
+  void column(const Path& table, std::vector<Item>& items, const Field<Item, Value>& column) {
+    const Path path(&table, column.name);
+    if constexpr (Textual<Value>) {
+      for (Item& item : items) get(path, item.*column.member);
+    } else {
+      const std::byte* at = next(path, items.size() * least_bytes<Value>());
+      for (Item& item : items) {
+        load(path, at, item.*column.member);
+        at += least_bytes<Value>();
+      }
+    }
   }
 };
 
-template <class Archive, class T>
-void each(Archive& ar, T& values) {
-  ar.sequence(values);
-  for (auto& v : values) ar(v);
-}
-
-/// Every field, once, in one order, for both directions.
-template <class Archive, class S>
-void visit(Archive& ar, S& s) {
-  ar(s.shape);
-  ar(s.cell.dimension);
-  ar(s.cell.lattice);
-  ar(s.cell.rotation);
-  ar(s.cell.increments);
-  ar.sequence(s.materials);
-  for (auto& m : s.materials) {
-    ar(m.name);
-    for (auto* v : {&m.density, &m.young_modulus, &m.stiffness_ratio, &m.poisson_ratio, &m.normal_stiffness,
-                    &m.tangential_stiffness, &m.friction, &m.rolling_stiffness, &m.rolling_friction})
-      ar(*v);
-  }
-  // Field by field: the padding of a struct is no state, and a snapshot must be equal where the states are.
-  ar(s.contact.law);
-  ar(s.contact.slip);
-  ar(s.contact.rolling);
-  ar(s.contact.unload_rescale);
-  auto& damping = s.damping;
-  for (auto* v : {&damping.local, &damping.local_quasi_static, &damping.normal_coefficient, &damping.restitution,
-                  &damping.tangential_ratio, &damping.global_viscous})
-    ar(*v);
-  ar(damping.local_form);
-  ar(damping.dashpot);
-  ar(damping.no_tension);
-  auto& solver = s.solver;
-  for (auto* v : {&solver.skin, &solver.time_step_factor, &solver.fixed_time_step, &solver.target_unbalanced,
-                  &solver.min_height, &solver.max_overlap_ratio})
-    ar(*v);
-  ar(solver.collision_steps);
-  ar(solver.fixed_substeps);
-  ar(solver.max_substeps);
-  ar(solver.ledger);
-  each(ar, s.grains.id);
-  each(ar, s.grains.radius);
-  each(ar, s.grains.material);
-  each(ar, s.grains.position);
-  each(ar, s.grains.velocity);
-  each(ar, s.grains.spin);
-  ar.sequence(s.contacts);
-  for (auto& c : s.contacts) {
-    ar(c.i);
-    ar(c.j);
-    ar(c.image);
-    ar(c.tangential_force);
-    ar(c.rolling_moment);
-    ar(c.last_root_overlap);
-  }
-  auto& t = s.state;
-  ar(t.has_reference);
-  each(ar, t.list_positions);
-  for (auto* m : {&t.list_lattice, &t.servo_strain, &t.servo_rate, &t.last_rate}) ar(*m);
-  for (auto* v : {&t.list_travel, &t.list_skin, &t.strain_per_step, &t.reference_contact_force, &t.reference_overlap,
-                  &t.reference_pressure, &t.last_step})
-    ar(*v);
-  ar(t.quasi_static);
-  ar(t.mean_velocity);
-  ar(t.mean_spin);
-  ar(t.grain_steps);
-  ar(t.list_steps);
-  ar(t.list_builds);
-  each(ar, t.memory_order);
-  ar(t.ledger);
+std::string in_hexadecimal(std::uint64_t value) {
+  std::ostringstream text;
+  text << std::hex << value;
+  return text.str();
 }
 
 }  // namespace
 
 std::vector<std::byte> to_bytes(const Specimen& specimen) {
-  Writer body;
-  visit(body, specimen);
-  Writer whole;
-  whole.raw(magic, sizeof magic);
-  whole(checksum(body.bytes));
-  whole.raw(body.bytes.data(), body.bytes.size());
-  return std::move(whole.bytes);
+  Writer counter;
+  fields::visit(counter, specimen);
+  std::vector<std::byte> bytes(sizeof(SnapshotHead) + counter.size);
+  Writer writer{bytes.data() + sizeof(SnapshotHead)};
+  fields::visit(writer, specimen);
+  SnapshotHead head{{}, layout_of_this_build(), counter.size, 0};
+  std::memcpy(head.magic, magic, sizeof magic);
+  head.checksum = snapshot_checksum(std::span(bytes).subspan(sizeof head));
+  std::memcpy(bytes.data(), &head, sizeof head);
+  return bytes;
 }
 
 Specimen from_bytes(std::span<const std::byte> bytes) {
-  Reader in{bytes};
-  char found[sizeof magic];
-  in.raw(found, sizeof found);
-  if (std::memcmp(found, magic, sizeof magic) != 0)
-    throw InputError("snapshot: it is not a snapshot of this build; write a specimen file to carry a state across");
-  std::uint64_t sum = 0;
-  in(sum);
-  if (sum != checksum(in.bytes)) throw InputError("snapshot: its checksum is wrong; it was cut short or damaged");
-  Specimen s;
-  visit(in, s);
-  return s;
+  const std::string elsewhere = "; write a specimen file to carry a state from one build to another";
+  SnapshotHead head{};
+  if (bytes.size() >= sizeof head) std::memcpy(&head, bytes.data(), sizeof head);
+  if (std::memcmp(head.magic, magic, sizeof magic) != 0)
+    throw InputError("snapshot: its " + std::to_string(bytes.size()) +
+                     " bytes do not begin as those of a snapshot of " + "this version (\"" +
+                     std::string(magic, sizeof magic) + "\")" + elsewhere);
+  if (head.layout != layout_of_this_build())
+    throw InputError("snapshot: its fields have the layout " + in_hexadecimal(head.layout) +
+                     "; allowed: that of this build, " + in_hexadecimal(layout_of_this_build()) + elsewhere);
+  Reader in{bytes.subspan(sizeof head)};
+  if (head.length != in.left.size())
+    throw InputError("snapshot: it has " + std::to_string(in.left.size()) + " bytes behind its head, which says " +
+                     std::to_string(head.length) + "; it was cut short or damaged: save it again");
+  if (head.checksum != snapshot_checksum(in.left))
+    throw InputError("snapshot: its checksum does not fit its bytes; it was damaged: save it again");
+  Specimen specimen;
+  fields::visit(in, specimen);
+  if (!in.left.empty())
+    throw InputError("snapshot: " + std::to_string(in.left.size()) +
+                     " bytes are left behind its last field; it was damaged: save it again");
+  return specimen;
 }
 
 }  // namespace rvelab

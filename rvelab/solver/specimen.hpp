@@ -1,5 +1,5 @@
-// A specimen: everything that an Rve is opened from and that decides its next bit. A plain value: files write and
-// read it, importers and packers make it, Rve::specimen() returns it.
+// A specimen: everything that an Rve is opened from and that decides its next bit. A plain value: importers and packers
+// make it, Rve::specimen() returns it. Its parts are aggregates; specimen_fields.hpp describes each of their members.
 #pragma once
 
 #include <cstdint>

@@ -18,6 +18,7 @@
 #include "rvelab/protocol/protocol.hpp"
 #include "rvelab/protocol/read_recipe.hpp"
 #include "rvelab/solver/rve.hpp"
+#include "rvelab/solver/snapshot.hpp"
 #include "tests/fuzz/hdf5_edits.hpp"
 #include "tests/fuzz/journals.hpp"
 #include "tests/fuzz/seeds.hpp"
@@ -194,15 +195,18 @@ Answer check_snapshot_bytes(View bytes) {
   return answered;
 }
 
-/// As it is, and with a checksum that fits (FNV-1a behind eight bytes of magic).
+/// As it is, and with a head that fits what stands behind it.
 Answer check_snapshot(View input) {
-  constexpr std::size_t sum_at = 8, head = 16;
   const Answer answered = check_snapshot_bytes(input);
-  if (input.size() < head) return answered;
+  SnapshotHead head;
+  if (input.size() < sizeof head) return answered;
+  const View fields = input.subspan(sizeof head);
+  static const Bytes whole = snapshot_seeds().at(0);
+  std::memcpy(&head, whole.data(), sizeof head);
+  head.length = fields.size();
+  head.checksum = snapshot_checksum(fields);
   Bytes fitting(input.begin(), input.end());
-  std::uint64_t sum = 14695981039346656037ULL;
-  for (const std::byte byte : View(fitting).subspan(head)) sum = (sum ^ std::uint64_t(byte)) * 1099511628211ULL;
-  std::memcpy(fitting.data() + sum_at, &sum, sizeof sum);
+  std::memcpy(fitting.data(), &head, sizeof head);
   return check_snapshot_bytes(fitting);
 }
 

@@ -1,4 +1,5 @@
-// Specimens whose every field holds random bits, and their comparison bit by bit. The structs are taken apart by
+// Specimens whose every field holds random bits, and their comparison bit by bit. A specimen is filled and compared
+// through its description (specimen_fields.hpp), which names every member; records and progress are taken apart by
 // structured bindings: a field that is added to one does not compile here until it is filled and compared too.
 #pragma once
 
@@ -9,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <random>
 #include <string>
 #include <type_traits>
@@ -18,29 +20,60 @@
 #include "rvelab/records/progress.hpp"
 #include "rvelab/records/record.hpp"
 #include "rvelab/solver/specimen.hpp"
+#include "rvelab/solver/specimen_fields.hpp"
 
 namespace rvelab::test {
 
 class RandomFill;
+
+/// The bits of every field of a specimen, by its path.
+class FieldBits {
+ public:
+  std::map<std::string, std::string> bits;
+
+  template <class Value, class Described>
+  void field(const fields::Path& path, const Value& value, const Described&) {
+    add(bits[path.text()], value);
+  }
+  template <class Item, class... Columns>
+  void table(const fields::Path& path, const std::vector<Item>& items, const Columns&... columns) {
+    (add_column(bits[fields::Path(&path, columns.name).text()], items, columns), ...);
+  }
+
+ private:
+  template <class Item, class Value>
+  static void add_column(std::string& to, const std::vector<Item>& items, const fields::Field<Item, Value>& column) {
+    for (const Item& item : items) add(to, item.*column.member);
+  }
+  template <class Value>
+  static void add(std::string& to, const std::vector<Value>& values) {
+    for (const Value& value : values) add(to, value);
+  }
+  static void add(std::string& to, const std::string& text) { to += text + '\0'; }
+  template <class Value>
+  static void add(std::string& to, const Value& value) {
+    to.append(reinterpret_cast<const char*>(&value), sizeof value);  // no type here has padding
+  }
+};
+
+/// Paths of the fields in which two specimens differ in a bit or in their number of entries.
+inline std::vector<std::string> differing_fields(const Specimen& a, const Specimen& b) {
+  FieldBits in_a, in_b;
+  fields::visit(in_a, a);
+  fields::visit(in_b, b);
+  std::vector<std::string> paths;
+  for (const auto& [path, bits] : in_a.bits) {
+    if (bits != in_b.bits.at(path)) paths.push_back(path);
+  }
+  return paths;
+}
 
 /// Calls visit(a.field, b.field) for every scalar, tensor, text or vector of two values.
 template <class Visit>
 struct Pairs {
   Visit visit;
 
-  void operator()(Specimen& a, Specimen& b) {
-    auto& [shape, cell, materials, contact, damping, solver, grains, contacts, state] = a;
-    auto& [shape2, cell2, materials2, contact2, damping2, solver2, grains2, contacts2, state2] = b;
-    visit(shape, shape2);
-    fields(cell, cell2);
-    lists(materials, materials2);
-    fields(contact, contact2);
-    fields(damping, damping2);
-    fields(solver, solver2);
-    fields(grains, grains2);
-    lists(contacts, contacts2);
-    fields(state, state2);
-  }
+  void operator()(Specimen& a, Specimen& b) { visit.specimens(a, b); }
   void operator()(TestResult& a, TestResult& b) {
     auto& [protocol, axis, pressure, stages, records, probes, wall, steps] = a;
     auto& [protocol2, axis2, pressure2, stages2, records2, probes2, wall2, steps2] = b;
@@ -63,55 +96,6 @@ struct Pairs {
   void all(A& a, B& b, Rest&... rest) {
     visit(a, b);
     if constexpr (sizeof...(rest) > 0) all(rest...);
-  }
-  void fields(Cell& a, Cell& b) {
-    auto& [k, l, m, n] = a;
-    auto& [k2, l2, m2, n2] = b;
-    all(k, k2, l, l2, m, m2, n, n2);
-  }
-  void fields(Material& a, Material& b) {
-    auto& [k, l, m, n, o, p, q, r, s, t] = a;
-    auto& [k2, l2, m2, n2, o2, p2, q2, r2, s2, t2] = b;
-    all(k, k2, l, l2, m, m2, n, n2, o, o2, p, p2, q, q2, r, r2, s, s2, t, t2);
-  }
-  void fields(ContactModel& a, ContactModel& b) {
-    auto& [k, l, m, n] = a;
-    auto& [k2, l2, m2, n2] = b;
-    all(k, k2, l, l2, m, m2, n, n2);
-  }
-  void fields(Damping& a, Damping& b) {
-    auto& [k, l, m, n, o, p, q, r, s] = a;
-    auto& [k2, l2, m2, n2, o2, p2, q2, r2, s2] = b;
-    all(k, k2, l, l2, m, m2, n, n2, o, o2, p, p2, q, q2, r, r2, s, s2);
-  }
-  void fields(SolverOptions& a, SolverOptions& b) {
-    auto& [k, l, m, steps, n, o, p, q, r, s] = a;
-    auto& [k2, l2, m2, steps2, n2, o2, p2, q2, r2, s2] = b;
-    all(k, k2, l, l2, m, m2, steps, steps2, n, n2, o, o2, p, p2, q, q2, r, r2, s, s2);
-  }
-  void fields(Grains& a, Grains& b) {
-    auto& [k, l, m, n, o, p] = a;
-    auto& [k2, l2, m2, n2, o2, p2] = b;
-    all(k, k2, l, l2, m, m2, n, n2, o, o2, p, p2);
-  }
-  void fields(Contact& a, Contact& b) {
-    auto& [k, l, m, n, o, p] = a;
-    auto& [k2, l2, m2, n2, o2, p2] = b;
-    all(k, k2, l, l2, m, m2, n, n2, o, o2, p, p2);
-  }
-  void fields(EnergyLedger& a, EnergyLedger& b) {
-    auto& [k, l, m, n, o, p, q, r] = a;
-    auto& [k2, l2, m2, n2, o2, p2, q2, r2] = b;
-    all(k, k2, l, l2, m, m2, n, n2, o, o2, p, p2, q, q2, r, r2);
-  }
-  void fields(SolverState& a, SolverState& b) {
-    auto& [k, l, positions, m, n, o, p, q, servo_rate, r, s, t, u, v, w, x, y, z, c, order, ledger] = a;
-    auto& [k2, l2, positions2, m2, n2, o2, p2, q2, servo_rate2, r2, s2, t2, u2, v2, w2, x2, y2, z2, c2, order2,
-           ledger2] = b;
-    visit(servo_rate, servo_rate2);
-    all(k, k2, l, l2, m, m2, n, n2, o, o2, p, p2, q, q2, r, r2, s, s2, t, t2, u, u2, v, v2, w, w2, x, x2, y, y2);
-    all(z, z2, c, c2, positions, positions2, order, order2);
-    fields(ledger, ledger2);
   }
   void fields(ProbeResult& a, ProbeResult& b) {
     auto& [stage, stiffness] = a;
@@ -153,6 +137,15 @@ class RandomFill {
   template <class Value>
   void operator()(Value& value, Value&) {
     put(value);
+  }
+  void specimens(Specimen& specimen, Specimen&) { fields::visit(*this, specimen); }
+  template <class Value, class Described>
+  void field(const fields::Path&, Value& value, const Described&) {
+    put(value);
+  }
+  template <class Item, class... Columns>
+  void table(const fields::Path&, std::vector<Item>& items, const Columns&... columns) {
+    for (Item& item : items) (put(item.*columns.member), ...);
   }
 
  private:
@@ -197,6 +190,7 @@ struct BitComparison {
   void operator()(const Value& a, const Value& b) {
     if (!same(a, b)) ++*differences;
   }
+  void specimens(const Specimen& a, const Specimen& b) { *differences += int(differing_fields(a, b).size()); }
 
   static bool same(const std::string& a, const std::string& b) { return a == b; }
   template <class Value>
@@ -216,10 +210,6 @@ int differences(Value a, Value b) {
   int count = 0;
   Pairs<BitComparison>{BitComparison{&count}}(a, b);
   return count;
-}
-
-inline int differences_in_sizes(const Specimen& a, const Specimen& b) {
-  return int(a.materials.size() != b.materials.size()) + int(a.contacts.size() != b.contacts.size());
 }
 
 /// Random in every field, with indices that point at something.

@@ -1,0 +1,109 @@
+// How one value of a field lies in bytes: as text, or as scalars of one type in a fixed order. Snapshots and files
+// share it, so that each field type is taken apart in one place. Truth values are uint8, enumerations their names,
+// vectors and images rows of three, 3x3 matrices row-major. Doubles keep every bit.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <concepts>
+#include <cstdint>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "rvelab/cell/cell.hpp"
+#include "rvelab/contact/model.hpp"
+#include "rvelab/error.hpp"
+#include "rvelab/grains/shape.hpp"
+
+namespace rvelab::fields {
+
+/// Text for a value that is text or an enumeration, and the way back (InputError listing the names).
+inline std::string text_of(const std::string& value) { return value; }
+inline std::string text_of(Shape shape) { return shape == Shape::disc ? "disc" : "sphere"; }
+template <class Enumeration>
+std::string text_of(Enumeration value) {
+  return name(value);
+}
+
+inline void from_text(const std::string& text, std::string& value) { value = text; }
+inline void from_text(const std::string& text, Law& value) { value = law_from(text); }
+inline void from_text(const std::string& text, Slip& value) { value = slip_from(text); }
+inline void from_text(const std::string& text, Dashpot& value) { value = dashpot_from(text); }
+inline void from_text(const std::string& text, LocalDampingForm& value) { value = local_damping_form_from(text); }
+inline void from_text(const std::string& text, Shape& value) {
+  if (text != "disc" && text != "sphere") {
+    throw InputError("shape = \"" + text + "\" is not known; allowed: disc, sphere; choose one of these");
+  }
+  value = text == "disc" ? Shape::disc : Shape::sphere;
+}
+
+template <class Value>
+concept Textual = std::is_enum_v<Value> || std::same_as<Value, std::string>;
+
+/// Type of one value of a field: of an entry where the field is a list.
+template <class Value>
+struct Listed {
+  using Entry = Value;
+  static constexpr bool is_list = false;
+};
+template <class Value>
+struct Listed<std::vector<Value>> {
+  using Entry = Value;
+  static constexpr bool is_list = true;
+};
+
+/// How one numeric value lies in bytes: the scalar's type, and the extents of one value, outermost first. `in_order`:
+/// the value in memory is its scalars in that order and nothing else, so that a list of them can be copied whole.
+template <class Value>
+struct Layout {
+  static_assert(std::is_arithmetic_v<Value>);
+  using Integer = std::conditional_t<sizeof(Value) == 4, std::int32_t,
+                                     std::conditional_t<std::is_signed_v<Value>, std::int64_t, std::uint64_t>>;
+  using Scalar = std::conditional_t<std::is_same_v<Value, bool>, std::uint8_t,
+                                    std::conditional_t<std::is_floating_point_v<Value>, double, Integer>>;
+  static_assert(sizeof(Scalar) == sizeof(Value));
+  static constexpr std::array<std::uint64_t, 0> extents{};
+  static constexpr std::size_t size = 1;
+  static constexpr bool in_order = !std::is_same_v<Value, bool>;
+  static void put(const Value& value, Scalar* row) { row[0] = static_cast<Scalar>(value); }
+  static void get(const Scalar* row, Value& value) { value = static_cast<Value>(row[0]); }
+};
+
+template <>
+struct Layout<Vector3> {
+  using Scalar = double;
+  static_assert(sizeof(Vector3) == 3 * sizeof(double));
+  static constexpr std::array<std::uint64_t, 1> extents{3};
+  static constexpr std::size_t size = 3;
+  static constexpr bool in_order = true;
+  static void put(const Vector3& value, double* row) { std::copy_n(value.data(), 3, row); }
+  static void get(const double* row, Vector3& value) { std::copy_n(row, 3, value.data()); }
+};
+
+template <>
+struct Layout<Image> {
+  using Scalar = std::int32_t;
+  static_assert(sizeof(Image) == 3 * sizeof(std::int32_t));
+  static constexpr std::array<std::uint64_t, 1> extents{3};
+  static constexpr std::size_t size = 3;
+  static constexpr bool in_order = true;
+  static void put(const Image& value, std::int32_t* row) { std::copy_n(value.data(), 3, row); }
+  static void get(const std::int32_t* row, Image& value) { std::copy_n(row, 3, value.data()); }
+};
+
+template <>
+struct Layout<Matrix3> {
+  using Scalar = double;
+  static constexpr std::array<std::uint64_t, 2> extents{3, 3};
+  static constexpr std::size_t size = 9;
+  static constexpr bool in_order = false;
+  static void put(const Matrix3& value, double* row) {
+    for (int k = 0; k < 9; ++k) row[k] = value(k / 3, k % 3);
+  }
+  static void get(const double* row, Matrix3& value) {
+    for (int k = 0; k < 9; ++k) value(k / 3, k % 3) = row[k];
+  }
+};
+
+}  // namespace rvelab::fields

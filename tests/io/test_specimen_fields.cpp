@@ -1,0 +1,336 @@
+// The description of a specimen names every member, and everything that keeps or compares specimens goes by it.
+#include "rvelab/solver/specimen_fields.hpp"
+
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "random_specimen.hpp"
+#include "rvelab/io/archive.hpp"
+#include "rvelab/io/compare.hpp"
+#include "rvelab/io/digest.hpp"
+#include "rvelab/io/schema.hpp"
+#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/solver/rve_impl.hpp"
+#include "tests/catch.hpp"
+
+using namespace rvelab;
+using namespace rvelab::test;
+using Catch::Matchers::Contains;
+using fields::Field;
+using fields::InFiles;
+using fields::Rows;
+
+namespace {
+
+/// A part as the solver has them, and descriptions of it that are right or wrong.
+template <int>
+struct Spring {
+  double stiffness = 0;
+  double length = 0;
+  std::vector<double> forces;
+};
+using Whole = Spring<0>;
+using Forgotten = Spring<1>;
+using Twice = Spring<2>;
+using SameName = Spring<3>;
+using ListAsValue = Spring<4>;
+
+/// A row of a table, as a version wrote it and as the next one reads it.
+struct Row {
+  double radius = 0;
+};
+struct LaterRow {
+  double radius = 0;
+  double cohesion = 2.5;
+};
+
+}  // namespace
+
+namespace rvelab::fields {
+
+template <>
+inline constexpr auto members_of<Whole> =
+    std::tuple{Field{"stiffness", &Whole::stiffness, "N/m"}, Field{"length", &Whole::length, "m"},
+               Field{"forces", &Whole::forces, "N", Rows::per_grain}};
+template <>
+inline constexpr auto members_of<Forgotten> = std::tuple{Field{"stiffness", &Forgotten::stiffness, "N/m"},
+                                                         Field{"forces", &Forgotten::forces, "N", Rows::per_grain}};
+template <>
+inline constexpr auto members_of<Twice> =
+    std::tuple{Field{"stiffness", &Twice::stiffness, "N/m"}, Field{"length", &Twice::stiffness, "m"},
+               Field{"forces", &Twice::forces, "N", Rows::per_grain}};
+template <>
+inline constexpr auto members_of<SameName> =
+    std::tuple{Field{"stiffness", &SameName::stiffness, "N/m"}, Field{"stiffness", &SameName::length, "m"},
+               Field{"forces", &SameName::forces, "N", Rows::per_grain}};
+template <>
+inline constexpr auto members_of<ListAsValue> =
+    std::tuple{Field{"stiffness", &ListAsValue::stiffness, "N/m"}, Field{"length", &ListAsValue::length, "m"},
+               Field{"forces", &ListAsValue::forces, "N"}};
+
+}  // namespace rvelab::fields
+
+namespace {
+
+/// A file's dataset as the description has it.
+struct Dataset {
+  std::string type, units;
+  Shape64 shape;
+  bool operator==(const Dataset&) const = default;
+};
+
+std::ostream& operator<<(std::ostream& out, const Dataset& dataset) {
+  out << dataset.type << " [" << dataset.units << "] (";
+  for (const auto extent : dataset.shape) out << extent << ",";
+  return out << ")";
+}
+
+/// The datasets that a specimen has by its description, by their paths.
+struct Datasets {
+  std::map<std::string, Dataset> found;
+
+  template <class Value, class Described>
+  void field(const fields::Path& path, const Value& value, const Described& field) {
+    Shape64 shape;
+    if constexpr (fields::Listed<Value>::is_list) shape.push_back(value.size());
+    add<typename fields::Listed<Value>::Entry>(path.text(), field.units, shape);
+  }
+  template <class Item, class... Columns>
+  void table(const fields::Path& path, const std::vector<Item>& items, const Columns&... columns) {
+    (add_column(fields::Path(&path, columns.name).text(), items.size(), columns), ...);
+  }
+
+ private:
+  template <class Item, class Value>
+  void add_column(const std::string& path, std::size_t rows, const Field<Item, Value>& column) {
+    add<Value>(path, column.units, {rows});
+  }
+  template <class Value>
+  void add(const std::string& path, const std::string& units, Shape64 shape) {
+    std::string type = "text";
+    if constexpr (!fields::Textual<Value>) {
+      using Scalar = typename fields::Layout<Value>::Scalar;
+      const std::string bits = std::to_string(8 * sizeof(Scalar));
+      type = (std::is_floating_point_v<Scalar> ? "float" : std::is_signed_v<Scalar> ? "int" : "uint") + bits;
+      for (const auto extent : fields::Layout<Value>::extents) shape.push_back(extent);
+    }
+    CHECK(found.emplace("/" + path, Dataset{type, units, shape}).second);
+  }
+};
+
+/// Changes one field, and in it the last bit of the last entry.
+class Change {
+ public:
+  explicit Change(std::size_t number) : number_(number) {}
+  const std::string& path() const { return path_; }  ///< "": there are fewer fields
+
+  template <class Value, class Described>
+  void field(const fields::Path& path, Value& value, const Described&) {
+    if (is_it(path.text())) change(value);
+  }
+  template <class Item, class... Columns>
+  void table(const fields::Path& path, std::vector<Item>& items, const Columns&... columns) {
+    (column(fields::Path(&path, columns.name).text(), items, columns), ...);
+  }
+
+ private:
+  bool is_it(const std::string& path) {
+    const bool is = number_-- == 0;
+    if (is) path_ = path;
+    return is;
+  }
+  template <class Item, class Value>
+  void column(const std::string& path, std::vector<Item>& items, const Field<Item, Value>& column) {
+    if (is_it(path)) change(items.back().*column.member);
+  }
+  template <class Value>
+  static void change(std::vector<Value>& values) {
+    change(values.back());
+  }
+  static void change(std::string& text) { text += "x"; }
+  static void change(bool& value) { value = !value; }
+  static void change(Vector3& value) { change(value[2]); }
+  static void change(Matrix3& value) { change(value(1, 2)); }
+  static void change(Image& value) { change(value[2]); }
+  template <class Value>
+  static void change(Value& value) {
+    if constexpr (std::is_enum_v<Value>) {
+      value = value == Value(0) ? Value(1) : Value(0);
+    } else {
+      using Bits = std::conditional_t<sizeof(Value) == 4, std::uint32_t, std::uint64_t>;
+      value = std::bit_cast<Value>(std::bit_cast<Bits>(value) ^ 1);
+    }
+  }
+
+  std::size_t number_;
+  std::string path_;
+};
+
+/// Sets every number that may be one to the same double.
+struct SetDoubles {
+  double to;
+
+  template <class Value, class Described>
+  void field(const fields::Path&, Value& value, const Described&) {
+    set(value);
+  }
+  template <class Item, class... Columns>
+  void table(const fields::Path&, std::vector<Item>& items, const Columns&... columns) {
+    for (Item& item : items) (set(item.*columns.member), ...);
+  }
+
+ private:
+  void set(double& value) { std::memcpy(&value, &to, sizeof to); }
+  void set(Vector3& value) {
+    for (int k = 0; k < 3; ++k) set(value[k]);
+  }
+  void set(Matrix3& value) {
+    for (int k = 0; k < 9; ++k) set(value(k / 3, k % 3));
+  }
+  template <class Value>
+  void set(std::vector<Value>& values) {
+    for (Value& value : values) set(value);
+  }
+  template <class Value>
+  void set(Value&) {}
+};
+
+/// Random, and whichever index changes in its last bit still points at something.
+Specimen changeable(unsigned seed) {
+  Specimen specimen = random_specimen(seed);
+  specimen.grains.material.back() = 0;
+  specimen.contacts.back().i = 2;
+  specimen.contacts.back().j = 6;
+  return specimen;
+}
+
+}  // namespace
+
+TEST_CASE("a struct is described if each of its members is, once and under a name of its own") {
+  CHECK(fields::member_count<Whole>() == 3);
+  CHECK(fields::describes_every_member<Whole>());
+  CHECK(!fields::describes_every_member<Forgotten>());
+  CHECK(!fields::describes_every_member<Twice>());
+  CHECK(!fields::describes_every_member<SameName>());
+  CHECK(!fields::describes_every_member<ListAsValue>());
+  CHECK(!fields::describes_every_member<Row>());  // not described at all
+  CHECK(fields::member_count<Cell>() == 4);
+  CHECK(fields::member_count<Contact>() == 6);  // its image is an array
+  CHECK(fields::member_count<Specimen>() == 9);
+}
+
+TEST_CASE("the described fields are the datasets of a file, no more and no fewer, with their types, units and shapes") {
+  const Folder folder;
+  const Specimen specimen = random_specimen(21);
+  write_specimen(specimen, folder / "s.h5");
+  Datasets described;
+  fields::visit(described, specimen);
+  std::map<std::string, Dataset> written;
+  for (const auto& entry : Hdf5File::open(folder / "s.h5").entries())
+    written[entry.name] = {entry.type, entry.units, entry.shape};
+  CHECK(written.size() > 70);
+  for (const auto& [path, dataset] : described.found) {
+    CAPTURE(path);
+    REQUIRE(written.contains(path));
+    CHECK(written[path] == dataset);
+  }
+  for (const auto& [path, dataset] : written) {
+    CAPTURE(path);
+    CHECK(described.found.contains(path));
+  }
+  CHECK(described.found.at("/state/ledger/friction_J") == Dataset{"float64", "J", {}});
+  CHECK(described.found.at("/cell/lattice_m") == Dataset{"float64", "m", {3, 3}});
+  CHECK(described.found.at("/contacts/image") == Dataset{"int32", "1", {31, 3}});
+}
+
+TEST_CASE("one bit of any one field is seen by comparison, digest, snapshot and file, and comes back from them") {
+  const Folder folder;
+  const Specimen before = changeable(22);
+  const auto bytes_before = to_bytes(before);
+  write_specimen(before, folder / "a.h5");
+  std::vector<std::string> contradicting;
+  std::size_t number = 0;
+  for (;; ++number) {
+    Specimen changed = before;
+    Change change(number);
+    fields::visit(change, changed);
+    if (change.path().empty()) break;
+    CAPTURE(change.path());
+    CHECK(differing_fields(before, changed) == std::vector<std::string>{change.path()});
+    CHECK(io::digest(changed) != io::digest(before));
+
+    const auto bytes = to_bytes(changed);
+    CHECK(bool(bytes != bytes_before));
+    CHECK(differing_fields(from_bytes(bytes), changed).empty());
+
+    write_specimen(changed, folder / "b.h5");
+    CHECK_THAT(first_difference(folder / "a.h5", folder / "b.h5").value_or(""),
+               Contains("/" + change.path()) && Contains("differs"));
+    Specimen read;
+    const std::string refusal = input_error([&] { read = read_specimen(folder / "b.h5"); });
+    if (refusal.empty()) {
+      CHECK(differing_fields(read, changed).empty());
+    } else {
+      CHECK_THAT(refusal, Contains("/cell/dimension is"));
+      contradicting.push_back(change.path());
+    }
+  }
+  Datasets described;
+  fields::visit(described, before);
+  CHECK(number == described.found.size());
+  // A file of discs in three dimensions is refused: these two change together.
+  CHECK(contradicting == std::vector<std::string>{"shape", "cell/dimension"});
+}
+
+TEST_CASE("every field keeps every double: NaNs with what they carry, -0, infinities, the smallest") {
+  const Folder folder;
+  using Limits = std::numeric_limits<double>;
+  const Specimen random = random_specimen(23);
+  for (const double value : {std::bit_cast<double>(0x7ff8000000c0ffeeULL), std::bit_cast<double>(0xfff4000000000001ULL),
+                             -0.0, Limits::infinity(), -Limits::infinity(), Limits::denorm_min(), Limits::max()}) {
+    CAPTURE(value);
+    Specimen written = random, zero = random;
+    SetDoubles set{value}, clear{0};
+    fields::visit(set, written);
+    fields::visit(clear, zero);
+    CHECK(differing_fields(written, zero).size() > 40);
+    CHECK(differing_fields(from_bytes(to_bytes(written)), written).empty());
+    write_specimen(written, folder / "a.h5");
+    write_specimen(written, folder / "b.h5");
+    write_specimen(zero, folder / "c.h5");
+    CHECK(differing_fields(read_specimen(folder / "a.h5"), written).empty());
+    CHECK(!first_difference(folder / "a.h5", folder / "b.h5"));
+    CHECK_THAT(first_difference(folder / "a.h5", folder / "c.h5").value_or(""), Contains("differs"));
+  }
+}
+
+TEST_CASE("a column that was added later keeps its default in an older file, and does not change the digest of it") {
+  const Field later{"cohesion", &LaterRow::cohesion, "Pa", Rows::one, InFiles::added_later};
+  const std::vector<Row> older{{1.5}, {2.5}};
+  std::vector<LaterRow> rows;
+  auto file = Hdf5File::in_memory("older.h5");
+  io::Writer(file, "").table("rows", older, Field{"radius", &Row::radius, "m"});
+  io::Reader(file, "").table("rows", rows, Field{"radius", &LaterRow::radius, "m"}, later);
+  REQUIRE(rows.size() == 2);
+  CHECK(rows[1].radius == 2.5);
+  CHECK(rows[1].cohesion == 2.5);
+
+  const auto sum = [&] {
+    io::Digest digest;
+    digest.table("rows", rows, Field{"radius", &LaterRow::radius, "m"}, later);
+    return digest.sum();
+  };
+  io::Digest as_it_was;
+  as_it_was.table("rows", older, Field{"radius", &Row::radius, "m"});
+  CHECK(sum() == as_it_was.sum());
+  rows[0].cohesion = 3;
+  CHECK(sum() != as_it_was.sum());
+
+  auto newer = Hdf5File::in_memory("newer.h5");
+  io::Writer(newer, "").table("rows", rows, Field{"radius", &LaterRow::radius, "m"}, later);
+  std::vector<LaterRow> read;
+  io::Reader(newer, "").table("rows", read, Field{"radius", &LaterRow::radius, "m"}, later);
+  CHECK(read.at(0).cohesion == 3);
+}
