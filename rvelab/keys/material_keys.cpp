@@ -4,6 +4,7 @@
 #include <limits>
 #include <sstream>
 #include <type_traits>
+#include <utility>
 
 #include "rvelab/keys/words.hpp"
 #include "rvelab/solver/list_size.hpp"
@@ -58,25 +59,31 @@ KeyEntry entry(const char* table, const char* name, const char* unit, Value Owne
       {table, name, unit, type_of<Value>(), as_toml(Owner{}.*member), allowed<Value>(range), meaning}, member, range};
 }
 
-/// A key for each number that laws read, with the laws that read it: "linear_given, hertz_given: kt".
+/// What laws mean by a number that they read: "linear_given, hertz_given: kt".
+std::string meaning_of(const char* key) {
+  std::vector<std::pair<std::string, std::string>> meanings;  // a meaning, the laws that have it
+  for (const LawParameter& each : law_parameters()) {
+    if (each.parameter.key != std::string(key)) continue;
+    const auto same = std::find_if(meanings.begin(), meanings.end(),
+                                   [&](const auto& known) { return known.first == each.parameter.meaning; });
+    if (same == meanings.end())
+      meanings.emplace_back(each.parameter.meaning, name(each.law));
+    else
+      same->second += std::string(", ") + name(each.law);
+  }
+  std::string text;
+  for (const auto& [meaning, laws] : meanings) text += (text.empty() ? "" : "; ") + laws + ": " + meaning;
+  return text;
+}
+
+/// A key for each number that laws read.
 std::vector<KeyEntry> law_constants() {
   std::vector<KeyEntry> entries;
-  std::vector<std::string> last_meaning;
   for (const LawParameter& each : law_parameters()) {
     const Parameter& p = each.parameter;
     const auto same = std::find_if(entries.begin(), entries.end(), [&](const auto& e) { return e.key.name == p.key; });
-    const std::string law = name(each.law);
-    if (same == entries.end()) {
-      entries.push_back(entry("material", p.key, p.unit, each.value, p.allowed, (law + ": " + p.meaning).c_str()));
-      last_meaning.emplace_back(p.meaning);
-      continue;
-    }
-    std::string& meaning = same->key.meaning;
-    std::string& last = last_meaning[std::size_t(same - entries.begin())];
-    if (last == p.meaning)
-      meaning.insert(meaning.rfind(": " + last), ", " + law);
-    else
-      meaning += "; " + law + ": " + (last = p.meaning);
+    if (same != entries.end()) continue;
+    entries.push_back(entry("material", p.key, p.unit, each.value, p.allowed, meaning_of(p.key).c_str()));
   }
   return entries;
 }

@@ -152,7 +152,7 @@ TEST_CASE("contacts on the friction cone slide, those inside stick", "[measure]"
   Network network = row_of_discs(5);
   const double forces[] = {0.5, 0.5 * (1 - 0.9e-6), 0.5 * (1 - 1.1e-6), 0};
   for (int k = 0; k < 4; ++k) {
-    network.contacts[k].normal_force = 1;
+    network.contacts[k].normal_force = network.contacts[k].pressing_force = 1;
     network.contacts[k].friction = 0.5;
     network.contacts[k].tangential_force = {0, forces[k], 0};
   }

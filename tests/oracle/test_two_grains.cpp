@@ -51,6 +51,22 @@ Collision collide(Specimen s, double speed, double expected_duration, int steps_
 
 }  // namespace
 
+TEST_CASE("grains that stick hold each other longer, and part with all of their speed") {
+  // m* x'' = c - k x from x = 0 at speed v: back at 0 after (2/omega)(pi/2 + atan(omega c/(k v))), at speed v.
+  const Shape shape = GENERATE(Shape::disc, Shape::sphere);
+  const double speed = GENERATE(0.1, 2.0), stiffness = 1e6;
+  Material sticky;
+  sticky.young_modulus = stiffness / 0.1;
+  sticky.pull_off_force = 300;
+  const Specimen s = two_grains(shape, sticky, Law::linear_adhesive, 1);
+  const double omega = std::sqrt(stiffness / (0.5 * mass_of(s)));
+  const double expected = 2 / omega * (0.5 * pi + std::atan(omega * sticky.pull_off_force / (stiffness * speed)));
+  const Collision found = collide(s, speed, expected, 2000);
+  // The force jumps to -c within a step: relative errors of the order of omega dt, 2e-3.
+  CHECK(found.restitution == Approx(1).margin(2e-3));
+  CHECK(found.duration == Approx(expected).epsilon(2e-3));
+}
+
 TEST_CASE("a linear contact lasts pi sqrt(m*/k) and returns all of the speed") {
   const Shape shape = GENERATE(Shape::disc, Shape::sphere);
   const double speed = GENERATE(0.1, 2.0);
