@@ -24,9 +24,18 @@ struct Rve::Impl {
   Fixture fixture;
   Assembly now;
   bool resting = false;  ///< only what rest() keeps is there
+  RowSums sums;          ///< of stiffness; those of `now` while sums_hold
+  bool sums_hold = false;
 
   /// Every public call that looks at forces, parameters or masses comes through here.
   Impl& awake();
+
+  /// The sums of the state as it is, made anew where grains, contacts or parameters changed (moved()). They take as
+  /// long as seven sub-steps, and the last of one call are the first of the next.
+  const RowSums& present_sums();
+  void moved() { sums_hold = false; }
+  /// begin_loading and the masses that the state asks for.
+  void begin_quasi_static();
 
   Matrix3 to_lab(const Matrix3& cell_frame) const {
     return now.cell.rotation * cell_frame * now.cell.rotation.transpose();
@@ -50,6 +59,7 @@ struct Rve::Impl {
       return result;
     } catch (...) {
       std::swap(now, before);
+      moved();
       give_back();
       throw;
     }
@@ -63,8 +73,8 @@ struct Rve::Impl {
   /// dt = 0: sets report.quasi_static from what it says of balance and target.
   void judge(Report& report) const;
   /// dt > 0: in an increment of the time dt (s), at the velocity gradient `rate` of the cell (1/s, cell frame); the
-  /// next look is after `stretch` sub-steps at the latest. `sums` are not looked at where the step is fixed.
-  TimeStep time_step(const RowSums& sums, const Matrix3& rate, long stretch, double dt) const;
+  /// next look is after `stretch` sub-steps at the latest.
+  TimeStep time_step(const Matrix3& rate, long stretch, double dt);
   double initial_pace() const;
   /// Scales of the specimen's own state that it does not bring.
   void set_missing_references(const Balance& balance);
