@@ -92,6 +92,7 @@ void Rve::rest() {
   rvelab::rest(impl_->now);
   impl_->sums = RowSums();
   impl_->moved();
+  impl_->trial.release();
   impl_->resting = true;
 }
 
@@ -99,6 +100,7 @@ Memory Rve::memory() const {
   Memory memory = memory_of(impl_->now);
   for (const auto* sums : {&impl_->sums.translation, &impl_->sums.rotation, &impl_->sums.dashpot})
     memory.working += sums->capacity() * sizeof(double);
+  memory.working += impl_->trial.bytes();
   return memory;
 }
 

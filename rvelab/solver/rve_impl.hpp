@@ -5,10 +5,11 @@
 #include "rvelab/solver/inertia.hpp"
 #include "rvelab/solver/rve.hpp"
 #include "rvelab/solver/stepping.hpp"
+#include "rvelab/solver/trial.hpp"
 
 namespace rvelab {
 
-/// Grains up to which a thread keeps its scratch state for the next increment (some 10 MB).
+/// Grains up to which an RVE at work keeps the buffers of a trial for the next one (some 10 MB).
 constexpr std::size_t largest_kept_scratch = 20'000;
 
 constexpr long control_stretch = 50;  ///< sub-steps between looks at the unbalanced ratio
@@ -24,7 +25,8 @@ struct Rve::Impl {
   Fixture fixture;
   Assembly now;
   bool resting = false;  ///< only what rest() keeps is there
-  RowSums sums;          ///< of stiffness; those of `now` while sums_hold
+  Trial trial;
+  RowSums sums;  ///< of stiffness; those of `now` while sums_hold
   bool sums_hold = false;
 
   /// Every public call that looks at forces, parameters or masses comes through here.
@@ -44,23 +46,22 @@ struct Rve::Impl {
   Matrix3 reynolds_stress() const;
   Response respond(const Report& report, const Matrix3& gradient, double dt, const Want& want) const;
 
-  /// Runs `work`; if it throws, the state is put back and the exception goes on. The copy belongs to the thread, not to
-  /// the Rve: a thousand resting cells keep one state each, and its buffers serve the next increment.
+  /// Runs `work` as a trial and commits it; if it throws, the trial is reverted and the exception goes on.
   template <class Work>
   auto guarded(Work work) {
-    thread_local Assembly before;
-    before = now;
-    const auto give_back = [&] {
-      if (fixture.size() > largest_kept_scratch) before = Assembly();
+    const auto end = [&] {
+      if (fixture.size() > largest_kept_scratch) trial.release();
     };
+    trial.begin(now);
     try {
       auto result = work();
-      give_back();
+      trial.commit(now);
+      end();
       return result;
     } catch (...) {
-      std::swap(now, before);
+      trial.revert(now);
       moved();
-      give_back();
+      end();
       throw;
     }
   }
