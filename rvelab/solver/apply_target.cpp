@@ -64,9 +64,8 @@ Report Rve::Impl::load_at_rate(const MixedTarget& target, double dt, Matrix3& gr
     if (since_look >= time_step.stretch) {
       since_look = 0;
       checked_balance();
-      const RowSums sums = row_sums(fixture, now);
-      time_step = this->time_step(sums, now.state.last_rate, control_stretch, (1 - fraction) * dt);
-      servo.set_stiffness(affine_stiffness(fixture, now), soft_stiffness(fixture, now, sums));
+      time_step = this->time_step(now.state.last_rate, control_stretch, (1 - fraction) * dt);
+      servo.set_stiffness(affine_stiffness(fixture, now), soft_stiffness(fixture, now, present_sums()));
       viscosity = affine_viscosity(fixture, now);
       gain_time = 0;
     }
@@ -91,6 +90,7 @@ Report Rve::Impl::load_at_rate(const MixedTarget& target, double dt, Matrix3& gr
     const Advanced made = advance(fixture, now,
                                   loading_of(fixture, split_increment(now.cell, path.go_on(change, fraction)), steps,
                                              step, true, time_step.deep));
+    moved();
     report.substeps += made.steps;
     since_look += made.step < 0.999 * step ? time_step.stretch : made.steps;
     mean_residual += advance_by * servo.residual(fraction, path.strain, stress());
@@ -106,16 +106,16 @@ Report Rve::Impl::load_quasi_static(const MixedTarget& target, Matrix3& gradient
   Report report;
   const auto stress = [&]() -> Matrix3 { return contact_stress() + reynolds_stress(); };
   Servo servo(target, fixture.dimension(), stress(), Servo::Missed::evenly);
-  begin_loading(fixture, now, Loading::quasi_static);
+  begin_quasi_static();
   if (now.state.strain_per_step == 0) now.state.strain_per_step = initial_pace();
 
   TargetPath path{target, fixture.dimension()};
   double fraction = 0, since_control = 0;
   long waited = 0, longest_wait = target.wait;
-  RowSums sums = row_sums(fixture, now);
   bool arrived = false;
   while (true) {
-    if (since_control == 0) servo.set_stiffness(affine_stiffness(fixture, now), soft_stiffness(fixture, now, sums));
+    if (since_control == 0)
+      servo.set_stiffness(affine_stiffness(fixture, now), soft_stiffness(fixture, now, present_sums()));
     long steps = servo_stretch;
     const double wanted = servo.predicted_strain() + target.spin.norm();
     const double full_pace = double(servo_stretch) * now.state.strain_per_step;
@@ -133,6 +133,7 @@ Report Rve::Impl::load_quasi_static(const MixedTarget& target, Matrix3& gradient
         servo.next_strain(fraction, advance_by * wanted, full_pace, path.strain, stress(), now.state.servo_strain);
     advance(fixture, now,
             loading_of(fixture, split_increment(now.cell, path.go_on(change, fraction)), steps, 1, false, false));
+    moved();
     report.substeps += steps;
     if (report.substeps > fixture.options.max_substeps)
       throw IncrementFailed("the increment needs more than " + std::to_string(fixture.options.max_substeps) +
@@ -142,9 +143,8 @@ Report Rve::Impl::load_quasi_static(const MixedTarget& target, Matrix3& gradient
     if (since_control >= double(control_stretch)) {
       since_control = 0;
       const Balance balance = checked_balance();
-      sums = row_sums(fixture, now);
       if (!waiting) steer_pace(balance, servo.held_stress());
-      if (inertia_outgrown(fixture, sums, now)) rescale_inertia(fixture, sums, now);
+      if (inertia_outgrown(fixture, present_sums(), now)) rescale_inertia(fixture, present_sums(), now);
     }
     // The pace is judged before the wait, whose calm says nothing of it; increments shorter than a stretch have no
     // other moment.
@@ -159,7 +159,7 @@ Report Rve::Impl::load_quasi_static(const MixedTarget& target, Matrix3& gradient
   }
   const Balance balance = checked_balance();
   report.unbalanced_ratio = unbalanced(balance);
-  if (fixture.options.ledger) rescale_inertia(fixture, row_sums(fixture, now), now);
+  if (fixture.options.ledger) rescale_inertia(fixture, present_sums(), now);
   report.held_error = servo.held_error(path.strain, stress());
   report.target_held = report.held_error <= target.tolerance;
   judge(report);

@@ -1,6 +1,6 @@
 // The grain assembly in the layout of the step kernels: one row per grain, one force row per listed pair, CSR gather.
-// Opened from a Specimen and written back to one. Everything here is a plain copyable value, so that a failed increment
-// is undone by assignment.
+// Opened from a Specimen and written back to one. Everything here is a plain copyable value; a failed increment is
+// undone by its trial (trial.hpp).
 #pragma once
 
 #include <atomic>
@@ -71,6 +71,15 @@ struct PairTable {
   std::size_t padded() const { return i.size(); }
 };
 
+/// Bytes that its arrays take.
+std::size_t bytes_of(const PairTable& pairs);
+
+/// The list that a trial began with, once another has taken its place (trial.hpp).
+struct ReplacedList {
+  PairTable list;
+  bool taken = false;
+};
+
 /// What an increment changes.
 struct Assembly {
   Cell cell;
@@ -78,6 +87,7 @@ struct Assembly {
   Buffer mass, inverse_mass, inverse_inertia;  ///< those in use: physical, or scaled at dt = 0
   PairTable pairs;
   SolverState state;
+  ReplacedList* replaced = nullptr;  ///< of the trial that is pending, if one is
 
   Vector3 position(const Fixture& f, std::size_t g) const;
   Vector3 velocity(const Fixture& f, std::size_t g) const;  ///< fluctuation, in the units of the mode in use

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 #include "rvelab/error.hpp"
 #include "rvelab/solver/gather_table.hpp"
@@ -79,6 +80,10 @@ void fill(const Fixture& f, const std::vector<ListedPair>& listed, const std::ve
                        "the positions");
   }
 
+  if (a.replaced != nullptr && !a.replaced->taken) {
+    std::swap(a.pairs, a.replaced->list);
+    a.replaced->taken = true;
+  }
   PairTable& pairs = a.pairs;
   pairs.listed = n;
   arrange(f, a, listed, histories, pairs);

@@ -63,6 +63,7 @@ void Rve::take_as_reference() {
   SolverState& state = m.now.state;
   state.reference_overlap = state.reference_contact_force = state.reference_pressure = 0;
   m.set_missing_references(balance_of(m.fixture, m.now));
+  m.moved();
 }
 
 Rve::Rve(const Rve& other) : impl_(std::make_unique<Impl>(*other.impl_)) {}
@@ -89,10 +90,19 @@ Rve::Impl& Rve::Impl::awake() {
 
 void Rve::rest() {
   rvelab::rest(impl_->now);
+  impl_->sums = RowSums();
+  impl_->moved();
+  impl_->trial.release();
   impl_->resting = true;
 }
 
-Memory Rve::memory() const { return memory_of(impl_->now); }
+Memory Rve::memory() const {
+  Memory memory = memory_of(impl_->now);
+  for (const auto* sums : {&impl_->sums.translation, &impl_->sums.rotation, &impl_->sums.dashpot})
+    memory.working += sums->capacity() * sizeof(double);
+  memory.working += impl_->trial.bytes();
+  return memory;
+}
 
 Matrix3 Rve::contact_stress() const { return impl_->awake().contact_stress(); }
 Matrix3 Rve::reynolds_stress() const { return impl_->awake().reynolds_stress(); }
@@ -175,7 +185,7 @@ Report Rve::relax(double unbalanced, long max_steps) {
   Impl& m = impl_->awake();
   return m.guarded([&] {
     Report report;
-    begin_loading(m.fixture, m.now, Loading::quasi_static);
+    m.begin_quasi_static();
     constexpr long stretch = 25;
     // Cundall's damping is a part of the force: it hardly takes from a mode without stiffness, such as grains of an
     // even ring that counter-rotate like gears. Who is not at rest after this many steps is stopped at each peak of the
@@ -187,10 +197,11 @@ Report Rve::relax(double unbalanced, long max_steps) {
       const Balance balance = m.checked_balance();
       report.unbalanced_ratio = rvelab::unbalanced_ratio(balance, m.now.state.reference_contact_force);
       if (report.unbalanced_ratio <= unbalanced || report.substeps >= max_steps) break;
-      const RowSums sums = row_sums(m.fixture, m.now);
+      const RowSums& sums = m.present_sums();
       if (inertia_outgrown(m.fixture, sums, m.now)) rescale_inertia(m.fixture, sums, m.now);
       const long steps = std::min(stretch, max_steps - report.substeps);
       advance(m.fixture, m.now, {still, steps, 1.0, Loading::quasi_static});
+      m.moved();
       report.substeps += steps;
       if (report.substeps < patience) continue;
       const double before = std::exchange(kinetic, kinetic_energy(m.fixture, m.now));
@@ -199,7 +210,7 @@ Report Rve::relax(double unbalanced, long max_steps) {
         kinetic = 0;
       }
     }
-    if (m.fixture.options.ledger) rescale_inertia(m.fixture, row_sums(m.fixture, m.now), m.now);
+    if (m.fixture.options.ledger) rescale_inertia(m.fixture, m.present_sums(), m.now);
     report.target_held = report.unbalanced_ratio <= unbalanced;
     return report;
   });
@@ -240,6 +251,7 @@ void Rve::set_materials(const std::vector<Material>& materials) {
     if (m.fixture.options.ledger && squared > 0) m.now.state.ledger.law_loss += 0.5 * squared / (before[p] * root);
   }
   set_softest_answer(m.fixture);
+  m.moved();
   evaluate_forces(m.fixture, m.now);
 }
 

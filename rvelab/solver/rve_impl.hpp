@@ -5,10 +5,11 @@
 #include "rvelab/solver/inertia.hpp"
 #include "rvelab/solver/rve.hpp"
 #include "rvelab/solver/stepping.hpp"
+#include "rvelab/solver/trial.hpp"
 
 namespace rvelab {
 
-/// Grains up to which a thread keeps its scratch state for the next increment (some 10 MB).
+/// Grains up to which an RVE at work keeps the buffers of a trial for the next one (some 10 MB).
 constexpr std::size_t largest_kept_scratch = 20'000;
 
 constexpr long control_stretch = 50;  ///< sub-steps between looks at the unbalanced ratio
@@ -24,9 +25,19 @@ struct Rve::Impl {
   Fixture fixture;
   Assembly now;
   bool resting = false;  ///< only what rest() keeps is there
+  Trial trial;
+  RowSums sums;  ///< of stiffness; those of `now` while sums_hold
+  bool sums_hold = false;
 
   /// Every public call that looks at forces, parameters or masses comes through here.
   Impl& awake();
+
+  /// The sums of the state as it is, made anew where grains, contacts or parameters changed (moved()). They take as
+  /// long as seven sub-steps, and the last of one call are the first of the next.
+  const RowSums& present_sums();
+  void moved() { sums_hold = false; }
+  /// begin_loading and the masses that the state asks for.
+  void begin_quasi_static();
 
   Matrix3 to_lab(const Matrix3& cell_frame) const {
     return now.cell.rotation * cell_frame * now.cell.rotation.transpose();
@@ -35,22 +46,22 @@ struct Rve::Impl {
   Matrix3 reynolds_stress() const;
   Response respond(const Report& report, const Matrix3& gradient, double dt, const Want& want) const;
 
-  /// Runs `work`; if it throws, the state is put back and the exception goes on. The copy belongs to the thread, not to
-  /// the Rve: a thousand resting cells keep one state each, and its buffers serve the next increment.
+  /// Runs `work` as a trial and commits it; if it throws, the trial is reverted and the exception goes on.
   template <class Work>
   auto guarded(Work work) {
-    thread_local Assembly before;
-    before = now;
-    const auto give_back = [&] {
-      if (fixture.size() > largest_kept_scratch) before = Assembly();
+    const auto end = [&] {
+      if (fixture.size() > largest_kept_scratch) trial.release();
     };
+    trial.begin(now);
     try {
       auto result = work();
-      give_back();
+      trial.commit(now);
+      end();
       return result;
     } catch (...) {
-      std::swap(now, before);
-      give_back();
+      trial.revert(now);
+      moved();
+      end();
       throw;
     }
   }
@@ -63,8 +74,8 @@ struct Rve::Impl {
   /// dt = 0: sets report.quasi_static from what it says of balance and target.
   void judge(Report& report) const;
   /// dt > 0: in an increment of the time dt (s), at the velocity gradient `rate` of the cell (1/s, cell frame); the
-  /// next look is after `stretch` sub-steps at the latest. `sums` are not looked at where the step is fixed.
-  TimeStep time_step(const RowSums& sums, const Matrix3& rate, long stretch, double dt) const;
+  /// next look is after `stretch` sub-steps at the latest.
+  TimeStep time_step(const Matrix3& rate, long stretch, double dt);
   double initial_pace() const;
   /// Scales of the specimen's own state that it does not bring.
   void set_missing_references(const Balance& balance);

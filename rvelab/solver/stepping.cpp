@@ -208,11 +208,7 @@ void begin_loading(const Fixture& f, Assembly& a, Loading loading) {
     a.state.quasi_static = quasi_static;
     if (f.damping.dashpot != Dashpot::none) evaluate_forces(f, a);  // no velocity, no dashpot force
   }
-  // Quasi-static loading leaves the masses as its last state asks for (rescale_inertia), so that nothing changes here.
-  if (quasi_static)
-    scale_inertia(f, row_sums(f, a), a);
-  else
-    use_physical_inertia(f, a);
+  if (!quasi_static) use_physical_inertia(f, a);
 }
 
 namespace {
