@@ -22,7 +22,11 @@ void Trial::begin(Assembly& a) {
   a.replaced = &replaced_;
 }
 
-void Trial::commit(Assembly& a) { a.replaced = nullptr; }
+void Trial::commit(Assembly& a) {
+  a.replaced = nullptr;
+  // A list is made anew every few hundred sub-steps: its arrays are not worth keeping (350 bytes a grain).
+  if (replaced_.taken) replaced_.list = PairTable();
+}
 
 void Trial::revert(Assembly& a) noexcept {
   a.replaced = nullptr;
