@@ -17,8 +17,8 @@
 #include "rvelab/pack/repeated.hpp"
 #include "rvelab/pack/search.hpp"
 #include "rvelab/solver/batch.hpp"
-#include "rvelab/solver/rve.hpp"
 #include "rvelab/solver/kernels/configuration.hpp"
+#include "rvelab/solver/rve.hpp"
 
 namespace rvelab::cli {
 

@@ -9,10 +9,8 @@
 
 namespace rvelab {
 
-struct HertzGivenForce {
+struct HertzGivenForce : LinearForce {
   static constexpr bool needs_root_overlap = true;
-  static constexpr bool stores_root_overlap = false;
-  static constexpr bool has_own_constant = false;
   using Impact = HertzImpact;
 
   template <class V>
@@ -22,18 +20,6 @@ struct HertzGivenForce {
   template <class V>
   static inline __attribute__((always_inline)) V normal_stiffness(V kn, V root) {
     return 1.5 * kn * root;
-  }
-  template <class V>
-  static inline __attribute__((always_inline)) V tangential_stiffness(V kt, V /*root*/) {
-    return kt;
-  }
-  template <class V>
-  static inline __attribute__((always_inline)) V carried(V /*root*/, V /*last_root*/, bool /*unload_rescale*/) {
-    return V{} + 1.0;
-  }
-  template <class V>
-  static inline __attribute__((always_inline)) V pressing_force(V normal, V /*own*/) {
-    return normal;
   }
   static double normal_energy(double kn, double overlap, double root, double /*own*/) {
     return 0.4 * kn * overlap * overlap * root;

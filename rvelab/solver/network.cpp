@@ -48,10 +48,12 @@ Network Rve::network() const {
     net.grains[g] = {
         f.radius[g],  f.mass[g],       f.inertia[g],   a.position(f, g), a.velocity(f, g) - a.state.mean_velocity,
         a.spin(f, g), Vector3::Zero(), Vector3::Zero()};
+  const PairGeometry<2> in_plane(f, a);
+  const PairGeometry<3> in_space(f, a);
   for (const std::int32_t place : a.pairs.order) {
     const auto p = std::size_t(place);
     const auto i = a.pairs.i[p], j = a.pairs.j[p];
-    const auto [branch, length, overlap] = f.shape == Shape::disc ? PairGeometry<2>(f, a)(p) : PairGeometry<3>(f, a)(p);
+    const auto [branch, length, overlap] = f.shape == Shape::disc ? in_plane(p) : in_space(p);
     if (!(overlap > 0)) continue;
     const Vector3 b(branch.x, branch.y, branch.z);
     ContactState c;

@@ -32,8 +32,8 @@ constexpr long deep_look = 4;
 /// new positions and the frame has turned by R. Throws IncrementFailed (cell too thin, overlap beyond the limit).
 Advanced advance(const Fixture& fixture, Assembly& assembly, const Advance& what);
 
-/// Sets the units of the stored velocities for a kind of loading, and the physical masses; those of quasi-static loading
-/// are the caller's to scale. Velocities end where the kind of loading changes.
+/// Sets the units of the stored velocities for a kind of loading, and the physical masses; those of quasi-static
+/// loading are the caller's to scale. Velocities end where the kind of loading changes.
 void begin_loading(const Fixture& fixture, Assembly& assembly, Loading loading);
 
 /// scale_inertia with the change of kinetic energy booked.
