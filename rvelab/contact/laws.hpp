@@ -1,4 +1,4 @@
-// The contact laws there are. A new law is a file of its own, like its neighbours, and three lines here.
+// The contact laws there are. A new law is a file of its own, like its neighbours, and a word in each list here.
 //
 // A law is its name, its parameters, the constants that it makes of two grains, and its Force: f_n, stiffnesses and
 // energy from the overlap, which the step kernels are compiled for.

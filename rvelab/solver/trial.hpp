@@ -11,6 +11,13 @@ namespace rvelab {
 
 class Trial {
  public:
+  Trial() = default;
+  /// A copied RVE has no trial pending, and makes buffers of its own when it needs them.
+  Trial(const Trial&) noexcept {}
+  Trial& operator=(const Trial&) = delete;
+  Trial(Trial&&) = default;
+  Trial& operator=(Trial&&) = default;
+
   /// Notes what `assembly` is: its committed state.
   void begin(Assembly& assembly);
   /// What `assembly` is now is its state.
