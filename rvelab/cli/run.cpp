@@ -19,7 +19,7 @@
 #include "rvelab/io/publish.hpp"
 #include "rvelab/protocol/run.hpp"
 #include "rvelab/records/record_fields.hpp"
-#include "rvelab/solver/sweep.hpp"
+#include "rvelab/solver/loading/sweep.hpp"
 
 namespace rvelab::cli {
 namespace {

@@ -1,6 +1,6 @@
 // Two grains that collide: m* x'' + f_n(x) = 0, for springs f_n = k x (linear) and f_n = k x^(3/2) (Hertz). A law says
 // which of the two it collides like; dashpots that give a coefficient of restitution, and the step that resolves a
-// collision (solver/collisions.hpp), follow from that.
+// collision (solver/loading/collisions.hpp), follow from that.
 //
 // omega: pi/omega is the duration of a linear collision; of a Hertz one, omega at its largest overlap, omega^2 = 3/2
 // (k/m*) sqrt(delta) with sqrt(delta) = (5/4 m* v^2/k)^(1/5). `measure` is what omega grows with, without roots:

@@ -12,7 +12,7 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/io/hdf5_file.hpp"
-#include "rvelab/solver/described.hpp"
+#include "rvelab/specimen/described.hpp"
 
 namespace rvelab::io {
 

@@ -11,7 +11,7 @@
 #include "rvelab/io/material_text.hpp"
 #include "rvelab/io/text_file.hpp"
 #include "rvelab/io/version.hpp"
-#include "rvelab/solver/neighbour_list.hpp"
+#include "rvelab/solver/assembly/neighbour_list.hpp"
 
 namespace rvelab {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "rvelab/solver/network.hpp"
-#include "rvelab/solver/specimen.hpp"
+#include "rvelab/solver/assembly/network.hpp"
+#include "rvelab/specimen/specimen.hpp"
 
 namespace rvelab {
 

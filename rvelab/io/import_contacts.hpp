@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "rvelab/io/csv_table.hpp"
-#include "rvelab/solver/specimen.hpp"
+#include "rvelab/specimen/specimen.hpp"
 
 namespace rvelab::io {
 

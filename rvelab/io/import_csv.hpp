@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "rvelab/solver/specimen.hpp"
+#include "rvelab/specimen/specimen.hpp"
 
 namespace rvelab {
 

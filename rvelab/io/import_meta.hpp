@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "rvelab/solver/specimen.hpp"
+#include "rvelab/specimen/specimen.hpp"
 
 namespace rvelab::io {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "rvelab/solver/specimen.hpp"
+#include "rvelab/specimen/specimen.hpp"
 
 namespace rvelab {
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "rvelab/records/record.hpp"
-#include "rvelab/solver/specimen.hpp"
+#include "rvelab/specimen/specimen.hpp"
 
 namespace rvelab {
 

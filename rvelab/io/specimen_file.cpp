@@ -7,7 +7,7 @@
 #include "rvelab/io/digest.hpp"
 #include "rvelab/io/schema.hpp"
 #include "rvelab/io/version.hpp"
-#include "rvelab/solver/specimen_fields.hpp"
+#include "rvelab/specimen/specimen_fields.hpp"
 
 namespace rvelab {
 namespace io {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "rvelab/solver/specimen.hpp"
+#include "rvelab/specimen/specimen.hpp"
 
 namespace rvelab {
 

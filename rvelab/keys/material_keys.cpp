@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "rvelab/keys/words.hpp"
-#include "rvelab/solver/list_size.hpp"
+#include "rvelab/solver/assembly/list_size.hpp"
 
 namespace rvelab::keys {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "rvelab/contact/model.hpp"
 #include "rvelab/keys/key.hpp"
-#include "rvelab/solver/specimen.hpp"
+#include "rvelab/specimen/specimen.hpp"
 
 namespace rvelab::keys {
 

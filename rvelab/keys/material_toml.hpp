@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "rvelab/keys/key.hpp"
-#include "rvelab/solver/specimen.hpp"
+#include "rvelab/specimen/specimen.hpp"
 
 namespace rvelab {
 

@@ -1,7 +1,7 @@
 // Enumerations by their names, as TOML writes them; the same words as in files.
 #pragma once
 
-#include "rvelab/solver/field_layout.hpp"
+#include "rvelab/specimen/field_layout.hpp"
 
 namespace rvelab::keys {
 

@@ -15,7 +15,7 @@
 
 #include <Eigen/Geometry>
 
-#include "rvelab/solver/network.hpp"
+#include "rvelab/solver/assembly/network.hpp"
 
 namespace rvelab {
 

@@ -9,7 +9,7 @@
 
 #include <vector>
 
-#include "rvelab/solver/network.hpp"
+#include "rvelab/solver/assembly/network.hpp"
 
 namespace rvelab {
 

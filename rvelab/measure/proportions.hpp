@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "rvelab/solver/network.hpp"
+#include "rvelab/solver/assembly/network.hpp"
 
 namespace rvelab {
 

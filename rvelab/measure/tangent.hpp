@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-#include "rvelab/solver/network.hpp"
+#include "rvelab/solver/assembly/network.hpp"
 
 namespace rvelab {
 

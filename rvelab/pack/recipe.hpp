@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "rvelab/grains/grading.hpp"
-#include "rvelab/solver/specimen.hpp"
+#include "rvelab/specimen/specimen.hpp"
 
 namespace rvelab {
 

@@ -1,7 +1,7 @@
 // Larger specimens of smaller ones.
 #pragma once
 
-#include "rvelab/solver/specimen.hpp"
+#include "rvelab/specimen/specimen.hpp"
 
 namespace rvelab {
 

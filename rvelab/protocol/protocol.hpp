@@ -13,7 +13,7 @@
 
 #include "rvelab/protocol/stages.hpp"
 #include "rvelab/records/record.hpp"
-#include "rvelab/solver/specimen.hpp"
+#include "rvelab/specimen/specimen.hpp"
 
 namespace rvelab {
 

@@ -12,7 +12,7 @@
 #include "rvelab/protocol/protocol.hpp"
 #include "rvelab/protocol/protocol_keys.hpp"
 #include "rvelab/protocol/read_stage.hpp"
-#include "rvelab/solver/specimen_check.hpp"
+#include "rvelab/solver/assembly/specimen_check.hpp"
 
 namespace rvelab {
 namespace {

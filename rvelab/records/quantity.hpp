@@ -13,7 +13,7 @@
 #include <type_traits>
 
 #include "rvelab/cell/cell.hpp"
-#include "rvelab/solver/network.hpp"
+#include "rvelab/solver/assembly/network.hpp"
 #include "rvelab/solver/rve.hpp"
 
 namespace rvelab::records {

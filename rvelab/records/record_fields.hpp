@@ -4,7 +4,7 @@
 
 #include "rvelab/records/progress.hpp"
 #include "rvelab/records/record.hpp"
-#include "rvelab/solver/described.hpp"
+#include "rvelab/specimen/described.hpp"
 
 namespace rvelab::records {
 

@@ -1,11 +1,12 @@
 // apply: an increment becomes sub-steps. Quasi-static loading picks its pace by the unbalanced-force ratio (measured
 // best, performance: nearly free and within a few 1e-4 of the stress); physical loading by the critical step.
+// Declared in rve_impl.hpp.
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "rvelab/error.hpp"
-#include "rvelab/solver/collisions.hpp"
+#include "rvelab/solver/loading/collisions.hpp"
 #include "rvelab/solver/rve_impl.hpp"
 
 namespace rvelab {

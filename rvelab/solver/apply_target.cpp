@@ -1,15 +1,15 @@
 // apply with a mixed target: the stress servo runs inside the sub-steps. At dt = 0 the pace follows the unbalanced
 // ratio and the end of the increment waits for the stress; at dt > 0 the increment takes the time that was given, no
-// more.
+// more. Declared in rve_impl.hpp.
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "rvelab/cell/volume.hpp"
 #include "rvelab/error.hpp"
-#include "rvelab/solver/collisions.hpp"
+#include "rvelab/solver/loading/collisions.hpp"
+#include "rvelab/solver/loading/servo.hpp"
 #include "rvelab/solver/rve_impl.hpp"
-#include "rvelab/solver/servo.hpp"
 
 namespace rvelab {
 

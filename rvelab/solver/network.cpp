@@ -1,10 +1,10 @@
-// Rve::network: the contact network as a value.
+// Rve::network: the contact network as a value. Declared in rve_impl.hpp.
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "rvelab/solver/contact_stiffness.hpp"
-#include "rvelab/solver/memory_order.hpp"
-#include "rvelab/solver/pair_geometry.hpp"
+#include "rvelab/solver/assembly/contact_stiffness.hpp"
+#include "rvelab/solver/assembly/memory_order.hpp"
+#include "rvelab/solver/assembly/pair_geometry.hpp"
 #include "rvelab/solver/rve_impl.hpp"
 
 namespace rvelab {

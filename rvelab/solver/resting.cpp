@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "rvelab/solver/inertia.hpp"
+#include "rvelab/solver/loading/inertia.hpp"
 
 namespace rvelab {
 

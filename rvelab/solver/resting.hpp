@@ -1,7 +1,7 @@
 // Letting go of what an assembly can make again, and making it again.
 #pragma once
 
-#include "rvelab/solver/assembly.hpp"
+#include "rvelab/solver/assembly/assembly.hpp"
 #include "rvelab/solver/rve.hpp"
 
 namespace rvelab {

@@ -7,9 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "rvelab/solver/network.hpp"
-#include "rvelab/solver/specimen.hpp"
-#include "rvelab/solver/workers.hpp"
+#include "rvelab/solver/assembly/network.hpp"
+#include "rvelab/solver/assembly/workers.hpp"
+#include "rvelab/solver/loading/mixed_target.hpp"
+#include "rvelab/specimen/specimen.hpp"
 
 namespace rvelab {
 
@@ -39,29 +40,6 @@ struct Response {
   Matrix3 reynolds_stress = Matrix3::Zero();        ///< on request; zero at dt = 0
   Matrix3 displacement_gradient = Matrix3::Zero();  ///< what was applied (mixed targets: what was found)
   Report report;
-};
-
-/// A mixed target: for each row, A : dE + B : d sigma = c, with dE the symmetric part of the increment of
-/// displacement gradient and d sigma the change of Cauchy stress over the increment (laboratory frame). The skew
-/// part is given. 2D needs 3 rows over xx, yy, xy; 3D needs 6. Rows must be independent.
-struct MixedTarget {
-  struct Row {
-    Matrix3 strain = Matrix3::Zero();  ///< A, dimensionless, symmetric; A : dE sums all nine entries
-    Matrix3 stress = Matrix3::Zero();  ///< B, 1/Pa or dimensionless; units of c decide
-    double value = 0;                  ///< c
-    double scale = 0;                  ///< rows with stress: |residual| <= tolerance * scale counts as held; > 0
-    double missed = 0;  ///< part of `value` that the increment before has left; dt > 0: made good as fast
-                        ///< as the control can, the rest goes evenly over the increment
-  };
-  std::vector<Row> rows;
-  Matrix3 spin = Matrix3::Zero();  ///< skew part of the increment of displacement gradient
-  double volume_ratio = 0;         ///< > 0: det(I + dH), met to round-off by an isotropic strain beside the rows' (of
-                                   ///< second order in theirs where they prescribe the volume to first order)
-  double tolerance = 0.005;        ///< relative to each row's scale; dt > 0: of the mean over the increment, since the
-                                   ///< stress of the moment fluctuates with the collisions
-  long wait = 200;                 ///< dt = 0: sub-steps that the end of the increment may wait for the stress, or a
-                    ///< quarter of those that it took where that is more; dt > 0: no wait, since it would
-                    ///< let time pass without strain
 };
 
 /// Bytes that an RVE holds, without the arrays that its copies share (ids, radii, materials, masses).

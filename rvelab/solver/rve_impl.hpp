@@ -1,11 +1,11 @@
 // What an Rve holds. Shared by the files that implement it and by nothing else.
 #pragma once
 
-#include "rvelab/solver/assembly.hpp"
-#include "rvelab/solver/inertia.hpp"
+#include "rvelab/solver/assembly/assembly.hpp"
+#include "rvelab/solver/loading/inertia.hpp"
+#include "rvelab/solver/loading/stepping.hpp"
+#include "rvelab/solver/loading/trial.hpp"
 #include "rvelab/solver/rve.hpp"
-#include "rvelab/solver/stepping.hpp"
-#include "rvelab/solver/trial.hpp"
 
 namespace rvelab {
 

@@ -6,7 +6,7 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/solver/rve_impl.hpp"
-#include "rvelab/solver/specimen_fields.hpp"
+#include "rvelab/specimen/specimen_fields.hpp"
 
 namespace rvelab {
 

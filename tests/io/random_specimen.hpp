@@ -19,8 +19,8 @@
 #include "rvelab/error.hpp"
 #include "rvelab/records/progress.hpp"
 #include "rvelab/records/record.hpp"
-#include "rvelab/solver/specimen.hpp"
-#include "rvelab/solver/specimen_fields.hpp"
+#include "rvelab/specimen/specimen.hpp"
+#include "rvelab/specimen/specimen_fields.hpp"
 
 namespace rvelab::test {
 

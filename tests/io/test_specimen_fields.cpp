@@ -1,5 +1,5 @@
 // The description of a specimen names every member, and everything that keeps or compares specimens goes by it.
-#include "rvelab/solver/specimen_fields.hpp"
+#include "rvelab/specimen/specimen_fields.hpp"
 
 #include <bit>
 #include <cmath>

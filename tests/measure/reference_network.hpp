@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "rvelab/solver/network.hpp"
+#include "rvelab/solver/assembly/network.hpp"
 
 namespace rvelab::test {
 

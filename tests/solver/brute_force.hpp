@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "rvelab/solver/neighbour_list.hpp"
+#include "rvelab/solver/assembly/neighbour_list.hpp"
 
 namespace rvelab::test {
 

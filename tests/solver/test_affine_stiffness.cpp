@@ -1,7 +1,7 @@
 // The affine stiffness, the servo's gain, contact by contact from its definition: the branch changes by eps b.
 #include <random>
 
-#include "rvelab/solver/affine_stiffness.hpp"
+#include "rvelab/solver/assembly/affine_stiffness.hpp"
 #include "rvelab/solver/rve.hpp"
 #include "tests/oracle/specimens.hpp"
 

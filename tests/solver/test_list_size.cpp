@@ -2,8 +2,8 @@
 #include <random>
 
 #include "rvelab/error.hpp"
-#include "rvelab/solver/list_size.hpp"
-#include "rvelab/solver/neighbour_list.hpp"
+#include "rvelab/solver/assembly/list_size.hpp"
+#include "rvelab/solver/assembly/neighbour_list.hpp"
 #include "tests/oracle/specimens.hpp"
 
 using namespace rvelab;

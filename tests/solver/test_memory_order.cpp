@@ -3,7 +3,7 @@
 #include <random>
 
 #include "rvelab/error.hpp"
-#include "rvelab/solver/memory_order.hpp"
+#include "rvelab/solver/assembly/memory_order.hpp"
 #include "tests/oracle/specimens.hpp"
 
 using namespace rvelab;

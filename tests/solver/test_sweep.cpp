@@ -6,9 +6,9 @@
 #include <random>
 
 #include "rvelab/error.hpp"
-#include "rvelab/solver/gather_table.hpp"
-#include "rvelab/solver/inertia.hpp"
-#include "rvelab/solver/sweep.hpp"
+#include "rvelab/solver/assembly/gather_table.hpp"
+#include "rvelab/solver/loading/inertia.hpp"
+#include "rvelab/solver/loading/sweep.hpp"
 #include "tests/oracle/specimens.hpp"
 
 using namespace rvelab;

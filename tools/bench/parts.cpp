@@ -18,11 +18,11 @@
 
 #include "rvelab/pack/repeated.hpp"
 #include "rvelab/pack/search.hpp"
-#include "rvelab/solver/assembly.hpp"
-#include "rvelab/solver/inertia.hpp"
+#include "rvelab/solver/assembly/assembly.hpp"
+#include "rvelab/solver/loading/inertia.hpp"
 #include "rvelab/solver/resting.hpp"
 #include "rvelab/solver/rve.hpp"
-#include "rvelab/solver/sweep.hpp"
+#include "rvelab/solver/loading/sweep.hpp"
 
 namespace {
 

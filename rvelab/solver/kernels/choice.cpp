@@ -1,27 +1,14 @@
 // Chooses the kernels of a configuration: what the build has, what the processor can do, what RVELAB_ISA asks for.
+// Declared in configuration.hpp.
 #include <cstdlib>
 #include <string>
 #include <vector>
 
 #include "rvelab/error.hpp"
 #include "rvelab/solver/kernels/configuration.hpp"
+#include "rvelab/solver/kernels/instruction_sets.hpp"
 
 namespace rvelab {
-
-#define RVELAB_DECLARE(isa)                                                       \
-  void set_disc_kernels_##isa(const KernelConfiguration&, const char*, Kernels&); \
-  void set_sphere_kernels_##isa(const KernelConfiguration&, const char*, Kernels&)
-RVELAB_DECLARE(scalar);
-RVELAB_DECLARE(baseline);
-#ifdef RVELAB_HAVE_V3
-RVELAB_DECLARE(v3);
-#endif
-#ifdef RVELAB_HAVE_V4
-RVELAB_DECLARE(v4);
-#endif
-#undef RVELAB_DECLARE
-void set_disc_kernels_shared(const KernelConfiguration&, Kernels&);
-void set_sphere_kernels_shared(const KernelConfiguration&, Kernels&);
 
 namespace {
 

@@ -1,5 +1,8 @@
 // Scalar kernels of discs: the reference that every vector path equals bitwise, the one with the energy ledger,
 // and the evaluation of the stored history on opening.
+//
+// Declared in instruction_sets.hpp.
+#include "rvelab/solver/kernels/instruction_sets.hpp"
 #include "rvelab/solver/kernels/table.hpp"
 
 namespace rvelab {

@@ -1,5 +1,8 @@
 // Step kernels of spheres for one instruction set; the build compiles this file once per set, with RVELAB_ISA its
 // name and RVELAB_LANES its lanes. Nothing here may leave a weak symbol: a linker could pick the copy of a wider set.
+//
+// Declared in instruction_sets.hpp.
+#include "rvelab/solver/kernels/instruction_sets.hpp"
 #include "rvelab/solver/kernels/table.hpp"
 
 #define RVELAB_JOIN_(a, b) a##b

@@ -1,0 +1,147 @@
+#include "rvelab/solver/assembly/assembly.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "rvelab/error.hpp"
+#include "rvelab/solver/assembly/listing.hpp"
+#include "rvelab/solver/assembly/memory_order.hpp"
+#include "rvelab/solver/assembly/specimen_check.hpp"
+
+namespace rvelab {
+
+Vector3 Assembly::position(const Fixture& f, std::size_t g) const {
+  const double* row = rows.data() + g * f.row_length();
+  return {row[0], row[1], f.shape == Shape::disc ? 0.0 : row[2]};
+}
+
+Vector3 Assembly::velocity(const Fixture& f, std::size_t g) const {
+  const double* v = rows.data() + g * f.row_length() + f.velocity_offset();
+  return {v[0], v[1], f.shape == Shape::disc ? 0.0 : v[2]};
+}
+
+Vector3 Assembly::spin(const Fixture& f, std::size_t g) const {
+  const double* row = rows.data() + g * f.row_length();
+  return f.shape == Shape::disc ? Vector3(0, 0, row[4]) : Vector3(row[8], row[9], row[10]);
+}
+
+void Assembly::set_velocity(const Fixture& f, std::size_t g, const Vector3& v, const Vector3& w) {
+  double* row = rows.data() + g * f.row_length();
+  for (int k = 0; k < f.dimension(); ++k) row[f.velocity_offset() + k] = v[k];
+  if (f.shape == Shape::disc) {
+    row[4] = w[2];
+  } else {
+    for (int k = 0; k < 3; ++k) row[8 + k] = w[k];
+  }
+}
+
+void open(const Specimen& specimen, Fixture& f, Assembly& a) {
+  check_specimen(specimen);
+  const std::size_t n = specimen.grains.size(), padded = padded_to_lanes(n);
+  std::vector<std::int32_t> order = specimen.state.memory_order;
+  if (order.empty() && n >= least_ordered_grains) order = space_filling_order(specimen.cell, specimen.grains.position);
+  const Specimen arranged = order.empty() ? Specimen() : in_memory_order(specimen, order);
+  const Specimen& s = order.empty() ? specimen : arranged;
+  f.shape = s.shape;
+  f.materials = s.materials;
+  f.contact = s.contact;
+  f.damping = s.damping;
+  f.options = s.solver;
+  f.id = s.grains.id;
+  f.material = s.grains.material;
+  f.radius = s.grains.radius;
+  f.thickness = s.cell.lattice(2, 2);
+  f.kernels =
+      kernels_for({f.shape, f.contact.law, f.contact.rolling, f.contact.slip, f.damping.dashpot != Dashpot::none});
+  f.resting_kernels = f.damping.dashpot == Dashpot::none
+                          ? f.kernels
+                          : kernels_for({f.shape, f.contact.law, f.contact.rolling, f.contact.slip, false});
+  f.largest_radius = *std::max_element(f.radius.begin(), f.radius.end());
+  f.smallest_radius = *std::min_element(f.radius.begin(), f.radius.end());
+  f.mean_radius = std::accumulate(f.radius.begin(), f.radius.end(), 0.0) / double(n);
+  f.largest_skin = f.options.skin * f.mean_radius;
+  f.min_height = f.options.min_height > 0 ? f.options.min_height : 2 * f.largest_radius;
+  std::vector<double> mass(n), inertia(n);
+  a.cell = s.cell;
+  a.state = s.state;
+  a.state.memory_order = std::move(order);
+  if (!(a.state.list_skin > 0 && a.state.list_skin < f.largest_skin)) a.state.list_skin = f.largest_skin;
+  a.rows.assign(padded * f.row_length(), 0.0);
+  for (Buffer* b : {&a.mass, &a.inverse_mass, &a.inverse_inertia}) b->assign(padded, 0.0);
+  for (std::size_t g = 0; g < n; ++g) {
+    const Material& m = f.materials[f.material[g]];
+    mass[g] = m.density * grain_volume(f.shape, f.radius[g], f.thickness);
+    inertia[g] = moment_of_inertia(f.shape, mass[g], f.radius[g]);
+    double* row = a.rows.data() + g * f.row_length();
+    for (int k = 0; k < f.dimension(); ++k) row[k] = s.grains.position[g][k];
+    if (f.shape == Shape::sphere) row[3] = row[11] = f.radius[g];
+    a.set_velocity(f, g, s.grains.velocity[g], s.grains.spin[g]);
+  }
+  f.mass = std::move(mass);
+  f.inertia = std::move(inertia);
+
+  try {
+    list_with(f, s.contacts, a);
+    if (!a.state.has_reference) rebuild(f, a);
+  } catch (const IncrementFailed& error) {
+    throw InputError(std::string("specimen: ") + error.what());
+  }
+}
+
+Specimen close(const Fixture& f, const Assembly& a) {
+  Specimen s;
+  s.shape = f.shape;
+  s.cell = a.cell;
+  s.materials = f.materials;
+  s.contact = f.contact;
+  s.damping = f.damping;
+  s.solver = f.options;
+  s.state = a.state;
+  s.grains.id = f.id;
+  s.grains.radius = f.radius;
+  s.grains.material = f.material;
+  for (std::size_t g = 0; g < f.size(); ++g) {
+    s.grains.position.push_back(a.position(f, g));
+    s.grains.velocity.push_back(a.velocity(f, g));
+    s.grains.spin.push_back(a.spin(f, g));
+  }
+  s.contacts = contacts_of(f, a.pairs);
+  return in_id_order(std::move(s), a.state.memory_order);
+}
+
+PairArrays arrays_of(PairTable& t) {
+  PairArrays p;
+  p.near = long(t.near);
+  p.touched = t.touched.data();
+  p.row_i = t.row_i.data();
+  p.row_j = t.row_j.data();
+  for (int k = 0; k < 3; ++k) {
+    p.image[k] = t.image_number[k].data();
+    p.tangential[k] = t.tangential[k].data();
+    p.moment[k] = t.moment[k].data();
+  }
+  p.kn = t.kn.data();
+  p.kt = t.kt.data();
+  p.friction = t.friction.data();
+  p.own = t.own.data();
+  p.kr = t.kr.data();
+  p.moment_cap = t.moment_cap.data();
+  p.cn = t.cn.data();
+  p.root_overlap = t.root_overlap.data();
+  p.radius_i = t.radius_i.data();
+  p.radius_j = t.radius_j.data();
+  p.force = t.force.data();
+  return p;
+}
+
+GrainArrays arrays_of(Assembly& a) {
+  return {a.rows.data(),
+          a.mass.data(),
+          a.inverse_mass.data(),
+          a.inverse_inertia.data(),
+          a.pairs.slot_begin.data(),
+          a.pairs.slots.data(),
+          a.pairs.tasks.data()};
+}
+
+}  // namespace rvelab

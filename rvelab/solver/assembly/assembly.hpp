@@ -1,0 +1,172 @@
+// The grain assembly in the layout of the step kernels: one row per grain, one force row per listed pair, CSR gather.
+// Opened from a Specimen and written back to one. Everything here is a plain copyable value; a failed increment is
+// undone by its trial (trial.hpp).
+#pragma once
+
+#include <atomic>
+#include <vector>
+
+#include "rvelab/solver/assembly/buffer.hpp"
+#include "rvelab/solver/assembly/neighbour_list.hpp"
+#include "rvelab/solver/assembly/workers.hpp"
+#include "rvelab/solver/kernels/configuration.hpp"
+#include "rvelab/specimen/specimen.hpp"
+
+namespace rvelab {
+
+/// What an increment never changes.
+struct Fixture {
+  Shape shape = Shape::disc;
+  std::vector<Material> materials;
+  ContactModel contact;
+  Damping damping;
+  SolverOptions options;
+  SharedArray<std::int64_t> id;
+  SharedArray<std::int32_t> material;
+  SharedArray<double> radius, mass, inertia;                        ///< m, kg, kg m^2 (physical)
+  double mean_radius = 0, largest_radius = 0, smallest_radius = 0;  ///< m
+  double largest_skin = 0;                                          ///< m
+  double min_height = 0;                                            ///< m
+  Kernels kernels;                                                  ///< as the specimen states them, for dt > 0
+  Kernels resting_kernels;  ///< dt = 0: without the dashpot, whose time a sub-step is not
+  /// 1 without rolling stiffness; sqrt(4 kt r^2/(4 kt r^2 + 2 kr)) of typical grains: how much slower than the contacts
+  /// grains answer that slip about a stiff rolling spring, once their inertia is scaled for that spring.
+  double softest_answer = 1;
+  double thickness = 0;                     ///< m, 2D
+  const std::atomic<bool>* stop = nullptr;  ///< true: advance throws Interrupted (Rve::watch)
+  Workers* team = nullptr;                  ///< shares the steps of a large assembly (Rve::share)
+
+  std::size_t size() const { return id.size(); }
+  /// The team where the assembly is large enough for one, else null.
+  Workers* sharing() const { return size() >= least_shared_grains ? team : nullptr; }
+  const Kernels& kernels_at(bool quasi_static) const { return quasi_static ? resting_kernels : kernels; }
+  /// Whether contacts keep sqrt(overlap) of the last sub-step.
+  bool stores_root_overlap() const {
+    return with_law(contact.law, [](auto law) { return decltype(law)::Force::stores_root_overlap; });
+  }
+  int dimension() const { return dimension_of(shape); }
+  int row_length() const { return grain_row_length(shape); }
+  int velocity_offset() const { return shape == Shape::disc ? 2 : 4; }
+  int tangential_components() const { return shape == Shape::disc ? 1 : 3; }
+};
+
+/// Listed pairs with their parameters and history, as arrays; padded to a multiple of eight. Those that touched when
+/// they were listed stand first, so that the kernels can pass over the others. Every sum over pairs goes by `order`:
+/// what touched then, and with it the place of a pair, is nothing that a restart knows.
+struct PairTable {
+  std::size_t listed = 0;             ///< pairs without the padding
+  std::size_t near = 0;               ///< the first of them, computed at every step (kernels/configuration.hpp)
+  std::vector<std::int32_t> order;    ///< places of the pairs in the order of (i, j, image)
+  std::vector<std::uint8_t> touched;  ///< kernels/configuration.hpp
+  std::vector<std::int32_t> i, j;
+  std::vector<std::int32_t> row_i, row_j;  ///< i, j times the row length
+  std::vector<Image> image;
+  Buffer image_number[3];
+  Buffer kn, kt, own, friction, kr, moment_cap, cn;
+  Buffer tangential[3], moment[3], root_overlap, force;
+  Buffer radius_i, radius_j;                    ///< 2D
+  std::vector<std::int32_t> slot_begin, slots;  ///< gather table (kernels/configuration.hpp)
+  std::vector<std::uint16_t> tasks;
+
+  std::size_t padded() const { return i.size(); }
+};
+
+/// Bytes that its arrays take.
+std::size_t bytes_of(const PairTable& pairs);
+
+/// The list that a trial began with, once another has taken its place (trial.hpp).
+struct ReplacedList {
+  PairTable list;
+  bool taken = false;
+};
+
+/// What an increment changes.
+struct Assembly {
+  Cell cell;
+  Buffer rows;                                 ///< padded grain rows (kernels/configuration.hpp)
+  Buffer mass, inverse_mass, inverse_inertia;  ///< those in use: physical, or scaled at dt = 0
+  PairTable pairs;
+  SolverState state;
+  ReplacedList* replaced = nullptr;  ///< of the trial that is pending, if one is
+
+  Vector3 position(const Fixture& f, std::size_t g) const;
+  Vector3 velocity(const Fixture& f, std::size_t g) const;  ///< fluctuation, in the units of the mode in use
+  Vector3 spin(const Fixture& f, std::size_t g) const;
+  void set_velocity(const Fixture& f, std::size_t g, const Vector3& v, const Vector3& w);
+};
+
+/// Room for n grains or pairs in whole blocks of lanes, at least one padding entry.
+constexpr std::size_t padded_to_lanes(std::size_t n) { return (n / 8 + 1) * 8; }
+
+/// Checks a specimen and opens it; from some size on its grains are kept in an order of their own (memory_order.hpp),
+/// in which every index of Fixture and Assembly counts. Throws InputError.
+void open(const Specimen& specimen, Fixture& fixture, Assembly& assembly);
+Specimen close(const Fixture& fixture, const Assembly& assembly);
+
+/// Throws IncrementFailed if the shortest lattice vector is below min_height.
+void check_height(const Fixture& fixture, const Cell& cell);
+
+/// Reduces the lattice where needed, wraps the grains, lists anew, carries history over. Returns the reduction made.
+/// Throws IncrementFailed if the shortest lattice vector is below min_height, or if the list would be too long.
+Reduction rebuild(const Fixture& fixture, Assembly& assembly);
+
+/// Gap up to which every pair is listed, m, whenever the list was made: what lies between depends on the list.
+double listed_gap(const Fixture& fixture, const Assembly& assembly);
+
+/// Whether a pair that is not listed might touch by now. May tighten the bound that the state keeps on displacements.
+/// `margin` (m): asks already while grains are that far from touching, so that those in flight are listed before they
+/// do.
+bool list_is_stale(const Fixture& fixture, Assembly& assembly, double margin = 0);
+
+/// What follows from list and fixture, made anew: parameters, indices as the kernels want them; force rows are zero.
+/// The gather table belongs to the list. Pairs not computed at every step must have no history unless they touch.
+void derive_pairs(const Fixture& fixture, PairTable& pairs);
+
+/// Pair parameters from the materials, for all listed pairs (after listing, or when materials change).
+void set_pair_parameters(const Fixture& fixture, PairTable& pairs);
+
+/// Force rows from the stored history; nothing advances.
+void evaluate_forces(const Fixture& fixture, Assembly& assembly);
+
+PairArrays arrays_of(PairTable& pairs);
+GrainArrays arrays_of(Assembly& assembly);
+
+/// Constants that do not change from step to step, filled in; lattice from the cell, rate and step from the state.
+StepConstants base_constants(const Fixture& fixture, const Assembly& assembly);
+
+/// Inverse of an upper-triangular matrix, by hand: it is taken several times a sub-step.
+Matrix3 upper_inverse(const Matrix3& matrix);
+UpperTriangle upper_triangle(const Matrix3& matrix);
+/// Velocity gradient of the cell (upper triangular, 1/s) and the mean spin that goes with it.
+void set_rate(const Matrix3& rate, StepConstants& constants);
+
+/// (1/V)-less sum of F_on_j (x) b over the pairs, N m, cell frame, from force rows and present positions.
+Matrix3 contact_moment(const Fixture& fixture, const Assembly& assembly);
+
+/// Contact force on j of listed pair p as last computed, N.
+Vector3 force_of(const Fixture& fixture, const PairTable& pairs, std::size_t p);
+
+/// Resultant of a grain's contacts, cell frame.
+struct Resultant {
+  Vector3 force = Vector3::Zero(), torque = Vector3::Zero();  ///< N, N m
+};
+std::vector<Resultant> resultants_of(const Fixture& fixture, const Assembly& assembly);
+
+/// What force and torque each grain is left with, and the mean and largest figures that control needs.
+struct Balance {
+  double mean_resultant = 0;      ///< N, |force| over all grains
+  double mean_couple = 0;         ///< N, |torque| over the radius
+  double mean_contact_force = 0;  ///< N, over touching contacts; 0 without any
+  std::size_t touching = 0;
+  double largest_overlap_ratio = 0;  ///< overlap over the smaller radius
+  double mean_overlap = 0;           ///< m
+  bool finite = true;
+};
+Balance balance_of(const Fixture& fixture, const Assembly& assembly);
+/// The larger of the two means over the mean contact force: a ratio of forces alone does not see grains that still turn
+/// (rolling stiffness 1e3 to 1e6: the stress was wrong by 2 to 12 % of p at a ratio of 1e-3).
+double unbalanced_ratio(const Balance& balance, double reference_contact_force);
+/// Throws IncrementFailed if a value is not finite or an overlap is beyond the limit.
+void check_overlaps(const Fixture& fixture, const Balance& balance);
+
+}  // namespace rvelab

@@ -1,0 +1,52 @@
+// What the law of an assembly makes of a contact at an overlap, outside the step kernels.
+#pragma once
+
+#include <cmath>
+
+#include "rvelab/solver/assembly/assembly.hpp"
+
+namespace rvelab {
+
+/// Parameters of a listed pair.
+inline PairParameters parameters_of(const Fixture& f, const PairTable& pairs, std::size_t p) {
+  const bool rolling = f.contact.rolling;
+  return {pairs.kn[p],
+          pairs.kt[p],
+          pairs.own.empty() ? 0 : pairs.own[p],
+          pairs.friction[p],
+          rolling ? pairs.kr[p] : 0,
+          rolling ? pairs.moment_cap[p] : 0,
+          f.damping.dashpot != Dashpot::none ? pairs.cn[p] : 0};
+}
+
+/// Of one contact now: d f_n/d overlap, N/m; k_t, N/m; k_r, N m; normal dashpot coefficient, N s/m.
+struct ContactStiffness {
+  double normal, tangential, rolling, dashpot;
+};
+
+/// c_n at an overlap whose square root is `root`, N s/m.
+inline double dashpot_now(const Fixture& f, double cn, double root) {
+  const double power = dashpot_power(f.contact.law, f.damping.dashpot);
+  return cn * (power == 0 ? 1.0 : (power == 0.5 ? root : std::sqrt(root)));
+}
+
+/// `Force`: that of the specimen's law (contact/laws.hpp). The overlap is > 0, m.
+template <class Force>
+ContactStiffness stiffness_of(const Fixture& f, const PairParameters& q, double overlap) {
+  const bool dashpot = f.damping.dashpot != Dashpot::none;
+  const double root = Force::needs_root_overlap || dashpot ? std::sqrt(overlap) : 0;
+  return {Force::normal_stiffness(q.kn, root), Force::tangential_stiffness(q.kt, root),
+          Force::tangential_stiffness(q.kr, root), dashpot ? dashpot_now(f, q.cn, root) : 0};
+}
+template <class Force>
+double normal_force_of(const PairParameters& q, double overlap) {
+  return Force::normal_force(q.kn, overlap, Force::needs_root_overlap ? std::sqrt(overlap) : 0, q.own);
+}
+
+/// call(Force{}) with the Force of the specimen's law.
+template <class Call>
+auto with_force(const Fixture& f, const Call& call) {
+  return with_law(f.contact.law, [&](auto law) { return call(typename decltype(law)::Force{}); });
+}
+
+}  // namespace rvelab

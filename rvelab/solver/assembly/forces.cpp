@@ -1,0 +1,270 @@
+// Contact forces of an assembly as they stand: evaluation, sums over pairs, balance of the grains. Declared in
+// assembly.hpp.
+#include <algorithm>
+#include <cmath>
+
+#include "rvelab/error.hpp"
+#include "rvelab/solver/assembly/gather_table.hpp"
+#include "rvelab/solver/assembly/pair_geometry.hpp"
+
+namespace rvelab {
+
+Matrix3 upper_inverse(const Matrix3& m) {
+  const double xx = 1 / m(0, 0), yy = 1 / m(1, 1), zz = 1 / m(2, 2);
+  const double xy = -m(0, 1) * xx * yy, yz = -m(1, 2) * yy * zz;
+  Matrix3 inverse;
+  inverse << xx, xy, -(m(0, 1) * yz + m(0, 2) * zz) * xx, 0, yy, yz, 0, 0, zz;
+  return inverse;
+}
+
+UpperTriangle upper_triangle(const Matrix3& m) { return {m(0, 0), m(0, 1), m(0, 2), m(1, 1), m(1, 2), m(2, 2)}; }
+
+void set_rate(const Matrix3& rate, StepConstants& c) {
+  c.rate = upper_triangle(rate);
+  c.spin[0] = -0.5 * rate(1, 2);
+  c.spin[1] = 0.5 * rate(0, 2);
+  c.spin[2] = -0.5 * rate(0, 1);
+}
+
+StepConstants base_constants(const Fixture& f, const Assembly& a) {
+  StepConstants c;
+  c.dt = a.state.last_step;
+  c.lattice = upper_triangle(a.cell.lattice);
+  set_rate(a.state.last_rate, c);
+  c.global_viscous = f.damping.global_viscous;
+  c.tangential_ratio = f.damping.tangential_ratio;
+  c.dashpot_quarters = int(4 * dashpot_power(f.contact.law, f.damping.dashpot));
+  c.no_tension = f.damping.no_tension;
+  c.unload_rescale = f.contact.unload_rescale;
+  return c;
+}
+
+void evaluate_forces(const Fixture& f, Assembly& a) {
+  const StepConstants c = base_constants(f, a);
+  f.kernels_at(a.state.quasi_static).evaluate(c, arrays_of(a.pairs), a.rows.data(), 0, long(a.pairs.padded()), nullptr);
+}
+
+Vector3 force_of(const Fixture& f, const PairTable& pairs, std::size_t p) {
+  const double* row = pairs.force.data() + p * force_row_length(f.shape);
+  return {row[0], row[1], f.shape == Shape::disc ? 0.0 : row[2]};
+}
+
+namespace {
+
+/// Moment of the pairs at `order` [first, last).
+template <int D>
+Matrix3 moment_of(const Assembly& a, const PairGeometry<D>& pair, std::size_t first, std::size_t last) {
+  constexpr std::size_t row = D == 2 ? 4 : 8;
+  const double* force = a.pairs.force.data();
+  double m[9] = {};
+  for (std::size_t k = first; k < last; ++k) {
+    const auto p = std::size_t(a.pairs.order[k]);
+    const Branch b = pair.branch(p);
+    for (int r = 0; r < D; ++r) {
+      m[3 * r] += force[row * p + std::size_t(r)] * b.x;
+      m[3 * r + 1] += force[row * p + std::size_t(r)] * b.y;
+      if constexpr (D == 3) m[3 * r + 2] += force[row * p + std::size_t(r)] * b.z;
+    }
+  }
+  Matrix3 sum;
+  for (int k = 0; k < 9; ++k) sum(k / 3, k % 3) = m[k];
+  return sum;
+}
+
+template <int D>
+Matrix3 moment_in(const Fixture& f, const Assembly& a) {
+  const PairGeometry<D> pair(f, a);
+  std::vector<Matrix3> of_piece(pieces_in(a.pairs.listed));
+  in_pieces(a.pairs.listed, f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
+    of_piece[piece] = moment_of(a, pair, first, last);
+  });
+  Matrix3 sum = Matrix3::Zero();
+  for (const Matrix3& piece : of_piece) sum += piece;
+  return sum;
+}
+
+}  // namespace
+
+Matrix3 contact_moment(const Fixture& f, const Assembly& a) {
+  // Called every few sub-steps under stress control.
+  return f.shape == Shape::disc ? moment_in<2>(f, a) : moment_in<3>(f, a);
+}
+
+namespace {
+
+/// Doubles that a grain's resultants take: force, then torque over the radius (N).
+template <int D>
+constexpr std::size_t resultant_row = D == 2 ? 3 : 6;
+
+/// Adds what contact p gives to one of its grains.
+template <int D>
+void add_resultant(const Fixture& f, const PairTable& pairs, std::size_t p, std::size_t g, bool as_j, double* r) {
+  const double* row = pairs.force.data() + p * (D == 2 ? 4 : 8);
+  for (std::size_t c = 0; c < D; ++c) r[c] = as_j ? r[c] + row[c] : r[c] - row[c];
+  if constexpr (D == 2) {
+    r[2] += row[as_j ? 2 : 3] / f.radius[g];
+  } else {
+    const double arm = row[3] / f.radius[g] - 1;  // torque -(r - delta/2) n x f_t on either grain
+    for (std::size_t c = 0; c < 3; ++c) r[3 + c] += arm * row[4 + c];
+    if (!f.contact.rolling) return;
+    for (std::size_t c = 0; c < 3; ++c) r[3 + c] += (as_j ? 1 : -1) * pairs.moment[c][p] / f.radius[g];
+  }
+}
+
+/// Sums over the contacts of a piece of the pairs.
+struct ContactSums {
+  double force = 0, overlap = 0, largest_overlap_ratio = 0;
+  std::size_t touching = 0;
+  bool finite = true;
+};
+
+/// Adds up the contacts at `order` [first, last), and their forces on each grain unless `resultants` is null.
+template <int D>
+ContactSums contacts_in(const Fixture& f, const Assembly& a, const PairGeometry<D>& pair, std::size_t first,
+                        std::size_t last, double* resultants) {
+  ContactSums sums;
+  const double* force = a.pairs.force.data();
+  for (std::size_t k = first; k < last; ++k) {
+    const auto p = std::size_t(a.pairs.order[k]);
+    const auto i = std::size_t(a.pairs.i[p]), j = std::size_t(a.pairs.j[p]);
+    const double overlap = pair(p).overlap;
+    if (!std::isfinite(overlap)) sums.finite = false;
+    if (!(overlap > 0)) continue;
+    const double* on_j = force + p * (D == 2 ? 4 : 8);
+    double squared = 0;
+    for (std::size_t c = 0; c < D; ++c) squared += on_j[c] * on_j[c];
+    if (resultants != nullptr) {
+      add_resultant<D>(f, a.pairs, p, i, false, resultants + resultant_row<D> * i);
+      add_resultant<D>(f, a.pairs, p, j, true, resultants + resultant_row<D> * j);
+    }
+    sums.force += std::sqrt(squared);
+    sums.overlap += overlap;
+    ++sums.touching;
+    sums.largest_overlap_ratio = std::max(sums.largest_overlap_ratio, overlap / std::min(f.radius[i], f.radius[j]));
+  }
+  return sums;
+}
+
+/// Resultants of the grains [first, last), added in the same order as above; pairs that do not touch give nothing.
+template <int D>
+void gather_resultants(const Fixture& f, const Assembly& a, const PairGeometry<D>& pair, std::size_t first,
+                       std::size_t last, double* resultants) {
+  each_pair_of_grains<D>(a.pairs, first, last, [&](std::size_t g, std::size_t p, bool as_j) {
+    // The place of a pair that opened still holds the moment of rolling until the kernel passes by.
+    if (!(pair(p).overlap > 0)) return;
+    const bool own_image = a.pairs.i[p] == a.pairs.j[p];
+    if (own_image && as_j) return;  // both at once where the grain is i, as above
+    add_resultant<D>(f, a.pairs, p, g, as_j, resultants + resultant_row<D> * g);
+    if (own_image) add_resultant<D>(f, a.pairs, p, g, true, resultants + resultant_row<D> * g);
+  });
+}
+
+/// Sums over a piece of the grains: |force|, |torque| over radius, and squares of all that their rows hold.
+struct GrainFigures {
+  double resultants = 0, couples = 0, squares = 0;
+};
+
+template <int D>
+GrainFigures grains_in(const Fixture& f, const Assembly& a, std::size_t first, std::size_t last,
+                       const double* resultants) {
+  GrainFigures figures;
+  for (std::size_t g = first; g < last; ++g) {
+    const double* r = resultants + resultant_row<D> * g;
+    double force = 0, couple = 0;
+    for (std::size_t c = 0; c < D; ++c) force += r[c] * r[c];
+    for (std::size_t c = D; c < resultant_row<D>; ++c) couple += r[c] * r[c];
+    figures.resultants += std::sqrt(force) / double(f.size());
+    figures.couples += std::sqrt(couple) / double(f.size());
+  }
+  const auto row = std::size_t(f.row_length());
+  for (std::size_t k = first * row; k < last * row; ++k) figures.squares += a.rows[k] * a.rows[k];
+  return figures;
+}
+
+template <int D>
+Balance balance_in(const Fixture& f, const Assembly& a) {
+  const PairGeometry<D> pair(f, a);
+  const bool shared = f.sharing() != nullptr;
+  std::vector<double> resultants(resultant_row<D> * f.size(), 0.0);
+  std::vector<ContactSums> of_pairs(pieces_in(a.pairs.listed));
+  in_pieces(a.pairs.listed, f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
+    of_pairs[piece] = contacts_in(f, a, pair, first, last, shared ? nullptr : resultants.data());
+  });
+  std::vector<GrainFigures> of_grains(pieces_in(f.size()));
+  in_pieces(f.size(), f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
+    if (shared) gather_resultants<D>(f, a, pair, first, last, resultants.data());
+    of_grains[piece] = grains_in<D>(f, a, first, last, resultants.data());
+  });
+  Balance balance;
+  double contact_force = 0, overlap_sum = 0, squares = 0;
+  for (const ContactSums& piece : of_pairs) {
+    contact_force += piece.force;
+    overlap_sum += piece.overlap;
+    balance.touching += piece.touching;
+    balance.largest_overlap_ratio = std::max(balance.largest_overlap_ratio, piece.largest_overlap_ratio);
+    balance.finite = balance.finite && piece.finite;
+  }
+  for (const GrainFigures& piece : of_grains) {
+    balance.mean_resultant += piece.resultants;
+    balance.mean_couple += piece.couples;
+    squares += piece.squares;
+  }
+  if (balance.touching > 0) {
+    balance.mean_contact_force = contact_force / double(balance.touching);
+    balance.mean_overlap = overlap_sum / double(balance.touching);
+  }
+  // A sum is finite only if all its terms are, or if infinities cancel, which sums of squares cannot.
+  balance.finite = balance.finite && std::isfinite(balance.mean_resultant + balance.mean_couple) &&
+                   std::isfinite(contact_force) && std::isfinite(squares);
+  return balance;
+}
+
+}  // namespace
+
+namespace {
+
+template <int D>
+std::vector<Resultant> resultants_in(const Fixture& f, const Assembly& a) {
+  const PairGeometry<D> pair(f, a);
+  std::vector<double> rows(resultant_row<D> * f.size(), 0.0);
+  std::vector<Resultant> resultants(f.size());
+  in_pieces(f.size(), f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
+    gather_resultants<D>(f, a, pair, first, last, rows.data());
+    for (std::size_t g = first; g < last; ++g) {
+      const double* r = rows.data() + resultant_row<D> * g;
+      Resultant& of = resultants[g];
+      if constexpr (D == 2) {
+        of = {{r[0], r[1], 0}, {0, 0, f.radius[g] * r[2]}};
+      } else {
+        of = {{r[0], r[1], r[2]}, f.radius[g] * Vector3(r[3], r[4], r[5])};
+      }
+    }
+  });
+  return resultants;
+}
+
+}  // namespace
+
+std::vector<Resultant> resultants_of(const Fixture& f, const Assembly& a) {
+  return f.shape == Shape::disc ? resultants_in<2>(f, a) : resultants_in<3>(f, a);
+}
+
+Balance balance_of(const Fixture& f, const Assembly& a) {
+  return f.shape == Shape::disc ? balance_in<2>(f, a) : balance_in<3>(f, a);
+}
+
+double unbalanced_ratio(const Balance& balance, double reference_contact_force) {
+  const double scale = std::max(balance.mean_contact_force, 1e-3 * reference_contact_force);
+  return scale > 0 ? std::max(balance.mean_resultant, balance.mean_couple) / scale : 0.0;
+}
+
+void check_overlaps(const Fixture& f, const Balance& balance) {
+  if (!balance.finite)
+    throw IncrementFailed("the increment led to values that are not finite; apply it in smaller parts");
+  if (balance.largest_overlap_ratio > f.options.max_overlap_ratio)
+    throw IncrementFailed("grains overlap by " + in_words(balance.largest_overlap_ratio) +
+                          " of the smaller radius; solver.max_overlap_ratio allows " +
+                          in_words(f.options.max_overlap_ratio) + "; compress less or take stiffer grains");
+}
+
+}  // namespace rvelab

@@ -1,0 +1,62 @@
+#include "rvelab/solver/assembly/gather_table.hpp"
+
+#include <algorithm>
+
+namespace rvelab {
+
+namespace {
+
+/// Tasks of a chunk, those with most pairs first; ties in order of the task.
+void sort_tasks(const std::int32_t* pairs_of, int tasks, std::vector<std::int32_t>& first, std::vector<int>& sorted) {
+  const std::int32_t most = *std::max_element(pairs_of, pairs_of + tasks);
+  first.assign(std::size_t(most) + 2, 0);
+  for (int t = 0; t < tasks; ++t) ++first[std::size_t(most - pairs_of[t]) + 1];
+  for (std::size_t k = 1; k < first.size(); ++k) first[k] += first[k - 1];
+  sorted.resize(std::size_t(tasks));
+  for (int t = 0; t < tasks; ++t) sorted[std::size_t(first[std::size_t(most - pairs_of[t])]++)] = t;
+}
+
+}  // namespace
+
+void fill_gather_table(std::size_t padded_grains, std::int32_t force_row, PairTable& pairs) {
+  const auto chunk = std::size_t(chunk_grains);
+  // Tasks in the order of the chunks: grains of the chunk as j, then as i. Grain g of a chunk that starts at c and has
+  // n grains has tasks 2 c + (g - c) and 2 c + n + (g - c).
+  const auto chunk_of = [&](std::size_t g) { return g / chunk * chunk; };
+  const auto grains_in = [&](std::size_t start) { return std::min(chunk, padded_grains - start); };
+  const auto as_j = [&](std::size_t g) { return chunk_of(g) + g; };
+  const auto as_i = [&](std::size_t g) { return as_j(g) + grains_in(chunk_of(g)); };
+  std::vector<std::int32_t> pairs_of(2 * padded_grains, 0);
+  for (std::size_t q = 0; q < pairs.listed; ++q) {
+    ++pairs_of[as_j(std::size_t(pairs.j[q]))];
+    ++pairs_of[as_i(std::size_t(pairs.i[q]))];
+  }
+  const std::size_t blocks = padded_grains / 2;
+  pairs.slot_begin.assign(blocks + 1, 0);
+  pairs.tasks.resize(4 * blocks);
+  std::vector<std::int32_t> next(2 * padded_grains);  // first the lane and block of the task, then its next slot
+  std::vector<std::int32_t> first;
+  std::vector<int> sorted;
+  for (std::size_t start = 0; start < padded_grains; start += chunk) {
+    const std::size_t grains = grains_in(start);
+    sort_tasks(pairs_of.data() + 2 * start, int(2 * grains), first, sorted);
+    for (std::size_t k = 0; k < 2 * grains; ++k) {
+      const auto task = std::size_t(sorted[k]);
+      const std::size_t block = (2 * start + k) / 4;
+      if (k % 4 == 0) pairs.slot_begin[block + 1] = pairs.slot_begin[block] + pairs_of[2 * start + task];
+      pairs.tasks[2 * start + k] = std::uint16_t(4 * (task < grains ? task : chunk + (task - grains)));
+      next[2 * start + task] = 4 * pairs.slot_begin[block] + std::int32_t(k % 4);
+    }
+  }
+  const auto nothing = force_row * std::int32_t(pairs.listed);  // the first padding pair
+  pairs.slots.assign(4 * std::size_t(pairs.slot_begin[blocks]), nothing);
+  for (const std::int32_t place : pairs.order) {
+    const auto q = std::size_t(place);
+    for (const std::size_t task : {as_j(std::size_t(pairs.j[q])), as_i(std::size_t(pairs.i[q]))}) {
+      pairs.slots[std::size_t(next[task])] = force_row * std::int32_t(q);
+      next[task] += 4;
+    }
+  }
+}
+
+}  // namespace rvelab

@@ -1,0 +1,313 @@
+#include "rvelab/solver/assembly/listing.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include "rvelab/error.hpp"
+#include "rvelab/solver/assembly/gather_table.hpp"
+
+namespace rvelab {
+
+namespace {
+
+ListedPair key_of(const Contact& c) { return {c.i, c.j, c.image}; }
+
+void sort_by_key(std::vector<Contact>& contacts) {
+  const auto before = [](const Contact& x, const Contact& y) { return key_of(x) < key_of(y); };
+  if (!std::is_sorted(contacts.begin(), contacts.end(), before)) std::sort(contacts.begin(), contacts.end(), before);
+}
+
+void store(const Fixture& f, PairTable& pairs, std::size_t p, const Contact& c) {
+  if (f.shape == Shape::disc) {
+    pairs.tangential[0][p] = c.tangential_force[0];
+    if (f.contact.rolling) pairs.moment[0][p] = c.rolling_moment[2];
+  } else {
+    for (int k = 0; k < 3; ++k) pairs.tangential[k][p] = c.tangential_force[k];
+    if (f.contact.rolling)
+      for (int k = 0; k < 3; ++k) pairs.moment[k][p] = c.rolling_moment[k];
+  }
+  if (f.stores_root_overlap()) pairs.root_overlap[p] = c.last_root_overlap;
+}
+
+/// What becomes of a history whose pair is not listed: in a run the grains parted in the sub-step just made, and their
+/// force ends with it as that of every contact that opens; in a specimen it is a mistake.
+enum class Lost { dropped, refused };
+
+bool touches(const Fixture& f, const Assembly& a, const ListedPair& pair) {
+  const double* xi = a.rows.data() + std::size_t(pair.i) * f.row_length();
+  const double* xj = a.rows.data() + std::size_t(pair.j) * f.row_length();
+  const UpperTriangle l = upper_triangle(a.cell.lattice);
+  const Image& n = pair.image;
+  const double x = xj[0] - xi[0] + l.xx * n[0] + l.xy * n[1] + l.xz * n[2];
+  const double y = xj[1] - xi[1] + l.yy * n[1] + l.yz * n[2];
+  const double z = f.shape == Shape::disc ? 0 : xj[2] - xi[2] + l.zz * n[2];
+  const double radii = f.radius[std::size_t(pair.i)] + f.radius[std::size_t(pair.j)];
+  return x * x + y * y + z * z < radii * radii;
+}
+
+/// Places of the pairs of a new list in memory: first those that touch or have a history. The ledger's kernel adds up
+/// what all pairs lose as they lie, so with it they lie in order.
+void arrange(const Fixture& f, const Assembly& a, const std::vector<ListedPair>& listed,
+             const std::vector<const Contact*>& histories, PairTable& pairs) {
+  const std::size_t n = listed.size();
+  std::vector<std::uint8_t> near(n);
+  in_pieces(n, f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t k = first; k < last; ++k)
+      near[k] = f.options.ledger || histories[k] != nullptr || touches(f, a, listed[k]);
+  });
+  std::int32_t here = 0, beyond = std::int32_t(std::count(near.begin(), near.end(), 1));
+  pairs.near = (std::size_t(beyond) + 7) / 8 * 8;
+  pairs.order.resize(n);
+  for (std::size_t k = 0; k < n; ++k) pairs.order[k] = near[k] ? here++ : beyond++;
+}
+
+/// Makes the arrays of a new list and fills in the carried history, which is sorted by key.
+void fill(const Fixture& f, const std::vector<ListedPair>& listed, const std::vector<Contact>& carried, Lost lost,
+          Assembly& a) {
+  const std::size_t n = listed.size(), padded = padded_to_lanes(n);
+  std::vector<const Contact*> histories(n, nullptr);
+  std::size_t k = 0;
+  for (const Contact& c : carried) {
+    while (k < n && listed[k] < key_of(c)) ++k;
+    if (k < n && listed[k] == key_of(c))
+      histories[k] = &c;
+    else if (lost == Lost::refused)
+      throw InputError("specimen: grains " + std::to_string(f.id[c.i]) + " and " + std::to_string(f.id[c.j]) +
+                       " have a contact history but lie apart by more than the skin: the history does not belong to "
+                       "the positions");
+  }
+
+  if (a.replaced != nullptr && !a.replaced->taken) {
+    std::swap(a.pairs, a.replaced->list);
+    a.replaced->taken = true;
+  }
+  PairTable& pairs = a.pairs;
+  pairs.listed = n;
+  arrange(f, a, listed, histories, pairs);
+  const auto outside = std::int32_t(f.size());  // a padding grain: no extent, no mass
+  pairs.i.assign(padded, outside);
+  pairs.j.assign(padded, outside);
+  pairs.image.assign(padded, Image{1, 0, 0});
+  for (int component = 0; component < f.tangential_components(); ++component) {
+    pairs.tangential[component].assign(padded, 0.0);
+    if (f.contact.rolling) pairs.moment[component].assign(padded, 0.0);
+  }
+  if (f.stores_root_overlap()) pairs.root_overlap.assign(padded, 0.0);
+  in_pieces(n, f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t q = first; q < last; ++q) {
+      const auto p = std::size_t(pairs.order[q]);
+      pairs.i[p] = listed[q].i;
+      pairs.j[p] = listed[q].j;
+      pairs.image[p] = listed[q].image;
+      if (histories[q] != nullptr) store(f, pairs, p, *histories[q]);
+    }
+  });
+  derive_pairs(f, pairs);
+  fill_gather_table(padded_to_lanes(f.size()), force_row_length(f.shape), pairs);
+}
+
+/// The key of a pair after images changed; a grain's own image is kept pointing forward, forces turning round with it.
+void turn_round_if_needed(const Fixture& f, Contact& c) {
+  if (c.i != c.j || points_forward(c.image)) return;
+  for (int& n : c.image) n = -n;
+  c.rolling_moment = -c.rolling_moment;
+  // In 2D the component along t = (-n_y, n_x) keeps its sign: force and t both turn.
+  if (f.shape == Shape::sphere) c.tangential_force = -c.tangential_force;
+}
+
+/// A velocity gradient less the rigid spin that cancels its lower triangle. Grains and branches share that spin, so no
+/// contact slips or opens by it; the step kernel takes upper-triangular rates only.
+Matrix3 without_lower_part(const Matrix3& rate) {
+  Matrix3 rest = rate;
+  for (int r = 0; r < 3; ++r)
+    for (int k = 0; k < r; ++k) {
+      rest(k, r) += rate(r, k);
+      rest(r, k) = 0;
+    }
+  return rest;
+}
+
+void rotate_rows(const Fixture& f, const Matrix3& turn, Buffer& rows) {
+  for (std::size_t g = 0; g < f.size(); ++g) {
+    double* row = rows.data() + g * f.row_length();
+    const auto rotate = [&](double* v) {
+      if (f.shape == Shape::disc) {
+        const double x = turn(0, 0) * v[0] + turn(0, 1) * v[1], y = turn(1, 0) * v[0] + turn(1, 1) * v[1];
+        v[0] = x;
+        v[1] = y;
+      } else {
+        const Vector3 turned = turn * Vector3(v[0], v[1], v[2]);
+        for (int k = 0; k < 3; ++k) v[k] = turned[k];
+      }
+    };
+    rotate(row);
+    rotate(row + f.velocity_offset());
+    if (f.shape == Shape::sphere) rotate(row + 8);
+  }
+}
+
+}  // namespace
+
+std::vector<Contact> contacts_of(const Fixture& f, const PairTable& pairs) {
+  std::vector<std::vector<Contact>> found(pieces_in(pairs.listed));
+  const auto look_at = [&](std::size_t p, std::vector<Contact>& here) {
+    Contact c{pairs.i[p], pairs.j[p], pairs.image[p]};
+    for (int k = 0; k < f.tangential_components(); ++k) c.tangential_force[k] = pairs.tangential[k][p];
+    if (f.contact.rolling) {
+      if (f.shape == Shape::disc)
+        c.rolling_moment[2] = pairs.moment[0][p];
+      else
+        for (int k = 0; k < 3; ++k) c.rolling_moment[k] = pairs.moment[k][p];
+    }
+    if (f.stores_root_overlap()) c.last_root_overlap = pairs.root_overlap[p];
+    if (!c.tangential_force.isZero(0) || !c.rolling_moment.isZero(0) || c.last_root_overlap != 0) here.push_back(c);
+  };
+  in_pieces(pairs.listed, f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
+    found[piece].reserve(last - first);
+    for (std::size_t k = first; k < last; ++k) look_at(std::size_t(pairs.order[k]), found[piece]);
+  });
+  if (found.size() == 1) return std::move(found.front());
+  std::vector<Contact> all;
+  for (const std::vector<Contact>& here : found) all.insert(all.end(), here.begin(), here.end());
+  return all;
+}
+
+void list_with(const Fixture& f, std::vector<Contact> contacts, Assembly& a) {
+  sort_by_key(contacts);
+  fill(f, list_pairs(a.cell, a.rows.data(), f.row_length(), f.radius, a.state.list_skin), contacts, Lost::refused, a);
+}
+
+void check_height(const Fixture& f, const Cell& cell) {
+  const double shortest = shortest_vector(cell);
+  if (shortest < f.min_height) {
+    std::ostringstream text;
+    text << "cell too thin: the shortest lattice vector is " << shortest << " m, the limit solver.min_height_m is "
+         << f.min_height << " m; deform less, start from an oriented cell, or use a larger specimen";
+    throw IncrementFailed(text.str());
+  }
+}
+namespace {
+
+/// Sub-steps after which a list is too old for its skin, or too young. A build takes the time of 18 sub-steps of 400
+/// discs, 10 of 1000 spheres; a listed pair that does not touch costs a third of a contact. Lists of 400 to 900 steps
+/// were 4 to 5 % slower for both, though their builds are fewer.
+constexpr std::int64_t old_list = 500, young_list = 200;
+constexpr double smallest_skin = 0.01;  ///< mean radii
+
+/// The skin of the next list, by counts alone: no clock decides what is computed.
+double next_skin(const Fixture& f, const SolverState& state) {
+  double skin = state.list_skin;
+  if (state.list_steps >= old_list) skin *= 0.7;
+  if (state.list_steps < young_list) skin *= 1.4;
+  return std::clamp(skin, std::min(smallest_skin * f.mean_radius, f.largest_skin), f.largest_skin);
+}
+
+}  // namespace
+
+Reduction rebuild(const Fixture& f, Assembly& a) {
+  std::vector<Contact> carried = contacts_of(f, a.pairs);
+  if (a.state.has_reference) a.state.list_skin = next_skin(f, a.state);
+  const Reduction reduction = reduced(a.cell);
+  if (reduction.changed) {
+    apply_reduction(a.cell, reduction);
+    const Matrix3 back = reduction.rotation.transpose();
+    rotate_rows(f, back, a.rows);
+    a.state.mean_velocity = back * a.state.mean_velocity;
+    a.state.last_rate = without_lower_part(back * a.state.last_rate * reduction.rotation);
+    for (Contact& c : carried) {
+      const Eigen::Vector3i n = reduction.inverse_basis * Eigen::Vector3i(c.image[0], c.image[1], c.image[2]);
+      c.image = {n[0], n[1], n[2]};
+      if (f.shape == Shape::sphere) {
+        c.tangential_force = back * c.tangential_force;
+        c.rolling_moment = back * c.rolling_moment;
+      }
+    }
+  }
+  check_height(f, a.cell);
+  std::vector<Image> moved(f.size());
+  in_pieces(f.size(), f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t g = first; g < last; ++g) {
+      Vector3 x = a.position(f, g);
+      moved[g] = wrap(a.cell, x);
+      double* row = a.rows.data() + g * f.row_length();
+      for (int k = 0; k < f.dimension(); ++k) row[k] = x[k];
+    }
+  });
+  for (Contact& c : carried) {
+    for (int k = 0; k < 3; ++k) c.image[k] += moved[c.i][k] - moved[c.j][k];
+    turn_round_if_needed(f, c);
+  }
+  sort_by_key(carried);
+  fill(f, list_pairs(a.cell, a.rows.data(), f.row_length(), f.radius, a.state.list_skin, f.sharing()), carried,
+       Lost::dropped, a);
+  a.state.has_reference = true;
+  a.state.list_lattice = a.cell.lattice;
+  a.state.list_travel = 0;
+  a.state.list_steps = 0;
+  a.state.list_positions.resize(f.size());
+  for (std::size_t g = 0; g < f.size(); ++g) a.state.list_positions[g] = a.position(f, g);
+  ++a.state.list_builds;
+  return reduction;
+}
+namespace {
+
+/// Sum of the two largest displacements of grains since the list was built, beside the affine motion, m.
+double measured_displacements(const Fixture& f, const Assembly& a, const Matrix3& f_since) {
+  struct Largest {
+    double most = 0, second = 0;
+    void add(double squared) {
+      second = std::max(second, std::min(squared, most));
+      most = std::max(most, squared);
+    }
+  };
+  const UpperTriangle m = upper_triangle(f_since);
+  std::vector<Largest> of_piece(pieces_in(f.size()));
+  in_pieces(f.size(), f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
+    Largest here;
+    for (std::size_t g = first; g < last; ++g) {
+      const double* x = a.rows.data() + g * f.row_length();
+      const Vector3& from = a.state.list_positions[g];
+      const double dx = x[0] - (m.xx * from[0] + m.xy * from[1] + m.xz * from[2]);
+      const double dy = x[1] - (m.yy * from[1] + m.yz * from[2]);
+      const double dz = f.shape == Shape::disc ? 0 : x[2] - m.zz * from[2];
+      here.add(dx * dx + dy * dy + dz * dz);
+    }
+    of_piece[piece] = here;
+  });
+  Largest all;
+  for (const Largest& piece : of_piece) {
+    all.add(piece.most);
+    all.add(piece.second);
+  }
+  return std::sqrt(all.most) + std::sqrt(all.second);
+}
+
+}  // namespace
+
+double listed_gap(const Fixture& f, const Assembly& a) {
+  const Matrix3 f_since = a.cell.lattice * upper_inverse(a.state.list_lattice);
+  const double strain = (f_since - Matrix3::Identity()).norm(), reach = 2 * f.largest_radius;
+  return (1 - strain) * (reach + a.state.list_skin) - reach - 2 * (1 + strain) * a.state.list_travel;
+}
+
+bool list_is_stale(const Fixture& f, Assembly& a, double margin) {
+  // A pair beyond reach r_i + r_j + skin when listed is, after the affine map F and two displacements of at most
+  // `travel`, still beyond sigma_min(F) reach - 2 |F| travel, with sigma_min >= 1 - |F - I|, |F| <= 1 + |F - I|.
+  const Matrix3 f_since = a.cell.lattice * upper_inverse(a.state.list_lattice);
+  const double strain = (f_since - Matrix3::Identity()).norm();
+  const double reach = 2 * f.largest_radius;
+  const double skin = a.state.list_skin, allowed = (1 - strain) * (reach + skin) - reach - margin;
+  if (a.state.list_steps >= old_list && next_skin(f, a.state) < skin) return true;
+  if (2 * (1 + strain) * a.state.list_travel < allowed) return false;
+  if (a.state.list_positions.size() != f.size()) return true;
+  // The bound sums the fastest grain of every step; what the grains really moved is a fifth of it (measured: a third of
+  // the rebuilds). Looking is worth it while a tenth of the skin is left.
+  const double moved = measured_displacements(f, a, f_since);
+  if (!(moved < allowed - 0.1 * skin)) return true;
+  a.state.list_travel = moved / (2 * (1 + strain));
+  return false;
+}
+}  // namespace rvelab

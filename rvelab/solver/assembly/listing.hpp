@@ -1,0 +1,15 @@
+// The list of an assembly with the histories of its contacts: made when it is opened, made anew while it steps.
+#pragma once
+
+#include "rvelab/solver/assembly/assembly.hpp"
+
+namespace rvelab {
+
+/// Lists the pairs of an assembly that is being opened and gives them their histories, in any order. Throws InputError
+/// if a contact is none of the pairs listed, IncrementFailed if the list would be too long (list_size.hpp).
+void list_with(const Fixture& fixture, std::vector<Contact> contacts, Assembly& assembly);
+
+/// The pairs that have a history, ordered by (i, j, image).
+std::vector<Contact> contacts_of(const Fixture& fixture, const PairTable& pairs);
+
+}  // namespace rvelab

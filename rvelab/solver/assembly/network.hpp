@@ -1,0 +1,52 @@
+// The contact network as a value: what measures look at. Made by Rve::network(); no pointer into the solver.
+#pragma once
+
+#include <vector>
+
+#include "rvelab/specimen/specimen.hpp"
+
+namespace rvelab {
+
+/// One touching contact (overlap > 0) as the solver sees it now. Cell frame. Forces and moments are those on grain j.
+struct ContactState {
+  std::int32_t i = 0, j = 0;
+  Image image{};
+  Vector3 branch;                   ///< x_j + L image - x_i, m
+  Vector3 normal;                   ///< branch / length, from i to j
+  double length = 0;                ///< m
+  double overlap = 0;               ///< m, > 0
+  double normal_force = 0;          ///< N, repulsion positive, dashpot included
+  double pressing_force = 0;        ///< N, what friction goes with: |f_t| <= friction |pressing_force|
+  Vector3 tangential_force;         ///< N, on j, dashpot included
+  Vector3 rolling_moment;           ///< N m, on j
+  double normal_stiffness = 0;      ///< d f_n/d overlap now, N/m
+  double tangential_stiffness = 0;  ///< k_t now, N/m
+  double rolling_stiffness = 0;     ///< k_r now, N m
+  double friction = 0;              ///< mu
+  double moment_cap = 0;            ///< |M| <= moment_cap pressing_force, m
+  double elastic_energy = 0;        ///< J, normal + tangential + rolling
+  Vector3 force() const { return normal_force * normal + tangential_force; }  ///< on j, N
+};
+
+struct GrainState {
+  double radius = 0, mass = 0, inertia = 0;  ///< m, kg, kg m^2
+  Vector3 position, velocity, spin;          ///< cell frame; fluctuation velocity and spin, physical (dt > 0)
+  Vector3 resultant;                         ///< sum of contact forces, N
+  Vector3 torque = Vector3::Zero();          ///< sum of contact torques, moments of rolling included, N m
+};
+
+struct Network {
+  Shape shape = Shape::sphere;
+  Cell cell;
+  ContactModel model;
+  std::vector<GrainState> grains;
+  std::vector<ContactState> contacts;   ///< ordered by (i, j, image)
+  double reference_contact_force = 0;   ///< N, floor of the unbalanced ratio is 1e-3 of it
+  double reference_pressure = 0;        ///< Pa
+  Vector3 mean_spin = Vector3::Zero();  ///< axial(W + Omega) of the cell, rad/s, zero at dt = 0: a grain's whole spin
+                                        ///< is this and its fluctuation
+  bool quasi_static = true;             ///< velocities carry scaled masses: no kinetic stress
+  int dimension() const { return cell.dimension; }
+};
+
+}  // namespace rvelab

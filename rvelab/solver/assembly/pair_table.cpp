@@ -1,0 +1,73 @@
+// What the working arrays of the pairs follow from: list, materials, grains. Declared in assembly.hpp.
+#include <algorithm>
+
+#include "rvelab/solver/assembly/assembly.hpp"
+
+namespace rvelab {
+
+std::size_t bytes_of(const PairTable& t) {
+  const auto bytes = [](const auto&... arrays) { return ((arrays.capacity() * sizeof(arrays[0])) + ...); };
+  std::size_t sum =
+      bytes(t.order, t.touched, t.i, t.j, t.row_i, t.row_j, t.image, t.slot_begin, t.slots, t.tasks) +
+      bytes(t.kn, t.kt, t.own, t.friction, t.kr, t.moment_cap, t.cn, t.root_overlap, t.force, t.radius_i, t.radius_j);
+  for (int k = 0; k < 3; ++k) sum += bytes(t.image_number[k], t.tangential[k], t.moment[k]);
+  return sum;
+}
+
+void set_pair_parameters(const Fixture& f, PairTable& pairs) {
+  const std::size_t padded = pairs.padded();
+  const bool dashpot = f.damping.dashpot != Dashpot::none;
+  for (Buffer* b : {&pairs.kn, &pairs.kt, &pairs.friction}) b->assign(padded, 0.0);
+  if (f.contact.rolling)
+    for (Buffer* b : {&pairs.kr, &pairs.moment_cap}) b->assign(padded, 0.0);
+  if (dashpot) pairs.cn.assign(padded, 0.0);
+  const bool own = with_law(f.contact.law, [](auto law) { return decltype(law)::Force::has_own_constant; });
+  if (own) pairs.own.assign(padded, 0.0);
+  const auto set = [&](std::size_t p) {
+    const auto i = std::size_t(pairs.i[p]), j = std::size_t(pairs.j[p]);
+    const PairParameters q = mix(f.contact, f.damping, f.materials[std::size_t(f.material[i])], f.radius[i], f.mass[i],
+                                 f.materials[std::size_t(f.material[j])], f.radius[j], f.mass[j],
+                                 grain_section(f.shape, std::min(f.radius[i], f.radius[j]), f.thickness));
+    pairs.kn[p] = q.kn;
+    pairs.kt[p] = q.kt;
+    if (own) pairs.own[p] = q.own;
+    pairs.friction[p] = q.friction;
+    if (f.contact.rolling) {
+      pairs.kr[p] = q.kr;
+      pairs.moment_cap[p] = q.moment_cap;
+    }
+    if (dashpot) pairs.cn[p] = q.cn;
+  };
+  in_pieces(pairs.listed, f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t p = first; p < last; ++p) set(p);
+  });
+}
+
+void derive_pairs(const Fixture& f, PairTable& pairs) {
+  const std::size_t padded = pairs.padded();
+  pairs.row_i.resize(padded);
+  pairs.row_j.resize(padded);
+  for (int k = 0; k < f.dimension(); ++k) pairs.image_number[k].resize(padded);
+  if (f.shape == Shape::disc) {
+    pairs.radius_i.assign(padded, 0.0);
+    pairs.radius_j.assign(padded, 0.0);
+  }
+  in_pieces(padded, f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t p = first; p < last; ++p) {
+      pairs.row_i[p] = pairs.i[p] * f.row_length();
+      pairs.row_j[p] = pairs.j[p] * f.row_length();
+    }
+    for (int k = 0; k < f.dimension(); ++k)
+      for (std::size_t p = first; p < last; ++p) pairs.image_number[k][p] = pairs.image[p][std::size_t(k)];
+    if (f.shape == Shape::sphere) return;
+    for (std::size_t p = first; p < std::min(last, pairs.listed); ++p) {
+      pairs.radius_i[p] = f.radius[std::size_t(pairs.i[p])];
+      pairs.radius_j[p] = f.radius[std::size_t(pairs.j[p])];
+    }
+  });
+  pairs.touched.assign(padded / 8, 0);
+  pairs.force.assign(padded * std::size_t(force_row_length(f.shape)), 0.0);
+  set_pair_parameters(f, pairs);
+}
+
+}  // namespace rvelab

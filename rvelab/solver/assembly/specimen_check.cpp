@@ -1,0 +1,143 @@
+#include "rvelab/solver/assembly/specimen_check.hpp"
+
+#include <Eigen/LU>
+#include <cmath>
+#include <sstream>
+
+#include "rvelab/error.hpp"
+#include "rvelab/solver/assembly/list_size.hpp"
+#include "rvelab/solver/assembly/memory_order.hpp"
+
+namespace rvelab {
+
+namespace {
+
+[[noreturn]] void refuse(const std::string& what) { throw InputError(what); }
+
+void check_grains(const Specimen& s) {
+  const Grains& g = s.grains;
+  const std::size_t n = g.size();
+  if (n == 0) refuse("specimen: 0 grains; at least 1 is needed");
+  if (n > 100'000'000) refuse("specimen: " + std::to_string(n) + " grains; at most 100000000 fit one cell");
+  if (g.radius.size() != n || g.material.size() != n || g.position.size() != n || g.velocity.size() != n ||
+      g.spin.size() != n)
+    refuse("specimen: the grain arrays differ in length; each needs " + std::to_string(n) + " entries");
+  const std::size_t listed = s.state.list_positions.size();
+  if (listed != 0 && listed != n)
+    refuse("specimen: the state has positions of " + std::to_string(listed) +
+           " grains for the neighbour list; it needs " + std::to_string(n) + ", or none");
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::string who = "grain " + std::to_string(g.id[k]) + ": ";
+    if (k > 0 && g.id[k] <= g.id[k - 1]) refuse(who + "ids must ascend; sort the grains by id, each id once");
+    if (!(g.radius[k] > 0) || !std::isfinite(g.radius[k])) {
+      std::ostringstream text;
+      text << who << "radius " << g.radius[k] << " m; it must be > 0 and finite";
+      refuse(text.str());
+    }
+    if (g.material[k] < 0 || std::size_t(g.material[k]) >= s.materials.size())
+      refuse(who + "material " + std::to_string(g.material[k]) + "; there are " + std::to_string(s.materials.size()));
+    if (!g.position[k].allFinite() || !g.velocity[k].allFinite() || !g.spin[k].allFinite())
+      refuse(who + "a position, velocity or spin is not finite");
+  }
+}
+
+void check_cell(const Specimen& s) {
+  const Matrix3& l = s.cell.lattice;
+  if (s.cell.dimension != dimension_of(s.shape))
+    refuse("specimen: the cell has dimension " + std::to_string(s.cell.dimension) + ", the grains " +
+           std::to_string(dimension_of(s.shape)));
+  if (!l.allFinite() || !(l(0, 0) > 0) || !(l(1, 1) > 0) || !(l(2, 2) > 0) || l(1, 0) != 0 || l(2, 0) != 0 ||
+      l(2, 1) != 0)
+    refuse(
+        "specimen: the lattice must be upper triangular with a positive diagonal; turn cell and grains into that "
+        "frame first");
+  // Far from the cell a coordinate holds no place in it, and the number of periods in between no image.
+  constexpr double most_periods = double(1 << 30);
+  for (std::size_t k = 0; k < s.grains.size(); ++k) {
+    const Vector3 periods = l.triangularView<Eigen::Upper>().solve(s.grains.position[k]);
+    if (periods.head(s.cell.dimension).cwiseAbs().maxCoeff() <= most_periods) continue;
+    refuse("grain " + std::to_string(s.grains.id[k]) + ": position " + in_words(s.grains.position[k].norm()) +
+           " m from the origin, more than 2^30 cell widths; give coordinates and cell in m, both of the same packing");
+  }
+  const double from_orthogonal = (s.cell.rotation.transpose() * s.cell.rotation - Matrix3::Identity()).norm();
+  if (!(from_orthogonal < 1e-8) || !(s.cell.rotation.determinant() > 0))
+    refuse("specimen: the rotation of the cell frame must be orthogonal with determinant +1");
+}
+
+void check_volumes(const Specimen& s) {
+  double solid = 0;
+  for (const double radius : s.grains.radius) solid += grain_volume(s.shape, radius, s.cell.lattice(2, 2));
+  const double volume = s.cell.volume();
+  if (!(solid > 0) || !(volume > 0) || !std::isfinite(volume / solid))
+    refuse("specimen: grains of " + in_words(solid) + " m^3 in a cell of " + in_words(volume) +
+           " m^3; both must be above 0, and their ratio finite; give all lengths in m");
+}
+
+/// A spring without stiffness holds no force; one that a file brings would act for ever, and no energy would belong to
+/// it.
+bool holds_force_without_stiffness(const Specimen& s, const Contact& c) {
+  if (c.tangential_force.isZero(0)) return false;
+  const auto i = std::size_t(c.i), j = std::size_t(c.j);
+  const Material &a = s.materials[std::size_t(s.grains.material[i])],
+                 &b = s.materials[std::size_t(s.grains.material[j])];
+  return !(mix(s.contact, s.damping, a, s.grains.radius[i], 1, b, s.grains.radius[j], 1, 0).kt > 0);
+}
+
+void check_contacts(const Specimen& s) {
+  const std::size_t n = s.grains.size();
+  for (const Contact& c : s.contacts) {
+    if (c.i < 0 || c.j < c.i || std::size_t(c.j) >= n)
+      refuse("specimen: contact of grains " + std::to_string(c.i) + " and " + std::to_string(c.j) +
+             "; indices must be 0 <= i <= j < " + std::to_string(n));
+    if (!c.tangential_force.allFinite() || !c.rolling_moment.allFinite() || !std::isfinite(c.last_root_overlap))
+      refuse("specimen: contact of grains " + std::to_string(s.grains.id[std::size_t(c.i)]) + " and " +
+             std::to_string(s.grains.id[std::size_t(c.j)]) + ": its history is not finite");
+    if (holds_force_without_stiffness(s, c))
+      refuse("specimen: contact of grains " + std::to_string(s.grains.id[std::size_t(c.i)]) + " and " +
+             std::to_string(s.grains.id[std::size_t(c.j)]) + " holds a tangential force of " +
+             in_words(c.tangential_force.norm()) +
+             " N, but its tangential stiffness is 0; give a stiffness > 0, or clear the tangential forces");
+  }
+}
+
+void check_options(const SolverOptions& o) {
+  const auto expect = [](bool allowed, const char* key, double value, const char* range) {
+    if (allowed && std::isfinite(value)) return;
+    std::ostringstream text;
+    text << "solver." << key << " = " << value << " is out of range; allowed: " << range;
+    refuse(text.str());
+  };
+  expect(o.skin > 0 && o.skin <= largest_skin_ratio, "skin", o.skin, "above 0 to 10");
+  expect(o.time_step_factor > 0 && o.time_step_factor < 1, "time_step_factor", o.time_step_factor,
+         "above 0 to below 1");
+  expect(o.fixed_time_step >= 0, "fixed_time_step_s", o.fixed_time_step, ">= 0 s");
+  expect(o.collision_steps == 0 || (o.collision_steps >= 5 && o.collision_steps <= 100'000), "collision_steps",
+         double(o.collision_steps), "0, or 5 to 100000");
+  expect(o.target_unbalanced > 0, "target_unbalanced", o.target_unbalanced, "> 0");
+  expect(o.fixed_substeps >= 0, "fixed_substeps", double(o.fixed_substeps), ">= 0");
+  expect(o.max_substeps > 0, "max_substeps", double(o.max_substeps), "> 0");
+  expect(o.min_height >= 0, "min_height_m", o.min_height, ">= 0 m");
+  expect(o.max_overlap_ratio > 0, "max_overlap_ratio", o.max_overlap_ratio, "> 0");
+}
+
+}  // namespace
+
+void clear_forces_without_stiffness(Specimen& s) {
+  for (Contact& c : s.contacts)
+    if (holds_force_without_stiffness(s, c)) c.tangential_force.setZero();
+}
+
+void check_specimen(const Specimen& s) {
+  check(s.contact, s.damping, s.materials);
+  check_options(s.solver);
+  check_grains(s);
+  check_cell(s);
+  check_volumes(s);
+  check_contacts(s);
+  const std::vector<std::int32_t>& order = s.state.memory_order;
+  if (!order.empty() && !is_permutation(order, s.grains.size()))
+    refuse("specimen: the memory order of the state is no permutation of the " + std::to_string(s.grains.size()) +
+           " grains; leave it empty");
+}
+
+}  // namespace rvelab

@@ -1,0 +1,288 @@
+#include "rvelab/solver/loading/inertia.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "rvelab/solver/assembly/contact_stiffness.hpp"
+#include "rvelab/solver/assembly/gather_table.hpp"
+#include "rvelab/solver/assembly/pair_geometry.hpp"
+
+namespace rvelab {
+
+namespace {
+
+/// Symmetric 3x3 matrix; the z entries stay zero in the plane.
+struct Symmetric {
+  double xx = 0, xy = 0, yy = 0, xz = 0, yz = 0, zz = 0;
+};
+
+/// Adds along n n + across I.
+void add_contact(double along, double across, double nx, double ny, double nz, int dimension, Symmetric& m) {
+  m.xx += along * (nx * nx) + across;
+  m.xy += along * (nx * ny);
+  m.yy += along * (ny * ny) + across;
+  if (dimension == 2) return;
+  m.xz += along * (nx * nz);
+  m.yz += along * (ny * nz);
+  m.zz += along * (nz * nz) + across;
+}
+
+/// Largest eigenvalue of a symmetric positive matrix, from above: exact in the plane, (tr M^8)^(1/8) in space, at most
+/// 3^(1/8) = 1.15 too much. Nothing that depends on the axes (row sums) will do: the scaled masses, and with them the
+/// path, must not know how the specimen is turned. An eigenvalue solver took a tenth of the stepping time.
+double largest_eigenvalue(const Symmetric& m, int dimension) {
+  if (dimension == 2) {
+    const double half = 0.5 * (m.xx + m.yy), difference = 0.5 * (m.xx - m.yy);
+    return half + std::sqrt(difference * difference + m.xy * m.xy);
+  }
+  const double scale = m.xx + m.yy + m.zz;
+  if (!(scale > 0)) return 0;
+  Matrix3 one;
+  one << m.xx, m.xy, m.xz, m.xy, m.yy, m.yz, m.xz, m.yz, m.zz;
+  one /= scale;
+  const Matrix3 two = one * one, four = two * two;
+  return scale * std::sqrt(std::sqrt(four.norm()));
+}
+
+double median(std::vector<double>& values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Two of the largest grains as a pair, and their radius.
+std::pair<PairParameters, double> typical_pair(const Fixture& f) {
+  const auto g = std::size_t(std::max_element(f.radius.begin(), f.radius.end()) - f.radius.begin());
+  const Material& m = f.materials[f.material[g]];
+  const double section = grain_section(f.shape, f.radius[g], f.thickness);
+  return {mix(f.contact, f.damping, m, f.radius[g], f.mass[g], m, f.radius[g], f.mass[g], section), f.radius[g]};
+}
+
+ContactStiffness stiffness_of(const Fixture& f, const PairParameters& q, double overlap) {
+  return with_force(f, [&](auto force) { return rvelab::stiffness_of<decltype(force)>(f, q, overlap); });
+}
+
+}  // namespace
+
+double typical_normal_force(const Fixture& f, double overlap) {
+  return with_force(
+      f, [&](auto force) { return std::abs(normal_force_of<decltype(force)>(typical_pair(f).first, overlap)); });
+}
+
+void set_softest_answer(Fixture& f) {
+  f.softest_answer = 1;
+  if (!f.contact.rolling) return;
+  const auto [one, radius] = typical_pair(f);
+  const ContactStiffness k = stiffness_of(f, one, 1e-3 * radius);
+  const double slip = 4 * k.tangential * radius * radius;
+  if (slip > 0) f.softest_answer = std::sqrt(slip / (slip + 2 * k.rolling));
+}
+
+namespace {
+
+/// What a grain collects from its pairs.
+struct GrainSums {
+  Symmetric stiffness;
+  double rotation = 0, dashpot = 0;
+  // A listed pair may touch within the steps to come: a grain that is ready for the stiffest of them stays stable even
+  // where that contact is ten thousand times stiffer than those it has.
+  double stiffest = 0, stiffest_turn = 0;
+};
+
+/// What a pair gives to each of its grains.
+struct PairTerms {
+  /// Barely touching Hertz contacts are soft but will not stay so: at a quarter of p0's overlap at least.
+  ContactStiffness firm;
+  double firm_translation = 0;
+  bool touching = false;
+  ContactStiffness now = {};
+  double along = 0, across = 0, nx = 0, ny = 0, nz = 0;
+};
+
+template <int D, class Force>
+PairTerms terms_of(const Fixture& f, const Assembly& a, const PairGeometry<D>& pair, std::size_t p) {
+  const auto [b, length, overlap] = pair(p);
+  const PairParameters q = parameters_of(f, a.pairs, p);
+  PairTerms t{rvelab::stiffness_of<Force>(f, q, std::max(overlap, 0.25 * a.state.reference_overlap))};
+  t.firm_translation = std::max(2 * t.firm.normal, 4 * t.firm.tangential);
+  t.touching = overlap > 0;
+  if (!t.touching) return t;
+  t.now = rvelab::stiffness_of<Force>(f, q, overlap);
+  // The force turning with the branch (initial stress) adds f_n / length to the tangential stiffness at most.
+  const double kt = t.now.tangential + 0.5 * normal_force_of<Force>(q, overlap) / length;
+  t.along = 2 * t.now.normal - 4 * kt;
+  t.across = 4 * kt;
+  t.nx = b.x / length;
+  t.ny = b.y / length;
+  t.nz = b.z / length;
+  return t;
+}
+
+template <int D>
+void add(const Fixture& f, const PairTerms& t, std::size_t g, GrainSums& sums) {
+  const double r = f.radius[g];
+  sums.stiffest = std::max(sums.stiffest, t.firm_translation);
+  sums.stiffest_turn = std::max(sums.stiffest_turn, 4 * t.firm.tangential * r * r + 2 * t.firm.rolling);
+  if (!t.touching) return;
+  add_contact(t.along, t.across, t.nx, t.ny, t.nz, D, sums.stiffness);
+  sums.rotation += 4 * t.now.tangential * r * r + 2 * t.now.rolling;
+  if (f.damping.dashpot != Dashpot::none)
+    sums.dashpot += 2 * t.now.dashpot * std::max(1.0, 2 * f.damping.tangential_ratio);
+}
+
+/// Stiffnesses of the contacts, of which floors are medians.
+struct Firmness {
+  std::vector<double> translation, rotation;
+
+  void add(const Fixture& f, const PairTable& pairs, std::size_t p, const PairTerms& t) {
+    if (!t.touching) return;
+    const double ri = f.radius[std::size_t(pairs.i[p])], rj = f.radius[std::size_t(pairs.j[p])];
+    translation.push_back(t.firm_translation);
+    rotation.push_back(4 * t.firm.tangential + 2 * t.firm.rolling / std::min(ri * ri, rj * rj));
+  }
+};
+
+/// Sums of all grains. Each pair is looked at once; by a team once for each of its grains, so that threads share
+/// nothing. A grain adds its pairs in the same order either way.
+template <int D, class Force>
+std::vector<GrainSums> sums_of_grains(const Fixture& f, const Assembly& a, Firmness& firmness) {
+  std::vector<GrainSums> sums(f.size());
+  const PairGeometry<D> pair(f, a);
+  if (f.sharing() == nullptr) {
+    for (const std::int32_t place : a.pairs.order) {
+      const auto p = std::size_t(place);
+      const PairTerms t = terms_of<D, Force>(f, a, pair, p);
+      for (const std::int32_t g : {a.pairs.i[p], a.pairs.j[p]}) add<D>(f, t, std::size_t(g), sums[std::size_t(g)]);
+      firmness.add(f, a.pairs, p, t);
+    }
+    return sums;
+  }
+  std::vector<Firmness> of_piece(pieces_in(f.size()));
+  in_pieces(f.size(), f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
+    each_pair_of_grains<D>(a.pairs, first, last, [&](std::size_t g, std::size_t p, bool as_j) {
+      const bool own_image = a.pairs.i[p] == a.pairs.j[p];
+      if (own_image && as_j) return;  // both at once where the grain is i, as above
+      const PairTerms t = terms_of<D, Force>(f, a, pair, p);
+      add<D>(f, t, g, sums[g]);
+      if (own_image) add<D>(f, t, g, sums[g]);
+      if (!as_j) of_piece[piece].add(f, a.pairs, p, t);
+    });
+  });
+  for (const Firmness& piece : of_piece) {
+    firmness.translation.insert(firmness.translation.end(), piece.translation.begin(), piece.translation.end());
+    firmness.rotation.insert(firmness.rotation.end(), piece.rotation.begin(), piece.rotation.end());
+  }
+  return sums;
+}
+
+template <int D, class Force>
+RowSums sums_over_pairs(const Fixture& f, const Assembly& a) {
+  const std::size_t n = f.size();
+  const bool dashpot = f.damping.dashpot != Dashpot::none;
+  Firmness firmness;
+  const std::vector<GrainSums> of_grain = sums_of_grains<D, Force>(f, a, firmness);
+  RowSums sums;
+  sums.rotation.resize(n);
+  sums.translation.resize(n);
+  if (dashpot) sums.dashpot.resize(n);
+  in_pieces(n, f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t g = first; g < last; ++g) {
+      sums.translation[g] = std::max(largest_eigenvalue(of_grain[g].stiffness, D), of_grain[g].stiffest);
+      sums.rotation[g] = std::max(of_grain[g].rotation, of_grain[g].stiffest_turn);
+      if (dashpot) sums.dashpot[g] = of_grain[g].dashpot;
+    }
+  });
+  if (firmness.translation.empty()) {
+    // Nothing touches: what two contacts of typical grains would have at a thousandth of a radius of overlap.
+    const auto [one, radius] = typical_pair(f);
+    const ContactStiffness k = stiffness_of(f, one, 1e-3 * radius);
+    firmness.translation.push_back(std::max(2 * k.normal, 4 * k.tangential));
+    firmness.rotation.push_back(4 * k.tangential + 2 * k.rolling / (radius * radius));
+  }
+  double medians[2];
+  const auto find_median = [&](std::size_t which) {
+    medians[which] = median(which == 0 ? firmness.translation : firmness.rotation);
+  };
+  if (f.sharing() != nullptr)
+    f.sharing()->run(2, find_median);
+  else
+    for (const std::size_t which : {0, 1}) find_median(which);
+  sums.floor_translation = 2 * medians[0];
+  sums.floor_rotation = 2 * medians[1];
+  // Without tangential and rolling stiffness nothing turns the grains; any inertia serves.
+  if (sums.floor_rotation == 0) sums.floor_rotation = sums.floor_translation;
+  return sums;
+}
+
+}  // namespace
+
+RowSums row_sums(const Fixture& f, const Assembly& a) {
+  return with_force(f, [&](auto force) {
+    using Force = decltype(force);
+    return f.shape == Shape::disc ? sums_over_pairs<2, Force>(f, a) : sums_over_pairs<3, Force>(f, a);
+  });
+}
+
+double critical_step(const Fixture& f, const RowSums& sums) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (std::size_t g = 0; g < f.size(); ++g) {
+    const double by_translation = sums.translation[g] / f.mass[g], by_rotation = sums.rotation[g] / f.inertia[g];
+    const double omega = std::sqrt(std::max(by_translation, by_rotation));
+    if (!(omega > 0)) continue;
+    double step = 2 / omega;
+    if (!sums.dashpot.empty()) {
+      const double rate =
+          std::max(sums.dashpot[g] / f.mass[g], sums.dashpot[g] * f.radius[g] * f.radius[g] / f.inertia[g]);
+      const double zeta = rate / (2 * omega);
+      step *= std::sqrt(1 + zeta * zeta) - zeta;
+    }
+    smallest = std::min(smallest, step);
+  }
+  return smallest;
+}
+
+RowSums with_floor(RowSums sums, const Fixture& f) {
+  for (std::size_t g = 0; g < f.size(); ++g) {
+    sums.translation[g] = std::max(sums.translation[g], sums.floor_translation);
+    sums.rotation[g] = std::max(sums.rotation[g], sums.floor_rotation * f.radius[g] * f.radius[g]);
+  }
+  return sums;
+}
+
+namespace {
+
+double scaled(double row_sum, double floor, double factor) { return std::max(row_sum, floor) / (4 * factor * factor); }
+
+}  // namespace
+
+void scale_inertia(const Fixture& f, const RowSums& sums, Assembly& a) {
+  const double factor = f.options.time_step_factor;
+  for (std::size_t g = 0; g < f.size(); ++g) {
+    a.mass[g] = scaled(sums.translation[g], sums.floor_translation, factor);
+    const double inertia = scaled(sums.rotation[g], sums.floor_rotation * f.radius[g] * f.radius[g], factor);
+    a.inverse_mass[g] = 1 / a.mass[g];
+    a.inverse_inertia[g] = 1 / inertia;
+  }
+}
+
+bool inertia_outgrown(const Fixture& f, const RowSums& sums, const Assembly& a) {
+  // omega dt = 2 factor when the masses were set; up to 2 it stays stable. Nine tenths of that is the alarm.
+  const double margin = 4 * 0.81;
+  for (std::size_t g = 0; g < f.size(); ++g)
+    if (sums.translation[g] * a.inverse_mass[g] > margin || sums.rotation[g] * a.inverse_inertia[g] > margin)
+      return true;
+  return false;
+}
+
+void use_physical_inertia(const Fixture& f, Assembly& a) {
+  for (std::size_t g = 0; g < f.size(); ++g) {
+    a.mass[g] = f.mass[g];
+    a.inverse_mass[g] = 1 / f.mass[g];
+    a.inverse_inertia[g] = 1 / f.inertia[g];
+  }
+}
+
+}  // namespace rvelab

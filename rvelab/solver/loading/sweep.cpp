@@ -1,0 +1,62 @@
+#include "rvelab/solver/loading/sweep.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace rvelab {
+
+namespace {
+
+constexpr long piece_pairs = 8192, piece_grains = 4096;
+static_assert(piece_grains % chunk_grains == 0, "a chunk has one gather table");
+/// Pieces between two additions of their sums; their number is a limit on the team's size only.
+constexpr std::size_t round_pieces = 64;
+
+/// Calls work(piece) for all pieces. The function object holds one reference: nothing is allocated in the step loop.
+template <class Work>
+void each_piece(std::size_t pieces, Workers* team, const Work& work) {
+  if (team != nullptr && pieces > 1)
+    team->run(pieces, [&work](std::size_t piece) { work(piece); });
+  else
+    for (std::size_t piece = 0; piece < pieces; ++piece) work(piece);
+}
+
+std::size_t pieces_of(long count, long piece) { return std::size_t((count + piece - 1) / piece); }
+
+void add(const StepSums& piece, StepSums& sums) {
+  for (int k = 0; k < 3; ++k) sums.momentum[k] += piece.momentum[k];
+  sums.largest_speed_squared = std::max(sums.largest_speed_squared, piece.largest_speed_squared);
+  sums.local_damping += piece.local_damping;
+  sums.global_damping += piece.global_damping;
+}
+
+}  // namespace
+
+void sweep_pairs(PairKernel kernel, const StepConstants& constants, const PairArrays& pairs, const double* grain_rows,
+                 long padded_pairs, Workers* team) {
+  each_piece(pieces_of(padded_pairs, piece_pairs), team, [&](std::size_t piece) {
+    const long begin = long(piece) * piece_pairs;
+    kernel(constants, pairs, grain_rows, begin, std::min(padded_pairs, begin + piece_pairs), nullptr);
+  });
+}
+
+void sweep_grains(GrainKernel kernel, const StepConstants& constants, const GrainArrays& grains,
+                  const PairArrays& pairs, long padded_grains, Workers* team, StepSums& sums) {
+  const std::size_t pieces = pieces_of(padded_grains, piece_grains);
+  std::array<StepSums, round_pieces> of_piece;
+  for (std::size_t first = 0; first < pieces; first += round_pieces) {
+    const std::size_t count = std::min(round_pieces, pieces - first);
+    each_piece(count, team, [&](std::size_t k) {
+      const long begin = long(first + k) * piece_grains;
+      kernel(constants, grains, pairs, begin, std::min(padded_grains, begin + piece_grains), &of_piece[k]);
+    });
+    for (std::size_t k = 0; k < count; ++k) {
+      if (first + k == 0)
+        sums = of_piece[0];
+      else
+        add(of_piece[k], sums);
+    }
+  }
+}
+
+}  // namespace rvelab

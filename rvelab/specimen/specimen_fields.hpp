@@ -1,0 +1,165 @@
+// Every field of a specimen, described once: snapshots, files and comparisons of specimens go through fields::visit
+// (described.hpp). Names, units and order are those of the file (rvelab/io/README.md); a member of a struct that has no
+// entry here does not compile.
+//
+// A field that files did not have from the start is InFiles::added_later: where it is missing, the default of its
+// struct must be what the earlier version did.
+#pragma once
+
+#include <iterator>
+#include <tuple>
+#include <utility>
+
+#include "rvelab/specimen/described.hpp"
+#include "rvelab/specimen/specimen.hpp"
+
+namespace rvelab::fields {
+
+template <>
+inline constexpr auto members_of<Cell> = std::tuple{
+    Field{"dimension", &Cell::dimension, "1"},
+    Field{"lattice_m", &Cell::lattice, "m"},
+    Field{"rotation", &Cell::rotation, "1"},
+    Field{"increments", &Cell::increments, "1"},
+};
+
+template <>
+inline constexpr auto members_of<Grains> = std::tuple{
+    Field{"id", &Grains::id, "1", Rows::per_grain},
+    Field{"radius_m", &Grains::radius, "m", Rows::per_grain},
+    Field{"material", &Grains::material, "1", Rows::per_grain},
+    Field{"position_m", &Grains::position, "m", Rows::per_grain},
+    Field{"velocity", &Grains::velocity, "m/s or m/step", Rows::per_grain},
+    Field{"spin", &Grains::spin, "rad/s or rad/step", Rows::per_grain},
+};
+
+template <>
+inline constexpr auto members_of<Contact> = std::tuple{
+    Field{"i", &Contact::i, "1"},
+    Field{"j", &Contact::j, "1"},
+    Field{"image", &Contact::image, "1"},
+    Field{"tangential_force_N", &Contact::tangential_force, "N"},
+    Field{"rolling_moment_N_m", &Contact::rolling_moment, "N m"},
+    Field{"last_root_overlap_m0_5", &Contact::last_root_overlap, "m^0.5"},
+};
+
+/// The constants of one group, as its law file lists them.
+template <class Group>
+constexpr auto stored_fields() {
+  static_assert(std::size(Group::stored) == member_count<Group>(), "a constant of a law is not in its list `stored`");
+  return []<std::size_t... k>(std::index_sequence<k...>) {
+    return std::tuple{Field<Material, double>{Group::stored[k].dataset, Group::stored[k].value, Group::stored[k].unit,
+                                              Rows::one,
+                                              Group::stored[k].later ? InFiles::added_later : InFiles::always}...};
+  }
+  (std::make_index_sequence<std::size(Group::stored)>());
+}
+template <class... Groups>
+constexpr auto fields_of_laws(TypeList<Groups...>) {
+  return std::tuple_cat(stored_fields<Groups>()...);
+}
+
+/// Density, the constants of the laws, friction and rolling.
+constexpr auto material_fields() {
+  return std::tuple_cat(
+      std::tuple{Field{"name", &Material::name, "-"}, Field{"density_kg_m3", &Material::density, "kg/m^3"}},
+      fields_of_laws(ConstantGroups{}),
+      std::tuple{Field{"friction", &Material::friction, "1"},
+                 Field{"rolling_stiffness", &Material::rolling_stiffness, "1"},
+                 Field{"rolling_friction", &Material::rolling_friction, "1"}});
+}
+
+/// The laws' constants are a base of Material, one initialiser for all of them.
+template <>
+inline constexpr std::size_t inherited_members<Material> =
+    std::tuple_size_v<decltype(fields_of_laws(ConstantGroups{}))> - 1;
+
+template <>
+inline constexpr auto members_of<Material> = material_fields();
+
+template <>
+inline constexpr auto members_of<ContactModel> = std::tuple{
+    Field{"law", &ContactModel::law, "-"},
+    Field{"slip", &ContactModel::slip, "-"},
+    Field{"rolling", &ContactModel::rolling, "1"},
+    Field{"unload_rescale", &ContactModel::unload_rescale, "1"},
+};
+
+template <>
+inline constexpr auto members_of<Damping> = std::tuple{
+    Field{"local", &Damping::local, "1"},
+    Field{"local_quasi_static", &Damping::local_quasi_static, "1"},
+    Field{"local_form", &Damping::local_form, "-"},
+    Field{"dashpot", &Damping::dashpot, "-"},
+    Field{"normal_coefficient", &Damping::normal_coefficient, "N s/m or 1/(m s)"},
+    Field{"restitution", &Damping::restitution, "1"},
+    Field{"tangential_ratio", &Damping::tangential_ratio, "1"},
+    Field{"no_tension", &Damping::no_tension, "1"},
+    Field{"global_viscous_N_s_m", &Damping::global_viscous, "N s/m"},
+};
+
+template <>
+inline constexpr auto members_of<SolverOptions> = std::tuple{
+    Field{"skin", &SolverOptions::skin, "1"},
+    Field{"time_step_factor", &SolverOptions::time_step_factor, "1"},
+    Field{"fixed_time_step_s", &SolverOptions::fixed_time_step, "s"},
+    Field{"collision_steps", &SolverOptions::collision_steps, "1", Rows::one, InFiles::added_later},
+    Field{"target_unbalanced", &SolverOptions::target_unbalanced, "1"},
+    Field{"fixed_substeps", &SolverOptions::fixed_substeps, "1"},
+    Field{"max_substeps", &SolverOptions::max_substeps, "1"},
+    Field{"min_height_m", &SolverOptions::min_height, "m"},
+    Field{"max_overlap_ratio", &SolverOptions::max_overlap_ratio, "1"},
+    Field{"ledger", &SolverOptions::ledger, "1"},
+};
+
+template <>
+inline constexpr auto members_of<EnergyLedger> = std::tuple{
+    Field{"boundary_work_J", &EnergyLedger::boundary_work, "J"},
+    Field{"friction_J", &EnergyLedger::friction, "J"},
+    Field{"rolling_J", &EnergyLedger::rolling, "J"},
+    Field{"dashpot_J", &EnergyLedger::dashpot, "J"},
+    Field{"local_damping_J", &EnergyLedger::local_damping, "J"},
+    Field{"global_damping_J", &EnergyLedger::global_damping, "J"},
+    Field{"law_loss_J", &EnergyLedger::law_loss, "J"},
+    Field{"zeroing_J", &EnergyLedger::zeroing, "J"},
+};
+
+template <>
+inline constexpr auto members_of<SolverState> = std::tuple{
+    Field{"has_reference", &SolverState::has_reference, "1"},
+    Field{"list_lattice_m", &SolverState::list_lattice, "m"},
+    Field{"list_positions_m", &SolverState::list_positions, "m", Rows::per_grain_or_none, InFiles::added_later},
+    Field{"list_travel_m", &SolverState::list_travel, "m"},
+    Field{"list_skin_m", &SolverState::list_skin, "m", Rows::one, InFiles::added_later},
+    Field{"list_steps", &SolverState::list_steps, "1", Rows::one, InFiles::added_later},
+    Field{"strain_per_step", &SolverState::strain_per_step, "1"},
+    Field{"servo_strain", &SolverState::servo_strain, "1"},
+    Field{"servo_rate_1_s", &SolverState::servo_rate, "1/s", Rows::one, InFiles::added_later},
+    Field{"reference_contact_force_N", &SolverState::reference_contact_force, "N"},
+    Field{"reference_overlap_m", &SolverState::reference_overlap, "m"},
+    Field{"reference_pressure_Pa", &SolverState::reference_pressure, "Pa"},
+    Field{"quasi_static", &SolverState::quasi_static, "1"},
+    Field{"last_rate", &SolverState::last_rate, "1/s or 1/step"},
+    Field{"last_step", &SolverState::last_step, "s or step"},
+    Field{"mean_velocity", &SolverState::mean_velocity, "m/s or m/step"},
+    Field{"mean_spin_rad_s", &SolverState::mean_spin, "rad/s"},
+    Field{"grain_steps", &SolverState::grain_steps, "1"},
+    Field{"list_builds", &SolverState::list_builds, "1"},
+    Field{"memory_order", &SolverState::memory_order, "1", Rows::per_grain_or_none, InFiles::added_later},
+    Part{"ledger", &SolverState::ledger},
+};
+
+template <>
+inline constexpr auto members_of<Specimen> = std::tuple{
+    Field{"shape", &Specimen::shape, "-"},     //
+    Part{"cell", &Specimen::cell},             //
+    Part{"grains", &Specimen::grains},         //
+    Table{"contacts", &Specimen::contacts},    //
+    Table{"materials", &Specimen::materials},  //
+    Part{"contact", &Specimen::contact},       //
+    Part{"damping", &Specimen::damping},       //
+    Part{"solver", &Specimen::solver},         //
+    Part{"state", &Specimen::state},
+};
+
+}  // namespace rvelab::fields
