@@ -145,7 +145,7 @@ void report(const Protocol& protocol, const TestRun& run, const RunArguments& ar
   if (20 * marked > static_cast<long>(result.records.size())) {
     tell(std::to_string(marked) + " of " + std::to_string(result.records.size()) +
          " records are flagged: " + std::to_string(flagged) + " did not hold their stress, " + std::to_string(moving) +
-         " were no equilibrium (target_held, quasi_static in the records); lower solver.target_unbalanced or the "
+         " were no equilibrium (target_held, quasi_static in the records); lower the tolerances of [solver] or the "
          "rate, or raise loading.held_tolerance");
   }
 }

@@ -157,8 +157,13 @@ std::vector<KeyEntry> solver() {
           t, "collision_steps", "1", &SolverOptions::collision_steps, {0, 100'000},
           "dt > 0: sub-steps of a collision where collisions carry the energy, 5 or more; 0: the critical step alone, "
           "whatever collisions become"),
-      entry(t, "target_unbalanced", "1", &SolverOptions::target_unbalanced, positive,
-            "dt = 0: unbalanced ratio that steers the number of sub-steps"),
+      entry(t, "relative_tolerance", "1", &SolverOptions::relative_tolerance, {0, 1, true, false},
+            "dt = 0: error of an increment allowed, over the change of stress or a tenth of what an elastic network "
+            "would answer, whichever is more"),
+      entry(t, "absolute_tolerance", "1", &SolverOptions::absolute_tolerance, {0, 1, true, false},
+            "dt = 0: error of an increment allowed beside that, over the mean pressure"),
+      entry(t, "target_unbalanced", "1", &SolverOptions::target_unbalanced, not_negative,
+            "dt = 0: above 0: the unbalanced ratio that steers the number of sub-steps, instead of the tolerances"),
       entry(t, "fixed_substeps", "1", &SolverOptions::fixed_substeps, not_negative,
             "dt = 0: exactly so many sub-steps an increment; 0: steered"),
       entry(t, "max_substeps", "1", &SolverOptions::max_substeps, positive, "an increment that needs more fails"),

@@ -15,7 +15,7 @@ namespace rvelab {
 
 namespace {
 
-constexpr long servo_stretch = 5;  ///< sub-steps between strokes of the servo
+constexpr long servo_interval = 5;  ///< sub-steps between control updates of the servo
 
 /// What keeps the gain regular in a gas, Pa: a hundredth of what one typical contact per grain would give.
 double soft_stiffness(const Fixture& f, const Assembly& a, const RowSums& sums) {
@@ -23,7 +23,7 @@ double soft_stiffness(const Fixture& f, const Assembly& a, const RowSums& sums) 
   return 0.01 * sums.floor_translation / spacing;
 }
 
-/// Strain and gradient of a mixed target so far, and the way from one stroke to the next.
+/// Strain and gradient of a mixed target so far, and the way from one control update to the next.
 struct TargetPath {
   const MixedTarget& target;
   int dimension;
@@ -61,10 +61,10 @@ Report Rve::Impl::load_at_rate(const MixedTarget& target, double dt, Matrix3& gr
   TimeStep time_step;
   Matrix6 viscosity;
   while (fraction < 1) {
-    if (since_look >= time_step.stretch) {
+    if (since_look >= time_step.interval) {
       since_look = 0;
       checked_balance();
-      time_step = this->time_step(now.state.last_rate, control_stretch, (1 - fraction) * dt);
+      time_step = this->time_step(now.state.last_rate, control_interval, (1 - fraction) * dt);
       servo.set_stiffness(affine_stiffness(fixture, now), soft_stiffness(fixture, now, present_sums()));
       viscosity = affine_viscosity(fixture, now);
       gain_time = 0;
@@ -73,7 +73,7 @@ Report Rve::Impl::load_at_rate(const MixedTarget& target, double dt, Matrix3& gr
     if (double(report.substeps) + count > double(fixture.options.max_substeps))
       throw IncrementFailed("the increment needs more than " + std::to_string(fixture.options.max_substeps) +
                             " sub-steps (solver.max_substeps)");
-    const long steps = long(std::min(double(servo_stretch), count));
+    const long steps = long(std::min(double(servo_interval), count));
     const double step = (1 - fraction) * dt / count, time = double(steps) * step;
     if (std::abs(time - gain_time) > 0.1 * gain_time) {
       servo.set_viscosity(viscosity, time);
@@ -92,7 +92,7 @@ Report Rve::Impl::load_at_rate(const MixedTarget& target, double dt, Matrix3& gr
                                              step, true, time_step.deep));
     moved();
     report.substeps += made.steps;
-    since_look += made.step < 0.999 * step ? time_step.stretch : made.steps;
+    since_look += made.step < 0.999 * step ? time_step.interval : made.steps;
     mean_residual += advance_by * servo.residual(fraction, path.strain, stress());
   }
   gradient = path.gradient;
@@ -107,7 +107,8 @@ Report Rve::Impl::load_quasi_static(const MixedTarget& target, Matrix3& gradient
   const auto stress = [&]() -> Matrix3 { return contact_stress() + reynolds_stress(); };
   Servo servo(target, fixture.dimension(), stress(), Servo::Missed::evenly);
   begin_quasi_static();
-  if (now.state.strain_per_step == 0) now.state.strain_per_step = initial_pace();
+  const Matrix3 stress_before = present_stress();
+  double network = 0;
 
   TargetPath path{target, fixture.dimension()};
   double fraction = 0, since_control = 0;
@@ -115,10 +116,14 @@ Report Rve::Impl::load_quasi_static(const MixedTarget& target, Matrix3& gradient
   bool arrived = false;
   while (true) {
     if (since_control == 0)
-      servo.set_stiffness(affine_stiffness(fixture, now), soft_stiffness(fixture, now, present_sums()));
-    long steps = servo_stretch;
+      servo.set_stiffness(affine_stiffness(fixture, now), soft_stiffness(fixture, now, row_sums(fixture, now)));
+    long steps = servo_interval;
     const double wanted = servo.predicted_strain() + target.spin.norm();
-    const double full_pace = double(servo_stretch) * now.state.strain_per_step;
+    if (report.substeps == 0) {
+      network = network_change(servo.predicted_strain());
+      set_pace_target(target_for(network));
+    }
+    const double full_pace = double(servo_interval) * now.state.strain_per_step;
     double advance_by = wanted > 0 ? std::min(1 - fraction, full_pace / wanted) : 1 - fraction;
     const bool waiting = fraction >= 1;
     if (waiting) {
@@ -134,35 +139,35 @@ Report Rve::Impl::load_quasi_static(const MixedTarget& target, Matrix3& gradient
     advance(fixture, now,
             loading_of(fixture, split_increment(now.cell, path.go_on(change, fraction)), steps, 1, false, false));
     moved();
+    now.state.interval_strain += change.norm();
     report.substeps += steps;
     if (report.substeps > fixture.options.max_substeps)
       throw IncrementFailed("the increment needs more than " + std::to_string(fixture.options.max_substeps) +
                             " sub-steps (solver.max_substeps)");
     if (waiting) waited += steps;
     since_control += double(steps);
-    if (since_control >= double(control_stretch)) {
+    if (since_control >= double(control_interval)) {
       since_control = 0;
-      const Balance balance = checked_balance();
+      const Balance balance = look();
       if (!waiting) steer_pace(balance, servo.held_stress());
-      if (inertia_outgrown(fixture, present_sums(), now)) rescale_inertia(fixture, present_sums(), now);
     }
-    // The pace is judged before the wait, whose calm says nothing of it; increments shorter than a stretch have no
+    // The pace is judged before the wait, whose calm says nothing of it; increments shorter than an interval have no
     // other moment.
     if (fraction >= 1 && !arrived) {
       arrived = true;
-      if (since_control > 0) steer_pace(checked_balance(), servo.held_stress());
+      if (since_control > 0) steer_pace(look(), servo.held_stress());
     }
     if (fraction >= 1) {
       report.held_error = servo.held_error(path.strain, stress());
       if (report.held_error <= target.tolerance) break;
     }
   }
-  const Balance balance = checked_balance();
-  report.unbalanced_ratio = unbalanced(balance);
-  if (fixture.options.ledger) rescale_inertia(fixture, present_sums(), now);
+  look();
+  report.unbalanced_ratio = now.state.unbalanced_ratio;
   report.held_error = servo.held_error(path.strain, stress());
   report.target_held = report.held_error <= target.tolerance;
   judge(report);
+  estimate_error(network, stress_before, report.unbalanced_ratio, report);
   gradient = path.gradient;
   return report;
 }

@@ -26,15 +26,20 @@ void rest(Assembly& a) {
   PairTable& t = a.pairs;
   let_go(t.row_i, t.row_j, t.kn, t.kt, t.own, t.friction, t.kr, t.moment_cap, t.cn, t.force, t.radius_i, t.radius_j,
          t.touched, t.image_number[0], t.image_number[1], t.image_number[2]);
-  let_go(a.mass, a.inverse_mass, a.inverse_inertia);
+  let_go(a.inverse_mass);
+  if (a.state.look_steps < 0) let_go(a.mass, a.inverse_inertia);
 }
 
 void wake(const Fixture& f, Assembly& a) {
   derive_pairs(f, a.pairs);
-  for (Buffer* b : {&a.mass, &a.inverse_mass, &a.inverse_inertia}) b->assign(padded_to_lanes(f.size()), 0.0);
-  use_physical_inertia(f, a);
+  a.inverse_mass.assign(padded_to_lanes(f.size()), 0.0);
+  if (a.state.look_steps >= 0) {
+    for (std::size_t g = 0; g < f.size(); ++g) a.inverse_mass[g] = 1 / a.mass[g];
+  } else {
+    for (Buffer* b : {&a.mass, &a.inverse_inertia}) b->assign(padded_to_lanes(f.size()), 0.0);
+    use_physical_inertia(f, a);
+  }
   evaluate_forces(f, a);
-  if (a.state.quasi_static) scale_inertia(f, row_sums(f, a), a);
 }
 
 Memory memory_of(const Assembly& a) {

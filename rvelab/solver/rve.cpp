@@ -30,8 +30,8 @@ void expect_overlaps(const Balance& balance, double limit) {
 Rve::Rve(const Specimen& specimen) : impl_(std::make_unique<Impl>()) {
   Impl& m = *impl_;
   open(specimen, m.fixture, m.now);
-  set_softest_answer(m.fixture);
-  use_physical_inertia(m.fixture, m.now);
+  set_typical_answers(m.fixture);
+  if (m.now.state.look_steps < 0) use_physical_inertia(m.fixture, m.now);
   evaluate_forces(m.fixture, m.now);
   const Balance balance = balance_of(m.fixture, m.now);
   if (!balance.finite) throw InputError("specimen: contact forces are not finite; do two grains lie at one place?");
@@ -63,6 +63,7 @@ void Rve::take_as_reference() {
   SolverState& state = m.now.state;
   state.reference_overlap = state.reference_contact_force = state.reference_pressure = 0;
   m.set_missing_references(balance_of(m.fixture, m.now));
+  state.look_steps = -1;  // what a barely touching contact counts as goes with the reference
   m.moved();
 }
 
@@ -75,7 +76,7 @@ Rve::Rve(Rve&&) noexcept = default;
 Rve& Rve::operator=(Rve&&) noexcept = default;
 Rve::~Rve() = default;
 
-Matrix3 Rve::Impl::contact_stress() const { return to_lab(-contact_moment(fixture, now) / now.cell.volume()); }
+Matrix3 Rve::Impl::contact_stress() { return to_lab(present_stress()); }
 
 Matrix3 Rve::Impl::reynolds_stress() const {
   if (now.state.quasi_static) return Matrix3::Zero();
@@ -107,7 +108,7 @@ Memory Rve::memory() const {
 Matrix3 Rve::contact_stress() const { return impl_->awake().contact_stress(); }
 Matrix3 Rve::reynolds_stress() const { return impl_->awake().reynolds_stress(); }
 Matrix3 Rve::stress() const {
-  const Impl& m = impl_->awake();
+  Impl& m = impl_->awake();
   return m.contact_stress() + m.reynolds_stress();
 }
 
@@ -125,7 +126,7 @@ double Rve::critical_time_step() const {
   return critical_step(m.fixture, row_sums(m.fixture, m.now));
 }
 
-Response Rve::Impl::respond(const Report& report, const Matrix3& gradient, double dt, const Want& want) const {
+Response Rve::Impl::respond(const Report& report, const Matrix3& gradient, double dt, const Want& want) {
   Response r;
   r.report = report;
   r.displacement_gradient = gradient;
@@ -186,7 +187,7 @@ Report Rve::relax(double unbalanced, long max_steps) {
   return m.guarded([&] {
     Report report;
     m.begin_quasi_static();
-    constexpr long stretch = 25;
+    constexpr long interval = 25;
     // Cundall's damping is a part of the force: it hardly takes from a mode without stiffness, such as grains of an
     // even ring that counter-rotate like gears. Who is not at rest after this many steps is stopped at each peak of the
     // kinetic energy (dynamic relaxation: Cundall 1976; Day 1965).
@@ -194,12 +195,10 @@ Report Rve::relax(double unbalanced, long max_steps) {
     double kinetic = 0;
     const FrameSplit still{Matrix3::Identity(), Matrix3::Identity(), true};
     while (true) {
-      const Balance balance = m.checked_balance();
-      report.unbalanced_ratio = rvelab::unbalanced_ratio(balance, m.now.state.reference_contact_force);
+      m.look();
+      report.unbalanced_ratio = m.now.state.unbalanced_ratio;
       if (report.unbalanced_ratio <= unbalanced || report.substeps >= max_steps) break;
-      const RowSums& sums = m.present_sums();
-      if (inertia_outgrown(m.fixture, sums, m.now)) rescale_inertia(m.fixture, sums, m.now);
-      const long steps = std::min(stretch, max_steps - report.substeps);
+      const long steps = std::min(interval, max_steps - report.substeps);
       advance(m.fixture, m.now, {still, steps, 1.0, Loading::quasi_static});
       m.moved();
       report.substeps += steps;
@@ -210,7 +209,6 @@ Report Rve::relax(double unbalanced, long max_steps) {
         kinetic = 0;
       }
     }
-    if (m.fixture.options.ledger) rescale_inertia(m.fixture, m.present_sums(), m.now);
     report.target_held = report.unbalanced_ratio <= unbalanced;
     return report;
   });
@@ -250,7 +248,8 @@ void Rve::set_materials(const std::vector<Material>& materials) {
     }
     if (m.fixture.options.ledger && squared > 0) m.now.state.ledger.law_loss += 0.5 * squared / (before[p] * root);
   }
-  set_softest_answer(m.fixture);
+  set_typical_answers(m.fixture);
+  m.now.state.look_steps = -1;
   m.moved();
   evaluate_forces(m.fixture, m.now);
 }

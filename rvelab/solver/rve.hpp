@@ -28,10 +28,12 @@ struct Report {
   double held_error = 0;        ///< mixed targets: largest |residual| over its scale (dt > 0: of its mean over the
                                 ///< increment), see MixedTarget
   bool target_held = true;      ///< mixed targets: held_error <= tolerance; at dt = 0 within the wait
-  bool quasi_static = true;  ///< dt = 0: the state is an equilibrium as far as was asked for: the unbalanced ratio is
-                             ///< within three times its target and the target is held. A state that flows creeps
-                             ///< beyond that: relaxed, its stress falls by some ten times the ratio
-  bool cell_thin = false;    ///< a cell height is below four mean diameters
+  bool quasi_static = true;   ///< dt = 0: the state is an equilibrium as far as was asked for: the unbalanced ratio is
+                              ///< within three times its target and the target is held. A state that flows creeps
+                              ///< beyond that: relaxed, its stress falls by some ten times the ratio
+  double error_estimate = 0;  ///< dt = 0: of the stress, Frobenius norm, Pa; nineteen of twenty errors lie below
+  double allowed_error = 0;   ///< dt = 0: relative_tolerance max(|d sigma|, 0.1 |C : d eps|) + absolute_tolerance p, Pa
+  bool cell_thin = false;     ///< a cell height is below four mean diameters
 };
 
 struct Response {

@@ -12,12 +12,12 @@ namespace rvelab {
 /// Grains up to which an RVE at work keeps the buffers of a trial for the next one (some 10 MB).
 constexpr std::size_t largest_kept_scratch = 20'000;
 
-constexpr long control_stretch = 50;  ///< sub-steps between looks at the unbalanced ratio
+constexpr long control_interval = 50;  ///< sub-steps between looks at the unbalanced ratio
 
 /// The sub-step at dt > 0.
 struct TimeStep {
   double longest = 0;  ///< s
-  long stretch = 0;    ///< sub-steps until the next look
+  long interval = 0;   ///< sub-steps until the next look
   bool deep = false;   ///< see Collisions
 };
 
@@ -26,8 +26,10 @@ struct Rve::Impl {
   Assembly now;
   bool resting = false;  ///< only what rest() keeps is there
   Trial trial;
-  RowSums sums;  ///< of stiffness; those of `now` while sums_hold
+  RowSums sums;  ///< dt > 0: of stiffness; those of `now` while sums_hold
   bool sums_hold = false;
+  Matrix3 stress = Matrix3::Zero();  ///< contact stress, cell frame, Pa; that of `now` while stress_holds
+  bool stress_holds = false;
 
   /// Every public call that looks at forces, parameters or masses comes through here.
   Impl& awake();
@@ -35,16 +37,24 @@ struct Rve::Impl {
   /// The sums of the state as it is, made anew where grains, contacts or parameters changed (moved()). They take as
   /// long as seven sub-steps, and the last of one call are the first of the next.
   const RowSums& present_sums();
-  void moved() { sums_hold = false; }
-  /// begin_loading and the masses that the state asks for.
+  /// Contact stress of the state as it is, cell frame, Pa; kept likewise.
+  const Matrix3& present_stress();
+  void moved() { sums_hold = stress_holds = false; }
+  /// begin_loading, and masses if none are scaled yet. They hold for control_interval sub-steps, over as many calls as
+  /// that takes, and belong to the state.
   void begin_quasi_static();
+  /// dt = 0: masses, and the softness of the interval that ends; the next one begins.
+  void renew_interval(const Balance& balance);
+  void begin_interval(const Balance& balance);
+  /// dt = 0: balance and overlaps; every control_interval sub-steps renew_interval.
+  Balance look();
 
   Matrix3 to_lab(const Matrix3& cell_frame) const {
     return now.cell.rotation * cell_frame * now.cell.rotation.transpose();
   }
-  Matrix3 contact_stress() const;
+  Matrix3 contact_stress();
   Matrix3 reynolds_stress() const;
-  Response respond(const Report& report, const Matrix3& gradient, double dt, const Want& want) const;
+  Response respond(const Report& report, const Matrix3& gradient, double dt, const Want& want);
 
   /// Runs `work` as a trial and commits it; if it throws, the trial is reverted and the exception goes on.
   template <class Work>
@@ -71,16 +81,31 @@ struct Rve::Impl {
   double unbalanced(const Balance& balance) const;  ///< ratio with this specimen's reference force
   /// `held_stress`: what a mixed target holds (Servo::held_stress), Pa; the pace may follow it below the reference.
   void steer_pace(const Balance& balance, double held_stress = 0);
+  /// Makes the pace one for the unbalanced ratio `target`; the ratio goes with the pace.
+  void set_pace_target(double target);
+  /// The ratio that an increment may have whose network change is |C : d eps| (Pa), by tolerance or as given.
+  double target_for(double network_change);
+  /// |C : d eps| of a strain, Pa.
+  double network_change(double strain) const;
+  double pressure();  ///< mean, of present_stress, Pa
+  /// The estimate for an unbalanced ratio, Pa.
+  double expected_error(double ratio);
+  /// Sets report.error_estimate and allowed_error; `ratio` is the unbalanced ratio at the end of the increment.
+  void estimate_error(double network_change, const Matrix3& stress_before, double ratio, Report& report);
   /// dt = 0: sets report.quasi_static from what it says of balance and target.
   void judge(Report& report) const;
   /// dt > 0: in an increment of the time dt (s), at the velocity gradient `rate` of the cell (1/s, cell frame); the
-  /// next look is after `stretch` sub-steps at the latest.
-  TimeStep time_step(const Matrix3& rate, long stretch, double dt);
+  /// next look is after `interval` sub-steps at the latest.
+  TimeStep time_step(const Matrix3& rate, long interval, double dt);
   double initial_pace() const;
+  /// Throws IncrementFailed if `needed` sub-steps after `made` are more than solver.max_substeps.
+  void expect_substeps(long made, long needed) const;
   /// Scales of the specimen's own state that it does not bring.
   void set_missing_references(const Balance& balance);
 
   Report load(const Matrix3& displacement_gradient, double dt);
+  Report load_physical(const FrameSplit& whole, double dt);
+  Report load_quasi_static(const FrameSplit& whole);
   Report load(const MixedTarget& target, double dt, Matrix3& gradient);
   Report load_at_rate(const MixedTarget& target, double dt, Matrix3& gradient);
   Report load_quasi_static(const MixedTarget& target, Matrix3& gradient);
@@ -89,9 +114,6 @@ struct Rve::Impl {
 /// What advance is to do for an increment in the cell frame.
 Advance loading_of(const Fixture& fixture, const FrameSplit& increment, long steps, double step, bool physical,
                    bool deep);
-
-/// Rotation matrix of a rotation vector (rad), by series: no libm in what touches state.
-Matrix3 rotation_matrix(const Vector3& rotation_vector);
 
 /// Bytes of a specimen and back; layout of this build.
 std::vector<std::byte> to_bytes(const Specimen& specimen);

@@ -36,17 +36,19 @@ struct Contact {
 
 /// How the solver goes about its work. Defaults are measured ones (performance figures stand beside each use).
 struct SolverOptions {
-  double skin = 0.15;               ///< largest Verlet skin over the mean radius, > 0; fitted down while steps pass
-  double time_step_factor = 0.7;    ///< fraction of the critical step 2/omega_max, 0 < f < 1
-  double fixed_time_step = 0;       ///< s; > 0: dt > 0 loading uses exactly this step
-  long collision_steps = 100;       ///< dt > 0: sub-steps of a collision where collisions carry the energy; 0: the
-                                    ///< critical step alone (collisions.hpp)
-  double target_unbalanced = 1e-3;  ///< dt = 0: unbalanced ratio that steers the number of sub-steps
-  long fixed_substeps = 0;          ///< dt = 0: > 0: exactly so many sub-steps an increment, no control
-  long max_substeps = 50'000'000;   ///< an increment that needs more fails
-  double min_height = 0;            ///< m; shortest lattice vector allowed; 0: 2 r_max
-  double max_overlap_ratio = 0.25;  ///< largest overlap over the smaller radius; more fails
-  bool ledger = false;              ///< keep the energy ledger (measured cost in tools/bench)
+  double skin = 0.15;                ///< largest Verlet skin over the mean radius, > 0; fitted down while steps pass
+  double time_step_factor = 0.7;     ///< fraction of the critical step 2/omega_max, 0 < f < 1
+  double fixed_time_step = 0;        ///< s; > 0: dt > 0 loading uses exactly this step
+  long collision_steps = 100;        ///< dt > 0: sub-steps of a collision where collisions carry the energy; 0: the
+                                     ///< critical step alone (collisions.hpp)
+  double relative_tolerance = 1e-2;  ///< dt = 0: error of an increment over max(|d sigma|, 0.1 |C : d eps|)
+  double absolute_tolerance = 1e-4;  ///< dt = 0: added to that, over the pressure
+  double target_unbalanced = 0;      ///< dt = 0: > 0: the unbalanced ratio that steers the sub-steps, no tolerance
+  long fixed_substeps = 0;           ///< dt = 0: > 0: exactly so many sub-steps an increment, no control
+  long max_substeps = 50'000'000;    ///< an increment that needs more fails
+  double min_height = 0;             ///< m; shortest lattice vector allowed; 0: 2 r_max
+  double max_overlap_ratio = 0.25;   ///< largest overlap over the smaller radius; more fails
+  bool ledger = false;               ///< keep the energy ledger (measured cost in tools/bench)
 };
 
 /// Energy ledger, J, sums since the specimen was opened first (design 7). Zero when not kept.
@@ -60,13 +62,23 @@ struct EnergyLedger {
 
 /// Solver state that decides the next bit, beside grains, contacts and cell.
 struct SolverState {
-  bool has_reference = false;               ///< the next five say when to list anew
-  Matrix3 list_lattice = Matrix3::Zero();   ///< lattice when the list was built, m
-  std::vector<Vector3> list_positions;      ///< positions then, m, cell frame; empty: only the bound below is used
-  double list_travel = 0;                   ///< bound on the largest fluctuation displacement since then, m
-  double list_skin = 0;                     ///< skin that the list was built with, m; 0: solver.skin
-  std::int64_t list_steps = 0;              ///< sub-steps made since then
-  double strain_per_step = 0;               ///< dt = 0: pace of the sub-step controller; 0: not yet known
+  bool has_reference = false;                  ///< the next five say when to list anew
+  Matrix3 list_lattice = Matrix3::Zero();      ///< lattice when the list was built, m
+  std::vector<Vector3> list_positions;         ///< positions then, m, cell frame; empty: only the bound below is used
+  double list_travel = 0;                      ///< bound on the largest fluctuation displacement since then, m
+  double list_skin = 0;                        ///< skin that the list was built with, m; 0: solver.skin
+  std::int64_t list_steps = 0;                 ///< sub-steps made since then
+  double strain_per_step = 0;                  ///< dt = 0: pace of the sub-step controller; 0: not yet known
+  double pace_target = 0;                      ///< dt = 0: unbalanced ratio that this pace is for
+  double leg_strain = 0;                       ///< dt = 0: strain since the last turn, up to what is judged together
+  double softness = 1;                         ///< dt = 0: |d sigma|/|C : d eps| of the last interval (accuracy.hpp)
+  double network_stiffness = 0;                ///< dt = 0: |C : d eps|/strain when it began, Pa
+  double interval_strain = 0;                  ///< dt = 0: strain made in the present interval
+  Matrix3 interval_stress = Matrix3::Zero();   ///< dt = 0: stress at its begin, cell frame, Pa
+  double unbalanced_ratio = 0;                 ///< dt = 0: when it was measured last
+  std::int64_t look_steps = -1;                ///< dt = 0: sub-steps since masses were scaled; < 0: they are not
+  std::vector<double> scaled_mass;             ///< dt = 0: masses in use, N/m (the sub-step is 1); empty: to be scaled
+  std::vector<double> scaled_inverse_inertia;  ///< the same: 1 over the moments of inertia, 1/(N m)
   Matrix3 servo_strain = Matrix3::Zero();   ///< mixed targets: strain per unit of paced strain learnt so far, lab frame
   Matrix3 servo_rate = Matrix3::Zero();     ///< dt > 0: rate of strain of its last stroke, 1/s, lab frame
   double reference_contact_force = 0;       ///< N, mean contact force at the specimen's own p0; 0: set on opening

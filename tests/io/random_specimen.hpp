@@ -221,6 +221,8 @@ inline Specimen random_specimen(unsigned seed, std::size_t grain_count = 17, std
   grains.material.resize(grain_count);
   for (auto* vectors : {&grains.position, &grains.velocity, &grains.spin}) vectors->resize(grain_count);
   specimen.state.list_positions.resize(grain_count);
+  specimen.state.scaled_mass.resize(grain_count);
+  specimen.state.scaled_inverse_inertia.resize(grain_count);
   specimen.state.memory_order.resize(grain_count);
   specimen.contacts.resize(contact_count);
   specimen.materials.resize(3);

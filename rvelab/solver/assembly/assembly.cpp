@@ -35,6 +35,25 @@ void Assembly::set_velocity(const Fixture& f, std::size_t g, const Vector3& v, c
   }
 }
 
+namespace {
+
+/// The masses that a specimen at dt = 0 brings; the arrays of the state are empty while it is open.
+void take_scaled_inertia(Assembly& a) {
+  SolverState& state = a.state;
+  const std::size_t n = state.scaled_mass.size();
+  if (!state.quasi_static || n == 0) state.look_steps = -1;  // a file of an earlier version, or dt > 0
+  if (state.look_steps >= 0) {
+    for (std::size_t g = 0; g < n; ++g) {
+      a.mass[g] = state.scaled_mass[g];
+      a.inverse_mass[g] = 1 / state.scaled_mass[g];
+      a.inverse_inertia[g] = state.scaled_inverse_inertia[g];
+    }
+  }
+  state.scaled_mass = state.scaled_inverse_inertia = {};
+}
+
+}  // namespace
+
 void open(const Specimen& specimen, Fixture& f, Assembly& a) {
   check_specimen(specimen);
   const std::size_t n = specimen.grains.size(), padded = padded_to_lanes(n);
@@ -79,6 +98,7 @@ void open(const Specimen& specimen, Fixture& f, Assembly& a) {
   }
   f.mass = std::move(mass);
   f.inertia = std::move(inertia);
+  take_scaled_inertia(a);
 
   try {
     list_with(f, s.contacts, a);
@@ -104,6 +124,11 @@ Specimen close(const Fixture& f, const Assembly& a) {
     s.grains.position.push_back(a.position(f, g));
     s.grains.velocity.push_back(a.velocity(f, g));
     s.grains.spin.push_back(a.spin(f, g));
+  }
+  if (a.state.look_steps >= 0) {
+    const auto n = std::ptrdiff_t(f.size());
+    s.state.scaled_mass.assign(a.mass.begin(), a.mass.begin() + n);
+    s.state.scaled_inverse_inertia.assign(a.inverse_inertia.begin(), a.inverse_inertia.begin() + n);
   }
   s.contacts = contacts_of(f, a.pairs);
   return in_id_order(std::move(s), a.state.memory_order);

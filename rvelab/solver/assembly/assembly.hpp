@@ -32,6 +32,7 @@ struct Fixture {
   /// 1 without rolling stiffness; sqrt(4 kt r^2/(4 kt r^2 + 2 kr)) of typical grains: how much slower than the contacts
   /// grains answer that slip about a stiff rolling spring, once their inertia is scaled for that spring.
   double softest_answer = 1;
+  double hardening = 1;                     ///< d ln f_n/d ln overlap of typical grains: 1 linear, 3/2 Hertz
   double thickness = 0;                     ///< m, 2D
   const std::atomic<bool>* stop = nullptr;  ///< true: advance throws Interrupted (Rve::watch)
   Workers* team = nullptr;                  ///< shares the steps of a large assembly (Rve::share)

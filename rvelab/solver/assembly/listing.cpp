@@ -216,6 +216,7 @@ Reduction rebuild(const Fixture& f, Assembly& a) {
     const Matrix3 back = reduction.rotation.transpose();
     rotate_rows(f, back, a.rows);
     a.state.mean_velocity = back * a.state.mean_velocity;
+    a.state.interval_stress = back * a.state.interval_stress * reduction.rotation;
     a.state.last_rate = without_lower_part(back * a.state.last_rate * reduction.rotation);
     for (Contact& c : carried) {
       const Eigen::Vector3i n = reduction.inverse_basis * Eigen::Vector3i(c.image[0], c.image[1], c.image[2]);

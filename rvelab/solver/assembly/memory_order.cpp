@@ -63,6 +63,8 @@ Specimen rearranged(Specimen s, const std::vector<std::int32_t>& order) {
   rearrange(s.grains.velocity, order);
   rearrange(s.grains.spin, order);
   rearrange(s.state.list_positions, order);
+  rearrange(s.state.scaled_mass, order);
+  rearrange(s.state.scaled_inverse_inertia, order);
   renumber(s.contacts, inverse_of(order), s.shape);
   return s;
 }

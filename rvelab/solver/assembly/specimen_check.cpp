@@ -1,6 +1,7 @@
 #include "rvelab/solver/assembly/specimen_check.hpp"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -26,6 +27,13 @@ void check_grains(const Specimen& s) {
   if (listed != 0 && listed != n)
     refuse("specimen: the state has positions of " + std::to_string(listed) +
            " grains for the neighbour list; it needs " + std::to_string(n) + ", or none");
+  const auto &mass = s.state.scaled_mass, &inverse = s.state.scaled_inverse_inertia;
+  const auto positive = [](double x) { return x > 0 && std::isfinite(x); };
+  if (mass.size() != inverse.size() || (!mass.empty() && mass.size() != n) ||
+      !std::all_of(mass.begin(), mass.end(), positive) || !std::all_of(inverse.begin(), inverse.end(), positive))
+    refuse(
+        "specimen: scaled_mass and scaled_inverse_inertia of the state must be finite, above 0 and one for each of " +
+        std::to_string(n) + " grains; leave both empty, and they are made anew");
   for (std::size_t k = 0; k < n; ++k) {
     const std::string who = "grain " + std::to_string(g.id[k]) + ": ";
     if (k > 0 && g.id[k] <= g.id[k - 1]) refuse(who + "ids must ascend; sort the grains by id, each id once");
@@ -113,7 +121,11 @@ void check_options(const SolverOptions& o) {
   expect(o.fixed_time_step >= 0, "fixed_time_step_s", o.fixed_time_step, ">= 0 s");
   expect(o.collision_steps == 0 || (o.collision_steps >= 5 && o.collision_steps <= 100'000), "collision_steps",
          double(o.collision_steps), "0, or 5 to 100000");
-  expect(o.target_unbalanced > 0, "target_unbalanced", o.target_unbalanced, "> 0");
+  expect(o.relative_tolerance > 0 && o.relative_tolerance <= 1, "relative_tolerance", o.relative_tolerance,
+         "above 0 to 1");
+  expect(o.absolute_tolerance > 0 && o.absolute_tolerance <= 1, "absolute_tolerance", o.absolute_tolerance,
+         "above 0 to 1");
+  expect(o.target_unbalanced >= 0, "target_unbalanced", o.target_unbalanced, ">= 0");
   expect(o.fixed_substeps >= 0, "fixed_substeps", double(o.fixed_substeps), ">= 0");
   expect(o.max_substeps > 0, "max_substeps", double(o.max_substeps), "> 0");
   expect(o.min_height >= 0, "min_height_m", o.min_height, ">= 0 m");

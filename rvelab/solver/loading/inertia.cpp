@@ -72,11 +72,14 @@ double typical_normal_force(const Fixture& f, double overlap) {
       f, [&](auto force) { return std::abs(normal_force_of<decltype(force)>(typical_pair(f).first, overlap)); });
 }
 
-void set_softest_answer(Fixture& f) {
+void set_typical_answers(Fixture& f) {
   f.softest_answer = 1;
-  if (!f.contact.rolling) return;
   const auto [one, radius] = typical_pair(f);
-  const ContactStiffness k = stiffness_of(f, one, 1e-3 * radius);
+  const double overlap = 1e-3 * radius;
+  const ContactStiffness k = stiffness_of(f, one, overlap);
+  const double force = typical_normal_force(f, overlap);
+  f.hardening = force > 0 ? std::clamp(k.normal * overlap / force, 1.0, 3.0) : 1;
+  if (!f.contact.rolling) return;
   const double slip = 4 * k.tangential * radius * radius;
   if (slip > 0) f.softest_answer = std::sqrt(slip / (slip + 2 * k.rolling));
 }
@@ -266,15 +269,6 @@ void scale_inertia(const Fixture& f, const RowSums& sums, Assembly& a) {
     a.inverse_mass[g] = 1 / a.mass[g];
     a.inverse_inertia[g] = 1 / inertia;
   }
-}
-
-bool inertia_outgrown(const Fixture& f, const RowSums& sums, const Assembly& a) {
-  // omega dt = 2 factor when the masses were set; up to 2 it stays stable. Nine tenths of that is the alarm.
-  const double margin = 4 * 0.81;
-  for (std::size_t g = 0; g < f.size(); ++g)
-    if (sums.translation[g] * a.inverse_mass[g] > margin || sums.rotation[g] * a.inverse_inertia[g] > margin)
-      return true;
-  return false;
 }
 
 void use_physical_inertia(const Fixture& f, Assembly& a) {

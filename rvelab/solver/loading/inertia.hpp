@@ -22,8 +22,8 @@ struct RowSums {
 /// Normal force of two of the largest grains at an overlap (m), N: a scale for specimens without any contact.
 double typical_normal_force(const Fixture& fixture, double overlap);
 
-/// Sets fixture.softest_answer from two of the largest grains.
-void set_softest_answer(Fixture& fixture);
+/// Sets fixture.softest_answer and fixture.hardening from two of the largest grains.
+void set_typical_answers(Fixture& fixture);
 
 RowSums row_sums(const Fixture& fixture, const Assembly& assembly);
 
@@ -36,8 +36,6 @@ RowSums with_floor(RowSums sums, const Fixture& fixture);
 
 /// Masses and inertias such that a unit step is `factor` times the critical one for every grain.
 void scale_inertia(const Fixture& fixture, const RowSums& sums, Assembly& assembly);
-/// Whether a contact formed or stiffened so much since scale_inertia that the unit step is no longer safe.
-bool inertia_outgrown(const Fixture& fixture, const RowSums& sums, const Assembly& assembly);
 
 void use_physical_inertia(const Fixture& fixture, Assembly& assembly);
 

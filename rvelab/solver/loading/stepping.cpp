@@ -208,7 +208,9 @@ void begin_loading(const Fixture& f, Assembly& a, Loading loading) {
     a.state.quasi_static = quasi_static;
     if (f.damping.dashpot != Dashpot::none) evaluate_forces(f, a);  // no velocity, no dashpot force
   }
-  if (!quasi_static) use_physical_inertia(f, a);
+  if (quasi_static) return;
+  use_physical_inertia(f, a);
+  a.state.look_steps = -1;
 }
 
 namespace {
@@ -346,6 +348,7 @@ Advanced advance(const Fixture& f, Assembly& a, const Advance& what) {
     }
   }
   a.state.grain_steps += std::uint64_t(made) * f.size();
+  if (!physical) a.state.look_steps += made;
   turn_frame(a.cell, way.end_rotation);
   return {made, step};
 }

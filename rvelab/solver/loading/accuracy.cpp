@@ -1,0 +1,27 @@
+#include "rvelab/solver/loading/accuracy.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rvelab {
+
+double network_stiffness(double pressure, double mean_overlap, double diameter, double hardening) {
+  return pressure > 0 && mean_overlap > 0 ? 0.7 * hardening * pressure * diameter / mean_overlap : 0.0;
+}
+
+double allowed_error(double relative, double absolute, double stress_change, double network_change, double pressure) {
+  return relative * std::max(stress_change, 0.1 * network_change) + absolute * std::max(pressure, 0.0);
+}
+
+double error_per_unbalance(double softness) {
+  const double s = std::clamp(softness, 0.4, 1.0);
+  return 0.4 / (s * s * std::sqrt(s));
+}
+
+double unbalance_of_start(double mismatch, double strain, double strain_of_overlap, double steps) {
+  // n^-1.35 as n^-1 n^-1/4 n^-1/8 (1.375): roots give the same bits everywhere.
+  const double root = std::sqrt(std::sqrt(steps));
+  return 0.9 * mismatch * (strain / strain_of_overlap) / (steps * root * std::sqrt(root));
+}
+
+}  // namespace rvelab
