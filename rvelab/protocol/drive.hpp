@@ -114,7 +114,7 @@ class RunningTest {
   static constexpr std::int32_t done_phase = 1000;
 
   Rve rve;
-  const Loading& loading;
+  const LoadingSettings& loading;
   TestRun run;
   std::function<void()> clock;  ///< brings progress.wall_seconds up to date
 

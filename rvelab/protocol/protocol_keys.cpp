@@ -31,7 +31,7 @@ std::vector<TableKey> test() {
 
 std::vector<TableKey> loading() {
   const char* t = "loading";
-  const Loading initial;
+  const LoadingSettings initial;
   return {
       word(t, "mode", {"quasi_static", "physical"},
            "how compression, simple shear, flow and deformation pass through time; physical: real masses at the given "

@@ -37,7 +37,7 @@ void read_test(const toml::table& table, Protocol& protocol, toml::table& resolv
 
 void read_loading(const toml::table& table, Protocol& protocol, toml::table& resolved, std::vector<KeyError>& errors) {
   TableReader reader(table, protocol::protocol_keys(), "loading", "loading", line_of(table), errors);
-  Loading& loading = protocol.loading;
+  LoadingSettings& loading = protocol.loading;
   loading.physical = reader.word("mode") == "physical";
   const bool has_rate = reader.has("rate_1_s"), has_number = reader.has("inertial_number");
   loading.rate = reader.optional_number("rate_1_s").value_or(0);
@@ -55,7 +55,7 @@ void read_loading(const toml::table& table, Protocol& protocol, toml::table& res
   }
   loading.held_tolerance = reader.number("held_tolerance");
   const bool usual_tolerance = loading.physical && !reader.has("held_tolerance");
-  if (usual_tolerance) loading.held_tolerance = Loading::held_tolerance_at_rate;
+  if (usual_tolerance) loading.held_tolerance = LoadingSettings::held_tolerance_at_rate;
   loading.held_wait = reader.whole_number("held_wait");
   reader.finish();
   toml::table complete = reader.resolved();

@@ -1,6 +1,8 @@
 // Letting go of what an assembly can make again, and making it again.
 #pragma once
 
+#include <utility>
+
 #include "rvelab/solver/assembly/assembly.hpp"
 #include "rvelab/solver/rve.hpp"
 
@@ -13,5 +15,14 @@ void rest(Assembly& assembly);
 void wake(const Fixture& fixture, Assembly& assembly);
 
 Memory memory_of(const Assembly& assembly);
+
+/// What `look` finds in an RVE (Rve::Impl) that has its working arrays. A resting one is copied and stays at rest, so
+/// that a const call changes nothing.
+template <class Impl, class Look>
+auto at_work(const Impl& rve, Look look) {
+  if (!rve.resting) return look(rve);
+  Impl copy = rve;
+  return look(std::as_const(copy.awake()));
+}
 
 }  // namespace rvelab

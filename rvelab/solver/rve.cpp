@@ -104,16 +104,18 @@ Memory Rve::memory() const {
   return memory;
 }
 
-Matrix3 Rve::contact_stress() const { return impl_->awake().contact_stress(); }
-Matrix3 Rve::reynolds_stress() const { return impl_->awake().reynolds_stress(); }
+Matrix3 Rve::contact_stress() const {
+  return at_work(*impl_, [](const Impl& m) { return m.contact_stress(); });
+}
+Matrix3 Rve::reynolds_stress() const {
+  return at_work(*impl_, [](const Impl& m) { return m.reynolds_stress(); });
+}
 Matrix3 Rve::stress() const {
-  const Impl& m = impl_->awake();
-  return m.contact_stress() + m.reynolds_stress();
+  return at_work(*impl_, [](const Impl& m) -> Matrix3 { return m.contact_stress() + m.reynolds_stress(); });
 }
 
 double Rve::unbalanced_ratio() const {
-  const Impl& m = impl_->awake();
-  return rvelab::unbalanced_ratio(balance_of(m.fixture, m.now), m.now.state.reference_contact_force);
+  return at_work(*impl_, [](const Impl& m) { return m.unbalanced(balance_of(m.fixture, m.now)); });
 }
 
 const Cell& Rve::cell() const { return impl_->now.cell; }
@@ -121,8 +123,7 @@ std::size_t Rve::size() const { return impl_->fixture.size(); }
 std::uint64_t Rve::grain_steps() const { return impl_->now.state.grain_steps; }
 
 double Rve::critical_time_step() const {
-  const Impl& m = impl_->awake();
-  return critical_step(m.fixture, row_sums(m.fixture, m.now));
+  return at_work(*impl_, [](const Impl& m) { return critical_step(m.fixture, row_sums(m.fixture, m.now)); });
 }
 
 Response Rve::Impl::respond(const Report& report, const Matrix3& gradient, double dt, const Want& want) const {

@@ -192,7 +192,7 @@ TEST_CASE("every key of the table is read, and each with the default that it sta
     if (key.name == "inertial_number") continue;                      // one of the two rates only
     if (key.name == "held_tolerance") {  // the test passes through time: collisions make a held stress fluctuate
       REQUIRE(node != nullptr);
-      CHECK(node->value<double>() == Loading::held_tolerance_at_rate);
+      CHECK(node->value<double>() == LoadingSettings::held_tolerance_at_rate);
       continue;
     }
     REQUIRE(node != nullptr);

@@ -1,4 +1,7 @@
 // A resting Rve has let go of what it can make again; nothing that it answers or does afterwards changes by a bit.
+#include <thread>
+#include <utility>
+
 #include "rvelab/error.hpp"
 #include "tests/oracle/specimens.hpp"
 
@@ -87,6 +90,29 @@ TEST_CASE("A resting Rve answers every question as one at work", "[solver]") {
     Rve copy_of_resting(start);
     copy_of_resting = rested();
     CHECK(after(copy_of_resting, relaxed) == after(rve, relaxed));
+  }
+}
+
+TEST_CASE("A const call leaves a resting Rve at rest, on several threads too", "[solver]") {
+  for (const Specimen& start : scenes()) {
+    Rve rve(start);
+    rve.apply(step(start.cell.dimension), 0);
+    const Matrix3 stress = rve.stress();
+    const double unbalanced = rve.unbalanced_ratio(), critical = rve.critical_time_step();
+    const std::size_t contacts = rve.network().contacts.size();
+    rve.rest();
+    const auto bytes = rve.save();
+    std::vector<Matrix3> found(4, Matrix3::Zero());
+    std::vector<std::thread> askers;
+    for (Matrix3& answer : found)
+      askers.emplace_back([&answer, &asked = std::as_const(rve)] { answer = asked.stress(); });
+    for (std::thread& asker : askers) asker.join();
+    for (const Matrix3& answer : found) CHECK(same_bits(answer, stress));
+    CHECK(rve.unbalanced_ratio() == unbalanced);
+    CHECK(rve.critical_time_step() == critical);
+    CHECK(rve.network().contacts.size() == contacts);
+    CHECK(rve.memory().working == 0);
+    CHECK(rve.save() == bytes);
   }
 }
 
