@@ -4,8 +4,8 @@
 #include <sstream>
 
 #include "rvelab/io/text_file.hpp"
+#include "rvelab/keys/enumerations.hpp"
 #include "rvelab/keys/material_keys.hpp"
-#include "rvelab/keys/words.hpp"
 
 namespace rvelab {
 namespace {

@@ -8,9 +8,9 @@
 #include <sstream>
 
 #include "rvelab/error.hpp"
+#include "rvelab/keys/enumerations.hpp"
 #include "rvelab/keys/key_units.hpp"
 #include "rvelab/keys/material_keys.hpp"
-#include "rvelab/keys/words.hpp"
 
 namespace rvelab {
 namespace {

@@ -65,13 +65,13 @@ const std::vector<EventQuantity>& event_quantities() {
 std::vector<keys::TableKey> event_keys() {
   using namespace keys;
   const char* t = "stage.until";
-  Words names;
+  Choices names;
   for (const EventQuantity& each : event_quantities()) names.emplace_back(each.name);
   return {
-      required(word(t, "quantity", names,
-                    "what is looked at with each record but the first; strain is that of the record; eps_v is "
-                    "compression positive, stresses tension positive; p_over_first: over p at the start of the stage",
-                    "")),
+      required(choice(t, "quantity", names,
+                      "what is looked at with each record but the first; strain is that of the record; eps_v is "
+                      "compression positive, stresses tension positive; p_over_first: over p at the start of the stage",
+                      "")),
       with_range(number(t, "above", "1", "", every, "the event: the quantity is above this, in its unit"),
                  "any finite number"),
       with_range(number(t, "below", "1", "", every, "the event: the quantity is below this, in its unit"),
@@ -89,7 +89,7 @@ std::vector<Event> read_events(TableReader& reader, const Stage& stage, std::vec
     TableReader until(*table, protocol_keys(), "stage.until",
                       "stage." + stage.name + ".until." + std::to_string(events.size()), keys::line_of(*table), errors);
     Event event;
-    event.quantity = until.word("quantity");
+    event.quantity = until.choice("quantity");
     const auto above = until.optional_number("above"), below = until.optional_number("below"),
                falls_by = until.optional_number("falls_by");
     if (above) event = {event.quantity, Event::When::above, *above, ""};

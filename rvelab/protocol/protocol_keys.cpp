@@ -33,9 +33,10 @@ std::vector<TableKey> loading() {
   const char* t = "loading";
   const LoadingSettings initial;
   return {
-      word(t, "mode", {"quasi_static", "physical"},
-           "how compression, simple shear, flow and deformation pass through time; physical: real masses at the given "
-           "rate"),
+      choice(
+          t, "mode", {"quasi_static", "physical"},
+          "how compression, simple shear, flow and deformation pass through time; physical: real masses at the given "
+          "rate"),
       number(t, "rate_1_s", "1/s", "", positive, "mode = physical: true rate of the driving strain"),
       number(t, "inertial_number", "1", "", positive,
              "mode = physical, in place of rate_1_s: I = rate d sqrt(rho/p) with p at the start of the stage"),
@@ -50,13 +51,13 @@ std::vector<TableKey> loading() {
 }
 
 TableKey quantities() {
-  TableKey key = listed("output", "quantities", "-", "list of words", "", KeyKind::words,
+  TableKey key = listed("output", "quantities", "-", "list of choices", "", KeyKind::choices,
                         "what is measured at each record beside strain and stress; the rest is not computed");
   for (const records::QuantityRow& row : records::quantity_rows) {
-    key.words.emplace_back(row.text.name);
-    key.key.range += (key.key.range.empty() ? "" : ", ") + key.words.back();
+    key.choices.emplace_back(row.text.name);
+    key.key.range += (key.key.range.empty() ? "" : ", ") + key.choices.back();
     if (!row.text.usual) continue;
-    key.key.initial += (key.key.initial.empty() ? "[\"" : ", \"") + key.words.back() + "\"";
+    key.key.initial += (key.key.initial.empty() ? "[\"" : ", \"") + key.choices.back() + "\"";
   }
   key.key.initial += "]";
   return key;
@@ -79,12 +80,12 @@ std::vector<TableKey> output_specimen_and_calibrate() {
 }
 
 std::vector<TableKey> stage() {
-  Words kinds;
+  Choices kinds;
   for (const StageKind& kind : stage_kinds()) kinds.push_back(kind.name);
   const std::string events = "events, each of which ends the stage; not with " + kinds_with_events(false);
   return {
-      required(word("stage", "kind", kinds, "what the stage does; its other keys are those of [[stage]] with this kind",
-                    "")),
+      required(choice("stage", "kind", kinds,
+                      "what the stage does; its other keys are those of [[stage]] with this kind", "")),
       text("stage", "name", "(its kind)", "name of its own, for --set stage.NAME.key=value and in the records"),
       text("stage", "then", "(the next)", "name of the stage that follows, \"end\" for none"),
       listed("stage", "until", "-", "list of tables", "[[stage.until]], any number", KeyKind::tables, events.c_str()),

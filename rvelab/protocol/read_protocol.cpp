@@ -38,7 +38,7 @@ void read_test(const toml::table& table, Protocol& protocol, toml::table& resolv
 void read_loading(const toml::table& table, Protocol& protocol, toml::table& resolved, std::vector<KeyError>& errors) {
   TableReader reader(table, protocol::protocol_keys(), "loading", "loading", line_of(table), errors);
   LoadingSettings& loading = protocol.loading;
-  loading.physical = reader.word("mode") == "physical";
+  loading.physical = reader.choice("mode") == "physical";
   const bool has_rate = reader.has("rate_1_s"), has_number = reader.has("inertial_number");
   loading.rate = reader.optional_number("rate_1_s").value_or(0);
   loading.inertial_number = reader.optional_number("inertial_number").value_or(0);
@@ -85,7 +85,7 @@ void read_calibrate(const toml::table& file, Protocol& protocol, toml::table& re
 void read_output(const toml::table& table, Protocol& protocol, toml::table& resolved, std::vector<KeyError>& errors) {
   TableReader reader(table, protocol::protocol_keys(), "output", "output", line_of(table), errors);
   protocol.snapshots_every = reader.whole_number("snapshots_every");
-  const auto names = reader.words("quantities");
+  const auto names = reader.choices("quantities");
   if (reader.has("quantities")) protocol.quantities = 0;
   for (const records::QuantityRow& row : records::quantity_rows) {
     if (std::find(names.begin(), names.end(), row.text.name) != names.end()) protocol.quantities |= row.bit;

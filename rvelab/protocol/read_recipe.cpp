@@ -31,7 +31,7 @@ void read_pack(const toml::table& table, RecipeFile& file, toml::table& resolved
   TableReader reader(table, protocol::recipe_keys(), "pack", "pack", line_of(table), errors);
   Recipe& recipe = file.recipe;
   file.name = reader.text("name");
-  recipe.shape = reader.word("shape") == "disc" ? Shape::disc : Shape::sphere;
+  recipe.shape = reader.choice("shape") == "disc" ? Shape::disc : Shape::sphere;
   recipe.number = std::size_t(reader.whole_number("number"));
   recipe.seed = std::uint64_t(reader.whole_number("seed"));
   if (recipe.shape == Shape::disc) {
@@ -41,8 +41,8 @@ void read_pack(const toml::table& table, RecipeFile& file, toml::table& resolved
     if (reader.has("thickness_m"))
       reader.mistake("thickness_m", "contradicts pack.shape = \"sphere\"; allowed: with discs only; remove one");
   }
-  recipe.oriented = reader.word("cell") == "oriented";
-  recipe.share_by_mass = reader.word("share_by") == "mass";
+  recipe.oriented = reader.choice("cell") == "oriented";
+  recipe.share_by_mass = reader.choice("share_by") == "mass";
   reader.finish();
   resolved.insert("pack", reader.resolved());
 }
@@ -56,8 +56,8 @@ void refuse(TableReader& reader, const std::string& name, const std::string& gra
 
 Grading read_grading(TableReader& reader) {
   Grading grading;
-  const std::string curve = reader.word("grading");
-  grading.by_mass = reader.word("passing_by") == "mass";
+  const std::string curve = reader.choice("grading");
+  grading.by_mass = reader.choice("passing_by") == "mass";
   if (curve == "tabulated") {
     grading.curve = GradingCurve::tabulated;
     grading.radii = reader.numbers("radii_m");
@@ -202,7 +202,7 @@ void read_target(const toml::table& table, RecipeFile& file, toml::table& resolv
 void read_preparation(const toml::table& table, Recipe& recipe, toml::table& resolved, std::vector<KeyError>& errors) {
   TableReader reader(table, protocol::recipe_keys(), "preparation", "preparation", line_of(table), errors);
   Preparation& preparation = recipe.preparation;
-  const bool growth = reader.word("method") == "growth";
+  const bool growth = reader.choice("method") == "growth";
   preparation.method = growth ? Preparation::Method::growth : Preparation::Method::compression;
   preparation.friction = reader.optional_number("friction");
   preparation.rolling_friction = reader.number("rolling_friction");

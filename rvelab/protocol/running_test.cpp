@@ -86,7 +86,7 @@ void RunningTest::enter(const Stage& stage) {
   at.rate = loading.rate;
   if (loading.physical && loading.inertial_number > 0) {
     const Network network = rve.network();
-    // I = rate d sqrt(rho/p), with the driving strain's rate (design 3)
+    // I = rate d sqrt(rho/p), the inertial number (GDR MiDi 2004), with the driving strain's rate
     at.rate = at.first_pressure > 0 ? loading.inertial_number * std::sqrt(at.first_pressure / solid_density(network)) /
                                           mean_diameter(network)
                                     : 0;
@@ -190,8 +190,8 @@ Report RunningTest::applied(Apply apply) {
 Report RunningTest::relax(double unbalanced, long max_steps) {
   // Slices of about a second, between which a checkpoint can be taken. Each call of Rve::relax scales the masses anew,
   // so their length must depend on nothing but the specimen.
-  constexpr long stretch = 25, grain_steps = 20'000'000;
-  const long slice = stretch * std::clamp(grain_steps / (stretch * static_cast<long>(rve.size() + 1)), 10L, 1000L);
+  constexpr long interval = 25, grain_steps = 20'000'000;
+  const long slice = interval * std::clamp(grain_steps / (interval * static_cast<long>(rve.size() + 1)), 10L, 1000L);
   Progress& at = run.progress;
   while (true) {
     Report report = rve.relax(unbalanced, std::min(slice, max_steps - static_cast<long>(at.relaxation_steps)));

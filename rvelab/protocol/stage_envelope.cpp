@@ -19,7 +19,7 @@ std::vector<TableKey> entries() {
   const char* t = "stage.envelope";
   const EnvelopeStage initial;
   return {
-      word(t, "probes", {"strain", "stress"}, "what is the same in every direction"),
+      choice(t, "probes", {"strain", "stress"}, "what is the same in every direction"),
       number(t, "size", "1", initial.size, {0, 0.1, true, false}, "probes = strain: norm of the strain"),
       number(t, "size_Pa", "Pa", "", positive, "probes = stress: norm of the change of stress"),
       whole_number(t, "directions", initial.directions, {1, 1e4},
@@ -33,7 +33,7 @@ std::vector<TableKey> entries() {
 EnvelopeStage read(StageSource& source) {
   TableReader& reader = source.reader;
   EnvelopeStage stage;
-  stage.stress_probes = reader.word("probes") == "stress";
+  stage.stress_probes = reader.choice("probes") == "stress";
   stage.size = reader.number("size");
   stage.stress_size = reader.optional_number("size_Pa").value_or(0);
   if (stage.stress_probes && !reader.has("size_Pa") && !reader.has_in_another_unit("size_Pa")) {

@@ -23,15 +23,15 @@ std::vector<TableKey> entries() {
   const IsotropicStage initial;
   return {
       number(t, "pressure_Pa", "Pa", "(test.pressure_Pa)", positive, "all normal stresses are brought to minus this"),
-      word(t, "shear", {"zero_strain", "zero_stress"},
-           "zero_strain: the cell keeps its angles; zero_stress: shear stresses are driven to zero"),
+      choice(t, "shear", {"zero_strain", "zero_stress"},
+             "zero_strain: the cell keeps its angles; zero_stress: shear stresses are driven to zero"),
       number(t, "stress_tolerance", "1", initial.stress_tolerance, ratio, "of the pressure; the stage ends within it"),
       number(t, "unbalanced", "1", initial.unbalanced, ratio, "unbalanced force ratio below which the stage ends"),
       number(t, "largest_change", "1", initial.largest_change, {0, 1, true, false},
              "largest change of stress in one increment, over the pressure"),
       whole_number(t, "max_rounds", initial.max_rounds, steps, "rounds of relaxing and correcting before it fails"),
       whole_number(t, "max_steps", initial.max_steps, steps, "sub-steps of one relaxation before it fails"),
-      truth(t, "record", initial.record, "records the state at the start and at the end"),
+      boolean(t, "record", initial.record, "records the state at the start and at the end"),
   };
 }
 
@@ -39,13 +39,13 @@ IsotropicStage read(StageSource& source) {
   TableReader& reader = source.reader;
   IsotropicStage stage;
   stage.pressure = pressure_of(reader, "pressure_Pa", source.protocol);
-  stage.shear_stress_free = reader.word("shear") == "zero_stress";
+  stage.shear_stress_free = reader.choice("shear") == "zero_stress";
   stage.stress_tolerance = reader.number("stress_tolerance");
   stage.unbalanced = reader.number("unbalanced");
   stage.largest_change = reader.number("largest_change");
   stage.max_rounds = reader.whole_number("max_rounds");
   stage.max_steps = reader.whole_number("max_steps");
-  stage.record = reader.truth("record");
+  stage.record = reader.boolean("record");
   return stage;
 }
 

@@ -22,8 +22,8 @@ void set_elastic(const Fixture& f, const PairTable& pairs, std::size_t p, Contac
     c.normal_stiffness = k.normal;
     c.tangential_stiffness = k.tangential;
     c.rolling_stiffness = k.rolling;
-    c.pressing_force = Force::pressing_force(c.normal_force, q.own);
-    c.elastic_energy = Force::normal_energy(q.kn, c.overlap, std::sqrt(c.overlap), q.own);
+    c.pressing_force = Force::pressing_force(c.normal_force, q.law_constant);
+    c.elastic_energy = Force::normal_energy(q.kn, c.overlap, std::sqrt(c.overlap), q.law_constant);
   });
   double spring = 0;
   for (int k = 0; k < f.tangential_components(); ++k) spring += pairs.tangential[k][p] * pairs.tangential[k][p];

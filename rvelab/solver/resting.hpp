@@ -1,4 +1,4 @@
-// Letting go of what an assembly can make again, and making it again.
+// Buffers that an assembly can make again: released while an RVE rests, rebuilt when it is at work.
 #pragma once
 
 #include <utility>
@@ -8,11 +8,11 @@
 
 namespace rvelab {
 
-/// Lets go of the working arrays; only wake, close and memory_of may be called then.
-void rest(Assembly& assembly);
+/// Frees the working arrays; only rebuild_buffers, close and memory_of may be called then.
+void release_buffers(Assembly& assembly);
 
-/// Makes them again: the bits are those before resting.
-void wake(const Fixture& fixture, Assembly& assembly);
+/// Makes them again: the bits are those before.
+void rebuild_buffers(const Fixture& fixture, Assembly& assembly);
 
 Memory memory_of(const Assembly& assembly);
 

@@ -83,13 +83,13 @@ Matrix3 Rve::Impl::reynolds_stress() const {
 }
 
 Rve::Impl& Rve::Impl::awake() {
-  if (resting) wake(fixture, now);
+  if (resting) rebuild_buffers(fixture, now);
   resting = false;
   return *this;
 }
 
 void Rve::rest() {
-  rvelab::rest(impl_->now);
+  release_buffers(impl_->now);
   impl_->sums = RowSums();
   impl_->moved();
   impl_->trial.release();
@@ -187,7 +187,7 @@ Report Rve::relax(double unbalanced, long max_steps) {
   return m.guarded([&] {
     Report report;
     m.begin_quasi_static();
-    constexpr long stretch = 25;
+    constexpr long interval = 25;  // sub-steps between looks at the balance
     // Cundall's damping is a part of the force: it hardly takes from a mode without stiffness, such as grains of an
     // even ring that counter-rotate like gears. Who is not at rest after this many steps is stopped at each peak of the
     // kinetic energy (dynamic relaxation: Cundall 1976; Day 1965).
@@ -200,7 +200,7 @@ Report Rve::relax(double unbalanced, long max_steps) {
       if (report.unbalanced_ratio <= unbalanced || report.substeps >= max_steps) break;
       const RowSums& sums = m.present_sums();
       if (inertia_outgrown(m.fixture, sums, m.now)) rescale_inertia(m.fixture, sums, m.now);
-      const long steps = std::min(stretch, max_steps - report.substeps);
+      const long steps = std::min(interval, max_steps - report.substeps);
       advance(m.fixture, m.now, {still, steps, 1.0, Loading::quasi_static});
       m.moved();
       report.substeps += steps;

@@ -49,7 +49,7 @@ struct SolverOptions {
   bool ledger = false;              ///< keep the energy ledger (measured cost in tools/bench)
 };
 
-/// Energy ledger, J, sums since the specimen was opened first (design 7). Zero when not kept.
+/// Energy ledger, J, sums since the specimen was opened first (solver/README.md). Zero when not kept.
 struct EnergyLedger {
   double boundary_work = 0;
   double friction = 0, rolling = 0, dashpot = 0;
@@ -60,21 +60,21 @@ struct EnergyLedger {
 
 /// Solver state that decides the next bit, beside grains, contacts and cell.
 struct SolverState {
-  bool has_reference = false;               ///< the next five say when to list anew
-  Matrix3 list_lattice = Matrix3::Zero();   ///< lattice when the list was built, m
-  std::vector<Vector3> list_positions;      ///< positions then, m, cell frame; empty: only the bound below is used
-  double list_travel = 0;                   ///< bound on the largest fluctuation displacement since then, m
-  double list_skin = 0;                     ///< skin that the list was built with, m; 0: solver.skin
-  std::int64_t list_steps = 0;              ///< sub-steps made since then
-  double strain_per_step = 0;               ///< dt = 0: pace of the sub-step controller; 0: not yet known
-  Matrix3 servo_strain = Matrix3::Zero();   ///< mixed targets: strain per unit of paced strain learnt so far, lab frame
-  Matrix3 servo_rate = Matrix3::Zero();     ///< dt > 0: rate of strain of its last stroke, 1/s, lab frame
-  double reference_contact_force = 0;       ///< N, mean contact force at the specimen's own p0; 0: set on opening
-  double reference_overlap = 0;             ///< m, mean overlap at the specimen's own p0; 0: set on opening
-  double reference_pressure = 0;            ///< Pa, the specimen's own p0; 0: set on opening
-  bool quasi_static = true;                 ///< units of the stored velocities (see Grains)
-  Matrix3 last_rate = Matrix3::Zero();      ///< D of the last sub-step, cell frame (dashpot forces need it)
-  double last_step = 0;                     ///< length of the last sub-step: s, or 1 at dt = 0
+  bool has_reference = false;              ///< the next five say when to list anew
+  Matrix3 list_lattice = Matrix3::Zero();  ///< lattice when the list was built, m
+  std::vector<Vector3> list_positions;     ///< positions then, m, cell frame; empty: only the bound below is used
+  double list_travel = 0;                  ///< bound on the largest fluctuation displacement since then, m
+  double list_skin = 0;                    ///< skin that the list was built with, m; 0: solver.skin
+  std::int64_t list_steps = 0;             ///< sub-steps made since then
+  double strain_per_step = 0;              ///< dt = 0: pace of the sub-step controller; 0: not yet known
+  Matrix3 servo_strain = Matrix3::Zero();  ///< mixed targets: integral term, strain per unit of paced strain, lab frame
+  Matrix3 servo_rate = Matrix3::Zero();    ///< dt > 0: rate of strain of its last update, 1/s, lab frame
+  double reference_contact_force = 0;      ///< N, mean contact force at the specimen's own p0; 0: set on opening
+  double reference_overlap = 0;            ///< m, mean overlap at the specimen's own p0; 0: set on opening
+  double reference_pressure = 0;           ///< Pa, the specimen's own p0; 0: set on opening
+  bool quasi_static = true;                ///< units of the stored velocities (see Grains)
+  Matrix3 last_rate = Matrix3::Zero();     ///< D of the last sub-step, cell frame (dashpot forces need it)
+  double last_step = 0;                    ///< length of the last sub-step: s, or 1 at dt = 0
   Vector3 mean_velocity = Vector3::Zero();  ///< mass-weighted mean v' that the next step takes out
   Vector3 mean_spin = Vector3::Zero();      ///< axial(W + Omega) of the last sub-step, rad/s (dt > 0)
   std::uint64_t grain_steps = 0;            ///< grains times sub-steps made so far

@@ -28,8 +28,8 @@ class CaseReader {
     one_.invariant = text("invariant");
     one_.source = text("source");
     one_.tolerance = number("tolerance");
-    one_.may_refuse = truth("may_refuse");
-    one_.may_flag = truth("may_flag");
+    one_.may_refuse = boolean("may_refuse");
+    one_.may_flag = boolean("may_flag");
     one_.seconds = number("seconds");
     one_.memory_MiB = number("memory_MiB");
     expect_limits();
@@ -66,7 +66,7 @@ class CaseReader {
     if (!node->is_number()) mistake(*node, std::string("case.") + key + " is no number; allowed: a number > 0");
     return node->value_or(0.0);
   }
-  bool truth(const char* key) {
+  bool boolean(const char* key) {
     const toml::node* node = table_.get(key);
     if (node != nullptr && !node->is_boolean())
       mistake(*node, std::string("case.") + key + " is neither true nor false; write one of them");

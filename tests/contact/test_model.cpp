@@ -1,4 +1,4 @@
-// Contact parameters: mixing, dashpots, ranges, names (design 6).
+// Contact parameters: mixing, dashpots, ranges, names.
 #include "rvelab/contact/model.hpp"
 #include "rvelab/contact/restitution.hpp"
 

@@ -61,7 +61,7 @@ TEST_CASE("Stiffness times 8192 at the same strains gives 8192 times the stress,
 TEST_CASE("Stiffness times 10,000 at the same strains gives 10,000 times the stress", "[extreme]") {
   Rve soft(stiffened(1)), stiff(stiffened(1e4));
   CHECK(largest(1e4 * soft.stress() - stiff.stress()) <= 1e-10 * 1e9);
-  for (int k = 0; k < 10; ++k) {  // the first 0.02 % strain (design 5)
+  for (int k = 0; k < 10; ++k) {  // the first 0.02 % strain from rest: solver/README.md
     const Matrix3 a = soft.apply(biaxial(2e-5), 0).stress, b = stiff.apply(biaxial(2e-5), 0).stress;
     CHECK(largest(1e4 * a - b) <= 1e-10 * 1e9);
   }

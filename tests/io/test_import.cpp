@@ -29,7 +29,7 @@ double overlap(const Specimen& s, const Contact& c) {
   return s.grains.radius[std::size_t(c.i)] + s.grains.radius[std::size_t(c.j)] - branch(s, c).norm();
 }
 
-/// Force on grain j, from the formulas of design 6 for equal materials.
+/// Force on grain j, from the formulas of contact/ for equal materials.
 Vector3 force(const Specimen& s, const Contact& c) {
   const double ri = s.grains.radius[std::size_t(c.i)], rj = s.grains.radius[std::size_t(c.j)];
   const Material& m = s.materials[0];

@@ -1,4 +1,4 @@
-// Stiffness probes by increments, against the elastic tangent and the recorded stiffness (design 7).
+// Stiffness probes by increments, against the elastic tangent and the recorded stiffness.
 #include "rvelab/measure/probe.hpp"
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The energy ledger at dt > 0 (design 7): change of elastic and kinetic energy = boundary work less all losses.
+// The energy ledger at dt > 0 (solver/README.md): change of elastic and kinetic energy = boundary work less all losses.
 //
 // Kinetic energy is the mean of the two half steps about the state, with v' and the whole spin w' + axial(W + Omega).
 // The residual is a matter of the time step alone. It falls as dt^2 for normal forces. Tangential springs are stretched

@@ -110,20 +110,20 @@ std::string message_of(const std::string& text, const std::vector<std::string>& 
 std::string some_value(const keys::TableKey& entry) {
   using keys::KeyKind;
   switch (entry.kind) {
-    case KeyKind::truth:
+    case KeyKind::boolean:
       return "true";
     case KeyKind::text:
       return "words";
-    case KeyKind::word:
-      return entry.words.front();
+    case KeyKind::choice:
+      return entry.choices.front();
     case KeyKind::numbers:
       return "[1000.0]";
     case KeyKind::whole_number:
       return std::to_string(std::lround(std::min(entry.range.high, entry.range.low + 1)));
     case KeyKind::number:
       return "0.005";
-    case KeyKind::words:
-      return "[\"" + entry.words.front() + "\"]";
+    case KeyKind::choices:
+      return "[\"" + entry.choices.front() + "\"]";
     case KeyKind::components:
       return "{zz = 1.0}";
     case KeyKind::matrices:

@@ -52,7 +52,7 @@ TEST_CASE("Drained compression records at its fixed strains, with the lateral st
   CHECK(records[0].stress(1, 1) == Approx(-20e3).epsilon(1e-3));
 }
 
-TEST_CASE("What the servo learnt in one stage does not move the strains that the next one prescribes") {
+TEST_CASE("The integral term of one stage does not move the strains that the next one prescribes") {
   const TestRun run = run_text(
       "[[stage]]\nkind = \"isotropic\"\npressure_Pa = 24e3\n"
       "[[stage]]\nkind = \"compression\"\nto_strain = 0.003\nlateral_pressure_Pa = 24e3\n",

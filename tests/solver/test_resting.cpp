@@ -10,8 +10,8 @@ using namespace rvelab::test;
 
 namespace {
 
-/// Scenes that differ in what has to be made again: parameters, histories, dashpot forces, radii, images.
-std::vector<Specimen> scenes() {
+/// Configurations that differ in what has to be made again: parameters, histories, dashpot forces, radii, images.
+std::vector<Specimen> configurations() {
   std::vector<Specimen> all;
   Material rolling = linear_material(2e6, 1e6, 0.4);
   rolling.rolling_stiffness = 1;
@@ -38,7 +38,7 @@ Matrix3 step(int dimension) {
 }  // namespace
 
 TEST_CASE("Resting between calls changes no bit of what an Rve does", "[solver]") {
-  for (const Specimen& start : scenes())
+  for (const Specimen& start : configurations())
     for (const double dt : {0.0, 1e-4}) {
       Rve resting(start), restless(start);
       for (int k = 0; k < 5; ++k) {
@@ -54,7 +54,7 @@ TEST_CASE("Resting between calls changes no bit of what an Rve does", "[solver]"
 }
 
 TEST_CASE("A resting Rve answers every question as one at work", "[solver]") {
-  for (const Specimen& start : scenes()) {
+  for (const Specimen& start : configurations()) {
     Rve rve(start);
     rve.apply(step(start.cell.dimension), 1e-4);
     const auto rested = [&] {
@@ -94,7 +94,7 @@ TEST_CASE("A resting Rve answers every question as one at work", "[solver]") {
 }
 
 TEST_CASE("A const call leaves a resting Rve at rest, on several threads too", "[solver]") {
-  for (const Specimen& start : scenes()) {
+  for (const Specimen& start : configurations()) {
     Rve rve(start);
     rve.apply(step(start.cell.dimension), 0);
     const Matrix3 stress = rve.stress();
@@ -117,7 +117,7 @@ TEST_CASE("A const call leaves a resting Rve at rest, on several threads too", "
 }
 
 TEST_CASE("A failed call leaves a resting Rve as it was", "[solver]") {
-  Rve rve(scenes().front());
+  Rve rve(configurations().front());
   rve.apply(step(2), 0);
   const auto before = rve.save();
   rve.rest();

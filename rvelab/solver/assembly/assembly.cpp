@@ -123,7 +123,7 @@ PairArrays arrays_of(PairTable& t) {
   p.kn = t.kn.data();
   p.kt = t.kt.data();
   p.friction = t.friction.data();
-  p.own = t.own.data();
+  p.law_constant = t.law_constant.data();
   p.kr = t.kr.data();
   p.moment_cap = t.moment_cap.data();
   p.cn = t.cn.data();

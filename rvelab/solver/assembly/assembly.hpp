@@ -59,10 +59,10 @@ struct PairTable {
   std::vector<std::int32_t> order;    ///< places of the pairs in the order of (i, j, image)
   std::vector<std::uint8_t> touched;  ///< kernels/configuration.hpp
   std::vector<std::int32_t> i, j;
-  std::vector<std::int32_t> row_i, row_j;  ///< i, j times the row length
+  std::vector<std::int32_t> row_i, row_j;  ///< i, j times the length of a grain row
   std::vector<Image> image;
   Buffer image_number[3];
-  Buffer kn, kt, own, friction, kr, moment_cap, cn;
+  Buffer kn, kt, law_constant, friction, kr, moment_cap, cn;
   Buffer tangential[3], moment[3], root_overlap, force;
   Buffer radius_i, radius_j;                    ///< 2D
   std::vector<std::int32_t> slot_begin, slots;  ///< gather table (kernels/configuration.hpp)

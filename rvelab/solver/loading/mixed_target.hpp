@@ -1,4 +1,4 @@
-// What is asked of strain and stress together: rows A : dE + B : d sigma = c.
+// What is asked of strain and stress together: constraints A : dE + B : d sigma = c, a row each.
 #pragma once
 
 #include <vector>
