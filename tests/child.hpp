@@ -4,7 +4,9 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -64,7 +66,7 @@ class Child {
   /// Exit code, or 128 plus the number of the signal that ended it.
   int wait() {
     int status = 0;
-    while (waitpid(process_, &status, 0) < 0) continue;
+    while (wait4(process_, &status, 0, &used_) < 0) continue;
     process_ = -1;
     return code_of(status);
   }
@@ -74,7 +76,7 @@ class Child {
     const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
     do {
       int status = 0;
-      if (waitpid(process_, &status, WNOHANG) > 0) {
+      if (wait4(process_, &status, WNOHANG, &used_) > 0) {
         process_ = -1;
         return code_of(status);
       }
@@ -83,7 +85,29 @@ class Child {
     return -1;
   }
 
+  /// Processor time of all its threads, s; of one that was waited for, in all. Other work on the machine is not in it.
+  double processor_seconds() const {
+    if (process_ < 0) return seconds_of(used_.ru_utime) + seconds_of(used_.ru_stime);
+    clockid_t clock;
+    timespec now{};
+    if (clock_getcpuclockid(process_, &clock) != 0 || clock_gettime(clock, &now) != 0) return 0;
+    return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
+  }
+
+  /// Waits until it has worked for so much longer (s of processor time), two minutes at most; false: it had ended.
+  bool works_for(double seconds) const {
+    const double until = processor_seconds() + seconds;
+    for (int k = 0; k < 60'000; ++k) {
+      if (processor_seconds() >= until) return true;
+      siginfo_t ended{};
+      if (waitid(P_PID, id_t(process_), &ended, WEXITED | WNOHANG | WNOWAIT) == 0 && ended.si_pid != 0) return false;
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    return false;
+  }
+
  private:
+  static double seconds_of(const timeval& time) { return double(time.tv_sec) + 1e-6 * double(time.tv_usec); }
   static int code_of(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status); }
   static std::vector<char*> pointers(std::vector<std::string>& texts) {
     std::vector<char*> list;
@@ -92,6 +116,7 @@ class Child {
     return list;
   }
   pid_t process_ = -1;
+  rusage used_{};  // once it was waited for
 };
 
 }  // namespace rvelab::test

@@ -1,5 +1,5 @@
 // Deformation of the cell and its frame, wrapping, image shifts, heights. Only + - * / sqrt and exact rounding are
-// used: the results decide the next bit of an RVE. (Design 4; Qu, Feng and Wang, eq. 1-9, with the spin kept.)
+// used: the results decide the next bit of an RVE. (Qu, Feng and Wang, eq. 1-9, with the spin kept: solver/README.md.)
 #include "rvelab/cell/cell.hpp"
 
 #include <Eigen/Geometry>

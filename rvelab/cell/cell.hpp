@@ -5,7 +5,7 @@
 // Conventions. The columns of the lattice matrix L are the cell vectors a, b, c; L is upper triangular with positive
 // diagonal and is written in the cell frame. The rotation Q takes cell-frame vectors to the laboratory:
 // v_lab = Q v_cell, sigma_lab = Q sigma_cell Q^T. In 2D the third cell vector is (0, 0, thickness): it carries the
-// volume and is never periodic, deformed or reduced. All lengths in m. (Design 4; Qu, Feng and Wang, eq. 1-9.)
+// volume and is never periodic, deformed or reduced. All lengths in m. (Qu, Feng and Wang, eq. 1-9.)
 #pragma once
 
 #include <Eigen/Core>

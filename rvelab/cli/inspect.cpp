@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <type_traits>
 
 #include "rvelab/cli/commands.hpp"
 #include "rvelab/cli/report.hpp"
@@ -9,10 +10,16 @@
 #include "rvelab/io/recorded_test.hpp"
 #include "rvelab/io/specimen_file.hpp"
 #include "rvelab/measure/measures.hpp"
+#include "rvelab/records/quantities.hpp"
 #include "rvelab/solver/rve.hpp"
 
 namespace rvelab::cli {
 namespace {
+
+void add_measured(Listing& listing, const records::QuantityText& text, double value) {
+  const std::string unit = text.unit;
+  listing.add(text.name, value, unit == "1" ? "" : unit);
+}
 
 void add_state(Listing& listing, const Rve& rve) {
   const Network network = rve.network();
@@ -24,10 +31,9 @@ void add_state(Listing& listing, const Rve& rve) {
   listing.add("stress_Pa", row_major(stress), "Pa");
   listing.add("p_Pa", mean_pressure(stress, dimension), "Pa");
   listing.add("q_Pa", deviatoric_stress(stress, dimension), "Pa");
-  listing.add("void_ratio", void_ratio(network));
-  listing.add("coordination_number", coordination_number(network));
-  listing.add("fabric_anisotropy", fabric_anisotropy(fabric(network), dimension));
-  listing.add("sliding_fraction", sliding_fraction(network));
+  records::Quantities::for_each([&]<class Quantity>(std::type_identity<Quantity>, std::uint64_t) {
+    if constexpr (Quantity::text.usual) add_measured(listing, Quantity::text, Quantity::measure(rve, network));
+  });
   listing.add("unbalanced_force_ratio", unbalanced_force_ratio(network));
   listing.add("unbalanced_torque_ratio", unbalanced_torque_ratio(network));
   listing.add("lattice_m", row_major(network.cell.lattice), "m");
@@ -66,13 +72,13 @@ void add_model(Listing& listing, const Specimen& specimen) {
 void run_inspect(const std::string& path, bool as_json) {
   // A run that has published nothing yet has its journal only.
   const bool only_journal = !std::filesystem::exists(path) && std::filesystem::exists(io::journal_of(path));
-  const bool has_records = only_journal || file_kind(path) == FileKind::records;
+  const bool has_records = only_journal || io::file_kind(path) == io::FileKind::records;
   Listing listing;
   listing.add("file", path);
   listing.add("kind", has_records ? "records" : "specimen");
   Specimen specimen;
   if (has_records) {
-    RecordedTest test = read_recorded_test(path);
+    io::RecordedTest test = io::read_recorded_test(path);
     listing.add("protocol", test.result.protocol);
     listing.add("complete", test.complete ? 1 : 0);
     listing.add("records", test.result.records.size());
@@ -80,8 +86,8 @@ void run_inspect(const std::string& path, bool as_json) {
     listing.add("stages", test.result.stages);
     specimen = std::move(test.checkpoint.specimen);
   } else {
-    specimen = read_specimen(path);
-    if (const auto origin = read_origin(path)) {
+    specimen = io::read_specimen(path);
+    if (const auto origin = io::read_origin(path)) {
       listing.add("seed", origin->seed);
       listing.add("draw", origin->draw);
       listing.add("preparation_friction", origin->preparation_friction);

@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 /// is what is not defined, and infinities are null in JSON, and NaN is "-" in the listing. Arrays are row-major.
 class Listing {
  public:
-  /// `value`: number, text, truth, array or object. `unit` stands in the listing only ("" for none); JSON keys end in
+  /// `value`: number, text, boolean, array or object. `unit` stands in the listing only ("" for none); JSON keys end in
   /// their unit.
   void add(const std::string& key, Json value, const std::string& unit = "");
   /// A line that only the one form or the other has.

@@ -14,14 +14,14 @@ struct HertzGivenForce : LinearForce {
   using Impact = HertzImpact;
 
   template <class V>
-  static inline __attribute__((always_inline)) V normal_force(V kn, V overlap, V root, V /*own*/) {
+  static inline __attribute__((always_inline)) V normal_force(V kn, V overlap, V root, V /*law_constant*/) {
     return kn * (overlap * root);
   }
   template <class V>
   static inline __attribute__((always_inline)) V normal_stiffness(V kn, V root) {
     return 1.5 * kn * root;
   }
-  static double normal_energy(double kn, double overlap, double root, double /*own*/) {
+  static double normal_energy(double kn, double overlap, double root, double /*law_constant*/) {
     return 0.4 * kn * overlap * overlap * root;
   }
 };

@@ -17,7 +17,7 @@ namespace rvelab {
 struct LinearForce {
   static constexpr bool needs_root_overlap = false;
   static constexpr bool stores_root_overlap = false;
-  static constexpr bool has_own_constant = false;
+  static constexpr bool has_law_constant = false;
   using Impact = LinearImpact;
 
   /// Repulsion, N. `root` is sqrt(overlap), `own` the law's own constant of the contact.

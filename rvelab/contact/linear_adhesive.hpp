@@ -14,18 +14,18 @@
 namespace rvelab {
 
 struct LinearAdhesiveForce : LinearForce {
-  static constexpr bool has_own_constant = true;  ///< c, N
+  static constexpr bool has_law_constant = true;  ///< c, N
 
   template <class V>
-  static inline __attribute__((always_inline)) V normal_force(V kn, V overlap, V /*root*/, V own) {
-    return kn * overlap - own;
+  static inline __attribute__((always_inline)) V normal_force(V kn, V overlap, V /*root*/, V law_constant) {
+    return kn * overlap - law_constant;
   }
   template <class V>
-  static inline __attribute__((always_inline)) V pressing_force(V normal, V own) {
-    return normal + own;
+  static inline __attribute__((always_inline)) V pressing_force(V normal, V law_constant) {
+    return normal + law_constant;
   }
-  static double normal_energy(double kn, double overlap, double /*root*/, double own) {
-    return 0.5 * kn * overlap * overlap - own * overlap;
+  static double normal_energy(double kn, double overlap, double /*root*/, double law_constant) {
+    return 0.5 * kn * overlap * overlap - law_constant * overlap;
   }
 };
 
@@ -54,7 +54,7 @@ struct LinearAdhesiveLaw {
   static ContactConstants mix(const Material& a, double ri, const Material& b, double rj, double section) {
     ContactConstants constants = LinearLaw::mix(a, ri, b, rj, section);
     const auto pull_off = [&](const Material& m) { return m.pull_off_force + m.adhesion_pressure * section; };
-    constants.own = harmonic_mean(pull_off(a), pull_off(b));
+    constants.law_constant = harmonic_mean(pull_off(a), pull_off(b));
     return constants;
   }
 };

@@ -193,7 +193,7 @@ PairParameters mix(const ContactModel& model, const Damping& damping, const Mate
   PairParameters pair;
   pair.kn = constants.kn;
   pair.kt = constants.kt;
-  pair.own = constants.own;
+  pair.law_constant = constants.law_constant;
   pair.friction = std::min(a.friction, b.friction);
   if (model.rolling) {
     pair.kr = pair.kt * (ri * rj) * harmonic_mean(a.rolling_stiffness, b.rolling_stiffness);
@@ -203,7 +203,7 @@ PairParameters mix(const ContactModel& model, const Damping& damping, const Mate
   return pair;
 }
 
-void check(const ContactModel& model, const Damping& damping, const std::vector<Material>& materials) {
+void check_parameters(const ContactModel& model, const Damping& damping, const std::vector<Material>& materials) {
   Findings findings;
   check_damping(model, damping, findings);
   if (materials.empty()) findings.add("materials: none given; allowed: one or more; name at least one grain material");

@@ -58,13 +58,13 @@ const std::vector<LawParameter>& law_parameters();
 
 /// Parameters of one pair of grains, computed once when the pair is listed.
 struct PairParameters {
-  double kn = 0;          ///< constant of f_n: linear N/m, Hertz N/m^1.5 (contact/laws.hpp)
-  double kt = 0;          ///< constant of k_t: N/m; hertz_mindlin N/m^1.5
-  double own = 0;         ///< one more, of laws that have one
-  double friction = 0;    ///< the smaller of the two
-  double kr = 0;          ///< constant of k_r = kt ri rj beta: N m; hertz_mindlin N m/m^0.5
-  double moment_cap = 0;  ///< min(eta_i ri, eta_j rj), m
-  double cn = 0;          ///< dashpot: c_n = cn delta^dashpot_power
+  double kn = 0;            ///< constant of f_n: linear N/m, Hertz N/m^1.5 (contact/laws.hpp)
+  double kt = 0;            ///< constant of k_t: N/m; hertz_mindlin N/m^1.5
+  double law_constant = 0;  ///< one more, of laws that have one
+  double friction = 0;      ///< the smaller of the two
+  double kr = 0;            ///< constant of k_r = kt ri rj beta: N m; hertz_mindlin N m/m^0.5
+  double moment_cap = 0;    ///< min(eta_i ri, eta_j rj), m
+  double cn = 0;            ///< dashpot: c_n = cn delta^dashpot_power
 };
 
 /// Power of the overlap in the dashpot coefficient: 0 (coefficient, linear), 1/2 (viscoelastic), 1/4 (restitution and
@@ -77,7 +77,7 @@ PairParameters mix(const ContactModel& model, const Damping& damping, const Mate
                    const Material& b, double rj, double mj, double section);
 
 /// Checks every parameter that the model uses. Throws InputError naming key, value and range, one line each.
-void check(const ContactModel& model, const Damping& damping, const std::vector<Material>& materials);
+void check_parameters(const ContactModel& model, const Damping& damping, const std::vector<Material>& materials);
 
 const char* name(Law);
 const char* name(Slip);

@@ -6,7 +6,7 @@ namespace rvelab {
 /// Constants of one contact: f_n and the current stiffnesses follow from them and the overlap.
 struct ContactConstants {
   double kn = 0, kt = 0;
-  double own = 0;  ///< one more, of laws that have one
+  double law_constant = 0;  ///< one more, of laws that have one
 };
 
 /// 2ab/(a + b), zero if either is zero.

@@ -178,7 +178,7 @@ double normal_force_of(const Specimen& specimen, const Contact& contact) {
   if (overlap <= 0) return 0;
   const PairParameters pair = parameters_of(specimen, contact);
   return with_law(specimen.contact.law, [&](auto law) {
-    return decltype(law)::Force::normal_force(pair.kn, overlap, std::sqrt(overlap), pair.own);
+    return decltype(law)::Force::normal_force(pair.kn, overlap, std::sqrt(overlap), pair.law_constant);
   });
 }
 

@@ -6,14 +6,14 @@
 #include <string>
 #include <vector>
 
-namespace rvelab {
+namespace rvelab::keys {
 
 /// A key that a file or the command line may set, and what there is to say about it.
 struct Key {
   std::string table;    ///< "contact", "damping", "solver", "material", or a table of a protocol
   std::string name;     ///< ends in its unit, for example "young_modulus_Pa"
-  std::string unit;     ///< "1" for a pure number, "-" for words and truth values
-  std::string type;     ///< "number", "whole number", "truth", "word", "text", "list of numbers"
+  std::string unit;     ///< "1" for a pure number, "-" for texts, choices and booleans
+  std::string type;     ///< "number", "whole number", "boolean", "choice", "text", "list of numbers"
   std::string initial;  ///< default, as TOML writes it, or in words; "" if the key has none of its own
   std::string range;    ///< allowed values in words
   std::string meaning;
@@ -55,4 +55,4 @@ void raise(const std::string& path, std::vector<KeyError> errors);
 /// Parses a TOML file. InputError naming file, line and column if it is missing or not TOML.
 toml::table parse_toml_file(const std::string& path);
 
-}  // namespace rvelab
+}  // namespace rvelab::keys

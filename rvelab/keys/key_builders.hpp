@@ -4,17 +4,20 @@
 #include <limits>
 #include <sstream>
 
+#include "rvelab/keys/enumerations.hpp"
 #include "rvelab/keys/table_key.hpp"
 
 namespace rvelab::keys {
 
-using Words = std::vector<std::string>;
+using Choices = std::vector<std::string>;
 
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 inline constexpr Interval any{0, 0};
 inline constexpr Interval every{-infinity, infinity, true, true};
 inline constexpr Interval positive{0, infinity, true, true};
+inline constexpr Interval not_negative{0, infinity, false, true};
 inline constexpr Interval ratio{0, 1, true, true};
+inline constexpr Interval below_one{0, 1, false, true};
 inline constexpr Interval steps{1, 1e12};
 
 inline std::string as_toml(double value) {
@@ -24,6 +27,11 @@ inline std::string as_toml(double value) {
   return text.str();
 }
 inline std::string as_toml(long value) { return std::to_string(value); }
+inline std::string as_toml(bool value) { return value ? "true" : "false"; }
+template <class Text>
+std::string as_toml(const Text& value) {
+  return "\"" + text_of(value) + "\"";
+}
 
 // The default is that of the struct that the key fills: it is written nowhere twice.
 
@@ -48,37 +56,33 @@ inline TableKey whole_number(const char* table, const char* name, long initial, 
           initial};
 }
 
-inline TableKey truth(const char* table, const char* name, bool initial, const char* meaning) {
-  return {{table, name, "-", "truth", initial ? "true" : "false", "true, false", meaning},
-          KeyKind::truth,
-          any,
-          {},
-          initial};
+inline TableKey boolean(const char* table, const char* name, bool initial, const char* meaning) {
+  return {{table, name, "-", "boolean", as_toml(initial), "true, false", meaning}, KeyKind::boolean, any, {}, initial};
 }
 
 inline TableKey text(const char* table, const char* name, const char* initial, const char* meaning) {
   return {{table, name, "-", "text", initial, "any text", meaning}, KeyKind::text, any, {}, {}};
 }
 
-/// The first word is the default, unless `initial` says something else in words.
-inline TableKey word(const char* table, const char* name, const Words& words, const char* meaning,
-                     const char* initial = nullptr) {
+/// The first choice is the default, unless `initial` says something else in words.
+inline TableKey choice(const char* table, const char* name, const Choices& choices, const char* meaning,
+                       const char* initial = nullptr) {
   std::string allowed;
-  for (const auto& each : words) allowed += (allowed.empty() ? "" : ", ") + each;
+  for (const auto& each : choices) allowed += (allowed.empty() ? "" : ", ") + each;
   // Member by member: of a list in braces gcc 12 frees the texts twice if memory runs out on the way.
   TableKey key;
   key.key.table = table;
   key.key.name = name;
   key.key.unit = "-";
-  key.key.type = "word";
+  key.key.type = "choice";
   key.key.range = allowed;
   key.key.meaning = meaning;
-  key.kind = KeyKind::word;
+  key.kind = KeyKind::choice;
   key.range = any;
-  key.words = words;
+  key.choices = choices;
   if (initial == nullptr) {
-    key.initial = words.front();
-    key.key.initial = "\"" + words.front() + "\"";
+    key.initial = choices.front();
+    key.key.initial = as_toml(choices.front());
   } else {
     key.key.initial = initial;
   }

@@ -1,36 +1,14 @@
 #include "rvelab/keys/material_keys.hpp"
 
 #include <algorithm>
-#include <limits>
-#include <sstream>
 #include <type_traits>
 #include <utility>
 
-#include "rvelab/keys/words.hpp"
+#include "rvelab/keys/key_builders.hpp"
 #include "rvelab/solver/assembly/list_size.hpp"
 
 namespace rvelab::keys {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr Interval any_words{0, 0};
-constexpr Interval positive{0, infinity, true, true};
-constexpr Interval not_negative{0, infinity, false, true};
-constexpr Interval below_one{0, 1, false, true};
-constexpr Interval inside_one{0, 1, true, true};
-
-std::string as_toml(double value) {
-  std::ostringstream text;
-  text.precision(15);
-  text << value;
-  return text.str();
-}
-std::string as_toml(bool value) { return value ? "true" : "false"; }
-std::string as_toml(long value) { return std::to_string(value); }
-template <class Word>
-std::string as_toml(const Word& value) {
-  return "\"" + text_of(value) + "\"";
-}
 
 template <class Value>
 std::string allowed(const Interval& range) {
@@ -45,10 +23,10 @@ std::string allowed(const Interval& range) {
 
 template <class Value>
 const char* type_of() {
-  if constexpr (std::is_same_v<Value, bool>) return "truth";
+  if constexpr (std::is_same_v<Value, bool>) return "boolean";
   if constexpr (std::is_same_v<Value, double>) return "number";
   if constexpr (std::is_same_v<Value, long>) return "whole number";
-  return std::is_same_v<Value, std::string> ? "text" : "word";
+  return std::is_same_v<Value, std::string> ? "text" : "choice";
 }
 
 /// The default is that of the struct: it is written nowhere twice.
@@ -91,7 +69,7 @@ std::vector<KeyEntry> law_constants() {
 std::vector<KeyEntry> materials() {
   const char* t = "material";
   std::vector<KeyEntry> entries = {
-      entry(t, "name", "-", &Material::name, any_words, "name of the material, for --set material.NAME.key"),
+      entry(t, "name", "-", &Material::name, any, "name of the material, for --set material.NAME.key"),
       entry(t, "density_kg_m3", "kg/m^3", &Material::density, positive, "density of the solid")};
   const std::vector<KeyEntry> constants = law_constants();
   entries.insert(entries.end(), constants.begin(), constants.end());
@@ -112,11 +90,11 @@ std::vector<KeyEntry> materials() {
 std::vector<KeyEntry> contacts() {
   const char* t = "contact";
   return {
-      entry(t, "law", "-", &ContactModel::law, any_words, "normal and tangential law of all contacts"),
-      entry(t, "slip", "-", &ContactModel::slip, any_words,
+      entry(t, "law", "-", &ContactModel::law, any, "normal and tangential law of all contacts"),
+      entry(t, "slip", "-", &ContactModel::slip, any,
             "where slip is measured and force acts; full_radius as LAMMPS, full_radius_ratcheting as YADE"),
-      entry(t, "rolling", "-", &ContactModel::rolling, any_words, "rolling moment between grains"),
-      entry(t, "unload_rescale", "-", &ContactModel::unload_rescale, any_words,
+      entry(t, "rolling", "-", &ContactModel::rolling, any, "rolling moment between grains"),
+      entry(t, "unload_rescale", "-", &ContactModel::unload_rescale, any,
             "hertz_mindlin: the tangential force falls with sqrt(overlap) on unloading"),
   };
 }
@@ -125,9 +103,9 @@ std::vector<KeyEntry> damping() {
   const char* t = "damping";
   return {
       entry(t, "local", "1", &Damping::local, below_one, "Cundall's damping for dt > 0"),
-      entry(t, "local_quasi_static", "1", &Damping::local_quasi_static, inside_one, "Cundall's damping for dt = 0"),
-      entry(t, "local_form", "-", &Damping::local_form, any_words, "component depends on the axes, as YADE"),
-      entry(t, "dashpot", "-", &Damping::dashpot, any_words, "contact dashpot; acts at dt > 0 only"),
+      entry(t, "local_quasi_static", "1", &Damping::local_quasi_static, ratio, "Cundall's damping for dt = 0"),
+      entry(t, "local_form", "-", &Damping::local_form, any, "component depends on the axes, as YADE"),
+      entry(t, "dashpot", "-", &Damping::dashpot, any, "contact dashpot; acts at dt > 0 only"),
       entry(t, "normal_coefficient_N_s_m", "N s/m", &Damping::normal_coefficient, not_negative,
             "dashpot = coefficient: c_n"),
       entry(t, "viscoelastic_1_m_s", "1/(m s)", &Damping::normal_coefficient, not_negative,
@@ -137,8 +115,7 @@ std::vector<KeyEntry> damping() {
             "polynomial, Hertz only (grains rebound at 0.85 for 0.8, 0.44 for 0.3)"),
       entry(t, "tangential_ratio", "1", &Damping::tangential_ratio, not_negative,
             "tangential over normal dashpot coefficient"),
-      entry(t, "no_tension", "-", &Damping::no_tension, any_words,
-            "cuts the normal force at zero: a dashpot never attracts"),
+      entry(t, "no_tension", "-", &Damping::no_tension, any, "cuts the normal force at zero: a dashpot never attracts"),
       entry(t, "global_viscous_N_s_m", "N s/m", &Damping::global_viscous, not_negative,
             "force -c v' on each grain, dt > 0 only"),
   };
@@ -149,7 +126,7 @@ std::vector<KeyEntry> solver() {
   return {
       entry(t, "skin", "1", &SolverOptions::skin, {0, largest_skin_ratio, true, false},
             "largest Verlet skin over the mean radius; fitted down while steps pass"),
-      entry(t, "time_step_factor", "1", &SolverOptions::time_step_factor, inside_one,
+      entry(t, "time_step_factor", "1", &SolverOptions::time_step_factor, ratio,
             "fraction of the critical step 2/omega_max"),
       entry(t, "fixed_time_step_s", "s", &SolverOptions::fixed_time_step, not_negative,
             "dt > 0: exactly this step; 0: from time_step_factor and collision_steps"),
@@ -171,7 +148,7 @@ std::vector<KeyEntry> solver() {
             "shortest lattice vector allowed; 0: the largest grain's diameter"),
       entry(t, "max_overlap_ratio", "1", &SolverOptions::max_overlap_ratio, positive,
             "largest overlap over the smaller radius; more fails"),
-      entry(t, "ledger", "-", &SolverOptions::ledger, any_words, "keeps the energy ledger"),
+      entry(t, "ledger", "-", &SolverOptions::ledger, any, "keeps the energy ledger"),
   };
 }
 

@@ -15,11 +15,11 @@ namespace rvelab::keys {
 enum class KeyKind {
   number,
   whole_number,
-  truth,
+  boolean,
   text,
-  word,
+  choice,  ///< one of some names
   numbers,
-  words,       ///< a list of words
+  choices,     ///< a list of them
   components,  ///< a table of components of a tensor: {xx = 1, xy = 0.5}
   matrices,    ///< a list of lists of numbers
   tables       ///< [[...]] with keys of their own
@@ -29,7 +29,7 @@ struct TableKey {
   Key key;
   KeyKind kind;
   Interval range;                                                         ///< numbers, each of a list too
-  std::vector<std::string> words;                                         ///< of word and words
+  std::vector<std::string> choices;                                       ///< of choice and choices
   std::variant<std::monostate, double, long, bool, std::string> initial;  ///< none: required, optional, or computed
 };
 

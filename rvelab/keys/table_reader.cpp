@@ -150,7 +150,7 @@ std::optional<long> TableReader::optional_whole_number(const std::string& name) 
   return whole_number(name);
 }
 
-bool TableReader::truth(const std::string& name, std::optional<bool> instead) {
+bool TableReader::boolean(const std::string& name, std::optional<bool> instead) {
   const TableKey& key = entry(name);
   if (!instead && std::holds_alternative<bool>(key.initial)) instead = std::get<bool>(key.initial);
   const toml::node* node = find(key, !instead);
@@ -177,14 +177,14 @@ std::string TableReader::text(const std::string& name, std::optional<std::string
   return value;
 }
 
-std::string TableReader::word(const std::string& name, std::optional<std::string> instead) {
+std::string TableReader::choice(const std::string& name, std::optional<std::string> instead) {
   const TableKey& key = entry(name);
   if (!instead && std::holds_alternative<std::string>(key.initial)) instead = std::get<std::string>(key.initial);
   const toml::node* node = find(key, !instead);
   std::string value = instead.value_or("");
   if (node != nullptr) {
-    const bool allowed =
-        node->is_string() && std::find(key.words.begin(), key.words.end(), node->as_string()->get()) != key.words.end();
+    const bool allowed = node->is_string() && std::find(key.choices.begin(), key.choices.end(),
+                                                        node->as_string()->get()) != key.choices.end();
     if (allowed) {
       value = node->as_string()->get();
     } else {

@@ -43,13 +43,13 @@ class TableReader {
   std::optional<double> optional_number(const std::string& name);
   long whole_number(const std::string& name);
   std::optional<long> optional_whole_number(const std::string& name);
-  bool truth(const std::string& name, std::optional<bool> instead = std::nullopt);
+  bool boolean(const std::string& name, std::optional<bool> instead = std::nullopt);
   std::string text(const std::string& name, std::optional<std::string> instead = std::nullopt);
-  /// One of the words of the key; "" stands for a computed default that is not known yet.
-  std::string word(const std::string& name, std::optional<std::string> instead = std::nullopt);
+  /// One of the choices of the key; "" stands for a computed default that is not known yet.
+  std::string choice(const std::string& name, std::optional<std::string> instead = std::nullopt);
   std::vector<double> numbers(const std::string& name);
-  /// Those of the words of the key that stand there; none if the key does not.
-  std::vector<std::string> words(const std::string& name);
+  /// Those of the choices of the key that stand there; none if the key does not.
+  std::vector<std::string> choices(const std::string& name);
   /// Components of a tensor by their names, zero where none is given; a symmetric one has both halves of a shear.
   Matrix3 components(const std::string& name, bool symmetric);
   /// Lists of 4 or 9 numbers, row by row.

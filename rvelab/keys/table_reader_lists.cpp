@@ -20,19 +20,19 @@ std::vector<double> TableReader::numbers(const std::string& name) {
   return values;
 }
 
-std::vector<std::string> TableReader::words(const std::string& name) {
+std::vector<std::string> TableReader::choices(const std::string& name) {
   const TableKey& key = entry(name);
   const toml::node* node = find(key, false);
   std::vector<std::string> values;
   if (node == nullptr) return values;
   const auto known = [&](const toml::node& item) {
     return item.is_string() &&
-           std::find(key.words.begin(), key.words.end(), item.as_string()->get()) != key.words.end();
+           std::find(key.choices.begin(), key.choices.end(), item.as_string()->get()) != key.choices.end();
   };
   const bool good = node->is_array() && std::all_of(node->as_array()->begin(), node->as_array()->end(), known);
   if (!good) {
-    mistake(name, "is not a list of known words; allowed: " + key.key.allowed() + "; write it as [\"" +
-                      key.words.front() + "\"]");
+    mistake(name, "is not a list of known choices; allowed: " + key.key.allowed() + "; write it as [\"" +
+                      key.choices.front() + "\"]");
     return values;
   }
   for (const auto& item : *node->as_array()) values.push_back(item.as_string()->get());

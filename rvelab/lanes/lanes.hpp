@@ -19,9 +19,9 @@ using V2 = double __attribute__((vector_size(16)));
 using V4 = double __attribute__((vector_size(32)));
 using V8 = double __attribute__((vector_size(64)));
 
-/// Lanes<W>: V, W values side by side; Quad, four doubles of a row. Beside arithmetic on Quads: `transpose` of W of
-/// them to four V and back, `transpose_pairs` of W halves to two V; `collected`, a V of W values; `seen_from_i`, the
-/// force row {fx, fy, T_j, T_i} of a disc pair as grain i has it, {-fx, -fy, T_i, T_j}.
+/// Lanes<W>: V, W values side by side; Quad, four doubles of a grain or force row. Beside arithmetic on Quads:
+/// `transpose` of W of them to four V and back, `transpose_pairs` of W halves to two V; `collected`, a V of W values;
+/// `seen_from_i`, the force row {fx, fy, T_j, T_i} of a disc pair as grain i has it, {-fx, -fy, T_i, T_j}.
 template <int W>
 struct Lanes;
 

@@ -1,7 +1,7 @@
 // One contact, linearised: how force and torques of the incremental contact law change with branch and rotations.
 //
 // With b the branch, l its length, n = b/l, R = ri + rj, overlap delta = R - l, F = f_n n + f_t the force on j and M
-// the rolling moment on j (design 6; conventions of Rve):
+// the rolling moment on j (arms of slip: contact/README.md; conventions of Rve):
 //   dn    = (I - n n) db/l,   dl = n . db,   d delta = -dl
 //   d f_n = -k_n dl
 //   d f_t = -n (f_t . dn) + 1/2 (n . (dtheta_i + dtheta_j)) n x f_t        turned with normal and mean spin

@@ -1,4 +1,4 @@
-// Measures of a contact network (design 3, 7).
+// Measures of a contact network.
 #include "rvelab/measure/measures.hpp"
 
 #include <algorithm>

@@ -2,9 +2,8 @@
 //
 // This room looks at a Network (or at tensors) and changes nothing; it knows no list, no step and no file. The network
 // stands in the cell frame; every tensor that leaves here is in the laboratory frame. SI units; stress is Cauchy,
-// tension positive; p and q are compression positive as soil mechanics writes them (design 3, 7). 2D: volumes are
-// those of the slab, tensors have zero z-components. A mean over nothing (fabric without a contact, void ratio without
-// a grain) is NaN.
+// tension positive; p and q are compression positive as soil mechanics writes them. 2D: volumes are those of the slab,
+// tensors have zero z-components. A mean over nothing (fabric without a contact, void ratio without a grain) is NaN.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,5 @@
-// Elastic tangent by static condensation of all grain freedoms, and the affine sum (design 7, 8).
+// Elastic tangent by static condensation of all grain freedoms, and the affine sum. Derived in tangent.hpp and in
+// solver/README.md.
 //
 // Unknowns of a grain: displacement (m) and rotation times the mean radius (m), so that every stiffness is in N/m. For
 // a contact, q = (db, dtheta_i, dtheta_j) = P x + (H b, 0, 0), and its forces load the grains by the transpose:

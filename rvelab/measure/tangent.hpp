@@ -3,7 +3,7 @@
 // C_ab = d(Cauchy stress)_a / d(strain)_b in the laboratory frame, Pa, tension positive, strain = sym dH with
 // engineering shear; order xx yy zz yz xz xy in 3D (6 x 6), xx yy xy in 2D (3 x 3). Rows are the symmetric part of the
 // stress. Initial-stress terms (rotation of the contact forces, change of branches and volume) are in, so that C is
-// what a probe measures, not a material stiffness; it is not symmetric in general. (Design 7, 8.)
+// what a probe measures, not a material stiffness; it is not symmetric in general.
 #pragma once
 
 #include <Eigen/Core>

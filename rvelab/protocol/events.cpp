@@ -54,7 +54,7 @@ const std::vector<EventQuantity>& event_quantities() {
     });
     list.push_back({"cycles", [](Test test) { return 0.5 * static_cast<double>(test.run.progress.turns); }});
     list.push_back({"visits", [](Test test) {
-                      const Progress& at = test.run.progress;
+                      const records::Progress& at = test.run.progress;
                       return static_cast<double>(at.visits[static_cast<std::size_t>(at.stage)]);
                     }});
     return list;
@@ -65,13 +65,13 @@ const std::vector<EventQuantity>& event_quantities() {
 std::vector<keys::TableKey> event_keys() {
   using namespace keys;
   const char* t = "stage.until";
-  Words names;
+  Choices names;
   for (const EventQuantity& each : event_quantities()) names.emplace_back(each.name);
   return {
-      required(word(t, "quantity", names,
-                    "what is looked at with each record but the first; strain is that of the record; eps_v is "
-                    "compression positive, stresses tension positive; p_over_first: over p at the start of the stage",
-                    "")),
+      required(choice(t, "quantity", names,
+                      "what is looked at with each record but the first; strain is that of the record; eps_v is "
+                      "compression positive, stresses tension positive; p_over_first: over p at the start of the stage",
+                      "")),
       with_range(number(t, "above", "1", "", every, "the event: the quantity is above this, in its unit"),
                  "any finite number"),
       with_range(number(t, "below", "1", "", every, "the event: the quantity is below this, in its unit"),
@@ -82,14 +82,14 @@ std::vector<keys::TableKey> event_keys() {
   };
 }
 
-std::vector<Event> read_events(TableReader& reader, const Stage& stage, std::vector<KeyError>& errors) {
+std::vector<Event> read_events(TableReader& reader, const Stage& stage, std::vector<keys::KeyError>& errors) {
   std::vector<Event> events;
   toml::array resolved;
   for (const toml::table* table : reader.tables("until")) {
     TableReader until(*table, protocol_keys(), "stage.until",
                       "stage." + stage.name + ".until." + std::to_string(events.size()), keys::line_of(*table), errors);
     Event event;
-    event.quantity = until.word("quantity");
+    event.quantity = until.choice("quantity");
     const auto above = until.optional_number("above"), below = until.optional_number("below"),
                falls_by = until.optional_number("falls_by");
     if (above) event = {event.quantity, Event::When::above, *above, ""};
@@ -113,7 +113,7 @@ std::vector<Event> read_events(TableReader& reader, const Stage& stage, std::vec
 }
 
 int met_event(RunningTest& test, const Stage& stage) {
-  Progress& at = test.run.progress;
+  records::Progress& at = test.run.progress;
   int met = -1;
   for (std::size_t k = 0; k < stage.until.size(); ++k) {
     const Event& event = stage.until[k];

@@ -15,10 +15,10 @@
 #include "rvelab/records/record.hpp"
 #include "rvelab/specimen/specimen.hpp"
 
-namespace rvelab {
+namespace rvelab::protocol {
 
 /// How driven stages (compression, simple shear, flow) pass through time. All other stages are quasi-static.
-struct Loading {
+struct LoadingSettings {
   bool physical = false;          ///< false: dt = 0; true: physical masses at the rate below
   double rate = 0;                ///< 1/s, true rate of the driving strain; 0: from the inertial number
   double inertial_number = 0;     ///< I = rate d sqrt(rho/p), p at the start of the stage; 0: from the rate
@@ -56,7 +56,7 @@ struct Protocol {
   std::string specimen_file;                                   ///< empty: given on the command line
   std::vector<double> calibration_pressures;                   ///< Pa, [calibrate] pressures_Pa
   toml::table overrides;                                       ///< [contact], [damping], [solver], [material]
-  Loading loading;
+  LoadingSettings loading;
   long snapshots_every = 0;  ///< [output]: grains and contacts are kept at every so many records; 0: never
   std::uint64_t quantities = records::usual_quantities;  ///< [output]: what is measured at each record
   std::vector<Stage> stages;
@@ -84,4 +84,4 @@ std::string strength_stages();
 /// not, a stiffness key that its law does not take), or if its dimension is not the protocol's.
 Specimen with_overrides(const Protocol& protocol, Specimen specimen);
 
-}  // namespace rvelab
+}  // namespace rvelab::protocol

@@ -8,8 +8,7 @@
 #include "rvelab/protocol/protocol.hpp"
 #include "rvelab/protocol/stage_kinds.hpp"
 
-namespace rvelab {
-namespace protocol {
+namespace rvelab::protocol {
 namespace {
 
 using namespace keys;
@@ -31,11 +30,12 @@ std::vector<TableKey> test() {
 
 std::vector<TableKey> loading() {
   const char* t = "loading";
-  const Loading initial;
+  const LoadingSettings initial;
   return {
-      word(t, "mode", {"quasi_static", "physical"},
-           "how compression, simple shear, flow and deformation pass through time; physical: real masses at the given "
-           "rate"),
+      choice(
+          t, "mode", {"quasi_static", "physical"},
+          "how compression, simple shear, flow and deformation pass through time; physical: real masses at the given "
+          "rate"),
       number(t, "rate_1_s", "1/s", "", positive, "mode = physical: true rate of the driving strain"),
       number(t, "inertial_number", "1", "", positive,
              "mode = physical, in place of rate_1_s: I = rate d sqrt(rho/p) with p at the start of the stage"),
@@ -50,13 +50,13 @@ std::vector<TableKey> loading() {
 }
 
 TableKey quantities() {
-  TableKey key = listed("output", "quantities", "-", "list of words", "", KeyKind::words,
+  TableKey key = listed("output", "quantities", "-", "list of choices", "", KeyKind::choices,
                         "what is measured at each record beside strain and stress; the rest is not computed");
   for (const records::QuantityRow& row : records::quantity_rows) {
-    key.words.emplace_back(row.text.name);
-    key.key.range += (key.key.range.empty() ? "" : ", ") + key.words.back();
+    key.choices.emplace_back(row.text.name);
+    key.key.range += (key.key.range.empty() ? "" : ", ") + key.choices.back();
     if (!row.text.usual) continue;
-    key.key.initial += (key.key.initial.empty() ? "[\"" : ", \"") + key.words.back() + "\"";
+    key.key.initial += (key.key.initial.empty() ? "[\"" : ", \"") + key.choices.back() + "\"";
   }
   key.key.initial += "]";
   return key;
@@ -79,12 +79,12 @@ std::vector<TableKey> output_specimen_and_calibrate() {
 }
 
 std::vector<TableKey> stage() {
-  Words kinds;
+  Choices kinds;
   for (const StageKind& kind : stage_kinds()) kinds.push_back(kind.name);
   const std::string events = "events, each of which ends the stage; not with " + kinds_with_events(false);
   return {
-      required(word("stage", "kind", kinds, "what the stage does; its other keys are those of [[stage]] with this kind",
-                    "")),
+      required(choice("stage", "kind", kinds,
+                      "what the stage does; its other keys are those of [[stage]] with this kind", "")),
       text("stage", "name", "(its kind)", "name of its own, for --set stage.NAME.key=value and in the records"),
       text("stage", "then", "(the next)", "name of the stage that follows, \"end\" for none"),
       listed("stage", "until", "-", "list of tables", "[[stage.until]], any number", KeyKind::tables, events.c_str()),
@@ -109,28 +109,26 @@ const std::vector<TableKey>& protocol_keys() {
 const std::vector<std::string>& top_tables() {
   static const std::vector<std::string> tables = [] {
     std::vector<std::string> list;
-    const auto add = [&](const Key& key) {
+    const auto add = [&](const keys::Key& key) {
       const std::string top = key.table.substr(0, key.table.find('.'));
       if (std::find(list.begin(), list.end(), top) == list.end()) list.push_back(top);
     };
     for (const auto& entry : protocol_keys()) add(entry.key);
-    for (const Key& key : known_keys()) add(key);
+    for (const keys::Key& key : keys::known_keys()) add(key);
     return list;
   }();
   return tables;
 }
 
-}  // namespace protocol
-
-const std::vector<Key>& all_keys() {
-  static const std::vector<Key> keys = [] {
-    std::vector<Key> list;
-    for (const auto& entry : protocol::protocol_keys()) list.push_back(entry.key);
-    for (const auto& entry : protocol::recipe_keys()) list.push_back(entry.key);
-    list.insert(list.end(), known_keys().begin(), known_keys().end());
+const std::vector<keys::Key>& all_keys() {
+  static const std::vector<keys::Key> keys = [] {
+    std::vector<keys::Key> list;
+    for (const auto& entry : protocol_keys()) list.push_back(entry.key);
+    for (const auto& entry : recipe_keys()) list.push_back(entry.key);
+    list.insert(list.end(), keys::known_keys().begin(), keys::known_keys().end());
     return list;
   }();
   return keys;
 }
 
-}  // namespace rvelab
+}  // namespace rvelab::protocol

@@ -10,11 +10,11 @@ namespace rvelab::protocol {
 using keys::TableReader;
 
 void read_stage(const toml::table& table, long number, Protocol& protocol, toml::array& resolved,
-                std::vector<KeyError>& errors) {
+                std::vector<keys::KeyError>& errors) {
   const std::string kind_given = table["kind"].value_or(std::string());
   const std::string name = table["name"].value_or(kind_given.empty() ? std::to_string(number) : kind_given);
   TableReader reader(table, protocol_keys(), "stage", "stage." + name, keys::line_of(table), errors);
-  const auto kind = reader.word("kind");
+  const auto kind = reader.choice("kind");
   if (kind.empty()) return;  // without its kind no other key can be judged
   reader.also("stage." + kind);
   Stage stage{reader.text("name", kind), kind, {}, {}, ""};

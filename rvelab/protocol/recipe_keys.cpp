@@ -13,18 +13,18 @@ constexpr Interval friction{0, 1e6};
 
 std::vector<TableKey> pack() {
   const char* t = "pack";
-  const Recipe initial;
+  const pack::Recipe initial;
   return {
       required(text(t, "name", "", "what the recipe is called")),
-      word(t, "shape", {"disc", "sphere"}, "disc: 2D; sphere: 3D"),
+      choice(t, "shape", {"disc", "sphere"}, "disc: 2D; sphere: 3D"),
       whole_number(t, "number", long(initial.number), {1, 1e8}, "grains in all"),
       whole_number(t, "seed", long(initial.seed), {0, 9e15},
                    "of all that is random; specimens of --count have the following ones"),
       number(t, "thickness_m", "m", initial.thickness, positive, "shape = disc: thickness of the slab"),
-      word(t, "cell", {"upright", "oriented"},
-           "upright: square or cube; oriented: the lattice that no compression along the axes makes slender (Kraynik "
-           "and Reinelt in 2D, a cubic field in 3D)"),
-      word(t, "share_by", {"number", "mass"}, "what grains.share counts"),
+      choice(t, "cell", {"upright", "oriented"},
+             "upright: square or cube; oriented: the lattice that no compression along the axes makes slender (Kraynik "
+             "and Reinelt in 2D, a cubic field in 3D)"),
+      choice(t, "share_by", {"number", "mass"}, "what grains.share counts"),
   };
 }
 
@@ -34,12 +34,12 @@ std::vector<TableKey> grains() {
   return {
       text(t, "name", "\"grains\"", "name of a fraction, for --set grains.NAME.key=value"),
       text(t, "material", "(the first)", "name of the material"),
-      number(t, "share", "1", GrainFraction{}.share, {0, 1, true, false},
+      number(t, "share", "1", pack::GrainFraction{}.share, {0, 1, true, false},
              "part of all grains by pack.share_by; the shares of all [[grains]] add up to 1"),
-      word(t, "grading", {"uniform", "linear", "tabulated"},
-           "uniform: passing is straight over the radius; linear: straight over its logarithm; tabulated: points, "
-           "straight over the radius between them"),
-      word(t, "passing_by", {"number", "mass"}, "what the grading counts"),
+      choice(t, "grading", {"uniform", "linear", "tabulated"},
+             "uniform: passing is straight over the radius; linear: straight over its logarithm; tabulated: points, "
+             "straight over the radius between them"),
+      choice(t, "passing_by", {"number", "mass"}, "what the grading counts"),
       number(t, "smallest_radius_m", "m", "", positive, "grading = uniform, linear: where passing is 0"),
       number(t, "largest_radius_m", "m", "", positive, "grading = uniform, linear: where passing is 1"),
       {{t, "radii_m", "m", "list of numbers", "", "each " + in_words(positive), "grading = tabulated: ascending radii"},
@@ -58,7 +58,7 @@ std::vector<TableKey> grains() {
 
 std::vector<TableKey> target() {
   const char* t = "target";
-  const Recipe initial;
+  const pack::Recipe initial;
   return {
       number(t, "pressure_Pa", "Pa", "", positive, "isotropic stress, compression positive; shear stresses are zero"),
       {{t, "pressures_Pa", "Pa", "list of numbers", "", "each " + in_words(positive),
@@ -86,10 +86,11 @@ std::vector<TableKey> target() {
 
 std::vector<TableKey> preparation() {
   const char* t = "preparation";
-  const Preparation initial;
+  const pack::Preparation initial;
   return {
-      word(t, "method", {"compression", "growth"},
-           "compression: the cell shrinks around scattered grains; growth: the radii grow in a cell that stands still"),
+      choice(
+          t, "method", {"compression", "growth"},
+          "compression: the cell shrinks around scattered grains; growth: the radii grow in a cell that stands still"),
       number(t, "friction", "1", "(searched, or that of the materials; 0 without a stress)", friction,
              "of all contacts while the specimen is prepared: low for dense, high for loose"),
       number(t, "rolling_friction", "1", initial.rolling_friction, {0, infinity, false, true},

@@ -70,7 +70,7 @@ Error RunningTest::failed(const std::string& text) const { return Error("stage \
 
 void RunningTest::enter(const Stage& stage) {
   stage_ = &stage;
-  Progress& at = run.progress;
+  records::Progress& at = run.progress;
   if (at.phase > 0) return;
   at.deformation = Matrix3::Identity();
   at.strain_sum = Matrix3::Zero();
@@ -86,7 +86,7 @@ void RunningTest::enter(const Stage& stage) {
   at.rate = loading.rate;
   if (loading.physical && loading.inertial_number > 0) {
     const Network network = rve.network();
-    // I = rate d sqrt(rho/p), with the driving strain's rate (design 3)
+    // I = rate d sqrt(rho/p), the inertial number (GDR MiDi 2004), with the driving strain's rate
     at.rate = at.first_pressure > 0 ? loading.inertial_number * std::sqrt(at.first_pressure / solid_density(network)) /
                                           mean_diameter(network)
                                     : 0;
@@ -102,7 +102,7 @@ int RunningTest::stage_number(const std::string& name) const {
 }
 
 void RunningTest::leave_stage() {
-  Progress& at = run.progress;
+  records::Progress& at = run.progress;
   const auto event = static_cast<std::size_t>(at.phase - done_phase - 1);
   at.stage = stage_number(at.phase > done_phase ? stage_->until.at(event).then : stage_->then);
   at.phase = 0;
@@ -179,7 +179,7 @@ Report RunningTest::applied(Apply apply) {
   } catch (const IncrementFailed& error) {
     throw IncrementFailed("stage \"" + stage_->name + "\": " + error.what());
   }
-  Progress& at = run.progress;
+  records::Progress& at = run.progress;
   at.deformation = (Matrix3::Identity() + response.displacement_gradient) * at.deformation;
   at.strain_sum += strain_increment(response.displacement_gradient, dimension());
   at.stress = response.stress;
@@ -190,9 +190,9 @@ Report RunningTest::applied(Apply apply) {
 Report RunningTest::relax(double unbalanced, long max_steps) {
   // Slices of about a second, between which a checkpoint can be taken. Each call of Rve::relax scales the masses anew,
   // so their length must depend on nothing but the specimen.
-  constexpr long stretch = 25, grain_steps = 20'000'000;
-  const long slice = stretch * std::clamp(grain_steps / (stretch * static_cast<long>(rve.size() + 1)), 10L, 1000L);
-  Progress& at = run.progress;
+  constexpr long interval = 25, grain_steps = 20'000'000;
+  const long slice = interval * std::clamp(grain_steps / (interval * static_cast<long>(rve.size() + 1)), 10L, 1000L);
+  records::Progress& at = run.progress;
   while (true) {
     Report report = rve.relax(unbalanced, std::min(slice, max_steps - static_cast<long>(at.relaxation_steps)));
     at.stress = rve.stress();
@@ -208,7 +208,7 @@ Report RunningTest::relax(double unbalanced, long max_steps) {
 }
 
 void RunningTest::record(double strain, const Report& report) {
-  Record record;
+  records::Record record;
   record.stage = run.progress.stage;
   record.strain = strain;
   record.deformation_gradient = run.progress.deformation;

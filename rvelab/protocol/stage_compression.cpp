@@ -16,15 +16,15 @@ using namespace keys;
 std::vector<TableKey> entries() {
   const char* t = "stage.compression";
   return {
-      word(t, "axis", {"x", "y", "z"}, "laboratory axis that is shortened", "(y in 2D, z in 3D)"),
+      choice(t, "axis", {"x", "y", "z"}, "laboratory axis that is shortened", "(y in 2D, z in 3D)"),
       required(with_range(number(t, "to_strain", "1", "", {-infinity, 1, true, true},
                                  "strain 1 - F_aa at which the stage ends, compression positive"),
                           "below 1, not 0")),
       number(t, "record_every", "1", CompressionStage{}.record_every, positive,
              "strain between records; at most 1e6 records"),
-      word(t, "lateral", {"constant_stress", "constant_volume", "zero_strain"},
-           "constant_stress: each lateral normal stress is held (drained); constant_volume: det F = 1 (undrained); "
-           "zero_strain: oedometer"),
+      choice(t, "lateral", {"constant_stress", "constant_volume", "zero_strain"},
+             "constant_stress: each lateral normal stress is held (drained); constant_volume: det F = 1 (undrained); "
+             "zero_strain: oedometer"),
       number(t, "lateral_pressure_Pa", "Pa", "(test.pressure_Pa)", positive,
              "lateral = constant_stress: lateral normal stresses are held at minus this, which they start from"),
       whole_number(t, "cycles", CompressionStage{}.cycles.count, {0, 1e6},
@@ -39,11 +39,11 @@ CompressionStage read(StageSource& source) {
   Protocol& protocol = source.protocol;
   CompressionStage stage;
   const char* usual = protocol.dimension == 0 ? "" : protocol.dimension == 2 ? "y" : "z";
-  stage.axis = reader.word("axis", usual);
+  stage.axis = reader.choice("axis", usual);
   expect_in_plane(reader, "axis", stage.axis, protocol);
   stage.to_strain = strain_of(source);
   stage.record_every = spacing_of(reader, stage.to_strain);
-  const std::string lateral = reader.word("lateral");
+  const std::string lateral = reader.choice("lateral");
   if (lateral == "constant_volume") stage.lateral = CompressionStage::Lateral::constant_volume;
   if (lateral == "zero_strain") stage.lateral = CompressionStage::Lateral::zero_strain;
   if (stage.lateral == CompressionStage::Lateral::constant_stress) {
@@ -72,7 +72,7 @@ void drive(RunningTest& test, const CompressionStage& stage) {
   const int axis = axis_index(axis_name[0]);
   const bool hold = stage.lateral == CompressionStage::Lateral::constant_stress;
   const bool undrained = stage.lateral == CompressionStage::Lateral::constant_volume;
-  Progress& at = test.run.progress;
+  records::Progress& at = test.run.progress;
   at.axis = axis_name;
   at.pressure = hold ? stage.lateral_pressure : at.first_pressure;
 

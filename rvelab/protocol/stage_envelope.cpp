@@ -19,7 +19,7 @@ std::vector<TableKey> entries() {
   const char* t = "stage.envelope";
   const EnvelopeStage initial;
   return {
-      word(t, "probes", {"strain", "stress"}, "what is the same in every direction"),
+      choice(t, "probes", {"strain", "stress"}, "what is the same in every direction"),
       number(t, "size", "1", initial.size, {0, 0.1, true, false}, "probes = strain: norm of the strain"),
       number(t, "size_Pa", "Pa", "", positive, "probes = stress: norm of the change of stress"),
       whole_number(t, "directions", initial.directions, {1, 1e4},
@@ -33,7 +33,7 @@ std::vector<TableKey> entries() {
 EnvelopeStage read(StageSource& source) {
   TableReader& reader = source.reader;
   EnvelopeStage stage;
-  stage.stress_probes = reader.word("probes") == "stress";
+  stage.stress_probes = reader.choice("probes") == "stress";
   stage.size = reader.number("size");
   stage.stress_size = reader.optional_number("size_Pa").value_or(0);
   if (stage.stress_probes && !reader.has("size_Pa") && !reader.has_in_another_unit("size_Pa")) {
@@ -67,7 +67,7 @@ Matrix3 direction(double turns, int dimension) {
 }
 
 Report probe(RunningTest& test, const EnvelopeStage& stage, const Matrix3& along) {
-  const Progress& at = test.run.progress;
+  const records::Progress& at = test.run.progress;
   const double part = 1 / static_cast<double>(stage.increments);
   Report worst;
   for (long k = 1; k <= stage.increments; ++k) {
@@ -101,7 +101,7 @@ Report probe(RunningTest& test, const EnvelopeStage& stage, const Matrix3& along
 }
 
 void drive(RunningTest& test, const EnvelopeStage& stage) {
-  Progress& at = test.run.progress;
+  records::Progress& at = test.run.progress;
   at.axis = test.dimension() == 2 ? "y" : "z";
   at.pressure = at.first_pressure;
   while (at.step <= stage.directions) {
@@ -110,7 +110,7 @@ void drive(RunningTest& test, const EnvelopeStage& stage) {
     } else {
       const double turns = static_cast<double>(at.step - 1) / static_cast<double>(stage.directions);
       const Rve start(test.rve);
-      const Progress before = at;
+      const records::Progress before = at;
       const auto put_back = [&] {
         const std::int64_t records = at.records;
         test.rve = start;

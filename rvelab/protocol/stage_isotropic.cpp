@@ -23,15 +23,15 @@ std::vector<TableKey> entries() {
   const IsotropicStage initial;
   return {
       number(t, "pressure_Pa", "Pa", "(test.pressure_Pa)", positive, "all normal stresses are brought to minus this"),
-      word(t, "shear", {"zero_strain", "zero_stress"},
-           "zero_strain: the cell keeps its angles; zero_stress: shear stresses are driven to zero"),
+      choice(t, "shear", {"zero_strain", "zero_stress"},
+             "zero_strain: the cell keeps its angles; zero_stress: shear stresses are driven to zero"),
       number(t, "stress_tolerance", "1", initial.stress_tolerance, ratio, "of the pressure; the stage ends within it"),
       number(t, "unbalanced", "1", initial.unbalanced, ratio, "unbalanced force ratio below which the stage ends"),
       number(t, "largest_change", "1", initial.largest_change, {0, 1, true, false},
              "largest change of stress in one increment, over the pressure"),
       whole_number(t, "max_rounds", initial.max_rounds, steps, "rounds of relaxing and correcting before it fails"),
       whole_number(t, "max_steps", initial.max_steps, steps, "sub-steps of one relaxation before it fails"),
-      truth(t, "record", initial.record, "records the state at the start and at the end"),
+      boolean(t, "record", initial.record, "records the state at the start and at the end"),
   };
 }
 
@@ -39,21 +39,21 @@ IsotropicStage read(StageSource& source) {
   TableReader& reader = source.reader;
   IsotropicStage stage;
   stage.pressure = pressure_of(reader, "pressure_Pa", source.protocol);
-  stage.shear_stress_free = reader.word("shear") == "zero_stress";
+  stage.shear_stress_free = reader.choice("shear") == "zero_stress";
   stage.stress_tolerance = reader.number("stress_tolerance");
   stage.unbalanced = reader.number("unbalanced");
   stage.largest_change = reader.number("largest_change");
   stage.max_rounds = reader.whole_number("max_rounds");
   stage.max_steps = reader.whole_number("max_steps");
-  stage.record = reader.truth("record");
+  stage.record = reader.boolean("record");
   return stage;
 }
 
 constexpr int most_increments = 1000;
 constexpr double far_off = 20;  ///< from its reference pressure, a specimen needs another one
 
-StressGoal goal_of(const IsotropicStage& stage, int dimension) {
-  StressGoal goal;
+pack::StressGoal goal_of(const IsotropicStage& stage, int dimension) {
+  pack::StressGoal goal;
   for (int k = 0; k < dimension; ++k) goal.stress(k, k) = -stage.pressure;
   goal.shear = stage.shear_stress_free;
   goal.dimension = dimension;
@@ -61,7 +61,7 @@ StressGoal goal_of(const IsotropicStage& stage, int dimension) {
 }
 
 /// The driven components, each brought to its part of a stress; `scale` (Pa) is what tolerances are relative to.
-std::vector<HeldStress> driven(const StressGoal& goal, const Matrix3& stress, double scale) {
+std::vector<HeldStress> driven(const pack::StressGoal& goal, const Matrix3& stress, double scale) {
   std::vector<HeldStress> held;
   for (const auto& [i, j] : components(goal.dimension)) {
     if (i == j || goal.shear) held.push_back({i, j, stress(i, j), scale});
@@ -70,10 +70,10 @@ std::vector<HeldStress> driven(const StressGoal& goal, const Matrix3& stress, do
 }
 
 /// Increments of at most largest_change of the present pressure (geometric), until the rest is one increment.
-void approach(RunningTest& test, const IsotropicStage& stage, const StressGoal& goal) {
-  Progress& at = test.run.progress;
+void approach(RunningTest& test, const IsotropicStage& stage, const pack::StressGoal& goal) {
+  records::Progress& at = test.run.progress;
   while (at.step < most_increments) {
-    const Matrix3 next = next_stress(goal, at.stress, stage.largest_change);
+    const Matrix3 next = pack::next_stress(goal, at.stress, stage.largest_change);
     if ((next - goal.stress).isZero(0)) return;
     const double scale = std::max(mean_pressure(at.stress, test.dimension()), 0.1 * stage.pressure);
     test.apply(Matrix3::Zero(), driven(goal, next, scale), 0, test.loading.held_tolerance);
@@ -89,8 +89,8 @@ void approach(RunningTest& test, const IsotropicStage& stage, const StressGoal& 
 enum Phase : std::int32_t { begun = 1, approaching, correcting, relaxing };
 
 void drive(RunningTest& test, const IsotropicStage& stage) {
-  const StressGoal goal = goal_of(stage, test.dimension());
-  Progress& at = test.run.progress;
+  const pack::StressGoal goal = goal_of(stage, test.dimension());
+  records::Progress& at = test.run.progress;
   if (at.phase == begun) {
     if (stage.record) test.record_now(0);
     at.phase = approaching;
@@ -102,13 +102,13 @@ void drive(RunningTest& test, const IsotropicStage& stage) {
     at.step = 0;
   }
   const auto reached = [&] {
-    return largest_gap(goal, at.stress) <= stage.stress_tolerance * stage.pressure &&
+    return pack::largest_gap(goal, at.stress) <= stage.stress_tolerance * stage.pressure &&
            at.unbalanced_ratio <= stage.unbalanced;
   };
   while (at.phase == relaxing || (at.step < stage.max_rounds && !reached())) {
     if (at.phase == correcting) {
       // Half the tolerance: the relaxation that follows moves the stress a little.
-      if (largest_gap(goal, at.stress) > 0.5 * stage.stress_tolerance * stage.pressure) {
+      if (pack::largest_gap(goal, at.stress) > 0.5 * stage.stress_tolerance * stage.pressure) {
         test.apply(Matrix3::Zero(), driven(goal, goal.stress, stage.pressure), 0, 0.5 * stage.stress_tolerance);
       }
       at.phase = relaxing;
@@ -120,10 +120,10 @@ void drive(RunningTest& test, const IsotropicStage& stage) {
   }
   if (!reached()) {
     std::ostringstream text;
-    text << "the normal stresses miss -" << stage.pressure << " Pa by " << largest_gap(goal, at.stress) / stage.pressure
-         << " of it (allowed " << stage.stress_tolerance << ") at the unbalanced ratio " << at.unbalanced_ratio
-         << " (allowed " << stage.unbalanced << ") after " << stage.max_rounds
-         << " rounds; raise max_rounds, max_steps or the tolerances";
+    text << "the normal stresses miss -" << stage.pressure << " Pa by "
+         << pack::largest_gap(goal, at.stress) / stage.pressure << " of it (allowed " << stage.stress_tolerance
+         << ") at the unbalanced ratio " << at.unbalanced_ratio << " (allowed " << stage.unbalanced << ") after "
+         << stage.max_rounds << " rounds; raise max_rounds, max_steps or the tolerances";
     throw test.failed(text.str());
   }
   // Pace and tolerance of what follows go by the pressure reached here, not by one that is long left behind (discs

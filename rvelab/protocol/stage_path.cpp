@@ -23,7 +23,7 @@ std::vector<TableKey> entries() {
       whole_number(t, "records_per_point", initial.records_per_point, {1, 1e6},
                    "records, and increments, on the way to each point"),
       whole_number(t, "cycles", initial.cycles, {1, 1e6}, "times that the points are gone through"),
-      word(t, "axis", {"x", "y", "z"}, "loading axis that is noted in the records", "(none)"),
+      choice(t, "axis", {"x", "y", "z"}, "loading axis that is noted in the records", "(none)"),
       required(text(r, "name", "", "name of the row, for messages and --set stage.NAME.row.ROW.key=value")),
       listed(r, "strain", "1", "components", symmetric_components, KeyKind::components,
              "A of a row without stress, tension positive; yz, xz, xy: of the engineering shear strain"),
@@ -46,7 +46,7 @@ std::vector<TableKey> entries() {
 }
 
 PathRow read_row(const toml::table& table, const std::string& stage, std::size_t number, toml::array& resolved,
-                 std::vector<KeyError>& errors) {
+                 std::vector<keys::KeyError>& errors) {
   const std::string name = table["name"].value_or(std::to_string(number));
   TableReader reader(table, protocol_keys(), "stage.path.row", "stage." + stage + ".row." + name, line_of(table),
                      errors);
@@ -84,7 +84,7 @@ PathRow read_row(const toml::table& table, const std::string& stage, std::size_t
 PathStage read(StageSource& source) {
   TableReader& reader = source.reader;
   const std::string& name = source.name;
-  std::vector<KeyError>& errors = source.errors;
+  std::vector<keys::KeyError>& errors = source.errors;
   PathStage stage;
   toml::array resolved;
   const auto tables = reader.tables("row");
@@ -95,7 +95,7 @@ PathStage read(StageSource& source) {
   if (!tables.empty()) reader.resolve("row", resolved);
   stage.records_per_point = reader.whole_number("records_per_point");
   stage.cycles = reader.whole_number("cycles");
-  stage.axis = reader.word("axis", "");
+  stage.axis = reader.choice("axis", "");
   stage.points = 0;
   for (const PathRow& row : stage.rows) {
     const auto points = static_cast<long>(row.to.size());

@@ -16,12 +16,12 @@ std::vector<TableKey> entries() {
   const char* t = "stage.probe";
   const ProbeStage initial;
   return {
-      word(t, "method", {"dynamic", "linear"},
-           "dynamic: increments of +-size, relaxed; linear: the contact network solved, every contact stuck"),
+      choice(t, "method", {"dynamic", "linear"},
+             "dynamic: increments of +-size, relaxed; linear: the contact network solved, every contact stuck"),
       number(t, "size", "1", initial.size, {0, 0.01, true, false}, "method = dynamic: strain of each increment"),
-      {{t, "no_slip", "-", "truth", "(true with method = linear, else false)", "true, false",
+      {{t, "no_slip", "-", "boolean", "(true with method = linear, else false)", "true, false",
         "no contact slips or rolls over in the probed copy (friction 1e6)"},
-       KeyKind::truth,
+       KeyKind::boolean,
        any,
        {},
        {}},
@@ -31,10 +31,10 @@ std::vector<TableKey> entries() {
 ProbeStage read(StageSource& source) {
   TableReader& reader = source.reader;
   ProbeStage stage;
-  const bool linear = reader.word("method") == "linear";
+  const bool linear = reader.choice("method") == "linear";
   stage.method = linear ? ProbeStage::Method::linear : ProbeStage::Method::dynamic;
   stage.size = reader.number("size");
-  stage.no_slip = reader.truth("no_slip", linear);
+  stage.no_slip = reader.boolean("no_slip", linear);
   if (linear && !stage.no_slip) {
     reader.mistake("no_slip",
                    "contradicts method = \"linear\", in which every contact is stuck; allowed: true with "

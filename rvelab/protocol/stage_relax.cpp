@@ -17,7 +17,7 @@ std::vector<TableKey> entries() {
   return {
       number(t, "unbalanced", "1", initial.unbalanced, ratio, "unbalanced force ratio below which the stage ends"),
       whole_number(t, "max_steps", initial.max_steps, steps, "sub-steps before it fails"),
-      truth(t, "record", initial.record, "records the state at the end"),
+      boolean(t, "record", initial.record, "records the state at the end"),
   };
 }
 
@@ -26,7 +26,7 @@ RelaxStage read(StageSource& source) {
   RelaxStage stage;
   stage.unbalanced = reader.number("unbalanced");
   stage.max_steps = reader.whole_number("max_steps");
-  stage.record = reader.truth("record");
+  stage.record = reader.boolean("record");
   return stage;
 }
 

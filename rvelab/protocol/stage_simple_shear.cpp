@@ -13,14 +13,14 @@ using namespace keys;
 std::vector<TableKey> entries() {
   const char* t = "stage.simple_shear";
   return {
-      word(t, "plane", {"xy", "xz", "yz", "yx", "zx", "zy"}, "ab: shear dv_a/dx_b", "(xy in 2D, xz in 3D)"),
+      choice(t, "plane", {"xy", "xz", "yz", "yx", "zx", "zy"}, "ab: shear dv_a/dx_b", "(xy in 2D, xz in 3D)"),
       required(with_range(number(t, "to_strain", "1", "", {-infinity, infinity, true, true},
                                  "gamma = F_ab at which the stage ends, either sign"),
                           "any finite number but 0")),
       number(t, "record_every", "1", SimpleShearStage{}.record_every, positive,
              "gamma between records; at most 1e6 records"),
-      word(t, "normal", {"constant_volume", "constant_stress"},
-           "constant_volume: only the shear moves (undrained); constant_stress: sigma_bb is held (drained)"),
+      choice(t, "normal", {"constant_volume", "constant_stress"},
+             "constant_volume: only the shear moves (undrained); constant_stress: sigma_bb is held (drained)"),
       number(t, "normal_pressure_Pa", "Pa", "(test.pressure_Pa)", positive,
              "normal = constant_stress: sigma_bb is held at minus this, which it starts from"),
       whole_number(t, "cycles", SimpleShearStage{}.cycles.count, {0, 1e6},
@@ -34,11 +34,11 @@ SimpleShearStage read(StageSource& source) {
   Protocol& protocol = source.protocol;
   SimpleShearStage stage;
   const char* usual = protocol.dimension == 0 ? "" : protocol.dimension == 2 ? "xy" : "xz";
-  stage.plane = reader.word("plane", usual);
+  stage.plane = reader.choice("plane", usual);
   expect_in_plane(reader, "plane", stage.plane, protocol);
   stage.to_strain = strain_of(source);
   stage.record_every = spacing_of(reader, stage.to_strain);
-  if (reader.word("normal") == "constant_volume") {
+  if (reader.choice("normal") == "constant_volume") {
     refuse_pressure(reader, "normal_pressure_Pa", "normal = \"constant_volume\"");
   } else {
     stage.normal = SimpleShearStage::Normal::constant_stress;
@@ -56,7 +56,7 @@ void drive(RunningTest& test, const SimpleShearStage& stage) {
   const std::string plane = !stage.plane.empty() ? stage.plane : test.dimension() == 2 ? "xy" : "xz";
   const int along = axis_index(plane[0]), normal = axis_index(plane[1]);
   const bool hold = stage.normal == SimpleShearStage::Normal::constant_stress;
-  Progress& at = test.run.progress;
+  records::Progress& at = test.run.progress;
   at.axis = plane;
   at.pressure = hold ? stage.normal_pressure : at.first_pressure;
 

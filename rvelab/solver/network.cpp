@@ -1,10 +1,12 @@
-// Rve::network: the contact network as a value. Declared in rve_impl.hpp.
+// Rve::network: the contact network as a value. Declared in rve.hpp.
 #include <Eigen/Geometry>
 #include <cmath>
 
 #include "rvelab/solver/assembly/contact_stiffness.hpp"
 #include "rvelab/solver/assembly/memory_order.hpp"
 #include "rvelab/solver/assembly/pair_geometry.hpp"
+#include "rvelab/solver/resting.hpp"
+#include "rvelab/solver/rve.hpp"
 #include "rvelab/solver/rve_impl.hpp"
 
 namespace rvelab {
@@ -20,8 +22,8 @@ void set_elastic(const Fixture& f, const PairTable& pairs, std::size_t p, Contac
     c.normal_stiffness = k.normal;
     c.tangential_stiffness = k.tangential;
     c.rolling_stiffness = k.rolling;
-    c.pressing_force = Force::pressing_force(c.normal_force, q.own);
-    c.elastic_energy = Force::normal_energy(q.kn, c.overlap, std::sqrt(c.overlap), q.own);
+    c.pressing_force = Force::pressing_force(c.normal_force, q.law_constant);
+    c.elastic_energy = Force::normal_energy(q.kn, c.overlap, std::sqrt(c.overlap), q.law_constant);
   });
   double spring = 0;
   for (int k = 0; k < f.tangential_components(); ++k) spring += pairs.tangential[k][p] * pairs.tangential[k][p];
@@ -29,12 +31,7 @@ void set_elastic(const Fixture& f, const PairTable& pairs, std::size_t p, Contac
   if (c.rolling_stiffness > 0) c.elastic_energy += 0.5 * c.rolling_moment.squaredNorm() / c.rolling_stiffness;
 }
 
-}  // namespace
-
-Network Rve::network() const {
-  const Impl& m = impl_->awake();
-  const Fixture& f = m.fixture;
-  const Assembly& a = m.now;
+Network network_of(const Fixture& f, const Assembly& a) {
   Network net;
   net.shape = f.shape;
   net.cell = a.cell;
@@ -85,6 +82,12 @@ Network Rve::network() const {
     net.contacts.push_back(c);
   }
   return in_id_order(std::move(net), a.state.memory_order);
+}
+
+}  // namespace
+
+Network Rve::network() const {
+  return at_work(*impl_, [](const Impl& m) { return network_of(m.fixture, m.now); });
 }
 
 }  // namespace rvelab

@@ -1,5 +1,5 @@
-// What an assembly can make again: the working arrays of its pairs, its masses, its forces. A resting one has let go of
-// them and keeps its list, so that waking searches nothing.
+// What an assembly can make again: the working arrays of its pairs, its masses, its forces. A resting one has
+// released them and keeps its list, so that rebuilding them searches nothing.
 #include "rvelab/solver/resting.hpp"
 
 #include <utility>
@@ -11,7 +11,7 @@ namespace rvelab {
 namespace {
 
 template <class... Arrays>
-void let_go(Arrays&... arrays) {
+void release(Arrays&... arrays) {
   ((arrays = Arrays()), ...);
 }
 
@@ -22,15 +22,15 @@ std::size_t bytes_of(const Array& array) {
 
 }  // namespace
 
-void rest(Assembly& a) {
+void release_buffers(Assembly& a) {
   PairTable& t = a.pairs;
-  let_go(t.row_i, t.row_j, t.kn, t.kt, t.own, t.friction, t.kr, t.moment_cap, t.cn, t.force, t.radius_i, t.radius_j,
-         t.touched, t.image_number[0], t.image_number[1], t.image_number[2]);
-  let_go(a.inverse_mass);
-  if (a.state.look_steps < 0) let_go(a.mass, a.inverse_inertia);
+  release(t.row_i, t.row_j, t.kn, t.kt, t.law_constant, t.friction, t.kr, t.moment_cap, t.cn, t.force, t.radius_i,
+          t.radius_j, t.touched, t.image_number[0], t.image_number[1], t.image_number[2]);
+  release(a.inverse_mass);
+  if (a.state.look_steps < 0) release(a.mass, a.inverse_inertia);
 }
 
-void wake(const Fixture& f, Assembly& a) {
+void rebuild_buffers(const Fixture& f, Assembly& a) {
   derive_pairs(f, a.pairs);
   a.inverse_mass.assign(padded_to_lanes(f.size()), 0.0);
   if (a.state.look_steps >= 0) {
@@ -50,7 +50,7 @@ Memory memory_of(const Assembly& a) {
   m.list = bytes_of(t.i) + bytes_of(t.j) + bytes_of(t.image) + bytes_of(t.order) + bytes_of(t.slot_begin) +
            bytes_of(t.slots) + bytes_of(t.tasks) + bytes_of(a.state.list_positions);
   for (const Buffer* b :
-       {&t.kn, &t.kt, &t.own, &t.friction, &t.kr, &t.moment_cap, &t.cn, &t.force, &t.radius_i, &t.radius_j,
+       {&t.kn, &t.kt, &t.law_constant, &t.friction, &t.kr, &t.moment_cap, &t.cn, &t.force, &t.radius_i, &t.radius_j,
         &t.image_number[0], &t.image_number[1], &t.image_number[2], &a.mass, &a.inverse_mass, &a.inverse_inertia})
     m.working += bytes_of(*b);
   m.working += bytes_of(t.row_i) + bytes_of(t.row_j) + bytes_of(t.touched);

@@ -1,17 +1,28 @@
-// Letting go of what an assembly can make again, and making it again.
+// Buffers that an assembly can make again: released while an RVE rests, rebuilt when it is at work.
 #pragma once
+
+#include <utility>
 
 #include "rvelab/solver/assembly/assembly.hpp"
 #include "rvelab/solver/rve.hpp"
 
 namespace rvelab {
 
-/// Lets go of the working arrays; only wake, close and memory_of may be called then.
-void rest(Assembly& assembly);
+/// Frees the working arrays; only rebuild_buffers, close_assembly and memory_of may be called then.
+void release_buffers(Assembly& assembly);
 
-/// Makes them again: the bits are those before resting.
-void wake(const Fixture& fixture, Assembly& assembly);
+/// Makes them again: the bits are those before.
+void rebuild_buffers(const Fixture& fixture, Assembly& assembly);
 
 Memory memory_of(const Assembly& assembly);
+
+/// What `look` finds in an RVE (Rve::Impl) that has its working arrays. A resting one is copied and stays at rest, so
+/// that a const call changes nothing.
+template <class Impl, class Look>
+auto at_work(const Impl& rve, Look look) {
+  if (!rve.resting) return look(rve);
+  Impl copy = rve;
+  return look(std::as_const(copy.awake()));
+}
 
 }  // namespace rvelab

@@ -29,7 +29,7 @@ void expect_overlaps(const Balance& balance, double limit) {
 
 Rve::Rve(const Specimen& specimen) : impl_(std::make_unique<Impl>()) {
   Impl& m = *impl_;
-  open(specimen, m.fixture, m.now);
+  open_assembly(specimen, m.fixture, m.now);
   set_typical_answers(m.fixture);
   if (m.now.state.look_steps < 0) use_physical_inertia(m.fixture, m.now);
   evaluate_forces(m.fixture, m.now);
@@ -76,7 +76,7 @@ Rve::Rve(Rve&&) noexcept = default;
 Rve& Rve::operator=(Rve&&) noexcept = default;
 Rve::~Rve() = default;
 
-Matrix3 Rve::Impl::contact_stress() { return to_lab(present_stress()); }
+Matrix3 Rve::Impl::contact_stress() const { return to_lab(-contact_moment(fixture, now) / now.cell.volume()); }
 
 Matrix3 Rve::Impl::reynolds_stress() const {
   if (now.state.quasi_static) return Matrix3::Zero();
@@ -84,13 +84,13 @@ Matrix3 Rve::Impl::reynolds_stress() const {
 }
 
 Rve::Impl& Rve::Impl::awake() {
-  if (resting) wake(fixture, now);
+  if (resting) rebuild_buffers(fixture, now);
   resting = false;
   return *this;
 }
 
 void Rve::rest() {
-  rvelab::rest(impl_->now);
+  release_buffers(impl_->now);
   impl_->sums = RowSums();
   impl_->moved();
   impl_->trial.release();
@@ -105,16 +105,18 @@ Memory Rve::memory() const {
   return memory;
 }
 
-Matrix3 Rve::contact_stress() const { return impl_->awake().contact_stress(); }
-Matrix3 Rve::reynolds_stress() const { return impl_->awake().reynolds_stress(); }
+Matrix3 Rve::contact_stress() const {
+  return at_work(*impl_, [](const Impl& m) { return m.contact_stress(); });
+}
+Matrix3 Rve::reynolds_stress() const {
+  return at_work(*impl_, [](const Impl& m) { return m.reynolds_stress(); });
+}
 Matrix3 Rve::stress() const {
-  Impl& m = impl_->awake();
-  return m.contact_stress() + m.reynolds_stress();
+  return at_work(*impl_, [](const Impl& m) -> Matrix3 { return m.contact_stress() + m.reynolds_stress(); });
 }
 
 double Rve::unbalanced_ratio() const {
-  const Impl& m = impl_->awake();
-  return rvelab::unbalanced_ratio(balance_of(m.fixture, m.now), m.now.state.reference_contact_force);
+  return at_work(*impl_, [](const Impl& m) { return m.unbalanced(balance_of(m.fixture, m.now)); });
 }
 
 const Cell& Rve::cell() const { return impl_->now.cell; }
@@ -122,15 +124,14 @@ std::size_t Rve::size() const { return impl_->fixture.size(); }
 std::uint64_t Rve::grain_steps() const { return impl_->now.state.grain_steps; }
 
 double Rve::critical_time_step() const {
-  const Impl& m = impl_->awake();
-  return critical_step(m.fixture, row_sums(m.fixture, m.now));
+  return at_work(*impl_, [](const Impl& m) { return critical_step(m.fixture, row_sums(m.fixture, m.now)); });
 }
 
 Response Rve::Impl::respond(const Report& report, const Matrix3& gradient, double dt, const Want& want) {
   Response r;
   r.report = report;
   r.displacement_gradient = gradient;
-  const Matrix3 contact = contact_stress(), reynolds = reynolds_stress();
+  const Matrix3 contact = to_lab(present_stress()), reynolds = reynolds_stress();
   r.stress = contact + reynolds;
   if (want.parts) {
     r.contact_stress = contact;
@@ -187,7 +188,7 @@ Report Rve::relax(double unbalanced, long max_steps) {
   return m.guarded([&] {
     Report report;
     m.begin_quasi_static();
-    constexpr long interval = 25;
+    constexpr long interval = 25;  // sub-steps between looks at the balance
     // Cundall's damping is a part of the force: it hardly takes from a mode without stiffness, such as grains of an
     // even ring that counter-rotate like gears. Who is not at rest after this many steps is stopped at each peak of the
     // kinetic energy (dynamic relaxation: Cundall 1976; Day 1965).
@@ -223,7 +224,7 @@ void Rve::set_materials(const std::vector<Material>& materials) {
   if (materials.size() != m.fixture.materials.size())
     throw InputError("set_materials: " + std::to_string(materials.size()) + " materials; the specimen has " +
                      std::to_string(m.fixture.materials.size()));
-  check(m.fixture.contact, m.fixture.damping, materials);
+  check_parameters(m.fixture.contact, m.fixture.damping, materials);
   m.fixture.materials = materials;
   std::vector<double> mass(m.fixture.size()), inertia(m.fixture.size());
   for (std::size_t g = 0; g < m.fixture.size(); ++g) {
@@ -278,7 +279,7 @@ void Rve::zero_velocities() {
   evaluate_forces(m.fixture, m.now);
 }
 
-Specimen Rve::specimen() const { return close(impl_->fixture, impl_->now); }
+Specimen Rve::specimen() const { return close_assembly(impl_->fixture, impl_->now); }
 std::vector<std::byte> Rve::save() const { return to_bytes(specimen()); }
 void Rve::restore(std::span<const std::byte> snapshot) {
   Rve restored(from_bytes(snapshot));

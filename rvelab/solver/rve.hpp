@@ -19,7 +19,7 @@ struct Want {
   bool parts = false;  ///< contact and Reynolds stress apart
 };
 
-/// What was done, and in what state it ended.
+/// What was done, and in what state it ended. Of apply and of relax; what a call does not judge keeps its default.
 struct Report {
   long substeps = 0;
   double unbalanced_ratio = 0;  ///< mean |resultant force|, or mean |torque|/r where larger, over max(mean contact
@@ -27,17 +27,18 @@ struct Report {
   double inertial_number = 0;   ///< dt > 0: sqrt(2 e:e) d sqrt(rho/p), infinite at p <= 0; dt = 0: zero
   double held_error = 0;        ///< mixed targets: largest |residual| over its scale (dt > 0: of its mean over the
                                 ///< increment), see MixedTarget
-  bool target_held = true;      ///< mixed targets: held_error <= tolerance; at dt = 0 within the wait
-  bool quasi_static = true;   ///< dt = 0: the state is an equilibrium as far as was asked for: the unbalanced ratio is
-                              ///< within three times its target and the target is held. A state that flows creeps
-                              ///< beyond that: relaxed, its stress falls by some ten times the ratio
+  bool target_held = true;      ///< mixed targets: held_error <= tolerance; at dt = 0 within the wait. relax: the
+                                ///< unbalanced ratio that was asked for is reached
+  bool quasi_static = true;   ///< apply at dt = 0: the state is an equilibrium as far as was asked for: the unbalanced
+                              ///< ratio is within three times its target and the target is held. A state that flows
+                              ///< creeps beyond that: relaxed, its stress falls by some ten times the ratio
   double error_estimate = 0;  ///< dt = 0: of the stress, Frobenius norm, Pa; nineteen of twenty errors lie below
   double allowed_error = 0;   ///< dt = 0: relative_tolerance max(|d sigma|, 0.1 |C : d eps|) + absolute_tolerance p, Pa
   bool cell_thin = false;     ///< a cell height is below four mean diameters
 };
 
 struct Response {
-  Matrix3 stress;                                   ///< Cauchy, laboratory frame, tension positive, Pa
+  Matrix3 stress = Matrix3::Zero();                 ///< Cauchy, laboratory frame, tension positive, Pa
   Matrix3 contact_stress = Matrix3::Zero();         ///< on request
   Matrix3 reynolds_stress = Matrix3::Zero();        ///< on request; zero at dt = 0
   Matrix3 displacement_gradient = Matrix3::Zero();  ///< what was applied (mixed targets: what was found)
@@ -51,6 +52,9 @@ struct Memory {
   std::size_t working = 0;  ///< what rest() lets go of
 };
 
+/// Calls that change the Rve (those without const) may not run beside any other call of the same one. Const calls
+/// change nothing and may run beside each other, except that those of a large cell share its team (share), which takes
+/// one call at a time. Different Rves know nothing of each other, copies included.
 class Rve {
  public:
   /// Opens a specimen: checks it (InputError; that its neighbour list is of a size to be made, and that no overlap is
@@ -68,29 +72,35 @@ class Rve {
   /// Throws InvalidIncrement (refused) or IncrementFailed; the RVE is then exactly as it was.
   Response apply(const Matrix3& displacement_gradient, double dt, const Want& want = {});
 
-  /// The same with a mixed target: the stress servo runs inside the sub-steps.
+  /// The same with a mixed target: the stress servo runs inside the sub-steps, and the response says which gradient it
+  /// found. Throws InputError if the target is not a target (see MixedTarget), InvalidIncrement (dt is negative or not
+  /// finite, or the strain that the rows ask for is no deformation) or IncrementFailed; the RVE is then exactly as it
+  /// was. A target that is missed is no error: Report::target_held says so.
   Response apply(const MixedTarget& target, double dt, const Want& want = {});
 
-  /// Quasi-static steps at fixed cell until the unbalanced ratio is below `unbalanced` or `max_steps` are made.
+  /// Quasi-static steps at fixed cell until the unbalanced ratio is at most `unbalanced` (dimensionless) or `max_steps`
+  /// sub-steps are made; Report::target_held says which of the two. Throws IncrementFailed (overlaps beyond
+  /// solver.max_overlap_ratio, forces not finite); the RVE is then exactly as it was.
   Report relax(double unbalanced, long max_steps);
 
-  Matrix3 stress() const;           ///< Cauchy, laboratory frame, Pa
-  Matrix3 contact_stress() const;   ///< (1/V) sum, laboratory frame, Pa
-  Matrix3 reynolds_stress() const;  ///< -(1/V) sum m v' v', laboratory frame, Pa; zero after dt = 0
-  double unbalanced_ratio() const;
-  const Cell& cell() const;
+  Matrix3 stress() const;             ///< Cauchy, laboratory frame, Pa
+  Matrix3 contact_stress() const;     ///< (1/V) sum, laboratory frame, Pa
+  Matrix3 reynolds_stress() const;    ///< -(1/V) sum m v' v', laboratory frame, Pa; zero after dt = 0
+  double unbalanced_ratio() const;    ///< of the state as it is, see Report::unbalanced_ratio
+  const Cell& cell() const;           ///< lattice (m) in its frame, and the frame's rotation to the laboratory
   std::size_t size() const;           ///< number of grains
   double critical_time_step() const;  ///< 2/omega_max with physical masses, s
-  std::uint64_t grain_steps() const;
+  std::uint64_t grain_steps() const;  ///< grains times sub-steps since the specimen was made
 
-  Network network() const;
-  Specimen specimen() const;
+  Network network() const;    ///< contacts and grains in the cell frame, in the order of the specimen
+  Specimen specimen() const;  ///< the whole state; Rve(specimen()) goes on as this one, bit for bit
 
   /// Lets go of everything that can be made again from state and list, about two thirds of the memory. The next call
-  /// that needs it wakes the Rve, in the time of a few sub-steps; no bit changes. (Const calls wake it too: not two at
-  /// once.)
+  /// that changes the Rve makes it again, in the time of a few sub-steps; no bit changes. A const call that needs it
+  /// (stresses, unbalanced ratio, critical time step, network) works on a copy that it makes in the same time and lets
+  /// go of: the Rve stays at rest.
   void rest();
-  Memory memory() const;
+  Memory memory() const;  ///< what is held at this moment
 
   /// A flag that apply and relax look at after each sub-step: once it is true they throw Interrupted, and the RVE is as
   /// it was before the call. Copies look at the same flag. It must outlive them; nullptr: none.
@@ -108,17 +118,23 @@ class Rve {
   /// Makes it the present state, with its contact forces and overlaps.
   void take_as_reference();
 
-  /// Changes contact parameters in place (friction for preparation, no slip for probes); history is kept.
+  /// Changes contact parameters in place (friction for preparation, no slip for probes); history is kept. One material
+  /// for each that the specimen has, in its order. InputError if their number differs or one is not allowed by the law
+  /// (check_parameters in contact/model.hpp); the RVE is then as it was.
   void set_materials(const std::vector<Material>& materials);
-  /// Sets fluctuation velocities and spins (cell frame, m/s and rad/s), for dt > 0.
+  /// Sets fluctuation velocities and spins (cell frame, m/s and rad/s), for dt > 0: one of each for every grain, in the
+  /// order of the specimen. In the plane the components out of it are left out. InputError if a number of entries is
+  /// not size() or an entry is not finite; the RVE is then as it was.
   void set_velocities(const std::vector<Vector3>& velocity, const std::vector<Vector3>& spin);
   /// Zeroes fluctuation velocities and spins; the kinetic energy is booked under `zeroing`.
   void zero_velocities();
 
   /// Bitwise snapshot of everything that decides the next bit, for builds whose specimens have the same fields (a
   /// specimen file carries a state further), and the way back. The flag of watch() and the team of share() stay.
-  /// restore throws InputError, and the RVE is then exactly as it was: the bytes are no snapshot, of a build with other
-  /// fields, cut short or damaged, or their state is one that cannot be opened (Rve(specimen)).
+  /// restore takes any number of grains, materials and either shape: what the Rve held before does not matter. It
+  /// throws InputError, and the RVE is then exactly as it was, if the bytes do not begin as a snapshot, are of a build
+  /// with other fields, have another length than their head says, do not fit their checksum, hold a length, a choice or
+  /// a boolean that cannot be, or if the state that they hold cannot be opened (Rve(specimen)).
   std::vector<std::byte> save() const;
   void restore(std::span<const std::byte> snapshot);
 

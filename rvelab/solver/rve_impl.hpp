@@ -52,7 +52,7 @@ struct Rve::Impl {
   Matrix3 to_lab(const Matrix3& cell_frame) const {
     return now.cell.rotation * cell_frame * now.cell.rotation.transpose();
   }
-  Matrix3 contact_stress();
+  Matrix3 contact_stress() const;
   Matrix3 reynolds_stress() const;
   Response respond(const Report& report, const Matrix3& gradient, double dt, const Want& want);
 

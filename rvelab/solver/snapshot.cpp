@@ -135,7 +135,7 @@ struct Writer {
 };
 
 /// Takes the fields off the front. A checksum is no proof of what is below it: lengths are held against the bytes that
-/// are left before there is room made for them, and words and truth values against those that there are.
+/// are left before there is room made for them, and choices and booleans against those that there are.
 struct Reader {
   std::span<const std::byte> left;
 

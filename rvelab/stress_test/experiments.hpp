@@ -1,5 +1,5 @@
 // The experiments of the stress test: what can be asked, with which numbers. One line each in the list below; the
-// functions stand in the files named above them. Parameters are pure numbers or SI; truths are 0 and 1.
+// functions stand in the files named above them. Parameters are pure numbers or SI; booleans are 0 and 1.
 #pragma once
 
 #include <vector>

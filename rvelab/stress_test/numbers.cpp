@@ -129,7 +129,7 @@ void other_lengths(const Case& asked, Verdict& verdict) {
   const Specimen s = in_units(usual(d, asked("hertz") != 0), 1, 1);
   Tested plain(s, verdict), scaled(in_units(s, length, length * length), verdict);
   const double p = plain.pressure();
-  for (int k = 0; k < 10; ++k) {  // 0.02 % strain, over which round-off has not grown (design 5, chaos)
+  for (int k = 0; k < 10; ++k) {  // 0.02 % strain, over which round-off has not grown (solver/README.md)
     const Matrix3 increment = some_increment(d) / 25;
     const Matrix3 one = plain.apply(increment, 0).stress, other = scaled.apply(increment, 0).stress;
     verdict.law("stress of grains of radius 1, of p", largest(one - other) / p, asked.tolerance);

@@ -1,4 +1,4 @@
-// Long flows: what reduction and an oriented start do for the cell (design 4, "Stretch").
+// Long flows: what reduction and an oriented start do for the cell (Kraynik and Reinelt 1992).
 #include <cmath>
 
 #include "rvelab/error.hpp"

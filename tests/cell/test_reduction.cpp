@@ -1,4 +1,4 @@
-// Reduction of the lattice: the same lattice, in its shortest basis (design 4).
+// Reduction of the lattice: the same lattice, in its shortest basis.
 #include <algorithm>
 #include <cmath>
 

@@ -1,4 +1,4 @@
-// The split of an increment into a turn of the frame and a stretch of the cell (design 4).
+// The split of an increment into a turn of the frame and a stretch of the cell.
 #include <cmath>
 #include <limits>
 #include <vector>

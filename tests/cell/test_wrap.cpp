@@ -1,4 +1,4 @@
-// Wrapping into the primary cuboid, lattice translations, heights (design 4).
+// Wrapping into the primary cuboid, lattice translations, heights.
 #include <cmath>
 #include <limits>
 

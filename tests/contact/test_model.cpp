@@ -1,4 +1,4 @@
-// Contact parameters: mixing, dashpots, ranges, names (design 6).
+// Contact parameters: mixing, dashpots, ranges, names.
 #include "rvelab/contact/model.hpp"
 #include "rvelab/contact/restitution.hpp"
 
@@ -52,7 +52,7 @@ ContactModel model_of(Law law, bool rolling = false) {
 
 std::string finding(const ContactModel& model, const Damping& damping, const std::vector<Material>& materials) {
   try {
-    check(model, damping, materials);
+    check_parameters(model, damping, materials);
   } catch (const InputError& error) {
     return error.what();
   }

@@ -11,7 +11,7 @@ namespace {
 /// YADE's dense packing: 400 discs at 100 kPa, at rest.
 Specimen dense() {
   const std::string base = std::string(RVELAB_TEST_DATA) + "/yade/dense";
-  return import_csv(base + ".particles.csv", base + ".contacts.csv", base + ".json");
+  return io::import_csv(base + ".particles.csv", base + ".contacts.csv", base + ".json");
 }
 
 /// The same grains with springs and forces times `factor`.
@@ -61,7 +61,7 @@ TEST_CASE("Stiffness times 8192 at the same strains gives 8192 times the stress,
 TEST_CASE("Stiffness times 10,000 at the same strains gives 10,000 times the stress", "[extreme]") {
   Rve soft(stiffened(1)), stiff(stiffened(1e4));
   CHECK(largest(1e4 * soft.stress() - stiff.stress()) <= 1e-10 * 1e9);
-  for (int k = 0; k < 10; ++k) {  // the first 0.02 % strain (design 5)
+  for (int k = 0; k < 10; ++k) {  // the first 0.02 % strain from rest: solver/README.md
     const Matrix3 a = soft.apply(biaxial(2e-5), 0).stress, b = stiff.apply(biaxial(2e-5), 0).stress;
     CHECK(largest(1e4 * a - b) <= 1e-10 * 1e9);
   }

@@ -75,8 +75,8 @@ TEST_CASE("One grain under any deformation has the stress of its deformed lattic
 }
 
 TEST_CASE("One grain of a square lattice resists shear by kt/2 per thickness", "[extreme]") {
-  // Two contacts per grain, along x and y; each gives half of its slip to the turning of the grain (design 8: C66 =
-  // kt/2 as the contact force vanishes). The initial stress adds terms of the order of the overlap, 1e-6 here.
+  // Two contacts per grain, along x and y; each gives half of its slip to the turning of the grain (C66 = kt/2 as
+  // the contact force vanishes). The initial stress adds terms of the order of the overlap, 1e-6 here.
   const double kt = 0.7 * stiffness, size = 1e-9;
   const Specimen start = lone_grain(2, 2 - 2e-6, material(stiffness, kt, 1e6));
   double shear[2];

@@ -206,7 +206,8 @@ TEST_CASE("Compression until grains overlap by a quarter is refused and changes 
     CHECK((rve.save() == before));
     const Matrix3 stress = rve.apply(isotropic(2, -0.10), dt).stress;
     const double spacing = 1.95 * 0.9;
-    const double pressure = std::sqrt(3.0) * stiffness * (2 / spacing - 1) / 0.5;  // design 8, per thickness 0.5 m
+    const double pressure = std::sqrt(3.0) * stiffness * (2 / spacing - 1) /
+                            0.5;  // a triangular lattice (tests/oracle/test_crystals.cpp), per thickness 0.5 m
     CHECK(mean_pressure(stress, 2) == Approx(pressure).epsilon(1e-9));
   }
 }

@@ -93,7 +93,7 @@ TEST_CASE("A cell two grains thin has the stress of its supercell", "[extreme]")
     const double p = mean_pressure(few.stress(), d);
     REQUIRE(p > 1e4);
     CHECK(largest(few.stress() - many.stress()) <= 1e-12 * p);
-    // The first 0.02 % strain from rest (design 5): 1e-10 of p.
+    // The first 0.02 % strain from rest (solver/README.md): 1e-10 of p.
     double worst = 0;
     for (int k = 0; k < 10; ++k) {
       const Matrix3 gradient = entry(0, d - 1, 1e-5) + entry(0, 0, 5e-6) + entry(d - 1, d - 1, -1e-5);

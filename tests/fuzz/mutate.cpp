@@ -147,7 +147,7 @@ class Mutation {
 
   /// The characters of one kind around a random place, or after it.
   template <class Is>
-  Range stretch(Is is) {
+  Range all_that(Is is) {
     const auto size = static_cast<long>(input_.size());
     auto begin = static_cast<long>(below(input_.size() + 1));
     while (begin < size && !is(at(begin))) ++begin;
@@ -159,13 +159,13 @@ class Mutation {
   char at(long place) const { return static_cast<char>(input_[static_cast<std::size_t>(place)]); }
 
   Range number() {
-    return stretch([](char c) { return (c >= '0' && c <= '9') || c == '.' || c == '-' || c == 'e'; });
+    return all_that([](char c) { return (c >= '0' && c <= '9') || c == '.' || c == '-' || c == 'e'; });
   }
   Range word() {
-    return stretch([](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; });
+    return all_that([](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; });
   }
   Range line() {
-    Range found = stretch([](char c) { return c != '\n'; });
+    Range found = all_that([](char c) { return c != '\n'; });
     if (found.second < static_cast<long>(input_.size())) ++found.second;
     return found;
   }

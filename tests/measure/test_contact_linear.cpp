@@ -1,5 +1,5 @@
 // The linearised contact against finite differences of the incremental law, written here once more with finite
-// rotations (design 6).
+// rotations.
 #include "rvelab/measure/contact_linear.hpp"
 
 #include <Eigen/Geometry>

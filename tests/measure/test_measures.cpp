@@ -1,4 +1,4 @@
-// Stress, fabric, coordination, void ratio, sliding, energies (design 3, 7).
+// Stress, fabric, coordination, void ratio, sliding, energies.
 #include "rvelab/measure/measures.hpp"
 
 #include <Eigen/Geometry>

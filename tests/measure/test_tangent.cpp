@@ -1,4 +1,4 @@
-// Elastic tangent: crystals with exact stiffness, recorded packings, frames, mechanisms (design 7, 8).
+// Elastic tangent: crystals with exact stiffness, recorded packings, frames, mechanisms.
 #include "rvelab/measure/tangent.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -20,7 +20,7 @@ double relative_distance(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff();
 }
 
-/// The sum of design 8, all contacts, without initial-stress terms.
+/// The affine sum of solver/README.md, all contacts, without initial-stress terms.
 Eigen::MatrixXd affine_sum(const Network& network) {
   const int dimension = network.dimension(), size = component_count(dimension);
   const auto same = [](int a, int b) { return a == b ? 1.0 : 0.0; };

@@ -1,4 +1,4 @@
-// Crystals: pressure and elastic tangent in closed form against central differences of apply and relax (design 8).
+// Crystals: pressure and elastic tangent in closed form against central differences of apply and relax.
 //
 // A site of a crystal is a centre of symmetry: under a homogeneous strain no grain leaves the affine motion, and under
 // a symmetric one of these lattices no grain turns. With dH symmetric, bonds b = l n and F = f n at the start,

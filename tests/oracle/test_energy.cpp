@@ -1,4 +1,4 @@
-// The energy ledger at dt > 0 (design 7): change of elastic and kinetic energy = boundary work less all losses.
+// The energy ledger at dt > 0 (solver/README.md): change of elastic and kinetic energy = boundary work less all losses.
 //
 // Kinetic energy is the mean of the two half steps about the state, with v' and the whole spin w' + axial(W + Omega).
 // The residual is a matter of the time step alone. It falls as dt^2 for normal forces. Tangential springs are stretched
@@ -49,9 +49,9 @@ struct Flow {
 
 /// The specimen at rest, prepared without damping, dashpot and rolling; made once for all tests that share it.
 Specimen resting(const Specimen& s) {
-  using Key = std::tuple<Shape, Law, double, double>;
-  static std::map<Key, Specimen> known;
-  const Key key(s.shape, s.contact.law, s.materials[0].friction, s.materials[0].tangential_stiffness);
+  using keys::Key = std::tuple<Shape, Law, double, double>;
+  static std::map<keys::Key, Specimen> known;
+  const keys::Key key(s.shape, s.contact.law, s.materials[0].friction, s.materials[0].tangential_stiffness);
   if (known.count(key) == 0) {
     Specimen quiet = s;
     quiet.damping = {};

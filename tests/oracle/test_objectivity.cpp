@@ -1,7 +1,8 @@
-// What an observer, a choice of origin, of lattice basis or of period must not change (design 4, 5, 8).
+// What an observer, a choice of origin, of lattice basis or of period must not change.
 //
-// Equalities by design 5: bitwise where the arithmetic is the same (rigid rotations at dt = 0, quarter turns); 1e-10 of
-// p over the first 0.02 % of strain from a state at rest where it is not (round-off grows with strain: chaos).
+// Equalities as rvelab/solver/README.md gives them: bitwise where the arithmetic is the same (rigid rotations at dt =
+// 0, quarter turns); 1e-10 of p over the first 0.02 % of strain from a state at rest where it is not (round-off grows
+// with strain: chaos).
 #include <Eigen/LU>
 
 #include "tests/oracle/specimens.hpp"

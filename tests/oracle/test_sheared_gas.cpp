@@ -1,4 +1,4 @@
-// 500 spheres at porosity 0.738 sheared at dt > 0: the flow must not know along which axes it is looked at (design 8).
+// 500 spheres at porosity 0.738 sheared at dt > 0: the flow must not know along which axes it is looked at.
 // A shear that the triangular frame follows without turning (xz) is set against ones under which the frame turns
 // against the laboratory all the time, so that Coriolis terms, spins and both stresses stand the test.
 //
@@ -162,7 +162,7 @@ TEST_CASE("shear of a lattice whose basis lies at 45 degrees is that of the cube
   const Stresses fine = flow(s, Matrix3::Identity(), 10);
   CHECK(difference(along_xz(10).contact, fine.contact) < 5e-5);
   CHECK(difference(along_xz(10).reynolds, fine.reynolds) < 3e-5);
-  // In increments as long as the stretches between renewals of the step, 50 steps, the way may differ by 25 times as
+  // In increments as long as the intervals between renewals of the step, 50 steps, the way may differ by 25 times as
   // much, and the reduction falls into the middle of one.
   const Stresses coarse = flow(s, Matrix3::Identity(), 50);
   CHECK(difference(along_xz(50).contact, coarse.contact) < 1e-3);

@@ -1,4 +1,4 @@
-// Two grains alone in a large cell: collisions, and contacts driven along prescribed loops (design 6, 8).
+// Two grains alone in a large cell: collisions, and contacts driven along prescribed loops.
 #include <algorithm>
 
 #include "tests/oracle/specimens.hpp"

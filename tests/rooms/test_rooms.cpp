@@ -138,6 +138,55 @@ TEST_CASE("no header includes itself by way of others") {
   CHECK(done.size() > 200);
 }
 
+TEST_CASE("no two types of one namespace have one name") {
+  // Two would be one type to the linker, with the layout of either.
+  std::map<std::string, std::string> found;
+  std::size_t types = 0;
+  for (const std::string& file : code_under("rvelab")) {
+    std::vector<std::string> spaces;  // of the blocks that begin at the first letter of a line, and are open
+    std::istringstream lines(text_of(root / file));
+    for (std::string line; std::getline(lines, line);) {
+      std::istringstream words(line);
+      std::string what, name;
+      words >> what;
+      if (line.starts_with("}  // namespace") && !spaces.empty()) spaces.pop_back();
+      if (line.starts_with("namespace ") && line.ends_with("{")) {
+        words >> name;
+        spaces.push_back(name == "{" ? file : name);  // unnamed: of this file alone
+      }
+      const bool type = line.starts_with("struct ") || line.starts_with("class ") || line.starts_with("enum ");
+      if (!type || line.ends_with(";") || line.find('<') != std::string::npos) continue;
+      words >> name;
+      if (name == "class") words >> name;
+      if (const auto colon = name.find(':'); colon != std::string::npos) continue;  // Outer::Inner, in one file alone
+      std::string whole;
+      for (const std::string& space : spaces) whole += space + "::";
+      ++types;
+      const auto [place, first] = found.emplace(whole + name, file);
+      if (!first) FAIL_CHECK(whole << name << " is declared in " << place->second << " and in " << file);
+    }
+  }
+  CHECK(types > 200);
+}
+
+TEST_CASE("a room above the core has the namespace of its folder") {
+  std::size_t files = 0;
+  for (const char* room : {"pack", "records", "keys", "io", "protocol", "calibrate", "stress_test", "cli"}) {
+    const std::string space = std::string("namespace rvelab::") + room;
+    for (const std::string& file : code_under(std::string("rvelab/") + room)) {
+      std::istringstream lines(text_of(root / file));
+      bool inside = false;
+      for (std::string line; std::getline(lines, line);) {
+        if (line == space + " {" || line.starts_with(space + "::")) inside = true;
+        if (line == "namespace rvelab {") FAIL_CHECK(file << " puts names into rvelab itself");
+      }
+      ++files;
+      if (!inside && !file.ends_with("/main.cpp")) FAIL_CHECK(file << " is not in " << space);
+    }
+  }
+  CHECK(files > 150);
+}
+
 TEST_CASE("HDF5 is known to the files that wrap it alone") {
   int wrapping = 0;
   for (const std::string& file : code_under("rvelab")) {
@@ -170,4 +219,13 @@ TEST_CASE("a source without a header of its name says which header declares it")
     });
     if (!there) FAIL_CHECK(file << " says that " << header << " declares it, and does not include it");
   }
+}
+
+TEST_CASE("expected_count is the number of tests that every machine has") {
+  std::size_t cases = 1;  // the bench, which is a run of the program
+  for (const std::string& file : code_under("tests")) {
+    std::istringstream lines(text_of(root / file));
+    for (std::string line; std::getline(lines, line);) cases += std::size_t(line.starts_with("TEST_CASE("));
+  }
+  CHECK(std::to_string(cases) + "\n" == text_of(root / "tests/expected_count"));
 }

@@ -1,4 +1,4 @@
-// The neighbour list against brute force over images (design 4): correctness never rests on a compact cell.
+// The neighbour list against brute force over images: correctness never rests on a compact cell.
 #include "tests/solver/brute_force.hpp"
 
 #include <random>

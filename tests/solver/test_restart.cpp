@@ -10,14 +10,14 @@ using namespace rvelab::test;
 
 namespace {
 
-struct Scene {
+struct Configuration {
   const char* name;
   Specimen specimen;
 };
 
-/// Scenes that carry different parts of the state: rolling moments, last overlaps, dashpot forces, 2D and 3D.
-std::vector<Scene> scenes() {
-  std::vector<Scene> all;
+/// Configurations that carry different parts of the state: rolling moments, last overlaps, dashpot forces, 2D and 3D.
+std::vector<Configuration> configurations() {
+  std::vector<Configuration> all;
   Material m = linear_material(2e6, 1e6, 0.4);
   m.young_modulus = 2e8;
   m.poisson_ratio = 0.2;
@@ -89,21 +89,21 @@ MixedTarget biaxial(int dimension, double strain, double pressure) {
 }  // namespace
 
 TEST_CASE("a restored state goes on bit for bit") {
-  for (const Scene& scene : scenes()) {
-    CAPTURE(scene.name, scene.specimen.shape == Shape::disc ? "discs" : "spheres");
+  for (const Configuration& configuration : configurations()) {
+    CAPTURE(configuration.name, configuration.specimen.shape == Shape::disc ? "discs" : "spheres");
     for (const bool physical : {false, true}) {
       CAPTURE(physical);
-      Rve rve(scene.specimen);
+      Rve rve(configuration.specimen);
       std::uint64_t lists = 0;
       for (int k = 0; k < 8; ++k) {
         const std::vector<std::byte> snapshot = rve.save();
-        Rve restored{Specimen(scene.specimen)}, reopened(rve.specimen());
+        Rve restored{Specimen(configuration.specimen)}, reopened(rve.specimen());
         restored.restore(snapshot);
         CHECK(bool(restored.save() == snapshot));
         CHECK(bool(reopened.save() == snapshot));
         CHECK(same_bits(restored.stress(), rve.stress()));
         CHECK(restored.unbalanced_ratio() == rve.unbalanced_ratio());
-        const Matrix3 step = step_of(scene.specimen, k);
+        const Matrix3 step = step_of(configuration.specimen, k);
         const double dt = physical ? slow_time(rve) : 0;
         const Response expected = rve.apply(step, dt);
         CHECK(same_stress(restored.apply(step, dt), expected));
@@ -119,20 +119,20 @@ TEST_CASE("a restored state goes on bit for bit") {
 
 TEST_CASE(
     "a restored state goes on bit for bit under stress control, at rest, and from one kind of loading to another") {
-  for (const Scene& scene : scenes()) {
-    CAPTURE(scene.name, scene.specimen.shape == Shape::disc ? "discs" : "spheres");
-    Rve rve = at_rest(scene.specimen, 1e-4);
+  for (const Configuration& configuration : configurations()) {
+    CAPTURE(configuration.name, configuration.specimen.shape == Shape::disc ? "discs" : "spheres");
+    Rve rve = at_rest(configuration.specimen, 1e-4);
     const int dimension = rve.cell().dimension;
     const double p = pressure(rve.stress(), dimension);
     for (int k = 0; k < 8; ++k) {
       CAPTURE(k);
-      Rve restored{Specimen(scene.specimen)};
+      Rve restored{Specimen(configuration.specimen)};
       restored.restore(rve.save());
       for (Rve* each : {&rve, &restored}) {
         if (k % 4 == 0) each->apply(biaxial(dimension, 1e-3, p), 0);
         if (k % 4 == 1) each->apply(biaxial(dimension, 1e-3, p), 300 * each->critical_time_step());
         if (k % 4 == 2) each->relax(1e-5, 300);
-        if (k % 4 == 3) each->apply(step_of(scene.specimen, 0), slow_time(*each));
+        if (k % 4 == 3) each->apply(step_of(configuration.specimen, 0), slow_time(*each));
       }
       CHECK(bool(restored.save() == rve.save()));
     }
@@ -140,7 +140,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a damaged snapshot is refused and changes nothing") {
-  Rve rve(scenes()[0].specimen);
+  Rve rve(configurations()[0].specimen);
   const std::vector<std::byte> good = rve.save();
   std::vector<std::byte> bad = good;
   bad[bad.size() / 2] ^= std::byte{4};
@@ -152,12 +152,12 @@ TEST_CASE("a damaged snapshot is refused and changes nothing") {
 
 TEST_CASE("a failed or refused increment leaves every bit as it was") {
   const double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
-  const std::vector<Scene> all = scenes();
-  for (const Scene& scene : {all[0], all[4], all[8]}) {
-    CAPTURE(scene.name, scene.specimen.shape == Shape::disc ? "discs" : "spheres");
-    const bool discs = scene.specimen.shape == Shape::disc;
+  const std::vector<Configuration> all = configurations();
+  for (const Configuration& configuration : {all[0], all[4], all[8]}) {
+    CAPTURE(configuration.name, configuration.specimen.shape == Shape::disc ? "discs" : "spheres");
+    const bool discs = configuration.specimen.shape == Shape::disc;
     for (const bool physical : {false, true}) {
-      Specimen limited = scene.specimen;
+      Specimen limited = configuration.specimen;
       limited.solver.max_overlap_ratio = 0.4;  // they begin at 0.3
       limited.solver.fixed_substeps = 400;
       limited.solver.max_substeps = 20'000;
@@ -199,27 +199,27 @@ TEST_CASE("a failed or refused increment leaves every bit as it was") {
 }
 
 TEST_CASE("no increment in no time is no change") {
-  for (const Scene& scene : scenes()) {
-    CAPTURE(scene.name);
-    Rve rve(scene.specimen);
+  for (const Configuration& configuration : configurations()) {
+    CAPTURE(configuration.name);
+    Rve rve(configuration.specimen);
     for (int k = 0; k < 2; ++k) {
       const std::vector<std::byte> before = rve.save();
       const Response r = rve.apply(Matrix3::Zero(), 0);
       CHECK(r.report.substeps == 0);
       CHECK(same_bits(r.stress, rve.stress()));
       CHECK(bool(rve.save() == before));
-      rve.apply(step_of(scene.specimen, k), k == 0 ? 0 : slow_time(rve));
+      rve.apply(step_of(configuration.specimen, k), k == 0 ? 0 : slow_time(rve));
     }
   }
 }
 
 TEST_CASE("what is asked for changes no bit of what is done") {
-  for (Scene& scene : scenes()) {
-    CAPTURE(scene.name, scene.specimen.shape == Shape::disc ? "discs" : "spheres");
-    Rve plain(scene.specimen), asked(scene.specimen);
+  for (Configuration& configuration : configurations()) {
+    CAPTURE(configuration.name, configuration.specimen.shape == Shape::disc ? "discs" : "spheres");
+    Rve plain(configuration.specimen), asked(configuration.specimen);
     for (int k = 0; k < 4; ++k) {
       const double dt = k % 2 == 0 ? 0 : slow_time(plain);
-      const Matrix3 step = 0.3 * step_of(scene.specimen, k);
+      const Matrix3 step = 0.3 * step_of(configuration.specimen, k);
       const Response a = plain.apply(step, dt), b = asked.apply(step, dt, Want{.parts = true});
       asked.network();
       asked.specimen();
@@ -236,15 +236,15 @@ TEST_CASE("what is asked for changes no bit of what is done") {
 }
 
 TEST_CASE("keeping the energy ledger changes no bit of what is done") {
-  for (Scene& scene : scenes()) {
-    CAPTURE(scene.name, scene.specimen.shape == Shape::disc ? "discs" : "spheres");
-    Specimen with = scene.specimen, without = scene.specimen;
+  for (Configuration& configuration : configurations()) {
+    CAPTURE(configuration.name, configuration.specimen.shape == Shape::disc ? "discs" : "spheres");
+    Specimen with = configuration.specimen, without = configuration.specimen;
     with.solver.ledger = true;
     without.solver.ledger = false;
     Rve kept(with), plain(without);
     for (int k = 0; k < 4; ++k) {
       const double dt = k % 2 == 0 ? slow_time(plain) : 0;
-      const Matrix3 step = 0.3 * step_of(scene.specimen, k);
+      const Matrix3 step = 0.3 * step_of(configuration.specimen, k);
       CHECK(same_stress(kept.apply(step, dt), plain.apply(step, dt)));
     }
     Specimen a = kept.specimen(), b = plain.specimen();
@@ -280,9 +280,9 @@ class InstructionSet {
 }  // namespace
 
 TEST_CASE("every instruction set gives the same bits over a biaxial path and a dynamic shear") {
-  for (const Scene& scene : scenes()) {
-    CAPTURE(scene.name, scene.specimen.shape == Shape::disc ? "discs" : "spheres");
-    const Rve start = at_rest(scene.specimen, 1e-4);
+  for (const Configuration& configuration : configurations()) {
+    CAPTURE(configuration.name, configuration.specimen.shape == Shape::disc ? "discs" : "spheres");
+    const Rve start = at_rest(configuration.specimen, 1e-4);
     const Specimen rest = start.specimen();
     const int dimension = rest.cell.dimension;
     const double p = pressure(start.stress(), dimension);

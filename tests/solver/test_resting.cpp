@@ -1,4 +1,7 @@
 // A resting Rve has let go of what it can make again; nothing that it answers or does afterwards changes by a bit.
+#include <thread>
+#include <utility>
+
 #include "rvelab/error.hpp"
 #include "tests/oracle/specimens.hpp"
 
@@ -7,8 +10,8 @@ using namespace rvelab::test;
 
 namespace {
 
-/// Scenes that differ in what has to be made again: parameters, histories, dashpot forces, radii, images.
-std::vector<Specimen> scenes() {
+/// Configurations that differ in what has to be made again: parameters, histories, dashpot forces, radii, images.
+std::vector<Specimen> configurations() {
   std::vector<Specimen> all;
   Material rolling = linear_material(2e6, 1e6, 0.4);
   rolling.rolling_stiffness = 1;
@@ -35,7 +38,7 @@ Matrix3 step(int dimension) {
 }  // namespace
 
 TEST_CASE("Resting between calls changes no bit of what an Rve does", "[solver]") {
-  for (const Specimen& start : scenes())
+  for (const Specimen& start : configurations())
     for (const double dt : {0.0, 1e-4}) {
       Rve resting(start), restless(start);
       for (int k = 0; k < 5; ++k) {
@@ -51,7 +54,7 @@ TEST_CASE("Resting between calls changes no bit of what an Rve does", "[solver]"
 }
 
 TEST_CASE("A resting Rve answers every question as one at work", "[solver]") {
-  for (const Specimen& start : scenes()) {
+  for (const Specimen& start : configurations()) {
     Rve rve(start);
     rve.apply(step(start.cell.dimension), 1e-4);
     const auto rested = [&] {
@@ -90,8 +93,31 @@ TEST_CASE("A resting Rve answers every question as one at work", "[solver]") {
   }
 }
 
+TEST_CASE("A const call leaves a resting Rve at rest, on several threads too", "[solver]") {
+  for (const Specimen& start : configurations()) {
+    Rve rve(start);
+    rve.apply(step(start.cell.dimension), 0);
+    const Matrix3 stress = rve.stress();
+    const double unbalanced = rve.unbalanced_ratio(), critical = rve.critical_time_step();
+    const std::size_t contacts = rve.network().contacts.size();
+    rve.rest();
+    const auto bytes = rve.save();
+    std::vector<Matrix3> found(4, Matrix3::Zero());
+    std::vector<std::thread> askers;
+    for (Matrix3& answer : found)
+      askers.emplace_back([&answer, &asked = std::as_const(rve)] { answer = asked.stress(); });
+    for (std::thread& asker : askers) asker.join();
+    for (const Matrix3& answer : found) CHECK(same_bits(answer, stress));
+    CHECK(rve.unbalanced_ratio() == unbalanced);
+    CHECK(rve.critical_time_step() == critical);
+    CHECK(rve.network().contacts.size() == contacts);
+    CHECK(rve.memory().working == 0);
+    CHECK(rve.save() == bytes);
+  }
+}
+
 TEST_CASE("A failed call leaves a resting Rve as it was", "[solver]") {
-  Rve rve(scenes().front());
+  Rve rve(configurations().front());
   rve.apply(step(2), 0);
   const auto before = rve.save();
   rve.rest();

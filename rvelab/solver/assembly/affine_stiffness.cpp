@@ -106,7 +106,7 @@ Matrix6 strain_turn(const Matrix3& rotation) {
 template <class Of>
 Matrix6 affine_sum(const Fixture& f, const Assembly& a, const Of& coefficients) {
   // C_ijkl = (1/V) sum l^2 [(kn - kt) n_i n_j n_k n_l
-  //                         + kt/4 (n_i n_k d_jl + n_i n_l d_jk + n_j n_k d_il + n_j n_l d_ik)], design 8.
+  //                         + kt/4 (n_i n_k d_jl + n_i n_l d_jk + n_j n_k d_il + n_j n_l d_ik)], see README.md.
   const Moments m = f.shape == Shape::disc ? moments_of<2>(f, a, coefficients) : moments_of<3>(f, a, coefficients);
   constexpr int first[6] = {0, 1, 2, 1, 0, 0}, second[6] = {0, 1, 2, 2, 2, 1};
   Matrix6 stiffness = m.fourth;

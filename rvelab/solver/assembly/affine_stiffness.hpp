@@ -1,5 +1,6 @@
-// Stiffness of the contact network if every grain followed the cell: C = (1/V) sum l^2 [kn nnnn + kt (...)] (design 8).
-// 1.15 to 1.35 times too stiff as an elastic modulus, which makes it a safe gain for the servo and a preconditioner.
+// Stiffness of the contact network if every grain followed the cell: C = (1/V) sum l^2 [kn nnnn + kt (...)]
+// (solver/README.md). 1.15 to 1.35 times too stiff as an elastic modulus, which makes it a safe gain for the servo and
+// a preconditioner.
 #pragma once
 
 #include <Eigen/Core>

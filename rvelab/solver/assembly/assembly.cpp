@@ -54,7 +54,7 @@ void take_scaled_inertia(Assembly& a) {
 
 }  // namespace
 
-void open(const Specimen& specimen, Fixture& f, Assembly& a) {
+void open_assembly(const Specimen& specimen, Fixture& f, Assembly& a) {
   check_specimen(specimen);
   const std::size_t n = specimen.grains.size(), padded = padded_to_lanes(n);
   std::vector<std::int32_t> order = specimen.state.memory_order;
@@ -108,7 +108,7 @@ void open(const Specimen& specimen, Fixture& f, Assembly& a) {
   }
 }
 
-Specimen close(const Fixture& f, const Assembly& a) {
+Specimen close_assembly(const Fixture& f, const Assembly& a) {
   Specimen s;
   s.shape = f.shape;
   s.cell = a.cell;
@@ -148,7 +148,7 @@ PairArrays arrays_of(PairTable& t) {
   p.kn = t.kn.data();
   p.kt = t.kt.data();
   p.friction = t.friction.data();
-  p.own = t.own.data();
+  p.law_constant = t.law_constant.data();
   p.kr = t.kr.data();
   p.moment_cap = t.moment_cap.data();
   p.cn = t.cn.data();

@@ -60,10 +60,10 @@ struct PairTable {
   std::vector<std::int32_t> order;    ///< places of the pairs in the order of (i, j, image)
   std::vector<std::uint8_t> touched;  ///< kernels/configuration.hpp
   std::vector<std::int32_t> i, j;
-  std::vector<std::int32_t> row_i, row_j;  ///< i, j times the row length
+  std::vector<std::int32_t> row_i, row_j;  ///< i, j times the length of a grain row
   std::vector<Image> image;
   Buffer image_number[3];
-  Buffer kn, kt, own, friction, kr, moment_cap, cn;
+  Buffer kn, kt, law_constant, friction, kr, moment_cap, cn;
   Buffer tangential[3], moment[3], root_overlap, force;
   Buffer radius_i, radius_j;                    ///< 2D
   std::vector<std::int32_t> slot_begin, slots;  ///< gather table (kernels/configuration.hpp)
@@ -101,8 +101,8 @@ constexpr std::size_t padded_to_lanes(std::size_t n) { return (n / 8 + 1) * 8; }
 
 /// Checks a specimen and opens it; from some size on its grains are kept in an order of their own (memory_order.hpp),
 /// in which every index of Fixture and Assembly counts. Throws InputError.
-void open(const Specimen& specimen, Fixture& fixture, Assembly& assembly);
-Specimen close(const Fixture& fixture, const Assembly& assembly);
+void open_assembly(const Specimen& specimen, Fixture& fixture, Assembly& assembly);
+Specimen close_assembly(const Fixture& fixture, const Assembly& assembly);
 
 /// Throws IncrementFailed if the shortest lattice vector is below min_height.
 void check_height(const Fixture& fixture, const Cell& cell);

@@ -12,7 +12,7 @@ inline PairParameters parameters_of(const Fixture& f, const PairTable& pairs, st
   const bool rolling = f.contact.rolling;
   return {pairs.kn[p],
           pairs.kt[p],
-          pairs.own.empty() ? 0 : pairs.own[p],
+          pairs.law_constant.empty() ? 0 : pairs.law_constant[p],
           pairs.friction[p],
           rolling ? pairs.kr[p] : 0,
           rolling ? pairs.moment_cap[p] : 0,
@@ -40,7 +40,7 @@ ContactStiffness stiffness_of(const Fixture& f, const PairParameters& q, double 
 }
 template <class Force>
 double normal_force_of(const PairParameters& q, double overlap) {
-  return Force::normal_force(q.kn, overlap, Force::needs_root_overlap ? std::sqrt(overlap) : 0, q.own);
+  return Force::normal_force(q.kn, overlap, Force::needs_root_overlap ? std::sqrt(overlap) : 0, q.law_constant);
 }
 
 /// call(Force{}) with the Force of the specimen's law.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "rvelab/error.hpp"
+#include "rvelab/solver/assembly/assembly.hpp"
 #include "rvelab/solver/assembly/gather_table.hpp"
 #include "rvelab/solver/assembly/pair_geometry.hpp"
 

@@ -8,7 +8,8 @@
 
 namespace rvelab {
 
-/// Fills slot_begin, slots and tasks of the table for its listed pairs, in their order; `force_row` doubles a row.
+/// Fills slot_begin, slots and tasks of the table for its listed pairs, in their order; a force row is `force_row`
+/// doubles.
 void fill_gather_table(std::size_t padded_grains, std::int32_t force_row, PairTable& pairs);
 
 /// Calls at(grain, place, as_j) for every pair of the grains [first, last), multiples of a chunk but for the end: for

@@ -7,9 +7,9 @@ namespace rvelab {
 
 std::size_t bytes_of(const PairTable& t) {
   const auto bytes = [](const auto&... arrays) { return ((arrays.capacity() * sizeof(arrays[0])) + ...); };
-  std::size_t sum =
-      bytes(t.order, t.touched, t.i, t.j, t.row_i, t.row_j, t.image, t.slot_begin, t.slots, t.tasks) +
-      bytes(t.kn, t.kt, t.own, t.friction, t.kr, t.moment_cap, t.cn, t.root_overlap, t.force, t.radius_i, t.radius_j);
+  std::size_t sum = bytes(t.order, t.touched, t.i, t.j, t.row_i, t.row_j, t.image, t.slot_begin, t.slots, t.tasks) +
+                    bytes(t.kn, t.kt, t.law_constant, t.friction, t.kr, t.moment_cap, t.cn, t.root_overlap, t.force,
+                          t.radius_i, t.radius_j);
   for (int k = 0; k < 3; ++k) sum += bytes(t.image_number[k], t.tangential[k], t.moment[k]);
   return sum;
 }
@@ -21,8 +21,8 @@ void set_pair_parameters(const Fixture& f, PairTable& pairs) {
   if (f.contact.rolling)
     for (Buffer* b : {&pairs.kr, &pairs.moment_cap}) b->assign(padded, 0.0);
   if (dashpot) pairs.cn.assign(padded, 0.0);
-  const bool own = with_law(f.contact.law, [](auto law) { return decltype(law)::Force::has_own_constant; });
-  if (own) pairs.own.assign(padded, 0.0);
+  const bool law_constant = with_law(f.contact.law, [](auto law) { return decltype(law)::Force::has_law_constant; });
+  if (law_constant) pairs.law_constant.assign(padded, 0.0);
   const auto set = [&](std::size_t p) {
     const auto i = std::size_t(pairs.i[p]), j = std::size_t(pairs.j[p]);
     const PairParameters q = mix(f.contact, f.damping, f.materials[std::size_t(f.material[i])], f.radius[i], f.mass[i],
@@ -30,7 +30,7 @@ void set_pair_parameters(const Fixture& f, PairTable& pairs) {
                                  grain_section(f.shape, std::min(f.radius[i], f.radius[j]), f.thickness));
     pairs.kn[p] = q.kn;
     pairs.kt[p] = q.kt;
-    if (own) pairs.own[p] = q.own;
+    if (law_constant) pairs.law_constant[p] = q.law_constant;
     pairs.friction[p] = q.friction;
     if (f.contact.rolling) {
       pairs.kr[p] = q.kr;

@@ -63,7 +63,7 @@ struct PairArrays {
   const std::int32_t* row_j = nullptr;
   const double* image[3] = {};  ///< image shift, as numbers
   const double *kn = nullptr, *kt = nullptr, *friction = nullptr;
-  const double* own = nullptr;                            ///< laws with a constant of their own
+  const double* law_constant = nullptr;                   ///< laws with a constant of their own
   const double *kr = nullptr, *moment_cap = nullptr;      ///< with rolling
   const double* cn = nullptr;                             ///< with a dashpot
   double* tangential[3] = {};                             ///< history on grain j; 2D: [0] along t = (-n_y, n_x)
@@ -81,12 +81,12 @@ constexpr long chunk_grains = 64;
 struct GrainArrays {
   double* rows = nullptr;
   const double *mass = nullptr, *inverse_mass = nullptr, *inverse_inertia = nullptr;
-  /// Gather table. A grain has two tasks: to add up the rows of the pairs in which it is j, and of those in which it is
-  /// i. The tasks of a chunk of grains are sorted by their number of pairs and done four at a time: block b has slots
-  /// [slot_begin[b], slot_begin[b + 1]) of four pairs each, a task with fewer pairs than its block has slots pointing
-  /// to a padding pair, whose force is zero. Loop lengths are seldom mispredicted so, and hardly a slot is padding
-  /// (against blocks of four neighbouring grains: spheres 32.6 ns a grain instead of 35.7, discs equal). Slots hold
-  /// where the force row of the pair starts, in doubles; tasks, four a block, where the sum of the task goes: four
+  /// Gather table. A grain has two tasks: to add up the force rows of the pairs in which it is j, and of those in which
+  /// it is i. The tasks of a chunk of grains are sorted by their number of pairs and done four at a time: block b has
+  /// slots [slot_begin[b], slot_begin[b + 1]) of four pairs each, a task with fewer pairs than its block has slots
+  /// pointing to a padding pair, whose force is zero. Loop lengths are seldom mispredicted so, and hardly a slot is
+  /// padding (against blocks of four neighbouring grains: spheres 32.6 ns a grain instead of 35.7, discs equal). Slots
+  /// hold where the force row of the pair starts, in doubles; tasks, four a block, where the sum of the task goes: four
   /// times the place of the grain in its chunk, plus 4 chunk_grains for i.
   const std::int32_t *slot_begin = nullptr, *slots = nullptr;
   const std::uint16_t* tasks = nullptr;

@@ -4,8 +4,8 @@
 //   v' <- P (v' - mean) + R dt (f - damping)/m      P, R from D + 2 Omega at dt > 0, the identity at dt = 0
 //   w' <- w' + dt T/I (+ frame terms at dt > 0)
 //   x  <- A x + dt B v'                             A, B upper triangular, A = L1 L0^-1 exactly
-// (design 4). Sums over grains go into eight interleaved partial sums whatever the number of lanes, so that every
-// instruction set adds in the same order.
+// (solver/README.md). Sums over grains go into eight interleaved partial sums whatever the number of lanes, so that
+// every instruction set adds in the same order.
 #pragma once
 
 #include "rvelab/solver/kernels/pairs.hpp"

@@ -13,8 +13,8 @@ struct DiscColumns {
   ScratchColumn x, y, u, v, w;
 };
 
-/// Resultants of a chunk of discs: sum of the rows of pairs in which they are j, less forces and plus T_i of those in
-/// which they are i.
+/// Resultants of a chunk of discs: sum of the force rows of pairs in which they are j, less forces and plus T_i of
+/// those in which they are i.
 template <int W>
 inline __attribute__((always_inline)) void gather_disc_forces(const GrainArrays& g, const PairArrays& p, long first,
                                                               long count, DiscColumns& out) {

@@ -7,7 +7,7 @@
 // pair: discs 8.0 in one pass, 7.1 in two, 6.6 in three; spheres 27.6, 21.2, 20.4).
 //
 // n from i to j, overlap delta = ri + rj - |b|, forces are those on j. Velocities: the relative velocity of the
-// centres over the step is dv' + D+ (b - dt/2 dv'), exactly (b_new - b_old)/dt. Slip (design 6):
+// centres over the step is dv' + D+ (b - dt/2 dv'), exactly (b_new - b_old)/dt. Slip (contact/README.md):
 //   consistent              s v_t - a_j w_j - a_i w_i,  a = r - delta/2, s = 1
 //   full_radius             a = r, s = 1 (LAMMPS; twist of the history is left out as there)
 //   full_radius_ratcheting  a = r, s = (ri + rj)/|b| (YADE)
@@ -54,7 +54,7 @@ inline __attribute__((always_inline)) typename Lanes<W>::Quad quad_at(const doub
   return load_as<typename Lanes<W>::Quad>(from);
 }
 
-/// First Quad of row j minus that of row i, as columns.
+/// First Quad of the grain row of j minus that of i, as columns.
 template <int W>
 inline __attribute__((always_inline)) void gather_differences(const double* rows, const std::int32_t* i,
                                                               const std::int32_t* j, typename Lanes<W>::V* columns) {
@@ -103,14 +103,14 @@ inline __attribute__((always_inline)) PairRun next_run(const PairArrays& p, long
   }
   long first = at, count = 0;
   while (at < end && count < chunk_pairs) {
-    const bool now = touches(at), awake = now | bool(p.touched[at / 8]);
+    const bool now = touches(at), active = now | bool(p.touched[at / 8]);
     p.touched[at / 8] = now;
-    if (awake) {
+    if (active) {
       if (count == 0) first = at;
       count += 8;
     }
     at += 8;
-    if (!awake && count > 0) break;
+    if (!active && count > 0) break;
   }
   return {first, count, at};
 }
@@ -137,8 +137,8 @@ struct TripleColumn {
 };
 /// The normal force, no smaller than where the surfaces press no more.
 template <class Law, class V>
-inline __attribute__((always_inline)) V without_tension(V normal, V own) {
-  const V pressing = Law::pressing_force(normal, own);
+inline __attribute__((always_inline)) V without_tension(V normal, V law_constant) {
+  const V pressing = Law::pressing_force(normal, law_constant);
   return (pressing > 0.0) ? normal : normal - pressing;
 }
 

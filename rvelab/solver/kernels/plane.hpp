@@ -33,18 +33,18 @@ inline __attribute__((always_inline)) void plane_forces(const StepConstants& c, 
     const PlaneContact<V> contact = Shape::template contact<T>(c, p, at, k, in);
     const V overlap = contact.overlap, slip_rate = contact.slip_rate;
     const auto touching = overlap > 0.0;
-    V root = zero, own = zero;
+    V root = zero, law_constant = zero;
     if constexpr (Law::needs_root_overlap || T::Dashpot) root = square_root(touching ? overlap : zero);
-    if constexpr (Law::has_own_constant) own = load_as<V>(p.own + at);
+    if constexpr (Law::has_law_constant) law_constant = load_as<V>(p.law_constant + at);
 
-    V normal = Law::normal_force(load_as<V>(p.kn + at), overlap, root, own);
+    V normal = Law::normal_force(load_as<V>(p.kn + at), overlap, root, law_constant);
     [[maybe_unused]] V c_normal = zero;
     if constexpr (T::Dashpot) {
       c_normal = dashpot_coefficient(load_as<V>(p.cn + at), root, c.dashpot_quarters);
       normal = normal - c_normal * contact.opening;
-      if (c.no_tension) normal = without_tension<Law>(normal, own);
+      if (c.no_tension) normal = without_tension<Law>(normal, law_constant);
     }
-    const V pressing = Law::pressing_force(normal, own);
+    const V pressing = Law::pressing_force(normal, law_constant);
 
     V tangential = load_as<V>(p.tangential[0] + at);
     [[maybe_unused]] V last_root = zero, carried = zero;

@@ -92,10 +92,10 @@ inline __attribute__((always_inline)) void space_forces(const StepConstants& c, 
     const Triple<V> n = s.normal.template load<V>(k);
     const V overlap = Shape::template overlap<V>(k, s), half_overlap = 0.5 * overlap;
     const auto touching = overlap > 0.0;
-    V root = zero, own = zero;
+    V root = zero, law_constant = zero;
     if constexpr (Law::needs_root_overlap || T::Dashpot) root = load_as<V>(s.root.at + k);
-    if constexpr (Law::has_own_constant) own = load_as<V>(p.own + at);
-    V normal = Law::normal_force(load_as<V>(p.kn + at), overlap, root, own);
+    if constexpr (Law::has_law_constant) law_constant = load_as<V>(p.law_constant + at);
+    V normal = Law::normal_force(load_as<V>(p.kn + at), overlap, root, law_constant);
     Triple<V> slip_rate = none;
     if constexpr (T::Advance || T::Dashpot) slip_rate = s.velocity.template load<V>(k);
     V c_normal = zero, opening = zero;
@@ -103,9 +103,9 @@ inline __attribute__((always_inline)) void space_forces(const StepConstants& c, 
       opening = load_as<V>(s.opening.at + k);
       c_normal = dashpot_coefficient(load_as<V>(p.cn + at), root, c.dashpot_quarters);
       normal = normal - c_normal * opening;
-      if (c.no_tension) normal = without_tension<Law>(normal, own);
+      if (c.no_tension) normal = without_tension<Law>(normal, law_constant);
     }
-    const V pressing = Law::pressing_force(normal, own);
+    const V pressing = Law::pressing_force(normal, law_constant);
     Triple<V> tangential = load_triple<V>(p.tangential, at);
     const V kt = Law::tangential_stiffness(load_as<V>(p.kt + at), root);
     [[maybe_unused]] V last_root = zero;

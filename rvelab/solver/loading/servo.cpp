@@ -12,10 +12,10 @@ namespace rvelab {
 
 namespace {
 
-// Half of the error each segment, a twentieth into the learnt rate. Any value below one is stable; these settle a
+// Half of the error at each update, a twentieth into the integral term. Any value below one is stable; these settle a
 // change of loading direction in about twenty segments.
-constexpr double proportional = 0.5;
-constexpr double integral = 0.05;
+constexpr double proportional_gain = 0.5;
+constexpr double integral_gain = 0.05;
 
 /// Components in use: xx, yy, xy of the six in 2D.
 constexpr int plane_components[3] = {0, 1, 5};
@@ -114,36 +114,37 @@ Vector6 Servo::rows_of(bool stress, const Vector6& rows) const {
 }
 
 Matrix3 Servo::next_strain(double to, double paced_strain, double full_pace, const Matrix3& strain_so_far,
-                           const Matrix3& stress, Matrix3& learnt) {
+                           const Matrix3& stress, Matrix3& integral) {
   const Vector6 r = residual(to, strain_so_far, stress);
   const Matrix3 answer = strain_matrix(gain_ * rows_of(true, r));
-  Matrix3 held = proportional * answer + paced_strain * learnt;
+  Matrix3 held = proportional_gain * answer + paced_strain * integral;
   const double size = held.norm(), limit = 10 * full_pace;
   if (size > limit)
     held *= limit / size;
   else  // a short last segment says little about the rate: its weight is its share of a full one
-    learnt += (integral * paced_strain / (full_pace * full_pace)) * answer;
-  // Rows of strain get what `held` leaves of them: `learnt` may stem from a target with other rows.
+    integral += (integral_gain * paced_strain / (full_pace * full_pace)) * answer;
+  // Rows of strain get what `held` leaves of them: `integral` may stem from a target with other rows.
   return strain_matrix(gain_ * rows_of(false, r - a_ * strain_components(held))) + held;
 }
 
 Matrix3 Servo::next_strain_at_rate(double to, double paced_strain, double full_pace, double limit,
                                    const Matrix3& strain_so_far, const Matrix3& stress, const Matrix3& rate,
-                                   Matrix3& learnt) {
+                                   Matrix3& integral) {
   const Vector6 r = residual(to, strain_so_far, stress);
   const Matrix3 answer = strain_matrix(gain_ * rows_of(true, r));
   // The strain that would leave the stress as it is, were there no dashpots; then what brings half of the error beside
   // it: K (de - steady) + C (de/time - rate) = half of the error, with the rows of strain met.
-  const Vector6 steady = strain_components(
-      paced_strain * learnt + strain_matrix(gain_ * rows_of(false, r - a_ * strain_components(paced_strain * learnt))));
-  const Vector6 wanted = proportional * r + b_ * (stiffness_ * steady + viscosity_ * strain_components(rate));
+  const Vector6 steady =
+      strain_components(paced_strain * integral +
+                        strain_matrix(gain_ * rows_of(false, r - a_ * strain_components(paced_strain * integral))));
+  const Vector6 wanted = proportional_gain * r + b_ * (stiffness_ * steady + viscosity_ * strain_components(rate));
   const Matrix3 strain = strain_matrix(quick_gain_ * (rows_of(false, r) + rows_of(true, wanted)));
   Matrix3 held = strain - strain_matrix(gain_ * rows_of(false, r));
   const double size = held.norm();
   if (size > limit)
     held *= limit / size;
   else
-    learnt += (integral * paced_strain / (full_pace * full_pace)) * answer;
+    integral += (integral_gain * paced_strain / (full_pace * full_pace)) * answer;
   return strain_matrix(gain_ * rows_of(false, r - a_ * strain_components(held))) + held;
 }
 

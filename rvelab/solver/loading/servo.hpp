@@ -1,9 +1,10 @@
 // The servo: turns a mixed target A : dE + B : d sigma = c into strain, a few sub-steps at a time.
 //
-// Per segment it solves (A + B C) d eps = r with the affine stiffness C of the contact network and r what the rows
-// still lack: rows of strain in full, rows with stress by half plus the rate learnt so far (proportional and integral).
-// The map from stress error to strain rate is positive real and the specimen is passive, so the loop is stable without
-// any gain to tune.
+// Each row is a constraint on strain (B = 0) or on stress. At each of its updates, one a segment of the target, it
+// solves (A + B C) d eps = r with the affine stiffness C of the contact network and r what the rows still lack: rows of
+// strain in full, rows with stress by half, plus an integral term (proportional and integral control). The map from
+// stress error to strain rate is positive real and the specimen is passive, so the loop is stable without any gain to
+// tune.
 #pragma once
 
 #include "rvelab/solver/assembly/affine_stiffness.hpp"
@@ -21,7 +22,7 @@ class Servo {
 
   /// Renews the gain; stiffness in the laboratory frame. `floor` (Pa) keeps it regular when nothing touches.
   void set_stiffness(const Matrix6& stiffness, double floor);
-  /// dt > 0, after set_stiffness: the dashpots, Pa s, for strokes of `time` (s).
+  /// dt > 0, after set_stiffness: the dashpots, Pa s, for updates every `time` (s).
   void set_viscosity(const Matrix6& viscosity, double time);
 
   /// Norm of the strain that the whole target asks for by the present gain.
@@ -29,18 +30,18 @@ class Servo {
 
   /// Strain of the next segment, symmetric: the target's fraction goes from `from` to `to` (both in [0, 1]).
   /// `paced_strain` is the share of the predicted strain that the segment makes, `full_pace` what a full segment would;
-  /// the answer to stress errors is cut at ten times that. `learnt` is the part of the strain per unit of paced strain
-  /// that the integral has found; it is updated.
+  /// the answer to stress errors is cut at ten times that. `integral` is the strain per unit of paced strain that
+  /// the sum of the errors has found (laboratory frame); it is updated.
   Matrix3 next_strain(double to, double paced_strain, double full_pace, const Matrix3& strain_so_far,
-                      const Matrix3& stress, Matrix3& learnt);
+                      const Matrix3& stress, Matrix3& integral);
 
-  /// The same at dt > 0. The dashpots answer a rate and let go of it when it ends: a stroke changes the stress by
-  /// K de + C (de/time - rate), with `rate` (1/s) that of the stroke before, and is solved for de. (With K alone a
+  /// The same at dt > 0. The dashpots answer a rate and let go of it when it ends: an update changes the stress by
+  /// K de + C (de/time - rate), with `rate` (1/s) that of the update before, and is solved for de. (With K alone a
   /// restitution of 0.1 made the servo swing by 1 to 5 times the stress that it held; with K + C/time for every strain
   /// it followed no faster than a collision, 4 to 16 % of scatter instead of 1 to 2.) The answer is cut at `limit`.
   Matrix3 next_strain_at_rate(double to, double paced_strain, double full_pace, double limit,
                               const Matrix3& strain_so_far, const Matrix3& stress, const Matrix3& rate,
-                              Matrix3& learnt);
+                              Matrix3& integral);
 
   /// What the rows lack at a fraction of the target.
   Vector6 residual(double fraction, const Matrix3& strain, const Matrix3& stress) const;

@@ -1,4 +1,4 @@
-// Enumerations by their names, as TOML writes them; the same words as in files.
+// Enumerations by their names, as TOML writes them; the same names as in files.
 #pragma once
 
 #include "rvelab/specimen/field_layout.hpp"

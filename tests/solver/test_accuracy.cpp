@@ -1,0 +1,143 @@
+// Quasi-static increments to a tolerance: errors against resolved increments from the same state, estimates above them,
+// a path cut finely, turns. Formulas by hand.
+#include "rvelab/solver/loading/accuracy.hpp"
+#include "tests/oracle/specimens.hpp"
+
+using namespace rvelab;
+using namespace rvelab::test;
+
+namespace {
+
+const Matrix3 forward = gradient(0.45, 0, 0, -0.9), sheared = gradient(0.3, 0.6, 0, -0.3);
+
+/// The dense packing after a biaxial strain (constant lateral strain rate), resolved so finely that its own lag is far
+/// below the tolerances.
+Specimen dense_after(double strain) {
+  Specimen s = recorded("dense");
+  if (strain > 0) {
+    s.solver.fixed_substeps = 2000;
+    Rve rve(s);
+    for (int k = 0; k < 10; ++k) rve.apply(strain / 10 * forward, 0);
+    rve.relax(1e-7, 100'000);
+    s = rve.specimen();
+    s.solver.fixed_substeps = 0;
+  }
+  return s;
+}
+
+Matrix3 resolved(Specimen s, const Matrix3& increment) {
+  s.solver.fixed_substeps = 4000;
+  Rve rve(s);
+  rve.apply(increment, 0);
+  rve.relax(1e-7, 100'000);
+  return rve.stress();
+}
+
+}  // namespace
+
+TEST_CASE("The error allowed is that of its two tolerances", "[solver]") {
+  CHECK(allowed_error(0.01, 1e-4, 2e3, 5e3, 1e5) == Approx(0.01 * 2e3 + 10));
+  CHECK(allowed_error(0.01, 1e-4, 100, 5e3, 1e5) == Approx(0.01 * 500 + 10));  // soft: a tenth of the network's answer
+  CHECK(allowed_error(0.01, 1e-4, 2e3, 5e3, -1e5) == Approx(20));             // in tension the relative part alone
+  // p = 100 kPa, overlap 10 um between discs of 10 mm: stress and overlap are proportional, so that C = p d/overlap
+  // but for the share of the contacts' directions.
+  CHECK(network_stiffness(1e5, 1e-5, 1e-2, 1) == Approx(0.7e8));
+  CHECK(network_stiffness(1e5, 1e-5, 1e-2, 1.5) == Approx(1.05e8));
+  CHECK(network_stiffness(0, 0, 1e-2, 1) == 0);
+  CHECK(error_per_unbalance(1) == Approx(0.4));
+  CHECK(error_per_unbalance(0.64) == Approx(0.4 / (0.64 * 0.64 * 0.8)));
+  CHECK(error_per_unbalance(0.01) == error_per_unbalance(0.4));
+  CHECK(unbalance_of_start(1, 1e-4, 1e-3, 16) == Approx(0.09 / (16 * std::pow(16, 0.375))));
+  CHECK(unbalance_of_start(0, 1e-4, 1e-3, 1) == 0);
+}
+
+TEST_CASE("Increments keep to their tolerance and below their estimate", "[solver][slow]") {
+  for (const double strain : {0.0, 1e-3, 1e-2}) {
+    const Specimen s = dense_after(strain);
+    for (const Matrix3& direction : {forward, Matrix3(-forward), sheared})
+      for (const double size : {1e-6, 1e-5, 1e-4, 1e-3}) {
+        CAPTURE(strain, size, direction(1, 1), direction(0, 1));
+        Rve rve(s);
+        const Response response = rve.apply(size * direction, 0);
+        const double error = (response.stress - resolved(s, size * direction)).norm();
+        CHECK(error <= response.report.allowed_error);
+        CHECK(error <= response.report.error_estimate);
+        CHECK(response.report.quasi_static);
+      }
+  }
+}
+
+TEST_CASE("Stricter tolerances take more sub-steps and err less", "[solver]") {
+  Specimen s = dense_after(1e-3);
+  const Matrix3 increment = 3e-4 * sheared, truth = resolved(s, increment);
+  const auto answer = [&](double factor) {
+    s.solver.relative_tolerance = 1e-2 * factor;
+    s.solver.absolute_tolerance = 1e-4 * factor;
+    return Rve(s).apply(increment, 0);
+  };
+  const Response usual = answer(1), strict = answer(0.03);
+  CHECK(strict.report.substeps > 3 * usual.report.substeps);
+  CHECK((strict.stress - truth).norm() < 0.3 * (usual.stress - truth).norm());
+  CHECK((strict.stress - truth).norm() <= strict.report.allowed_error);
+  CHECK(strict.report.allowed_error == Approx(0.03 * usual.report.allowed_error).epsilon(0.02));
+}
+
+TEST_CASE("A path cut finely costs little more than the path in increments of 1e-4", "[solver]") {
+  const Specimen s = recorded("dense");
+  const auto run = [&](long pieces) {
+    Rve rve(s);
+    Response last;
+    for (long k = 0; k < pieces; ++k) last = rve.apply(2e-3 / double(pieces) * forward, 0);
+    return std::pair(last.stress, rve.grain_steps() / s.grains.size());
+  };
+  const auto [whole, steps] = run(20);
+  const auto [tenth, steps_tenth] = run(200);
+  const auto [hundredth, steps_hundredth] = run(2000);
+  CHECK(double(steps_tenth) <= 1.2 * double(steps));
+  CHECK(steps_hundredth <= std::max<std::uint64_t>(2 * steps, 2000 + 100));  // at least one for each call
+  const double allowed = 1e-2 * (whole - Rve(s).stress()).norm() + 1e-4 * 1e5;
+  CHECK((tenth - whole).norm() <= allowed);
+  CHECK((hundredth - whole).norm() <= allowed);
+}
+
+TEST_CASE("A path that turns back, aside, or waits keeps to the resolved one, finely cut", "[solver]") {
+  const Specimen s = recorded("dense");
+  const auto run = [&](long pieces, long substeps) {
+    Specimen t = s;
+    t.solver.fixed_substeps = substeps;
+    Rve rve(t);
+    std::vector<Matrix3> corners;
+    for (const Matrix3& leg : {forward, Matrix3(-forward), sheared, Matrix3(Matrix3::Zero()), forward}) {
+      for (long k = 0; k < pieces; ++k) rve.apply(3e-4 / double(pieces) * leg, 0);
+      corners.push_back(rve.stress());
+    }
+    return corners;
+  };
+  const std::vector<Matrix3> truth = run(3, 2000);
+  for (const long pieces : {3L, 30L, 300L}) {
+    const std::vector<Matrix3> found = run(pieces, 0);
+    for (std::size_t k = 0; k < truth.size(); ++k) {
+      CAPTURE(pieces, k);
+      const Matrix3 from = k == 0 ? Rve(s).stress() : truth[k - 1];
+      // What a leg errs by is carried on: one allowance for each leg so far.
+      CHECK((found[k] - truth[k]).norm() <= double(k + 1) * (1e-2 * (truth[k] - from).norm() + 1e-4 * 1e5));
+    }
+  }
+}
+
+TEST_CASE("Tiny increments are no identity: they add up, save and restore bitwise", "[solver]") {
+  const Specimen s = recorded("dense");
+  Rve straight(s), restored(s);
+  for (int k = 0; k < 300; ++k) {
+    const Matrix3 increment = (k / 100 == 1 ? -1e-7 : 1e-7) * forward;
+    const Response a = straight.apply(increment, 0), b = restored.apply(increment, 0);
+    CHECK(same_bits(a.stress, b.stress));
+    CHECK(a.report.error_estimate == b.report.error_estimate);
+    if (k % 37 == 0) {
+      const std::vector<std::byte> bytes = restored.save();
+      restored = Rve(s);
+      restored.restore(bytes);
+    }
+  }
+  CHECK(straight.save() == restored.save());
+}
