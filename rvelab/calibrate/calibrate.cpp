@@ -10,10 +10,10 @@
 
 #include "rvelab/error.hpp"
 
-namespace rvelab {
+namespace rvelab::calibrate {
 namespace {
 
-PressureResult evaluate(const TestResult& test, int dimension) {
+PressureResult evaluate(const records::TestResult& test, int dimension) {
   const auto records = last_stage(test);
   const Peak highest = peak(records, dimension);
   PressureResult result;
@@ -27,22 +27,23 @@ PressureResult evaluate(const TestResult& test, int dimension) {
   result.large_strain_friction_angle_deg = friction_angle_deg(large_strain_mean(records, dimension));
   result.records = records.size();
   result.flagged = static_cast<std::size_t>(
-      std::count_if(records.begin(), records.end(), [](const Record& record) { return !record.target_held; }));
+      std::count_if(records.begin(), records.end(), [](const records::Record& record) { return !record.target_held; }));
   result.wall_seconds = test.wall_seconds;
   result.grain_steps = test.grain_steps;
   return result;
 }
 
 /// "p = 10000 Pa" in front of a message.
-std::string at_pressure(const Protocol& protocol, const char* message) {
+std::string at_pressure(const protocol::Protocol& protocol, const char* message) {
   std::ostringstream text;
   text << "p = " << protocol.pressure << " Pa: " << message;
   return text.str();
 }
 
-TestRun run_one(std::size_t number, const Protocol& protocol, const Specimen& specimen, const RunOne& run) {
+protocol::TestRun run_one(std::size_t number, const protocol::Protocol& protocol, const Specimen& specimen,
+                          const RunOne& run) {
   try {
-    return run ? run(number, protocol, specimen) : run_protocol(protocol, specimen);
+    return run ? run(number, protocol, specimen) : protocol::run_protocol(protocol, specimen);
   } catch (const InputError& error) {
     throw InputError(at_pressure(protocol, error.what()));
   } catch (const Error& error) {
@@ -81,7 +82,8 @@ void evaluate_specimens(Calibration& result) {
 
 }  // namespace
 
-Calibration calibrate(const std::vector<TestResult>& tests, int dimension, const std::vector<std::size_t>& specimens) {
+Calibration calibrate(const std::vector<records::TestResult>& tests, int dimension,
+                      const std::vector<std::size_t>& specimens) {
   if (tests.empty()) throw InputError("calibrate: 0 tests; allowed: at least 1; give a pressure");
   Calibration result;
   std::vector<PrincipalStresses> peaks;
@@ -106,11 +108,11 @@ Calibration calibrate(const std::vector<TestResult>& tests, int dimension, const
   return result;
 }
 
-void check_calibratable(const Protocol& protocol) {
-  const Stage& last = protocol.stages.back();
-  if (role_of(last).gives != StageRole::Gives::strength) {
-    throw InputError(protocol.path + ": the last stage, \"" + last.name +
-                     "\", gives no friction angle; allowed: " + strength_stages() + "; calibrate with such a protocol");
+void check_calibratable(const protocol::Protocol& protocol) {
+  const protocol::Stage& last = protocol.stages.back();
+  if (protocol::role_of(last).gives != protocol::StageRole::Gives::strength) {
+    throw InputError(protocol.path + ": the last stage, \"" + last.name + "\", gives no friction angle; allowed: " +
+                     protocol::strength_stages() + "; calibrate with such a protocol");
   }
   if (!protocol.uses_pressure) {
     throw InputError(protocol.path +
@@ -119,7 +121,7 @@ void check_calibratable(const Protocol& protocol) {
   }
 }
 
-void check_specimens(const std::vector<Protocol>& protocols, const std::vector<Specimen>& specimens) {
+void check_specimens(const std::vector<protocol::Protocol>& protocols, const std::vector<Specimen>& specimens) {
   if (specimens.size() != 1 && specimens.size() != protocols.size()) {
     throw InputError("calibrate: " + std::to_string(specimens.size()) + " specimens for " +
                      std::to_string(protocols.size()) +
@@ -128,14 +130,15 @@ void check_specimens(const std::vector<Protocol>& protocols, const std::vector<S
   }
 }
 
-std::vector<TestRun> run_all(const std::vector<Protocol>& protocols, const std::vector<Specimen>& specimens,
-                             unsigned threads, const RunOne& run, const std::vector<std::size_t>& specimen_of) {
+std::vector<protocol::TestRun> run_all(const std::vector<protocol::Protocol>& protocols,
+                                       const std::vector<Specimen>& specimens, unsigned threads, const RunOne& run,
+                                       const std::vector<std::size_t>& specimen_of) {
   if (specimen_of.empty()) check_specimens(protocols, specimens);
   const auto number_of = [&](std::size_t k) {
     return !specimen_of.empty() ? specimen_of.at(k) : specimens.size() == 1 ? 0 : k;
   };
   if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
-  std::vector<TestRun> runs(protocols.size());
+  std::vector<protocol::TestRun> runs(protocols.size());
   std::vector<std::exception_ptr> errors(protocols.size());
   std::atomic<std::size_t> next{0};
   const auto work = [&] {
@@ -156,4 +159,4 @@ std::vector<TestRun> run_all(const std::vector<Protocol>& protocols, const std::
   return runs;
 }
 
-}  // namespace rvelab
+}  // namespace rvelab::calibrate

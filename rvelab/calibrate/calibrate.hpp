@@ -7,7 +7,7 @@
 #include "rvelab/calibrate/mohr.hpp"
 #include "rvelab/protocol/run.hpp"
 
-namespace rvelab {
+namespace rvelab::calibrate {
 
 /// What one test gives. Pa, compression positive; degrees.
 struct PressureResult {
@@ -57,24 +57,24 @@ Statistics statistics(const std::vector<double>& values);
 
 /// Evaluates the last stages of finished tests of one dimension. `specimens`: the number, from 0, of the specimen that
 /// each test was made on; none: all on one. InputError without tests or records.
-Calibration calibrate(const std::vector<TestResult>& tests, int dimension,
+Calibration calibrate(const std::vector<records::TestResult>& tests, int dimension,
                       const std::vector<std::size_t>& specimens = {});
 
 /// Throws InputError unless the last stage is a compression at constant lateral stress whose pressure is the test's:
 /// what a friction angle can be read from.
-void check_calibratable(const Protocol& protocol);
+void check_calibratable(const protocol::Protocol& protocol);
 
 /// InputError unless there is one specimen for all protocols, or one for each.
-void check_specimens(const std::vector<Protocol>& protocols, const std::vector<Specimen>& specimens);
+void check_specimens(const std::vector<protocol::Protocol>& protocols, const std::vector<Specimen>& specimens);
 
 /// Does one test, by its number, on a thread that it has to itself.
-using RunOne = std::function<TestRun(std::size_t number, const Protocol&, const Specimen&)>;
+using RunOne = std::function<protocol::TestRun(std::size_t number, const protocol::Protocol&, const Specimen&)>;
 
 /// Runs protocol k on specimen k (or on the only one), `threads` at a time (0: as many as there are cores). The results
 /// do not depend on the number of threads. Throws the error of the first test that failed, naming its pressure.
 /// `run`: instead of run_protocol. `specimen_of`: the specimen of each protocol by its number, where not its own.
-std::vector<TestRun> run_all(const std::vector<Protocol>& protocols, const std::vector<Specimen>& specimens,
-                             unsigned threads, const RunOne& run = {},
-                             const std::vector<std::size_t>& specimen_of = {});
+std::vector<protocol::TestRun> run_all(const std::vector<protocol::Protocol>& protocols,
+                                       const std::vector<Specimen>& specimens, unsigned threads, const RunOne& run = {},
+                                       const std::vector<std::size_t>& specimen_of = {});
 
-}  // namespace rvelab
+}  // namespace rvelab::calibrate

@@ -6,7 +6,7 @@
 
 #include "rvelab/error.hpp"
 
-namespace rvelab {
+namespace rvelab::calibrate {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
@@ -15,7 +15,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double strain_slack = 1e-9;  // recorded strains are round numbers up to round-off
 constexpr double range_slack = 1e-3;   // a range of strains counts as covered up to the spacing of records
 
-double median_spacing(std::span<const Record> records) {
+double median_spacing(std::span<const records::Record> records) {
   std::vector<double> spacings;
   for (std::size_t k = 1; k < records.size(); ++k) {
     spacings.push_back(std::abs(records[k].strain - records[k - 1].strain));
@@ -36,7 +36,7 @@ PrincipalStresses principal_stresses(const Matrix3& stress, int dimension) {
 
 double friction_angle_deg(const PrincipalStresses& stresses) { return std::asin(stresses.t() / stresses.s()) / degree; }
 
-Peak peak(std::span<const Record> records, int dimension) {
+Peak peak(std::span<const records::Record> records, int dimension) {
   if (records.empty()) throw InputError("peak: 0 records; allowed: at least 1; give a test that records");
   Peak highest;
   for (std::size_t k = 0; k < records.size(); ++k) {
@@ -46,12 +46,12 @@ Peak peak(std::span<const Record> records, int dimension) {
   return highest;
 }
 
-bool rising_at_end(std::span<const Record> records, const Peak& peak) {
+bool rising_at_end(std::span<const records::Record> records, const Peak& peak) {
   constexpr double end = 0.95;
   return peak.record > 0 && std::abs(peak.strain) > end * std::abs(records.back().strain);
 }
 
-PrincipalStresses peak_of_moving_mean(std::span<const Record> records, int dimension, double window) {
+PrincipalStresses peak_of_moving_mean(std::span<const records::Record> records, int dimension, double window) {
   PrincipalStresses highest{nan, nan};
   const double spacing = records.size() < 2 ? 0 : median_spacing(records);
   if (spacing <= 0) return highest;
@@ -70,7 +70,7 @@ PrincipalStresses peak_of_moving_mean(std::span<const Record> records, int dimen
   return highest;
 }
 
-PrincipalStresses large_strain_mean(std::span<const Record> records, int dimension, double from, double to) {
+PrincipalStresses large_strain_mean(std::span<const records::Record> records, int dimension, double from, double to) {
   PrincipalStresses sum;
   double count = 0, reached = 0;
   for (const auto& record : records) {
@@ -134,11 +134,11 @@ double local_shear_Nq(double friction_angle_deg) {
 
 double wedge_angle_deg(double friction_angle_deg) { return 45 + 0.5 * friction_angle_deg; }
 
-std::span<const Record> last_stage(const TestResult& result) {
+std::span<const records::Record> last_stage(const records::TestResult& result) {
   const auto& records = result.records;
   std::size_t begin = records.size();
   while (begin > 0 && records[begin - 1].stage == records.back().stage) --begin;
-  return std::span<const Record>(records).subspan(begin);
+  return std::span<const records::Record>(records).subspan(begin);
 }
 
-}  // namespace rvelab
+}  // namespace rvelab::calibrate

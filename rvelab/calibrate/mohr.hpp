@@ -10,7 +10,7 @@
 
 #include "rvelab/records/record.hpp"
 
-namespace rvelab {
+namespace rvelab::calibrate {
 
 /// Largest and smallest principal stress, Pa, compression positive.
 struct PrincipalStresses {
@@ -33,18 +33,18 @@ struct Peak {
 
 /// The record with the largest deviator sigma_1 - sigma_3, unsmoothed; the first of several. With a held lateral stress
 /// that is the largest axial stress of a compression and the smallest of an extension. InputError without records.
-Peak peak(std::span<const Record> records, int dimension);
+Peak peak(std::span<const records::Record> records, int dimension);
 
 /// True if the peak lies within the last twentieth of the strain of the records: still rising at the end, or on a
 /// plateau, the test shows no peak.
-bool rising_at_end(std::span<const Record> records, const Peak& peak);
+bool rising_at_end(std::span<const records::Record> records, const Peak& peak);
 
 /// The moving mean of the principal stresses over `window` of strain (as many records as lie in it at their median
 /// spacing), where its ratio major/minor is largest. NaN if there are fewer records than the window takes.
-PrincipalStresses peak_of_moving_mean(std::span<const Record> records, int dimension, double window = 0.01);
+PrincipalStresses peak_of_moving_mean(std::span<const records::Record> records, int dimension, double window = 0.01);
 
 /// Mean of the principal stresses over the records with from <= |strain| <= to. NaN if the records end before `to`.
-PrincipalStresses large_strain_mean(std::span<const Record> records, int dimension, double from = 0.12,
+PrincipalStresses large_strain_mean(std::span<const records::Record> records, int dimension, double from = 0.12,
                                     double to = 0.15);
 
 /// Least squares of t in s over several tests, through the origin: sin phi = sum(s t)/sum(s s). Degrees.
@@ -70,6 +70,6 @@ double local_shear_Nq(double friction_angle_deg);
 double wedge_angle_deg(double friction_angle_deg);
 
 /// The records of the last stage that has any.
-std::span<const Record> last_stage(const TestResult& result);
+std::span<const records::Record> last_stage(const records::TestResult& result);
 
-}  // namespace rvelab
+}  // namespace rvelab::calibrate

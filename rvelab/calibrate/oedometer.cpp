@@ -3,13 +3,13 @@
 #include <cmath>
 #include <limits>
 
-namespace rvelab {
+namespace rvelab::calibrate {
 
-OedometerStiffness oedometer_stiffness(std::span<const Record> stage, const std::string& axis, int dimension,
+OedometerStiffness oedometer_stiffness(std::span<const records::Record> stage, const std::string& axis, int dimension,
                                        double up_to) {
   const int a = axis[0] - 'x';
   double squares = 0, axial = 0, lateral = 0;
-  for (const Record& record : stage) {
+  for (const records::Record& record : stage) {
     if (std::abs(record.strain) > up_to * (1 + 1e-9)) break;
     // Compression positive in both.
     const Matrix3 change = stage.front().stress - record.stress;
@@ -26,4 +26,4 @@ OedometerStiffness oedometer_stiffness(std::span<const Record> stage, const std:
   return {c11, c12, g, c12 + 2 * g / 3, 0.5 * (c11 + c12)};
 }
 
-}  // namespace rvelab
+}  // namespace rvelab::calibrate

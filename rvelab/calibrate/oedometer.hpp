@@ -5,7 +5,7 @@
 
 #include "rvelab/records/record.hpp"
 
-namespace rvelab {
+namespace rvelab::calibrate {
 
 /// Slopes of the normal stresses over the axial strain, and the moduli of an isotropic solid that has them, Pa. NaN
 /// where there are no two records.
@@ -18,7 +18,7 @@ struct OedometerStiffness {
 };
 
 /// Least squares through the first record, over the records of one stage with |strain| <= up_to; `axis`: "x", "y", "z".
-OedometerStiffness oedometer_stiffness(std::span<const Record> stage, const std::string& axis, int dimension,
+OedometerStiffness oedometer_stiffness(std::span<const records::Record> stage, const std::string& axis, int dimension,
                                        double up_to = 1e-5);
 
-}  // namespace rvelab
+}  // namespace rvelab::calibrate

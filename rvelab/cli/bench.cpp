@@ -24,8 +24,8 @@ namespace rvelab::cli {
 
 namespace {
 
-Recipe discs(bool rolling) {
-  Recipe r;
+pack::Recipe discs(bool rolling) {
+  pack::Recipe r;
   Material& material = r.materials[0];
   material.young_modulus = 8e8;
   material.stiffness_ratio = 0.5;
@@ -35,13 +35,13 @@ Recipe discs(bool rolling) {
     material.rolling_stiffness = 1;
     material.rolling_friction = 0.05;
   }
-  r.stress = isotropic_stress(1e5, r.shape);
+  r.stress = pack::isotropic_stress(1e5, r.shape);
   r.preparation.friction = 0.02;
   return r;
 }
 
-Recipe spheres() {
-  Recipe r;
+pack::Recipe spheres() {
+  pack::Recipe r;
   r.shape = Shape::sphere;
   r.number = 1000;
   r.fractions[0].grading.smallest_radius = 1e-3;
@@ -50,14 +50,14 @@ Recipe spheres() {
   r.materials[0].poisson_ratio = 0.25;
   r.materials[0].friction = 0.5;
   r.contact.law = Law::hertz_mindlin;
-  r.stress = isotropic_stress(1e5, r.shape);
+  r.stress = pack::isotropic_stress(1e5, r.shape);
   r.preparation.friction = 0.1;
   return r;
 }
 
-Specimen packed(const Recipe& recipe) {
+Specimen packed(const pack::Recipe& recipe) {
   Workers alone(1);
-  return pack(recipe, alone).specimen;
+  return pack::pack(recipe, alone).specimen;
 }
 
 struct Timing {
@@ -130,7 +130,7 @@ Json entry(const Specimen& specimen, double grain_steps, bool quick, Workers& te
 /// A case: which packing, how often repeated along each lattice vector, how much work.
 struct Case {
   const char* name;
-  Recipe recipe;
+  pack::Recipe recipe;
   Image times;
   double grain_steps, quick_grain_steps;
 };
@@ -146,7 +146,7 @@ std::vector<Case> cases() {
 
 /// About so many grains: packed as they are up to the number of the recipe, above by repeating its packing.
 Specimen of_size(Shape shape, std::size_t grains) {
-  Recipe recipe = shape == Shape::disc ? discs(false) : spheres();
+  pack::Recipe recipe = shape == Shape::disc ? discs(false) : spheres();
   if (grains <= std::size_t(recipe.number)) {
     recipe.number = decltype(recipe.number)(grains);
     return packed(recipe);
@@ -161,7 +161,7 @@ Specimen of_size(Shape shape, std::size_t grains) {
     ++n[n[0] == k ? 0 : n[1] == k ? 1 : 2];
     if (off(n) < off(best)) best = n;
   }
-  return repeated(packed(recipe), best);
+  return pack::repeated(packed(recipe), best);
 }
 
 struct Arguments {
@@ -193,7 +193,7 @@ void run_batch(const Arguments& arguments) {
     const auto before = steps_made();
     const auto begin = std::chrono::steady_clock::now();
     for (int increment = 0; increment < 4; ++increment)
-      for (const BatchEntry& entry : apply(rves, gradients, dt, workers))
+      for (const BatchEntry& entry : apply_to_all(rves, gradients, dt, workers))
         if (entry.failure) std::rethrow_exception(entry.failure);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     if (round > 0) speeds.push_back(double(steps_made() - before) / seconds);  // the first warms up
@@ -221,14 +221,14 @@ void run_bench(const Arguments& arguments) {
   for (const Case& c : cases()) {
     const auto& wanted = arguments.wanted;
     if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), c.name) == wanted.end()) continue;
-    const Specimen specimen = repeated(packed(c.recipe), c.times);
+    const Specimen specimen = pack::repeated(packed(c.recipe), c.times);
     if (arguments.folder.empty()) {
       listing.add(c.name,
                   entry(specimen, arguments.quick ? c.quick_grain_steps : c.grain_steps, arguments.quick, team));
       continue;
     }
     const std::string path = (std::filesystem::path(arguments.folder) / (std::string(c.name) + ".h5")).string();
-    write_specimen(specimen, path);
+    io::write_specimen(specimen, path);
     const Rve rve(specimen);
     Json packing;
     packing["file"] = path;

@@ -35,7 +35,7 @@ struct CalibrateArguments {
 
 /// What is to be run: each test has a protocol, which is the general one at its pressure, and a specimen by its number.
 struct Plan {
-  std::vector<Protocol> protocols;
+  std::vector<protocol::Protocol> protocols;
   std::vector<std::size_t> specimen_of;
   std::vector<std::string> files;  ///< names of the record files
 
@@ -68,16 +68,16 @@ std::vector<double> parsed_pressures(const std::string& list) {
 /// Name of the record file of one test: the pressure in Pa as an integer.
 std::string record_file_name(double pressure) { return "R_" + std::to_string(std::llround(pressure)) + ".h5"; }
 
-std::vector<Protocol> protocols_at(const CalibrateArguments& arguments) {
+std::vector<protocol::Protocol> protocols_at(const CalibrateArguments& arguments) {
   const std::string path = protocol_path(arguments.protocol);
-  const Protocol general = read_protocol(path, arguments.settings);
+  const protocol::Protocol general = protocol::read_protocol(path, arguments.settings);
   const auto pressures =
       arguments.pressures.empty() ? general.calibration_pressures : parsed_pressures(arguments.pressures);
   if (pressures.empty()) {
     throw InputError(general.path +
                      ": no pressures are given; allowed: --pressures 10e3,20e3 or [calibrate] pressures_Pa; add one");
   }
-  std::vector<Protocol> protocols;
+  std::vector<protocol::Protocol> protocols;
   std::set<std::string> names;
   for (const double pressure : pressures) {
     std::ostringstream assignment;
@@ -86,17 +86,18 @@ std::vector<Protocol> protocols_at(const CalibrateArguments& arguments) {
     if (!names.insert(record_file_name(pressure)).second) refuse_pressure(assignment.str());
     auto settings = arguments.settings;
     settings.push_back(assignment.str());
-    protocols.push_back(read_protocol(path, settings));
+    protocols.push_back(protocol::read_protocol(path, settings));
   }
-  check_calibratable(protocols.front());
+  calibrate::check_calibratable(protocols.front());
   return protocols;
 }
 
 /// Every specimen at every pressure where that was asked for or there is one pressure; else one for each, or one for
 /// all.
-Plan plan_of(const std::vector<Protocol>& at_pressures, const std::vector<Specimen>& specimens, bool every_pressure) {
+Plan plan_of(const std::vector<protocol::Protocol>& at_pressures, const std::vector<Specimen>& specimens,
+             bool every_pressure) {
   const bool cross = every_pressure || at_pressures.size() == 1;
-  if (!cross) check_specimens(at_pressures, specimens);
+  if (!cross) calibrate::check_specimens(at_pressures, specimens);
   Plan plan;
   for (std::size_t s = 0; s < (cross ? specimens.size() : 1); ++s) {
     for (std::size_t k = 0; k < at_pressures.size(); ++k) {
@@ -111,9 +112,9 @@ Plan plan_of(const std::vector<Protocol>& at_pressures, const std::vector<Specim
   return plan;
 }
 
-Json per_pressure(const Calibration& calibration) {
+Json per_pressure(const calibrate::Calibration& calibration) {
   Json tests = Json::array();
-  for (const PressureResult& test : calibration.per_pressure) {
+  for (const calibrate::PressureResult& test : calibration.per_pressure) {
     tests.push_back({{"pressure_Pa", test.pressure},
                      {"specimen", test.specimen + 1},
                      {"peak_sigma_1_Pa", test.peak.major},
@@ -133,11 +134,12 @@ Json per_pressure(const Calibration& calibration) {
 }
 
 /// What a user is told of a mean over draws; nothing of a single one, which has no scatter to tell.
-void add_statistics(const Calibration& calibration, const std::vector<std::string>& files, Listing& listing) {
+void add_statistics(const calibrate::Calibration& calibration, const std::vector<std::string>& files,
+                    Listing& listing) {
   listing.add("specimens", calibration.per_specimen.size());
   if (calibration.per_specimen.size() < 2) return;
   const std::string why = "a specimen has no friction angle, see per_specimen";
-  const auto add = [&](const std::string& stem, const std::string& end, const Statistics& found,
+  const auto add = [&](const std::string& stem, const std::string& end, const calibrate::Statistics& found,
                        const std::string& unit) {
     listing.add_or_why(stem + "_mean" + end, found.mean, unit, why);
     listing.add_or_why(stem + "_standard_deviation" + end, found.standard_deviation, unit, why);
@@ -147,7 +149,7 @@ void add_statistics(const Calibration& calibration, const std::vector<std::strin
   add("bearing_capacity_Nq", "", calibration.Nq_of_specimens, "");
   Json rows = Json::array();
   for (std::size_t k = 0; k < calibration.per_specimen.size(); ++k) {
-    const SpecimenResult& one = calibration.per_specimen[k];
+    const calibrate::SpecimenResult& one = calibration.per_specimen[k];
     rows.push_back({{"specimen", k + 1},
                     {"file", files[k]},
                     {"friction_angle_deg", one.friction_angle_deg},
@@ -159,10 +161,10 @@ void add_statistics(const Calibration& calibration, const std::vector<std::strin
 std::string percent(double strain) { return in_words(100 * std::abs(strain)) + " %"; }
 
 /// The tests whose largest deviator stands at their end, in words; empty: all passed a peak.
-std::string without_peak(const Calibration& calibration) {
+std::string without_peak(const calibrate::Calibration& calibration) {
   std::string tests;
   double end = 0;
-  for (const PressureResult& test : calibration.per_pressure) {
+  for (const calibrate::PressureResult& test : calibration.per_pressure) {
     if (!test.rising_at_end) continue;
     tests += tests.empty() ? "" : ", ";
     if (calibration.per_specimen.size() > 1) tests += "specimen " + std::to_string(test.specimen + 1) + " at ";
@@ -179,10 +181,10 @@ struct Reasons {
   std::string peak, moving_mean, cohesion, cohesion_error, large_strain;
 };
 
-Reasons reasons_of(const Calibration& calibration) {
+Reasons reasons_of(const calibrate::Calibration& calibration) {
   double end = std::numeric_limits<double>::infinity();
   bool tension = false;
-  for (const PressureResult& test : calibration.per_pressure) {
+  for (const calibrate::PressureResult& test : calibration.per_pressure) {
     end = std::min(end, std::abs(test.end_strain));
     tension = tension || !(test.peak.minor > 0);
   }
@@ -195,8 +197,8 @@ Reasons reasons_of(const Calibration& calibration) {
           "is the mean from 12 to 15 % of strain; a test ends at " + percent(end)};
 }
 
-void report(const Calibration& calibration, const Protocol& protocol, const std::vector<std::string>& specimens,
-            double wall_seconds, bool json) {
+void report(const calibrate::Calibration& calibration, const protocol::Protocol& protocol,
+            const std::vector<std::string>& specimens, double wall_seconds, bool json) {
   Listing listing;
   unsigned long long grain_steps = 0;
   for (const auto& test : calibration.per_pressure) grain_steps += test.grain_steps;
@@ -225,8 +227,8 @@ void report(const Calibration& calibration, const Protocol& protocol, const std:
 }
 
 /// Says what the stopped tests left, and ends the program with the code of the signal.
-[[noreturn]] void end_stopped(const std::vector<TestRun>& runs, const std::string& folder) {
-  const auto done = std::count_if(runs.begin(), runs.end(), [](const TestRun& run) { return run.complete; });
+[[noreturn]] void end_stopped(const std::vector<protocol::TestRun>& runs, const std::string& folder) {
+  const auto done = std::count_if(runs.begin(), runs.end(), [](const protocol::TestRun& run) { return run.complete; });
   tell("stopped by " + std::string(signal_name()) + " with " + std::to_string(done) + " of " +
        std::to_string(runs.size()) + " tests complete; " +
        (folder.empty() ? "their records are not kept without -o" : "go on with --resume"));
@@ -240,11 +242,11 @@ void run_calibration(const CalibrateArguments& arguments) {
   const auto specimens = specimens_for(at_pressures.front(), arguments.specimens);
   const Plan plan = plan_of(at_pressures, specimens, arguments.every_pressure);
   const std::size_t tests = plan.protocols.size();
-  std::vector<std::unique_ptr<RecordStore>> stores(tests);
+  std::vector<std::unique_ptr<io::RecordStore>> stores(tests);
   if (!arguments.folder.empty()) {
     auto inputs = specimen_files(at_pressures.front(), arguments.specimens);
     inputs.push_back(at_pressures.front().path);
-    for (std::size_t k = 0; k < tests; ++k) with_overrides(plan.protocols[k], specimens[plan.specimen_of[k]]);
+    for (std::size_t k = 0; k < tests; ++k) protocol::with_overrides(plan.protocols[k], specimens[plan.specimen_of[k]]);
     make_folder(arguments.folder);
     for (std::size_t k = 0; k < tests; ++k) {
       const std::string file = (std::filesystem::path(arguments.folder) / plan.files[k]).string();
@@ -252,29 +254,30 @@ void run_calibration(const CalibrateArguments& arguments) {
       stores[k] = open_store(file, plan.protocols[k], specimens[plan.specimen_of[k]], arguments.recording);
     }
   }
-  std::vector<TestRun> runs;
+  std::vector<protocol::TestRun> runs;
   {
     ProgressOfTests progress(tests);
-    runs = run_all(
+    runs = calibrate::run_all(
         plan.protocols, specimens, arguments.threads,
-        [&](std::size_t number, const Protocol& protocol, const Specimen& specimen) {
-          Watch watch;
+        [&](std::size_t number, const protocol::Protocol& protocol, const Specimen& specimen) {
+          protocol::Watch watch;
           watch.stop = &stop_on_signals();
-          watch.on_moment = [&, name = plan.name(number, specimens.size() > 1)](const Moment& moment) {
+          watch.on_moment = [&, name = plan.name(number, specimens.size() > 1)](const protocol::Moment& moment) {
             progress.show(number, name, moment);
           };
-          TestRun run = run_recorded(protocol, specimen, stores[number].get(), watch);
+          protocol::TestRun run = run_recorded(protocol, specimen, stores[number].get(), watch);
           if (run.complete) progress.done(number);
           return run;
         },
         plan.specimen_of);
   }
-  const bool complete = std::all_of(runs.begin(), runs.end(), [](const TestRun& run) { return run.complete; });
+  const bool complete =
+      std::all_of(runs.begin(), runs.end(), [](const protocol::TestRun& run) { return run.complete; });
   if (!complete) end_stopped(runs, arguments.folder);
-  std::vector<TestResult> results;
-  for (const TestRun& run : runs) results.push_back(run.result);
+  std::vector<records::TestResult> results;
+  for (const protocol::TestRun& run : runs) results.push_back(run.result);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
-  report(calibrate(results, specimens.front().cell.dimension, plan.specimen_of), at_pressures.front(),
+  report(calibrate::calibrate(results, specimens.front().cell.dimension, plan.specimen_of), at_pressures.front(),
          arguments.specimens, wall.count(), arguments.json);
 }
 

@@ -25,7 +25,7 @@ void add_compare(CLI::App& app) {
       "Example:\n"
       "  rvelab compare whole.h5 resumed.h5");
   command->callback([arguments] {
-    const Comparison result = compare_files(arguments->a, arguments->b);
+    const io::Comparison result = io::compare_files(arguments->a, arguments->b);
     if (arguments->json) {
       Listing listing;
       listing.add("equal", !result.difference);

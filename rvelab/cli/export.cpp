@@ -22,14 +22,14 @@ struct ExportArguments {
   bool force = false, json = false;
 };
 
-ExportState state_of(const StoredState& state) {
+io::ExportState state_of(const io::StoredState& state) {
   Rve rve(state.specimen);
   return {state.record, state.strain, rve.specimen(), rve.network()};
 }
 
-std::vector<ExportState> all_states(const std::string& path) {
-  std::vector<ExportState> states;
-  for (const StoredState& state : read_states(path)) states.push_back(state_of(state));
+std::vector<io::ExportState> all_states(const std::string& path) {
+  std::vector<io::ExportState> states;
+  for (const io::StoredState& state : io::read_states(path)) states.push_back(state_of(state));
   return states;
 }
 
@@ -42,7 +42,7 @@ std::string stem_of(const std::string& output) {
 std::vector<std::string> files_of(const ExportArguments& arguments) {
   const std::string& output = arguments.output;
   if (arguments.format == "csv") {
-    const CsvExport files = csv_files(stem_of(output));
+    const io::CsvExport files = io::csv_files(stem_of(output));
     return {files.particles, files.contacts, files.meta, files.material};
   }
   if (arguments.format == "xdmf") return {output, output + ".h5"};
@@ -52,15 +52,16 @@ std::vector<std::string> files_of(const ExportArguments& arguments) {
 /// Writes the files of one format; what there is to say goes into the listing.
 void write_export(const ExportArguments& arguments, Listing& listing) {
   if (arguments.format == "csv") {
-    const CsvExport files = export_csv(read_states(arguments.file).back().specimen, stem_of(arguments.output));
+    const io::CsvExport files =
+        io::export_csv(io::read_states(arguments.file).back().specimen, stem_of(arguments.output));
     listing.add("import_with", "rvelab import " + files.particles + " " + files.contacts + " " + files.meta +
                                    " --material " + files.material + " -o S.h5");
   } else if (arguments.format == "lammps-data") {
-    export_lammps_data(state_of(read_states(arguments.file).back()), arguments.output);
+    io::export_lammps_data(state_of(io::read_states(arguments.file).back()), arguments.output);
   } else {
     const auto states = all_states(arguments.file);
     listing.add("states", states.size());
-    (arguments.format == "xdmf" ? export_xdmf : export_lammps_dump)(states, arguments.output);
+    (arguments.format == "xdmf" ? io::export_xdmf : io::export_lammps_dump)(states, arguments.output);
   }
 }
 

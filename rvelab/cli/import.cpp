@@ -54,14 +54,14 @@ void run_import(const ImportArguments& arguments) {
   std::vector<std::string> files{arguments.material};
   for (const auto& file : arguments.inputs) files.push_back(file);
   io::expect_output(arguments.output, arguments.force, files);
-  ImportOptions options;
+  io::ImportOptions options;
   if (!arguments.cell.empty()) options.cell = Vector3(arguments.cell[0], arguments.cell[1], arguments.cell[2]);
   if (!arguments.material.empty()) options.material_path = arguments.material;
   options.settings = arguments.settings;
-  const Specimen specimen = import_csv(inputs.particles, inputs.contacts, inputs.meta, options);
+  const Specimen specimen = io::import_csv(inputs.particles, inputs.contacts, inputs.meta, options);
   // Opened before it is written: what cannot be opened is no specimen.
   const Proportions proportions = proportions_of(Rve(specimen).network());
-  write_specimen(specimen, arguments.output);
+  io::write_specimen(specimen, arguments.output);
 
   Listing listing;
   listing.add("file", arguments.output);

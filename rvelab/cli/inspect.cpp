@@ -72,13 +72,13 @@ void add_model(Listing& listing, const Specimen& specimen) {
 void run_inspect(const std::string& path, bool as_json) {
   // A run that has published nothing yet has its journal only.
   const bool only_journal = !std::filesystem::exists(path) && std::filesystem::exists(io::journal_of(path));
-  const bool has_records = only_journal || file_kind(path) == FileKind::records;
+  const bool has_records = only_journal || io::file_kind(path) == io::FileKind::records;
   Listing listing;
   listing.add("file", path);
   listing.add("kind", has_records ? "records" : "specimen");
   Specimen specimen;
   if (has_records) {
-    RecordedTest test = read_recorded_test(path);
+    io::RecordedTest test = io::read_recorded_test(path);
     listing.add("protocol", test.result.protocol);
     listing.add("complete", test.complete ? 1 : 0);
     listing.add("records", test.result.records.size());
@@ -86,8 +86,8 @@ void run_inspect(const std::string& path, bool as_json) {
     listing.add("stages", test.result.stages);
     specimen = std::move(test.checkpoint.specimen);
   } else {
-    specimen = read_specimen(path);
-    if (const auto origin = read_origin(path)) {
+    specimen = io::read_specimen(path);
+    if (const auto origin = io::read_origin(path)) {
       listing.add("seed", origin->seed);
       listing.add("draw", origin->draw);
       listing.add("preparation_friction", origin->preparation_friction);

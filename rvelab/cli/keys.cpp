@@ -18,21 +18,21 @@ std::string lower(std::string text) {
 }
 
 /// Keys whose dotted name holds the pattern, whatever its case.
-std::vector<Key> keys_with(const std::string& pattern) {
-  std::vector<Key> found;
+std::vector<keys::Key> keys_with(const std::string& pattern) {
+  std::vector<keys::Key> found;
   std::vector<std::string> names;
-  for (const Key& key : all_keys()) {
+  for (const keys::Key& key : protocol::all_keys()) {
     names.push_back(key.dotted());
     if (lower(key.dotted()).find(lower(pattern)) != std::string::npos) found.push_back(key);
   }
   if (found.empty()) {
-    throw InputError("no key holds \"" + pattern + "\"; the nearest known key is " + nearest(pattern, names) +
+    throw InputError("no key holds \"" + pattern + "\"; the nearest known key is " + keys::nearest(pattern, names) +
                      "; give a part of a key, or none to see all");
   }
   return found;
 }
 
-Json as_json(const Key& key) {
+Json as_json(const keys::Key& key) {
   Json json;
   json["key"] = key.dotted();
   json["table"] = key.table;
@@ -47,7 +47,7 @@ Json as_json(const Key& key) {
 }
 
 /// Two lines a key: what may be written, and what it means.
-std::string as_text(const Key& key) {
+std::string as_text(const keys::Key& key) {
   const std::string unit = key.unit == "1" || key.unit == "-" ? "" : " in " + key.unit;
   const std::string initial = key.required ? "required" : key.initial.empty() ? "no default" : "default " + key.initial;
   return key.dotted() + "  (" + key.type + unit + ": " + key.range + "; " + initial + ")\n    " + key.meaning + "\n";
@@ -58,12 +58,12 @@ void run_keys(const std::string& pattern, bool json) {
   if (json) {
     Listing listing;
     Json list = Json::array();
-    for (const Key& key : keys) list.push_back(as_json(key));
+    for (const keys::Key& key : keys) list.push_back(as_json(key));
     listing.add("keys", list);
     return listing.print(true);
   }
   std::string text;
-  for (const Key& key : keys) text += as_text(key);
+  for (const keys::Key& key : keys) text += as_text(key);
   std::cout << text << std::flush;
 }
 

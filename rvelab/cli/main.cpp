@@ -95,7 +95,7 @@ int done(int code) {
 int answer(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit of `ulimit -f` is an error like any other
   CLI::App app("rvelab: granular specimens in a periodic cell, deformed increment by increment", "rvelab");
-  app.set_version_flag("--version", std::string("rvelab ") + rvelab::version);
+  app.set_version_flag("--version", std::string("rvelab ") + rvelab::io::version);
   app.require_subcommand(1);
   rvelab::cli::add_pack(app);
   rvelab::cli::add_import(app);

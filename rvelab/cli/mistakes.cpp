@@ -34,7 +34,7 @@ std::string joined(const std::vector<std::string>& words) {
   const bool is_main = command.get_parent() == nullptr;
   const std::string help = is_main ? "rvelab --help" : "rvelab " + command.get_name() + " --help";
   throw InputError((is_main ? "" : command.get_name() + ": ") + std::string("unknown option ") + word +
-                   (word.starts_with("--") ? "; the nearest is " + nearest(word, names) : "") +
+                   (word.starts_with("--") ? "; the nearest is " + keys::nearest(word, names) : "") +
                    "; allowed: " + joined(names) + "; see " + help);
 }
 
@@ -84,7 +84,7 @@ void expect_known_words(const CLI::App& app, int argc, const char* const* argv) 
     if (command->get_name() == word) return expect_known_options(*command, 2, argc, argv);
     names.push_back(command->get_name());
   }
-  throw InputError("unknown subcommand " + word + "; the nearest is " + nearest(word, names) +
+  throw InputError("unknown subcommand " + word + "; the nearest is " + keys::nearest(word, names) +
                    "; allowed: " + joined(names) + "; see rvelab --help");
 }
 

@@ -35,7 +35,7 @@ struct PackArguments {
 
 /// One specimen to be made, and what became of it.
 struct Job {
-  RecipeFile what;
+  protocol::RecipeFile what;
   std::string file;
   Json made;  ///< null: not made
   Proportions proportions;
@@ -48,7 +48,7 @@ std::string with_word(const std::string& file, const std::string& word) {
 }
 
 /// The specimens of a family, and of each member the wanted number, with seeds one after the other.
-std::vector<Job> jobs_of(const RecipeFile& file, const PackArguments& arguments) {
+std::vector<Job> jobs_of(const protocol::RecipeFile& file, const PackArguments& arguments) {
   std::vector<Job> jobs;
   const std::size_t digits = std::to_string(arguments.count).size();
   const auto add = [&](std::optional<double> pressure, const std::string& name) {
@@ -87,7 +87,7 @@ class DrawLine {
   std::mutex mutex_;
 };
 
-Json summary_of(Job& job, const Packing& packing, double seconds) {
+Json summary_of(Job& job, const pack::Packing& packing, double seconds) {
   const Rve rve(packing.specimen);
   const Network network = rve.network();
   const int dimension = network.dimension();
@@ -111,18 +111,18 @@ Json summary_of(Job& job, const Packing& packing, double seconds) {
 /// Makes one specimen and writes it; files one at a time.
 void make(Job& job, Workers& workers, DrawLine& line, std::mutex& files) {
   const auto begin = std::chrono::steady_clock::now();
-  PackWatch watch;
+  pack::PackWatch watch;
   watch.stop = &stop_on_signals();
   watch.on_draw = [&](long draw, double void_ratio) { line.show(job.what.recipe.seed, draw, void_ratio); };
-  const Packing packing = pack(job.what.recipe, workers, watch);
+  const pack::Packing packing = pack::pack(job.what.recipe, workers, watch);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
   job.made = summary_of(job, packing, seconds.count());
-  const SpecimenOrigin origin{job.what.resolved, job.what.recipe.seed, packing.draw, packing.preparation_friction};
+  const io::SpecimenOrigin origin{job.what.resolved, job.what.recipe.seed, packing.draw, packing.preparation_friction};
   const std::lock_guard lock(files);
-  write_specimen(packing.specimen, job.file, &origin);
+  io::write_specimen(packing.specimen, job.file, &origin);
 }
 
-void report(const RecipeFile& file, const std::vector<Job>& jobs, bool json) {
+void report(const protocol::RecipeFile& file, const std::vector<Job>& jobs, bool json) {
   Listing listing;
   listing.add("recipe", file.name);
   if (jobs.size() == 1) {
@@ -147,7 +147,7 @@ std::string made_of(const std::vector<Job>& jobs) {
 
 void run_pack(const PackArguments& arguments) {
   const std::string recipe = input_path(arguments.recipe, InputKind::recipe);
-  const RecipeFile file = read_recipe(recipe, arguments.settings);
+  const protocol::RecipeFile file = protocol::read_recipe(recipe, arguments.settings);
   expect_folder_of(arguments.output);
   std::vector<Job> jobs = jobs_of(file, arguments);
   for (const Job& job : jobs) io::expect_output(job.file, arguments.force, {recipe});

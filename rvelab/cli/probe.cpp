@@ -31,7 +31,7 @@ Json labels(int dimension, bool strain) {
 }
 
 void run_probe(const Arguments& arguments) {
-  Rve rve(read_specimen(arguments.file));
+  Rve rve(io::read_specimen(arguments.file));
   if (arguments.no_slip) forbid_slip(rve);
   const int dimension = rve.cell().dimension;
   Listing listing;

@@ -47,8 +47,8 @@ void write_over(const std::string& line) {
 void wipe() { std::fputs("\r\033[K", stderr); }
 
 /// Strain of the last record of the stage under way, and q/p.
-std::string state_of(const Moment& moment) {
-  const TestResult& result = moment.result;
+std::string state_of(const protocol::Moment& moment) {
+  const records::TestResult& result = moment.result;
   std::string text;
   char part[64];
   if (!result.records.empty() && result.records.back().stage == moment.progress.stage) {
@@ -78,11 +78,11 @@ ProgressLine::~ProgressLine() {
   if (shown_) wipe();
 }
 
-void ProgressLine::show(const Moment& moment) {
+void ProgressLine::show(const protocol::Moment& moment) {
   if (!terminal_) return;
   const auto now = Clock::now();
   const auto seconds = [&](Clock::time_point since) { return std::chrono::duration<double>(now - since).count(); };
-  const TestResult& result = moment.result;
+  const records::TestResult& result = moment.result;
   if (!begun_) {
     begun_ = true;
     begin_ = last_ = now;
@@ -120,7 +120,7 @@ void ProgressOfTests::done(std::size_t number) {
   test.finished = true;
 }
 
-void ProgressOfTests::show(std::size_t number, const std::string& name, const Moment& moment) {
+void ProgressOfTests::show(std::size_t number, const std::string& name, const protocol::Moment& moment) {
   if (!terminal_) return;
   const std::lock_guard lock(mutex_);
   Test& test = tests_[number];

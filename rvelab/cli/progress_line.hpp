@@ -19,7 +19,7 @@ class ProgressLine {
   ~ProgressLine();
 
   /// Stage, strain, stress ratio q/p, grain-steps per second, time left (from the records made and still to make).
-  void show(const Moment& moment);
+  void show(const protocol::Moment& moment);
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -41,7 +41,7 @@ class ProgressOfTests {
   ~ProgressOfTests();
 
   /// `name` of the test by its number, from 0.
-  void show(std::size_t number, const std::string& name, const Moment& moment);
+  void show(std::size_t number, const std::string& name, const protocol::Moment& moment);
   void done(std::size_t number);
 
  private:

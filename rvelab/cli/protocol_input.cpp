@@ -13,7 +13,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-InputKind kind_of(const std::string& path) { return is_recipe(path) ? InputKind::recipe : InputKind::protocol; }
+InputKind kind_of(const std::string& path) {
+  return protocol::is_recipe(path) ? InputKind::recipe : InputKind::protocol;
+}
 
 fs::path installed_folder() {
   std::error_code ignored;
@@ -68,14 +70,14 @@ std::string input_path(const std::string& name_or_path, InputKind kind) {
     list += name + ", ";
   }
   if (all.empty()) list = "none in " + installed_folder().string() + ", which is not there or empty; install it, ";
-  const std::string near = nearest(name_or_path, names);
+  const std::string near = keys::nearest(name_or_path, names);
   const bool recipe = kind == InputKind::recipe;
   throw InputError(std::string("no ") + (recipe ? "recipe" : "protocol") + " \"" + name_or_path + "\" is installed" +
                    (near.empty() ? "" : "; the nearest is " + near) + "; allowed: " + list + "or the path of a file " +
                    (recipe ? "RECIPE" : "PROTOCOL") + ".toml; see rvelab protocols");
 }
 
-std::vector<std::string> specimen_files(const Protocol& protocol, const std::vector<std::string>& files) {
+std::vector<std::string> specimen_files(const protocol::Protocol& protocol, const std::vector<std::string>& files) {
   if (files.empty() && protocol.specimen_file.empty()) {
     throw InputError(protocol.path +
                      ": no specimen is given; allowed: --specimen S.h5 or [specimen] file = \"S.h5\"; name one");
@@ -84,9 +86,9 @@ std::vector<std::string> specimen_files(const Protocol& protocol, const std::vec
   return {(fs::path(protocol.path).parent_path() / protocol.specimen_file).string()};
 }
 
-std::vector<Specimen> specimens_for(const Protocol& protocol, const std::vector<std::string>& files) {
+std::vector<Specimen> specimens_for(const protocol::Protocol& protocol, const std::vector<std::string>& files) {
   std::vector<Specimen> specimens;
-  for (const auto& file : specimen_files(protocol, files)) specimens.push_back(read_specimen(file));
+  for (const auto& file : specimen_files(protocol, files)) specimens.push_back(io::read_specimen(file));
   return specimens;
 }
 

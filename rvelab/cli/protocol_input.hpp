@@ -29,13 +29,13 @@ inline std::string protocol_path(const std::string& name_or_path) {
 
 /// Reads the specimens named on the command line; without any, the protocol's own ([specimen] file, relative to the
 /// protocol's folder). InputError if there is none.
-std::vector<Specimen> specimens_for(const Protocol& protocol, const std::vector<std::string>& files);
+std::vector<Specimen> specimens_for(const protocol::Protocol& protocol, const std::vector<std::string>& files);
 
 /// Makes the folder that results go to, with those above it, unless it is there. InputError if it cannot be made.
 void make_folder(const std::string& folder);
 
 /// The files that specimens_for reads.
-std::vector<std::string> specimen_files(const Protocol& protocol, const std::vector<std::string>& files);
+std::vector<std::string> specimen_files(const protocol::Protocol& protocol, const std::vector<std::string>& files);
 
 /// InputError unless the folder that a file is to be written to is there: said before the work, not after it.
 void expect_folder_of(const std::string& file);

@@ -21,32 +21,33 @@ void RecordingOptions::expect_output(const std::string& output) const {
   throw InputError(std::string(given) + " is given without -o; allowed: with -o; name the output");
 }
 
-Existing RecordingOptions::existing() const {
-  return force ? Existing::overwrite : resume ? Existing::resume : Existing::refuse;
+io::Existing RecordingOptions::existing() const {
+  return force ? io::Existing::overwrite : resume ? io::Existing::resume : io::Existing::refuse;
 }
 
-std::unique_ptr<RecordStore> open_store(const std::string& path, const Protocol& protocol, const Specimen& specimen,
-                                        const RecordingOptions& options) {
+std::unique_ptr<io::RecordStore> open_store(const std::string& path, const protocol::Protocol& protocol,
+                                            const Specimen& specimen, const RecordingOptions& options) {
   io::RunStart start{protocol.name, protocol.resolved, {}, specimen};
-  for (const Stage& stage : protocol.stages) start.stages.push_back(stage.name);
-  return std::make_unique<RecordStore>(path, start, options.existing(), options.checkpoint_every);
+  for (const protocol::Stage& stage : protocol.stages) start.stages.push_back(stage.name);
+  return std::make_unique<io::RecordStore>(path, start, options.existing(), options.checkpoint_every);
 }
 
-TestRun run_recorded(const Protocol& protocol, const Specimen& specimen, RecordStore* store, Watch watch) {
-  if (store == nullptr) return run_protocol(protocol, specimen, watch);
+protocol::TestRun run_recorded(const protocol::Protocol& protocol, const Specimen& specimen, io::RecordStore* store,
+                               protocol::Watch watch) {
+  if (store == nullptr) return protocol::run_protocol(protocol, specimen, watch);
   if (store->complete()) return {store->test().result, store->test().checkpoint.specimen, {}, true};
 
-  watch.on_record = [&](const Record& record) { store->put(record); };
-  watch.on_probe = [&](const ProbeResult& probe) { store->put(probe); };
+  watch.on_record = [&](const records::Record& record) { store->put(record); };
+  watch.on_probe = [&](const records::ProbeResult& probe) { store->put(probe); };
   watch.on_snapshot = [&](std::size_t record, const Specimen& state) { store->put_snapshot(record, state); };
-  watch.on_moment = [&, shown = watch.on_moment](const Moment& moment) {
+  watch.on_moment = [&, shown = watch.on_moment](const protocol::Moment& moment) {
     if (shown) shown(moment);
     store->offer([&] { return moment.checkpoint(); });
   };
   try {
-    const TestRun run = store->checkpoint()
-                            ? resume_protocol(protocol, *store->checkpoint(), store->test().result, watch)
-                            : run_protocol(protocol, specimen, watch);
+    const protocol::TestRun run =
+        store->checkpoint() ? protocol::resume_protocol(protocol, *store->checkpoint(), store->test().result, watch)
+                            : protocol::run_protocol(protocol, specimen, watch);
     if (run.complete) {
       store->finish(run.result, run.end_state);
     } else {

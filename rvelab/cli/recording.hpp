@@ -18,15 +18,16 @@ struct RecordingOptions {
   void add_to(CLI::App& command);
   /// InputError if they are given without a place to write to.
   void expect_output(const std::string& output) const;
-  Existing existing() const;
+  io::Existing existing() const;
 };
 
 /// The place for the records of a test.
-std::unique_ptr<RecordStore> open_store(const std::string& path, const Protocol& protocol, const Specimen& specimen,
-                                        const RecordingOptions& options);
+std::unique_ptr<io::RecordStore> open_store(const std::string& path, const protocol::Protocol& protocol,
+                                            const Specimen& specimen, const RecordingOptions& options);
 
 /// Runs a test, or goes on with it, or (complete already) only returns it; every record and checkpoint goes into
 /// `store` (nullptr: nowhere). `watch` may have on_moment and stop. A test that is stopped or fails leaves what it has.
-TestRun run_recorded(const Protocol& protocol, const Specimen& specimen, RecordStore* store, Watch watch);
+protocol::TestRun run_recorded(const protocol::Protocol& protocol, const Specimen& specimen, io::RecordStore* store,
+                               protocol::Watch watch);
 
 }  // namespace rvelab::cli

@@ -33,8 +33,8 @@ void run_recover(const Arguments& arguments) {
   std::unique_ptr<io::Journal> lock;
   if (!elsewhere && std::filesystem::exists(journal_path)) lock = std::make_unique<io::Journal>(journal_path);
   const io::RecordJournal journal = io::read_record_journal(journal_path);
-  const RecordedTest test = read_recorded_test(arguments.file);
-  if (elsewhere || !test.complete) write_recorded_test(test, output);
+  const io::RecordedTest test = io::read_recorded_test(arguments.file);
+  if (elsewhere || !test.complete) io::write_recorded_test(test, output);
   if (lock && test.complete) lock->remove();  // left by a run that was killed between its last two steps
 
   Listing listing;

@@ -37,9 +37,9 @@ struct ArraysOfColumns {
   Json& arrays;
 
   template <class Member>
-  void column(const std::vector<Record>& records, const fields::Field<Record, Member>& column) {
+  void column(const std::vector<records::Record>& records, const fields::Field<records::Record, Member>& column) {
     Json values = Json::array();
-    for (const Record& record : records) {
+    for (const records::Record& record : records) {
       if constexpr (std::is_same_v<Member, Matrix3>) {
         values.push_back(row_major(record.*column.member));
       } else {
@@ -49,19 +49,20 @@ struct ArraysOfColumns {
     arrays[column.name] = std::move(values);
   }
   template <class... Columns>
-  void table(const std::string&, const std::vector<Record>& records, const Columns&... columns) {
+  void table(const std::string&, const std::vector<records::Record>& records, const Columns&... columns) {
     (column(records, columns), ...);
   }
   template <class Member>
-  void choice(const std::string&, const std::vector<Record>&, const fields::Field<Record, Member>&) {}
+  void choice(const std::string&, const std::vector<records::Record>&, const fields::Field<records::Record, Member>&) {}
   template <class Member>
-  void chosen(const std::string&, const std::vector<Record>& records, const fields::Field<Record, Member>& column,
-              std::uint64_t Record::*mask, std::uint64_t bit) {
+  void chosen(const std::string&, const std::vector<records::Record>& records,
+              const fields::Field<records::Record, Member>& column, std::uint64_t records::Record::*mask,
+              std::uint64_t bit) {
     if (!records.empty() && (records.front().*mask & bit) != 0) this->column(records, column);
   }
 };
 
-Json arrays_of(const std::vector<Record>& records) {
+Json arrays_of(const std::vector<records::Record>& records) {
   Json arrays;
   ArraysOfColumns archive{arrays};
   records::describe_records(archive, records);
@@ -69,17 +70,17 @@ Json arrays_of(const std::vector<Record>& records) {
 }
 
 /// Moduli of oedometer stages that have records at small strain.
-void add_oedometers(const Protocol& protocol, const TestRun& run, Listing& listing) {
+void add_oedometers(const protocol::Protocol& protocol, const protocol::TestRun& run, Listing& listing) {
   for (std::size_t k = 0; k < protocol.stages.size(); ++k) {
-    const StageRole role = role_of(protocol.stages[k]);
-    if (role.gives != StageRole::Gives::oedometric_stiffness) continue;
-    std::vector<Record> records;
-    for (const Record& record : run.result.records) {
+    const protocol::StageRole role = protocol::role_of(protocol.stages[k]);
+    if (role.gives != protocol::StageRole::Gives::oedometric_stiffness) continue;
+    std::vector<records::Record> records;
+    for (const records::Record& record : run.result.records) {
       if (record.stage == static_cast<int>(k)) records.push_back(record);
     }
     const int dimension = run.end_state.cell.dimension;
     const std::string axis = !role.axis.empty() ? role.axis : dimension == 2 ? "y" : "z";
-    const OedometerStiffness found = oedometer_stiffness(records, axis, dimension);
+    const calibrate::OedometerStiffness found = calibrate::oedometer_stiffness(records, axis, dimension);
     if (!std::isfinite(found.C11)) continue;
     const std::string stem = "stage_" + protocol.stages[k].name + "_";
     listing.add(stem + "C11_Pa", found.C11, "Pa");
@@ -90,11 +91,11 @@ void add_oedometers(const Protocol& protocol, const TestRun& run, Listing& listi
   }
 }
 
-void report(const Protocol& protocol, const TestRun& run, const RunArguments& arguments) {
-  const TestResult& result = run.result;
+void report(const protocol::Protocol& protocol, const protocol::TestRun& run, const RunArguments& arguments) {
+  const records::TestResult& result = run.result;
   const int dimension = run.end_state.cell.dimension;
   long flagged = 0, moving = 0, marked = 0;
-  for (const Record& record : result.records) {
+  for (const records::Record& record : result.records) {
     flagged += record.target_held ? 0 : 1;
     moving += record.quasi_static ? 0 : 1;
     marked += record.target_held && record.quasi_static ? 0 : 1;
@@ -114,21 +115,21 @@ void report(const Protocol& protocol, const TestRun& run, const RunArguments& ar
   listing.add("flagged", flagged);
   listing.add("not_quasi_static", moving);
   if (!result.records.empty()) {
-    const auto records = last_stage(result);
-    const Peak highest = peak(records, dimension);
+    const auto records = calibrate::last_stage(result);
+    const calibrate::Peak highest = calibrate::peak(records, dimension);
     listing.add("peak_strain", highest.strain);
     listing.add("peak_sigma_1_Pa", highest.stresses.major, "Pa");
     listing.add("peak_sigma_3_Pa", highest.stresses.minor, "Pa");
-    listing.add_or_why("peak_friction_angle_deg", friction_angle_deg(highest.stresses), "degrees",
+    listing.add_or_why("peak_friction_angle_deg", calibrate::friction_angle_deg(highest.stresses), "degrees",
                        "the minor principal stress is in tension, or there is no stress");
-    listing.add("rising_at_end", rising_at_end(records, highest));
+    listing.add("rising_at_end", calibrate::rising_at_end(records, highest));
     listing.add("end_strain", records.back().strain);
     listing.add("end_stress_Pa", row_major(records.back().stress), "Pa");
     if ((records.back().quantities & records::asked<records::VoidRatio>) != 0) {
       listing.add("end_void_ratio", records.back().void_ratio);
     }
   }
-  for (const ProbeResult& probe : result.probes) {
+  for (const records::ProbeResult& probe : result.probes) {
     const bool only = result.probes.size() == 1;
     listing.add(only ? "stiffness_Pa" : "stiffness_Pa_" + probe.stage, row_major(probe.stiffness), "Pa");
   }
@@ -151,7 +152,7 @@ void report(const Protocol& protocol, const TestRun& run, const RunArguments& ar
 }
 
 /// Says what a stopped run left, and ends the program with the code of its signal.
-[[noreturn]] void end_stopped(const TestRun& run, const std::string& output) {
+[[noreturn]] void end_stopped(const protocol::TestRun& run, const std::string& output) {
   const std::string made = std::to_string(run.result.records.size()) + " records";
   const std::string kept = output.empty()               ? "they are not kept without -o"
                            : run.result.records.empty() ? "go on with --resume"
@@ -161,28 +162,28 @@ void report(const Protocol& protocol, const TestRun& run, const RunArguments& ar
 }
 
 void run_test(const RunArguments& arguments) {
-  const Protocol protocol = read_protocol(protocol_path(arguments.protocol), arguments.settings);
+  const protocol::Protocol protocol = protocol::read_protocol(protocol_path(arguments.protocol), arguments.settings);
   arguments.recording.expect_output(arguments.output);
   const auto given = arguments.specimen.empty() ? std::vector<std::string>{} : std::vector{arguments.specimen};
   const auto specimens = specimens_for(protocol, given);
   const Specimen& specimen = specimens.front();
-  std::unique_ptr<RecordStore> store;
+  std::unique_ptr<io::RecordStore> store;
   if (!arguments.output.empty()) {
     expect_folder_of(arguments.output);
-    with_overrides(protocol, specimen);  // its mistakes are told before a file is touched
+    protocol::with_overrides(protocol, specimen);  // its mistakes are told before a file is touched
     auto inputs = specimen_files(protocol, given);
     inputs.push_back(protocol.path);
     io::expect_place(arguments.output, inputs);
     store = open_store(arguments.output, protocol, specimen, arguments.recording);
     if (store->complete()) tell(arguments.output + " is complete; nothing was run");
-  } else if (!arguments.json && planned_records(protocol) > 0 && isatty(STDERR_FILENO) == 1) {
+  } else if (!arguments.json && protocol::planned_records(protocol) > 0 && isatty(STDERR_FILENO) == 1) {
     tell("the records will not be kept: no -o R.h5 is given");  // before the work; off a terminal the listing says it
   }
-  TestRun run;
+  protocol::TestRun run;
   {
     ProgressLine line;
-    Watch watch;
-    watch.on_moment = [&](const Moment& moment) { line.show(moment); };
+    protocol::Watch watch;
+    watch.on_moment = [&](const protocol::Moment& moment) { line.show(moment); };
     watch.stop = &stop_on_signals();
     std::unique_ptr<Workers> team;
     if (specimen.grains.size() >= least_shared_grains) {

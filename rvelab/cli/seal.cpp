@@ -20,10 +20,10 @@ struct Arguments {
 void run_seal(const Arguments& arguments) {
   expect_folder_of(arguments.output);
   io::expect_output(arguments.output, arguments.force, {arguments.file});
-  const SealedFile sealed = seal_file(arguments.file, arguments.output);
+  const io::SealedFile sealed = io::seal_file(arguments.file, arguments.output);
   Listing listing;
   listing.add("file", arguments.output);
-  listing.add("kind", sealed.kind == FileKind::records ? "records" : "specimen");
+  listing.add("kind", sealed.kind == io::FileKind::records ? "records" : "specimen");
   listing.add("had_seal", sealed.had_seal);
   listing.add("datasets", sealed.datasets);
   listing.print(arguments.json);

@@ -50,7 +50,7 @@ std::vector<Case> chosen(const std::vector<Case>& all, const Arguments& argument
     if (std::any_of(all.begin(), all.end(), [&](const Case& one) { return is_named(one, wanted); })) continue;
     std::vector<std::string> names;
     for (const Case& one : all) names.push_back(one.name);
-    throw InputError("stress-test: no case \"" + wanted + "\"; the nearest is " + nearest(wanted, names) +
+    throw InputError("stress-test: no case \"" + wanted + "\"; the nearest is " + keys::nearest(wanted, names) +
                      "; see rvelab stress-test --list");
   }
   std::vector<Case> cases;

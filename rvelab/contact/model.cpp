@@ -203,7 +203,7 @@ PairParameters mix(const ContactModel& model, const Damping& damping, const Mate
   return pair;
 }
 
-void check(const ContactModel& model, const Damping& damping, const std::vector<Material>& materials) {
+void check_parameters(const ContactModel& model, const Damping& damping, const std::vector<Material>& materials) {
   Findings findings;
   check_damping(model, damping, findings);
   if (materials.empty()) findings.add("materials: none given; allowed: one or more; name at least one grain material");

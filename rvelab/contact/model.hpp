@@ -77,7 +77,7 @@ PairParameters mix(const ContactModel& model, const Damping& damping, const Mate
                    const Material& b, double rj, double mj, double section);
 
 /// Checks every parameter that the model uses. Throws InputError naming key, value and range, one line each.
-void check(const ContactModel& model, const Damping& damping, const std::vector<Material>& materials);
+void check_parameters(const ContactModel& model, const Damping& damping, const std::vector<Material>& materials);
 
 const char* name(Law);
 const char* name(Slip);

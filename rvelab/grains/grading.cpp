@@ -64,7 +64,7 @@ double NumberCurve::mean_power(int dimension) const {
   return sum;
 }
 
-void check(const Grading& grading, const char* where) {
+void check_grading(const Grading& grading, const char* where) {
   std::ostringstream text;
   if (grading.curve != GradingCurve::tabulated) {
     if (!(grading.smallest_radius > 0) || !(grading.largest_radius >= grading.smallest_radius) ||

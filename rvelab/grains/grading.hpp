@@ -34,7 +34,7 @@ struct NumberCurve {
 
 /// Throws InputError naming what is wrong: limits not positive or not ascending, table too short, passing not from 0
 /// to 1. `where` stands before each name in the message.
-void check(const Grading& grading, const char* where);
+void check_grading(const Grading& grading, const char* where);
 
 /// The curve by number. A mass is taken as r^dimension: 2 for discs, 3 for spheres.
 NumberCurve number_curve(const Grading& grading, int dimension);

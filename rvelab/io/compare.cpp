@@ -8,7 +8,7 @@
 #include "rvelab/io/hdf5_file.hpp"
 #include "rvelab/io/schema.hpp"
 
-namespace rvelab {
+namespace rvelab::io {
 namespace {
 
 std::string in_words(const Shape64& shape) {
@@ -70,7 +70,7 @@ class Comparer {
   Comparison compare() {
     const auto a = Hdf5File::open(path_a_), b = Hdf5File::open(path_b_);
     for (const auto* file : {&a, &b}) {
-      if (io::is_rvelab(*file)) io::checked_kind(*file);
+      if (is_rvelab(*file)) checked_kind(*file);
     }
     const auto objects_a = compared(a), objects_b = compared(b);
     for (auto in_a = objects_a.begin(), in_b = objects_b.begin(); in_a != objects_a.end() || in_b != objects_b.end();) {
@@ -167,4 +167,4 @@ std::optional<std::string> first_difference(const std::string& path_a, const std
   return compare_files(path_a, path_b).difference;
 }
 
-}  // namespace rvelab
+}  // namespace rvelab::io

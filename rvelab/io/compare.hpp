@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-namespace rvelab {
+namespace rvelab::io {
 
 struct Comparison {
   std::size_t datasets = 0;               ///< compared and found equal
@@ -20,4 +20,4 @@ Comparison compare_files(const std::string& path_a, const std::string& path_b);
 /// The first difference in one line, naming the object, the index and both values; none if there is none.
 std::optional<std::string> first_difference(const std::string& path_a, const std::string& path_b);
 
-}  // namespace rvelab
+}  // namespace rvelab::io

@@ -10,7 +10,7 @@
 #include "rvelab/error.hpp"
 #include "rvelab/io/utf8.hpp"
 
-namespace rvelab {
+namespace rvelab::io {
 namespace {
 
 std::string_view trimmed(std::string_view text) {
@@ -95,9 +95,9 @@ CsvTable::CsvTable(const std::string& path, std::string text) : path_(path), con
     rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
     ++line_number;
     if (line.empty() || line.front() == '#') continue;
-    if (const auto bad = io::first_non_utf8(line); bad != std::string_view::npos) {
+    if (const auto bad = first_non_utf8(line); bad != std::string_view::npos) {
       throw InputError(path_ + ":" + std::to_string(line_number) + ": holds the byte " +
-                       io::printable(line.substr(bad, 1)) +
+                       printable(line.substr(bad, 1)) +
                        ", which is no UTF-8; allowed: text in UTF-8; save the file so, or give one that is undamaged");
     }
     if (columns_.empty()) {
@@ -184,4 +184,4 @@ std::string CsvTable::place(std::size_t row, std::size_t column) const {
   return place(row) + ": column " + columns_[column] + " = " + std::string(text(row, column));
 }
 
-}  // namespace rvelab
+}  // namespace rvelab::io

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-namespace rvelab {
+namespace rvelab::io {
 
 class CsvTable {
  public:
@@ -55,4 +55,4 @@ class CsvTable {
   std::vector<long> lines_;              // line number of each row
 };
 
-}  // namespace rvelab
+}  // namespace rvelab::io

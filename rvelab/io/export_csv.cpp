@@ -13,10 +13,9 @@
 #include "rvelab/io/version.hpp"
 #include "rvelab/solver/assembly/neighbour_list.hpp"
 
-namespace rvelab {
+namespace rvelab::io {
 namespace {
 
-using io::exact;
 using Json = nlohmann::ordered_json;
 
 const std::string first_line =
@@ -61,7 +60,7 @@ std::string particles_of(const Specimen& specimen) {
 /// The tangential force as a vector, cell frame; 2D: the file holds its component along t = (-n_y, n_x).
 Vector3 tangential_force(const Specimen& specimen, const Contact& contact) {
   if (specimen.shape == Shape::sphere) return contact.tangential_force;
-  const Vector3 normal = io::branch_of(specimen, contact).normalized();
+  const Vector3 normal = branch_of(specimen, contact).normalized();
   return contact.tangential_force[0] * Vector3(-normal[1], normal[0], 0);
 }
 
@@ -76,7 +75,7 @@ std::vector<Contact> touching_contacts(const Specimen& specimen) {
                                        [&](const Contact& c, const ListedPair& p) { return key(c) < key(p); });
     const Contact bare{pair.i, pair.j, pair.image};
     const bool known = same != specimen.contacts.end() && key(*same) == key(pair);
-    if (!known && io::overlap_of(specimen, bare) > 0) contacts.push_back(bare);
+    if (!known && overlap_of(specimen, bare) > 0) contacts.push_back(bare);
   }
   std::sort(contacts.begin(), contacts.end(), [&](const Contact& a, const Contact& b) { return key(a) < key(b); });
   return contacts;
@@ -93,11 +92,11 @@ std::string text_of(const Specimen& specimen, const std::vector<Contact>& contac
   text += "\n";
   const Matrix3& turn = specimen.cell.rotation;
   for (const Contact& contact : contacts) {
-    const PairParameters pair = io::parameters_of(specimen, contact);
+    const PairParameters pair = parameters_of(specimen, contact);
     text += std::to_string(specimen.grains.id[std::size_t(contact.i)]) + "," +
             std::to_string(specimen.grains.id[std::size_t(contact.j)]);
     for (int k = 0; k < dimension; ++k) text += "," + std::to_string(contact.image[std::size_t(k)]);
-    text += "," + exact(io::normal_force_of(specimen, contact));
+    text += "," + exact(normal_force_of(specimen, contact));
     append(text, turn * tangential_force(specimen, contact), dimension);
     if (dimension == 2) text += "," + exact(contact.tangential_force[0]);
     text += "," + exact(pair.kn) + "," + exact(pair.kt);
@@ -155,12 +154,12 @@ CsvExport csv_files(const std::string& stem) {
 CsvExport export_csv(const Specimen& specimen, const std::string& stem) {
   expect_names(specimen);
   const CsvExport files = csv_files(stem);
-  io::publish_text(files.particles, particles_of(specimen));
+  publish_text(files.particles, particles_of(specimen));
   const std::vector<Contact> contacts = touching_contacts(specimen);
-  io::publish_text(files.contacts, text_of(specimen, contacts));
-  io::publish_text(files.meta, meta_of(specimen, contacts.size()));
-  io::publish_text(files.material, material_file_text(specimen));
+  publish_text(files.contacts, text_of(specimen, contacts));
+  publish_text(files.meta, meta_of(specimen, contacts.size()));
+  publish_text(files.material, material_file_text(specimen));
   return files;
 }
 
-}  // namespace rvelab
+}  // namespace rvelab::io

@@ -5,7 +5,7 @@
 
 #include "rvelab/specimen/specimen.hpp"
 
-namespace rvelab {
+namespace rvelab::io {
 
 /// The files of one export, all beginning with the same stem.
 struct CsvExport {
@@ -26,4 +26,4 @@ CsvExport csv_files(const std::string& stem);
 /// have the same.
 CsvExport export_csv(const Specimen& specimen, const std::string& stem);
 
-}  // namespace rvelab
+}  // namespace rvelab::io

@@ -5,11 +5,8 @@
 #include "rvelab/io/text_file.hpp"
 #include "rvelab/io/version.hpp"
 
-namespace rvelab {
+namespace rvelab::io {
 namespace {
-
-using io::Box;
-using io::exact;
 
 std::string spaced(const Vector3& vector) { return exact(vector[0]) + " " + exact(vector[1]) + " " + exact(vector[2]); }
 
@@ -29,7 +26,7 @@ std::string type_of(const ExportState& state, std::size_t grain) {
 }
 
 void append_dump(std::string& text, const ExportState& state) {
-  const Box box(io::within_tilt_limits(state.network.cell.lattice));
+  const Box box(within_tilt_limits(state.network.cell.lattice));
   const Matrix3& l = box.lattice();
   const double xy = l(0, 1), xz = l(0, 2), yz = l(1, 2);
   const Vector3 low = box.corner(), high = low + l.diagonal();
@@ -54,11 +51,11 @@ void append_dump(std::string& text, const ExportState& state) {
 void export_lammps_dump(const std::vector<ExportState>& states, const std::string& path) {
   std::string text;
   for (const ExportState& state : states) append_dump(text, state);
-  io::publish_text(path, text);
+  publish_text(path, text);
 }
 
 void export_lammps_data(const ExportState& state, const std::string& path) {
-  const Box box(io::within_tilt_limits(state.network.cell.lattice));
+  const Box box(within_tilt_limits(state.network.cell.lattice));
   const Matrix3& l = box.lattice();
   const Vector3 low = box.corner(), high = low + l.diagonal();
   const auto& grains = state.network.grains;
@@ -79,7 +76,7 @@ void export_lammps_data(const ExportState& state, const std::string& path) {
     text += id_of(state, g) + " " + spaced(physical(state, grains[g].velocity)) + " " +
             spaced(physical(state, grains[g].spin)) + "\n";
   }
-  io::publish_text(path, text);
+  publish_text(path, text);
 }
 
-}  // namespace rvelab
+}  // namespace rvelab::io

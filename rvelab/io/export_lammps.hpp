@@ -12,7 +12,7 @@
 
 #include "rvelab/io/export_state.hpp"
 
-namespace rvelab {
+namespace rvelab::io {
 
 /// Writes a dump (ITEM: BOX BOUNDS xy xz yz pp pp pp; id type x y z radius vx vy vz), one timestep a state, SI units,
 /// every number exact. `type` is the material's number from 1; ids are moved up if the smallest is below 1, which
@@ -24,4 +24,4 @@ void export_lammps_dump(const std::vector<ExportState>& states, const std::strin
 /// a mass that is right in 2D use `set` or fix nve/sphere disc as its manual says.
 void export_lammps_data(const ExportState& state, const std::string& path);
 
-}  // namespace rvelab
+}  // namespace rvelab::io

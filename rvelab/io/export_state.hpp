@@ -7,7 +7,7 @@
 #include "rvelab/solver/assembly/network.hpp"
 #include "rvelab/specimen/specimen.hpp"
 
-namespace rvelab {
+namespace rvelab::io {
 
 /// One state for export. Network and specimen are of the same state: grain k of the one is grain k of the other.
 struct ExportState {
@@ -16,8 +16,6 @@ struct ExportState {
   Specimen specimen;
   Network network;
 };
-
-namespace io {
 
 /// The parallelepiped of the cell vectors, its centre in the origin of the cell frame. Grains are stored in a cuboid of
 /// the same volume (rvelab/cell); other programs want them in the parallelepiped.
@@ -42,5 +40,4 @@ Matrix3 within_tilt_limits(const Matrix3& lattice);
 /// sum Vg sigma_g / V is the contact stress.
 std::vector<Matrix3> grain_stresses(const Network& network);
 
-}  // namespace io
-}  // namespace rvelab
+}  // namespace rvelab::io

@@ -7,7 +7,7 @@
 #include "rvelab/io/text_file.hpp"
 #include "rvelab/measure/measures.hpp"
 
-namespace rvelab {
+namespace rvelab::io {
 namespace {
 
 /// How XDMF calls a scalar type.
@@ -77,7 +77,7 @@ class Series {
   void add_grains(const ExportState& state) {
     const Network& network = state.network;
     const Matrix3& turn = network.cell.rotation;
-    const io::Box box(network.cell.lattice);
+    const Box box(network.cell.lattice);
     const double physical = network.quasi_static ? 0 : 1;
     std::vector<double> points, radius, velocity, spin, stress;
     for (const GrainState& grain : network.grains) {
@@ -86,7 +86,7 @@ class Series {
       append(velocity, physical * (turn * grain.velocity));
       append(spin, physical * (turn * grain.spin));
     }
-    for (const Matrix3& sigma : io::grain_stresses(network)) {
+    for (const Matrix3& sigma : grain_stresses(network)) {
       for (int k = 0; k < 9; ++k) stress.push_back(sigma(k / 3, k % 3));
     }
     const auto counts = contact_counts(network);
@@ -107,7 +107,7 @@ class Series {
   void add_contacts(const ExportState& state) {
     const Network& network = state.network;
     const Matrix3& turn = network.cell.rotation;
-    const io::Box box(network.cell.lattice);
+    const Box box(network.cell.lattice);
     std::vector<double> points, force, normal_force, overlap;
     std::vector<std::uint8_t> sliding;
     for (const ContactState& contact : network.contacts) {
@@ -129,7 +129,7 @@ class Series {
 
   void add_cell(const ExportState& state) {
     const Cell& cell = state.network.cell;
-    const io::Box box(cell.lattice);
+    const Box box(cell.lattice);
     const int dimension = cell.dimension;
     // 2D: the mid-plane, where the centres lie.
     const Vector3 corner = box.corner() + (dimension == 2 ? Vector3(0.5 * cell.lattice.col(2)) : Vector3::Zero());
@@ -182,7 +182,7 @@ void export_xdmf(const std::vector<ExportState>& states, const std::string& path
     for (std::size_t k = 0; k < states.size(); ++k) series.add(states[k], k);
     text += series.text;
   });
-  io::publish_text(path, text + "  </Grid>\n </Domain>\n</Xdmf>\n");
+  publish_text(path, text + "  </Grid>\n </Domain>\n</Xdmf>\n");
 }
 
-}  // namespace rvelab
+}  // namespace rvelab::io

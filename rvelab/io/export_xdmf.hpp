@@ -6,7 +6,7 @@
 
 #include "rvelab/io/export_state.hpp"
 
-namespace rvelab {
+namespace rvelab::io {
 
 /// Writes `path` and, beside it, `path`.h5, which the XDMF names relatively: move them together. Laboratory frame, SI
 /// units. A time series whose time is the number of the record; in each state the blocks
@@ -19,4 +19,4 @@ namespace rvelab {
 /// Discs and spheres carry no orientation. Errors as publish() (hdf5_file.hpp).
 void export_xdmf(const std::vector<ExportState>& states, const std::string& path);
 
-}  // namespace rvelab
+}  // namespace rvelab::io

@@ -6,7 +6,7 @@
 #include "rvelab/io/hdf5_file.hpp"
 #include "rvelab/io/hdf5_raw.hpp"
 
-namespace rvelab {
+namespace rvelab::io {
 
 using raw::Handle;
 
@@ -172,4 +172,4 @@ std::vector<std::string> Hdf5File::groups(const std::string& group) const {
   return names.taken();
 }
 
-}  // namespace rvelab
+}  // namespace rvelab::io

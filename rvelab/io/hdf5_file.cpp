@@ -8,7 +8,7 @@
 #include "rvelab/error.hpp"
 #include "rvelab/io/hdf5_raw.hpp"
 
-namespace rvelab {
+namespace rvelab::io {
 
 using raw::Handle;
 
@@ -213,4 +213,4 @@ template std::vector<std::int64_t> Hdf5File::read(const std::string&) const;
 template std::vector<std::uint64_t> Hdf5File::read(const std::string&) const;
 template std::vector<std::uint8_t> Hdf5File::read(const std::string&) const;
 
-}  // namespace rvelab
+}  // namespace rvelab::io

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace rvelab {
+namespace rvelab::io {
 
 using Shape64 = std::vector<std::uint64_t>;  ///< extents of an array, outermost first; empty: a scalar
 
@@ -117,4 +117,4 @@ std::string hdf5_version();
 /// same bytes.
 void publish(const std::string& path, const std::function<void(Hdf5File&)>& fill);
 
-}  // namespace rvelab
+}  // namespace rvelab::io

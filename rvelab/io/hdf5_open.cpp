@@ -24,12 +24,12 @@
 #include "rvelab/io/hdf5_raw.hpp"
 #include "rvelab/io/seal.hpp"
 
-namespace rvelab {
+namespace rvelab::io {
 namespace {
 
 using raw::Handle;
 
-io::Descriptor opened(const std::string& path) {
+Descriptor opened(const std::string& path) {
   struct stat status;
   if (::stat(path.c_str(), &status) != 0) {
     throw InputError(path + (errno == ENOENT || errno == ENOTDIR
@@ -40,7 +40,7 @@ io::Descriptor opened(const std::string& path) {
   if (!S_ISREG(status.st_mode)) {
     throw InputError(path + ": is not a regular file; give the path of an HDF5 file that rvelab wrote");
   }
-  io::Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (!file.open()) {
     throw InputError(path + ": cannot be opened (" + std::strerror(errno) + "); check the permissions");
   }
@@ -59,7 +59,7 @@ Identity identity_in(const struct stat& status) {
           status.st_ctim.tv_nsec};
 }
 
-Identity identity_of(const io::Descriptor& file) {
+Identity identity_of(const Descriptor& file) {
   struct stat status;
   return ::fstat(file.number(), &status) == 0 ? identity_in(status) : Identity{};
 }
@@ -73,8 +73,8 @@ class Checked {
     if (lasts(file)) sealed_[next_++ % sealed_.size()] = file;
   }
   /// The copy that was made of a file without a seal; none: no such file.
-  std::shared_ptr<io::Descriptor> copy(const Identity& file) const { return file == copied_ ? copy_ : nullptr; }
-  void remember_copy(const Identity& file, std::shared_ptr<io::Descriptor> copy) {
+  std::shared_ptr<Descriptor> copy(const Identity& file) const { return file == copied_ ? copy_ : nullptr; }
+  void remember_copy(const Identity& file, std::shared_ptr<Descriptor> copy) {
     if (!lasts(file)) return;
     copied_ = file;
     copy_ = std::move(copy);
@@ -89,7 +89,7 @@ class Checked {
   std::array<Identity, 8> sealed_{};
   std::size_t next_ = 0;
   Identity copied_;
-  std::shared_ptr<io::Descriptor> copy_;
+  std::shared_ptr<Descriptor> copy_;
 };
 
 std::mutex checked_mutex;
@@ -99,17 +99,17 @@ Checked& checked() {
   return files;
 }
 
-bool begins_as_hdf5(const io::Descriptor& file) {
+bool begins_as_hdf5(const Descriptor& file) {
   constexpr unsigned char signature[8] = {0x89, 'H', 'D', 'F', '\r', '\n', 0x1a, '\n'};
   std::array<std::byte, sizeof signature> found;
-  return io::read_at(file.number(), 0, found) == found.size() &&
+  return read_at(file.number(), 0, found) == found.size() &&
          std::memcmp(found.data(), signature, sizeof signature) == 0;
 }
 
 /// The bytes of a file in memory, as long as this lives.
 class Mapped {
  public:
-  explicit Mapped(const io::Descriptor& file)
+  explicit Mapped(const Descriptor& file)
       : size_(identity_of(file).size), at_(::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, file.number(), 0)) {
     if (at_ == MAP_FAILED) throw std::bad_alloc();
   }
@@ -142,9 +142,9 @@ Hdf5File Hdf5File::open(const std::string& path) {
   raw::silence();
   const std::lock_guard lock(checked_mutex);
   while (true) {
-    const io::Descriptor file = opened(path);
+    const Descriptor file = opened(path);
     const Identity identity = identity_of(file);
-    const bool sealed = checked().sealed(identity) || io::check_seal(file.number(), path);
+    const bool sealed = checked().sealed(identity) || check_seal(file.number(), path);
     if (!begins_as_hdf5(file)) {
       throw InputError(path +
                        ": is not an HDF5 file; give a file that rvelab wrote (make one with `rvelab import` or "
@@ -153,7 +153,7 @@ Hdf5File Hdf5File::open(const std::string& path) {
     if (!sealed) {
       auto copy = checked().copy(identity);
       if (!copy) {
-        copy = std::make_shared<io::Descriptor>(io::made_in_child(path, identity.size, [&] {
+        copy = std::make_shared<Descriptor>(made_in_child(path, identity.size, [&] {
           const hid_t from = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
           if (from < 0) fail_opening(path);
           const auto to = in_memory(path);
@@ -178,4 +178,4 @@ Hdf5File Hdf5File::open(const std::string& path) {
   }
 }
 
-}  // namespace rvelab
+}  // namespace rvelab::io

@@ -6,7 +6,7 @@
 
 #include "rvelab/error.hpp"
 
-namespace rvelab::raw {
+namespace rvelab::io::raw {
 
 void expect_memory(std::uint64_t bytes) {
   constexpr std::uint64_t besides = 8 << 20;  // its caches and conversion buffers, a MiB each
@@ -186,4 +186,4 @@ Handle open_dataset(hid_t file, const std::string& path, const std::string& name
   return dataset;
 }
 
-}  // namespace rvelab::raw
+}  // namespace rvelab::io::raw

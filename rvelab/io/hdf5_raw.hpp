@@ -12,7 +12,7 @@
 
 #include "rvelab/io/hdf5_file.hpp"
 
-namespace rvelab::raw {
+namespace rvelab::io::raw {
 
 /// An HDF5 identifier that is closed by the function of its kind.
 class Handle {
@@ -135,4 +135,4 @@ StoredValues stored_values(hid_t type, hid_t space, const std::string& what, Rea
   return values;
 }
 
-}  // namespace rvelab::raw
+}  // namespace rvelab::io::raw

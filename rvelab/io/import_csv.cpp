@@ -15,7 +15,7 @@
 #include "rvelab/io/lammps_dump.hpp"
 #include "rvelab/keys/material_toml.hpp"
 
-namespace rvelab {
+namespace rvelab::io {
 namespace {
 
 std::string in_words(const Matrix3& matrix) {
@@ -147,8 +147,8 @@ struct Particles {
 };
 
 Particles read_particles(const std::string& path) {
-  if (io::is_lammps_dump(path)) {
-    auto dump = io::read_lammps_dump(path);
+  if (is_lammps_dump(path)) {
+    auto dump = read_lammps_dump(path);
     return {std::move(dump.atoms), dump.dimension, dump.cell};
   }
   auto table = std::make_unique<CsvTable>(path);
@@ -177,14 +177,14 @@ Specimen import_csv(const std::string& particles_path, const std::optional<std::
   std::optional<Matrix3> vectors = particles.cell;
   std::string source = particles_path;
   if (meta_json_path) {
-    const auto meta = io::read_meta(*meta_json_path, specimen, !options.material_path);
+    const auto meta = read_meta(*meta_json_path, specimen, !options.material_path);
     dimension = meta.dimension;
     if (meta.cell) take_cell(vectors, source, *meta.cell, *meta_json_path, "its hSize");
     specimen.state.reference_pressure = meta.reference_pressure;
   }
   if (options.material_path) {
-    read_material_file(*options.material_path, specimen);
-    check(specimen.contact, specimen.damping, specimen.materials);
+    keys::read_material_file(*options.material_path, specimen);
+    check_parameters(specimen.contact, specimen.damping, specimen.materials);
   }
   if (specimen.materials.empty()) {
     throw InputError(particles_path +
@@ -205,12 +205,12 @@ Specimen import_csv(const std::string& particles_path, const std::optional<std::
   set_cell(specimen, dimension, *vectors, source);
 
   const auto wraps = read_grains(*particles.table, specimen);
-  if (contacts_path) io::read_contacts(CsvTable(*contacts_path), wraps, specimen);
+  if (contacts_path) read_contacts(CsvTable(*contacts_path), wraps, specimen);
 
-  set_keys(specimen, options.settings);
-  check(specimen.contact, specimen.damping, specimen.materials);
-  io::set_root_overlaps(specimen);
+  keys::set_keys(specimen, options.settings);
+  check_parameters(specimen.contact, specimen.damping, specimen.materials);
+  set_root_overlaps(specimen);
   return specimen;
 }
 
-}  // namespace rvelab
+}  // namespace rvelab::io

@@ -16,7 +16,7 @@
 
 #include "rvelab/specimen/specimen.hpp"
 
-namespace rvelab {
+namespace rvelab::io {
 
 /// What the files themselves do not say.
 struct ImportOptions {
@@ -33,4 +33,4 @@ struct ImportOptions {
 Specimen import_csv(const std::string& particles_path, const std::optional<std::string>& contacts_path,
                     const std::optional<std::string>& meta_json_path, const ImportOptions& options = {});
 
-}  // namespace rvelab
+}  // namespace rvelab::io

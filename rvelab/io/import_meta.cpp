@@ -92,7 +92,7 @@ void read_parameters(const MetaFile& file, Specimen& specimen) {
   specimen.contact.unload_rescale = false;  // YADE, which writes these files, lets f_t stand on unloading
   specimen.materials = {material};
   try {
-    check(specimen.contact, specimen.damping, specimen.materials);
+    check_parameters(specimen.contact, specimen.damping, specimen.materials);
   } catch (const InputError& error) {
     file.fail(error.what());
   }

@@ -7,7 +7,7 @@
 #include "rvelab/keys/enumerations.hpp"
 #include "rvelab/keys/material_keys.hpp"
 
-namespace rvelab {
+namespace rvelab::io {
 namespace {
 
 /// Keys that share a field and not its unit: the one that the law, or the dashpot, reads.
@@ -41,7 +41,7 @@ struct Line {
       text << (value ? "true" : "false");
     } else if constexpr (std::is_arithmetic_v<Value>) {
       if (!entry.range.contains(static_cast<double>(value))) return "";
-      if constexpr (std::is_same_v<Value, double>) text << io::exact(value);
+      if constexpr (std::is_same_v<Value, double>) text << exact(value);
       if constexpr (std::is_same_v<Value, long>) text << value;
     } else {
       text << toml::value<std::string>(keys::text_of(value));
@@ -91,4 +91,4 @@ std::string material_file_text(const Specimen& specimen) {
   return text;
 }
 
-}  // namespace rvelab
+}  // namespace rvelab::io

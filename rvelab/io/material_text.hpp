@@ -5,9 +5,9 @@
 
 #include "rvelab/specimen/specimen.hpp"
 
-namespace rvelab {
+namespace rvelab::io {
 
 /// The material file (read_material_file) that says all parameters of the specimen.
 std::string material_file_text(const Specimen& specimen);
 
-}  // namespace rvelab
+}  // namespace rvelab::io

@@ -4,11 +4,11 @@
 
 namespace rvelab::io {
 
-void put_probes(Hdf5File& file, const std::vector<ProbeResult>& probes) {
+void put_probes(Hdf5File& file, const std::vector<records::ProbeResult>& probes) {
   const auto size = probes.empty() ? 0 : static_cast<std::size_t>(probes.front().stiffness.rows());
   std::vector<std::string> stages;
   std::vector<double> rows;
-  for (const ProbeResult& probe : probes) {
+  for (const records::ProbeResult& probe : probes) {
     stages.push_back(probe.stage);
     const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> matrix = probe.stiffness;
     rows.insert(rows.end(), matrix.data(), matrix.data() + matrix.size());
@@ -17,7 +17,7 @@ void put_probes(Hdf5File& file, const std::vector<ProbeResult>& probes) {
   file.write<double>("/probes/stiffness_Pa", rows, {probes.size(), size, size}, "Pa");
 }
 
-std::vector<ProbeResult> get_probes(const Hdf5File& file) {
+std::vector<records::ProbeResult> get_probes(const Hdf5File& file) {
   if (!file.has("/probes/stage")) return {};  // version 1.0
   const auto stages = file.read_text("/probes/stage");
   const auto rows = file.read<double>("/probes/stiffness_Pa");
@@ -28,7 +28,7 @@ std::vector<ProbeResult> get_probes(const Hdf5File& file) {
                      "is damaged: write it again");
   }
   const auto size = static_cast<Eigen::Index>(shape[1]);
-  std::vector<ProbeResult> probes;
+  std::vector<records::ProbeResult> probes;
   for (std::size_t k = 0; k < stages.size(); ++k) {
     using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     probes.push_back({stages[k], Eigen::Map<const RowMajor>(rows.data() + k * shape[1] * shape[2], size, size)});

@@ -9,8 +9,8 @@
 namespace rvelab::io {
 
 /// Probe results: the names of their stages, and one square matrix each (all of one size).
-void put_probes(Hdf5File& file, const std::vector<ProbeResult>& probes);
+void put_probes(Hdf5File& file, const std::vector<records::ProbeResult>& probes);
 /// InputError if names and matrices do not fit each other; none in files of version 1.0.
-std::vector<ProbeResult> get_probes(const Hdf5File& file);
+std::vector<records::ProbeResult> get_probes(const Hdf5File& file);
 
 }  // namespace rvelab::io

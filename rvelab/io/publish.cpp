@@ -16,9 +16,7 @@
 #include "rvelab/io/hdf5_file.hpp"
 #include "rvelab/io/seal.hpp"
 
-namespace rvelab {
-namespace io {
-
+namespace rvelab::io {
 namespace fs = std::filesystem;
 
 namespace {
@@ -120,13 +118,11 @@ void publish_bytes(const std::string& path, std::initializer_list<std::span<cons
   sync_folder_of(place);
 }
 
-}  // namespace io
-
 void publish(const std::string& path, const std::function<void(Hdf5File&)>& fill) {
   auto file = Hdf5File::in_memory(path);
   fill(file);
   const auto bytes = file.image();
-  io::publish_bytes(path, {bytes, io::seal_of(bytes)});
+  publish_bytes(path, {bytes, seal_of(bytes)});
 }
 
-}  // namespace rvelab
+}  // namespace rvelab::io

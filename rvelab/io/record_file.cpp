@@ -18,7 +18,7 @@
 #include "rvelab/io/version.hpp"
 #include "rvelab/records/record_fields.hpp"
 
-namespace rvelab {
+namespace rvelab::io {
 namespace {
 
 /// Rows of /records in one chunk: a file of some hundred rows is one chunk a column.
@@ -49,7 +49,7 @@ std::string snapshot_group(std::size_t record) {
 
 Hdf5File open_records(const std::string& path) {
   auto file = Hdf5File::open(path);
-  if (io::checked_kind(file) != FileKind::records) {
+  if (checked_kind(file) != FileKind::records) {
     throw InputError(path + ": holds a specimen and no records; give a file that `rvelab run` wrote");
   }
   return file;
@@ -59,15 +59,15 @@ Hdf5File open_records(const std::string& path) {
 RecordedTest test_in(const Hdf5File& file) {
   const std::string& path = file.path();
   RecordedTest test;
-  io::Reader reader(file, "");
+  Reader reader(file, "");
   describe(reader, test);
   records::describe_records(reader, test.result.records);
-  test.result.probes = io::get_probes(file);
+  test.result.probes = get_probes(file);
   if (!test.complete) {
     records::describe_progress(reader, test.checkpoint.progress);
     test.checkpoint.progress.wall_seconds = test.result.wall_seconds;
   }
-  test.checkpoint.specimen = io::get_specimen(file, "/specimen");
+  test.checkpoint.specimen = get_specimen(file, "/specimen");
   for (const std::string& name : file.groups("/snapshots")) {
     std::size_t number = 0;
     const char* const end = name.data() + name.size();
@@ -94,46 +94,46 @@ Provenance provenance_of(const std::string& protocol_text, const Specimen& start
           compiler(),
           {"hdf5 " + hdf5_version(), "eigen " + dotted(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION),
            "toml++ " + dotted(TOML_LIB_MAJOR, TOML_LIB_MINOR, TOML_LIB_PATCH)},
-          io::digest(start)};
+          digest(start)};
 }
 
 void write_recorded_test(const RecordedTest& test, const std::string& path) {
   publish(path, [&](Hdf5File& file) {
-    io::stamp(file, FileKind::records);
-    io::Writer writer(file, "", chunk_rows);
+    stamp(file, FileKind::records);
+    Writer writer(file, "", chunk_rows);
     describe(writer, test);
     records::describe_records(writer, test.result.records);
-    io::put_probes(file, test.result.probes);
+    put_probes(file, test.result.probes);
     if (!test.complete) records::describe_progress(writer, test.checkpoint.progress);
-    io::put_specimen(file, "/specimen", test.checkpoint.specimen);
+    put_specimen(file, "/specimen", test.checkpoint.specimen);
     for (const Snapshot& snapshot : test.snapshots) {
-      io::put_specimen(file, snapshot_group(snapshot.record), read_snapshot(snapshot));
+      put_specimen(file, snapshot_group(snapshot.record), read_snapshot(snapshot));
     }
   });
 }
 
 SealedFile seal_file(const std::string& path, const std::string& output) {
   const auto file = Hdf5File::open(path);
-  const SealedFile found{io::kind_without_seal(file), file.sealed(), file.entries().size()};
+  const SealedFile found{kind_without_seal(file), file.sealed(), file.entries().size()};
   // What cannot be read as one of rvelab's would only be refused later.
   if (found.kind == FileKind::specimen) {
-    io::get_specimen(file, "");
+    get_specimen(file, "");
   } else {
-    for (const Snapshot& snapshot : test_in(file).snapshots) io::get_specimen(file, snapshot_group(snapshot.record));
+    for (const Snapshot& snapshot : test_in(file).snapshots) get_specimen(file, snapshot_group(snapshot.record));
   }
   publish(output, [&](Hdf5File& copy) { copy.copy(file); });
   return found;
 }
 
 Specimen read_snapshot(const Snapshot& snapshot) {
-  if (snapshot.payload_at == 0) return io::get_specimen(open_records(snapshot.file), snapshot_group(snapshot.record));
-  return io::decode_snapshot(snapshot.file, io::read_payload(snapshot.file, snapshot.payload_at, snapshot.length));
+  if (snapshot.payload_at == 0) return get_specimen(open_records(snapshot.file), snapshot_group(snapshot.record));
+  return decode_snapshot(snapshot.file, read_payload(snapshot.file, snapshot.payload_at, snapshot.length));
 }
 
 RecordedTest read_recorded_test(const std::string& path) {
   // The journal first: if its writer ends meanwhile, the file found afterwards holds at least as much.
-  const std::string journal_path = io::journal_of(path);
-  const io::RecordJournal journal = io::read_record_journal(journal_path);
+  const std::string journal_path = journal_of(path);
+  const RecordJournal journal = read_record_journal(journal_path);
   const bool has_file = std::filesystem::exists(path);
   if (!has_file && journal.test) return *journal.test;
   RecordedTest file = test_in(open_records(path));  // says so if neither is there
@@ -163,8 +163,8 @@ RecordedTest read_recorded_test(const std::string& path) {
   return merged;
 }
 
-void write_records(const TestResult& result, const Specimen& end_state, const std::string& resolved_protocol_text,
-                   const std::string& path) {
+void write_records(const records::TestResult& result, const Specimen& end_state,
+                   const std::string& resolved_protocol_text, const std::string& path) {
   RecordedTest test;
   test.provenance = provenance_of(resolved_protocol_text, end_state);
   test.provenance.specimen_crc32c = 0;
@@ -173,8 +173,8 @@ void write_records(const TestResult& result, const Specimen& end_state, const st
   write_recorded_test(test, path);
 }
 
-TestResult read_records(const std::string& path) { return read_recorded_test(path).result; }
+records::TestResult read_records(const std::string& path) { return read_recorded_test(path).result; }
 
 std::string read_protocol_text(const std::string& path) { return read_recorded_test(path).provenance.protocol; }
 
-}  // namespace rvelab
+}  // namespace rvelab::io

@@ -102,7 +102,7 @@ struct RowReader {
 
 RowLayout row_layout() {
   RowLayout layout;
-  const std::vector<Record> none;
+  const std::vector<records::Record> none;
   describe_records(layout, none);
   return layout;
 }
@@ -157,17 +157,18 @@ struct Assembler {
     if (frame.type == checkpoint_frame) return checkpoint(rest);
     if (frame.type < begin_frame || frame.type > snapshot_frame) return;
     const std::size_t number = take_number(path, rest);
-    TestResult& result = journal.test->result;
+    records::TestResult& result = journal.test->result;
     if (frame.type == record_frame) {
       truncate(result.records, number);
-      std::vector<Record> row(1);
+      std::vector<records::Record> row(1);
       RowReader reader{layout, rest};
       describe_records(reader, row);
       result.records.push_back(row.front());
       std::erase_if(journal.test->snapshots, [&](const Snapshot& snapshot) { return snapshot.record >= number; });
     } else if (frame.type == probe_frame) {
       truncate(result.probes, number);
-      for (ProbeResult& probe : get_probes(Hdf5File::from_image(path, rest))) result.probes.push_back(std::move(probe));
+      for (records::ProbeResult& probe : get_probes(Hdf5File::from_image(path, rest)))
+        result.probes.push_back(std::move(probe));
     } else {
       std::erase_if(journal.test->snapshots, [&](const Snapshot& snapshot) { return snapshot.record == number; });
       journal.test->snapshots.push_back({number, path, frame.payload_at, frame.payload.size()});
@@ -202,12 +203,12 @@ struct Assembler {
 
   void checkpoint(std::span<const std::byte> payload) {
     const auto file = Hdf5File::from_image(path, payload);
-    Checkpoint& checkpoint = journal.test->checkpoint;
+    records::Checkpoint& checkpoint = journal.test->checkpoint;
     Reader reader(file, "");
     describe_progress(reader, checkpoint.progress);
     reader.field("provenance/wall_seconds", checkpoint.progress.wall_seconds, "s");
     checkpoint.specimen = get_specimen(file, "/specimen");
-    TestResult& result = journal.test->result;
+    records::TestResult& result = journal.test->result;
     result.axis = checkpoint.progress.axis;
     result.pressure = checkpoint.progress.pressure;
     result.wall_seconds = checkpoint.progress.wall_seconds;
@@ -239,19 +240,19 @@ Bytes encode_begin(const RunStart& start) {
   });
 }
 
-Bytes encode_record(std::size_t number, const Record& record) {
+Bytes encode_record(std::size_t number, const records::Record& record) {
   Bytes bytes = numbered(number);
-  const std::vector<Record> row{record};
+  const std::vector<records::Record> row{record};
   RowWriter writer{bytes};
   describe_records(writer, row);
   return bytes;
 }
 
-Bytes encode_probe(std::size_t number, const ProbeResult& probe) {
+Bytes encode_probe(std::size_t number, const records::ProbeResult& probe) {
   return numbered(number, image_of([&](Hdf5File& file) { put_probes(file, {probe}); }));
 }
 
-Bytes encode_checkpoint(const Checkpoint& checkpoint) {
+Bytes encode_checkpoint(const records::Checkpoint& checkpoint) {
   return image_of([&](Hdf5File& file) {
     Writer writer(file, "");
     describe_progress(writer, checkpoint.progress);

@@ -33,9 +33,9 @@ struct RunStart {
 RecordedTest begun_test(const RunStart& start);
 
 std::vector<std::byte> encode_begin(const RunStart& start);
-std::vector<std::byte> encode_record(std::size_t number, const Record& record);
-std::vector<std::byte> encode_probe(std::size_t number, const ProbeResult& probe);
-std::vector<std::byte> encode_checkpoint(const Checkpoint& checkpoint);
+std::vector<std::byte> encode_record(std::size_t number, const records::Record& record);
+std::vector<std::byte> encode_probe(std::size_t number, const records::ProbeResult& probe);
+std::vector<std::byte> encode_checkpoint(const records::Checkpoint& checkpoint);
 std::vector<std::byte> encode_snapshot(std::size_t record, const Specimen& specimen);
 Specimen decode_snapshot(const std::string& path, std::span<const std::byte> payload);
 

@@ -10,7 +10,7 @@
 #include "rvelab/error.hpp"
 #include "rvelab/io/schema.hpp"
 
-namespace rvelab {
+namespace rvelab::io {
 namespace {
 
 /// HDF5 serves one thread at a time; stores of several tests share it.
@@ -36,7 +36,7 @@ std::string first_differing_lines(const std::string& a, const std::string& b) {
   }
 }
 
-void expect_same_run(const std::string& path, const RecordedTest& there, const io::RunStart& here) {
+void expect_same_run(const std::string& path, const RecordedTest& there, const RunStart& here) {
   if (there.provenance.protocol != here.protocol_text) {
     throw InputError(path + ": was begun with another protocol (" +
                      first_differing_lines(there.provenance.protocol, here.protocol_text) + "), by rvelab " +
@@ -45,7 +45,7 @@ void expect_same_run(const std::string& path, const RecordedTest& there, const i
                      "start anew with --force");
   }
   const auto known = there.provenance.specimen_crc32c;
-  if (known != 0 && known != io::digest(here.specimen)) {
+  if (known != 0 && known != digest(here.specimen)) {
     throw InputError(path +
                      ": was begun with another specimen; allowed with --resume: the same one; give it, or start "
                      "anew with --force");
@@ -54,30 +54,32 @@ void expect_same_run(const std::string& path, const RecordedTest& there, const i
 
 /// Places taken without --force or --resume are refused before anything is made there.
 void expect_free(const std::string& path) {
-  const std::string journal = io::journal_of(path);
+  const std::string journal = journal_of(path);
   std::error_code ignored;
   const bool has_journal = std::filesystem::file_size(journal, ignored) > 0 && !ignored;
   if (!has_journal && !std::filesystem::exists(path)) return;
-  io::expect_output(std::filesystem::exists(path) ? path : journal, false, {}, ", or --resume to go on with it");
+  expect_output(std::filesystem::exists(path) ? path : journal, false, {}, ", or --resume to go on with it");
 }
 
 /// The journal's name, if it may be taken.
 std::string place_for(const std::string& path, Existing existing) {
-  io::expect_place(path);
+  expect_place(path);
   if (existing == Existing::refuse) expect_free(path);
-  return io::journal_of(path);
+  return journal_of(path);
 }
 
-bool same_bits(const Record& a, const Record& b) { return io::encode_record(0, a) == io::encode_record(0, b); }
+bool same_bits(const records::Record& a, const records::Record& b) {
+  return encode_record(0, a) == encode_record(0, b);
+}
 
-bool same_bits(const ProbeResult& a, const ProbeResult& b) {
+bool same_bits(const records::ProbeResult& a, const records::ProbeResult& b) {
   return a.stage == b.stage && a.stiffness.size() == b.stiffness.size() && a.stiffness == b.stiffness;
 }
 
 }  // namespace
 
-RecordStore::RecordStore(const std::string& path, const io::RunStart& start, Existing existing, double checkpoint_every)
-    : path_(io::followed(path)), journal_(place_for(path, existing)), checkpoint_every_(checkpoint_every) {
+RecordStore::RecordStore(const std::string& path, const RunStart& start, Existing existing, double checkpoint_every)
+    : path_(followed(path)), journal_(place_for(path, existing)), checkpoint_every_(checkpoint_every) {
   if (existing == Existing::refuse) expect_free(path);  // once more, under the lock
   const auto begin_time = Clock::now();
   // Left by a run that was killed while it wrote them.
@@ -88,11 +90,11 @@ RecordStore::RecordStore(const std::string& path, const io::RunStart& start, Exi
   if (existing == Existing::resume && (test_.complete || journal_.size() > 0)) return;
   try {
     ::unlink(path_.c_str());
-    const auto begin = io::encode_begin(start);
+    const auto begin = encode_begin(start);
     journal_.begin();
-    journal_.append(io::begin_frame, begin);
+    journal_.append(begin_frame, begin);
     journal_.sync();
-    test_ = io::begun_test(start);
+    test_ = begun_test(start);
     // What a checkpoint will cost is not known yet: about as much as this.
     kept_ = published_ = {Clock::now(), seconds_since(begin_time)};
   } catch (...) {
@@ -106,12 +108,12 @@ RecordStore::~RecordStore() {
   if (!test_.complete && !keeps_something_) journal_.remove();
 }
 
-void RecordStore::resume(const io::RunStart& start) {
-  const io::RecordJournal there = io::read_record_journal(journal_.path());
+void RecordStore::resume(const RunStart& start) {
+  const RecordJournal there = read_record_journal(journal_.path());
   const bool has_file = std::filesystem::exists(path_);
-  if (there.extent.torn && !there.test && !has_file && there.extent.file_bytes > io::journal_header_bytes) {
+  if (there.extent.torn && !there.test && !has_file && there.extent.file_bytes > journal_header_bytes) {
     // A run killed while it wrote its first frame has lost nothing; a damaged journal may have held a test.
-    const auto first = io::encode_begin(start).size() + io::journal_header_bytes + io::frame_header_bytes;
+    const auto first = encode_begin(start).size() + journal_header_bytes + frame_header_bytes;
     if (there.extent.file_bytes >= first) {
       throw InputError(journal_.path() +
                        ": is damaged at its start, and nothing after that can be read; start anew "
@@ -141,22 +143,22 @@ void RecordStore::resume(const io::RunStart& start) {
     steps = there.test->checkpoint.specimen.state.grain_steps;
   } else {
     journal_.begin();
-    journal_.append(io::begin_frame, io::encode_begin(start));
+    journal_.append(begin_frame, encode_begin(start));
   }
   for (std::size_t k = records; k < test_.result.records.size(); ++k) {
-    journal_.append(io::record_frame, io::encode_record(k, test_.result.records[k]));
+    journal_.append(record_frame, encode_record(k, test_.result.records[k]));
   }
   for (std::size_t k = probes; k < test_.result.probes.size(); ++k) {
-    journal_.append(io::probe_frame, io::encode_probe(k, test_.result.probes[k]));
+    journal_.append(probe_frame, encode_probe(k, test_.result.probes[k]));
   }
   for (Snapshot& snapshot : test_.snapshots) {
     if (snapshot.payload_at > 0) continue;
-    const auto payload = io::encode_snapshot(snapshot.record, read_snapshot(snapshot));
-    snapshot = {snapshot.record, journal_.path(), journal_.append(io::snapshot_frame, payload), payload.size()};
+    const auto payload = encode_snapshot(snapshot.record, read_snapshot(snapshot));
+    snapshot = {snapshot.record, journal_.path(), journal_.append(snapshot_frame, payload), payload.size()};
   }
   const bool at_start = test_.checkpoint.progress.stage == 0 && test_.checkpoint.progress.phase == 0;
   if (!at_start && (!there.has_checkpoint || test_.checkpoint.specimen.state.grain_steps > steps)) {
-    journal_.append(io::checkpoint_frame, io::encode_checkpoint(test_.checkpoint));
+    journal_.append(checkpoint_frame, encode_checkpoint(test_.checkpoint));
   }
   journal_.sync();
   if (at_start) return;
@@ -165,25 +167,25 @@ void RecordStore::resume(const io::RunStart& start) {
   made_probes_ = static_cast<std::size_t>(from_->progress.probes);
 }
 
-void RecordStore::put(const Record& record) {
+void RecordStore::put(const records::Record& record) {
   auto& records = test_.result.records;
   const std::size_t number = made_records_++;
   if (number < records.size() && same_bits(records[number], record)) return;
   // A build that computes other bits than the one before: what that one made from here on is not this run's.
   records.resize(number);
   std::erase_if(test_.snapshots, [&](const Snapshot& snapshot) { return snapshot.record >= number; });
-  journal_.append(io::record_frame, io::encode_record(number, record));
+  journal_.append(record_frame, encode_record(number, record));
   records.push_back(record);
   keeps_something_ = true;
 }
 
-void RecordStore::put(const ProbeResult& probe) {
+void RecordStore::put(const records::ProbeResult& probe) {
   auto& probes = test_.result.probes;
   const std::size_t number = made_probes_++;
   if (number < probes.size() && same_bits(probes[number], probe)) return;
   probes.resize(number);
   const std::lock_guard turn(hdf5_turn());
-  journal_.append(io::probe_frame, io::encode_probe(number, probe));
+  journal_.append(probe_frame, encode_probe(number, probe));
   probes.push_back(probe);
 }
 
@@ -192,8 +194,8 @@ void RecordStore::put_snapshot(std::size_t record, const Specimen& state) {
     if (there.record == record) return;
   }
   const std::lock_guard turn(hdf5_turn());
-  const auto payload = io::encode_snapshot(record, state);
-  const auto payload_at = journal_.append(io::snapshot_frame, payload);
+  const auto payload = encode_snapshot(record, state);
+  const auto payload_at = journal_.append(snapshot_frame, payload);
   test_.snapshots.push_back({record, journal_.path(), payload_at, payload.size()});
 }
 
@@ -204,7 +206,7 @@ bool RecordStore::ready(const Pace& pace, double shortest) const {
   return seconds_since(pace.last) >= wait;
 }
 
-void RecordStore::offer(const std::function<Checkpoint()>& take) {
+void RecordStore::offer(const std::function<records::Checkpoint()>& take) {
   constexpr double shortest_checkpoint = 1, shortest_publish = 5;  // s
   const bool to_publish = ready(published_, shortest_publish) && made_records_ > 0;
   if (!to_publish && !ready(kept_, shortest_checkpoint)) return;
@@ -212,7 +214,7 @@ void RecordStore::offer(const std::function<Checkpoint()>& take) {
   if (to_publish) publish_now();
 }
 
-void RecordStore::keep(const Checkpoint& checkpoint) {
+void RecordStore::keep(const records::Checkpoint& checkpoint) {
   const auto begin = Clock::now();
   test_.checkpoint = checkpoint;
   test_.result.axis = checkpoint.progress.axis;
@@ -222,9 +224,9 @@ void RecordStore::keep(const Checkpoint& checkpoint) {
   std::vector<std::byte> payload;
   {
     const std::lock_guard turn(hdf5_turn());
-    payload = io::encode_checkpoint(checkpoint);
+    payload = encode_checkpoint(checkpoint);
   }
-  journal_.append(io::checkpoint_frame, payload);
+  journal_.append(checkpoint_frame, payload);
   keeps_something_ = true;
   journal_.sync();
   drop_old_checkpoints();
@@ -238,22 +240,22 @@ void RecordStore::drop_old_checkpoints() {
   if (journal_.size() < std::max(small, 4 * size_without_)) return;
   const std::lock_guard turn(hdf5_turn());
   auto snapshots = test_.snapshots;
-  journal_.replace([&](io::Journal& next) {
-    io::read_journal(journal_.path(), [&](const io::Frame& frame) {
-      if (frame.type == io::begin_frame) next.append(frame.type, frame.payload);
+  journal_.replace([&](Journal& next) {
+    read_journal(journal_.path(), [&](const Frame& frame) {
+      if (frame.type == begin_frame) next.append(frame.type, frame.payload);
     });
-    const TestResult& result = test_.result;
+    const records::TestResult& result = test_.result;
     for (std::size_t k = 0; k < result.records.size(); ++k) {
-      next.append(io::record_frame, io::encode_record(k, result.records[k]));
+      next.append(record_frame, encode_record(k, result.records[k]));
     }
     for (std::size_t k = 0; k < result.probes.size(); ++k) {
-      next.append(io::probe_frame, io::encode_probe(k, result.probes[k]));
+      next.append(probe_frame, encode_probe(k, result.probes[k]));
     }
     for (Snapshot& snapshot : snapshots) {
-      const auto payload = io::read_payload(journal_.path(), snapshot.payload_at, snapshot.length);
-      snapshot.payload_at = next.append(io::snapshot_frame, payload);
+      const auto payload = read_payload(journal_.path(), snapshot.payload_at, snapshot.length);
+      snapshot.payload_at = next.append(snapshot_frame, payload);
     }
-    next.append(io::checkpoint_frame, io::encode_checkpoint(test_.checkpoint));
+    next.append(checkpoint_frame, encode_checkpoint(test_.checkpoint));
   });
   test_.snapshots = snapshots;
   size_without_ = journal_.size();
@@ -271,7 +273,7 @@ void RecordStore::publish_now() {
   published_ = {Clock::now(), seconds_since(begin)};
 }
 
-void RecordStore::stop(const Checkpoint& checkpoint) {
+void RecordStore::stop(const records::Checkpoint& checkpoint) {
   keep(checkpoint);
   publish_what_is_there();
 }
@@ -280,7 +282,7 @@ void RecordStore::publish_what_is_there() {
   if (!journal_.failed() && made_records_ > 0) publish_now();
 }
 
-void RecordStore::finish(const TestResult& result, const Specimen& end_state) {
+void RecordStore::finish(const records::TestResult& result, const Specimen& end_state) {
   test_.result = result;
   test_.checkpoint.specimen = end_state;
   test_.complete = true;
@@ -288,4 +290,4 @@ void RecordStore::finish(const TestResult& result, const Specimen& end_state) {
   journal_.remove();
 }
 
-}  // namespace rvelab
+}  // namespace rvelab::io

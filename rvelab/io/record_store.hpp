@@ -12,7 +12,7 @@
 
 #include "rvelab/io/record_journal.hpp"
 
-namespace rvelab {
+namespace rvelab::io {
 
 /// What to do with an R.h5, or its journal, that is there already.
 enum class Existing {
@@ -26,7 +26,7 @@ class RecordStore {
   /// Takes the place: InputError if something is there that `existing` does not allow, if it is of another protocol or
   /// specimen, if another process writes there, or if the folder cannot be written to. `checkpoint_every`: s between
   /// checkpoints, each published; 0: as often as costs little.
-  RecordStore(const std::string& path, const io::RunStart& start, Existing existing, double checkpoint_every = 0);
+  RecordStore(const std::string& path, const RunStart& start, Existing existing, double checkpoint_every = 0);
 
   RecordStore(const RecordStore&) = delete;
   RecordStore& operator=(const RecordStore&) = delete;
@@ -35,24 +35,24 @@ class RecordStore {
   /// Resumed, and nothing is left to do.
   bool complete() const { return test_.complete; }
   /// Resumed: where the run goes on. None: from its start.
-  const std::optional<Checkpoint>& checkpoint() const { return from_; }
+  const std::optional<records::Checkpoint>& checkpoint() const { return from_; }
   /// What is recorded so far, beyond the checkpoint too.
   const RecordedTest& test() const { return test_; }
 
   /// Each throws Error if the journal cannot be written. A record that a resumed run makes again is not written again.
-  void put(const Record& record);
-  void put(const ProbeResult& probe);
+  void put(const records::Record& record);
+  void put(const records::ProbeResult& probe);
   void put_snapshot(std::size_t record, const Specimen& state);
 
   /// Offers a checkpoint: takes, keeps and publishes it if it is time. Checkpoints and publishing together cost less
   /// than a hundredth of the run.
-  void offer(const std::function<Checkpoint()>& take);
+  void offer(const std::function<records::Checkpoint()>& take);
   /// Keeps a checkpoint and publishes the records so far as incomplete. There is no R.h5 without a record.
-  void stop(const Checkpoint& checkpoint);
+  void stop(const records::Checkpoint& checkpoint);
   /// The same after a failure, with the last checkpoint that was kept; does nothing after a failed write.
   void publish_what_is_there();
   /// Publishes the whole test and removes the journal.
-  void finish(const TestResult& result, const Specimen& end_state);
+  void finish(const records::TestResult& result, const Specimen& end_state);
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -62,21 +62,21 @@ class RecordStore {
     double cost = 0;  ///< s
   };
 
-  void resume(const io::RunStart& start);
-  void keep(const Checkpoint& checkpoint);
+  void resume(const RunStart& start);
+  void keep(const records::Checkpoint& checkpoint);
   void publish_now();
   void drop_old_checkpoints();
   bool ready(const Pace& pace, double shortest) const;
 
   std::string path_;
-  io::Journal journal_;
+  Journal journal_;
   double checkpoint_every_;
   RecordedTest test_;  ///< as it stands in the journal; rows up to made_ belong to the run that is going on
-  std::optional<Checkpoint> from_;
+  std::optional<records::Checkpoint> from_;
   std::size_t made_records_ = 0, made_probes_ = 0;
   std::uint64_t size_without_ = 0;  ///< bytes of the journal when old checkpoints were dropped last
   bool keeps_something_ = false;    ///< a record or a checkpoint is in the journal
   Pace kept_, published_;
 };
 
-}  // namespace rvelab
+}  // namespace rvelab::io

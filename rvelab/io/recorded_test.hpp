@@ -7,7 +7,7 @@
 #include "rvelab/records/progress.hpp"
 #include "rvelab/records/record.hpp"
 
-namespace rvelab {
+namespace rvelab::io {
 
 /// How a file came about. No host names, no dates. Nothing in a run is drawn at random, so there is no seed.
 struct Provenance {
@@ -29,8 +29,10 @@ struct Snapshot {
 
 struct RecordedTest {
   Provenance provenance;
-  TestResult result;  ///< incomplete: with all stages of the protocol, and grain_steps and wall time of the checkpoint
-  Checkpoint checkpoint;  ///< complete: the end state; else where the test goes on (perhaps before the last record)
+  records::TestResult
+      result;  ///< incomplete: with all stages of the protocol, and grain_steps and wall time of the checkpoint
+  records::Checkpoint
+      checkpoint;  ///< complete: the end state; else where the test goes on (perhaps before the last record)
   bool complete = true;
   std::vector<Snapshot> snapshots;  ///< in the order of their records
 };
@@ -45,4 +47,4 @@ void write_recorded_test(const RecordedTest& test, const std::string& path);
 /// The state at a snapshot.
 Specimen read_snapshot(const Snapshot& snapshot);
 
-}  // namespace rvelab
+}  // namespace rvelab::io

@@ -6,7 +6,7 @@
 
 #include "rvelab/io/specimen_file.hpp"
 
-namespace rvelab {
+namespace rvelab::io {
 
 struct SealedFile {
   FileKind kind = FileKind::specimen;
@@ -19,4 +19,4 @@ struct SealedFile {
 /// InputError: damaged, not rvelab's, or datasets are missing or contradict each other.
 SealedFile seal_file(const std::string& path, const std::string& output);
 
-}  // namespace rvelab
+}  // namespace rvelab::io

@@ -9,8 +9,7 @@
 #include "rvelab/io/version.hpp"
 #include "rvelab/specimen/specimen_fields.hpp"
 
-namespace rvelab {
-namespace io {
+namespace rvelab::io {
 namespace {
 
 constexpr const char* specimen_format = "rvelab specimen";
@@ -150,15 +149,13 @@ Specimen get_specimen(const Hdf5File& file, const std::string& group) {
   return specimen;
 }
 
-}  // namespace io
-
 void write_specimen(const Specimen& specimen, const std::string& path, const SpecimenOrigin* origin) {
   publish(path, [&](Hdf5File& file) {
-    io::stamp(file, FileKind::specimen);
-    io::put_specimen(file, "", specimen);
+    stamp(file, FileKind::specimen);
+    put_specimen(file, "", specimen);
     if (origin == nullptr) return;
-    io::Writer writer(file, "");
-    io::describe_origin(writer, *origin);
+    Writer writer(file, "");
+    describe_origin(writer, *origin);
     writer.field("provenance/version", std::string(version), "-");
     writer.field("provenance/compiler", compiler(), "-");
   });
@@ -166,19 +163,19 @@ void write_specimen(const Specimen& specimen, const std::string& path, const Spe
 
 std::optional<SpecimenOrigin> read_origin(const std::string& path) {
   const auto file = Hdf5File::open(path);
-  io::checked_kind(file);
+  checked_kind(file);
   if (!file.has("/provenance/recipe")) return std::nullopt;
   SpecimenOrigin origin;
-  io::Reader reader(file, "");
-  io::describe_origin(reader, origin);
+  Reader reader(file, "");
+  describe_origin(reader, origin);
   return origin;
 }
 
 Specimen read_specimen(const std::string& path) {
   const auto file = Hdf5File::open(path);
-  return io::get_specimen(file, io::checked_kind(file) == FileKind::specimen ? "" : "/specimen");
+  return get_specimen(file, checked_kind(file) == FileKind::specimen ? "" : "/specimen");
 }
 
-FileKind file_kind(const std::string& path) { return io::checked_kind(Hdf5File::open(path)); }
+FileKind file_kind(const std::string& path) { return checked_kind(Hdf5File::open(path)); }
 
-}  // namespace rvelab
+}  // namespace rvelab::io

@@ -8,7 +8,7 @@
 
 #include "rvelab/specimen/specimen.hpp"
 
-namespace rvelab {
+namespace rvelab::io {
 
 /// What an rvelab file holds.
 enum class FileKind { specimen, records };
@@ -35,4 +35,4 @@ Specimen read_specimen(const std::string& path);
 /// Kind of an rvelab file. Throws InputError as read_specimen does.
 FileKind file_kind(const std::string& path);
 
-}  // namespace rvelab
+}  // namespace rvelab::io

@@ -7,7 +7,7 @@
 #include "rvelab/io/recorded_test.hpp"
 #include "rvelab/io/specimen_file.hpp"
 
-namespace rvelab {
+namespace rvelab::io {
 
 std::vector<StoredState> read_states(const std::string& path) {
   if (std::filesystem::exists(path) && file_kind(path) == FileKind::specimen) return {{0, 0, read_specimen(path)}};
@@ -23,4 +23,4 @@ std::vector<StoredState> read_states(const std::string& path) {
   return states;
 }
 
-}  // namespace rvelab
+}  // namespace rvelab::io

@@ -6,7 +6,7 @@
 
 #include "rvelab/specimen/specimen.hpp"
 
-namespace rvelab {
+namespace rvelab::io {
 
 struct StoredState {
   long record = 0;    ///< number of the record; an end state comes after all of them
@@ -18,4 +18,4 @@ struct StoredState {
 /// the end state, or the last checkpoint of a test that has not ended. Never empty. InputError as read_specimen.
 std::vector<StoredState> read_states(const std::string& path);
 
-}  // namespace rvelab
+}  // namespace rvelab::io

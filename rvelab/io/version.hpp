@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace rvelab {
+namespace rvelab::io {
 
 /// Version of the library and the program, major.minor.patch.
 inline constexpr const char* version = "0.1.0";
@@ -17,4 +17,4 @@ inline std::string compiler() {
 #endif
 }
 
-}  // namespace rvelab
+}  // namespace rvelab::io

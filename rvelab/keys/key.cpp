@@ -6,7 +6,7 @@
 
 #include "rvelab/error.hpp"
 
-namespace rvelab {
+namespace rvelab::keys {
 namespace {
 
 /// Edit distance times four; letters that the candidate goes on with, such as a unit left out, count one each.
@@ -100,4 +100,4 @@ toml::table parse_toml_file(const std::string& path) {
   }
 }
 
-}  // namespace rvelab
+}  // namespace rvelab::keys

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace rvelab {
+namespace rvelab::keys {
 
 /// A key that a file or the command line may set, and what there is to say about it.
 struct Key {
@@ -55,4 +55,4 @@ void raise(const std::string& path, std::vector<KeyError> errors);
 /// Parses a TOML file. InputError naming file, line and column if it is missing or not TOML.
 toml::table parse_toml_file(const std::string& path);
 
-}  // namespace rvelab
+}  // namespace rvelab::keys

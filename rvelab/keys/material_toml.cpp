@@ -12,10 +12,8 @@
 #include "rvelab/keys/key_units.hpp"
 #include "rvelab/keys/material_keys.hpp"
 
-namespace rvelab {
+namespace rvelab::keys {
 namespace {
-
-using keys::KeyEntry;
 
 const std::vector<std::string> table_names{"contact", "damping", "solver", "material"};
 
@@ -64,7 +62,7 @@ void convert(const std::string& dotted, const toml::node& value, const KeyEntry&
   if (!value.is_string()) refuse(dotted, value, "is not a word", entry, "give one of these");
   const std::string& word = value.as_string()->get();
   try {
-    keys::from_text(word, field);
+    from_text(word, field);
   } catch (const InputError&) {
     refuse(dotted, value, "is not known", entry, "choose one of these");
   }
@@ -103,7 +101,7 @@ struct Assignment {
     convert(dotted, value, entry, converted.*member);
     for (Material* material : materials) material->*member = converted.*member;
   }
-  void operator()(keys::FrictionAngle) const {
+  void operator()(FrictionAngle) const {
     constexpr double degree = 3.14159265358979323846 / 180;
     double angle = 0;
     convert(dotted, value, entry, angle);
@@ -131,7 +129,7 @@ std::pair<std::string, std::string> without_material_name(const std::string& dot
 }
 
 const KeyEntry* find_entry(const std::string& dotted) {
-  const auto& entries = keys::key_entries();
+  const auto& entries = key_entries();
   const auto found =
       std::find_if(entries.begin(), entries.end(), [&](const KeyEntry& entry) { return entry.key.dotted() == dotted; });
   return found == entries.end() ? nullptr : &*found;
@@ -159,7 +157,7 @@ void refuse_other_unit(const std::string& dotted_key, const std::string& dotted,
   if (dot != std::string::npos) {
     std::erase_if(keys, [&](const Key& key) { return key.table != dotted.substr(0, dot); });
   }
-  const auto answer = keys::in_another_unit(dotted.substr(dot + 1), keys);  // npos + 1 = 0: no table is named
+  const auto answer = in_another_unit(dotted.substr(dot + 1), keys);  // npos + 1 = 0: no table is named
   if (!answer) return;
   const std::string table = answer->key.table + (material.empty() ? "" : "." + material);
   throw InputError(dotted_key + " is not known; write " + table + "." + answer->key.name + ", " + answer->factor);
@@ -184,7 +182,7 @@ std::string trimmed(const std::string& text) {
 const std::vector<Key>& known_keys() {
   static const std::vector<Key> keys = [] {
     std::vector<Key> list;
-    for (const auto& entry : keys::key_entries()) list.push_back(entry.key);
+    for (const auto& entry : key_entries()) list.push_back(entry.key);
     return list;
   }();
   return keys;
@@ -310,4 +308,4 @@ void read_material_file(const std::string& path, Specimen& specimen) {
   raise(path, errors);
 }
 
-}  // namespace rvelab
+}  // namespace rvelab::keys

@@ -10,7 +10,7 @@
 #include "rvelab/keys/key.hpp"
 #include "rvelab/specimen/specimen.hpp"
 
-namespace rvelab {
+namespace rvelab::keys {
 
 /// All keys, in the order of the tables.
 const std::vector<Key>& known_keys();
@@ -45,4 +45,4 @@ void read_material_tables(const toml::table& file, Specimen& specimen, std::vect
 /// Reads a material file: [[material]] (or one [material]), [contact], [damping], [solver], and nothing else.
 void read_material_file(const std::string& path, Specimen& specimen);
 
-}  // namespace rvelab
+}  // namespace rvelab::keys

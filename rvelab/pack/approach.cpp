@@ -7,7 +7,7 @@
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/pack/scatter.hpp"
 
-namespace rvelab {
+namespace rvelab::pack {
 
 namespace {
 
@@ -153,4 +153,4 @@ Rve by_growth(const Recipe& recipe, const Grains& graded, double friction, Unifo
   return with_radii(rve, radii, stop);
 }
 
-}  // namespace rvelab
+}  // namespace rvelab::pack

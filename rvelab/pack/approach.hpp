@@ -6,7 +6,7 @@
 #include "rvelab/pack/recipe.hpp"
 #include "rvelab/solver/rve.hpp"
 
-namespace rvelab {
+namespace rvelab::pack {
 
 /// The cell shrinks around grains that were scattered without contact, until they carry a tenth of the recipe's
 /// pressure at rest.
@@ -21,4 +21,4 @@ Rve pressed_again(const Recipe& recipe, const Rve& rve, const std::atomic<bool>*
 Rve by_growth(const Recipe& recipe, const Grains& graded, double friction, Uniform& uniform,
               const std::atomic<bool>* stop);
 
-}  // namespace rvelab
+}  // namespace rvelab::pack

@@ -5,7 +5,7 @@
 
 #include "rvelab/measure/measures.hpp"
 
-namespace rvelab {
+namespace rvelab::pack {
 
 namespace {
 
@@ -76,4 +76,4 @@ bool consolidate(Rve& rve, const StressGoal& goal, const Rest& rest) {
   return false;
 }
 
-}  // namespace rvelab
+}  // namespace rvelab::pack

@@ -6,7 +6,7 @@
 
 #include "rvelab/solver/rve.hpp"
 
-namespace rvelab {
+namespace rvelab::pack {
 
 /// A stress to go to. Laboratory frame, Pa, tension positive.
 struct StressGoal {
@@ -36,4 +36,4 @@ struct Rest {
 /// Drives an assembly to the goal and lets it come to rest there. False: not reached within the rounds.
 bool consolidate(Rve& rve, const StressGoal& goal, const Rest& rest);
 
-}  // namespace rvelab
+}  // namespace rvelab::pack

@@ -9,7 +9,7 @@
 #include "rvelab/pack/consolidation.hpp"
 #include "rvelab/pack/scatter.hpp"
 
-namespace rvelab {
+namespace rvelab::pack {
 
 namespace {
 
@@ -108,4 +108,4 @@ Draw draw(const Recipe& recipe, long number, double friction, const std::atomic<
   return result;
 }
 
-}  // namespace rvelab
+}  // namespace rvelab::pack

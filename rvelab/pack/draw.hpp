@@ -6,7 +6,7 @@
 #include "rvelab/error.hpp"
 #include "rvelab/pack/recipe.hpp"
 
-namespace rvelab {
+namespace rvelab::pack {
 
 /// Grains of a draw overlap by more than the recipe's solver.max_overlap_ratio. Other draws of the recipe will not do
 /// better: the message says what makes grains so soft.
@@ -26,4 +26,4 @@ struct Draw {
 /// IncrementFailed if the grains do not come to the stress; OverlapBeyondLimit; Interrupted.
 Draw draw(const Recipe& recipe, long number, double friction, const std::atomic<bool>* stop);
 
-}  // namespace rvelab
+}  // namespace rvelab::pack

@@ -6,7 +6,7 @@
 
 #include "rvelab/error.hpp"
 
-namespace rvelab {
+namespace rvelab::pack {
 
 Matrix3 isotropic_stress(double pressure, Shape shape) {
   Matrix3 stress = Matrix3::Zero();
@@ -30,7 +30,7 @@ double growth_void_ratio(const Recipe& recipe) {
   return recipe.shape == Shape::disc ? 0.3 : 0.9;
 }
 
-void check(const Recipe& recipe) {
+void check_recipe(const Recipe& recipe) {
   if (recipe.number == 0 || recipe.fractions.empty() || recipe.materials.empty())
     throw InputError("a recipe needs at least one grain, one fraction and one material; add what is missing");
   if (!recipe.stress && !recipe.void_ratio)
@@ -39,10 +39,10 @@ void check(const Recipe& recipe) {
     throw InputError(
         "preparation.friction contradicts target.void_ratio, for which the friction is searched; allowed: "
         "one of the two; remove one");
-  check(recipe.contact, recipe.damping, recipe.materials);
+  check_parameters(recipe.contact, recipe.damping, recipe.materials);
   double shares = 0;
   for (const GrainFraction& fraction : recipe.fractions) {
-    check(fraction.grading, ("grains." + fraction.name).c_str());
+    check_grading(fraction.grading, ("grains." + fraction.name).c_str());
     if (fraction.material >= recipe.materials.size())
       throw InputError("grains." + fraction.name + " names a material that is not there; add it");
     shares += fraction.share;
@@ -54,4 +54,4 @@ void check(const Recipe& recipe) {
   }
 }
 
-}  // namespace rvelab
+}  // namespace rvelab::pack

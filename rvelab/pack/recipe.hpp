@@ -12,7 +12,7 @@
 #include "rvelab/grains/grading.hpp"
 #include "rvelab/specimen/specimen.hpp"
 
-namespace rvelab {
+namespace rvelab::pack {
 
 /// A part of the grains with a material and a grading of its own.
 struct GrainFraction {
@@ -70,7 +70,7 @@ std::vector<Material> preparing(const Recipe& recipe, double friction);
 double growth_void_ratio(const Recipe& recipe);
 
 /// Throws InputError for what no specimen can be made of.
-void check(const Recipe& recipe);
+void check_recipe(const Recipe& recipe);
 
 /// How a specimen came about, beside itself.
 struct Packing {
@@ -80,4 +80,4 @@ struct Packing {
   double void_ratio = 0;
 };
 
-}  // namespace rvelab
+}  // namespace rvelab::pack

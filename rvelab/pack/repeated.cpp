@@ -5,7 +5,7 @@
 
 #include "rvelab/error.hpp"
 
-namespace rvelab {
+namespace rvelab::pack {
 
 Specimen repeated(const Specimen& one, const Image& times) {
   const int d = one.cell.dimension;
@@ -60,4 +60,4 @@ Specimen repeated(const Specimen& one, const Image& times) {
   return all;
 }
 
-}  // namespace rvelab
+}  // namespace rvelab::pack

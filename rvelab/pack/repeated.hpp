@@ -3,10 +3,10 @@
 
 #include "rvelab/specimen/specimen.hpp"
 
-namespace rvelab {
+namespace rvelab::pack {
 
 /// A periodic specimen repeated along its cell vectors, contacts with their history copied. InputError: a count
 /// below 1.
 Specimen repeated(const Specimen& specimen, const Image& times);
 
-}  // namespace rvelab
+}  // namespace rvelab::pack

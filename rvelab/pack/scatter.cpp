@@ -7,7 +7,7 @@
 
 #include "rvelab/error.hpp"
 
-namespace rvelab {
+namespace rvelab::pack {
 
 namespace {
 
@@ -171,4 +171,4 @@ bool scatter(const Cell& cell, double size, Grains& grains, Uniform& uniform) {
   return true;
 }
 
-}  // namespace rvelab
+}  // namespace rvelab::pack

@@ -3,7 +3,7 @@
 
 #include "rvelab/pack/recipe.hpp"
 
-namespace rvelab {
+namespace rvelab::pack {
 
 /// The grains of a recipe, all at the origin: radii and materials by its gradings and seed, the same for every draw.
 /// InputError if a fraction gets no grain.
@@ -19,4 +19,4 @@ Cell cell_of(const Recipe& recipe, double volume);
 /// first. Cell frame, m. False: no place was found for one of them.
 bool scatter(const Cell& cell, double size, Grains& grains, Uniform& uniform);
 
-}  // namespace rvelab
+}  // namespace rvelab::pack

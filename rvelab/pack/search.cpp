@@ -9,7 +9,7 @@
 
 #include "rvelab/error.hpp"
 
-namespace rvelab {
+namespace rvelab::pack {
 
 namespace {
 
@@ -251,7 +251,7 @@ double fitted_coordinate(const std::vector<CurvePoint>& points, double target, d
 }
 
 Packing pack(const Recipe& recipe, Workers& workers, const PackWatch& watch) {
-  check(recipe);
+  check_recipe(recipe);
   if (recipe.stress && recipe.void_ratio) return Search(recipe, workers, watch).run();
   Draw made = draw(recipe, 1, only_friction(recipe), watch.stop);
   if (!made.at_rest)
@@ -262,4 +262,4 @@ Packing pack(const Recipe& recipe, Workers& workers, const PackWatch& watch) {
   return {std::move(made.specimen), 1, made.friction, made.void_ratio};
 }
 
-}  // namespace rvelab
+}  // namespace rvelab::pack

@@ -13,7 +13,7 @@
 #include "rvelab/pack/draw.hpp"
 #include "rvelab/solver/assembly/workers.hpp"
 
-namespace rvelab {
+namespace rvelab::pack {
 
 /// A friction as a coordinate between 0 and 1, in which the mean curve is well spread: x = mu/(mu + 0.1).
 double coordinate_of(double friction);
@@ -42,4 +42,4 @@ struct PackWatch {
 /// InputError; Interrupted.
 Packing pack(const Recipe& recipe, Workers& workers, const PackWatch& watch = {});
 
-}  // namespace rvelab
+}  // namespace rvelab::pack

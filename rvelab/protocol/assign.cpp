@@ -5,7 +5,7 @@
 
 #include "rvelab/error.hpp"
 
-namespace rvelab {
+namespace rvelab::protocol {
 namespace {
 
 std::string trimmed(const std::string& text) {
@@ -57,7 +57,7 @@ void put(toml::table& table, const std::string& key, const std::string& text, co
   if (key == "friction") table.erase("friction_angle_deg");
   if (key == "friction_angle_deg") table.erase("friction");
   // A node that is moved keeps its source, so that a mistake in it names the assignment.
-  toml::table value = parsed_value(text, assignment);
+  toml::table value = keys::parsed_value(text, assignment);
   toml::node& node = *value.get("value");
   const toml::source_region source = node.source();
   node.visit([&](auto& concrete) { table.insert_or_assign(toml::key(key, source), std::move(concrete)); });
@@ -107,8 +107,7 @@ void assign(toml::table& file, const std::string& assignment) {
   put(*table, parts.back(), text, assignment);
 }
 
-void protocol::assign_all(toml::table& file, const std::vector<std::string>& assignments,
-                          std::vector<KeyError>& errors) {
+void assign_all(toml::table& file, const std::vector<std::string>& assignments, std::vector<keys::KeyError>& errors) {
   for (const std::string& assignment : assignments) {
     try {
       assign(file, assignment);
@@ -118,4 +117,4 @@ void protocol::assign_all(toml::table& file, const std::vector<std::string>& ass
   }
 }
 
-}  // namespace rvelab
+}  // namespace rvelab::protocol

@@ -67,7 +67,7 @@ class RunningTest {
   template <class Increment, class DrivingStress>
   void go_to_and_fro(double to_strain, long steps, const Cycles& cycles, Increment increment_to,
                      DrivingStress driving_stress) {
-    Progress& at = run.progress;
+    records::Progress& at = run.progress;
     const double sign = to_strain < 0 ? -1 : 1;
     while (!ended()) {
       const bool forth = at.turns % 2 == 0;

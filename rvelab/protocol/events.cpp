@@ -54,7 +54,7 @@ const std::vector<EventQuantity>& event_quantities() {
     });
     list.push_back({"cycles", [](Test test) { return 0.5 * static_cast<double>(test.run.progress.turns); }});
     list.push_back({"visits", [](Test test) {
-                      const Progress& at = test.run.progress;
+                      const records::Progress& at = test.run.progress;
                       return static_cast<double>(at.visits[static_cast<std::size_t>(at.stage)]);
                     }});
     return list;
@@ -82,7 +82,7 @@ std::vector<keys::TableKey> event_keys() {
   };
 }
 
-std::vector<Event> read_events(TableReader& reader, const Stage& stage, std::vector<KeyError>& errors) {
+std::vector<Event> read_events(TableReader& reader, const Stage& stage, std::vector<keys::KeyError>& errors) {
   std::vector<Event> events;
   toml::array resolved;
   for (const toml::table* table : reader.tables("until")) {
@@ -113,7 +113,7 @@ std::vector<Event> read_events(TableReader& reader, const Stage& stage, std::vec
 }
 
 int met_event(RunningTest& test, const Stage& stage) {
-  Progress& at = test.run.progress;
+  records::Progress& at = test.run.progress;
   int met = -1;
   for (std::size_t k = 0; k < stage.until.size(); ++k) {
     const Event& event = stage.until[k];

@@ -22,7 +22,7 @@ const std::vector<EventQuantity>& event_quantities();
 std::vector<keys::TableKey> event_keys();
 
 /// The events of a stage; the stages that they name are looked up once all are read.
-std::vector<Event> read_events(keys::TableReader& reader, const Stage& stage, std::vector<KeyError>& errors);
+std::vector<Event> read_events(keys::TableReader& reader, const Stage& stage, std::vector<keys::KeyError>& errors);
 
 /// The first event of the stage that its last record meets, from 0; -1: none. Renews progress.largest.
 int met_event(RunningTest& test, const Stage& stage);

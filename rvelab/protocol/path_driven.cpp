@@ -43,13 +43,13 @@ double driving_strain(const RunningTest& test, const PathStage& stage, long step
   for (const PathRow& row : stage.rows) {
     if (!row.in_stress() && !row.to.empty()) return row_target(stage, row, step, test.run.progress.first_stress);
   }
-  const Progress& at = test.run.progress;
+  const records::Progress& at = test.run.progress;
   if (stage.isotropic) return 1 - at.deformation.determinant();
   return deviatoric_strain(at.strain_sum, test.dimension());
 }
 
 Report increment(RunningTest& test, const PathStage& stage, const std::vector<PathRow>& rows, long step) {
-  const Progress& at = test.run.progress;
+  const records::Progress& at = test.run.progress;
   const int dimension = test.dimension();
   MixedTarget target;
   std::vector<double> changes;
@@ -82,7 +82,7 @@ Report increment(RunningTest& test, const PathStage& stage, const std::vector<Pa
 
 void follow_path(RunningTest& test, const PathStage& stage) {
   const std::vector<PathRow> rows = completed(stage, test.dimension());
-  Progress& at = test.run.progress;
+  records::Progress& at = test.run.progress;
   at.axis = stage.axis;
   at.pressure = at.first_pressure;
   const long steps = path_steps(stage);

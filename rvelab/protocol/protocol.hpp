@@ -15,7 +15,7 @@
 #include "rvelab/records/record.hpp"
 #include "rvelab/specimen/specimen.hpp"
 
-namespace rvelab {
+namespace rvelab::protocol {
 
 /// How driven stages (compression, simple shear, flow) pass through time. All other stages are quasi-static.
 struct LoadingSettings {
@@ -84,4 +84,4 @@ std::string strength_stages();
 /// not, a stiffness key that its law does not take), or if its dimension is not the protocol's.
 Specimen with_overrides(const Protocol& protocol, Specimen specimen);
 
-}  // namespace rvelab
+}  // namespace rvelab::protocol

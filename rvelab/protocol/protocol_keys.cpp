@@ -8,8 +8,7 @@
 #include "rvelab/protocol/protocol.hpp"
 #include "rvelab/protocol/stage_kinds.hpp"
 
-namespace rvelab {
-namespace protocol {
+namespace rvelab::protocol {
 namespace {
 
 using namespace keys;
@@ -110,28 +109,26 @@ const std::vector<TableKey>& protocol_keys() {
 const std::vector<std::string>& top_tables() {
   static const std::vector<std::string> tables = [] {
     std::vector<std::string> list;
-    const auto add = [&](const Key& key) {
+    const auto add = [&](const keys::Key& key) {
       const std::string top = key.table.substr(0, key.table.find('.'));
       if (std::find(list.begin(), list.end(), top) == list.end()) list.push_back(top);
     };
     for (const auto& entry : protocol_keys()) add(entry.key);
-    for (const Key& key : known_keys()) add(key);
+    for (const keys::Key& key : keys::known_keys()) add(key);
     return list;
   }();
   return tables;
 }
 
-}  // namespace protocol
-
-const std::vector<Key>& all_keys() {
-  static const std::vector<Key> keys = [] {
-    std::vector<Key> list;
-    for (const auto& entry : protocol::protocol_keys()) list.push_back(entry.key);
-    for (const auto& entry : protocol::recipe_keys()) list.push_back(entry.key);
-    list.insert(list.end(), known_keys().begin(), known_keys().end());
+const std::vector<keys::Key>& all_keys() {
+  static const std::vector<keys::Key> keys = [] {
+    std::vector<keys::Key> list;
+    for (const auto& entry : protocol_keys()) list.push_back(entry.key);
+    for (const auto& entry : recipe_keys()) list.push_back(entry.key);
+    list.insert(list.end(), keys::known_keys().begin(), keys::known_keys().end());
     return list;
   }();
   return keys;
 }
 
-}  // namespace rvelab
+}  // namespace rvelab::protocol

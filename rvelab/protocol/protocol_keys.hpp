@@ -10,14 +10,12 @@
 
 #include "rvelab/keys/table_key.hpp"
 
-namespace rvelab {
+namespace rvelab::protocol {
 
 /// Every key that a protocol or a recipe may have, in the order of its tables: those of the protocol itself ("test",
 /// "loading", "stage", "stage.compression", ...), those of a recipe ("pack", "grains", "target", "preparation"), then
 /// those of a material file (contact, damping, solver, material).
-const std::vector<Key>& all_keys();
-
-namespace protocol {
+const std::vector<keys::Key>& all_keys();
 
 using keys::TableKey;
 
@@ -29,5 +27,4 @@ const std::vector<TableKey>& recipe_keys();
 /// Tables that a protocol may have at its top level.
 const std::vector<std::string>& top_tables();
 
-}  // namespace protocol
-}  // namespace rvelab
+}  // namespace rvelab::protocol

@@ -14,7 +14,7 @@
 #include "rvelab/protocol/read_stage.hpp"
 #include "rvelab/solver/assembly/specimen_check.hpp"
 
-namespace rvelab {
+namespace rvelab::protocol {
 namespace {
 
 using keys::line_of;
@@ -24,8 +24,9 @@ using keys::TableReader;
 // [contact] before [material]: the law says which unit a stiffness has.
 constexpr std::array<const char*, 4> override_tables{"contact", "damping", "solver", "material"};
 
-void read_test(const toml::table& table, Protocol& protocol, toml::table& resolved, std::vector<KeyError>& errors) {
-  TableReader reader(table, protocol::protocol_keys(), "test", "test", line_of(table), errors);
+void read_test(const toml::table& table, Protocol& protocol, toml::table& resolved,
+               std::vector<keys::KeyError>& errors) {
+  TableReader reader(table, protocol_keys(), "test", "test", line_of(table), errors);
   protocol.name = reader.text("name");
   protocol.dimension = static_cast<int>(reader.optional_whole_number("dimension").value_or(0));
   if (const auto pressure = reader.optional_number("pressure_Pa")) protocol.pressure = *pressure;
@@ -35,8 +36,9 @@ void read_test(const toml::table& table, Protocol& protocol, toml::table& resolv
   resolved.insert("test", reader.resolved());
 }
 
-void read_loading(const toml::table& table, Protocol& protocol, toml::table& resolved, std::vector<KeyError>& errors) {
-  TableReader reader(table, protocol::protocol_keys(), "loading", "loading", line_of(table), errors);
+void read_loading(const toml::table& table, Protocol& protocol, toml::table& resolved,
+                  std::vector<keys::KeyError>& errors) {
+  TableReader reader(table, protocol_keys(), "loading", "loading", line_of(table), errors);
   LoadingSettings& loading = protocol.loading;
   loading.physical = reader.choice("mode") == "physical";
   const bool has_rate = reader.has("rate_1_s"), has_number = reader.has("inertial_number");
@@ -64,26 +66,28 @@ void read_loading(const toml::table& table, Protocol& protocol, toml::table& res
 }
 
 void read_specimen_name(const toml::table& file, Protocol& protocol, toml::table& resolved,
-                        std::vector<KeyError>& errors) {
+                        std::vector<keys::KeyError>& errors) {
   if (!file.contains("specimen")) return;
-  TableReader reader(table_of(file, "specimen", errors), protocol::protocol_keys(), "specimen", "specimen",
+  TableReader reader(table_of(file, "specimen", errors), protocol_keys(), "specimen", "specimen",
                      line_of(*file.get("specimen")), errors);
   protocol.specimen_file = reader.text("file");
   reader.finish();
   resolved.insert("specimen", reader.resolved());
 }
 
-void read_calibrate(const toml::table& file, Protocol& protocol, toml::table& resolved, std::vector<KeyError>& errors) {
+void read_calibrate(const toml::table& file, Protocol& protocol, toml::table& resolved,
+                    std::vector<keys::KeyError>& errors) {
   if (!file.contains("calibrate")) return;
-  TableReader reader(table_of(file, "calibrate", errors), protocol::protocol_keys(), "calibrate", "calibrate",
+  TableReader reader(table_of(file, "calibrate", errors), protocol_keys(), "calibrate", "calibrate",
                      line_of(*file.get("calibrate")), errors);
   protocol.calibration_pressures = reader.numbers("pressures_Pa");
   reader.finish();
   resolved.insert("calibrate", reader.resolved());
 }
 
-void read_output(const toml::table& table, Protocol& protocol, toml::table& resolved, std::vector<KeyError>& errors) {
-  TableReader reader(table, protocol::protocol_keys(), "output", "output", line_of(table), errors);
+void read_output(const toml::table& table, Protocol& protocol, toml::table& resolved,
+                 std::vector<keys::KeyError>& errors) {
+  TableReader reader(table, protocol_keys(), "output", "output", line_of(table), errors);
   protocol.snapshots_every = reader.whole_number("snapshots_every");
   const auto names = reader.choices("quantities");
   if (reader.has("quantities")) protocol.quantities = 0;
@@ -96,7 +100,7 @@ void read_output(const toml::table& table, Protocol& protocol, toml::table& reso
 
 /// Checks the overrides on a specimen that has every material they name; how they fit the real one is seen when it is
 /// there.
-void check_overrides(const toml::table& file, std::vector<KeyError>& errors) {
+void check_overrides(const toml::table& file, std::vector<keys::KeyError>& errors) {
   Specimen any;
   any.materials.emplace_back();
   if (const toml::table* materials = file["material"].as_table()) {
@@ -107,12 +111,12 @@ void check_overrides(const toml::table& file, std::vector<KeyError>& errors) {
     }
   }
   for (const char* name : override_tables) {
-    if (const toml::table* table = file[name].as_table()) read_table(any, name, *table, errors);
+    if (const toml::table* table = file[name].as_table()) keys::read_table(any, name, *table, errors);
   }
 }
 
 /// `then` names stages that are there.
-void expect_followers(const Protocol& protocol, std::vector<KeyError>& errors) {
+void expect_followers(const Protocol& protocol, std::vector<keys::KeyError>& errors) {
   std::string known = "end";
   for (const Stage& stage : protocol.stages) known += ", " + stage.name;
   const auto expect = [&](const std::string& where, const std::string& then) {
@@ -128,31 +132,32 @@ void expect_followers(const Protocol& protocol, std::vector<KeyError>& errors) {
   }
 }
 
-void read_stages(const toml::table& file, Protocol& protocol, toml::table& resolved, std::vector<KeyError>& errors) {
+void read_stages(const toml::table& file, Protocol& protocol, toml::table& resolved,
+                 std::vector<keys::KeyError>& errors) {
   const toml::node* node = file.get("stage");
   const bool is_list = node != nullptr && node->is_array_of_tables() && !node->as_array()->empty();
   if (!is_list) {
     const std::string message =
         "the protocol has no stage; allowed: at least one [[stage]] with its keys below; add it";
-    errors.push_back(node == nullptr ? KeyError{0, message} : key_error(node->source(), message));
+    errors.push_back(node == nullptr ? keys::KeyError{0, message} : keys::key_error(node->source(), message));
     return;
   }
   toml::array stages;
   long number = 0;
   for (const auto& stage : *node->as_array()) {
-    protocol::read_stage(*stage.as_table(), number++, protocol, stages, errors);
+    read_stage(*stage.as_table(), number++, protocol, stages, errors);
   }
   resolved.insert("stage", stages);
   expect_followers(protocol, errors);
 }
 
 Protocol read_file(toml::table file, const std::string& path, const std::vector<std::string>& assignments) {
-  std::vector<KeyError> errors;
-  protocol::assign_all(file, assignments, errors);
+  std::vector<keys::KeyError> errors;
+  assign_all(file, assignments, errors);
   Protocol protocol;
   protocol.path = path;
   toml::table resolved;
-  keys::expect_top_tables(file, errors, protocol::top_tables());
+  keys::expect_top_tables(file, errors, top_tables());
   read_test(table_of(file, "test", errors), protocol, resolved, errors);
   read_loading(table_of(file, "loading", errors), protocol, resolved, errors);
   read_output(table_of(file, "output", errors), protocol, resolved, errors);
@@ -166,7 +171,7 @@ Protocol read_file(toml::table file, const std::string& path, const std::vector<
   }
   check_overrides(file, errors);
   read_stages(file, protocol, resolved, errors);
-  raise(path, errors);
+  keys::raise(path, errors);
 
   std::ostringstream text;
   text << toml::toml_formatter{resolved} << "\n";
@@ -177,7 +182,7 @@ Protocol read_file(toml::table file, const std::string& path, const std::vector<
 }  // namespace
 
 Protocol read_protocol(const std::string& path, const std::vector<std::string>& assignments) {
-  return read_file(parse_toml_file(path), path, assignments);
+  return read_file(keys::parse_toml_file(path), path, assignments);
 }
 
 Protocol parse_protocol(const std::string& text, const std::string& path, const std::vector<std::string>& assignments) {
@@ -195,14 +200,15 @@ Specimen with_overrides(const Protocol& protocol, Specimen specimen) {
                      "; allowed: test.dimension = " + std::to_string(protocol.dimension) +
                      "; give another specimen or another protocol");
   }
-  std::vector<KeyError> errors;
+  std::vector<keys::KeyError> errors;
   for (const char* name : override_tables) {
-    if (const toml::table* table = protocol.overrides[name].as_table()) read_table(specimen, name, *table, errors);
+    if (const toml::table* table = protocol.overrides[name].as_table())
+      keys::read_table(specimen, name, *table, errors);
   }
-  raise(protocol.path, errors);
-  protocol::expect_fits(protocol, specimen.cell.dimension);
+  keys::raise(protocol.path, errors);
+  expect_fits(protocol, specimen.cell.dimension);
   clear_forces_without_stiffness(specimen);  // a material that was given none here
   return specimen;
 }
 
-}  // namespace rvelab
+}  // namespace rvelab::protocol

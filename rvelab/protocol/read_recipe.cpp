@@ -11,7 +11,7 @@
 #include "rvelab/protocol/assign.hpp"
 #include "rvelab/protocol/protocol_keys.hpp"
 
-namespace rvelab {
+namespace rvelab::protocol {
 namespace {
 
 using keys::line_of;
@@ -27,9 +27,9 @@ std::string text_of(const toml::table& table) {
   return text.str();
 }
 
-void read_pack(const toml::table& table, RecipeFile& file, toml::table& resolved, std::vector<KeyError>& errors) {
-  TableReader reader(table, protocol::recipe_keys(), "pack", "pack", line_of(table), errors);
-  Recipe& recipe = file.recipe;
+void read_pack(const toml::table& table, RecipeFile& file, toml::table& resolved, std::vector<keys::KeyError>& errors) {
+  TableReader reader(table, recipe_keys(), "pack", "pack", line_of(table), errors);
+  pack::Recipe& recipe = file.recipe;
   file.name = reader.text("name");
   recipe.shape = reader.choice("shape") == "disc" ? Shape::disc : Shape::sphere;
   recipe.number = std::size_t(reader.whole_number("number"));
@@ -72,11 +72,11 @@ Grading read_grading(TableReader& reader) {
   return grading;
 }
 
-void read_fraction(const toml::table& table, Recipe& recipe, toml::array& resolved, std::vector<KeyError>& errors) {
-  GrainFraction fraction;
+void read_fraction(const toml::table& table, pack::Recipe& recipe, toml::array& resolved,
+                   std::vector<keys::KeyError>& errors) {
+  pack::GrainFraction fraction;
   const std::string where = "grains." + table["name"].value_or(fraction.name);
-  TableReader reader(table, protocol::recipe_keys(), "grains", table.contains("name") ? where : "grains",
-                     line_of(table), errors);
+  TableReader reader(table, recipe_keys(), "grains", table.contains("name") ? where : "grains", line_of(table), errors);
   fraction.name = reader.text("name", fraction.name);
   fraction.share = reader.number("share");
   const std::size_t mistakes = errors.size();
@@ -95,7 +95,7 @@ void read_fraction(const toml::table& table, Recipe& recipe, toml::array& resolv
   reader.finish();
   if (grading_read) {
     try {
-      check(fraction.grading, where.c_str());
+      check_grading(fraction.grading, where.c_str());
     } catch (const InputError& error) {
       errors.push_back({line_of(table), error.what()});
     }
@@ -104,7 +104,8 @@ void read_fraction(const toml::table& table, Recipe& recipe, toml::array& resolv
   resolved.push_back(reader.resolved());
 }
 
-void read_grains(const toml::table& file, Recipe& recipe, toml::table& resolved, std::vector<KeyError>& errors) {
+void read_grains(const toml::table& file, pack::Recipe& recipe, toml::table& resolved,
+                 std::vector<keys::KeyError>& errors) {
   const toml::node* node = file.get("grains");
   toml::array list;
   recipe.fractions.clear();
@@ -114,7 +115,7 @@ void read_grains(const toml::table& file, Recipe& recipe, toml::table& resolved,
     for (const auto& item : *node->as_array()) read_fraction(*item.as_table(), recipe, list, errors);
   } else {
     const std::string text = "the recipe has no grains; allowed: [grains], or [[grains]] for each fraction; add it";
-    errors.push_back(node == nullptr ? KeyError{0, text} : key_error(node->source(), text));
+    errors.push_back(node == nullptr ? keys::KeyError{0, text} : keys::key_error(node->source(), text));
   }
   double shares = 0;
   for (std::size_t k = 0; k < recipe.fractions.size(); ++k) {
@@ -150,7 +151,7 @@ std::optional<Matrix3> stress_of(const std::vector<double>& list, Shape shape) {
 }
 
 void read_stress(TableReader& reader, RecipeFile& file) {
-  Recipe& recipe = file.recipe;
+  pack::Recipe& recipe = file.recipe;
   const auto pressure = reader.optional_number("pressure_Pa");
   file.pressures = reader.numbers("pressures_Pa");
   const auto components = reader.numbers("stress_Pa");
@@ -158,7 +159,7 @@ void read_stress(TableReader& reader, RecipeFile& file) {
     reader.mistake("pressures_Pa", "contradicts target.pressure_Pa; allowed: one of the two; remove one");
   if (pressure && reader.has("stress_Pa"))
     reader.mistake("stress_Pa", "contradicts target.pressure_Pa; allowed: one of the two; remove one");
-  if (pressure) recipe.stress = isotropic_stress(*pressure, recipe.shape);
+  if (pressure) recipe.stress = pack::isotropic_stress(*pressure, recipe.shape);
   if (!components.empty()) {
     recipe.stress = stress_of(components, recipe.shape);
     if (!recipe.stress) {
@@ -172,14 +173,15 @@ void read_stress(TableReader& reader, RecipeFile& file) {
     }
   }
   if (!file.pressures.empty() && file.pressures.front() > 0) {
-    if (!recipe.stress) recipe.stress = isotropic_stress(1, recipe.shape);
+    if (!recipe.stress) recipe.stress = pack::isotropic_stress(1, recipe.shape);
     *recipe.stress *= file.pressures.front() / mean_pressure(*recipe.stress, dimension_of(recipe.shape));
   }
 }
 
-void read_target(const toml::table& table, RecipeFile& file, toml::table& resolved, std::vector<KeyError>& errors) {
-  TableReader reader(table, protocol::recipe_keys(), "target", "target", line_of(table), errors);
-  Recipe& recipe = file.recipe;
+void read_target(const toml::table& table, RecipeFile& file, toml::table& resolved,
+                 std::vector<keys::KeyError>& errors) {
+  TableReader reader(table, recipe_keys(), "target", "target", line_of(table), errors);
+  pack::Recipe& recipe = file.recipe;
   read_stress(reader, file);
   recipe.void_ratio = reader.optional_number("void_ratio");
   if (const auto porosity = reader.optional_number("porosity")) {
@@ -199,11 +201,12 @@ void read_target(const toml::table& table, RecipeFile& file, toml::table& resolv
   resolved.insert("target", reader.resolved());
 }
 
-void read_preparation(const toml::table& table, Recipe& recipe, toml::table& resolved, std::vector<KeyError>& errors) {
-  TableReader reader(table, protocol::recipe_keys(), "preparation", "preparation", line_of(table), errors);
-  Preparation& preparation = recipe.preparation;
+void read_preparation(const toml::table& table, pack::Recipe& recipe, toml::table& resolved,
+                      std::vector<keys::KeyError>& errors) {
+  TableReader reader(table, recipe_keys(), "preparation", "preparation", line_of(table), errors);
+  pack::Preparation& preparation = recipe.preparation;
   const bool growth = reader.choice("method") == "growth";
-  preparation.method = growth ? Preparation::Method::growth : Preparation::Method::compression;
+  preparation.method = growth ? pack::Preparation::Method::growth : pack::Preparation::Method::compression;
   preparation.friction = reader.optional_number("friction");
   preparation.rolling_friction = reader.number("rolling_friction");
   preparation.lowest_friction = reader.number("lowest_friction");
@@ -230,14 +233,15 @@ void read_preparation(const toml::table& table, Recipe& recipe, toml::table& res
 }
 
 /// Materials, contact model, damping and solver.
-void read_parameters(const toml::table& file, Recipe& recipe, toml::table& resolved, std::vector<KeyError>& errors) {
+void read_parameters(const toml::table& file, pack::Recipe& recipe, toml::table& resolved,
+                     std::vector<keys::KeyError>& errors) {
   Specimen specimen;
   specimen.shape = recipe.shape;
   specimen.materials = {Material{}};
   if (!file.contains("material"))
     errors.push_back({0, "the recipe has no material; allowed: [[material]] with its keys below; add it"});
   const std::size_t mistakes = errors.size();
-  read_material_tables(file, specimen, errors);
+  keys::read_material_tables(file, specimen, errors);
   if (specimen.materials.empty()) specimen.materials = {Material{}};
   recipe.materials = specimen.materials;
   recipe.contact = specimen.contact;
@@ -245,7 +249,7 @@ void read_parameters(const toml::table& file, Recipe& recipe, toml::table& resol
   recipe.solver = specimen.solver;
   if (errors.size() == mistakes && file.contains("material")) {
     try {
-      check(recipe.contact, recipe.damping, recipe.materials);
+      check_parameters(recipe.contact, recipe.damping, recipe.materials);
     } catch (const InputError& error) {
       errors.push_back({0, error.what()});
     }
@@ -256,8 +260,8 @@ void read_parameters(const toml::table& file, Recipe& recipe, toml::table& resol
 }
 
 RecipeFile read_file(toml::table file, const std::string& path, const std::vector<std::string>& assignments) {
-  std::vector<KeyError> errors;
-  protocol::assign_all(file, assignments, errors);
+  std::vector<keys::KeyError> errors;
+  assign_all(file, assignments, errors);
   RecipeFile read;
   toml::table resolved;
   keys::expect_top_tables(file, errors, tables);
@@ -266,9 +270,9 @@ RecipeFile read_file(toml::table file, const std::string& path, const std::vecto
   read_grains(file, read.recipe, resolved, errors);
   read_target(table_of(file, "target", errors), read, resolved, errors);
   read_preparation(table_of(file, "preparation", errors), read.recipe, resolved, errors);
-  raise(path, errors);
+  keys::raise(path, errors);
   try {
-    check(read.recipe);
+    pack::check_recipe(read.recipe);
   } catch (const InputError& error) {
     throw InputError(path + ": " + error.what());
   }
@@ -293,7 +297,7 @@ RecipeFile RecipeFile::member(std::uint64_t seed, std::optional<double> pressure
 }
 
 RecipeFile read_recipe(const std::string& path, const std::vector<std::string>& assignments) {
-  return read_file(parse_toml_file(path), path, assignments);
+  return read_file(keys::parse_toml_file(path), path, assignments);
 }
 
 RecipeFile parse_recipe(const std::string& text, const std::string& path, const std::vector<std::string>& assignments) {
@@ -305,6 +309,6 @@ RecipeFile parse_recipe(const std::string& text, const std::string& path, const 
   }
 }
 
-bool is_recipe(const std::string& path) { return parse_toml_file(path).contains("pack"); }
+bool is_recipe(const std::string& path) { return keys::parse_toml_file(path).contains("pack"); }
 
-}  // namespace rvelab
+}  // namespace rvelab::protocol

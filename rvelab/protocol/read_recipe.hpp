@@ -7,12 +7,12 @@
 
 #include "rvelab/pack/recipe.hpp"
 
-namespace rvelab {
+namespace rvelab::protocol {
 
 /// A checked recipe file.
 struct RecipeFile {
   std::string name;               ///< [pack] name
-  Recipe recipe;                  ///< with the first stress of a family
+  pack::Recipe recipe;            ///< with the first stress of a family
   std::vector<double> pressures;  ///< Pa, of a family; else empty
   std::string resolved;           ///< the recipe with every default and assignment in it, TOML
 
@@ -32,4 +32,4 @@ RecipeFile parse_recipe(const std::string& text, const std::string& path,
 /// Whether a TOML file is a recipe, and not a protocol: it has [pack].
 bool is_recipe(const std::string& path);
 
-}  // namespace rvelab
+}  // namespace rvelab::protocol

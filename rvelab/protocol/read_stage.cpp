@@ -10,7 +10,7 @@ namespace rvelab::protocol {
 using keys::TableReader;
 
 void read_stage(const toml::table& table, long number, Protocol& protocol, toml::array& resolved,
-                std::vector<KeyError>& errors) {
+                std::vector<keys::KeyError>& errors) {
   const std::string kind_given = table["kind"].value_or(std::string());
   const std::string name = table["name"].value_or(kind_given.empty() ? std::to_string(number) : kind_given);
   TableReader reader(table, protocol_keys(), "stage", "stage." + name, keys::line_of(table), errors);

@@ -8,6 +8,6 @@ namespace rvelab::protocol {
 
 /// Reads one [[stage]] into protocol.stages and its resolved table into `resolved`. Mistakes go to `errors`.
 void read_stage(const toml::table& table, long number, Protocol& protocol, toml::array& resolved,
-                std::vector<KeyError>& errors);
+                std::vector<keys::KeyError>& errors);
 
 }  // namespace rvelab::protocol

@@ -13,7 +13,7 @@ constexpr Interval friction{0, 1e6};
 
 std::vector<TableKey> pack() {
   const char* t = "pack";
-  const Recipe initial;
+  const pack::Recipe initial;
   return {
       required(text(t, "name", "", "what the recipe is called")),
       choice(t, "shape", {"disc", "sphere"}, "disc: 2D; sphere: 3D"),
@@ -34,7 +34,7 @@ std::vector<TableKey> grains() {
   return {
       text(t, "name", "\"grains\"", "name of a fraction, for --set grains.NAME.key=value"),
       text(t, "material", "(the first)", "name of the material"),
-      number(t, "share", "1", GrainFraction{}.share, {0, 1, true, false},
+      number(t, "share", "1", pack::GrainFraction{}.share, {0, 1, true, false},
              "part of all grains by pack.share_by; the shares of all [[grains]] add up to 1"),
       choice(t, "grading", {"uniform", "linear", "tabulated"},
              "uniform: passing is straight over the radius; linear: straight over its logarithm; tabulated: points, "
@@ -58,7 +58,7 @@ std::vector<TableKey> grains() {
 
 std::vector<TableKey> target() {
   const char* t = "target";
-  const Recipe initial;
+  const pack::Recipe initial;
   return {
       number(t, "pressure_Pa", "Pa", "", positive, "isotropic stress, compression positive; shear stresses are zero"),
       {{t, "pressures_Pa", "Pa", "list of numbers", "", "each " + in_words(positive),
@@ -86,7 +86,7 @@ std::vector<TableKey> target() {
 
 std::vector<TableKey> preparation() {
   const char* t = "preparation";
-  const Preparation initial;
+  const pack::Preparation initial;
   return {
       choice(
           t, "method", {"compression", "growth"},

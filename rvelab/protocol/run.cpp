@@ -5,10 +5,10 @@
 #include "rvelab/error.hpp"
 #include "rvelab/protocol/drive.hpp"
 
-namespace rvelab {
+namespace rvelab::protocol {
 namespace {
 
-TestRun finish(const Protocol& protocol, protocol::RunningTest& test, double wall_before) {
+TestRun finish(const Protocol& protocol, RunningTest& test, double wall_before) {
   const auto begin = std::chrono::steady_clock::now();
   TestRun& run = test.run;
   const auto clock = [&] {
@@ -20,7 +20,7 @@ TestRun finish(const Protocol& protocol, protocol::RunningTest& test, double wal
     while (run.progress.stage < static_cast<std::int32_t>(protocol.stages.size())) {
       const Stage& stage = protocol.stages[static_cast<std::size_t>(run.progress.stage)];
       test.enter(stage);
-      protocol::drive(test, stage);
+      drive(test, stage);
       test.leave_stage();
     }
   } catch (const Interrupted&) {
@@ -39,14 +39,15 @@ TestRun finish(const Protocol& protocol, protocol::RunningTest& test, double wal
 
 TestRun run_protocol(const Protocol& protocol, const Specimen& specimen, const Watch& watch) {
   const Specimen start = with_overrides(protocol, specimen);
-  protocol::RunningTest test(protocol, start, watch);
+  RunningTest test(protocol, start, watch);
   test.run.progress.stress = test.rve.stress();
   test.run.progress.first_grain_steps = test.rve.grain_steps();
   return finish(protocol, test, 0);
 }
 
-TestRun resume_protocol(const Protocol& protocol, const Checkpoint& checkpoint, TestResult so_far, const Watch& watch) {
-  const Progress& progress = checkpoint.progress;
+TestRun resume_protocol(const Protocol& protocol, const records::Checkpoint& checkpoint, records::TestResult so_far,
+                        const Watch& watch) {
+  const records::Progress& progress = checkpoint.progress;
   const auto stages = static_cast<std::int32_t>(protocol.stages.size());
   const auto records = static_cast<std::size_t>(progress.records), probes = static_cast<std::size_t>(progress.probes);
   if (progress.stage < 0 || progress.stage > stages || progress.records < 0 || progress.probes < 0 ||
@@ -57,7 +58,7 @@ TestRun resume_protocol(const Protocol& protocol, const Checkpoint& checkpoint, 
                      std::to_string(so_far.records.size()) + " and " + std::to_string(so_far.probes.size()) +
                      "; give the protocol that it was made with");
   }
-  protocol::RunningTest test(protocol, checkpoint.specimen, watch);
+  RunningTest test(protocol, checkpoint.specimen, watch);
   test.run.progress = progress;
   so_far.records.resize(records);
   so_far.probes.resize(probes);
@@ -67,4 +68,4 @@ TestRun resume_protocol(const Protocol& protocol, const Checkpoint& checkpoint, 
   return finish(protocol, test, progress.wall_seconds);
 }
 
-}  // namespace rvelab
+}  // namespace rvelab::protocol

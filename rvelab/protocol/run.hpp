@@ -14,30 +14,30 @@
 #include "rvelab/records/record.hpp"
 #include "rvelab/solver/rve.hpp"
 
-namespace rvelab {
+namespace rvelab::protocol {
 
 /// A test that was run, or stopped.
 struct TestRun {
-  TestResult result;
+  records::TestResult result;
   Specimen end_state;
-  Progress progress;  ///< with end_state the checkpoint from which a stopped test goes on
+  records::Progress progress;  ///< with end_state the checkpoint from which a stopped test goes on
   bool complete = true;
 };
 
 /// A running test between two increments, as its watcher sees it. Valid during the call only.
 struct Moment {
-  const Progress& progress;
-  const TestResult& result;  ///< so far
+  const records::Progress& progress;
+  const records::TestResult& result;  ///< so far
   const Rve& rve;
   std::size_t records_planned;  ///< of all stages together
-  Checkpoint checkpoint() const { return {progress, rve.specimen()}; }
+  records::Checkpoint checkpoint() const { return {progress, rve.specimen()}; }
 };
 
 /// Who watches a run, and who helps. All functions may be empty, are called on the thread that runs the test, and
 /// change nothing in it: results depend neither on what they do nor on when. What they throw ends the run.
 struct Watch {
-  std::function<void(const Record&)> on_record;
-  std::function<void(const ProbeResult&)> on_probe;
+  std::function<void(const records::Record&)> on_record;
+  std::function<void(const records::ProbeResult&)> on_probe;
   /// The state of a record, by its number from 0, where [output] snapshots_every asks for it.
   std::function<void(std::size_t record, const Specimen& state)> on_snapshot;
   /// After each increment, each stage, and about each second of a relaxation: here a checkpoint can be taken.
@@ -60,7 +60,7 @@ TestRun run_protocol(const Protocol& protocol, const Specimen& specimen, const W
 /// Goes on from a checkpoint of the same protocol: what follows is bitwise what the undisturbed run would have made.
 /// `so_far` holds at least the records and probes that the checkpoint counts; those beyond are made again. InputError
 /// if the checkpoint does not fit the protocol.
-TestRun resume_protocol(const Protocol& protocol, const Checkpoint& checkpoint, TestResult so_far,
+TestRun resume_protocol(const Protocol& protocol, const records::Checkpoint& checkpoint, records::TestResult so_far,
                         const Watch& watch = {});
 
-}  // namespace rvelab
+}  // namespace rvelab::protocol

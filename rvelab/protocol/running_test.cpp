@@ -70,7 +70,7 @@ Error RunningTest::failed(const std::string& text) const { return Error("stage \
 
 void RunningTest::enter(const Stage& stage) {
   stage_ = &stage;
-  Progress& at = run.progress;
+  records::Progress& at = run.progress;
   if (at.phase > 0) return;
   at.deformation = Matrix3::Identity();
   at.strain_sum = Matrix3::Zero();
@@ -102,7 +102,7 @@ int RunningTest::stage_number(const std::string& name) const {
 }
 
 void RunningTest::leave_stage() {
-  Progress& at = run.progress;
+  records::Progress& at = run.progress;
   const auto event = static_cast<std::size_t>(at.phase - done_phase - 1);
   at.stage = stage_number(at.phase > done_phase ? stage_->until.at(event).then : stage_->then);
   at.phase = 0;
@@ -179,7 +179,7 @@ Report RunningTest::applied(Apply apply) {
   } catch (const IncrementFailed& error) {
     throw IncrementFailed("stage \"" + stage_->name + "\": " + error.what());
   }
-  Progress& at = run.progress;
+  records::Progress& at = run.progress;
   at.deformation = (Matrix3::Identity() + response.displacement_gradient) * at.deformation;
   at.strain_sum += strain_increment(response.displacement_gradient, dimension());
   at.stress = response.stress;
@@ -192,7 +192,7 @@ Report RunningTest::relax(double unbalanced, long max_steps) {
   // so their length must depend on nothing but the specimen.
   constexpr long interval = 25, grain_steps = 20'000'000;
   const long slice = interval * std::clamp(grain_steps / (interval * static_cast<long>(rve.size() + 1)), 10L, 1000L);
-  Progress& at = run.progress;
+  records::Progress& at = run.progress;
   while (true) {
     Report report = rve.relax(unbalanced, std::min(slice, max_steps - static_cast<long>(at.relaxation_steps)));
     at.stress = rve.stress();
@@ -208,7 +208,7 @@ Report RunningTest::relax(double unbalanced, long max_steps) {
 }
 
 void RunningTest::record(double strain, const Report& report) {
-  Record record;
+  records::Record record;
   record.stage = run.progress.stage;
   record.strain = strain;
   record.deformation_gradient = run.progress.deformation;

@@ -72,7 +72,7 @@ void drive(RunningTest& test, const CompressionStage& stage) {
   const int axis = axis_index(axis_name[0]);
   const bool hold = stage.lateral == CompressionStage::Lateral::constant_stress;
   const bool undrained = stage.lateral == CompressionStage::Lateral::constant_volume;
-  Progress& at = test.run.progress;
+  records::Progress& at = test.run.progress;
   at.axis = axis_name;
   at.pressure = hold ? stage.lateral_pressure : at.first_pressure;
 

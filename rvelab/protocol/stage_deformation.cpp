@@ -39,7 +39,7 @@ DeformationStage read(StageSource& source) {
 }
 
 void drive(RunningTest& test, const DeformationStage& stage) {
-  Progress& at = test.run.progress;
+  records::Progress& at = test.run.progress;
   at.axis = "";
   at.pressure = at.first_pressure;
   std::vector<double> numbers;

@@ -74,7 +74,7 @@ PathStage path_of(const DeviatoricStage& stage, int dimension) {
 }
 
 void drive(RunningTest& test, const DeviatoricStage& stage) {
-  const Progress& at = test.run.progress;
+  const records::Progress& at = test.run.progress;
   if (at.step == 0) test.expect_consolidated("p", at.first_pressure, stage.pressure);
   follow_path(test, path_of(stage, test.dimension()));
 }

@@ -67,7 +67,7 @@ Matrix3 direction(double turns, int dimension) {
 }
 
 Report probe(RunningTest& test, const EnvelopeStage& stage, const Matrix3& along) {
-  const Progress& at = test.run.progress;
+  const records::Progress& at = test.run.progress;
   const double part = 1 / static_cast<double>(stage.increments);
   Report worst;
   for (long k = 1; k <= stage.increments; ++k) {
@@ -101,7 +101,7 @@ Report probe(RunningTest& test, const EnvelopeStage& stage, const Matrix3& along
 }
 
 void drive(RunningTest& test, const EnvelopeStage& stage) {
-  Progress& at = test.run.progress;
+  records::Progress& at = test.run.progress;
   at.axis = test.dimension() == 2 ? "y" : "z";
   at.pressure = at.first_pressure;
   while (at.step <= stage.directions) {
@@ -110,7 +110,7 @@ void drive(RunningTest& test, const EnvelopeStage& stage) {
     } else {
       const double turns = static_cast<double>(at.step - 1) / static_cast<double>(stage.directions);
       const Rve start(test.rve);
-      const Progress before = at;
+      const records::Progress before = at;
       const auto put_back = [&] {
         const std::int64_t records = at.records;
         test.rve = start;

@@ -60,7 +60,7 @@ Matrix3 exponential_less_one(const Matrix3& h) {
 }
 
 void drive(RunningTest& test, const FlowStage& stage) {
-  Progress& at = test.run.progress;
+  records::Progress& at = test.run.progress;
   at.axis = "";
   at.pressure = at.first_pressure;
   const std::vector<double> strains = record_strains(stage.to_strain, stage.record_every);

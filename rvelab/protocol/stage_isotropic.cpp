@@ -52,8 +52,8 @@ IsotropicStage read(StageSource& source) {
 constexpr int most_increments = 1000;
 constexpr double far_off = 20;  ///< from its reference pressure, a specimen needs another one
 
-StressGoal goal_of(const IsotropicStage& stage, int dimension) {
-  StressGoal goal;
+pack::StressGoal goal_of(const IsotropicStage& stage, int dimension) {
+  pack::StressGoal goal;
   for (int k = 0; k < dimension; ++k) goal.stress(k, k) = -stage.pressure;
   goal.shear = stage.shear_stress_free;
   goal.dimension = dimension;
@@ -61,7 +61,7 @@ StressGoal goal_of(const IsotropicStage& stage, int dimension) {
 }
 
 /// The driven components, each brought to its part of a stress; `scale` (Pa) is what tolerances are relative to.
-std::vector<HeldStress> driven(const StressGoal& goal, const Matrix3& stress, double scale) {
+std::vector<HeldStress> driven(const pack::StressGoal& goal, const Matrix3& stress, double scale) {
   std::vector<HeldStress> held;
   for (const auto& [i, j] : components(goal.dimension)) {
     if (i == j || goal.shear) held.push_back({i, j, stress(i, j), scale});
@@ -70,10 +70,10 @@ std::vector<HeldStress> driven(const StressGoal& goal, const Matrix3& stress, do
 }
 
 /// Increments of at most largest_change of the present pressure (geometric), until the rest is one increment.
-void approach(RunningTest& test, const IsotropicStage& stage, const StressGoal& goal) {
-  Progress& at = test.run.progress;
+void approach(RunningTest& test, const IsotropicStage& stage, const pack::StressGoal& goal) {
+  records::Progress& at = test.run.progress;
   while (at.step < most_increments) {
-    const Matrix3 next = next_stress(goal, at.stress, stage.largest_change);
+    const Matrix3 next = pack::next_stress(goal, at.stress, stage.largest_change);
     if ((next - goal.stress).isZero(0)) return;
     const double scale = std::max(mean_pressure(at.stress, test.dimension()), 0.1 * stage.pressure);
     test.apply(Matrix3::Zero(), driven(goal, next, scale), 0, test.loading.held_tolerance);
@@ -89,8 +89,8 @@ void approach(RunningTest& test, const IsotropicStage& stage, const StressGoal& 
 enum Phase : std::int32_t { begun = 1, approaching, correcting, relaxing };
 
 void drive(RunningTest& test, const IsotropicStage& stage) {
-  const StressGoal goal = goal_of(stage, test.dimension());
-  Progress& at = test.run.progress;
+  const pack::StressGoal goal = goal_of(stage, test.dimension());
+  records::Progress& at = test.run.progress;
   if (at.phase == begun) {
     if (stage.record) test.record_now(0);
     at.phase = approaching;
@@ -102,13 +102,13 @@ void drive(RunningTest& test, const IsotropicStage& stage) {
     at.step = 0;
   }
   const auto reached = [&] {
-    return largest_gap(goal, at.stress) <= stage.stress_tolerance * stage.pressure &&
+    return pack::largest_gap(goal, at.stress) <= stage.stress_tolerance * stage.pressure &&
            at.unbalanced_ratio <= stage.unbalanced;
   };
   while (at.phase == relaxing || (at.step < stage.max_rounds && !reached())) {
     if (at.phase == correcting) {
       // Half the tolerance: the relaxation that follows moves the stress a little.
-      if (largest_gap(goal, at.stress) > 0.5 * stage.stress_tolerance * stage.pressure) {
+      if (pack::largest_gap(goal, at.stress) > 0.5 * stage.stress_tolerance * stage.pressure) {
         test.apply(Matrix3::Zero(), driven(goal, goal.stress, stage.pressure), 0, 0.5 * stage.stress_tolerance);
       }
       at.phase = relaxing;
@@ -120,10 +120,10 @@ void drive(RunningTest& test, const IsotropicStage& stage) {
   }
   if (!reached()) {
     std::ostringstream text;
-    text << "the normal stresses miss -" << stage.pressure << " Pa by " << largest_gap(goal, at.stress) / stage.pressure
-         << " of it (allowed " << stage.stress_tolerance << ") at the unbalanced ratio " << at.unbalanced_ratio
-         << " (allowed " << stage.unbalanced << ") after " << stage.max_rounds
-         << " rounds; raise max_rounds, max_steps or the tolerances";
+    text << "the normal stresses miss -" << stage.pressure << " Pa by "
+         << pack::largest_gap(goal, at.stress) / stage.pressure << " of it (allowed " << stage.stress_tolerance
+         << ") at the unbalanced ratio " << at.unbalanced_ratio << " (allowed " << stage.unbalanced << ") after "
+         << stage.max_rounds << " rounds; raise max_rounds, max_steps or the tolerances";
     throw test.failed(text.str());
   }
   // Pace and tolerance of what follows go by the pressure reached here, not by one that is long left behind (discs

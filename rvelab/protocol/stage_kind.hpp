@@ -19,10 +19,10 @@ class RunningTest;
 /// Where the settings of a stage are read from.
 struct StageSource {
   const toml::table& table;
-  keys::TableReader& reader;      ///< of `table`
-  const std::string& name;        ///< of the stage
-  Protocol& protocol;             ///< what was read of it before: dimension, pressure
-  std::vector<KeyError>& errors;  ///< mistakes that are not those of one key
+  keys::TableReader& reader;            ///< of `table`
+  const std::string& name;              ///< of the stage
+  Protocol& protocol;                   ///< what was read of it before: dimension, pressure
+  std::vector<keys::KeyError>& errors;  ///< mistakes that are not those of one key
 };
 
 /// A kind of stage with the type of its settings hidden.

@@ -6,9 +6,7 @@
 #include "rvelab/error.hpp"
 #include "rvelab/protocol/drive.hpp"
 
-namespace rvelab {
-namespace protocol {
-
+namespace rvelab::protocol {
 const StageKind& kind_named(const std::string& name) {
   const auto& all = stage_kinds();
   const auto found = std::find_if(all.begin(), all.end(), [&](const StageKind& kind) { return kind.name == name; });
@@ -33,23 +31,21 @@ void expect_fits(const Protocol& protocol, int dimension) {
   }
 }
 
-}  // namespace protocol
-
 std::size_t planned_records(const Protocol& protocol) {
   std::size_t count = 0;
-  for (const Stage& stage : protocol.stages) count += protocol::kind_named(stage.kind).planned_records(stage.what);
+  for (const Stage& stage : protocol.stages) count += kind_named(stage.kind).planned_records(stage.what);
   return count;
 }
 
-StageRole role_of(const Stage& stage) { return protocol::kind_named(stage.kind).role(stage.what); }
+StageRole role_of(const Stage& stage) { return kind_named(stage.kind).role(stage.what); }
 
 std::string strength_stages() {
   std::string text;
-  for (const auto& kind : protocol::stage_kinds()) {
+  for (const auto& kind : stage_kinds()) {
     if (kind.strength_when.empty()) continue;
     text += (text.empty() ? "" : "; or ") + ("kind = \"" + kind.name + "\" with " + kind.strength_when);
   }
   return text;
 }
 
-}  // namespace rvelab
+}  // namespace rvelab::protocol

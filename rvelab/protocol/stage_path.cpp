@@ -46,7 +46,7 @@ std::vector<TableKey> entries() {
 }
 
 PathRow read_row(const toml::table& table, const std::string& stage, std::size_t number, toml::array& resolved,
-                 std::vector<KeyError>& errors) {
+                 std::vector<keys::KeyError>& errors) {
   const std::string name = table["name"].value_or(std::to_string(number));
   TableReader reader(table, protocol_keys(), "stage.path.row", "stage." + stage + ".row." + name, line_of(table),
                      errors);
@@ -84,7 +84,7 @@ PathRow read_row(const toml::table& table, const std::string& stage, std::size_t
 PathStage read(StageSource& source) {
   TableReader& reader = source.reader;
   const std::string& name = source.name;
-  std::vector<KeyError>& errors = source.errors;
+  std::vector<keys::KeyError>& errors = source.errors;
   PathStage stage;
   toml::array resolved;
   const auto tables = reader.tables("row");

@@ -56,7 +56,7 @@ void drive(RunningTest& test, const SimpleShearStage& stage) {
   const std::string plane = !stage.plane.empty() ? stage.plane : test.dimension() == 2 ? "xy" : "xz";
   const int along = axis_index(plane[0]), normal = axis_index(plane[1]);
   const bool hold = stage.normal == SimpleShearStage::Normal::constant_stress;
-  Progress& at = test.run.progress;
+  records::Progress& at = test.run.progress;
   at.axis = plane;
   at.pressure = hold ? stage.normal_pressure : at.first_pressure;
 

@@ -9,7 +9,7 @@
 
 #include "rvelab/cell/cell.hpp"
 
-namespace rvelab {
+namespace rvelab::protocol {
 
 /// All normal stresses to -pressure. Ends when every stress that is driven is within stress_tolerance of its target
 /// and the unbalanced ratio is below `unbalanced`; Error if that is not reached within max_rounds.
@@ -155,4 +155,4 @@ struct StageRole {
   std::string axis;  ///< that is shortened: "x", "y", "z"; empty: y in 2D, z in 3D
 };
 
-}  // namespace rvelab
+}  // namespace rvelab::protocol

@@ -8,7 +8,7 @@
 
 #include "rvelab/specimen/specimen.hpp"
 
-namespace rvelab {
+namespace rvelab::records {
 
 /// Scalars of a running test. Laboratory frame, SI; strains count from the start of the stage.
 struct Progress {
@@ -41,4 +41,4 @@ struct Checkpoint {
   Specimen specimen;
 };
 
-}  // namespace rvelab
+}  // namespace rvelab::records

@@ -10,7 +10,7 @@
 #include "rvelab/cell/cell.hpp"
 #include "rvelab/records/quantities.hpp"
 
-namespace rvelab {
+namespace rvelab::records {
 
 /// What every record says. Laboratory frame; stress tension positive. Strains count from the start of the stage.
 struct RecordedState {
@@ -25,12 +25,12 @@ struct RecordedState {
   bool target_held = true;   ///< false: kept, but the held stress was not within the tolerance (dt = 0: after the wait)
   bool quasi_static = true;  ///< dt = 0; false: kept, but no equilibrium (Report::quasi_static); dt > 0: not judged
 
-  std::uint64_t quantities = records::usual_quantities;  ///< bits of those that were measured
+  std::uint64_t quantities = usual_quantities;  ///< bits of those that were measured
 };
 
 /// A recorded state with the quantities measured at it (quantities.hpp), each a member by its name; those that were not
 /// asked for are zero.
-struct Record : RecordedState, records::Quantities {};
+struct Record : RecordedState, Quantities {};
 
 /// What a probe stage measured: stiffness as elastic_tangent() gives it (rvelab/measure/tangent.hpp), Pa; 3x3 in 2D,
 /// 6x6 in 3D.
@@ -51,10 +51,7 @@ struct TestResult {
   unsigned long long grain_steps = 0;
 };
 
-namespace records {
-
 /// Measures what record.quantities asks for at the state of an Rve.
 void measure_quantities(Record& record, const Rve& rve);
 
-}  // namespace records
-}  // namespace rvelab
+}  // namespace rvelab::records

@@ -18,7 +18,7 @@ struct BatchEntry {
 
 /// Applies displacement_gradients[k] (laboratory frame) to rves[k] over the time dt (s, 0: quasi-static). The same bits
 /// whatever the number of workers; a failure concerns its own RVE only. InputError if the lengths differ.
-std::vector<BatchEntry> apply(std::span<Rve> rves, std::span<const Matrix3> displacement_gradients, double dt,
-                              Workers& workers, const Want& want = {});
+std::vector<BatchEntry> apply_to_all(std::span<Rve> rves, std::span<const Matrix3> displacement_gradients, double dt,
+                                     Workers& workers, const Want& want = {});
 
 }  // namespace rvelab

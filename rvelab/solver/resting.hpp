@@ -8,7 +8,7 @@
 
 namespace rvelab {
 
-/// Frees the working arrays; only rebuild_buffers, close and memory_of may be called then.
+/// Frees the working arrays; only rebuild_buffers, close_assembly and memory_of may be called then.
 void release_buffers(Assembly& assembly);
 
 /// Makes them again: the bits are those before.

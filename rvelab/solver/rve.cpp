@@ -29,7 +29,7 @@ void expect_overlaps(const Balance& balance, double limit) {
 
 Rve::Rve(const Specimen& specimen) : impl_(std::make_unique<Impl>()) {
   Impl& m = *impl_;
-  open(specimen, m.fixture, m.now);
+  open_assembly(specimen, m.fixture, m.now);
   set_softest_answer(m.fixture);
   use_physical_inertia(m.fixture, m.now);
   evaluate_forces(m.fixture, m.now);
@@ -226,7 +226,7 @@ void Rve::set_materials(const std::vector<Material>& materials) {
   if (materials.size() != m.fixture.materials.size())
     throw InputError("set_materials: " + std::to_string(materials.size()) + " materials; the specimen has " +
                      std::to_string(m.fixture.materials.size()));
-  check(m.fixture.contact, m.fixture.damping, materials);
+  check_parameters(m.fixture.contact, m.fixture.damping, materials);
   m.fixture.materials = materials;
   std::vector<double> mass(m.fixture.size()), inertia(m.fixture.size());
   for (std::size_t g = 0; g < m.fixture.size(); ++g) {
@@ -280,7 +280,7 @@ void Rve::zero_velocities() {
   evaluate_forces(m.fixture, m.now);
 }
 
-Specimen Rve::specimen() const { return close(impl_->fixture, impl_->now); }
+Specimen Rve::specimen() const { return close_assembly(impl_->fixture, impl_->now); }
 std::vector<std::byte> Rve::save() const { return to_bytes(specimen()); }
 void Rve::restore(std::span<const std::byte> snapshot) {
   Rve restored(from_bytes(snapshot));

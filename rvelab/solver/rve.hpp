@@ -118,7 +118,7 @@ class Rve {
 
   /// Changes contact parameters in place (friction for preparation, no slip for probes); history is kept. One material
   /// for each that the specimen has, in its order. InputError if their number differs or one is not allowed by the law
-  /// (check in contact/model.hpp); the RVE is then as it was.
+  /// (check_parameters in contact/model.hpp); the RVE is then as it was.
   void set_materials(const std::vector<Material>& materials);
   /// Sets fluctuation velocities and spins (cell frame, m/s and rad/s), for dt > 0: one of each for every grain, in the
   /// order of the specimen. In the plane the components out of it are left out. InputError if a number of entries is

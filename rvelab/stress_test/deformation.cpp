@@ -27,7 +27,7 @@ Specimen soft(const Cell& cell, int count, int dimension) {
     grains.spin.push_back(Vector3::Zero());
   }
   Uniform uniform(3);
-  if (!scatter(cell, 1.0, grains, uniform)) throw Error("no free place is left for a grain");
+  if (!pack::scatter(cell, 1.0, grains, uniform)) throw Error("no free place is left for a grain");
   Specimen s = specimen_of(cell, grains.position, grains.radius);
   s.solver.min_height = 0.5;
   s.solver.max_overlap_ratio = 0.9;

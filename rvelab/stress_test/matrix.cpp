@@ -18,7 +18,7 @@ constexpr double most_seconds = 60, most_memory_MiB = 16'384;
 class CaseReader {
  public:
   /// `limits`: [limits] of the file, for what the case does not say.
-  CaseReader(const toml::table& table, const toml::table& limits, std::vector<KeyError>& errors)
+  CaseReader(const toml::table& table, const toml::table& limits, std::vector<keys::KeyError>& errors)
       : table_(table), limits_(limits), errors_(errors) {}
 
   std::vector<Case> cases() {
@@ -91,9 +91,9 @@ class CaseReader {
                                                    "memory_MiB", "with",       "vary"};
     for (const auto& [key, value] : table_)
       if (std::find(known.begin(), known.end(), std::string(key.str())) == known.end())
-        errors_.push_back(key_error(key.source(), "unknown key case." + std::string(key.str()) + "; the nearest is " +
-                                                      nearest(std::string(key.str()), known) +
-                                                      "; correct the name or remove it"));
+        errors_.push_back(keys::key_error(
+            key.source(), "unknown key case." + std::string(key.str()) + "; the nearest is " +
+                              keys::nearest(std::string(key.str()), known) + "; correct the name or remove it"));
   }
 
   const Experiment* find_experiment() {
@@ -105,7 +105,7 @@ class CaseReader {
       names.emplace_back(experiment.name);
     }
     mistake(*node, "unknown experiment \"" + one_.experiment + "\"; the nearest is \"" +
-                       nearest(one_.experiment, names) + "\"; correct the name");
+                       keys::nearest(one_.experiment, names) + "\"; correct the name");
     return nullptr;
   }
 
@@ -136,9 +136,10 @@ class CaseReader {
     std::vector<std::string> names;
     for (const Parameter& parameter : experiment_->parameters) names.emplace_back(parameter.name);
     if (std::find(names.begin(), names.end(), name) != names.end()) return true;
-    const std::string near = nearest(name, names);
-    errors_.push_back(key_error(place, "experiment " + one_.experiment + " has no parameter " + name +
-                                           (near.empty() ? "" : "; the nearest is " + near) + "; correct the name"));
+    const std::string near = keys::nearest(name, names);
+    errors_.push_back(keys::key_error(place, "experiment " + one_.experiment + " has no parameter " + name +
+                                                 (near.empty() ? "" : "; the nearest is " + near) +
+                                                 "; correct the name"));
     return false;
   }
 
@@ -195,7 +196,7 @@ class CaseReader {
   }
 
   const toml::table &table_, &limits_;
-  std::vector<KeyError>& errors_;
+  std::vector<keys::KeyError>& errors_;
   const Experiment* experiment_ = nullptr;
   Case one_;
   Values quick_;
@@ -220,8 +221,8 @@ std::string written_number(double value) {
 }
 
 std::vector<Case> read_matrix(const std::string& path) {
-  const toml::table file = parse_toml_file(path);
-  std::vector<KeyError> errors;
+  const toml::table file = keys::parse_toml_file(path);
+  std::vector<keys::KeyError> errors;
   std::vector<Case> cases;
   std::set<std::string> names;
   static const toml::table no_limits;
@@ -229,14 +230,16 @@ std::vector<Case> read_matrix(const std::string& path) {
   if (limits == nullptr) limits = &no_limits;
   for (const auto& [key, value] : *limits)
     if (key.str() != "seconds" && key.str() != "memory_MiB")
-      errors.push_back(key_error(key.source(), "unknown key limits." + std::string(key.str()) +
-                                                   "; allowed: seconds, memory_MiB; correct the name or remove it"));
+      errors.push_back(
+          keys::key_error(key.source(), "unknown key limits." + std::string(key.str()) +
+                                            "; allowed: seconds, memory_MiB; correct the name or remove it"));
   for (const auto& [key, value] : file) {
     if (key.str() == "limits" && value.is_table()) continue;
     const toml::array* list = value.as_array();
     if (key.str() != "case" || list == nullptr || !list->is_array_of_tables()) {
-      errors.push_back(key_error(key.source(), "unknown key " + std::string(key.str()) +
-                                                   "; allowed: [limits], [[case]]; correct the name or remove it"));
+      errors.push_back(keys::key_error(
+          key.source(),
+          "unknown key " + std::string(key.str()) + "; allowed: [limits], [[case]]; correct the name or remove it"));
       continue;
     }
     for (const toml::node& table : *list) {
@@ -248,7 +251,7 @@ std::vector<Case> read_matrix(const std::string& path) {
     }
   }
   if (cases.empty() && errors.empty()) errors.push_back({0, "holds no [[case]]; allowed: at least one"});
-  raise(path, errors);
+  keys::raise(path, errors);
   return cases;
 }
 

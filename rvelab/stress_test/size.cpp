@@ -139,7 +139,7 @@ void thin_cell(const Case& asked, Verdict& verdict) {
   Specimen small = resting.specimen();
   small.state = {};
   small.solver.fixed_substeps = 100;
-  Tested few(small, verdict), many(repeated(small, {copies, copies, d == 3 ? copies : 1}), verdict);
+  Tested few(small, verdict), many(pack::repeated(small, {copies, copies, d == 3 ? copies : 1}), verdict);
   const double p = few.pressure();
   // The first 0.02 % strain from rest, over which round-off has not grown (solver/README.md).
   const Matrix3 increment = 5e-6 * biaxial_direction(d) + 1e-5 * shear_direction(d);

@@ -13,7 +13,7 @@ namespace {
 constexpr double degree = 3.14159265358979323846 / 180;
 
 struct Tests {
-  Calibration found;
+  calibrate::Calibration found;
   double contacts_at_peak = 0;  ///< of a test at the middle pressure
 };
 
@@ -21,25 +21,26 @@ Tests compressed(double pull_off_force) {
   Specimen specimen = reference_specimen("dense_p20");
   specimen.contact.law = Law::linear_adhesive;
   for (Material& material : specimen.materials) material.pull_off_force = pull_off_force;
-  std::vector<Protocol> protocols;
+  std::vector<protocol::Protocol> protocols;
   for (const std::string pressure : {"10e3", "20e3", "40e3"})
     protocols.push_back(
-        parse_protocol("[test]\nname = \"cohesion\"\npressure_Pa = " + pressure +
-                           "\n[[stage]]\nkind = \"isotropic\"\nshear = \"zero_strain\"\n"
-                           "[[stage]]\nkind = \"compression\"\nto_strain = 0.025\nrecord_every = 0.0005\n",
-                       "cohesion.toml"));
-  std::vector<TestResult> results;
-  for (const TestRun& run : run_all(protocols, {specimen}, 2)) results.push_back(run.result);
-  Tests tests{calibrate(results, 2)};
-  const auto records = last_stage(results[1]);
-  tests.contacts_at_peak = 0.5 * records[peak(records, 2).record].coordination_number * double(specimen.grains.size());
+        protocol::parse_protocol("[test]\nname = \"cohesion\"\npressure_Pa = " + pressure +
+                                     "\n[[stage]]\nkind = \"isotropic\"\nshear = \"zero_strain\"\n"
+                                     "[[stage]]\nkind = \"compression\"\nto_strain = 0.025\nrecord_every = 0.0005\n",
+                                 "cohesion.toml"));
+  std::vector<records::TestResult> results;
+  for (const protocol::TestRun& run : calibrate::run_all(protocols, {specimen}, 2)) results.push_back(run.result);
+  Tests tests{calibrate::calibrate(results, 2)};
+  const auto records = calibrate::last_stage(results[1]);
+  tests.contacts_at_peak =
+      0.5 * records[calibrate::peak(records, 2).record].coordination_number * double(specimen.grains.size());
   return tests;
 }
 
 }  // namespace
 
 TEST_CASE("A pull-off force shows as cohesion, of the size that its contacts give") {
-  const Calibration plain = compressed(0).found;
+  const calibrate::Calibration plain = compressed(0).found;
   CHECK(std::abs(plain.cohesion) < 2 * plain.cohesion_error);
 
   const double pull_off = 20;

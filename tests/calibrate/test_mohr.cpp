@@ -15,8 +15,8 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 constexpr double degree = pi / 180;
 
-Record biaxial_record(double strain, double major, double minor) {
-  Record record;
+records::Record biaxial_record(double strain, double major, double minor) {
+  records::Record record;
   record.strain = strain;
   record.stress(0, 0) = -minor;
   record.stress(1, 1) = -major;
@@ -24,14 +24,14 @@ Record biaxial_record(double strain, double major, double minor) {
 }
 
 /// A state on the line t = s sin phi + c cos phi.
-PrincipalStresses on_envelope(double s, double angle, double cohesion) {
+calibrate::PrincipalStresses on_envelope(double s, double angle, double cohesion) {
   const double t = s * std::sin(angle * degree) + cohesion * std::cos(angle * degree);
   return {s + t, s - t};
 }
 
 /// A test that hardens linearly to the ratio of the angle at 1 % strain and stays there, to 15 %.
-TestResult hardening_test(double pressure, double angle) {
-  TestResult test;
+records::TestResult hardening_test(double pressure, double angle) {
+  records::TestResult test;
   test.pressure = pressure;
   const double ratio = (1 + std::sin(angle * degree)) / (1 - std::sin(angle * degree));
   for (int k = 0; k <= 300; ++k) {
@@ -49,103 +49,104 @@ TEST_CASE("Principal stresses are those of the tensor, compression positive, wha
   const double c = 13e3 * std::cos(pi / 4);
   Matrix3 plane = Matrix3::Zero();
   plane << -30e3 + c, c, 0, c, -30e3 - c, 0, 0, 0, 0;
-  CHECK(principal_stresses(plane, 2).major == Approx(43e3).epsilon(1e-13));
-  CHECK(principal_stresses(plane, 2).minor == Approx(17e3).epsilon(1e-13));
+  CHECK(calibrate::principal_stresses(plane, 2).major == Approx(43e3).epsilon(1e-13));
+  CHECK(calibrate::principal_stresses(plane, 2).minor == Approx(17e3).epsilon(1e-13));
   // 3D: the intermediate stress takes no part either.
   const Matrix3 turn = (Eigen::AngleAxisd(0.7, Vector3::UnitX()) * Eigen::AngleAxisd(-1.1, Vector3::UnitZ())).matrix();
   const Matrix3 solid = turn * Vector3(-100e3, -300e3, -170e3).asDiagonal() * turn.transpose();
-  CHECK(principal_stresses(solid, 3).major == Approx(300e3).epsilon(1e-13));
-  CHECK(principal_stresses(solid, 3).minor == Approx(100e3).epsilon(1e-13));
+  CHECK(calibrate::principal_stresses(solid, 3).major == Approx(300e3).epsilon(1e-13));
+  CHECK(calibrate::principal_stresses(solid, 3).minor == Approx(100e3).epsilon(1e-13));
   // Rankine: sigma_1/sigma_3 = 3 is a friction angle of 30 degrees.
-  CHECK(friction_angle_deg(principal_stresses(solid, 3)) == Approx(30).epsilon(1e-13));
+  CHECK(calibrate::friction_angle_deg(calibrate::principal_stresses(solid, 3)) == Approx(30).epsilon(1e-13));
   // An antisymmetric part (unbalanced torque) moves no principal stress.
   Matrix3 unbalanced = plane;
   unbalanced(0, 1) += 500;
   unbalanced(1, 0) -= 500;
-  CHECK(principal_stresses(unbalanced, 2).major == Approx(43e3).epsilon(1e-13));
+  CHECK(calibrate::principal_stresses(unbalanced, 2).major == Approx(43e3).epsilon(1e-13));
 }
 
 TEST_CASE("The peak is the record with the largest deviator, without smoothing") {
-  std::vector<Record> records;
+  std::vector<records::Record> records;
   for (int k = 0; k < 40; ++k) records.push_back(biaxial_record(0.001 * k, 20e3 + 100 * k, 10e3));
   records[17].stress(1, 1) = -60e3;  // one spike
   records[30].stress(0, 0) = -1e3;   // a larger ratio is no peak
-  const Peak highest = peak(records, 2);
+  const calibrate::Peak highest = calibrate::peak(records, 2);
   CHECK(highest.record == 17);
   CHECK(highest.strain == Approx(0.017));
   CHECK(highest.stresses.major == Approx(60e3));
-  CHECK_THROWS_AS(peak({}, 2), InputError);
+  CHECK_THROWS_AS(calibrate::peak({}, 2), InputError);
 }
 
 TEST_CASE("The peak of an extension is where the axial stress is smallest, and has the friction angle of that state") {
   // The axis is unloaded from 20 kPa until sigma_1/sigma_3 = 3 at 2 % strain, then carries more again.
-  std::vector<Record> records;
+  std::vector<records::Record> records;
   for (int k = 0; k <= 40; ++k) {
     const double axial = 20e3 / (k <= 20 ? 1 + 0.1 * k : 3 - 0.02 * (k - 20));
     records.push_back(biaxial_record(-0.001 * k, axial, 20e3));
   }
-  const Peak found = peak(records, 2);
+  const calibrate::Peak found = calibrate::peak(records, 2);
   CHECK(found.strain == Approx(-0.020));
   CHECK(found.stresses.major == Approx(20e3));
-  CHECK(friction_angle_deg(found.stresses) == Approx(30).epsilon(1e-12));
-  CHECK(!rising_at_end(records, found));
+  CHECK(calibrate::friction_angle_deg(found.stresses) == Approx(30).epsilon(1e-12));
+  CHECK(!calibrate::rising_at_end(records, found));
 }
 
 TEST_CASE("A test whose largest deviator stands at its end was still rising") {
-  std::vector<Record> records;
+  std::vector<records::Record> records;
   for (int k = 0; k <= 40; ++k) records.push_back(biaxial_record(0.001 * k, 20e3 + 100 * k, 10e3));
-  CHECK(rising_at_end(records, peak(records, 2)));
+  CHECK(calibrate::rising_at_end(records, calibrate::peak(records, 2)));
   records[39].stress(1, 1) = -60e3;
-  CHECK(rising_at_end(records, peak(records, 2)));
+  CHECK(calibrate::rising_at_end(records, calibrate::peak(records, 2)));
   records[30].stress(1, 1) = -70e3;
-  CHECK(!rising_at_end(records, peak(records, 2)));
+  CHECK(!calibrate::rising_at_end(records, calibrate::peak(records, 2)));
   records.resize(1);
-  CHECK(!rising_at_end(records, peak(records, 2)));
+  CHECK(!calibrate::rising_at_end(records, calibrate::peak(records, 2)));
 }
 
 TEST_CASE("Mean, standard deviation and standard error are those of the specimens") {
   // 2, 4, 4, 6: squares about 4 are 4, 0, 0, 4.
-  const Statistics found = statistics({2, 4, 4, 6});
+  const calibrate::Statistics found = calibrate::statistics({2, 4, 4, 6});
   CHECK(found.mean == 4);
   CHECK(found.standard_deviation == Approx(std::sqrt(8.0 / 3)).epsilon(1e-14));
   CHECK(found.standard_error == Approx(std::sqrt(8.0 / 3) / 2).epsilon(1e-14));
-  CHECK(std::isnan(statistics({7}).standard_deviation));
-  const Calibration two =
-      calibrate({hardening_test(10e3, 30), hardening_test(20e3, 30), hardening_test(10e3, 24)}, 2, {0, 0, 1});
+  CHECK(std::isnan(calibrate::statistics({7}).standard_deviation));
+  const calibrate::Calibration two = calibrate::calibrate(
+      {hardening_test(10e3, 30), hardening_test(20e3, 30), hardening_test(10e3, 24)}, 2, {0, 0, 1});
   REQUIRE(two.per_specimen.size() == 2);
   CHECK(two.per_specimen[0].friction_angle_deg == Approx(30));
   CHECK(two.per_specimen[1].friction_angle_deg == Approx(24));
   CHECK(two.friction_angle_of_specimens.mean == Approx(27));
   CHECK(two.friction_angle_of_specimens.standard_deviation == Approx(std::sqrt(18.0)));
   CHECK(two.friction_angle_of_specimens.standard_error == Approx(3));
-  CHECK(two.Nq_of_specimens.mean == Approx(0.5 * (bearing_capacity_Nq(30) + bearing_capacity_Nq(24))));
+  CHECK(two.Nq_of_specimens.mean ==
+        Approx(0.5 * (calibrate::bearing_capacity_Nq(30) + calibrate::bearing_capacity_Nq(24))));
 }
 
 TEST_CASE("A moving mean over 1 % of strain divides a lone spike by its number of records") {
-  std::vector<Record> records;
+  std::vector<records::Record> records;
   for (int k = 0; k <= 100; ++k) records.push_back(biaxial_record(0.0005 * k, 30e3, 10e3));
   records[50].stress(1, 1) = -50e3;
-  CHECK(peak_of_moving_mean(records, 2).major == Approx(30e3 + 20e3 / 20).epsilon(1e-12));
-  CHECK(peak_of_moving_mean(records, 2).minor == Approx(10e3).epsilon(1e-12));
-  CHECK(peak_of_moving_mean(records, 2, 0.005).major == Approx(30e3 + 20e3 / 10).epsilon(1e-12));
+  CHECK(calibrate::peak_of_moving_mean(records, 2).major == Approx(30e3 + 20e3 / 20).epsilon(1e-12));
+  CHECK(calibrate::peak_of_moving_mean(records, 2).minor == Approx(10e3).epsilon(1e-12));
+  CHECK(calibrate::peak_of_moving_mean(records, 2, 0.005).major == Approx(30e3 + 20e3 / 10).epsilon(1e-12));
   // A test shorter than the window has none.
   records.resize(19);
-  CHECK(std::isnan(peak_of_moving_mean(records, 2).major));
+  CHECK(std::isnan(calibrate::peak_of_moving_mean(records, 2).major));
   records.resize(1);
-  CHECK(std::isnan(peak_of_moving_mean(records, 2).major));
+  CHECK(std::isnan(calibrate::peak_of_moving_mean(records, 2).major));
 }
 
 TEST_CASE("The large-strain stress is the mean from 12 to 15 % and nothing where a test does not reach it") {
-  std::vector<Record> records;
+  std::vector<records::Record> records;
   for (int k = 0; k <= 320; ++k) {
     const double strain = 0.0005 * k;
     const bool inside = k >= 240 && k <= 300;
     records.push_back(biaxial_record(strain, inside ? 20e3 + (k - 270) * 50 : 90e3, 10e3));
   }
-  CHECK(large_strain_mean(records, 2).major == Approx(20e3).epsilon(1e-12));
-  CHECK(large_strain_mean(records, 2).minor == Approx(10e3).epsilon(1e-12));
+  CHECK(calibrate::large_strain_mean(records, 2).major == Approx(20e3).epsilon(1e-12));
+  CHECK(calibrate::large_strain_mean(records, 2).minor == Approx(10e3).epsilon(1e-12));
   records.resize(290);
-  CHECK(std::isnan(large_strain_mean(records, 2).major));
+  CHECK(std::isnan(calibrate::large_strain_mean(records, 2).major));
 }
 
 TEST_CASE("The standard errors of a straight envelope are those that scattered peaks have") {
@@ -155,12 +156,12 @@ TEST_CASE("The standard errors of a straight envelope are those that scattered p
   const int draws = 4000;
   double squares_c = 0, squares_phi = 0, said_c = 0, said_phi = 0;
   for (int k = 0; k < draws; ++k) {
-    std::vector<PrincipalStresses> tests;
+    std::vector<calibrate::PrincipalStresses> tests;
     for (const double s : {15e3, 22e3, 31e3, 39e3, 50e3}) {
       const double t = s * std::sin(30 * degree) + 2500 * std::cos(30 * degree) + error(random);
       tests.push_back({s + t, s - t});
     }
-    const CohesionFit fit = fit_with_cohesion(tests);
+    const calibrate::CohesionFit fit = calibrate::fit_with_cohesion(tests);
     squares_c += std::pow(fit.cohesion - 2500, 2) / draws;
     squares_phi += std::pow(fit.friction_angle_deg - 30, 2) / draws;
     said_c += std::pow(fit.cohesion_error, 2) / draws;
@@ -168,42 +169,44 @@ TEST_CASE("The standard errors of a straight envelope are those that scattered p
   }
   CHECK(said_c / squares_c == Approx(1).margin(0.1));
   CHECK(said_phi / squares_phi == Approx(1).margin(0.1));
-  CHECK(std::isnan(fit_with_cohesion(std::vector<PrincipalStresses>{{3, 1}, {7, 2}}).cohesion_error));
+  CHECK(std::isnan(
+      calibrate::fit_with_cohesion(std::vector<calibrate::PrincipalStresses>{{3, 1}, {7, 2}}).cohesion_error));
 }
 
 TEST_CASE("States on a Coulomb envelope give back its angle and cohesion") {
   for (const double angle : {5.0, 28.1, 44.0}) {
-    std::vector<PrincipalStresses> frictional, cohesive, overshooting;
+    std::vector<calibrate::PrincipalStresses> frictional, cohesive, overshooting;
     for (const double s : {12e3, 19e3, 41e3, 77e3}) {
       frictional.push_back(on_envelope(s, angle, 0));
       cohesive.push_back(on_envelope(s, angle, 2500));
       overshooting.push_back(on_envelope(s, angle, -700));
     }
-    CHECK(friction_angle_through_origin_deg(frictional) == Approx(angle).epsilon(1e-12));
-    CHECK(fit_with_cohesion(cohesive).friction_angle_deg == Approx(angle).epsilon(1e-11));
-    CHECK(fit_with_cohesion(cohesive).cohesion == Approx(2500).epsilon(1e-9));
-    CHECK(fit_with_cohesion(overshooting).cohesion == Approx(-700).epsilon(1e-9));
-    CHECK(friction_angle_through_origin_deg(cohesive) > angle);
+    CHECK(calibrate::friction_angle_through_origin_deg(frictional) == Approx(angle).epsilon(1e-12));
+    CHECK(calibrate::fit_with_cohesion(cohesive).friction_angle_deg == Approx(angle).epsilon(1e-11));
+    CHECK(calibrate::fit_with_cohesion(cohesive).cohesion == Approx(2500).epsilon(1e-9));
+    CHECK(calibrate::fit_with_cohesion(overshooting).cohesion == Approx(-700).epsilon(1e-9));
+    CHECK(calibrate::friction_angle_through_origin_deg(cohesive) > angle);
   }
 }
 
 TEST_CASE("The fit through the origin weighs tests by least squares of t in s") {
   // sum(s t)/sum(s s) for (1, 0.5), (2, 0.8): 2.1/5.
-  const std::vector<PrincipalStresses> tests{{1.5, 0.5}, {2.8, 1.2}};
-  CHECK(friction_angle_through_origin_deg(tests) == Approx(std::asin(0.42) / degree).epsilon(1e-13));
+  const std::vector<calibrate::PrincipalStresses> tests{{1.5, 0.5}, {2.8, 1.2}};
+  CHECK(calibrate::friction_angle_through_origin_deg(tests) == Approx(std::asin(0.42) / degree).epsilon(1e-13));
   // One test has no cohesion to tell.
-  CHECK(std::isnan(fit_with_cohesion(std::vector<PrincipalStresses>{{3, 1}}).cohesion));
+  CHECK(std::isnan(calibrate::fit_with_cohesion(std::vector<calibrate::PrincipalStresses>{{3, 1}}).cohesion));
 }
 
 TEST_CASE("Bearing capacity factors of 28.1 degrees are 14.883 and 6.147, its wedge stands at 59.05 degrees") {
-  CHECK(bearing_capacity_Nq(28.1) == Approx(14.883).margin(5e-4));
-  CHECK(local_shear_Nq(28.1) == Approx(6.147).margin(5e-4));
-  CHECK(wedge_angle_deg(28.1) == Approx(59.05).epsilon(1e-14));
-  CHECK(bearing_capacity_Nq(0) == Approx(1).epsilon(1e-14));  // Prandtl: without friction the surcharge alone
+  CHECK(calibrate::bearing_capacity_Nq(28.1) == Approx(14.883).margin(5e-4));
+  CHECK(calibrate::local_shear_Nq(28.1) == Approx(6.147).margin(5e-4));
+  CHECK(calibrate::wedge_angle_deg(28.1) == Approx(59.05).epsilon(1e-14));
+  CHECK(calibrate::bearing_capacity_Nq(0) ==
+        Approx(1).epsilon(1e-14));  // Prandtl: without friction the surcharge alone
 }
 
 TEST_CASE("Tests of one frictional soil at any pressures calibrate to its angle") {
-  const Calibration found = calibrate({hardening_test(10e3, 30), hardening_test(25e3, 30)}, 2);
+  const calibrate::Calibration found = calibrate::calibrate({hardening_test(10e3, 30), hardening_test(25e3, 30)}, 2);
   CHECK(found.friction_angle_deg == Approx(30).epsilon(1e-12));
   CHECK(found.friction_angle_with_cohesion_deg == Approx(30).epsilon(1e-10));
   CHECK(found.cohesion == Approx(0).margin(1e-6));
@@ -220,16 +223,16 @@ TEST_CASE("Tests of one frictional soil at any pressures calibrate to its angle"
 }
 
 TEST_CASE("A calibration looks at the last stage only and counts its flagged records") {
-  TestResult test = hardening_test(10e3, 30);
+  records::TestResult test = hardening_test(10e3, 30);
   for (auto& record : test.records) record.stage = 1;
   test.records[5].target_held = false;
   test.records[9].target_held = false;
-  Record before = biaxial_record(0, 900e3, 10e3);  // a higher stress in the stage before
+  records::Record before = biaxial_record(0, 900e3, 10e3);  // a higher stress in the stage before
   before.target_held = false;
   test.records.insert(test.records.begin(), before);
-  const Calibration found = calibrate({test}, 2);
+  const calibrate::Calibration found = calibrate::calibrate({test}, 2);
   CHECK(found.friction_angle_deg == Approx(30).epsilon(1e-12));
   CHECK(found.per_pressure[0].records == 301);
   CHECK(found.per_pressure[0].flagged == 2);
-  CHECK_THROWS_AS(calibrate({}, 2), InputError);
+  CHECK_THROWS_AS(calibrate::calibrate({}, 2), InputError);
 }

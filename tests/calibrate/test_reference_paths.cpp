@@ -15,17 +15,17 @@ namespace {
 enum class StrainMeasure { engineering, logarithmic };
 
 /// One test a pressure. Records lie at fixed logarithmic strains, which is what a window of records counts in.
-std::vector<TestResult> recorded_tests(StrainMeasure measure) {
+std::vector<records::TestResult> recorded_tests(StrainMeasure measure) {
   std::ifstream file(RVELAB_TEST_DATA "/yade/biaxial_dense_from_state.csv");
   REQUIRE(file);
-  std::map<double, TestResult> tests;
+  std::map<double, records::TestResult> tests;
   for (std::string line; std::getline(file, line);) {
     if (line.empty() || line[0] == '#' || line[0] == 'P') continue;
     std::istringstream text(line);
     std::vector<double> row;
     for (std::string item; std::getline(text, item, ',');) row.push_back(std::stod(item));
     REQUIRE(row.size() == 6);
-    Record record;
+    records::Record record;
     record.strain = measure == StrainMeasure::engineering ? row[1] : -row[2];
     record.stress(0, 0) = row[3];
     record.stress(1, 1) = row[4];
@@ -33,7 +33,7 @@ std::vector<TestResult> recorded_tests(StrainMeasure measure) {
     tests[row[0]].pressure = 1e3 * row[0];
     tests[row[0]].records.push_back(record);
   }
-  std::vector<TestResult> list;
+  std::vector<records::TestResult> list;
   for (const auto& [pressure, test] : tests) list.push_back(test);
   REQUIRE(list.size() == 5);
   return list;
@@ -42,7 +42,7 @@ std::vector<TestResult> recorded_tests(StrainMeasure measure) {
 }  // namespace
 
 TEST_CASE("Recorded biaxial paths give the recorded peaks and friction angle") {
-  const Calibration found = calibrate(recorded_tests(StrainMeasure::engineering), 2);
+  const calibrate::Calibration found = calibrate::calibrate(recorded_tests(StrainMeasure::engineering), 2);
   const double angles[] = {31.728062998436197, 32.07090076318966, 32.03148044367511, 31.922639508553775,
                            31.917046201796435};
   for (int k = 0; k < 5; ++k) CHECK(found.per_pressure[k].friction_angle_deg == Approx(angles[k]).margin(2e-4));
@@ -55,7 +55,7 @@ TEST_CASE("Recorded biaxial paths give the recorded peaks and friction angle") {
 }
 
 TEST_CASE("Recorded biaxial paths give the recorded angles of the 1 % moving mean") {
-  const Calibration found = calibrate(recorded_tests(StrainMeasure::logarithmic), 2);
+  const calibrate::Calibration found = calibrate::calibrate(recorded_tests(StrainMeasure::logarithmic), 2);
   const double angles[] = {30.103550523511764, 30.412411067322, 30.718931335077574, 30.751015906031594,
                            30.665456788572648};
   for (int k = 0; k < 5; ++k) {
@@ -70,6 +70,7 @@ TEST_CASE("Recorded biaxial paths give the recorded angles at large strain") {
                            23.94734818818361};
   const auto tests = recorded_tests(StrainMeasure::engineering);
   for (int k = 0; k < 5; ++k) {
-    CHECK(friction_angle_deg(large_strain_mean(tests[k].records, 2, 0.1223, 0.151)) == Approx(angles[k]).margin(2e-4));
+    CHECK(calibrate::friction_angle_deg(calibrate::large_strain_mean(tests[k].records, 2, 0.1223, 0.151)) ==
+          Approx(angles[k]).margin(2e-4));
   }
 }

@@ -12,7 +12,7 @@ TEST_CASE("keys lists every key with unit, type, default, range and meaning") {
   const Outcome outcome = here.run("keys --json");
   REQUIRE(outcome.code == 0);
   const auto list = nlohmann::json::parse(outcome.output)["keys"];
-  REQUIRE(list.size() == rvelab::all_keys().size());
+  REQUIRE(list.size() == rvelab::protocol::all_keys().size());
   for (const auto& key : list) {
     CAPTURE(key.dump());
     for (const char* member : {"key", "table", "name", "unit", "type", "range", "meaning"}) {

@@ -153,7 +153,7 @@ TEST_CASE("programs that write one name at the same time each write it whole, or
           here / ("out" + end), here / ("err" + end)));
     }
     for (auto& child : children) CHECK(child->wait() == 0);
-    CHECK(rvelab::read_specimen(here / "one.h5").grains.size() == 400);
+    CHECK(rvelab::io::read_specimen(here / "one.h5").grains.size() == 400);
     CHECK(!std::filesystem::exists(here / "one.h5.tmp"));
   }
 }

@@ -39,7 +39,7 @@ TEST_CASE("pack writes a specimen that remembers its seed and its recipe, the sa
   CHECK(made["stress_Pa"][0][0].get<double>() == Approx(-1e5).epsilon(1e-3));
   CHECK(made["unbalanced_force_ratio"].get<double>() < 1e-5);
 
-  const auto origin = rvelab::read_origin(here / "S.h5");
+  const auto origin = rvelab::io::read_origin(here / "S.h5");
   REQUIRE(origin);
   CHECK(origin->seed == 5);
   CHECK(origin->draw == made["draw"].get<std::int64_t>());

@@ -92,7 +92,7 @@ TEST_CASE("all of import, pack and inspect say what the numbers of a specimen ar
     CHECK_THAT(shown.output, Contains("proportions") && Contains("void ratio ") && Contains("overlap ") &&
                                  Contains(" r (largest ") && Contains("kn/(p ") && Contains(" diameters\n"));
     const Json json = Json::parse(here.run("inspect " + file + " --json").output);
-    const rvelab::Network network = rvelab::Rve(rvelab::read_specimen(here / file)).network();
+    const rvelab::Network network = rvelab::Rve(rvelab::io::read_specimen(here / file)).network();
     const int d = network.dimension();
     CHECK(json["largest_overlap_ratio"].get<double>() == rvelab::largest_overlap_ratio(network));
     double overlap = 0, stiffness = 0;
@@ -183,7 +183,7 @@ TEST_CASE("pack takes material.key for all materials, and material.NAME.key for 
     const Outcome packed = here.run("pack two.toml -o S.h5 --force --set pack.number=30 " + settings);
     INFO(packed.errors);
     REQUIRE(packed.code == 0);
-    const rvelab::Specimen s = rvelab::read_specimen(here / "S.h5");
+    const rvelab::Specimen s = rvelab::io::read_specimen(here / "S.h5");
     return std::pair(s.materials.at(0).friction, s.materials.at(1).friction);
   };
   CHECK(frictions("--set material.friction=0.3") == std::pair(0.3, 0.3));

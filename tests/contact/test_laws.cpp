@@ -51,9 +51,9 @@ TEST_CASE("laws are found by their names, and each reads parameters of its own r
       Material m;
       for (const LawParameter& other : law_parameters())
         if (other.law == Law(k)) m.*other.value = std::max(other.parameter.allowed.low, 0.0) + 0.1;
-      CHECK_NOTHROW(check(model, {}, {m}));
+      CHECK_NOTHROW(check_parameters(model, {}, {m}));
       m.*each.value = each.parameter.allowed.low - 1;
-      CHECK_THROWS_WITH(check(model, {}, {m}), Catch::Contains(each.parameter.field));
+      CHECK_THROWS_WITH(check_parameters(model, {}, {m}), Catch::Contains(each.parameter.field));
     }
     CHECK(read >= 2);
   }
@@ -71,13 +71,13 @@ TEST_CASE("the pull-off force is what the materials give and the section of the 
   const auto mixed = [&](const Material& a, const Material& b) {
     return mix(model, {}, a, 1e-3, 1, b, 2e-3, 1, section);
   };
-  CHECK(mixed(wet, wet).own == Approx(2 + 500 * section));
-  CHECK(mixed(wet, dry).own == 0);
+  CHECK(mixed(wet, wet).law_constant == Approx(2 + 500 * section));
+  CHECK(mixed(wet, dry).law_constant == 0);
   Material half = wet;
   half.pull_off_force = 1;
   half.adhesion_pressure = 250;
-  CHECK(mixed(wet, half).own == Approx(2 * 4. * 2. / (4. + 2.)));
-  CHECK(mixed(wet, half).own == mixed(half, wet).own);
+  CHECK(mixed(wet, half).law_constant == Approx(2 * 4. * 2. / (4. + 2.)));
+  CHECK(mixed(wet, half).law_constant == mixed(half, wet).law_constant);
   // Everything else is the linear law's.
   ContactModel linear;
   const PairParameters plain = mix(linear, {}, wet, 1e-3, 1, wet, 2e-3, 1, section);

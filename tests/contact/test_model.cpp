@@ -52,7 +52,7 @@ ContactModel model_of(Law law, bool rolling = false) {
 
 std::string finding(const ContactModel& model, const Damping& damping, const std::vector<Material>& materials) {
   try {
-    check(model, damping, materials);
+    check_parameters(model, damping, materials);
   } catch (const InputError& error) {
     return error.what();
   }

@@ -11,7 +11,7 @@ namespace {
 /// YADE's dense packing: 400 discs at 100 kPa, at rest.
 Specimen dense() {
   const std::string base = std::string(RVELAB_TEST_DATA) + "/yade/dense";
-  return import_csv(base + ".particles.csv", base + ".contacts.csv", base + ".json");
+  return io::import_csv(base + ".particles.csv", base + ".contacts.csv", base + ".json");
 }
 
 /// The same grains with springs and forces times `factor`.

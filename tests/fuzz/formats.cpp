@@ -76,21 +76,23 @@ void open_state(const Specimen& specimen) {
 Answer check_protocol(View input) {
   const std::string text = text_of(input);
   return answer([&] {
-    const Protocol protocol = parse_protocol(text, "fuzz.toml");
-    promise(parse_protocol(protocol.resolved, "fuzz.toml").resolved == protocol.resolved,
+    const protocol::Protocol protocol = protocol::parse_protocol(text, "fuzz.toml");
+    promise(protocol::parse_protocol(protocol.resolved, "fuzz.toml").resolved == protocol.resolved,
             "a resolved protocol, read again, is another");
-    static const Specimen specimen = read_specimen(data_file("compat/specimen_1_4.h5"));
-    with_overrides(protocol, specimen);
+    static const Specimen specimen = io::read_specimen(data_file("compat/specimen_1_4.h5"));
+    protocol::with_overrides(protocol, specimen);
   });
 }
 
 Answer check_recipe(View input) {
   const std::string text = text_of(input);
   return answer([&] {
-    const RecipeFile recipe = parse_recipe(text, "fuzz.toml");
-    const auto again = [](const std::string& resolved) { return parse_recipe(resolved, "fuzz.toml").resolved; };
+    const protocol::RecipeFile recipe = protocol::parse_recipe(text, "fuzz.toml");
+    const auto again = [](const std::string& resolved) {
+      return protocol::parse_recipe(resolved, "fuzz.toml").resolved;
+    };
     promise(again(recipe.resolved) == recipe.resolved, "a resolved recipe, read again, is another");
-    const RecipeFile member =
+    const protocol::RecipeFile member =
         recipe.member(7, recipe.pressures.empty() ? std::nullopt : std::optional(recipe.pressures[0]));
     promise(again(member.resolved) == member.resolved, "a member of a family, read again, is another");
   });
@@ -101,8 +103,8 @@ Answer check_material(View input) {
   return answer([&] {
     Specimen specimen;
     specimen.shape = Shape::disc;
-    read_material_file(path, specimen);
-    check(specimen.contact, specimen.damping, specimen.materials);
+    keys::read_material_file(path, specimen);
+    check_parameters(specimen.contact, specimen.damping, specimen.materials);
   });
 }
 
@@ -112,17 +114,17 @@ Answer check_csv(View input) {
     return k < parts.size() ? std::optional(file_of(name, parts[k])) : std::nullopt;
   };
   const auto particles = part(0, "p.csv"), contacts = part(1, "c.csv"), meta = part(2, "m.json");
-  ImportOptions options;
+  io::ImportOptions options;
   if (!meta) options.material_path = data_file("compat/soil.toml");
   if (!meta && !parts[0].starts_with("ITEM:")) options.cell = Vector3(0.04, 0.04, 0.1);
-  return answer([&] { open_state(import_csv(*particles, contacts, meta, options)); });
+  return answer([&] { open_state(io::import_csv(*particles, contacts, meta, options)); });
 }
 
 Answer check_specimen_file(const std::string& path) {
   return answer([&] {
-    file_kind(path);
-    read_origin(path);
-    open_state(read_specimen(path));
+    io::file_kind(path);
+    io::read_origin(path);
+    open_state(io::read_specimen(path));
   });
 }
 
@@ -131,17 +133,17 @@ Answer check_specimen(View input) {
   const std::string path = file_of("s.h5", input), sealed = scratch("sealed.h5");
   const Answer answered = check_specimen_file(path);
   if (answered == Answer::refused) return answered;
-  seal_file(path, sealed);
+  io::seal_file(path, sealed);
   promise(check_specimen_file(sealed) == Answer::taken, "a file that was taken is refused once it is sealed");
   return answered;
 }
 
 Answer check_test(const std::string& path) {
   return answer([&] {
-    const RecordedTest test = read_recorded_test(path);
-    for (const StoredState& state : read_states(path)) open_state(state.specimen);
-    write_recorded_test(test, scratch("again.h5"));
-    promise(read_recorded_test(scratch("again.h5")).result.records.size() == test.result.records.size(),
+    const io::RecordedTest test = io::read_recorded_test(path);
+    for (const io::StoredState& state : io::read_states(path)) open_state(state.specimen);
+    io::write_recorded_test(test, scratch("again.h5"));
+    promise(io::read_recorded_test(scratch("again.h5")).result.records.size() == test.result.records.size(),
             "records that were read and written are fewer");
   });
 }
@@ -183,7 +185,7 @@ Answer check_journal_values(View input) {
 }
 
 Answer check_snapshot_bytes(View bytes) {
-  static Rve rve(read_specimen(data_file("compat/specimen_1_4.h5")));
+  static Rve rve(io::read_specimen(data_file("compat/specimen_1_4.h5")));
   static const Bytes before = rve.save();
   const Answer answered = answer([&] {
     rve.restore(bytes);

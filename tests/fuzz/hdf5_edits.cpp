@@ -80,7 +80,7 @@ const std::vector<hid_t>& other_types() {
 class Editor {
  public:
   Editor(View image, Choices& choices) : choices_(choices) {
-    for (const auto& entry : Hdf5File::from_image("edited", image).entries()) names_.push_back(entry.name);
+    for (const auto& entry : io::Hdf5File::from_image("edited", image).entries()) names_.push_back(entry.name);
     const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
     H5Pset_fapl_core(access, 1 << 16, false);
     H5Pset_file_image(access, const_cast<std::byte*>(image.data()), image.size());

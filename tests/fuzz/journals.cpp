@@ -21,8 +21,8 @@ struct Part {
 const std::vector<Part>& parts() {
   static const std::vector<Part> all = [] {
     constexpr std::size_t number = 8;
-    const Specimen specimen = read_specimen(data_file("compat/specimen_1_4.h5"));
-    const RecordedTest test = read_recorded_test(data_file("compat/records_1_4.h5"));
+    const Specimen specimen = io::read_specimen(data_file("compat/specimen_1_4.h5"));
+    const io::RecordedTest test = io::read_recorded_test(data_file("compat/records_1_4.h5"));
     const auto& result = test.result;
     std::vector<Part> made{
         {io::begin_frame, 0, io::encode_begin({result.protocol, test.provenance.protocol, result.stages, specimen})}};
@@ -31,7 +31,7 @@ const std::vector<Part>& parts() {
     }
     made.push_back({io::probe_frame, number, io::encode_probe(0, result.probes.at(0))});
     made.push_back({io::snapshot_frame, number, io::encode_snapshot(1, specimen)});
-    Checkpoint checkpoint{{}, specimen};
+    records::Checkpoint checkpoint{{}, specimen};
     checkpoint.progress.records = 3;
     checkpoint.progress.stage = 2;
     made.push_back({io::checkpoint_frame, 0, io::encode_checkpoint(checkpoint)});

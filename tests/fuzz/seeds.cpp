@@ -71,7 +71,7 @@ std::vector<Bytes> record_seeds() {
   return {seed_file("compat/records_1_4.h5"), seed_file("compat/records_1_3.h5"), seed_file("compat/records_1_0.h5")};
 }
 std::vector<Bytes> journal_seeds() { return {whole_journal()}; }
-std::vector<Bytes> snapshot_seeds() { return {Rve(read_specimen(data_file("compat/specimen_1_4.h5"))).save()}; }
+std::vector<Bytes> snapshot_seeds() { return {Rve(io::read_specimen(data_file("compat/specimen_1_4.h5"))).save()}; }
 
 std::vector<Bytes> choice_seeds() {
   std::vector<Bytes> seeds{{}};

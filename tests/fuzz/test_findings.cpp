@@ -23,7 +23,7 @@ using test::input_error;
 
 namespace {
 
-Specimen nine_grains() { return read_specimen(data_file("compat/specimen_1_4.h5")); }
+Specimen nine_grains() { return io::read_specimen(data_file("compat/specimen_1_4.h5")); }
 
 /// An HDF5 file as another program leaves it that changes something in it.
 template <class Change>
@@ -42,23 +42,25 @@ std::string changed(View image, Change change) {
 
 TEST_CASE("a whole number that no double holds is a number like any other") {
   Specimen specimen = nine_grains();
-  set_key(specimen, "solver.min_height_m=9007199254740993");
+  keys::set_key(specimen, "solver.min_height_m=9007199254740993");
   CHECK(specimen.solver.min_height == 9007199254740992.0);
-  CHECK_THAT(input_error([&] { set_key(specimen, "damping.local=9223372036854775807"); }),
+  CHECK_THAT(input_error([&] { keys::set_key(specimen, "damping.local=9223372036854775807"); }),
              Contains("damping.local = 9223372036854775807 is out of range"));
 
   const std::string shear = "[test]\nname = \"t\"\n[[stage]]\nkind = \"simple_shear\"\nto_strain = 0.1\n";
-  CHECK_THAT(input_error([&] { parse_protocol(shear + "record_every = -9223372036854775807\n", "t.toml"); }),
+  CHECK_THAT(input_error([&] { protocol::parse_protocol(shear + "record_every = -9223372036854775807\n", "t.toml"); }),
              Contains("t.toml:6") && Contains("record_every = -9223372036854775807 is out of range"));
   const std::string path = "[test]\nname = \"t\"\n[[stage]]\nkind = \"deformation\"\n";
-  const Protocol far = parse_protocol(path + "gradients = [[9223372036854775807, 0, 0, 1]]\n", "t.toml");
-  CHECK(std::any_cast<const DeformationStage&>(far.stages.at(0).what).gradients.at(0)(0, 0) == 9223372036854775808.0);
+  const protocol::Protocol far =
+      protocol::parse_protocol(path + "gradients = [[9223372036854775807, 0, 0, 1]]\n", "t.toml");
+  CHECK(std::any_cast<const protocol::DeformationStage&>(far.stages.at(0).what).gradients.at(0)(0, 0) ==
+        9223372036854775808.0);
 }
 
 TEST_CASE("a number beyond all doubles in META.json is a mistake of the file") {
   const test::Folder folder;
   test::write_bytes(folder / "m.json", "{\"dim\": 2, \"thickness_m\": 1e999}");
-  CHECK_THAT(input_error([&] { import_csv(data_file("compat/grains.csv"), {}, folder / "m.json"); }),
+  CHECK_THAT(input_error([&] { io::import_csv(data_file("compat/grains.csv"), {}, folder / "m.json"); }),
              Contains("m.json: is not JSON") && Contains("1e999"));
 }
 
@@ -77,7 +79,7 @@ TEST_CASE("a sealed file whose dataset says that it is larger than what is store
   const auto seal = io::seal_of(std::as_bytes(std::span(bytes)));
   bytes.append(reinterpret_cast<const char*>(seal.data()), seal.size());
   test::write_bytes(folder / "s.h5", bytes);
-  CHECK_THAT(input_error([&] { read_specimen(folder / "s.h5"); }),
+  CHECK_THAT(input_error([&] { io::read_specimen(folder / "s.h5"); }),
              Contains("/grains/radius_m says that it is larger than what is stored of it"));
 }
 
@@ -98,7 +100,7 @@ TEST_CASE("a journal whose columns have no width is refused, and no row is read 
     io::Journal journal(path);
     journal.begin();
     journal.append(io::begin_frame, std::as_bytes(std::span(begin)));
-    journal.append(io::record_frame, io::encode_record(0, Record{}));
+    journal.append(io::record_frame, io::encode_record(0, records::Record{}));
   }
   CHECK_THAT(input_error([&] { io::read_record_journal(path); }), Contains("its list of columns is damaged"));
 }

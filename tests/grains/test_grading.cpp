@@ -90,7 +90,7 @@ TEST_CASE("one size is one size, whatever the curve") {
 TEST_CASE("what is no grading is refused with its name and what is allowed") {
   const auto message = [](const Grading& grading) -> std::string {
     try {
-      check(grading, "grains.sand");
+      check_grading(grading, "grains.sand");
     } catch (const InputError& error) {
       return error.what();
     }

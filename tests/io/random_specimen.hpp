@@ -74,7 +74,7 @@ struct Pairs {
   Visit visit;
 
   void operator()(Specimen& a, Specimen& b) { visit.specimens(a, b); }
-  void operator()(TestResult& a, TestResult& b) {
+  void operator()(records::TestResult& a, records::TestResult& b) {
     auto& [protocol, axis, pressure, stages, records, probes, wall, steps] = a;
     auto& [protocol2, axis2, pressure2, stages2, records2, probes2, wall2, steps2] = b;
     all(protocol, protocol2, axis, axis2, pressure, pressure2, wall, wall2, steps, steps2);
@@ -82,7 +82,7 @@ struct Pairs {
     lists(records, records2);
     lists(probes, probes2);
   }
-  void operator()(Checkpoint& a, Checkpoint& b) {
+  void operator()(records::Checkpoint& a, records::Checkpoint& b) {
     (*this)(a.specimen, b.specimen);
     fields(a.progress, b.progress);
   }
@@ -97,7 +97,7 @@ struct Pairs {
     visit(a, b);
     if constexpr (sizeof...(rest) > 0) all(rest...);
   }
-  void fields(ProbeResult& a, ProbeResult& b) {
+  void fields(records::ProbeResult& a, records::ProbeResult& b) {
     auto& [stage, stiffness] = a;
     auto& [stage2, stiffness2] = b;
     visit(stage, stage2);
@@ -105,16 +105,16 @@ struct Pairs {
       visit(stiffness.data()[k], stiffness2.data()[k]);
     }
   }
-  void fields(Progress& a, Progress& b) {
+  void fields(records::Progress& a, records::Progress& b) {
     auto& [k, l, m, n, o, p, q, r, s, t, u, v, strains, first, turns, place, visits, largest, w, x, y, z] = a;
     auto& [k2, l2, m2, n2, o2, p2, q2, r2, s2, t2, u2, v2, strains2, first2, turns2, place2, visits2, largest2, w2, x2,
            y2, z2] = b;
     all(k, k2, l, l2, m, m2, n, n2, o, o2, p, p2, q, q2, r, r2, s, s2, t, t2, u, u2, v, v2, w, w2, x, x2, y, y2, z, z2);
     all(strains, strains2, first, first2, turns, turns2, place, place2, visits, visits2, largest, largest2);
   }
-  void fields(Record& a, Record& b) {
-    auto& [k, l, m, n, o, p, q, r, s, balanced, asked] = static_cast<RecordedState&>(a);
-    auto& [k2, l2, m2, n2, o2, p2, q2, r2, s2, balanced2, asked2] = static_cast<RecordedState&>(b);
+  void fields(records::Record& a, records::Record& b) {
+    auto& [k, l, m, n, o, p, q, r, s, balanced, asked] = static_cast<records::RecordedState&>(a);
+    auto& [k2, l2, m2, n2, o2, p2, q2, r2, s2, balanced2, asked2] = static_cast<records::RecordedState&>(b);
     visit(balanced, balanced2);
     all(k, k2, l, l2, m, m2, n, n2, o, o2, p, p2, q, q2, r, r2, s, s2);
     records::Quantities::for_each([&]<class Quantity>(std::type_identity<Quantity>, std::uint64_t) {
@@ -237,21 +237,21 @@ inline Specimen random_specimen(unsigned seed, std::size_t grain_count = 17, std
   return specimen;
 }
 
-inline TestResult random_result(unsigned seed, std::size_t record_count = 23) {
-  TestResult result;
+inline records::TestResult random_result(unsigned seed, std::size_t record_count = 23) {
+  records::TestResult result;
   result.stages = {"isotropic", "shear"};
   result.records.resize(record_count);
   result.probes.resize(5);
-  for (ProbeResult& probe : result.probes) probe.stiffness.setZero(6, 6);
+  for (records::ProbeResult& probe : result.probes) probe.stiffness.setZero(6, 6);
   Pairs<RandomFill>{RandomFill(seed)}(result, result);
   return result;
 }
 
-inline Checkpoint random_checkpoint(unsigned seed) {
-  Checkpoint checkpoint{{}, random_specimen(seed)};
+inline records::Checkpoint random_checkpoint(unsigned seed) {
+  records::Checkpoint checkpoint{{}, random_specimen(seed)};
   checkpoint.progress.visits.resize(2);
   checkpoint.progress.largest.resize(7);
-  Checkpoint filled = checkpoint;
+  records::Checkpoint filled = checkpoint;
   Pairs<RandomFill>{RandomFill(seed + 1)}(filled, filled);
   return {filled.progress, checkpoint.specimen};
 }

@@ -9,7 +9,7 @@
 namespace rvelab::test {
 
 template <class Scalar>
-bool same_values(const Hdf5File& a, const Hdf5File& b, const std::string& name) {
+bool same_values(const io::Hdf5File& a, const io::Hdf5File& b, const std::string& name) {
   const auto left = a.read<Scalar>(name), right = b.read<Scalar>(name);
   return left.size() == right.size() &&
          (left.empty() || std::memcmp(left.data(), right.data(), left.size() * sizeof(Scalar)) == 0);
@@ -17,16 +17,16 @@ bool same_values(const Hdf5File& a, const Hdf5File& b, const std::string& name) 
 
 /// The first dataset that differs; "" if none does.
 inline std::string first_different_dataset(const std::string& path_a, const std::string& path_b) {
-  const auto a = Hdf5File::open(path_a), b = Hdf5File::open(path_b);
-  const auto outside = [](const Hdf5File& file) {
+  const auto a = io::Hdf5File::open(path_a), b = io::Hdf5File::open(path_b);
+  const auto outside = [](const io::Hdf5File& file) {
     auto entries = file.entries();
-    std::erase_if(entries, [](const Hdf5Entry& entry) { return entry.name.starts_with("/provenance/"); });
+    std::erase_if(entries, [](const io::Hdf5Entry& entry) { return entry.name.starts_with("/provenance/"); });
     return entries;
   };
   const auto left = outside(a), right = outside(b);
   for (std::size_t k = 0; k < std::max(left.size(), right.size()); ++k) {
     if (k >= left.size()) return right[k].name;
-    const Hdf5Entry& entry = left[k];
+    const io::Hdf5Entry& entry = left[k];
     if (k >= right.size() || entry.name != right[k].name || entry.type != right[k].type ||
         entry.shape != right[k].shape || entry.units != right[k].units) {
       return entry.name;

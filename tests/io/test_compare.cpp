@@ -18,25 +18,25 @@ using Catch::Matchers::Contains;
 namespace {
 
 /// What compare_files says of two files of one dataset /d each; "" if they are equal.
-std::string between(const std::vector<double>& a, const std::vector<double>& b, const Shape64& shape) {
+std::string between(const std::vector<double>& a, const std::vector<double>& b, const io::Shape64& shape) {
   const Folder folder;
-  publish(folder / "a.h5", [&](Hdf5File& file) { file.write<double>("/d", a, shape, "m"); });
-  publish(folder / "b.h5", [&](Hdf5File& file) { file.write<double>("/d", b, shape, "m"); });
-  return first_difference(folder / "a.h5", folder / "b.h5").value_or("");
+  io::publish(folder / "a.h5", [&](io::Hdf5File& file) { file.write<double>("/d", a, shape, "m"); });
+  io::publish(folder / "b.h5", [&](io::Hdf5File& file) { file.write<double>("/d", b, shape, "m"); });
+  return io::first_difference(folder / "a.h5", folder / "b.h5").value_or("");
 }
 
 }  // namespace
 
 TEST_CASE("files of the same content are equal, whatever their provenance says") {
   const Folder folder;
-  TestResult result = random_result(1);
-  write_records(result, random_specimen(1), "one", folder / "a.h5");
+  records::TestResult result = random_result(1);
+  io::write_records(result, random_specimen(1), "one", folder / "a.h5");
   result.wall_seconds = 3;
-  write_records(result, random_specimen(1), "another", folder / "b.h5");
-  const auto same = compare_files(folder / "a.h5", folder / "b.h5");
+  io::write_records(result, random_specimen(1), "another", folder / "b.h5");
+  const auto same = io::compare_files(folder / "a.h5", folder / "b.h5");
   CHECK(!same.difference);
   std::size_t datasets = 0;
-  for (const auto& entry : Hdf5File::open(folder / "a.h5").entries()) {
+  for (const auto& entry : io::Hdf5File::open(folder / "a.h5").entries()) {
     datasets += entry.name.starts_with("/provenance/") ? 0 : 1;
   }
   CHECK(same.datasets == datasets);
@@ -46,10 +46,10 @@ TEST_CASE("files of the same content are equal, whatever their provenance says")
 TEST_CASE("every field of a specimen counts, down to its last bit") {
   const Folder folder;
   const Specimen specimen = random_specimen(2);
-  write_specimen(specimen, folder / "a.h5");
+  io::write_specimen(specimen, folder / "a.h5");
   const auto difference = [&](const Specimen& changed) {
-    write_specimen(changed, folder / "b.h5");
-    return first_difference(folder / "a.h5", folder / "b.h5").value_or("");
+    io::write_specimen(changed, folder / "b.h5");
+    return io::first_difference(folder / "a.h5", folder / "b.h5").value_or("");
   };
   CHECK(difference(specimen).empty());
   const auto one_bit = [](double& value) { value = std::bit_cast<double>(std::bit_cast<std::uint64_t>(value) ^ 1); };
@@ -88,42 +88,42 @@ TEST_CASE("names, kinds, types, shapes and attributes count too") {
   const double number = 1;
   const std::int32_t whole = 1;
   const auto difference = [&](auto fill_a, auto fill_b) {
-    publish(folder / "a.h5", fill_a);
-    publish(folder / "b.h5", fill_b);
-    const auto forth = first_difference(folder / "a.h5", folder / "b.h5");
-    CHECK(forth.has_value() == first_difference(folder / "b.h5", folder / "a.h5").has_value());
+    io::publish(folder / "a.h5", fill_a);
+    io::publish(folder / "b.h5", fill_b);
+    const auto forth = io::first_difference(folder / "a.h5", folder / "b.h5");
+    CHECK(forth.has_value() == io::first_difference(folder / "b.h5", folder / "a.h5").has_value());
     return forth.value_or("");
   };
-  const auto plain = [&](Hdf5File& file) { file.write<double>("/g/d", {&number, 1}, {}, "m"); };
+  const auto plain = [&](io::Hdf5File& file) { file.write<double>("/g/d", {&number, 1}, {}, "m"); };
   CHECK(difference(plain, plain).empty());
   CHECK_THAT(difference(plain,
-                        [&](Hdf5File& file) {
+                        [&](io::Hdf5File& file) {
                           plain(file);
                           file.write<double>("/g/e", {&number, 1}, {}, "m");
                         }),
              Contains("/g/e is in") && Contains("b.h5 only"));
   CHECK_THAT(difference(plain,
-                        [&](Hdf5File& file) {
+                        [&](io::Hdf5File& file) {
                           file.write<double>("/g", {&number, 1}, {}, "m");
                         }),
              Contains("/g is a group in") && Contains("a dataset in"));
   CHECK_THAT(difference(plain,
-                        [&](Hdf5File& file) {
+                        [&](io::Hdf5File& file) {
                           file.write<double>("/g/d", {&number, 1}, {}, "mm");
                         }),
              Contains("attribute units of /g/d differs: \"m\" in"));
   CHECK_THAT(difference(plain,
-                        [&](Hdf5File& file) {
+                        [&](io::Hdf5File& file) {
                           file.write<double>("/g/d", {&number, 1}, {1}, "m");
                         }),
              Contains("another shape: () in") && Contains("(1) in"));
   CHECK_THAT(difference(plain,
-                        [&](Hdf5File& file) {
+                        [&](io::Hdf5File& file) {
                           file.write<std::int32_t>("/g/d", {&whole, 1}, {}, "m");
                         }),
              Contains("another type: float64 in") && Contains("int32 in"));
   CHECK_THAT(difference(plain,
-                        [&](Hdf5File& file) {
+                        [&](io::Hdf5File& file) {
                           plain(file);
                           file.set_attribute("complete", "1");
                         }),
@@ -133,5 +133,6 @@ TEST_CASE("names, kinds, types, shapes and attributes count too") {
 TEST_CASE("what is no HDF5 file cannot be compared") {
   const Folder folder;
   write_bytes(folder / "a.h5", "text");
-  CHECK_THAT(input_error([&] { first_difference(folder / "a.h5", folder / "b.h5"); }), Contains("not an HDF5 file"));
+  CHECK_THAT(input_error([&] { io::first_difference(folder / "a.h5", folder / "b.h5"); }),
+             Contains("not an HDF5 file"));
 }

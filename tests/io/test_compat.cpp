@@ -18,16 +18,16 @@ TEST_CASE("files of every version of the format are read with all that they hold
                       specimen = folder + "specimen_" + version + ".h5";
     std::string dotted = version;
     dotted[1] = '.';
-    CHECK(Hdf5File::open(records).attribute("format_version") == dotted);
-    CHECK(Hdf5File::open(specimen).sealed() == (version >= "1_4"));
+    CHECK(io::Hdf5File::open(records).attribute("format_version") == dotted);
+    CHECK(io::Hdf5File::open(specimen).sealed() == (version >= "1_4"));
 
-    const Specimen start = read_specimen(specimen);
+    const Specimen start = io::read_specimen(specimen);
     REQUIRE(start.grains.size() == 9);
     CHECK(start.grains.radius[7] == 0.00506);
     CHECK(start.materials.at(0).name == "sand");
     CHECK(start.materials[0].friction == 0.42);
 
-    const RecordedTest test = read_recorded_test(records);
+    const io::RecordedTest test = io::read_recorded_test(records);
     CHECK(test.complete);
     CHECK(test.result.protocol == "compat");
     CHECK(test.result.axis == "y");

@@ -14,7 +14,7 @@ namespace {
 /// Two grains, whatever the dress.
 void expect_two_grains(const std::string& text) {
   CAPTURE(text);
-  const CsvTable table("grains.csv", text);
+  const io::CsvTable table("grains.csv", text);
   REQUIRE(table.rows() == 2);
   CHECK(table.integer(1, table.column({"id"})) == 2);
   CHECK(table.number(0, table.column({"x"})) == 0.25);
@@ -25,7 +25,7 @@ void expect_two_grains(const std::string& text) {
 
 std::string message_of(const std::string& text) {
   try {
-    const CsvTable table("grains.csv", text);
+    const io::CsvTable table("grains.csv", text);
     for (std::size_t row = 0; row < table.rows(); ++row) static_cast<void>(table.number(row, table.column({"x"})));
   } catch (const InputError& error) {
     return error.what();
@@ -45,7 +45,7 @@ TEST_CASE("a table reads the same with a byte order mark, semicolons, quotation 
 }
 
 TEST_CASE("a cell in quotation marks may hold the delimiter and doubled marks") {
-  const CsvTable table("t.csv", "id,x,material\n1,2,\"glass, \"\"fine\"\"\"\n");
+  const io::CsvTable table("t.csv", "id,x,material\n1,2,\"glass, \"\"fine\"\"\"\n");
   CHECK(table.text(0, table.column({"material"})) == "glass, \"fine\"");
   CHECK_THAT(message_of("id,x\n1,\"2\n"), Contains("grains.csv:2: a quotation mark is not closed"));
   CHECK_THAT(message_of("id,x\n1,\"2\"3\n"), Contains("grains.csv:2: text follows a closing quotation mark"));
@@ -56,7 +56,7 @@ TEST_CASE("what could be read in two ways is refused") {
   CHECK_THAT(message_of("id,x\n1,0,5\n"), Contains("the row has 3 cells"));
   CHECK_THAT(message_of("id,X,x\n1,0,5\n"), !Contains("columns"));  // the name as it is goes first
   CHECK_THAT(message_of("id,X,X\n1,0,5\n"), Contains("the column X twice"));
-  const CsvTable two("t.csv", "id,Radius,RADIUS\n1,2,3\n");
+  const io::CsvTable two("t.csv", "id,Radius,RADIUS\n1,2,3\n");
   CHECK_THROWS_WITH(two.column({"radius"}), Contains("has the columns Radius and RADIUS"));
 }
 

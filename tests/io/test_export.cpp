@@ -30,7 +30,7 @@ namespace {
 
 Specimen packing(const std::string& name) {
   const std::string stem = std::string(RVELAB_TEST_DATA) + "/yade/" + name;
-  return import_csv(stem + ".particles.csv", stem + ".contacts.csv", stem + ".json");
+  return io::import_csv(stem + ".particles.csv", stem + ".contacts.csv", stem + ".json");
 }
 
 /// Sheared and turned, so that the lattice leans and the frame is not the laboratory's.
@@ -47,16 +47,16 @@ Specimen sheared(const std::string& name) {
   return specimen;
 }
 
-ExportState state_of(const Specimen& specimen, long record = 0) {
+io::ExportState state_of(const Specimen& specimen, long record = 0) {
   const Rve rve(specimen);
   return {record, 0, rve.specimen(), rve.network()};
 }
 
 Specimen through_csv(const Folder& folder, const Specimen& specimen) {
-  const CsvExport files = export_csv(specimen, folder / "s");
-  ImportOptions options;
+  const io::CsvExport files = io::export_csv(specimen, folder / "s");
+  io::ImportOptions options;
   options.material_path = files.material;
-  return import_csv(files.particles, files.contacts, files.meta, options);
+  return io::import_csv(files.particles, files.contacts, files.meta, options);
 }
 
 /// x modulo the lattice, as fractions next to zero.
@@ -73,9 +73,9 @@ TEST_CASE("a packing goes through CSV and comes back bit for bit where its frame
   for (const char* name : {"dense", "hertz", "soft"}) {
     CAPTURE(name);
     const Specimen specimen = packing(name);
-    write_specimen(specimen, folder / "a.h5");
-    write_specimen(through_csv(folder, specimen), folder / "b.h5");
-    CHECK(first_difference(folder / "a.h5", folder / "b.h5").value_or("") == "");
+    io::write_specimen(specimen, folder / "a.h5");
+    io::write_specimen(through_csv(folder, specimen), folder / "b.h5");
+    CHECK(io::first_difference(folder / "a.h5", folder / "b.h5").value_or("") == "");
   }
 }
 
@@ -119,8 +119,8 @@ TEST_CASE("every parameter goes through the material file, whatever law and dash
       }
       specimen.materials[1].name = "grès \"fin\"";
       Specimen read;
-      write_bytes(folder / "m.toml", material_file_text(specimen));
-      const std::string message = input_error([&] { read_material_file(folder / "m.toml", read); });
+      write_bytes(folder / "m.toml", io::material_file_text(specimen));
+      const std::string message = input_error([&] { keys::read_material_file(folder / "m.toml", read); });
       CAPTURE(name(law), name(dashpot), bytes_of(folder / "m.toml"), message);
       CHECK(message.empty());
       CHECK(differences(specimen, read) == 0);
@@ -132,10 +132,11 @@ TEST_CASE("material names that a CSV cell cannot hold are refused") {
   const Folder folder;
   Specimen specimen = packing("dense");
   specimen.materials[0].name = "sand, fine";
-  CHECK_THAT(input_error([&] { export_csv(specimen, folder / "s"); }), Contains("sand, fine") && Contains("rename"));
+  CHECK_THAT(input_error([&] { io::export_csv(specimen, folder / "s"); }),
+             Contains("sand, fine") && Contains("rename"));
   specimen.materials[0].name = "sand";
   specimen.materials.push_back(specimen.materials[0]);
-  CHECK_THAT(input_error([&] { export_csv(specimen, folder / "s"); }), Contains("each once"));
+  CHECK_THAT(input_error([&] { io::export_csv(specimen, folder / "s"); }), Contains("each once"));
 }
 
 TEST_CASE("vectors within LAMMPS' tilt limits span the same lattice, and the box holds each grain once") {
@@ -162,12 +163,12 @@ TEST_CASE("a dump read back by the importer has the cell, the positions and the 
   for (const char* name : {"dense", "hertz"}) {
     CAPTURE(name);
     const Specimen before = sheared(name);
-    const ExportState state = state_of(before);
-    export_lammps_dump({state_of(packing(name)), state}, folder / "s.dump");  // the last timestep counts
-    write_bytes(folder / "m.toml", material_file_text(before));
-    ImportOptions options;
+    const io::ExportState state = state_of(before);
+    io::export_lammps_dump({state_of(packing(name)), state}, folder / "s.dump");  // the last timestep counts
+    write_bytes(folder / "m.toml", io::material_file_text(before));
+    io::ImportOptions options;
     options.material_path = folder / "m.toml";
-    const Specimen after = import_csv(folder / "s.dump", std::nullopt, std::nullopt, options);
+    const Specimen after = io::import_csv(folder / "s.dump", std::nullopt, std::nullopt, options);
     CHECK(after.cell.dimension == before.cell.dimension);
     const Matrix3& lattice = before.cell.lattice;
     CHECK((after.cell.lattice - io::within_tilt_limits(lattice)).norm() < 1e-15);
@@ -185,7 +186,7 @@ TEST_CASE("a dump read back by the importer has the cell, the positions and the 
 
 TEST_CASE("a dump states the cuboid around the tilted box, and its tilts") {
   const Folder folder;
-  export_lammps_dump({state_of(sheared("hertz"), 7)}, folder / "s.dump");
+  io::export_lammps_dump({state_of(sheared("hertz"), 7)}, folder / "s.dump");
   std::istringstream text(bytes_of(folder / "s.dump"));
   std::vector<std::string> lines;
   for (std::string line; std::getline(text, line);) lines.push_back(line);
@@ -213,15 +214,15 @@ TEST_CASE("a dump states the cuboid around the tilted box, and its tilts") {
 
 TEST_CASE("a dump that is cut, not periodic or of unknown types is refused with its line") {
   const Folder folder;
-  export_lammps_dump({state_of(packing("dense"))}, folder / "s.dump");
+  io::export_lammps_dump({state_of(packing("dense"))}, folder / "s.dump");
   const std::string whole = bytes_of(folder / "s.dump");
-  write_bytes(folder / "m.toml", material_file_text(packing("dense")));
+  write_bytes(folder / "m.toml", io::material_file_text(packing("dense")));
   const auto message = [&](std::string text, const std::string& materials = "") {
     write_bytes(folder / "t.dump", text);
     write_bytes(folder / "n.toml", bytes_of(folder / "m.toml") + materials);
-    ImportOptions options;
+    io::ImportOptions options;
     options.material_path = folder / "n.toml";
-    return input_error([&] { import_csv(folder / "t.dump", std::nullopt, std::nullopt, options); });
+    return input_error([&] { io::import_csv(folder / "t.dump", std::nullopt, std::nullopt, options); });
   };
   CHECK(message(whole).empty());
   CHECK_THAT(message(whole.substr(0, whole.find("ITEM: BOX"))), Contains("no ITEM: BOX BOUNDS"));
@@ -253,11 +254,11 @@ TEST_CASE("the mean stresses of the grains, weighted with their volumes, are the
 
 TEST_CASE("XDMF names arrays that are in the file beside it, of the extents and types that it states") {
   const Folder folder;
-  const std::vector<ExportState> states{state_of(packing("hertz"), 0), state_of(sheared("hertz"), 4)};
-  export_xdmf(states, folder / "s.xdmf");
-  const auto heavy = Hdf5File::open(folder / "s.xdmf.h5");
+  const std::vector<io::ExportState> states{state_of(packing("hertz"), 0), state_of(sheared("hertz"), 4)};
+  io::export_xdmf(states, folder / "s.xdmf");
+  const auto heavy = io::Hdf5File::open(folder / "s.xdmf.h5");
   const std::string text = bytes_of(folder / "s.xdmf");
-  std::map<std::string, Hdf5Entry> entries;
+  std::map<std::string, io::Hdf5Entry> entries;
   for (const auto& entry : heavy.entries()) entries[entry.name] = entry;
   const std::map<std::string, std::string> types{{"NumberType=\"Float\" Precision=\"8\"", "float64"},
                                                  {"NumberType=\"Int\" Precision=\"4\"", "int32"},
@@ -321,9 +322,9 @@ TEST_CASE("the sliding flag of a contact counts as the measure does") {
   Matrix3 dh = Matrix3::Zero();
   dh(0, 1) = 0.01;
   rve.apply(dh, 0);
-  const ExportState state = state_of(rve.specimen());
-  export_xdmf({state}, folder / "s.xdmf");
-  const auto sliding = Hdf5File::open(folder / "s.xdmf.h5").read<std::uint8_t>("/state_0/contacts/sliding");
+  const io::ExportState state = state_of(rve.specimen());
+  io::export_xdmf({state}, folder / "s.xdmf");
+  const auto sliding = io::Hdf5File::open(folder / "s.xdmf.h5").read<std::uint8_t>("/state_0/contacts/sliding");
   const double fraction = double(std::count(sliding.begin(), sliding.end(), 1)) / double(sliding.size());
   CHECK(fraction == sliding_fraction(state.network));
   CHECK(fraction > 0);
@@ -334,19 +335,19 @@ TEST_CASE("a state without contacts has no block of them") {
   Specimen specimen = packing("dense");
   specimen.contacts.clear();
   for (double& radius : specimen.grains.radius) radius *= 0.5;
-  export_xdmf({state_of(specimen)}, folder / "s.xdmf");
+  io::export_xdmf({state_of(specimen)}, folder / "s.xdmf");
   CHECK(bytes_of(folder / "s.xdmf").find("Name=\"contacts\" GridType") == std::string::npos);
-  CHECK(!Hdf5File::open(folder / "s.xdmf.h5").has("/state_0/contacts"));
+  CHECK(!io::Hdf5File::open(folder / "s.xdmf.h5").has("/state_0/contacts"));
 }
 
 namespace {
 
 /// A record file with states under /snapshots, named as given.
 void add_snapshots(const std::string& from, const std::string& to, const std::map<std::string, Specimen>& snapshots) {
-  const auto source = Hdf5File::open(from);
-  publish(to, [&](Hdf5File& file) {
+  const auto source = io::Hdf5File::open(from);
+  io::publish(to, [&](io::Hdf5File& file) {
     for (const auto& name : source.attributes()) file.set_attribute(name, source.attribute(name));
-    const auto copy = [&]<class Scalar>(const Hdf5Entry& entry, Scalar) {
+    const auto copy = [&]<class Scalar>(const io::Hdf5Entry& entry, Scalar) {
       file.write<Scalar>(entry.name, source.read<Scalar>(entry.name), entry.shape, entry.units);
     };
     for (const auto& entry : source.entries()) {
@@ -366,17 +367,17 @@ void add_snapshots(const std::string& from, const std::string& to, const std::ma
 TEST_CASE("the states of a file are its snapshots in the order of their records, then its end state") {
   const Folder folder;
   const Specimen end = random_specimen(1), early = random_specimen(2), late = random_specimen(3);
-  write_specimen(end, folder / "s.h5");
-  REQUIRE(read_states(folder / "s.h5").size() == 1);
-  const TestResult result = random_result(4);
-  write_records(result, end, "", folder / "r.h5");
-  const auto without = read_states(folder / "r.h5");
+  io::write_specimen(end, folder / "s.h5");
+  REQUIRE(io::read_states(folder / "s.h5").size() == 1);
+  const records::TestResult result = random_result(4);
+  io::write_records(result, end, "", folder / "r.h5");
+  const auto without = io::read_states(folder / "r.h5");
   REQUIRE(without.size() == 1);
   CHECK(without[0].record == 23);
   CHECK(differences(without[0].specimen, end) == 0);
 
   add_snapshots(folder / "r.h5", folder / "t.h5", {{"000010", late}, {"000003", early}});
-  const auto states = read_states(folder / "t.h5");
+  const auto states = io::read_states(folder / "t.h5");
   REQUIRE(states.size() == 3);
   CHECK(states[0].record == 3);
   CHECK(differences(states[0].specimen, early) == 0);
@@ -385,5 +386,5 @@ TEST_CASE("the states of a file are its snapshots in the order of their records,
   CHECK(differences(states[1].specimen, late) == 0);
   CHECK(differences(states[2].specimen, end) == 0);
   add_snapshots(folder / "r.h5", folder / "u.h5", {{"first", early}});
-  CHECK_THAT(input_error([&] { read_states(folder / "u.h5"); }), Contains("/snapshots/first"));
+  CHECK_THAT(input_error([&] { io::read_states(folder / "u.h5"); }), Contains("/snapshots/first"));
 }

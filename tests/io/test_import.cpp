@@ -16,9 +16,9 @@ namespace {
 
 const std::string packings = std::string(RVELAB_TEST_DATA) + "/yade/";
 
-Specimen packing(const std::string& name, const ImportOptions& options = {}) {
-  return import_csv(packings + name + ".particles.csv", packings + name + ".contacts.csv", packings + name + ".json",
-                    options);
+Specimen packing(const std::string& name, const io::ImportOptions& options = {}) {
+  return io::import_csv(packings + name + ".particles.csv", packings + name + ".contacts.csv",
+                        packings + name + ".json", options);
 }
 
 Vector3 branch(const Specimen& s, const Contact& c) {
@@ -156,7 +156,7 @@ TEST_CASE("contacts written the other way round are the same contacts") {
   }
   write_bytes(folder / "turned.csv", turned);
   const Specimen s = packing("dense");
-  const Specimen t = import_csv(packings + "dense.particles.csv", folder / "turned.csv", packings + "dense.json");
+  const Specimen t = io::import_csv(packings + "dense.particles.csv", folder / "turned.csv", packings + "dense.json");
   REQUIRE(s.contacts.size() == t.contacts.size());
   for (std::size_t k = 0; k < s.contacts.size(); ++k) {
     const Contact &a = s.contacts[k], &b = t.contacts[k];
@@ -187,7 +187,7 @@ TEST_CASE("a cell that is turned in the laboratory is the same cell in its own f
              << '\n';
     write_bytes(folder / (name + ".p.csv"), particles.str());
     write_bytes(folder / (name + ".c.csv"), contacts.str());
-    return import_csv(folder / (name + ".p.csv"), folder / (name + ".c.csv"), folder / (name + ".json"));
+    return io::import_csv(folder / (name + ".p.csv"), folder / (name + ".c.csv"), folder / (name + ".json"));
   };
   const Specimen upright = write("upright", Matrix3::Identity()), turned = write("turned", q);
   CHECK(upright.cell.rotation == Matrix3::Identity());
@@ -212,14 +212,14 @@ const std::string sand =
 
 struct LooseSpheres {
   Folder folder;
-  ImportOptions options;
+  io::ImportOptions options;
   explicit LooseSpheres(const std::string& particles, const std::string& material = sand) {
     write_bytes(folder / "p.csv", particles);
     write_bytes(folder / "m.toml", material);
     options.material_path = folder / "m.toml";
     options.cell = Vector3(2, 3, 4);
   }
-  Specimen specimen() const { return import_csv(folder / "p.csv", std::nullopt, std::nullopt, options); }
+  Specimen specimen() const { return io::import_csv(folder / "p.csv", std::nullopt, std::nullopt, options); }
   std::string error() const {
     return input_error([&] { specimen(); });
   }
@@ -250,7 +250,7 @@ TEST_CASE("several materials go by the column material") {
 }
 
 TEST_CASE("what --set says is kept, and is the last word") {
-  ImportOptions options;
+  io::ImportOptions options;
   options.settings = {"contact.slip=full_radius_ratcheting", "material.friction=0", "solver.skin=0.15"};
   const Specimen s = packing("dense", options);
   CHECK(s.contact.slip == Slip::full_radius_ratcheting);
@@ -275,7 +275,7 @@ TEST_CASE("a bad particle file is refused with file, line, column, value and rem
   CHECK_THAT(error("id,x,y,z,r\n"), Contains("no rows"));
   CHECK_THAT(error("# nothing\n"), Contains("no header"));
   CHECK_THAT(error(""), Contains("p.csv"));
-  CHECK_THAT(input_error([] { import_csv("none.csv", std::nullopt, std::nullopt); }),
+  CHECK_THAT(input_error([] { io::import_csv("none.csv", std::nullopt, std::nullopt); }),
              Contains("none.csv: no such file"));
 }
 
@@ -287,7 +287,7 @@ TEST_CASE("a cell and parameters are needed, once") {
   CHECK_THAT(loose.error(), Contains("without a cell") && Contains("--cell Lxx,Lyy,Lzz"));
   loose.options.material_path.reset();
   CHECK_THAT(loose.error(), Contains("without contact parameters") && Contains("--material"));
-  ImportOptions options;
+  io::ImportOptions options;
   options.cell = Vector3(1, 1, 1);
   CHECK_THAT(input_error([&] { packing("dense", options); }), Contains("leave --cell out"));
 }
@@ -296,7 +296,7 @@ TEST_CASE("a bad META.json is refused with the key and the value") {
   const Folder folder;
   const auto error = [&](const std::string& text) {
     write_bytes(folder / "m.json", text);
-    return input_error([&] { import_csv(packings + "dense.particles.csv", std::nullopt, folder / "m.json"); });
+    return input_error([&] { io::import_csv(packings + "dense.particles.csv", std::nullopt, folder / "m.json"); });
   };
   const auto changed = [&](const char* key, const nlohmann::json& value) {
     auto json = meta("dense");
@@ -330,7 +330,7 @@ std::string contact_error(const std::string& contacts, const std::string& more_m
   write_bytes(folder / "c.csv", contacts);
   write_bytes(folder / "m.json", "{\"dim\":2,\"E_Pa\":1e6,\"kt_over_kn\":0.5,\"mu\":0.5,\"density\":2650," + more_meta +
                                      "\"hSize\":[[10,0],[0,10]],\"thickness_m\":1}");
-  return input_error([&] { import_csv(folder / "p.csv", folder / "c.csv", folder / "m.json"); });
+  return input_error([&] { io::import_csv(folder / "p.csv", folder / "c.csv", folder / "m.json"); });
 }
 
 const std::string header = "id1,id2,sx,sy,fn,fsx,fsy,mz,kn,ks,kr\n";

@@ -23,7 +23,7 @@ std::span<const std::byte> bytes_in(const std::string& text) { return std::as_by
 /// A journal of a begun test with `records` records, a checkpoint after the fifth and a probe after the seventh.
 std::string journal_of_a_test(const std::string& path, std::size_t records,
                               std::vector<std::uint64_t>* ends = nullptr) {
-  const TestResult result = random_result(1, records);
+  const records::TestResult result = random_result(1, records);
   {
     io::Journal journal(path);
     journal.begin();
@@ -55,8 +55,8 @@ bool is_prefix(const std::vector<std::string>& part, const std::vector<std::stri
   return part.size() < whole.size() && std::equal(part.begin(), part.end(), whole.begin());
 }
 
-int records_that_differ(const TestResult& a, const TestResult& b, std::size_t count) {
-  TestResult first, second;
+int records_that_differ(const records::TestResult& a, const records::TestResult& b, std::size_t count) {
+  records::TestResult first, second;
   first.records.assign(a.records.begin(), a.records.begin() + static_cast<std::ptrdiff_t>(count));
   second.records.assign(b.records.begin(), b.records.begin() + static_cast<std::ptrdiff_t>(count));
   return differences(first, second);
@@ -100,7 +100,7 @@ TEST_CASE("a journal cut at any byte of its last three records has all records b
   const std::string whole = journal_of_a_test(folder / "j", 12, &ends);
   REQUIRE(ends.back() == whole.size());
   const auto frames = frames_of(folder / "j").payloads;
-  const TestResult written = random_result(1, 12);
+  const records::TestResult written = random_result(1, 12);
   for (std::uint64_t cut = ends[8]; cut < whole.size(); ++cut) {
     write_bytes(folder / "cut", whole.substr(0, cut));
     const std::size_t expected = cut < ends[9] ? 9 : cut < ends[10] ? 10 : 11;
@@ -120,7 +120,7 @@ TEST_CASE("a journal with any bit of a record flipped has all records before it,
   std::vector<std::uint64_t> ends;
   const std::string whole = journal_of_a_test(folder / "j", 12, &ends);
   const auto frames = frames_of(folder / "j").payloads;
-  const TestResult written = random_result(1, 12);
+  const records::TestResult written = random_result(1, 12);
   for (std::uint64_t bit = 8 * ends[9]; bit < 8 * ends[10]; ++bit) {
     std::string flipped = whole;
     flipped[bit / 8] = static_cast<char>(flipped[bit / 8] ^ (1 << bit % 8));
@@ -179,7 +179,7 @@ TEST_CASE("a writer that takes a journal over cuts off its torn end") {
 TEST_CASE("a record with a number that is there replaces it and those after it; unknown frames are passed over") {
   const Folder folder;
   journal_of_a_test(folder / "j", 12);
-  const Record other = random_result(5, 1).records[0];
+  const records::Record other = random_result(5, 1).records[0];
   {
     const auto extent = io::read_record_journal(folder / "j").extent;
     io::Journal journal(folder / "j");
@@ -285,7 +285,7 @@ TEST_CASE("the README lists the types of frames and the columns of a record") {
   io::read_journal(folder / "j", [&](const io::Frame& frame) {
     if (frame.type == io::record_frame) payload = frame.payload.size();
     if (frame.type != io::begin_frame) return;
-    const auto begin = Hdf5File::from_image("begin", frame.payload);
+    const auto begin = io::Hdf5File::from_image("begin", frame.payload);
     for (const auto& name : begin.read_text("/journal/columns")) columns += (columns.empty() ? "" : ", ") + name;
     for (const auto size : begin.read<std::int64_t>("/journal/column_bytes")) bytes += static_cast<std::size_t>(size);
   });

@@ -51,7 +51,7 @@ TEST_CASE("the program names its version and its help, and that is no mistake") 
   const Folder folder;
   const Outcome version_asked = run(folder, "--version");
   CHECK(version_asked.code == 0);
-  CHECK(version_asked.output == std::string("rvelab ") + version + "\n");
+  CHECK(version_asked.output == std::string("rvelab ") + io::version + "\n");
   CHECK(run(folder, "--help").code == 0);
   CHECK_THAT(run(folder, "import --help").output, Contains("PARTICLES.csv") && Contains("Examples"));
 }
@@ -116,12 +116,12 @@ TEST_CASE("an imported packing, inspected, has the stress, void ratio and coordi
 TEST_CASE("a record file, inspected, tells its protocol and shows its end state; NaN is null") {
   const Folder folder;
   REQUIRE(run(folder, "import " + files("dense") + "-o " + (folder / "s.h5")).code == 0);
-  TestResult result;
+  records::TestResult result;
   result.protocol = "biaxial";
   result.stages = {"shear"};
   result.records.resize(12);
-  Specimen end = read_specimen(folder / "s.h5");
-  write_records(result, end, "", folder / "r.h5");
+  Specimen end = io::read_specimen(folder / "s.h5");
+  io::write_records(result, end, "", folder / "r.h5");
   const auto found = nlohmann::json::parse(run(folder, "inspect --json " + (folder / "r.h5")).output);
   CHECK(found["kind"] == "records");
   CHECK(found["records"] == 12);
@@ -130,7 +130,7 @@ TEST_CASE("a record file, inspected, tells its protocol and shows its end state;
 
   end.grains.radius.assign(end.grains.size(), 1e-5);  // nothing touches: no fabric
   end.contacts.clear();
-  write_specimen(end, folder / "loose.h5");
+  io::write_specimen(end, folder / "loose.h5");
   const auto loose = nlohmann::json::parse(run(folder, "inspect --json " + (folder / "loose.h5")).output);
   CHECK(loose["contacts"] == 0);
   CHECK(loose["fabric_anisotropy"].is_null());

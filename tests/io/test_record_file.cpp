@@ -20,41 +20,41 @@ TEST_CASE("records and end state come back from their file bit for bit") {
   const Folder folder;
   const std::string protocol = "[test]\nname = \"biaxial\"\n";
   for (unsigned seed = 1; seed <= 4; ++seed) {
-    const TestResult written = random_result(seed);
+    const records::TestResult written = random_result(seed);
     const Specimen end = random_specimen(seed);
-    write_records(written, end, protocol, folder / "r.h5");
-    const TestResult read = read_records(folder / "r.h5");
+    io::write_records(written, end, protocol, folder / "r.h5");
+    const records::TestResult read = io::read_records(folder / "r.h5");
     CHECK(read.records.size() == 23);
     CHECK(differences(written, read) == 0);
-    CHECK(differences(end, read_specimen(folder / "r.h5")) == 0);
-    CHECK(read_protocol_text(folder / "r.h5") == protocol);
+    CHECK(differences(end, io::read_specimen(folder / "r.h5")) == 0);
+    CHECK(io::read_protocol_text(folder / "r.h5") == protocol);
   }
-  CHECK(file_kind(folder / "r.h5") == FileKind::records);
+  CHECK(io::file_kind(folder / "r.h5") == io::FileKind::records);
   CHECK(differences(random_result(1), random_result(2)) > 200);
 }
 
 TEST_CASE("a test without records is a file all the same") {
   const Folder folder;
-  write_records(random_result(5, 0), random_specimen(5), "", folder / "r.h5");
-  CHECK(read_records(folder / "r.h5").records.empty());
+  io::write_records(random_result(5, 0), random_specimen(5), "", folder / "r.h5");
+  CHECK(io::read_records(folder / "r.h5").records.empty());
 }
 
 TEST_CASE("a specimen file has no records, and says so") {
   const Folder folder;
-  write_specimen(random_specimen(6), folder / "s.h5");
-  CHECK(file_kind(folder / "s.h5") == FileKind::specimen);
-  CHECK_THAT(input_error([&] { read_records(folder / "s.h5"); }), Contains("s.h5") && Contains("no records"));
+  io::write_specimen(random_specimen(6), folder / "s.h5");
+  CHECK(io::file_kind(folder / "s.h5") == io::FileKind::specimen);
+  CHECK_THAT(input_error([&] { io::read_records(folder / "s.h5"); }), Contains("s.h5") && Contains("no records"));
 }
 
 TEST_CASE("provenance names the version and the compiler, and neither a date nor a host") {
   const Folder folder;
-  TestResult result = random_result(7);
-  write_records(result, random_specimen(7), "", folder / "a.h5");
-  write_records(result, random_specimen(7), "", folder / "b.h5");
+  records::TestResult result = random_result(7);
+  io::write_records(result, random_specimen(7), "", folder / "a.h5");
+  io::write_records(result, random_specimen(7), "", folder / "b.h5");
   CHECK(bytes_of(folder / "a.h5") == bytes_of(folder / "b.h5"));
-  const auto file = Hdf5File::open(folder / "a.h5");
-  CHECK(file.read_text("/provenance/version") == std::vector<std::string>{version});
-  CHECK(file.read_text("/provenance/compiler") == std::vector<std::string>{compiler()});
+  const auto file = io::Hdf5File::open(folder / "a.h5");
+  CHECK(file.read_text("/provenance/version") == std::vector<std::string>{io::version});
+  CHECK(file.read_text("/provenance/compiler") == std::vector<std::string>{io::compiler()});
   char host[256] = {};
   REQUIRE(gethostname(host, sizeof host - 1) == 0);
   if (std::strlen(host) > 5) CHECK(bytes_of(folder / "a.h5").find(host) == std::string::npos);
@@ -81,7 +81,7 @@ std::map<std::string, std::vector<std::string>> documented(const std::string& re
 
 /// Extents as the README writes them: numbers, and a letter for each that varies. The letters stand for different
 /// numbers here, so that one for the other is noticed.
-std::string in_readme(const Shape64& shape) {
+std::string in_readme(const io::Shape64& shape) {
   const std::map<std::uint64_t, std::string> letters{{17, "n"}, {31, "c"}, {23, "r"}, {2, "s"},
                                                      {5, "p"},  {6, "k"},  {7, "v"}};
   std::string text;
@@ -96,30 +96,30 @@ std::string in_readme(const Shape64& shape) {
 
 TEST_CASE("the README lists exactly the datasets of a file, with their types, shapes and units") {
   const Folder folder;
-  write_specimen(random_specimen(8), folder / "s.h5");
+  io::write_specimen(random_specimen(8), folder / "s.h5");
   // The end state of another file stands for a snapshot.
-  write_records(random_result(8), random_specimen(8), "", folder / "whole.h5");
-  RecordedTest test = read_recorded_test(folder / "whole.h5");
+  io::write_records(random_result(8), random_specimen(8), "", folder / "whole.h5");
+  io::RecordedTest test = io::read_recorded_test(folder / "whole.h5");
   test.complete = false;
   test.checkpoint = random_checkpoint(8);
   const auto snapshot = io::encode_snapshot(12, random_specimen(8));
   io::Journal journal(folder / "snapshots");
   journal.begin();
   test.snapshots = {{12, folder / "snapshots", journal.append(io::snapshot_frame, snapshot), snapshot.size()}};
-  write_recorded_test(test, folder / "r.h5");
+  io::write_recorded_test(test, folder / "r.h5");
   const std::string readme = bytes_of(std::string(RVELAB_SOURCE_DIR) + "/rvelab/io/README.md");
   auto rows = documented(readme, "/");
   REQUIRE(rows.size() > 60);
 
-  std::map<std::string, Hdf5Entry> found;
-  for (const auto& entry : Hdf5File::open(folder / "s.h5").entries()) found[entry.name] = entry;
+  std::map<std::string, io::Hdf5Entry> found;
+  for (const auto& entry : io::Hdf5File::open(folder / "s.h5").entries()) found[entry.name] = entry;
   const std::size_t of_a_specimen = found.size();
-  const SpecimenOrigin origin{"recipe", 1, 2, 0.5};
-  write_specimen(random_specimen(8), folder / "packed.h5", &origin);
-  for (const auto& entry : Hdf5File::open(folder / "packed.h5").entries()) found[entry.name] = entry;
+  const io::SpecimenOrigin origin{"recipe", 1, 2, 0.5};
+  io::write_specimen(random_specimen(8), folder / "packed.h5", &origin);
+  for (const auto& entry : io::Hdf5File::open(folder / "packed.h5").entries()) found[entry.name] = entry;
   CHECK(found.size() == of_a_specimen + 6);
   std::size_t states = 0;
-  for (const auto& entry : Hdf5File::open(folder / "r.h5").entries()) {
+  for (const auto& entry : io::Hdf5File::open(folder / "r.h5").entries()) {
     const std::string snapshot_group = "/snapshots/000012";
     const bool is_end = entry.name.starts_with("/specimen/"), is_snapshot = entry.name.starts_with(snapshot_group);
     if (is_end || is_snapshot) {
@@ -149,18 +149,19 @@ TEST_CASE("the README lists exactly the datasets of a file, with their types, sh
   }
   std::vector<std::string> attributes;
   for (const auto& [name, row] : documented(readme, "format")) attributes.push_back(name);
-  CHECK(Hdf5File::open(folder / "s.h5").attributes() == attributes);
-  CHECK(Hdf5File::open(folder / "r.h5").attributes() == attributes);
+  CHECK(io::Hdf5File::open(folder / "s.h5").attributes() == attributes);
+  CHECK(io::Hdf5File::open(folder / "r.h5").attributes() == attributes);
 
-  write_records(random_result(8), random_specimen(8), "", folder / "c.h5");
-  for (const auto& entry : Hdf5File::open(folder / "c.h5").entries()) CHECK(!entry.name.starts_with("/checkpoint/"));
+  io::write_records(random_result(8), random_specimen(8), "", folder / "c.h5");
+  for (const auto& entry : io::Hdf5File::open(folder / "c.h5").entries())
+    CHECK(!entry.name.starts_with("/checkpoint/"));
 }
 
 TEST_CASE("an incomplete test comes back with its checkpoint and its snapshots bit for bit") {
   const Folder folder;
-  write_records(random_result(9), random_specimen(9), "[test]", folder / "whole.h5");
-  CHECK(read_recorded_test(folder / "whole.h5").complete);
-  RecordedTest test = read_recorded_test(folder / "whole.h5");
+  io::write_records(random_result(9), random_specimen(9), "[test]", folder / "whole.h5");
+  CHECK(io::read_recorded_test(folder / "whole.h5").complete);
+  io::RecordedTest test = io::read_recorded_test(folder / "whole.h5");
   test.complete = false;
   test.checkpoint = random_checkpoint(10);
   test.result.wall_seconds = test.checkpoint.progress.wall_seconds;
@@ -172,8 +173,8 @@ TEST_CASE("an incomplete test comes back with its checkpoint and its snapshots b
     journal.begin();
     test.snapshots = {{4, folder / "snapshots", journal.append(io::snapshot_frame, snapshot), snapshot.size()}};
   }
-  write_recorded_test(test, folder / "r.h5");
-  const RecordedTest read = read_recorded_test(folder / "r.h5");
+  io::write_recorded_test(test, folder / "r.h5");
+  const io::RecordedTest read = io::read_recorded_test(folder / "r.h5");
   CHECK(!read.complete);
   CHECK(differences(test.result, read.result) == 0);
   CHECK(differences(test.checkpoint, read.checkpoint) == 0);
@@ -181,6 +182,6 @@ TEST_CASE("an incomplete test comes back with its checkpoint and its snapshots b
   CHECK(read.provenance.specimen_crc32c == 77);
   REQUIRE(read.snapshots.size() == 1);
   CHECK(read.snapshots[0].record == 4);
-  CHECK(differences(random_specimen(11), read_snapshot(read.snapshots[0])) == 0);
-  CHECK(read_records(folder / "whole.h5").probes.size() == 5);
+  CHECK(differences(random_specimen(11), io::read_snapshot(read.snapshots[0])) == 0);
+  CHECK(io::read_records(folder / "whole.h5").probes.size() == 5);
 }

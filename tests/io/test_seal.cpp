@@ -24,7 +24,7 @@ using Catch::Matchers::Contains;
 namespace {
 
 void write_random_records(const std::string& path) {
-  write_records(random_result(2), random_specimen(3), "[test]\nname = \"any\"\n", path);
+  io::write_records(random_result(2), random_specimen(3), "[test]\nname = \"any\"\n", path);
 }
 
 /// As h5py leaves a file that it opened for writing: HDF5 cuts off what stands behind its own end.
@@ -69,13 +69,13 @@ int variable_lengths(const std::string& path) {
 
 TEST_CASE("every single flipped bit of a specimen or record file is refused before HDF5 sees it") {
   const Folder folder;
-  write_specimen(random_specimen(1), folder / "s.h5");
+  io::write_specimen(random_specimen(1), folder / "s.h5");
   write_random_records(folder / "r.h5");
   std::mt19937 random(13);
   for (const std::string name : {"s.h5", "r.h5"}) {
     const std::string whole = bytes_of(folder / name);
     const auto read = [&] {
-      name == "s.h5" ? void(read_specimen(folder / "x.h5")) : void(read_records(folder / "x.h5"));
+      name == "s.h5" ? void(io::read_specimen(folder / "x.h5")) : void(io::read_records(folder / "x.h5"));
     };
     for (int k = 0; k < 300; ++k) {
       // Every fourth in the last bytes, where the checksum itself stands.
@@ -94,11 +94,11 @@ TEST_CASE("every single flipped bit of a specimen or record file is refused befo
 
 TEST_CASE("bytes added, taken away or exchanged are refused as a flipped bit is") {
   const Folder folder;
-  write_specimen(random_specimen(1), folder / "s.h5");
+  io::write_specimen(random_specimen(1), folder / "s.h5");
   const std::string whole = bytes_of(folder / "s.h5");
   const auto refused = [&](std::string bytes) {
     write_bytes(folder / "x.h5", bytes);
-    return input_error([&] { read_specimen(folder / "x.h5"); });
+    return input_error([&] { io::read_specimen(folder / "x.h5"); });
   };
   const std::size_t content = whole.size() - io::seal_bytes;
   CHECK_THAT(refused(whole.substr(0, content / 2) + whole.substr(content / 2 + 8)), Contains("its seal says"));
@@ -110,8 +110,8 @@ TEST_CASE("bytes added, taken away or exchanged are refused as a flipped bit is"
 
 TEST_CASE("nothing of variable length is written, in files or in the frames of a journal") {
   const Folder folder;
-  const SpecimenOrigin origin{"[pack]\n", 1, 2, 0.5};
-  write_specimen(random_specimen(1), folder / "s.h5", &origin);
+  const io::SpecimenOrigin origin{"[pack]\n", 1, 2, 0.5};
+  io::write_specimen(random_specimen(1), folder / "s.h5", &origin);
   write_random_records(folder / "r.h5");
   const io::RunStart start{"any", "[test]\n", {"a", "a longer one"}, random_specimen(1)};
   const auto frame = [&](const std::vector<std::byte>& bytes, std::size_t number_bytes) {
@@ -130,13 +130,13 @@ TEST_CASE("nothing of variable length is written, in files or in the frames of a
 TEST_CASE("texts come back as they were: empty, of any length, of any alphabet") {
   const Folder folder;
   const std::vector<std::string> texts{"", "a", std::string(100'000, 'x'), "Körnung ≤ 2 mm\n\ttan φ", ""};
-  publish(folder / "t.h5", [&](Hdf5File& file) {
+  io::publish(folder / "t.h5", [&](io::Hdf5File& file) {
     file.write_text("/list", texts, {5});
     file.write_text("/none", {}, {0});
     file.write_text("/empty", {""}, {});
     file.set_attribute("words", "Reibung µ");
   });
-  const auto file = Hdf5File::open(folder / "t.h5");
+  const auto file = io::Hdf5File::open(folder / "t.h5");
   CHECK(file.sealed());
   CHECK(file.read_text("/list") == texts);
   CHECK(file.read_text("/none").empty());
@@ -147,37 +147,37 @@ TEST_CASE("texts come back as they were: empty, of any length, of any alphabet")
 TEST_CASE("a file that another program changed is refused, and taken over when it is sealed") {
   const Folder folder;
   Specimen specimen = random_specimen(4);
-  write_specimen(specimen, folder / "s.h5");
+  io::write_specimen(specimen, folder / "s.h5");
   open_for_writing(folder / "s.h5", "/solver/skin", 0.125);
   CHECK_THAT(
-      input_error([&] { read_specimen(folder / "s.h5"); }),
+      input_error([&] { io::read_specimen(folder / "s.h5"); }),
       Contains("another program has changed it") && Contains("`rvelab seal " + (folder / "s.h5") + " -o NEW.h5`"));
-  CHECK_THAT(input_error([&] { compare_files(folder / "s.h5", folder / "s.h5"); }), Contains("rvelab seal"));
-  const SealedFile sealed = seal_file(folder / "s.h5", folder / "new.h5");
+  CHECK_THAT(input_error([&] { io::compare_files(folder / "s.h5", folder / "s.h5"); }), Contains("rvelab seal"));
+  const io::SealedFile sealed = io::seal_file(folder / "s.h5", folder / "new.h5");
   CHECK(!sealed.had_seal);
-  CHECK(sealed.kind == FileKind::specimen);
+  CHECK(sealed.kind == io::FileKind::specimen);
   specimen.solver.skin = 0.125;
-  CHECK(differences(read_specimen(folder / "new.h5"), specimen) == 0);
-  write_specimen(specimen, folder / "straight.h5");
-  CHECK(!first_difference(folder / "new.h5", folder / "straight.h5"));
+  CHECK(differences(io::read_specimen(folder / "new.h5"), specimen) == 0);
+  io::write_specimen(specimen, folder / "straight.h5");
+  CHECK(!io::first_difference(folder / "new.h5", folder / "straight.h5"));
   // What does not fit its checksum is damaged and not edited; and what is no longer a specimen is not sealed.
   std::string bytes = bytes_of(folder / "new.h5");
   bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
   write_bytes(folder / "x.h5", bytes);
-  CHECK_THAT(input_error([&] { seal_file(folder / "x.h5", folder / "y.h5"); }), Contains("x.h5: is damaged"));
+  CHECK_THAT(input_error([&] { io::seal_file(folder / "x.h5", folder / "y.h5"); }), Contains("x.h5: is damaged"));
   open_for_writing(folder / "new.h5", "/cell/dimension", 4);
-  CHECK_THAT(input_error([&] { seal_file(folder / "new.h5", folder / "y.h5"); }), Contains("/cell/dimension is 4"));
+  CHECK_THAT(input_error([&] { io::seal_file(folder / "new.h5", folder / "y.h5"); }), Contains("/cell/dimension is 4"));
   CHECK(!std::filesystem::exists(folder / "y.h5"));
 }
 
 TEST_CASE("a record file of an earlier version is sealed with all that it holds") {
   const Folder folder;
   const std::string old = std::string(RVELAB_TEST_DATA) + "/compat/records_1_2.h5";
-  const SealedFile sealed = seal_file(old, folder / "r.h5");
-  CHECK(sealed.kind == FileKind::records);
-  CHECK(Hdf5File::open(folder / "r.h5").sealed());
-  CHECK(!first_difference(old, folder / "r.h5"));
-  CHECK(read_protocol_text(folder / "r.h5") == read_protocol_text(old));
+  const io::SealedFile sealed = io::seal_file(old, folder / "r.h5");
+  CHECK(sealed.kind == io::FileKind::records);
+  CHECK(io::Hdf5File::open(folder / "r.h5").sealed());
+  CHECK(!io::first_difference(old, folder / "r.h5"));
+  CHECK(io::read_protocol_text(folder / "r.h5") == io::read_protocol_text(old));
 }
 
 TEST_CASE("a damaged file of before 1.4 is refused or read, and harms nobody") {
@@ -193,7 +193,7 @@ TEST_CASE("a damaged file of before 1.4 is refused or read, and harms nobody") {
       for (std::size_t byte = 0; byte < 16; ++byte) damaged[at + byte] = static_cast<char>(random());
       write_bytes(folder / "x.h5", damaged);
       const std::string message =
-          input_error([&] { read_recorded_test(folder / "x.h5"), read_specimen(folder / "x.h5"); });
+          input_error([&] { io::read_recorded_test(folder / "x.h5"), io::read_specimen(folder / "x.h5"); });
       (message.empty() ? read : refused) += 1;
       if (!message.empty()) CHECK_THAT(message, Contains("x.h5"));
     }
@@ -202,8 +202,8 @@ TEST_CASE("a damaged file of before 1.4 is refused or read, and harms nobody") {
   CHECK(read > 5);
   // Two on which HDF5 crashed, and found no end.
   const std::string folder_of_two = std::string(RVELAB_TEST_DATA) + "/damaged/";
-  CHECK_THAT(input_error([&] { read_specimen(folder_of_two + "crashes.h5"); }), Contains("is damaged (HDF5 fails"));
-  CHECK_THAT(input_error([&] { read_specimen(folder_of_two + "endless.h5"); }), Contains("came to no end"));
+  CHECK_THAT(input_error([&] { io::read_specimen(folder_of_two + "crashes.h5"); }), Contains("is damaged (HDF5 fails"));
+  CHECK_THAT(input_error([&] { io::read_specimen(folder_of_two + "endless.h5"); }), Contains("came to no end"));
 }
 
 TEST_CASE("work on a file that may be damaged is done where crashes, endless loops and greed do no harm") {

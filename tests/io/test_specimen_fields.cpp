@@ -77,7 +77,7 @@ namespace {
 /// A file's dataset as the description has it.
 struct Dataset {
   std::string type, units;
-  Shape64 shape;
+  io::Shape64 shape;
   bool operator==(const Dataset&) const = default;
 };
 
@@ -93,7 +93,7 @@ struct Datasets {
 
   template <class Value, class Described>
   void field(const fields::Path& path, const Value& value, const Described& field) {
-    Shape64 shape;
+    io::Shape64 shape;
     if constexpr (fields::Listed<Value>::is_list) shape.push_back(value.size());
     add<typename fields::Listed<Value>::Entry>(path.text(), field.units, shape);
   }
@@ -108,7 +108,7 @@ struct Datasets {
     add<Value>(path, column.units, {rows});
   }
   template <class Value>
-  void add(const std::string& path, const std::string& units, Shape64 shape) {
+  void add(const std::string& path, const std::string& units, io::Shape64 shape) {
     std::string type = "text";
     if constexpr (!fields::Textual<Value>) {
       using Scalar = typename fields::Layout<Value>::Scalar;
@@ -224,11 +224,11 @@ TEST_CASE("a struct is described if each of its members is, once and under a nam
 TEST_CASE("the described fields are the datasets of a file, no more and no fewer, with their types, units and shapes") {
   const Folder folder;
   const Specimen specimen = random_specimen(21);
-  write_specimen(specimen, folder / "s.h5");
+  io::write_specimen(specimen, folder / "s.h5");
   Datasets described;
   fields::visit(described, specimen);
   std::map<std::string, Dataset> written;
-  for (const auto& entry : Hdf5File::open(folder / "s.h5").entries())
+  for (const auto& entry : io::Hdf5File::open(folder / "s.h5").entries())
     written[entry.name] = {entry.type, entry.units, entry.shape};
   CHECK(written.size() > 70);
   for (const auto& [path, dataset] : described.found) {
@@ -249,7 +249,7 @@ TEST_CASE("one bit of any one field is seen by comparison, digest, snapshot and 
   const Folder folder;
   const Specimen before = changeable(22);
   const auto bytes_before = to_bytes(before);
-  write_specimen(before, folder / "a.h5");
+  io::write_specimen(before, folder / "a.h5");
   std::vector<std::string> contradicting;
   std::size_t number = 0;
   for (;; ++number) {
@@ -265,11 +265,11 @@ TEST_CASE("one bit of any one field is seen by comparison, digest, snapshot and 
     CHECK(bool(bytes != bytes_before));
     CHECK(differing_fields(from_bytes(bytes), changed).empty());
 
-    write_specimen(changed, folder / "b.h5");
-    CHECK_THAT(first_difference(folder / "a.h5", folder / "b.h5").value_or(""),
+    io::write_specimen(changed, folder / "b.h5");
+    CHECK_THAT(io::first_difference(folder / "a.h5", folder / "b.h5").value_or(""),
                Contains("/" + change.path()) && Contains("differs"));
     Specimen read;
-    const std::string refusal = input_error([&] { read = read_specimen(folder / "b.h5"); });
+    const std::string refusal = input_error([&] { read = io::read_specimen(folder / "b.h5"); });
     if (refusal.empty()) {
       CHECK(differing_fields(read, changed).empty());
     } else {
@@ -297,12 +297,12 @@ TEST_CASE("every field keeps every double: NaNs with what they carry, -0, infini
     fields::visit(clear, zero);
     CHECK(differing_fields(written, zero).size() > 40);
     CHECK(differing_fields(from_bytes(to_bytes(written)), written).empty());
-    write_specimen(written, folder / "a.h5");
-    write_specimen(written, folder / "b.h5");
-    write_specimen(zero, folder / "c.h5");
-    CHECK(differing_fields(read_specimen(folder / "a.h5"), written).empty());
-    CHECK(!first_difference(folder / "a.h5", folder / "b.h5"));
-    CHECK_THAT(first_difference(folder / "a.h5", folder / "c.h5").value_or(""), Contains("differs"));
+    io::write_specimen(written, folder / "a.h5");
+    io::write_specimen(written, folder / "b.h5");
+    io::write_specimen(zero, folder / "c.h5");
+    CHECK(differing_fields(io::read_specimen(folder / "a.h5"), written).empty());
+    CHECK(!io::first_difference(folder / "a.h5", folder / "b.h5"));
+    CHECK_THAT(io::first_difference(folder / "a.h5", folder / "c.h5").value_or(""), Contains("differs"));
   }
 }
 
@@ -310,7 +310,7 @@ TEST_CASE("a column that was added later keeps its default in an older file, and
   const Field later{"cohesion", &LaterRow::cohesion, "Pa", Rows::one, InFiles::added_later};
   const std::vector<Row> older{{1.5}, {2.5}};
   std::vector<LaterRow> rows;
-  auto file = Hdf5File::in_memory("older.h5");
+  auto file = io::Hdf5File::in_memory("older.h5");
   io::Writer(file, "").table("rows", older, Field{"radius", &Row::radius, "m"});
   io::Reader(file, "").table("rows", rows, Field{"radius", &LaterRow::radius, "m"}, later);
   REQUIRE(rows.size() == 2);
@@ -328,7 +328,7 @@ TEST_CASE("a column that was added later keeps its default in an older file, and
   rows[0].cohesion = 3;
   CHECK(sum() != as_it_was.sum());
 
-  auto newer = Hdf5File::in_memory("newer.h5");
+  auto newer = io::Hdf5File::in_memory("newer.h5");
   io::Writer(newer, "").table("rows", rows, Field{"radius", &LaterRow::radius, "m"}, later);
   std::vector<LaterRow> read;
   io::Reader(newer, "").table("rows", read, Field{"radius", &LaterRow::radius, "m"}, later);

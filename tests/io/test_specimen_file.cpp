@@ -17,8 +17,8 @@ TEST_CASE("a specimen comes back from its file bit for bit, whatever its fields 
   const Folder folder;
   for (unsigned seed = 1; seed <= 8; ++seed) {
     const Specimen written = random_specimen(seed);
-    write_specimen(written, folder / "s.h5");
-    const Specimen read = read_specimen(folder / "s.h5");
+    io::write_specimen(written, folder / "s.h5");
+    const Specimen read = io::read_specimen(folder / "s.h5");
     CHECK(differing_fields(written, read).empty());
   }
 }
@@ -37,18 +37,18 @@ TEST_CASE("the comparison of specimens sees one flipped bit") {
 TEST_CASE("an empty specimen, without contacts or grains, comes back as it was") {
   const Folder folder;
   Specimen written = random_specimen(4, 1, 0);
-  write_specimen(written, folder / "one.h5");
-  CHECK(differences(written, read_specimen(folder / "one.h5")) == 0);
-  CHECK(read_specimen(folder / "one.h5").contacts.empty());
+  io::write_specimen(written, folder / "one.h5");
+  CHECK(differences(written, io::read_specimen(folder / "one.h5")) == 0);
+  CHECK(io::read_specimen(folder / "one.h5").contacts.empty());
   written.grains = {};
-  write_specimen(written, folder / "none.h5");
-  CHECK(read_specimen(folder / "none.h5").grains.size() == 0);
+  io::write_specimen(written, folder / "none.h5");
+  CHECK(io::read_specimen(folder / "none.h5").grains.size() == 0);
 }
 
 TEST_CASE("the same specimen gives the same bytes, at any time and place") {
   const Folder folder, other;
-  write_specimen(random_specimen(5), folder / "a.h5");
-  write_specimen(random_specimen(5), other / "b.h5");
+  io::write_specimen(random_specimen(5), folder / "a.h5");
+  io::write_specimen(random_specimen(5), other / "b.h5");
   CHECK(bytes_of(folder / "a.h5") == bytes_of(other / "b.h5"));
   CHECK(!std::filesystem::exists(folder / "a.h5.tmp"));
 }
@@ -56,29 +56,29 @@ TEST_CASE("the same specimen gives the same bytes, at any time and place") {
 TEST_CASE("how a specimen was packed comes back from its file, and changes nothing else in it") {
   const Folder folder;
   const Specimen written = random_specimen(9);
-  const SpecimenOrigin origin{"[pack]\nname = \"sand\"\n", 18446744073709551615u, 37, 0.02};
-  write_specimen(written, folder / "packed.h5", &origin);
-  write_specimen(written, folder / "plain.h5");
-  const auto read = read_origin(folder / "packed.h5");
+  const io::SpecimenOrigin origin{"[pack]\nname = \"sand\"\n", 18446744073709551615u, 37, 0.02};
+  io::write_specimen(written, folder / "packed.h5", &origin);
+  io::write_specimen(written, folder / "plain.h5");
+  const auto read = io::read_origin(folder / "packed.h5");
   REQUIRE(read);
   CHECK(read->recipe == origin.recipe);
   CHECK(read->seed == origin.seed);
   CHECK(read->draw == origin.draw);
   CHECK(read->preparation_friction == origin.preparation_friction);
-  CHECK(differences(written, read_specimen(folder / "packed.h5")) == 0);
-  CHECK(!read_origin(folder / "plain.h5"));
-  CHECK_THAT(input_error([&] { read_origin(folder / "none.h5"); }), Contains("no such file"));
+  CHECK(differences(written, io::read_specimen(folder / "packed.h5")) == 0);
+  CHECK(!io::read_origin(folder / "plain.h5"));
+  CHECK_THAT(input_error([&] { io::read_origin(folder / "none.h5"); }), Contains("no such file"));
 }
 
 TEST_CASE("a file that cannot be written leaves the one that was there") {
   const Folder folder;
   const Specimen first = random_specimen(6);
-  write_specimen(first, folder / "s.h5");
+  io::write_specimen(first, folder / "s.h5");
   std::filesystem::create_directory(folder / "s.h5.tmp");  // the place of the temporary is taken
-  CHECK_THAT(input_error([&] { write_specimen(random_specimen(7), folder / "s.h5"); }),
+  CHECK_THAT(input_error([&] { io::write_specimen(random_specimen(7), folder / "s.h5"); }),
              Contains("s.h5") && Contains("cannot be written"));
-  CHECK(differences(first, read_specimen(folder / "s.h5")) == 0);
-  CHECK_THAT(input_error([&] { write_specimen(first, folder / "missing/s.h5"); }), Contains("existing folder"));
+  CHECK(differences(first, io::read_specimen(folder / "s.h5")) == 0);
+  CHECK_THAT(input_error([&] { io::write_specimen(first, folder / "missing/s.h5"); }), Contains("existing folder"));
 }
 
 TEST_CASE("a full disc is one error, and the published file stays") {
@@ -86,45 +86,45 @@ TEST_CASE("a full disc is one error, and the published file stays") {
   const Folder folder;
   std::filesystem::create_symlink("/dev/full", folder / "s.h5.tmp");
   write_bytes(folder / "s.h5", "what was there");
-  CHECK_THROWS_WITH(write_specimen(random_specimen(8), folder / "s.h5"),
+  CHECK_THROWS_WITH(io::write_specimen(random_specimen(8), folder / "s.h5"),
                     Contains("s.h5") && Contains("No space left") && Contains("untouched"));
   CHECK(bytes_of(folder / "s.h5") == "what was there");
 }
 
 TEST_CASE("what is no specimen file is refused with its name and the reason") {
   const Folder folder;
-  const auto message = [&](const std::string& name) { return input_error([&] { read_specimen(folder / name); }); };
+  const auto message = [&](const std::string& name) { return input_error([&] { io::read_specimen(folder / name); }); };
   CHECK_THAT(message("none.h5"), Contains("none.h5") && Contains("no such file"));
-  CHECK_THAT(input_error([&] { read_specimen(folder / ""); }), Contains("not a regular file"));
+  CHECK_THAT(input_error([&] { io::read_specimen(folder / ""); }), Contains("not a regular file"));
   write_bytes(folder / "text.h5", "id,x,y,r\n");
   CHECK_THAT(message("text.h5"), Contains("text.h5") && Contains("not an HDF5 file"));
   write_bytes(folder / "empty.h5", "");
   CHECK_THAT(message("empty.h5"), Contains("not an HDF5 file"));
-  publish(folder / "foreign.h5", [](Hdf5File& file) { file.write_text("/note", {"of another program"}, {}); });
+  io::publish(folder / "foreign.h5", [](io::Hdf5File& file) { file.write_text("/note", {"of another program"}, {}); });
   CHECK_THAT(message("foreign.h5"), Contains("foreign.h5") && Contains("format is \"\""));
 }
 
 TEST_CASE("a file cut anywhere is refused, never read in part") {
   const Folder folder;
-  write_specimen(random_specimen(9), folder / "whole.h5");
+  io::write_specimen(random_specimen(9), folder / "whole.h5");
   const std::string whole = bytes_of(folder / "whole.h5");
   for (std::size_t k = 0; k < 40; ++k) {
     write_bytes(folder / "cut.h5", whole.substr(0, whole.size() * k / 40));
-    CHECK_THAT(input_error([&] { read_specimen(folder / "cut.h5"); }), Contains("cut.h5"));
+    CHECK_THAT(input_error([&] { io::read_specimen(folder / "cut.h5"); }), Contains("cut.h5"));
   }
   write_bytes(folder / "cut.h5", whole.substr(0, whole.size() - 1));
-  CHECK_THAT(input_error([&] { read_specimen(folder / "cut.h5"); }), Contains("truncated"));
+  CHECK_THAT(input_error([&] { io::read_specimen(folder / "cut.h5"); }), Contains("truncated"));
 }
 
 TEST_CASE("a newer format is refused, an older minor one of the same major is not") {
   const Folder folder;
   const auto with_version = [&](const std::string& version) {
-    publish(folder / "v.h5", [&](Hdf5File& file) {
+    io::publish(folder / "v.h5", [&](io::Hdf5File& file) {
       file.set_attribute("format", "rvelab specimen");
       file.set_attribute("format_version", version);
       io::put_specimen(file, "", random_specimen(10));
     });
-    return input_error([&] { read_specimen(folder / "v.h5"); });
+    return input_error([&] { io::read_specimen(folder / "v.h5"); });
   };
   CHECK(with_version("1.0").empty());
   CHECK(with_version("1.1").empty());
@@ -140,8 +140,8 @@ TEST_CASE("a file whose parts contradict each other is refused") {
   const auto message = [&](auto change) {
     Specimen specimen = random_specimen(11);
     change(specimen);
-    write_specimen(specimen, folder / "s.h5");
-    return input_error([&] { read_specimen(folder / "s.h5"); });
+    io::write_specimen(specimen, folder / "s.h5");
+    return input_error([&] { io::read_specimen(folder / "s.h5"); });
   };
   CHECK(message([](Specimen&) {}).empty());
   CHECK_THAT(message([](Specimen& s) { s.grains.radius.pop_back(); }), Contains("different lengths"));
@@ -154,26 +154,26 @@ TEST_CASE("a file whose parts contradict each other is refused") {
 TEST_CASE("a dataset that is missing, of another kind or shape is named") {
   const Folder folder;
   const auto message = [&](auto extra) {
-    publish(folder / "p.h5", [&](Hdf5File& file) {
-      io::stamp(file, FileKind::specimen);
+    io::publish(folder / "p.h5", [&](io::Hdf5File& file) {
+      io::stamp(file, io::FileKind::specimen);
       extra(file);
     });
-    return input_error([&] { read_specimen(folder / "p.h5"); });
+    return input_error([&] { io::read_specimen(folder / "p.h5"); });
   };
-  CHECK_THAT(message([](Hdf5File&) {}), Contains("/shape") && Contains("missing"));
+  CHECK_THAT(message([](io::Hdf5File&) {}), Contains("/shape") && Contains("missing"));
   const double number = 2;
-  CHECK_THAT(message([&](Hdf5File& file) {
+  CHECK_THAT(message([&](io::Hdf5File& file) {
                file.write<double>("/shape", {&number, 1}, {}, "1");
              }),
              Contains("/shape") && Contains("float64") && Contains("text"));
-  CHECK_THAT(message([&](Hdf5File& file) { file.write_text("/shape", {"cube"}, {}); }),
+  CHECK_THAT(message([&](io::Hdf5File& file) { file.write_text("/shape", {"cube"}, {}); }),
              Contains("/shape") && Contains("cube") && Contains("disc, sphere"));
-  CHECK_THAT(message([&](Hdf5File& file) {
+  CHECK_THAT(message([&](io::Hdf5File& file) {
                file.write_text("/shape", {"disc"}, {});
                file.write<double>("/cell/dimension", {&number, 1}, {}, "1");
              }),
              Contains("/cell/dimension") && Contains("integer"));
-  CHECK_THAT(message([&](Hdf5File& file) {
+  CHECK_THAT(message([&](io::Hdf5File& file) {
                file.write_text("/shape", {"disc", "disc"}, {2});
              }),
              Contains("/shape") && Contains("shape (2)"));

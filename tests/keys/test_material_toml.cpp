@@ -26,7 +26,7 @@ Specimen two_materials() {
 std::string refused(const std::string& assignment) {
   Specimen specimen = two_materials();
   const Specimen before = specimen;
-  const std::string message = input_error([&] { set_key(specimen, assignment); });
+  const std::string message = input_error([&] { keys::set_key(specimen, assignment); });
   CHECK(differences(before, specimen) == 0);  // a refused key changes nothing
   return message;
 }
@@ -34,7 +34,7 @@ std::string refused(const std::string& assignment) {
 std::string read_file(const std::string& text, Specimen& specimen) {
   const Folder folder;
   write_bytes(folder / "m.toml", text);
-  return input_error([&] { read_material_file(folder / "m.toml", specimen); });
+  return input_error([&] { keys::read_material_file(folder / "m.toml", specimen); });
 }
 
 }  // namespace
@@ -42,7 +42,7 @@ std::string read_file(const std::string& text, Specimen& specimen) {
 TEST_CASE("every key sets one field, from its own default, and no two keys the same but the documented pairs") {
   std::set<std::string> names;
   int fields = 0;
-  for (const Key& key : known_keys()) {
+  for (const keys::Key& key : keys::known_keys()) {
     CAPTURE(key.dotted());
     CHECK(names.insert(key.dotted()).second);
     CHECK(!key.range.empty());
@@ -53,7 +53,7 @@ TEST_CASE("every key sets one field, from its own default, and no two keys the s
     Specimen specimen = two_materials();
     if (key.initial.empty()) continue;
     const Specimen before = specimen;
-    const std::string message = input_error([&] { set_key(specimen, key.dotted() + "=" + key.initial); });
+    const std::string message = input_error([&] { keys::set_key(specimen, key.dotted() + "=" + key.initial); });
     if (key.name == "name") continue;
     CHECK(differences(before, specimen) == 0);
     if (!message.empty()) CHECK_THAT(message, Contains("out of range"));
@@ -73,7 +73,7 @@ TEST_CASE("assignments reach their fields") {
         "damping.no_tension=true", "solver.fixed_substeps=17", "solver.skin=0.2", "solver.fixed_time_step_s=1e-5",
         "solver.ledger=true", "material.sand.rolling_friction=0.05"}) {
     CAPTURE(assignment);
-    set_key(s, assignment);
+    keys::set_key(s, assignment);
   }
   CHECK(s.contact.law == Law::hertz_given);
   CHECK(s.contact.slip == Slip::full_radius_ratcheting);
@@ -100,9 +100,9 @@ TEST_CASE("assignments reach their fields") {
 
 TEST_CASE("a friction angle gives its tangent as friction") {
   Specimen s = two_materials();
-  set_key(s, "material.friction_angle_deg=45");
+  keys::set_key(s, "material.friction_angle_deg=45");
   CHECK(s.materials[1].friction == Approx(1.0).epsilon(1e-15));
-  set_key(s, "material.sand.friction_angle_deg=30");
+  keys::set_key(s, "material.sand.friction_angle_deg=30");
   CHECK(s.materials[0].friction == Approx(1 / std::sqrt(3.0)).epsilon(1e-15));
   CHECK_THAT(refused("material.friction_angle_deg=90"), Contains("90") && Contains("0 to below 90 degree"));
 }
@@ -132,17 +132,18 @@ TEST_CASE("an unknown key is answered with the nearest known one") {
   CHECK_THAT(refused("young_modulus_MPa=100"), Contains("write material.young_modulus_Pa, 1 MPa = 1e6 Pa"));
   CHECK_THAT(refused("solver.maxsubsteps=9"), Contains("is solver.max_substeps;"));
   CHECK_THAT(refused("material.silt.friction=0.3"), Contains("silt") && Contains("sand, gravel"));
-  CHECK(nearest("kitten", {"sitting", "mitten", "bitten"}) == "mitten");
-  CHECK(nearest("x", {}).empty());
+  CHECK(keys::nearest("kitten", {"sitting", "mitten", "bitten"}) == "mitten");
+  CHECK(keys::nearest("x", {}).empty());
 }
 
 TEST_CASE("a stiffness in the unit of another law is refused") {
   Specimen s = two_materials();
-  set_key(s, "contact.law=hertz_given");
-  CHECK_THAT(input_error([&] { set_key(s, "material.normal_stiffness_N_m=1e6"); }),
+  keys::set_key(s, "contact.law=hertz_given");
+  CHECK_THAT(input_error([&] { keys::set_key(s, "material.normal_stiffness_N_m=1e6"); }),
              Contains("hertz_given") && Contains("normal_stiffness_N_m1_5"));
-  set_key(s, "damping.dashpot=viscoelastic");
-  CHECK_THAT(input_error([&] { set_key(s, "damping.normal_coefficient_N_s_m=20"); }), Contains("viscoelastic_1_m_s"));
+  keys::set_key(s, "damping.dashpot=viscoelastic");
+  CHECK_THAT(input_error([&] { keys::set_key(s, "damping.normal_coefficient_N_s_m=20"); }),
+             Contains("viscoelastic_1_m_s"));
 }
 
 TEST_CASE("a material file sets what it says, in whatever order its tables come") {
@@ -190,14 +191,14 @@ TEST_CASE("a file that is no TOML, or not there, is named") {
   Specimen s;
   CHECK_THAT(read_file("[contact]\nlaw = linear\n", s), Contains("m.toml:2") && Contains("not TOML"));
   CHECK_THAT(read_file("material = 3\n", s), Contains("m.toml:1") && Contains("not a table"));
-  CHECK_THAT(input_error([&] { read_material_file("none.toml", s); }), Contains("none.toml: no such file"));
+  CHECK_THAT(input_error([&] { keys::read_material_file("none.toml", s); }), Contains("none.toml: no such file"));
 }
 
 TEST_CASE("a protocol's material table acts on all materials, or on the one it names") {
   Specimen s = two_materials();
   const auto file = toml::parse("[material]\nfriction = 0.1\n[material.gravel]\nrolling_friction = 0.2\nroling = 1\n");
-  std::vector<KeyError> errors;
-  read_table(s, "material", *file["material"].as_table(), errors);
+  std::vector<keys::KeyError> errors;
+  keys::read_table(s, "material", *file["material"].as_table(), errors);
   CHECK(s.materials[0].friction == 0.1);
   CHECK(s.materials[1].friction == 0.1);
   CHECK(s.materials[0].rolling_friction == 0);

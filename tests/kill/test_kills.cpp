@@ -32,7 +32,7 @@ class Victim {
  public:
   explicit Victim(const Folder& folder) : specimen_(folder / "s.h5"), protocol_(folder / "p.toml") {
     const std::string path = RVELAB_TEST_DATA "/yade/dense_p20";
-    write_specimen(import_csv(path + ".particles.csv", path + ".contacts.csv", path + ".json", {}), specimen_);
+    io::write_specimen(io::import_csv(path + ".particles.csv", path + ".contacts.csv", path + ".json", {}), specimen_);
     write_bytes(protocol_,
                 "[test]\nname = \"victim\"\n[output]\nsnapshots_every = 25\n"
                 "[[stage]]\nkind = \"isotropic\"\npressure_Pa = 22e3\nrecord = true\n"
@@ -85,17 +85,17 @@ std::string random_fault(std::mt19937& random) {
 }
 
 /// What the files of a killed run hold; none if there is nothing yet. Throws if one of them does not open.
-std::optional<RecordedTest> left_by(const std::string& path) {
+std::optional<io::RecordedTest> left_by(const std::string& path) {
   const std::lock_guard turn(hdf5_turn);
   if (std::filesystem::exists(path)) {
-    for (const auto& entry : Hdf5File::open(path).entries()) {
-      if (entry.type == "float64") Hdf5File::open(path).read<double>(entry.name);
+    for (const auto& entry : io::Hdf5File::open(path).entries()) {
+      if (entry.type == "float64") io::Hdf5File::open(path).read<double>(entry.name);
     }
-    return read_recorded_test(path);
+    return io::read_recorded_test(path);
   }
   bool begun = false;
   io::read_journal(io::journal_of(path), [&](const io::Frame&) { begun = true; });
-  return begun ? std::optional(read_recorded_test(path)) : std::nullopt;
+  return begun ? std::optional(io::read_recorded_test(path)) : std::nullopt;
 }
 
 struct Tally {

@@ -18,10 +18,10 @@ namespace {
 
 Rve open_packing(const std::string& name, const std::vector<std::string>& settings) {
   const std::string base = std::string(RVELAB_TEST_DATA) + "/yade/" + name;
-  ImportOptions options;
+  io::ImportOptions options;
   options.settings = settings;
   if (name == "soft100") options.settings.push_back("solver.max_overlap_ratio=0.3");  // its largest is 0.2504
-  Rve rve(import_csv(base + ".particles.csv", base + ".contacts.csv", base + ".json", options));
+  Rve rve(io::import_csv(base + ".particles.csv", base + ".contacts.csv", base + ".json", options));
   forbid_slip(rve);
   return rve;
 }

@@ -13,11 +13,11 @@ namespace rvelab::test {
 
 /// A packing with its contacts, and YADE's slip convention.
 inline Specimen yade_packing(const std::string& name) {
-  ImportOptions options;
+  io::ImportOptions options;
   options.settings = {"contact.slip=full_radius_ratcheting"};
   if (name == "soft100") options.settings.push_back("solver.max_overlap_ratio=0.3");  // its largest is 0.2504
   const std::string stem = data_path("yade/" + name);
-  return import_csv(stem + ".particles.csv", stem + ".contacts.csv", stem + ".json", options);
+  return io::import_csv(stem + ".particles.csv", stem + ".contacts.csv", stem + ".json", options);
 }
 
 /// The stress that YADE reports for a packing, Pa, tension positive.

@@ -77,9 +77,9 @@ inline Rve at_rest(const Specimen& s, double unbalanced = 1e-10) {
 
 inline Specimen recorded(const std::string& name, const std::vector<std::string>& settings = {}) {
   const std::string stem = std::string(RVELAB_TEST_DATA) + "/yade/" + name;
-  ImportOptions options;
+  io::ImportOptions options;
   options.settings = settings;
-  return import_csv(stem + ".particles.csv", stem + ".contacts.csv", stem + ".json", options);
+  return io::import_csv(stem + ".particles.csv", stem + ".contacts.csv", stem + ".json", options);
 }
 
 inline Matrix3 gradient(double xx, double xy, double yx, double yy) {

@@ -6,14 +6,14 @@
 
 TEST_CASE("five biaxial tests of YADE's dense packing give its friction angle", "[oracle][slow]") {
   using namespace rvelab;
-  std::vector<Protocol> protocols;
+  std::vector<protocol::Protocol> protocols;
   for (const char* pressure : {"10e3", "15e3", "20e3", "25e3", "30e3"})
-    protocols.push_back(read_protocol(std::string(RVELAB_SOURCE_DIR) + "/protocols/biaxial.toml",
-                                      {std::string("test.pressure_Pa=") + pressure}));
-  check_calibratable(protocols.front());
-  std::vector<TestResult> results;
-  for (const auto& run : run_all(protocols, {test::yade_packing("dense")}, 0)) results.push_back(run.result);
-  const Calibration found = calibrate(results, 2);
+    protocols.push_back(protocol::read_protocol(std::string(RVELAB_SOURCE_DIR) + "/protocols/biaxial.toml",
+                                                {std::string("test.pressure_Pa=") + pressure}));
+  calibrate::check_calibratable(protocols.front());
+  std::vector<records::TestResult> results;
+  for (const auto& run : calibrate::run_all(protocols, {test::yade_packing("dense")}, 0)) results.push_back(run.result);
+  const calibrate::Calibration found = calibrate::calibrate(results, 2);
 
   // YADE: 31.97 and 30.55 degrees, with a scatter of 0.01 between repeats; half a degree is the bar.
   CHECK(found.friction_angle_deg == Approx(31.97).margin(0.5));

@@ -6,19 +6,19 @@
 namespace rvelab::test {
 
 /// Discs with the linear law at 100 kPa.
-inline Recipe discs(std::size_t number = 150) {
-  Recipe recipe;
+inline pack::Recipe discs(std::size_t number = 150) {
+  pack::Recipe recipe;
   recipe.number = number;
   recipe.materials[0].young_modulus = 8e8;
   recipe.materials[0].stiffness_ratio = 0.5;
   recipe.materials[0].friction = 0.4;
-  recipe.stress = isotropic_stress(1e5, Shape::disc);
+  recipe.stress = pack::isotropic_stress(1e5, Shape::disc);
   return recipe;
 }
 
 /// Spheres with Hertz-Mindlin contacts at 100 kPa.
-inline Recipe spheres(std::size_t number = 120) {
-  Recipe recipe;
+inline pack::Recipe spheres(std::size_t number = 120) {
+  pack::Recipe recipe;
   recipe.shape = Shape::sphere;
   recipe.number = number;
   recipe.fractions[0].grading.smallest_radius = 1e-3;
@@ -27,7 +27,7 @@ inline Recipe spheres(std::size_t number = 120) {
   recipe.materials[0].young_modulus = 7e9;
   recipe.materials[0].poisson_ratio = 0.25;
   recipe.materials[0].friction = 0.5;
-  recipe.stress = isotropic_stress(1e5, Shape::sphere);
+  recipe.stress = pack::isotropic_stress(1e5, Shape::sphere);
   return recipe;
 }
 

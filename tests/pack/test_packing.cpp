@@ -17,9 +17,9 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-Packing packed(const Recipe& recipe) {
+pack::Packing packed(const pack::Recipe& recipe) {
   Workers workers(1);
-  return pack(recipe, workers);
+  return pack::pack(recipe, workers);
 }
 
 /// Largest |component - target| over the mean pressure.
@@ -27,7 +27,7 @@ double stress_error(const Rve& rve, const Matrix3& target) {
   return (rve.stress() - target).cwiseAbs().maxCoeff() / mean_pressure(target, rve.cell().dimension);
 }
 
-void expect_at_rest(const Packing& packing, const Recipe& recipe) {
+void expect_at_rest(const pack::Packing& packing, const pack::Recipe& recipe) {
   const Rve rve(packing.specimen);
   CHECK(stress_error(rve, *recipe.stress) < 1e-3);
   CHECK(rve.unbalanced_ratio() < 1e-5);
@@ -39,11 +39,11 @@ void expect_at_rest(const Packing& packing, const Recipe& recipe) {
 }  // namespace
 
 TEST_CASE("low friction makes dense specimens, high friction loose ones, all at the stress with their own friction") {
-  for (Recipe recipe : {discs(), spheres()}) {
+  for (pack::Recipe recipe : {discs(), spheres()}) {
     double before = 0;
     for (const double friction : {0.0, 0.1, 1e6}) {
       recipe.preparation.friction = friction;
-      const Packing packing = packed(recipe);
+      const pack::Packing packing = packed(recipe);
       expect_at_rest(packing, recipe);
       CHECK(packing.void_ratio > before);
       before = packing.void_ratio;
@@ -54,32 +54,32 @@ TEST_CASE("low friction makes dense specimens, high friction loose ones, all at 
 }
 
 TEST_CASE("a full stress tensor is met in every component: the cell shears") {
-  Recipe plane = discs(), space = spheres();
+  pack::Recipe plane = discs(), space = spheres();
   plane.stress = (Matrix3() << -120e3, 15e3, 0, 15e3, -80e3, 0, 0, 0, 0).finished();
   space.stress = (Matrix3() << -120e3, 8e3, -5e3, 8e3, -80e3, 10e3, -5e3, 10e3, -100e3).finished();
-  for (Recipe recipe : {plane, space}) {
+  for (pack::Recipe recipe : {plane, space}) {
     recipe.preparation.friction = 0.1;
     expect_at_rest(packed(recipe), recipe);
   }
 }
 
 TEST_CASE("a searched specimen has its void ratio within 0.001 and every stress component within 0.1 %") {
-  Recipe recipe = discs(200);
+  pack::Recipe recipe = discs(200);
   recipe.void_ratio = 0.2;
-  const Packing packing = packed(recipe);
+  const pack::Packing packing = packed(recipe);
   expect_at_rest(packing, recipe);
   CHECK(std::abs(packing.void_ratio - 0.2) <= 1e-3);
 }
 
 TEST_CASE("nothing tells the directions of a family apart", "[slow]") {
-  Recipe plane = discs(400), space = spheres(1000);
+  pack::Recipe plane = discs(400), space = spheres(1000);
   plane.void_ratio = 0.2;
   space.preparation.friction = 0.1;
-  for (Recipe recipe : {plane, space}) {
+  for (pack::Recipe recipe : {plane, space}) {
     const int seeds = recipe.shape == Shape::disc ? 6 : 3;
     double squares = 0;
     for (; recipe.seed <= std::uint64_t(seeds); ++recipe.seed) {
-      const Packing packing = packed(recipe);
+      const pack::Packing packing = packed(recipe);
       expect_at_rest(packing, recipe);
       const Network network = Rve(packing.specimen).network();
       squares += std::pow(fabric_anisotropy(fabric(network), network.dimension()), 2) * double(network.contacts.size());
@@ -90,23 +90,23 @@ TEST_CASE("nothing tells the directions of a family apart", "[slow]") {
 }
 
 TEST_CASE("growing radii: the grading is kept, the stress is reached, overlaps stay small") {
-  for (Recipe recipe : {discs(100), spheres(100)}) {
-    recipe.preparation.method = Preparation::Method::growth;
+  for (pack::Recipe recipe : {discs(100), spheres(100)}) {
+    recipe.preparation.method = pack::Preparation::Method::growth;
     recipe.preparation.friction = 0.1;
-    const Packing packing = packed(recipe);
+    const pack::Packing packing = packed(recipe);
     expect_at_rest(packing, recipe);
-    CHECK(packing.specimen.grains.radius == graded_grains(recipe).radius);
+    CHECK(packing.specimen.grains.radius == pack::graded_grains(recipe).radius);
     CHECK(largest_overlap_ratio(Rve(packing.specimen).network()) < 0.05);
   }
 }
 
 TEST_CASE("without a stress the cell has the void ratio, and grains that can be apart are") {
-  Recipe recipe = spheres(100);
+  pack::Recipe recipe = spheres(100);
   recipe.stress.reset();
   recipe.fractions[0].grading.smallest_radius = recipe.fractions[0].grading.largest_radius = 0.1;
   for (const double porosity : {0.738, 0.548}) {
     recipe.void_ratio = porosity / (1 - porosity);
-    const Packing packing = packed(recipe);
+    const pack::Packing packing = packed(recipe);
     CHECK(packing.void_ratio == Approx(*recipe.void_ratio).epsilon(1e-12));
     CHECK(packing.specimen.cell.volume() == Approx(100 * 4 * M_PI / 3 * 1e-3 / (1 - porosity)).epsilon(1e-12));
     CHECK(Rve(packing.specimen).network().contacts.empty());
@@ -114,10 +114,10 @@ TEST_CASE("without a stress the cell has the void ratio, and grains that can be 
 }
 
 TEST_CASE("oriented lattices keep their angle while the specimen is made") {
-  Recipe recipe = discs(100);
+  pack::Recipe recipe = discs(100);
   recipe.oriented = true;
   recipe.preparation.friction = 0.1;
-  const Packing packing = packed(recipe);
+  const pack::Packing packing = packed(recipe);
   expect_at_rest(packing, recipe);
   const Vector3 a = packing.specimen.cell.rotation * packing.specimen.cell.lattice.col(0);
   const double angle = std::atan2(std::abs(a[1]), std::abs(a[0])) * 180 / M_PI;
@@ -127,34 +127,34 @@ TEST_CASE("oriented lattices keep their angle while the specimen is made") {
 TEST_CASE("stiffness over pressure of 1e2 and 1e6: soft and stiff grains come to the stress alike") {
   // kn/(p thickness) = E r/(p thickness)
   for (const double pressure : {4e5, 40.0}) {
-    Recipe recipe = discs(60);
-    recipe.stress = isotropic_stress(pressure, Shape::disc);
+    pack::Recipe recipe = discs(60);
+    recipe.stress = pack::isotropic_stress(pressure, Shape::disc);
     recipe.preparation.friction = 0.1;
     expect_at_rest(packed(recipe), recipe);
   }
 }
 
 TEST_CASE("two materials keep their own friction and stiffness in the finished specimen") {
-  Recipe recipe = discs(100);
+  pack::Recipe recipe = discs(100);
   recipe.materials.push_back(recipe.materials[0]);
   recipe.materials[1].name = "smooth";
   recipe.materials[1].friction = 0.05;
   recipe.materials[1].young_modulus = 4e8;
   recipe.fractions = {{"rough", 0.5, 0, recipe.fractions[0].grading}, {"smooth", 0.5, 1, recipe.fractions[0].grading}};
   recipe.preparation.friction = 0.1;
-  const Packing packing = packed(recipe);
+  const pack::Packing packing = packed(recipe);
   expect_at_rest(packing, recipe);
   CHECK(packing.specimen.materials[1].friction == 0.05);
   CHECK(std::count(packing.specimen.grains.material.begin(), packing.specimen.grains.material.end(), 1) == 50);
 }
 
 TEST_CASE("the next stress on the way is never further than the change allowed, and at last the goal") {
-  StressGoal goal{isotropic_stress(1e5, Shape::disc), true, 2};
-  Matrix3 stress = isotropic_stress(1e3, Shape::disc);
+  pack::StressGoal goal{pack::isotropic_stress(1e5, Shape::disc), true, 2};
+  Matrix3 stress = pack::isotropic_stress(1e3, Shape::disc);
   stress(0, 1) = stress(1, 0) = 500;
   int increments = 0;
   for (; !(stress - goal.stress).isZero(0) && increments < 100; ++increments) {
-    const Matrix3 next = next_stress(goal, stress, 0.1);
+    const Matrix3 next = pack::next_stress(goal, stress, 0.1);
     const double pressure = std::max(mean_pressure(stress, 2), 1e4);
     CHECK((next - stress).cwiseAbs().maxCoeff() <= 0.1 * pressure * (1 + 1e-12));
     stress = next;
@@ -163,5 +163,5 @@ TEST_CASE("the next stress on the way is never further than the change allowed, 
   CHECK(increments > 20);
   goal.shear = false;
   stress(0, 1) = stress(1, 0) = 5e4;
-  CHECK(largest_gap(goal, stress) == 0);
+  CHECK(pack::largest_gap(goal, stress) == 0);
 }

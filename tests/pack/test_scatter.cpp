@@ -34,13 +34,13 @@ double smallest_gap(const Cell& cell, const Grains& grains) {
 
 TEST_CASE("scattered grains do not touch, across the faces of upright and oriented cells") {
   for (const bool oriented : {false, true}) {
-    for (Recipe recipe : {discs(60), spheres(60)}) {
+    for (pack::Recipe recipe : {discs(60), spheres(60)}) {
       recipe.oriented = oriented;
-      Grains grains = graded_grains(recipe);
+      Grains grains = pack::graded_grains(recipe);
       const double fraction = recipe.shape == Shape::disc ? 0.45 : 0.25;
-      const Cell cell = cell_of(recipe, solid_volume(recipe, grains) / fraction);
+      const Cell cell = pack::cell_of(recipe, pack::solid_volume(recipe, grains) / fraction);
       Uniform uniform(5);
-      REQUIRE(scatter(cell, 1, grains, uniform));
+      REQUIRE(pack::scatter(cell, 1, grains, uniform));
       CHECK(smallest_gap(cell, grains) > 0);
       for (const Vector3& at : grains.position)
         for (int k = 0; k < cell.dimension; ++k) CHECK(std::abs(at[k]) <= 0.5 * cell.lattice(k, k) * (1 + 1e-12));
@@ -50,17 +50,17 @@ TEST_CASE("scattered grains do not touch, across the faces of upright and orient
 
 TEST_CASE("few grains, and one, find their place; too many in too small a cell do not") {
   for (const std::size_t number : {std::size_t{1}, std::size_t{2}, std::size_t{5}}) {
-    const Recipe recipe = discs(number);
-    Grains grains = graded_grains(recipe);
+    const pack::Recipe recipe = discs(number);
+    Grains grains = pack::graded_grains(recipe);
     Uniform uniform(1);
-    CHECK(!scatter(cell_of(recipe, 1.01 * solid_volume(recipe, grains)), 1, grains, uniform));
-    REQUIRE(scatter(cell_of(recipe, 4 * solid_volume(recipe, grains)), 1, grains, uniform));
-    CHECK(smallest_gap(cell_of(recipe, 4 * solid_volume(recipe, grains)), grains) > 0);
+    CHECK(!pack::scatter(pack::cell_of(recipe, 1.01 * pack::solid_volume(recipe, grains)), 1, grains, uniform));
+    REQUIRE(pack::scatter(pack::cell_of(recipe, 4 * pack::solid_volume(recipe, grains)), 1, grains, uniform));
+    CHECK(smallest_gap(pack::cell_of(recipe, 4 * pack::solid_volume(recipe, grains)), grains) > 0);
   }
 }
 
 TEST_CASE("a mixture has its shares by number or by mass, densities counted") {
-  Recipe recipe = spheres(3000);
+  pack::Recipe recipe = spheres(3000);
   recipe.materials.push_back(recipe.materials[0]);
   recipe.materials[1].name = "heavy";
   recipe.materials[1].density = 2 * recipe.materials[0].density;
@@ -69,7 +69,7 @@ TEST_CASE("a mixture has its shares by number or by mass, densities counted") {
   recipe.fractions[1].grading.smallest_radius = recipe.fractions[1].grading.largest_radius = 1e-3;
   const auto shares = [&](bool by_mass) {
     recipe.share_by_mass = by_mass;
-    const Grains grains = graded_grains(recipe);
+    const Grains grains = pack::graded_grains(recipe);
     std::map<int, double> sum;
     double all = 0;
     for (std::size_t g = 0; g < grains.size(); ++g) {
@@ -84,13 +84,13 @@ TEST_CASE("a mixture has its shares by number or by mass, densities counted") {
   CHECK(shares(false) == Approx(0.4).margin(1e-12));
   CHECK(shares(true) == Approx(0.4).margin(0.002));  // one coarse grain is 16 fine ones
   recipe.number = 10;
-  CHECK_THROWS_WITH(graded_grains(recipe), Contains("grains.coarse gets no grain of 10"));
+  CHECK_THROWS_WITH(pack::graded_grains(recipe), Contains("grains.coarse gets no grain of 10"));
 }
 
 TEST_CASE("the grains of a recipe are the same for every draw, and others for another seed") {
-  Recipe recipe = discs();
-  const auto radii = graded_grains(recipe).radius;
-  CHECK(graded_grains(recipe).radius == radii);
+  pack::Recipe recipe = discs();
+  const auto radii = pack::graded_grains(recipe).radius;
+  CHECK(pack::graded_grains(recipe).radius == radii);
   recipe.seed = 2;
-  CHECK(graded_grains(recipe).radius != radii);
+  CHECK(pack::graded_grains(recipe).radius != radii);
 }

@@ -9,7 +9,7 @@ namespace rvelab {
 
 inline Specimen reference_specimen(const std::string& name) {
   const std::string path = RVELAB_TEST_DATA "/yade/" + name;
-  return import_csv(path + ".particles.csv", path + ".contacts.csv", path + ".json", {});
+  return io::import_csv(path + ".particles.csv", path + ".contacts.csv", path + ".json", {});
 }
 
 }  // namespace rvelab

@@ -14,9 +14,9 @@ using Catch::Matchers::Contains;
 namespace {
 
 /// On a specimen at rest at 20 kPa.
-TestRun run_at(const std::string& pressure, const std::string& stages) {
+protocol::TestRun run_at(const std::string& pressure, const std::string& stages) {
   const std::string text = "[test]\nname = \"test\"\npressure_Pa = " + pressure + "\n" + stages;
-  return run_protocol(parse_protocol(text, "t.toml"), reference_specimen("dense_p20"));
+  return protocol::run_protocol(protocol::parse_protocol(text, "t.toml"), reference_specimen("dense_p20"));
 }
 
 const std::string drained[] = {
@@ -53,7 +53,7 @@ TEST_CASE("a drained stage after an undrained one is refused where that left ano
 }
 
 TEST_CASE("deviatoric loading holds p from its first increment on, though it starts a little beside it") {
-  const TestRun run = run_at("20.6e3", "[[stage]]\nkind = \"deviatoric\"\nto_strain = 0.01\n");
+  const protocol::TestRun run = run_at("20.6e3", "[[stage]]\nkind = \"deviatoric\"\nto_strain = 0.01\n");
   REQUIRE(run.result.records.size() == 11);
   CHECK(mean_pressure(run.result.records[0].stress, 2) == Approx(20e3).epsilon(1e-3));
   for (std::size_t k = 1; k < run.result.records.size(); ++k) {

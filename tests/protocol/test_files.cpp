@@ -22,25 +22,26 @@ std::vector<std::string> protocol_files() {
 }
 
 /// A few records of each stage.
-void shorten(Stage& stage) {
+void shorten(protocol::Stage& stage) {
   constexpr long few = 2;
   const auto shorter = [](double& to_strain, double every) {
     to_strain = (to_strain < 0 ? -1 : 1) * std::min(std::abs(to_strain), few * every);
   };
-  if (auto* compression = std::any_cast<CompressionStage>(&stage.what))
+  if (auto* compression = std::any_cast<protocol::CompressionStage>(&stage.what))
     shorter(compression->to_strain, compression->record_every);
-  if (auto* shear = std::any_cast<SimpleShearStage>(&stage.what)) {
+  if (auto* shear = std::any_cast<protocol::SimpleShearStage>(&stage.what)) {
     shorter(shear->to_strain, shear->record_every);
     shear->cycles.count = std::min(shear->cycles.count, 1L);
   }
-  if (auto* deviatoric = std::any_cast<DeviatoricStage>(&stage.what))
+  if (auto* deviatoric = std::any_cast<protocol::DeviatoricStage>(&stage.what))
     shorter(deviatoric->to_strain, deviatoric->record_every);
-  if (auto* flow = std::any_cast<FlowStage>(&stage.what)) shorter(flow->to_strain, flow->record_every);
-  if (auto* path = std::any_cast<PathStage>(&stage.what)) path->records_per_point = few;
-  if (auto* pressures = std::any_cast<PressurePathStage>(&stage.what)) pressures->pressures.resize(1);
-  if (auto* envelope = std::any_cast<EnvelopeStage>(&stage.what)) envelope->directions = 3;
-  if (auto* isotropic = std::any_cast<IsotropicStage>(&stage.what)) isotropic->stress_tolerance = 1e-2;
-  if (auto* probe = std::any_cast<ProbeStage>(&stage.what)) probe->method = ProbeStage::Method::linear;
+  if (auto* flow = std::any_cast<protocol::FlowStage>(&stage.what)) shorter(flow->to_strain, flow->record_every);
+  if (auto* path = std::any_cast<protocol::PathStage>(&stage.what)) path->records_per_point = few;
+  if (auto* pressures = std::any_cast<protocol::PressurePathStage>(&stage.what)) pressures->pressures.resize(1);
+  if (auto* envelope = std::any_cast<protocol::EnvelopeStage>(&stage.what)) envelope->directions = 3;
+  if (auto* isotropic = std::any_cast<protocol::IsotropicStage>(&stage.what)) isotropic->stress_tolerance = 1e-2;
+  if (auto* probe = std::any_cast<protocol::ProbeStage>(&stage.what))
+    probe->method = protocol::ProbeStage::Method::linear;
 }
 
 }  // namespace
@@ -54,7 +55,7 @@ TEST_CASE("Every protocol opens with what it is and where its numbers are from")
     while (std::getline(text, line) && line.starts_with("#")) opening += line + "\n";
     CHECK(opening.find("# Where the numbers are from.") != std::string::npos);
     CHECK(opening.find("rvelab run ") != std::string::npos);
-    CHECK_FALSE(read_protocol(file).name.empty());
+    CHECK_FALSE(protocol::read_protocol(file).name.empty());
   }
 }
 
@@ -62,14 +63,15 @@ TEST_CASE("Every protocol runs through all its stages") {
   const Specimen discs = reference_specimen("dense_p20"), spheres = reference_specimen("hertz");
   for (const std::string& file : protocol_files()) {
     CAPTURE(file);
-    Protocol protocol = read_protocol(file, {"test.pressure_Pa=20e3"});
-    for (Stage& stage : protocol.stages) shorten(stage);
+    protocol::Protocol protocol = protocol::read_protocol(file, {"test.pressure_Pa=20e3"});
+    for (protocol::Stage& stage : protocol.stages) shorten(stage);
     const bool physical = protocol.loading.physical;
     // Large shear brings its contacts; those of 3D otherwise start at their own pressure.
     if (protocol.dimension == 3) {
-      for (Stage& stage : protocol.stages) {
-        if (auto* isotropic = std::any_cast<IsotropicStage>(&stage.what)) isotropic->pressure = 100e3;
-        if (auto* compression = std::any_cast<CompressionStage>(&stage.what)) compression->lateral_pressure = 100e3;
+      for (protocol::Stage& stage : protocol.stages) {
+        if (auto* isotropic = std::any_cast<protocol::IsotropicStage>(&stage.what)) isotropic->pressure = 100e3;
+        if (auto* compression = std::any_cast<protocol::CompressionStage>(&stage.what))
+          compression->lateral_pressure = 100e3;
       }
     }
     if (physical) {
@@ -79,10 +81,10 @@ TEST_CASE("Every protocol runs through all its stages") {
       protocol.overrides.erase("solver");
       protocol.loading.rate = 50;
     }
-    const TestRun run = run_protocol(protocol, protocol.dimension == 3 ? spheres : discs);
+    const protocol::TestRun run = protocol::run_protocol(protocol, protocol.dimension == 3 ? spheres : discs);
     CHECK(run.complete);
     long flagged = 0;
-    for (const Record& record : run.result.records) flagged += record.target_held ? 0 : 1;
+    for (const records::Record& record : run.result.records) flagged += record.target_held ? 0 : 1;
     CHECK(flagged == 0);
     if (file.find("probe") == std::string::npos) CHECK(run.result.records.size() >= 3);
   }

@@ -99,7 +99,7 @@ kind = "probe"
 
 std::string message_of(const std::string& text, const std::vector<std::string>& assignments = {}) {
   try {
-    parse_protocol(text, "t.toml", assignments);
+    protocol::parse_protocol(text, "t.toml", assignments);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -135,7 +135,7 @@ std::string some_value(const keys::TableKey& entry) {
 }
 
 /// The key as an assignment names it in `every_table`: rows, events and stages of which there are several by number.
-std::string assigned_name(const Key& key) {
+std::string assigned_name(const keys::Key& key) {
   const bool of_stress = key.name == "stress" || key.name == "strain_Pa" || key.name == "to_Pa";
   if (key.table == "stage.path.row") return std::string("stage.path.row.") + (of_stress ? "1." : "0.") + key.name;
   const char* event = key.name == "below" ? "1." : key.name == "falls_by" ? "2." : "0.";
@@ -145,7 +145,7 @@ std::string assigned_name(const Key& key) {
 }
 
 /// How messages call it.
-std::string said_name(const Key& key) {
+std::string said_name(const keys::Key& key) {
   const std::string assigned = assigned_name(key);
   if (key.table != "stage.path.row") return assigned;
   return std::string("stage.path.row.") + (assigned.find("row.1.") != std::string::npos ? "lateral." : "axial.") +
@@ -153,7 +153,7 @@ std::string said_name(const Key& key) {
 }
 
 /// The value of a key of the resolved protocol, wherever in its stages, rows and events it stands.
-const toml::node* found_in(const toml::table& resolved, const Key& key) {
+const toml::node* found_in(const toml::table& resolved, const keys::Key& key) {
   const toml::node* found = nullptr;
   const std::string kind = key.table.substr(key.table.find('.') + 1);
   for (const auto& each : *resolved["stage"].as_array()) {
@@ -176,12 +176,12 @@ const toml::node* found_in(const toml::table& resolved, const Key& key) {
 TEST_CASE("every key of the table is read, and each with the default that it states") {
   // The readers of all tables run here: each throws std::logic_error if it asks for a key that has no entry, or leaves
   // one out.
-  const Protocol read = parse_protocol(every_table, "t.toml");
+  const protocol::Protocol read = protocol::parse_protocol(every_table, "t.toml");
   CHECK(read.stages.size() == 12);
   std::set<std::string> names;
   const auto resolved = toml::parse(read.resolved);
   for (const auto& entry : protocol::protocol_keys()) {
-    const Key& key = entry.key;
+    const keys::Key& key = entry.key;
     CAPTURE(key.dotted());
     CHECK(names.insert(key.dotted()).second);
     CHECK((!key.unit.empty() && !key.type.empty() && !key.range.empty() && !key.meaning.empty()));
@@ -192,7 +192,7 @@ TEST_CASE("every key of the table is read, and each with the default that it sta
     if (key.name == "inertial_number") continue;                      // one of the two rates only
     if (key.name == "held_tolerance") {  // the test passes through time: collisions make a held stress fluctuate
       REQUIRE(node != nullptr);
-      CHECK(node->value<double>() == LoadingSettings::held_tolerance_at_rate);
+      CHECK(node->value<double>() == protocol::LoadingSettings::held_tolerance_at_rate);
       continue;
     }
     REQUIRE(node != nullptr);
@@ -200,12 +200,12 @@ TEST_CASE("every key of the table is read, and each with the default that it sta
     if (const auto* whole = std::get_if<long>(&entry.initial)) CHECK(node->value<std::int64_t>() == *whole);
     if (const auto* truth = std::get_if<bool>(&entry.initial)) CHECK(node->value<bool>() == *truth);
   }
-  for (const Key& key : known_keys()) CHECK(names.insert(key.dotted()).second);
+  for (const keys::Key& key : keys::known_keys()) CHECK(names.insert(key.dotted()).second);
 }
 
 TEST_CASE("every key of a protocol can be set by an assignment, and refuses what is not of its kind") {
   for (const auto& entry : protocol::protocol_keys()) {
-    const Key& key = entry.key;
+    const keys::Key& key = entry.key;
     if (key.table == "stage" || key.name == "then") continue;  // names of stages are a test of their own
     const std::string name = assigned_name(key), said = said_name(key);
     CAPTURE(key.dotted());
@@ -226,14 +226,14 @@ TEST_CASE("every key of a protocol can be set by an assignment, and refuses what
 }
 
 TEST_CASE("whole numbers are accepted where numbers are asked for") {
-  const Protocol protocol =
-      parse_protocol(every_table, "t.toml", {"test.pressure_Pa=20000", "calibrate.pressures_Pa=[1, 2.5]"});
+  const protocol::Protocol protocol =
+      protocol::parse_protocol(every_table, "t.toml", {"test.pressure_Pa=20000", "calibrate.pressures_Pa=[1, 2.5]"});
   CHECK(protocol.pressure == 20000.0);
   CHECK(protocol.calibration_pressures == std::vector<double>{1, 2.5});
 }
 
 TEST_CASE("a reader that asks for a key without an entry, or leaves one out, is stopped at once") {
-  std::vector<KeyError> errors;
+  std::vector<keys::KeyError> errors;
   const auto table = toml::parse("name = \"t\"\n");
   keys::TableReader asks(table, protocol::protocol_keys(), "test", "test", 1, errors);
   CHECK_THROWS_AS(asks.number("presure_Pa"), std::logic_error);
@@ -285,10 +285,10 @@ TEST_CASE("the README lists every key as the table has it") {
     if (!line.starts_with("| ") || line.starts_with("| ---") || line.starts_with("| key ")) continue;
     CHECK(rows.emplace(line.substr(2, line.find(' ', 2) - 2), line).second);
   }
-  for (const Key& key : all_keys()) {
+  for (const keys::Key& key : protocol::all_keys()) {
     const std::string initial = key.required ? " required " : key.initial.empty() ? " " : " " + key.initial + " ";
     CHECK(rows[key.dotted()] == "| " + key.dotted() + " | " + key.unit + " | " + key.type + " |" + initial + "| " +
                                     key.range + " | " + key.meaning + " |");
   }
-  CHECK(rows.size() == all_keys().size());
+  CHECK(rows.size() == protocol::all_keys().size());
 }

@@ -16,8 +16,8 @@ namespace {
 
 const std::string head = "[test]\nname = \"test\"\npressure_Pa = 20e3\n";
 
-TestRun run_text(const std::string& stages, const std::string& specimen) {
-  return run_protocol(parse_protocol(head + stages, "test.toml"), reference_specimen(specimen));
+protocol::TestRun run_text(const std::string& stages, const std::string& specimen) {
+  return protocol::run_protocol(protocol::parse_protocol(head + stages, "test.toml"), reference_specimen(specimen));
 }
 
 std::string row(const std::string& name, const std::string& rest) {
@@ -26,7 +26,7 @@ std::string row(const std::string& name, const std::string& rest) {
 
 std::string message_of(const std::string& rows, int dimension) {
   try {
-    parse_protocol(
+    protocol::parse_protocol(
         "[test]\nname = \"test\"\ndimension = " + std::to_string(dimension) + "\n[[stage]]\nkind = \"path\"\n" + rows,
         "t.toml");
   } catch (const InputError& error) {
@@ -40,10 +40,10 @@ bool contains(const std::string& text, const std::string& part) { return text.fi
 }  // namespace
 
 TEST_CASE("Rows of strain: the logarithmic strain goes from point to point in equal parts") {
-  const TestRun run = run_text("[[stage]]\nkind = \"path\"\nrecords_per_point = 4\n" +
-                                   row("axial", "strain = {yy = -1}\nto = [0.002, 0.001]") +
-                                   row("shear", "strain = {xy = 1}\nto = [0.0, 0.0004]"),
-                               "dense_p20");
+  const protocol::TestRun run = run_text("[[stage]]\nkind = \"path\"\nrecords_per_point = 4\n" +
+                                             row("axial", "strain = {yy = -1}\nto = [0.002, 0.001]") +
+                                             row("shear", "strain = {xy = 1}\nto = [0.0, 0.0004]"),
+                                         "dense_p20");
   const auto& records = run.result.records;
   REQUIRE(records.size() == 9);
   for (std::size_t k = 0; k < 9; ++k) {
@@ -61,12 +61,12 @@ TEST_CASE("Rows of strain: the logarithmic strain goes from point to point in eq
 
 TEST_CASE("Rows of stress and strain: both are held, in any combination") {
   // A spring beside the specimen: sigma_xx + 20 MPa eps_xx stays; p itself; and their records.
-  const TestRun run = run_text("[[stage]]\nkind = \"path\"\nrecords_per_point = 10\n" +
-                                   row("axial", "strain = {yy = -1}\nto = [0.005]") +
-                                   row("spring", "strain_Pa = {xx = 20e6}\nstress = {xx = 1}"),
-                               "dense_p20");
+  const protocol::TestRun run = run_text("[[stage]]\nkind = \"path\"\nrecords_per_point = 10\n" +
+                                             row("axial", "strain = {yy = -1}\nto = [0.005]") +
+                                             row("spring", "strain_Pa = {xx = 20e6}\nstress = {xx = 1}"),
+                                         "dense_p20");
   const double first = run.result.records[0].stress(0, 0);
-  for (const Record& record : run.result.records) {
+  for (const records::Record& record : run.result.records) {
     const double lateral = std::log(record.deformation_gradient(0, 0));
     const double value = record.stress(0, 0) + 20e6 * lateral;
     if (record.target_held) CHECK(std::abs(value - first) <= 0.005 * std::abs(first) * (1 + 1e-6) + 20e6 * 1e-7);
@@ -81,9 +81,9 @@ TEST_CASE("A volume that the rows say stays, stays to 1e-12, stress-driven or no
             row("tau", "stress = {xy = 1}\nto_Pa = [2e3, -2e3]"),
         row("volume", "strain = {xx = 1, yy = 1}") + row("axial", "strain = {yy = -1}\nto = [0.003, -0.001]"),
         row("volume", "strain = {xx = 1, yy = 1}") + row("q", "stress = {xx = 1, yy = -1}\nto_Pa = [6e3, -6e3]")}) {
-    const TestRun run = run_text(cycles + rows, "dense_p20");
+    const protocol::TestRun run = run_text(cycles + rows, "dense_p20");
     REQUIRE(run.result.records.size() == 25);
-    for (const Record& record : run.result.records) {
+    for (const records::Record& record : run.result.records) {
       CHECK(record.deformation_gradient.determinant() == Approx(1).margin(1e-12));
     }
     CHECK(run.end_state.cell.volume() == Approx(reference_specimen("dense_p20").cell.volume()).epsilon(1e-12));
@@ -91,9 +91,10 @@ TEST_CASE("A volume that the rows say stays, stays to 1e-12, stress-driven or no
 }
 
 TEST_CASE("Stress-driven components move by a symmetric gradient: the cell does not spin") {
-  const TestRun run = run_text("[[stage]]\nkind = \"path\"\nrecords_per_point = 8\n" + row("xx", "stress = {xx = 1}") +
-                                   row("yy", "stress = {yy = 1}") + row("tau", "stress = {xy = 1}\nto_Pa = [3e3]"),
-                               "dense_p20");
+  const protocol::TestRun run =
+      run_text("[[stage]]\nkind = \"path\"\nrecords_per_point = 8\n" + row("xx", "stress = {xx = 1}") +
+                   row("yy", "stress = {yy = 1}") + row("tau", "stress = {xy = 1}\nto_Pa = [3e3]"),
+               "dense_p20");
   const Matrix3& f = run.result.records.back().deformation_gradient;
   CHECK(std::abs(f(0, 1)) > 1e-6);
   CHECK(std::abs(f(0, 1) - f(1, 0)) < 1e-3 * std::abs(f(0, 1)));
@@ -101,18 +102,18 @@ TEST_CASE("Stress-driven components move by a symmetric gradient: the cell does 
 }
 
 TEST_CASE("Constant p: held within the tolerance, 2D and 3D; the Lode angle stays") {
-  const TestRun plane = run_text("[[stage]]\nkind = \"deviatoric\"\nto_strain = 0.006\n", "dense_p20");
-  for (const Record& record : plane.result.records) {
+  const protocol::TestRun plane = run_text("[[stage]]\nkind = \"deviatoric\"\nto_strain = 0.006\n", "dense_p20");
+  for (const records::Record& record : plane.result.records) {
     if (record.target_held) CHECK(mean_pressure(record.stress, 2) == Approx(20e3).epsilon(0.0051));
   }
   CHECK(deviatoric_stress(plane.result.records.back().stress, 2) > 4e3);
   for (const double angle : {0.0, 40.0}) {
-    const TestRun run =
+    const protocol::TestRun run =
         run_text("[[stage]]\nkind = \"deviatoric\"\nto_strain = 0.002\nlode_angle_deg = " + std::to_string(angle) +
                      "\npressure_Pa = 100e3\n",
                  "hertz");
     REQUIRE(run.result.records.size() == 3);
-    const Record& end = run.result.records.back();
+    const records::Record& end = run.result.records.back();
     CHECK(end.target_held);
     CHECK(mean_pressure(end.stress, 3) == Approx(100e3).epsilon(0.0051));
     const Matrix3 s = end.stress + 100e3 * Matrix3::Identity();
@@ -138,7 +139,7 @@ TEST_CASE("Directions without libm are those of libm") {
 }
 
 TEST_CASE("Pressures one after the other: both normal stresses reach each") {
-  const TestRun run =
+  const protocol::TestRun run =
       run_text("[[stage]]\nkind = \"pressure_path\"\nto_Pa = [40e3, 10e3]\nrecords_per_point = 3\n", "dense_p20");
   REQUIRE(run.result.records.size() == 7);
   const double expected[] = {20e3, 26667, 33333, 40e3, 30e3, 20e3, 10e3};
@@ -180,6 +181,6 @@ TEST_CASE("Rows that say the same, or contradict each other, are refused by name
 
 TEST_CASE("Without a dimension in the file the rows are checked when the specimen is there, before anything runs") {
   const std::string rows = row("z", "strain = {zz = 1}\nto = [0.1]");
-  const Protocol protocol = parse_protocol(head + "[[stage]]\nkind = \"path\"\n" + rows, "t.toml");
-  CHECK_THROWS_AS(run_protocol(protocol, reference_specimen("dense_p20")), InputError);
+  const protocol::Protocol protocol = protocol::parse_protocol(head + "[[stage]]\nkind = \"path\"\n" + rows, "t.toml");
+  CHECK_THROWS_AS(protocol::run_protocol(protocol, reference_specimen("dense_p20")), InputError);
 }

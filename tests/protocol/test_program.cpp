@@ -42,7 +42,7 @@ struct Folder {
   explicit Folder(const std::string& name) : path(fs::temp_directory_path() / ("rvelab_test_" + name)) {
     fs::remove_all(path);
     fs::create_directories(path);
-    write_specimen(reference_specimen("dense_p20"), specimen());
+    io::write_specimen(reference_specimen("dense_p20"), specimen());
   }
   ~Folder() { fs::remove_all(path); }
   std::string specimen() const { return (path / "S.h5").string(); }
@@ -72,7 +72,7 @@ TEST_CASE("A run prints its records as arrays by name and writes the same ones")
   CHECK(printed["pressure_Pa"] == 20e3);
   CHECK(printed["wall_s"].get<double>() > 0);
   CHECK(printed["grain_steps"].get<double>() > 0);
-  const TestResult written = read_records(folder.file("R.h5"));
+  const records::TestResult written = io::read_records(folder.file("R.h5"));
   REQUIRE(written.records.size() == 5);
   for (std::size_t k = 0; k < 5; ++k) {
     CHECK(printed["records"]["strain"][k].get<double>() == written.records[k].strain);
@@ -84,7 +84,7 @@ TEST_CASE("A run prints its records as arrays by name and writes the same ones")
     }
   }
   // The protocol that was run is kept, --set included, and can be run again.
-  std::ofstream(folder.file("again.toml")) << read_protocol_text(folder.file("R.h5"));
+  std::ofstream(folder.file("again.toml")) << io::read_protocol_text(folder.file("R.h5"));
   const Outcome again =
       rvelab_program("run " + folder.file("again.toml") + " --specimen " + folder.specimen() + " --json");
   INFO(again.text);
@@ -121,8 +121,8 @@ TEST_CASE("A calibration prints the words that other programs read and writes on
   CHECK(printed["per_pressure"][0]["pressure_Pa"] == 15e3);
   CHECK(printed["per_pressure"][0]["records"] == 7);
   CHECK(printed["friction_angle_deg"].get<double>() > 15);
-  CHECK(read_records(folder.file("R_15000.h5")).pressure == 15e3);
-  CHECK(read_records(folder.file("R_20000.h5")).records.size() == 7);
+  CHECK(io::read_records(folder.file("R_15000.h5")).pressure == 15e3);
+  CHECK(io::read_records(folder.file("R_20000.h5")).records.size() == 7);
 }
 
 TEST_CASE("A user's mistake is one line on standard error and exit code 2") {

@@ -27,7 +27,7 @@ to_strain = 0.15
 /// The message of the InputError that the text gives; "" if it gives none.
 std::string message_of(const std::string& text, const std::vector<std::string>& assignments = {}) {
   try {
-    parse_protocol(text, "test.toml", assignments);
+    protocol::parse_protocol(text, "test.toml", assignments);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -41,14 +41,14 @@ std::size_t lines(const std::string& text) {
 }
 
 template <class What>
-const What& stage_of(const Protocol& protocol, std::size_t number) {
+const What& stage_of(const protocol::Protocol& protocol, std::size_t number) {
   return std::any_cast<const What&>(protocol.stages.at(number).what);
 }
 
 }  // namespace
 
 TEST_CASE("What a protocol leaves out has the documented defaults") {
-  const Protocol protocol = parse_protocol(biaxial, "test.toml");
+  const protocol::Protocol protocol = protocol::parse_protocol(biaxial, "test.toml");
   CHECK(protocol.name == "biaxial");
   CHECK(protocol.pressure == 20e3);
   CHECK(protocol.uses_pressure);
@@ -57,35 +57,36 @@ TEST_CASE("What a protocol leaves out has the documented defaults") {
   CHECK(protocol.loading.held_wait == 200);
   REQUIRE(protocol.stages.size() == 2);
   CHECK(protocol.stages[0].name == "isotropic");
-  const auto& isotropic = stage_of<IsotropicStage>(protocol, 0);
+  const auto& isotropic = stage_of<protocol::IsotropicStage>(protocol, 0);
   CHECK(isotropic.pressure == 20e3);
   CHECK_FALSE(isotropic.shear_stress_free);
   CHECK(isotropic.stress_tolerance == 1e-4);
   CHECK(isotropic.unbalanced == 1e-5);
-  const auto& compression = stage_of<CompressionStage>(protocol, 1);
+  const auto& compression = stage_of<protocol::CompressionStage>(protocol, 1);
   CHECK(compression.axis == "y");
   CHECK(compression.to_strain == 0.15);
   CHECK(compression.record_every == 0.0005);
-  CHECK(compression.lateral == CompressionStage::Lateral::constant_stress);
+  CHECK(compression.lateral == protocol::CompressionStage::Lateral::constant_stress);
   CHECK(compression.lateral_pressure == 20e3);
 }
 
 TEST_CASE("A stage's own pressure goes before the test's") {
   const std::string text = biaxial + "lateral_pressure_Pa = 35e3\n";
-  const Protocol protocol = parse_protocol(text, "test.toml", {"stage.isotropic.pressure_Pa=30e3"});
-  CHECK(stage_of<IsotropicStage>(protocol, 0).pressure == 30e3);
-  CHECK(stage_of<CompressionStage>(protocol, 1).lateral_pressure == 35e3);
+  const protocol::Protocol protocol = protocol::parse_protocol(text, "test.toml", {"stage.isotropic.pressure_Pa=30e3"});
+  CHECK(stage_of<protocol::IsotropicStage>(protocol, 0).pressure == 30e3);
+  CHECK(stage_of<protocol::CompressionStage>(protocol, 1).lateral_pressure == 35e3);
   CHECK_FALSE(protocol.uses_pressure);
 }
 
 TEST_CASE("The resolved text is a protocol that says the same and stays as it is when read again") {
   const std::string text =
       biaxial + "[contact]\nslip = \"full_radius\"\n[material]\nfriction = 0.4\n[solver]\nskin = 0.2\n";
-  const Protocol first = parse_protocol(text, "test.toml", {"stage.compression.record_every=0.0007"});
-  const Protocol second = parse_protocol(first.resolved, "resolved.toml");
+  const protocol::Protocol first =
+      protocol::parse_protocol(text, "test.toml", {"stage.compression.record_every=0.0007"});
+  const protocol::Protocol second = protocol::parse_protocol(first.resolved, "resolved.toml");
   CHECK(second.resolved == first.resolved);
   CHECK(second.pressure == first.pressure);
-  CHECK(stage_of<CompressionStage>(second, 1).record_every == 0.0007);
+  CHECK(stage_of<protocol::CompressionStage>(second, 1).record_every == 0.0007);
   CHECK(second.overrides["contact"]["slip"].value<std::string>() == "full_radius");
   for (const char* part : {"held_wait", "stress_tolerance", "unbalanced", "lateral_pressure_Pa", "max_rounds"}) {
     CHECK(contains(first.resolved, part));
@@ -185,17 +186,20 @@ TEST_CASE("Keys that contradict each other are refused") {
 
 TEST_CASE(
     "Assignments act before the file is checked, on stages by name or number, and words need no quotation marks") {
-  const Protocol by_name = parse_protocol(biaxial, "t", {"stage.compression.to_strain=0.05", "test.pressure_Pa=2e4"});
-  CHECK(stage_of<CompressionStage>(by_name, 1).to_strain == 0.05);
-  const Protocol by_number = parse_protocol(biaxial, "t", {"stage.1.lateral=constant_volume", "test.name = a b"});
-  CHECK(stage_of<CompressionStage>(by_number, 1).lateral == CompressionStage::Lateral::constant_volume);
+  const protocol::Protocol by_name =
+      protocol::parse_protocol(biaxial, "t", {"stage.compression.to_strain=0.05", "test.pressure_Pa=2e4"});
+  CHECK(stage_of<protocol::CompressionStage>(by_name, 1).to_strain == 0.05);
+  const protocol::Protocol by_number =
+      protocol::parse_protocol(biaxial, "t", {"stage.1.lateral=constant_volume", "test.name = a b"});
+  CHECK(stage_of<protocol::CompressionStage>(by_number, 1).lateral ==
+        protocol::CompressionStage::Lateral::constant_volume);
   CHECK(by_number.name == "a b");
-  const Protocol new_tables =
-      parse_protocol(biaxial, "t", {"contact.slip=full_radius_ratcheting", "material.sand.friction=0.5"});
+  const protocol::Protocol new_tables =
+      protocol::parse_protocol(biaxial, "t", {"contact.slip=full_radius_ratcheting", "material.sand.friction=0.5"});
   CHECK(new_tables.overrides["contact"]["slip"].value<std::string>() == "full_radius_ratcheting");
   CHECK(new_tables.overrides["material"]["sand"]["friction"].value<double>() == 0.5);
   // The later one wins.
-  CHECK(parse_protocol(biaxial, "t", {"test.pressure_Pa=1e4", "test.pressure_Pa=3e4"}).pressure == 3e4);
+  CHECK(protocol::parse_protocol(biaxial, "t", {"test.pressure_Pa=1e4", "test.pressure_Pa=3e4"}).pressure == 3e4);
   // A mistake in one is told like one in the file.
   CHECK(contains(message_of(biaxial, {"test.presure_Pa=1"}), "nearest known key is test.pressure_Pa"));
   CHECK(contains(message_of(biaxial, {"stage.7.to_strain=0.1"}), "allowed: 0 (isotropic), 1 (compression)"));
@@ -203,13 +207,13 @@ TEST_CASE(
   for (const char* wrong : {"pressure", "test.pressure_Pa", "test.pressure_Pa=", "=3", "pressure_Pa=3", "test..a=1",
                             "stage.1=3", "test.name.more=1"}) {
     INFO(wrong);
-    CHECK_THROWS_AS(parse_protocol(biaxial, "t", {wrong}), InputError);
+    CHECK_THROWS_AS(protocol::parse_protocol(biaxial, "t", {wrong}), InputError);
   }
 }
 
 TEST_CASE("A text that is not TOML is refused with its line") {
   CHECK(contains(message_of("[test]\nname = \n"), "test.toml:2"));
-  CHECK_THROWS_AS(read_protocol("no/such/file.toml"), InputError);
+  CHECK_THROWS_AS(protocol::read_protocol("no/such/file.toml"), InputError);
 }
 
 TEST_CASE("Overrides reach the specimen and must fit it") {
@@ -221,27 +225,28 @@ TEST_CASE("Overrides reach the specimen and must fit it") {
   specimen.materials[1].name = "steel";
   const std::string text =
       biaxial + "[contact]\nslip = \"full_radius\"\n[material]\nfriction = 0.3\nsteel.friction = 0.1\n";
-  const Specimen changed = with_overrides(parse_protocol(text, "t"), specimen);
+  const Specimen changed = protocol::with_overrides(protocol::parse_protocol(text, "t"), specimen);
   CHECK(changed.contact.slip == Slip::full_radius);
   CHECK(changed.materials[0].friction == 0.3);
   CHECK(changed.materials[1].friction == 0.1);
-  CHECK_THROWS_AS(with_overrides(parse_protocol(biaxial + "[material.clay]\nfriction = 0.3\n", "t"), specimen),
-                  InputError);
+  CHECK_THROWS_AS(
+      protocol::with_overrides(protocol::parse_protocol(biaxial + "[material.clay]\nfriction = 0.3\n", "t"), specimen),
+      InputError);
   specimen.cell.dimension = 3;
-  CHECK_THROWS_AS(with_overrides(parse_protocol(biaxial, "t"), specimen), InputError);
+  CHECK_THROWS_AS(protocol::with_overrides(protocol::parse_protocol(biaxial, "t"), specimen), InputError);
 }
 
 TEST_CASE("Every protocol that comes with rvelab is one, and opens with what it is") {
   int found = 0;
   for (const auto& entry : std::filesystem::directory_iterator(RVELAB_SOURCE_DIR "/protocols")) {
     INFO(entry.path());
-    if (is_recipe(entry.path().string())) continue;  // read in test_recipe.cpp
-    CHECK_NOTHROW(read_protocol(entry.path().string()));
+    if (protocol::is_recipe(entry.path().string())) continue;  // read in test_recipe.cpp
+    CHECK_NOTHROW(protocol::read_protocol(entry.path().string()));
     ++found;
   }
   CHECK(found >= 4);
-  const Protocol protocol = read_protocol(RVELAB_SOURCE_DIR "/protocols/biaxial.toml");
+  const protocol::Protocol protocol = protocol::read_protocol(RVELAB_SOURCE_DIR "/protocols/biaxial.toml");
   CHECK(protocol.calibration_pressures == std::vector<double>{10e3, 15e3, 20e3, 25e3, 30e3});
-  CHECK(stage_of<CompressionStage>(protocol, 1).to_strain == 0.15);
-  CHECK(stage_of<CompressionStage>(protocol, 1).record_every == 0.0005);
+  CHECK(stage_of<protocol::CompressionStage>(protocol, 1).to_strain == 0.15);
+  CHECK(stage_of<protocol::CompressionStage>(protocol, 1).record_every == 0.0005);
 }

@@ -68,7 +68,7 @@ friction = 0.3
 
 std::string message_of(const std::string& text, const std::vector<std::string>& assignments = {}) {
   try {
-    parse_recipe(text, "r.toml", assignments);
+    protocol::parse_recipe(text, "r.toml", assignments);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -78,7 +78,7 @@ std::string message_of(const std::string& text, const std::vector<std::string>& 
 }  // namespace
 
 TEST_CASE("a small recipe has the defaults that the key table states") {
-  const RecipeFile file = parse_recipe(small, "r.toml");
+  const protocol::RecipeFile file = protocol::parse_recipe(small, "r.toml");
   const auto resolved = toml::parse(file.resolved);
   for (const auto& entry : protocol::recipe_keys()) {
     CAPTURE(entry.key.dotted());
@@ -94,15 +94,15 @@ TEST_CASE("a small recipe has the defaults that the key table states") {
   CHECK(file.recipe.number == 400);
   CHECK(file.recipe.fractions.at(0).grading.largest_radius == 7e-3);
   CHECK(file.recipe.materials.at(0).friction == 0.4);
-  CHECK(*file.recipe.stress == isotropic_stress(1e5, Shape::disc));
+  CHECK(*file.recipe.stress == pack::isotropic_stress(1e5, Shape::disc));
   CHECK(!file.recipe.void_ratio);
   // What was read can be read again, with the same meaning.
-  CHECK(parse_recipe(file.resolved, "again.toml").resolved == file.resolved);
+  CHECK(protocol::parse_recipe(file.resolved, "again.toml").resolved == file.resolved);
 }
 
 TEST_CASE("a mixture of two materials, gradings and a stress tensor comes out as it was written") {
-  const RecipeFile file = parse_recipe(mixture, "r.toml");
-  const Recipe& recipe = file.recipe;
+  const protocol::RecipeFile file = protocol::parse_recipe(mixture, "r.toml");
+  const pack::Recipe& recipe = file.recipe;
   REQUIRE(recipe.fractions.size() == 2);
   CHECK(recipe.fractions[0].material == 1);
   CHECK(recipe.fractions[1].material == 0);
@@ -110,13 +110,13 @@ TEST_CASE("a mixture of two materials, gradings and a stress tensor comes out as
   CHECK(recipe.fractions[0].grading.curve == GradingCurve::tabulated);
   CHECK(recipe.fractions[1].grading.curve == GradingCurve::linear);
   CHECK(recipe.share_by_mass);
-  CHECK(recipe.preparation.method == Preparation::Method::growth);
-  CHECK(growth_void_ratio(recipe) == Approx(0.6));
+  CHECK(recipe.preparation.method == pack::Preparation::Method::growth);
+  CHECK(pack::growth_void_ratio(recipe) == Approx(0.6));
   // A family scales the tensor to each mean pressure.
   REQUIRE(file.pressures == std::vector<double>{1e4, 2e4});
-  const RecipeFile member = file.member(9, 2e4);
-  const Recipe& second = member.recipe;
-  const RecipeFile again = parse_recipe(member.resolved, "again.toml");
+  const protocol::RecipeFile member = file.member(9, 2e4);
+  const pack::Recipe& second = member.recipe;
+  const protocol::RecipeFile again = protocol::parse_recipe(member.resolved, "again.toml");
   CHECK(again.recipe.seed == 9);
   CHECK(*again.recipe.stress == *second.stress);
   CHECK(second.seed == 9);
@@ -129,7 +129,7 @@ TEST_CASE("a mixture of two materials, gradings and a stress tensor comes out as
 
 TEST_CASE("porosity and void ratio say the same") {
   const auto with = [](const std::string& assignment) {
-    return *parse_recipe(small, "r.toml", {assignment}).recipe.void_ratio;
+    return *protocol::parse_recipe(small, "r.toml", {assignment}).recipe.void_ratio;
   };
   CHECK(with("target.porosity=0.2") == Approx(0.25));
   CHECK(with("target.void_ratio=0.25") == 0.25);
@@ -196,10 +196,10 @@ TEST_CASE("every shipped recipe is one, and says in its head what it is and wher
   for (const auto& entry : std::filesystem::directory_iterator(RVELAB_SOURCE_DIR "/protocols")) {
     const std::string path = entry.path().string(), name = entry.path().stem().string();
     CAPTURE(path);
-    CHECK(is_recipe(path) == name.starts_with("pack_"));
-    if (!is_recipe(path)) continue;
+    CHECK(protocol::is_recipe(path) == name.starts_with("pack_"));
+    if (!protocol::is_recipe(path)) continue;
     ++recipes;
-    const RecipeFile file = read_recipe(path);
+    const protocol::RecipeFile file = protocol::read_recipe(path);
     CHECK(file.recipe.number >= 400);
     std::ifstream input(path);
     const std::string text{std::istreambuf_iterator<char>(input), {}};

@@ -26,7 +26,7 @@ namespace {
 class Bench {
  public:
   Bench() {
-    write_specimen(reference_specimen("dense_p20"), folder / "s.h5");
+    io::write_specimen(reference_specimen("dense_p20"), folder / "s.h5");
     const std::string begin = "[test]\nname = \"test\"\npressure_Pa = 20e3\n[[stage]]\nkind = \"compression\"\n";
     write_bytes(folder / "long.toml", begin + "to_strain = 0.9\nlateral = \"constant_volume\"\nrecord_every = 1e-4\n");
     write_bytes(folder / "short.toml", begin + "to_strain = 0.004\n");
@@ -102,7 +102,7 @@ TEST_CASE("Ctrl-C and SIGTERM end a run within a second of its work, with their 
     CHECK(stopped(*run, number) == 128 + number);
     bench.expect_one_line(number == SIGINT ? "stopped by Ctrl-C" : "stopped by SIGTERM");
     CHECK_THAT(bench.errors(), Contains("--resume"));
-    const RecordedTest left = read_recorded_test(path);
+    const io::RecordedTest left = io::read_recorded_test(path);
     CHECK(!left.complete);
     CHECK(left.result.records.size() > records);
     CHECK(static_cast<std::size_t>(left.checkpoint.progress.records) == left.result.records.size());
@@ -120,7 +120,7 @@ TEST_CASE("a run that fails leaves the records before the failure, published") {
   CHECK(bench.run(bench.command("long.toml", {"-o", path, "--set", "solver.max_substeps=60", "--set",
                                               "stage.compression.record_every=0.0003"})) == 1);
   bench.expect_one_line("max_substeps");
-  const RecordedTest left = read_recorded_test(path);
+  const io::RecordedTest left = io::read_recorded_test(path);
   CHECK(!left.complete);
   CHECK(left.result.records.size() > 0);
 }
@@ -133,7 +133,7 @@ TEST_CASE("a full disc, a file too large and a disc that fails end a run with on
     CHECK(bench.run(bench.command("long.toml", {"-o", path, "--force", "--checkpoint-every", "0.1"}), fault) == 1);
     bench.expect_one_line("could not be written");
     CHECK_THAT(bench.errors(), Contains(fault.ends_with("eio") ? "Input/output error" : "No space left"));
-    const RecordedTest left = read_recorded_test(path);
+    const io::RecordedTest left = io::read_recorded_test(path);
     CHECK(left.result.records.size() >= 3);
     CHECK(!io::read_journal(io::journal_of(path), [](const io::Frame&) {}).torn);
     CHECK(!std::filesystem::exists(path + ".tmp"));
@@ -146,8 +146,8 @@ TEST_CASE("a full disc, a file too large and a disc that fails end a run with on
     command.push_back(word);
   CHECK(bench.run(command) == 1);
   bench.expect_one_line("File too large");
-  CHECK(Hdf5File::open(path).has("/records/strain"));
-  CHECK(read_recorded_test(path).result.records.size() > 1);
+  CHECK(io::Hdf5File::open(path).has("/records/strain"));
+  CHECK(io::read_recorded_test(path).result.records.size() > 1);
 }
 
 TEST_CASE("what cannot be used is one line and exit code 2, before anything is made or lost") {
@@ -236,7 +236,7 @@ TEST_CASE("recover makes a file of what a killed run left; inspect and resume ne
   CHECK(recovered["complete"] == 0);
   CHECK(recovered["records_in_journal"] == 4);
   CHECK(recovered["journal_bytes_cut_off"] > 0);
-  CHECK(Hdf5File::open(path).shape("/records/strain") == Shape64{4});
+  CHECK(io::Hdf5File::open(path).shape("/records/strain") == io::Shape64{4});
   CHECK(bench.run(bench.command("short.toml", {"-o", path, "--resume"})) == 0);
   CHECK(first_different_dataset(undisturbed, path).empty());
   CHECK(ask({"recover", path})["complete"] == 1);
@@ -284,11 +284,11 @@ TEST_CASE("snapshots stand in the file as specimens that can be opened") {
   const Bench bench;
   const std::string path = bench.folder / "r.h5";
   REQUIRE(bench.run(bench.command("short.toml", {"-o", path, "--set", "output.snapshots_every=3"})) == 0);
-  const RecordedTest test = read_recorded_test(path);
+  const io::RecordedTest test = io::read_recorded_test(path);
   REQUIRE(test.snapshots.size() == 3);
   CHECK(test.snapshots[1].record == 3);
-  CHECK(read_snapshot(test.snapshots[1]).grains.size() == 400);
-  CHECK(Hdf5File::open(path).has("/snapshots/000006/contacts/tangential_force_N"));
+  CHECK(io::read_snapshot(test.snapshots[1]).grains.size() == 400);
+  CHECK(io::Hdf5File::open(path).has("/snapshots/000006/contacts/tangential_force_N"));
 }
 
 TEST_CASE("calibrate keeps its records in the same way: refused, stopped, gone on with") {

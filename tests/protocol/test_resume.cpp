@@ -40,12 +40,12 @@ const char* const wandering_stages =
     "  [[stage.row]]\n  name = \"volume\"\n  strain = {xx = 1, yy = 1}\n"
     "  [[stage.row]]\n  name = \"q\"\n  stress = {xx = 1, yy = -1}\n  to_Pa = [3e3, 0.0]\n";
 
-Protocol protocol_of(const std::string& text) { return parse_protocol(text, "test.toml"); }
+protocol::Protocol protocol_of(const std::string& text) { return protocol::parse_protocol(text, "test.toml"); }
 
-void expect_same(const TestRun& a, const TestRun& b) {
+void expect_same(const protocol::TestRun& a, const protocol::TestRun& b) {
   CHECK(a.complete);
   CHECK(b.complete);
-  TestResult first = a.result, second = b.result;
+  records::TestResult first = a.result, second = b.result;
   CHECK(first.records.size() == second.records.size());
   CHECK(first.probes.size() == second.probes.size());
   first.wall_seconds = second.wall_seconds = 0;
@@ -54,23 +54,23 @@ void expect_same(const TestRun& a, const TestRun& b) {
 }
 
 struct Stop {
-  Checkpoint checkpoint;
-  TestResult result;
+  records::Checkpoint checkpoint;
+  records::TestResult result;
 };
 
 /// Runs a test and keeps every moment of it.
-TestRun run_keeping(const Protocol& protocol, const Specimen& specimen, std::vector<Stop>& stops) {
-  Watch watch;
-  watch.on_moment = [&](const Moment& moment) { stops.push_back({moment.checkpoint(), moment.result}); };
-  return run_protocol(protocol, specimen, watch);
+protocol::TestRun run_keeping(const protocol::Protocol& protocol, const Specimen& specimen, std::vector<Stop>& stops) {
+  protocol::Watch watch;
+  watch.on_moment = [&](const protocol::Moment& moment) { stops.push_back({moment.checkpoint(), moment.result}); };
+  return protocol::run_protocol(protocol, specimen, watch);
 }
 
 }  // namespace
 
 TEST_CASE("a test gone on with from any of its moments ends with every bit of the undisturbed one") {
   const Specimen specimen = reference_specimen("dense_p20");
-  const Protocol protocol = protocol_of(all_stages);
-  const TestRun undisturbed = run_protocol(protocol, specimen);
+  const protocol::Protocol protocol = protocol_of(all_stages);
+  const protocol::TestRun undisturbed = protocol::run_protocol(protocol, specimen);
   std::vector<Stop> stops;
   expect_same(undisturbed, run_keeping(protocol, specimen, stops));  // taking checkpoints disturbs nothing
   REQUIRE(stops.size() > 18);
@@ -78,42 +78,42 @@ TEST_CASE("a test gone on with from any of its moments ends with every bit of th
   CHECK(undisturbed.result.records.size() == 2 + 7 + 2 + 4);
   std::int32_t stages_seen = 0;
   for (std::size_t k = 0; k < stops.size(); k += k + 6 < stops.size() ? 2 : 1) {
-    const Progress& progress = stops[k].checkpoint.progress;
+    const records::Progress& progress = stops[k].checkpoint.progress;
     CAPTURE(k, progress.stage, progress.phase, progress.step);
     stages_seen |= 1 << progress.stage;
-    expect_same(undisturbed, resume_protocol(protocol, stops[k].checkpoint, stops[k].result));
+    expect_same(undisturbed, protocol::resume_protocol(protocol, stops[k].checkpoint, stops[k].result));
   }
   CHECK((stages_seen >> 6 & 1) == 1);  // the moment after the last stage among them
 }
 
 TEST_CASE("a test whose stages lead back, turn or copy is gone on with from any of its moments") {
   const Specimen specimen = reference_specimen("dense_p20");
-  const Protocol protocol = protocol_of(wandering_stages);
-  const TestRun undisturbed = run_protocol(protocol, specimen);
+  const protocol::Protocol protocol = protocol_of(wandering_stages);
+  const protocol::TestRun undisturbed = protocol::run_protocol(protocol, specimen);
   std::vector<Stop> stops;
   expect_same(undisturbed, run_keeping(protocol, specimen, stops));
   REQUIRE(stops.size() > 30);
   std::int32_t stages_seen = 0;
   for (std::size_t k = 0; k < stops.size(); ++k) {
-    const Progress& progress = stops[k].checkpoint.progress;
+    const records::Progress& progress = stops[k].checkpoint.progress;
     CAPTURE(k, progress.stage, progress.phase, progress.step, progress.turns);
     stages_seen |= 1 << progress.stage;
-    expect_same(undisturbed, resume_protocol(protocol, stops[k].checkpoint, stops[k].result));
+    expect_same(undisturbed, protocol::resume_protocol(protocol, stops[k].checkpoint, stops[k].result));
   }
   CHECK(stages_seen == 63);
 }
 
 TEST_CASE("a test stopped at any time, within an increment too, ends as the undisturbed one when it is gone on with") {
   const Specimen specimen = reference_specimen("dense_p20");
-  const Protocol protocol = protocol_of(all_stages);
+  const protocol::Protocol protocol = protocol_of(all_stages);
   // Moments are shares of the processor time that the undisturbed run takes: other work on the machine is not in it.
   const std::clock_t begin = std::clock();
-  const TestRun undisturbed = run_protocol(protocol, specimen);
+  const protocol::TestRun undisturbed = protocol::run_protocol(protocol, specimen);
   const std::clock_t whole = std::clock() - begin;
   int stopped = 0;
   for (int k = 0; k < 8; ++k) {
     std::atomic<bool> stop{false};
-    Watch watch;
+    protocol::Watch watch;
     watch.stop = &stop;
     std::atomic<bool> ended{false};
     const std::clock_t moment = std::clock() + whole * (2 * k + 1) / 17;
@@ -121,13 +121,13 @@ TEST_CASE("a test stopped at any time, within an increment too, ends as the undi
       while (!ended && std::clock() < moment) std::this_thread::sleep_for(std::chrono::milliseconds(1));
       stop = true;
     });
-    TestRun run = run_protocol(protocol, specimen, watch);
+    protocol::TestRun run = protocol::run_protocol(protocol, specimen, watch);
     ended = true;
     timer.join();
     if (run.complete) continue;
     ++stopped;
     // Bit for bit a moment that the undisturbed run passes, or one within a round of an isotropic stage.
-    expect_same(undisturbed, resume_protocol(protocol, {run.progress, run.end_state}, run.result));
+    expect_same(undisturbed, protocol::resume_protocol(protocol, {run.progress, run.end_state}, run.result));
   }
   CHECK(stopped >= 4);
 }
@@ -151,11 +151,11 @@ TEST_CASE("a relaxation of several slices is gone on with in its middle") {
   specimen.contacts.clear();
   specimen.cell.lattice *= 0.995;
   for (auto& position : specimen.grains.position) position *= 0.995;
-  const Protocol protocol = protocol_of(
+  const protocol::Protocol protocol = protocol_of(
       "[test]\nname = \"relax\"\n[[stage]]\nkind = \"relax\"\nunbalanced = 1e-8\nmax_steps = 200000\nrecord = "
       "true\n");
   std::vector<Stop> stops;
-  TestRun undisturbed;
+  protocol::TestRun undisturbed;
   try {
     undisturbed = run_keeping(protocol, specimen, stops);
   } catch (const Error& error) {
@@ -164,28 +164,30 @@ TEST_CASE("a relaxation of several slices is gone on with in its middle") {
   REQUIRE(stops.size() >= 2);
   CHECK(stops[0].checkpoint.progress.relaxation_steps > 0);
   CHECK(stops[0].checkpoint.progress.stage == 0);
-  for (const Stop& stop : stops) expect_same(undisturbed, resume_protocol(protocol, stop.checkpoint, stop.result));
+  for (const Stop& stop : stops)
+    expect_same(undisturbed, protocol::resume_protocol(protocol, stop.checkpoint, stop.result));
 }
 
 TEST_CASE("physical loading goes on with its rate and its velocities") {
   const Specimen specimen = reference_specimen("dense_p20");
-  const Protocol protocol = protocol_of(
+  const protocol::Protocol protocol = protocol_of(
       "[test]\nname = \"fast\"\n[loading]\nmode = \"physical\"\ninertial_number = 2e-3\n"
       "[[stage]]\nkind = \"simple_shear\"\nto_strain = 0.004\n"
       "[[stage]]\nkind = \"compression\"\nto_strain = 0.001\nlateral = \"constant_volume\"\n");
   std::vector<Stop> stops;
-  const TestRun undisturbed = run_keeping(protocol, specimen, stops);
-  for (const Stop& stop : stops) expect_same(undisturbed, resume_protocol(protocol, stop.checkpoint, stop.result));
+  const protocol::TestRun undisturbed = run_keeping(protocol, specimen, stops);
+  for (const Stop& stop : stops)
+    expect_same(undisturbed, protocol::resume_protocol(protocol, stop.checkpoint, stop.result));
 }
 
 TEST_CASE("snapshots are the states of every n-th record, and of no other") {
   const Specimen specimen = reference_specimen("dense_p20");
   std::vector<std::pair<std::size_t, Specimen>> snapshots;
   std::vector<Matrix3> stresses;
-  Watch watch;
-  watch.on_record = [&](const Record& record) { stresses.push_back(record.stress); };
+  protocol::Watch watch;
+  watch.on_record = [&](const records::Record& record) { stresses.push_back(record.stress); };
   watch.on_snapshot = [&](std::size_t record, const Specimen& state) { snapshots.emplace_back(record, state); };
-  run_protocol(protocol_of(all_stages), specimen, watch);
+  protocol::run_protocol(protocol_of(all_stages), specimen, watch);
   REQUIRE(snapshots.size() == 4);
   for (std::size_t k = 0; k < snapshots.size(); ++k) {
     CHECK(snapshots[k].first == 4 * k);
@@ -196,11 +198,11 @@ TEST_CASE("snapshots are the states of every n-th record, and of no other") {
 
 TEST_CASE("a checkpoint that does not fit its protocol is refused") {
   const Specimen specimen = reference_specimen("dense_p20");
-  const Protocol protocol = protocol_of("[test]\nname = \"short\"\n[[stage]]\nkind = \"relax\"\n");
-  Checkpoint checkpoint{{}, specimen};
+  const protocol::Protocol protocol = protocol_of("[test]\nname = \"short\"\n[[stage]]\nkind = \"relax\"\n");
+  records::Checkpoint checkpoint{{}, specimen};
   checkpoint.progress.stage = 2;
-  CHECK_THROWS_AS(resume_protocol(protocol, checkpoint, {}), InputError);
+  CHECK_THROWS_AS(protocol::resume_protocol(protocol, checkpoint, {}), InputError);
   checkpoint.progress.stage = 0;
   checkpoint.progress.records = 1;
-  CHECK_THROWS_AS(resume_protocol(protocol, checkpoint, {}), InputError);
+  CHECK_THROWS_AS(protocol::resume_protocol(protocol, checkpoint, {}), InputError);
 }

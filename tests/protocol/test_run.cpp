@@ -14,11 +14,12 @@ using namespace rvelab;
 
 namespace {
 
-TestRun run_text(const std::string& stages, const Specimen& specimen) {
-  return run_protocol(parse_protocol("[test]\nname = \"test\"\npressure_Pa = 20e3\n" + stages, "test.toml"), specimen);
+protocol::TestRun run_text(const std::string& stages, const Specimen& specimen) {
+  return protocol::run_protocol(
+      protocol::parse_protocol("[test]\nname = \"test\"\npressure_Pa = 20e3\n" + stages, "test.toml"), specimen);
 }
 
-void expect_same(const std::vector<Record>& a, const std::vector<Record>& b) {
+void expect_same(const std::vector<records::Record>& a, const std::vector<records::Record>& b) {
   REQUIRE(a.size() == b.size());
   for (std::size_t k = 0; k < a.size(); ++k) {
     CHECK(a[k].strain == b[k].strain);
@@ -31,14 +32,15 @@ void expect_same(const std::vector<Record>& a, const std::vector<Record>& b) {
 }  // namespace
 
 TEST_CASE("Drained compression records at its fixed strains, with the lateral stress held and no shear strain") {
-  const TestRun run = run_text("[[stage]]\nkind = \"compression\"\nto_strain = 0.0033\nrecord_every = 0.0005\n",
-                               reference_specimen("dense_p20"));
+  const protocol::TestRun run =
+      run_text("[[stage]]\nkind = \"compression\"\nto_strain = 0.0033\nrecord_every = 0.0005\n",
+               reference_specimen("dense_p20"));
   const auto& records = run.result.records;
   REQUIRE(records.size() == 8);  // 0, 0.05 % ... 0.30 %, and the end
   CHECK(run.result.axis == "y");
   CHECK(run.result.pressure == 20e3);
   for (std::size_t k = 0; k < records.size(); ++k) {
-    const Record& record = records[k];
+    const records::Record& record = records[k];
     const double strain = k < 7 ? 0.0005 * static_cast<double>(k) : 0.0033;
     CHECK(record.strain == Approx(strain).epsilon(1e-14));
     CHECK(1 - record.deformation_gradient(1, 1) == Approx(strain).margin(1e-13));
@@ -53,12 +55,12 @@ TEST_CASE("Drained compression records at its fixed strains, with the lateral st
 }
 
 TEST_CASE("The integral term of one stage does not move the strains that the next one prescribes") {
-  const TestRun run = run_text(
+  const protocol::TestRun run = run_text(
       "[[stage]]\nkind = \"isotropic\"\npressure_Pa = 24e3\n"
       "[[stage]]\nkind = \"compression\"\nto_strain = 0.003\nlateral_pressure_Pa = 24e3\n",
       reference_specimen("dense_p20"));
   REQUIRE(run.result.records.size() == 7);
-  for (const Record& record : run.result.records) {
+  for (const records::Record& record : run.result.records) {
     CHECK(record.stage == 1);
     CHECK(1 - record.deformation_gradient(1, 1) == Approx(record.strain).margin(1e-13));
     CHECK(std::abs(record.deformation_gradient(0, 1)) < 1e-15);
@@ -67,12 +69,12 @@ TEST_CASE("The integral term of one stage does not move the strains that the nex
 
 TEST_CASE("Constant-volume stages keep the volume to 1e-12") {
   const Specimen specimen = reference_specimen("dense_p20");
-  const TestRun run = run_text(
+  const protocol::TestRun run = run_text(
       "[[stage]]\nkind = \"compression\"\nto_strain = 0.002\nlateral = \"constant_volume\"\n"
       "[[stage]]\nkind = \"simple_shear\"\nto_strain = -0.002\nrecord_every = 0.0005\n",
       specimen);
   REQUIRE(run.result.records.size() == 10);
-  for (const Record& record : run.result.records) {
+  for (const records::Record& record : run.result.records) {
     CHECK(record.deformation_gradient.determinant() == Approx(1).margin(1e-12));
     CHECK(record.void_ratio == Approx(run.result.records[0].void_ratio).epsilon(1e-11));
     const Matrix3& f = record.deformation_gradient;
@@ -84,10 +86,11 @@ TEST_CASE("Constant-volume stages keep the volume to 1e-12") {
 }
 
 TEST_CASE("Simple shear at constant normal stress lets the height go and nothing else") {
-  const TestRun run = run_text("[[stage]]\nkind = \"simple_shear\"\nto_strain = 0.004\nnormal = \"constant_stress\"\n",
-                               reference_specimen("dense_p20"));
+  const protocol::TestRun run =
+      run_text("[[stage]]\nkind = \"simple_shear\"\nto_strain = 0.004\nnormal = \"constant_stress\"\n",
+               reference_specimen("dense_p20"));
   REQUIRE(run.result.records.size() == 5);
-  for (const Record& record : run.result.records) {
+  for (const records::Record& record : run.result.records) {
     const Matrix3& f = record.deformation_gradient;
     CHECK(f(0, 1) == Approx(record.strain).margin(1e-13));
     CHECK(f(0, 0) == Approx(1).margin(1e-14));
@@ -101,9 +104,9 @@ TEST_CASE("An isotropic stage ends at its pressure and at rest") {
   const std::string stage =
       "[[stage]]\nkind = \"isotropic\"\npressure_Pa = 60e3\nrecord = true\n[[stage]]\nkind = \"probe\"\nmethod = "
       "\"linear\"\n";
-  const TestRun run = run_text(stage, reference_specimen("dense"));  // from 100 kPa
+  const protocol::TestRun run = run_text(stage, reference_specimen("dense"));  // from 100 kPa
   REQUIRE(run.result.records.size() == 2);
-  const Record& end = run.result.records[1];
+  const records::Record& end = run.result.records[1];
   CHECK(std::abs(end.stress(0, 0) + 60e3) <= 1e-4 * 60e3);
   CHECK(std::abs(end.stress(1, 1) + 60e3) <= 1e-4 * 60e3);
   CHECK(end.unbalanced_force_ratio <= 1e-5);
@@ -115,7 +118,7 @@ TEST_CASE("An isotropic stage ends at its pressure and at rest") {
   REQUIRE(run.result.probes.size() == 1);
   CHECK(run.result.probes[0].stiffness.rows() == 3);
 
-  const TestRun freed =
+  const protocol::TestRun freed =
       run_text("[[stage]]\nkind = \"isotropic\"\npressure_Pa = 60e3\nshear = \"zero_stress\"\nrecord = true\n",
                reference_specimen("dense"));
   CHECK(std::abs(freed.result.records[1].stress(0, 1)) <= 1e-4 * 60e3);
@@ -141,7 +144,7 @@ TEST_CASE(
 
 TEST_CASE("A specimen that is where a stage wants it is left exactly as it was") {
   const Specimen specimen = reference_specimen("dense_p20");
-  const TestRun run = run_text(
+  const protocol::TestRun run = run_text(
       "[[stage]]\nkind = \"isotropic\"\nstress_tolerance = 1e-3\n[[stage]]\nkind = \"relax\"\n"
       "[[stage]]\nkind = \"probe\"\nmethod = \"linear\"\n",
       specimen);
@@ -156,8 +159,8 @@ TEST_CASE("A specimen that is where a stage wants it is left exactly as it was")
 TEST_CASE("A probe stage moves nothing: the test goes on as without it") {
   const Specimen specimen = reference_specimen("dense_p20");
   const std::string compression = "[[stage]]\nkind = \"compression\"\nto_strain = 0.001\n";
-  const TestRun with = run_text("[[stage]]\nkind = \"probe\"\nno_slip = true\n" + compression, specimen);
-  const TestRun without = run_text(compression, specimen);
+  const protocol::TestRun with = run_text("[[stage]]\nkind = \"probe\"\nno_slip = true\n" + compression, specimen);
+  const protocol::TestRun without = run_text(compression, specimen);
   expect_same(with.result.records, without.result.records);
   REQUIRE(with.result.probes.size() == 1);
   // Positive definite: the packing is stable.
@@ -165,14 +168,14 @@ TEST_CASE("A probe stage moves nothing: the test goes on as without it") {
 }
 
 TEST_CASE("Physical loading runs at the inertial number that was asked for") {
-  const TestRun run = run_text(
+  const protocol::TestRun run = run_text(
       "[loading]\nmode = \"physical\"\ninertial_number = 2e-3\n"
       "[[stage]]\nkind = \"simple_shear\"\nto_strain = 0.002\nrecord_every = 0.001\n",
       reference_specimen("dense_p20"));
   REQUIRE(run.result.records.size() == 3);
   for (std::size_t k = 1; k < 3; ++k) {
     // I goes with 1/sqrt(p) of the moment; it was set at p0.
-    const Record& record = run.result.records[k];
+    const records::Record& record = run.result.records[k];
     const double p = -0.5 * (record.stress(0, 0) + record.stress(1, 1));
     CHECK(record.inertial_number * std::sqrt(p / 20e3) == Approx(2e-3).epsilon(1e-3));
   }
@@ -202,21 +205,21 @@ TEST_CASE("A stage that cannot reach its end says which stage and what it reache
 TEST_CASE("Tests at several pressures do not depend on the number of threads") {
   const std::string text =
       "[test]\nname = \"test\"\npressure_Pa = 1e3\n[[stage]]\nkind = \"compression\"\nto_strain = 0.002\n";
-  std::vector<Protocol> protocols;
+  std::vector<protocol::Protocol> protocols;
   for (const char* pressure : {"test.pressure_Pa=10e3", "test.pressure_Pa=20e3", "test.pressure_Pa=30e3"}) {
-    protocols.push_back(parse_protocol(text, "test.toml", {pressure}));
+    protocols.push_back(protocol::parse_protocol(text, "test.toml", {pressure}));
   }
   const std::vector<Specimen> specimens{reference_specimen("dense_p10"), reference_specimen("dense_p20"),
                                         reference_specimen("dense_p30")};
-  const auto one = run_all(protocols, specimens, 1), many = run_all(protocols, specimens, 3);
+  const auto one = calibrate::run_all(protocols, specimens, 1), many = calibrate::run_all(protocols, specimens, 3);
   for (std::size_t k = 0; k < 3; ++k) expect_same(one[k].result.records, many[k].result.records);
   CHECK(one[2].result.pressure == 30e3);
-  CHECK_THROWS_AS(run_all(protocols, {specimens[0], specimens[1]}, 1), InputError);
+  CHECK_THROWS_AS(calibrate::run_all(protocols, {specimens[0], specimens[1]}, 1), InputError);
   // The error of one test is the error of all, and names its pressure.
-  protocols[1] = parse_protocol(text, "test.toml", {"test.dimension=3", "test.pressure_Pa=20e3"});
+  protocols[1] = protocol::parse_protocol(text, "test.toml", {"test.dimension=3", "test.pressure_Pa=20e3"});
   std::string message;
   try {
-    run_all(protocols, specimens, 2);
+    calibrate::run_all(protocols, specimens, 2);
   } catch (const InputError& error) {
     message = error.what();
   }

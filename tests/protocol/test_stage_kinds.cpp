@@ -31,17 +31,18 @@ TEST_CASE("each kind of stage stands in the table once, with keys of its own and
 
 TEST_CASE("a stage says what calibration may read from its records") {
   const auto role = [](const std::string& stage) {
-    const Protocol protocol = parse_protocol("[test]\nname = \"t\"\npressure_Pa = 1e4\n[[stage]]\n" + stage, "t.toml");
-    return role_of(protocol.stages.front());
+    const protocol::Protocol protocol =
+        protocol::parse_protocol("[test]\nname = \"t\"\npressure_Pa = 1e4\n[[stage]]\n" + stage, "t.toml");
+    return protocol::role_of(protocol.stages.front());
   };
-  using Gives = StageRole::Gives;
+  using Gives = protocol::StageRole::Gives;
   CHECK(role("kind = \"compression\"\nto_strain = 0.1\n").gives == Gives::strength);
   CHECK(role("kind = \"compression\"\nto_strain = -0.1\n").gives == Gives::nothing);
   CHECK(role("kind = \"compression\"\nto_strain = 0.1\nlateral = \"constant_volume\"\n").gives == Gives::nothing);
-  const StageRole oedometer =
+  const protocol::StageRole oedometer =
       role("kind = \"compression\"\nto_strain = 0.1\nlateral = \"zero_strain\"\naxis = \"x\"\n");
   CHECK(oedometer.gives == Gives::oedometric_stiffness);
   CHECK(oedometer.axis == "x");
   CHECK(role("kind = \"relax\"\n").gives == Gives::nothing);
-  CHECK_THAT(strength_stages(), Contains("kind = \"compression\" with lateral = \"constant_stress\""));
+  CHECK_THAT(protocol::strength_stages(), Contains("kind = \"compression\" with lateral = \"constant_stress\""));
 }

@@ -15,16 +15,19 @@ using namespace rvelab;
 
 namespace {
 
-TestRun run_text(const std::string& text, const Specimen& specimen) {
-  return run_protocol(parse_protocol("[test]\nname = \"test\"\npressure_Pa = 20e3\n" + text, "test.toml"), specimen);
+protocol::TestRun run_text(const std::string& text, const Specimen& specimen) {
+  return protocol::run_protocol(
+      protocol::parse_protocol("[test]\nname = \"test\"\npressure_Pa = 20e3\n" + text, "test.toml"), specimen);
 }
 
-double ratio(const Record& record) { return deviatoric_stress(record.stress, 2) / mean_pressure(record.stress, 2); }
+double ratio(const records::Record& record) {
+  return deviatoric_stress(record.stress, 2) / mean_pressure(record.stress, 2);
+}
 
 }  // namespace
 
 TEST_CASE("An event ends its stage at the first record that meets it") {
-  const TestRun run = run_text(
+  const protocol::TestRun run = run_text(
       "[[stage]]\nkind = \"compression\"\nto_strain = 0.02\n"
       "  [[stage.until]]\n  quantity = \"q_over_p\"\n  above = 0.3\n",
       reference_specimen("dense_p20"));
@@ -35,7 +38,7 @@ TEST_CASE("An event ends its stage at the first record that meets it") {
 }
 
 TEST_CASE("A peak is passed when the stress has fallen by the given part of it") {
-  const TestRun run = run_text(
+  const protocol::TestRun run = run_text(
       "[[stage]]\nkind = \"compression\"\nto_strain = 0.2\n"
       "  [[stage.until]]\n  quantity = \"q_Pa\"\n  falls_by = 0.05\n",
       reference_specimen("dense_p20"));
@@ -51,7 +54,7 @@ TEST_CASE("A peak is passed when the stress has fallen by the given part of it")
 
 TEST_CASE("Events switch to and fro between stages, until another ends the test") {
   // Stress-controlled cycles out of two monotonic stages.
-  const TestRun run = run_text(
+  const protocol::TestRun run = run_text(
       "[[stage]]\nname = \"forth\"\nkind = \"simple_shear\"\nto_strain = 0.01\nrecord_every = 1e-4\n"
       "  [[stage.until]]\n  quantity = \"visits\"\n  above = 2\n  then = \"end\"\n"
       "  [[stage.until]]\n  quantity = \"stress_xy_Pa\"\n  above = 2e3\n  then = \"back\"\n"
@@ -76,7 +79,7 @@ TEST_CASE("Events switch to and fro between stages, until another ends the test"
 TEST_CASE("An event names stages and quantities that are there, and only stages with records have any") {
   const auto message_of = [](const std::string& text) {
     try {
-      parse_protocol("[test]\nname = \"t\"\npressure_Pa = 1e4\n" + text, "t.toml");
+      protocol::parse_protocol("[test]\nname = \"t\"\npressure_Pa = 1e4\n" + text, "t.toml");
     } catch (const InputError& error) {
       return std::string(error.what());
     }
@@ -96,7 +99,7 @@ TEST_CASE("An event names stages and quantities that are there, and only stages 
 }
 
 TEST_CASE("Cycles of strain go to both amplitudes at constant volume and end where they began") {
-  const TestRun run =
+  const protocol::TestRun run =
       run_text("[[stage]]\nkind = \"simple_shear\"\nto_strain = 0.001\nrecord_every = 0.0005\ncycles = 2\n",
                reference_specimen("dense_p20"));
   const double expected[] = {0, 1, 2, 1, 0, -1, -2, -1, 0, 1, 2, 1, 0, -1, -2, -1, 0};
@@ -109,7 +112,7 @@ TEST_CASE("Cycles of strain go to both amplitudes at constant volume and end whe
 }
 
 TEST_CASE("Cycles of stress turn at the first record beyond the stress, in both directions") {
-  const TestRun run = run_text(
+  const protocol::TestRun run = run_text(
       "[[stage]]\nkind = \"compression\"\nlateral = \"constant_volume\"\nto_strain = 0.01\nrecord_every = 5e-5\n"
       "cycles = 3\nreverse_at_Pa = 4e3\n",
       reference_specimen("dense_p20"));
@@ -130,14 +133,15 @@ TEST_CASE("Cycles of stress turn at the first record beyond the stress, in both 
 
 TEST_CASE("A flow of simple shear is simple shear, and any flow keeps its exponential") {
   const Specimen specimen = reference_specimen("dense_p20");
-  const TestRun flow = run_text("[[stage]]\nkind = \"flow\"\ngradient = {xy = 1}\nto_strain = 0.003\n", specimen);
-  const TestRun shear = run_text("[[stage]]\nkind = \"simple_shear\"\nto_strain = 0.003\n", specimen);
+  const protocol::TestRun flow =
+      run_text("[[stage]]\nkind = \"flow\"\ngradient = {xy = 1}\nto_strain = 0.003\n", specimen);
+  const protocol::TestRun shear = run_text("[[stage]]\nkind = \"simple_shear\"\nto_strain = 0.003\n", specimen);
   REQUIRE(flow.result.records.size() == 4);
   for (std::size_t k = 0; k < 4; ++k) {
     CHECK((flow.result.records[k].stress - shear.result.records[k].stress).norm() < 1e-6 * 20e3);
   }
   // F = exp(s G) of a triangular G has exponentials on its diagonal.
-  const TestRun mixed = run_text(
+  const protocol::TestRun mixed = run_text(
       "[loading]\nmode = \"physical\"\nrate_1_s = 2\n"
       "[[stage]]\nkind = \"flow\"\ngradient = {xy = 1, xx = -0.02}\nto_strain = 0.01\n",
       specimen);
@@ -149,7 +153,7 @@ TEST_CASE("A flow of simple shear is simple shear, and any flow keeps its expone
 
 TEST_CASE("Recorded deformation gradients, given as a list, are passed through with their rotation") {
   const Specimen specimen = reference_specimen("dense_p20");
-  const TestRun run = run_text(
+  const protocol::TestRun run = run_text(
       "[[stage]]\nkind = \"deformation\"\ngradients = [[1.0001, 0.0, 0.0, 0.9995], [1.0, 0.001, -0.001, 1.0]]\n",
       specimen);
   REQUIRE(run.result.records.size() == 3);
@@ -162,15 +166,15 @@ TEST_CASE("Recorded deformation gradients, given as a list, are passed through w
 TEST_CASE("Probes of an envelope start from one state, which the test goes on from; small ones are elastic") {
   const Specimen specimen = reference_specimen("dense_p20");
   const std::string shear = "[[stage]]\nkind = \"simple_shear\"\nto_strain = 0.001\n";
-  const TestRun with =
+  const protocol::TestRun with =
       run_text("[[stage]]\nkind = \"envelope\"\nsize = 1e-6\ndirections = 8\nunbalanced = 1e-9\n" + shear, specimen);
-  const TestRun without = run_text(shear, specimen);
+  const protocol::TestRun without = run_text(shear, specimen);
   REQUIRE(with.result.records.size() == 9 + 2);
   for (std::size_t k = 0; k < 2; ++k) CHECK(with.result.records[9 + k].stress == without.result.records[k].stress);
   const Eigen::MatrixXd stiffness = elastic_tangent(Rve(specimen).network());
-  const Record& first = with.result.records[0];
+  const records::Record& first = with.result.records[0];
   for (std::size_t k = 1; k <= 8; ++k) {
-    const Record& probe = with.result.records[k];
+    const records::Record& probe = with.result.records[k];
     const Matrix3 strain = probe.deformation_gradient - Matrix3::Identity();
     CHECK(strain.norm() == Approx(1e-6).epsilon(1e-9));
     const Eigen::Vector3d change = stiffness * Eigen::Vector3d(strain(0, 0), strain(1, 1), 0);
@@ -184,9 +188,10 @@ TEST_CASE("Probes of an envelope start from one state, which the test goes on fr
 }
 
 TEST_CASE("Probes of stress make the change of stress that was asked for in every direction") {
-  const TestRun run = run_text("[[stage]]\nkind = \"envelope\"\nprobes = \"stress\"\nsize_Pa = 100\ndirections = 4\n",
-                               reference_specimen("dense_p20"));
-  const Record& first = run.result.records[0];
+  const protocol::TestRun run =
+      run_text("[[stage]]\nkind = \"envelope\"\nprobes = \"stress\"\nsize_Pa = 100\ndirections = 4\n",
+               reference_specimen("dense_p20"));
+  const records::Record& first = run.result.records[0];
   for (std::size_t k = 1; k <= 4; ++k) {
     const Matrix3 change = run.result.records[k].stress - first.stress;
     CHECK(Eigen::Vector2d(change(0, 0), change(1, 1)).norm() == Approx(100).epsilon(0.02));
@@ -197,14 +202,14 @@ TEST_CASE("Oedometer and probes have the same moduli at small strain, 2 %") {
   for (const std::string name : {"dense", "hertz"}) {
     const Specimen specimen = reference_specimen(name);
     const int dimension = specimen.cell.dimension;
-    const TestRun run = run_text(
+    const protocol::TestRun run = run_text(
         "[[stage]]\nkind = \"relax\"\nunbalanced = 1e-8\n"
         "[[stage]]\nkind = \"compression\"\nlateral = \"zero_strain\"\nto_strain = 1e-5\nrecord_every = 2e-6\n"
         "[[stage]]\nkind = \"probe\"\nmethod = \"linear\"\n",
         specimen);
     REQUIRE(run.result.records.size() == 6);
     const std::string axis = dimension == 2 ? "y" : "z";
-    const OedometerStiffness found = oedometer_stiffness(run.result.records, axis, dimension);
+    const calibrate::OedometerStiffness found = calibrate::oedometer_stiffness(run.result.records, axis, dimension);
     const Eigen::MatrixXd& c = run.result.probes.at(0).stiffness;
     const int a = dimension - 1;
     double lateral = 0;
@@ -218,12 +223,12 @@ TEST_CASE("Oedometer and probes have the same moduli at small strain, 2 %") {
 }
 
 TEST_CASE("A record measures what is asked for and nothing else; the parts of the stress add up") {
-  const TestRun run = run_text(
+  const protocol::TestRun run = run_text(
       "[loading]\nmode = \"physical\"\nrate_1_s = 5\n"
       "[output]\nquantities = [\"contact_stress_Pa\", \"reynolds_stress_Pa\", \"fabric\", \"kinetic_energy_J\"]\n"
       "[[stage]]\nkind = \"simple_shear\"\nto_strain = 0.004\n",
       reference_specimen("dense_p20"));
-  const Record& end = run.result.records.back();
+  const records::Record& end = run.result.records.back();
   using namespace records;
   CHECK(end.quantities == (asked<ContactStress> | asked<ReynoldsStress> | asked<Fabric> | asked<KineticEnergy>));
   CHECK((end.contact_stress + end.reynolds_stress - end.stress).norm() < 1e-12 * end.stress.norm());
@@ -232,8 +237,9 @@ TEST_CASE("A record measures what is asked for and nothing else; the parts of th
   CHECK(end.kinetic_energy > 0);
   CHECK(end.void_ratio == 0);
   CHECK(end.coordination_number == 0);
-  const TestRun none = run_text("[output]\nquantities = []\n[[stage]]\nkind = \"simple_shear\"\nto_strain = 0.001\n",
-                                reference_specimen("dense_p20"));
+  const protocol::TestRun none =
+      run_text("[output]\nquantities = []\n[[stage]]\nkind = \"simple_shear\"\nto_strain = 0.001\n",
+               reference_specimen("dense_p20"));
   CHECK(none.result.records.back().quantities == 0);
   CHECK(none.result.records.back().void_ratio == 0);
 }

@@ -24,14 +24,14 @@ TEST_CASE("a record measures each quantity by itself, by the function of its nam
   const Network network = rve.network();
   for (const QuantityRow& row : quantity_rows) {
     CAPTURE(row.text.name);
-    Record record;
+    records::Record record;
     record.quantities = row.bit;
     measure_quantities(record, rve);
     Quantities::for_each([&]<class Quantity>(std::type_identity<Quantity>, std::uint64_t bit) {
       if (bit != row.bit) CHECK(!is_there(record.*Quantity::member));
     });
   }
-  Record record;
+  records::Record record;
   record.quantities = all_quantities;
   measure_quantities(record, rve);
   CHECK(record.void_ratio == void_ratio(network));

@@ -169,6 +169,24 @@ TEST_CASE("no two types of one namespace have one name") {
   CHECK(types > 200);
 }
 
+TEST_CASE("a room above the core has the namespace of its folder") {
+  std::size_t files = 0;
+  for (const char* room : {"pack", "records", "keys", "io", "protocol", "calibrate", "stress_test", "cli"}) {
+    const std::string space = std::string("namespace rvelab::") + room;
+    for (const std::string& file : code_under(std::string("rvelab/") + room)) {
+      std::istringstream lines(text_of(root / file));
+      bool inside = false;
+      for (std::string line; std::getline(lines, line);) {
+        if (line == space + " {" || line.starts_with(space + "::")) inside = true;
+        if (line == "namespace rvelab {") FAIL_CHECK(file << " puts names into rvelab itself");
+      }
+      ++files;
+      if (!inside && !file.ends_with("/main.cpp")) FAIL_CHECK(file << " is not in " << space);
+    }
+  }
+  CHECK(files > 150);
+}
+
 TEST_CASE("HDF5 is known to the files that wrap it alone") {
   int wrapping = 0;
   for (const std::string& file : code_under("rvelab")) {

@@ -47,7 +47,7 @@ TEST_CASE("The affine stiffness is the sum over contacts that move with the stra
     rve.apply(turn, 0);
     Fixture fixture;
     Assembly assembly;
-    open(rve.specimen(), fixture, assembly);
+    open_assembly(rve.specimen(), fixture, assembly);
     const Matrix6 stiffness = affine_stiffness(fixture, assembly);
     const Network net = rve.network();
     REQUIRE(net.contacts.size() > 50);

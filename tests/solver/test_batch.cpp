@@ -45,7 +45,7 @@ TEST_CASE("A batch gives the bits of single cells, whatever the number of worker
       Workers workers(threads);
       CHECK(workers.threads() == threads);
       for (int round = 0; round < 3; ++round) {
-        const auto entries = apply(rves, increments(count, round), dt, workers);
+        const auto entries = apply_to_all(rves, increments(count, round), dt, workers);
         REQUIRE(entries.size() == count);
         for (std::size_t k = 0; k < count; ++k) {
           REQUIRE(!entries[k].failure);
@@ -65,7 +65,7 @@ TEST_CASE("A failed increment of a batch leaves its cell as it was and the other
   steps[7] = gradient(-2, 0, 0, 0);  // turned inside out
   const auto before4 = rves[4].save(), before7 = rves[7].save();
   Workers workers(3);
-  const auto entries = apply(rves, steps, 0, workers);
+  const auto entries = apply_to_all(rves, steps, 0, workers);
   for (std::size_t k = 0; k < 9; ++k) {
     const bool refused = k == 4 || k == 7;
     CHECK(bool(entries[k].failure) == refused);
@@ -77,7 +77,7 @@ TEST_CASE("A failed increment of a batch leaves its cell as it was and the other
   }
   CHECK(rves[4].save() == before4);
   CHECK(rves[7].save() == before7);
-  CHECK_THROWS_AS(apply(rves, std::span(steps).first(8), 0, workers), InputError);
+  CHECK_THROWS_AS(apply_to_all(rves, std::span(steps).first(8), 0, workers), InputError);
 }
 
 TEST_CASE("Workers do every piece once and pass on the failure of the lowest piece", "[solver]") {

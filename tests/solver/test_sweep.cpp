@@ -53,7 +53,7 @@ TEST_CASE("Pairs that are passed over come to touch, and to part again, as if th
       for (int k = 0; k < start.cell.dimension; ++k) v[k] = speed(generator);
     Fixture f;
     Assembly passing, computing;
-    open(start, f, passing);
+    open_assembly(start, f, passing);
     use_physical_inertia(f, passing);
     computing = passing;
     computing.pairs.near = computing.pairs.padded();

@@ -20,9 +20,9 @@
 #include "rvelab/pack/search.hpp"
 #include "rvelab/solver/assembly/assembly.hpp"
 #include "rvelab/solver/loading/inertia.hpp"
+#include "rvelab/solver/loading/sweep.hpp"
 #include "rvelab/solver/resting.hpp"
 #include "rvelab/solver/rve.hpp"
-#include "rvelab/solver/loading/sweep.hpp"
 
 namespace {
 
@@ -34,11 +34,11 @@ struct Opened {
   StepConstants constants;
 };
 
-Recipe recipe_of(Shape shape) {
-  Recipe r;
+pack::Recipe recipe_of(Shape shape) {
+  pack::Recipe r;
   r.shape = shape;
   r.materials[0].friction = 0.5;
-  r.stress = isotropic_stress(1e5, shape);
+  r.stress = pack::isotropic_stress(1e5, shape);
   if (shape == Shape::disc) {
     r.materials[0].young_modulus = 8e8;
     r.materials[0].stiffness_ratio = 0.5;
@@ -58,14 +58,14 @@ Recipe recipe_of(Shape shape) {
 /// A packing sheared by 0.1 %, opened.
 Opened opened(Shape shape, const Image& times) {
   Workers alone(1);
-  Specimen specimen = repeated(pack(recipe_of(shape), alone).specimen, times);
+  Specimen specimen = pack::repeated(pack::pack(recipe_of(shape), alone).specimen, times);
   specimen.damping.local = 0.1;
   Rve rve(specimen);
   Matrix3 shear = Matrix3::Zero();
   shear(0, dimension_of(shape) - 1) = 1e-3;
   rve.apply(shear, 500 * rve.critical_time_step());
   Opened o;
-  open(rve.specimen(), o.fixture, o.assembly);
+  open_assembly(rve.specimen(), o.fixture, o.assembly);
   o.constants = base_constants(o.fixture, o.assembly);
   o.constants.map = {1, 0, 0, 1, 0, 1};
   o.constants.local_damping = 0.1;
@@ -135,9 +135,9 @@ void waking(benchmark::State& state, const std::string& name) {
   for (auto _ : state) {
     state.PauseTiming();
     Assembly copy = o.assembly;
-    rest(copy);
+    release_buffers(copy);
     state.ResumeTiming();
-    wake(o.fixture, copy);
+    rebuild_buffers(o.fixture, copy);
     benchmark::DoNotOptimize(copy.pairs.listed);
   }
   per_grain(state, o);

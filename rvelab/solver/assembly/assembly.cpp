@@ -35,7 +35,7 @@ void Assembly::set_velocity(const Fixture& f, std::size_t g, const Vector3& v, c
   }
 }
 
-void open(const Specimen& specimen, Fixture& f, Assembly& a) {
+void open_assembly(const Specimen& specimen, Fixture& f, Assembly& a) {
   check_specimen(specimen);
   const std::size_t n = specimen.grains.size(), padded = padded_to_lanes(n);
   std::vector<std::int32_t> order = specimen.state.memory_order;
@@ -88,7 +88,7 @@ void open(const Specimen& specimen, Fixture& f, Assembly& a) {
   }
 }
 
-Specimen close(const Fixture& f, const Assembly& a) {
+Specimen close_assembly(const Fixture& f, const Assembly& a) {
   Specimen s;
   s.shape = f.shape;
   s.cell = a.cell;

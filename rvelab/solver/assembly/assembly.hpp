@@ -100,8 +100,8 @@ constexpr std::size_t padded_to_lanes(std::size_t n) { return (n / 8 + 1) * 8; }
 
 /// Checks a specimen and opens it; from some size on its grains are kept in an order of their own (memory_order.hpp),
 /// in which every index of Fixture and Assembly counts. Throws InputError.
-void open(const Specimen& specimen, Fixture& fixture, Assembly& assembly);
-Specimen close(const Fixture& fixture, const Assembly& assembly);
+void open_assembly(const Specimen& specimen, Fixture& fixture, Assembly& assembly);
+Specimen close_assembly(const Fixture& fixture, const Assembly& assembly);
 
 /// Throws IncrementFailed if the shortest lattice vector is below min_height.
 void check_height(const Fixture& fixture, const Cell& cell);

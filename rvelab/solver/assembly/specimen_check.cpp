@@ -128,7 +128,7 @@ void clear_forces_without_stiffness(Specimen& s) {
 }
 
 void check_specimen(const Specimen& s) {
-  check(s.contact, s.damping, s.materials);
+  check_parameters(s.contact, s.damping, s.materials);
   check_options(s.solver);
   check_grains(s);
   check_cell(s);
