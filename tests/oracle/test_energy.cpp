@@ -49,9 +49,9 @@ struct Flow {
 
 /// The specimen at rest, prepared without damping, dashpot and rolling; made once for all tests that share it.
 Specimen resting(const Specimen& s) {
-  using keys::Key = std::tuple<Shape, Law, double, double>;
-  static std::map<keys::Key, Specimen> known;
-  const keys::Key key(s.shape, s.contact.law, s.materials[0].friction, s.materials[0].tangential_stiffness);
+  using Key = std::tuple<Shape, Law, double, double>;
+  static std::map<Key, Specimen> known;
+  const Key key(s.shape, s.contact.law, s.materials[0].friction, s.materials[0].tangential_stiffness);
   if (known.count(key) == 0) {
     Specimen quiet = s;
     quiet.damping = {};
