@@ -254,8 +254,9 @@ void add_study(CLI::App& app) {
       "moved by 1e-10 of the radius. FOLDER/study.toml holds the study: `rvelab study FOLDER/study.toml` runs it\n"
       "again. The number of threads changes no bit but those of times. rvelab/study/README.md says more.\n"
       "Examples:\n"
-      "  rvelab study biaxial S.h5 --vary solver.target_unbalanced=1e-2,1e-3,1e-4 --reference "
-      "solver.fixed_substeps=4000 -o F\n"
+      "  rvelab study tolerance S.h5 -o F\n"
+      "  rvelab study biaxial S.h5 --vary solver.target_unbalanced=1e-2,1e-3,1e-4 -o F \\\n"
+      "    --reference solver.target_unbalanced=3e-5 --reference solver.fixed_substeps=4000\n"
       "  rvelab study F/study.toml -o F --resume");
   command->callback([arguments] { run_study(*arguments); });
 }

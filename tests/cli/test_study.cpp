@@ -127,7 +127,8 @@ TEST_CASE("mistakes in the command of a study are told in one line that names ke
   expect_mistake(here.run("study none.toml S.h5 --reference solver.skin=0.1"), "none.toml: no such file");
   expect_mistake(here.run(some + "--resume"), "--resume is given without -o");
   expect_mistake(here.run(some + "--repeat -1"), "--repeat");
-  expect_mistake(here.run(some + "--repeat 0 --increments 0"), "leave nothing to run");
+  expect_mistake(here.run("study biaxial S.h5 --reference solver.skin=0.1 --repeat 0 --increments 0"),
+                 "leave nothing to run");
   CHECK(here.run("run biaxial --specimen S.h5 --set stage.compression.to_strain=0.001 -o other.h5").code == 0);
   here.write("mine.toml", "[study]\nprotocol = \"biaxial\"\nspecimens = [\"other.h5\"]\ndigests = [\"00000000\"]\n");
   expect_mistake(here.run("study mine.toml --reference solver.skin=0.1"), "is not the specimen of mine.toml");

@@ -95,9 +95,9 @@ TEST_CASE("a study comes back from its file, and differences are told by name", 
 
 TEST_CASE("values of a study file may be numbers, words and truths", "[study]") {
   const study::Study study = study::read_study(
-      toml::parse("[study]\nprotocol = \"biaxial\"\n[[vary]]\nkey = \"a.b\"\nvalues = [1e-3, 5, \"word\", true]\n"),
+      toml::parse("[study]\nprotocol = \"biaxial\"\n[[vary]]\nkey = \"a.b\"\nvalues = [3e-3, 5, \"word\", true]\n"),
       "study.toml");
-  CHECK(study.grid.at(0).values == std::vector<std::string>{"0.001", "5", "word", "true"});
+  CHECK(study.grid.at(0).values == std::vector<std::string>{"0.003", "5", "word", "true"});
   CHECK(study.increments == 300);
 }
 
