@@ -1,5 +1,5 @@
-// What `run`, `calibrate` and `study` share: the protocols that are installed, the specimens that a protocol runs on, and the
-// folder that results go to.
+// What `run`, `calibrate` and `study` share: the protocols that are installed, the specimens that a protocol runs on,
+// and the folder that results go to.
 #pragma once
 
 #include <map>

@@ -72,7 +72,7 @@ void add_paths(const std::vector<std::vector<const Piece*>>& paths, PointSummary
 
 void mark_front(std::vector<PointSummary>& points, double PointSummary::*cost, bool PointSummary::*mark) {
   std::vector<Standing> standings;
-  for (const PointSummary& point : points) standings.push_back({point.*cost, point.of_pressure.rms});
+  for (const PointSummary& point : points) standings.push_back({point.*cost, point.of_pressure.median});
   const std::vector<bool> front = pareto_front(standings);
   for (std::size_t k = 0; k < points.size(); ++k) points[k].*mark = front[k];
 }

@@ -25,7 +25,9 @@ struct PointSummary {
   ErrorSummary of_pressure;             ///< error over p
   ErrorSummary of_increment;            ///< error over the change of stress that the reference's answer makes
   double seconds = 0, grain_steps = 0;  ///< processor time and grain-steps of an increment, means
-  bool front_seconds = false, front_grain_steps = false;  ///< on the Pareto front of rms error over p and this cost
+  /// On the Pareto front of this cost and the median error over p. The rms is that of the few increments that fall into
+  /// an avalanche, whose answers scatter at any resolution.
+  bool front_seconds = false, front_grain_steps = false;
   /// Of each measure: mean over the specimens of their means over the repeats, and its standard error from the scatter
   /// of the repeats alone: specimens are the same at every point. NaN: fewer than two repeats, or one not defined.
   std::vector<double> means, standard_errors;

@@ -144,6 +144,11 @@ TEST_CASE("every mistake of a grid point is refused before anything runs", "[stu
                s.settings = {};
              }),
              Contains("loading.mode=physical: ") && Contains("needs a rate"));
+  CHECK_THAT(refusal([](auto& s) {
+               s.settings = {"loading.mode=physical", "loading.rate_1_s=1"};
+               s.grid = {{"loading.rate_1_s", {"1", "2"}}};
+             }),
+             Contains("loading.rate_1_s=2: the loading") && Contains("is not that of the reference"));
   CHECK_THAT(refusal([](auto& s) { s.grid = {{"stage.shear.to_strain", {"0.1"}}}; }), Contains("names no stage"));
   CHECK_THAT(refusal([](auto& s) {
                s.grid = {{"material.clay.friction", {"0.3"}}};

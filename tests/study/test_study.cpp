@@ -115,6 +115,40 @@ TEST_CASE("an increment of the coarsest records is made by all, in parts where r
   CHECK(steps(3) == 400);
 }
 
+TEST_CASE("at a rate an increment takes the time that the path took; the reference's settings make it again bit by bit",
+          "[study]") {
+  study::Study study = small_study();
+  study.settings = {"loading.mode=physical", "loading.rate_1_s=0.5"};
+  study.reference = {"solver.time_step_factor=0.1"};
+  study.grid = {{"solver.time_step_factor", {"0.1", "0.7"}}};
+  study.repeats = 0;
+  const study::Pieces pieces = run_all_of(study, few_discs());
+  const auto &same = pieces.by_name.at("increments_1_1"), &coarse = pieces.by_name.at("increments_2_1");
+  for (std::size_t k = 0; k < 6; ++k) {
+    CHECK(same.column("error_Pa")[k] == 0);
+    CHECK(coarse.column("error_Pa")[k] > 0);
+    CHECK(coarse.column("error_Pa")[k] < 0.1 * coarse.column("pressure_Pa")[k]);
+    CHECK(coarse.column("grain_steps")[k] < same.column("grain_steps")[k]);
+  }
+}
+
+TEST_CASE("increments and paths that cannot be carried out are counted, with the first reason", "[study]") {
+  study::Study study = small_study();
+  study.grid = {{"solver.max_substeps", {"10", "100000"}}};
+  const auto all = study::prepared(study, "test.toml", {few_discs()});
+  const auto summary = study::summary_of(study, all, study::run_study(study, all, {}));
+  const auto &failing = summary.points.at(0), &fine = summary.points.at(1);
+  CHECK(failing.failed == 6);
+  CHECK(failing.failed_paths == 2);
+  CHECK(failing.failure.find("solver.max_substeps allows 10") != std::string::npos);
+  CHECK(std::isnan(failing.of_pressure.median));
+  CHECK(std::isnan(failing.means[0]));
+  CHECK(!failing.front_grain_steps);
+  CHECK(fine.failed == 0);
+  CHECK(fine.failed_paths == 0);
+  CHECK(fine.front_grain_steps);
+}
+
 TEST_CASE("a study gives the same bits on one thread and on two, times apart", "[study]") {
   const study::Study study = small_study();
   const Specimen specimen = few_discs();

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Error against run time of a study: study.py FOLDER -o study.png (the folder that `rvelab study -o` wrote).
 
-Root-mean-square error of the stress of an increment over p, against its processor time and against its grain-steps; the
-Pareto fronts that the study found are joined, thin bars go from the median to the 95th percentile. Labels are the
-values of the varied keys.
+Median error of the stress of an increment over p, against its processor time and against its grain-steps; the Pareto
+fronts that the study found are joined. Thin bars go up to the 95th percentile, crosses are root mean squares, which
+belong to the few increments in avalanches. Labels are the values of the varied keys.
 """
 
 import argparse
@@ -43,20 +43,21 @@ def label_of(point):
 
 def draw_against(axes, study, cost, front):
     """One panel; the points that both coordinates of can stand on logarithmic axes."""
-    shown = [point for point in study["points"] if is_positive(point[cost]) and is_positive(point["rms_error_over_p"])]
+    error, high, rms = "median_error_over_p", "percentile_95_error_over_p", "rms_error_over_p"
+    shown = [point for point in study["points"] if is_positive(point[cost]) and is_positive(point[error])]
     for point in shown:
-        on_front = point[front]
-        x, y = point[cost], point["rms_error_over_p"]
-        span = point["median_error_over_p"], point["percentile_95_error_over_p"]
-        if all(map(is_positive, span)):
-            axes.plot([x, x], span, color="0.75", linewidth=1, zorder=1)
-        axes.plot(x, y, "o", color="C0", markerfacecolor="C0" if on_front else "white", markersize=6, zorder=3)
+        x, y = point[cost], point[error]
+        if is_positive(point[high]):
+            axes.plot([x, x], [y, point[high]], color="0.75", linewidth=1, zorder=1)
+        axes.plot(x, y, "o", color="C0", markerfacecolor="C0" if point[front] else "white", markersize=6, zorder=3)
         axes.annotate(label_of(point), (x, y), xytext=(6, 4), textcoords="offset points", fontsize=7)
-    joined = sorted((point[cost], point["rms_error_over_p"]) for point in shown if point[front])
+    crosses = [(point[cost], point[rms]) for point in shown if is_positive(point[rms])]
+    axes.plot(*zip(*crosses), "x", color="0.5", markersize=4, zorder=2, label="root mean square")
+    joined = sorted((point[cost], point[error]) for point in shown if point[front])
     axes.plot(*zip(*joined), color="C0", linewidth=1, zorder=2, label="Pareto front")
     reference = study["reference"]
-    if is_positive(reference[cost]) and is_positive(reference["rms_error_over_p"]):
-        axes.plot(reference[cost], reference["rms_error_over_p"], "s", color="C3", markersize=5, zorder=3,
+    if is_positive(reference[cost]) and is_positive(reference[error]):
+        axes.plot(reference[cost], reference[error], "s", color="C3", markersize=5, zorder=3,
                   label="reference before its relaxation")
     axes.set_xscale("log")
     axes.set_yscale("log")
@@ -65,14 +66,14 @@ def draw_against(axes, study, cost, front):
 
 
 def draw(study, options):
+    if not any(is_positive(point["median_error_over_p"]) for point in study["points"]):
+        raise ValueError("no grid point has a median error above 0; see study.csv for what there is")
     figure, (left, right) = plt.subplots(1, 2, figsize=(9.5, 4.2), sharey=True)
     shown = draw_against(left, study, "processor_s_per_increment", "on_front_of_processor_time")
-    if shown == 0:
-        raise ValueError("no grid point has an error above 0 and a cost to draw; see study.csv")
     draw_against(right, study, "grain_steps_per_increment", "on_front_of_grain_steps")
     left.set_xlabel("processor time of an increment (s)")
     right.set_xlabel("grain-steps of an increment")
-    left.set_ylabel("error $|\\sigma - \\sigma_r|\\,/\\,p$, root mean square")
+    left.set_ylabel("error $|\\sigma - \\sigma_r|\\,/\\,p$, median")
     left.legend(fontsize=8)
     keys = ", ".join(variation["key"] for variation in study["study"]["vary"])
     figure.suptitle(f"Error against cost over {study['points'][0]['increments']} increments: {keys}", fontsize=11,
