@@ -22,6 +22,7 @@ void add_run(CLI::App& app);
 void add_recover(CLI::App& app);
 void add_seal(CLI::App& app);
 void add_calibrate(CLI::App& app);
+void add_study(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_export(CLI::App& app);
 void add_keys(CLI::App& app);

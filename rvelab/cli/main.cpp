@@ -105,6 +105,7 @@ int answer(int argc, char** argv) {
   rvelab::cli::add_recover(app);
   rvelab::cli::add_seal(app);
   rvelab::cli::add_calibrate(app);
+  rvelab::cli::add_study(app);
   rvelab::cli::add_compare(app);
   rvelab::cli::add_export(app);
   rvelab::cli::add_protocols(app);

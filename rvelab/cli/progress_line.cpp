@@ -106,7 +106,8 @@ void ProgressLine::show(const protocol::Moment& moment) {
   shown_ = true;
 }
 
-ProgressOfTests::ProgressOfTests(std::size_t tests) : terminal_(isatty(STDERR_FILENO) == 1), tests_(tests) {}
+ProgressOfTests::ProgressOfTests(std::size_t tests, std::string noun)
+    : terminal_(isatty(STDERR_FILENO) == 1), noun_(std::move(noun)), tests_(tests) {}
 
 ProgressOfTests::~ProgressOfTests() {
   if (shown_) wipe();
@@ -132,7 +133,21 @@ void ProgressOfTests::show(std::size_t number, const std::string& name, const pr
     test.first_part = test.part;
     test.first_grain_steps = moment.rve.grain_steps();
   }
-  test.grain_steps = moment.rve.grain_steps() - test.first_grain_steps;
+  test.grain_steps = static_cast<double>(moment.rve.grain_steps() - test.first_grain_steps);
+  write_line(name + state_of(moment));
+}
+
+void ProgressOfTests::show(std::size_t number, const std::string& name, double part, double grain_steps) {
+  if (!terminal_) return;
+  const std::lock_guard lock(mutex_);
+  Test& test = tests_[number];
+  test.begun = true;
+  test.part = part;
+  test.grain_steps = grain_steps;
+  write_line(name);
+}
+
+void ProgressOfTests::write_line(const std::string& name) {
   const auto now = Clock::now();
   const auto seconds = [&](Clock::time_point since) { return std::chrono::duration<double>(now - since).count(); };
   if (seconds(last_) < 0.2) return;
@@ -141,15 +156,15 @@ void ProgressOfTests::show(std::size_t number, const std::string& name, const pr
   double grain_steps = 0, part = 0, made = 0;
   for (const Test& each : tests_) {
     finished += each.finished ? 1 : 0;
-    grain_steps += static_cast<double>(each.grain_steps);
+    grain_steps += each.grain_steps;
     part += each.part;
     made += each.part - each.first_part;
   }
   // What concerns all tests first: a narrow terminal cuts the end.
-  std::string text = std::to_string(finished) + " of " + std::to_string(tests_.size()) + " tests done";
+  std::string text = std::to_string(finished) + " of " + std::to_string(tests_.size()) + " " + noun_ + " done";
   const double to_make = static_cast<double>(tests_.size()) - part;
   if (made > 0 && to_make > 0) text += "  " + in_words(seconds(begin_) / made * to_make) + " left";
-  text += speed_of(grain_steps, seconds(begin_)) + "  " + name + state_of(moment);
+  text += speed_of(grain_steps, seconds(begin_)) + "  " + name;
   write_over(text);
   shown_ = true;
 }

@@ -35,13 +35,16 @@ class ProgressLine {
 /// per second of all, time left. May be called from any thread.
 class ProgressOfTests {
  public:
-  explicit ProgressOfTests(std::size_t tests);
+  /// `noun`: what the line calls them.
+  explicit ProgressOfTests(std::size_t tests, std::string noun = "tests");
   ProgressOfTests(const ProgressOfTests&) = delete;
   ProgressOfTests& operator=(const ProgressOfTests&) = delete;
   ~ProgressOfTests();
 
   /// `name` of the test by its number, from 0.
   void show(std::size_t number, const std::string& name, const protocol::Moment& moment);
+  /// The same of work that has no moments: the part of it that is done, 0 to 1, and its grain-steps since it began.
+  void show(std::size_t number, const std::string& name, double part, double grain_steps);
   void done(std::size_t number);
 
  private:
@@ -50,10 +53,14 @@ class ProgressOfTests {
     double part = 0;                      ///< of its records, 0 to 1
     double first_part = 0;                ///< that was there when it began (a resumed test)
     std::uint64_t first_grain_steps = 0;  ///< of its specimen when it began
-    std::uint64_t grain_steps = 0;        ///< made since
+    double grain_steps = 0;               ///< made since
     bool begun = false, finished = false;
   };
+  /// The line, if it is time for one. Under the lock.
+  void write_line(const std::string& name);
+
   const bool terminal_;
+  const std::string noun_;
   bool shown_ = false;
   const Clock::time_point begin_ = Clock::now();
   Clock::time_point last_ = begin_;

@@ -77,6 +77,12 @@ std::string input_path(const std::string& name_or_path, InputKind kind) {
                    (recipe ? "RECIPE" : "PROTOCOL") + ".toml; see rvelab protocols");
 }
 
+std::string installed_study(const std::string& name) {
+  const fs::path path = installed_folder() / "studies" / (name + ".toml");
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored) ? path.string() : "";
+}
+
 std::vector<std::string> specimen_files(const protocol::Protocol& protocol, const std::vector<std::string>& files) {
   if (files.empty() && protocol.specimen_file.empty()) {
     throw InputError(protocol.path +

@@ -1,5 +1,5 @@
-// What `run` and `calibrate` share: the protocols that are installed, the specimens that a protocol runs on, and the
-// folder that results go to.
+// What `run`, `calibrate` and `study` share: the protocols that are installed, the specimens that a protocol runs on,
+// and the folder that results go to.
 #pragma once
 
 #include <map>
@@ -26,6 +26,9 @@ std::string input_path(const std::string& name_or_path, InputKind kind);
 inline std::string protocol_path(const std::string& name_or_path) {
   return input_path(name_or_path, InputKind::protocol);
 }
+
+/// The path of the installed study of this name; "" if there is none.
+std::string installed_study(const std::string& name);
 
 /// Reads the specimens named on the command line; without any, the protocol's own ([specimen] file, relative to the
 /// protocol's folder). InputError if there is none.

@@ -120,7 +120,7 @@ class RunningTest {
 
  private:
   template <class Apply>
-  Report applied(Apply apply);
+  Report applied(Apply apply, double dt);
   int stage_number(const std::string& name) const;
 
   const Watch& watch_;
@@ -128,6 +128,7 @@ class RunningTest {
   long snapshots_every_;
   std::uint64_t quantities_;
   std::size_t records_planned_;
+  double time_ = 0;  ///< s, see Moment::time
 };
 
 /// Carries a stage out, as its kind does.

@@ -30,6 +30,7 @@ struct Moment {
   const records::TestResult& result;  ///< so far
   const Rve& rve;
   std::size_t records_planned;  ///< of all stages together
+  double time = 0;              ///< s, of the increments since the run began or was gone on with; 0: quasi-static
   records::Checkpoint checkpoint() const { return {progress, rve.specimen()}; }
 };
 

@@ -119,7 +119,7 @@ void RunningTest::step_done() {
 
 void RunningTest::pause() {
   clock();
-  if (watch_.on_moment) watch_.on_moment({run.progress, run.result, rve, records_planned_});
+  if (watch_.on_moment) watch_.on_moment({run.progress, run.result, rve, records_planned_, time_});
   if (watch_.stop != nullptr && watch_.stop->load()) throw Interrupted();
 }
 
@@ -151,7 +151,7 @@ double RunningTest::time_for(double strain_increment) const {
 Report RunningTest::apply(MixedTarget target, double dt, double tolerance) {
   target.tolerance = tolerance;
   target.wait = loading.held_wait;
-  return applied([&] { return rve.apply(target, dt); });
+  return applied([&] { return rve.apply(target, dt); }, dt);
 }
 
 Report RunningTest::apply(const Matrix3& displacement_gradient, const std::vector<HeldStress>& held, double dt,
@@ -162,15 +162,17 @@ Report RunningTest::apply(const Matrix3& displacement_gradient, const std::vecto
     return apply(mixed_target(displacement_gradient, held, run.progress.stress, dimension(), held_before), dt,
                  tolerance);
   }
-  return applied([&] {
-    Response response = rve.apply(displacement_gradient, dt);
-    response.displacement_gradient = displacement_gradient;
-    return response;
-  });
+  return applied(
+      [&] {
+        Response response = rve.apply(displacement_gradient, dt);
+        response.displacement_gradient = displacement_gradient;
+        return response;
+      },
+      dt);
 }
 
 template <class Apply>
-Report RunningTest::applied(Apply apply) {
+Report RunningTest::applied(Apply apply, double dt) {
   Response response;
   try {
     response = apply();
@@ -184,6 +186,7 @@ Report RunningTest::applied(Apply apply) {
   at.strain_sum += strain_increment(response.displacement_gradient, dimension());
   at.stress = response.stress;
   at.substeps += response.report.substeps;
+  time_ += dt;
   return response.report;
 }
 

@@ -20,7 +20,9 @@ Bytes bytes_in(const std::string& path) {
 /// Files of a folder in the order of their names; with `word`, those that hold it.
 std::vector<Bytes> files_in(const std::string& folder, const std::string& word = "", bool holding = true) {
   std::vector<std::string> paths;
-  for (const auto& file : std::filesystem::directory_iterator(folder)) paths.push_back(file.path().string());
+  for (const auto& file : std::filesystem::directory_iterator(folder)) {
+    if (file.is_regular_file()) paths.push_back(file.path().string());
+  }
   std::sort(paths.begin(), paths.end());
   std::vector<Bytes> found;
   for (const auto& path : paths) {

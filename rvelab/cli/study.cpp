@@ -1,0 +1,264 @@
+// rvelab study: a test over a grid of settings, errors against the best-resolved run and against cost. Declared in
+// commands.hpp.
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <memory>
+#include <optional>
+
+#include "rvelab/cli/commands.hpp"
+#include "rvelab/cli/interrupt.hpp"
+#include "rvelab/cli/progress_line.hpp"
+#include "rvelab/cli/protocol_input.hpp"
+#include "rvelab/cli/study_folder.hpp"
+#include "rvelab/cli/study_report.hpp"
+#include "rvelab/error.hpp"
+#include "rvelab/io/publish.hpp"
+#include "rvelab/io/schema.hpp"
+#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/text_file.hpp"
+#include "rvelab/io/version.hpp"
+#include "rvelab/keys/key.hpp"
+
+namespace rvelab::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct StudyArguments {
+  std::string what;  ///< a protocol or a study
+  std::vector<std::string> specimens, settings, vary, reference;
+  std::string folder;
+  std::optional<long> repeats, increments;
+  unsigned threads = 0;
+  bool force = false, resume = false, json = false;
+};
+
+/// A study with all that it was read from.
+struct Loaded {
+  study::Study study;
+  std::string path;  ///< of the protocol, or of the study that holds its text
+  std::vector<std::string> inputs;
+};
+
+std::string text_of(const std::string& path) {
+  std::ifstream input(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(input), {}};
+}
+
+/// A path of a study as it is called from the present folder.
+std::string from_folder_of(const std::string& study, const std::string& path) {
+  return (fs::path(study).parent_path() / path).string();
+}
+
+bool is_path(const std::string& name) { return name.find('/') != std::string::npos || name.ends_with(".toml"); }
+
+/// The study file, or a new study of a protocol, before the options of the command line.
+Loaded loaded(const std::string& name) {
+  Loaded found;
+  const std::string installed = is_path(name) ? "" : installed_study(name);
+  const std::string what = installed.empty() ? name : installed;
+  if (is_path(what)) {
+    const toml::table file = parse_toml_file(what);
+    if (study::is_study(file)) {
+      found.study = study::read_study(file, what);
+      found.inputs.push_back(what);
+      for (std::string& specimen : found.study.specimens) specimen = from_folder_of(what, specimen);
+    }
+  }
+  found.path = what;
+  if (found.study.protocol_text.empty()) {
+    const std::string& named = found.study.protocol;
+    found.path = protocol_path(named.empty() ? what : is_path(named) ? from_folder_of(what, named) : named);
+    read_protocol(found.path);  // its mistakes are told with its lines
+    found.study.protocol_text = text_of(found.path);
+    found.inputs.push_back(found.path);
+  }
+  found.study.protocol.clear();
+  return found;
+}
+
+/// Options stand over what a study file says: a key that is varied there takes the values given here.
+void add_options(study::Study& study, const StudyArguments& arguments) {
+  const auto append = [](auto& list, const auto& more) { list.insert(list.end(), more.begin(), more.end()); };
+  append(study.settings, arguments.settings);
+  append(study.reference, arguments.reference);
+  std::vector<std::string> given;
+  for (const std::string& text : arguments.vary) {
+    const study::Variation one = study::parsed_variation(text);
+    if (std::find(given.begin(), given.end(), one.key) != given.end()) {
+      throw InputError("--vary " + text + " varies " + one.key +
+                       " twice; allowed: each key once; give all its values " + "to one --vary");
+    }
+    given.push_back(one.key);
+    const auto same = [&](const study::Variation& other) { return other.key == one.key; };
+    const auto place = std::find_if(study.grid.begin(), study.grid.end(), same);
+    if (place != study.grid.end()) {
+      *place = one;
+    } else {
+      study.grid.push_back(one);
+    }
+  }
+  study.repeats = arguments.repeats.value_or(study.repeats);
+  study.increments = arguments.increments.value_or(study.increments);
+  if (!arguments.specimens.empty()) {
+    study.specimens = arguments.specimens;
+    study.digests.clear();
+  }
+  study.made_with = std::string("rvelab ") + version;
+}
+
+std::vector<Specimen> read_specimens(study::Study& study, const std::string& path) {
+  if (study.specimens.empty()) {
+    throw InputError(path + ": no specimen is given; allowed: one or more files; write for example rvelab study " +
+                     path + " S.h5 ...");
+  }
+  std::vector<Specimen> specimens;
+  std::vector<std::string> digests;
+  for (const std::string& file : study.specimens) {
+    specimens.push_back(read_specimen(file));
+    char text[12];
+    std::snprintf(text, sizeof text, "%08x", io::digest(specimens.back()));
+    digests.emplace_back(text);
+    const std::size_t k = digests.size() - 1;
+    if (k < study.digests.size() && study.digests[k] != digests[k]) {
+      throw InputError(file + ": is not the specimen of " + path + ": its digest is " + digests[k] +
+                       "; allowed: " + study.digests[k] +
+                       "; give the specimen that the study was made with, or name this one on the "
+                       "command line");
+    }
+  }
+  study.digests = digests;
+  return specimens;
+}
+
+std::optional<StudyFolder> folder_for(const StudyArguments& arguments, const Loaded& from) {
+  if (arguments.folder.empty()) {
+    if (arguments.force || arguments.resume) {
+      throw InputError(std::string(arguments.force ? "--force" : "--resume") +
+                       " is given without -o; allowed: with -o; name the folder");
+    }
+    if (!arguments.json && isatty(STDERR_FILENO) == 1) tell("the results will not be kept: no -o FOLDER is given");
+    return std::nullopt;
+  }
+  auto inputs = from.inputs;
+  inputs.insert(inputs.end(), from.study.specimens.begin(), from.study.specimens.end());
+  using Existing = StudyFolder::Existing;
+  return StudyFolder(arguments.folder, from.study,
+                     arguments.force    ? Existing::overwrite
+                     : arguments.resume ? Existing::resume
+                                        : Existing::refuse,
+                     inputs);
+}
+
+void tell_failures(const study::StudySummary& summary, const study::Study& study) {
+  const auto one = [&](const study::PointSummary& point, const std::string& name) {
+    if (!point.failure.empty()) tell(name + ": something could not be carried out: " + point.failure);
+  };
+  one(summary.reference, "reference");
+  for (std::size_t k = 0; k < summary.points.size(); ++k) {
+    one(summary.points[k], study::name_of(study::assignments_at(study.grid, k)));
+  }
+  if (summary.not_at_rest == 0) return;
+  tell(std::to_string(summary.not_at_rest) + " of " + std::to_string(summary.reference.increments) +
+       " answers of the reference did not come to rest at an unbalanced ratio of " +
+       in_words(study.relaxation.unbalanced) + " in " + std::to_string(study.relaxation.max_steps) +
+       " sub-steps (study.relax_unbalanced, study.relax_max_steps)");
+}
+
+void run_study(const StudyArguments& arguments) {
+  Loaded from = loaded(arguments.what);
+  add_options(from.study, arguments);
+  const study::Study& study = from.study;
+  const auto prepared = study::prepared(study, from.path, read_specimens(from.study, arguments.what));
+  const auto folder = folder_for(arguments, from);
+
+  study::Pieces pieces;
+  {
+    ProgressOfTests progress(study::planned_pieces(study, prepared), "pieces");
+    study::Keeper keeper;
+    keeper.threads = arguments.threads;
+    keeper.stop = &stop_on_signals();
+    keeper.on_progress = [&](std::size_t number, const std::string& name, double part, double grain_steps) {
+      if (part < 1) progress.show(number, name, part, grain_steps);
+      if (part >= 1) progress.done(number);
+    };
+    if (folder) {
+      keeper.kept = [&](const std::string& name) { return folder->piece(name); };
+      keeper.keep = [&](const std::string& name, const study::Piece& piece) { folder->put(name, piece); };
+    }
+    pieces = study::run_study(study, prepared, keeper);
+  }
+  if (!pieces.complete) {
+    tell("stopped by " + signal_name() + " with " + std::to_string(pieces.by_name.size()) + " of " +
+         std::to_string(study::planned_pieces(study, prepared)) + " pieces complete; " +
+         (folder ? "go on with --resume" : "they are not kept without -o"));
+    throw Stopped(128 + signal_received());
+  }
+  const auto summary = study::summary_of(study, prepared, pieces);
+  const std::string json = as_json(study, summary).dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  if (folder) {
+    io::publish_text(folder->file("study.json"), json);
+    io::publish_text(folder->file("study.csv"), as_csv(study, summary));
+  }
+  std::cout << (arguments.json ? json : as_tables(study, summary));
+  if (folder && !arguments.json) {
+    std::cout << "\nfile    " << folder->file("study.csv")
+              << ", study.json\nfigure  /usr/bin/python3 tools/plot/study.py " << arguments.folder << " -o "
+              << folder->file("study.png") << "\n";
+  }
+  std::cout << std::flush;
+  tell_failures(summary, study);
+}
+
+}  // namespace
+
+void add_study(CLI::App& app) {
+  auto arguments = std::make_shared<StudyArguments>();
+  CLI::App* command = app.add_subcommand("study", "Run a test over a grid of settings: error against run time");
+  const auto list = [&](const char* name, std::vector<std::string>& place, const char* help) {
+    command->add_option(name, place, help)->expected(1)->allow_extra_args(false)->take_all();
+  };
+  command
+      ->add_option("test", arguments->what,
+                   "PROTOCOL.toml or STUDY.toml, or the name of an installed one:\nbiaxial; tolerance, damping, "
+                   "time_step, record_density")
+      ->required();
+  command->add_option("specimen", arguments->specimens, "specimens; else those of the study");
+  list("--vary", arguments->vary, "KEY=v1,v2,...; several: all combinations");
+  list("--reference", arguments->reference, "KEY=value of the best-resolved run, which the others are held against");
+  list("--set", arguments->settings, "KEY=value of every run");
+  command->add_option("--repeat", arguments->repeats, "whole paths a grid point and specimen; 0: none (1)")
+      ->check(CLI::Range(0L, 10'000L));
+  command
+      ->add_option("--increments", arguments->increments,
+                   "increments a grid point and specimen, each from\na state of the best-resolved path; 0: none (300)")
+      ->check(CLI::Range(0L, 1'000'000L));
+  command->add_option("-o,--output", arguments->folder, "folder for study.toml, study.csv, study.json and pieces/");
+  command->add_option("--threads", arguments->threads, "else as many as there are cores")->check(CLI::Range(1u, 4096u));
+  CLI::Option* force = command->add_flag("--force", arguments->force, "start anew in a folder that holds a study");
+  command->add_flag("--resume", arguments->resume, "go on with a study that was stopped")->excludes(force);
+  command->add_flag("--json", arguments->json, "print one JSON object");
+  command->footer(
+      "The reference runs the path once. From states spread evenly over it each grid point makes the increment that\n"
+      "the reference made; its error is that of the stress against the reference's answer from the same state, which\n"
+      "at dt = 0 is relaxed. /p: over the mean pressure, /d: over the stress increment. Whole paths differ by per "
+      "cents\n"
+      "between runs one bit apart, so their measures are means over --repeat paths, all but the first with positions\n"
+      "moved by 1e-10 of the radius. FOLDER/study.toml holds the study: `rvelab study FOLDER/study.toml` runs it\n"
+      "again. The number of threads changes no bit but those of times. rvelab/study/README.md says more.\n"
+      "Examples:\n"
+      "  rvelab study tolerance S.h5 -o F\n"
+      "  rvelab study biaxial S.h5 --vary solver.target_unbalanced=1e-2,1e-3,1e-4 -o F \\\n"
+      "    --reference solver.target_unbalanced=3e-5 --reference solver.fixed_substeps=4000\n"
+      "  rvelab study F/study.toml -o F --resume");
+  command->callback([arguments] { run_study(*arguments); });
+}
+
+}  // namespace rvelab::cli

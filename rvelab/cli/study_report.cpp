@@ -1,0 +1,222 @@
+#include "rvelab/cli/study_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "rvelab/io/text_file.hpp"
+#include "rvelab/io/utf8.hpp"
+#include "rvelab/study/measures.hpp"
+
+namespace rvelab::cli {
+namespace {
+
+using study::ErrorSummary;
+using study::PointSummary;
+using study::Study;
+using study::StudySummary;
+
+/// A number of a run by its name; the same in JSON and CSV.
+using Named = std::vector<std::pair<std::string, Json>>;
+
+void add_errors(Named& row, const ErrorSummary& errors, const std::string& over) {
+  row.emplace_back("rms_error_over_" + over, errors.rms);
+  row.emplace_back("median_error_over_" + over, errors.median);
+  row.emplace_back("percentile_95_error_over_" + over, errors.percentile_95);
+  row.emplace_back("largest_error_over_" + over, errors.largest);
+}
+
+Named numbers_of(const Study& study, const PointSummary& point) {
+  Named row;
+  if (study.increments > 0) {
+    row.emplace_back("increments", point.increments);
+    row.emplace_back("failed_increments", point.failed);
+    add_errors(row, point.of_pressure, "p");
+    add_errors(row, point.of_increment, "stress_increment");
+    row.emplace_back("processor_s_per_increment", point.seconds);
+    row.emplace_back("grain_steps_per_increment", point.grain_steps);
+    row.emplace_back("on_front_of_processor_time", point.front_seconds);
+    row.emplace_back("on_front_of_grain_steps", point.front_grain_steps);
+  }
+  if (study.repeats > 0) {
+    for (std::size_t k = 0; k < point.means.size(); ++k) {
+      row.emplace_back(study::measures()[k].name + "_mean", point.means[k]);
+      row.emplace_back(study::measures()[k].name + "_standard_error", point.standard_errors[k]);
+    }
+    row.emplace_back("failed_paths", point.failed_paths);
+    row.emplace_back("processor_s_per_path", point.path_seconds);
+    row.emplace_back("grain_steps_per_path", point.path_grain_steps);
+  }
+  return row;
+}
+
+Json json_of(const Study& study, const PointSummary& point) {
+  Json json;
+  Json values = Json::object();
+  for (std::size_t k = 0; k < point.values.size(); ++k) values[study.grid[k].key] = point.values[k];
+  json["values"] = values;
+  for (const auto& [name, number] : numbers_of(study, point)) json[name] = number;
+  if (!point.failure.empty()) json["failure"] = point.failure;
+  return json;
+}
+
+std::string cell(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char letter : text) quoted += letter == '"' ? std::string("\"\"") : std::string(1, letter);
+  return quoted + "\"";
+}
+
+/// Columns as wide as their widest cell, the first ones to the left.
+std::string aligned(const std::vector<std::vector<std::string>>& rows, std::size_t to_the_left) {
+  std::vector<std::size_t> widths;
+  for (const auto& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()));
+    for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], row[k].size());
+  }
+  std::string text;
+  for (const auto& row : rows) {
+    std::string line;
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      const std::string blank(widths[k] - row[k].size(), ' ');
+      line += (k == 0 ? "" : "  ") + (k < to_the_left ? row[k] + blank : blank + row[k]);
+    }
+    text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+  }
+  return text;
+}
+
+std::string rounded(double value, int digits = 3) {
+  if (std::isnan(value)) return "-";
+  std::ostringstream text;
+  text.precision(digits);
+  text << value;
+  return text.str();
+}
+
+/// Mean and standard error, the mean to the digits that the error leaves certain.
+std::string with_error(double mean, double error) {
+  if (std::isnan(error)) return rounded(mean, 5);
+  return rounded(mean, 5) + " +- " + rounded(error, 2);
+}
+
+std::vector<std::string> name_cells(const Study& study, const PointSummary& point) {
+  std::vector<std::string> cells;
+  for (const std::string& value : point.values) cells.push_back(io::printable(value));
+  if (point.values.empty()) cells.assign(std::max<std::size_t>(study.grid.size(), 1), "");
+  if (point.values.empty()) cells[0] = study.grid.empty() ? "protocol" : "reference";
+  return cells;
+}
+
+/// One line a run under a header that begins with the varied keys; `cells` gives the rest.
+template <class Cells>
+std::string table(const Study& study, const StudySummary& summary, const std::vector<std::string>& header,
+                  Cells cells) {
+  std::vector<std::vector<std::string>> rows(1);
+  for (const auto& one : study.grid) rows[0].push_back(one.key);
+  if (study.grid.empty()) rows[0].push_back("run");
+  rows[0].insert(rows[0].end(), header.begin(), header.end());
+  const auto add = [&](const PointSummary& point, bool is_reference) {
+    rows.push_back(name_cells(study, point));
+    if (is_reference) rows.back()[0] = "reference";
+    const std::vector<std::string> rest = cells(point);
+    rows.back().insert(rows.back().end(), rest.begin(), rest.end());
+  };
+  add(summary.reference, true);
+  for (const PointSummary& point : summary.points) add(point, false);
+  return aligned(rows, std::max<std::size_t>(study.grid.size(), 1));
+}
+
+std::string increments_table(const Study& study, const StudySummary& summary) {
+  return "Errors of the stress over " + std::to_string(summary.reference.increments) +
+         " increments, over p and over the stress increment; cost of an increment; * on the Pareto front\n" +
+         table(study, summary,
+               {"rms/p", "median/p", "95 %/p", "max/p", "rms/d", "median/d", "95 %/d", "max/d", "processor s", "",
+                "grain-steps", "", "failed"},
+               [](const PointSummary& point) {
+                 const ErrorSummary &p = point.of_pressure, &d = point.of_increment;
+                 return std::vector<std::string>{rounded(p.rms),
+                                                 rounded(p.median),
+                                                 rounded(p.percentile_95),
+                                                 rounded(p.largest),
+                                                 rounded(d.rms),
+                                                 rounded(d.median),
+                                                 rounded(d.percentile_95),
+                                                 rounded(d.largest),
+                                                 rounded(point.seconds),
+                                                 point.front_seconds ? "*" : "",
+                                                 rounded(point.grain_steps),
+                                                 point.front_grain_steps ? "*" : "",
+                                                 std::to_string(point.failed)};
+               });
+}
+
+std::string paths_table(const Study& study, const StudySummary& summary) {
+  std::vector<std::string> header;
+  for (const study::Measure& measure : study::measures()) header.push_back(measure.name);
+  for (const char* name : {"processor s", "grain-steps", "failed"}) header.emplace_back(name);
+  return "Whole paths, means of " + std::to_string(study.repeats) +
+         (study.repeats == 1 ? " path" : " repeats, with their standard errors") + "\n" +
+         table(study, summary, header, [](const PointSummary& point) {
+           std::vector<std::string> cells;
+           for (std::size_t k = 0; k < point.means.size(); ++k) {
+             cells.push_back(with_error(point.means[k], point.standard_errors[k]));
+           }
+           cells.push_back(rounded(point.path_seconds));
+           cells.push_back(rounded(point.path_grain_steps));
+           cells.push_back(std::to_string(point.failed_paths));
+           return cells;
+         });
+}
+
+}  // namespace
+
+Json as_json(const Study& study, const StudySummary& summary) {
+  Json json;
+  Json vary = Json::array();
+  for (const auto& one : study.grid) vary.push_back({{"key", one.key}, {"values", one.values}});
+  json["study"] = {{"specimens", study.specimens}, {"settings", study.settings}, {"vary", vary},
+                   {"reference", study.reference}, {"repeats", study.repeats},   {"increments", study.increments},
+                   {"made_with", study.made_with}};
+  Json measures = Json::array();
+  for (const study::Measure& measure : study::measures()) {
+    measures.push_back({{"name", measure.name}, {"unit", measure.unit}, {"meaning", measure.meaning}});
+  }
+  json["measures"] = measures;
+  json["reference"] = json_of(study, summary.reference);
+  json["reference_answers_not_at_rest"] = summary.not_at_rest;
+  json["points"] = Json::array();
+  for (const PointSummary& point : summary.points) json["points"].push_back(json_of(study, point));
+  return json;
+}
+
+std::string as_csv(const Study& study, const StudySummary& summary) {
+  std::string text = "run";
+  for (const auto& one : study.grid) text += "," + cell(one.key);
+  for (const auto& [name, number] : numbers_of(study, summary.reference)) text += "," + name;
+  text += "\n";
+  const auto add = [&](const std::string& run, const PointSummary& point) {
+    text += run;
+    for (std::size_t k = 0; k < study.grid.size(); ++k)
+      text += "," + (point.values.empty() ? "" : cell(point.values[k]));
+    for (const auto& [name, number] : numbers_of(study, point)) {
+      const bool real = number.is_number_float();
+      if (real) text += "," + (std::isnan(number.get<double>()) ? "" : io::exact(number.get<double>()));
+      if (number.is_boolean()) text += number.get<bool>() ? ",1" : ",0";
+      if (!real && !number.is_boolean()) text += "," + number.dump();
+    }
+    text += "\n";
+  };
+  add("reference", summary.reference);
+  for (std::size_t k = 0; k < summary.points.size(); ++k) add(std::to_string(k + 1), summary.points[k]);
+  return text;
+}
+
+std::string as_tables(const Study& study, const StudySummary& summary) {
+  std::string text;
+  if (study.increments > 0) text += increments_table(study, summary);
+  if (study.repeats > 0) text += (text.empty() ? "" : "\n") + paths_table(study, summary);
+  return text;
+}
+
+}  // namespace rvelab::cli

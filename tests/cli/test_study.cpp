@@ -1,0 +1,158 @@
+// rvelab study as a user runs it: results and their files, the way back from study.toml, resume, refusals, the figure.
+#include <nlohmann/json.hpp>
+
+#include "tests/child.hpp"
+#include "tests/cli/program.hpp"
+
+using namespace rvelab::test;
+using Catch::Matchers::Contains;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+const std::string small_test = "biaxial S.h5 --set stage.compression.to_strain=0.002 --increments 3 ";
+const std::string grid = "--vary solver.target_unbalanced=1e-2,1e-3 --reference solver.fixed_substeps=200 ";
+
+/// A result without the times and what they decide.
+Json without_times(Json json) {
+  const auto strip = [](Json& run) {
+    for (const char* name : {"processor_s_per_increment", "processor_s_per_path", "on_front_of_processor_time"}) {
+      run.erase(name);
+    }
+  };
+  strip(json["reference"]);
+  for (Json& point : json["points"]) strip(point);
+  json["study"].erase("specimens");  // called from another folder
+  return json;
+}
+
+std::size_t pieces_in(const Workplace& here, const std::string& folder) {
+  std::size_t count = 0;
+  std::error_code none_yet;
+  for (const auto& entry : std::filesystem::directory_iterator(here / (folder + "/pieces"), none_yet)) {
+    count += entry.path().extension() == ".json" ? 1 : 0;
+  }
+  return count;
+}
+
+}  // namespace
+
+TEST_CASE("a study prints and writes its results, and its file runs it again") {
+  const Workplace here;
+  here.import_packing("dense_p20");
+  const Outcome outcome = here.run("study " + small_test + grid + "--repeat 2 -o F");
+  INFO(outcome.errors);
+  REQUIRE(outcome.code == 0);
+  CHECK_THAT(outcome.output, Contains("over 3 increments") && Contains("peak_friction_angle_deg") &&
+                                 Contains("means of 2 repeats") && Contains("tools/plot/study.py F -o F/study.png"));
+  const Json json = Json::parse(text_of(here / "F/study.json"));
+  REQUIRE(json["points"].size() == 2);
+  CHECK(json["points"][0]["values"]["solver.target_unbalanced"] == "1e-2");
+  CHECK(json["points"][0]["rms_error_over_p"].get<double>() > json["points"][1]["rms_error_over_p"].get<double>());
+  CHECK(json["points"][1]["peak_friction_angle_deg_standard_error"].is_number());
+  CHECK(pieces_in(here, "F") == 9);
+  const std::string csv = text_of(here / "F/study.csv");
+  CHECK(std::count(csv.begin(), csv.end(), '\n') == 4);
+  CHECK_THAT(csv, Contains("run,solver.target_unbalanced,increments,failed_increments,rms_error_over_p") &&
+                      Contains("\nreference,,3,0,") && Contains("\n2,1e-3,3,0,"));
+
+  const Outcome again = here.run("study F/study.toml --json --threads 1");
+  INFO(again.errors);
+  REQUIRE(again.code == 0);
+  CHECK(without_times(Json::parse(again.output)) == without_times(json));
+
+  const Outcome figure =
+      here.run("-B '" RVELAB_SOURCE_DIR "/tools/plot/study.py' F -o F/study.png", "/usr/bin/python3");
+  INFO(figure.errors);
+  CHECK(figure.code == 0);
+  CHECK_THAT(figure.output, Contains("2 grid points"));
+  CHECK(text_of(here / "F/study.png").starts_with("\x89PNG"));
+}
+
+TEST_CASE("a stopped study goes on with --resume, another study is refused, nothing is overwritten unasked") {
+  const Workplace here;
+  here.import_packing("dense_p20");
+  const std::string study = "study " + small_test + grid;
+  REQUIRE(here.run(study + "-o whole").code == 0);
+  {
+    Child child({RVELAB_PROGRAM, "study", "biaxial", here / "S.h5", "--set", "stage.compression.to_strain=0.002",
+                 "--increments", "3", "--vary", "solver.target_unbalanced=1e-2,1e-3", "--reference",
+                 "solver.fixed_substeps=200", "--threads", "1", "-o", here / "F"},
+                here / "out", here / "err");
+    for (int k = 0; k < 30'000 && pieces_in(here, "F") == 0; ++k) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    child.signal(SIGINT);
+    CHECK(child.wait() == 130);
+    CHECK_THAT(text_of(here / "err"), Contains("stopped by Ctrl-C with ") && Contains("go on with --resume"));
+  }
+  const std::size_t kept = pieces_in(here, "F");
+  CHECK(kept > 0);
+  CHECK(kept < 6);
+  const auto first_piece = [&] { return std::filesystem::last_write_time(here / "F/pieces/path_0_1_1.json"); };
+  REQUIRE(std::filesystem::exists(here / "F/pieces/path_0_1_1.json"));
+  const auto made = first_piece();
+
+  expect_mistake(here.run(study + "-o F"), "F/study.toml: is there already; allowed: a new name, --resume");
+  expect_mistake(here.run(study + "--repeat 2 -o F --resume"), "is another study: repeats = 1 there and 2 here");
+  expect_mistake(here.run(study + "--set damping.local=0.2 -o F --resume"), "is another study: settings = ");
+  CHECK(pieces_in(here, "F") == kept);
+
+  const Outcome resumed = here.run("study F/study.toml -o F --resume");
+  INFO(resumed.errors);
+  REQUIRE(resumed.code == 0);
+  CHECK(first_piece() == made);
+  CHECK(without_times(Json::parse(text_of(here / "F/study.json"))) ==
+        without_times(Json::parse(text_of(here / "whole/study.json"))));
+
+  here.write("F/pieces/path_1_1_1.json", "{");
+  expect_mistake(here.run("study F/study.toml -o F --resume"), "path_1_1_1.json: is damaged");
+  expect_mistake(here.run("study F/study.toml -o F --force"), "would replace F/study.toml");
+  CHECK(here.run(study + "-o F --force --repeat 0").code == 0);
+  CHECK(pieces_in(here, "F") == 3);
+}
+
+TEST_CASE("mistakes in the command of a study are told in one line that names key, value and remedy") {
+  const Workplace here;
+  here.import_packing("dense_p20");
+  const std::string some = "study " + small_test + "--reference solver.fixed_substeps=200 ";
+  expect_mistake(here.run(some + "--vary solver.target_unbalancd=1e-2"), "--vary solver.target_unbalancd=1e-2");
+  expect_mistake(here.run(some + "--vary solver.time_step_factor=0.5,2"), "solver.time_step_factor=2: ");
+  expect_mistake(here.run(some + "--vary solver.skin="), "--vary solver.skin= has no values; allowed: KEY=v1,v2");
+  expect_mistake(here.run(some + "--vary solver.skin=0.1 --vary solver.skin=0.2"), "varies solver.skin twice");
+  expect_mistake(here.run(some + "--vary loading.mode=quasi_static,physical"), "loading.mode=physical: ");
+  expect_mistake(here.run("study " + small_test + "--vary solver.skin=0.1"), "no reference is given");
+  expect_mistake(here.run("study biaxial --reference solver.skin=0.1"), "no specimen is given");
+  expect_mistake(here.run("study biaxial none.h5 --reference solver.skin=0.1"), "none.h5");
+  expect_mistake(here.run("study none.toml S.h5 --reference solver.skin=0.1"), "none.toml: no such file");
+  expect_mistake(here.run(some + "--resume"), "--resume is given without -o");
+  expect_mistake(here.run(some + "--repeat -1"), "--repeat");
+  expect_mistake(here.run("study biaxial S.h5 --reference solver.skin=0.1 --repeat 0 --increments 0"),
+                 "leave nothing to run");
+  CHECK(here.run("run biaxial --specimen S.h5 --set stage.compression.to_strain=0.001 -o other.h5").code == 0);
+  here.write("mine.toml", "[study]\nprotocol = \"biaxial\"\nspecimens = [\"other.h5\"]\ndigests = [\"00000000\"]\n");
+  expect_mistake(here.run("study mine.toml --reference solver.skin=0.1"), "is not the specimen of mine.toml");
+}
+
+TEST_CASE("every kept study runs, cut short") {
+  const Workplace here;
+  here.import_packing("dense_p20");
+  std::size_t studies = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(RVELAB_SOURCE_DIR "/protocols/studies")) {
+    CAPTURE(entry.path().string());
+    const Outcome outcome = here.run("study '" + entry.path().string() +
+                                     "' S.h5 --increments 1 --repeat 0 --json --set stage.compression.to_strain=0.002 "
+                                     "--reference solver.fixed_substeps=100");
+    INFO(outcome.errors);
+    REQUIRE(outcome.code == 0);
+    const Json points = Json::parse(outcome.output)["points"];
+    CHECK(points.size() >= 5);
+    for (const Json& point : points) {
+      CAPTURE(point.dump());
+      CHECK(point["failed_increments"] == 0);
+      CHECK(point["rms_error_over_p"].get<double>() > 0);
+    }
+    ++studies;
+  }
+  CHECK(studies >= 4);
+}
