@@ -65,7 +65,7 @@ Loaded loaded(const std::string& name) {
   const std::string installed = is_path(name) ? "" : installed_study(name);
   const std::string what = installed.empty() ? name : installed;
   if (is_path(what)) {
-    const toml::table file = parse_toml_file(what);
+    const toml::table file = keys::parse_toml_file(what);
     if (study::is_study(file)) {
       found.study = study::read_study(file, what);
       found.inputs.push_back(what);
@@ -76,7 +76,7 @@ Loaded loaded(const std::string& name) {
   if (found.study.protocol_text.empty()) {
     const std::string& named = found.study.protocol;
     found.path = protocol_path(named.empty() ? what : is_path(named) ? from_folder_of(what, named) : named);
-    read_protocol(found.path);  // its mistakes are told with its lines
+    protocol::read_protocol(found.path);  // its mistakes are told with its lines
     found.study.protocol_text = text_of(found.path);
     found.inputs.push_back(found.path);
   }
@@ -111,7 +111,7 @@ void add_options(study::Study& study, const StudyArguments& arguments) {
     study.specimens = arguments.specimens;
     study.digests.clear();
   }
-  study.made_with = std::string("rvelab ") + version;
+  study.made_with = std::string("rvelab ") + io::version;
 }
 
 std::vector<Specimen> read_specimens(study::Study& study, const std::string& path) {
@@ -122,7 +122,7 @@ std::vector<Specimen> read_specimens(study::Study& study, const std::string& pat
   std::vector<Specimen> specimens;
   std::vector<std::string> digests;
   for (const std::string& file : study.specimens) {
-    specimens.push_back(read_specimen(file));
+    specimens.push_back(io::read_specimen(file));
     char text[12];
     std::snprintf(text, sizeof text, "%08x", io::digest(specimens.back()));
     digests.emplace_back(text);

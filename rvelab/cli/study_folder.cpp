@@ -26,7 +26,7 @@ std::string seen_from(const fs::path& folder, const std::string& path) {
 
 /// InputError unless the folder holds the same study.
 void expect_same(const std::string& path, const study::Study& study) {
-  const study::Study there = study::read_study(parse_toml_file(path), path);
+  const study::Study there = study::read_study(keys::parse_toml_file(path), path);
   const std::string found = study::difference(there, study);
   if (found.empty()) return;
   throw InputError(path + ": is another study: " + found +

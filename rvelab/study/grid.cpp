@@ -94,18 +94,19 @@ std::string name_of(const std::vector<std::string>& assignments) {
   return name.empty() ? "the protocol as it is" : name;
 }
 
-Protocol protocol_with(const std::string& text, const std::string& path, const std::vector<std::string>& settings,
-                       const std::vector<std::string>& assignments, const std::string& flag) {
+protocol::Protocol protocol_with(const std::string& text, const std::string& path,
+                                 const std::vector<std::string>& settings, const std::vector<std::string>& assignments,
+                                 const std::string& flag) {
   std::vector<std::string> all = settings;
   all.insert(all.end(), assignments.begin(), assignments.end());
   try {
-    Protocol protocol = parse_protocol(text, path, all);
+    protocol::Protocol protocol = protocol::parse_protocol(text, path, all);
     protocol.quantities |= records::asked<records::VoidRatio>;
     return protocol;
   } catch (const InputError& error) {
     std::string message = error.what();
     for (const std::string& one : assignments) {
-      const std::string said = assignment_prefix + one;
+      const std::string said = keys::assignment_prefix + one;
       for (auto at = message.find(said); at != std::string::npos; at = message.find(said, at + flag.size())) {
         message.replace(at, said.size(), flag + " " + one);
       }

@@ -33,7 +33,8 @@ std::string name_of(const std::vector<std::string>& assignments);
 
 /// The protocol with `settings` and then `assignments`, each of which stands for one word `flag` of the command line.
 /// InputError with the point's name in front, naming `flag` where the mistake is in an assignment.
-Protocol protocol_with(const std::string& text, const std::string& path, const std::vector<std::string>& settings,
-                       const std::vector<std::string>& assignments, const std::string& flag);
+protocol::Protocol protocol_with(const std::string& text, const std::string& path,
+                                 const std::vector<std::string>& settings, const std::vector<std::string>& assignments,
+                                 const std::string& flag);
 
 }  // namespace rvelab::study

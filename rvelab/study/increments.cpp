@@ -16,7 +16,7 @@ Specimen opened(const Specimen& state, const Opening& opening) {
   specimen.contact = opening.specimen.contact;
   specimen.damping = opening.specimen.damping;
   specimen.solver = opening.specimen.solver;
-  return with_overrides(opening.protocol, std::move(specimen));
+  return protocol::with_overrides(opening.protocol, std::move(specimen));
 }
 
 /// Straight in F, in equal parts.

@@ -20,7 +20,7 @@ struct Relaxation {
 
 /// What the settings under test are put on: `specimen` as it was given, whose parameters a kept state takes back.
 struct Opening {
-  const Protocol& protocol;
+  const protocol::Protocol& protocol;
   const Specimen& specimen;
   long parts = 1;  ///< increments that the deformation is made in
   const std::atomic<bool>* stop = nullptr;

@@ -17,18 +17,18 @@ constexpr double dilation_window = 0.005;
 /// The secant stiffness is that up to this driving strain.
 constexpr double secant_strain = 1e-3;
 
-double peak_friction_angle(const TestResult& test, int dimension) {
-  const auto records = last_stage(test);
-  return records.empty() ? none : friction_angle_deg(peak(records, dimension).stresses);
+double peak_friction_angle(const records::TestResult& test, int dimension) {
+  const auto records = calibrate::last_stage(test);
+  return records.empty() ? none : calibrate::friction_angle_deg(calibrate::peak(records, dimension).stresses);
 }
 
 /// Slope of ln det F, expansion positive, over the size of the driving strain: least squares around the peak.
-double dilation_at_peak(const TestResult& test, int dimension) {
-  const auto records = last_stage(test);
+double dilation_at_peak(const records::TestResult& test, int dimension) {
+  const auto records = calibrate::last_stage(test);
   if (records.empty()) return none;
-  const double middle = peak(records, dimension).strain;
+  const double middle = calibrate::peak(records, dimension).strain;
   double count = 0, x = 0, y = 0, xx = 0, xy = 0;
-  for (const Record& record : records) {
+  for (const records::Record& record : records) {
     const double strain = std::abs(record.strain), volume = record.deformation_gradient.determinant();
     if (std::abs(record.strain - middle) > dilation_window || !(volume > 0)) continue;
     const double expansion = std::log(volume);
@@ -42,15 +42,17 @@ double dilation_at_peak(const TestResult& test, int dimension) {
   return count < 3 || !(spread > 0) ? none : (count * xy - x * y) / spread;
 }
 
-double void_ratio_at_end(const TestResult& test, int) {
+double void_ratio_at_end(const records::TestResult& test, int) {
   if (test.records.empty() || (test.records.back().quantities & records::asked<records::VoidRatio>) == 0) return none;
   return test.records.back().void_ratio;
 }
 
 /// Change of sigma_1 - sigma_3 from the start of the last stage to secant_strain, straight between records, over it.
-double small_strain_stiffness(const TestResult& test, int dimension) {
-  const auto records = last_stage(test);
-  const auto difference = [&](const Record& record) { return 2 * principal_stresses(record.stress, dimension).t(); };
+double small_strain_stiffness(const records::TestResult& test, int dimension) {
+  const auto records = calibrate::last_stage(test);
+  const auto difference = [&](const records::Record& record) {
+    return 2 * calibrate::principal_stresses(record.stress, dimension).t();
+  };
   for (std::size_t k = 1; k < records.size(); ++k) {
     const double before = std::abs(records[k - 1].strain), strain = std::abs(records[k].strain);
     if (strain < secant_strain * (1 - 1e-9) || !(strain > before)) continue;

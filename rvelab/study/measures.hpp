@@ -15,7 +15,7 @@ struct Measure {
   std::string name;  ///< ends in its unit
   std::string unit;  ///< "1": none
   std::string meaning;
-  double (*of)(const TestResult& test, int dimension);  ///< NaN: the test does not give it
+  double (*of)(const records::TestResult& test, int dimension);  ///< NaN: the test does not give it
 };
 
 const std::vector<Measure>& measures();

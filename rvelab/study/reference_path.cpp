@@ -21,7 +21,7 @@ class Keeping {
   explicit Keeping(std::size_t count) : count_(count) {}
 
   /// Looks at a moment: whether its state is that of a record, and of one to be kept.
-  void look(const Moment& moment) {
+  void look(const protocol::Moment& moment) {
     const std::size_t records = moment.result.records.size();
     if (records == times_.size()) return;
     times_.resize(records, moment.time);
@@ -43,10 +43,12 @@ class Keeping {
 };
 
 /// A stage begins with a record that no sub-step led to.
-bool begins_stage(const Record& record) { return record.substeps == 0 && record.deformation_gradient.isIdentity(0); }
+bool begins_stage(const records::Record& record) {
+  return record.substeps == 0 && record.deformation_gradient.isIdentity(0);
+}
 
 /// True if a visit of a stage goes on from one record to another.
-bool same_visit(const std::vector<Record>& records, std::size_t from, std::size_t to) {
+bool same_visit(const std::vector<records::Record>& records, std::size_t from, std::size_t to) {
   if (to >= records.size()) return false;
   for (std::size_t k = from + 1; k <= to; ++k) {
     if (records[k].stage != records[from].stage || begins_stage(records[k])) return false;
@@ -56,20 +58,21 @@ bool same_visit(const std::vector<Record>& records, std::size_t from, std::size_
 
 }  // namespace
 
-std::vector<std::size_t> increments_of_stages(const Protocol& protocol) {
+std::vector<std::size_t> increments_of_stages(const protocol::Protocol& protocol) {
   std::vector<std::size_t> increments;
-  for (const Stage& stage : protocol.stages) {
-    Protocol alone;
+  for (const protocol::Stage& stage : protocol.stages) {
+    protocol::Protocol alone;
     alone.stages = {stage};
-    increments.push_back(std::max<std::size_t>(planned_records(alone), 1) - 1);
+    increments.push_back(std::max<std::size_t>(protocol::planned_records(alone), 1) - 1);
   }
   return increments;
 }
 
-std::vector<long> longest_increments(const Protocol& reference, const std::vector<Protocol>& protocols) {
+std::vector<long> longest_increments(const protocol::Protocol& reference,
+                                     const std::vector<protocol::Protocol>& protocols) {
   const auto own = increments_of_stages(reference);
   std::vector<long> spans(own.size(), 1);
-  for (const Protocol& protocol : protocols) {
+  for (const protocol::Protocol& protocol : protocols) {
     const auto increments = increments_of_stages(protocol);
     for (std::size_t k = 0; k < own.size(); ++k) {
       if (own[k] == 0 || increments[k] == 0) continue;
@@ -80,7 +83,8 @@ std::vector<long> longest_increments(const Protocol& reference, const std::vecto
   return spans;
 }
 
-long parts_of(const Protocol& protocol, const Protocol& reference, std::int32_t stage, long records) {
+long parts_of(const protocol::Protocol& protocol, const protocol::Protocol& reference, std::int32_t stage,
+              long records) {
   const auto row = static_cast<std::size_t>(stage);
   const std::size_t mine = increments_of_stages(protocol).at(row), own = increments_of_stages(reference).at(row);
   if (mine == 0 || own == 0) return 1;
@@ -88,19 +92,19 @@ long parts_of(const Protocol& protocol, const Protocol& reference, std::int32_t 
   return std::max(1L, std::lround(parts));
 }
 
-ReferencePath reference_path(const Protocol& protocol, const Specimen& specimen, std::size_t count,
-                             const std::vector<long>& spans, Watch watch) {
+ReferencePath reference_path(const protocol::Protocol& protocol, const Specimen& specimen, std::size_t count,
+                             const std::vector<long>& spans, protocol::Watch watch) {
   Keeping keeping(count);
-  watch.on_moment = [&, shown = watch.on_moment](const Moment& moment) {
+  watch.on_moment = [&, shown = watch.on_moment](const protocol::Moment& moment) {
     if (shown) shown(moment);
     keeping.look(moment);
   };
   ReferencePath path;
-  path.run = run_protocol(protocol, specimen, watch);
+  path.run = protocol::run_protocol(protocol, specimen, watch);
   if (!path.run.complete) throw Interrupted();
   if (count == 0) return path;
 
-  const std::vector<Record>& records = path.run.result.records;
+  const std::vector<records::Record>& records = path.run.result.records;
   const auto span_at = [&](std::size_t record) { return spans.at(static_cast<std::size_t>(records[record].stage)); };
   auto& met = keeping.met();
   std::erase_if(met, [&](const Keeping::Met& one) {

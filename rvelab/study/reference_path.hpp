@@ -23,23 +23,25 @@ struct PathState {
 };
 
 struct ReferencePath {
-  TestRun run;
+  protocol::TestRun run;
   std::vector<PathState> states;
 };
 
 /// Records that each stage of a protocol makes where no event ends it, less the first: its increments.
-std::vector<std::size_t> increments_of_stages(const Protocol& protocol);
+std::vector<std::size_t> increments_of_stages(const protocol::Protocol& protocol);
 
 /// Records of the reference that one increment of the coarsest of the protocols spans, for each stage (1 or more).
-std::vector<long> longest_increments(const Protocol& reference, const std::vector<Protocol>& protocols);
+std::vector<long> longest_increments(const protocol::Protocol& reference,
+                                     const std::vector<protocol::Protocol>& protocols);
 
 /// Increments that a protocol makes while the reference makes `records` of its own in a stage, 1 or more.
-long parts_of(const Protocol& protocol, const Protocol& reference, std::int32_t stage, long records);
+long parts_of(const protocol::Protocol& protocol, const protocol::Protocol& reference, std::int32_t stage,
+              long records);
 
 /// Runs the path and keeps `count` states of it, or as many as there are; 0: none. `spans`: records from a state to the
 /// end of its increment, for each stage. The states do not depend on what watches. Error if the path cannot be run, or
 /// has no increment although one is asked for.
-ReferencePath reference_path(const Protocol& protocol, const Specimen& specimen, std::size_t count,
-                             const std::vector<long>& spans, Watch watch);
+ReferencePath reference_path(const protocol::Protocol& protocol, const Specimen& specimen, std::size_t count,
+                             const std::vector<long>& spans, protocol::Watch watch);
 
 }  // namespace rvelab::study

@@ -37,7 +37,7 @@ class Running {
  private:
   std::size_t points() const { return prepared_.points.size(); }
   std::size_t repeats() const { return static_cast<std::size_t>(study_.repeats); }
-  const Protocol& protocol(std::size_t point) const {
+  const protocol::Protocol& protocol(std::size_t point) const {
     return point == 0 ? prepared_.reference : prepared_.points[point - 1];
   }
   std::string name(std::size_t point) const {
@@ -93,10 +93,11 @@ class Running {
     return false;
   }
 
-  Watch watch(std::size_t number, std::size_t point) {
-    Watch watch;
+  protocol::Watch watch(std::size_t number, std::size_t point) {
+    protocol::Watch watch;
     watch.stop = keeper_.stop;
-    watch.on_moment = [this, number, point, first = std::optional<std::uint64_t>()](const Moment& moment) mutable {
+    watch.on_moment = [this, number, point,
+                       first = std::optional<std::uint64_t>()](const protocol::Moment& moment) mutable {
       if (!first) first = moment.rve.grain_steps();
       const double planned = static_cast<double>(std::max<std::size_t>(moment.records_planned, 1));
       const double part = std::min(0.999, static_cast<double>(moment.result.records.size()) / planned);

@@ -34,8 +34,9 @@ Rows rows_of(const Study& study) {
 }
 
 /// Steps of a physical loading are compared over the same time only.
-void expect_same_loading(const Protocol& point, const Protocol& reference, const std::string& name) {
-  const Loading &a = point.loading, &b = reference.loading;
+void expect_same_loading(const protocol::Protocol& point, const protocol::Protocol& reference,
+                         const std::string& name) {
+  const protocol::LoadingSettings &a = point.loading, &b = reference.loading;
   if (a.physical == b.physical && a.rate == b.rate && a.inertial_number == b.inertial_number) return;
   throw InputError(name +
                    ": the loading ([loading] mode, rate_1_s, inertial_number) is not that of the reference, and "
@@ -44,10 +45,10 @@ void expect_same_loading(const Protocol& point, const Protocol& reference, const
 }
 
 /// Opens the specimens as the point asks for.
-void expect_opens(const Protocol& protocol, const std::vector<Specimen>& specimens, const std::string& name) {
+void expect_opens(const protocol::Protocol& protocol, const std::vector<Specimen>& specimens, const std::string& name) {
   for (const Specimen& specimen : specimens) {
     try {
-      const Rve opened(with_overrides(protocol, specimen));
+      const Rve opened(protocol::with_overrides(protocol, specimen));
     } catch (const InputError& error) {
       throw InputError(name + ": " + error.what());
     }

@@ -42,8 +42,8 @@ std::string difference(const Study& there, const Study& here);
 
 /// The protocols of a study, checked against its specimens before anything is run.
 struct Prepared {
-  Protocol reference;
-  std::vector<Protocol> points;
+  protocol::Protocol reference;
+  std::vector<protocol::Protocol> points;
   std::vector<Specimen> specimens;
 };
 

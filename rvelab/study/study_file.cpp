@@ -14,7 +14,7 @@ namespace {
 using keys::TableKey;
 
 TableKey text_list(const char* name, const char* meaning) {
-  return keys::listed("study", name, "-", "list of texts", "any texts", keys::KeyKind::words, meaning);
+  return keys::listed("study", name, "-", "list of texts", "any texts", keys::KeyKind::choices, meaning);
 }
 
 const std::vector<TableKey>& study_keys() {
@@ -66,22 +66,23 @@ std::vector<std::string> texts(const toml::table& table, keys::TableReader& read
 }
 
 void expect_known(const toml::table& table, const std::string& where, const std::vector<std::string>& known,
-                  std::vector<KeyError>& errors) {
+                  std::vector<keys::KeyError>& errors) {
   for (const auto& [key, value] : table) {
     const std::string name(key.str());
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    errors.push_back(key_error(key.source(), "unknown key " + where + "." + name + "; the nearest known key is " +
-                                                 where + "." + nearest(name, known) +
-                                                 "; correct the name or remove it"));
+    errors.push_back(keys::key_error(key.source(), "unknown key " + where + "." + name + "; the nearest known key is " +
+                                                       where + "." + keys::nearest(name, known) +
+                                                       "; correct the name or remove it"));
   }
 }
 
-std::vector<Variation> read_grid(const toml::table& file, std::vector<KeyError>& errors) {
+std::vector<Variation> read_grid(const toml::table& file, std::vector<keys::KeyError>& errors) {
   std::vector<Variation> grid;
   const toml::node* node = file.get("vary");
   if (node == nullptr) return grid;
   if (!node->is_array_of_tables()) {
-    errors.push_back(key_error(node->source(), "vary is no list of tables; allowed: [[vary]] with key and values"));
+    errors.push_back(
+        keys::key_error(node->source(), "vary is no list of tables; allowed: [[vary]] with key and values"));
     return grid;
   }
   for (const toml::node& item : *node->as_array()) {
@@ -96,9 +97,9 @@ std::vector<Variation> read_grid(const toml::table& file, std::vector<KeyError>&
     const bool twice = std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
     const bool blank = std::find(sorted.begin(), sorted.end(), "") != sorted.end();
     if (one.key.empty() || one.values.empty() || twice || blank) {
-      errors.push_back(key_error(table.source(),
-                                 "vary needs a key and values, each once; allowed: key = \"TABLE.KEY\" "
-                                 "and values = [v1, v2]; correct them"));
+      errors.push_back(keys::key_error(table.source(),
+                                       "vary needs a key and values, each once; allowed: key = \"TABLE.KEY\" "
+                                       "and values = [v1, v2]; correct them"));
     }
     grid.push_back(one);
   }
@@ -116,7 +117,7 @@ toml::array as_array(const std::vector<std::string>& texts) {
 bool is_study(const toml::table& file) { return file.contains("study"); }
 
 Study read_study(const toml::table& file, const std::string& path) {
-  std::vector<KeyError> errors;
+  std::vector<keys::KeyError> errors;
   keys::expect_top_tables(file, errors, {"study", "vary"});
   const toml::table& table = keys::table_of(file, "study", errors);
   keys::TableReader reader(table, study_keys(), "study", "study", keys::line_of(table), errors);
@@ -139,7 +140,7 @@ Study read_study(const toml::table& file, const std::string& path) {
   study.reference = texts(table, reader, "reference");
   reader.finish();
   study.grid = read_grid(file, errors);
-  raise(path, errors);
+  keys::raise(path, errors);
   return study;
 }
 

@@ -61,7 +61,7 @@ void add_paths(const std::vector<std::vector<const Piece*>>& paths, PointSummary
     for (const auto& repeats : paths) {
       std::vector<double> values;
       for (const Piece* piece : repeats) values.push_back(piece->column(measure.name).at(0));
-      const Statistics found = statistics(values);
+      const calibrate::Statistics found = calibrate::statistics(values);
       mean += values.empty() ? none : found.mean / specimens;
       square += found.standard_error * found.standard_error;
     }

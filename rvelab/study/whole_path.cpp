@@ -23,7 +23,7 @@ Specimen perturbed(Specimen specimen, std::uint64_t repeat) {
   return specimen;
 }
 
-Piece measured_path(const TestRun& run, double seconds) {
+Piece measured_path(const protocol::TestRun& run, double seconds) {
   Piece piece;
   for (const Measure& measure : measures()) {
     piece.columns[measure.name] = {measure.of(run.result, run.end_state.cell.dimension)};
@@ -33,10 +33,10 @@ Piece measured_path(const TestRun& run, double seconds) {
   return piece;
 }
 
-Piece whole_path(const Protocol& protocol, const Specimen& specimen, const Watch& watch) {
+Piece whole_path(const protocol::Protocol& protocol, const Specimen& specimen, const protocol::Watch& watch) {
   const double begin = processor_seconds();
   try {
-    const TestRun run = run_protocol(protocol, specimen, watch);
+    const protocol::TestRun run = protocol::run_protocol(protocol, specimen, watch);
     if (!run.complete) throw Interrupted();
     return measured_path(run, processor_seconds() - begin);
   } catch (const InputError&) {

@@ -14,10 +14,10 @@ namespace rvelab::study {
 Specimen perturbed(Specimen specimen, std::uint64_t repeat);
 
 /// What a path gives: each measure by its name, "seconds" of processor time and "grain_steps".
-Piece measured_path(const TestRun& run, double seconds);
+Piece measured_path(const protocol::TestRun& run, double seconds);
 
 /// Runs the path. What cannot be carried out is the piece's failure, and all its measures are NaN; InputError and
 /// Interrupted are thrown.
-Piece whole_path(const Protocol& protocol, const Specimen& specimen, const Watch& watch);
+Piece whole_path(const protocol::Protocol& protocol, const Specimen& specimen, const protocol::Watch& watch);
 
 }  // namespace rvelab::study

@@ -62,7 +62,7 @@ TEST_CASE("an error is the distance of the stress from that of the resolved incr
   // The first state is the specimen itself: the shear is made by hand here.
   const auto stress_after = [&](const std::string& assignment, bool relaxed) {
     Specimen mine = specimen;
-    set_key(mine, assignment);
+    keys::set_key(mine, assignment);
     Matrix3 increment = Matrix3::Zero();
     increment(0, 1) = 5e-4;
     Rve rve(mine);
@@ -216,9 +216,9 @@ TEST_CASE("a repeat moves grains by at most 1e-10 of their radius, always in the
 
 TEST_CASE("measures of records with known answers", "[study]") {
   // sigma_yy grows with the strain to a peak at 2 % and falls; ln det F goes down, then up with slope 0.4.
-  TestResult test;
+  records::TestResult test;
   for (int k = 0; k <= 80; ++k) {
-    Record record;
+    records::Record record;
     record.strain = 0.0005 * k;
     const double rise = record.strain <= 0.02 ? 1e7 * record.strain : 2e5 - 5e6 * (record.strain - 0.02);
     record.stress = Vector3(-1e5, -1e5 - rise, 0).asDiagonal();
