@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <sstream>
 
 #include "rvelab/io/text_file.hpp"
@@ -33,6 +34,9 @@ Named numbers_of(const Study& study, const PointSummary& point) {
     row.emplace_back("failed_increments", point.failed);
     add_errors(row, point.of_pressure, "p");
     add_errors(row, point.of_increment, "stress_increment");
+    row.emplace_back("median_estimate_over_error", point.estimate.median_over_error);
+    row.emplace_back("share_of_errors_within_estimate", point.estimate.covered);
+    row.emplace_back("share_of_errors_within_allowed", point.estimate.allowed);
     row.emplace_back("processor_s_per_increment", point.seconds);
     row.emplace_back("grain_steps_per_increment", point.grain_steps);
     row.emplace_back("on_front_of_processor_time", point.front_seconds);
@@ -108,14 +112,44 @@ std::vector<std::string> name_cells(const Study& study, const PointSummary& poin
   return cells;
 }
 
+/// The varied keys without the tables they are in, where that leaves them apart.
+std::vector<std::string> short_keys(const Study& study) {
+  std::vector<std::string> keys, names;
+  for (const auto& one : study.grid) {
+    keys.push_back(one.key);
+    names.push_back(one.key.substr(one.key.rfind('.') + 1));
+  }
+  const bool apart = std::set(names.begin(), names.end()).size() == names.size();
+  return apart ? names : keys;
+}
+
+/// A long name on two lines, broken behind the underscore nearest to its middle; a short one on the second.
+std::pair<std::string, std::string> on_two_lines(const std::string& name) {
+  constexpr std::size_t longest = 15;
+  std::size_t best = 0;
+  for (std::size_t k = 1; k < name.size(); ++k) {
+    const auto off = [&](std::size_t at) { return std::max(at, name.size() - at); };
+    if (name[k - 1] == '_' && (best == 0 || off(k) < off(best))) best = k;
+  }
+  if (name.size() <= longest || best == 0) return {"", name};
+  return {name.substr(0, best), name.substr(best)};
+}
+
 /// One line a run under a header that begins with the varied keys; `cells` gives the rest.
 template <class Cells>
 std::string table(const Study& study, const StudySummary& summary, const std::vector<std::string>& header,
                   Cells cells) {
-  std::vector<std::vector<std::string>> rows(1);
-  for (const auto& one : study.grid) rows[0].push_back(one.key);
-  if (study.grid.empty()) rows[0].push_back("run");
-  rows[0].insert(rows[0].end(), header.begin(), header.end());
+  std::vector<std::string> names = short_keys(study);
+  if (study.grid.empty()) names.emplace_back("run");
+  names.insert(names.end(), header.begin(), header.end());
+  std::vector<std::vector<std::string>> rows(2);
+  for (const std::string& name : names) {
+    const auto [first, second] = on_two_lines(name);
+    rows[0].push_back(first);
+    rows[1].push_back(second);
+  }
+  if (std::all_of(rows[0].begin(), rows[0].end(), [](const auto& name) { return name.empty(); }))
+    rows.erase(rows.begin());
   const auto add = [&](const PointSummary& point, bool is_reference) {
     rows.push_back(name_cells(study, point));
     if (is_reference) rows.back()[0] = "reference";
@@ -128,42 +162,41 @@ std::string table(const Study& study, const StudySummary& summary, const std::ve
 }
 
 std::string increments_table(const Study& study, const StudySummary& summary) {
-  return "Errors of the stress over " + std::to_string(summary.reference.increments) +
-         " increments, over p and over the stress increment; cost of an increment; * on the Pareto front\n" +
+  const auto cost = [](double value, bool front) { return rounded(value) + (front ? "*" : " "); };
+  return "Errors of the stress over p, " + std::to_string(summary.reference.increments) +
+         " increments; estimate over error, median, and shares of errors within estimate and\n"
+         "tolerance; cost of an increment, * on the Pareto front with the median error\n" +
          table(study, summary,
-               {"rms/p", "median/p", "95 %/p", "max/p", "rms/d", "median/d", "95 %/d", "max/d", "processor s", "",
-                "grain-steps", "", "failed"},
-               [](const PointSummary& point) {
-                 const ErrorSummary &p = point.of_pressure, &d = point.of_increment;
-                 return std::vector<std::string>{rounded(p.rms),
-                                                 rounded(p.median),
-                                                 rounded(p.percentile_95),
-                                                 rounded(p.largest),
-                                                 rounded(d.rms),
-                                                 rounded(d.median),
-                                                 rounded(d.percentile_95),
-                                                 rounded(d.largest),
-                                                 rounded(point.seconds),
-                                                 point.front_seconds ? "*" : "",
-                                                 rounded(point.grain_steps),
-                                                 point.front_grain_steps ? "*" : "",
+               {"median", "95 %", "rms", "est./err.", "in est.", "in tol.", "processor s", "grain-steps", "failed"},
+               [&](const PointSummary& point) {
+                 const ErrorSummary& errors = point.of_pressure;
+                 return std::vector<std::string>{rounded(errors.median, 2),
+                                                 rounded(errors.percentile_95, 2),
+                                                 rounded(errors.rms, 2),
+                                                 rounded(point.estimate.median_over_error, 2),
+                                                 rounded(point.estimate.covered, 2),
+                                                 rounded(point.estimate.allowed, 2),
+                                                 cost(point.seconds, point.front_seconds),
+                                                 cost(point.grain_steps, point.front_grain_steps),
                                                  std::to_string(point.failed)};
                });
 }
 
+/// The cost of paths is shown where no increments show one.
 std::string paths_table(const Study& study, const StudySummary& summary) {
   std::vector<std::string> header;
   for (const study::Measure& measure : study::measures()) header.push_back(measure.name);
-  for (const char* name : {"processor s", "grain-steps", "failed"}) header.emplace_back(name);
+  if (study.increments == 0) header.insert(header.end(), {"processor s", "grain-steps"});
+  header.emplace_back("failed");
   return "Whole paths, means of " + std::to_string(study.repeats) +
          (study.repeats == 1 ? " path" : " repeats, with their standard errors") + "\n" +
-         table(study, summary, header, [](const PointSummary& point) {
+         table(study, summary, header, [&](const PointSummary& point) {
            std::vector<std::string> cells;
            for (std::size_t k = 0; k < point.means.size(); ++k) {
              cells.push_back(with_error(point.means[k], point.standard_errors[k]));
            }
-           cells.push_back(rounded(point.path_seconds));
-           cells.push_back(rounded(point.path_grain_steps));
+           if (study.increments == 0)
+             cells.insert(cells.end(), {rounded(point.path_seconds), rounded(point.path_grain_steps)});
            cells.push_back(std::to_string(point.failed_paths));
            return cells;
          });

@@ -2,12 +2,15 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <limits>
 
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/study/processor_time.hpp"
 
 namespace rvelab::study {
 namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 /// The state with the parameters of the specimen as it was given, and the settings over them.
 Specimen opened(const Specimen& state, const Opening& opening) {
@@ -32,36 +35,20 @@ Made applied(Rve& rve, const PathState& from, long parts) {
     const Matrix3 gradient =
         parts == 1 ? from.displacement_gradient : Matrix3(at(part) * at(part - 1).inverse() - identity);
     const double begin = processor_seconds();
-    made.stress = rve.apply(gradient, time).stress;
+    const Response response = rve.apply(gradient, time);
     made.seconds += processor_seconds() - begin;
+    made.stress = response.stress;
+    made.estimate = time == 0 ? response.report.error_estimate : none;
+    made.allowed = time == 0 ? response.report.allowed_error : none;
   }
   made.grain_steps = static_cast<double>(rve.grain_steps() - grain_steps);
   return made;
 }
 
-/// The pace that the settings find in this increment: made again from the pace that it ended with, until that changes
-/// by a tenth at most. A single call looks at its pace too seldom to find a slow one.
-double settled_pace(Specimen specimen, const PathState& from, const Opening& opening) {
-  constexpr int most_rounds = 20;
-  constexpr double settled = 0.1;
-  specimen.state.strain_per_step = 0;
-  for (int round = 0; round < most_rounds; ++round) {
-    Rve rve(specimen);
-    rve.watch(opening.stop);
-    applied(rve, from, opening.parts);
-    const double before = specimen.state.strain_per_step, after = rve.specimen().state.strain_per_step;
-    specimen.state.strain_per_step = after;
-    if (std::abs(after - before) <= settled * before) break;
-  }
-  return specimen.state.strain_per_step;
-}
-
 }  // namespace
 
 Made made_increment(const PathState& from, const Opening& opening) {
-  Specimen specimen = opened(from.state, opening);
-  if (from.time == 0) specimen.state.strain_per_step = settled_pace(specimen, from, opening);
-  Rve rve(specimen);
+  Rve rve(opened(from.state, opening));
   rve.watch(opening.stop);
   return applied(rve, from, opening.parts);
 }

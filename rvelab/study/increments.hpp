@@ -29,6 +29,8 @@ struct Opening {
 /// One increment from a state.
 struct Made {
   Matrix3 stress = Matrix3::Zero();  ///< Cauchy, Pa
+  double estimate = 0;               ///< Pa, of the error, as the last call gives it (Report); dt > 0: NaN
+  double allowed = 0;                ///< Pa, the same of the error that the tolerances allow
   double seconds = 0;                ///< processor time of the calls, opening and relaxation left out
   double grain_steps = 0;            ///< of them
 };
@@ -42,14 +44,13 @@ struct Answer {
   bool at_rest = true;               ///< the relaxation came as far as was asked for
 };
 
-/// Opens the state with the settings and makes the increment. At dt = 0 that is done several times, and the last one
-/// counts: those before find the pace of sub-steps of these settings, since the state carries that of the reference.
+/// Opens the state with the settings and makes the increment.
 Made made_increment(const PathState& from, const Opening& opening);
 
 Answer reference_answer(const PathState& from, const Opening& opening, const Relaxation& relaxation);
 
 /// Columns of the increments of one grid point on one specimen. NaN: could not be made.
-inline const std::vector<std::string> increment_columns{"error_Pa", "pressure_Pa", "increment_Pa", "seconds",
-                                                        "grain_steps"};
+inline const std::vector<std::string> increment_columns{"error_Pa",   "pressure_Pa", "increment_Pa", "estimate_Pa",
+                                                        "allowed_Pa", "seconds",     "grain_steps"};
 
 }  // namespace rvelab::study

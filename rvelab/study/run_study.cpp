@@ -194,6 +194,8 @@ class Running {
     piece.columns.at("error_Pa")[k] = error;
     piece.columns.at("pressure_Pa")[k] = pressure;
     piece.columns.at("increment_Pa")[k] = increment;
+    piece.columns.at("estimate_Pa")[k] = made.estimate;
+    piece.columns.at("allowed_Pa")[k] = made.allowed;
     piece.columns.at("seconds")[k] = made.seconds;
     piece.columns.at("grain_steps")[k] = made.grain_steps;
   }

@@ -19,7 +19,7 @@ double mean_of(const std::vector<double>& values) {
 }
 
 void add_increments(const std::vector<const Piece*>& pieces, PointSummary& point) {
-  std::vector<double> of_pressure, of_increment, seconds, grain_steps;
+  std::vector<double> of_pressure, of_increment, made, estimates, allowed, seconds, grain_steps;
   for (const Piece* piece : pieces) {
     const auto& error = piece->column("error_Pa");
     point.increments += error.size();
@@ -30,12 +30,16 @@ void add_increments(const std::vector<const Piece*>& pieces, PointSummary& point
       }
       of_pressure.push_back(error[k] / piece->column("pressure_Pa")[k]);
       of_increment.push_back(error[k] / piece->column("increment_Pa")[k]);
+      made.push_back(error[k]);
+      estimates.push_back(piece->column("estimate_Pa")[k]);
+      allowed.push_back(piece->column("allowed_Pa")[k]);
       seconds.push_back(piece->column("seconds")[k]);
       grain_steps.push_back(piece->column("grain_steps")[k]);
     }
   }
   point.of_pressure = summary_of(std::move(of_pressure));
   point.of_increment = summary_of(std::move(of_increment));
+  point.estimate = summary_of_estimates(made, estimates, allowed);
   point.seconds = mean_of(seconds);
   point.grain_steps = mean_of(grain_steps);
 }
@@ -88,6 +92,20 @@ ErrorSummary summary_of(std::vector<double> errors) {
   const auto rank_95 = static_cast<std::size_t>(std::ceil(0.95 * static_cast<double>(count) - 1e-9));
   return {std::sqrt(squares / static_cast<double>(count)), 0.5 * (errors[(count - 1) / 2] + errors[count / 2]),
           errors[rank_95 - 1], errors.back()};
+}
+
+EstimateSummary summary_of_estimates(const std::vector<double>& errors, const std::vector<double>& estimates,
+                                     const std::vector<double>& allowed) {
+  std::vector<double> ratios;
+  double count = 0, below_estimate = 0, below_allowed = 0;
+  for (std::size_t k = 0; k < errors.size(); ++k) {
+    if (!std::isfinite(estimates[k])) continue;
+    count += 1;
+    below_estimate += errors[k] <= estimates[k] ? 1 : 0;
+    below_allowed += errors[k] <= allowed[k] ? 1 : 0;
+    if (errors[k] > 0) ratios.push_back(estimates[k] / errors[k]);
+  }
+  return {summary_of(std::move(ratios)).median, below_estimate / count, below_allowed / count};
 }
 
 StudySummary summary_of(const Study& study, const Prepared& prepared, const Pieces& pieces) {

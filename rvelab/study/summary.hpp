@@ -19,11 +19,23 @@ struct ErrorSummary {
 /// exceed, and the largest.
 ErrorSummary summary_of(std::vector<double> errors);
 
+/// What the estimates of the errors are worth. NaN: there are none (dt > 0).
+struct EstimateSummary {
+  double median_over_error = 0;  ///< of estimate over error
+  double covered = 0;            ///< share of the increments whose error is at most the estimate
+  double allowed = 0;            ///< the same of what the tolerances allow
+};
+
+/// Of errors, their estimates and what is allowed, in the same order.
+EstimateSummary summary_of_estimates(const std::vector<double>& errors, const std::vector<double>& estimates,
+                                     const std::vector<double>& allowed);
+
 struct PointSummary {
   std::vector<std::string> values;  ///< of the varied keys; empty for the reference
   std::size_t increments = 0, failed = 0;
-  ErrorSummary of_pressure;             ///< error over p
-  ErrorSummary of_increment;            ///< error over the change of stress that the reference's answer makes
+  ErrorSummary of_pressure;   ///< error over p
+  ErrorSummary of_increment;  ///< error over the change of stress that the reference's answer makes
+  EstimateSummary estimate;
   double seconds = 0, grain_steps = 0;  ///< processor time and grain-steps of an increment, means
   /// On the Pareto front of this cost and the median error over p. The rms is that of the few increments that fall into
   /// an avalanche, whose answers scatter at any resolution.

@@ -43,7 +43,7 @@ TEST_CASE("a study prints and writes its results, and its file runs it again") {
   const Outcome outcome = here.run("study " + small_test + grid + "--repeat 2 -o F");
   INFO(outcome.errors);
   REQUIRE(outcome.code == 0);
-  CHECK_THAT(outcome.output, Contains("over 3 increments") && Contains("peak_friction_angle_deg") &&
+  CHECK_THAT(outcome.output, Contains("over p, 3 increments") && Contains("in tol.") && Contains("angle_deg") &&
                                  Contains("means of 2 repeats") && Contains("tools/plot/study.py F -o F/study.png"));
   const Json json = Json::parse(text_of(here / "F/study.json"));
   REQUIRE(json["points"].size() == 2);

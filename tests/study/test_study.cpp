@@ -75,6 +75,8 @@ TEST_CASE("an error is the distance of the stress from that of the resolved incr
   const double by_hand = (stress_after("solver.fixed_substeps=30", false) - answer).norm();
   CHECK(loose.column("error_Pa")[0] == Approx(by_hand));
   CHECK(by_hand > 0);
+  CHECK(loose.column("estimate_Pa")[0] > 0);
+  CHECK(loose.column("allowed_Pa")[0] > 1e-4 * loose.column("pressure_Pa")[0]);  // solver.absolute_tolerance alone
   CHECK(loose.column("pressure_Pa")[0] == Approx(-0.5 * (answer(0, 0) + answer(1, 1))));
   CHECK(loose.column("increment_Pa")[0] == Approx((answer - Rve(specimen).stress()).norm()));
 }
@@ -90,6 +92,8 @@ TEST_CASE("a stricter tolerance errs less and costs more, and both may be on the
   CHECK(loose.front_grain_steps);
   CHECK(strict.front_grain_steps);
   CHECK(summary.not_at_rest == 0);
+  CHECK(loose.estimate.median_over_error > 0.5);
+  CHECK(loose.estimate.covered >= 0.5);
   CHECK(loose.increments == 6);
   CHECK(loose.failed == 0);
   for (std::size_t k = 0; k < study::measures().size(); ++k) {
@@ -127,6 +131,7 @@ TEST_CASE("at a rate an increment takes the time that the path took; the referen
   for (std::size_t k = 0; k < 6; ++k) {
     CHECK(same.column("error_Pa")[k] == 0);
     CHECK(coarse.column("error_Pa")[k] > 0);
+    CHECK(std::isnan(coarse.column("estimate_Pa")[k]));  // estimates are those of quasi-static increments
     CHECK(coarse.column("error_Pa")[k] < 0.1 * coarse.column("pressure_Pa")[k]);
     CHECK(coarse.column("grain_steps")[k] < same.column("grain_steps")[k]);
   }
