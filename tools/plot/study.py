@@ -45,12 +45,14 @@ def draw_against(axes, study, cost, front):
     """One panel; the points that both coordinates of can stand on logarithmic axes."""
     error, high, rms = "median_error_over_p", "percentile_95_error_over_p", "rms_error_over_p"
     shown = [point for point in study["points"] if is_positive(point[cost]) and is_positive(point[error])]
-    for point in shown:
+    for place, point in enumerate(sorted(shown, key=lambda point: point[cost])):
         x, y = point[cost], point[error]
         if is_positive(point[high]):
             axes.plot([x, x], [y, point[high]], color="0.75", linewidth=1, zorder=1)
         axes.plot(x, y, "o", color="C0", markerfacecolor="C0" if point[front] else "white", markersize=6, zorder=3)
-        axes.annotate(label_of(point), (x, y), xytext=(6, 4), textcoords="offset points", fontsize=7)
+        right = place % 2 == 1  # of neighbours one is labelled on either side
+        axes.annotate(label_of(point), (x, y), xytext=(6, 4) if right else (-6, -9), textcoords="offset points",
+                      fontsize=7, ha="left" if right else "right")
     crosses = [(point[cost], point[rms]) for point in shown if is_positive(point[rms])]
     axes.plot(*zip(*crosses), "x", color="0.5", markersize=4, zorder=2, label="root mean square")
     joined = sorted((point[cost], point[error]) for point in shown if point[front])
@@ -61,7 +63,7 @@ def draw_against(axes, study, cost, front):
                   label="reference before its relaxation")
     axes.set_xscale("log")
     axes.set_yscale("log")
-    axes.margins(x=0.15)
+    axes.margins(x=0.3, y=0.12)
     return len(shown)
 
 
@@ -74,7 +76,7 @@ def draw(study, options):
     left.set_xlabel("processor time of an increment (s)")
     right.set_xlabel("grain-steps of an increment")
     left.set_ylabel("error $|\\sigma - \\sigma_r|\\,/\\,p$, median")
-    left.legend(fontsize=8)
+    left.legend(fontsize=8, loc="lower left")
     keys = ", ".join(variation["key"] for variation in study["study"]["vary"])
     figure.suptitle(f"Error against cost over {study['points'][0]['increments']} increments: {keys}", fontsize=11,
                     x=0.12, ha="left")
