@@ -92,8 +92,8 @@ struct Pairs {
   void lists(std::vector<Item>& a, std::vector<Item>& b) {
     for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k) fields(a[k], b[k]);
   }
-  template <class A, class B, class... pack::Rest>
-  void all(A& a, B& b, pack::Rest&... rest) {
+  template <class A, class B, class... Rest>
+  void all(A& a, B& b, Rest&... rest) {
     visit(a, b);
     if constexpr (sizeof...(rest) > 0) all(rest...);
   }
