@@ -121,7 +121,8 @@ Report Rve::Impl::load_quasi_static(const MixedTarget& target, Matrix3& gradient
     const double wanted = servo.predicted_strain() + target.spin.norm();
     if (report.substeps == 0) {
       network = network_change(servo.predicted_strain());
-      set_pace_target(target_for(network));
+      // A held stress is to be within its tolerance at every moment: not faster than the ratio that allows.
+      set_pace_target(std::min(target_for(network), 1e-3));
     }
     const double full_pace = double(servo_interval) * now.state.strain_per_step;
     double advance_by = wanted > 0 ? std::min(1 - fraction, full_pace / wanted) : 1 - fraction;
