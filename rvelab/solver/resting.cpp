@@ -22,22 +22,33 @@ std::size_t bytes_of(const Array& array) {
 
 }  // namespace
 
-void release_buffers(Assembly& a) {
+void release_buffers(const Fixture& f, Assembly& a) {
+  const std::size_t length = std::size_t(f.row_length());
+  if (a.state.look_steps >= 0 && !a.mass.empty())
+    for (std::size_t g = 0; g < f.size(); ++g) {
+      a.rows[g * length + resting_mass(f.shape)] = a.mass[g];
+      a.rows[g * length + resting_inverse_inertia(f.shape)] = a.inverse_inertia[g];
+    }
   PairTable& t = a.pairs;
   release(t.row_i, t.row_j, t.kn, t.kt, t.law_constant, t.friction, t.kr, t.moment_cap, t.cn, t.force, t.radius_i,
           t.radius_j, t.touched, t.image_number[0], t.image_number[1], t.image_number[2]);
-  release(a.inverse_mass);
-  if (a.state.look_steps < 0) release(a.mass, a.inverse_inertia);
+  release(a.mass, a.inverse_mass, a.inverse_inertia);
 }
 
 void rebuild_buffers(const Fixture& f, Assembly& a) {
   derive_pairs(f, a.pairs);
-  a.inverse_mass.assign(padded_to_lanes(f.size()), 0.0);
-  if (a.state.look_steps >= 0) {
-    for (std::size_t g = 0; g < f.size(); ++g) a.inverse_mass[g] = 1 / a.mass[g];
-  } else {
-    for (Buffer* b : {&a.mass, &a.inverse_inertia}) b->assign(padded_to_lanes(f.size()), 0.0);
+  for (Buffer* b : {&a.mass, &a.inverse_mass, &a.inverse_inertia}) b->assign(padded_to_lanes(f.size()), 0.0);
+  const std::size_t length = std::size_t(f.row_length());
+  if (a.state.look_steps < 0) {
     use_physical_inertia(f, a);
+  } else {
+    for (std::size_t g = 0; g < f.size(); ++g) {
+      double* row = a.rows.data() + g * length;
+      a.mass[g] = std::exchange(row[resting_mass(f.shape)], 0.0);
+      a.inverse_mass[g] = 1 / a.mass[g];
+      a.inverse_inertia[g] =
+          std::exchange(row[resting_inverse_inertia(f.shape)], f.shape == Shape::disc ? 0.0 : row[3]);
+    }
   }
   evaluate_forces(f, a);
 }

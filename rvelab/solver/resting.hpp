@@ -9,7 +9,7 @@
 namespace rvelab {
 
 /// Frees the working arrays; only rebuild_buffers, close_assembly and memory_of may be called then.
-void release_buffers(Assembly& assembly);
+void release_buffers(const Fixture& fixture, Assembly& assembly);
 
 /// Makes them again: the bits are those before.
 void rebuild_buffers(const Fixture& fixture, Assembly& assembly);

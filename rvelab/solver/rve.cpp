@@ -90,7 +90,7 @@ Rve::Impl& Rve::Impl::awake() {
 }
 
 void Rve::rest() {
-  release_buffers(impl_->now);
+  release_buffers(impl_->fixture, impl_->now);
   impl_->sums = RowSums();
   impl_->moved();
   impl_->trial.release();
@@ -271,12 +271,14 @@ void Rve::set_velocities(const std::vector<Vector3>& velocity, const std::vector
     m.now.set_velocity(m.fixture, place, velocity[index(place)], spin[index(place)]);
   m.now.state.mean_velocity.setZero();
   evaluate_forces(m.fixture, m.now);
+  m.moved();
 }
 
 void Rve::zero_velocities() {
   Impl& m = impl_->awake();
   stop_grains(m.fixture, m.now);
   evaluate_forces(m.fixture, m.now);
+  m.moved();
 }
 
 Specimen Rve::specimen() const { return close_assembly(impl_->fixture, impl_->now); }

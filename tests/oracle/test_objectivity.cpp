@@ -260,7 +260,8 @@ TEST_CASE("an exchange of the cell vectors changes no bit under strain along the
 TEST_CASE("a basis that turns the cell frame shows in the second order of an increment only") {
   // The lattice goes straight in the frame of its basis, so that on the way the strains of two frames differ by the
   // square of the increment, at its end not at all.
-  const Specimen s = recorded("dense");
+  Specimen s = recorded("dense");
+  s.solver.fixed_substeps = 20;  // of both increments, so that they differ by their size alone
   const double p = pressure(Rve(s).stress(), 2);
   Eigen::Matrix3i basis;
   SECTION("turned by 45 degrees and sheared") { basis << 1, -1, 0, 1, 0, 0, 0, 0, 1; }

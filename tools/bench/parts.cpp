@@ -135,7 +135,7 @@ void waking(benchmark::State& state, const std::string& name) {
   for (auto _ : state) {
     state.PauseTiming();
     Assembly copy = o.assembly;
-    release_buffers(copy);
+    release_buffers(o.fixture, copy);
     state.ResumeTiming();
     rebuild_buffers(o.fixture, copy);
     benchmark::DoNotOptimize(copy.pairs.listed);

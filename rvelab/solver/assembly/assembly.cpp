@@ -126,9 +126,12 @@ Specimen close_assembly(const Fixture& f, const Assembly& a) {
     s.grains.spin.push_back(a.spin(f, g));
   }
   if (a.state.look_steps >= 0) {
-    const auto n = std::ptrdiff_t(f.size());
-    s.state.scaled_mass.assign(a.mass.begin(), a.mass.begin() + n);
-    s.state.scaled_inverse_inertia.assign(a.inverse_inertia.begin(), a.inverse_inertia.begin() + n);
+    const bool resting = a.mass.empty();
+    for (std::size_t g = 0; g < f.size(); ++g) {
+      const double* row = a.rows.data() + g * std::size_t(f.row_length());
+      s.state.scaled_mass.push_back(resting ? row[resting_mass(f.shape)] : a.mass[g]);
+      s.state.scaled_inverse_inertia.push_back(resting ? row[resting_inverse_inertia(f.shape)] : a.inverse_inertia[g]);
+    }
   }
   s.contacts = contacts_of(f, a.pairs);
   return in_id_order(std::move(s), a.state.memory_order);

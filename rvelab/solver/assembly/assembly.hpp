@@ -96,6 +96,11 @@ struct Assembly {
   void set_velocity(const Fixture& f, std::size_t g, const Vector3& v, const Vector3& w);
 };
 
+/// Where a grain row keeps the scaled mass, and 1 over the scaled inertia, while the working arrays are released: what
+/// stands there otherwise is zero, or a radius that the row holds twice.
+constexpr std::size_t resting_mass(Shape shape) { return shape == Shape::disc ? 5 : 7; }
+constexpr std::size_t resting_inverse_inertia(Shape shape) { return shape == Shape::disc ? 6 : 11; }
+
 /// Room for n grains or pairs in whole blocks of lanes, at least one padding entry.
 constexpr std::size_t padded_to_lanes(std::size_t n) { return (n / 8 + 1) * 8; }
 

@@ -19,9 +19,10 @@ double error_per_unbalance(double softness) {
 }
 
 double unbalance_of_start(double mismatch, double strain, double strain_of_overlap, double steps) {
-  // n^-1.35 as n^-1 n^-1/4 n^-1/8 (1.375): roots give the same bits everywhere.
+  // n^-11/8 by roots, which give the same bits everywhere.
   const double root = std::sqrt(std::sqrt(steps));
-  return 0.9 * mismatch * (strain / strain_of_overlap) / (steps * root * std::sqrt(root));
+  const double x = strain / strain_of_overlap;
+  return mismatch * x * (1 + 2 * x) * std::min(0.45, 1 / (steps * root * std::sqrt(root)));
 }
 
 }  // namespace rvelab

@@ -25,9 +25,9 @@ double allowed_error(double relative, double absolute, double stress_change, dou
 /// changes no stress at all, and lags no more than at constant width.
 double error_per_unbalance(double softness);
 
-/// Unbalanced ratio that `steps` sub-steps leave of a start: u = 0.9 m (strain d/overlap) n^-1.35, with `strain` that
-/// of the increment, `strain_of_overlap` the mean overlap over d, and m the part of the rate that is new: |d eps/n -
-/// rate before| n/|d eps|. 1 from rest, 2 for a reversal at the pace from before, 0 for the same going on.
+/// Unbalanced ratio that `steps` sub-steps leave of a start: u = m x (1 + 2 x) min(0.45, n^-11/8), x = strain
+/// d/overlap, with `strain` that of the increment, `strain_of_overlap` the mean overlap over d, and m the part of the
+/// rate that is new: |d eps/n - rate before| n/|d eps|. 1 from rest, 2 for a reversal at the pace from before, 0 for the same going on.
 double unbalance_of_start(double mismatch, double strain, double strain_of_overlap, double steps);
 
 /// The estimate of an error is this many times K p u: then nineteen of twenty errors lie below.
