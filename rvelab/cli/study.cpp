@@ -248,9 +248,9 @@ void add_study(CLI::App& app) {
   command->footer(
       "The reference runs the path once. From states spread evenly over it each grid point makes the increment that\n"
       "the reference made; its error is that of the stress against the reference's answer from the same state, which\n"
-      "at dt = 0 is relaxed, over the mean pressure. Whole paths differ by per cents "
-      "between runs one bit apart, so their measures are means over --repeat paths, all but the first with positions\n"
-      "moved by 1e-10 of the radius. FOLDER/study.toml holds the study: `rvelab study FOLDER/study.toml` runs it\n"
+      "at dt = 0 is relaxed, over the mean pressure. Whole paths differ by per cents between runs one bit apart, so\n"
+      "their measures are means over --repeat paths, all but the first with positions moved by 1e-10 of the radius.\n"
+      "FOLDER/study.toml holds the study: `rvelab study FOLDER/study.toml` runs it\n"
       "again. The number of threads changes no bit but those of times. rvelab/study/README.md says more.\n"
       "Examples:\n"
       "  rvelab study tolerance S.h5 -o F\n"
