@@ -27,7 +27,8 @@ double error_per_unbalance(double softness);
 
 /// Unbalanced ratio that `steps` sub-steps leave of a start: u = m x (1 + 2 x) min(0.45, n^-11/8), x = strain
 /// d/overlap, with `strain` that of the increment, `strain_of_overlap` the mean overlap over d, and m the part of the
-/// rate that is new: |d eps/n - rate before| n/|d eps|. 1 from rest, 2 for a reversal at the pace from before, 0 for the same going on.
+/// rate that is new: |d eps/n - rate before| n/|d eps|. 1 from rest, 2 for a reversal at the pace from before, 0 for
+/// the same going on.
 double unbalance_of_start(double mismatch, double strain, double strain_of_overlap, double steps);
 
 /// The estimate of an error is this many times K p u: then nineteen of twenty errors lie below.
