@@ -71,6 +71,7 @@ Report Rve::Impl::load(const Matrix3& dh, double dt) {
   Report report;
   report.unbalanced_ratio = unbalanced(balance_of(fixture, now));
   judge(report);
+  estimate_error(0, present_stress(), report.unbalanced_ratio, report);
   if (dh.isZero(0)) return report;
   const Matrix3 turned = (Matrix3::Identity() + dh) * now.cell.rotation;
   const bool quarter_turn = (dh + Matrix3::Identity()).unaryExpr([](double x) { return x * x * x - x; }).isZero(0);

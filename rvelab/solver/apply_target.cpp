@@ -121,7 +121,7 @@ Report Rve::Impl::load_quasi_static(const MixedTarget& target, Matrix3& gradient
   bool arrived = false;
   while (true) {
     if (since_control == 0)
-      servo.set_stiffness(affine_stiffness(fixture, now), soft_stiffness(fixture, now, row_sums(fixture, now)));
+      servo.set_stiffness(affine_stiffness(fixture, now), soft_stiffness(fixture, now, present_sums()));
     long steps = servo_interval;
     const double wanted = servo.predicted_strain() + target.spin.norm();
     if (report.substeps == 0) {

@@ -72,7 +72,7 @@ void Rve::Impl::begin_quasi_static() {
   if (!now.state.quasi_static) moved();  // dashpots let go
   begin_loading(fixture, now, Loading::quasi_static);
   if (now.state.look_steps >= 0) return;
-  scale_inertia(fixture, row_sums(fixture, now), now);
+  scale_inertia(fixture, present_sums(), now);
   now.state.softness = 1;
   begin_interval(balance_of(fixture, now));
 }
@@ -88,7 +88,7 @@ void Rve::Impl::begin_interval(const Balance& balance) {
 
 void Rve::Impl::renew_interval(const Balance& balance) {
   SolverState& state = now.state;
-  rescale_inertia(fixture, row_sums(fixture, now), now);
+  rescale_inertia(fixture, present_sums(), now);
   const double network = network_change(state.interval_strain);
   if (network > 0) {
     // Half of the way, as factors go: stress falls by jumps in flow, and one jump is no stiffness.
@@ -161,11 +161,12 @@ void Rve::Impl::steer_pace(const Balance& balance, double held_stress) {
   now.state.strain_per_step = std::clamp(now.state.strain_per_step / factor, slowest, fastest);
 }
 
-void Rve::Impl::judge(Report& report) const {
+void Rve::Impl::judge(Report& report) {
   // Steered, the ratio stays within 2 times its target for 97 % of the records of a dense biaxial test, peak and flow
   // included; beyond three times the pace was at its floor, or the increment too short for the control to answer.
   constexpr double allowed = 3;
-  report.quasi_static = report.unbalanced_ratio <= allowed * now.state.pace_target && report.target_held;
+  const double target = now.state.pace_target > 0 ? now.state.pace_target : target_for(0);  // nothing loaded yet
+  report.quasi_static = report.unbalanced_ratio <= allowed * target && report.target_held;
 }
 
 double Rve::Impl::expected_error(double ratio) {
@@ -207,14 +208,14 @@ Report Rve::Impl::load_quasi_static(const FrameSplit& whole) {
   set_pace_target(target_for(judged));
   double fewest = double(along < 0 ? fewest_steps_back : fewest_steps), expected = 0;
   if (by_tolerance) {
-    const double strain_of_overlap = fixture.hardening * 0.7 * pressure() / state.network_stiffness;
+    const double overlap = strain_of_overlap(pressure(), state.network_stiffness, fixture.hardening);
     const bool touching = state.network_stiffness > 0;
-    fewest = touching ? steps_of_start(change, strain, state.last_rate, strain_of_overlap, state.pace_target,
+    fewest = touching ? steps_of_start(change, strain, state.last_rate, overlap, state.pace_target,
                                        std::max(1.0, std::ceil(strain / state.strain_per_step)))
                       : 1;
     if (touching)
-      expected = unbalance_of_start((change - fewest * state.last_rate).norm() / change.norm(), strain,
-                                    strain_of_overlap, fewest);
+      expected =
+          unbalance_of_start((change - fewest * state.last_rate).norm() / change.norm(), strain, overlap, fewest);
   }
   double fraction = 0;
   bool looked = false;

@@ -23,7 +23,9 @@ struct Want {
 struct Report {
   long substeps = 0;
   double unbalanced_ratio = 0;  ///< mean |resultant force|, or mean |torque|/r where larger, over max(mean contact
-                                ///< force, 1e-3 of the reference)
+                                ///< force, 1e-3 of the reference). dt = 0: when it was
+                                ///< measured last: at the end of an increment of 10 sub-steps or more, else up to 50
+                                ///< sub-steps before
   double inertial_number = 0;   ///< dt > 0: sqrt(2 e:e) d sqrt(rho/p), infinite at p <= 0; dt = 0: zero
   double held_error = 0;        ///< mixed targets: largest |residual| over its scale (dt > 0: of its mean over the
                                 ///< increment), see MixedTarget
@@ -32,7 +34,7 @@ struct Report {
   bool quasi_static = true;   ///< apply at dt = 0: the state is an equilibrium as far as was asked for: the unbalanced
                               ///< ratio is within three times its target and the target is held. A state that flows
                               ///< creeps beyond that: relaxed, its stress falls by some ten times the ratio
-  double error_estimate = 0;  ///< dt = 0: of the stress, Frobenius norm, Pa; nineteen of twenty errors lie below
+  double error_estimate = 0;  ///< dt = 0: of the stress, Frobenius norm, Pa: twice the error to be expected
   double allowed_error = 0;   ///< dt = 0: relative_tolerance max(|d sigma|, 0.1 |C : d eps|) + absolute_tolerance p, Pa
   bool cell_thin = false;     ///< a cell height is below four mean diameters
 };

@@ -26,7 +26,7 @@ struct Rve::Impl {
   Assembly now;
   bool resting = false;  ///< only what rest() keeps is there
   Trial trial;
-  RowSums sums;  ///< dt > 0: of stiffness; those of `now` while sums_hold
+  RowSums sums;  ///< of stiffness; those of `now` while sums_hold
   bool sums_hold = false;
   Matrix3 stress = Matrix3::Zero();  ///< contact stress, cell frame, Pa; that of `now` while stress_holds
   bool stress_holds = false;
@@ -76,7 +76,7 @@ struct Rve::Impl {
     }
   }
 
-  /// Balance after a stretch of steps; throws IncrementFailed on overlap beyond the limit or values not finite.
+  /// Balance after an interval; throws IncrementFailed on overlap beyond the limit or values not finite.
   Balance checked_balance() const;
   double unbalanced(const Balance& balance) const;  ///< ratio with this specimen's reference force
   /// `held_stress`: what a mixed target holds (Servo::held_stress), Pa; the pace may follow it below the reference.
@@ -93,7 +93,7 @@ struct Rve::Impl {
   /// Sets report.error_estimate and allowed_error; `ratio` is the unbalanced ratio at the end of the increment.
   void estimate_error(double network_change, const Matrix3& stress_before, double ratio, Report& report);
   /// dt = 0: sets report.quasi_static from what it says of balance and target.
-  void judge(Report& report) const;
+  void judge(Report& report);
   /// dt > 0: in an increment of the time dt (s), at the velocity gradient `rate` of the cell (1/s, cell frame); the
   /// next look is after `interval` sub-steps at the latest.
   TimeStep time_step(const Matrix3& rate, long interval, double dt);

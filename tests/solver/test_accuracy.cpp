@@ -145,3 +145,16 @@ TEST_CASE("Tiny increments are no identity: they add up, save and restore bitwis
   }
   CHECK(straight.save() == restored.save());
 }
+
+TEST_CASE("A specimen that was never loaded is an equilibrium, and so is a pause", "[solver]") {
+  Rve rve(recorded("dense"));
+  const Response first = rve.apply(Matrix3::Zero(), 0);
+  CHECK(first.report.quasi_static);
+  CHECK(first.report.allowed_error == Approx(1e-4 * 1e5).epsilon(0.01));
+  CHECK(first.report.error_estimate < first.report.allowed_error);
+  rve.apply(1e-4 * forward, 0);
+  const Matrix3 stress = rve.stress();
+  const Response pause = rve.apply(Matrix3::Zero(), 0);
+  CHECK(same_bits(pause.stress, stress));
+  CHECK(pause.report.error_estimate > 0);
+}

@@ -5,8 +5,18 @@
 
 namespace rvelab {
 
+namespace {
+
+constexpr double share_of_directions = 0.7;
+
+}  // namespace
+
 double network_stiffness(double pressure, double mean_overlap, double diameter, double hardening) {
-  return pressure > 0 && mean_overlap > 0 ? 0.7 * hardening * pressure * diameter / mean_overlap : 0.0;
+  return pressure > 0 && mean_overlap > 0 ? share_of_directions * hardening * pressure * diameter / mean_overlap : 0.0;
+}
+
+double strain_of_overlap(double pressure, double network_stiffness, double hardening) {
+  return hardening * share_of_directions * pressure / network_stiffness;
 }
 
 double allowed_error(double relative, double absolute, double stress_change, double network_change, double pressure) {

@@ -17,6 +17,10 @@ namespace rvelab {
 /// the slope of ln f over ln overlap: 1 for linear contacts, 3/2 for Hertz. 0 without contacts.
 double network_stiffness(double pressure, double mean_overlap, double diameter, double hardening);
 
+/// Mean overlap over the diameter of a network of that stiffness (Pa): the strain that changes its forces by about as
+/// much as they are.
+double strain_of_overlap(double pressure, double network_stiffness, double hardening);
+
 /// Pa. `relative` of the larger of the change of stress and a tenth of what the network would answer, and `absolute` of
 /// the pressure.
 double allowed_error(double relative, double absolute, double stress_change, double network_change, double pressure);
@@ -31,7 +35,8 @@ double error_per_unbalance(double softness);
 /// the same going on.
 double unbalance_of_start(double mismatch, double strain, double strain_of_overlap, double steps);
 
-/// The estimate of an error is this many times K p u: then nineteen of twenty errors lie below.
+/// The estimate of an error is this many times K p u. Of drawn increments from resolved states of the dense packing 60
+/// of 60 errors lay below at rest and after 1 %; over a biaxial test to 5 % 75 to 93 % (tools/validate study).
 constexpr double estimate_margin = 2;
 
 }  // namespace rvelab

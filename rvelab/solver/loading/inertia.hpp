@@ -4,7 +4,7 @@
 // The energy of a contact, kn (n.(u_j - u_i))^2/2 + kt (t.(u_j - u_i) - a_i theta_i - a_j theta_j)^2/2 + kr
 // (theta_j - theta_i)^2/2, is at most the sum of terms that belong to one grain each: 2 kn (n.u)^2, 4 kt (t.u)^2 and
 // 4 kt a^2 theta^2 + 2 kr theta^2 for each of the two (Cauchy-Schwarz: the block form of Gershgorin's row sums). So
-// omega_max^2 <= the largest row sum over inertia, for translation and rotation alike. (Design 4, 5.)
+// omega_max^2 <= the largest row sum over inertia, for translation and rotation alike.
 #pragma once
 
 #include "rvelab/solver/assembly/assembly.hpp"

@@ -71,8 +71,8 @@ void set_step(const Matrix3& l0, const Matrix3& l1, double dt, StepConstants& c,
   c.velocity_map = upper_triangle(dt * (middle * inverse_start));
 }
 
-/// Maps of velocity and spin at dt > 0 (design 4): dv'/dt = f/m - (D + 2 Omega) v', dw/dt = T/I with w = w' + axial(W +
-/// Omega) held in axes that turn with Omega.
+/// Maps of velocity and spin at dt > 0 (solver/README.md, equations of motion): dv'/dt = f/m - (D + 2 Omega) v', dw/dt
+/// = T/I with w = w' + axial(W + Omega) held in axes that turn with Omega.
 void set_frame_terms(const Matrix3& rate_mid, const Vector3& omega, const Vector3& mean_spin_change, StepConstants& c) {
   const Matrix3 identity = Matrix3::Identity();
   const Matrix3 g = rate_mid + 2 * cross_matrix(omega);
