@@ -55,6 +55,7 @@ max_overlap_ratio = 0.5
 [[stage]]
 name = "shear"
 kind = "simple_shear"
+plane = "{plane}"
 to_strain = {strain}
 record_every = 0.005
 normal = "{normal}"
@@ -92,18 +93,19 @@ def run(program, *arguments):
     return done
 
 
-def flow(program, folder, specimen, output, inertial, strain, normal):
-    """Means over the last three fifths of a steady shear."""
+def flow(program, folder, specimen, output, plane, inertial, strain, normal):
+    """Means over the last three fifths of a steady shear, in the plane "xy" or "xz"."""
+    along, across = ("xyz".index(axis) for axis in plane)
     rate = inertial * math.sqrt(PRESSURE / DENSITY) / DIAMETER
     protocol = folder / "shear.toml"
-    protocol.write_text(SHEAR.format(rate=rate, strain=strain, normal=normal))
+    protocol.write_text(SHEAR.format(plane=plane, rate=rate, strain=strain, normal=normal))
     run(program, "run", protocol, "--specimen", specimen, "-o", output, "--force")
     with h5py.File(output) as file:
         rows = {name: file["records/" + name][:] for name in
                 ("strain", "stress_Pa", "inertial_number", "substeps", "target_held")}
     late = rows["strain"] > 0.4 * rows["strain"][-1]
     stress = -rows["stress_Pa"][late]
-    normal_stress, shear = stress[:, 1, 1], np.abs(stress[:, 0, 1])
+    normal_stress, shear = stress[:, across, across], -stress[:, along, across]
     mu, error = blocks(shear / normal_stress.mean())
     return {"held": normal_stress.mean() / PRESSURE, "scatter": normal_stress.std() / normal_stress.mean(), "mu": mu,
             "error": error, "flagged": 1 - rows["target_held"].mean(), "substeps": rows["substeps"].sum()}
@@ -150,9 +152,10 @@ def main():
         for shape, kappa, inertial, strain in FLOWS:
             if options.only not in (None, shape):
                 continue
-            held = flow(program, folder, packed(program, folder, shape, kappa), folder / "held.h5", inertial, strain,
-                        "constant_stress")
-            fixed = flow(program, folder, folder / "held.h5", folder / "fixed.h5", inertial, strain,
+            plane = "xy" if shape == "disc" else "xz"
+            held = flow(program, folder, packed(program, folder, shape, kappa), folder / "held.h5", plane, inertial,
+                        strain, "constant_stress")
+            fixed = flow(program, folder, folder / "held.h5", folder / "fixed.h5", plane, inertial, strain,
                          "constant_volume")
             apart = abs(held["mu"] - fixed["mu"]) / math.hypot(held["error"], fixed["error"])
             print(f"{shape:<7} {kappa:<6g} {inertial:<6g} {held['held']:<10.4f} {held['scatter']:<8.4f} "
