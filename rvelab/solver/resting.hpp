@@ -22,7 +22,15 @@ template <class Impl, class Look>
 auto at_work(const Impl& rve, Look look) {
   if (!rve.resting) return look(rve);
   Impl copy = rve;
-  return look(std::as_const(copy.awake()));
+  return look(std::as_const(copy.at_work()));
+}
+
+/// The same for one in which nothing is deferred.
+template <class Impl, class Look>
+auto brought_up_to_date(const Impl& rve, Look look) {
+  if (!rve.resting && !rve.has_deferred()) return look(rve);
+  Impl copy = rve;
+  return look(std::as_const(copy.up_to_date()));
 }
 
 }  // namespace rvelab

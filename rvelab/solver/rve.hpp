@@ -21,7 +21,7 @@ struct Want {
 
 /// What was done, and in what state it ended. Of apply and of relax; what a call does not judge keeps its default.
 struct Report {
-  long substeps = 0;
+  long substeps = 0;            ///< 0: the strain is left to the next sub-step, see Rve::apply
   double unbalanced_ratio = 0;  ///< mean |resultant force|, or mean |torque|/r where larger, over max(mean contact
                                 ///< force, 1e-3 of the reference). dt = 0: when it was
                                 ///< measured last: at the end of an increment of 10 sub-steps or more, else up to 50
@@ -70,7 +70,10 @@ class Rve {
   ~Rve();
 
   /// Applies dH_ij = d(du_i)/dx_j (laboratory frame, finite, spin included) over the time dt (s).
-  /// dt > 0: physical masses and rate. dt = 0: quasi-static, the RVE picks its pace; dH = 0 is then the identity.
+  /// dt > 0: physical masses and rate. dt = 0: quasi-static, the RVE picks its pace; dH = 0 is then the identity. To
+  /// tolerances (solver.target_unbalanced and fixed_substeps are 0), increments that are a small part of a sub-step
+  /// share one: the strain is then in the cell at once, the stress follows from its slope over the increment before,
+  /// within the estimate, and Report::substeps is 0.
   /// Throws InvalidIncrement (refused) or IncrementFailed; the RVE is then exactly as it was.
   Response apply(const Matrix3& displacement_gradient, double dt, const Want& want = {});
 
@@ -94,8 +97,12 @@ class Rve {
   double critical_time_step() const;  ///< 2/omega_max with physical masses, s
   std::uint64_t grain_steps() const;  ///< grains times sub-steps since the specimen was made
 
-  Network network() const;    ///< contacts and grains in the cell frame, in the order of the specimen
-  Specimen specimen() const;  ///< the whole state; Rve(specimen()) goes on as this one, bit for bit
+  /// Contacts and grains in the cell frame, in the order of the specimen; after an increment that left its strain to
+  /// the next sub-step, those of a copy that makes it.
+  Network network() const;
+  /// The whole state; Rve(specimen()) goes on as this one, bit for bit. Strain that is left to the next sub-step is in
+  /// state.deferred_stretch, not in the lattice.
+  Specimen specimen() const;
 
   /// Lets go of everything that can be made again from state and list, about two thirds of the memory. The next call
   /// that changes the Rve makes it again, in the time of a few sub-steps; no bit changes. A const call that needs it
