@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 #include <utility>
 
 #include "rvelab/error.hpp"
@@ -67,9 +66,9 @@ void Rve::take_as_reference() {
   m.moved();
 }
 
-Rve::Rve(const Rve& other) : impl_(std::make_unique<Impl>(*other.impl_)) {}
+Rve::Rve(const Rve& other) : impl_(std::make_unique<Impl>(*other.impl_)) { impl_->now.replaced = nullptr; }
 Rve& Rve::operator=(const Rve& other) {
-  if (this != &other) impl_ = std::make_unique<Impl>(*other.impl_);
+  if (this != &other) *this = Rve(other);
   return *this;
 }
 Rve::Rve(Rve&&) noexcept = default;
@@ -81,28 +80,6 @@ Matrix3 Rve::Impl::contact_stress() const { return to_lab(-contact_moment(fixtur
 Matrix3 Rve::Impl::reynolds_stress() const {
   if (now.state.quasi_static) return Matrix3::Zero();
   return to_lab(kinetic_moment(fixture, now) / now.cell.volume());
-}
-
-Rve::Impl& Rve::Impl::awake() {
-  if (resting) rebuild_buffers(fixture, now);
-  resting = false;
-  return *this;
-}
-
-void Rve::rest() {
-  release_buffers(impl_->fixture, impl_->now);
-  impl_->sums = RowSums();
-  impl_->moved();
-  impl_->trial.release();
-  impl_->resting = true;
-}
-
-Memory Rve::memory() const {
-  Memory memory = memory_of(impl_->now);
-  for (const auto* sums : {&impl_->sums.translation, &impl_->sums.rotation, &impl_->sums.dashpot})
-    memory.working += sums->capacity() * sizeof(double);
-  memory.working += impl_->trial.bytes();
-  return memory;
 }
 
 Matrix3 Rve::contact_stress() const {
@@ -158,29 +135,6 @@ Response Rve::Impl::respond(const Report& report, const Matrix3& gradient, doubl
       r.report.inertial_number = std::numeric_limits<double>::infinity();
   }
   return r;
-}
-
-Response Rve::apply(const Matrix3& displacement_gradient, double dt, const Want& want) {
-  Impl& m = impl_->awake();
-  if (!(dt >= 0) || !std::isfinite(dt)) {
-    std::ostringstream text;
-    text << "apply: dt = " << dt << " s; it must be 0 (quasi-static) or a positive time";
-    throw InvalidIncrement(text.str());
-  }
-  const Report report = m.guarded([&] { return m.load(displacement_gradient, dt); });
-  return m.respond(report, displacement_gradient, dt, want);
-}
-
-Response Rve::apply(const MixedTarget& target, double dt, const Want& want) {
-  Impl& m = impl_->awake();
-  if (!(dt >= 0) || !std::isfinite(dt)) {
-    std::ostringstream text;
-    text << "apply: dt = " << dt << " s; it must be 0 (quasi-static) or a positive time";
-    throw InvalidIncrement(text.str());
-  }
-  Matrix3 gradient = Matrix3::Zero();
-  const Report report = m.guarded([&] { return m.load(target, dt, gradient); });
-  return m.respond(report, gradient, dt, want);
 }
 
 Report Rve::relax(double unbalanced, long max_steps) {

@@ -1,6 +1,8 @@
 // What an Rve holds. Shared by the files that implement it and by nothing else.
 #pragma once
 
+#include <utility>
+
 #include "rvelab/solver/assembly/assembly.hpp"
 #include "rvelab/solver/loading/inertia.hpp"
 #include "rvelab/solver/loading/stepping.hpp"
@@ -30,8 +32,10 @@ struct Rve::Impl {
   bool sums_hold = false;
   Matrix3 stress = Matrix3::Zero();  ///< contact stress, cell frame, Pa; that of `now` while stress_holds
   bool stress_holds = false;
+  Matrix3 other_stress = Matrix3::Zero();  ///< while a trial is pending: the same of the state that is not in `now`
+  bool other_stress_holds = false;
 
-  /// Every public call that looks at forces, parameters or masses comes through here.
+  /// Every public call that changes forces, parameters or masses comes through here. A pending trial is reverted.
   Impl& awake();
 
   /// The sums of the state as it is, made anew where grains, contacts or parameters changed (moved()). They take as
@@ -56,24 +60,28 @@ struct Rve::Impl {
   Matrix3 reynolds_stress() const;
   Response respond(const Report& report, const Matrix3& gradient, double dt, const Want& want);
 
-  /// Runs `work` as a trial and commits it; if it throws, the trial is reverted and the exception goes on.
+  void begin_trial();
+  void exchange() noexcept;
+  void revert() noexcept;
+  void settle() noexcept;  ///< what is in `now` is the state, and no trial is pending
+
+  /// Runs `work` as a trial, which is then pending; if it throws, the trial is reverted and the exception goes on.
   template <class Work>
-  auto guarded(Work work) {
-    const auto end = [&] {
-      if (fixture.size() > largest_kept_scratch) trial.release();
-    };
-    trial.begin(now);
+  auto tried(Work work) {
+    begin_trial();
     try {
-      auto result = work();
-      trial.commit(now);
-      end();
-      return result;
+      return work();
     } catch (...) {
-      trial.revert(now);
-      moved();
-      end();
+      revert();
       throw;
     }
+  }
+  /// The same, committed.
+  template <class Work>
+  auto guarded(Work work) {
+    auto result = tried(std::move(work));
+    settle();
+    return result;
   }
 
   /// Balance after an interval; throws IncrementFailed on overlap beyond the limit or values not finite.
