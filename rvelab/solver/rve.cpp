@@ -8,6 +8,7 @@
 #include "rvelab/error.hpp"
 #include "rvelab/solver/resting.hpp"
 #include "rvelab/solver/rve_impl.hpp"
+#include "rvelab/solver/snapshot.hpp"
 
 namespace rvelab {
 

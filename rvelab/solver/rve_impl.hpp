@@ -123,8 +123,4 @@ struct Rve::Impl {
 Advance loading_of(const Fixture& fixture, const FrameSplit& increment, long steps, double step, bool physical,
                    bool deep);
 
-/// Bytes of a specimen and back; layout of this build.
-std::vector<std::byte> to_bytes(const Specimen& specimen);
-Specimen from_bytes(std::span<const std::byte> bytes);
-
 }  // namespace rvelab
