@@ -124,8 +124,8 @@ Specimen read_specimen(const std::string& path) {
 }
 
 void write_pool(pool::Pool& pool, const std::string& path) {
-  const h5::FileCalls& calls = file_calls();
   pool.write([&](const pool::Population& population, const auto& state) {
+    const h5::FileCalls& calls = file_calls();
     using State = std::remove_reference_t<decltype(state)>;
     struct Source : Deferred {
       State* state;
@@ -147,8 +147,8 @@ void write_pool(pool::Pool& pool, const std::string& path) {
 }
 
 void read_pool(pool::Pool& pool, const std::string& path) {
-  const h5::FileCalls& calls = file_calls();
   pool.read([&](const Take& take) {
+    const h5::FileCalls& calls = file_calls();
     struct Read : Deferred {
       const Take* take;
       pool::Population population;
