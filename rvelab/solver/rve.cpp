@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 #include <utility>
 
 #include "rvelab/error.hpp"
 #include "rvelab/solver/assembly/pressure.hpp"
 #include "rvelab/solver/resting.hpp"
 #include "rvelab/solver/rve_impl.hpp"
+#include "rvelab/solver/snapshot.hpp"
 
 namespace rvelab {
 
@@ -68,9 +68,9 @@ void Rve::take_as_reference() {
   m.moved();
 }
 
-Rve::Rve(const Rve& other) : impl_(std::make_unique<Impl>(*other.impl_)) {}
+Rve::Rve(const Rve& other) : impl_(std::make_unique<Impl>(*other.impl_)) { impl_->now.replaced = nullptr; }
 Rve& Rve::operator=(const Rve& other) {
-  if (this != &other) impl_ = std::make_unique<Impl>(*other.impl_);
+  if (this != &other) *this = Rve(other);
   return *this;
 }
 Rve::Rve(Rve&&) noexcept = default;
@@ -87,34 +87,6 @@ Matrix3 Rve::Impl::strained_stress() const {
 Matrix3 Rve::Impl::reynolds_stress() const {
   if (now.state.quasi_static) return Matrix3::Zero();
   return to_lab(kinetic_moment(fixture, now) / now.cell.volume());
-}
-
-Rve::Impl& Rve::Impl::at_work() {
-  if (resting) rebuild_buffers(fixture, now);
-  resting = false;
-  return *this;
-}
-
-Rve::Impl& Rve::Impl::up_to_date() {
-  at_work();
-  if (has_deferred()) guarded([this] { return make_deferred(); });
-  return *this;
-}
-
-void Rve::rest() {
-  release_buffers(impl_->fixture, impl_->now);
-  impl_->sums = RowSums();
-  impl_->moved();
-  impl_->trial.release();
-  impl_->resting = true;
-}
-
-Memory Rve::memory() const {
-  Memory memory = memory_of(impl_->now);
-  for (const auto* sums : {&impl_->sums.translation, &impl_->sums.rotation, &impl_->sums.dashpot})
-    memory.working += sums->capacity() * sizeof(double);
-  memory.working += impl_->trial.bytes();
-  return memory;
 }
 
 Matrix3 Rve::contact_stress() const {
@@ -172,38 +144,6 @@ Response Rve::Impl::respond(const Report& report, const Matrix3& gradient, doubl
       r.report.inertial_number = std::numeric_limits<double>::infinity();
   }
   return r;
-}
-
-Response Rve::apply(const Matrix3& displacement_gradient, double dt, const Want& want) {
-  Impl& m = impl_->at_work();
-  if (!(dt >= 0) || !std::isfinite(dt)) {
-    std::ostringstream text;
-    text << "apply: dt = " << dt << " s; it must be 0 (quasi-static) or a positive time";
-    throw InvalidIncrement(text.str());
-  }
-  const FrameSplit split = split_increment(m.now.cell, displacement_gradient);
-  const Report report = dt == 0 && m.may_defer(split)
-                            ? m.defer(split)
-                            : m.guarded([&] { return m.load(split, displacement_gradient, dt); });
-  return m.respond(report, displacement_gradient, dt, want);
-}
-
-Response Rve::apply(const MixedTarget& target, double dt, const Want& want) {
-  Impl& m = impl_->at_work();
-  if (!(dt >= 0) || !std::isfinite(dt)) {
-    std::ostringstream text;
-    text << "apply: dt = " << dt << " s; it must be 0 (quasi-static) or a positive time";
-    throw InvalidIncrement(text.str());
-  }
-  Matrix3 gradient = Matrix3::Zero();
-  const Report report = m.guarded([&] {
-    const long deferred = m.make_deferred();
-    m.now.state.stress_slope.setZero();
-    Report made = m.load(target, dt, gradient);
-    made.substeps += deferred;
-    return made;
-  });
-  return m.respond(report, gradient, dt, want);
 }
 
 Report Rve::relax(double unbalanced, long max_steps) {

@@ -52,6 +52,7 @@ struct Memory {
   std::size_t state = 0;    ///< places, velocities, contact histories
   std::size_t list = 0;     ///< neighbour list: pairs, and places when it was built
   std::size_t working = 0;  ///< what rest() lets go of
+  std::size_t trial = 0;    ///< what a pending trial takes beside it
 };
 
 /// Calls that change the Rve (those without const) may not run beside any other call of the same one. Const calls
@@ -76,6 +77,17 @@ class Rve {
   /// within the estimate, and Report::substeps is 0.
   /// Throws InvalidIncrement (refused) or IncrementFailed; the RVE is then exactly as it was.
   Response apply(const Matrix3& displacement_gradient, double dt, const Want& want = {});
+
+  /// The same as a trial: commit() makes it the state, revert() brings the committed state back, bit for bit. A pure
+  /// function of the committed state and its arguments; apply is attempt and commit. A trial that is pending is
+  /// reverted first, here and in every other call that changes the Rve. Throws as apply; no trial is pending then.
+  Response attempt(const Matrix3& displacement_gradient, double dt, const Want& want = {});
+  bool pending() const;  ///< whether a trial is; a copy has none, and is in the state that its source showed
+  void commit();         ///< nothing without a trial
+  void revert() noexcept;
+  /// With a trial pending, calls that look (stress, network, specimen, cell, save) tell of its end. After exchange()
+  /// they tell of the committed state, after a second one of the trial again; nothing else may be called between.
+  void exchange() noexcept;
 
   /// The same with a mixed target: the stress servo runs inside the sub-steps, and the response says which gradient it
   /// found. Throws InputError if the target is not a target (see MixedTarget), InvalidIncrement (dt is negative or not
@@ -107,8 +119,9 @@ class Rve {
   /// Lets go of everything that can be made again from state and list, about two thirds of the memory. The next call
   /// that changes the Rve makes it again, in the time of a few sub-steps; no bit changes. A const call that needs it
   /// (stresses, unbalanced ratio, critical time step, network) works on a copy that it makes in the same time and lets
-  /// go of: the Rve stays at rest.
+  /// go of: the Rve stays at rest. A trial stays pending, its state and the committed one both at rest.
   void rest();
+  bool resting() const;
   Memory memory() const;  ///< what is held at this moment
 
   /// A flag that apply and relax look at after each sub-step: once it is true they throw Interrupted, and the RVE is as

@@ -1,6 +1,8 @@
 // What an Rve holds. Shared by the files that implement it and by nothing else.
 #pragma once
 
+#include <utility>
+
 #include "rvelab/solver/assembly/assembly.hpp"
 #include "rvelab/solver/loading/inertia.hpp"
 #include "rvelab/solver/loading/stepping.hpp"
@@ -31,9 +33,12 @@ struct Rve::Impl {
   bool sums_hold = false;
   Matrix3 stress = Matrix3::Zero();  ///< contact stress, cell frame, Pa; that of `now` while stress_holds
   bool stress_holds = false;
+  Matrix3 other_stress = Matrix3::Zero();  ///< while a trial is pending: the same of the state that is not in `now`
+  bool other_stress_holds = false;
   Cell strained_cell;  ///< the cell with the deferred stretch, while there is one
 
-  /// Working arrays rebuilt, where rest() let go of them: every public call that looks at forces comes through here.
+  /// Every public call that changes an Rve comes through here: working arrays are rebuilt, where rest() let go of them,
+  /// and a pending trial is reverted.
   Impl& at_work();
   /// The same, with the deferred stretch made: every public call that changes more than the strain. Throws
   /// IncrementFailed; the RVE is then exactly as it was.
@@ -80,24 +85,28 @@ struct Rve::Impl {
 
   Response respond(const Report& report, const Matrix3& gradient, double dt, const Want& want);
 
-  /// Runs `work` as a trial and commits it; if it throws, the trial is reverted and the exception goes on.
+  void begin_trial();
+  void exchange() noexcept;
+  void revert() noexcept;
+  void settle() noexcept;  ///< what is in `now` is the state, and no trial is pending
+
+  /// Runs `work` as a trial, which is then pending; if it throws, the trial is reverted and the exception goes on.
   template <class Work>
-  auto guarded(Work work) {
-    const auto end = [&] {
-      if (fixture.size() > largest_kept_scratch) trial.release();
-    };
-    trial.begin(now);
+  auto tried(Work work) {
+    begin_trial();
     try {
-      auto result = work();
-      trial.commit(now);
-      end();
-      return result;
+      return work();
     } catch (...) {
-      trial.revert(now);
-      moved();
-      end();
+      revert();
       throw;
     }
+  }
+  /// The same, committed.
+  template <class Work>
+  auto guarded(Work work) {
+    auto result = tried(std::move(work));
+    settle();
+    return result;
   }
 
   /// Balance after an interval; throws IncrementFailed on overlap beyond the limit or values not finite.
@@ -148,9 +157,5 @@ struct Rve::Impl {
 /// What advance is to do for an increment in the cell frame.
 Advance loading_of(const Fixture& fixture, const FrameSplit& increment, long steps, double step, bool physical,
                    bool deep);
-
-/// Bytes of a specimen and back; layout of this build.
-std::vector<std::byte> to_bytes(const Specimen& specimen);
-Specimen from_bytes(std::span<const std::byte> bytes);
 
 }  // namespace rvelab
