@@ -65,15 +65,15 @@ int32_t rvelab_pool_create(const rvelab_pool_def* def, rvelab_pool** pool) {
     expect_pointer(pool, "pool");
     pool::Options options;
     if (def != nullptr) options = options_of(read_struct(def, "rvelab_pool_def"));
-    *pool = new rvelab_pool(options);
+    *pool = reinterpret_cast<rvelab_pool*>(new pool::Pool(options));
   });
 }
 
 int32_t rvelab_pool_destroy(rvelab_pool* pool) {
   return behind_wall([&] {
     if (pool == nullptr) return;
-    pool->pool.close();
-    delete pool;
+    pool_of(pool).close();
+    delete &pool_of(pool);
   });
 }
 
