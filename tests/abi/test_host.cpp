@@ -43,9 +43,7 @@ TEST_CASE("A call that finds no memory, whichever request fails, says so and cha
   const std::vector<Call> calls = {
       {"create", [&] { return rvelab_pool_create(nullptr, &pool); }, [&] { return rvelab_pool_destroy(pool); }},
       {"template",
-       [&] {
-         return rvelab_template_from_snapshot(host.pool, template_bytes.data(), template_bytes.size(), &out);
-       },
+       [&] { return rvelab_template_from_snapshot(host.pool, template_bytes.data(), template_bytes.size(), &out); },
        [] { return 0; }},
       {"spawn", [&] { return rvelab_spawn(host.pool, made, 1, &out); },
        [&] { return rvelab_release(host.pool, 1, &out); }},
@@ -257,8 +255,7 @@ TEST_CASE("Calls on different ids run at once, and each does what it does alone"
     }
   };
   std::vector<std::thread> running;
-  for (std::size_t k = 0; k < threads; ++k)
-    running.emplace_back([&, k] { work(host.pool, ids[k], k, found[k]); });
+  for (std::size_t k = 0; k < threads; ++k) running.emplace_back([&, k] { work(host.pool, ids[k], k, found[k]); });
   for (std::thread& thread : running) thread.join();
   CHECK(failed == 0);
   for (std::size_t k = 0; k < threads; ++k) {
