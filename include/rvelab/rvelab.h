@@ -188,11 +188,10 @@ typedef struct rvelab_batch {
                        opening or closing; initial-stress terms included, not symmetrised. Rows and columns xx yy
                        zz yz xz xy, engineering shear in the columns; 2D: rows and columns of z are zero. One sparse
                        factorisation: some hundred sub-steps of time */
-  double*
-      error_estimate;  /* [n] or null: dt = 0: of sigma, Frobenius norm, Pa: twice the error to be expected; else 0 */
-  double* dt_scale;    /* [n] or null: 1; after RVELAB_DISCARD the factor on the step to try; after an error 0 */
-  int32_t* status;     /* [n] or null: one for each RVE */
-  int64_t* tokens_out; /* [n] or null */
+  double* error_estimate; /* [n] or null: estimate of the error of sigma, Frobenius norm, Pa; dt > 0: 0 */
+  double* dt_scale;       /* [n] or null: 1; after RVELAB_DISCARD the factor on the step to try; after an error 0 */
+  int32_t* status;        /* [n] or null: one for each RVE */
+  int64_t* tokens_out;    /* [n] or null */
 } rvelab_batch;
 
 /* Sets min(struct_size, own size) bytes to zero, and batch->struct_size. struct_size = sizeof(rvelab_batch). */

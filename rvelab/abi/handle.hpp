@@ -1,10 +1,15 @@
-// A rvelab_pool* is a pool::Pool*. The struct of the header is never defined, so that no layout of a pool is part of the
-// interface.
+// include/rvelab/rvelab.h as the library itself sees it: what it declares is what librvelab.so exports.
+//
+// A rvelab_pool* is a pool::Pool*. The struct of the header is never defined, so that no layout of a pool is part of
+// the interface.
 #pragma once
 
 #include <span>
 
-#include "rvelab/abi/header.hpp"
+#pragma GCC visibility push(default)
+#include <rvelab/rvelab.h>
+#pragma GCC visibility pop
+
 #include "rvelab/abi/wall.hpp"
 #include "rvelab/pool/pool.hpp"
 

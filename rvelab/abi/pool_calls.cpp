@@ -1,10 +1,9 @@
-// Pools and their population. Declared in header.hpp.
+// Pools and their population. Declared in handle.hpp.
 #include <algorithm>
 #include <memory>
 
 #include "rvelab/abi/file_library.hpp"
 #include "rvelab/abi/handle.hpp"
-#include "rvelab/abi/header.hpp"
 #include "rvelab/abi/structs.hpp"
 #include "rvelab/pool/rve_state.hpp"
 
