@@ -67,6 +67,23 @@ TEST_CASE("Installed and moved, the library is found by cmake and by pkg-config,
   CHECK(by_cmake == by_pkg_config);
   CHECK_THAT(by_cmake, Contains("0.0020 ") && Contains("0.0040 "));
 
+  // The example of README.md, as it stands there.
+  std::istringstream readme(bytes_of(RVELAB_SOURCE_DIR "/README.md"));
+  std::ofstream example(folder / "pkg/readme.c");
+  bool below = false;
+  for (std::string line; std::getline(readme, line);) {
+    if (line.starts_with("## ")) below = line == "## Plug it in";
+    if (below && line.starts_with("    ")) example << line.substr(4) << "\n";
+  }
+  example.close();
+  std::filesystem::copy_file(folder / "s.h5", folder / "pkg/S.h5");
+  done("cd '" + (folder / "pkg") + "' && export PKG_CONFIG_PATH='" + library + "/pkgconfig' && eval " +
+       RVELAB_C_COMPILER
+       " -std=c11 -pedantic -Wall -Wextra -Werror readme.c "
+       "$(pkg-config --cflags --libs rvelab) -o readme");
+  CHECK_THAT(done("cd '" + (folder / "pkg") + "' && LD_LIBRARY_PATH='" + library + "' ./readme"),
+             Contains("sigma_xy = ") && Contains(" Pa"));
+
   // Without librvelab-h5.so beside it a call for a file says what is missing.
   for (const auto& entry : std::filesystem::directory_iterator(library))
     if (entry.path().filename().string().starts_with("librvelab-h5")) std::filesystem::remove(entry.path());
