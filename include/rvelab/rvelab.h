@@ -1,16 +1,15 @@
 /* rvelab: granular representative volume elements as the material of a continuum code.
  *
  * An RVE is a periodic cell of discs or spheres. An increment of displacement gradient dH goes in, the Cauchy stress
- * comes out. A pool holds many RVEs, one for each material point, and works on them with as many threads as it is
- * given.
+ * comes out. A pool holds many RVEs, one for each material point, and works on them with the threads it is given.
  *
  * dH      nine doubles, row-major, dH_ij = d(du_i)/dx_j over the step, laboratory frame, finite: F_inc = I + dH, spin
  *         included. A host that truncates a rotation inflates the volume by |dH|^2/2 a step: send the exponential.
  * sigma   nine doubles, row-major, Pa, laboratory frame, Cauchy, tension positive. SI units throughout.
  * dt      s. dt > 0: physical time, real inertia and rate. dt = 0: quasi-static, the RVE picks its own pace within its
  *         tolerance.
- * 2D      a slab of discs in the plane x, y: z-components of dH must be zero (1e-12 + 1e-9 max|dH|), those of sigma
- * are.
+ * 2D      a slab of discs in the plane x, y: the z-components of dH must be zero (within 1e-12 + 1e-9 max|dH|), and
+ *         those of sigma are.
  *
  * Every call returns a status: RVELAB_OK, a warning above it (the result is usable), RVELAB_DISCARD or an error below
  * it (the RVE is as before, and nothing is written but what the call says). rvelab_last_error() then names the cause
@@ -24,7 +23,8 @@
  * C11 and C++17. Structs begin with struct_size and flags, hold no implicit padding and only ever grow at their end;
  * zero is the default of every field. A smaller struct of an older header: its missing fields have their defaults. A
  * larger one of a newer header is accepted if what is beyond this version is zero, else RVELAB_E_UNSUPPORTED names the
- * offset. Outputs are written up to struct_size. flags must be zero. */
+ * offset: a host of a newer header zeroes its structs before init. Outputs are written up to struct_size. flags must be
+ * zero. */
 #ifndef RVELAB_RVELAB_H
 #define RVELAB_RVELAB_H
 
@@ -188,11 +188,10 @@ typedef struct rvelab_batch {
                        opening or closing; initial-stress terms included, not symmetrised. Rows and columns xx yy
                        zz yz xz xy, engineering shear in the columns; 2D: rows and columns of z are zero. One sparse
                        factorisation: some hundred sub-steps of time */
-  double*
-      error_estimate;  /* [n] or null: dt = 0: of sigma, Frobenius norm, Pa: twice the error to be expected; else 0 */
-  double* dt_scale;    /* [n] or null: 1; after RVELAB_DISCARD the factor on the step to try; after an error 0 */
-  int32_t* status;     /* [n] or null: one for each RVE */
-  int64_t* tokens_out; /* [n] or null */
+  double* error_estimate; /* [n] or null: estimate of the error of sigma, Frobenius norm, Pa; dt > 0: 0 */
+  double* dt_scale;       /* [n] or null: 1; after RVELAB_DISCARD the factor on the step to try; after an error 0 */
+  int32_t* status;        /* [n] or null: one for each RVE */
+  int64_t* tokens_out;    /* [n] or null */
 } rvelab_batch;
 
 /* Sets min(struct_size, own size) bytes to zero, and batch->struct_size. struct_size = sizeof(rvelab_batch). */

@@ -1,21 +1,24 @@
-// What a rvelab_pool is behind the interface.
+// include/rvelab/rvelab.h as the library itself sees it: what it declares is what librvelab.so exports.
+//
+// A rvelab_pool* is a pool::Pool*. The struct of the header is never defined, so that no layout of a pool is part of
+// the interface.
 #pragma once
 
-#include "rvelab/abi/header.hpp"
+#include <span>
+
+#pragma GCC visibility push(default)
+#include <rvelab/rvelab.h>
+#pragma GCC visibility pop
+
 #include "rvelab/abi/wall.hpp"
 #include "rvelab/pool/pool.hpp"
-
-struct rvelab_pool {
-  explicit rvelab_pool(const rvelab::pool::Options& options) : pool(options) {}
-  rvelab::pool::Pool pool;
-};
 
 namespace rvelab::abi {
 
 /// The pool of a handle; Refused (null_pointer) without one.
 inline pool::Pool& pool_of(rvelab_pool* handle) {
   expect_pointer(handle, "pool");
-  return handle->pool;
+  return *reinterpret_cast<pool::Pool*>(handle);
 }
 
 /// n ids. Refused (bad_input, null_pointer).

@@ -1,10 +1,9 @@
-// Pools and their population. Declared in header.hpp.
+// Pools and their population. Declared in handle.hpp.
 #include <algorithm>
 #include <memory>
 
 #include "rvelab/abi/file_library.hpp"
 #include "rvelab/abi/handle.hpp"
-#include "rvelab/abi/header.hpp"
 #include "rvelab/abi/structs.hpp"
 #include "rvelab/pool/rve_state.hpp"
 
@@ -65,15 +64,15 @@ int32_t rvelab_pool_create(const rvelab_pool_def* def, rvelab_pool** pool) {
     expect_pointer(pool, "pool");
     pool::Options options;
     if (def != nullptr) options = options_of(read_struct(def, "rvelab_pool_def"));
-    *pool = new rvelab_pool(options);
+    *pool = reinterpret_cast<rvelab_pool*>(new pool::Pool(options));
   });
 }
 
 int32_t rvelab_pool_destroy(rvelab_pool* pool) {
   return behind_wall([&] {
     if (pool == nullptr) return;
-    pool->pool.close();
-    delete pool;
+    pool_of(pool).close();
+    delete &pool_of(pool);
   });
 }
 

@@ -1,9 +1,8 @@
-// Looking at RVEs, their snapshots, files of pools. Declared in header.hpp.
+// Looking at RVEs, their snapshots, files of pools. Declared in handle.hpp.
 #include <algorithm>
 
 #include "rvelab/abi/file_library.hpp"
 #include "rvelab/abi/handle.hpp"
-#include "rvelab/abi/header.hpp"
 #include "rvelab/abi/structs.hpp"
 
 using namespace rvelab;

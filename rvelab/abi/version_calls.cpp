@@ -1,5 +1,5 @@
-// Version, capabilities, names of statuses, the last text. Declared in header.hpp.
-#include "rvelab/abi/header.hpp"
+// Version, capabilities, names of statuses, the last text. Declared in handle.hpp.
+#include "rvelab/abi/handle.hpp"
 #include "rvelab/abi/wall.hpp"
 #include "rvelab/io/version.hpp"
 

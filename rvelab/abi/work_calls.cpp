@@ -1,6 +1,5 @@
-// Work on RVEs: apply, trials, commit and revert. Declared in header.hpp.
+// Work on RVEs: apply, trials, commit and revert. Declared in handle.hpp.
 #include "rvelab/abi/handle.hpp"
-#include "rvelab/abi/header.hpp"
 #include "rvelab/abi/structs.hpp"
 
 using namespace rvelab;

@@ -3,14 +3,17 @@
 #include <cstddef>
 #include <cstdlib>
 #include <new>
+#include <utility>
 
 namespace rvelab::test {
 
 thread_local long allocations_left = 0;
+thread_local void (*meanwhile)() = nullptr;
 
 namespace {
 
 void* asked_for(std::size_t size, std::size_t edge = alignof(std::max_align_t)) noexcept {
+  if (meanwhile != nullptr) std::exchange(meanwhile, nullptr)();
   if (allocations_left > 0 && --allocations_left == 0) return nullptr;
   const std::size_t whole = size == 0 ? edge : (size + edge - 1) / edge * edge;
   return std::aligned_alloc(edge, whole);

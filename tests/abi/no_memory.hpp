@@ -6,4 +6,7 @@ namespace rvelab::test {
 /// The n-th request for memory from now on, on this thread, finds none; 0: all find some.
 extern thread_local long allocations_left;
 
+/// Called once, at the next request for memory on this thread: in the middle of a call, that is.
+extern thread_local void (*meanwhile)();
+
 }  // namespace rvelab::test

@@ -10,14 +10,15 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-const double not_a_number = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+const double not_a_number = std::numeric_limits<double>::quiet_NaN(),
+             infinity = std::numeric_limits<double>::infinity();
 
 /// The status is the expected one, the text says `words`.
-#define CHECK_REFUSED(call, expected, words)            \
-  do {                                                  \
-    CHECK((call) == (expected));                        \
-    CHECK_THAT(rvelab_last_error(), Contains(words));   \
-    CHECK(std::strlen(rvelab_last_error()) > 20);       \
+#define CHECK_REFUSED(call, expected, words)          \
+  do {                                                \
+    CHECK((call) == (expected));                      \
+    CHECK_THAT(rvelab_last_error(), Contains(words)); \
+    CHECK(std::strlen(rvelab_last_error()) > 20);     \
   } while (false)
 
 }  // namespace
@@ -226,7 +227,7 @@ TEST_CASE("Null pointers, bad options and templates of another pool are refused"
   CHECK(rvelab_pool_destroy(nullptr) == RVELAB_OK);
   CHECK(out == 5);
   Trials trials(host.spawn(packed(Shape::disc, 6)));
-  for (const double* rvelab_batch::* input : {&rvelab_batch::dH}) {
+  for (const double* rvelab_batch::*input : {&rvelab_batch::dH}) {
     rvelab_batch batch = trials.batch;
     batch.*input = nullptr;
     CHECK_REFUSED(rvelab_trial(host.pool, &batch), RVELAB_E_NULL, "dH");

@@ -1,36 +1,13 @@
 // Files by way of librvelab-h5.so: specimens, pools, damage, and the library missing.
-#include <dlfcn.h>
-#include <unistd.h>
-
-#include <filesystem>
 #include <fstream>
 
 #include "rvelab/io/specimen_file.hpp"
+#include "tests/abi/folder.hpp"
 #include "tests/abi/host.hpp"
-#include "tests/child.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
 using Catch::Matchers::Contains;
-
-namespace {
-
-/// A folder that goes away with its files.
-struct Folder {
-  Folder() : path(std::filesystem::temp_directory_path() / ("rvelab_abi_" + std::to_string(getpid()))) {
-    std::filesystem::create_directories(path);
-  }
-  ~Folder() { std::filesystem::remove_all(path); }
-  std::string operator/(const std::string& name) const { return (path / name).string(); }
-  std::filesystem::path path;
-};
-
-std::string bytes_of(const std::string& file) {
-  std::ifstream input(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(input), {}};
-}
-
-}  // namespace
 
 TEST_CASE("A template from a specimen file is that specimen") {
   const Folder folder;

@@ -186,7 +186,7 @@ TEST_CASE("A slot whose generations are used up is retired") {
 
 TEST_CASE("The tangent is the stress that small strains lead to, per strain, and asks for no spin") {
   for (const Shape shape : {Shape::disc, Shape::sphere}) {
-    Specimen start = packed(shape, shape == Shape::disc ? 6 : 4);
+    Specimen start = packed(shape, shape == Shape::disc ? 5 : 3);  // even rings counter-rotate without stiffness
     const int d = start.cell.dimension;
     for (Material& material : start.materials) material.friction = 1e6;  // no slip: elastic
     Rve resolved(start);
@@ -222,7 +222,7 @@ TEST_CASE("The tangent is the stress that small strains lead to, per strain, and
         const Matrix3 change = (ends[1] - ends[0]) / 2e-6;
         const double expected = 0.5 * (change(row_of[j], column_of[j]) + change(column_of[j], row_of[j]));
         CAPTURE(d, j, k);
-        CHECK(std::abs(found - expected) < 1e-4 * largest);
+        CHECK(std::abs(found - expected) < 1e-5 * largest);
       }
     }
   }
