@@ -231,7 +231,7 @@ class RveTest(unittest.TestCase):
         for struct, name in [(rvelab.Info, "info"), (rvelab_library.BatchStruct, "batch"),
                              (rvelab_library.Definition, "pool_def")]:
             body = plain.split(f"typedef struct rvelab_{name} {{")[1].split("}")[0]
-            declared = [re.fullmatch(r"(.*?)\*?\s*(\w+)(\[9\])?", field.strip(), re.S).groups()
+            declared = [re.fullmatch(r"([\w ]+\*?)\s*(\b\w+)(\[9\])?", field.strip()).groups()
                         for field in body.split(";")[:-1]]
             fields = [(field, sizes.get(kind.strip(), 8) * (9 if nine else 1)) for kind, field, nine in declared]
             ours = [(field, ctypes.sizeof(kind)) for field, kind in struct._fields_]

@@ -3,9 +3,9 @@
 
     element_test.py SPECIMEN.h5 [GAMMA]
 
-Prints gamma, shear stress and normal stress across the shear plane, p in Pa, and the fabric anisotropy. The stresses are
-those of `rvelab run` on a protocol with the stage kind = "simple_shear", to_strain = GAMMA, record_every = 1e-4, bit for
-bit: the program and a continuum code drive the same RVE."""
+Prints gamma, shear stress and normal stress across the shear plane, p in Pa, and the fabric anisotropy. The stresses
+are those of `rvelab run` on a protocol with the stage kind = "simple_shear", to_strain = GAMMA, record_every = 1e-4,
+bit for bit: the program and a continuum code drive the same RVE."""
 import sys
 
 import numpy as np

@@ -16,7 +16,8 @@ MEASURES = ("contact", "reynolds", "tangent", "error_estimate")
 
 
 class RvelabError(RuntimeError):
-    """A call failed, and the state is as before. status: number in rvelab.h (None: of the program); batch: the Batch."""
+    """A call failed, and the state is as before. status: number in rvelab.h (None: the program failed); batch: what
+    the other RVEs gave."""
 
     def __init__(self, text: str, status: int | None = None, batch: "Batch | None" = None) -> None:
         super().__init__(text)

@@ -24,11 +24,13 @@ def _program() -> str:
     named = os.environ.get("RVELAB_PROGRAM")
     if named:
         return named
-    folder = Path(library._name).resolve().parent if os.sep in library._name else None
-    beside = [] if folder is None else [folder / "rvelab", folder.parent / "bin/rvelab", folder.parents[1] / "bin/rvelab"]
-    found = next((str(file) for file in beside if file.is_file()), None) or shutil.which("rvelab")
+    places = []
+    if os.sep in library._name:
+        folder = Path(library._name).resolve().parent
+        places = [folder / "rvelab", folder.parent / "bin/rvelab", folder.parent.parent / "bin/rvelab"]
+    found = next((str(file) for file in places if file.is_file()), None) or shutil.which("rvelab")
     if found is None:
-        raise FileNotFoundError("the program rvelab was not found: let RVELAB_PROGRAM name it, or add its folder to PATH")
+        raise FileNotFoundError("the program rvelab was not found: let RVELAB_PROGRAM name it, or add it to PATH")
     return found
 
 
