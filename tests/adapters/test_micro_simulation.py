@@ -1,5 +1,6 @@
 """The Micro Manager's class, driven as the manager drives it. Arguments: a folder with discs.h5, then unittest's."""
 import csv
+import gc
 import os
 import pickle
 import sys
@@ -46,14 +47,16 @@ def reference() -> list[np.ndarray]:
 
 class MicroSimulationTest(unittest.TestCase):
     def setUp(self) -> None:
+        gc.collect()
         warnings.simplefilter("ignore", rvelab.RvelabWarning)
 
     def test_implicit_windows_iterate_from_their_checkpoint(self) -> None:
         simulations = [simulation_class()(k) for k in range(2)]
         expected = reference()
-        first = simulations[0].initialize()
-        self.assertAlmostEqual(first["sigma_x"][0], -1e5, delta=200)
-        self.assertEqual(len(first["sigma_x"]), 2)  # of a 2D specimen
+        self.assertIsNone(simulations[0].initialize())  # the manager tries the first before it calls all
+        for one in simulations:
+            one.initialize()
+        self.assertEqual(len(micro_simulation.MicroSimulation._pool.ids()), 2)
         for window, dH in enumerate(windows):
             kept = [one.get_state() for one in simulations]
             for guess in (0.5 * dH, 1.5 * dH, dH):
@@ -101,6 +104,7 @@ class MicroSimulationTest(unittest.TestCase):
 
     def test_simulations_that_are_let_go_of_free_their_rves(self) -> None:
         one = simulation_class()(8)
+        one.initialize()
         pool = micro_simulation.MicroSimulation._pool
         before = len(pool.ids())
         del one

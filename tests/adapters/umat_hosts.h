@@ -167,11 +167,11 @@ static inline int count_in_log(const char* words) {
   return times;
 }
 
-static inline void print_log(void) {
+static inline void print_log(FILE* to) {
   char line[4096];
   FILE* log = fopen("rvelab_umat.log", "r");
   if (log == NULL) return;
-  while (fgets(line, sizeof line, log) != NULL) fputs(line, stderr);
+  while (fgets(line, sizeof line, log) != NULL) fputs(line, to);
   fclose(log);
 }
 

@@ -60,6 +60,7 @@ class Pool:
     def __del__(self) -> None:
         if getattr(self, "_pool", None):
             library.rvelab_pool_destroy(self._pool)
+            self._pool = None
 
     def template(self, source: str | os.PathLike[str] | bytes) -> int:
         """From a specimen file, a record file (its end state), or the bytes of snapshot(). To spawn from."""
