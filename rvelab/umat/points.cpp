@@ -13,7 +13,7 @@ void expect_done(std::int32_t status) {
 }
 
 rvelab_batch batch_of_one(const std::int64_t& id, const RowMajor3& dH, double dt, RowMajor3& sigma) {
-  rvelab_batch batch;
+  rvelab_batch batch{};
   expect_done(rvelab_batch_init(&batch, sizeof batch));
   batch.n = 1;
   batch.dt = dt;
@@ -63,7 +63,7 @@ Matrix3 Points::first_stress(int number) {
 }
 
 std::int64_t Points::token_of(std::int64_t id) {
-  rvelab_info info;
+  rvelab_info info{};
   expect_done(rvelab_info_init(&info, sizeof info));
   expect_done(rvelab_get_info(pool_, id, &info));
   return info.token;

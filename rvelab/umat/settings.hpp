@@ -15,7 +15,7 @@ struct Material {
 
 struct Settings {
   std::string path;
-  rvelab_pool_def pool;
+  rvelab_pool_def pool{};
   std::map<int, Material> materials;  ///< by PROPS(1)
 };
 
