@@ -107,7 +107,7 @@ class PoolTest(unittest.TestCase):
         with self.assertRaisesRegex(rvelab.StaleToken, "valid: "):
             self.pool.trial(line, dH[3:], tokens=1)
 
-    def test_an_array_of_results_is_used_again(self) -> None:
+    def test_arrays_are_not_copied_and_those_of_results_used_again(self) -> None:
         ids = self.pool.spawn(self.template, 2)
         kept = rvelab.Batch(2, ("tangent",))
         place = kept.sigma.ctypes.data, kept.tangent.ctypes.data
@@ -115,6 +115,9 @@ class PoolTest(unittest.TestCase):
         self.assertIs(found, kept)
         self.assertEqual(place, (found.sigma.ctypes.data, found.tangent.ctypes.data))
         self.assertTrue(np.isfinite(found.tangent).all())
+        dH = gradients(2, 1e-3)
+        self.assertIs(rvelab_library.gradients_of(dH, dH.shape), dH)
+        self.assertIs(rvelab_library.numbers_of(ids, "ids"), ids)
 
     def test_one_that_fails_is_told_and_the_others_are_there(self) -> None:
         ids = self.pool.spawn(self.template, 3)
