@@ -125,10 +125,13 @@ def load() -> ctypes.CDLL:
 library = load()
 
 
+_folder = os.path.dirname(__file__)
+
+
 def _level_of_caller() -> int:
     """Frames from the one that warns up to the first outside these modules."""
     level, frame = 2, sys._getframe(2)
-    while frame.f_back is not None and Path(frame.f_code.co_filename).parent == Path(__file__).parent:
+    while frame.f_back is not None and os.path.dirname(frame.f_code.co_filename) == _folder:
         level, frame = level + 1, frame.f_back
     return level
 
@@ -157,7 +160,7 @@ def numbers_of(given: ArrayLike, what: str) -> np.ndarray:
 
 
 def id_of(given: Any) -> int:
-    return int(numbers_of(given, "id")[0])
+    return int(given) if isinstance(given, (int, np.integer)) else int(numbers_of(given, "id")[0])
 
 
 def gradients_of(given: ArrayLike, shape: tuple[int, ...]) -> np.ndarray:
