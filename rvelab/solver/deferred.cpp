@@ -34,7 +34,8 @@ bool Rve::Impl::may_defer(const FrameSplit& increment) {
   const Matrix3 change = increment.stretch - Matrix3::Identity(), stretch = increment.stretch * state.deferred_stretch;
   const double strain = change.norm();
   if ((stretch - Matrix3::Identity()).norm() + strain > state.strain_per_step) return false;
-  if (!(change.cwiseProduct(state.last_rate).sum() > 0)) return false;
+  // The slope holds along the path only: who perturbs it, for a tangent by differences, gets sub-steps of his own.
+  if (!(change.cwiseProduct(state.last_rate).sum() > 0.99 * strain * state.last_rate.norm())) return false;
   const SolverOptions& o = fixture.options;
   const double allowed =
       allowed_error(o.relative_tolerance, o.absolute_tolerance, 0, network_change(state.leg_strain), pressure());

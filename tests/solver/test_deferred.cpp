@@ -111,6 +111,9 @@ TEST_CASE("A turn, a reversal, a rotation and a refusal meet deferred strain", "
   CHECK(back.apply(-1e-7 * forward, 0).report.substeps > 1);
   CHECK((back.stress() - stress).norm() < 1e-3 * 1e5);
 
+  Rve aside = way;
+  CHECK(aside.apply(1e-9 * sheared, 0).report.substeps > 0);
+
   Rve turned = way;
   Matrix3 rotation;
   rotation << std::cos(0.3), -std::sin(0.3), 0, std::sin(0.3), std::cos(0.3), 0, 0, 0, 1;
