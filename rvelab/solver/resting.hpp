@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "rvelab/error.hpp"
 #include "rvelab/solver/assembly/assembly.hpp"
 #include "rvelab/solver/rve.hpp"
 
@@ -25,12 +26,16 @@ auto at_work(const Impl& rve, Look look) {
   return look(std::as_const(copy.at_work()));
 }
 
-/// The same for one in which nothing is deferred.
+/// The same for one in which nothing is deferred; where the sub-step of it fails, the grains are shown as they are.
 template <class Impl, class Look>
 auto brought_up_to_date(const Impl& rve, Look look) {
-  if (!rve.resting && !rve.has_deferred()) return look(rve);
+  if (!rve.has_deferred()) return at_work(rve, look);
   Impl copy = rve;
-  return look(std::as_const(copy.up_to_date()));
+  try {
+    copy.up_to_date();
+  } catch (const Error&) {
+  }
+  return look(std::as_const(copy.at_work()));
 }
 
 }  // namespace rvelab
