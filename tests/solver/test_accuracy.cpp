@@ -99,7 +99,7 @@ TEST_CASE("A path cut finely costs little more than the path in increments of 1e
   const auto [hundredth, steps_hundredth] = run(2000);
   CHECK(double(steps_tenth) <= 1.2 * double(steps));
   CHECK(steps_hundredth <= std::max<std::uint64_t>(2 * steps, 2000 + 100));  // at least one for each call
-  const auto [thousandth, steps_thousandth] = run(20'000);  // these share sub-steps
+  const auto [thousandth, steps_thousandth] = run(20'000);                   // these share sub-steps
   CHECK(steps_thousandth <= 6 * steps);
   const double allowed = 1e-2 * (whole - Rve(s).stress()).norm() + 1e-4 * 1e5;
   CHECK((tenth - whole).norm() <= allowed);
