@@ -2,8 +2,8 @@
 #include <fstream>
 
 #include "rvelab/io/specimen_file.hpp"
-#include "tests/abi/folder.hpp"
 #include "tests/abi/host.hpp"
+#include "tests/folder.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;

@@ -80,9 +80,8 @@ void check_deferred(const Specimen& s) {
   const bool in_plane = s.cell.dimension == 3 || (u(0, 2) == 0 && u(1, 2) == 0 && u(2, 2) == 1);
   if (!upper || !in_plane || !((u - Matrix3::Identity()).norm() < 0.01))
     refuse(
-        "specimen: deferred_stretch of the state must be an upper triangular stretch within 0.01 of the identity, in "
-        "2D in "
-        "the plane; leave it the identity");
+        "specimen: deferred_stretch of the state must be an upper triangular stretch within 0.01 of the identity, and "
+        "in 2D leave z alone; leave it the identity");
   if (!state.stress_slope.allFinite() || !(state.slope_error >= 0) || !std::isfinite(state.slope_error))
     refuse("specimen: stress_slope and slope_error of the state must be finite, the error >= 0; leave both 0");
 }
