@@ -1,5 +1,7 @@
 #include "rvelab/cli/recording.hpp"
 
+#include <chrono>
+
 #include "rvelab/error.hpp"
 
 namespace rvelab::cli {
@@ -35,24 +37,34 @@ std::unique_ptr<io::RecordStore> open_store(const std::string& path, const proto
 protocol::TestRun run_recorded(const protocol::Protocol& protocol, const Specimen& specimen, io::RecordStore* store,
                                protocol::Watch watch) {
   if (store == nullptr) return protocol::run_protocol(protocol, specimen, watch);
-  if (store->complete()) return {store->test().result, store->test().checkpoint.specimen, {}, true};
+  if (store->complete()) return {store->test().result, store->test().checkpoint.specimen, {}, true, {}};
 
-  watch.on_record = [&](const records::Record& record) { store->put(record); };
-  watch.on_probe = [&](const records::ProbeResult& probe) { store->put(probe); };
-  watch.on_snapshot = [&](std::size_t record, const Specimen& state) { store->put_snapshot(record, state); };
+  double seconds = 0;
+  const auto timed = [&](auto write) {
+    const auto begin = std::chrono::steady_clock::now();
+    write();
+    seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
+  watch.on_record = [&](const records::Record& record) { timed([&] { store->put(record); }); };
+  watch.on_probe = [&](const records::ProbeResult& probe) { timed([&] { store->put(probe); }); };
+  watch.on_snapshot = [&](std::size_t record, const Specimen& state) {
+    timed([&] { store->put_snapshot(record, state); });
+  };
   watch.on_moment = [&, shown = watch.on_moment](const protocol::Moment& moment) {
     if (shown) shown(moment);
-    store->offer([&] { return moment.checkpoint(); });
+    timed([&] { store->offer([&] { return moment.checkpoint(); }); });
   };
   try {
-    const protocol::TestRun run =
-        store->checkpoint() ? protocol::resume_protocol(protocol, *store->checkpoint(), store->test().result, watch)
-                            : protocol::run_protocol(protocol, specimen, watch);
-    if (run.complete) {
-      store->finish(run.result, run.end_state);
-    } else {
-      store->stop({run.progress, run.end_state});
-    }
+    protocol::TestRun run = store->checkpoint()
+                                ? protocol::resume_protocol(protocol, *store->checkpoint(), store->test().result, watch)
+                                : protocol::run_protocol(protocol, specimen, watch);
+    timed([&] {
+      if (run.complete)
+        store->finish(run.result, run.end_state);
+      else
+        store->stop({run.progress, run.end_state});
+    });
+    run.costs.files = seconds;
     return run;
   } catch (...) {
     try {

@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -91,7 +92,26 @@ void add_oedometers(const protocol::Protocol& protocol, const protocol::TestRun&
   }
 }
 
-void report(const protocol::Protocol& protocol, const protocol::TestRun& run, const RunArguments& arguments) {
+/// Where the time of this run went, and what its stresses may err by. Nothing for a test that was complete before.
+void add_costs(const protocol::TestRun& run, double wall, Listing& listing) {
+  const protocol::Costs& costs = run.costs;
+  if (costs.judged > 0) {
+    listing.add("mean_error_estimate", costs.mean_error, "of p");
+    listing.add("largest_error_estimate", costs.largest_error, "of p");
+  }
+  const double calls = costs.grains + costs.pairs + costs.list + costs.control;
+  if (!(calls > 0)) return;
+  listing.add("time_grains_s", costs.grains, "s");
+  listing.add("time_pairs_s", costs.pairs, "s");
+  listing.add("time_list_s", costs.list, "s");
+  listing.add("time_control_s", costs.control, "s");
+  listing.add("time_files_s", costs.files, "s");
+  // Measured quantities, the progress line.
+  listing.add("time_other_s", std::max(0.0, wall - calls - costs.files), "s");
+}
+
+void report(const protocol::Protocol& protocol, const protocol::TestRun& run, double wall,
+            const RunArguments& arguments) {
   const records::TestResult& result = run.result;
   const int dimension = run.end_state.cell.dimension;
   long flagged = 0, moving = 0, marked = 0;
@@ -141,6 +161,7 @@ void report(const protocol::Protocol& protocol, const protocol::TestRun& run, co
   }
   listing.add("wall_s", result.wall_seconds, "s");
   listing.add("grain_steps", result.grain_steps);
+  add_costs(run, wall, listing);
   listing.print(arguments.json);
   // A record or two in an avalanche are the specimen's; more are the test's.
   if (20 * marked > static_cast<long>(result.records.size())) {
@@ -180,6 +201,7 @@ void run_test(const RunArguments& arguments) {
     tell("the records will not be kept: no -o R.h5 is given");  // before the work; off a terminal the listing says it
   }
   protocol::TestRun run;
+  double wall = 0;  // of this run; result.wall_seconds is that of all parts of a test that was gone on with
   {
     ProgressLine line;
     protocol::Watch watch;
@@ -191,10 +213,13 @@ void run_test(const RunArguments& arguments) {
       team = std::make_unique<Workers>(arguments.threads > 0 ? arguments.threads : cores);
     }
     watch.team = team.get();
+    watch.measure_time = true;
+    const auto begin = std::chrono::steady_clock::now();
     run = run_recorded(protocol, specimen, store.get(), watch);
+    wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   }
   if (!run.complete) end_stopped(run, arguments.output);
-  report(protocol, run, arguments);
+  report(protocol, run, wall, arguments);
 }
 
 }  // namespace

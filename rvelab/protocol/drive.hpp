@@ -10,6 +10,7 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/protocol/run.hpp"
+#include "rvelab/solver/loading/step_times.hpp"
 #include "rvelab/solver/rve.hpp"
 
 namespace rvelab::protocol {
@@ -117,10 +118,12 @@ class RunningTest {
   const LoadingSettings& loading;
   TestRun run;
   std::function<void()> clock;  ///< brings progress.wall_seconds up to date
+  StepTimes times;              ///< of all increments, where the watcher asks for them
 
  private:
   template <class Apply>
   Report applied(Apply apply, double dt);
+  void note_error(const Report& report);
   int stage_number(const std::string& name) const;
 
   const Watch& watch_;

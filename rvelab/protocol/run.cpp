@@ -32,6 +32,12 @@ TestRun finish(const Protocol& protocol, RunningTest& test, double wall_before) 
   run.result.grain_steps = test.rve.grain_steps() - run.progress.first_grain_steps;
   run.result.wall_seconds = run.progress.wall_seconds;
   run.end_state = test.rve.specimen();
+  const StepTimes& times = test.times;
+  const double steps = times.grains + times.pairs + times.list;
+  run.costs.grains = times.grains;
+  run.costs.pairs = times.pairs;
+  run.costs.list = times.list;
+  run.costs.control = times.calls - steps;
   return std::move(run);
 }
 

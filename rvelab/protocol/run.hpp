@@ -16,12 +16,21 @@
 
 namespace rvelab::protocol {
 
+/// Where the time of a run went since it was begun or gone on with, s, and what its stresses may err by.
+struct Costs {
+  double grains = 0, pairs = 0, list = 0, control = 0;  ///< StepTimes; control: what calls took beyond the first three
+  double files = 0;                                     ///< for who keeps the records to fill in
+  long judged = 0;                                      ///< records at dt = 0 that an increment led to, at p > 0
+  double mean_error = 0, largest_error = 0;             ///< of those, Report::error_estimate over p
+};
+
 /// A test that was run, or stopped.
 struct TestRun {
   records::TestResult result;
   Specimen end_state;
   records::Progress progress;  ///< with end_state the checkpoint from which a stopped test goes on
   bool complete = true;
+  Costs costs;
 };
 
 /// A running test between two increments, as its watcher sees it. Valid during the call only.
@@ -45,6 +54,7 @@ struct Watch {
   std::function<void(const Moment&)> on_moment;
   /// Once true, the run ends within a sub-step at the last moment passed (a probe by the linear method ends first).
   const std::atomic<bool>* stop = nullptr;
+  bool measure_time = false;  ///< fills in the times of TestRun::costs
   /// Shares the steps of a large specimen (Rve::share).
   Workers* team = nullptr;
 };

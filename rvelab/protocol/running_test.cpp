@@ -64,6 +64,7 @@ RunningTest::RunningTest(const Protocol& protocol, const Specimen& specimen, con
   for (const Stage& stage : protocol.stages) run.result.stages.push_back(stage.name);
   rve.watch(watch.stop);
   rve.share(watch.team);
+  if (watch.measure_time) rve.measure_time(&times);
 }
 
 Error RunningTest::failed(const std::string& text) const { return Error("stage \"" + stage_->name + "\": " + text); }
@@ -210,6 +211,15 @@ Report RunningTest::relax(double unbalanced, long max_steps) {
   }
 }
 
+void RunningTest::note_error(const Report& report) {
+  const double p = mean_pressure(run.progress.stress, dimension());
+  if (!(report.error_estimate > 0 && p > 0)) return;
+  Costs& costs = run.costs;
+  const double error = report.error_estimate / p;
+  costs.mean_error += (error - costs.mean_error) / static_cast<double>(++costs.judged);
+  costs.largest_error = std::max(costs.largest_error, error);
+}
+
 void RunningTest::record(double strain, const Report& report) {
   records::Record record;
   record.stage = run.progress.stage;
@@ -225,6 +235,7 @@ void RunningTest::record(double strain, const Report& report) {
   record.target_held = report.target_held;
   record.quasi_static = report.quasi_static;
   run.progress.substeps = 0;
+  note_error(report);
   const std::size_t number = run.result.records.size();
   run.result.records.push_back(record);
   ++run.progress.records;

@@ -69,7 +69,7 @@ Report Rve::Impl::load(const FrameSplit& increment, const Matrix3& dh, double dt
   if (dt == 0 && increment.rigid) {
     report.unbalanced_ratio = unbalanced(balance_of(fixture, now));
     judge(report);
-    estimate_error(0, present_stress(), report.unbalanced_ratio, report);
+    estimate_error(0, 0, present_stress(), report.unbalanced_ratio, 0, report);
     if (dh.isZero(0)) return report;
     const Matrix3 turned = (Matrix3::Identity() + dh) * now.cell.rotation;
     const bool quarter_turn = (dh + Matrix3::Identity()).unaryExpr([](double x) { return x * x * x - x; }).isZero(0);

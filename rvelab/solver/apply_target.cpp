@@ -113,7 +113,7 @@ Report Rve::Impl::load_quasi_static(const MixedTarget& target, Matrix3& gradient
   Servo servo(target, fixture.dimension(), stress(), Servo::Missed::evenly);
   begin_quasi_static();
   const Matrix3 stress_before = present_stress();
-  double network = 0;
+  double strain = 0;
 
   TargetPath path{target, fixture.dimension()};
   double fraction = 0, since_control = 0;
@@ -125,7 +125,7 @@ Report Rve::Impl::load_quasi_static(const MixedTarget& target, Matrix3& gradient
     long steps = servo_interval;
     const double wanted = servo.predicted_strain() + target.spin.norm();
     if (report.substeps == 0) {
-      network = network_change(servo.predicted_strain());
+      strain = servo.predicted_strain();
       set_pace_target(fixture.options.target_unbalanced > 0 ? fixture.options.target_unbalanced : target_of_servo);
     }
     const double full_pace = double(servo_interval) * now.state.strain_per_step;
@@ -172,7 +172,7 @@ Report Rve::Impl::load_quasi_static(const MixedTarget& target, Matrix3& gradient
   report.held_error = servo.held_error(path.strain, stress());
   report.target_held = report.held_error <= target.tolerance;
   judge(report);
-  estimate_error(network, stress_before, report.unbalanced_ratio, report);
+  estimate_error(strain, network_change(strain), stress_before, report.unbalanced_ratio, 0, report);
   gradient = path.gradient;
   return report;
 }

@@ -52,9 +52,8 @@ Report Rve::Impl::defer(const FrameSplit& increment) {
   report.unbalanced_ratio = state.unbalanced_ratio;
   judge(report);
   const Extrapolated after = extrapolated(state.deferred_stretch);
-  estimate_error(network_change(state.leg_strain), present_stress() + before - after.stress, state.unbalanced_ratio,
-                 report);
-  report.error_estimate += after.error;
+  estimate_error(0, network_change(state.leg_strain), present_stress() + before - after.stress, state.unbalanced_ratio,
+                 after.error, report);
   return report;
 }
 

@@ -170,11 +170,15 @@ double Rve::Impl::expected_error(double ratio) {
   return estimate_margin * error_per_unbalance(now.state.softness) * std::max(pressure(), 0.0) * ratio;
 }
 
-void Rve::Impl::estimate_error(double network, const Matrix3& stress_before, double ratio, Report& report) {
+void Rve::Impl::estimate_error(double strain, double network, const Matrix3& stress_before, double ratio, double more,
+                               Report& report) {
   const SolverOptions& o = fixture.options;
-  const double p = pressure(), changed = (present_stress() - stress_before).norm();
-  report.allowed_error = allowed_error(o.relative_tolerance, o.absolute_tolerance, changed, network, p);
-  report.error_estimate = expected_error(ratio);
+  double changed = (present_stress() - stress_before).norm();
+  // A piece of a path is judged as the pace is (target_for), by what the path changes of the stress.
+  if (network > network_change(strain)) changed = std::max(changed, now.state.softness * network);
+  report.allowed_error = allowed_error(o.relative_tolerance, o.absolute_tolerance, changed, network, pressure());
+  report.error_estimate = expected_error(ratio) + more;
+  report.tolerance_met = report.error_estimate <= estimate_margin * report.allowed_error;
 }
 
 double Rve::Impl::turn_back() {
@@ -264,11 +268,11 @@ Report Rve::Impl::load_quasi_static(FrameSplit whole) {
   const bool looked = make_substeps(path, strain, start.fewest, report);
   if (!present_stress().allFinite())
     throw IncrementFailed("the increment led to values that are not finite; apply it in smaller parts");
+  // Between looks a start is believed to leave what starts do.
+  if (!looked) state.unbalanced_ratio = std::max(start.unbalanced_ratio, state.unbalanced_ratio);
   report.unbalanced_ratio = state.unbalanced_ratio;
   judge(report);
-  estimate_error(judged, stress_before,
-                 looked ? state.unbalanced_ratio : std::max(start.unbalanced_ratio, state.unbalanced_ratio), report);
-  report.error_estimate += carried;
+  estimate_error(strain, judged, stress_before, state.unbalanced_ratio, carried, report);
   const bool same_frame = (now.cell.rotation.array() == start_frame.array()).all();
   note_slope(whole.stretch, stress_before, same_frame);
   if (!(whole.rotation.array() == Matrix3::Identity().array()).all()) {

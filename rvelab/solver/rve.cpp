@@ -7,6 +7,7 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/solver/assembly/pressure.hpp"
+#include "rvelab/solver/loading/step_times.hpp"
 #include "rvelab/solver/resting.hpp"
 #include "rvelab/solver/rve_impl.hpp"
 #include "rvelab/solver/snapshot.hpp"
@@ -56,6 +57,8 @@ void Rve::Impl::set_missing_references(const Balance& balance) {
     state.reference_pressure = std::max(0.0, mean_pressure(contact_stress() + reynolds_stress(), fixture.dimension()));
   }
 }
+
+void Rve::measure_time(StepTimes* times) { impl_->fixture.times = times; }
 
 double Rve::reference_pressure() const { return impl_->now.state.reference_pressure; }
 
@@ -148,6 +151,7 @@ Response Rve::Impl::respond(const Report& report, const Matrix3& gradient, doubl
 
 Report Rve::relax(double unbalanced, long max_steps) {
   Impl& m = impl_->at_work();
+  const CallClock clock(m.fixture.times);
   return m.guarded([&] {
     Report report;
     const long deferred = m.make_deferred();

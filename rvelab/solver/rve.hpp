@@ -14,6 +14,8 @@
 
 namespace rvelab {
 
+struct StepTimes;
+
 /// What a call may ask for beyond the Cauchy stress. What is not asked for is not computed.
 struct Want {
   bool parts = false;  ///< contact and Reynolds stress apart
@@ -25,7 +27,7 @@ struct Report {
   double unbalanced_ratio = 0;  ///< mean |resultant force|, or mean |torque|/r where larger, over max(mean contact
                                 ///< force, 1e-3 of the reference). dt = 0: when it was
                                 ///< measured last: at the end of an increment of 10 sub-steps or more, else up to 50
-                                ///< sub-steps before
+                                ///< sub-steps before, or what a start since then leaves
   double inertial_number = 0;   ///< dt > 0: sqrt(2 e:e) d sqrt(rho/p), infinite at p <= 0; dt = 0: zero
   double held_error = 0;        ///< mixed targets: largest |residual| over its scale (dt > 0: of its mean over the
                                 ///< increment), see MixedTarget
@@ -35,7 +37,10 @@ struct Report {
                               ///< ratio is within three times its target and the target is held. A state that flows
                               ///< creeps beyond that: relaxed, its stress falls by some ten times the ratio
   double error_estimate = 0;  ///< dt = 0: of the stress, Frobenius norm, Pa: twice the error to be expected
-  double allowed_error = 0;   ///< dt = 0: relative_tolerance max(|d sigma|, 0.1 |C : d eps|) + absolute_tolerance p, Pa
+  double allowed_error = 0;  ///< dt = 0: relative_tolerance max(|d sigma|, 0.1 |C : d eps|) + absolute_tolerance p, Pa;
+                             ///< d sigma and d eps since the path turned last, up to 1e-4 of strain, where those are
+                             ///< more than the increment's: a path cut finely is the same path
+  bool tolerance_met = true;  ///< dt = 0: the error to be expected, half the estimate, is at most allowed_error
   bool cell_thin = false;     ///< a cell height is below four mean diameters
 };
 
@@ -132,6 +137,10 @@ class Rve {
   /// same on any team and on none. Copies look at the same team, which must outlive them and must not be at work when a
   /// call is made (an entry of a batch has the thread it runs on); nullptr: none.
   void share(Workers* team);
+
+  /// Adds the time that each part takes to `times` from now on (loading/step_times.hpp). Copies add to the same, which
+  /// must outlive them; nullptr: nothing is measured. No result depends on it.
+  void measure_time(StepTimes* times);
 
   /// The state that pace and unbalanced ratio are measured by: mean pressure, Pa; first that in which the specimen was
   /// opened. Far below it quasi-static loading is faster, against the stress that is there, than target_unbalanced

@@ -85,15 +85,15 @@ struct Rve::Impl {
 
   Response respond(const Report& report, const Matrix3& gradient, double dt, const Want& want);
 
-  void begin_trial();
+  void begin_trial(Trial::Changes changes);
   void exchange() noexcept;
   void revert() noexcept;
   void settle() noexcept;  ///< what is in `now` is the state, and no trial is pending
 
   /// Runs `work` as a trial, which is then pending; if it throws, the trial is reverted and the exception goes on.
   template <class Work>
-  auto tried(Work work) {
-    begin_trial();
+  auto tried(Trial::Changes changes, Work work) {
+    begin_trial(changes);
     try {
       return work();
     } catch (...) {
@@ -104,7 +104,7 @@ struct Rve::Impl {
   /// The same, committed.
   template <class Work>
   auto guarded(Work work) {
-    auto result = tried(std::move(work));
+    auto result = tried(Trial::Changes::grains, std::move(work));
     settle();
     return result;
   }
@@ -123,8 +123,11 @@ struct Rve::Impl {
   double pressure();  ///< mean, of present_stress, Pa
   /// The estimate for an unbalanced ratio, Pa.
   double expected_error(double ratio);
-  /// Sets report.error_estimate and allowed_error; `ratio` is the unbalanced ratio at the end of the increment.
-  void estimate_error(double network_change, const Matrix3& stress_before, double ratio, Report& report);
+  /// Sets report.error_estimate, allowed_error and tolerance_met of an increment of this strain; `network_change` (Pa)
+  /// is that of the path which it is a piece of, `ratio` the unbalanced ratio at its end, `more` (Pa) what else the
+  /// stress may err by.
+  void estimate_error(double strain, double network_change, const Matrix3& stress_before, double ratio, double more,
+                      Report& report);
   /// dt = 0: sets report.quasi_static from what it says of balance and target.
   void judge(Report& report);
   /// dt > 0: in an increment of the time dt (s), at the velocity gradient `rate` of the cell (1/s, cell frame); the

@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "rvelab/error.hpp"
+#include "rvelab/solver/loading/step_times.hpp"
 #include "rvelab/solver/resting.hpp"
 #include "rvelab/solver/rve.hpp"
 #include "rvelab/solver/rve_impl.hpp"
@@ -20,8 +21,8 @@ void expect_time(double dt) {
 
 }  // namespace
 
-void Rve::Impl::begin_trial() {
-  trial.begin(now);
+void Rve::Impl::begin_trial(Trial::Changes changes) {
+  trial.begin(now, changes);
   other_stress = stress;
   other_stress_holds = stress_holds;
 }
@@ -30,7 +31,7 @@ void Rve::Impl::exchange() noexcept {
   trial.exchange(now);
   std::swap(stress, other_stress);
   std::swap(stress_holds, other_stress_holds);
-  sums_hold = false;
+  if (trial.changes() == Trial::Changes::grains) sums_hold = false;
   set_strained_cell();
 }
 
@@ -60,9 +61,11 @@ Rve::Impl& Rve::Impl::up_to_date() {
 Response Rve::attempt(const Matrix3& displacement_gradient, double dt, const Want& want) {
   Impl& m = impl_->at_work();
   expect_time(dt);
+  const CallClock clock(m.fixture.times);
   const FrameSplit split = split_increment(m.now.cell, displacement_gradient);
-  return m.tried([&] {
-    const Report report = dt == 0 && m.may_defer(split) ? m.defer(split) : m.load(split, displacement_gradient, dt);
+  const bool deferred = dt == 0 && m.may_defer(split);
+  return m.tried(deferred ? Trial::Changes::deferred_strain : Trial::Changes::grains, [&] {
+    const Report report = deferred ? m.defer(split) : m.load(split, displacement_gradient, dt);
     return m.respond(report, displacement_gradient, dt, want);
   });
 }
@@ -70,6 +73,7 @@ Response Rve::attempt(const Matrix3& displacement_gradient, double dt, const Wan
 Response Rve::apply(const Matrix3& displacement_gradient, double dt, const Want& want) {
   Impl& m = impl_->at_work();
   expect_time(dt);
+  const CallClock clock(m.fixture.times);
   const FrameSplit split = split_increment(m.now.cell, displacement_gradient);
   // What is deferred moves no grain and cannot fail: no trial is needed.
   const Report report = dt == 0 && m.may_defer(split)
@@ -81,6 +85,7 @@ Response Rve::apply(const Matrix3& displacement_gradient, double dt, const Want&
 Response Rve::apply(const MixedTarget& target, double dt, const Want& want) {
   Impl& m = impl_->at_work();
   expect_time(dt);
+  const CallClock clock(m.fixture.times);
   Matrix3 gradient = Matrix3::Zero();
   const Report report = m.guarded([&] {
     const long deferred = m.make_deferred();

@@ -87,6 +87,7 @@ inline const std::vector<Experiment>& experiments() {
         {"rolling_friction", 0.1},
         {"local_damping", 0.3},
         {"restitution", 1},
+        {"adhesion", 0},
         {"shear", 0},
         {"strain_times_kappa", 0.5},
         {"increments", 10}}},

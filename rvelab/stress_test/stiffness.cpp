@@ -36,6 +36,13 @@ void agrees_with_resolved_run(const Case& asked, Verdict& verdict) {
     s.damping.dashpot = Dashpot::restitution;
     s.damping.restitution = asked("restitution");
   }
+  if (asked("adhesion") > 0) {
+    // Grains of radius 1 keep their stiffness; the pull-off force is so much of p times the cross-section.
+    s.contact.law = Law::linear_adhesive;
+    grain.young_modulus = grain.normal_stiffness;
+    grain.stiffness_ratio = asked("kt_over_kn");
+    grain.adhesion_pressure = asked("adhesion") * pressure_at(d, kappa);
+  }
   compare_with_resolved(s, path_of(asked, d, kappa), asked.tolerance, verdict);
 }
 

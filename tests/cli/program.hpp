@@ -7,18 +7,12 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string>
 
 #include "tests/catch.hpp"
 #include "tests/folder.hpp"
 
 namespace rvelab::test {
-
-inline std::string text_of(const std::string& path) {
-  std::ifstream input(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(input), {}};
-}
 
 struct Outcome {
   int code;
@@ -34,7 +28,7 @@ class Workplace {
     const std::string command =
         "cd '" + folder_.path() + "' && '" + program + "' " + arguments + " >.out 2>.err </dev/null";
     const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(*this / ".out"), text_of(*this / ".err")};
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, bytes_of(*this / ".out"), bytes_of(*this / ".err")};
   }
 
   void write(const std::string& name, const std::string& text) const { std::ofstream(*this / name) << text; }

@@ -56,11 +56,11 @@ TEST_CASE("a specimen exported as CSV and imported again as the export says is t
 TEST_CASE("an export never replaces the file that it is made from, and needs a folder") {
   const Workplace here;
   here.import_packing("dense_p20");
-  const std::string before = text_of(here / "S.h5");
+  const std::string before = bytes_of(here / "S.h5");
   expect_mistake(here.run("export S.h5 --format lammps -o S.h5"), "would replace S.h5");
   std::filesystem::rename(here / "S.h5", here / "S.xdmf.h5");
   expect_mistake(here.run("export S.xdmf.h5 --format xdmf -o S.xdmf"), "would replace S.xdmf.h5");
-  CHECK(text_of(here / "S.xdmf.h5") == before);
+  CHECK(bytes_of(here / "S.xdmf.h5") == before);
   expect_mistake(here.run("export S.xdmf.h5 --format lammps -o no/S.dump"), "the folder no does not exist");
   expect_mistake(here.run("export S.xdmf.h5 --format vtk -o S.vtk"), "vtk not in");
   const auto data = nlohmann::json::parse(here.run("export S.xdmf.h5 --format lammps-data -o S.data --json").output);
@@ -68,7 +68,7 @@ TEST_CASE("an export never replaces the file that it is made from, and needs a f
   const auto xdmf = nlohmann::json::parse(here.run("export S.xdmf.h5 --format xdmf -o T.xdmf --json").output);
   CHECK(xdmf["written"] == nlohmann::json::array({"T.xdmf", "T.xdmf.h5"}));
   CHECK(xdmf["states"] == 1);
-  CHECK_THAT(text_of(here / "S.data"), Contains("400 atoms\n1 atom types\n"));
+  CHECK_THAT(bytes_of(here / "S.data"), Contains("400 atoms\n1 atom types\n"));
 }
 
 TEST_CASE("a dump goes out and comes back through the program with the same cell and grains") {

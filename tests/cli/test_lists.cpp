@@ -43,7 +43,7 @@ TEST_CASE("protocols lists the installed ones with what they are, and prints one
     const std::string name = entry.path().stem().string();
     CAPTURE(name);
     CHECK(list.contains(name));
-    CHECK(here.run("protocols " + name).output == text_of(entry.path().string()));
+    CHECK(here.run("protocols " + name).output == bytes_of(entry.path().string()));
     ++sources;
   }
   CHECK(list.size() == sources);

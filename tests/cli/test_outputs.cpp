@@ -60,11 +60,11 @@ TEST_CASE("what is there is replaced with --force only, and then whole") {
     CAPTURE(writer.command);
     std::ofstream(here / "foreign") << "years of work";
     expect_mistake(here.run(with(writer.command, "foreign")), "foreign: is there already; allowed: a new name");
-    CHECK(text_of(here / "foreign") == "years of work");
+    CHECK(bytes_of(here / "foreign") == "years of work");
     const Outcome forced = here.run(with(writer.command, "foreign --force"));
     INFO(forced.errors);
     CHECK(forced.code == 0);
-    CHECK(text_of(here / "foreign") != "years of work");
+    CHECK(bytes_of(here / "foreign") != "years of work");
     CHECK(!std::filesystem::exists(here / "foreign.tmp"));
     std::filesystem::remove(here / "foreign");
     std::filesystem::remove(here / "foreign.h5");
@@ -80,7 +80,7 @@ TEST_CASE("what is there is replaced with --force only, and then whole") {
   std::ofstream(here / "n_2.h5") << "mine";
   expect_mistake(here.run("pack tiny.toml --count 3 -o n.h5"), "n_2.h5: is there already");
   CHECK(!std::filesystem::exists(here / "n_1.h5"));
-  for (const char* file : {"out.json", "out.xdmf.h5", "n_2.h5"}) CHECK(text_of(here / file) == "mine");
+  for (const char* file : {"out.json", "out.xdmf.h5", "n_2.h5"}) CHECK(bytes_of(here / file) == "mine");
 }
 
 TEST_CASE("an input is never replaced, under whatever name, with --force or without") {
@@ -88,14 +88,14 @@ TEST_CASE("an input is never replaced, under whatever name, with --force or with
   std::filesystem::create_directory(here / "sub");
   for (const auto& writer : writers) {
     for (const std::string& input : writer.inputs) {
-      const std::string before = text_of(here / input);
+      const std::string before = bytes_of(here / input);
       std::filesystem::create_symlink("../" + input, here / "sub/link");
       std::filesystem::create_hard_link(here / input, here / "sub/other");
       for (const std::string& name : std::vector<std::string>{input, "./" + input, "sub/link", "sub/other"}) {
         for (const char* force : {"", " --force"}) {
           CAPTURE(writer.command, name, force);
           expect_mistake(here.run(with(writer.command, name) + force), "would replace " + input);
-          CHECK(text_of(here / input) == before);
+          CHECK(bytes_of(here / input) == before);
           CHECK(!std::filesystem::exists(here / (input + ".journal")));
         }
       }
@@ -105,10 +105,10 @@ TEST_CASE("an input is never replaced, under whatever name, with --force or with
   }
   // Neither is one that has the name which is written to meanwhile.
   std::filesystem::rename(here / "S.h5", here / "R.h5.tmp");
-  const std::string before = text_of(here / "R.h5.tmp");
+  const std::string before = bytes_of(here / "R.h5.tmp");
   expect_mistake(here.run("run test.toml --specimen R.h5.tmp -o R.h5"), "would replace R.h5.tmp");
   expect_mistake(here.run("export R.h5.tmp --format lammps -o R.h5"), "would replace R.h5.tmp");
-  CHECK(text_of(here / "R.h5.tmp") == before);
+  CHECK(bytes_of(here / "R.h5.tmp") == before);
 }
 
 TEST_CASE("links are followed, and folders, pipes and devices never replaced") {
@@ -173,7 +173,7 @@ TEST_CASE("output that cannot be written is one line and exit code 1, for every 
     const std::string shell =
         "cd '" + (here / "") + "' && '" RVELAB_PROGRAM "' " + command + " >/dev/full 2>err </dev/null";
     const int status = std::system(shell.c_str());
-    const std::string errors = text_of(here / "err");
+    const std::string errors = bytes_of(here / "err");
     CAPTURE(errors);
     CHECK(WEXITSTATUS(status) == 1);
     CHECK_THAT(errors, Contains("rvelab: standard output could not be written"));
@@ -188,7 +188,7 @@ TEST_CASE("beyond the limit of a file's size every writer says so in one line an
     const std::string shell = "cd '" + (here / "") + "' && ulimit -f 8 && exec '" RVELAB_PROGRAM "' " +
                               with(writer.command, "big") + " >out 2>err </dev/null";
     const int status = std::system(shell.c_str());
-    const std::string errors = text_of(here / "err");
+    const std::string errors = bytes_of(here / "err");
     CAPTURE(errors);
     CHECK(WEXITSTATUS(status) == 1);
     CHECK_THAT(errors, Contains("could not be written (File too large)"));
@@ -208,7 +208,7 @@ TEST_CASE("without memory every subcommand says so in one line with exit code 1,
                               " ASAN_OPTIONS=verify_asan_link_order=0 '" RVELAB_PROGRAM "' " +
                               command + " >out 2>err </dev/null";
     const int status = std::system(shell.c_str());
-    return Outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(here / "out"), text_of(here / "err")};
+    return Outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, bytes_of(here / "out"), bytes_of(here / "err")};
   };
   for (const std::string command : {"inspect t.h5", "export t.h5 --format xdmf -o o", "import p.csv c.csv m.json -o o",
                                     "run test.toml --specimen t.h5 -o o", "compare t.h5 S.h5",
@@ -245,7 +245,7 @@ TEST_CASE("threads that are not to be had are said in one line with exit code 1"
     const std::string shell = "cd '" + (here / "") + "' && ulimit -v 150000 && exec '" RVELAB_PROGRAM "' " + command +
                               " >out 2>err </dev/null";
     const int status = std::system(shell.c_str());
-    const std::string errors = text_of(here / "err");
+    const std::string errors = bytes_of(here / "err");
     CAPTURE(errors);
     CHECK(WIFEXITED(status));
     CHECK(WEXITSTATUS(status) == 1);

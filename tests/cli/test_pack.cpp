@@ -104,7 +104,7 @@ TEST_CASE("protocols lists recipes apart from tests") {
   REQUIRE(recipes != std::string::npos);
   CHECK(text.find("biaxial") < recipes);
   CHECK(text.find("pack_dense") > recipes);
-  CHECK(here.run("protocols pack_dense").output == text_of(RVELAB_SOURCE_DIR "/protocols/pack_dense.toml"));
+  CHECK(here.run("protocols pack_dense").output == bytes_of(RVELAB_SOURCE_DIR "/protocols/pack_dense.toml"));
 }
 
 TEST_CASE("the shipped recipe of Hertz spheres can be probed by the shipped protocol", "[slow]") {

@@ -18,7 +18,7 @@ void expect_figure(const Workplace& here, const std::string& script, const std::
   CHECK(outcome.code == 0);
   CHECK(outcome.errors.empty());
   CHECK_THAT(outcome.output, Contains(part));
-  CHECK(text_of(here / "figure.png").starts_with("\x89PNG"));
+  CHECK(bytes_of(here / "figure.png").starts_with("\x89PNG"));
   std::filesystem::remove(here / "figure.png");
 }
 

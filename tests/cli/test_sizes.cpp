@@ -226,9 +226,9 @@ TEST_CASE("a specimen without friction exports every contact that inspect counts
   REQUIRE(contacts > 60);
   const Outcome exported = here.run("export S.h5 --format csv -o out --json");
   REQUIRE(exported.code == 0);
-  const std::string table = text_of(here / "out.contacts.csv");
+  const std::string table = bytes_of(here / "out.contacts.csv");
   CHECK(std::count(table.begin(), table.end(), '\n') == contacts + 2);
-  CHECK(Json::parse(text_of(here / "out.json"))["n_contacts"] == contacts);
+  CHECK(Json::parse(bytes_of(here / "out.json"))["n_contacts"] == contacts);
   // They come back with the forces of the law, and the stress is the same.
   const std::string import = Json::parse(exported.output)["import_with"];
   const double p = Json::parse(here.run("inspect S.h5 --json").output)["p_Pa"];

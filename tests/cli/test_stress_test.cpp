@@ -101,5 +101,5 @@ TEST_CASE("Ctrl-C ends stress-test and its children with 130") {
   CHECK(child.wait_for(2) == -1);
   child.signal(SIGINT);
   CHECK(child.wait_for(20) == 130);
-  CHECK_THAT(text_of(here / "err"), Contains("stopped by Ctrl-C"));
+  CHECK_THAT(bytes_of(here / "err"), Contains("stopped by Ctrl-C"));
 }

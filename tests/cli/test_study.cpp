@@ -45,13 +45,13 @@ TEST_CASE("a study prints and writes its results, and its file runs it again") {
   REQUIRE(outcome.code == 0);
   CHECK_THAT(outcome.output, Contains("over p, 3 increments") && Contains("in tol.") && Contains("angle_deg") &&
                                  Contains("means of 2 repeats") && Contains("tools/plot/study.py F -o F/study.png"));
-  const Json json = Json::parse(text_of(here / "F/study.json"));
+  const Json json = Json::parse(bytes_of(here / "F/study.json"));
   REQUIRE(json["points"].size() == 2);
   CHECK(json["points"][0]["values"]["solver.target_unbalanced"] == "1e-2");
   CHECK(json["points"][0]["rms_error_over_p"].get<double>() > json["points"][1]["rms_error_over_p"].get<double>());
   CHECK(json["points"][1]["peak_friction_angle_deg_standard_error"].is_number());
   CHECK(pieces_in(here, "F") == 9);
-  const std::string csv = text_of(here / "F/study.csv");
+  const std::string csv = bytes_of(here / "F/study.csv");
   CHECK(std::count(csv.begin(), csv.end(), '\n') == 4);
   CHECK_THAT(csv, Contains("run,solver.target_unbalanced,increments,failed_increments,rms_error_over_p") &&
                       Contains("\nreference,,3,0,") && Contains("\n2,1e-3,3,0,"));
@@ -66,7 +66,7 @@ TEST_CASE("a study prints and writes its results, and its file runs it again") {
   INFO(figure.errors);
   CHECK(figure.code == 0);
   CHECK_THAT(figure.output, Contains("2 grid points"));
-  CHECK(text_of(here / "F/study.png").starts_with("\x89PNG"));
+  CHECK(bytes_of(here / "F/study.png").starts_with("\x89PNG"));
 }
 
 TEST_CASE("a stopped study goes on with --resume, another study is refused, nothing is overwritten unasked") {
@@ -84,7 +84,7 @@ TEST_CASE("a stopped study goes on with --resume, another study is refused, noth
     }
     child.signal(SIGINT);
     CHECK(child.wait() == 130);
-    CHECK_THAT(text_of(here / "err"), Contains("stopped by Ctrl-C with ") && Contains("go on with --resume"));
+    CHECK_THAT(bytes_of(here / "err"), Contains("stopped by Ctrl-C with ") && Contains("go on with --resume"));
   }
   const std::size_t kept = pieces_in(here, "F");
   CHECK(kept > 0);
@@ -102,8 +102,8 @@ TEST_CASE("a stopped study goes on with --resume, another study is refused, noth
   INFO(resumed.errors);
   REQUIRE(resumed.code == 0);
   CHECK(first_piece() == made);
-  CHECK(without_times(Json::parse(text_of(here / "F/study.json"))) ==
-        without_times(Json::parse(text_of(here / "whole/study.json"))));
+  CHECK(without_times(Json::parse(bytes_of(here / "F/study.json"))) ==
+        without_times(Json::parse(bytes_of(here / "whole/study.json"))));
 
   here.write("F/pieces/path_1_1_1.json", "{");
   expect_mistake(here.run("study F/study.toml -o F --resume"), "path_1_1_1.json: is damaged");

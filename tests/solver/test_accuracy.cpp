@@ -107,6 +107,17 @@ TEST_CASE("A path cut finely costs little more than the path in increments of 1e
   CHECK((thousandth - whole).norm() <= allowed);
 }
 
+TEST_CASE("A path cut finely is not told to miss its tolerance piece by piece", "[solver]") {
+  for (const long pieces : {20L, 200L, 2000L, 20'000L}) {
+    CAPTURE(pieces);
+    Rve rve(recorded("dense"));
+    long missed = 0;
+    for (long k = 0; k < pieces; ++k)
+      missed += rve.apply(2e-3 / double(pieces) * forward, 0).report.tolerance_met ? 0 : 1;
+    CHECK(double(missed) <= 0.2 * double(pieces));  // one interval where contacts slip is 26 of 200
+  }
+}
+
 TEST_CASE("A path that turns back, aside, or waits keeps to the resolved one, finely cut", "[solver]") {
   const Specimen s = recorded("dense");
   const auto run = [&](long pieces, long substeps) {

@@ -146,3 +146,41 @@ TEST_CASE("No increment is deferred where none can be judged", "[solver]") {
   s.solver.relative_tolerance = 1e-12;
   CHECK(rest_of_path(Rve(s), 1e-7 * forward, 20).substeps >= 20);
 }
+
+TEST_CASE("A trial of deferred strain copies no grain, and is committed and reverted as any other", "[solver]") {
+  const Rve start = on_its_way();
+  const Matrix3 small = 1e-8 * forward;
+  Rve applied(start), tried(start);
+  const Response response = applied.apply(small, 0);
+  REQUIRE(response.report.substeps == 0);
+
+  CHECK(tried.attempt(small, 0).stress == response.stress);
+  CHECK(tried.pending());
+  CHECK(tried.memory().trial < 1000);  // of 400 grains
+  CHECK(tried.save() == applied.save());
+  CHECK(tried.cell().lattice == applied.cell().lattice);
+  tried.exchange();
+  CHECK(tried.save() == start.save());
+  CHECK(tried.cell().lattice == start.cell().lattice);
+  tried.exchange();
+  CHECK(tried.save() == applied.save());
+
+  tried.revert();
+  CHECK(tried.save() == start.save());
+  CHECK(tried.attempt(small, 0).stress == response.stress);
+  tried.rest();
+  tried.commit();
+  CHECK(tried.save() == applied.save());
+  // On from there, through increments that make sub-steps: trials of both kinds follow each other.
+  for (int k = 0; k < 300; ++k) {
+    const Matrix3 increment = (k % 3 + 1) * 1e-7 * forward;
+    applied.apply(increment, 0);
+    if (k % 5 == 0) {
+      tried.attempt(0.5 * increment, 0);
+      tried.revert();
+    }
+    tried.attempt(increment, 0);
+    tried.commit();
+  }
+  CHECK(tried.save() == applied.save());
+}

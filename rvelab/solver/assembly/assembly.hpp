@@ -14,6 +14,8 @@
 
 namespace rvelab {
 
+struct StepTimes;
+
 /// What an increment never changes.
 struct Fixture {
   Shape shape = Shape::disc;
@@ -36,6 +38,7 @@ struct Fixture {
   double thickness = 0;                     ///< m, 2D
   const std::atomic<bool>* stop = nullptr;  ///< true: advance throws Interrupted (Rve::watch)
   Workers* team = nullptr;                  ///< shares the steps of a large assembly (Rve::share)
+  StepTimes* times = nullptr;               ///< the time of each part is added here (Rve::measure_time)
 
   std::size_t size() const { return id.size(); }
   /// The team where the assembly is large enough for one, else null.

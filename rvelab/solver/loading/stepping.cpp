@@ -9,6 +9,7 @@
 #include "rvelab/error.hpp"
 #include "rvelab/solver/loading/collisions.hpp"
 #include "rvelab/solver/loading/inertia.hpp"
+#include "rvelab/solver/loading/step_times.hpp"
 #include "rvelab/solver/loading/sweep.hpp"
 
 namespace rvelab {
@@ -288,7 +289,9 @@ Advanced advance(const Fixture& f, Assembly& a, const Advance& what) {
   Matrix3 rate_end, rate_mid, moment_before = Matrix3::Zero();
   if (f.options.ledger) moment_before = contact_moment(f, a);
 
+  StepClock clock(f.times);
   for (; way.done < way.steps; ++made) {
+    clock.begin_step(made);
     if (f.stop != nullptr && f.stop->load(std::memory_order_relaxed)) throw Interrupted();
     const Matrix3 before = a.cell.lattice;
     a.cell.lattice = way.lattice_after(++way.done);
@@ -299,7 +302,9 @@ Advanced advance(const Fixture& f, Assembly& a, const Advance& what) {
       set_frame_terms(rate_mid, omega, mean_spin - a.state.mean_spin, c);
       a.state.mean_spin = mean_spin;
     }
+    clock.begin_grains();
     sweep_grains(move, c, grains, pairs, padded_grains, team, sums);
+    clock.end_grains();
     // The rows that pad the lanes lose the mean velocity too, step after step; their speed must never count.
     std::fill(a.rows.begin() + std::ptrdiff_t(f.size()) * f.row_length(), a.rows.end(), 0.0);
     for (int k = 0; k < 3; ++k) a.state.mean_velocity[k] = sums.momentum[k] / total_mass;
@@ -310,6 +315,7 @@ Advanced advance(const Fixture& f, Assembly& a, const Advance& what) {
     a.state.last_step = step;
     const bool listed_anew = list_is_stale(f, a, what.follow_collisions ? 2 * travel : 0.0);
     if (listed_anew) {
+      clock.begin_list();
       const Matrix3 lattice_before = a.cell.lattice;
       const Reduction reduction = rebuild(f, a);
       if (reduction.changed) {
@@ -328,12 +334,15 @@ Advanced advance(const Fixture& f, Assembly& a, const Advance& what) {
       }
       pairs = arrays_of(a.pairs);
       grains = arrays_of(a);
+      clock.end_list();
     }
     Dissipation lost;
+    clock.begin_pairs();
     if (f.options.ledger)
       kernels.pairs_ledger(c, pairs, a.rows.data(), 0, long(a.pairs.padded()), &lost);
     else
       sweep_pairs(kernels.pairs, c, pairs, a.rows.data(), long(a.pairs.padded()), team);
+    clock.end_pairs();
     if (f.options.ledger) book_step(f, a, lost, sums, step, physical, rate_mid + cross_matrix(omega), moment_before);
     if (listed_anew && physical) {
       const double rest = step * double(way.steps - way.done);

@@ -4,8 +4,14 @@
 
 namespace rvelab {
 
-void Trial::begin(Assembly& a) {
+void Trial::begin(Assembly& a, Changes changes) {
+  changes_ = changes;
   cell_ = a.cell;
+  deferred_stretch_ = a.state.deferred_stretch;
+  if (changes == Changes::deferred_strain) {
+    pending_ = true;
+    return;
+  }
   rows_ = a.rows;
   mass_ = a.mass;
   inverse_mass_ = a.inverse_mass;
@@ -33,6 +39,10 @@ void Trial::end(Assembly& a) noexcept {
 
 void Trial::exchange(Assembly& a) noexcept {
   std::swap(a.cell, cell_);
+  if (changes_ == Changes::deferred_strain) {
+    std::swap(a.state.deferred_stretch, deferred_stretch_);
+    return;
+  }
   a.rows.swap(rows_);
   a.mass.swap(mass_);
   a.inverse_mass.swap(inverse_mass_);

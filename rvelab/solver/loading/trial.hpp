@@ -2,7 +2,8 @@
 //
 // What steps change is copied when a trial begins: cell, grain rows, masses, histories and force rows, the state of the
 // solver. Lists and what follows from them are not: the first that a trial replaces is kept as it is, and put back. Of
-// 400 discs that is 100 kB a call instead of 230.
+// 400 discs that is 100 kB a call instead of 230. An increment whose strain is deferred moves no grain: its trial is
+// the cell and that strain.
 #pragma once
 
 #include "rvelab/solver/assembly/assembly.hpp"
@@ -18,8 +19,13 @@ class Trial {
   Trial(Trial&&) = default;
   Trial& operator=(Trial&&) = default;
 
+  enum class Changes {
+    grains,          ///< whatever a sub-step changes
+    deferred_strain  ///< SolverState::deferred_stretch and the cell's rotation, no more
+  };
   /// Notes what `assembly` is: its committed state.
-  void begin(Assembly& assembly);
+  void begin(Assembly& assembly, Changes changes);
+  Changes changes() const { return changes_; }
   /// The committed state and that of the trial change places, bit for bit; once more, and they are where they were.
   /// Allocates nothing.
   void exchange(Assembly& assembly) noexcept;
@@ -31,7 +37,9 @@ class Trial {
   std::size_t bytes() const;
 
  private:
+  Changes changes_ = Changes::grains;
   Cell cell_;
+  Matrix3 deferred_stretch_ = Matrix3::Identity();
   Buffer rows_, mass_, inverse_mass_, inverse_inertia_;
   Buffer tangential_[3], moment_[3], root_overlap_, force_;
   std::vector<std::uint8_t> touched_;

@@ -1,0 +1,49 @@
+// What a run says at its end.
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/program.hpp"
+
+using namespace rvelab::test;
+
+TEST_CASE("a run ends with its time, part by part, its grain-steps and what its stresses may err by") {
+  const Workplace here;
+  here.import_packing("dense_p20");
+  const Outcome made = here.run("run biaxial --specimen S.h5 --set stage.compression.to_strain=0.01 -o R.h5 --json");
+  REQUIRE(made.code == 0);
+  const auto told = nlohmann::json::parse(made.output);
+  const double wall = told["wall_s"];
+  double parts = 0;
+  for (const char* part : {"grains", "pairs", "list", "control", "files", "other"}) {
+    CAPTURE(part);
+    const double seconds = told["time_" + std::string(part) + "_s"];
+    CHECK(seconds >= 0);
+    parts += seconds;
+  }
+  CHECK(told["time_grains_s"] > 0);
+  CHECK(told["time_pairs_s"] > 0);
+  CHECK(told["time_files_s"] > 0);
+  CHECK(parts >= 0.5 * wall);
+  CHECK(told["grain_steps"] > 0);
+  // By default 1 % of the increments and 1e-4 of p are allowed; a held stress is paced otherwise, within per cents of
+  // p.
+  CHECK(told["mean_error_estimate"] > 1e-5);
+  CHECK(told["mean_error_estimate"] < 0.05);
+  CHECK(told["largest_error_estimate"] >= told["mean_error_estimate"]);
+}
+
+TEST_CASE("a run at a rate makes no estimate, and one that is complete took no time") {
+  const Workplace here;
+  here.import_packing("dense_p20");
+  const std::string test = "run biaxial --specimen S.h5 --set stage.compression.to_strain=0.001 --json";
+  const Outcome made = here.run(test + " --set loading.mode=physical --set loading.inertial_number=1e-2");
+  INFO(made.errors);
+  REQUIRE(made.code == 0);
+  CHECK(made.output.find("error_estimate") == std::string::npos);
+  CHECK(made.output.find("time_pairs_s") != std::string::npos);
+  REQUIRE(here.run(test + " -o R.h5").code == 0);
+  const Outcome again = here.run(test + " -o R.h5 --resume");
+  INFO(again.errors);
+  REQUIRE(again.code == 0);
+  CHECK(again.output.find("wall_s") != std::string::npos);
+  CHECK(again.output.find("time_pairs_s") == std::string::npos);
+}
