@@ -146,8 +146,9 @@ def main():
     parser.add_argument("--only", help="flows of this shape alone, or none: biaxial tests alone")
     options = parser.parse_args()
     program = str(pathlib.Path(options.program).resolve())
-    print("shape   kappa  I      held mean  scatter  mu held            mu at constant volume  difference/error  "
-          "flagged  sub-steps", flush=True)
+    if options.only != "none":
+        print("shape   kappa  I      held mean  scatter  mu held            mu at constant volume  difference/error  "
+              "flagged  sub-steps", flush=True)
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         for shape, kappa, inertial, strain in FLOWS:
@@ -164,7 +165,7 @@ def main():
                   f"{apart:<17.2f} {held['flagged']:<8.2%} {held['substeps']:.3g}", flush=True)
         if options.only not in (None, "none"):
             return
-        print("\nbiaxial test at I = 1e-2, kappa = 1e4: record spacing, friction angle (degrees), mean lateral stress over "
+        print("biaxial test at I = 1e-2, kappa = 1e4: record spacing, friction angle (degrees), mean lateral stress over "
               "its target, inertial number reported")
         for spacing in SPACINGS:
             degrees, lateral, inertial = angle(program, folder, packed(program, folder, "disc", 1e4), spacing)
