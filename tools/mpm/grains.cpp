@@ -151,8 +151,8 @@ void SpecimenFamily::release() {
 }
 
 template <int D>
-Grains<D>::Grains(std::shared_ptr<GrainPool> pool, std::vector<std::int64_t> ids, bool physical)
-    : pool_(std::move(pool)), ids_(std::move(ids)), physical_(physical) {}
+Grains<D>::Grains(std::shared_ptr<GrainPool> pool, std::vector<std::int64_t> ids, bool physical, double gather)
+    : pool_(std::move(pool)), ids_(std::move(ids)), physical_(physical), gather_(physical ? 0 : gather) {}
 
 template <int D>
 void Grains<D>::read_stress(Point<D>* points) {
@@ -168,12 +168,12 @@ void Grains<D>::read_stress(Point<D>* points) {
 }
 
 template <int D>
-void Grains<D>::in_parts(Point<D>& point, std::int64_t id, double dt, double scale) {
+void Grains<D>::in_parts(Point<D>& point, std::int64_t id, const Mat<D>& gradient, double dt, double scale) {
   ++split;
   double sigma[9], dH[9];
   long parts = long(std::ceil(1 / std::max(scale, 1e-3)));
   for (long done = 0; done < parts;) {
-    to_nine<D>(finite_increment<D>(point.gradient / double(parts)), dH);
+    to_nine<D>(finite_increment<D>(gradient / double(parts)), dH);
     const auto status = rvelab_apply(pool_->get(), id, dH, dt / double(parts), sigma);
     if (status == RVELAB_DISCARD && parts < 100'000) {
       parts *= 4;  // what is done stays done: the parts of the rest become finer
@@ -189,35 +189,52 @@ void Grains<D>::in_parts(Point<D>& point, std::int64_t id, double dt, double sca
 template <int D>
 void Grains<D>::advance(Point<D>* points, long count, double dt, Workers&) {
   const auto begin = std::chrono::steady_clock::now();
-  dH_.resize(9 * std::size_t(count));
-  sigma_.resize(9 * std::size_t(count));
-  scale_.resize(std::size_t(count));
-  status_.resize(std::size_t(count));
-  for (long k = 0; k < count; ++k) to_nine<D>(finite_increment<D>(points[k].gradient), dH_.data() + 9 * k);
+  waiting_.resize(std::size_t(count), Mat<D>::Zero());
+  chosen_.clear();
+  batch_ids_.clear();
+  dH_.clear();
+  for (long k = 0; k < count; ++k) {
+    Mat<D>& sum = waiting_[std::size_t(k)];
+    sum += points[k].gradient;
+    if (sum.cwiseAbs().maxCoeff() < gather_) continue;
+    chosen_.push_back(k);
+    batch_ids_.push_back(ids_[std::size_t(k)]);
+    dH_.resize(9 * chosen_.size());
+    to_nine<D>(finite_increment<D>(sum), dH_.data() + dH_.size() - 9);
+  }
+  const std::size_t n = chosen_.size();
+  asked += double(count);
+  called += double(n);
+  sigma_.resize(9 * n);
+  scale_.resize(n);
+  status_.resize(n);
   rvelab_batch batch;
   need(rvelab_batch_init(&batch, sizeof batch));
-  batch.n = count;
+  batch.n = std::int64_t(n);
   batch.dt = physical_ ? dt : 0;
-  batch.ids = ids_.data();
+  batch.ids = batch_ids_.data();
   batch.dH = dH_.data();
   batch.sigma = sigma_.data();
   batch.dt_scale = scale_.data();
   batch.status = status_.data();
-  const auto worst = rvelab_trial(pool_->get(), &batch);
+  const auto worst = n == 0 ? RVELAB_OK : rvelab_trial(pool_->get(), &batch);
   if (worst < RVELAB_DISCARD) need(worst);
   std::vector<std::int64_t> good;
-  good.reserve(std::size_t(count));
-  for (long k = 0; k < count; ++k) {
-    if (status_[k] >= RVELAB_OK) good.push_back(ids_[k]);
+  good.reserve(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    if (status_[k] >= RVELAB_OK) good.push_back(batch_ids_[k]);
     warned += status_[k] == RVELAB_W_TOLERANCE || status_[k] == RVELAB_W_NOT_QUASI_STATIC;
   }
-  need(rvelab_commit(pool_->get(), std::int64_t(good.size()), good.data()));
-  for (long k = 0; k < count; ++k) {
+  if (!good.empty()) need(rvelab_commit(pool_->get(), std::int64_t(good.size()), good.data()));
+  for (std::size_t k = 0; k < n; ++k) {
+    auto& point = points[chosen_[k]];
+    Mat<D>& sum = waiting_[std::size_t(chosen_[k])];
     if (status_[k] >= RVELAB_OK) {
-      points[k].stress = from_nine<D>(sigma_.data() + 9 * k);
+      point.stress = from_nine<D>(sigma_.data() + 9 * k);
     } else {
-      in_parts(points[k], ids_[k], batch.dt, scale_[k]);
+      in_parts(point, batch_ids_[k], sum, batch.dt, scale_[k]);
     }
+    sum.setZero();
   }
   this->seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
@@ -240,7 +257,11 @@ double Grains<D>::grain_steps() const {
 template <int D>
 void Grains<D>::save(OutputFile& file, const std::string& name) const {
   file.write("materials/" + name + "/ids", ids_);
-  file.write("materials/" + name + "/state", std::vector<double>{wave_modulus_, double(split), double(warned)}, {3});
+  file.write("materials/" + name + "/state",
+             std::vector<double>{wave_modulus_, double(split), double(warned), called, asked}, {5});
+  std::vector<double> waiting;
+  for (const auto& each : waiting_) waiting.insert(waiting.end(), each.data(), each.data() + D * D);
+  file.write("materials/" + name + "/waiting", waiting, {waiting.size()});
 }
 
 template <int D>
@@ -250,6 +271,13 @@ void Grains<D>::restore(const InputFile& file, const std::string& name) {
   wave_modulus_ = state[0];
   split = long(state[1]);
   warned = long(state[2]);
+  called = state[3];
+  asked = state[4];
+  const auto waiting = file.read("materials/" + name + "/waiting");
+  waiting_.clear();
+  for (std::size_t k = 0; k + D * D <= waiting.size(); k += D * D) {
+    waiting_.push_back(Eigen::Map<const Mat<D>>(waiting.data() + k));
+  }
 }
 
 template class Grains<2>;

@@ -63,7 +63,9 @@ template <int D>
 class Grains : public Material<D> {
  public:
   /// physical: the RVEs feel the time step (rate, inertia of grains); else they are quasi-static.
-  Grains(std::shared_ptr<GrainPool> pool, std::vector<std::int64_t> ids, bool physical);
+  /// gather: increments whose sum (largest entry of the gradient) is below this wait for those to come; the stress
+  /// stays meanwhile. 0: none waits.
+  Grains(std::shared_ptr<GrainPool> pool, std::vector<std::int64_t> ids, bool physical, double gather);
   void advance(Point<D>* points, long count, double dt, Workers& workers) override;
   double wave_modulus() const override { return wave_modulus_; }
   Measures measures(long point) const override;
@@ -75,13 +77,18 @@ class Grains : public Material<D> {
   const std::vector<std::int64_t>& ids() const { return ids_; }
   /// Increments that could be made in parts only, and those whose estimate was above the tolerance or not quasi-static.
   long split = 0, warned = 0;
+  double called = 0, asked = 0;  ///< increments given to RVEs, and all there were
 
  private:
-  void in_parts(Point<D>& point, std::int64_t id, double dt, double scale);
+  void in_parts(Point<D>& point, std::int64_t id, const Mat<D>& gradient, double dt, double scale);
   std::shared_ptr<GrainPool> pool_;
   std::vector<std::int64_t> ids_;
   bool physical_;
+  double gather_;
   double wave_modulus_ = 0;
+  std::vector<Mat<D>> waiting_;  ///< gradients times steps that were gathered
+  std::vector<long> chosen_;     ///< points of the batch
+  std::vector<std::int64_t> batch_ids_;
   std::vector<double> dH_, sigma_, scale_;
   std::vector<std::int32_t> status_;
 };

@@ -48,19 +48,19 @@ std::string nearest_word(const std::string& word, const std::set<std::string>& w
 }
 
 Keys::Keys(const toml::table& table, std::string path, std::string where)
-    : table_(table), path_(std::move(path)), where_(std::move(where)) {}
+    : table_(&table), path_(std::move(path)), where_(std::move(where)) {}
 
 const toml::node* Keys::get(const std::string& name) {
   known_.insert(name);
-  return table_.get(name);
+  return table_->get(name);
 }
 
 void Keys::wrong(const std::string& name, const std::string& message) const {
-  throw Mistake(place(path_, table_.get(name)) + dotted(name) + " " + message);
+  throw Mistake(place(path_, table_->get(name)) + dotted(name) + " " + message);
 }
 
 void Keys::missing(const std::string& name) const {
-  throw Mistake(place(path_, &table_) + "the key " + dotted(name) + " is missing; it has no default: give it a value");
+  throw Mistake(place(path_, table_) + "the key " + dotted(name) + " is missing; it has no default: give it a value");
 }
 
 double Keys::number(const std::string& name, double initial, double least, double most) {
@@ -111,7 +111,7 @@ std::string Keys::text(const std::string& name) {
 
 std::string Keys::choice(const std::string& name, const std::vector<std::string>& allowed, bool required) {
   if (required && get(name) == nullptr) {
-    throw Mistake(place(path_, &table_) + "the key " + dotted(name) + " is missing; allowed: " + listed(allowed));
+    throw Mistake(place(path_, table_) + "the key " + dotted(name) + " is missing; allowed: " + listed(allowed));
   }
   const std::string value = text(name, allowed.front());
   const std::set<std::string> words(allowed.begin(), allowed.end());
@@ -173,8 +173,9 @@ std::vector<std::string> Keys::texts(const std::string& name) {
 }
 
 Keys Keys::table(const std::string& name) {
+  static const toml::table none;
   const auto* node = get(name);
-  if (node == nullptr) return Keys({}, path_, dotted(name));
+  if (node == nullptr) return Keys(none, path_, dotted(name));
   if (!node->is_table()) wrong(name, "must be a table: [" + dotted(name) + "]");
   return Keys(*node->as_table(), path_, dotted(name));
 }
@@ -192,7 +193,7 @@ std::vector<Keys> Keys::tables(const std::string& name) {
 }
 
 void Keys::finish() const {
-  for (const auto& [key, node] : table_) {
+  for (const auto& [key, node] : *table_) {
     const std::string name(key.str());
     if (known_.contains(name)) continue;
     const auto nearest = nearest_word(name, known_);

@@ -15,10 +15,10 @@ namespace mpm {
 /// One table. Reading a key makes it known; finish() then throws for those that nobody asked for.
 class Keys {
  public:
-  /// `where`: its dotted name, "" for the whole file.
+  /// `where`: its dotted name, "" for the whole file. The table must outlive this.
   Keys(const toml::table& table, std::string path, std::string where);
 
-  bool has(const std::string& name) const { return table_.contains(name); }
+  bool has(const std::string& name) const { return table_->contains(name); }
   double number(const std::string& name, double initial, double least = -1e300, double most = 1e300);
   double number(const std::string& name);  ///< required
   long whole_number(const std::string& name, long initial, long least, long most);
@@ -45,7 +45,7 @@ class Keys {
   const toml::node* get(const std::string& name);
   std::string dotted(const std::string& name) const { return where_.empty() ? name : where_ + "." + name; }
   [[noreturn]] void missing(const std::string& name) const;
-  toml::table table_;
+  const toml::table* table_;  ///< copies of a table would not know their lines
   std::string path_, where_;
   std::set<std::string> known_;
 };

@@ -19,10 +19,16 @@ void Planes<D>::rebuild(const Grid<D>& grid, double time) {
   behind_.assign(all.empty() ? 0 : grid.nodes.size(), 0);
   if (all.empty()) return;
   special_of_.assign(grid.nodes.size(), -1);
-  const auto touch = [&](long node) {
-    if (special_of_[std::size_t(node)] >= 0) return;
-    special_of_[std::size_t(node)] = int(specials_.size());
-    specials_.push_back({node});
+  const auto touch = [&](long node, int plane) {
+    int& at = special_of_[std::size_t(node)];
+    if (at < 0) {
+      at = int(specials_.size());
+      specials_.push_back({node, {}});
+    }
+    auto& planes = specials_[std::size_t(at)].planes;
+    const auto axis = all[plane].axis;
+    const bool on = grid.index(node)[axis] == all[plane].node;
+    planes.insert(on ? planes.begin() : planes.end(), plane);
   };
   for (long flat = 0; flat < long(grid.nodes.size()); ++flat) {
     auto node = grid.index(flat);
@@ -47,8 +53,10 @@ void Planes<D>::rebuild(const Grid<D>& grid, double time) {
     if (!there) continue;
     tie.before = grid.flat(node);
     if (!tie.planes.empty()) {
-      touch(tie.behind);
-      touch(tie.before);
+      for (const int k : tie.planes) {
+        touch(tie.behind, k);
+        touch(tie.before, k);
+      }
       ties_.push_back(tie);
       continue;
     }
@@ -56,8 +64,15 @@ void Planes<D>::rebuild(const Grid<D>& grid, double time) {
       for (int k = 0; k < int(all.size()); ++k) {
         if (!active(k, time) || all[k].fixed != fixed || node[all[k].axis] != all[k].node) continue;
         on_plane_.push_back({flat, k});
-        touch(flat);
+        touch(flat, k);
       }
+    }
+  }
+  // A node behind one plane may follow a node that lies on another, which then holds both.
+  for (const auto& tie : ties_) {
+    auto& behind = special(tie.behind).planes;
+    for (const int k : special(tie.before).planes) {
+      if (std::find(behind.begin(), behind.end(), k) == behind.end()) behind.push_back(k);
     }
   }
 }
@@ -83,7 +98,9 @@ Vec<D> Planes<D>::shift(const Tie& tie, const std::vector<Vec<D>>& speeds) const
 template <int D>
 void Planes<D>::fold_momentum(Grid<D>& grid, double time) {
   for (auto& special : specials_) {
-    special.mass = grid.nodes[special.node].mass;
+    const auto& node = grid.nodes[special.node];
+    special.mass = node.mass;
+    for (int i = 0; i < D; ++i) special.velocity[i] = node.a[i];
   }
   const auto now = speeds(time);
   for (const auto& tie : ties_) {
@@ -161,8 +178,17 @@ void Planes<D>::keep_brought(Grid<D>& grid) const {
 }
 
 template <int D>
-void Planes<D>::react(const Grid<D>& grid, double dt) {
-  for (auto& each : specials_) each.given.setZero();
+void Planes<D>::react(const Grid<D>& grid, double dt, double pic_fraction) {
+  for (auto& each : specials_) {
+    each.given.setZero();
+    const auto& node = grid.nodes[each.node];
+    for (int i = 0; i < D; ++i) {
+      const int plane = owner(each.planes, i);
+      if (plane < 0) continue;
+      const double brought = node.w[i] - node.a[i];
+      all[plane].reaction.impulse[i] += pic_fraction * each.mass * (brought - each.velocity[i]);
+    }
+  }
   // What a tie did to the node behind and to the one before it.
   for (const auto& tie : ties_) {
     const auto& behind = special(tie.behind);

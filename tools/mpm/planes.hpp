@@ -56,7 +56,8 @@ class Planes {
   /// Velocities w at the end of the step.
   void set_end(Grid<D>& grid, double time) const { set(grid, time, true); }
   /// Once a is the change over the step: what each plane did.
-  void react(const Grid<D>& grid, double dt);
+  /// pic_fraction: points take this part of the nodal velocity itself, not of its change; walls give it too.
+  void react(const Grid<D>& grid, double dt, double pic_fraction);
   /// Total change of kinetic energy and momentum need the masses before folding: puts them back.
   void unfold(Grid<D>& grid) const;
   /// Whether a node lies behind a plane.
@@ -70,8 +71,9 @@ class Planes {
   };
   struct Special {  ///< a node that a plane touches, with what it had before
     long node;
+    std::vector<int> planes;  ///< that it lies on, then those that it mirrors at
     double mass = 0;
-    Vec<D> force = Vec<D>::Zero();
+    Vec<D> force = Vec<D>::Zero(), velocity = Vec<D>::Zero();
     Vec<D> given = Vec<D>::Zero();  ///< N s, by ties
   };
   struct OnPlane {

@@ -55,8 +55,8 @@ void tell_cost(const Model<D>& model, double wall, long steps, double grain_step
   if (grains > 0) {
     report << "grain-steps " << grain_steps << ", " << grain_steps / grains / 1e6 << " M a second";
     for (const auto& [name, each] : model.grains) {
-      report << "; " << name << ": " << each->split << " increments made in parts, " << each->warned
-             << " with a warning";
+      report << "; " << name << ": " << each->called << " of " << each->asked << " increments called, " << each->split
+             << " in parts, " << each->warned << " with a warning";
     }
     report << "\n";
   } else if (steps > 0) {

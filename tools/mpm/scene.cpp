@@ -54,6 +54,8 @@ MaterialOfScene read_material(Keys& keys) {
     material.physical = keys.choice("loading", {"quasi_static", "physical"}) == "physical";
     material.tolerance_rel = keys.number("tolerance_rel", 0, 0, 1);
     material.tolerance_abs = keys.number("tolerance_abs", 0, 0, 1);
+    material.gather = keys.number("gather", 0, 0, 1e-3);
+    if (material.gather > 0 && material.physical) keys.wrong("gather", "is for quasi_static loading; remove it");
   } else {
     material.density = keys.number("density_kg_m3", 2000, 1e-3);
     material.moduli = read_moduli(keys);

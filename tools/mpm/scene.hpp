@@ -17,7 +17,7 @@ struct MaterialOfScene {
   double density = 0;  ///< kg/m^3; of the grains themselves where there are grains
   std::vector<std::string> specimens;
   bool physical = false;
-  double tolerance_rel = 0, tolerance_abs = 0;
+  double tolerance_rel = 0, tolerance_abs = 0, gather = 0;
   ElasticModuli moduli;
   Strength strength;
   Cone cone = Cone::outer;

@@ -141,7 +141,7 @@ std::shared_ptr<Grains<D>> load_grains(const Scene& scene, const MaterialOfScene
   }
   model.pressure_classes += long(family.classes()) - 1;
   family.release();
-  auto grains = std::make_shared<Grains<D>>(pool, std::move(ids), material.physical);
+  auto grains = std::make_shared<Grains<D>>(pool, std::move(ids), material.physical, material.gather);
   grains->read_stress(points);
   return grains;
 }
@@ -187,8 +187,9 @@ std::unique_ptr<Model<D>> set_up(const Scene& scene, int threads, const std::str
       const auto pool =
           std::make_shared<GrainPool>(solver.workers, GrainOptions{material.tolerance_rel, material.tolerance_abs});
       model->pools[material.name] = pool;
-      auto grains = populate ? load_grains<D>(scene, material, *model, pool, specimens, points, range.count)
-                             : std::make_shared<Grains<D>>(pool, std::vector<std::int64_t>{}, material.physical);
+      auto grains =
+          populate ? load_grains<D>(scene, material, *model, pool, specimens, points, range.count)
+                   : std::make_shared<Grains<D>>(pool, std::vector<std::int64_t>{}, material.physical, material.gather);
       model->grains[material.name] = grains;
       range.material = grains;
     }

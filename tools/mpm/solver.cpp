@@ -229,7 +229,7 @@ void Solver<D>::end_velocities(double dt) {
     kinetic += 0.5 * node.mass * change;
   }
   ledger.nodal_kinetic += kinetic;
-  planes.react(grid, dt);
+  planes.react(grid, dt, options.pic_fraction);
 }
 
 template <int D>
