@@ -116,7 +116,7 @@ std::int64_t SpecimenFamily::prepare(double pressure) {
       missing[i] = (r < 3 ? -aim : 0) - 0.5 * (sigma[3 * first[r] + second[r]] + sigma[3 * second[r] + first[r]]);
       for (long j = 0; j < n; ++j) C(i, j) = tangent[6 * r + rows[j]];
     }
-    if (aim == pressure && missing.cwiseAbs().maxCoeff() < 1e-4 * pressure) return id;
+    if (aim == pressure && missing.cwiseAbs().maxCoeff() < 1e-3 * pressure) return id;
     Eigen::VectorXd strain = C.fullPivLu().solve(missing);
     strain *= std::min(1.0, 2e-3 / strain.cwiseAbs().maxCoeff());
     double dH[9] = {};

@@ -16,7 +16,7 @@ import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 rvelab, folder, results = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3])
-cases = sys.argv[4:] or ["C1"]
+cases = sys.argv[4:]
 mpm = pathlib.Path(rvelab).with_name("rvelab-mpm")
 
 
@@ -111,7 +111,8 @@ def main():
     strain, stress = cell_test()
     element(strain, stress)
     column()
-    biaxial(strain, stress)
+    if cases:
+        biaxial(strain, stress)
 
 
 if __name__ == "__main__":
