@@ -1,0 +1,169 @@
+#include <filesystem>
+#include <fstream>
+
+#include "tests/catch.hpp"
+#include "tests/child.hpp"
+#include "tests/folder.hpp"
+#include "tools/mpm/files.hpp"
+#include "tools/mpm/run.hpp"
+#include "tools/mpm/setup.hpp"
+
+using namespace mpm;
+using rvelab::test::bytes_of;
+using rvelab::test::Child;
+using rvelab::test::Folder;
+
+namespace {
+
+const std::string scenes = RVELAB_SOURCE_DIR "/protocols/mpm/";
+
+/// A specimen of 400 discs at 20 kPa under a name that scenes know.
+void specimen(const Folder& folder, const std::string& name) {
+  const std::string from = RVELAB_TEST_DATA "/yade/dense_p20";
+  Child child(
+      {RVELAB_PROGRAM, "import", from + ".particles.csv", from + ".contacts.csv", from + ".json", "-o", folder / name},
+      folder / "out", folder / "err");
+  REQUIRE(child.wait() == 0);
+}
+
+Scene element(const std::vector<std::string>& more) {
+  std::vector<std::string> set{"loads.surface_pressure_Pa=20e3", "initial.pressure_Pa=20e3"};
+  set.insert(set.end(), more.begin(), more.end());
+  return read_scene(scenes + "element.toml", {}, set);
+}
+
+void need(std::int32_t status) { REQUIRE(status >= RVELAB_OK); }
+
+}  // namespace
+
+TEST_CASE("grains in a point answer as the pure cell does along the same path, bit for bit") {
+  const Folder folder;
+  specimen(folder, "dense.h5");
+  auto model = set_up<2>(element({}), 2, folder.path());
+  auto& solver = model->solver;
+  // The pure cell: the state that was prepared for the points, alone in a pool of another host.
+  Workers workers(1);
+  auto pool = std::make_shared<GrainPool>(workers, GrainOptions{});
+  SpecimenFamily family(pool, {folder / "dense.h5"});
+  const auto id = family.spawn(20e3);
+  for (int k = 0; k < 40; ++k) {
+    solver.step(solver.stable_step());
+    double sigma[9], dH[9] = {};
+    const Mat<2> map = finite_increment<2>(solver.points[1].gradient);
+    for (int i = 0; i < 2; ++i) {
+      for (int j = 0; j < 2; ++j) dH[3 * i + j] = map(i, j);
+    }
+    need(rvelab_apply(pool->get(), id, dH, 0, sigma));
+    for (int i = 0; i < 2; ++i) {
+      for (int j = 0; j < 2; ++j) REQUIRE(solver.points[1].stress(i, j) == sigma[3 * i + j]);
+    }
+  }
+  CHECK(std::abs(solver.points[1].stress(1, 1)) > 21e3);  // it was compressed
+}
+
+TEST_CASE("a single element strains evenly, and carries what its RVE carries under stress control") {
+  const Folder folder;
+  specimen(folder, "dense.h5");
+  auto model = set_up<2>(element({"boundary.top.motion=[[0, 0, 0], [0.1, 0, -0.02]]"}), 2, folder.path());
+  auto& solver = model->solver;
+  while (solver.time < 0.3) solver.step(solver.stable_step());  // 0.5 %
+  double low = 1e300, high = -1e300, side = 0;
+  for (const auto& point : solver.points) {
+    low = std::min(low, point.F(0, 0));
+    high = std::max(high, point.F(0, 0));
+    side += point.stress(0, 0) / 4;
+  }
+  CHECK(high - low < 0.05 * (high - 1));
+  CHECK(side == Approx(-20e3).epsilon(0.03));
+  // The same axial strain by the element test of a host: side stress held with the tangent.
+  Workers workers(1);
+  auto pool = std::make_shared<GrainPool>(workers, GrainOptions{});
+  SpecimenFamily family(pool, {folder / "dense.h5"});
+  const auto id = family.spawn(20e3);
+  const double end = std::log(solver.grid.cell[1]), step = -1e-5;
+  double sigma[9] = {-20e3, 0, 0, 0, -20e3, 0, 0, 0, 0}, lateral = 0.4 * -step, last = -20e3;
+  for (double strain = 0; strain > end; strain += step) {
+    const double dH[9] = {lateral, 0, 0, 0, step, 0, 0, 0, 0};
+    need(rvelab_apply(pool->get(), id, dH, 0, sigma));
+    // Secant in the side stress: the modulus is some 15 MPa.
+    lateral = std::max(0.0, lateral + 0.3 * (-20e3 - sigma[0] - 0.5 * (sigma[0] - last)) / 15e6);
+    last = sigma[0];
+  }
+  CHECK(sigma[0] == Approx(-20e3).epsilon(0.03));
+  double axial = 0;
+  for (const auto& point : solver.points) axial += point.stress(1, 1) / 4;
+  CHECK(axial == Approx(sigma[4]).epsilon(0.04));
+  CHECK(axial < -30e3);
+}
+
+TEST_CASE("geostatic cells carry the pressure of their depth, and a column of them stays at rest") {
+  const Folder folder;
+  specimen(folder, "sand.h5");
+  const auto scene = read_scene(scenes + "column.toml", {},
+                                {"material.sand.specimens=[\"sand.h5\"]", "grid.cell_m=0.5", "time.pic_fraction=0.1",
+                                 "boundary.gate.removed_at_s=9"});
+  auto model = set_up<2>(scene, 2, folder.path());
+  auto& solver = model->solver;
+  CHECK(model->pressure_classes == 4);  // rows of points, sixteen points
+  const double density = solver.points[0].mass / solver.points[0].volume;
+  for (const auto& point : solver.points) {
+    const double p = density * 9.81 * (1 - point.position[1]);
+    CHECK(-point.stress(0, 0) == Approx(p).epsilon(0.01));
+    CHECK(-point.stress(1, 1) == Approx(p).epsilon(0.01));
+    CHECK(std::abs(point.stress(0, 1)) < 2e-3 * p);
+  }
+  while (solver.time < 0.1) solver.step(solver.stable_step());
+  for (const auto& point : solver.points) CHECK((point.position - point.first).norm() < 1e-3);
+}
+
+TEST_CASE("increments that wait for others change the answer by less than the tolerance") {
+  const Folder folder;
+  specimen(folder, "dense.h5");
+  double stress[2], called[2];
+  for (const int gathered : {0, 1}) {
+    auto model =
+        set_up<2>(element({"time.cfl=0.05", gathered ? "material.dense.gather=1e-5" : "material.dense.gather=0"}), 2,
+                  folder.path());
+    while (model->solver.time < 0.15) model->solver.step(model->solver.stable_step());
+    stress[gathered] = model->solver.points[0].stress(1, 1);
+    called[gathered] = model->grains.at("dense")->called;
+  }
+  CHECK(called[1] < 0.7 * called[0]);
+  CHECK(stress[1] == Approx(stress[0]).epsilon(0.01));
+}
+
+TEST_CASE("a run that was stopped and resumed ends with the bits of one that was not, on other threads too") {
+  const Folder folder;
+  specimen(folder, "sand.h5");
+  const std::vector<std::string> small{"--set",       "material.sand.specimens=[\"sand.h5\"]",
+                                       "--set",       "grid.cell_m=0.5",
+                                       "--set",       "time.duration_s=0.06",
+                                       "--set",       "output.frame_every_s=0.02",
+                                       "--set",       "time.pic_fraction=0.01",
+                                       "--specimens", folder.path(),
+                                       "-q"};
+  const auto run = [&](std::vector<std::string> arguments, bool fresh) {
+    arguments.insert(arguments.begin(), RVELAB_MPM_PROGRAM);
+    if (fresh) {
+      arguments.push_back(scenes + "column.toml");
+      arguments.insert(arguments.end(), small.begin(), small.end());
+    }
+    Child child(arguments, folder / "out", folder / "err");
+    const int code = child.wait();
+    UNSCOPED_INFO(bytes_of(folder / "err"));
+    return code;
+  };
+  REQUIRE(run({"-o", folder / "whole", "-j", "1"}, true) == 0);
+  REQUIRE(run({"-o", folder / "parts", "-j", "2", "--stop-at", "0.033"}, true) == 130);
+  CHECK(bytes_of(folder / "out").find("go on with") != std::string::npos);
+  REQUIRE(run({"--resume", folder / "parts", "-j", "3"}, false) == 0);
+  for (const char* name : {"history.csv", "watched.csv", "points.xdmf"}) {
+    CAPTURE(name);
+    const auto whole = bytes_of(folder / ("whole/" + std::string(name)));
+    CHECK(whole.size() > 100);
+    CHECK(whole == bytes_of(folder / ("parts/" + std::string(name))));
+  }
+  const InputFile whole(folder / "whole/checkpoint.h5"), parts(folder / "parts/checkpoint.h5");
+  CHECK(whole.read("points") == parts.read("points"));
+  CHECK(whole.read("reactions") == parts.read("reactions"));
+}

@@ -1,0 +1,127 @@
+#include <filesystem>
+#include <fstream>
+
+#include "tests/catch.hpp"
+#include "tests/child.hpp"
+#include "tests/folder.hpp"
+#include "tools/mpm/scene.hpp"
+
+using namespace mpm;
+using rvelab::test::bytes_of;
+using rvelab::test::Child;
+using rvelab::test::Folder;
+
+namespace {
+
+const std::string scenes = RVELAB_SOURCE_DIR "/protocols/mpm/";
+
+/// The message of a scene that must be refused.
+std::string refusal(const std::string& text) {
+  const Folder folder;
+  std::ofstream(folder / "scene.toml") << text;
+  try {
+    read_scene(folder / "scene.toml", {}, {});
+  } catch (const Mistake& mistake) {
+    const std::string message = mistake.what();
+    return message.substr(message.find("scene.toml"));
+  }
+  return "accepted";
+}
+
+std::string edited(const std::string& from, const std::string& to) {
+  std::string text = bytes_of(scenes + "elastic_block.toml");
+  const auto at = text.find(from);
+  REQUIRE(at != std::string::npos);
+  return text.replace(at, from.size(), to);
+}
+
+}  // namespace
+
+TEST_CASE("every scene is read, with each of its cases") {
+  int files = 0, cases = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(scenes)) {
+    const auto path = entry.path().string();
+    CAPTURE(path);
+    ++files;
+    CHECK_NOTHROW(read_scene(path, {}, {}));
+    for (const auto& name : cases_of(path)) {
+      CAPTURE(name);
+      ++cases;
+      CHECK_NOTHROW(read_scene(path, {name}, {}));
+      // Each says at its head where its numbers are from.
+      CHECK(bytes_of(path).find("# Where the numbers are from.") != std::string::npos);
+    }
+  }
+  CHECK(files >= 7);
+  CHECK(cases >= 12);
+}
+
+TEST_CASE("cases have the published meshes") {
+  const auto points = [](const Scene& scene) {
+    const auto& region = scene.regions.front();
+    return std::lround((region.upper[0] - region.lower[0]) / scene.cell[0]) *
+           std::lround((region.upper[1] - region.lower[1]) / scene.cell[1]) * region.points_per_cell;
+  };
+  CHECK(points(read_scene(scenes + "biaxial.toml", {"C4"}, {})) == 16 * 8 * 4);
+  CHECK(points(read_scene(scenes + "biaxial.toml", {"M1"}, {})) == 20 * 10);
+  CHECK(points(read_scene(scenes + "biaxial.toml", {"M4", "published"}, {})) == 800);
+  CHECK(read_scene(scenes + "biaxial.toml", {"M4", "published"}, {}).planes[1].motion.back().back() == -0.02);
+  CHECK(points(read_scene(scenes + "biaxial.toml", {"M9"}, {})) == 1800);
+  CHECK(points(read_scene(scenes + "biaxial.toml", {"F4"}, {})) == 30 * 15 * 4);
+  CHECK(points(read_scene(scenes + "footing.toml", {"soft", "published"}, {})) == 7776);
+  CHECK(points(read_scene(scenes + "pipe.toml", {"published"}, {})) == 9800);
+  CHECK(points(read_scene(scenes + "column.toml", {"published"}, {})) == 1024);
+}
+
+TEST_CASE("a mistake in a scene names line, key, what is allowed and the remedy") {
+  CHECK(refusal(edited("duration_s = 0.02", "duration_s = 0.02\npic_fracton = 0.1")) ==
+        "scene.toml:17: unknown key time.pic_fracton; the nearest known key is time.pic_fraction; correct the name or "
+        "remove it");
+  CHECK(refusal(edited("density_kg_m3", "density_kg"))
+            .find("unknown key material.density_kg; the nearest known key is "
+                  "material.density_kg_m3") != std::string::npos);
+  CHECK(
+      refusal(edited("kind = \"roller\"", "kind = \"rolling\"")) ==
+      "scene.toml:32: boundary.kind is \"rolling\"; the nearest allowed value is \"roller\" (allowed: roller, fixed)");
+  CHECK(refusal(edited("poisson_ratio = 0.3", "poisson_ratio = 0.7")).find("allowed: -0.99 to 0.499") !=
+        std::string::npos);
+  CHECK(refusal(edited("young_modulus_Pa = 1e7\n", "")).find("material.young_modulus_Pa is missing") !=
+        std::string::npos);
+  CHECK(refusal(edited("[[boundary]]", "[[boundry]]")).find("unknown key boundry; the nearest known key is boundary") !=
+        std::string::npos);
+  CHECK(refusal(edited("material = \"block\"", "material = \"blok\"")).find("nearest material is \"block\"") !=
+        std::string::npos);
+  CHECK(refusal(edited("[time]", "[time")).find("scene.toml:15:6") != std::string::npos);
+  CHECK(refusal(edited("lower_m = [0, 0]", "lower_m = [0, 0, 0]")).find("2 numbers") != std::string::npos);
+  CHECK(refusal(edited("upper_m = [1, 1]", "upper_m = [1, 1]\npoints_per_cell = 5")).find("must be a square") !=
+        std::string::npos);
+  // A case is held to the same keys.
+  CHECK_THROWS_AS(read_scene(scenes + "biaxial.toml", {"M5"}, {}), Mistake);
+}
+
+TEST_CASE("assignments of the command line go by the names of tables") {
+  const auto scene =
+      read_scene(scenes + "pipe.toml", {}, {"body.pipe.radius_m=0.4", "time.cfl=0.2", "grid.shape=gimp"});
+  CHECK(scene.bodies[0].radius == 0.4);
+  CHECK(scene.cfl == 0.2);
+  CHECK(scene.shape == Shape::gimp);
+  CHECK_THROWS_AS(read_scene(scenes + "pipe.toml", {}, {"body.pip.radius_m=0.4"}), Mistake);
+  CHECK_THROWS_AS(read_scene(scenes + "pipe.toml", {}, {"time.clf=0.2"}), Mistake);
+}
+
+TEST_CASE("the program ends with code 2 and one line for a user's mistake") {
+  const Folder folder;
+  const auto run = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), RVELAB_MPM_PROGRAM);
+    Child child(arguments, folder / "out", folder / "err");
+    const int code = child.wait();
+    const auto text = bytes_of(folder / "err");
+    CHECK(std::count(text.begin(), text.end(), '\n') == 1);
+    return code;
+  };
+  CHECK(run({folder / "none.toml", "-o", folder / "run"}) == 2);
+  CHECK(run({scenes + "elastic_block.toml", "-o", folder / "run", "--set", "time.durations_s=1"}) == 2);
+  CHECK(run({scenes + "element.toml", "-o", folder / "run2", "--specimens", folder.path()}) == 2);
+  CHECK(bytes_of(folder / "err").find("dense.h5") != std::string::npos);
+  CHECK(run({"--resume", folder / "nowhere"}) == 2);
+}

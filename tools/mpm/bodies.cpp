@@ -1,0 +1,101 @@
+#include "tools/mpm/bodies.hpp"
+
+#include <algorithm>
+
+namespace mpm {
+
+template <int D>
+double Body<D>::distance(const Vec<D>& position, double time, Vec<D>& outward) const {
+  const Vec<D> r = position - centre - velocity.way(time);
+  if (kind == BodyKind::half_space) {
+    outward = normal;
+    return r.dot(normal);
+  }
+  if (kind == BodyKind::disc) {
+    outward = r;
+    if (D == 3) outward[D - 1] = 0;
+    const double length = outward.norm();
+    if (length > 0) outward /= length;
+    return length - radius;
+  }
+  // The nearest face; of two at one distance that across the last axis, a footing's lower one.
+  double nearest = -1e300;
+  outward.setZero();
+  for (int i = 0; i < D; ++i) {
+    const double beyond = std::abs(r[i]) - half[i];
+    if (beyond < nearest - 1e-9 * half[i]) continue;
+    nearest = beyond;
+    outward.setZero();
+    outward[i] = r[i] < 0 ? -1 : 1;
+  }
+  return nearest;
+}
+
+template <int D>
+void Bodies<D>::find(const Grid<D>& grid, const Planes<D>& planes, double time) {
+  contacts_.clear();
+  if (all.empty()) return;
+  const double touch = 1e-6 * grid.cell.minCoeff();
+  for (long flat = 0; flat < long(grid.nodes.size()); ++flat) {
+    if (!(grid.nodes[flat].mass > 0) || planes.is_behind(flat)) continue;
+    const Vec<D> x = grid.position(grid.index(flat));
+    for (int k = 0; k < int(all.size()); ++k) {
+      Vec<D> outward;
+      if (all[k].distance(x, time, outward) > touch) continue;
+      contacts_.push_back({flat, k, outward, Vec<D>::Zero(), Vec<D>::Zero()});
+    }
+  }
+}
+
+template <int D>
+void Bodies<D>::meet(const Contact& contact, const Vec<D>& speed, double* velocity) const {
+  const auto& body = all[contact.body];
+  Vec<D> relative;
+  for (int i = 0; i < D; ++i) relative[i] = velocity[i] - speed[i];
+  const double across = relative.dot(contact.normal);
+  if (across >= 0) return;
+  Vec<D> along = relative - across * contact.normal;
+  if (body.rough) {
+    along.setZero();
+  } else if (const double slip = along.norm(); slip > 0) {
+    along *= std::max(0.0, 1 + body.friction * across / slip);
+  }
+  for (int i = 0; i < D; ++i) velocity[i] = speed[i] + along[i];
+}
+
+template <int D>
+void Bodies<D>::set_start(Grid<D>& grid, double time) {
+  for (auto& contact : contacts_) {
+    auto& node = grid.nodes[contact.node];
+    for (int i = 0; i < D; ++i) contact.velocity[i] = node.v[i];
+    meet(contact, all[contact.body].velocity.at(time), node.v);
+  }
+}
+
+template <int D>
+void Bodies<D>::keep_force(const Grid<D>& grid) {
+  for (auto& contact : contacts_) {
+    for (int i = 0; i < D; ++i) contact.force[i] = grid.nodes[contact.node].w[i];
+  }
+}
+
+template <int D>
+void Bodies<D>::set_end(Grid<D>& grid, double time, double dt) {
+  for (auto& contact : contacts_) {
+    auto& node = grid.nodes[contact.node];
+    auto& body = all[contact.body];
+    meet(contact, body.velocity.at(time), node.w);
+    for (int i = 0; i < D; ++i) {
+      const double impulse = node.mass * (node.w[i] - contact.velocity[i]) - contact.force[i] * dt;
+      body.reaction.impulse[i] += impulse;
+      body.reaction.work += 0.5 * impulse * (node.w[i] + contact.velocity[i]);
+    }
+  }
+}
+
+template struct Body<2>;
+template struct Body<3>;
+template class Bodies<2>;
+template class Bodies<3>;
+
+}  // namespace mpm

@@ -1,0 +1,125 @@
+#include "tools/mpm/checkpoint.hpp"
+
+#include <filesystem>
+
+#include "tools/mpm/files.hpp"
+
+namespace mpm {
+namespace {
+
+/// All that a point holds, as one row of doubles.
+template <int D, class Field>
+void each_field(Point<D>& point, const Field& field) {
+  field(point.position.data(), D);
+  field(point.velocity.data(), D);
+  field(point.stress.data(), D * D);
+  field(&point.stress_zz, 1);
+  field(&point.mass, 1);
+  field(&point.volume, 1);
+  field(&point.work, 1);
+  field(point.affine.data(), D * D);
+  field(point.gradient.data(), D * D);
+  field(point.F.data(), D * D);
+  field(point.strain.data(), D * D);
+  field(point.first.data(), D);
+  field(point.half.data(), D);
+}
+
+std::string pool_name(const std::string& material, long steps) {
+  return "grains_" + material + "_" + std::to_string(steps) + ".h5";
+}
+
+}  // namespace
+
+template <int D>
+void write_checkpoint(const Model<D>& model, const Progress& progress, const std::string& folder) {
+  const std::filesystem::path place(folder);
+  const auto& solver = model.solver;
+  for (const auto& [name, pool] : model.pools) pool->write((place / pool_name(name, solver.steps)).string());
+  OutputFile file((place / "checkpoint.h5").string());
+  std::vector<double> rows;
+  for (auto point : solver.points) {
+    each_field<D>(point, [&](const double* values, int count) { rows.insert(rows.end(), values, values + count); });
+  }
+  const std::size_t n = solver.points.size();
+  file.write("points", rows, {n, n == 0 ? 0 : rows.size() / n});
+  std::vector<double> reactions;
+  const auto keep = [&](const auto& each) {
+    reactions.insert(reactions.end(), each.reaction.impulse.data(), each.reaction.impulse.data() + D);
+    reactions.push_back(each.reaction.work);
+  };
+  for (const auto& plane : solver.planes.all) keep(plane);
+  for (const auto& body : solver.bodies.all) keep(body);
+  file.write("reactions", reactions, {reactions.size()});
+  file.write("clock",
+             std::vector<double>{solver.time, solver.ledger.nodal_kinetic, solver.grid_seconds, solver.material_seconds,
+                                 progress.start.kinetic, progress.start.potential, progress.start.volume,
+                                 progress.last_row, progress.next_frame, progress.next_row, progress.next_checkpoint},
+             {11});
+  file.write("counts", std::vector<std::int64_t>{solver.steps, progress.history_bytes, progress.watched_bytes});
+  file.write("impulses", progress.impulses, {progress.impulses.size()});
+  file.write("frame_times", progress.frame_times, {progress.frame_times.size()});
+  file.write("watched", std::vector<std::int64_t>(model.watched.begin(), model.watched.end()));
+  for (const auto& range : solver.ranges) range.material->save(file, range.name);
+  file.publish();
+  // Files of RVEs of earlier checkpoints are of no use any more.
+  for (const auto& entry : std::filesystem::directory_iterator(place)) {
+    const auto name = entry.path().filename().string();
+    for (const auto& [material, pool] : model.pools) {
+      const bool old = name.starts_with("grains_" + material + "_") && name != pool_name(material, solver.steps);
+      std::error_code ignored;
+      if (old) std::filesystem::remove(entry.path(), ignored);
+    }
+  }
+}
+
+template <int D>
+void read_checkpoint(Model<D>& model, Progress& progress, const std::string& folder) {
+  const std::filesystem::path place(folder);
+  auto& solver = model.solver;
+  const InputFile file((place / "checkpoint.h5").string());
+  const auto rows = file.read("points");
+  std::size_t at = 0;
+  for (auto& point : solver.points) {
+    each_field<D>(point, [&](double* values, int count) {
+      if (at + std::size_t(count) > rows.size()) throw Mistake(folder + ": the checkpoint is not of this scene");
+      for (int i = 0; i < count; ++i) values[i] = rows[at++];
+    });
+  }
+  if (at != rows.size()) throw Mistake(folder + ": the checkpoint is not of this scene; start the run anew");
+  const auto reactions = file.read("reactions");
+  at = 0;
+  const auto take = [&](auto& each) {
+    for (int i = 0; i < D; ++i) each.reaction.impulse[i] = reactions.at(at++);
+    each.reaction.work = reactions.at(at++);
+  };
+  for (auto& plane : solver.planes.all) take(plane);
+  for (auto& body : solver.bodies.all) take(body);
+  const auto clock = file.read("clock");
+  solver.time = clock[0];
+  solver.ledger.nodal_kinetic = clock[1];
+  solver.grid_seconds = clock[2];
+  solver.material_seconds = clock[3];
+  progress.start = {clock[4], clock[5], clock[6]};
+  progress.last_row = clock[7];
+  progress.next_frame = clock[8];
+  progress.next_row = clock[9];
+  progress.next_checkpoint = clock[10];
+  const auto counts = file.read_whole("counts");
+  solver.steps = long(counts[0]);
+  progress.history_bytes = long(counts[1]);
+  progress.watched_bytes = long(counts[2]);
+  progress.impulses = file.read("impulses");
+  progress.frame_times = file.read("frame_times");
+  const auto watched = file.read_whole("watched");
+  model.watched.assign(watched.begin(), watched.end());
+  for (auto& [name, pool] : model.pools) pool->read((place / pool_name(name, solver.steps)).string());
+  for (auto& range : solver.ranges) range.material->restore(file, range.name);
+}
+
+template void write_checkpoint<2>(const Model<2>&, const Progress&, const std::string&);
+template void write_checkpoint<3>(const Model<3>&, const Progress&, const std::string&);
+template void read_checkpoint<2>(Model<2>&, Progress&, const std::string&);
+template void read_checkpoint<3>(Model<3>&, Progress&, const std::string&);
+
+}  // namespace mpm

@@ -1,0 +1,286 @@
+#include "tools/mpm/grains.hpp"
+
+#include <chrono>
+#include <cmath>
+
+#include "tools/mpm/files.hpp"
+
+namespace mpm {
+namespace {
+
+void need(std::int32_t status) {
+  if (status < RVELAB_OK) throw Mistake(std::string(rvelab_status_name(status)) + ": " + rvelab_last_error());
+}
+
+void run_tasks(void* host, rvelab_task task, void* work, std::int64_t count) {
+  static_cast<Workers*>(host)->for_each(count, [&](std::int64_t k) { task(work, k); });
+}
+
+template <int D>
+void to_nine(const Mat<D>& matrix, double* nine) {
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) nine[3 * i + j] = i < D && j < D ? matrix(i, j) : 0;
+  }
+}
+
+template <int D>
+Mat<D> from_nine(const double* nine) {
+  Mat<D> matrix;
+  for (int i = 0; i < D; ++i) {
+    for (int j = 0; j < D; ++j) matrix(i, j) = nine[3 * i + j];
+  }
+  return matrix;
+}
+
+/// Stress and, if asked for, tangent of the state as it is: a trial that is let go of.
+void look(rvelab_pool* pool, std::int64_t id, double* sigma, double* tangent) {
+  const double zero[9] = {};
+  rvelab_batch batch;
+  need(rvelab_batch_init(&batch, sizeof batch));
+  batch.n = 1;
+  batch.ids = &id;
+  batch.dH = zero;
+  batch.sigma = sigma;
+  batch.tangent = tangent;
+  need(rvelab_trial(pool, &batch));
+  need(rvelab_revert(pool, 1, &id));
+}
+
+}  // namespace
+
+GrainPool::GrainPool(Workers& workers, const GrainOptions& options) {
+  rvelab_pool_def def;
+  need(rvelab_pool_def_init(&def, sizeof def));
+  def.tolerance_rel = options.tolerance_rel;
+  def.tolerance_abs = options.tolerance_abs;
+  def.workers = 1;
+  def.run_tasks = run_tasks;
+  def.host = &workers;
+  need(rvelab_pool_create(&def, &pool_));
+}
+
+GrainPool::~GrainPool() { rvelab_pool_destroy(pool_); }
+
+rvelab_info GrainPool::info(std::int64_t id) const {
+  rvelab_info info;
+  need(rvelab_info_init(&info, sizeof info));
+  need(rvelab_get_info(pool_, id, &info));
+  return info;
+}
+
+void GrainPool::write(const std::string& path) const { need(rvelab_pool_write(pool_, path.c_str())); }
+void GrainPool::read(const std::string& path) { need(rvelab_pool_read(pool_, path.c_str())); }
+
+double wave_modulus_of(const GrainPool& pool, std::int64_t id) {
+  double sigma[9], tangent[36];
+  look(pool.get(), id, sigma, tangent);
+  return std::max({tangent[0], tangent[7], tangent[14]});
+}
+
+SpecimenFamily::SpecimenFamily(std::shared_ptr<GrainPool> pool, const std::vector<std::string>& paths)
+    : pool_(std::move(pool)) {
+  for (const auto& path : paths) {
+    std::int64_t tmpl = 0, id = 0;
+    need(rvelab_template_load(pool_->get(), path.c_str(), &tmpl));
+    need(rvelab_spawn(pool_->get(), tmpl, 1, &id));
+    specimens_.push_back({tmpl, pool_->info(id).p});
+    need(rvelab_release(pool_->get(), 1, &id));
+  }
+}
+
+std::int64_t SpecimenFamily::prepare(double pressure) {
+  const Specimen* nearest = &specimens_.front();
+  const auto apart = [&](const Specimen& s) { return std::abs(std::log(s.pressure / pressure)); };
+  for (const auto& s : specimens_) {
+    if (pressure > 0 && apart(s) < apart(*nearest)) nearest = &s;
+  }
+  std::int64_t id = 0;
+  need(rvelab_spawn(pool_->get(), nearest->tmpl, 1, &id));
+  if (pressure <= 0) return id;
+  const int d = int(pool_->info(id).dimension);
+  // Symmetric strains in the tangent's order; in the plane xx, yy, xy.
+  const std::vector<int> rows = d == 2 ? std::vector<int>{0, 1, 5} : std::vector<int>{0, 1, 2, 3, 4, 5};
+  const int first[6] = {0, 1, 2, 1, 0, 0}, second[6] = {0, 1, 2, 2, 2, 1};
+  const long n = long(rows.size());
+  double sigma[9], tangent[36];
+  for (int round = 0; round < 200; ++round) {
+    look(pool_->get(), id, sigma, tangent);
+    double now = 0;
+    for (int i = 0; i < d; ++i) now -= sigma[4 * i] / d;
+    // In steps of a fifth of the pressure at most: the network changes on the way.
+    const double aim = std::min(std::max(pressure, now / 1.2), now * 1.2);
+    Eigen::MatrixXd C(n, n);
+    Eigen::VectorXd missing(n);
+    for (long i = 0; i < n; ++i) {
+      const int r = rows[i];
+      missing[i] = (r < 3 ? -aim : 0) - 0.5 * (sigma[3 * first[r] + second[r]] + sigma[3 * second[r] + first[r]]);
+      for (long j = 0; j < n; ++j) C(i, j) = tangent[6 * r + rows[j]];
+    }
+    if (aim == pressure && missing.cwiseAbs().maxCoeff() < 1e-3 * pressure) return id;
+    Eigen::VectorXd strain = C.fullPivLu().solve(missing);
+    strain *= std::min(1.0, 2e-3 / strain.cwiseAbs().maxCoeff());
+    double dH[9] = {};
+    for (long i = 0; i < n; ++i) {
+      const int r = rows[i];
+      dH[3 * first[r] + second[r]] = dH[3 * second[r] + first[r]] = r < 3 ? strain[i] : 0.5 * strain[i];
+    }
+    need(rvelab_apply(pool_->get(), id, dH, 0, sigma));
+  }
+  throw Mistake("a specimen at " + std::to_string(nearest->pressure) + " Pa does not come to " +
+                std::to_string(pressure) +
+                " Pa; pack one nearer to that pressure (rvelab pack, target.pressures_Pa) and name it in specimens");
+}
+
+std::int64_t SpecimenFamily::spawn(double pressure) {
+  auto found = prepared_.find(pressure);
+  if (found == prepared_.end()) found = prepared_.emplace(pressure, prepare(pressure)).first;
+  std::int64_t id = 0;
+  need(rvelab_clone(pool_->get(), found->second, &id));
+  return id;
+}
+
+rvelab_info SpecimenFamily::prepared(double pressure) {
+  auto found = prepared_.find(pressure);
+  if (found == prepared_.end()) found = prepared_.emplace(pressure, prepare(pressure)).first;
+  return pool_->info(found->second);
+}
+
+void SpecimenFamily::release() {
+  for (const auto& [pressure, id] : prepared_) need(rvelab_release(pool_->get(), 1, &id));
+  prepared_.clear();
+}
+
+template <int D>
+Grains<D>::Grains(std::shared_ptr<GrainPool> pool, std::vector<std::int64_t> ids, bool physical, double gather)
+    : pool_(std::move(pool)), ids_(std::move(ids)), physical_(physical), gather_(physical ? 0 : gather) {}
+
+template <int D>
+void Grains<D>::read_stress(Point<D>* points) {
+  double sigma[9];
+  double last = -1;
+  for (std::size_t k = 0; k < ids_.size(); ++k) {
+    const auto info = pool_->info(ids_[k]);
+    if (info.p != last) wave_modulus_ = std::max(wave_modulus_, wave_modulus_of(*pool_, ids_[k]));
+    last = info.p;
+    look(pool_->get(), ids_[k], sigma, nullptr);
+    points[k].stress = from_nine<D>(sigma);
+  }
+}
+
+template <int D>
+void Grains<D>::in_parts(Point<D>& point, std::int64_t id, const Mat<D>& gradient, double dt, double scale) {
+  ++split;
+  double sigma[9], dH[9];
+  long parts = long(std::ceil(1 / std::max(scale, 1e-3)));
+  for (long done = 0; done < parts;) {
+    to_nine<D>(finite_increment<D>(gradient / double(parts)), dH);
+    const auto status = rvelab_apply(pool_->get(), id, dH, dt / double(parts), sigma);
+    if (status == RVELAB_DISCARD && parts < 100'000) {
+      parts *= 4;  // what is done stays done: the parts of the rest become finer
+      done *= 4;
+      continue;
+    }
+    need(status);
+    ++done;
+  }
+  point.stress = from_nine<D>(sigma);
+}
+
+template <int D>
+void Grains<D>::advance(Point<D>* points, long count, double dt, Workers&) {
+  const auto begin = std::chrono::steady_clock::now();
+  waiting_.resize(std::size_t(count), Mat<D>::Zero());
+  chosen_.clear();
+  batch_ids_.clear();
+  dH_.clear();
+  for (long k = 0; k < count; ++k) {
+    Mat<D>& sum = waiting_[std::size_t(k)];
+    sum += points[k].gradient;
+    if (sum.cwiseAbs().maxCoeff() < gather_) continue;
+    chosen_.push_back(k);
+    batch_ids_.push_back(ids_[std::size_t(k)]);
+    dH_.resize(9 * chosen_.size());
+    to_nine<D>(finite_increment<D>(sum), dH_.data() + dH_.size() - 9);
+  }
+  const std::size_t n = chosen_.size();
+  asked += double(count);
+  called += double(n);
+  sigma_.resize(9 * n);
+  scale_.resize(n);
+  status_.resize(n);
+  rvelab_batch batch;
+  need(rvelab_batch_init(&batch, sizeof batch));
+  batch.n = std::int64_t(n);
+  batch.dt = physical_ ? dt : 0;
+  batch.ids = batch_ids_.data();
+  batch.dH = dH_.data();
+  batch.sigma = sigma_.data();
+  batch.dt_scale = scale_.data();
+  batch.status = status_.data();
+  const auto worst = n == 0 ? RVELAB_OK : rvelab_trial(pool_->get(), &batch);
+  if (worst < RVELAB_DISCARD) need(worst);
+  std::vector<std::int64_t> good;
+  good.reserve(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    if (status_[k] >= RVELAB_OK) good.push_back(batch_ids_[k]);
+    warned += status_[k] == RVELAB_W_TOLERANCE || status_[k] == RVELAB_W_NOT_QUASI_STATIC;
+  }
+  if (!good.empty()) need(rvelab_commit(pool_->get(), std::int64_t(good.size()), good.data()));
+  for (std::size_t k = 0; k < n; ++k) {
+    auto& point = points[chosen_[k]];
+    Mat<D>& sum = waiting_[std::size_t(chosen_[k])];
+    if (status_[k] >= RVELAB_OK) {
+      point.stress = from_nine<D>(sigma_.data() + 9 * k);
+    } else {
+      in_parts(point, batch_ids_[k], sum, batch.dt, scale_[k]);
+    }
+    sum.setZero();
+  }
+  this->seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+template <int D>
+Measures Grains<D>::measures(long point) const {
+  const auto info = pool_->info(ids_[std::size_t(point)]);
+  return {info.void_ratio, info.fabric_anisotropy, info.coordination_number, NAN};
+}
+
+template <int D>
+double Grains<D>::grain_steps() const {
+  std::vector<std::int64_t> steps(ids_.size());
+  need(rvelab_cost(pool_->get(), std::int64_t(ids_.size()), ids_.data(), steps.data()));
+  double sum = 0;
+  for (const auto each : steps) sum += double(each);
+  return sum;
+}
+
+template <int D>
+void Grains<D>::save(OutputFile& file, const std::string& name) const {
+  file.write("materials/" + name + "/ids", ids_);
+  file.write("materials/" + name + "/state",
+             std::vector<double>{wave_modulus_, double(split), double(warned), called, asked}, {5});
+  std::vector<double> waiting;
+  for (const auto& each : waiting_) waiting.insert(waiting.end(), each.data(), each.data() + D * D);
+  file.write("materials/" + name + "/waiting", waiting, {waiting.size()});
+}
+
+template <int D>
+void Grains<D>::restore(const InputFile& file, const std::string& name) {
+  ids_ = file.read_whole("materials/" + name + "/ids");
+  const auto state = file.read("materials/" + name + "/state");
+  wave_modulus_ = state[0];
+  split = long(state[1]);
+  warned = long(state[2]);
+  called = state[3];
+  asked = state[4];
+  const auto waiting = file.read("materials/" + name + "/waiting");
+  waiting_.clear();
+  for (std::size_t k = 0; k + D * D <= waiting.size(); k += D * D) {
+    waiting_.push_back(Eigen::Map<const Mat<D>>(waiting.data() + k));
+  }
+}
+
+template class Grains<2>;
+template class Grains<3>;
+
+}  // namespace mpm

@@ -1,0 +1,81 @@
+// The background grid: a box of nodes that grows where the material goes. Nodes have global numbers, node 0 at the
+// anchor, so that nothing that is computed depends on where the box ends.
+#pragma once
+
+#include <array>
+#include <cstring>
+#include <vector>
+
+#include "tools/mpm/tensors.hpp"
+
+namespace mpm {
+
+/// mass; v: momentum, then velocity at the start of the step; w: force, then velocity at its end; a: velocity that the
+/// points brought, then what the step added to it.
+template <int D>
+struct Node {
+  double mass;
+  double v[D], w[D], a[D];
+};
+
+template <int D>
+class Grid {
+ public:
+  using Index = std::array<int, D>;
+
+  Vec<D> cell = Vec<D>::Ones();    ///< m, sides of a cell now
+  Vec<D> anchor = Vec<D>::Zero();  ///< m, position of node 0
+  std::vector<Node<D>> nodes;      ///< x fastest
+  Index low{}, count = none();     ///< lowest node and number of nodes along each axis
+  static constexpr long most = 40'000'000;
+
+  /// Makes room for nodes from `first` to `last`; true if the box changed.
+  bool cover(const Index& first, const Index& last) {
+    Index from = low, to;
+    bool fits = true;
+    for (int i = 0; i < D; ++i) {
+      to[i] = low[i] + count[i] - 1;
+      if (count[i] == 0) from[i] = first[i], to[i] = last[i];
+      if (first[i] < from[i] || last[i] > to[i] || count[i] == 0) fits = false;
+    }
+    if (fits) return false;
+    double size = 1;
+    for (int i = 0; i < D; ++i) {
+      if (count[i] == 0 || first[i] < from[i]) from[i] = first[i] - 4;
+      if (count[i] == 0 || last[i] > to[i]) to[i] = last[i] + 4;
+      low[i] = from[i];
+      count[i] = to[i] - from[i] + 1;
+      size *= count[i];
+    }
+    if (size > most) {
+      throw Mistake("the background grid would need " + std::to_string(size) +
+                    " nodes: a material point flies far off; take a smaller time.cfl, or add a boundary that holds it");
+    }
+    nodes.resize(std::size_t(size));
+    return true;
+  }
+  void clear() { std::memset(static_cast<void*>(nodes.data()), 0, nodes.size() * sizeof(Node<D>)); }
+  long flat(const Index& node) const {
+    long at = node[D - 1] - low[D - 1];
+    for (int i = D - 2; i >= 0; --i) at = at * count[i] + (node[i] - low[i]);
+    return at;
+  }
+  Index index(long flat) const {
+    Index node;
+    for (int i = 0; i < D; ++i) {
+      node[i] = low[i] + int(flat % count[i]);
+      flat /= count[i];
+    }
+    return node;
+  }
+  Vec<D> position(const Index& node) const {
+    Vec<D> x;
+    for (int i = 0; i < D; ++i) x[i] = anchor[i] + node[i] * cell[i];
+    return x;
+  }
+
+ private:
+  static constexpr Index none() { return Index{}; }
+};
+
+}  // namespace mpm

@@ -1,0 +1,63 @@
+// TOML read strictly: every key of a table must be asked for, and every value must be of its kind and in its range. A
+// mistake names file, line, key, what is allowed and what to do.
+#pragma once
+
+#include <toml++/toml.h>
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tools/mpm/tensors.hpp"
+
+namespace mpm {
+
+/// One table. Reading a key makes it known; finish() then throws for those that nobody asked for.
+class Keys {
+ public:
+  /// `where`: its dotted name, "" for the whole file. The table must outlive this.
+  Keys(const toml::table& table, std::string path, std::string where);
+
+  bool has(const std::string& name) const { return table_->contains(name); }
+  double number(const std::string& name, double initial, double least = -1e300, double most = 1e300);
+  double number(const std::string& name);  ///< required
+  long whole_number(const std::string& name, long initial, long least, long most);
+  bool boolean(const std::string& name, bool initial);
+  std::string text(const std::string& name, const std::string& initial);
+  std::string text(const std::string& name);  ///< required
+  /// The first is the default; `required`: there is none.
+  std::string choice(const std::string& name, const std::vector<std::string>& allowed, bool required = false);
+  /// `size` numbers, or one number for all of them; `initial` empty: required.
+  std::vector<double> vector(const std::string& name, std::size_t size, const std::vector<double>& initial);
+  /// Rows of `size` numbers each; none if the key is not there.
+  std::vector<std::vector<double>> rows(const std::string& name, std::size_t size);
+  std::vector<std::string> texts(const std::string& name);  ///< required, not empty
+  /// Tables under a name: [name] (empty if it is not there), or each [[name]].
+  Keys table(const std::string& name);
+  std::vector<Keys> tables(const std::string& name);
+  /// Names of the tables under a table, which are not read here.
+  void known(const std::string& name) { known_.insert(name); }
+  void finish() const;
+  /// Mistake at the value of a key.
+  [[noreturn]] void wrong(const std::string& name, const std::string& message) const;
+
+ private:
+  const toml::node* get(const std::string& name);
+  std::string dotted(const std::string& name) const { return where_.empty() ? name : where_ + "." + name; }
+  [[noreturn]] void missing(const std::string& name) const;
+  const toml::table* table_;  ///< copies of a table would not know their lines
+  std::string path_, where_;
+  std::set<std::string> known_;
+};
+
+/// The word with the fewest edits; "" if there are none.
+std::string nearest_word(const std::string& word, const std::set<std::string>& words);
+
+/// A whole file. Mistake with line and column if it is no TOML.
+toml::table parse_file(const std::string& path);
+/// Lays `over` over `base`: tables key by key, arrays of tables element by element, everything else as a whole.
+void lay_over(toml::table& base, const toml::table& over);
+/// One assignment of the command line, a.b.c=value. In an array of tables an element goes by its `name`.
+void assign(toml::table& scene, const std::string& assignment);
+
+}  // namespace mpm

@@ -1,0 +1,210 @@
+#include "tools/mpm/output.hpp"
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "tools/mpm/files.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr const char* axes[3] = {"x", "y", "z"};
+
+std::string frame_name(long frame) {
+  char name[32];
+  std::snprintf(name, sizeof name, "points_%04ld.h5", frame);
+  return name;
+}
+
+}  // namespace
+
+Rows::Rows(const std::string& path, const std::string& header, long keep) : path_(path) {
+  if (keep > 0) {
+    std::error_code error;
+    std::filesystem::resize_file(path, std::uintmax_t(keep), error);
+    if (error) throw Mistake(path + ": is not as the checkpoint left it; start the run anew");
+  }
+  file_ = std::fopen(path.c_str(), keep > 0 ? "a" : "w");
+  if (file_ == nullptr) throw Mistake(path + ": cannot be written; give a folder that you may write to");
+  if (keep <= 0) std::fprintf(file_, "%s\n", header.c_str());
+}
+
+Rows::~Rows() { std::fclose(file_); }
+
+void Rows::add(const std::vector<double>& values) {
+  for (std::size_t k = 0; k < values.size(); ++k) std::fprintf(file_, k == 0 ? "%.9g" : ",%.9g", values[k]);
+  std::fputc('\n', file_);
+  if (std::fflush(file_) != 0) throw Mistake(path_ + ": cannot be written; is the disc full?");
+}
+
+long Rows::bytes() const { return std::ftell(file_); }
+
+template <int D>
+std::string history_header(const Solver<D>& solver) {
+  std::string header =
+      "time_s,steps,kinetic_J,potential_J,stress_work_J,pressure_work_J,boundary_work_J,mapping_loss_J,residual_J";
+  for (int i = 0; i < D; ++i) header += std::string(",momentum_") + axes[i] + "_N_s";
+  const auto columns = [&](const std::string& name) {
+    for (int i = 0; i < D; ++i) header += "," + name + ".force_" + axes[i] + "_N";
+    for (int i = 0; i < D; ++i) header += "," + name + ".way_" + axes[i] + "_m";
+  };
+  for (const auto& plane : solver.planes.all) columns(plane.name);
+  for (const auto& body : solver.bodies.all) columns(body.name);
+  return header;
+}
+
+template <int D>
+std::vector<double> history_row(const Solver<D>& solver, const EnergyStart& start, double since,
+                                std::vector<double>& before) {
+  const auto b = balance_of<D>(solver, start);
+  std::vector<double> row{solver.time,     double(solver.steps), b.kinetic,      b.potential, b.stress_work,
+                          b.pressure_work, b.boundary_work,      b.mapping_loss, b.residual};
+  for (int i = 0; i < D; ++i) row.push_back(b.momentum[i]);
+  before.resize(D * (solver.planes.all.size() + solver.bodies.all.size()), 0.0);
+  std::size_t at = 0;
+  const auto columns = [&](const auto& each) {
+    for (int i = 0; i < D; ++i, ++at) {
+      // The soil's force on the boundary is the other way round.
+      row.push_back(since > 0 ? -(each.reaction.impulse[i] - before[at]) / since : 0);
+      before[at] = each.reaction.impulse[i];
+    }
+    const Vec<D> way = each.velocity.way(solver.time);
+    for (int i = 0; i < D; ++i) row.push_back(way[i]);
+  };
+  for (const auto& plane : solver.planes.all) columns(plane);
+  for (const auto& body : solver.bodies.all) columns(body);
+  return row;
+}
+
+template <int D>
+Measures measures_of(const Solver<D>& solver, long point) {
+  for (const auto& range : solver.ranges) {
+    if (point < range.first + range.count) return range.material->measures(point - range.first);
+  }
+  return {};
+}
+
+template <int D>
+std::string watched_header(const Model<D>& model) {
+  std::string header = "time_s";
+  for (std::size_t k = 0; k < model.watched.size(); ++k) {
+    const auto name = "," + std::to_string(k) + ".";
+    for (int i = 0; i < D; ++i) header += name + axes[i] + "_m";
+    for (const char* each : {"p_Pa", "q_Pa", "eps_q", "eps_v", "rotation_deg", "void_ratio", "fabric_anisotropy"}) {
+      header += name + each;
+    }
+  }
+  return header;
+}
+
+template <int D>
+std::vector<double> watched_row(const Model<D>& model) {
+  std::vector<double> row{model.solver.time};
+  for (const long k : model.watched) {
+    const auto& point = model.solver.points[k];
+    const auto measures = measures_of<D>(model.solver, k);
+    for (int i = 0; i < D; ++i) row.push_back(point.position[i]);
+    row.insert(row.end(),
+               {mean_pressure<D>(point.stress), deviatoric_stress<D>(point.stress), deviatoric_strain<D>(point.strain),
+                -point.strain.trace(), rotation_degrees<D>(point.F), measures.void_ratio, measures.fabric_anisotropy});
+  }
+  return row;
+}
+
+template <int D>
+void write_frame(const Model<D>& model, const std::string& folder, long frame) {
+  const auto& points = model.solver.points;
+  const std::size_t n = points.size();
+  OutputFile file((std::filesystem::path(folder) / frame_name(frame)).string());
+  // Three components in the plane too: ParaView knows no other vectors.
+  const auto vectors = [&](const char* name, const auto& of) {
+    std::vector<double> values(3 * n, 0.0);
+    for (std::size_t k = 0; k < n; ++k) {
+      const Vec<D> v = of(points[k]);
+      for (int i = 0; i < D; ++i) values[3 * k + i] = v[i];
+    }
+    file.write(name, values, {n, 3});
+  };
+  const auto tensors = [&](const char* name, const auto& of) {
+    std::vector<double> values(9 * n, 0.0);
+    for (std::size_t k = 0; k < n; ++k) {
+      const Mat<D> t = of(points[k]);
+      for (int i = 0; i < D; ++i) {
+        for (int j = 0; j < D; ++j) values[9 * k + 3 * i + j] = t(i, j);
+      }
+      if (D == 2 && std::string(name) == "stress_Pa") values[9 * k + 8] = points[k].stress_zz;
+    }
+    file.write(name, values, {n, 9});
+  };
+  const auto scalars = [&](const char* name, const auto& of) {
+    std::vector<double> values(n);
+    for (std::size_t k = 0; k < n; ++k) values[k] = of(points[k], long(k));
+    file.write(name, values, {n});
+  };
+  using P = Point<D>;
+  file.write("time_s", std::vector<double>{model.solver.time}, {1});
+  file.write("grid_cell_m", {model.solver.grid.cell.data(), model.solver.grid.cell.data() + D}, {D});
+  vectors("position_m", [](const P& p) { return p.position; });
+  vectors("displacement_m", [](const P& p) { return Vec<D>(p.position - p.first); });
+  vectors("velocity_m_s", [](const P& p) { return p.velocity; });
+  tensors("stress_Pa", [](const P& p) { return p.stress; });
+  tensors("deformation_gradient", [](const P& p) { return p.F; });
+  scalars("volume_m3", [](const P& p, long) { return p.volume; });
+  scalars("p_Pa", [](const P& p, long) { return mean_pressure<D>(p.stress); });
+  scalars("q_Pa", [](const P& p, long) { return deviatoric_stress<D>(p.stress); });
+  scalars("eps_q", [](const P& p, long) { return deviatoric_strain<D>(p.strain); });
+  scalars("eps_v", [](const P& p, long) { return -p.strain.trace(); });
+  scalars("rotation_deg", [](const P& p, long) { return rotation_degrees<D>(p.F); });
+  std::vector<Measures> all;
+  for (std::size_t k = 0; k < n; ++k) all.push_back(measures_of<D>(model.solver, long(k)));
+  scalars("void_ratio", [&](const P&, long k) { return all[k].void_ratio; });
+  scalars("fabric_anisotropy", [&](const P&, long k) { return all[k].fabric_anisotropy; });
+  scalars("coordination_number", [&](const P&, long k) { return all[k].coordination_number; });
+  scalars("plastic_strain", [&](const P&, long k) { return all[k].plastic_strain; });
+  file.publish();
+}
+
+void write_xdmf(const std::string& folder, const std::vector<double>& times, long points) {
+  std::ofstream file(std::filesystem::path(folder) / "points.xdmf");
+  file << "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\"><Domain>\n"
+          "<Grid Name=\"points\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    const auto item = [&](const char* name, const std::string& extents) {
+      file << "<DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"8\" Dimensions=\"" << extents << "\">"
+           << frame_name(long(k)) << ":/" << name << "</DataItem>";
+    };
+    const auto n = std::to_string(points);
+    file << "<Grid Name=\"points\"><Time Value=\"" << times[k] << "\"/>\n<Topology TopologyType=\"Polyvertex\" "
+         << "NumberOfElements=\"" << n << "\"/>\n<Geometry GeometryType=\"XYZ\">";
+    item("position_m", n + " 3");
+    file << "</Geometry>\n";
+    const auto attribute = [&](const char* name, const char* type, const std::string& extents) {
+      file << "<Attribute Name=\"" << name << "\" AttributeType=\"" << type << "\" Center=\"Node\">";
+      item(name, extents);
+      file << "</Attribute>\n";
+    };
+    for (const char* name : {"displacement_m", "velocity_m_s"}) attribute(name, "Vector", n + " 3");
+    for (const char* name : {"stress_Pa", "deformation_gradient"}) attribute(name, "Tensor", n + " 9");
+    for (const char* name : {"volume_m3", "p_Pa", "q_Pa", "eps_q", "eps_v", "rotation_deg", "void_ratio",
+                             "fabric_anisotropy", "coordination_number", "plastic_strain"}) {
+      attribute(name, "Scalar", n);
+    }
+    file << "</Grid>\n";
+  }
+  file << "</Grid>\n</Domain></Xdmf>\n";
+  if (!file.flush()) throw Mistake(folder + "/points.xdmf: cannot be written; is the disc full?");
+}
+
+#define MPM_INSTANTIATE(D)                                                                                         \
+  template std::string history_header<D>(const Solver<D>&);                                                        \
+  template std::vector<double> history_row<D>(const Solver<D>&, const EnergyStart&, double, std::vector<double>&); \
+  template std::string watched_header<D>(const Model<D>&);                                                         \
+  template std::vector<double> watched_row<D>(const Model<D>&);                                                    \
+  template void write_frame<D>(const Model<D>&, const std::string&, long);
+MPM_INSTANTIATE(2)
+MPM_INSTANTIATE(3)
+#undef MPM_INSTANTIATE
+
+}  // namespace mpm

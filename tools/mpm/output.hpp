@@ -1,0 +1,45 @@
+// What a run writes: rows of histories, and frames of points.
+#pragma once
+
+#include <cstdio>
+
+#include "tools/mpm/energy.hpp"
+#include "tools/mpm/setup.hpp"
+
+namespace mpm {
+
+/// A text file of rows that can go on where a checkpoint left it.
+class Rows {
+ public:
+  /// `keep`: bytes that stay (0: a new file with this header).
+  Rows(const std::string& path, const std::string& header, long keep);
+  Rows(const Rows&) = delete;
+  Rows& operator=(const Rows&) = delete;
+  ~Rows();
+  void add(const std::vector<double>& values);
+  long bytes() const;
+
+ private:
+  std::string path_;
+  std::FILE* file_;
+};
+
+/// Reactions are means over the time since the row before, N, on the body or plane.
+template <int D>
+std::string history_header(const Solver<D>& solver);
+/// `before`: impulses at the row before, renewed here.
+template <int D>
+std::vector<double> history_row(const Solver<D>& solver, const EnergyStart& start, double since,
+                                std::vector<double>& before);
+template <int D>
+std::string watched_header(const Model<D>& model);
+template <int D>
+std::vector<double> watched_row(const Model<D>& model);
+
+/// All points as arrays in one HDF5 file, number `frame`.
+template <int D>
+void write_frame(const Model<D>& model, const std::string& folder, long frame);
+/// points.xdmf for all frames so far.
+void write_xdmf(const std::string& folder, const std::vector<double>& times, long points);
+
+}  // namespace mpm

@@ -1,0 +1,152 @@
+#include "tools/mpm/run.hpp"
+
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <iomanip>
+#include <ostream>
+
+#include "tools/mpm/checkpoint.hpp"
+#include "tools/mpm/output.hpp"
+
+namespace mpm {
+namespace {
+
+volatile std::sig_atomic_t interrupted = 0;
+void interrupt(int) { interrupted = 1; }
+
+using Clock = std::chrono::steady_clock;
+
+/// One line on a terminal, over itself.
+class ProgressLine {
+ public:
+  ProgressLine(bool quiet, double from, double to) : shown_(!quiet && isatty(2) != 0), from_(from), to_(to) {}
+  void show(double time, long steps) {
+    const auto now = Clock::now();
+    if (!shown_ || std::chrono::duration<double>(now - last_).count() < 0.5) return;
+    last_ = now;
+    const double spent = std::chrono::duration<double>(now - begin_).count();
+    const double left = time > from_ ? spent * (to_ - time) / (time - from_) : 0;
+    std::fprintf(stderr, "\r%6.2f %% of %g s, %ld steps, %.0f s left   ", 100 * time / to_, to_, steps, left);
+  }
+  ~ProgressLine() {
+    if (shown_) std::fprintf(stderr, "\r\033[K");
+  }
+
+ private:
+  bool shown_;
+  double from_, to_;
+  Clock::time_point begin_ = Clock::now(), last_ = begin_;
+};
+
+template <int D>
+void tell_cost(const Model<D>& model, double wall, long steps, double grain_steps, std::ostream& report) {
+  const auto& solver = model.solver;
+  const double points = double(solver.points.size());
+  const double whole = solver.grid_seconds + solver.material_seconds;
+  double grains = 0;
+  for (const auto& range : solver.ranges) grains += range.material->seconds;
+  report << std::setprecision(4) << "points " << solver.points.size() << ", steps " << solver.steps << " (" << steps
+         << " now), threads " << model.solver.workers.count() << ", wall " << wall << " s\n"
+         << "continuum " << whole - grains << " s, grains " << grains << " s (" << 100 * grains / std::max(whole, 1e-12)
+         << " %)\n";
+  if (grains > 0) {
+    report << "grain-steps " << grain_steps << ", " << grain_steps / grains / 1e6 << " M a second";
+    for (const auto& [name, each] : model.grains) {
+      report << "; " << name << ": " << each->called << " of " << each->asked << " increments called, " << each->split
+             << " in parts, " << each->warned << " with a warning";
+    }
+    report << "\n";
+  } else if (steps > 0) {
+    report << points * double(steps) / wall / 1e6 << " M point-steps a second\n";
+  }
+}
+
+template <int D>
+int run_model(const Scene& scene, const RunOptions& options, std::ostream& report) {
+  const auto begin = Clock::now();
+  auto model = set_up<D>(scene, options.threads, options.specimens, !options.resume);
+  auto& solver = model->solver;
+  Progress progress;
+  if (options.resume) {
+    read_checkpoint<D>(*model, progress, options.folder);
+  } else {
+    progress.start = energy_start<D>(solver);
+    progress.next_checkpoint = scene.checkpoint_every;
+  }
+  // The time of grains is that of this call; so is that of the continuum.
+  solver.grid_seconds = solver.material_seconds = 0;
+  const std::filesystem::path place(options.folder);
+  Rows history((place / "history.csv").string(), history_header<D>(solver), progress.history_bytes);
+  Rows watched((place / "watched.csv").string(), watched_header<D>(*model), progress.watched_bytes);
+  if (model->pressure_classes > 0) {
+    report << model->pressure_classes << " states of specimens prepared for " << solver.points.size() << " points\n";
+  }
+  const long first_steps = solver.steps;
+  const double setup = std::chrono::duration<double>(Clock::now() - begin).count();
+  const auto looped = Clock::now();
+  ProgressLine line(options.quiet, solver.time, scene.duration);
+  const auto row = [&] {
+    history.add(history_row<D>(solver, progress.start, solver.time - progress.last_row, progress.impulses));
+    watched.add(watched_row<D>(*model));
+    progress.last_row = solver.time;
+    while (progress.next_row <= solver.time) progress.next_row += scene.history_every;
+  };
+  const auto frame = [&] {
+    write_frame<D>(*model, options.folder, long(progress.frame_times.size()));
+    progress.frame_times.push_back(solver.time);
+    write_xdmf(options.folder, progress.frame_times, long(solver.points.size()));
+    while (progress.next_frame <= solver.time) progress.next_frame += scene.frame_every;
+  };
+  const auto save = [&] {
+    progress.history_bytes = history.bytes();
+    progress.watched_bytes = watched.bytes();
+    write_checkpoint<D>(*model, progress, options.folder);
+  };
+  if (!options.resume) {
+    row();
+    frame();
+  }
+  bool stopped = false;
+  while (solver.time < scene.duration && !stopped) {
+    double dt = solver.stable_step();
+    const bool last = solver.time + dt >= scene.duration;
+    if (last) dt = scene.duration - solver.time;
+    solver.step(dt);
+    if (last) solver.time = scene.duration;
+    if (solver.time >= progress.next_row || last) row();
+    if (solver.time >= progress.next_frame || last) frame();
+    stopped = !last && (interrupted != 0 || solver.time >= options.stop_at);
+    if (solver.time >= progress.next_checkpoint || last || stopped) {
+      while (progress.next_checkpoint <= solver.time) progress.next_checkpoint += scene.checkpoint_every;
+      save();
+    }
+    line.show(solver.time, solver.steps);
+  }
+  const double wall = std::chrono::duration<double>(Clock::now() - looped).count();
+  double grain_steps = 0;
+  for (const auto& range : solver.ranges) grain_steps += range.material->grain_steps();
+  report << std::setprecision(3) << "setup " << setup << " s\n";
+  tell_cost<D>(*model, wall, solver.steps - first_steps, grain_steps, report);
+  if (stopped)
+    report << "stopped at " << solver.time << " s; go on with: rvelab-mpm --resume " << options.folder << "\n";
+  return stopped ? 130 : 0;
+}
+
+}  // namespace
+
+int run_scene(const Scene& scene, const RunOptions& options, std::ostream& report) {
+  if (!(scene.frame_every > 0) || !(scene.history_every > 0) || !(scene.checkpoint_every > 0)) {
+    throw Mistake("output.frame_every_s, history_every_s and checkpoint_every_s must be positive");
+  }
+  interrupted = 0;
+  const auto before_int = std::signal(SIGINT, interrupt), before_term = std::signal(SIGTERM, interrupt);
+  const int code = scene.dimension == 2 ? run_model<2>(scene, options, report) : run_model<3>(scene, options, report);
+  std::signal(SIGINT, before_int);
+  std::signal(SIGTERM, before_term);
+  return code;
+}
+
+}  // namespace mpm

@@ -1,0 +1,251 @@
+#include "tools/mpm/scene.hpp"
+
+#include <set>
+
+namespace mpm {
+namespace {
+
+constexpr double radians = 0.017453292519943295;
+
+ElasticModuli read_moduli(Keys& keys) {
+  ElasticModuli moduli;
+  moduli.young = keys.number("young_modulus_Pa");
+  if (!(moduli.young > 0)) keys.wrong("young_modulus_Pa", "must be positive");
+  moduli.poisson = keys.number("poisson_ratio", 0.3, -0.99, 0.499);
+  return moduli;
+}
+
+Strength read_strength(Keys& keys) {
+  Strength strength;
+  const auto law = keys.choice("hardening", {"none", "linear", "cubic_exponential"});
+  strength.cohesion = keys.number("cohesion_Pa", 0, 0);
+  strength.dilatancy = keys.number("dilatancy_angle_deg", 0, 0, 60) * radians;
+  if (law == "cubic_exponential") {
+    strength.law = Strength::Law::cubic_exponential;
+    const auto cubic = keys.vector("cubic_rad", 4, {});
+    strength.a = cubic[0];
+    strength.b = cubic[1];
+    strength.c = cubic[2];
+    strength.d = cubic[3];
+    strength.peak_strain = keys.number("peak_plastic_strain");
+    strength.decay = keys.number("decay");
+    strength.peak = keys.number("peak_friction_angle_deg", 30, 0, 89) * radians;
+    strength.residual = keys.number("residual_friction_angle_deg", 30, 0, 89) * radians;
+    return strength;
+  }
+  strength.friction = keys.number("friction_angle_deg", 30, 0, 89) * radians;
+  if (law == "linear") {
+    strength.law = Strength::Law::linear;
+    strength.friction_slope = keys.number("friction_slope_deg", 0) * radians;
+    strength.cohesion_slope = keys.number("cohesion_slope_Pa", 0);
+  }
+  return strength;
+}
+
+MaterialOfScene read_material(Keys& keys) {
+  MaterialOfScene material;
+  material.name = keys.text("name");
+  const auto kind = keys.choice("kind", {"grains", "elastic", "mohr_coulomb", "drucker_prager"}, true);
+  using Kind = MaterialOfScene::Kind;
+  if (kind == "grains") {
+    material.kind = Kind::grains;
+    material.specimens = keys.texts("specimens");
+    material.density = keys.number("grain_density_kg_m3", 2650, 1e-3);
+    material.physical = keys.choice("loading", {"quasi_static", "physical"}) == "physical";
+    material.tolerance_rel = keys.number("tolerance_rel", 0, 0, 1);
+    material.tolerance_abs = keys.number("tolerance_abs", 0, 0, 1);
+    material.gather = keys.number("gather", 0, 0, 1e-3);
+    if (material.gather > 0 && material.physical) keys.wrong("gather", "is for quasi_static loading; remove it");
+  } else {
+    material.density = keys.number("density_kg_m3", 2000, 1e-3);
+    material.moduli = read_moduli(keys);
+    material.kind = kind == "elastic"        ? Kind::elastic
+                    : kind == "mohr_coulomb" ? Kind::mohr_coulomb
+                                             : Kind::drucker_prager;
+    if (kind != "elastic") material.strength = read_strength(keys);
+    if (kind == "drucker_prager") {
+      const auto cone = keys.choice("cone", {"outer", "inner", "plane_strain"});
+      material.cone = cone == "outer" ? Cone::outer : cone == "inner" ? Cone::inner : Cone::plane_strain;
+    }
+  }
+  keys.finish();
+  return material;
+}
+
+std::vector<std::vector<double>> read_motion(Keys& keys, std::size_t d) {
+  auto rows = keys.rows("motion", d + 1);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    if (k == 0 ? rows[k][0] != 0 : rows[k][0] <= rows[k - 1][0]) {
+      keys.wrong("motion", "must begin at time 0 and go forward in time: rows of s and m/s");
+    }
+  }
+  return rows;
+}
+
+int axis_of(const std::string& name) { return name == "x" ? 0 : name == "y" ? 1 : 2; }
+
+PlaneOfScene read_plane(Keys& keys, std::size_t d) {
+  PlaneOfScene plane;
+  plane.name = keys.text("name");
+  plane.fixed = keys.choice("kind", {"roller", "fixed"}, true) == "fixed";
+  plane.axis = axis_of(
+      keys.choice("axis", d == 2 ? std::vector<std::string>{"x", "y"} : std::vector<std::string>{"x", "y", "z"}, true));
+  plane.at = keys.number("at_m");
+  plane.soil_above = keys.choice("soil", {"above", "below"}) == "above";
+  plane.removed_at = keys.number("removed_at_s", 1e300, 0);
+  plane.motion = read_motion(keys, d);
+  keys.finish();
+  return plane;
+}
+
+BodyOfScene read_body(Keys& keys, std::size_t d) {
+  BodyOfScene body;
+  body.name = keys.text("name");
+  const auto kind = keys.choice("kind", {"box", "disc", "half_space"}, true);
+  body.kind = kind == "box" ? BodyKind::box : kind == "disc" ? BodyKind::disc : BodyKind::half_space;
+  body.centre = keys.vector("centre_m", d, {});
+  body.size.assign(d, 0);
+  body.normal.assign(d, 0);
+  if (kind == "box") body.size = keys.vector("size_m", d, {});
+  if (kind == "disc") body.radius = keys.number("radius_m");
+  if (kind == "half_space") body.normal = keys.vector("normal", d, {});
+  body.rough = keys.boolean("rough", kind != "half_space");
+  if (!body.rough) body.friction = keys.number("friction", 0, 0, 100);
+  body.motion = read_motion(keys, d);
+  keys.finish();
+  return body;
+}
+
+RegionOfScene read_region(Keys& keys, std::size_t d) {
+  RegionOfScene region;
+  region.material = keys.text("material");
+  region.lower = keys.vector("lower_m", d, {});
+  region.upper = keys.vector("upper_m", d, {});
+  region.velocity = keys.vector("velocity_m_s", d, std::vector<double>(d, 0));
+  region.points_per_cell = keys.whole_number("points_per_cell", d == 2 ? 4 : 8, 1, 1000);
+  const long along = std::lround(std::pow(double(region.points_per_cell), 1.0 / double(d)));
+  if (std::lround(std::pow(double(along), double(d))) != region.points_per_cell) {
+    keys.wrong("points_per_cell", d == 2 ? "must be a square: 1, 4, 9, 16" : "must be a cube: 1, 8, 27");
+  }
+  for (std::size_t i = 0; i < d; ++i) {
+    if (!(region.lower[i] < region.upper[i])) keys.wrong("upper_m", "must be above lower_m along every axis");
+  }
+  keys.finish();
+  return region;
+}
+
+void read_rest(Keys& file, Scene& scene) {
+  const auto d = std::size_t(scene.dimension);
+  auto grid = file.table("grid");
+  scene.cell = grid.vector("cell_m", d, {});
+  for (const double side : scene.cell) {
+    if (!(side > 0)) grid.wrong("cell_m", "must be positive");
+  }
+  const auto shape = grid.choice("shape", {"bspline", "gimp", "linear"});
+  scene.shape = shape == "bspline" ? Shape::bspline : shape == "gimp" ? Shape::gimp : Shape::linear;
+  scene.follows = grid.text("follows", "");
+  grid.finish();
+  auto time = file.table("time");
+  scene.duration = time.number("duration_s");
+  scene.scheme = time.choice("scheme", {"usf", "musl"}) == "usf" ? Scheme::usf : Scheme::musl;
+  scene.pic_fraction = time.number("pic_fraction", 0.1, 0, 1);
+  scene.affine = time.boolean("affine", true);
+  scene.cfl = time.number("cfl", 0.4, 1e-4, 1);
+  time.finish();
+  auto loads = file.table("loads");
+  scene.gravity = loads.vector("gravity_m_s2", d, std::vector<double>(d, 0));
+  scene.surface_pressure = loads.number("surface_pressure_Pa", 0);
+  loads.finish();
+  auto initial = file.table("initial");
+  const auto stress = initial.choice("stress", {"zero", "isotropic", "geostatic"});
+  if (stress == "isotropic") {
+    scene.stress = Scene::Stress::isotropic;
+    scene.pressure = initial.number("pressure_Pa");
+  } else if (stress == "geostatic") {
+    scene.stress = Scene::Stress::geostatic;
+    scene.surface = initial.number("surface_m");
+    scene.earth_pressure_ratio = initial.number("earth_pressure_ratio", 1, 0, 10);
+  }
+  initial.finish();
+  auto output = file.table("output");
+  scene.frame_every = output.number("frame_every_s", scene.duration / 20, 0);
+  scene.history_every = output.number("history_every_s", scene.duration / 500, 0);
+  scene.checkpoint_every = output.number("checkpoint_every_s", scene.duration / 10, 0);
+  scene.watched = output.rows("watched_points_m", d);
+  output.finish();
+}
+
+/// Every name that a table refers to must be there.
+void check_names(const Scene& scene, const std::string& path) {
+  std::set<std::string> materials, planes;
+  for (const auto& material : scene.materials) {
+    if (!materials.insert(material.name).second) throw Mistake(path + ": two materials are called " + material.name);
+    if (material.kind == MaterialOfScene::Kind::grains && scene.stress == Scene::Stress::zero) {
+      throw Mistake(path + ": grains carry a pressure from the start; set initial.stress to isotropic or geostatic");
+    }
+    if (material.kind == MaterialOfScene::Kind::grains && scene.earth_pressure_ratio != 1) {
+      throw Mistake(path + ": grains are consolidated isotropically; set initial.earth_pressure_ratio to 1");
+    }
+  }
+  for (const auto& region : scene.regions) {
+    if (materials.contains(region.material)) continue;
+    throw Mistake(path + ": region.material is \"" + region.material + "\"; the nearest material is \"" +
+                  nearest_word(region.material, materials) + "\"");
+  }
+  for (const auto& plane : scene.planes) planes.insert(plane.name);
+  if (!scene.follows.empty() && !planes.contains(scene.follows)) {
+    throw Mistake(path + ": grid.follows is \"" + scene.follows + "\"; the nearest boundary is \"" +
+                  nearest_word(scene.follows, planes) + "\"");
+  }
+  if (scene.regions.empty()) throw Mistake(path + ": there is no [[region]]; the scene has no material points");
+}
+
+}  // namespace
+
+std::vector<std::string> cases_of(const std::string& path) {
+  std::vector<std::string> names;
+  const auto file = parse_file(path);
+  if (const auto* cases = file["case"].as_table()) {
+    for (const auto& [key, node] : *cases) names.emplace_back(key.str());
+  }
+  return names;
+}
+
+Scene read_scene(const std::string& path, const std::vector<std::string>& cases,
+                 const std::vector<std::string>& assignments, toml::table* resolved) {
+  toml::table file = parse_file(path);
+  for (const auto& name : cases) {
+    const auto* over = file["case"][name].as_table();
+    if (over == nullptr) {
+      const auto known = cases_of(path);
+      throw Mistake(path + ": there is no case " + name + "; the nearest is " +
+                    nearest_word(name, {known.begin(), known.end()}));
+    }
+    const toml::table copy = *over;
+    lay_over(file, copy);
+  }
+  for (const auto& assignment : assignments) assign(file, assignment);
+  Keys keys(file, path, "");
+  Scene scene;
+  auto head = keys.table("scene");
+  scene.name = head.text("name");
+  scene.dimension = int(head.whole_number("dimension", 2, 2, 3));
+  scene.thickness = scene.dimension == 2 ? head.number("thickness_m", 1, 1e-9) : 1;
+  head.finish();
+  read_rest(keys, scene);
+  const auto d = std::size_t(scene.dimension);
+  for (auto& each : keys.tables("material")) scene.materials.push_back(read_material(each));
+  for (auto& each : keys.tables("region")) scene.regions.push_back(read_region(each, d));
+  for (auto& each : keys.tables("boundary")) scene.planes.push_back(read_plane(each, d));
+  for (auto& each : keys.tables("body")) scene.bodies.push_back(read_body(each, d));
+  keys.known("case");
+  keys.finish();
+  check_names(scene, path);
+  if (resolved != nullptr) {
+    file.erase("case");
+    *resolved = file;
+  }
+  return scene;
+}
+
+}  // namespace mpm

@@ -1,0 +1,81 @@
+// A scene as its TOML file says it, with every default. Lengths of vectors are the dimension.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/mpm/bodies.hpp"
+#include "tools/mpm/keys.hpp"
+#include "tools/mpm/plastic.hpp"
+#include "tools/mpm/solver.hpp"
+
+namespace mpm {
+
+struct MaterialOfScene {
+  enum class Kind { grains, elastic, mohr_coulomb, drucker_prager } kind = Kind::elastic;
+  std::string name;
+  double density = 0;  ///< kg/m^3; of the grains themselves where there are grains
+  std::vector<std::string> specimens;
+  bool physical = false;
+  double tolerance_rel = 0, tolerance_abs = 0, gather = 0;
+  ElasticModuli moduli;
+  Strength strength;
+  Cone cone = Cone::outer;
+};
+
+struct RegionOfScene {
+  std::string material;
+  std::vector<double> lower, upper, velocity;
+  long points_per_cell = 4;
+};
+
+struct PlaneOfScene {
+  std::string name;
+  int axis = 0;
+  double at = 0;
+  bool soil_above = true, fixed = false;
+  double removed_at = 0;
+  std::vector<std::vector<double>> motion;
+};
+
+struct BodyOfScene {
+  std::string name;
+  BodyKind kind = BodyKind::box;
+  std::vector<double> centre, size, normal;
+  double radius = 0, friction = 0;
+  bool rough = true;
+  std::vector<std::vector<double>> motion;
+};
+
+struct Scene {
+  enum class Stress { zero, isotropic, geostatic };
+  std::string name;
+  int dimension = 2;
+  double thickness = 1;
+  std::vector<double> cell;
+  Shape shape = Shape::bspline;
+  std::string follows;
+  double duration = 0, pic_fraction = 0.1, cfl = 0.4;
+  Scheme scheme = Scheme::usf;
+  bool affine = true;
+  std::vector<double> gravity;
+  double surface_pressure = 0;
+  Stress stress = Stress::zero;
+  double pressure = 0, surface = 0, earth_pressure_ratio = 1;
+  std::vector<MaterialOfScene> materials;
+  std::vector<RegionOfScene> regions;
+  std::vector<PlaneOfScene> planes;
+  std::vector<BodyOfScene> bodies;
+  double frame_every = 0, history_every = 0, checkpoint_every = 0;
+  std::vector<std::vector<double>> watched;
+};
+
+/// Cases are laid over the scene in their order, then the assignments. The table without its cases is given back in
+/// `resolved`, as the run keeps it.
+Scene read_scene(const std::string& path, const std::vector<std::string>& cases,
+                 const std::vector<std::string>& assignments, toml::table* resolved = nullptr);
+
+/// Names of the cases of a file, in alphabetical order.
+std::vector<std::string> cases_of(const std::string& path);
+
+}  // namespace mpm

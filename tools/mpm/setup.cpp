@@ -1,0 +1,212 @@
+#include "tools/mpm/setup.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+namespace mpm {
+namespace {
+
+template <int D>
+Vec<D> vec(const std::vector<double>& values) {
+  return Eigen::Map<const Vec<D>>(values.data());
+}
+
+template <int D>
+VelocityHistory<D> history(const std::vector<std::vector<double>>& rows) {
+  VelocityHistory<D> history;
+  for (const auto& row : rows) {
+    history.times.push_back(row[0]);
+    history.velocities.push_back(Eigen::Map<const Vec<D>>(row.data() + 1));
+  }
+  return history;
+}
+
+template <int D>
+void place_planes(const Scene& scene, Solver<D>& solver) {
+  for (const auto& each : scene.planes) {
+    Plane<D> plane;
+    plane.name = each.name;
+    plane.axis = each.axis;
+    const double node = (each.at - solver.grid.anchor[each.axis]) / solver.grid.cell[each.axis];
+    plane.node = int(std::lround(node));
+    if (std::abs(node - plane.node) > 1e-6) {
+      throw Mistake("boundary " + each.name + ": at_m must be a whole number of cells (grid.cell_m)");
+    }
+    plane.inside = each.soil_above ? 1 : -1;
+    plane.fixed = each.fixed;
+    plane.removed_at = each.removed_at;
+    plane.velocity = history<D>(each.motion);
+    if (each.name == scene.follows) {
+      solver.follow_axis = each.axis;
+      solver.followed = int(solver.planes.all.size());
+      if (plane.node <= 0) throw Mistake("boundary " + each.name + ": grid.follows needs it at a positive coordinate");
+    }
+    solver.planes.all.push_back(plane);
+  }
+}
+
+template <int D>
+void place_bodies(const Scene& scene, Solver<D>& solver) {
+  for (const auto& each : scene.bodies) {
+    Body<D> body;
+    body.name = each.name;
+    body.kind = each.kind;
+    body.centre = vec<D>(each.centre);
+    body.half = 0.5 * vec<D>(each.size);
+    body.normal = vec<D>(each.normal);
+    if (body.kind == BodyKind::half_space) body.normal.normalize();
+    body.radius = each.radius;
+    body.rough = each.rough;
+    body.friction = each.friction;
+    body.velocity = history<D>(each.motion);
+    solver.bodies.all.push_back(body);
+  }
+}
+
+/// Points of one region, x fastest.
+template <int D>
+void fill(const Scene& scene, const RegionOfScene& region, std::vector<Point<D>>& points) {
+  const long along = std::lround(std::pow(double(region.points_per_cell), 1.0 / D));
+  long count[D], total = 1;
+  Vec<D> side;
+  for (int i = 0; i < D; ++i) {
+    const double length = region.upper[i] - region.lower[i];
+    count[i] = std::max(1L, std::lround(length / scene.cell[i] * double(along)));
+    side[i] = length / double(count[i]);
+    total *= count[i];
+  }
+  for (long k = 0; k < total; ++k) {
+    Point<D> point;
+    long rest = k;
+    for (int i = 0; i < D; ++i) {
+      point.position[i] = region.lower[i] + (double(rest % count[i]) + 0.5) * side[i];
+      rest /= count[i];
+    }
+    point.first = point.position;
+    point.velocity = vec<D>(region.velocity);
+    point.half = 0.5 * side;
+    point.volume = side.prod() * (D == 2 ? scene.thickness : 1);
+    points.push_back(point);
+  }
+}
+
+/// Pa, compression positive: what the points of this height carry at the start.
+template <int D>
+double pressure_at(const Scene& scene, const Vec<D>& position, double density) {
+  if (scene.stress == Scene::Stress::isotropic) return scene.pressure;
+  if (scene.stress == Scene::Stress::zero) return 0;
+  const double depth = scene.surface - position[D - 1];
+  return scene.surface_pressure + density * -scene.gravity[D - 1] * depth;
+}
+
+template <int D>
+void load_continuum(const Scene& scene, const MaterialOfScene& material, Point<D>* points, long count) {
+  for (long k = 0; k < count; ++k) {
+    auto& point = points[k];
+    point.mass = material.density * point.volume;
+    const double vertical = pressure_at<D>(scene, point.position, material.density);
+    const double side = scene.stress == Scene::Stress::geostatic ? scene.earth_pressure_ratio * vertical : vertical;
+    point.stress = -side * Mat<D>::Identity();
+    point.stress(D - 1, D - 1) = -vertical;
+    point.stress_zz = D == 2 ? -side : 0;
+  }
+}
+
+template <int D>
+std::shared_ptr<Grains<D>> load_grains(const Scene& scene, const MaterialOfScene& material, Model<D>& model,
+                                       const std::shared_ptr<GrainPool>& pool, const std::string& folder,
+                                       Point<D>* points, long count) {
+  std::vector<std::string> paths;
+  for (const auto& name : material.specimens) paths.push_back((std::filesystem::path(folder) / name).string());
+  SpecimenFamily family(pool, paths);
+  const auto first = family.prepared(0);
+  if (first.dimension != D) {
+    throw Mistake("material " + material.name + ": its specimen is of dimension " + std::to_string(first.dimension) +
+                  ", the scene of " + std::to_string(D));
+  }
+  const double density = material.density / (1 + first.void_ratio);
+  std::vector<std::int64_t> ids;
+  for (long k = 0; k < count; ++k) {
+    // Points of one depth share one prepared state; round-off in their heights must not part them.
+    const double exact = pressure_at<D>(scene, points[k].position, density);
+    const double pressure = std::stod(std::to_string(exact));
+    if (!(pressure > 0)) {
+      throw Mistake("material " + material.name +
+                    ": a point would carry no pressure; set initial.pressure_Pa, or "
+                    "initial.surface_m to the height of the free surface");
+    }
+    ids.push_back(family.spawn(pressure));
+    points[k].mass = material.density / (1 + family.prepared(pressure).void_ratio) * points[k].volume;
+  }
+  model.pressure_classes += long(family.classes()) - 1;
+  family.release();
+  auto grains = std::make_shared<Grains<D>>(pool, std::move(ids), material.physical, material.gather);
+  grains->read_stress(points);
+  return grains;
+}
+
+template <int D>
+std::shared_ptr<Material<D>> continuum(const MaterialOfScene& material) {
+  using Kind = MaterialOfScene::Kind;
+  if (material.kind == Kind::elastic) return std::make_shared<Elastic<D>>(material.moduli);
+  const auto surface =
+      material.kind == Kind::mohr_coulomb ? Plastic<D>::Surface::mohr_coulomb : Plastic<D>::Surface::drucker_prager;
+  return std::make_shared<Plastic<D>>(material.moduli, material.strength, surface, material.cone);
+}
+
+}  // namespace
+
+template <int D>
+std::unique_ptr<Model<D>> set_up(const Scene& scene, int threads, const std::string& specimens, bool populate) {
+  auto model = std::make_unique<Model<D>>(threads);
+  auto& solver = model->solver;
+  solver.grid.cell = solver.first_cell = vec<D>(scene.cell);
+  solver.options.shape = scene.shape;
+  solver.options.scheme = scene.scheme;
+  solver.options.pic_fraction = scene.pic_fraction;
+  solver.options.affine = scene.affine;
+  solver.options.cfl = scene.cfl;
+  solver.options.gravity = vec<D>(scene.gravity);
+  solver.options.surface_pressure = scene.surface_pressure;
+  place_planes(scene, solver);
+  place_bodies(scene, solver);
+  for (const auto& material : scene.materials) {
+    Range<D> range;
+    range.first = long(solver.points.size());
+    range.name = material.name;
+    for (const auto& region : scene.regions) {
+      if (region.material == material.name) fill<D>(scene, region, solver.points);
+    }
+    range.count = long(solver.points.size()) - range.first;
+    Point<D>* points = solver.points.data() + range.first;
+    if (material.kind != MaterialOfScene::Kind::grains) {
+      load_continuum<D>(scene, material, points, range.count);
+      range.material = continuum<D>(material);
+    } else {
+      const auto pool =
+          std::make_shared<GrainPool>(solver.workers, GrainOptions{material.tolerance_rel, material.tolerance_abs});
+      model->pools[material.name] = pool;
+      auto grains =
+          populate ? load_grains<D>(scene, material, *model, pool, specimens, points, range.count)
+                   : std::make_shared<Grains<D>>(pool, std::vector<std::int64_t>{}, material.physical, material.gather);
+      model->grains[material.name] = grains;
+      range.material = grains;
+    }
+    solver.ranges.push_back(range);
+  }
+  for (const auto& place : scene.watched) {
+    const Vec<D> x = vec<D>(place);
+    const auto nearer = [&](const auto& a, const auto& b) {
+      return (a.position - x).squaredNorm() < (b.position - x).squaredNorm();
+    };
+    model->watched.push_back(std::min_element(solver.points.begin(), solver.points.end(), nearer) -
+                             solver.points.begin());
+  }
+  return model;
+}
+
+template std::unique_ptr<Model<2>> set_up<2>(const Scene&, int, const std::string&, bool);
+template std::unique_ptr<Model<3>> set_up<3>(const Scene&, int, const std::string&, bool);
+
+}  // namespace mpm

@@ -1,0 +1,27 @@
+// A scene becomes material points, materials, boundaries and a grid.
+#pragma once
+
+#include <map>
+
+#include "tools/mpm/grains.hpp"
+#include "tools/mpm/scene.hpp"
+
+namespace mpm {
+
+/// A scene at work.
+template <int D>
+struct Model {
+  explicit Model(int threads) : solver(threads) {}
+  Solver<D> solver;
+  std::map<std::string, std::shared_ptr<GrainPool>> pools;  ///< by the name of the material
+  std::map<std::string, std::shared_ptr<Grains<D>>> grains;
+  std::vector<long> watched;  ///< numbers of the points nearest to those asked for
+  long pressure_classes = 0;  ///< prepared states that points share
+};
+
+/// `specimens`: folder in which specimen files are looked for. `populate`: false leaves points and RVEs to a
+/// checkpoint.
+template <int D>
+std::unique_ptr<Model<D>> set_up(const Scene& scene, int threads, const std::string& specimens, bool populate = true);
+
+}  // namespace mpm

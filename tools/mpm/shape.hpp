@@ -1,0 +1,66 @@
+// Shape functions of the background grid: weights of the three nodes an axis that a material point reaches.
+//
+// Quadratic B-spline: support of 1.5 cells to each side. GIMP (uniform): the linear function averaged over the point's
+// own domain, which keeps its first size. Linear: two nodes; the third weight is zero.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/mpm/tensors.hpp"
+
+namespace mpm {
+
+enum class Shape { bspline, gimp, linear };
+
+/// Of one point: number of its lowest node, weights and their gradients (1/m) along each axis.
+template <int D>
+struct Support {
+  int node[D];
+  double weight[D][3];
+  double slope[D][3];
+};
+
+/// xi: coordinate in cells from node 0; cell: size (m); half: half the length of the point's domain over the cell.
+inline int shape_along_axis(Shape shape, double xi, double cell, double half, double* weight, double* slope) {
+  const double per_m = 1 / cell;
+  if (shape == Shape::bspline) {
+    const double base = std::floor(xi - 0.5), d = xi - base;
+    weight[0] = 0.5 * (1.5 - d) * (1.5 - d);
+    weight[1] = 0.75 - (d - 1) * (d - 1);
+    weight[2] = 0.5 * (d - 0.5) * (d - 0.5);
+    slope[0] = (d - 1.5) * per_m;
+    slope[1] = -2 * (d - 1) * per_m;
+    slope[2] = (d - 0.5) * per_m;
+    return int(base);
+  }
+  if (shape == Shape::linear) {
+    const double base = std::floor(xi), d = xi - base;
+    weight[0] = 1 - d;
+    weight[1] = d;
+    slope[0] = -per_m;
+    slope[1] = per_m;
+    weight[2] = slope[2] = 0;
+    return int(base);
+  }
+  half = std::min(half, 0.5);
+  const double base = std::floor(xi - half);
+  for (int k = 0; k < 3; ++k) {
+    const double d = xi - base - k, a = std::abs(d), sign = d < 0 ? -1 : 1;
+    if (a < half) {
+      weight[k] = 1 - (d * d + half * half) / (2 * half);
+      slope[k] = -d / half * per_m;
+    } else if (a < 1 - half) {
+      weight[k] = 1 - a;
+      slope[k] = -sign * per_m;
+    } else if (a < 1 + half) {
+      weight[k] = (1 + half - a) * (1 + half - a) / (4 * half);
+      slope[k] = -sign * (1 + half - a) / (2 * half) * per_m;
+    } else {
+      weight[k] = slope[k] = 0;
+    }
+  }
+  return int(base);
+}
+
+}  // namespace mpm

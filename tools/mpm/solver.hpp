@@ -1,0 +1,95 @@
+// One step of the explicit material point method, in the plane (plane strain) and in space.
+//
+//   USF  points -> nodal mass, momentum; v = p/m; velocity gradient -> stress; nodal force; v' = v + f dt/m; -> points
+//   MUSL points -> nodal mass, momentum, force; v' -> points; the points' new momentum -> nodes -> gradient -> stress
+//
+// v_p = a PIC + (1 - a) FLIP; points move with the nodal velocity (Liang and Zhao 2019, eq. 2 to 19).
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "tools/mpm/bodies.hpp"
+#include "tools/mpm/material.hpp"
+#include "tools/mpm/planes.hpp"
+#include "tools/mpm/shape.hpp"
+
+namespace mpm {
+
+enum class Scheme { usf, musl };
+
+/// Points first .. first + count - 1 are of one material.
+template <int D>
+struct Range {
+  long first = 0, count = 0;
+  std::string name;
+  std::shared_ptr<Material<D>> material;
+};
+
+template <int D>
+struct Options {
+  Shape shape = Shape::bspline;
+  Scheme scheme = Scheme::usf;
+  double pic_fraction = 0.1;
+  /// Points bring v + grad v (x - x_p) to a node, not v alone: fields that are linear in space then reach the nodes
+  /// unsmoothed, at free surfaces too.
+  bool affine = true;
+  double cfl = 0.4;                 ///< of the time that a wave takes across a cell
+  Vec<D> gravity = Vec<D>::Zero();  ///< m/s^2
+  /// Pa, compression positive, on every free surface: the traction's nodal forces, by the divergence theorem, are those
+  /// of a uniform stress in the whole body. It moves with the surface, and equilibrium with it is exact.
+  double surface_pressure = 0;
+};
+
+/// What the steps added up, J.
+template <int D>
+struct Ledger {
+  double nodal_kinetic = 0;  ///< change of kinetic energy at the nodes; less that of the points is lost in mapping
+};
+
+template <int D>
+class Solver {
+ public:
+  Workers workers;  ///< first, so that it outlives what works with it
+  std::vector<Point<D>> points;
+  std::vector<Range<D>> ranges;
+  Grid<D> grid;
+  Planes<D> planes;
+  Bodies<D> bodies;
+  Options<D> options;
+  Ledger<D> ledger;
+  double time = 0;
+  long steps = 0;
+  double grid_seconds = 0, material_seconds = 0;
+  /// Axis along which the cells shrink or grow so that a moving plane stays on its nodes, and that plane; -1: none.
+  int follow_axis = -1, followed = -1;
+  Vec<D> first_cell = Vec<D>::Ones();
+  /// Body force of position and time, m/s^2, beside gravity; empty: none.
+  std::function<Vec<D>(const Vec<D>&, double)> body_force;
+
+  explicit Solver(int threads) : workers(threads) {}
+  /// s, from the fastest wave and the fastest point.
+  double stable_step() const;
+  void step(double dt);
+
+ private:
+  void place_grid();
+  void find_supports();
+  void sort_into_slabs();
+  template <class Work>
+  void over_slabs(const Work& work);
+  void map_momentum();
+  void map_force();
+  void start_velocities();
+  void end_velocities(double dt);
+  void gradients(double dt);
+  void stresses(double dt);
+  void move_points(double dt);
+  void second_map(double dt);
+
+  std::vector<Support<D>> supports_;
+  std::vector<long> order_, slab_begin_;
+};
+
+}  // namespace mpm

@@ -1,0 +1,68 @@
+#include "tools/mpm/workers.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace mpm {
+
+Workers::Workers(int count) {
+  if (count <= 0) count = int(std::max(1u, std::thread::hardware_concurrency()));
+  for (int k = 1; k < count; ++k) threads_.emplace_back([this] { serve(); });
+}
+
+Workers::~Workers() {
+  {
+    const std::lock_guard lock(mutex_);
+    stop_ = true;
+  }
+  begin_.notify_all();
+  for (auto& thread : threads_) thread.join();
+}
+
+void Workers::for_each(std::int64_t pieces, const std::function<void(std::int64_t)>& work) {
+  if (threads_.empty() || pieces <= 1) {
+    for (std::int64_t k = 0; k < pieces; ++k) work(k);
+    return;
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    work_ = &work;
+    pieces_ = pieces;
+    next_ = 0;
+    busy_ = int(threads_.size());
+    ++round_;
+  }
+  begin_.notify_all();
+  take();
+  std::unique_lock lock(mutex_);
+  end_.wait(lock, [this] { return busy_ == 0; });
+  work_ = nullptr;
+  if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+}
+
+void Workers::take() {
+  try {
+    for (std::int64_t k; (k = next_.fetch_add(1)) < pieces_;) (*work_)(k);
+  } catch (...) {
+    next_ = pieces_;
+    const std::lock_guard lock(mutex_);
+    if (!failure_) failure_ = std::current_exception();
+  }
+}
+
+void Workers::serve() {
+  std::uint64_t seen = 0;
+  for (;;) {
+    {
+      std::unique_lock lock(mutex_);
+      begin_.wait(lock, [&] { return stop_ || round_ != seen; });
+      if (stop_) return;
+      seen = round_;
+    }
+    take();
+    const std::lock_guard lock(mutex_);
+    if (--busy_ == 0) end_.notify_one();
+  }
+}
+
+}  // namespace mpm

@@ -1,0 +1,185 @@
+"""Figures of rvelab-mpm runs: fields of the material points at one time, a film of them, and histories.
+
+    mpm.py RUN --field eps_q -o eps_q.png              # the last frame; --frame 3, --field void_ratio, velocity, ...
+    mpm.py RUN --field eps_q --film -o film.gif        # all frames
+    mpm.py RUN --energy -o energy.png                  # shares of energy
+    mpm.py RUN... --force plate.force_y --against plate.way_y -o force.png
+
+RUN is the folder that rvelab-mpm wrote. Points are drawn at their deformed places, in their deformed shapes."""
+
+import argparse
+import pathlib
+
+from records import STYLE, plt  # first: it says which package is missing
+import h5py
+import numpy as np
+from matplotlib.collections import PolyCollection
+
+# Label, colours, and whether zero is in the middle of the scale.
+FIELDS = {"eps_q": ("deviatoric strain $\\varepsilon_q$", "viridis", False),
+          "eps_v": ("volumetric strain $\\varepsilon_v$, compression positive", "coolwarm", True),
+          "void_ratio": ("void ratio $e$", "coolwarm", False),
+          "rotation_deg": ("rotation (degrees, anticlockwise positive)", "RdBu_r", True),
+          "fabric_anisotropy": ("fabric anisotropy $F_a$", "viridis", False),
+          "velocity": ("speed (m/s)", "magma", False), "displacement": ("displacement (m)", "viridis", False),
+          "p_Pa": ("mean pressure $p$ (Pa)", "viridis", False), "q_Pa": ("deviator $q$ (Pa)", "viridis", False),
+          "plastic_strain": ("plastic strain", "viridis", False)}
+
+
+def frames_of(run):
+    frames = sorted(pathlib.Path(run).glob("points_*.h5"))
+    if not frames:
+        raise ValueError(f"{run}: no points_*.h5 there; give the folder of a run of rvelab-mpm")
+    return frames
+
+
+def history_of(run):
+    """Columns of history.csv by their names."""
+    path = pathlib.Path(run) / "history.csv"
+    if not path.exists():
+        raise ValueError(f"{run}: no history.csv there; give the folder of a run of rvelab-mpm")
+    names = path.open().readline().strip().split(",")
+    return dict(zip(names, np.loadtxt(path, delimiter=",", skiprows=1, ndmin=2).T))
+
+
+def read(frame, field):
+    """Time, corners of the points (n, 4, 2) and values; in space, the points as seen along y."""
+    with h5py.File(frame, "r") as file:
+        name = {"velocity": "velocity_m_s", "displacement": "displacement_m"}.get(field, field)
+        values = file[name][()]
+        if values.ndim == 2:
+            values = np.linalg.norm(values, axis=1)
+        position, F = file["position_m"][()], file["deformation_gradient"][()].reshape(-1, 3, 3)
+        volume = file["volume_m3"][()]
+        first = position - file["displacement_m"][()]
+        time = float(file["time_s"][0])
+    axes = [0, 1] if np.all(position[:, 2] == 0) else [0, 2]
+    # Sides of the points at the start, from their spacing; stretched ones are drawn no longer than three times that.
+    sides = [np.min(np.diff(np.unique(np.round(first[:, a], 9)))) if len(np.unique(np.round(first[:, a], 9))) > 1
+             else volume[0] ** 0.5 for a in axes]
+    corner = 0.5 * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * sides
+    stretch = F[:, axes][:, :, axes]
+    scale = np.minimum(1, 3 / np.maximum(np.linalg.norm(stretch, axis=(1, 2)) / 2**0.5, 1e-9))
+    return time, position[:, None, axes] + np.einsum("nij,kj->nki", stretch * scale[:, None, None], corner), values
+
+
+def size_of(box):
+    """Inches: five wide, as high as the points need."""
+    width, height = box[:, 1] - box[:, 0]
+    return (5, min(6, max(1.6, 0.9 + 4 * height / width))) if height < width else (4.2, 5)
+
+
+def draw(figure, frame, field, limits, box):
+    time, corners, values = read(frame, field)
+    label, colours, centred = FIELDS[field]
+    axes = figure.add_subplot()
+    axes.grid(False)
+    if limits is None:
+        finite = values[np.isfinite(values)]
+        if len(finite) == 0:
+            raise ValueError(f"{frame}: no point has {field}; it is a measure of other materials")
+        low, high = np.percentile(finite, [1, 99])
+        limits = (-max(abs(low), abs(high)), max(abs(low), abs(high))) if centred else (low, high)
+    patches = PolyCollection(corners, array=values, cmap=colours, edgecolors="none")
+    patches.set_clim(*limits)
+    axes.add_collection(patches)
+    axes.set_xlim(box[0])
+    axes.set_ylim(box[1])
+    axes.set_aspect("equal")
+    axes.set_xlabel("x (m)")
+    axes.set_ylabel("height (m)")
+    axes.set_title(f"t = {time:.3g} s", fontsize=10)
+    figure.colorbar(patches, label=label, shrink=0.9, aspect=14)
+
+
+def box_of(frames, field):
+    """What all the frames need."""
+    low, high = [], []
+    for frame in frames:
+        corners = read(frame, field)[1].reshape(-1, 2)
+        low.append(corners.min(axis=0))
+        high.append(corners.max(axis=0))
+    low, high = np.min(low, axis=0), np.max(high, axis=0)
+    margin = 0.02 * (high - low)
+    return np.stack([low - margin, high + margin]).T
+
+
+def field_figure(options):
+    frames = frames_of(options.runs[0])
+    if options.film:
+        from PIL import Image
+        box, pictures = box_of(frames[:: max(1, len(frames) // 8)] + frames[-1:], options.field), []
+        last = read(frames[-1], options.field)[2]
+        limits = options.limits or tuple(np.nanpercentile(last, [1, 99]))
+        for frame in frames:
+            figure = plt.figure(figsize=size_of(box))
+            draw(figure, frame, options.field, limits, box)
+            figure.canvas.draw()
+            pictures.append(Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("P"))
+            plt.close(figure)
+        pictures[0].save(options.output, save_all=True, append_images=pictures[1:], duration=120, loop=0)
+        return f"{options.output}: {len(pictures)} frames of {options.field}"
+    frame = frames[options.frame]
+    box = box_of([frame], options.field)
+    figure = plt.figure(figsize=size_of(box))
+    draw(figure, frame, options.field, options.limits, box)
+    figure.savefig(options.output)
+    return f"{options.output}: {options.field} of {frame.name}"
+
+
+def energy_figure(options):
+    figure, axes = plt.subplots(figsize=(5.5, 3.5))
+    for run in options.runs:
+        h = history_of(run)
+        for name, label in (("kinetic_J", "kinetic"), ("potential_J", "potential, change"),
+                            ("stress_work_J", "work of the stress"), ("mapping_loss_J", "lost in mapping"),
+                            ("residual_J", "not accounted for")):
+            axes.plot(h["time_s"], h[name], label=label if run == options.runs[0] else None)
+    axes.set_xlabel("time (s)")
+    axes.set_ylabel("energy (J)")
+    axes.legend()
+    figure.savefig(options.output)
+    return f"{options.output}: energies of {', '.join(options.runs)}"
+
+
+def force_figure(options):
+    figure, axes = plt.subplots(figsize=(5.5, 3.5))
+    for run in options.runs:
+        h = history_of(run)
+        y, x = options.force + "_N", "time_s" if options.against is None else options.against + "_m"
+        for name in (x, y):
+            if name not in h:
+                raise ValueError(f"{run}: history.csv has no {name}; it has " + ", ".join(h))
+        axes.plot(np.abs(h[x]), h[y] / 1e3, label=pathlib.Path(run).name)
+    axes.set_xlabel("time (s)" if options.against is None else f"{options.against} (m)")
+    axes.set_ylabel(f"{options.force} (kN)")
+    axes.legend()
+    figure.savefig(options.output)
+    return f"{options.output}: {options.force} of {', '.join(options.runs)}"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("runs", nargs="+", help="folders of runs")
+    what = parser.add_mutually_exclusive_group(required=True)
+    what.add_argument("--field", choices=sorted(FIELDS))
+    what.add_argument("--energy", action="store_true")
+    what.add_argument("--force", help="a column of history.csv without its unit: plate.force_y")
+    parser.add_argument("--against", help="the same for the other axis: plate.way_y; default: time")
+    parser.add_argument("--frame", type=int, default=-1, help="number of the frame; negative: from the end")
+    parser.add_argument("--film", action="store_true", help="all frames, as GIF")
+    parser.add_argument("--limits", type=float, nargs=2, help="of the colours")
+    parser.add_argument("-o", "--output", required=True)
+    options = parser.parse_args()
+    try:
+        with plt.rc_context(STYLE):
+            print(energy_figure(options) if options.energy else force_figure(options) if options.force
+                  else field_figure(options))
+    except (ValueError, IndexError) as error:
+        parser.error(" ".join(str(error).split()))
+    except OSError as error:
+        parser.error(f"{error.filename or options.output}: {error.strerror or error}; give a path in an existing folder")
+
+
+if __name__ == "__main__":
+    main()
