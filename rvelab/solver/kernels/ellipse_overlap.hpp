@@ -43,6 +43,14 @@ struct Direction {
   V x, y;
 };
 
+/// M of an ellipse whose long axis is e, from b^2 and a^2 - b^2.
+template <class V>
+inline __attribute__((always_inline)) EllipseMatrix<V> ellipse_matrix(Direction<V> e, V minor_squared, V difference,
+                                                                      V sharpest) {
+  const V x = difference * e.x, y = difference * e.y;
+  return {minor_squared + x * e.x, x * e.y, minor_squared + y * e.y, sharpest};
+}
+
 template <class V>
 inline __attribute__((always_inline)) EllipseGap<V> ellipse_gap(const EllipsePair<V>& p, Direction<V> n) {
   const V ix = p.i.xx * n.x + p.i.xy * n.y, iy = p.i.xy * n.x + p.i.yy * n.y;

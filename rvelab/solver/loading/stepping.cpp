@@ -152,7 +152,7 @@ Matrix3 kinetic_moment(const Fixture& f, const Assembly& a) {
       xx -= mass * (x * x);
       yy -= mass * (y * y);
       xy -= mass * (x * y);
-      if (f.shape == Shape::disc) continue;
+      if (f.dimension() == 2) continue;
       const double z = v[2] - mean[2];
       zz -= mass * (z * z);
       yz -= mass * (y * z);
@@ -281,7 +281,7 @@ Advanced advance(const Fixture& f, Assembly& a, const Advance& what) {
   double total_mass = 0;
   for (std::size_t g = 0; g < f.size(); ++g) total_mass += a.mass[g];
   PairArrays pairs = arrays_of(a.pairs);
-  GrainArrays grains = arrays_of(a);
+  GrainArrays grains = arrays_of(f, a);
   const long padded_grains = long(a.mass.size());
   Workers* team = f.sharing();
   StepSums sums;
@@ -327,7 +327,7 @@ Advanced advance(const Fixture& f, Assembly& a, const Advance& what) {
         moment_before = reduction.rotation.transpose() * moment_before * reduction.rotation;
       }
       pairs = arrays_of(a.pairs);
-      grains = arrays_of(a);
+      grains = arrays_of(f, a);
     }
     Dissipation lost;
     if (f.options.ledger)
