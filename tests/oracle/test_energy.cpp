@@ -109,7 +109,8 @@ Material material(double friction, double rolling_friction) {
 }
 
 Specimen packing(Shape shape, Law law, double friction = 1e6, double rolling_friction = 1e6) {
-  return disordered(shape, dimension_of(shape) == 2 ? 6 : 3, material(friction, rolling_friction), law, 0.53, 5);
+  return disordered(shape, dimension_of(shape) == 2 ? 6 : 3, material(friction, rolling_friction), law,
+                    shape == Shape::ellipse ? 0.57 : 0.53, 5);  // without friction they find more room
 }
 
 /// Shear that the frame follows (no spin of it), or with components below the diagonal: the frame turns.
