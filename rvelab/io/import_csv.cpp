@@ -114,6 +114,14 @@ std::vector<std::size_t> order_by_id(const CsvTable& table) {
   return order;
 }
 
+void read_radius(const CsvTable& table, std::size_t row, Grains& grains) {
+  const auto radius = table.column({"r", "radius"});
+  grains.radius.push_back(table.number(row, radius));
+  if (!(grains.radius.back() > 0)) {
+    throw InputError(table.place(row, radius) + " m is not positive; allowed: > 0; correct the radius");
+  }
+}
+
 /// Takes one grain's axes (m) and the angle of the long one (degrees, laboratory frame) from its row.
 void read_ellipse(const CsvTable& table, std::size_t row, Specimen& specimen) {
   const auto a = table.column({"a"}), b = table.column({"b"}), angle = table.column({"angle"});
@@ -137,19 +145,14 @@ std::vector<Image> read_grains(const CsvTable& table, Specimen& specimen) {
   const auto positions = positions_of(table, specimen.cell);
   const auto materials = materials_of(table, specimen);
   const auto id = table.column({"id"});
-  const bool ellipses = specimen.shape == Shape::ellipse;
-  const auto radius = ellipses ? id : table.column({"r", "radius"});
   std::vector<Image> wraps;
   Grains& grains = specimen.grains;
   for (const auto row : order_by_id(table)) {
     grains.id.push_back(table.integer(row, id));
-    if (ellipses)
+    if (specimen.shape == Shape::ellipse)
       read_ellipse(table, row, specimen);
     else
-      grains.radius.push_back(table.number(row, radius));
-    if (!(grains.radius.back() > 0)) {
-      throw InputError(table.place(row, radius) + " m is not positive; allowed: > 0; correct the radius");
-    }
+      read_radius(table, row, grains);
     grains.material.push_back(materials[row]);
     grains.position.push_back(positions[row]);
     wraps.push_back(wrap(specimen.cell, grains.position.back()));
