@@ -299,10 +299,7 @@ void add_calibrate(CLI::App& app) {
   command->add_option("--pressures", arguments->pressures, "Pa, 10e3,15e3,...; else [calibrate] pressures_Pa");
   command->add_flag("--every-pressure", arguments->every_pressure, "test each of several specimens at every pressure");
   command->add_option("-o,--output", arguments->folder, "folder for record files R_<pressure>.h5; made if not there");
-  command->add_option("--set", arguments->settings, "key=value, for example contact.slip=consistent")
-      ->expected(1)
-      ->allow_extra_args(false)
-      ->take_all();
+  add_set_option(*command, arguments->settings, "contact.slip=consistent");
   command->add_option("--threads", arguments->threads, "tests at a time; else as many as there are cores")
       ->check(CLI::Range(1u, 4096u));
   arguments->recording.add_to(*command);

@@ -91,10 +91,7 @@ void add_import(CLI::App& app) {
       ->delimiter(',')
       ->expected(3);
   command->add_option("--material", arguments->material, "TOML file with [[material]], [contact], [damping], [solver]");
-  command->add_option("--set", arguments->settings, "key=value, for example contact.slip=full_radius_ratcheting")
-      ->expected(1)
-      ->allow_extra_args(false)
-      ->take_all();
+  add_set_option(*command, arguments->settings, "contact.slip=full_radius_ratcheting");
   command->add_option("-o,--output", arguments->output, "specimen file to write, S.h5")->required();
   command->add_flag("--force", arguments->force, "overwrite the output");
   command->add_flag("--json", arguments->json, "print one JSON object");

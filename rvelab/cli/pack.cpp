@@ -196,10 +196,7 @@ void add_pack(CLI::App& app) {
   command->add_option("-o,--output", arguments->output, "specimen file to write, S.h5")->required();
   command->add_option("--count", arguments->count, "so many specimens, S_1.h5 and on, with seeds one after the other")
       ->check(CLI::Range(1, 1'000'000));
-  command->add_option("--set", arguments->settings, "key=value, for example target.pressure_Pa=50e3")
-      ->expected(1)
-      ->allow_extra_args(false)
-      ->take_all();
+  add_set_option(*command, arguments->settings, "target.pressure_Pa=50e3");
   command->add_option("--threads", arguments->threads, "specimens or draws at a time; else as many as there are cores")
       ->check(CLI::Range(1u, 4096u));
   command->add_flag("--force", arguments->force, "overwrite specimen files that are there");

@@ -2,6 +2,7 @@
 // and the folder that results go to.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <map>
 #include <string>
 #include <vector>
@@ -26,6 +27,9 @@ std::string input_path(const std::string& name_or_path, InputKind kind);
 inline std::string protocol_path(const std::string& name_or_path) {
   return input_path(name_or_path, InputKind::protocol);
 }
+
+/// The option --set KEY=VALUE, any number of times; `example` is one of them.
+void add_set_option(CLI::App& command, std::vector<std::string>& settings, const std::string& example);
 
 /// The path of the installed study of this name; "" if there is none.
 std::string installed_study(const std::string& name);

@@ -207,10 +207,7 @@ void add_run(CLI::App& app) {
   command->add_option("--specimen", arguments->specimen,
                       "specimen (or record file: its end state); else [specimen] file");
   command->add_option("-o,--output", arguments->output, "record file to write, R.h5");
-  command->add_option("--set", arguments->settings, "key=value, for example test.pressure_Pa=2e4")
-      ->expected(1)
-      ->allow_extra_args(false)
-      ->take_all();
+  add_set_option(*command, arguments->settings, "test.pressure_Pa=2e4");
   command->add_option("--threads", arguments->threads, "threads of a specimen from 30,000 grains on; else one per core")
       ->check(CLI::Range(1u, 4096u));
   arguments->recording.add_to(*command);

@@ -16,6 +16,10 @@ inline constexpr int sealed_minor = 4;
 
 /// Sets the file's attributes `format` and `format_version`.
 void stamp(Hdf5File& file, FileKind kind);
+void stamp(Hdf5File& file, const std::string& format);
+
+/// Checks the attributes of a file that must be of this format, and its seal. InputError as checked_kind.
+void check_format(const Hdf5File& file, const std::string& format);
 
 /// Checks the attributes and returns the kind. InputError: not rvelab's, of a newer format, or of a format that is
 /// sealed without a seal.

@@ -80,7 +80,11 @@ std::uint32_t digest(const Specimen& specimen) {
 }
 
 void stamp(Hdf5File& file, FileKind kind) {
-  file.set_attribute("format", kind == FileKind::specimen ? specimen_format : records_format);
+  stamp(file, kind == FileKind::specimen ? specimen_format : records_format);
+}
+
+void stamp(Hdf5File& file, const std::string& format) {
+  file.set_attribute("format", format);
   file.set_attribute("format_version", std::to_string(format_major) + "." + std::to_string(format_minor));
 }
 
@@ -124,8 +128,9 @@ FileKind kind_without_seal(const Hdf5File& file) {
   return format == specimen_format ? FileKind::specimen : FileKind::records;
 }
 
-FileKind checked_kind(const Hdf5File& file) {
-  const FileKind kind = kind_without_seal(file);
+namespace {
+
+void expect_seal(const Hdf5File& file) {
   const auto [major, minor] = format_version(file);
   if (!file.sealed() && (major > 1 || minor >= sealed_minor)) {
     throw InputError(file.path() +
@@ -133,7 +138,21 @@ FileKind checked_kind(const Hdf5File& file) {
                      "again, or, if the change is meant, take it over with `rvelab seal " +
                      file.path() + " -o NEW.h5`");
   }
+}
+
+}  // namespace
+
+FileKind checked_kind(const Hdf5File& file) {
+  const FileKind kind = kind_without_seal(file);
+  expect_seal(file);
   return kind;
+}
+
+void check_format(const Hdf5File& file, const std::string& format) {
+  const std::string found = file.attribute("format");
+  if (found != format)
+    throw InputError(file.path() + ": its attribute format is \"" + found + "\"; allowed: \"" + format + "\"");
+  expect_seal(file);
 }
 
 void put_specimen(Hdf5File& file, const std::string& group, const Specimen& specimen) {

@@ -60,10 +60,6 @@ Matrix3 reynolds_stress(const Network& network) {
   return in_laboratory(network, sum / network.cell.volume());
 }
 
-double mean_pressure(const Matrix3& stress, int dimension) {
-  return -(stress(0, 0) + stress(1, 1) + (dimension == 3 ? stress(2, 2) : 0.0)) / dimension;
-}
-
 double deviatoric_stress(const Matrix3& stress, int dimension) {
   return std::sqrt(dimension == 2 ? 0.5 : 1.5) * deviator(stress, dimension).norm();
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "rvelab/solver/assembly/network.hpp"
+#include "rvelab/solver/assembly/pressure.hpp"
 
 namespace rvelab {
 
@@ -19,9 +20,6 @@ Matrix3 contact_stress(const Network& network);
 
 /// Stress of the velocity fluctuations, Pa: -(1/V) sum m v' (x) v'. Zero for a quasi-static network.
 Matrix3 reynolds_stress(const Network& network);
-
-/// p = -tr(sigma)/d, Pa, compression positive.
-double mean_pressure(const Matrix3& stress, int dimension);
 
 /// q, Pa, of the symmetric deviator s: 2D sqrt(s:s/2), 3D sqrt(3 s:s/2).
 double deviatoric_stress(const Matrix3& stress, int dimension);

@@ -64,25 +64,35 @@ void Rve::Impl::expect_substeps(long made, long needed) const {
                         " sub-steps; solver.max_substeps allows " + std::to_string(fixture.options.max_substeps));
 }
 
-Report Rve::Impl::load(const Matrix3& dh, double dt) {
-  const FrameSplit whole = split_increment(now.cell, dh);
-  if (dt > 0) return load_physical(whole, dt);
-  if (!dh.isZero(0) && !whole.rigid) return load_quasi_static(whole);
+Report Rve::Impl::load(const FrameSplit& increment, const Matrix3& dh, double dt) {
   Report report;
-  report.unbalanced_ratio = unbalanced(balance_of(fixture, now));
-  judge(report);
-  estimate_error(0, present_stress(), report.unbalanced_ratio, report);
-  if (dh.isZero(0)) return report;
-  const Matrix3 turned = (Matrix3::Identity() + dh) * now.cell.rotation;
-  const bool quarter_turn = (dh + Matrix3::Identity()).unaryExpr([](double x) { return x * x * x - x; }).isZero(0);
-  turn_frame(now.cell, whole.rotation);
-  if (quarter_turn) now.cell.rotation = turned;  // rows change places, no bit of them is lost
+  if (dt == 0 && increment.rigid) {
+    report.unbalanced_ratio = unbalanced(balance_of(fixture, now));
+    judge(report);
+    estimate_error(0, present_stress(), report.unbalanced_ratio, report);
+    if (dh.isZero(0)) return report;
+    const Matrix3 turned = (Matrix3::Identity() + dh) * now.cell.rotation;
+    const bool quarter_turn = (dh + Matrix3::Identity()).unaryExpr([](double x) { return x * x * x - x; }).isZero(0);
+    turn_frame(now.cell, increment.rotation);
+    if (quarter_turn) now.cell.rotation = turned;  // rows change places, no bit of them is lost
+    set_strained_cell();
+    return report;
+  }
+  long deferred = 0;
+  FrameSplit whole = increment;
+  if (has_deferred() && !(dt == 0 && joins_deferred(increment))) {
+    deferred = make_deferred();
+    whole = split_increment(now.cell, dh);  // the lattice may have been reduced, which turns the frame
+  }
+  report = dt > 0 ? load_physical(whole, dt) : load_quasi_static(whole);
+  report.substeps += deferred;
   return report;
 }
 
 Report Rve::Impl::load_physical(const FrameSplit& whole, double dt) {
   Report report;
   begin_loading(fixture, now, Loading::physical);
+  now.state.stress_slope.setZero();
   const Matrix3 start_frame = now.cell.rotation;
   const StrainPath path(whole, true);
   double fraction = 0;

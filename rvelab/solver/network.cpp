@@ -123,7 +123,7 @@ Network network_of(const Fixture& f, const Assembly& a) {
 }  // namespace
 
 Network Rve::network() const {
-  return at_work(*impl_, [](const Impl& m) { return network_of(m.fixture, m.now); });
+  return brought_up_to_date(*impl_, [](const Impl& m) { return network_of(m.fixture, m.now); });
 }
 
 }  // namespace rvelab

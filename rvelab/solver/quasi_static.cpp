@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "rvelab/error.hpp"
+#include "rvelab/solver/assembly/pressure.hpp"
 #include "rvelab/solver/loading/accuracy.hpp"
 #include "rvelab/solver/loading/strain_path.hpp"
 #include "rvelab/solver/rve_impl.hpp"
@@ -43,10 +44,6 @@ constexpr double longest_leg = 1e-4;
 
 /// Unbalanced ratios that a tolerance may lead to.
 constexpr double least_target = 1e-7, largest_target = 2e-3;
-
-double mean_pressure(const Matrix3& stress, int dimension) {
-  return dimension == 2 ? -0.5 * (stress(0, 0) + stress(1, 1)) : -stress.trace() / 3;
-}
 
 /// How many sub-steps a start needs so that it leaves no more than `target` of imbalance; `rate` is the strain of the
 /// sub-step before it. From `steps` on.
@@ -180,46 +177,37 @@ void Rve::Impl::estimate_error(double network, const Matrix3& stress_before, dou
   report.error_estimate = expected_error(ratio);
 }
 
-Report Rve::Impl::load_quasi_static(const FrameSplit& whole) {
-  Report report;
+double Rve::Impl::turn_back() {
+  SolverState& state = now.state;
+  // What the state still lags by stays in it: unloading locks the contacts that would have crept.
+  const double carried = expected_error(state.unbalanced_ratio);
+  // Turned back, the network is elastic again; and velocities that go the other way are worse than none.
+  stop_grains(fixture, now);
+  state.last_rate.setZero();
+  state.softness = 1;
+  state.interval_strain = 0;
+  state.interval_stress = present_stress();
+  return carried;
+}
+
+Rve::Impl::Start Rve::Impl::start_of(const Matrix3& change, double strain, bool turned_back) {
+  const SolverState& state = now.state;
+  if (!by_tolerance()) return {double(turned_back ? fewest_steps_back : fewest_steps), 0};
+  if (!(state.network_stiffness > 0)) return {1, 0};
+  const double overlap = strain_of_overlap(pressure(), state.network_stiffness, fixture.hardening);
+  const double paced = std::max(1.0, std::ceil(strain / state.strain_per_step));
+  const double steps = steps_of_start(change, strain, state.last_rate, overlap, state.pace_target, paced);
+  const double mismatch = (change - steps * state.last_rate).norm() / change.norm();
+  return {steps, unbalance_of_start(mismatch, strain, overlap, steps)};
+}
+
+bool Rve::Impl::make_substeps(const StrainPath& path, double strain, double fewest, Report& report) {
   const SolverOptions& o = fixture.options;
   SolverState& state = now.state;
-  begin_quasi_static();
-  const Matrix3 stress_before = present_stress(), identity = Matrix3::Identity();
-  const Matrix3 change = whole.stretch - identity, start_frame = now.cell.rotation;
-  const StrainPath path(whole, false);
-  const double strain = path.strain();
-  const bool by_tolerance = o.fixed_substeps == 0 && o.target_unbalanced == 0;
-  const double along = state.last_rate.cwiseProduct(change).sum();
-  double carried = 0;
-  if (along <= 0) state.leg_strain = 0;
-  state.leg_strain = std::min(state.leg_strain + strain, longest_leg);
-  if (by_tolerance && along < 0) {
-    // What the state still lags by stays in it: unloading locks the contacts that would have crept.
-    carried = expected_error(state.unbalanced_ratio);
-    // Turned back, the network is elastic again; and velocities that go the other way are worse than none.
-    stop_grains(fixture, now);
-    state.last_rate.setZero();
-    state.softness = 1;
-    state.interval_strain = 0;
-    state.interval_stress = stress_before;
-  }
-  const double judged = network_change(std::max(strain, state.leg_strain));
-  set_pace_target(target_for(judged));
-  double fewest = double(along < 0 ? fewest_steps_back : fewest_steps), expected = 0;
-  if (by_tolerance) {
-    const double overlap = strain_of_overlap(pressure(), state.network_stiffness, fixture.hardening);
-    const bool touching = state.network_stiffness > 0;
-    fewest = touching ? steps_of_start(change, strain, state.last_rate, overlap, state.pace_target,
-                                       std::max(1.0, std::ceil(strain / state.strain_per_step)))
-                      : 1;
-    if (touching)
-      expected =
-          unbalance_of_start((change - fewest * state.last_rate).norm() / change.norm(), strain, overlap, fewest);
-  }
+  const Matrix3 start_frame = now.cell.rotation;
+  Matrix3 done = Matrix3::Identity();
   double fraction = 0;
   bool looked = false;
-  Matrix3 done = identity;
   while (fraction < 1) {
     const double left = 1 - fraction;
     long steps_left = 0;
@@ -252,14 +240,38 @@ Report Rve::Impl::load_quasi_static(const FrameSplit& whole) {
     const bool too_fast = state.unbalanced_ratio > state.pace_target;
     if (o.fixed_substeps == 0 && (paced || too_fast)) steer_pace(balance);
   }
+  return looked;
+}
+
+Report Rve::Impl::load_quasi_static(FrameSplit whole) {
+  Report report;
+  SolverState& state = now.state;
+  if (has_deferred()) {
+    whole.stretch = (whole.stretch * state.deferred_stretch).eval();
+    state.deferred_stretch.setIdentity();
+  }
+  begin_quasi_static();
+  const Matrix3 stress_before = present_stress(), start_frame = now.cell.rotation;
+  const Matrix3 change = whole.stretch - Matrix3::Identity();
+  const StrainPath path(whole, false);
+  const double strain = path.strain(), along = state.last_rate.cwiseProduct(change).sum();
+  if (along <= 0) state.leg_strain = 0;
+  state.leg_strain = std::min(state.leg_strain + strain, longest_leg);
+  const double carried = by_tolerance() && along < 0 ? turn_back() : 0.0;
+  const double judged = network_change(std::max(strain, state.leg_strain));
+  set_pace_target(target_for(judged));
+  const Start start = start_of(change, strain, along < 0);
+  const bool looked = make_substeps(path, strain, start.fewest, report);
   if (!present_stress().allFinite())
     throw IncrementFailed("the increment led to values that are not finite; apply it in smaller parts");
   report.unbalanced_ratio = state.unbalanced_ratio;
   judge(report);
-  estimate_error(judged, stress_before, looked ? state.unbalanced_ratio : std::max(expected, state.unbalanced_ratio),
-                 report);
+  estimate_error(judged, stress_before,
+                 looked ? state.unbalanced_ratio : std::max(start.unbalanced_ratio, state.unbalanced_ratio), report);
   report.error_estimate += carried;
-  if (!(whole.rotation.array() == identity.array()).all()) {
+  const bool same_frame = (now.cell.rotation.array() == start_frame.array()).all();
+  note_slope(whole.stretch, stress_before, same_frame);
+  if (!(whole.rotation.array() == Matrix3::Identity().array()).all()) {
     const Matrix3 turned = turned_since(start_frame, now.cell);
     turn_frame(now.cell, turned.transpose() * whole.rotation * turned);
   }

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "rvelab/error.hpp"
 #include "rvelab/solver/assembly/assembly.hpp"
 #include "rvelab/solver/rve.hpp"
 
@@ -22,7 +23,19 @@ template <class Impl, class Look>
 auto at_work(const Impl& rve, Look look) {
   if (!rve.resting) return look(rve);
   Impl copy = rve;
-  return look(std::as_const(copy.awake()));
+  return look(std::as_const(copy.at_work()));
+}
+
+/// The same for one in which nothing is deferred; where the sub-step of it fails, the grains are shown as they are.
+template <class Impl, class Look>
+auto brought_up_to_date(const Impl& rve, Look look) {
+  if (!rve.has_deferred()) return at_work(rve, look);
+  Impl copy = rve;
+  try {
+    copy.up_to_date();
+  } catch (const Error&) {
+  }
+  return look(std::as_const(copy.at_work()));
 }
 
 }  // namespace rvelab

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 #include <utility>
 
 #include "rvelab/error.hpp"
+#include "rvelab/solver/assembly/pressure.hpp"
 #include "rvelab/solver/resting.hpp"
 #include "rvelab/solver/rve_impl.hpp"
+#include "rvelab/solver/snapshot.hpp"
 
 namespace rvelab {
 
@@ -39,6 +40,7 @@ Rve::Rve(const Specimen& specimen) : impl_(std::make_unique<Impl>()) {
   if (!(m.contact_stress() + m.reynolds_stress()).allFinite())
     throw InputError("specimen: its stress is not finite (cell volume " + in_words(m.now.cell.volume()) +
                      " m^3); are cell, masses or velocities in the wrong units? Give all in SI");
+  m.set_strained_cell();
   if (specimen.state.has_reference) return;
   m.set_missing_references(balance);  // first opening
 }
@@ -51,15 +53,14 @@ void Rve::Impl::set_missing_references(const Balance& balance) {
     state.reference_contact_force =
         balance.touching > 0 ? balance.mean_contact_force : typical_normal_force(fixture, state.reference_overlap);
   if (state.reference_pressure == 0) {
-    const Matrix3 s = contact_stress() + reynolds_stress();
-    state.reference_pressure = std::max(0.0, fixture.dimension() == 2 ? -0.5 * (s(0, 0) + s(1, 1)) : -s.trace() / 3);
+    state.reference_pressure = std::max(0.0, mean_pressure(contact_stress() + reynolds_stress(), fixture.dimension()));
   }
 }
 
 double Rve::reference_pressure() const { return impl_->now.state.reference_pressure; }
 
 void Rve::take_as_reference() {
-  Impl& m = impl_->awake();
+  Impl& m = impl_->up_to_date();
   SolverState& state = m.now.state;
   state.reference_overlap = state.reference_contact_force = state.reference_pressure = 0;
   m.set_missing_references(balance_of(m.fixture, m.now));
@@ -67,9 +68,9 @@ void Rve::take_as_reference() {
   m.moved();
 }
 
-Rve::Rve(const Rve& other) : impl_(std::make_unique<Impl>(*other.impl_)) {}
+Rve::Rve(const Rve& other) : impl_(std::make_unique<Impl>(*other.impl_)) { impl_->now.replaced = nullptr; }
 Rve& Rve::operator=(const Rve& other) {
-  if (this != &other) impl_ = std::make_unique<Impl>(*other.impl_);
+  if (this != &other) *this = Rve(other);
   return *this;
 }
 Rve::Rve(Rve&&) noexcept = default;
@@ -78,48 +79,31 @@ Rve::~Rve() = default;
 
 Matrix3 Rve::Impl::contact_stress() const { return to_lab(-contact_moment(fixture, now) / now.cell.volume()); }
 
+Matrix3 Rve::Impl::strained_stress() const {
+  if (!has_deferred()) return contact_stress();
+  return contact_stress() + to_lab(extrapolated(now.state.deferred_stretch).stress);
+}
+
 Matrix3 Rve::Impl::reynolds_stress() const {
   if (now.state.quasi_static) return Matrix3::Zero();
   return to_lab(kinetic_moment(fixture, now) / now.cell.volume());
 }
 
-Rve::Impl& Rve::Impl::awake() {
-  if (resting) rebuild_buffers(fixture, now);
-  resting = false;
-  return *this;
-}
-
-void Rve::rest() {
-  release_buffers(impl_->fixture, impl_->now);
-  impl_->sums = RowSums();
-  impl_->moved();
-  impl_->trial.release();
-  impl_->resting = true;
-}
-
-Memory Rve::memory() const {
-  Memory memory = memory_of(impl_->now);
-  for (const auto* sums : {&impl_->sums.translation, &impl_->sums.rotation, &impl_->sums.dashpot})
-    memory.working += sums->capacity() * sizeof(double);
-  memory.working += impl_->trial.bytes();
-  return memory;
-}
-
 Matrix3 Rve::contact_stress() const {
-  return at_work(*impl_, [](const Impl& m) { return m.contact_stress(); });
+  return at_work(*impl_, [](const Impl& m) { return m.strained_stress(); });
 }
 Matrix3 Rve::reynolds_stress() const {
   return at_work(*impl_, [](const Impl& m) { return m.reynolds_stress(); });
 }
 Matrix3 Rve::stress() const {
-  return at_work(*impl_, [](const Impl& m) -> Matrix3 { return m.contact_stress() + m.reynolds_stress(); });
+  return at_work(*impl_, [](const Impl& m) -> Matrix3 { return m.strained_stress() + m.reynolds_stress(); });
 }
 
 double Rve::unbalanced_ratio() const {
   return at_work(*impl_, [](const Impl& m) { return m.unbalanced(balance_of(m.fixture, m.now)); });
 }
 
-const Cell& Rve::cell() const { return impl_->now.cell; }
+const Cell& Rve::cell() const { return impl_->has_deferred() ? impl_->strained_cell : impl_->now.cell; }
 std::size_t Rve::size() const { return impl_->fixture.size(); }
 std::uint64_t Rve::grain_steps() const { return impl_->now.state.grain_steps; }
 
@@ -131,7 +115,10 @@ Response Rve::Impl::respond(const Report& report, const Matrix3& gradient, doubl
   Response r;
   r.report = report;
   r.displacement_gradient = gradient;
-  const Matrix3 contact = to_lab(present_stress()), reynolds = reynolds_stress();
+  const Matrix3 contact =
+                    to_lab(has_deferred() ? Matrix3(present_stress() + extrapolated(now.state.deferred_stretch).stress)
+                                          : present_stress()),
+                reynolds = reynolds_stress();
   r.stress = contact + reynolds;
   if (want.parts) {
     r.contact_stress = contact;
@@ -149,8 +136,7 @@ Response Rve::Impl::respond(const Report& report, const Matrix3& gradient, doubl
       mass += fixture.mass[g];
       solid += grain_volume(fixture.shape, fixture.radius[g], now.cell.lattice(2, 2));
     }
-    double p = 0;
-    for (int k = 0; k < d; ++k) p -= r.stress(k, k) / d;
+    const double p = mean_pressure(r.stress, d);
     const double rate = std::sqrt(2 * e.squaredNorm()) / dt;
     if (p > 0)
       r.report.inertial_number = rate * 2 * fixture.mean_radius * std::sqrt(mass / solid / p);
@@ -160,34 +146,13 @@ Response Rve::Impl::respond(const Report& report, const Matrix3& gradient, doubl
   return r;
 }
 
-Response Rve::apply(const Matrix3& displacement_gradient, double dt, const Want& want) {
-  Impl& m = impl_->awake();
-  if (!(dt >= 0) || !std::isfinite(dt)) {
-    std::ostringstream text;
-    text << "apply: dt = " << dt << " s; it must be 0 (quasi-static) or a positive time";
-    throw InvalidIncrement(text.str());
-  }
-  const Report report = m.guarded([&] { return m.load(displacement_gradient, dt); });
-  return m.respond(report, displacement_gradient, dt, want);
-}
-
-Response Rve::apply(const MixedTarget& target, double dt, const Want& want) {
-  Impl& m = impl_->awake();
-  if (!(dt >= 0) || !std::isfinite(dt)) {
-    std::ostringstream text;
-    text << "apply: dt = " << dt << " s; it must be 0 (quasi-static) or a positive time";
-    throw InvalidIncrement(text.str());
-  }
-  Matrix3 gradient = Matrix3::Zero();
-  const Report report = m.guarded([&] { return m.load(target, dt, gradient); });
-  return m.respond(report, gradient, dt, want);
-}
-
 Report Rve::relax(double unbalanced, long max_steps) {
-  Impl& m = impl_->awake();
+  Impl& m = impl_->at_work();
   return m.guarded([&] {
     Report report;
+    const long deferred = m.make_deferred();
     m.begin_quasi_static();
+    m.now.state.stress_slope.setZero();
     constexpr long interval = 25;  // sub-steps between looks at the balance
     // Cundall's damping is a part of the force: it hardly takes from a mode without stiffness, such as grains of an
     // even ring that counter-rotate like gears. Who is not at rest after this many steps is stopped at each peak of the
@@ -211,6 +176,7 @@ Report Rve::relax(double unbalanced, long max_steps) {
       }
     }
     report.target_held = report.unbalanced_ratio <= unbalanced;
+    report.substeps += deferred;
     return report;
   });
 }
@@ -220,7 +186,7 @@ void Rve::share(Workers* team) { impl_->fixture.team = team; }
 void Rve::watch(const std::atomic<bool>* stop) { impl_->fixture.stop = stop; }
 
 void Rve::set_materials(const std::vector<Material>& materials) {
-  Impl& m = impl_->awake();
+  Impl& m = impl_->up_to_date();
   if (materials.size() != m.fixture.materials.size())
     throw InputError("set_materials: " + std::to_string(materials.size()) + " materials; the specimen has " +
                      std::to_string(m.fixture.materials.size()));
@@ -256,7 +222,7 @@ void Rve::set_materials(const std::vector<Material>& materials) {
 }
 
 void Rve::set_velocities(const std::vector<Vector3>& velocity, const std::vector<Vector3>& spin) {
-  Impl& m = impl_->awake();
+  Impl& m = impl_->up_to_date();
   if (velocity.size() != size() || spin.size() != size())
     throw InputError("set_velocities: " + std::to_string(velocity.size()) + " velocities and " +
                      std::to_string(spin.size()) + " spins; the specimen has " + std::to_string(size()) + " grains");
@@ -275,7 +241,7 @@ void Rve::set_velocities(const std::vector<Vector3>& velocity, const std::vector
 }
 
 void Rve::zero_velocities() {
-  Impl& m = impl_->awake();
+  Impl& m = impl_->up_to_date();
   stop_grains(m.fixture, m.now);
   evaluate_forces(m.fixture, m.now);
   m.moved();

@@ -21,7 +21,7 @@ struct Want {
 
 /// What was done, and in what state it ended. Of apply and of relax; what a call does not judge keeps its default.
 struct Report {
-  long substeps = 0;
+  long substeps = 0;            ///< 0: the strain is left to the next sub-step, see Rve::apply
   double unbalanced_ratio = 0;  ///< mean |resultant force|, or mean |torque|/r where larger, over max(mean contact
                                 ///< force, 1e-3 of the reference). dt = 0: when it was
                                 ///< measured last: at the end of an increment of 10 sub-steps or more, else up to 50
@@ -52,6 +52,7 @@ struct Memory {
   std::size_t state = 0;    ///< places, velocities, contact histories
   std::size_t list = 0;     ///< neighbour list: pairs, and places when it was built
   std::size_t working = 0;  ///< what rest() lets go of
+  std::size_t trial = 0;    ///< what a pending trial takes beside it
 };
 
 /// Calls that change the Rve (those without const) may not run beside any other call of the same one. Const calls
@@ -70,9 +71,23 @@ class Rve {
   ~Rve();
 
   /// Applies dH_ij = d(du_i)/dx_j (laboratory frame, finite, spin included) over the time dt (s).
-  /// dt > 0: physical masses and rate. dt = 0: quasi-static, the RVE picks its pace; dH = 0 is then the identity.
+  /// dt > 0: physical masses and rate. dt = 0: quasi-static, the RVE picks its pace; dH = 0 is then the identity. To
+  /// tolerances (solver.target_unbalanced and fixed_substeps are 0), increments that are a small part of a sub-step
+  /// share one: the strain is then in the cell at once, the stress follows from its slope over the increment before,
+  /// within the estimate, and Report::substeps is 0.
   /// Throws InvalidIncrement (refused) or IncrementFailed; the RVE is then exactly as it was.
   Response apply(const Matrix3& displacement_gradient, double dt, const Want& want = {});
+
+  /// The same as a trial: commit() makes it the state, revert() brings the committed state back, bit for bit. A pure
+  /// function of the committed state and its arguments; apply is attempt and commit. A trial that is pending is
+  /// reverted first, here and in every other call that changes the Rve. Throws as apply; no trial is pending then.
+  Response attempt(const Matrix3& displacement_gradient, double dt, const Want& want = {});
+  bool pending() const;  ///< whether a trial is; a copy has none, and is in the state that its source showed
+  void commit();         ///< nothing without a trial
+  void revert() noexcept;
+  /// With a trial pending, calls that look (stress, network, specimen, cell, save) tell of its end. After exchange()
+  /// they tell of the committed state, after a second one of the trial again; nothing else may be called between.
+  void exchange() noexcept;
 
   /// The same with a mixed target: the stress servo runs inside the sub-steps, and the response says which gradient it
   /// found. Throws InputError if the target is not a target (see MixedTarget), InvalidIncrement (dt is negative or not
@@ -94,14 +109,19 @@ class Rve {
   double critical_time_step() const;  ///< 2/omega_max with physical masses, s
   std::uint64_t grain_steps() const;  ///< grains times sub-steps since the specimen was made
 
-  Network network() const;    ///< contacts and grains in the cell frame, in the order of the specimen
-  Specimen specimen() const;  ///< the whole state; Rve(specimen()) goes on as this one, bit for bit
+  /// Contacts and grains in the cell frame, in the order of the specimen; after an increment that left its strain to
+  /// the next sub-step, those of a copy that makes it.
+  Network network() const;
+  /// The whole state; Rve(specimen()) goes on as this one, bit for bit. Strain that is left to the next sub-step is in
+  /// state.deferred_stretch, not in the lattice.
+  Specimen specimen() const;
 
   /// Lets go of everything that can be made again from state and list, about two thirds of the memory. The next call
   /// that changes the Rve makes it again, in the time of a few sub-steps; no bit changes. A const call that needs it
   /// (stresses, unbalanced ratio, critical time step, network) works on a copy that it makes in the same time and lets
-  /// go of: the Rve stays at rest.
+  /// go of: the Rve stays at rest. A trial stays pending, its state and the committed one both at rest.
   void rest();
+  bool resting() const;
   Memory memory() const;  ///< what is held at this moment
 
   /// A flag that apply and relax look at after each sub-step: once it is true they throw Interrupted, and the RVE is as

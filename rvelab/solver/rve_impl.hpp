@@ -1,9 +1,12 @@
 // What an Rve holds. Shared by the files that implement it and by nothing else.
 #pragma once
 
+#include <utility>
+
 #include "rvelab/solver/assembly/assembly.hpp"
 #include "rvelab/solver/loading/inertia.hpp"
 #include "rvelab/solver/loading/stepping.hpp"
+#include "rvelab/solver/loading/strain_path.hpp"
 #include "rvelab/solver/loading/trial.hpp"
 #include "rvelab/solver/rve.hpp"
 
@@ -30,9 +33,16 @@ struct Rve::Impl {
   bool sums_hold = false;
   Matrix3 stress = Matrix3::Zero();  ///< contact stress, cell frame, Pa; that of `now` while stress_holds
   bool stress_holds = false;
+  Matrix3 other_stress = Matrix3::Zero();  ///< while a trial is pending: the same of the state that is not in `now`
+  bool other_stress_holds = false;
+  Cell strained_cell;  ///< the cell with the deferred stretch, while there is one
 
-  /// Every public call that looks at forces, parameters or masses comes through here.
-  Impl& awake();
+  /// Every public call that changes an Rve comes through here: working arrays are rebuilt, where rest() let go of them,
+  /// and a pending trial is reverted.
+  Impl& at_work();
+  /// The same, with the deferred stretch made: every public call that changes more than the strain. Throws
+  /// IncrementFailed; the RVE is then exactly as it was.
+  Impl& up_to_date();
 
   /// The sums of the state as it is, made anew where grains, contacts or parameters changed (moved()). They take as
   /// long as seven sub-steps, and the last of one call are the first of the next.
@@ -52,28 +62,51 @@ struct Rve::Impl {
   Matrix3 to_lab(const Matrix3& cell_frame) const {
     return now.cell.rotation * cell_frame * now.cell.rotation.transpose();
   }
-  Matrix3 contact_stress() const;
+  Matrix3 contact_stress() const;   ///< of `now`, laboratory frame, Pa
+  Matrix3 strained_stress() const;  ///< the same with that of the deferred stretch
   Matrix3 reynolds_stress() const;
+  // Deferred strain (dt = 0, deferred.cpp): increments that are a small part of a sub-step share one.
+  bool has_deferred() const { return !(now.state.deferred_stretch.array() == Matrix3::Identity().array()).all(); }
+  bool may_defer(const FrameSplit& increment);
+  Report defer(const FrameSplit& increment);
+  /// Whether an increment can be made in one with what is deferred.
+  bool joins_deferred(const FrameSplit& increment) const;
+  /// Makes what is deferred; the number of sub-steps.
+  long make_deferred();
+  /// Change of the contact stress by a stretch beyond `now`, cell frame, Pa, and what it may err by.
+  struct Extrapolated {
+    Matrix3 stress = Matrix3::Zero();
+    double error = 0;
+  };
+  Extrapolated extrapolated(const Matrix3& stretch) const;
+  /// The slope of an increment that is made, from the stress before it; none where the cell frame turned meanwhile.
+  void note_slope(const Matrix3& stretch, const Matrix3& stress_before, bool same_frame);
+  void set_strained_cell();
+
   Response respond(const Report& report, const Matrix3& gradient, double dt, const Want& want);
 
-  /// Runs `work` as a trial and commits it; if it throws, the trial is reverted and the exception goes on.
+  void begin_trial();
+  void exchange() noexcept;
+  void revert() noexcept;
+  void settle() noexcept;  ///< what is in `now` is the state, and no trial is pending
+
+  /// Runs `work` as a trial, which is then pending; if it throws, the trial is reverted and the exception goes on.
   template <class Work>
-  auto guarded(Work work) {
-    const auto end = [&] {
-      if (fixture.size() > largest_kept_scratch) trial.release();
-    };
-    trial.begin(now);
+  auto tried(Work work) {
+    begin_trial();
     try {
-      auto result = work();
-      trial.commit(now);
-      end();
-      return result;
+      return work();
     } catch (...) {
-      trial.revert(now);
-      moved();
-      end();
+      revert();
       throw;
     }
+  }
+  /// The same, committed.
+  template <class Work>
+  auto guarded(Work work) {
+    auto result = tried(std::move(work));
+    settle();
+    return result;
   }
 
   /// Balance after an interval; throws IncrementFailed on overlap beyond the limit or values not finite.
@@ -103,9 +136,19 @@ struct Rve::Impl {
   /// Scales of the specimen's own state that it does not bring.
   void set_missing_references(const Balance& balance);
 
-  Report load(const Matrix3& displacement_gradient, double dt);
+  Report load(const FrameSplit& whole, const Matrix3& displacement_gradient, double dt);
   Report load_physical(const FrameSplit& whole, double dt);
-  Report load_quasi_static(const FrameSplit& whole);
+  Report load_quasi_static(FrameSplit whole);
+  /// Turned back: what the state lagged by, Pa, which stays in the answer; velocities and softness begin anew.
+  double turn_back();
+  struct Start {
+    double fewest;            ///< sub-steps
+    double unbalanced_ratio;  ///< expected of that many
+  };
+  Start start_of(const Matrix3& change, double strain, bool turned_back);
+  /// The sub-steps of a quasi-static increment; whether the balance was looked at after the last of them.
+  bool make_substeps(const StrainPath& path, double strain, double fewest, Report& report);
+  bool by_tolerance() const { return fixture.options.fixed_substeps == 0 && fixture.options.target_unbalanced == 0; }
   Report load(const MixedTarget& target, double dt, Matrix3& gradient);
   Report load_at_rate(const MixedTarget& target, double dt, Matrix3& gradient);
   Report load_quasi_static(const MixedTarget& target, Matrix3& gradient);
@@ -114,9 +157,5 @@ struct Rve::Impl {
 /// What advance is to do for an increment in the cell frame.
 Advance loading_of(const Fixture& fixture, const FrameSplit& increment, long steps, double step, bool physical,
                    bool deep);
-
-/// Bytes of a specimen and back; layout of this build.
-std::vector<std::byte> to_bytes(const Specimen& specimen);
-Specimen from_bytes(std::span<const std::byte> bytes);
 
 }  // namespace rvelab

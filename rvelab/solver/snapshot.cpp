@@ -5,7 +5,6 @@
 #include <type_traits>
 
 #include "rvelab/error.hpp"
-#include "rvelab/solver/rve_impl.hpp"
 #include "rvelab/specimen/specimen_fields.hpp"
 
 namespace rvelab {

@@ -7,8 +7,15 @@
 #include <cstdint>
 #include <cstring>
 #include <span>
+#include <vector>
+
+#include "rvelab/specimen/specimen.hpp"
 
 namespace rvelab {
+
+/// Bytes of a specimen and back. InputError if the bytes cannot be such of this build (see Rve::restore).
+std::vector<std::byte> to_bytes(const Specimen& specimen);
+Specimen from_bytes(std::span<const std::byte> bytes);
 
 struct SnapshotHead {
   char magic[8];           ///< "rvesnap" and the version of this head

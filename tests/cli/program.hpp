@@ -2,7 +2,6 @@
 #pragma once
 
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -12,6 +11,7 @@
 #include <string>
 
 #include "tests/catch.hpp"
+#include "tests/folder.hpp"
 
 namespace rvelab::test {
 
@@ -28,22 +28,11 @@ struct Outcome {
 /// A folder that vanishes with the test; commands run with it as the working directory.
 class Workplace {
  public:
-  Workplace() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "rvelab-cli-XXXXXX").string();
-    REQUIRE(mkdtemp(pattern.data()) != nullptr);
-    path_ = pattern;
-  }
-  Workplace(const Workplace&) = delete;
-  Workplace& operator=(const Workplace&) = delete;
-  ~Workplace() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
+  std::string operator/(const std::string& name) const { return folder_ / name; }
 
   Outcome run(const std::string& arguments, const std::string& program = RVELAB_PROGRAM) const {
     const std::string command =
-        "cd '" + path_.string() + "' && '" + program + "' " + arguments + " >.out 2>.err </dev/null";
+        "cd '" + folder_.path() + "' && '" + program + "' " + arguments + " >.out 2>.err </dev/null";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(*this / ".out"), text_of(*this / ".err")};
   }
@@ -60,7 +49,7 @@ class Workplace {
   }
 
  private:
-  std::filesystem::path path_;
+  Folder folder_;
 };
 
 /// Exit code 2, nothing on standard output, one line on standard error that holds `part`.

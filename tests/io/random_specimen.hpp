@@ -3,13 +3,7 @@
 // structured bindings: a field that is added to one does not compile here until it is filled and compared too.
 #pragma once
 
-#include <unistd.h>
-
-#include <cstdlib>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <random>
 #include <string>
@@ -21,6 +15,7 @@
 #include "rvelab/records/record.hpp"
 #include "rvelab/specimen/specimen.hpp"
 #include "rvelab/specimen/specimen_fields.hpp"
+#include "tests/folder.hpp"
 
 namespace rvelab::test {
 
@@ -219,7 +214,10 @@ inline Specimen random_specimen(unsigned seed, std::size_t grain_count = 17, std
   grains.id.resize(grain_count);
   grains.radius.resize(grain_count);
   grains.material.resize(grain_count);
-  for (auto* vectors : {&grains.position, &grains.velocity, &grains.spin}) vectors->resize(grain_count);
+  grains.semi_major.resize(grain_count);
+  grains.semi_minor.resize(grain_count);
+  for (auto* vectors : {&grains.position, &grains.velocity, &grains.spin, &grains.orientation})
+    vectors->resize(grain_count);
   specimen.state.list_positions.resize(grain_count);
   specimen.state.scaled_mass.resize(grain_count);
   specimen.state.scaled_inverse_inertia.resize(grain_count);
@@ -256,34 +254,6 @@ inline records::Checkpoint random_checkpoint(unsigned seed) {
   records::Checkpoint filled = checkpoint;
   Pairs<RandomFill>{RandomFill(seed + 1)}(filled, filled);
   return {filled.progress, checkpoint.specimen};
-}
-
-/// A folder of its own that vanishes with the test.
-class Folder {
- public:
-  Folder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "rvelab-test-XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr) throw Error("no temporary folder could be made");
-    path_ = pattern;
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  ~Folder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
-
- private:
-  std::filesystem::path path_;
-};
-
-inline void write_bytes(const std::string& path, const std::string& bytes) {
-  std::ofstream(path, std::ios::binary) << bytes;
-}
-inline std::string bytes_of(const std::string& path) {
-  std::ifstream input(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(input), {}};
 }
 
 /// The message of the InputError that a call throws; "" if it throws none.

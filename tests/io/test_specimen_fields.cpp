@@ -12,7 +12,7 @@
 #include "rvelab/io/digest.hpp"
 #include "rvelab/io/schema.hpp"
 #include "rvelab/io/specimen_file.hpp"
-#include "rvelab/solver/rve_impl.hpp"
+#include "rvelab/solver/snapshot.hpp"
 #include "tests/catch.hpp"
 
 using namespace rvelab;

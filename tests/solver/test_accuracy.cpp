@@ -99,9 +99,12 @@ TEST_CASE("A path cut finely costs little more than the path in increments of 1e
   const auto [hundredth, steps_hundredth] = run(2000);
   CHECK(double(steps_tenth) <= 1.2 * double(steps));
   CHECK(steps_hundredth <= std::max<std::uint64_t>(2 * steps, 2000 + 100));  // at least one for each call
+  const auto [thousandth, steps_thousandth] = run(20'000);                   // these share sub-steps
+  CHECK(steps_thousandth <= 6 * steps);
   const double allowed = 1e-2 * (whole - Rve(s).stress()).norm() + 1e-4 * 1e5;
   CHECK((tenth - whole).norm() <= allowed);
   CHECK((hundredth - whole).norm() <= allowed);
+  CHECK((thousandth - whole).norm() <= allowed);
 }
 
 TEST_CASE("A path that turns back, aside, or waits keeps to the resolved one, finely cut", "[solver]") {
@@ -118,7 +121,7 @@ TEST_CASE("A path that turns back, aside, or waits keeps to the resolved one, fi
     return corners;
   };
   const std::vector<Matrix3> truth = run(3, 2000);
-  for (const long pieces : {3L, 30L, 300L}) {
+  for (const long pieces : {3L, 30L, 300L, 3000L}) {
     const std::vector<Matrix3> found = run(pieces, 0);
     for (std::size_t k = 0; k < truth.size(); ++k) {
       CAPTURE(pieces, k);

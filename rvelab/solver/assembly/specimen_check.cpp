@@ -97,6 +97,20 @@ void check_cell(const Specimen& s) {
     refuse("specimen: the rotation of the cell frame must be orthogonal with determinant +1");
 }
 
+/// Strain that is left to the next sub-step: less than a hundredth, since no sub-step is longer.
+void check_deferred(const Specimen& s) {
+  const SolverState& state = s.state;
+  const Matrix3& u = state.deferred_stretch;
+  const bool upper = u(1, 0) == 0 && u(2, 0) == 0 && u(2, 1) == 0;
+  const bool in_plane = s.cell.dimension == 3 || (u(0, 2) == 0 && u(1, 2) == 0 && u(2, 2) == 1);
+  if (!upper || !in_plane || !((u - Matrix3::Identity()).norm() < 0.01))
+    refuse(
+        "specimen: deferred_stretch of the state must be an upper triangular stretch within 0.01 of the identity, and "
+        "in 2D leave z alone; leave it the identity");
+  if (!state.stress_slope.allFinite() || !(state.slope_error >= 0) || !std::isfinite(state.slope_error))
+    refuse("specimen: stress_slope and slope_error of the state must be finite, the error >= 0; leave both 0");
+}
+
 void check_volumes(const Specimen& s) {
   double solid = 0;
   for (const double radius : s.grains.radius) solid += grain_volume(s.shape, radius, s.cell.lattice(2, 2));
@@ -171,6 +185,7 @@ void check_specimen(const Specimen& s) {
   check_ellipses(s);
   check_cell(s);
   check_volumes(s);
+  check_deferred(s);
   check_contacts(s);
   const std::vector<std::int32_t>& order = s.state.memory_order;
   if (!order.empty() && !is_permutation(order, s.grains.size()))

@@ -20,22 +20,27 @@ void Trial::begin(Assembly& a) {
   state_ = a.state;
   replaced_.taken = false;
   a.replaced = &replaced_;
+  pending_ = true;
+  list_is_whole_ = false;
 }
 
-void Trial::commit(Assembly& a) {
+void Trial::end(Assembly& a) noexcept {
   a.replaced = nullptr;
+  pending_ = false;
   // A list is made anew every few hundred sub-steps: its arrays are not worth keeping (350 bytes a grain).
   if (replaced_.taken) replaced_.list = PairTable();
 }
 
-void Trial::revert(Assembly& a) noexcept {
-  a.replaced = nullptr;
-  if (replaced_.taken) std::swap(a.pairs, replaced_.list);
-  a.cell = cell_;
+void Trial::exchange(Assembly& a) noexcept {
+  std::swap(a.cell, cell_);
   a.rows.swap(rows_);
   a.mass.swap(mass_);
   a.inverse_mass.swap(inverse_mass_);
   a.inverse_inertia.swap(inverse_inertia_);
+  std::swap(a.state, state_);
+  if (replaced_.taken) std::swap(a.pairs, replaced_.list);
+  if (list_is_whole_) return;
+  list_is_whole_ = replaced_.taken;
   for (int k = 0; k < 3; ++k) {
     a.pairs.tangential[k].swap(tangential_[k]);
     a.pairs.moment[k].swap(moment_[k]);
@@ -43,7 +48,6 @@ void Trial::revert(Assembly& a) noexcept {
   a.pairs.root_overlap.swap(root_overlap_);
   a.pairs.force.swap(force_);
   a.pairs.touched.swap(touched_);
-  std::swap(a.state, state_);
 }
 
 std::size_t Trial::bytes() const {

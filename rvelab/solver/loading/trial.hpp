@@ -20,11 +20,13 @@ class Trial {
 
   /// Notes what `assembly` is: its committed state.
   void begin(Assembly& assembly);
-  /// What `assembly` is now is its state.
-  void commit(Assembly& assembly);
-  /// Puts the committed state back, bit for bit. Allocates nothing.
-  void revert(Assembly& assembly) noexcept;
-  /// Lets go of the buffers that the next trial would use.
+  /// The committed state and that of the trial change places, bit for bit; once more, and they are where they were.
+  /// Allocates nothing.
+  void exchange(Assembly& assembly) noexcept;
+  /// No trial is pending. What `assembly` is now is its state: the committed one after an exchange.
+  void end(Assembly& assembly) noexcept;
+  bool pending() const { return pending_; }
+  /// Lets go of the buffers that the next trial would use. Nothing may be pending.
   void release() { *this = Trial(); }
   std::size_t bytes() const;
 
@@ -35,6 +37,8 @@ class Trial {
   std::vector<std::uint8_t> touched_;
   SolverState state_;
   ReplacedList replaced_;
+  bool pending_ = false;
+  bool list_is_whole_ = false;  ///< the replaced list holds the committed histories, not those when it was replaced
 };
 
 }  // namespace rvelab

@@ -1,0 +1,189 @@
+#include "rvelab/pool/pool.hpp"
+
+#include <pthread.h>
+
+#include <cmath>
+#include <string>
+#include <thread>
+
+#include "rvelab/measure/measures.hpp"
+#include "rvelab/pool/hold.hpp"
+
+namespace rvelab::pool {
+
+namespace {
+
+/// Forks that lie before this process, counted from where it was loaded.
+std::atomic<std::uint64_t> forks{0};
+
+void count_forks() {
+  static const int done = pthread_atfork(nullptr, nullptr, [] { ++forks; });
+  if (done != 0) throw std::bad_alloc();
+}
+
+std::atomic<std::uint32_t> pools_made{0};
+
+/// Owner of a slot whose RVE is being put to rest.
+constexpr std::uint64_t resting = 1;
+
+/// Sub-steps of a call after which an RVE rests at once: waking takes the time of three.
+constexpr long long_call = 100;
+
+double void_ratio_of(const Rve& rve) { return void_ratio(rve.network()); }
+
+void lay_over(const Options& options, Specimen& specimen) {
+  SolverOptions& solver = specimen.solver;
+  if (options.tolerance_rel > 0) solver.relative_tolerance = options.tolerance_rel;
+  if (options.tolerance_abs > 0) solver.absolute_tolerance = options.tolerance_abs;
+  if (options.max_substeps > 0) solver.max_substeps = options.max_substeps;
+  if (options.min_height > 0) solver.min_height = options.min_height;
+  if (options.damping > 0) specimen.damping.local = options.damping;
+}
+
+void check(const Options& options) {
+  const auto expect = [](bool allowed, const char* name, double value, const char* range) {
+    if (!allowed)
+      throw Refused(Status::bad_input, std::string("pool_def.") + name + " is " + rvelab::in_words(value) +
+                                           "; allowed: " + range + ", or 0 for what the specimen says");
+  };
+  const auto positive = [](double value) { return value >= 0 && std::isfinite(value); };
+  expect(positive(options.tolerance_rel), "tolerance_rel", options.tolerance_rel, "a positive number");
+  expect(positive(options.tolerance_abs), "tolerance_abs", options.tolerance_abs, "a positive number");
+  expect(options.max_substeps >= 0, "max_substeps", double(options.max_substeps), "1 or more");
+  expect(options.damping >= 0 && options.damping < 1, "damping", options.damping, "above 0 and below 1");
+  expect(positive(options.min_height), "min_height", options.min_height, "a positive length in m");
+}
+
+}  // namespace
+
+Pool::Pool(const Options& options)
+    : options_((check(options), options)),
+      team_(options.workers, options.run_tasks, options.host),
+      number_(++pools_made & 0x7fffffff) {
+  count_forks();
+  process_ = forks;
+}
+
+Pool::~Pool() = default;
+
+void Pool::expect_this_process() const {
+  if (forks != process_)
+    throw Refused(Status::forked, "pool: it belongs to the parent of this process; make one of its own here");
+}
+
+void Pool::close() {
+  expect_this_process();
+  int none = 0;
+  if (!calls_.compare_exchange_strong(none, -1))
+    throw Refused(Status::busy, "pool_destroy: a call is under way; destroy the pool after it has returned");
+}
+
+Hold Pool::held(std::int64_t id, std::uint64_t call) {
+  Slot& slot = slots_.at(id);
+  std::uint64_t owner = 0;
+  while (!slot.owner.compare_exchange_weak(owner, call, std::memory_order_acquire)) {
+    if (owner == call)
+      throw Refused(Status::duplicate, "id " + std::to_string(id) + " stands twice in one call; give each RVE once");
+    if (owner > resting)
+      throw Refused(Status::busy,
+                    "id " + std::to_string(id) + ": another call is at work on it; call again when that has returned");
+    if (owner == resting) std::this_thread::yield();
+    owner = 0;
+  }
+  return Hold(slot);
+}
+
+std::vector<Hold> Pool::held(std::span<const std::int64_t> ids, std::uint64_t call) {
+  std::vector<Hold> holds;
+  holds.reserve(ids.size());
+  for (const std::int64_t id : ids) holds.push_back(held(id, call));
+  return holds;
+}
+
+/// An RVE that was called stays awake for the next call, so that steps of a few sub-steps do not pay for waking. It
+/// rests at once after a long call, or when it was not called while two rounds of calls went by.
+void Pool::called(Slot& slot, std::uint64_t grain_steps, long substeps) noexcept {
+  slot.grain_steps.fetch_add(grain_steps, std::memory_order_relaxed);
+  slot.last_grain_steps = grain_steps;
+  slot.last_call.store(clock_.fetch_add(1, std::memory_order_relaxed), std::memory_order_relaxed);
+  const bool rests = substeps >= long_call;
+  if (rests) slot.resident->rve.rest();
+  slot.awake.store(!rests, std::memory_order_relaxed);
+  rest_another();
+}
+
+/// Each call looks at one other RVE: in a round of calls all are looked at.
+void Pool::rest_another() noexcept {
+  Slot& slot = slots_[std::size_t(hand_.fetch_add(1, std::memory_order_relaxed) % slots_.size())];
+  const auto forgotten = [&] {
+    return slot.awake.load(std::memory_order_relaxed) &&
+           clock_.load(std::memory_order_relaxed) >
+               slot.last_call.load(std::memory_order_relaxed) + 2 * slots_.population();
+  };
+  std::uint64_t none = 0;
+  if (!forgotten() || !slot.owner.compare_exchange_strong(none, resting, std::memory_order_acquire)) return;
+  if (forgotten()) {
+    slot.resident->rve.rest();
+    slot.awake.store(false, std::memory_order_relaxed);
+  }
+  slot.owner.store(0, std::memory_order_release);
+}
+
+std::int64_t Pool::add_template(Specimen specimen) {
+  const Alone alone(*this);
+  lay_over(options_, specimen);
+  auto made = std::make_unique<Template>(Template{Rve(specimen), 0});
+  made->void_ratio = void_ratio_of(made->rve);
+  made->rve.rest();
+  templates_.push_back(std::move(made));
+  return std::int64_t(number_) << 32 | std::int64_t(templates_.size());
+}
+
+void Pool::spawn(std::int64_t of_template, std::int64_t n, std::int64_t* ids) {
+  const Alone alone(*this);
+  const std::int64_t index = of_template & 0xffffffff;
+  if (of_template >> 32 != number_ || index < 1 || index > std::int64_t(templates_.size()))
+    throw Refused(Status::bad_id, "template " + std::to_string(of_template) +
+                                      ": this pool has none of that number; give one that template_load or "
+                                      "template_from_snapshot of this pool returned");
+  if (n < 0) throw Refused(Status::bad_input, "spawn: n is " + std::to_string(n) + "; allowed: 0 or more");
+  if (n > std::int64_t(slot_limit)) throw Refused(Status::no_slot, "spawn: a pool has 2^26 slots at most");
+  const Template& source = *templates_[std::size_t(index) - 1];
+  std::vector<std::unique_ptr<Resident>> made;
+  made.reserve(std::size_t(n));
+  while (std::int64_t(made.size()) < n)
+    made.push_back(std::make_unique<Resident>(Resident{source.rve, {}, source.void_ratio}));
+  if (n > 0) slots_.make_room(made.size());
+  for (auto& resident : made) *ids++ = slots_.add(std::move(resident));
+}
+
+std::int64_t Pool::clone(std::int64_t source) {
+  const Alone alone(*this);
+  Resident& original = *slots_.at(source).resident;
+  std::unique_ptr<Resident> made;
+  {
+    const Committed committed(original.rve);
+    made = std::make_unique<Resident>(
+        Resident{original.rve, original.tokens, original.initial_void_ratio, original.inertial_number});
+  }
+  made->rve.rest();
+  slots_.make_room(1);
+  return slots_.add(std::move(made));
+}
+
+void Pool::release(std::span<const std::int64_t> ids) {
+  const Alone alone(*this);
+  { const auto holds = held(ids, ++serial_); }  // all are there, each once
+  for (const std::int64_t id : ids) slots_.remove(id);
+}
+
+std::vector<std::int64_t> Pool::ids() {
+  const Alone alone(*this);
+  std::vector<std::int64_t> all;
+  all.reserve(slots_.population());
+  for (std::size_t k = 0; k < slots_.size(); ++k)
+    if (slots_[k].resident) all.push_back(slots_.id_of(k));
+  return all;
+}
+
+}  // namespace rvelab::pool

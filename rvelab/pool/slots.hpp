@@ -1,0 +1,70 @@
+// Where the RVEs of a pool live, who is at work on each, and which of them rest.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <vector>
+
+#include "rvelab/pool/id.hpp"
+#include "rvelab/pool/tokens.hpp"
+#include "rvelab/solver/rve.hpp"
+
+namespace rvelab::pool {
+
+/// One RVE of the pool.
+struct Resident {
+  Rve rve;
+  Tokens tokens;
+  double initial_void_ratio = 0;
+  double inertial_number = 0;        ///< of the last committed step
+  double trial_inertial_number = 0;  ///< of the pending trial
+  bool pending = false;              ///< the last trial of `tokens` is; its state may have been let go of
+};
+
+struct Slot {
+  std::uint32_t generation = 1;
+  std::unique_ptr<Resident> resident;         ///< null: the slot is free
+  std::atomic<std::uint64_t> owner{0};        ///< serial number of the call that is at work on it; 0: none
+  std::atomic<std::uint64_t> last_call{0};    ///< by the pool's count of calls on RVEs
+  std::atomic<std::uint64_t> grain_steps{0};  ///< made in this pool, trials included
+  std::atomic<bool> awake{false};
+  std::uint64_t last_grain_steps = 0;  ///< of the last call: what the next will cost
+};
+
+/// Changed only by calls that are alone in the pool: `add`, `remove` and what they say; the rest by calls at work.
+class Slots {
+ public:
+  /// The slot of an id. Throws Refused (bad_id) if it is null, stale, foreign, rounded, or none.
+  Slot& at(std::int64_t id);
+  /// Makes room for n more. All or nothing is taken by `add`, which then cannot fail. Refused (no_slot): all are used.
+  void make_room(std::size_t n);
+  /// Puts an RVE into a free slot; its id. Room must have been made.
+  std::int64_t add(std::unique_ptr<Resident> resident) noexcept;
+  void remove(std::int64_t id) noexcept;
+
+  std::size_t population() const { return population_; }
+  std::uint32_t tag() const { return tag_; }
+  std::int64_t id_of(std::size_t slot) const { return Id{tag_, slots_[slot].generation, std::uint32_t(slot)}.value(); }
+  std::size_t size() const { return slots_.size(); }  ///< slots, from 0; those that hold nothing too
+  Slot& operator[](std::size_t slot) { return slots_[slot]; }
+
+  /// As a file has them: a generation for each slot, and the residents by slot. The table must be without RVEs.
+  std::vector<std::uint32_t> generations() const;
+  void restore(std::uint32_t tag, const std::vector<std::uint32_t>& generations,
+               std::vector<std::pair<std::uint32_t, std::unique_ptr<Resident>>> residents);
+
+  Slots() = default;
+  ~Slots();
+
+ private:
+  void take_tag();
+
+  std::deque<Slot> slots_;
+  std::vector<std::uint32_t> free_;
+  std::size_t population_ = 0;
+  std::uint32_t tag_ = 0;  ///< 0: none yet
+};
+
+}  // namespace rvelab::pool

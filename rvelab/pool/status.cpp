@@ -1,0 +1,41 @@
+#include "rvelab/pool/status.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <exception>
+#include <new>
+
+namespace rvelab::pool {
+
+namespace {
+
+Status told(Status status, const char* what, char* text, std::size_t size) noexcept {
+  const std::size_t length = std::min(std::strlen(what), size - 1);
+  std::memcpy(text, what, length);
+  text[length] = '\0';
+  return status;
+}
+
+}  // namespace
+
+Status status_of_exception(char* text, std::size_t size) noexcept {
+  try {
+    throw;
+  } catch (const Refused& refused) {
+    return told(refused.status, refused.what(), text, size);
+  } catch (const IncrementFailed& failed) {
+    return told(Status::discard, failed.what(), text, size);
+  } catch (const InputError& error) {
+    return told(Status::bad_input, error.what(), text, size);
+  } catch (const std::bad_alloc&) {
+    return told(Status::no_memory, "no memory was to be had; free some, or use fewer RVEs or smaller ones", text, size);
+  } catch (const std::length_error&) {
+    return told(Status::no_memory, "more memory was asked for than there can be; use fewer RVEs", text, size);
+  } catch (const std::exception& error) {
+    return told(Status::internal, error.what(), text, size);
+  } catch (...) {
+    return told(Status::internal, "an exception of no known kind", text, size);
+  }
+}
+
+}  // namespace rvelab::pool

@@ -1,0 +1,298 @@
+// Trials, their commitment and tokens. Declared in pool.hpp.
+//
+// Order of work: the ids of a batch are checked and held first; then each RVE is one piece, the costliest of the last
+// call first, taken from one shared count. All pieces are known at the start and take ten microseconds or more, so that
+// a count is as good as stealing: the last thread ends at most one piece after the first (Graham 1969).
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "rvelab/measure/tangent.hpp"
+#include "rvelab/pool/hold.hpp"
+#include "rvelab/pool/pool.hpp"
+
+namespace rvelab::pool {
+
+namespace {
+
+using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+using Tangent = std::array<double, 36>;
+
+constexpr double scale_after_discard = 0.5;
+
+/// The exception that is being handled.
+Verdict verdict_of_failure() noexcept {
+  char text[1024];
+  Verdict verdict{status_of_exception(text, sizeof text), {}};
+  try {
+    verdict.text = text;
+  } catch (...) {  // no memory for words: the status says it
+  }
+  return verdict;
+}
+
+Verdict verdict_of(const Report& report, double dt) {
+  char text[320];
+  Status status = Status::ok;
+  if (!report.quasi_static && dt == 0) {
+    status = Status::not_quasi_static;
+    std::snprintf(text, sizeof text,
+                  "the state is no equilibrium: the unbalanced ratio is %g; the specimen flows or collapses: take "
+                  "smaller steps, or give a time (dt > 0)",
+                  report.unbalanced_ratio);
+  } else if (dt == 0 && report.error_estimate > report.allowed_error) {
+    status = Status::tolerance_missed;
+    std::snprintf(text, sizeof text,
+                  "the stress has an estimated error of %g Pa; the tolerance allows %g Pa: take it as it is, or widen "
+                  "tolerance_rel or tolerance_abs",
+                  report.error_estimate, report.allowed_error);
+  } else if (report.cell_thin) {
+    status = Status::cell_thin;
+    std::snprintf(text, sizeof text,
+                  "a height of the cell is below four mean diameters: it stands for less and less of the material; "
+                  "use a larger specimen");
+  }
+  return status == Status::ok ? Verdict{} : Verdict{status, text};
+}
+
+/// xx yy zz yz xz xy whatever the dimension; false: the affine one.
+bool elastic(const Network& network, Tangent& tangent) {
+  Eigen::MatrixXd found;
+  bool condensed = true;
+  try {
+    found = elastic_tangent(network);
+  } catch (const Error&) {
+    found = affine_tangent(network);
+    condensed = false;
+  }
+  tangent.fill(0);
+  const int plane[3] = {0, 1, 5};
+  for (int i = 0; i < found.rows(); ++i)
+    for (int j = 0; j < found.cols(); ++j) {
+      const int row = found.rows() == 3 ? plane[i] : i, column = found.rows() == 3 ? plane[j] : j;
+      tangent[std::size_t(6 * row + column)] = found(i, j);
+    }
+  return condensed;
+}
+
+void expect_time(double dt) {
+  if (dt >= 0 && std::isfinite(dt)) return;
+  throw Refused(Status::bad_input,
+                "dt is " + rvelab::in_words(dt) + " s; allowed: 0 (quasi-static) or a positive time");
+}
+
+void store(const Matrix3& tensor, double* to) {
+  Eigen::Map<RowMajor> target(to);
+  target = tensor;
+}
+
+}  // namespace
+
+struct Pool::Outcome {
+  Response response;
+  Tangent tangent;
+  std::int64_t token = 0;
+  Verdict verdict;
+};
+
+struct Pool::Entry {
+  std::size_t index = 0;
+  Slot* slot = nullptr;
+  Verdict verdict;
+};
+
+/// Makes a trial from the committed state; it is pending then.
+Pool::Outcome Pool::attempt(Slot& slot, const Matrix3& displacement_gradient, double dt, const Batch& wanted) {
+  Resident& resident = *slot.resident;
+  Rve& rve = resident.rve;
+  rve.revert();
+  resident.pending = false;
+  slot.awake.store(true, std::memory_order_relaxed);
+  const std::uint64_t before = rve.grain_steps();
+  Outcome outcome;
+  outcome.response =
+      rve.attempt(displacement_gradient, dt, {wanted.contact_stress != nullptr || wanted.reynolds_stress != nullptr});
+  const std::uint64_t made = rve.grain_steps() - before;
+  try {
+    const Report& report = outcome.response.report;
+    outcome.verdict = verdict_of(report, dt);
+    if (wanted.tangent != nullptr && !elastic(rve.network(), outcome.tangent) && outcome.verdict.status == Status::ok)
+      outcome.verdict = {Status::tangent_affine,
+                         "the contact network has no elastic tangent that balances its grains; the affine one, which "
+                         "is stiffer, was written"};
+  } catch (...) {
+    rve.revert();
+    throw;
+  }
+  outcome.token = resident.tokens.add(displacement_gradient, dt);
+  resident.trial_inertial_number = outcome.response.report.inertial_number;
+  resident.pending = true;
+  called(slot, made, outcome.response.report.substeps);
+  return outcome;
+}
+
+namespace {
+
+/// The trial is made again; it is pending then.
+void make_again(Resident& resident, const TrialRecord& record) {
+  const Response response = resident.rve.attempt(record.displacement_gradient, record.dt);
+  resident.trial_inertial_number = response.report.inertial_number;
+}
+
+/// The pending trial of that token is the state. Its RVE holds it.
+void settle(Resident& resident, std::int64_t token) noexcept {
+  resident.rve.commit();
+  resident.inertial_number = resident.trial_inertial_number;
+  resident.tokens.commit(token);
+  resident.pending = false;
+}
+
+std::int64_t last_token(const Tokens& tokens) { return tokens.trial(tokens.trials() - 1).token; }
+
+}  // namespace
+
+/// The state that a token names becomes the committed one, for an increment that can be applied to it.
+void Pool::accept(Slot& slot, std::int64_t token, const Matrix3& displacement_gradient) {
+  Resident& resident = *slot.resident;
+  if (token == resident.tokens.committed()) return;
+  split_increment(resident.rve.cell(), displacement_gradient);  // refused before anything is committed
+  const TrialRecord* const record = resident.tokens.find(token);
+  if (!resident.rve.pending() || last_token(resident.tokens) != token || !resident.pending) {
+    resident.pending = false;
+    slot.awake.store(true, std::memory_order_relaxed);
+    make_again(resident, *record);
+  }
+  settle(resident, token);
+}
+
+Verdict Pool::apply(std::int64_t id, const Matrix3& displacement_gradient, double dt, double* stress) {
+  const AtWork working(*this);
+  expect_time(dt);
+  const Hold hold = held(id, ++serial_);
+  Outcome outcome = attempt(hold.slot(), displacement_gradient, dt, {});
+  settle(hold.resident(), outcome.token);
+  store(outcome.response.stress, stress);
+  return std::move(outcome.verdict);
+}
+
+void Pool::run_entry(Entry& entry, const Batch& batch) noexcept {
+  const std::size_t k = entry.index;
+  try {
+    const Matrix3 gradient = Eigen::Map<const RowMajor>(batch.displacement_gradients + 9 * k);
+    if (batch.tokens_in != nullptr) accept(*entry.slot, batch.tokens_in[k], gradient);
+    Outcome outcome = attempt(*entry.slot, gradient, batch.dt, batch);
+    if (options_.trial_memory == TrialMemory::recompute) entry.slot->resident->rve.revert();
+    const Response& response = outcome.response;
+    store(response.stress, batch.stress + 9 * k);
+    if (batch.contact_stress != nullptr) store(response.contact_stress, batch.contact_stress + 9 * k);
+    if (batch.reynolds_stress != nullptr) store(response.reynolds_stress, batch.reynolds_stress + 9 * k);
+    if (batch.tangent != nullptr) std::copy(outcome.tangent.begin(), outcome.tangent.end(), batch.tangent + 36 * k);
+    if (batch.error_estimate != nullptr) batch.error_estimate[k] = response.report.error_estimate;
+    if (batch.tokens_out != nullptr) batch.tokens_out[k] = outcome.token;
+    entry.verdict = std::move(outcome.verdict);
+  } catch (...) {
+    entry.verdict = verdict_of_failure();
+  }
+}
+
+Verdict Pool::trial(const Batch& batch) {
+  const AtWork working(*this);
+  if (batch.n < 0) throw Refused(Status::bad_input, "batch.n is " + std::to_string(batch.n) + "; allowed: 0 or more");
+  if (batch.n == 0) return {};
+  expect_time(batch.dt);
+  const auto n = std::size_t(batch.n);
+  const std::uint64_t call = ++serial_;
+  std::vector<Hold> holds;
+  holds.reserve(n);
+  std::vector<Entry> entries(n);
+  std::vector<std::pair<std::uint64_t, std::size_t>> order;
+  order.reserve(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    entries[k].index = k;
+    try {
+      holds.push_back(held(batch.ids[k], call));
+      const Tokens& tokens = holds.back().resident().tokens;
+      if (batch.tokens_in != nullptr && batch.tokens_in[k] != tokens.committed() &&
+          tokens.find(batch.tokens_in[k]) == nullptr)
+        throw Refused(Status::stale_token, "token " + std::to_string(batch.tokens_in[k]) +
+                                               " names no state of this RVE any more; valid: " + tokens.in_words());
+      entries[k].slot = &holds.back().slot();
+      order.emplace_back(entries[k].slot->last_grain_steps, k);
+    } catch (const Refused& refused) {
+      if (refused.status == Status::duplicate) throw;
+      entries[k].verdict = verdict_of_failure();
+    }
+  }
+  std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  if (!order.empty()) team_.run(order.size(), [&](std::size_t k) { run_entry(entries[order[k].second], batch); });
+
+  std::size_t worst = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    const Status status = entries[k].verdict.status;
+    if (batch.status != nullptr) batch.status[k] = std::int32_t(status);
+    if (batch.dt_scale != nullptr)
+      batch.dt_scale[k] = is_error(status) ? 0 : status == Status::discard ? scale_after_discard : 1;
+    if (gravity(status) > gravity(entries[worst].verdict.status)) worst = k;
+  }
+  Verdict verdict = std::move(entries[worst].verdict);
+  if (verdict.status != Status::ok) {
+    char place[96];
+    std::snprintf(place, sizeof place, "entry %zu (id %lld): ", worst, static_cast<long long>(batch.ids[worst]));
+    verdict.text.insert(0, place);
+  }
+  return verdict;
+}
+
+std::vector<Hold> Pool::all_pending(std::uint64_t call) {
+  std::vector<Hold> holds;
+  holds.reserve(slots_.population());
+  for (std::size_t k = 0; k < slots_.size(); ++k) {
+    if (!slots_[k].resident) continue;
+    Hold hold = held(slots_.id_of(k), call);
+    if (hold.resident().pending) holds.push_back(std::move(hold));
+  }
+  return holds;
+}
+
+void Pool::commit(std::span<const std::int64_t> ids) {
+  const AtWork working(*this);
+  const std::uint64_t call = ++serial_;
+  const std::vector<Hold> holds = ids.data() == nullptr ? all_pending(call) : held(ids, call);
+  for (std::size_t k = 0; k < holds.size(); ++k)
+    if (!holds[k].resident().pending)
+      throw Refused(Status::no_trial, "commit: entry " + std::to_string(k) + " (id " + std::to_string(ids[k]) +
+                                          ") has no pending trial; nothing was committed. Make a trial first");
+  std::vector<Resident*> again;
+  again.reserve(holds.size());
+  for (const Hold& hold : holds)
+    if (!hold.resident().rve.pending()) again.push_back(&hold.resident());
+  if (!again.empty()) {
+    std::vector<Verdict> verdicts(again.size());
+    team_.run(again.size(), [&](std::size_t k) {
+      try {
+        make_again(*again[k], again[k]->tokens.trial(again[k]->tokens.trials() - 1));
+      } catch (...) {
+        verdicts[k] = verdict_of_failure();
+      }
+    });
+    for (const Verdict& verdict : verdicts) {
+      if (verdict.status == Status::ok) continue;
+      for (Resident* resident : again) resident->rve.revert();
+      throw Refused(verdict.status, "commit: " + verdict.text);
+    }
+  }
+  for (const Hold& hold : holds) settle(hold.resident(), last_token(hold.resident().tokens));
+}
+
+void Pool::revert(std::span<const std::int64_t> ids) {
+  const AtWork working(*this);
+  const std::uint64_t call = ++serial_;
+  for (const Hold& hold : ids.data() == nullptr ? all_pending(call) : held(ids, call)) {
+    hold.resident().rve.revert();
+    hold.resident().pending = false;
+  }
+}
+
+}  // namespace rvelab::pool

@@ -1,0 +1,68 @@
+// The RVEs of a host's material points: one pool, spawned into when a point is seen for the first time.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <set>
+#include <shared_mutex>
+#include <string>
+
+#include "rvelab/umat/kinematics.hpp"
+#include "rvelab/umat/settings.hpp"
+
+namespace rvelab::umat {
+
+/// NOEL, NPT, LAYER, KSPT. A host that leaves NOEL or NPT at 0 does not say which point it is.
+using PointName = std::array<int, 4>;
+
+/// The state that a step begins in, as STATEV holds it.
+struct Start {
+  std::int64_t id = 0, token = 0;
+};
+
+struct Step {
+  std::int32_t status = 0;
+  Matrix3 sigma;    ///< Pa, laboratory frame
+  Matrix6 tangent;  ///< Pa, order of the host
+  double dt_scale = 1;
+  std::int64_t token = 0;
+  std::string text;  ///< of a status that is not RVELAB_OK
+};
+
+class Points {
+ public:
+  explicit Points(const Settings& settings);
+
+  /// The settings of a material. Throws std::runtime_error if there is none of that number.
+  const Material& material(int number) const;
+
+  /// Stress of the specimen of a material, Pa.
+  Matrix3 first_stress(int material);
+
+  /// A new RVE, or, while its first step is not committed, the one that this point got before.
+  Start spawn(int material, const PointName& name);
+
+  /// One trial; on any thread.
+  Step step(const Start& start, const Matrix3& dH, double dt, bool with_tangent);
+
+ private:
+  struct Loaded {
+    std::int64_t number = 0;
+    Matrix3 stress;
+  };
+  const Loaded& loaded(int material);
+  std::int64_t token_of(std::int64_t id);
+
+  Settings settings_;
+  rvelab_pool* pool_ = nullptr;   ///< lives as long as the process: hosts have no last call
+  std::shared_mutex population_;  ///< exclusive for spawning, which no work may stand beside
+  std::map<int, Loaded> templates_;
+  std::map<std::pair<int, PointName>, Start> first_steps_;  ///< points whose first step may come again
+};
+
+/// Appends a text to rvelab_umat.log in the working directory: each once, a hundred at most.
+void log_failure(const std::string& text);
+
+}  // namespace rvelab::umat

@@ -1,0 +1,25 @@
+// What stands in the file of a UMAT (RVELAB_UMAT, else rvelab_umat.toml): options of the pool, and materials by number.
+#pragma once
+
+#include <rvelab/rvelab.h>
+
+#include <map>
+#include <string>
+
+namespace rvelab::umat {
+
+struct Material {
+  std::string specimen;    ///< path
+  bool kirchhoff = false;  ///< DDSDDE is (1/J) d(J sigma)/d eps: the tangent plus sigma (x) I
+};
+
+struct Settings {
+  std::string path;
+  rvelab_pool_def pool{};
+  std::map<int, Material> materials;  ///< by PROPS(1)
+};
+
+/// Throws std::runtime_error with file, key, value and remedy.
+Settings read_settings(const std::string& path);
+
+}  // namespace rvelab::umat

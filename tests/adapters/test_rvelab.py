@@ -1,0 +1,245 @@
+"""The Python module against the program and against itself. Arguments: an empty folder to work in, then unittest's.
+
+RVELAB_LIBRARY and RVELAB_PROGRAM name what is tested, PYTHONPATH the module and the examples."""
+import contextlib
+import ctypes
+import io
+import math
+import os
+import re
+import subprocess
+import sys
+import threading
+import unittest
+import warnings
+from pathlib import Path
+
+import element_test
+import numpy as np
+import rvelab
+import rvelab_library
+
+folder = Path(sys.argv.pop(1)) if len(sys.argv) > 1 else Path(".")
+specimen = folder / "discs.h5"
+zero = np.zeros((3, 3))
+
+
+def gradients(n: int, size: float, seed: int = 1) -> np.ndarray:
+    """Increments in the plane, spin included."""
+    drawn = np.zeros((n, 3, 3))
+    drawn[:, :2, :2] = np.random.default_rng(seed).uniform(-size, size, (n, 2, 2))
+    return drawn
+
+
+def setUpModule() -> None:
+    warnings.simplefilter("ignore", rvelab.RvelabWarning)
+    folder.mkdir(parents=True, exist_ok=True)
+    subprocess.run([os.environ["RVELAB_PROGRAM"], "pack", "pack_dense", "-o", specimen, "--force", "--set",
+                    "pack.number=64", "--set", "target.void_ratio=0.2"], check=True, capture_output=True)
+
+
+class ElementTest(unittest.TestCase):
+    def test_the_example_and_the_program_give_the_same_bits(self) -> None:
+        protocol = folder / "shear.toml"
+        protocol.write_text('[test]\nname = "shear"\n[[stage]]\nname = "shear"\nkind = "simple_shear"\n'
+                            'to_strain = 0.1\nrecord_every = 1e-4\n')
+        with contextlib.redirect_stdout(io.StringIO()) as printed:
+            stresses = element_test.shear(str(specimen), 0.005)
+        records = rvelab.run(protocol, specimen, **{"stage.shear.to_strain": 0.005})
+        self.assertEqual(stresses.tobytes(), records["stress_Pa"].tobytes())
+        self.assertEqual(len(records["strain"]), 51)
+        self.assertEqual(len(printed.getvalue().splitlines()), 5)
+        self.assertGreater(abs(stresses[-1, 0, 1]), 1e4)
+        self.assertEqual(records.summary["end_strain"], 0.005)
+        self.assertEqual(records["target_held"].dtype, np.bool_)
+
+    def test_a_mistake_in_a_protocol_is_told_by_the_program(self) -> None:
+        with self.assertRaisesRegex(rvelab.RvelabError, "nearest known key is stage.shear.to_strain"):
+            rvelab.run("simple_shear", specimen, **{"stage.shear.to_stran": 0.005})
+
+
+class PoolTest(unittest.TestCase):
+    def setUp(self) -> None:
+        self.pool = rvelab.Pool(workers=2)
+        self.addCleanup(self.pool.close)
+        self.template = self.pool.template(specimen)
+
+    def test_a_batch_gives_the_bits_of_single_calls(self) -> None:
+        ids, alone = self.pool.spawn(self.template, 5), self.pool.spawn(self.template, 5)
+        for step in range(3):
+            dH = gradients(5, 1e-3, step)
+            found = self.pool.batch(ids, dH)
+            for k in range(5):
+                self.assertEqual(found.sigma[k].tobytes(), self.pool.apply(alone[k], dH[k]).tobytes())
+        self.assertEqual(len(set(found.sigma[:, 0, 1])), 5)
+        self.assertEqual([self.pool.info(k).void_ratio for k in ids], [self.pool.info(k).void_ratio for k in alone])
+
+    def test_a_trial_is_pure_and_what_is_asked_for_changes_no_bit(self) -> None:
+        (rve,) = self.pool.spawn(self.template)
+        before = self.pool.snapshot(rve)
+        dH = gradients(1, 1e-3)
+        first = self.pool.trial(rve, dH)
+        self.pool.trial(rve, 3 * dH)
+        again = self.pool.trial(rve, dH, want=rvelab.MEASURES)
+        self.assertEqual(first.sigma.tobytes(), again.sigma.tobytes())
+        self.assertIsNone(first.tangent)
+        self.assertGreater(again.tangent[0, 5, 5], 1e6)
+        self.assertGreater(again.error_estimate[0], 0)
+        self.assertEqual(again.contact.tobytes(), again.sigma.tobytes())  # dt = 0: no Reynolds stress
+        self.pool.revert()
+        fresh = self.pool.spawn(self.pool.template(before))[0]
+        self.assertEqual(self.pool.info(fresh).void_ratio, self.pool.info(rve).void_ratio)
+        self.pool.batch([rve, fresh], np.repeat(dH, 2, 0))
+        self.assertEqual(self.pool.apply(rve, dH[0]).tobytes(), self.pool.apply(fresh, dH[0]).tobytes())
+
+    def test_tokens_name_the_state_that_a_step_starts_from(self) -> None:
+        line, committed = self.pool.spawn(self.template, 2)
+        dH = gradients(4, 1e-3)
+        token = self.pool.info(line).token
+        for step in range(3):
+            kept = self.pool.trial(line, dH[step:step + 1], tokens=token)
+            self.pool.trial(line, -dH[step:step + 1], tokens=float(token))  # a line search; a token out of a double
+            token = kept.tokens[0]
+        last = self.pool.trial(line, dH[3:], tokens=token)
+        for step in range(3):
+            self.pool.apply(committed, dH[step])
+        self.assertEqual(last.sigma[0].tobytes(), self.pool.apply(committed, dH[3]).tobytes())
+        with self.assertRaisesRegex(rvelab.StaleToken, "valid: "):
+            self.pool.trial(line, dH[3:], tokens=1)
+
+    def test_arrays_are_not_copied_and_those_of_results_used_again(self) -> None:
+        ids = self.pool.spawn(self.template, 2)
+        kept = rvelab.Batch(2, ("tangent",))
+        place = kept.sigma.ctypes.data, kept.tangent.ctypes.data
+        found = self.pool.trial(ids, gradients(2, 1e-3), out=kept)
+        self.assertIs(found, kept)
+        self.assertEqual(place, (found.sigma.ctypes.data, found.tangent.ctypes.data))
+        self.assertTrue(np.isfinite(found.tangent).all())
+        dH = gradients(2, 1e-3)
+        self.assertIs(rvelab_library.gradients_of(dH, dH.shape), dH)
+        self.assertIs(rvelab_library.numbers_of(ids, "ids"), ids)
+
+    def test_one_that_fails_is_told_and_the_others_are_there(self) -> None:
+        ids = self.pool.spawn(self.template, 3)
+        dH = gradients(3, 1e-3)
+        dH[1, 0, 0] = math.nan
+        with self.assertRaisesRegex(rvelab.RvelabError, "RVELAB_E_INPUT: entry 1") as caught:
+            self.pool.batch(ids, dH)
+        found = caught.exception.batch
+        self.assertEqual(caught.exception.status, -2)
+        self.assertEqual(found.status[1], -2)
+        self.assertEqual((found.tokens[1], found.dt_scale[1]), (0, 0))
+        self.assertTrue(np.isnan(found.sigma[1]).all())
+        self.assertTrue(np.isfinite(found.sigma[[0, 2]]).all())
+        self.assertEqual([self.pool.info(k).token for k in ids], [found.tokens[0], 1, found.tokens[2]])
+
+    def test_a_step_too_large_is_discarded_with_the_state_as_before(self) -> None:
+        (rve,) = self.pool.spawn(self.template)
+        pool = rvelab.Pool(workers=1, max_substeps=3)
+        short = pool.spawn(pool.template(self.pool.snapshot(rve)))
+        with self.assertRaises(rvelab.Discard) as caught:
+            pool.trial(short, gradients(1, 1e-2))
+        self.assertTrue(0 < caught.exception.batch.dt_scale[0] < 1)
+        self.assertEqual(pool.info(short).void_ratio, self.pool.info(rve).void_ratio)
+
+    def test_bad_arguments_name_what_is_allowed(self) -> None:
+        (rve,) = self.pool.spawn(self.template)
+        for call, text in [(lambda: self.pool.apply(rve, np.zeros((2, 2))), r"\(2, 2\); allowed: \(3, 3\)"),
+                           (lambda: self.pool.trial([rve], np.zeros((2, 3, 3))), r"allowed: \(1, 3, 3\)"),
+                           (lambda: self.pool.apply(rve + 0.5, zero), "single precision"),
+                           (lambda: self.pool.trial(rve, zero[None], want=["stress"]), "allowed: contact, reynolds"),
+                           (lambda: self.pool.trial(rve, zero[None], tokens=[1, 1]), "allowed: 1, one for each"),
+                           (lambda: self.pool.trial(rve, zero[None], out=rvelab.Batch(2)), "out is for 2 RVEs")]:
+            with self.assertRaisesRegex(ValueError, text):
+                call()
+        with self.assertRaisesRegex(TypeError, "no option 'worker'; allowed: workers"):
+            rvelab.Pool(worker=2)
+        for call, text in [(lambda: rvelab.Pool(workers=-1), "RVELAB_E_INPUT.*workers is -1"),
+                           (lambda: self.pool.template(folder / "none.h5"), "RVELAB_E_FILE"),
+                           (lambda: self.pool.restore(rve, b"none"), "RVELAB_E_SNAPSHOT"),
+                           (lambda: self.pool.commit(rve), "RVELAB_E_NO_TRIAL"),
+                           (lambda: self.pool.trial([rve, rve], np.zeros((2, 3, 3))), "RVELAB_E_DUPLICATE"),
+                           (lambda: self.pool.info(12), "RVELAB_E_ID")]:
+            with self.assertRaisesRegex(rvelab.RvelabError, text):
+                call()
+
+    def test_population_snapshots_and_files(self) -> None:
+        first, second = self.pool.spawn(self.template, 2)
+        self.pool.apply(first, gradients(1, 1e-3)[0])
+        copy = self.pool.clone(first)
+        self.assertEqual(sorted(self.pool.ids()), sorted([first, second, copy]))
+        self.pool.restore(second, self.pool.snapshot(first))
+        self.pool.write(folder / "pool.h5")
+        self.assertGreater(self.pool.cost(first)[0], 0)
+        dH = gradients(1, 1e-3, 2)[0]
+        expected = [self.pool.apply(k, dH).tobytes() for k in (first, second, copy)]
+        self.assertEqual(len(set(expected)), 1)
+        self.pool.release([first, second])
+        self.assertEqual(list(self.pool.ids()), [copy])
+        with self.assertRaisesRegex(rvelab.RvelabError, "RVELAB_E_ID"):
+            self.pool.apply(first, dH)
+        self.pool.close()
+        with rvelab.Pool(workers=1) as other:
+            ids = other.read(folder / "pool.h5")
+            self.assertEqual(sorted(ids), sorted([first, second, copy]))
+            self.assertEqual([other.apply(k, dH).tobytes() for k in ids], expected)
+
+    def test_threads_work_on_different_rves_at_once(self) -> None:
+        ids, alone = self.pool.spawn(self.template, 4), self.pool.spawn(self.template, 4)
+        dH = gradients(20, 1e-4)
+        found = {}
+
+        def work(rve: int) -> None:
+            found[rve] = [self.pool.apply(rve, increment).tobytes() for increment in dH]
+
+        threads = [threading.Thread(target=work, args=(rve,)) for rve in ids]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        expected = [self.pool.apply(alone[0], increment).tobytes() for increment in dH]
+        self.assertEqual([found.get(rve) for rve in ids], 4 * [expected])
+
+
+class RveTest(unittest.TestCase):
+    def test_measures_are_attributes_in_their_shapes(self) -> None:
+        rve = rvelab.Rve(specimen)
+        sigma = rve.apply(zero)
+        self.assertAlmostEqual(rve.p, -(sigma[0, 0] + sigma[1, 1]) / 2, delta=1e-9 * rve.p)
+        self.assertEqual((rve.dimension, rve.grains, rve.lattice.shape), (2, 64, (3, 3)))
+        self.assertAlmostEqual(np.trace(rve.fabric), 1)
+        self.assertEqual(rve.tangent().shape, (6, 6))
+        self.assertEqual(rve.bytes_trial, 0)
+        with self.assertRaisesRegex(AttributeError, "voidratio"):
+            rve.voidratio
+        trial = rve.trial(gradients(1, 1e-3)[0])
+        rve.commit()
+        self.assertEqual(rve.token, trial.tokens[0])
+
+    def test_a_warning_is_one_of_python_and_points_to_the_call(self) -> None:
+        rve = rvelab.Rve(specimen, tolerance_rel=2e-3, tolerance_abs=2e-5)
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("default")
+            for dH in gradients(3, 1e-3):
+                rve.apply(dH)
+        self.assertEqual(len(told), 1)  # once for a line, though the figures differ
+        self.assertEqual((told[0].category, told[0].filename), (rvelab.RvelabWarning, __file__))
+        self.assertEqual(told[0].message.status, 1)
+        self.assertRegex(told[0].message.detail, "estimated error of [0-9.]+ Pa")
+
+    def test_the_structs_are_those_of_the_header(self) -> None:
+        header = (Path(__file__).resolve().parents[2] / "include/rvelab/rvelab.h").read_text()
+        plain = re.sub(r"/\*.*?\*/", "", header, flags=re.S)
+        sizes = {"uint32_t": 4, "int32_t": 4}
+        for struct, name in [(rvelab.Info, "info"), (rvelab_library.BatchStruct, "batch"),
+                             (rvelab_library.Definition, "pool_def")]:
+            body = plain.split(f"typedef struct rvelab_{name} {{")[1].split("}")[0]
+            declared = [re.fullmatch(r"([\w ]+\*?)\s*(\b\w+)(\[9\])?", field.strip()).groups()
+                        for field in body.split(";")[:-1]]
+            fields = [(field, sizes.get(kind.strip(), 8) * (9 if nine else 1)) for kind, field, nine in declared]
+            ours = [(field, ctypes.sizeof(kind)) for field, kind in struct._fields_]
+            self.assertEqual(fields[:len(ours)], ours)
+
+
+if __name__ == "__main__":
+    unittest.main()

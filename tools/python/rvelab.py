@@ -1,0 +1,226 @@
+"""Granular representative volume elements: an increment of displacement gradient goes in, the Cauchy stress comes out.
+
+    import rvelab
+    rve = rvelab.Rve("S.h5")                                     # a specimen file, or a record file: its end state
+    sigma = rve.apply([[0, 1e-4, 0], [0, 0, 0], [0, 0, 0]])      # Pa
+    print(rve.p, rve.void_ratio)
+
+dH     (3, 3), dH[i, j] = d(du_i)/dx_j over the step, laboratory frame, finite (F_inc = I + dH), spin included.
+sigma  (3, 3), Pa, laboratory frame, Cauchy, tension positive. Batches have a first axis of length n. SI units.
+dt     s; > 0: physical time, real inertia and rate; 0: quasi-static. 2D: z-components of dH are zero.
+
+Needs numpy and librvelab.so.1: named by RVELAB_LIBRARY, else beside this file, else found by the loader. The meaning
+of every call is that of include/rvelab/rvelab.h. Calls on different RVEs may run in threads: the interpreter's lock
+is let go of meanwhile."""
+from __future__ import annotations
+
+import os
+from ctypes import byref, c_int64, c_size_t, c_void_p, create_string_buffer, sizeof
+from typing import Any, Iterable
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rvelab_library import (MEASURES, Batch, BatchStruct, Definition, Discard, Info, OutOfMemory, RvelabError,
+                            RvelabWarning, StaleToken, call, gradients_of, id_of, library, numbers_of)
+from rvelab_program import Records, run
+
+__all__ = ["Batch", "Discard", "Info", "MEASURES", "OutOfMemory", "Pool", "Records", "Rve", "RvelabError",
+           "RvelabWarning", "StaleToken", "run"]
+__version__ = library.rvelab_version().decode()
+
+
+class Pool:
+    """RVEs that are worked on together. Options are those of rvelab_pool_def: workers (0: one per core),
+    trial_memory (0 keep, 1 recompute), tolerance_rel, tolerance_abs, max_substeps, damping, min_height (m);
+    0: what the specimen says."""
+
+    def __init__(self, **options: float) -> None:
+        self._pool, definition = c_void_p(), Definition()
+        allowed = [name for name, _ in Definition._fields_[2:-2]]
+        call("pool_def_init", byref(definition), sizeof(definition))
+        for name, value in options.items():
+            if name not in allowed:
+                raise TypeError(f"Pool has no option {name!r}; allowed: {', '.join(allowed)}")
+            setattr(definition, name, value)
+        call("pool_create", byref(definition), byref(self._pool))
+
+    def close(self) -> None:
+        """Joins the workers and frees every RVE."""
+        if self._pool:
+            call("pool_destroy", self._pool)
+            self._pool = c_void_p()
+
+    def __enter__(self) -> "Pool":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def __del__(self) -> None:
+        if getattr(self, "_pool", None):
+            library.rvelab_pool_destroy(self._pool)
+            self._pool = None
+
+    def template(self, source: str | os.PathLike[str] | bytes) -> int:
+        """From a specimen file, a record file (its end state), or the bytes of snapshot(). To spawn from."""
+        made = c_int64()
+        if isinstance(source, bytes):
+            call("template_from_snapshot", self._pool, source, len(source), byref(made))
+        else:
+            call("template_load", self._pool, os.fsencode(source), byref(made))
+        return made.value
+
+    def spawn(self, template: int, n: int = 1) -> np.ndarray:
+        """n RVEs in the state of the template: their ids, (n) of int64, each exact in a double too."""
+        ids = np.zeros(max(n, 0), np.int64)
+        call("spawn", self._pool, template, n, ids.ctypes.data)
+        return ids
+
+    def clone(self, rve: int) -> int:
+        """A second RVE in the committed state of the first, with its tokens."""
+        made = c_int64()
+        call("clone", self._pool, id_of(rve), byref(made))
+        return made.value
+
+    def release(self, rves: ArrayLike) -> None:
+        """Ends RVEs: all of those named, or none."""
+        ids = numbers_of(rves, "ids")
+        call("release", self._pool, len(ids), ids.ctypes.data)
+
+    def ids(self) -> np.ndarray:
+        """Of all RVEs, in the order of their slots."""
+        n = c_int64()
+        call("ids", self._pool, 0, None, byref(n))
+        ids = np.zeros(n.value, np.int64)
+        call("ids", self._pool, n.value, ids.ctypes.data, byref(n))
+        return ids
+
+    def apply(self, rve: int, dH: ArrayLike, dt: float = 0) -> np.ndarray:
+        """Trial and commit in one: sigma (3, 3) after dH (3, 3) over dt."""
+        gradient, sigma = gradients_of(dH, (3, 3)), np.empty((3, 3))
+        call("apply", self._pool, id_of(rve), gradient.ctypes.data, dt, sigma.ctypes.data)
+        return sigma
+
+    def trial(self, rves: ArrayLike, dH: ArrayLike, dt: float = 0, tokens: ArrayLike | None = None,
+              want: Iterable[str] = (), out: Batch | None = None) -> Batch:
+        """One trial of each of n RVEs, dH (n, 3, 3), from its committed state or from the one that its token names.
+        commit() makes trials the states. want: names among MEASURES. out: a Batch of n whose arrays are used again.
+        Raises if one fails; error.batch then holds what the others gave. int64 and float64 arrays are not copied."""
+        ids, batch = numbers_of(rves, "ids"), BatchStruct()
+        gradients = gradients_of(dH, (len(ids), 3, 3))
+        found = Batch(len(ids), tuple(want)) if out is None else out
+        if len(found.sigma) != len(ids):
+            raise ValueError(f"out is for {len(found.sigma)} RVEs, the call is of {len(ids)}")
+        named = None if tokens is None else numbers_of(tokens, "tokens")
+        if named is not None and len(named) != len(ids):
+            raise ValueError(f"tokens has the length {len(named)}; allowed: {len(ids)}, one for each RVE")
+        call("batch_init", byref(batch), sizeof(batch))
+        batch.n, batch.dt, batch.ids, batch.dH = len(ids), dt, ids.ctypes.data, gradients.ctypes.data
+        batch.tokens_in = None if named is None else named.ctypes.data
+        for name in ("sigma", *MEASURES):
+            array = getattr(found, name)
+            if array is not None:
+                array.fill(np.nan)
+                setattr(batch, name, array.ctypes.data)
+        found.tokens.fill(0)
+        batch.dt_scale, batch.status = found.dt_scale.ctypes.data, found.status.ctypes.data
+        batch.tokens_out = found.tokens.ctypes.data
+        call("trial", self._pool, byref(batch), batch=found)
+        return found
+
+    def batch(self, rves: ArrayLike, dH: ArrayLike, dt: float = 0, want: Iterable[str] = ()) -> Batch:
+        """Trial and commit of n RVEs. Those that could be made are committed, whether others failed or not."""
+        try:
+            found = self.trial(rves, dH, dt, want=want)
+        except RvelabError as error:
+            if error.batch is not None:
+                self.commit(numbers_of(rves, "ids")[error.batch.tokens != 0])
+            raise
+        self.commit(rves)
+        return found
+
+    def commit(self, rves: ArrayLike | None = None) -> None:
+        """Pending trials become the states; None: all that are pending."""
+        self._settle("commit", rves)
+
+    def revert(self, rves: ArrayLike | None = None) -> None:
+        """Pending trials are let go of; None: all."""
+        self._settle("revert", rves)
+
+    def _settle(self, name: str, rves: ArrayLike | None) -> None:
+        ids = None if rves is None else numbers_of(rves, "ids")
+        call(name, self._pool, 0 if ids is None else len(ids), None if ids is None else ids.ctypes.data)
+
+    def info(self, rve: int) -> Info:
+        """Measures of the committed state as attributes: void_ratio, p, q, fabric (3, 3), token ... (see Info)."""
+        found = Info()
+        call("info_init", byref(found), sizeof(found))
+        call("get_info", self._pool, id_of(rve), byref(found))
+        return found
+
+    def cost(self, rves: ArrayLike) -> np.ndarray:
+        """Grains times sub-steps made for each RVE in this pool, (n), trials that were reverted included."""
+        ids = numbers_of(rves, "ids")
+        made = np.zeros(len(ids), np.int64)
+        call("cost", self._pool, len(ids), ids.ctypes.data, made.ctypes.data)
+        return made
+
+    def snapshot(self, rve: int) -> bytes:
+        """The committed state with its tokens, bitwise, for the same build of rvelab; across builds: write()."""
+        need = c_size_t()
+        call("snapshot_save", self._pool, id_of(rve), None, 0, byref(need))
+        buffer = create_string_buffer(need.value)
+        call("snapshot_save", self._pool, id_of(rve), buffer, need.value, byref(need))
+        return buffer.raw[:need.value]
+
+    def restore(self, rve: int, snapshot: bytes) -> None:
+        """The RVE takes the state of a snapshot, of any specimen; a pending trial is let go of."""
+        call("snapshot_load", self._pool, id_of(rve), snapshot, len(snapshot))
+
+    def write(self, path: str | os.PathLike[str]) -> None:
+        """All RVEs with ids and tokens into a pool file (HDF5)."""
+        call("pool_write", self._pool, os.fsencode(path))
+
+    def read(self, path: str | os.PathLike[str]) -> np.ndarray:
+        """The RVEs of a pool file, with their ids and tokens, into this pool, which must be without. Their ids."""
+        call("pool_read", self._pool, os.fsencode(path))
+        return self.ids()
+
+
+class Rve:
+    """One RVE, in a pool of its own or in one given. The fields of Info are its attributes: rve.void_ratio, rve.p."""
+
+    def __init__(self, source: str | os.PathLike[str] | bytes, pool: Pool | None = None, **options: float) -> None:
+        if pool is not None and options:
+            raise TypeError("options are those of a pool of its own: give them to the Pool")
+        self.pool = Pool(workers=1, **options) if pool is None else pool
+        self.id = int(self.pool.spawn(self.pool.template(source))[0])
+
+    def apply(self, dH: ArrayLike, dt: float = 0) -> np.ndarray:
+        """sigma (3, 3) after dH (3, 3) over dt."""
+        return self.pool.apply(self.id, dH, dt)
+
+    def trial(self, dH: ArrayLike, dt: float = 0, token: int | None = None, want: Iterable[str] = ()) -> Batch:
+        """A Batch of one: what dH would give. It pends until commit(), revert() or the next call."""
+        return self.pool.trial(self.id, np.asarray(dH, np.float64)[np.newaxis], dt, token, want)
+
+    def commit(self) -> None:
+        """The pending trial becomes the state."""
+        self.pool.commit(self.id)
+
+    def revert(self) -> None:
+        """The pending trial is let go of."""
+        self.pool.revert(self.id)
+
+    def tangent(self) -> np.ndarray:
+        """Elastic tangent (6, 6) of the contacts as they are, Pa: xx yy zz yz xz xy, engineering shear. By a trial of
+        dH = 0, which takes the place of a pending one and is let go of."""
+        found = self.trial(np.zeros((3, 3)), want=("tangent",)).tangent[0]
+        self.revert()
+        return found
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_") or name not in (field for field, _ in Info._fields_):
+            raise AttributeError(f"Rve has no attribute {name!r}; those of its state are the fields of rvelab.Info")
+        return getattr(self.pool.info(self.id), name)
