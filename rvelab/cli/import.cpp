@@ -83,7 +83,7 @@ void add_import(CLI::App& app) {
   CLI::App* command = app.add_subcommand("import", "Make a specimen from CSV files, or from a dump of LAMMPS");
   command
       ->add_option("PARTICLES.csv", arguments->inputs[0],
-                   "columns id,x,y[,z] and r or radius; or a text dump of LAMMPS (SI)")
+                   "columns id,x,y[,z] and r or radius, or a,b,angle of ellipses; or a text dump of LAMMPS (SI)")
       ->required();
   command->add_option("CONTACTS.csv", arguments->inputs[1], "columns id1,id2,sx,sy[,sz],fn,fsx,fsy[,fsz],mz");
   command->add_option("META.json", arguments->inputs[2], "parameters and cell of the packing");

@@ -152,6 +152,8 @@ CsvExport csv_files(const std::string& stem) {
 }
 
 CsvExport export_csv(const Specimen& specimen, const std::string& stem) {
+  if (specimen.shape == Shape::ellipse)
+    throw InputError("CSV files of this form know round grains only; the specimen has ellipses; export it as xdmf");
   expect_names(specimen);
   const CsvExport files = csv_files(stem);
   publish_text(files.particles, particles_of(specimen));

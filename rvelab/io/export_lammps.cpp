@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "rvelab/error.hpp"
 #include "rvelab/io/text_file.hpp"
 #include "rvelab/io/version.hpp"
 
@@ -25,7 +26,15 @@ std::string type_of(const ExportState& state, std::size_t grain) {
   return std::to_string(state.specimen.grains.material[grain] + 1);
 }
 
+void refuse_ellipses(const ExportState& state) {
+  if (state.network.shape == Shape::ellipse)
+    throw InputError(
+        "LAMMPS files of this form (atom_style sphere) know round grains only; the specimen has ellipses; "
+        "export it as xdmf");
+}
+
 void append_dump(std::string& text, const ExportState& state) {
+  refuse_ellipses(state);
   const Box box(within_tilt_limits(state.network.cell.lattice));
   const Matrix3& l = box.lattice();
   const double xy = l(0, 1), xz = l(0, 2), yz = l(1, 2);
@@ -55,6 +64,7 @@ void export_lammps_dump(const std::vector<ExportState>& states, const std::strin
 }
 
 void export_lammps_data(const ExportState& state, const std::string& path) {
+  refuse_ellipses(state);
   const Box box(within_tilt_limits(state.network.cell.lattice));
   const Matrix3& l = box.lattice();
   const Vector3 low = box.corner(), high = low + l.diagonal();

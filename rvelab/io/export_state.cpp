@@ -33,9 +33,8 @@ std::vector<Matrix3> grain_stresses(const Network& network) {
   std::vector<Matrix3> stresses(network.grains.size(), Matrix3::Zero());
   for (const ContactState& c : network.contacts) {
     const auto i = std::size_t(c.i), j = std::size_t(c.j);
-    // The contact point halves the overlap; the force on i is -F.
-    stresses[i] -= c.force() * ((network.grains[i].radius - 0.5 * c.overlap) * c.normal).transpose();
-    stresses[j] -= c.force() * ((network.grains[j].radius - 0.5 * c.overlap) * c.normal).transpose();
+    stresses[i] -= c.force() * c.arm_i.transpose();  // the force on i is -F
+    stresses[j] += c.force() * c.arm_j.transpose();
   }
   const double thickness = network.cell.lattice(2, 2);
   const Matrix3& turn = network.cell.rotation;

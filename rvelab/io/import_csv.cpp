@@ -114,6 +114,29 @@ std::vector<std::size_t> order_by_id(const CsvTable& table) {
   return order;
 }
 
+void read_radius(const CsvTable& table, std::size_t row, Grains& grains) {
+  const auto radius = table.column({"r", "radius"});
+  grains.radius.push_back(table.number(row, radius));
+  if (!(grains.radius.back() > 0)) {
+    throw InputError(table.place(row, radius) + " m is not positive; allowed: > 0; correct the radius");
+  }
+}
+
+/// Takes one grain's axes (m) and the angle of the long one (degrees, laboratory frame) from its row.
+void read_ellipse(const CsvTable& table, std::size_t row, Specimen& specimen) {
+  const auto a = table.column({"a"}), b = table.column({"b"}), angle = table.column({"angle"});
+  const double major = table.number(row, a), minor = table.number(row, b);
+  if (!(minor > 0) || !(major >= minor) || !(major <= minor / least_aspect_ratio * (1 + 1e-12)))
+    throw InputError(table.place(row, b) + " m is no shorter semi-axis to " + std::to_string(major) +
+                     " m; allowed: 0 < b <= a <= 10 b; correct a and b");
+  const double radians = table.number(row, angle) * (3.14159265358979323846 / 180);
+  Grains& grains = specimen.grains;
+  grains.radius.push_back(std::sqrt(major * minor));
+  grains.semi_major.push_back(major);
+  grains.semi_minor.push_back(minor);
+  grains.orientation.push_back(specimen.cell.rotation.transpose() * Vector3(std::cos(radians), std::sin(radians), 0));
+}
+
 /// Fills the grains; returns each grain's wrapping translation w, x_new = x_old + L w.
 std::vector<Image> read_grains(const CsvTable& table, Specimen& specimen) {
   if (table.rows() == 0) {
@@ -121,15 +144,15 @@ std::vector<Image> read_grains(const CsvTable& table, Specimen& specimen) {
   }
   const auto positions = positions_of(table, specimen.cell);
   const auto materials = materials_of(table, specimen);
-  const auto id = table.column({"id"}), radius = table.column({"r", "radius"});
+  const auto id = table.column({"id"});
   std::vector<Image> wraps;
   Grains& grains = specimen.grains;
   for (const auto row : order_by_id(table)) {
     grains.id.push_back(table.integer(row, id));
-    grains.radius.push_back(table.number(row, radius));
-    if (!(grains.radius.back() > 0)) {
-      throw InputError(table.place(row, radius) + " m is not positive; allowed: > 0; correct the radius");
-    }
+    if (specimen.shape == Shape::ellipse)
+      read_ellipse(table, row, specimen);
+    else
+      read_radius(table, row, grains);
     grains.material.push_back(materials[row]);
     grains.position.push_back(positions[row]);
     wraps.push_back(wrap(specimen.cell, grains.position.back()));
@@ -204,6 +227,13 @@ Specimen import_csv(const std::string& particles_path, const std::optional<std::
   }
   set_cell(specimen, dimension, *vectors, source);
 
+  if (dimension == 2 && particles.table->has("a") && particles.table->has("b")) {
+    specimen.shape = Shape::ellipse;
+    if (contacts_path)
+      throw InputError(*contacts_path +
+                       ": contacts of ellipses are not read; allowed: ellipses without contacts, whose " +
+                       "springs start without force; leave the contacts out");
+  }
   const auto wraps = read_grains(*particles.table, specimen);
   if (contacts_path) read_contacts(CsvTable(*contacts_path), wraps, specimen);
 

@@ -250,7 +250,18 @@ class Condensed {
 
 }  // namespace
 
+namespace {
+
+void refuse_ellipses(const Network& network, const char* what) {
+  if (network.shape != Shape::ellipse) return;
+  throw InputError(std::string(what) + " of ellipses is not known: their normals turn as the surfaces are curved; " +
+                   "apply small increments instead");
+}
+
+}  // namespace
+
 Eigen::MatrixXd elastic_tangent(const Network& network) {
+  refuse_ellipses(network, "the elastic tangent");
   const int dimension = network.dimension(), size = component_count(dimension);
   Eigen::MatrixXd tangent(size, size);
   Condensed condensed(network);
@@ -263,6 +274,7 @@ Eigen::MatrixXd elastic_tangent(const Network& network) {
 }
 
 Eigen::MatrixXd affine_tangent(const Network& network) {
+  refuse_ellipses(network, "the affine sum");
   const int dimension = network.dimension(), size = component_count(dimension);
   Eigen::MatrixXd tangent(size, size);
   for (int k = 0; k < size; ++k) {

@@ -80,20 +80,27 @@ void press(const Recipe& recipe, Rve& rve) {
   }
 }
 
-/// The same assembly, at rest, with other radii; contacts keep their history.
-Rve with_radii(const Rve& rve, const std::vector<double>& radii, const std::atomic<bool>* stop) {
+std::vector<double> scaled(std::vector<double> lengths, double factor) {
+  for (double& length : lengths) length *= factor;
+  return lengths;
+}
+
+/// Gives grains the sizes of `full`, times `factor`.
+void set_sizes(const Grains& full, double factor, Grains& grains) {
+  grains.radius = scaled(full.radius, factor);
+  grains.semi_major = scaled(full.semi_major, factor);
+  grains.semi_minor = scaled(full.semi_minor, factor);
+}
+
+/// The same assembly, at rest, with other sizes; contacts keep their history.
+Rve with_sizes(const Rve& rve, const Grains& full, double factor, const std::atomic<bool>* stop) {
   Specimen s = rve.specimen();
-  s.grains.radius = radii;
+  set_sizes(full, factor, s.grains);
   s.state = SolverState{};
   for (auto* v : {&s.grains.velocity, &s.grains.spin}) std::fill(v->begin(), v->end(), Vector3::Zero());
   Rve other(s);
   other.watch(stop);
   return other;
-}
-
-std::vector<double> scaled(std::vector<double> radii, double factor) {
-  for (double& radius : radii) radius *= factor;
-  return radii;
 }
 
 }  // namespace
@@ -134,15 +141,14 @@ Rve by_growth(const Recipe& recipe, const Grains& graded, double friction, Unifo
   if (!scatter(cell, preparation.first_size, grains, uniform))
     throw InputError("preparation.first_size = " + std::to_string(preparation.first_size) +
                      " leaves no room to scatter the grains; allowed: above 0 to below 1; give a smaller one");
-  const std::vector<double>& radii = graded.radius;
-  grains.radius = scaled(radii, preparation.first_size);
+  set_sizes(graded, preparation.first_size, grains);
   Rve rve(assembly(recipe, friction, grains, cell));
   rve.watch(stop);
   const double full_size = recipe.stress ? 1 : 1 + clearance;
   for (double size = preparation.first_size; size < full_size;) {
     const bool touching = contacts_per_grain(rve) >= crowded(d);
     size = std::min(full_size, size * (touching ? 1.001 : 1.01));
-    rve = with_radii(rve, scaled(radii, size), stop);
+    rve = with_sizes(rve, graded, size, stop);
     rve.relax(1e-3, 50);
   }
   if (recipe.stress) {
@@ -150,7 +156,7 @@ Rve by_growth(const Recipe& recipe, const Grains& graded, double friction, Unifo
     return rve;
   }
   rve.relax(recipe.unbalanced, 50'000);
-  return with_radii(rve, radii, stop);
+  return with_sizes(rve, graded, 1, stop);
 }
 
 }  // namespace rvelab::pack

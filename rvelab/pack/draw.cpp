@@ -57,7 +57,7 @@ void expect_overlaps(const Recipe& recipe, const Rve& rve, double share) {
   if (!recipe.stress) throw OverlapBeyondLimit(text + "the cell is too small for its grains: raise target.void_ratio");
   const double diameter = mean_diameter(network);
   text += "take stiffer grains or a lower pressure (" + in_words(proportions_of(network)) + ")";
-  if (recipe.shape == Shape::disc && recipe.thickness > 2 * diameter)
+  if (dimension_of(recipe.shape) == 2 && recipe.thickness > 2 * diameter)
     text += ", or a slab about as thick as a grain: pack.thickness_m = " + in_words(recipe.thickness) + " m is " +
             in_words(recipe.thickness / diameter) + " mean diameters, and the force on a grain grows with it";
   throw OverlapBeyondLimit(text + "; check the units of radii and stiffness");

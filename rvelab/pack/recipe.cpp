@@ -27,7 +27,7 @@ double growth_void_ratio(const Recipe& recipe) {
   if (!recipe.stress) return *recipe.void_ratio;
   if (recipe.preparation.growth_void_ratio) return *recipe.preparation.growth_void_ratio;
   if (recipe.void_ratio) return *recipe.void_ratio + 0.1;
-  return recipe.shape == Shape::disc ? 0.3 : 0.9;
+  return dimension_of(recipe.shape) == 2 ? 0.3 : 0.9;
 }
 
 void check_recipe(const Recipe& recipe) {

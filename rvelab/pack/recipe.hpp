@@ -20,6 +20,11 @@ struct GrainFraction {
   double share = 1;          ///< of all grains, by number or by mass (Recipe::share_by_mass); all shares add up to 1
   std::size_t material = 0;  ///< row of Recipe::materials
   Grading grading;
+  // Ellipses: the grading is of sqrt(a b).
+  double smallest_aspect_ratio = 1, largest_aspect_ratio = 1;  ///< b/a, every value between equally frequent
+  double bedding_angle = 0,
+         bedding_spread = 90;  ///< degrees: from x to the long axes on average; to either side, every
+                               ///< angle equally frequent. As they are laid, before they are pressed
 };
 
 /// How a specimen is brought from scattered grains to contact.

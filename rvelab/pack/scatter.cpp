@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "rvelab/error.hpp"
+#include "rvelab/grains/direction.hpp"
 
 namespace rvelab::pack {
 
@@ -108,6 +109,20 @@ class Boxes {
 
 }  // namespace
 
+namespace {
+
+/// Axes and orientation of the grain that was added last.
+void lay_ellipse(const GrainFraction& fraction, Uniform& uniform, Grains& grains) {
+  const double range = fraction.largest_aspect_ratio - fraction.smallest_aspect_ratio;
+  const double root = std::sqrt(fraction.smallest_aspect_ratio + range * uniform()), radius = grains.radius.back();
+  grains.semi_major.push_back(radius / root);
+  grains.semi_minor.push_back(radius * root);
+  const auto [x, y] = direction_of(fraction.bedding_angle + fraction.bedding_spread * (2 * uniform() - 1));
+  grains.orientation.emplace_back(x, y, 0);
+}
+
+}  // namespace
+
 Grains graded_grains(const Recipe& recipe) {
   const int d = dimension_of(recipe.shape);
   std::vector<NumberCurve> curves;
@@ -124,6 +139,7 @@ Grains graded_grains(const Recipe& recipe) {
       grains.id.push_back(std::int64_t(grains.id.size()));
       grains.radius.push_back(radius);
       grains.material.push_back(std::int32_t(recipe.fractions[f].material));
+      if (recipe.shape == Shape::ellipse) lay_ellipse(recipe.fractions[f], uniform, grains);
     }
   }
   grains.position.assign(recipe.number, Vector3::Zero());
@@ -145,15 +161,15 @@ Cell cell_of(const Recipe& recipe, double volume) {
 }
 
 bool scatter(const Cell& cell, double size, Grains& grains, Uniform& uniform) {
-  const double largest = size * *std::max_element(grains.radius.begin(), grains.radius.end());
+  const std::vector<double>& reach = grains.semi_major.empty() ? grains.radius : grains.semi_major;
+  const double largest = size * *std::max_element(reach.begin(), reach.end());
   if (shortest_vector(cell) < 2 * largest) return false;
   Boxes boxes(cell, 2 * largest);
   std::vector<std::size_t> order(grains.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return grains.radius[a] > grains.radius[b]; });
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return reach[a] > reach[b]; });
   for (const std::size_t g : order) {
-    const double radius = size * grains.radius[g];
+    const double radius = size * reach[g];
     bool placed = false;
     for (int k = 0; k < most_tries && !placed; ++k) {
       Vector3 part = Vector3::Zero();

@@ -5,8 +5,8 @@
 
 namespace rvelab::pack {
 
-/// The grains of a recipe, all at the origin: radii and materials by its gradings and seed, the same for every draw.
-/// InputError if a fraction gets no grain.
+/// The grains of a recipe, all at the origin: radii, materials, axes and orientations by its gradings and seed, the
+/// same for every draw. InputError if a fraction gets no grain.
 Grains graded_grains(const Recipe& recipe);
 
 /// Volume of all grains, m^3.
@@ -15,8 +15,8 @@ double solid_volume(const Recipe& recipe, const Grains& grains);
 /// The recipe's cell with the given volume, m^3.
 Cell cell_of(const Recipe& recipe, double volume);
 
-/// Random places in the cell at which no grain of `size` times its radius touches another; the largest are placed
-/// first. Cell frame, m. False: no place was found for one of them.
+/// Random places in the cell at which no grain of `size` times its radius (the long semi-axis of an ellipse) touches
+/// another; the largest are placed first. Cell frame, m. False: no place was found for one of them.
 bool scatter(const Cell& cell, double size, Grains& grains, Uniform& uniform);
 
 }  // namespace rvelab::pack

@@ -10,6 +10,7 @@
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/protocol/assign.hpp"
 #include "rvelab/protocol/protocol_keys.hpp"
+#include "rvelab/specimen/field_layout.hpp"
 
 namespace rvelab::protocol {
 namespace {
@@ -31,15 +32,15 @@ void read_pack(const toml::table& table, RecipeFile& file, toml::table& resolved
   TableReader reader(table, recipe_keys(), "pack", "pack", line_of(table), errors);
   pack::Recipe& recipe = file.recipe;
   file.name = reader.text("name");
-  recipe.shape = reader.choice("shape") == "disc" ? Shape::disc : Shape::sphere;
+  fields::from_text(reader.choice("shape"), recipe.shape);
   recipe.number = std::size_t(reader.whole_number("number"));
   recipe.seed = std::uint64_t(reader.whole_number("seed"));
-  if (recipe.shape == Shape::disc) {
+  if (dimension_of(recipe.shape) == 2) {
     recipe.thickness = reader.number("thickness_m");
   } else {
     reader.leave("thickness_m");
     if (reader.has("thickness_m"))
-      reader.mistake("thickness_m", "contradicts pack.shape = \"sphere\"; allowed: with discs only; remove one");
+      reader.mistake("thickness_m", "contradicts pack.shape = \"sphere\"; allowed: in 2D only; remove one");
   }
   recipe.oriented = reader.choice("cell") == "oriented";
   recipe.share_by_mass = reader.choice("share_by") == "mass";
@@ -72,6 +73,30 @@ Grading read_grading(TableReader& reader) {
   return grading;
 }
 
+/// Aspect ratios and bedding of ellipses; of other shapes none may be given.
+void read_ellipses(TableReader& reader, pack::GrainFraction& fraction, Shape shape) {
+  struct Key {
+    const char* name;
+    double* value;
+  };
+  const Key keys[] = {{"smallest_aspect_ratio", &fraction.smallest_aspect_ratio},
+                      {"largest_aspect_ratio", &fraction.largest_aspect_ratio},
+                      {"bedding_angle_deg", &fraction.bedding_angle},
+                      {"bedding_spread_deg", &fraction.bedding_spread}};
+  for (const Key& key : keys) {
+    if (shape == Shape::ellipse) {
+      *key.value = reader.number(key.name);
+      continue;
+    }
+    reader.leave(key.name);
+    if (reader.has(key.name))
+      reader.mistake(key.name, "contradicts pack.shape = \"" + fields::text_of(shape) +
+                                   "\"; allowed: with ellipses only; remove one");
+  }
+  if (fraction.smallest_aspect_ratio > fraction.largest_aspect_ratio)
+    reader.mistake("smallest_aspect_ratio", "is above grains.largest_aspect_ratio; allowed: up to it; correct them");
+}
+
 void read_fraction(const toml::table& table, pack::Recipe& recipe, toml::array& resolved,
                    std::vector<keys::KeyError>& errors) {
   pack::GrainFraction fraction;
@@ -82,6 +107,7 @@ void read_fraction(const toml::table& table, pack::Recipe& recipe, toml::array& 
   const std::size_t mistakes = errors.size();
   fraction.grading = read_grading(reader);
   const bool grading_read = errors.size() == mistakes;
+  read_ellipses(reader, fraction, recipe.shape);
   const std::string material = reader.text("material", recipe.materials.front().name);
   std::string known;
   bool found = false;
@@ -163,7 +189,7 @@ void read_stress(TableReader& reader, RecipeFile& file) {
   if (!components.empty()) {
     recipe.stress = stress_of(components, recipe.shape);
     if (!recipe.stress) {
-      reader.mistake("stress_Pa", recipe.shape == Shape::disc
+      reader.mistake("stress_Pa", dimension_of(recipe.shape) == 2
                                       ? "is not a stress in 2D; allowed: [xx, yy, xy]; give three numbers"
                                       : "is not a stress in 3D; allowed: [xx, yy, zz, yz, xz, xy]; give six numbers");
     } else if (!(mean_pressure(*recipe.stress, dimension_of(recipe.shape)) > 0)) {

@@ -10,17 +10,18 @@ using namespace keys;
 
 constexpr Interval below_one{0, 1, true, true};
 constexpr Interval friction{0, 1e6};
+constexpr Interval aspect_ratio{least_aspect_ratio, 1};
 
 std::vector<TableKey> pack() {
   const char* t = "pack";
   const pack::Recipe initial;
   return {
       required(text(t, "name", "", "what the recipe is called")),
-      choice(t, "shape", {"disc", "sphere"}, "disc: 2D; sphere: 3D"),
+      choice(t, "shape", {"disc", "sphere", "ellipse"}, "disc, ellipse: 2D; sphere: 3D"),
       whole_number(t, "number", long(initial.number), {1, 1e8}, "grains in all"),
       whole_number(t, "seed", long(initial.seed), {0, 9e15},
                    "of all that is random; specimens of --count have the following ones"),
-      number(t, "thickness_m", "m", initial.thickness, positive, "shape = disc: thickness of the slab"),
+      number(t, "thickness_m", "m", initial.thickness, positive, "2D: thickness of the slab"),
       choice(t, "cell", {"upright", "oriented"},
              "upright: square or cube; oriented: the lattice that no compression along the axes makes slender (Kraynik "
              "and Reinelt in 2D, a cubic field in 3D)"),
@@ -30,7 +31,7 @@ std::vector<TableKey> pack() {
 
 std::vector<TableKey> grains() {
   const char* t = "grains";
-  const Grading initial;
+  const pack::GrainFraction initial_fraction;
   return {
       text(t, "name", "\"grains\"", "name of a fraction, for --set grains.NAME.key=value"),
       text(t, "material", "(the first)", "name of the material"),
@@ -40,8 +41,16 @@ std::vector<TableKey> grains() {
              "uniform: passing is straight over the radius; linear: straight over its logarithm; tabulated: points, "
              "straight over the radius between them"),
       choice(t, "passing_by", {"number", "mass"}, "what the grading counts"),
-      number(t, "smallest_radius_m", "m", "", positive, "grading = uniform, linear: where passing is 0"),
+      number(t, "smallest_radius_m", "m", "", positive,
+             "grading = uniform, linear: where passing is 0; the radius of an ellipse is sqrt(a b)"),
       number(t, "largest_radius_m", "m", "", positive, "grading = uniform, linear: where passing is 1"),
+      number(t, "smallest_aspect_ratio", "1", initial_fraction.smallest_aspect_ratio, aspect_ratio,
+             "shape = ellipse: b/a, every value up to the largest equally frequent"),
+      number(t, "largest_aspect_ratio", "1", initial_fraction.largest_aspect_ratio, aspect_ratio, "shape = ellipse"),
+      number(t, "bedding_angle_deg", "degrees", initial_fraction.bedding_angle, {-180, 180},
+             "shape = ellipse: from x to the long axes on average, as the grains are laid"),
+      number(t, "bedding_spread_deg", "degrees", initial_fraction.bedding_spread, {0, 90},
+             "shape = ellipse: to either side of it, every angle equally frequent; 90: no bedding"),
       {{t, "radii_m", "m", "list of numbers", "", "each " + in_words(positive), "grading = tabulated: ascending radii"},
        KeyKind::numbers,
        positive,

@@ -31,6 +31,67 @@ void set_elastic(const Fixture& f, const PairTable& pairs, std::size_t p, Contac
   if (c.rolling_stiffness > 0) c.elastic_energy += 0.5 * c.rolling_moment.squaredNorm() / c.rolling_stiffness;
 }
 
+/// Normal and arms: the contact point halves the overlap.
+void set_arms(const Fixture& f, const PairPlace& at, ContactState& c) {
+  c.normal = c.branch / at.length;
+  c.arm_i = (f.radius[std::size_t(c.i)] - 0.5 * at.overlap) * c.normal;
+  c.arm_j = -((f.radius[std::size_t(c.j)] - 0.5 * at.overlap) * c.normal);
+}
+void set_arms(const Fixture&, const EllipsePlace& at, ContactState& c) {
+  c.normal = {at.normal.x, at.normal.y, 0};
+  const Vector3 across(-at.normal.y, at.normal.x, 0);
+  c.arm_i = (at.reach_i - 0.5 * at.overlap) * c.normal + at.turn_i * across;
+  c.arm_j = -((at.reach_j - 0.5 * at.overlap) * c.normal + at.turn_j * across);
+}
+
+void add_torques(const Fixture& f, const ContactState& c, const Vector3& force, Network& net) {
+  GrainState &i = net.grains[std::size_t(c.i)], &j = net.grains[std::size_t(c.j)];
+  if (f.shape == Shape::ellipse) {
+    i.torque -= c.arm_i.cross(force) + c.rolling_moment;
+    j.torque += c.arm_j.cross(force) + c.rolling_moment;
+    return;
+  }
+  const Vector3 turning = c.normal.cross(c.tangential_force);
+  i.torque -= (i.radius - 0.5 * c.overlap) * turning + c.rolling_moment;
+  j.torque -= (j.radius - 0.5 * c.overlap) * turning - c.rolling_moment;
+}
+
+template <Shape shape>
+void add_contacts(const Fixture& f, const Assembly& a, Network& net) {
+  const PairGeometry<shape> pair(f, a);
+  for (const std::int32_t place : a.pairs.order) {
+    const auto p = std::size_t(place);
+    const auto i = a.pairs.i[p], j = a.pairs.j[p];
+    const auto at = pair(p);
+    if (!(at.overlap > 0)) continue;
+    ContactState c;
+    c.i = i;
+    c.j = j;
+    c.image = a.pairs.image[p];
+    c.branch = {at.branch.x, at.branch.y, at.branch.z};
+    c.length = at.length;
+    c.overlap = at.overlap;
+    set_arms(f, at, c);
+    const Vector3 force = force_of(f, a.pairs, p);
+    c.normal_force = force.dot(c.normal);
+    c.tangential_force = force - c.normal_force * c.normal;
+    c.rolling_moment.setZero();
+    if (f.contact.rolling) {
+      if (f.dimension() == 2)
+        c.rolling_moment[2] = a.pairs.moment[0][p];
+      else
+        c.rolling_moment = {a.pairs.moment[0][p], a.pairs.moment[1][p], a.pairs.moment[2][p]};
+      c.moment_cap = a.pairs.moment_cap[p];
+    }
+    c.friction = a.pairs.friction[p];
+    set_elastic(f, a.pairs, p, c);
+    net.grains[std::size_t(i)].resultant -= force;
+    net.grains[std::size_t(j)].resultant += force;
+    add_torques(f, c, force, net);
+    net.contacts.push_back(c);
+  }
+}
+
 Network network_of(const Fixture& f, const Assembly& a) {
   Network net;
   net.shape = f.shape;
@@ -41,46 +102,21 @@ Network network_of(const Fixture& f, const Assembly& a) {
   net.quasi_static = a.state.quasi_static;
   if (!net.quasi_static) net.mean_spin = a.state.mean_spin;
   net.grains.resize(f.size());
-  for (std::size_t g = 0; g < f.size(); ++g)
-    net.grains[g] = {
-        f.radius[g],  f.mass[g],       f.inertia[g],   a.position(f, g), a.velocity(f, g) - a.state.mean_velocity,
-        a.spin(f, g), Vector3::Zero(), Vector3::Zero()};
-  const PairGeometry<2> in_plane(f, a);
-  const PairGeometry<3> in_space(f, a);
-  for (const std::int32_t place : a.pairs.order) {
-    const auto p = std::size_t(place);
-    const auto i = a.pairs.i[p], j = a.pairs.j[p];
-    const auto [branch, length, overlap] = f.shape == Shape::disc ? in_plane(p) : in_space(p);
-    if (!(overlap > 0)) continue;
-    const Vector3 b(branch.x, branch.y, branch.z);
-    ContactState c;
-    c.i = i;
-    c.j = j;
-    c.image = a.pairs.image[p];
-    c.branch = b;
-    c.length = length;
-    c.normal = b / length;
-    c.overlap = overlap;
-    const Vector3 force = force_of(f, a.pairs, p);
-    c.normal_force = force.dot(c.normal);
-    c.tangential_force = force - c.normal_force * c.normal;
-    c.rolling_moment.setZero();
-    if (f.contact.rolling) {
-      if (f.shape == Shape::disc)
-        c.rolling_moment[2] = a.pairs.moment[0][p];
-      else
-        c.rolling_moment = {a.pairs.moment[0][p], a.pairs.moment[1][p], a.pairs.moment[2][p]};
-      c.moment_cap = a.pairs.moment_cap[p];
-    }
-    c.friction = a.pairs.friction[p];
-    set_elastic(f, a.pairs, p, c);
-    net.grains[std::size_t(i)].resultant -= force;
-    net.grains[std::size_t(j)].resultant += force;
-    const Vector3 turning = c.normal.cross(c.tangential_force);
-    net.grains[std::size_t(i)].torque -= (f.radius[i] - 0.5 * overlap) * turning + c.rolling_moment;
-    net.grains[std::size_t(j)].torque -= (f.radius[j] - 0.5 * overlap) * turning - c.rolling_moment;
-    net.contacts.push_back(c);
+  for (std::size_t g = 0; g < f.size(); ++g) {
+    GrainState& grain = net.grains[g];
+    grain.radius = f.radius[g];
+    grain.mass = f.mass[g];
+    grain.inertia = f.inertia[g];
+    grain.position = a.position(f, g);
+    grain.velocity = a.velocity(f, g) - a.state.mean_velocity;
+    grain.spin = a.spin(f, g);
+    grain.resultant.setZero();
+    if (f.shape != Shape::ellipse) continue;
+    grain.orientation = a.orientation(f, g);
+    grain.semi_major = f.semi_major[g];
+    grain.semi_minor = f.semi_minor[g];
   }
+  with_shape(f.shape, [&](auto shape) { add_contacts<shape.value>(f, a, net); });
   return in_id_order(std::move(net), a.state.memory_order);
 }
 

@@ -47,7 +47,8 @@ void rebuild_buffers(const Fixture& f, Assembly& a) {
       a.mass[g] = std::exchange(row[resting_mass(f.shape)], 0.0);
       a.inverse_mass[g] = 1 / a.mass[g];
       a.inverse_inertia[g] =
-          std::exchange(row[resting_inverse_inertia(f.shape)], f.shape == Shape::disc ? 0.0 : row[3]);
+          std::exchange(row[resting_inverse_inertia(f.shape)], f.shape == Shape::sphere ? row[3] : 0.0);
+      if (f.shape == Shape::ellipse) set_ellipse_matrix(f, g, row);
     }
   }
   evaluate_forces(f, a);

@@ -199,8 +199,8 @@ void Rve::set_materials(const std::vector<Material>& materials) {
   std::vector<double> mass(m.fixture.size()), inertia(m.fixture.size());
   for (std::size_t g = 0; g < m.fixture.size(); ++g) {
     const double density = materials[std::size_t(m.fixture.material[g])].density;
-    mass[g] = density * grain_volume(m.fixture.shape, m.fixture.radius[g], m.fixture.thickness);
-    inertia[g] = moment_of_inertia(m.fixture.shape, mass[g], m.fixture.radius[g]);
+    mass[g] = density * m.fixture.volume_of(g);
+    inertia[g] = m.fixture.inertia_of(g, mass[g]);
   }
   m.fixture.mass = std::move(mass);
   m.fixture.inertia = std::move(inertia);

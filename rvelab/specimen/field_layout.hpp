@@ -20,7 +20,9 @@ namespace rvelab::fields {
 
 /// Text for a value that is text or an enumeration, and the way back (InputError listing the names).
 inline std::string text_of(const std::string& value) { return value; }
-inline std::string text_of(Shape shape) { return shape == Shape::disc ? "disc" : "sphere"; }
+inline std::string text_of(Shape shape) {
+  return shape == Shape::disc ? "disc" : shape == Shape::sphere ? "sphere" : "ellipse";
+}
 template <class Enumeration>
 std::string text_of(Enumeration value) {
   return name(value);
@@ -32,10 +34,12 @@ inline void from_text(const std::string& text, Slip& value) { value = slip_from(
 inline void from_text(const std::string& text, Dashpot& value) { value = dashpot_from(text); }
 inline void from_text(const std::string& text, LocalDampingForm& value) { value = local_damping_form_from(text); }
 inline void from_text(const std::string& text, Shape& value) {
-  if (text != "disc" && text != "sphere") {
-    throw InputError("shape = \"" + text + "\" is not known; allowed: disc, sphere; choose one of these");
-  }
-  value = text == "disc" ? Shape::disc : Shape::sphere;
+  for (const Shape shape : {Shape::disc, Shape::sphere, Shape::ellipse})
+    if (text == text_of(shape)) {
+      value = shape;
+      return;
+    }
+  throw InputError("shape = \"" + text + "\" is not known; allowed: disc, sphere, ellipse; choose one of these");
 }
 
 template <class Value>

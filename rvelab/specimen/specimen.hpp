@@ -15,11 +15,13 @@ namespace rvelab {
 /// and velocity, and x and y of the spin, are zero.
 struct Grains {
   std::vector<std::int64_t> id;
-  std::vector<double> radius;          ///< m
-  std::vector<std::int32_t> material;  ///< index into Specimen::materials
-  std::vector<Vector3> position;       ///< m
-  std::vector<Vector3> velocity;       ///< m/s, fluctuation v' (at the last half step); dt = 0: m per sub-step
-  std::vector<Vector3> spin;           ///< rad/s, fluctuation w'; dt = 0: rad per sub-step
+  std::vector<double> radius;                  ///< m; of an ellipse sqrt(a b), the disc of its area
+  std::vector<std::int32_t> material;          ///< index into Specimen::materials
+  std::vector<Vector3> position;               ///< m
+  std::vector<Vector3> velocity;               ///< m/s, fluctuation v' (at the last half step); dt = 0: m per sub-step
+  std::vector<Vector3> spin;                   ///< rad/s, fluctuation w'; dt = 0: rad per sub-step
+  std::vector<double> semi_major, semi_minor;  ///< ellipses: a >= b, m; else empty
+  std::vector<Vector3> orientation;            ///< ellipses: along the long axis, of length 1; else empty
   std::size_t size() const { return id.size(); }
 };
 

@@ -31,6 +31,9 @@ inline constexpr auto members_of<Grains> = std::tuple{
     Field{"position_m", &Grains::position, "m", Rows::per_grain},
     Field{"velocity", &Grains::velocity, "m/s or m/step", Rows::per_grain},
     Field{"spin", &Grains::spin, "rad/s or rad/step", Rows::per_grain},
+    Field{"semi_major_m", &Grains::semi_major, "m", Rows::per_grain_or_none, InFiles::added_later},
+    Field{"semi_minor_m", &Grains::semi_minor, "m", Rows::per_grain_or_none, InFiles::added_later},
+    Field{"orientation", &Grains::orientation, "1", Rows::per_grain_or_none, InFiles::added_later},
 };
 
 template <>

@@ -214,7 +214,10 @@ inline Specimen random_specimen(unsigned seed, std::size_t grain_count = 17, std
   grains.id.resize(grain_count);
   grains.radius.resize(grain_count);
   grains.material.resize(grain_count);
-  for (auto* vectors : {&grains.position, &grains.velocity, &grains.spin}) vectors->resize(grain_count);
+  grains.semi_major.resize(grain_count);
+  grains.semi_minor.resize(grain_count);
+  for (auto* vectors : {&grains.position, &grains.velocity, &grains.spin, &grains.orientation})
+    vectors->resize(grain_count);
   specimen.state.list_positions.resize(grain_count);
   specimen.state.scaled_mass.resize(grain_count);
   specimen.state.scaled_inverse_inertia.resize(grain_count);

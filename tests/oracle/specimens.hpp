@@ -34,35 +34,50 @@ inline void add_grain(Specimen& s, const Vector3& position, double radius, int m
   s.grains.spin.push_back(Vector3::Zero());
 }
 
+/// Semi-axes a >= b (m), the long one at `angle` to x.
+inline void add_ellipse(Specimen& s, const Vector3& position, double a, double b, double angle, int material = 0) {
+  add_grain(s, position, std::sqrt(a * b), material);
+  s.grains.semi_major.push_back(a);
+  s.grains.semi_minor.push_back(b);
+  s.grains.orientation.emplace_back(std::cos(angle), std::sin(angle), 0);
+}
+
 /// No grains yet: a square or cubic cell of the given edge, linear_given contacts.
 inline Specimen empty_specimen(Shape shape, double edge, const Material& material, Law law = Law::linear_given) {
   Specimen s;
   s.shape = shape;
   s.cell.dimension = dimension_of(shape);
-  s.cell.lattice = Vector3(edge, edge, shape == Shape::disc ? 1.0 : edge).asDiagonal();
+  s.cell.lattice = Vector3(edge, edge, dimension_of(shape) == 2 ? 1.0 : edge).asDiagonal();
   s.materials = {material};
   s.contact.law = law;
   return s;
 }
 
 /// A disordered packing of side^d grains: a crystal with its sites moved by up to `jitter` spacings and radii spread by
-/// a tenth; not at rest yet. Fractions of the spacing throughout.
+/// a tenth; not at rest yet. Fractions of the spacing throughout. Ellipses: of those areas, aspect 0.7 to 0.95, turned
+/// anyhow.
 inline Specimen disordered(Shape shape, int side, const Material& material, Law law, double radius_over_spacing,
                            std::uint64_t seed, double jitter = 0.05) {
   const double spacing = 0.01;
   Specimen s = empty_specimen(shape, side * spacing, material, law);
-  if (shape == Shape::disc) s.cell.lattice(2, 2) = spacing;
-  s.solver.max_overlap_ratio = 0.5;
+  if (dimension_of(shape) == 2) s.cell.lattice(2, 2) = spacing;
+  s.solver.max_overlap_ratio = shape == Shape::ellipse ? 0.8 : 0.5;
   std::mt19937_64 generator(seed);
   const auto uniform = [&] { return 2 * double(generator() >> 11) / 9007199254740992.0 - 1; };
-  const int depth = shape == Shape::disc ? 1 : side;
+  const int depth = dimension_of(shape) == 2 ? 1 : side;
   for (int k = 0; k < depth; ++k)
     for (int j = 0; j < side; ++j)
       for (int i = 0; i < side; ++i) {
         Vector3 x = Vector3(i, j, k) * spacing - 0.5 * (side - 1) * spacing * Vector3::Ones();
         for (int c = 0; c < s.cell.dimension; ++c) x[c] += jitter * spacing * uniform();
-        if (shape == Shape::disc) x[2] = 0;
-        add_grain(s, x, radius_over_spacing * spacing * (1 + 0.05 * uniform()));
+        if (dimension_of(shape) == 2) x[2] = 0;
+        const double radius = radius_over_spacing * spacing * (1 + 0.05 * uniform());
+        if (shape == Shape::ellipse) {
+          const double root = std::sqrt(0.825 + 0.125 * uniform());
+          add_ellipse(s, x, radius / root, radius * root, pi * uniform());
+        } else {
+          add_grain(s, x, radius);
+        }
       }
   return s;
 }

@@ -16,6 +16,16 @@ inline pack::Recipe discs(std::size_t number = 150) {
   return recipe;
 }
 
+/// Ellipses of aspect 0.743 (Liang et al. 2023), laid at 30 degrees and 20 to either side.
+inline pack::Recipe ellipses(std::size_t number = 150) {
+  pack::Recipe recipe = discs(number);
+  recipe.shape = Shape::ellipse;
+  recipe.fractions[0].smallest_aspect_ratio = recipe.fractions[0].largest_aspect_ratio = 0.743;
+  recipe.fractions[0].bedding_angle = 30;
+  recipe.fractions[0].bedding_spread = 20;
+  return recipe;
+}
+
 /// Spheres with Hertz-Mindlin contacts at 100 kPa.
 inline pack::Recipe spheres(std::size_t number = 120) {
   pack::Recipe recipe;

@@ -38,8 +38,44 @@ void expect_at_rest(const pack::Packing& packing, const pack::Recipe& recipe) {
 
 }  // namespace
 
+TEST_CASE("ellipses have the aspect and the bedding that they were laid with, and keep most of it") {
+  pack::Recipe recipe = ellipses();
+  recipe.fractions[0].smallest_aspect_ratio = 0.5;
+  recipe.preparation.friction = 0.2;
+  const Grains laid = pack::graded_grains(recipe);
+  double largest = 0, smallest = 1, farthest = 0;
+  for (std::size_t g = 0; g < laid.size(); ++g) {
+    const double aspect = laid.semi_minor[g] / laid.semi_major[g];
+    largest = std::max(largest, aspect);
+    smallest = std::min(smallest, aspect);
+    const double angle = std::atan2(laid.orientation[g][1], laid.orientation[g][0]) * 180 / 3.14159265358979;
+    farthest = std::max(farthest, std::abs(angle - 30));
+    CHECK(laid.semi_major[g] * laid.semi_minor[g] == Approx(laid.radius[g] * laid.radius[g]));
+  }
+  CHECK(largest <= 0.743);
+  CHECK(largest > 0.72);
+  CHECK(smallest >= 0.5);
+  CHECK(smallest < 0.52);
+  CHECK(farthest <= 20 + 1e-9);
+  CHECK(farthest > 19);
+  for (const auto method : {pack::Preparation::Method::compression, pack::Preparation::Method::growth}) {
+    recipe.preparation.method = method;
+    const pack::Packing packing = packed(recipe);
+    expect_at_rest(packing, recipe);
+    // Mean axis of the dyads e e: atan2 of the doubled angle, halved.
+    double along = 0, across = 0;
+    for (const Vector3& e : packing.specimen.grains.orientation) {
+      along += e[0] * e[0] - e[1] * e[1];
+      across += 2 * e[0] * e[1];
+    }
+    CHECK(std::abs(0.5 * std::atan2(across, along) * 180 / 3.14159265358979 - 30) < 12);
+    CHECK(std::hypot(along, across) > 0.5 * double(laid.size()));
+    CHECK(packing.specimen.grains.semi_major == laid.semi_major);
+  }
+}
+
 TEST_CASE("low friction makes dense specimens, high friction loose ones, all at the stress with their own friction") {
-  for (pack::Recipe recipe : {discs(), spheres()}) {
+  for (pack::Recipe recipe : {discs(), spheres(), ellipses()}) {
     double before = 0;
     for (const double friction : {0.0, 0.1, 1e6}) {
       recipe.preparation.friction = friction;

@@ -86,6 +86,8 @@ TEST_CASE("a small recipe has the defaults that the key table states") {
                                  ? (*resolved["grains"][0].as_table()).get(entry.key.name)
                                  : resolved[entry.key.table][entry.key.name].node();
     if (entry.key.name == "first_size") continue;  // growth only
+    if (entry.key.name.find("aspect") != std::string::npos || entry.key.name.starts_with("bedding"))
+      continue;  // ellipses
     if (const auto* number = std::get_if<double>(&entry.initial)) CHECK(node->value<double>() == *number);
     if (const auto* whole = std::get_if<long>(&entry.initial)) CHECK(node->value<std::int64_t>() == *whole);
     if (const auto* word = std::get_if<std::string>(&entry.initial)) CHECK(node->value<std::string>() == *word);
@@ -125,6 +127,20 @@ TEST_CASE("a mixture of two materials, gradings and a stress tensor comes out as
   CHECK((*second.stress)(0, 2) == Approx(400));
   CHECK((*second.stress)(0, 1) == Approx(600));
   CHECK((*second.stress)(2, 2) == Approx(-24000));
+}
+
+TEST_CASE("a recipe of ellipses says their aspect ratios and bedding") {
+  const protocol::RecipeFile file = protocol::parse_recipe(
+      small, "r.toml",
+      {"pack.shape=ellipse", "grains.smallest_aspect_ratio=0.4", "grains.largest_aspect_ratio=0.8",
+       "grains.bedding_angle_deg=30", "grains.bedding_spread_deg=15"});
+  CHECK(file.recipe.shape == Shape::ellipse);
+  const pack::GrainFraction& fraction = file.recipe.fractions.at(0);
+  CHECK(fraction.smallest_aspect_ratio == 0.4);
+  CHECK(fraction.largest_aspect_ratio == 0.8);
+  CHECK(fraction.bedding_angle == 30);
+  CHECK(fraction.bedding_spread == 15);
+  CHECK(protocol::parse_recipe(file.resolved, "again.toml").resolved == file.resolved);
 }
 
 TEST_CASE("porosity and void ratio say the same") {
@@ -181,6 +197,11 @@ TEST_CASE("what contradicts something else is refused by name") {
   CHECK_THAT(message_of(small, {"preparation.first_size=0.3"}), Contains("contradicts method = \"compression\""));
   CHECK_THAT(message_of(mixture, {"pack.thickness_m=0.1"}), Contains("contradicts pack.shape = \"sphere\""));
   CHECK_THAT(message_of(small, {"grains.share=0.5"}), Contains("add up to 0.5; allowed: 1"));
+  for (const char* key : {"smallest_aspect_ratio", "largest_aspect_ratio", "bedding_angle_deg", "bedding_spread_deg"})
+    CHECK_THAT(message_of(small, {std::string("grains.") + key + "=0.5"}),
+               Contains("contradicts pack.shape = \"disc\""));
+  CHECK_THAT(message_of(small, {"pack.shape=ellipse", "grains.largest_aspect_ratio=0.5"}),
+             Contains("is above grains.largest_aspect_ratio"));
 }
 
 TEST_CASE("what a recipe cannot do without is asked for") {

@@ -15,7 +15,7 @@ Matrix3 affine_stress(const Network& net, const Matrix3& strain) {
   const Matrix3& q = net.cell.rotation;
   Matrix3 sum = Matrix3::Zero();
   for (const ContactState& c : net.contacts) {
-    const Vector3 b = q * c.branch, n = b / c.length, change = strain * b;
+    const Vector3 b = q * c.branch, n = q * c.normal, change = strain * b;
     const Vector3 along = n.dot(change) * n;
     const Vector3 force = c.normal_stiffness * along + c.tangential_stiffness * (change - along);
     sum += force * b.transpose() / net.cell.volume();
@@ -33,6 +33,7 @@ TEST_CASE("The affine stiffness is the sum over contacts that move with the stra
   const std::vector<Specimen> specimens = {
       disordered(Shape::disc, 9, linear_material(2e6, 1e6, 0.4), Law::linear_given, 0.52, 3),
       disordered(Shape::disc, 9, hertz, Law::hertz_mindlin, 0.51, 6),
+      disordered(Shape::ellipse, 9, linear_material(2e6, 1e6, 0.4), Law::linear_given, 0.52, 3),
       disordered(Shape::sphere, 5, hertz, Law::hertz_mindlin, 0.51, 4),
       disordered(Shape::sphere, 5, linear_material(2e6, 5e5, 0.4), Law::linear_given, 0.52, 8)};
   std::mt19937_64 generator(1);

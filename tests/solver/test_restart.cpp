@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "rvelab/error.hpp"
+#include "rvelab/specimen/field_layout.hpp"
 #include "tests/oracle/specimens.hpp"
 
 using namespace rvelab;
@@ -23,12 +24,13 @@ std::vector<Configuration> configurations() {
   m.poisson_ratio = 0.2;
   m.rolling_stiffness = 0.8;
   m.rolling_friction = 0.05;
-  for (const Shape shape : {Shape::disc, Shape::sphere}) {
-    const int side = shape == Shape::disc ? 7 : 4;
+  for (const Shape shape : {Shape::disc, Shape::sphere, Shape::ellipse}) {
+    const int side = dimension_of(shape) == 2 ? 7 : 4;
+    const bool round = shape != Shape::ellipse;  // which alone know other slips
     Specimen s = disordered(shape, side, m, Law::linear_given, 0.53, 11);
     all.push_back({"linear", s});
     s.contact.rolling = true;
-    s.contact.slip = Slip::full_radius_ratcheting;
+    if (round) s.contact.slip = Slip::full_radius_ratcheting;
     all.push_back({"rolling", s});
     s = disordered(shape, side, m, Law::hertz_mindlin, 0.53, 12);
     all.push_back({"hertz_mindlin", s});
@@ -38,7 +40,7 @@ std::vector<Configuration> configurations() {
     s.damping.tangential_ratio = 0.5;
     all.push_back({"hertz_mindlin, rolling, dashpot", s});
     s = disordered(shape, side, m, Law::hertz_given, 0.53, 13);
-    s.contact.slip = Slip::full_radius;
+    if (round) s.contact.slip = Slip::full_radius;
     s.damping.dashpot = Dashpot::coefficient;
     s.damping.normal_coefficient = 2;
     s.damping.local = 0.1;
@@ -90,7 +92,7 @@ MixedTarget biaxial(int dimension, double strain, double pressure) {
 
 TEST_CASE("a restored state goes on bit for bit") {
   for (const Configuration& configuration : configurations()) {
-    CAPTURE(configuration.name, configuration.specimen.shape == Shape::disc ? "discs" : "spheres");
+    CAPTURE(configuration.name, fields::text_of(configuration.specimen.shape));
     for (const bool physical : {false, true}) {
       CAPTURE(physical);
       Rve rve(configuration.specimen);
@@ -120,7 +122,7 @@ TEST_CASE("a restored state goes on bit for bit") {
 TEST_CASE(
     "a restored state goes on bit for bit under stress control, at rest, and from one kind of loading to another") {
   for (const Configuration& configuration : configurations()) {
-    CAPTURE(configuration.name, configuration.specimen.shape == Shape::disc ? "discs" : "spheres");
+    CAPTURE(configuration.name, fields::text_of(configuration.specimen.shape));
     Rve rve = at_rest(configuration.specimen, 1e-4);
     const int dimension = rve.cell().dimension;
     const double p = pressure(rve.stress(), dimension);
@@ -154,7 +156,7 @@ TEST_CASE("a failed or refused increment leaves every bit as it was") {
   const double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
   const std::vector<Configuration> all = configurations();
   for (const Configuration& configuration : {all[0], all[4], all[8]}) {
-    CAPTURE(configuration.name, configuration.specimen.shape == Shape::disc ? "discs" : "spheres");
+    CAPTURE(configuration.name, fields::text_of(configuration.specimen.shape));
     const bool discs = configuration.specimen.shape == Shape::disc;
     for (const bool physical : {false, true}) {
       Specimen limited = configuration.specimen;
@@ -215,7 +217,7 @@ TEST_CASE("no increment in no time is no change") {
 
 TEST_CASE("what is asked for changes no bit of what is done") {
   for (Configuration& configuration : configurations()) {
-    CAPTURE(configuration.name, configuration.specimen.shape == Shape::disc ? "discs" : "spheres");
+    CAPTURE(configuration.name, fields::text_of(configuration.specimen.shape));
     Rve plain(configuration.specimen), asked(configuration.specimen);
     for (int k = 0; k < 4; ++k) {
       const double dt = k % 2 == 0 ? 0 : slow_time(plain);
@@ -237,7 +239,7 @@ TEST_CASE("what is asked for changes no bit of what is done") {
 
 TEST_CASE("keeping the energy ledger changes no bit of what is done") {
   for (Configuration& configuration : configurations()) {
-    CAPTURE(configuration.name, configuration.specimen.shape == Shape::disc ? "discs" : "spheres");
+    CAPTURE(configuration.name, fields::text_of(configuration.specimen.shape));
     Specimen with = configuration.specimen, without = configuration.specimen;
     with.solver.ledger = true;
     without.solver.ledger = false;
@@ -281,7 +283,7 @@ class InstructionSet {
 
 TEST_CASE("every instruction set gives the same bits over a biaxial path and a dynamic shear") {
   for (const Configuration& configuration : configurations()) {
-    CAPTURE(configuration.name, configuration.specimen.shape == Shape::disc ? "discs" : "spheres");
+    CAPTURE(configuration.name, fields::text_of(configuration.specimen.shape));
     const Rve start = at_rest(configuration.specimen, 1e-4);
     const Specimen rest = start.specimen();
     const int dimension = rest.cell.dimension;

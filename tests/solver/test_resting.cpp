@@ -22,6 +22,7 @@ std::vector<Specimen> configurations() {
   hertz.young_modulus = 1e9;
   hertz.poisson_ratio = 0.3;
   hertz.friction = 0.5;
+  all.push_back(disordered(Shape::ellipse, 9, rolling, Law::linear_given, 0.52, 6));
   all.push_back(disordered(Shape::sphere, 5, hertz, Law::hertz_mindlin, 0.51, 4));
   all.back().damping.dashpot = Dashpot::viscoelastic;
   all.back().damping.normal_coefficient = 1e3;

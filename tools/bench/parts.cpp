@@ -108,7 +108,7 @@ void gather_and_integrate(benchmark::State& state, const std::string& name, Kern
   Opened& o = packing(name);
   const Buffer rows = o.assembly.rows;
   const PairArrays arrays = arrays_of(o.assembly.pairs);
-  const GrainArrays grains = arrays_of(o.assembly);
+  const GrainArrays grains = arrays_of(o.fixture, o.assembly);
   StepSums sums;
   for (auto _ : state)
     sweep_grains(o.fixture.kernels.dynamic[std::size_t(damping)], o.constants, grains, arrays,
@@ -177,7 +177,7 @@ int compare_widths() {
       kernels[k] = kernels_for(key);
     }
     const PairArrays pairs = arrays_of(o.assembly.pairs);
-    const GrainArrays grains = arrays_of(o.assembly);
+    const GrainArrays grains = arrays_of(o.fixture, o.assembly);
     const Buffer rows = o.assembly.rows;
     StepSums sums;
     const auto slice = [&](const Kernels& of, bool of_pairs) {

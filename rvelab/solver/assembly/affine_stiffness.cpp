@@ -32,17 +32,19 @@ struct Coefficients {
   double normal, tangential;
 };
 
-template <int D, class Of>
+template <Shape shape, class Of>
 Moments moments_of(const Fixture& f, const Assembly& a, const Of& coefficients) {
+  constexpr int D = dimension_of(shape);
   // Monomials of n of degree four and two; the servo renews its gain every few dozen sub-steps.
   constexpr int degree4 = D == 2 ? 5 : 15;
   double four[degree4] = {}, two[6] = {};
-  const PairGeometry<D> pair(f, a);
+  const PairGeometry<shape> pair(f, a);
   for (const std::int32_t place : a.pairs.order) {
     const auto p = std::size_t(place);
-    const auto [b, length, overlap] = pair(p);
-    if (!(overlap > 0)) continue;
-    const auto [kn, kt] = coefficients(p, overlap);
+    const PairPlace at = pair(p);
+    const Branch& b = at.branch;
+    if (!(at.overlap > 0)) continue;
+    const auto [kn, kt] = coefficients(p, at.overlap);
     const double part = (kn - kt) / (b.x * b.x + b.y * b.y + b.z * b.z);
     const double x = b.x, y = b.y, xx = x * x, yy = y * y, xy = x * y;
     two[0] += kt * xx;
@@ -103,11 +105,36 @@ Matrix6 strain_turn(const Matrix3& rotation) {
   return turn;
 }
 
+/// sum kn (n b)(n b) + kt (t b)(t b) over contacts whose normal is not along the branch, with symmetric parts of the
+/// dyads: under eps such a contact changes by n . eps b along n and by t . eps b across it. Cell frame, in the plane.
 template <class Of>
-Matrix6 affine_sum(const Fixture& f, const Assembly& a, const Of& coefficients) {
-  // C_ijkl = (1/V) sum l^2 [(kn - kt) n_i n_j n_k n_l
-  //                         + kt/4 (n_i n_k d_jl + n_i n_l d_jk + n_j n_k d_il + n_j n_l d_ik)], see README.md.
-  const Moments m = f.shape == Shape::disc ? moments_of<2>(f, a, coefficients) : moments_of<3>(f, a, coefficients);
+Matrix6 sum_over_ellipses(const Fixture& f, const Assembly& a, const Of& coefficients) {
+  Matrix6 sum = Matrix6::Zero();
+  const PairGeometry<Shape::ellipse> pair(f, a);
+  const auto dyad = [](double x, double y, const Branch& b) {
+    Vector6 components = Vector6::Zero();
+    components[0] = x * b.x;
+    components[1] = y * b.y;
+    components[5] = 0.5 * (x * b.y + y * b.x);
+    return components;
+  };
+  for (const std::int32_t place : a.pairs.order) {
+    const auto p = std::size_t(place);
+    const EllipsePlace at = pair(p);
+    if (!(at.overlap > 0)) continue;
+    const auto [kn, kt] = coefficients(p, at.overlap);
+    const Vector6 along = dyad(at.normal.x, at.normal.y, at.branch),
+                  across = dyad(-at.normal.y, at.normal.x, at.branch);
+    sum += kn * along * along.transpose() + kt * across * across.transpose();
+  }
+  return sum;
+}
+
+template <Shape shape, class Of>
+Matrix6 sum_over_round(const Fixture& f, const Assembly& a, const Of& coefficients) {
+  // C_ijkl = sum l^2 [(kn - kt) n_i n_j n_k n_l
+  //                   + kt/4 (n_i n_k d_jl + n_i n_l d_jk + n_j n_k d_il + n_j n_l d_ik)], see README.md.
+  const Moments m = moments_of<shape>(f, a, coefficients);
   constexpr int first[6] = {0, 1, 2, 1, 0, 0}, second[6] = {0, 1, 2, 2, 2, 1};
   Matrix6 stiffness = m.fourth;
   for (int r = 0; r < 6; ++r)
@@ -116,6 +143,17 @@ Matrix6 affine_sum(const Fixture& f, const Assembly& a, const Of& coefficients) 
       stiffness(r, c) += 0.25 * ((j == l ? m.second(i, k) : 0) + (j == k ? m.second(i, l) : 0) +
                                  (i == l ? m.second(j, k) : 0) + (i == k ? m.second(j, l) : 0));
     }
+  return stiffness;
+}
+
+template <class Of>
+Matrix6 affine_sum(const Fixture& f, const Assembly& a, const Of& coefficients) {
+  const Matrix6 stiffness = with_shape(f.shape, [&](auto shape) -> Matrix6 {
+    if constexpr (shape.value == Shape::ellipse)
+      return sum_over_ellipses(f, a, coefficients);
+    else
+      return sum_over_round<shape.value>(f, a, coefficients);
+  });
   const Matrix6 turn = strain_turn(a.cell.rotation);
   return turn.transpose() * stiffness * turn / a.cell.volume();
 }

@@ -7,35 +7,63 @@
 #include "rvelab/solver/assembly/listing.hpp"
 #include "rvelab/solver/assembly/memory_order.hpp"
 #include "rvelab/solver/assembly/specimen_check.hpp"
+#include "rvelab/solver/kernels/ellipse_overlap.hpp"
 
 namespace rvelab {
 
 Vector3 Assembly::position(const Fixture& f, std::size_t g) const {
   const double* row = rows.data() + g * f.row_length();
-  return {row[0], row[1], f.shape == Shape::disc ? 0.0 : row[2]};
+  return {row[0], row[1], f.dimension() == 2 ? 0.0 : row[2]};
 }
 
 Vector3 Assembly::velocity(const Fixture& f, std::size_t g) const {
   const double* v = rows.data() + g * f.row_length() + f.velocity_offset();
-  return {v[0], v[1], f.shape == Shape::disc ? 0.0 : v[2]};
+  return {v[0], v[1], f.dimension() == 2 ? 0.0 : v[2]};
 }
 
 Vector3 Assembly::spin(const Fixture& f, std::size_t g) const {
   const double* row = rows.data() + g * f.row_length();
-  return f.shape == Shape::disc ? Vector3(0, 0, row[4]) : Vector3(row[8], row[9], row[10]);
+  return f.dimension() == 2 ? Vector3(0, 0, row[4]) : Vector3(row[8], row[9], row[10]);
 }
 
 void Assembly::set_velocity(const Fixture& f, std::size_t g, const Vector3& v, const Vector3& w) {
   double* row = rows.data() + g * f.row_length();
   for (int k = 0; k < f.dimension(); ++k) row[f.velocity_offset() + k] = v[k];
-  if (f.shape == Shape::disc) {
+  if (f.dimension() == 2) {
     row[4] = w[2];
   } else {
     for (int k = 0; k < 3; ++k) row[8 + k] = w[k];
   }
 }
 
+Vector3 Assembly::orientation(const Fixture& f, std::size_t g) const {
+  const double* row = rows.data() + g * f.row_length();
+  return {row[5], row[6], 0};
+}
+
+void set_ellipse_matrix(const Fixture& f, std::size_t g, double* row) {
+  const double b = f.semi_minor[g];
+  const EllipseMatrix<double> m =
+      ellipse_matrix<double>({row[5], row[6]}, f.minor_squared[g], f.axes_difference[g], b * b / f.semi_major[g]);
+  const double values[4] = {m.xx, m.xy, m.yy, m.sharpest};
+  std::copy_n(values, 4, row + 8);
+}
+
 namespace {
+
+/// Semi-axes of ellipses, and what the grain loop makes of them.
+void take_axes(const Grains& grains, Fixture& f) {
+  f.semi_major = grains.semi_major;
+  f.semi_minor = grains.semi_minor;
+  std::vector<double> squared(padded_to_lanes(grains.size()), 0.0), difference = squared;
+  for (std::size_t g = 0; g < grains.size(); ++g) {
+    const double a = grains.semi_major[g], b = grains.semi_minor[g];
+    squared[g] = b * b;
+    difference[g] = (a - b) * (a + b);
+  }
+  f.minor_squared = std::move(squared);
+  f.axes_difference = std::move(difference);
+}
 
 /// The masses that a specimen at dt = 0 brings; the arrays of the state are empty while it is open.
 void take_scaled_inertia(Assembly& a) {
@@ -75,11 +103,11 @@ void open_assembly(const Specimen& specimen, Fixture& f, Assembly& a) {
   f.resting_kernels = f.damping.dashpot == Dashpot::none
                           ? f.kernels
                           : kernels_for({f.shape, f.contact.law, f.contact.rolling, f.contact.slip, false});
-  f.largest_radius = *std::max_element(f.radius.begin(), f.radius.end());
-  f.smallest_radius = *std::min_element(f.radius.begin(), f.radius.end());
+  if (f.shape == Shape::ellipse) take_axes(s.grains, f);
+  f.largest_reach = *std::max_element(f.reach().begin(), f.reach().end());
   f.mean_radius = std::accumulate(f.radius.begin(), f.radius.end(), 0.0) / double(n);
   f.largest_skin = f.options.skin * f.mean_radius;
-  f.min_height = f.options.min_height > 0 ? f.options.min_height : 2 * f.largest_radius;
+  f.min_height = f.options.min_height > 0 ? f.options.min_height : 2 * f.largest_reach;
   std::vector<double> mass(n), inertia(n);
   a.cell = s.cell;
   a.state = s.state;
@@ -89,11 +117,16 @@ void open_assembly(const Specimen& specimen, Fixture& f, Assembly& a) {
   for (Buffer* b : {&a.mass, &a.inverse_mass, &a.inverse_inertia}) b->assign(padded, 0.0);
   for (std::size_t g = 0; g < n; ++g) {
     const Material& m = f.materials[f.material[g]];
-    mass[g] = m.density * grain_volume(f.shape, f.radius[g], f.thickness);
-    inertia[g] = moment_of_inertia(f.shape, mass[g], f.radius[g]);
+    mass[g] = m.density * f.volume_of(g);
+    inertia[g] = f.inertia_of(g, mass[g]);
     double* row = a.rows.data() + g * f.row_length();
     for (int k = 0; k < f.dimension(); ++k) row[k] = s.grains.position[g][k];
     if (f.shape == Shape::sphere) row[3] = row[11] = f.radius[g];
+    if (f.shape == Shape::ellipse) {
+      row[5] = s.grains.orientation[g][0];
+      row[6] = s.grains.orientation[g][1];
+      set_ellipse_matrix(f, g, row);
+    }
     a.set_velocity(f, g, s.grains.velocity[g], s.grains.spin[g]);
   }
   f.mass = std::move(mass);
@@ -124,6 +157,11 @@ Specimen close_assembly(const Fixture& f, const Assembly& a) {
     s.grains.position.push_back(a.position(f, g));
     s.grains.velocity.push_back(a.velocity(f, g));
     s.grains.spin.push_back(a.spin(f, g));
+  }
+  if (f.shape == Shape::ellipse) {
+    s.grains.semi_major = f.semi_major;
+    s.grains.semi_minor = f.semi_minor;
+    for (std::size_t g = 0; g < f.size(); ++g) s.grains.orientation.push_back(a.orientation(f, g));
   }
   if (a.state.look_steps >= 0) {
     const bool resting = a.mass.empty();
@@ -162,14 +200,16 @@ PairArrays arrays_of(PairTable& t) {
   return p;
 }
 
-GrainArrays arrays_of(Assembly& a) {
+GrainArrays arrays_of(const Fixture& f, Assembly& a) {
   return {a.rows.data(),
           a.mass.data(),
           a.inverse_mass.data(),
           a.inverse_inertia.data(),
           a.pairs.slot_begin.data(),
           a.pairs.slots.data(),
-          a.pairs.tasks.data()};
+          a.pairs.tasks.data(),
+          f.minor_squared.data(),
+          f.axes_difference.data()};
 }
 
 }  // namespace rvelab

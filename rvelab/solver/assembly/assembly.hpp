@@ -25,12 +25,15 @@ struct Fixture {
   SolverOptions options;
   SharedArray<std::int64_t> id;
   SharedArray<std::int32_t> material;
-  SharedArray<double> radius, mass, inertia;                        ///< m, kg, kg m^2 (physical)
-  double mean_radius = 0, largest_radius = 0, smallest_radius = 0;  ///< m
-  double largest_skin = 0;                                          ///< m
-  double min_height = 0;                                            ///< m
-  Kernels kernels;                                                  ///< as the specimen states them, for dt > 0
-  Kernels resting_kernels;  ///< dt = 0: without the dashpot, whose time a sub-step is not
+  SharedArray<double> radius, mass, inertia;           ///< m, kg, kg m^2 (physical)
+  SharedArray<double> semi_major, semi_minor;          ///< ellipses: m
+  SharedArray<double> minor_squared, axes_difference;  ///< ellipses: b^2, a^2 - b^2, padded to lanes, m^2
+  double mean_radius = 0;                              ///< m
+  double largest_reach = 0;                            ///< m, of the circles around the grains
+  double largest_skin = 0;                             ///< m
+  double min_height = 0;                               ///< m
+  Kernels kernels;                                     ///< as the specimen states them, for dt > 0
+  Kernels resting_kernels;                             ///< dt = 0: without the dashpot, whose time a sub-step is not
   /// 1 without rolling stiffness; sqrt(4 kt r^2/(4 kt r^2 + 2 kr)) of typical grains: how much slower than the contacts
   /// grains answer that slip about a stiff rolling spring, once their inertia is scaled for that spring.
   double softest_answer = 1;
@@ -50,8 +53,15 @@ struct Fixture {
   }
   int dimension() const { return dimension_of(shape); }
   int row_length() const { return grain_row_length(shape); }
-  int velocity_offset() const { return shape == Shape::disc ? 2 : 4; }
-  int tangential_components() const { return shape == Shape::disc ? 1 : 3; }
+  int velocity_offset() const { return dimension() == 2 ? 2 : 4; }
+  int tangential_components() const { return dimension() == 2 ? 1 : 3; }
+  /// Radii of the circles (spheres) around the grains, by which they are listed, m.
+  const std::vector<double>& reach() const { return shape == Shape::ellipse ? semi_major : radius; }
+  double volume_of(std::size_t g) const { return grain_volume(shape, radius[g], thickness); }
+  double inertia_of(std::size_t g, double of_mass) const {
+    return shape == Shape::ellipse ? ellipse_inertia(of_mass, semi_major[g], semi_minor[g])
+                                   : moment_of_inertia(shape, of_mass, radius[g]);
+  }
 };
 
 /// Listed pairs with their parameters and history, as arrays; padded to a multiple of eight. Those that touched when
@@ -96,13 +106,16 @@ struct Assembly {
   Vector3 position(const Fixture& f, std::size_t g) const;
   Vector3 velocity(const Fixture& f, std::size_t g) const;  ///< fluctuation, in the units of the mode in use
   Vector3 spin(const Fixture& f, std::size_t g) const;
+  Vector3 orientation(const Fixture& f, std::size_t g) const;  ///< of an ellipse
   void set_velocity(const Fixture& f, std::size_t g, const Vector3& v, const Vector3& w);
 };
 
 /// Where a grain row keeps the scaled mass, and 1 over the scaled inertia, while the working arrays are released: what
-/// stands there otherwise is zero, or a radius that the row holds twice.
+/// stands there otherwise is zero, or what can be made again.
 constexpr std::size_t resting_mass(Shape shape) { return shape == Shape::disc ? 5 : 7; }
 constexpr std::size_t resting_inverse_inertia(Shape shape) { return shape == Shape::disc ? 6 : 11; }
+/// Puts the matrix of an ellipse into its row, from the axis that stands there (kernels/configuration.hpp).
+void set_ellipse_matrix(const Fixture& fixture, std::size_t g, double* row);
 
 /// Room for n grains or pairs in whole blocks of lanes, at least one padding entry.
 constexpr std::size_t padded_to_lanes(std::size_t n) { return (n / 8 + 1) * 8; }
@@ -138,7 +151,7 @@ void set_pair_parameters(const Fixture& fixture, PairTable& pairs);
 void evaluate_forces(const Fixture& fixture, Assembly& assembly);
 
 PairArrays arrays_of(PairTable& pairs);
-GrainArrays arrays_of(Assembly& assembly);
+GrainArrays arrays_of(const Fixture& fixture, Assembly& assembly);
 
 /// Constants that do not change from step to step, filled in; lattice from the cell, rate and step from the state.
 StepConstants base_constants(const Fixture& fixture, const Assembly& assembly);

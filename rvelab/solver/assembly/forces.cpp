@@ -47,14 +47,15 @@ void evaluate_forces(const Fixture& f, Assembly& a) {
 
 Vector3 force_of(const Fixture& f, const PairTable& pairs, std::size_t p) {
   const double* row = pairs.force.data() + p * force_row_length(f.shape);
-  return {row[0], row[1], f.shape == Shape::disc ? 0.0 : row[2]};
+  return {row[0], row[1], f.dimension() == 2 ? 0.0 : row[2]};
 }
 
 namespace {
 
 /// Moment of the pairs at `order` [first, last).
-template <int D>
-Matrix3 moment_of(const Assembly& a, const PairGeometry<D>& pair, std::size_t first, std::size_t last) {
+template <Shape shape>
+Matrix3 moment_of(const Assembly& a, const PairGeometry<shape>& pair, std::size_t first, std::size_t last) {
+  constexpr int D = dimension_of(shape);
   constexpr std::size_t row = D == 2 ? 4 : 8;
   const double* force = a.pairs.force.data();
   double m[9] = {};
@@ -72,9 +73,9 @@ Matrix3 moment_of(const Assembly& a, const PairGeometry<D>& pair, std::size_t fi
   return sum;
 }
 
-template <int D>
+template <Shape shape>
 Matrix3 moment_in(const Fixture& f, const Assembly& a) {
-  const PairGeometry<D> pair(f, a);
+  const PairGeometry<shape> pair(f, a);
   std::vector<Matrix3> of_piece(pieces_in(a.pairs.listed));
   in_pieces(a.pairs.listed, f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
     of_piece[piece] = moment_of(a, pair, first, last);
@@ -88,7 +89,7 @@ Matrix3 moment_in(const Fixture& f, const Assembly& a) {
 
 Matrix3 contact_moment(const Fixture& f, const Assembly& a) {
   // Called every few sub-steps under stress control.
-  return f.shape == Shape::disc ? moment_in<2>(f, a) : moment_in<3>(f, a);
+  return with_shape(f.shape, [&](auto shape) { return moment_in<shape.value>(f, a); });
 }
 
 namespace {
@@ -120,9 +121,10 @@ struct ContactSums {
 };
 
 /// Adds up the contacts at `order` [first, last), and their forces on each grain unless `resultants` is null.
-template <int D>
-ContactSums contacts_in(const Fixture& f, const Assembly& a, const PairGeometry<D>& pair, std::size_t first,
+template <Shape shape>
+ContactSums contacts_in(const Fixture& f, const Assembly& a, const PairGeometry<shape>& pair, std::size_t first,
                         std::size_t last, double* resultants) {
+  constexpr int D = dimension_of(shape);
   ContactSums sums;
   const double* force = a.pairs.force.data();
   for (std::size_t k = first; k < last; ++k) {
@@ -147,9 +149,10 @@ ContactSums contacts_in(const Fixture& f, const Assembly& a, const PairGeometry<
 }
 
 /// Resultants of the grains [first, last), added in the same order as above; pairs that do not touch give nothing.
-template <int D>
-void gather_resultants(const Fixture& f, const Assembly& a, const PairGeometry<D>& pair, std::size_t first,
+template <Shape shape>
+void gather_resultants(const Fixture& f, const Assembly& a, const PairGeometry<shape>& pair, std::size_t first,
                        std::size_t last, double* resultants) {
+  constexpr int D = dimension_of(shape);
   each_pair_of_grains<D>(a.pairs, first, last, [&](std::size_t g, std::size_t p, bool as_j) {
     // The place of a pair that opened still holds the moment of rolling until the kernel passes by.
     if (!(pair(p).overlap > 0)) return;
@@ -182,9 +185,10 @@ GrainFigures grains_in(const Fixture& f, const Assembly& a, std::size_t first, s
   return figures;
 }
 
-template <int D>
+template <Shape shape>
 Balance balance_in(const Fixture& f, const Assembly& a) {
-  const PairGeometry<D> pair(f, a);
+  constexpr int D = dimension_of(shape);
+  const PairGeometry<shape> pair(f, a);
   const bool shared = f.sharing() != nullptr;
   std::vector<double> resultants(resultant_row<D> * f.size(), 0.0);
   std::vector<ContactSums> of_pairs(pieces_in(a.pairs.listed));
@@ -193,7 +197,7 @@ Balance balance_in(const Fixture& f, const Assembly& a) {
   });
   std::vector<GrainFigures> of_grains(pieces_in(f.size()));
   in_pieces(f.size(), f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
-    if (shared) gather_resultants<D>(f, a, pair, first, last, resultants.data());
+    if (shared) gather_resultants<shape>(f, a, pair, first, last, resultants.data());
     of_grains[piece] = grains_in<D>(f, a, first, last, resultants.data());
   });
   Balance balance;
@@ -224,13 +228,14 @@ Balance balance_in(const Fixture& f, const Assembly& a) {
 
 namespace {
 
-template <int D>
+template <Shape shape>
 std::vector<Resultant> resultants_in(const Fixture& f, const Assembly& a) {
-  const PairGeometry<D> pair(f, a);
+  constexpr int D = dimension_of(shape);
+  const PairGeometry<shape> pair(f, a);
   std::vector<double> rows(resultant_row<D> * f.size(), 0.0);
   std::vector<Resultant> resultants(f.size());
   in_pieces(f.size(), f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
-    gather_resultants<D>(f, a, pair, first, last, rows.data());
+    gather_resultants<shape>(f, a, pair, first, last, rows.data());
     for (std::size_t g = first; g < last; ++g) {
       const double* r = rows.data() + resultant_row<D> * g;
       Resultant& of = resultants[g];
@@ -247,11 +252,11 @@ std::vector<Resultant> resultants_in(const Fixture& f, const Assembly& a) {
 }  // namespace
 
 std::vector<Resultant> resultants_of(const Fixture& f, const Assembly& a) {
-  return f.shape == Shape::disc ? resultants_in<2>(f, a) : resultants_in<3>(f, a);
+  return with_shape(f.shape, [&](auto shape) { return resultants_in<shape.value>(f, a); });
 }
 
 Balance balance_of(const Fixture& f, const Assembly& a) {
-  return f.shape == Shape::disc ? balance_in<2>(f, a) : balance_in<3>(f, a);
+  return with_shape(f.shape, [&](auto shape) { return balance_in<shape.value>(f, a); });
 }
 
 double unbalanced_ratio(const Balance& balance, double reference_contact_force) {

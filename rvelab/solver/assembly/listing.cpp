@@ -8,6 +8,7 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/solver/assembly/gather_table.hpp"
+#include "rvelab/solver/assembly/pair_place.hpp"
 
 namespace rvelab {
 
@@ -21,7 +22,7 @@ void sort_by_key(std::vector<Contact>& contacts) {
 }
 
 void store(const Fixture& f, PairTable& pairs, std::size_t p, const Contact& c) {
-  if (f.shape == Shape::disc) {
+  if (f.dimension() == 2) {
     pairs.tangential[0][p] = c.tangential_force[0];
     if (f.contact.rolling) pairs.moment[0][p] = c.rolling_moment[2];
   } else {
@@ -43,7 +44,8 @@ bool touches(const Fixture& f, const Assembly& a, const ListedPair& pair) {
   const Image& n = pair.image;
   const double x = xj[0] - xi[0] + l.xx * n[0] + l.xy * n[1] + l.xz * n[2];
   const double y = xj[1] - xi[1] + l.yy * n[1] + l.yz * n[2];
-  const double z = f.shape == Shape::disc ? 0 : xj[2] - xi[2] + l.zz * n[2];
+  const double z = f.dimension() == 2 ? 0 : xj[2] - xi[2] + l.zz * n[2];
+  if (f.shape == Shape::ellipse) return place_of_ellipses({x, y, 0}, xi, xj).overlap > 0;
   const double radii = f.radius[std::size_t(pair.i)] + f.radius[std::size_t(pair.j)];
   return x * x + y * y + z * z < radii * radii;
 }
@@ -134,7 +136,7 @@ void rotate_rows(const Fixture& f, const Matrix3& turn, Buffer& rows) {
   for (std::size_t g = 0; g < f.size(); ++g) {
     double* row = rows.data() + g * f.row_length();
     const auto rotate = [&](double* v) {
-      if (f.shape == Shape::disc) {
+      if (f.dimension() == 2) {
         const double x = turn(0, 0) * v[0] + turn(0, 1) * v[1], y = turn(1, 0) * v[0] + turn(1, 1) * v[1];
         v[0] = x;
         v[1] = y;
@@ -146,6 +148,10 @@ void rotate_rows(const Fixture& f, const Matrix3& turn, Buffer& rows) {
     rotate(row);
     rotate(row + f.velocity_offset());
     if (f.shape == Shape::sphere) rotate(row + 8);
+    if (f.shape == Shape::ellipse) {
+      rotate(row + 5);
+      set_ellipse_matrix(f, g, row);
+    }
   }
 }
 
@@ -157,7 +163,7 @@ std::vector<Contact> contacts_of(const Fixture& f, const PairTable& pairs) {
     Contact c{pairs.i[p], pairs.j[p], pairs.image[p]};
     for (int k = 0; k < f.tangential_components(); ++k) c.tangential_force[k] = pairs.tangential[k][p];
     if (f.contact.rolling) {
-      if (f.shape == Shape::disc)
+      if (f.dimension() == 2)
         c.rolling_moment[2] = pairs.moment[0][p];
       else
         for (int k = 0; k < 3; ++k) c.rolling_moment[k] = pairs.moment[k][p];
@@ -177,7 +183,7 @@ std::vector<Contact> contacts_of(const Fixture& f, const PairTable& pairs) {
 
 void list_with(const Fixture& f, std::vector<Contact> contacts, Assembly& a) {
   sort_by_key(contacts);
-  fill(f, list_pairs(a.cell, a.rows.data(), f.row_length(), f.radius, a.state.list_skin), contacts, Lost::refused, a);
+  fill(f, list_pairs(a.cell, a.rows.data(), f.row_length(), f.reach(), a.state.list_skin), contacts, Lost::refused, a);
 }
 
 void check_height(const Fixture& f, const Cell& cell) {
@@ -242,7 +248,7 @@ Reduction rebuild(const Fixture& f, Assembly& a) {
     turn_round_if_needed(f, c);
   }
   sort_by_key(carried);
-  fill(f, list_pairs(a.cell, a.rows.data(), f.row_length(), f.radius, a.state.list_skin, f.sharing()), carried,
+  fill(f, list_pairs(a.cell, a.rows.data(), f.row_length(), f.reach(), a.state.list_skin, f.sharing()), carried,
        Lost::dropped, a);
   a.state.has_reference = true;
   a.state.list_lattice = a.cell.lattice;
@@ -273,7 +279,7 @@ double measured_displacements(const Fixture& f, const Assembly& a, const Matrix3
       const Vector3& from = a.state.list_positions[g];
       const double dx = x[0] - (m.xx * from[0] + m.xy * from[1] + m.xz * from[2]);
       const double dy = x[1] - (m.yy * from[1] + m.yz * from[2]);
-      const double dz = f.shape == Shape::disc ? 0 : x[2] - m.zz * from[2];
+      const double dz = f.dimension() == 2 ? 0 : x[2] - m.zz * from[2];
       here.add(dx * dx + dy * dy + dz * dz);
     }
     of_piece[piece] = here;
@@ -290,7 +296,7 @@ double measured_displacements(const Fixture& f, const Assembly& a, const Matrix3
 
 double listed_gap(const Fixture& f, const Assembly& a) {
   const Matrix3 f_since = a.cell.lattice * upper_inverse(a.state.list_lattice);
-  const double strain = (f_since - Matrix3::Identity()).norm(), reach = 2 * f.largest_radius;
+  const double strain = (f_since - Matrix3::Identity()).norm(), reach = 2 * f.largest_reach;
   return (1 - strain) * (reach + a.state.list_skin) - reach - 2 * (1 + strain) * a.state.list_travel;
 }
 
@@ -299,7 +305,7 @@ bool list_is_stale(const Fixture& f, Assembly& a, double margin) {
   // `travel`, still beyond sigma_min(F) reach - 2 |F| travel, with sigma_min >= 1 - |F - I|, |F| <= 1 + |F - I|.
   const Matrix3 f_since = a.cell.lattice * upper_inverse(a.state.list_lattice);
   const double strain = (f_since - Matrix3::Identity()).norm();
-  const double reach = 2 * f.largest_radius;
+  const double reach = 2 * f.largest_reach;
   const double skin = a.state.list_skin, allowed = (1 - strain) * (reach + skin) - reach - margin;
   if (a.state.list_steps >= old_list && next_skin(f, a.state) < skin) return true;
   if (2 * (1 + strain) * a.state.list_travel < allowed) return false;

@@ -32,6 +32,7 @@ void turn_round(Contact& c, Shape shape) {
 }
 
 void turn_round(ContactState& c, Shape) {
+  std::swap(c.arm_i, c.arm_j);
   c.branch = -c.branch;
   c.normal = -c.normal;
   c.tangential_force = -c.tangential_force;
@@ -62,6 +63,9 @@ Specimen rearranged(Specimen s, const std::vector<std::int32_t>& order) {
   rearrange(s.grains.position, order);
   rearrange(s.grains.velocity, order);
   rearrange(s.grains.spin, order);
+  rearrange(s.grains.semi_major, order);
+  rearrange(s.grains.semi_minor, order);
+  rearrange(s.grains.orientation, order);
   rearrange(s.state.list_positions, order);
   rearrange(s.state.scaled_mass, order);
   rearrange(s.state.scaled_inverse_inertia, order);

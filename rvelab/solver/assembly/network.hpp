@@ -12,7 +12,8 @@ struct ContactState {
   std::int32_t i = 0, j = 0;
   Image image{};
   Vector3 branch;                   ///< x_j + L image - x_i, m
-  Vector3 normal;                   ///< branch / length, from i to j
+  Vector3 normal;                   ///< from i to j; branch / length where the grains are round
+  Vector3 arm_i, arm_j;             ///< from the centres to the contact point, m
   double length = 0;                ///< m
   double overlap = 0;               ///< m, > 0
   double normal_force = 0;          ///< N, repulsion positive, dashpot included
@@ -29,10 +30,12 @@ struct ContactState {
 };
 
 struct GrainState {
-  double radius = 0, mass = 0, inertia = 0;  ///< m, kg, kg m^2
+  double radius = 0, mass = 0, inertia = 0;  ///< m (of an ellipse sqrt(a b)), kg, kg m^2
   Vector3 position, velocity, spin;          ///< cell frame; fluctuation velocity and spin, physical (dt > 0)
   Vector3 resultant;                         ///< sum of contact forces, N
   Vector3 torque = Vector3::Zero();          ///< sum of contact torques, moments of rolling included, N m
+  Vector3 orientation = Vector3::Zero();     ///< ellipses: along the long axis, cell frame
+  double semi_major = 0, semi_minor = 0;     ///< ellipses: m
 };
 
 struct Network {

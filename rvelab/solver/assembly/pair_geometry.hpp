@@ -1,28 +1,29 @@
 // Geometry of listed pairs, inline: control looks at all pairs every few dozen sub-steps.
 #pragma once
 
-#include <cmath>
-
 #include "rvelab/solver/assembly/assembly.hpp"
+#include "rvelab/solver/assembly/pair_place.hpp"
 
 namespace rvelab {
 
-/// Branch of a listed pair, m, cell frame.
-struct Branch {
-  double x, y, z;
-  double length() const { return std::sqrt(x * x + y * y + z * z); }
+/// A shape as a type, for loops that are compiled for it: call(ShapeIs<...>{}).
+template <Shape shape>
+struct ShapeIs {
+  static constexpr Shape value = shape;
 };
+template <class Call>
+auto with_shape(Shape shape, const Call& call) {
+  if (shape == Shape::disc) return call(ShapeIs<Shape::disc>{});
+  if (shape == Shape::ellipse) return call(ShapeIs<Shape::ellipse>{});
+  return call(ShapeIs<Shape::sphere>{});
+}
 
-/// A listed pair as its grains lie now; m, cell frame.
-struct PairPlace {
-  Branch branch;
-  double length, overlap;
-};
-
-/// Pairs in D dimensions from the arrays of an assembly.
-template <int D>
+/// Pairs of grains of a shape from the arrays of an assembly.
+template <Shape shape>
 class PairGeometry {
  public:
+  static constexpr int D = dimension_of(shape);
+
   PairGeometry(const Fixture& f, const Assembly& a)
       : rows_(a.rows.data()),
         radius_(f.radius.data()),
@@ -34,10 +35,14 @@ class PairGeometry {
     for (int k = 0; k < D; ++k) image_[k] = a.pairs.image_number[k].data();
   }
 
-  PairPlace operator()(std::size_t p) const {
+  auto operator()(std::size_t p) const {
     const Branch b = branch(p);
-    const double length = b.length();
-    return {b, length, (radius_[grain_i_[p]] + radius_[grain_j_[p]]) - length};
+    if constexpr (shape == Shape::ellipse) {
+      return place_of_ellipses(b, rows_ + i_[p], rows_ + j_[p]);
+    } else {
+      const double length = b.length();
+      return PairPlace{b, length, (radius_[grain_i_[p]] + radius_[grain_j_[p]]) - length};
+    }
   }
   Branch branch(std::size_t p) const {
     const double *xi = rows_ + i_[p], *xj = rows_ + j_[p];

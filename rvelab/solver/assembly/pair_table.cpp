@@ -59,7 +59,7 @@ void derive_pairs(const Fixture& f, PairTable& pairs) {
     }
     for (int k = 0; k < f.dimension(); ++k)
       for (std::size_t p = first; p < last; ++p) pairs.image_number[k][p] = pairs.image[p][std::size_t(k)];
-    if (f.shape == Shape::sphere) return;
+    if (f.shape != Shape::disc) return;
     for (std::size_t p = first; p < std::min(last, pairs.listed); ++p) {
       pairs.radius_i[p] = f.radius[std::size_t(pairs.i[p])];
       pairs.radius_j[p] = f.radius[std::size_t(pairs.j[p])];

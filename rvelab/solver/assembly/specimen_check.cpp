@@ -49,6 +49,31 @@ void check_grains(const Specimen& s) {
   }
 }
 
+/// Semi-axes and orientation where the grains are ellipses, and nowhere else.
+void check_ellipses(const Specimen& s) {
+  const Grains& g = s.grains;
+  const std::size_t n = s.shape == Shape::ellipse ? g.size() : 0;
+  if (g.semi_major.size() != n || g.semi_minor.size() != n || g.orientation.size() != n)
+    refuse("specimen: semi_major, semi_minor and orientation have " + std::to_string(g.semi_major.size()) + ", " +
+           std::to_string(g.semi_minor.size()) + " and " + std::to_string(g.orientation.size()) +
+           " entries; allowed: one for each grain where the shape is ellipse, else none");
+  for (std::size_t k = 0; k < n; ++k) {
+    const double a = g.semi_major[k], b = g.semi_minor[k], length = g.orientation[k].norm();
+    const std::string who = "grain " + std::to_string(g.id[k]) + ": ";
+    if (!(b > 0) || !(a >= b) || !(b >= least_aspect_ratio * (1 - 1e-12) * a) || !std::isfinite(a))
+      refuse(who + "semi-axes " + in_words(a) + " and " + in_words(b) +
+             " m; allowed: semi_major >= semi_minor > 0, at most 10 times as long");
+    if (!(std::abs(g.radius[k] - std::sqrt(a * b)) <= 1e-9 * g.radius[k]))
+      refuse(who + "radius " + in_words(g.radius[k]) + " m; that of an ellipse is sqrt(semi_major semi_minor), " +
+             in_words(std::sqrt(a * b)) + " m here");
+    if (!(std::abs(length - 1) <= 1e-9) || g.orientation[k][2] != 0)
+      refuse(who + "orientation of length " + in_words(length) + "; it must be a vector of length 1 in the plane");
+  }
+  if (n > 0 && s.contact.slip != Slip::consistent)
+    refuse(std::string("contact.slip = \"") + name(s.contact.slip) +
+           "\" is for round grains; allowed for ellipses: \"consistent\"");
+}
+
 void check_cell(const Specimen& s) {
   const Matrix3& l = s.cell.lattice;
   if (s.cell.dimension != dimension_of(s.shape))
@@ -157,6 +182,7 @@ void check_specimen(const Specimen& s) {
   check_parameters(s.contact, s.damping, s.materials);
   check_options(s.solver);
   check_grains(s);
+  check_ellipses(s);
   check_cell(s);
   check_volumes(s);
   check_deferred(s);

@@ -16,7 +16,7 @@ using Setter = void (*)(const KernelConfiguration&, const char*, Kernels&);
 struct InstructionSet {
   const char* name;
   bool runs_here;
-  Setter disc, sphere;
+  Setter disc, ellipse, sphere;
 };
 
 /// From widest to plainest.
@@ -24,13 +24,16 @@ const std::vector<InstructionSet>& instruction_sets() {
   static const std::vector<InstructionSet> sets = [] {
     std::vector<InstructionSet> found;
 #ifdef RVELAB_HAVE_V4
-    found.push_back({"v4", bool(__builtin_cpu_supports("x86-64-v4")), set_disc_kernels_v4, set_sphere_kernels_v4});
+    found.push_back({"v4", bool(__builtin_cpu_supports("x86-64-v4")), set_disc_kernels_v4, set_ellipse_kernels_v4,
+                     set_sphere_kernels_v4});
 #endif
 #ifdef RVELAB_HAVE_V3
-    found.push_back({"v3", bool(__builtin_cpu_supports("x86-64-v3")), set_disc_kernels_v3, set_sphere_kernels_v3});
+    found.push_back({"v3", bool(__builtin_cpu_supports("x86-64-v3")), set_disc_kernels_v3, set_ellipse_kernels_v3,
+                     set_sphere_kernels_v3});
 #endif
-    found.push_back({"baseline", true, set_disc_kernels_baseline, set_sphere_kernels_baseline});
-    found.push_back({"scalar", true, set_disc_kernels_scalar, set_sphere_kernels_scalar});
+    found.push_back(
+        {"baseline", true, set_disc_kernels_baseline, set_ellipse_kernels_baseline, set_sphere_kernels_baseline});
+    found.push_back({"scalar", true, set_disc_kernels_scalar, set_ellipse_kernels_scalar, set_sphere_kernels_scalar});
     return found;
   }();
   return sets;
@@ -68,6 +71,9 @@ Kernels kernels_for(const KernelConfiguration& key) {
   if (key.shape == Shape::disc) {
     set_disc_kernels_shared(key, kernels);
     set.disc(key, set.name, kernels);
+  } else if (key.shape == Shape::ellipse) {
+    set_ellipse_kernels_shared(key, kernels);
+    set.ellipse(key, set.name, kernels);
   } else {
     set_sphere_kernels_shared(key, kernels);
     set.sphere(key, set.name, kernels);

@@ -76,7 +76,8 @@ struct PairArrays {
 /// Grains that are gathered and integrated together: their resultants stay in the first-level cache between.
 constexpr long chunk_grains = 64;
 
-/// Grain rows: 2D 8 doubles {x, y, u, v, w, 0, 0, 0}; 3D 12 doubles {x, y, z, r, u, v, w, 0, wx, wy, wz, r}.
+/// Grain rows: discs 8 doubles {x, y, u, v, w, 0, 0, 0}; ellipses 12, {x, y, u, v, w, ex, ey, 0, Mxx, Mxy, Myy, b^2/a}
+/// with e along the long axis and M = a^2 e e + b^2 (1 - e e); spheres 12, {x, y, z, r, u, v, w, 0, wx, wy, wz, r}.
 /// Padded to a multiple of eight with grains of no extent and infinite mass, at least one of them.
 struct GrainArrays {
   double* rows = nullptr;
@@ -90,6 +91,7 @@ struct GrainArrays {
   /// times the place of the grain in its chunk, plus 4 chunk_grains for i.
   const std::int32_t *slot_begin = nullptr, *slots = nullptr;
   const std::uint16_t* tasks = nullptr;
+  const double *minor_squared = nullptr, *axes_difference = nullptr;  ///< ellipses: b^2, a^2 - b^2, m^2
 };
 
 /// Sums that the integration leaves behind: momentum (kg m/s), largest |v'|^2, energy taken by local and global
@@ -124,6 +126,6 @@ struct Kernels {
 Kernels kernels_for(const KernelConfiguration& key);
 
 constexpr int grain_row_length(Shape shape) { return shape == Shape::disc ? 8 : 12; }
-constexpr int force_row_length(Shape shape) { return shape == Shape::disc ? 4 : 8; }
+constexpr int force_row_length(Shape shape) { return dimension_of(shape) == 2 ? 4 : 8; }
 
 }  // namespace rvelab

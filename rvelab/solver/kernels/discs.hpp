@@ -70,6 +70,7 @@ inline __attribute__((always_inline)) void disc_places(const StepConstants& c, c
 /// What the contact update in the plane (plane.hpp) asks of a shape.
 struct Discs {
   using Scratch = DiscScratch;
+  static constexpr bool round = true;
 
   template <class T>
   static inline __attribute__((always_inline)) void locate(const StepConstants& c, const PairArrays& p,

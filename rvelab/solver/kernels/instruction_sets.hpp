@@ -6,8 +6,9 @@
 
 namespace rvelab {
 
-#define RVELAB_DECLARE(isa)                                                       \
-  void set_disc_kernels_##isa(const KernelConfiguration&, const char*, Kernels&); \
+#define RVELAB_DECLARE(isa)                                                          \
+  void set_disc_kernels_##isa(const KernelConfiguration&, const char*, Kernels&);    \
+  void set_ellipse_kernels_##isa(const KernelConfiguration&, const char*, Kernels&); \
   void set_sphere_kernels_##isa(const KernelConfiguration&, const char*, Kernels&)
 RVELAB_DECLARE(scalar);
 RVELAB_DECLARE(baseline);
@@ -17,6 +18,7 @@ RVELAB_DECLARE(v4);
 
 /// Scalar on every machine: the pair loop with the ledger, and the evaluation of stored histories.
 void set_disc_kernels_shared(const KernelConfiguration&, Kernels&);
+void set_ellipse_kernels_shared(const KernelConfiguration&, Kernels&);
 void set_sphere_kernels_shared(const KernelConfiguration&, Kernels&);
 
 }  // namespace rvelab

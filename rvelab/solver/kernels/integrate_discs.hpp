@@ -130,37 +130,45 @@ inline __attribute__((always_inline)) void move_discs(const StepConstants& c, co
 }
 
 /// Grain rows to columns and back; shuffles cost the same at every width, so these keep to four lanes.
-template <int W>
+template <int W, int length>
 inline __attribute__((always_inline)) void disc_rows_to_columns(const double* rows, long first, long count,
                                                                 DiscColumns& s) {
   using V = typename Lanes<W>::V;
   for (long k = 0; k < count; k += W) {
-    const double* row = rows + 8 * (first + k);
+    const double* row = rows + length * (first + k);
     V a[4];
-    columns_of<W>(row, 8, a);
+    columns_of<W>(row, length, a);
     store_as(s.x.at + k, a[0]);
     store_as(s.y.at + k, a[1]);
     store_as(s.u.at + k, a[2]);
     store_as(s.v.at + k, a[3]);
-    for (int lane = 0; lane < W; ++lane) s.w.at[k + lane] = row[8 * lane + 4];
+    for (int lane = 0; lane < W; ++lane) s.w.at[k + lane] = row[length * lane + 4];
   }
 }
-template <int W>
+template <int W, int length>
 inline __attribute__((always_inline)) void disc_columns_to_rows(const DiscColumns& s, double* rows, long first,
                                                                 long count) {
   using V = typename Lanes<W>::V;
   for (long k = 0; k < count; k += W) {
-    double* row = rows + 8 * (first + k);
+    double* row = rows + length * (first + k);
     const V a[4] = {load_as<V>(s.x.at + k), load_as<V>(s.y.at + k), load_as<V>(s.u.at + k), load_as<V>(s.v.at + k)};
-    rows_of<W>(a, row, 8);
-    for (int lane = 0; lane < W; ++lane) row[8 * lane + 4] = s.w.at[k + lane];
+    rows_of<W>(a, row, length);
+    for (int lane = 0; lane < W; ++lane) row[length * lane + 4] = s.w.at[k + lane];
   }
 }
 
-/// Discs in 2D. A chunk at a time in passes, as the pair loops (kernels/pairs.hpp).
-template <class T>
-void disc_grains(const StepConstants& constants, const GrainArrays& grains, const PairArrays& pairs, long begin,
-                 long end, StepSums* sums) {
+/// What the grain loop in the plane asks of a shape: the length of its rows, and what turns with the grain.
+struct DiscRows {
+  static constexpr int length = 8;
+  template <class T>
+  static inline __attribute__((always_inline)) void turn(const StepConstants&, const GrainArrays&, long, long,
+                                                         const DiscColumns&) {}
+};
+
+/// Grains in 2D. A chunk at a time in passes, as the pair loops (kernels/pairs.hpp).
+template <class Rows, class T>
+void plane_grains(const StepConstants& constants, const GrainArrays& grains, const PairArrays& pairs, long begin,
+                  long end, StepSums* sums) {
   constexpr int W = T::W, narrow = W < 4 ? W : 4;
   // Copies that no store can change (kernels/pairs.hpp).
   const StepConstants c = constants;
@@ -171,11 +179,12 @@ void disc_grains(const StepConstants& constants, const GrainArrays& grains, cons
   DiscColumns s;
   for (long chunk = begin; chunk < end; chunk += chunk_grains) {
     const long count = end - chunk < chunk_grains ? end - chunk : chunk_grains;
-    disc_rows_to_columns<narrow>(g.rows, chunk, count, s);
+    disc_rows_to_columns<narrow, Rows::length>(g.rows, chunk, count, s);
     gather_disc_forces<narrow>(g, p, chunk, count, s);
     damp_discs<T>(c, g, chunk, count, s, lost_locally, lost_globally);
     move_discs<T>(c, g, chunk, count, s, momentum, fastest);
-    disc_columns_to_rows<narrow>(s, g.rows, chunk, count);
+    disc_columns_to_rows<narrow, Rows::length>(s, g.rows, chunk, count);
+    Rows::template turn<T>(c, g, chunk, count, s);
   }
   sums->momentum[0] = momentum[0].total();
   sums->momentum[1] = momentum[1].total();

@@ -15,10 +15,11 @@ namespace {
 template <class V>
 struct PlaneContact {
   V nx, ny, overlap;
-  V lever_i, lever_j;      ///< torque of a force of 1 along t, m
-  V slip_rate = {};        ///< velocity of j less that of i along t where they touch, m/s
-  V spin_difference = {};  ///< w_j - w_i, rad/s (rolling)
-  V opening = {};          ///< along n, m/s (dashpots)
+  V lever_i, lever_j;          ///< torque of a force of 1 along t, m
+  V slip_rate = {};            ///< velocity of j less that of i along t where they touch, m/s
+  V spin_difference = {};      ///< w_j - w_i, rad/s (rolling)
+  V opening = {};              ///< along n, m/s (dashpots)
+  V turn_i = {}, turn_j = {};  ///< torque of a force of 1 along n, m (shapes that are not round)
 };
 
 template <class Shape, class Law, class T>
@@ -101,6 +102,10 @@ inline __attribute__((always_inline)) void plane_forces(const StepConstants& c, 
     }
 
     V torque_j = contact.lever_j * total, torque_i = contact.lever_i * total;
+    if constexpr (!Shape::round) {
+      torque_j = torque_j + contact.turn_j * normal;
+      torque_i = torque_i + contact.turn_i * normal;
+    }
     if constexpr (T::Rolling) {
       torque_j = torque_j + moment;
       torque_i = torque_i - moment;

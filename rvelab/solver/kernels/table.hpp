@@ -2,7 +2,9 @@
 #pragma once
 
 #include "rvelab/solver/kernels/discs.hpp"
+#include "rvelab/solver/kernels/ellipses.hpp"
 #include "rvelab/solver/kernels/integrate_discs.hpp"
+#include "rvelab/solver/kernels/integrate_ellipses.hpp"
 #include "rvelab/solver/kernels/integrate_spheres.hpp"
 #include "rvelab/solver/kernels/spheres.hpp"
 
@@ -13,6 +15,8 @@ template <Shape shape, class Law, class T>
 constexpr PairKernel pair_kernel() {
   if constexpr (shape == Shape::disc)
     return &plane_pairs<Discs, Law, T>;
+  else if constexpr (shape == Shape::ellipse)
+    return &plane_pairs<Ellipses, Law, T>;
   else
     return &space_pairs<Spheres, Law, T>;
 }
@@ -20,13 +24,18 @@ constexpr PairKernel pair_kernel() {
 template <Shape shape, class T>
 constexpr GrainKernel grain_kernel() {
   if constexpr (shape == Shape::disc)
-    return &disc_grains<T>;
+    return &plane_grains<DiscRows, T>;
+  else if constexpr (shape == Shape::ellipse)
+    return &plane_grains<EllipseRows, T>;
   else
     return &sphere_grains<T>;
 }
 
 template <Shape shape, int W, bool Advance, bool Ledger, class Law, bool Rolling, bool Dashpot>
 PairKernel by_slip(Slip slip) {
+  // The conventions of other codes are those of round grains: a specimen of ellipses has no other.
+  if constexpr (shape == Shape::ellipse)
+    return pair_kernel<shape, Law, PairTraits<W, Rolling, Slip::consistent, Dashpot, Advance, Ledger>>();
   switch (slip) {
     case Slip::consistent:
       return pair_kernel<shape, Law, PairTraits<W, Rolling, Slip::consistent, Dashpot, Advance, Ledger>>();

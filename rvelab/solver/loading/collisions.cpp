@@ -51,29 +51,32 @@ constexpr double pi = 3.14159265358979323846;
 double square(double x) { return x * x; }
 
 /// `Impact`: how the law's springs collide (contact/impact.hpp).
-template <int D, class Impact>
+template <Shape shape, class Impact>
 Findings pairs_in(const Fixture& f, const Assembly& a, const Outlook& outlook, std::size_t first, std::size_t last) {
+  constexpr int D = dimension_of(shape);
   Findings found;
   const UpperTriangle rate = upper_triangle(outlook.rate);
   const double horizon = outlook.horizon, known_gap = listed_gap(f, a);
-  const PairGeometry<D> pair(f, a);
+  const PairGeometry<shape> pair(f, a);
   const auto offset = std::size_t(f.velocity_offset());
   const bool dashpot = f.damping.dashpot != Dashpot::none;
   const double power = dashpot_power(f.contact.law, f.damping.dashpot);
   for (std::size_t q = first; q < last; ++q) {
     const auto p = std::size_t(a.pairs.order[q]), i = std::size_t(a.pairs.i[p]), j = std::size_t(a.pairs.j[p]);
-    const auto [b, length, overlap] = pair(p);
-    const double gap = -overlap;
+    const auto place = pair(p);
+    const Branch &b = place.branch, &n = place.along();
+    const double overlap = place.overlap, gap = -overlap;
     if (gap >= 0 && gap >= known_gap) continue;  // seen when it is listed: what a restart lists must not matter
     const double *vi = a.rows.data() + std::size_t(a.pairs.row_i[p]) + offset,
                  *vj = a.rows.data() + std::size_t(a.pairs.row_j[p]) + offset;
-    double by_cell = b.x * (rate.xx * b.x + rate.xy * b.y) + b.y * (rate.yy * b.y);
-    double by_grains = b.x * (vj[0] - vi[0]) + b.y * (vj[1] - vi[1]);
+    double by_cell = n.x * (rate.xx * b.x + rate.xy * b.y) + n.y * (rate.yy * b.y);
+    double by_grains = n.x * (vj[0] - vi[0]) + n.y * (vj[1] - vi[1]);
     if constexpr (D == 3) {
       by_cell += (b.x * rate.xz + b.y * rate.yz + b.z * rate.zz) * b.z;
       by_grains += b.z * (vj[2] - vi[2]);
     }
-    const double opening = (by_cell + by_grains) / length, closing = -by_cell / length;
+    if constexpr (shape == Shape::ellipse) by_grains += place.opening_by(vi[2], vj[2]);
+    const double opening = (by_cell + by_grains) / place.along_length(), closing = -by_cell / place.along_length();
     if (closing * outlook.increment > gap && closing > 0) {
       found.closing = std::max(found.closing, closing);
       found.closed = std::max(found.closed, closing * outlook.increment - gap);
@@ -148,11 +151,12 @@ double dashpot_step(const Fixture& f, double damping, double omega) {
 /// Square root of the part of the energy that moves, 0 to 1.
 double dynamic_share(double moving, double elastic) { return moving < elastic ? std::sqrt(moving / elastic) : 1; }
 
-template <int D, class Impact>
+template <Shape shape, class Impact>
 Collisions ahead(const Fixture& f, const Assembly& a, const RowSums* known, bool find_step, const Outlook& outlook) {
+  constexpr int D = dimension_of(shape);
   std::vector<Findings> of_pairs(pieces_in(a.pairs.listed));
   in_pieces(a.pairs.listed, f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
-    of_pairs[piece] = pairs_in<D, Impact>(f, a, outlook, first, last);
+    of_pairs[piece] = pairs_in<shape, Impact>(f, a, outlook, first, last);
   });
   Findings all;
   for (const Findings& piece : of_pairs) all.add(piece);
@@ -175,7 +179,7 @@ Collisions ahead(const Fixture& f, const Assembly& a, const RowSums* known, bool
   }
 
   const double skin = a.state.list_skin;
-  const double speed = 2 * std::sqrt(motion.fastest) + outlook.rate.norm() * (2 * f.largest_radius + skin);
+  const double speed = 2 * std::sqrt(motion.fastest) + outlook.rate.norm() * (2 * f.largest_reach + skin);
   const double flight = dynamic_share(motion.kinetic, all.elastic);
   if (speed * flight > 0) {
     // Nor may it cross what is left of the list's reach, beyond which nothing is known.
@@ -201,8 +205,7 @@ Collisions collisions_ahead(const Fixture& f, const Assembly& a, const RowSums* 
                             const Outlook& outlook) {
   return with_law(f.contact.law, [&](auto law) {
     using Impact = typename decltype(law)::Force::Impact;
-    return f.shape == Shape::disc ? ahead<2, Impact>(f, a, sums, find_step, outlook)
-                                  : ahead<3, Impact>(f, a, sums, find_step, outlook);
+    return with_shape(f.shape, [&](auto shape) { return ahead<shape.value, Impact>(f, a, sums, find_step, outlook); });
   });
 }
 

@@ -103,11 +103,13 @@ struct PairTerms {
   bool touching = false;
   ContactStiffness now = {};
   double along = 0, across = 0, nx = 0, ny = 0, nz = 0;
+  double reach[2] = {}, turn[2] = {};  ///< ellipses: arms of the tangential and the normal force about i and j, m
 };
 
-template <int D, class Force>
-PairTerms terms_of(const Fixture& f, const Assembly& a, const PairGeometry<D>& pair, std::size_t p) {
-  const auto [b, length, overlap] = pair(p);
+template <Shape shape, class Force>
+PairTerms terms_of(const Fixture& f, const Assembly& a, const PairGeometry<shape>& pair, std::size_t p) {
+  const auto place = pair(p);
+  const double overlap = place.overlap;
   const PairParameters q = parameters_of(f, a.pairs, p);
   PairTerms t{rvelab::stiffness_of<Force>(f, q, std::max(overlap, 0.25 * a.state.reference_overlap))};
   t.firm_translation = std::max(2 * t.firm.normal, 4 * t.firm.tangential);
@@ -115,23 +117,48 @@ PairTerms terms_of(const Fixture& f, const Assembly& a, const PairGeometry<D>& p
   if (!t.touching) return t;
   t.now = rvelab::stiffness_of<Force>(f, q, overlap);
   // The force turning with the branch (initial stress) adds f_n / length to the tangential stiffness at most.
-  const double kt = t.now.tangential + 0.5 * normal_force_of<Force>(q, overlap) / length;
+  const double kt = t.now.tangential + 0.5 * normal_force_of<Force>(q, overlap) / place.length;
   t.along = 2 * t.now.normal - 4 * kt;
   t.across = 4 * kt;
-  t.nx = b.x / length;
-  t.ny = b.y / length;
-  t.nz = b.z / length;
+  const Branch& n = place.along();
+  t.nx = n.x / place.along_length();
+  t.ny = n.y / place.along_length();
+  t.nz = n.z / place.along_length();
+  if constexpr (shape == Shape::ellipse) {
+    t.reach[0] = place.reach_i;
+    t.reach[1] = place.reach_j;
+    t.turn[0] = std::abs(place.turn_i);
+    t.turn[1] = std::abs(place.turn_j);
+  }
   return t;
 }
 
-template <int D>
-void add(const Fixture& f, const PairTerms& t, std::size_t g, GrainSums& sums) {
+/// To translation along n and to rotation, of a normal spring that also turns its grains, at the arm `turn` (m):
+/// (u + turn w)^2 <= (1 + turn/r) u^2 + (turn^2 + turn r) w^2.
+double normal_to_translation(double kn, double turn, double r) { return 2 * kn * (turn / r); }
+double normal_to_rotation(double kn, double turn, double r) { return 2 * kn * (turn * turn + turn * r); }
+
+template <Shape shape>
+void add(const Fixture& f, const PairTerms& t, std::size_t g, bool as_j, GrainSums& sums) {
+  constexpr int D = dimension_of(shape);
   const double r = f.radius[g];
-  sums.stiffest = std::max(sums.stiffest, t.firm_translation);
-  sums.stiffest_turn = std::max(sums.stiffest_turn, 4 * t.firm.tangential * r * r + 2 * t.firm.rolling);
-  if (!t.touching) return;
-  add_contact(t.along, t.across, t.nx, t.ny, t.nz, D, sums.stiffness);
-  sums.rotation += 4 * t.now.tangential * r * r + 2 * t.now.rolling;
+  if constexpr (shape == Shape::ellipse) {
+    // What may come to touch may do so anywhere: h <= a, |h'| <= a - b.
+    const double a = f.semi_major[g], farthest = a - f.semi_minor[g], turn = t.turn[as_j];
+    sums.stiffest = std::max(sums.stiffest, t.firm_translation + normal_to_translation(t.firm.normal, farthest, r));
+    sums.stiffest_turn = std::max(sums.stiffest_turn, 4 * t.firm.tangential * a * a + 2 * t.firm.rolling +
+                                                          normal_to_rotation(t.firm.normal, farthest, r));
+    if (!t.touching) return;
+    add_contact(t.along + normal_to_translation(t.now.normal, turn, r), t.across, t.nx, t.ny, t.nz, D, sums.stiffness);
+    sums.rotation += 4 * t.now.tangential * t.reach[as_j] * t.reach[as_j] + 2 * t.now.rolling +
+                     normal_to_rotation(t.now.normal, turn, r);
+  } else {
+    sums.stiffest = std::max(sums.stiffest, t.firm_translation);
+    sums.stiffest_turn = std::max(sums.stiffest_turn, 4 * t.firm.tangential * r * r + 2 * t.firm.rolling);
+    if (!t.touching) return;
+    add_contact(t.along, t.across, t.nx, t.ny, t.nz, D, sums.stiffness);
+    sums.rotation += 4 * t.now.tangential * r * r + 2 * t.now.rolling;
+  }
   if (f.damping.dashpot != Dashpot::none)
     sums.dashpot += 2 * t.now.dashpot * std::max(1.0, 2 * f.damping.tangential_ratio);
 }
@@ -150,15 +177,19 @@ struct Firmness {
 
 /// Sums of all grains. Each pair is looked at once; by a team once for each of its grains, so that threads share
 /// nothing. A grain adds its pairs in the same order either way.
-template <int D, class Force>
+template <Shape shape, class Force>
 std::vector<GrainSums> sums_of_grains(const Fixture& f, const Assembly& a, Firmness& firmness) {
+  constexpr int D = dimension_of(shape);
   std::vector<GrainSums> sums(f.size());
-  const PairGeometry<D> pair(f, a);
+  const PairGeometry<shape> pair(f, a);
   if (f.sharing() == nullptr) {
     for (const std::int32_t place : a.pairs.order) {
       const auto p = std::size_t(place);
-      const PairTerms t = terms_of<D, Force>(f, a, pair, p);
-      for (const std::int32_t g : {a.pairs.i[p], a.pairs.j[p]}) add<D>(f, t, std::size_t(g), sums[std::size_t(g)]);
+      const PairTerms t = terms_of<shape, Force>(f, a, pair, p);
+      for (const bool as_j : {false, true}) {
+        const auto g = std::size_t(as_j ? a.pairs.j[p] : a.pairs.i[p]);
+        add<shape>(f, t, g, as_j, sums[g]);
+      }
       firmness.add(f, a.pairs, p, t);
     }
     return sums;
@@ -168,9 +199,9 @@ std::vector<GrainSums> sums_of_grains(const Fixture& f, const Assembly& a, Firmn
     each_pair_of_grains<D>(a.pairs, first, last, [&](std::size_t g, std::size_t p, bool as_j) {
       const bool own_image = a.pairs.i[p] == a.pairs.j[p];
       if (own_image && as_j) return;  // both at once where the grain is i, as above
-      const PairTerms t = terms_of<D, Force>(f, a, pair, p);
-      add<D>(f, t, g, sums[g]);
-      if (own_image) add<D>(f, t, g, sums[g]);
+      const PairTerms t = terms_of<shape, Force>(f, a, pair, p);
+      add<shape>(f, t, g, as_j, sums[g]);
+      if (own_image) add<shape>(f, t, g, true, sums[g]);
       if (!as_j) of_piece[piece].add(f, a.pairs, p, t);
     });
   });
@@ -181,12 +212,13 @@ std::vector<GrainSums> sums_of_grains(const Fixture& f, const Assembly& a, Firmn
   return sums;
 }
 
-template <int D, class Force>
+template <Shape shape, class Force>
 RowSums sums_over_pairs(const Fixture& f, const Assembly& a) {
+  constexpr int D = dimension_of(shape);
   const std::size_t n = f.size();
   const bool dashpot = f.damping.dashpot != Dashpot::none;
   Firmness firmness;
-  const std::vector<GrainSums> of_grain = sums_of_grains<D, Force>(f, a, firmness);
+  const std::vector<GrainSums> of_grain = sums_of_grains<shape, Force>(f, a, firmness);
   RowSums sums;
   sums.rotation.resize(n);
   sums.translation.resize(n);
@@ -225,7 +257,7 @@ RowSums sums_over_pairs(const Fixture& f, const Assembly& a) {
 RowSums row_sums(const Fixture& f, const Assembly& a) {
   return with_force(f, [&](auto force) {
     using Force = decltype(force);
-    return f.shape == Shape::disc ? sums_over_pairs<2, Force>(f, a) : sums_over_pairs<3, Force>(f, a);
+    return with_shape(f.shape, [&](auto shape) { return sums_over_pairs<shape.value, Force>(f, a); });
   });
 }
 
@@ -238,7 +270,7 @@ double critical_step(const Fixture& f, const RowSums& sums) {
     double step = 2 / omega;
     if (!sums.dashpot.empty()) {
       const double rate =
-          std::max(sums.dashpot[g] / f.mass[g], sums.dashpot[g] * f.radius[g] * f.radius[g] / f.inertia[g]);
+          std::max(sums.dashpot[g] / f.mass[g], sums.dashpot[g] * f.reach()[g] * f.reach()[g] / f.inertia[g]);
       const double zeta = rate / (2 * omega);
       step *= std::sqrt(1 + zeta * zeta) - zeta;
     }

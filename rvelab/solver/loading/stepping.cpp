@@ -153,7 +153,7 @@ Matrix3 kinetic_moment(const Fixture& f, const Assembly& a) {
       xx -= mass * (x * x);
       yy -= mass * (y * y);
       xy -= mass * (x * y);
-      if (f.shape == Shape::disc) continue;
+      if (f.dimension() == 2) continue;
       const double z = v[2] - mean[2];
       zz -= mass * (z * z);
       yz -= mass * (y * z);
@@ -282,7 +282,7 @@ Advanced advance(const Fixture& f, Assembly& a, const Advance& what) {
   double total_mass = 0;
   for (std::size_t g = 0; g < f.size(); ++g) total_mass += a.mass[g];
   PairArrays pairs = arrays_of(a.pairs);
-  GrainArrays grains = arrays_of(a);
+  GrainArrays grains = arrays_of(f, a);
   const long padded_grains = long(a.mass.size());
   Workers* team = f.sharing();
   StepSums sums;
@@ -333,7 +333,7 @@ Advanced advance(const Fixture& f, Assembly& a, const Advance& what) {
         moment_before = reduction.rotation.transpose() * moment_before * reduction.rotation;
       }
       pairs = arrays_of(a.pairs);
-      grains = arrays_of(a);
+      grains = arrays_of(f, a);
       clock.end_list();
     }
     Dissipation lost;

@@ -1,0 +1,159 @@
+// The geometry of pairs of ellipses for the contact update in the plane (plane.hpp): normal and overlap by
+// ellipse_overlap.hpp, the contact point midway between the two support points.
+//
+// The arms from the centres to the contact point: r_i.n = h_i - delta/2, r_j.n = delta/2 - h_j, r_i.t = h_i' - f'/2,
+// r_j.t = f'/2 - h_j'. So r_i - r_j is the branch whatever n is, and moments balance to rounding. The overlap grows as
+// the contact points close, d delta/dt = -opening, since h_i(n) changes by -w_i h_i' where i turns: the springs do no
+// work but their own.
+#pragma once
+
+#include "rvelab/solver/kernels/ellipse_search.hpp"
+#include "rvelab/solver/kernels/plane.hpp"
+
+namespace rvelab {
+namespace {
+
+/// What the passes hand on.
+struct EllipseScratch {
+  ScratchColumn dx, dy, du, dv;  ///< place and velocity of j less those of i
+  ScratchColumn spin_i, spin_j;
+  ScratchColumn matrix_i[4], matrix_j[4];
+  ScratchColumn nx, ny, overlap;
+  ScratchColumn reach_i, reach_j;  ///< h
+  ScratchColumn turn_i, turn_j;    ///< h' - f'/2
+  ScratchColumn along, opening;    ///< relative velocity of the centres over the step, along t and along n
+};
+
+/// The matrix of an ellipse from four columns. Padding grains have none: they count as discs of 1e-50 m.
+template <class V>
+inline __attribute__((always_inline)) EllipseMatrix<V> matrix_from(const V& xx, const V& xy, const V& yy,
+                                                                   const V& sharpest) {
+  return {xx + 1e-100, xy, yy + 1e-100, sharpest};
+}
+
+/// Grain rows to columns, four lanes at most as for discs.
+template <class T>
+inline __attribute__((always_inline)) void ellipse_rows(const PairArrays& p, const double* rows, long first, long count,
+                                                        EllipseScratch& out) {
+  constexpr int W = T::W < 4 ? T::W : 4;
+  using V = typename Lanes<W>::V;
+  for (long k = 0; k < count; k += W) {
+    std::int32_t i[W], j[W];
+    for (int lane = 0; lane < W; ++lane) i[lane] = p.row_i[first + k + lane], j[lane] = p.row_j[first + k + lane];
+    V d[4];
+    gather_differences<W>(rows, i, j, d);
+    store_as(out.dx.at + k, d[0]);
+    store_as(out.dy.at + k, d[1]);
+    if constexpr (T::Advance || T::Dashpot) {
+      store_as(out.du.at + k, d[2]);
+      store_as(out.dv.at + k, d[3]);
+      store_as(out.spin_i.at + k, gather_spins<W>(rows, i));
+      store_as(out.spin_j.at + k, gather_spins<W>(rows, j));
+    }
+    for (int side = 0; side < 2; ++side) {
+      V m[4];
+      const std::int32_t* grain = side == 0 ? i : j;
+      ScratchColumn* matrix = side == 0 ? out.matrix_i : out.matrix_j;
+      ColumnsOf<W>::load([=](int lane) { return rows + grain[lane] + 8; }, m);
+      for (int column = 0; column < 4; ++column) store_as(matrix[column].at + k, m[column]);
+    }
+  }
+}
+
+/// Normal, overlap, arms and the motion of the centres. Not inlined: it is long, and the same for every law.
+template <class T>
+__attribute__((noinline)) void ellipse_places(const StepConstants& c, const PairArrays& p, long first, long count,
+                                              EllipseScratch& s) {
+  using V = typename Lanes<T::W>::V;
+  const double half_dt = 0.5 * c.dt;
+  for (long k = 0; k < count; k += T::W) {
+    const long at = first + k;
+    const V image_x = load_as<V>(p.image[0] + at), image_y = load_as<V>(p.image[1] + at);
+    const V bx = load_as<V>(s.dx.at + k) + (c.lattice.xx * image_x + c.lattice.xy * image_y);
+    const V by = load_as<V>(s.dy.at + k) + c.lattice.yy * image_y;
+    const auto matrix = [&](const ScratchColumn* m) {
+      return matrix_from(load_as<V>(m[0].at + k), load_as<V>(m[1].at + k), load_as<V>(m[2].at + k),
+                         load_as<V>(m[3].at + k));
+    };
+    const EllipsePair<V> pair = {bx, by, matrix(s.matrix_i), matrix(s.matrix_j)};
+    Direction<V> n = first_direction(pair);
+    const EllipseGap<V> gap = closest_gap(pair, n);
+    store_as(s.nx.at + k, n.x);
+    store_as(s.ny.at + k, n.y);
+    store_as(s.overlap.at + k, gap.overlap);
+    store_as(s.reach_i.at + k, gap.support_i);
+    store_as(s.reach_j.at + k, gap.support_j);
+    store_as(s.turn_i.at + k, gap.turned_i - 0.5 * gap.slope);
+    store_as(s.turn_j.at + k, gap.turned_j - 0.5 * gap.slope);
+    if constexpr (T::Advance || T::Dashpot) {
+      const V du = load_as<V>(s.du.at + k), dv = load_as<V>(s.dv.at + k);
+      const V px = bx - half_dt * du, py = by - half_dt * dv;
+      const V vx = du + (c.rate.xx * px + c.rate.xy * py), vy = dv + c.rate.yy * py;
+      store_as(s.along.at + k, n.x * vy - n.y * vx);
+      if constexpr (T::Dashpot) store_as(s.opening.at + k, n.x * vx + n.y * vy);
+    }
+  }
+}
+
+/// What the contact update in the plane (plane.hpp) asks of a shape.
+struct Ellipses {
+  using Scratch = EllipseScratch;
+  static constexpr bool round = false;
+
+  template <class T>
+  static inline __attribute__((always_inline)) void locate(const StepConstants& c, const PairArrays& p,
+                                                           const double* rows, long first, long count, Scratch& s) {
+    ellipse_rows<T>(p, rows, first, count, s);
+    ellipse_places<T>(c, p, first, count, s);
+  }
+  template <class T>
+  static inline __attribute__((always_inline)) auto contact(const StepConstants& c, const PairArrays&, long, long k,
+                                                            const Scratch& s) {
+    using V = typename Lanes<T::W>::V;
+    PlaneContact<V> contact;
+    const V reach_i = load_as<V>(s.reach_i.at + k), reach_j = load_as<V>(s.reach_j.at + k);
+    contact.nx = load_as<V>(s.nx.at + k);
+    contact.ny = load_as<V>(s.ny.at + k);
+    contact.overlap = load_as<V>(s.overlap.at + k);
+    contact.turn_i = load_as<V>(s.turn_i.at + k);
+    contact.turn_j = load_as<V>(s.turn_j.at + k);
+    const V half_overlap = 0.5 * contact.overlap;
+    contact.lever_i = half_overlap - reach_i;
+    contact.lever_j = half_overlap - reach_j;
+    if constexpr (T::Advance || T::Dashpot) {
+      const V spin_i = load_as<V>(s.spin_i.at + k), spin_j = load_as<V>(s.spin_j.at + k);
+      contact.slip_rate =
+          (load_as<V>(s.along.at + k) - ((reach_j * spin_j + reach_i * spin_i) + c.spin[2] * (reach_i + reach_j))) +
+          half_overlap * ((spin_j + spin_i) + 2.0 * c.spin[2]);
+      if constexpr (T::Rolling) contact.spin_difference = spin_j - spin_i;
+      if constexpr (T::Dashpot)
+        contact.opening = load_as<V>(s.opening.at + k) +
+                          ((spin_i + c.spin[2]) * contact.turn_i + (spin_j + c.spin[2]) * contact.turn_j);
+    }
+    return contact;
+  }
+  template <int W>
+  static bool may_touch(const StepConstants& c, const PairArrays& p, const double* rows, long first);
+};
+
+/// Whether one of eight pairs is not shown to be apart by its first direction.
+template <int W>
+__attribute__((noinline)) bool Ellipses::may_touch(const StepConstants& c, const PairArrays& p, const double* rows,
+                                                   long first) {
+  using V = typename Lanes<W>::V;
+  for (long at = first; at < first + 8; at += W) {
+    V d[2], i[4], j[4];
+    gather_place_differences<W>(rows, p.row_i + at, p.row_j + at, d);
+    ColumnsOf<W>::load([=](int lane) { return rows + p.row_i[at + lane] + 8; }, i);
+    ColumnsOf<W>::load([=](int lane) { return rows + p.row_j[at + lane] + 8; }, j);
+    const V image_x = load_as<V>(p.image[0] + at), image_y = load_as<V>(p.image[1] + at);
+    const EllipsePair<V> pair = {d[0] + (c.lattice.xx * image_x + c.lattice.xy * image_y),
+                                 d[1] + c.lattice.yy * image_y, matrix_from(i[0], i[1], i[2], i[3]),
+                                 matrix_from(j[0], j[1], j[2], j[3])};
+    if (any_of(!is_apart(ellipse_gap(pair, first_direction(pair))))) return true;
+  }
+  return false;
+}
+
+}  // namespace
+}  // namespace rvelab

@@ -1,0 +1,238 @@
+// Ellipses in the solver: discs written as ellipses, two that collide, and what is refused.
+#include <Eigen/Eigenvalues>
+#include <functional>
+
+#include "rvelab/error.hpp"
+#include "tests/oracle/specimens.hpp"
+
+using namespace rvelab;
+using namespace rvelab::test;
+
+namespace {
+
+/// The same discs, written as ellipses that are turned anyhow.
+Specimen as_ellipses(Specimen s) {
+  s.shape = Shape::ellipse;
+  for (std::size_t g = 0; g < s.grains.size(); ++g) {
+    s.grains.semi_major.push_back(s.grains.radius[g]);
+    s.grains.semi_minor.push_back(s.grains.radius[g]);
+    s.grains.orientation.emplace_back(std::cos(double(g)), std::sin(double(g)), 0);
+  }
+  return s;
+}
+
+Material strong() {
+  Material m = linear_material(2e6, 1e6, 0.4);
+  m.young_modulus = 2e8;
+  m.poisson_ratio = 0.2;
+  m.rolling_stiffness = 0.8;
+  m.rolling_friction = 0.05;
+  return m;
+}
+
+/// Two ellipses of aspect 0.5 and 0.7 that fly at each other off their axes, turning.
+Specimen colliding(double kt = 0) {
+  Specimen s = empty_specimen(Shape::ellipse, 3, linear_material(1e6, kt, 1e6));
+  add_ellipse(s, {-0.2, -0.05, 0}, 0.2, 0.1, 0.4);
+  add_ellipse(s, {0.15, 0.05, 0}, 0.15, 0.105, 1.9);
+  // At rest in the mean: a mean velocity would be taken out.
+  const double ratio = (0.2 * 0.1) / (0.15 * 0.105);
+  s.grains.velocity = {Vector3(0.5, 0.1, 0), Vector3(-0.5, -0.1, 0) * ratio};
+  s.grains.spin = {Vector3(0, 0, 1), Vector3(0, 0, -2)};
+  s.state.quasi_static = false;
+  s.state.has_reference = false;
+  return s;
+}
+
+struct Conserved {
+  Vector3 momentum = Vector3::Zero();
+  double about_origin = 0, kinetic = 0;
+};
+
+Conserved conserved(const Rve& rve) {
+  Conserved all;
+  for (const GrainState& g : rve.network().grains) {
+    all.momentum += g.mass * g.velocity;
+    all.about_origin += g.mass * g.position.cross(g.velocity)[2] + g.inertia * g.spin[2];
+    all.kinetic += 0.5 * (g.mass * g.velocity.squaredNorm() + g.inertia * g.spin.squaredNorm());
+  }
+  return all;
+}
+
+/// Flies until the two have parted, at steps of `step` (s); the relative change of the kinetic energy.
+double energy_gained(Specimen s, double step) {
+  s.solver.fixed_time_step = step * (1 + 1e-9);
+  Rve rve(s);
+  rve.set_velocities(s.grains.velocity, s.grains.spin);
+  const Conserved before = conserved(rve);
+  const double scale = rve.network().grains[0].mass * s.grains.velocity[0].norm();
+  bool touched = false;
+  for (int k = 0; k < 60; ++k) {
+    rve.apply(Matrix3::Zero(), 8e-3);
+    touched = touched || !rve.network().contacts.empty();
+    const Conserved now = conserved(rve);
+    CHECK(now.momentum.norm() < 1e-13 * scale);
+    // x from v of half a step before: x cross v does not see it, for x moves along v.
+    CHECK(now.about_origin == Approx(before.about_origin).epsilon(1e-10));
+  }
+  REQUIRE(touched);
+  REQUIRE(rve.network().contacts.empty());
+  return conserved(rve).kinetic / before.kinetic - 1;
+}
+
+/// Largest frequency of the springs of a network, rad/s, from their energy 2 E = kn (n.v)^2 + kt (t.v)^2 + kr w^2 with
+/// v the displacement of j less that of i at the contact point and w the difference of the rotations.
+double largest_frequency(const Network& net) {
+  const auto size = Eigen::Index(3 * net.grains.size());
+  Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(size, size);
+  for (const ContactState& c : net.contacts) {
+    const Vector3 across(-c.normal[1], c.normal[0], 0);
+    const auto add = [&](double k, const Vector3& n, double moment) {
+      Eigen::VectorXd row = Eigen::VectorXd::Zero(size);
+      row.segment<2>(3 * c.j) += n.head<2>();
+      row.segment<2>(3 * c.i) -= n.head<2>();
+      row[3 * c.j + 2] += c.arm_j.cross(n)[2] + moment;
+      row[3 * c.i + 2] -= c.arm_i.cross(n)[2] + moment;
+      stiffness += k * row * row.transpose();
+    };
+    add(c.normal_stiffness, c.normal, 0);
+    add(c.tangential_stiffness, across, 0);
+    add(c.rolling_stiffness, Vector3::Zero(), 1);
+  }
+  Eigen::VectorXd scale(size);
+  for (Eigen::Index g = 0; g < size / 3; ++g) {
+    scale.segment<2>(3 * g).setConstant(1 / std::sqrt(net.grains[std::size_t(g)].mass));
+    scale[3 * g + 2] = 1 / std::sqrt(net.grains[std::size_t(g)].inertia);
+  }
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * stiffness * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scaled, Eigen::EigenvaluesOnly);
+  return std::sqrt(solver.eigenvalues().maxCoeff());
+}
+
+}  // namespace
+
+TEST_CASE("The bound of the largest frequency of ellipses lies above it, and not far") {
+  const double aspect = GENERATE(0.1, 0.4, 0.9), ratio = GENERATE(0.0, 0.2, 3.0);
+  const bool rolling = GENERATE(false, true);
+  if (rolling && ratio == 0) return;
+  Material m = linear_material(2e6, ratio * 2e6, 0.5);
+  m.rolling_stiffness = 0.5;
+  m.rolling_friction = 0.1;
+  Specimen s = disordered(Shape::ellipse, 4, m, Law::linear_given, 0.5, 3);
+  s.solver.max_overlap_ratio = 10;
+  s.contact.rolling = rolling;
+  for (std::size_t g = 0; g < s.grains.size(); ++g) {
+    s.grains.semi_major[g] = s.grains.radius[g] / std::sqrt(aspect);
+    s.grains.semi_minor[g] = s.grains.radius[g] * std::sqrt(aspect);
+  }
+  s.solver.min_height = 1e-3;
+  const Rve rve(s);
+  const double exact = largest_frequency(rve.network()), bound = 2 / rve.critical_time_step();
+  CAPTURE(aspect, ratio, rolling, bound, exact);
+  CHECK(bound >= exact * (1 - 1e-12));
+  CHECK(bound <= 4 * exact);
+}
+
+TEST_CASE("Discs written as ellipses have the forces of discs") {
+  const Law law = GENERATE(Law::linear_given, Law::linear, Law::hertz_mindlin);
+  const bool rolling = GENERATE(false, true);
+  const Dashpot dashpot = GENERATE(Dashpot::none, Dashpot::restitution);
+  CAPTURE(name(law), rolling, name(dashpot));
+  Specimen s = disordered(Shape::disc, 8, strong(), law, 0.53, 4);
+  s.contact.rolling = rolling;
+  s.damping.dashpot = dashpot;
+  s.damping.restitution = 0.6;
+  s.damping.tangential_ratio = 0.5;
+  s.solver.fixed_substeps = 10;  // no choice that a last bit could turn
+  Rve discs(s), ellipses(as_ellipses(s));
+  CHECK(ellipses.critical_time_step() == Approx(discs.critical_time_step()).epsilon(1e-12));
+  for (const double dt : {0.0, 10 * discs.critical_time_step()}) {
+    discs.apply(gradient(-2e-4, 5e-4, -3e-4, -1e-4), dt);
+    ellipses.apply(gradient(-2e-4, 5e-4, -3e-4, -1e-4), dt);
+    const Network a = discs.network(), b = ellipses.network();
+    REQUIRE(a.contacts.size() == b.contacts.size());
+    double largest_force = 0, farthest = 0, turned = 0;
+    for (std::size_t k = 0; k < a.contacts.size(); ++k) {
+      largest_force = std::max(largest_force, a.contacts[k].force().norm());
+      farthest = std::max(farthest, (a.contacts[k].force() - b.contacts[k].force()).norm());
+    }
+    for (std::size_t g = 0; g < a.grains.size(); ++g)
+      turned = std::max(turned, (a.grains[g].torque - b.grains[g].torque).norm() / a.grains[g].radius);
+    CHECK(farthest < 1e-12 * largest_force);
+    CHECK(turned < 1e-12 * largest_force);
+    CHECK(largest(discs.stress() - ellipses.stress()) < 1e-12 * largest(discs.stress()));
+  }
+}
+
+TEST_CASE("Two ellipses that collide keep momentum, angular momentum and energy") {
+  const double coarse = energy_gained(colliding(), 4e-5), fine = energy_gained(colliding(), 1e-5);
+  INFO(coarse << " at 4e-5 s, " << fine << " at 1e-5 s");
+  // Leapfrog: errors of (omega dt)^2, omega = 900 1/s here.
+  CHECK(std::abs(coarse) < 2e-3);
+  CHECK(std::abs(fine) < std::max(0.15 * std::abs(coarse), 1e-7));
+}
+
+TEST_CASE("Ellipses that stick to each other keep angular momentum too") {
+  Specimen s = colliding(8e5);
+  s.solver.fixed_time_step = 1e-5;
+  Rve rve(s);
+  rve.set_velocities(s.grains.velocity, s.grains.spin);
+  const Conserved before = conserved(rve);
+  double largest_torque = 0;
+  for (int k = 0; k < 60; ++k) {
+    rve.apply(Matrix3::Zero(), 8e-3);
+    const Conserved now = conserved(rve);
+    CHECK(now.about_origin == Approx(before.about_origin).epsilon(1e-10));
+    const Network net = rve.network();
+    for (const GrainState& g : net.grains) largest_torque = std::max(largest_torque, g.torque.norm());
+    for (const ContactState& c : net.contacts) CHECK((c.arm_i - c.arm_j - c.branch).norm() < 1e-15);
+  }
+  CHECK(largest_torque > 1);
+}
+
+TEST_CASE("A free ellipse turns by its spin, in a cell that turns too") {
+  Specimen s = empty_specimen(Shape::ellipse, 3, linear_material(1e6, 0, 0));
+  add_ellipse(s, {0.1, 0.2, 0}, 0.2, 0.1, 0.3);
+  s.state.quasi_static = false;
+  s.solver.fixed_time_step = 1e-4;
+  for (const double cell_angle : {0.0, 0.4}) {
+    Rve rve(s);
+    rve.set_velocities({Vector3::Zero()}, {Vector3(0, 0, 2)});
+    const Matrix3 step = rotation_about_z(cell_angle / 100) - Matrix3::Identity();
+    for (int k = 0; k < 100; ++k) rve.apply(step, 5e-3);
+    const Network net = rve.network();
+    const Vector3 axis = net.cell.rotation * net.grains[0].orientation;
+    CHECK(axis.norm() == Approx(1).margin(1e-14));
+    // The whole spin is the same in both: a turning frame does not take the grain with it once it turns steadily.
+    const double whole = net.grains[0].spin[2] + net.mean_spin[2];
+    CHECK(std::atan2(axis[1], axis[0]) == Approx(std::remainder(0.3 + whole * 0.5, 2 * pi)).margin(5e-3));
+  }
+}
+
+TEST_CASE("A rigid turn of the cell at rest turns ellipses with it and leaves their contacts as they were") {
+  const Rve start(disordered(Shape::ellipse, 6, strong(), Law::linear_given, 0.53, 8));
+  Rve turned(start);
+  turned.apply(rotation_about_z(0.7) - Matrix3::Identity(), 0);
+  const Network a = start.network(), b = turned.network();
+  REQUIRE(a.contacts.size() == b.contacts.size());
+  for (std::size_t k = 0; k < a.contacts.size(); ++k) CHECK(a.contacts[k].overlap == b.contacts[k].overlap);
+  const Vector3 before = a.cell.rotation * a.grains[5].orientation, after = b.cell.rotation * b.grains[5].orientation;
+  CHECK((rotation_about_z(0.7) * before - after).norm() < 1e-14);
+}
+
+TEST_CASE("Ellipses of impossible axes, orientation or slip are refused by name") {
+  const Specimen good = disordered(Shape::ellipse, 3, strong(), Law::linear_given, 0.45, 1);
+  CHECK_NOTHROW(Rve(good));
+  const auto refused = [&](const std::function<void(Specimen&)>& change, const std::string& text) {
+    Specimen s = good;
+    change(s);
+    CHECK_THROWS_WITH(Rve(s), Catch::Contains(text));
+  };
+  refused([](Specimen& s) { s.grains.semi_minor[2] *= 1.01; }, "sqrt(semi_major semi_minor)");
+  refused([](Specimen& s) { std::swap(s.grains.semi_major, s.grains.semi_minor); }, "semi_major >= semi_minor > 0");
+  refused([](Specimen& s) { s.grains.semi_major[0] *= 4, s.grains.semi_minor[0] /= 4; }, "at most 10 times as long");
+  refused([](Specimen& s) { s.grains.orientation[4] *= 1.001; }, "a vector of length 1");
+  refused([](Specimen& s) { s.grains.orientation.pop_back(); }, "one for each grain where the shape is ellipse");
+  refused([](Specimen& s) { s.shape = Shape::disc; }, "else none");
+  refused([](Specimen& s) { s.contact.slip = Slip::full_radius; }, "allowed for ellipses: \"consistent\"");
+}

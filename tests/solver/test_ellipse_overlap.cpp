@@ -1,0 +1,157 @@
+// The overlap of two ellipses against looking everywhere, and against what is known of it.
+#include <cstdlib>
+#include <string>
+
+#include "tests/catch.hpp"
+#include "tests/oracle/ellipse_pairs.hpp"
+
+using namespace rvelab;
+using namespace rvelab::test;
+
+namespace {
+
+struct Found {
+  Direction<double> normal;
+  EllipseGap<double> gap;
+};
+
+Found found(const EllipsePair<double>& p) {
+  Direction<double> n = first_direction(p);
+  const EllipseGap<double> gap = closest_gap(p, n);
+  return {n, gap};
+}
+
+/// How far an overlap is from the true one, over the shorter long axis (1 m or more); where the two are apart only
+/// that is asked for.
+double error_of(double overlap, double truth) {
+  if (truth < -2e-11) return overlap < 0 ? 0 : 1;
+  return std::abs(overlap - truth);
+}
+
+}  // namespace
+
+TEST_CASE("The overlap of two ellipses is the least of all directions", "[solver]") {
+  EllipsePairs pairs(1);
+  for (const Meeting meeting : meetings) {
+    CAPTURE(int(meeting));
+    double worst = 0;
+    for (int k = 0; k < 300; ++k) {
+      const EllipsePair<double> p = pairs.draw(meeting);
+      worst = std::max(worst, error_of(found(p).gap.overlap, double(overlap_by_all_directions(p))));
+    }
+    CHECK(worst < 1e-13);
+  }
+}
+
+TEST_CASE("The overlap of 1e5 pairs of ellipses is the least of 4096 directions refined", "[solver][slow]") {
+  EllipsePairs pairs(2);
+  for (const Meeting meeting : meetings) {
+    CAPTURE(int(meeting));
+    double worst = 0;
+    for (int k = 0; k < 17000; ++k) {
+      const EllipsePair<double> p = pairs.draw(meeting);
+      worst = std::max(worst, error_of(found(p).gap.overlap, double(overlap_by_all_directions(p))));
+    }
+    CHECK(worst < 1e-10);
+  }
+}
+
+// RVELAB_ELLIPSE_PAIRS asks for another number of pairs.
+TEST_CASE("No pair of ellipses overlaps less in a direction that was not found", "[solver][slow]") {
+  const char* asked = std::getenv("RVELAB_ELLIPSE_PAIRS");
+  const long count = asked ? std::stol(asked) : 300000;
+  EllipsePairs pairs(3);
+  double worst = 0, longest = 0;
+  for (long k = 0; k < count; ++k) {
+    const EllipsePair<double> p = pairs.draw(meetings[std::size_t(k) % meetings.size()]);
+    const Found f = found(p);
+    // One direction with f < 0 shows that two are apart; what overlaps must be the least.
+    if (f.gap.overlap >= 0) worst = std::max(worst, f.gap.overlap - overlap_by_few_directions(p));
+    longest = std::max(longest, std::abs(f.normal.x * f.normal.x + f.normal.y * f.normal.y - 1));
+    worst = std::max(worst, std::abs(f.gap.overlap - gap_by_definition(p, f.normal.x, f.normal.y)));
+  }
+  CHECK(worst < 1e-10);
+  CHECK(longest < 1e-14);
+}
+
+TEST_CASE("Two ellipses see each other alike", "[solver]") {
+  EllipsePairs pairs(4);
+  for (int k = 0; k < 2000; ++k) {
+    const EllipsePair<double> p = pairs.draw(meetings[std::size_t(k) % 2]);
+    const EllipsePair<double> q = {-p.x, -p.y, p.j, p.i};
+    const Found of_i = found(p), of_j = found(q);
+    REQUIRE(of_i.gap.overlap == of_j.gap.overlap);
+    REQUIRE(of_i.normal.x == -of_j.normal.x);
+    REQUIRE(of_i.normal.y == -of_j.normal.y);
+  }
+}
+
+TEST_CASE("Circles overlap by their radii less their distance, along the branch", "[solver]") {
+  for (double angle = 0; angle < 6; angle += 0.37) {
+    const TestEllipse i = {2, 2, angle}, j = {3, 3, 1};
+    const EllipsePair<double> p = {4.5 * std::cos(angle), 4.5 * std::sin(angle), i.matrix(), j.matrix()};
+    const Found f = found(p);
+    CHECK(f.gap.overlap == Approx(0.5).margin(1e-14));
+    CHECK(f.normal.x == Approx(std::cos(angle)).margin(1e-14));
+    CHECK(f.normal.y == Approx(std::sin(angle)).margin(1e-14));
+    CHECK(std::abs(f.gap.turned_i) < 1e-14);
+    CHECK(f.gap.support_j == Approx(3).margin(1e-14));
+  }
+}
+
+TEST_CASE("Tips that overlap by more than their curvatures slide off sideways", "[solver]") {
+  const TestEllipse e = {3, 1, 0};
+  const double flip = 2 * e.b * e.b / e.a;
+  for (const double part : {0.1, 0.9, 0.999}) {
+    const Found f = found(pair_at(e, e, 0, part * flip));
+    CHECK(f.normal.x == Approx(1).margin(1e-9));
+    CHECK(f.gap.overlap == Approx(part * flip));
+  }
+  for (const double part : {1.01, 1.5}) {
+    const Found f = found(pair_at(e, e, 0, part * flip));
+    CHECK(f.normal.x < 0.999);
+    CHECK(f.gap.overlap < part * flip * 0.99999);
+  }
+}
+
+TEST_CASE("The derivatives of the gap are those of the gap", "[solver]") {
+  EllipsePairs pairs(5);
+  for (int k = 0; k < 200; ++k) {
+    const EllipsePair<double> p = pairs.draw(Meeting::anywhere);
+    const double angle = 0.1 * k, step = 1e-5;
+    const auto at = [&](double a) { return ellipse_gap(p, Direction<double>{std::cos(a), std::sin(a)}); };
+    const EllipseGap<double> low = at(angle - step), here = at(angle), high = at(angle + step);
+    CHECK(here.slope == Approx((high.overlap - low.overlap) / (2 * step)).margin(1e-6));
+    CHECK(here.curvature == Approx((high.slope - low.slope) / (2 * step)).epsilon(1e-5).margin(1e-6));
+    CHECK(here.third == Approx((high.curvature - low.curvature) / (2 * step)).epsilon(1e-4).margin(1e-3));
+  }
+}
+
+TEST_CASE("Ellipses with one centre are told apart by the shortest way out", "[solver]") {
+  const TestEllipse i = {2, 1, 0.3}, j = {1.5, 0.5, 0.3};
+  const Found f = found({0, 0, i.matrix(), j.matrix()});
+  CHECK(f.gap.overlap == Approx(1.5));
+  CHECK(std::abs(-f.normal.x * std::sin(0.3) + f.normal.y * std::cos(0.3)) == Approx(1));
+}
+
+TEST_CASE("Lanes of ellipses are those of one alone, bit for bit", "[solver]") {
+  EllipsePairs pairs(6);
+  for (int k = 0; k < 3000; ++k) {
+    const EllipsePair<double> a = pairs.draw(meetings[std::size_t(k) % meetings.size()]);
+    const EllipsePair<double> b = pairs.draw(meetings[std::size_t(k / 6) % meetings.size()]);
+    const auto both = [](double x, double y) { return V2{x, y}; };
+    const auto of = [&](const EllipseMatrix<double>& x, const EllipseMatrix<double>& y) {
+      return EllipseMatrix<V2>{both(x.xx, y.xx), both(x.xy, y.xy), both(x.yy, y.yy), both(x.sharpest, y.sharpest)};
+    };
+    const EllipsePair<V2> p = {both(a.x, b.x), both(a.y, b.y), of(a.i, b.i), of(a.j, b.j)};
+    Direction<V2> n = first_direction(p);
+    const EllipseGap<V2> g = closest_gap(p, n);
+    const Found alone[2] = {found(a), found(b)};
+    for (int lane = 0; lane < 2; ++lane) {
+      REQUIRE(n.x[lane] == alone[lane].normal.x);
+      REQUIRE(n.y[lane] == alone[lane].normal.y);
+      REQUIRE(g.overlap[lane] == alone[lane].gap.overlap);
+      REQUIRE(g.turned_i[lane] == alone[lane].gap.turned_i);
+    }
+  }
+}
