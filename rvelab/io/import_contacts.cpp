@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "rvelab/error.hpp"
+#include "rvelab/solver/assembly/pair_place.hpp"
 
 namespace rvelab::io {
 namespace {
@@ -90,8 +91,12 @@ void turn_round_if_needed(Contact& contact) {
 
 /// 2D: the in-plane force vector as its component along t = (-n_y, n_x), the form that a specimen stores.
 Vector3 along_tangent(const Specimen& specimen, const Contact& contact) {
-  const Vector3 b = branch_of(specimen, contact);
   const Vector3& f = contact.tangential_force;
+  if (specimen.shape == Shape::ellipse) {
+    const Vector3 n = normal_of(specimen, contact);
+    return {n[0] * f[1] - n[1] * f[0], 0, 0};
+  }
+  const Vector3 b = branch_of(specimen, contact);
   return {(b[0] * f[1] - b[1] * f[0]) / std::sqrt(b[0] * b[0] + b[1] * b[1]), 0, 0};
 }
 
@@ -153,7 +158,28 @@ Vector3 branch_of(const Specimen& specimen, const Contact& contact) {
          position[static_cast<std::size_t>(contact.i)];
 }
 
+namespace {
+
+EllipsePlace ellipses_of(const Specimen& specimen, const Contact& contact) {
+  const Vector3 b = branch_of(specimen, contact);
+  const Grains& g = specimen.grains;
+  const auto form = [&](std::int32_t k) {
+    return EllipseForm{g.semi_major[std::size_t(k)], g.semi_minor[std::size_t(k)], g.orientation[std::size_t(k)][0],
+                       g.orientation[std::size_t(k)][1]};
+  };
+  return place_of_ellipses({b[0], b[1], 0}, form(contact.i), form(contact.j));
+}
+
+}  // namespace
+
+Vector3 normal_of(const Specimen& specimen, const Contact& contact) {
+  if (specimen.shape != Shape::ellipse) return branch_of(specimen, contact).normalized();
+  const Branch n = ellipses_of(specimen, contact).normal;
+  return {n.x, n.y, 0};
+}
+
 double overlap_of(const Specimen& specimen, const Contact& contact) {
+  if (specimen.shape == Shape::ellipse) return ellipses_of(specimen, contact).overlap;
   const auto& radius = specimen.grains.radius;
   return radius[static_cast<std::size_t>(contact.i)] + radius[static_cast<std::size_t>(contact.j)] -
          branch_of(specimen, contact).norm();
@@ -217,7 +243,7 @@ void read_contacts(const CsvTable& table, const std::vector<Image>& wraps, Speci
                        " is of a grain with itself; allowed: with another grain or a shifted image; remove the row");
     }
     turn_round_if_needed(contact);
-    if (specimen.shape == Shape::disc) contact.tangential_force = tangential_component(table, row, specimen, contact);
+    if (specimen.cell.dimension == 2) contact.tangential_force = tangential_component(table, row, specimen, contact);
   }
   check_stiffnesses(table, contacts, specimen, columns);
   check_normal_forces(table, contacts, specimen, columns);

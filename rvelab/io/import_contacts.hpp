@@ -15,6 +15,8 @@ void read_contacts(const CsvTable& table, const std::vector<Image>& wraps, Speci
 /// Of one contact, as the law makes it: branch x_j + L image - x_i (m, cell frame), overlap (m), parameters of the
 /// pair, elastic normal force (N, repulsion positive, 0 without overlap).
 Vector3 branch_of(const Specimen& specimen, const Contact& contact);
+/// Cell frame, from i to j; along the branch where the grains are round.
+Vector3 normal_of(const Specimen& specimen, const Contact& contact);
 double overlap_of(const Specimen& specimen, const Contact& contact);
 PairParameters parameters_of(const Specimen& specimen, const Contact& contact);
 double normal_force_of(const Specimen& specimen, const Contact& contact);

@@ -227,13 +227,7 @@ Specimen import_csv(const std::string& particles_path, const std::optional<std::
   }
   set_cell(specimen, dimension, *vectors, source);
 
-  if (dimension == 2 && particles.table->has("a") && particles.table->has("b")) {
-    specimen.shape = Shape::ellipse;
-    if (contacts_path)
-      throw InputError(*contacts_path +
-                       ": contacts of ellipses are not read; allowed: ellipses without contacts, whose " +
-                       "springs start without force; leave the contacts out");
-  }
+  if (dimension == 2 && particles.table->has("a") && particles.table->has("b")) specimen.shape = Shape::ellipse;
   const auto wraps = read_grains(*particles.table, specimen);
   if (contacts_path) read_contacts(CsvTable(*contacts_path), wraps, specimen);
 

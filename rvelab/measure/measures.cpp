@@ -80,6 +80,13 @@ Matrix3 branch_fabric(const Network& network) {
   return in_laboratory(network, sum / sum.trace());
 }
 
+Matrix3 orientation_fabric(const Network& network) {
+  Matrix3 sum = Matrix3::Zero();
+  if (network.shape != Shape::ellipse || network.grains.empty()) return Matrix3::Constant(not_defined);
+  for (const GrainState& grain : network.grains) sum += grain.orientation * grain.orientation.transpose();
+  return in_laboratory(network, sum / static_cast<double>(network.grains.size()));
+}
+
 double fabric_anisotropy(const Matrix3& fabric, int dimension) {
   const Matrix3 difference = fabric - isotropic(dimension) / dimension;
   return dimension == 2 ? 4 * std::sqrt(0.5) * difference.norm() : 7.5 * std::sqrt(1.5) * difference.norm();

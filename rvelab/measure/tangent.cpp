@@ -15,6 +15,7 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/measure/contact_linear.hpp"
+#include "rvelab/measure/ellipse_linear.hpp"
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/measure/tensor_order.hpp"
 
@@ -28,8 +29,9 @@ using Matrix9 = Eigen::Matrix<double, 9, 9>;
 /// A contact with the rows dF, dT_i, dT_j of its law, and the law's share of unloading (rows times dl).
 struct Spring {
   const ContactState* contact;
-  Matrix9 law;        ///< with half of the unloading terms
-  Vector9 unloading;  ///< half of the unloading terms; the other half is +- |dl|
+  Matrix9 law;                        ///< with half of the unloading terms
+  Vector9 unloading;                  ///< half of the unloading terms; the other half is +- |dl|
+  Vector9 opening = Vector9::Zero();  ///< ellipses: dl per q, where round grains have n.db
 };
 
 Matrix9 rows_of(const LinearContact& linear) {
@@ -40,7 +42,20 @@ Matrix9 rows_of(const LinearContact& linear) {
 
 /// Half of the unloading terms stands in the linear law, so that with r = half the terms per dl the law is
 /// law q + r |dl|: exact for loading (dl < 0: nothing) and for unloading (dl > 0: all).
+Spring spring_of_ellipses(const Network& network, const ContactState& contact) {
+  const LinearEllipseContact linear =
+      linearised_ellipses(contact, network.grains[contact.i], network.grains[contact.j]);
+  Spring spring{&contact, rows_of(linear.law), Vector9::Zero(), linear.opening.transpose()};
+  if (rescales(network)) {
+    const Matrix9 half = 0.5 * rows_of(linear.unloading);
+    spring.law += half;
+    spring.unloading = half * spring.opening / spring.opening.squaredNorm();
+  }
+  return spring;
+}
+
 Spring spring_of(const Network& network, const ContactState& contact) {
+  if (network.shape == Shape::ellipse) return spring_of_ellipses(network, contact);
   const double ri = network.grains[contact.i].radius, rj = network.grains[contact.j].radius;
   Spring spring{&contact, rows_of(linearised(contact, ri, rj, network.model.slip)), Vector9::Zero()};
   if (rescales(network)) {
@@ -188,7 +203,9 @@ class Condensed {
     return strain.mean_motion(*spring.contact) + p_ * local;
   }
 
-  static double elongation(const Spring& spring, const Vector9& q) { return spring.contact->normal.dot(q.head<3>()); }
+  double elongation(const Spring& spring, const Vector9& q) const {
+    return network_.shape == Shape::ellipse ? spring.opening.dot(q) : spring.contact->normal.dot(q.head<3>());
+  }
 
   /// Unbalanced load on the freedoms at the motion x.
   Vector residual(const CellStrain& strain, const Vector& x) const {
@@ -250,18 +267,7 @@ class Condensed {
 
 }  // namespace
 
-namespace {
-
-void refuse_ellipses(const Network& network, const char* what) {
-  if (network.shape != Shape::ellipse) return;
-  throw InputError(std::string(what) + " of ellipses is not known: their normals turn as the surfaces are curved; " +
-                   "apply small increments instead");
-}
-
-}  // namespace
-
 Eigen::MatrixXd elastic_tangent(const Network& network) {
-  refuse_ellipses(network, "the elastic tangent");
   const int dimension = network.dimension(), size = component_count(dimension);
   Eigen::MatrixXd tangent(size, size);
   Condensed condensed(network);
@@ -274,7 +280,6 @@ Eigen::MatrixXd elastic_tangent(const Network& network) {
 }
 
 Eigen::MatrixXd affine_tangent(const Network& network) {
-  refuse_ellipses(network, "the affine sum");
   const int dimension = network.dimension(), size = component_count(dimension);
   Eigen::MatrixXd tangent(size, size);
   for (int k = 0; k < size; ++k) {

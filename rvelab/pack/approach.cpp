@@ -5,6 +5,7 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/measure/measures.hpp"
+#include "rvelab/pack/regular.hpp"
 #include "rvelab/pack/scatter.hpp"
 
 namespace rvelab::pack {
@@ -128,6 +129,15 @@ Rve pressed_again(const Recipe& recipe, const Rve& rve, const std::atomic<bool>*
   other.watch(stop);
   press(recipe, other);
   return other;
+}
+
+Rve by_rows(const Recipe& recipe, const Grains& graded, double friction, const std::atomic<bool>* stop) {
+  Grains grains = graded;
+  const Cell cell = lay_rows(recipe, grains);
+  Rve rve(assembly(recipe, friction, grains, cell));
+  rve.watch(stop);
+  press(recipe, rve);
+  return rve;
 }
 
 Rve by_growth(const Recipe& recipe, const Grains& graded, double friction, Uniform& uniform,

@@ -70,8 +70,9 @@ Draw draw(const Recipe& recipe, long number, double friction, const std::atomic<
   Uniform uniform(recipe.seed, std::uint64_t(number));
   const Grains graded = graded_grains(recipe);
   const bool growth = recipe.preparation.method == Preparation::Method::growth || !recipe.stress;
-  Rve rve = growth ? by_growth(recipe, graded, friction, uniform, stop)
-                   : by_compression(recipe, graded, friction, uniform, stop);
+  Rve rve = recipe.preparation.method == Preparation::Method::regular ? by_rows(recipe, graded, friction, stop)
+            : growth ? by_growth(recipe, graded, friction, uniform, stop)
+                     : by_compression(recipe, graded, friction, uniform, stop);
 
   rve = steered(rve, recipe, stop);
   Draw result;

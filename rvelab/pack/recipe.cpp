@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "rvelab/error.hpp"
+#include "rvelab/pack/regular.hpp"
 
 namespace rvelab::pack {
 
@@ -40,6 +41,7 @@ void check_recipe(const Recipe& recipe) {
         "preparation.friction contradicts target.void_ratio, for which the friction is searched; allowed: "
         "one of the two; remove one");
   check_parameters(recipe.contact, recipe.damping, recipe.materials);
+  if (recipe.preparation.method == Preparation::Method::regular) check_regular(recipe);
   double shares = 0;
   for (const GrainFraction& fraction : recipe.fractions) {
     check_grading(fraction.grading, ("grains." + fraction.name).c_str());

@@ -31,7 +31,8 @@ struct GrainFraction {
 struct Preparation {
   enum class Method {
     compression,  ///< scattered without contact, then the cell shrinks
-    growth        ///< scattered small in a cell of the end's size, then the radii grow (Li et al. 2023)
+    growth,       ///< scattered small in a cell of the end's size, then the radii grow (Li et al. 2023)
+    regular       ///< laid in rows (regular.hpp)
   };
   Method method = Method::compression;
   std::optional<double> friction;  ///< of all contacts while it is prepared; none: that of the materials, or searched

@@ -231,21 +231,24 @@ void read_preparation(const toml::table& table, pack::Recipe& recipe, toml::tabl
                       std::vector<keys::KeyError>& errors) {
   TableReader reader(table, recipe_keys(), "preparation", "preparation", line_of(table), errors);
   pack::Preparation& preparation = recipe.preparation;
-  const bool growth = reader.choice("method") == "growth";
-  preparation.method = growth ? pack::Preparation::Method::growth : pack::Preparation::Method::compression;
+  using Method = pack::Preparation::Method;
+  const std::string method = reader.choice("method");
+  preparation.method = method == "growth"    ? Method::growth
+                       : method == "regular" ? Method::regular
+                                             : Method::compression;
   preparation.friction = reader.optional_number("friction");
   preparation.rolling_friction = reader.number("rolling_friction");
   preparation.lowest_friction = reader.number("lowest_friction");
   preparation.highest_friction = reader.number("highest_friction");
   preparation.max_draws = reader.whole_number("max_draws");
-  if (growth || !recipe.stress) {
+  if (method == "growth" || !recipe.stress) {
     preparation.first_size = reader.number("first_size");
     preparation.growth_void_ratio = reader.optional_number("growth_void_ratio");
   } else {
     for (const char* name : {"first_size", "growth_void_ratio"}) {
       reader.leave(name);
       if (reader.has(name))
-        reader.mistake(name, "contradicts method = \"compression\"; allowed: with method = \"growth\"; remove one");
+        reader.mistake(name, "contradicts method = \"" + method + "\"; allowed: with method = \"growth\"; remove one");
     }
   }
   if (preparation.friction && recipe.stress && recipe.void_ratio)

@@ -98,8 +98,9 @@ std::vector<TableKey> preparation() {
   const pack::Preparation initial;
   return {
       choice(
-          t, "method", {"compression", "growth"},
-          "compression: the cell shrinks around scattered grains; growth: the radii grow in a cell that stands still"),
+          t, "method", {"compression", "growth", "regular"},
+          "compression: the cell shrinks around scattered grains; growth: the radii grow in a cell that stands still; "
+          "regular: 2D, equal grains in rows that lie, with the cell, at the bedding angle"),
       number(t, "friction", "1", "(searched, or that of the materials; 0 without a stress)", friction,
              "of all contacts while the specimen is prepared: low for dense, high for loose"),
       number(t, "rolling_friction", "1", initial.rolling_friction, {0, infinity, false, true},

@@ -26,7 +26,8 @@ using Quantities = QuantityTable<  //
     ContactStress,                 //
     ReynoldsStress,                //
     ElasticEnergy,                 //
-    KineticEnergy                  //
+    KineticEnergy,                 //
+    OrientationFabric              //
     >;
 
 inline constexpr auto quantity_rows = Quantities::rows();

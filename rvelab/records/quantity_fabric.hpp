@@ -1,4 +1,4 @@
-// Quantities of the directions of contacts, laboratory frame (rvelab/measure/measures.hpp).
+// Quantities of the directions of contacts and grains, laboratory frame (rvelab/measure/measures.hpp).
 #pragma once
 
 #include "rvelab/measure/measures.hpp"
@@ -18,6 +18,14 @@ struct BranchFabric {
   static constexpr QuantityText text{"branch_fabric", "1", "sum b (x) b / sum b.b"};
   static constexpr auto member = &BranchFabric::branch_fabric;
   static Matrix3 measure(const Rve&, const Network& network) { return rvelab::branch_fabric(network); }
+};
+
+struct OrientationFabric {
+  Matrix3 orientation_fabric = Matrix3::Zero();
+  static constexpr QuantityText text{"orientation_fabric", "1",
+                                     "ellipses: mean of e (x) e over the grains, e along the long axis; NaN if round"};
+  static constexpr auto member = &OrientationFabric::orientation_fabric;
+  static Matrix3 measure(const Rve&, const Network& network) { return rvelab::orientation_fabric(network); }
 };
 
 struct FabricAnisotropy {

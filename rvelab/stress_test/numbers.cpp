@@ -26,7 +26,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 Specimen in_units(Specimen s, double length, double force) {
   s.cell.lattice *= length;
   s.solver.min_height *= length;
-  for (double& r : s.grains.radius) r *= length;
+  for (auto* sizes : {&s.grains.radius, &s.grains.semi_major, &s.grains.semi_minor})
+    for (double& size : *sizes) size *= length;
   for (Vector3& x : s.grains.position) x *= length;
   for (Material& m : s.materials) {
     m.young_modulus *= force / length / length;
@@ -70,6 +71,7 @@ std::uint64_t hash_of(const Rve& rve) {
   Hash hash;
   for (std::size_t g = 0; g < s.grains.size(); ++g)
     for (const Vector3* v : {&s.grains.position[g], &s.grains.velocity[g], &s.grains.spin[g]}) hash.take(v->data(), 3);
+  for (const Vector3& axis : s.grains.orientation) hash.take(axis.data(), 3);
   for (const Contact& c : s.contacts) {
     hash.take(c.tangential_force.data(), 3);
     hash.take(c.rolling_moment.data(), 3);
@@ -113,7 +115,7 @@ std::optional<std::uint64_t> hash_with(const char* instruction_set, const std::f
 void powers_of_two(const Case& asked, Verdict& verdict) {
   const int d = int(asked("dimension"));
   const double length = std::ldexp(1.0, int(asked("length_power"))), force = std::ldexp(1.0, int(asked("force_power")));
-  const Specimen s = in_units(usual(d, asked("hertz") != 0), 1, 1);
+  const Specimen s = in_units(usual(d, asked("hertz") != 0, 0.5, asked("aspect_ratio")), 1, 1);
   Tested plain(s, verdict), scaled(in_units(s, length, force), verdict);
   for (int k = 0; k < 20; ++k) {
     const Matrix3 one = plain.apply(some_increment(d), 0).stress;
@@ -202,7 +204,7 @@ void huge_increment(const Case& asked, Verdict& verdict) {
 void kernels_agree(const Case& asked, Verdict& verdict) {
   const int d = int(asked("dimension"));
   const auto compute = [&] {
-    Specimen s = usual(d, asked("hertz") != 0);
+    Specimen s = usual(d, asked("hertz") != 0, 0.5, asked("aspect_ratio"));
     s.contact.rolling = asked("rolling") != 0;
     for (Material& m : s.materials) {
       m.rolling_stiffness = asked("rolling");

@@ -76,9 +76,11 @@ Specimen jammed(const Specimen& loose, double pressure) {
   return result;
 }
 
-Specimen jammed_linear(int dimension, int count, double kappa, double kt_over_kn, double friction) {
+Specimen jammed_linear(int dimension, int count, double kappa, double kt_over_kn, double friction,
+                       double aspect_ratio) {
   const Material grain = material(stiffness, kt_over_kn * stiffness, friction);
-  Specimen loose = gas(dimension, spread_radii(count, 0.3), dimension == 2 ? 0.4 : 0.25, 5, grain);
+  Specimen loose =
+      with_aspect_ratio(gas(dimension, spread_radii(count, 0.3), dimension == 2 ? 0.4 : 0.25, 5, grain), aspect_ratio);
   if (kappa < 100) loose.solver.max_overlap_ratio = 0.9;  // as soft as that, grains overlap by tenths of their radii
   return jammed(loose, pressure_at(dimension, kappa));
 }
@@ -95,9 +97,9 @@ Specimen jammed_hertz(int dimension, int count, double young_modulus, double poi
   return jammed(loose, pressure);
 }
 
-Specimen usual(int dimension, bool hertz, double friction) {
+Specimen usual(int dimension, bool hertz, double friction, double aspect_ratio) {
   return hertz ? jammed_hertz(dimension, 64, 1e9, 0.2, friction, 1e5)
-               : jammed_linear(dimension, 64, 1e3, 0.5, friction);
+               : jammed_linear(dimension, 64, 1e3, 0.5, friction, aspect_ratio);
 }
 
 Matrix3 biaxial_direction(int dimension) {

@@ -18,15 +18,17 @@ double pressure_of_level(const Specimen& specimen, double kappa);
 /// cell of `loose`; the friction of the materials acts from there on, no history yet.
 Specimen jammed(const Specimen& loose, double pressure);
 
-/// The same from scratch: linear springs, `count` grains.
-Specimen jammed_linear(int dimension, int count, double kappa, double kt_over_kn, double friction);
+/// The same from scratch: linear springs, `count` grains; ellipses where the aspect ratio is below 1.
+Specimen jammed_linear(int dimension, int count, double kappa, double kt_over_kn, double friction,
+                       double aspect_ratio = 1);
 
 /// Hertz-Mindlin contacts of grains of radius near 1.
 Specimen jammed_hertz(int dimension, int count, double young_modulus, double poisson_ratio, double friction,
                       double pressure);
 
-/// Either, of 64 discs or spheres, as most experiments want them; 100 kPa in Hertz contacts of 1 GPa.
-Specimen usual(int dimension, bool hertz, double friction = 0.5);
+/// Either, of 64 discs (ellipses: linear springs) or spheres, as most experiments want them; 100 kPa in Hertz contacts
+/// of 1 GPa.
+Specimen usual(int dimension, bool hertz, double friction = 0.5, double aspect_ratio = 1);
 
 /// Biaxial compression along y, or simple shear v_x(y); dH of unit size.
 Matrix3 biaxial_direction(int dimension);

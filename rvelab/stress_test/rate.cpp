@@ -35,7 +35,8 @@ Specimen with_damping(Specimen s, const Case& asked) {
 void sheared_at_rate(const Case& asked, Verdict& verdict) {
   const int d = int(asked("dimension"));
   Specimen s = asked("hertz") != 0 ? usual(d, true, asked("friction"))
-                                   : jammed_linear(d, 64, asked("kappa"), asked("kt_over_kn"), asked("friction"));
+                                   : jammed_linear(d, 64, asked("kappa"), asked("kt_over_kn"), asked("friction"),
+                                                   asked("aspect_ratio"));
   for (Material& m : s.materials) {
     m.density = asked("density");
     m.rolling_stiffness = asked("rolling_stiffness");

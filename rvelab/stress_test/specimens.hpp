@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "rvelab/error.hpp"
+#include "rvelab/grains/direction.hpp"
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/solver/rve.hpp"
 
@@ -50,6 +51,23 @@ inline Specimen specimen_of(const Cell& cell, const std::vector<Vector3>& positi
     s.grains.position.push_back(positions[g]);
     s.grains.velocity.push_back(Vector3::Zero());
     s.grains.spin.push_back(Vector3::Zero());
+  }
+  return s;
+}
+
+/// Ellipses in place of discs: the long semi-axis is the disc's radius, so that what did not touch does not; each is
+/// turned by the golden angle against the one before. An aspect ratio of 1 changes nothing.
+inline Specimen with_aspect_ratio(Specimen s, double aspect_ratio) {
+  if (aspect_ratio == 1) return s;
+  if (s.shape != Shape::disc) throw InputError("aspect_ratio is for dimension = 2; allowed: 1 in 3D; leave it out");
+  s.shape = Shape::ellipse;
+  for (std::size_t g = 0; g < s.grains.size(); ++g) {
+    const double a = s.grains.radius[g], b = aspect_ratio * a;
+    const auto [x, y] = direction_of(std::fmod(137.5 * double(g), 360));
+    s.grains.semi_major.push_back(a);
+    s.grains.semi_minor.push_back(b);
+    s.grains.orientation.emplace_back(x, y, 0);
+    s.grains.radius[g] = std::sqrt(a * b);
   }
   return s;
 }

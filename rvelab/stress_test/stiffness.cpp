@@ -24,7 +24,7 @@ Path path_of(const Case& asked, int dimension, double kappa) {
 void agrees_with_resolved_run(const Case& asked, Verdict& verdict) {
   const int d = int(asked("dimension"));
   const double kappa = asked("kappa");
-  Specimen s = jammed_linear(d, int(asked("grains")), kappa, 0.5, asked("friction"));
+  Specimen s = jammed_linear(d, int(asked("grains")), kappa, 0.5, asked("friction"), asked("aspect_ratio"));
   s.contacts.clear();
   Material& grain = s.materials[0];
   grain.tangential_stiffness = asked("kt_over_kn") * grain.normal_stiffness;

@@ -202,6 +202,9 @@ TEST_CASE("what contradicts something else is refused by name") {
                Contains("contradicts pack.shape = \"disc\""));
   CHECK_THAT(message_of(small, {"pack.shape=ellipse", "grains.largest_aspect_ratio=0.5"}),
              Contains("is above grains.largest_aspect_ratio"));
+  const std::string regular = "preparation.method=regular";
+  CHECK_THAT(message_of(small, {regular}), Contains("grains of one size and form"));
+  CHECK_THAT(message_of(small, {regular, "preparation.first_size=0.3"}), Contains("contradicts method = \"regular\""));
 }
 
 TEST_CASE("what a recipe cannot do without is asked for") {

@@ -57,7 +57,8 @@ TEST_CASE("quantities keep the bits that journals of earlier versions name them 
                                "contact_stress_Pa",
                                "reynolds_stress_Pa",
                                "elastic_energy_J",
-                               "kinetic_energy_J"};
+                               "kinetic_energy_J",
+                               "orientation_fabric"};
   REQUIRE(quantity_rows.size() >= std::size(names));
   for (std::size_t k = 0; k < std::size(names); ++k) {
     CHECK(quantity_rows[k].text.name == std::string(names[k]));

@@ -2,6 +2,7 @@
 """Force chains with the outline of the cell: chains.py S.h5|R.h5 -o chains.png (2D; of a record file the last state).
 
 Each contact is a line along its branch, as wide as its normal force; contacts that carry more than the mean are dark.
+Ellipses are drawn as they lie.
 The cell is dashed, grains of one cell are drawn once.
 """
 
@@ -12,7 +13,7 @@ import state as states
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import LineCollection, PatchCollection
-from matplotlib.patches import Circle, Polygon
+from matplotlib.patches import Ellipse, Polygon
 
 
 def draw(found, options):
@@ -21,8 +22,8 @@ def draw(found, options):
         raise ValueError(f"{state.path}: is 3D; force chains are drawn in 2D (export --format xdmf shows it in ParaView)")
     figure, axes = plt.subplots(figsize=(7, 7))
     axes.grid(False)
-    axes.add_collection(PatchCollection([Circle(x, r) for x, r in zip(state.position, state.radius)], facecolor="0.94",
-                                        edgecolor="0.78", linewidth=0.4))
+    grains = [Ellipse(x, 2 * a, 2 * b, angle=turn) for x, (a, b), turn in zip(state.position, state.axes, state.angle)]
+    axes.add_collection(PatchCollection(grains, facecolor="0.94", edgecolor="0.78", linewidth=0.4))
     mean = state.normal_force.mean() if len(state.normal_force) else 1.0
     begin = state.position[state.first]
     lines = np.stack([begin, begin + state.branch], axis=1)

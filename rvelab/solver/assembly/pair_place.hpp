@@ -40,4 +40,10 @@ struct EllipsePlace {
 /// bit.
 EllipsePlace place_of_ellipses(const Branch& branch, const double* row_i, const double* row_j);
 
+/// An ellipse by its semi-axes (m) and the unit vector along the long one.
+struct EllipseForm {
+  double semi_major, semi_minor, axis_x, axis_y;
+};
+EllipsePlace place_of_ellipses(const Branch& branch, const EllipseForm& i, const EllipseForm& j);
+
 }  // namespace rvelab

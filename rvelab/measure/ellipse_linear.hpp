@@ -1,0 +1,29 @@
+// One contact of two ellipses, linearised: as contact_linear.hpp, where the normal turns with the grains too.
+//
+// h_i(n) is the support of an ellipse about its centre, h' and h'' = rho - h its derivatives along the circle of
+// directions, rho = a^2 b^2/h^3 the radius of curvature at the support point; n is where f = h_i + h_j - n.b is least,
+// and t = (-n_y, n_x) (solver/kernels/ellipse_overlap.hpp). With dphi the turn of n:
+//   d delta = -n.db - h_i' dtheta_i - h_j' dtheta_j                        f' = 0: a turn of n changes nothing
+//   dphi    = (t.db + h_i'' dtheta_i + h_j'' dtheta_j)/(rho_i + rho_j - delta)   f' stays 0
+//   d f_n   = k_n d delta
+//   d T     = -k_t (t.db - (h_i - delta/2) dtheta_i - (h_j - delta/2) dtheta_j)   f_t = T t
+//             + T d delta/(2 delta) where Hertz-Mindlin unloads with rescaling
+//   d F     = (d f_n - T dphi) n + (d T + f_n dphi) t
+//   d M     = -k_r (dtheta_j - dtheta_i), rescaled as f_t
+//   T_i = -r_i x F - M, T_j = r_j x F + M, with the arms r_i = (h_i - delta/2) n + h_i' t, r_j = r_i - b
+// The stiffness of a Hertz contact is that of r = sqrt(a b), which does not change as the grains turn.
+#pragma once
+
+#include "rvelab/measure/contact_linear.hpp"
+
+namespace rvelab {
+
+struct LinearEllipseContact {
+  LinearContact law;        ///< without rescaling on unloading
+  LinearContact unloading;  ///< what that adds where the overlap falls
+  ContactRow opening;       ///< -d delta
+};
+
+LinearEllipseContact linearised_ellipses(const ContactState& contact, const GrainState& i, const GrainState& j);
+
+}  // namespace rvelab
