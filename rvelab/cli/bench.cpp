@@ -255,11 +255,15 @@ void add_bench(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
   std::set<std::string> names;
   for (const Case& c : cases()) names.insert(c.name);
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  CLI::Validator known = CLI::IsMember(names);
+  known.description("");  // as a type the names would make one line of 140 characters
   command->add_option("--case", arguments->wanted, "this case only; may be given more than once")
       ->expected(1)
       ->allow_extra_args(false)
       ->take_all()
-      ->check(CLI::IsMember(names));
+      ->check(known);
   command->add_option("--batch", arguments->batch, "time a batch of so many cells of 400 discs instead of the cases")
       ->check(CLI::Range(1, 1'000'000));
   command->add_option("--grains", arguments->grains, "time a cell of about so many grains instead of the cases")
@@ -271,10 +275,10 @@ void add_bench(CLI::App& app) {
   command->add_option("--packings", arguments->folder, "write the packings of the cases there instead of timing them")
       ->check(CLI::ExistingDirectory);
   command->add_flag("--json", arguments->json, "print one JSON object");
-  command->footer(
-      "Examples:\n"
-      "  rvelab bench --quick --json\n"
-      "  rvelab bench --case disc_400_linear --packings .");
+  command->footer("Cases: " + list +
+                  "\nExamples:\n"
+                  "  rvelab bench --quick --json\n"
+                  "  rvelab bench --case disc_400_linear --packings .");
   command->callback([arguments] { run_bench(*arguments); });
 }
 

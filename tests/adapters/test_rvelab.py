@@ -225,7 +225,7 @@ class RveTest(unittest.TestCase):
         self.assertEqual(len(told), 1)  # once for a line, though the figures differ
         self.assertEqual((told[0].category, told[0].filename), (rvelab.RvelabWarning, __file__))
         self.assertEqual(told[0].message.status, 1)
-        self.assertRegex(told[0].message.detail, "estimated error of [0-9.]+ Pa")
+        self.assertRegex(told[0].message.detail, "expected error of [0-9.]+ Pa")
 
     def test_the_structs_are_those_of_the_header(self) -> None:
         header = (Path(__file__).resolve().parents[2] / "include/rvelab/rvelab.h").read_text()

@@ -45,7 +45,7 @@ class RvelabWarning(UserWarning):
         self.status, self.detail = status, detail
 
 
-_warnings = {1: "the estimated error of the stress is above the tolerance (error_estimate says by how much)",
+_warnings = {1: "the expected error of the stress is above the tolerance (error_estimate says by how much)",
              2: "the state is no equilibrium: the specimen flows or collapses",
              3: "a height of the cell is below four mean diameters",
              4: "the contact network has no elastic tangent; the affine one, which is stiffer, was written"}
