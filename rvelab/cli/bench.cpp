@@ -256,7 +256,7 @@ void add_bench(CLI::App& app) {
   std::set<std::string> names;
   for (const Case& c : cases()) names.insert(c.name);
   std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  for (const std::string& name : names) list += "  " + name + "\n";
   CLI::Validator known = CLI::IsMember(names);
   known.description("");  // as a type the names would make one line of 140 characters
   command->add_option("--case", arguments->wanted, "this case only; may be given more than once")
@@ -275,8 +275,8 @@ void add_bench(CLI::App& app) {
   command->add_option("--packings", arguments->folder, "write the packings of the cases there instead of timing them")
       ->check(CLI::ExistingDirectory);
   command->add_flag("--json", arguments->json, "print one JSON object");
-  command->footer("Cases: " + list +
-                  "\nExamples:\n"
+  command->footer("Cases:\n" + list +
+                  "Examples:\n"
                   "  rvelab bench --quick --json\n"
                   "  rvelab bench --case disc_400_linear --packings .");
   command->callback([arguments] { run_bench(*arguments); });
