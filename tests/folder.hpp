@@ -16,7 +16,8 @@ namespace rvelab::test {
 class Folder {
  public:
   Folder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "rvelab-test-XXXXXX").string();
+    // mkdtemp asks for six X at the end.
+    std::string pattern = (std::filesystem::temp_directory_path() / "rvelab-test-").string() + std::string(6, 'X');
     if (mkdtemp(pattern.data()) == nullptr) throw Error("no temporary folder could be made");
     path_ = pattern;
   }

@@ -19,21 +19,11 @@ template <class T>
 inline __attribute__((always_inline)) void disc_rows(const PairArrays& p, const double* rows, long first, long count,
                                                      DiscScratch& out) {
   constexpr int W = T::W < 4 ? T::W : 4;
-  using V = typename Lanes<W>::V;
   for (long k = 0; k < count; k += W) {
     // Copies: no store of a column can change them, so each is read once.
     std::int32_t i[W], j[W];
     for (int lane = 0; lane < W; ++lane) i[lane] = p.row_i[first + k + lane], j[lane] = p.row_j[first + k + lane];
-    V d[4];
-    gather_differences<W>(rows, i, j, d);
-    store_as(out.dx.at + k, d[0]);
-    store_as(out.dy.at + k, d[1]);
-    if constexpr (T::Advance || T::Dashpot) {
-      store_as(out.du.at + k, d[2]);
-      store_as(out.dv.at + k, d[3]);
-      store_as(out.spin_i.at + k, gather_spins<W>(rows, i));
-      store_as(out.spin_j.at + k, gather_spins<W>(rows, j));
-    }
+    motion_to_columns<T, W>(rows, i, j, k, out);
   }
 }
 

@@ -40,16 +40,7 @@ inline __attribute__((always_inline)) void ellipse_rows(const PairArrays& p, con
   for (long k = 0; k < count; k += W) {
     std::int32_t i[W], j[W];
     for (int lane = 0; lane < W; ++lane) i[lane] = p.row_i[first + k + lane], j[lane] = p.row_j[first + k + lane];
-    V d[4];
-    gather_differences<W>(rows, i, j, d);
-    store_as(out.dx.at + k, d[0]);
-    store_as(out.dy.at + k, d[1]);
-    if constexpr (T::Advance || T::Dashpot) {
-      store_as(out.du.at + k, d[2]);
-      store_as(out.dv.at + k, d[3]);
-      store_as(out.spin_i.at + k, gather_spins<W>(rows, i));
-      store_as(out.spin_j.at + k, gather_spins<W>(rows, j));
-    }
+    motion_to_columns<T, W>(rows, i, j, k, out);
     for (int side = 0; side < 2; ++side) {
       V m[4];
       const std::int32_t* grain = side == 0 ? i : j;

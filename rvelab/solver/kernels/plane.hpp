@@ -22,6 +22,22 @@ struct PlaneContact {
   V turn_i = {}, turn_j = {};  ///< torque of a force of 1 along n, m (shapes that are not round)
 };
 
+/// Places and velocities of j less those of i, and both spins, of W pairs, from grain rows to columns k .. k + W - 1.
+template <class T, int W, class Scratch>
+inline __attribute__((always_inline)) void motion_to_columns(const double* rows, const std::int32_t (&i)[W],
+                                                             const std::int32_t (&j)[W], long k, Scratch& out) {
+  typename Lanes<W>::V d[4];
+  gather_differences<W>(rows, i, j, d);
+  store_as(out.dx.at + k, d[0]);
+  store_as(out.dy.at + k, d[1]);
+  if constexpr (T::Advance || T::Dashpot) {
+    store_as(out.du.at + k, d[2]);
+    store_as(out.dv.at + k, d[3]);
+    store_as(out.spin_i.at + k, gather_spins<W>(rows, i));
+    store_as(out.spin_j.at + k, gather_spins<W>(rows, j));
+  }
+}
+
 template <class Shape, class Law, class T>
 inline __attribute__((always_inline)) void plane_forces(const StepConstants& c, const PairArrays& p, long first,
                                                         long count, const typename Shape::Scratch& in,
