@@ -22,10 +22,11 @@ constexpr double target_of_servo = 1e-3;
 
 constexpr long servo_interval = 5;  ///< sub-steps between control updates of the servo
 
-/// What keeps the gain regular in a gas, Pa: a hundredth of what one typical contact per grain would give.
-double soft_stiffness(const Fixture& f, const Assembly& a, const RowSums& sums) {
+/// What keeps the gain regular in a gas, Pa: a hundredth of what one typical contact per grain would give, from the
+/// bound of stiffness of a grain of two (N/m).
+double soft_stiffness(const Fixture& f, const Assembly& a, double floor) {
   const double spacing = f.dimension() == 2 ? a.cell.lattice(2, 2) : 2 * f.mean_radius;
-  return 0.01 * sums.floor_translation / spacing;
+  return 0.01 * floor / spacing;
 }
 
 /// Strain and gradient of a mixed target so far, and the way from one control update to the next.
@@ -55,7 +56,7 @@ Report Rve::Impl::load(const MixedTarget& target, double dt, Matrix3& gradient) 
 
 Report Rve::Impl::load_at_rate(const MixedTarget& target, double dt, Matrix3& gradient) {
   Report report;
-  const auto stress = [&]() -> Matrix3 { return contact_stress() + reynolds_stress(); };
+  const auto stress = [&]() -> Matrix3 { return to_lab(present_stress()) + reynolds_stress(); };
   Servo servo(target, fixture.dimension(), stress(), Servo::Missed::at_once);
   begin_loading(fixture, now, Loading::physical);
 
@@ -70,7 +71,8 @@ Report Rve::Impl::load_at_rate(const MixedTarget& target, double dt, Matrix3& gr
       since_look = 0;
       checked_balance();
       time_step = this->time_step(now.state.last_rate, control_interval, (1 - fraction) * dt);
-      servo.set_stiffness(affine_stiffness(fixture, now), soft_stiffness(fixture, now, present_sums()));
+      servo.set_stiffness(affine_stiffness(fixture, now),
+                          soft_stiffness(fixture, now, present_sums().floor_translation));
       viscosity = affine_viscosity(fixture, now);
       gain_time = 0;
     }
@@ -109,7 +111,7 @@ Report Rve::Impl::load_at_rate(const MixedTarget& target, double dt, Matrix3& gr
 
 Report Rve::Impl::load_quasi_static(const MixedTarget& target, Matrix3& gradient) {
   Report report;
-  const auto stress = [&]() -> Matrix3 { return contact_stress() + reynolds_stress(); };
+  const auto stress = [&]() -> Matrix3 { return to_lab(present_stress()) + reynolds_stress(); };
   Servo servo(target, fixture.dimension(), stress(), Servo::Missed::evenly);
   begin_quasi_static();
   const Matrix3 stress_before = present_stress();
@@ -118,10 +120,10 @@ Report Rve::Impl::load_quasi_static(const MixedTarget& target, Matrix3& gradient
   TargetPath path{target, fixture.dimension()};
   double fraction = 0, since_control = 0;
   long waited = 0, longest_wait = target.wait;
-  bool arrived = false;
+  bool arrived = false, looked = false;
   while (true) {
     if (since_control == 0)
-      servo.set_stiffness(affine_stiffness(fixture, now), soft_stiffness(fixture, now, present_sums()));
+      servo.set_stiffness(affine_stiffness(fixture, now), soft_stiffness(fixture, now, least_stiffness(fixture, now)));
     long steps = servo_interval;
     const double wanted = servo.predicted_strain() + target.spin.norm();
     if (report.substeps == 0) {
@@ -144,6 +146,7 @@ Report Rve::Impl::load_quasi_static(const MixedTarget& target, Matrix3& gradient
     advance(fixture, now,
             loading_of(fixture, split_increment(now.cell, path.go_on(change, fraction)), steps, 1, false, false));
     moved();
+    looked = false;
     now.state.interval_strain += change.norm();
     report.substeps += steps;
     if (report.substeps > fixture.options.max_substeps)
@@ -154,20 +157,23 @@ Report Rve::Impl::load_quasi_static(const MixedTarget& target, Matrix3& gradient
     if (since_control >= double(control_interval)) {
       since_control = 0;
       const Balance balance = look();
+      looked = true;
       if (!waiting) steer_pace(balance, servo.held_stress());
     }
-    // The pace is judged before the wait, whose calm says nothing of it; increments shorter than an interval have no
-    // other moment.
+    // The pace is judged before the wait, whose calm says nothing of it.
     if (fraction >= 1 && !arrived) {
       arrived = true;
-      if (since_control > 0) steer_pace(look(), servo.held_stress());
+      if (!looked && end_is_looked_at(report.substeps, strain)) {
+        steer_pace(look(), servo.held_stress());
+        looked = true;
+      }
     }
     if (fraction >= 1) {
       report.held_error = servo.held_error(path.strain, stress());
       if (report.held_error <= target.tolerance) break;
     }
   }
-  look();
+  if (!looked && end_is_looked_at(report.substeps, strain)) look();
   report.unbalanced_ratio = now.state.unbalanced_ratio;
   report.held_error = servo.held_error(path.strain, stress());
   report.target_held = report.held_error <= target.tolerance;

@@ -68,7 +68,8 @@ double steps_of_start(const Matrix3& change, double strain, const Matrix3& rate,
 void Rve::Impl::begin_quasi_static() {
   if (!now.state.quasi_static) moved();  // dashpots let go
   begin_loading(fixture, now, Loading::quasi_static);
-  if (now.state.look_steps >= 0) return;
+  unknown_balance = now.state.look_steps < 0;
+  if (!unknown_balance) return;
   scale_inertia(fixture, present_sums(), now);
   now.state.softness = 1;
   begin_interval(balance_of(fixture, now));
@@ -97,9 +98,15 @@ void Rve::Impl::renew_interval(const Balance& balance) {
 
 Balance Rve::Impl::look() {
   const Balance balance = checked_balance();
+  unknown_balance = false;
   now.state.unbalanced_ratio = unbalanced(balance);
   if (now.state.look_steps >= control_interval) renew_interval(balance);
   return balance;
+}
+
+bool Rve::Impl::end_is_looked_at(long substeps, double strain) const {
+  return unknown_balance || now.state.look_steps >= control_interval || substeps >= looked_at_steps ||
+         strain > strain_looked_at;
 }
 
 double Rve::Impl::pressure() { return mean_pressure(present_stress(), fixture.dimension()); }
@@ -236,8 +243,7 @@ bool Rve::Impl::make_substeps(const StrainPath& path, double strain, double fewe
     done = next;
     report.substeps += steps;
     state.interval_strain += (fraction - before) * strain;
-    looked = state.look_steps >= control_interval ||
-             (fraction == 1 && (report.substeps >= looked_at_steps || strain > strain_looked_at));
+    looked = fraction == 1 ? end_is_looked_at(report.substeps, strain) : state.look_steps >= control_interval;
     if (!looked) continue;
     const Balance balance = look();
     // Where the fewest steps rule, the pace is not that of these steps, but it may still be found too fast.

@@ -35,6 +35,9 @@ struct Rve::Impl {
   bool stress_holds = false;
   Matrix3 other_stress = Matrix3::Zero();  ///< while a trial is pending: the same of the state that is not in `now`
   bool other_stress_holds = false;
+  /// Within a call at dt = 0: masses were scaled for grains, contacts or parameters that are others now, and the state
+  /// may be no equilibrium any more (friction lowered: the forces show it after a sub-step only).
+  bool unknown_balance = false;
   Cell strained_cell;  ///< the cell with the deferred stretch, while there is one
 
   /// Every public call that changes an Rve comes through here: working arrays are rebuilt, where rest() let go of them,
@@ -58,6 +61,9 @@ struct Rve::Impl {
   void begin_interval(const Balance& balance);
   /// dt = 0: balance and overlaps; every control_interval sub-steps renew_interval.
   Balance look();
+  /// dt = 0: whether the end of an increment of so many sub-steps and this strain is looked at. If not, it is judged by
+  /// what is known already, so that a call costs little more than its sub-steps.
+  bool end_is_looked_at(long substeps, double strain) const;
 
   Matrix3 to_lab(const Matrix3& cell_frame) const {
     return now.cell.rotation * cell_frame * now.cell.rotation.transpose();

@@ -59,6 +59,30 @@ TEST_CASE("an increment that ends out of balance says so") {
   CHECK_FALSE(report.quasi_static);
 }
 
+TEST_CASE("a packing whose friction is lowered is no equilibrium, and its first increment says so, however small") {
+  Specimen s = dense(0.5);
+  Rve rve(s);
+  for (int k = 0; k < 10; ++k) rve.apply(entry(0, 1, 2e-4), 0);
+  rve.relax(1e-5, 20'000);
+  const Specimen at_rest = rve.specimen();
+  for (const double strain : {1e-9, 1e-7, 1e-6, 1e-5})
+    for (const double friction : {0.0, 0.05}) {
+      CAPTURE(strain, friction);
+      Specimen kept = at_rest;
+      for (Material& m : kept.materials) m.friction = friction;
+      Specimen fresh = kept;
+      fresh.state = {};
+      Rve lowered(at_rest), opened(kept), anew(fresh);
+      lowered.set_materials(kept.materials);
+      for (Rve* one : {&lowered, &opened, &anew}) {
+        const Report report = one->apply(entry(0, 1, strain), 0).report;
+        CHECK(report.unbalanced_ratio > 5e-3);
+        CHECK_FALSE(report.quasi_static);
+        CHECK(one->apply(entry(0, 1, strain), 0).report.unbalanced_ratio > 5e-3);
+      }
+    }
+}
+
 TEST_CASE("a tangential force without a stiffness is refused, and let go of where a material loses it") {
   Specimen s = dense(0.5);
   Rve rve(s);

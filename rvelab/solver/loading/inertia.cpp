@@ -303,6 +303,11 @@ void scale_inertia(const Fixture& f, const RowSums& sums, Assembly& a) {
   }
 }
 
+double least_stiffness(const Fixture& f, const Assembly& a) {
+  const double factor = f.options.time_step_factor;
+  return 4 * factor * factor * *std::min_element(a.mass.begin(), a.mass.begin() + std::ptrdiff_t(f.size()));
+}
+
 void use_physical_inertia(const Fixture& f, Assembly& a) {
   for (std::size_t g = 0; g < f.size(); ++g) {
     a.mass[g] = f.mass[g];
