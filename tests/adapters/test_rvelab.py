@@ -220,7 +220,7 @@ class RveTest(unittest.TestCase):
         rve = rvelab.Rve(specimen, tolerance_rel=2e-3, tolerance_abs=2e-5)
         with warnings.catch_warnings(record=True) as told:
             warnings.simplefilter("default")
-            for dH in gradients(3, 1e-3):
+            for dH in gradients(30, 1e-3):
                 rve.apply(dH)
         self.assertEqual(len(told), 1)  # once for a line, though the figures differ
         self.assertEqual((told[0].category, told[0].filename), (rvelab.RvelabWarning, __file__))
