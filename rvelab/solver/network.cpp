@@ -1,5 +1,6 @@
 // Rve::network: the contact network as a value. Declared in rve.hpp.
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 #include "rvelab/solver/assembly/contact_stiffness.hpp"
@@ -56,40 +57,62 @@ void add_torques(const Fixture& f, const ContactState& c, const Vector3& force, 
   j.torque -= (j.radius - 0.5 * c.overlap) * turning - c.rolling_moment;
 }
 
+/// A touching contact; `at` is its place.
+template <class Place>
+ContactState state_of(const Fixture& f, const PairTable& pairs, std::size_t p, const Place& at) {
+  ContactState c;
+  c.i = pairs.i[p];
+  c.j = pairs.j[p];
+  c.image = pairs.image[p];
+  c.branch = {at.branch.x, at.branch.y, at.branch.z};
+  c.length = at.length;
+  c.overlap = at.overlap;
+  set_arms(f, at, c);
+  const Vector3 force = force_of(f, pairs, p);
+  c.normal_force = force.dot(c.normal);
+  c.tangential_force = force - c.normal_force * c.normal;
+  c.rolling_moment.setZero();
+  if (f.contact.rolling) {
+    if (f.dimension() == 2)
+      c.rolling_moment[2] = pairs.moment[0][p];
+    else
+      c.rolling_moment = {pairs.moment[0][p], pairs.moment[1][p], pairs.moment[2][p]};
+    c.moment_cap = pairs.moment_cap[p];
+  }
+  c.friction = pairs.friction[p];
+  set_elastic(f, pairs, p, c);
+  return c;
+}
+
 template <Shape shape>
 void add_contacts(const Fixture& f, const Assembly& a, Network& net) {
   const PairGeometry<shape> pair(f, a);
   for (const std::int32_t place : a.pairs.order) {
     const auto p = std::size_t(place);
-    const auto i = a.pairs.i[p], j = a.pairs.j[p];
     const auto at = pair(p);
     if (!(at.overlap > 0)) continue;
-    ContactState c;
-    c.i = i;
-    c.j = j;
-    c.image = a.pairs.image[p];
-    c.branch = {at.branch.x, at.branch.y, at.branch.z};
-    c.length = at.length;
-    c.overlap = at.overlap;
-    set_arms(f, at, c);
+    const ContactState c = state_of(f, a.pairs, p, at);
     const Vector3 force = force_of(f, a.pairs, p);
-    c.normal_force = force.dot(c.normal);
-    c.tangential_force = force - c.normal_force * c.normal;
-    c.rolling_moment.setZero();
-    if (f.contact.rolling) {
-      if (f.dimension() == 2)
-        c.rolling_moment[2] = a.pairs.moment[0][p];
-      else
-        c.rolling_moment = {a.pairs.moment[0][p], a.pairs.moment[1][p], a.pairs.moment[2][p]};
-      c.moment_cap = a.pairs.moment_cap[p];
-    }
-    c.friction = a.pairs.friction[p];
-    set_elastic(f, a.pairs, p, c);
-    net.grains[std::size_t(i)].resultant -= force;
-    net.grains[std::size_t(j)].resultant += force;
+    net.grains[std::size_t(c.i)].resultant -= force;
+    net.grains[std::size_t(c.j)].resultant += force;
     add_torques(f, c, force, net);
     net.contacts.push_back(c);
   }
+}
+
+template <Shape shape>
+bool some_contact_must_slip(const Fixture& f, const Assembly& a) {
+  constexpr double most = 1 + 1e-6;  // a sliding contact is at its limit, give or take round-off
+  const PairGeometry<shape> pair(f, a);
+  return std::any_of(a.pairs.order.begin(), a.pairs.order.end(), [&](std::int32_t place) {
+    const auto p = std::size_t(place);
+    const auto at = pair(p);
+    if (!(at.overlap > 0)) return false;
+    const ContactState c = state_of(f, a.pairs, p, at);
+    const double pressing = most * std::abs(c.pressing_force);
+    return c.tangential_force.norm() > c.friction * pressing ||
+           (f.contact.rolling && c.rolling_moment.norm() > c.moment_cap * pressing);
+  });
 }
 
 Network network_of(const Fixture& f, const Assembly& a) {
@@ -121,6 +144,10 @@ Network network_of(const Fixture& f, const Assembly& a) {
 }
 
 }  // namespace
+
+bool Rve::Impl::holds_more_than_friction() const {
+  return with_shape(fixture.shape, [&](auto shape) { return some_contact_must_slip<shape.value>(fixture, now); });
+}
 
 Network Rve::network() const {
   return brought_up_to_date(*impl_, [](const Impl& m) { return network_of(m.fixture, m.now); });

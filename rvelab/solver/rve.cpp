@@ -27,16 +27,6 @@ void expect_overlaps(const Balance& balance, double limit) {
                    "meant to be so soft");
 }
 
-/// Friction lowered since the state was kept: some contact holds more than it may, and gives way at the next sub-step.
-bool holds_more_than_friction(const Network& network) {
-  constexpr double most = 1 + 1e-6;
-  return std::any_of(network.contacts.begin(), network.contacts.end(), [&](const ContactState& c) {
-    const double pressing = most * std::abs(c.pressing_force);
-    return c.tangential_force.norm() > c.friction * pressing ||
-           (network.model.rolling && c.rolling_moment.norm() > c.moment_cap * pressing);
-  });
-}
-
 }  // namespace
 
 Rve::Rve(const Specimen& specimen) : impl_(std::make_unique<Impl>()) {
@@ -52,7 +42,7 @@ Rve::Rve(const Specimen& specimen) : impl_(std::make_unique<Impl>()) {
     throw InputError("specimen: its stress is not finite (cell volume " + in_words(m.now.cell.volume()) +
                      " m^3); are cell, masses or velocities in the wrong units? Give all in SI");
   m.set_strained_cell();
-  if (m.now.state.look_steps >= 0 && holds_more_than_friction(network())) {
+  if (m.now.state.look_steps >= 0 && m.holds_more_than_friction()) {
     m.now.state.look_steps = -1;
     use_physical_inertia(m.fixture, m.now);
   }

@@ -71,6 +71,8 @@ struct Rve::Impl {
   Matrix3 contact_stress() const;   ///< of `now`, laboratory frame, Pa
   Matrix3 strained_stress() const;  ///< the same with that of the deferred stretch
   Matrix3 reynolds_stress() const;
+  /// Friction lowered since the state was kept: some contact gives way at the next sub-step, whatever that is.
+  bool holds_more_than_friction() const;
   // Deferred strain (dt = 0, deferred.cpp): increments that are a small part of a sub-step share one.
   bool has_deferred() const { return !(now.state.deferred_stretch.array() == Matrix3::Identity().array()).all(); }
   bool may_defer(const FrameSplit& increment);
