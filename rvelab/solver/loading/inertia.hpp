@@ -37,8 +37,8 @@ RowSums with_floor(RowSums sums, const Fixture& fixture);
 /// Masses and inertias such that a unit step is `factor` times the critical one for every grain.
 void scale_inertia(const Fixture& fixture, const RowSums& sums, Assembly& assembly);
 
-/// Least row sum of translation behind the scaled masses, N/m: that of a grain of two typical contacts, where one has no
-/// more of them.
+/// Least row sum of translation behind the scaled masses, N/m: that of a grain of two typical contacts, where one has
+/// no more of them.
 double least_stiffness(const Fixture& fixture, const Assembly& assembly);
 
 void use_physical_inertia(const Fixture& fixture, Assembly& assembly);
