@@ -4,8 +4,11 @@
 
 #include "rvelab/abi/file_library.hpp"
 #include "rvelab/abi/handle.hpp"
+#include "rvelab/abi/rank_calls.hpp"
 #include "rvelab/abi/structs.hpp"
+#include "rvelab/io/version.hpp"
 #include "rvelab/pool/rve_state.hpp"
+#include "rvelab/pool/threaded_pool.hpp"
 
 namespace rvelab::abi {
 
@@ -21,7 +24,9 @@ std::span<const std::int64_t> ids_of(std::int64_t n, const std::int64_t* ids) {
 
 namespace {
 
-pool::Options options_of(const rvelab_pool_def& def) {
+pool::Options options_of(const rvelab_pool_def* given) {
+  if (given == nullptr) return {};
+  const rvelab_pool_def def = read_struct(given, "rvelab_pool_def");
   if (def.workers < 0)
     throw Refused(Status::bad_input, "pool_def.workers is " + std::to_string(def.workers) +
                                          "; allowed: 1 or more, or 0 for as many as the processor runs at once");
@@ -45,8 +50,28 @@ std::span<const std::byte> bytes_of(const void* buf, std::size_t size) {
   return {static_cast<const std::byte*>(buf), size};
 }
 
+rvelab_pool* handle_of(std::unique_ptr<pool::Pool> made) { return reinterpret_cast<rvelab_pool*>(made.release()); }
+
+std::unique_ptr<pool::Share> open_share(const pool::Options& options) {
+  return std::make_unique<pool::ThreadedPool>(options);
+}
+
+std::int32_t give_pool(const rvelab_pool_def* def, void* self,
+                       std::unique_ptr<pool::Pool> (*make)(void* self, const pool::Options& options),
+                       rvelab_pool** pool) noexcept {
+  return behind_wall([&] {
+    expect_pointer(pool, "pool");
+    *pool = handle_of(make(self, options_of(def)));
+  });
+}
+
 }  // namespace
 }  // namespace rvelab::abi
+
+const void* rvelab_rank_calls() {
+  static constexpr rvelab::abi::RankCalls calls{rvelab::io::version, rvelab::abi::open_share, rvelab::abi::give_pool};
+  return &calls;
+}
 
 using namespace rvelab;
 using namespace rvelab::abi;
@@ -62,9 +87,7 @@ int32_t rvelab_pool_def_init(rvelab_pool_def* def, size_t struct_size) {
 int32_t rvelab_pool_create(const rvelab_pool_def* def, rvelab_pool** pool) {
   return behind_wall([&] {
     expect_pointer(pool, "pool");
-    pool::Options options;
-    if (def != nullptr) options = options_of(read_struct(def, "rvelab_pool_def"));
-    *pool = reinterpret_cast<rvelab_pool*>(new pool::Pool(options));
+    *pool = handle_of(std::make_unique<pool::ThreadedPool>(options_of(def)));
   });
 }
 

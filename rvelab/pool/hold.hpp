@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "rvelab/pool/pool.hpp"
+#include "rvelab/pool/threaded_pool.hpp"
 
 namespace rvelab::pool {
 
@@ -24,9 +24,9 @@ class Hold {
 };
 
 /// A call that works on RVEs.
-class Pool::AtWork {
+class ThreadedPool::AtWork {
  public:
-  explicit AtWork(Pool& pool) : pool_(pool) {
+  explicit AtWork(ThreadedPool& pool) : pool_(pool) {
     pool.expect_this_process();
     int calls = pool.calls_.load(std::memory_order_relaxed);
     do {
@@ -38,13 +38,13 @@ class Pool::AtWork {
   AtWork& operator=(const AtWork&) = delete;
 
  private:
-  Pool& pool_;
+  ThreadedPool& pool_;
 };
 
 /// A call that no other may run beside.
-class Pool::Alone {
+class ThreadedPool::Alone {
  public:
-  explicit Alone(Pool& pool) : pool_(pool) {
+  explicit Alone(ThreadedPool& pool) : pool_(pool) {
     pool.expect_this_process();
     int none = 0;
     if (!pool.calls_.compare_exchange_strong(none, -1, std::memory_order_acquire))
@@ -55,7 +55,7 @@ class Pool::Alone {
   Alone& operator=(const Alone&) = delete;
 
  private:
-  Pool& pool_;
+  ThreadedPool& pool_;
 };
 
 /// The committed state in the place of a pending trial, for as long as it is looked at.

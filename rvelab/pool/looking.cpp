@@ -1,7 +1,7 @@
-// What is measured of the RVEs of a pool. Declared in pool.hpp.
+// What is measured of the RVEs of a pool. Declared in threaded_pool.hpp.
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/pool/hold.hpp"
-#include "rvelab/pool/pool.hpp"
+#include "rvelab/pool/threaded_pool.hpp"
 
 namespace rvelab::pool {
 
@@ -12,7 +12,7 @@ double permeability(double void_ratio) { return void_ratio * void_ratio * void_r
 
 }  // namespace
 
-Info Pool::info(std::int64_t id) {
+Info ThreadedPool::info(std::int64_t id) {
   const AtWork working(*this);
   const Hold hold = held(id, ++serial_);
   Resident& resident = hold.resident();
@@ -42,7 +42,7 @@ Info Pool::info(std::int64_t id) {
   return info;
 }
 
-void Pool::cost(std::span<const std::int64_t> ids, std::int64_t* grain_steps) {
+void ThreadedPool::cost(std::span<const std::int64_t> ids, std::int64_t* grain_steps) {
   const AtWork working(*this);
   for (const std::int64_t id : ids) slots_.at(id);
   for (const std::int64_t id : ids)

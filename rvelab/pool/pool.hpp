@@ -5,16 +5,15 @@
 // then as it was.
 #pragma once
 
-#include <atomic>
 #include <cstddef>
 #include <functional>
 #include <span>
+#include <string>
 #include <vector>
 
-#include "rvelab/pool/rve_state.hpp"
-#include "rvelab/pool/slots.hpp"
 #include "rvelab/pool/status.hpp"
 #include "rvelab/pool/team.hpp"
+#include "rvelab/solver/rve.hpp"
 
 namespace rvelab::pool {
 
@@ -47,6 +46,7 @@ struct Batch {
   double* dt_scale = nullptr;
   std::int32_t* status = nullptr;
   std::int64_t* tokens_out = nullptr;
+  const std::int64_t* places = nullptr;  ///< what texts call the entries; null: by their index
 };
 
 /// A status with its text, "" for ok.
@@ -68,82 +68,52 @@ struct Info {
   std::int64_t token = 0;
 };
 
-/// All that a pool file keeps. The specimen of a resident goes in and out as to_bytes(RveState) makes it.
+/// All that a pool file keeps beside the states, which go in and out as to_bytes(RveState) makes them.
 struct Population {
   std::uint32_t tag = 0;
   std::vector<std::uint32_t> generations;  ///< of each slot
   std::vector<std::int64_t> ids;
 };
 
-class Hold;
-
+/// Where the RVEs live is the matter of those who implement it.
 class Pool {
  public:
-  explicit Pool(const Options& options);
-  ~Pool();
+  using StateOf = std::function<std::vector<std::byte>(std::size_t)>;  ///< of the k-th id of a population
+  using TakeState = std::function<void(std::span<const std::byte>)>;
+
+  Pool() = default;
+  virtual ~Pool() = default;
   Pool(const Pool&) = delete;
   Pool& operator=(const Pool&) = delete;
 
-  std::int64_t add_template(Specimen specimen);
-  void spawn(std::int64_t of_template, std::int64_t n, std::int64_t* ids);
-  std::int64_t clone(std::int64_t source);
-  void release(std::span<const std::int64_t> ids);
-  std::vector<std::int64_t> ids();
+  virtual std::int64_t add_template(Specimen specimen) = 0;
+  virtual void spawn(std::int64_t of_template, std::int64_t n, std::int64_t* ids) = 0;
+  virtual std::int64_t clone(std::int64_t source) = 0;
+  virtual void release(std::span<const std::int64_t> ids) = 0;
+  virtual std::vector<std::int64_t> ids() = 0;
 
   /// Trial and commit in one; what to say of it.
-  Verdict apply(std::int64_t id, const Matrix3& displacement_gradient, double dt, double* stress);
+  virtual Verdict apply(std::int64_t id, const Matrix3& displacement_gradient, double dt, double* stress) = 0;
   /// The worst status; its text names index and id.
-  Verdict trial(const Batch& batch);
+  virtual Verdict trial(const Batch& batch) = 0;
   /// `ids` without data: all that are pending.
-  void commit(std::span<const std::int64_t> ids);
-  void revert(std::span<const std::int64_t> ids);
+  virtual void commit(std::span<const std::int64_t> ids) = 0;
+  virtual void revert(std::span<const std::int64_t> ids) = 0;
 
-  Info info(std::int64_t id);
-  void cost(std::span<const std::int64_t> ids, std::int64_t* grain_steps);
+  virtual Info info(std::int64_t id) = 0;
+  virtual void cost(std::span<const std::int64_t> ids, std::int64_t* grain_steps) = 0;
 
-  std::vector<std::byte> save(std::int64_t id);
-  void load(std::int64_t id, std::span<const std::byte> snapshot);
+  virtual std::vector<std::byte> save(std::int64_t id) = 0;
+  virtual void load(std::int64_t id, std::span<const std::byte> snapshot) = 0;
   /// Shows the population, then the bytes of each RVE (to_bytes(RveState)) in the order of its ids.
-  void write(
-      const std::function<void(const Population&, const std::function<std::vector<std::byte>(std::size_t)>&)>& writer);
+  virtual void write(const std::function<void(const Population&, const StateOf&)>& writer) = 0;
   /// Takes a population and the bytes of each RVE. The pool must be without RVEs.
-  void read(const std::function<Population(const std::function<void(std::span<const std::byte>)>& take)>& reader);
+  virtual void read(const std::function<Population(const TakeState& take)>& reader) = 0;
 
   /// Throws Refused (forked) in a child process of the one that made the pool.
-  void expect_this_process() const;
+  virtual void expect_this_process() const = 0;
   /// The last call before the end: Refused (busy) while another is at work; all later ones are busy.
-  void close();
-
- private:
-  class AtWork;
-  class Alone;
-  struct Entry;
-  struct Outcome;
-
-  Hold held(std::int64_t id, std::uint64_t call);
-  std::vector<Hold> held(std::span<const std::int64_t> ids, std::uint64_t call);
-  std::vector<Hold> all_pending(std::uint64_t call);
-  void called(Slot& slot, std::uint64_t grain_steps, long substeps) noexcept;
-  void rest_another() noexcept;
-  Outcome attempt(Slot& slot, const Matrix3& displacement_gradient, double dt, const Batch& wanted);
-  void accept(Slot& slot, std::int64_t token, const Matrix3& displacement_gradient);
-  void run_entry(Entry& entry, const Batch& batch) noexcept;
-
-  struct Template {
-    Rve rve;
-    double void_ratio;
-  };
-
-  Options options_;
-  Team team_;
-  Slots slots_;
-  std::vector<std::unique_ptr<Template>> templates_;
-  std::uint32_t number_;                  ///< of this pool in the process, for its templates
-  std::uint64_t process_;                 ///< forks before this process
-  std::atomic<int> calls_{0};             ///< at work; -1: one is alone
-  std::atomic<std::uint64_t> serial_{1};  ///< of calls
-  std::atomic<std::uint64_t> clock_{0};   ///< calls on RVEs
-  std::atomic<std::uint64_t> hand_{0};    ///< of the look for RVEs that are to rest
+  virtual void close() = 0;
 };
 
 }  // namespace rvelab::pool

@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "rvelab/pool/id.hpp"
+#include "rvelab/pool/id_table.hpp"
 #include "rvelab/pool/tokens.hpp"
 #include "rvelab/solver/rve.hpp"
 
@@ -24,7 +24,6 @@ struct Resident {
 };
 
 struct Slot {
-  std::uint32_t generation = 1;
   std::unique_ptr<Resident> resident;         ///< null: the slot is free
   std::atomic<std::uint64_t> owner{0};        ///< serial number of the call that is at work on it; 0: none
   std::atomic<std::uint64_t> last_call{0};    ///< by the pool's count of calls on RVEs
@@ -37,34 +36,30 @@ struct Slot {
 class Slots {
  public:
   /// The slot of an id. Throws Refused (bad_id) if it is null, stale, foreign, rounded, or none.
-  Slot& at(std::int64_t id);
+  Slot& at(std::int64_t id) { return slots_[ids_.slot_of(id)]; }
   /// Makes room for n more. All or nothing is taken by `add`, which then cannot fail. Refused (no_slot): all are used.
   void make_room(std::size_t n);
   /// Puts an RVE into a free slot; its id. Room must have been made.
   std::int64_t add(std::unique_ptr<Resident> resident) noexcept;
   void remove(std::int64_t id) noexcept;
 
-  std::size_t population() const { return population_; }
-  std::uint32_t tag() const { return tag_; }
-  std::int64_t id_of(std::size_t slot) const { return Id{tag_, slots_[slot].generation, std::uint32_t(slot)}.value(); }
   std::size_t size() const { return slots_.size(); }  ///< slots, from 0; those that hold nothing too
   Slot& operator[](std::size_t slot) { return slots_[slot]; }
+  const IdTable& ids() const { return ids_; }
 
-  /// As a file has them: a generation for each slot, and the residents by slot. The table must be without RVEs.
-  std::vector<std::uint32_t> generations() const;
-  void restore(std::uint32_t tag, const std::vector<std::uint32_t>& generations,
-               std::vector<std::pair<std::uint32_t, std::unique_ptr<Resident>>> residents);
-
-  Slots() = default;
-  ~Slots();
+  using Residents = std::vector<std::unique_ptr<Resident>>;
+  /// As a file has them: a generation for each slot, and the RVEs of the ids. The table must be without RVEs.
+  void restore(std::uint32_t tag, const std::vector<std::uint32_t>& generations, std::span<const std::int64_t> ids,
+               Residents residents);
+  /// RVEs under ids that another table gave out, all or none; and away again.
+  void claim(std::span<const std::int64_t> ids, Residents residents);
+  void give_up(std::int64_t id) noexcept;
 
  private:
-  void take_tag();
+  void settle(std::size_t slot, std::unique_ptr<Resident> resident) noexcept;
 
-  std::deque<Slot> slots_;
-  std::vector<std::uint32_t> free_;
-  std::size_t population_ = 0;
-  std::uint32_t tag_ = 0;  ///< 0: none yet
+  IdTable ids_;
+  std::deque<Slot> slots_;  ///< as many as ids_ has, or fewer after memory ran out
 };
 
 }  // namespace rvelab::pool

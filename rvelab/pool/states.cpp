@@ -1,10 +1,12 @@
-// States of RVEs out of the pool and into it. Declared in pool.hpp.
+// States of RVEs out of the pool and into it. Declared in threaded_pool.hpp.
 #include <algorithm>
 #include <string>
 #include <utility>
 
+#include "rvelab/pool/checks.hpp"
 #include "rvelab/pool/hold.hpp"
-#include "rvelab/pool/pool.hpp"
+#include "rvelab/pool/rve_state.hpp"
+#include "rvelab/pool/threaded_pool.hpp"
 
 namespace rvelab::pool {
 
@@ -23,36 +25,15 @@ std::unique_ptr<Resident> opened(const RveState& state) {
   return resident;
 }
 
-void expect_population(const Population& population, std::size_t states) {
-  const auto expect = [](bool holds, const std::string& what) {
-    if (!holds) throw Refused(Status::bad_file, "pool file: " + what + "; it was damaged: write it again");
-  };
-  expect(states == population.ids.size(),
-         "it has " + std::to_string(population.ids.size()) + " ids for " + std::to_string(states) + " RVEs");
-  expect(population.tag < tag_limit && (population.tag > 0 || states == 0), "its pool tag cannot be");
-  expect(population.generations.size() <= slot_limit, "it has more slots than a pool");
-  for (const std::uint32_t generation : population.generations)
-    expect(generation >= 1 && generation <= generation_limit, "a generation of its slots cannot be");
-  std::int64_t last = 0;
-  for (const std::int64_t value : population.ids) {
-    const Id id = Id::of(value);
-    expect(value > 0 && id.value() == value && id.tag == population.tag && is_usable(id.slot) &&
-               id.slot < population.generations.size() && id.generation == population.generations[id.slot] &&
-               std::int64_t(id.slot) > last,
-           "its id " + std::to_string(value) + " cannot be");
-    last = id.slot;
-  }
-}
-
 }  // namespace
 
-std::vector<std::byte> Pool::save(std::int64_t id) {
+std::vector<std::byte> ThreadedPool::save(std::int64_t id) {
   const AtWork working(*this);
   const Hold hold = held(id, ++serial_);
   return bytes_of(hold.resident());
 }
 
-void Pool::load(std::int64_t id, std::span<const std::byte> snapshot) {
+void ThreadedPool::load(std::int64_t id, std::span<const std::byte> snapshot) {
   const AtWork working(*this);
   const Hold hold = held(id, ++serial_);
   std::unique_ptr<Resident> read = opened(rve_state_of(snapshot));
@@ -60,29 +41,36 @@ void Pool::load(std::int64_t id, std::span<const std::byte> snapshot) {
   std::swap(hold.slot().resident, read);
 }
 
-void Pool::write(
-    const std::function<void(const Population&, const std::function<std::vector<std::byte>(std::size_t)>&)>& writer) {
+void ThreadedPool::write(const std::function<void(const Population&, const StateOf&)>& writer) {
   const Alone alone(*this);
-  Population population{slots_.tag(), slots_.generations(), {}};
+  Population population{slots_.ids().tag(), slots_.ids().generations(), {}};
   for (std::size_t k = 0; k < slots_.size(); ++k)
-    if (slots_[k].resident) population.ids.push_back(slots_.id_of(k));
+    if (slots_[k].resident) population.ids.push_back(slots_.ids().id_of(k));
   writer(population, [&](std::size_t k) { return bytes_of(*slots_.at(population.ids[k]).resident); });
 }
 
-void Pool::read(const std::function<Population(const std::function<void(std::span<const std::byte>)>& take)>& reader) {
+void ThreadedPool::read(const std::function<Population(const TakeState& take)>& reader) {
   const Alone alone(*this);
-  if (slots_.population() > 0)
-    throw Refused(Status::bad_input, "pool_read: this pool has " + std::to_string(slots_.population()) +
-                                         " RVEs; read into a new pool, or release them first");
-  std::vector<std::unique_ptr<Resident>> states;
+  expect_empty(slots_.ids());
+  Slots::Residents states;
   const Population population =
       reader([&](std::span<const std::byte> bytes) { states.push_back(opened(rve_state_of(bytes))); });
-  expect_population(population, states.size());
-  std::vector<std::pair<std::uint32_t, std::unique_ptr<Resident>>> residents;
-  residents.reserve(states.size());
-  for (std::size_t k = 0; k < states.size(); ++k)
-    residents.emplace_back(Id::of(population.ids[k]).slot, std::move(states[k]));
-  slots_.restore(population.tag, population.generations, std::move(residents));
+  expect_whole(population, states.size());
+  slots_.restore(population.tag, population.generations, population.ids, std::move(states));
 }
+
+void ThreadedPool::receive(std::span<const std::byte> state, bool pending) {
+  const Alone alone(*this);
+  received_.push_back(opened(rve_state_of(state)));
+  received_.back()->pending = pending && received_.back()->tokens.trials() > 0;
+}
+
+void ThreadedPool::place(std::span<const std::int64_t> ids) {
+  const Alone alone(*this);
+  slots_.claim(ids, std::move(received_));
+  received_.clear();
+}
+
+void ThreadedPool::forget_received() noexcept { received_.clear(); }
 
 }  // namespace rvelab::pool

@@ -1,4 +1,4 @@
-// Trials, their commitment and tokens. Declared in pool.hpp.
+// Trials, their commitment and tokens. Declared in threaded_pool.hpp.
 //
 // Order of work: the ids of a batch are checked and held first; then each RVE is one piece, the costliest of the last
 // call first, taken from one shared count. All pieces are known at the start and take ten microseconds or more, so that
@@ -10,8 +10,9 @@
 #include <string>
 
 #include "rvelab/measure/tangent.hpp"
+#include "rvelab/pool/checks.hpp"
 #include "rvelab/pool/hold.hpp"
-#include "rvelab/pool/pool.hpp"
+#include "rvelab/pool/threaded_pool.hpp"
 
 namespace rvelab::pool {
 
@@ -77,12 +78,6 @@ bool elastic(const Network& network, Tangent& tangent) {
   return condensed;
 }
 
-void expect_time(double dt) {
-  if (dt >= 0 && std::isfinite(dt)) return;
-  throw Refused(Status::bad_input,
-                "dt is " + rvelab::in_words(dt) + " s; allowed: 0 (quasi-static) or a positive time");
-}
-
 void store(const Matrix3& tensor, double* to) {
   Eigen::Map<RowMajor> target(to);
   target = tensor;
@@ -90,21 +85,22 @@ void store(const Matrix3& tensor, double* to) {
 
 }  // namespace
 
-struct Pool::Outcome {
+struct ThreadedPool::Outcome {
   Response response;
   Tangent tangent;
   std::int64_t token = 0;
   Verdict verdict;
 };
 
-struct Pool::Entry {
+struct ThreadedPool::Entry {
   std::size_t index = 0;
   Slot* slot = nullptr;
   Verdict verdict;
 };
 
 /// Makes a trial from the committed state; it is pending then.
-Pool::Outcome Pool::attempt(Slot& slot, const Matrix3& displacement_gradient, double dt, const Batch& wanted) {
+ThreadedPool::Outcome ThreadedPool::attempt(Slot& slot, const Matrix3& displacement_gradient, double dt,
+                                            const Batch& wanted) {
   Resident& resident = *slot.resident;
   Rve& rve = resident.rve;
   rve.revert();
@@ -154,7 +150,7 @@ std::int64_t last_token(const Tokens& tokens) { return tokens.trial(tokens.trial
 }  // namespace
 
 /// The state that a token names becomes the committed one, for an increment that can be applied to it.
-void Pool::accept(Slot& slot, std::int64_t token, const Matrix3& displacement_gradient) {
+void ThreadedPool::accept(Slot& slot, std::int64_t token, const Matrix3& displacement_gradient) {
   Resident& resident = *slot.resident;
   if (token == resident.tokens.committed()) return;
   split_increment(resident.rve.cell(), displacement_gradient);  // refused before anything is committed
@@ -167,7 +163,7 @@ void Pool::accept(Slot& slot, std::int64_t token, const Matrix3& displacement_gr
   settle(resident, token);
 }
 
-Verdict Pool::apply(std::int64_t id, const Matrix3& displacement_gradient, double dt, double* stress) {
+Verdict ThreadedPool::apply(std::int64_t id, const Matrix3& displacement_gradient, double dt, double* stress) {
   const AtWork working(*this);
   expect_time(dt);
   const Hold hold = held(id, ++serial_);
@@ -177,7 +173,7 @@ Verdict Pool::apply(std::int64_t id, const Matrix3& displacement_gradient, doubl
   return std::move(outcome.verdict);
 }
 
-void Pool::run_entry(Entry& entry, const Batch& batch) noexcept {
+void ThreadedPool::run_entry(Entry& entry, const Batch& batch) noexcept {
   const std::size_t k = entry.index;
   try {
     const Matrix3 gradient = Eigen::Map<const RowMajor>(batch.displacement_gradients + 9 * k);
@@ -197,7 +193,7 @@ void Pool::run_entry(Entry& entry, const Batch& batch) noexcept {
   }
 }
 
-Verdict Pool::trial(const Batch& batch) {
+Verdict ThreadedPool::trial(const Batch& batch) {
   const AtWork working(*this);
   if (batch.n < 0) throw Refused(Status::bad_input, "batch.n is " + std::to_string(batch.n) + "; allowed: 0 or more");
   if (batch.n == 0) return {};
@@ -239,54 +235,74 @@ Verdict Pool::trial(const Batch& batch) {
   Verdict verdict = std::move(entries[worst].verdict);
   if (verdict.status != Status::ok) {
     char place[96];
-    std::snprintf(place, sizeof place, "entry %zu (id %lld): ", worst, static_cast<long long>(batch.ids[worst]));
+    std::snprintf(place, sizeof place, "entry %lld (id %lld): ",
+                  static_cast<long long>(batch.places != nullptr ? batch.places[worst] : std::int64_t(worst)),
+                  static_cast<long long>(batch.ids[worst]));
     verdict.text.insert(0, place);
   }
   return verdict;
 }
 
-std::vector<Hold> Pool::all_pending(std::uint64_t call) {
+std::vector<Hold> ThreadedPool::all_pending(std::uint64_t call) {
   std::vector<Hold> holds;
-  holds.reserve(slots_.population());
+  holds.reserve(slots_.ids().population());
   for (std::size_t k = 0; k < slots_.size(); ++k) {
     if (!slots_[k].resident) continue;
-    Hold hold = held(slots_.id_of(k), call);
+    Hold hold = held(slots_.ids().id_of(k), call);
     if (hold.resident().pending) holds.push_back(std::move(hold));
   }
   return holds;
 }
 
-void Pool::commit(std::span<const std::int64_t> ids) {
-  const AtWork working(*this);
-  const std::uint64_t call = ++serial_;
-  const std::vector<Hold> holds = ids.data() == nullptr ? all_pending(call) : held(ids, call);
+/// The trial of each is pending and its state at hand, or Refused and nothing has changed. `places`: what the text
+/// calls the ids; without: by their index.
+void ThreadedPool::prepare(std::span<const Hold> holds, std::span<const std::int64_t> ids,
+                           std::span<const std::int64_t> places) {
   for (std::size_t k = 0; k < holds.size(); ++k)
     if (!holds[k].resident().pending)
-      throw Refused(Status::no_trial, "commit: entry " + std::to_string(k) + " (id " + std::to_string(ids[k]) +
+      throw Refused(Status::no_trial, "commit: entry " + std::to_string(places.empty() ? std::int64_t(k) : places[k]) +
+                                          " (id " + std::to_string(ids[k]) +
                                           ") has no pending trial; nothing was committed. Make a trial first");
   std::vector<Resident*> again;
   again.reserve(holds.size());
   for (const Hold& hold : holds)
     if (!hold.resident().rve.pending()) again.push_back(&hold.resident());
-  if (!again.empty()) {
-    std::vector<Verdict> verdicts(again.size());
-    team_.run(again.size(), [&](std::size_t k) {
-      try {
-        make_again(*again[k], again[k]->tokens.trial(again[k]->tokens.trials() - 1));
-      } catch (...) {
-        verdicts[k] = verdict_of_failure();
-      }
-    });
-    for (const Verdict& verdict : verdicts) {
-      if (verdict.status == Status::ok) continue;
-      for (Resident* resident : again) resident->rve.revert();
-      throw Refused(verdict.status, "commit: " + verdict.text);
+  if (again.empty()) return;
+  std::vector<Verdict> verdicts(again.size());
+  team_.run(again.size(), [&](std::size_t k) {
+    try {
+      make_again(*again[k], again[k]->tokens.trial(again[k]->tokens.trials() - 1));
+    } catch (...) {
+      verdicts[k] = verdict_of_failure();
     }
+  });
+  for (const Verdict& verdict : verdicts) {
+    if (verdict.status == Status::ok) continue;
+    for (Resident* resident : again) resident->rve.revert();
+    throw Refused(verdict.status, "commit: " + verdict.text);
   }
+}
+
+void ThreadedPool::commit(std::span<const std::int64_t> ids) {
+  const AtWork working(*this);
+  const std::uint64_t call = ++serial_;
+  const std::vector<Hold> holds = ids.data() == nullptr ? all_pending(call) : held(ids, call);
+  prepare(holds, ids, {});
   for (const Hold& hold : holds) settle(hold.resident(), last_token(hold.resident().tokens));
 }
 
-void Pool::revert(std::span<const std::int64_t> ids) {
+void ThreadedPool::prepare_commit(std::span<const std::int64_t> ids, std::span<const std::int64_t> places) {
+  const AtWork working(*this);
+  const std::uint64_t call = ++serial_;
+  prepare(ids.data() == nullptr ? all_pending(call) : held(ids, call), ids, places);
+}
+
+bool ThreadedPool::is_pending(std::int64_t id) {
+  const AtWork working(*this);
+  return held(id, ++serial_).resident().pending;
+}
+
+void ThreadedPool::revert(std::span<const std::int64_t> ids) {
   const AtWork working(*this);
   const std::uint64_t call = ++serial_;
   for (const Hold& hold : ids.data() == nullptr ? all_pending(call) : held(ids, call)) {

@@ -1,5 +1,5 @@
-/* The header alone, as C11. */
-#include <rvelab/rvelab.h>
+/* The headers alone, as C11. */
+#include <rvelab/rvelab_mpi.h>
 
 int header_as_c11(void);
 

@@ -171,7 +171,7 @@ TEST_CASE("A slot whose generations are used up is retired") {
   slots.make_room(1);
   std::vector<std::uint32_t> generations(2, generation_limit - 1);
   Slots worn;
-  worn.restore(7, generations, {});
+  worn.restore(7, generations, {}, {});
   worn.make_room(1);
   const Id last = Id::of(worn.add(resident()));
   CHECK((last.slot == 1 && last.generation == generation_limit - 1 && last.tag == 7));

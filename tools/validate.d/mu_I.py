@@ -144,6 +144,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("program")
     parser.add_argument("--only", help="flows of this shape alone, or none: biaxial tests alone")
+    parser.add_argument("--flows", type=int, nargs="+", help="numbers of flows in the table, from 1: these alone")
     options = parser.parse_args()
     program = str(pathlib.Path(options.program).resolve())
     if options.only != "none":
@@ -151,8 +152,8 @@ def main():
               "flagged  sub-steps", flush=True)
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        for shape, kappa, inertial, strain in FLOWS:
-            if options.only not in (None, shape):
+        for number, (shape, kappa, inertial, strain) in enumerate(FLOWS, 1):
+            if options.only not in (None, shape) or (options.flows and number not in options.flows):
                 continue
             plane = "xy" if shape == "disc" else "xz"
             held = flow(program, folder, packed(program, folder, shape, kappa), folder / "held.h5", plane, inertial,
@@ -163,7 +164,7 @@ def main():
             print(f"{shape:<7} {kappa:<6g} {inertial:<6g} {held['held']:<10.4f} {held['scatter']:<8.4f} "
                   f"{held['mu']:.4f} +- {held['error']:.4f}   {fixed['mu']:.4f} +- {fixed['error']:.4f}       "
                   f"{apart:<17.2f} {held['flagged']:<8.2%} {held['substeps']:.3g}", flush=True)
-        if options.only not in (None, "none"):
+        if options.flows or options.only not in (None, "none"):
             return
         print("biaxial test at I = 1e-2, kappa = 1e4: record spacing, friction angle (degrees), mean lateral stress over "
               "its target, inertial number reported")

@@ -1,4 +1,4 @@
-#include "rvelab/pool/pool.hpp"
+#include "rvelab/pool/threaded_pool.hpp"
 
 #include <pthread.h>
 
@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "rvelab/measure/measures.hpp"
+#include "rvelab/pool/checks.hpp"
 #include "rvelab/pool/hold.hpp"
 
 namespace rvelab::pool {
@@ -56,7 +57,7 @@ void check(const Options& options) {
 
 }  // namespace
 
-Pool::Pool(const Options& options)
+ThreadedPool::ThreadedPool(const Options& options)
     : options_((check(options), options)),
       team_(options.workers, options.run_tasks, options.host),
       number_(++pools_made & 0x7fffffff) {
@@ -64,21 +65,21 @@ Pool::Pool(const Options& options)
   process_ = forks;
 }
 
-Pool::~Pool() = default;
+ThreadedPool::~ThreadedPool() = default;
 
-void Pool::expect_this_process() const {
+void ThreadedPool::expect_this_process() const {
   if (forks != process_)
     throw Refused(Status::forked, "pool: it belongs to the parent of this process; make one of its own here");
 }
 
-void Pool::close() {
+void ThreadedPool::close() {
   expect_this_process();
   int none = 0;
   if (!calls_.compare_exchange_strong(none, -1))
     throw Refused(Status::busy, "pool_destroy: a call is under way; destroy the pool after it has returned");
 }
 
-Hold Pool::held(std::int64_t id, std::uint64_t call) {
+Hold ThreadedPool::held(std::int64_t id, std::uint64_t call) {
   Slot& slot = slots_.at(id);
   std::uint64_t owner = 0;
   while (!slot.owner.compare_exchange_weak(owner, call, std::memory_order_acquire)) {
@@ -93,7 +94,7 @@ Hold Pool::held(std::int64_t id, std::uint64_t call) {
   return Hold(slot);
 }
 
-std::vector<Hold> Pool::held(std::span<const std::int64_t> ids, std::uint64_t call) {
+std::vector<Hold> ThreadedPool::held(std::span<const std::int64_t> ids, std::uint64_t call) {
   std::vector<Hold> holds;
   holds.reserve(ids.size());
   for (const std::int64_t id : ids) holds.push_back(held(id, call));
@@ -102,7 +103,7 @@ std::vector<Hold> Pool::held(std::span<const std::int64_t> ids, std::uint64_t ca
 
 /// An RVE that was called stays awake for the next call, so that steps of a few sub-steps do not pay for waking. It
 /// rests at once after a long call, or when it was not called while two rounds of calls went by.
-void Pool::called(Slot& slot, std::uint64_t grain_steps, long substeps) noexcept {
+void ThreadedPool::called(Slot& slot, std::uint64_t grain_steps, long substeps) noexcept {
   slot.grain_steps.fetch_add(grain_steps, std::memory_order_relaxed);
   slot.last_grain_steps = grain_steps;
   slot.last_call.store(clock_.fetch_add(1, std::memory_order_relaxed), std::memory_order_relaxed);
@@ -113,12 +114,12 @@ void Pool::called(Slot& slot, std::uint64_t grain_steps, long substeps) noexcept
 }
 
 /// Each call looks at one other RVE: in a round of calls all are looked at.
-void Pool::rest_another() noexcept {
+void ThreadedPool::rest_another() noexcept {
   Slot& slot = slots_[std::size_t(hand_.fetch_add(1, std::memory_order_relaxed) % slots_.size())];
   const auto forgotten = [&] {
     return slot.awake.load(std::memory_order_relaxed) &&
            clock_.load(std::memory_order_relaxed) >
-               slot.last_call.load(std::memory_order_relaxed) + 2 * slots_.population();
+               slot.last_call.load(std::memory_order_relaxed) + 2 * slots_.ids().population();
   };
   std::uint64_t none = 0;
   if (!forgotten() || !slot.owner.compare_exchange_strong(none, resting, std::memory_order_acquire)) return;
@@ -129,7 +130,7 @@ void Pool::rest_another() noexcept {
   slot.owner.store(0, std::memory_order_release);
 }
 
-std::int64_t Pool::add_template(Specimen specimen) {
+std::int64_t ThreadedPool::add_template(Specimen specimen) {
   const Alone alone(*this);
   lay_over(options_, specimen);
   auto made = std::make_unique<Template>(Template{Rve(specimen), 0});
@@ -139,26 +140,36 @@ std::int64_t Pool::add_template(Specimen specimen) {
   return std::int64_t(number_) << 32 | std::int64_t(templates_.size());
 }
 
-void Pool::spawn(std::int64_t of_template, std::int64_t n, std::int64_t* ids) {
-  const Alone alone(*this);
+/// n RVEs of a template. Refused (bad_id, bad_input, no_slot).
+Slots::Residents ThreadedPool::made_of(std::int64_t of_template, std::int64_t n) const {
   const std::int64_t index = of_template & 0xffffffff;
   if (of_template >> 32 != number_ || index < 1 || index > std::int64_t(templates_.size()))
     throw Refused(Status::bad_id, "template " + std::to_string(of_template) +
                                       ": this pool has none of that number; give one that template_load or "
                                       "template_from_snapshot of this pool returned");
-  if (n < 0) throw Refused(Status::bad_input, "spawn: n is " + std::to_string(n) + "; allowed: 0 or more");
-  if (n > std::int64_t(slot_limit)) throw Refused(Status::no_slot, "spawn: a pool has 2^26 slots at most");
+  expect_spawn(n);
   const Template& source = *templates_[std::size_t(index) - 1];
-  std::vector<std::unique_ptr<Resident>> made;
+  Slots::Residents made;
   made.reserve(std::size_t(n));
   while (std::int64_t(made.size()) < n)
     made.push_back(std::make_unique<Resident>(Resident{source.rve, {}, source.void_ratio}));
+  return made;
+}
+
+void ThreadedPool::spawn(std::int64_t of_template, std::int64_t n, std::int64_t* ids) {
+  const Alone alone(*this);
+  Slots::Residents made = made_of(of_template, n);
   if (n > 0) slots_.make_room(made.size());
   for (auto& resident : made) *ids++ = slots_.add(std::move(resident));
 }
 
-std::int64_t Pool::clone(std::int64_t source) {
+void ThreadedPool::spawn_as(std::int64_t of_template, std::span<const std::int64_t> ids) {
   const Alone alone(*this);
+  slots_.claim(ids, made_of(of_template, std::int64_t(ids.size())));
+}
+
+/// A second RVE in the committed state of the first.
+std::unique_ptr<Resident> ThreadedPool::copy_of(std::int64_t source) {
   Resident& original = *slots_.at(source).resident;
   std::unique_ptr<Resident> made;
   {
@@ -167,22 +178,41 @@ std::int64_t Pool::clone(std::int64_t source) {
         Resident{original.rve, original.tokens, original.initial_void_ratio, original.inertial_number});
   }
   made->rve.rest();
+  return made;
+}
+
+std::int64_t ThreadedPool::clone(std::int64_t source) {
+  const Alone alone(*this);
+  std::unique_ptr<Resident> made = copy_of(source);
   slots_.make_room(1);
   return slots_.add(std::move(made));
 }
 
-void Pool::release(std::span<const std::int64_t> ids) {
+void ThreadedPool::clone_as(std::int64_t source, std::int64_t id) {
+  const Alone alone(*this);
+  Slots::Residents made;
+  made.push_back(copy_of(source));
+  slots_.claim({&id, 1}, std::move(made));
+}
+
+void ThreadedPool::release(std::span<const std::int64_t> ids) {
   const Alone alone(*this);
   { const auto holds = held(ids, ++serial_); }  // all are there, each once
   for (const std::int64_t id : ids) slots_.remove(id);
 }
 
-std::vector<std::int64_t> Pool::ids() {
+void ThreadedPool::give_up(std::span<const std::int64_t> ids) {
+  const Alone alone(*this);
+  for (const std::int64_t id : ids) slots_.at(id);  // all are there
+  for (const std::int64_t id : ids) slots_.give_up(id);
+}
+
+std::vector<std::int64_t> ThreadedPool::ids() {
   const Alone alone(*this);
   std::vector<std::int64_t> all;
-  all.reserve(slots_.population());
+  all.reserve(slots_.ids().population());
   for (std::size_t k = 0; k < slots_.size(); ++k)
-    if (slots_[k].resident) all.push_back(slots_.id_of(k));
+    if (slots_[k].resident) all.push_back(slots_.ids().id_of(k));
   return all;
 }
 

@@ -1,0 +1,103 @@
+// A pool in one process: RVEs spread over threads, one RVE a piece of work. By itself, or as the share of one rank in a
+// pool over many.
+#pragma once
+
+#include <atomic>
+#include <memory>
+
+#include "rvelab/pool/pool.hpp"
+#include "rvelab/pool/slots.hpp"
+
+namespace rvelab::pool {
+
+/// The share of a rank: RVEs come and go under ids that another table gives out.
+class Share : public Pool {
+ public:
+  /// RVEs of a template under these ids; all or none.
+  virtual void spawn_as(std::int64_t of_template, std::span<const std::int64_t> ids) = 0;
+  virtual void clone_as(std::int64_t source, std::int64_t id) = 0;
+  /// RVEs that come as bytes (to_bytes(RveState)) wait until `place` gives them ids, in their order and all at once.
+  /// `pending`: so is the last trial of its tokens, which is made again when it is asked for.
+  virtual void receive(std::span<const std::byte> state, bool pending) = 0;
+  virtual void place(std::span<const std::int64_t> ids) = 0;
+  virtual void forget_received() noexcept = 0;
+  /// Ends RVEs whose ids the other table gives out again.
+  virtual void give_up(std::span<const std::int64_t> ids) = 0;
+
+  virtual bool is_pending(std::int64_t id) = 0;
+  /// Trials that are pending, their states at hand: `commit` of them cannot fail then. `ids` without data: all. Refused
+  /// (no_trial, no_memory): nothing has changed; its text names the `places` of the ids in what the host gave.
+  virtual void prepare_commit(std::span<const std::int64_t> ids, std::span<const std::int64_t> places) = 0;
+};
+
+class Hold;
+
+class ThreadedPool final : public Share {
+ public:
+  explicit ThreadedPool(const Options& options);
+  ~ThreadedPool() override;
+
+  std::int64_t add_template(Specimen specimen) override;
+  void spawn(std::int64_t of_template, std::int64_t n, std::int64_t* ids) override;
+  std::int64_t clone(std::int64_t source) override;
+  void release(std::span<const std::int64_t> ids) override;
+  std::vector<std::int64_t> ids() override;
+  Verdict apply(std::int64_t id, const Matrix3& displacement_gradient, double dt, double* stress) override;
+  Verdict trial(const Batch& batch) override;
+  void commit(std::span<const std::int64_t> ids) override;
+  void revert(std::span<const std::int64_t> ids) override;
+  Info info(std::int64_t id) override;
+  void cost(std::span<const std::int64_t> ids, std::int64_t* grain_steps) override;
+  std::vector<std::byte> save(std::int64_t id) override;
+  void load(std::int64_t id, std::span<const std::byte> snapshot) override;
+  void write(const std::function<void(const Population&, const StateOf&)>& writer) override;
+  void read(const std::function<Population(const TakeState& take)>& reader) override;
+  void expect_this_process() const override;
+  void close() override;
+
+  void spawn_as(std::int64_t of_template, std::span<const std::int64_t> ids) override;
+  void clone_as(std::int64_t source, std::int64_t id) override;
+  void receive(std::span<const std::byte> state, bool pending) override;
+  void place(std::span<const std::int64_t> ids) override;
+  void forget_received() noexcept override;
+  void give_up(std::span<const std::int64_t> ids) override;
+  bool is_pending(std::int64_t id) override;
+  void prepare_commit(std::span<const std::int64_t> ids, std::span<const std::int64_t> places) override;
+
+ private:
+  class AtWork;
+  class Alone;
+  struct Entry;
+  struct Outcome;
+
+  Slots::Residents made_of(std::int64_t of_template, std::int64_t n) const;
+  std::unique_ptr<Resident> copy_of(std::int64_t source);
+  Hold held(std::int64_t id, std::uint64_t call);
+  std::vector<Hold> held(std::span<const std::int64_t> ids, std::uint64_t call);
+  std::vector<Hold> all_pending(std::uint64_t call);
+  void called(Slot& slot, std::uint64_t grain_steps, long substeps) noexcept;
+  void rest_another() noexcept;
+  Outcome attempt(Slot& slot, const Matrix3& displacement_gradient, double dt, const Batch& wanted);
+  void accept(Slot& slot, std::int64_t token, const Matrix3& displacement_gradient);
+  void run_entry(Entry& entry, const Batch& batch) noexcept;
+  void prepare(std::span<const Hold> holds, std::span<const std::int64_t> ids, std::span<const std::int64_t> places);
+
+  struct Template {
+    Rve rve;
+    double void_ratio;
+  };
+
+  Options options_;
+  Team team_;
+  Slots slots_;
+  Slots::Residents received_;
+  std::vector<std::unique_ptr<Template>> templates_;
+  std::uint32_t number_;                  ///< of this pool in the process, for its templates
+  std::uint64_t process_;                 ///< forks before this process
+  std::atomic<int> calls_{0};             ///< at work; -1: one is alone
+  std::atomic<std::uint64_t> serial_{1};  ///< of calls
+  std::atomic<std::uint64_t> clock_{0};   ///< calls on RVEs
+  std::atomic<std::uint64_t> hand_{0};    ///< of the look for RVEs that are to rest
+};
+
+}  // namespace rvelab::pool

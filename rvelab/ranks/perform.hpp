@@ -1,0 +1,72 @@
+// What a rank does with a message: one call on its share of the pool, and the answer.
+#pragma once
+
+#include <map>
+
+#include "rvelab/pool/threaded_pool.hpp"
+#include "rvelab/ranks/message.hpp"
+
+namespace rvelab::ranks {
+
+/// Begins each message; what follows, and what the answer holds behind its verdict, stands in perform.cpp.
+enum class Call : std::int32_t {
+  end,
+  add_template,
+  spawn,
+  clone,
+  give_up,
+  apply,
+  trial,
+  prepare_commit,
+  commit,
+  revert,
+  info,
+  save,
+  load,
+  receive,
+  place,
+  forget_received,
+};
+
+/// Which results a trial is asked for beside stress, status and costs.
+struct Wanted {
+  bool contact_stress, reynolds_stress, tangent, error_estimate, dt_scale, tokens_out, tokens_in;
+};
+
+class Served {
+ public:
+  explicit Served(std::unique_ptr<pool::Share> share) : share_(std::move(share)) {}
+
+  /// The answer: a status, its text, and what was found. Failures are answers, never thrown; empty: no memory was left
+  /// for one.
+  Bytes answer(std::span<const std::byte> message) noexcept;
+  pool::Share& share() { return *share_; }
+
+ private:
+  void perform(Call call, Unpacker& given, Packer& found);
+  void trial(Unpacker& given, Packer& found);
+
+  std::unique_ptr<pool::Share> share_;
+  std::map<std::int64_t, std::int64_t> templates_;  ///< of this share, by their numbers on the first rank
+};
+
+/// An answer opened; Refused with its status and text if the call was.
+class Answer {
+ public:
+  explicit Answer(Bytes bytes);
+  pool::Verdict& verdict() { return verdict_; }
+  bool failed() const { return failed_; }
+  void expect_done() const;
+  Unpacker& found() { return found_; }
+
+ private:
+  Bytes bytes_;
+  Unpacker found_;
+  pool::Verdict verdict_;
+  bool failed_ = false;
+};
+
+/// As an answer to Call::info holds it.
+pool::Info take_info(Unpacker& from);
+
+}  // namespace rvelab::ranks

@@ -1,0 +1,224 @@
+#include "rvelab/ranks/ranked_pool.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <string>
+#include <utility>
+
+#include "rvelab/pool/checks.hpp"
+#include "rvelab/solver/snapshot.hpp"
+
+namespace rvelab::ranks {
+
+using pool::Refused;
+using pool::Status;
+
+RankedPool::RankedPool(std::unique_ptr<Link> link, std::unique_ptr<pool::Share> own)
+    : link_(std::move(link)), own_(std::move(own)), population_(std::size_t(link_->ranks()), 0) {}
+
+RankedPool::~RankedPool() {
+  constexpr Call end = Call::end;
+  for (int rank = 1; rank < link_->ranks(); ++rank) try {
+      link_->send(rank, std::as_bytes(std::span(&end, 1)));
+    } catch (...) {  // that rank is gone
+    }
+}
+
+void RankedPool::expect_this_process() const {
+  link_->expect_thread();
+  const_cast<Served&>(own_).share().expect_this_process();
+}
+
+RankedPool::Lock RankedPool::at_work() {
+  Lock lock(mutex_);
+  expect_this_process();
+  if (broken_)
+    throw Refused(Status::internal,
+                  "pool: a message between ranks was lost, and RVEs with it; destroy the pool and "
+                  "read the last pool file into a new one");
+  return lock;
+}
+
+RankedPool::Lock RankedPool::alone() {
+  if (Lock now(mutex_, std::try_to_lock); !now.owns_lock())
+    throw Refused(Status::busy, "pool: another call is under way; population and files are for one call alone");
+  return at_work();
+}
+
+void RankedPool::close() {
+  Lock now(mutex_, std::try_to_lock);
+  if (!now.owns_lock())
+    throw Refused(Status::busy, "pool_destroy: a call is under way; destroy the pool after it has returned");
+  expect_this_process();
+  own_.share().close();
+}
+
+/// Sends each rank its message and works on that of the first meanwhile. The answers, by rank. All are taken whatever
+/// goes wrong, so that the next exchange begins anew.
+std::vector<std::pair<int, Answer>> RankedPool::exchange(const Messages& messages) {
+  std::vector<std::pair<int, Answer>> answers;
+  answers.reserve(messages.size());
+  std::vector<int> asked;
+  asked.reserve(messages.size());
+  std::exception_ptr failure;
+  const auto guarded = [&](const auto& step) {
+    try {
+      step();
+    } catch (...) {
+      broken_ = true;  // what a rank has done is not known here
+      if (!failure) failure = std::current_exception();
+    }
+  };
+  for (int rank = 1; rank < link_->ranks(); ++rank)
+    if (!messages[std::size_t(rank)].empty())
+      guarded([&] {
+        link_->send(rank, messages[std::size_t(rank)]);
+        asked.push_back(rank);
+      });
+  if (!messages[0].empty()) answers.emplace_back(0, Answer(own_.answer(messages[0])));
+  for (const int rank : asked) guarded([&] { answers.emplace_back(rank, Answer(link_->receive(rank))); });
+  if (failure) std::rethrow_exception(failure);
+  return answers;
+}
+
+/// Refused as the first rank that refused was.
+void RankedPool::expect_all_done(const Messages& messages) {
+  for (const auto& [rank, answer] : exchange(messages)) answer.expect_done();
+}
+
+Answer RankedPool::ask(int rank, const Bytes& bytes) {
+  Messages messages = no_messages();
+  messages[std::size_t(rank)] = bytes;
+  Answer answer = std::move(exchange(messages).front().second);
+  answer.expect_done();
+  return answer;
+}
+
+/// Indices into `ids` for each rank. Refused (bad_id, duplicate).
+std::vector<std::vector<std::size_t>> RankedPool::by_rank(std::span<const std::int64_t> ids) {
+  std::vector<std::vector<std::size_t>> found(population_.size());
+  ++call_;
+  for (std::size_t k = 0; k < ids.size(); ++k) {
+    Place& place = place_of(ids[k]);
+    if (std::exchange(place.call, call_) == call_)
+      throw Refused(Status::duplicate,
+                    "id " + std::to_string(ids[k]) + " stands twice in one call; give each RVE once");
+    found[std::size_t(place.rank)].push_back(k);
+  }
+  return found;
+}
+
+/// A call that takes ids, for each rank that has some of them; without data: all of every rank.
+RankedPool::Messages RankedPool::of_ids(Call call, std::span<const std::int64_t> ids, bool with_places) {
+  Messages messages = no_messages();
+  const bool all = ids.data() == nullptr;
+  const auto indices = by_rank(ids);
+  for (std::size_t rank = 0; rank < messages.size(); ++rank) {
+    if (!all && indices[rank].empty()) continue;
+    std::vector<std::int64_t> own, places;
+    for (const std::size_t k : indices[rank]) {
+      own.push_back(ids[k]);
+      places.push_back(std::int64_t(k));
+    }
+    Packer packer = message(call);
+    if (call != Call::give_up) packer.put(all);
+    packer.put_all(std::span<const std::int64_t>(own));
+    if (with_places) packer.put_all(std::span<const std::int64_t>(places));
+    messages[rank] = packer.take();
+  }
+  return messages;
+}
+
+std::int64_t RankedPool::add_template(Specimen specimen) {
+  const Lock lock = alone();
+  const Bytes bytes = to_bytes(specimen);
+  const auto with_number = [&](std::int64_t number) {
+    return message(Call::add_template).put(number).put_rest(bytes).take();
+  };
+  const auto number = ask(0, with_number(0)).found().take<std::int64_t>();
+  Messages messages(population_.size(), with_number(number));
+  messages[0].clear();
+  expect_all_done(messages);
+  return number;
+}
+
+void RankedPool::spawn(std::int64_t of_template, std::int64_t n, std::int64_t* ids) {
+  const Lock lock = alone();
+  pool::expect_spawn(n);
+  const auto spawned = [&](std::span<const std::int64_t> of) {
+    return message(Call::spawn).put(of_template).put_all(of).take();
+  };
+  ask(0, spawned({}));  // refused if there is no such template
+  if (n == 0) return;
+  ids_.make_room(std::size_t(n));
+  places_.resize(std::max(places_.size(), ids_.size()));
+  std::vector<std::size_t> filled = population_;
+  std::vector<std::vector<std::int64_t>> of_rank(filled.size());
+  std::vector<std::int64_t> taken;
+  taken.reserve(std::size_t(n));
+  try {
+    while (std::int64_t(taken.size()) < n) {  // to the rank that has fewest
+      const auto rank = std::size_t(std::min_element(filled.begin(), filled.end()) - filled.begin());
+      ++filled[rank];
+      taken.push_back(ids_.take());
+      places_[pool::Id::of(taken.back()).slot] = Place{int(rank)};
+      of_rank[rank].push_back(taken.back());
+    }
+    Messages messages = no_messages(), undo = no_messages();
+    for (std::size_t rank = 0; rank < messages.size(); ++rank)
+      if (!of_rank[rank].empty()) messages[rank] = spawned(of_rank[rank]);
+    std::vector<std::pair<int, Answer>> answers = exchange(messages);
+    const auto failed = std::find_if(answers.begin(), answers.end(), [](auto& each) { return each.second.failed(); });
+    if (failed != answers.end()) {
+      for (const auto& [rank, answer] : answers)
+        if (!answer.failed())
+          undo[std::size_t(rank)] =
+              message(Call::give_up).put_all(std::span<const std::int64_t>(of_rank[std::size_t(rank)])).take();
+      exchange(undo);
+      failed->second.expect_done();
+    }
+  } catch (...) {
+    for (const std::int64_t id : taken) ids_.give_back(id);
+    throw;
+  }
+  population_ = filled;
+  std::copy(taken.begin(), taken.end(), ids);
+}
+
+std::int64_t RankedPool::clone(std::int64_t source) {
+  const Lock lock = alone();
+  const Place& original = place_of(source);
+  const int rank = original.rank;
+  ids_.make_room(1);
+  places_.resize(std::max(places_.size(), ids_.size()));
+  const std::int64_t id = ids_.take();
+  try {
+    ask(rank, message(Call::clone).put(source).put(id).take());
+  } catch (...) {
+    ids_.give_back(id);
+    throw;
+  }
+  places_[pool::Id::of(id).slot] = Place{rank};
+  ++population_[std::size_t(rank)];
+  return id;
+}
+
+void RankedPool::release(std::span<const std::int64_t> ids) {
+  const Lock lock = alone();
+  expect_all_done(of_ids(Call::give_up, ids, false));
+  for (const std::int64_t id : ids) {
+    --population_[std::size_t(place_of(id).rank)];
+    ids_.give_back(id);
+  }
+}
+
+std::vector<std::int64_t> RankedPool::ids() {
+  const Lock lock = alone();
+  std::vector<std::int64_t> all;
+  all.reserve(ids_.population());
+  for (std::size_t slot = 0; slot < ids_.size(); ++slot)
+    if (ids_.in_use(slot)) all.push_back(ids_.id_of(slot));
+  return all;
+}
+
+}  // namespace rvelab::ranks

@@ -1,0 +1,85 @@
+// A pool whose RVEs are spread over ranks. It lives on the first rank, which the host calls; each of the others serves
+// its share (serve). Ids, templates and costs are kept here; where an RVE is changes neither its id nor a bit of it.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <mutex>
+
+#include "rvelab/pool/id_table.hpp"
+#include "rvelab/ranks/link.hpp"
+#include "rvelab/ranks/perform.hpp"
+
+namespace rvelab::ranks {
+
+/// Calls of several threads follow one another; those for population and files are Refused (busy) meanwhile.
+class RankedPool final : public pool::Pool {
+ public:
+  /// `own`: share of the first rank.
+  RankedPool(std::unique_ptr<Link> link, std::unique_ptr<pool::Share> own);
+  /// Ends the service of the other ranks.
+  ~RankedPool() override;
+
+  std::int64_t add_template(Specimen specimen) override;
+  void spawn(std::int64_t of_template, std::int64_t n, std::int64_t* ids) override;
+  std::int64_t clone(std::int64_t source) override;
+  void release(std::span<const std::int64_t> ids) override;
+  std::vector<std::int64_t> ids() override;
+  pool::Verdict apply(std::int64_t id, const Matrix3& displacement_gradient, double dt, double* stress) override;
+  pool::Verdict trial(const pool::Batch& batch) override;
+  void commit(std::span<const std::int64_t> ids) override;
+  void revert(std::span<const std::int64_t> ids) override;
+  pool::Info info(std::int64_t id) override;
+  void cost(std::span<const std::int64_t> ids, std::int64_t* grain_steps) override;
+  std::vector<std::byte> save(std::int64_t id) override;
+  void load(std::int64_t id, std::span<const std::byte> snapshot) override;
+  void write(const std::function<void(const pool::Population&, const StateOf&)>& writer) override;
+  void read(const std::function<pool::Population(const TakeState& take)>& reader) override;
+  void expect_this_process() const override;
+  void close() override;
+
+  /// RVEs that have changed their rank so far.
+  std::size_t moved() const { return moved_; }
+
+ private:
+  struct Place {
+    int rank = 0;
+    std::uint64_t call = 0;        ///< the last that named it
+    std::int64_t cost_before = 0;  ///< grain-steps at the ranks it was at before
+    std::int64_t cost = 0;         ///< grain-steps in all
+    double expected = 0;           ///< grain-steps of the next call: half the last, a quarter of that before, ...
+  };
+  /// Messages by rank; empty: none for that rank.
+  using Messages = std::vector<Bytes>;
+  using Lock = std::unique_lock<std::mutex>;
+
+  Lock at_work();
+  Lock alone();
+  Place& place_of(std::int64_t id) { return places_[ids_.slot_of(id)]; }
+  static Packer message(Call call) { return std::move(Packer().put(call)); }
+  Messages no_messages() const { return Messages(std::size_t(link_->ranks())); }
+  std::vector<std::pair<int, Answer>> exchange(const Messages& messages);
+  void expect_all_done(const Messages& messages);
+  Answer ask(int rank, const Bytes& message);
+  Bytes saved(std::int64_t id);
+  std::vector<std::vector<std::size_t>> by_rank(std::span<const std::int64_t> ids);
+  Messages of_ids(Call call, std::span<const std::int64_t> ids, bool with_places);
+  void balance(std::span<const std::int64_t> ids);
+  void move(int from, int to, std::span<const std::int64_t> ids);
+  void worked(Place& place, std::int64_t cost_at_rank) noexcept;
+
+  std::unique_ptr<Link> link_;
+  Served own_;
+  mutable std::mutex mutex_;
+  pool::IdTable ids_;
+  std::vector<Place> places_;            ///< by slot
+  std::vector<std::size_t> population_;  ///< RVEs by rank
+  std::uint64_t call_ = 0;
+  std::size_t moved_ = 0;
+  bool broken_ = false;  ///< a rank could not be asked: its share is lost
+};
+
+/// Service of the other ranks: answers what comes from the first one until the pool ends.
+void serve(Link& link, std::unique_ptr<pool::Share> share);
+
+}  // namespace rvelab::ranks

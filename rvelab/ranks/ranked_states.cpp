@@ -1,0 +1,85 @@
+// Looking at RVEs on other ranks, their states, and files of the whole pool. Declared in ranked_pool.hpp.
+#include <utility>
+
+#include "rvelab/pool/checks.hpp"
+#include "rvelab/ranks/ranked_pool.hpp"
+
+namespace rvelab::ranks {
+
+pool::Info RankedPool::info(std::int64_t id) {
+  const Lock lock = at_work();
+  Answer answer = ask(place_of(id).rank, message(Call::info).put(id).take());
+  return take_info(answer.found());
+}
+
+void RankedPool::cost(std::span<const std::int64_t> ids, std::int64_t* grain_steps) {
+  const Lock lock = at_work();
+  for (const std::int64_t id : ids) ids_.slot_of(id);
+  for (const std::int64_t id : ids) *grain_steps++ = place_of(id).cost;
+}
+
+Bytes RankedPool::saved(std::int64_t id) {
+  Answer answer = ask(place_of(id).rank, message(Call::save).put_all(std::span<const std::int64_t>(&id, 1)).take());
+  answer.found().take<bool>();
+  return answer.found().take_all<std::byte>();
+}
+
+Bytes RankedPool::save(std::int64_t id) {
+  const Lock lock = at_work();
+  return saved(id);
+}
+
+void RankedPool::load(std::int64_t id, std::span<const std::byte> snapshot) {
+  const Lock lock = at_work();
+  ask(place_of(id).rank, message(Call::load).put(id).put_rest(snapshot).take());
+}
+
+void RankedPool::write(const std::function<void(const pool::Population&, const StateOf&)>& writer) {
+  const Lock lock = alone();
+  pool::Population population{ids_.tag(), ids_.generations(), {}};
+  for (std::size_t slot = 0; slot < ids_.size(); ++slot)
+    if (ids_.in_use(slot)) population.ids.push_back(ids_.id_of(slot));
+  writer(population, [&](std::size_t k) { return saved(population.ids[k]); });
+}
+
+/// Each state goes to the next rank as it comes, so that no rank holds more than its share.
+void RankedPool::read(const std::function<pool::Population(const TakeState& take)>& reader) {
+  const Lock lock = alone();
+  pool::expect_empty(ids_);
+  const std::size_t ranks = population_.size();
+  std::size_t states = 0;
+  try {
+    const pool::Population population = reader([&](std::span<const std::byte> bytes) {
+      ask(int(states % ranks), message(Call::receive).put(false).put_all(bytes).take());
+      ++states;
+    });
+    pool::expect_whole(population, states);
+    std::vector<Place> places(population.generations.size());
+    std::vector<std::vector<std::int64_t>> of_rank(ranks);
+    for (std::size_t k = 0; k < states; ++k) {
+      places[pool::Id::of(population.ids[k]).slot].rank = int(k % ranks);
+      of_rank[k % ranks].push_back(population.ids[k]);
+    }
+    Messages messages = no_messages();
+    for (std::size_t rank = 0; rank < ranks; ++rank)
+      messages[rank] = message(Call::place).put_all(std::span<const std::int64_t>(of_rank[rank])).take();
+    expect_all_done(messages);
+    ids_.restore(population.tag, population.generations, population.ids);
+    places_ = std::move(places);
+    for (std::size_t rank = 0; rank < ranks; ++rank) population_[rank] = of_rank[rank].size();
+  } catch (...) {
+    expect_all_done(Messages(ranks, message(Call::forget_received).take()));
+    throw;
+  }
+}
+
+void serve(Link& link, std::unique_ptr<pool::Share> share) {
+  Served served(std::move(share));
+  while (true) {
+    const Bytes message = link.receive(0);
+    if (Unpacker(message).take<Call>() == Call::end) return;
+    link.send(0, served.answer(message));
+  }
+}
+
+}  // namespace rvelab::ranks

@@ -1,0 +1,218 @@
+// Trials over ranks, their commitment, and the balance of work. Declared in ranked_pool.hpp.
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "rvelab/pool/checks.hpp"
+#include "rvelab/ranks/balance.hpp"
+#include "rvelab/ranks/ranked_pool.hpp"
+
+namespace rvelab::ranks {
+
+using pool::Refused;
+using pool::Status;
+using pool::Verdict;
+
+namespace {
+
+/// More work at the busiest rank than this share beyond the mean: RVEs are moved.
+constexpr double allowed_imbalance = 0.1;
+/// RVEs that move in one message: some 10 MB of them.
+constexpr std::size_t moved_at_once = 64;
+
+/// The status of a batch so far: the worst entry, the first of equals.
+struct Worst {
+  Verdict verdict;
+  std::size_t entry = 0;
+
+  void take(Verdict other, std::size_t at) {
+    const int has = gravity(verdict.status), given = gravity(other.status);
+    if (given > has || (given == has && given > 0 && at < entry)) {
+      verdict = std::move(other);
+      entry = at;
+    }
+  }
+};
+
+/// What a share found of the entries `of`, into the arrays of the host. Returns its worst.
+struct Results {
+  std::string text;
+  std::vector<std::int32_t> status;
+  std::vector<std::int64_t> costs;
+  std::vector<double> stress, contact, reynolds, tangent, estimate, scale;
+  std::vector<std::int64_t> tokens;
+
+  explicit Results(Unpacker& found) : text(found.take_text()), status(found.take_all<std::int32_t>()) {
+    costs = found.take_all<std::int64_t>();
+    for (auto* values : {&stress, &contact, &reynolds, &tangent, &estimate, &scale}) *values = found.take_all<double>();
+    tokens = found.take_all<std::int64_t>();
+  }
+
+  void write(std::size_t k, std::size_t entry, const pool::Batch& to) const {
+    const auto status_of = Status(status[k]);
+    if (to.status != nullptr) to.status[entry] = status[k];
+    if (to.dt_scale != nullptr) to.dt_scale[entry] = scale[k];
+    if (status_of < Status::ok) return;
+    const auto copy = [&](const std::vector<double>& from, double* into, std::size_t each) {
+      if (into != nullptr) std::copy_n(from.begin() + std::ptrdiff_t(each * k), each, into + each * entry);
+    };
+    copy(stress, to.stress, 9);
+    copy(contact, to.contact_stress, 9);
+    copy(reynolds, to.reynolds_stress, 9);
+    copy(tangent, to.tangent, 36);
+    copy(estimate, to.error_estimate, 1);
+    if (to.tokens_out != nullptr) to.tokens_out[entry] = tokens[k];
+  }
+};
+
+}  // namespace
+
+/// An RVE made `cost_at_rank` grain-steps since it came to its rank.
+void RankedPool::worked(Place& place, std::int64_t cost_at_rank) noexcept {
+  const std::int64_t cost = place.cost_before + cost_at_rank;
+  const auto made = double(cost - place.cost);
+  place.expected = place.cost == 0 ? made : (place.expected + made) / 2;
+  place.cost = cost;
+}
+
+Verdict RankedPool::apply(std::int64_t id, const Matrix3& displacement_gradient, double dt, double* stress) {
+  const Lock lock = at_work();
+  Place& place = place_of(id);
+  Packer packer = message(Call::apply);
+  packer.put(id).put(dt);
+  for (int k = 0; k < 9; ++k) packer.put(displacement_gradient(k / 3, k % 3));
+  Answer answer = ask(place.rank, packer.take());
+  Verdict verdict;
+  verdict.status = answer.found().take<Status>();
+  verdict.text = answer.found().take_text();
+  worked(place, answer.found().take<std::int64_t>());
+  for (int k = 0; k < 9; ++k) stress[k] = answer.found().take<double>();
+  return verdict;
+}
+
+Verdict RankedPool::trial(const pool::Batch& batch) {
+  const Lock lock = at_work();
+  if (batch.n < 0) throw Refused(Status::bad_input, "batch.n is " + std::to_string(batch.n) + "; allowed: 0 or more");
+  if (batch.n == 0) return {};
+  pool::expect_time(batch.dt);
+  const auto n = std::size_t(batch.n);
+  Worst worst;
+  std::vector<std::int64_t> ids, entries;  // those that are ids
+  std::vector<std::size_t> refused;
+  for (std::size_t k = 0; k < n; ++k) try {
+      ids_.slot_of(batch.ids[k]);
+      ids.push_back(batch.ids[k]);
+      entries.push_back(std::int64_t(k));
+    } catch (const Refused& reason) {
+      refused.push_back(k);
+      worst.take({reason.status,
+                  "entry " + std::to_string(k) + " (id " + std::to_string(batch.ids[k]) + "): " + reason.what()},
+                 k);
+    }
+  by_rank(ids);  // refused if one stands twice, before any is moved
+  balance(ids);
+  const auto indices = by_rank(ids);
+
+  Messages messages = no_messages();
+  const Wanted wanted{batch.contact_stress != nullptr, batch.reynolds_stress != nullptr, batch.tangent != nullptr,
+                      batch.error_estimate != nullptr, batch.dt_scale != nullptr,        batch.tokens_out != nullptr,
+                      batch.tokens_in != nullptr};
+  for (std::size_t rank = 0; rank < messages.size(); ++rank) {
+    if (indices[rank].empty()) continue;
+    std::vector<std::int64_t> own, places, tokens;
+    std::vector<double> gradients;
+    for (const std::size_t k : indices[rank]) {
+      const auto entry = std::size_t(entries[k]);
+      own.push_back(ids[k]);
+      places.push_back(entries[k]);
+      if (wanted.tokens_in) tokens.push_back(batch.tokens_in[entry]);
+      gradients.insert(gradients.end(), batch.displacement_gradients + 9 * entry,
+                       batch.displacement_gradients + 9 * entry + 9);
+    }
+    messages[rank] = message(Call::trial)
+                         .put(batch.dt)
+                         .put(wanted)
+                         .put_all(std::span<const std::int64_t>(own))
+                         .put_all(std::span<const std::int64_t>(places))
+                         .put_all(std::span<const std::int64_t>(tokens))
+                         .put_all(std::span<const double>(gradients))
+                         .take();
+  }
+  for (const std::size_t k : refused) {
+    if (batch.status != nullptr) batch.status[k] = std::int32_t(Status::bad_id);
+    if (batch.dt_scale != nullptr) batch.dt_scale[k] = 0;
+  }
+  for (auto& [rank, answer] : exchange(messages)) {
+    const std::vector<std::size_t>& of = indices[std::size_t(rank)];
+    if (answer.failed()) {  // the share as a whole, for want of memory: none of its trials was made
+      for (const std::size_t k : of) {
+        const auto entry = std::size_t(entries[k]);
+        worst.take(answer.verdict(), entry);
+        if (batch.status != nullptr) batch.status[entry] = std::int32_t(answer.verdict().status);
+        if (batch.dt_scale != nullptr) batch.dt_scale[entry] = 0;
+      }
+      continue;
+    }
+    const Results results(answer.found());
+    Worst of_share;
+    for (std::size_t k = 0; k < of.size(); ++k) {
+      const auto entry = std::size_t(entries[of[k]]);
+      results.write(k, entry, batch);
+      worked(place_of(ids[of[k]]), results.costs[k]);
+      of_share.take({Status(results.status[k]), {}}, entry);
+    }
+    of_share.verdict.text = results.text;
+    worst.take(std::move(of_share.verdict), of_share.entry);
+  }
+  return std::move(worst.verdict);
+}
+
+void RankedPool::commit(std::span<const std::int64_t> ids) {
+  const Lock lock = at_work();
+  expect_all_done(of_ids(Call::prepare_commit, ids, true));  // all or none
+  expect_all_done(of_ids(Call::commit, ids, false));
+}
+
+void RankedPool::revert(std::span<const std::int64_t> ids) {
+  const Lock lock = at_work();
+  expect_all_done(of_ids(Call::revert, ids, false));
+}
+
+/// RVEs of a batch to other ranks, if their work lies too uneven. One that cannot be moved stays.
+void RankedPool::balance(std::span<const std::int64_t> ids) {
+  if (link_->ranks() == 1) return;
+  std::vector<double> costs;
+  std::vector<int> ranks;
+  for (const std::int64_t id : ids) {
+    costs.push_back(place_of(id).expected);
+    ranks.push_back(place_of(id).rank);
+  }
+  std::map<std::pair<int, int>, std::vector<std::int64_t>> moves;
+  for (const Move& each : moves_to_balance(costs, ranks, link_->ranks(), allowed_imbalance))
+    moves[{each.from, each.to}].push_back(ids[each.index]);
+  for (const auto& [way, moved] : moves)
+    for (std::size_t k = 0; k < moved.size(); k += moved_at_once)
+      move(way.first, way.second, std::span(moved).subspan(k, std::min(moved_at_once, moved.size() - k)));
+}
+
+void RankedPool::move(int from, int to, std::span<const std::int64_t> ids) {
+  try {
+    Answer saved = ask(from, message(Call::save).put_all(ids).take());
+    ask(to, message(Call::receive).put_rest(saved.found().rest()).take());
+    ask(to, message(Call::place).put_all(ids).take());
+  } catch (const Refused&) {  // no memory there
+    ask(to, message(Call::forget_received).take());
+    return;
+  }
+  ask(from, message(Call::give_up).put_all(ids).take());
+  for (const std::int64_t id : ids) {
+    Place& place = place_of(id);
+    place.rank = to;
+    place.cost_before = place.cost;
+    --population_[std::size_t(from)];
+    ++population_[std::size_t(to)];
+  }
+  moved_ += ids.size();
+}
+
+}  // namespace rvelab::ranks

@@ -1,0 +1,407 @@
+// A pool over ranks, its messages passed in this process: whatever is done with it, results, ids, texts and states are
+// those of the pool in one process. mpirun is tried by tests/abi (names "machine: ...").
+#include <bit>
+#include <cstring>
+#include <numeric>
+#include <random>
+#include <regex>
+
+#include "rvelab/pool/rve_state.hpp"
+#include "rvelab/ranks/balance.hpp"
+#include "rvelab/ranks/ranked_pool.hpp"
+#include "tests/catch.hpp"
+#include "tests/oracle/specimens.hpp"
+
+using namespace rvelab;
+using namespace rvelab::ranks;
+using namespace rvelab::test;
+
+namespace {
+
+/// Ranks of this process: each answers at once.
+class LocalRanks final : public Link {
+ public:
+  LocalRanks(int ranks, const pool::Options& options) : answers_(std::size_t(ranks)) {
+    for (int rank = 1; rank < ranks; ++rank)
+      others_.push_back(std::make_unique<Served>(std::make_unique<pool::ThreadedPool>(options)));
+  }
+  int ranks() const override { return int(answers_.size()); }
+  void send(int rank, std::span<const std::byte> message) override {
+    if (Unpacker(message).take<Call>() == Call::end) return;
+    answers_[std::size_t(rank)] = others_[std::size_t(rank) - 1]->answer(message);
+  }
+  Bytes receive(int rank) override { return std::move(answers_[std::size_t(rank)]); }
+  void expect_thread() const override {}
+
+ private:
+  std::vector<std::unique_ptr<Served>> others_;
+  std::vector<Bytes> answers_;
+};
+
+std::unique_ptr<RankedPool> over(int ranks, const pool::Options& options = {}) {
+  return std::make_unique<RankedPool>(std::make_unique<LocalRanks>(ranks, options),
+                                      std::make_unique<pool::ThreadedPool>(options));
+}
+
+pool::Options one_thread() {
+  pool::Options options;
+  options.workers = 1;
+  return options;
+}
+
+const Specimen& packed(int side) {
+  static std::map<int, Specimen> made;
+  if (const auto found = made.find(side); found != made.end()) return found->second;
+  Rve rve(disordered(Shape::disc, side, linear_material(2e6, 1e6, 0.4), Law::linear_given, 0.515, 1));
+  rve.relax(1e-5, 100'000);
+  rve.take_as_reference();
+  return made.emplace(side, rve.specimen()).first->second;
+}
+
+/// What a batch led to, all of it.
+struct Found {
+  pool::Verdict verdict;
+  std::vector<double> stress, contact, tangent, estimate, scale;
+  std::vector<std::int32_t> status;
+  std::vector<std::int64_t> tokens;
+
+  std::vector<std::uint64_t> bits() const {
+    std::vector<std::uint64_t> all;
+    for (const auto* values : {&stress, &contact, &tangent, &estimate, &scale})
+      for (const double value : *values) all.push_back(std::bit_cast<std::uint64_t>(value));
+    return all;
+  }
+  bool operator==(const Found& other) const {
+    return verdict.status == other.verdict.status && bits() == other.bits() && status == other.status &&
+           tokens == other.tokens;
+  }
+};
+
+Found trial(pool::Pool& pool, const std::vector<std::int64_t>& ids, const std::vector<double>& gradients,
+            const std::vector<std::int64_t>* tokens = nullptr, double dt = 0, bool all = false) {
+  const std::size_t n = ids.size();
+  Found found;
+  found.stress.assign(9 * n, 7);
+  found.contact.assign(all ? 9 * n : 0, 7);
+  found.tangent.assign(all ? 36 * n : 0, 7);
+  found.estimate.assign(n, 7);
+  found.scale.assign(n, 7);
+  found.status.assign(n, 7);
+  found.tokens.assign(n, 7);
+  pool::Batch batch;
+  batch.n = std::int64_t(n);
+  batch.dt = dt;
+  batch.ids = ids.data();
+  batch.displacement_gradients = gradients.data();
+  batch.tokens_in = tokens == nullptr ? nullptr : tokens->data();
+  batch.stress = found.stress.data();
+  batch.contact_stress = all ? found.contact.data() : nullptr;
+  batch.tangent = all ? found.tangent.data() : nullptr;
+  batch.error_estimate = found.estimate.data();
+  batch.dt_scale = found.scale.data();
+  batch.status = found.status.data();
+  batch.tokens_out = found.tokens.data();
+  found.verdict = pool.trial(batch);
+  return found;
+}
+
+/// Status and text of what is refused; "" for what is not.
+template <class Work>
+std::string refusal(Work work) {
+  try {
+    work();
+    return {};
+  } catch (...) {
+    char text[1024];
+    const pool::Status status = pool::status_of_exception(text, sizeof text);
+    return std::to_string(int(status)) + ": " + text;
+  }
+}
+
+class Draw {
+ public:
+  explicit Draw(std::uint64_t seed) : generator_(seed) {}
+  double uniform() { return 2 * double(generator_() >> 11) / 9007199254740992.0 - 1; }
+  std::size_t below(std::size_t bound) { return std::size_t(generator_() % bound); }
+  std::vector<double> gradients(std::size_t n, double size) {
+    std::vector<double> all(9 * n, 0.0);
+    for (std::size_t k = 0; k < n; ++k)
+      for (const std::size_t place : {0, 1, 3, 4}) all[9 * k + place] = size * uniform();
+    return all;
+  }
+
+ private:
+  std::mt19937_64 generator_;
+};
+
+std::vector<std::int64_t> some(const std::vector<std::int64_t>& of, Draw& draw) {
+  std::vector<std::int64_t> chosen;
+  for (const std::int64_t each : of)
+    if (draw.below(3) > 0) chosen.push_back(each);
+  return chosen;
+}
+
+}  // namespace
+
+TEST_CASE("a pool over ranks gives the bits, ids, tokens and costs of a pool in one process") {
+  for (const int ranks : {1, 2, 3, 5})
+    for (const auto memory : {pool::TrialMemory::keep, pool::TrialMemory::recompute}) {
+      pool::Options options = one_thread();
+      options.trial_memory = memory;
+      pool::ThreadedPool one(options);
+      const auto spread = over(ranks, options);
+      std::vector<std::int64_t> ids;
+      for (const int side : {4, 8, 5}) {  // of unlike cost
+        std::vector<std::int64_t> here(5), there(5);
+        one.spawn(one.add_template(packed(side)), 5, here.data());
+        spread->spawn(spread->add_template(packed(side)), 5, there.data());
+        // the tag is that of the pool; generation and slot are the same
+        for (std::size_t k = 0; k < 5; ++k) {
+          CHECK(pool::Id::of(here[k]).slot == pool::Id::of(there[k]).slot);
+          CHECK(pool::Id::of(here[k]).generation == pool::Id::of(there[k]).generation);
+        }
+        ids.insert(ids.end(), here.begin(), here.end());
+      }
+      const std::vector<std::int64_t> all = spread->ids();
+      std::map<std::int64_t, std::int64_t> there_of;
+      for (std::size_t k = 0; k < ids.size(); ++k) there_of[ids[k]] = all[k];
+      const auto there = [&](const std::vector<std::int64_t>& here) {
+        std::vector<std::int64_t> mapped;
+        for (const std::int64_t id : here) mapped.push_back(there_of.at(id));
+        return mapped;
+      };
+      Draw draw{std::uint64_t(ranks)};
+      bool equal = true;
+      for (int round = 0; round < 40; ++round) {
+        const std::vector<std::int64_t> chosen = some(ids, draw);
+        if (chosen.empty()) continue;
+        const auto gradients = draw.gradients(chosen.size(), round % 7 == 0 ? 2e-3 : 1e-5);
+        const double dt = round % 5 == 4 ? 1e-4 : 0;
+        const bool with_all = round % 11 == 3;
+        std::vector<std::int64_t> tokens;
+        for (const std::int64_t id : chosen) tokens.push_back(one.info(id).token);
+        const Found first = trial(one, chosen, gradients, round % 3 == 0 ? &tokens : nullptr, dt, with_all);
+        equal = equal &&
+                first == trial(*spread, there(chosen), gradients, round % 3 == 0 ? &tokens : nullptr, dt, with_all);
+        if (round % 4 == 1) {  // a token that is not the last one
+          const auto step = draw.gradients(chosen.size(), 1e-5), other = draw.gradients(chosen.size(), 1e-5);
+          equal = equal && trial(one, chosen, step) == trial(*spread, there(chosen), step);
+          equal =
+              equal && trial(one, chosen, other, &first.tokens) == trial(*spread, there(chosen), other, &first.tokens);
+        }
+        switch (draw.below(4)) {
+          case 0:
+            one.revert(chosen), spread->revert(there(chosen));
+            break;
+          case 1:
+            one.commit({}), spread->commit({});
+            break;  // all that are pending
+          case 2:
+            one.commit(chosen), spread->commit(there(chosen));
+            break;
+          default: {
+            const std::vector<std::int64_t> part(chosen.begin(), chosen.begin() + std::ptrdiff_t(chosen.size() / 2));
+            if (part.empty()) break;
+            one.commit(part), spread->commit(there(part));
+          }
+        }
+        double here_stress[9], there_stress[9];
+        Matrix3 gradient = Matrix3::Zero();
+        gradient(0, 1) = 1e-6;
+        one.apply(chosen[0], gradient, 0, here_stress);
+        spread->apply(there_of.at(chosen[0]), gradient, 0, there_stress);
+        equal = equal && std::memcmp(here_stress, there_stress, sizeof here_stress) == 0;
+      }
+      CHECK(equal);
+      for (const std::int64_t id : ids) {
+        CHECK(one.save(id) == spread->save(there_of.at(id)));
+        const pool::Info a = one.info(id), b = spread->info(there_of.at(id));
+        CHECK((a.p == b.p && a.fabric == b.fabric && a.cell.lattice == b.cell.lattice && a.token == b.token &&
+               a.contacts == b.contacts && a.grain_steps == b.grain_steps && a.inertial_number == b.inertial_number));
+        std::int64_t cost_here = 0, cost_there = 1;
+        one.cost({&id, 1}, &cost_here);
+        spread->cost({&there_of.at(id), 1}, &cost_there);
+        CHECK(cost_here == cost_there);
+      }
+      if (ranks > 1) CHECK(spread->moved() > 0);
+    }
+}
+
+TEST_CASE("RVEs that move between ranks keep their pending trials") {
+  const auto spread = over(2, one_thread());
+  pool::ThreadedPool one(one_thread());
+  std::vector<std::int64_t> small(6), large(6), small_here(6), large_here(6);
+  const auto spawn = [](pool::Pool& pool, int side, std::vector<std::int64_t>& ids) {
+    pool.spawn(pool.add_template(packed(side)), std::int64_t(ids.size()), ids.data());
+  };
+  spawn(*spread, 4, small), spawn(one, 4, small_here);
+  spawn(*spread, 8, large), spawn(one, 8, large_here);
+  // Every other RVE is on each rank: of the large ones only those of one rank are asked to work.
+  const std::vector<std::int64_t> busy{large[0], large[2], large[4]},
+      busy_here{large_here[0], large_here[2], large_here[4]};
+  Draw draw(1);
+  const auto gradients = draw.gradients(3, 1e-4), next = draw.gradients(3, 1e-4);
+  const Found first = trial(*spread, busy, gradients);
+  CHECK(first == trial(one, busy_here, gradients));
+  const std::vector<std::int64_t> stale{99, 99, 99};
+  const Found refused = trial(*spread, busy, next, &stale);  // they move, and nothing else is done
+  CHECK(spread->moved() > 0);
+  CHECK(refused.verdict.status == pool::Status::stale_token);
+  spread->commit(busy);
+  one.commit(busy_here);
+  for (std::size_t k = 0; k < busy.size(); ++k) CHECK(spread->save(busy[k]) == one.save(busy_here[k]));
+}
+
+TEST_CASE("a pool over ranks refuses what a pool in one process does, with the same words") {
+  const auto errors = [](pool::Pool& pool) {
+    std::vector<std::string> found;
+    std::vector<std::int64_t> ids(4);
+    const std::int64_t specimen = pool.add_template(packed(4));
+    pool.spawn(specimen, 4, ids.data());
+    const auto say = [&](const std::function<void()>& work) {
+      std::string text = refusal(work);
+      for (const std::int64_t id : ids)  // ids differ by the tag of the pool
+        for (auto at = text.find(std::to_string(id)); at != std::string::npos; at = text.find(std::to_string(id)))
+          text.replace(at, std::to_string(id).size(), "ID" + std::to_string(pool::Id::of(id).slot));
+      found.push_back(text);
+    };
+    std::int64_t made = 0;
+    double stress[9];
+    const Matrix3 none = Matrix3::Zero();
+    Matrix3 inside_out = Matrix3::Zero();
+    inside_out(0, 0) = -2;
+    say([&] { pool.spawn(0, 1, &made); });
+    say([&] { pool.spawn(specimen, -1, &made); });
+    say([&] { pool.apply(0, none, 0, stress); });
+    say([&] { pool.apply(std::int64_t(float(ids[1])), none, 0, stress); });
+    say([&] { pool.apply(ids[2], none, -1, stress); });
+    say([&] { pool.apply(ids[2], inside_out, 0, stress); });
+    say([&] { pool.commit(ids); });
+    say([&] { pool.commit(std::vector{ids[0], ids[0]}); });
+    say([&] { pool.release(std::vector{ids[1], std::int64_t(5)}); });
+    say([&] { trial(pool, {ids[0], ids[1], ids[0]}, std::vector<double>(27, 0.0)); });
+    say([&] { trial(pool, ids, std::vector<double>(36, 0.0), nullptr, -1); });
+    say([&] { pool.load(ids[3], std::vector<std::byte>(100)); });
+    say([&] { pool.read([](const auto&) { return pool::Population{}; }); });
+    // One entry of a batch alone: the others are done.
+    std::vector<double> gradients(36, 0.0);
+    for (std::size_t k = 0; k < 4; ++k) gradients[9 * k] = 1e-5;
+    gradients[9] = std::numeric_limits<double>::quiet_NaN();
+    Found some_done = trial(pool, ids, gradients);
+    CHECK((some_done.status[0] >= 0 && some_done.status[1] == -2 && some_done.status[3] >= 0));
+    CHECK((some_done.scale[1] == 0 && some_done.stress[9] == 7 && some_done.stress[0] != 7));
+    say([&] { throw pool::Refused(some_done.verdict.status, some_done.verdict.text); });
+    const Found foreign = trial(pool, {ids[0], std::int64_t(5), ids[2]}, std::vector<double>(27, 0.0));
+    CHECK((foreign.status[0] >= 0 && foreign.status[1] == -4 && foreign.scale[1] == 0 && foreign.status[2] >= 0));
+    say([&] { throw pool::Refused(foreign.verdict.status, foreign.verdict.text); });
+    say([&] { pool.commit(ids); });  // the second has no trial: none is committed
+    CHECK(pool.info(ids[0]).token == 1);
+    pool.release(std::vector{ids[1]});
+    say([&] { pool.apply(ids[1], none, 0, stress); });
+    CHECK(pool.ids() == std::vector{ids[0], ids[2], ids[3]});
+    std::int64_t again = pool.clone(ids[3]);
+    CHECK((pool::Id::of(again).slot == pool::Id::of(ids[1]).slot && pool.save(again) == pool.save(ids[3])));
+    return found;
+  };
+  pool::ThreadedPool one(one_thread());
+  const std::vector<std::string> expected = errors(one);
+  for (const int ranks : {1, 2, 3}) {
+    const auto spread = over(ranks, one_thread());
+    const std::vector<std::string> found = errors(*spread);
+    REQUIRE(found.size() == expected.size());
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      INFO("ranks " << ranks << ", call " << k);
+      const auto of_pool = [](const std::string& text) {  // tags and what is rounded of an id are those of the pool
+        return std::regex_replace(text, std::regex("tag [0-9]+|[0-9]{9,}"), "...");
+      };
+      CHECK(of_pool(found[k]) == of_pool(expected[k]));
+      CHECK(!found[k].empty());
+    }
+  }
+}
+
+TEST_CASE("the states of a pool over ranks go to a file and into pools of other sizes") {
+  const auto first = over(3, one_thread());
+  std::vector<std::int64_t> ids(7);
+  first->spawn(first->add_template(packed(4)), 7, ids.data());
+  Draw draw(3);
+  trial(*first, ids, draw.gradients(7, 1e-4));
+  first->commit({});
+  first->release(std::vector{ids[2]});
+  pool::Population kept;
+  std::vector<Bytes> states;
+  first->write([&](const pool::Population& population, const auto& state) {
+    kept = population;
+    for (std::size_t k = 0; k < population.ids.size(); ++k) states.push_back(state(k));
+  });
+  CHECK(kept.ids.size() == 6);
+  const auto read_into = [&](pool::Pool& pool) {
+    pool.read([&](const auto& take) {
+      for (const Bytes& each : states) take(each);
+      return kept;
+    });
+  };
+  for (const int ranks : {1, 2, 4, 9}) {
+    const auto second = over(ranks, one_thread());
+    std::string torn = refusal([&] {
+      second->read([&](const auto& take) {
+        take(states[0]);
+        take(std::span(states[1]).first(100));
+        return kept;
+      });
+    });
+    CHECK(torn.find("snapshot") != std::string::npos);
+    CHECK(second->ids().empty());
+    read_into(*second);
+    CHECK(second->ids() == kept.ids);
+    for (std::size_t k = 0; k < kept.ids.size(); ++k) CHECK(second->save(kept.ids[k]) == states[k]);
+    pool::ThreadedPool one(one_thread());
+    read_into(one);
+    const auto gradients = draw.gradients(6, 1e-4);
+    CHECK(trial(one, kept.ids, gradients) == trial(*second, kept.ids, gradients));
+    std::int64_t made = 0;
+    second->spawn(second->add_template(packed(4)), 1, &made);  // into the slot that is free
+    CHECK(pool::Id::of(made).slot == pool::Id::of(ids[2]).slot);
+    CHECK(pool::Id::of(made).generation > pool::Id::of(ids[2]).generation);
+  }
+}
+
+TEST_CASE("work over ranks is balanced to a tenth of the mean, none moved twice, and stays where it is balanced") {
+  Draw draw(7);
+  for (int round = 0; round < 200; ++round) {
+    const int ranks = 2 + int(draw.below(7));
+    const std::size_t n = 20 * std::size_t(ranks) + draw.below(200);
+    std::vector<double> cost(n);
+    std::vector<int> rank(n);
+    for (std::size_t k = 0; k < n; ++k) {
+      cost[k] = std::exp(draw.uniform());  // a factor of seven between them
+      rank[k] = int(draw.below(std::size_t(ranks)));
+    }
+    const auto work_of = [&] {
+      std::vector<double> work(std::size_t(ranks), 0.0);
+      for (std::size_t k = 0; k < n; ++k) work[std::size_t(rank[k])] += cost[k];
+      return work;
+    };
+    const auto imbalance = [&] {
+      const std::vector<double> work = work_of();
+      return *std::max_element(work.begin(), work.end()) * ranks / std::accumulate(work.begin(), work.end(), 0.0) - 1;
+    };
+    const double before = imbalance();
+    const std::vector<Move> moves = moves_to_balance(cost, rank, ranks, 0.1);
+    if (before <= 0.1) {
+      CHECK(moves.empty());
+      continue;
+    }
+    std::vector<int> times(n, 0);
+    for (const Move& each : moves) {
+      CHECK(rank[each.index] == each.from);
+      CHECK(++times[each.index] == 1);
+      rank[each.index] = each.to;
+    }
+    CHECK(imbalance() < 0.1);
+    CHECK(moves.size() < n / 2);
+  }
+  // Nothing helps: one RVE on each of two ranks, one of them dear.
+  CHECK(moves_to_balance(std::vector{1.0, 9.0}, std::vector{0, 1}, 2, 0.1).empty());
+  CHECK(moves_to_balance(std::vector{0.0, 0.0, 0.0}, std::vector{0, 0, 0}, 2, 0.1).empty());
+}
