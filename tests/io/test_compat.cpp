@@ -7,15 +7,18 @@
 #include "rvelab/io/specimen_file.hpp"
 #include "rvelab/solver/rve.hpp"
 #include "tests/catch.hpp"
+#include "tests/folder.hpp"
 
 using namespace rvelab;
+using namespace rvelab::test;
 
 TEST_CASE("files of every version of the format are read with all that they hold") {
   for (const std::string version : {"1_0", "1_1", "1_2", "1_3", "1_4", "1_5", "1_6", "1_7", "1_8"}) {
     CAPTURE(version);
-    const std::string folder = std::string(RVELAB_TEST_DATA) + "/compat/";
-    const std::string records = folder + "records_" + version + ".h5",
-                      specimen = folder + "specimen_" + version + ".h5";
+    const Folder folder;
+    const std::string kept = std::string(RVELAB_TEST_DATA) + "/compat/";
+    const std::string records = kept_file(folder, kept + "records_" + version + ".h5"),
+                      specimen = kept_file(folder, kept + "specimen_" + version + ".h5");
     std::string dotted = version;
     dotted[1] = '.';
     CHECK(io::Hdf5File::open(records).attribute("format_version") == dotted);
