@@ -1,5 +1,6 @@
 #include "tools/mpm/checkpoint.hpp"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "tools/mpm/files.hpp"
@@ -51,11 +52,20 @@ void write_checkpoint(const Model<D>& model, const Progress& progress, const std
   for (const auto& plane : solver.planes.all) keep(plane);
   for (const auto& body : solver.bodies.all) keep(body);
   file.write("reactions", reactions, {reactions.size()});
-  file.write("clock",
-             std::vector<double>{solver.time, solver.ledger.nodal_kinetic, solver.grid_seconds, solver.material_seconds,
-                                 progress.start.kinetic, progress.start.potential, progress.start.volume,
-                                 progress.last_row, progress.next_frame, progress.next_row, progress.next_checkpoint},
-             {11});
+  std::vector<double> clock{solver.time,
+                            solver.ledger.nodal_kinetic,
+                            solver.grid_seconds,
+                            solver.material_seconds,
+                            progress.start.kinetic,
+                            progress.start.potential,
+                            progress.start.volume,
+                            progress.last_row,
+                            progress.next_frame,
+                            progress.next_row,
+                            progress.next_checkpoint};
+  // A grid that follows a plane was placed at the start of the last step; the size of the next one hangs on it.
+  clock.insert(clock.end(), solver.grid.cell.data(), solver.grid.cell.data() + D);
+  file.write("clock", clock, {clock.size()});
   file.write("counts", std::vector<std::int64_t>{solver.steps, progress.history_bytes, progress.watched_bytes});
   file.write("impulses", progress.impulses, {progress.impulses.size()});
   file.write("frame_times", progress.frame_times, {progress.frame_times.size()});
@@ -105,6 +115,7 @@ void read_checkpoint(Model<D>& model, Progress& progress, const std::string& fol
   progress.next_frame = clock[8];
   progress.next_row = clock[9];
   progress.next_checkpoint = clock[10];
+  if (clock.size() >= 11 + D) std::copy_n(clock.begin() + 11, D, solver.grid.cell.data());  // not in older ones
   const auto counts = file.read_whole("counts");
   solver.steps = long(counts[0]);
   progress.history_bytes = long(counts[1]);

@@ -56,7 +56,7 @@ GrainPool::GrainPool(Workers& workers, const GrainOptions& options) {
   def.workers = 1;
   def.run_tasks = run_tasks;
   def.host = &workers;
-  need(rvelab_pool_create(&def, &pool_));
+  need(options.create_pool(&def, &pool_));
 }
 
 GrainPool::~GrainPool() { rvelab_pool_destroy(pool_); }

@@ -11,8 +11,12 @@
 
 namespace mpm {
 
+/// rvelab_pool_create, or what makes a pool over ranks.
+using CreatePool = std::int32_t (*)(const rvelab_pool_def*, rvelab_pool**);
+
 struct GrainOptions {
   double tolerance_rel = 0, tolerance_abs = 0;  ///< 0: what the specimen says
+  CreatePool create_pool = rvelab_pool_create;
 };
 
 /// A pool of RVEs that work with the threads of the driver.

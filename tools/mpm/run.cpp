@@ -67,7 +67,7 @@ void tell_cost(const Model<D>& model, double wall, long steps, double grain_step
 template <int D>
 int run_model(const Scene& scene, const RunOptions& options, std::ostream& report) {
   const auto begin = Clock::now();
-  auto model = set_up<D>(scene, options.threads, options.specimens, !options.resume);
+  auto model = set_up<D>(scene, options.threads, options.specimens, !options.resume, options.create_pool);
   auto& solver = model->solver;
   Progress progress;
   if (options.resume) {

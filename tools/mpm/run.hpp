@@ -10,6 +10,7 @@
 #include <iosfwd>
 #include <string>
 
+#include "tools/mpm/grains.hpp"
 #include "tools/mpm/scene.hpp"
 
 namespace mpm {
@@ -19,7 +20,8 @@ struct RunOptions {
   std::string specimens = ".";
   int threads = 0;  ///< 0: as many as the processor runs at once
   bool resume = false;
-  bool quiet = false;      ///< no progress line
+  bool quiet = false;  ///< no progress line
+  CreatePool create_pool = rvelab_pool_create;
   double stop_at = 1e300;  ///< s; writes a checkpoint there and ends, as an interrupt does
 };
 

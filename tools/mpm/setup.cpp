@@ -158,7 +158,8 @@ std::shared_ptr<Material<D>> continuum(const MaterialOfScene& material) {
 }  // namespace
 
 template <int D>
-std::unique_ptr<Model<D>> set_up(const Scene& scene, int threads, const std::string& specimens, bool populate) {
+std::unique_ptr<Model<D>> set_up(const Scene& scene, int threads, const std::string& specimens, bool populate,
+                                 CreatePool create_pool) {
   auto model = std::make_unique<Model<D>>(threads);
   auto& solver = model->solver;
   solver.grid.cell = solver.first_cell = vec<D>(scene.cell);
@@ -184,8 +185,13 @@ std::unique_ptr<Model<D>> set_up(const Scene& scene, int threads, const std::str
       load_continuum<D>(scene, material, points, range.count);
       range.material = continuum<D>(material);
     } else {
-      const auto pool =
-          std::make_shared<GrainPool>(solver.workers, GrainOptions{material.tolerance_rel, material.tolerance_abs});
+      if (!model->pools.empty() && create_pool != rvelab_pool_create) {
+        throw Mistake("material." + material.name +
+                      ": a second material of grains, and ranks serve one pool; run this "
+                      "scene by rvelab-mpm, on threads");
+      }
+      const auto pool = std::make_shared<GrainPool>(
+          solver.workers, GrainOptions{material.tolerance_rel, material.tolerance_abs, create_pool});
       model->pools[material.name] = pool;
       auto grains =
           populate ? load_grains<D>(scene, material, *model, pool, specimens, points, range.count)
@@ -206,7 +212,7 @@ std::unique_ptr<Model<D>> set_up(const Scene& scene, int threads, const std::str
   return model;
 }
 
-template std::unique_ptr<Model<2>> set_up<2>(const Scene&, int, const std::string&, bool);
-template std::unique_ptr<Model<3>> set_up<3>(const Scene&, int, const std::string&, bool);
+template std::unique_ptr<Model<2>> set_up<2>(const Scene&, int, const std::string&, bool, CreatePool);
+template std::unique_ptr<Model<3>> set_up<3>(const Scene&, int, const std::string&, bool, CreatePool);
 
 }  // namespace mpm

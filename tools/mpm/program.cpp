@@ -1,0 +1,77 @@
+#include "tools/mpm/program.hpp"
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+
+#include "tools/mpm/run.hpp"
+
+namespace mpm {
+namespace {
+
+int run(const std::string& scene_file, std::vector<std::string> cases, bool published,
+        const std::vector<std::string>& assignments, RunOptions options, const std::string& resumed) {
+  const std::filesystem::path folder(resumed.empty() ? options.folder : resumed);
+  options.folder = folder.string();
+  options.resume = !resumed.empty();
+  if (published) cases.emplace_back("published");
+  toml::table resolved;
+  if (options.resume) {
+    const auto scene = read_scene((folder / "scene.toml").string(), {}, assignments);
+    return run_scene(scene, options, std::cout);
+  }
+  const auto scene = read_scene(scene_file, cases, assignments, &resolved);
+  std::error_code error;
+  if (std::filesystem::exists(folder / "checkpoint.h5")) {
+    throw Mistake(options.folder + " holds a run already; go on with --resume, or give another folder");
+  }
+  std::filesystem::create_directories(folder, error);
+  std::ofstream copy(folder / "scene.toml");
+  copy << resolved << "\n";
+  if (!copy.flush()) throw Mistake(options.folder + ": cannot be written; give a folder that you may write to");
+  return run_scene(scene, options, std::cout);
+}
+
+}  // namespace
+
+int program(int argc, char** argv, CreatePool create_pool) {
+  CLI::App app{
+      "rvelab-mpm: the material point method with granular RVEs as its material\n\n"
+      "  rvelab-mpm protocols/mpm/column.toml -o column\n"
+      "  rvelab-mpm protocols/mpm/biaxial.toml --case M4 --specimens . -o M4\n"
+      "  rvelab-mpm --resume M4\n"};
+  std::string scene, resume;
+  std::vector<std::string> cases, assignments;
+  RunOptions options;
+  options.create_pool = create_pool;
+  bool published = false;
+  auto* file = app.add_option("scene", scene, "Scene in TOML");
+  auto* folder = app.add_option("-o,--output", options.folder, "Folder for histories, frames and checkpoints");
+  app.add_option("--resume", resume, "Folder of a run to go on with")->excludes(file)->excludes(folder);
+  app.add_option("--case", cases, "A case of the scene ([case.NAME]), laid over it; may be given again");
+  app.add_flag("--published", published, "The published size: the same as --case published");
+  app.add_option("--set", assignments,
+                 "table.key=value, laid over the scene; [[tables]] by name: body.pipe.radius_m=0.4");
+  app.add_option("--specimens", options.specimens, "Folder of the specimen files that materials name");
+  app.add_option("-j,--threads", options.threads, "Threads; 0: as many as the processor runs at once");
+  app.add_option("--stop-at", options.stop_at, "Stop at this time (s) with a checkpoint");
+  app.add_flag("-q,--quiet", options.quiet, "No progress line");
+  try {
+    app.parse(argc, argv);
+    if (resume.empty() && (scene.empty() || options.folder.empty())) {
+      throw Mistake("give a scene and a folder (rvelab-mpm SCENE.toml -o FOLDER), or --resume FOLDER");
+    }
+    return run(scene, cases, published, assignments, options, resume);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  } catch (const Mistake& mistake) {
+    std::cerr << "rvelab-mpm: " << mistake.what() << "\n";
+    return 2;
+  } catch (const std::exception& failure) {
+    std::cerr << "rvelab-mpm: " << failure.what() << "\n";
+    return 1;
+  }
+}
+
+}  // namespace mpm

@@ -1,0 +1,11 @@
+// rvelab-mpm: a scene in TOML is run, or a run is resumed.
+#pragma once
+
+#include "tools/mpm/grains.hpp"
+
+namespace mpm {
+
+/// The exit code: 0 done, 130 interrupted with a checkpoint, 1 failed, 2 a mistake in what was given.
+int program(int argc, char** argv, CreatePool create_pool);
+
+}  // namespace mpm
