@@ -56,12 +56,13 @@ std::unique_ptr<pool::Share> open_share(const pool::Options& options) {
   return std::make_unique<pool::ThreadedPool>(options);
 }
 
-std::int32_t give_pool(const rvelab_pool_def* def, void* self,
-                       std::unique_ptr<pool::Pool> (*make)(void* self, const pool::Options& options),
-                       rvelab_pool** pool) noexcept {
+std::int32_t give_pool(const rvelab_pool_def* def, void* self, MakePool make, rvelab_pool** pool) noexcept {
   return behind_wall([&] {
-    expect_pointer(pool, "pool");
-    *pool = handle_of(make(self, options_of(def)));
+    std::unique_ptr<pool::Pool> made = make(self, [&] {
+      expect_pointer(pool, "pool");
+      return options_of(def);
+    });
+    *pool = handle_of(std::move(made));
   });
 }
 

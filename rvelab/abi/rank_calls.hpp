@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 
 #include "rvelab/pool/threaded_pool.hpp"
@@ -14,14 +15,14 @@ struct rvelab_pool_def;
 
 namespace rvelab::abi {
 
+using MakePool = std::unique_ptr<pool::Pool> (*)(void* self, const std::function<pool::Options()>& options);
+
 struct RankCalls {
   const char* version;  ///< of rvelab; both libraries must be of one
   std::unique_ptr<pool::Share> (*open_share)(const pool::Options& options);
-  /// Gives the pool that make(self, options of def) returns to the host, or null. What it throws becomes the status and
-  /// the text of the call.
-  std::int32_t (*give_pool)(const rvelab_pool_def* def, void* self,
-                            std::unique_ptr<pool::Pool> (*make)(void* self, const pool::Options& options),
-                            rvelab_pool** pool) noexcept;
+  /// Gives the pool that make(self, options) returns to the host, or null; options() reads def. What is thrown becomes
+  /// the status and the text of the call.
+  std::int32_t (*give_pool)(const rvelab_pool_def* def, void* self, MakePool make, rvelab_pool** pool) noexcept;
 };
 
 }  // namespace rvelab::abi

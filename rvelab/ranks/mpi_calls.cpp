@@ -49,18 +49,24 @@ void lay_over(const Common& common, pool::Options& options) {
 const abi::RankCalls& library_calls() { return *static_cast<const abi::RankCalls*>(rvelab_rank_calls()); }
 
 /// The pool at the first rank. The others serve it until its end, and have none.
-std::unique_ptr<pool::Pool> made(void* self, const pool::Options& given) {
+std::unique_ptr<pool::Pool> made(void* self, const std::function<pool::Options()>& given) {
   World world = join(*static_cast<const std::int32_t*>(self));
   const abi::RankCalls& library = library_calls();
-  pool::Options options = given;
-  Common common = common_of(given);
+  Status status = Status::ok;
+  char text[1024] = "";
+  pool::Options options;
+  try {
+    options = given();
+  } catch (...) {
+    status = pool::status_of_exception(text, sizeof text);
+  }
+  expect_all(*world.link, status, text);
+  Common common = common_of(options);
   broadcast(*world.link, std::as_writable_bytes(std::span(&common, 1)));
   lay_over(common, options);
   if (options.workers == 0 && options.run_tasks == nullptr)  // the cores of a machine are shared by its ranks
     options.workers = std::max(1u, std::thread::hardware_concurrency() / unsigned(world.ranks_here));
   std::unique_ptr<pool::Share> share;
-  Status status = Status::ok;
-  char text[1024] = "";
   try {
     for (const char* version : {static_cast<const char*>(common.version.data()), library.version})
       if (std::strcmp(version, io::version) != 0)

@@ -25,10 +25,23 @@ void expect_success(int code, const char* what) {
   throw Refused(Status::internal, std::string("pool: ") + what + " between ranks failed: " + text);
 }
 
+[[noreturn]] void refuse_handle() {
+  throw Refused(Status::bad_input,
+                "rvelab_mpi_pool_create: fortran_comm is no communicator; give MPI_Comm_c2f(comm), or "
+                "the handle of Fortran itself");
+}
+
 class MpiLink final : public Link {
  public:
   explicit MpiLink(MPI_Comm of) {
-    expect_success(MPI_Comm_dup(of, &communicator_), "a communicator");
+    // A handle that is none is told to the handler of the world, which by default ends the program.
+    MPI_Errhandler as_found;
+    MPI_Comm_get_errhandler(MPI_COMM_WORLD, &as_found);
+    MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
+    const int code = MPI_Comm_dup(of, &communicator_);
+    MPI_Comm_set_errhandler(MPI_COMM_WORLD, as_found);
+    MPI_Errhandler_free(&as_found);
+    if (code != MPI_SUCCESS) refuse_handle();
     MPI_Comm_set_errhandler(communicator_, MPI_ERRORS_RETURN);
     MPI_Comm_size(communicator_, &ranks_);
     MPI_Query_thread(&threads_);
@@ -100,10 +113,7 @@ World join(std::int32_t fortran_communicator) {
                   "rvelab_mpi_pool_create: MPI is not initialised; call MPI_Init before, and "
                   "MPI_Finalize after rvelab_pool_destroy");
   const MPI_Comm given = MPI_Comm_f2c(fortran_communicator);
-  if (given == MPI_COMM_NULL)
-    throw Refused(Status::bad_input, "rvelab_mpi_pool_create: fortran_comm is " + std::to_string(fortran_communicator) +
-                                         ", which is no communicator; give MPI_Comm_c2f(comm), or the handle of "
-                                         "Fortran itself");
+  if (given == MPI_COMM_NULL) refuse_handle();
   World world;
   world.link = std::make_unique<MpiLink>(given);
   MPI_Comm_rank(communicator_of(*world.link), &world.rank);

@@ -94,6 +94,7 @@ void Served::trial(Unpacker& given, Packer& found) {
   batch.dt_scale = scale.data();
   batch.status = status.data();
   batch.tokens_out = wanted.tokens_out ? tokens_out.data() : nullptr;
+  tried_ = ids;
   const Verdict worst = share_->trial(batch);
   share_->cost(ids, costs.data());
   found.put_text(worst.text);
@@ -193,6 +194,7 @@ void Served::perform(Call call, Unpacker& given, Packer& found) {
 }
 
 Bytes Served::answer(std::span<const std::byte> message) noexcept {
+  tried_.clear();
   try {
     try {
       Unpacker given(message);
@@ -202,6 +204,7 @@ Bytes Served::answer(std::span<const std::byte> message) noexcept {
     } catch (...) {
       char text[1024];
       const Status status = pool::status_of_exception(text, sizeof text);
+      if (!tried_.empty()) share_->revert(tried_);  // of what fails no trial is pending
       return answered(status, text, true, {});
     }
   } catch (...) {

@@ -48,6 +48,7 @@ class Served {
 
   std::unique_ptr<pool::Share> share_;
   std::map<std::int64_t, std::int64_t> templates_;  ///< of this share, by their numbers on the first rank
+  std::vector<std::int64_t> tried_;                 ///< ids of trials that no answer tells of yet
 };
 
 /// An answer opened; Refused with its status and text if the call was.

@@ -1,4 +1,5 @@
 // Looking at RVEs on other ranks, their states, and files of the whole pool. Declared in ranked_pool.hpp.
+#include <new>
 #include <utility>
 
 #include "rvelab/pool/checks.hpp"
@@ -76,7 +77,13 @@ void RankedPool::read(const std::function<pool::Population(const TakeState& take
 void serve(Link& link, std::unique_ptr<pool::Share> share) {
   Served served(std::move(share));
   while (true) {
-    const Bytes message = link.receive(0);
+    Bytes message;
+    try {
+      message = link.receive(0);
+    } catch (const std::bad_alloc&) {
+      link.send(0, {});  // as an answer that could not be made
+      continue;
+    }
     if (Unpacker(message).take<Call>() == Call::end) return;
     link.send(0, served.answer(message));
   }

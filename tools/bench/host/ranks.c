@@ -67,7 +67,15 @@ int main(int argc, char** argv) {
   rvelab_pool_def def;
   require(rvelab_pool_def_init(&def, sizeof def) == RVELAB_OK, "def");
   def.workers = 1;
-  rvelab_pool* pool = (rvelab_pool*)&def; /* must become null where there is none */
+  rvelab_pool* pool = NULL;
+  /* What one rank gets wrong is refused on all. */
+  def.workers = rank == ranks - 1 ? -1 : 1;
+  require(rvelab_mpi_pool_create(&def, MPI_Comm_c2f(MPI_COMM_WORLD), &pool) == RVELAB_E_INPUT && pool == NULL,
+          "bad workers");
+  require(strstr(rvelab_last_error(), rank == ranks - 1 ? "workers" : "another rank") != NULL, "text");
+  require(rvelab_mpi_pool_create(&def, -77, &pool) == RVELAB_E_INPUT, "no communicator");
+  def.workers = 1;
+  pool = (rvelab_pool*)&def; /* must become null where there is none */
   require(rvelab_mpi_pool_create(&def, MPI_Comm_c2f(MPI_COMM_WORLD), &pool) == RVELAB_OK, "create");
   if (rank == 0) {
     const size_t bytes = (size_t)n * 9 * sizeof(double);
