@@ -23,6 +23,7 @@ class IdTable {
   std::size_t size() const { return generations_.size(); }  ///< slots, from 0; those that are free too
   std::size_t population() const { return population_; }
   std::uint32_t tag() const { return tag_; }  ///< 0: none yet
+  void take_tag();                            ///< one that no pool of this process has, if there is none yet
   const std::vector<std::uint32_t>& generations() const { return generations_; }
 
   /// Makes room for n more. All or nothing is taken by `take`, which then cannot fail. Refused (no_slot): all are used.
@@ -40,7 +41,6 @@ class IdTable {
   void give_up(std::int64_t id) noexcept;
 
  private:
-  void take_tag();
   void grow(std::size_t slots);
 
   std::vector<std::uint32_t> generations_;

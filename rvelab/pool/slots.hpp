@@ -46,6 +46,7 @@ class Slots {
   std::size_t size() const { return slots_.size(); }  ///< slots, from 0; those that hold nothing too
   Slot& operator[](std::size_t slot) { return slots_[slot]; }
   const IdTable& ids() const { return ids_; }
+  void take_tag() { ids_.take_tag(); }
 
   using Residents = std::vector<std::unique_ptr<Resident>>;
   /// As a file has them: a generation for each slot, and the RVEs of the ids. The table must be without RVEs.

@@ -163,6 +163,12 @@ void ThreadedPool::spawn(std::int64_t of_template, std::int64_t n, std::int64_t*
   for (auto& resident : made) *ids++ = slots_.add(std::move(resident));
 }
 
+std::uint32_t ThreadedPool::tag() {
+  const Alone alone(*this);
+  slots_.take_tag();
+  return slots_.ids().tag();
+}
+
 void ThreadedPool::spawn_as(std::int64_t of_template, std::span<const std::int64_t> ids) {
   const Alone alone(*this);
   slots_.claim(ids, made_of(of_template, std::int64_t(ids.size())));

@@ -13,6 +13,8 @@ namespace rvelab::pool {
 /// The share of a rank: RVEs come and go under ids that another table gives out.
 class Share : public Pool {
  public:
+  /// Tag of the ids, taken from those of this process if there is none yet.
+  virtual std::uint32_t tag() = 0;
   /// RVEs of a template under these ids; all or none.
   virtual void spawn_as(std::int64_t of_template, std::span<const std::int64_t> ids) = 0;
   virtual void clone_as(std::int64_t source, std::int64_t id) = 0;
@@ -55,6 +57,7 @@ class ThreadedPool final : public Share {
   void expect_this_process() const override;
   void close() override;
 
+  std::uint32_t tag() override;
   void spawn_as(std::int64_t of_template, std::span<const std::int64_t> ids) override;
   void clone_as(std::int64_t source, std::int64_t id) override;
   void receive(std::span<const std::byte> state, bool pending) override;

@@ -142,6 +142,13 @@ std::int64_t RankedPool::add_template(Specimen specimen) {
   return number;
 }
 
+void RankedPool::make_room(std::size_t n) {
+  // Tags are given out by librvelab.so: each library has a table of its own.
+  if (ids_.tag() == 0) ids_.restore(own_.share().tag(), {}, {});
+  ids_.make_room(n);
+  places_.resize(std::max(places_.size(), ids_.size()));
+}
+
 void RankedPool::spawn(std::int64_t of_template, std::int64_t n, std::int64_t* ids) {
   const Lock lock = alone();
   pool::expect_spawn(n);
@@ -150,8 +157,7 @@ void RankedPool::spawn(std::int64_t of_template, std::int64_t n, std::int64_t* i
   };
   ask(0, spawned({}));  // refused if there is no such template
   if (n == 0) return;
-  ids_.make_room(std::size_t(n));
-  places_.resize(std::max(places_.size(), ids_.size()));
+  make_room(std::size_t(n));
   std::vector<std::size_t> filled = population_;
   std::vector<std::vector<std::int64_t>> of_rank(filled.size());
   std::vector<std::int64_t> taken;
@@ -189,8 +195,7 @@ std::int64_t RankedPool::clone(std::int64_t source) {
   const Lock lock = alone();
   const Place& original = place_of(source);
   const int rank = original.rank;
-  ids_.make_room(1);
-  places_.resize(std::max(places_.size(), ids_.size()));
+  make_room(1);
   const std::int64_t id = ids_.take();
   try {
     ask(rank, message(Call::clone).put(source).put(id).take());

@@ -62,6 +62,7 @@ class RankedPool final : public pool::Pool {
   void expect_all_done(const Messages& messages);
   Answer ask(int rank, const Bytes& message);
   Bytes saved(std::int64_t id);
+  void make_room(std::size_t n);
   std::vector<std::vector<std::size_t>> by_rank(std::span<const std::int64_t> ids);
   Messages of_ids(Call call, std::span<const std::int64_t> ids, bool with_places);
   void balance(std::span<const std::int64_t> ids);

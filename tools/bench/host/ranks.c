@@ -23,6 +23,16 @@ static double drawn(uint64_t* state) {
   return (double)(*state >> 11) / 4503599627370496.0 - 1;
 }
 
+/* Another pool of this process, which gives out its ids first. */
+static rvelab_pool* other_pool(const char* specimen, int64_t* id) {
+  rvelab_pool* other;
+  int64_t tmpl;
+  require(rvelab_pool_create(NULL, &other) == RVELAB_OK && rvelab_template_load(other, specimen, &tmpl) >= 0,
+          "other pool");
+  require(rvelab_spawn(other, tmpl, 1, id) == RVELAB_OK, "spawn");
+  return other;
+}
+
 /* All batches; sigma[9 n] is that of the last, and its sum over all. */
 static double batches(rvelab_pool* pool, int64_t n, int steps, double size, char** specimens, double* sigma,
                       double* sum) {
@@ -79,8 +89,12 @@ int main(int argc, char** argv) {
   require(rvelab_mpi_pool_create(&def, MPI_Comm_c2f(MPI_COMM_WORLD), &pool) == RVELAB_OK, "create");
   if (rank == 0) {
     const size_t bytes = (size_t)n * 9 * sizeof(double);
-    double *over = malloc(4 * bytes), *one = over + 9 * n, *sum_over = one + 9 * n, *sum_one = sum_over + 9 * n;
+    double *over = calloc(4, bytes), *one = over + 9 * n, *sum_over = one + 9 * n, *sum_one = sum_over + 9 * n;
+    int64_t foreign;
+    rvelab_pool* other = other_pool(argv[5], &foreign);
     const double spread = batches(pool, n, steps, size, argv + 4, over, sum_over);
+    require(rvelab_apply(pool, foreign, one, 0, over) == RVELAB_E_ID, "an id of another pool was taken");
+    require(rvelab_pool_destroy(other) == RVELAB_OK, "destroy");
     require(rvelab_pool_destroy(pool) == RVELAB_OK, "destroy");
     def.workers = ranks;
     require(rvelab_pool_create(&def, &pool) == RVELAB_OK, "create");
