@@ -128,12 +128,12 @@ Answer check_specimen_file(const std::string& path) {
   });
 }
 
-/// Whatever was taken can be sealed, and what was sealed is taken.
+/// Whatever was taken is sealed, and then taken; or refused there, where a part that nothing else reads is damaged.
 Answer check_specimen(View input) {
   const std::string path = file_of("s.h5", input), sealed = scratch("sealed.h5");
   const Answer answered = check_specimen_file(path);
   if (answered == Answer::refused) return answered;
-  io::seal_file(path, sealed);
+  if (answer([&] { io::seal_file(path, sealed); }) == Answer::refused) return answered;
   promise(check_specimen_file(sealed) == Answer::taken, "a file that was taken is refused once it is sealed");
   return answered;
 }

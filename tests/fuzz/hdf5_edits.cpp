@@ -150,6 +150,7 @@ class Editor {
   void overwrite(hid_t dataset, hid_t type, Value value, const std::string& name, bool all) {
     std::size_t count = 1;
     for (const auto extent : extents_of(name)) count *= extent;
+    if (count > 65536) return;  // said to be so large by an edit before; each of its chunks would be made
     std::vector<Value> values(count);
     if (count == 0 || H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) return;
     if (all) values.assign(count, value);

@@ -165,6 +165,7 @@ void print(const std::string& name, const std::vector<Drawn>& all) {
       ++counted;
       within += d.error <= d.estimate;
       allowed += d.error <= d.allowed;
+      if (!(d.error > 0 && d.estimate > 0)) continue;  // a specimen that came apart: no stress, no error
       ratio.push_back(d.estimate / d.error);
       logs.push_back(std::log(d.error / d.estimate));
     }
