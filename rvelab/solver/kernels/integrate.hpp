@@ -46,8 +46,10 @@ inline double largest_of(V v) {
 
 /// A row of four doubles for every task of a chunk (GrainArrays): grains as j, then grains as i.
 struct alignas(64) TaskRows {
-  double at[2][4 * chunk_grains];
-  inline __attribute__((always_inline)) double* of(std::uint16_t task) { return at[0] + task; }
+  double at[8 * chunk_grains];
+  inline __attribute__((always_inline)) double* of(std::uint16_t task) { return at + task; }
+  inline __attribute__((always_inline)) const double* as_j(long k) const { return at + 4 * k; }
+  inline __attribute__((always_inline)) const double* as_i(long k) const { return at + 4 * (chunk_grains + k); }
 };
 
 }  // namespace

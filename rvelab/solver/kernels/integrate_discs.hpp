@@ -36,8 +36,7 @@ inline __attribute__((always_inline)) void gather_disc_forces(const GrainArrays&
   for (long k = 0; k < count; k += W) {
     Quad net[W];
     for (int lane = 0; lane < W; ++lane)
-      net[lane] =
-          L::add(quad_at<W>(sums.at[0] + 4 * (k + lane)), L::seen_from_i(quad_at<W>(sums.at[1] + 4 * (k + lane))));
+      net[lane] = L::add(quad_at<W>(sums.as_j(k + lane)), L::seen_from_i(quad_at<W>(sums.as_i(k + lane))));
     V columns[4];
     L::transpose(net, columns);
     store_as(out.fx.at + k, columns[0]);

@@ -64,9 +64,9 @@ inline __attribute__((always_inline)) void gather_sphere_forces(const GrainArray
   for (long k = 0; k < count; k += W) {
     Quad force[W], torque[W];
     for (int lane = 0; lane < W; ++lane) {
-      const long at = 4 * (k + lane);
-      force[lane] = L::sub(quad_at<W>(forces.at[0] + at), quad_at<W>(forces.at[1] + at));
-      torque[lane] = L::add(quad_at<W>(torques.at[0] + at), quad_at<W>(torques.at[1] + at));
+      const long grain = k + lane;
+      force[lane] = L::sub(quad_at<W>(forces.as_j(grain)), quad_at<W>(forces.as_i(grain)));
+      torque[lane] = L::add(quad_at<W>(torques.as_j(grain)), quad_at<W>(torques.as_i(grain)));
     }
     V columns[4];
     L::transpose(force, columns);
