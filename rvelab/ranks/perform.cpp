@@ -13,9 +13,7 @@ namespace {
 using pool::Status;
 using pool::Verdict;
 
-constexpr std::int64_t all_ids = -1;
-
-/// Ids, or (without data) the sign for all.
+/// Ids, and whether all RVEs of the share are meant instead.
 std::vector<std::int64_t> take_ids(Unpacker& given, bool& all) {
   all = given.take<bool>();
   return given.take_all<std::int64_t>();
@@ -23,7 +21,8 @@ std::vector<std::int64_t> take_ids(Unpacker& given, bool& all) {
 
 std::span<const std::int64_t> ids_or_all(const std::vector<std::int64_t>& ids, bool all) {
   if (all) return {};
-  return {ids.empty() ? &all_ids : ids.data(), ids.size()};  // with data: no ids are meant, not all
+  static constexpr std::int64_t none = 0;  // a pointer that is not null: no ids are meant, not all
+  return {ids.empty() ? &none : ids.data(), ids.size()};
 }
 
 /// Each number of an Info, tensors by their elements.

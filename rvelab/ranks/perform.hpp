@@ -28,9 +28,9 @@ enum class Call : std::int32_t {
   forget_received,
 };
 
-/// Which results a trial is asked for beside stress, status and costs.
+/// Which results a trial is asked for beside stress, status, costs and factors on the step; whether it names tokens.
 struct Wanted {
-  bool contact_stress, reynolds_stress, tangent, error_estimate, dt_scale, tokens_out, tokens_in;
+  bool contact_stress, reynolds_stress, tangent, error_estimate, tokens_out, tokens_in;
 };
 
 class Served {
@@ -40,7 +40,7 @@ class Served {
   /// The answer: a status, its text, and what was found. Failures are answers, never thrown; empty: no memory was left
   /// for one.
   Bytes answer(std::span<const std::byte> message) noexcept;
-  pool::Share& share() { return *share_; }
+  pool::Share& share() const { return *share_; }
 
  private:
   void perform(Call call, Unpacker& given, Packer& found);

@@ -26,7 +26,7 @@ RankedPool::~RankedPool() {
 
 void RankedPool::expect_this_process() const {
   link_->expect_thread();
-  const_cast<Served&>(own_).share().expect_this_process();
+  own_.share().expect_this_process();
 }
 
 RankedPool::Lock RankedPool::at_work() {

@@ -34,7 +34,7 @@ struct Worst {
   }
 };
 
-/// What a share found of the entries `of`, into the arrays of the host. Returns its worst.
+/// What a share found of its entries, and the way of each into the arrays of the host.
 struct Results {
   std::string text;
   std::vector<std::int32_t> status;
@@ -115,8 +115,7 @@ Verdict RankedPool::trial(const pool::Batch& batch) {
 
   Messages messages = no_messages();
   const Wanted wanted{batch.contact_stress != nullptr, batch.reynolds_stress != nullptr, batch.tangent != nullptr,
-                      batch.error_estimate != nullptr, batch.dt_scale != nullptr,        batch.tokens_out != nullptr,
-                      batch.tokens_in != nullptr};
+                      batch.error_estimate != nullptr, batch.tokens_out != nullptr,      batch.tokens_in != nullptr};
   for (std::size_t rank = 0; rank < messages.size(); ++rank) {
     if (indices[rank].empty()) continue;
     std::vector<std::int64_t> own, places, tokens;
