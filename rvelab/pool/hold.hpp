@@ -10,17 +10,24 @@ namespace rvelab::pool {
 /// An RVE that a call is at work on; let go of at the end.
 class Hold {
  public:
+  Hold() = default;
   explicit Hold(Slot& slot) : slot_(&slot) {}
   Hold(Hold&& other) noexcept : slot_(std::exchange(other.slot_, nullptr)) {}
-  Hold& operator=(Hold&&) = delete;
-  ~Hold() {
-    if (slot_ != nullptr) slot_->owner.store(0, std::memory_order_release);
+  Hold& operator=(Hold&& other) noexcept {
+    let_go();
+    slot_ = std::exchange(other.slot_, nullptr);
+    return *this;
   }
+  ~Hold() { let_go(); }
+  bool empty() const { return slot_ == nullptr; }
   Slot& slot() const { return *slot_; }
   Resident& resident() const { return *slot_->resident; }
 
  private:
-  Slot* slot_;
+  void let_go() noexcept {
+    if (slot_ != nullptr) slot_->owner.store(0, std::memory_order_release);
+  }
+  Slot* slot_ = nullptr;
 };
 
 /// A call that works on RVEs.

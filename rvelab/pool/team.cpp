@@ -2,6 +2,7 @@
 
 #include <signal.h>
 
+#include <algorithm>
 #include <atomic>
 #include <string>
 #include <system_error>
@@ -80,6 +81,30 @@ void Team::run(std::size_t count, const std::function<void(std::size_t)>& piece)
     if (workers_) return workers_->run(count, piece);
   }
   for (std::size_t k = 0; k < count; ++k) piece(k);
+}
+
+void Team::share(std::size_t count, const std::function<void(std::size_t)>& piece) {
+  constexpr std::size_t block = 32, least = 256;  // waking the threads takes some 10 us
+  if (count >= least && workers_) {
+    std::unique_lock lock(mutex_, std::try_to_lock);
+    if (lock)
+      return workers_->run((count + block - 1) / block, [&piece, count](std::size_t part) {
+        for (std::size_t k = part * block; k < std::min(count, (part + 1) * block); ++k) piece(k);
+      });
+  }
+  for (std::size_t k = 0; k < count; ++k) piece(k);
+}
+
+bool Team::share_all(std::size_t count, const std::function<void(std::size_t)>& piece) {
+  std::atomic<bool> failed{false};
+  share(count, [&piece, &failed](std::size_t k) {
+    try {
+      piece(k);
+    } catch (...) {
+      failed = true;
+    }
+  });
+  return !failed;
 }
 
 }  // namespace rvelab::pool

@@ -23,6 +23,12 @@ class Team {
   /// (bad_input) if the host left a piece undone or began one twice.
   void run(std::size_t count, const std::function<void(std::size_t)>& piece);
 
+  /// The same for pieces of a tenth of a microsecond: many are one piece of work, and few are done by the calling
+  /// thread, as all are before `run` has started threads, or where the host has them. Allocates nothing.
+  void share(std::size_t count, const std::function<void(std::size_t)>& piece);
+  /// Whether none of them has thrown; each was begun.
+  bool share_all(std::size_t count, const std::function<void(std::size_t)>& piece);
+
  private:
   void run_by_host(std::size_t count, const std::function<void(std::size_t)>& piece);
 

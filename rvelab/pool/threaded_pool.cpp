@@ -95,9 +95,11 @@ Hold ThreadedPool::held(std::int64_t id, std::uint64_t call) {
 }
 
 std::vector<Hold> ThreadedPool::held(std::span<const std::int64_t> ids, std::uint64_t call) {
-  std::vector<Hold> holds;
-  holds.reserve(ids.size());
-  for (const std::int64_t id : ids) holds.push_back(held(id, call));
+  std::vector<Hold> holds(ids.size());
+  const auto hold = [&](std::size_t k) { holds[k] = held(ids[k], call); };
+  if (team_.share_all(ids.size(), hold)) return holds;
+  for (Hold& let_go : holds) let_go = Hold();
+  for (std::size_t k = 0; k < ids.size(); ++k) hold(k);  // the first that cannot be held is the one that is named
   return holds;
 }
 

@@ -94,7 +94,8 @@ struct ThreadedPool::Outcome {
 
 struct ThreadedPool::Entry {
   std::size_t index = 0;
-  Slot* slot = nullptr;
+  Slot* slot = nullptr;    ///< null: refused, as `verdict` says
+  std::uint64_t cost = 0;  ///< grain-steps of the last call
   Verdict verdict;
 };
 
@@ -200,27 +201,34 @@ Verdict ThreadedPool::trial(const Batch& batch) {
   expect_time(batch.dt);
   const auto n = std::size_t(batch.n);
   const std::uint64_t call = ++serial_;
-  std::vector<Hold> holds;
-  holds.reserve(n);
+  std::vector<Hold> holds(n);
   std::vector<Entry> entries(n);
-  std::vector<std::pair<std::uint64_t, std::size_t>> order;
-  order.reserve(n);
-  for (std::size_t k = 0; k < n; ++k) {
-    entries[k].index = k;
-    try {
-      holds.push_back(held(batch.ids[k], call));
-      const Tokens& tokens = holds.back().resident().tokens;
-      if (batch.tokens_in != nullptr && batch.tokens_in[k] != tokens.committed() &&
-          tokens.find(batch.tokens_in[k]) == nullptr)
-        throw Refused(Status::stale_token, "token " + std::to_string(batch.tokens_in[k]) +
-                                               " names no state of this RVE any more; valid: " + tokens.in_words());
-      entries[k].slot = &holds.back().slot();
-      order.emplace_back(entries[k].slot->last_grain_steps, k);
-    } catch (const Refused& refused) {
-      if (refused.status == Status::duplicate) throw;
-      entries[k].verdict = verdict_of_failure();
+  const auto hold = [&](std::size_t k) {
+    Hold taken = held(batch.ids[k], call);
+    const Tokens& tokens = taken.resident().tokens;
+    if (batch.tokens_in != nullptr && batch.tokens_in[k] != tokens.committed() &&
+        tokens.find(batch.tokens_in[k]) == nullptr)
+      throw Refused(Status::stale_token, "token " + std::to_string(batch.tokens_in[k]) +
+                                             " names no state of this RVE any more; valid: " + tokens.in_words());
+    entries[k] = {k, &taken.slot(), taken.slot().last_grain_steps, {}};
+    holds[k] = std::move(taken);
+  };
+  if (!team_.share_all(n, hold)) {  // one by one, so that it is the same entry that is refused on any number of threads
+    for (Hold& let_go : holds) let_go = Hold();
+    for (std::size_t k = 0; k < n; ++k) {
+      entries[k] = {};
+      try {
+        hold(k);
+      } catch (const Refused& refused) {
+        if (refused.status == Status::duplicate) throw;
+        entries[k].verdict = verdict_of_failure();
+      }
     }
   }
+  std::vector<std::pair<std::uint64_t, std::size_t>> order;
+  order.reserve(n);
+  for (std::size_t k = 0; k < n; ++k)
+    if (entries[k].slot != nullptr) order.emplace_back(entries[k].cost, k);
   std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
   if (!order.empty()) team_.run(order.size(), [&](std::size_t k) { run_entry(entries[order[k].second], batch); });
 
@@ -244,13 +252,15 @@ Verdict ThreadedPool::trial(const Batch& batch) {
 }
 
 std::vector<Hold> ThreadedPool::all_pending(std::uint64_t call) {
-  std::vector<Hold> holds;
-  holds.reserve(slots_.ids().population());
-  for (std::size_t k = 0; k < slots_.size(); ++k) {
-    if (!slots_[k].resident) continue;
-    Hold hold = held(slots_.ids().id_of(k), call);
-    if (hold.resident().pending) holds.push_back(std::move(hold));
-  }
+  std::vector<std::int64_t> ids;
+  ids.reserve(slots_.ids().population());
+  for (std::size_t k = 0; k < slots_.size(); ++k)
+    if (slots_[k].resident) ids.push_back(slots_.ids().id_of(k));
+  std::vector<Hold> holds = held(ids, call);
+  team_.share(holds.size(), [&](std::size_t k) {
+    if (!holds[k].resident().pending) holds[k] = Hold();
+  });
+  std::erase_if(holds, [](const Hold& hold) { return hold.empty(); });
   return holds;
 }
 
@@ -258,15 +268,20 @@ std::vector<Hold> ThreadedPool::all_pending(std::uint64_t call) {
 /// calls the ids; without: by their index.
 void ThreadedPool::prepare(std::span<const Hold> holds, std::span<const std::int64_t> ids,
                            std::span<const std::int64_t> places) {
+  enum Trial : char { none, let_go, at_hand };
+  std::vector<Trial> found(holds.size());
+  team_.share(holds.size(), [&](std::size_t k) {
+    const Resident& resident = holds[k].resident();
+    found[k] = !resident.pending ? none : resident.rve.pending() ? at_hand : let_go;
+  });
   for (std::size_t k = 0; k < holds.size(); ++k)
-    if (!holds[k].resident().pending)
+    if (found[k] == none)
       throw Refused(Status::no_trial, "commit: entry " + std::to_string(places.empty() ? std::int64_t(k) : places[k]) +
                                           " (id " + std::to_string(ids[k]) +
                                           ") has no pending trial; nothing was committed. Make a trial first");
   std::vector<Resident*> again;
-  again.reserve(holds.size());
-  for (const Hold& hold : holds)
-    if (!hold.resident().rve.pending()) again.push_back(&hold.resident());
+  for (std::size_t k = 0; k < holds.size(); ++k)
+    if (found[k] == let_go) again.push_back(&holds[k].resident());
   if (again.empty()) return;
   std::vector<Verdict> verdicts(again.size());
   team_.run(again.size(), [&](std::size_t k) {
@@ -288,7 +303,10 @@ void ThreadedPool::commit(std::span<const std::int64_t> ids) {
   const std::uint64_t call = ++serial_;
   const std::vector<Hold> holds = ids.data() == nullptr ? all_pending(call) : held(ids, call);
   prepare(holds, ids, {});
-  for (const Hold& hold : holds) settle(hold.resident(), last_token(hold.resident().tokens));
+  team_.share(holds.size(), [&](std::size_t k) {
+    Resident& resident = holds[k].resident();
+    settle(resident, last_token(resident.tokens));
+  });
 }
 
 void ThreadedPool::prepare_commit(std::span<const std::int64_t> ids, std::span<const std::int64_t> places) {

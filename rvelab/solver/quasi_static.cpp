@@ -25,6 +25,8 @@ constexpr long fewest_steps_back = 40;
 
 /// Strain of a quasi-static sub-step in which no grain touches another.
 constexpr double pace_of_gas = 1e-5;
+/// Strain of a sub-step that no scene asks for: with less the number of sub-steps would be none.
+constexpr double least_pace = 1e-30;
 
 /// Sub-steps before an increment is refused for the number that the present pace would need: where the contacts open,
 /// the pace of the dense start says little of what follows (an expansion by a tenth at kn/(p t) = 1e5: 6e7 expected,
@@ -139,7 +141,8 @@ void Rve::Impl::set_pace_target(double target) {
     // What that pace leaves of a dense packing: 2e-4 to 4e-4.
     state.pace_target = fixture.options.target_unbalanced > 0 ? target : 3e-4;
   }
-  if (state.pace_target > 0 && state.pace_target != target) state.strain_per_step *= target / state.pace_target;
+  if (state.pace_target > 0 && state.pace_target != target)
+    state.strain_per_step = std::clamp(state.strain_per_step * (target / state.pace_target), least_pace, 1.0);
   state.pace_target = target;
 }
 

@@ -22,13 +22,16 @@ std::size_t bytes_of(const Array& array) {
 
 }  // namespace
 
-void release_buffers(const Fixture& f, Assembly& a) {
+void put_masses_into_rows(const Fixture& f, Assembly& a) {
   const std::size_t length = std::size_t(f.row_length());
-  if (a.state.look_steps >= 0 && !a.mass.empty())
-    for (std::size_t g = 0; g < f.size(); ++g) {
-      a.rows[g * length + resting_mass(f.shape)] = a.mass[g];
-      a.rows[g * length + resting_inverse_inertia(f.shape)] = a.inverse_inertia[g];
-    }
+  if (a.state.look_steps < 0 || a.mass.empty()) return;
+  for (std::size_t g = 0; g < f.size(); ++g) {
+    a.rows[g * length + resting_mass(f.shape)] = a.mass[g];
+    a.rows[g * length + resting_inverse_inertia(f.shape)] = a.inverse_inertia[g];
+  }
+}
+
+void release_buffers(Assembly& a) {
   PairTable& t = a.pairs;
   release(t.row_i, t.row_j, t.kn, t.kt, t.law_constant, t.friction, t.kr, t.moment_cap, t.cn, t.force, t.radius_i,
           t.radius_j, t.touched, t.image_number[0], t.image_number[1], t.image_number[2]);

@@ -9,8 +9,10 @@
 
 namespace rvelab {
 
+/// The grain rows keep the masses for as long as the working arrays are released.
+void put_masses_into_rows(const Fixture& fixture, Assembly& assembly);
 /// Frees the working arrays; only rebuild_buffers, close_assembly and memory_of may be called then.
-void release_buffers(const Fixture& fixture, Assembly& assembly);
+void release_buffers(Assembly& assembly);
 
 /// Makes them again: the bits are those before.
 void rebuild_buffers(const Fixture& fixture, Assembly& assembly);

@@ -75,7 +75,7 @@ void Rve::take_as_reference() {
   m.moved();
 }
 
-Rve::Rve(const Rve& other) : impl_(std::make_unique<Impl>(*other.impl_)) { impl_->now.replaced = nullptr; }
+Rve::Rve(const Rve& other) : impl_(std::make_unique<Impl>(*other.impl_)) {}
 Rve& Rve::operator=(const Rve& other) {
   if (this != &other) *this = Rve(other);
   return *this;

@@ -28,7 +28,7 @@ void Rve::Impl::begin_trial(Trial::Changes changes) {
 }
 
 void Rve::Impl::exchange() noexcept {
-  trial.exchange(now);
+  trial.exchange(fixture, now, resting);
   std::swap(stress, other_stress);
   std::swap(stress_holds, other_stress_holds);
   if (trial.changes() == Trial::Changes::grains) sums_hold = false;
@@ -114,18 +114,20 @@ void Rve::exchange() noexcept {
 
 void Rve::rest() {
   Impl& m = *impl_;
-  release_buffers(m.fixture, m.now);
+  put_masses_into_rows(m.fixture, m.now);
   m.sums = RowSums();
   m.moved();
   m.resting = true;
-  if (!m.trial.pending()) {
+  if (m.trial.pending()) {
+    m.exchange();
+    put_masses_into_rows(m.fixture, m.now);  // often the same as those of the trial: released after both
+    release_buffers(m.now);
+    m.exchange();
+    m.other_stress_holds = false;
+  } else {
     m.trial.release();
-    return;
   }
-  m.exchange();
-  release_buffers(m.fixture, m.now);
-  m.exchange();
-  m.other_stress_holds = false;
+  release_buffers(m.now);
 }
 
 Memory Rve::memory() const {

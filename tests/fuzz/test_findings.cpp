@@ -1,6 +1,8 @@
 // What fuzzing found, one test for each.
 #include <hdf5.h>
 
+#include <limits>
+
 #include "rvelab/error.hpp"
 #include "rvelab/io/import_csv.hpp"
 #include "rvelab/io/record_journal.hpp"
@@ -114,6 +116,41 @@ TEST_CASE("a state whose stress or void ratio is beyond all numbers is refused w
   specimen = nine_grains();
   specimen.grains.radius.assign(specimen.grains.size(), 1e-170);
   CHECK_THAT(input_error([&] { Rve rve(specimen); }), Contains("grains of 0 m^3 in a cell of 9e-05 m^3"));
+}
+
+TEST_CASE("a number of the state that is not finite, or a pace below 0, is refused by name") {
+  const auto refusal = [](auto change) {
+    Specimen specimen = nine_grains();
+    change(specimen.state);
+    return input_error([&] { Rve{specimen}; });
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+  CHECK_THAT(refusal([&](SolverState& s) { s.strain_per_step = nan; }),
+             Contains("strain_per_step of the state is not"));
+  CHECK_THAT(refusal([&](SolverState& s) { s.interval_stress(0, 1) = infinity; }), Contains("interval_stress_Pa"));
+  CHECK_THAT(refusal([&](SolverState& s) { s.mean_velocity[1] = -infinity; }), Contains("mean_velocity"));
+  CHECK_THAT(refusal([&](SolverState& s) { s.ledger.friction = nan; }), Contains("ledger/friction_J"));
+  CHECK_THAT(refusal([&](SolverState& s) { s.strain_per_step = -1e-6; }),
+             Contains("strain_per_step") && Contains("-1e-06"));
+  CHECK_THAT(refusal([&](SolverState& s) { s.pace_target = -1; }), Contains("pace_target") && Contains("leave it 0"));
+}
+
+TEST_CASE("a pace that is out of all proportion leaves an increment that is made or refused") {
+  for (const double target : {1e-322, 1e300})
+    for (const double pace : {1e-322, 1e-6, 1e300}) {
+      CAPTURE(target, pace);
+      Specimen specimen = nine_grains();
+      specimen.state.strain_per_step = pace;
+      specimen.state.pace_target = target;
+      specimen.state.deferred_stretch(1, 1) = 1.0087890625;
+      Rve rve(specimen);
+      try {
+        rve.apply(Matrix3(Matrix3::Zero()), 0);
+        CHECK(rve.stress().allFinite());
+      } catch (const Error& error) {
+        CHECK_THAT(error.what(), Contains("max_substeps"));
+      }
+    }
 }
 
 TEST_CASE("a snapshot with any one byte another and a head that fits is refused, or is a state") {

@@ -88,10 +88,24 @@ struct PairTable {
 /// Bytes that its arrays take.
 std::size_t bytes_of(const PairTable& pairs);
 
-/// The list that a trial began with, once another has taken its place (trial.hpp).
-struct ReplacedList {
+/// What a trial began with and what seldom changes in one (trial.hpp): put here when something else takes its place.
+struct Replaced {
   PairTable list;
-  bool taken = false;
+  std::vector<Vector3> list_positions;  ///< SolverState::list_positions
+  bool list_taken = false;
+  Buffer mass, inverse_mass, inverse_inertia;
+  bool masses_taken = false;
+};
+
+/// Where a pending trial puts what is replaced; a copy of the assembly has no trial.
+struct Keeper {
+  Replaced* of_trial = nullptr;
+  Keeper() = default;
+  Keeper(const Keeper&) noexcept {}
+  Keeper& operator=(const Keeper&) noexcept {
+    of_trial = nullptr;
+    return *this;
+  }
 };
 
 /// What an increment changes.
@@ -101,7 +115,7 @@ struct Assembly {
   Buffer mass, inverse_mass, inverse_inertia;  ///< those in use: physical, or scaled at dt = 0
   PairTable pairs;
   SolverState state;
-  ReplacedList* replaced = nullptr;  ///< of the trial that is pending, if one is
+  Keeper keeper;
 
   Vector3 position(const Fixture& f, std::size_t g) const;
   Vector3 velocity(const Fixture& f, std::size_t g) const;  ///< fluctuation, in the units of the mode in use

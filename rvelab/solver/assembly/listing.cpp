@@ -82,9 +82,10 @@ void fill(const Fixture& f, const std::vector<ListedPair>& listed, const std::ve
                        "the positions");
   }
 
-  if (a.replaced != nullptr && !a.replaced->taken) {
-    std::swap(a.pairs, a.replaced->list);
-    a.replaced->taken = true;
+  if (Replaced* kept = a.keeper.of_trial; kept != nullptr && !kept->list_taken) {
+    std::swap(a.pairs, kept->list);
+    std::swap(a.state.list_positions, kept->list_positions);
+    kept->list_taken = true;
   }
   PairTable& pairs = a.pairs;
   pairs.listed = n;

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <type_traits>
 
 #include "rvelab/error.hpp"
 #include "rvelab/solver/assembly/list_size.hpp"
 #include "rvelab/solver/assembly/memory_order.hpp"
+#include "rvelab/specimen/specimen_fields.hpp"
 
 namespace rvelab {
 
@@ -95,6 +97,38 @@ void check_cell(const Specimen& s) {
   const double from_orthogonal = (s.cell.rotation.transpose() * s.cell.rotation - Matrix3::Identity()).norm();
   if (!(from_orthogonal < 1e-8) || !(s.cell.rotation.determinant() > 0))
     refuse("specimen: the rotation of the cell frame must be orthogonal with determinant +1");
+}
+
+/// Every number of the state is finite. Lists are not looked at: those of the grains have checks of their own.
+struct FiniteNumbers {
+  template <class Value, class Described>
+  void field(const fields::Path& path, const Value& value, const Described&) const {
+    bool finite = true;
+    if constexpr (std::is_same_v<Value, double>)
+      finite = std::isfinite(value);
+    else if constexpr (std::is_same_v<Value, Matrix3> || std::is_same_v<Value, Vector3>)
+      finite = value.allFinite();
+    if (!finite) refuse("specimen: " + path.text() + " of the state is not finite; leave it 0");
+  }
+};
+
+/// What the pace of quasi-static loading follows from.
+void check_state(const Specimen& s) {
+  const SolverState& state = s.state;
+  const FiniteNumbers finite_numbers;
+  fields::visit(finite_numbers, state);
+  const auto expect = [](bool allowed, const char* name, double value) {
+    if (!allowed)
+      refuse(std::string("specimen: ") + name + " of the state is " + in_words(value) +
+             "; it must not be negative; leave it 0");
+  };
+  expect(state.strain_per_step >= 0, "strain_per_step", state.strain_per_step);
+  expect(state.pace_target >= 0, "pace_target", state.pace_target);
+  expect(state.leg_strain >= 0, "leg_strain", state.leg_strain);
+  expect(state.softness >= 0, "softness", state.softness);
+  expect(state.network_stiffness >= 0, "network_stiffness", state.network_stiffness);
+  expect(state.interval_strain >= 0, "interval_strain", state.interval_strain);
+  expect(state.unbalanced_ratio >= 0, "unbalanced_ratio", state.unbalanced_ratio);
 }
 
 /// Strain that is left to the next sub-step: less than a hundredth, since no sub-step is longer.
@@ -185,6 +219,7 @@ void check_specimen(const Specimen& s) {
   check_ellipses(s);
   check_cell(s);
   check_volumes(s);
+  check_state(s);
   check_deferred(s);
   check_contacts(s);
   const std::vector<std::int32_t>& order = s.state.memory_order;

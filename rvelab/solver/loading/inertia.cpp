@@ -291,9 +291,20 @@ namespace {
 
 double scaled(double row_sum, double floor, double factor) { return std::max(row_sum, floor) / (4 * factor * factor); }
 
+/// Of the state that a trial began with, before they become others.
+void keep_masses(const Assembly& a) {
+  Replaced* kept = a.keeper.of_trial;
+  if (kept == nullptr || kept->masses_taken) return;
+  kept->mass = a.mass;
+  kept->inverse_mass = a.inverse_mass;
+  kept->inverse_inertia = a.inverse_inertia;
+  kept->masses_taken = true;
+}
+
 }  // namespace
 
 void scale_inertia(const Fixture& f, const RowSums& sums, Assembly& a) {
+  keep_masses(a);
   const double factor = f.options.time_step_factor;
   for (std::size_t g = 0; g < f.size(); ++g) {
     a.mass[g] = scaled(sums.translation[g], sums.floor_translation, factor);
@@ -309,6 +320,7 @@ double least_stiffness(const Fixture& f, const Assembly& a) {
 }
 
 void use_physical_inertia(const Fixture& f, Assembly& a) {
+  keep_masses(a);
   for (std::size_t g = 0; g < f.size(); ++g) {
     a.mass[g] = f.mass[g];
     a.inverse_mass[g] = 1 / f.mass[g];

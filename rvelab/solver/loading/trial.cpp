@@ -1,5 +1,6 @@
 #include "rvelab/solver/loading/trial.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace rvelab {
@@ -13,59 +14,68 @@ void Trial::begin(Assembly& a, Changes changes) {
     return;
   }
   rows_ = a.rows;
-  mass_ = a.mass;
-  inverse_mass_ = a.inverse_mass;
-  inverse_inertia_ = a.inverse_inertia;
   for (int k = 0; k < 3; ++k) {
     tangential_[k] = a.pairs.tangential[k];
     moment_[k] = a.pairs.moment[k];
   }
   root_overlap_ = a.pairs.root_overlap;
-  force_ = a.pairs.force;
-  touched_ = a.pairs.touched;
+  std::vector<Vector3> positions;
+  positions.swap(a.state.list_positions);
   state_ = a.state;
-  replaced_.taken = false;
-  a.replaced = &replaced_;
+  positions.swap(a.state.list_positions);
+  replaced_.list_taken = replaced_.masses_taken = false;
+  a.keeper.of_trial = &replaced_;
   pending_ = true;
   list_is_whole_ = false;
 }
 
 void Trial::end(Assembly& a) noexcept {
-  a.replaced = nullptr;
+  a.keeper.of_trial = nullptr;
   pending_ = false;
   // A list is made anew every few hundred sub-steps: its arrays are not worth keeping (350 bytes a grain).
-  if (replaced_.taken) replaced_.list = PairTable();
+  if (replaced_.list_taken) {
+    replaced_.list = PairTable();
+    replaced_.list_positions = {};
+  }
 }
 
-void Trial::exchange(Assembly& a) noexcept {
+void Trial::exchange(const Fixture& f, Assembly& a, bool resting) noexcept {
   std::swap(a.cell, cell_);
   if (changes_ == Changes::deferred_strain) {
     std::swap(a.state.deferred_stretch, deferred_stretch_);
     return;
   }
   a.rows.swap(rows_);
-  a.mass.swap(mass_);
-  a.inverse_mass.swap(inverse_mass_);
-  a.inverse_inertia.swap(inverse_inertia_);
   std::swap(a.state, state_);
-  if (replaced_.taken) std::swap(a.pairs, replaced_.list);
-  if (list_is_whole_) return;
-  list_is_whole_ = replaced_.taken;
-  for (int k = 0; k < 3; ++k) {
-    a.pairs.tangential[k].swap(tangential_[k]);
-    a.pairs.moment[k].swap(moment_[k]);
+  std::swap(a.state.list_positions, state_.list_positions);
+  if (replaced_.masses_taken) {
+    a.mass.swap(replaced_.mass);
+    a.inverse_mass.swap(replaced_.inverse_mass);
+    a.inverse_inertia.swap(replaced_.inverse_inertia);
   }
-  a.pairs.root_overlap.swap(root_overlap_);
-  a.pairs.force.swap(force_);
-  a.pairs.touched.swap(touched_);
+  if (replaced_.list_taken) {
+    std::swap(a.pairs, replaced_.list);
+    std::swap(a.state.list_positions, replaced_.list_positions);
+  }
+  if (!list_is_whole_) {
+    list_is_whole_ = replaced_.list_taken;
+    for (int k = 0; k < 3; ++k) {
+      a.pairs.tangential[k].swap(tangential_[k]);
+      a.pairs.moment[k].swap(moment_[k]);
+    }
+    a.pairs.root_overlap.swap(root_overlap_);
+  }
+  if (resting) return;
+  std::fill(a.pairs.touched.begin(), a.pairs.touched.end(), 1);  // by the other state: nothing is passed over
+  evaluate_forces(f, a);
 }
 
 std::size_t Trial::bytes() const {
-  std::size_t sum = touched_.capacity() + bytes_of(replaced_.list);
-  for (const Buffer* b : {&rows_, &mass_, &inverse_mass_, &inverse_inertia_, &root_overlap_, &force_, &tangential_[0],
-                          &tangential_[1], &tangential_[2], &moment_[0], &moment_[1], &moment_[2]})
+  std::size_t sum = bytes_of(replaced_.list);
+  for (const Buffer* b : {&rows_, &replaced_.mass, &replaced_.inverse_mass, &replaced_.inverse_inertia, &root_overlap_,
+                          &tangential_[0], &tangential_[1], &tangential_[2], &moment_[0], &moment_[1], &moment_[2]})
     sum += b->capacity() * sizeof(double);
-  return sum + state_.list_positions.capacity() * sizeof(Vector3) +
+  return sum + (state_.list_positions.capacity() + replaced_.list_positions.capacity()) * sizeof(Vector3) +
          state_.memory_order.capacity() * sizeof(std::int32_t);
 }
 

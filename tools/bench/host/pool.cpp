@@ -1,17 +1,19 @@
 // What the C interface and the pool cost a host; called by tools/bench/pool.
 //
-//   rvelab-bench-pool overhead SPECIMEN.h5            rvelab_apply over Rve::apply, time of a call, for a small
-//   specimen rvelab-bench-pool batch SPECIMEN.h5 RVES WORKERS DH STEPS
-//                                                     batches of trials and commits: rate, and time over that of
-//                                                     sub-steps
-//   rvelab-bench-pool bytes SPECIMEN.h5               of an RVE at rest, ready, with a trial pending, a grain
+//   overhead SPECIMEN.h5                        rvelab_apply over Rve::apply, time of a call, for a small specimen
+//   batch SPECIMEN.h5 RVES WORKERS DH STEPS     batches of trials and commits: rate, and time over that of sub-steps
+//   throughput SPECIMEN.h5 RVES WORKERS DH STEPS
+//                                               the same batches, million grain-steps a second by the clock
+//                                               (tools/bench/throughput)
+//   bytes SPECIMEN.h5                           of an RVE at rest, ready, with a trial pending, a grain
 #include <rvelab/rvelab.h>
 #include <time.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -114,39 +116,62 @@ double seconds_without_pool(const char* specimen, const std::vector<double>& dH,
   return median(times);
 }
 
-void batch(const char* specimen, std::size_t rves, int workers, double size, int steps) {
-  Host host(specimen, rves, workers);
-  std::vector<double> dH(9 * rves), sigma(9 * rves);
-  std::vector<std::int64_t> before(rves), after(rves);
-  rvelab_batch batch;
-  expect(rvelab_batch_init(&batch, sizeof batch));
-  batch.n = std::int64_t(rves);
-  batch.ids = host.ids.data();
-  batch.dH = dH.data();
-  batch.sigma = sigma.data();
-  for (std::size_t k = 0; k < rves; ++k) dH[9 * k + 1] = size * (1 + double(k) / double(rves));
-  const auto step = [&] {
-    expect(rvelab_trial(host.pool, &batch));
+/// Batches of trials and commits on RVEs whose increments are size to twice size.
+class Steps {
+ public:
+  Steps(const char* specimen, std::size_t rves, int workers, double size)
+      : host(specimen, rves, workers), dH(9 * rves), sigma_(9 * rves) {
+    expect(rvelab_batch_init(&batch_, sizeof batch_));
+    batch_.n = std::int64_t(rves);
+    batch_.ids = host.ids.data();
+    batch_.dH = dH.data();
+    batch_.sigma = sigma_.data();
+    for (std::size_t k = 0; k < rves; ++k) dH[9 * k + 1] = size * (1 + double(k) / double(rves));
+    for (int k = 0; k < 3; ++k) step();  // a start takes more sub-steps than what follows
+  }
+  void step() {
+    expect(rvelab_trial(host.pool, &batch_));
     expect(rvelab_commit(host.pool, 0, nullptr));
-  };
-  for (int k = 0; k < 3; ++k) step();  // a start takes more sub-steps than what follows
-  expect(rvelab_cost(host.pool, batch.n, batch.ids, before.data()));
+  }
+  /// Grain-steps of all RVEs since they were made.
+  double made() {
+    std::vector<std::int64_t> costs(host.ids.size());
+    expect(rvelab_cost(host.pool, batch_.n, batch_.ids, costs.data()));
+    return std::accumulate(costs.begin(), costs.end(), 0.0);
+  }
+  Host host;
+  std::vector<double> dH;
+
+ private:
+  rvelab_batch batch_;
+  std::vector<double> sigma_;
+};
+
+void batch(const char* specimen, std::size_t rves, int workers, double size, int steps) {
+  Steps run(specimen, rves, workers, size);
+  const double before = run.made();
   std::vector<double> times;
   for (int k = 0; k < steps; ++k) {
     const double start = now();
-    step();
+    run.step();
     times.push_back(now() - start);
   }
-  expect(rvelab_cost(host.pool, batch.n, batch.ids, after.data()));
-  double made = 0, seconds = 0;
-  for (std::size_t k = 0; k < rves; ++k) made += double(after[k] - before[k]);
-  for (const double time : times) seconds += time;
+  const double made = run.made() - before, seconds = std::accumulate(times.begin(), times.end(), 0.0);
   const double alone = grain_step_seconds(specimen), one_step = median(times);
   std::printf(
       "%zu RVEs, %d workers, dH %g: %.3f M grain-steps a second of processor time, %.2f sub-steps a call; %.2f times "
       "the time of the sub-steps, %.2f times that of Rve::apply in a loop\n",
-      rves, workers, size, 1e-6 * made / seconds, made / double(steps) / double(rves) / double(host.info().grains),
-      one_step * steps / (made * alone), one_step / seconds_without_pool(specimen, dH, steps));
+      rves, workers, size, 1e-6 * made / seconds, made / double(steps) / double(rves) / double(run.host.info().grains),
+      one_step * steps / (made * alone), one_step / seconds_without_pool(specimen, run.dH, steps));
+}
+
+void throughput(const char* specimen, std::size_t rves, int workers, double size, int steps) {
+  Steps run(specimen, rves, workers, size);
+  const double before = run.made();
+  const auto start = std::chrono::steady_clock::now();
+  for (int k = 0; k < steps; ++k) run.step();
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  std::printf("%.3f\n", 1e-6 * (run.made() - before) / seconds.count());
 }
 
 void bytes(const char* specimen) {
@@ -183,6 +208,8 @@ int main(int argc, char** argv) {
     overhead(argv[2]);
   } else if (what == "batch" && argc == 7) {
     batch(argv[2], std::size_t(std::atol(argv[3])), std::atoi(argv[4]), std::atof(argv[5]), std::atoi(argv[6]));
+  } else if (what == "throughput" && argc == 7) {
+    throughput(argv[2], std::size_t(std::atol(argv[3])), std::atoi(argv[4]), std::atof(argv[5]), std::atoi(argv[6]));
   } else if (what == "bytes") {
     bytes(argv[2]);
   } else {
