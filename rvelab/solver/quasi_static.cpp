@@ -82,6 +82,7 @@ void Rve::Impl::begin_interval(const Balance& balance) {
   state.look_steps = 0;
   state.interval_strain = 0;
   state.interval_stress = present_stress();
+  state.coordination = 2 * double(balance.touching) / double(fixture.size());
   state.network_stiffness =
       network_stiffness(pressure(), balance.mean_overlap, 2 * fixture.mean_radius, fixture.hardening);
 }
@@ -131,7 +132,7 @@ double Rve::Impl::target_for(double network) {
   const double p = pressure(), s = now.state.softness;
   if (!(p > 0)) return largest_target;
   const double allowed = allowed_error(o.relative_tolerance, o.absolute_tolerance, s * network, network, p);
-  return std::clamp(allowed / (estimate_margin * error_per_unbalance(s) * p), least_target, largest_target);
+  return std::clamp(allowed / (estimate_margin * error_factor() * p), least_target, largest_target);
 }
 
 void Rve::Impl::set_pace_target(double target) {
@@ -176,8 +177,12 @@ void Rve::Impl::judge(Report& report) {
   report.quasi_static = report.unbalanced_ratio <= allowed * target && report.target_held;
 }
 
+double Rve::Impl::error_factor() const {
+  return error_per_unbalance(now.state.softness, now.state.coordination / fixture.isostatic_coordination);
+}
+
 double Rve::Impl::expected_error(double ratio) {
-  return estimate_margin * error_per_unbalance(now.state.softness) * std::max(pressure(), 0.0) * ratio;
+  return estimate_margin * error_factor() * std::max(pressure(), 0.0) * ratio;
 }
 
 void Rve::Impl::estimate_error(double strain, double network, const Matrix3& stress_before, double ratio, double more,
@@ -189,6 +194,19 @@ void Rve::Impl::estimate_error(double strain, double network, const Matrix3& str
   report.allowed_error = allowed_error(o.relative_tolerance, o.absolute_tolerance, changed, network, pressure());
   report.error_estimate = expected_error(ratio) + more;
   report.tolerance_met = report.error_estimate <= estimate_margin * report.allowed_error;
+}
+
+long Rve::Impl::follow_up(double allowed) {
+  constexpr long interval = 25, most = 2000;
+  const FrameSplit still{Matrix3::Identity(), Matrix3::Identity(), true};
+  long made = 0;
+  while (made < most && expected_error(now.state.unbalanced_ratio) > (made > 0 ? 1 : estimate_margin) * allowed) {
+    advance(fixture, now, {still, interval, 1, Loading::quasi_static});
+    moved();
+    look();
+    made += interval;
+  }
+  return made;
 }
 
 double Rve::Impl::turn_back() {
@@ -252,6 +270,11 @@ bool Rve::Impl::make_substeps(const StrainPath& path, double strain, double fewe
     // Where the fewest steps rule, the pace is not that of these steps, but it may still be found too fast.
     const bool too_fast = state.unbalanced_ratio > state.pace_target;
     if (o.fixed_substeps == 0 && (paced || too_fast)) steer_pace(balance);
+    // What they were to calm is calm: of a faster path before, which the law of starts takes for as many as 4e5. That
+    // holds where contacts stay what they are.
+    constexpr double few = 2 * double(control_interval);
+    const bool small = strain < strain_of_overlap(pressure(), state.network_stiffness, fixture.hardening);
+    if (small && !too_fast && left * fewest > few) fewest = std::max(0.5 * fewest, few / left);
   }
   return looked;
 }
@@ -264,10 +287,17 @@ Report Rve::Impl::load_quasi_static(FrameSplit whole) {
     state.deferred_stretch.setIdentity();
   }
   begin_quasi_static();
-  const Matrix3 stress_before = present_stress(), start_frame = now.cell.rotation;
-  const Matrix3 change = whole.stretch - Matrix3::Identity();
+  const Matrix3 start_frame = now.cell.rotation, change = whole.stretch - Matrix3::Identity();
   const StrainPath path(whole, false);
   const double strain = path.strain(), along = state.last_rate.cwiseProduct(change).sum();
+  // What the last path lagged by would stay: unloading locks the contacts that would have crept. A path to a tolerance
+  // lags by no more than that; one under stress control, or to a given ratio, may by a hundred times as much.
+  if (by_tolerance() && along < 0.9 * strain * state.last_rate.norm()) {
+    const double network = network_change(state.leg_strain);
+    report.substeps += follow_up(allowed_error(fixture.options.relative_tolerance, fixture.options.absolute_tolerance,
+                                               state.softness * network, network, pressure()));
+  }
+  const Matrix3 stress_before = present_stress();
   if (along <= 0) state.leg_strain = 0;
   state.leg_strain = std::min(state.leg_strain + strain, longest_leg);
   const double carried = by_tolerance() && along < 0 ? turn_back() : 0.0;

@@ -129,6 +129,8 @@ struct Rve::Impl {
   /// |C : d eps| of a strain, Pa.
   double network_change(double strain) const;
   double pressure();  ///< mean, of present_stress, Pa
+  /// Error over p and the unbalanced ratio, of the state as it is (loading/accuracy.hpp).
+  double error_factor() const;
   /// The estimate for an unbalanced ratio, Pa.
   double expected_error(double ratio);
   /// Sets report.error_estimate, allowed_error and tolerance_met of an increment of this strain; `network_change` (Pa)
@@ -150,6 +152,8 @@ struct Rve::Impl {
   Report load(const FrameSplit& whole, const Matrix3& displacement_gradient, double dt);
   Report load_physical(const FrameSplit& whole, double dt);
   Report load_quasi_static(FrameSplit whole);
+  /// Before a path turns: a state that lags by more than `allowed` (Pa) comes to rest; the sub-steps that it takes.
+  long follow_up(double allowed);
   /// Turned back: what the state lagged by, Pa, which stays in the answer; velocities and softness begin anew.
   double turn_back();
   struct Start {

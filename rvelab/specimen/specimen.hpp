@@ -64,20 +64,21 @@ struct EnergyLedger {
 
 /// Solver state that decides the next bit, beside grains, contacts and cell.
 struct SolverState {
-  bool has_reference = false;                 ///< the next five say when to list anew
-  Matrix3 list_lattice = Matrix3::Zero();     ///< lattice when the list was built, m
-  std::vector<Vector3> list_positions;        ///< positions then, m, cell frame; empty: only the bound below is used
-  double list_travel = 0;                     ///< bound on the largest fluctuation displacement since then, m
-  double list_skin = 0;                       ///< skin that the list was built with, m; 0: solver.skin
-  std::int64_t list_steps = 0;                ///< sub-steps made since then
-  double strain_per_step = 0;                 ///< dt = 0: pace of the sub-step controller; 0: not yet known
-  double pace_target = 0;                     ///< dt = 0: unbalanced ratio that this pace is for
-  double leg_strain = 0;                      ///< dt = 0: strain since the last turn, up to what is judged together
-  double softness = 1;                        ///< dt = 0: |d sigma|/|C : d eps| of the last interval (accuracy.hpp)
-  double network_stiffness = 0;               ///< dt = 0: |C : d eps|/strain when it began, Pa
-  double interval_strain = 0;                 ///< dt = 0: strain made in the present interval
-  Matrix3 interval_stress = Matrix3::Zero();  ///< dt = 0: stress at its begin, cell frame, Pa
-  double unbalanced_ratio = 0;                ///< dt = 0: when it was measured last
+  bool has_reference = false;              ///< the next five say when to list anew
+  Matrix3 list_lattice = Matrix3::Zero();  ///< lattice when the list was built, m
+  std::vector<Vector3> list_positions;     ///< positions then, m, cell frame; empty: only the bound below is used
+  double list_travel = 0;                  ///< bound on the largest fluctuation displacement since then, m
+  double list_skin = 0;                    ///< skin that the list was built with, m; 0: solver.skin
+  std::int64_t list_steps = 0;             ///< sub-steps made since then
+  double strain_per_step = 0;              ///< dt = 0: pace of the sub-step controller; 0: not yet known
+  double pace_target = 0;                  ///< dt = 0: unbalanced ratio that this pace is for
+  double leg_strain = 0;                   ///< dt = 0: strain since the last turn, up to what is judged together
+  double softness = 1;                     ///< dt = 0: |d sigma|/|C : d eps| of the last interval (accuracy.hpp)
+  double coordination = 0;                 ///< dt = 0: contacts of a grain, mean over all, when the present one began
+  double network_stiffness = 0;            ///< dt = 0: |C : d eps|/strain when it began, Pa
+  double interval_strain = 0;              ///< dt = 0: strain made in the present interval
+  Matrix3 interval_stress = Matrix3::Zero();       ///< dt = 0: stress at its begin, cell frame, Pa
+  double unbalanced_ratio = 0;                     ///< dt = 0: when it was measured last
   Matrix3 deferred_stretch = Matrix3::Identity();  ///< dt = 0: applied, but left to the next sub-step; cell frame
   Matrix3 stress_slope =
       Matrix3::Zero();              ///< dt = 0: of the last increment, over the norm of its strain, cell frame, Pa

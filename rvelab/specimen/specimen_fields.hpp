@@ -141,6 +141,7 @@ inline constexpr auto members_of<SolverState> = std::tuple{
     Field{"pace_target", &SolverState::pace_target, "1", Rows::one, InFiles::added_later},
     Field{"leg_strain", &SolverState::leg_strain, "1", Rows::one, InFiles::added_later},
     Field{"softness", &SolverState::softness, "1", Rows::one, InFiles::added_later},
+    Field{"coordination", &SolverState::coordination, "1", Rows::one, InFiles::added_later},
     Field{"network_stiffness_Pa", &SolverState::network_stiffness, "Pa", Rows::one, InFiles::added_later},
     Field{"interval_strain", &SolverState::interval_strain, "1", Rows::one, InFiles::added_later},
     Field{"interval_stress_Pa", &SolverState::interval_stress, "Pa", Rows::one, InFiles::added_later},

@@ -99,7 +99,9 @@ TEST_CASE("XDMF shows axes and orientation of ellipses, and their stresses add u
 
 TEST_CASE("ellipses written as CSV come back with their contacts") {
   const Folder folder;
-  Rve rve(imported(folder));
+  Specimen start = imported(folder);
+  start.solver.fixed_substeps = 20;  // to a tolerance these few grains, which nothing confines, have time to part
+  Rve rve(start);
   Matrix3 strain = Vector3(-1e-3, -2e-3, 0).asDiagonal();
   strain(0, 1) = 4e-3;
   rve.apply(strain, 0);

@@ -60,6 +60,7 @@ TEST_CASE("an increment that ends out of balance says so") {
 }
 
 TEST_CASE("a packing whose friction is lowered is no equilibrium, and its first increment says so, however small") {
+  // An increment of 1e-5 takes sub-steps enough to find an equilibrium: what it says is held against one that is found.
   Specimen s = dense(0.5);
   Rve rve(s);
   for (int k = 0; k < 10; ++k) rve.apply(entry(0, 1, 2e-4), 0);
@@ -75,10 +76,15 @@ TEST_CASE("a packing whose friction is lowered is no equilibrium, and its first 
       Rve lowered(at_rest), opened(kept), anew(fresh);
       lowered.set_materials(kept.materials);
       for (Rve* one : {&lowered, &opened, &anew}) {
-        const Report report = one->apply(entry(0, 1, strain), 0).report;
-        CHECK(report.unbalanced_ratio > 5e-3);
-        CHECK_FALSE(report.quasi_static);
-        CHECK(one->apply(entry(0, 1, strain), 0).report.unbalanced_ratio > 5e-3);
+        const Response first = one->apply(entry(0, 1, strain), 0);
+        Rve found = *one;
+        found.relax(1e-7, 100'000);
+        const double missed = (found.stress() - first.stress).norm();
+        CHECK(missed < first.report.error_estimate);
+        CHECK((strain > 5e-6 || missed > 5e-3 * first.stress.norm()));
+        CHECK((strain > 5e-6 || first.report.unbalanced_ratio > 5e-3));
+        CHECK(first.report.quasi_static == (first.report.unbalanced_ratio < 3e-3));
+        CHECK((strain > 5e-6 || one->apply(entry(0, 1, strain), 0).report.unbalanced_ratio > 5e-3));
       }
     }
 }

@@ -126,6 +126,7 @@ void check_state(const Specimen& s) {
   expect(state.pace_target >= 0, "pace_target", state.pace_target);
   expect(state.leg_strain >= 0, "leg_strain", state.leg_strain);
   expect(state.softness >= 0, "softness", state.softness);
+  expect(state.coordination >= 0, "coordination", state.coordination);
   expect(state.network_stiffness >= 0, "network_stiffness", state.network_stiffness);
   expect(state.interval_strain >= 0, "interval_strain", state.interval_strain);
   expect(state.unbalanced_ratio >= 0, "unbalanced_ratio", state.unbalanced_ratio);

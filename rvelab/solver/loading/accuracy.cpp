@@ -23,9 +23,11 @@ double allowed_error(double relative, double absolute, double stress_change, dou
   return relative * std::max(stress_change, 0.1 * network_change) + absolute * std::max(pressure, 0.0);
 }
 
-double error_per_unbalance(double softness) {
-  const double s = std::clamp(softness, 0.4, 1.0);
-  return 0.4 / (s * s * std::sqrt(s));
+double error_per_unbalance(double softness, double coordination_ratio) {
+  const double s = std::clamp(softness, 0.4, 1.0), soft = 0.4 / (s * s * std::sqrt(s));
+  if (!(coordination_ratio > 0)) return soft;
+  const double z = std::max(coordination_ratio, 1.0);
+  return std::max(soft, 2 / (z * z * z * std::sqrt(std::sqrt(z))));
 }
 
 double unbalance_of_start(double mismatch, double strain, double strain_of_overlap, double steps) {
