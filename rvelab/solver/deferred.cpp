@@ -37,8 +37,9 @@ bool Rve::Impl::may_defer(const FrameSplit& increment) {
   // The slope holds along the path only: who perturbs it, for a tangent by differences, gets sub-steps of his own.
   if (!(change.cwiseProduct(state.last_rate).sum() > 0.99 * strain * state.last_rate.norm())) return false;
   const SolverOptions& o = fixture.options;
-  const double allowed =
-      allowed_error(o.relative_tolerance, o.absolute_tolerance, 0, network_change(state.leg_strain), pressure());
+  const double network = network_change(state.leg_strain);
+  if (was_coarser(network)) return false;
+  const double allowed = allowed_error(o.relative_tolerance, o.absolute_tolerance, 0, network, pressure());
   return extrapolated(stretch).error <= share_of_allowed * allowed;
 }
 

@@ -196,7 +196,16 @@ void Rve::Impl::estimate_error(double strain, double network, const Matrix3& str
   report.tolerance_met = report.error_estimate <= estimate_margin * report.allowed_error;
 }
 
-long Rve::Impl::follow_up(double allowed) {
+bool Rve::Impl::was_coarser(double network) { return now.state.pace_target > 2 * target_for(network); }
+
+long Rve::Impl::follow_up(double strain, bool turns) {
+  const SolverOptions& o = fixture.options;
+  const double leg =
+      turns ? now.state.leg_strain : std::max(strain, std::min(now.state.leg_strain + strain, longest_leg));
+  const double network = network_change(leg);
+  if (!turns && !was_coarser(network)) return 0;
+  const double allowed =
+      allowed_error(o.relative_tolerance, o.absolute_tolerance, now.state.softness * network, network, pressure());
   constexpr long interval = 25, most = 2000;
   const FrameSplit still{Matrix3::Identity(), Matrix3::Identity(), true};
   long made = 0;
@@ -290,13 +299,7 @@ Report Rve::Impl::load_quasi_static(FrameSplit whole) {
   const Matrix3 start_frame = now.cell.rotation, change = whole.stretch - Matrix3::Identity();
   const StrainPath path(whole, false);
   const double strain = path.strain(), along = state.last_rate.cwiseProduct(change).sum();
-  // What the last path lagged by would stay: unloading locks the contacts that would have crept. A path to a tolerance
-  // lags by no more than that; one under stress control, or to a given ratio, may by a hundred times as much.
-  if (by_tolerance() && along < 0.9 * strain * state.last_rate.norm()) {
-    const double network = network_change(state.leg_strain);
-    report.substeps += follow_up(allowed_error(fixture.options.relative_tolerance, fixture.options.absolute_tolerance,
-                                               state.softness * network, network, pressure()));
-  }
+  if (by_tolerance()) report.substeps += follow_up(strain, along < 0.9 * strain * state.last_rate.norm());
   const Matrix3 stress_before = present_stress();
   if (along <= 0) state.leg_strain = 0;
   state.leg_strain = std::min(state.leg_strain + strain, longest_leg);

@@ -152,8 +152,13 @@ struct Rve::Impl {
   Report load(const FrameSplit& whole, const Matrix3& displacement_gradient, double dt);
   Report load_physical(const FrameSplit& whole, double dt);
   Report load_quasi_static(FrameSplit whole);
-  /// Before a path turns: a state that lags by more than `allowed` (Pa) comes to rest; the sub-steps that it takes.
-  long follow_up(double allowed);
+  /// Whether the pace was one for more than twice the ratio that a path of this network change (Pa) may have.
+  bool was_coarser(double network_change);
+  /// Before an increment of this strain that turns, or goes on where the pace was one for another target: a state that
+  /// lags by more than its tolerance comes to rest. The sub-steps that it takes. What it lags by would stay: unloading
+  /// locks the contacts that would have crept. A path to a tolerance lags by no more than that; one under stress
+  /// control, or to a given ratio, may by a hundred times as much.
+  long follow_up(double strain, bool turns);
   /// Turned back: what the state lagged by, Pa, which stays in the answer; velocities and softness begin anew.
   double turn_back();
   struct Start {
