@@ -30,9 +30,22 @@ Material strong() {
   return m;
 }
 
+/// The same ellipses with the ratio b/a of `aspect` and their areas.
+Specimen of_aspect(Specimen s, double aspect) {
+  for (std::size_t g = 0; g < s.grains.size(); ++g) {
+    s.grains.semi_major[g] = s.grains.radius[g] / std::sqrt(aspect);
+    s.grains.semi_minor[g] = s.grains.radius[g] * std::sqrt(aspect);
+  }
+  s.solver.min_height = 1e-3;
+  return s;
+}
+
 /// Two ellipses of aspect 0.5 and 0.7 that fly at each other off their axes, turning.
-Specimen colliding(double kt = 0) {
-  Specimen s = empty_specimen(Shape::ellipse, 3, linear_material(1e6, kt, 1e6));
+Specimen colliding(double kt = 0, Law law = Law::linear_given, double friction = 1e6) {
+  Material m = linear_material(1e6, kt, friction);
+  m.young_modulus = 5e7;
+  m.poisson_ratio = 0.2;
+  Specimen s = empty_specimen(Shape::ellipse, 3, m, law);
   add_ellipse(s, {-0.2, -0.05, 0}, 0.2, 0.1, 0.4);
   add_ellipse(s, {0.15, 0.05, 0}, 0.15, 0.105, 1.9);
   // At rest in the mean: a mean velocity would be taken out.
@@ -80,6 +93,42 @@ double energy_gained(Specimen s, double step) {
   return conserved(rve).kinetic / before.kinetic - 1;
 }
 
+/// The collision of two Hertz ellipses without friction at steps of `step` (s): the gain in energy, and what the change
+/// of R* puts into 2/5 f delta on the way, int (f delta/5)(dR*/R*), over the kinetic energy before.
+struct Gain {
+  double energy = 0, by_radius = 0;
+};
+Gain gain_by_radius(Specimen s, double step) {
+  s.solver.fixed_time_step = step * (1 + 1e-9);
+  s.solver.ledger = true;
+  Rve rve(s);
+  rve.set_velocities(s.grains.velocity, s.grains.spin);
+  const double before = conserved(rve).kinetic;
+  Gain gain;
+  double last_work = 0, last_radius = 0;  // f delta and ln of what R* goes with
+  bool touched = false;
+  for (int k = 0; k < 6000 && !(touched && last_work == 0); ++k) {
+    rve.apply(Matrix3::Zero(), 8e-5);
+    const Network net = rve.network();
+    double work = 0, radius = 0;
+    for (const ContactState& c : net.contacts) {
+      work = c.normal_force * c.overlap;
+      radius = std::log(c.normal_force * c.normal_force / (c.overlap * c.overlap * c.overlap));
+      CHECK(c.elastic_energy == Approx(0.4 * work).epsilon(1e-12));
+    }
+    if (work > 0 && last_work > 0) gain.by_radius += 0.1 * (work + last_work) * (radius - last_radius);
+    touched = touched || work > 0;
+    last_work = work;
+    last_radius = radius;
+  }
+  REQUIRE(touched);
+  REQUIRE(last_work == 0);
+  const EnergyLedger ledger = rve.specimen().state.ledger;
+  CHECK(ledger.friction == 0);
+  CHECK(ledger.law_loss == 0);
+  return {conserved(rve).kinetic / before - 1, gain.by_radius / before};
+}
+
 /// Largest frequency of the springs of a network, rad/s, from their energy 2 E = kn (n.v)^2 + kt (t.v)^2 + kr w^2 with
 /// v the displacement of j less that of i at the contact point and w the difference of the rotations.
 double largest_frequency(const Network& net) {
@@ -121,14 +170,21 @@ TEST_CASE("The bound of the largest frequency of ellipses lies above it, and not
   Specimen s = disordered(Shape::ellipse, 4, m, Law::linear_given, 0.5, 3);
   s.solver.max_overlap_ratio = 10;
   s.contact.rolling = rolling;
-  for (std::size_t g = 0; g < s.grains.size(); ++g) {
-    s.grains.semi_major[g] = s.grains.radius[g] / std::sqrt(aspect);
-    s.grains.semi_minor[g] = s.grains.radius[g] * std::sqrt(aspect);
-  }
-  s.solver.min_height = 1e-3;
-  const Rve rve(s);
+  const Rve rve(of_aspect(s, aspect));
   const double exact = largest_frequency(rve.network()), bound = 2 / rve.critical_time_step();
   CAPTURE(aspect, ratio, rolling, bound, exact);
+  CHECK(bound >= exact * (1 - 1e-12));
+  CHECK(bound <= 4 * exact);
+}
+
+TEST_CASE("The bound of the largest frequency holds with Hertz's radius from curvature") {
+  const double aspect = GENERATE(0.1, 0.3, 0.743);
+  Specimen s = disordered(Shape::ellipse, 6, strong(), Law::hertz_mindlin, 0.5, 3);
+  s.contact.hertz_radius = HertzRadius::curvature;
+  s.solver.max_overlap_ratio = 10;
+  const Rve rve(of_aspect(s, aspect));
+  const double exact = largest_frequency(rve.network()), bound = 2 / rve.critical_time_step();
+  CAPTURE(aspect, bound, exact);
   CHECK(bound >= exact * (1 - 1e-12));
   CHECK(bound <= 4 * exact);
 }
@@ -144,7 +200,9 @@ TEST_CASE("Discs written as ellipses have the forces of discs") {
   s.damping.restitution = 0.6;
   s.damping.tangential_ratio = 0.5;
   s.solver.fixed_substeps = 10;  // no choice that a last bit could turn
-  Rve discs(s), ellipses(as_ellipses(s));
+  Specimen same = as_ellipses(s);
+  if (law == Law::hertz_mindlin) same.contact.hertz_radius = GENERATE(HertzRadius::equivalent, HertzRadius::curvature);
+  Rve discs(s), ellipses(same);
   CHECK(ellipses.critical_time_step() == Approx(discs.critical_time_step()).epsilon(1e-12));
   for (const double dt : {0.0, 10 * discs.critical_time_step()}) {
     discs.apply(gradient(-2e-4, 5e-4, -3e-4, -1e-4), dt);
@@ -172,8 +230,25 @@ TEST_CASE("Two ellipses that collide keep momentum, angular momentum and energy"
   CHECK(std::abs(fine) < std::max(0.15 * std::abs(coarse), 1e-7));
 }
 
+TEST_CASE(
+    "Hertz ellipses that collide keep energy with the equivalent radius; with that of the curvature its change "
+    "makes the difference") {
+  const Specimen equivalent = colliding(0, Law::hertz_mindlin, 0);
+  Specimen curvature = equivalent;
+  curvature.contact.hertz_radius = HertzRadius::curvature;
+  CHECK(std::abs(energy_gained(equivalent, 4e-5)) < 1e-4);
+  CHECK(std::abs(energy_gained(equivalent, 1e-5)) < 1e-5);
+  energy_gained(curvature, 4e-5);  // momentum and angular momentum
+  const Gain none = gain_by_radius(equivalent, 1e-5), gain = gain_by_radius(curvature, 1e-5);
+  INFO(none.energy << ", " << none.by_radius << "; " << gain.energy << ", " << gain.by_radius);
+  CHECK(std::abs(none.by_radius) < 1e-12);
+  CHECK(std::abs(gain.energy) > 1e-3);
+  CHECK(gain.energy == Approx(gain.by_radius).epsilon(1e-4));
+}
+
 TEST_CASE("Ellipses that stick to each other keep angular momentum too") {
-  Specimen s = colliding(8e5);
+  Specimen s = GENERATE(colliding(8e5), colliding(0, Law::hertz_mindlin));
+  s.contact.hertz_radius = s.contact.law == Law::hertz_mindlin ? HertzRadius::curvature : HertzRadius::equivalent;
   s.solver.fixed_time_step = 1e-5;
   Rve rve(s);
   rve.set_velocities(s.grains.velocity, s.grains.spin);
