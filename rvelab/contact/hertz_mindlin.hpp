@@ -4,7 +4,8 @@
 //
 // 1/E* = sum (1 - nu^2)/E, 1/G* = sum 2 (2 - nu)(1 + nu)/E, 1/r* = 1/ri + 1/rj. s = sqrt(delta/delta_old) where the
 // overlap falls (`unload_rescale`; without it energy is made on unloading), else 1. The constants of a contact are what
-// stands before delta^(3/2) and sqrt(delta).
+// stands before delta^(3/2) and sqrt(delta). r is the radius of a grain, of ellipses sqrt(a b) or that of their
+// curvature at the contact (hertz_curvature.hpp).
 #pragma once
 
 #include "rvelab/contact/hertz_given.hpp"
@@ -13,6 +14,7 @@ namespace rvelab {
 
 struct HertzMindlinForce : HertzGivenForce {
   static constexpr bool stores_root_overlap = true;
+  static constexpr bool has_hertz_radius = true;
 
   template <class V>
   static inline __attribute__((always_inline)) V tangential_stiffness(V kt, V root) {

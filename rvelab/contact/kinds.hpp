@@ -7,6 +7,9 @@ namespace rvelab {
 /// Where the slip of a contact is measured, and where its force acts (solver/kernels/pairs.hpp).
 enum class Slip { consistent, full_radius, full_radius_ratcheting };
 
+/// Radius of ellipses in Hertz's law: sqrt(a b), or that of their curvature at the contact (hertz_curvature.hpp).
+enum class HertzRadius { equivalent, curvature };
+
 /// Contact dashpot (damping.hpp).
 enum class Dashpot { none, coefficient, restitution, viscoelastic, tsuji };
 

@@ -18,6 +18,7 @@ struct LinearForce {
   static constexpr bool needs_root_overlap = false;
   static constexpr bool stores_root_overlap = false;
   static constexpr bool has_law_constant = false;
+  static constexpr bool has_hertz_radius = false;  ///< the constants hold sqrt(r*) (hertz_curvature.hpp)
   using Impact = LinearImpact;
 
   /// Repulsion, N. `root` is sqrt(overlap), `own` the law's own constant of the contact.

@@ -22,6 +22,8 @@ constexpr std::array<std::pair<Slip, const char*>, 3> slip_names{
     {{Slip::consistent, "consistent"},
      {Slip::full_radius, "full_radius"},
      {Slip::full_radius_ratcheting, "full_radius_ratcheting"}}};
+constexpr std::array<std::pair<HertzRadius, const char*>, 2> hertz_radius_names{
+    {{HertzRadius::equivalent, "equivalent"}, {HertzRadius::curvature, "curvature"}}};
 constexpr std::array<std::pair<Dashpot, const char*>, 5> dashpot_names{{{Dashpot::none, "none"},
                                                                         {Dashpot::coefficient, "coefficient"},
                                                                         {Dashpot::restitution, "restitution"},
@@ -54,11 +56,18 @@ bool stiffens(Law law) {
   return with_law(law, [](auto each) { return decltype(each)::Force::Impact::stiffens; });
 }
 
-/// Names of all laws, or of those whose springs stiffen.
-std::string names_of_laws(bool all) {
+/// Whether r* of the grains is part of a law's constants.
+bool has_hertz_radius(Law law) {
+  return with_law(law, [](auto each) { return decltype(each)::Force::has_hertz_radius; });
+}
+
+bool any_law(Law) { return true; }
+
+/// Names of the laws of which `listed` is true.
+std::string names_of_laws(bool (*listed)(Law)) {
   std::string names;
   for (int k = 0; k < law_count; ++k)
-    if (all || stiffens(Law(k))) names += (names.empty() ? "" : ", ") + std::string(name(Law(k)));
+    if (listed(Law(k))) names += (names.empty() ? "" : ", ") + std::string(name(Law(k)));
   return names;
 }
 
@@ -125,7 +134,7 @@ void check_damping(const ContactModel& model, const Damping& damping, Findings& 
   }
   if (damping.dashpot == Dashpot::tsuji && !stiffens(model.law)) {
     findings.add("damping.dashpot = tsuji does not go with contact.law = " + std::string(name(model.law)) +
-                 "; allowed: " + names_of_laws(false) + "; use damping.dashpot = restitution");
+                 "; allowed: " + names_of_laws(stiffens) + "; use damping.dashpot = restitution");
   }
   if (damping.dashpot == Dashpot::restitution || damping.dashpot == Dashpot::tsuji) {
     findings.expect(damping.restitution > 0 && damping.restitution <= 1, "damping.restitution", damping.restitution,
@@ -134,7 +143,7 @@ void check_damping(const ContactModel& model, const Damping& damping, Findings& 
   if (damping.dashpot == Dashpot::viscoelastic) {
     if (!stiffens(model.law)) {
       findings.add("damping.dashpot = viscoelastic does not go with contact.law = " + std::string(name(model.law)) +
-                   "; allowed: " + names_of_laws(false) + "; use damping.dashpot = restitution or coefficient");
+                   "; allowed: " + names_of_laws(stiffens) + "; use damping.dashpot = restitution or coefficient");
     }
     findings.expect(damping.normal_coefficient >= 0, "damping.normal_coefficient", damping.normal_coefficient,
                     ">= 0 1/(m s)", "give the viscoelastic constant, or damping.dashpot = none");
@@ -205,6 +214,10 @@ PairParameters mix(const ContactModel& model, const Damping& damping, const Mate
 
 void check_parameters(const ContactModel& model, const Damping& damping, const std::vector<Material>& materials) {
   Findings findings;
+  if (model.hertz_radius == HertzRadius::curvature && !has_hertz_radius(model.law))
+    findings.add("contact.hertz_radius = \"curvature\" does not go with contact.law = " + std::string(name(model.law)) +
+                 ", whose stiffness holds no radius of Hertz; allowed: " + names_of_laws(has_hertz_radius) +
+                 "; use contact.hertz_radius = \"equivalent\"");
   check_damping(model, damping, findings);
   if (materials.empty()) findings.add("materials: none given; allowed: one or more; name at least one grain material");
   for (const Material& material : materials) check_material(model, material, findings);
@@ -228,10 +241,11 @@ std::string in_words(const Interval& i) {
 }
 
 const char* name(Slip slip) { return name_in(slip_names, slip); }
+const char* name(HertzRadius radius) { return name_in(hertz_radius_names, radius); }
 const char* name(Dashpot dashpot) { return name_in(dashpot_names, dashpot); }
 const char* name(LocalDampingForm form) { return name_in(local_damping_form_names, form); }
 
-std::string law_names() { return names_of_laws(true); }
+std::string law_names() { return names_of_laws(any_law); }
 
 Law law_from(const std::string& text) {
   for (int k = 0; k < law_count; ++k)
@@ -239,6 +253,9 @@ Law law_from(const std::string& text) {
   throw InputError("contact.law = \"" + text + "\" is not known; allowed: " + law_names() + "; choose one of these");
 }
 Slip slip_from(const std::string& text) { return value_in(slip_names, "contact.slip", text); }
+HertzRadius hertz_radius_from(const std::string& text) {
+  return value_in(hertz_radius_names, "contact.hertz_radius", text);
+}
 Dashpot dashpot_from(const std::string& text) { return value_in(dashpot_names, "damping.dashpot", text); }
 LocalDampingForm local_damping_form_from(const std::string& text) {
   return value_in(local_damping_form_names, "damping.local_form", text);

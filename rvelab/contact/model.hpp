@@ -27,6 +27,7 @@ struct ContactModel {
   Slip slip = Slip::consistent;
   bool rolling = false;        ///< rolling moment between grains (its parameters stand in the materials)
   bool unload_rescale = true;  ///< hertz_mindlin: f_t scales by sqrt(delta/delta_old) as delta falls
+  HertzRadius hertz_radius = HertzRadius::equivalent;  ///< hertz_mindlin, ellipses (hertz_curvature.hpp)
 };
 
 /// Damping, apart from the law. All of it acts on fluctuation velocities v' and spins w'.
@@ -81,11 +82,13 @@ void check_parameters(const ContactModel& model, const Damping& damping, const s
 
 const char* name(Law);
 const char* name(Slip);
+const char* name(HertzRadius);
 const char* name(Dashpot);
 const char* name(LocalDampingForm);
 Law law_from(const std::string&);  ///< throws InputError listing the names
 std::string law_names();           ///< "linear, linear_given, ..."
 Slip slip_from(const std::string&);
+HertzRadius hertz_radius_from(const std::string&);
 Dashpot dashpot_from(const std::string&);
 LocalDampingForm local_damping_form_from(const std::string&);
 

@@ -185,6 +185,15 @@ double overlap_of(const Specimen& specimen, const Contact& contact) {
          branch_of(specimen, contact).norm();
 }
 
+/// What laws take for sqrt(overlap) > 0, m^0.5.
+double root_overlap(const Specimen& specimen, const Contact& contact) {
+  if (specimen.shape != Shape::ellipse || specimen.contact.hertz_radius == HertzRadius::equivalent)
+    return std::sqrt(overlap_of(specimen, contact));
+  const EllipsePlace at = ellipses_of(specimen, contact);
+  const auto& radius = specimen.grains.radius;
+  return std::sqrt(at.overlap * at.hertz_radius_ratio(radius[std::size_t(contact.i)], radius[std::size_t(contact.j)]));
+}
+
 PairParameters parameters_of(const Specimen& specimen, const Contact& contact) {
   const auto& grains = specimen.grains;
   const double thickness = specimen.cell.lattice(2, 2);
@@ -204,7 +213,7 @@ double normal_force_of(const Specimen& specimen, const Contact& contact) {
   if (overlap <= 0) return 0;
   const PairParameters pair = parameters_of(specimen, contact);
   return with_law(specimen.contact.law, [&](auto law) {
-    return decltype(law)::Force::normal_force(pair.kn, overlap, std::sqrt(overlap), pair.law_constant);
+    return decltype(law)::Force::normal_force(pair.kn, overlap, root_overlap(specimen, contact), pair.law_constant);
   });
 }
 
@@ -269,7 +278,7 @@ void set_root_overlaps(Specimen& specimen) {
   for (Contact& contact : specimen.contacts) {
     const bool kept =
         with_law(specimen.contact.law, [](auto law) { return decltype(law)::Force::stores_root_overlap; });
-    contact.last_root_overlap = kept ? std::sqrt(overlap_of(specimen, contact)) : 0;
+    contact.last_root_overlap = kept ? root_overlap(specimen, contact) : 0;
   }
 }
 

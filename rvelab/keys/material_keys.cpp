@@ -16,6 +16,7 @@ std::string allowed(const Interval& range) {
   if constexpr (std::is_same_v<Value, std::string>) return "any text, different for each material";
   if constexpr (std::is_same_v<Value, Law>) return law_names();
   if constexpr (std::is_same_v<Value, Slip>) return "consistent, full_radius, full_radius_ratcheting";
+  if constexpr (std::is_same_v<Value, HertzRadius>) return "equivalent, curvature";
   if constexpr (std::is_same_v<Value, Dashpot>) return "none, coefficient, restitution, viscoelastic, tsuji";
   if constexpr (std::is_same_v<Value, LocalDampingForm>) return "vector, component";
   return in_words(range);
@@ -96,6 +97,9 @@ std::vector<KeyEntry> contacts() {
       entry(t, "rolling", "-", &ContactModel::rolling, any, "rolling moment between grains"),
       entry(t, "unload_rescale", "-", &ContactModel::unload_rescale, any,
             "hertz_mindlin: the tangential force falls with sqrt(overlap) on unloading"),
+      entry(t, "hertz_radius", "-", &ContactModel::hertz_radius, any,
+            "hertz_mindlin, ellipses: radius of the law: sqrt(a b), or a^2 b^2/h^3 of the curvature at the contact, "
+            "which conserves no energy"),
   };
 }
 

@@ -14,10 +14,10 @@ namespace rvelab::keys {
 struct FrictionAngle {};
 
 /// The field that a key sets.
-using Target =
-    std::variant<std::string Material::*, double Material::*, FrictionAngle, double Damping::*, bool Damping::*,
-                 Dashpot Damping::*, LocalDampingForm Damping::*, double SolverOptions::*, long SolverOptions::*,
-                 bool SolverOptions::*, bool ContactModel::*, Law ContactModel::*, Slip ContactModel::*>;
+using Target = std::variant<std::string Material::*, double Material::*, FrictionAngle, double Damping::*,
+                            bool Damping::*, Dashpot Damping::*, LocalDampingForm Damping::*, double SolverOptions::*,
+                            long SolverOptions::*, bool SolverOptions::*, bool ContactModel::*, Law ContactModel::*,
+                            Slip ContactModel::*, HertzRadius ContactModel::*>;
 
 struct KeyEntry {
   Key key;

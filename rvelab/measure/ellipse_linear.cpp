@@ -8,6 +8,8 @@ namespace {
 struct Support {
   double reach, turned, bend;
   double radius_of_curvature() const { return reach + bend; }
+  /// d ln of that by a turn of the normal against the grain.
+  double flattening() const { return -3 * turned / reach; }
 };
 
 Support support_of(const GrainState& grain, double along, double across) {
@@ -21,7 +23,7 @@ ContactRow cross_z(const Vector3& a, const ContactMatrix& b) { return a.x() * b.
 }  // namespace
 
 LinearEllipseContact linearised_ellipses(const ContactState& contact, const GrainState& grain_i,
-                                         const GrainState& grain_j) {
+                                         const GrainState& grain_j, HertzRadius hertz_radius) {
   const Vector3& n = contact.normal;
   const Vector3 t(-n.y(), n.x(), 0);
   const double half = 0.5 * contact.overlap, along_t = contact.tangential_force.dot(t);
@@ -40,10 +42,19 @@ LinearEllipseContact linearised_ellipses(const ContactState& contact, const Grai
   const ContactRow slip = across - (i.reach - half) * turn_i - (j.reach - half) * turn_j;
   const ContactRow moment = -contact.rolling_stiffness * (turn_j - turn_i);
 
+  // (delta/R*) dR*: what the change of the radius is to the root of delta R*.
+  ContactRow radius = ContactRow::Zero();
+  if (hertz_radius == HertzRadius::curvature) {
+    const double sharp_i = 1 / i.radius_of_curvature(), sharp_j = 1 / j.radius_of_curvature();
+    radius = contact.overlap / (sharp_i + sharp_j) *
+             (sharp_i * i.flattening() * (turn - turn_i) + sharp_j * j.flattening() * (turn - turn_j));
+  }
+
   LinearEllipseContact linear;
-  linear.opening = -overlap;
-  linear.law.force = n * (contact.normal_stiffness * overlap - along_t * turn) +
-                     t * (contact.normal_force * turn - contact.tangential_stiffness * slip);
+  linear.opening = -(overlap + radius);
+  const ContactRow normal = contact.normal_stiffness * overlap + 0.5 * contact.normal_force / contact.overlap * radius;
+  linear.law.force =
+      n * (normal - along_t * turn) + t * (contact.normal_force * turn - contact.tangential_stiffness * slip);
   const ContactMatrix arm_i =
       n * (-i.turned * turn_i - 0.5 * overlap) + t * ((i.reach - half) * turn + i.bend * (turn - turn_i));
   const ContactMatrix arm_j = arm_i - db;
@@ -58,7 +69,7 @@ LinearEllipseContact linearised_ellipses(const ContactState& contact, const Grai
   };
   set_torques(linear.law, arm_i, arm_j, moment);
 
-  const ContactRow relative = 0.5 / contact.overlap * overlap;
+  const ContactRow relative = 0.5 / contact.overlap * (overlap + radius);
   linear.unloading.force = contact.tangential_force * relative;
   set_torques(linear.unloading, ContactMatrix::Zero(), ContactMatrix::Zero(), contact.rolling_moment.z() * relative);
   return linear;

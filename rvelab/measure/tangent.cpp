@@ -44,7 +44,7 @@ Matrix9 rows_of(const LinearContact& linear) {
 /// law q + r |dl|: exact for loading (dl < 0: nothing) and for unloading (dl > 0: all).
 Spring spring_of_ellipses(const Network& network, const ContactState& contact) {
   const LinearEllipseContact linear =
-      linearised_ellipses(contact, network.grains[contact.i], network.grains[contact.j]);
+      linearised_ellipses(contact, network.grains[contact.i], network.grains[contact.j], network.model.hertz_radius);
   Spring spring{&contact, rows_of(linear.law), Vector9::Zero(), linear.opening.transpose()};
   if (rescales(network)) {
     const Matrix9 half = 0.5 * rows_of(linear.unloading);

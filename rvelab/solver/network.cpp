@@ -15,16 +15,16 @@ namespace rvelab {
 namespace {
 
 /// Elastic stiffnesses and energies of a touching contact, from its pair parameters and history.
-void set_elastic(const Fixture& f, const PairTable& pairs, std::size_t p, ContactState& c) {
+void set_elastic(const Fixture& f, const PairTable& pairs, std::size_t p, double radius_ratio, ContactState& c) {
   const PairParameters q = parameters_of(f, pairs, p);
   with_force(f, [&](auto force) {
     using Force = decltype(force);
-    const ContactStiffness k = stiffness_of<Force>(f, q, c.overlap);
+    const ContactStiffness k = stiffness_of<Force>(f, q, c.overlap, radius_ratio);
     c.normal_stiffness = k.normal;
     c.tangential_stiffness = k.tangential;
     c.rolling_stiffness = k.rolling;
     c.pressing_force = Force::pressing_force(c.normal_force, q.law_constant);
-    c.elastic_energy = Force::normal_energy(q.kn, c.overlap, std::sqrt(c.overlap), q.law_constant);
+    c.elastic_energy = Force::normal_energy(q.kn, c.overlap, root_overlap(c.overlap, radius_ratio), q.law_constant);
   });
   double spring = 0;
   for (int k = 0; k < f.tangential_components(); ++k) spring += pairs.tangential[k][p] * pairs.tangential[k][p];
@@ -80,7 +80,7 @@ ContactState state_of(const Fixture& f, const PairTable& pairs, std::size_t p, c
     c.moment_cap = pairs.moment_cap[p];
   }
   c.friction = pairs.friction[p];
-  set_elastic(f, pairs, p, c);
+  set_elastic(f, pairs, p, hertz_radius_ratio(f, pairs, p, at), c);
   return c;
 }
 

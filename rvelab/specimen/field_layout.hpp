@@ -31,6 +31,7 @@ std::string text_of(Enumeration value) {
 inline void from_text(const std::string& text, std::string& value) { value = text; }
 inline void from_text(const std::string& text, Law& value) { value = law_from(text); }
 inline void from_text(const std::string& text, Slip& value) { value = slip_from(text); }
+inline void from_text(const std::string& text, HertzRadius& value) { value = hertz_radius_from(text); }
 inline void from_text(const std::string& text, Dashpot& value) { value = dashpot_from(text); }
 inline void from_text(const std::string& text, LocalDampingForm& value) { value = local_damping_form_from(text); }
 inline void from_text(const std::string& text, Shape& value) {

@@ -86,6 +86,7 @@ inline constexpr auto members_of<ContactModel> = std::tuple{
     Field{"slip", &ContactModel::slip, "-"},
     Field{"rolling", &ContactModel::rolling, "1"},
     Field{"unload_rescale", &ContactModel::unload_rescale, "1"},
+    Field{"hertz_radius", &ContactModel::hertz_radius, "-", Rows::one, InFiles::added_later},
 };
 
 template <>

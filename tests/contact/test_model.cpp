@@ -337,12 +337,29 @@ TEST_CASE("a viscoelastic dashpot needs a Hertz law, a specimen needs a material
   CHECK(contains(finding(model_of(Law::linear), {}, {}), "materials"));
 }
 
+TEST_CASE("Hertz's radius from curvature needs a law whose stiffness holds a radius", "[contact][quick]") {
+  ContactModel model = model_of(Law::hertz_mindlin);
+  model.hertz_radius = HertzRadius::curvature;
+  CHECK(finding(model, {}, {quartz()}).empty());
+  for (const Law law : {Law::linear, Law::linear_given, Law::hertz_given, Law::linear_adhesive}) {
+    model.law = law;
+    const std::string text = finding(model, {}, {quartz()});
+    CAPTURE(text);
+    CHECK(contains(text,
+                   "contact.hertz_radius = \"curvature\" does not go with contact.law = " + std::string(name(law))));
+    CHECK(contains(text, "allowed: hertz_mindlin; use contact.hertz_radius = \"equivalent\""));
+  }
+}
+
 TEST_CASE("names go there and back", "[contact][quick]") {
   for (const Law law : {Law::linear, Law::linear_given, Law::hertz_mindlin, Law::hertz_given}) {
     CHECK(law_from(name(law)) == law);
   }
   for (const Slip slip : {Slip::consistent, Slip::full_radius, Slip::full_radius_ratcheting}) {
     CHECK(slip_from(name(slip)) == slip);
+  }
+  for (const HertzRadius radius : {HertzRadius::equivalent, HertzRadius::curvature}) {
+    CHECK(hertz_radius_from(name(radius)) == radius);
   }
   for (const Dashpot d :
        {Dashpot::none, Dashpot::coefficient, Dashpot::restitution, Dashpot::viscoelastic, Dashpot::tsuji}) {

@@ -153,6 +153,7 @@ class RandomFill {
   void put(Law& value) { value = Law(bits_() % 4); }
   void put(Slip& value) { value = Slip(bits_() % 3); }
   void put(Dashpot& value) { value = Dashpot(bits_() % 5); }
+  void put(HertzRadius& value) { value = HertzRadius(bits_() % 2); }
   void put(LocalDampingForm& value) { value = LocalDampingForm(bits_() % 2); }
   void put(Vector3& value) {
     for (int k = 0; k < 3; ++k) put(value[k]);

@@ -13,7 +13,7 @@ using namespace rvelab;
 using namespace rvelab::test;
 
 TEST_CASE("files of every version of the format are read with all that they hold") {
-  for (const std::string version : {"1_0", "1_1", "1_2", "1_3", "1_4", "1_5", "1_6", "1_7", "1_8"}) {
+  for (const std::string version : {"1_0", "1_1", "1_2", "1_3", "1_4", "1_5", "1_6", "1_7", "1_8", "1_9"}) {
     CAPTURE(version);
     const Folder folder;
     const std::string kept = std::string(RVELAB_TEST_DATA) + "/compat/";
@@ -29,6 +29,7 @@ TEST_CASE("files of every version of the format are read with all that they hold
     CHECK(start.grains.radius[7] == 0.00506);
     CHECK(start.materials.at(0).name == "sand");
     CHECK(start.materials[0].friction == 0.42);
+    CHECK(start.contact.hertz_radius == HertzRadius::equivalent);
 
     const io::RecordedTest test = io::read_recorded_test(records);
     CHECK(test.complete);
@@ -45,5 +46,5 @@ TEST_CASE("files of every version of the format are read with all that they hold
   }
   // The newest files are of the version that is written now: a step of the version asks for files of its own.
   CHECK(io::format_major == 1);
-  CHECK(io::format_minor == 8);
+  CHECK(io::format_minor == 9);
 }

@@ -21,6 +21,9 @@ namespace {
 
 void write(const std::string& path, const std::string& text) { std::ofstream(path) << text; }
 
+const std::string hertz =
+    "[contact]\nlaw = 'hertz_mindlin'\nhertz_radius = 'curvature'\n[[material]]\nname = 'soil'\n"
+    "young_modulus_Pa = 2e9\npoisson_ratio = 0.25\nfriction = 0.6\n";
 const std::string material =
     "[contact]\nlaw = 'linear_given'\n[[material]]\nname = 'soil'\nnormal_stiffness_N_m = 6e6\n"
     "tangential_stiffness_N_m = 6e6\nfriction = 0.6\n";
@@ -33,9 +36,9 @@ const std::string grains =
     "2,0.0099,-0.0049,0.005,0.004,0\n"
     "7,-0.0030,0.0030,0.005,0.004,-90\n";
 
-Specimen imported(const Folder& folder, const std::string& text = grains) {
+Specimen imported(const Folder& folder, const std::string& text = grains, const std::string& soil = material) {
   write(folder / "e.csv", text);
-  write(folder / "m.toml", material);
+  write(folder / "m.toml", soil);
   io::ImportOptions options;
   options.cell = Vector3(0.02, 0.02, 1);
   options.material_path = folder / "m.toml";
@@ -77,6 +80,32 @@ TEST_CASE("ellipses come back from a specimen file bit for bit, and go on as the
   CHECK(rve.save() == again.save());
 }
 
+TEST_CASE("Hertz's radius from curvature comes from a material file and goes through files and snapshots") {
+  const Folder folder;
+  Rve rve(imported(folder, grains, hertz));
+  CHECK(rve.specimen().contact.hertz_radius == HertzRadius::curvature);
+  Matrix3 squeeze = Vector3(-1e-4, -2e-4, 0).asDiagonal();
+  squeeze(0, 1) = 1e-4;
+  rve.apply(squeeze, 1e-6);
+  Rve restored(imported(folder, grains, hertz));
+  restored.restore(rve.save());
+  io::write_specimen(rve.specimen(), folder / "e.h5");
+  const Specimen read = io::read_specimen(folder / "e.h5");
+  CHECK(differing_fields(rve.specimen(), read).empty());
+  Rve again(read);
+  const Matrix3 stress = rve.apply(squeeze, 1e-6).stress;
+  CHECK(stress.norm() > 1);
+  CHECK(stress == again.apply(squeeze, 1e-6).stress);
+  CHECK(stress == restored.apply(squeeze, 1e-6).stress);
+  CHECK(rve.save() == again.save());
+  CHECK(rve.save() == restored.save());
+
+  Specimen other = read;
+  other.contact.hertz_radius = HertzRadius::equivalent;
+  CHECK(differing_fields(other, read) == std::vector<std::string>{"contact/hertz_radius"});
+  CHECK(Rve(other).apply(squeeze, 1e-6).stress != stress);
+}
+
 TEST_CASE("XDMF shows axes and orientation of ellipses, and their stresses add up") {
   const Folder folder;
   const Rve rve(imported(folder));
@@ -99,7 +128,7 @@ TEST_CASE("XDMF shows axes and orientation of ellipses, and their stresses add u
 
 TEST_CASE("ellipses written as CSV come back with their contacts") {
   const Folder folder;
-  Specimen start = imported(folder);
+  Specimen start = imported(folder, grains, GENERATE(material, hertz));
   start.solver.fixed_substeps = 20;  // to a tolerance these few grains, which nothing confines, have time to part
   Rve rve(start);
   Matrix3 strain = Vector3(-1e-3, -2e-3, 0).asDiagonal();
@@ -118,7 +147,9 @@ TEST_CASE("ellipses written as CSV come back with their contacts") {
   for (std::size_t k = 0; k < s.contacts.size(); ++k) {
     largest = std::max(largest, std::abs(s.contacts[k].tangential_force[0]));
     CHECK(back.contacts[k].tangential_force[0] == Approx(s.contacts[k].tangential_force[0]).epsilon(1e-14));
+    CHECK(back.contacts[k].last_root_overlap == Approx(s.contacts[k].last_root_overlap).epsilon(1e-9));
   }
+  CHECK(back.contact.hertz_radius == s.contact.hertz_radius);
   CHECK(largest > 1);
   const Matrix3 before = rve.stress(), after = Rve(back).stress();
   CHECK((after - before).norm() < 1e-12 * before.norm());

@@ -59,19 +59,20 @@ TEST_CASE("every key sets one field, from its own default, and no two keys the s
     if (!message.empty()) CHECK_THAT(message, Contains("out of range"));
     ++fields;
   }
-  // 9 of a material's 10 fields with its two units of stiffness less name, 4 of contact, 9 + 1 of damping, 9 of solver.
-  CHECK(fields == 12 + 4 + 10 + 12);
+  // 9 of a material's 10 fields with its two units of stiffness less name, 5 of contact, 9 + 1 of damping, 9 of solver.
+  CHECK(fields == 12 + 5 + 10 + 12);
 }
 
 TEST_CASE("assignments reach their fields") {
   Specimen s = two_materials();
   for (const char* assignment :
        {"contact.law=hertz_given", "contact.slip = full_radius_ratcheting", "contact.rolling=true",
-        "contact.unload_rescale=false", "material.friction=0.25", "material.gravel.density_kg_m3=2700",
-        "material.normal_stiffness_N_m1_5=2e7", "material.tangential_stiffness_N_m=2_000_000", "damping.local=0.1",
-        "damping.local_form='component'", "damping.dashpot=\"coefficient\"", "damping.normal_coefficient_N_s_m=20",
-        "damping.no_tension=true", "solver.fixed_substeps=17", "solver.skin=0.2", "solver.fixed_time_step_s=1e-5",
-        "solver.ledger=true", "material.sand.rolling_friction=0.05"}) {
+        "contact.unload_rescale=false", "contact.hertz_radius='curvature'", "material.friction=0.25",
+        "material.gravel.density_kg_m3=2700", "material.normal_stiffness_N_m1_5=2e7",
+        "material.tangential_stiffness_N_m=2_000_000", "damping.local=0.1", "damping.local_form='component'",
+        "damping.dashpot=\"coefficient\"", "damping.normal_coefficient_N_s_m=20", "damping.no_tension=true",
+        "solver.fixed_substeps=17", "solver.skin=0.2", "solver.fixed_time_step_s=1e-5", "solver.ledger=true",
+        "material.sand.rolling_friction=0.05"}) {
     CAPTURE(assignment);
     keys::set_key(s, assignment);
   }
@@ -79,6 +80,7 @@ TEST_CASE("assignments reach their fields") {
   CHECK(s.contact.slip == Slip::full_radius_ratcheting);
   CHECK(s.contact.rolling);
   CHECK(!s.contact.unload_rescale);
+  CHECK(s.contact.hertz_radius == HertzRadius::curvature);
   CHECK(s.materials[0].friction == 0.25);
   CHECK(s.materials[1].friction == 0.25);
   CHECK(s.materials[0].density == 2650);
@@ -121,6 +123,7 @@ TEST_CASE("numbers must be finite and in range, whole where they count, and of t
   CHECK_THAT(refused("material.friction=rough"), Contains("'rough'") && Contains("not a number"));
   CHECK_THAT(refused("contact.rolling=1"), Contains("true or false"));
   CHECK_THAT(refused("contact.slip=sliding"), Contains("sliding") && Contains("full_radius_ratcheting"));
+  CHECK_THAT(refused("contact.hertz_radius=mean"), Contains("mean") && Contains("equivalent, curvature"));
   CHECK_THAT(refused("contact.law=3"), Contains("not a word") && Contains("hertz_mindlin"));
   CHECK_THAT(refused("contact.law"), Contains("key=value"));
   CHECK_THAT(refused("contact.law="), Contains("hertz_mindlin"));

@@ -29,6 +29,7 @@ struct Pair {
   Vector3 branch{0.95, 0.55, 0};
   double kn = 3e5, kt = 2e5, kr = 4e4, tangential = 3e3, moment = 700;
   bool rescale = false;
+  HertzRadius radius = HertzRadius::equivalent;
 };
 
 EllipseMatrix<double> matrix_of(const Pair& pair, int k, double turn) {
@@ -61,11 +62,20 @@ Moved moved(const Pair& pair, const Vector9& q, const ContactState* first) {
   c.overlap = (pi - pj).dot(c.normal);
   c.arm_i = 0.5 * (pi + pj);
   c.arm_j = c.arm_i - c.branch;
-  const double root = std::sqrt(c.overlap);
+  double spread = 1;  // what R* is over r*, or goes with
+  if (pair.radius == HertzRadius::curvature) {
+    const auto radius = [&](int k, const EllipseMatrix<double>& m) {
+      const Vector3 along(m.xx * c.normal[0] + m.xy * c.normal[1], m.xy * c.normal[0] + m.yy * c.normal[1], 0);
+      return std::pow(pair.a[k] * pair.b[k], 2) / std::pow(along.dot(c.normal), 1.5);
+    };
+    spread = 1 / (1 / radius(0, mi) + 1 / radius(1, mj));
+  }
+  const double root = std::sqrt(c.overlap * spread);
   double tangential = pair.tangential, moment = pair.moment;
   if (first != nullptr) {
     const Vector3 across(-first->normal[1], first->normal[0], 0);
-    const double kept = pair.rescale && c.overlap < first->overlap ? root / std::sqrt(first->overlap) : 1;
+    const double last_root = first->tangential_stiffness / pair.kt;
+    const double kept = pair.rescale && root < last_root ? root / last_root : 1;
     const double slip = across.dot(Vector3(q.head<3>()) + Vector3(0, 0, q[8]).cross(first->arm_j) -
                                    Vector3(0, 0, q[5]).cross(first->arm_i));
     tangential = kept * tangential - pair.kt * root * slip;
@@ -177,9 +187,13 @@ double axis_of(const Eigen::MatrixXd& c) {
 }  // namespace
 
 TEST_CASE("A contact of ellipses, linearised: finite differences of the law", "[measure]") {
-  for (const bool unloading : {false, true}) {
+  for (const auto& [unloading, radius] : {std::pair{false, HertzRadius::equivalent},
+                                          {true, HertzRadius::equivalent},
+                                          {false, HertzRadius::curvature},
+                                          {true, HertzRadius::curvature}}) {
     Pair pair;
     pair.rescale = unloading;
+    pair.radius = radius;
     const Moved start = moved(pair, Vector9::Zero(), nullptr);
     REQUIRE(start.contact.overlap > 0.01);
     REQUIRE(start.contact.overlap < 0.3);
@@ -188,9 +202,9 @@ TEST_CASE("A contact of ellipses, linearised: finite differences of the law", "[
       grains[k].semi_major = pair.a[k];
       grains[k].semi_minor = pair.b[k];
     }
-    const LinearEllipseContact linear = linearised_ellipses(start.contact, grains[0], grains[1]);
+    const LinearEllipseContact linear = linearised_ellipses(start.contact, grains[0], grains[1], radius);
     for (const int column : {0, 1, 5, 8}) {
-      CAPTURE(unloading, column);
+      CAPTURE(unloading, radius == HertzRadius::curvature, column);
       Vector9 q = Vector9::Zero();
       const double step = 1e-5;
       q[column] = step;
@@ -246,9 +260,12 @@ TEST_CASE("Disordered ellipses: increments of 1e-7 meet the elastic tangent", "[
   m.poisson_ratio = 0.2;
   m.rolling_stiffness = 0.8;
   m.rolling_friction = 0.05;
-  for (const Law law : {Law::linear_given, Law::hertz_mindlin}) {
-    CAPTURE(name(law));
+  for (const auto& [law, radius] : {std::pair{Law::linear_given, HertzRadius::equivalent},
+                                    {Law::hertz_mindlin, HertzRadius::equivalent},
+                                    {Law::hertz_mindlin, HertzRadius::curvature}}) {
+    CAPTURE(name(law), name(radius));
     Specimen s = disordered(Shape::ellipse, 6, m, law, 0.53, 8);
+    s.contact.hertz_radius = radius;
     s.contact.rolling = law == Law::linear_given;
     s.contact.unload_rescale = false;  // the mean over loading and unloading is of 1e-5 at this size
     Rve rve(s);

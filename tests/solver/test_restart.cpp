@@ -39,6 +39,10 @@ std::vector<Configuration> configurations() {
     s.damping.restitution = 0.6;
     s.damping.tangential_ratio = 0.5;
     all.push_back({"hertz_mindlin, rolling, dashpot", s});
+    if (!round) {
+      s.contact.hertz_radius = HertzRadius::curvature;
+      all.push_back({"hertz_mindlin of the curvature, rolling, dashpot", s});
+    }
     s = disordered(shape, side, m, Law::hertz_given, 0.53, 13);
     if (round) s.contact.slip = Slip::full_radius;
     s.damping.dashpot = Dashpot::coefficient;

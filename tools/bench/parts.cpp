@@ -170,8 +170,9 @@ int compare_widths() {
   bool good = true;
   for (const std::string name : {"disc_400", "sphere_1000"}) {
     Opened& o = packing(name);
-    const KernelConfiguration key{o.fixture.shape, o.fixture.contact.law, o.fixture.contact.rolling,
-                                  o.fixture.contact.slip, false};
+    const KernelConfiguration key{
+        o.fixture.shape, o.fixture.contact.law,         o.fixture.contact.rolling, o.fixture.contact.slip,
+        false,           o.fixture.contact.hertz_radius};
     Kernels kernels[2];
     for (const int k : {0, 1}) {
       setenv("RVELAB_ISA", k == 0 ? "v3" : "v4", 1);

@@ -44,7 +44,7 @@ Moments moments_of(const Fixture& f, const Assembly& a, const Of& coefficients) 
     const PairPlace at = pair(p);
     const Branch& b = at.branch;
     if (!(at.overlap > 0)) continue;
-    const auto [kn, kt] = coefficients(p, at.overlap);
+    const auto [kn, kt] = coefficients(p, at);
     const double part = (kn - kt) / (b.x * b.x + b.y * b.y + b.z * b.z);
     const double x = b.x, y = b.y, xx = x * x, yy = y * y, xy = x * y;
     two[0] += kt * xx;
@@ -122,7 +122,7 @@ Matrix6 sum_over_ellipses(const Fixture& f, const Assembly& a, const Of& coeffic
     const auto p = std::size_t(place);
     const EllipsePlace at = pair(p);
     if (!(at.overlap > 0)) continue;
-    const auto [kn, kt] = coefficients(p, at.overlap);
+    const auto [kn, kt] = coefficients(p, at);
     const Vector6 along = dyad(at.normal.x, at.normal.y, at.branch),
                   across = dyad(-at.normal.y, at.normal.x, at.branch);
     sum += kn * along * along.transpose() + kt * across * across.transpose();
@@ -162,8 +162,9 @@ Matrix6 affine_sum(const Fixture& f, const Assembly& a, const Of& coefficients) 
 
 Matrix6 affine_stiffness(const Fixture& f, const Assembly& a) {
   return with_force(f, [&](auto force) {
-    return affine_sum(f, a, [&](std::size_t p, double overlap) -> Coefficients {
-      const ContactStiffness k = stiffness_of<decltype(force)>(f, parameters_of(f, a.pairs, p), overlap);
+    return affine_sum(f, a, [&](std::size_t p, const auto& at) -> Coefficients {
+      const ContactStiffness k = stiffness_of<decltype(force)>(f, parameters_of(f, a.pairs, p), at.overlap,
+                                                               hertz_radius_ratio(f, a.pairs, p, at));
       return {k.normal, k.tangential};
     });
   });
@@ -171,8 +172,9 @@ Matrix6 affine_stiffness(const Fixture& f, const Assembly& a) {
 
 Matrix6 affine_viscosity(const Fixture& f, const Assembly& a) {
   if (f.damping.dashpot == Dashpot::none) return Matrix6::Zero();
-  return affine_sum(f, a, [&](std::size_t p, double overlap) -> Coefficients {
-    const double c = dashpot_now(f, a.pairs.cn[p], std::sqrt(overlap));
+  return affine_sum(f, a, [&](std::size_t p, const auto& at) -> Coefficients {
+    const double root = root_overlap(at.overlap, hertz_radius_ratio(f, a.pairs, p, at));
+    const double c = dashpot_now(f, a.pairs.cn[p], root);
     return {c, f.damping.tangential_ratio * c};
   });
 }

@@ -98,11 +98,11 @@ void open_assembly(const Specimen& specimen, Fixture& f, Assembly& a) {
   f.material = s.grains.material;
   f.radius = s.grains.radius;
   f.thickness = s.cell.lattice(2, 2);
-  f.kernels =
-      kernels_for({f.shape, f.contact.law, f.contact.rolling, f.contact.slip, f.damping.dashpot != Dashpot::none});
-  f.resting_kernels = f.damping.dashpot == Dashpot::none
-                          ? f.kernels
-                          : kernels_for({f.shape, f.contact.law, f.contact.rolling, f.contact.slip, false});
+  const auto kernels_with = [&](bool dashpot) {
+    return kernels_for({f.shape, f.contact.law, f.contact.rolling, f.contact.slip, dashpot, f.contact.hertz_radius});
+  };
+  f.kernels = kernels_with(f.damping.dashpot != Dashpot::none);
+  f.resting_kernels = f.damping.dashpot == Dashpot::none ? f.kernels : kernels_with(false);
   if (f.shape == Shape::ellipse) take_axes(s.grains, f);
   f.largest_reach = *std::max_element(f.reach().begin(), f.reach().end());
   f.mean_radius = std::accumulate(f.radius.begin(), f.radius.end(), 0.0) / double(n);

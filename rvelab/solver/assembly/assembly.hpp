@@ -48,6 +48,7 @@ struct Fixture {
   /// The team where the assembly is large enough for one, else null.
   Workers* sharing() const { return size() >= least_shared_grains ? team : nullptr; }
   const Kernels& kernels_at(bool quasi_static) const { return quasi_static ? resting_kernels : kernels; }
+  bool radius_from_curvature() const { return contact.hertz_radius == HertzRadius::curvature; }
   /// Whether contacts keep sqrt(overlap) of the last sub-step.
   bool stores_root_overlap() const {
     return with_law(contact.law, [](auto law) { return decltype(law)::Force::stores_root_overlap; });
@@ -79,7 +80,7 @@ struct PairTable {
   Buffer image_number[3];
   Buffer kn, kt, law_constant, friction, kr, moment_cap, cn;
   Buffer tangential[3], moment[3], root_overlap, force;
-  Buffer radius_i, radius_j;                    ///< 2D
+  Buffer radius_i, radius_j;                    ///< discs; ellipses with Hertz's radius from curvature
   std::vector<std::int32_t> slot_begin, slots;  ///< gather table (kernels/configuration.hpp)
   std::vector<std::uint16_t> tasks;
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "rvelab/solver/assembly/assembly.hpp"
+#include "rvelab/solver/assembly/pair_place.hpp"
 
 namespace rvelab {
 
@@ -24,6 +25,26 @@ struct ContactStiffness {
   double normal, tangential, rolling, dashpot;
 };
 
+/// R*/r* of a listed pair that lies there: 1, but for Hertz's radius from curvature (contact/hertz_curvature.hpp).
+inline double hertz_radius_ratio(const Fixture&, const PairTable&, std::size_t, const PairPlace&) { return 1; }
+inline double hertz_radius_ratio(const Fixture& f, const PairTable& pairs, std::size_t p, const EllipsePlace& at) {
+  if (!f.radius_from_curvature()) return 1;
+  return at.hertz_radius_ratio(f.radius[std::size_t(pairs.i[p])], f.radius[std::size_t(pairs.j[p])]);
+}
+/// The least and the largest that it can be, however the grains turn: tip to tip and flank to flank.
+struct RadiusRatios {
+  double least = 1, largest = 1;
+};
+inline RadiusRatios hertz_radius_ratios(const Fixture& f, const PairTable& pairs, std::size_t p) {
+  if (!f.radius_from_curvature()) return {};
+  const auto i = std::size_t(pairs.i[p]), j = std::size_t(pairs.j[p]);
+  return {hertz_radius_ratio(f.radius[i], f.semi_major[i], f.radius[j], f.semi_major[j]),
+          hertz_radius_ratio(f.radius[i], f.semi_minor[i], f.radius[j], f.semi_minor[j])};
+}
+
+/// What laws take for sqrt(overlap), m^0.5.
+inline double root_overlap(double overlap, double radius_ratio) { return std::sqrt(overlap * radius_ratio); }
+
 /// c_n at an overlap whose square root is `root`, N s/m.
 inline double dashpot_now(const Fixture& f, double cn, double root) {
   const double power = dashpot_power(f.contact.law, f.damping.dashpot);
@@ -32,15 +53,16 @@ inline double dashpot_now(const Fixture& f, double cn, double root) {
 
 /// `Force`: that of the specimen's law (contact/laws.hpp). The overlap is > 0, m.
 template <class Force>
-ContactStiffness stiffness_of(const Fixture& f, const PairParameters& q, double overlap) {
+ContactStiffness stiffness_of(const Fixture& f, const PairParameters& q, double overlap, double radius_ratio = 1) {
   const bool dashpot = f.damping.dashpot != Dashpot::none;
-  const double root = Force::needs_root_overlap || dashpot ? std::sqrt(overlap) : 0;
+  const double root = Force::needs_root_overlap || dashpot ? root_overlap(overlap, radius_ratio) : 0;
   return {Force::normal_stiffness(q.kn, root), Force::tangential_stiffness(q.kt, root),
           Force::tangential_stiffness(q.kr, root), dashpot ? dashpot_now(f, q.cn, root) : 0};
 }
 template <class Force>
-double normal_force_of(const PairParameters& q, double overlap) {
-  return Force::normal_force(q.kn, overlap, Force::needs_root_overlap ? std::sqrt(overlap) : 0, q.law_constant);
+double normal_force_of(const PairParameters& q, double overlap, double radius_ratio = 1) {
+  const double root = Force::needs_root_overlap ? root_overlap(overlap, radius_ratio) : 0;
+  return Force::normal_force(q.kn, overlap, root, q.law_constant);
 }
 
 /// call(Force{}) with the Force of the specimen's law.

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "rvelab/contact/hertz_curvature.hpp"
+
 namespace rvelab {
 
 /// Branch of a listed pair, m, cell frame.
@@ -32,6 +34,10 @@ struct EllipsePlace {
 
   const Branch& along() const { return normal; }
   double along_length() const { return 1; }
+  /// R*/r* of Hertz's radius from curvature, for grains of r = sqrt(a b), m.
+  double hertz_radius_ratio(double radius_i, double radius_j) const {
+    return rvelab::hertz_radius_ratio(radius_i, reach_i, radius_j, reach_j);
+  }
   /// Rate at which spins (rad/s) open the contact, m/s.
   double opening_by(double spin_i, double spin_j) const { return spin_i * turn_i + spin_j * turn_j; }
 };

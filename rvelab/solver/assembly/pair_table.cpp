@@ -48,7 +48,8 @@ void derive_pairs(const Fixture& f, PairTable& pairs) {
   pairs.row_i.resize(padded);
   pairs.row_j.resize(padded);
   for (int k = 0; k < f.dimension(); ++k) pairs.image_number[k].resize(padded);
-  if (f.shape == Shape::disc) {
+  const bool radii = f.shape == Shape::disc || f.radius_from_curvature();
+  if (radii) {
     pairs.radius_i.assign(padded, 0.0);
     pairs.radius_j.assign(padded, 0.0);
   }
@@ -59,7 +60,7 @@ void derive_pairs(const Fixture& f, PairTable& pairs) {
     }
     for (int k = 0; k < f.dimension(); ++k)
       for (std::size_t p = first; p < last; ++p) pairs.image_number[k][p] = pairs.image[p][std::size_t(k)];
-    if (f.shape != Shape::disc) return;
+    if (!radii) return;
     for (std::size_t p = first; p < std::min(last, pairs.listed); ++p) {
       pairs.radius_i[p] = f.radius[std::size_t(pairs.i[p])];
       pairs.radius_j[p] = f.radius[std::size_t(pairs.j[p])];

@@ -74,6 +74,10 @@ void check_ellipses(const Specimen& s) {
   if (n > 0 && s.contact.slip != Slip::consistent)
     refuse(std::string("contact.slip = \"") + name(s.contact.slip) +
            "\" is for round grains; allowed for ellipses: \"consistent\"");
+  if (s.shape != Shape::ellipse && s.contact.hertz_radius != HertzRadius::equivalent)
+    refuse(std::string("contact.hertz_radius = \"") + name(s.contact.hertz_radius) +
+           "\" is for ellipses; allowed for " + fields::text_of(s.shape) +
+           "s, whose curvature is the same everywhere: \"equivalent\"");
 }
 
 void check_cell(const Specimen& s) {

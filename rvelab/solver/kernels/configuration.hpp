@@ -1,8 +1,8 @@
 // What a step kernel is compiled for (its configuration) and what it is handed (plain pointers and constants). The
 // kernels themselves include no Eigen and no containers, so this header holds none.
 //
-// A configuration is shape x law x rolling x slip convention x dashpot. It is chosen once, when an Rve is opened; the
-// loops hold no branch over it.
+// A configuration is shape x law x rolling x slip convention x dashpot x Hertz's radius. It is chosen once, when an Rve
+// is opened; the loops hold no branch over it.
 #pragma once
 
 #include <cstdint>
@@ -19,6 +19,7 @@ struct KernelConfiguration {
   bool rolling = false;
   Slip slip = Slip::consistent;
   bool dashpot = false;
+  HertzRadius hertz_radius = HertzRadius::equivalent;
 };
 
 /// Upper-triangular 3x3 matrix, in the order xx, xy, xz, yy, yz, zz.
@@ -69,7 +70,7 @@ struct PairArrays {
   double* tangential[3] = {};                             ///< history on grain j; 2D: [0] along t = (-n_y, n_x)
   double* moment[3] = {};                                 ///< with rolling; 2D: [0] about z
   double* root_overlap = nullptr;                         ///< laws that carry sqrt(delta_old)
-  const double *radius_i = nullptr, *radius_j = nullptr;  ///< 2D
+  const double *radius_i = nullptr, *radius_j = nullptr;  ///< discs; ellipses with Hertz's radius from curvature
   double* force = nullptr;  ///< row per pair: 2D {fx, fy, T_j, T_i}; 3D {fx, fy, fz, delta/2, n x f_t, 0}
 };
 

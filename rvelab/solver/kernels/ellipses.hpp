@@ -7,6 +7,7 @@
 // work but their own.
 #pragma once
 
+#include "rvelab/contact/hertz_curvature.hpp"
 #include "rvelab/solver/kernels/ellipse_search.hpp"
 #include "rvelab/solver/kernels/plane.hpp"
 
@@ -98,8 +99,8 @@ struct Ellipses {
     ellipse_places<T>(c, p, first, count, s);
   }
   template <class T>
-  static inline __attribute__((always_inline)) auto contact(const StepConstants& c, const PairArrays&, long, long k,
-                                                            const Scratch& s) {
+  static inline __attribute__((always_inline)) auto contact(const StepConstants& c, const PairArrays& p, long at,
+                                                            long k, const Scratch& s) {
     using V = typename Lanes<T::W>::V;
     PlaneContact<V> contact;
     const V reach_i = load_as<V>(s.reach_i.at + k), reach_j = load_as<V>(s.reach_j.at + k);
@@ -111,6 +112,9 @@ struct Ellipses {
     const V half_overlap = 0.5 * contact.overlap;
     contact.lever_i = half_overlap - reach_i;
     contact.lever_j = half_overlap - reach_j;
+    if constexpr (T::Curvature)
+      contact.radius_ratio =
+          hertz_radius_ratio(load_as<V>(p.radius_i + at), reach_i, load_as<V>(p.radius_j + at), reach_j);
     if constexpr (T::Advance || T::Dashpot) {
       const V spin_i = load_as<V>(s.spin_i.at + k), spin_j = load_as<V>(s.spin_j.at + k);
       contact.slip_rate =

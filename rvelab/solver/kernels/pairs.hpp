@@ -21,11 +21,13 @@ namespace rvelab {
 namespace {
 
 /// What a pair loop is compiled for beside its law.
-template <int W_, bool Rolling_, Slip slip_, bool Dashpot_, bool Advance_, bool Ledger_>
+template <int W_, bool Rolling_, Slip slip_, bool Dashpot_, bool Advance_, bool Ledger_,
+          HertzRadius hertz_radius_ = HertzRadius::equivalent>
 struct PairTraits {
   static constexpr int W = W_;
   static constexpr bool Rolling = Rolling_, Dashpot = Dashpot_, Advance = Advance_, Ledger = Ledger_;
   static constexpr Slip slip = slip_;
+  static constexpr bool Curvature = hertz_radius_ == HertzRadius::curvature;
 };
 
 /// Loads one Quad of each of W grain rows and turns them into columns; `sign` multiplies the first set before adding.

@@ -20,6 +20,7 @@ struct PlaneContact {
   V spin_difference = {};      ///< w_j - w_i, rad/s (rolling)
   V opening = {};              ///< along n, m/s (dashpots)
   V turn_i = {}, turn_j = {};  ///< torque of a force of 1 along n, m (shapes that are not round)
+  V radius_ratio = {};         ///< R*/r* (Hertz's radius from curvature)
 };
 
 /// Places and velocities of j less those of i, and both spins, of W pairs, from grain rows to columns k .. k + W - 1.
@@ -51,7 +52,10 @@ inline __attribute__((always_inline)) void plane_forces(const StepConstants& c, 
     const V overlap = contact.overlap, slip_rate = contact.slip_rate;
     const auto touching = overlap > 0.0;
     V root = zero, law_constant = zero;
-    if constexpr (Law::needs_root_overlap || T::Dashpot) root = square_root(touching ? overlap : zero);
+    if constexpr (T::Curvature)
+      root = square_root(touching ? overlap * contact.radius_ratio : zero);
+    else if constexpr (Law::needs_root_overlap || T::Dashpot)
+      root = square_root(touching ? overlap : zero);
     if constexpr (Law::has_law_constant) law_constant = load_as<V>(p.law_constant + at);
 
     V normal = Law::normal_force(load_as<V>(p.kn + at), overlap, root, law_constant);

@@ -32,11 +32,17 @@ constexpr GrainKernel grain_kernel() {
 }
 
 template <Shape shape, int W, bool Advance, bool Ledger, class Law, bool Rolling, bool Dashpot>
-PairKernel by_slip(Slip slip) {
+PairKernel by_slip(const KernelConfiguration& key) {
   // The conventions of other codes are those of round grains: a specimen of ellipses has no other.
-  if constexpr (shape == Shape::ellipse)
+  if constexpr (shape == Shape::ellipse) {
+    if constexpr (Law::has_hertz_radius) {
+      constexpr auto curvature = HertzRadius::curvature;
+      if (key.hertz_radius == curvature)
+        return pair_kernel<shape, Law, PairTraits<W, Rolling, Slip::consistent, Dashpot, Advance, Ledger, curvature>>();
+    }
     return pair_kernel<shape, Law, PairTraits<W, Rolling, Slip::consistent, Dashpot, Advance, Ledger>>();
-  switch (slip) {
+  }
+  switch (key.slip) {
     case Slip::consistent:
       return pair_kernel<shape, Law, PairTraits<W, Rolling, Slip::consistent, Dashpot, Advance, Ledger>>();
     case Slip::full_radius:
@@ -50,10 +56,10 @@ PairKernel by_slip(Slip slip) {
 template <Shape shape, int W, bool Advance, bool Ledger, class Law>
 PairKernel by_features(const KernelConfiguration& key) {
   if (key.rolling)
-    return key.dashpot ? by_slip<shape, W, Advance, Ledger, Law, true, true>(key.slip)
-                       : by_slip<shape, W, Advance, Ledger, Law, true, false>(key.slip);
-  return key.dashpot ? by_slip<shape, W, Advance, Ledger, Law, false, true>(key.slip)
-                     : by_slip<shape, W, Advance, Ledger, Law, false, false>(key.slip);
+    return key.dashpot ? by_slip<shape, W, Advance, Ledger, Law, true, true>(key)
+                       : by_slip<shape, W, Advance, Ledger, Law, true, false>(key);
+  return key.dashpot ? by_slip<shape, W, Advance, Ledger, Law, false, true>(key)
+                     : by_slip<shape, W, Advance, Ledger, Law, false, false>(key);
 }
 
 template <Shape shape, int W, bool Advance, bool Ledger>

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "rvelab/solver/assembly/contact_stiffness.hpp"
 #include "rvelab/solver/assembly/gather_table.hpp"
 #include "rvelab/solver/assembly/pair_geometry.hpp"
 
@@ -83,7 +84,14 @@ Findings pairs_in(const Fixture& f, const Assembly& a, const Outlook& outlook, s
     }
     const double travel = -opening * horizon;
     if (gap >= 0 && !(travel > gap)) continue;
-    const double mass = f.mass[i] * f.mass[j] / (f.mass[i] + f.mass[j]), k = a.pairs.kn[p];
+    const double mass = f.mass[i] * f.mass[j] / (f.mass[i] + f.mass[j]);
+    // Where grains will meet is not known: as stiff for the step as they can be, as soft for the depth.
+    double k = a.pairs.kn[p], softest = k;
+    if (f.radius_from_curvature()) {
+      const RadiusRatios ratios = hertz_radius_ratios(f, a.pairs, p);
+      k *= std::sqrt(overlap > 0 ? hertz_radius_ratio(f, a.pairs, p, place) : ratios.largest);
+      softest *= std::sqrt(ratios.least);
+    }
     found.approach += 0.5 * mass * opening * opening;
     if (overlap > 0) found.elastic += Impact::spring_energy(k, overlap);
     const double ratio = k / mass;
@@ -98,7 +106,8 @@ Findings pairs_in(const Fixture& f, const Assembly& a, const Outlook& outlook, s
     const double limit = f.options.max_overlap_ratio * std::min(f.radius[i], f.radius[j]);
     if (travel - gap > limit)
       found.deep =
-          found.deep || std::min(travel, Impact::reach(k, mass, std::abs(opening))) + std::max(0.0, -gap) > 0.9 * limit;
+          found.deep ||
+          std::min(travel, Impact::reach(softest, mass, std::abs(opening))) + std::max(0.0, -gap) > 0.9 * limit;
   }
   return found;
 }

@@ -125,13 +125,16 @@ PairTerms terms_of(const Fixture& f, const Assembly& a, const PairGeometry<shape
   const auto place = pair(p);
   const double overlap = place.overlap;
   const PairParameters q = parameters_of(f, a.pairs, p);
-  PairTerms t{rvelab::stiffness_of<Force>(f, q, std::max(overlap, 0.25 * a.state.reference_overlap))};
+  // What may come to touch may do so where its curvature is least.
+  const double ratio =
+      overlap > 0 ? hertz_radius_ratio(f, a.pairs, p, place) : hertz_radius_ratios(f, a.pairs, p).largest;
+  PairTerms t{rvelab::stiffness_of<Force>(f, q, std::max(overlap, 0.25 * a.state.reference_overlap), ratio)};
   t.firm_translation = std::max(2 * t.firm.normal, 4 * t.firm.tangential);
   t.touching = overlap > 0;
   if (!t.touching) return t;
-  t.now = rvelab::stiffness_of<Force>(f, q, overlap);
+  t.now = rvelab::stiffness_of<Force>(f, q, overlap, ratio);
   // The force turning with the branch (initial stress) adds f_n / length to the tangential stiffness at most.
-  const double kt = t.now.tangential + 0.5 * normal_force_of<Force>(q, overlap) / place.length;
+  const double kt = t.now.tangential + 0.5 * normal_force_of<Force>(q, overlap, ratio) / place.length;
   t.along = 2 * t.now.normal - 4 * kt;
   t.across = 4 * kt;
   const Branch& n = place.along();
