@@ -161,6 +161,51 @@ TEST_CASE("A duplicate in a batch is an error before any work") {
   CHECK_REFUSED(rvelab_trial(host.pool, &none.batch), RVELAB_E_INPUT, "n is -1");
 }
 
+TEST_CASE("Of many RVEs the same ones are refused on any number of workers, and named in the same words") {
+  constexpr std::size_t many = 300;  // from 256 on ids are held by the workers
+  std::vector<std::string> texts;
+  for (const int workers : {1, 3}) {
+    CAPTURE(workers);
+    Host host(workers);
+    const auto ids = host.spawn(packed(Shape::disc, 6), many);
+    Trials trials(ids);
+    for (Nine& dH : trials.dH) dH = Increments(2).next(1e-6);
+    REQUIRE_OK(rvelab_trial(host.pool, &trials.batch));  // the workers are there
+    REQUIRE_OK(rvelab_commit(host.pool, 0, nullptr));
+    const std::vector<std::int64_t> tokens = trials.tokens;
+
+    Trials partly(ids);
+    partly.dH = trials.dH;
+    partly.ids[17] = partly.ids[250] = ids[5] + 1'000'000;
+    CHECK(rvelab_trial(host.pool, &partly.batch) == RVELAB_E_ID);
+    std::vector<std::string> here{rvelab_last_error()};
+    CHECK_THAT(here[0], Contains("entry 17"));
+    for (std::size_t k = 0; k < many; ++k) CHECK(partly.status[k] == (k == 17 || k == 250 ? RVELAB_E_ID : RVELAB_OK));
+    CHECK(rvelab_commit(host.pool, std::int64_t(many), partly.ids.data()) == RVELAB_E_ID);
+    here.emplace_back(rvelab_last_error());
+    CHECK(host.info(ids[0]).token == tokens[0]);  // nothing was committed
+    REQUIRE_OK(rvelab_revert(host.pool, 0, nullptr));
+
+    Trials twice(ids);
+    twice.dH = trials.dH;
+    twice.ids[290] = ids[3];
+    twice.ids[41] = ids[40];
+    CHECK(rvelab_trial(host.pool, &twice.batch) == RVELAB_E_DUPLICATE);
+    here.emplace_back(rvelab_last_error());
+    CHECK(rvelab_commit(host.pool, 0, nullptr) == RVELAB_OK);
+    CHECK(host.info(ids[0]).token == tokens[0]);  // there was none pending
+    // All were let go of: the next call has them.
+    REQUIRE_OK(rvelab_trial(host.pool, &trials.batch));
+    CHECK(rvelab_commit(host.pool, std::int64_t(many), twice.ids.data()) == RVELAB_E_DUPLICATE);
+    here.emplace_back(rvelab_last_error());
+    REQUIRE_OK(rvelab_commit(host.pool, 0, nullptr));
+    if (texts.empty())
+      texts = here;
+    else
+      CHECK(texts == here);
+  }
+}
+
 TEST_CASE("A stale token names the valid ones; a failed step leaves the accepted state") {
   Host host;
   const auto ids = host.spawn(packed(Shape::disc, 6));
