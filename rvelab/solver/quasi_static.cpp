@@ -132,7 +132,7 @@ double Rve::Impl::target_for(double network) {
   const double p = pressure(), s = now.state.softness;
   if (!(p > 0)) return largest_target;
   const double allowed = allowed_error(o.relative_tolerance, o.absolute_tolerance, s * network, network, p);
-  return std::clamp(allowed / (estimate_margin * error_factor() * p), least_target, largest_target);
+  return std::clamp(allowed / (pace_margin * error_factor() * p), least_target, largest_target);
 }
 
 void Rve::Impl::set_pace_target(double target) {
@@ -181,9 +181,7 @@ double Rve::Impl::error_factor() const {
   return error_per_unbalance(now.state.softness, now.state.coordination / fixture.isostatic_coordination);
 }
 
-double Rve::Impl::expected_error(double ratio) {
-  return estimate_margin * error_factor() * std::max(pressure(), 0.0) * ratio;
-}
+double Rve::Impl::expected_error(double ratio) { return error_factor() * std::max(pressure(), 0.0) * ratio; }
 
 void Rve::Impl::estimate_error(double strain, double network, const Matrix3& stress_before, double ratio, double more,
                                Report& report) {
@@ -192,7 +190,7 @@ void Rve::Impl::estimate_error(double strain, double network, const Matrix3& str
   // A piece of a path is judged as the pace is (target_for), by what the path changes of the stress.
   if (network > network_change(strain)) changed = std::max(changed, now.state.softness * network);
   report.allowed_error = allowed_error(o.relative_tolerance, o.absolute_tolerance, changed, network, pressure());
-  report.error_estimate = expected_error(ratio) + more;
+  report.error_estimate = estimate_margin * expected_error(ratio) + more;
   report.tolerance_met = report.error_estimate <= estimate_margin * report.allowed_error;
 }
 
@@ -209,7 +207,7 @@ long Rve::Impl::follow_up(double strain, bool turns) {
   constexpr long interval = 25, most = 2000;
   const FrameSplit still{Matrix3::Identity(), Matrix3::Identity(), true};
   long made = 0;
-  while (made < most && expected_error(now.state.unbalanced_ratio) > (made > 0 ? 1 : estimate_margin) * allowed) {
+  while (made < most && expected_error(now.state.unbalanced_ratio) > (made > 0 ? 1 / pace_margin : 1) * allowed) {
     advance(fixture, now, {still, interval, 1, Loading::quasi_static});
     moved();
     look();
@@ -314,7 +312,7 @@ Report Rve::Impl::load_quasi_static(FrameSplit whole) {
   if (!looked) state.unbalanced_ratio = std::max(start.unbalanced_ratio, state.unbalanced_ratio);
   report.unbalanced_ratio = state.unbalanced_ratio;
   judge(report);
-  estimate_error(strain, judged, stress_before, state.unbalanced_ratio, carried, report);
+  estimate_error(strain, judged, stress_before, state.unbalanced_ratio, estimate_margin * carried, report);
   const bool same_frame = (now.cell.rotation.array() == start_frame.array()).all();
   note_slope(whole.stretch, stress_before, same_frame);
   if (!(whole.rotation.array() == Matrix3::Identity().array()).all()) {

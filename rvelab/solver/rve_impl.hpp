@@ -131,7 +131,7 @@ struct Rve::Impl {
   double pressure();  ///< mean, of present_stress, Pa
   /// Error over p and the unbalanced ratio, of the state as it is (loading/accuracy.hpp).
   double error_factor() const;
-  /// The estimate for an unbalanced ratio, Pa.
+  /// K p u for an unbalanced ratio u, Pa.
   double expected_error(double ratio);
   /// Sets report.error_estimate, allowed_error and tolerance_met of an increment of this strain; `network_change` (Pa)
   /// is that of the path which it is a piece of, `ratio` the unbalanced ratio at its end, `more` (Pa) what else the

@@ -26,8 +26,8 @@ double allowed_error(double relative, double absolute, double stress_change, dou
 double error_per_unbalance(double softness, double coordination_ratio) {
   const double s = std::clamp(softness, 0.4, 1.0), soft = 0.4 / (s * s * std::sqrt(s));
   if (!(coordination_ratio > 0)) return soft;
-  const double z = std::max(coordination_ratio, 1.0);
-  return std::max(soft, 2 / (z * z * z * std::sqrt(std::sqrt(z))));
+  const double beyond = std::max(coordination_ratio, 1.0) - 1;
+  return std::max(soft, 0.3 + 1.7 / (1 + 70 * beyond * beyond));
 }
 
 double unbalance_of_start(double mismatch, double strain, double strain_of_overlap, double steps) {
