@@ -1,9 +1,9 @@
 // Trials, their commitment and tokens. Declared in threaded_pool.hpp.
 //
-// Order of work: the ids of a batch are checked and held first, by the workers where they are many; then each RVE is one
-// piece, the costliest of the last call first, taken from one shared count. All pieces are known at the start and take
-// ten microseconds or more, so that a count is as good as stealing: the last thread ends at most one piece after the
-// first (Graham 1969).
+// Order of work: the ids of a batch are checked and held first, by the workers where they are many; then each RVE is
+// one piece, the costliest of the last call first, taken from one shared count. All pieces are known at the start and
+// take ten microseconds or more, so that a count is as good as stealing: the last thread ends at most one piece after
+// the first (Graham 1969).
 #include <algorithm>
 #include <array>
 #include <cmath>
