@@ -214,7 +214,7 @@ Verdict ThreadedPool::trial(const Batch& batch) {
     entries[k] = {k, &taken.slot(), taken.slot().last_grain_steps, {}};
     holds[k] = std::move(taken);
   };
-  if (!team_.share_all(n, hold)) {  // one by one, so that it is the same entry that is refused on any number of threads
+  if (!team_.share_all(n, hold)) {  // one by one then: the same entry is refused on any number of threads
     for (Hold& let_go : holds) let_go = Hold();
     for (std::size_t k = 0; k < n; ++k) {
       entries[k] = {};
@@ -269,8 +269,8 @@ std::vector<Hold> ThreadedPool::all_pending(std::uint64_t call) {
 /// calls the ids; without: by their index.
 void ThreadedPool::prepare(std::span<const Hold> holds, std::span<const std::int64_t> ids,
                            std::span<const std::int64_t> places) {
-  enum Trial : char { none, let_go, at_hand };
-  std::vector<Trial> found(holds.size());
+  enum Pending : char { none, let_go, at_hand };
+  std::vector<Pending> found(holds.size());
   team_.share(holds.size(), [&](std::size_t k) {
     const Resident& resident = holds[k].resident();
     found[k] = !resident.pending ? none : resident.rve.pending() ? at_hand : let_go;

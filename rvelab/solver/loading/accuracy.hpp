@@ -10,7 +10,7 @@
 // relaxation): within a factor of two of all beyond five sub-steps; u alone is off by twenty.
 //
 // At rest s is 1 whatever the packing, and what is soft is that few contacts hold a grain: z is their mean number, z0
-// that of an isostatic packing (2D: 3 with friction, 2 with rolling friction too). Fitted to 18 packings of discs,
+// that of an isostatic packing (2D: 3 with friction, 2 with rolling friction too). Fitted to 21 packings of discs,
 // spheres and ellipses (increments of 1e-7 to 3e-4, three directions): K is 0.19 at z/z0 = 2.0, 0.35 at 1.7, 0.5 at
 // 1.3, 1.2 to 1.7 at 1.1, 2.0 at 1.0, within a packing the same to a factor of 1.4.
 #pragma once
