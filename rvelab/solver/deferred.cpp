@@ -39,7 +39,7 @@ bool Rve::Impl::may_defer(const FrameSplit& increment) {
   const SolverOptions& o = fixture.options;
   const double network = network_change(state.leg_strain);
   if (was_coarser(network)) return false;
-  const double allowed = allowed_error(o.relative_tolerance, o.absolute_tolerance, 0, network, pressure());
+  const double allowed = allowed_error(o.relative_tolerance, o.absolute_tolerance, 0, network, pressure_scale());
   return extrapolated(stretch).error <= share_of_allowed * allowed;
 }
 

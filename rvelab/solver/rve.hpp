@@ -37,9 +37,10 @@ struct Report {
                               ///< ratio is within three times its target and the target is held. A state that flows
                               ///< creeps beyond that: relaxed, its stress falls by some ten times the ratio
   double error_estimate = 0;  ///< dt = 0: of the stress, Frobenius norm, Pa: 2.75 times what is to be expected
-  double allowed_error = 0;  ///< dt = 0: relative_tolerance max(|d sigma|, 0.1 |C : d eps|) + absolute_tolerance p, Pa;
-                             ///< d sigma and d eps since the path turned last, up to 1e-4 of strain, where those are
-                             ///< more than the increment's: a path cut finely is the same path
+  double allowed_error = 0;  ///< dt = 0: relative_tolerance max(|d sigma|, 0.1 |C : d eps|) + absolute_tolerance p, Pa,
+                             ///< p at least a thousandth of reference_pressure(). d sigma and d eps since the path
+                             ///< turned last, up to 1e-4 of strain, where those are more than the increment's: a path
+                             ///< cut finely is the same path
   bool tolerance_met = true;  ///< dt = 0: the error to be expected, half the estimate, is at most allowed_error
   bool cell_thin = false;     ///< a cell height is below four mean diameters
 };

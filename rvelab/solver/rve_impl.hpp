@@ -129,6 +129,8 @@ struct Rve::Impl {
   /// |C : d eps| of a strain, Pa.
   double network_change(double strain) const;
   double pressure();  ///< mean, of present_stress, Pa
+  /// What errors of the stress are measured by, Pa: the pressure, or a thousandth of the reference where it is less.
+  double pressure_scale();
   /// Error over p and the unbalanced ratio, of the state as it is (loading/accuracy.hpp).
   double error_factor() const;
   /// K p u for an unbalanced ratio u, Pa.
