@@ -142,15 +142,29 @@ TEST_CASE("a pace that is out of all proportion leaves an increment that is made
       Specimen specimen = nine_grains();
       specimen.state.strain_per_step = pace;
       specimen.state.pace_target = target;
-      specimen.state.deferred_stretch(1, 1) = 1.0087890625;
+      Matrix3 increment = Matrix3::Zero();
+      if (pace > 1)
+        specimen.state.deferred_stretch(1, 1) = 1.0087890625;
+      else
+        increment(1, 1) = 1e-4;
       Rve rve(specimen);
       try {
-        rve.apply(Matrix3(Matrix3::Zero()), 0);
+        rve.apply(increment, 0);
         CHECK(rve.stress().allFinite());
       } catch (const Error& error) {
         CHECK_THAT(error.what(), Contains("max_substeps"));
       }
     }
+}
+
+// Who looked at the grains made it: 1e7 sub-steps and more.
+TEST_CASE("a deferred stretch of more than a sub-step is refused by name") {
+  Specimen specimen = nine_grains();
+  specimen.state.strain_per_step = 1e-6;
+  specimen.state.deferred_stretch(1, 1) = 1 + 0.9e-6;
+  CHECK_NOTHROW(Rve(specimen).network());
+  specimen.state.deferred_stretch(1, 1) = 1 + 1.1e-6;
+  CHECK_THAT(input_error([&] { Rve{specimen}; }), Contains("deferred_stretch") && Contains("strain_per_step = 1e-06"));
 }
 
 TEST_CASE("a snapshot with any one byte another and a head that fits is refused, or is a state") {

@@ -136,16 +136,22 @@ void check_state(const Specimen& s) {
   expect(state.unbalanced_ratio >= 0, "unbalanced_ratio", state.unbalanced_ratio);
 }
 
-/// Strain that is left to the next sub-step: less than a hundredth, since no sub-step is longer.
+/// Strain that is left to the next sub-step: less than a hundredth, since no sub-step is longer, and no more than the
+/// pace. A damaged one of many sub-steps would be made by who looks at the grains.
 void check_deferred(const Specimen& s) {
   const SolverState& state = s.state;
   const Matrix3& u = state.deferred_stretch;
   const bool upper = u(1, 0) == 0 && u(2, 0) == 0 && u(2, 1) == 0;
   const bool in_plane = s.cell.dimension == 3 || (u(0, 2) == 0 && u(1, 2) == 0 && u(2, 2) == 1);
-  if (!upper || !in_plane || !((u - Matrix3::Identity()).norm() < 0.01))
+  const double strain = (u - Matrix3::Identity()).norm();
+  if (!upper || !in_plane || !(strain < 0.01))
     refuse(
         "specimen: deferred_stretch of the state must be an upper triangular stretch within 0.01 of the identity, and "
         "in 2D leave z alone; leave it the identity");
+  if (!(strain <= (1 + 1e-9) * state.strain_per_step))
+    refuse("specimen: deferred_stretch of the state is a strain of " + in_words(strain) +
+           ", more than a sub-step's, strain_per_step = " + in_words(state.strain_per_step) +
+           "; leave it the identity");
   if (!state.stress_slope.allFinite() || !(state.slope_error >= 0) || !std::isfinite(state.slope_error))
     refuse("specimen: stress_slope and slope_error of the state must be finite, the error >= 0; leave both 0");
 }
