@@ -52,6 +52,12 @@ inline void each_node(Nodes* nodes, const Grid<D>& grid, const Support<D>& s, Vi
 }  // namespace
 
 template <int D>
+const Range<D>& Solver<D>::range_of(long point) const {
+  return *std::find_if(ranges.begin(), ranges.end(),
+                       [&](const auto& range) { return point < range.first + range.count; });
+}
+
+template <int D>
 double Solver<D>::stable_step() const {
   double wave = 0, fastest = 0;
   for (const auto& range : ranges) {

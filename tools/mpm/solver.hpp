@@ -69,6 +69,7 @@ class Solver {
   std::function<Vec<D>(const Vec<D>&, double)> body_force;
 
   explicit Solver(int threads) : workers(threads) {}
+  const Range<D>& range_of(long point) const;
   /// s, from the fastest wave and the fastest point.
   double stable_step() const;
   void step(double dt);
