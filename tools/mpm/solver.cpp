@@ -220,7 +220,7 @@ void Solver<D>::end_velocities(double dt) {
     if (!(node.mass > 0)) continue;
     for (int i = 0; i < D; ++i) node.w[i] = node.v[i] + dt * (node.w[i] / node.mass);
   }
-  bodies.set_end(grid, time + dt, dt);
+  bodies.set_end(grid, planes, time + dt, dt);
   planes.set_end(grid, time + dt);
   planes.unfold(grid);
   double kinetic = 0;
