@@ -72,6 +72,34 @@ double wave_modulus_of(const GrainPool& pool, std::int64_t id) {
   return std::max({tangent[0], tangent[7], tangent[14]});
 }
 
+double felt_modulus_of(const GrainPool& pool, std::int64_t id, int dimension) {
+  constexpr double strain = 1e-5;
+  double sigma[9], largest = 0;
+  look(pool.get(), id, sigma, nullptr);
+  for (int axis = 0; axis < dimension; ++axis) {
+    const double rest = sigma[4 * axis];
+    double slope[2];
+    for (const int side : {0, 1}) {
+      double dH[9] = {}, moved[9];
+      dH[4 * axis] = side == 0 ? strain : -strain;
+      rvelab_batch batch;
+      need(rvelab_batch_init(&batch, sizeof batch));
+      batch.n = 1;
+      batch.ids = &id;
+      batch.dH = dH;
+      batch.sigma = moved;
+      const auto status = rvelab_trial(pool.get(), &batch);
+      if (status == RVELAB_DISCARD) return 0;
+      need(status);
+      slope[side] = (moved[4 * axis] - rest) / dH[4 * axis];
+    }
+    // Grains that slip make one side soft, a state that drifts makes one too stiff: then by at most a factor of two.
+    largest = std::max(largest, std::min(std::max(slope[0], slope[1]), slope[0] + slope[1]));
+  }
+  need(rvelab_revert(pool.get(), 1, &id));
+  return largest;
+}
+
 SpecimenFamily::SpecimenFamily(std::shared_ptr<GrainPool> pool, const std::vector<std::string>& paths)
     : pool_(std::move(pool)) {
   for (const auto& path : paths) {

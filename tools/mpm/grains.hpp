@@ -32,12 +32,17 @@ class Grains : public Material<D> {
   double called = 0, asked = 0;  ///< increments given to RVEs, and all there were
 
  private:
+  void follow_stiffness(const Point<D>* points, long count);
   void in_parts(Point<D>& point, std::int64_t id, const Mat<D>& gradient, double dt, double scale);
   std::shared_ptr<GrainPool> pool_;
   std::vector<std::int64_t> ids_;
   bool physical_;
   double gather_;
   double wave_modulus_ = 0;
+  /// What the wave modulus was found to be, under which largest compression along an axis, after how many increments.
+  struct Found {
+    double first = 0, modulus = 0, compression = 0, called = 0;  ///< first: at the start, Pa
+  } found_;
   std::vector<Mat<D>> waiting_;  ///< gradients times steps that were gathered
   std::vector<long> chosen_;     ///< points of the batch
   std::vector<std::int64_t> batch_ids_;
