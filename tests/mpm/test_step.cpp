@@ -44,7 +44,7 @@ TEST_CASE("shape functions add up to one and carry linear fields") {
     for (double xi = -2.3; xi < 2.4; xi += 0.0371) {
       double weight[3], slope[3];
       const double cell = 0.4;
-      const int first = shape_along_axis(shape, xi, cell, 0.25, weight, slope);
+      const int first = shape_along_axis(shape, xi, 1 / cell, 0.25, weight, slope);
       double sum = 0, place = 0, slopes = 0, unit = 0;
       for (int k = 0; k < 3; ++k) {
         CHECK(weight[k] >= 0);

@@ -89,6 +89,7 @@ class Solver {
   void move_points(double dt);
   void second_map(double dt);
 
+  static constexpr long chunk = 1024;  ///< points of one piece of work; sums over pieces are made in their order
   std::vector<Support<D>> supports_;
   std::vector<long> order_, slab_begin_;
 };
