@@ -169,7 +169,7 @@ Specimen get_specimen(const Hdf5File& file, const std::string& group) {
 }
 
 std::string specimen_group(const Hdf5File& file) {
-  if (checked_kind(file) == FileKind::records) return "/specimen";
+  if (kind_without_seal(file) == FileKind::records) return "/specimen";
   if (file.attribute("format") != pool_format) return "";
   const std::vector<std::string> rves = file.groups(pool_rves);
   if (rves.size() == 1) return std::string(pool_rves) + "/" + rves.front();
@@ -202,6 +202,7 @@ std::optional<SpecimenOrigin> read_origin(const std::string& path) {
 
 Specimen read_specimen(const std::string& path) {
   const auto file = Hdf5File::open(path);
+  checked_kind(file);
   return get_specimen(file, specimen_group(file));
 }
 
