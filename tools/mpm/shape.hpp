@@ -27,7 +27,8 @@ struct Support {
   double slope[D][3];
 };
 
-/// xi: coordinate in cells from node 0; per_m: cells a metre; half: half the length of the point's domain over the cell.
+/// xi: coordinate in cells from node 0; per_m: cells a metre; half: half the length of the point's domain over the
+/// cell.
 inline int shape_along_axis(Shape shape, double xi, double per_m, double half, double* weight, double* slope) {
   if (shape == Shape::bspline) {
     const double base = floor_of(xi - 0.5), d = xi - base;
