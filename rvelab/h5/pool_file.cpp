@@ -10,8 +10,6 @@ namespace rvelab::h5 {
 
 namespace {
 
-constexpr const char* pool_format = "rvelab pool";
-
 /// One row for each RVE.
 struct Rows {
   std::vector<std::int64_t> id, token, next_token;
@@ -40,14 +38,14 @@ void describe(Archive& archive, AnyRows& rows, AnyTrials& trials, Numbers& tag, 
   archive.field("pool/trials/displacement_gradient", trials.displacement_gradient, "1");
 }
 
-std::string group_of(std::size_t k) { return "/rves/" + std::to_string(k); }
+std::string group_of(std::size_t k) { return std::string(io::pool_rves) + "/" + std::to_string(k); }
 
 }  // namespace
 
 void write_pool(const std::string& path, const pool::Population& population,
                 const std::function<std::vector<std::byte>(std::size_t)>& state) {
   io::publish(path, [&](io::Hdf5File& file) {
-    io::stamp(file, pool_format);
+    io::stamp(file, io::pool_format);
     Rows rows;
     Trials trials;
     for (std::size_t k = 0; k < population.ids.size(); ++k) {
@@ -75,7 +73,7 @@ void write_pool(const std::string& path, const pool::Population& population,
 
 pool::Population read_pool(const std::string& path, const std::function<void(std::span<const std::byte>)>& take) {
   const auto file = io::Hdf5File::open(path);
-  io::check_format(file, pool_format);
+  io::check_format(file, io::pool_format);
   Rows rows;
   Trials trials;
   std::vector<std::int64_t> tag, generation;

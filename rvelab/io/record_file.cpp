@@ -117,7 +117,7 @@ SealedFile seal_file(const std::string& path, const std::string& output) {
   const SealedFile found{kind_without_seal(file), file.sealed(), file.entries().size()};
   // What cannot be read as one of rvelab's would only be refused later.
   if (found.kind == FileKind::specimen) {
-    get_specimen(file, "");
+    get_specimen(file, specimen_group(file));
   } else {
     for (const Snapshot& snapshot : test_in(file).snapshots) get_specimen(file, snapshot_group(snapshot.record));
   }

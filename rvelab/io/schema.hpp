@@ -21,8 +21,12 @@ void stamp(Hdf5File& file, const std::string& format);
 /// Checks the attributes of a file that must be of this format, and its seal. InputError as checked_kind.
 void check_format(const Hdf5File& file, const std::string& format);
 
-/// Checks the attributes and returns the kind. InputError: not rvelab's, of a newer format, or of a format that is
-/// sealed without a seal.
+/// Format of the file of a pool (rvelab/h5), whose RVEs are groups of this one.
+inline constexpr const char* pool_format = "rvelab pool";
+inline constexpr const char* pool_rves = "/rves";
+
+/// Checks the attributes and returns the kind; a pool is of the kind specimen. InputError: not rvelab's, of a newer
+/// format, or of a format that is sealed without a seal.
 FileKind checked_kind(const Hdf5File& file);
 /// The same, and a missing seal is taken.
 FileKind kind_without_seal(const Hdf5File& file);
@@ -32,6 +36,8 @@ bool is_rvelab(const Hdf5File& file);
 /// Writes a specimen under a group ("" for the root), or reads it from there and checks its indices.
 void put_specimen(Hdf5File& file, const std::string& group, const Specimen& specimen);
 Specimen get_specimen(const Hdf5File& file, const std::string& group);
+/// Where a file has its specimen: of records the end state, of a pool its RVE. InputError: a pool of none or many.
+std::string specimen_group(const Hdf5File& file);
 
 /// CRC-32C over every bit of a specimen, in the order of its description: equal for equal specimens on every machine.
 std::uint32_t digest(const Specimen& specimen);

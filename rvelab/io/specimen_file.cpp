@@ -115,17 +115,17 @@ FormatVersion format_version(const Hdf5File& file) {
 
 bool is_rvelab(const Hdf5File& file) {
   const std::string format = file.attribute("format");
-  return format == specimen_format || format == records_format;
+  return format == specimen_format || format == records_format || format == pool_format;
 }
 
 FileKind kind_without_seal(const Hdf5File& file) {
   const std::string format = file.attribute("format");
   if (!is_rvelab(file)) {
     throw InputError(file.path() + ": its attribute format is \"" + format + "\"; allowed: \"" + specimen_format +
-                     "\", \"" + records_format + "\"; give a file that rvelab wrote");
+                     "\", \"" + records_format + "\", \"" + pool_format + "\"; give a file that rvelab wrote");
   }
   format_version(file);
-  return format == specimen_format ? FileKind::specimen : FileKind::records;
+  return format == records_format ? FileKind::records : FileKind::specimen;
 }
 
 namespace {
@@ -168,6 +168,16 @@ Specimen get_specimen(const Hdf5File& file, const std::string& group) {
   return specimen;
 }
 
+std::string specimen_group(const Hdf5File& file) {
+  if (kind_without_seal(file) == FileKind::records) return "/specimen";
+  if (file.attribute("format") != pool_format) return "";
+  const std::vector<std::string> rves = file.groups(pool_rves);
+  if (rves.size() == 1) return std::string(pool_rves) + "/" + rves.front();
+  throw InputError(file.path() + ": is a pool of " + std::to_string(rves.size()) +
+                   " RVEs; allowed: one; write the one that is meant into a pool of its own "
+                   "(rvelab_template_from_snapshot, rvelab_spawn, rvelab_pool_write)");
+}
+
 void write_specimen(const Specimen& specimen, const std::string& path, const SpecimenOrigin* origin) {
   publish(path, [&](Hdf5File& file) {
     stamp(file, FileKind::specimen);
@@ -192,7 +202,8 @@ std::optional<SpecimenOrigin> read_origin(const std::string& path) {
 
 Specimen read_specimen(const std::string& path) {
   const auto file = Hdf5File::open(path);
-  return get_specimen(file, checked_kind(file) == FileKind::specimen ? "" : "/specimen");
+  checked_kind(file);
+  return get_specimen(file, specimen_group(file));
 }
 
 FileKind file_kind(const std::string& path) { return checked_kind(Hdf5File::open(path)); }

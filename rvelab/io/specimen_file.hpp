@@ -28,8 +28,9 @@ void write_specimen(const Specimen& specimen, const std::string& path, const Spe
 /// How the specimen of a specimen file was packed; none if it was not. Throws InputError as read_specimen does.
 std::optional<SpecimenOrigin> read_origin(const std::string& path);
 
-/// Reads the specimen of a specimen file, or the end state of a record file. Throws InputError naming the file and
-/// what is wrong: missing, not HDF5, truncated, of a newer format, not rvelab's, indices out of range.
+/// Reads the specimen of a specimen file, the end state of a record file, or the RVE of a pool file that holds it
+/// alone. Throws InputError naming the file and what is wrong: missing, not HDF5, truncated, of a newer format, not
+/// rvelab's, indices out of range, a pool of many.
 Specimen read_specimen(const std::string& path);
 
 /// Kind of an rvelab file. Throws InputError as read_specimen does.

@@ -86,6 +86,20 @@ TEST_CASE("A pool read from its file goes on with the same ids, tokens and bits;
   CHECK(bytes_of(file) == bytes_of(folder / "twice.h5"));
 }
 
+TEST_CASE("A pool file of one RVE is read as a specimen, one of two is refused") {
+  const Folder folder;
+  Host host;
+  const auto ids = host.spawn(packed(Shape::disc, 6), 2);
+  REQUIRE_OK(rvelab_pool_write(host.pool, (folder / "two.h5").c_str()));
+  CHECK_THROWS_WITH(io::read_specimen(folder / "two.h5"), Contains("a pool of 2 RVEs; allowed: one"));
+  REQUIRE_OK(rvelab_release(host.pool, 1, &ids[0]));
+  Nine dH{}, sigma{};
+  dH[1] = 1e-4;
+  REQUIRE_OK(rvelab_apply(host.pool, ids[1], dH.data(), 0, sigma.data()));
+  REQUIRE_OK(rvelab_pool_write(host.pool, (folder / "one.h5").c_str()));
+  CHECK(Rve(io::read_specimen(folder / "one.h5")).save() == Rve(host.state(ids[1])).save());
+}
+
 TEST_CASE("A pool file cut at every 4 KiB, or with a byte changed, is refused, and the pool stays empty") {
   const Folder folder;
   const std::string file = folder / "pool.h5", cut = folder / "cut.h5";

@@ -1,10 +1,14 @@
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <sstream>
 
+#include "rvelab/io/specimen_file.hpp"
 #include "tests/catch.hpp"
 #include "tests/child.hpp"
 #include "tests/folder.hpp"
 #include "tools/mpm/files.hpp"
+#include "tools/mpm/output.hpp"
 #include "tools/mpm/run.hpp"
 #include "tools/mpm/setup.hpp"
 
@@ -31,8 +35,6 @@ Scene element(const std::vector<std::string>& more) {
   set.insert(set.end(), more.begin(), more.end());
   return read_scene(scenes + "element.toml", {}, set);
 }
-
-void need(std::int32_t status) { REQUIRE(status >= RVELAB_OK); }
 
 }  // namespace
 
@@ -94,6 +96,67 @@ TEST_CASE("a single element strains evenly, and carries what its RVE carries und
   for (const auto& point : solver.points) axial += point.stress(1, 1) / 4;
   CHECK(axial == Approx(sigma[4]).epsilon(0.04));
   CHECK(axial < -30e3);
+}
+
+namespace {
+
+/// Rows of numbers of a CSV file under one line of comment and one of names; what is no number is 0.
+std::vector<std::map<std::string, double>> rows_of(const std::string& path) {
+  std::ifstream file(path);
+  std::string line, cell;
+  std::getline(file, line);
+  std::vector<std::string> names;
+  std::getline(file, line);
+  for (std::istringstream head(line); std::getline(head, cell, ',');) names.push_back(cell);
+  std::vector<std::map<std::string, double>> rows;
+  while (std::getline(file, line)) {
+    rows.emplace_back();
+    std::istringstream cells(line);
+    for (const auto& name : names) {
+      std::getline(cells, cell, ',');
+      rows.back()[name] = std::strtod(cell.c_str(), nullptr);
+    }
+  }
+  return rows;
+}
+
+}  // namespace
+
+TEST_CASE("the network written of a watched point carries its stress: (1/V) sum f (x) l") {
+  const Folder folder;
+  specimen(folder, "dense.h5");
+  const auto scene = element({"output.networks=true"});
+  auto model = set_up<2>(scene, 2, folder.path());
+  auto& solver = model->solver;
+  while (solver.time < 0.3) solver.step(solver.stable_step());
+  write_networks<2>(*model, folder.path(), 7);
+  for (const int k : {0, 1}) {
+    const auto& point = solver.points[std::size_t(model->watched[std::size_t(k)])];
+    const auto name = folder / ("network_" + std::to_string(k) + "_0007.h5");
+    Child child({RVELAB_PROGRAM, "export", name, "--format", "csv", "-o", folder / "n", "--force"}, folder / "out",
+                folder / "err");
+    REQUIRE(child.wait() == 0);
+    const auto cell = rvelab::io::read_specimen(name).cell;
+    const rvelab::Matrix3 lattice = cell.rotation * cell.lattice;
+    std::map<long, Vec<2>> position;
+    for (auto& row : rows_of(folder / "n.particles.csv")) position[long(row["id"])] = Vec<2>(row["x"], row["y"]);
+    Mat<2> sum = Mat<2>::Zero();
+    auto contacts = rows_of(folder / "n.contacts.csv");
+    CHECK(contacts.size() > 500);
+    for (auto& row : contacts) {
+      Vec<2> branch = position.at(long(row["id2"])) - position.at(long(row["id1"]));
+      for (int i = 0; i < 2; ++i) branch[i] += lattice(i, 0) * row["sx"] + lattice(i, 1) * row["sy"];
+      const Vec<2> push = Vec<2>(row["fsx"], row["fsy"]) + row["fn"] * branch.normalized();  // on the second grain
+      sum -= push * branch.transpose();                                                      // traction = sigma n
+    }
+    sum /= lattice.determinant();
+    CHECK((sum - point.stress).norm() < 1e-10 * mean_pressure<2>(point.stress));
+    CHECK(deviatoric_stress<2>(point.stress) > 3e3);
+  }
+  // Material points without grains have none.
+  auto continuum =
+      read_scene(scenes + "elastic_block.toml", {}, {"output.networks=true", "output.watched_points_m=[[0, 0]]"});
+  CHECK_THROWS_WITH(set_up<2>(continuum, 1, "."), Catch::Matchers::Contains("has no grains; take that point away"));
 }
 
 TEST_CASE("geostatic cells carry the pressure of their depth, and a column of them stays at rest") {
@@ -160,6 +223,10 @@ void expect_resumed(const std::string& scene, const std::vector<std::string>& as
     CHECK(whole.size() > 100);
     CHECK(whole == bytes_of(folder / ("parts/" + std::string(name))));
   }
+  for (const auto& file : std::filesystem::directory_iterator(folder / "whole")) {
+    const auto name = file.path().filename().string();
+    if (name.starts_with("network_")) CHECK(bytes_of(file.path()) == bytes_of(folder / ("parts/" + name)));
+  }
   const InputFile whole(folder / "whole/checkpoint.h5"), parts(folder / "parts/checkpoint.h5");
   CHECK(whole.read("points") == parts.read("points"));
   CHECK(whole.read("reactions") == parts.read("reactions"));
@@ -175,6 +242,6 @@ TEST_CASE("a run that was stopped and resumed ends with the bits of one that was
   // A grid that follows a plane.
   expect_resumed("element.toml",
                  {"material.dense.specimens=[\"sand.h5\"]", "time.duration_s=0.1", "output.history_every_s=0.01",
-                  "output.frame_every_s=0.02"},
+                  "output.frame_every_s=0.02", "output.networks=true"},
                  "0.05");
 }

@@ -95,6 +95,8 @@ TEST_CASE("a mistake in a scene names line, key, what is allowed and the remedy"
   CHECK(refusal(edited("lower_m = [0, 0]", "lower_m = [0, 0, 0]")).find("2 numbers") != std::string::npos);
   CHECK(refusal(edited("upper_m = [1, 1]", "upper_m = [1, 1]\npoints_per_cell = 5")).find("must be a square") !=
         std::string::npos);
+  CHECK(refusal(edited("frame_every_s = 0.02", "networks = true")).find("name them in watched_points_m") !=
+        std::string::npos);
   // A case is held to the same keys.
   CHECK_THROWS_AS(read_scene(scenes + "biaxial.toml", {"M5"}, {}), Mistake);
 }

@@ -80,12 +80,13 @@ void Bodies<D>::keep_force(const Grid<D>& grid) {
 }
 
 template <int D>
-void Bodies<D>::set_end(Grid<D>& grid, double time, double dt) {
+void Bodies<D>::set_end(Grid<D>& grid, const Planes<D>& planes, double time, double dt) {
   for (auto& contact : contacts_) {
     auto& node = grid.nodes[contact.node];
     auto& body = all[contact.body];
     meet(contact, body.velocity.at(time), node.w);
     for (int i = 0; i < D; ++i) {
+      if (planes.holds(contact.node, i)) continue;
       const double impulse = node.mass * (node.w[i] - contact.velocity[i]) - contact.force[i] * dt;
       body.reaction.impulse[i] += impulse;
       body.reaction.work += 0.5 * impulse * (node.w[i] + contact.velocity[i]);

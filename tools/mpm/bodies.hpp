@@ -41,8 +41,8 @@ class Bodies {
   void set_start(Grid<D>& grid, double time);
   /// Forces, before division by mass.
   void keep_force(const Grid<D>& grid);
-  /// Velocities w at the end of the step.
-  void set_end(Grid<D>& grid, double time, double dt);
+  /// Velocities w at the end of the step. What a plane holds at a node is the plane's reaction, not the body's.
+  void set_end(Grid<D>& grid, const Planes<D>& planes, double time, double dt);
 
  private:
   struct Contact {

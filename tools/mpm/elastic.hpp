@@ -25,7 +25,10 @@ Mat<D> turned(const Mat<D>& stress, const Mat<D>& spin) {
     result(0, 1) = result(1, 0) = c * s * (xx - yy) + (c * c - s * s) * xy;
     return result;
   } else {
-    const Mat<D> I = Mat<D>::Identity(), Q = (I - 0.5 * spin).inverse() * (I + 0.5 * spin);
+    // The same in closed form (Cayley): Q = I + 2 (W/2 + W^2/4)/(1 + w.w/4), w the axis of W.
+    const Mat<D> half = 0.5 * spin;
+    const double scale = 2 / (1 + 0.5 * half.squaredNorm());
+    const Mat<D> Q = Mat<D>::Identity() + scale * (half + half * half);
     return Q * stress * Q.transpose();
   }
 }

@@ -1,67 +1,13 @@
 // Grains as a material: one RVE for each point, through rvelab/rvelab.h and nothing else of rvelab.
 #pragma once
 
-#include <rvelab/rvelab.h>
-
-#include <map>
 #include <memory>
 #include <vector>
 
+#include "tools/mpm/grain_pool.hpp"
 #include "tools/mpm/material.hpp"
 
 namespace mpm {
-
-/// rvelab_pool_create, or what makes a pool over ranks.
-using CreatePool = std::int32_t (*)(const rvelab_pool_def*, rvelab_pool**);
-
-struct GrainOptions {
-  double tolerance_rel = 0, tolerance_abs = 0;  ///< 0: what the specimen says
-  CreatePool create_pool = rvelab_pool_create;
-};
-
-/// A pool of RVEs that work with the threads of the driver.
-class GrainPool {
- public:
-  GrainPool(Workers& workers, const GrainOptions& options);
-  GrainPool(const GrainPool&) = delete;
-  GrainPool& operator=(const GrainPool&) = delete;
-  ~GrainPool();
-  rvelab_pool* get() const { return pool_; }
-  rvelab_info info(std::int64_t id) const;
-  void write(const std::string& path) const;
-  void read(const std::string& path);
-
- private:
-  rvelab_pool* pool_ = nullptr;
-};
-
-/// Specimens of one material, brought to any pressure once and copied from there.
-class SpecimenFamily {
- public:
-  /// `paths`: one or more specimen files; that with the pressure nearest to the one asked for (by ratio) is taken.
-  SpecimenFamily(std::shared_ptr<GrainPool> pool, const std::vector<std::string>& paths);
-  /// An RVE under the isotropic stress -pressure (0: as the file has it). The first call for a pressure consolidates,
-  /// drained, by the tangent of the contact network; later ones copy.
-  std::int64_t spawn(double pressure);
-  /// Of the state that was prepared for that pressure.
-  rvelab_info prepared(double pressure);
-  std::size_t classes() const { return prepared_.size(); }
-  /// Takes the prepared states out of the pool; their copies stay.
-  void release();
-
- private:
-  struct Specimen {
-    std::int64_t tmpl;
-    double pressure;
-  };
-  std::int64_t prepare(double pressure);
-  std::shared_ptr<GrainPool> pool_;
-  std::vector<Specimen> specimens_;
-  std::map<double, std::int64_t> prepared_;
-};
-
-/// Pa: the largest of the moduli of plane waves along the axes, of the contact network.
-double wave_modulus_of(const GrainPool& pool, std::int64_t id);
 
 template <int D>
 class Grains : public Material<D> {
@@ -78,18 +24,25 @@ class Grains : public Material<D> {
   double grain_steps() const override;
   /// Stress of each RVE as it is, Pa.
   void read_stress(Point<D>* points);
+  /// The RVE of a point in a file of its own: grains, contacts and their history.
+  void write_network(long point, const std::string& path) const { pool_->write_alone(ids_[std::size_t(point)], path); }
   const std::vector<std::int64_t>& ids() const { return ids_; }
   /// Increments that could be made in parts only, and those whose estimate was above the tolerance or not quasi-static.
   long split = 0, warned = 0;
   double called = 0, asked = 0;  ///< increments given to RVEs, and all there were
 
  private:
+  void follow_stiffness(const Point<D>* points, long count);
   void in_parts(Point<D>& point, std::int64_t id, const Mat<D>& gradient, double dt, double scale);
   std::shared_ptr<GrainPool> pool_;
   std::vector<std::int64_t> ids_;
   bool physical_;
   double gather_;
   double wave_modulus_ = 0;
+  /// What the wave modulus was found to be, under which largest compression along an axis, after how many increments.
+  struct Found {
+    double first = 0, modulus = 0, compression = 0, called = 0;  ///< first: at the start, Pa
+  } found_;
   std::vector<Mat<D>> waiting_;  ///< gradients times steps that were gathered
   std::vector<long> chosen_;     ///< points of the batch
   std::vector<std::int64_t> batch_ids_;

@@ -12,10 +12,13 @@ namespace mpm {
 
 /// mass; v: momentum, then velocity at the start of the step; w: force, then velocity at its end; a: velocity that the
 /// points brought, then what the step added to it.
+/// Vectors of space have a fourth entry, zero: registers hold two or four numbers, and sums over nodes are then made in
+/// whole registers.
 template <int D>
 struct Node {
+  static constexpr int lanes = D == 3 ? 4 : D;
+  double v[lanes], w[lanes], a[lanes];
   double mass;
-  double v[D], w[D], a[D];
 };
 
 template <int D>

@@ -1,3 +1,3 @@
 #include "tools/mpm/program.hpp"
 
-int main(int argc, char** argv) { return mpm::program(argc, argv, rvelab_pool_create); }
+int main(int argc, char** argv) { return mpm::program(argc, argv, {}); }

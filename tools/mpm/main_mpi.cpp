@@ -42,7 +42,7 @@ int main(int argc, char** argv) {
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   int code = 0;
   if (rank == 0) {
-    code = mpm::program(argc, argv, create_over_ranks);
+    code = mpm::program(argc, argv, {create_over_ranks, true});
     agreed(0);
   } else {
     code = serve();

@@ -12,10 +12,10 @@ namespace {
 
 constexpr const char* axes[3] = {"x", "y", "z"};
 
-std::string frame_name(long frame) {
+std::string frame_name(long frame, const std::string& what = "points") {
   char name[32];
-  std::snprintf(name, sizeof name, "points_%04ld.h5", frame);
-  return name;
+  std::snprintf(name, sizeof name, "_%04ld.h5", frame);
+  return what + name;
 }
 
 }  // namespace
@@ -80,10 +80,8 @@ std::vector<double> history_row(const Solver<D>& solver, const EnergyStart& star
 
 template <int D>
 Measures measures_of(const Solver<D>& solver, long point) {
-  for (const auto& range : solver.ranges) {
-    if (point < range.first + range.count) return range.material->measures(point - range.first);
-  }
-  return {};
+  const auto& range = solver.range_of(point);
+  return range.material->measures(point - range.first);
 }
 
 template <int D>
@@ -166,6 +164,16 @@ void write_frame(const Model<D>& model, const std::string& folder, long frame) {
   file.publish();
 }
 
+template <int D>
+void write_networks(const Model<D>& model, const std::string& folder, long frame) {
+  for (std::size_t k = 0; k < model.watched.size(); ++k) {
+    const auto& range = model.solver.range_of(model.watched[k]);
+    const auto name = frame_name(frame, "network_" + std::to_string(k));
+    model.grains.at(range.name)
+        ->write_network(model.watched[k] - range.first, (std::filesystem::path(folder) / name).string());
+  }
+}
+
 void write_xdmf(const std::string& folder, const std::vector<double>& times, long points) {
   std::ofstream file(std::filesystem::path(folder) / "points.xdmf");
   file << "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\"><Domain>\n"
@@ -202,7 +210,8 @@ void write_xdmf(const std::string& folder, const std::vector<double>& times, lon
   template std::vector<double> history_row<D>(const Solver<D>&, const EnergyStart&, double, std::vector<double>&); \
   template std::string watched_header<D>(const Model<D>&);                                                         \
   template std::vector<double> watched_row<D>(const Model<D>&);                                                    \
-  template void write_frame<D>(const Model<D>&, const std::string&, long);
+  template void write_frame<D>(const Model<D>&, const std::string&, long);                                         \
+  template void write_networks<D>(const Model<D>&, const std::string&, long);
 MPM_INSTANTIATE(2)
 MPM_INSTANTIATE(3)
 #undef MPM_INSTANTIATE

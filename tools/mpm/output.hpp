@@ -39,6 +39,9 @@ std::vector<double> watched_row(const Model<D>& model);
 /// All points as arrays in one HDF5 file, number `frame`.
 template <int D>
 void write_frame(const Model<D>& model, const std::string& folder, long frame);
+/// network_K_NNNN.h5 for each watched point K, as GrainPool::write_alone.
+template <int D>
+void write_networks(const Model<D>& model, const std::string& folder, long frame);
 /// points.xdmf for all frames so far.
 void write_xdmf(const std::string& folder, const std::vector<double>& times, long points);
 

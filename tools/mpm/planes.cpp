@@ -17,6 +17,7 @@ void Planes<D>::rebuild(const Grid<D>& grid, double time) {
   on_plane_.clear();
   specials_.clear();
   behind_.assign(all.empty() ? 0 : grid.nodes.size(), 0);
+  held_ = behind_;
   if (all.empty()) return;
   special_of_.assign(grid.nodes.size(), -1);
   const auto touch = [&](long node, int plane) {
@@ -64,6 +65,7 @@ void Planes<D>::rebuild(const Grid<D>& grid, double time) {
       for (int k = 0; k < int(all.size()); ++k) {
         if (!active(k, time) || all[k].fixed != fixed || node[all[k].axis] != all[k].node) continue;
         on_plane_.push_back({flat, k});
+        for (int i = 0; i < D; ++i) held_[flat] |= char(all[k].holds(i) << i);
         touch(flat, k);
       }
     }

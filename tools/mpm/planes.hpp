@@ -60,6 +60,8 @@ class Planes {
   void react(const Grid<D>& grid, double dt, double pic_fraction);
   /// Total change of kinetic energy and momentum need the masses before folding: puts them back.
   void unfold(Grid<D>& grid) const;
+  /// Whether a plane that the node lies on holds this component: it has the last word there, and the reaction.
+  bool holds(long node, int component) const { return !held_.empty() && (held_[node] >> component & 1) != 0; }
   /// Whether a node lies behind a plane.
   bool is_behind(long node) const { return !behind_.empty() && behind_[node] != 0; }
 
@@ -92,6 +94,7 @@ class Planes {
   std::vector<Special> specials_;
   std::vector<OnPlane> on_plane_;  ///< rollers first, so that a fixed plane has the last word
   std::vector<char> behind_;
+  std::vector<char> held_;       ///< by node, one bit for each component
   std::vector<int> special_of_;  ///< by node; -1: none
   double built_ = -1;
 };

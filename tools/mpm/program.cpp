@@ -35,7 +35,7 @@ int run(const std::string& scene_file, std::vector<std::string> cases, bool publ
 
 }  // namespace
 
-int program(int argc, char** argv, CreatePool create_pool) {
+int program(int argc, char** argv, const PoolSource& source) {
   CLI::App app{
       "rvelab-mpm: the material point method with granular RVEs as its material\n\n"
       "  rvelab-mpm protocols/mpm/column.toml -o column\n"
@@ -44,7 +44,7 @@ int program(int argc, char** argv, CreatePool create_pool) {
   std::string scene, resume;
   std::vector<std::string> cases, assignments;
   RunOptions options;
-  options.create_pool = create_pool;
+  options.source = source;
   bool published = false;
   auto* file = app.add_option("scene", scene, "Scene in TOML");
   auto* folder = app.add_option("-o,--output", options.folder, "Folder for histories, frames and checkpoints");

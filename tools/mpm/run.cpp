@@ -67,7 +67,7 @@ void tell_cost(const Model<D>& model, double wall, long steps, double grain_step
 template <int D>
 int run_model(const Scene& scene, const RunOptions& options, std::ostream& report) {
   const auto begin = Clock::now();
-  auto model = set_up<D>(scene, options.threads, options.specimens, !options.resume, options.create_pool);
+  auto model = set_up<D>(scene, options.threads, options.specimens, !options.resume, options.source);
   auto& solver = model->solver;
   Progress progress;
   if (options.resume) {
@@ -95,7 +95,9 @@ int run_model(const Scene& scene, const RunOptions& options, std::ostream& repor
     while (progress.next_row <= solver.time) progress.next_row += scene.history_every;
   };
   const auto frame = [&] {
-    write_frame<D>(*model, options.folder, long(progress.frame_times.size()));
+    const long number = long(progress.frame_times.size());
+    write_frame<D>(*model, options.folder, number);
+    if (scene.networks) write_networks<D>(*model, options.folder, number);
     progress.frame_times.push_back(solver.time);
     write_xdmf(options.folder, progress.frame_times, long(solver.points.size()));
     while (progress.next_frame <= solver.time) progress.next_frame += scene.frame_every;

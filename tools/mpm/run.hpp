@@ -4,6 +4,7 @@
 //   history.csv         energies, momentum and reactions over time
 //   watched.csv         chosen points over time
 //   points_NNNN.h5      all points of a frame; points.xdmf shows them to ParaView
+//   network_K_NNNN.h5   on demand: the RVE of watched point K at that frame
 //   checkpoint.h5       what --resume goes on from, with one file of RVEs for each material of grains
 #pragma once
 
@@ -21,7 +22,7 @@ struct RunOptions {
   int threads = 0;  ///< 0: as many as the processor runs at once
   bool resume = false;
   bool quiet = false;  ///< no progress line
-  CreatePool create_pool = rvelab_pool_create;
+  PoolSource source;
   double stop_at = 1e300;  ///< s; writes a checkpoint there and ends, as an interrupt does
 };
 

@@ -172,6 +172,10 @@ void read_rest(Keys& file, Scene& scene) {
   scene.history_every = output.number("history_every_s", scene.duration / 500, 0);
   scene.checkpoint_every = output.number("checkpoint_every_s", scene.duration / 10, 0);
   scene.watched = output.rows("watched_points_m", d);
+  scene.networks = output.boolean("networks", false);
+  if (scene.networks && scene.watched.empty()) {
+    output.wrong("networks", "is for chosen points; name them in watched_points_m, or set it to false");
+  }
   output.finish();
 }
 

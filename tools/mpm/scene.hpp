@@ -68,6 +68,7 @@ struct Scene {
   std::vector<BodyOfScene> bodies;
   double frame_every = 0, history_every = 0, checkpoint_every = 0;
   std::vector<std::vector<double>> watched;
+  bool networks = false;  ///< with each frame, those of the watched points
 };
 
 /// Cases are laid over the scene in their order, then the assignments. The table without its cases is given back in

@@ -146,6 +146,17 @@ std::shared_ptr<Grains<D>> load_grains(const Scene& scene, const MaterialOfScene
   return grains;
 }
 
+/// Every watched point must have a network to write.
+template <int D>
+void expect_grains(const Model<D>& model) {
+  for (std::size_t k = 0; k < model.watched.size(); ++k) {
+    const auto& range = model.solver.range_of(model.watched[k]);
+    if (model.grains.contains(range.name)) continue;
+    throw Mistake("output.networks is true, but the material " + range.name + " at output.watched_points_m[" +
+                  std::to_string(k) + "] has no grains; take that point away, or set output.networks = false");
+  }
+}
+
 template <int D>
 std::shared_ptr<Material<D>> continuum(const MaterialOfScene& material) {
   using Kind = MaterialOfScene::Kind;
@@ -159,7 +170,7 @@ std::shared_ptr<Material<D>> continuum(const MaterialOfScene& material) {
 
 template <int D>
 std::unique_ptr<Model<D>> set_up(const Scene& scene, int threads, const std::string& specimens, bool populate,
-                                 CreatePool create_pool) {
+                                 const PoolSource& source) {
   auto model = std::make_unique<Model<D>>(threads);
   auto& solver = model->solver;
   solver.grid.cell = solver.first_cell = vec<D>(scene.cell);
@@ -185,13 +196,13 @@ std::unique_ptr<Model<D>> set_up(const Scene& scene, int threads, const std::str
       load_continuum<D>(scene, material, points, range.count);
       range.material = continuum<D>(material);
     } else {
-      if (!model->pools.empty() && create_pool != rvelab_pool_create) {
+      if (!model->pools.empty() && source.over_ranks) {
         throw Mistake("material." + material.name +
                       ": a second material of grains, and ranks serve one pool; run this "
                       "scene by rvelab-mpm, on threads");
       }
       const auto pool = std::make_shared<GrainPool>(
-          solver.workers, GrainOptions{material.tolerance_rel, material.tolerance_abs, create_pool});
+          solver.workers, GrainOptions{material.tolerance_rel, material.tolerance_abs, source});
       model->pools[material.name] = pool;
       auto grains =
           populate ? load_grains<D>(scene, material, *model, pool, specimens, points, range.count)
@@ -209,10 +220,11 @@ std::unique_ptr<Model<D>> set_up(const Scene& scene, int threads, const std::str
     model->watched.push_back(std::min_element(solver.points.begin(), solver.points.end(), nearer) -
                              solver.points.begin());
   }
+  if (scene.networks) expect_grains<D>(*model);
   return model;
 }
 
-template std::unique_ptr<Model<2>> set_up<2>(const Scene&, int, const std::string&, bool, CreatePool);
-template std::unique_ptr<Model<3>> set_up<3>(const Scene&, int, const std::string&, bool, CreatePool);
+template std::unique_ptr<Model<2>> set_up<2>(const Scene&, int, const std::string&, bool, const PoolSource&);
+template std::unique_ptr<Model<3>> set_up<3>(const Scene&, int, const std::string&, bool, const PoolSource&);
 
 }  // namespace mpm

@@ -20,9 +20,9 @@ struct Model {
 };
 
 /// `specimens`: folder in which specimen files are looked for. `populate`: false leaves points and RVEs to a
-/// checkpoint. `create_pool`: another than rvelab_pool_create makes one pool alone, Mistake if the scene needs more.
+/// checkpoint. Over ranks: Mistake if the scene needs more than one pool.
 template <int D>
 std::unique_ptr<Model<D>> set_up(const Scene& scene, int threads, const std::string& specimens, bool populate = true,
-                                 CreatePool create_pool = rvelab_pool_create);
+                                 const PoolSource& source = {});
 
 }  // namespace mpm

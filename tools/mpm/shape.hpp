@@ -13,6 +13,12 @@ namespace mpm {
 
 enum class Shape { bspline, gimp, linear };
 
+/// std::floor, which is a call where the processor is not known to have it; for |x| below 2^31.
+inline double floor_of(double x) {
+  const double whole = int(x);
+  return whole > x ? whole - 1 : whole;
+}
+
 /// Of one point: number of its lowest node, weights and their gradients (1/m) along each axis.
 template <int D>
 struct Support {
@@ -21,11 +27,11 @@ struct Support {
   double slope[D][3];
 };
 
-/// xi: coordinate in cells from node 0; cell: size (m); half: half the length of the point's domain over the cell.
-inline int shape_along_axis(Shape shape, double xi, double cell, double half, double* weight, double* slope) {
-  const double per_m = 1 / cell;
+/// xi: coordinate in cells from node 0; per_m: cells a metre; half: half the length of the point's domain over the
+/// cell.
+inline int shape_along_axis(Shape shape, double xi, double per_m, double half, double* weight, double* slope) {
   if (shape == Shape::bspline) {
-    const double base = std::floor(xi - 0.5), d = xi - base;
+    const double base = floor_of(xi - 0.5), d = xi - base;
     weight[0] = 0.5 * (1.5 - d) * (1.5 - d);
     weight[1] = 0.75 - (d - 1) * (d - 1);
     weight[2] = 0.5 * (d - 0.5) * (d - 0.5);
@@ -35,7 +41,7 @@ inline int shape_along_axis(Shape shape, double xi, double cell, double half, do
     return int(base);
   }
   if (shape == Shape::linear) {
-    const double base = std::floor(xi), d = xi - base;
+    const double base = floor_of(xi), d = xi - base;
     weight[0] = 1 - d;
     weight[1] = d;
     slope[0] = -per_m;
@@ -44,7 +50,7 @@ inline int shape_along_axis(Shape shape, double xi, double cell, double half, do
     return int(base);
   }
   half = std::min(half, 0.5);
-  const double base = std::floor(xi - half);
+  const double base = floor_of(xi - half);
   for (int k = 0; k < 3; ++k) {
     const double d = xi - base - k, a = std::abs(d), sign = d < 0 ? -1 : 1;
     if (a < half) {

@@ -69,6 +69,7 @@ class Solver {
   std::function<Vec<D>(const Vec<D>&, double)> body_force;
 
   explicit Solver(int threads) : workers(threads) {}
+  const Range<D>& range_of(long point) const;
   /// s, from the fastest wave and the fastest point.
   double stable_step() const;
   void step(double dt);
@@ -88,6 +89,7 @@ class Solver {
   void move_points(double dt);
   void second_map(double dt);
 
+  static constexpr long chunk = 1024;  ///< points of one piece of work; sums over pieces are made in their order
   std::vector<Support<D>> supports_;
   std::vector<long> order_, slab_begin_;
 };

@@ -28,11 +28,14 @@ Mat<D> finite_increment(const Mat<D>& L) {
     const Mat<D> half = finite_increment<D>(0.5 * L);
     return 2 * half + half * half;
   }
-  Mat<D> sum = L;
-  const int terms = size < 1e-3 ? 4 : 8;
-  Mat<D> power = L;
-  for (int k = 2; k <= terms; ++k) {
-    power = (power * L / k).eval();
+  const Mat<D> square = L * L;
+  if (size < 1e-3) {  // four terms: of a step this small there are many
+    const Mat<D> rest = 0.5 * Mat<D>::Identity() + (1.0 / 6) * L + (1.0 / 24) * square;
+    return L + square * rest;
+  }
+  Mat<D> power = 0.5 * square, sum = L + power;
+  for (int k = 3; k <= 8; ++k) {
+    power = ((1.0 / k) * (power * L)).eval();
     sum += power;
   }
   return sum;

@@ -16,11 +16,11 @@ from matplotlib.collections import LineCollection, PatchCollection
 from matplotlib.patches import Ellipse, Polygon
 
 
-def draw(found, options):
-    state = found[0]
+def draw_network(axes, state):
+    """Grains, forces and cell of a state; the mean normal force, N, and how many contacts carry more."""
     if state.dimension != 2:
-        raise ValueError(f"{state.path}: is 3D; force chains are drawn in 2D (export --format xdmf shows it in ParaView)")
-    figure, axes = plt.subplots(figsize=(7, 7))
+        raise ValueError(f"{state.path}: is 3D; force chains are drawn in 2D (export --format xdmf shows it in "
+                         "ParaView)")
     axes.grid(False)
     grains = [Ellipse(x, 2 * a, 2 * b, angle=turn) for x, (a, b), turn in zip(state.position, state.axes, state.angle)]
     axes.add_collection(PatchCollection(grains, facecolor="0.94", edgecolor="0.78", linewidth=0.4))
@@ -38,9 +38,16 @@ def draw(found, options):
     axes.autoscale_view()
     axes.set_xlabel("x (m)")
     axes.set_ylabel("y (m)")
+    return mean, int(strong.sum())
+
+
+def draw(found, options):
+    state = found[0]
+    figure, axes = plt.subplots(figsize=(7, 7))
+    mean, strong = draw_network(axes, state)
     axes.set_title(f"Normal forces, mean {mean:.3g} N; red: above the mean", fontsize=11, loc="left")
     figure.savefig(options.output)
-    return f"{options.output}: {len(lines)} contacts, {int(strong.sum())} above the mean force of {mean:.4g} N"
+    return f"{options.output}: {len(state.normal_force)} contacts, {strong} above the mean force of {mean:.4g} N"
 
 
 if __name__ == "__main__":

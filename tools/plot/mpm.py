@@ -4,6 +4,7 @@
     mpm.py RUN --field eps_q --film -o film.gif        # all frames
     mpm.py RUN --energy -o energy.png                  # shares of energy
     mpm.py RUN... --force plate.force_y --against plate.way_y -o force.png
+    mpm.py RUN --network 0 1 -o chains.png             # force chains of watched points (output.networks = true)
 
 RUN is the folder that rvelab-mpm wrote. Points are drawn at their deformed places, in their deformed shapes."""
 
@@ -11,8 +12,10 @@ import argparse
 import pathlib
 
 from records import STYLE, plt  # first: it says which package is missing
+import chains
 import h5py
 import numpy as np
+import state as states
 from matplotlib.collections import PolyCollection
 
 # Label, colours, and whether zero is in the middle of the scale.
@@ -158,6 +161,28 @@ def force_figure(options):
     return f"{options.output}: {options.force} of {', '.join(options.runs)}"
 
 
+def network_figure(options):
+    """Force chains of watched points side by side, in the laboratory frame: stretched and turned as the points are."""
+    run, points = pathlib.Path(options.runs[0]), options.network
+    frame = frames_of(run)[options.frame].stem.removeprefix("points_")
+    with h5py.File(run / f"points_{frame}.h5", "r") as file:
+        time = float(file["time_s"][0])
+    figure, all_axes = plt.subplots(1, len(points), figsize=(4.6 * len(points), 5), squeeze=False)
+    told = []
+    for axes, point in zip(all_axes[0], points):
+        path = run / f"network_{point}_{frame}.h5"
+        if not path.exists():
+            raise ValueError(f"{path}: is not there; run the scene with output.networks = true, and give the numbers of "
+                             "its output.watched_points_m, from 0")
+        state = states.read_state(path)
+        mean, strong = chains.draw_network(axes, state)
+        axes.set_title(f"point {point} at {time:.3g} s, mean {mean:.3g} N", fontsize=10, loc="left")
+        told.append(f"point {point}: {len(state.normal_force)} contacts, {strong} above the mean of {mean:.4g} N")
+    figure.tight_layout()
+    figure.savefig(options.output)
+    return f"{options.output}: " + "; ".join(told)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("runs", nargs="+", help="folders of runs")
@@ -165,6 +190,7 @@ def main():
     what.add_argument("--field", choices=sorted(FIELDS))
     what.add_argument("--energy", action="store_true")
     what.add_argument("--force", help="a column of history.csv without its unit: plate.force_y")
+    what.add_argument("--network", type=int, nargs="+", help="numbers of watched points, from 0")
     parser.add_argument("--against", help="the same for the other axis: plate.way_y; default: time")
     parser.add_argument("--frame", type=int, default=-1, help="number of the frame; negative: from the end")
     parser.add_argument("--film", action="store_true", help="all frames, as GIF")
@@ -173,8 +199,9 @@ def main():
     options = parser.parse_args()
     try:
         with plt.rc_context(STYLE):
-            print(energy_figure(options) if options.energy else force_figure(options) if options.force
-                  else field_figure(options))
+            draw_it = (energy_figure if options.energy else force_figure if options.force
+                       else network_figure if options.network is not None else field_figure)
+            print(draw_it(options))
     except (ValueError, IndexError) as error:
         parser.error(" ".join(str(error).split()))
     except OSError as error:

@@ -1,12 +1,18 @@
 """tools/validate mpm: scenes of rvelab-mpm beside pure cells and published figures.
 
     mpm.py RVELAB FOLDER RESULTS [CASE...]
+    mpm.py RVELAB FOLDER RESULTS tolerance|footing
 
-Speed of the continuum (asked: 2 M point-steps a second on one core), the single element beside the biaxial test of its
+Speed of the continuum (asked: 2 M point-steps a second of one core in the plane), the single element beside the biaxial test of its
 specimen, the column of a Mohr-Coulomb soil beside Liang and Zhao (2019), and the biaxial compression of the cases named
-(C1: the file without a case). Runs that are whole in FOLDER are used again."""
+(C1: the file without a case). `tolerance`: error of the plate's stress against grain-steps, over tolerances and
+gathering. `footing`: load against settlement on three soils, beside the N_q of `rvelab calibrate`. Runs that are whole
+in FOLDER are used again."""
 
+import json
 import pathlib
+import resource
+import shutil
 import subprocess
 import sys
 import tomllib
@@ -41,10 +47,16 @@ def picture(*options):
     subprocess.run([sys.executable, "-B", ROOT / "tools/plot/mpm.py", *map(str, options)], check=True, stdout=subprocess.DEVNULL)
 
 
+def specimen(name="dense", *options, recipe="pack_dense"):
+    """FOLDER/name.h5, packed by a recipe."""
+    if not (folder / f"{name}.h5").exists():
+        subprocess.run([rvelab, "pack", recipe, "-o", folder / f"{name}.h5", *options], check=True,
+                       stdout=subprocess.DEVNULL)
+
+
 def cell_test():
     """Axial strain and stress (Pa) of the biaxial test of dense.h5 at 100 kPa."""
-    if not (folder / "dense.h5").exists():
-        subprocess.run([rvelab, "pack", "pack_dense", "-o", folder / "dense.h5"], check=True, stdout=subprocess.DEVNULL)
+    specimen()
     if not (folder / "cell.h5").exists():
         subprocess.run([rvelab, "run", "biaxial", "--specimen", folder / "dense.h5", "-o", folder / "cell.h5", "--set",
                         "test.pressure_Pa=100e3"], check=True, stdout=subprocess.DEVNULL)
@@ -54,8 +66,16 @@ def cell_test():
 
 
 def speed():
-    best = max(float(run(f"block{k}", "elastic_block.toml", "-j", "1")[1].split()[-5]) for k in range(3))
-    print(f"continuum alone, one core, 17,408 elastic points: {best:.2f} M point-steps a second (asked: 2)")
+    for what, options in (("plane, 17,408", ["-j", "1"]), ("space, 34,816", ["-j", "1", "--case", "space"])):
+        best = 0
+        for _ in range(3):
+            shutil.rmtree(folder / "block", ignore_errors=True)
+            before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+            words = run("block", "elastic_block.toml", *options)[1].replace(",", "").split()
+            spent = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
+            made = float(words[words.index("points") + 1]) * float(words[words.index("steps") + 1])
+            best = max(best, made / spent / 1e6)
+        print(f"continuum alone, {what} elastic points: {best:.2f} M point-steps a second of one core's time")
 
 
 def element(strain, stress):
@@ -105,8 +125,120 @@ def biaxial(strain, stress):
             results / "mpm_biaxial.png")
 
 
+# tolerance_rel, tolerance_abs, gather; the first is what the others are held against.
+SETTINGS = [(0.003, 3e-5, 0), (0.01, 1e-4, 0), (0.03, 3e-4, 0), (0.1, 1e-3, 0), (0.3, 3e-3, 0), (0.1, 1e-4, 0),
+            (0.01, 1e-3, 0), (0.01, 1e-4, 1e-5), (0.01, 1e-4, 3e-5), (0.01, 1e-4, 1e-4), (0.1, 1e-3, 1e-5),
+            (0.1, 1e-3, 3e-5), (0.1, 1e-3, 1e-4), (0.1, 1e-3, 3e-4)]
+FEW = [SETTINGS[k] for k in (1, 3, 10, 11, 12)]
+WINDOWS = np.linspace(0.001, 0.01, 91), np.linspace(0.01, 0.019, 91)  # axial strain: hardening, peak
+SCENES = {"element": ("top", 1, ["--set", "time.duration_s=1.0", "--set", "time.cfl=0.05"]),
+          "biaxial": ("plate", 2, ["--set", "time.duration_s=0.48"])}
+
+
+def under_load(scene, setting, *options, packed="dense"):
+    """Stress on the plate (Pa) at the strains of the windows, grain-steps and increments given to RVEs, of one run."""
+    (plate, height, chosen), (rel, absolute, gather) = SCENES[scene], setting
+    sets = [*(f"material.dense.{name}={value:g}" for name, value in
+              (("tolerance_rel", rel), ("tolerance_abs", absolute), ("gather", gather))),
+            f'material.dense.specimens=["{packed}.h5"]', "output.frame_every_s=1", "output.history_every_s=0.0025", *options]
+    name = "_".join(["tolerance", scene, f"{rel:g}", f"{absolute:g}", f"{gather:g}", packed, *options])
+    h, printed = run(name.replace("=", "_"), f"{scene}.toml", "-j", "1", *chosen,
+                     *(word for each in sets for word in ("--set", each)))
+    stress = [np.interp(window, -h[f"{plate}.way_y_m"] / height, h[f"{plate}.force_y_N"] + 100e3) for window in WINDOWS]
+    words = printed.replace(",", "").split()
+    return stress, float(words[words.index("grain-steps") + 1]), float(words[words.index("increments") - 3])
+
+
+def errors(stress, best):
+    return [np.sqrt(np.mean((s - b)**2)) / np.mean(b) for s, b in zip(stress, best)]
+
+
+def tolerance():
+    specimen()
+    specimen("other", "--set", "pack.seed=2")
+    print("Root mean square of the difference of the stress on the plate from that of line a, over its mean, at\n"
+          "axial strains of 0.1 to 1 % (hardening) and of 1 to 1.9 % (the peak).")
+    scenes = (("element", SETTINGS, "single element, time.cfl = 0.05 (increments of 7e-6)"),
+              ("biaxial", FEW, "biaxial compression, 16 x 8 cells with one point each, 0.1 m/s"))
+    for scene, settings, title in scenes:
+        print(f"\n{title}\n   tolerance_rel  tolerance_abs  gather  increments  grain-steps  to 1 %   to 1.9 %")
+        best, rows = under_load(scene, settings[0])[0], []
+        for letter, setting in zip("abcdefghijklmn", settings):
+            stress, steps, called = under_load(scene, setting)
+            rows.append((setting, steps, errors(stress, best), letter))
+            print("%-2s %-14g %-14g %-7g %-11.3g %-12.3g %-8.2g %.2g" % (letter, *setting, called, steps, *errors(stress, best)))
+        if scene == "element":
+            step = errors(under_load(scene, SETTINGS[1], "time.cfl=0.04")[0], best)
+            other = errors(under_load(scene, SETTINGS[1], packed="other")[0], best)
+            print("%-62s %-8.2g %.2g" % ("b with time.cfl = 0.04", *step))
+            print("%-62s %-8.2g %.2g" % ("b with another specimen of the recipe", *other))
+            tolerance_figure(rows, step, other)
+
+
+def tolerance_figure(rows, step, other):
+    sys.path.insert(0, str(ROOT / "tools/plot"))
+    from records import STYLE, plt
+    with plt.rc_context(STYLE):
+        figure, panels = plt.subplots(1, 2, figsize=(8.4, 3.6), sharey=True)
+        for k, (axes, title) in enumerate(zip(panels, ("axial strain 0.1 to 1 %", "1 to 1.9 %"))):
+            for gathers, label, style in ((False, "without gather", "o"), (True, "with gather", "s")):
+                chosen = [row for row in rows[1:] if (row[0][2] > 0) == gathers]
+                axes.loglog([row[1] for row in chosen], [row[2][k] for row in chosen], style, label=label)
+            for place, (_, steps, error, letter) in enumerate(sorted(rows[1:], key=lambda row: row[1])):
+                axes.annotate(letter, (steps, error[k]), xytext=(4, 4) if place % 2 else (-9, -9),
+                              textcoords="offset points", fontsize=8)
+            axes.axhline(step[k], color="0.4", linestyle="--", linewidth=1, label="another time step")
+            axes.axhline(other[k], color="0.4", linestyle=":", linewidth=1, label="another specimen")
+            axes.set_title(title, fontsize=10, loc="left")
+            axes.set_xlabel("grain-steps")
+            axes.margins(x=0.15)
+        panels[0].set_ylabel("error of the stress on the plate")
+        panels[0].legend(fontsize=7, loc="center right")
+        figure.tight_layout()
+        figure.savefig(results / "mpm_tolerance.png")
+
+
+def footing():
+    sets = [word for each in ("grid.cell_m=0.3333333333333333", "time.duration_s=0.8", "material.soil.tolerance_rel=0.3",
+                              "material.soil.tolerance_abs=3e-3") for word in ("--set", each)]
+    surcharge, width, depths = 20e3, 2.0, (0.0125, 0.025, 0.0375, 0.05, 0.0625)  # Pa, m; settlements over the width
+    sys.path.insert(0, str(ROOT / "tools/plot"))
+    from records import STYLE, plt
+    plt.rcParams.update(STYLE)
+    figure, axes = plt.subplots(figsize=(5.5, 3.8))
+    print("Rough footing, half of it 1 m wide, on 6 x 4 m of soil (18 x 12 cells, one point each), surcharge 20 kPa,\n"
+          "0.2 m/s, tolerance_rel 0.3, tolerance_abs 3e-3: load over surcharge at settlements d/B (B = 2 m), and the\n"
+          "largest; N_q of rvelab calibrate at 10, 20 and 30 kPa, for general and for local shear; published, at the\n"
+          "whole size to d/B = 0.75: load, N_q\n\nsoil    "
+          + "".join(f"{d:<8g}" for d in depths) + "largest  N_q     local   published")
+    published = {"dense": "14.4, 14.8", "medium": "4.8, 3.7", "soft": "3.7, 3.1"}
+    for soil, colour in zip(published, ("C0", "C1", "C2")):
+        specimen(soil, recipe=f"pack_{soil}")
+        told = subprocess.run([rvelab, "calibrate", "biaxial", "--specimen", folder / f"{soil}.h5", "--pressures",
+                               "10e3,20e3,30e3", "--threads", "1", "--json"], check=True, capture_output=True, text=True)
+        factors = json.loads(told.stdout)
+        general, local = factors["bearing_capacity_Nq"], factors["local_shear_Nq"]
+        h, _ = run(f"footing_{soil}", "footing.toml", "-j", "1", "--case", soil, *sets)
+        depth, load = -h["footing.way_y_m"] / width, 1 + h["footing.force_y_N"] / (width / 2) / surcharge
+        smooth = np.convolve(load, np.ones(5) / 5, mode="same")[2:-2]
+        print(f"{soil:<8}" + "".join(f"{np.interp(d, depth[2:-2], smooth):<8.2f}" for d in depths)
+              + f"{smooth.max():<8.2f} {general:<7.2f} {local:<7.2f} {published[soil]}", flush=True)
+        axes.plot(depth[2:-2], smooth, color=colour, label=soil)
+        axes.axhline(general, color=colour, linestyle="--", linewidth=1)
+        axes.axhline(local, color=colour, linestyle=":", linewidth=1)
+    axes.set_xlabel("settlement over width")
+    axes.set_ylabel("load over surcharge")
+    axes.set_title("dashed: $N_q$ of the specimen, dotted: of local shear", fontsize=9, loc="left")
+    axes.legend(loc="upper right", bbox_to_anchor=(1, 0.93))
+    figure.tight_layout()
+    figure.savefig(results / "mpm_footing.png")
+
+
 def main():
     folder.mkdir(parents=True, exist_ok=True)
+    if cases in (["tolerance"], ["footing"]):
+        tolerance() if cases == ["tolerance"] else footing()
+        return
     speed()
     strain, stress = cell_test()
     element(strain, stress)

@@ -1,0 +1,176 @@
+#include "tools/mpm/grain_pool.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mpm {
+namespace {
+
+void run_tasks(void* host, rvelab_task task, void* work, std::int64_t count) {
+  static_cast<Workers*>(host)->for_each(count, [&](std::int64_t k) { task(work, k); });
+}
+
+}  // namespace
+
+void need(std::int32_t status) {
+  if (status < RVELAB_OK) throw Mistake(std::string(rvelab_status_name(status)) + ": " + rvelab_last_error());
+}
+
+void look(rvelab_pool* pool, std::int64_t id, double* sigma, double* tangent) {
+  const double zero[9] = {};
+  rvelab_batch batch;
+  need(rvelab_batch_init(&batch, sizeof batch));
+  batch.n = 1;
+  batch.ids = &id;
+  batch.dH = zero;
+  batch.sigma = sigma;
+  batch.tangent = tangent;
+  need(rvelab_trial(pool, &batch));
+  need(rvelab_revert(pool, 1, &id));
+}
+
+GrainPool::GrainPool(Workers& workers, const GrainOptions& options) {
+  rvelab_pool_def def;
+  need(rvelab_pool_def_init(&def, sizeof def));
+  def.tolerance_rel = options.tolerance_rel;
+  def.tolerance_abs = options.tolerance_abs;
+  def.workers = 1;
+  def.run_tasks = run_tasks;
+  def.host = &workers;
+  need(options.source.create(&def, &pool_));
+}
+
+GrainPool::~GrainPool() { rvelab_pool_destroy(pool_); }
+
+rvelab_info GrainPool::info(std::int64_t id) const {
+  rvelab_info info;
+  need(rvelab_info_init(&info, sizeof info));
+  need(rvelab_get_info(pool_, id, &info));
+  return info;
+}
+
+void GrainPool::write(const std::string& path) const { need(rvelab_pool_write(pool_, path.c_str())); }
+void GrainPool::read(const std::string& path) { need(rvelab_pool_read(pool_, path.c_str())); }
+
+void GrainPool::write_alone(std::int64_t id, const std::string& path) const {
+  std::size_t size = 0;
+  need(rvelab_snapshot_save(pool_, id, nullptr, 0, &size));
+  std::vector<unsigned char> state(size);
+  need(rvelab_snapshot_save(pool_, id, state.data(), size, &size));
+  // In this process, also where the RVEs themselves are spread over ranks.
+  Workers here(1);
+  GrainPool alone(here, {});
+  std::int64_t tmpl = 0, copy = 0;
+  need(rvelab_template_from_snapshot(alone.get(), state.data(), size, &tmpl));
+  need(rvelab_spawn(alone.get(), tmpl, 1, &copy));
+  alone.write(path);
+}
+
+double wave_modulus_of(const GrainPool& pool, std::int64_t id) {
+  double sigma[9], tangent[36];
+  look(pool.get(), id, sigma, tangent);
+  return std::max({tangent[0], tangent[7], tangent[14]});
+}
+
+double felt_modulus_of(const GrainPool& pool, std::int64_t id, int dimension) {
+  constexpr double strain = 1e-5;
+  double sigma[9], largest = 0;
+  look(pool.get(), id, sigma, nullptr);
+  for (int axis = 0; axis < dimension; ++axis) {
+    const double rest = sigma[4 * axis];
+    double slope[2];
+    for (const int side : {0, 1}) {
+      double dH[9] = {}, moved[9];
+      dH[4 * axis] = side == 0 ? strain : -strain;
+      rvelab_batch batch;
+      need(rvelab_batch_init(&batch, sizeof batch));
+      batch.n = 1;
+      batch.ids = &id;
+      batch.dH = dH;
+      batch.sigma = moved;
+      const auto status = rvelab_trial(pool.get(), &batch);
+      if (status == RVELAB_DISCARD) return 0;
+      need(status);
+      slope[side] = (moved[4 * axis] - rest) / dH[4 * axis];
+    }
+    // Grains that slip make one side soft, a state that drifts makes one too stiff: then by at most a factor of two.
+    largest = std::max(largest, std::min(std::max(slope[0], slope[1]), slope[0] + slope[1]));
+  }
+  need(rvelab_revert(pool.get(), 1, &id));
+  return largest;
+}
+
+SpecimenFamily::SpecimenFamily(std::shared_ptr<GrainPool> pool, const std::vector<std::string>& paths)
+    : pool_(std::move(pool)) {
+  for (const auto& path : paths) {
+    std::int64_t tmpl = 0, id = 0;
+    need(rvelab_template_load(pool_->get(), path.c_str(), &tmpl));
+    need(rvelab_spawn(pool_->get(), tmpl, 1, &id));
+    specimens_.push_back({tmpl, pool_->info(id).p});
+    need(rvelab_release(pool_->get(), 1, &id));
+  }
+}
+
+std::int64_t SpecimenFamily::prepare(double pressure) {
+  const Specimen* nearest = &specimens_.front();
+  const auto apart = [&](const Specimen& s) { return std::abs(std::log(s.pressure / pressure)); };
+  for (const auto& s : specimens_) {
+    if (pressure > 0 && apart(s) < apart(*nearest)) nearest = &s;
+  }
+  std::int64_t id = 0;
+  need(rvelab_spawn(pool_->get(), nearest->tmpl, 1, &id));
+  if (pressure <= 0) return id;
+  const int d = int(pool_->info(id).dimension);
+  // Symmetric strains in the tangent's order; in the plane xx, yy, xy.
+  const std::vector<int> rows = d == 2 ? std::vector<int>{0, 1, 5} : std::vector<int>{0, 1, 2, 3, 4, 5};
+  const int first[6] = {0, 1, 2, 1, 0, 0}, second[6] = {0, 1, 2, 2, 2, 1};
+  const long n = long(rows.size());
+  double sigma[9], tangent[36];
+  for (int round = 0; round < 200; ++round) {
+    look(pool_->get(), id, sigma, tangent);
+    double now = 0;
+    for (int i = 0; i < d; ++i) now -= sigma[4 * i] / d;
+    // In steps of a fifth of the pressure at most: the network changes on the way.
+    const double aim = std::min(std::max(pressure, now / 1.2), now * 1.2);
+    Eigen::MatrixXd C(n, n);
+    Eigen::VectorXd missing(n);
+    for (long i = 0; i < n; ++i) {
+      const int r = rows[i];
+      missing[i] = (r < 3 ? -aim : 0) - 0.5 * (sigma[3 * first[r] + second[r]] + sigma[3 * second[r] + first[r]]);
+      for (long j = 0; j < n; ++j) C(i, j) = tangent[6 * r + rows[j]];
+    }
+    if (aim == pressure && missing.cwiseAbs().maxCoeff() < 1e-3 * pressure) return id;
+    Eigen::VectorXd strain = C.fullPivLu().solve(missing);
+    strain *= std::min(1.0, 2e-3 / strain.cwiseAbs().maxCoeff());
+    double dH[9] = {};
+    for (long i = 0; i < n; ++i) {
+      const int r = rows[i];
+      dH[3 * first[r] + second[r]] = dH[3 * second[r] + first[r]] = r < 3 ? strain[i] : 0.5 * strain[i];
+    }
+    need(rvelab_apply(pool_->get(), id, dH, 0, sigma));
+  }
+  throw Mistake("a specimen at " + std::to_string(nearest->pressure) + " Pa does not come to " +
+                std::to_string(pressure) +
+                " Pa; pack one nearer to that pressure (rvelab pack, target.pressures_Pa) and name it in specimens");
+}
+
+std::int64_t SpecimenFamily::spawn(double pressure) {
+  auto found = prepared_.find(pressure);
+  if (found == prepared_.end()) found = prepared_.emplace(pressure, prepare(pressure)).first;
+  std::int64_t id = 0;
+  need(rvelab_clone(pool_->get(), found->second, &id));
+  return id;
+}
+
+rvelab_info SpecimenFamily::prepared(double pressure) {
+  auto found = prepared_.find(pressure);
+  if (found == prepared_.end()) found = prepared_.emplace(pressure, prepare(pressure)).first;
+  return pool_->info(found->second);
+}
+
+void SpecimenFamily::release() {
+  for (const auto& [pressure, id] : prepared_) need(rvelab_release(pool_->get(), 1, &id));
+  prepared_.clear();
+}
+
+}  // namespace mpm
