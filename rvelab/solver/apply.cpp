@@ -29,6 +29,12 @@ const Matrix3& Rve::Impl::present_stress() {
   return stress;
 }
 
+const Balance& Rve::Impl::present_balance() {
+  if (!balance_holds) balance = balance_of(fixture, now);
+  balance_holds = true;
+  return balance;
+}
+
 Balance Rve::Impl::checked_balance() const {
   check_height(fixture, now.cell);  // the list looks too, but only when it is built anew
   const Balance balance = balance_of(fixture, now);

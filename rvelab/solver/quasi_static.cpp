@@ -74,7 +74,7 @@ void Rve::Impl::begin_quasi_static() {
   if (!unknown_balance) return;
   scale_inertia(fixture, present_sums(), now);
   now.state.softness = 1;
-  begin_interval(balance_of(fixture, now));
+  begin_interval(present_balance());
 }
 
 void Rve::Impl::begin_interval(const Balance& balance) {
@@ -122,9 +122,9 @@ double Rve::Impl::pressure_scale() {
 
 double Rve::Impl::network_change(double strain) const { return now.state.network_stiffness * strain; }
 
-double Rve::Impl::initial_pace() const {
+double Rve::Impl::initial_pace() {
   // A thousandth of the mean overlap per diameter and step: the strain that changes contact forces by about as much.
-  const double overlap = std::max(balance_of(fixture, now).mean_overlap, 0.1 * now.state.reference_overlap);
+  const double overlap = std::max(present_balance().mean_overlap, 0.1 * now.state.reference_overlap);
   return 1e-3 * overlap / (2 * fixture.mean_radius);
 }
 

@@ -35,10 +35,10 @@ Rve::Rve(const Specimen& specimen) : impl_(std::make_unique<Impl>()) {
   set_typical_answers(m.fixture);
   if (m.now.state.look_steps < 0) use_physical_inertia(m.fixture, m.now);
   evaluate_forces(m.fixture, m.now);
-  const Balance balance = balance_of(m.fixture, m.now);
+  const Balance& balance = m.present_balance();
   if (!balance.finite) throw InputError("specimen: contact forces are not finite; do two grains lie at one place?");
   expect_overlaps(balance, m.fixture.options.max_overlap_ratio);
-  if (!(m.contact_stress() + m.reynolds_stress()).allFinite())
+  if (!(m.to_lab(m.present_stress()) + m.reynolds_stress()).allFinite())
     throw InputError("specimen: its stress is not finite (cell volume " + in_words(m.now.cell.volume()) +
                      " m^3); are cell, masses or velocities in the wrong units? Give all in SI");
   m.set_strained_cell();

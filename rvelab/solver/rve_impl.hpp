@@ -33,6 +33,8 @@ struct Rve::Impl {
   bool sums_hold = false;
   Matrix3 stress = Matrix3::Zero();  ///< contact stress, cell frame, Pa; that of `now` while stress_holds
   bool stress_holds = false;
+  Balance balance;  ///< of the grains; that of `now` while balance_holds
+  bool balance_holds = false;
   Matrix3 other_stress = Matrix3::Zero();  ///< while a trial is pending: the same of the state that is not in `now`
   bool other_stress_holds = false;
   /// Within a call at dt = 0: masses were scaled for grains, contacts or parameters that are others now, and the state
@@ -48,11 +50,13 @@ struct Rve::Impl {
   Impl& up_to_date();
 
   /// The sums of the state as it is, made anew where grains, contacts or parameters changed (moved()). They take as
-  /// long as seven sub-steps, and the last of one call are the first of the next.
+  /// long as five sub-steps, and the last of one call are the first of the next.
   const RowSums& present_sums();
   /// Contact stress of the state as it is, cell frame, Pa; kept likewise.
   const Matrix3& present_stress();
-  void moved() { sums_hold = stress_holds = false; }
+  /// Balance of the state as it is; kept likewise. The first call after an opening needs what that looked at.
+  const Balance& present_balance();
+  void moved() { sums_hold = stress_holds = balance_holds = false; }
   /// begin_loading, and masses if none are scaled yet. They hold for control_interval sub-steps, over as many calls as
   /// that takes, and belong to the state.
   void begin_quasi_static();
@@ -145,7 +149,7 @@ struct Rve::Impl {
   /// dt > 0: in an increment of the time dt (s), at the velocity gradient `rate` of the cell (1/s, cell frame); the
   /// next look is after `interval` sub-steps at the latest.
   TimeStep time_step(const Matrix3& rate, long interval, double dt);
-  double initial_pace() const;
+  double initial_pace();
   /// Throws IncrementFailed if `needed` sub-steps after `made` are more than solver.max_substeps.
   void expect_substeps(long made, long needed) const;
   /// Scales of the specimen's own state that it does not bring.

@@ -18,15 +18,28 @@ struct Symmetric {
   double xx = 0, xy = 0, yy = 0, xz = 0, yz = 0, zz = 0;
 };
 
-/// Adds along n n + across I.
-void add_contact(double along, double across, double nx, double ny, double nz, int dimension, Symmetric& m) {
-  m.xx += along * (nx * nx) + across;
-  m.xy += along * (nx * ny);
-  m.yy += along * (ny * ny) + across;
-  if (dimension == 2) return;
-  m.xz += along * (nx * nz);
-  m.yz += along * (ny * nz);
-  m.zz += along * (nz * nz) + across;
+/// along n n + across I.
+template <int D>
+Symmetric stiffness_along(double along, double across, double nx, double ny, double nz) {
+  Symmetric m{along * (nx * nx) + across, along * (nx * ny), along * (ny * ny) + across};
+  if constexpr (D == 3) {
+    m.xz = along * (nx * nz);
+    m.yz = along * (ny * nz);
+    m.zz = along * (nz * nz) + across;
+  }
+  return m;
+}
+
+template <int D>
+void add_to(Symmetric& m, const Symmetric& more) {
+  m.xx += more.xx;
+  m.xy += more.xy;
+  m.yy += more.yy;
+  if constexpr (D == 3) {
+    m.xz += more.xz;
+    m.yz += more.yz;
+    m.zz += more.zz;
+  }
 }
 
 /// Largest eigenvalue of a symmetric positive matrix, from above: exact in the plane, (tr M^8)^(1/8) in space, at most
@@ -117,11 +130,15 @@ struct PairTerms {
   bool touching = false;
   ContactStiffness now = {};
   double along = 0, across = 0, nx = 0, ny = 0, nz = 0;
+  Symmetric stiffness = {};            ///< of round grains, the same for both
   double reach[2] = {}, turn[2] = {};  ///< ellipses: arms of the tangential and the normal force about i and j, m
 };
 
+// A look at the masses goes through all pairs, in the time of five sub-steps: inline, what a scene does not need falls
+// out.
 template <Shape shape, class Force>
-PairTerms terms_of(const Fixture& f, const Assembly& a, const PairGeometry<shape>& pair, std::size_t p) {
+inline __attribute__((always_inline)) PairTerms terms_of(const Fixture& f, const Assembly& a,
+                                                         const PairGeometry<shape>& pair, std::size_t p) {
   const auto place = pair(p);
   const double overlap = place.overlap;
   const PairParameters q = parameters_of(f, a.pairs, p);
@@ -140,12 +157,14 @@ PairTerms terms_of(const Fixture& f, const Assembly& a, const PairGeometry<shape
   const Branch& n = place.along();
   t.nx = n.x / place.along_length();
   t.ny = n.y / place.along_length();
-  t.nz = n.z / place.along_length();
+  if constexpr (dimension_of(shape) == 3) t.nz = n.z / place.along_length();
   if constexpr (shape == Shape::ellipse) {
     t.reach[0] = place.reach_i;
     t.reach[1] = place.reach_j;
     t.turn[0] = std::abs(place.turn_i);
     t.turn[1] = std::abs(place.turn_j);
+  } else {
+    t.stiffness = stiffness_along<dimension_of(shape)>(t.along, t.across, t.nx, t.ny, t.nz);
   }
   return t;
 }
@@ -156,7 +175,8 @@ double normal_to_translation(double kn, double turn, double r) { return 2 * kn *
 double normal_to_rotation(double kn, double turn, double r) { return 2 * kn * (turn * turn + turn * r); }
 
 template <Shape shape>
-void add(const Fixture& f, const PairTerms& t, std::size_t g, bool as_j, GrainSums& sums) {
+inline __attribute__((always_inline)) void add(const Fixture& f, const PairTerms& t, std::size_t g, bool as_j,
+                                               GrainSums& sums) {
   constexpr int D = dimension_of(shape);
   const double r = f.radius[g];
   if constexpr (shape == Shape::ellipse) {
@@ -166,14 +186,15 @@ void add(const Fixture& f, const PairTerms& t, std::size_t g, bool as_j, GrainSu
     sums.stiffest_turn = std::max(sums.stiffest_turn, 4 * t.firm.tangential * a * a + 2 * t.firm.rolling +
                                                           normal_to_rotation(t.firm.normal, farthest, r));
     if (!t.touching) return;
-    add_contact(t.along + normal_to_translation(t.now.normal, turn, r), t.across, t.nx, t.ny, t.nz, D, sums.stiffness);
+    const double along = t.along + normal_to_translation(t.now.normal, turn, r);
+    add_to<D>(sums.stiffness, stiffness_along<D>(along, t.across, t.nx, t.ny, t.nz));
     sums.rotation += 4 * t.now.tangential * t.reach[as_j] * t.reach[as_j] + 2 * t.now.rolling +
                      normal_to_rotation(t.now.normal, turn, r);
   } else {
     sums.stiffest = std::max(sums.stiffest, t.firm_translation);
     sums.stiffest_turn = std::max(sums.stiffest_turn, 4 * t.firm.tangential * r * r + 2 * t.firm.rolling);
     if (!t.touching) return;
-    add_contact(t.along, t.across, t.nx, t.ny, t.nz, D, sums.stiffness);
+    add_to<D>(sums.stiffness, t.stiffness);
     sums.rotation += 4 * t.now.tangential * r * r + 2 * t.now.rolling;
   }
   if (f.damping.dashpot != Dashpot::none)
@@ -184,7 +205,8 @@ void add(const Fixture& f, const PairTerms& t, std::size_t g, bool as_j, GrainSu
 struct Firmness {
   std::vector<double> translation, rotation;
 
-  void add(const Fixture& f, const PairTable& pairs, std::size_t p, const PairTerms& t) {
+  inline __attribute__((always_inline)) void add(const Fixture& f, const PairTable& pairs, std::size_t p,
+                                                 const PairTerms& t) {
     if (!t.touching) return;
     const double ri = f.radius[std::size_t(pairs.i[p])], rj = f.radius[std::size_t(pairs.j[p])];
     translation.push_back(t.firm_translation);
@@ -200,6 +222,8 @@ std::vector<GrainSums> sums_of_grains(const Fixture& f, const Assembly& a, Firmn
   std::vector<GrainSums> sums(f.size());
   const PairGeometry<shape> pair(f, a);
   if (f.sharing() == nullptr) {
+    firmness.translation.reserve(a.pairs.listed);
+    firmness.rotation.reserve(a.pairs.listed);
     for (const std::int32_t place : a.pairs.order) {
       const auto p = std::size_t(place);
       const PairTerms t = terms_of<shape, Force>(f, a, pair, p);
