@@ -193,7 +193,10 @@ std::vector<Contact> contacts_of(const Fixture& f, const PairTable& pairs) {
 
 void list_with(const Fixture& f, std::vector<Contact> contacts, Assembly& a) {
   sort_by_key(contacts);
-  fill(f, near_pairs(f, a, a.state.list_skin), contacts, Lost::refused, a);
+  // The state says how far grains have come since the list of its run was made, and they may come back that far and as
+  // far beyond before it is made anew: its pairs, of gaps below the skin then, have gaps below the skin and that now.
+  const double skin = a.state.list_skin, moved = a.state.has_reference ? skin - listed_gap(f, a) : 0;
+  fill(f, near_pairs(f, a, skin + std::min(std::max(0.0, moved), skin)), contacts, Lost::refused, a);
 }
 
 void check_height(const Fixture& f, const Cell& cell) {
