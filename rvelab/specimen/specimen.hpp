@@ -67,7 +67,7 @@ struct SolverState {
   bool has_reference = false;              ///< the next five say when to list anew
   Matrix3 list_lattice = Matrix3::Zero();  ///< lattice when the list was built, m
   std::vector<Vector3> list_positions;     ///< positions then, m, cell frame; empty: only the bound below is used.
-                                           ///< Ellipses: z is the tangent of half the angle of the long axis
+                                           ///< Ellipses: z says how the long axis lay (oriented_bounds.hpp)
   double list_travel = 0;                  ///< bound on the largest displacement since then beside the cell's, m
   double list_skin = 0;                    ///< skin that the list was built with, m; 0: solver.skin
   std::int64_t list_steps = 0;             ///< sub-steps made since then

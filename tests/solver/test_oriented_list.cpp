@@ -87,8 +87,9 @@ TEST_CASE("The outline of an ellipse moves by (a - b) |sin theta| where it turns
         row[5] = std::cos(before + turn);
         row[6] = std::sin(before + turn);
         row[7] = a - b;
-        const double tangent = half_tangent({std::cos(before), std::sin(before), 0});
-        CHECK(outline_moved_by_turn(tangent, row) == Approx(bound).margin(1e-14));
+        const double noted = noted_axis({std::cos(before), std::sin(before), 0});
+        CHECK(outline_moved_by_turn(noted, row) == Approx(bound).margin(1e-14));
+        CHECK(outline_moved_by_turn(0, row) == a - b);  // not noted: as far as any turn could
       }
     }
 }

@@ -21,15 +21,17 @@ namespace rvelab {
 /// Takes the pairs out of which a direction shows that they are apart by more than `skin`, m.
 void keep_near_ellipses(const Fixture& fixture, const Assembly& assembly, double skin, std::vector<ListedPair>& pairs);
 
-/// Tangent of half the angle of an axis in the plane, -1 to 1; the same for the axis pointing the other way.
-inline double half_tangent(const Vector3& axis) {
-  return axis[0] >= 0 ? axis[1] / (1 + axis[0]) : -axis[1] / (1 - axis[0]);
+/// What a list notes of an axis in the plane: 2 plus the tangent of half its angle, 1 to 3, the same for the axis
+/// pointing the other way. 0, which files of earlier versions hold, is none.
+inline double noted_axis(const Vector3& axis) {
+  return 2 + (axis[0] >= 0 ? axis[1] / (1 + axis[0]) : -axis[1] / (1 - axis[0]));
 }
 
-/// How far the turn from an axis of that half_tangent has moved the outline of the ellipse of a row at most, m:
-/// (a - b) |e_0 x e|.
-inline double outline_moved_by_turn(double tangent_before, const double* row) {
-  const double t = tangent_before, cross = ((1 - t * t) * row[6] - 2 * t * row[5]) / (1 + t * t);
+/// How far the turn from the noted axis has moved the outline of the ellipse of a row at most, m: (a - b) |e_0 x e|;
+/// a - b where none was noted.
+inline double outline_moved_by_turn(double noted, const double* row) {
+  if (noted == 0) return row[7];
+  const double t = noted - 2, cross = ((1 - t * t) * row[6] - 2 * t * row[5]) / (1 + t * t);
   return row[7] * (cross < 0 ? -cross : cross);
 }
 

@@ -65,7 +65,7 @@ double next_skin(const Fixture& f, const SolverState& state) {
 
 Vector3 listed_place(const Fixture& f, const Assembly& a, std::size_t g) {
   Vector3 place = a.position(f, g);
-  if (f.shape == Shape::ellipse) place[2] = half_tangent(a.orientation(f, g));
+  if (f.shape == Shape::ellipse) place[2] = noted_axis(a.orientation(f, g));
   return place;
 }
 
