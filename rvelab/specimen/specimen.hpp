@@ -66,8 +66,9 @@ struct EnergyLedger {
 struct SolverState {
   bool has_reference = false;              ///< the next five say when to list anew
   Matrix3 list_lattice = Matrix3::Zero();  ///< lattice when the list was built, m
-  std::vector<Vector3> list_positions;     ///< positions then, m, cell frame; empty: only the bound below is used
-  double list_travel = 0;                  ///< bound on the largest fluctuation displacement since then, m
+  std::vector<Vector3> list_positions;     ///< positions then, m, cell frame; empty: only the bound below is used.
+                                           ///< Ellipses: z says how the long axis lay (oriented_bounds.hpp)
+  double list_travel = 0;                  ///< bound on the largest displacement since then beside the cell's, m
   double list_skin = 0;                    ///< skin that the list was built with, m; 0: solver.skin
   std::int64_t list_steps = 0;             ///< sub-steps made since then
   double strain_per_step = 0;              ///< dt = 0: pace of the sub-step controller; 0: not yet known

@@ -1,13 +1,16 @@
 #!/usr/bin/python3
-"""Ellipses: axis of stiffness of bedded specimens, friction angle against bedding angle and aspect ratio, fabric at the
-critical state from two starts, simple shear along and across the bedding.
+"""Ellipses: axis of stiffness of bedded specimens, friction angle against aspect ratio and bedding angle, simple shear
+along and across the bedding, fabric at the critical state from three starts.
 
-Bars: the mean axis of stiffness at bedding 0 and 30 degrees within 3 degrees, and within two of its standard errors;
-the mean friction angle at aspect ratio 0.6 above that of discs, and the step from 0.6 to 0.4 below that from 1 to 0.6;
-the fabric of orientations of bedded and random starts closer at the end of the shear than at its begin, within three
-standard errors. The rest is a table. Small ensembles: --count specimens of --number grains each.
+Bars, with the standard errors of the means:
+- the mean axis of stiffness at bedding 0 and 30 degrees within 3 degrees of it, and within two errors;
+- the friction angle rises from discs to an aspect ratio of 0.6 by more than three errors, and its slope from 0.4 to 0.2
+  is smaller than that from 1 to 0.6 by more than three: it rises, then levels. From 0.6 to 0.4 it still rises;
+- the peak of a bed pressed across its plane (0 degrees) exceeds that of one pressed along it (90) by more than three;
+- sheared along and across the bedding the peaks differ by more than three, the last thirds by less than three;
+- the fabrics of two starts, apart by more than five errors at rest, end within three and a fifth of what they were.
 
-    tools/validate.d/ellipses.py build/release/bin/rvelab [--count 4] [--axes 20] [--number 200] [--figure FILE.png]
+    tools/validate.d/ellipses.py build/release/bin/rvelab [--scale 1] [--only PART] [--figure FILE.png]
 """
 
 import argparse
@@ -21,11 +24,14 @@ import tempfile
 import h5py
 import numpy as np
 
-ASPECTS = [1, 0.8, 0.6, 0.4]
+ASPECTS = [1, 0.8, 0.6, 0.4, 0.2]
 BEDDINGS = [0, 15, 30, 45, 60, 75, 90]
 SIZES = ["grains.smallest_radius_m=3e-3", "grains.largest_radius_m=5.6e-3"]  # equal discs would crystallise
 PRESSURE = "test.pressure_Pa=100e3"
-STRAIN = 0.12
+NUMBER = 300  # grains of a specimen
+# Specimens of each mean, and how far they are strained: biaxial by aspect and by bedding, simple shear.
+AXES, ASPECT, BEDDING, SHEAR, FABRIC = 32, 32, 16, 16, 8
+ASPECT_STRAIN, BEDDING_STRAIN, SHEAR_STRAIN, FABRIC_STRAIN = 0.3, 0.12, 1.0, 3.0
 
 
 class Bench:
@@ -79,10 +85,10 @@ def axis_of(stiffness):
     return math.degrees(0.5 * math.atan2(2 * (stiffness[0, 2] + stiffness[1, 2]), stiffness[0, 0] - stiffness[1, 1]))
 
 
-def print_row(title, values, unit="degrees"):
+def print_row(title, values, unit=" degrees", digits=2):
     mean, deviation, error = mean_and_error(values)
-    print(f"  {title:<34} {mean:7.2f} +- {error:.2f} {unit} (standard deviation {deviation:.2f}, {len(values)} specimens)",
-          flush=True)
+    print(f"  {title:<38} {mean:7.{digits}f} +- {error:.{digits}f}{unit} (standard deviation {deviation:.{digits}f}, "
+          f"{len(values)} specimens)", flush=True)
     return mean, deviation, error
 
 
@@ -109,133 +115,171 @@ def stiffness_axes(bench, count):
     return failures
 
 
-def packing_of(aspect, angle, spread, number, seed):
+def packing_of(aspect, angle, spread, seed):
     shape = [f"grains.smallest_aspect_ratio={aspect}", f"grains.largest_aspect_ratio={aspect}"]
-    return SIZES + shape + [f"pack.number={number}", f"pack.seed={seed}", f"grains.bedding_angle_deg={angle}",
+    return SIZES + shape + [f"pack.number={NUMBER}", f"pack.seed={seed}", f"grains.bedding_angle_deg={angle}",
                             f"grains.bedding_spread_deg={spread}"]
 
 
-def biaxial(bench, name, packing):
-    settings = [PRESSURE, f"stage.compression.to_strain={STRAIN}", "stage.compression.record_every=0.002"]
+def biaxial(bench, name, packing, strain):
+    settings = [PRESSURE, f"stage.compression.to_strain={strain}", "stage.compression.record_every=0.002"]
     with bench.test("biaxial", name, packing, settings) as found:
         return angles(found)
 
 
-def against_aspect(bench, count, number):
-    print(f"Friction angle of random specimens against the aspect ratio (biaxial to {STRAIN:g}, {number} grains)")
-    peaks = []
+def errors_apart(one, other):
+    """Difference of two means, and how many of its standard errors it is."""
+    difference = one[0] - other[0]
+    return difference, difference / math.hypot(one[2], other[2])
+
+
+def combined(means, weights):
+    """Of independent means: their weighted sum, and how many of its standard errors it is."""
+    total = sum(weight * mean for weight, (mean, _, _) in zip(weights, means))
+    return total, total / math.sqrt(sum((weight * error) ** 2 for weight, (_, _, error) in zip(weights, means)))
+
+
+def against_aspect(bench, count):
+    print(f"Friction angle of random specimens against the aspect ratio (biaxial to {ASPECT_STRAIN:g}, {NUMBER} "
+          "grains)")
+    means = {"peak": [], "last third": []}
     for aspect in ASPECTS:
-        found = bench.each(lambda seed: biaxial(bench, f"aspect_{aspect}_{seed}", packing_of(aspect, 0, 90, number, seed)),
-                           range(1, count + 1))
-        print_row(f"aspect ratio {aspect}: peak", [peak for peak, _ in found])
-        peaks.append(print_row(f"aspect ratio {aspect}: last third", [last for _, last in found]))
+        def test(seed, aspect=aspect):
+            return biaxial(bench, f"aspect_{aspect}_{seed}", packing_of(aspect, 0, 90, seed), ASPECT_STRAIN)
+        found = bench.each(test, range(1, count + 1))
+        for column, title in enumerate(means):
+            means[title].append(print_row(f"aspect ratio {aspect}: {title}", [angles[column] for angles in found]))
     failures = []
-    rise, more = peaks[2][0] - peaks[0][0], peaks[3][0] - peaks[2][0]
-    if not rise > 0:
-        failures.append(f"the friction angle does not rise from discs to an aspect ratio of 0.6 ({rise:.1f} degrees)")
-    if not more < rise:
-        failures.append(f"the friction angle does not level: {rise:.1f} degrees from 1 to 0.6, {more:.1f} from 0.6 to 0.4")
+    for title, (disc, _, *slender) in means.items():
+        rise, rise_errors = errors_apart(slender[0], disc)
+        # By a tenth of the aspect ratio from 1 to 0.6, and how much less from 0.6 to 0.4 and from 0.4 to 0.2.
+        first, _ = combined([disc, *slender], (-1 / 4, 1 / 4, 0, 0))
+        less, errors = combined([disc, *slender], (-1 / 4, 1 / 4 + 1 / 2, -1 / 2, 0))
+        least, levels = combined([disc, *slender], (-1 / 4, 1 / 4, 1 / 2, -1 / 2))
+        print(f"  {title}: rises by {rise:.2f} degrees to 0.6, {rise_errors:.1f} standard errors; by a tenth of the "
+              f"ratio {first:.2f} degrees there, {first - less:.2f} from 0.6 to 0.4 ({errors:.1f} errors less), "
+              f"{first - least:.2f} from 0.4 to 0.2 ({levels:.1f} errors less)")
+        if not rise_errors > 3:
+            failures.append(f"the friction angle ({title}) does not rise to an aspect ratio of 0.6")
+        if not levels > 3:
+            failures.append(f"the friction angle ({title}) does not level: {levels:.1f} standard errors")
     return failures
 
 
-def against_bedding(bench, count, number):
-    print(f"Peak friction angle against the bedding angle, compression along y (aspect ratio 0.6, spread 30, {number} grains)")
+def against_bedding(bench, count, figure):
+    print(f"Friction angle against the bedding angle, compression along y (aspect ratio 0.6, spread 30, biaxial to "
+          f"{BEDDING_STRAIN:g}, {NUMBER} grains)")
     table = []
     for angle in BEDDINGS:
-        found = bench.each(lambda seed: biaxial(bench, f"bedding_{angle}_{seed}", packing_of(0.6, angle, 30, number, seed)),
-                           range(1, count + 1))
-        mean, _, error = print_row(f"bedding {angle:2d}: peak", [peak for peak, _ in found])
-        print_row(f"bedding {angle:2d}: last third", [last for _, last in found])
-        table.append((angle, mean, error))
-    return table
+        def test(seed, angle=angle):
+            return biaxial(bench, f"bedding_{angle}_{seed}", packing_of(0.6, angle, 30, seed), BEDDING_STRAIN)
+        found = bench.each(test, range(1, count + 1))
+        peak = print_row(f"bedding {angle:2d}: peak", [peak for peak, _ in found])
+        table.append((angle, peak, print_row(f"bedding {angle:2d}: last third", [last for _, last in found])))
+    if figure:
+        draw(table, figure)
+    more, errors = errors_apart(table[0][1], table[-1][1])
+    print(f"  across the bed less along it: {more:.2f} degrees, {errors:.1f} standard errors")
+    return [] if errors > 3 else [f"a bed is no stronger pressed across than along it ({more:.1f} degrees)"]
 
 
-def fabric_of(records):
-    """Along x less along y, of the orientations, first and last record of the last stage."""
-    last = records["records/stage"][:] == records["records/stage"][:].max()
-    fabric = records["records/orientation_fabric"][:][last]
-    return [tensor[0, 0] - tensor[1, 1] for tensor in (fabric[0], fabric[-1])]
-
-
-def critical_fabric(bench, count, number):
-    print("Fabric of orientations, phi_xx - phi_yy, in biaxial compression from three starts (aspect ratio 0.6)")
-    starts = {"bedding 0": (0, 30), "bedding 90": (90, 30), "random": (0, 90)}
-    ends = {}
-    for title, (angle, spread) in starts.items():
-        def shear(seed, angle=angle, spread=spread):
-            name = f"critical_{angle}_{spread}_{seed}"
-            settings = [PRESSURE, "stage.compression.to_strain=0.4", "stage.compression.record_every=0.01",
-                        'output.quantities=["orientation_fabric"]']
-            with bench.test("biaxial", name, packing_of(0.6, angle, spread, number, seed), settings) as found:
-                return fabric_of(found)
-        found = bench.each(shear, range(1, count + 1))
-        first = print_row(f"{title}: at rest", [start for start, _ in found], "")
-        ends[title] = first, print_row(f"{title}: at 40 %", [end for _, end in found], "")
-    failures = []
-    for one, other in (("bedding 0", "bedding 90"), ("bedding 0", "random"), ("bedding 90", "random")):
-        apart = abs(ends[one][0][0] - ends[other][0][0])
-        end = abs(ends[one][1][0] - ends[other][1][0])
-        error = math.hypot(ends[one][1][2], ends[other][1][2])
-        print(f"  {one} and {other}: {apart:.3f} apart at rest, {end:.3f} at the end, standard error {error:.3f}")
-        if not (end < apart and end <= 3 * error):
-            failures.append(f"fabrics of {one} and {other} do not meet: {apart:.3f}, then {end:.3f} apart")
-    return failures
-
-
-def shear(bench, count, number):
-    print("Friction angle in drained simple shear v_x(y), bedding along and across the shear (aspect ratio 0.6)")
+def shear(bench, count):
+    print(f"Friction angle in drained simple shear v_x(y), bedding along and across the shear (aspect ratio 0.6, to "
+          f"{SHEAR_STRAIN:g}, {NUMBER} grains)")
+    means = {}
     for title, angle in (("along", 0), ("across", 90)):
         def test(seed, angle=angle):
-            settings = [PRESSURE, f"stage.shear.to_strain={2 * STRAIN}", "stage.shear.record_every=0.004"]
-            with bench.test("simple_shear_drained", f"bedding_{angle}_{seed}", packing_of(0.6, angle, 30, number, seed),
+            settings = [PRESSURE, f"stage.shear.to_strain={SHEAR_STRAIN}", "stage.shear.record_every=0.004"]
+            with bench.test("simple_shear_drained", f"bedding_{angle}_{seed}", packing_of(0.6, angle, 30, seed),
                             settings) as found:
                 return angles(found)
         found = bench.each(test, range(1, count + 1))
-        print_row(f"{title}: peak", [peak for peak, _ in found])
-        print_row(f"{title}: last third", [last for _, last in found])
+        means[title] = (print_row(f"{title}: peak", [peak for peak, _ in found]),
+                        print_row(f"{title}: last third", [last for _, last in found]))
+    peaks, peak_errors = errors_apart(means["across"][0], means["along"][0])
+    ends, end_errors = errors_apart(means["across"][1], means["along"][1])
+    print(f"  across less along: peak {peaks:.2f} degrees, {peak_errors:.1f} standard errors; last third {ends:.2f} "
+          f"degrees, {end_errors:.1f} standard errors")
+    failures = []
+    if not abs(peak_errors) > 3:
+        failures.append(f"the peak of simple shear does not feel the bedding ({peaks:.1f} degrees)")
+    if not abs(end_errors) < 3:
+        failures.append(f"the end of simple shear still feels the bedding ({ends:.1f} degrees)")
+    return failures
+
+
+def fabrics_of(records):
+    """(phi_xx - phi_yy, 2 phi_xy) of the orientations: at the first record of the last stage, over its last tenth."""
+    last = records["records/stage"][:] == records["records/stage"][:].max()
+    tensor, strain = records["records/orientation_fabric"][:][last], np.abs(records["records/strain"][:][last])
+    fabric = np.stack([tensor[:, 0, 0] - tensor[:, 1, 1], 2 * tensor[:, 0, 1]], axis=1)
+    return fabric[0], fabric[strain > 0.9 * strain.max()].mean(axis=0)
+
+
+def critical_fabric(bench, count):
+    print(f"Fabric of orientations in drained simple shear to {FABRIC_STRAIN:g} from three starts (aspect ratio 0.6, "
+          f"{NUMBER} grains)")
+    starts = {"bedding 0": (0, 30), "bedding 90": (90, 30), "random": (0, 90)}
+    means = {}
+    for title, (angle, spread) in starts.items():
+        def test(seed, angle=angle, spread=spread):
+            settings = [PRESSURE, f"stage.shear.to_strain={FABRIC_STRAIN}", "stage.shear.record_every=0.02",
+                        'output.quantities=["orientation_fabric"]']
+            with bench.test("simple_shear_drained", f"critical_{angle}_{spread}_{seed}",
+                            packing_of(0.6, angle, spread, seed), settings) as found:
+                return fabrics_of(found)
+        found = bench.each(test, range(1, count + 1))
+        means[title] = [[print_row(f"{title}, {when}: {name}", [fabrics[at][part] for fabrics in found], "", 3)
+                         for part, name in enumerate(("phi_xx - phi_yy", "2 phi_xy"))]
+                        for at, when in enumerate(("at rest", "at the end"))]
+    failures = []
+    for one, other in (("bedding 0", "bedding 90"), ("bedding 0", "random"), ("bedding 90", "random")):
+        apart, errors = [], []
+        for at in (0, 1):
+            parts = [errors_apart(means[one][at][part], means[other][at][part]) for part in (0, 1)]
+            apart.append(math.hypot(*[difference for difference, _ in parts]))
+            errors.append(max(abs(number) for _, number in parts))
+        print(f"  {one} and {other}: {apart[0]:.3f} apart at rest ({errors[0]:.1f} standard errors), {apart[1]:.3f} at "
+              f"the end ({errors[1]:.1f})")
+        if not (errors[0] > 5 and errors[1] < 3 and apart[1] < apart[0] / 5):
+            failures.append(f"fabrics of {one} and {other} do not meet: {apart[0]:.3f}, then {apart[1]:.3f} apart")
+    return failures
 
 
 def draw(table, path):
     import matplotlib
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
-    angle, mean, error = zip(*table)
     figure, axes = plt.subplots(figsize=(5, 3.5))
-    axes.errorbar(angle, mean, yerr=error, fmt="o-", capsize=3)
+    for column, title in ((1, "peak"), (2, "mean of the last third")):
+        axes.errorbar([row[0] for row in table], [row[column][0] for row in table],
+                      yerr=[row[column][2] for row in table], fmt="o-", capsize=3, label=title)
     axes.set_xlabel("bedding angle against the horizontal (degrees)")
-    axes.set_ylabel("peak friction angle (degrees)")
+    axes.set_ylabel("friction angle (degrees)")
     axes.set_xticks(BEDDINGS)
+    axes.legend()
     axes.grid(alpha=0.3)
     figure.tight_layout()
-    figure.savefig(path, dpi=100)
+    figure.savefig(path, dpi=80)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("program")
-    parser.add_argument("--count", type=int, default=4, help="specimens of each mean")
-    parser.add_argument("--axes", type=int, default=20, help="specimens of the axes of stiffness")
-    parser.add_argument("--number", type=int, default=200, help="grains of each specimen")
+    parser.add_argument("--scale", type=float, default=1, help="of the number of specimens of each mean")
     parser.add_argument("--threads", type=int, default=os.cpu_count())
     parser.add_argument("--figure", help="friction angle against bedding angle")
-    parser.add_argument("--only", choices=["axes", "aspect", "bedding", "fabric", "shear"], help="this table only")
+    parser.add_argument("--only", choices=["axes", "aspect", "bedding", "shear", "fabric"], help="this table only")
     options = parser.parse_args()
     failures = []
-    wanted = [options.only] if options.only else ["axes", "aspect", "bedding", "fabric", "shear"]
     with tempfile.TemporaryDirectory() as folder:
         bench = Bench(os.path.abspath(options.program), folder, options.threads)
-        if "axes" in wanted:
-            failures += stiffness_axes(bench, options.axes)
-        if "aspect" in wanted:
-            failures += against_aspect(bench, options.count, options.number)
-        if "bedding" in wanted:
-            table = against_bedding(bench, options.count, options.number)
-            if options.figure:
-                draw(table, options.figure)
-        if "fabric" in wanted:
-            failures += critical_fabric(bench, options.count, options.number)
-        if "shear" in wanted:
-            shear(bench, options.count, options.number)
+        parts = {"axes": (stiffness_axes, AXES), "aspect": (against_aspect, ASPECT),
+                 "bedding": (lambda bench, count: against_bedding(bench, count, options.figure), BEDDING),
+                 "shear": (shear, SHEAR), "fabric": (critical_fabric, FABRIC)}
+        for name, (part, specimens) in parts.items():
+            if options.only in (None, name):
+                failures += part(bench, max(2, round(options.scale * specimens)))
     for failure in failures:
         print("FAILED: " + failure)
     return 1 if failures else 0

@@ -43,6 +43,7 @@ Vector3 Assembly::orientation(const Fixture& f, std::size_t g) const {
 
 void set_ellipse_matrix(const Fixture& f, std::size_t g, double* row) {
   const double b = f.semi_minor[g];
+  row[7] = f.semi_major[g] - b;
   const EllipseMatrix<double> m =
       ellipse_matrix<double>({row[5], row[6]}, f.minor_squared[g], f.axes_difference[g], b * b / f.semi_major[g]);
   const double values[4] = {m.xx, m.xy, m.yy, m.sharpest};

@@ -130,7 +130,7 @@ struct Assembly {
 /// stands there otherwise is zero, or what can be made again.
 constexpr std::size_t resting_mass(Shape shape) { return shape == Shape::disc ? 5 : 7; }
 constexpr std::size_t resting_inverse_inertia(Shape shape) { return shape == Shape::disc ? 6 : 11; }
-/// Puts the matrix of an ellipse into its row, from the axis that stands there (kernels/configuration.hpp).
+/// Puts a - b and the matrix of an ellipse into its row, from the axis that stands there (kernels/configuration.hpp).
 void set_ellipse_matrix(const Fixture& fixture, std::size_t g, double* row);
 
 /// Room for n grains or pairs in whole blocks of lanes, at least one padding entry.

@@ -8,7 +8,9 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/solver/assembly/gather_table.hpp"
+#include "rvelab/solver/assembly/oriented_bounds.hpp"
 #include "rvelab/solver/assembly/pair_place.hpp"
+#include "rvelab/solver/assembly/staleness.hpp"
 
 namespace rvelab {
 
@@ -31,6 +33,13 @@ void store(const Fixture& f, PairTable& pairs, std::size_t p, const Contact& c) 
       for (int k = 0; k < 3; ++k) pairs.moment[k][p] = c.rolling_moment[k];
   }
   if (f.stores_root_overlap()) pairs.root_overlap[p] = c.last_root_overlap;
+}
+
+/// Pairs closer than the skin as the grains lie now.
+std::vector<ListedPair> near_pairs(const Fixture& f, const Assembly& a, double skin) {
+  std::vector<ListedPair> pairs = list_pairs(a.cell, a.rows.data(), f.row_length(), f.reach(), skin, f.sharing());
+  if (f.shape == Shape::ellipse) keep_near_ellipses(f, a, skin, pairs);
+  return pairs;
 }
 
 /// What becomes of a history whose pair is not listed: in a run the grains parted in the sub-step just made, and their
@@ -184,7 +193,10 @@ std::vector<Contact> contacts_of(const Fixture& f, const PairTable& pairs) {
 
 void list_with(const Fixture& f, std::vector<Contact> contacts, Assembly& a) {
   sort_by_key(contacts);
-  fill(f, list_pairs(a.cell, a.rows.data(), f.row_length(), f.reach(), a.state.list_skin), contacts, Lost::refused, a);
+  // The state says how far grains have come since the list of its run was made, and they may come back that far and as
+  // far beyond before it is made anew: its pairs, of gaps below the skin then, have gaps below the skin and that now.
+  const double skin = a.state.list_skin, moved = a.state.has_reference ? skin - listed_gap(f, a) : 0;
+  fill(f, near_pairs(f, a, skin + std::min(std::max(0.0, moved), skin)), contacts, Lost::refused, a);
 }
 
 void check_height(const Fixture& f, const Cell& cell) {
@@ -196,23 +208,6 @@ void check_height(const Fixture& f, const Cell& cell) {
     throw IncrementFailed(text.str());
   }
 }
-namespace {
-
-/// Sub-steps after which a list is too old for its skin, or too young. A build takes the time of 18 sub-steps of 400
-/// discs, 10 of 1000 spheres; a listed pair that does not touch costs a third of a contact. Lists of 400 to 900 steps
-/// were 4 to 5 % slower for both, though their builds are fewer.
-constexpr std::int64_t old_list = 500, young_list = 200;
-constexpr double smallest_skin = 0.01;  ///< mean radii
-
-/// The skin of the next list, by counts alone: no clock decides what is computed.
-double next_skin(const Fixture& f, const SolverState& state) {
-  double skin = state.list_skin;
-  if (state.list_steps >= old_list) skin *= 0.7;
-  if (state.list_steps < young_list) skin *= 1.4;
-  return std::clamp(skin, std::min(smallest_skin * f.mean_radius, f.largest_skin), f.largest_skin);
-}
-
-}  // namespace
 
 Reduction rebuild(const Fixture& f, Assembly& a) {
   std::vector<Contact> carried = contacts_of(f, a.pairs);
@@ -249,73 +244,15 @@ Reduction rebuild(const Fixture& f, Assembly& a) {
     turn_round_if_needed(f, c);
   }
   sort_by_key(carried);
-  fill(f, list_pairs(a.cell, a.rows.data(), f.row_length(), f.reach(), a.state.list_skin, f.sharing()), carried,
-       Lost::dropped, a);
+  fill(f, near_pairs(f, a, a.state.list_skin), carried, Lost::dropped, a);
   a.state.has_reference = true;
   a.state.list_lattice = a.cell.lattice;
   a.state.list_travel = 0;
   a.state.list_steps = 0;
   a.state.list_positions.resize(f.size());
-  for (std::size_t g = 0; g < f.size(); ++g) a.state.list_positions[g] = a.position(f, g);
+  for (std::size_t g = 0; g < f.size(); ++g) a.state.list_positions[g] = listed_place(f, a, g);
   ++a.state.list_builds;
   return reduction;
 }
-namespace {
 
-/// Sum of the two largest displacements of grains since the list was built, beside the affine motion, m.
-double measured_displacements(const Fixture& f, const Assembly& a, const Matrix3& f_since) {
-  struct Largest {
-    double most = 0, second = 0;
-    void add(double squared) {
-      second = std::max(second, std::min(squared, most));
-      most = std::max(most, squared);
-    }
-  };
-  const UpperTriangle m = upper_triangle(f_since);
-  std::vector<Largest> of_piece(pieces_in(f.size()));
-  in_pieces(f.size(), f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
-    Largest here;
-    for (std::size_t g = first; g < last; ++g) {
-      const double* x = a.rows.data() + g * f.row_length();
-      const Vector3& from = a.state.list_positions[g];
-      const double dx = x[0] - (m.xx * from[0] + m.xy * from[1] + m.xz * from[2]);
-      const double dy = x[1] - (m.yy * from[1] + m.yz * from[2]);
-      const double dz = f.dimension() == 2 ? 0 : x[2] - m.zz * from[2];
-      here.add(dx * dx + dy * dy + dz * dz);
-    }
-    of_piece[piece] = here;
-  });
-  Largest all;
-  for (const Largest& piece : of_piece) {
-    all.add(piece.most);
-    all.add(piece.second);
-  }
-  return std::sqrt(all.most) + std::sqrt(all.second);
-}
-
-}  // namespace
-
-double listed_gap(const Fixture& f, const Assembly& a) {
-  const Matrix3 f_since = a.cell.lattice * upper_inverse(a.state.list_lattice);
-  const double strain = (f_since - Matrix3::Identity()).norm(), reach = 2 * f.largest_reach;
-  return (1 - strain) * (reach + a.state.list_skin) - reach - 2 * (1 + strain) * a.state.list_travel;
-}
-
-bool list_is_stale(const Fixture& f, Assembly& a, double margin) {
-  // A pair beyond reach r_i + r_j + skin when listed is, after the affine map F and two displacements of at most
-  // `travel`, still beyond sigma_min(F) reach - 2 |F| travel, with sigma_min >= 1 - |F - I|, |F| <= 1 + |F - I|.
-  const Matrix3 f_since = a.cell.lattice * upper_inverse(a.state.list_lattice);
-  const double strain = (f_since - Matrix3::Identity()).norm();
-  const double reach = 2 * f.largest_reach;
-  const double skin = a.state.list_skin, allowed = (1 - strain) * (reach + skin) - reach - margin;
-  if (a.state.list_steps >= old_list && next_skin(f, a.state) < skin) return true;
-  if (2 * (1 + strain) * a.state.list_travel < allowed) return false;
-  if (a.state.list_positions.size() != f.size()) return true;
-  // The bound sums the fastest grain of every step; what the grains really moved is a fifth of it (measured: a third of
-  // the rebuilds). Looking is worth it while a tenth of the skin is left.
-  const double moved = measured_displacements(f, a, f_since);
-  if (!(moved < allowed - 0.1 * skin)) return true;
-  a.state.list_travel = moved / (2 * (1 + strain));
-  return false;
-}
 }  // namespace rvelab

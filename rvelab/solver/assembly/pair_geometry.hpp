@@ -44,6 +44,16 @@ class PairGeometry {
       return PairPlace{b, length, (radius_[grain_i_[p]] + radius_[grain_j_[p]]) - length};
     }
   }
+  /// The same, but of ellipses that are apart by less than `gap` (m) the true distance: an overlap < 0 else shows that
+  /// they are apart, not how far.
+  auto within(std::size_t p, double gap) const {
+    auto place = (*this)(p);
+    if constexpr (shape == Shape::ellipse) {
+      if (place.overlap < 0 && -place.overlap < gap)
+        place = nearest_place_of_ellipses(place, rows_ + i_[p], rows_ + j_[p]);
+    }
+    return place;
+  }
   Branch branch(std::size_t p) const {
     const double *xi = rows_ + i_[p], *xj = rows_ + j_[p];
     const double nx = image_[0][p], ny = image_[1][p];

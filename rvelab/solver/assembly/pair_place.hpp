@@ -45,6 +45,8 @@ struct EllipsePlace {
 /// From the branch (m) and the rows of the two grains (kernels/configuration.hpp): what the step kernels find, bit for
 /// bit.
 EllipsePlace place_of_ellipses(const Branch& branch, const double* row_i, const double* row_j);
+/// Of a pair that is apart (overlap < 0): by the direction of the distance, not just one that shows it.
+EllipsePlace nearest_place_of_ellipses(const EllipsePlace& apart, const double* row_i, const double* row_j);
 
 /// An ellipse by its semi-axes (m) and the unit vector along the long one.
 struct EllipseForm {

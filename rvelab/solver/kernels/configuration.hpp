@@ -77,9 +77,9 @@ struct PairArrays {
 /// Grains that are gathered and integrated together: their resultants stay in the first-level cache between.
 constexpr long chunk_grains = 64;
 
-/// Grain rows: discs 8 doubles {x, y, u, v, w, 0, 0, 0}; ellipses 12, {x, y, u, v, w, ex, ey, 0, Mxx, Mxy, Myy, b^2/a}
-/// with e along the long axis and M = a^2 e e + b^2 (1 - e e); spheres 12, {x, y, z, r, u, v, w, 0, wx, wy, wz, r}.
-/// Padded to a multiple of eight with grains of no extent and infinite mass, at least one of them.
+/// Grain rows: discs 8 doubles {x, y, u, v, w, 0, 0, 0}; ellipses 12, {x, y, u, v, w, ex, ey, a - b, Mxx, Mxy, Myy,
+/// b^2/a} with e along the long axis and M = a^2 e e + b^2 (1 - e e); spheres 12, {x, y, z, r, u, v, w, 0, wx, wy, wz,
+/// r}. Padded to a multiple of eight with grains of no extent and infinite mass, at least one of them.
 struct GrainArrays {
   double* rows = nullptr;
   const double *mass = nullptr, *inverse_mass = nullptr, *inverse_inertia = nullptr;
@@ -95,8 +95,8 @@ struct GrainArrays {
   const double *minor_squared = nullptr, *axes_difference = nullptr;  ///< ellipses: b^2, a^2 - b^2, m^2
 };
 
-/// Sums that the integration leaves behind: momentum (kg m/s), largest |v'|^2, energy taken by local and global
-/// damping.
+/// Sums that the integration leaves behind: momentum (kg m/s), largest |v'|^2 (ellipses: (|v'| + (a - b) |w|)^2, as
+/// fast as their bounds can move), energy taken by local and global damping.
 struct StepSums {
   double momentum[3] = {};
   double largest_speed_squared = 0;

@@ -159,9 +159,7 @@ inline __attribute__((always_inline)) void disc_columns_to_rows(const DiscColumn
 /// What the grain loop in the plane asks of a shape: the length of its rows, and what turns with the grain.
 struct DiscRows {
   static constexpr int length = 8;
-  template <class T>
-  static inline __attribute__((always_inline)) void turn(const StepConstants&, const GrainArrays&, long, long,
-                                                         const DiscColumns&) {}
+  static constexpr bool turns = false;
 };
 
 /// Grains in 2D. A chunk at a time in passes, as the pair loops (kernels/pairs.hpp).
@@ -175,6 +173,7 @@ void plane_grains(const StepConstants& constants, const GrainArrays& grains, con
   const PairArrays p = pairs;
   PartialSums<W> momentum[2], lost_locally, lost_globally;
   typename Lanes<W>::V fastest = {};
+  [[maybe_unused]] typename Lanes<narrow>::V fastest_with_turn = {};
   DiscColumns s;
   for (long chunk = begin; chunk < end; chunk += chunk_grains) {
     const long count = end - chunk < chunk_grains ? end - chunk : chunk_grains;
@@ -183,12 +182,12 @@ void plane_grains(const StepConstants& constants, const GrainArrays& grains, con
     damp_discs<T>(c, g, chunk, count, s, lost_locally, lost_globally);
     move_discs<T>(c, g, chunk, count, s, momentum, fastest);
     disc_columns_to_rows<narrow, Rows::length>(s, g.rows, chunk, count);
-    Rows::template turn<T>(c, g, chunk, count, s);
+    if constexpr (Rows::turns) Rows::template turn<T>(c, g, chunk, count, s, fastest_with_turn);
   }
   sums->momentum[0] = momentum[0].total();
   sums->momentum[1] = momentum[1].total();
   sums->momentum[2] = 0;
-  sums->largest_speed_squared = largest_of(fastest);
+  sums->largest_speed_squared = Rows::turns ? largest_of(fastest_with_turn) : largest_of(fastest);
   sums->local_damping = lost_locally.total();
   sums->global_damping = lost_globally.total();
 }

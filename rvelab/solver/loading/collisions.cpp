@@ -6,6 +6,7 @@
 
 #include "rvelab/solver/assembly/contact_stiffness.hpp"
 #include "rvelab/solver/assembly/gather_table.hpp"
+#include "rvelab/solver/assembly/oriented_bounds.hpp"
 #include "rvelab/solver/assembly/pair_geometry.hpp"
 
 namespace rvelab {
@@ -64,7 +65,7 @@ Findings pairs_in(const Fixture& f, const Assembly& a, const Outlook& outlook, s
   const double power = dashpot_power(f.contact.law, f.damping.dashpot);
   for (std::size_t q = first; q < last; ++q) {
     const auto p = std::size_t(a.pairs.order[q]), i = std::size_t(a.pairs.i[p]), j = std::size_t(a.pairs.j[p]);
-    const auto place = pair(p);
+    const auto place = pair.within(p, known_gap);
     const Branch &b = place.branch, &n = place.along();
     const double overlap = place.overlap, gap = -overlap;
     if (gap >= 0 && gap >= known_gap) continue;  // seen when it is listed: what a restart lists must not matter
@@ -116,11 +117,12 @@ Findings pairs_in(const Fixture& f, const Assembly& a, const Outlook& outlook, s
 struct Motion {
   double resultants = 0;  ///< J, sum R^2 / 2k: what they can still turn into motion
   double kinetic = 0;     ///< J
-  double fastest = 0;     ///< m/s, squared
+  double fastest = 0;     ///< m/s, squared; of ellipses with what their turn adds, as listed_gap counts it
 };
 
-template <int D>
+template <Shape shape>
 Motion grains_in(const Fixture& f, const Assembly& a, const RowSums& sums, std::size_t first, std::size_t last) {
+  constexpr int D = dimension_of(shape);
   constexpr std::size_t row = D == 2 ? 4 : 8;
   double force[piece_length * D] = {};
   each_pair_of_grains<D>(a.pairs, first, last, [&](std::size_t g, std::size_t p, bool as_j) {
@@ -139,6 +141,8 @@ Motion grains_in(const Fixture& f, const Assembly& a, const RowSums& sums, std::
     }
     if (resultant > 0) motion.resultants += resultant / sums.translation[g];  // row sums count kn twice
     motion.kinetic += 0.5 * f.mass[g] * speed;
+    if constexpr (shape == Shape::ellipse)
+      speed = square(std::sqrt(speed) + outline_speed_by_turn(v - f.velocity_offset()));
     motion.fastest = std::max(motion.fastest, speed);
   }
   return motion;
@@ -162,7 +166,6 @@ double dynamic_share(double moving, double elastic) { return moving < elastic ? 
 
 template <Shape shape, class Impact>
 Collisions ahead(const Fixture& f, const Assembly& a, const RowSums* known, bool find_step, const Outlook& outlook) {
-  constexpr int D = dimension_of(shape);
   std::vector<Findings> of_pairs(pieces_in(a.pairs.listed));
   in_pieces(a.pairs.listed, f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
     of_pairs[piece] = pairs_in<shape, Impact>(f, a, outlook, first, last);
@@ -178,7 +181,7 @@ Collisions ahead(const Fixture& f, const Assembly& a, const RowSums* known, bool
   if (known == nullptr) fresh = row_sums(f, a);
   std::vector<Motion> of_grains(pieces_in(f.size()));
   in_pieces(f.size(), f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
-    of_grains[piece] = grains_in<D>(f, a, known == nullptr ? fresh : *known, first, last);
+    of_grains[piece] = grains_in<shape>(f, a, known == nullptr ? fresh : *known, first, last);
   });
   Motion motion;
   for (const Motion& piece : of_grains) {
