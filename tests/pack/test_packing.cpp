@@ -38,7 +38,7 @@ void expect_at_rest(const pack::Packing& packing, const pack::Recipe& recipe) {
 
 }  // namespace
 
-TEST_CASE("ellipses have the aspect and the bedding that they were laid with, and keep most of it") {
+TEST_CASE("ellipses have the aspect and the bedding that they were laid with, and keep much of it") {
   pack::Recipe recipe = ellipses();
   recipe.fractions[0].smallest_aspect_ratio = 0.5;
   recipe.preparation.friction = 0.2;
@@ -69,7 +69,9 @@ TEST_CASE("ellipses have the aspect and the bedding that they were laid with, an
       across += 2 * e[0] * e[1];
     }
     CHECK(std::abs(0.5 * std::atan2(across, along) * 180 / 3.14159265358979 - 30) < 12);
-    CHECK(std::hypot(along, across) > 0.5 * double(laid.size()));
+    // All along one axis: the number of grains. Sixteen seeds keep 72 to 98 of 150 compressed and 67 to 90 grown (means
+    // 87 and 77); 20 degrees to either side are 138, no order is about 11.
+    CHECK(std::hypot(along, across) > 0.4 * double(laid.size()));
     CHECK(packing.specimen.grains.semi_major == laid.semi_major);
   }
 }
