@@ -48,10 +48,10 @@ def picture(*options):
 
 
 def specimen(name="dense", *options, recipe="pack_dense"):
-    """FOLDER/name.h5, packed by a recipe."""
+    """FOLDER/name.h5, packed by a recipe. In shear bands grains are pinched beyond the usual limit now and then."""
     if not (folder / f"{name}.h5").exists():
-        subprocess.run([rvelab, "pack", recipe, "-o", folder / f"{name}.h5", *options], check=True,
-                       stdout=subprocess.DEVNULL)
+        subprocess.run([rvelab, "pack", recipe, "-o", folder / f"{name}.h5", "--set", "solver.max_overlap_ratio=0.5",
+                        *options], check=True, stdout=subprocess.DEVNULL)
 
 
 def cell_test():
