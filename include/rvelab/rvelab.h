@@ -110,7 +110,7 @@ typedef struct rvelab_pool_def {
   int32_t trial_memory; /* RVELAB_TRIAL_KEEP or RVELAB_TRIAL_RECOMPUTE */
   /* Of every specimen that a template is made from; 0: what the specimen says. */
   double tolerance_rel;       /* dt = 0: error of an increment over max(|d sigma|, 0.1 |C : d eps|) */
-  double tolerance_abs;       /* dt = 0: added to that, over the pressure */
+  double tolerance_abs;       /* dt = 0: added to that, over p, a thousandth of the specimen's own at least */
   int64_t max_substeps;       /* an increment that needs more is discarded */
   double damping;             /* local damping, 0 < d < 1: share of the unbalanced force that opposes motion */
   double min_height;          /* m; shortest lattice vector allowed */
