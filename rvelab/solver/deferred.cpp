@@ -36,11 +36,9 @@ bool Rve::Impl::may_defer(const FrameSplit& increment) {
   if ((stretch - Matrix3::Identity()).norm() + strain > state.strain_per_step) return false;
   // The slope holds along the path only: who perturbs it, for a tangent by differences, gets sub-steps of his own.
   if (!(change.cwiseProduct(state.last_rate).sum() > 0.99 * strain * state.last_rate.norm())) return false;
-  const SolverOptions& o = fixture.options;
   const double network = network_change(state.leg_strain);
   if (was_coarser(network)) return false;
-  const double allowed = allowed_error(o.relative_tolerance, o.absolute_tolerance, 0, network, pressure_scale());
-  return extrapolated(stretch).error <= share_of_allowed * allowed;
+  return extrapolated(stretch).error <= share_of_allowed * allowed_by_tolerances(0, network);
 }
 
 Report Rve::Impl::defer(const FrameSplit& increment) {

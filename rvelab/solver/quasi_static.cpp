@@ -120,6 +120,11 @@ double Rve::Impl::pressure_scale() {
   return std::max(pressure(), 1e-3 * now.state.reference_pressure);
 }
 
+double Rve::Impl::allowed_by_tolerances(double stress_change, double network) {
+  const SolverOptions& o = fixture.options;
+  return allowed_error(o.relative_tolerance, o.absolute_tolerance, stress_change, network, pressure_scale());
+}
+
 double Rve::Impl::network_change(double strain) const { return now.state.network_stiffness * strain; }
 
 double Rve::Impl::initial_pace() {
@@ -133,12 +138,10 @@ double Rve::Impl::unbalanced(const Balance& balance) const {
 }
 
 double Rve::Impl::target_for(double network) {
-  const SolverOptions& o = fixture.options;
-  if (o.target_unbalanced > 0) return o.target_unbalanced;
+  if (fixture.options.target_unbalanced > 0) return fixture.options.target_unbalanced;
   if (!(pressure() > 0)) return largest_target;
-  const double p = pressure_scale(), s = now.state.softness;
-  const double allowed = allowed_error(o.relative_tolerance, o.absolute_tolerance, s * network, network, p);
-  return std::clamp(allowed / (pace_margin * error_factor() * p), least_target, largest_target);
+  const double allowed = allowed_by_tolerances(now.state.softness * network, network);
+  return std::clamp(allowed / (pace_margin * error_factor() * pressure_scale()), least_target, largest_target);
 }
 
 void Rve::Impl::set_pace_target(double target) {
@@ -191,11 +194,10 @@ double Rve::Impl::expected_error(double ratio) { return error_factor() * pressur
 
 void Rve::Impl::estimate_error(double strain, double network, const Matrix3& stress_before, double ratio, double more,
                                Report& report) {
-  const SolverOptions& o = fixture.options;
   double changed = (present_stress() - stress_before).norm();
   // A piece of a path is judged as the pace is (target_for), by what the path changes of the stress.
   if (network > network_change(strain)) changed = std::max(changed, now.state.softness * network);
-  report.allowed_error = allowed_error(o.relative_tolerance, o.absolute_tolerance, changed, network, pressure_scale());
+  report.allowed_error = allowed_by_tolerances(changed, network);
   report.error_estimate = estimate_margin * expected_error(ratio) + more;
   report.tolerance_met = report.error_estimate <= estimate_margin * report.allowed_error;
 }
@@ -203,13 +205,11 @@ void Rve::Impl::estimate_error(double strain, double network, const Matrix3& str
 bool Rve::Impl::was_coarser(double network) { return now.state.pace_target > 2 * target_for(network); }
 
 long Rve::Impl::follow_up(double strain, bool turns) {
-  const SolverOptions& o = fixture.options;
   const double leg =
       turns ? now.state.leg_strain : std::max(strain, std::min(now.state.leg_strain + strain, longest_leg));
   const double network = network_change(leg);
   if (!turns && !was_coarser(network)) return 0;
-  const double allowed = allowed_error(o.relative_tolerance, o.absolute_tolerance, now.state.softness * network,
-                                       network, pressure_scale());
+  const double allowed = allowed_by_tolerances(now.state.softness * network, network);
   // 300 to 1,000 sub-steps take a lag of 1e-2 p to 1e-4 p (drawn increments in flow); what the most leave is estimated.
   constexpr long interval = 25, most = 2000;
   const FrameSplit still{Matrix3::Identity(), Matrix3::Identity(), true};

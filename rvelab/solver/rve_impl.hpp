@@ -135,6 +135,8 @@ struct Rve::Impl {
   double pressure();  ///< mean, of present_stress, Pa
   /// What errors of the stress are measured by, Pa: the pressure, or a thousandth of the reference where it is less.
   double pressure_scale();
+  /// allowed_error by the tolerances of the specimen, Pa; of a change of stress and |C : d eps|, Pa.
+  double allowed_by_tolerances(double stress_change, double network_change);
   /// Error over p and the unbalanced ratio, of the state as it is (loading/accuracy.hpp).
   double error_factor() const;
   /// K p u for an unbalanced ratio u, Pa.

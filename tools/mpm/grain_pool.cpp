@@ -10,6 +10,18 @@ void run_tasks(void* host, rvelab_task task, void* work, std::int64_t count) {
   static_cast<Workers*>(host)->for_each(count, [&](std::int64_t k) { task(work, k); });
 }
 
+/// A trial of one RVE from its committed state; its status.
+std::int32_t try_one(rvelab_pool* pool, std::int64_t id, const double* dH, double* sigma, double* tangent) {
+  rvelab_batch batch;
+  need(rvelab_batch_init(&batch, sizeof batch));
+  batch.n = 1;
+  batch.ids = &id;
+  batch.dH = dH;
+  batch.sigma = sigma;
+  batch.tangent = tangent;
+  return rvelab_trial(pool, &batch);
+}
+
 }  // namespace
 
 void need(std::int32_t status) {
@@ -18,14 +30,7 @@ void need(std::int32_t status) {
 
 void look(rvelab_pool* pool, std::int64_t id, double* sigma, double* tangent) {
   const double zero[9] = {};
-  rvelab_batch batch;
-  need(rvelab_batch_init(&batch, sizeof batch));
-  batch.n = 1;
-  batch.ids = &id;
-  batch.dH = zero;
-  batch.sigma = sigma;
-  batch.tangent = tangent;
-  need(rvelab_trial(pool, &batch));
+  need(try_one(pool, id, zero, sigma, tangent));
   need(rvelab_revert(pool, 1, &id));
 }
 
@@ -82,13 +87,7 @@ double felt_modulus_of(const GrainPool& pool, std::int64_t id, int dimension) {
     for (const int side : {0, 1}) {
       double dH[9] = {}, moved[9];
       dH[4 * axis] = side == 0 ? strain : -strain;
-      rvelab_batch batch;
-      need(rvelab_batch_init(&batch, sizeof batch));
-      batch.n = 1;
-      batch.ids = &id;
-      batch.dH = dH;
-      batch.sigma = moved;
-      const auto status = rvelab_trial(pool.get(), &batch);
+      const auto status = try_one(pool.get(), id, dH, moved, nullptr);
       if (status == RVELAB_DISCARD) return 0;
       need(status);
       slope[side] = (moved[4 * axis] - rest) / dH[4 * axis];

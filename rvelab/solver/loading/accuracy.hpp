@@ -9,6 +9,8 @@
 // from well-resolved states of the dense packing, forward, back and turned (1 to 2000 sub-steps against 10,000 and
 // relaxation): within a factor of two of all beyond five sub-steps; u alone is off by twenty.
 //
+// p is the pressure, or a thousandth of the specimen's own where it is less.
+//
 // At rest s is 1 whatever the packing, and what is soft is that few contacts hold a grain: z is their mean number, z0
 // that of an isostatic packing (2D: 3 with friction, 2 with rolling friction too). Fitted to 21 packings of discs,
 // spheres and ellipses (increments of 1e-7 to 3e-4, three directions): K is 0.19 at z/z0 = 2.0, 0.35 at 1.7, 0.5 at
