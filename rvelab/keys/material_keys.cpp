@@ -140,13 +140,15 @@ std::vector<KeyEntry> solver() {
           "whatever collisions become"),
       entry(t, "relative_tolerance", "1", &SolverOptions::relative_tolerance, {0, 1, true, false},
             "dt = 0: error of an increment allowed, over the change of stress or a tenth of what an elastic network "
-            "would answer, whichever is more"),
-      entry(t, "absolute_tolerance", "1", &SolverOptions::absolute_tolerance, {0, 1, true, false},
-            "dt = 0: error of an increment allowed beside that, over the mean pressure"),
+            "would answer, whichever is more; where stress is held, over the mean pressure"),
+      entry(
+          t, "absolute_tolerance", "1", &SolverOptions::absolute_tolerance, {0, 1, true, false},
+          "dt = 0: error of an increment allowed beside that, over the mean pressure; where stress is held, the larger "
+          "of the two holds"),
       entry(t, "target_unbalanced", "1", &SolverOptions::target_unbalanced, not_negative,
             "dt = 0: above 0: the unbalanced ratio that steers the number of sub-steps, instead of the tolerances"),
       entry(t, "fixed_substeps", "1", &SolverOptions::fixed_substeps, not_negative,
-            "dt = 0: exactly so many sub-steps an increment; 0: steered"),
+            "dt = 0: exactly so many sub-steps an increment of strain; 0: steered (where stress is held, always)"),
       entry(t, "max_substeps", "1", &SolverOptions::max_substeps, positive, "an increment that needs more fails"),
       entry(t, "min_height_m", "m", &SolverOptions::min_height, not_negative,
             "shortest lattice vector allowed; 0: the largest grain's diameter"),

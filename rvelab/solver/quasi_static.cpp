@@ -197,7 +197,11 @@ void Rve::Impl::estimate_error(double strain, double network, const Matrix3& str
   double changed = (present_stress() - stress_before).norm();
   // A piece of a path is judged as the pace is (target_for), by what the path changes of the stress.
   if (network > network_change(strain)) changed = std::max(changed, now.state.softness * network);
-  report.allowed_error = allowed_by_tolerances(changed, network);
+  judge_error(allowed_by_tolerances(changed, network), ratio, more, report);
+}
+
+void Rve::Impl::judge_error(double allowed, double ratio, double more, Report& report) {
+  report.allowed_error = allowed;
   report.error_estimate = estimate_margin * expected_error(ratio) + more;
   report.tolerance_met = report.error_estimate <= estimate_margin * report.allowed_error;
 }

@@ -40,7 +40,7 @@ struct Report {
   double allowed_error = 0;  ///< dt = 0: relative_tolerance max(|d sigma|, 0.1 |C : d eps|) + absolute_tolerance p, Pa,
                              ///< p at least a thousandth of reference_pressure(). d sigma and d eps since the path
                              ///< turned last, up to 1e-4 of strain, where those are more than the increment's: a path
-                             ///< cut finely is the same path
+                             ///< cut finely is the same path. Mixed targets: the larger tolerance times p
   bool tolerance_met = true;  ///< dt = 0: the error to be expected, the estimate over 2.75, is at most allowed_error
   bool cell_thin = false;     ///< a cell height is below four mean diameters
 };

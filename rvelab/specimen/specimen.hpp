@@ -46,7 +46,7 @@ struct SolverOptions {
   double relative_tolerance = 1e-2;  ///< dt = 0: error of an increment over max(|d sigma|, 0.1 |C : d eps|)
   double absolute_tolerance = 1e-4;  ///< dt = 0: added to that, over the pressure
   double target_unbalanced = 0;      ///< dt = 0: > 0: the unbalanced ratio that steers the sub-steps, no tolerance
-  long fixed_substeps = 0;           ///< dt = 0: > 0: exactly so many sub-steps an increment, no control
+  long fixed_substeps = 0;           ///< dt = 0: > 0: exactly so many sub-steps an increment of strain, no control
   long max_substeps = 50'000'000;    ///< an increment that needs more fails
   double min_height = 0;             ///< m; shortest lattice vector allowed; 0: 2 r_max
   double max_overlap_ratio = 0.25;   ///< largest overlap over the smaller radius; more fails

@@ -196,13 +196,12 @@ class Editor {
     const hid_t type = text_type(text);
     remake(name, type, extents, false);
     std::size_t count = 1;
-    for (const auto extent : extents) count *= extent;
+    for (const auto extent : extents) count = std::min<std::size_t>(count, 65536) * std::min<hsize_t>(extent, 65536);
     std::string letters;
-    for (std::size_t k = 0; k < count && letters.size() < 1'000'000; ++k) letters += text.empty() ? "\0" : text;
+    const bool written = !text.empty() && count <= 65536 && count * text.size() <= 1'000'000;
+    for (std::size_t k = 0; written && k < count; ++k) letters += text;
     const hid_t dataset = H5Dopen2(file_, name.c_str(), H5P_DEFAULT);
-    if (dataset >= 0 && letters.size() == count * text.size() && !text.empty()) {
-      H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, letters.data());
-    }
+    if (dataset >= 0 && written) H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, letters.data());
     if (dataset >= 0) H5Dclose(dataset);
     H5Tclose(type);
   }

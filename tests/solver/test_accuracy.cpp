@@ -33,6 +33,20 @@ Matrix3 resolved(Specimen s, const Matrix3& increment) {
   return rve.stress();
 }
 
+/// yy shortened by `strain` at the stress xx of -100 kPa.
+MixedTarget compressed(double strain, double present_xx) {
+  MixedTarget target;
+  for (const auto& [i, j] : {std::pair{0, 0}, std::pair{1, 1}, std::pair{0, 1}}) {
+    MixedTarget::Row row;
+    (i == 0 && j == 0 ? row.stress : row.strain)(i, j) = 1;
+    row.value = i == 1 ? -strain : j == 1 ? 0 : -1e5 - present_xx;
+    row.scale = 1e5;
+    target.rows.push_back(row);
+  }
+  target.rows.back().strain(1, 0) = 1;
+  return target;
+}
+
 }  // namespace
 
 TEST_CASE("The error allowed is that of its two tolerances", "[solver]") {
@@ -197,6 +211,44 @@ TEST_CASE("A cell that has come apart is strained on in as many sub-steps as ano
   CHECK(substeps < 50'000);  // measured by its own pressure, of some mPa, one start alone takes a million
   // Errors are measured by a thousandth of the pressure that the specimen was opened with.
   CHECK(rve.apply(1e-5 * gradient(1, 2, 0, -1), 0).report.allowed_error >= 1e-4 * 1e-3 * 0.99e5);
+}
+
+TEST_CASE("Under stress control the larger tolerance, times the pressure, is kept", "[solver]") {
+  struct Found {
+    Matrix3 stress = Matrix3::Zero();
+    Report last;
+    double unbalanced = 0;
+    long substeps = 0;
+  };
+  const auto found = [](double relative, double absolute, double given) {
+    Specimen s = recorded("dense");
+    s.solver.relative_tolerance = relative;
+    s.solver.absolute_tolerance = absolute;
+    s.solver.target_unbalanced = given;
+    Rve rve(s);
+    Found f;
+    for (int k = 0; k < 10; ++k) {
+      f.last = rve.apply(compressed(5e-5, rve.stress()(0, 0)), 0).report;
+      f.unbalanced = std::max(f.unbalanced, f.last.unbalanced_ratio);
+      f.substeps += f.last.substeps;
+    }
+    f.stress = rve.stress();
+    return f;
+  };
+  const Matrix3 truth = found(1e-2, 1e-4, 3e-6).stress;
+  long substeps = 0;
+  for (const double tolerance : {3e-2, 1e-2, 3e-3, 1e-3, 3e-4}) {
+    CAPTURE(tolerance);
+    const Found f = found(tolerance, 1e-5, 0);
+    const double pressure = -0.5 * (f.stress(0, 0) + f.stress(1, 1));
+    CHECK(f.last.allowed_error == Approx(tolerance * pressure));
+    CHECK(f.last.tolerance_met);
+    CHECK(f.unbalanced <= 3 * tolerance / 10);  // what Report::quasi_static allows
+    CHECK(std::abs(f.stress(1, 1) - truth(1, 1)) <= f.last.allowed_error);
+    CHECK(f.substeps > substeps);
+    substeps = f.substeps;
+    CHECK(same_bits(found(1e-5, tolerance, 0).stress, f.stress));
+  }
 }
 
 TEST_CASE("Tiny increments are no identity: they add up, save and restore bitwise", "[solver]") {

@@ -46,6 +46,11 @@ double unbalance_of_start(double mismatch, double strain, double strain_of_overl
 /// An increment is made so that this many times K p u is what its tolerances allow.
 constexpr double pace_margin = 2;
 
+/// Under stress control the path is judged as a whole: where it flows its stress changes by nothing, and a part of that
+/// would be no measure. Its stress may err by `share` of the pressure, the larger of the two tolerances; the ratio that
+/// such a path may have is share/10, with pace_margin K at most 8 and a quarter on top.
+constexpr double held_path_ratio(double share) { return share / 10; }
+
 /// The estimate of an error is this many times K p u, so that 94 of 100 errors lie below it and half of the
 /// estimates within 4.4 times the error (tools/validate estimates).
 constexpr double estimate_margin = 2.75;
