@@ -61,8 +61,10 @@ std::string file_of(const std::string& name, const std::string& content) {
 
 std::string file_of(const std::string& name, View content) { return file_of(name, text_of(content)); }
 
-/// What every command does with a specimen that it has read.
-void open_state(const Specimen& specimen) {
+/// What every command does with a specimen that it has read. Looking at the grains makes the strain that is deferred,
+/// in as many sub-steps as are asked for; here a damaged number of them is cut.
+void open_state(Specimen specimen) {
+  specimen.solver.fixed_substeps = std::min(specimen.solver.fixed_substeps, 1000L);
   const Rve rve(specimen);
   const Network network = rve.network();
   promise(rve.stress().allFinite(), "the stress of an opened state is not finite");

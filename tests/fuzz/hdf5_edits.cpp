@@ -196,7 +196,7 @@ class Editor {
     const hid_t type = text_type(text);
     remake(name, type, extents, false);
     std::size_t count = 1;
-    for (const auto extent : extents) count = std::min<std::size_t>(count, 65536) * std::min<hsize_t>(extent, 65536);
+    for (const auto extent : extents) count = std::min<std::size_t>(count, 65537) * std::min<hsize_t>(extent, 65537);
     std::string letters;
     const bool written = !text.empty() && count <= 65536 && count * text.size() <= 1'000'000;
     for (std::size_t k = 0; written && k < count; ++k) letters += text;
