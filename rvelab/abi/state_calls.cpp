@@ -10,21 +10,19 @@ using namespace rvelab::abi;
 
 namespace {
 
-void store(const Matrix3& tensor, double* to) {
-  for (int k = 0; k < 9; ++k) to[k] = tensor(k / 3, k % 3);
-}
+using Rows = Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
 
 rvelab_info info_of(const pool::Info& found) {
   rvelab_info info{};
   info.dimension = found.cell.dimension;
   info.grains = std::int64_t(found.grains);
   info.contacts = std::int64_t(found.contacts);
-  store(found.cell.lattice, info.lattice);
-  store(found.cell.rotation, info.rotation);
+  Rows(info.lattice) = found.cell.lattice;
+  Rows(info.rotation) = found.cell.rotation;
   info.volume = found.cell.volume();
   info.void_ratio = found.void_ratio;
   info.coordination_number = found.coordination_number;
-  store(found.fabric, info.fabric);
+  Rows(info.fabric) = found.fabric;
   info.fabric_anisotropy = found.fabric_anisotropy;
   info.sliding_fraction = found.sliding_fraction;
   info.p = found.p;

@@ -208,6 +208,12 @@ void Rve::Impl::judge_error(double allowed, double ratio, double more, Report& r
 
 bool Rve::Impl::was_coarser(double network) { return now.state.pace_target > 2 * target_for(network); }
 
+void Rve::Impl::step_at_rest(long steps) {
+  const FrameSplit still{Matrix3::Identity(), Matrix3::Identity(), true};
+  advance(fixture, now, {still, steps, 1, Loading::quasi_static});
+  moved();
+}
+
 long Rve::Impl::follow_up(double strain, bool turns) {
   const double leg =
       turns ? now.state.leg_strain : std::max(strain, std::min(now.state.leg_strain + strain, longest_leg));
@@ -216,11 +222,9 @@ long Rve::Impl::follow_up(double strain, bool turns) {
   const double allowed = allowed_by_tolerances(now.state.softness * network, network);
   // 300 to 1,000 sub-steps take a lag of 1e-2 p to 1e-4 p (drawn increments in flow); what the most leave is estimated.
   constexpr long interval = 25, most = 2000;
-  const FrameSplit still{Matrix3::Identity(), Matrix3::Identity(), true};
   long made = 0;
   while (made < most && expected_error(now.state.unbalanced_ratio) > (made > 0 ? 1 / pace_margin : 1) * allowed) {
-    advance(fixture, now, {still, interval, 1, Loading::quasi_static});
-    moved();
+    step_at_rest(interval);
     look();
     made += interval;
   }

@@ -167,14 +167,12 @@ Report Rve::relax(double unbalanced, long max_steps) {
     // kinetic energy (dynamic relaxation: Cundall 1976; Day 1965).
     constexpr long patience = 20'000;
     double kinetic = 0;
-    const FrameSplit still{Matrix3::Identity(), Matrix3::Identity(), true};
     while (true) {
       m.look();
       report.unbalanced_ratio = m.now.state.unbalanced_ratio;
       if (report.unbalanced_ratio <= unbalanced || report.substeps >= max_steps) break;
       const long steps = std::min(interval, max_steps - report.substeps);
-      advance(m.fixture, m.now, {still, steps, 1.0, Loading::quasi_static});
-      m.moved();
+      m.step_at_rest(steps);
       report.substeps += steps;
       if (report.substeps < patience) continue;
       const double before = std::exchange(kinetic, kinetic_energy(m.fixture, m.now));

@@ -163,6 +163,8 @@ struct Rve::Impl {
   Report load_quasi_static(FrameSplit whole);
   /// Whether the pace was one for more than twice the ratio that a path of this network change (Pa) may have.
   bool was_coarser(double network_change);
+  /// Quasi-static sub-steps of a cell that keeps its shape.
+  void step_at_rest(long steps);
   /// Before an increment of this strain that turns, or goes on where the pace was one for another target: a state that
   /// lags by more than its tolerance comes to rest. The sub-steps that it takes. What it lags by would stay: unloading
   /// locks the contacts that would have crept. A path to a tolerance lags by no more than that; one under stress
