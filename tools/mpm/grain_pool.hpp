@@ -38,6 +38,8 @@ class GrainPool {
   rvelab_info info(std::int64_t id) const;
   void write(const std::string& path) const;
   void read(const std::string& path);
+  /// A copy of an RVE of another pool, with the tolerances of this one.
+  std::int64_t take_from(const GrainPool& other, std::int64_t id) const;
   /// One RVE as a pool file of its own, which `rvelab inspect`, `export` and the like read as a specimen.
   void write_alone(std::int64_t id, const std::string& path) const;
 
@@ -65,7 +67,11 @@ class SpecimenFamily {
     double pressure;
   };
   std::int64_t prepare(double pressure);
+  /// The copy in the pool of the scene of what was prepared.
+  std::int64_t handed_over(std::int64_t id);
   std::shared_ptr<GrainPool> pool_;
+  Workers here_{1};
+  GrainPool calm_;  ///< where they are prepared, to the tolerances of the specimen, whatever those of the scene
   std::vector<Specimen> specimens_;
   std::map<double, std::int64_t> prepared_;
 };

@@ -8,8 +8,8 @@ means over the last stage of sin phi, mobilised, and of p over its start, by tol
 packings part by chance (peaks by a degree), so that these are to be read, not held to a bar.
 Bars: volume to 1e-12; held stresses within loading.held_tolerance (0.005); K and G within 2 %; p of `soft`
 at constant volume over gamma 0.25 to 0.5 below 30 % of its start, of `dense` above twice its start. The soft packing
-loses its pressure and may find it again: from 0.3 to 44 % with one unit in the last place of a radius, so that the
-mean of eight such copies is held.
+loses its pressure and may find it again, 3 to 69 % of it with one unit in the last place of a radius (means 34 +- 8,
+11 +- 3, 39 +- 9 % at ratios of 1e-3, 3e-4, 1e-4: no trend), so that the mean of sixteen such copies is held.
 """
 import json
 import math
@@ -24,6 +24,7 @@ import numpy as np
 DATA = pathlib.Path("tests/data/yade")
 PROGRAM, WORK = str(pathlib.Path(sys.argv[1]).resolve()), pathlib.Path(sys.argv[2])
 FLAGGED = 0.01
+COPIES = 16  # of the soft packing
 
 
 def run(protocol, packing, name, *settings):
@@ -126,12 +127,12 @@ def softened(test):
     text, good = volume(test)
     late = (test.strain >= 0.25) & (test.strain <= 0.5 + 1e-9)
     parts = [test.p[late].mean() / test.p[0]]
-    for copy in range(1, 8):
+    for copy in range(1, COPIES):
         other = run("simple_shear", f"soft_{copy}", f"simple_shear_soft_{copy}")
         parts.append(other.p[late].mean() / other.p[0])
     mean, error = np.mean(parts), np.std(parts, ddof=1) / math.sqrt(len(parts))
     return (f"{text}, mean p over gamma 0.25 to 0.5 is {mean:.1%} +- {error:.1%} of the start, {min(parts):.1%} to "
-            f"{max(parts):.1%} in 8 copies (YADE 15 % in one)"), good and mean < 0.3
+            f"{max(parts):.1%} in {COPIES} copies (YADE 15 % in one)"), good and mean < 0.3
 
 
 def risen(test):
@@ -193,7 +194,7 @@ def main():
                         WORK / f"{packing}_packing.h5", "--force"], check=True, stdout=subprocess.DEVNULL)
     grains = (DATA / "soft.particles.csv").read_text().splitlines()
     column = grains[0].split(",").index("r")
-    for copy in range(1, 8):
+    for copy in range(1, COPIES):
         cells = grains[copy].split(",")
         cells[column] = repr(math.nextafter(float(cells[column]), math.inf))
         table = WORK / f"soft_{copy}.csv"
