@@ -187,7 +187,8 @@ void Rve::Impl::judge(Report& report) {
 }
 
 double Rve::Impl::error_factor() const {
-  return error_per_unbalance(now.state.softness, now.state.coordination / fixture.isostatic_coordination);
+  return error_per_unbalance(now.state.softness, now.state.coordination / fixture.isostatic_coordination,
+                             fixture.damping.local_quasi_static);
 }
 
 double Rve::Impl::expected_error(double ratio) { return error_factor() * pressure_scale() * ratio; }

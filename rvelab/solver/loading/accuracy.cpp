@@ -23,11 +23,12 @@ double allowed_error(double relative, double absolute, double stress_change, dou
   return relative * std::max(stress_change, 0.1 * network_change) + absolute * std::max(pressure, 0.0);
 }
 
-double error_per_unbalance(double softness, double coordination_ratio) {
+double error_per_unbalance(double softness, double coordination_ratio, double damping) {
   const double s = std::clamp(softness, 0.4, 1.0), soft = 0.4 / (s * s * std::sqrt(s));
-  if (!(coordination_ratio > 0)) return soft;
+  const double damped = std::max(1.0, 0.1 + 3 * damping);
+  if (!(coordination_ratio > 0)) return damped * soft;
   const double beyond = std::max(coordination_ratio, 1.0) - 1;
-  return std::max(soft, 0.3 + 1.7 / (1 + 70 * beyond * beyond));
+  return damped * std::max(soft, 0.3 + 1.7 / (1 + 70 * beyond * beyond));
 }
 
 double unbalance_of_start(double mismatch, double strain, double strain_of_overlap, double steps) {
