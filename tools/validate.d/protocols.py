@@ -3,8 +3,8 @@
 
 A line for each run: records, flagged ones, grain-steps, and what the test holds: the volume (det F - 1), a stress or
 combination of stresses (largest miss of a record that is not flagged, over p), moduli of the oedometer against those of
-the probe. Beside it the same test paced by an unbalanced ratio of 1e-3 instead of the tolerances: its grain-steps, and the
-means over the last stage of sin phi, mobilised, and of p over its start, by tolerance and by ratio. Paths of dense
+the probe. Beside it the same test paced by an unbalanced ratio of 1e-3 instead of the protocol's tolerances (or its own ratio): its
+grain-steps, and the means over the last stage of sin phi, mobilised, and of p over its start, as it is and by ratio. Paths of dense
 packings part by chance (peaks by a degree), so that these are to be read, not held to a bar.
 Bars: volume to 1e-12; held stresses within loading.held_tolerance (0.005); K and G within 2 %; p of `soft`
 at constant volume over gamma 0.25 to 0.5 below 30 % of its start, of `dense` above twice its start. The soft packing
@@ -204,8 +204,8 @@ def main():
     cases = [("oedometer", packing, [], oedometer) for packing in ("dense", "medium", "soft", "noroll", "hertz")] + CASES
     if sys.argv[3:]:
         cases = [case for case in cases if case[0] in sys.argv[3:]]
-    print(f"{'':65} grain-steps by        sin phi by       p/p0 by")
-    print(f"{'protocol on packing':37} records  flagged  tolerances       ratio toler.  ratio  toler.   ratio")
+    print(f"{'':57} grain-steps of           sin phi of     p/p0 of")
+    print(f"{'protocol on packing':37} records  flagged   protocol       ratio prot.  ratio   prot.   ratio")
     failed, sums = False, [0, 0]
     with ThreadPoolExecutor(2) as pool:
         for text, steps, paced in pool.map(line, cases):
