@@ -188,7 +188,7 @@ void Rve::Impl::judge(Report& report) {
 
 double Rve::Impl::error_factor() const {
   return error_per_unbalance(now.state.softness, now.state.coordination / fixture.isostatic_coordination,
-                             fixture.damping.local_quasi_static);
+                             fixture.damping.local_quasi_static, fixture.dimension());
 }
 
 double Rve::Impl::expected_error(double ratio) { return error_factor() * pressure_scale() * ratio; }

@@ -58,16 +58,18 @@ TEST_CASE("The error allowed is that of its two tolerances", "[solver]") {
   CHECK(network_stiffness(1e5, 1e-5, 1e-2, 1) == Approx(0.7e8));
   CHECK(network_stiffness(1e5, 1e-5, 1e-2, 1.5) == Approx(1.05e8));
   CHECK(network_stiffness(0, 0, 1e-2, 1) == 0);
-  CHECK(error_per_unbalance(1, 0, 0.3) == Approx(0.4));
-  CHECK(error_per_unbalance(0.64, 0, 0.3) == Approx(0.4 / (0.64 * 0.64 * 0.8)));
-  CHECK(error_per_unbalance(0.01, 0, 0.3) == error_per_unbalance(0.4, 0, 0.3));
+  CHECK(error_per_unbalance(1, 0, 0.3, 2) == Approx(0.4));
+  CHECK(error_per_unbalance(0.64, 0, 0.3, 2) == Approx(0.4 / (0.64 * 0.64 * 0.8)));
+  CHECK(error_per_unbalance(0.01, 0, 0.3, 2) == error_per_unbalance(0.4, 0, 0.3, 2));
   // The larger of what sliding and what few contacts leave soft.
-  CHECK(error_per_unbalance(1, 2, 0.3) == Approx(0.4));
-  CHECK(error_per_unbalance(1, 1.1, 0.3) == Approx(1.3));
-  CHECK(error_per_unbalance(1, 0.8, 0.3) == Approx(2));
-  CHECK(error_per_unbalance(0.4, 1, 0.3) == error_per_unbalance(0.4, 0, 0.3));
-  CHECK(error_per_unbalance(1, 2, 0.1) == error_per_unbalance(1, 2, 0.3));
-  CHECK(error_per_unbalance(1, 2, 0.7) == Approx(2.2 * 0.4));
+  CHECK(error_per_unbalance(1, 2, 0.3, 2) == Approx(0.4));
+  CHECK(error_per_unbalance(1, 1.1, 0.3, 2) == Approx(1.3));
+  CHECK(error_per_unbalance(1, 0.8, 0.3, 2) == Approx(2));
+  CHECK(error_per_unbalance(0.4, 1, 0.3, 2) == error_per_unbalance(0.4, 0, 0.3, 2));
+  CHECK(error_per_unbalance(1, 2, 0.1, 2) == error_per_unbalance(1, 2, 0.3, 2));
+  CHECK(error_per_unbalance(1, 1.1, 0.3, 3) == error_per_unbalance(1, 1.1, 0.3, 2));
+  CHECK(error_per_unbalance(0.64, 0, 0.3, 3) == Approx(0.4 / (0.64 * 0.64 * 0.64 * 0.8)));
+  CHECK(error_per_unbalance(1, 2, 0.7, 2) == Approx(2.2 * 0.4));
   CHECK(unbalance_of_start(1, 1e-4, 1e-3, 16) == Approx(0.1 * 1.2 / (16 * std::pow(16, 0.375))));
   CHECK(unbalance_of_start(0, 1e-4, 1e-3, 1) == 0);
 }

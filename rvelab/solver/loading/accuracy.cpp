@@ -23,8 +23,9 @@ double allowed_error(double relative, double absolute, double stress_change, dou
   return relative * std::max(stress_change, 0.1 * network_change) + absolute * std::max(pressure, 0.0);
 }
 
-double error_per_unbalance(double softness, double coordination_ratio, double damping) {
-  const double s = std::clamp(softness, 0.4, 1.0), soft = 0.4 / (s * s * std::sqrt(s));
+double error_per_unbalance(double softness, double coordination_ratio, double damping, int dimension) {
+  const double s = std::clamp(softness, 0.4, 1.0);
+  const double soft = 0.4 / (s * s * std::sqrt(s)) / (dimension == 3 ? s : 1.0);
   const double damped = std::max(1.0, 0.1 + 3 * damping);
   if (!(coordination_ratio > 0)) return damped * soft;
   const double beyond = std::max(coordination_ratio, 1.0) - 1;
