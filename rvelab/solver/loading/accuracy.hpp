@@ -56,7 +56,7 @@ constexpr double pace_margin = 2;
 
 /// Under stress control the path is judged as a whole: where it flows its stress changes by nothing, and a part of that
 /// would be no measure. Its stress may err by `share` of the pressure, the larger of the two tolerances; the ratio that
-/// such a path may have is share/10, with pace_margin K at most 8 and a quarter on top.
+/// such a path may have is share/10, with K at most 4 in the plane and 10 in space.
 constexpr double held_path_ratio(double share) { return share / 10; }
 
 /// The estimate of an error is this many times K p u, so that 94 of 100 errors lie below it and half of the
