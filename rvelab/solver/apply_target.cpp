@@ -7,7 +7,6 @@
 
 #include "rvelab/cell/volume.hpp"
 #include "rvelab/error.hpp"
-#include "rvelab/solver/loading/accuracy.hpp"
 #include "rvelab/solver/loading/collisions.hpp"
 #include "rvelab/solver/loading/servo.hpp"
 #include "rvelab/solver/rve_impl.hpp"
@@ -15,10 +14,6 @@
 namespace rvelab {
 
 namespace {
-
-/// Unbalanced ratios that the tolerances may lead to under stress control. Peak angles of dense discs: 29.0, 29.2 and
-/// 29.4 degrees at 1e-2, 1e-3 (the default tolerances) and 1e-4, for 1, 4 and 30 times the time.
-constexpr double least_target = 1e-7, largest_target = 1e-2;
 
 constexpr long servo_interval = 5;  ///< sub-steps between control updates of the servo
 
@@ -114,7 +109,6 @@ Report Rve::Impl::load_quasi_static(const MixedTarget& target, Matrix3& gradient
   const auto stress = [&]() -> Matrix3 { return to_lab(present_stress()) + reynolds_stress(); };
   Servo servo(target, fixture.dimension(), stress(), Servo::Missed::evenly);
   begin_quasi_static();
-  const double share = std::max(fixture.options.relative_tolerance, fixture.options.absolute_tolerance);
   double strain = 0;
 
   TargetPath path{target, fixture.dimension()};
@@ -128,9 +122,7 @@ Report Rve::Impl::load_quasi_static(const MixedTarget& target, Matrix3& gradient
     const double wanted = servo.predicted_strain() + target.spin.norm();
     if (report.substeps == 0) {
       strain = servo.predicted_strain();
-      set_pace_target(fixture.options.target_unbalanced > 0
-                          ? fixture.options.target_unbalanced
-                          : std::clamp(held_path_ratio(share), least_target, largest_target));
+      set_pace_target(target_of_held_path());
     }
     const double full_pace = double(servo_interval) * now.state.strain_per_step;
     double advance_by = wanted > 0 ? std::min(1 - fraction, full_pace / wanted) : 1 - fraction;
@@ -180,7 +172,7 @@ Report Rve::Impl::load_quasi_static(const MixedTarget& target, Matrix3& gradient
   report.held_error = servo.held_error(path.strain, stress());
   report.target_held = report.held_error <= target.tolerance;
   judge(report);
-  judge_error(share * pressure_scale(), report.unbalanced_ratio, 0, report);
+  judge_error(tolerance_of_held_path() * pressure_scale(), report.unbalanced_ratio, 0, report);
   gradient = path.gradient;
   return report;
 }

@@ -130,6 +130,9 @@ struct Rve::Impl {
   void set_pace_target(double target);
   /// The ratio that an increment may have whose network change is |C : d eps| (Pa), by tolerance or as given.
   double target_for(double network_change);
+  /// The ratio that a path under stress control may have, by tolerance or as given; what its stress may err by, over p.
+  double target_of_held_path() const;
+  double tolerance_of_held_path() const;
   /// |C : d eps| of a strain, Pa.
   double network_change(double strain) const;
   double pressure();  ///< mean, of present_stress, Pa

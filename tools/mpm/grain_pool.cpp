@@ -57,7 +57,7 @@ rvelab_info GrainPool::info(std::int64_t id) const {
 void GrainPool::write(const std::string& path) const { need(rvelab_pool_write(pool_, path.c_str())); }
 void GrainPool::read(const std::string& path) { need(rvelab_pool_read(pool_, path.c_str())); }
 
-std::int64_t GrainPool::take_from(const GrainPool& other, std::int64_t id) const {
+std::int64_t GrainPool::copy_from(const GrainPool& other, std::int64_t id) const {
   std::size_t size = 0;
   need(rvelab_snapshot_save(other.get(), id, nullptr, 0, &size));
   std::vector<unsigned char> state(size);
@@ -72,7 +72,7 @@ void GrainPool::write_alone(std::int64_t id, const std::string& path) const {
   // In this process, also where the RVEs themselves are spread over ranks.
   Workers here(1);
   const GrainPool alone(here, {});
-  alone.take_from(*this, id);
+  alone.copy_from(*this, id);
   alone.write(path);
 }
 
@@ -105,19 +105,19 @@ double felt_modulus_of(const GrainPool& pool, std::int64_t id, int dimension) {
 }
 
 SpecimenFamily::SpecimenFamily(std::shared_ptr<GrainPool> pool, const std::vector<std::string>& paths)
-    : pool_(std::move(pool)), calm_(here_, {}) {
+    : pool_(std::move(pool)), preparation_(thread_, {}) {
   for (const auto& path : paths) {
     std::int64_t tmpl = 0, id = 0;
-    need(rvelab_template_load(calm_.get(), path.c_str(), &tmpl));
-    need(rvelab_spawn(calm_.get(), tmpl, 1, &id));
-    specimens_.push_back({tmpl, calm_.info(id).p});
-    need(rvelab_release(calm_.get(), 1, &id));
+    need(rvelab_template_load(preparation_.get(), path.c_str(), &tmpl));
+    need(rvelab_spawn(preparation_.get(), tmpl, 1, &id));
+    specimens_.push_back({tmpl, preparation_.info(id).p});
+    need(rvelab_release(preparation_.get(), 1, &id));
   }
 }
 
 std::int64_t SpecimenFamily::handed_over(std::int64_t id) {
-  const std::int64_t copy = pool_->take_from(calm_, id);
-  need(rvelab_release(calm_.get(), 1, &id));
+  const std::int64_t copy = pool_->copy_from(preparation_, id);
+  need(rvelab_release(preparation_.get(), 1, &id));
   return copy;
 }
 
@@ -128,16 +128,16 @@ std::int64_t SpecimenFamily::prepare(double pressure) {
     if (pressure > 0 && apart(s) < apart(*nearest)) nearest = &s;
   }
   std::int64_t id = 0;
-  need(rvelab_spawn(calm_.get(), nearest->tmpl, 1, &id));
+  need(rvelab_spawn(preparation_.get(), nearest->tmpl, 1, &id));
   if (pressure <= 0) return handed_over(id);
-  const int d = int(calm_.info(id).dimension);
+  const int d = int(preparation_.info(id).dimension);
   // Symmetric strains in the tangent's order; in the plane xx, yy, xy.
   const std::vector<int> rows = d == 2 ? std::vector<int>{0, 1, 5} : std::vector<int>{0, 1, 2, 3, 4, 5};
   const int first[6] = {0, 1, 2, 1, 0, 0}, second[6] = {0, 1, 2, 2, 2, 1};
   const long n = long(rows.size());
   double sigma[9], tangent[36];
   for (int round = 0; round < 200; ++round) {
-    look(calm_.get(), id, sigma, tangent);
+    look(preparation_.get(), id, sigma, tangent);
     double now = 0;
     for (int i = 0; i < d; ++i) now -= sigma[4 * i] / d;
     // In steps of a fifth of the pressure at most: the network changes on the way.
@@ -157,7 +157,7 @@ std::int64_t SpecimenFamily::prepare(double pressure) {
       const int r = rows[i];
       dH[3 * first[r] + second[r]] = dH[3 * second[r] + first[r]] = r < 3 ? strain[i] : 0.5 * strain[i];
     }
-    need(rvelab_apply(calm_.get(), id, dH, 0, sigma));
+    need(rvelab_apply(preparation_.get(), id, dH, 0, sigma));
   }
   throw Mistake("a specimen at " + std::to_string(nearest->pressure) + " Pa does not come to " +
                 std::to_string(pressure) +

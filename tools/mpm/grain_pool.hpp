@@ -39,7 +39,7 @@ class GrainPool {
   void write(const std::string& path) const;
   void read(const std::string& path);
   /// A copy of an RVE of another pool, with the tolerances of this one.
-  std::int64_t take_from(const GrainPool& other, std::int64_t id) const;
+  std::int64_t copy_from(const GrainPool& other, std::int64_t id) const;
   /// One RVE as a pool file of its own, which `rvelab inspect`, `export` and the like read as a specimen.
   void write_alone(std::int64_t id, const std::string& path) const;
 
@@ -70,8 +70,8 @@ class SpecimenFamily {
   /// The copy in the pool of the scene of what was prepared.
   std::int64_t handed_over(std::int64_t id);
   std::shared_ptr<GrainPool> pool_;
-  Workers here_{1};
-  GrainPool calm_;  ///< where they are prepared, to the tolerances of the specimen, whatever those of the scene
+  Workers thread_{1};
+  GrainPool preparation_;  ///< where they are prepared, to the tolerances of the specimen, whatever those of the scene
   std::vector<Specimen> specimens_;
   std::map<double, std::int64_t> prepared_;
 };
