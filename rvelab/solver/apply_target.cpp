@@ -172,7 +172,7 @@ Report Rve::Impl::load_quasi_static(const MixedTarget& target, Matrix3& gradient
   report.held_error = servo.held_error(path.strain, stress());
   report.target_held = report.held_error <= target.tolerance;
   judge(report);
-  judge_error(tolerance_of_held_path() * pressure_scale(), report.unbalanced_ratio, 0, report);
+  judge_error(tolerance_of_held_path() * pressure_scale(), strain, report.unbalanced_ratio, 0, report);
   gradient = path.gradient;
   return report;
 }

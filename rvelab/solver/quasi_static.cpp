@@ -208,12 +208,15 @@ void Rve::Impl::estimate_error(double strain, double network, const Matrix3& str
   double changed = (present_stress() - stress_before).norm();
   // A piece of a path is judged as the pace is (target_for), by what the path changes of the stress.
   if (network > network_change(strain)) changed = std::max(changed, now.state.softness * network);
-  judge_error(allowed_by_tolerances(changed, network), ratio, more, report);
+  judge_error(allowed_by_tolerances(changed, network), strain, ratio, more, report);
 }
 
-void Rve::Impl::judge_error(double allowed, double ratio, double more, Report& report) {
+void Rve::Impl::judge_error(double allowed, double strain, double ratio, double more, Report& report) {
+  const double network = now.state.network_stiffness;
+  const double growth =
+      network > 0 ? error_growth(strain, strain_of_overlap(pressure_scale(), network, fixture.hardening)) : 1.0;
   report.allowed_error = allowed;
-  report.error_estimate = estimate_margin * expected_error(ratio) + more;
+  report.error_estimate = estimate_margin * growth * expected_error(ratio) + more;
   report.tolerance_met = report.error_estimate <= estimate_margin * report.allowed_error;
 }
 

@@ -1,3 +1,7 @@
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <filesystem>
 #include <fstream>
 
@@ -126,4 +130,15 @@ TEST_CASE("the program ends with code 2 and one line for a user's mistake") {
   CHECK(run({scenes + "element.toml", "-o", folder / "run2", "--specimens", folder.path()}) == 2);
   CHECK(bytes_of(folder / "err").find("dense.h5") != std::string::npos);
   CHECK(run({"--resume", folder / "nowhere"}) == 2);
+  // As a run holds its folder.
+  const std::string busy = folder / "busy";
+  std::filesystem::create_directories(busy);
+  const int held = open(busy.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  REQUIRE(flock(held, LOCK_EX) == 0);
+  for (const auto& given : {std::vector<std::string>{"--resume", busy}, {scenes + "elastic_block.toml", "-o", busy}}) {
+    CHECK(run(given) == 2);
+    CHECK(bytes_of(folder / "err").find("another rvelab-mpm is writing there") != std::string::npos);
+  }
+  CHECK(std::filesystem::is_empty(busy));
+  close(held);
 }

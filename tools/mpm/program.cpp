@@ -1,6 +1,11 @@
 #include "tools/mpm/program.hpp"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -10,6 +15,27 @@
 namespace mpm {
 namespace {
 
+/// The folder of a run, while it is written into: two runs would spoil each other's histories.
+class FolderLock {
+ public:
+  explicit FolderLock(const std::string& folder)
+      : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    // Where a file system knows no locks, the run goes without.
+    if (descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+      ::close(descriptor_);
+      throw Mistake(folder + ": another rvelab-mpm is writing there; wait for it, stop it, or give another folder");
+    }
+  }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+  ~FolderLock() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+
+ private:
+  int descriptor_;
+};
+
 int run(const std::string& scene_file, std::vector<std::string> cases, bool published,
         const std::vector<std::string>& assignments, RunOptions options, const std::string& resumed) {
   const std::filesystem::path folder(resumed.empty() ? options.folder : resumed);
@@ -18,6 +44,7 @@ int run(const std::string& scene_file, std::vector<std::string> cases, bool publ
   if (published) cases.emplace_back("published");
   toml::table resolved;
   if (options.resume) {
+    const FolderLock lock(options.folder);
     const auto scene = read_scene((folder / "scene.toml").string(), {}, assignments);
     return run_scene(scene, options, std::cout);
   }
@@ -27,6 +54,7 @@ int run(const std::string& scene_file, std::vector<std::string> cases, bool publ
     throw Mistake(options.folder + " holds a run already; go on with --resume, or give another folder");
   }
   std::filesystem::create_directories(folder, error);
+  const FolderLock lock(options.folder);
   std::ofstream copy(folder / "scene.toml");
   copy << resolved << "\n";
   if (!copy.flush()) throw Mistake(options.folder + ": cannot be written; give a folder that you may write to");

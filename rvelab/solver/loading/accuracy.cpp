@@ -32,6 +32,13 @@ double error_per_unbalance(double softness, double coordination_ratio, double da
   return damped * std::max(soft, 0.3 + 1.7 / (1 + 70 * beyond * beyond));
 }
 
+double error_growth(double strain, double strain_of_overlap) {
+  const double x = std::min(strain / strain_of_overlap, 2.0) / 0.3;
+  if (!(x > 1)) return 1;
+  const double root = std::sqrt(x);
+  return root * std::sqrt(root);
+}
+
 double unbalance_of_start(double mismatch, double strain, double strain_of_overlap, double steps) {
   // n^-11/8 by roots, which give the same bits everywhere.
   const double root = std::sqrt(std::sqrt(steps));

@@ -1,7 +1,7 @@
 // Error of an increment at dt = 0: what is allowed, what is to be expected, and the sub-steps that this takes.
 //
 //   allowed = relative max(|d sigma|, 0.1 |C : d eps|) + absolute p      (two tolerances, as ODE solvers have them)
-//   error   = K p u,   K = max(1, 0.1 + 3 a) max(0.4 s^-m, 0.3 + 1.7/(1 + 70 (z/z0 - 1)^2)),
+//   error   = g K p u,   K = max(1, 0.1 + 3 a) max(0.4 s^-m, 0.3 + 1.7/(1 + 70 (z/z0 - 1)^2)),
 //   s = |d sigma|/|C : d eps|,   m = 5/2 in the plane, 7/2 in space
 //
 // u is the unbalanced-force ratio at the end of the increment, p the pressure, C the stiffness of the contact network,
@@ -23,6 +23,10 @@
 // a is Cundall's damping, 0.3 in all of these: of a ratio that it leaves more is lag and less vibration. Estimate over
 // error on the way of a biaxial test, a = 0.1, 0.2, 0.5, 0.7 over that of 0.3: dense 2.1, 1.3, 0.6, 0.44, medium 2.9,
 // 1.5, 0.64, 0.48, that is 1/(0.1 + 3 a). Below 0.3 it is left at 1, since in loose packings a weak damping errs more.
+//
+// g = max(1, x/0.3)^(3/4), x the strain of the increment over that of the overlap, at most 2: what a long increment
+// lagged by on its way has slid contacts that the end knows nothing of. Of 348 increments of 1e-3 to 1e-2, where x is
+// 0.2 to 2, 79 % of the errors lay within an estimate without g, 93 % with it; shorter ones have g = 1.
 #pragma once
 
 namespace rvelab {
@@ -44,6 +48,9 @@ double allowed_error(double relative, double absolute, double stress_change, dou
 /// stress control flow changes no stress at all, and lags no more than at constant width; z/z0 to 1 at least: sliding
 /// contacts hold less, and are counted by s.
 double error_per_unbalance(double softness, double coordination_ratio, double damping, int dimension);
+
+/// g above, of the strain of an increment and the mean overlap over d.
+double error_growth(double strain, double strain_of_overlap);
 
 /// Unbalanced ratio that `steps` sub-steps leave of a start: u = m x (1 + 2 x) min(0.45, n^-11/8), x = strain
 /// d/overlap, with `strain` that of the increment, `strain_of_overlap` the mean overlap over d, and m the part of the
