@@ -1,15 +1,13 @@
 """tools/validate mpm: scenes of rvelab-mpm beside pure cells and published figures.
 
     mpm.py RVELAB FOLDER RESULTS [CASE...]
-    mpm.py RVELAB FOLDER RESULTS tolerance|footing
+    mpm.py RVELAB FOLDER RESULTS tolerance
 
 Speed of the continuum (asked: 2 M point-steps a second of one core in the plane), the single element beside the biaxial test of its
 specimen, the column of a Mohr-Coulomb soil beside Liang and Zhao (2019), and the biaxial compression of the cases named
 (C1: the file without a case). `tolerance`: error of the plate's stress against grain-steps, over tolerances and
-gathering. `footing`: load against settlement on three soils, beside the N_q of `rvelab calibrate`. Runs that are whole
-in FOLDER are used again."""
+gathering. Runs that are whole in FOLDER are used again, and those that were stopped go on. Other scenes: mpm_scenes.py."""
 
-import json
 import pathlib
 import resource
 import shutil
@@ -54,13 +52,14 @@ def specimen(name="dense", *options, recipe="pack_dense"):
                         *options], check=True, stdout=subprocess.DEVNULL)
 
 
-def cell_test():
+def cell_test(name="cell", *options):
     """Axial strain and stress (Pa) of the biaxial test of dense.h5 at 100 kPa."""
     specimen()
-    if not (folder / "cell.h5").exists():
-        subprocess.run([rvelab, "run", "biaxial", "--specimen", folder / "dense.h5", "-o", folder / "cell.h5", "--set",
-                        "test.pressure_Pa=100e3"], check=True, stdout=subprocess.DEVNULL)
-    with h5py.File(folder / "cell.h5") as file:
+    path = folder / f"{name}.h5"
+    if not path.exists():
+        subprocess.run([rvelab, "run", "biaxial", "--specimen", folder / "dense.h5", "-o", path, "--set",
+                        "test.pressure_Pa=100e3", *options], check=True, stdout=subprocess.DEVNULL)
+    with h5py.File(path) as file:
         last = file["records/stage"][()] == file["records/stage"][()].max()
         return file["records/strain"][()][last], -file["records/stress_Pa"][()][last][:, 1, 1]
 
@@ -83,31 +82,45 @@ def element(strain, stress):
     watched = np.genfromtxt(folder / "element/watched.csv", delimiter=",", names=True)
     axial = -h["top.way_y_m"]
     point = np.mean([watched[f"{k}p_Pa"] + watched[f"{k}q_Pa"] for k in (0, 1)], axis=0)
-    print("\nsingle element: axial strain, axial stress (kPa) of the points, of the cell under stress control")
+    # Paths of grains part by chance: the same cell at tolerances that hardly differ.
+    others = [cell_test(f"cell_{k}", "--set", f"solver.relative_tolerance={0.01 + 1e-5 * k}", "--set",
+                        "stage.compression.to_strain=0.05") for k in range(1, 9)]
+    print("\nsingle element: axial strain, axial stress (kPa) of the points, of the cell under stress control, mean and\n"
+          "standard deviation of the cell at eight tolerances of 0.01001 to 0.01008")
     for at in (0.003, 0.006, 0.01, 0.015, 0.02, 0.03, 0.04, 0.049):
-        print(f"{at:<8g} {np.interp(at, axial, point) / 1e3:<8.1f} {np.interp(at, strain, stress) / 1e3:.1f}")
+        many = np.array([np.interp(at, *other) for other in others]) / 1e3
+        print(f"{at:<8g} {np.interp(at, axial, point) / 1e3:<8.1f} {np.interp(at, strain, stress) / 1e3:<8.1f} "
+              f"{many.mean():<8.1f} {many.std(ddof=1):.1f}")
+
+
+def front_of(frame):
+    """Where the deposit ends, m: there a point has no neighbour within half a cell any more."""
+    with h5py.File(frame) as file:
+        x, cell = np.sort(file["position_m"][()][:, 0]), float(file["grid_cell_m"][0])
+    gaps = np.flatnonzero(np.diff(x) > cell / 2)
+    return x[gaps[0]] if len(gaps) else x[-1]
+
+
+def collapse(name, h, density):
+    """Prints figures of the collapse of a column of 1 x 1 m beside the published ones; draws FOLDER/name."""
+    front = front_of(sorted((folder / name).glob("points_*.h5"))[-1])
+    whole = density * 9.81 * 0.5
+    peak = int(np.argmax(h["kinetic_J"]))
+    lost = -h["potential_J"][-1] - h["kinetic_J"][-1]
+    print(f"run-out (front - 1)/1           {front - 1:<8.2f} 1.8 (experiment 1.6)\n"
+          f"peak of kinetic energy          {h['kinetic_J'][peak] / whole:<8.3f} 0.1\n"
+          f"at                              {h['time_s'][peak]:<8.2f} 0.4 s\n"
+          f"dissipated                      {lost / whole:<8.2f} 0.55\n"
+          f"kinetic energy at the end       {h['kinetic_J'][-1] / whole:<8.4f} at rest\n"
+          f"not accounted for by the ledger {h['residual_J'][-1] / whole:.4f}")
+    picture(folder / name, "--field", "eps_q", "-o", results / f"mpm_{name}.png")
+    picture(folder / name, "--energy", "-o", results / f"mpm_{name}_energy.png")
 
 
 def column():
     h, _ = run("column_soil", "column_soil.toml")
-    frame = sorted((folder / "column_soil").glob("points_*.h5"))[-1]
-    with h5py.File(frame) as file:
-        x = np.sort(file["position_m"][()][:, 0])
-        # The deposit ends where a point has no neighbour within a cell any more.
-        cell = float(file["grid_cell_m"][0])
-    gaps = np.flatnonzero(np.diff(x) > cell / 2)
-    front = x[gaps[0]] if len(gaps) else x[-1]
-    whole = 2190 * 9.81 * 0.5
-    peak = int(np.argmax(h["kinetic_J"]))
-    lost = -h["potential_J"][-1] - h["kinetic_J"][-1]
-    print("\ncolumn, Mohr-Coulomb soil (published: grains)\n"
-          f"run-out (front - 1)/1           {front - 1:<8.2f} 1.8 (experiment 1.6)\n"
-          f"peak of kinetic energy          {h['kinetic_J'][peak] / whole:<8.3f} 0.1\n"
-          f"at                              {h['time_s'][peak]:<8.2f} 0.4 s\n"
-          f"dissipated                      {lost / whole:<8.2f} 0.55\n"
-          f"not accounted for by the ledger {h['residual_J'][-1] / whole:.4f}")
-    picture(folder / "column_soil", "--field", "eps_q", "-o", results / "mpm_column_soil.png")
-    picture(folder / "column_soil", "--energy", "-o", results / "mpm_column_soil_energy.png")
+    print("\ncolumn, Mohr-Coulomb soil (published: grains)")
+    collapse("column_soil", h, 2190)
 
 
 def biaxial(strain, stress):
@@ -198,46 +211,10 @@ def tolerance_figure(rows, step, other):
         figure.savefig(results / "mpm_tolerance.png")
 
 
-def footing():
-    sets = [word for each in ("grid.cell_m=0.3333333333333333", "time.duration_s=0.8", "material.soil.tolerance_rel=0.3",
-                              "material.soil.tolerance_abs=3e-3") for word in ("--set", each)]
-    surcharge, width, depths = 20e3, 2.0, (0.0125, 0.025, 0.0375, 0.05, 0.0625)  # Pa, m; settlements over the width
-    sys.path.insert(0, str(ROOT / "tools/plot"))
-    from records import STYLE, plt
-    plt.rcParams.update(STYLE)
-    figure, axes = plt.subplots(figsize=(5.5, 3.8))
-    print("Rough footing, half of it 1 m wide, on 6 x 4 m of soil (18 x 12 cells, one point each), surcharge 20 kPa,\n"
-          "0.2 m/s, tolerance_rel 0.3, tolerance_abs 3e-3: load over surcharge at settlements d/B (B = 2 m), and the\n"
-          "largest; N_q of rvelab calibrate at 10, 20 and 30 kPa, for general and for local shear; published, at the\n"
-          "whole size to d/B = 0.75: load, N_q\n\nsoil    "
-          + "".join(f"{d:<8g}" for d in depths) + "largest  N_q     local   published")
-    published = {"dense": "14.4, 14.8", "medium": "4.8, 3.7", "soft": "3.7, 3.1"}
-    for soil, colour in zip(published, ("C0", "C1", "C2")):
-        specimen(soil, recipe=f"pack_{soil}")
-        told = subprocess.run([rvelab, "calibrate", "biaxial", "--specimen", folder / f"{soil}.h5", "--pressures",
-                               "10e3,20e3,30e3", "--threads", "1", "--json"], check=True, capture_output=True, text=True)
-        factors = json.loads(told.stdout)
-        general, local = factors["bearing_capacity_Nq"], factors["local_shear_Nq"]
-        h, _ = run(f"footing_{soil}", "footing.toml", "-j", "1", "--case", soil, *sets)
-        depth, load = -h["footing.way_y_m"] / width, 1 + h["footing.force_y_N"] / (width / 2) / surcharge
-        smooth = np.convolve(load, np.ones(5) / 5, mode="same")[2:-2]
-        print(f"{soil:<8}" + "".join(f"{np.interp(d, depth[2:-2], smooth):<8.2f}" for d in depths)
-              + f"{smooth.max():<8.2f} {general:<7.2f} {local:<7.2f} {published[soil]}", flush=True)
-        axes.plot(depth[2:-2], smooth, color=colour, label=soil)
-        axes.axhline(general, color=colour, linestyle="--", linewidth=1)
-        axes.axhline(local, color=colour, linestyle=":", linewidth=1)
-    axes.set_xlabel("settlement over width")
-    axes.set_ylabel("load over surcharge")
-    axes.set_title("dashed: $N_q$ of the specimen, dotted: of local shear", fontsize=9, loc="left")
-    axes.legend(loc="upper right", bbox_to_anchor=(1, 0.93))
-    figure.tight_layout()
-    figure.savefig(results / "mpm_footing.png")
-
-
 def main():
     folder.mkdir(parents=True, exist_ok=True)
-    if cases in (["tolerance"], ["footing"]):
-        tolerance() if cases == ["tolerance"] else footing()
+    if cases == ["tolerance"]:
+        tolerance()
         return
     speed()
     strain, stress = cell_test()

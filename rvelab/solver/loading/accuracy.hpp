@@ -66,8 +66,8 @@ constexpr double pace_margin = 2;
 /// such a path may have is share/10, with K at most 4 in the plane and 10 in space.
 constexpr double held_path_ratio(double share) { return share / 10; }
 
-/// The estimate of an error is this many times K p u, so that 94 of 100 errors lie below it and half of the
-/// estimates within 4.4 times the error (tools/validate estimates).
+/// The estimate of an error is this many times g K p u, so that 97 of 100 errors lie below it and half of the
+/// estimates within 4.9 times the error (tools/validate estimates).
 constexpr double estimate_margin = 2.75;
 
 }  // namespace rvelab

@@ -1,0 +1,145 @@
+"""tools/validate mpm_column, mpm_footing, mpm_pipe: scenes of rvelab-mpm beside published figures.
+
+    mpm_scenes.py RVELAB FOLDER RESULTS column|footing|pipe [published]
+
+column: run-out, energies and profile of the collapse of a column of grains, with `published` at the published size too.
+footing: load against settlement on three soils, beside the N_q of `rvelab calibrate`. pipe: forces on a pipe that is
+pushed down and aside, and what the soil before, below and behind it does. Runs that are whole in FOLDER are used again,
+and those that were stopped go on."""
+
+import json
+import os
+import subprocess
+import sys
+
+import h5py
+import numpy as np
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../plot"))
+from records import STYLE, plt  # noqa: E402
+from mpm import cases, collapse, folder, front_of, picture, results, run, rvelab, specimen
+
+
+def cost(printed):
+    """Grain-steps, and processor time of grains (s) times threads, that a run printed."""
+    words = printed.replace(",", "").split()
+    return float(words[words.index("grain-steps") + 1]), float(words[words.index("grains") + 1])
+
+
+def footing():
+    sets = [word for each in ("grid.cell_m=0.3333333333333333", "time.duration_s=1.6", "material.soil.tolerance_rel=0.3",
+                              "material.soil.tolerance_abs=3e-3") for word in ("--set", each)]
+    surcharge, width, depths = 20e3, 2.0, (0.0125, 0.025, 0.0375, 0.05, 0.075, 0.1, 0.125)  # Pa, m; settlements over the width
+    figure, axes = plt.subplots(figsize=(5.5, 3.8))
+    print("Rough footing, half of it 1 m wide, on 6 x 4 m of soil (18 x 12 cells, one point each), surcharge 20 kPa,\n"
+          "0.2 m/s, tolerance_rel 0.3, tolerance_abs 3e-3: load over surcharge at settlements d/B (B = 2 m), and the\n"
+          "largest; N_q of rvelab calibrate at 10, 20 and 30 kPa, for general and for local shear; published, at the\n"
+          "whole size to d/B = 0.75: load, N_q\n\nsoil    "
+          + "".join(f"{d:<8g}" for d in depths) + "largest  N_q     local   published")
+    told, published = [], {"dense": "14.4, 14.8", "medium": "4.8, 3.7", "soft": "3.7, 3.1"}
+    for soil, colour in zip(published, ("C0", "C1", "C2")):
+        specimen(soil, recipe=f"pack_{soil}")
+        told = subprocess.run([rvelab, "calibrate", "biaxial", "--specimen", folder / f"{soil}.h5", "--pressures",
+                               "10e3,20e3,30e3", "--threads", "1", "--json"], check=True, capture_output=True, text=True)
+        factors = json.loads(told.stdout)
+        general, local = factors["bearing_capacity_Nq"], factors["local_shear_Nq"]
+        h, printed = run(f"footing_{soil}", "footing.toml", "-j", "1", "--case", soil, *sets)
+        steps, seconds = cost(printed)
+        whole = steps * 7776 / 216 * 1.5 / -h["footing.way_y_m"][-1]
+        told.append(f"{soil}: {steps:.3g} grain-steps, {steps / seconds / 1e6:.0f} M a second of one core; published size "
+                    f"{whole:.2g}, {whole / (steps / seconds) / 3600:.0f} hours")
+        depth, load = -h["footing.way_y_m"] / width, 1 + h["footing.force_y_N"] / (width / 2) / surcharge
+        smooth = np.convolve(load, np.ones(5) / 5, mode="same")[2:-2]
+        print(f"{soil:<8}" + "".join(f"{np.interp(d, depth[2:-2], smooth):<8.2f}" for d in depths)
+              + f"{smooth.max():<8.2f} {general:<7.2f} {local:<7.2f} {published[soil]}", flush=True)
+        axes.plot(depth[2:-2], smooth, color=colour, label=soil)
+        axes.axhline(general, color=colour, linestyle="--", linewidth=1)
+        axes.axhline(local, color=colour, linestyle=":", linewidth=1)
+    print("\nCost, and of 7,776 points to 1.5 m by the grain-steps of a point and metre of settlement:\n" + "\n".join(told))
+    axes.set_xlabel("settlement over width")
+    axes.set_ylabel("load over surcharge")
+    axes.set_title("dashed: $N_q$ of the specimen, dotted: of local shear", fontsize=9, loc="left")
+    axes.legend(loc="upper right", bbox_to_anchor=(1, 0.93))
+    figure.tight_layout()
+    figure.savefig(results / "mpm_footing.png")
+
+
+def column(name="column", *options):
+    if not (folder / "column_2685Pa.h5").exists():
+        specimen("column", recipe="pack_column")
+    h, printed = run(name, "column.toml", *options)
+    frames = sorted((folder / name).glob("points_*.h5"))
+    with h5py.File(frames[0]) as file:
+        density = 2650 * np.mean(1 / (1 + file["void_ratio"][()]))
+        cell = float(file["grid_cell_m"][0])
+    print(f"column of grains, {1 / cell:.0f} x {1 / cell:.0f} cells with four points each of 1000 discs (published)")
+    collapse(name, h, density)
+    fronts = [front_of(frame) for frame in frames]
+    times = np.linspace(0, h["time_s"][-1], len(frames))
+    still = next(k for k in range(len(fronts)) if max(fronts[k:]) - min(fronts[k:]) < cell / 2)
+    print(f"the front stays from            {times[still]:<8.2f} 0.7 to 1.3 s")
+    with h5py.File(frames[-1]) as file:
+        x, y, strain = (file["position_m"][()][:, 0], file["position_m"][()][:, 1], file["eps_q"][()])
+    places = np.arange(0, 3.01, 0.5)
+    tops = [max(y[abs(x - max(at, cell / 2)) < cell / 2], default=0.0) for at in places]
+    print("profile: x (m)      " + "".join(f"{at:<6.1f}" for at in places)
+          + "\n  highest point (m) " + "".join(f"{top:<6.2f}" for top in tops))
+    # The wedge that was never mobilised: points sheared by less than a tenth; its side from the base to the axis.
+    dead = strain < 0.1
+    print(f"points never sheared by 0.1     {np.mean(dead):<8.2f}")
+    if dead.any():
+        print(f"their wedge                     {np.degrees(np.arctan2(y[dead].max(), x[dead].max())):<8.0f} 39 degrees")
+    print("    " + "\n    ".join(printed.strip().splitlines()[-3:]))
+
+
+def pipe():
+    specimen()
+    h, printed = run("pipe", "pipe.toml")
+    time, up, aside = h["time_s"], h["pipe.force_y_N"] / 1e3, h["pipe.force_x_N"] / 1e3
+    depth, left = -h["pipe.way_y_m"], -h["pipe.way_x_m"]
+    window = max(1, round(0.05 / np.median(np.diff(time))))
+    mean = lambda values: np.convolve(values, np.ones(window) / window, mode="same")
+    up, aside = mean(up), mean(aside)
+    turn = float(time[np.argmax(depth > depth.max() - 1e-9)])
+    down, lateral = time <= turn, (time > turn + 0.6) & (left < left.max())
+    print("Rough pipe, 1 m in diameter, pushed 0.8 m into dense sand of 9 x 2.5 m (36 x 10 cells, one point each) and 0.7 m\n"
+          "to the left; forces on it per metre (means over 0.05 s); published: 196 x 50 cells, speeds not printed\n\n"
+          "depth (m)        " + "".join(f"{d:<8.1f}" for d in np.arange(0.1, 0.81, 0.1))
+          + "\nvertical (kN)    " + "".join(f"{np.interp(d, depth[down], up[down]):<8.0f}" for d in np.arange(0.1, 0.81, 0.1))
+          + "\nway aside (m)    " + "".join(f"{d:<8.1f}" for d in np.arange(0.1, 0.71, 0.1)))
+    moved = time > turn
+    for name, force in (("vertical (kN)", up), ("horizontal (kN)", aside)):
+        print(f"{name:<17}" + "".join(f"{np.interp(d, left[moved], force[moved]):<8.0f}" for d in np.arange(0.1, 0.71, 0.1)))
+    print(f"\nvertical peak       {up[down].max():<8.0f} 250 kN\n"
+          f"vertical, sideways  {up[lateral].mean():<8.0f} 25 kN\n"
+          f"horizontal plateau  {aside[lateral].mean():<8.0f} 50 kN, rising slightly")
+    watched = np.genfromtxt(folder / "pipe/watched.csv", delimiter=",", names=True)
+    at = np.searchsorted(watched["time_s"], turn)
+    print("\npoint  eps_q, rotation (degrees) at the turn    at the end         published")
+    for k, (name, told) in enumerate((("D", "0.5, 10 to 15; 2.6, 58"), ("E", "-"), ("F", "1.2, 30; 1.4, 30"))):
+        q, turned = watched[f"{k}eps_q"], watched[f"{k}rotation_deg"]
+        print(f"{name:<6} {q[at]:<8.2f} {abs(turned[at]):<30.0f} {q[-1]:<8.2f} {abs(turned[-1]):<9.0f} {told}")
+    print("    " + "\n    ".join(printed.strip().splitlines()[-3:]))
+    picture(folder / "pipe", "--field", "eps_q", "-o", results / "mpm_pipe.png")
+    figure, axes = plt.subplots(figsize=(5.5, 3.5))
+    axes.plot(time, up, label="vertical")
+    axes.plot(time, aside, label="horizontal")
+    axes.axvline(turn, color="0.5", linestyle=":", linewidth=1)
+    axes.set_xlabel("time (s)")
+    axes.set_ylabel("force of the soil on the pipe (kN/m)")
+    axes.legend()
+    figure.tight_layout()
+    figure.savefig(results / "mpm_pipe_forces.png")
+
+
+def main():
+    folder.mkdir(parents=True, exist_ok=True)
+    plt.rcParams.update(STYLE)
+    {"column": column, "footing": footing, "pipe": pipe}[cases[0]]()
+    if cases == ["column", "published"]:
+        print()
+        column("column_published", "--published")
+
+
+if __name__ == "__main__":
+    main()
