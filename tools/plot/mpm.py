@@ -140,8 +140,8 @@ def energy_figure(options):
             axes.plot(h["time_s"], h[name], label=label if run == options.runs[0] else None)
     axes.set_xlabel("time (s)")
     axes.set_ylabel("energy (J)")
-    axes.legend()
-    figure.savefig(options.output)
+    axes.legend(loc="center left", bbox_to_anchor=(1, 0.5))
+    figure.savefig(options.output, bbox_inches="tight")
     return f"{options.output}: energies of {', '.join(options.runs)}"
 
 
