@@ -144,8 +144,8 @@ struct Rve::Impl {
   double error_factor() const;
   /// K p u for an unbalanced ratio u, Pa.
   double expected_error(double ratio);
-  /// Sets report.error_estimate, allowed_error and tolerance_met: `allowed` (Pa), `strain` of the increment, `ratio` the
-  /// unbalanced ratio at its end, `more` (Pa) what else the stress may err by.
+  /// Sets report.error_estimate, allowed_error and tolerance_met: `allowed` (Pa), `strain` of the increment, `ratio`
+  /// the unbalanced ratio at its end, `more` (Pa) what else the stress may err by.
   void judge_error(double allowed, double strain, double ratio, double more, Report& report);
   /// The same of an increment of this strain; `network_change` (Pa) is that of the path which it is a piece of.
   void estimate_error(double strain, double network_change, const Matrix3& stress_before, double ratio, double more,
