@@ -94,7 +94,7 @@ def element(strain, stress):
 
 
 def front_of(frame, apart=1):
-    """Where the deposit ends, m: beyond, points lie more than so many cells apart."""
+    """Where the deposit ends, m: the first gap of more than so many cells along x."""
     with h5py.File(frame) as file:
         x, cell = np.sort(file["position_m"][()][:, 0]), float(file["grid_cell_m"][0])
     gaps = np.flatnonzero(np.diff(x) > apart * cell)
@@ -108,7 +108,7 @@ def collapse(name, h, density):
     peak = int(np.argmax(h["kinetic_J"]))
     lost = -h["potential_J"][-1] - h["kinetic_J"][-1]
     print(f"run-out (front - 1)/1           {front_of(last) - 1:<8.2f} 1.8 (experiment 1.6)\n"
-          f"where gaps of 3/4 cell end it   {front_of(last, 0.75) - 1:.2f}\n"
+          f"where gaps of 1/2, 3/4 end it   {front_of(last, 0.5) - 1:.2f}, {front_of(last, 0.75) - 1:.2f}\n"
           f"peak of kinetic energy          {h['kinetic_J'][peak] / whole:<8.3f} 0.1\n"
           f"at                              {h['time_s'][peak]:<8.2f} 0.4 s\n"
           f"dissipated                      {lost / whole:<8.2f} 0.55\n"
