@@ -34,6 +34,12 @@ struct IncrementFailed : Error {
   using Error::Error;
 };
 
+/// A cell or a place in it that double precision cannot carry: a lattice too skewed to be reduced, a grain beyond 2^31
+/// cells. Of what is read it becomes an InputError, of an increment an IncrementFailed.
+struct CellError : Error {
+  using Error::Error;
+};
+
 /// Work that was asked to stop (Rve::watch). The RVE is as it was before the call.
 struct Interrupted : Error {
   Interrupted() : Error("stopped on request") {}

@@ -1,14 +1,14 @@
 /* rvelab: granular representative volume elements as the material of a continuum code.
  *
- * An RVE is a periodic cell of discs or spheres. An increment of displacement gradient dH goes in, the Cauchy stress
- * comes out. A pool holds many RVEs, one for each material point, and works on them with the threads it is given.
+ * An RVE is a periodic cell of discs, ellipses or spheres. An increment of displacement gradient dH goes in, the Cauchy
+ * stress comes out. A pool holds many RVEs, one for each material point, and works on them with the threads given.
  *
  * dH      nine doubles, row-major, dH_ij = d(du_i)/dx_j over the step, laboratory frame, finite: F_inc = I + dH, spin
  *         included. A host that truncates a rotation inflates the volume by |dH|^2/2 a step: send the exponential.
  * sigma   nine doubles, row-major, Pa, laboratory frame, Cauchy, tension positive. SI units throughout.
  * dt      s. dt > 0: physical time, real inertia and rate. dt = 0: quasi-static, the RVE picks its own pace within its
  *         tolerance.
- * 2D      a slab of discs in the plane x, y: the z-components of dH must be zero (within 1e-12 + 1e-9 max|dH|), and
+ * 2D      a slab of grains in the plane x, y: the z-components of dH must be zero (within 1e-12 + 1e-9 max|dH|), and
  *         those of sigma are.
  *
  * Every call returns a status: RVELAB_OK, a warning above it (the result is usable), RVELAB_DISCARD or an error below
@@ -49,7 +49,7 @@ const char* rvelab_version(void);
 /* What this library does, bits of RVELAB_CAN_*; other bits are zero. */
 int64_t rvelab_capabilities(void);
 
-#define RVELAB_CAN_PLANE 1          /* discs, 2D */
+#define RVELAB_CAN_PLANE 1          /* discs and ellipses, 2D */
 #define RVELAB_CAN_SPACE 2          /* spheres, 3D */
 #define RVELAB_CAN_TANGENT 4        /* batch.tangent */
 #define RVELAB_CAN_ERROR_ESTIMATE 8 /* batch.error_estimate */
@@ -58,6 +58,8 @@ int64_t rvelab_capabilities(void);
 
 /* ---- status: numbers are never reused ---- */
 
+/* Of several warnings NOT_QUASI_STATIC comes first, then TOLERANCE, CELL_THIN, TANGENT_AFFINE; the text of any tells of
+ * an affine tangent too. */
 #define RVELAB_OK 0
 #define RVELAB_W_TOLERANCE 1        /* dt = 0: the error to be expected, estimate/2.75, is above the tolerance */
 #define RVELAB_W_NOT_QUASI_STATIC 2 /* dt = 0: the state is no equilibrium, the specimen flows or collapses */
@@ -109,10 +111,10 @@ typedef struct rvelab_pool_def {
                            start with the first batch that needs them */
   int32_t trial_memory; /* RVELAB_TRIAL_KEEP or RVELAB_TRIAL_RECOMPUTE */
   /* Of every specimen that a template is made from; 0: what the specimen says. */
-  double tolerance_rel;       /* dt = 0: error of an increment over max(|d sigma|, 0.1 |C : d eps|) */
+  double tolerance_rel;       /* dt = 0: error of an increment over max(|d sigma|, 0.1 |C : d eps|); both: at most 1 */
   double tolerance_abs;       /* dt = 0: added to that, over p, a thousandth of the specimen's own at least */
   int64_t max_substeps;       /* an increment that needs more is discarded */
-  double damping;             /* local damping, 0 < d < 1: share of the unbalanced force that opposes motion */
+  double damping;             /* local damping at any dt, 0 < d < 1: share of the unbalanced force against motion */
   double min_height;          /* m; shortest lattice vector allowed */
   rvelab_run_tasks run_tasks; /* the host's own task system; null: the pool's workers */
   void* host;                 /* first argument of run_tasks */
@@ -131,7 +133,8 @@ int32_t rvelab_pool_destroy(rvelab_pool* pool);
 /* ---- population ----
  *
  * An id names one RVE of one pool: pool tag (10 bits), generation (17), slot (26), at most 53 bits: exact in a double.
- * Zero is null. An id that was released, of another pool, or passed through single precision is RVELAB_E_ID.
+ * Zero is null. An id that was released, of another pool, or passed through single precision is RVELAB_E_ID. Pools
+ * that read one file (rvelab_pool_read) share its tag: an id of the one may then be one of the other.
  * A template is what RVEs are made from; it lives as long as its pool. */
 
 /* From a specimen file, or the end state of a record file. Needs librvelab-h5.so beside this library. */
@@ -182,7 +185,8 @@ typedef struct rvelab_batch {
   /* out; what is null is not computed, and what is asked for changes no bit of sigma */
   double* sigma;    /* [9 n], not null */
   double* contact;  /* [9 n] or null: stress of the contact forces, Pa */
-  double* reynolds; /* [9 n] or null: stress of the velocity fluctuations, Pa; zero at dt = 0; sigma is the sum */
+  double* reynolds; /* [9 n] or null: stress of the velocity fluctuations, Pa; sigma is the sum. Zero at dt = 0, unless
+                       the step before had dt > 0 and this one is no more than a rotation */
   double* tangent;  /* [36 n] or null: elastic tangent of the contact network at the end of the step, Pa, row-major
                        6 x 6: d sigma/d eps of the Cauchy stress (symmetric part) at zero spin, no contact slipping,
                        opening or closing; initial-stress terms included, not symmetrised. Rows and columns xx yy
@@ -226,12 +230,12 @@ typedef struct rvelab_info {
   double void_ratio;             /* overlaps not subtracted */
   double coordination_number;    /* 2 contacts/grains */
   double fabric[9];              /* mean of n (x) n over the contacts, trace 1; NaN without a contact */
-  double fabric_anisotropy;      /* of the contact normals: 2D a of (1 + a cos 2(theta - theta_a))/2 pi */
+  double fabric_anisotropy;      /* of the contact normals: 2D a of (1 + a cos 2(theta - theta_a))/2 pi; NaN as above */
   double sliding_fraction;       /* contacts on the Coulomb cone */
   double p;                      /* Pa, -tr(sigma)/dimension, compression positive */
   double q;                      /* Pa; with s the deviator 2D sqrt(s:s/2), 3D sqrt(3 s:s/2) */
   double unbalanced_force_ratio; /* mean resultant (or torque over radius, where larger) over mean contact force */
-  double inertial_number;        /* of the last step that was committed; dt = 0: zero */
+  double inertial_number;        /* of the last step that was committed; dt = 0: zero; infinite at p <= 0 */
   double permeability_ratio;     /* e^3/(1 + e) over its value when the RVE was spawned */
   double min_height_ratio;       /* least height of the cell over the mean diameter */
   int64_t grain_steps;           /* grains times sub-steps that led to this state since its specimen was made */
@@ -247,8 +251,8 @@ int32_t rvelab_info_init(rvelab_info* info, size_t struct_size);
 /* Fills info up to its struct_size. */
 int32_t rvelab_get_info(rvelab_pool* pool, int64_t id, rvelab_info* info);
 
-/* grain_steps[n]: grains times sub-steps made for each id in this pool, trials that were reverted included: its cost.
- */
+/* grain_steps[n]: grains times sub-steps made for each id in this pool: its cost. Trials that were reverted, discarded
+ * or made again are included. */
 int32_t rvelab_cost(rvelab_pool* pool, int64_t n, const int64_t* ids, int64_t* grain_steps);
 
 /* ---- state ----

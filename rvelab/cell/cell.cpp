@@ -75,9 +75,9 @@ int wrap_along(const Matrix3& lattice, int k, Vector3& position) {
     if (!(std::abs(total) <= largest)) break;
     for (int i = 0; i <= k; ++i) position[i] += shift * lattice(i, k);
   }
-  throw Error(std::string("wrapping: coordinate ") + axis[k] + " = " + text(position[k]) + " m in a cell " +
-              text(width) + " m wide; it must be finite and within 2^31 cell widths: the grain has been lost, use " +
-              "smaller time steps");
+  throw CellError(
+      std::string("wrapping: coordinate ") + axis[k] + " = " + text(position[k]) + " m in a cell " + text(width) +
+      " m wide; it must be finite and within 2^31 cell widths: the grain has been lost, use " + "smaller time steps");
 }
 
 }  // namespace

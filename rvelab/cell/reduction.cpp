@@ -30,7 +30,7 @@ constexpr double least_orthogonality = 0.7;  // V / product of lengths: sqrt(3)/
   char found[160];
   std::snprintf(found, sizeof found, "Lxx = %.6g, Lyy = %.6g, Lzz = %.6g, Lxy = %.6g, Lxz = %.6g, Lyz = %.6g m",
                 lattice(0, 0), lattice(1, 1), lattice(2, 2), lattice(0, 1), lattice(0, 2), lattice(1, 2));
-  throw Error("degenerate lattice (" + std::string(found) + "): " + reason);
+  throw CellError("degenerate lattice (" + std::string(found) + "): " + reason);
 }
 
 void check_lattice(const Matrix3& lattice) {

@@ -133,7 +133,7 @@ std::vector<KeyEntry> solver() {
       entry(t, "time_step_factor", "1", &SolverOptions::time_step_factor, ratio,
             "fraction of the critical step 2/omega_max"),
       entry(t, "fixed_time_step_s", "s", &SolverOptions::fixed_time_step, not_negative,
-            "dt > 0: exactly this step; 0: from time_step_factor and collision_steps"),
+            "dt > 0: equal steps of at most this; 0: from time_step_factor and collision_steps"),
       entry(
           t, "collision_steps", "1", &SolverOptions::collision_steps, {0, 100'000},
           "dt > 0: sub-steps of a collision where collisions carry the energy, 5 or more; 0: the critical step alone, "

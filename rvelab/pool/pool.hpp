@@ -1,8 +1,8 @@
 // A pool of RVEs: population, trials, states. What a host calls by way of rvelab/abi, as values and exceptions.
 //
 // Calls that work on RVEs may run at once; each holds the RVEs that it works on, and one that is held is busy to all
-// others. Calls for population and files are alone in the pool, or busy. All calls throw Refused; what they change is
-// then as it was.
+// others. Calls for population and files are alone in the pool, or busy. All calls throw Refused, add_template
+// and load InputError, apply InvalidIncrement and IncrementFailed too; what they change is then as it was.
 #pragma once
 
 #include <cstddef>

@@ -85,9 +85,9 @@ void Team::run(std::size_t count, const std::function<void(std::size_t)>& piece)
 
 void Team::share(std::size_t count, const std::function<void(std::size_t)>& piece) {
   constexpr std::size_t block = 32, least = 256;  // waking the threads takes some 10 us
-  if (count >= least && workers_) {
+  if (count >= least) {
     std::unique_lock lock(mutex_, std::try_to_lock);
-    if (lock)
+    if (lock && workers_)
       return workers_->run((count + block - 1) / block, [&piece, count](std::size_t part) {
         for (std::size_t k = part * block; k < std::min(count, (part + 1) * block); ++k) piece(k);
       });

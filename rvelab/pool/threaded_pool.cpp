@@ -38,7 +38,7 @@ void lay_over(const Options& options, Specimen& specimen) {
   if (options.tolerance_abs > 0) solver.absolute_tolerance = options.tolerance_abs;
   if (options.max_substeps > 0) solver.max_substeps = options.max_substeps;
   if (options.min_height > 0) solver.min_height = options.min_height;
-  if (options.damping > 0) specimen.damping.local = options.damping;
+  if (options.damping > 0) specimen.damping.local = specimen.damping.local_quasi_static = options.damping;
 }
 
 void check(const Options& options) {
@@ -48,8 +48,9 @@ void check(const Options& options) {
                                            "; allowed: " + range + ", or 0 for what the specimen says");
   };
   const auto positive = [](double value) { return value >= 0 && std::isfinite(value); };
-  expect(positive(options.tolerance_rel), "tolerance_rel", options.tolerance_rel, "a positive number");
-  expect(positive(options.tolerance_abs), "tolerance_abs", options.tolerance_abs, "a positive number");
+  const auto share = [](double value) { return value >= 0 && value <= 1; };
+  expect(share(options.tolerance_rel), "tolerance_rel", options.tolerance_rel, "above 0, at most 1");
+  expect(share(options.tolerance_abs), "tolerance_abs", options.tolerance_abs, "above 0, at most 1");
   expect(options.max_substeps >= 0, "max_substeps", double(options.max_substeps), "1 or more");
   expect(options.damping >= 0 && options.damping < 1, "damping", options.damping, "above 0 and below 1");
   expect(positive(options.min_height), "min_height", options.min_height, "a positive length in m");
@@ -105,9 +106,7 @@ std::vector<Hold> ThreadedPool::held(std::span<const std::int64_t> ids, std::uin
 
 /// An RVE that was called stays awake for the next call, so that steps of a few sub-steps do not pay for waking. It
 /// rests at once after a long call, or when it was not called while two rounds of calls went by.
-void ThreadedPool::called(Slot& slot, std::uint64_t grain_steps, long substeps) noexcept {
-  slot.grain_steps.fetch_add(grain_steps, std::memory_order_relaxed);
-  slot.last_grain_steps = grain_steps;
+void ThreadedPool::called(Slot& slot, long substeps) noexcept {
   slot.last_call.store(clock_.fetch_add(1, std::memory_order_relaxed), std::memory_order_relaxed);
   const bool rests = substeps >= long_call;
   if (rests) slot.resident->rve.rest();

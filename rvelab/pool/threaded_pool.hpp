@@ -78,7 +78,7 @@ class ThreadedPool final : public Share {
   Hold held(std::int64_t id, std::uint64_t call);
   std::vector<Hold> held(std::span<const std::int64_t> ids, std::uint64_t call);
   std::vector<Hold> all_pending(std::uint64_t call);
-  void called(Slot& slot, std::uint64_t grain_steps, long substeps) noexcept;
+  void called(Slot& slot, long substeps) noexcept;
   void rest_another() noexcept;
   Outcome attempt(Slot& slot, const Matrix3& displacement_gradient, double dt, const Batch& wanted);
   void accept(Slot& slot, std::int64_t token, const Matrix3& displacement_gradient);

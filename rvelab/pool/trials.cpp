@@ -14,6 +14,7 @@
 #include "rvelab/pool/checks.hpp"
 #include "rvelab/pool/hold.hpp"
 #include "rvelab/pool/threaded_pool.hpp"
+#include "rvelab/solver/loading/accuracy.hpp"
 
 namespace rvelab::pool {
 
@@ -49,7 +50,7 @@ Verdict verdict_of(const Report& report, double dt) {
     std::snprintf(text, sizeof text,
                   "the stress has an expected error of %g Pa; the tolerance allows %g Pa: take it as it is, or widen "
                   "tolerance_rel or tolerance_abs",
-                  report.error_estimate / 2, report.allowed_error);
+                  report.error_estimate / estimate_margin, report.allowed_error);
   } else if (report.cell_thin) {
     status = Status::cell_thin;
     std::snprintf(text, sizeof text,
@@ -57,6 +58,17 @@ Verdict verdict_of(const Report& report, double dt) {
                   "use a larger specimen");
   }
   return status == Status::ok ? Verdict{} : Verdict{status, text};
+}
+
+/// A warning that stands already keeps its place.
+void tell_of_affine_tangent(Verdict& verdict) {
+  const char* const text =
+      "the contact network has no elastic tangent that balances its grains; the affine one, which is stiffer, was "
+      "written";
+  if (verdict.status == Status::ok)
+    verdict = {Status::tangent_affine, text};
+  else
+    verdict.text += std::string("; and ") + text;
 }
 
 /// xx yy zz yz xz xy whatever the dimension; false: the affine one.
@@ -78,6 +90,22 @@ bool elastic(const Network& network, Tangent& tangent) {
     }
   return condensed;
 }
+
+/// Books what is made for an RVE from now on, failed trials too.
+class Cost {
+ public:
+  explicit Cost(Slot& slot) : slot_(slot), before_(slot.resident->rve.grain_steps_made()) {}
+  ~Cost() {
+    slot_.last_grain_steps = slot_.resident->rve.grain_steps_made() - before_;
+    slot_.grain_steps.fetch_add(slot_.last_grain_steps, std::memory_order_relaxed);
+  }
+  Cost(const Cost&) = delete;
+  Cost& operator=(const Cost&) = delete;
+
+ private:
+  Slot& slot_;
+  std::uint64_t before_;
+};
 
 void store(const Matrix3& tensor, double* to) {
   Eigen::Map<RowMajor> target(to);
@@ -108,18 +136,14 @@ ThreadedPool::Outcome ThreadedPool::attempt(Slot& slot, const Matrix3& displacem
   rve.revert();
   resident.pending = false;
   slot.awake.store(true, std::memory_order_relaxed);
-  const std::uint64_t before = rve.grain_steps();
+  const Cost cost(slot);
   Outcome outcome;
   outcome.response =
       rve.attempt(displacement_gradient, dt, {wanted.contact_stress != nullptr || wanted.reynolds_stress != nullptr});
-  const std::uint64_t made = rve.grain_steps() - before;
   try {
     const Report& report = outcome.response.report;
     outcome.verdict = verdict_of(report, dt);
-    if (wanted.tangent != nullptr && !elastic(rve.network(), outcome.tangent) && outcome.verdict.status == Status::ok)
-      outcome.verdict = {Status::tangent_affine,
-                         "the contact network has no elastic tangent that balances its grains; the affine one, which "
-                         "is stiffer, was written"};
+    if (wanted.tangent != nullptr && !elastic(rve.network(), outcome.tangent)) tell_of_affine_tangent(outcome.verdict);
   } catch (...) {
     rve.revert();
     throw;
@@ -127,14 +151,16 @@ ThreadedPool::Outcome ThreadedPool::attempt(Slot& slot, const Matrix3& displacem
   outcome.token = resident.tokens.add(displacement_gradient, dt);
   resident.trial_inertial_number = outcome.response.report.inertial_number;
   resident.pending = true;
-  called(slot, made, outcome.response.report.substeps);
+  called(slot, outcome.response.report.substeps);
   return outcome;
 }
 
 namespace {
 
 /// The trial is made again; it is pending then.
-void make_again(Resident& resident, const TrialRecord& record) {
+void make_again(Slot& slot, const TrialRecord& record) {
+  const Cost cost(slot);
+  Resident& resident = *slot.resident;
   const Response response = resident.rve.attempt(record.displacement_gradient, record.dt);
   resident.trial_inertial_number = response.report.inertial_number;
 }
@@ -160,7 +186,7 @@ void ThreadedPool::accept(Slot& slot, std::int64_t token, const Matrix3& displac
   if (!resident.rve.pending() || last_token(resident.tokens) != token || !resident.pending) {
     resident.pending = false;
     slot.awake.store(true, std::memory_order_relaxed);
-    make_again(resident, *record);
+    make_again(slot, *record);
   }
   settle(resident, token);
 }
@@ -205,14 +231,13 @@ Verdict ThreadedPool::trial(const Batch& batch) {
   std::vector<Hold> holds(n);
   std::vector<Entry> entries(n);
   const auto hold = [&](std::size_t k) {
-    Hold taken = held(batch.ids[k], call);
-    const Tokens& tokens = taken.resident().tokens;
+    holds[k] = held(batch.ids[k], call);  // to the end of the call, so that the same id again is a duplicate
+    const Tokens& tokens = holds[k].resident().tokens;
     if (batch.tokens_in != nullptr && batch.tokens_in[k] != tokens.committed() &&
         tokens.find(batch.tokens_in[k]) == nullptr)
       throw Refused(Status::stale_token, "token " + std::to_string(batch.tokens_in[k]) +
                                              " names no state of this RVE any more; valid: " + tokens.in_words());
-    entries[k] = {k, &taken.slot(), taken.slot().last_grain_steps, {}};
-    holds[k] = std::move(taken);
+    entries[k] = {k, &holds[k].slot(), holds[k].slot().last_grain_steps, {}};
   };
   if (!team_.share_all(n, hold)) {  // one by one then: the same entry is refused on any number of threads
     for (Hold& let_go : holds) let_go = Hold();
@@ -280,21 +305,22 @@ void ThreadedPool::prepare(std::span<const Hold> holds, std::span<const std::int
       throw Refused(Status::no_trial, "commit: entry " + std::to_string(places.empty() ? std::int64_t(k) : places[k]) +
                                           " (id " + std::to_string(ids[k]) +
                                           ") has no pending trial; nothing was committed. Make a trial first");
-  std::vector<Resident*> again;
+  std::vector<Slot*> again;
   for (std::size_t k = 0; k < holds.size(); ++k)
-    if (found[k] == let_go) again.push_back(&holds[k].resident());
+    if (found[k] == let_go) again.push_back(&holds[k].slot());
   if (again.empty()) return;
   std::vector<Verdict> verdicts(again.size());
   team_.run(again.size(), [&](std::size_t k) {
     try {
-      make_again(*again[k], again[k]->tokens.trial(again[k]->tokens.trials() - 1));
+      const Tokens& tokens = again[k]->resident->tokens;
+      make_again(*again[k], tokens.trial(tokens.trials() - 1));
     } catch (...) {
       verdicts[k] = verdict_of_failure();
     }
   });
   for (const Verdict& verdict : verdicts) {
     if (verdict.status == Status::ok) continue;
-    for (Resident* resident : again) resident->rve.revert();
+    for (Slot* slot : again) slot->resident->rve.revert();
     throw Refused(verdict.status, "commit: " + verdict.text);
   }
 }

@@ -161,6 +161,13 @@ void Served::perform(Call call, Unpacker& given, Packer& found) {
       share_->revert(ids_or_all(ids, all));
       return;
     }
+    case Call::cost: {
+      const auto ids = given.take_all<std::int64_t>();
+      std::vector<std::int64_t> costs(ids.size());
+      share_->cost(ids, costs.data());
+      found.put_all(std::span<const std::int64_t>(costs));
+      return;
+    }
     case Call::info: {
       const pool::Info info = share_->info(given.take<std::int64_t>());
       each_field(info, [&](const auto& value) { found.put(value); });

@@ -21,6 +21,7 @@ enum class Call : std::int32_t {
   commit,
   revert,
   info,
+  cost,
   save,
   load,
   receive,

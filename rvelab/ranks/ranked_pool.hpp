@@ -46,7 +46,7 @@ class RankedPool final : public pool::Pool {
     int rank = 0;
     std::uint64_t call = 0;        ///< the last that named it
     std::int64_t cost_before = 0;  ///< grain-steps at the ranks it was at before
-    std::int64_t cost = 0;         ///< grain-steps in all
+    std::int64_t cost = 0;         ///< grain-steps in all, at its last trial
     double expected = 0;           ///< grain-steps of the next call: half the last, a quarter of that before, ...
   };
   /// Messages by rank; empty: none for that rank.
@@ -62,6 +62,7 @@ class RankedPool final : public pool::Pool {
   void expect_all_done(const Messages& messages);
   Answer ask(int rank, const Bytes& message);
   Bytes saved(std::int64_t id);
+  std::vector<std::int64_t> costs_at(int rank, std::span<const std::int64_t> ids);
   void make_room(std::size_t n);
   std::vector<std::vector<std::size_t>> by_rank(std::span<const std::int64_t> ids);
   Messages of_ids(Call call, std::span<const std::int64_t> ids, bool with_places);

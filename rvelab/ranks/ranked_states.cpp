@@ -16,7 +16,24 @@ pool::Info RankedPool::info(std::int64_t id) {
 void RankedPool::cost(std::span<const std::int64_t> ids, std::int64_t* grain_steps) {
   const Lock lock = at_work();
   for (const std::int64_t id : ids) ids_.slot_of(id);
-  for (const std::int64_t id : ids) *grain_steps++ = place_of(id).cost;
+  std::vector<std::vector<std::int64_t>> of_rank(population_.size());
+  std::vector<std::vector<std::size_t>> entries(population_.size());
+  for (std::size_t k = 0; k < ids.size(); ++k) {
+    const auto rank = std::size_t(place_of(ids[k]).rank);
+    of_rank[rank].push_back(ids[k]);
+    entries[rank].push_back(k);
+  }
+  for (std::size_t rank = 0; rank < of_rank.size(); ++rank) {
+    if (of_rank[rank].empty()) continue;
+    const std::vector<std::int64_t> costs = costs_at(int(rank), of_rank[rank]);
+    for (std::size_t k = 0; k < costs.size(); ++k)
+      grain_steps[entries[rank][k]] = place_of(of_rank[rank][k]).cost_before + costs[k];
+  }
+}
+
+/// What RVEs cost since they came to that rank, where they are. A commit that made a trial again is in it.
+std::vector<std::int64_t> RankedPool::costs_at(int rank, std::span<const std::int64_t> ids) {
+  return ask(rank, message(Call::cost).put_all(ids).take()).found().take_all<std::int64_t>();
 }
 
 Bytes RankedPool::saved(std::int64_t id) {

@@ -195,7 +195,9 @@ void RankedPool::balance(std::span<const std::int64_t> ids) {
 }
 
 void RankedPool::move(int from, int to, std::span<const std::int64_t> ids) {
+  std::vector<std::int64_t> costs;
   try {
+    costs = costs_at(from, ids);
     Answer saved = ask(from, message(Call::save).put_all(ids).take());
     ask(to, message(Call::receive).put_rest(saved.found().rest()).take());
     ask(to, message(Call::place).put_all(ids).take());
@@ -204,10 +206,11 @@ void RankedPool::move(int from, int to, std::span<const std::int64_t> ids) {
     return;
   }
   ask(from, message(Call::give_up).put_all(ids).take());
-  for (const std::int64_t id : ids) {
-    Place& place = place_of(id);
+  for (std::size_t k = 0; k < ids.size(); ++k) {
+    Place& place = place_of(ids[k]);
     place.rank = to;
-    place.cost_before = place.cost;
+    place.cost_before += costs[k];
+    place.cost = place.cost_before;
     --population_[std::size_t(from)];
     ++population_[std::size_t(to)];
   }

@@ -73,9 +73,12 @@ void Rve::Impl::expect_substeps(long made, long needed) const {
 Report Rve::Impl::load(const FrameSplit& increment, const Matrix3& dh, double dt) {
   Report report;
   if (dt == 0 && increment.rigid) {
-    report.unbalanced_ratio = unbalanced(balance_of(fixture, now));
+    // The path that led here is what is judged, as it was at its end; a rotation adds nothing.
+    const bool known = now.state.quasi_static && now.state.look_steps >= 0;
+    report.unbalanced_ratio = known ? now.state.unbalanced_ratio : unbalanced(balance_of(fixture, now));
     judge(report);
-    estimate_error(0, 0, present_stress(), report.unbalanced_ratio, 0, report);
+    estimate_error(0, network_change(now.state.leg_strain), present_stress(), report.unbalanced_ratio,
+                   has_deferred() ? extrapolated(now.state.deferred_stretch).error : 0.0, report);
     if (dh.isZero(0)) return report;
     const Matrix3 turned = (Matrix3::Identity() + dh) * now.cell.rotation;
     const bool quarter_turn = (dh + Matrix3::Identity()).unaryExpr([](double x) { return x * x * x - x; }).isZero(0);

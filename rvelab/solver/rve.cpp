@@ -113,6 +113,7 @@ double Rve::unbalanced_ratio() const {
 const Cell& Rve::cell() const { return impl_->has_deferred() ? impl_->strained_cell : impl_->now.cell; }
 std::size_t Rve::size() const { return impl_->fixture.size(); }
 std::uint64_t Rve::grain_steps() const { return impl_->now.state.grain_steps; }
+std::uint64_t Rve::grain_steps_made() const { return impl_->grain_steps_made; }
 
 double Rve::critical_time_step() const {
   return at_work(*impl_, [](const Impl& m) { return critical_step(m.fixture, row_sums(m.fixture, m.now)); });
@@ -192,11 +193,12 @@ void Rve::share(Workers* team) { impl_->fixture.team = team; }
 void Rve::watch(const std::atomic<bool>* stop) { impl_->fixture.stop = stop; }
 
 void Rve::set_materials(const std::vector<Material>& materials) {
-  Impl& m = impl_->up_to_date();
+  Impl& m = impl_->at_work();
   if (materials.size() != m.fixture.materials.size())
     throw InputError("set_materials: " + std::to_string(materials.size()) + " materials; the specimen has " +
                      std::to_string(m.fixture.materials.size()));
   check_parameters(m.fixture.contact, m.fixture.damping, materials);
+  m.up_to_date();
   m.fixture.materials = materials;
   std::vector<double> mass(m.fixture.size()), inertia(m.fixture.size());
   for (std::size_t g = 0; g < m.fixture.size(); ++g) {
@@ -228,7 +230,7 @@ void Rve::set_materials(const std::vector<Material>& materials) {
 }
 
 void Rve::set_velocities(const std::vector<Vector3>& velocity, const std::vector<Vector3>& spin) {
-  Impl& m = impl_->up_to_date();
+  Impl& m = impl_->at_work();
   if (velocity.size() != size() || spin.size() != size())
     throw InputError("set_velocities: " + std::to_string(velocity.size()) + " velocities and " +
                      std::to_string(spin.size()) + " spins; the specimen has " + std::to_string(size()) + " grains");
@@ -238,6 +240,7 @@ void Rve::set_velocities(const std::vector<Vector3>& velocity, const std::vector
     if (!velocity[index(place)].allFinite() || !spin[index(place)].allFinite())
       throw InputError("set_velocities: the velocity or spin of grain " + std::to_string(m.fixture.id[place]) +
                        " is not finite; give finite numbers");
+  m.up_to_date();
   begin_loading(m.fixture, m.now, Loading::physical);
   for (std::size_t place = 0; place < size(); ++place)
     m.now.set_velocity(m.fixture, place, velocity[index(place)], spin[index(place)]);
@@ -258,6 +261,7 @@ std::vector<std::byte> Rve::save() const { return to_bytes(specimen()); }
 void Rve::restore(std::span<const std::byte> snapshot) {
   Rve restored(from_bytes(snapshot));
   restored.watch(impl_->fixture.stop);
+  restored.measure_time(impl_->fixture.times);
   restored.share(impl_->fixture.team);
   *this = std::move(restored);
 }

@@ -48,7 +48,7 @@ struct Report {
 struct Response {
   Matrix3 stress = Matrix3::Zero();                 ///< Cauchy, laboratory frame, tension positive, Pa
   Matrix3 contact_stress = Matrix3::Zero();         ///< on request
-  Matrix3 reynolds_stress = Matrix3::Zero();        ///< on request; zero at dt = 0
+  Matrix3 reynolds_stress = Matrix3::Zero();        ///< on request; dt = 0: zero, but after dt > 0 while only rotated
   Matrix3 displacement_gradient = Matrix3::Zero();  ///< what was applied (mixed targets: what was found)
   Report report;
 };
@@ -114,6 +114,8 @@ class Rve {
   std::size_t size() const;           ///< number of grains
   double critical_time_step() const;  ///< 2/omega_max with physical masses, s
   std::uint64_t grain_steps() const;  ///< grains times sub-steps since the specimen was made
+  /// The same of all calls of this Rve, failed and reverted ones too: what they cost. No part of the state.
+  std::uint64_t grain_steps_made() const;
 
   /// Contacts and grains in the cell frame, in the order of the specimen; after an increment that left its strain to
   /// the next sub-step, those of a copy that makes it.
@@ -162,7 +164,8 @@ class Rve {
   void zero_velocities();
 
   /// Bitwise snapshot of everything that decides the next bit, for builds whose specimens have the same fields (a
-  /// specimen file carries a state further), and the way back. The flag of watch() and the team of share() stay.
+  /// specimen file carries a state further), and the way back. The flag of watch(), the team of share() and
+  /// measure_time() stay.
   /// restore takes any number of grains, materials and either shape: what the Rve held before does not matter. It
   /// throws InputError, and the RVE is then exactly as it was, if the bytes do not begin as a snapshot, are of a build
   /// with other fields, have another length than their head says, do not fit their checksum, hold a length, a choice or

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "rvelab/error.hpp"
 #include "rvelab/solver/assembly/assembly.hpp"
 #include "rvelab/solver/loading/inertia.hpp"
 #include "rvelab/solver/loading/stepping.hpp"
@@ -27,7 +28,8 @@ struct TimeStep {
 struct Rve::Impl {
   Fixture fixture;
   Assembly now;
-  bool resting = false;  ///< only what rest() keeps is there
+  std::uint64_t grain_steps_made = 0;  ///< by all trials, whatever became of them
+  bool resting = false;                ///< only what rest() keeps is there
   Trial trial;
   RowSums sums;  ///< of stiffness; those of `now` while sums_hold
   bool sums_hold = false;
@@ -100,16 +102,24 @@ struct Rve::Impl {
   void begin_trial(Trial::Changes changes);
   void exchange() noexcept;
   void revert() noexcept;
-  void settle() noexcept;  ///< what is in `now` is the state, and no trial is pending
+  void give_up(std::uint64_t grain_steps_before) noexcept;  ///< a trial that failed is reverted; what it made counts
+  void settle() noexcept;                                   ///< what is in `now` is the state, and no trial is pending
 
-  /// Runs `work` as a trial, which is then pending; if it throws, the trial is reverted and the exception goes on.
+  /// Runs `work` as a trial, which is then pending; if it throws, the trial is reverted and the exception goes on, a
+  /// CellError as IncrementFailed.
   template <class Work>
   auto tried(Trial::Changes changes, Work work) {
     begin_trial(changes);
+    const std::uint64_t before = now.state.grain_steps;
     try {
-      return work();
+      auto result = work();
+      grain_steps_made += now.state.grain_steps - before;
+      return result;
+    } catch (const CellError& error) {
+      give_up(before);
+      throw IncrementFailed(error.what());
     } catch (...) {
-      revert();
+      give_up(before);
       throw;
     }
   }

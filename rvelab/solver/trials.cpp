@@ -41,6 +41,11 @@ void Rve::Impl::revert() noexcept {
   settle();
 }
 
+void Rve::Impl::give_up(std::uint64_t grain_steps_before) noexcept {
+  grain_steps_made += now.state.grain_steps - grain_steps_before;
+  revert();
+}
+
 void Rve::Impl::settle() noexcept {
   trial.end(now);
   if (resting || fixture.size() > largest_kept_scratch) trial.release();
@@ -77,10 +82,9 @@ Response Rve::apply(const Matrix3& displacement_gradient, double dt, const Want&
   const CallClock clock(m.fixture.times);
   const FrameSplit split = split_increment(m.now.cell, displacement_gradient);
   // What is deferred moves no grain and cannot fail: no trial is needed.
-  const Report report = dt == 0 && m.may_defer(split)
-                            ? m.defer(split)
-                            : m.guarded([&] { return m.load(split, displacement_gradient, dt); });
-  return m.respond(report, displacement_gradient, dt, want);
+  if (dt == 0 && m.may_defer(split)) return m.respond(m.defer(split), displacement_gradient, dt, want);
+  return m.guarded(
+      [&] { return m.respond(m.load(split, displacement_gradient, dt), displacement_gradient, dt, want); });
 }
 
 Response Rve::apply(const MixedTarget& target, double dt, const Want& want) {
@@ -88,14 +92,13 @@ Response Rve::apply(const MixedTarget& target, double dt, const Want& want) {
   expect_time(dt);
   const CallClock clock(m.fixture.times);
   Matrix3 gradient = Matrix3::Zero();
-  const Report report = m.guarded([&] {
+  return m.guarded([&] {
     const long deferred = m.make_deferred();
     m.now.state.stress_slope.setZero();
     Report made = m.load(target, dt, gradient);
     made.substeps += deferred;
-    return made;
+    return m.respond(made, gradient, dt, want);
   });
-  return m.respond(report, gradient, dt, want);
 }
 
 bool Rve::pending() const { return impl_->trial.pending(); }

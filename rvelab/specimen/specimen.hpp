@@ -40,7 +40,7 @@ struct Contact {
 struct SolverOptions {
   double skin = 0.15;                ///< largest Verlet skin over the mean radius, > 0; fitted down while steps pass
   double time_step_factor = 0.7;     ///< fraction of the critical step 2/omega_max, 0 < f < 1
-  double fixed_time_step = 0;        ///< s; > 0: dt > 0 loading uses exactly this step
+  double fixed_time_step = 0;        ///< s; > 0: dt > 0 loading uses equal steps, at most this long
   long collision_steps = 100;        ///< dt > 0: sub-steps of a collision where collisions carry the energy; 0: the
                                      ///< critical step alone (collisions.hpp)
   double relative_tolerance = 1e-2;  ///< dt = 0: error of an increment over max(|d sigma|, 0.1 |C : d eps|)
@@ -83,7 +83,7 @@ struct SolverState {
   Matrix3 deferred_stretch = Matrix3::Identity();  ///< dt = 0: applied, but left to the next sub-step; cell frame
   Matrix3 stress_slope =
       Matrix3::Zero();              ///< dt = 0: of the last increment, over the norm of its strain, cell frame, Pa
-  double slope_error = 0;           ///< dt = 0: what the slope before it missed of its change of stress, Pa
+  double slope_error = 0;           ///< dt = 0: twice what slopes missed of the next, which fades (0.7), Pa
   std::int64_t look_steps = -1;     ///< dt = 0: sub-steps since masses were scaled; < 0: they are not
   std::vector<double> scaled_mass;  ///< dt = 0: masses in use, N/m (the sub-step is 1); empty: to be scaled
   std::vector<double> scaled_inverse_inertia;  ///< the same: 1 over the moments of inertia, 1/(N m)

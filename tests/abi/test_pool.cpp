@@ -90,6 +90,87 @@ TEST_CASE("Costs count grains times sub-steps, trials that were reverted too") {
   CHECK((cost[0] == made && cost[1] == 3 * made));
 }
 
+TEST_CASE("Costs count what was discarded, and trials that a commit makes again") {
+  rvelab_pool_def def = default_def();
+  def.trial_memory = RVELAB_TRIAL_RECOMPUTE;
+  Host host(def);
+  Trials trials(host.spawn(packed(Shape::disc, 6)));
+  std::int64_t once = 0, cost = 0;
+  trials.dH[0] = Nine{1e-4};
+  REQUIRE_OK(rvelab_trial(host.pool, &trials.batch));
+  REQUIRE_OK(rvelab_cost(host.pool, 1, trials.ids.data(), &once));
+  CHECK(once > 0);
+  REQUIRE_OK(rvelab_commit(host.pool, 1, trials.ids.data()));
+  REQUIRE_OK(rvelab_cost(host.pool, 1, trials.ids.data(), &cost));
+  CHECK(cost == 2 * once);
+
+  const std::int64_t made = host.info(trials.ids[0]).grain_steps;
+  trials.dH[0] = Nine{-0.3, 0, 0, 0, -0.3};  // grains come to overlap by more than is allowed
+  CHECK_STATUS(rvelab_trial(host.pool, &trials.batch), RVELAB_DISCARD);
+  REQUIRE_OK(rvelab_cost(host.pool, 1, trials.ids.data(), &once));
+  CHECK(once > cost);
+  CHECK(host.info(trials.ids[0]).grain_steps == made);
+}
+
+TEST_CASE("No increment at all, and a rotation, are judged as the path that led to them") {
+  for (const double piece : {1e-5, 1e-7}) {  // of 1e-7 some are left to the next sub-step
+    Host host;
+    Trials trials(host.spawn(packed(Shape::disc, 6)));
+    trials.ask_for_all();
+    for (int k = 0; k < 40; ++k) {
+      trials.dH[0] = Nine{0.3 * piece, 0, 0, 0, -piece};
+      const std::int32_t verdict = rvelab_trial(host.pool, &trials.batch);
+      REQUIRE_OK(verdict);
+      REQUIRE_OK(rvelab_commit(host.pool, 1, trials.ids.data()));
+      const double estimate = trials.error_estimate[0];
+      const Nine sigma = trials.sigma[0];
+      for (const Nine& still : {Nine{}, Nine{-2, 0, 0, 0, -2}}) {  // half a turn
+        trials.dH[0] = still;
+        CHECK_STATUS(rvelab_trial(host.pool, &trials.batch), verdict);
+        CHECK((matrix_of(trials.sigma[0]) - matrix_of(sigma)).norm() <= 1e-12 * matrix_of(sigma).norm());
+        CHECK(trials.error_estimate[0] == Approx(estimate));
+      }
+    }
+  }
+}
+
+TEST_CASE("A cell that an increment skews beyond double precision is discarded, at rest and at rate") {
+  for (const double dt : {0.0, 1e-12})
+    for (const double shear : {1e8, 1e10}) {
+      Host host;
+      Trials trials(host.spawn(packed(Shape::disc, 4)));
+      const auto before = host.snapshot(trials.ids[0]);
+      trials.batch.dt = dt;
+      trials.dH[0][3] = shear;
+      CHECK_STATUS(rvelab_trial(host.pool, &trials.batch), RVELAB_DISCARD);
+      CHECK(trials.dt_scale[0] == 0.5);
+      CHECK(host.snapshot(trials.ids[0]) == before);
+    }
+}
+
+TEST_CASE("An id that stands twice is a duplicate, whichever token is stale") {
+  Host host;
+  const std::int64_t id = host.spawn(packed(Shape::disc, 4))[0];
+  const std::int64_t committed = host.info(id).token;
+  Trials trials({id, id});
+  trials.batch.tokens_in = trials.tokens.data();
+  for (const auto& tokens : {std::vector<std::int64_t>{77, committed}, {committed, 77}, {77, 77}}) {
+    trials.tokens = tokens;
+    trials.batch.tokens_in = trials.tokens.data();
+    trials.batch.tokens_out = nullptr;
+    CHECK_STATUS(rvelab_trial(host.pool, &trials.batch), RVELAB_E_DUPLICATE);
+    CHECK_STATUS(rvelab_commit(host.pool, 1, &id), RVELAB_E_NO_TRIAL);
+  }
+}
+
+TEST_CASE("A tolerance of the pool above one is refused where the pool is made") {
+  rvelab_pool_def def = default_def();
+  rvelab_pool* pool = nullptr;
+  def.tolerance_rel = 2;
+  CHECK_STATUS(rvelab_pool_create(&def, &pool), RVELAB_E_INPUT);
+  CHECK(std::strstr(rvelab_last_error(), "tolerance_rel is 2") != nullptr);
+}
+
 TEST_CASE("info tells of the committed state while a trial is pending") {
   for (const Shape shape : {Shape::disc, Shape::sphere}) {
     const Specimen& start = packed(shape, shape == Shape::disc ? 6 : 4);
@@ -155,6 +236,7 @@ TEST_CASE("Options of the pool are laid over those of the specimen") {
   const Specimen state = host.state(ids[0]);
   CHECK((state.solver.relative_tolerance == 0.03 && state.solver.absolute_tolerance == 2e-4));
   CHECK((state.solver.max_substeps == 5 && state.damping.local == 0.35 && state.solver.min_height == 0.001));
+  CHECK(state.damping.local_quasi_static == 0.35);
   Trials trials(ids);
   trials.dH[0] = Nine{5e-3};
   CHECK(rvelab_trial(host.pool, &trials.batch) == RVELAB_DISCARD);

@@ -130,6 +130,11 @@ TEST_CASE("A turn, a reversal, a rotation and a refusal meet deferred strain", "
   CHECK_THROWS_AS(refused.apply(gradient(-0.4, 0, 0, -0.4), 0), IncrementFailed);
   CHECK(refused.save() == before);
 
+  // Parameters and velocities that are refused do not make it either.
+  CHECK_THROWS_AS(refused.set_materials({}), InputError);
+  CHECK_THROWS_AS(refused.set_velocities({}, {}), InputError);
+  CHECK(refused.save() == before);
+
   Rve at_rate = way;  // physical masses know no deferred strain
   const Matrix3 increment = 1e-7 * forward;
   at_rate.apply(increment, 10 * at_rate.critical_time_step());

@@ -28,7 +28,7 @@ TEST_CASE("The parts of the time make up no more than the calls, and measuring c
   CHECK(times.calls == calls);
 }
 
-TEST_CASE("Copies add their time to the same sums", "[solver]") {
+TEST_CASE("Copies add their time to the same sums, and so does a state that was restored", "[solver]") {
   Rve rve(recorded("dense"));
   StepTimes times;
   rve.measure_time(&times);
@@ -38,4 +38,8 @@ TEST_CASE("Copies add their time to the same sums", "[solver]") {
   CHECK(of_copy > 0);
   rve.relax(1e-9, 50);
   CHECK(times.calls > of_copy);
+  const double before = times.calls;
+  rve.restore(copy.save());
+  rve.relax(1e-9, 50);
+  CHECK(times.calls > before);
 }

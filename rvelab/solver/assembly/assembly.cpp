@@ -139,6 +139,8 @@ void open_assembly(const Specimen& specimen, Fixture& f, Assembly& a) {
     if (!a.state.has_reference) rebuild(f, a);
   } catch (const IncrementFailed& error) {
     throw InputError(std::string("specimen: ") + error.what());
+  } catch (const CellError& error) {
+    throw InputError(std::string("specimen: ") + error.what());
   }
 }
 

@@ -36,7 +36,8 @@ std::string edges_in_words(const Cell& cell) {
 
 }  // namespace
 
-double allowed_pairs(std::size_t grains) { return std::min(1e9, std::max(1e5, 1e3 * double(grains))); }
+// Places of forces are 32-bit numbers, eight to a pair of spheres.
+double allowed_pairs(std::size_t grains) { return std::min(2.6e8, std::max(1e5, 1e3 * double(grains))); }
 
 double allowed_looks(std::size_t grains) { return std::max(1e7, 1e4 * double(grains)); }
 

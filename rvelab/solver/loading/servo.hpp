@@ -28,7 +28,7 @@ class Servo {
   /// Norm of the strain that the whole target asks for by the present gain.
   double predicted_strain() const;
 
-  /// Strain of the next segment, symmetric: the target's fraction goes from `from` to `to` (both in [0, 1]).
+  /// Strain of the next segment, symmetric: the target's fraction goes on to `to` (in [0, 1]).
   /// `paced_strain` is the share of the predicted strain that the segment makes, `full_pace` what a full segment would;
   /// the answer to stress errors is cut at ten times that. `integral` is the strain per unit of paced strain that
   /// the sum of the errors has found (laboratory frame); it is updated.

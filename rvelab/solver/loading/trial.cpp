@@ -21,7 +21,12 @@ void Trial::begin(Assembly& a, Changes changes) {
   root_overlap_ = a.pairs.root_overlap;
   std::vector<Vector3> positions;
   positions.swap(a.state.list_positions);
-  state_ = a.state;
+  try {
+    state_ = a.state;
+  } catch (...) {  // no memory: nothing has begun
+    positions.swap(a.state.list_positions);
+    throw;
+  }
   positions.swap(a.state.list_positions);
   replaced_.list_taken = replaced_.masses_taken = false;
   a.keeper.of_trial = &replaced_;
