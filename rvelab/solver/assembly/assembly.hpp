@@ -100,12 +100,12 @@ struct Replaced {
 };
 
 /// Where a pending trial puts what is replaced; a copy of the assembly has no trial.
-struct Keeper {
-  Replaced* of_trial = nullptr;
-  Keeper() = default;
-  Keeper(const Keeper&) noexcept {}
-  Keeper& operator=(const Keeper&) noexcept {
-    of_trial = nullptr;
+struct TrialLink {
+  Replaced* replaced = nullptr;
+  TrialLink() = default;
+  TrialLink(const TrialLink&) noexcept {}
+  TrialLink& operator=(const TrialLink&) noexcept {
+    replaced = nullptr;
     return *this;
   }
 };
@@ -117,7 +117,7 @@ struct Assembly {
   Buffer mass, inverse_mass, inverse_inertia;  ///< those in use: physical, or scaled at dt = 0
   PairTable pairs;
   SolverState state;
-  Keeper keeper;
+  TrialLink trial;
 
   Vector3 position(const Fixture& f, std::size_t g) const;
   Vector3 velocity(const Fixture& f, std::size_t g) const;  ///< fluctuation, in the units of the mode in use

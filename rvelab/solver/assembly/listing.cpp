@@ -91,7 +91,7 @@ void fill(const Fixture& f, const std::vector<ListedPair>& listed, const std::ve
                        "the positions");
   }
 
-  if (Replaced* kept = a.keeper.of_trial; kept != nullptr && !kept->list_taken) {
+  if (Replaced* kept = a.trial.replaced; kept != nullptr && !kept->list_taken) {
     std::swap(a.pairs, kept->list);
     std::swap(a.state.list_positions, kept->list_positions);
     kept->list_taken = true;

@@ -18,16 +18,16 @@ bool points_forward(const Image& image) {
 namespace {
 
 /// Where a bin coordinate outside the cell lands, and by how many periods.
-struct Landing {
+struct PeriodicBin {
   int bin, shift;
 };
 
-/// Landings of the bin coordinates -reach .. count - 1 + reach.
-void fill_landings(int count, int reach, std::vector<Landing>& landings) {
-  landings.clear();
+/// Of the bin coordinates -reach .. count - 1 + reach.
+void fill_periodic_bins(int count, int reach, std::vector<PeriodicBin>& bins) {
+  bins.clear();
   for (int place = -reach; place < count + reach; ++place) {
     const int shift = place >= 0 ? place / count : -((count - 1 - place) / count);
-    landings.push_back({place - shift * count, shift});
+    bins.push_back({place - shift * count, shift});
   }
 }
 
@@ -46,7 +46,7 @@ class Search {
     const Vector3 height = heights(cell);
     for (int k = 0; k < 3; ++k) {
       reach_[k] = int(bins_in_reach(cell, height, c, radius + c.largest_radius + skin, k));
-      fill_landings(c.count[k], reach_[k], landings_[k]);
+      fill_periodic_bins(c.count[k], reach_[k], periodic_bins_[k]);
     }
     for (int home = 0; home < c.count[0]; ++home) {
       runs_.push_back(runs_of(home, 0));
@@ -80,8 +80,8 @@ class Search {
   template <class Look>
   void each_row(const Placed& p, bool own_class, const Look& look) const {
     const SizeClass& c = class_;
-    const Landing* first[3];
-    for (int k = 1; k < 3; ++k) first[k] = landings_[k].data() + bin_of(p.s[k], c.count[k]);
+    const PeriodicBin* first[3];
+    for (int k = 1; k < 3; ++k) first[k] = periodic_bins_[k].data() + bin_of(p.s[k], c.count[k]);
     const int home = bin_of(p.s[0], c.count[0]);
     for (int z = own_class ? reach_[2] : 0; z <= 2 * reach_[2]; ++z)
       for (int y = own_class && z == reach_[2] ? reach_[1] : 0; y <= 2 * reach_[1]; ++y) {
@@ -102,7 +102,7 @@ class Search {
   std::vector<Run> runs_of(int home, int from) const {
     std::vector<Run> runs;
     for (int x = from; x <= 2 * reach_[0]; ++x) {
-      const Landing& l = landings_[0][std::size_t(home + x)];
+      const PeriodicBin& l = periodic_bins_[0][std::size_t(home + x)];
       if (!runs.empty() && runs.back().shift == l.shift && runs.back().last + 1 == l.bin)
         runs.back().last = l.bin;
       else
@@ -150,7 +150,7 @@ class Search {
   double skin_;
   const SizeClass& class_;
   int reach_[3] = {0, 0, 0};
-  std::vector<Landing> landings_[3];
+  std::vector<PeriodicBin> periodic_bins_[3];
   std::vector<std::vector<Run>> runs_, runs_after_;  ///< by bin of the grain along the first direction; those after it
 };
 

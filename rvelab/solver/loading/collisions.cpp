@@ -20,7 +20,7 @@ namespace {
 constexpr double restitution_error = 0.01;
 
 /// What a piece of the pairs shows. Sums in the order of the pairs, so that they are the same on any team.
-struct Findings {
+struct PairExtremes {
   double elastic = 0, approach = 0;  ///< J
   double stiffness = 0;              ///< largest Impact::measure
   double impact = 0;                 ///< the same of the speed alone, without what a spring already holds
@@ -29,7 +29,7 @@ struct Findings {
   double closing = 0, closed = 0;  ///< m/s, fastest approach by the cell; m, largest overlap that the increment makes
   bool deep = false;
 
-  void add(const Findings& other) {
+  void add(const PairExtremes& other) {
     elastic += other.elastic;
     approach += other.approach;
     stiffness = std::max(stiffness, other.stiffness);
@@ -54,9 +54,10 @@ double square(double x) { return x * x; }
 
 /// `Impact`: how the law's springs collide (contact/impact.hpp).
 template <Shape shape, class Impact>
-Findings pairs_in(const Fixture& f, const Assembly& a, const Outlook& outlook, std::size_t first, std::size_t last) {
+PairExtremes pairs_in(const Fixture& f, const Assembly& a, const Outlook& outlook, std::size_t first,
+                      std::size_t last) {
   constexpr int D = dimension_of(shape);
-  Findings found;
+  PairExtremes found;
   const UpperTriangle rate = upper_triangle(outlook.rate);
   const double horizon = outlook.horizon, known_gap = listed_gap(f, a);
   const PairGeometry<shape> pair(f, a);
@@ -166,12 +167,12 @@ double dynamic_share(double moving, double elastic) { return moving < elastic ? 
 
 template <Shape shape, class Impact>
 Collisions ahead(const Fixture& f, const Assembly& a, const RowSums* known, bool find_step, const Outlook& outlook) {
-  std::vector<Findings> of_pairs(pieces_in(a.pairs.listed));
+  std::vector<PairExtremes> of_pairs(pieces_in(a.pairs.listed));
   in_pieces(a.pairs.listed, f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
     of_pairs[piece] = pairs_in<shape, Impact>(f, a, outlook, first, last);
   });
-  Findings all;
-  for (const Findings& piece : of_pairs) all.add(piece);
+  PairExtremes all;
+  for (const PairExtremes& piece : of_pairs) all.add(piece);
   Collisions found;
   found.step = found.look = std::numeric_limits<double>::infinity();
   found.deep = all.deep;

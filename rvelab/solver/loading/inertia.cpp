@@ -334,7 +334,7 @@ double scaled(double row_sum, double floor, double factor) { return std::max(row
 
 /// Of the state that a trial began with, before they become others.
 void keep_masses(const Assembly& a) {
-  Replaced* kept = a.keeper.of_trial;
+  Replaced* kept = a.trial.replaced;
   if (kept == nullptr || kept->masses_taken) return;
   kept->mass = a.mass;
   kept->inverse_mass = a.inverse_mass;

@@ -31,8 +31,8 @@ void copy_rows(const Matrix3& m, double* to) {
     for (int k = 0; k < 3; ++k) to[3 * r + k] = m(r, k);
 }
 
-/// The straight way of the lattice still to go, and the turn of the frame at its end.
-struct Way {
+/// The straight path of the lattice still to go, and the turn of the frame at its end.
+struct LatticePath {
   Matrix3 start, target;
   Matrix3 end_rotation;
   long done = 0, steps = 1;
@@ -42,19 +42,19 @@ struct Way {
   }
 };
 
-/// After a change of basis the rest of the way is split anew in the new frame; its end is the same cell. Returns the
+/// After a change of basis the rest of the path is split anew in the new frame; its end is the same cell. Returns the
 /// rotation by which the new frame turns more than the old one over that rest.
-Matrix3 turn_way(Way& way, const Matrix3& lattice_before, const Reduction& reduction, const Cell& cell) {
-  const Matrix3 rest = way.target * upper_inverse(lattice_before);
+Matrix3 turn_path(LatticePath& path, const Matrix3& lattice_before, const Reduction& reduction, const Cell& cell) {
+  const Matrix3 rest = path.target * upper_inverse(lattice_before);
   const Matrix3& r = reduction.rotation;
   Cell plain = cell;
   plain.rotation.setIdentity();
   const FrameSplit split = split_increment(plain, r.transpose() * rest * r - Matrix3::Identity());
-  way.end_rotation = r.transpose() * way.end_rotation * r * split.rotation;
-  way.start = cell.lattice;
-  way.target = split.stretch * cell.lattice;
-  way.steps -= way.done;
-  way.done = 0;
+  path.end_rotation = r.transpose() * path.end_rotation * r * split.rotation;
+  path.start = cell.lattice;
+  path.target = split.stretch * cell.lattice;
+  path.steps -= path.done;
+  path.done = 0;
   return split.rotation;
 }
 
@@ -198,7 +198,7 @@ void rescale_inertia(const Fixture& f, const RowSums& sums, Assembly& a) {
 void begin_loading(const Fixture& f, Assembly& a, Loading loading) {
   const bool quasi_static = loading == Loading::quasi_static;
   if (quasi_static != a.state.quasi_static) {
-    // Physical velocities mean nothing to scaled masses, nor the other way: carried over they would be an impact. Their
+    // Physical velocities mean nothing to scaled masses, nor the reverse: carried over they would be an impact. Their
     // energy is booked.
     if (f.options.ledger && !a.state.quasi_static) a.state.ledger.zeroing += kinetic_energy(f, a);
     zero_velocities(f, a);
@@ -248,16 +248,16 @@ void shift_half_step(const Fixture& f, Assembly& a, double step) {
 }
 
 /// Divides the sub-steps that are left, so that the collisions that a new list shows are followed.
-void divide_rest(const Fixture& f, const Collisions& ahead, Assembly& a, Way& way, double& step) {
+void divide_rest(const Fixture& f, const Collisions& ahead, Assembly& a, LatticePath& path, double& step) {
   if (!(ahead.step < step)) return;
-  const double parts = std::ceil(step / ahead.step), left = double(way.steps - way.done) * parts;
+  const double parts = std::ceil(step / ahead.step), left = double(path.steps - path.done) * parts;
   if (left > double(f.options.max_substeps))
     throw IncrementFailed("collisions in the increment need sub-steps of " + in_words(step / parts) +
                           " s; solver.max_substeps = " + std::to_string(f.options.max_substeps) +
                           " allows none so short; apply it in smaller parts or lower solver.collision_steps");
-  way.start = a.cell.lattice;
-  way.steps = long(left);
-  way.done = 0;
+  path.start = a.cell.lattice;
+  path.steps = long(left);
+  path.done = 0;
   step /= parts;
   shift_half_step(f, a, step);
 }
@@ -273,7 +273,7 @@ Advanced advance(const Fixture& f, Assembly& a, const Advance& what) {
   const Kernels& kernels = f.kernels_at(a.state.quasi_static);
   const GrainKernel move = physical ? kernels.dynamic[kind] : kernels.quasi_static[kind];
 
-  Way way{a.cell.lattice, what.increment.stretch * a.cell.lattice, what.increment.rotation, 0, what.steps};
+  LatticePath path{a.cell.lattice, what.increment.stretch * a.cell.lattice, what.increment.rotation, 0, what.steps};
   Vector3 omega = Vector3::Zero();
   double step = what.step;
   if (physical) shift_half_step(f, a, step);
@@ -290,11 +290,11 @@ Advanced advance(const Fixture& f, Assembly& a, const Advance& what) {
   if (f.options.ledger) moment_before = contact_moment(f, a);
 
   StepClock clock(f.times);
-  for (; way.done < way.steps; ++made) {
+  for (; path.done < path.steps; ++made) {
     clock.begin_step(made);
     if (f.stop != nullptr && f.stop->load(std::memory_order_relaxed)) throw Interrupted();
     const Matrix3 before = a.cell.lattice;
-    a.cell.lattice = way.lattice_after(++way.done);
+    a.cell.lattice = path.lattice_after(++path.done);
     set_step(before, a.cell.lattice, step, c, rate_end, rate_mid);
     for (int k = 0; k < 3; ++k) c.mean_velocity[k] = a.state.mean_velocity[k];
     if (physical) {
@@ -319,12 +319,12 @@ Advanced advance(const Fixture& f, Assembly& a, const Advance& what) {
       const Matrix3 lattice_before = a.cell.lattice;
       const Reduction reduction = rebuild(f, a);
       if (reduction.changed) {
-        const Matrix3 more = turn_way(way, lattice_before, reduction, a.cell);
+        const Matrix3 more = turn_path(path, lattice_before, reduction, a.cell);
         omega = reduction.rotation.transpose() * omega;
         a.state.mean_spin = reduction.rotation.transpose() * a.state.mean_spin;
         rate_mid = reduction.rotation.transpose() * rate_mid * reduction.rotation;
-        if (physical && way.steps > 0) {
-          const Vector3 faster = rotation_vector(more) / (step * double(way.steps));
+        if (physical && path.steps > 0) {
+          const Vector3 faster = rotation_vector(more) / (step * double(path.steps));
           omega += faster;
           rate_mid -= cross_matrix(faster);  // their sum is the velocity gradient of the step just made
         }
@@ -345,10 +345,10 @@ Advanced advance(const Fixture& f, Assembly& a, const Advance& what) {
     clock.end_pairs();
     if (f.options.ledger) book_step(f, a, lost, sums, step, physical, rate_mid + cross_matrix(omega), moment_before);
     if (listed_anew && physical) {
-      const double rest = step * double(way.steps - way.done);
+      const double rest = step * double(path.steps - path.done);
       const Collisions ahead = collisions_ahead(f, a, nullptr, what.follow_collisions,
                                                 {a.state.last_rate, rest, std::numeric_limits<double>::infinity()});
-      if (what.follow_collisions) divide_rest(f, ahead, a, way, step);
+      if (what.follow_collisions) divide_rest(f, ahead, a, path, step);
       if (ahead.deep) look_every = deep_look;
     }
     if (look_every > 0 && ++since_look >= look_every) {
@@ -358,7 +358,7 @@ Advanced advance(const Fixture& f, Assembly& a, const Advance& what) {
   }
   a.state.grain_steps += std::uint64_t(made) * f.size();
   if (!physical) a.state.look_steps += made;
-  turn_frame(a.cell, way.end_rotation);
+  turn_frame(a.cell, path.end_rotation);
   return {made, step};
 }
 

@@ -29,13 +29,13 @@ void Trial::begin(Assembly& a, Changes changes) {
   }
   positions.swap(a.state.list_positions);
   replaced_.list_taken = replaced_.masses_taken = false;
-  a.keeper.of_trial = &replaced_;
+  a.trial.replaced = &replaced_;
   pending_ = true;
   list_is_whole_ = false;
 }
 
 void Trial::end(Assembly& a) noexcept {
-  a.keeper.of_trial = nullptr;
+  a.trial.replaced = nullptr;
   pending_ = false;
   // A list is made anew every few hundred sub-steps: its arrays are not worth keeping (350 bytes a grain).
   if (replaced_.list_taken) {
