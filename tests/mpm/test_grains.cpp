@@ -7,6 +7,7 @@
 #include "tests/catch.hpp"
 #include "tests/child.hpp"
 #include "tests/folder.hpp"
+#include "tools/mpm/checkpoint.hpp"
 #include "tools/mpm/files.hpp"
 #include "tools/mpm/output.hpp"
 #include "tools/mpm/run.hpp"
@@ -244,10 +245,18 @@ void expect_resumed(const std::string& scene, const std::vector<std::string>& as
     UNSCOPED_INFO(bytes_of(folder / "err"));
     return code;
   };
+  const auto grain_steps = [&] {
+    const auto text = bytes_of(folder / "out");
+    const auto at = text.find("grain-steps ");
+    return text.substr(at, text.find(',', at) - at);
+  };
   REQUIRE(run({"-o", folder / "whole", "-j", "1"}, true) == 0);
-  REQUIRE(run({"-o", folder / "parts", "-j", "2", "--stop-at", stop_at}, true) == 130);
+  const auto all_steps = grain_steps();
+  REQUIRE(run({"-o", folder / "parts", "-j", "2", "--stop-at", stop_at}, true) == 0);
   CHECK(bytes_of(folder / "out").find("go on with") != std::string::npos);
+  CHECK(grain_steps() != all_steps);
   REQUIRE(run({"--resume", folder / "parts", "-j", "3"}, false) == 0);
+  CHECK(grain_steps() == all_steps);
   for (const char* name : {"history.csv", "watched.csv", "points.xdmf"}) {
     CAPTURE(name);
     const auto whole = bytes_of(folder / ("whole/" + std::string(name)));
@@ -275,4 +284,43 @@ TEST_CASE("a run that was stopped and resumed ends with the bits of one that was
                  {"material.dense.specimens=[\"sand.h5\"]", "time.duration_s=0.1", "output.history_every_s=0.01",
                   "output.frame_every_s=0.02", "output.networks=true"},
                  "0.05");
+}
+
+TEST_CASE("a checkpoint removes RVEs of earlier ones, and never those of a material whose name begins alike") {
+  const Folder folder;
+  specimen(folder, "dense.h5");
+  // Two materials of grains side by side.
+  std::ofstream(folder / "scene.toml") << bytes_of(scenes + "element.toml") << R"(
+[[material]]
+name = "dense_2"
+kind = "grains"
+specimens = ["dense.h5"]
+[[region]]
+material = "dense_2"
+lower_m = [1, 0]
+upper_m = [2, 1]
+)";
+  const auto scene = read_scene(folder / "scene.toml", {}, {"initial.pressure_Pa=20e3", "region.0.points_per_cell=1"});
+  auto model = set_up<2>(scene, 1, folder.path());
+  std::filesystem::create_directories(folder / "run");
+  const std::string other = folder / "run/grains_dense_2_old.h5";  // nobody's: not of a step
+  std::ofstream(other) << "mine";
+  for (const long steps : {2, 3}) {
+    model->solver.steps = steps;
+    write_checkpoint<2>(*model, {}, folder / "run");
+    const auto at = std::to_string(steps) + ".h5";
+    CHECK(std::filesystem::exists(folder / ("run/grains_dense_" + at)));
+    CHECK(std::filesystem::exists(folder / ("run/grains_dense_2_" + at)));
+  }
+  CHECK(!std::filesystem::exists(folder / "run/grains_dense_2.h5"));
+  CHECK(!std::filesystem::exists(folder / "run/grains_dense_2_2.h5"));
+  CHECK(std::filesystem::exists(other));
+  auto again = set_up<2>(scene, 1, folder.path(), false);
+  Progress progress;
+  read_checkpoint<2>(*again, progress, folder / "run");
+  CHECK(again->solver.steps == 3);
+  std::filesystem::remove(folder / "run/grains_dense_2_3.h5");
+  again = set_up<2>(scene, 1, folder.path(), false);
+  CHECK_THROWS_WITH(read_checkpoint<2>(*again, progress, folder / "run"),
+                    Catch::Matchers::Contains("the RVEs of the checkpoint are missing"));
 }

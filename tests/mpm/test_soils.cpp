@@ -112,6 +112,35 @@ TEST_CASE("hardening and softening of Li et al. (2023), eq. 43") {
         Approx(strength.residual + (strength.peak - strength.residual) / std::exp(1.0)));
 }
 
+TEST_CASE("softening ends without friction, and hardening at 89 degrees: stress stays finite under any strain") {
+  const ElasticModuli moduli{2e7, 0.3};
+  Strength strength;
+  strength.law = Strength::Law::linear;
+  strength.friction = 30 * radians;
+  strength.friction_slope = -100 * radians;
+  CHECK(strength.friction_at(0.1) == Approx(20 * radians));
+  CHECK(strength.friction_at(0.35) == 0);
+  strength.friction_slope *= -1;
+  CHECK(strength.friction_at(10) == Strength::steepest);
+  strength.law = Strength::Law::cubic_exponential;
+  strength.d = -0.1;
+  strength.peak_strain = 0.02;
+  CHECK(strength.friction_at(0.01) == 0);
+  for (const double cohesion : {0.0, 5e3}) {
+    for (const double psi : {0.0, 20 * radians}) {
+      for (const auto& trial : trials()) {
+        Mat<3> stress = trial, other = trial;
+        return_to_mohr_coulomb(stress, moduli, 0, cohesion, psi);
+        CHECK(std::abs(coulomb(stress, 0, cohesion)) < 2 * cohesion + 1e-6 * trial.norm());
+        CHECK(coulomb(stress, 0, cohesion) < 1e-6 * trial.norm());
+        CHECK(stress.norm() < 10 * trial.norm());
+        return_to_drucker_prager(other, moduli, 0, cohesion, psi, Cone::outer);
+        CHECK(other.norm() < 10 * trial.norm());
+      }
+    }
+  }
+}
+
 TEST_CASE("a soil sheared at constant volume reaches its strength, and takes its spin along") {
   Strength strength;
   strength.friction = 30 * radians;

@@ -53,7 +53,7 @@ name = "oedometer"
 cell_m = 0.5
 follows = "top"
 [time]
-duration_s = 10
+duration_s = 5
 [initial]
 stress = "isotropic"
 pressure_Pa = 20e3

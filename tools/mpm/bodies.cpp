@@ -42,54 +42,56 @@ void Bodies<D>::find(const Grid<D>& grid, const Planes<D>& planes, double time) 
     for (int k = 0; k < int(all.size()); ++k) {
       Vec<D> outward;
       if (all[k].distance(x, time, outward) > touch) continue;
-      contacts_.push_back({flat, k, outward, Vec<D>::Zero(), Vec<D>::Zero()});
+      contacts_.push_back({flat, k, outward, Vec<D>::Zero()});
     }
   }
 }
 
 template <int D>
-void Bodies<D>::meet(const Contact& contact, const Vec<D>& speed, double* velocity) const {
+Vec<D> Bodies<D>::meet(const Contact& contact, const Vec<D>& speed, double* velocity) const {
   const auto& body = all[contact.body];
   Vec<D> relative;
   for (int i = 0; i < D; ++i) relative[i] = velocity[i] - speed[i];
   const double across = relative.dot(contact.normal);
-  if (across >= 0) return;
+  if (across >= 0) return Vec<D>::Zero();
   Vec<D> along = relative - across * contact.normal;
   if (body.rough) {
     along.setZero();
   } else if (const double slip = along.norm(); slip > 0) {
     along *= std::max(0.0, 1 + body.friction * across / slip);
   }
-  for (int i = 0; i < D; ++i) velocity[i] = speed[i] + along[i];
+  Vec<D> jump;
+  for (int i = 0; i < D; ++i) {
+    const double met = speed[i] + along[i];
+    jump[i] = met - velocity[i];
+    velocity[i] = met;
+  }
+  return jump;
 }
 
 template <int D>
 void Bodies<D>::set_start(Grid<D>& grid, double time) {
   for (auto& contact : contacts_) {
     auto& node = grid.nodes[contact.node];
-    for (int i = 0; i < D; ++i) contact.velocity[i] = node.v[i];
-    meet(contact, all[contact.body].velocity.at(time), node.v);
+    contact.jump = meet(contact, all[contact.body].velocity.at(time), node.v);
   }
 }
 
 template <int D>
-void Bodies<D>::keep_force(const Grid<D>& grid) {
-  for (auto& contact : contacts_) {
-    for (int i = 0; i < D; ++i) contact.force[i] = grid.nodes[contact.node].w[i];
-  }
-}
-
-template <int D>
-void Bodies<D>::set_end(Grid<D>& grid, const Planes<D>& planes, double time, double dt) {
+void Bodies<D>::set_end(Grid<D>& grid, const Planes<D>& planes, double time) {
   for (auto& contact : contacts_) {
     auto& node = grid.nodes[contact.node];
-    auto& body = all[contact.body];
-    meet(contact, body.velocity.at(time), node.w);
+    contact.jump += meet(contact, all[contact.body].velocity.at(time), node.w);
+  }
+  // Work is done along the way that the node makes in the end, which a second body in it may have changed.
+  for (const auto& contact : contacts_) {
+    const auto& node = grid.nodes[contact.node];
+    auto& reaction = all[contact.body].reaction;
     for (int i = 0; i < D; ++i) {
       if (planes.holds(contact.node, i)) continue;
-      const double impulse = node.mass * (node.w[i] - contact.velocity[i]) - contact.force[i] * dt;
-      body.reaction.impulse[i] += impulse;
-      body.reaction.work += 0.5 * impulse * (node.w[i] + contact.velocity[i]);
+      const double impulse = node.mass * contact.jump[i];
+      reaction.impulse[i] += impulse;
+      reaction.work += 0.5 * impulse * (node.w[i] + node.a[i]);
     }
   }
 }

@@ -39,18 +39,19 @@ class Bodies {
   void find(const Grid<D>& grid, const Planes<D>& planes, double time);
   /// Velocities v at the start of the step.
   void set_start(Grid<D>& grid, double time);
-  /// Forces, before division by mass.
-  void keep_force(const Grid<D>& grid);
-  /// Velocities w at the end of the step. What a plane holds at a node is the plane's reaction, not the body's.
-  void set_end(Grid<D>& grid, const Planes<D>& planes, double time, double dt);
+  /// Velocities w at the end of the step; a still is what the points brought. What a plane holds at a node is the
+  /// plane's reaction, not the body's.
+  void set_end(Grid<D>& grid, const Planes<D>& planes, double time);
 
  private:
   struct Contact {
     long node;
     int body;
-    Vec<D> normal, velocity, force;  ///< what the soil had before
+    Vec<D> normal;
+    Vec<D> jump;  ///< m/s, what this body alone changed the soil's velocity by over the step
   };
-  void meet(const Contact& contact, const Vec<D>& speed, double* velocity) const;
+  /// What it changes the velocity by.
+  Vec<D> meet(const Contact& contact, const Vec<D>& speed, double* velocity) const;
   std::vector<Contact> contacts_;
 };
 

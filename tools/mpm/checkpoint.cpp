@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 
 #include "tools/mpm/files.hpp"
 
@@ -30,6 +31,37 @@ std::string pool_name(const std::string& material, long steps) {
   return "grains_" + material + "_" + std::to_string(steps) + ".h5";
 }
 
+/// Whether a file holds RVEs of this material, of any step. One material's name may begin with another's.
+bool holds_pool(const std::string& file, const std::string& material) {
+  const std::string before = "grains_" + material + "_", after = ".h5";
+  if (file.size() <= before.size() + after.size() || !file.starts_with(before) || !file.ends_with(after)) return false;
+  return std::all_of(file.begin() + long(before.size()), file.end() - long(after.size()),
+                     [](char c) { return c >= '0' && c <= '9'; });
+}
+
+/// Files of RVEs of earlier checkpoints are of no use any more.
+template <int D>
+void remove_old_pools(const Model<D>& model, const std::filesystem::path& place) {
+  std::set<std::string> current;
+  for (const auto& [material, pool] : model.pools) current.insert(pool_name(material, model.solver.steps));
+  std::vector<std::filesystem::path> old;
+  for (const auto& entry : std::filesystem::directory_iterator(place)) {
+    const auto name = entry.path().filename().string();
+    const bool ours = std::any_of(model.pools.begin(), model.pools.end(),
+                                  [&](const auto& pool) { return holds_pool(name, pool.first); });
+    if (ours && !current.contains(name)) old.push_back(entry.path());
+  }
+  std::error_code ignored;
+  for (const auto& path : old) std::filesystem::remove(path, ignored);
+}
+
+[[noreturn]] void of_another_scene(const std::string& folder, const std::string& what, std::size_t found,
+                                   std::size_t wanted) {
+  throw Mistake(folder + ": its checkpoint holds " + std::to_string(found) + " " + what + ", this scene needs " +
+                std::to_string(wanted) +
+                "; leave out the --set that changes their number, or start the run anew in another folder");
+}
+
 }  // namespace
 
 template <int D>
@@ -54,8 +86,8 @@ void write_checkpoint(const Model<D>& model, const Progress& progress, const std
   file.write("reactions", reactions, {reactions.size()});
   std::vector<double> clock{solver.time,
                             solver.ledger.nodal_kinetic,
-                            solver.grid_seconds,
-                            solver.material_seconds,
+                            0,
+                            0,  // once what the run had taken, which is no state
                             progress.start.kinetic,
                             progress.start.potential,
                             progress.start.volume,
@@ -72,15 +104,7 @@ void write_checkpoint(const Model<D>& model, const Progress& progress, const std
   file.write("watched", std::vector<std::int64_t>(model.watched.begin(), model.watched.end()));
   for (const auto& range : solver.ranges) range.material->save(file, range.name);
   file.publish();
-  // Files of RVEs of earlier checkpoints are of no use any more.
-  for (const auto& entry : std::filesystem::directory_iterator(place)) {
-    const auto name = entry.path().filename().string();
-    for (const auto& [material, pool] : model.pools) {
-      const bool old = name.starts_with("grains_" + material + "_") && name != pool_name(material, solver.steps);
-      std::error_code ignored;
-      if (old) std::filesystem::remove(entry.path(), ignored);
-    }
-  }
+  remove_old_pools<D>(model, place);
 }
 
 template <int D>
@@ -89,27 +113,33 @@ void read_checkpoint(Model<D>& model, Progress& progress, const std::string& fol
   auto& solver = model.solver;
   const InputFile file((place / "checkpoint.h5").string());
   const auto rows = file.read("points");
-  std::size_t at = 0;
+  std::size_t at = 0, width = 0;
+  Point<D> any;
+  each_field<D>(any, [&](const double*, int count) { width += std::size_t(count); });
+  if (rows.size() != width * solver.points.size()) {
+    of_another_scene(folder, "material points", rows.size() / width, solver.points.size());
+  }
   for (auto& point : solver.points) {
     each_field<D>(point, [&](double* values, int count) {
-      if (at + std::size_t(count) > rows.size()) throw Mistake(folder + ": the checkpoint is not of this scene");
       for (int i = 0; i < count; ++i) values[i] = rows[at++];
     });
   }
-  if (at != rows.size()) throw Mistake(folder + ": the checkpoint is not of this scene; start the run anew");
   const auto reactions = file.read("reactions");
+  const std::size_t pushing = solver.planes.all.size() + solver.bodies.all.size();
+  if (reactions.size() != (D + 1) * pushing) {
+    of_another_scene(folder, "boundaries and bodies", reactions.size() / (D + 1), pushing);
+  }
   at = 0;
   const auto take = [&](auto& each) {
-    for (int i = 0; i < D; ++i) each.reaction.impulse[i] = reactions.at(at++);
-    each.reaction.work = reactions.at(at++);
+    for (int i = 0; i < D; ++i) each.reaction.impulse[i] = reactions[at++];
+    each.reaction.work = reactions[at++];
   };
   for (auto& plane : solver.planes.all) take(plane);
   for (auto& body : solver.bodies.all) take(body);
   const auto clock = file.read("clock");
+  if (clock.size() < 11) of_another_scene(folder, "times", clock.size(), 11);
   solver.time = clock[0];
   solver.ledger.nodal_kinetic = clock[1];
-  solver.grid_seconds = clock[2];
-  solver.material_seconds = clock[3];
   progress.start = {clock[4], clock[5], clock[6]};
   progress.last_row = clock[7];
   progress.next_frame = clock[8];
@@ -124,7 +154,14 @@ void read_checkpoint(Model<D>& model, Progress& progress, const std::string& fol
   progress.frame_times = file.read("frame_times");
   const auto watched = file.read_whole("watched");
   model.watched.assign(watched.begin(), watched.end());
-  for (auto& [name, pool] : model.pools) pool->read((place / pool_name(name, solver.steps)).string());
+  for (auto& [name, pool] : model.pools) {
+    const auto path = place / pool_name(name, solver.steps);
+    if (!std::filesystem::exists(path)) {
+      throw Mistake(path.string() +
+                    ": the RVEs of the checkpoint are missing; put the file back, or start the run anew");
+    }
+    pool->read(path.string());
+  }
   for (auto& range : solver.ranges) range.material->restore(file, range.name);
 }
 

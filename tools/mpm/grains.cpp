@@ -158,7 +158,7 @@ template <int D>
 double Grains<D>::grain_steps() const {
   std::vector<std::int64_t> steps(ids_.size());
   need(rvelab_cost(pool_->get(), std::int64_t(ids_.size()), ids_.data(), steps.data()));
-  double sum = 0;
+  double sum = earlier_;
   for (const auto each : steps) sum += double(each);
   return sum;
 }
@@ -168,8 +168,8 @@ void Grains<D>::save(OutputFile& file, const std::string& name) const {
   file.write("materials/" + name + "/ids", ids_);
   file.write("materials/" + name + "/state",
              std::vector<double>{wave_modulus_, double(split), double(warned), called, asked, found_.first,
-                                 found_.modulus, found_.compression, found_.called},
-             {9});
+                                 found_.modulus, found_.compression, found_.called, grain_steps()},
+             {10});
   std::vector<double> waiting;
   for (const auto& each : waiting_) waiting.insert(waiting.end(), each.data(), each.data() + D * D);
   file.write("materials/" + name + "/waiting", waiting, {waiting.size()});
@@ -184,6 +184,9 @@ void Grains<D>::restore(const InputFile& file, const std::string& name) {
   warned = long(state[2]);
   called = state[3];
   asked = state[4];
+  // The pool counts anew from what it reads.
+  earlier_ = 0;
+  earlier_ = state.size() < 10 ? 0 : state[9] - grain_steps();
   // Of an earlier version without the rest: it is looked for at once.
   found_ = state.size() < 9 ? Found{state[0], state[0], 0, called} : Found{state[5], state[6], state[7], state[8]};
   const auto waiting = file.read("materials/" + name + "/waiting");

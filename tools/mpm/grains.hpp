@@ -39,6 +39,7 @@ class Grains : public Material<D> {
   bool physical_;
   double gather_;
   double wave_modulus_ = 0;
+  double earlier_ = 0;  ///< grain-steps before the run was resumed
   /// What the wave modulus was found to be, under which largest compression along an axis, after how many increments.
   struct Found {
     double first = 0, modulus = 0, compression = 0, called = 0;  ///< first: at the start, Pa

@@ -1,5 +1,7 @@
 #include "tools/mpm/keys.hpp"
 
+#include <cctype>
+#include <cmath>
 #include <numeric>
 #include <sstream>
 
@@ -37,6 +39,8 @@ std::string as_text(double value) {
   return text.str();
 }
 
+constexpr const char* no_default = "it has no default: give it a value";
+
 }  // namespace
 
 std::string nearest_word(const std::string& word, const std::set<std::string>& words) {
@@ -59,8 +63,14 @@ void Keys::wrong(const std::string& name, const std::string& message) const {
   throw Mistake(place(path_, table_->get(name)) + dotted(name) + " " + message);
 }
 
-void Keys::missing(const std::string& name) const {
-  throw Mistake(place(path_, table_) + "the key " + dotted(name) + " is missing; it has no default: give it a value");
+void Keys::missing(const std::string& name, const std::string& remedy) {
+  if (missing_.empty()) missing_ = place(path_, table_) + "the key " + dotted(name) + " is missing; " + remedy;
+}
+
+double Keys::finite(const std::string& name, const toml::node& value) const {
+  const double number = *value.value<double>();
+  if (!std::isfinite(number)) wrong(name, "holds " + as_text(number) + "; give numbers that are finite");
+  return number;
 }
 
 double Keys::number(const std::string& name, double initial, double least, double most) {
@@ -75,8 +85,14 @@ double Keys::number(const std::string& name, double initial, double least, doubl
 }
 
 double Keys::number(const std::string& name) {
-  if (get(name) == nullptr) missing(name);
+  if (get(name) == nullptr) missing(name, no_default);
   return number(name, 0);
+}
+
+double Keys::positive(const std::string& name) {
+  const double value = number(name);
+  if (has(name) && !(value > 0)) wrong(name, "is " + as_text(value) + "; it must be positive");
+  return value;
 }
 
 long Keys::whole_number(const std::string& name, long initial, long least, long most) {
@@ -105,13 +121,28 @@ std::string Keys::text(const std::string& name, const std::string& initial) {
 }
 
 std::string Keys::text(const std::string& name) {
-  if (get(name) == nullptr) missing(name);
+  if (get(name) == nullptr) missing(name, no_default);
   return text(name, "");
+}
+
+std::string Keys::name() {
+  const auto value = text("name");
+  const auto allowed = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; };
+  if (has("name") && (value.empty() || !std::all_of(value.begin(), value.end(), allowed))) {
+    wrong("name", "is \"" + value + "\"; columns and files go by it: give letters, digits, _ and - alone");
+  }
+  return value;
 }
 
 std::string Keys::choice(const std::string& name, const std::vector<std::string>& allowed, bool required) {
   if (required && get(name) == nullptr) {
-    throw Mistake(place(path_, table_) + "the key " + dotted(name) + " is missing; allowed: " + listed(allowed));
+    missing(name, "allowed: " + listed(allowed));
+    // Which keys belong here hangs on this one: of the others only one that is nearly it can be called unknown.
+    for (const auto& [key, node] : *table_) {
+      const std::string other(key.str());
+      if (!known_.contains(other) && edits(other, name) <= 2) throw Mistake(unknown(other, node, dotted(name)));
+    }
+    throw Mistake(missing_);
   }
   const std::string value = text(name, allowed.front());
   const std::set<std::string> words(allowed.begin(), allowed.end());
@@ -120,22 +151,33 @@ std::string Keys::choice(const std::string& name, const std::vector<std::string>
                   "\" (allowed: " + listed(allowed) + ")");
 }
 
-std::vector<double> Keys::vector(const std::string& name, std::size_t size, const std::vector<double>& initial) {
-  const auto* node = get(name);
-  if (node == nullptr && initial.empty()) missing(name);
-  if (node == nullptr) return initial;
-  if (node->is_number()) return std::vector<double>(size, *node->value<double>());
-  const auto* array = node->as_array();
+std::vector<double> Keys::list(const std::string& name, std::size_t size, const std::string& what) const {
+  const auto* array = table_->get(name)->as_array();
   std::vector<double> values;
   if (array != nullptr) {
     for (const auto& each : *array) {
-      if (each.is_number()) values.push_back(*each.value<double>());
+      if (each.is_number()) values.push_back(finite(name, each));
     }
   }
   if (array == nullptr || values.size() != size || array->size() != size) {
-    wrong(name, "must be " + std::to_string(size) + " numbers in brackets, one for each axis");
+    wrong(name, "must be " + std::to_string(size) + " numbers in brackets" + what);
   }
   return values;
+}
+
+std::vector<double> Keys::vector(const std::string& name, std::size_t axes, const std::vector<double>& initial,
+                                 bool one_for_all) {
+  const auto* node = get(name);
+  if (node == nullptr && initial.empty()) missing(name, no_default);
+  if (node == nullptr) return initial.empty() ? std::vector<double>(axes, 0) : initial;
+  if (one_for_all && node->is_number()) return std::vector<double>(axes, finite(name, *node));
+  return list(name, axes, one_for_all ? ", one for each axis, or one number for all" : ", one for each axis");
+}
+
+std::vector<double> Keys::numbers(const std::string& name, std::size_t size) {
+  if (get(name) != nullptr) return list(name, size, "");
+  missing(name, no_default);
+  return std::vector<double>(size, 0);
 }
 
 std::vector<std::vector<double>> Keys::rows(const std::string& name, std::size_t size) {
@@ -148,7 +190,7 @@ std::vector<std::vector<double>> Keys::rows(const std::string& name, std::size_t
     std::vector<double> row;
     if (const auto* inner = each.as_array()) {
       for (const auto& value : *inner) {
-        if (value.is_number()) row.push_back(*value.value<double>());
+        if (value.is_number()) row.push_back(finite(name, value));
       }
       if (row.size() != inner->size()) row.clear();
     }
@@ -160,7 +202,8 @@ std::vector<std::vector<double>> Keys::rows(const std::string& name, std::size_t
 
 std::vector<std::string> Keys::texts(const std::string& name) {
   const auto* node = get(name);
-  if (node == nullptr) missing(name);
+  if (node == nullptr) missing(name, no_default);
+  if (node == nullptr) return {};
   if (node->is_string()) return {*node->value<std::string>()};
   std::vector<std::string> texts;
   if (const auto* array = node->as_array()) {
@@ -192,87 +235,25 @@ std::vector<Keys> Keys::tables(const std::string& name) {
   return list;
 }
 
+std::string Keys::unknown(const std::string& name, const toml::node& node, const std::string& nearest) const {
+  return place(path_, &node) + "unknown key " + dotted(name) + "; the nearest known key is " + nearest +
+         "; correct the name or remove it";
+}
+
 void Keys::finish() const {
+  std::string first, others;
   for (const auto& [key, node] : *table_) {
     const std::string name(key.str());
     if (known_.contains(name)) continue;
-    const auto nearest = nearest_word(name, known_);
-    throw Mistake(place(path_, &node) + "unknown key " + dotted(name) + "; the nearest known key is " +
-                  dotted(nearest) + "; correct the name or remove it");
-  }
-}
-
-toml::table parse_file(const std::string& path) {
-  try {
-    return toml::parse_file(path);
-  } catch (const toml::parse_error& error) {
-    std::ostringstream text;
-    text << path;
-    if (error.source().begin.line > 0) text << ":" << error.source().begin.line << ":" << error.source().begin.column;
-    text << ": " << error.description();
-    throw Mistake(text.str());
-  }
-}
-
-void lay_over(toml::table& base, const toml::table& over) {
-  for (const auto& [key, node] : over) {
-    auto* mine = base.get(key.str());
-    if (mine != nullptr && mine->is_table() && node.is_table()) {
-      lay_over(*mine->as_table(), *node.as_table());
-      continue;
+    const auto nearest = dotted(nearest_word(name, known_));
+    if (first.empty()) {
+      first = unknown(name, node, nearest);
+    } else {
+      others += (others.empty() ? "; unknown too: " : ", ") + dotted(name) + " (" + nearest + ")";
     }
-    if (mine != nullptr && mine->is_array_of_tables() && node.is_array_of_tables()) {
-      auto& list = *mine->as_array();
-      const auto& other = *node.as_array();
-      for (std::size_t k = 0; k < other.size(); ++k) {
-        if (k < list.size()) {
-          lay_over(*list[k].as_table(), *other[k].as_table());
-        } else {
-          list.push_back(*other[k].as_table());
-        }
-      }
-      continue;
-    }
-    base.insert_or_assign(key.str(), node);
   }
-}
-
-void assign(toml::table& scene, const std::string& assignment) {
-  const auto equals = assignment.find('=');
-  if (equals == std::string::npos) throw Mistake("--set " + assignment + ": give it as table.key=value");
-  const std::string value = assignment.substr(equals + 1);
-  toml::table parsed;
-  try {
-    parsed = toml::parse("value = " + value);
-  } catch (const toml::parse_error&) {
-    parsed.insert("value", value);  // a word without its quotation marks
-  }
-  std::vector<std::string> names;
-  std::istringstream dotted(assignment.substr(0, equals));
-  for (std::string name; std::getline(dotted, name, '.');) names.push_back(name);
-  toml::table* at = &scene;
-  for (std::size_t k = 0; k + 1 < names.size(); ++k) {
-    if (!at->contains(names[k])) at->insert(names[k], toml::table{});
-    auto* node = at->get(names[k]);
-    if (node->is_table()) {
-      at = node->as_table();
-      continue;
-    }
-    toml::table* found = nullptr;
-    if (auto* list = node->as_array(); list != nullptr && k + 2 < names.size()) {
-      for (auto& each : *list) {
-        auto* table = each.as_table();
-        if (table != nullptr && (*table)["name"].value<std::string>() == names[k + 1]) found = table;
-      }
-    }
-    if (found == nullptr) {
-      throw Mistake("--set " + assignment + ": no [[" + names[k] + "]] of that name; give it as " + names[k] +
-                    ".NAME.key=value");
-    }
-    at = found;
-    ++k;
-  }
-  at->insert_or_assign(names.back(), *parsed.get("value"));
+  if (!first.empty()) throw Mistake(first + others);
+  if (!missing_.empty()) throw Mistake(missing_);
 }
 
 }  // namespace mpm

@@ -12,7 +12,8 @@
 
 namespace mpm {
 
-/// One table. Reading a key makes it known; finish() then throws for those that nobody asked for.
+/// One table. Reading a key makes it known; finish() then throws for those that nobody asked for, and after them for a
+/// required one that is not there (its value is 0, empty or not a number until then): a misspelt key is told as such.
 class Keys {
  public:
   /// `where`: its dotted name, "" for the whole file. The table must outlive this.
@@ -20,15 +21,19 @@ class Keys {
 
   bool has(const std::string& name) const { return table_->contains(name); }
   double number(const std::string& name, double initial, double least = -1e300, double most = 1e300);
-  double number(const std::string& name);  ///< required
+  double number(const std::string& name);    ///< required
+  double positive(const std::string& name);  ///< required, above 0
   long whole_number(const std::string& name, long initial, long least, long most);
   bool boolean(const std::string& name, bool initial);
   std::string text(const std::string& name, const std::string& initial);
   std::string text(const std::string& name);  ///< required
+  std::string name();                         ///< the key name, required: letters, digits, _ and -
   /// The first is the default; `required`: there is none.
   std::string choice(const std::string& name, const std::vector<std::string>& allowed, bool required = false);
-  /// `size` numbers, or one number for all of them; `initial` empty: required.
-  std::vector<double> vector(const std::string& name, std::size_t size, const std::vector<double>& initial);
+  /// One number for each axis; `initial` empty: required. `one_for_all`: a single number will do.
+  std::vector<double> vector(const std::string& name, std::size_t axes, const std::vector<double>& initial,
+                             bool one_for_all = false);
+  std::vector<double> numbers(const std::string& name, std::size_t size);  ///< required
   /// Rows of `size` numbers each; none if the key is not there.
   std::vector<std::vector<double>> rows(const std::string& name, std::size_t size);
   std::vector<std::string> texts(const std::string& name);  ///< required, not empty
@@ -44,20 +49,25 @@ class Keys {
  private:
   const toml::node* get(const std::string& name);
   std::string dotted(const std::string& name) const { return where_.empty() ? name : where_ + "." + name; }
-  [[noreturn]] void missing(const std::string& name) const;
+  void missing(const std::string& name, const std::string& remedy);
+  std::string unknown(const std::string& name, const toml::node& node, const std::string& nearest) const;
+  double finite(const std::string& name, const toml::node& value) const;
+  std::vector<double> list(const std::string& name, std::size_t size, const std::string& what) const;
   const toml::table* table_;  ///< copies of a table would not know their lines
   std::string path_, where_;
+  std::string missing_;  ///< the message on the first required key that is not there
   std::set<std::string> known_;
 };
 
 /// The word with the fewest edits; "" if there are none.
 std::string nearest_word(const std::string& word, const std::set<std::string>& words);
 
-/// A whole file. Mistake with line and column if it is no TOML.
+/// A whole file. Mistake if there is none, with line and column if it is no TOML.
 toml::table parse_file(const std::string& path);
 /// Lays `over` over `base`: tables key by key, arrays of tables element by element, everything else as a whole.
 void lay_over(toml::table& base, const toml::table& over);
-/// One assignment of the command line, a.b.c=value. In an array of tables an element goes by its `name`.
+/// One assignment of the command line, a.b.c=value. In an array of tables an element goes by its `name` or its number,
+/// from 0.
 void assign(toml::table& scene, const std::string& assignment);
 
 }  // namespace mpm

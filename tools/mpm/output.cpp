@@ -23,8 +23,13 @@ std::string frame_name(long frame, const std::string& what = "points") {
 Rows::Rows(const std::string& path, const std::string& header, long keep) : path_(path) {
   if (keep > 0) {
     std::error_code error;
-    std::filesystem::resize_file(path, std::uintmax_t(keep), error);
-    if (error) throw Mistake(path + ": is not as the checkpoint left it; start the run anew");
+    const auto size = std::filesystem::file_size(path, error);
+    if (error || size < std::uintmax_t(keep)) {
+      throw Mistake(path + ": has " + (error ? "no" : std::to_string(size)) + " bytes, and " + std::to_string(keep) +
+                    " when the checkpoint was written; put the whole file back, or start the run anew");
+    }
+    std::filesystem::resize_file(path, std::uintmax_t(keep), error);  // rows after the checkpoint are made again
+    if (error) throw Mistake(path + ": cannot be written; give yourself the right to write to it");
   }
   file_ = std::fopen(path.c_str(), keep > 0 ? "a" : "w");
   if (file_ == nullptr) throw Mistake(path + ": cannot be written; give a folder that you may write to");
@@ -172,6 +177,16 @@ void write_networks(const Model<D>& model, const std::string& folder, long frame
     model.grains.at(range.name)
         ->write_network(model.watched[k] - range.first, (std::filesystem::path(folder) / name).string());
   }
+}
+
+void write_scene(const std::string& folder, const std::string& toml) {
+  const std::string path = (std::filesystem::path(folder) / "scene.toml").string(), partial = path + ".partial";
+  std::ofstream file(partial);
+  file << toml << "\n";
+  file.close();
+  std::error_code error;
+  if (file) std::filesystem::rename(partial, path, error);
+  if (!file || error) throw Mistake(path + ": cannot be written; give a folder that you may write to");
 }
 
 void write_xdmf(const std::string& folder, const std::vector<double>& times, long points) {

@@ -42,6 +42,8 @@ void write_frame(const Model<D>& model, const std::string& folder, long frame);
 /// network_K_NNNN.h5 for each watched point K, as GrainPool::write_alone.
 template <int D>
 void write_networks(const Model<D>& model, const std::string& folder, long frame);
+/// scene.toml, whole or not at all.
+void write_scene(const std::string& folder, const std::string& toml);
 /// points.xdmf for all frames so far.
 void write_xdmf(const std::string& folder, const std::vector<double>& times, long points);
 

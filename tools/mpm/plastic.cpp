@@ -5,11 +5,13 @@
 namespace mpm {
 
 double Strength::friction_at(double plastic) const {
-  if (law == Law::linear) return friction + friction_slope * plastic;
+  // Beyond these there is no surface to return to.
+  const auto possible = [](double angle) { return std::min(std::max(angle, 0.0), steepest); };
+  if (law == Law::linear) return possible(friction + friction_slope * plastic);
   if (law == Law::constant) return friction;
   if (plastic <= 0) return residual;
-  if (plastic <= peak_strain) return ((a * plastic + b) * plastic + c) * plastic + d;
-  return residual + (peak - residual) * std::exp(-decay * (plastic - peak_strain));
+  if (plastic <= peak_strain) return possible(((a * plastic + b) * plastic + c) * plastic + d);
+  return possible(residual + (peak - residual) * std::exp(-decay * (plastic - peak_strain)));
 }
 
 double Strength::cohesion_at(double plastic) const {
@@ -38,12 +40,12 @@ double return_to_drucker_prager(Mat<3>& stress, const ElasticModuli& moduli, dou
   const double over = root + alpha * I1 - k;
   if (over <= 0) return 0;
   const double multiplier = over / (G + 9 * K * alpha * flow);
-  if (root - G * multiplier >= 0) {
+  if (alpha == 0 || root - G * multiplier >= 0) {  // without friction there is no apex
     const double I = I1 - 9 * K * flow * multiplier;
     stress = (root > 0 ? 1 - G * multiplier / root : 0) * s + I / 3 * Mat<3>::Identity();
     return multiplier / std::sqrt(3.0);
   }
-  stress = k / alpha / 3 * Mat<3>::Identity();  // the apex; alpha = 0 never comes here
+  stress = k / alpha / 3 * Mat<3>::Identity();  // the apex
   return root / (std::sqrt(3.0) * G);
 }
 
@@ -81,8 +83,10 @@ double return_to_mohr_coulomb(Mat<3>& stress, const ElasticModuli& moduli, doubl
       r3 = s3 + small * first + middle * second;
     }
   }
-  const double apex = sin_phi > 0 ? cohesion * cos_phi / sin_phi : 1e300;
-  if (r1 < r2 - slack || r2 < r3 - slack || (r1 + r2 + r3) / 3 > apex) r1 = r2 = r3 = apex;
+  if (sin_phi > 0) {  // without friction there is no apex
+    const double apex = cohesion * cos_phi / sin_phi;
+    if (r1 < r2 - slack || r2 < r3 - slack || (r1 + r2 + r3) / 3 > apex) r1 = r2 = r3 = apex;
+  }
   const Vec<3> lost(s3 - r3, s2 - r2, s1 - r1);
   const Vec<3> deviator = lost - lost.mean() * Vec<3>::Ones();
   stress = eigen.eigenvectors() * Vec<3>(r3, r2, r1).asDiagonal() * eigen.eigenvectors().transpose();

@@ -20,6 +20,8 @@ struct Strength {
   double a = 0, b = 0, c = 0, d = 0;              ///< rad, of the cubic
   double peak_strain = 0, decay = 0, peak = 0, residual = 0;
 
+  static constexpr double steepest = 1.5533430342749532;  ///< rad, 89 degrees
+  /// rad, kept from 0 to the steepest whatever the law says.
   double friction_at(double plastic) const;
   double cohesion_at(double plastic) const;
 };

@@ -7,9 +7,10 @@
 #include <CLI/CLI.hpp>
 #include <cerrno>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
+#include <sstream>
 
+#include "tools/mpm/output.hpp"
 #include "tools/mpm/run.hpp"
 
 namespace mpm {
@@ -36,6 +37,22 @@ class FolderLock {
   int descriptor_;
 };
 
+std::string text_of(const toml::table& scene) {
+  std::ostringstream text;
+  text << scene;
+  return text.str();
+}
+
+void check(const RunOptions& options) {
+  if (options.threads < 0) {
+    throw Mistake("-j " + std::to_string(options.threads) +
+                  ": give a number of threads, or 0 for as many as the processor runs at once");
+  }
+  if (!(options.stop_at >= 0)) {
+    throw Mistake("--stop-at " + std::to_string(options.stop_at) + ": give a time in s, 0 or later");
+  }
+}
+
 int run(const std::string& scene_file, std::vector<std::string> cases, bool published,
         const std::vector<std::string>& assignments, RunOptions options, const std::string& resumed) {
   const std::filesystem::path folder(resumed.empty() ? options.folder : resumed);
@@ -45,7 +62,14 @@ int run(const std::string& scene_file, std::vector<std::string> cases, bool publ
   toml::table resolved;
   if (options.resume) {
     const FolderLock lock(options.folder);
-    const auto scene = read_scene((folder / "scene.toml").string(), {}, assignments);
+    for (const char* name : {"scene.toml", "checkpoint.h5"}) {
+      if (std::filesystem::exists(folder / name)) continue;
+      throw Mistake(options.folder + ": holds no " + name +
+                    " to go on from; give the folder of a run, or start one: rvelab-mpm SCENE.toml -o " +
+                    options.folder);
+    }
+    const auto scene = read_scene((folder / "scene.toml").string(), {}, assignments, &resolved);
+    if (!assignments.empty()) options.scene_text = text_of(resolved);
     return run_scene(scene, options, std::cout);
   }
   const auto scene = read_scene(scene_file, cases, assignments, &resolved);
@@ -55,9 +79,7 @@ int run(const std::string& scene_file, std::vector<std::string> cases, bool publ
   }
   std::filesystem::create_directories(folder, error);
   const FolderLock lock(options.folder);
-  std::ofstream copy(folder / "scene.toml");
-  copy << resolved << "\n";
-  if (!copy.flush()) throw Mistake(options.folder + ": cannot be written; give a folder that you may write to");
+  write_scene(options.folder, text_of(resolved));
   return run_scene(scene, options, std::cout);
 }
 
@@ -80,7 +102,8 @@ int program(int argc, char** argv, const PoolSource& source) {
   app.add_option("--case", cases, "A case of the scene ([case.NAME]), laid over it; may be given again");
   app.add_flag("--published", published, "The published size: the same as --case published");
   app.add_option("--set", assignments,
-                 "table.key=value, laid over the scene; [[tables]] by name: body.pipe.radius_m=0.4");
+                 "table.key=value, laid over the scene; [[tables]] by name or number: body.pipe.radius_m=0.4, "
+                 "region.0.points_per_cell=9");
   app.add_option("--specimens", options.specimens, "Folder of the specimen files that materials name");
   app.add_option("-j,--threads", options.threads, "Threads; 0: as many as the processor runs at once");
   app.add_option("--stop-at", options.stop_at, "Stop at this time (s) with a checkpoint");
@@ -90,6 +113,7 @@ int program(int argc, char** argv, const PoolSource& source) {
     if (resume.empty() && (scene.empty() || options.folder.empty())) {
       throw Mistake("give a scene and a folder (rvelab-mpm SCENE.toml -o FOLDER), or --resume FOLDER");
     }
+    check(options);
     return run(scene, cases, published, assignments, options, resume);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;

@@ -1,5 +1,6 @@
 #include "tools/mpm/run.hpp"
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -15,7 +16,10 @@ namespace mpm {
 namespace {
 
 volatile std::sig_atomic_t interrupted = 0;
-void interrupt(int) { interrupted = 1; }
+void interrupt(int signal) {
+  interrupted = 1;
+  std::signal(signal, SIG_DFL);  // a second one ends the run at once
+}
 
 using Clock = std::chrono::steady_clock;
 
@@ -41,26 +45,49 @@ class ProgressLine {
   Clock::time_point begin_ = Clock::now(), last_ = begin_;
 };
 
+/// s of all threads of this process.
+double processor_time() {
+  rusage used{};
+  getrusage(RUSAGE_SELF, &used);
+  return double(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
+         1e-6 * double(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
+}
+
+/// What a loop took, and did.
+struct Cost {
+  double wall = 0, processor = 0;  ///< s
+  long steps = 0;
+  double grain_steps = 0;
+};
+
 template <int D>
-void tell_cost(const Model<D>& model, double wall, long steps, double grain_steps, std::ostream& report) {
+double grain_steps_of(const Model<D>& model) {
+  double sum = 0;
+  for (const auto& range : model.solver.ranges) sum += range.material->grain_steps();
+  return sum;
+}
+
+template <int D>
+void tell_cost(const Model<D>& model, const Cost& cost, std::ostream& report) {
   const auto& solver = model.solver;
   const double points = double(solver.points.size());
   const double whole = solver.grid_seconds + solver.material_seconds;
   double grains = 0;
   for (const auto& range : solver.ranges) grains += range.material->seconds;
-  report << std::setprecision(4) << "points " << solver.points.size() << ", steps " << solver.steps << " (" << steps
-         << " now), threads " << model.solver.workers.count() << ", wall " << wall << " s\n"
+  report << std::setprecision(4) << "points " << solver.points.size() << ", steps " << solver.steps << " ("
+         << cost.steps << " now), threads " << model.solver.workers.count() << ", wall " << cost.wall
+         << " s, processor " << cost.processor << " s\n"
          << "continuum " << whole - grains << " s, grains " << grains << " s (" << 100 * grains / std::max(whole, 1e-12)
          << " %)\n";
   if (grains > 0) {
-    report << "grain-steps " << grain_steps << ", " << grain_steps / grains / 1e6 << " M a second";
+    report << "grain-steps " << grain_steps_of<D>(model) << ", " << cost.grain_steps / grains / 1e6 << " M a second";
     for (const auto& [name, each] : model.grains) {
       report << "; " << name << ": " << each->called << " of " << each->asked << " increments called, " << each->split
              << " in parts, " << each->warned << " with a warning";
     }
     report << "\n";
-  } else if (steps > 0) {
-    report << points * double(steps) / wall / 1e6 << " M point-steps a second\n";
+  } else if (cost.steps > 0) {
+    report << points * double(cost.steps) / cost.wall / 1e6 << " M point-steps a second\n";
   }
 }
 
@@ -78,15 +105,21 @@ int run_model(const Scene& scene, const RunOptions& options, std::ostream& repor
   }
   // The time of grains is that of this call; so is that of the continuum.
   solver.grid_seconds = solver.material_seconds = 0;
+  if (options.resume && solver.time >= scene.duration) {
+    report << "the run is at " << solver.time << " s, and ends at time.duration_s = " << scene.duration
+           << "; give a longer one by --set to go on\n";
+  }
   const std::filesystem::path place(options.folder);
   Rows history((place / "history.csv").string(), history_header<D>(solver), progress.history_bytes);
   Rows watched((place / "watched.csv").string(), watched_header<D>(*model), progress.watched_bytes);
+  if (!options.scene_text.empty()) write_scene(options.folder, options.scene_text);
   if (model->pressure_classes > 0) {
     report << model->pressure_classes << " states of specimens prepared for " << solver.points.size() << " points\n";
   }
   const long first_steps = solver.steps;
   const double setup = std::chrono::duration<double>(Clock::now() - begin).count();
   const auto looped = Clock::now();
+  const double used = processor_time(), made = grain_steps_of<D>(*model);
   ProgressLine line(options.quiet, solver.time, scene.duration);
   const auto row = [&] {
     history.add(history_row<D>(solver, progress.start, solver.time - progress.last_row, progress.impulses));
@@ -127,22 +160,18 @@ int run_model(const Scene& scene, const RunOptions& options, std::ostream& repor
     }
     line.show(solver.time, solver.steps);
   }
-  const double wall = std::chrono::duration<double>(Clock::now() - looped).count();
-  double grain_steps = 0;
-  for (const auto& range : solver.ranges) grain_steps += range.material->grain_steps();
+  const Cost cost{std::chrono::duration<double>(Clock::now() - looped).count(), processor_time() - used,
+                  solver.steps - first_steps, grain_steps_of<D>(*model) - made};
   report << std::setprecision(3) << "setup " << setup << " s\n";
-  tell_cost<D>(*model, wall, solver.steps - first_steps, grain_steps, report);
+  tell_cost<D>(*model, cost, report);
   if (stopped)
     report << "stopped at " << solver.time << " s; go on with: rvelab-mpm --resume " << options.folder << "\n";
-  return stopped ? 130 : 0;
+  return stopped && interrupted != 0 ? 130 : 0;
 }
 
 }  // namespace
 
 int run_scene(const Scene& scene, const RunOptions& options, std::ostream& report) {
-  if (!(scene.frame_every > 0) || !(scene.history_every > 0) || !(scene.checkpoint_every > 0)) {
-    throw Mistake("output.frame_every_s, history_every_s and checkpoint_every_s must be positive");
-  }
   interrupted = 0;
   const auto before_int = std::signal(SIGINT, interrupt), before_term = std::signal(SIGTERM, interrupt);
   const int code = scene.dimension == 2 ? run_model<2>(scene, options, report) : run_model<3>(scene, options, report);

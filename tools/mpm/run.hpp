@@ -23,10 +23,13 @@ struct RunOptions {
   bool resume = false;
   bool quiet = false;  ///< no progress line
   PoolSource source;
-  double stop_at = 1e300;  ///< s; writes a checkpoint there and ends, as an interrupt does
+  double stop_at = 1e300;  ///< s; writes a checkpoint there and ends
+  /// Resumed with another scene than the folder's: what scene.toml becomes once the run goes on. "": it stays.
+  std::string scene_text;
 };
 
-/// Exit code: 0 done, 130 interrupted (or stopped) with a checkpoint. `report` gets what the run cost.
+/// Exit code: 0 done, or stopped where it was asked to, 130 interrupted with a checkpoint. `report` gets what the run
+/// cost.
 int run_scene(const Scene& scene, const RunOptions& options, std::ostream& report);
 
 }  // namespace mpm

@@ -1,6 +1,8 @@
 #include "tools/mpm/scene.hpp"
 
-#include <set>
+#include <algorithm>
+
+#include "tools/mpm/scene_checks.hpp"
 
 namespace mpm {
 namespace {
@@ -9,8 +11,7 @@ constexpr double radians = 0.017453292519943295;
 
 ElasticModuli read_moduli(Keys& keys) {
   ElasticModuli moduli;
-  moduli.young = keys.number("young_modulus_Pa");
-  if (!(moduli.young > 0)) keys.wrong("young_modulus_Pa", "must be positive");
+  moduli.young = keys.positive("young_modulus_Pa");
   moduli.poisson = keys.number("poisson_ratio", 0.3, -0.99, 0.499);
   return moduli;
 }
@@ -22,13 +23,14 @@ Strength read_strength(Keys& keys) {
   strength.dilatancy = keys.number("dilatancy_angle_deg", 0, 0, 60) * radians;
   if (law == "cubic_exponential") {
     strength.law = Strength::Law::cubic_exponential;
-    const auto cubic = keys.vector("cubic_rad", 4, {});
+    const auto cubic = keys.numbers("cubic_rad", 4);
     strength.a = cubic[0];
     strength.b = cubic[1];
     strength.c = cubic[2];
     strength.d = cubic[3];
-    strength.peak_strain = keys.number("peak_plastic_strain");
+    strength.peak_strain = keys.positive("peak_plastic_strain");
     strength.decay = keys.number("decay");
+    if (!(strength.decay >= 0)) keys.wrong("decay", "must not be negative: the angle falls to the residual one");
     strength.peak = keys.number("peak_friction_angle_deg", 30, 0, 89) * radians;
     strength.residual = keys.number("residual_friction_angle_deg", 30, 0, 89) * radians;
     return strength;
@@ -44,7 +46,7 @@ Strength read_strength(Keys& keys) {
 
 MaterialOfScene read_material(Keys& keys) {
   MaterialOfScene material;
-  material.name = keys.text("name");
+  material.name = keys.name();
   const auto kind = keys.choice("kind", {"grains", "elastic", "mohr_coulomb", "drucker_prager"}, true);
   using Kind = MaterialOfScene::Kind;
   if (kind == "grains") {
@@ -84,9 +86,9 @@ std::vector<std::vector<double>> read_motion(Keys& keys, std::size_t d) {
 
 int axis_of(const std::string& name) { return name == "x" ? 0 : name == "y" ? 1 : 2; }
 
-PlaneOfScene read_plane(Keys& keys, std::size_t d) {
+PlaneOfScene read_plane(Keys& keys, std::size_t d, const std::string& followed) {
   PlaneOfScene plane;
-  plane.name = keys.text("name");
+  plane.name = keys.name();
   plane.fixed = keys.choice("kind", {"roller", "fixed"}, true) == "fixed";
   plane.axis = axis_of(
       keys.choice("axis", d == 2 ? std::vector<std::string>{"x", "y"} : std::vector<std::string>{"x", "y", "z"}, true));
@@ -95,24 +97,46 @@ PlaneOfScene read_plane(Keys& keys, std::size_t d) {
   plane.removed_at = keys.number("removed_at_s", 1e300, 0);
   plane.motion = read_motion(keys, d);
   keys.finish();
+  for (const auto& row : plane.motion) {
+    for (int i = 0; i < int(d); ++i) {
+      if (row[std::size_t(i) + 1] == 0) continue;
+      if (i == plane.axis && plane.name != followed) {
+        keys.wrong("motion", "moves the plane off its nodes, which stay; set grid.follows = \"" + plane.name +
+                                 "\", or take a [[body]] in its place");
+      }
+      if (i != plane.axis && !plane.fixed) {
+        keys.wrong("motion", "is along a smooth plane, which takes no soil along; set kind = \"fixed\", or make it 0");
+      }
+    }
+  }
   return plane;
 }
 
 BodyOfScene read_body(Keys& keys, std::size_t d) {
   BodyOfScene body;
-  body.name = keys.text("name");
+  body.name = keys.name();
   const auto kind = keys.choice("kind", {"box", "disc", "half_space"}, true);
   body.kind = kind == "box" ? BodyKind::box : kind == "disc" ? BodyKind::disc : BodyKind::half_space;
   body.centre = keys.vector("centre_m", d, {});
   body.size.assign(d, 0);
   body.normal.assign(d, 0);
   if (kind == "box") body.size = keys.vector("size_m", d, {});
-  if (kind == "disc") body.radius = keys.number("radius_m");
+  if (kind == "disc") body.radius = keys.positive("radius_m");
   if (kind == "half_space") body.normal = keys.vector("normal", d, {});
   body.rough = keys.boolean("rough", kind != "half_space");
-  if (!body.rough) body.friction = keys.number("friction", 0, 0, 100);
+  body.friction = keys.number("friction", 0, 0, 100);
+  if (body.rough && keys.has("friction")) {
+    keys.wrong("friction", "is of a body that is not rough, and a " + kind + " is unless told; set rough = false");
+  }
   body.motion = read_motion(keys, d);
   keys.finish();
+  const auto is_positive = [](double side) { return side > 0; };
+  if (kind == "box" && !std::all_of(body.size.begin(), body.size.end(), is_positive)) {
+    keys.wrong("size_m", "must be positive along every axis");
+  }
+  if (kind == "half_space" && std::all_of(body.normal.begin(), body.normal.end(), [](double n) { return n == 0; })) {
+    keys.wrong("normal", "is zero; give the direction from the surface into the soil");
+  }
   return body;
 }
 
@@ -127,26 +151,26 @@ RegionOfScene read_region(Keys& keys, std::size_t d) {
   if (std::lround(std::pow(double(along), double(d))) != region.points_per_cell) {
     keys.wrong("points_per_cell", d == 2 ? "must be a square: 1, 4, 9, 16" : "must be a cube: 1, 8, 27");
   }
+  keys.finish();
   for (std::size_t i = 0; i < d; ++i) {
     if (!(region.lower[i] < region.upper[i])) keys.wrong("upper_m", "must be above lower_m along every axis");
   }
-  keys.finish();
   return region;
 }
 
 void read_rest(Keys& file, Scene& scene) {
   const auto d = std::size_t(scene.dimension);
   auto grid = file.table("grid");
-  scene.cell = grid.vector("cell_m", d, {});
-  for (const double side : scene.cell) {
-    if (!(side > 0)) grid.wrong("cell_m", "must be positive");
-  }
+  scene.cell = grid.vector("cell_m", d, {}, true);
   const auto shape = grid.choice("shape", {"bspline", "gimp", "linear"});
   scene.shape = shape == "bspline" ? Shape::bspline : shape == "gimp" ? Shape::gimp : Shape::linear;
   scene.follows = grid.text("follows", "");
   grid.finish();
+  for (const double side : scene.cell) {
+    if (!(side > 0)) grid.wrong("cell_m", "must be positive");
+  }
   auto time = file.table("time");
-  scene.duration = time.number("duration_s");
+  scene.duration = time.positive("duration_s");
   scene.scheme = time.choice("scheme", {"usf", "musl"}) == "usf" ? Scheme::usf : Scheme::musl;
   scene.pic_fraction = time.number("pic_fraction", 0.1, 0, 1);
   scene.affine = time.boolean("affine", true);
@@ -167,41 +191,26 @@ void read_rest(Keys& file, Scene& scene) {
     scene.earth_pressure_ratio = initial.number("earth_pressure_ratio", 1, 0, 10);
   }
   initial.finish();
+  if (scene.stress == Scene::Stress::geostatic) {
+    for (std::size_t i = 0; i < d; ++i) {
+      if (i + 1 < d ? scene.gravity[i] == 0 : scene.gravity[i] < 0) continue;
+      initial.wrong("stress", std::string("is geostatic, which needs gravity down the last axis alone; set "
+                                          "loads.gravity_m_s2 = ") +
+                                  (d == 2 ? "[0, -9.81]" : "[0, 0, -9.81]") + ", or another initial.stress");
+    }
+  }
   auto output = file.table("output");
-  scene.frame_every = output.number("frame_every_s", scene.duration / 20, 0);
-  scene.history_every = output.number("history_every_s", scene.duration / 500, 0);
-  scene.checkpoint_every = output.number("checkpoint_every_s", scene.duration / 10, 0);
+  // Outputs come once a step at most; intervals far below any step would be counted through one by one.
+  const double least = 1e-6 * scene.duration;
+  scene.frame_every = output.number("frame_every_s", scene.duration / 20, least);
+  scene.history_every = output.number("history_every_s", scene.duration / 500, least);
+  scene.checkpoint_every = output.number("checkpoint_every_s", scene.duration / 10, least);
   scene.watched = output.rows("watched_points_m", d);
   scene.networks = output.boolean("networks", false);
   if (scene.networks && scene.watched.empty()) {
     output.wrong("networks", "is for chosen points; name them in watched_points_m, or set it to false");
   }
   output.finish();
-}
-
-/// Every name that a table refers to must be there.
-void check_names(const Scene& scene, const std::string& path) {
-  std::set<std::string> materials, planes;
-  for (const auto& material : scene.materials) {
-    if (!materials.insert(material.name).second) throw Mistake(path + ": two materials are called " + material.name);
-    if (material.kind == MaterialOfScene::Kind::grains && scene.stress == Scene::Stress::zero) {
-      throw Mistake(path + ": grains carry a pressure from the start; set initial.stress to isotropic or geostatic");
-    }
-    if (material.kind == MaterialOfScene::Kind::grains && scene.earth_pressure_ratio != 1) {
-      throw Mistake(path + ": grains are consolidated isotropically; set initial.earth_pressure_ratio to 1");
-    }
-  }
-  for (const auto& region : scene.regions) {
-    if (materials.contains(region.material)) continue;
-    throw Mistake(path + ": region.material is \"" + region.material + "\"; the nearest material is \"" +
-                  nearest_word(region.material, materials) + "\"");
-  }
-  for (const auto& plane : scene.planes) planes.insert(plane.name);
-  if (!scene.follows.empty() && !planes.contains(scene.follows)) {
-    throw Mistake(path + ": grid.follows is \"" + scene.follows + "\"; the nearest boundary is \"" +
-                  nearest_word(scene.follows, planes) + "\"");
-  }
-  if (scene.regions.empty()) throw Mistake(path + ": there is no [[region]]; the scene has no material points");
 }
 
 }  // namespace
@@ -230,6 +239,12 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& cases,
   }
   for (const auto& assignment : assignments) assign(file, assignment);
   Keys keys(file, path, "");
+  // A table that is misspelt must be told before a key that it would hold is missed.
+  for (const char* name :
+       {"scene", "grid", "time", "loads", "initial", "output", "material", "region", "boundary", "body", "case"}) {
+    keys.known(name);
+  }
+  keys.finish();
   Scene scene;
   auto head = keys.table("scene");
   scene.name = head.text("name");
@@ -240,11 +255,9 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& cases,
   const auto d = std::size_t(scene.dimension);
   for (auto& each : keys.tables("material")) scene.materials.push_back(read_material(each));
   for (auto& each : keys.tables("region")) scene.regions.push_back(read_region(each, d));
-  for (auto& each : keys.tables("boundary")) scene.planes.push_back(read_plane(each, d));
+  for (auto& each : keys.tables("boundary")) scene.planes.push_back(read_plane(each, d, scene.follows));
   for (auto& each : keys.tables("body")) scene.bodies.push_back(read_body(each, d));
-  keys.known("case");
-  keys.finish();
-  check_names(scene, path);
+  check_scene(scene, path);
   if (resolved != nullptr) {
     file.erase("case");
     *resolved = file;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "tools/mpm/scene_checks.hpp"
+
 namespace mpm {
 namespace {
 
@@ -41,6 +43,12 @@ void place_planes(const Scene& scene, Solver<D>& solver) {
       solver.follow_axis = each.axis;
       solver.followed = int(solver.planes.all.size());
       if (plane.node <= 0) throw Mistake("boundary " + each.name + ": grid.follows needs it at a positive coordinate");
+      // The step shrinks with the cells.
+      if (each.at + plane.velocity.least_way(each.axis, scene.duration) < 0.01 * each.at) {
+        throw Mistake("boundary " + each.name +
+                      ": its motion takes it to less than a hundredth of at_m within time.duration_s, and cells of no "
+                      "height have no time step; shorten motion or time.duration_s");
+      }
     }
     solver.planes.all.push_back(plane);
   }
@@ -67,16 +75,10 @@ void place_bodies(const Scene& scene, Solver<D>& solver) {
 /// Points of one region, x fastest.
 template <int D>
 void fill(const Scene& scene, const RegionOfScene& region, std::vector<Point<D>>& points) {
-  const long along = std::lround(std::pow(double(region.points_per_cell), 1.0 / D));
-  long count[D], total = 1;
-  Vec<D> side;
-  for (int i = 0; i < D; ++i) {
-    const double length = region.upper[i] - region.lower[i];
-    count[i] = std::max(1L, std::lround(length / scene.cell[i] * double(along)));
-    side[i] = length / double(count[i]);
-    total *= count[i];
-  }
-  for (long k = 0; k < total; ++k) {
+  const auto filling = filling_of(scene, region);
+  const auto& count = filling.count;
+  const Vec<D> side = vec<D>(filling.side);
+  for (long k = 0; k < filling.total; ++k) {
     Point<D> point;
     long rest = k;
     for (int i = 0; i < D; ++i) {
@@ -91,21 +93,34 @@ void fill(const Scene& scene, const RegionOfScene& region, std::vector<Point<D>>
   }
 }
 
-/// Pa, compression positive: what the points of this height carry at the start.
+/// kg/m^3 of the soil itself, by the name of the material.
+using Densities = std::map<std::string, double>;
+
+/// Pa, compression positive: what a point of this material and height carries at the start. Geostatic: of its own soil
+/// up to the surface, and by how much the layers of other soils above it are heavier.
 template <int D>
-double pressure_at(const Scene& scene, const Vec<D>& position, double density) {
+double pressure_at(const Scene& scene, const Vec<D>& position, const std::string& material, const Densities& soils) {
   if (scene.stress == Scene::Stress::isotropic) return scene.pressure;
   if (scene.stress == Scene::Stress::zero) return 0;
-  const double depth = scene.surface - position[D - 1];
-  return scene.surface_pressure + density * -scene.gravity[D - 1] * depth;
+  const double depth = scene.surface - position[D - 1], density = soils.at(material);
+  double pressure = scene.surface_pressure + density * -scene.gravity[D - 1] * depth;
+  for (const auto& region : scene.regions) {
+    const double excess = soils.at(region.material) - density;
+    const double layer = region.upper[D - 1] - std::max(region.lower[D - 1], position[D - 1]);
+    bool above = excess != 0 && layer > 0;
+    for (int i = 0; i + 1 < D; ++i) above = above && position[i] > region.lower[i] && position[i] < region.upper[i];
+    if (above) pressure += excess * -scene.gravity[D - 1] * layer;
+  }
+  return pressure;
 }
 
 template <int D>
-void load_continuum(const Scene& scene, const MaterialOfScene& material, Point<D>* points, long count) {
+void load_continuum(const Scene& scene, const MaterialOfScene& material, const Densities& soils, Point<D>* points,
+                    long count) {
   for (long k = 0; k < count; ++k) {
     auto& point = points[k];
     point.mass = material.density * point.volume;
-    const double vertical = pressure_at<D>(scene, point.position, material.density);
+    const double vertical = pressure_at<D>(scene, point.position, material.name, soils);
     const double side = scene.stress == Scene::Stress::geostatic ? scene.earth_pressure_ratio * vertical : vertical;
     point.stress = -side * Mat<D>::Identity();
     point.stress(D - 1, D - 1) = -vertical;
@@ -113,23 +128,31 @@ void load_continuum(const Scene& scene, const MaterialOfScene& material, Point<D
   }
 }
 
+/// Specimens of each material of grains.
+using Families = std::map<std::string, std::unique_ptr<SpecimenFamily>>;
+
 template <int D>
-std::shared_ptr<Grains<D>> load_grains(const Scene& scene, const MaterialOfScene& material, Model<D>& model,
-                                       const std::shared_ptr<GrainPool>& pool, const std::string& folder,
-                                       Point<D>* points, long count) {
+void open_specimens(const MaterialOfScene& material, const std::shared_ptr<GrainPool>& pool, const std::string& folder,
+                    Families& families, Densities& soils) {
   std::vector<std::string> paths;
   for (const auto& name : material.specimens) paths.push_back((std::filesystem::path(folder) / name).string());
-  SpecimenFamily family(pool, paths);
-  const auto first = family.prepared(0);
+  auto& family = families[material.name] = std::make_unique<SpecimenFamily>(pool, paths);
+  const auto first = family->prepared(0);
   if (first.dimension != D) {
     throw Mistake("material " + material.name + ": its specimen is of dimension " + std::to_string(first.dimension) +
-                  ", the scene of " + std::to_string(D));
+                  ", the scene of " + std::to_string(D) + "; name another in specimens, or set scene.dimension");
   }
-  const double density = material.density / (1 + first.void_ratio);
+  soils[material.name] = material.density / (1 + first.void_ratio);
+}
+
+template <int D>
+std::shared_ptr<Grains<D>> load_grains(const Scene& scene, const MaterialOfScene& material, Model<D>& model,
+                                       const std::shared_ptr<GrainPool>& pool, SpecimenFamily& family,
+                                       const Densities& soils, Point<D>* points, long count) {
   std::vector<std::int64_t> ids;
   for (long k = 0; k < count; ++k) {
     // Points of one depth share one prepared state; round-off in their heights must not part them.
-    const double exact = pressure_at<D>(scene, points[k].position, density);
+    const double exact = pressure_at<D>(scene, points[k].position, material.name, soils);
     const double pressure = std::stod(std::to_string(exact));
     if (!(pressure > 0)) {
       throw Mistake("material " + material.name +
@@ -183,6 +206,21 @@ std::unique_ptr<Model<D>> set_up(const Scene& scene, int threads, const std::str
   solver.options.surface_pressure = scene.surface_pressure;
   place_planes(scene, solver);
   place_bodies(scene, solver);
+  Families families;
+  Densities soils;
+  for (const auto& material : scene.materials) {
+    soils[material.name] = material.density;
+    if (material.kind != MaterialOfScene::Kind::grains) continue;
+    if (!model->pools.empty() && source.over_ranks) {
+      throw Mistake("material." + material.name +
+                    ": a second material of grains, and ranks serve one pool; run this "
+                    "scene by rvelab-mpm, on threads");
+    }
+    const auto pool = std::make_shared<GrainPool>(solver.workers,
+                                                  GrainOptions{material.tolerance_rel, material.tolerance_abs, source});
+    model->pools[material.name] = pool;
+    if (populate) open_specimens<D>(material, pool, specimens, families, soils);
+  }
   for (const auto& material : scene.materials) {
     Range<D> range;
     range.first = long(solver.points.size());
@@ -193,20 +231,14 @@ std::unique_ptr<Model<D>> set_up(const Scene& scene, int threads, const std::str
     range.count = long(solver.points.size()) - range.first;
     Point<D>* points = solver.points.data() + range.first;
     if (material.kind != MaterialOfScene::Kind::grains) {
-      load_continuum<D>(scene, material, points, range.count);
+      load_continuum<D>(scene, material, soils, points, range.count);
       range.material = continuum<D>(material);
     } else {
-      if (!model->pools.empty() && source.over_ranks) {
-        throw Mistake("material." + material.name +
-                      ": a second material of grains, and ranks serve one pool; run this "
-                      "scene by rvelab-mpm, on threads");
-      }
-      const auto pool = std::make_shared<GrainPool>(
-          solver.workers, GrainOptions{material.tolerance_rel, material.tolerance_abs, source});
-      model->pools[material.name] = pool;
+      const auto& pool = model->pools.at(material.name);
       auto grains =
-          populate ? load_grains<D>(scene, material, *model, pool, specimens, points, range.count)
-                   : std::make_shared<Grains<D>>(pool, std::vector<std::int64_t>{}, material.physical, material.gather);
+          populate
+              ? load_grains<D>(scene, material, *model, pool, *families.at(material.name), soils, points, range.count)
+              : std::make_shared<Grains<D>>(pool, std::vector<std::int64_t>{}, material.physical, material.gather);
       model->grains[material.name] = grains;
       range.material = grains;
     }

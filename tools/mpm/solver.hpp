@@ -70,7 +70,7 @@ class Solver {
 
   explicit Solver(int threads) : workers(threads) {}
   const Range<D>& range_of(long point) const;
-  /// s, from the fastest wave and the fastest point.
+  /// s, from the fastest wave and the fastest point, or from a body or plane that is faster than both.
   double stable_step() const;
   void step(double dt);
 

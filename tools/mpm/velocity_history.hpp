@@ -1,6 +1,7 @@
 // A prescribed velocity: linear between given times, so that ramps have no jump; held after the last.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "tools/mpm/tensors.hpp"
@@ -30,6 +31,19 @@ struct VelocityHistory {
     }
     if (!times.empty() && time > times.back()) sum += (time - times.back()) * velocities.back();
     return sum;
+  }
+  /// The least way along an axis up to a time: at its ends, or where the velocity along it turns.
+  double least_way(int axis, double until) const {
+    double least = std::min(0.0, way(until)[axis]);
+    for (std::size_t k = 0; k < times.size() && times[k] < until; ++k) {
+      least = std::min(least, way(times[k])[axis]);
+      if (k == 0) continue;
+      const double before = velocities[k - 1][axis], after = velocities[k][axis];
+      if (!(before < 0 && after > 0)) continue;
+      const double turn = times[k - 1] + (times[k] - times[k - 1]) * before / (before - after);
+      least = std::min(least, way(turn)[axis]);
+    }
+    return least;
   }
 
  private:

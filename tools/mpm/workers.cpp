@@ -3,14 +3,25 @@
 #include <algorithm>
 #include <utility>
 
+#include "tools/mpm/tensors.hpp"
+
 namespace mpm {
 
 Workers::Workers(int count) {
   if (count <= 0) count = int(std::max(1u, std::thread::hardware_concurrency()));
-  for (int k = 1; k < count; ++k) threads_.emplace_back([this] { serve(); });
+  try {
+    for (int k = 1; k < count; ++k) threads_.emplace_back([this] { serve(); });
+  } catch (const std::exception&) {
+    const int started = this->count();
+    end();
+    throw Mistake("-j " + std::to_string(count) + ": the system starts no more than " + std::to_string(started) +
+                  " threads here; give fewer");
+  }
 }
 
-Workers::~Workers() {
+Workers::~Workers() { end(); }
+
+void Workers::end() {
   {
     const std::lock_guard lock(mutex_);
     stop_ = true;

@@ -14,7 +14,8 @@ namespace mpm {
 
 class Workers {
  public:
-  /// `count` threads, the caller's included; 0: as many as the processor runs at once.
+  /// `count` threads, the caller's included; 0: as many as the processor runs at once. Mistake if the system gives
+  /// fewer.
   explicit Workers(int count);
   Workers(const Workers&) = delete;
   Workers& operator=(const Workers&) = delete;
@@ -26,6 +27,7 @@ class Workers {
   void for_each(std::int64_t pieces, const std::function<void(std::int64_t)>& work);
 
  private:
+  void end();
   void serve();
   void take();
   std::vector<std::thread> threads_;

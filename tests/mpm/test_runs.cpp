@@ -1,0 +1,154 @@
+// Runs as a user starts, stops and resumes them: folders, signals, threads.
+#include <filesystem>
+#include <fstream>
+
+#include "tests/catch.hpp"
+#include "tests/child.hpp"
+#include "tests/folder.hpp"
+
+using Catch::Matchers::Contains;
+using rvelab::test::bytes_of;
+using rvelab::test::Child;
+using rvelab::test::Folder;
+
+namespace {
+
+/// A small block that falls on a base.
+constexpr const char* block = R"(
+[scene]
+name = "block"
+[grid]
+cell_m = 0.25
+[time]
+duration_s = 0.1
+[loads]
+gravity_m_s2 = [0, -10]
+[[material]]
+name = "soil"
+kind = "mohr_coulomb"
+young_modulus_Pa = 1e6
+[[region]]
+material = "soil"
+lower_m = [0, 0]
+upper_m = [1, 1]
+[[body]]
+name = "base"
+kind = "half_space"
+centre_m = [0, 0]
+normal = [0, 1]
+[output]
+watched_points_m = [[0.5, 0.5]]
+)";
+
+struct Bench {
+  Folder folder;
+  Bench() { std::ofstream(folder / "block.toml") << block; }
+
+  int run(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), RVELAB_MPM_PROGRAM);
+    Child child(arguments, folder / "out", folder / "err");
+    return child.wait();
+  }
+  int start(const std::string& name, std::vector<std::string> more = {}) const {
+    more.insert(more.begin(), {folder / "block.toml", "-j", "1", "-o", folder / name});
+    return run(more);
+  }
+  std::string errors() const { return bytes_of(folder / "err"); }
+  std::string output() const { return bytes_of(folder / "out"); }
+  double last_time(const std::string& name) const {
+    const auto text = bytes_of(folder / (name + "/history.csv"));
+    return std::stod(text.substr(text.rfind('\n', text.size() - 2) + 1));
+  }
+};
+
+}  // namespace
+
+TEST_CASE("runs that are the same have the same bytes in every file") {
+  const Bench bench;
+  REQUIRE(bench.start("a") == 0);
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // stamps count seconds
+  REQUIRE(bench.start("b") == 0);
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(bench.folder / "a")) {
+    const auto name = entry.path().filename().string();
+    CAPTURE(name);
+    ++files;
+    CHECK(bytes_of(entry.path()) == bytes_of(bench.folder / ("b/" + name)));
+  }
+  CHECK(files >= 24);
+}
+
+TEST_CASE("a run stops where it was asked to as one that succeeded, and says what it took") {
+  const Bench bench;
+  REQUIRE(bench.start("a", {"--stop-at", "0.05"}) == 0);
+  CHECK_THAT(bench.output(), Contains("go on with: rvelab-mpm --resume") && Contains(" s, processor "));
+  CHECK(bench.start("b", {"--stop-at", "nan"}) == 2);
+  CHECK_THAT(bench.errors(), Contains("--stop-at nan: give a time in s"));
+  CHECK(bench.start("b", {"--stop-at", "-1"}) == 2);
+  CHECK(bench.run({bench.folder / "block.toml", "-o", bench.folder / "b", "-j", "-2"}) == 2);
+  CHECK_THAT(bench.errors(), Contains("-j -2: give a number of threads"));
+  CHECK(bench.run({"column_soil", "-o", bench.folder / "c"}) == 2);
+  CHECK_THAT(bench.errors(), Contains("column_soil: there is no such file; a scene goes by its path, such as "
+                                      "protocols/mpm/column_soil.toml"));
+}
+
+TEST_CASE("what a resumed run is told stays told: the scene in its folder is the one that it goes on with") {
+  const Bench bench;
+  REQUIRE(bench.start("a") == 0);
+  REQUIRE(bench.run({"--resume", bench.folder / "a"}) == 0);
+  CHECK_THAT(bench.output(), Contains("the run is at 0.1 s, and ends at time.duration_s = 0.1"));
+  REQUIRE(bench.run({"--resume", bench.folder / "a", "--set", "time.duration_s=0.2", "--stop-at", "0.15"}) == 0);
+  CHECK(bench.last_time("a") < 0.2);
+  REQUIRE(bench.run({"--resume", bench.folder / "a"}) == 0);
+  CHECK(bench.last_time("a") == 0.2);
+  // A scene that the checkpoint is not of is refused, and not kept.
+  const auto kept = bytes_of(bench.folder / "a/scene.toml");
+  const std::string plane = "boundary=[{name=\"left\", kind=\"roller\", axis=\"x\", at_m=0}]";
+  CHECK(bench.run({"--resume", bench.folder / "a", "--set", plane}) == 2);
+  CHECK_THAT(bench.errors(), Contains("holds 1 boundaries and bodies, this scene needs 2"));
+  CHECK(bench.run({"--resume", bench.folder / "a", "--set", "grid.cell_m=0.5"}) == 2);
+  CHECK_THAT(bench.errors(), Contains("holds 64 material points, this scene needs 16"));
+  CHECK(bytes_of(bench.folder / "a/scene.toml") == kept);
+}
+
+TEST_CASE("a folder that lost something is refused with the remedy") {
+  const Bench bench;
+  REQUIRE(bench.start("a", {"--stop-at", "0.05"}) == 0);
+  const auto history = bench.folder / "a/history.csv", checkpoint = bench.folder / "a/checkpoint.h5";
+  const auto rows = bytes_of(history), state = bytes_of(checkpoint);
+  std::ofstream(history) << rows.substr(0, rows.size() / 2);
+  CHECK(bench.run({"--resume", bench.folder / "a"}) == 2);
+  CHECK_THAT(bench.errors(), Contains("history.csv: has " + std::to_string(rows.size() / 2) + " bytes, and " +
+                                      std::to_string(rows.size())) &&
+                                 Contains("put the whole file back, or start the run anew"));
+  CHECK(bytes_of(history).size() == rows.size() / 2);
+  std::ofstream(history) << rows;
+  std::ofstream(checkpoint, std::ios::binary) << state.substr(0, state.size() / 2);
+  CHECK(bench.run({"--resume", bench.folder / "a"}) == 2);
+  CHECK_THAT(bench.errors(), Contains("no whole HDF5 file; put it back from a copy, or start the run anew"));
+  std::filesystem::remove(checkpoint);
+  CHECK(bench.run({"--resume", bench.folder / "a"}) == 2);
+  CHECK_THAT(bench.errors(), Contains("holds no checkpoint.h5 to go on from; give the folder of a run"));
+}
+
+TEST_CASE("a first signal stops a run with a checkpoint, and threads that the system refuses are told") {
+  const Bench bench;
+  {
+    Child child({RVELAB_MPM_PROGRAM, bench.folder / "block.toml", "-o", bench.folder / "a", "-j", "1", "--set",
+                 "time.duration_s=1e4"},
+                bench.folder / "out", bench.folder / "err");
+    for (int k = 0; k < 6000 && !std::filesystem::exists(bench.folder / "a/points_0000.h5"); ++k) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    child.signal(SIGTERM);
+    CHECK(child.wait() == 130);
+    CHECK(std::filesystem::exists(bench.folder / "a/checkpoint.h5"));
+  }
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // their runtimes need more than any limit
+  Child child({"/bin/sh", "-c", "ulimit -v 1000000; exec \"$0\" \"$@\"", RVELAB_MPM_PROGRAM,
+               bench.folder / "block.toml", "-o", bench.folder / "b", "-j", "500"},
+              bench.folder / "out", bench.folder / "err");
+  CHECK(child.wait_for(60) == 2);
+  CHECK_THAT(bench.errors(), Contains("-j 500: the system starts no more than ") && Contains("give fewer"));
+#endif
+}

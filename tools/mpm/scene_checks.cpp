@@ -1,0 +1,179 @@
+#include "tools/mpm/scene_checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <sstream>
+
+namespace mpm {
+namespace {
+
+constexpr double most_points = 5e7;    // some 20 GB
+constexpr double farthest_cell = 1e9;  // numbers of nodes are int
+constexpr const char* axes[3] = {"x", "y", "z"};
+
+std::string text_of(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+std::string text_of(const std::vector<double>& values) {
+  std::string list;
+  for (const double value : values) list += (list.empty() ? "[" : ", ") + text_of(value);
+  return list + "]";
+}
+
+/// Points along one axis of a region, before it is known that they can be counted.
+double points_along(const Scene& scene, const RegionOfScene& region, std::size_t axis) {
+  const double along = std::round(std::pow(double(region.points_per_cell), 1.0 / double(scene.dimension)));
+  return std::max(1.0, std::round((region.upper[axis] - region.lower[axis]) / scene.cell[axis] * along));
+}
+
+void check_materials(const Scene& scene, const std::string& path) {
+  std::set<std::string> materials;
+  for (const auto& material : scene.materials) {
+    if (!materials.insert(material.name).second) throw Mistake(path + ": two materials are called " + material.name);
+    if (material.kind == MaterialOfScene::Kind::grains && scene.stress == Scene::Stress::zero) {
+      throw Mistake(path + ": grains carry a pressure from the start; set initial.stress to isotropic or geostatic");
+    }
+    if (material.kind == MaterialOfScene::Kind::grains && scene.earth_pressure_ratio != 1) {
+      throw Mistake(path + ": grains are consolidated isotropically; set initial.earth_pressure_ratio to 1");
+    }
+  }
+  for (const auto& region : scene.regions) {
+    if (materials.contains(region.material)) continue;
+    throw Mistake(path + ": region.material is \"" + region.material + "\"; the nearest material is \"" +
+                  nearest_word(region.material, materials) + "\"");
+  }
+}
+
+void check_boundaries(const Scene& scene, const std::string& path) {
+  std::set<std::string> planes, all;
+  const auto expect_new = [&](const std::string& name) {
+    if (all.insert(name).second) return;
+    throw Mistake(path + ": two boundaries or bodies are called " + name + "; columns go by it: rename one");
+  };
+  for (const auto& plane : scene.planes) {
+    expect_new(plane.name);
+    planes.insert(plane.name);
+    if (std::abs(plane.at / scene.cell[std::size_t(plane.axis)]) < farthest_cell) continue;
+    throw Mistake(path + ": boundary." + plane.name + ".at_m is " + text_of(plane.at) +
+                  ", too many cells from 0; move it nearer, or make grid.cell_m larger");
+  }
+  for (const auto& body : scene.bodies) expect_new(body.name);
+  if (scene.follows.empty()) return;
+  if (!planes.contains(scene.follows)) {
+    throw Mistake(path + ": grid.follows is \"" + scene.follows + "\"; the nearest boundary is \"" +
+                  nearest_word(scene.follows, planes) + "\"");
+  }
+  const auto& followed = *std::find_if(scene.planes.begin(), scene.planes.end(),
+                                       [&](const auto& plane) { return plane.name == scene.follows; });
+  for (const auto& plane : scene.planes) {
+    if (plane.axis != followed.axis || plane.name == followed.name || plane.at == 0) continue;
+    throw Mistake(path + ": boundary." + plane.name + ".at_m is " + text_of(plane.at) +
+                  ", and would move along with grid.follows, which shortens all cells across " + axes[plane.axis] +
+                  "; put it at 0, or take a [[body]] in its place");
+  }
+}
+
+void check_sizes(const Scene& scene, const std::string& path) {
+  double total = 0;
+  for (const auto& region : scene.regions) {
+    double points = 1;
+    for (std::size_t i = 0; i < scene.cell.size(); ++i) {
+      points *= points_along(scene, region, i);
+      if (std::max(std::abs(region.lower[i]), std::abs(region.upper[i])) < farthest_cell * scene.cell[i]) continue;
+      throw Mistake(path + ": " + region_name(scene, region) + " from " + text_of(region.lower) + " to " +
+                    text_of(region.upper) +
+                    " m lies too many cells from 0; move it nearer, or make grid.cell_m larger");
+    }
+    total += points;
+    if (total <= most_points) continue;
+    throw Mistake(path + ": " + region_name(scene, region) + " would have " + text_of(points) +
+                  " material points, and a scene has at most " + text_of(most_points) +
+                  "; make grid.cell_m larger, or the region or points_per_cell smaller");
+  }
+}
+
+void check_overlaps(const Scene& scene, const std::string& path) {
+  for (auto a = scene.regions.begin(); a != scene.regions.end(); ++a) {
+    for (auto b = scene.regions.begin(); b != a; ++b) {
+      bool apart = false;
+      for (std::size_t i = 0; i < scene.cell.size(); ++i) {
+        const double shared = std::min(a->upper[i], b->upper[i]) - std::max(a->lower[i], b->lower[i]);
+        apart = apart || shared < 1e-6 * scene.cell[i];
+      }
+      if (apart) continue;
+      throw Mistake(path + ": " + region_name(scene, *b) + " and " + region_name(scene, *a) +
+                    " overlap, and would fill that place twice; change lower_m or upper_m of one");
+    }
+  }
+}
+
+void check_sides(const Scene& scene, const std::string& path) {
+  for (const auto& region : scene.regions) {
+    const auto filling = filling_of(scene, region);
+    for (const auto& plane : scene.planes) {
+      if (!(plane.removed_at > 0)) continue;
+      const auto i = std::size_t(plane.axis);
+      const double first = region.lower[i] + 0.5 * filling.side[i], last = region.upper[i] - 0.5 * filling.side[i];
+      const double slack = 1e-6 * scene.cell[i];
+      if (plane.soil_above ? first > plane.at - slack : last < plane.at + slack) continue;
+      throw Mistake(path + ": points of " + region_name(scene, region) + " lie behind boundary." + plane.name +
+                    " (soil " + (plane.soil_above ? "above " : "below ") + axes[i] + " = " + text_of(plane.at) +
+                    " m); set soil = \"" + (plane.soil_above ? "below" : "above") + "\" there, or move the region");
+    }
+    const double top = region.upper.back() - 0.5 * filling.side.back();
+    if (scene.stress == Scene::Stress::geostatic && top > scene.surface + 1e-6 * scene.cell.back()) {
+      throw Mistake(path + ": points of " + region_name(scene, region) +
+                    " lie above initial.surface_m = " + text_of(scene.surface) +
+                    ", and would start under tension; set it to the height of the free surface");
+    }
+  }
+}
+
+void check_watched(const Scene& scene, const std::string& path) {
+  for (std::size_t k = 0; k < scene.watched.size(); ++k) {
+    const bool near = std::any_of(scene.regions.begin(), scene.regions.end(), [&](const auto& region) {
+      const auto side = filling_of(scene, region).side;
+      bool within = true;
+      for (std::size_t i = 0; i < side.size(); ++i) {
+        const double x = scene.watched[k][i], reach = scene.cell[i] - 0.5 * side[i];
+        within = within && x > region.lower[i] - reach && x < region.upper[i] + reach;
+      }
+      return within;
+    });
+    if (near) continue;
+    throw Mistake(path + ": output.watched_points_m[" + std::to_string(k) + "] is " + text_of(scene.watched[k]) +
+                  ", more than a cell from any material point; move it into a region, or take it away");
+  }
+}
+
+}  // namespace
+
+Filling filling_of(const Scene& scene, const RegionOfScene& region) {
+  Filling filling;
+  for (std::size_t i = 0; i < scene.cell.size(); ++i) {
+    filling.count.push_back(long(points_along(scene, region, i)));
+    filling.side.push_back((region.upper[i] - region.lower[i]) / double(filling.count[i]));
+    filling.total *= filling.count[i];
+  }
+  return filling;
+}
+
+std::string region_name(const Scene& scene, const RegionOfScene& region) {
+  return "region." + std::to_string(&region - scene.regions.data()) + " (of " + region.material + ")";
+}
+
+void check_scene(const Scene& scene, const std::string& path) {
+  check_materials(scene, path);
+  check_boundaries(scene, path);
+  if (scene.regions.empty()) throw Mistake(path + ": there is no [[region]]; the scene has no material points");
+  check_sizes(scene, path);
+  check_overlaps(scene, path);
+  check_sides(scene, path);
+  check_watched(scene, path);
+}
+
+}  // namespace mpm
