@@ -80,3 +80,69 @@ TEST_CASE("the least way of a prescribed velocity is found where it turns, too")
   CHECK(history.least_way(0, 9) == 0);
   CHECK(VelocityHistory<2>().least_way(1, 9) == 0);
 }
+
+TEST_CASE("a block at rest on the surface of a half-space stays so, with quadratic functions and with GIMP") {
+  for (const Shape shape : {Shape::bspline, Shape::gimp}) {
+    for (const double height : {0.0, 0.037}) {  // on a row of nodes, and between two
+      auto solver = block<2>({5, 10}, 0.1, ElasticModuli{1e6, 0.3}, 2000);
+      solver->options.gravity = Vec<2>(0, -9.81);
+      solver->options.shape = solver->bodies.shape = shape;
+      solver->planes.all = {roller<2>(0, 0, true), roller<2>(0, 5, false)};
+      solver->bodies.all = {half_space({0, height}, {0, 1})};
+      solver->bodies.all[0].at_surface = true;
+      double mass = 0;
+      for (auto& point : solver->points) {  // under its own weight
+        point.position[1] += height;
+        const double p = 2000 * 9.81 * (1 + height - point.position[1]);
+        point.stress = -p * Vec<2>(0.3 / 0.7, 1).asDiagonal();
+        point.stress_zz = 0;
+        mass += point.mass;
+      }
+      const auto start = energy_start<2>(*solver);
+      const auto first = solver->points;
+      while (solver->time < 3) solver->step(solver->stable_step());
+      CAPTURE(int(shape), height);
+      const double weight = mass * 9.81;
+      CHECK(solver->bodies.all[0].reaction.impulse[1] == Approx(weight * solver->time).epsilon(1e-3));
+      double farthest = 0;
+      for (std::size_t k = 0; k < first.size(); ++k) {
+        farthest = std::max(farthest, (solver->points[k].position - first[k].position).norm());
+        CHECK(solver->points[k].stress(1, 1) == Approx(first[k].stress(1, 1)).margin(0.03 * 2000 * 9.81));
+      }
+      CHECK(farthest < 0.01 * 2000 * 9.81 / 1e6);  // of the settlement that the weight would make
+      CHECK(std::abs(balance_of<2>(*solver, start).residual) < 1e-4 * start.potential);
+    }
+  }
+}
+
+TEST_CASE("on a surface a block slides as Coulomb says, and leaves it without being held") {
+  for (const double mu : {0.1, 0.5}) {
+    CAPTURE(mu);
+    auto solver = block<2>({6, 3}, 0.05, ElasticModuli{80e6, 0.3}, 2000);
+    solver->options.gravity = Vec<2>(10, -10);
+    solver->options.pic_fraction = 0.01;
+    solver->bodies.all = {half_space({0, 0}, {0, 1})};
+    solver->bodies.all[0].friction = mu;
+    solver->bodies.all[0].at_surface = true;
+    while (solver->time < 0.25) solver->step(std::min(solver->stable_step(), 0.25 - solver->time));
+    Vec<2> mean = Vec<2>::Zero();
+    double mass = 0;
+    for (const auto& point : solver->points) {
+      mean += point.velocity / double(solver->points.size());
+      mass += point.mass;
+    }
+    CHECK(mean[0] == Approx(10 * (1 - mu) * 0.25).epsilon(0.003));
+    CHECK(std::abs(mean[1]) < 0.01);
+    CHECK(-solver->bodies.all[0].reaction.impulse[0] == Approx(mu * mass * 10 * 0.25).epsilon(0.01));
+
+    solver->options.gravity.setZero();
+    set_velocity<2>(*solver, [](const Vec<2>&) { return Vec<2>(0, 1); });
+    const Vec<2> before = solver->bodies.all[0].reaction.impulse;
+    double momentum = 0;
+    for (int k = 0; k < 200; ++k) solver->step(solver->stable_step());
+    for (const auto& point : solver->points) momentum += point.mass * point.velocity[1];
+    const double pushed = solver->bodies.all[0].reaction.impulse[1] - before[1];
+    CHECK(pushed >= 0);  // what was pressed springs back
+    CHECK(momentum == Approx(mass + pushed).epsilon(1e-9));
+  }
+}

@@ -6,8 +6,8 @@
 namespace mpm {
 
 /// J. Since the start: kinetic + potential + stress_work + mapping_loss = boundary_work + pressure_work + residual. The
-/// residual is the error of the time integration and, once a body touches, that of its contact: nodes outside the body
-/// that soil inside its outline reaches stay unbalanced.
+/// residual is the error of the time integration and, once a body touches, that of contact at nodes (bodies.hpp): those
+/// outside the body that its surface reaches stay unbalanced.
 template <int D>
 struct Balance {
   double kinetic = 0;        ///< of the points, now

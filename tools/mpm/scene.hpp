@@ -43,6 +43,7 @@ struct BodyOfScene {
   BodyKind kind = BodyKind::box;
   std::vector<double> centre, size, normal;
   double radius = 0, friction = 0;
+  bool at_surface = false;
   bool rough = true;
   std::vector<std::vector<double>> motion;
 };

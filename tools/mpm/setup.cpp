@@ -67,8 +67,10 @@ void place_bodies(const Scene& scene, Solver<D>& solver) {
     body.radius = each.radius;
     body.rough = each.rough;
     body.friction = each.friction;
+    body.at_surface = each.at_surface;
     body.velocity = history<D>(each.motion);
     solver.bodies.all.push_back(body);
+    solver.bodies.shape = scene.shape;
   }
 }
 
