@@ -8,7 +8,9 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <sstream>
 
@@ -20,12 +22,14 @@
 #include "rvelab/cli/report.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/io/publish.hpp"
+#include "rvelab/io/schema.hpp"
 
 namespace rvelab::cli {
 namespace {
 
 struct CalibrateArguments {
-  std::string protocol, pressures, folder;
+  std::string protocol, folder;
+  std::optional<std::string> pressures;
   std::vector<std::string> specimens, settings;
   unsigned threads = 0;
   bool every_pressure = false;
@@ -71,8 +75,7 @@ std::string record_file_name(double pressure) { return "R_" + std::to_string(std
 std::vector<protocol::Protocol> protocols_at(const CalibrateArguments& arguments) {
   const std::string path = protocol_path(arguments.protocol);
   const protocol::Protocol general = protocol::read_protocol(path, arguments.settings);
-  const auto pressures =
-      arguments.pressures.empty() ? general.calibration_pressures : parsed_pressures(arguments.pressures);
+  const auto pressures = arguments.pressures ? parsed_pressures(*arguments.pressures) : general.calibration_pressures;
   if (pressures.empty()) {
     throw InputError(general.path +
                      ": no pressures are given; allowed: --pressures 10e3,20e3 or [calibrate] pressures_Pa; add one");
@@ -83,13 +86,27 @@ std::vector<protocol::Protocol> protocols_at(const CalibrateArguments& arguments
     std::ostringstream assignment;
     assignment.precision(17);
     assignment << "test.pressure_Pa=" << pressure;
-    if (!names.insert(record_file_name(pressure)).second) refuse_pressure(assignment.str());
+    if (!names.insert(record_file_name(pressure)).second) {
+      throw InputError((arguments.pressures ? "--pressures" : "[calibrate] pressures_Pa") + std::string(" holds ") +
+                       in_words(pressure) + " Pa twice, to the pascal; allowed: each pressure once; leave one out");
+    }
     auto settings = arguments.settings;
     settings.push_back(assignment.str());
     protocols.push_back(protocol::read_protocol(path, settings));
   }
   calibrate::check_calibratable(protocols.front());
   return protocols;
+}
+
+/// InputError where two files hold the same specimen, which would count as two draws without scatter.
+void expect_different(const std::vector<Specimen>& specimens, const std::vector<std::string>& files) {
+  std::map<std::uint32_t, std::size_t> first;
+  for (std::size_t k = 0; k < specimens.size(); ++k) {
+    const auto [found, is_new] = first.emplace(io::digest(specimens[k]), k);
+    if (is_new) continue;
+    throw InputError("--specimen " + files[k] + " holds the same specimen as --specimen " + files[found->second] +
+                     "; allowed: specimens of different draws; leave one out, or pack one with another seed");
+  }
 }
 
 /// Every specimen at every pressure where that was asked for or there is one pressure; else one for each, or one for
@@ -240,6 +257,7 @@ void run_calibration(const CalibrateArguments& arguments) {
   const auto at_pressures = protocols_at(arguments);
   arguments.recording.expect_output(arguments.folder);
   const auto specimens = specimens_for(at_pressures.front(), arguments.specimens);
+  if (arguments.every_pressure || at_pressures.size() == 1) expect_different(specimens, arguments.specimens);
   const Plan plan = plan_of(at_pressures, specimens, arguments.every_pressure);
   const std::size_t tests = plan.protocols.size();
   std::vector<std::unique_ptr<io::RecordStore>> stores(tests);

@@ -60,7 +60,7 @@ void run_import(const ImportArguments& arguments) {
   options.settings = arguments.settings;
   const Specimen specimen = io::import_csv(inputs.particles, inputs.contacts, inputs.meta, options);
   // Opened before it is written: what cannot be opened is no specimen.
-  const Proportions proportions = proportions_of(Rve(specimen).network());
+  const Sizes sizes = sizes_of(Rve(specimen).network());
   io::write_specimen(specimen, arguments.output);
 
   Listing listing;
@@ -72,7 +72,7 @@ void run_import(const ImportArguments& arguments) {
   listing.add("slip", name(specimen.contact.slip));
   listing.add("rolling", specimen.contact.rolling);
   listing.add("lattice_m", row_major(specimen.cell.lattice), "m");
-  add_proportions(listing, proportions);
+  add_proportions(listing, sizes);
   listing.print(arguments.json);
 }
 
@@ -90,7 +90,9 @@ void add_import(CLI::App& app) {
   command->add_option("--cell", arguments->cell, "Lxx,Lyy,Lzz in m of a rectangular cell (2D: Lzz is the thickness)")
       ->delimiter(',')
       ->expected(3);
-  command->add_option("--material", arguments->material, "TOML file with [[material]], [contact], [damping], [solver]");
+  command->add_option("--material", arguments->material,
+                      "TOML file with [[material]], [contact], [damping], [solver]; a column\n"
+                      "`material` of PARTICLES.csv holds the names of its materials");
   add_set_option(*command, arguments->settings, "contact.slip=full_radius_ratcheting");
   command->add_option("-o,--output", arguments->output, "specimen file to write, S.h5")->required();
   command->add_flag("--force", arguments->force, "overwrite the output");
@@ -98,6 +100,7 @@ void add_import(CLI::App& app) {
   command->footer(
       "Examples:\n"
       "  rvelab import dense.particles.csv dense.contacts.csv dense.json -o dense.h5\n"
+      "  rvelab import E.particles.csv E.contacts.csv E.json --material E.material.toml -o E.h5   (of rvelab export)\n"
       "  rvelab import init.csv --cell 2,2,2 --material sand.toml -o loose.h5\n"
       "  rvelab import relaxed.dump --material sand.toml -o relaxed.h5");
   command->callback([arguments] { run_import(*arguments); });

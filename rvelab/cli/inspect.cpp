@@ -39,7 +39,7 @@ void add_state(Listing& listing, const Rve& rve) {
   listing.add("lattice_m", row_major(network.cell.lattice), "m");
   listing.add("rotation", row_major(network.cell.rotation));
   listing.add("volume_m3", network.cell.volume(), "m^3");
-  add_proportions(listing, proportions_of(network));
+  add_proportions(listing, sizes_of(network));
 }
 
 Json parameters_of(const Material& material, const ContactModel& model) {

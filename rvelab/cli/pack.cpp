@@ -38,7 +38,7 @@ struct Job {
   protocol::RecipeFile what;
   std::string file;
   Json made;  ///< null: not made
-  Proportions proportions;
+  Sizes sizes;
 };
 
 /// "S.h5" with a word before its extension: "S_20000Pa.h5".
@@ -91,7 +91,7 @@ Json summary_of(Job& job, const pack::Packing& packing, double seconds) {
   const Rve rve(packing.specimen);
   const Network network = rve.network();
   const int dimension = network.dimension();
-  job.proportions = proportions_of(network);
+  job.sizes = sizes_of(network);
   Json made;
   made["file"] = job.file;
   made["seed"] = job.what.recipe.seed;
@@ -128,12 +128,12 @@ void report(const protocol::RecipeFile& file, const std::vector<Job>& jobs, bool
   if (jobs.size() == 1) {
     const auto unit = [](const std::string& key) { return key.ends_with("_Pa") ? "Pa" : key == "wall_s" ? "s" : ""; };
     for (const auto& [key, value] : jobs.front().made.items()) listing.add(key, value, unit(key));
-    add_proportions(listing, jobs.front().proportions);
+    add_proportions(listing, jobs.front().sizes);
   } else {
     Json rows = Json::array();
     for (const Job& job : jobs) {
       rows.push_back(job.made);
-      rows.back().update(as_json(job.proportions));
+      rows.back().update(as_json(job.sizes));
     }
     listing.add("specimens", std::move(rows));
   }

@@ -5,9 +5,11 @@
 
 #include "rvelab/cli/commands.hpp"
 #include "rvelab/cli/report.hpp"
+#include "rvelab/error.hpp"
 #include "rvelab/io/specimen_file.hpp"
 #include "rvelab/measure/probe.hpp"
 #include "rvelab/measure/tangent.hpp"
+#include "rvelab/protocol/stages.hpp"
 #include "rvelab/solver/rve.hpp"
 
 namespace rvelab::cli {
@@ -30,6 +32,12 @@ Json labels(int dimension, bool strain) {
   return list;
 }
 
+void expect_size(double size) {
+  if (size >= protocol::smallest_probe && size <= 0.01) return;
+  throw InputError("--size " + in_words(size) + " is out of range; allowed: " + in_words(protocol::smallest_probe) +
+                   " (what is smaller drowns in the round-off of the stress) to 0.01; give 1e-7 for an elastic probe");
+}
+
 void run_probe(const Arguments& arguments) {
   Rve rve(io::read_specimen(arguments.file));
   if (arguments.no_slip) forbid_slip(rve);
@@ -43,6 +51,7 @@ void run_probe(const Arguments& arguments) {
   if (arguments.method == "linear") {
     listing.add("stiffness_Pa", row_major(elastic_tangent(rve.network())), "Pa");
   } else {
+    expect_size(arguments.size);
     const Probe probe = probe_stiffness(rve, arguments.size);
     listing.add("size", probe.size);
     listing.add("stiffness_Pa", row_major(probe.stiffness), "Pa");
@@ -59,7 +68,8 @@ void add_probe(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("probe", "Measure the stiffness of a specimen at small strain");
   command->add_option("file", arguments->file, "specimen file, *.h5")->required();
-  command->add_option("--size", arguments->size, "strain of each probe, plus and minus")->capture_default_str();
+  command->add_option("--size", arguments->size, "strain of each probe, plus and minus, 1e-12 to 0.01")
+      ->capture_default_str();
   command->add_flag("--no-slip", arguments->no_slip, "let no contact slip or roll over (friction 1e6)");
   command
       ->add_option("--method", arguments->method,

@@ -58,6 +58,16 @@ void expect_installed() {
 }
 
 std::string input_path(const std::string& name_or_path, InputKind kind) {
+  if (name_or_path.ends_with(".h5")) {
+    throw InputError(
+        name_or_path +
+        (kind == InputKind::protocol
+             ? " is a specimen or record file and no protocol; allowed: the name or the file of a protocol, "
+               "and --specimen " +
+                   name_or_path + " beside it; see rvelab protocols"
+             : " is a specimen or record file and no recipe; allowed: the name or the file of a recipe; "
+               "see rvelab protocols"));
+  }
   if (name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".toml")) {
     return expect_kind(name_or_path, kind);
   }

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "rvelab/io/utf8.hpp"
+#include "rvelab/measure/measures.hpp"
 
 namespace rvelab::cli {
 namespace {
@@ -93,8 +94,14 @@ Json row_major(const Eigen::MatrixXd& matrix) {
   return rows;
 }
 
-Json as_json(const Proportions& p) {
+Sizes sizes_of(const Network& network) {
+  return {proportions_of(network), mean_diameter(network), mean_pressure(contact_stress(network), network.dimension())};
+}
+
+Json as_json(const Sizes& sizes) {
+  const Proportions& p = sizes.proportions;
   Json json;
+  json["mean_diameter_m"] = sizes.mean_diameter;
   json["void_ratio"] = p.void_ratio;
   json["mean_overlap_ratio"] = p.mean_overlap;
   json["largest_overlap_ratio"] = p.largest_overlap;
@@ -104,9 +111,12 @@ Json as_json(const Proportions& p) {
   return json;
 }
 
-void add_proportions(Listing& listing, const Proportions& proportions) {
-  listing.add_to_text("proportions", in_words(proportions));
-  const Json json = as_json(proportions);
+void add_proportions(Listing& listing, const Sizes& sizes) {
+  std::ostringstream text;
+  text.precision(4);
+  text << "mean diameter " << sizes.mean_diameter << " m, p " << sizes.pressure << " Pa, ";
+  listing.add_to_text("proportions", text.str() + in_words(sizes.proportions));
+  const Json json = as_json(sizes);
   for (const auto& [key, value] : json.items()) listing.add_to_json(key, value);
 }
 

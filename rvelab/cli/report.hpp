@@ -49,9 +49,17 @@ void tell(const std::string& text);
 /// A matrix as an array of rows.
 Json row_major(const Eigen::MatrixXd& matrix);
 
-/// What the numbers of a specimen are to each other: one line of the listing, keys of their own in JSON.
-void add_proportions(Listing& listing, const Proportions& proportions);
+/// What the numbers of a specimen are to each other, and the two that show a wrong unit at once.
+struct Sizes {
+  Proportions proportions;
+  double mean_diameter = 0;  ///< m
+  double pressure = 0;       ///< Pa, of the contact stress
+};
+Sizes sizes_of(const Network& network);
+
+/// They as one line of the listing, as keys of their own in JSON.
+void add_proportions(Listing& listing, const Sizes& sizes);
 /// Those keys.
-Json as_json(const Proportions& proportions);
+Json as_json(const Sizes& sizes);
 
 }  // namespace rvelab::cli

@@ -165,9 +165,9 @@ void report(const protocol::Protocol& protocol, const protocol::TestRun& run, do
   listing.print(arguments.json);
   // A record or two in an avalanche are the specimen's; more are the test's.
   if (20 * marked > static_cast<long>(result.records.size())) {
-    tell(std::to_string(marked) + " of " + std::to_string(result.records.size()) +
-         " records are flagged: " + std::to_string(flagged) + " did not hold their stress, " + std::to_string(moving) +
-         " were no equilibrium (target_held, quasi_static in the records); lower the tolerances of [solver] or the "
+    tell(std::to_string(marked) + " of " + std::to_string(result.records.size()) + " records are doubtful: " +
+         std::to_string(flagged) + " are flagged, their stress was not held (target_held), " + std::to_string(moving) +
+         " are not quasi-static, no equilibrium (quasi_static in the records); lower the tolerances of [solver] or the "
          "rate, or raise loading.held_tolerance");
   }
 }

@@ -6,6 +6,7 @@
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -22,6 +23,7 @@
 #include "rvelab/io/guarded.hpp"
 #include "rvelab/io/hdf5_file.hpp"
 #include "rvelab/io/hdf5_raw.hpp"
+#include "rvelab/io/journal.hpp"
 #include "rvelab/io/seal.hpp"
 
 namespace rvelab::io {
@@ -32,6 +34,14 @@ using raw::Handle;
 Descriptor opened(const std::string& path) {
   struct stat status;
   if (::stat(path.c_str(), &status) != 0) {
+    const int reason = errno;
+    if (reason == ENOENT && ::access(journal_of(path).c_str(), F_OK) == 0) {
+      throw InputError(path +
+                       ": there is only the journal of a run that was killed or goes on; make the file with `rvelab "
+                       "recover " +
+                       path + "`");
+    }
+    errno = reason;
     throw InputError(path + (errno == ENOENT || errno == ENOTDIR
                                  ? ": no such file; give the path of an HDF5 file that rvelab wrote"
                                  : ": cannot be opened (" + std::string(std::strerror(errno)) +

@@ -79,7 +79,10 @@ std::vector<std::int32_t> materials_of(const CsvTable& table, const Specimen& sp
     if (found == indices.end()) {
       std::string known;
       for (const auto& [name, number] : indices) known += (known.empty() ? "" : ", ") + name;
-      throw InputError(table.place(row, column) + " names no material; allowed: " + known + "; correct the name");
+      throw InputError(
+          table.place(row, column) + " names no material; allowed: " + known +
+          "; correct the name, or give a TOML file with a [[material]] of that name by --material (`rvelab "
+          "export --format csv` writes one)");
     }
     index[row] = found->second;
   }

@@ -17,6 +17,7 @@
 #include "rvelab/io/seal_file.hpp"
 #include "rvelab/io/version.hpp"
 #include "rvelab/records/record_fields.hpp"
+#include "rvelab/solver/rve.hpp"
 
 namespace rvelab::io {
 namespace {
@@ -83,6 +84,15 @@ RecordedTest test_in(const Hdf5File& file) {
   return test;
 }
 
+/// InputError where no RVE can be made of the specimen: a radius below zero, a number that is none.
+void expect_opens(const Specimen& specimen, const std::string& where) {
+  try {
+    const Rve rve(specimen);
+  } catch (const Error& error) {
+    throw InputError(where + ": " + error.what() + "; correct it in the file; nothing was written");
+  }
+}
+
 }  // namespace
 
 Provenance provenance_of(const std::string& protocol_text, const Specimen& start) {
@@ -117,9 +127,13 @@ SealedFile seal_file(const std::string& path, const std::string& output) {
   const SealedFile found{kind_without_seal(file), file.sealed(), file.entries().size()};
   // What cannot be read as one of rvelab's would only be refused later.
   if (found.kind == FileKind::specimen) {
-    get_specimen(file, specimen_group(file));
+    expect_opens(get_specimen(file, specimen_group(file)), path);
   } else {
-    for (const Snapshot& snapshot : test_in(file).snapshots) get_specimen(file, snapshot_group(snapshot.record));
+    const RecordedTest test = test_in(file);
+    expect_opens(test.checkpoint.specimen, path);
+    for (const Snapshot& snapshot : test.snapshots) {
+      expect_opens(get_specimen(file, snapshot_group(snapshot.record)), path + ", " + snapshot_group(snapshot.record));
+    }
   }
   publish(output, [&](Hdf5File& copy) { copy.copy(file); });
   return found;

@@ -16,7 +16,8 @@ struct SealedFile {
 
 /// Reads a specimen or record file that lacks its seal, because another program has made or changed it or because it is
 /// of a version before 1.4, and writes everything that it holds to `output` (publish()), sealed and of its own version.
-/// InputError: damaged, not rvelab's, or datasets are missing or contradict each other.
+/// InputError: damaged, not rvelab's, or datasets are missing or contradict each other, or no
+/// RVE can be made of one of its specimens.
 SealedFile seal_file(const std::string& path, const std::string& output);
 
 }  // namespace rvelab::io

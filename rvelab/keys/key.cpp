@@ -75,6 +75,10 @@ std::string nearest(const std::string& word, const std::vector<std::string>& can
   return found == candidates.end() ? "" : *found;
 }
 
+std::string choose_one(const std::string& word, const std::vector<std::string>& choices) {
+  return "the nearest is " + nearest(word, choices) + "; choose one of these";
+}
+
 void raise(const std::string& path, std::vector<KeyError> errors) {
   if (errors.empty()) return;
   const auto order = [](const KeyError& error) { return std::pair(error.assigned, error.line); };

@@ -48,6 +48,9 @@ double number_in(const toml::node& node);
 /// little); the first of several; "" if there are no candidates.
 std::string nearest(const std::string& word, const std::vector<std::string>& candidates);
 
+/// Remedy for a word that is none of the choices: "the nearest is simple_shear; choose one of these".
+std::string choose_one(const std::string& word, const std::vector<std::string>& choices);
+
 /// Throws InputError with all mistakes in the order of their lines, one line of text each: "path:line: message"; those
 /// of the command line come last. Does nothing if there are none.
 void raise(const std::string& path, std::vector<KeyError> errors);

@@ -57,6 +57,16 @@ void convert(const std::string& dotted, const toml::node& value, const KeyEntry&
   field = value.as_boolean()->get();
 }
 
+/// "linear, hertz_mindlin" as a list.
+std::vector<std::string> words_of(const std::string& range) {
+  std::vector<std::string> words;
+  for (std::size_t at = 0, end = 0; end != std::string::npos; at = end + 2) {
+    end = range.find(", ", at);
+    words.push_back(range.substr(at, end - at));
+  }
+  return words;
+}
+
 template <class Word>
 void convert(const std::string& dotted, const toml::node& value, const KeyEntry& entry, Word& field) {
   if (!value.is_string()) refuse(dotted, value, "is not a word", entry, "give one of these");
@@ -64,7 +74,7 @@ void convert(const std::string& dotted, const toml::node& value, const KeyEntry&
   try {
     from_text(word, field);
   } catch (const InputError&) {
-    refuse(dotted, value, "is not known", entry, "choose one of these");
+    refuse(dotted, value, "is not known", entry, choose_one(word, words_of(entry.key.range)));
   }
 }
 

@@ -183,12 +183,11 @@ std::string TableReader::choice(const std::string& name, std::optional<std::stri
   const toml::node* node = find(key, !instead);
   std::string value = instead.value_or("");
   if (node != nullptr) {
-    const bool allowed = node->is_string() && std::find(key.choices.begin(), key.choices.end(),
-                                                        node->as_string()->get()) != key.choices.end();
-    if (allowed) {
-      value = node->as_string()->get();
+    const std::string word = node->is_string() ? node->as_string()->get() : written(*node);
+    if (node->is_string() && std::find(key.choices.begin(), key.choices.end(), word) != key.choices.end()) {
+      value = word;
     } else {
-      mistake(name, "is not known; allowed: " + key.key.allowed() + "; choose one of these");
+      mistake(name, "is not known; allowed: " + key.key.allowed() + "; " + choose_one(word, key.choices));
     }
   }
   if (!value.empty()) resolved_.insert_or_assign(name, value);

@@ -29,10 +29,16 @@ std::vector<std::string> TableReader::choices(const std::string& name) {
     return item.is_string() &&
            std::find(key.choices.begin(), key.choices.end(), item.as_string()->get()) != key.choices.end();
   };
-  const bool good = node->is_array() && std::all_of(node->as_array()->begin(), node->as_array()->end(), known);
-  if (!good) {
-    mistake(name, "is not a list of known choices; allowed: " + key.key.allowed() + "; write it as [\"" +
-                      key.choices.front() + "\"]");
+  const std::string remedy = "write it as [\"" + key.choices.front() + "\"]";
+  if (!node->is_array()) {
+    mistake(name, "is not a list of known choices; allowed: " + key.key.allowed() + "; " + remedy);
+    return values;
+  }
+  for (const auto& item : *node->as_array()) {
+    if (known(item)) continue;
+    const std::string word = item.is_string() ? item.as_string()->get() : written(item);
+    mistake(name, "is not a list of known choices; allowed: " + key.key.allowed() + "; " + word +
+                      " is none of them, the nearest is " + nearest(word, key.choices) + "; " + remedy);
     return values;
   }
   for (const auto& item : *node->as_array()) values.push_back(item.as_string()->get());

@@ -71,7 +71,8 @@ Error not_found(const Recipe& recipe, const std::vector<Draw>& draws, std::size_
     text << "give a lower void ratio, a lower pressure, rolling friction in the preparation, or raise "
             "preparation.highest_friction";
   } else if (*recipe.void_ratio < lowest->void_ratio) {
-    text << "give a higher void ratio, a higher pressure or a wider grading, or lower preparation.lowest_friction";
+    text << "give a higher void ratio, a higher pressure or a wider grading"
+         << (recipe.preparation.lowest_friction > 0 ? ", or lower preparation.lowest_friction" : "");
   } else {
     text << "raise preparation.max_draws, or target.void_ratio_tolerance";
   }

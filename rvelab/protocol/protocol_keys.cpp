@@ -7,6 +7,7 @@
 #include "rvelab/protocol/events.hpp"
 #include "rvelab/protocol/protocol.hpp"
 #include "rvelab/protocol/stage_kinds.hpp"
+#include "rvelab/protocol/stage_readers.hpp"
 
 namespace rvelab::protocol {
 namespace {
@@ -23,7 +24,7 @@ std::vector<TableKey> test() {
                   {},
                   {}},
                  "2, 3"),
-      number(t, "pressure_Pa", "Pa", "", positive,
+      number(t, "pressure_Pa", "Pa", "", pressures,
              "pressure, compression positive, of every stage that gives none of its own; `rvelab calibrate` sets it"),
   };
 }

@@ -115,19 +115,27 @@ void check_overrides(const toml::table& file, std::vector<keys::KeyError>& error
   }
 }
 
-/// `then` names stages that are there.
-void expect_followers(const Protocol& protocol, std::vector<keys::KeyError>& errors) {
+/// `then` names stages that are there. `tables`: those that the stages were read from, one each.
+void expect_followers(const Protocol& protocol, const std::vector<const toml::table*>& tables,
+                      std::vector<keys::KeyError>& errors) {
   std::string known = "end";
-  for (const Stage& stage : protocol.stages) known += ", " + stage.name;
-  const auto expect = [&](const std::string& where, const std::string& then) {
-    const auto named = [&](const Stage& stage) { return stage.name == then; };
-    if (then.empty() || then == "end" || std::any_of(protocol.stages.begin(), protocol.stages.end(), named)) return;
-    errors.push_back({0, where + ".then = \"" + then + "\" names no stage; allowed: " + known + "; correct the name"});
-  };
+  std::vector<std::string> names{"end"};
   for (const Stage& stage : protocol.stages) {
-    expect("stage." + stage.name, stage.then);
+    known += ", " + stage.name;
+    names.push_back(stage.name);
+  }
+  const auto expect = [&](const std::string& where, const std::string& then, const toml::node* place) {
+    if (then.empty() || std::find(names.begin(), names.end(), then) != names.end()) return;
+    const std::string message = where + ".then = \"" + then + "\" names no stage; allowed: " + known +
+                                "; the nearest is " + keys::nearest(then, names) + "; correct the name";
+    errors.push_back(keys::key_error(place->source(), message));
+  };
+  for (std::size_t s = 0; s < protocol.stages.size(); ++s) {
+    const Stage& stage = protocol.stages[s];
+    expect("stage." + stage.name, stage.then, tables[s]->get("then"));
     for (std::size_t k = 0; k < stage.until.size(); ++k) {
-      expect("stage." + stage.name + ".until." + std::to_string(k), stage.until[k].then);
+      const toml::table& until = *tables[s]->get("until")->as_array()->get(k)->as_table();
+      expect("stage." + stage.name + ".until." + std::to_string(k), stage.until[k].then, until.get("then"));
     }
   }
 }
@@ -143,12 +151,14 @@ void read_stages(const toml::table& file, Protocol& protocol, toml::table& resol
     return;
   }
   toml::array stages;
+  std::vector<const toml::table*> tables;
   long number = 0;
   for (const auto& stage : *node->as_array()) {
     read_stage(*stage.as_table(), number++, protocol, stages, errors);
+    tables.resize(protocol.stages.size(), stage.as_table());  // one without a kind is no stage
   }
   resolved.insert("stage", stages);
-  expect_followers(protocol, errors);
+  expect_followers(protocol, tables, errors);
 }
 
 Protocol read_file(toml::table file, const std::string& path, const std::vector<std::string>& assignments) {

@@ -22,7 +22,7 @@ std::vector<TableKey> entries() {
   const char* t = "stage.isotropic";
   const IsotropicStage initial;
   return {
-      number(t, "pressure_Pa", "Pa", "(test.pressure_Pa)", positive, "all normal stresses are brought to minus this"),
+      number(t, "pressure_Pa", "Pa", "(test.pressure_Pa)", pressures, "all normal stresses are brought to minus this"),
       choice(t, "shear", {"zero_strain", "zero_stress"},
              "zero_strain: the cell keeps its angles; zero_stress: shear stresses are driven to zero"),
       number(t, "stress_tolerance", "1", initial.stress_tolerance, ratio, "of the pressure; the stage ends within it"),

@@ -3,6 +3,7 @@
 #include "rvelab/protocol/drive.hpp"
 #include "rvelab/protocol/path_driven.hpp"
 #include "rvelab/protocol/stage_kinds.hpp"
+#include "rvelab/protocol/stage_readers.hpp"
 
 namespace rvelab::protocol {
 namespace {
@@ -11,12 +12,12 @@ using namespace keys;
 
 std::vector<TableKey> entries() {
   const char* t = "stage.pressure_path";
-  TableKey pressures = listed(t, "to_Pa", "Pa", "list of numbers", "", KeyKind::numbers,
-                              "pressures that all normal stresses go to one after the other; shear strains are zero");
-  pressures.range = positive;
-  pressures.key.range = "each " + in_words(positive);
-  return {required(pressures), whole_number(t, "records_per_point", PressurePathStage{}.records_per_point, {1, 1e6},
-                                            "records, and increments, on the way to each pressure")};
+  TableKey targets = listed(t, "to_Pa", "Pa", "list of numbers", "", KeyKind::numbers,
+                            "pressures that all normal stresses go to one after the other; shear strains are zero");
+  targets.range = pressures;
+  targets.key.range = "each " + in_words(pressures);
+  return {required(targets), whole_number(t, "records_per_point", PressurePathStage{}.records_per_point, {1, 1e6},
+                                          "records, and increments, on the way to each pressure")};
 }
 
 PressurePathStage read(StageSource& source) {
@@ -24,7 +25,7 @@ PressurePathStage read(StageSource& source) {
   PressurePathStage stage;
   stage.pressures = reader.numbers("to_Pa");
   if (stage.pressures.empty() && !reader.has("to_Pa") && !reader.has_in_another_unit("to_Pa")) {
-    reader.mistake("to_Pa", "is missing; allowed: each > 0 Pa; add it");
+    reader.mistake("to_Pa", "is missing; allowed: each " + in_words(pressures) + " Pa; add it");
   }
   stage.records_per_point = reader.whole_number("records_per_point");
   return stage;

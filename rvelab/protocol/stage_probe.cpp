@@ -18,7 +18,7 @@ std::vector<TableKey> entries() {
   return {
       choice(t, "method", {"dynamic", "linear"},
              "dynamic: increments of +-size, relaxed; linear: the contact network solved, every contact stuck"),
-      number(t, "size", "1", initial.size, {0, 0.01, true, false}, "method = dynamic: strain of each increment"),
+      number(t, "size", "1", initial.size, {smallest_probe, 0.01}, "method = dynamic: strain of each increment"),
       {{t, "no_slip", "-", "boolean", "(true with method = linear, else false)", "true, false",
         "no contact slips or rolls over in the probed copy (friction 1e6)"},
        KeyKind::boolean,

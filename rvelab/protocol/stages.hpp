@@ -134,6 +134,10 @@ struct RelaxStage {
   bool record = false;
 };
 
+/// Smallest strain of a probe: the stress is a sum of some hundred forces and known to some 1e-16 of p, so that a
+/// stiffness of some hundred p is off by a thousandth here and by a fifth at 1e-14.
+inline constexpr double smallest_probe = 1e-12;
+
 /// The stiffness of the state at small strain, measured on a copy: the test goes on from the state as it was.
 struct ProbeStage {
   enum class Method {

@@ -7,6 +7,7 @@ import io
 import math
 import os
 import re
+import shutil
 import subprocess
 import sys
 import threading
@@ -36,6 +37,28 @@ def setUpModule() -> None:
     folder.mkdir(parents=True, exist_ok=True)
     subprocess.run([os.environ["RVELAB_PROGRAM"], "pack", "pack_dense", "-o", specimen, "--force", "--set",
                     "pack.number=64", "--set", "target.void_ratio=0.2"], check=True, capture_output=True)
+
+
+class Places(unittest.TestCase):
+    """Without RVELAB_LIBRARY and PYTHONPATH."""
+
+    def python(self, *arguments: str, **more: str) -> str:
+        environment = {k: v for k, v in os.environ.items() if not k.startswith(("RVELAB_", "PYTHONPATH"))}
+        return subprocess.run([sys.executable, *arguments], env=environment | more, check=True, capture_output=True,
+                              text=True).stdout
+
+    def test_an_installed_module_finds_the_library_of_its_prefix(self) -> None:
+        prefix = (folder / "prefix").resolve()
+        modules = prefix / "lib/python3/dist-packages"
+        shutil.rmtree(prefix, ignore_errors=True)
+        shutil.copytree(Path(rvelab.__file__).parent, modules, ignore=shutil.ignore_patterns("__pycache__"))
+        (prefix / "lib/librvelab.so.1").symlink_to(os.environ["RVELAB_LIBRARY"])
+        found = self.python("-c", "import rvelab_library; print(rvelab_library.library._name)", PYTHONPATH=str(modules))
+        self.assertEqual(found.strip(), str(prefix / "lib/librvelab.so.1"))
+
+    def test_the_example_finds_the_module_of_its_checkout(self) -> None:
+        printed = self.python(element_test.__file__, str(specimen), "0.001", RVELAB_LIBRARY=os.environ["RVELAB_LIBRARY"])
+        self.assertTrue(printed.startswith("0.0010"))
 
 
 class ElementTest(unittest.TestCase):

@@ -83,6 +83,19 @@ TEST_CASE("a test that is still rising at its end has no peak, and a calibration
   CHECK(whole["per_pressure"][0]["rising_at_end"] == false);
 }
 
+TEST_CASE("a specimen or a pressure that is given twice, and an empty list, are refused by calibrate") {
+  const Workplace here;
+  here.import_packing("dense_p20");
+  std::filesystem::copy_file(here / "S.h5", here / "T.h5");
+  for (const std::string choice : {"--every-pressure", "--pressures 20e3"}) {
+    expect_mistake(here.run("calibrate biaxial --specimen S.h5 --specimen T.h5 " + choice),
+                   "--specimen T.h5 holds the same specimen as --specimen S.h5");
+  }
+  expect_mistake(here.run("calibrate biaxial --specimen S.h5 --pressures 10e3,20e3,10e3"),
+                 "--pressures holds 10000 Pa twice");
+  expect_mistake(here.run("calibrate biaxial --specimen S.h5 --pressures ''"), "--pressures holds \"\"");
+}
+
 TEST_CASE("the folder of a calibration is made, and told where it cannot be") {
   const Workplace here;
   here.import_packing("dense_p20");

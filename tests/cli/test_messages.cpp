@@ -61,6 +61,18 @@ TEST_CASE("bytes of paths, files and keys that are no UTF-8 are shown as numbers
   expect_one_line_of_text(table, 2);
 }
 
+TEST_CASE("a file in another's place is told with what takes it, a probe below round-off with the range") {
+  const Workplace here;
+  here.import_packing("dense_p20");
+  expect_mistake(here.run("run S.h5 --specimen biaxial"),
+                 "S.h5 is a specimen or record file and no protocol; allowed: ");
+  expect_mistake(here.run("pack S.h5 -o P.h5"), "S.h5 is a specimen or record file and no recipe");
+  here.write("C.h5.journal", "");
+  expect_mistake(here.run("compare S.h5 C.h5"), "make the file with `rvelab recover C.h5`");
+  expect_mistake(here.run("probe S.h5 --size 1e-30"), "--size 1e-30 is out of range; allowed: 1e-12");
+  expect_mistake(here.run("run biaxial --specimen S.h5 --set test.pressure_Pa=1e300"), "allowed: above 0 to 1e+15 Pa");
+}
+
 TEST_CASE("a listing shows what is not defined as a dash, never as a number that is none") {
   const Workplace here;
   // Grains apart: no contact, no fabric, no balance of forces to judge.

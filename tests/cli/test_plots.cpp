@@ -63,6 +63,7 @@ TEST_CASE("every plot script draws what is its own and refuses the rest in one l
   expect_figure(here, "mohr", "compression.h5", "peak friction angle 32.");
   expect_figure(here, "mohr", "extension.h5", "peak friction angle 3");
   expect_refusal(here, "mohr", "rising.h5", "still rising at the end (0.3 % strain): no peak");
+  expect_figure(here, "mohr", "compression.h5 rising.h5", "warning: not drawn: rising.h5: still rising at the end");
   expect_refusal(here, "mohr", "shear.h5", "biaxial, triaxial");
   expect_refusal(here, "mohr", "compression.h5 cyclic.h5", "cyclic.h5");
   expect_figure(here, "loops", "cyclic.h5", "2.0 cycles");
@@ -82,6 +83,39 @@ TEST_CASE("every plot script draws what is its own and refuses the rest in one l
     expect_refusal(here, script, "S.h5", "not a record file");
     expect_refusal(here, script, "none.h5", "none.h5");
   }
+}
+
+TEST_CASE("loops.py counts cycles by the strain travelled, a quarter to the first turn") {
+  const Workplace here;
+  const Outcome outcome = here.run(
+      "-B -c 'import sys; sys.path.insert(0, \"" RVELAB_SOURCE_DIR
+      "/tools/plot\"); import loops, numpy; "
+      "print(*loops.cycles_of(numpy.array([0, 2, 4, 0, -4, -1, 4, 1])), *loops.cycles_of(numpy.array([0, 4, 0])))'",
+      "/usr/bin/python3");
+  INFO(outcome.errors);
+  CHECK(outcome.output == "0.0 0.125 0.25 0.5 0.75 0.9375 1.25 1.4375 0.0 0.25 0.5\n");
+}
+
+TEST_CASE("mpm.py draws any column of a history, and names the columns, frames and limits that it takes") {
+  const Workplace here;
+  std::filesystem::create_directory(here / "run");
+  here.write("run/history.csv",
+             "time_s,steps,kinetic_J,plate.force_y_N,plate.way_y_m,plate.way_x_m\n0,0,0,0,0,0\n1,9,2,1e3,-0.1,0.2\n");
+  const std::string force = "run --force plate.force_y";
+  expect_figure(here, "mpm", force + " --against plate.way_y", "plate.force_y_N against plate.way_y_m");
+  expect_figure(here, "mpm", force + "_N --against plate.way_x_m", "plate.force_y_N against plate.way_x_m");
+  expect_figure(here, "mpm", "run --force kinetic --against time", "kinetic_J against time_s");
+  expect_figure(here, "mpm", "run --force kinetic_J", "kinetic_J against time_s");
+  const auto refused = [&](const std::string& arguments, const std::string& part) {
+    const Outcome outcome = plot(here, "mpm", arguments + " -o figure.png");
+    CAPTURE(arguments, outcome.errors);
+    CHECK(outcome.code == 2);
+    CHECK_THAT(outcome.errors, Contains(part));
+  };
+  refused("run --force kinetik", "no column kinetik; it has time_s, steps, kinetic_J");
+  refused("run --field eps_q --limits 2 1", "LOW below HIGH");
+  here.write("run/points_0000.h5", "");
+  refused("run --field eps_q --frame 300", "--frame 300: run has 1 frames; allowed: 0 to 0");
 }
 
 TEST_CASE("the friction angle that mohr.py draws is the one that run prints, in compression and in extension") {

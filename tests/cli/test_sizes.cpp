@@ -89,11 +89,13 @@ TEST_CASE("all of import, pack and inspect say what the numbers of a specimen ar
   for (const std::string file : {"P.h5", "S.h5"}) {
     CAPTURE(file);
     const Outcome shown = here.run("inspect " + file);
-    CHECK_THAT(shown.output, Contains("proportions") && Contains("void ratio ") && Contains("overlap ") &&
-                                 Contains(" r (largest ") && Contains("kn/(p ") && Contains(" diameters\n"));
+    CHECK_THAT(shown.output, Contains("proportions") && Contains("mean diameter ") && Contains("void ratio ") &&
+                                 Contains("overlap ") && Contains(" r (largest ") && Contains("kn/(p ") &&
+                                 Contains(" diameters\n"));
     const Json json = Json::parse(here.run("inspect " + file + " --json").output);
     const rvelab::Network network = rvelab::Rve(rvelab::io::read_specimen(here / file)).network();
     const int d = network.dimension();
+    CHECK(json["mean_diameter_m"].get<double>() == rvelab::mean_diameter(network));
     CHECK(json["largest_overlap_ratio"].get<double>() == rvelab::largest_overlap_ratio(network));
     double overlap = 0, stiffness = 0;
     for (const auto& c : network.contacts) {

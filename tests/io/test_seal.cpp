@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <limits>
 #include <random>
 
 #include "random_specimen.hpp"
@@ -146,7 +147,7 @@ TEST_CASE("texts come back as they were: empty, of any length, of any alphabet")
 
 TEST_CASE("a file that another program changed is refused, and taken over when it is sealed") {
   const Folder folder;
-  Specimen specimen = random_specimen(4);
+  Specimen specimen = io::read_specimen(std::string(RVELAB_TEST_DATA) + "/compat/specimen_1_2.h5");
   io::write_specimen(specimen, folder / "s.h5");
   open_for_writing(folder / "s.h5", "/solver/skin", 0.125);
   CHECK_THAT(
@@ -160,6 +161,14 @@ TEST_CASE("a file that another program changed is refused, and taken over when i
   CHECK(differences(io::read_specimen(folder / "new.h5"), specimen) == 0);
   io::write_specimen(specimen, folder / "straight.h5");
   CHECK(!io::first_difference(folder / "new.h5", folder / "straight.h5"));
+  // What no RVE can be made of would only be refused when it is used.
+  for (const double skin : {-1.0, std::numeric_limits<double>::quiet_NaN()}) {
+    io::write_specimen(specimen, folder / "edited.h5");
+    open_for_writing(folder / "edited.h5", "/solver/skin", skin);
+    CHECK_THAT(input_error([&] { io::seal_file(folder / "edited.h5", folder / "y.h5"); }),
+               Contains("edited.h5: ") && Contains("skin") && Contains("nothing was written"));
+    CHECK(!std::filesystem::exists(folder / "y.h5"));
+  }
   // What does not fit its checksum is damaged and not edited; and what is no longer a specimen is not sealed.
   std::string bytes = bytes_of(folder / "new.h5");
   bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);

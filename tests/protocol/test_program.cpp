@@ -138,7 +138,7 @@ TEST_CASE("A user's mistake is one line on standard error and exit code 2") {
   expect_users_mistake(rvelab_program("run " + std::string(RVELAB_SOURCE_DIR) + "/protocols/triaxial.toml" + with),
                        "dimension");
   expect_users_mistake(rvelab_program("calibrate " + biaxial + with + " --pressures 10e3,-1"), "-1");
-  expect_users_mistake(rvelab_program("calibrate " + biaxial + with + " --pressures 10e3,10e3"), "each once");
+  expect_users_mistake(rvelab_program("calibrate " + biaxial + with + " --pressures 10e3,10e3"), "each pressure once");
   expect_users_mistake(rvelab_program("calibrate " + biaxial + with + with + with + " --pressures 10e3,20e3"),
                        "3 specimens for 2 pressures");
   expect_users_mistake(rvelab_program("calibrate " + std::string(RVELAB_SOURCE_DIR) + "/protocols/probe.toml" + with +

@@ -7,9 +7,11 @@ Prints gamma, shear stress and normal stress across the shear plane, p in Pa, an
 are those of `rvelab run` on a protocol with the stage kind = "simple_shear", to_strain = GAMMA, record_every = 1e-4,
 bit for bit: the program and a continuum code drive the same RVE."""
 import sys
+from pathlib import Path
 
 import numpy as np
 
+sys.path.append(str(Path(__file__).resolve().parents[1] / "python"))  # of a checkout; PYTHONPATH comes first
 import rvelab
 
 

@@ -1,9 +1,8 @@
 #!/usr/bin/env python3
 """Force chains with the outline of the cell: chains.py S.h5|R.h5 -o chains.png (2D; of a record file the last state).
 
-Each contact is a line along its branch, as wide as its normal force; contacts that carry more than the mean are dark.
-Ellipses are drawn as they lie.
-The cell is dashed, grains of one cell are drawn once.
+Each contact is a line along its branch, as wide as its normal force; contacts that carry more than the mean are red,
+the others blue. Ellipses are drawn as they lie. The cell is dashed, grains of one cell are drawn once.
 """
 
 import argparse

@@ -24,10 +24,20 @@ def driving_stress(stage):
 
 
 def cycles_of(strain):
-    """Number of cycles at each record, half a cycle a turn."""
+    """Number of cycles at each record: a quarter to the first turn, half a cycle from each turn to the next, in between
+    by the strain travelled. Behind the last turn a half cycle is as long as the one before it."""
     direction = np.sign(np.diff(strain))
-    turns = np.concatenate([[0, 0], np.cumsum(direction[1:] != direction[:-1])])
-    return turns / 2
+    turns = np.flatnonzero(direction[1:] * direction[:-1] < 0) + 1
+    ends = [0, *turns, len(strain) - 1]
+    cycles = np.zeros(len(strain))
+    done, share, half = 0.0, 0.25, 0.0
+    for begin, end in zip(ends[:-1], ends[1:]):
+        travelled = np.abs(strain[begin:end + 1] - strain[begin])
+        whole = max(travelled[-1], half) if end == ends[-1] else travelled[-1]
+        cycles[begin:end + 1] = done + share * travelled / whole
+        half = travelled[-1] * 0.5 / share
+        done, share = done + share, 0.5
+    return cycles
 
 
 def draw(stages, options):

@@ -2,10 +2,10 @@
 """Mohr circles at peak and their envelope: mohr.py RECORDS.h5... -o mohr.png (folders stand for their *.h5).
 
 Of each file the last drained compression or extension. Its peak is the record with the largest deviator sigma_1 - sigma_3,
-unsmoothed; a test that ends before 15 % strain with its largest deviator at the end has none and is refused. The envelope
-passes through the origin: t = s sin phi by least squares over the tests, s = (sigma_1 + sigma_3)/2, t = (sigma_1 -
-sigma_3)/2. Where all tests reach 15 % axial strain, the mean of their angles from 12 to 15 % is drawn beside it.
-Compression positive.
+unsmoothed; a test that ends before 15 % strain with its largest deviator at the end has none: the others are drawn, with a
+warning. The envelope passes through the origin: t = s sin phi by least squares over the tests, s = (sigma_1 + sigma_3)/2,
+t = (sigma_1 - sigma_3)/2. Where all tests reach 15 % axial strain, the mean of their angles from 12 to 15 % is drawn
+beside it. Compression positive.
 """
 
 import argparse
@@ -30,14 +30,21 @@ def drained_tests(stages):
     return sorted(tests.values(), key=lambda test: test.pressure)
 
 
+def still_rising(test):
+    """Why a test has no peak; empty where it has one."""
+    sigma_1, sigma_3 = test.principal()
+    peak = int(np.argmax(sigma_1 - sigma_3))
+    end = abs(test.strain[-1])
+    if abs(test.strain[peak]) <= 0.95 * end or end >= LARGE_STRAIN[1] - SLACK:
+        return ""
+    return (f"{test.path}: still rising at the end ({100 * end:.3g} % strain): no peak; run it further (to_strain), to 15 % "
+            "at most")
+
+
 def peak_state(test):
     """s and t, Pa, of the record with the largest deviator."""
     sigma_1, sigma_3 = test.principal()
     peak = int(np.argmax(sigma_1 - sigma_3))
-    end = abs(test.strain[-1])
-    if abs(test.strain[peak]) > 0.95 * end and end < LARGE_STRAIN[1] - SLACK:
-        raise ValueError(f"{test.path}: still rising at the end ({100 * end:.3g} % strain): no peak; run it further "
-                         "(to_strain), to 15 % at most")
     return 0.5 * (sigma_1[peak] + sigma_3[peak]), 0.5 * (sigma_1[peak] - sigma_3[peak])
 
 
@@ -58,6 +65,10 @@ def envelope(axes, angle, right, label, **line):
 
 def draw(stages, options):
     tests = drained_tests(stages)
+    rising = [why for why in map(still_rising, tests) if why]
+    tests = [test for test in tests if not still_rising(test)]
+    if not tests:
+        raise ValueError("; ".join(rising))
     figure, axes = plt.subplots(figsize=(8, 4.6))
     states = np.array([peak_state(test) for test in tests]) / 1e3
     right = 1.06 * float(np.max(states.sum(axis=1)))
@@ -83,7 +94,7 @@ def draw(stages, options):
     kinds = " and ".join(dict.fromkeys(test.test_in_words() for test in tests))
     axes.set_title(f"{kinds}: Mohr circles at peak", fontsize=11, loc="left")
     figure.savefig(options.output)
-    return f"{options.output}: {text}"
+    return f"{options.output}: {text}" + "".join(f"\nwarning: not drawn: {why}" for why in rising)
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@
     mpm.py RUN --field eps_q -o eps_q.png              # the last frame; --frame 3, --field void_ratio, velocity, ...
     mpm.py RUN --field eps_q --film -o film.gif        # all frames
     mpm.py RUN --energy -o energy.png                  # shares of energy
-    mpm.py RUN... --force plate.force_y --against plate.way_y -o force.png
+    mpm.py RUN... --force plate.force_y --against plate.way_y -o force.png    # any columns of history.csv
     mpm.py RUN --network 0 1 -o chains.png             # force chains of watched points (output.networks = true)
 
 RUN is the folder that rvelab-mpm wrote. Points are drawn at their deformed places, in their deformed shapes."""
@@ -45,6 +45,22 @@ def history_of(run):
     return dict(zip(names, np.loadtxt(path, delimiter=",", skiprows=1, ndmin=2).T))
 
 
+def named(column):
+    """Name of a column of history.csv and its unit as a label has it: plate.force_y_N is plate.force_y (N)."""
+    for end, unit in (("_N_s", " (N s)"), ("_N", " (N)"), ("_J", " (J)"), ("_m", " (m)"), ("_s", " (s)")):
+        if column.endswith(end):
+            return column.removesuffix(end), unit
+    return column, ""
+
+
+def column_of(run, history, name):
+    """The column of history.csv of that name, its unit at the end or left out."""
+    found = [column for column in history if name in (column, named(column)[0])]
+    if not found:
+        raise ValueError(f"{run}: history.csv has no column {name}; it has " + ", ".join(history))
+    return found[0]
+
+
 def read(frame, field):
     """Time, corners of the points (n, 4, 2) and values; in space, the points as seen along y."""
     with h5py.File(frame, "r") as file:
@@ -67,9 +83,9 @@ def read(frame, field):
 
 
 def size_of(box):
-    """Inches: five wide, as high as the points need."""
+    """Inches: five wide, as high as the points and the label of the colours need."""
     width, height = box[:, 1] - box[:, 0]
-    return (5, min(6, max(1.6, 0.9 + 4 * height / width))) if height < width else (4.2, 5)
+    return (5, min(6, max(2.6, 0.9 + 4 * height / width))) if height < width else (4.2, 5)
 
 
 def draw(figure, frame, field, limits, box):
@@ -107,6 +123,13 @@ def box_of(frames, field):
     return np.stack([low - margin, high + margin]).T
 
 
+def frame_of(frames, options):
+    if not -len(frames) <= options.frame < len(frames):
+        raise ValueError(f"--frame {options.frame}: {options.runs[0]} has {len(frames)} frames; allowed: 0 to "
+                         f"{len(frames) - 1}, or -1 to {-len(frames)} from the end; give one of them")
+    return frames[options.frame]
+
+
 def field_figure(options):
     frames = frames_of(options.runs[0])
     if options.film:
@@ -115,14 +138,14 @@ def field_figure(options):
         last = read(frames[-1], options.field)[2]
         limits = options.limits or tuple(np.nanpercentile(last, [1, 99]))
         for frame in frames:
-            figure = plt.figure(figsize=size_of(box))
+            figure = plt.figure(figsize=size_of(box), layout="constrained")  # a GIF is not cut to what is drawn
             draw(figure, frame, options.field, limits, box)
             figure.canvas.draw()
             pictures.append(Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("P"))
             plt.close(figure)
         pictures[0].save(options.output, save_all=True, append_images=pictures[1:], duration=120, loop=0)
         return f"{options.output}: {len(pictures)} frames of {options.field}"
-    frame = frames[options.frame]
+    frame = frame_of(frames, options)
     box = box_of([frame], options.field)
     figure = plt.figure(figsize=size_of(box))
     draw(figure, frame, options.field, options.limits, box)
@@ -147,24 +170,28 @@ def energy_figure(options):
 
 def force_figure(options):
     figure, axes = plt.subplots(figsize=(5.5, 3.5))
+    curves = []
     for run in options.runs:
         h = history_of(run)
-        y, x = options.force + "_N", "time_s" if options.against is None else options.against + "_m"
-        for name in (x, y):
-            if name not in h:
-                raise ValueError(f"{run}: history.csv has no {name}; it has " + ", ".join(h))
-        axes.plot(np.abs(h[x]), h[y] / 1e3, label=pathlib.Path(run).name)
-    axes.set_xlabel("time (s)" if options.against is None else f"{options.against} (m)")
-    axes.set_ylabel(f"{options.force} (kN)")
+        x, y = (column_of(run, h, name) for name in (options.against, options.force))
+        curves.append((h[x], h[y]))
+    # A plate on its way down is drawn by its settlement, and the axis says so.
+    (x_name, x_unit), (y_name, y_unit) = named(x), named(y)
+    kilo = y_unit == " (N)"
+    down = x_unit == " (m)" and max(along.max() for along, _ in curves) <= 0
+    for run, (along, force) in zip(options.runs, curves):
+        axes.plot(-along if down else along, force / 1e3 if kilo else force, label=pathlib.Path(run).name)
+    axes.set_xlabel(("$-$" if down else "") + x_name + x_unit)
+    axes.set_ylabel(y_name + (" (kN)" if kilo else y_unit))
     axes.legend()
     figure.savefig(options.output)
-    return f"{options.output}: {options.force} of {', '.join(options.runs)}"
+    return f"{options.output}: {y} against {x} of {', '.join(options.runs)}"
 
 
 def network_figure(options):
     """Force chains of watched points side by side, in the laboratory frame: stretched and turned as the points are."""
     run, points = pathlib.Path(options.runs[0]), options.network
-    frame = frames_of(run)[options.frame].stem.removeprefix("points_")
+    frame = frame_of(frames_of(run), options).stem.removeprefix("points_")
     with h5py.File(run / f"points_{frame}.h5", "r") as file:
         time = float(file["time_s"][0])
     figure, all_axes = plt.subplots(1, len(points), figsize=(4.6 * len(points), 5), squeeze=False)
@@ -189,20 +216,23 @@ def main():
     what = parser.add_mutually_exclusive_group(required=True)
     what.add_argument("--field", choices=sorted(FIELDS))
     what.add_argument("--energy", action="store_true")
-    what.add_argument("--force", help="a column of history.csv without its unit: plate.force_y")
+    what.add_argument("--force", help="a column of history.csv: plate.force_y, or with its unit kinetic_J")
     what.add_argument("--network", type=int, nargs="+", help="numbers of watched points, from 0")
-    parser.add_argument("--against", help="the same for the other axis: plate.way_y; default: time")
+    parser.add_argument("--against", default="time", help="the same for the other axis: plate.way_y; default: time")
     parser.add_argument("--frame", type=int, default=-1, help="number of the frame; negative: from the end")
     parser.add_argument("--film", action="store_true", help="all frames, as GIF")
-    parser.add_argument("--limits", type=float, nargs=2, help="of the colours")
+    parser.add_argument("--limits", type=float, nargs=2, metavar=("LOW", "HIGH"), help="of the colours")
     parser.add_argument("-o", "--output", required=True)
     options = parser.parse_args()
     try:
+        if options.limits is not None and not options.limits[0] < options.limits[1]:
+            raise ValueError("--limits {:g} {:g}: are no range; allowed: LOW below HIGH; exchange or correct them".format(
+                *options.limits))
         with plt.rc_context(STYLE):
             draw_it = (energy_figure if options.energy else force_figure if options.force
                        else network_figure if options.network is not None else field_figure)
             print(draw_it(options))
-    except (ValueError, IndexError) as error:
+    except ValueError as error:
         parser.error(" ".join(str(error).split()))
     except OSError as error:
         parser.error(f"{error.filename or options.output}: {error.strerror or error}; give a path in an existing folder")

@@ -36,7 +36,8 @@ def draw(stages, options):
         plane.plot(across[0] / 1e3, along[0] / 1e3, "o", color=colour, markersize=4)
     meridian.set_xlabel("mean stress $p$ (kPa)")
     meridian.set_ylabel("deviatoric stress $q$ (kPa)")
-    meridian.set_xlim(left=0)
+    # Room beside a path that goes straight up.
+    meridian.set_xlim(0, 1.05 * max(meridian.dataLim.x1, meridian.get_xlim()[1]))
     meridian.set_ylim(bottom=0)
     meridian.legend(fontsize=8)
     plane.set_aspect("equal", adjustable="datalim")

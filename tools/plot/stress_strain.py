@@ -30,7 +30,8 @@ def draw(stages, options):
     stages = curves(stages)
     figure, (ratio, volume) = plt.subplots(2, 1, figsize=(7, 6.6), sharex=True, height_ratios=(3, 2))
     one_each = len({stage.path for stage in stages}) == len(stages)
-    only_pressure = one_each and all(stage.drained for stage in stages)
+    only_pressure = (one_each and all(stage.drained for stage in stages)
+                     and len({records.plain(stage.pressure) for stage in stages}) == len(stages))
     unheld = 0
     for stage, colour in zip(stages, records.pressure_colours(len(stages))):
         strain, mobilised = 100 * stage.strain, stage.mobilised()

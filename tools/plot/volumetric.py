@@ -11,6 +11,8 @@ import argparse
 import records  # first: it says which package is missing
 import matplotlib.pyplot as plt
 
+SPAN = 1e-3  # of the axis of void ratio at least
+
 
 def draw(stages, options):
     figure, (by_strain, by_pressure) = plt.subplots(1, 2, figsize=(9.5, 4.2), sharey=True)
@@ -24,6 +26,11 @@ def draw(stages, options):
     strains = list(dict.fromkeys(stage.strain_in_words() for stage in stages))
     by_strain.set_xlabel(strains[0] if len(strains) == 1 else "driving strain of the stage (%)")
     by_strain.set_ylabel("void ratio $e$")
+    # At constant volume the void ratio changes by round-off alone: a level line, not its last digits.
+    low, high = by_strain.get_ylim()
+    if high - low < SPAN:
+        by_strain.set_ylim(0.5 * (low + high - SPAN), 0.5 * (low + high + SPAN))
+        by_strain.ticklabel_format(axis="y", useOffset=False)
     by_strain.legend(fontsize=8)
     pressures = [p for stage in stages for p in stage.invariants()[0] if p > 0]
     if max(pressures) > 3 * min(pressures):

@@ -95,8 +95,9 @@ class Batch:
 
 def load() -> ctypes.CDLL:
     here, name = Path(__file__).resolve().parent, "librvelab.so.1"
-    named = os.environ.get("RVELAB_LIBRARY")
-    place = named or (str(here / name) if (here / name).exists() else name)
+    # Beside the module; PREFIX/lib of an installed one, PREFIX/lib/python3/dist-packages; the build of a checkout.
+    places = [folder / name for folder in (here, here.parents[1], here.parents[1] / "build/release/lib")]
+    place = os.environ.get("RVELAB_LIBRARY") or str(next((file for file in places if file.exists()), name))
     try:
         library = ctypes.CDLL(place)
     except OSError as error:
