@@ -3,10 +3,11 @@
     mpm.py RVELAB FOLDER RESULTS [CASE...]
     mpm.py RVELAB FOLDER RESULTS tolerance
 
-Speed of the continuum (asked: 2 M point-steps a second of one core in the plane), the single element beside the biaxial test of its
-specimen, the column of a Mohr-Coulomb soil beside Liang and Zhao (2019), and the biaxial compression of the cases named
-(C1: the file without a case). `tolerance`: error of the plate's stress against grain-steps, over tolerances and
-gathering. Runs that are whole in FOLDER are used again, and those that were stopped go on. Other scenes: mpm_scenes.py."""
+Speed of the continuum (asked: 2 M point-steps a second of one core in the plane), the single element beside the biaxial
+test of its specimen (stress and volume), the column of a Mohr-Coulomb soil beside Liang and Zhao (2019), and the biaxial
+compression of the cases named (C1: the file without a case). `tolerance`: error of the plate's stress against
+grain-steps, over tolerances and gathering. Runs that are whole in FOLDER are used again, and those that were stopped go
+on. Other scenes: mpm_scenes.py."""
 
 import pathlib
 import resource
@@ -53,7 +54,7 @@ def specimen(name="dense", *options, recipe="pack_dense"):
 
 
 def cell_test(name="cell", *options):
-    """Axial strain and stress (Pa) of the biaxial test of dense.h5 at 100 kPa."""
+    """Axial strain, stress (Pa) and volumetric strain (compression +) of the biaxial test of dense.h5 at 100 kPa."""
     specimen()
     path = folder / f"{name}.h5"
     if not path.exists():
@@ -61,7 +62,9 @@ def cell_test(name="cell", *options):
                         "test.pressure_Pa=100e3", *options], check=True, stdout=subprocess.DEVNULL)
     with h5py.File(path) as file:
         last = file["records/stage"][()] == file["records/stage"][()].max()
-        return file["records/strain"][()][last], -file["records/stress_Pa"][()][last][:, 1, 1]
+        volume = np.linalg.det(file["records/deformation_gradient"][()][last])
+        return (file["records/strain"][()][last], -file["records/stress_Pa"][()][last][:, 1, 1],
+                np.log(volume[0] / volume))
 
 
 def speed():
@@ -77,20 +80,24 @@ def speed():
         print(f"continuum alone, {what} elastic points: {best:.2f} M point-steps a second of one core's time")
 
 
-def element(strain, stress):
+def element(strain, stress, volume):
     h, _ = run("element", "element.toml")
     watched = np.genfromtxt(folder / "element/watched.csv", delimiter=",", names=True)
     axial = -h["top.way_y_m"]
-    point = np.mean([watched[f"{k}p_Pa"] + watched[f"{k}q_Pa"] for k in (0, 1)], axis=0)
+    point = np.mean([watched[f"{k}p_Pa"] + watched[f"{k}q_Pa"] for k in (0, 1)], axis=0) / 1e3
+    dilated = np.mean([watched[f"{k}eps_v"] for k in (0, 1)], axis=0) * 100
     # Paths of grains part by chance: the same cell at tolerances that hardly differ.
     others = [cell_test(f"cell_{k}", "--set", f"solver.relative_tolerance={0.01 + 1e-5 * k}", "--set",
                         "stage.compression.to_strain=0.05") for k in range(1, 9)]
-    print("\nsingle element: axial strain, axial stress (kPa) of the points, of the cell under stress control, mean and\n"
-          "standard deviation of the cell at eight tolerances of 0.01001 to 0.01008")
+    print("\nsingle element: axial strain; axial stress (kPa) of the points, of the cell under stress control, mean and\n"
+          "standard deviation of the cell at eight tolerances of 0.01001 to 0.01008; volumetric strain\n"
+          "(%, compression +) likewise")
     for at in (0.003, 0.006, 0.01, 0.015, 0.02, 0.03, 0.04, 0.049):
-        many = np.array([np.interp(at, *other) for other in others]) / 1e3
-        print(f"{at:<8g} {np.interp(at, axial, point) / 1e3:<8.1f} {np.interp(at, strain, stress) / 1e3:<8.1f} "
-              f"{many.mean():<8.1f} {many.std(ddof=1):.1f}")
+        many = np.array([np.interp(at, other[0], other[1]) for other in others]) / 1e3
+        grown = np.array([np.interp(at, other[0], other[2]) for other in others]) * 100
+        print(f"{at:<8g} {np.interp(at, axial, point):<8.1f} {np.interp(at, strain, stress) / 1e3:<8.1f} "
+              f"{many.mean():<8.1f} {many.std(ddof=1):<8.1f} {np.interp(at, axial, dilated):<8.3f} "
+              f"{np.interp(at, strain, volume) * 100:<8.3f} {grown.mean():<8.3f} {grown.std(ddof=1):.3f}")
 
 
 def front_of(frame, apart=1):
@@ -222,8 +229,8 @@ def main():
         tolerance()
         return
     speed()
-    strain, stress = cell_test()
-    element(strain, stress)
+    strain, stress, volume = cell_test()
+    element(strain, stress, volume)
     column()
     if cases:
         biaxial(strain, stress)

@@ -2,8 +2,8 @@
 
     mpm_scenes.py RVELAB FOLDER RESULTS column|footing|pipe [published]
 
-column: run-out, energies and profile of the collapse of a column of grains, with `published` at the published size too.
-footing: load against settlement on three soils, beside the N_q of `rvelab calibrate`. pipe: forces on a pipe that is
+column: run-out, energies and profile of the collapse of a column of grains. footing: load against settlement on three
+soils, beside the N_q of `rvelab calibrate`. With `published` both at the published size too. pipe: forces on a pipe that is
 pushed down and aside, and what the soil before, below and behind it does. Runs that are whole in FOLDER are used again,
 and those that were stopped go on."""
 
@@ -20,40 +20,82 @@ from records import STYLE, plt  # noqa: E402
 from mpm import cases, collapse, folder, front_of, picture, results, run, rvelab, specimen
 
 
-def footing():
-    surcharge, width, depths = 20e3, 2.0, (0.0125, 0.025, 0.0375, 0.05, 0.1, 0.15, 0.2)  # Pa, m; settlements over the width
+SURCHARGE, WIDTH = 20e3, 2.0  # Pa, m
+SOILS = {"dense": ("C0", "14.4, 14.8"), "medium": ("C1", "4.8, 3.7"), "soft": ("C2", "3.7, 3.1")}
+
+
+def footing_run(name, soil, *options):
+    """Settlement over width, load over surcharge (a mean of five), and grain-steps of a footing's run."""
+    specimen(soil, recipe=f"pack_{soil}")
+    h, printed = run(name, "footing.toml", "--case", soil, *options)
+    words = printed.replace(",", "").split()
+    depth, load = -h["footing.way_y_m"] / WIDTH, 1 + h["footing.force_y_N"] / (WIDTH / 2) / SURCHARGE
+    return depth[2:-2], np.convolve(load, np.ones(5) / 5, mode="valid"), float(words[words.index("grain-steps") + 1])
+
+
+def footing_figure(curves, factors, name):
     figure, axes = plt.subplots(figsize=(5.5, 3.8))
-    print("Rough footing, half of it 1 m wide, on 6 x 4 m of soil (24 x 16 cells, one point each), surcharge 20 kPa,\n"
-          "0.2 m/s: load over surcharge at settlements d/B (B = 2 m), and the largest; N_q of rvelab calibrate at 10, 20\n"
-          "and 30 kPa, for general and for local shear; published, at the whole size to d/B = 0.75: load, N_q\n\nsoil    "
-          + "".join(f"{d:<8g}" for d in depths) + "largest  N_q     local   published")
-    costs, published = [], {"dense": "14.4, 14.8", "medium": "4.8, 3.7", "soft": "3.7, 3.1"}
-    for soil, colour in zip(published, ("C0", "C1", "C2")):
-        specimen(soil, recipe=f"pack_{soil}")
-        told = subprocess.run([rvelab, "calibrate", "biaxial", "--specimen", folder / f"{soil}.h5", "--pressures",
-                               "10e3,20e3,30e3", "--threads", "1", "--json"], check=True, capture_output=True, text=True)
-        factors = json.loads(told.stdout)
-        general, local = factors["bearing_capacity_Nq"], factors["local_shear_Nq"]
-        h, printed = run(f"footing_{soil}", "footing.toml", "--case", soil)
-        words = printed.replace(",", "").split()
-        steps = float(words[words.index("grain-steps") + 1])
-        whole = steps * 7776 / 384 * 1.5 / -h["footing.way_y_m"][-1]
-        costs.append(f"{soil:<8}{steps:<12.3g} {whole:<20.2g} {whole / 60e6 / 3600:.1f}")
-        depth, load = -h["footing.way_y_m"] / width, 1 + h["footing.force_y_N"] / (width / 2) / surcharge
-        smooth = np.convolve(load, np.ones(5) / 5, mode="same")[2:-2]
-        print(f"{soil:<8}" + "".join(f"{np.interp(d, depth[2:-2], smooth):<8.2f}" for d in depths)
-              + f"{smooth.max():<8.2f} {general:<7.2f} {local:<7.2f} {published[soil]}", flush=True)
-        axes.plot(depth[2:-2], smooth, color=colour, label=soil)
-        axes.axhline(general, color=colour, linestyle="--", linewidth=1)
-        axes.axhline(local, color=colour, linestyle=":", linewidth=1)
-    print("\nsoil    grain-steps  of 7,776 points to   hours of one core at\n"
-          "                     1.5 m, in proportion 60 million a second\n" + "\n".join(costs))
+    for soil, (depth, load, _) in curves.items():
+        colour = SOILS[soil][0]
+        axes.plot(depth, load, color=colour, label=soil)
+        for factor, style in zip(factors[soil], ("--", ":")):
+            axes.axhline(factor, color=colour, linestyle=style, linewidth=1)
     axes.set_xlabel("settlement over width")
     axes.set_ylabel("load over surcharge")
     axes.set_title("dashed: $N_q$ of the specimen, dotted: of local shear", fontsize=9, loc="left")
     axes.legend(loc="upper right", bbox_to_anchor=(1, 0.93))
     figure.tight_layout()
-    figure.savefig(results / "mpm_footing.png")
+    figure.savefig(results / name)
+
+
+def footing():
+    print("Rough footing, half of it 1 m wide, on 6 x 4 m of soil (24 x 16 cells, one point each), surcharge 20 kPa,\n"
+          "0.2 m/s: load over surcharge at settlements d/B (B = 2 m), and the largest; N_q of rvelab calibrate at 10, 20\n"
+          "and 30 kPa, for general and for local shear; published, at the whole size to d/B = 0.75: load, N_q\n")
+    depths = (0.0125, 0.025, 0.0375, 0.05, 0.1, 0.15, 0.2)
+    print("soil    " + "".join(f"{d:<8g}" for d in depths) + "largest  N_q     local   published")
+    curves, factors = {}, {}
+    for soil, (_, published) in SOILS.items():
+        depth, load, _ = curves[soil] = footing_run(f"footing_{soil}", soil)
+        told = subprocess.run([rvelab, "calibrate", "biaxial", "--specimen", folder / f"{soil}.h5", "--pressures",
+                               "10e3,20e3,30e3", "--threads", "1", "--json"], check=True, capture_output=True, text=True)
+        told = json.loads(told.stdout)
+        general, local = factors[soil] = told["bearing_capacity_Nq"], told["local_shear_Nq"]
+        print(f"{soil:<8}" + "".join(f"{np.interp(d, depth, load):<8.2f}" for d in depths)
+              + f"{load.max():<8.2f} {general:<7.2f} {local:<7.2f} {published}", flush=True)
+    print("\nsoil    grain-steps  of 7,776 points to   hours of one core at\n"
+          "                     1.5 m, in proportion 60 million a second")
+    for soil, (depth, _, steps) in curves.items():
+        whole = steps * 7776 / 384 * 0.75 / depth[-1]
+        print(f"{soil:<8}{steps:<12.3g} {whole:<20.2g} {whole / 60e6 / 3600:.1f}")
+    footing_figure(curves, factors, "mpm_footing.png")
+    if "published" in cases:
+        footing_published(factors)
+
+
+def first_level(depth, load):
+    """Where a mean over 0.05 widths first stops rising (Vesic): settlement over width, load; None: it never does."""
+    at = np.linspace(depth[0], depth[-1], round((depth[-1] - depth[0]) / 0.0025) + 1)
+    smooth = np.convolve(np.interp(at, depth, load), np.ones(21) / 21, mode="valid")
+    level = np.flatnonzero(np.diff(smooth) <= 0)
+    return (at[10 + level[0]], smooth[level[0]]) if len(level) else None
+
+
+def footing_published(factors):
+    """The size, speed and settlement of the paper, on soft soil, which takes the fewest grain-steps."""
+    depth, load, steps = footing_run("footing_soft_published", "soft", "--published")
+    print("\nSoft soil at the published size in full: 12 x 8 m, 108 x 72 cells with one point each, 0.1 m/s\n")
+    depths = (0.025, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7)
+    print("d/B     " + "".join(f"{d:<8g}" for d in depths) + "\nload    "
+          + "".join(f"{np.interp(d, depth, load):<8.2f}" for d in depths))
+    level = first_level(depth, load)
+    if level:
+        print(f"it first stops rising (mean over 0.05) at d/B {level[0]:.2f}, {level[1]:.2f} (published: ultimate load 3.7)")
+    print(f"grain-steps {steps:.3g}")
+    printed = (folder / "footing_soft_published.txt").read_text().strip().splitlines()
+    print("    " + "\n    ".join(printed[-3:]))
+    footing_figure({"soft": (depth, load, steps)}, factors, "mpm_footing_published.png")
+    picture(folder / "footing_soft_published", "--field", "eps_q", "-o", results / "mpm_footing_soft.png")
 
 
 def column(name="column", *options):
