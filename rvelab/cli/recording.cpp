@@ -37,7 +37,7 @@ std::unique_ptr<io::RecordStore> open_store(const std::string& path, const proto
 protocol::TestRun run_recorded(const protocol::Protocol& protocol, const Specimen& specimen, io::RecordStore* store,
                                protocol::Watch watch) {
   if (store == nullptr) return protocol::run_protocol(protocol, specimen, watch);
-  if (store->complete()) return {store->test().result, store->test().checkpoint.specimen, {}, true, {}};
+  if (store->complete()) return {store->test().result, store->test().checkpoint.specimen, {}, true, {}, {}};
 
   double seconds = 0;
   const auto timed = [&](auto write) {

@@ -127,6 +127,7 @@ void report(const protocol::Protocol& protocol, const protocol::TestRun& run, do
     listing.add("pressure_Pa", result.pressure, "Pa");
   }
   listing.add("stages", result.stages);
+  if (!run.events.empty()) listing.add("ended_by", run.events);
   if (arguments.json) {
     listing.add("records", arrays_of(result.records));
   } else {

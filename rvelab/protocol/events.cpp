@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "rvelab/error.hpp"
 #include "rvelab/keys/key_builders.hpp"
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/protocol/protocol_keys.hpp"
@@ -110,6 +111,12 @@ std::vector<Event> read_events(TableReader& reader, const Stage& stage, std::vec
                                 kinds_with_events(true) + "; remove it");
   }
   return events;
+}
+
+std::string event_in_words(const Event& event) {
+  using When = Event::When;
+  const char* const when = event.when == When::above ? " above " : event.when == When::below ? " below " : " fell by ";
+  return event.quantity + when + in_words(event.value);
 }
 
 int met_event(RunningTest& test, const Stage& stage) {

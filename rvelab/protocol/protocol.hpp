@@ -38,6 +38,9 @@ struct Event {
   std::string then;  ///< name of the stage to go on with; empty: the next; "end": none
 };
 
+/// "p_over_first below 0.001".
+std::string event_in_words(const Event& event);
+
 struct Stage {
   std::string name;  ///< the kind, unless the file names it
   std::string kind;  ///< as stage_kinds.hpp calls it

@@ -30,6 +30,7 @@ struct TestRun {
   Specimen end_state;
   records::Progress progress;  ///< with end_state the checkpoint from which a stopped test goes on
   bool complete = true;
+  std::vector<std::string> events;  ///< that ended stages since the run began or was gone on with, with their stages
   Costs costs;
 };
 

@@ -104,8 +104,10 @@ int RunningTest::stage_number(const std::string& name) const {
 
 void RunningTest::leave_stage() {
   records::Progress& at = run.progress;
-  const auto event = static_cast<std::size_t>(at.phase - done_phase - 1);
-  at.stage = stage_number(at.phase > done_phase ? stage_->until.at(event).then : stage_->then);
+  const Event* const event =
+      at.phase > done_phase ? &stage_->until.at(static_cast<std::size_t>(at.phase - done_phase - 1)) : nullptr;
+  if (event != nullptr) run.events.push_back(stage_->name + ": " + event_in_words(*event));
+  at.stage = stage_number(event != nullptr ? event->then : stage_->then);
   at.phase = 0;
   at.step = 0;
   pause();

@@ -47,3 +47,14 @@ TEST_CASE("a run at a rate makes no estimate, and one that is complete took no t
   CHECK(again.output.find("wall_s") != std::string::npos);
   CHECK(again.output.find("time_pairs_s") == std::string::npos);
 }
+
+TEST_CASE("a run says which event ended a stage before its end: undrained, loose discs liquefy") {
+  const Workplace here;
+  here.import_packing("soft");
+  const Outcome made = here.run("run biaxial_undrained --specimen S.h5 --set test.pressure_Pa=20e3 --json");
+  INFO(made.errors);
+  REQUIRE(made.code == 0);
+  const auto told = nlohmann::json::parse(made.output);
+  CHECK(told["ended_by"] == std::vector<std::string>{"compression: p_over_first below 0.001"});
+  CHECK(told["end_strain"] < 0.1);
+}
