@@ -110,6 +110,12 @@ void add_costs(const protocol::TestRun& run, double wall, Listing& listing) {
   listing.add("time_other_s", std::max(0.0, wall - calls - costs.files), "s");
 }
 
+/// Whether the largest deviator of a stage is a strength: not where pressure goes up and down, or small steps are
+/// tried to all sides.
+bool leads_to_failure(const protocol::Stage& stage) {
+  return stage.kind != "pressure_path" && stage.kind != "envelope";
+}
+
 void report(const protocol::Protocol& protocol, const protocol::TestRun& run, double wall,
             const RunArguments& arguments) {
   const records::TestResult& result = run.result;
@@ -137,13 +143,15 @@ void report(const protocol::Protocol& protocol, const protocol::TestRun& run, do
   listing.add("not_quasi_static", moving);
   if (!result.records.empty()) {
     const auto records = calibrate::last_stage(result);
-    const calibrate::Peak highest = calibrate::peak(records, dimension);
-    listing.add("peak_strain", highest.strain);
-    listing.add("peak_sigma_1_Pa", highest.stresses.major, "Pa");
-    listing.add("peak_sigma_3_Pa", highest.stresses.minor, "Pa");
-    listing.add_or_why("peak_friction_angle_deg", calibrate::friction_angle_deg(highest.stresses), "degrees",
-                       "the minor principal stress is in tension, or there is no stress");
-    listing.add("rising_at_end", calibrate::rising_at_end(records, highest));
+    if (leads_to_failure(protocol.stages.at(static_cast<std::size_t>(records.back().stage)))) {
+      const calibrate::Peak highest = calibrate::peak(records, dimension);
+      listing.add("peak_strain", highest.strain);
+      listing.add("peak_sigma_1_Pa", highest.stresses.major, "Pa");
+      listing.add("peak_sigma_3_Pa", highest.stresses.minor, "Pa");
+      listing.add_or_why("peak_friction_angle_deg", calibrate::friction_angle_deg(highest.stresses), "degrees",
+                         "the minor principal stress is in tension, or there is no stress");
+      listing.add("rising_at_end", calibrate::rising_at_end(records, highest));
+    }
     listing.add("end_strain", records.back().strain);
     listing.add("end_stress_Pa", row_major(records.back().stress), "Pa");
     if ((records.back().quantities & records::asked<records::VoidRatio>) != 0) {
