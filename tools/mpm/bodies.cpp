@@ -35,10 +35,12 @@ template <int D>
 void Bodies<D>::find(const Grid<D>& grid, const Planes<D>& planes, double time) {
   contacts_.clear();
   surface_.clear();
+  sweeps_ = 1;
   bool at_nodes = false;
   for (int k = 0; k < int(all.size()); ++k) {
     if (all[k].at_surface) {
-      find_surface(grid, planes, k, time);
+      all[k].kind == BodyKind::half_space ? find_half_space(grid, planes, k, time)
+                                          : find_outline(grid, planes, k, time);
     } else {
       at_nodes = true;
     }
@@ -57,69 +59,18 @@ void Bodies<D>::find(const Grid<D>& grid, const Planes<D>& planes, double time) 
 }
 
 template <int D>
-void Bodies<D>::find_surface(const Grid<D>& grid, const Planes<D>& planes, int k, double time) {
-  const auto& body = all[k];
-  int axis = 0;
-  body.normal.cwiseAbs().maxCoeff(&axis);
-  const double surface = body.centre[axis] + body.velocity.way(time)[axis];
-  const double per_m = 1 / grid.cell[axis], xi = (surface - grid.anchor[axis]) * per_m;
-  double weight[3], slope[3];
-  // GIMP carries a uniform stress to the edge of a point's domain as the linear functions do.
-  const int base =
-      shape_along_axis(shape == Shape::bspline ? Shape::bspline : Shape::linear, xi, per_m, 0, weight, slope);
-  const auto first = grid.low;
-  long places = 1;
-  for (int i = 0; i < D; ++i) places *= i == axis ? 1 : grid.count[i];
-  for (long place = 0; place < places; ++place) {
-    auto node = first;
-    long rest = place;
-    for (int i = 0; i < D; ++i) {
-      if (i == axis) continue;
-      node[i] += int(rest % grid.count[i]);
-      rest /= grid.count[i];
-    }
-    SurfaceContact contact;
-    contact.body = k;
-    contact.normal = body.normal;
-    contact.impulse.setZero();
-    double sum = 0;
-    bool near = false;  // soil reaches a node at the surface or behind it
-    for (int j = 0; j < 3; ++j) {
-      node[axis] = base + j;
-      const int row = node[axis] - first[axis];
-      if (!(weight[j] > 0) || row < 0 || row >= grid.count[axis]) continue;
-      const long flat = grid.flat(node);
-      if (!(grid.nodes[flat].mass > 0) || planes.is_behind(flat)) continue;
-      near = near || (node[axis] - xi) * body.normal[axis] <= 1e-6;
-      sum += weight[j];
-      contact.node[contact.count] = flat;
-      contact.weight[contact.count++] = weight[j];
-    }
-    if (!near) continue;
-    for (int j = 0; j < contact.count; ++j) contact.weight[j] /= sum;
-    surface_.push_back(contact);
-  }
-}
-
-template <int D>
-Vec<D> Bodies<D>::held(int body, const Vec<D>& normal, const Vec<D>& relative) const {
-  const double across = relative.dot(normal);
-  if (across >= 0) return relative;
-  Vec<D> along = relative - across * normal;
-  if (all[body].rough) {
-    along.setZero();
-  } else if (const double slip = along.norm(); slip > 0) {
-    along *= std::max(0.0, 1 + all[body].friction * across / slip);
-  }
-  return along;
-}
-
-template <int D>
 Vec<D> Bodies<D>::meet(const Contact& contact, const Vec<D>& speed, double* velocity) const {
+  const auto& body = all[contact.body];
   Vec<D> relative, jump;
   for (int i = 0; i < D; ++i) relative[i] = velocity[i] - speed[i];
-  if (relative.dot(contact.normal) >= 0) return Vec<D>::Zero();
-  const Vec<D> along = held(contact.body, contact.normal, relative);
+  const double across = relative.dot(contact.normal);
+  if (across >= 0) return Vec<D>::Zero();
+  Vec<D> along = relative - across * contact.normal;
+  if (body.rough) {
+    along.setZero();
+  } else if (const double slip = along.norm(); slip > 0) {
+    along *= std::max(0.0, 1 + body.friction * across / slip);
+  }
   for (int i = 0; i < D; ++i) {
     const double met = speed[i] + along[i];
     jump[i] = met - velocity[i];
@@ -129,31 +80,13 @@ Vec<D> Bodies<D>::meet(const Contact& contact, const Vec<D>& speed, double* velo
 }
 
 template <int D>
-Vec<D> Bodies<D>::meet(const SurfaceContact& contact, const Vec<D>& speed, bool end, Grid<D>& grid) const {
-  Vec<D> relative = -speed;
-  double mobility = 0;  // of the surface: m/s of N s
-  for (int j = 0; j < contact.count; ++j) {
-    const auto& node = grid.nodes[contact.node[j]];
-    const double* velocity = end ? node.w : node.v;
-    for (int i = 0; i < D; ++i) relative[i] += contact.weight[j] * velocity[i];
-    mobility += contact.weight[j] * contact.weight[j] / node.mass;
-  }
-  const Vec<D> impulse = (held(contact.body, contact.normal, relative) - relative) / mobility;
-  for (int j = 0; j < contact.count; ++j) {
-    auto& node = grid.nodes[contact.node[j]];
-    double* velocity = end ? node.w : node.v;
-    for (int i = 0; i < D; ++i) velocity[i] += contact.weight[j] / node.mass * impulse[i];
-  }
-  return impulse;
-}
-
-template <int D>
 void Bodies<D>::set_start(Grid<D>& grid, double time) {
   for (auto& contact : contacts_) {
     auto& node = grid.nodes[contact.node];
     contact.jump = meet(contact, all[contact.body].velocity.at(time), node.v);
   }
-  for (auto& contact : surface_) contact.impulse = meet(contact, all[contact.body].velocity.at(time), false, grid);
+  for (auto& point : surface_) point.impulse.setZero();
+  hold_surface(grid, time, false);
 }
 
 template <int D>
@@ -168,7 +101,7 @@ void Bodies<D>::set_end(Grid<D>& grid, const Planes<D>& planes, double time) {
     auto& node = grid.nodes[contact.node];
     contact.jump += meet(contact, all[contact.body].velocity.at(time), node.w);
   }
-  for (auto& contact : surface_) contact.impulse += meet(contact, all[contact.body].velocity.at(time), true, grid);
+  hold_surface(grid, time, true);
   // Work is done along the way that the node makes in the end, which a second body in it may have changed.
   for (const auto& contact : contacts_) {
     const auto& node = grid.nodes[contact.node];
@@ -176,11 +109,11 @@ void Bodies<D>::set_end(Grid<D>& grid, const Planes<D>& planes, double time) {
       if (!planes.holds(contact.node, i)) book(contact.body, node, i, node.mass * contact.jump[i]);
     }
   }
-  for (const auto& contact : surface_) {
-    for (int j = 0; j < contact.count; ++j) {
+  for (const auto& point : surface_) {
+    for (int j = 0; j < point.count; ++j) {
       for (int i = 0; i < D; ++i) {
-        if (planes.holds(contact.node[j], i)) continue;
-        book(contact.body, grid.nodes[contact.node[j]], i, contact.weight[j] * contact.impulse[i]);
+        if (planes.holds(point.node[j], i)) continue;
+        book(point.body, grid.nodes[point.node[j]], i, point.weight[j] * point.impulse[i]);
       }
     }
   }

@@ -2,10 +2,12 @@
 // space a cylinder along z). Where the soil's velocity approaches that of the body, the two meet: without penetration,
 // rough (no slip) or with Coulomb friction, free to part. What the soil gets, the body gets with the other sign.
 //
-// Contact at nodes: each node inside the body is held by itself. Contact at the surface (half-spaces across an axis):
-// over each node of the surface the soil's velocity sum N_I v_I there is held, by an impulse J that the nodes get as
-// N_I J. A uniform stress is then in balance at every node, also with shape functions that reach beyond the surface:
-// its nodal forces are N_I t, t the traction. At nodes alone the first row outside is left with N_I t (quadratic: t/8).
+// Contact at nodes: each node inside the body is held by itself. Contact at the surface: the soil's velocity sum N_I
+// v_I is held at points of the surface, a cell apart, by impulses J that the nodes get as N_I J. A uniform stress is
+// then in balance at every node, also with shape functions that reach beyond the surface: its nodal forces are N_I t, t
+// the traction. At nodes alone the first row outside is left with N_I t (quadratic: t/8), and a body's outline is that
+// of the nodes inside it. Points of boxes and discs share nodes: their impulses are found in sweeps (projected
+// Gauss-Seidel), those of a half-space across an axis lie over single columns of nodes and need one.
 #pragma once
 
 #include <string>
@@ -57,24 +59,31 @@ class Bodies {
     Vec<D> normal;
     Vec<D> jump;  ///< m/s, what this body alone changed the soil's velocity by over the step
   };
-  /// Over one node of a surface: the nodes across it that reach it, and their weights there, of sum 1.
-  struct SurfaceContact {
-    long node[3];
-    double weight[3];
-    int count = 0;
+  static constexpr int reach = D == 2 ? 9 : 27;
+  /// A point of a surface: the nodes that reach it, and their weights there, of sum 1.
+  struct SurfacePoint {
     int body;
-    Vec<D> normal, impulse;  ///< N s, of the body on the soil over the step
+    Vec<D> normal;
+    long node[reach];
+    double weight[reach];
+    int count = 0;
+    double mobility = 0;  ///< m/s of N s: sum of weight^2/mass
+    Vec<D> now, impulse;  ///< N s, of the body on the soil: of this start or end, of the step
   };
-  void find_surface(const Grid<D>& grid, const Planes<D>& planes, int body, double time);
-  /// What the velocity against the body becomes.
-  Vec<D> held(int body, const Vec<D>& normal, const Vec<D>& relative) const;
+  void find_half_space(const Grid<D>& grid, const Planes<D>& planes, int body, double time);
+  void find_outline(const Grid<D>& grid, const Planes<D>& planes, int body, double time);
+  void add_point(const Grid<D>& grid, const Planes<D>& planes, int body, double time, const Vec<D>& at,
+                 const Vec<D>& normal);
+  bool reaches(const Grid<D>& grid, const Planes<D>& planes, const typename Grid<D>::Index& node, double weight,
+               SurfacePoint& point) const;
+  void keep(SurfacePoint& point, const Grid<D>& grid, double time);
+  void hold_surface(Grid<D>& grid, double time, bool end);
   /// What it changes the velocity by.
   Vec<D> meet(const Contact& contact, const Vec<D>& speed, double* velocity) const;
-  /// The impulse; the velocities are v or w of the nodes.
-  Vec<D> meet(const SurfaceContact& contact, const Vec<D>& speed, bool end, Grid<D>& grid) const;
   void book(int body, const Node<D>& node, int component, double impulse);
   std::vector<Contact> contacts_;
-  std::vector<SurfaceContact> surface_;
+  std::vector<SurfacePoint> surface_;
+  int sweeps_ = 1;
 };
 
 }  // namespace mpm
