@@ -198,3 +198,47 @@ TEST_CASE("soil stays outside the outline of a disc that is pushed in, and all r
   CHECK((pushed - momentum).norm() < 1e-12 * pushed.cwiseAbs().sum() + 1e-10);
   CHECK(solver->bodies.all[0].reaction.impulse[1] < -1);
 }
+
+TEST_CASE("in space a plate compresses an elastic block evenly, and a cylinder is met along its axis") {
+  const ElasticModuli moduli{1e6, 0.3};
+  auto solver = block<3>({3, 3, 4}, 0.1, moduli, 2000);
+  for (const int axis : {0, 1}) {
+    solver->planes.all.push_back(roller<3>(axis, 0, true));
+    solver->planes.all.push_back(roller<3>(axis, 3, false));
+  }
+  for (auto& point : solver->points) point.position[2] += 0.037;
+  Body<3> base, plate;
+  base.kind = BodyKind::half_space;
+  base.centre = Vec<3>(0, 0, 0.037);
+  base.normal = Vec<3>(0, 0, 1);
+  base.rough = false;
+  plate.half = Vec<3>(1, 1, 0.3);
+  plate.centre = Vec<3>(0.15, 0.15, 0.4 + 0.037 + 0.3);
+  plate.velocity.times = {0, 0.1};
+  plate.velocity.velocities = {Vec<3>::Zero(), Vec<3>(0, 0, -0.002)};
+  solver->bodies.all = {base, plate};
+  for (auto& body : solver->bodies.all) body.at_surface = true;
+  while (solver->time < 0.3) solver->step(solver->stable_step());
+  const double strain = -solver->bodies.all[1].velocity.way(solver->time)[2] / 0.4;
+  double mean = 0;
+  for (const auto& point : solver->points) mean -= point.stress(2, 2) / double(solver->points.size());
+  CHECK(mean == Approx(1e6 * 0.7 / (1.3 * 0.4) * strain).epsilon(0.03));
+
+  // A cylinder along z pushes a block that is free: every layer of it alike.
+  auto pushed = block<3>({4, 3, 3}, 0.1, moduli, 2000);
+  Body<3> cylinder;
+  cylinder.kind = BodyKind::disc;
+  cylinder.radius = 0.3;
+  cylinder.centre = Vec<3>(-0.3, 0.15, 0);
+  cylinder.velocity.times = {0};
+  cylinder.velocity.velocities = {Vec<3>(0.5, 0, 0)};
+  cylinder.at_surface = true;
+  pushed->bodies.all = {cylinder};
+  for (int k = 0; k < 60; ++k) pushed->step(pushed->stable_step());
+  Vec<3> momentum = Vec<3>::Zero();
+  for (const auto& point : pushed->points) momentum += point.mass * point.velocity;
+  CHECK(momentum[0] > 1);
+  CHECK((momentum - pushed->bodies.all[0].reaction.impulse).norm() < 1e-12 * momentum[0]);
+  CHECK(std::abs(momentum[1]) < 1e-3 * momentum[0]);  // sweeps go round the outline
+  CHECK(std::abs(momentum[2]) < 0.05 * momentum[0]);
+}
