@@ -147,6 +147,62 @@ TEST_CASE("on a surface a block slides as Coulomb says, and leaves it without be
   }
 }
 
+TEST_CASE("on an oblique half-space a block slides as Coulomb says, and its weight is on it") {
+  for (const double degrees : {10.0, 30.0, 45.0, 70.0}) {
+    const double angle = degrees * pi / 180;
+    const Vec<2> down(std::cos(angle), -std::sin(angle)), normal(std::sin(angle), std::cos(angle));
+    for (const double mu : {0.1, 0.5}) {
+      CAPTURE(degrees, mu);
+      auto solver = block<2>({12, 6}, 0.05, ElasticModuli{80e6, 0.3}, 2000);
+      // The plane leans against the grid; gravity has 10 m/s^2 across it and along it.
+      solver->options.gravity = 10 * down - 10 * normal;
+      solver->options.pic_fraction = 0.01;
+      double mass = 0;
+      for (auto& point : solver->points) {
+        point.position = point.position[0] * down + point.position[1] * normal;
+        mass += point.mass;
+      }
+      solver->bodies.all = {half_space({0, 0}, normal)};
+      solver->bodies.all[0].friction = mu;
+      solver->bodies.all[0].at_surface = true;
+      while (solver->time < 0.25) solver->step(std::min(solver->stable_step(), 0.25 - solver->time));
+      Vec<2> mean = Vec<2>::Zero();
+      for (const auto& point : solver->points) mean += point.velocity / double(solver->points.size());
+      CHECK(mean.dot(down) == Approx(10 * (1 - mu) * 0.25).epsilon(0.01));
+      CHECK(std::abs(mean.dot(normal)) < 0.01);
+      const Vec<2> pushed = solver->bodies.all[0].reaction.impulse / (mass * 10 * 0.25);
+      CHECK(pushed.dot(normal) == Approx(1).epsilon(0.01));
+      CHECK(-pushed.dot(down) == Approx(mu).epsilon(0.01));
+    }
+  }
+}
+
+TEST_CASE("a block at rest on an oblique half-space keeps the stress of its weight") {
+  for (const double degrees : {10.0, 30.0, 45.0, 70.0}) {
+    CAPTURE(degrees);
+    const double angle = degrees * pi / 180;
+    const Vec<2> down(std::cos(angle), -std::sin(angle)), normal(std::sin(angle), std::cos(angle));
+    auto solver = block<2>({10, 10}, 0.1, ElasticModuli{1e6, 0.3}, 2000);
+    solver->options.gravity = -10 * normal;
+    for (auto& point : solver->points) {
+      const double p = 2000 * 10 * (1 - point.position[1]);
+      point.position = point.position[0] * down + point.position[1] * normal;
+      point.stress = -p * normal * normal.transpose();
+      point.stress_zz = -0.3 * p;
+    }
+    const auto first = solver->points;
+    solver->bodies.all = {half_space({0, 0}, normal)};
+    solver->bodies.all[0].at_surface = true;
+    while (solver->time < 1) solver->step(solver->stable_step());
+    double sum = 0;
+    for (std::size_t k = 0; k < first.size(); ++k) {
+      const double error = normal.dot((solver->points[k].stress - first[k].stress) * normal) / (2000 * 10);
+      sum += error * error / double(first.size());
+    }
+    CHECK(std::sqrt(sum) < 0.1);  // of rho g h; at nodes 0.13 to 0.54
+  }
+}
+
 TEST_CASE("a plate compresses an elastic block evenly, wherever its face lies between the nodes") {
   for (const double shift : {0.0, 0.02, 0.037, 0.05, 0.08}) {
     CAPTURE(shift);
@@ -172,6 +228,57 @@ TEST_CASE("a plate compresses an elastic block evenly, wherever its face lies be
     CHECK(mean == Approx(oedometer * strain).epsilon(0.04));
     if (shift < 0.08) CHECK(most < 0.1);  // 0.5 where a point reaches the node behind by a twentieth of a cell
   }
+}
+
+TEST_CASE("soil in flight meets a surface when it gets there, not when its shape functions do") {
+  for (const Shape shape : {Shape::bspline, Shape::gimp, Shape::linear}) {
+    for (const double shift : {0.0, 0.03, 0.06}) {  // of the surface between two rows of nodes
+      auto solver = block<2>({4, 4}, 0.1, ElasticModuli{1e6, 0.3}, 2000);
+      solver->options.shape = solver->bodies.shape = shape;
+      const double gap = 0.09;  // m, a little less than a cell
+      Body<2> disc, lid;
+      disc.kind = BodyKind::disc;
+      disc.radius = 0.3;
+      disc.centre = Vec<2>(0.4 + gap + 0.3 + shift, 0.2 + shift);
+      lid.half = Vec<2>(1, 0.25);
+      lid.centre = Vec<2>(0.2, 0.4 + gap + 0.25 + shift);
+      const struct {
+        Body<2> body;
+        Vec<2> velocity;
+        double soon;  // cells; a disc meets its nearest point between two rows of soil
+      } met[] = {{half_space({0, -gap - shift}, {0, 1}), {0, -1}, 0.12}, {lid, {0, 1}, 0.12}, {disc, {1, 0}, 0.2}};
+      for (const auto& each : met) {
+        auto flying = block<2>({4, 4}, 0.1, ElasticModuli{1e6, 0.3}, 2000);
+        flying->options = solver->options;
+        flying->bodies.shape = shape;
+        flying->bodies.all = {each.body};
+        flying->bodies.all[0].at_surface = true;
+        set_velocity<2>(*flying, [&](const Vec<2>&) { return each.velocity; });
+        while (flying->bodies.all[0].reaction.impulse.isZero(0) && flying->time < 1) flying->step(2e-4);
+        CAPTURE(int(shape), shift, int(each.body.kind));
+        CHECK(flying->time > gap + shift - each.soon * 0.1);
+        CHECK(flying->time < gap + shift + 0.2 * 0.1);
+      }
+    }
+  }
+}
+
+TEST_CASE("what lies below a footing is not beside it") {
+  auto solver = block<2>({8, 4}, 0.1, ElasticModuli{1e6, 0.3}, 2000);
+  Body<2> footing;
+  footing.half = Vec<2>(0.2, 0.2);
+  footing.centre = Vec<2>(0.4, 0.6);
+  footing.rough = false;
+  footing.at_surface = true;
+  solver->bodies.all = {footing};
+  for (const double speed : {1.0, -1.0}) {
+    set_velocity<2>(*solver, [&](const Vec<2>&) { return Vec<2>(speed, 0); });
+    for (int k = 0; k < 10; ++k) solver->step(solver->stable_step());
+  }
+  CHECK(solver->bodies.all[0].reaction.impulse[0] == 0);
+  set_velocity<2>(*solver, [&](const Vec<2>&) { return Vec<2>(0, 0.1); });
+  for (int k = 0; k < 10; ++k) solver->step(solver->stable_step());
+  CHECK(solver->bodies.all[0].reaction.impulse[1] < 0);
 }
 
 TEST_CASE("soil stays outside the outline of a disc that is pushed in, and all reactions are its momentum") {
@@ -239,6 +346,6 @@ TEST_CASE("in space a plate compresses an elastic block evenly, and a cylinder i
   for (const auto& point : pushed->points) momentum += point.mass * point.velocity;
   CHECK(momentum[0] > 1);
   CHECK((momentum - pushed->bodies.all[0].reaction.impulse).norm() < 1e-12 * momentum[0]);
-  CHECK(std::abs(momentum[1]) < 1e-3 * momentum[0]);  // sweeps go round the outline
+  CHECK(std::abs(momentum[1]) < 1e-4 * momentum[0]);  // the order of the sweeps favours no side
   CHECK(std::abs(momentum[2]) < 0.05 * momentum[0]);
 }

@@ -77,6 +77,15 @@ TEST_CASE("cases have the published meshes") {
   CHECK(points(read_scene(scenes + "column.toml", {"published"}, {})) == 1024);
 }
 
+TEST_CASE("bodies are met at their surface unless told") {
+  for (const auto* name : {"footing", "pipe", "column"}) {
+    const auto scene = read_scene(scenes + name + ".toml", {}, {});
+    REQUIRE(scene.bodies.size() == 1);
+    CHECK(scene.bodies[0].at_surface);
+  }
+  CHECK_FALSE(read_scene(scenes + "footing.toml", {}, {"body.footing.contact=nodes"}).bodies[0].at_surface);
+}
+
 TEST_CASE("a mistake in a scene names line, key, what is allowed and the remedy") {
   CHECK(refusal(edited("duration_s = 0.02", "duration_s = 0.02\npic_fracton = 0.1")) ==
         "scene.toml:17: unknown key time.pic_fracton; the nearest known key is time.pic_fraction; correct the name or "

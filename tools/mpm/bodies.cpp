@@ -32,13 +32,14 @@ double Body<D>::distance(const Vec<D>& position, double time, Vec<D>& outward) c
 }
 
 template <int D>
-void Bodies<D>::find(const Grid<D>& grid, const Planes<D>& planes, double time) {
+void Bodies<D>::find(const Grid<D>& grid, const Planes<D>& planes, const std::vector<Point<D>>& soil, double time) {
   contacts_.clear();
   surface_.clear();
   sweeps_ = 1;
   bool at_nodes = false;
   for (int k = 0; k < int(all.size()); ++k) {
     if (all[k].at_surface) {
+      find_touched(grid, soil, k, time);
       all[k].kind == BodyKind::half_space ? find_half_space(grid, planes, k, time)
                                           : find_outline(grid, planes, k, time);
     } else {

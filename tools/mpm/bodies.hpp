@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "tools/mpm/planes.hpp"
+#include "tools/mpm/point.hpp"
 #include "tools/mpm/shape.hpp"
 
 namespace mpm {
@@ -45,7 +46,7 @@ class Bodies {
   Shape shape = Shape::bspline;  ///< that of the grid
 
   /// Which nodes lie in a body at this time; those behind a plane follow the ones that they mirror.
-  void find(const Grid<D>& grid, const Planes<D>& planes, double time);
+  void find(const Grid<D>& grid, const Planes<D>& planes, const std::vector<Point<D>>& soil, double time);
   /// Velocities v at the start of the step.
   void set_start(Grid<D>& grid, double time);
   /// Velocities w at the end of the step; a still is what the points brought. What a plane holds at a node is the
@@ -70,12 +71,17 @@ class Bodies {
     double mobility = 0;  ///< m/s of N s: sum of weight^2/mass
     Vec<D> now, impulse;  ///< N s, of the body on the soil: of this start or end, of the step
   };
+  void find_touched(const Grid<D>& grid, const std::vector<Point<D>>& soil, int body, double time);
+  bool is_touched(const Grid<D>& grid, const typename Grid<D>::Index& node, unsigned char face) const;
+  static bool nearest_node(const Grid<D>& grid, const Vec<D>& at, typename Grid<D>::Index& node);
+  static unsigned char face_of(const Body<D>& body, const Vec<D>& normal);
+  int surface_weights(double xi, double* weight) const;
   void find_half_space(const Grid<D>& grid, const Planes<D>& planes, int body, double time);
   void find_outline(const Grid<D>& grid, const Planes<D>& planes, int body, double time);
   void add_point(const Grid<D>& grid, const Planes<D>& planes, int body, double time, const Vec<D>& at,
                  const Vec<D>& normal);
-  bool reaches(const Grid<D>& grid, const Planes<D>& planes, const typename Grid<D>::Index& node, double weight,
-               SurfacePoint& point) const;
+  static void add_node(const Grid<D>& grid, const Planes<D>& planes, const typename Grid<D>::Index& node, double weight,
+                       SurfacePoint& point);
   void keep(SurfacePoint& point, const Grid<D>& grid, double time);
   void hold_surface(Grid<D>& grid, double time, bool end);
   /// What it changes the velocity by.
@@ -83,6 +89,7 @@ class Bodies {
   void book(int body, const Node<D>& node, int component, double impulse);
   std::vector<Contact> contacts_;
   std::vector<SurfacePoint> surface_;
+  std::vector<unsigned char> touched_;  ///< by node, of the body that is looked at: its faces with soil against them
   int sweeps_ = 1;
 };
 

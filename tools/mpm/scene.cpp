@@ -128,15 +128,9 @@ BodyOfScene read_body(Keys& keys, std::size_t d) {
   if (body.rough && keys.has("friction")) {
     keys.wrong("friction", "is of a body that is not rough, and a " + kind + " is unless told; set rough = false");
   }
-  const bool plain =  // across an axis
-      kind == "half_space" && std::count(body.normal.begin(), body.normal.end(), 0.0) == std::ptrdiff_t(d) - 1;
-  body.at_surface = keys.choice("contact", plain ? std::vector<std::string>{"surface", "nodes"}
-                                                 : std::vector<std::string>{"nodes", "surface"}) == "surface";
+  body.at_surface = keys.choice("contact", {"surface", "nodes"}) == "surface";
   body.motion = read_motion(keys, d);
   keys.finish();
-  if (body.at_surface && kind == "half_space" && !plain) {
-    keys.wrong("contact", "is \"surface\", and the half_space is oblique; take \"nodes\", or a normal along an axis");
-  }
   const auto is_positive = [](double side) { return side > 0; };
   if (kind == "box" && !std::all_of(body.size.begin(), body.size.end(), is_positive)) {
     keys.wrong("size_m", "must be positive along every axis");

@@ -102,7 +102,7 @@ void Solver<D>::start_velocities() {
   planes.fold_momentum(grid, time);
   planes.set_start(grid, time);
   planes.keep_brought(grid);
-  bodies.find(grid, planes, time);
+  bodies.find(grid, planes, points, time);
   bodies.set_start(grid, time);
   planes.set_start(grid, time);
 }

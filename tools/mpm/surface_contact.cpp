@@ -10,38 +10,97 @@ namespace {
 // Sweeps over the points of boxes and discs; what they leave is taken up in the steps that follow. On its way to the
 // peak the load on a footing differs from that with 40 by 3 % with 5, by 1 % with 10 (Mohr-Coulomb soil).
 constexpr int many_sweeps = 10;
+// Cells by which soil is met before its domain ends at the surface: what strain moves a point by against its domain.
+constexpr double early = 0.1;
 constexpr double two_pi = 6.283185307179586;
 
 }  // namespace
 
-/// Adds a node to those that reach a point; false where there is no soil, or none of its own.
+/// Which nodes have soil against the surface near them: a point of the soil touches where its domain, a ball of the
+/// size that its volume tells, ends at the surface. The faces of a box are told apart: soil below it, or off its
+/// corner, is not beside it.
 template <int D>
-bool Bodies<D>::reaches(const Grid<D>& grid, const Planes<D>& planes, const typename Grid<D>::Index& node,
-                        double weight, SurfacePoint& point) const {
-  if (!(weight > 0)) return false;
+void Bodies<D>::find_touched(const Grid<D>& grid, const std::vector<Point<D>>& soil, int k, double time) {
+  touched_.assign(grid.nodes.size(), 0);
+  const auto& body = all[k];
+  const Vec<D> centre = body.centre + body.velocity.way(time);
+  const double slack = early * grid.cell.minCoeff();
+  for (const auto& point : soil) {
+    Vec<D> outward;
+    const double distance = body.distance(point.position, time, outward);
+    if (distance > slack + 0.5 * grid.cell.sum()) continue;  // the roots below are for few points
+    const double first = (2 * point.half).prod();
+    const double swollen = D == 2 ? std::sqrt(point.volume / first) : std::cbrt(point.volume / first);
+    const double radius = swollen * point.half.cwiseProduct(outward).norm();
+    if (distance > slack + radius) continue;
+    const Vec<D> foot = point.position - distance * outward;
+    if (body.kind == BodyKind::box && ((foot - centre).cwiseAbs() - body.half).maxCoeff() > 0.5 * radius) continue;
+    typename Grid<D>::Index node;
+    if (nearest_node(grid, foot, node)) touched_[grid.flat(node)] |= face_of(body, outward);
+  }
+}
+
+template <int D>
+bool Bodies<D>::nearest_node(const Grid<D>& grid, const Vec<D>& at, typename Grid<D>::Index& node) {
   for (int i = 0; i < D; ++i) {
+    node[i] = int(floor_of((at[i] - grid.anchor[i]) / grid.cell[i] + 0.5));
     if (node[i] < grid.low[i] || node[i] >= grid.low[i] + grid.count[i]) return false;
   }
-  const long flat = grid.flat(node);
-  if (!(grid.nodes[flat].mass > 0) || planes.is_behind(flat)) return false;
-  point.node[point.count] = flat;
-  point.weight[point.count++] = weight;
   return true;
 }
 
-/// A node of hardly any mass, which a point of the soil only just reaches, would take the impulse and leave the soil
-/// where it is (a plate on an elastic block: 16 % of the stress lost). It goes with the body if it lies in it.
+/// One bit for each face of a box; one for all of another body.
+template <int D>
+unsigned char Bodies<D>::face_of(const Body<D>& body, const Vec<D>& normal) {
+  if (body.kind != BodyKind::box) return 1;
+  int axis = 0;
+  normal.cwiseAbs().maxCoeff(&axis);
+  return static_cast<unsigned char>(1 << (2 * axis + (normal[axis] > 0)));
+}
+
+/// Whether soil is against the surface within a cell of the node along each axis.
+template <int D>
+bool Bodies<D>::is_touched(const Grid<D>& grid, const typename Grid<D>::Index& node, unsigned char face) const {
+  for (int n = 0; n < reach; ++n) {
+    const int step[3] = {n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
+    auto beside = node;
+    bool inside = true;
+    for (int i = 0; i < D; ++i) {
+      beside[i] += step[i];
+      inside = inside && beside[i] >= grid.low[i] && beside[i] < grid.low[i] + grid.count[i];
+    }
+    if (inside && (touched_[grid.flat(beside)] & face) != 0) return true;
+  }
+  return false;
+}
+
+/// Adds a node to those that reach a point of the surface, if it has soil of its own (not mirrored by a plane).
+template <int D>
+void Bodies<D>::add_node(const Grid<D>& grid, const Planes<D>& planes, const typename Grid<D>::Index& node,
+                         double weight, SurfacePoint& point) {
+  if (!(weight > 0)) return;
+  for (int i = 0; i < D; ++i) {
+    if (node[i] < grid.low[i] || node[i] >= grid.low[i] + grid.count[i]) return;
+  }
+  const long flat = grid.flat(node);
+  if (!(grid.nodes[flat].mass > 0) || planes.is_behind(flat)) return;
+  point.node[point.count] = flat;
+  point.weight[point.count++] = weight;
+}
+
+/// A node of little mass, which a point of the soil only just reaches, would take the impulse and leave the soil where
+/// it is (a plate on an elastic block: 16 % of the stress lost). It goes with the body if it lies in it.
 template <int D>
 void Bodies<D>::keep(SurfacePoint& point, const Grid<D>& grid, double time) {
-  constexpr double hardly = 0.1;
-  int main = 0;
-  for (int j = 1; j < point.count; ++j) main = point.weight[j] > point.weight[main] ? j : main;
-  const double usual = grid.nodes[point.node[main]].mass / point.weight[main];
+  if (point.count == 0) return;
+  constexpr double little = 0.1;  // of the mass per weight at the node of most weight
+  const int most = int(std::max_element(point.weight, point.weight + point.count) - point.weight);
+  const double usual = grid.nodes[point.node[most]].mass / point.weight[most];
   double sum = 0;
   int kept = 0;
   for (int j = 0; j < point.count; ++j) {
     const long node = point.node[j];
-    if (grid.nodes[node].mass < hardly * usual * point.weight[j]) {
+    if (grid.nodes[node].mass < little * usual * point.weight[j]) {
       Vec<D> outward;
       const bool inside = all[point.body].distance(grid.position(grid.index(node)), time, outward) <= 0;
       if (inside) contacts_.push_back({node, point.body, point.normal, Vec<D>::Zero()});
@@ -60,60 +119,28 @@ void Bodies<D>::keep(SurfacePoint& point, const Grid<D>& grid, double time) {
   surface_.push_back(point);
 }
 
-/// Over each node of the surface of a half-space across an axis; weights along that axis alone.
+/// Weights at a point of a surface along one axis. GIMP carries a uniform stress to the edge of a point's domain as the
+/// linear functions do.
 template <int D>
-void Bodies<D>::find_half_space(const Grid<D>& grid, const Planes<D>& planes, int k, double time) {
-  const auto& body = all[k];
-  int axis = 0;
-  body.normal.cwiseAbs().maxCoeff(&axis);
-  const double surface = body.centre[axis] + body.velocity.way(time)[axis];
-  const double per_m = 1 / grid.cell[axis], xi = (surface - grid.anchor[axis]) * per_m;
-  double weight[3], slope[3];
-  // GIMP carries a uniform stress to the edge of a point's domain as the linear functions do.
-  const int base =
-      shape_along_axis(shape == Shape::bspline ? Shape::bspline : Shape::linear, xi, per_m, 0, weight, slope);
-  long places = 1;
-  for (int i = 0; i < D; ++i) places *= i == axis ? 1 : grid.count[i];
-  for (long place = 0; place < places; ++place) {
-    auto node = grid.low;
-    long rest = place;
-    for (int i = 0; i < D; ++i) {
-      if (i == axis) continue;
-      node[i] += int(rest % grid.count[i]);
-      rest /= grid.count[i];
-    }
-    SurfacePoint point;
-    point.body = k;
-    point.normal = body.normal;
-    bool near = false;  // soil reaches a node at the surface or behind it
-    for (int j = 0; j < 3; ++j) {
-      node[axis] = base + j;
-      if (!reaches(grid, planes, node, weight[j], point)) continue;
-      near = near || (node[axis] - xi) * body.normal[axis] <= 1e-6;
-    }
-    if (near) keep(point, grid, time);
-  }
+int Bodies<D>::surface_weights(double xi, double* weight) const {
+  double slope[3];
+  return shape_along_axis(shape == Shape::bspline ? Shape::bspline : Shape::linear, xi, 1, 0, weight, slope);
 }
 
-/// A point of a box or disc (m), with the normal into the soil.
+/// A point of a surface (m), with the normal into the soil.
 template <int D>
 void Bodies<D>::add_point(const Grid<D>& grid, const Planes<D>& planes, int k, double time, const Vec<D>& at,
                           const Vec<D>& normal) {
-  double weight[D][3], slope[3];
   typename Grid<D>::Index base, nearest;
-  for (int i = 0; i < D; ++i) {
-    const double per_m = 1 / grid.cell[i], xi = (at[i] - grid.anchor[i]) * per_m;
-    base[i] =
-        shape_along_axis(shape == Shape::bspline ? Shape::bspline : Shape::linear, xi, per_m, 0, weight[i], slope);
-    nearest[i] = int(floor_of(xi + 0.5));
-    if (nearest[i] < grid.low[i] || nearest[i] >= grid.low[i] + grid.count[i]) return;
+  if (!nearest_node(grid, at, nearest) || planes.is_behind(grid.flat(nearest)) ||
+      !is_touched(grid, nearest, face_of(all[k], normal))) {
+    return;
   }
-  if (planes.is_behind(grid.flat(nearest))) return;
+  double weight[D][3];
+  for (int i = 0; i < D; ++i) base[i] = surface_weights((at[i] - grid.anchor[i]) / grid.cell[i], weight[i]);
   SurfacePoint point;
   point.body = k;
   point.normal = normal;
-  bool near = false;
-  const double touch = 1e-6 * grid.cell.minCoeff();
   for (int n = 0; n < reach; ++n) {
     const int j[3] = {n % 3, n / 3 % 3, n / 9};
     auto node = base;
@@ -122,11 +149,54 @@ void Bodies<D>::add_point(const Grid<D>& grid, const Planes<D>& planes, int k, d
       node[i] += j[i];
       product *= weight[i][j[i]];
     }
-    if (!reaches(grid, planes, node, product, point)) continue;
-    Vec<D> outward;
-    near = near || all[k].distance(grid.position(node), time, outward) <= touch;
+    add_node(grid, planes, node, product, point);
   }
-  if (near) keep(point, grid, time);
+  keep(point, grid, time);
+}
+
+/// Where columns of nodes along the axis that is nearest to its normal come through the surface of a half-space; across
+/// an axis with weights along that axis alone.
+template <int D>
+void Bodies<D>::find_half_space(const Grid<D>& grid, const Planes<D>& planes, int k, double time) {
+  const auto& body = all[k];
+  const Vec<D> centre = body.centre + body.velocity.way(time);
+  int axis = 0;
+  const double steepest = body.normal.cwiseAbs().maxCoeff(&axis);
+  const bool across_axis = steepest == body.normal.cwiseAbs().sum();
+  if (!across_axis) sweeps_ = many_sweeps;
+  long columns = 1;
+  for (int i = 0; i < D; ++i) columns *= i == axis ? 1 : grid.count[i];
+  for (long column = 0; column < columns; ++column) {
+    auto node = grid.low;
+    long rest = column;
+    for (int i = 0; i < D; ++i) {
+      if (i == axis) continue;
+      node[i] += int(rest % grid.count[i]);
+      rest /= grid.count[i];
+    }
+    Vec<D> at = grid.position(node);
+    at[axis] = centre[axis];
+    for (int i = 0; i < D; ++i) {
+      if (i != axis) at[axis] -= body.normal[i] * (at[i] - centre[i]) / body.normal[axis];
+    }
+    if (!across_axis) {
+      add_point(grid, planes, k, time, at, body.normal);
+      continue;
+    }
+    const double xi = (at[axis] - grid.anchor[axis]) / grid.cell[axis];
+    node[axis] = int(floor_of(xi + 0.5));
+    if (!is_touched(grid, node, face_of(body, body.normal))) continue;
+    SurfacePoint point;
+    point.body = k;
+    point.normal = body.normal;
+    double weight[3];
+    const int base = surface_weights(xi, weight);
+    for (int j = 0; j < 3; ++j) {
+      node[axis] = base + j;
+      add_node(grid, planes, node, weight[j], point);
+    }
+    keep(point, grid, time);
+  }
 }
 
 /// Points a cell apart: on the faces of a box in the middle of equal parts, on a disc from the x-axis on.
@@ -179,7 +249,8 @@ template <int D>
 void Bodies<D>::hold_surface(Grid<D>& grid, double time, bool end) {
   for (auto& point : surface_) point.now.setZero();
   for (int sweep = 0; sweep < sweeps_; ++sweep) {
-    for (auto& point : surface_) {
+    for (std::size_t k = 0; k < surface_.size(); ++k) {
+      auto& point = surface_[sweep % 2 == 0 ? k : surface_.size() - 1 - k];  // to and fro: no side is favoured
       const auto& body = all[point.body];
       Vec<D> relative = -body.velocity.at(time);
       for (int j = 0; j < point.count; ++j) {
@@ -206,9 +277,11 @@ void Bodies<D>::hold_surface(Grid<D>& grid, double time, bool end) {
   for (auto& point : surface_) point.impulse += point.now;
 }
 
+template void Bodies<2>::find_touched(const Grid<2>&, const std::vector<Point<2>>&, int, double);
 template void Bodies<2>::find_half_space(const Grid<2>&, const Planes<2>&, int, double);
 template void Bodies<2>::find_outline(const Grid<2>&, const Planes<2>&, int, double);
 template void Bodies<2>::hold_surface(Grid<2>&, double, bool);
+template void Bodies<3>::find_touched(const Grid<3>&, const std::vector<Point<3>>&, int, double);
 template void Bodies<3>::find_half_space(const Grid<3>&, const Planes<3>&, int, double);
 template void Bodies<3>::find_outline(const Grid<3>&, const Planes<3>&, int, double);
 template void Bodies<3>::hold_surface(Grid<3>&, double, bool);

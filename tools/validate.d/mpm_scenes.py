@@ -136,7 +136,7 @@ def pipe():
     up, aside = mean(up), mean(aside)
     turn = float(time[np.argmax(depth > depth.max() - 1e-9)])
     down, lateral = time <= turn, (time > turn + 0.6) & (left < left.max())
-    print("Rough pipe, 1 m in diameter, pushed 0.8 m into dense sand of 9 x 2.5 m (36 x 10 cells, one point each) and 0.7 m\n"
+    print("Rough pipe, 1 m in diameter, pushed 0.8 m into dense sand of 9 x 2.5 m (54 x 15 cells, one point each) and 0.7 m\n"
           "to the left; forces on it per metre (means over 0.05 s); published: 196 x 50 cells, speeds not printed\n\n"
           "depth (m)        " + "".join(f"{d:<8.1f}" for d in np.arange(0.1, 0.81, 0.1))
           + "\nvertical (kN)    " + "".join(f"{np.interp(d, depth[down], up[down]):<8.0f}" for d in np.arange(0.1, 0.81, 0.1))
