@@ -131,6 +131,28 @@ TEST_CASE("a folder that lost something is refused with the remedy") {
   CHECK_THAT(bench.errors(), Contains("holds no checkpoint.h5 to go on from; give the folder of a run"));
 }
 
+TEST_CASE("a full disc fails the run by name, and what was whole stays whole") {
+  const Bench bench;
+  const auto run_with = [&](const std::string& blocks, const std::string& name) {  // of 512 bytes, for each file
+    Child child({"/bin/sh", "-c", "trap '' XFSZ; ulimit -f " + blocks + "; exec \"$0\" \"$@\"", RVELAB_MPM_PROGRAM,
+                 bench.folder / "block.toml", "-j", "1", "-o", bench.folder / name},
+                bench.folder / "out", bench.folder / "err");
+    return child.wait();
+  };
+  CHECK(run_with("20", "a") == 1);
+  CHECK_THAT(bench.errors(), Contains("a/points_0000.h5: cannot be written; is the disc full?"));
+  CHECK_FALSE(std::filesystem::exists(bench.folder / "a/points_0000.h5.partial"));
+  // Only the list of frames outgrows this; frames and checkpoint go on where there is room again.
+  CHECK(run_with("80", "c") == 1);
+  CHECK_THAT(bench.errors(), Contains("c/points.xdmf: cannot be written; is the disc full?"));
+  REQUIRE(bench.run({"--resume", bench.folder / "c"}) == 0);
+  REQUIRE(bench.start("whole") == 0);
+  for (const auto* name : {"points_0020.h5", "points.xdmf", "history.csv"}) {
+    CHECK(bytes_of(bench.folder / ("c/" + std::string(name))) ==
+          bytes_of(bench.folder / ("whole/" + std::string(name))));
+  }
+}
+
 TEST_CASE("a first signal stops a run with a checkpoint, and threads that the system refuses are told") {
   const Bench bench;
   {

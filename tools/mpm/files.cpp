@@ -2,7 +2,9 @@
 
 #include <hdf5.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <fstream>
 
 #include "tools/mpm/tensors.hpp"
 
@@ -16,10 +18,15 @@ hid_t checked(hid_t id, const std::string& path, const std::string& what) {
 
 }  // namespace
 
-OutputFile::OutputFile(const std::string& path) : path_(path), partial_(path + ".partial") {
+OutputFile::OutputFile(const std::string& path) : path_(path) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  file_ = checked(H5Fcreate(partial_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), path,
-                  "cannot be written; give a folder that you may write to");
+  // In memory: a file of HDF5 that cannot be written stays open in the library, which then fails at the program's end.
+  constexpr std::size_t growth = 1 << 20;
+  const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+  H5Pset_fapl_core(access, growth, false);
+  file_ = H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
+  H5Pclose(access);
+  if (file_ < 0) throw std::runtime_error(path_ + ": there is no memory for what is to be written");
 }
 
 OutputFile::~OutputFile() {
@@ -39,7 +46,7 @@ void OutputFile::put(const std::string& name, std::int64_t type, const void* val
   H5Sclose(space);
   H5Pclose(how);
   H5Pclose(links);
-  if (failed) throw Mistake(path_ + ": " + name + " cannot be written; is the disc full?");
+  if (failed) throw std::runtime_error(path_ + ": there is no memory for " + name);
 }
 
 void OutputFile::write(const std::string& name, const std::vector<double>& values, const Extents& extents) {
@@ -55,11 +62,24 @@ void OutputFile::write(const std::string& name, const std::string& text) {
 }
 
 void OutputFile::publish() {
-  const bool failed = H5Fclose(file_) < 0;
+  const auto size = H5Fflush(file_, H5F_SCOPE_GLOBAL) < 0 ? -1 : H5Fget_file_image(file_, nullptr, 0);
+  std::vector<char> bytes(std::size_t(std::max<ssize_t>(size, 0)));
+  if (size < 0 || H5Fget_file_image(file_, bytes.data(), bytes.size()) < 0) {
+    throw std::runtime_error(path_ + ": there is no memory for what is to be written");
+  }
+  H5Fclose(file_);
   file_ = -1;
+  const std::string partial = path_ + ".partial";
+  std::ofstream file(partial, std::ios::binary);
+  if (!file) throw Mistake(path_ + ": cannot be written; give a folder that you may write to");
+  file.write(bytes.data(), std::streamsize(bytes.size()));
+  file.close();
   std::error_code error;
-  if (!failed) std::filesystem::rename(partial_, path_, error);
-  if (failed || error) throw Mistake(path_ + ": cannot be written; is the disc full?");
+  if (file) std::filesystem::rename(partial, path_, error);
+  if (!file || error) {
+    std::filesystem::remove(partial, error);
+    throw std::runtime_error(path_ + ": cannot be written; is the disc full?");
+  }
 }
 
 InputFile::InputFile(const std::string& path) : path_(path) {

@@ -1,5 +1,5 @@
-// HDF5 behind two small classes: arrays of doubles and of whole numbers, and texts, by their names. A file is written
-// beside its name and renamed once it is whole.
+// HDF5 behind two small classes: arrays of doubles and of whole numbers, and texts, by their names. A file is made in
+// memory, written beside its name and renamed once it is whole.
 #pragma once
 
 #include <cstdint>
@@ -19,12 +19,12 @@ class OutputFile {
   void write(const std::string& name, const std::vector<double>& values, const Extents& extents);
   void write(const std::string& name, const std::vector<std::int64_t>& values);
   void write(const std::string& name, const std::string& text);
-  /// Closes the file and gives it its name.
+  /// Writes the file. Mistake: not there; std::runtime_error: the disc is full.
   void publish();
 
  private:
   void put(const std::string& name, std::int64_t type, const void* values, const Extents& extents);
-  std::string path_, partial_;
+  std::string path_;
   std::int64_t file_;
 };
 

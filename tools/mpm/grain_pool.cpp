@@ -54,7 +54,9 @@ rvelab_info GrainPool::info(std::int64_t id) const {
   return info;
 }
 
-void GrainPool::write(const std::string& path) const { need(rvelab_pool_write(pool_, path.c_str())); }
+void GrainPool::write(const std::string& path) const {
+  if (rvelab_pool_write(pool_, path.c_str()) < RVELAB_OK) throw std::runtime_error(rvelab_last_error());
+}
 void GrainPool::read(const std::string& path) { need(rvelab_pool_read(pool_, path.c_str())); }
 
 std::int64_t GrainPool::copy_from(const GrainPool& other, std::int64_t id) const {

@@ -41,7 +41,7 @@ Rows::~Rows() { std::fclose(file_); }
 void Rows::add(const std::vector<double>& values) {
   for (std::size_t k = 0; k < values.size(); ++k) std::fprintf(file_, k == 0 ? "%.9g" : ",%.9g", values[k]);
   std::fputc('\n', file_);
-  if (std::fflush(file_) != 0) throw Mistake(path_ + ": cannot be written; is the disc full?");
+  if (std::fflush(file_) != 0) throw std::runtime_error(path_ + ": cannot be written; is the disc full?");
 }
 
 long Rows::bytes() const { return std::ftell(file_); }
@@ -182,11 +182,12 @@ void write_networks(const Model<D>& model, const std::string& folder, long frame
 void write_scene(const std::string& folder, const std::string& toml) {
   const std::string path = (std::filesystem::path(folder) / "scene.toml").string(), partial = path + ".partial";
   std::ofstream file(partial);
+  if (!file) throw Mistake(path + ": cannot be written; give a folder that you may write to");
   file << toml << "\n";
   file.close();
   std::error_code error;
   if (file) std::filesystem::rename(partial, path, error);
-  if (!file || error) throw Mistake(path + ": cannot be written; give a folder that you may write to");
+  if (!file || error) throw std::runtime_error(path + ": cannot be written; is the disc full?");
 }
 
 void write_xdmf(const std::string& folder, const std::vector<double>& times, long points) {
@@ -217,7 +218,7 @@ void write_xdmf(const std::string& folder, const std::vector<double>& times, lon
     file << "</Grid>\n";
   }
   file << "</Grid>\n</Domain></Xdmf>\n";
-  if (!file.flush()) throw Mistake(folder + "/points.xdmf: cannot be written; is the disc full?");
+  if (!file.flush()) throw std::runtime_error(folder + "/points.xdmf: cannot be written; is the disc full?");
 }
 
 #define MPM_INSTANTIATE(D)                                                                                         \
