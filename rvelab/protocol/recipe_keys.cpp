@@ -2,6 +2,7 @@
 #include "rvelab/keys/key_builders.hpp"
 #include "rvelab/pack/recipe.hpp"
 #include "rvelab/protocol/protocol_keys.hpp"
+#include "rvelab/protocol/stage_readers.hpp"
 
 namespace rvelab::protocol {
 namespace {
@@ -10,6 +11,7 @@ using namespace keys;
 
 constexpr Interval below_one{0, 1, true, true};
 constexpr Interval friction{0, 1e6};
+constexpr Interval stresses{-pressures.high, pressures.high};
 constexpr Interval aspect_ratio{least_aspect_ratio, 1};
 
 std::vector<TableKey> pack() {
@@ -69,18 +71,18 @@ std::vector<TableKey> target() {
   const char* t = "target";
   const pack::Recipe initial;
   return {
-      number(t, "pressure_Pa", "Pa", "", positive, "isotropic stress, compression positive; shear stresses are zero"),
-      {{t, "pressures_Pa", "Pa", "list of numbers", "", "each " + in_words(positive),
+      number(t, "pressure_Pa", "Pa", "", pressures, "isotropic stress, compression positive; shear stresses are zero"),
+      {{t, "pressures_Pa", "Pa", "list of numbers", "", "each " + in_words(pressures),
         "a family: the same grains at each of these pressures"},
        KeyKind::numbers,
-       positive,
+       pressures,
        {},
        {}},
-      {{t, "stress_Pa", "Pa", "list of numbers", "", "each any finite number",
+      {{t, "stress_Pa", "Pa", "list of numbers", "", "each " + in_words(stresses),
         "full stress, tension positive: xx, yy, xy in 2D, xx, yy, zz, yz, xz, xy in 3D; with pressures_Pa it is scaled "
         "to each mean pressure"},
        KeyKind::numbers,
-       every,
+       stresses,
        {},
        {}},
       number(t, "void_ratio", "1", "", {-1, infinity, true, true},

@@ -207,6 +207,12 @@ TEST_CASE("what contradicts something else is refused by name") {
   CHECK_THAT(message_of(small, {regular, "preparation.first_size=0.3"}), Contains("contradicts method = \"regular\""));
 }
 
+TEST_CASE("stresses beyond those of any solid, which no packing would come to, are refused") {
+  CHECK_THAT(message_of(small, {"target.pressure_Pa=1e16"}), Contains("is out of range; allowed: above 0 to 1e+15 Pa"));
+  CHECK_THAT(message_of(small, {"target.pressures_Pa=[1e4, 1e16]"}), Contains("above 0 to 1e+15"));
+  CHECK_THAT(message_of(small, {"target.stress_Pa=[-1e16, -1e16, 0]"}), Contains("-1e+15 to 1e+15"));
+}
+
 TEST_CASE("what a recipe cannot do without is asked for") {
   const std::string message = message_of("[pack]\nname = \"nothing\"\n");
   INFO(message);

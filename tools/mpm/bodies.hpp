@@ -82,7 +82,7 @@ class Bodies {
                  const Vec<D>& normal);
   static void add_node(const Grid<D>& grid, const Planes<D>& planes, const typename Grid<D>::Index& node, double weight,
                        SurfacePoint& point);
-  void keep(SurfacePoint& point, const Grid<D>& grid, double time);
+  void hold(SurfacePoint& point, const Grid<D>& grid, double time);
   void hold_surface(Grid<D>& grid, double time, bool end);
   /// What it changes the velocity by.
   Vec<D> meet(const Contact& contact, const Vec<D>& speed, double* velocity) const;

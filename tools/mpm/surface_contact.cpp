@@ -88,10 +88,11 @@ void Bodies<D>::add_node(const Grid<D>& grid, const Planes<D>& planes, const typ
   point.weight[point.count++] = weight;
 }
 
-/// A node of little mass, which a point of the soil only just reaches, would take the impulse and leave the soil where
-/// it is (a plate on an elastic block: 16 % of the stress lost). It goes with the body if it lies in it.
+/// Takes a point of the surface into those that are held. A node of little mass, which the soil only just reaches,
+/// would take the impulse and leave the soil where it is (a plate on an elastic block: 16 % of the stress lost): it is
+/// left out, and goes with the body if it lies in it.
 template <int D>
-void Bodies<D>::keep(SurfacePoint& point, const Grid<D>& grid, double time) {
+void Bodies<D>::hold(SurfacePoint& point, const Grid<D>& grid, double time) {
   if (point.count == 0) return;
   constexpr double little = 0.1;  // of the mass per weight at the node of most weight
   const int most = int(std::max_element(point.weight, point.weight + point.count) - point.weight);
@@ -151,7 +152,7 @@ void Bodies<D>::add_point(const Grid<D>& grid, const Planes<D>& planes, int k, d
     }
     add_node(grid, planes, node, product, point);
   }
-  keep(point, grid, time);
+  hold(point, grid, time);
 }
 
 /// Where columns of nodes along the axis that is nearest to its normal come through the surface of a half-space; across
@@ -195,7 +196,7 @@ void Bodies<D>::find_half_space(const Grid<D>& grid, const Planes<D>& planes, in
       node[axis] = base + j;
       add_node(grid, planes, node, weight[j], point);
     }
-    keep(point, grid, time);
+    hold(point, grid, time);
   }
 }
 
