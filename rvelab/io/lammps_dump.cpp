@@ -1,12 +1,14 @@
 #include "rvelab/io/lammps_dump.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <fstream>
 #include <iterator>
 #include <sstream>
 #include <vector>
 
 #include "rvelab/error.hpp"
+#include "rvelab/io/text_file.hpp"
 
 namespace rvelab::io {
 namespace {
@@ -33,8 +35,13 @@ std::size_t item(const std::string& path, const std::vector<std::string>& lines,
   fail(path, begin, "the timestep has no " + start + "; allowed: a whole text dump of LAMMPS; write it again");
 }
 
+struct Box {
+  Matrix3 cell;  ///< m, vectors as columns
+  Vector3 low;   ///< m, its corner
+};
+
 /// ITEM: BOX BOUNDS [xy xz yz] and three lines "low high [tilt]" of the cuboid around the tilted box.
-Matrix3 cell_of(const std::string& path, const std::vector<std::string>& lines, std::size_t at) {
+Box box_of(const std::string& path, const std::vector<std::string>& lines, std::size_t at) {
   const std::string& header = lines[at];
   const bool tilted = header.find("xy xz yz") != std::string::npos;
   if (header.find("pp pp pp") == std::string::npos) {
@@ -53,22 +60,85 @@ Matrix3 cell_of(const std::string& path, const std::vector<std::string>& lines, 
   }
   const double xy = tilt[0], xz = tilt[1], yz = tilt[2];
   Matrix3 cell = Matrix3::Zero();
-  cell(0, 0) = (high[0] - std::max({0.0, xy, xz, xy + xz})) - (low[0] - std::min({0.0, xy, xz, xy + xz}));
-  cell(1, 1) = (high[1] - std::max(0.0, yz)) - (low[1] - std::min(0.0, yz));
+  low[0] -= std::min({0.0, xy, xz, xy + xz});
+  low[1] -= std::min(0.0, yz);
+  cell(0, 0) = (high[0] - std::max({0.0, xy, xz, xy + xz})) - low[0];
+  cell(1, 1) = (high[1] - std::max(0.0, yz)) - low[1];
   cell(2, 2) = high[2] - low[2];
   cell(0, 1) = xy;
   cell(0, 2) = xz;
   cell(1, 2) = yz;
-  return cell;
+  return {cell, Vector3(low[0], low[1], low[2])};
 }
 
-/// Words apart by spaces as cells of a CSV row.
-std::string as_row(const std::string& line) {
-  std::istringstream words(line);
+std::vector<std::string> words_of(const std::string& line) {
+  std::istringstream input(line);
+  return {std::istream_iterator<std::string>(input), {}};
+}
+
+std::string as_row(const std::vector<std::string>& words) {
   std::string row;
-  for (std::string word; words >> word;) row += (row.empty() ? "" : ",") + word;
+  for (const auto& word : words) row += (row.empty() ? "" : ",") + word;
   return row + "\n";
 }
+
+/// What dumps write besides x, y, z and radius: xu (not wrapped into the box, as any position may be), xs and xsu (in
+/// parts of the box), diameter. The header gets the usual names, and rows the usual numbers.
+class Columns {
+ public:
+  Columns(std::vector<std::string>& header, const Box& box) : box_(box) {
+    const auto find = [&](const std::string& name) {
+      const auto at = std::find(header.begin(), header.end(), name);
+      return at == header.end() ? -1 : int(at - header.begin());
+    };
+    if (find("radius") < 0 && find("diameter") >= 0) header[std::size_t(diameter_ = find("diameter"))] = "radius";
+    for (int k = 0; k < 3; ++k) {
+      const std::string axis(1, "xyz"[k]);
+      if (find(axis) >= 0) continue;
+      if (const int at = find(axis + "u"); at >= 0) {
+        header[std::size_t(at)] = axis;
+        continue;
+      }
+      scaled_[k] = std::max(find(axis + "s"), find(axis + "su"));
+      if (scaled_[k] >= 0) header[std::size_t(scaled_[k])] = axis;
+    }
+  }
+
+  /// Whether some are in parts of the box and others are not.
+  bool mixed(const std::vector<std::string>& header) const {
+    int in_parts = 0, axes = 0;
+    for (int k = 0; k < 3; ++k) {
+      in_parts += scaled_[k] >= 0;
+      axes += int(std::count(header.begin(), header.end(), std::string(1, "xyz"[k])));
+    }
+    return in_parts > 0 && in_parts != axes;
+  }
+
+  void convert(std::vector<std::string>& row) const {
+    double value = 0;
+    if (number(row, diameter_, value)) row[std::size_t(diameter_)] = exact(value / 2);
+    Vector3 parts = Vector3::Zero();
+    for (int k = 0; k < 3; ++k) {
+      // What is no number stays as it is, and the table tells it with its place.
+      if (scaled_[k] >= 0 && !number(row, scaled_[k], parts[k])) return;
+    }
+    const Vector3 position = box_.low + box_.cell * parts;
+    for (int k = 0; k < 3; ++k) {
+      if (scaled_[k] >= 0) row[std::size_t(scaled_[k])] = exact(position[k]);
+    }
+  }
+
+ private:
+  static bool number(const std::vector<std::string>& row, int at, double& value) {
+    if (at < 0 || std::size_t(at) >= row.size()) return false;
+    const std::string& word = row[std::size_t(at)];
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    return error == std::errc() && end == word.data() + word.size();
+  }
+
+  Box box_;
+  int diameter_ = -1, scaled_[3] = {-1, -1, -1};
+};
 
 }  // namespace
 
@@ -84,11 +154,21 @@ LammpsDump read_lammps_dump(const std::string& path) {
   while (begin > 0 && !lines[begin - 1].starts_with(first_item)) --begin;
   if (begin == 0) fail(path, 0, "is no text dump of LAMMPS; allowed: ITEM: TIMESTEP first; give a dump");
   const auto box = item(path, lines, begin, "ITEM: BOX BOUNDS"), atoms = item(path, lines, begin, "ITEM: ATOMS");
-  LammpsDump dump{3, cell_of(path, lines, box), nullptr};
+  const Box bounds = box_of(path, lines, box);
+  LammpsDump dump{3, bounds.cell, nullptr};
 
   std::string text(atoms, '\n');  // so that rows keep the numbers of their lines
-  text += as_row(lines[atoms].substr(std::string("ITEM: ATOMS").size()));
-  for (std::size_t k = atoms + 1; k < lines.size(); ++k) text += as_row(lines[k]);
+  auto header = words_of(lines[atoms].substr(std::string("ITEM: ATOMS").size()));
+  const Columns columns(header, bounds);
+  if (columns.mixed(header)) {
+    fail(path, atoms, "has some coordinates in parts of the box (xs) and others not; allowed: all alike; dump x y z");
+  }
+  text += as_row(header);
+  for (std::size_t k = atoms + 1; k < lines.size(); ++k) {
+    auto row = words_of(lines[k]);
+    columns.convert(row);
+    text += as_row(row);
+  }
   dump.atoms = std::make_unique<CsvTable>(path, text);
   if (dump.atoms->has("z") && dump.atoms->rows() > 0) {
     const auto z = dump.atoms->column({"z"});

@@ -11,9 +11,11 @@ namespace rvelab::io {
 
 /// The last timestep of a dump.
 struct LammpsDump {
-  int dimension;                    ///< 2 if every z is the same, as in a 2D simulation, else 3
-  Matrix3 cell;                     ///< m, cell vectors as columns, upper triangular; 2D: (2, 2) is the box' thickness
-  std::unique_ptr<CsvTable> atoms;  ///< columns as in ITEM: ATOMS; places name the dump's own lines
+  int dimension;  ///< 2 if every z is the same, as in a 2D simulation, else 3
+  Matrix3 cell;   ///< m, cell vectors as columns, upper triangular; 2D: (2, 2) is the box' thickness
+  /// Columns as in ITEM: ATOMS, but xu, xs and xsu are x (m) there, and diameter is radius; places name the dump's
+  /// lines.
+  std::unique_ptr<CsvTable> atoms;
 };
 
 /// Whether a file begins as a text dump does.

@@ -184,6 +184,64 @@ TEST_CASE("a dump read back by the importer has the cell, the positions and the 
   }
 }
 
+TEST_CASE("dumps with diameters, with positions that are not wrapped, or in parts of the box are the same packing") {
+  const Folder folder;
+  for (const char* name : {"dense", "hertz"}) {
+    const Specimen before = sheared(name);
+    io::export_lammps_dump({state_of(before)}, folder / "s.dump");
+    write_bytes(folder / "m.toml", io::material_file_text(before));
+    io::ImportOptions options;
+    options.material_path = folder / "m.toml";
+    const Specimen usual = io::import_csv(folder / "s.dump", std::nullopt, std::nullopt, options);
+    const bool flat = usual.cell.dimension == 2;
+    for (const std::string kind : {"u", "s", "su"}) {
+      CAPTURE(name, kind);
+      std::istringstream whole(bytes_of(folder / "s.dump"));
+      std::ostringstream edited;
+      edited.precision(17);
+      double low[3], high[3], tilt[3];
+      long row = 0;
+      for (std::string line; std::getline(whole, line); ++row) {
+        if (row >= 5 && row < 8) std::istringstream(line) >> low[row - 5] >> high[row - 5] >> tilt[row - 5];
+        if (row == 8) {
+          edited << "ITEM: ATOMS id type diameter x" << kind << " y" << kind << (flat ? "\n" : " z" + kind + "\n");
+        } else if (row < 8) {
+          edited << line << "\n";
+        } else {
+          long id = 0, type = 0;
+          double x[3], r = 0;
+          std::istringstream(line) >> id >> type >> x[0] >> x[1] >> x[2] >> r;
+          // The box of LAMMPS: its corner, from the cuboid around it, and its lengths.
+          const double xy = tilt[0], xz = tilt[1], yz = tilt[2];
+          const double corner[3] = {low[0] - std::min({0.0, xy, xz, xy + xz}), low[1] - std::min(0.0, yz), low[2]};
+          const double size[3] = {high[0] - std::max({0.0, xy, xz, xy + xz}) - corner[0],
+                                  high[1] - std::max(0.0, yz) - corner[1], high[2] - low[2]};
+          double s[3];
+          s[2] = (x[2] - corner[2]) / size[2];
+          s[1] = (x[1] - corner[1] - yz * s[2]) / size[1];
+          s[0] = (x[0] - corner[0] - xy * s[1] - xz * s[2]) / size[0];
+          edited << id << " " << type << " " << 2 * r;
+          const double images = kind == "s" ? 0 : double(id % 3) - 1;  // along y
+          const double moved[3] = {x[0] + images * xy, x[1] + images * size[1], x[2]};
+          for (int k = 0; k < (flat ? 2 : 3); ++k) edited << " " << (kind == "u" ? moved[k] : s[k] + (k == 1) * images);
+          edited << "\n";
+        }
+      }
+      write_bytes(folder / "t.dump", edited.str());
+      const Specimen other = io::import_csv(folder / "t.dump", std::nullopt, std::nullopt, options);
+      CHECK(other.cell.lattice == usual.cell.lattice);
+      REQUIRE(other.grains.id == usual.grains.id);
+      CHECK(other.grains.radius == usual.grains.radius);
+      double farthest = 0;
+      for (std::size_t g = 0; g < usual.grains.size(); ++g) {
+        const Vector3 gap = apart(usual.cell.lattice, other.grains.position[g] - usual.grains.position[g]);
+        farthest = std::max(farthest, gap.norm());
+      }
+      CHECK(farthest < 1e-14);
+    }
+  }
+}
+
 TEST_CASE("a dump states the cuboid around the tilted box, and its tilts") {
   const Folder folder;
   io::export_lammps_dump({state_of(sheared("hertz"), 7)}, folder / "s.dump");
@@ -228,6 +286,9 @@ TEST_CASE("a dump that is cut, not periodic or of unknown types is refused with 
   CHECK_THAT(message(whole.substr(0, whole.find("ITEM: BOX"))), Contains("no ITEM: BOX BOUNDS"));
   CHECK_THAT(message(whole.substr(0, whole.find("ITEM: ATOMS"))), Contains("no ITEM: ATOMS"));
   CHECK_THAT(message(whole.substr(0, whole.size() - 8)), Contains("t.dump:409: the row has"));
+  std::string mixed = whole;
+  mixed.replace(mixed.find(" x y z "), 7, " xs y z ");
+  CHECK_THAT(message(mixed), Contains("t.dump:9: has some coordinates in parts of the box"));
   std::string walls = whole;
   walls.replace(walls.find("pp pp pp"), 8, "ff pp pp");
   CHECK_THAT(message(walls), Contains("t.dump:5") && Contains("not periodic"));
