@@ -132,8 +132,9 @@ class Columns {
   static bool number(const std::vector<std::string>& row, int at, double& value) {
     if (at < 0 || std::size_t(at) >= row.size()) return false;
     const std::string& word = row[std::size_t(at)];
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    return error == std::errc() && end == word.data() + word.size();
+    const char *begin = word.data() + (word.starts_with('+') ? 1 : 0), *end = word.data() + word.size();
+    const auto [rest, error] = std::from_chars(begin, end, value);
+    return error == std::errc() && rest == end;
   }
 
   Box box_;

@@ -220,7 +220,7 @@ TEST_CASE("dumps with diameters, with positions that are not wrapped, or in part
           s[2] = (x[2] - corner[2]) / size[2];
           s[1] = (x[1] - corner[1] - yz * s[2]) / size[1];
           s[0] = (x[0] - corner[0] - xy * s[1] - xz * s[2]) / size[0];
-          edited << id << " " << type << " " << 2 * r;
+          edited << id << " " << type << " +" << 2 * r;
           const double images = kind == "s" ? 0 : double(id % 3) - 1;  // along y
           const double moved[3] = {x[0] + images * xy, x[1] + images * size[1], x[2]};
           for (int k = 0; k < (flat ? 2 : 3); ++k) edited << " " << (kind == "u" ? moved[k] : s[k] + (k == 1) * images);

@@ -160,6 +160,11 @@ TEST_CASE("values without a meaning are refused where they stand") {
   CHECK_THAT(edited("kind = \"box\"\ncentre_m = [0.5, 2.25]\nsize_m = [0.5, 0.5]",
                     "kind = \"half_space\"\ncentre_m = [0, 0]\nnormal = [0, 0]"),
              Contains("body.normal is zero"));
+  CHECK_THAT(
+      refusal({"body.footing.centre_m=[0.5, 2.0]"}),
+      Contains("region.1 (of sand): its point at [0.3125, 1.8125] m would lie inside body.footing at the start") &&
+          Contains("set contact = \"nodes\" in body.footing"));
+  CHECK(refusal({"body.footing.centre_m=[0.5, 2.0]", "body.footing.contact=nodes"}) == "accepted");
   CHECK_THAT(refusal({"body.footing.friction=0.3"}), Contains("set rough = false"));
   CHECK_THAT(refusal({"body.footing.frction=0.3"}), Contains("the nearest known key is body.friction"));
   CHECK_THAT(refusal({"material.sand.hardening=cubic_exponential", "material.sand.cubic_rad=0.1"}),

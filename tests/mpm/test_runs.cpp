@@ -106,6 +106,8 @@ TEST_CASE("what a resumed run is told stays told: the scene in its folder is the
   const std::string plane = "boundary=[{name=\"left\", kind=\"roller\", axis=\"x\", at_m=0}]";
   CHECK(bench.run({"--resume", bench.folder / "a", "--set", plane}) == 2);
   CHECK_THAT(bench.errors(), Contains("holds 1 boundaries and bodies, this scene needs 2"));
+  CHECK(bench.run({"--resume", bench.folder / "a", "--set", "body.base.contact=nodes"}) == 2);
+  CHECK_THAT(bench.errors(), Contains("its bodies were met by another contact than in this scene"));
   CHECK(bench.run({"--resume", bench.folder / "a", "--set", "grid.cell_m=0.5"}) == 2);
   CHECK_THAT(bench.errors(), Contains("holds 64 material points, this scene needs 16"));
   CHECK(bytes_of(bench.folder / "a/scene.toml") == kept);

@@ -5,8 +5,7 @@
 namespace mpm {
 
 template <int D>
-double Body<D>::distance(const Vec<D>& position, double time, Vec<D>& outward) const {
-  const Vec<D> r = position - centre - velocity.way(time);
+double Body<D>::distance(const Vec<D>& r, Vec<D>& outward, const Vec<D>& unit) const {
   if (kind == BodyKind::half_space) {
     outward = normal;
     return r.dot(normal);
@@ -19,16 +18,17 @@ double Body<D>::distance(const Vec<D>& position, double time, Vec<D>& outward) c
     return length - radius;
   }
   // The nearest face; of two at one distance that across the last axis, a footing's lower one.
+  int axis = 0;
   double nearest = -1e300;
-  outward.setZero();
   for (int i = 0; i < D; ++i) {
-    const double beyond = std::abs(r[i]) - half[i];
-    if (beyond < nearest - 1e-9 * half[i]) continue;
+    const double beyond = (std::abs(r[i]) - half[i]) / unit[i];
+    if (beyond < nearest - 1e-9 * half[i] / unit[i]) continue;
     nearest = beyond;
-    outward.setZero();
-    outward[i] = r[i] < 0 ? -1 : 1;
+    axis = i;
   }
-  return nearest;
+  outward.setZero();
+  outward[axis] = r[axis] < 0 ? -1 : 1;
+  return std::abs(r[axis]) - half[axis];
 }
 
 template <int D>
@@ -48,12 +48,14 @@ void Bodies<D>::find(const Grid<D>& grid, const Planes<D>& planes, const std::ve
   }
   if (!at_nodes) return;
   const double touch = 1e-6 * grid.cell.minCoeff();
+  std::vector<Vec<D>> centres;
+  for (const auto& body : all) centres.push_back(body.centre_at(time));
   for (long flat = 0; flat < long(grid.nodes.size()); ++flat) {
     if (!(grid.nodes[flat].mass > 0) || planes.is_behind(flat)) continue;
     const Vec<D> x = grid.position(grid.index(flat));
     for (int k = 0; k < int(all.size()); ++k) {
       Vec<D> outward;
-      if (all[k].at_surface || all[k].distance(x, time, outward) > touch) continue;
+      if (all[k].at_surface || all[k].distance(x - centres[k], outward) > touch) continue;
       contacts_.push_back({flat, k, outward, Vec<D>::Zero()});
     }
   }

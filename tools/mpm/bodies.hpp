@@ -6,8 +6,8 @@
 // v_I is held at points of the surface, a cell apart, by impulses J that the nodes get as N_I J. A uniform stress is
 // then in balance at every node, also with shape functions that reach beyond the surface: its nodal forces are N_I t, t
 // the traction. At nodes alone the first row outside is left with N_I t (quadratic: t/8), and a body's outline is that
-// of the nodes inside it. Points of boxes and discs share nodes: their impulses are found in sweeps (projected
-// Gauss-Seidel), those of a half-space across an axis lie over single columns of nodes and need one.
+// of the nodes inside it. Points that share nodes have their impulses found in sweeps (projected Gauss-Seidel); those
+// of a half-space across an axis lie over single columns of nodes and need one.
 #pragma once
 
 #include <string>
@@ -35,8 +35,10 @@ struct Body {
   VelocityHistory<D> velocity;
   Reaction<D> reaction;
 
-  /// Distance from the surface, negative inside, and the outward normal there.
-  double distance(const Vec<D>& position, double time, Vec<D>& outward) const;
+  Vec<D> centre_at(double time) const { return centre + velocity.way(time); }
+  /// Distance from the surface, negative inside, and the outward normal there; r: from the centre. The nearest face of
+  /// a box is told by distances over `unit`, such as the sides of what is at r.
+  double distance(const Vec<D>& r, Vec<D>& outward, const Vec<D>& unit = Vec<D>::Ones()) const;
 };
 
 template <int D>
@@ -45,7 +47,8 @@ class Bodies {
   std::vector<Body<D>> all;
   Shape shape = Shape::bspline;  ///< that of the grid
 
-  /// Which nodes lie in a body at this time; those behind a plane follow the ones that they mirror.
+  /// Which points of surfaces soil is against at this time, and which nodes lie in a body that is met there; nodes
+  /// behind a plane follow the ones that they mirror.
   void find(const Grid<D>& grid, const Planes<D>& planes, const std::vector<Point<D>>& soil, double time);
   /// Velocities v at the start of the step.
   void set_start(Grid<D>& grid, double time);

@@ -55,6 +55,14 @@ void remove_old_pools(const Model<D>& model, const std::filesystem::path& place)
   for (const auto& path : old) std::filesystem::remove(path, ignored);
 }
 
+/// Of each body: 1 at its surface, 0 at nodes.
+template <int D>
+std::vector<std::int64_t> contacts_of(const Solver<D>& solver) {
+  std::vector<std::int64_t> kinds;
+  for (const auto& body : solver.bodies.all) kinds.push_back(body.at_surface);
+  return kinds;
+}
+
 [[noreturn]] void of_another_scene(const std::string& folder, const std::string& what, std::size_t found,
                                    std::size_t wanted) {
   throw Mistake(folder + ": its checkpoint holds " + std::to_string(found) + " " + what + ", this scene needs " +
@@ -102,6 +110,7 @@ void write_checkpoint(const Model<D>& model, const Progress& progress, const std
   file.write("impulses", progress.impulses, {progress.impulses.size()});
   file.write("frame_times", progress.frame_times, {progress.frame_times.size()});
   file.write("watched", std::vector<std::int64_t>(model.watched.begin(), model.watched.end()));
+  file.write("contact_at_surface", contacts_of(solver));
   for (const auto& range : solver.ranges) range.material->save(file, range.name);
   file.publish();
   remove_old_pools<D>(model, place);
@@ -161,6 +170,11 @@ void read_checkpoint(Model<D>& model, Progress& progress, const std::string& fol
                     ": the RVEs of the checkpoint are missing; put the file back, or start the run anew");
     }
     pool->read(path.string());
+  }
+  if (file.read_whole("contact_at_surface") != contacts_of(solver)) {
+    throw Mistake(folder +
+                  ": its bodies were met by another contact than in this scene; leave out the --set of a body's "
+                  "contact, or start the run anew in another folder");
   }
   for (auto& range : solver.ranges) range.material->restore(file, range.name);
 }

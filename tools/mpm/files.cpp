@@ -3,6 +3,7 @@
 #include <hdf5.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 
@@ -24,7 +25,8 @@ OutputFile::OutputFile(const std::string& path) : path_(path) {
   constexpr std::size_t growth = 1 << 20;
   const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
   H5Pset_fapl_core(access, growth, false);
-  file_ = H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
+  // Under a name that no file has: HDF5 would read the one that it replaces.
+  file_ = H5Fcreate((path_ + ".partial").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
   H5Pclose(access);
   if (file_ < 0) throw std::runtime_error(path_ + ": there is no memory for what is to be written");
 }
@@ -69,17 +71,20 @@ void OutputFile::publish() {
   }
   H5Fclose(file_);
   file_ = -1;
-  const std::string partial = path_ + ".partial";
+  publish_file(path_, bytes.data(), bytes.size());
+}
+
+void publish_file(const std::string& path, const char* bytes, std::size_t size) {
+  const std::string partial = path + ".partial";
   std::ofstream file(partial, std::ios::binary);
-  if (!file) throw Mistake(path_ + ": cannot be written; give a folder that you may write to");
-  file.write(bytes.data(), std::streamsize(bytes.size()));
+  if (!file && errno != ENOSPC) throw Mistake(path + ": cannot be written; give a folder that you may write to");
+  file.write(bytes, std::streamsize(size));
   file.close();
   std::error_code error;
-  if (file) std::filesystem::rename(partial, path_, error);
-  if (!file || error) {
-    std::filesystem::remove(partial, error);
-    throw std::runtime_error(path_ + ": cannot be written; is the disc full?");
-  }
+  if (file) std::filesystem::rename(partial, path, error);
+  if (file && !error) return;
+  std::filesystem::remove(partial, error);
+  throw std::runtime_error(path + ": cannot be written; is the disc full?");
 }
 
 InputFile::InputFile(const std::string& path) : path_(path) {

@@ -19,7 +19,7 @@ class OutputFile {
   void write(const std::string& name, const std::vector<double>& values, const Extents& extents);
   void write(const std::string& name, const std::vector<std::int64_t>& values);
   void write(const std::string& name, const std::string& text);
-  /// Writes the file. Mistake: not there; std::runtime_error: the disc is full.
+  /// publish_file.
   void publish();
 
  private:
@@ -27,6 +27,10 @@ class OutputFile {
   std::string path_;
   std::int64_t file_;
 };
+
+/// Writes a file beside its name and renames it: an old one stays whole until then. Mistake: not there;
+/// std::runtime_error: the disc is full.
+void publish_file(const std::string& path, const char* bytes, std::size_t size);
 
 class InputFile {
  public:

@@ -3,7 +3,7 @@
 #include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
+#include <sstream>
 
 #include "tools/mpm/files.hpp"
 
@@ -180,18 +180,12 @@ void write_networks(const Model<D>& model, const std::string& folder, long frame
 }
 
 void write_scene(const std::string& folder, const std::string& toml) {
-  const std::string path = (std::filesystem::path(folder) / "scene.toml").string(), partial = path + ".partial";
-  std::ofstream file(partial);
-  if (!file) throw Mistake(path + ": cannot be written; give a folder that you may write to");
-  file << toml << "\n";
-  file.close();
-  std::error_code error;
-  if (file) std::filesystem::rename(partial, path, error);
-  if (!file || error) throw std::runtime_error(path + ": cannot be written; is the disc full?");
+  const std::string text = toml + "\n";
+  publish_file((std::filesystem::path(folder) / "scene.toml").string(), text.data(), text.size());
 }
 
 void write_xdmf(const std::string& folder, const std::vector<double>& times, long points) {
-  std::ofstream file(std::filesystem::path(folder) / "points.xdmf");
+  std::ostringstream file;
   file << "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\"><Domain>\n"
           "<Grid Name=\"points\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
   for (std::size_t k = 0; k < times.size(); ++k) {
@@ -218,7 +212,8 @@ void write_xdmf(const std::string& folder, const std::vector<double>& times, lon
     file << "</Grid>\n";
   }
   file << "</Grid>\n</Domain></Xdmf>\n";
-  if (!file.flush()) throw std::runtime_error(folder + "/points.xdmf: cannot be written; is the disc full?");
+  const std::string text = file.str();
+  publish_file((std::filesystem::path(folder) / "points.xdmf").string(), text.data(), text.size());
 }
 
 #define MPM_INSTANTIATE(D)                                                                                         \

@@ -6,11 +6,6 @@
 #include <sstream>
 
 namespace mpm {
-namespace {
-
-constexpr double most_points = 5e7;    // some 20 GB
-constexpr double farthest_cell = 1e9;  // numbers of nodes are int
-constexpr const char* axes[3] = {"x", "y", "z"};
 
 std::string text_of(double value) {
   std::ostringstream text;
@@ -23,6 +18,12 @@ std::string text_of(const std::vector<double>& values) {
   for (const double value : values) list += (list.empty() ? "[" : ", ") + text_of(value);
   return list + "]";
 }
+
+namespace {
+
+constexpr double most_points = 5e7;    // some 20 GB
+constexpr double farthest_cell = 1e9;  // numbers of nodes are int
+constexpr const char* axes[3] = {"x", "y", "z"};
 
 /// Points along one axis of a region, before it is known that they can be counted.
 double points_along(const Scene& scene, const RegionOfScene& region, std::size_t axis) {

@@ -14,6 +14,10 @@ struct Filling {
 };
 Filling filling_of(const Scene& scene, const RegionOfScene& region);
 
+/// Numbers as messages have them.
+std::string text_of(double value);
+std::string text_of(const std::vector<double>& values);
+
 /// What a message calls a region, which has no name: region.0, as --set does.
 std::string region_name(const Scene& scene, const RegionOfScene& region);
 

@@ -63,7 +63,7 @@ void place_bodies(const Scene& scene, Solver<D>& solver) {
     body.centre = vec<D>(each.centre);
     body.half = 0.5 * vec<D>(each.size);
     body.normal = vec<D>(each.normal);
-    if (body.kind == BodyKind::half_space) body.normal.normalize();
+    if (body.kind == BodyKind::half_space) body.normal = (body.normal / body.normal.cwiseAbs().maxCoeff()).normalized();
     body.radius = each.radius;
     body.rough = each.rough;
     body.friction = each.friction;
@@ -74,9 +74,23 @@ void place_bodies(const Scene& scene, Solver<D>& solver) {
   }
 }
 
+/// What lies inside a body that is met at its surface would be left there, and move through it.
+template <int D>
+void refuse_inside(const Scene& scene, const RegionOfScene& region, const Bodies<D>& bodies, const Point<D>& point) {
+  for (const auto& body : bodies.all) {
+    Vec<D> outward;
+    const double depth = -body.distance(point.position - body.centre, outward, point.half);
+    if (!body.at_surface || depth < 1e-6 * point.half.minCoeff()) continue;
+    const std::vector<double> place(point.position.data(), point.position.data() + D);
+    throw Mistake(region_name(scene, region) + ": its point at " + text_of(place) + " m would lie inside body." +
+                  body.name + " at the start; move one of them, or set contact = \"nodes\" in body." + body.name +
+                  ", which then holds what is inside");
+  }
+}
+
 /// Points of one region, x fastest.
 template <int D>
-void fill(const Scene& scene, const RegionOfScene& region, std::vector<Point<D>>& points) {
+void fill(const Scene& scene, const RegionOfScene& region, const Bodies<D>& bodies, std::vector<Point<D>>& points) {
   const auto filling = filling_of(scene, region);
   const auto& count = filling.count;
   const Vec<D> side = vec<D>(filling.side);
@@ -91,6 +105,7 @@ void fill(const Scene& scene, const RegionOfScene& region, std::vector<Point<D>>
     point.velocity = vec<D>(region.velocity);
     point.half = 0.5 * side;
     point.volume = side.prod() * (D == 2 ? scene.thickness : 1);
+    refuse_inside<D>(scene, region, bodies, point);
     points.push_back(point);
   }
 }
@@ -228,7 +243,7 @@ std::unique_ptr<Model<D>> set_up(const Scene& scene, int threads, const std::str
     range.first = long(solver.points.size());
     range.name = material.name;
     for (const auto& region : scene.regions) {
-      if (region.material == material.name) fill<D>(scene, region, solver.points);
+      if (region.material == material.name) fill<D>(scene, region, solver.bodies, solver.points);
     }
     range.count = long(solver.points.size()) - range.first;
     Point<D>* points = solver.points.data() + range.first;

@@ -7,7 +7,7 @@
 namespace mpm {
 namespace {
 
-// Sweeps over the points of boxes and discs; what they leave is taken up in the steps that follow. On its way to the
+// Sweeps over points that share nodes; what they leave is taken up in the steps that follow. On its way to the
 // peak the load on a footing differs from that with 40 by 3 % with 5, by 1 % with 10 (Mohr-Coulomb soil).
 constexpr int many_sweeps = 10;
 // Cells by which soil is met before its domain ends at the surface: what strain moves a point by against its domain.
@@ -16,35 +16,43 @@ constexpr double two_pi = 6.283185307179586;
 
 }  // namespace
 
-/// Which nodes have soil against the surface near them: a point of the soil touches where its domain, a ball of the
-/// size that its volume tells, ends at the surface. The faces of a box are told apart: soil below it, or off its
-/// corner, is not beside it.
+/// Which nodes have soil against the surface near them: a point of the soil touches where its domain, of its first form
+/// and the size that its volume tells, ends at the surface. The faces of a box are told apart: soil below it, or off
+/// its corner, is not beside it.
 template <int D>
 void Bodies<D>::find_touched(const Grid<D>& grid, const std::vector<Point<D>>& soil, int k, double time) {
   touched_.assign(grid.nodes.size(), 0);
   const auto& body = all[k];
-  const Vec<D> centre = body.centre + body.velocity.way(time);
+  const Vec<D> centre = body.centre_at(time);
   const double slack = early * grid.cell.minCoeff();
   for (const auto& point : soil) {
     Vec<D> outward;
-    const double distance = body.distance(point.position, time, outward);
+    const Vec<D> r = point.position - centre;
+    const double distance = body.distance(r, outward, point.half);
     if (distance > slack + 0.5 * grid.cell.sum()) continue;  // the roots below are for few points
-    const double first = (2 * point.half).prod();
-    const double swollen = D == 2 ? std::sqrt(point.volume / first) : std::cbrt(point.volume / first);
-    const double radius = swollen * point.half.cwiseProduct(outward).norm();
-    if (distance > slack + radius) continue;
-    const Vec<D> foot = point.position - distance * outward;
-    if (body.kind == BodyKind::box && ((foot - centre).cwiseAbs() - body.half).maxCoeff() > 0.5 * radius) continue;
+    const double swollen = D == 2 ? std::sqrt(point.F.determinant()) : std::cbrt(point.F.determinant());
+    const Vec<D> half = swollen * point.half;
+    if (distance > slack + half.cwiseProduct(outward).norm()) continue;
+    const Vec<D> foot = r - distance * outward;
+    if (body.kind == BodyKind::box) {
+      bool off = false;  // by half of it, or so far that a body smaller than the point would slip between two of them
+      for (int i = 0; i < D; ++i) {
+        const double at_most = std::max(0.5 * half[i], half[i] - (1 - 1e-6) * body.half[i]);
+        off = off || std::abs(foot[i]) - body.half[i] > at_most;
+      }
+      if (off) continue;
+    }
     typename Grid<D>::Index node;
-    if (nearest_node(grid, foot, node)) touched_[grid.flat(node)] |= face_of(body, outward);
+    if (nearest_node(grid, centre + foot, node)) touched_[grid.flat(node)] |= face_of(body, outward);
   }
 }
 
 template <int D>
 bool Bodies<D>::nearest_node(const Grid<D>& grid, const Vec<D>& at, typename Grid<D>::Index& node) {
   for (int i = 0; i < D; ++i) {
-    node[i] = int(floor_of((at[i] - grid.anchor[i]) / grid.cell[i] + 0.5));
-    if (node[i] < grid.low[i] || node[i] >= grid.low[i] + grid.count[i]) return false;
+    const double xi = (at[i] - grid.anchor[i]) / grid.cell[i] + 0.5;
+    if (!(xi >= grid.low[i] && xi < grid.low[i] + grid.count[i])) return false;
+    node[i] = int(floor_of(xi));
   }
   return true;
 }
@@ -97,13 +105,14 @@ void Bodies<D>::hold(SurfacePoint& point, const Grid<D>& grid, double time) {
   constexpr double little = 0.1;  // of the mass per weight at the node of most weight
   const int most = int(std::max_element(point.weight, point.weight + point.count) - point.weight);
   const double usual = grid.nodes[point.node[most]].mass / point.weight[most];
+  const Vec<D> centre = all[point.body].centre_at(time);
   double sum = 0;
   int kept = 0;
   for (int j = 0; j < point.count; ++j) {
     const long node = point.node[j];
     if (grid.nodes[node].mass < little * usual * point.weight[j]) {
       Vec<D> outward;
-      const bool inside = all[point.body].distance(grid.position(grid.index(node)), time, outward) <= 0;
+      const bool inside = all[point.body].distance(grid.position(grid.index(node)) - centre, outward) <= 0;
       if (inside) contacts_.push_back({node, point.body, point.normal, Vec<D>::Zero()});
       continue;
     }
@@ -155,15 +164,15 @@ void Bodies<D>::add_point(const Grid<D>& grid, const Planes<D>& planes, int k, d
   hold(point, grid, time);
 }
 
-/// Where columns of nodes along the axis that is nearest to its normal come through the surface of a half-space; across
-/// an axis with weights along that axis alone.
+/// Where columns of nodes come through the surface of a half-space, along the axis that brings them closest together;
+/// across an axis with weights along that axis alone.
 template <int D>
 void Bodies<D>::find_half_space(const Grid<D>& grid, const Planes<D>& planes, int k, double time) {
   const auto& body = all[k];
-  const Vec<D> centre = body.centre + body.velocity.way(time);
+  const Vec<D> centre = body.centre_at(time);
+  const bool across_axis = body.normal.cwiseAbs().maxCoeff() == body.normal.cwiseAbs().sum();
   int axis = 0;
-  const double steepest = body.normal.cwiseAbs().maxCoeff(&axis);
-  const bool across_axis = steepest == body.normal.cwiseAbs().sum();
+  body.normal.cwiseProduct(grid.cell).cwiseAbs().maxCoeff(&axis);
   if (!across_axis) sweeps_ = many_sweeps;
   long columns = 1;
   for (int i = 0; i < D; ++i) columns *= i == axis ? 1 : grid.count[i];
@@ -185,6 +194,7 @@ void Bodies<D>::find_half_space(const Grid<D>& grid, const Planes<D>& planes, in
       continue;
     }
     const double xi = (at[axis] - grid.anchor[axis]) / grid.cell[axis];
+    if (!(xi > grid.low[axis] - 2 && xi < grid.low[axis] + grid.count[axis] + 1)) return;  // no soil is there
     node[axis] = int(floor_of(xi + 0.5));
     if (!is_touched(grid, node, face_of(body, body.normal))) continue;
     SurfacePoint point;
@@ -204,7 +214,7 @@ void Bodies<D>::find_half_space(const Grid<D>& grid, const Planes<D>& planes, in
 template <int D>
 void Bodies<D>::find_outline(const Grid<D>& grid, const Planes<D>& planes, int k, double time) {
   const auto& body = all[k];
-  const Vec<D> centre = body.centre + body.velocity.way(time);
+  const Vec<D> centre = body.centre_at(time);
   sweeps_ = many_sweeps;
   if (body.kind == BodyKind::disc) {
     const long around = std::max(8L, std::lround(two_pi * body.radius / grid.cell.template head<2>().minCoeff()));
@@ -251,7 +261,7 @@ void Bodies<D>::hold_surface(Grid<D>& grid, double time, bool end) {
   for (auto& point : surface_) point.now.setZero();
   for (int sweep = 0; sweep < sweeps_; ++sweep) {
     for (std::size_t k = 0; k < surface_.size(); ++k) {
-      auto& point = surface_[sweep % 2 == 0 ? k : surface_.size() - 1 - k];  // to and fro: no side is favoured
+      auto& point = surface_[sweep % 2 == 0 ? k : surface_.size() - 1 - k];  // to and fro: sides alike
       const auto& body = all[point.body];
       Vec<D> relative = -body.velocity.at(time);
       for (int j = 0; j < point.count; ++j) {

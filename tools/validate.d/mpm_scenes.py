@@ -24,20 +24,40 @@ SURCHARGE, WIDTH = 20e3, 2.0  # Pa, m
 SOILS = {"dense": ("C0", "14.4, 14.8"), "medium": ("C1", "4.8, 3.7"), "soft": ("C2", "3.7, 3.1")}
 
 
-def footing_run(name, soil, *options):
+SEEDS = (1, 2, 3)  # of the packings; the first is that of the recipes
+
+
+def packing(soil, seed):
+    name = soil if seed == 1 else f"{soil}_{seed}"
+    specimen(name, "--set", f"pack.seed={seed}", recipe=f"pack_{soil}")
+    return name
+
+
+def footing_run(name, soil, seed, *options):
     """Settlement over width, load over surcharge (a mean of five), and grain-steps of a footing's run."""
-    specimen(soil, recipe=f"pack_{soil}")
-    h, printed = run(name, "footing.toml", "--case", soil, *options)
+    h, printed = run(name, "footing.toml", "--case", soil, "--set",
+                     f'material.soil.specimens=["{packing(soil, seed)}.h5"]', *options)
     words = printed.replace(",", "").split()
     depth, load = -h["footing.way_y_m"] / WIDTH, 1 + h["footing.force_y_N"] / (WIDTH / 2) / SURCHARGE
     return depth[2:-2], np.convolve(load, np.ones(5) / 5, mode="valid"), float(words[words.index("grain-steps") + 1])
 
 
+def bearing_factors(soil, seed):
+    """N_q of rvelab calibrate: of general and of local shear."""
+    told = subprocess.run([rvelab, "calibrate", "biaxial", "--specimen", folder / f"{packing(soil, seed)}.h5",
+                           "--pressures", "10e3,20e3,30e3", "--threads", "1", "--json"], check=True,
+                          capture_output=True, text=True)
+    told = json.loads(told.stdout)
+    return told["bearing_capacity_Nq"], told["local_shear_Nq"]
+
+
 def footing_figure(curves, factors, name):
+    """curves: soil -> runs, the first drawn full and the others thin; factors: soil -> N_q of the first specimen."""
     figure, axes = plt.subplots(figsize=(5.5, 3.8))
-    for soil, (depth, load, _) in curves.items():
+    for soil, runs in curves.items():
         colour = SOILS[soil][0]
-        axes.plot(depth, load, color=colour, label=soil)
+        for k, (depth, load, _) in reversed(list(enumerate(runs))):
+            axes.plot(depth, load, color=colour, label=None if k else soil, linewidth=0.6 if k else 1.5)
         for factor, style in zip(factors[soil], ("--", ":")):
             axes.axhline(factor, color=colour, linestyle=style, linewidth=1)
     axes.set_xlabel("settlement over width")
@@ -51,21 +71,22 @@ def footing_figure(curves, factors, name):
 def footing():
     print("Rough footing, half of it 1 m wide, on 6 x 4 m of soil (24 x 16 cells, one point each), surcharge 20 kPa,\n"
           "0.2 m/s: load over surcharge at settlements d/B (B = 2 m), and the largest; N_q of rvelab calibrate at 10, 20\n"
-          "and 30 kPa, for general and for local shear; published, at the whole size to d/B = 0.75: load, N_q\n")
+          "and 30 kPa, for general and for local shear: of the recipe's specimen, and mean and standard deviation\n"
+          f"of those of {len(SEEDS)} seeds; published, at the whole size to d/B = 0.75: load, N_q\n")
     depths = (0.0125, 0.025, 0.0375, 0.05, 0.1, 0.15, 0.2)
-    print("soil    " + "".join(f"{d:<8g}" for d in depths) + "largest  N_q     local   published")
+    print("soil     " + "".join(f"{d:<8g}" for d in depths) + "largest N_q     local   published")
     curves, factors = {}, {}
     for soil, (_, published) in SOILS.items():
-        depth, load, _ = curves[soil] = footing_run(f"footing_{soil}", soil)
-        told = subprocess.run([rvelab, "calibrate", "biaxial", "--specimen", folder / f"{soil}.h5", "--pressures",
-                               "10e3,20e3,30e3", "--threads", "1", "--json"], check=True, capture_output=True, text=True)
-        told = json.loads(told.stdout)
-        general, local = factors[soil] = told["bearing_capacity_Nq"], told["local_shear_Nq"]
-        print(f"{soil:<8}" + "".join(f"{np.interp(d, depth, load):<8.2f}" for d in depths)
-              + f"{load.max():<8.2f} {general:<7.2f} {local:<7.2f} {published}", flush=True)
+        curves[soil] = [footing_run(f"footing_{packing(soil, seed)}", soil, seed) for seed in SEEDS]
+        rows = np.array([[*(np.interp(d, depth, load) for d in depths), load.max(), *bearing_factors(soil, seed)]
+                         for (depth, load, _), seed in zip(curves[soil], SEEDS)])
+        factors[soil] = rows[0, -2:]
+        for head, row, tail in ((soil, rows[0], published), ("  mean", rows.mean(axis=0), ""),
+                                ("  +-", rows.std(axis=0, ddof=1), "")):
+            print(f"{head:<9}" + "".join(f"{value:<8.2f}" for value in row) + tail, flush=True)
     print("\nsoil    grain-steps  of 7,776 points to   hours of one core at\n"
           "                     1.5 m, in proportion 60 million a second")
-    for soil, (depth, _, steps) in curves.items():
+    for soil, ((depth, _, steps), *_) in curves.items():
         whole = steps * 7776 / 384 * 0.75 / depth[-1]
         print(f"{soil:<8}{steps:<12.3g} {whole:<20.2g} {whole / 60e6 / 3600:.1f}")
     footing_figure(curves, factors, "mpm_footing.png")
@@ -83,7 +104,7 @@ def first_level(depth, load):
 
 def footing_published(factors):
     """The size, speed and settlement of the paper, on soft soil, which takes the fewest grain-steps."""
-    depth, load, steps = footing_run("footing_soft_published", "soft", "--published")
+    depth, load, steps = footing_run("footing_soft_published", "soft", 1, "--published")
     print("\nSoft soil at the published size in full: 12 x 8 m, 108 x 72 cells with one point each, 0.1 m/s\n")
     depths = (0.025, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7)
     print("d/B     " + "".join(f"{d:<8g}" for d in depths) + "\nload    "
@@ -94,7 +115,7 @@ def footing_published(factors):
     print(f"grain-steps {steps:.3g}")
     printed = (folder / "footing_soft_published.txt").read_text().strip().splitlines()
     print("    " + "\n    ".join(printed[-3:]))
-    footing_figure({"soft": (depth, load, steps)}, factors, "mpm_footing_published.png")
+    footing_figure({"soft": [(depth, load, steps)]}, factors, "mpm_footing_published.png")
     picture(folder / "footing_soft_published", "--field", "eps_q", "-o", results / "mpm_footing_soft.png")
 
 
