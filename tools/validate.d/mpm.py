@@ -1,13 +1,13 @@
-"""tools/validate mpm: scenes of rvelab-mpm beside pure cells and published figures.
+"""tools/validate mpm, mpm_biaxial, mpm_tolerance: scenes of rvelab-mpm beside pure cells and published figures.
 
-    mpm.py RVELAB FOLDER RESULTS [CASE...]
+    mpm.py RVELAB FOLDER RESULTS
+    mpm.py RVELAB FOLDER RESULTS biaxial CASE...
     mpm.py RVELAB FOLDER RESULTS tolerance
 
-Speed of the continuum (asked: 2 M point-steps a second of one core in the plane), the single element beside the biaxial
-test of its specimen (stress and volume), the column of a Mohr-Coulomb soil beside Liang and Zhao (2019), and the biaxial
-compression of the cases named (C1: the file without a case). `tolerance`: error of the plate's stress against
-grain-steps, over tolerances and gathering. Runs that are whole in FOLDER are used again, and those that were stopped go
-on. Other scenes: mpm_scenes.py."""
+Speed of the continuum (asked: 2 M point-steps a second of one core in the plane) and the single element beside the
+biaxial test of its specimen (stress and volume). `biaxial`: compression in the cases named (C1: the file without a
+case). `tolerance`: error of the plate's stress against grain-steps, over tolerances and gathering. Runs that are whole
+in FOLDER are used again, and those that were stopped go on. Other scenes: mpm_scenes.py."""
 
 import pathlib
 import resource
@@ -80,7 +80,8 @@ def speed():
         print(f"continuum alone, {what} elastic points: {best:.2f} M point-steps a second of one core's time")
 
 
-def element(strain, stress, volume):
+def element():
+    strain, stress, volume = cell_test()
     h, _ = run("element", "element.toml")
     watched = np.genfromtxt(folder / "element/watched.csv", delimiter=",", names=True)
     axial = -h["top.way_y_m"]
@@ -100,42 +101,12 @@ def element(strain, stress, volume):
               f"{np.interp(at, strain, volume) * 100:<8.3f} {grown.mean():<8.3f} {grown.std(ddof=1):.3f}")
 
 
-def front_of(frame, apart=1):
-    """Where the deposit ends, m: the first gap of more than so many cells along x."""
-    with h5py.File(frame) as file:
-        x, cell = np.sort(file["position_m"][()][:, 0]), float(file["grid_cell_m"][0])
-    gaps = np.flatnonzero(np.diff(x) > apart * cell)
-    return x[gaps[0]] if len(gaps) else x[-1]
-
-
-def collapse(name, h, density):
-    """Prints figures of the collapse of a column of 1 x 1 m beside the published ones; draws FOLDER/name."""
-    last = sorted((folder / name).glob("points_*.h5"))[-1]
-    whole = density * 9.81 * 0.5
-    peak = int(np.argmax(h["kinetic_J"]))
-    lost = -h["potential_J"][-1] - h["kinetic_J"][-1]
-    print(f"run-out (front - 1)/1           {front_of(last) - 1:<8.2f} 1.8 (experiment 1.6)\n"
-          f"where gaps of 1/2, 3/4 end it   {front_of(last, 0.5) - 1:.2f}, {front_of(last, 0.75) - 1:.2f}\n"
-          f"peak of kinetic energy          {h['kinetic_J'][peak] / whole:<8.3f} 0.1\n"
-          f"at                              {h['time_s'][peak]:<8.2f} 0.4 s\n"
-          f"dissipated                      {lost / whole:<8.2f} 0.55\n"
-          f"kinetic energy at the end       {h['kinetic_J'][-1] / whole:<8.4f} at rest\n"
-          f"not accounted for by the ledger {h['residual_J'][-1] / whole:.4f}")
-    picture(folder / name, "--field", "eps_q", "-o", results / f"mpm_{name}.png")
-    picture(folder / name, "--energy", "-o", results / f"mpm_{name}_energy.png")
-
-
-def column():
-    h, _ = run("column_soil", "column_soil.toml")
-    print("\ncolumn, Mohr-Coulomb soil (published: grains)")
-    collapse("column_soil", h, 2190)
-
-
-def biaxial(strain, stress):
-    print(f"\nbiaxial compression, stress on the plate (kPa); of the cell {stress.max() / 1e3:.1f} at "
+def biaxial(chosen):
+    strain, stress, _ = cell_test()
+    print(f"biaxial compression, stress on the plate (kPa); of the cell {stress.max() / 1e3:.1f} at "
           f"{strain[stress.argmax()]:.4f}; published 280 at 0.016, 220 from 0.08 on, finer meshes soften more\n"
           "case  peak    at strain  mean from 8 %  at the end  at strain  points of eps_q > 0.5, > 1")
-    for case in cases:
+    for case in chosen:
         options = [] if case == "C1" else ["--case", case]
         h, printed = run(case, "biaxial.toml", *options)
         axial, plate = -h["plate.way_y_m"] / 2, h["plate.force_y_N"] + 100e3
@@ -146,7 +117,7 @@ def biaxial(strain, stress):
               f"{np.mean(plate[-10:]) / 1e3:<11.1f} {axial[-1]:<10.3f} {np.mean(sheared > 0.5):.2f}, {np.mean(sheared > 1):.2f}")
         print("    " + "\n    ".join(printed.strip().splitlines()[-3:]))
         picture(folder / case, "--field", "eps_q", "-o", results / f"mpm_{case}.png")
-    picture(*(folder / case for case in cases), "--force", "plate.force_y", "--against", "plate.way_y", "-o",
+    picture(*(folder / case for case in chosen), "--force", "plate.force_y", "--against", "plate.way_y", "-o",
             results / "mpm_biaxial.png")
 
 
@@ -227,13 +198,11 @@ def main():
     folder.mkdir(parents=True, exist_ok=True)
     if cases == ["tolerance"]:
         tolerance()
-        return
-    speed()
-    strain, stress, volume = cell_test()
-    element(strain, stress, volume)
-    column()
-    if cases:
-        biaxial(strain, stress)
+    elif cases:
+        biaxial(cases[1:])
+    else:
+        speed()
+        element()
 
 
 if __name__ == "__main__":
