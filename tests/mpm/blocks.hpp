@@ -63,6 +63,16 @@ Plane<D> roller(int axis, int node, bool soil_above) {
   return plane;
 }
 
+/// Smooth, unless told.
+inline Body<2> half_space(const Vec<2>& centre, const Vec<2>& normal) {
+  Body<2> body;
+  body.kind = BodyKind::half_space;
+  body.centre = centre;
+  body.normal = normal;
+  body.rough = false;
+  return body;
+}
+
 /// Rollers on all sides of a box.
 template <int D>
 void enclose(Solver<D>& solver, const std::array<int, D>& cells) {
