@@ -23,11 +23,12 @@ namespace {
 const std::string scenes = RVELAB_SOURCE_DIR "/protocols/mpm/";
 
 /// A specimen of 400 discs at 20 kPa under a name that scenes know.
-void specimen(const Folder& folder, const std::string& name) {
+void specimen(const Folder& folder, const std::string& name, const std::vector<std::string>& more = {}) {
   const std::string from = RVELAB_TEST_DATA "/yade/dense_p20";
-  Child child(
-      {RVELAB_PROGRAM, "import", from + ".particles.csv", from + ".contacts.csv", from + ".json", "-o", folder / name},
-      folder / "out", folder / "err");
+  std::vector<std::string> words{
+      RVELAB_PROGRAM, "import", from + ".particles.csv", from + ".contacts.csv", from + ".json", "-o", folder / name};
+  words.insert(words.end(), more.begin(), more.end());
+  Child child(words, folder / "out", folder / "err");
   REQUIRE(child.wait() == 0);
 }
 
@@ -323,4 +324,22 @@ upper_m = [2, 1]
   again = set_up<2>(scene, 1, folder.path(), false);
   CHECK_THROWS_WITH(read_checkpoint<2>(*again, progress, folder / "run"),
                     Catch::Matchers::Contains("the RVEs of the checkpoint are missing"));
+}
+
+TEST_CASE("an increment that an RVE cannot make ends the run, and names the point and the reason") {
+  const Folder folder;
+  specimen(folder, "dense.h5", {"--set", "solver.max_overlap_ratio=0.02"});  // 0.008 at the start
+  auto model = set_up<2>(element({"boundary.top.motion=[[0, 0, -0.5]]", "time.duration_s=1",
+                                  "material.dense.tolerance_rel=0.1", "material.dense.tolerance_abs=1e-3"}),
+                         2, folder.path());
+  std::string message;
+  try {
+    for (int k = 0; k < 2000; ++k) model->solver.step(model->solver.stable_step());
+  } catch (const Mistake&) {
+    FAIL("it is nobody's mistake: exit code 1, not 2");
+  } catch (const std::runtime_error& failure) {
+    message = failure.what();
+  }
+  CHECK_THAT(message, Catch::Matchers::StartsWith("RVELAB_DISCARD, at the material point at ") &&
+                          Catch::Matchers::Contains("solver.max_overlap_ratio allows 0.02"));
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <sstream>
 
 #include "tools/mpm/files.hpp"
 
@@ -88,7 +89,12 @@ void Grains<D>::in_parts(Point<D>& point, std::int64_t id, const Mat<D>& gradien
       done *= 4;
       continue;
     }
-    need(status);
+    if (status < RVELAB_OK) {
+      std::ostringstream place;
+      place << point.position.transpose();
+      throw std::runtime_error(std::string(rvelab_status_name(status)) + ", at the material point at " + place.str() +
+                               " m: " + rvelab_last_error());
+    }
     ++done;
   }
   point.stress = from_nine<D>(sigma);

@@ -63,7 +63,9 @@ void place_bodies(const Scene& scene, Solver<D>& solver) {
     body.centre = vec<D>(each.centre);
     body.half = 0.5 * vec<D>(each.size);
     body.normal = vec<D>(each.normal);
-    if (body.kind == BodyKind::half_space) body.normal = (body.normal / body.normal.cwiseAbs().maxCoeff()).normalized();
+    if (body.kind == BodyKind::half_space) {  // squares of very small entries vanish
+      body.normal = (body.normal / body.normal.cwiseAbs().maxCoeff()).normalized();
+    }
     body.radius = each.radius;
     body.rough = each.rough;
     body.friction = each.friction;
