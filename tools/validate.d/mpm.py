@@ -42,6 +42,11 @@ def run(name, scene, *options):
     return dict(zip(names, np.loadtxt(history, delimiter=",", skiprows=1).T)), printed.read_text() if printed.exists() else ""
 
 
+def grain_steps(printed):
+    """Of a run and of those that it went on from: the last figure counts them all."""
+    return float(printed.replace(",", "").rsplit("grain-steps ", 1)[1].split()[0])
+
+
 def picture(*options):
     subprocess.run([sys.executable, "-B", ROOT / "tools/plot/mpm.py", *map(str, options)], check=True, stdout=subprocess.DEVNULL)
 
@@ -142,7 +147,7 @@ def under_load(scene, setting, *options, packed="dense"):
                      *(word for each in sets for word in ("--set", each)))
     stress = [np.interp(window, -h[f"{plate}.way_y_m"] / height, h[f"{plate}.force_y_N"] + 100e3) for window in WINDOWS]
     words = printed.replace(",", "").split()
-    return stress, float(words[words.index("grain-steps") + 1]), float(words[words.index("increments") - 3])
+    return stress, grain_steps(printed), float(words[words.index("increments") - 3])
 
 
 def errors(stress, best):

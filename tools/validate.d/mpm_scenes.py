@@ -17,7 +17,7 @@ import numpy as np
 
 sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../plot"))
 from records import STYLE, plt  # noqa: E402
-from mpm import cases, folder, picture, results, run, rvelab, specimen
+from mpm import cases, folder, grain_steps, picture, results, run, rvelab, specimen
 
 
 SURCHARGE, WIDTH = 20e3, 2.0  # Pa, m
@@ -37,9 +37,8 @@ def footing_run(name, soil, seed, *options):
     """Settlement over width, load over surcharge (a mean of five), and grain-steps of a footing's run."""
     h, printed = run(name, "footing.toml", "--case", soil, "--set",
                      f'material.soil.specimens=["{packing(soil, seed)}.h5"]', *options)
-    words = printed.replace(",", "").split()
     depth, load = -h["footing.way_y_m"] / WIDTH, 1 + h["footing.force_y_N"] / (WIDTH / 2) / SURCHARGE
-    return depth[2:-2], np.convolve(load, np.ones(5) / 5, mode="valid"), float(words[words.index("grain-steps") + 1])
+    return depth[2:-2], np.convolve(load, np.ones(5) / 5, mode="valid"), grain_steps(printed)
 
 
 def bearing_factors(soil, seed):
@@ -101,20 +100,36 @@ def first_level(depth, load):
 
 
 def footing_published():
-    """The size, speed and settlement of the paper, on soft soil, which takes the fewest grain-steps."""
-    depth, load, steps = footing_run("footing_soft_published", "soft", 1, "--published")
-    print("Soft soil at the published size in full: 12 x 8 m, 108 x 72 cells with one point each, 0.1 m/s\n")
-    depths = (0.025, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7)
-    print("d/B     " + "".join(f"{d:<8g}" for d in depths) + "\nload    "
-          + "".join(f"{np.interp(d, depth, load):<8.2f}" for d in depths))
+    """The size and speed of the paper: soft soil, which takes the fewest grain-steps, until beside the footing's edge a
+    grain of one RVE is pinched beyond half its radius, and dense soil beyond its peak."""
+    depth, load, steps = soft = footing_run("footing_soft_published", "soft", 1, "--published", "--set",
+                                            "time.duration_s=9.5")
+    print(f"Soft soil at the published size (12 x 8 m, 108 x 72 cells with one point each, 0.1 m/s), to d/B {depth[-1]:.2f}\n")
+    print_loads(depth, load, (0.025, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4))
     level = first_level(depth, load)
     if level:
         print(f"it first stops rising (mean over 0.05) at d/B {level[0]:.2f}, {level[1]:.2f} (published: ultimate load 3.7)")
-    print(f"grain-steps {steps:.3g}")
-    printed = (folder / "footing_soft_published.txt").read_text().strip().splitlines()
-    print("    " + "\n    ".join(printed[-3:]))
-    footing_figure({"soft": [(depth, load, steps)]}, {"soft": bearing_factors("soft", 1)}, "mpm_footing_published.png")
-    picture(folder / "footing_soft_published", "--field", "eps_q", "-o", results / "mpm_footing_soft.png")
+    print_costs("footing_soft_published", steps)
+    depth, load, steps = dense = footing_run("footing_dense_published", "dense", 1, "--published", "--set",
+                                             "time.duration_s=2.5")
+    print(f"\nDense soil at the published size, to d/B {depth[-1]:.2f}\n")
+    print_loads(depth, load, (0.0125, 0.025, 0.0375, 0.05, 0.0625, 0.075, 0.0875))
+    print(f"largest {load.max():.2f} at d/B {depth[load.argmax()]:.3f} (published 14.4)")
+    print_costs("footing_dense_published", steps)
+    factors = {soil: bearing_factors(soil, 1) for soil in ("soft", "dense")}
+    footing_figure({"soft": [soft], "dense": [dense]}, factors, "mpm_footing_published.png")
+    for name in ("soft", "dense"):
+        picture(folder / f"footing_{name}_published", "--field", "eps_q", "-o", results / f"mpm_footing_{name}.png")
+
+
+def print_loads(depth, load, depths):
+    print("d/B     " + "".join(f"{d:<8g}" for d in depths) + "\nload    "
+          + "".join(f"{np.interp(d, depth, load):<8.2f}" for d in depths))
+
+
+def print_costs(name, steps):
+    printed = (folder / f"{name}.txt").read_text().strip().splitlines()
+    print(f"grain-steps {steps:.3g}\n    " + "\n    ".join(printed[-3:]), flush=True)
 
 
 def front_of(frame, apart=1):
