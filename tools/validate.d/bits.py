@@ -61,7 +61,7 @@ def hash_of(path, group):
 
 class Program:
     def __init__(self, path, work):
-        self.path, self.work = str(pathlib.Path(path).resolve()), pathlib.Path(work)
+        self.path, self.work = str(pathlib.Path(path).resolve()), pathlib.Path(work).resolve()
         self.work.mkdir(parents=True, exist_ok=True)
 
     def __call__(self, *arguments, allowed=(0,)):
