@@ -35,9 +35,10 @@ struct Body {
   VelocityHistory<D> velocity;
   Reaction<D> reaction;
 
+  /// m, at a time in s.
   Vec<D> centre_at(double time) const { return centre + velocity.way(time); }
-  /// Distance from the surface, negative inside, and the outward normal there; r: from the centre. The nearest face of
-  /// a box is told by distances over `unit`, such as the sides of what is at r.
+  /// Distance from the surface (m), negative inside, and the outward unit normal there; r (m): from the centre. The
+  /// nearest face of a box is told by distances over `unit`, such as the sides of what is at r.
   double distance(const Vec<D>& r, Vec<D>& outward, const Vec<D>& unit = Vec<D>::Ones()) const;
 };
 
@@ -47,8 +48,8 @@ class Bodies {
   std::vector<Body<D>> all;
   Shape shape = Shape::bspline;  ///< that of the grid
 
-  /// Which points of surfaces soil is against at this time, and which nodes lie in a body that is met there; nodes
-  /// behind a plane follow the ones that they mirror.
+  /// Which points of surfaces soil is against at this time (s), and which nodes lie in a body with contact at nodes;
+  /// nodes behind a plane follow the ones that they mirror.
   void find(const Grid<D>& grid, const Planes<D>& planes, const std::vector<Point<D>>& soil, double time);
   /// Velocities v at the start of the step.
   void set_start(Grid<D>& grid, double time);
@@ -76,6 +77,7 @@ class Bodies {
   };
   void find_touched(const Grid<D>& grid, const std::vector<Point<D>>& soil, int body, double time);
   bool is_touched(const Grid<D>& grid, const typename Grid<D>::Index& node, unsigned char face) const;
+  /// False outside the grid.
   static bool nearest_node(const Grid<D>& grid, const Vec<D>& at, typename Grid<D>::Index& node);
   static unsigned char face_of(const Body<D>& body, const Vec<D>& normal);
   int surface_weights(double xi, double* weight) const;
