@@ -1,11 +1,9 @@
 #include "rvelab/h5/file_calls.hpp"
 
 #include <cstring>
-#include <mutex>
 #include <string>
 
 #include "rvelab/h5/pool_file.hpp"
-#include "rvelab/io/hdf5_handler.hpp"
 #include "rvelab/io/specimen_file.hpp"
 #include "rvelab/io/version.hpp"
 #include "rvelab/pool/status.hpp"
@@ -17,14 +15,10 @@ namespace {
 
 using pool::Status;
 
-std::mutex hdf5_mutex;  ///< its serial library takes one thread at a time
-
 /// Does a call on a file and says what became of it. What is wrong with the file is one kind of failure.
 template <class Call>
 std::int32_t told(const Receiver& failure, Call call) noexcept {
   try {
-    const std::lock_guard lock(hdf5_mutex);
-    const io::Hdf5Handler as_found;
     call();
     return std::int32_t(Status::ok);
   } catch (...) {
@@ -39,7 +33,7 @@ std::int32_t told(const Receiver& failure, Call call) noexcept {
 
 std::int32_t give_specimen(const char* path, const Receiver& specimen, const Receiver& failure) noexcept {
   return told(failure, [&] {
-    const std::vector<std::byte> bytes = to_bytes(io::read_specimen(path));
+    const std::vector<std::byte> bytes = to_bytes(io::read_specimen(path, io::Seal::required));
     specimen.take(specimen.self, bytes.data(), bytes.size());
   });
 }

@@ -72,7 +72,7 @@ void write_pool(const std::string& path, const pool::Population& population,
 }
 
 pool::Population read_pool(const std::string& path, const std::function<void(std::span<const std::byte>)>& take) {
-  const auto file = io::Hdf5File::open(path);
+  const auto file = io::Hdf5File::open(path, io::Seal::required);
   io::check_format(file, io::pool_format);
   Rows rows;
   Trials trials;

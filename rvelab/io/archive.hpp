@@ -12,6 +12,7 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/io/hdf5_file.hpp"
+#include "rvelab/io/schema.hpp"
 #include "rvelab/specimen/described.hpp"
 
 namespace rvelab::io {
@@ -30,10 +31,10 @@ struct Described {
 
   template <class Value, class Owner, class Member>
   void field(const fields::Path& path, Value& value, const Field<Owner, Member>& field) {
-    if (field.in_files == InFiles::always) {
+    if (field.in_files.since == 0) {
       archive.field(path.text(), value, field.units);
     } else {
-      archive.later_field(path.text(), value, field.units, Owner{}.*field.member);
+      archive.later_field(path.text(), value, field.units, field.in_files, Owner{}.*field.member);
     }
   }
   template <class Items, class... Columns>
@@ -42,11 +43,10 @@ struct Described {
   }
 };
 
-/// Writes values under a group of a file. `chunk_rows` > 0: columns of tables are stored in chunks of so many rows.
+/// Writes values under a group of a file.
 class Writer {
  public:
-  Writer(Hdf5File& file, std::string group, std::uint64_t chunk_rows = 0)
-      : file_(file), group_(std::move(group)), chunk_rows_(chunk_rows) {}
+  Writer(Hdf5File& file, std::string group) : file_(file), group_(std::move(group)) {}
 
   template <class Value>
   void field(const std::string& name, const Value& value, const std::string& units) {
@@ -59,7 +59,8 @@ class Writer {
         name, values.size(), [&](std::size_t k) -> const Value& { return values[k]; }, {values.size()}, units);
   }
   template <class Value>
-  void later_field(const std::string& name, const Value& value, const std::string& units, const Value& = {}) {
+  void later_field(const std::string& name, const Value& value, const std::string& units, InFiles,
+                   const Value& = {}) {
     field(name, value, units);
   }
   template <class Item, class... Columns>
@@ -81,13 +82,11 @@ class Writer {
   void column(const std::string& group, const std::vector<Item>& items, const Field<Item, Member>& column) {
     rows<Member>(
         group + "/" + column.name, items.size(),
-        [&](std::size_t k) -> const Member& { return items[k].*column.member; }, {items.size()}, column.units,
-        chunk_rows_);
+        [&](std::size_t k) -> const Member& { return items[k].*column.member; }, {items.size()}, column.units);
   }
 
   template <class Value, class At>
-  void rows(const std::string& name, std::size_t count, At at, Shape64 shape, const std::string& units,
-            std::uint64_t chunk_rows = 0) {
+  void rows(const std::string& name, std::size_t count, At at, Shape64 shape, const std::string& units) {
     if constexpr (Textual<Value>) {
       std::vector<std::string> texts;
       for (std::size_t k = 0; k < count; ++k) texts.push_back(text_of(at(k)));
@@ -97,19 +96,19 @@ class Writer {
       std::vector<typename Row::Scalar> scalars(count * Row::size);
       for (std::size_t k = 0; k < count; ++k) Row::put(at(k), scalars.data() + k * Row::size);
       shape.insert(shape.end(), Row::extents.begin(), Row::extents.end());
-      file_.write<typename Row::Scalar>(group_ + "/" + name, scalars, shape, units, chunk_rows);
+      file_.write<typename Row::Scalar>(group_ + "/" + name, scalars, shape, units);
     }
   }
 
   Hdf5File& file_;
   std::string group_;
-  std::uint64_t chunk_rows_;
 };
 
 /// Reads values from under a group of a file. InputError naming file and dataset if one is missing or does not fit.
 class Reader {
  public:
-  Reader(const Hdf5File& file, std::string group) : file_(file), group_(std::move(group)) {}
+  Reader(const Hdf5File& file, std::string group)
+      : file_(file), group_(std::move(group)), minor_(minor_version(file)) {}
 
   template <class Value>
   void field(const std::string& name, Value& value, const std::string&) {
@@ -118,19 +117,21 @@ class Reader {
   }
   template <class Value>
   void field(const std::string& name, std::vector<Value>& values, const std::string&) {
-    values.resize(leading_extent(name));
-    expect_shape<Value>(name, {values.size()});
+    const std::size_t size = leading_extent(name);
+    expect_shape<Value>(name, {size});
+    values.resize(size);
     rows<Value>(name, values.size(), [&](std::size_t k) -> Value& { return values[k]; });
   }
   /// A field that files of earlier versions do not have: left as it is there.
   template <class Value>
-  void later_field(const std::string& name, Value& value, const std::string& units, const Value& = {}) {
-    if (file_.has(group_ + "/" + name)) field(name, value, units);
+  void later_field(const std::string& name, Value& value, const std::string& units, InFiles in_files,
+                   const Value& = {}) {
+    if (is_there(name, in_files)) field(name, value, units);
   }
   /// Columns that files of earlier versions do not have keep the default of their item; the first is always there.
   template <class Item, class First, class... Columns>
   void table(const std::string& group, std::vector<Item>& items, const First& first, const Columns&... columns) {
-    items.assign(leading_extent(group + "/" + first.name), Item{});
+    items.assign(rows_of(group, first), Item{});
     column(group, items, first);
     (column(group, items, columns), ...);
   }
@@ -148,9 +149,22 @@ class Reader {
   template <class Item, class Member>
   void column(const std::string& group, std::vector<Item>& items, const Field<Item, Member>& column) {
     const std::string name = group + "/" + column.name;
-    if (column.in_files == InFiles::added_later && !file_.has(group_ + "/" + name)) return;
+    if (!is_there(name, column.in_files)) return;
     expect_shape<Member>(name, {items.size()});
     rows<Member>(name, items.size(), [&](std::size_t k) -> Member& { return items[k].*column.member; });
+  }
+
+  /// False where the file is of a version before that of the field, and does not have it. From that version on what is
+  /// missing is refused, by those who read it.
+  bool is_there(const std::string& name, InFiles in_files) const {
+    return minor_ >= in_files.since || file_.has(group_ + "/" + name);
+  }
+
+  template <class Item, class Member>
+  std::size_t rows_of(const std::string& group, const Field<Item, Member>& first) const {
+    const std::size_t rows = leading_extent(group + "/" + first.name);
+    expect_shape<Member>(group + "/" + first.name, {rows});  // before there is memory for so many
+    return rows;
   }
 
   std::size_t leading_extent(const std::string& name) const {
@@ -195,6 +209,7 @@ class Reader {
 
   const Hdf5File& file_;
   std::string group_;
+  int minor_;
 };
 
 }  // namespace rvelab::io

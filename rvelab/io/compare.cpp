@@ -7,6 +7,7 @@
 
 #include "rvelab/io/hdf5_file.hpp"
 #include "rvelab/io/schema.hpp"
+#include "rvelab/keys/shortened.hpp"
 
 namespace rvelab::io {
 namespace {
@@ -56,12 +57,7 @@ std::string value_in_words(const std::string& type, const std::byte* bytes, std:
   return as_bytes(bytes, size);
 }
 
-/// Text on one line and not too long to read.
-std::string quoted(const std::string& text) {
-  std::string line;
-  for (const char letter : text.substr(0, 60)) line += letter == '\n' ? std::string("\\n") : std::string(1, letter);
-  return "\"" + line + (text.size() > 60 ? "..." : "") + "\"";
-}
+std::string quoted(const std::string& text) { return "\"" + keys::shortened(text) + "\""; }
 
 class Comparer {
  public:

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
+#include <set>
 
 #include "rvelab/error.hpp"
 #include "rvelab/io/utf8.hpp"
+#include "rvelab/keys/regular_file.hpp"
+#include "rvelab/keys/shortened.hpp"
 
 namespace rvelab::io {
 namespace {
@@ -31,18 +31,9 @@ bool parse(std::string_view text, Value& value) {
   return error == std::errc() && end == text.data() + text.size();
 }
 
-std::string whole_file(const std::string& path) {
-  if (!std::filesystem::is_regular_file(path)) throw InputError(path + ": no such file; give the path of a CSV file");
-  std::ifstream input(path, std::ios::binary);
-  std::ostringstream whole;
-  whole << input.rdbuf();
-  if (!input) throw InputError(path + ": cannot be read; check that it is not empty and its permissions");
-  return std::move(whole).str();
-}
-
 }  // namespace
 
-CsvTable::CsvTable(const std::string& path) : CsvTable(path, whole_file(path)) {}
+CsvTable::CsvTable(const std::string& path) : CsvTable(path, keys::whole_file<std::string>(path, "a CSV file")) {}
 
 /// Calls `put` with each cell of a line, without quotation marks.
 template <class Put>
@@ -116,10 +107,10 @@ CsvTable::CsvTable(const std::string& path, std::string text) : path_(path), con
   if (columns_.empty()) {
     throw InputError(path + ": has no header line; allowed: column names, then rows of numbers; add the header");
   }
-  for (std::size_t k = 0; k < columns_.size(); ++k) {
-    if (std::count(columns_.begin(), columns_.end(), columns_[k]) > 1) {
-      throw InputError(path + ": the header has the column " + columns_[k] + " twice; allowed: once; rename one");
-    }
+  std::set<std::string_view> names;
+  for (const std::string& name : columns_) {
+    if (names.insert(name).second) continue;
+    throw InputError(path + ": the header has the column " + keys::shortened(name) + " twice; allowed: once; rename one");
   }
 }
 
@@ -181,7 +172,7 @@ std::int64_t CsvTable::integer(std::size_t row, std::size_t column) const {
 std::string CsvTable::place(std::size_t row) const { return path_ + ":" + std::to_string(lines_[row]); }
 
 std::string CsvTable::place(std::size_t row, std::size_t column) const {
-  return place(row) + ": column " + columns_[column] + " = " + std::string(text(row, column));
+  return place(row) + ": column " + keys::shortened(columns_[column]) + " = " + keys::shortened(std::string(text(row, column)));
 }
 
 }  // namespace rvelab::io

@@ -28,7 +28,8 @@ class Digest {
     for (const Value& value : values) add(value);
   }
   template <class Value>
-  void later_field(const std::string& name, const Value& value, const std::string& units, const Value& initial) {
+  void later_field(const std::string& name, const Value& value, const std::string& units, InFiles,
+                   const Value& initial) {
     if (value != initial) field(name, value, units);
   }
   template <class Item, class... Columns>
@@ -40,7 +41,7 @@ class Digest {
  private:
   template <class Item, class Member>
   void entry(const Item& item, const Field<Item, Member>& column) {
-    if (column.in_files == InFiles::always || item.*column.member != Item{}.*column.member) add(item.*column.member);
+    if (column.in_files.since == 0 || item.*column.member != Item{}.*column.member) add(item.*column.member);
   }
   template <class Value>
   void add(const Value& value) {

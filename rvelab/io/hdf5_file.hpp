@@ -1,9 +1,9 @@
-// HDF5 behind one small class: typed arrays, text and attributes by name; its errors as rvelab's own.
+// An HDF5 file as one small class: typed arrays, text and attributes by name; its errors as rvelab's own.
 //
-// hdf5_*.cpp know HDF5 and nothing of grains; no other file includes HDF5's headers. Files are built in memory and
-// written by publish(), so that no HDF5 file is ever open for writing on disc and a full disc is one plain error. What
-// is written is sealed (seal.hpp), and nothing that may be damaged is shown to HDF5 in this process (hdf5_open.cpp).
-// HDF5's serial library is not thread-safe: one thread at a time.
+// hdf5_*.cpp know the format and nothing of grains. A file is read whole, its seal is held against its bytes (seal.hpp),
+// and what is in it is taken apart in memory (hdf5_tree.hpp), with every address held against the end of the file. Files
+// are built in memory and written by publish(), so that no HDF5 file is ever open for writing on disc and a full disc is
+// one plain error.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +12,8 @@
 #include <span>
 #include <string>
 #include <vector>
+
+#include "rvelab/io/hdf5_tree.hpp"
 
 namespace rvelab::io {
 
@@ -27,7 +29,7 @@ struct Hdf5Entry {
 
 /// Values as a file stores them, for comparison: bytes in the file's own type, or texts, however long they may be.
 struct StoredValues {
-  std::string type;  ///< as Hdf5Entry says it, with the byte order or size where they are not the usual ones
+  std::string type;  ///< as Hdf5Entry says it
   Shape64 shape;
   std::vector<std::byte> bytes;
   std::vector<std::string> texts;
@@ -40,45 +42,39 @@ struct Hdf5Object {
   std::map<std::string, StoredValues> attributes;
 };
 
-/// An HDF5 file, move only. Names are full paths; groups between are made as needed. Scalars: double, int32, int64,
-/// uint64, uint8, stored little-endian. All members throw InputError or Error naming file, dataset and remedy.
+/// Whether a file may lack its seal: what a library reads in a host must not.
+enum class Seal { required, if_any };
+
+/// An HDF5 file in memory, move only. Names are full paths; groups between are made as needed. Scalars: double, int32,
+/// int64, uint64, uint8. All members throw InputError or Error naming file, dataset and remedy.
 class Hdf5File {
  public:
-  /// Opens an existing file for reading, once its seal was found to fit its bytes. One without a seal is copied by a
-  /// child process with limits on time and memory, and the copy is opened: whatever is wrong with it, this process
-  /// goes on. InputError: missing, not HDF5, damaged. Error: no memory or process for the child.
-  static Hdf5File open(const std::string& path);
-  /// Opens bytes that a checksum vouches for, as image() gives them, for reading; `path` serves the messages only.
-  /// InputError: not HDF5.
+  /// Reads an existing file, once its seal was found to fit its bytes. InputError: missing, no regular file, not HDF5,
+  /// damaged, with parts that rvelab does not write (hdf5_tree.hpp), without the seal that is required.
+  static Hdf5File open(const std::string& path, Seal seal = Seal::if_any);
+  /// Reads bytes that a checksum vouches for, as image() gives them; `path` serves the messages only. InputError: not
+  /// HDF5.
   static Hdf5File from_image(const std::string& path, std::span<const std::byte> bytes);
-  /// An empty file in memory; `path` serves the messages only.
+  /// An empty file; `path` serves the messages only.
   static Hdf5File in_memory(const std::string& path);
-
-  Hdf5File(Hdf5File&& other) noexcept;
-  Hdf5File& operator=(Hdf5File&& other) noexcept;
-  Hdf5File(const Hdf5File&) = delete;
-  Hdf5File& operator=(const Hdf5File&) = delete;
-  ~Hdf5File();
 
   const std::string& path() const { return path_; }
   /// A checksum vouches for its bytes. False: opened without a seal, or made in memory.
   bool sealed() const { return sealed_; }
 
-  /// Writes values, row-major, of the given shape, with the attribute `units`; in chunks of at most `chunk_rows` of the
-  /// outermost extent, or (0) in one piece.
+  /// Writes values, row-major, of the given shape, with the attribute `units`.
   template <class Scalar>
-  void write(const std::string& name, std::span<const Scalar> values, const Shape64& shape, const std::string& units,
-             std::uint64_t chunk_rows = 0);
+  void write(const std::string& name, std::span<const Scalar> values, const Shape64& shape, const std::string& units);
   void write_text(const std::string& name, const std::vector<std::string>& values, const Shape64& shape);
 
-  /// Reads a dataset whole, row-major. InputError if it is missing, of another kind (text for numbers) or does not
-  /// convert to Scalar without loss of kind (floating for integer).
+  /// Reads a dataset whole, row-major. InputError if it is missing, of another kind (text for numbers, floating for
+  /// integers), or holds an integer that a Scalar does not.
   template <class Scalar>
   std::vector<Scalar> read(const std::string& name) const;
   std::vector<std::string> read_text(const std::string& name) const;
 
-  bool has(const std::string& name) const;
-  Shape64 shape(const std::string& name) const;
+  bool has(const std::string& name) const { return tree_.objects.contains(name); }
+  Shape64 shape(const std::string& name) const { return dataset(name).shape; }
 
   /// Text attributes of the file itself (of its root group).
   void set_attribute(const std::string& name, const std::string& value);
@@ -91,30 +87,32 @@ class Hdf5File {
   /// All groups and datasets, in the order of their names.
   std::vector<Hdf5Object> objects() const;
 
-  /// A dataset as it is stored. InputError if it is missing or of a type that holds references.
+  /// A dataset as it is stored. InputError if it is missing.
   StoredValues stored(const std::string& name) const;
 
   /// Names of the members of a group, in order; none if there is no such group.
   std::vector<std::string> groups(const std::string& group) const;
 
-  /// Writes everything that another file holds, dates aside; this one is empty.
-  void copy(const Hdf5File& from);
-
   /// The bytes of the file, without a seal.
-  std::vector<std::byte> image() const;
+  std::vector<std::byte> image() const { return hdf5::write(tree_); }
 
  private:
-  Hdf5File(std::string path, std::int64_t id, bool sealed) : path_(std::move(path)), id_(id), sealed_(sealed) {}
-  std::string path_;
-  std::int64_t id_ = -1;
-  bool sealed_ = false;
-};
+  Hdf5File(std::string path, bool sealed) : path_(std::move(path)), sealed_(sealed) {}
+  const hdf5::Values& dataset(const std::string& name) const;
+  hdf5::Values kept(hdf5::Type type, const Shape64& shape, std::span<const std::byte> bytes);
+  hdf5::Values kept(const std::vector<std::string>& texts, const Shape64& shape);
+  void put(const std::string& name, hdf5::Values values, const std::string& units);
 
-/// Version of the HDF5 library in use, for example "1.10.8".
-std::string hdf5_version();
+  std::string path_;
+  bool sealed_ = false;
+  hdf5::Tree tree_;
+};
 
 /// Builds a file with `fill` and writes it, sealed, as publish_bytes does (publish.hpp). The same content gives the
 /// same bytes.
 void publish(const std::string& path, const std::function<void(Hdf5File&)>& fill);
+
+/// Writes what a file holds to another path, sealed.
+void publish(const std::string& path, const Hdf5File& file);
 
 }  // namespace rvelab::io

@@ -150,6 +150,31 @@ void check_normal_forces(const CsvTable& table, const std::vector<Contact>& cont
   }
 }
 
+/// Force and moment that friction and the rolling cap do not let stand were never those of a contact: the first step
+/// would cut them without a word.
+void check_caps(const CsvTable& table, const std::vector<Contact>& contacts, const Specimen& specimen,
+                const ContactColumns& columns) {
+  double largest = 0;
+  for (std::size_t row = 0; row < table.rows(); ++row) largest = std::max(largest, table.number(row, columns.fn));
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const PairParameters pair = parameters_of(specimen, contacts[row]);
+    const double pressing = with_law(specimen.contact.law, [&](auto law) {
+      return decltype(law)::Force::pressing_force(normal_force_of(specimen, contacts[row]), pair.law_constant);
+    });
+    const auto expect = [&](double value, double factor, const char* what, const char* unit, const char* cap) {
+      if (value <= factor * pressing + agreement * std::max(factor, 1e-3) * largest) return;
+      throw InputError(table.place(row) + ": " + pair_of(table, columns, row) + " has a " + what + " of " +
+                       text(value) + " " + unit + "; allowed: up to " + text(factor * pressing) + " " + unit + ", " +
+                       cap + " times the normal force; give the parameters that belong to this file (others are put "
+                       "over them by --set)");
+    };
+    expect(contacts[row].tangential_force.norm(), pair.friction, "tangential force", "N", "friction");
+    if (specimen.contact.rolling) {
+      expect(contacts[row].rolling_moment.norm(), pair.moment_cap, "rolling moment", "N m", "eta and the radius");
+    }
+  }
+}
+
 }  // namespace
 
 Vector3 branch_of(const Specimen& specimen, const Contact& contact) {
@@ -256,6 +281,7 @@ void read_contacts(const CsvTable& table, const std::vector<Image>& wraps, Speci
   }
   check_stiffnesses(table, contacts, specimen, columns);
   check_normal_forces(table, contacts, specimen, columns);
+  check_caps(table, contacts, specimen, columns);
 
   std::vector<std::size_t> order(table.rows());
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -14,6 +14,7 @@
 #include "rvelab/io/import_meta.hpp"
 #include "rvelab/io/lammps_dump.hpp"
 #include "rvelab/keys/material_toml.hpp"
+#include "rvelab/keys/regular_file.hpp"
 
 namespace rvelab::io {
 namespace {
@@ -173,11 +174,12 @@ struct Particles {
 };
 
 Particles read_particles(const std::string& path) {
-  if (is_lammps_dump(path)) {
-    auto dump = read_lammps_dump(path);
+  auto text = keys::whole_file<std::string>(path, "a CSV file or a dump of LAMMPS");
+  if (is_lammps_dump(text)) {
+    auto dump = read_lammps_dump(path, text);
     return {std::move(dump.atoms), dump.dimension, dump.cell};
   }
-  auto table = std::make_unique<CsvTable>(path);
+  auto table = std::make_unique<CsvTable>(path, std::move(text));
   const int dimension = table->has("z") ? 3 : 2;
   return {std::move(table), dimension, std::nullopt};
 }
@@ -193,6 +195,15 @@ void take_cell(std::optional<Matrix3>& cell, std::string& source, const Matrix3&
   source = from;
 }
 
+/// What META.json says of the number of rows must be so: a table that was cut ends at a whole line as well.
+void expect_rows(const CsvTable& table, const std::optional<std::size_t>& stated, const char* key,
+                 const std::optional<std::string>& meta) {
+  if (!stated || *stated == table.rows()) return;
+  throw InputError(table.path() + ": has " + std::to_string(table.rows()) + " rows; allowed: " +
+                   std::to_string(*stated) + ", which is " + key + " in " + *meta +
+                   "; the file is cut, or of another state: give the files that belong together");
+}
+
 }  // namespace
 
 Specimen import_csv(const std::string& particles_path, const std::optional<std::string>& contacts_path,
@@ -202,9 +213,12 @@ Specimen import_csv(const std::string& particles_path, const std::optional<std::
   int dimension = particles.dimension;
   std::optional<Matrix3> vectors = particles.cell;
   std::string source = particles_path;
+  std::optional<std::size_t> contact_rows;
   if (meta_json_path) {
     const auto meta = read_meta(*meta_json_path, specimen, !options.material_path);
     dimension = meta.dimension;
+    expect_rows(*particles.table, meta.particles, "n_particles", meta_json_path);
+    contact_rows = meta.contacts;
     if (meta.cell) take_cell(vectors, source, *meta.cell, *meta_json_path, "its hSize");
     specimen.state.reference_pressure = meta.reference_pressure;
   }
@@ -232,7 +246,11 @@ Specimen import_csv(const std::string& particles_path, const std::optional<std::
 
   if (dimension == 2 && particles.table->has("a") && particles.table->has("b")) specimen.shape = Shape::ellipse;
   const auto wraps = read_grains(*particles.table, specimen);
-  if (contacts_path) read_contacts(CsvTable(*contacts_path), wraps, specimen);
+  if (contacts_path) {
+    const CsvTable table(*contacts_path);
+    expect_rows(table, contact_rows, "n_contacts", meta_json_path);
+    read_contacts(table, wraps, specimen);
+  }
 
   keys::set_keys(specimen, options.settings);
   check_parameters(specimen.contact, specimen.damping, specimen.materials);

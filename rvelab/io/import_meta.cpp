@@ -1,11 +1,12 @@
 #include "rvelab/io/import_meta.hpp"
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "rvelab/error.hpp"
+#include "rvelab/io/text_file.hpp"
+#include "rvelab/keys/regular_file.hpp"
+#include "rvelab/keys/shortened.hpp"
 
 namespace rvelab::io {
 namespace {
@@ -15,12 +16,14 @@ using Json = nlohmann::json;
 class MetaFile {
  public:
   explicit MetaFile(const std::string& path) : path_(path) {
-    if (!std::filesystem::is_regular_file(path)) fail("no such file; give the path of the packing's JSON file");
-    std::ifstream input(path);
+    const auto text = keys::whole_file<std::string>(path, "the packing's JSON file", 16 << 20);
     try {
-      json_ = Json::parse(input);
+      json_ = Json::parse(text);
     } catch (const Json::exception& error) {  // a number beyond all doubles is no parse error to the library
-      fail(std::string("is not JSON (") + error.what() + "); correct the file");
+      const std::string what = error.what();
+      const auto token = what.find("last read: ");
+      const std::string begin = what.substr(0, token), rest = token == std::string::npos ? "" : what.substr(token);
+      fail("is not JSON (" + begin + keys::shortened(rest) + "); correct the file");
     }
     if (!json_.is_object()) fail("is not a JSON object; allowed: {\"dim\": 2, ...}; give the packing's JSON file");
   }
@@ -35,6 +38,17 @@ class MetaFile {
   }
   double number_or_zero(const char* key) const { return has(key) ? number(key) : 0; }
 
+  /// A number of rows; none if the key is not there.
+  std::optional<std::size_t> count(const char* key) const {
+    if (!has(key)) return std::nullopt;
+    const Json& value = json_[key];
+    if (!value.is_number_unsigned()) {
+      fail(std::string(key) + " = " + (value.is_structured() ? "a list or an object" : keys::shortened(value.dump())) +
+           " is not a number of rows; allowed: whole numbers from 0; correct it");
+    }
+    return value.get<std::size_t>();
+  }
+
   Matrix3 matrix(const char* key, int dimension) const {
     const Json& rows = json_[key];
     const auto size = static_cast<std::size_t>(dimension);
@@ -47,7 +61,7 @@ class MetaFile {
       }
     }
     if (!square) {
-      fail(std::string(key) + " = " + rows.dump() + "; allowed: a matrix of dim rows and dim columns; correct it");
+      fail(std::string(key) + " is no matrix; allowed: dim rows of dim numbers each; correct it");
     }
     return matrix;
   }
@@ -55,7 +69,9 @@ class MetaFile {
  private:
   double checked(const char* key, const Json& value) const {
     if (!value.is_number() || !std::isfinite(value.get<double>())) {
-      fail(std::string(key) + " = " + value.dump() + " is not a finite number; allowed: numbers; correct it");
+      // Lists in lists may go so deep that nobody writes them out.
+      const std::string found = value.is_structured() ? "a list or an object" : keys::shortened(value.dump());
+      fail(std::string(key) + " = " + found + " is not a finite number; allowed: numbers; correct it");
     }
     return value.get<double>();
   }
@@ -105,7 +121,7 @@ Meta read_meta(const std::string& path, Specimen& specimen, bool parameters) {
   Meta meta{};
   const double dimension = file.number("dim");
   if (dimension != 2 && dimension != 3) {
-    file.fail("dim = " + std::to_string(dimension) + "; allowed: 2 (discs), 3 (spheres); correct it");
+    file.fail("dim = " + exact(dimension) + "; allowed: 2 (discs), 3 (spheres); correct it");
   }
   meta.dimension = static_cast<int>(dimension);
   if (meta.dimension == 2 && file.has("thickness_m")) meta.thickness = file.number("thickness_m");
@@ -120,9 +136,11 @@ Meta read_meta(const std::string& path, Specimen& specimen, bool parameters) {
   }
   meta.reference_pressure = file.number_or_zero("p0_Pa");
   if (meta.reference_pressure < 0) {
-    file.fail("p0_Pa = " + std::to_string(meta.reference_pressure) +
+    file.fail("p0_Pa = " + exact(meta.reference_pressure) +
               "; allowed: >= 0 (compression positive); correct it");
   }
+  meta.particles = file.count("n_particles");
+  meta.contacts = file.count("n_contacts");
   if (parameters) read_parameters(file, specimen);
   return meta;
 }

@@ -14,6 +14,7 @@ struct Meta {
   std::optional<Matrix3> cell;      ///< m, cell vectors as columns, laboratory frame; 2D: (2, 2) is the thickness
   std::optional<double> thickness;  ///< m, 2D
   double reference_pressure;        ///< Pa, 0 if the file has none
+  std::optional<std::size_t> particles, contacts;  ///< rows that the tables beside it have
 };
 
 /// Reads the file; with `parameters`, sets the material, law and rolling of the specimen from it.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
 #include <iterator>
 #include <sstream>
 #include <vector>
@@ -15,8 +14,8 @@ namespace {
 
 constexpr const char* first_item = "ITEM: TIMESTEP";
 
-std::vector<std::string> lines_of(const std::string& path) {
-  std::ifstream input(path, std::ios::binary);
+std::vector<std::string> lines_of(const std::string& text) {
+  std::istringstream input(text);
   std::vector<std::string> lines;
   for (std::string line; std::getline(input, line);) lines.push_back(line);
   return lines;
@@ -143,14 +142,10 @@ class Columns {
 
 }  // namespace
 
-bool is_lammps_dump(const std::string& path) {
-  std::ifstream input(path, std::ios::binary);
-  std::string line;
-  return std::getline(input, line) && line.starts_with(first_item);
-}
+bool is_lammps_dump(const std::string& text) { return text.starts_with(first_item); }
 
-LammpsDump read_lammps_dump(const std::string& path) {
-  const auto lines = lines_of(path);
+LammpsDump read_lammps_dump(const std::string& path, const std::string& text) {
+  const auto lines = lines_of(text);
   std::size_t begin = lines.size();
   while (begin > 0 && !lines[begin - 1].starts_with(first_item)) --begin;
   if (begin == 0) fail(path, 0, "is no text dump of LAMMPS; allowed: ITEM: TIMESTEP first; give a dump");
@@ -158,19 +153,19 @@ LammpsDump read_lammps_dump(const std::string& path) {
   const Box bounds = box_of(path, lines, box);
   LammpsDump dump{3, bounds.cell, nullptr};
 
-  std::string text(atoms, '\n');  // so that rows keep the numbers of their lines
+  std::string table(atoms, '\n');  // so that rows keep the numbers of their lines
   auto header = words_of(lines[atoms].substr(std::string("ITEM: ATOMS").size()));
   const Columns columns(header, bounds);
   if (columns.mixed(header)) {
     fail(path, atoms, "has some coordinates in parts of the box (xs) and others not; allowed: all alike; dump x y z");
   }
-  text += as_row(header);
+  table += as_row(header);
   for (std::size_t k = atoms + 1; k < lines.size(); ++k) {
     auto row = words_of(lines[k]);
     columns.convert(row);
-    text += as_row(row);
+    table += as_row(row);
   }
-  dump.atoms = std::make_unique<CsvTable>(path, text);
+  dump.atoms = std::make_unique<CsvTable>(path, table);
   if (dump.atoms->has("z") && dump.atoms->rows() > 0) {
     const auto z = dump.atoms->column({"z"});
     bool flat = true;

@@ -18,10 +18,10 @@ struct LammpsDump {
   std::unique_ptr<CsvTable> atoms;
 };
 
-/// Whether a file begins as a text dump does.
-bool is_lammps_dump(const std::string& path);
+/// Whether a text begins as a dump does.
+bool is_lammps_dump(const std::string& text);
 
-/// Reads a dump in SI units. InputError naming the line: not a dump, no box, a box that is not periodic.
-LammpsDump read_lammps_dump(const std::string& path);
+/// Takes a dump in SI units apart; `path` serves the messages. InputError naming the line: not a dump, no box, a box that is not periodic.
+LammpsDump read_lammps_dump(const std::string& path, const std::string& text);
 
 }  // namespace rvelab::io

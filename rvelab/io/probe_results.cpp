@@ -1,6 +1,7 @@
 #include "rvelab/io/probe_results.hpp"
 
 #include "rvelab/error.hpp"
+#include "rvelab/io/schema.hpp"
 
 namespace rvelab::io {
 
@@ -18,7 +19,7 @@ void put_probes(Hdf5File& file, const std::vector<records::ProbeResult>& probes)
 }
 
 std::vector<records::ProbeResult> get_probes(const Hdf5File& file) {
-  if (!file.has("/probes/stage")) return {};  // version 1.0
+  if (minor_version(file) == 0 && !file.has("/probes/stage")) return {};
   const auto stages = file.read_text("/probes/stage");
   const auto rows = file.read<double>("/probes/stiffness_Pa");
   const Shape64 shape = file.shape("/probes/stiffness_Pa");

@@ -13,8 +13,6 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/io/descriptor.hpp"
-#include "rvelab/io/hdf5_file.hpp"
-#include "rvelab/io/seal.hpp"
 
 namespace rvelab::io {
 namespace fs = std::filesystem;
@@ -116,13 +114,6 @@ void publish_bytes(const std::string& path, std::initializer_list<std::span<cons
     if (::rename(temporary.c_str(), place.c_str()) != 0) fail(path, temporary, errno);
   }
   sync_folder_of(place);
-}
-
-void publish(const std::string& path, const std::function<void(Hdf5File&)>& fill) {
-  auto file = Hdf5File::in_memory(path);
-  fill(file);
-  const auto bytes = file.image();
-  publish_bytes(path, {bytes, seal_of(bytes)});
 }
 
 }  // namespace rvelab::io

@@ -22,9 +22,6 @@
 namespace rvelab::io {
 namespace {
 
-/// Rows of /records in one chunk: a file of some hundred rows is one chunk a column.
-constexpr std::uint64_t chunk_rows = 512;
-
 /// Every field of a test but records and probes, once for both directions.
 template <class Archive, class Value>
 void describe(Archive& archive, Value& test) {
@@ -37,9 +34,9 @@ void describe(Archive& archive, Value& test) {
   archive.field("provenance/protocol", test.provenance.protocol, "-");
   archive.field("provenance/version", test.provenance.version, "-");
   archive.field("provenance/compiler", test.provenance.compiler, "-");
-  archive.later_field("provenance/packages", test.provenance.packages, "-");
-  archive.later_field("provenance/specimen_crc32c", test.provenance.specimen_crc32c, "1");
-  archive.later_field("complete", test.complete, "1");
+  archive.later_field("provenance/packages", test.provenance.packages, "-", InFiles{1});
+  archive.later_field("provenance/specimen_crc32c", test.provenance.specimen_crc32c, "1", InFiles{1});
+  archive.later_field("complete", test.complete, "1", InFiles{1});
 }
 
 std::string snapshot_group(std::size_t record) {
@@ -48,21 +45,35 @@ std::string snapshot_group(std::size_t record) {
   return name;
 }
 
-Hdf5File open_records(const std::string& path) {
-  auto file = Hdf5File::open(path);
-  if (checked_kind(file) != FileKind::records) {
+std::shared_ptr<const Hdf5File> open_records(const std::string& path) {
+  auto file = std::make_shared<const Hdf5File>(Hdf5File::open(path));
+  if (checked_kind(*file) != FileKind::records) {
     throw InputError(path + ": holds a specimen and no records; give a file that `rvelab run` wrote");
   }
   return file;
 }
 
+/// Names of the quantities that the records have, as the protocol chose them.
+std::vector<std::string> quantities_in(const std::vector<records::Record>& records) {
+  const std::uint64_t chosen = (records.empty() ? records::Record{} : records.front()).quantities;
+  std::vector<std::string> names;
+  records::Quantities::for_each([&]<class Quantity>(std::type_identity<Quantity>, std::uint64_t bit) {
+    if ((chosen & bit) != 0) names.emplace_back(Quantity::text.name);
+  });
+  return names;
+}
+
 /// The file alone, without its journal.
-RecordedTest test_in(const Hdf5File& file) {
+RecordedTest test_in(const std::shared_ptr<const Hdf5File>& opened) {
+  const Hdf5File& file = *opened;
   const std::string& path = file.path();
   RecordedTest test;
   Reader reader(file, "");
   describe(reader, test);
   records::describe_records(reader, test.result.records);
+  std::vector<std::string> quantities;
+  reader.later_field("test/quantities", quantities, "-", InFiles{10});
+  for (const std::string& name : quantities) file.shape("/records/" + name);  // says so if one is missing
   test.result.probes = get_probes(file);
   if (!test.complete) {
     records::describe_progress(reader, test.checkpoint.progress);
@@ -77,7 +88,7 @@ RecordedTest test_in(const Hdf5File& file) {
       throw InputError(path + ": the group /snapshots/" + name +
                        " is not named by the number of a record; the file is damaged: write it again");
     }
-    test.snapshots.push_back({number, path});
+    test.snapshots.push_back({number, "", 0, 0, opened});
   }
   std::sort(test.snapshots.begin(), test.snapshots.end(),
             [](const Snapshot& a, const Snapshot& b) { return a.record < b.record; });
@@ -102,7 +113,7 @@ Provenance provenance_of(const std::string& protocol_text, const Specimen& start
   return {protocol_text,
           version,
           compiler(),
-          {"hdf5 " + hdf5_version(), "eigen " + dotted(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION),
+          {"eigen " + dotted(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION),
            "toml++ " + dotted(TOML_LIB_MAJOR, TOML_LIB_MINOR, TOML_LIB_PATCH)},
           digest(start)};
 }
@@ -110,9 +121,10 @@ Provenance provenance_of(const std::string& protocol_text, const Specimen& start
 void write_recorded_test(const RecordedTest& test, const std::string& path) {
   publish(path, [&](Hdf5File& file) {
     stamp(file, FileKind::records);
-    Writer writer(file, "", chunk_rows);
+    Writer writer(file, "");
     describe(writer, test);
     records::describe_records(writer, test.result.records);
+    writer.field("test/quantities", quantities_in(test.result.records), "-");
     put_probes(file, test.result.probes);
     if (!test.complete) records::describe_progress(writer, test.checkpoint.progress);
     put_specimen(file, "/specimen", test.checkpoint.specimen);
@@ -123,25 +135,26 @@ void write_recorded_test(const RecordedTest& test, const std::string& path) {
 }
 
 SealedFile seal_file(const std::string& path, const std::string& output) {
-  const auto file = Hdf5File::open(path);
+  const auto opened = std::make_shared<const Hdf5File>(Hdf5File::open(path));
+  const Hdf5File& file = *opened;
   const SealedFile found{kind_without_seal(file), file.sealed(), file.entries().size()};
   // What cannot be read as one of rvelab's would only be refused later.
   if (found.kind == FileKind::specimen) {
     expect_opens(get_specimen(file, specimen_group(file)), path);
   } else {
-    const RecordedTest test = test_in(file);
+    const RecordedTest test = test_in(opened);
     expect_opens(test.checkpoint.specimen, path);
     for (const Snapshot& snapshot : test.snapshots) {
       expect_opens(get_specimen(file, snapshot_group(snapshot.record)), path + ", " + snapshot_group(snapshot.record));
     }
   }
-  publish(output, [&](Hdf5File& copy) { copy.copy(file); });
+  publish(output, file);
   return found;
 }
 
 Specimen read_snapshot(const Snapshot& snapshot) {
-  if (snapshot.payload_at == 0) return get_specimen(open_records(snapshot.file), snapshot_group(snapshot.record));
-  return decode_snapshot(snapshot.file, read_payload(snapshot.file, snapshot.payload_at, snapshot.length));
+  if (snapshot.within) return get_specimen(*snapshot.within, snapshot_group(snapshot.record));
+  return decode_snapshot(snapshot.journal, read_payload(snapshot.journal, snapshot.payload_at, snapshot.length));
 }
 
 RecordedTest read_recorded_test(const std::string& path) {

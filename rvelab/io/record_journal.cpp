@@ -127,6 +127,7 @@ std::size_t take_number(const std::string& path, std::span<const std::byte>& pay
 template <class Fill>
 Bytes image_of(Fill fill) {
   auto file = Hdf5File::in_memory("frame");
+  stamp(file, "rvelab journal");
   fill(file);
   return file.image();
 }

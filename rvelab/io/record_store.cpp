@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <mutex>
 #include <sstream>
 
 #include "rvelab/error.hpp"
@@ -12,12 +11,6 @@
 
 namespace rvelab::io {
 namespace {
-
-/// HDF5 serves one thread at a time; stores of several tests share it.
-std::mutex& hdf5_turn() {
-  static std::mutex mutex;
-  return mutex;
-}
 
 double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -85,7 +78,6 @@ RecordStore::RecordStore(const std::string& path, const RunStart& start, Existin
   // Left by a run that was killed while it wrote them.
   for (const std::string& whole : {path_, journal_.path()}) ::unlink((whole + ".tmp").c_str());
   kept_ = published_ = {begin_time, 0};
-  const std::lock_guard turn(hdf5_turn());
   if (existing == Existing::resume) resume(start);
   if (existing == Existing::resume && (test_.complete || journal_.size() > 0)) return;
   try {
@@ -152,7 +144,7 @@ void RecordStore::resume(const RunStart& start) {
     journal_.append(probe_frame, encode_probe(k, test_.result.probes[k]));
   }
   for (Snapshot& snapshot : test_.snapshots) {
-    if (snapshot.payload_at > 0) continue;
+    if (!snapshot.within) continue;
     const auto payload = encode_snapshot(snapshot.record, read_snapshot(snapshot));
     snapshot = {snapshot.record, journal_.path(), journal_.append(snapshot_frame, payload), payload.size()};
   }
@@ -184,7 +176,6 @@ void RecordStore::put(const records::ProbeResult& probe) {
   const std::size_t number = made_probes_++;
   if (number < probes.size() && same_bits(probes[number], probe)) return;
   probes.resize(number);
-  const std::lock_guard turn(hdf5_turn());
   journal_.append(probe_frame, encode_probe(number, probe));
   probes.push_back(probe);
 }
@@ -193,7 +184,6 @@ void RecordStore::put_snapshot(std::size_t record, const Specimen& state) {
   for (const Snapshot& there : test_.snapshots) {
     if (there.record == record) return;
   }
-  const std::lock_guard turn(hdf5_turn());
   const auto payload = encode_snapshot(record, state);
   const auto payload_at = journal_.append(snapshot_frame, payload);
   test_.snapshots.push_back({record, journal_.path(), payload_at, payload.size()});
@@ -223,8 +213,7 @@ void RecordStore::keep(const records::Checkpoint& checkpoint) {
   test_.result.grain_steps = checkpoint.specimen.state.grain_steps - checkpoint.progress.first_grain_steps;
   std::vector<std::byte> payload;
   {
-    const std::lock_guard turn(hdf5_turn());
-    payload = encode_checkpoint(checkpoint);
+      payload = encode_checkpoint(checkpoint);
   }
   journal_.append(checkpoint_frame, payload);
   keeps_something_ = true;
@@ -238,7 +227,6 @@ void RecordStore::drop_old_checkpoints() {
   // a fraction of what they have cost.
   constexpr std::uint64_t small = 16 << 20;
   if (journal_.size() < std::max(small, 4 * size_without_)) return;
-  const std::lock_guard turn(hdf5_turn());
   auto snapshots = test_.snapshots;
   journal_.replace([&](Journal& next) {
     read_journal(journal_.path(), [&](const Frame& frame) {
@@ -263,7 +251,6 @@ void RecordStore::drop_old_checkpoints() {
 
 void RecordStore::publish_now() {
   const auto begin = Clock::now();
-  const std::lock_guard turn(hdf5_turn());
   try {
     write_recorded_test(test_, path_);
   } catch (const InputError& error) {

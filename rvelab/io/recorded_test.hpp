@@ -1,9 +1,11 @@
 // What a record file R.h5 and its journal hold together: a test, whole or as far as it got.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "rvelab/io/hdf5_file.hpp"
 #include "rvelab/records/progress.hpp"
 #include "rvelab/records/record.hpp"
 
@@ -20,11 +22,12 @@ struct Provenance {
 /// The provenance of what this program writes.
 Provenance provenance_of(const std::string& protocol_text, const Specimen& start);
 
-/// Where the state of one record lies: in a record file (payload_at = 0), or in a frame of a journal.
+/// Where the state of one record lies: in a frame of a journal, or in a record file that was read.
 struct Snapshot {
   std::size_t record = 0;  ///< row of /records
-  std::string file;
+  std::string journal;
   std::uint64_t payload_at = 0, length = 0;
+  std::shared_ptr<const Hdf5File> within = nullptr;
 };
 
 struct RecordedTest {

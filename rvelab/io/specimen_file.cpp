@@ -113,6 +113,10 @@ FormatVersion format_version(const Hdf5File& file) {
 
 }  // namespace
 
+int minor_version(const Hdf5File& file) {
+  return file.attribute("format_version").empty() ? 0 : format_version(file).minor;
+}
+
 bool is_rvelab(const Hdf5File& file) {
   const std::string format = file.attribute("format");
   return format == specimen_format || format == records_format || format == pool_format;
@@ -193,15 +197,15 @@ void write_specimen(const Specimen& specimen, const std::string& path, const Spe
 std::optional<SpecimenOrigin> read_origin(const std::string& path) {
   const auto file = Hdf5File::open(path);
   checked_kind(file);
-  if (!file.has("/provenance/recipe")) return std::nullopt;
+  if (!file.has("/provenance")) return std::nullopt;
   SpecimenOrigin origin;
   Reader reader(file, "");
   describe_origin(reader, origin);
   return origin;
 }
 
-Specimen read_specimen(const std::string& path) {
-  const auto file = Hdf5File::open(path);
+Specimen read_specimen(const std::string& path, Seal seal) {
+  const auto file = Hdf5File::open(path, seal);
   checked_kind(file);
   return get_specimen(file, specimen_group(file));
 }

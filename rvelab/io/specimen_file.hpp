@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "rvelab/io/hdf5_file.hpp"
 #include "rvelab/specimen/specimen.hpp"
 
 namespace rvelab::io {
@@ -30,8 +31,8 @@ std::optional<SpecimenOrigin> read_origin(const std::string& path);
 
 /// Reads the specimen of a specimen file, the end state of a record file, or the RVE of a pool file that holds it
 /// alone. Throws InputError naming the file and what is wrong: missing, not HDF5, truncated, of a newer format, not
-/// rvelab's, indices out of range, a pool of many.
-Specimen read_specimen(const std::string& path);
+/// rvelab's, indices out of range, a pool of many, without the seal that is required.
+Specimen read_specimen(const std::string& path, Seal seal = Seal::if_any);
 
 /// Kind of an rvelab file. Throws InputError as read_specimen does.
 FileKind file_kind(const std::string& path);

@@ -1,10 +1,10 @@
 #include "rvelab/keys/key.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <numeric>
 
 #include "rvelab/error.hpp"
+#include "rvelab/keys/toml_source.hpp"
 
 namespace rvelab::keys {
 namespace {
@@ -48,7 +48,7 @@ KeyError key_error(const toml::source_region& place, const std::string& message)
 toml::table parsed_value(const std::string& text, const std::string& assignment) {
   const std::string source = assignment_prefix + assignment;
   try {
-    toml::table parsed = toml::parse("value = " + text, source);
+    toml::table parsed = parse_toml("value = " + text, source);
     if (parsed.size() == 1) return parsed;
   } catch (const toml::parse_error&) {
     // a bare word
@@ -56,7 +56,7 @@ toml::table parsed_value(const std::string& text, const std::string& assignment)
   // As a TOML literal, so that the word too comes out of a parse and knows where it is from.
   const bool quotable = text.find_first_of("'\n\r") == std::string::npos;
   try {
-    if (quotable) return toml::parse("value = '" + text + "'", source);
+    if (quotable) return parse_toml("value = '" + text + "'", source);
   } catch (const toml::parse_error&) {
     // control characters
   }
@@ -92,11 +92,8 @@ void raise(const std::string& path, std::vector<KeyError> errors) {
 }
 
 toml::table parse_toml_file(const std::string& path) {
-  if (!std::filesystem::is_regular_file(path)) {
-    throw InputError(path + ": no such file; give the path of a TOML file");
-  }
   try {
-    return toml::parse_file(path);
+    return parse_toml_at(path);
   } catch (const toml::parse_error& error) {
     const auto& begin = error.source().begin;
     throw InputError(path + ":" + std::to_string(begin.line) + ": column " + std::to_string(begin.column) +

@@ -11,6 +11,7 @@
 #include "rvelab/keys/enumerations.hpp"
 #include "rvelab/keys/key_units.hpp"
 #include "rvelab/keys/material_keys.hpp"
+#include "rvelab/keys/shortened.hpp"
 
 namespace rvelab::keys {
 namespace {
@@ -25,7 +26,7 @@ std::string written(const toml::node& value) {
   }
   std::ostringstream text;
   value.visit([&](const auto& node) { text << node; });
-  return text.str();
+  return shortened(text.str());
 }
 
 [[noreturn]] void refuse(const std::string& dotted, const toml::node& value, const std::string& reason,
@@ -217,7 +218,7 @@ void set_key(Specimen& specimen, const std::string& dotted_key, const toml::node
   const KeyEntry* entry = find_entry(dotted);
   if (entry == nullptr) {
     refuse_other_unit(dotted_key, dotted, material);
-    throw InputError("unknown key " + dotted_key + "; the nearest known key is " + nearest_key(dotted_key) +
+    throw InputError("unknown key " + shortened(dotted_key) + "; the nearest known key is " + nearest_key(dotted_key) +
                      "; correct the name or remove it");
   }
   expect_unit(specimen, dotted_key, *entry);
@@ -307,7 +308,7 @@ void read_material_file(const std::string& path, Specimen& specimen) {
     const std::string name(key.str());
     const auto line = static_cast<long>(key.source().begin.line);
     if (std::find(table_names.begin(), table_names.end(), name) == table_names.end()) {
-      errors.push_back({line, "unknown table [" + name + "]; the nearest known one is [" + nearest(name, table_names) +
+      errors.push_back({line, "unknown table [" + shortened(name) + "]; the nearest known one is [" + nearest(name, table_names) +
                                   "]; correct the name or remove it"});
     } else if (!value.is_table() && !(name == "material" && value.is_array())) {
       errors.push_back({line, name + " = " + written(value) + " is not a table; allowed: [" + name +

@@ -6,13 +6,14 @@
 #include <stdexcept>
 
 #include "rvelab/keys/key_units.hpp"
+#include "rvelab/keys/shortened.hpp"
 
 namespace rvelab::keys {
 namespace {
 
 void refuse_unknown(const toml::source_region& place, const std::string& prefix, const std::string& name,
                     const std::vector<std::string>& known, std::vector<KeyError>& errors) {
-  errors.push_back(key_error(place, "unknown key " + prefix + name + "; the nearest known key is " + prefix +
+  errors.push_back(key_error(place, "unknown key " + prefix + shortened(name) + "; the nearest known key is " + prefix +
                                         nearest(name, known) + "; correct the name or remove it"));
 }
 
@@ -23,7 +24,7 @@ long line_of(const toml::node& node) { return static_cast<long>(node.source().be
 std::string written(const toml::node& node) {
   std::ostringstream text;
   node.visit([&](const auto& value) { text << value; });
-  return text.str();
+  return shortened(text.str());
 }
 
 void expect_top_tables(const toml::table& file, std::vector<KeyError>& errors, const std::vector<std::string>& known) {
@@ -206,7 +207,7 @@ void TableReader::finish() {
     const std::string name(key.str());
     if (std::find(names.begin(), names.end(), name) != names.end()) continue;
     if (const auto answer = in_another_unit(name, known_)) {
-      errors_.push_back(key_error(place_of(key, value), prefix + name + " is not known; write " + prefix +
+      errors_.push_back(key_error(place_of(key, value), prefix + shortened(name) + " is not known; write " + prefix +
                                                             answer->key.name + ", " + answer->factor));
     } else {
       refuse_unknown(place_of(key, value), prefix, name, names, errors_);

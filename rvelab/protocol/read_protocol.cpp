@@ -7,6 +7,7 @@
 #include "rvelab/error.hpp"
 #include "rvelab/keys/material_toml.hpp"
 #include "rvelab/keys/table_reader.hpp"
+#include "rvelab/keys/toml_source.hpp"
 #include "rvelab/protocol/assign.hpp"
 #include "rvelab/protocol/drive.hpp"
 #include "rvelab/protocol/protocol.hpp"
@@ -197,7 +198,7 @@ Protocol read_protocol(const std::string& path, const std::vector<std::string>& 
 
 Protocol parse_protocol(const std::string& text, const std::string& path, const std::vector<std::string>& assignments) {
   try {
-    return read_file(toml::parse(text), path, assignments);
+    return read_file(keys::parse_toml(text), path, assignments);
   } catch (const toml::parse_error& error) {
     throw InputError(path + ":" + std::to_string(error.source().begin.line) + ": is not TOML (" +
                      std::string(error.description()) + "); correct the line");

@@ -23,8 +23,11 @@ namespace rvelab::fields {
 /// Entries of a field: one value, or a list with one for each grain. In a table each column has one for each row.
 enum class Rows { one, per_grain, per_grain_or_none };
 
-/// Whether files of earlier versions have a field. Where they have not, it keeps the default of its struct.
-enum class InFiles { always, added_later };
+/// The minor version of the file format from which on files have a field. In a file of an earlier one it keeps the
+/// default of its struct; in a later one it must be there.
+struct InFiles {
+  int since = 0;
+};
 
 /// One member: its name in a file and its unit ("1" for a pure number, "-" for text).
 template <class Owner, class Value>
@@ -33,7 +36,7 @@ struct Field {
   Value Owner::*member;
   const char* units;
   Rows rows = Rows::one;
-  InFiles in_files = InFiles::always;
+  InFiles in_files{};
 };
 template <class Owner, class Value, class... More>
 Field(const char*, Value Owner::*, const char*, More...) -> Field<Owner, Value>;

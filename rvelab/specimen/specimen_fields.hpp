@@ -2,8 +2,8 @@
 // (described.hpp). Names, units and order are those of the file (rvelab/io/README.md); a member of a struct that has no
 // entry here does not compile.
 //
-// A field that files did not have from the start is InFiles::added_later: where it is missing, the default of its
-// struct must be what the earlier version did.
+// A field that files did not have from the start says since which minor version they do, InFiles{10}: the default of its
+// struct must be what the version before it did. A new field is of the next version (io/schema.hpp).
 #pragma once
 
 #include <iterator>
@@ -31,9 +31,9 @@ inline constexpr auto members_of<Grains> = std::tuple{
     Field{"position_m", &Grains::position, "m", Rows::per_grain},
     Field{"velocity", &Grains::velocity, "m/s or m/step", Rows::per_grain},
     Field{"spin", &Grains::spin, "rad/s or rad/step", Rows::per_grain},
-    Field{"semi_major_m", &Grains::semi_major, "m", Rows::per_grain_or_none, InFiles::added_later},
-    Field{"semi_minor_m", &Grains::semi_minor, "m", Rows::per_grain_or_none, InFiles::added_later},
-    Field{"orientation", &Grains::orientation, "1", Rows::per_grain_or_none, InFiles::added_later},
+    Field{"semi_major_m", &Grains::semi_major, "m", Rows::per_grain_or_none, InFiles{8}},
+    Field{"semi_minor_m", &Grains::semi_minor, "m", Rows::per_grain_or_none, InFiles{8}},
+    Field{"orientation", &Grains::orientation, "1", Rows::per_grain_or_none, InFiles{8}},
 };
 
 template <>
@@ -53,7 +53,7 @@ constexpr auto stored_fields() {
   return []<std::size_t... k>(std::index_sequence<k...>) {
     return std::tuple{Field<Material, double>{Group::stored[k].dataset, Group::stored[k].value, Group::stored[k].unit,
                                               Rows::one,
-                                              Group::stored[k].later ? InFiles::added_later : InFiles::always}...};
+                                              InFiles{Group::stored[k].later ? 5 : 0}}...};
   }
   (std::make_index_sequence<std::size(Group::stored)>());
 }
@@ -86,7 +86,7 @@ inline constexpr auto members_of<ContactModel> = std::tuple{
     Field{"slip", &ContactModel::slip, "-"},
     Field{"rolling", &ContactModel::rolling, "1"},
     Field{"unload_rescale", &ContactModel::unload_rescale, "1"},
-    Field{"hertz_radius", &ContactModel::hertz_radius, "-", Rows::one, InFiles::added_later},
+    Field{"hertz_radius", &ContactModel::hertz_radius, "-", Rows::one, InFiles{9}},
 };
 
 template <>
@@ -107,9 +107,9 @@ inline constexpr auto members_of<SolverOptions> = std::tuple{
     Field{"skin", &SolverOptions::skin, "1"},
     Field{"time_step_factor", &SolverOptions::time_step_factor, "1"},
     Field{"fixed_time_step_s", &SolverOptions::fixed_time_step, "s"},
-    Field{"collision_steps", &SolverOptions::collision_steps, "1", Rows::one, InFiles::added_later},
-    Field{"relative_tolerance", &SolverOptions::relative_tolerance, "1", Rows::one, InFiles::added_later},
-    Field{"absolute_tolerance", &SolverOptions::absolute_tolerance, "1", Rows::one, InFiles::added_later},
+    Field{"collision_steps", &SolverOptions::collision_steps, "1", Rows::one, InFiles{3}},
+    Field{"relative_tolerance", &SolverOptions::relative_tolerance, "1", Rows::one, InFiles{6}},
+    Field{"absolute_tolerance", &SolverOptions::absolute_tolerance, "1", Rows::one, InFiles{6}},
     Field{"target_unbalanced", &SolverOptions::target_unbalanced, "1"},
     Field{"fixed_substeps", &SolverOptions::fixed_substeps, "1"},
     Field{"max_substeps", &SolverOptions::max_substeps, "1"},
@@ -134,28 +134,28 @@ template <>
 inline constexpr auto members_of<SolverState> = std::tuple{
     Field{"has_reference", &SolverState::has_reference, "1"},
     Field{"list_lattice_m", &SolverState::list_lattice, "m"},
-    Field{"list_positions_m", &SolverState::list_positions, "m", Rows::per_grain_or_none, InFiles::added_later},
+    Field{"list_positions_m", &SolverState::list_positions, "m", Rows::per_grain_or_none, InFiles{1}},
     Field{"list_travel_m", &SolverState::list_travel, "m"},
-    Field{"list_skin_m", &SolverState::list_skin, "m", Rows::one, InFiles::added_later},
-    Field{"list_steps", &SolverState::list_steps, "1", Rows::one, InFiles::added_later},
+    Field{"list_skin_m", &SolverState::list_skin, "m", Rows::one, InFiles{1}},
+    Field{"list_steps", &SolverState::list_steps, "1", Rows::one, InFiles{1}},
     Field{"strain_per_step", &SolverState::strain_per_step, "1"},
-    Field{"pace_target", &SolverState::pace_target, "1", Rows::one, InFiles::added_later},
-    Field{"leg_strain", &SolverState::leg_strain, "1", Rows::one, InFiles::added_later},
-    Field{"softness", &SolverState::softness, "1", Rows::one, InFiles::added_later},
-    Field{"coordination", &SolverState::coordination, "1", Rows::one, InFiles::added_later},
-    Field{"network_stiffness_Pa", &SolverState::network_stiffness, "Pa", Rows::one, InFiles::added_later},
-    Field{"interval_strain", &SolverState::interval_strain, "1", Rows::one, InFiles::added_later},
-    Field{"interval_stress_Pa", &SolverState::interval_stress, "Pa", Rows::one, InFiles::added_later},
-    Field{"unbalanced_ratio", &SolverState::unbalanced_ratio, "1", Rows::one, InFiles::added_later},
-    Field{"deferred_stretch", &SolverState::deferred_stretch, "1", Rows::one, InFiles::added_later},
-    Field{"stress_slope_Pa", &SolverState::stress_slope, "Pa", Rows::one, InFiles::added_later},
-    Field{"slope_error_Pa", &SolverState::slope_error, "Pa", Rows::one, InFiles::added_later},
-    Field{"look_steps", &SolverState::look_steps, "1", Rows::one, InFiles::added_later},
-    Field{"scaled_mass", &SolverState::scaled_mass, "N/m", Rows::per_grain_or_none, InFiles::added_later},
+    Field{"pace_target", &SolverState::pace_target, "1", Rows::one, InFiles{6}},
+    Field{"leg_strain", &SolverState::leg_strain, "1", Rows::one, InFiles{6}},
+    Field{"softness", &SolverState::softness, "1", Rows::one, InFiles{6}},
+    Field{"coordination", &SolverState::coordination, "1", Rows::one, InFiles{9}},
+    Field{"network_stiffness_Pa", &SolverState::network_stiffness, "Pa", Rows::one, InFiles{6}},
+    Field{"interval_strain", &SolverState::interval_strain, "1", Rows::one, InFiles{6}},
+    Field{"interval_stress_Pa", &SolverState::interval_stress, "Pa", Rows::one, InFiles{6}},
+    Field{"unbalanced_ratio", &SolverState::unbalanced_ratio, "1", Rows::one, InFiles{6}},
+    Field{"deferred_stretch", &SolverState::deferred_stretch, "1", Rows::one, InFiles{7}},
+    Field{"stress_slope_Pa", &SolverState::stress_slope, "Pa", Rows::one, InFiles{7}},
+    Field{"slope_error_Pa", &SolverState::slope_error, "Pa", Rows::one, InFiles{7}},
+    Field{"look_steps", &SolverState::look_steps, "1", Rows::one, InFiles{6}},
+    Field{"scaled_mass", &SolverState::scaled_mass, "N/m", Rows::per_grain_or_none, InFiles{6}},
     Field{"scaled_inverse_inertia", &SolverState::scaled_inverse_inertia, "1/(N m)", Rows::per_grain_or_none,
-          InFiles::added_later},
+          InFiles{6}},
     Field{"servo_strain", &SolverState::servo_strain, "1"},
-    Field{"servo_rate_1_s", &SolverState::servo_rate, "1/s", Rows::one, InFiles::added_later},
+    Field{"servo_rate_1_s", &SolverState::servo_rate, "1/s", Rows::one, InFiles{3}},
     Field{"reference_contact_force_N", &SolverState::reference_contact_force, "N"},
     Field{"reference_overlap_m", &SolverState::reference_overlap, "m"},
     Field{"reference_pressure_Pa", &SolverState::reference_pressure, "Pa"},
@@ -166,7 +166,7 @@ inline constexpr auto members_of<SolverState> = std::tuple{
     Field{"mean_spin_rad_s", &SolverState::mean_spin, "rad/s"},
     Field{"grain_steps", &SolverState::grain_steps, "1"},
     Field{"list_builds", &SolverState::list_builds, "1"},
-    Field{"memory_order", &SolverState::memory_order, "1", Rows::per_grain_or_none, InFiles::added_later},
+    Field{"memory_order", &SolverState::memory_order, "1", Rows::per_grain_or_none, InFiles{3}},
     Part{"ledger", &SolverState::ledger},
 };
 
