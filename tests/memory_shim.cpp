@@ -1,5 +1,4 @@
-// Preloaded (LD_PRELOAD) into the program under test: from the RVELAB_NO_MEMORY_FROM-th on, no `new` finds memory. What
-// HDF5 asks for by malloc is given: its library crashes otherwise, which is why it is called only where memory is left.
+// Preloaded (LD_PRELOAD) into the program under test: from the RVELAB_NO_MEMORY_FROM-th on, no `new` finds memory.
 #include <atomic>
 #include <cstdlib>
 #include <new>

@@ -1,4 +1,4 @@
-// What librvelab-h5.so does for librvelab.so: files, so that a host which needs none loads no HDF5. Plain functions and
+// What librvelab-h5.so does for librvelab.so: files, for hosts that need them. Plain functions and
 // bytes cross between the two; specimens go as Rve::save() makes them, states of a pool as pool::to_bytes.
 #pragma once
 

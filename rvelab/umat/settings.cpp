@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "rvelab/keys/toml_source.hpp"
+
 namespace rvelab::umat {
 
 namespace {
@@ -65,7 +67,7 @@ struct Table {
 Settings read_settings(const std::string& path) {
   toml::table file;
   try {
-    file = toml::parse_file(path);
+    file = keys::parse_toml_at(path);
   } catch (const toml::parse_error& error) {
     throw std::runtime_error(path + ", line " + std::to_string(error.source().begin.line) + ": " +
                              std::string(error.description()) +

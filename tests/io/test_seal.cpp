@@ -1,17 +1,15 @@
 // Damaged files: what rvelab writes carries a checksum that is held against every bit before anything reads it; files
-// of before 1.4 are read where a crash does no harm.
+// of before 1.4 are read with every address held against their end.
 #include "rvelab/io/seal.hpp"
 
 #include <hdf5.h>
 
 #include <algorithm>
-#include <csignal>
 #include <limits>
 #include <random>
 
 #include "random_specimen.hpp"
 #include "rvelab/io/compare.hpp"
-#include "rvelab/io/guarded.hpp"
 #include "rvelab/io/hdf5_file.hpp"
 #include "rvelab/io/record_file.hpp"
 #include "rvelab/io/record_journal.hpp"
@@ -68,7 +66,7 @@ int variable_lengths(const std::string& path) {
 
 }  // namespace
 
-TEST_CASE("every single flipped bit of a specimen or record file is refused before HDF5 sees it") {
+TEST_CASE("every single flipped bit of a specimen or record file is refused before anything reads it") {
   const Folder folder;
   io::write_specimen(random_specimen(1), folder / "s.h5");
   write_random_records(folder / "r.h5");
@@ -209,35 +207,8 @@ TEST_CASE("a damaged file of before 1.4 is refused or read, and harms nobody") {
   }
   CHECK(refused > 20);
   CHECK(read > 5);
-  // Two on which HDF5 crashed, and found no end.
+  // Two on which HDF5's library crashed, and found no end.
   const std::string folder_of_two = std::string(RVELAB_TEST_DATA) + "/damaged/";
-  CHECK_THAT(input_error([&] { io::read_specimen(folder_of_two + "crashes.h5"); }), Contains("is damaged (HDF5 fails"));
-  CHECK_THAT(input_error([&] { io::read_specimen(folder_of_two + "endless.h5"); }), Contains("came to no end"));
-}
-
-TEST_CASE("work on a file that may be damaged is done where crashes, endless loops and greed do no harm") {
-  const auto bytes = [](const std::string& text) {
-    const auto raw = std::as_bytes(std::span(text));
-    return std::vector<std::byte>(raw.begin(), raw.end());
-  };
-  const io::Descriptor made = io::made_in_child("a.h5", 100, [&] { return bytes("whole"); });
-  std::string text(10, '\0');
-  text.resize(io::read_at(made.number(), 0, std::as_writable_bytes(std::span(text))));
-  CHECK(text == "whole");
-
-  const auto message = [&](const std::function<std::vector<std::byte>()>& make) {
-    return input_error([&] { io::made_in_child("a.h5", 100, make); });
-  };
-  CHECK(message([]() -> std::vector<std::byte> { throw InputError("a.h5: holds no grains; add some"); }) ==
-        "a.h5: holds no grains; add some");
-  CHECK_THAT(message([&] { return std::signal(SIGSEGV, SIG_DFL), std::raise(SIGSEGV), bytes(""); }),
-             Contains("a.h5: is damaged (HDF5 fails"));
-  CHECK_THAT(message([&] { return std::abort(), bytes(""); }), Contains("a.h5: is damaged (HDF5 fails"));
-  CHECK_THAT(message([&] { return std::vector<std::byte>(std::size_t(1) << 40); }), Contains("a.h5: is damaged"));
-  CHECK_THAT(message([&] {
-               volatile bool for_ever = true;
-               while (for_ever) continue;
-               return bytes("");
-             }),
-             Contains("a.h5: is damaged (reading it came to no end within 3 s)"));
+  CHECK_THAT(input_error([&] { io::read_specimen(folder_of_two + "crashes.h5"); }), Contains("crashes.h5: is damaged"));
+  CHECK_THAT(input_error([&] { io::read_specimen(folder_of_two + "endless.h5"); }), Contains("endless.h5: is damaged"));
 }

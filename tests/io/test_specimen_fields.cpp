@@ -306,8 +306,33 @@ TEST_CASE("every field keeps every double: NaNs with what they carry, -0, infini
   }
 }
 
+namespace {
+
+struct LatestSince {
+  int latest = 0;
+
+  template <class Value, class Declared>
+  void field(const fields::Path&, const Value&, const Declared& field) {
+    latest = std::max(latest, field.in_files.since);
+  }
+  template <class Items, class... Columns>
+  void table(const fields::Path&, const Items&, const Columns&... columns) {
+    latest = std::max({latest, columns.in_files.since...});
+  }
+};
+
+}  // namespace
+
+TEST_CASE("no field is of a later version than the one that is written") {
+  LatestSince look;
+  Specimen specimen;
+  fields::visit(look, specimen);
+  CHECK(look.latest > 8);
+  CHECK(look.latest <= io::format_minor);
+}
+
 TEST_CASE("a column that was added later keeps its default in an older file, and does not change the digest of it") {
-  const Field later{"cohesion", &LaterRow::cohesion, "Pa", Rows::one, InFiles::added_later};
+  const Field later{"cohesion", &LaterRow::cohesion, "Pa", Rows::one, InFiles{10}};
   const std::vector<Row> older{{1.5}, {2.5}};
   std::vector<LaterRow> rows;
   auto file = io::Hdf5File::in_memory("older.h5");
@@ -327,6 +352,15 @@ TEST_CASE("a column that was added later keeps its default in an older file, and
   CHECK(sum() == as_it_was.sum());
   rows[0].cohesion = 3;
   CHECK(sum() != as_it_was.sum());
+
+  // From the version of the column on it must be there.
+  auto without = io::Hdf5File::in_memory("without.h5");
+  io::stamp(without, io::FileKind::specimen);
+  io::Writer(without, "").table("rows", older, Field{"radius", &Row::radius, "m"});
+  CHECK_THAT(input_error([&] {
+               io::Reader(without, "").table("rows", rows, Field{"radius", &LaterRow::radius, "m"}, later);
+             }),
+             Contains("without.h5: dataset /rows/cohesion is missing"));
 
   auto newer = io::Hdf5File::in_memory("newer.h5");
   io::Writer(newer, "").table("rows", rows, Field{"radius", &LaterRow::radius, "m"}, later);

@@ -25,7 +25,6 @@ using namespace rvelab::test;
 
 namespace {
 
-std::mutex hdf5_turn;
 
 /// The run that is killed: stages, increments, snapshots, and checkpoints five times a second.
 class Victim {
@@ -86,7 +85,6 @@ std::string random_fault(std::mt19937& random) {
 
 /// What the files of a killed run hold; none if there is nothing yet. Throws if one of them does not open.
 std::optional<io::RecordedTest> left_by(const std::string& path) {
-  const std::lock_guard turn(hdf5_turn);
   if (std::filesystem::exists(path)) {
     for (const auto& entry : io::Hdf5File::open(path).entries()) {
       if (entry.type == "float64") io::Hdf5File::open(path).read<double>(entry.name);
@@ -139,7 +137,6 @@ std::string kill_and_resume(const Victim& victim, const Folder& folder, const st
   Child last(victim.command(output), folder / "out", errors);
   if (const int code = last.wait(); code != 0) return "exit code " + std::to_string(code) + ": " + bytes_of(errors);
   ++tally.runs;
-  const std::lock_guard turn(hdf5_turn);
   if (std::filesystem::exists(io::journal_of(output))) return "the journal is left";
   const std::string different = first_different_dataset(reference, output);
   return different.empty() ? "" : different + " differs from the undisturbed run";

@@ -1,49 +1,54 @@
 #!/usr/bin/env python3
-"""Single flipped bits in specimen and record files: damage.py PROGRAM [NUMBER].
+"""Single flipped bits in every kind of file that is read: damage.py PROGRAM [NUMBER].
 
-Packs a specimen, runs a test on it, and flips one bit at a time, seeded, NUMBER (1000) in each file. Each must be
-refused (exit code 2, one line) or leave what `inspect --json` prints as it is. Files of earlier versions have no
-checksum: there only crashes, endless runs and messages of several lines are counted as bad.
+Packs a specimen, runs a test on it, exports CSV, and flips one bit at a time, seeded, NUMBER (1000) in each file:
+specimen, records, a journal without its record file, a pool. Each must be refused (exit code 2, one line) or leave what
+`inspect --json` prints as it is; of a journal the whole frames before the flip are taken, and stand for fewer records.
+The files of `import` and files of earlier versions have no checksum: there only crashes, endless runs and messages of
+several lines are counted as bad.
 """
+import gzip
 import json
 import pathlib
 import random
 import subprocess
 import sys
 import tempfile
+import time
 
 TEST = '[test]\nname = "small"\n[output]\nsnapshots_every = 2\n[[stage]]\nkind = "simple_shear"\nto_strain = 1e-3\n' \
        'record_every = 2e-4\n'
 
 
-def answer(program, path):
-    done = subprocess.run([program, "inspect", path, "--json"], capture_output=True, timeout=120)
+def answer(command):
+    done = subprocess.run(command, capture_output=True, timeout=120)
     return done.returncode, done.stdout, done.stderr.decode(errors="replace")
 
 
-def measures(output, path):
+def measures(output):
     listing = json.loads(output)
-    del listing["file"]
+    listing.pop("file", None)
     return listing
 
 
-def flip(program, original, number, sealed, work):
+def flip(command, original, number, sealed, damaged):
+    """`command` looks at the file `damaged`, which is `original` with a bit flipped."""
     whole = original.read_bytes()
-    code, output, errors = answer(program, original)
+    damaged.write_bytes(whole)
+    code, output, errors = answer(command)
     if code != 0:
         sys.exit(f"damage: {original} cannot be read: {errors}")
-    reference = measures(output, original)
+    reference = measures(output)
     rng = random.Random(len(whole))
     counts = {"refused": 0, "without effect": 0, "opened and differed": 0, "bad": 0}
-    damaged = work / "damaged.h5"
     for _ in range(number):
         at, bit = rng.randrange(len(whole)), rng.randrange(8)
         bytes_ = bytearray(whole)
         bytes_[at] ^= 1 << bit
         damaged.write_bytes(bytes_)
-        code, output, errors = answer(program, damaged)
+        code, output, errors = answer(command)
         if code == 0:
-            same = measures(output, damaged) == reference
+            same = measures(output) == reference
             counts["without effect" if same else "opened and differed"] += 1
         elif code in (1, 2) and errors.count("\n") == 1 and errors.startswith("rvelab: "):
             counts["refused"] += 1
@@ -54,6 +59,19 @@ def flip(program, original, number, sealed, work):
     return counts["bad"] == 0 and not (sealed and counts["opened and differed"])
 
 
+def journal_of(program, work):
+    """The journal of a run that was killed."""
+    running = subprocess.Popen([program, "run", "small.toml", "--specimen", "S.h5", "-o", "K.h5", "--set",
+                                "stage.simple_shear.to_strain=1"], cwd=work, stdout=subprocess.DEVNULL,
+                               stderr=subprocess.DEVNULL)
+    journal = work / "K.h5.journal"
+    while running.poll() is None and (not journal.exists() or journal.stat().st_size < 200_000):
+        time.sleep(0.005)
+    running.kill()
+    running.wait()
+    return journal
+
+
 def main():
     program, number = pathlib.Path(sys.argv[1]).resolve(), int(sys.argv[2]) if len(sys.argv) > 2 else 1000
     good = True
@@ -61,13 +79,26 @@ def main():
         work = pathlib.Path(folder)
         (work / "small.toml").write_text(TEST)
         for words in (["pack", "pack_dense", "-o", "S.h5", "--set", "pack.number=64"],
-                      ["run", "small.toml", "--specimen", "S.h5", "-o", "R.h5"]):
+                      ["run", "small.toml", "--specimen", "S.h5", "-o", "R.h5"],
+                      ["export", "S.h5", "--format", "csv", "-o", "E"]):
             subprocess.run([program, *words], cwd=work, check=True, capture_output=True)
-        for name in ("S.h5", "R.h5"):
-            good &= flip(program, work / name, number, True, work)
         older = pathlib.Path(__file__).resolve().parents[2] / "tests/data/compat"
+        pool = work / "pool.h5"
+        pool.write_bytes(gzip.decompress((older / "pool_1_8.h5.gz").read_bytes()))
+        damaged = work / "damaged.h5"
+        inspect = [program, "inspect", damaged, "--json"]
+        for path in (work / "S.h5", work / "R.h5", pool):
+            good &= flip(inspect, path, number, True, damaged)
         for name in ("specimen_1_2.h5", "records_1_2.h5"):
-            good &= flip(program, older / name, number, False, work)
+            good &= flip(inspect, older / name, number, False, damaged)
+        damaged.unlink()
+        good &= flip(inspect, journal_of(program, work), number, False, work / "damaged.h5.journal")
+        tables = [work / name for name in ("E.particles.csv", "E.contacts.csv", "E.json", "E.material.toml")]
+        for path in tables:
+            copy = path.with_name("damaged." + path.name)
+            inputs = [copy if each == path else each for each in tables]
+            good &= flip([program, "import", *inputs[:3], "--material", inputs[3], "-o", work / "E.h5", "--force",
+                          "--json"], path, number // 4, False, copy)
     sys.exit(0 if good else 1)
 
 

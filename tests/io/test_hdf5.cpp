@@ -1,0 +1,221 @@
+// What HDF5's own library makes of our files, and we of its: nothing leads out of a file, nothing is missing in silence.
+#include "rvelab/io/hdf5_file.hpp"
+
+#include <hdf5.h>
+
+#include <chrono>
+#include <filesystem>
+
+#include "random_specimen.hpp"
+#include "rvelab/io/compare.hpp"
+#include "rvelab/io/record_file.hpp"
+#include "rvelab/io/recorded_test.hpp"
+#include "rvelab/io/seal.hpp"
+#include "rvelab/io/seal_file.hpp"
+#include "rvelab/io/specimen_file.hpp"
+#include "tests/catch.hpp"
+
+using namespace rvelab;
+using namespace rvelab::test;
+using Catch::Matchers::Contains;
+
+namespace {
+
+void seal(const std::string& path) {
+  std::string bytes = bytes_of(path);
+  const auto made = io::seal_of(std::as_bytes(std::span(bytes)));
+  write_bytes(path, bytes + std::string(reinterpret_cast<const char*>(made.data()), made.size()));
+}
+
+/// Changes a file through HDF5's library, as h5py does, and gives it a seal that fits.
+template <class Change>
+void change(const std::string& path, Change change) {
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  REQUIRE(file >= 0);
+  change(file);
+  REQUIRE(H5Fclose(file) >= 0);
+  seal(path);
+}
+
+void write_dataset(hid_t file, const char* name, hid_t space, hid_t creation) {
+  H5Ldelete(file, name, H5P_DEFAULT);
+  const hid_t made = H5Dcreate2(file, name, H5T_IEEE_F64LE, space, H5P_DEFAULT, creation, H5P_DEFAULT);
+  const std::vector<double> values(std::size_t(H5Sget_simple_extent_npoints(space)), 0.25);
+  if (made >= 0) H5Dwrite(made, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+  H5Dclose(made);
+}
+
+}  // namespace
+
+TEST_CASE("HDF5's library reads what is written, name by name and bit by bit") {
+  const Folder folder;
+  const Specimen specimen = random_specimen(4);
+  io::write_specimen(specimen, folder / "s.h5");
+  const hid_t file = H5Fopen((folder / "s.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  REQUIRE(file >= 0);
+  const auto ours = io::Hdf5File::open(folder / "s.h5");
+  for (const io::Hdf5Entry& entry : ours.entries()) {
+    CAPTURE(entry.name);
+    const hid_t dataset = H5Dopen2(file, entry.name.c_str(), H5P_DEFAULT), type = H5Dget_type(dataset);
+    REQUIRE(dataset >= 0);
+    CHECK(H5Aexists(dataset, "units") > 0);
+    if (H5Tget_class(type) != H5T_STRING) {
+      const io::StoredValues stored = ours.stored(entry.name);
+      std::vector<std::byte> found(stored.bytes.size() + 1);
+      CHECK(H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, found.data()) >= 0);
+      found.pop_back();
+      CHECK(found == stored.bytes);
+    }
+    H5Tclose(type);
+    H5Dclose(dataset);
+  }
+  H5Fclose(file);
+}
+
+TEST_CASE("groups of any number of members are found by HDF5's library and by us") {
+  const Folder folder;
+  for (const int members : {0, 1, 8, 9, 300, 3000}) {
+    CAPTURE(members);
+    io::publish(folder / "g.h5", [&](io::Hdf5File& file) {
+      for (int k = 0; k < members; ++k) file.write_text("/g/" + std::to_string(k), {"x"}, {});
+      file.write_text("/last", {"y"}, {});
+    });
+    const hid_t file = H5Fopen((folder / "g.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+    REQUIRE(file >= 0);
+    for (int k = 0; k < members; ++k) {
+      if (H5Lexists(file, ("/g/" + std::to_string(k)).c_str(), H5P_DEFAULT) <= 0) FAIL_CHECK(k << " is not found");
+    }
+    CHECK(H5Lexists(file, "/last", H5P_DEFAULT) > 0);
+    CHECK((members == 0 || H5Lexists(file, "/g/x", H5P_DEFAULT) == 0));
+    H5Fclose(file);
+    CHECK(io::Hdf5File::open(folder / "g.h5").groups("/g").size() == std::size_t(members));
+    std::filesystem::remove(folder / "g.h5");
+  }
+}
+
+TEST_CASE("what leads out of a sealed file, or has a second name in it, is refused by name") {
+  const Folder folder;
+  const Specimen specimen = random_specimen(5);
+  io::write_specimen(specimen, folder / "whole.h5");
+  io::write_specimen(specimen, folder / "other.h5");
+  const std::string other = folder / "other.h5", path = folder / "x.h5";
+  const auto refusal = [&](auto with) {
+    std::filesystem::copy_file(folder / "whole.h5", path, std::filesystem::copy_options::overwrite_existing);
+    change(path, with);
+    const std::string message = input_error([&] { io::read_specimen(path); });
+    CHECK(message == input_error([&] { io::compare_files(path, path); }));
+    CHECK(message == input_error([&] { io::seal_file(path, folder / "new.h5"); }));
+    return message;
+  };
+  CHECK_THAT(refusal([&](hid_t file) {
+               H5Ldelete(file, "/grains/position_m", H5P_DEFAULT);
+               H5Lcreate_external(other.c_str(), "/grains/position_m", file, "/grains/position_m", H5P_DEFAULT,
+                                  H5P_DEFAULT);
+             }),
+             Contains("/grains") && Contains("external links"));
+  CHECK_THAT(refusal([&](hid_t file) {
+               const hid_t group = H5Gcreate2(file, "/notes", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+               H5Lcreate_external(other.c_str(), "/shape", group, "shape", H5P_DEFAULT, H5P_DEFAULT);
+               H5Gclose(group);
+             }),
+             Contains("/notes/shape is a link to another file (") && Contains("other.h5"));
+  CHECK_THAT(refusal([&](hid_t file) {
+               H5Ldelete(file, "/grains/radius_m", H5P_DEFAULT);
+               H5Lcreate_soft("/grains/semi_major_m", file, "/grains/radius_m", H5P_DEFAULT, H5P_DEFAULT);
+             }),
+             Contains("/grains/radius_m is a link to another name (/grains/semi_major_m)"));
+  CHECK_THAT(refusal([&](hid_t file) { H5Lcreate_hard(file, "/", file, "/cell/again", H5P_DEFAULT, H5P_DEFAULT); }),
+             Contains("/cell/again is a second name"));
+  CHECK_THAT(refusal([&](hid_t file) {
+               const hid_t space = H5Screate_simple(1, std::vector<hsize_t>{9}.data(), nullptr);
+               const hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
+               H5Pset_external(creation, (folder / "raw.bin").c_str(), 0, 72);
+               write_dataset(file, "/grains/radius_m", space, creation);
+               H5Pclose(creation);
+               H5Sclose(space);
+             }),
+             Contains("/grains/radius_m keeps its values in another file"));
+  CHECK_THAT(refusal([&](hid_t file) {
+               const hid_t space = H5Screate_simple(1, std::vector<hsize_t>{9}.data(), nullptr);
+               const hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
+               H5Pset_virtual(creation, space, other.c_str(), "/grains/radius_m", space);
+               write_dataset(file, "/grains/radius_m", space, creation);
+               H5Pclose(creation);
+               H5Sclose(space);
+             }),
+             Contains("/grains/radius_m is a virtual dataset"));
+  CHECK_THAT(refusal([&](hid_t file) {
+               const hsize_t rows = 9;
+               const hid_t space = H5Screate_simple(1, &rows, nullptr), creation = H5Pcreate(H5P_DATASET_CREATE);
+               H5Pset_chunk(creation, 1, &rows);
+               H5Pset_shuffle(creation);
+               write_dataset(file, "/grains/radius_m", space, creation);
+               H5Pclose(creation);
+               H5Sclose(space);
+             }),
+             Contains("/grains/radius_m is compressed or filtered"));
+  CHECK_THAT(refusal([&](hid_t file) {
+               hid_t at = H5Gopen2(file, "/", H5P_DEFAULT);
+               for (int depth = 0; depth < 2000; ++depth) {
+                 const hid_t next = H5Gcreate2(at, "g", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+                 H5Gclose(at);
+                 at = next;
+               }
+               H5Gclose(at);
+             }),
+             Contains("/g/g/g") && Contains("groups in one another"));
+}
+
+TEST_CASE("values in chunks are read wherever the chunks end") {
+  const Folder folder;
+  std::vector<double> values(7 * 5 * 3);
+  for (std::size_t k = 0; k < values.size(); ++k) values[k] = double(k);
+  const hsize_t extents[3] = {7, 5, 3};
+  for (const std::vector<hsize_t>& chunk : {std::vector<hsize_t>{1, 1, 1}, {7, 5, 3}, {4, 2, 2}, {3, 5, 1}}) {
+    const std::string path = folder / "c.h5";
+    const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+    const hid_t space = H5Screate_simple(3, extents, nullptr), creation = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_chunk(creation, 3, chunk.data());
+    const hid_t made = H5Dcreate2(file, "d", H5T_IEEE_F64LE, space, H5P_DEFAULT, creation, H5P_DEFAULT);
+    H5Dwrite(made, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+    H5Dclose(made);
+    H5Pclose(creation);
+    H5Sclose(space);
+    H5Fclose(file);
+    CHECK(io::Hdf5File::open(path).read<double>("/d") == values);
+  }
+}
+
+TEST_CASE("a dataset of the file's own version that is missing is refused by name") {
+  const Folder folder;
+  const io::SpecimenOrigin origin{"[pack]\n", 1, 2, 0.5};
+  io::write_specimen(random_specimen(6), folder / "s.h5", &origin);
+  io::write_records(random_result(6), random_specimen(7), "[test]\n", folder / "r.h5");
+  for (const std::string name : {"s.h5", "r.h5"}) {
+    const auto read = [&](const std::string& path) {
+      return input_error([&] {
+        io::read_origin(path);
+        name == "s.h5" ? void(io::read_specimen(path)) : void(io::read_recorded_test(path));
+      });
+    };
+    CHECK(read(folder / name).empty());
+    const auto entries = io::Hdf5File::open(folder / name).entries();
+    CHECK(entries.size() > 90);
+    for (const io::Hdf5Entry& entry : entries) {
+      const bool of_nobody = name == "s.h5" && (entry.name == "/provenance/version" || entry.name == "/provenance/compiler");
+      if (of_nobody) continue;  // said, and read by people
+      CAPTURE(entry.name);
+      const std::string path = folder / "x.h5";
+      std::filesystem::copy_file(folder / name, path, std::filesystem::copy_options::overwrite_existing);
+      change(path, [&](hid_t file) { H5Ldelete(file, entry.name.c_str(), H5P_DEFAULT); });
+      CHECK_THAT(read(path), Contains("x.h5: dataset " + entry.name + " is missing"));
+    }
+  }
+}
+
+TEST_CASE("a library in a host takes no file without its seal, and names the remedy") {
+  const std::string old = std::string(RVELAB_TEST_DATA) + "/compat/specimen_1_2.h5";
+  CHECK_NOTHROW(io::read_specimen(old));
+  CHECK_THAT(input_error([&] { io::read_specimen(old, io::Seal::required); }),
+             Contains("specimen_1_2.h5: lacks the checksum") && Contains("`rvelab seal "));
+}
