@@ -7,7 +7,9 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <sstream>
 #include <utility>
@@ -104,10 +106,9 @@ class Findings {
   /// One number against its range; `range` is that range in words, with the unit.
   void expect(bool allowed, const std::string& key, double value, const char* range, const char* remedy) {
     if (allowed && std::abs(value) <= std::numeric_limits<double>::max()) return;
-    std::ostringstream line;
-    line.precision(9);
-    line << key << " = " << value << " is out of range; allowed: " << range << "; " << remedy;
-    add(line.str());
+    char digits[32];  // as many as tell it from the end of the range
+    const std::string found(digits, std::to_chars(std::begin(digits), std::end(digits), value).ptr);
+    add(key + " = " + found + " is out of range; allowed: " + range + "; " + remedy);
   }
 
   void raise() const {

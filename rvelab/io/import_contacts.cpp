@@ -107,7 +107,7 @@ Vector3 tangential_component(const CsvTable& table, std::size_t row, const Speci
   if (!table.has("ft")) return computed;
   const auto column = table.column({"ft"});
   const double given = table.number(row, column);
-  if (std::abs(given - computed[0]) > agreement * contact.tangential_force.norm()) {
+  if (std::abs(given - computed[0]) > agreement * contact.tangential_force.stableNorm()) {
     throw InputError(table.place(row, column) + " N: fsx and fsy give " + text(computed[0]) +
                      " N along (-n_y, n_x); allowed: equal within 1e-6; correct one or leave the column out");
   }
@@ -168,9 +168,9 @@ void check_caps(const CsvTable& table, const std::vector<Contact>& contacts, con
                        cap + " times the normal force; give the parameters that belong to this file (others are put "
                        "over them by --set)");
     };
-    expect(contacts[row].tangential_force.norm(), pair.friction, "tangential force", "N", "friction");
+    expect(contacts[row].tangential_force.stableNorm(), pair.friction, "tangential force", "N", "friction");
     if (specimen.contact.rolling) {
-      expect(contacts[row].rolling_moment.norm(), pair.moment_cap, "rolling moment", "N m", "eta and the radius");
+      expect(contacts[row].rolling_moment.stableNorm(), pair.moment_cap, "rolling moment", "N m", "eta and the radius");
     }
   }
 }

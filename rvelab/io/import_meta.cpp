@@ -61,7 +61,8 @@ class MetaFile {
       }
     }
     if (!square) {
-      fail(std::string(key) + " is no matrix; allowed: dim rows of dim numbers each; correct it");
+      const std::string found = rows.is_structured() ? "" : " = " + keys::shortened(rows.dump());
+      fail(key + found + " is no matrix; allowed: dim rows of dim numbers each; correct it");
     }
     return matrix;
   }

@@ -140,6 +140,7 @@ SealedFile seal_file(const std::string& path, const std::string& output) {
   const SealedFile found{kind_without_seal(file), file.sealed(), file.entries().size()};
   // What cannot be read as one of rvelab's would only be refused later.
   if (found.kind == FileKind::specimen) {
+    get_origin(file);
     expect_opens(get_specimen(file, specimen_group(file)), path);
   } else {
     const RecordedTest test = test_in(opened);

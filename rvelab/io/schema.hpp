@@ -38,6 +38,8 @@ bool is_rvelab(const Hdf5File& file);
 /// Writes a specimen under a group ("" for the root), or reads it from there and checks its indices.
 void put_specimen(Hdf5File& file, const std::string& group, const Specimen& specimen);
 Specimen get_specimen(const Hdf5File& file, const std::string& group);
+/// How the specimen of a specimen file was packed; none if it was not, or of another file.
+std::optional<SpecimenOrigin> get_origin(const Hdf5File& file);
 /// Where a file has its specimen: of records the end state, of a pool its RVE. InputError: a pool of none or many.
 std::string specimen_group(const Hdf5File& file);
 

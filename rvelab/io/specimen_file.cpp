@@ -194,14 +194,20 @@ void write_specimen(const Specimen& specimen, const std::string& path, const Spe
   });
 }
 
-std::optional<SpecimenOrigin> read_origin(const std::string& path) {
-  const auto file = Hdf5File::open(path);
-  checked_kind(file);
-  if (!file.has("/provenance")) return std::nullopt;
+std::optional<SpecimenOrigin> get_origin(const Hdf5File& file) {
+  if (kind_without_seal(file) != FileKind::specimen || !file.has("/provenance")) return std::nullopt;
   SpecimenOrigin origin;
   Reader reader(file, "");
   describe_origin(reader, origin);
+  std::string by;  // said, and read by people
+  for (const char* name : {"provenance/version", "provenance/compiler"}) reader.field(name, by, "-");
   return origin;
+}
+
+std::optional<SpecimenOrigin> read_origin(const std::string& path) {
+  const auto file = Hdf5File::open(path);
+  checked_kind(file);
+  return get_origin(file);
 }
 
 Specimen read_specimen(const std::string& path, Seal seal) {

@@ -13,9 +13,10 @@ namespace rvelab {
 namespace {
 
 void expect_time(double dt) {
-  if (dt >= 0 && std::isfinite(dt)) return;
+  constexpr double shortest = 1e-30;  // s; in less the squares of rates are beyond all numbers
+  if (dt == 0 || (dt >= shortest && std::isfinite(dt))) return;
   std::ostringstream text;
-  text << "apply: dt = " << dt << " s; it must be 0 (quasi-static) or a positive time";
+  text << "apply: dt = " << dt << " s; it must be 0 (quasi-static) or a time of at least 1e-30 s";
   throw InvalidIncrement(text.str());
 }
 

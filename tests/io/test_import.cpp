@@ -362,3 +362,62 @@ TEST_CASE("a bad contact file is refused with file, line, column, value and reme
              Contains("c.csv:3") && Contains("9-4 is there twice") && Contains("c.csv:2"));
   CHECK_THAT(contact_error(header + "4,4,0,0,1e5,0,30,0,1e6,5e5,0\n"), Contains("with itself"));
 }
+
+TEST_CASE("a table that ends before the number of rows in META.json is refused with both counts") {
+  const Folder folder;
+  const std::string stem = packings + "dense";
+  const auto cut = [&](const std::string& table) {
+    const std::string whole = bytes_of(stem + table);
+    write_bytes(folder / "cut.csv", whole.substr(0, whole.find('\n', whole.size() / 2) + 1));
+    return folder / "cut.csv";
+  };
+  CHECK_THAT(input_error([&] { io::import_csv(stem + ".particles.csv", cut(".contacts.csv"), stem + ".json"); }),
+             Contains("cut.csv: has ") && Contains(" rows; allowed: 795, which is n_contacts in"));
+  CHECK_THAT(input_error([&] { io::import_csv(cut(".particles.csv"), std::nullopt, stem + ".json"); }),
+             Contains("cut.csv: has ") && Contains(" rows; allowed: 400, which is n_particles in"));
+  CHECK_NOTHROW(io::import_csv(stem + ".particles.csv", std::nullopt, stem + ".json"));
+}
+
+TEST_CASE("forces and moments beyond what friction and the rolling cap let stand are refused") {
+  const Folder folder;
+  const std::string stem = packings + "dense", whole = bytes_of(stem + ".contacts.csv");
+  std::istringstream lines(whole);
+  std::string head, line;
+  while (std::getline(lines, line) && !line.starts_with("id1")) head += line + "\n";
+  std::vector<std::string> columns;
+  std::istringstream names(line);
+  for (std::string name; std::getline(names, name, ',');) columns.push_back(name);
+  const auto refusal = [&](const std::string& column, const std::string& value) {
+    const std::size_t begin = whole.find('\n', whole.find("id1")) + 1, end = whole.find('\n', begin);
+    std::istringstream row(whole.substr(begin, end - begin));
+    std::string changed;
+    std::size_t k = 0;
+    for (std::string cell; std::getline(row, cell, ','); ++k) {
+      changed += (k == 0 ? "" : ",") + (columns.at(k) == column ? value : cell);
+    }
+    write_bytes(folder / "c.csv", whole.substr(0, begin) + changed + whole.substr(end));
+    return input_error([&] { io::import_csv(stem + ".particles.csv", folder / "c.csv", stem + ".json"); });
+  };
+  for (const std::string value : {"1e300", "-1e300", "1e6"}) {
+    CHECK_THAT(refusal("fsx", value), Contains("c.csv:") && Contains("has a tangential force of") &&
+                                          Contains("friction times the normal force"));
+    CHECK_THAT(refusal("mz", value), Contains("has a rolling moment of") && Contains("allowed: up to"));
+  }
+}
+
+TEST_CASE("what is no regular file is refused at once, and lists in lists of any depth by the key") {
+  const Folder folder;
+  REQUIRE(std::system(("mkfifo '" + (folder / "pipe") + "'").c_str()) == 0);
+  for (const std::string& path : {folder / "pipe", std::string("/dev/zero"), folder.path()}) {
+    CHECK_THAT(input_error([&] { io::import_csv(path, {}, {}); }), Contains(path + ": is not a regular file"));
+  }
+  const std::string deep = std::string(200'000, '[') + std::string(200'000, ']');
+  write_bytes(folder / "m.json", "{\"dim\": 2, \"thickness_m\": 1, \"hSize\": " + deep + "}");
+  CHECK_THAT(input_error([&] { io::import_csv(packings + "dense.particles.csv", {}, folder / "m.json"); }),
+             Contains("m.json: hSize is no matrix"));
+  write_bytes(folder / "m.json", "{\"dim\": " + deep + "}");
+  CHECK_THAT(input_error([&] { io::import_csv(packings + "dense.particles.csv", {}, folder / "m.json"); }),
+             Contains("dim = a list or an object is not a finite number"));
+  write_bytes(folder / "m.json", "{\"dim\": \"" + std::string(70'000, 'x') + "\"}");
+  CHECK(input_error([&] { io::import_csv(packings + "dense.particles.csv", {}, folder / "m.json"); }).size() < 500);
+}

@@ -210,3 +210,30 @@ TEST_CASE("a protocol's material table acts on all materials, or on the one it n
   CHECK(errors[0].line == 5);
   CHECK_THAT(errors[0].message, Contains("material.gravel.roling"));
 }
+
+TEST_CASE("a key of more names than tables are deep is refused with its line, wherever it stands") {
+  const Folder folder;
+  std::string dotted;
+  for (int k = 0; k < 50'000; ++k) dotted += "a.";
+  for (const std::string& text : {dotted + "b = 1\n", "[" + dotted + "b]\n", "[[" + dotted + "b]]\n",
+                                  "x = {" + dotted + "b = 1}\n", "x = [\n{" + dotted + "b = 1}]\n"}) {
+    write_bytes(folder / "m.toml", "[contact]\nlaw = \"linear\"\n" + text);
+    CHECK_THAT(input_error([&] { keys::parse_toml_file(folder / "m.toml"); }),
+               Contains(text.starts_with("x = [\n") ? "m.toml:4: " : "m.toml:3: ") && Contains("more than 8 names"));
+  }
+  Specimen specimen = two_materials();
+  CHECK(input_error([&] { keys::set_key(specimen, "contact.law={" + dotted + "b=1}"); }).size() < 500);
+  const std::string quoted = "a = \"" + dotted + "\" # " + dotted + "\nb = '''\n" + dotted + "'''\nc = \"\\\"" + dotted +
+                             "\"\nd = [1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5, 8.5, 9.5]\n\"e.e.e.e.e.e.e.e.e\".f = 1\n";
+  write_bytes(folder / "m.toml", quoted);
+  CHECK(keys::parse_toml_file(folder / "m.toml").size() == 5);
+}
+
+TEST_CASE("a text that is refused is quoted by its beginning") {
+  Specimen specimen = two_materials();
+  for (const std::string& assignment : {"contact.law=" + std::string(70'000, 'x'), "contact." + std::string(70'000, 'x') + "=1"}) {
+    const std::string message = input_error([&] { keys::set_key(specimen, assignment); });
+    CHECK_THAT(message, Contains("xxx...") || Contains("xxx"));
+    CHECK(message.size() < 600);
+  }
+}
