@@ -59,8 +59,7 @@ class Writer {
         name, values.size(), [&](std::size_t k) -> const Value& { return values[k]; }, {values.size()}, units);
   }
   template <class Value>
-  void later_field(const std::string& name, const Value& value, const std::string& units, InFiles,
-                   const Value& = {}) {
+  void later_field(const std::string& name, const Value& value, const std::string& units, InFiles, const Value& = {}) {
     field(name, value, units);
   }
   template <class Item, class... Columns>

@@ -110,7 +110,8 @@ CsvTable::CsvTable(const std::string& path, std::string text) : path_(path), con
   std::set<std::string_view> names;
   for (const std::string& name : columns_) {
     if (names.insert(name).second) continue;
-    throw InputError(path + ": the header has the column " + keys::shortened(name) + " twice; allowed: once; rename one");
+    throw InputError(path + ": the header has the column " + keys::shortened(name) +
+                     " twice; allowed: once; rename one");
   }
 }
 
@@ -172,7 +173,8 @@ std::int64_t CsvTable::integer(std::size_t row, std::size_t column) const {
 std::string CsvTable::place(std::size_t row) const { return path_ + ":" + std::to_string(lines_[row]); }
 
 std::string CsvTable::place(std::size_t row, std::size_t column) const {
-  return place(row) + ": column " + keys::shortened(columns_[column]) + " = " + keys::shortened(std::string(text(row, column)));
+  return place(row) + ": column " + keys::shortened(columns_[column]) + " = " +
+         keys::shortened(std::string(text(row, column)));
 }
 
 }  // namespace rvelab::io

@@ -112,8 +112,10 @@ Hdf5File Hdf5File::open(const std::string& path, Seal seal) {
                      "`rvelab run`)");
   }
   if (!file.sealed_ && seal == Seal::required) {
-    throw InputError(path + ": lacks the checksum at its end, without which a library reads no file; take it over with `rvelab seal " +
-                     path + " -o NEW.h5`");
+    throw InputError(
+        path +
+        ": lacks the checksum at its end, without which a library reads no file; take it over with `rvelab seal " +
+        path + " -o NEW.h5`");
   }
   file.tree_ = hdf5::read(path, std::move(bytes));
   return file;

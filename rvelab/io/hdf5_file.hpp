@@ -1,9 +1,9 @@
 // An HDF5 file as one small class: typed arrays, text and attributes by name; its errors as rvelab's own.
 //
-// hdf5_*.cpp know the format and nothing of grains. A file is read whole, its seal is held against its bytes (seal.hpp),
-// and what is in it is taken apart in memory (hdf5_tree.hpp), with every address held against the end of the file. Files
-// are built in memory and written by publish(), so that no HDF5 file is ever open for writing on disc and a full disc is
-// one plain error.
+// hdf5_*.cpp know the format and nothing of grains. A file is read whole, its seal is held against its bytes
+// (seal.hpp), and what is in it is taken apart in memory (hdf5_tree.hpp), with every address held against the end of
+// the file. Files are built in memory and written by publish(), so that no HDF5 file is ever open for writing on disc
+// and a full disc is one plain error.
 #pragma once
 
 #include <cstdint>

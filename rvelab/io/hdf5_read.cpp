@@ -183,10 +183,10 @@ class Reader {
 
   [[noreturn]] void refuse_link(const std::string& group, const std::string& name, const std::string& target,
                                 bool external) const {
-    refuse((group == "/" ? "/" : group + "/") + name,
-           std::string("is a link to ") + (external ? "another file" : "another name") + " (" +
-               target.substr(0, 60) + ")",
-           "allowed: objects of the file itself, each under one name; copy what is meant into its place");
+    refuse(
+        (group == "/" ? "/" : group + "/") + name,
+        std::string("is a link to ") + (external ? "another file" : "another name") + " (" + target.substr(0, 60) + ")",
+        "allowed: objects of the file itself, each under one name; copy what is meant into its place");
   }
 
   /// A group that HDF5 has turned into its newer form, because a link of another file was put into it.

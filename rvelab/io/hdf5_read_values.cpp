@@ -12,8 +12,9 @@ namespace {
 }
 
 [[noreturn]] void refuse_number(const std::string& what) {
-  throw InputError(what + " holds numbers of another layout (big-endian, or of odd sizes); allowed: little-endian "
-                          "integers of 8, 16, 32 and 64 bits and floating-point numbers of 32 and 64; write them so");
+  throw InputError(what +
+                   " holds numbers of another layout (big-endian, or of odd sizes); allowed: little-endian "
+                   "integers of 8, 16, 32 and 64 bits and floating-point numbers of 32 and 64; write them so");
 }
 
 StoredType number_type(const Part& message, bool floating, const std::string& what) {
@@ -26,8 +27,7 @@ StoredType number_type(const Part& message, bool floating, const std::string& wh
   const std::uint8_t mantissa = bytes == 8 ? 52 : 23, exponent = bytes == 8 ? 11 : 8;
   const bool ieee = bytes >= 4 && message.byte(12) == mantissa && message.byte(13) == exponent &&
                     message.byte(14) == 0 && message.byte(15) == mantissa && (flags & 0x30) == 0x20 &&
-                    message.byte(2) == 8 * bytes - 1 &&
-                    message.get<std::uint32_t>(16) == (bytes == 8 ? 1023u : 127u);
+                    message.byte(2) == 8 * bytes - 1 && message.get<std::uint32_t>(16) == (bytes == 8 ? 1023u : 127u);
   if (!ieee) refuse_number(what);
   return {{Kind::floating, bytes}};
 }
@@ -46,9 +46,16 @@ std::optional<std::uint64_t> count_of(const std::vector<std::uint64_t>& shape) {
 }  // namespace
 
 StoredType stored_type(const Part& message, const std::string& what) {
-  static constexpr const char* others[] = {"",           "",          "times", "",        "bit fields", "opaque bytes",
-                                           "compounds",  "references to other places",
-                                           "enumerations (such as truth values of h5py)", "references to other places",
+  static constexpr const char* others[] = {"",
+                                           "",
+                                           "times",
+                                           "",
+                                           "bit fields",
+                                           "opaque bytes",
+                                           "compounds",
+                                           "references to other places",
+                                           "enumerations (such as truth values of h5py)",
+                                           "references to other places",
                                            "arrays"};
   const int kind = message.byte(0) & 15;
   const auto bytes = message.get<std::uint32_t>(4);
@@ -107,8 +114,9 @@ Values ValueReader::by_layout(const StoredType& type, std::vector<std::uint64_t>
   enum { compact, contiguous, chunked };
   const auto version = layout.byte(0), kind = layout.byte(1);
   if (version == 4 && kind == 3) {
-    throw InputError(what + " is a virtual dataset, whose values lie in other places; allowed: values in the file "
-                            "itself; copy them into it");
+    throw InputError(what +
+                     " is a virtual dataset, whose values lie in other places; allowed: values in the file "
+                     "itself; copy them into it");
   }
   if (version != 3 || kind > chunked) {
     throw InputError(what + " is stored in a layout of version " + std::to_string(version) +
@@ -123,7 +131,8 @@ Values ValueReader::by_layout(const StoredType& type, std::vector<std::uint64_t>
   if (kind == contiguous) return in_place(type, std::move(shape), file_.part(at, layout.address(10)), what);
 
   Chunks chunks{what, shape, {}, type.type.bytes, {}, 0, {}, {}};
-  if (shape.empty() || layout.byte(2) != shape.size() + 1) layout.damaged("chunks have other dimensions than their dataset");
+  if (shape.empty() || layout.byte(2) != shape.size() + 1)
+    layout.damaged("chunks have other dimensions than their dataset");
   for (std::size_t k = 0; k < shape.size(); ++k) chunks.chunk.push_back(layout.get<std::uint32_t>(11 + 4 * k));
   if (const auto values = count_of(chunks.chunk); !values || *values == 0) larger_than_stored(what);
   if (*count > file_.size() / chunks.value_bytes) larger_than_stored(what);
@@ -189,9 +198,9 @@ Values ValueReader::texts(const Values& references, const std::string& what) {
   std::uint64_t longest = 1;
   for (std::uint64_t k = 0; k < count; ++k) {
     const auto length = each.get<std::uint32_t>(16 * k);
-    found.push_back(length == 0 ? std::span<const std::byte>()
-                                : heap_object(each.address(16 * k + 4), each.get<std::uint32_t>(16 * k + 12))
-                                      .span(0, length));
+    found.push_back(length == 0
+                        ? std::span<const std::byte>()
+                        : heap_object(each.address(16 * k + 4), each.get<std::uint32_t>(16 * k + 12)).span(0, length));
     longest = std::max<std::uint64_t>(longest, length);
   }
   const auto letters = room(count * longest, what);

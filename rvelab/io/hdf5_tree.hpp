@@ -1,7 +1,7 @@
 // What an HDF5 file holds, in memory, and the way from its bytes and back. Of the format (HDF5 File Format
-// Specification, version 3.0) this is the part that rvelab writes and has always written, and that h5py writes unless it
-// is told otherwise: the first version of its superblock, of groups and of object headers, datasets in one piece or in
-// chunks, without filters. Every byte lies in this file: nothing leads out of it, and every object has one name.
+// Specification, version 3.0) this is the part that rvelab writes and has always written, and that h5py writes unless
+// it is told otherwise: the first version of its superblock, of groups and of object headers, datasets in one piece or
+// in chunks, without filters. Every byte lies in this file: nothing leads out of it, and every object has one name.
 //
 // HDF5's own library is not used: it trusts the bytes that it is shown, ends the process where it gets no memory, and
 // follows links to other files.

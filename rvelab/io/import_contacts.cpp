@@ -165,7 +165,8 @@ void check_caps(const CsvTable& table, const std::vector<Contact>& contacts, con
       if (value <= factor * pressing + agreement * std::max(factor, 1e-3) * largest) return;
       throw InputError(table.place(row) + ": " + pair_of(table, columns, row) + " has a " + what + " of " +
                        text(value) + " " + unit + "; allowed: up to " + text(factor * pressing) + " " + unit + ", " +
-                       cap + " times the normal force; give the parameters that belong to this file (others are put "
+                       cap +
+                       " times the normal force; give the parameters that belong to this file (others are put "
                        "over them by --set)");
     };
     expect(contacts[row].tangential_force.stableNorm(), pair.friction, "tangential force", "N", "friction");

@@ -199,8 +199,8 @@ void take_cell(std::optional<Matrix3>& cell, std::string& source, const Matrix3&
 void expect_rows(const CsvTable& table, const std::optional<std::size_t>& stated, const char* key,
                  const std::optional<std::string>& meta) {
   if (!stated || *stated == table.rows()) return;
-  throw InputError(table.path() + ": has " + std::to_string(table.rows()) + " rows; allowed: " +
-                   std::to_string(*stated) + ", which is " + key + " in " + *meta +
+  throw InputError(table.path() + ": has " + std::to_string(table.rows()) +
+                   " rows; allowed: " + std::to_string(*stated) + ", which is " + key + " in " + *meta +
                    "; the file is cut, or of another state: give the files that belong together");
 }
 

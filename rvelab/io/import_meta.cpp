@@ -137,8 +137,7 @@ Meta read_meta(const std::string& path, Specimen& specimen, bool parameters) {
   }
   meta.reference_pressure = file.number_or_zero("p0_Pa");
   if (meta.reference_pressure < 0) {
-    file.fail("p0_Pa = " + exact(meta.reference_pressure) +
-              "; allowed: >= 0 (compression positive); correct it");
+    file.fail("p0_Pa = " + exact(meta.reference_pressure) + "; allowed: >= 0 (compression positive); correct it");
   }
   meta.particles = file.count("n_particles");
   meta.contacts = file.count("n_contacts");

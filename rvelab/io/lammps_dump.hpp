@@ -21,7 +21,8 @@ struct LammpsDump {
 /// Whether a text begins as a dump does.
 bool is_lammps_dump(const std::string& text);
 
-/// Takes a dump in SI units apart; `path` serves the messages. InputError naming the line: not a dump, no box, a box that is not periodic.
+/// Takes a dump in SI units apart; `path` serves the messages. InputError naming the line: not a dump, no box, a box
+/// that is not periodic.
 LammpsDump read_lammps_dump(const std::string& path, const std::string& text);
 
 }  // namespace rvelab::io

@@ -212,9 +212,7 @@ void RecordStore::keep(const records::Checkpoint& checkpoint) {
   test_.result.wall_seconds = checkpoint.progress.wall_seconds;
   test_.result.grain_steps = checkpoint.specimen.state.grain_steps - checkpoint.progress.first_grain_steps;
   std::vector<std::byte> payload;
-  {
-      payload = encode_checkpoint(checkpoint);
-  }
+  { payload = encode_checkpoint(checkpoint); }
   journal_.append(checkpoint_frame, payload);
   keeps_something_ = true;
   journal_.sync();

@@ -1,6 +1,6 @@
 // The seal of a file: its length and the CRC-32C of all its bytes, in the last 24. It is checked before anything else
-// reads the file. HDF5's library does not see bytes behind its own end, and takes them away when a program opens the file
-// for writing: then the seal is gone, which tells such a file from a damaged one.
+// reads the file. HDF5's library does not see bytes behind its own end, and takes them away when a program opens the
+// file for writing: then the seal is gone, which tells such a file from a damaged one.
 //
 //     8 bytes "rveseal\n", uint64 length of what stands before them, uint32 version of the seal (1),
 //     uint32 CRC-32C of everything before it; little-endian

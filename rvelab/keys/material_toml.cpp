@@ -308,8 +308,8 @@ void read_material_file(const std::string& path, Specimen& specimen) {
     const std::string name(key.str());
     const auto line = static_cast<long>(key.source().begin.line);
     if (std::find(table_names.begin(), table_names.end(), name) == table_names.end()) {
-      errors.push_back({line, "unknown table [" + shortened(name) + "]; the nearest known one is [" + nearest(name, table_names) +
-                                  "]; correct the name or remove it"});
+      errors.push_back({line, "unknown table [" + shortened(name) + "]; the nearest known one is [" +
+                                  nearest(name, table_names) + "]; correct the name or remove it"});
     } else if (!value.is_table() && !(name == "material" && value.is_array())) {
       errors.push_back({line, name + " = " + written(value) + " is not a table; allowed: [" + name +
                                   "] with its keys below; write it so"});

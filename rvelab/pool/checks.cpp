@@ -10,8 +10,8 @@ namespace rvelab::pool {
 void expect_time(double dt) {
   constexpr double shortest = 1e-30;  // s, as in Rve
   if (dt == 0 || (dt >= shortest && std::isfinite(dt))) return;
-  throw Refused(Status::bad_input, "dt is " + rvelab::in_words(dt) +
-                                       " s; allowed: 0 (quasi-static) or a time of at least 1e-30 s");
+  throw Refused(Status::bad_input,
+                "dt is " + rvelab::in_words(dt) + " s; allowed: 0 (quasi-static) or a time of at least 1e-30 s");
 }
 
 void expect_spawn(std::int64_t n) {

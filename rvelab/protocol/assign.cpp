@@ -71,10 +71,12 @@ void assign(toml::table& file, const std::string& assignment) {
   const auto equals = assignment.find('=');
   const std::string key = trimmed(assignment.substr(0, equals));
   const auto parts = parts_of(key);
-  const bool incomplete = parts.size() < 2 || parts.size() > keys::most_names || std::find(parts.begin(), parts.end(), "") != parts.end();
+  const bool incomplete =
+      parts.size() < 2 || parts.size() > keys::most_names || std::find(parts.begin(), parts.end(), "") != parts.end();
   if (equals == std::string::npos || trimmed(assignment.substr(equals + 1)).empty() || incomplete) {
-    throw InputError("--set " + keys::shortened(assignment) +
-                     " is not an assignment; allowed: table.key=value, of up to 8 names; write for example test.pressure_Pa=2e4");
+    throw InputError(
+        "--set " + keys::shortened(assignment) +
+        " is not an assignment; allowed: table.key=value, of up to 8 names; write for example test.pressure_Pa=2e4");
   }
   const std::string text = trimmed(assignment.substr(equals + 1));
   toml::table* table = &file;

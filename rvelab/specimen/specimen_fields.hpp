@@ -2,8 +2,8 @@
 // (described.hpp). Names, units and order are those of the file (rvelab/io/README.md); a member of a struct that has no
 // entry here does not compile.
 //
-// A field that files did not have from the start says since which minor version they do, InFiles{10}: the default of its
-// struct must be what the version before it did. A new field is of the next version (io/schema.hpp).
+// A field that files did not have from the start says since which minor version they do, InFiles{10}: the default of
+// its struct must be what the version before it did. A new field is of the next version (io/schema.hpp).
 #pragma once
 
 #include <iterator>
@@ -52,8 +52,7 @@ constexpr auto stored_fields() {
   static_assert(std::size(Group::stored) == member_count<Group>(), "a constant of a law is not in its list `stored`");
   return []<std::size_t... k>(std::index_sequence<k...>) {
     return std::tuple{Field<Material, double>{Group::stored[k].dataset, Group::stored[k].value, Group::stored[k].unit,
-                                              Rows::one,
-                                              InFiles{Group::stored[k].later ? 5 : 0}}...};
+                                              Rows::one, InFiles{Group::stored[k].later ? 5 : 0}}...};
   }
   (std::make_index_sequence<std::size(Group::stored)>());
 }

@@ -1,4 +1,5 @@
-// What HDF5's own library makes of our files, and we of its: nothing leads out of a file, nothing is missing in silence.
+// What HDF5's own library makes of our files, and we of its: nothing leads out of a file, nothing is missing in
+// silence.
 #include "rvelab/io/hdf5_file.hpp"
 
 #include <hdf5.h>

@@ -388,7 +388,7 @@ TEST_CASE("forces and moments beyond what friction and the rolling cap let stand
   std::istringstream names(line);
   for (std::string name; std::getline(names, name, ',');) columns.push_back(name);
   const auto refusal = [&](const std::string& column, const std::string& value) {
-    const std::size_t begin = whole.find('\n', whole.find("id1")) + 1, end = whole.find('\n', begin);
+    const std::size_t begin = whole.find('\n', whole.find("\nid1") + 1) + 1, end = whole.find('\n', begin);
     std::istringstream row(whole.substr(begin, end - begin));
     std::string changed;
     std::size_t k = 0;

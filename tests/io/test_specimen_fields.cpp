@@ -357,8 +357,9 @@ TEST_CASE("a column that was added later keeps its default in an older file, and
   auto without = io::Hdf5File::in_memory("without.h5");
   io::stamp(without, io::FileKind::specimen);
   io::Writer(without, "").table("rows", older, Field{"radius", &Row::radius, "m"});
+  std::vector<LaterRow> none;
   CHECK_THAT(input_error([&] {
-               io::Reader(without, "").table("rows", rows, Field{"radius", &LaterRow::radius, "m"}, later);
+               io::Reader(without, "").table("rows", none, Field{"radius", &LaterRow::radius, "m"}, later);
              }),
              Contains("without.h5: dataset /rows/cohesion is missing"));
 

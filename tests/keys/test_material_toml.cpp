@@ -223,7 +223,8 @@ TEST_CASE("a key of more names than tables are deep is refused with its line, wh
   }
   Specimen specimen = two_materials();
   CHECK(input_error([&] { keys::set_key(specimen, "contact.law={" + dotted + "b=1}"); }).size() < 500);
-  const std::string quoted = "a = \"" + dotted + "\" # " + dotted + "\nb = '''\n" + dotted + "'''\nc = \"\\\"" + dotted +
+  const std::string quoted = "a = \"" + dotted + "\" # " + dotted + "\nb = '''\n" + dotted + "'''\nc = \"\\\"" +
+                             dotted +
                              "\"\nd = [1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5, 8.5, 9.5]\n\"e.e.e.e.e.e.e.e.e\".f = 1\n";
   write_bytes(folder / "m.toml", quoted);
   CHECK(keys::parse_toml_file(folder / "m.toml").size() == 5);
@@ -231,7 +232,8 @@ TEST_CASE("a key of more names than tables are deep is refused with its line, wh
 
 TEST_CASE("a text that is refused is quoted by its beginning") {
   Specimen specimen = two_materials();
-  for (const std::string& assignment : {"contact.law=" + std::string(70'000, 'x'), "contact." + std::string(70'000, 'x') + "=1"}) {
+  for (const std::string& assignment :
+       {"contact.law=" + std::string(70'000, 'x'), "contact." + std::string(70'000, 'x') + "=1"}) {
     const std::string message = input_error([&] { keys::set_key(specimen, assignment); });
     CHECK_THAT(message, Contains("xxx...") || Contains("xxx"));
     CHECK(message.size() < 600);

@@ -25,7 +25,6 @@ using namespace rvelab::test;
 
 namespace {
 
-
 /// The run that is killed: stages, increments, snapshots, and checkpoints five times a second.
 class Victim {
  public:
