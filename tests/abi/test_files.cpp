@@ -1,8 +1,10 @@
 // Files by way of librvelab-h5.so: specimens, pools, damage, and the library missing.
 #include <fstream>
+#include <utility>
 
 #include "rvelab/io/specimen_file.hpp"
 #include "tests/abi/host.hpp"
+#include "tests/abi/no_memory.hpp"
 #include "tests/folder.hpp"
 
 using namespace rvelab;
@@ -130,4 +132,46 @@ TEST_CASE("A pool file cut at every 4 KiB, or with a byte changed, is refused, a
   REQUIRE_OK(rvelab_ids(host.pool, 0, nullptr, &n));
   CHECK(n == 0);
   REQUIRE_OK(rvelab_pool_read(host.pool, file.c_str()));
+}
+
+TEST_CASE("wherever memory ends while a file is read or written, RVELAB_E_MEMORY is all that happens") {
+  const Folder folder;
+  const std::string specimen = folder / "s.h5", pool = folder / "pool.h5";
+  io::write_specimen(packed(Shape::disc, 3), specimen);
+  Host host;
+  const auto ids = host.spawn(packed(Shape::disc, 3), 2);
+  REQUIRE_OK(rvelab_pool_write(host.pool, pool.c_str()));
+  const std::string whole = bytes_of(pool);
+  const auto refused_until_done = [&](auto call) {
+    int refused = 0;
+    for (long n = 1;; n += n < 60 ? 1 : 41) {
+      allocations_left = n;
+      const std::int32_t status = call();
+      const bool reached = std::exchange(allocations_left, 0) == 0;
+      if (!reached) {
+        CHECK(status >= RVELAB_OK);
+        return refused;
+      }
+      INFO(n);
+      CHECK(status == RVELAB_E_MEMORY);
+      CHECK(bytes_of(pool) == whole);
+      ++refused;
+    }
+  };
+  std::int64_t made = 0;
+  CHECK(refused_until_done([&] { return rvelab_template_load(host.pool, specimen.c_str(), &made); }) > 60);
+  CHECK(refused_until_done([&] { return rvelab_pool_write(host.pool, pool.c_str()); }) > 60);
+  Host empty;
+  CHECK(refused_until_done([&] { return rvelab_pool_read(empty.pool, pool.c_str()); }) > 60);
+  CHECK(Rve(empty.state(ids[0])).save() == Rve(host.state(ids[0])).save());
+}
+
+TEST_CASE("a file without its seal is refused in a host, and the remedy named") {
+  Host host;
+  std::int64_t made = 0;
+  const std::string old = std::string(RVELAB_TEST_DATA) + "/compat/specimen_1_2.h5";
+  CHECK(rvelab_template_load(host.pool, old.c_str(), &made) == RVELAB_E_FILE);
+  CHECK_THAT(rvelab_last_error(), Contains("lacks the checksum") && Contains("rvelab seal " + old));
+  CHECK(rvelab_pool_read(host.pool, old.c_str()) == RVELAB_E_FILE);
+  CHECK_THAT(rvelab_last_error(), Contains("rvelab seal " + old));
 }

@@ -24,7 +24,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr std::uint64_t batch = 500;      // inputs of one child
-constexpr double patience = 20;           // s for one input; a guarded reader gives up after 3 s of processor time
+constexpr double patience = 20;           // s for one input
 constexpr rlim_t most_memory = 2u << 30;  // bytes of a child, beyond what it starts with
 
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }

@@ -87,8 +87,9 @@ def main():
         pool.write_bytes(gzip.decompress((older / "pool_1_8.h5.gz").read_bytes()))
         damaged = work / "damaged.h5"
         inspect = [program, "inspect", damaged, "--json"]
-        for path in (work / "S.h5", work / "R.h5", pool):
+        for path in (work / "S.h5", work / "R.h5"):
             good &= flip(inspect, path, number, True, damaged)
+        good &= flip([program, "compare", damaged, pool, "--json"], pool, number, True, damaged)
         for name in ("specimen_1_2.h5", "records_1_2.h5"):
             good &= flip(inspect, older / name, number, False, damaged)
         damaged.unlink()
