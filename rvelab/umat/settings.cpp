@@ -72,6 +72,8 @@ Settings read_settings(const std::string& path) {
     throw std::runtime_error(path + ", line " + std::to_string(error.source().begin.line) + ": " +
                              std::string(error.description()) +
                              "; correct it, or let RVELAB_UMAT name the file of the materials");
+  } catch (const InputError& error) {
+    throw std::runtime_error(std::string(error.what()) + ", or let RVELAB_UMAT name the file of the materials");
   }
   Settings settings;
   settings.path = path;
