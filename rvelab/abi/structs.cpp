@@ -11,6 +11,18 @@ namespace {
 using pool::Refused;
 using pool::Status;
 
+/// Whether the fields follow one another without a gap up to the end of the struct.
+template <class Struct>
+constexpr bool is_whole() {
+  std::size_t end = 0;
+  for (const Field& field : Layout<Struct>::fields) {
+    if (field.begin != end) return false;
+    end = field.end;
+  }
+  return end == sizeof(Struct);
+}
+static_assert(is_whole<rvelab_pool_def>() && is_whole<rvelab_batch>() && is_whole<rvelab_info>());
+
 constexpr std::size_t least = 8, most = 65536;  ///< struct_size and flags; more than any struct will ever have
 
 std::string size_in_words(std::size_t size, const char* name) {

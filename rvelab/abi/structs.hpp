@@ -76,18 +76,6 @@ struct Layout<rvelab_info> {
 };
 #undef RVELAB_FIELD
 
-/// Whether the fields follow one another without a gap up to the end of the struct.
-template <class Struct>
-constexpr bool is_whole() {
-  std::size_t end = 0;
-  for (const Field& field : Layout<Struct>::fields) {
-    if (field.begin != end) return false;
-    end = field.end;
-  }
-  return end == sizeof(Struct);
-}
-static_assert(is_whole<rvelab_pool_def>() && is_whole<rvelab_batch>() && is_whole<rvelab_info>());
-
 /// Refuses sizes that no struct of this kind has in any version, those that end within a field among them. Throws
 /// pool::Refused (bad_input).
 void expect_size(std::size_t size, const char* name, std::span<const Field> fields);
