@@ -26,7 +26,7 @@ namespace {
 
 pool::Options options_of(const rvelab_pool_def* given) {
   if (given == nullptr) return {};
-  const rvelab_pool_def def = read_struct(given, "rvelab_pool_def");
+  const rvelab_pool_def def = read_struct(given);
   if (def.workers < 0)
     throw Refused(Status::bad_input, "pool_def.workers is " + std::to_string(def.workers) +
                                          "; allowed: 1 or more, or 0 for as many as the processor runs at once");
@@ -80,7 +80,6 @@ using namespace rvelab::abi;
 int32_t rvelab_pool_def_init(rvelab_pool_def* def, size_t struct_size) {
   return behind_wall([&] {
     expect_pointer(def, "def");
-    expect_size(struct_size, "rvelab_pool_def");
     init_struct(def, struct_size);
   });
 }
@@ -118,6 +117,10 @@ int32_t rvelab_template_from_snapshot(rvelab_pool* pool, const void* buf, size_t
     of.expect_this_process();
     *tmpl = of.add_template(pool::rve_state_of(abi::bytes_of(buf, size)).specimen);
   });
+}
+
+int32_t rvelab_template_release(rvelab_pool* pool, int64_t tmpl) {
+  return behind_wall([&] { pool_of(pool).release_template(tmpl); });
 }
 
 int32_t rvelab_spawn(rvelab_pool* pool, int64_t tmpl, int64_t n, int64_t* ids) {

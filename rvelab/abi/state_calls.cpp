@@ -44,7 +44,6 @@ rvelab_info info_of(const pool::Info& found) {
 int32_t rvelab_info_init(rvelab_info* info, size_t struct_size) {
   return behind_wall([&] {
     expect_pointer(info, "info");
-    expect_size(struct_size, "rvelab_info");
     init_struct(info, struct_size);
   });
 }
@@ -53,8 +52,8 @@ int32_t rvelab_get_info(rvelab_pool* pool, int64_t id, rvelab_info* info) {
   return behind_wall([&] {
     pool::Pool& of = pool_of(pool);
     expect_pointer(info, "info");
-    const std::size_t size = checked_size(info, sizeof *info, "rvelab_info");
-    expect_no_flags(info->flags, "rvelab_info");
+    const std::size_t size = checked_size(info);
+    expect_no_flags(info->flags, Layout<rvelab_info>::name);
     rvelab_info found = info_of(of.info(id));
     found.struct_size = std::uint32_t(size);
     std::memcpy(static_cast<void*>(info), &found, std::min(size, sizeof found));

@@ -19,7 +19,6 @@ int32_t rvelab_apply(rvelab_pool* pool, int64_t id, const double* dH, double dt,
 int32_t rvelab_batch_init(rvelab_batch* batch, size_t struct_size) {
   return behind_wall([&] {
     expect_pointer(batch, "batch");
-    expect_size(struct_size, "rvelab_batch");
     init_struct(batch, struct_size);
   });
 }
@@ -28,7 +27,7 @@ int32_t rvelab_trial(rvelab_pool* pool, rvelab_batch* batch) {
   return behind_wall([&] {
     pool::Pool& of = pool_of(pool);
     expect_pointer(batch, "batch");
-    const rvelab_batch given = read_struct<rvelab_batch>(batch, "rvelab_batch");
+    const rvelab_batch given = read_struct(batch);
     if (given.n > 0) {
       expect_pointer(given.ids, "batch.ids");
       expect_pointer(given.dH, "batch.dH");

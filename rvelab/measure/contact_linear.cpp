@@ -1,6 +1,8 @@
 // One contact, linearised (formulas at the head of contact_linear.hpp).
 #include "rvelab/measure/contact_linear.hpp"
 
+#include "rvelab/contact/laws.hpp"
+
 namespace rvelab {
 namespace {
 
@@ -60,7 +62,13 @@ LinearContact linearised(const ContactState& contact, double ri, double rj, Slip
 }
 
 bool rescales(const Network& network) {
-  return network.model.law == Law::hertz_mindlin && network.model.unload_rescale;
+  const bool carried = with_law(network.model.law, [](auto law) { return decltype(law)::Force::stores_root_overlap; });
+  return carried && network.model.unload_rescale;
+}
+
+HertzRadius hertz_radius(const Network& network) {
+  const bool has = with_law(network.model.law, [](auto law) { return decltype(law)::Force::has_hertz_radius; });
+  return has ? network.model.hertz_radius : HertzRadius::equivalent;
 }
 
 LinearContact unloading_terms(const ContactState& contact, double ri, double rj) {

@@ -6,7 +6,7 @@
 //   d f_n = -k_n dl
 //   d f_t = -n (f_t . dn) + 1/2 (n . (dtheta_i + dtheta_j)) n x f_t        turned with normal and mean spin
 //           - k_t (I - n n) (s db - c_j dtheta_j x n - c_i dtheta_i x n)   stuck
-//           - f_t dl/(2 delta) where Hertz-Mindlin unloads with rescaling
+//           - f_t dl/(2 delta) where the law unloads with rescaling (Hertz-Mindlin)
 //   d M   = likewise turned, - k_r (I - n n)(dtheta_j - dtheta_i), rescaled as f_t
 //   T_i   = -a_i n x f_t - M,  T_j = -a_j n x f_t + M,  a = r - delta/2
 // Slip `consistent`: s = 1, c = a; `full_radius`: s = 1, c = r, no turning by the mean spin; `full_radius_ratcheting`:
@@ -32,8 +32,11 @@ struct LinearContact {
 /// The law without rescaling on unloading.
 LinearContact linearised(const ContactState& contact, double ri, double rj, Slip slip);
 
-/// True where the law of the network makes f_t and M fall with sqrt(overlap).
+/// True where the law of the network makes f_t and M fall with sqrt(overlap): it keeps that root from step to step.
 bool rescales(const Network& network);
+
+/// The radius that the constants of the law go with; `equivalent`, which stays as grains turn, of laws without one.
+HertzRadius hertz_radius(const Network& network);
 
 /// What unloading adds to `linearised` where dl > 0: terms in dl alone.
 LinearContact unloading_terms(const ContactState& contact, double ri, double rj);

@@ -6,14 +6,13 @@
 //   K x = g,  K = -sum P^T A P,  g = sum P^T A (H b, 0, 0),  d sigma = -(1/V) sum (dF (x) b + F (x) db) - sigma tr H.
 #include "rvelab/measure/tangent.hpp"
 
-#include <Eigen/Sparse>
-#include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <vector>
 
 #include "rvelab/error.hpp"
+#include "rvelab/measure/block_factors.hpp"
 #include "rvelab/measure/contact_linear.hpp"
 #include "rvelab/measure/ellipse_linear.hpp"
 #include "rvelab/measure/measures.hpp"
@@ -44,7 +43,7 @@ Matrix9 rows_of(const LinearContact& linear) {
 /// law q + r |dl|: exact for loading (dl < 0: nothing) and for unloading (dl > 0: all).
 Spring spring_of_ellipses(const Network& network, const ContactState& contact) {
   const LinearEllipseContact linear =
-      linearised_ellipses(contact, network.grains[contact.i], network.grains[contact.j], network.model.hertz_radius);
+      linearised_ellipses(contact, network.grains[contact.i], network.grains[contact.j], hertz_radius(network));
   Spring spring{&contact, rows_of(linear.law), Vector9::Zero(), linear.opening.transpose()};
   if (rescales(network)) {
     const Matrix9 half = 0.5 * rows_of(linear.unloading);
@@ -110,18 +109,19 @@ class StressChange {
   Matrix3 change_ = Matrix3::Zero(), stress_ = Matrix3::Zero();
 };
 
-/// The network without rattlers, its stiffness factorised.
+/// The network without rattlers, its stiffness factorised. F: degrees of freedom of a grain, displacements first.
+template <int F>
 class Condensed {
  public:
   explicit Condensed(const Network& network) : network_(network) {
-    number_freedoms();
+    number_grains();
     for (const ContactState& contact : network.contacts) {
-      if (first_[contact.i] >= 0 && first_[contact.j] >= 0) springs_.push_back(spring_of(network, contact));
+      if (number_[contact.i] >= 0 && number_[contact.j] >= 0) springs_.push_back(spring_of(network, contact));
     }
     factorise();
   }
 
-  Matrix3 stress_change(const CellStrain& strain) {
+  Matrix3 stress_change(const CellStrain& strain) const {
     StressChange change;
     if (springs_.empty()) return change.value(network_, strain);
     const Vector x = balance(strain);
@@ -134,104 +134,96 @@ class Condensed {
   }
 
  private:
-  void number_freedoms() {
+  using Block = Eigen::Matrix<double, F, F>;
+  static constexpr bool plane = F == 3;
+
+  void number_grains() {
     const std::vector<bool> removed = rattlers(network_);
-    freedoms_ = network_.dimension() == 2 ? 3 : 6;
-    first_.assign(removed.size(), -1);
+    number_.assign(removed.size(), -1);
     for (std::size_t g = 0; g < removed.size(); ++g) {
       if (removed[g]) continue;
-      first_[g] = count_;
-      count_ += freedoms_;
+      number_[g] = count_++;
       length_ += network_.grains[g].radius;
     }
-    if (count_ > 0) length_ /= count_ / freedoms_;
+    if (count_ > 0) length_ /= count_;
   }
 
-  /// Columns of P for one grain: direction of the k-th freedom in space, and whether it is a rotation.
-  int axis(int k) const { return network_.dimension() == 2 ? (k < 2 ? k : 2) : k % 3; }
-  bool is_rotation(int k) const { return k >= freedoms_ - (network_.dimension() == 2 ? 1 : 3); }
-
-  /// P of one contact, 9 rows, the freedoms of i, then those of j.
-  Eigen::Matrix<double, 9, Eigen::Dynamic> compatibility() const {
-    Eigen::Matrix<double, 9, Eigen::Dynamic> p(9, 2 * freedoms_);
-    p.setZero();
-    for (int k = 0; k < freedoms_; ++k) {
-      if (is_rotation(k)) {
-        p(3 + axis(k), k) = p(6 + axis(k), freedoms_ + k) = 1 / length_;
-      } else {
-        p(axis(k), k) = -1;
-        p(axis(k), freedoms_ + k) = 1;
-      }
+  /// P of one contact: motions q, 9 rows, of the freedoms of i, then those of j.
+  Eigen::Matrix<double, 9, 2 * F> compatibility() const {
+    Eigen::Matrix<double, 9, 2 * F> p = Eigen::Matrix<double, 9, 2 * F>::Zero();
+    constexpr int displacements = plane ? 2 : 3;
+    for (int k = 0; k < displacements; ++k) {
+      p(k, k) = -1;
+      p(k, F + k) = 1;
+    }
+    for (int k = displacements; k < F; ++k) {
+      const int axis = plane ? 2 : k - displacements;
+      p(3 + axis, k) = p(6 + axis, F + k) = 1 / length_;
     }
     return p;
   }
 
-  int freedom(const ContactState& contact, int k) const {
-    return k < freedoms_ ? first_[contact.i] + k : first_[contact.j] + k - freedoms_;
-  }
+  int number_i(const Spring& spring) const { return number_[spring.contact->i]; }
+  int number_j(const Spring& spring) const { return number_[spring.contact->j]; }
 
   void factorise() {
     if (springs_.empty()) return;
     p_ = compatibility();
-    std::vector<Eigen::Triplet<double>> entries;
-    entries.reserve(springs_.size() * 4 * freedoms_ * freedoms_);
-    for (const Spring& spring : springs_) {
-      const Eigen::MatrixXd local = -p_.transpose() * spring.law * p_;
-      for (int a = 0; a < 2 * freedoms_; ++a) {
-        for (int b = 0; b < 2 * freedoms_; ++b) {
-          entries.emplace_back(freedom(*spring.contact, a), freedom(*spring.contact, b), local(a, b));
-        }
-      }
+    std::vector<std::array<int, 2>> pairs;
+    pairs.reserve(springs_.size());
+    for (const Spring& spring : springs_) pairs.push_back({number_i(spring), number_j(spring)});
+    factors_ = BlockFactors<F>(std::size_t(count_), pairs);
+    for (std::size_t s = 0; s < springs_.size(); ++s) {
+      const Eigen::Matrix<double, 2 * F, 2 * F> local = -p_.transpose() * springs_[s].law * p_;
+      for (int a = 0; a < 2; ++a)
+        for (int b = 0; b < 2; ++b)
+          factors_.at(pairs[s][std::size_t(a)], pairs[s][std::size_t(b)]) += local.template block<F, F>(F * a, F * b);
     }
-    stiffness_.resize(count_, count_);
-    stiffness_.setFromTriplets(entries.begin(), entries.end());
     // A small spring to the ground on every freedom holds translations and free spins; refinement takes it out again.
-    const double ground = 1e-10 * stiffness_.diagonal().cwiseAbs().maxCoeff();
-    Eigen::SparseMatrix<double> held = stiffness_;
-    for (int k = 0; k < count_; ++k) held.coeffRef(k, k) += ground;
-    held.makeCompressed();
-    solver_.compute(held);
-    if (solver_.info() != Eigen::Success) {
+    factors_.add_to_diagonal(1e-10 * factors_.largest_on_diagonal());
+    if (!factors_.factorise()) {
       throw Error("elastic tangent: the stiffness of the contact network cannot be factorised (" +
                   std::to_string(springs_.size()) + " contacts, every stiffness must be finite); relax the specimen");
     }
   }
 
   Vector9 motion(const Spring& spring, const CellStrain& strain, const Vector& x) const {
-    Vector local(2 * freedoms_);
-    for (int k = 0; k < 2 * freedoms_; ++k) local[k] = x[freedom(*spring.contact, k)];
-    return strain.mean_motion(*spring.contact) + p_ * local;
+    return strain.mean_motion(*spring.contact) + p_.template leftCols<F>() * x.segment<F>(F * number_i(spring)) +
+           p_.template rightCols<F>() * x.segment<F>(F * number_j(spring));
   }
 
   double elongation(const Spring& spring, const Vector9& q) const {
     return network_.shape == Shape::ellipse ? spring.opening.dot(q) : spring.contact->normal.dot(q.head<3>());
   }
 
-  /// Unbalanced load on the freedoms at the motion x.
-  Vector residual(const CellStrain& strain, const Vector& x) const {
-    Vector load = Vector::Zero(count_);
+  /// Unbalanced load on the freedoms at the motion x, into `load`; its largest component.
+  double residual(const CellStrain& strain, const Vector& x, Vector& load) const {
+    load.setZero();
     for (const Spring& spring : springs_) {
       const Vector9 q = motion(spring, strain, x);
-      const Vector local = p_.transpose() * (spring.law * q + spring.unloading * std::abs(elongation(spring, q)));
-      for (int k = 0; k < 2 * freedoms_; ++k) load[freedom(*spring.contact, k)] += local[k];
+      const Eigen::Matrix<double, 2 * F, 1> local =
+          p_.transpose() * (spring.law * q + spring.unloading * std::abs(elongation(spring, q)));
+      load.segment<F>(F * number_i(spring)) += local.template head<F>();
+      load.segment<F>(F * number_j(spring)) += local.template tail<F>();
     }
-    return load;
+    return load.cwiseAbs().maxCoeff();
   }
 
   /// The motion at which every grain is balanced. The |dl| terms are small beside the springs, so that iterating with
   /// the linear part converges; without them this is iterative refinement. Stops where the residual falls no further:
   /// at round-off, or where a free spin bears what the state itself lacks in balance.
-  Vector balance(const CellStrain& strain) {
+  Vector balance(const CellStrain& strain) const {
     constexpr int most_iterations = 200;
     constexpr double exact = 1e-13;
     const double sufficient = std::max(1e-6, unbalanced_force_ratio(network_));
-    Vector x = Vector::Zero(count_), best = x;
-    const double load = load_scale(strain);
-    double smallest = residual(strain, x).cwiseAbs().maxCoeff() / load;
+    Vector x = Vector::Zero(F * count_), best = x, load = x, scratch = x;
+    const double scale = load_scale(strain);
+    double smallest = residual(strain, x, load) / scale;
     int idle = 0;
     for (int iteration = 0; iteration < most_iterations && idle < 2 && smallest > exact; ++iteration) {
-      x += solver_.solve(residual(strain, x));
-      const double found = residual(strain, x).cwiseAbs().maxCoeff() / load;
+      factors_.solve(load, scratch);
+      x += load;
+      const double found = residual(strain, x, load) / scale;
       idle = found < 0.7 * smallest ? 0 : idle + 1;
       if (found < smallest) {
         smallest = found;
@@ -256,27 +248,31 @@ class Condensed {
   }
 
   const Network& network_;
-  int freedoms_ = 0, count_ = 0;
+  int count_ = 0;  ///< grains
   double length_ = 0;
-  std::vector<int> first_;
+  std::vector<int> number_;  ///< of each grain among them, -1 of rattlers
   std::vector<Spring> springs_;
-  Eigen::Matrix<double, 9, Eigen::Dynamic> p_;
-  Eigen::SparseMatrix<double> stiffness_;
-  Eigen::SparseLU<Eigen::SparseMatrix<double>> solver_;
+  Eigen::Matrix<double, 9, 2 * F> p_;
+  BlockFactors<F> factors_;
 };
 
-}  // namespace
-
-Eigen::MatrixXd elastic_tangent(const Network& network) {
+template <int F>
+Eigen::MatrixXd condensed_tangent(const Network& network) {
   const int dimension = network.dimension(), size = component_count(dimension);
   Eigen::MatrixXd tangent(size, size);
-  Condensed condensed(network);
+  const Condensed<F> condensed(network);
   for (int k = 0; k < size; ++k) {
     Matrix3 change = condensed.stress_change(CellStrain(network, k, 1));
     if (rescales(network)) change = 0.5 * (change - condensed.stress_change(CellStrain(network, k, -1)));
     tangent.col(k) = stress_components(change, dimension);
   }
   return tangent;
+}
+
+}  // namespace
+
+Eigen::MatrixXd elastic_tangent(const Network& network) {
+  return network.dimension() == 2 ? condensed_tangent<3>(network) : condensed_tangent<6>(network);
 }
 
 Eigen::MatrixXd affine_tangent(const Network& network) {

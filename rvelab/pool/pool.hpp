@@ -87,6 +87,7 @@ class Pool {
   Pool& operator=(const Pool&) = delete;
 
   virtual std::int64_t add_template(Specimen specimen) = 0;
+  virtual void release_template(std::int64_t of_template) = 0;
   virtual void spawn(std::int64_t of_template, std::int64_t n, std::int64_t* ids) = 0;
   virtual std::int64_t clone(std::int64_t source) = 0;
   virtual void release(std::span<const std::int64_t> ids) = 0;

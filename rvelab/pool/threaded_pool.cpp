@@ -24,6 +24,9 @@ void count_forks() {
 
 std::atomic<std::uint32_t> pools_made{0};
 
+/// The part of a template's number that counts those of its pool.
+constexpr std::int64_t most_templates = 0xffffffff;
+
 /// Owner of a slot whose RVE is being put to rest.
 constexpr std::uint64_t resting = 1;
 
@@ -61,7 +64,7 @@ void check(const Options& options) {
 ThreadedPool::ThreadedPool(const Options& options)
     : options_((check(options), options)),
       team_(options.workers, options.run_tasks, options.host),
-      number_(++pools_made & 0x7fffffff) {
+      next_template_(std::int64_t(++pools_made & 0x7fffffff) << 32 | 1) {
   count_forks();
   process_ = forks;
 }
@@ -134,22 +137,35 @@ void ThreadedPool::rest_another() noexcept {
 std::int64_t ThreadedPool::add_template(Specimen specimen) {
   const Alone alone(*this);
   lay_over(options_, specimen);
-  auto made = std::make_unique<Template>(Template{Rve(specimen), 0});
-  made->void_ratio = void_ratio_of(made->rve);
-  made->rve.rest();
-  templates_.push_back(std::move(made));
-  return std::int64_t(number_) << 32 | std::int64_t(templates_.size());
+  if ((next_template_ & most_templates) == most_templates)
+    throw Refused(Status::no_slot, "pool: " + std::to_string(most_templates - 1) +
+                                       " templates were made of it, and no number is left; make another pool");
+  Template made{Rve(specimen), 0};
+  made.void_ratio = void_ratio_of(made.rve);
+  made.rve.rest();
+  templates_.emplace(next_template_, std::move(made));
+  return next_template_++;
+}
+
+/// Refused (bad_id).
+ThreadedPool::Templates::const_iterator ThreadedPool::template_of(std::int64_t number) const {
+  const auto found = templates_.find(number);
+  if (found != templates_.end()) return found;
+  const bool own = number >> 32 == next_template_ >> 32 && (number & most_templates) > 0 && number < next_template_;
+  throw Refused(Status::bad_id, "template " + std::to_string(number) +
+                                    (own ? ": it was released; " : ": this pool has none of that number; ") +
+                                    "give one that template_load or template_from_snapshot of this pool returned");
+}
+
+void ThreadedPool::release_template(std::int64_t of_template) {
+  const Alone alone(*this);
+  templates_.erase(template_of(of_template));
 }
 
 /// n RVEs of a template. Refused (bad_id, bad_input, no_slot).
 Slots::Residents ThreadedPool::made_of(std::int64_t of_template, std::int64_t n) const {
-  const std::int64_t index = of_template & 0xffffffff;
-  if (of_template >> 32 != number_ || index < 1 || index > std::int64_t(templates_.size()))
-    throw Refused(Status::bad_id, "template " + std::to_string(of_template) +
-                                      ": this pool has none of that number; give one that template_load or "
-                                      "template_from_snapshot of this pool returned");
+  const Template& source = template_of(of_template)->second;
   expect_spawn(n);
-  const Template& source = *templates_[std::size_t(index) - 1];
   Slots::Residents made;
   made.reserve(std::size_t(n));
   while (std::int64_t(made.size()) < n)

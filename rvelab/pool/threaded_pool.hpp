@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <map>
 #include <memory>
 
 #include "rvelab/pool/pool.hpp"
@@ -40,6 +41,7 @@ class ThreadedPool final : public Share {
   ~ThreadedPool() override;
 
   std::int64_t add_template(Specimen specimen) override;
+  void release_template(std::int64_t of_template) override;
   void spawn(std::int64_t of_template, std::int64_t n, std::int64_t* ids) override;
   std::int64_t clone(std::int64_t source) override;
   void release(std::span<const std::int64_t> ids) override;
@@ -73,6 +75,13 @@ class ThreadedPool final : public Share {
   struct Entry;
   struct Outcome;
 
+  struct Template {
+    Rve rve;
+    double void_ratio;
+  };
+  using Templates = std::map<std::int64_t, Template>;  ///< by their numbers, none of which is given out twice
+
+  Templates::const_iterator template_of(std::int64_t number) const;
   Slots::Residents made_of(std::int64_t of_template, std::int64_t n) const;
   std::unique_ptr<Resident> copy_of(std::int64_t source);
   Hold held(std::int64_t id, std::uint64_t call);
@@ -85,17 +94,12 @@ class ThreadedPool final : public Share {
   void run_entry(Entry& entry, const Batch& batch) noexcept;
   void prepare(std::span<const Hold> holds, std::span<const std::int64_t> ids, std::span<const std::int64_t> places);
 
-  struct Template {
-    Rve rve;
-    double void_ratio;
-  };
-
   Options options_;
   Team team_;
   Slots slots_;
   Slots::Residents received_;
-  std::vector<std::unique_ptr<Template>> templates_;
-  std::uint32_t number_;                  ///< of this pool in the process, for its templates
+  Templates templates_;
+  std::int64_t next_template_;            ///< number of this pool in the process << 32, and a count from 1
   std::uint64_t process_;                 ///< forks before this process
   std::atomic<int> calls_{0};             ///< at work; -1: one is alone
   std::atomic<std::uint64_t> serial_{1};  ///< of calls

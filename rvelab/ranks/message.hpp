@@ -5,6 +5,7 @@
 #include <cstring>
 #include <span>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
@@ -16,6 +17,11 @@ using Bytes = std::vector<std::byte>;
 
 class Packer {
  public:
+  /// So many bytes more are put in without a request for memory.
+  Packer& make_room(std::size_t size) {
+    bytes_.reserve(bytes_.size() + size);
+    return *this;
+  }
   template <class Value>
   requires std::is_trivially_copyable_v<Value> Packer& put(const Value& value) {
     add(&value, sizeof value);
@@ -47,6 +53,27 @@ class Packer {
   Bytes bytes_;
 };
 
+/// Values where they lie in a message.
+template <class Value>
+class Row {
+ public:
+  Row() = default;
+  explicit Row(std::span<const std::byte> bytes) : bytes_(bytes) {}
+  std::size_t size() const { return bytes_.size() / sizeof(Value); }
+  Value operator[](std::size_t k) const {
+    Value value;
+    std::memcpy(&value, bytes_.data() + k * sizeof value, sizeof value);
+    return value;
+  }
+  /// Copies `count` of them from the k-th on.
+  void copy(std::size_t k, std::size_t count, Value* to) const {
+    if (count > 0) std::memcpy(to, bytes_.data() + k * sizeof(Value), count * sizeof(Value));
+  }
+
+ private:
+  std::span<const std::byte> bytes_;
+};
+
 /// Takes values out in the order that they were put in. Throws Refused (internal) if the message ends before.
 class Unpacker {
  public:
@@ -58,21 +85,32 @@ class Unpacker {
     std::memcpy(&value, some(sizeof value).data(), sizeof value);
     return value;
   }
+  /// What put_all put in, where it lies: asks for no memory.
+  template <class Value>
+  Row<Value> take_row() {
+    return Row<Value>(take_bytes<Value>());
+  }
   template <class Value>
   std::vector<Value> take_all() {
-    const auto n = take<std::size_t>();
-    if (n > left_.size() / sizeof(Value)) some(left_.size() + 1);
-    std::vector<Value> values(n);
-    if (n > 0) std::memcpy(values.data(), some(n * sizeof(Value)).data(), n * sizeof(Value));
+    const auto row = take_row<Value>();
+    std::vector<Value> values(row.size());
+    row.copy(0, values.size(), values.data());
     return values;
   }
-  std::string take_text() {
-    const std::vector<char> text = take_all<char>();
-    return {text.begin(), text.end()};
+  /// The text where it lies.
+  std::string_view take_text() {
+    const auto bytes = take_bytes<char>();
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
   }
   std::span<const std::byte> rest() const { return left_; }
 
  private:
+  template <class Value>
+  std::span<const std::byte> take_bytes() {
+    const auto n = take<std::size_t>();
+    if (n > left_.size() / sizeof(Value)) some(left_.size() + 1);
+    return some(n * sizeof(Value));
+  }
   std::span<const std::byte> some(std::size_t size) {
     if (size > left_.size())
       throw pool::Refused(pool::Status::internal, "a message between ranks ends early: please report this");

@@ -53,8 +53,9 @@ void each_field(Info& info, Field field) {
   field(info.token);
 }
 
-Bytes answered(Status status, const char* text, bool failed, const Bytes& found) {
-  return Packer().put(status).put(failed).put_text(text).put_rest(found).take();
+/// Begins an answer; what was found follows.
+Packer answered(Status status, const char* text, bool failed) {
+  return std::move(Packer().make_room(answer_room).put(status).put(failed).put_text(text));
 }
 
 }  // namespace
@@ -94,6 +95,10 @@ void Served::trial(Unpacker& given, Packer& found) {
   batch.status = status.data();
   batch.tokens_out = wanted.tokens_out ? tokens_out.data() : nullptr;
   tried_ = ids;
+  std::size_t room = answer_room + n * (sizeof status[0] + sizeof costs[0]) + tokens_out.size() * sizeof tokens_out[0];
+  for (const auto* values : {&stress, &contact, &reynolds, &tangent, &estimate, &scale})
+    room += values->size() * sizeof(double);
+  found.make_room(room);
   const Verdict worst = share_->trial(batch);
   share_->cost(ids, costs.data());
   found.put_text(worst.text);
@@ -111,8 +116,20 @@ void Served::perform(Call call, Unpacker& given, Packer& found) {
     case Call::add_template: {
       const auto number = given.take<std::int64_t>();  // 0: this is the first rank, whose own number it will be
       const std::int64_t own = share_->add_template(from_bytes(given.rest()));
-      templates_[number != 0 ? number : own] = own;
+      try {
+        templates_[number != 0 ? number : own] = own;
+      } catch (...) {
+        share_->release_template(own);
+        throw;
+      }
       found.put(own);
+      return;
+    }
+    case Call::release_template: {  // one that this share has not is released already
+      const auto own = templates_.find(given.take<std::int64_t>());
+      if (own == templates_.end()) return;
+      share_->release_template(own->second);
+      templates_.erase(own);
       return;
     }
     case Call::spawn: {
@@ -204,14 +221,16 @@ Bytes Served::answer(std::span<const std::byte> message) noexcept {
   try {
     try {
       Unpacker given(message);
-      Packer found;
-      perform(given.take<Call>(), given, found);
-      return answered(Status::ok, "", false, found.take());
+      const auto call = given.take<Call>();
+      if (call == Call::forget_received) share_->forget_received();  // whether there is room for an answer or not
+      Packer found = answered(Status::ok, "", false);
+      perform(call, given, found);
+      return found.take();
     } catch (...) {
       char text[1024];
       const Status status = pool::status_of_exception(text, sizeof text);
       if (!tried_.empty()) share_->revert(tried_);  // of what fails no trial is pending
-      return answered(status, text, true, {});
+      return answered(status, text, true).take();
     }
   } catch (...) {
     return {};
@@ -220,17 +239,18 @@ Bytes Served::answer(std::span<const std::byte> message) noexcept {
 
 Answer::Answer(Bytes bytes) : bytes_(std::move(bytes)), found_(bytes_) {
   if (bytes_.empty()) {
-    verdict_ = {Status::no_memory, "a rank has no memory left for its answer; use fewer RVEs, or more ranks"};
+    status_ = Status::no_memory;
+    text_ = "a rank has no memory left for its answer; use fewer RVEs, or more ranks";
     failed_ = true;
     return;
   }
-  verdict_.status = found_.take<Status>();
+  status_ = found_.take<Status>();
   failed_ = found_.take<bool>();
-  verdict_.text = found_.take_text();
+  text_ = found_.take_text();
 }
 
 void Answer::expect_done() const {
-  if (failed_) throw pool::Refused(verdict_.status, verdict_.text);
+  if (failed_) throw pool::Refused(status_, std::string(text_));
 }
 
 }  // namespace rvelab::ranks

@@ -12,6 +12,7 @@ namespace rvelab::ranks {
 enum class Call : std::int32_t {
   end,
   add_template,
+  release_template,
   spawn,
   clone,
   give_up,
@@ -52,21 +53,27 @@ class Served {
   std::vector<std::int64_t> tried_;                 ///< ids of trials that no answer tells of yet
 };
 
-/// An answer opened; Refused with its status and text if the call was.
+/// An answer opened, which asks for no memory: what it tells of has been done.
 class Answer {
  public:
   explicit Answer(Bytes bytes);
-  pool::Verdict& verdict() { return verdict_; }
+  pool::Status status() const { return status_; }
+  std::string_view text() const { return text_; }
   bool failed() const { return failed_; }
+  /// Throws Refused with status and text of a call that was refused.
   void expect_done() const;
   Unpacker& found() { return found_; }
 
  private:
   Bytes bytes_;
   Unpacker found_;
-  pool::Verdict verdict_;
+  pool::Status status_ = pool::Status::ok;
+  std::string_view text_;
   bool failed_ = false;
 };
+
+/// Room for what an answer holds beside its rows of values: what is done is told without a request for memory.
+constexpr std::size_t answer_room = 4096;
 
 /// As an answer to Call::info holds it.
 pool::Info take_info(Unpacker& from);

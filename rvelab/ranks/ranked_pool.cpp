@@ -86,10 +86,20 @@ void RankedPool::expect_all_done(const Messages& messages) {
   for (const auto& [rank, answer] : exchange(messages)) answer.expect_done();
 }
 
+/// The same of one rank; asks for no memory here.
+Answer RankedPool::answer_of(int rank, const Bytes& bytes) {
+  if (rank == 0) return Answer(own_.answer(bytes));
+  try {
+    link_->send(rank, bytes);
+    return Answer(link_->receive(rank));
+  } catch (...) {
+    broken_ = true;
+    throw;
+  }
+}
+
 Answer RankedPool::ask(int rank, const Bytes& bytes) {
-  Messages messages = no_messages();
-  messages[std::size_t(rank)] = bytes;
-  Answer answer = std::move(exchange(messages).front().second);
+  Answer answer = answer_of(rank, bytes);
   answer.expect_done();
   return answer;
 }
@@ -136,10 +146,25 @@ std::int64_t RankedPool::add_template(Specimen specimen) {
     return message(Call::add_template).put(number).put_rest(bytes).take();
   };
   const auto number = ask(0, with_number(0)).found().take<std::int64_t>();
-  Messages messages(population_.size(), with_number(number));
-  messages[0].clear();
-  expect_all_done(messages);
+  try {
+    Messages messages(population_.size(), with_number(number));
+    messages[0].clear();
+    expect_all_done(messages);
+  } catch (...) {
+    exchange(Messages(population_.size(), message(Call::release_template).put(number).take()));
+    throw;
+  }
   return number;
+}
+
+void RankedPool::release_template(std::int64_t of_template) {
+  const Lock lock = alone();
+  ask(0, message(Call::spawn).put(of_template).put_all(std::span<const std::int64_t>()).take());  // refused if none
+  const Bytes release = message(Call::release_template).put(of_template).take();
+  Messages messages(population_.size(), release);
+  messages[0].clear();
+  expect_all_done(messages);  // the first rank last: until all others have, it can be called again
+  ask(0, release);
 }
 
 void RankedPool::make_room(std::size_t n) {
@@ -210,11 +235,16 @@ std::int64_t RankedPool::clone(std::int64_t source) {
 
 void RankedPool::release(std::span<const std::int64_t> ids) {
   const Lock lock = alone();
-  expect_all_done(of_ids(Call::give_up, ids, false));
-  for (const std::int64_t id : ids) {
-    --population_[std::size_t(place_of(id).rank)];
+  std::vector<bool> failed(population_.size(), false);
+  const auto answers = exchange(of_ids(Call::give_up, ids, false));
+  for (const auto& [rank, answer] : answers) failed[std::size_t(rank)] = answer.failed();
+  for (const std::int64_t id : ids) {  // those of a rank without memory for the message stay
+    const auto rank = std::size_t(place_of(id).rank);
+    if (failed[rank]) continue;
+    --population_[rank];
     ids_.give_back(id);
   }
+  for (const auto& [rank, answer] : answers) answer.expect_done();
 }
 
 std::vector<std::int64_t> RankedPool::ids() {

@@ -21,6 +21,7 @@ class RankedPool final : public pool::Pool {
   ~RankedPool() override;
 
   std::int64_t add_template(Specimen specimen) override;
+  void release_template(std::int64_t of_template) override;
   void spawn(std::int64_t of_template, std::int64_t n, std::int64_t* ids) override;
   std::int64_t clone(std::int64_t source) override;
   void release(std::span<const std::int64_t> ids) override;
@@ -60,6 +61,7 @@ class RankedPool final : public pool::Pool {
   Messages no_messages() const { return Messages(std::size_t(link_->ranks())); }
   std::vector<std::pair<int, Answer>> exchange(const Messages& messages);
   void expect_all_done(const Messages& messages);
+  Answer answer_of(int rank, const Bytes& message);
   Answer ask(int rank, const Bytes& message);
   Bytes saved(std::int64_t id);
   std::vector<std::int64_t> costs_at(int rank, std::span<const std::int64_t> ids);

@@ -1,6 +1,7 @@
 // Trials over ranks, their commitment, and the balance of work. Declared in ranked_pool.hpp.
 #include <algorithm>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "rvelab/pool/checks.hpp"
@@ -20,32 +21,44 @@ constexpr double allowed_imbalance = 0.1;
 /// RVEs that move in one message: some 10 MB of them.
 constexpr std::size_t moved_at_once = 64;
 
-/// The status of a batch so far: the worst entry, the first of equals.
+/// Room for the text of a verdict, asked for before anything is done.
+constexpr std::size_t text_room = 2048;
+
+/// A verdict whose text is already there. One that finds no room is cut.
+Verdict verdict_of(Status status, std::string_view from, std::string text) {
+  return {status, std::move(text.assign(from.substr(0, text.capacity())))};
+}
+
+std::string room_for_text() {
+  std::string text;
+  text.reserve(text_room);
+  return text;
+}
+
+/// The status of a batch so far: the worst entry, the first of equals. The texts lie in the answers.
 struct Worst {
-  Verdict verdict;
+  Status status = Status::ok;
+  std::string_view text;
   std::size_t entry = 0;
 
-  void take(Verdict other, std::size_t at) {
-    const int has = gravity(verdict.status), given = gravity(other.status);
-    if (given > has || (given == has && given > 0 && at < entry)) {
-      verdict = std::move(other);
-      entry = at;
-    }
+  void take(Status other, std::string_view of_other, std::size_t at) {
+    const int has = gravity(status), given = gravity(other);
+    if (given > has || (given == has && given > 0 && at < entry)) *this = {other, of_other, at};
   }
 };
 
 /// What a share found of its entries, and the way of each into the arrays of the host.
 struct Results {
-  std::string text;
-  std::vector<std::int32_t> status;
-  std::vector<std::int64_t> costs;
-  std::vector<double> stress, contact, reynolds, tangent, estimate, scale;
-  std::vector<std::int64_t> tokens;
+  std::string_view text;
+  Row<std::int32_t> status;
+  Row<std::int64_t> costs;
+  Row<double> stress, contact, reynolds, tangent, estimate, scale;
+  Row<std::int64_t> tokens;
 
-  explicit Results(Unpacker& found) : text(found.take_text()), status(found.take_all<std::int32_t>()) {
-    costs = found.take_all<std::int64_t>();
-    for (auto* values : {&stress, &contact, &reynolds, &tangent, &estimate, &scale}) *values = found.take_all<double>();
-    tokens = found.take_all<std::int64_t>();
+  explicit Results(Unpacker& found) : text(found.take_text()), status(found.take_row<std::int32_t>()) {
+    costs = found.take_row<std::int64_t>();
+    for (auto* values : {&stress, &contact, &reynolds, &tangent, &estimate, &scale}) *values = found.take_row<double>();
+    tokens = found.take_row<std::int64_t>();
   }
 
   void write(std::size_t k, std::size_t entry, const pool::Batch& to) const {
@@ -53,8 +66,8 @@ struct Results {
     if (to.status != nullptr) to.status[entry] = status[k];
     if (to.dt_scale != nullptr) to.dt_scale[entry] = scale[k];
     if (status_of < Status::ok) return;
-    const auto copy = [&](const std::vector<double>& from, double* into, std::size_t each) {
-      if (into != nullptr) std::copy_n(from.begin() + std::ptrdiff_t(each * k), each, into + each * entry);
+    const auto copy = [&](const Row<double>& from, double* into, std::size_t each) {
+      if (into != nullptr) from.copy(each * k, each, into + each * entry);
     };
     copy(stress, to.stress, 9);
     copy(contact, to.contact_stress, 9);
@@ -81,10 +94,10 @@ Verdict RankedPool::apply(std::int64_t id, const Matrix3& displacement_gradient,
   Packer packer = message(Call::apply);
   packer.put(id).put(dt);
   for (int k = 0; k < 9; ++k) packer.put(displacement_gradient(k / 3, k % 3));
+  std::string text = room_for_text();
   Answer answer = ask(place.rank, packer.take());
-  Verdict verdict;
-  verdict.status = answer.found().take<Status>();
-  verdict.text = answer.found().take_text();
+  const auto status = answer.found().take<Status>();
+  Verdict verdict = verdict_of(status, answer.found().take_text(), std::move(text));
   worked(place, answer.found().take<std::int64_t>());
   for (int k = 0; k < 9; ++k) stress[k] = answer.found().take<double>();
   return verdict;
@@ -97,6 +110,7 @@ Verdict RankedPool::trial(const pool::Batch& batch) {
   pool::expect_time(batch.dt);
   const auto n = std::size_t(batch.n);
   Worst worst;
+  std::string text = room_for_text(), text_of_refused;
   std::vector<std::int64_t> ids, entries;  // those that are ids
   std::vector<std::size_t> refused;
   for (std::size_t k = 0; k < n; ++k) try {
@@ -104,10 +118,11 @@ Verdict RankedPool::trial(const pool::Batch& batch) {
       ids.push_back(batch.ids[k]);
       entries.push_back(std::int64_t(k));
     } catch (const Refused& reason) {
+      if (refused.empty()) {
+        text_of_refused = "entry " + std::to_string(k) + " (id " + std::to_string(batch.ids[k]) + "): " + reason.what();
+        worst.take(reason.status, text_of_refused, k);
+      }
       refused.push_back(k);
-      worst.take({reason.status,
-                  "entry " + std::to_string(k) + " (id " + std::to_string(batch.ids[k]) + "): " + reason.what()},
-                 k);
     }
   by_rank(ids);  // refused if one stands twice, before any is moved
   balance(ids);
@@ -141,13 +156,14 @@ Verdict RankedPool::trial(const pool::Batch& batch) {
     if (batch.status != nullptr) batch.status[k] = std::int32_t(Status::bad_id);
     if (batch.dt_scale != nullptr) batch.dt_scale[k] = 0;
   }
-  for (auto& [rank, answer] : exchange(messages)) {
+  auto answers = exchange(messages);
+  for (auto& [rank, answer] : answers) {
     const std::vector<std::size_t>& of = indices[std::size_t(rank)];
     if (answer.failed()) {  // the share as a whole, for want of memory: none of its trials was made
       for (const std::size_t k : of) {
         const auto entry = std::size_t(entries[k]);
-        worst.take(answer.verdict(), entry);
-        if (batch.status != nullptr) batch.status[entry] = std::int32_t(answer.verdict().status);
+        worst.take(answer.status(), answer.text(), entry);
+        if (batch.status != nullptr) batch.status[entry] = std::int32_t(answer.status());
         if (batch.dt_scale != nullptr) batch.dt_scale[entry] = 0;
       }
       continue;
@@ -158,12 +174,11 @@ Verdict RankedPool::trial(const pool::Batch& batch) {
       const auto entry = std::size_t(entries[of[k]]);
       results.write(k, entry, batch);
       worked(place_of(ids[of[k]]), results.costs[k]);
-      of_share.take({Status(results.status[k]), {}}, entry);
+      of_share.take(Status(results.status[k]), results.text, entry);
     }
-    of_share.verdict.text = results.text;
-    worst.take(std::move(of_share.verdict), of_share.entry);
+    worst.take(of_share.status, of_share.text, of_share.entry);
   }
-  return std::move(worst.verdict);
+  return verdict_of(worst.status, worst.text, std::move(text));
 }
 
 void RankedPool::commit(std::span<const std::int64_t> ids) {
@@ -195,17 +210,23 @@ void RankedPool::balance(std::span<const std::int64_t> ids) {
 }
 
 void RankedPool::move(int from, int to, std::span<const std::int64_t> ids) {
+  const Bytes forget = message(Call::forget_received).take(), place = message(Call::place).put_all(ids).take(),
+              give_up = message(Call::give_up).put_all(ids).take();
   std::vector<std::int64_t> costs;
   try {
     costs = costs_at(from, ids);
     Answer saved = ask(from, message(Call::save).put_all(ids).take());
     ask(to, message(Call::receive).put_rest(saved.found().rest()).take());
-    ask(to, message(Call::place).put_all(ids).take());
-  } catch (const Refused&) {  // no memory there
-    ask(to, message(Call::forget_received).take());
+    ask(to, place);
+  } catch (...) {  // no memory there, or here
+    if (broken_) throw;
+    answer_of(to, forget);
     return;
   }
-  ask(from, message(Call::give_up).put_all(ids).take());
+  if (answer_of(from, give_up).failed()) {  // it stays there alone
+    if (answer_of(to, give_up).failed()) broken_ = true;
+    return;
+  }
   for (std::size_t k = 0; k < ids.size(); ++k) {
     Place& place = place_of(ids[k]);
     place.rank = to;

@@ -39,8 +39,13 @@ void release_buffers(Assembly& a) {
 }
 
 void rebuild_buffers(const Fixture& f, Assembly& a) {
-  derive_pairs(f, a.pairs);
-  for (Buffer* b : {&a.mass, &a.inverse_mass, &a.inverse_inertia}) b->assign(padded_to_lanes(f.size()), 0.0);
+  try {
+    derive_pairs(f, a.pairs);
+    for (Buffer* b : {&a.mass, &a.inverse_mass, &a.inverse_inertia}) b->assign(padded_to_lanes(f.size()), 0.0);
+  } catch (...) {  // no memory: it goes on resting, the masses in its rows
+    release_buffers(a);
+    throw;
+  }
   const std::size_t length = std::size_t(f.row_length());
   if (a.state.look_steps < 0) {
     use_physical_inertia(f, a);

@@ -14,7 +14,7 @@ void put_masses_into_rows(const Fixture& fixture, Assembly& assembly);
 /// Frees the working arrays; only rebuild_buffers, close_assembly and memory_of may be called then.
 void release_buffers(Assembly& assembly);
 
-/// Makes them again: the bits are those before.
+/// Makes them again: the bits are those before. Throws std::bad_alloc; the assembly has none of them then.
 void rebuild_buffers(const Fixture& fixture, Assembly& assembly);
 
 Memory memory_of(const Assembly& assembly);

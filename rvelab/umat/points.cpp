@@ -44,17 +44,24 @@ const Points::Loaded& Points::loaded(int number) {
   const auto found = templates_.find(number);
   if (found != templates_.end()) return found->second;
   Loaded made;
-  expect_done(rvelab_template_load(pool_, material(number).specimen.c_str(), &made.number));
-  // No call tells the stress of a state: a trial that goes nowhere does, of an RVE for it alone.
   std::int64_t id = 0;
-  expect_done(rvelab_spawn(pool_, made.number, 1, &id));
-  RowMajor3 sigma;
-  const RowMajor3 zero = RowMajor3::Zero();
-  rvelab_batch batch = batch_of_one(id, zero, 0, sigma);
-  expect_done(rvelab_trial(pool_, &batch));
-  made.stress = sigma;
-  expect_done(rvelab_release(pool_, 1, &id));
-  return templates_.emplace(number, made).first->second;
+  try {
+    expect_done(rvelab_template_load(pool_, material(number).specimen.c_str(), &made.number));
+    // No call tells the stress of a state: a trial that goes nowhere does, of an RVE for it alone.
+    expect_done(rvelab_spawn(pool_, made.number, 1, &id));
+    RowMajor3 sigma;
+    const RowMajor3 zero = RowMajor3::Zero();
+    rvelab_batch batch = batch_of_one(id, zero, 0, sigma);
+    expect_done(rvelab_trial(pool_, &batch));
+    made.stress = sigma;
+    expect_done(rvelab_release(pool_, 1, &id));
+    id = 0;
+    return templates_.emplace(number, made).first->second;
+  } catch (...) {  // the next call begins anew
+    if (id != 0) rvelab_release(pool_, 1, &id);
+    if (made.number != 0) rvelab_template_release(pool_, made.number);
+    throw;
+  }
 }
 
 Matrix3 Points::first_stress(int number) {
@@ -79,8 +86,13 @@ Start Points::spawn(int number, const PointName& name) {
   }
   Start start;
   expect_done(rvelab_spawn(pool_, loaded(number).number, 1, &start.id));
-  start.token = token_of(start.id);
-  if (named) first_steps_.emplace(key, start);
+  try {
+    start.token = token_of(start.id);
+    if (named) first_steps_.emplace(key, start);
+  } catch (...) {
+    rvelab_release(pool_, 1, &start.id);
+    throw;
+  }
   return start;
 }
 

@@ -33,10 +33,20 @@ TEST_CASE("librvelab.so needs no CGAL, MPI or HDF5, and has the name of version 
   CHECK_THAT(output_of("readelf -d " RVELAB_H5_LIBRARY), Contains("hdf5") && Contains("[librvelab-h5.so.1]"));
 }
 
-TEST_CASE("A host compiled with the header of 1.0 runs with the library of today") {
+TEST_CASE("A host compiled with the header of any earlier version runs with the library of today") {
   const Folder folder;
   io::write_specimen(packed(Shape::disc, 5), folder / "s.h5");
-  CHECK(output_of(RVELAB_CONSUMER " " + (folder / "s.h5")) == "ok\n\n0");
+  for (const std::string host : {RVELAB_CONSUMERS}) {
+    CAPTURE(host);
+    CHECK(output_of("'" + host + "' " + (folder / "s.h5")) == "ok\n\n0");
+  }
+}
+
+TEST_CASE("library, program, build and citation tell one version") {
+  const std::string version = rvelab_version();
+  CHECK(version == RVELAB_VERSION);  // of the project, as CMake has it
+  CHECK(output_of("'" RVELAB_PROGRAM "' --version") == "rvelab " + version + "\n\n0");
+  CHECK_THAT(bytes_of(RVELAB_SOURCE_DIR "/CITATION.cff"), Contains("\nversion: " + version + "\n"));
 }
 
 TEST_CASE("Installed and moved, the library is found by cmake and by pkg-config, and the example runs") {

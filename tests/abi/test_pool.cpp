@@ -245,6 +245,58 @@ TEST_CASE("Options of the pool are laid over those of the specimen") {
   CHECK(Rve(host.state(ids[0])).save() == Rve(state).save());
 }
 
+TEST_CASE("A template that is released is stale, its RVEs go on, and no later one has its number") {
+  Host host, other;
+  const Specimen& start = packed(Shape::disc, 3);
+  const std::int64_t first = host.template_of(start), kept = host.template_of(packed(Shape::disc, 4));
+  const std::int64_t foreign = other.template_of(start);
+  std::int64_t ids[2] = {};
+  REQUIRE_OK(rvelab_spawn(host.pool, first, 2, ids));
+  const Nine dH = Increments(4).next(1e-4);
+  const Nine before = host.apply(ids[0], dH);
+  REQUIRE(rvelab_template_release(host.pool, first) == RVELAB_OK);
+  CHECK(same(host.apply(ids[1], dH), before));
+  const auto refused = [&](std::int32_t status, const char* text) {
+    return status == RVELAB_E_ID && std::string(rvelab_last_error()).find(text) != std::string::npos;
+  };
+  std::int64_t id = 7;
+  CHECK(refused(rvelab_spawn(host.pool, first, 1, &id), "it was released"));
+  CHECK(refused(rvelab_template_release(host.pool, first), "it was released"));
+  for (const std::int64_t none : {std::int64_t(0), std::int64_t(-1), foreign, kept + 1, ids[0]})
+    CHECK(refused(rvelab_template_release(host.pool, none), "none of that number"));
+  CHECK(id == 7);
+  CHECK(rvelab_template_release(nullptr, first) == RVELAB_E_NULL);
+  const std::int64_t next = host.template_of(start);
+  CHECK((next != first && next != kept));
+  REQUIRE_OK(rvelab_spawn(host.pool, kept, 1, &id));
+  REQUIRE_OK(rvelab_spawn(host.pool, next, 1, &id));
+  CHECK(same(host.apply(id, dH), before));
+}
+
+TEST_CASE("A template is not released while another call is at work in the pool") {
+  rvelab_pool_def def = default_def();
+  struct Task {
+    rvelab_pool* pool = nullptr;
+    std::int64_t made = 0;
+    std::int32_t status = 0;
+  } task;
+  def.host = &task;
+  def.run_tasks = [](void* host, rvelab_task work, void* of, std::int64_t count) {
+    Task& asked = *static_cast<Task*>(host);
+    asked.status = rvelab_template_release(asked.pool, asked.made);
+    for (std::int64_t k = 0; k < count; ++k) work(of, k);
+  };
+  Host host(def);
+  task.pool = host.pool;
+  task.made = host.template_of(packed(Shape::disc, 3));
+  std::vector<std::int64_t> ids(2);
+  REQUIRE_OK(rvelab_spawn(host.pool, task.made, 2, ids.data()));
+  Trials trials(ids);
+  REQUIRE_OK(rvelab_trial(host.pool, &trials.batch));
+  CHECK(task.status == RVELAB_E_BUSY);
+  CHECK(rvelab_template_release(host.pool, task.made) == RVELAB_OK);
+}
+
 TEST_CASE("A slot whose generations are used up is retired") {
   using namespace rvelab::pool;
   Slots slots;

@@ -239,6 +239,39 @@ class RveTest(unittest.TestCase):
         rve.commit()
         self.assertEqual(rve.token, trial.tokens[0])
 
+    def test_an_rve_that_ends_leaves_neither_itself_nor_its_template_in_the_pool(self) -> None:
+        with rvelab.Pool(workers=1) as pool:
+            made, template = [], pool.template
+            pool.template = lambda source: made.append(template(source)) or made[-1]
+            with rvelab.Rve(specimen, pool) as rve:
+                self.assertEqual(list(pool.ids()), [rve.id])
+                rve.apply(zero)
+            with self.assertRaisesRegex(rvelab.RvelabError, "RVELAB_E_ID"):
+                rve.apply(zero)
+            rve.close()  # once more
+            rvelab.Rve(specimen, pool)  # no reference to it is left
+            kept = rvelab.Rve(specimen, pool)
+            self.assertEqual(list(pool.ids()), [kept.id])
+            for number in made:
+                with self.assertRaisesRegex(rvelab.RvelabError, "it was released"):
+                    pool.spawn(number)
+            pool.close()
+            kept.close()  # its pool has gone before it
+        own = rvelab.Rve(specimen)
+        own.close()
+        with self.assertRaisesRegex(rvelab.RvelabError, "pool is null"):
+            own.apply(zero)
+
+    def test_the_interpreter_ends_with_pools_and_rves_alive(self) -> None:
+        script = ("import sys, rvelab\n"
+                  "own, pool = rvelab.Rve(sys.argv[1]), rvelab.Pool(workers=2)\n"
+                  "shared = [rvelab.Rve(sys.argv[1], pool) for k in range(3)]\n"
+                  "own.cycle, pool.cycle = [own, shared], [pool, shared]\n"
+                  "pool.trial([rve.id for rve in shared], [[[0] * 3] * 3] * 3)\n")
+        done = subprocess.run([sys.executable, "-W", "ignore", "-c", script, specimen], capture_output=True, text=True,
+                              timeout=60)
+        self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "", ""))
+
     def test_a_warning_is_one_of_python_and_points_to_the_call(self) -> None:
         rve = rvelab.Rve(specimen, tolerance_rel=2e-3, tolerance_abs=2e-5)
         with warnings.catch_warnings(record=True) as told:

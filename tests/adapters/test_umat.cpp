@@ -51,6 +51,17 @@ TEST_CASE("umat_ serves MOOSE: spheres, line searches, tangents in calls of thei
 
 TEST_CASE("umat_ answers what it cannot do with NaN and one text in its log") { expect_served("refused", true); }
 
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // their runtimes allocate themselves
+TEST_CASE("umat_ without memory at any request answers with NaN, and the call made again gives the step") {
+  unsetenv("RVELAB_UMAT");
+  const Workplace here;
+  prepare(here, false);
+  const Outcome outcome = here.run("LD_PRELOAD=" RVELAB_MEMORY_SHIM " " + hosts + " without_memory .", "env");
+  INFO(outcome.errors);
+  CHECK(outcome.code == 0);
+}
+#endif
+
 TEST_CASE("a mistake in the file of materials is told with line, key, value and remedy") {
   unsetenv("RVELAB_UMAT");
   const Workplace here;

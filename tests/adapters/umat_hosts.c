@@ -4,6 +4,7 @@
  *
  * What comes back is held against the same increments through rvelab.h. */
 #include "tests/adapters/umat_hosts.h"
+#include <dlfcn.h>
 
 int failures = 0;
 
@@ -348,12 +349,59 @@ static void told(void) {
   print_log(stdout);
 }
 
+/* ---- a host whose memory runs out (tests/memory_shim.cpp is preloaded) ---- */
+
+static void without_memory(void) {
+  void (*fail_requests)(long, int) = NULL;
+  long (*requests_made)(void) = NULL;
+  *(void**)&fail_requests = dlsym(RTLD_DEFAULT, "fail_requests");
+  *(void**)&requests_made = dlsym(RTLD_DEFAULT, "requests_made");
+  REQUIRE(fail_requests != NULL && requests_made != NULL);
+  struct point start = new_point(3, 1, 1, 0);
+  first_stress("discs.h5", 3, 1, start.stress);
+  start.noel = start.npt = 1;
+  start.F1[3] = shear_step;
+  for (int step = 0; step < 2; ++step) { /* a point that is new, and one that goes on */
+    struct point expected = start;
+    call_in_full(&expected);
+    CHECK(isfinite(expected.stress[3]));
+    long refused = 0;
+    for (int lasting = 0; lasting < 2; ++lasting)
+      for (long number = 1, met = 1; met; number += number < 20 ? 1 : 13) {
+        struct point at = start;
+        if (step == 0) at.noel = 1000 * (lasting + 1) + (int)number;
+        const struct point before = at;
+        fail_requests(number, lasting);
+        call_in_full(&at);
+        met = requests_made() >= number;
+        fail_requests(0, 0);
+        if (!isfinite(at.stress[0])) {
+          ++refused;
+          CHECK(memcmp(at.statev, before.statev, sizeof at.statev) == 0 && at.pnewdt == before.pnewdt);
+          at = before;
+          call_in_full(&at); /* with memory */
+        }
+        CHECK(memcmp(at.stress, expected.stress, sizeof at.stress) == 0);
+        CHECK(memcmp(at.ddsdde, expected.ddsdde, sizeof at.ddsdde) == 0);
+      }
+    CHECK(refused > 20);
+    call_in_full(&start);
+    memcpy(start.F0, start.F1, sizeof start.F0);
+    start.F1[3] += shear_step;
+  }
+}
+
 int main(int argc, char** argv) {
   static const struct {
     const char* name;
     void (*run)(void);
-  } hosts[] = {{"abaqus", abaqus}, {"calculix", calculix}, {"kratos", kratos},
-               {"moose", moose},   {"refused", refused},   {"told", told}};
+  } hosts[] = {{"abaqus", abaqus},
+               {"calculix", calculix},
+               {"kratos", kratos},
+               {"moose", moose},
+               {"refused", refused},
+               {"told", told},
+               {"without_memory", without_memory}};
   REQUIRE(argc == 3 && chdir(argv[2]) == 0);
   for (size_t k = 0; k < sizeof hosts / sizeof *hosts; ++k) {
     if (strcmp(argv[1], hosts[k].name) != 0) continue;
@@ -361,5 +409,5 @@ int main(int argc, char** argv) {
     if (failures > 0) print_log(stderr);
     return failures > 0;
   }
-  return fprintf(stderr, "umat_hosts abaqus|calculix|kratos|moose|refused|told FOLDER\n"), 2;
+  return fprintf(stderr, "umat_hosts abaqus|calculix|kratos|moose|refused|told|without_memory FOLDER\n"), 2;
 }

@@ -14,7 +14,9 @@ of every call is that of include/rvelab/rvelab.h. Calls on different RVEs may ru
 is let go of meanwhile."""
 from __future__ import annotations
 
+import contextlib
 import os
+import sys
 from ctypes import byref, c_int64, c_size_t, c_void_p, create_string_buffer, sizeof
 from typing import Any, Iterable
 
@@ -46,7 +48,7 @@ class Pool:
         call("pool_create", byref(definition), byref(self._pool))
 
     def close(self) -> None:
-        """Joins the workers and frees every RVE."""
+        """Joins the workers and frees every RVE. A second time it does nothing; later calls of the pool raise."""
         if self._pool:
             call("pool_destroy", self._pool)
             self._pool = c_void_p()
@@ -58,9 +60,10 @@ class Pool:
         self.close()
 
     def __del__(self) -> None:
-        if getattr(self, "_pool", None):
+        # As the interpreter ends, modules and other objects may be gone: the process gives all back.
+        if getattr(self, "_pool", None) and not sys.is_finalizing():
             library.rvelab_pool_destroy(self._pool)
-            self._pool = None
+            self._pool = c_void_p()
 
     def template(self, source: str | os.PathLike[str] | bytes) -> int:
         """From a specimen file, a record file (its end state), or the bytes of snapshot(). To spawn from."""
@@ -70,6 +73,10 @@ class Pool:
         else:
             call("template_load", self._pool, os.fsencode(source), byref(made))
         return made.value
+
+    def release_template(self, template: int) -> None:
+        """Ends a template; the RVEs that were made from it stay."""
+        call("template_release", self._pool, template)
 
     def spawn(self, template: int, n: int = 1) -> np.ndarray:
         """n RVEs in the state of the template: their ids, (n) of int64, each exact in a double too."""
@@ -189,13 +196,40 @@ class Pool:
 
 
 class Rve:
-    """One RVE, in a pool of its own or in one given. The fields of Info are its attributes: rve.void_ratio, rve.p."""
+    """One RVE, in a pool of its own or in one given. The fields of Info are its attributes: rve.void_ratio, rve.p. It
+    lives until close(), the end of its `with`, or the last reference to it: of a pool that was given nothing else
+    ends."""
 
     def __init__(self, source: str | os.PathLike[str] | bytes, pool: Pool | None = None, **options: float) -> None:
         if pool is not None and options:
             raise TypeError("options are those of a pool of its own: give them to the Pool")
+        self.id, self._owns_pool = 0, pool is None
         self.pool = Pool(workers=1, **options) if pool is None else pool
-        self.id = int(self.pool.spawn(self.pool.template(source))[0])
+        template = self.pool.template(source)
+        try:
+            self.id = int(self.pool.spawn(template)[0])
+        finally:
+            self.pool.release_template(template)
+
+    def close(self) -> None:
+        """Ends the RVE, and its pool if that is its own. A second time it does nothing; later calls raise."""
+        if self.id and self.pool._pool and not self._owns_pool:
+            self.pool.release(self.id)
+        self.id = 0
+        if self._owns_pool:
+            self.pool.close()
+
+    def __enter__(self) -> "Rve":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def __del__(self) -> None:
+        # As Pool.__del__. An RVE that cannot be ended now, for another thread is at work in its pool, ends with that.
+        if getattr(self, "id", 0) and not sys.is_finalizing():
+            with contextlib.suppress(RvelabError):
+                self.close()
 
     def apply(self, dH: ArrayLike, dt: float = 0) -> np.ndarray:
         """sigma (3, 3) after dH (3, 3) over dt."""

@@ -106,13 +106,13 @@ def load() -> ctypes.CDLL:
         getattr(library, name_of_call).restype = c_char_p
     library.rvelab_capabilities.restype = c_int64
     version = library.rvelab_abi_version()
-    if version >> 16 != 1:
-        raise ImportError(f"{place} has ABI {version >> 16}.{version & 65535}; this module is for 1.x")
+    if version >> 16 != 1 or version & 65535 < 1:
+        raise ImportError(f"{place} has ABI {version >> 16}.{version & 65535}; this module is for 1.1 and later 1.x")
     pool, number, ids, size = c_void_p, c_int64, c_void_p, c_size_t
     for call, arguments in {
             "pool_def_init": (c_void_p, size), "pool_create": (c_void_p, c_void_p), "pool_destroy": (pool,),
-            "template_load": (pool, c_char_p, c_void_p), "spawn": (pool, number, number, ids),
-            "template_from_snapshot": (pool, c_char_p, size, c_void_p), "clone": (pool, number, c_void_p),
+            "template_load": (pool, c_char_p, c_void_p), "template_from_snapshot": (pool, c_char_p, size, c_void_p),
+            "template_release": (pool, number), "spawn": (pool, number, number, ids), "clone": (pool, number, c_void_p),
             "release": (pool, number, ids), "ids": (pool, number, ids, c_void_p), "batch_init": (c_void_p, size),
             "apply": (pool, number, c_void_p, c_double, c_void_p), "trial": (pool, c_void_p),
             "commit": (pool, number, ids), "revert": (pool, number, ids), "info_init": (c_void_p, size),

@@ -1,0 +1,414 @@
+// A host whose memory runs out: each call of rvelab.h with its k-th request for memory finding none, for every k. Run
+// with tests/memory_shim.cpp preloaded.
+//
+//     memory_host FOLDER SPECIMEN.h5 WORKERS STRIDE CALL
+//
+// Prints a line for each call, and one that begins with WRONG for each k after which something is not as it was: states
+// of RVEs bit for bit, ids, output arrays, what the same call gives when it is made again, memory held in the end.
+// STRIDE: above k = 10 only every STRIDE-th. CALL: calls whose names begin with this, "file" for those of files; "all":
+// all others. Each call has a process of its own; of one that crashes it is told where, and another goes on behind that
+// request.
+#include <dlfcn.h>
+#include <execinfo.h>
+#include <rvelab/rvelab.h>
+#include <signal.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace {
+
+using Snapshot = std::vector<char>;
+
+void (*fail_requests)(long number, int lasting) = nullptr;
+long (*requests_made)() = nullptr;
+long (*blocks_held)() = nullptr;
+
+/// Seen by the process that waits: which request finds no memory, in which call.
+struct Progress {
+  const char* call;
+  long number, sites, refused, wrong;
+  int lasting;
+};
+Progress* progress = nullptr;
+
+void wrong(const std::string& what) {
+  ++progress->wrong;
+  std::printf("WRONG %s, request %ld%s: %s\n", progress->call, progress->number, progress->lasting ? " and on" : "",
+              what.c_str());
+}
+
+extern "C" void crashed(int signal) {
+  fail_requests(0, 0);
+  char text[200];
+  const int size = std::snprintf(text, sizeof text, "WRONG %s, request %ld%s: signal %d at\n", progress->call,
+                                 progress->number, progress->lasting ? " and on" : "", signal);
+  void* places[30];
+  if (write(1, text, std::size_t(size)) == size) backtrace_symbols_fd(places, backtrace(places, 30), 1);
+  _exit(3);
+}
+
+void require(bool holds, const char* what, int line) {
+  if (holds) return;
+  wrong("line " + std::to_string(line) + ": " + what + ": " + rvelab_last_error());
+  std::fflush(stdout);
+  _exit(2);
+}
+#define REQUIRE(condition) require(condition, #condition, __LINE__)
+
+Snapshot snapshot_of(rvelab_pool* pool, std::int64_t id) {
+  std::size_t need = 0;
+  REQUIRE(rvelab_snapshot_save(pool, id, nullptr, 0, &need) == RVELAB_OK);
+  Snapshot bytes(need);
+  REQUIRE(rvelab_snapshot_save(pool, id, bytes.data(), need, &need) == RVELAB_OK);
+  return bytes;
+}
+
+constexpr double untouched = -7;
+constexpr double increment[9] = {2e-3, 1e-4, 0, 0, -2e-3, 0, 0, 0, 0};
+constexpr double deferred_increment[9] = {1e-9, 0, 0, 0, -1e-9, 0, 0, 0, 0};
+
+/// A pool with three RVEs: as their template, gone on from it, and with a strain that is deferred.
+struct Host {
+  Host(const std::string& folder, const std::string& file, int workers, int trial_memory) : folder(folder), file(file) {
+    REQUIRE(rvelab_pool_def_init(&def, sizeof def) == RVELAB_OK);
+    def.workers = workers;
+    def.trial_memory = trial_memory;
+    REQUIRE(rvelab_pool_create(&def, &pool) == RVELAB_OK);
+    REQUIRE(rvelab_template_load(pool, file.c_str(), &made) == RVELAB_OK);
+    REQUIRE(rvelab_spawn(pool, made, 3, ids) == RVELAB_OK);
+    double sigma[9];
+    for (int k = 1; k < 3; ++k) REQUIRE(rvelab_apply(pool, ids[k], increment, 0, sigma) >= RVELAB_OK);
+    REQUIRE(rvelab_apply(pool, ids[2], deferred_increment, 0, sigma) >= RVELAB_OK);
+    for (int k = 0; k < 3; ++k) start[k] = snapshot_of(pool, ids[k]);
+    saved.resize(start[2].size());
+    for (int k = 0; k < 27; ++k) gradients[k] = (k < 9 ? 1 : k < 18 ? 2 : 0.5) * increment[k % 9];
+  }
+  ~Host() {
+    REQUIRE(rvelab_pool_destroy(pool) == RVELAB_OK);
+    REQUIRE(rvelab_pool_destroy(other) == RVELAB_OK);
+  }
+
+  /// The RVEs as they were in the beginning, nothing pending, outputs untouched.
+  void begin() {
+    for (int k = 0; k < 3; ++k)
+      REQUIRE(rvelab_snapshot_load(pool, ids[k], start[k].data(), start[k].size()) == RVELAB_OK);
+    REQUIRE(rvelab_batch_init(&batch, sizeof batch) == RVELAB_OK);
+    batch.n = 3;
+    batch.ids = ids;
+    batch.dH = gradients;
+    batch.sigma = values;
+    batch.contact = values + 27;
+    batch.reynolds = values + 54;
+    batch.tangent = values + 81;
+    batch.error_estimate = values + 189;
+    batch.dt_scale = scale;
+    batch.status = status;
+    batch.tokens_out = tokens_out;
+    REQUIRE(rvelab_info_init(&info, sizeof info) == RVELAB_OK);
+    untouch();
+  }
+  void untouch() {
+    std::fill(std::begin(values), std::end(values), untouched);
+    std::fill(std::begin(status), std::end(status), RVELAB_E_MEMORY);
+    std::fill(std::begin(numbers), std::end(numbers), std::int64_t(untouched));
+    std::fill(saved.begin(), saved.end(), char(untouched));
+  }
+  /// Those of an entry of a batch: all of one size, one kind after the other.
+  bool entry_untouched(int k) const {
+    const auto is = [&](int from, int each) {
+      return std::all_of(values + from + k * each, values + from + (k + 1) * each,
+                         [](double value) { return value == untouched; });
+    };
+    return is(0, 9) && is(27, 9) && is(54, 9) && is(81, 36) && is(189, 1);
+  }
+  bool all_untouched() const {
+    return entry_untouched(0) && entry_untouched(1) && entry_untouched(2) &&
+           std::all_of(std::begin(numbers), std::end(numbers), [](std::int64_t n) { return n == untouched; }) &&
+           std::all_of(saved.begin(), saved.end(), [](char byte) { return byte == char(untouched); });
+  }
+
+  std::string folder, file;
+  rvelab_pool_def def;
+  rvelab_pool *pool = nullptr, *other = nullptr;
+  std::int64_t made = 0, ids[3] = {}, tokens_in[3] = {}, tokens_out[3] = {}, numbers[40];
+  double gradients[27], values[192], scale[3];
+  std::int32_t status[3];
+  rvelab_batch batch;
+  rvelab_info info;
+  Snapshot start[3], saved;
+};
+
+/// What a host can see of the RVEs of a pool.
+struct Seen {
+  explicit Seen(const Host& host) {
+    std::int64_t n = 0;
+    REQUIRE(rvelab_ids(host.pool, 0, nullptr, &n) == RVELAB_OK);
+    ids.resize(std::size_t(n));
+    REQUIRE(rvelab_ids(host.pool, n, ids.data(), &n) == RVELAB_OK);
+    for (const std::int64_t id : ids) states.push_back(snapshot_of(host.pool, id));
+  }
+  std::vector<std::int64_t> ids;
+  std::vector<Snapshot> states;
+};
+
+enum class Kind {
+  one,     ///< a call that fails leaves all as it was, and outputs untouched
+  batch,   ///< each entry by itself
+  accepts  ///< a batch that may have committed the trials which its tokens name
+};
+
+struct Call {
+  const char* name;
+  Kind kind;
+  int trial_memory;
+  std::function<void(Host&)> prepare;  ///< from Host::begin
+  std::function<std::int32_t(Host&)> call;
+  std::function<void(Host&)> undo;  ///< what Host::begin does not
+};
+
+void nothing(Host&) {}
+std::int32_t trial(Host& h) { return rvelab_trial(h.pool, &h.batch); }
+void make_trial(Host& h) {
+  REQUIRE(trial(h) >= RVELAB_OK);
+  h.untouch();
+}
+void release(Host& h, int n) { REQUIRE(rvelab_release(h.pool, n, h.numbers) == RVELAB_OK); }
+std::int32_t apply(Host& h, int k, double dt) { return rvelab_apply(h.pool, h.ids[k], increment, dt, h.values); }
+
+const Call calls[] = {
+    {"pool_create", Kind::one, 0, nothing, [](Host& h) { return rvelab_pool_create(&h.def, &h.other); },
+     [](Host& h) {
+       REQUIRE(rvelab_pool_destroy(h.other) == RVELAB_OK);
+       h.other = nullptr;
+     }},
+    {"template_from_snapshot", Kind::one, 0, nothing,
+     [](Host& h) { return rvelab_template_from_snapshot(h.pool, h.start[1].data(), h.start[1].size(), h.numbers); },
+     [](Host& h) { REQUIRE(rvelab_template_release(h.pool, h.numbers[0]) == RVELAB_OK); }},
+    {"template_release", Kind::one, 0,
+     [](Host& h) {
+       REQUIRE(rvelab_template_from_snapshot(h.pool, h.start[1].data(), h.start[1].size(), h.tokens_in) == RVELAB_OK);
+     },
+     [](Host& h) { return rvelab_template_release(h.pool, h.tokens_in[0]); }, nothing},
+    {"spawn", Kind::one, 0, nothing, [](Host& h) { return rvelab_spawn(h.pool, h.made, 40, h.numbers); },
+     [](Host& h) { release(h, 40); }},
+    {"clone", Kind::one, 0, nothing, [](Host& h) { return rvelab_clone(h.pool, h.ids[2], h.numbers); },
+     [](Host& h) { release(h, 1); }},
+    {"clone beside a trial", Kind::one, 0, make_trial,
+     [](Host& h) { return rvelab_clone(h.pool, h.ids[1], h.numbers); }, [](Host& h) { release(h, 1); }},
+    {"release", Kind::one, 0, [](Host& h) { REQUIRE(rvelab_spawn(h.pool, h.made, 3, h.tokens_in) == RVELAB_OK); },
+     [](Host& h) { return rvelab_release(h.pool, 3, h.tokens_in); }, nothing},
+    {"ids", Kind::one, 0, nothing, [](Host& h) { return rvelab_ids(h.pool, 39, h.numbers, h.numbers + 39); }, nothing},
+    {"apply", Kind::one, 0, nothing, [](Host& h) { return apply(h, 1, 0); }, nothing},
+    {"apply to an RVE with a deferred strain", Kind::one, 0, nothing, [](Host& h) { return apply(h, 2, 0); }, nothing},
+    {"apply that is deferred", Kind::one, 0, nothing,
+     [](Host& h) { return rvelab_apply(h.pool, h.ids[1], deferred_increment, 0, h.values); }, nothing},
+    {"apply over time", Kind::one, 0, nothing, [](Host& h) { return apply(h, 1, 1e-5); }, nothing},
+    {"apply to an RVE at work", Kind::one, 0,
+     [](Host& h) {
+       REQUIRE(rvelab_apply(h.pool, h.ids[1], increment, 1e-7, h.values) >= RVELAB_OK);
+       h.untouch();
+     },
+     [](Host& h) { return apply(h, 1, 0); }, nothing},
+    {"trial", Kind::batch, 0, nothing, trial, nothing},
+    {"trial without its state", Kind::batch, 1, nothing, trial, nothing},
+    {"trial over time", Kind::batch, 0, [](Host& h) { h.batch.dt = 1e-5; }, trial, nothing},
+    {"trial beside a trial", Kind::batch, 0, make_trial, trial, nothing},
+    {"trial from tokens", Kind::accepts, 0,
+     [](Host& h) {  // of the last trial, and of one that must be made again
+       make_trial(h);
+       std::copy_n(h.tokens_out, 3, h.tokens_in);
+       rvelab_batch one = h.batch;
+       one.n = 1;
+       REQUIRE(rvelab_trial(h.pool, &one) >= RVELAB_OK);
+       h.batch.tokens_in = h.tokens_in;
+       h.untouch();
+     },
+     trial, nothing},
+    {"commit", Kind::one, 0, make_trial, [](Host& h) { return rvelab_commit(h.pool, 3, h.ids); }, nothing},
+    {"commit of all", Kind::one, 0, make_trial, [](Host& h) { return rvelab_commit(h.pool, 0, nullptr); }, nothing},
+    {"commit of trials that are made again", Kind::one, 1, make_trial,
+     [](Host& h) { return rvelab_commit(h.pool, 3, h.ids); }, nothing},
+    {"revert", Kind::one, 0, make_trial, [](Host& h) { return rvelab_revert(h.pool, 0, nullptr); }, nothing},
+    {"get_info", Kind::one, 0, nothing, [](Host& h) { return rvelab_get_info(h.pool, h.ids[2], &h.info); }, nothing},
+    {"cost", Kind::one, 0, nothing, [](Host& h) { return rvelab_cost(h.pool, 3, h.ids, h.numbers); }, nothing},
+    {"snapshot_save", Kind::one, 0, nothing,
+     [](Host& h) {
+       std::size_t need = 0;
+       return rvelab_snapshot_save(h.pool, h.ids[2], h.saved.data(), h.saved.size(), &need);
+     },
+     nothing},
+    {"snapshot_load", Kind::one, 0, nothing,
+     [](Host& h) { return rvelab_snapshot_load(h.pool, h.ids[1], h.start[2].data(), h.start[2].size()); }, nothing},
+    {"file: template_load", Kind::one, 0, nothing,
+     [](Host& h) { return rvelab_template_load(h.pool, h.file.c_str(), h.numbers); }, nothing},
+    {"file: pool_write", Kind::one, 0, nothing,
+     [](Host& h) { return rvelab_pool_write(h.pool, (h.folder + "/now.h5").c_str()); }, nothing},
+    {"file: pool_read", Kind::one, 0,
+     [](Host& h) {
+       REQUIRE(rvelab_pool_write(h.pool, (h.folder + "/kept.h5").c_str()) == RVELAB_OK);
+       REQUIRE(rvelab_pool_create(&h.def, &h.other) == RVELAB_OK);
+     },
+     [](Host& h) { return rvelab_pool_read(h.other, (h.folder + "/kept.h5").c_str()); },
+     [](Host& h) {
+       std::int64_t n = 0;
+       REQUIRE(rvelab_ids(h.other, 0, nullptr, &n) == RVELAB_OK);
+       if (n != 3) wrong("the pool that was read has " + std::to_string(n) + " RVEs");
+       for (int k = 0; k < n; ++k)
+         if (snapshot_of(h.other, h.ids[k]) != h.start[k]) wrong("a state that was read is another");
+       REQUIRE(rvelab_pool_destroy(h.other) == RVELAB_OK);
+       h.other = nullptr;
+     }},
+};
+
+/// What a call that could be made gave.
+struct Result {
+  std::int32_t status;
+  std::vector<double> values;
+  Seen seen;
+  Result(const Host& host, std::int32_t status)
+      : status(status), values(std::begin(host.values), std::end(host.values)), seen(host) {}
+  bool same(const Result& other, Kind kind) const {
+    if (status != other.status || std::memcmp(values.data(), other.values.data(), values.size() * sizeof(double)) != 0)
+      return false;
+    return kind != Kind::one || seen.states == other.seen.states;  // tokens of trials tell how often they were made
+  }
+};
+
+void check_refused(const Call& call, const Host& host, std::int32_t status, const Seen& before) {
+  if (status != RVELAB_E_MEMORY) wrong(std::string(rvelab_status_name(status)) + ": " + rvelab_last_error());
+  const Seen after(host);
+  if (after.ids != before.ids) return wrong("the ids are others");
+  if (call.kind == Kind::one) {
+    if (after.states != before.states) wrong("a state is another");
+    if (!host.all_untouched()) wrong("an output was written");
+    return;
+  }
+  for (int k = 0; k < 3; ++k) {
+    if (host.status[k] >= RVELAB_OK) continue;
+    if (host.status[k] != RVELAB_E_MEMORY) wrong(std::string("an entry has ") + rvelab_status_name(host.status[k]));
+    if (!host.entry_untouched(k)) wrong("an output of an entry that failed was written");
+    if (call.kind == Kind::batch && after.states[std::size_t(k)] != before.states[std::size_t(k)])
+      wrong("the state of an entry that failed is another");
+  }
+}
+
+/// The call without its `number`-th request. False: it makes fewer.
+bool try_without(const Call& call, Host& host, const Result& expected) {
+  host.begin();
+  call.prepare(host);
+  const Seen before(host);
+  fail_requests(progress->number, progress->lasting);
+  std::int32_t status = call.call(host);
+  const bool met = requests_made() >= progress->number;
+  fail_requests(0, 0);
+  if (met) ++progress->sites;
+  if (status < RVELAB_OK) {
+    ++progress->refused;
+    check_refused(call, host, status, before);
+    host.untouch();
+    status = call.call(host);  // with memory, from what the one without has left
+  }
+  if (!Result(host, status).same(expected, call.kind)) wrong("made again it gives something else");
+  call.undo(host);
+  return met;
+}
+
+struct Options {
+  std::string folder, file;
+  int workers;
+  long stride;
+  /// From one request without memory to the next.
+  long step(long number) const { return number < 10 ? 1 : stride; }
+};
+
+void run(const Call& call, const Options& options, bool all) {
+  Host host(options.folder, options.file, options.workers, call.trial_memory);
+  host.begin();
+  call.prepare(host);
+  const std::int32_t status = call.call(host);
+  REQUIRE(status >= RVELAB_OK);
+  const Result expected(host, status);
+  call.undo(host);
+  while (all) {
+    const bool met = try_without(call, host, expected);
+    if (met) {
+      progress->number += options.step(progress->number);
+    } else if (!progress->lasting) {
+      progress->lasting = 1;
+      progress->number = 1;
+    } else {
+      return;
+    }
+  }
+}
+
+/// One process: all requests, on from where `progress` stands.
+void work(const Call& call, const Options& options) {
+  for (const int number : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL}) signal(number, crashed);
+  alarm(300);
+  void* places[2];
+  backtrace(places, 2);  // what it loads is there then
+  for (int k = 0; k < 2; ++k) run(call, options, false);
+  const long held = blocks_held();
+  run(call, options, true);
+  const long left = blocks_held() - held;
+  // What HDF5 keeps for its next use is its own.
+  if (left != 0 && std::strncmp(call.name, "file", 4) != 0) wrong(std::to_string(left) + " blocks are held in the end");
+  std::fflush(stdout);
+  _exit(0);
+}
+
+template <class Function>
+void find(Function& function, const char* name) {
+  function = reinterpret_cast<Function>(dlsym(RTLD_DEFAULT, name));
+  if (function != nullptr) return;
+  std::fprintf(stderr, "memory_host: %s is missing: preload memory_shim\n", name);
+  std::exit(2);
+}
+
+}  // namespace
+
+int main(int n, char** words) {
+  if (n != 6) {
+    std::fprintf(stderr, "memory_host FOLDER SPECIMEN.h5 WORKERS STRIDE CALL\n");
+    return 2;
+  }
+  find(fail_requests, "fail_requests");
+  find(requests_made, "requests_made");
+  find(blocks_held, "blocks_held");
+  const Options options{words[1], words[2], std::atoi(words[3]), std::atol(words[4])};
+  const std::string asked = words[5];
+  progress = static_cast<Progress*>(
+      mmap(nullptr, sizeof(Progress), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
+  for (const Call& call : calls) {
+    const std::string name = call.name;
+    if (asked == "all" ? name.starts_with("file") : !name.starts_with(asked)) continue;
+    *progress = {call.name, 1, 0, 0, 0, 0};
+    while (true) {
+      std::fflush(stdout);
+      const pid_t child = fork();
+      if (child == 0) work(call, options);
+      int status = 0;
+      waitpid(child, &status, 0);
+      if (WIFEXITED(status) && WEXITSTATUS(status) == 0) break;
+      ++progress->wrong;
+      std::printf("WRONG %s, request %ld%s: the process ended (%x)\n", call.name, progress->number,
+                  progress->lasting ? " and on" : "", unsigned(status));
+      if (WIFEXITED(status) && WEXITSTATUS(status) == 2) break;
+      progress->number += options.step(progress->number);
+    }
+    std::printf("%s: %ld requests, %ld refused, %ld wrong\n", call.name, progress->sites, progress->refused,
+                progress->wrong);
+    std::fflush(stdout);
+  }
+}
