@@ -82,4 +82,12 @@ void Rve::Impl::judge_error(double allowed, double strain, double ratio, double 
   report.tolerance_met = report.error_estimate <= accuracy::met_margin * report.allowed_error;
 }
 
+void Rve::Impl::judge_way(double strain, double mean_ratio, Report& report) {
+  const double overlaps = strain / overlap_strain();
+  if (!(overlaps > 1)) return;
+  const double way = accuracy::way_margin * std::sqrt(overlaps) * error_factor() * pressure_scale() * mean_ratio;
+  report.error_estimate = std::max(report.error_estimate, way);
+  report.tolerance_met = report.error_estimate <= accuracy::met_margin * report.allowed_error;
+}
+
 }  // namespace rvelab

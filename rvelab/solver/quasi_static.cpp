@@ -258,14 +258,16 @@ Rve::Impl::Start Rve::Impl::start_of(const Matrix3& change, double strain, bool 
   return {steps, unbalance_of_start(mismatch, strain, overlap, steps)};
 }
 
-bool Rve::Impl::make_substeps(const StrainPath& path, double strain, double fewest, Report& report) {
+Rve::Impl::Made Rve::Impl::make_substeps(const StrainPath& path, double strain, double fewest, Report& report) {
   const SolverOptions& o = fixture.options;
   SolverState& state = now.state;
   const Matrix3 start_frame = now.cell.rotation;
   Matrix3 done = Matrix3::Identity();
   const double most = by_tolerance() ? std::max(most_substeps(strain), 1.0) : std::numeric_limits<double>::infinity();
   double fraction = 0;
-  bool looked = false;
+  Made made;
+  double ratios = 0;
+  long looks = 0;
   fewest = std::min(fewest, most);
   while (fraction < 1) {
     const double left = 1 - fraction;
@@ -295,9 +297,11 @@ bool Rve::Impl::make_substeps(const StrainPath& path, double strain, double fewe
     done = next;
     report.substeps += steps;
     state.interval_strain += (fraction - before) * strain;
-    looked = fraction == 1 ? end_is_looked_at(report.substeps, strain) : state.look_steps >= control_interval;
-    if (!looked) continue;
+    made.looked = fraction == 1 ? end_is_looked_at(report.substeps, strain) : state.look_steps >= control_interval;
+    if (!made.looked) continue;
     const Balance balance = look();
+    ratios += state.unbalanced_ratio;
+    made.mean_ratio = ratios / double(++looks);
     // Where the fewest steps rule, the pace is not that of these steps, but it may still be found too fast.
     const bool too_fast = state.unbalanced_ratio > state.pace_target;
     if (o.fixed_substeps == 0 && (paced || too_fast)) steer_pace(balance);
@@ -306,7 +310,7 @@ bool Rve::Impl::make_substeps(const StrainPath& path, double strain, double fewe
     constexpr double few = 2 * double(control_interval);
     if (strain < overlap_strain() && !too_fast && left * fewest > few) fewest = std::max(0.5 * fewest, few / left);
   }
-  return looked;
+  return made;
 }
 
 Report Rve::Impl::load_quasi_static(FrameSplit whole) {
@@ -331,14 +335,15 @@ Report Rve::Impl::load_quasi_static(FrameSplit whole) {
   const double judged = network_change(std::max(strain, state.leg_strain));
   set_pace_target(target_for(judged));
   const Start start = start_of(change, strain, along < 0);
-  const bool looked = make_substeps(path, strain, start.fewest, report);
+  const Made made = make_substeps(path, strain, start.fewest, report);
   if (!present_stress().allFinite())
     throw IncrementFailed("the increment led to values that are not finite; apply it in smaller parts");
   // Between looks a start is believed to leave what starts do.
-  if (!looked) state.unbalanced_ratio = std::max(start.unbalanced_ratio, state.unbalanced_ratio);
+  if (!made.looked) state.unbalanced_ratio = std::max(start.unbalanced_ratio, state.unbalanced_ratio);
   report.unbalanced_ratio = state.unbalanced_ratio;
   judge(report);
   estimate_error(strain, judged, stress_before, state.unbalanced_ratio, rest.creep, report);
+  judge_way(strain, made.mean_ratio, report);
   const bool same_frame = (now.cell.rotation.array() == start_frame.array()).all();
   note_slope(whole.stretch, stress_before, same_frame);
   if (!(whole.rotation.array() == Matrix3::Identity().array()).all()) {

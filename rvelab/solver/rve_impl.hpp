@@ -169,6 +169,9 @@ struct Rve::Impl {
   /// The same of an increment of this strain; `network_change` (Pa) is that of the path which it is a piece of.
   void estimate_error(double strain, double network_change, const Matrix3& stress_before, double ratio, double more,
                       Report& report);
+  /// An increment beyond the strain of the overlaps, of this mean unbalanced ratio: what it lagged by on its way has
+  /// slid contacts, of which its end knows nothing. The estimate is at least that.
+  void judge_way(double strain, double mean_ratio, Report& report);
   /// dt = 0: sets report.quasi_static from what it says of balance and target.
   void judge(Report& report);
   /// dt > 0: in an increment of the time dt (s), at the velocity gradient `rate` of the cell (1/s, cell frame); the
@@ -205,8 +208,12 @@ struct Rve::Impl {
     double unbalanced_ratio;  ///< expected of that many
   };
   Start start_of(const Matrix3& change, double strain, bool turned_back);
-  /// The sub-steps of a quasi-static increment; whether the balance was looked at after the last of them.
-  bool make_substeps(const StrainPath& path, double strain, double fewest, Report& report);
+  struct Made {
+    bool looked = false;    ///< the balance, after the last sub-step
+    double mean_ratio = 0;  ///< unbalanced, of all looks
+  };
+  /// The sub-steps of a quasi-static increment.
+  Made make_substeps(const StrainPath& path, double strain, double fewest, Report& report);
   bool by_tolerance() const { return fixture.options.fixed_substeps == 0 && fixture.options.target_unbalanced == 0; }
   Report load(const MixedTarget& target, double dt, Matrix3& gradient);
   Report load_at_rate(const MixedTarget& target, double dt, Matrix3& gradient);
