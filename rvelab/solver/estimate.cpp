@@ -23,11 +23,7 @@ double Rve::Impl::error_factor() const {
                              fixture.dimension());
 }
 
-double Rve::Impl::expected_error(double ratio) {
-  // Where contacts creep, what a rest brings is more than the error: no more than this of it steers the sub-steps.
-  const double factor = error_factor();
-  return std::clamp(now.state.lag_factor, factor, accuracy::most_measured * factor) * pressure_scale() * ratio;
-}
+double Rve::Impl::expected_error(double ratio) { return error_factor() * pressure_scale() * ratio; }
 
 double Rve::Impl::overlap_strain() {
   const double network = now.state.network_stiffness;
@@ -35,9 +31,13 @@ double Rve::Impl::overlap_strain() {
                      : std::numeric_limits<double>::infinity();
 }
 
+bool Rve::Impl::can_measure_lag() {
+  return by_tolerance() && ratio_holds && now.state.unbalanced_ratio > 0 && pressure() > 0;
+}
+
 bool Rve::Impl::lag_is_due() {
   const SolverState& state = now.state;
-  if (!by_tolerance() || !ratio_holds || !(state.unbalanced_ratio > 0) || !(pressure() > 0)) return false;
+  if (!can_measure_lag()) return false;
   const bool changed = state.lag_strain > overlap_strain();
   return state.lag_factor == 0 || state.lag_steps >= (changed ? accuracy::changed_period : accuracy::rest_period);
 }
@@ -63,6 +63,7 @@ void Rve::Impl::measure_lag() {
 
 void Rve::Impl::estimate_error(double strain, double network, const Matrix3& stress_before, double ratio, double more,
                                Report& report) {
+  if (strain > 0 && can_measure_lag() && report.substeps >= accuracy::long_increment) measure_lag();
   double changed = (present_stress() - stress_before).norm();
   // A piece of a path is judged as the pace is (target_for), by what the path changes of the stress.
   if (network > network_change(strain)) changed = std::max(changed, now.state.softness * network);

@@ -226,7 +226,9 @@ Rve::Impl::Rest Rve::Impl::follow_up(double strain, bool turns) {
     look();
     rest.steps += interval;
   }
-  if (rest.steps > 0) rest.creep = (present_stress() - stresses[stresses.size() / 2]).norm();
+  if (rest.steps > 0)
+    rest.creep = std::max((present_stress() - stresses[stresses.size() / 2]).norm(),
+                          accuracy::slow_share * (present_stress() - stresses[0]).norm());
   return rest;
 }
 

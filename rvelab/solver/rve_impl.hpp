@@ -159,7 +159,9 @@ struct Rve::Impl {
   double error_factor() const;
   /// K p u for an unbalanced ratio u, Pa, as it steers the sub-steps.
   double expected_error(double ratio);
-  /// dt = 0, to a tolerance: whether enough sub-steps were made since the last time for measure_lag.
+  /// dt = 0, to a tolerance: whether there is a lag to measure; and whether enough sub-steps were made since the last
+  /// time.
+  bool can_measure_lag();
   bool lag_is_due();
   /// Lets a copy rest, and notes in the state by what its stress was behind.
   void measure_lag();
@@ -192,7 +194,7 @@ struct Rve::Impl {
   void step_at_rest(long steps);
   struct Rest {
     long steps = 0;
-    double creep = 0;  ///< Pa, change of the stress over its second half: about what a longer one would still bring
+    double creep = 0;  ///< Pa, what a longer one would still bring, about
   };
   /// Before an increment of this strain that turns, or goes on where the pace was one for another target: a state that
   /// lags by more than its tolerance comes to rest. What it lags by would stay: unloading locks the contacts that would

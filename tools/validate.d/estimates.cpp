@@ -117,7 +117,9 @@ Specimen packed(pack::Recipe recipe) {
   Workers alone(1);
   for (int draws = 1;; ++draws) {
     try {
-      return pack::pack(recipe, alone).specimen;
+      Rve rve(pack::pack(recipe, alone).specimen);
+      if (!rve.relax(1e-7, 300'000).target_held) throw IncrementFailed("the packing does not come to rest");
+      return rve.specimen();
     } catch (const IncrementFailed&) {
       if (draws == 5) throw;
       recipe.seed += 1000;

@@ -86,8 +86,14 @@ constexpr double half_grip = 0.15;
 constexpr long rest_steps = 50;
 /// What such a rest leaves, over p u.
 constexpr double left_by_rest = 1;
-/// Sub-steps from one such rest to the next, where contacts stay what they are and where they do not.
-constexpr long rest_period = 1000, changed_period = 200;
+/// Where a path rests before it turns, its slowest modes (3000 sub-steps and more) keep back at least this share of
+/// what the rest has brought, or what its second half has: 0.007 to 0.02 in three flowing states of discs, 0.3 and 0.7
+/// in two that roll, which no rest of this length shows.
+constexpr double slow_share = 0.025;
+/// Sub-steps from one rest of a copy to the next, where contacts stay what they are and where they do not.
+constexpr long rest_period = 1000, changed_period = 100;
+/// Sub-steps of an increment of strain that has a rest of its own.
+constexpr long long_increment = 200;
 /// The estimate over what a rest has shown: 97.5 % of 393 increments of even seeds were within twice that.
 constexpr double measured_margin = 1.9;
 /// The estimate over g K p u.
@@ -95,9 +101,6 @@ constexpr double fitted_margin = 2.75;
 /// The estimate of an increment beyond the strain of the overlaps, at least, over K p u sqrt(x), u the mean on its way:
 /// errors at x = 70 and friction 0.05 were 6 K p u where the end was calm.
 constexpr double way_margin = 1;
-/// What was measured steers the sub-steps up to so many times the fitted K: contacts that creep lag by more than they
-/// err.
-constexpr double most_measured = 3;
 /// The estimate over what is allowed, up to which a tolerance counts as met: 95 % of the errors then are.
 constexpr double met_margin = 2.75;
 /// Sub-steps of an increment at most, and those for each strain of the overlaps: ten times the fewest.
