@@ -6,6 +6,7 @@
 #include "rvelab/solver/assembly/contact_stiffness.hpp"
 #include "rvelab/solver/assembly/memory_order.hpp"
 #include "rvelab/solver/assembly/pair_geometry.hpp"
+#include "rvelab/solver/loading/accuracy.hpp"
 #include "rvelab/solver/resting.hpp"
 #include "rvelab/solver/rve.hpp"
 #include "rvelab/solver/rve_impl.hpp"
@@ -115,6 +116,42 @@ bool some_contact_must_slip(const Fixture& f, const Assembly& a) {
   });
 }
 
+/// Whether a moment or force of this size is at its limit, give or take round-off.
+bool at_limit(double size, double limit) { return size >= (1 - 1e-6) * limit; }
+
+template <Shape shape>
+double constraints_over_motions(const Fixture& f, const Assembly& a) {
+  const PairGeometry<shape> pair(f, a);
+  const int d = f.dimension(), turns = d == 2 ? 1 : 3;
+  std::vector<int> contacts(f.size(), 0);
+  for (const std::int32_t place : a.pairs.order) {
+    const auto p = std::size_t(place);
+    if (!(pair(p).overlap > 0)) continue;
+    ++contacts[std::size_t(a.pairs.i[p])];
+    ++contacts[std::size_t(a.pairs.j[p])];
+  }
+  double constraints = 0, grip = 0;
+  long counted = 0;
+  for (const std::int32_t place : a.pairs.order) {
+    const auto p = std::size_t(place);
+    const auto at = pair(p);
+    if (!(at.overlap > 0) || contacts[std::size_t(a.pairs.i[p])] < 2 || contacts[std::size_t(a.pairs.j[p])] < 2)
+      continue;
+    const ContactState c = state_of(f, a.pairs, p, at);
+    const double pressing = std::abs(c.pressing_force), held = grip_of(c.friction);
+    const bool slides = at_limit(c.tangential_force.norm(), c.friction * pressing);
+    const bool rolls = !f.contact.rolling || at_limit(c.rolling_moment.norm(), c.moment_cap * pressing);
+    constraints += 1 + (slides ? 0 : (d - 1) * held) + (rolls ? 0 : (d - 1) * held);
+    grip += held;
+    ++counted;
+  }
+  if (counted == 0) return 0;
+  // Round grains that nothing grips turn as they like.
+  const double turning = f.shape == Shape::ellipse ? 1 : grip / double(counted);
+  const auto held = std::count_if(contacts.begin(), contacts.end(), [](int n) { return n >= 2; });
+  return constraints / (double(held) * (d + turns * turning));
+}
+
 Network network_of(const Fixture& f, const Assembly& a) {
   Network net;
   net.shape = f.shape;
@@ -144,6 +181,10 @@ Network network_of(const Fixture& f, const Assembly& a) {
 }
 
 }  // namespace
+
+double Rve::Impl::constraint_ratio() const {
+  return with_shape(fixture.shape, [&](auto shape) { return constraints_over_motions<shape.value>(fixture, now); });
+}
 
 bool Rve::Impl::holds_more_than_friction() const {
   return with_shape(fixture.shape, [&](auto shape) { return some_contact_must_slip<shape.value>(fixture, now); });

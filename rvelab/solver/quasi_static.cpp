@@ -4,6 +4,8 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 #include "rvelab/error.hpp"
 #include "rvelab/solver/assembly/pressure.hpp"
@@ -75,6 +77,9 @@ void Rve::Impl::begin_quasi_static() {
   if (!unknown_balance) return;
   scale_inertia(fixture, present_sums(), now);
   now.state.softness = 1;
+  now.state.lag_factor = now.state.lag_strain = 0;
+  now.state.lag_steps = now.state.rest_steps = 0;
+  now.state.constraint_ratio = constraint_ratio();
   begin_interval(present_balance());
 }
 
@@ -83,7 +88,6 @@ void Rve::Impl::begin_interval(const Balance& balance) {
   state.look_steps = 0;
   state.interval_strain = 0;
   state.interval_stress = present_stress();
-  state.coordination = 2 * double(balance.touching) / double(fixture.size());
   state.network_stiffness =
       network_stiffness(pressure(), balance.mean_overlap, 2 * fixture.mean_radius, fixture.hardening);
 }
@@ -104,6 +108,7 @@ Balance Rve::Impl::look() {
   const Balance balance = checked_balance();
   unknown_balance = false;
   now.state.unbalanced_ratio = unbalanced(balance);
+  ratio_holds = true;
   if (now.state.look_steps >= control_interval) renew_interval(balance);
   return balance;
 }
@@ -142,7 +147,7 @@ double Rve::Impl::target_for(double network) {
   if (fixture.options.target_unbalanced > 0) return fixture.options.target_unbalanced;
   if (!(pressure() > 0)) return largest_target;
   const double allowed = allowed_by_tolerances(now.state.softness * network, network);
-  return std::clamp(allowed / (pace_margin * error_factor() * pressure_scale()), least_target, largest_target);
+  return std::clamp(allowed / (pace_margin * expected_error(1)), least_target, largest_target);
 }
 
 double Rve::Impl::tolerance_of_held_path() const {
@@ -196,30 +201,6 @@ void Rve::Impl::judge(Report& report) {
   report.quasi_static = report.unbalanced_ratio <= allowed * target && report.target_held;
 }
 
-double Rve::Impl::error_factor() const {
-  return error_per_unbalance(now.state.softness, now.state.coordination / fixture.isostatic_coordination,
-                             fixture.damping.local_quasi_static, fixture.dimension());
-}
-
-double Rve::Impl::expected_error(double ratio) { return error_factor() * pressure_scale() * ratio; }
-
-void Rve::Impl::estimate_error(double strain, double network, const Matrix3& stress_before, double ratio, double more,
-                               Report& report) {
-  double changed = (present_stress() - stress_before).norm();
-  // A piece of a path is judged as the pace is (target_for), by what the path changes of the stress.
-  if (network > network_change(strain)) changed = std::max(changed, now.state.softness * network);
-  judge_error(allowed_by_tolerances(changed, network), strain, ratio, more, report);
-}
-
-void Rve::Impl::judge_error(double allowed, double strain, double ratio, double more, Report& report) {
-  const double network = now.state.network_stiffness;
-  const double growth =
-      network > 0 ? error_growth(strain, strain_of_overlap(pressure_scale(), network, fixture.hardening)) : 1.0;
-  report.allowed_error = allowed;
-  report.error_estimate = estimate_margin * growth * expected_error(ratio) + more;
-  report.tolerance_met = report.error_estimate <= estimate_margin * report.allowed_error;
-}
-
 bool Rve::Impl::was_coarser(double network) { return now.state.pace_target > 2 * target_for(network); }
 
 void Rve::Impl::step_at_rest(long steps) {
@@ -228,56 +209,74 @@ void Rve::Impl::step_at_rest(long steps) {
   moved();
 }
 
-long Rve::Impl::follow_up(double strain, bool turns) {
+Rve::Impl::Rest Rve::Impl::follow_up(double strain, bool turns) {
   const double leg =
       turns ? now.state.leg_strain : std::max(strain, std::min(now.state.leg_strain + strain, longest_leg));
   const double network = network_change(leg);
-  if (!turns && !was_coarser(network)) return 0;
+  Rest rest;
+  if (!turns && !was_coarser(network)) return rest;
   const double allowed = allowed_by_tolerances(now.state.softness * network, network);
   // 300 to 1,000 sub-steps take a lag of 1e-2 p to 1e-4 p (drawn increments in flow); what the most leave is estimated.
   constexpr long interval = 25, most = 2000;
-  long made = 0;
-  while (made < most && expected_error(now.state.unbalanced_ratio) > (made > 0 ? 1 / pace_margin : 1) * allowed) {
+  std::vector<Matrix3> stresses;
+  while (rest.steps < most &&
+         expected_error(now.state.unbalanced_ratio) > (rest.steps > 0 ? 1 / pace_margin : 1) * allowed) {
+    stresses.push_back(present_stress());
     step_at_rest(interval);
     look();
-    made += interval;
+    rest.steps += interval;
   }
-  return made;
+  if (rest.steps > 0)
+    rest.creep = std::max((present_stress() - stresses[stresses.size() / 2]).norm(),
+                          accuracy::slow_share * (present_stress() - stresses[0]).norm());
+  return rest;
 }
 
-double Rve::Impl::turn_back() {
+void Rve::Impl::turn_back() {
   SolverState& state = now.state;
-  // What the state still lags by stays in it: unloading locks the contacts that would have crept.
-  const double carried = expected_error(state.unbalanced_ratio);
   // Turned back, the network is elastic again; and velocities that go the other way are worse than none.
   stop_grains(fixture, now);
   state.last_rate.setZero();
   state.softness = 1;
   state.interval_strain = 0;
   state.interval_stress = present_stress();
-  return carried;
+}
+
+double Rve::Impl::most_substeps(double strain) const {
+  const SolverOptions& o = fixture.options;
+  const double overlaps = strain * 2 * fixture.mean_radius / now.state.reference_overlap;
+  const double strictness = std::max(1.0, std::min(1e-2 / o.relative_tolerance, 1e-4 / o.absolute_tolerance));
+  return strictness * (accuracy::most_steps + accuracy::most_steps_of_overlap * overlaps);
 }
 
 Rve::Impl::Start Rve::Impl::start_of(const Matrix3& change, double strain, bool turned_back) {
   const SolverState& state = now.state;
   if (!by_tolerance()) return {double(turned_back ? fewest_steps_back : fewest_steps), 0};
   if (!(state.network_stiffness > 0)) return {1, 0};
-  const double overlap = strain_of_overlap(pressure_scale(), state.network_stiffness, fixture.hardening);
+  const double overlap = overlap_strain();
   const double paced = std::max(1.0, std::ceil(strain / state.strain_per_step));
   const double steps = steps_of_start(change, strain, state.last_rate, overlap, state.pace_target, paced);
   const double mismatch = (change - steps * state.last_rate).norm() / change.norm();
   return {steps, unbalance_of_start(mismatch, strain, overlap, steps)};
 }
 
-bool Rve::Impl::make_substeps(const StrainPath& path, double strain, double fewest, Report& report) {
+Rve::Impl::Made Rve::Impl::make_substeps(const StrainPath& path, double strain, double fewest, Report& report) {
   const SolverOptions& o = fixture.options;
   SolverState& state = now.state;
   const Matrix3 start_frame = now.cell.rotation;
   Matrix3 done = Matrix3::Identity();
+  const double most = by_tolerance() ? std::max(most_substeps(strain), 1.0) : std::numeric_limits<double>::infinity();
   double fraction = 0;
-  bool looked = false;
+  Made made;
+  double ratios = 0;
+  long looks = 0;
+  fewest = std::min(fewest, most);
   while (fraction < 1) {
     const double left = 1 - fraction;
+    // Where contacts open no pace may calm the grains: the sub-steps have an end, and the estimate says what they
+    // leave.
+    const double slowest = left * strain / std::max(most - double(report.substeps), double(control_interval));
+    state.strain_per_step = std::max(state.strain_per_step, slowest);
     long steps_left = 0;
     bool paced = true;
     if (o.fixed_substeps > 0) {
@@ -300,19 +299,20 @@ bool Rve::Impl::make_substeps(const StrainPath& path, double strain, double fewe
     done = next;
     report.substeps += steps;
     state.interval_strain += (fraction - before) * strain;
-    looked = fraction == 1 ? end_is_looked_at(report.substeps, strain) : state.look_steps >= control_interval;
-    if (!looked) continue;
+    made.looked = fraction == 1 ? end_is_looked_at(report.substeps, strain) : state.look_steps >= control_interval;
+    if (!made.looked) continue;
     const Balance balance = look();
+    ratios += state.unbalanced_ratio;
+    made.mean_ratio = ratios / double(++looks);
     // Where the fewest steps rule, the pace is not that of these steps, but it may still be found too fast.
     const bool too_fast = state.unbalanced_ratio > state.pace_target;
     if (o.fixed_substeps == 0 && (paced || too_fast)) steer_pace(balance);
     // What they were to calm is calm: of a faster path before, which the law of starts takes for as many as 4e5. That
     // holds where contacts stay what they are.
     constexpr double few = 2 * double(control_interval);
-    const bool small = strain < strain_of_overlap(pressure_scale(), state.network_stiffness, fixture.hardening);
-    if (small && !too_fast && left * fewest > few) fewest = std::max(0.5 * fewest, few / left);
+    if (strain < overlap_strain() && !too_fast && left * fewest > few) fewest = std::max(0.5 * fewest, few / left);
   }
-  return looked;
+  return made;
 }
 
 Report Rve::Impl::load_quasi_static(FrameSplit whole) {
@@ -326,22 +326,26 @@ Report Rve::Impl::load_quasi_static(FrameSplit whole) {
   const Matrix3 start_frame = now.cell.rotation, change = whole.stretch - Matrix3::Identity();
   const StrainPath path(whole, false);
   const double strain = path.strain(), along = state.last_rate.cwiseProduct(change).sum();
-  if (by_tolerance()) report.substeps += follow_up(strain, along < 0.9 * strain * state.last_rate.norm());
+  const bool turns = along < 0.9 * strain * state.last_rate.norm();
+  const Rest rest = by_tolerance() ? follow_up(strain, turns) : Rest();
+  report.substeps += rest.steps;
+  if (turns) state.lag_strain = 1;  // what was measured before is no longer so
   const Matrix3 stress_before = present_stress();
   if (along <= 0) state.leg_strain = 0;
   state.leg_strain = std::min(state.leg_strain + strain, longest_leg);
-  const double carried = by_tolerance() && along < 0 ? turn_back() : 0.0;
+  if (by_tolerance() && along < 0) turn_back();
   const double judged = network_change(std::max(strain, state.leg_strain));
   set_pace_target(target_for(judged));
   const Start start = start_of(change, strain, along < 0);
-  const bool looked = make_substeps(path, strain, start.fewest, report);
+  const Made made = make_substeps(path, strain, start.fewest, report);
   if (!present_stress().allFinite())
     throw IncrementFailed("the increment led to values that are not finite; apply it in smaller parts");
   // Between looks a start is believed to leave what starts do.
-  if (!looked) state.unbalanced_ratio = std::max(start.unbalanced_ratio, state.unbalanced_ratio);
+  if (!made.looked) state.unbalanced_ratio = std::max(start.unbalanced_ratio, state.unbalanced_ratio);
   report.unbalanced_ratio = state.unbalanced_ratio;
   judge(report);
-  estimate_error(strain, judged, stress_before, state.unbalanced_ratio, estimate_margin * carried, report);
+  estimate_error(strain, judged, stress_before, state.unbalanced_ratio, rest.creep, report);
+  judge_way(strain, made.mean_ratio, report);
   const bool same_frame = (now.cell.rotation.array() == start_frame.array()).all();
   note_slope(whole.stretch, stress_before, same_frame);
   if (!(whole.rotation.array() == Matrix3::Identity().array()).all()) {

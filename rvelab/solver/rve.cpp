@@ -165,22 +165,19 @@ Report Rve::relax(double unbalanced, long max_steps) {
     constexpr long interval = 25;  // sub-steps between looks at the balance
     // Cundall's damping is a part of the force: it hardly takes from a mode without stiffness, such as grains of an
     // even ring that counter-rotate like gears. Who is not at rest after this many steps is stopped at each peak of the
-    // kinetic energy (dynamic relaxation: Cundall 1976; Day 1965).
+    // kinetic energy (dynamic relaxation: Cundall 1976; Day 1965). The state counts them: a relaxation may be made in
+    // as many calls as one likes.
     constexpr long patience = 20'000;
-    double kinetic = 0;
     while (true) {
       m.look();
       report.unbalanced_ratio = m.now.state.unbalanced_ratio;
       if (report.unbalanced_ratio <= unbalanced || report.substeps >= max_steps) break;
+      const bool patient = m.now.state.rest_steps < patience;
+      const double before = patient ? 0 : kinetic_energy(m.fixture, m.now);
       const long steps = std::min(interval, max_steps - report.substeps);
       m.step_at_rest(steps);
       report.substeps += steps;
-      if (report.substeps < patience) continue;
-      const double before = std::exchange(kinetic, kinetic_energy(m.fixture, m.now));
-      if (kinetic < before) {
-        stop_grains(m.fixture, m.now);
-        kinetic = 0;
-      }
+      if (!patient && kinetic_energy(m.fixture, m.now) < before) stop_grains(m.fixture, m.now);
     }
     report.target_held = report.unbalanced_ratio <= unbalanced;
     report.substeps += deferred;

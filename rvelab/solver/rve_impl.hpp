@@ -37,6 +37,7 @@ struct Rve::Impl {
   bool stress_holds = false;
   Balance balance;  ///< of the grains; that of `now` while balance_holds
   bool balance_holds = false;
+  bool ratio_holds = false;                ///< state.unbalanced_ratio was measured on `now` as it is, within this call
   Matrix3 other_stress = Matrix3::Zero();  ///< while a trial is pending: the same of the state that is not in `now`
   bool other_stress_holds = false;
   /// Within a call at dt = 0: masses were scaled for grains, contacts or parameters that are others now, and the state
@@ -58,7 +59,7 @@ struct Rve::Impl {
   const Matrix3& present_stress();
   /// Balance of the state as it is; kept likewise. The first call after an opening needs what that looked at.
   const Balance& present_balance();
-  void moved() { sums_hold = stress_holds = balance_holds = false; }
+  void moved() { sums_hold = stress_holds = balance_holds = ratio_holds = false; }
   /// begin_loading, and masses if none are scaled yet. They hold for control_interval sub-steps, over as many calls as
   /// that takes, and belong to the state.
   void begin_quasi_static();
@@ -150,16 +151,29 @@ struct Rve::Impl {
   double pressure_scale();
   /// allowed_error by the tolerances of the specimen, Pa; of a change of stress and |C : d eps|, Pa.
   double allowed_by_tolerances(double stress_change, double network_change);
-  /// Error over p and the unbalanced ratio, of the state as it is (loading/accuracy.hpp).
+  /// Constraints of the contacts over the motions of the grains that they hold (loading/accuracy.hpp).
+  double constraint_ratio() const;
+  /// Strain that changes the contact forces by about as much as they are; infinite without a network.
+  double overlap_strain();
+  /// Error over p and the unbalanced ratio, of the state as it is, as fitted (loading/accuracy.hpp).
   double error_factor() const;
-  /// K p u for an unbalanced ratio u, Pa.
+  /// K p u for an unbalanced ratio u, Pa, as it steers the sub-steps.
   double expected_error(double ratio);
+  /// dt = 0, to a tolerance: whether there is a lag to measure; and whether enough sub-steps were made since the last
+  /// time.
+  bool can_measure_lag();
+  bool lag_is_due();
+  /// Lets a copy rest, and notes in the state by what its stress was behind.
+  void measure_lag();
   /// Sets report.error_estimate, allowed_error and tolerance_met: `allowed` (Pa), `strain` of the increment, `ratio`
   /// the unbalanced ratio at its end, `more` (Pa) what else the stress may err by.
   void judge_error(double allowed, double strain, double ratio, double more, Report& report);
   /// The same of an increment of this strain; `network_change` (Pa) is that of the path which it is a piece of.
   void estimate_error(double strain, double network_change, const Matrix3& stress_before, double ratio, double more,
                       Report& report);
+  /// An increment beyond the strain of the overlaps, of this mean unbalanced ratio: what it lagged by on its way has
+  /// slid contacts, of which its end knows nothing. The estimate is at least that.
+  void judge_way(double strain, double mean_ratio, Report& report);
   /// dt = 0: sets report.quasi_static from what it says of balance and target.
   void judge(Report& report);
   /// dt > 0: in an increment of the time dt (s), at the velocity gradient `rate` of the cell (1/s, cell frame); the
@@ -178,20 +192,30 @@ struct Rve::Impl {
   bool was_coarser(double network_change);
   /// Quasi-static sub-steps of a cell that keeps its shape.
   void step_at_rest(long steps);
+  struct Rest {
+    long steps = 0;
+    double creep = 0;  ///< Pa, what a longer one would still bring, about
+  };
   /// Before an increment of this strain that turns, or goes on where the pace was one for another target: a state that
-  /// lags by more than its tolerance comes to rest. The sub-steps that it takes. What it lags by would stay: unloading
-  /// locks the contacts that would have crept. A path to a tolerance lags by no more than that; one under stress
-  /// control, or to a given ratio, may by a hundred times as much.
-  long follow_up(double strain, bool turns);
-  /// Turned back: what the state lagged by, Pa, which stays in the answer; velocities and softness begin anew.
-  double turn_back();
+  /// lags by more than its tolerance comes to rest. What it lags by would stay: unloading locks the contacts that would
+  /// have crept. A path to a tolerance lags by no more than that; one under stress control, or to a given ratio, may by
+  /// a hundred times as much.
+  Rest follow_up(double strain, bool turns);
+  /// Turned back: velocities and softness begin anew.
+  void turn_back();
+  /// Sub-steps that an increment of this strain makes at most to its tolerance.
+  double most_substeps(double strain) const;
   struct Start {
     double fewest;            ///< sub-steps
     double unbalanced_ratio;  ///< expected of that many
   };
   Start start_of(const Matrix3& change, double strain, bool turned_back);
-  /// The sub-steps of a quasi-static increment; whether the balance was looked at after the last of them.
-  bool make_substeps(const StrainPath& path, double strain, double fewest, Report& report);
+  struct Made {
+    bool looked = false;    ///< the balance, after the last sub-step
+    double mean_ratio = 0;  ///< unbalanced, of all looks
+  };
+  /// The sub-steps of a quasi-static increment.
+  Made make_substeps(const StrainPath& path, double strain, double fewest, Report& report);
   bool by_tolerance() const { return fixture.options.fixed_substeps == 0 && fixture.options.target_unbalanced == 0; }
   Report load(const MixedTarget& target, double dt, Matrix3& gradient);
   Report load_at_rate(const MixedTarget& target, double dt, Matrix3& gradient);

@@ -32,7 +32,7 @@ void Rve::Impl::exchange() noexcept {
   trial.exchange(fixture, now, resting);
   std::swap(stress, other_stress);
   std::swap(stress_holds, other_stress_holds);
-  balance_holds = false;
+  balance_holds = ratio_holds = false;
   if (trial.changes() == Trial::Changes::grains) sums_hold = false;
   set_strained_cell();
 }

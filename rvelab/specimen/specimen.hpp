@@ -75,7 +75,12 @@ struct SolverState {
   double pace_target = 0;                  ///< dt = 0: unbalanced ratio that this pace is for
   double leg_strain = 0;                   ///< dt = 0: strain since the last turn, up to what is judged together
   double softness = 1;                     ///< dt = 0: |d sigma|/|C : d eps| of the last interval (accuracy.hpp)
-  double coordination = 0;                 ///< dt = 0: contacts of a grain, mean over all, when the present one began
+  double constraint_ratio = 0;             ///< dt = 0: constraints of the contacts over the motions of the grains that
+                                           ///< have any, when the present one began (accuracy.hpp); 0: not known
+  double lag_factor = 0;                   ///< dt = 0: K as a relaxed copy showed it last (accuracy.hpp); 0: not known
+  double lag_strain = 0;                   ///< dt = 0: strain made since then
+  std::int64_t lag_steps = 0;              ///< dt = 0: sub-steps made since then
+  std::int64_t rest_steps = 0;             ///< dt = 0: sub-steps since the cell last changed its shape
   double network_stiffness = 0;            ///< dt = 0: |C : d eps|/strain when it began, Pa
   double interval_strain = 0;              ///< dt = 0: strain made in the present interval
   Matrix3 interval_stress = Matrix3::Zero();       ///< dt = 0: stress at its begin, cell frame, Pa

@@ -1,24 +1,32 @@
-// What the estimate of an increment's error is worth (tools/validate estimates): increments drawn by seed, as many from
-// each class: specimen x state (isotropic, near the peak, critical) x direction (loading on, unloading, turned), of
-// lengths from 1e-7 to 1e-2, each against 10,000 sub-steps and relaxation to an unbalanced ratio of 1e-8.
+// What the estimate of an increment's error is worth (tools/validate estimates), on packings drawn by seed: discs,
+// ellipses and spheres of radii up to 1:10, friction 0 to 10, with and without rolling, linear and Hertz, kn/(p t) of
+// 1e2 to 1e6. From each, at rest and after 1 % and 5 % of drained compression, increments of 1e-6 to 1e-2: on, back,
+// turned, on with a rotation, anyhow. The constants of loading/accuracy.cpp were fitted to packings of even seeds.
 //
-// A reference that changes by more than a third of the tolerance, when every grain is moved by 1e-12 of its radius, is
-// chaotic: counted apart, and its estimate must be at least that change. Above lengths of 1e-3 the reference is the
-// mean of 16 such copies.
+// The truth is 2,000 to 20,000 sub-steps and relaxation to an unbalanced ratio of 1e-8. It is known where half as many
+// sub-steps of a copy whose grains are moved by the last bit change it by less than a third of what the tolerance
+// allows; the others (chaotic) are counted apart: their estimate must be at least that change.
 //
-//   rvelab-estimates NUMBER NAME=SPECIMEN.h5 ...     NUMBER: increments in all; prints a line of each class
+//   rvelab-estimates FIRST LAST EACH FOLDER   seeds; increments of each state; prints a line of each class
+//
+// FOLDER keeps states and truths: made once, so that a change of the estimate is judged by the same.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
-#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <random>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "rvelab/grains/uniform.hpp"
 #include "rvelab/io/specimen_file.hpp"
-#include "rvelab/measure/measures.hpp"
+#include "rvelab/pack/search.hpp"
 #include "rvelab/protocol/drive.hpp"
 #include "rvelab/solver/rve.hpp"
 
@@ -26,198 +34,363 @@ using namespace rvelab;
 
 namespace {
 
-constexpr long resolved_substeps = 10'000, relax_steps = 1'000'000;
-constexpr int copies = 16;
-constexpr const char* states[] = {"isotropic", "near peak", "critical"};
-constexpr const char* directions[] = {"loading", "unloading", "turned"};
+constexpr double pressure = 1e5, thickness = 0.1, mean_radius = 5e-3;
+constexpr int percents[] = {0, 1, 5};
+constexpr double stiff = 1e4;  ///< kn/(p t) beyond which strains are a tenth of that
+constexpr const char* directions[] = {"on", "back", "turned", "on, rotated", "random"};
+constexpr double pi = 3.14159265358979323846;
 
-/// Portable numbers in (0, 1).
+/// Numbers of a seed, for one purpose each.
 class Random {
  public:
-  explicit Random(std::uint64_t seed) : engine_(seed) {}
-  double operator()(double low, double high) {
-    return low + (high - low) * (double(engine_() >> 11) + 0.5) / 9007199254740992.0;
-  }
+  Random(std::uint64_t seed, std::uint64_t purpose) : uniform_(seed, purpose + 1) {}
+  double operator()(double low, double high) { return low + (high - low) * uniform_(); }
+  double power(double low, double high) { return std::pow(10, (*this)(low, high)); }
+  bool chance(double share) { return (*this)(0, 1) < share; }
 
  private:
-  std::mt19937_64 engine_;
+  Uniform uniform_;
 };
-
-Matrix3 gradient(double xx, double yy, double xy = 0) {
-  Matrix3 m = Matrix3::Zero();
-  m(0, 0) = xx;
-  m(1, 1) = yy;
-  m(0, 1) = m(1, 0) = xy;
-  return m;
-}
-
-struct State {
-  Specimen specimen;
-  Matrix3 direction;  ///< of the last increments, unit Frobenius norm
-};
-
-double deviator(const Matrix3& stress) { return 0.5 * (stress(0, 0) - stress(1, 1)); }
-
-/// States of a biaxial compression at constant lateral stress to 15 %, every 0.25 %, at the default tolerance.
-std::vector<State> states_of_path(const Specimen& start) {
-  Rve rve(start);
-  const double held = rve.stress()(0, 0);
-  std::vector<State> path{{start, gradient(0, -1)}};
-  constexpr double step = 5e-4;
-  for (int k = 1; k <= 300; ++k) {
-    std::vector<protocol::HeldStress> lateral{{0, 0, held, std::abs(held)}};
-    MixedTarget target = protocol::mixed_target(gradient(0, -step), lateral, rve.stress(), 2, k > 1);
-    const Response made = rve.apply(target, 0);
-    if (k % 5 == 0) path.push_back({rve.specimen(), made.displacement_gradient / made.displacement_gradient.norm()});
-  }
-  return path;
-}
-
-/// The states that a class draws from.
-std::vector<State> of_class(const std::vector<State>& path, std::size_t kind) {
-  if (kind == 0) return {path[0]};
-  std::size_t peak = 1;
-  for (std::size_t k = 1; k < path.size(); ++k) {
-    if (deviator(Rve(path[k].specimen).stress()) > deviator(Rve(path[peak].specimen).stress())) peak = k;
-  }
-  // Near: within a fifth of the strain at the peak, three states at least. Critical: the last third.
-  const std::size_t around = std::max<std::size_t>(1, peak / 5);
-  const std::size_t first = kind == 1 ? std::max<std::size_t>(1, peak - around) : 2 * path.size() / 3;
-  const std::size_t last = kind == 1 ? std::min(path.size() - 1, peak + around) : path.size() - 1;
-  return {path.begin() + std::ptrdiff_t(first), path.begin() + std::ptrdiff_t(last) + 1};
-}
-
-Specimen moved(const Specimen& from, std::uint64_t seed) {
-  Specimen s = from;
-  if (seed == 0) return s;
-  Random random(seed);
-  for (std::size_t g = 0; g < s.grains.size(); ++g)
-    for (int k = 0; k < 2; ++k) s.grains.position[g][k] += 1e-12 * s.grains.radius[g] * random(-1, 1);
-  return s;
-}
-
-Matrix3 resolved(const Specimen& from, const Matrix3& increment, std::uint64_t seed) {
-  Specimen s = moved(from, seed);
-  s.solver.fixed_substeps = resolved_substeps;
-  Rve rve(s);
-  rve.apply(increment, 0);
-  rve.relax(1e-8, relax_steps);
-  return rve.stress();
-}
 
 struct Drawn {
-  std::size_t specimen = 0, state = 0, direction = 0;
-  double length = 0, error = 0, estimate = 0, allowed = 0, spread = 0;
-  bool chaotic = false, failed = false;
+  pack::Recipe recipe;
+  double kappa = 0, ratio = 1, friction = 0;
 };
 
-Drawn drawn(const std::vector<State>& from, std::size_t direction, std::uint64_t seed) {
-  Random random(seed);
-  const State& state = from[std::size_t(random(0, double(from.size())))];
+Drawn drawn_recipe(std::uint64_t seed) {
+  Random random(seed, 0);
   Drawn d;
-  d.direction = direction;
-  d.length = std::pow(10, random(-7, -2));
-  Matrix3 way = state.direction;
-  if (direction == 1) way = -way;
-  if (direction == 2) {
-    // The deviator turned: principal axes by up to 90 degrees, in either sense.
-    const double angle = random(-1, 1) * 3.14159265358979323846 / 2, c = std::cos(angle), s = std::sin(angle);
-    Matrix3 turn = Matrix3::Identity();
-    turn.topLeftCorner<2, 2>() << c, -s, s, c;
-    way = (turn * way * turn.transpose()).eval();
+  pack::Recipe& r = d.recipe;
+  const auto kind = (seed / 2) % 6;  // both parities get all
+  r.shape = kind < 3 ? Shape::disc : kind < 5 ? Shape::sphere : Shape::ellipse;
+  const int dimension = dimension_of(r.shape);
+  r.seed = seed;
+  r.number = std::size_t(random(dimension == 2 ? 60 : 90, dimension == 2 ? 160 : 180));
+  r.thickness = thickness;
+  d.ratio = random.power(0.05, 1);
+  Grading& grading = r.fractions[0].grading;
+  grading.curve = random.chance(0.5) ? GradingCurve::uniform : GradingCurve::linear;
+  grading.smallest_radius = 2 * mean_radius / (1 + d.ratio);
+  grading.largest_radius = d.ratio * grading.smallest_radius;
+  if (r.shape == Shape::ellipse) {
+    r.fractions[0].smallest_aspect_ratio = random(0.4, 0.9);
+    r.fractions[0].largest_aspect_ratio = 0.95;
   }
-  const Matrix3 increment = d.length * way;
-  try {
-    Rve rve(state.specimen);
-    const Response made = rve.apply(increment, 0);
-    d.estimate = made.report.error_estimate;
-    d.allowed = made.report.allowed_error;
-    Matrix3 reference = resolved(state.specimen, increment, 0);
-    d.spread = (resolved(state.specimen, increment, seed) - reference).norm();
-    d.chaotic = d.spread > d.allowed / 3;
-    if (d.length > 1e-3) {
-      for (std::uint64_t k = 1; k < copies; ++k) reference += resolved(state.specimen, increment, seed + k);
-      reference /= copies;
-    }
-    d.error = (made.stress - reference).norm();
-  } catch (const Error&) {
-    d.failed = true;
-  }
+  Material& m = r.materials[0];
+  const double share = random(0, 1);
+  d.friction = m.friction = share < 0.1    ? 0
+                            : share < 0.45 ? random.power(-2, -0.7)
+                                           : random.power(-0.7, share < 0.9 ? 0 : 1);
+  const bool hertz = r.shape != Shape::ellipse && random.chance(0.35);
+  d.kappa = random.power(2, hertz ? 4.5 : 6);
+  r.contact.law = hertz ? Law::hertz_mindlin : Law::linear_given;
+  m.normal_stiffness = d.kappa * pressure * (dimension == 2 ? thickness : 2 * mean_radius);
+  m.tangential_stiffness = random(0.2, 1) * m.normal_stiffness;
+  m.poisson_ratio = random(0, 0.4);
+  m.young_modulus = pressure * d.kappa * std::sqrt(d.kappa);
+  r.contact.rolling = m.friction > 0 && random.chance(0.3);
+  m.rolling_stiffness = random(0.2, 2);
+  m.rolling_friction = random.power(-2, -0.3);
+  r.damping.local = 0.1;
+  r.solver.max_overlap_ratio = 1;
+  r.stress_tolerance = 2e-3;
+  r.unbalanced = 1e-4;
+  r.stress = pack::isotropic_stress(pressure, r.shape);
+  if (random.chance(0.5)) r.preparation.friction = std::min(m.friction, random(0, 0.1));
   return d;
 }
 
-double median(std::vector<double> values) {
+std::string in_words(std::uint64_t seed) {
+  const Drawn d = drawn_recipe(seed);
+  char text[200];
+  std::snprintf(text, sizeof text, "%zu %s%s%s, 1:%.2g, mu %.2g, kappa %.1e", d.recipe.number,
+                d.recipe.shape == Shape::disc     ? "discs"
+                : d.recipe.shape == Shape::sphere ? "spheres"
+                                                  : "ellipses",
+                d.recipe.contact.law == Law::hertz_mindlin ? ", Hertz" : "",
+                d.recipe.contact.rolling ? ", rolling" : "", d.ratio, d.friction, d.kappa);
+  return text;
+}
+
+/// A recipe that comes to no rest is drawn again.
+Specimen packed(pack::Recipe recipe) {
+  Workers alone(1);
+  for (int draws = 1;; ++draws) {
+    try {
+      Rve rve(pack::pack(recipe, alone).specimen);
+      if (!rve.relax(1e-7, 300'000).target_held) throw IncrementFailed("the packing does not come to rest");
+      return rve.specimen();
+    } catch (const IncrementFailed&) {
+      if (draws == 5) throw;
+      recipe.seed += 1000;
+    }
+  }
+}
+
+/// At rest, after a fifth and at the end of a drained compression. That of a stiff one is a tenth as long, and its rate
+/// follows no tolerance but near those two: x = strain/overlap is more than a thousand even so.
+std::vector<Specimen> states_of(std::uint64_t seed) {
+  const Drawn d = drawn_recipe(seed);
+  std::vector<Specimen> states{packed(d.recipe)};
+  const int dimension = dimension_of(d.recipe.shape), axis = dimension - 1;
+  Rve rve(states[0]);
+  const Matrix3 start = rve.stress();
+  const double step = d.kappa > stiff ? 5e-5 : 5e-4;
+  for (int k = 1; k <= 100; ++k) {
+    const bool coarse = d.kappa > stiff / 5 && k != 19 && k != 20 && k < 99;
+    Specimen s = rve.specimen();
+    if ((s.solver.target_unbalanced > 0) != coarse) {
+      s.solver.target_unbalanced = coarse ? 0.05 : 0;
+      rve = Rve(s);
+    }
+    std::vector<protocol::HeldStress> held;
+    for (int i = 0; i < axis; ++i) held.push_back({i, i, start(i, i), std::abs(start(i, i))});
+    Matrix3 gradient = Matrix3::Zero();
+    gradient(axis, axis) = -step;
+    rve.apply(protocol::mixed_target(gradient, held, rve.stress(), dimension, k > 1), 0);
+    if (k == 20 || k == 100) states.push_back(rve.specimen());
+  }
+  return states;
+}
+
+/// Of unit length, but for the rotation.
+Matrix3 way(int dimension, std::size_t direction, Random& random) {
+  const int axis = dimension - 1;
+  Matrix3 w = Matrix3::Zero();
+  w(axis, axis) = -1;
+  for (int i = 0; i < axis; ++i) w(i, i) = 0.4;
+  if (direction == 1) w = -w;
+  if (direction == 2) {
+    w.setZero();
+    if (random.chance(0.5)) {
+      w(0, axis) = w(axis, 0) = random.chance(0.5) ? 1 : -1;
+    } else {
+      w(0, 0) = -1;
+      w(axis, axis) = random(0.3, 1);
+    }
+  }
+  if (direction == 4)
+    for (int i = 0; i < dimension; ++i)
+      for (int j = 0; j < dimension; ++j)
+        for (int k = 0; k < 6; ++k) w(i, j) += random(-1, 1);
+  w /= (0.5 * (w + w.transpose())).norm();
+  if (direction == 3) {
+    w(0, axis) += 0.7;
+    w(axis, 0) -= 0.7;
+  }
+  return w;
+}
+
+struct Increment {
+  std::uint64_t seed = 0;
+  int state = 0;
+  std::size_t direction = 0;
+  double length = 0;
+  Matrix3 gradient = Matrix3::Zero();
+  Matrix3 before = Matrix3::Zero(), truth = Matrix3::Zero();  ///< Pa
+  double spread = 0;                                          ///< of the truth, Pa
+  bool known = false;
+  Response made;
+  bool failed = false;
+  std::string why;
+
+  double error() const { return (made.stress - truth).norm(); }
+  bool chaotic() const { return spread > made.report.allowed_error / 3; }
+};
+
+long resolved_substeps(double strain_over_overlap) {
+  return strain_over_overlap < 0.03  ? 2000
+         : strain_over_overlap < 0.3 ? 5000
+         : strain_over_overlap < 2   ? 10'000
+                                     : 20'000;
+}
+
+Matrix3 resolved(Specimen s, const Matrix3& gradient, long substeps, bool nudged) {
+  if (nudged)
+    for (Vector3& x : s.grains.position) x[0] = std::nextafter(x[0], 1e9);
+  s.solver.fixed_substeps = substeps;
+  s.solver.target_unbalanced = 0;
+  Rve rve(s);
+  rve.apply(gradient, 0);
+  if (!rve.relax(1e-8, 300'000).target_held) throw Error("the truth does not come to rest");
+  return rve.stress();
+}
+
+/// Draws the increments of a state; truths from the file, where they are there, else made and put there.
+std::vector<Increment> increments_of(std::uint64_t seed, int state, std::size_t each, const Specimen& s,
+                                     const std::string& file) {
+  std::vector<Increment> all(each);
+  Random random(seed, 10 + std::uint64_t(state));
+  const int dimension = dimension_of(s.shape);
+  const double kappa = drawn_recipe(seed).kappa;
+  std::ifstream kept(file);
+  std::ofstream more(file, std::ios::app);
+  for (std::size_t k = 0; k < each; ++k) {
+    Increment& i = all[k];
+    i.seed = seed;
+    i.state = state;
+    i.direction = k % 5;
+    i.length = random.power(-6, std::min(-2.0, 2 - std::log10(kappa)));  // beyond, no truth can be known
+    i.gradient = i.length * way(dimension, i.direction, random);
+    double value[11];
+    std::size_t found = 0;
+    std::string word;
+    while (found < 11 && kept >> word) value[found++] = std::strtod(word.c_str(), nullptr);
+    if (found < 11) {
+      value[0] = 1;
+      try {
+        i.before = Rve(s).stress();
+        const long n = resolved_substeps(i.length * kappa);
+        i.truth = resolved(s, i.gradient, n, false);
+        i.spread = (resolved(s, i.gradient, n / 2, true) - i.truth).norm();
+      } catch (const Error& error) {
+        value[0] = 0;
+      }
+      value[1] = i.spread;
+      for (int c = 0; c < 9; ++c) value[2 + c] = i.truth(c / 3, c % 3);
+      char text[32];
+      for (const double v : value) more << (std::snprintf(text, sizeof text, "%.17g ", v), text);
+      more << '\n' << std::flush;
+    }
+    i.known = value[0] != 0;
+    i.spread = value[1];
+    for (int c = 0; c < 9; ++c) i.truth(c / 3, c % 3) = value[2 + c];
+  }
+  return all;
+}
+
+std::mutex files;  // of HDF5
+
+std::vector<Increment> judged(std::uint64_t seed, std::size_t each, const std::string& folder) {
+  std::vector<Increment> all;
+  std::vector<Specimen> states;
+  const std::string name = folder + "/" + std::to_string(seed);
+  const auto file = [&](int k, const char* end) { return name + "_" + std::to_string(percents[k]) + end; };
+  if (!std::filesystem::exists(file(2, ".h5"))) {
+    states = states_of(seed);
+    const std::lock_guard<std::mutex> lock(files);
+    for (int k = 0; k < 3; ++k) io::write_specimen(states[std::size_t(k)], file(k, ".h5"));
+  }
+  for (int k = 0; k < 3; ++k) {
+    const Specimen s = [&] {
+      const std::lock_guard<std::mutex> lock(files);
+      return io::read_specimen(file(k, ".h5"));
+    }();
+    std::vector<Increment> of = increments_of(seed, k, each, s, file(k, ".txt"));
+    for (Increment& i : of) {
+      try {
+        Rve rve(s);
+        i.before = rve.stress();
+        i.made = rve.apply(i.gradient, 0);
+      } catch (const Error& error) {
+        i.failed = true;
+        i.why = error.what();
+      }
+    }
+    all.insert(all.end(), of.begin(), of.end());
+  }
+  return all;
+}
+
+double middle(std::vector<double> values) {
   if (values.empty()) return 0;
   std::sort(values.begin(), values.end());
   return values[values.size() / 2];
 }
 
-void print(const std::string& name, const std::vector<Drawn>& all) {
-  long failed = 0, chaotic = 0, covered = 0, within = 0, allowed = 0, counted = 0;
-  std::vector<double> ratio, logs;
-  for (const Drawn& d : all) {
-    if (d.failed) {
-      ++failed;
-    } else if (d.chaotic) {
+void print(const std::string& name, const std::vector<Increment>& all,
+           const std::function<bool(const Increment&)>& of) {
+  long failed = 0, unknown = 0, chaotic = 0, covered = 0, counted = 0, within = 0, kept = 0, met = 0, met_kept = 0;
+  std::vector<double> ratios, steps;
+  for (const Increment& i : all) {
+    if (!of(i)) continue;
+    failed += i.failed;
+    unknown += !i.failed && !i.known;
+    if (i.failed || !i.known) continue;
+    const Report& r = i.made.report;
+    if (i.chaotic()) {
       ++chaotic;
-      covered += d.estimate >= d.spread;
-    } else {
-      ++counted;
-      within += d.error <= d.estimate;
-      allowed += d.error <= d.allowed;
-      if (!(d.error > 0 && d.estimate > 0)) continue;  // a specimen that came apart: no stress, no error
-      ratio.push_back(d.estimate / d.error);
-      logs.push_back(std::log(d.error / d.estimate));
+      covered += r.error_estimate >= i.spread;
+      continue;
     }
+    ++counted;
+    within += i.error() <= r.error_estimate;
+    kept += i.error() <= r.allowed_error;
+    met += r.tolerance_met;
+    met_kept += r.tolerance_met && i.error() <= r.allowed_error;
+    ratios.push_back(r.error_estimate / std::max(i.error(), 1e-300));
+    steps.push_back(double(r.substeps));
   }
-  double mean = 0, square = 0;
-  for (const double x : logs) mean += x / double(logs.size());
-  for (const double x : logs) square += (x - mean) * (x - mean) / double(logs.size());
-  const auto share = [](long part, long whole) { return whole > 0 ? 100.0 * double(part) / double(whole) : 0.0; };
-  std::printf("%-32s %5ld %9.1f %9.1f %10.2f %8.2f %8ld %11.1f %7ld\n", name.c_str(), counted, share(within, counted),
-              share(allowed, counted), median(ratio), std::sqrt(square), chaotic, share(covered, chaotic), failed);
+  const auto share = [](long part, long whole) { return whole > 0 ? 100.0 * double(part) / double(whole) : 100.0; };
+  std::printf("%-58s %5ld %8.1f %8.2f %9.1f %7.1f %8.1f %8.0f %8ld %8.1f %7ld\n", name.c_str(), counted,
+              share(within, counted), middle(ratios), share(kept, counted), share(met, counted), share(met_kept, met),
+              middle(steps), chaotic, share(covered, chaotic), failed + unknown);
   std::fflush(stdout);
+}
+
+void write_lines(const std::vector<Increment>& all, const std::string& path) {
+  std::FILE* out = std::fopen(path.c_str(), "w");
+  if (out == nullptr) return;
+  for (const Increment& i : all) {
+    const Report& r = i.made.report;
+    std::fprintf(out, "%llu %d %zu %.4e %d %d %.6e %.6e %.6e %.6e %.6e %ld %d %.6e %.6e\n", (unsigned long long)i.seed,
+                 percents[i.state], i.direction, i.length, int(i.known), int(i.failed), i.error(), r.error_estimate,
+                 r.allowed_error, i.spread, r.unbalanced_ratio, r.substeps, int(r.tolerance_met),
+                 (i.truth - i.before).norm(), -i.before.trace());
+    if (i.failed)
+      std::fprintf(stderr, "seed %llu, %d %%, %s, %.2e: %s\n", (unsigned long long)i.seed, percents[i.state],
+                   directions[i.direction], i.length, i.why.c_str());
+  }
+  std::fclose(out);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 3) {
-    std::fputs("usage: rvelab-estimates NUMBER NAME=SPECIMEN.h5 ...\n", stderr);
+  if (argc != 5) {
+    std::fputs("usage: rvelab-estimates FIRST LAST EACH FOLDER\n", stderr);
     return 2;
   }
-  const std::size_t specimens = std::size_t(argc) - 2, classes = 9 * specimens;
-  const std::size_t each = (std::size_t(std::atol(argv[1])) + classes - 1) / classes;
-  std::puts("                                 increments, of them % within    estimate/ sd of ln          spread in");
-  std::puts(
-      "specimen, state, direction           n  estimate tolerance      error error/est. chaotic  estimate %  failed");
-  std::vector<Drawn> all;
-  std::vector<Drawn> of_length[5];
-  for (std::size_t n = 0; n < specimens; ++n) {
-    const std::string argument = argv[n + 2];
-    const std::size_t equals = argument.find('=');
-    const std::vector<State> path = states_of_path(io::read_specimen(argument.substr(equals + 1)));
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::vector<State> from = of_class(path, k);
-      for (std::size_t direction = 0; direction < 3; ++direction) {
-        std::vector<Drawn> of(each);
-        const std::uint64_t first = ((n * 3 + k) * 3 + direction) * 1'000'000 + 1;
-        const auto part = [&](std::size_t odd) {
-          for (std::size_t m = odd; m < each; m += 2) of[m] = drawn(from, direction, first + 100 * m);
-        };
-        std::thread other(part, 1);
-        part(0);
-        other.join();
-        print(argument.substr(0, equals) + ", " + states[k] + ", " + directions[direction], of);
-        for (const Drawn& d : of) {
-          all.push_back(d);
-          of_length[std::clamp(int(std::floor(std::log10(d.length))) + 7, 0, 4)].push_back(d);
-        }
+  const std::uint64_t first = std::strtoull(argv[1], nullptr, 10), last = std::strtoull(argv[2], nullptr, 10);
+  const std::size_t each = std::strtoull(argv[3], nullptr, 10);
+  const std::string folder = argv[4];
+  std::filesystem::create_directories(folder);
+  std::map<std::uint64_t, std::vector<Increment>> of_seed;
+  std::atomic<std::uint64_t> next = first;
+  std::mutex guard;
+  const auto work = [&] {
+    for (std::uint64_t seed = next++; seed <= last; seed = next++) {
+      std::vector<Increment> made;
+      try {
+        made = judged(seed, each, folder);
+      } catch (const Error& error) {
+        std::fprintf(stderr, "seed %llu (%s): %s\n", (unsigned long long)seed, in_words(seed).c_str(), error.what());
       }
+      const std::lock_guard<std::mutex> lock(guard);
+      of_seed[seed] = std::move(made);
     }
-  }
-  for (int k = 0; k < 5; ++k)
-    print("lengths 1e" + std::to_string(k - 7) + " to 1e" + std::to_string(k - 6), of_length[k]);
-  print("all", all);
+  };
+  std::thread other(work);
+  work();
+  other.join();
+
+  std::vector<Increment> all;
+  for (const auto& [seed, of] : of_seed) all.insert(all.end(), of.begin(), of.end());
+  write_lines(all, folder + "/increments.txt");
+  std::printf("%-58s %5s %8s %8s %9s %7s %8s %8s %8s %8s %7s\n", "", "", "% within", "median", "% within", "% told",
+              "% of it", "median", "", "% spread", "not");
+  std::printf("%-58s %5s %8s %8s %9s %7s %8s %8s %8s %8s %7s\n", "increments", "n", "estimate", "est/err", "tolerance",
+              "met", "truly", "steps", "chaotic", "covered", "known");
+  for (const auto& [seed, of] : of_seed)
+    print(std::to_string(seed) + ": " + in_words(seed), of, [](const Increment&) { return true; });
+  for (int k = 0; k < 3; ++k)
+    print("after " + std::to_string(percents[k]) + " %", all, [&](const Increment& i) { return i.state == k; });
+  for (std::size_t k = 0; k < 5; ++k) print(directions[k], all, [&](const Increment& i) { return i.direction == k; });
+  for (int k = -6; k < -2; ++k)
+    print("lengths 1e" + std::to_string(k) + " to 1e" + std::to_string(k + 1), all,
+          [&](const Increment& i) { return std::floor(std::log10(i.length)) == k; });
+  print("fitted (even seeds)", all, [](const Increment& i) { return i.seed % 2 == 0; });
+  print("held out (odd seeds)", all, [](const Increment& i) { return i.seed % 2 == 1; });
+  print("all", all, [](const Increment&) { return true; });
   return 0;
 }

@@ -130,7 +130,11 @@ void check_state(const Specimen& s) {
   expect(state.pace_target >= 0, "pace_target", state.pace_target);
   expect(state.leg_strain >= 0, "leg_strain", state.leg_strain);
   expect(state.softness >= 0, "softness", state.softness);
-  expect(state.coordination >= 0, "coordination", state.coordination);
+  expect(state.constraint_ratio >= 0, "constraint_ratio", state.constraint_ratio);
+  expect(state.lag_factor >= 0, "lag_factor", state.lag_factor);
+  expect(state.lag_strain >= 0, "lag_strain", state.lag_strain);
+  expect(state.lag_steps >= 0, "lag_steps", double(state.lag_steps));
+  expect(state.rest_steps >= 0, "rest_steps", double(state.rest_steps));
   expect(state.network_stiffness >= 0, "network_stiffness", state.network_stiffness);
   expect(state.interval_strain >= 0, "interval_strain", state.interval_strain);
   expect(state.unbalanced_ratio >= 0, "unbalanced_ratio", state.unbalanced_ratio);

@@ -23,20 +23,26 @@ double allowed_error(double relative, double absolute, double stress_change, dou
   return relative * std::max(stress_change, 0.1 * network_change) + absolute * std::max(pressure, 0.0);
 }
 
-double error_per_unbalance(double softness, double coordination_ratio, double damping, int dimension) {
+double grip_of(double friction) { return friction / (friction + accuracy::half_grip); }
+
+double error_per_unbalance(double softness, double constraint_ratio, double damping, int dimension) {
   const double s = std::clamp(softness, 0.4, 1.0);
   const double soft = 0.4 / (s * s * std::sqrt(s)) / (dimension == 3 ? s : 1.0);
   const double damped = std::max(1.0, 0.1 + 3 * damping);
-  if (!(coordination_ratio > 0)) return damped * soft;
-  const double beyond = std::max(coordination_ratio, 1.0) - 1;
+  if (!(constraint_ratio > 0)) return damped * soft;
+  const double beyond = std::max(constraint_ratio, 1.0) - 1;
   return damped * std::max(soft, 0.3 + 1.7 / (1 + 70 * beyond * beyond));
 }
 
 double error_growth(double strain, double strain_of_overlap) {
-  const double x = std::min(strain / strain_of_overlap, 2.0) / 0.3;
+  const double x = strain / strain_of_overlap / 0.3;
   if (!(x > 1)) return 1;
   const double root = std::sqrt(x);
   return root * std::sqrt(root);
+}
+
+double rested_growth(double strain, double strain_of_overlap) {
+  return std::sqrt(std::sqrt(std::sqrt(std::max(1.0, strain / strain_of_overlap))));
 }
 
 double unbalance_of_start(double mismatch, double strain, double strain_of_overlap, double steps) {

@@ -357,7 +357,11 @@ Advanced advance(const Fixture& f, Assembly& a, const Advance& what) {
     }
   }
   a.state.grain_steps += std::uint64_t(made) * f.size();
-  if (!physical) a.state.look_steps += made;
+  if (!physical) {
+    a.state.look_steps += made;
+    a.state.lag_steps += made;
+    a.state.rest_steps = what.increment.rigid ? a.state.rest_steps + made : 0;
+  }
   turn_frame(a.cell, path.end_rotation);
   return {made, step};
 }
