@@ -9,6 +9,7 @@
 #include <span>
 
 #include "rvelab/io/seal.hpp"
+#include "rvelab/keys/regular_file.hpp"
 #include "tools/mpm/tensors.hpp"
 
 namespace mpm {
@@ -90,19 +91,12 @@ void publish_file(const std::string& path, const char* bytes, std::size_t size) 
 }
 
 std::vector<std::byte> file_bytes(const std::string& path) {
-  std::error_code none;
-  const auto kind = std::filesystem::status(path, none).type();
-  if (kind == std::filesystem::file_type::not_found) {
-    throw Mistake(path + ": is missing; put it back from a copy, or start the run anew");
+  try {
+    return rvelab::keys::whole_file<std::vector<std::byte>>(
+        path, "a file of this run, put back from a copy, or start the run anew");
+  } catch (const rvelab::InputError& error) {
+    throw Mistake(error.what());
   }
-  if (kind != std::filesystem::file_type::regular) {
-    throw Mistake(path + ": is no regular file; put the file back from a copy, or start the run anew");
-  }
-  std::ifstream file(path, std::ios::binary);
-  std::vector<std::byte> bytes(std::filesystem::file_size(path, none));
-  file.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size()));
-  if (!file) throw Mistake(path + ": cannot be read; give yourself the right to read it");
-  return bytes;
 }
 
 InputFile::InputFile(const std::string& path) : path_(path) {
@@ -120,7 +114,8 @@ InputFile::InputFile(const std::string& path) : path_(path) {
   const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
   H5Pset_fapl_core(access, 1 << 20, false);
   H5Pset_file_image(access, bytes.data(), body.size());
-  const hid_t opened = H5Fopen(path.c_str(), H5F_ACC_RDONLY, access);
+  // Under a name that no file can have: HDF5 would refuse to read another by it.
+  const hid_t opened = H5Fopen((path + "/image").c_str(), H5F_ACC_RDONLY, access);
   H5Pclose(access);
   file_ = checked(opened, path, "is no HDF5 file; put it back from a copy, or start the run anew");
 }

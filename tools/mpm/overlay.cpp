@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "rvelab/keys/toml_source.hpp"
 #include "tools/mpm/keys.hpp"
 
 namespace mpm {
@@ -27,13 +28,15 @@ toml::table parse_file(const std::string& path) {
                   (file.extension().empty() && !file.stem().empty() ? file.stem().string() : "column_soil") + ".toml");
   }
   try {
-    return toml::parse_file(path);
+    return rvelab::keys::parse_toml_at(path);
   } catch (const toml::parse_error& error) {
     std::ostringstream text;
     text << path;
     if (error.source().begin.line > 0) text << ":" << error.source().begin.line << ":" << error.source().begin.column;
     text << ": " << error.description();
     throw Mistake(text.str());
+  } catch (const rvelab::InputError& error) {
+    throw Mistake(error.what());
   }
 }
 
@@ -66,7 +69,7 @@ void assign(toml::table& scene, const std::string& assignment) {
   const std::string value = assignment.substr(equals + 1);
   toml::table parsed;
   try {
-    parsed = toml::parse("value = " + value);
+    parsed = rvelab::keys::parse_toml("value = " + value);
   } catch (const toml::parse_error&) {
     parsed.insert("value", value);  // a word without its quotation marks
   }
@@ -76,6 +79,9 @@ void assign(toml::table& scene, const std::string& assignment) {
   if (names.empty() || equals == 0 || assignment[equals - 1] == '.' ||
       std::find(names.begin(), names.end(), "") != names.end()) {
     throw Mistake("--set " + assignment + ": there is a name missing before the =; give it as table.key=value");
+  }
+  if (names.size() > rvelab::keys::most_names) {
+    throw Mistake("--set " + assignment.substr(0, 60) + "...: has more than 8 names before the =; give up to 8");
   }
   toml::table* at = &scene;
   for (std::size_t k = 0; k + 1 < names.size(); ++k) {

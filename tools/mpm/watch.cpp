@@ -97,11 +97,13 @@ void watch_energy(const Solver<D>& solver, const EnergyStart& start, Watched& se
                               stored_energy<D>(solver)}) {
     seen.energy = std::max(seen.energy, std::abs(energy));
   }
-  const double share = std::abs(b.residual) / seen.energy, start_up = 4 / double(std::max(1L, solver.steps));
+  // Mapping may lose energy; what it gains comes from nothing too.
+  const double nothing = std::abs(b.residual) + std::max(0.0, -b.mapping_loss);
+  const double share = nothing / seen.energy, start_up = 4 / double(std::max(1L, solver.steps));
   if (share < told_share + start_up) return;
   std::ostringstream words;
   words.precision(3);
-  words << "at " << solver.time << " s " << b.residual << " J are not accounted for, " << 100 * share
+  words << "at " << solver.time << " s " << nothing << " J are not accounted for, " << 100 * share
         << " % of the largest energy so far";
   // A share that is not a number comes here too.
   if (!(share < ending_share + start_up)) {
