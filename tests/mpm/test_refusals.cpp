@@ -181,6 +181,24 @@ TEST_CASE("values without a meaning are refused where they stand") {
   CHECK_THAT(with("0.02", "-1"), Contains("decay must not be negative"));
 }
 
+TEST_CASE("loads that would strain the soil by half at once are refused, with the bound") {
+  CHECK_THAT(refusal({"loads.gravity_m_s2=[0, -1e9]"}),
+             Contains("loads.gravity_m_s2 = [0, -1e+09]: a pressure of 3e+12 Pa would compress material clay") &&
+                 Contains("allowed: up to 6.73077e+06 Pa; make the load smaller, or the material stiffer"));
+  CHECK_THAT(refusal({"material.sand.young_modulus_Pa=1e3"}), Contains("would compress material sand"));
+  CHECK_THAT(refusal({"loads.surface_pressure_Pa=-1e8"}), Contains("loads.surface_pressure_Pa = -1e+08"));
+  CHECK_THAT(refusal({"initial={stress=\"isotropic\", pressure_Pa=1e8}"}), Contains("initial.pressure_Pa = 1e+08"));
+  CHECK_THAT(
+      refusal({"region.1.velocity_m_s=[0, 90]"}),
+      Contains("region.1 (of sand).velocity_m_s: against region.0 (of clay).velocity_m_s it moves at up to 90 m/s"));
+  // Waves of clay: 94.7 m/s.
+  CHECK_THAT(refusal({"body.footing.motion=[[0, 0, 0], [1, 0, -50]]"}),
+             Contains("body.footing.motion: against region.0 (of clay).velocity_m_s it moves at up to 50 m/s") &&
+                 Contains("make it slower, or the material stiffer"));
+  CHECK(refusal({"body.footing.motion=[[0, 0, 0], [1, 0, -45]]"}) == "accepted");
+  CHECK(refusal({"loads.gravity_m_s2=[0, -1e3]"}) == "accepted");
+}
+
 TEST_CASE("names are told apart, regions share no place, and watched points lie at soil") {
   CHECK_THAT(refusal({"boundary.right.name=left"}), Contains("two boundaries or bodies are called left"));
   CHECK_THAT(refusal({"body.footing.name=left"}), Contains("two boundaries or bodies are called left"));

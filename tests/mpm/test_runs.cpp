@@ -1,4 +1,6 @@
 // Runs as a user starts, stops and resumes them: folders, signals, threads.
+#include <sys/stat.h>
+
 #include <filesystem>
 #include <fstream>
 
@@ -127,10 +129,58 @@ TEST_CASE("a folder that lost something is refused with the remedy") {
   std::ofstream(history) << rows;
   std::ofstream(checkpoint, std::ios::binary) << state.substr(0, state.size() / 2);
   CHECK(bench.run({"--resume", bench.folder / "a"}) == 2);
-  CHECK_THAT(bench.errors(), Contains("no whole HDF5 file; put it back from a copy, or start the run anew"));
+  CHECK_THAT(bench.errors(), Contains("its seal is not theirs); put it back from a copy, or start the run anew"));
   std::filesystem::remove(checkpoint);
   CHECK(bench.run({"--resume", bench.folder / "a"}) == 2);
   CHECK_THAT(bench.errors(), Contains("holds no checkpoint.h5 to go on from; give the folder of a run"));
+}
+
+TEST_CASE(
+    "a flipped bit in what a run is resumed from is refused, and what a kill left behind a checkpoint is cut off") {
+  const Bench bench;
+  REQUIRE(bench.start("a", {"--stop-at", "0.05"}) == 0);
+  const auto resume = [&] { return bench.run({"--resume", bench.folder / "a", "-j", "1"}); };
+  for (const char* name : {"checkpoint.h5", "history.csv", "watched.csv", "scene.toml"}) {
+    const auto path = bench.folder / ("a/" + std::string(name));
+    const auto whole = bytes_of(path);
+    for (std::size_t k = 0; k < 12; ++k) {
+      auto damaged = whole;
+      damaged[(2 * k + 1) * whole.size() / 24] ^= char(1 << k % 8);
+      std::ofstream(path, std::ios::binary) << damaged;
+      CAPTURE(name, k);
+      CHECK(resume() == 2);
+      CHECK_THAT(bench.errors(), Contains(std::string(name) + ": is damaged") && Contains("start the run anew"));
+    }
+    std::ofstream(path, std::ios::binary) << whole;
+  }
+  // A scene that was changed by hand is no longer the one of the run.
+  const auto scene = bench.folder / "a/scene.toml";
+  const auto text = bytes_of(scene);
+  std::ofstream(scene) << text << "\n";
+  CHECK(resume() == 2);
+  CHECK_THAT(bench.errors(), Contains("change a scene by --resume with --set"));
+  std::ofstream(scene) << text;
+  std::ofstream(bench.folder / "a/history.csv", std::ios::app) << "0.05,12,nan,";
+  REQUIRE(resume() == 0);
+  REQUIRE(bench.start("b") == 0);
+  for (const char* name : {"history.csv", "watched.csv", "checkpoint.h5"}) {
+    CHECK(bytes_of(bench.folder / ("a/" + std::string(name))) == bytes_of(bench.folder / ("b/" + std::string(name))));
+  }
+}
+
+TEST_CASE("a scene or a checkpoint that is no regular file is refused at once") {
+  const Bench bench;
+  const auto pipe = bench.folder / "pipe";
+  REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+  Child child({RVELAB_MPM_PROGRAM, pipe, "-o", bench.folder / "a"}, bench.folder / "out", bench.folder / "err");
+  CHECK(child.wait_for(20) == 2);
+  CHECK_THAT(bench.errors(), Contains("pipe: is not a regular file"));
+  REQUIRE(bench.start("b", {"--stop-at", "0.05"}) == 0);
+  std::filesystem::remove(bench.folder / "b/checkpoint.h5");
+  REQUIRE(mkfifo((bench.folder / "b/checkpoint.h5").c_str(), 0600) == 0);
+  Child resumed({RVELAB_MPM_PROGRAM, "--resume", bench.folder / "b"}, bench.folder / "out", bench.folder / "err");
+  CHECK(resumed.wait_for(20) == 2);
+  CHECK_THAT(bench.errors(), Contains("checkpoint.h5: is not a regular file"));
 }
 
 TEST_CASE("a full disc fails the run by name, and what was whole stays whole") {

@@ -32,33 +32,44 @@ double Body<D>::distance(const Vec<D>& r, Vec<D>& outward, const Vec<D>& unit) c
 }
 
 template <int D>
-void Bodies<D>::find(const Grid<D>& grid, const Planes<D>& planes, const std::vector<Point<D>>& soil, double time) {
+void Bodies<D>::find(const Grid<D>& grid, const Planes<D>& planes, const std::vector<Point<D>>& soil, double time,
+                     Workers& workers) {
   contacts_.clear();
   surface_.clear();
   sweeps_ = 1;
   bool at_nodes = false;
   for (int k = 0; k < int(all.size()); ++k) {
     if (all[k].at_surface) {
-      find_touched(grid, soil, k, time);
+      find_touched(grid, soil, k, time, workers);
       all[k].kind == BodyKind::half_space ? find_half_space(grid, planes, k, time)
                                           : find_outline(grid, planes, k, time);
     } else {
       at_nodes = true;
     }
   }
-  if (!at_nodes) return;
+  if (at_nodes) find_inside(grid, planes, time, workers);
+}
+
+/// Nodes in bodies with contact at nodes: pieces of the grid, one after the other.
+template <int D>
+void Bodies<D>::find_inside(const Grid<D>& grid, const Planes<D>& planes, double time, Workers& workers) {
   const double touch = 1e-6 * grid.cell.minCoeff();
   std::vector<Vec<D>> centres;
   for (const auto& body : all) centres.push_back(body.centre_at(time));
-  for (long flat = 0; flat < long(grid.nodes.size()); ++flat) {
-    if (!(grid.nodes[flat].mass > 0) || planes.is_behind(flat)) continue;
-    const Vec<D> x = grid.position(grid.index(flat));
-    for (int k = 0; k < int(all.size()); ++k) {
-      Vec<D> outward;
-      if (all[k].at_surface || all[k].distance(x - centres[k], outward) > touch) continue;
-      contacts_.push_back({flat, k, outward, Vec<D>::Zero()});
+  const long n = long(grid.nodes.size());
+  std::vector<std::vector<Contact>> pieces((n + chunk - 1) / chunk);
+  workers.for_each(std::int64_t(pieces.size()), [&](std::int64_t piece) {
+    for (long flat = long(piece) * chunk; flat < std::min(n, long(piece + 1) * chunk); ++flat) {
+      if (!(grid.nodes[flat].mass > 0) || planes.is_behind(flat)) continue;
+      const Vec<D> x = grid.position(grid.index(flat));
+      for (int k = 0; k < int(all.size()); ++k) {
+        Vec<D> outward;
+        if (all[k].at_surface || all[k].distance(x - centres[k], outward) > touch) continue;
+        pieces[piece].push_back({flat, k, outward, Vec<D>::Zero()});
+      }
     }
-  }
+  });
+  for (const auto& piece : pieces) contacts_.insert(contacts_.end(), piece.begin(), piece.end());
 }
 
 template <int D>

@@ -16,6 +16,7 @@
 #include "tools/mpm/planes.hpp"
 #include "tools/mpm/point.hpp"
 #include "tools/mpm/shape.hpp"
+#include "tools/mpm/workers.hpp"
 
 namespace mpm {
 
@@ -50,7 +51,8 @@ class Bodies {
 
   /// Which points of surfaces soil is against at this time (s), and which nodes lie in a body with contact at nodes;
   /// nodes behind a plane follow the ones that they mirror.
-  void find(const Grid<D>& grid, const Planes<D>& planes, const std::vector<Point<D>>& soil, double time);
+  void find(const Grid<D>& grid, const Planes<D>& planes, const std::vector<Point<D>>& soil, double time,
+            Workers& workers);
   /// Velocities v at the start of the step.
   void set_start(Grid<D>& grid, double time);
   /// Velocities w at the end of the step; a still is what the points brought. What a plane holds at a node is the
@@ -65,6 +67,7 @@ class Bodies {
     Vec<D> jump;  ///< m/s, what this body alone changed the soil's velocity by over the step
   };
   static constexpr int reach = D == 2 ? 9 : 27;
+  static constexpr long chunk = 1024;  ///< points or nodes of one piece of work
   /// A point of a surface: the nodes that reach it, and their weights there, of sum 1.
   struct SurfacePoint {
     int body;
@@ -75,7 +78,11 @@ class Bodies {
     double mobility = 0;  ///< m/s of N s: sum of weight^2/mass
     Vec<D> now, impulse;  ///< N s, of the body on the soil: of this start or end, of the step
   };
-  void find_touched(const Grid<D>& grid, const std::vector<Point<D>>& soil, int body, double time);
+  void find_touched(const Grid<D>& grid, const std::vector<Point<D>>& soil, int body, double time, Workers& workers);
+  void find_inside(const Grid<D>& grid, const Planes<D>& planes, double time, Workers& workers);
+  /// The body's bits of what a point of the soil is against, and the node it is nearest to; no bits: nothing.
+  unsigned char touch_of(const Grid<D>& grid, const Body<D>& body, const Vec<D>& centre, const Point<D>& point,
+                         typename Grid<D>::Index& node) const;
   bool is_touched(const Grid<D>& grid, const typename Grid<D>::Index& node, unsigned char face) const;
   /// False outside the grid.
   static bool nearest_node(const Grid<D>& grid, const Vec<D>& at, typename Grid<D>::Index& node);

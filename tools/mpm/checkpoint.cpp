@@ -63,6 +63,22 @@ std::vector<std::int64_t> contacts_of(const Solver<D>& solver) {
   return kinds;
 }
 
+/// The times and energies of a run's progress, one by one.
+template <class Visit>
+void each_clock(Progress& progress, Visit visit) {
+  for (double* value : {&progress.start.kinetic, &progress.start.potential, &progress.start.volume, &progress.last_row,
+                        &progress.next_frame, &progress.next_row, &progress.next_checkpoint, &progress.seen.first_step,
+                        &progress.seen.energy}) {
+    visit(*value);
+  }
+}
+
+std::vector<double> clock_of(Progress progress) {
+  std::vector<double> values;
+  each_clock(progress, [&](double value) { values.push_back(value); });
+  return values;
+}
+
 [[noreturn]] void of_another_scene(const std::string& folder, const std::string& what, std::size_t found,
                                    std::size_t wanted) {
   throw Mistake(folder + ": its checkpoint holds " + std::to_string(found) + " " + what + ", this scene needs " +
@@ -92,27 +108,20 @@ void write_checkpoint(const Model<D>& model, const Progress& progress, const std
   for (const auto& plane : solver.planes.all) keep(plane);
   for (const auto& body : solver.bodies.all) keep(body);
   file.write("reactions", reactions, {reactions.size()});
-  std::vector<double> clock{solver.time,
-                            solver.ledger.nodal_kinetic,
-                            0,
-                            0,  // once what the run had taken, which is no state
-                            progress.start.kinetic,
-                            progress.start.potential,
-                            progress.start.volume,
-                            progress.last_row,
-                            progress.next_frame,
-                            progress.next_row,
-                            progress.next_checkpoint};
+  auto clock = clock_of(progress);
+  clock.insert(clock.end(), {solver.time, solver.ledger.nodal_kinetic});
   // A grid that follows a plane was placed at the start of the last step; the size of the next one hangs on it.
   clock.insert(clock.end(), solver.grid.cell.data(), solver.grid.cell.data() + D);
   file.write("clock", clock, {clock.size()});
-  file.write("counts", std::vector<std::int64_t>{solver.steps, progress.history_bytes, progress.watched_bytes});
+  file.write("counts", std::vector<std::int64_t>{solver.steps, progress.history.bytes, progress.history.checksum,
+                                                 progress.watched.bytes, progress.watched.checksum,
+                                                 progress.seen.told_step, progress.seen.told_energy});
   file.write("impulses", progress.impulses, {progress.impulses.size()});
   file.write("frame_times", progress.frame_times, {progress.frame_times.size()});
   file.write("watched", std::vector<std::int64_t>(model.watched.begin(), model.watched.end()));
   file.write("contact_at_surface", contacts_of(solver));
   for (const auto& range : solver.ranges) range.material->save(file, range.name);
-  file.publish();
+  file.publish(true);
   remove_old_pools<D>(model, place);
 }
 
@@ -145,20 +154,20 @@ void read_checkpoint(Model<D>& model, Progress& progress, const std::string& fol
   };
   for (auto& plane : solver.planes.all) take(plane);
   for (auto& body : solver.bodies.all) take(body);
-  const auto clock = file.read("clock");
-  if (clock.size() < 11) of_another_scene(folder, "times", clock.size(), 11);
-  solver.time = clock[0];
-  solver.ledger.nodal_kinetic = clock[1];
-  progress.start = {clock[4], clock[5], clock[6]};
-  progress.last_row = clock[7];
-  progress.next_frame = clock[8];
-  progress.next_row = clock[9];
-  progress.next_checkpoint = clock[10];
-  if (clock.size() >= 11 + D) std::copy_n(clock.begin() + 11, D, solver.grid.cell.data());  // not in older ones
+  auto clock = file.read("clock");
+  const std::size_t own = clock_of(progress).size();
+  if (clock.size() != own + 2 + D) of_another_scene(folder, "times", clock.size(), own + 2 + D);
+  std::copy_n(clock.begin() + long(own) + 2, D, solver.grid.cell.data());
+  solver.time = clock[own];
+  solver.ledger.nodal_kinetic = clock[own + 1];
+  each_clock(progress, [&, k = std::size_t(0)](double& value) mutable { value = clock[k++]; });
   const auto counts = file.read_whole("counts");
+  if (counts.size() != 7) of_another_scene(folder, "counts", counts.size(), 7);
   solver.steps = long(counts[0]);
-  progress.history_bytes = long(counts[1]);
-  progress.watched_bytes = long(counts[2]);
+  progress.history = {long(counts[1]), std::uint32_t(counts[2])};
+  progress.watched = {long(counts[3]), std::uint32_t(counts[4])};
+  progress.seen.told_step = counts[5] != 0;
+  progress.seen.told_energy = counts[6] != 0;
   progress.impulses = file.read("impulses");
   progress.frame_times = file.read("frame_times");
   const auto watched = file.read_whole("watched");

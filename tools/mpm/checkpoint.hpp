@@ -2,7 +2,8 @@
 #pragma once
 
 #include "tools/mpm/energy.hpp"
-#include "tools/mpm/setup.hpp"
+#include "tools/mpm/output.hpp"
+#include "tools/mpm/watch.hpp"
 
 namespace mpm {
 
@@ -13,7 +14,8 @@ struct Progress {
   std::vector<double> frame_times;
   double last_row = 0;
   double next_frame = 0, next_row = 0, next_checkpoint = 0;
-  long history_bytes = 0, watched_bytes = 0;
+  WrittenRows history, watched;
+  Watched seen;
 };
 
 template <int D>

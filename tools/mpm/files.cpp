@@ -6,7 +6,10 @@
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
+#include <span>
 
+#include "rvelab/io/seal.hpp"
+#include "rvelab/keys/regular_file.hpp"
 #include "tools/mpm/tensors.hpp"
 
 namespace mpm {
@@ -59,19 +62,19 @@ void OutputFile::write(const std::string& name, const std::vector<std::int64_t>&
   put(name, H5T_NATIVE_INT64, values.data(), {values.size()});
 }
 
-void OutputFile::write(const std::string& name, const std::string& text) {
-  put(name, H5T_NATIVE_UINT8, text.data(), {text.size()});
-}
-
-void OutputFile::publish() {
+void OutputFile::publish(bool sealed) {
   const auto size = H5Fflush(file_, H5F_SCOPE_GLOBAL) < 0 ? -1 : H5Fget_file_image(file_, nullptr, 0);
-  std::vector<char> bytes(std::size_t(std::max<ssize_t>(size, 0)));
+  std::vector<std::byte> bytes(std::size_t(std::max<ssize_t>(size, 0)));
   if (size < 0 || H5Fget_file_image(file_, bytes.data(), bytes.size()) < 0) {
     throw std::runtime_error(path_ + ": there is no memory for what is to be written");
   }
   H5Fclose(file_);
   file_ = -1;
-  publish_file(path_, bytes.data(), bytes.size());
+  if (sealed) {
+    const auto seal = rvelab::io::seal_of(bytes);
+    bytes.insert(bytes.end(), seal.begin(), seal.end());
+  }
+  publish_file(path_, reinterpret_cast<const char*>(bytes.data()), bytes.size());
 }
 
 void publish_file(const std::string& path, const char* bytes, std::size_t size) {
@@ -87,10 +90,34 @@ void publish_file(const std::string& path, const char* bytes, std::size_t size) 
   throw std::runtime_error(path + ": cannot be written; is the disc full?");
 }
 
+std::vector<std::byte> file_bytes(const std::string& path) {
+  try {
+    return rvelab::keys::whole_file<std::vector<std::byte>>(
+        path, "a file of this run, put back from a copy, or start the run anew");
+  } catch (const rvelab::InputError& error) {
+    throw Mistake(error.what());
+  }
+}
+
 InputFile::InputFile(const std::string& path) : path_(path) {
+  auto bytes = file_bytes(path);
+  const std::size_t whole = bytes.size();
+  // The seal that these bytes ask for, beside the one that they have.
+  const bool room = whole > rvelab::io::seal_bytes;
+  const auto body = std::span(bytes).first(room ? whole - rvelab::io::seal_bytes : 0);
+  const auto seal = rvelab::io::seal_of(body);
+  if (!room || !std::equal(seal.begin(), seal.end(), bytes.begin() + std::ptrdiff_t(body.size()))) {
+    throw Mistake(path + ": is damaged (" + std::to_string(whole) +
+                  " bytes, and its seal is not theirs); put it back from a copy, or start the run anew");
+  }
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  file_ = checked(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), path,
-                  "is missing, or no whole HDF5 file; put it back from a copy, or start the run anew");
+  const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+  H5Pset_fapl_core(access, 1 << 20, false);
+  H5Pset_file_image(access, bytes.data(), body.size());
+  // Under a name that no file can have: HDF5 would refuse to read another by it.
+  const hid_t opened = H5Fopen((path + "/image").c_str(), H5F_ACC_RDONLY, access);
+  H5Pclose(access);
+  file_ = checked(opened, path, "is no HDF5 file; put it back from a copy, or start the run anew");
 }
 
 InputFile::~InputFile() { H5Fclose(file_); }
@@ -114,11 +141,6 @@ std::vector<double> InputFile::read(const std::string& name) const { return get<
 
 std::vector<std::int64_t> InputFile::read_whole(const std::string& name) const {
   return get<std::int64_t>(name, H5T_NATIVE_INT64);
-}
-
-std::string InputFile::read_text(const std::string& name) const {
-  const auto bytes = get<std::uint8_t>(name, H5T_NATIVE_UINT8);
-  return {bytes.begin(), bytes.end()};
 }
 
 }  // namespace mpm

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/mpm/keys.hpp"
+
 namespace mpm {
 namespace {
 
@@ -161,8 +163,7 @@ std::int64_t SpecimenFamily::prepare(double pressure) {
     }
     need(rvelab_apply(preparation_.get(), id, dH, 0, sigma));
   }
-  throw Mistake("a specimen at " + std::to_string(nearest->pressure) + " Pa does not come to " +
-                std::to_string(pressure) +
+  throw Mistake("a specimen at " + text_of(nearest->pressure) + " Pa does not come to " + text_of(pressure) +
                 " Pa; pack one nearer to that pressure (rvelab pack, target.pressures_Pa) and name it in specimens");
 }
 
@@ -178,6 +179,17 @@ rvelab_info SpecimenFamily::prepared(double pressure) {
   auto found = prepared_.find(pressure);
   if (found == prepared_.end()) found = prepared_.emplace(pressure, prepare(pressure)).first;
   return pool_->info(found->second);
+}
+
+double SpecimenFamily::wave_modulus() {
+  double largest = 0;
+  for (const auto& specimen : specimens_) {
+    std::int64_t id = 0;
+    need(rvelab_spawn(preparation_.get(), specimen.tmpl, 1, &id));
+    largest = std::max(largest, wave_modulus_of(preparation_, id));
+    need(rvelab_release(preparation_.get(), 1, &id));
+  }
+  return largest;
 }
 
 void SpecimenFamily::release() {

@@ -57,6 +57,8 @@ class SpecimenFamily {
   std::int64_t spawn(double pressure);
   /// Of the state that was prepared for that pressure.
   rvelab_info prepared(double pressure);
+  /// Pa: of plane waves, in the stiffest of the specimens as their files have them.
+  double wave_modulus();
   std::size_t classes() const { return prepared_.size(); }
   /// Takes the prepared states out of the pool; their copies stay.
   void release();

@@ -192,9 +192,8 @@ void Grains<D>::restore(const InputFile& file, const std::string& name) {
   asked = state[4];
   // The pool counts anew from what it reads.
   earlier_ = 0;
-  earlier_ = state.size() < 10 ? 0 : state[9] - grain_steps();
-  // Of an earlier version without the rest: it is looked for at once.
-  found_ = state.size() < 9 ? Found{state[0], state[0], 0, called} : Found{state[5], state[6], state[7], state[8]};
+  earlier_ = state[9] - grain_steps();
+  found_ = {state[5], state[6], state[7], state[8]};
   const auto waiting = file.read("materials/" + name + "/waiting");
   waiting_.clear();
   for (std::size_t k = 0; k + D * D <= waiting.size(); k += D * D) {

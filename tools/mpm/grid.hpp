@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstring>
+#include <sstream>
 #include <vector>
 
 #include "tools/mpm/tensors.hpp"
@@ -46,18 +47,23 @@ class Grid {
     for (int i = 0; i < D; ++i) {
       if (count[i] == 0 || first[i] < from[i]) from[i] = first[i] - 4;
       if (count[i] == 0 || last[i] > to[i]) to[i] = last[i] + 4;
-      low[i] = from[i];
-      count[i] = to[i] - from[i] + 1;
-      size *= count[i];
+      size *= double(to[i]) - from[i] + 1;
     }
     if (size > most) {
-      throw Mistake("the background grid would need " + std::to_string(size) +
-                    " nodes: a material point flies far off; take a smaller time.cfl, or add a boundary that holds it");
+      std::ostringstream words;
+      words << "the background grid would need " << size << " nodes, and has " << double(most)
+            << " at most: a material point flies far off; take a smaller time.cfl, or add a boundary that holds it";
+      throw Mistake(words.str());
     }
+    low = from;
+    for (int i = 0; i < D; ++i) count[i] = to[i] - from[i] + 1;
     nodes.resize(std::size_t(size));
     return true;
   }
-  void clear() { std::memset(static_cast<void*>(nodes.data()), 0, nodes.size() * sizeof(Node<D>)); }
+  /// Of nodes from..to - 1.
+  void clear(long from, long to) {
+    std::memset(static_cast<void*>(nodes.data() + from), 0, std::size_t(to - from) * sizeof(Node<D>));
+  }
   long flat(const Index& node) const {
     long at = node[D - 1] - low[D - 1];
     for (int i = D - 2; i >= 0; --i) at = at * count[i] + (node[i] - low[i]);

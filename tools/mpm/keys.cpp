@@ -33,15 +33,21 @@ std::string place(const std::string& path, const toml::node* node) {
   return line == 0 ? path + ": " : path + ":" + std::to_string(line) + ": ";
 }
 
-std::string as_text(double value) {
+constexpr const char* no_default = "it has no default: give it a value";
+
+}  // namespace
+
+std::string text_of(double value) {
   std::ostringstream text;
   text << value;
   return text.str();
 }
 
-constexpr const char* no_default = "it has no default: give it a value";
-
-}  // namespace
+std::string text_of(const std::vector<double>& values) {
+  std::string list;
+  for (const double value : values) list += (list.empty() ? "[" : ", ") + text_of(value);
+  return list + "]";
+}
 
 std::string nearest_word(const std::string& word, const std::set<std::string>& words) {
   std::string best;
@@ -69,7 +75,7 @@ void Keys::missing(const std::string& name, const std::string& remedy) {
 
 double Keys::finite(const std::string& name, const toml::node& value) const {
   const double number = *value.value<double>();
-  if (!std::isfinite(number)) wrong(name, "holds " + as_text(number) + "; give numbers that are finite");
+  if (!std::isfinite(number)) wrong(name, "holds " + text_of(number) + "; give numbers that are finite");
   return number;
 }
 
@@ -79,7 +85,7 @@ double Keys::number(const std::string& name, double initial, double least, doubl
   if (!node->is_number()) wrong(name, "must be a number");
   const double value = *node->value<double>();
   if (!(value >= least && value <= most)) {
-    wrong(name, "is " + as_text(value) + "; allowed: " + as_text(least) + " to " + as_text(most));
+    wrong(name, "is " + text_of(value) + "; allowed: " + text_of(least) + " to " + text_of(most));
   }
   return value;
 }
@@ -91,7 +97,7 @@ double Keys::number(const std::string& name) {
 
 double Keys::positive(const std::string& name) {
   const double value = number(name);
-  if (has(name) && !(value > 0)) wrong(name, "is " + as_text(value) + "; it must be positive");
+  if (has(name) && !(value > 0)) wrong(name, "is " + text_of(value) + "; it must be positive");
   return value;
 }
 

@@ -59,6 +59,10 @@ class Keys {
   std::set<std::string> known_;
 };
 
+/// Numbers as messages have them.
+std::string text_of(double value);
+std::string text_of(const std::vector<double>& values);
+
 /// The word with the fewest edits; "" if there are none.
 std::string nearest_word(const std::string& word, const std::set<std::string>& words);
 

@@ -1,10 +1,10 @@
 #include "tools/mpm/output.hpp"
 
-#include <unistd.h>
-
 #include <filesystem>
+#include <span>
 #include <sstream>
 
+#include "rvelab/io/crc32c.hpp"
 #include "tools/mpm/files.hpp"
 
 namespace mpm {
@@ -18,33 +18,58 @@ std::string frame_name(long frame, const std::string& what = "points") {
   return what + name;
 }
 
+std::span<const std::byte> bytes_of(const std::string& text) { return std::as_bytes(std::span(text)); }
+
+constexpr const char* checksum_line = "# CRC-32C of the lines above: ";
+
+std::string with_checksum(const std::string& text) {
+  char sum[16];
+  std::snprintf(sum, sizeof sum, "%08x\n", unsigned(rvelab::io::crc32c(bytes_of(text))));
+  return text + checksum_line + sum;
+}
+
 }  // namespace
 
-Rows::Rows(const std::string& path, const std::string& header, long keep) : path_(path) {
-  if (keep > 0) {
-    std::error_code error;
-    const auto size = std::filesystem::file_size(path, error);
-    if (error || size < std::uintmax_t(keep)) {
-      throw Mistake(path + ": has " + (error ? "no" : std::to_string(size)) + " bytes, and " + std::to_string(keep) +
+Rows::Rows(const std::string& path, const std::string& header, const WrittenRows& keep) : path_(path), written_(keep) {
+  if (keep.bytes > 0) {
+    const auto bytes = file_bytes(path);
+    const auto size = std::size_t(keep.bytes);
+    if (bytes.size() < size) {
+      throw Mistake(path + ": has " + std::to_string(bytes.size()) + " bytes, and " + std::to_string(size) +
                     " when the checkpoint was written; put the whole file back, or start the run anew");
     }
-    std::filesystem::resize_file(path, std::uintmax_t(keep), error);  // rows after the checkpoint are made again
+    if (rvelab::io::crc32c(std::span(bytes).first(size)) != keep.checksum) {
+      throw Mistake(path + ": is damaged (its first " + std::to_string(size) +
+                    " bytes are not those that it had when the checkpoint was written); put the file back from a copy, "
+                    "or start the run anew");
+    }
+    std::error_code error;
+    std::filesystem::resize_file(path, size, error);
     if (error) throw Mistake(path + ": cannot be written; give yourself the right to write to it");
   }
-  file_ = std::fopen(path.c_str(), keep > 0 ? "a" : "w");
+  file_ = std::fopen(path.c_str(), keep.bytes > 0 ? "a" : "w");
   if (file_ == nullptr) throw Mistake(path + ": cannot be written; give a folder that you may write to");
-  if (keep <= 0) std::fprintf(file_, "%s\n", header.c_str());
+  if (keep.bytes <= 0) put(header);
 }
 
 Rows::~Rows() { std::fclose(file_); }
 
-void Rows::add(const std::vector<double>& values) {
-  for (std::size_t k = 0; k < values.size(); ++k) std::fprintf(file_, k == 0 ? "%.9g" : ",%.9g", values[k]);
-  std::fputc('\n', file_);
-  if (std::fflush(file_) != 0) throw std::runtime_error(path_ + ": cannot be written; is the disc full?");
+void Rows::put(const std::string& line) {
+  const std::string text = line + "\n";
+  std::fputs(text.c_str(), file_);
+  written_ = {written_.bytes + long(text.size()), rvelab::io::crc32c(bytes_of(text), written_.checksum)};
 }
 
-long Rows::bytes() const { return std::ftell(file_); }
+void Rows::add(const std::vector<double>& values) {
+  std::string line;
+  for (const double value : values) {
+    char number[32];
+    std::snprintf(number, sizeof number, "%.9g", value);
+    line += (line.empty() ? "" : ",") + std::string(number);
+  }
+  put(line);
+  if (std::fflush(file_) != 0) throw std::runtime_error(path_ + ": cannot be written; is the disc full?");
+}
 
 template <int D>
 std::string history_header(const Solver<D>& solver) {
@@ -180,8 +205,19 @@ void write_networks(const Model<D>& model, const std::string& folder, long frame
 }
 
 void write_scene(const std::string& folder, const std::string& toml) {
-  const std::string text = toml + "\n";
+  const std::string text = with_checksum(toml + "\n");
   publish_file((std::filesystem::path(folder) / "scene.toml").string(), text.data(), text.size());
+}
+
+void expect_whole_scene(const std::string& folder) {
+  const auto path = (std::filesystem::path(folder) / "scene.toml").string();
+  const auto bytes = file_bytes(path);
+  const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const auto last = text.rfind(checksum_line);
+  if (last != std::string::npos && text == with_checksum(text.substr(0, last))) return;
+  throw Mistake(path +
+                ": is damaged, or was changed by hand (its last line holds another checksum); put the file back from a "
+                "copy, change a scene by --resume with --set, or start the run anew");
 }
 
 void write_xdmf(const std::string& folder, const std::vector<double>& times, long points) {

@@ -1,6 +1,7 @@
 // What a run writes: rows of histories, and frames of points.
 #pragma once
 
+#include <cstdint>
 #include <cstdio>
 
 #include "tools/mpm/energy.hpp"
@@ -8,19 +9,28 @@
 
 namespace mpm {
 
+/// What has been written of a text file: its bytes and their CRC-32C.
+struct WrittenRows {
+  long bytes = 0;
+  std::uint32_t checksum = 0;
+};
+
 /// A text file of rows that can go on where a checkpoint left it.
 class Rows {
  public:
-  /// `keep`: bytes that stay (0: a new file with this header).
-  Rows(const std::string& path, const std::string& header, long keep);
+  /// `keep`: what stays (no bytes: a new file with this header). Mistake if the file is shorter, or was changed there:
+  /// what stands behind is left by a kill after the checkpoint, and is made again.
+  Rows(const std::string& path, const std::string& header, const WrittenRows& keep);
   Rows(const Rows&) = delete;
   Rows& operator=(const Rows&) = delete;
   ~Rows();
   void add(const std::vector<double>& values);
-  long bytes() const;
+  const WrittenRows& written() const { return written_; }
 
  private:
+  void put(const std::string& line);
   std::string path_;
+  WrittenRows written_;
   std::FILE* file_;
 };
 
@@ -42,8 +52,10 @@ void write_frame(const Model<D>& model, const std::string& folder, long frame);
 /// network_K_NNNN.h5 for each watched point K, as GrainPool::write_alone.
 template <int D>
 void write_networks(const Model<D>& model, const std::string& folder, long frame);
-/// scene.toml, whole or not at all.
+/// scene.toml, whole or not at all, and its checksum in the last line.
 void write_scene(const std::string& folder, const std::string& toml);
+/// Mistake if scene.toml is not as write_scene left it.
+void expect_whole_scene(const std::string& folder);
 /// points.xdmf for all frames so far.
 void write_xdmf(const std::string& folder, const std::vector<double>& times, long points);
 

@@ -14,8 +14,8 @@ struct Point {
   double mass = 0;                   ///< kg
   double volume = 0;                 ///< m^3, now
   double work = 0;                   ///< J, of the stress since the start
-  Mat<D> affine = Mat<D>::Zero();    ///< 1/s, velocity gradient at the end of the step before
-  Mat<D> gradient = Mat<D>::Zero();  ///< velocity gradient times the step that is made
+  Mat<D> affine = Mat<D>::Zero();    ///< 1/s, velocity gradient at the end of the step before, where the points are now
+  Mat<D> gradient = Mat<D>::Zero();  ///< logarithm of the deformation increment of the step that is made
   Mat<D> F = Mat<D>::Identity();     ///< deformation gradient since the start
   Mat<D> strain = Mat<D>::Zero();    ///< sum of the symmetric parts of dH (Liang and Zhao 2019, step b-ii)
   Vec<D> first = Vec<D>::Zero();     ///< m, position at the start

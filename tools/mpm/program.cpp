@@ -37,7 +37,7 @@ class FolderLock {
   int descriptor_;
 };
 
-std::string text_of(const toml::table& scene) {
+std::string toml_of(const toml::table& scene) {
   std::ostringstream text;
   text << scene;
   return text.str();
@@ -49,7 +49,7 @@ void check(const RunOptions& options) {
                   ": give a number of threads, or 0 for as many as the processor runs at once");
   }
   if (!(options.stop_at >= 0)) {
-    throw Mistake("--stop-at " + std::to_string(options.stop_at) + ": give a time in s, 0 or later");
+    throw Mistake("--stop-at " + text_of(options.stop_at) + ": give a time in s, 0 or later");
   }
 }
 
@@ -68,8 +68,9 @@ int run(const std::string& scene_file, std::vector<std::string> cases, bool publ
                     " to go on from; give the folder of a run, or start one: rvelab-mpm SCENE.toml -o " +
                     options.folder);
     }
+    expect_whole_scene(options.folder);
     const auto scene = read_scene((folder / "scene.toml").string(), {}, assignments, &resolved);
-    if (!assignments.empty()) options.scene_text = text_of(resolved);
+    if (!assignments.empty()) options.scene_text = toml_of(resolved);
     return run_scene(scene, options, std::cout);
   }
   const auto scene = read_scene(scene_file, cases, assignments, &resolved);
@@ -79,7 +80,7 @@ int run(const std::string& scene_file, std::vector<std::string> cases, bool publ
   }
   std::filesystem::create_directories(folder, error);
   const FolderLock lock(options.folder);
-  write_scene(options.folder, text_of(resolved));
+  write_scene(options.folder, toml_of(resolved));
   return run_scene(scene, options, std::cout);
 }
 

@@ -7,7 +7,7 @@
 #include <csignal>
 #include <filesystem>
 #include <iomanip>
-#include <ostream>
+#include <iostream>
 
 #include "tools/mpm/checkpoint.hpp"
 #include "tools/mpm/output.hpp"
@@ -15,6 +15,7 @@
 namespace mpm {
 namespace {
 
+constexpr long steps_between_balances = 64;  // a balance takes a hundredth of a step
 volatile std::sig_atomic_t interrupted = 0;
 void interrupt(int signal) {
   interrupted = 1;
@@ -110,8 +111,8 @@ int run_model(const Scene& scene, const RunOptions& options, std::ostream& repor
            << "; give a longer one by --set to go on\n";
   }
   const std::filesystem::path place(options.folder);
-  Rows history((place / "history.csv").string(), history_header<D>(solver), progress.history_bytes);
-  Rows watched((place / "watched.csv").string(), watched_header<D>(*model), progress.watched_bytes);
+  Rows history((place / "history.csv").string(), history_header<D>(solver), progress.history);
+  Rows watched((place / "watched.csv").string(), watched_header<D>(*model), progress.watched);
   if (!options.scene_text.empty()) write_scene(options.folder, options.scene_text);
   if (model->pressure_classes > 0) {
     report << model->pressure_classes << " states of specimens prepared for " << solver.points.size() << " points\n";
@@ -121,6 +122,7 @@ int run_model(const Scene& scene, const RunOptions& options, std::ostream& repor
   const auto looped = Clock::now();
   const double used = processor_time(), made = grain_steps_of<D>(*model);
   ProgressLine line(options.quiet, solver.time, scene.duration);
+  double saved = options.resume ? solver.time : -1;  // s, the time of the checkpoint; below 0: there is none
   const auto row = [&] {
     history.add(history_row<D>(solver, progress.start, solver.time - progress.last_row, progress.impulses));
     watched.add(watched_row<D>(*model));
@@ -136,9 +138,19 @@ int run_model(const Scene& scene, const RunOptions& options, std::ostream& repor
     while (progress.next_frame <= solver.time) progress.next_frame += scene.frame_every;
   };
   const auto save = [&] {
-    progress.history_bytes = history.bytes();
-    progress.watched_bytes = watched.bytes();
+    progress.history = history.written();
+    progress.watched = watched.written();
     write_checkpoint<D>(*model, progress, options.folder);
+    saved = solver.time;
+  };
+  const auto watched_over = [&](const auto& watch) {
+    try {
+      watch();
+    } catch (const std::runtime_error& reason) {
+      if (saved < 0) save();
+      throw std::runtime_error(reason.what() + ("; " + options.folder) + " keeps the checkpoint of " + text_of(saved) +
+                               " s");
+    }
   };
   if (!options.resume) {
     row();
@@ -147,6 +159,7 @@ int run_model(const Scene& scene, const RunOptions& options, std::ostream& repor
   bool stopped = false;
   while (solver.time < scene.duration && !stopped) {
     double dt = solver.stable_step();
+    watched_over([&] { watch_step<D>(solver, dt, progress.seen, std::cerr); });
     const bool last = solver.time + dt >= scene.duration;
     if (last) dt = scene.duration - solver.time;
     solver.step(dt);
@@ -154,6 +167,9 @@ int run_model(const Scene& scene, const RunOptions& options, std::ostream& repor
     if (solver.time >= progress.next_row || last) row();
     if (solver.time >= progress.next_frame || last) frame();
     stopped = !last && (interrupted != 0 || solver.time >= options.stop_at);
+    if (solver.steps % steps_between_balances == 0 || last) {
+      watched_over([&] { watch_energy<D>(solver, progress.start, progress.seen, std::cerr); });
+    }
     if (solver.time >= progress.next_checkpoint || last || stopped) {
       while (progress.next_checkpoint <= solver.time) progress.next_checkpoint += scene.checkpoint_every;
       save();

@@ -7,18 +7,6 @@
 
 namespace mpm {
 
-std::string text_of(double value) {
-  std::ostringstream text;
-  text << value;
-  return text.str();
-}
-
-std::string text_of(const std::vector<double>& values) {
-  std::string list;
-  for (const double value : values) list += (list.empty() ? "[" : ", ") + text_of(value);
-  return list + "]";
-}
-
 namespace {
 
 constexpr double most_points = 5e7;    // some 20 GB
@@ -175,6 +163,83 @@ void check_scene(const Scene& scene, const std::string& path) {
   check_overlaps(scene, path);
   check_sides(scene, path);
   check_watched(scene, path);
+}
+
+namespace {
+
+constexpr double largest_strain = 0.5;  // by a load at once
+
+/// Something that moves: its name as a key, and its velocities (m/s).
+struct Moving {
+  std::string key;
+  std::vector<std::vector<double>> velocities;
+  bool soil;
+};
+
+std::vector<Moving> all_moving(const Scene& scene) {
+  std::vector<Moving> all;
+  for (const auto& region : scene.regions) {
+    all.push_back({region_name(scene, region) + ".velocity_m_s", {region.velocity}, true});
+  }
+  const auto driven = [&](const std::string& key, const std::vector<std::vector<double>>& motion) {
+    Moving moving{key + ".motion", {}, false};
+    for (const auto& row : motion) moving.velocities.emplace_back(row.begin() + 1, row.end());
+    if (motion.empty()) moving.velocities.emplace_back(scene.cell.size(), 0.0);
+    all.push_back(moving);
+  };
+  for (const auto& plane : scene.planes) driven("boundary." + plane.name, plane.motion);
+  for (const auto& body : scene.bodies) driven("body." + body.name, body.motion);
+  return all;
+}
+
+/// m/s, the largest difference of their velocities.
+double relative_speed(const Moving& a, const Moving& b) {
+  double largest = 0;
+  for (const auto& v : a.velocities) {
+    for (const auto& w : b.velocities) {
+      double square = 0;
+      for (std::size_t i = 0; i < v.size(); ++i) square += (v[i] - w[i]) * (v[i] - w[i]);
+      largest = std::max(largest, std::sqrt(square));
+    }
+  }
+  return largest;
+}
+
+}  // namespace
+
+void check_loads(const Scene& scene, const std::string& material, double modulus, double density) {
+  const auto refuse_pressure = [&](const std::string& key, const std::string& value, double pressure) {
+    if (!(std::abs(pressure) > largest_strain * modulus)) return;
+    throw Mistake(key + " = " + value + ": a pressure of " + text_of(std::abs(pressure)) +
+                  " Pa would compress material " + material + ", of the modulus " + text_of(modulus) +
+                  " Pa, by half of its height or more; allowed: up to " + text_of(largest_strain * modulus) +
+                  " Pa; make the load smaller, or the material stiffer");
+  };
+  refuse_pressure("loads.surface_pressure_Pa", text_of(scene.surface_pressure), scene.surface_pressure);
+  refuse_pressure("initial.pressure_Pa", text_of(scene.pressure), scene.pressure);
+  const auto moving = all_moving(scene);
+  for (std::size_t i = 0; i < scene.cell.size(); ++i) {
+    double lowest = 1e300, highest = -1e300;
+    for (const auto& region : scene.regions) {
+      lowest = std::min(lowest, region.lower[i]);
+      highest = std::max(highest, region.upper[i]);
+    }
+    // Soil that nothing holds falls without being pressed.
+    if (scene.planes.empty() && scene.bodies.empty()) break;
+    refuse_pressure("loads.gravity_m_s2", text_of(scene.gravity), density * scene.gravity[i] * (highest - lowest));
+  }
+  const double fastest = largest_strain * std::sqrt(modulus / density);
+  for (std::size_t a = 0; a < moving.size(); ++a) {
+    for (std::size_t b = a + 1; b < moving.size(); ++b) {
+      // Two bodies press what is between them from both sides.
+      const double speed = relative_speed(moving[a], moving[b]) / (moving[a].soil || moving[b].soil ? 1 : 2);
+      if (!(speed > fastest)) continue;
+      throw Mistake(moving[b].key + ": against " + moving[a].key + " it moves at up to " + text_of(speed) +
+                    " m/s, and waves in material " + material + " at " + text_of(2 * fastest) +
+                    " m/s: what they meet would be compressed by half or more at once; allowed: up to " +
+                    text_of(fastest) + " m/s; make it slower, or the material stiffer");
+    }
+  }
 }
 
 }  // namespace mpm

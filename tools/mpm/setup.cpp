@@ -151,8 +151,8 @@ void load_continuum(const Scene& scene, const MaterialOfScene& material, const D
 using Families = std::map<std::string, std::unique_ptr<SpecimenFamily>>;
 
 template <int D>
-void open_specimens(const MaterialOfScene& material, const std::shared_ptr<GrainPool>& pool, const std::string& folder,
-                    Families& families, Densities& soils) {
+void open_specimens(const Scene& scene, const MaterialOfScene& material, const std::shared_ptr<GrainPool>& pool,
+                    const std::string& folder, Families& families, Densities& soils) {
   std::vector<std::string> paths;
   for (const auto& name : material.specimens) paths.push_back((std::filesystem::path(folder) / name).string());
   auto& family = families[material.name] = std::make_unique<SpecimenFamily>(pool, paths);
@@ -162,6 +162,7 @@ void open_specimens(const MaterialOfScene& material, const std::shared_ptr<Grain
                   ", the scene of " + std::to_string(D) + "; name another in specimens, or set scene.dimension");
   }
   soils[material.name] = material.density / (1 + first.void_ratio);
+  check_loads(scene, material.name, family->wave_modulus(), soils[material.name]);
 }
 
 template <int D>
@@ -238,7 +239,7 @@ std::unique_ptr<Model<D>> set_up(const Scene& scene, int threads, const std::str
     const auto pool = std::make_shared<GrainPool>(solver.workers,
                                                   GrainOptions{material.tolerance_rel, material.tolerance_abs, source});
     model->pools[material.name] = pool;
-    if (populate) open_specimens<D>(material, pool, specimens, families, soils);
+    if (populate) open_specimens<D>(scene, material, pool, specimens, families, soils);
   }
   for (const auto& material : scene.materials) {
     Range<D> range;
@@ -249,6 +250,9 @@ std::unique_ptr<Model<D>> set_up(const Scene& scene, int threads, const std::str
     }
     range.count = long(solver.points.size()) - range.first;
     Point<D>* points = solver.points.data() + range.first;
+    if (range.count > 0 && material.kind != MaterialOfScene::Kind::grains) {
+      check_loads(scene, material.name, material.moduli.wave(), material.density);
+    }
     if (material.kind != MaterialOfScene::Kind::grains) {
       load_continuum<D>(scene, material, soils, points, range.count);
       range.material = continuum<D>(material);

@@ -1,11 +1,22 @@
 #include "tools/mpm/solver.hpp"
 
 #include <chrono>
+#include <sstream>
 
 namespace mpm {
 namespace {
 
 constexpr int slab_rows = 4;  // points of one slab and of the next but one share no node
+
+constexpr double farthest_node = 1e9;  // their numbers are int
+
+template <int D>
+[[noreturn]] void throw_flown(const Vec<D>& at, const std::string& material, double time) {
+  std::ostringstream words;
+  words << "at " << time << " s a point of material " << material << " is at " << at.transpose()
+        << " m, more than 1e9 cells from 0; take a smaller time.cfl, or a load that the soil can carry";
+  throw std::runtime_error(words.str());
+}
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
@@ -21,14 +32,28 @@ const Range<D>& Solver<D>::range_of(long point) const {
 
 template <int D>
 double Solver<D>::stable_step() const {
+  struct Extremes {
+    double lightest = 1e300, fastest = 0;
+    void meet(double density, double square) {
+      lightest = std::min(lightest, density);
+      fastest = std::max(fastest, square);
+    }
+  };
   double wave = 0, fastest = 0;
   for (const auto& range : ranges) {
-    double lightest = 1e300;
-    for (long k = range.first; k < range.first + range.count; ++k) {
-      lightest = std::min(lightest, points[k].mass / points[k].volume);
-      fastest = std::max(fastest, points[k].velocity.squaredNorm());
-    }
-    if (range.count > 0) wave = std::max(wave, range.material->wave_modulus() / lightest);
+    std::vector<Extremes> pieces((range.count + chunk - 1) / chunk);
+    workers.for_each(std::int64_t(pieces.size()), [&](std::int64_t piece) {
+      Extremes here;  // not in place: neighbours share cache lines
+      for (long k = piece * chunk; k < std::min(range.count, long(piece + 1) * chunk); ++k) {
+        const auto& point = points[range.first + k];
+        here.meet(point.mass / point.volume, point.velocity.squaredNorm());
+      }
+      pieces[piece] = here;
+    });
+    Extremes all;
+    for (const auto& piece : pieces) all.meet(piece.lightest, piece.fastest);
+    fastest = std::max(fastest, all.fastest);
+    if (range.count > 0) wave = std::max(wave, range.material->wave_modulus() / all.lightest);
   }
   const double dt = options.cfl * grid.cell.minCoeff() / (std::sqrt(wave) + std::sqrt(fastest));
   // What is driven faster than any wave must not jump over the soil: a fifth of a cell a step at most.
@@ -60,9 +85,10 @@ void Solver<D>::find_supports() {
     for (int i = 0; i < D; ++i) low[piece][i] = 1 << 30, high[piece][i] = -(1 << 30);
     for (long k = piece * chunk; k < std::min(n, long(piece + 1) * chunk); ++k) {
       for (int i = 0; i < D; ++i) {
-        supports_[k].node[i] =
-            shape_along_axis(options.shape, (points[k].position[i] - grid.anchor[i]) * per_m[i], per_m[i],
-                             points[k].half[i] * per_m[i], supports_[k].weight[i], supports_[k].slope[i]);
+        const double xi = (points[k].position[i] - grid.anchor[i]) * per_m[i];
+        if (!(std::abs(xi) < farthest_node)) throw_flown(points[k].position, range_of(k).name, time);
+        supports_[k].node[i] = shape_along_axis(options.shape, xi, per_m[i], points[k].half[i] * per_m[i],
+                                                supports_[k].weight[i], supports_[k].slope[i]);
         low[piece][i] = std::min(low[piece][i], supports_[k].node[i]);
         high[piece][i] = std::max(high[piece][i], supports_[k].node[i] + 2);
       }
@@ -78,31 +104,65 @@ void Solver<D>::find_supports() {
   if (grown || planes.changed(time)) planes.rebuild(grid, time);
 }
 
+/// Points by slabs, within them in their order: pieces of points are counted, then each puts its own in place.
 template <int D>
 void Solver<D>::sort_into_slabs() {
   const int first = slab_of(grid.low[D - 1]), last = slab_of(grid.low[D - 1] + grid.count[D - 1]);
-  slab_begin_.assign(last - first + 2, 0);
-  order_.resize(points.size());
-  for (const auto& s : supports_) ++slab_begin_[slab_of(s.node[D - 1]) - first + 1];
-  for (std::size_t k = 1; k < slab_begin_.size(); ++k) slab_begin_[k] += slab_begin_[k - 1];
-  auto next = slab_begin_;
-  for (std::size_t k = 0; k < supports_.size(); ++k) {
-    order_[next[slab_of(supports_[k].node[D - 1]) - first]++] = long(k);
+  const long n = long(points.size()), pieces = (n + chunk - 1) / chunk, slabs = last - first + 1;
+  const auto each_slab = [&](std::int64_t piece, const auto& visit) {
+    for (long k = piece * chunk; k < std::min(n, long(piece + 1) * chunk); ++k) {
+      visit(k, slab_next_[piece * slabs + slab_of(supports_[k].node[D - 1]) - first]);
+    }
+  };
+  slab_next_.assign(pieces * slabs, 0);
+  workers.for_each(pieces, [&](std::int64_t piece) { each_slab(piece, [](long, long& count) { ++count; }); });
+  slab_begin_.assign(1, 0);
+  long at = 0;
+  for (long slab = 0; slab < slabs; ++slab) {
+    for (long piece = 0; piece < pieces; ++piece) {
+      const long count = slab_next_[piece * slabs + slab];
+      slab_next_[piece * slabs + slab] = at;
+      at += count;
+    }
+    slab_begin_.push_back(at);
   }
+  order_.resize(points.size());
+  workers.for_each(pieces,
+                   [&](std::int64_t piece) { each_slab(piece, [&](long k, long& next) { order_[next++] = k; }); });
   // Whether a slab comes with the even or the odd ones must not depend on where the box begins.
   if ((first & 1) != 0) slab_begin_.insert(slab_begin_.begin(), 0);
 }
 
+/// work(node, piece) for each node with mass, in pieces that no number of threads changes.
+template <int D>
+template <class Work>
+void Solver<D>::over_nodes(const Work& work) {
+  const long n = long(grid.nodes.size());
+  workers.for_each((n + chunk - 1) / chunk, [&](std::int64_t piece) {
+    for (long k = piece * chunk; k < std::min(n, long(piece + 1) * chunk); ++k) {
+      if (grid.nodes[k].mass > 0) work(grid.nodes[k], piece);
+    }
+  });
+}
+
+template <int D>
+void Solver<D>::clear_grid() {
+  const long n = long(grid.nodes.size());
+  workers.for_each((n + chunk - 1) / chunk, [&](std::int64_t piece) {
+    const long from = long(piece) * chunk;
+    grid.clear(from, std::min(n, from + chunk));
+  });
+}
+
 template <int D>
 void Solver<D>::start_velocities() {
-  for (auto& node : grid.nodes) {
-    if (!(node.mass > 0)) continue;
+  over_nodes([](auto& node, std::int64_t) {
     for (int i = 0; i < D; ++i) node.a[i] = node.v[i] = node.v[i] / node.mass;
-  }
+  });
   planes.fold_momentum(grid, time);
   planes.set_start(grid, time);
   planes.keep_brought(grid);
-  bodies.find(grid, planes, points, time);
+  bodies.find(grid, planes, points, time, workers);
   bodies.set_start(grid, time);
   planes.set_start(grid, time);
 }
@@ -110,25 +170,23 @@ void Solver<D>::start_velocities() {
 template <int D>
 void Solver<D>::end_velocities(double dt) {
   planes.fold_force(grid);
-  for (auto& node : grid.nodes) {
-    if (!(node.mass > 0)) continue;
+  over_nodes([&](auto& node, std::int64_t) {
     for (int i = 0; i < D; ++i) node.w[i] = node.v[i] + dt * (node.w[i] / node.mass);
-  }
+  });
   bodies.set_end(grid, planes, time + dt);
   planes.set_end(grid, time + dt);
   planes.unfold(grid);
-  double kinetic = 0;
-  for (auto& node : grid.nodes) {
-    if (!(node.mass > 0)) continue;
+  kinetic_.assign((grid.nodes.size() + chunk - 1) / chunk, 0);
+  over_nodes([&](auto& node, std::int64_t piece) {
     double change = 0;
     for (int i = 0; i < D; ++i) {
       const double brought = node.a[i];
       node.a[i] = node.w[i] - brought;
       change += node.a[i] * (node.w[i] + brought);
     }
-    kinetic += 0.5 * node.mass * change;
-  }
-  ledger.nodal_kinetic += kinetic;
+    kinetic_[piece] += 0.5 * node.mass * change;
+  });
+  for (const double each : kinetic_) ledger.nodal_kinetic += each;
   planes.react(grid, dt, options.pic_fraction);
 }
 
@@ -153,12 +211,11 @@ void Solver<D>::stresses(double dt) {
 /// MUSL: nodal velocities from what the points have now, at the weights that the step began with.
 template <int D>
 void Solver<D>::second_map(double dt) {
-  grid.clear();
+  clear_grid();
   map_momentum();
-  for (auto& node : grid.nodes) {
-    if (!(node.mass > 0)) continue;
+  over_nodes([](auto& node, std::int64_t) {
     for (int i = 0; i < D; ++i) node.a[i] = node.v[i] = node.v[i] / node.mass;
-  }
+  });
   planes.fold_momentum(grid, time + dt);
   bodies.set_start(grid, time + dt);
   planes.set_start(grid, time + dt);
@@ -170,7 +227,7 @@ void Solver<D>::step(double dt) {
   place_grid();
   find_supports();
   sort_into_slabs();
-  grid.clear();
+  clear_grid();
   map_momentum();
   start_velocities();
   if (options.scheme == Scheme::usf) {

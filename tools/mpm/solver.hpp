@@ -51,7 +51,7 @@ struct Ledger {
 template <int D>
 class Solver {
  public:
-  Workers workers;  ///< first, so that it outlives what works with it
+  mutable Workers workers;  ///< first, so that it outlives what works with it
   std::vector<Point<D>> points;
   std::vector<Range<D>> ranges;
   Grid<D> grid;
@@ -80,6 +80,9 @@ class Solver {
   void sort_into_slabs();
   template <class Work>
   void over_slabs(const Work& work);
+  template <class Work>
+  void over_nodes(const Work& work);
+  void clear_grid();
   void map_momentum();
   void map_force();
   void start_velocities();
@@ -91,7 +94,8 @@ class Solver {
 
   static constexpr long chunk = 1024;  ///< points of one piece of work; sums over pieces are made in their order
   std::vector<Support<D>> supports_;
-  std::vector<long> order_, slab_begin_;
+  std::vector<long> order_, slab_begin_, slab_next_;
+  std::vector<double> kinetic_;  ///< J, of each piece of nodes
 };
 
 }  // namespace mpm

@@ -1,5 +1,6 @@
 // Contact at points of the surface of bodies. Declared in bodies.hpp.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "tools/mpm/bodies.hpp"
@@ -16,35 +17,43 @@ constexpr double two_pi = 6.283185307179586;
 
 }  // namespace
 
-/// Which nodes have soil against the surface near them: a point of the soil touches where its domain, of its first form
-/// and the size that its volume tells, ends at the surface. The faces of a box are told apart: soil below it, or off
-/// its corner, is not beside it.
+/// A point of the soil touches where its domain, of its first form and the size that its volume tells, ends at the
+/// surface. The faces of a box are told apart: soil below it, or off its corner, is not beside it.
 template <int D>
-void Bodies<D>::find_touched(const Grid<D>& grid, const std::vector<Point<D>>& soil, int k, double time) {
-  touched_.assign(grid.nodes.size(), 0);
-  const auto& body = all[k];
-  const Vec<D> centre = body.centre_at(time);
+unsigned char Bodies<D>::touch_of(const Grid<D>& grid, const Body<D>& body, const Vec<D>& centre, const Point<D>& point,
+                                  typename Grid<D>::Index& node) const {
   const double slack = early * grid.cell.minCoeff();
-  for (const auto& point : soil) {
-    Vec<D> outward;
-    const Vec<D> r = point.position - centre;
-    const double distance = body.distance(r, outward, point.half);
-    if (distance > slack + 0.5 * grid.cell.sum()) continue;  // the roots below are for few points
-    const double swollen = D == 2 ? std::sqrt(point.F.determinant()) : std::cbrt(point.F.determinant());
-    const Vec<D> half = swollen * point.half;
-    if (distance > slack + half.cwiseProduct(outward).norm()) continue;
-    const Vec<D> foot = r - distance * outward;
-    if (body.kind == BodyKind::box) {
-      bool off = false;  // by half of it, or so far that a body smaller than the point would slip between two of them
-      for (int i = 0; i < D; ++i) {
-        const double at_most = std::max(0.5 * half[i], half[i] - (1 - 1e-6) * body.half[i]);
-        off = off || std::abs(foot[i]) - body.half[i] > at_most;
-      }
-      if (off) continue;
+  Vec<D> outward;
+  const Vec<D> r = point.position - centre;
+  const double distance = body.distance(r, outward, point.half);
+  if (distance > slack + 0.5 * grid.cell.sum()) return 0;  // the roots below are for few points
+  const double swollen = D == 2 ? std::sqrt(point.F.determinant()) : std::cbrt(point.F.determinant());
+  const Vec<D> half = swollen * point.half;
+  if (distance > slack + half.cwiseProduct(outward).norm()) return 0;
+  const Vec<D> foot = r - distance * outward;
+  if (body.kind == BodyKind::box) {
+    for (int i = 0; i < D; ++i) {  // off by half of it, or so far that a small body would slip between two points
+      const double at_most = std::max(0.5 * half[i], half[i] - (1 - 1e-6) * body.half[i]);
+      if (std::abs(foot[i]) - body.half[i] > at_most) return 0;
     }
-    typename Grid<D>::Index node;
-    if (nearest_node(grid, centre + foot, node)) touched_[grid.flat(node)] |= face_of(body, outward);
   }
+  return nearest_node(grid, centre + foot, node) ? face_of(body, outward) : 0;
+}
+
+/// Which nodes have soil against the surface near them. Threads set bits of one node together, whose order is nothing.
+template <int D>
+void Bodies<D>::find_touched(const Grid<D>& grid, const std::vector<Point<D>>& soil, int k, double time,
+                             Workers& workers) {
+  touched_.assign(grid.nodes.size(), 0);
+  const Vec<D> centre = all[k].centre_at(time);
+  const long n = long(soil.size());
+  workers.for_each((n + chunk - 1) / chunk, [&](std::int64_t piece) {
+    for (long p = long(piece) * chunk; p < std::min(n, long(piece + 1) * chunk); ++p) {
+      typename Grid<D>::Index node;
+      const auto bits = touch_of(grid, all[k], centre, soil[p], node);
+      if (bits != 0) std::atomic_ref(touched_[grid.flat(node)]).fetch_or(bits, std::memory_order_relaxed);
+    }
+  });
 }
 
 template <int D>
@@ -288,11 +297,11 @@ void Bodies<D>::hold_surface(Grid<D>& grid, double time, bool end) {
   for (auto& point : surface_) point.impulse += point.now;
 }
 
-template void Bodies<2>::find_touched(const Grid<2>&, const std::vector<Point<2>>&, int, double);
+template void Bodies<2>::find_touched(const Grid<2>&, const std::vector<Point<2>>&, int, double, Workers&);
 template void Bodies<2>::find_half_space(const Grid<2>&, const Planes<2>&, int, double);
 template void Bodies<2>::find_outline(const Grid<2>&, const Planes<2>&, int, double);
 template void Bodies<2>::hold_surface(Grid<2>&, double, bool);
-template void Bodies<3>::find_touched(const Grid<3>&, const std::vector<Point<3>>&, int, double);
+template void Bodies<3>::find_touched(const Grid<3>&, const std::vector<Point<3>>&, int, double, Workers&);
 template void Bodies<3>::find_half_space(const Grid<3>&, const Planes<3>&, int, double);
 template void Bodies<3>::find_outline(const Grid<3>&, const Planes<3>&, int, double);
 template void Bodies<3>::hold_surface(Grid<3>&, double, bool);

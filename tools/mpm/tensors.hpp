@@ -41,6 +41,34 @@ Mat<D> finite_increment(const Mat<D>& L) {
   return sum;
 }
 
+/// -log(I - L): with the velocity gradient times the step of the configuration that a step has come to, the logarithm
+/// of its deformation increment. finite_increment of it is (I - L)^-1 - I, so that F moves as points do that went x = X
+/// + L x. Of -L, with the minus in front: log(I + L), for a gradient in the configuration that the step began with. L
+/// itself where a step would strain by half: then the map need not have a logarithm.
+template <int D>
+Mat<D> strain_of_step(const Mat<D>& L) {
+  const double size = L.cwiseAbs().maxCoeff();
+  if (!(size < 0.5 / D)) return L;
+  const Mat<D> square = L * L;
+  if (size < 1e-3) return L + square * (0.5 * Mat<D>::Identity() + (1.0 / 3) * L + 0.25 * square + 0.2 * square * L);
+  // 2 artanh(Z), Z = L (2 I - L)^-1: its entries are below 0.34.
+  const Mat<D> Z = L * (2 * Mat<D>::Identity() - L).inverse(), step = Z * Z;
+  Mat<D> power = Z, sum = Z;
+  for (int k = 3; k < 200; k += 2) {
+    power = (power * step).eval();
+    sum += power / k;
+    if (power.cwiseAbs().maxCoeff() < 1e-17 * size) break;
+  }
+  return 2 * sum;
+}
+
+/// G (I + dt G)^-1: the velocity gradient G of points before a step in the configuration after it.
+template <int D>
+Mat<D> carried_gradient(const Mat<D>& G, double dt) {
+  if (!(dt * G.cwiseAbs().maxCoeff() < 0.5 / D)) return G;
+  return G * (Mat<D>::Identity() + dt * G).inverse();
+}
+
 /// sqrt(2 e:e) in the plane and sqrt(2 e:e/3) in space, e the deviator.
 template <int D>
 double deviatoric_strain(const Mat<D>& strain) {

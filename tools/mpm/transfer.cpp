@@ -142,14 +142,15 @@ void Solver<D>::gradients(double dt) {
         }
         add_gradient<D>(L, along, steep, across, slope);
       });
-      double power = 0;
+      Mat<D> step;
       for (int i = 0; i < D; ++i) {
-        for (int j = 0; j < D; ++j) {
-          point.gradient(i, j) = dt * L[j][i];
-          power += point.stress(i, j) * point.gradient(i, j);
-        }
+        for (int j = 0; j < D; ++j) step(i, j) = dt * L[j][i];
       }
-      point.work += 0.5 * point.volume * power;
+      // USF has the velocities that points came with, at where they came to; MUSL those that they went with, at where
+      // they went from.
+      point.gradient = options.scheme == Scheme::usf ? strain_of_step<D>(step) : Mat<D>(-strain_of_step<D>(-step));
+      if (options.scheme == Scheme::musl) point.affine = carried_gradient<D>(point.affine, dt);
+      point.work += 0.5 * point.volume * point.stress.cwiseProduct(point.gradient).sum();
     }
   });
 }
@@ -183,10 +184,9 @@ void Solver<D>::move_points(double dt) {
       for (int i = 0; i < D; ++i) {
         point.velocity[i] = pic * w[i] + (1 - pic) * (point.velocity[i] + a[i]);
         point.position[i] += dt * w[i];
-        if (affine) {
-          for (int j = 0; j < D; ++j) point.affine(i, j) = L[j][i];
-        }
+        for (int j = 0; j < D; ++j) point.affine(i, j) = L[j][i];
       }
+      if (options.scheme == Scheme::usf) point.affine = carried_gradient<D>(point.affine, dt);
     }
   });
 }

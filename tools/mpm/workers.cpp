@@ -6,6 +6,20 @@
 #include "tools/mpm/tensors.hpp"
 
 namespace mpm {
+namespace {
+
+/// Whether it comes true within some 20 microseconds. A step has a score of calls, many of which are shorter than it
+/// takes to wake a thread.
+template <class Condition>
+bool soon(const Condition& condition) {
+  for (int k = 0; k < 64; ++k) {
+    if (condition()) return true;
+    std::this_thread::yield();
+  }
+  return false;
+}
+
+}  // namespace
 
 Workers::Workers(int count) {
   if (count <= 0) count = int(std::max(1u, std::thread::hardware_concurrency()));
@@ -45,8 +59,10 @@ void Workers::for_each(std::int64_t pieces, const std::function<void(std::int64_
   }
   begin_.notify_all();
   take();
-  std::unique_lock lock(mutex_);
-  end_.wait(lock, [this] { return busy_ == 0; });
+  if (!soon([this] { return busy_ == 0; })) {
+    std::unique_lock lock(mutex_);
+    end_.wait(lock, [this] { return busy_ == 0; });
+  }
   work_ = nullptr;
   if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
 }
@@ -64,15 +80,18 @@ void Workers::take() {
 void Workers::serve() {
   std::uint64_t seen = 0;
   for (;;) {
-    {
+    const auto called = [&] { return stop_ || round_ != seen; };
+    if (!soon(called)) {
       std::unique_lock lock(mutex_);
-      begin_.wait(lock, [&] { return stop_ || round_ != seen; });
-      if (stop_) return;
-      seen = round_;
+      begin_.wait(lock, called);
     }
+    if (stop_) return;
+    seen = round_;
     take();
-    const std::lock_guard lock(mutex_);
-    if (--busy_ == 0) end_.notify_one();
+    if (busy_.fetch_sub(1) == 1) {
+      const std::lock_guard lock(mutex_);
+      end_.notify_one();
+    }
   }
 }
 

@@ -36,9 +36,9 @@ class Workers {
   const std::function<void(std::int64_t)>* work_ = nullptr;
   std::int64_t pieces_ = 0;
   std::atomic<std::int64_t> next_{0};
-  std::uint64_t round_ = 0;
-  int busy_ = 0;
-  bool stop_ = false;
+  std::atomic<std::uint64_t> round_{0};
+  std::atomic<int> busy_{0};
+  std::atomic<bool> stop_{false};
   std::exception_ptr failure_;
 };
 

@@ -1,10 +1,11 @@
 """tools/validate mpm_column, mpm_footing, mpm_pipe: scenes of rvelab-mpm beside published figures.
 
-    mpm_scenes.py RVELAB FOLDER RESULTS column|column_published|footing|footing_published|pipe
+    mpm_scenes.py RVELAB FOLDER RESULTS column|column_published|footing|footing_published|footing_published_5|pipe|pipe_soil
 
 column: run-out, energies and profile of the collapse of columns of a Mohr-Coulomb soil and of grains. footing: load
 against settlement on three soils, beside the N_q of `rvelab calibrate`. pipe: forces on a pipe that is pushed down and
-aside, and what the soil before, below and behind it does. Runs that are whole in FOLDER are used again, and those that
+aside, and what the soil before, below and behind it does; pipe_soil: the same in Mohr-Coulomb soil over meshes and
+strengths. footing_published_5: dense soil of seed 5, whose strength is the paper's, at the published size. Runs that are whole in FOLDER are used again, and those that
 were stopped go on."""
 
 import json
@@ -17,14 +18,14 @@ import numpy as np
 
 sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../plot"))
 from records import STYLE, plt  # noqa: E402
-from mpm import cases, folder, grain_steps, picture, results, run, rvelab, specimen
+from mpm import ROOT, cases, folder, grain_steps, picture, results, run, rvelab, specimen
 
 
 SURCHARGE, WIDTH = 20e3, 2.0  # Pa, m
 SOILS = {"dense": ("C0", "14.4, 14.8"), "medium": ("C1", "4.8, 3.7"), "soft": ("C2", "3.7, 3.1")}
 
 
-SEEDS = (1, 2, 3)  # of the packings; the first is that of the recipes
+SEEDS = (1, 2, 3, 4, 5)  # of the packings; the first is that of the recipes
 
 
 def packing(soil, seed):
@@ -42,12 +43,12 @@ def footing_run(name, soil, seed, *options):
 
 
 def bearing_factors(soil, seed):
-    """N_q of rvelab calibrate: of general and of local shear."""
+    """N_q of rvelab calibrate, of general and of local shear, and the friction angle (degrees)."""
     told = subprocess.run([rvelab, "calibrate", "biaxial", "--specimen", folder / f"{packing(soil, seed)}.h5",
                            "--pressures", "10e3,20e3,30e3", "--threads", "1", "--json"], check=True,
                           capture_output=True, text=True)
     told = json.loads(told.stdout)
-    return told["bearing_capacity_Nq"], told["local_shear_Nq"]
+    return told["bearing_capacity_Nq"], told["local_shear_Nq"], told["friction_angle_deg"]
 
 
 def footing_figure(curves, factors, name):
@@ -70,18 +71,18 @@ def footing_figure(curves, factors, name):
 def footing():
     print("Rough footing, half of it 1 m wide, on 6 x 4 m of soil (24 x 16 cells, one point each), surcharge 20 kPa,\n"
           "0.2 m/s: load over surcharge at settlements d/B (B = 2 m), and the largest; N_q of rvelab calibrate at 10, 20\n"
-          "and 30 kPa, for general and for local shear: of the recipe's specimen, and mean and standard deviation\n"
-          f"of those of {len(SEEDS)} seeds; published, at the whole size to d/B = 0.75: load, N_q\n")
+          "and 30 kPa, for general and for local shear, and friction angle (degrees): of specimens of\n"
+          f"{len(SEEDS)} seeds, mean and standard deviation; published, at the whole size to d/B = 0.75: load, N_q\n")
     depths = (0.0125, 0.025, 0.0375, 0.05, 0.1, 0.15, 0.2)
-    print("soil     " + "".join(f"{d:<8g}" for d in depths) + "largest N_q     local   published")
+    print("soil     " + "".join(f"{d:<8g}" for d in depths) + "largest N_q     local   angle   published")
     curves, factors = {}, {}
     for soil, (_, published) in SOILS.items():
         curves[soil] = [footing_run(f"footing_{packing(soil, seed)}", soil, seed) for seed in SEEDS]
         rows = np.array([[*(np.interp(d, depth, load) for d in depths), load.max(), *bearing_factors(soil, seed)]
                          for (depth, load, _), seed in zip(curves[soil], SEEDS)])
-        factors[soil] = rows[0, -2:]
-        for head, row, tail in ((soil, rows[0], published), ("  mean", rows.mean(axis=0), ""),
-                                ("  +-", rows.std(axis=0, ddof=1), "")):
+        factors[soil] = rows[0, -3:-1]
+        each = [(f"{soil} {seed}", row, "" if k else published) for k, (row, seed) in enumerate(zip(rows, SEEDS))]
+        for head, row, tail in (*each, ("  mean", rows.mean(axis=0), ""), ("  +-", rows.std(axis=0, ddof=1), "")):
             print(f"{head:<9}" + "".join(f"{value:<8.2f}" for value in row) + tail, flush=True)
     print("\nsoil    grain-steps  of 7,776 points to   hours of one core at\n"
           "                     1.5 m, in proportion 60 million a second")
@@ -116,10 +117,20 @@ def footing_published():
     print_loads(depth, load, (0.0125, 0.025, 0.0375, 0.05, 0.0625, 0.075, 0.0875))
     print(f"largest {load.max():.2f} at d/B {depth[load.argmax()]:.3f} (published 14.4)")
     print_costs("footing_dense_published", steps)
-    factors = {soil: bearing_factors(soil, 1) for soil in ("soft", "dense")}
+    factors = {soil: bearing_factors(soil, 1)[:2] for soil in ("soft", "dense")}
     footing_figure({"soft": [soft], "dense": [dense]}, factors, "mpm_footing_published.png")
     for name in ("soft", "dense"):
         picture(folder / f"footing_{name}_published", "--field", "eps_q", "-o", results / f"mpm_footing_{name}.png")
+
+
+def footing_published_5():
+    depth, load, steps = footing_run("footing_dense_5_published", "dense", 5, "--published", "--set",
+                                     "time.duration_s=2.5")
+    factor, _, angle = bearing_factors("dense", 5)
+    print(f"Dense soil of seed 5 (N_q {factor:.1f}, {angle:.2f} degrees) at the published size, to d/B {depth[-1]:.3f}\n")
+    print_loads(depth, load, [d for d in (0.0125, 0.025, 0.0375, 0.05, 0.0625, 0.075, 0.0875) if d < depth[-1]])
+    print(f"largest {load.max():.2f} at d/B {depth[load.argmax()]:.3f} (published 14.4, N_q 14.8)")
+    print_costs("footing_dense_5_published", steps)
 
 
 def print_loads(depth, load, depths):
@@ -237,11 +248,45 @@ def pipe():
     figure.savefig(results / "mpm_pipe_forces.png")
 
 
+def pipe_soil():
+    """The scene's mechanics without its specimen: Mohr-Coulomb soil of two angles, a pipe 6, 12 and 20 cells across."""
+    text = (ROOT / "protocols/mpm/pipe.toml").read_text().split("\n[case.")[0]
+    begin, end = text.index("[[material]]"), text.index("[[region]]")
+    print("Pipe of pipe.toml in Mohr-Coulomb soil (20 MPa, 100 Pa of cohesion, no dilation): largest vertical force, vertical\n"
+          "and horizontal on the way aside (kN/m; published 250, 25, 50); rotation (degrees) of the soil behind it, at the\n"
+          "turn and at the end (published 30, 30), and of the band before it (10 to 15, 58)\n\n"
+          "angle   cells across  vertical  aside   horizontal  behind          before")
+    for angle in (32.2, 28.26):
+        for across in (6, 12, 20):
+            scene = folder / f"pipe_soil_{angle:g}_{across}.toml"
+            scene.write_text((text[:begin] + f"""[[material]]
+name = "soil"
+kind = "mohr_coulomb"
+density_kg_m3 = 2000
+young_modulus_Pa = 20e6
+friction_angle_deg = {angle}
+cohesion_Pa = 100
+
+""" + text[end:]).replace('"dense"', '"soil"'))
+            h, _ = run(scene.stem, scene.resolve(), "-j", "1", "--set", f"grid.cell_m={1 / across!r}", "--set", "region.0.upper_m=[9, 2.5]")
+            time, left = h["time_s"], -h["pipe.way_x_m"]
+            window = np.ones(max(1, round(0.05 / np.median(np.diff(time)))))
+            up, aside = (np.convolve(h[f"pipe.force_{axis}_N"] / 1e3, window / len(window), mode="same") for axis in "yx")
+            turn = float(time[np.argmax(h["pipe.way_y_m"] < h["pipe.way_y_m"].min() + 1e-9)])
+            lateral = (time > turn + 0.6) & (left < left.max())
+            watched = np.genfromtxt(folder / scene.stem / "watched.csv", delimiter=",", names=True)
+            at = np.searchsorted(watched["time_s"], turn)
+            turned = [f"{abs(watched[f'{k}rotation_deg'][at]):.0f}, {abs(watched[f'{k}rotation_deg'][-1]):.0f}" for k in (2, 0)]
+            print(f"{angle:<8g}{across:<14}{up[time <= turn].max():<10.0f}{up[lateral].mean():<8.0f}"
+                  f"{aside[lateral].mean():<12.0f}{turned[0]:<16}{turned[1]}", flush=True)
+
+
 def main():
     folder.mkdir(parents=True, exist_ok=True)
     plt.rcParams.update(STYLE)
     {"column": column, "column_published": column_published, "footing": footing,
-     "footing_published": footing_published, "pipe": pipe}[cases[0]]()
+     "footing_published": footing_published, "footing_published_5": footing_published_5, "pipe": pipe,
+     "pipe_soil": pipe_soil}[cases[0]]()
 
 
 if __name__ == "__main__":
