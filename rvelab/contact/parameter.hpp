@@ -24,14 +24,14 @@ struct Parameter {
   const char *meaning, *remedy;
 };
 
-/// One of a group of constants that materials carry for the laws that read it, as files store it. `later`: files of
-/// earlier versions lack it.
+/// One of a group of constants that materials carry for the laws that read it, as files store it. `since`: the minor
+/// version of files from which on they have it.
 template <class Group>
 struct StoredConstant {
   const char* dataset;
   double Group::*value;
   const char* unit;
-  bool later = false;
+  int since = 0;
 };
 
 }  // namespace rvelab

@@ -2,6 +2,7 @@
 #include <set>
 
 #include "rvelab/io/hdf5_bytes.hpp"
+#include "rvelab/io/hdf5_tree.hpp"
 
 namespace rvelab::io::hdf5 {
 namespace {

@@ -52,7 +52,7 @@ constexpr auto stored_fields() {
   static_assert(std::size(Group::stored) == member_count<Group>(), "a constant of a law is not in its list `stored`");
   return []<std::size_t... k>(std::index_sequence<k...>) {
     return std::tuple{Field<Material, double>{Group::stored[k].dataset, Group::stored[k].value, Group::stored[k].unit,
-                                              Rows::one, InFiles{Group::stored[k].later ? 5 : 0}}...};
+                                              Rows::one, InFiles{Group::stored[k].since}}...};
   }
   (std::make_index_sequence<std::size(Group::stored)>());
 }
