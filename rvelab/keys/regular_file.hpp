@@ -16,8 +16,8 @@
 
 namespace rvelab::keys {
 
-/// The bytes of a file as a std::string or a vector of bytes. `wanted`: what messages ask for, "a CSV file". InputError:
-/// missing, a folder, a pipe or a device (which may have no end), larger than `most` bytes, not readable.
+/// The bytes of a file as a std::string or a vector of bytes. `wanted`: what messages ask for, "a CSV file".
+/// InputError: missing, a folder, a pipe or a device (which may have no end), larger than `most` bytes, not readable.
 template <class Bytes>
 Bytes whole_file(const std::string& path, const std::string& wanted, std::uint64_t most = std::uint64_t{1} << 46) {
   const auto refuse = [&](const std::string& what) {
@@ -34,7 +34,7 @@ Bytes whole_file(const std::string& path, const std::string& wanted, std::uint64
   const Opened file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
   if (file.number < 0 && (errno == ENOENT || errno == ENOTDIR)) refuse("no such file");
   if (file.number < 0 || ::fstat(file.number, &status) != 0) {
-    refuse("cannot be opened (" + std::string(std::strerror(errno)) + "); check the permissions");
+    refuse("cannot be opened (" + std::string(std::strerror(errno)) + "), check the permissions");
   }
   if (!S_ISREG(status.st_mode)) refuse("is not a regular file");
   const auto size = static_cast<std::uint64_t>(status.st_size);

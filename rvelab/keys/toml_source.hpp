@@ -33,8 +33,10 @@ inline void expect_short_keys(std::string_view text) {
         ++line;
         line_begin = at + 1;
       }
-      if (at < text.size() && text[at] == '\n') --at;
-      else at += mark.size() - 1;
+      if (at < text.size() && text[at] == '\n')
+        --at;
+      else
+        at += mark.size() - 1;
       continue;
     }
     if (letter == '#') {
