@@ -35,11 +35,12 @@ bool Rve::Impl::can_measure_lag() {
   return by_tolerance() && ratio_holds && now.state.unbalanced_ratio > 0 && pressure() > 0;
 }
 
-bool Rve::Impl::lag_is_due() {
+bool Rve::Impl::lag_is_due(long substeps) {
   const SolverState& state = now.state;
   if (!can_measure_lag()) return false;
-  const bool changed = state.lag_strain > overlap_strain();
-  return state.lag_factor == 0 || state.lag_steps >= (changed ? accuracy::changed_period : accuracy::rest_period);
+  if (state.lag_steps >= accuracy::rest_period) return true;
+  const bool changed = state.lag_strain > overlap_strain() && state.lag_steps >= accuracy::changed_period;
+  return (state.lag_factor == 0 || changed) && substeps >= accuracy::least_increment;
 }
 
 void Rve::Impl::measure_lag() {
@@ -73,7 +74,7 @@ void Rve::Impl::estimate_error(double strain, double network, const Matrix3& str
 void Rve::Impl::judge_error(double allowed, double strain, double ratio, double more, Report& report) {
   SolverState& state = now.state;
   state.lag_strain += strain;
-  if (strain > 0 && lag_is_due()) measure_lag();
+  if (strain > 0 && lag_is_due(report.substeps)) measure_lag();
   report.allowed_error = allowed;
   const double scale = pressure_scale() * ratio, overlap = overlap_strain();
   const double measured = accuracy::measured_margin * state.lag_factor * scale * rested_growth(strain, overlap);

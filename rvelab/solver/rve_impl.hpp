@@ -159,10 +159,10 @@ struct Rve::Impl {
   double error_factor() const;
   /// K p u for an unbalanced ratio u, Pa, as it steers the sub-steps.
   double expected_error(double ratio);
-  /// dt = 0, to a tolerance: whether there is a lag to measure; and whether enough sub-steps were made since the last
-  /// time.
+  /// dt = 0, to a tolerance: whether there is a lag to measure; and whether an increment of so many sub-steps is to do
+  /// so.
   bool can_measure_lag();
-  bool lag_is_due();
+  bool lag_is_due(long substeps);
   /// Lets a copy rest, and notes in the state by what its stress was behind.
   void measure_lag();
   /// Sets report.error_estimate, allowed_error and tolerance_met: `allowed` (Pa), `strain` of the increment, `ratio`

@@ -38,7 +38,6 @@ struct Fixture {
   /// grains answer that slip about a stiff rolling spring, once their inertia is scaled for that spring.
   double softest_answer = 1;
   double hardening = 1;                     ///< d ln f_n/d ln overlap of typical grains: 1 linear, 3/2 Hertz
-  double isostatic_coordination = 0;        ///< contacts of a grain that just hold it, of typical grains
   double thickness = 0;                     ///< m, 2D
   const std::atomic<bool>* stop = nullptr;  ///< true: advance throws Interrupted (Rve::watch)
   Workers* team = nullptr;                  ///< shares the steps of a large assembly (Rve::share)

@@ -85,26 +85,12 @@ double typical_normal_force(const Fixture& f, double overlap) {
       f, [&](auto force) { return std::abs(normal_force_of<decltype(force)>(typical_pair(f).first, overlap)); });
 }
 
-namespace {
-
-/// Contacts of a grain at which the forces and moments of contacts are as many as the motions of grains that they have
-/// to hold. Round grains without friction turn as they like.
-double isostatic_coordination(const Fixture& f, const PairParameters& pair) {
-  const int d = f.dimension(), turns = d == 2 ? 1 : 3;
-  if (!(pair.friction > 0)) return f.shape == Shape::ellipse ? 2.0 * (d + turns) : 2.0 * d;
-  const int held = d + (f.contact.rolling && pair.kr > 0 && pair.moment_cap > 0 ? d - 1 : 0);
-  return 2.0 * (d + turns) / held;
-}
-
-}  // namespace
-
 void set_typical_answers(Fixture& f) {
   f.softest_answer = 1;
   const auto [one, radius] = typical_pair(f);
   const double overlap = 1e-3 * radius;
   const ContactStiffness k = stiffness_of(f, one, overlap);
   const double force = typical_normal_force(f, overlap);
-  f.isostatic_coordination = isostatic_coordination(f, one);
   f.hardening = force > 0 ? std::clamp(k.normal * overlap / force, 1.0, 3.0) : 1;
   if (!f.contact.rolling) return;
   const double slip = 4 * k.tangential * radius * radius;

@@ -22,7 +22,7 @@ struct RowSums {
 /// Normal force of two of the largest grains at an overlap (m), N: a scale for specimens without any contact.
 double typical_normal_force(const Fixture& fixture, double overlap);
 
-/// Sets softest_answer, hardening and isostatic_coordination of the fixture from two of the largest grains.
+/// Sets softest_answer and hardening of the fixture from two of the largest grains.
 void set_typical_answers(Fixture& fixture);
 
 RowSums row_sums(const Fixture& fixture, const Assembly& assembly);
