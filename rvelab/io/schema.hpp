@@ -10,7 +10,7 @@ namespace rvelab::io {
 
 /// Version of the layout, major.minor. A later minor version adds; a later major version changes.
 inline constexpr int format_major = 1;
-inline constexpr int format_minor = 9;
+inline constexpr int format_minor = 10;
 /// Files from this minor version on are sealed.
 inline constexpr int sealed_minor = 4;
 
