@@ -57,6 +57,10 @@ Vector3 heights(const Cell& cell);
 /// Length of the shortest non-zero lattice vector, m. In 2D only a and b count.
 double shortest_vector(const Cell& cell);
 
+/// The simple shear v_i(x_k), to either side, from which on a height of the reduced cell is below `least_height` (m);
+/// infinite where none up to `most` does that. A cell with a vector along i never gets thin.
+double shear_until_thin(const Cell& cell, int i, int k, double least_height, double most);
+
 /// A change of basis: L_new = R^T L N with N unimodular (det +1). Every stored cell-frame vector v becomes R^T v, an
 /// image n becomes N^-1 n, and the frame Q becomes Q R.
 struct Reduction {

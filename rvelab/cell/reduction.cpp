@@ -173,6 +173,28 @@ void apply_reduction(Cell& cell, const Reduction& reduction) {
   turn_frame(cell, reduction.rotation);
 }
 
+double shear_until_thin(const Cell& cell, int i, int k, double least_height, double most) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const double sign : {1.0, -1.0}) {
+    Cell sheared = cell;
+    double gamma = 0;
+    apply_reduction(sheared, reduced(sheared));
+    // A vector as short as that, of height y, is so while the shear goes on by more than least_height/y > 1.
+    while (gamma < most && gamma < least && heights(sheared).minCoeff() >= least_height) {
+      const double step = std::fmax(0.05, 0.005 * gamma);
+      gamma += step;
+      Matrix3 gradient = Matrix3::Zero();
+      gradient(i, k) = sign * step;
+      const FrameSplit split = split_increment(sheared, gradient);
+      sheared.lattice = (split.stretch * sheared.lattice).eval();
+      turn_frame(sheared, split.rotation);
+      apply_reduction(sheared, reduced(sheared));
+    }
+    if (gamma < most) least = std::fmin(least, gamma);
+  }
+  return least;
+}
+
 double shortest_vector(const Cell& cell) {
   const Matrix3 lattice = reduced(cell).lattice;
   // The shortest vector of a reduced basis is a shortest one of the lattice, but for the tolerance: sums and

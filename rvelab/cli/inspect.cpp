@@ -1,4 +1,5 @@
 // rvelab inspect: what is in a specimen or record file, and the measures of its state. Declared in commands.hpp.
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -39,6 +40,12 @@ void add_state(Listing& listing, const Rve& rve) {
   listing.add("lattice_m", row_major(network.cell.lattice), "m");
   listing.add("rotation", row_major(network.cell.rotation));
   listing.add("volume_m3", network.cell.volume(), "m^3");
+  listing.add("cell_thin", rve.cell_thin());
+  const double most = 1e4,
+               thin_from = shear_until_thin(network.cell, 0, dimension - 1, 4 * mean_diameter(network), most);
+  listing.add_or_why("shear_until_thin", std::isfinite(thin_from) ? thin_from : std::nan(""), "",
+                     std::string("no height falls below four mean diameters in shear v_x(") +
+                         (dimension == 2 ? "y" : "z") + ") up to 1e4");
   add_proportions(listing, sizes_of(network));
 }
 

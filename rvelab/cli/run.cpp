@@ -2,9 +2,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <any>
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <string>
 #include <thread>
 #include <vector>
@@ -99,6 +101,8 @@ void add_costs(const protocol::TestRun& run, double wall, Listing& listing) {
     listing.add("mean_error_estimate", costs.mean_error, "of p");
     listing.add("largest_error_estimate", costs.largest_error, "of p");
   }
+  if (costs.waited > 0)
+    listing.add("waited_for_held_stress", double(costs.waited) / double(costs.substeps), "of the sub-steps");
   const double calls = costs.grains + costs.pairs + costs.list + costs.control;
   if (!(calls > 0)) return;
   listing.add("time_grains_s", costs.grains, "s");
@@ -116,14 +120,46 @@ bool leads_to_failure(const protocol::Stage& stage) {
   return stage.kind != "pressure_path" && stage.kind != "envelope";
 }
 
+/// Tells before the work of a stage of simple shear that goes further than the cell stands.
+void tell_of_shear(const protocol::Protocol& protocol, const Specimen& specimen) {
+  const int dimension = specimen.cell.dimension;
+  const double diameter = 2 * std::accumulate(specimen.grains.radius.begin(), specimen.grains.radius.end(), 0.0) /
+                          double(specimen.grains.size());
+  for (const protocol::Stage& stage : protocol.stages) {
+    const auto* shear = std::any_cast<protocol::SimpleShearStage>(&stage.what);
+    if (shear == nullptr) continue;
+    const std::string plane = !shear->plane.empty() ? shear->plane : dimension == 2 ? "xy" : "xz";
+    const double most = std::abs(shear->to_strain);
+    const double thin_from = shear_until_thin(specimen.cell, plane[0] - 'x', plane[1] - 'x', 4 * diameter, most);
+    if (!std::isfinite(thin_from)) continue;
+    tell("stage \"" + stage.name + "\": sheared beyond " + in_words(thin_from) +
+         " a height of the cell is below four "
+         "mean diameters, and its records are flagged (cell_thin): no vector of the cell lies along " +
+         plane[0] + ", or it is small; pack the specimen anew, upright and with more grains, or shear it less");
+  }
+}
+
+/// Tells of records whose cell was too thin to stand for the material.
+void tell_of_thin(const records::TestResult& result, long thin) {
+  if (thin == 0) return;
+  const auto first = std::find_if(result.records.begin(), result.records.end(),
+                                  [](const records::Record& record) { return record.cell_thin; });
+  tell(std::to_string(thin) + " of " + std::to_string(result.records.size()) +
+       " records are of a thin cell (cell_thin), from strain " + in_words(first->strain) + " of stage \"" +
+       result.stages.at(static_cast<std::size_t>(first->stage)) +
+       "\" on: a height is below four mean diameters, so that the cell stands for less and less of the material; "
+       "use more grains, or a cell that suits the deformation (pack.cell)");
+}
+
 void report(const protocol::Protocol& protocol, const protocol::TestRun& run, double wall,
             const RunArguments& arguments) {
   const records::TestResult& result = run.result;
   const int dimension = run.end_state.cell.dimension;
-  long flagged = 0, moving = 0, marked = 0;
+  long flagged = 0, moving = 0, marked = 0, thin = 0;
   for (const records::Record& record : result.records) {
     flagged += record.target_held ? 0 : 1;
     moving += record.quasi_static ? 0 : 1;
+    thin += record.cell_thin ? 1 : 0;
     marked += record.target_held && record.quasi_static ? 0 : 1;
   }
   Listing listing;
@@ -141,6 +177,7 @@ void report(const protocol::Protocol& protocol, const protocol::TestRun& run, do
   }
   listing.add("flagged", flagged);
   listing.add("not_quasi_static", moving);
+  listing.add("cell_thin", thin);
   if (!result.records.empty()) {
     const auto records = calibrate::last_stage(result);
     if (leads_to_failure(protocol.stages.at(static_cast<std::size_t>(records.back().stage)))) {
@@ -179,6 +216,10 @@ void report(const protocol::Protocol& protocol, const protocol::TestRun& run, do
          " are not quasi-static, no equilibrium (quasi_static in the records); lower the tolerances of [solver] or the "
          "rate, or raise loading.held_tolerance");
   }
+  tell_of_thin(result, thin);
+  if (2 * run.costs.waited > run.costs.substeps)
+    tell(std::to_string(run.costs.waited) + " of " + std::to_string(run.costs.substeps) +
+         " sub-steps went into waiting for a held stress that the grains had let go in avalanches");
 }
 
 /// Says what a stopped run left, and ends the program with the code of its signal.
@@ -209,6 +250,7 @@ void run_test(const RunArguments& arguments) {
   } else if (!arguments.json && protocol::planned_records(protocol) > 0 && isatty(STDERR_FILENO) == 1) {
     tell("the records will not be kept: no -o R.h5 is given");  // before the work; off a terminal the listing says it
   }
+  tell_of_shear(protocol, specimen);
   protocol::TestRun run;
   double wall = 0;  // of this run; result.wall_seconds is that of all parts of a test that was gone on with
   {

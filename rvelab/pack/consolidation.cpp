@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rvelab/cell/givens.hpp"
 #include "rvelab/measure/measures.hpp"
 
 namespace rvelab::pack {
@@ -15,8 +16,7 @@ constexpr double held_tolerance = 5e-3;  ///< of increments on the way
 Matrix3 symmetric(const Matrix3& m) { return 0.5 * (m + m.transpose()); }
 
 /// One increment: driven components to `to`, the others without strain.
-MixedTarget toward(const StressGoal& goal, const Matrix3& to, const Matrix3& present, double scale, double tolerance,
-                   long wait) {
+MixedTarget toward(const StressGoal& goal, const Matrix3& to, const Matrix3& present, double scale, double tolerance) {
   MixedTarget target;
   for (int i = 0; i < goal.dimension; ++i) {
     for (int j = i; j < goal.dimension; ++j) {
@@ -32,7 +32,7 @@ MixedTarget toward(const StressGoal& goal, const Matrix3& to, const Matrix3& pre
     }
   }
   target.tolerance = tolerance;
-  target.wait = wait;
+  target.wait = short_wait;
   return target;
 }
 
@@ -56,19 +56,28 @@ Matrix3 next_stress(const StressGoal& goal, const Matrix3& stress, double larges
   return goal.stress - (1 - reach / rest) * (goal.stress - symmetric(stress));
 }
 
-bool consolidate(Rve& rve, const StressGoal& goal, const Rest& rest) {
+Matrix3 upright_again(const Matrix3& deformation) {
+  return triangular_factors(deformation).rotation.transpose() - Matrix3::Identity();
+}
+
+bool consolidate(Rve& rve, const StressGoal& goal, const Rest& rest, Matrix3& deformation) {
   const double pressure = goal.pressure();
+  const auto apply = [&](const MixedTarget& target) {
+    const Response response = rve.apply(target, 0);
+    deformation += response.displacement_gradient * deformation;
+    return response.stress;
+  };
   Matrix3 stress = rve.stress();
   for (int k = 0; k < most_increments; ++k) {
     const Matrix3 next = next_stress(goal, stress, rest.largest_change);
     if ((next - goal.stress).isZero(0)) break;
     const double scale = std::max(mean_pressure(stress, goal.dimension), 0.1 * pressure);
-    stress = rve.apply(toward(goal, next, stress, scale, held_tolerance, rest.wait), 0).stress;
+    stress = apply(toward(goal, next, stress, scale, held_tolerance));
   }
   for (long round = 0; round < rest.max_rounds; ++round) {
     // Half the tolerance: the relaxation that follows moves the stress a little.
     if (largest_gap(goal, stress) > 0.5 * rest.stress_tolerance * pressure)
-      rve.apply(toward(goal, goal.stress, stress, pressure, 0.5 * rest.stress_tolerance, rest.wait), 0);
+      apply(toward(goal, goal.stress, stress, pressure, 0.5 * rest.stress_tolerance));
     const Report report = rve.relax(rest.unbalanced, rest.max_steps);
     stress = rve.stress();
     if (report.target_held && largest_gap(goal, stress) <= rest.stress_tolerance * pressure) return true;

@@ -23,6 +23,9 @@ double largest_gap(const StressGoal& goal, const Matrix3& stress);
 /// present mean pressure, or of a tenth of the goal's. The goal itself once that is near enough.
 Matrix3 next_stress(const StressGoal& goal, const Matrix3& stress, double largest_change);
 
+/// Sub-steps that an increment waits for its stress: what it misses the rounds correct.
+constexpr long short_wait = 200;
+
 /// How precisely a state is reached.
 struct Rest {
   double stress_tolerance = 1e-4;  ///< of the goal's pressure
@@ -30,10 +33,15 @@ struct Rest {
   double largest_change = 0.1;
   long max_rounds = 100;
   long max_steps = 100'000;  ///< of one relaxation
-  long wait = 200;           ///< sub-steps that each increment may wait for its stress
 };
 
-/// Drives an assembly to the goal and lets it come to rest there. False: not reached within the rounds.
-bool consolidate(Rve& rve, const StressGoal& goal, const Rest& rest);
+/// Drives an assembly to the goal and lets it come to rest there. False: not reached within the rounds. `deformation`
+/// (F, laboratory frame) goes on by what the cell did.
+bool consolidate(Rve& rve, const StressGoal& goal, const Rest& rest, Matrix3& deformation);
+
+/// The rotation, as a displacement gradient, that after `deformation` (F) brings material lines that were along x back
+/// there, and planes that were along x and y. A shear stress that is driven to zero shears the cell: unless its first
+/// vector stays along x, simple shear v_x(y) makes the cell thin in the end.
+Matrix3 upright_again(const Matrix3& deformation);
 
 }  // namespace rvelab::pack

@@ -14,13 +14,13 @@ namespace rvelab::pack {
 namespace {
 
 /// With the friction of the preparation: what counts is how dense the grains lie, not how still.
-constexpr Rest prepared{5e-2, 1e-2, 0.5, 10, 200, 200};
+constexpr Rest prepared{5e-2, 1e-2, 0.5, 10, 200};
 
 /// Grains that collapse on the way lose their pressure; the cell then shrinks again.
 constexpr int most_attempts = 5;
 
 /// With the final friction: the void ratio is there to a few 1e-4.
-constexpr Rest nearly{5e-3, 1e-3, 0.5, 10, 2000, 200};
+constexpr Rest nearly{5e-3, 1e-3, 0.5, 10, 2000};
 
 /// What coming to rest may still change in a void ratio; further from the target it is not worth it.
 constexpr double still_to_come = 5e-4;
@@ -63,6 +63,19 @@ void expect_overlaps(const Recipe& recipe, const Rve& rve, double share) {
   throw OverlapBeyondLimit(text + "; check the units of radii and stiffness");
 }
 
+/// Consolidates, and turns the cell so that it stands as it was drawn. A stress that is not isotropic is turned with
+/// it, by less each time, and corrected.
+bool consolidated_upright(Rve& rve, const StressGoal& goal, const Rest& rest, Matrix3& deformation) {
+  for (long round = 0; round < rest.max_rounds; ++round) {
+    if (!consolidate(rve, goal, rest, deformation)) return false;
+    const Matrix3 turn = upright_again(deformation);
+    rve.apply(turn, 0);
+    deformation += turn * deformation;
+    if (largest_gap(goal, rve.stress()) <= rest.stress_tolerance * goal.pressure()) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 Draw draw(const Recipe& recipe, long number, double friction, const std::atomic<bool>* stop) {
@@ -77,15 +90,16 @@ Draw draw(const Recipe& recipe, long number, double friction, const std::atomic<
   rve = steered(rve, recipe, stop);
   Draw result;
   result.friction = friction;
+  Matrix3 deformation = Matrix3::Identity();
   if (recipe.stress) {
     StressGoal goal{isotropic_stress(mean_pressure(*recipe.stress, d), recipe.shape), true, d};
-    for (int attempt = 0; !consolidate(rve, goal, prepared) && attempt < most_attempts; ++attempt) {
+    for (int attempt = 0; !consolidate(rve, goal, prepared, deformation) && attempt < most_attempts; ++attempt) {
       rve = steered(pressed_again(recipe, rve, stop), recipe, stop);
     }
     expect_overlaps(recipe, rve, 1.5);  // what is so far beyond will not come back
     rve.set_materials(recipe.materials);
     goal.stress = *recipe.stress;
-    consolidate(rve, goal, nearly);
+    consolidate(rve, goal, nearly, deformation);
     expect_overlaps(recipe, rve, 1);
     result.void_ratio = void_ratio(rve.network());
     const double miss = recipe.void_ratio ? std::abs(result.void_ratio - *recipe.void_ratio) : 0;
@@ -93,7 +107,7 @@ Draw draw(const Recipe& recipe, long number, double friction, const std::atomic<
     Rest rest;
     rest.stress_tolerance = recipe.stress_tolerance;
     rest.unbalanced = recipe.unbalanced;
-    result.at_rest = consolidate(rve, goal, rest);
+    result.at_rest = consolidated_upright(rve, goal, rest, deformation);
   } else {
     rve.set_materials(recipe.materials);
     result.at_rest = rve.relax(recipe.unbalanced, 100'000).target_held;

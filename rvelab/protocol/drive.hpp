@@ -44,11 +44,12 @@ class RunningTest {
   /// On to the next stage (phase 0): the one after it, or the one that it, or the event that ended it, names.
   void leave_stage();
 
-  /// One increment of a mixed target whose rows are complete but for tolerance and wait.
+  /// One increment of a mixed target that is complete but for its tolerance.
   Report apply(MixedTarget target, double dt, double tolerance);
   /// One increment: held components to their targets, the rest as dH says. Relative tolerance of the held stresses;
-  /// dt in s, 0 for quasi-static.
-  Report apply(const Matrix3& displacement_gradient, const std::vector<HeldStress>& held, double dt, double tolerance);
+  /// dt in s, 0 for quasi-static; `wait` as MixedTarget has it.
+  Report apply(const Matrix3& displacement_gradient, const std::vector<HeldStress>& held, double dt, double tolerance,
+               long wait = -1);
   /// A relaxation, in slices whose length depends on the number of grains alone; goes on with the one under way.
   Report relax(double unbalanced, long max_steps);
   /// Records at the given strains, the first of them the state as it is, each next one after the increment that

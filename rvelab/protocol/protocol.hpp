@@ -25,8 +25,7 @@ struct LoadingSettings {
   double held_tolerance = 0.005;  ///< a held stress may miss by this times max(|target|, 1 % of the stage's first p);
                                   ///< physical: its mean over an increment may
   static constexpr double held_tolerance_at_rate =
-      0.05;              ///< where a protocol does not say: collisions make it fluctuate
-  long held_wait = 200;  ///< quasi-static: sub-steps that a record waits for it, see MixedTarget::wait
+      0.05;  ///< where a protocol does not say: collisions make it fluctuate
 };
 
 /// What ends a stage before its end: looked at with each of its records but the first.

@@ -43,10 +43,6 @@ std::vector<TableKey> loading() {
       number(t, "held_tolerance", "1", initial.held_tolerance, ratio,
              "a held stress may miss its target by this times the larger of the target's size and 1 % of the stage's "
              "first p; mode = physical: its mean over an increment may, 0.05 unless given"),
-      whole_number(
-          t, "held_wait", initial.held_wait, {0, 1e9},
-          "mode = quasi_static: sub-steps that a record waits for the held stress; a quarter of its increment's where "
-          "that is more"),
   };
 }
 

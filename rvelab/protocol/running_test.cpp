@@ -153,17 +153,17 @@ double RunningTest::time_for(double strain_increment) const {
 
 Report RunningTest::apply(MixedTarget target, double dt, double tolerance) {
   target.tolerance = tolerance;
-  target.wait = loading.held_wait;
   return applied([&] { return rve.apply(target, dt); }, dt);
 }
 
 Report RunningTest::apply(const Matrix3& displacement_gradient, const std::vector<HeldStress>& held, double dt,
-                          double tolerance) {
+                          double tolerance, long wait) {
   if (!held.empty()) {
     // The first increment of a stage (step 1) brings the stress to where the others hold it.
     const bool held_before = run.progress.step > 1;
-    return apply(mixed_target(displacement_gradient, held, run.progress.stress, dimension(), held_before), dt,
-                 tolerance);
+    MixedTarget target = mixed_target(displacement_gradient, held, run.progress.stress, dimension(), held_before);
+    target.wait = wait;
+    return apply(target, dt, tolerance);
   }
   return applied(
       [&] {
@@ -189,6 +189,8 @@ Report RunningTest::applied(Apply apply, double dt) {
   at.strain_sum += strain_increment(response.displacement_gradient, dimension());
   at.stress = response.stress;
   at.substeps += response.report.substeps;
+  run.costs.substeps += response.report.substeps;
+  run.costs.waited += response.report.waited;
   time_ += dt;
   return response.report;
 }
@@ -236,6 +238,7 @@ void RunningTest::record(double strain, const Report& report) {
   record.held_error = report.held_error;
   record.target_held = report.target_held;
   record.quasi_static = report.quasi_static;
+  record.cell_thin = rve.cell_thin();
   run.progress.substeps = 0;
   note_error(report);
   const std::size_t number = run.result.records.size();

@@ -76,7 +76,7 @@ void approach(RunningTest& test, const IsotropicStage& stage, const pack::Stress
     const Matrix3 next = pack::next_stress(goal, at.stress, stage.largest_change);
     if ((next - goal.stress).isZero(0)) return;
     const double scale = std::max(mean_pressure(at.stress, test.dimension()), 0.1 * stage.pressure);
-    test.apply(Matrix3::Zero(), driven(goal, next, scale), 0, test.loading.held_tolerance);
+    test.apply(Matrix3::Zero(), driven(goal, next, scale), 0, test.loading.held_tolerance, pack::short_wait);
     ++at.step;
     test.pause();
   }
@@ -109,7 +109,8 @@ void drive(RunningTest& test, const IsotropicStage& stage) {
     if (at.phase == correcting) {
       // Half the tolerance: the relaxation that follows moves the stress a little.
       if (pack::largest_gap(goal, at.stress) > 0.5 * stage.stress_tolerance * stage.pressure) {
-        test.apply(Matrix3::Zero(), driven(goal, goal.stress, stage.pressure), 0, 0.5 * stage.stress_tolerance);
+        test.apply(Matrix3::Zero(), driven(goal, goal.stress, stage.pressure), 0, 0.5 * stage.stress_tolerance,
+                   pack::short_wait);
       }
       at.phase = relaxing;
     }
@@ -126,6 +127,7 @@ void drive(RunningTest& test, const IsotropicStage& stage) {
          << stage.max_rounds << " rounds; raise max_rounds, max_steps or the tolerances";
     throw test.failed(text.str());
   }
+  if (stage.shear_stress_free) test.apply(pack::upright_again(at.deformation), {}, 0, test.loading.held_tolerance);
   // Pace and tolerance of what follows go by the pressure reached here, not by one that is long left behind (discs
   // swelled from 100 kPa to 40 Pa, then prescribed strain: p ended sixty times too high).
   const double change = stage.pressure / test.rve.reference_pressure();

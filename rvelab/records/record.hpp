@@ -22,8 +22,10 @@ struct RecordedState {
   double inertial_number = 0;
   long substeps = 0;         ///< made since the record before
   double held_error = 0;     ///< largest error of a held stress over its scale
-  bool target_held = true;   ///< false: kept, but the held stress was not within the tolerance (dt = 0: after the wait)
+  bool target_held = true;   ///< false: kept, but the held stress was not within the tolerance (dt > 0)
   bool quasi_static = true;  ///< dt = 0; false: kept, but no equilibrium (Report::quasi_static); dt > 0: not judged
+
+  bool cell_thin = false;  ///< a cell height is below four mean diameters: the record stands for less of the material
 
   std::uint64_t quantities = usual_quantities;  ///< bits of those that were measured
 };

@@ -44,8 +44,10 @@ Balance Rve::Impl::checked_balance() const {
 
 TimeStep Rve::Impl::time_step(const Matrix3& rate, long interval, double dt) {
   const double fixed = fixture.options.fixed_time_step;
-  if (fixed > 0)
+  if (fixed > 0) {
+    expect_stable(std::min(fixed, dt));
     return {fixed, interval, collisions_ahead(fixture, now, nullptr, false, {rate, double(interval) * fixed, dt}).deep};
+  }
   present_sums();
   double stable = fixture.options.time_step_factor * critical_step(fixture, with_floor(sums, fixture));
   // Strong local damping takes (1 - alpha) to (1 + alpha) of the force as the motion turns: at 0.99 an eighth of the
@@ -57,6 +59,18 @@ TimeStep Rve::Impl::time_step(const Matrix3& rate, long interval, double dt) {
   const double longest = std::min(stable, ahead.step);
   const double steps = std::clamp(std::ceil(ahead.look / longest), 10.0, double(interval));
   return {longest, long(steps), ahead.deep};
+}
+
+void Rve::Impl::expect_stable(double step) {
+  // Of the springs: the bound with dashpots is several times below where restitution 0.1 errs.
+  RowSums springs = present_sums();
+  springs.dashpot.clear();
+  const double critical = critical_step(fixture, springs);
+  if (step <= critical) return;
+  throw IncrementFailed("solver.fixed_time_step_s = " + in_words(fixture.options.fixed_time_step) +
+                        " s is above the critical step, " + in_words(critical) +
+                        " s, of the contacts as they are: energy would come from nowhere; give at most 0.7 of it, or "
+                        "0 for steps that follow the contacts");
 }
 
 Advance loading_of(const Fixture& f, const FrameSplit& increment, long steps, double step, bool physical, bool deep) {

@@ -1,6 +1,6 @@
 // apply with a mixed target: the stress servo runs inside the sub-steps. At dt = 0 the pace follows the unbalanced
-// ratio and the end of the increment waits for the stress; at dt > 0 the increment takes the time that was given, no
-// more. Declared in rve_impl.hpp.
+// ratio, and the target waits for a stress that the grains let go (loading/recovery.hpp); at dt > 0 the increment takes
+// the time that was given, no more. Declared in rve_impl.hpp.
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -8,6 +8,7 @@
 #include "rvelab/cell/volume.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/solver/loading/collisions.hpp"
+#include "rvelab/solver/loading/recovery.hpp"
 #include "rvelab/solver/loading/servo.hpp"
 #include "rvelab/solver/rve_impl.hpp"
 
@@ -15,7 +16,8 @@ namespace rvelab {
 
 namespace {
 
-constexpr long servo_interval = 5;  ///< sub-steps between control updates of the servo
+constexpr long servo_interval = 5;      ///< sub-steps between control updates of the servo
+constexpr long recovery_interval = 10;  ///< those between looks at contacts that form anew
 
 /// What keeps the gain regular in a gas, Pa: a hundredth of what one typical contact per grain would give, from the
 /// bound of stiffness of a grain of two (N/m).
@@ -43,7 +45,21 @@ struct TargetPath {
   }
 };
 
+IncrementFailed too_many_substeps(const Report& report, long most) {
+  return IncrementFailed("the increment needs more than " + std::to_string(most) +
+                         " sub-steps (solver.max_substeps); the held stress is off by " + in_words(report.held_error) +
+                         " of its scale");
+}
+
 }  // namespace
+
+double Rve::Impl::strain_of_held(const Servo& servo) const {
+  // p = f N d/V for some four contacts a grain in the plane, six in space.
+  const double diameter = 2 * fixture.mean_radius;
+  const double force = servo.held_stress() * now.cell.volume() / (double(fixture.size()) * diameter);
+  const double share = std::clamp(force / now.state.reference_contact_force, 1e-7, 1.0);
+  return share * now.state.reference_overlap / diameter;
+}
 
 Report Rve::Impl::load(const MixedTarget& target, double dt, Matrix3& gradient) {
   return dt > 0 ? load_at_rate(target, dt, gradient) : load_quasi_static(target, gradient);
@@ -109,68 +125,54 @@ Report Rve::Impl::load_quasi_static(const MixedTarget& target, Matrix3& gradient
   const auto stress = [&]() -> Matrix3 { return to_lab(present_stress()) + reynolds_stress(); };
   Servo servo(target, fixture.dimension(), stress(), Servo::Missed::evenly);
   begin_quasi_static();
-  double strain = 0;
-
   TargetPath path{target, fixture.dimension()};
-  double fraction = 0, since_control = 0;
-  long waited = 0, longest_wait = target.wait;
-  bool arrived = false, looked = false;
+  Recovery recovery(target, strain_of_held(servo), fixture.dimension());
+  double fraction = 0, strain = 0;
+  long since_control = 0;
+  bool looked = false;
   while (true) {
+    report.held_error = servo.largest_error(servo.residual(fraction, path.strain, stress()));
+    if (fraction >= 1 && report.held_error <= target.tolerance) break;
+    recovery.judge(report.held_error);
     if (since_control == 0)
       servo.set_stiffness(affine_stiffness(fixture, now), soft_stiffness(fixture, now, least_stiffness(fixture, now)));
-    long steps = servo_interval;
     const double wanted = servo.predicted_strain() + target.spin.norm();
     if (report.substeps == 0) {
       strain = servo.predicted_strain();
       set_pace_target(target_of_held_path());
     }
-    const double full_pace = double(servo_interval) * now.state.strain_per_step;
-    double advance_by = wanted > 0 ? std::min(1 - fraction, full_pace / wanted) : 1 - fraction;
-    const bool waiting = fraction >= 1;
-    if (waiting) {
-      // In stiff packings the increment itself takes thousands of sub-steps, and what it stirs up calms as slowly.
-      if (waited == 0) longest_wait = std::max(target.wait, report.substeps / 4);
-      if (!servo.controls_stress() || waited >= longest_wait) break;
-      steps = std::min(steps, longest_wait - waited);
-      advance_by = 0;
-    }
-    fraction = 1 - fraction - advance_by < 1e-12 ? 1.0 : fraction + advance_by;
+    const bool waiting = fraction >= 1 || recovery.under_way();
+    const long steps = waiting ? std::min(servo_interval, recovery.patience(report.substeps)) : servo_interval;
+    if (steps <= 0) break;
+    const double full_pace = double(servo_interval) * now.state.strain_per_step, left = 1 - fraction;
+    const double advance_by = waiting ? 0.0 : wanted > 0 ? std::min(left, full_pace / wanted) : left;
+    const double closing = recovery.under_way() ? double(servo_interval) * recovery.pace() : 0.0;
+    fraction = left - advance_by < 1e-12 ? 1.0 : fraction + advance_by;
     const Matrix3 change =
-        servo.next_strain(fraction, advance_by * wanted, full_pace, path.strain, stress(), now.state.servo_strain);
-    advance(fixture, now,
-            loading_of(fixture, split_increment(now.cell, path.go_on(change, fraction)), steps, 1, false, false));
+        servo.next_strain(fraction, advance_by * wanted, full_pace, std::max(10 * full_pace, closing), path.strain,
+                          stress(), now.state.servo_strain);
+    const FrameSplit increment = split_increment(now.cell, path.go_on(change, fraction));
+    advance(fixture, now, loading_of(fixture, increment, steps, 1, false, false));
     moved();
-    looked = false;
     now.state.interval_strain += change.norm();
     report.substeps += steps;
-    if (report.substeps > fixture.options.max_substeps)
-      throw IncrementFailed("the increment needs more than " + std::to_string(fixture.options.max_substeps) +
-                            " sub-steps (solver.max_substeps)");
-    if (waiting) waited += steps;
-    since_control += double(steps);
-    if (since_control >= double(control_interval)) {
-      since_control = 0;
-      const Balance balance = look();
-      looked = true;
-      if (!waiting) steer_pace(balance, servo.held_stress());
-    }
-    // The pace is judged before the wait, whose calm says nothing of it.
-    if (fraction >= 1 && !arrived) {
-      arrived = true;
-      if (!looked && end_is_looked_at(report.substeps, strain)) {
-        steer_pace(look(), servo.held_stress());
-        looked = true;
-      }
-    }
-    if (fraction >= 1) {
-      report.held_error = servo.held_error(path.strain, stress());
-      if (report.held_error <= target.tolerance) break;
-    }
+    since_control += steps;
+    if (waiting) recovery.waited(steps, change);
+    if (report.substeps > fixture.options.max_substeps) throw too_many_substeps(report, fixture.options.max_substeps);
+    const bool arrived = !waiting && fraction >= 1;
+    const bool due = since_control >= (recovery.under_way() ? recovery_interval : control_interval);
+    if (due) since_control = 0;
+    looked = due || (arrived && end_is_looked_at(report.substeps, strain));
+    if (!looked) continue;
+    const Balance balance = look();
+    // The pace is judged before a wait, whose calm says nothing of it.
+    if (!waiting) steer_pace(balance, servo.held_stress());
+    recovery.looked(2 * double(balance.touching) / double(fixture.size()), change);
   }
   if (!looked && end_is_looked_at(report.substeps, strain)) look();
-  report.unbalanced_ratio = now.state.unbalanced_ratio;
-  report.held_error = servo.held_error(path.strain, stress());
+  report.waited = recovery.substeps();
   report.target_held = report.held_error <= target.tolerance;
+  report.unbalanced_ratio = now.state.unbalanced_ratio;
   judge(report);
   judge_error(tolerance_of_held_path() * pressure_scale(), strain, report.unbalanced_ratio, 0, report);
   gradient = path.gradient;

@@ -111,6 +111,7 @@ double Rve::unbalanced_ratio() const {
 }
 
 const Cell& Rve::cell() const { return impl_->has_deferred() ? impl_->strained_cell : impl_->now.cell; }
+bool Rve::cell_thin() const { return impl_->cell_thin(cell()); }
 std::size_t Rve::size() const { return impl_->fixture.size(); }
 std::uint64_t Rve::grain_steps() const { return impl_->now.state.grain_steps; }
 std::uint64_t Rve::grain_steps_made() const { return impl_->grain_steps_made; }
@@ -133,8 +134,7 @@ Response Rve::Impl::respond(const Report& report, const Matrix3& gradient, doubl
     r.reynolds_stress = reynolds;
   }
   const int d = fixture.dimension();
-  double thinnest = heights(now.cell).minCoeff();
-  r.report.cell_thin = thinnest < 8 * fixture.mean_radius;
+  r.report.cell_thin = cell_thin(now.cell);
   if (dt > 0) {
     Matrix3 e = 0.5 * (gradient + gradient.transpose());
     const double mean = e.trace() / d;

@@ -24,6 +24,7 @@ struct Want {
 /// What was done, and in what state it ended. Of apply and of relax; what a call does not judge keeps its default.
 struct Report {
   long substeps = 0;            ///< 0: the strain is left to the next sub-step, see Rve::apply
+  long waited = 0;              ///< mixed targets, dt = 0: those of them in which the target stood still
   double unbalanced_ratio = 0;  ///< mean |resultant force|, or mean |torque|/r where larger, over max(mean contact
                                 ///< force, 1e-3 of the reference). dt = 0: when it was
                                 ///< measured last: at the end of an increment of 10 sub-steps or more, else up to 50
@@ -31,8 +32,8 @@ struct Report {
   double inertial_number = 0;   ///< dt > 0: sqrt(2 e:e) d sqrt(rho/p), infinite at p <= 0; dt = 0: zero
   double held_error = 0;        ///< mixed targets: largest |residual| over its scale (dt > 0: of its mean over the
                                 ///< increment), see MixedTarget
-  bool target_held = true;      ///< mixed targets: held_error <= tolerance; at dt = 0 within the wait. relax: the
-                                ///< unbalanced ratio that was asked for is reached
+  bool target_held = true;      ///< mixed targets: held_error <= tolerance; at dt = 0 always, but with a wait given.
+                                ///< relax: the unbalanced ratio that was asked for is reached
   bool quasi_static = true;   ///< apply at dt = 0: the state is an equilibrium as far as was asked for: the unbalanced
                               ///< ratio is within three times its target and the target is held. A state that flows
                               ///< creeps beyond that: relaxed, its stress falls by some ten times the ratio
@@ -98,7 +99,9 @@ class Rve {
   /// The same with a mixed target: the stress servo runs inside the sub-steps, and the response says which gradient it
   /// found. Throws InputError if the target is not a target (see MixedTarget), InvalidIncrement (dt is negative or not
   /// finite, or the strain that the rows ask for is no deformation) or IncrementFailed; the RVE is then exactly as it
-  /// was. A target that is missed is no error: Report::target_held says so.
+  /// was. At dt = 0 the target waits for a stress that is let go, and one that the grains cannot carry is an
+  /// IncrementFailed (loading/recovery.hpp); at dt > 0 a stress that is missed is no error: Report::target_held says
+  /// so.
   Response apply(const MixedTarget& target, double dt, const Want& want = {});
 
   /// Quasi-static steps at fixed cell until the unbalanced ratio is at most `unbalanced` (dimensionless) or `max_steps`
@@ -111,6 +114,7 @@ class Rve {
   Matrix3 reynolds_stress() const;    ///< -(1/V) sum m v' v', laboratory frame, Pa; zero after dt = 0
   double unbalanced_ratio() const;    ///< of the state as it is, see Report::unbalanced_ratio
   const Cell& cell() const;           ///< lattice (m) in its frame, and the frame's rotation to the laboratory
+  bool cell_thin() const;             ///< a cell height is below four mean diameters
   std::size_t size() const;           ///< number of grains
   double critical_time_step() const;  ///< 2/omega_max with physical masses, s
   std::uint64_t grain_steps() const;  ///< grains times sub-steps since the specimen was made

@@ -25,6 +25,8 @@ struct TimeStep {
   bool deep = false;   ///< see Collisions
 };
 
+class Servo;
+
 struct Rve::Impl {
   Fixture fixture;
   Assembly now;
@@ -179,6 +181,10 @@ struct Rve::Impl {
   /// dt > 0: in an increment of the time dt (s), at the velocity gradient `rate` of the cell (1/s, cell frame); the
   /// next look is after `interval` sub-steps at the latest.
   TimeStep time_step(const Matrix3& rate, long interval, double dt);
+  /// Throws IncrementFailed if a time step (s) is above the critical one of the state as it is.
+  void expect_stable(double step);
+  /// A cell height is below four mean diameters.
+  bool cell_thin(const Cell& cell) const { return heights(cell).minCoeff() < 8 * fixture.mean_radius; }
   double initial_pace();
   /// Throws IncrementFailed if `needed` sub-steps after `made` are more than solver.max_substeps.
   void expect_substeps(long made, long needed) const;
@@ -220,6 +226,8 @@ struct Rve::Impl {
   Report load(const MixedTarget& target, double dt, Matrix3& gradient);
   Report load_at_rate(const MixedTarget& target, double dt, Matrix3& gradient);
   Report load_quasi_static(const MixedTarget& target, Matrix3& gradient);
+  /// Strain that the overlaps of grains which carry the held stress are worth.
+  double strain_of_held(const Servo& servo) const;
 };
 
 /// What advance is to do for an increment in the cell frame.

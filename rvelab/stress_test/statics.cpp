@@ -73,7 +73,12 @@ void asked_for_tension(const Case& asked, Verdict& verdict) {
       else
         target.rows.push_back({component, Matrix3::Zero(), 0, 0});
     }
-  const Response response = tested.apply(target, asked("critical_steps") * tested.rve().critical_time_step());
+  const double dt = asked("critical_steps") * tested.rve().critical_time_step();
+  if (dt == 0) {
+    verdict.refusal("a tension that grains cannot carry", refused(tested.rve(), [&](Rve& r) { r.apply(target, 0); }));
+    return;
+  }
+  const Response response = tested.apply(target, dt);
   tested.check_laws();
   verdict.law("a tension that grains cannot carry is said not to be held", !response.report.target_held);
   verdict.law("no tension in the answer, of p", std::max(0.0, response.stress.diagonal().maxCoeff()) / p,

@@ -218,3 +218,38 @@ TEST_CASE("A degenerate lattice is an error") {
   lower.lattice(1, 0) = 0.1;
   CHECK_THROWS_AS(reduced(lower), Error);
 }
+
+TEST_CASE("The shear that makes a cell thin is that from which on a height of the reduced cell is below the limit") {
+  const double limit = 4;
+  for (const int dimension : {2, 3}) {
+    const Cell upright = cubic_cell(dimension, std::pow(20.0, dimension), 1);
+    const int k = dimension - 1;
+    CHECK(shear_until_thin(upright, 0, k, limit, 1e4) > 1e4);
+    Cell skewed = upright;  // a1 along x is enough
+    skewed.lattice(0, k) = 3.7;
+    CHECK(shear_until_thin(skewed, 0, k, limit, 1e4) > 1e4);
+    CHECK(shear_until_thin(upright, 0, k, 30, 1e4) == 0);
+    for (const double turn : {2.5e-3, 0.05, -0.3}) {
+      Cell turned = upright;
+      const double c = std::cos(turn), s = std::sin(turn);
+      turned.rotation(0, 0) = turned.rotation(k, k) = c;
+      turned.rotation(0, k) = -s;
+      turned.rotation(k, 0) = s;
+      const double thin = shear_until_thin(turned, 0, k, limit, 1e4);
+      CAPTURE(dimension, turn, thin);
+      const auto least_height = [&](double gamma) {
+        Matrix3 shear = Matrix3::Zero();
+        shear(0, k) = gamma;
+        Cell cell = cell_of(dimension, (Matrix3::Identity() + shear) * turned.rotation * turned.lattice);
+        apply_reduction(cell, reduced(cell));
+        return heights(cell).minCoeff();
+      };
+      double least = 1e300;
+      for (const double sign : {1.0, -1.0})
+        for (double gamma = 0.01; gamma < 400; gamma += 0.01) {
+          if (gamma < least && least_height(sign * gamma) < limit) least = gamma;
+        }
+      CHECK(thin == Approx(least).epsilon(0.02).margin(0.06));
+    }
+  }
+}

@@ -58,3 +58,36 @@ TEST_CASE("a run says which event ended a stage before its end: undrained, loose
   CHECK(told["ended_by"] == std::vector<std::string>{"compression: p_over_first below 0.001"});
   CHECK(told["end_strain"] < 0.1);
 }
+
+TEST_CASE("a cell that gets thin is told of before and after the run, flagged in its records, and shown by inspect") {
+  const Workplace here;
+  here.import_packing("dense_p20");
+  here.write("turn.toml",
+             "[test]\nname = \"turn\"\n[[stage]]\nkind = \"deformation\"\n"
+             "gradients = [[0.9999875, -0.005, 0.005, 0.9999875]]\n");
+  REQUIRE(here.run("run turn.toml --specimen S.h5 -o T.h5").code == 0);
+  const auto stands = nlohmann::json::parse(here.run("inspect S.h5 --json").output);
+  const auto turned = nlohmann::json::parse(here.run("inspect T.h5 --json").output);
+  CHECK(stands["cell_thin"] == false);
+  CHECK(turned["shear_until_thin"] > 10);
+  CHECK(turned["shear_until_thin"] < 200);
+  here.write("shear.toml",
+             "[test]\nname = \"shear\"\n[[stage]]\nkind = \"simple_shear\"\nto_strain = 1000\nrecord_every = 1e-4\n"
+             "[[stage.until]]\nquantity = \"strain\"\nabove = 1.5e-4\n");
+  const Outcome upright = here.run("run shear.toml --specimen S.h5"),
+                tilted = here.run("run shear.toml --specimen T.h5");
+  REQUIRE(tilted.code == 0);
+  CHECK(tilted.errors.find("stage \"simple_shear\": sheared beyond") != std::string::npos);
+  CHECK(upright.errors.find("sheared beyond") == std::string::npos);
+
+  REQUIRE(here.run("import " + std::string(RVELAB_TEST_DATA) + "/compat/grains.csv --cell 0.03,0.03,0.1 --material " +
+                   std::string(RVELAB_TEST_DATA) + "/compat/soil.toml -o nine.h5")
+              .code == 0);
+  const Outcome small = here.run("run shear.toml --specimen nine.h5 --json");
+  INFO(small.errors);
+  REQUIRE(small.code == 0);
+  const auto told = nlohmann::json::parse(small.output);
+  CHECK(told["cell_thin"] == 3);
+  CHECK(told["records"]["cell_thin"] == std::vector<bool>{true, true, true});
+  CHECK(small.errors.find("3 of 3 records are of a thin cell (cell_thin)") != std::string::npos);
+}

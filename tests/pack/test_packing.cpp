@@ -186,6 +186,31 @@ TEST_CASE("two materials keep their own friction and stiffness in the finished s
   CHECK(std::count(packing.specimen.grains.material.begin(), packing.specimen.grains.material.end(), 1) == 50);
 }
 
+TEST_CASE("a packed cell stands as it was drawn, its first vector along x, so that it may be sheared without end") {
+  std::vector<pack::Recipe> recipes = {discs(100), spheres(), ellipses(100), discs(100)};
+  (*recipes[3].stress)(1, 1) *= 1.5;  // turned back with the cell, this stress is corrected
+  for (pack::Recipe& recipe : recipes) {
+    recipe.preparation.friction = 0.2;
+    const pack::Packing packing = packed(recipe);
+    expect_at_rest(packing, recipe);
+    const Cell& cell = packing.specimen.cell;
+    CHECK((cell.rotation - Matrix3::Identity()).cwiseAbs().maxCoeff() < 1e-12);
+    CHECK(cell.lattice(0, 1) != 0);  // the shear stress was driven to zero
+    const double height = 4 * mean_diameter(Rve(packing.specimen).network());
+    REQUIRE(heights(cell).minCoeff() > height);
+    CHECK(shear_until_thin(cell, 0, cell.dimension - 1, height, 1e4) > 1e4);
+  }
+}
+
+TEST_CASE("a turn that takes back what a deformation did to x leaves lines along x and planes xy where they were") {
+  Matrix3 f = Matrix3::Identity();
+  f << 1.01, 0.02, -0.03, 0.015, 0.98, 0.04, -0.02, 0.01, 1.02;
+  const Matrix3 turn = Matrix3::Identity() + pack::upright_again(f), all = turn * f;
+  CHECK((turn.transpose() * turn - Matrix3::Identity()).cwiseAbs().maxCoeff() < 1e-14);
+  CHECK(std::abs(all(1, 0)) + std::abs(all(2, 0)) + std::abs(all(2, 1)) < 1e-15);
+  CHECK(pack::upright_again(all.triangularView<Eigen::Upper>()).isZero(1e-14));
+}
+
 TEST_CASE("the next stress on the way is never further than the change allowed, and at last the goal") {
   pack::StressGoal goal{pack::isotropic_stress(1e5, Shape::disc), true, 2};
   Matrix3 stress = pack::isotropic_stress(1e3, Shape::disc);

@@ -54,7 +54,6 @@ TEST_CASE("What a protocol leaves out has the documented defaults") {
   CHECK(protocol.uses_pressure);
   CHECK_FALSE(protocol.loading.physical);
   CHECK(protocol.loading.held_tolerance == 0.005);
-  CHECK(protocol.loading.held_wait == 200);
   REQUIRE(protocol.stages.size() == 2);
   CHECK(protocol.stages[0].name == "isotropic");
   const auto& isotropic = stage_of<protocol::IsotropicStage>(protocol, 0);
@@ -88,7 +87,7 @@ TEST_CASE("The resolved text is a protocol that says the same and stays as it is
   CHECK(second.pressure == first.pressure);
   CHECK(stage_of<protocol::CompressionStage>(second, 1).record_every == 0.0007);
   CHECK(second.overrides["contact"]["slip"].value<std::string>() == "full_radius");
-  for (const char* part : {"held_wait", "stress_tolerance", "unbalanced", "lateral_pressure_Pa", "max_rounds"}) {
+  for (const char* part : {"held_tolerance", "stress_tolerance", "unbalanced", "lateral_pressure_Pa", "max_rounds"}) {
     CHECK(contains(first.resolved, part));
   }
 }
@@ -162,6 +161,7 @@ TEST_CASE("Wrong types, numbers that are not finite and values out of range are 
   refused("stage.isotropic.max_rounds=1.5", "is not a whole number");
   refused("stage.isotropic.record=1", "is neither true nor false");
   refused("loading.held_tolerance=0", "out of range");
+  refused("loading.held_wait=200", "remove it");
   refused("contact.slip=sideways", "contact.slip");
   refused("solver.skin=-1", "solver.skin");
   refused("material.friction=-0.1", "material.friction");

@@ -113,12 +113,12 @@ Vector6 Servo::rows_of(bool stress, const Vector6& rows) const {
   return part;
 }
 
-Matrix3 Servo::next_strain(double to, double paced_strain, double full_pace, const Matrix3& strain_so_far,
+Matrix3 Servo::next_strain(double to, double paced_strain, double full_pace, double limit, const Matrix3& strain_so_far,
                            const Matrix3& stress, Matrix3& integral) {
   const Vector6 r = residual(to, strain_so_far, stress);
   const Matrix3 answer = strain_matrix(gain_ * rows_of(true, r));
   Matrix3 held = proportional_gain * answer + paced_strain * integral;
-  const double size = held.norm(), limit = 10 * full_pace;
+  const double size = held.norm();
   if (size > limit)
     held *= limit / size;
   else  // a short last segment says little about the rate: its weight is its share of a full one

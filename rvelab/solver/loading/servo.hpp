@@ -30,9 +30,9 @@ class Servo {
 
   /// Strain of the next segment, symmetric: the target's fraction goes on to `to` (in [0, 1]).
   /// `paced_strain` is the share of the predicted strain that the segment makes, `full_pace` what a full segment would;
-  /// the answer to stress errors is cut at ten times that. `integral` is the strain per unit of paced strain that
+  /// the answer to stress errors is cut at `limit`. `integral` is the strain per unit of paced strain that
   /// the sum of the errors has found (laboratory frame); it is updated.
-  Matrix3 next_strain(double to, double paced_strain, double full_pace, const Matrix3& strain_so_far,
+  Matrix3 next_strain(double to, double paced_strain, double full_pace, double limit, const Matrix3& strain_so_far,
                       const Matrix3& stress, Matrix3& integral);
 
   /// The same at dt > 0. The dashpots answer a rate and let go of it when it ends: an update changes the stress by

@@ -1,0 +1,50 @@
+// Waiting for a held stress at dt = 0. In an avalanche the contact network gives way and the stress that is held falls,
+// to nothing where the cell comes apart. The strained directions then stand still until it is back.
+//
+// How fast the cell may close meanwhile follows from the contacts that the grains will have, not from those that are
+// left: by a few thousandths of their overlap a sub-step. Grains that meet at that speed overlap by as much (a sub-step
+// is about a quarter of the period of a contact), and a network that jams is found by the servo within a few per cent
+// of its stress. While no network is there the speed grows, or a cell of stiff grains would need millions of sub-steps.
+#pragma once
+
+#include "rvelab/solver/loading/mixed_target.hpp"
+
+namespace rvelab {
+
+class Recovery {
+ public:
+  /// `strain_of_overlap`: mean overlap over the diameter of grains that carry what is held.
+  Recovery(const MixedTarget& target, double strain_of_overlap, int dimension)
+      : tolerance_(target.tolerance),
+        strain_of_overlap_(strain_of_overlap),
+        dimension_(dimension),
+        longest_wait_(target.wait) {}
+
+  /// From the largest error of a held stress over its scale: begins where it is far beyond the tolerance, ends within
+  /// it. Not where the target has a wait of its own.
+  void judge(double error);
+  bool under_way() const { return under_way_; }
+
+  /// Strain of a sub-step at which the cell may go after the stress.
+  double pace() const { return 3e-3 * growth_ * strain_of_overlap_; }
+
+  /// Sub-steps that the target may wait yet, after so many in all.
+  long patience(long substeps);
+  /// Books sub-steps in which the target stood still, and the strain that the servo made in them.
+  void waited(long substeps, const Matrix3& strain);
+  long substeps() const { return substeps_; }
+
+  /// After a look at the contacts: their number per grain, and the strain that the servo made last. Throws
+  /// IncrementFailed where the grains cannot carry what is held: none touches another and the stress asks for more
+  /// room, or the cell has sheared by a half while it waited.
+  void looked(double coordination, const Matrix3& last_strain);
+
+ private:
+  double tolerance_, strain_of_overlap_;
+  int dimension_;
+  double error_ = 0, growth_ = 1, sheared_ = 0;
+  long substeps_ = 0, longest_wait_;
+  bool under_way_ = false;
+};
+
+}  // namespace rvelab

@@ -1,0 +1,154 @@
+#!/usr/bin/python3
+"""Held stresses at dt = 0 through avalanches: held.py RVELAB WORK [--count N] [--before RVELAB] [RECIPE...].
+
+N specimens of each recipe (default: 20, of spheres 5), drained biaxial or triaxial compression at three pressures. For
+each recipe: records, those off by more than loading.held_tolerance, largest error over the tolerance, tests that ended
+early, sub-steps in all and in the worst record, friction angle at the peak (mean and standard deviation of all tests).
+With --before the same by another build, on the same specimens. Then other tests that hold a stress, on one specimen.
+
+Bars: no record off by more than the tolerance, and no test that ended early.
+"""
+import argparse
+import pathlib
+import subprocess
+import sys
+
+import h5py
+import numpy as np
+
+PROTOCOLS = pathlib.Path("protocols").resolve()
+PRESSURES = ("50e3", "100e3", "200e3")
+TOLERANCE = 0.005  # loading.held_tolerance
+# 400 discs of a sand by mass, d60/d10 2.1, with rolling friction: its loose states come apart in avalanches.
+SAND = """[pack]
+name = "sand"
+shape = "disc"
+number = 400
+thickness_m = 4e-4
+[grains]
+grading = "tabulated"
+passing_by = "mass"
+radii_m = [0.10e-3, 0.15e-3, 0.275e-3, 0.31e-3, 0.5e-3]
+passing = [0, 0.1, 0.5, 0.6, 1]
+[target]
+pressure_Pa = 100e3
+void_ratio = 0.1874
+[contact]
+law = "linear"
+rolling = true
+[damping]
+local = 0.1
+[[material]]
+name = "sand"
+density_kg_m3 = 2650
+young_modulus_Pa = 800e6
+stiffness_ratio = 0.5
+friction_angle_deg = 23
+rolling_stiffness = 1
+rolling_friction = 0.05
+"""
+# name: recipe, settings, pressures
+RECIPES = {
+    "sand": ("sand.toml", [], PRESSURES),
+    "dense": ("pack_dense", [], PRESSURES),
+    "medium": ("pack_medium", [], PRESSURES),
+    "loose": ("pack_loose", [], PRESSURES),
+    "soft": ("pack_soft", [], ("5e3", "10e3", "20e3")),
+    "hertz": ("pack_hertz", [], PRESSURES),
+    "smooth": ("pack_dense", ["material.friction_angle_deg=6", "target.void_ratio_tolerance=0.02"], PRESSURES),
+    "rough": ("sand.toml", ["material.friction_angle_deg=40", "material.rolling_friction=0.5"], PRESSURES),
+    "free": ("sand.toml", ["contact.rolling=false"], PRESSURES),
+    "low": ("sand.toml", ["pack.number=60", "target.void_ratio_tolerance=0.03"], ("2e3", "10e3")),
+    "high": ("sand.toml", ["pack.number=100", "target.void_ratio_tolerance=0.03"], ("500e3", "1e6")),
+}
+OTHERS = (("constant_p", []), ("simple_shear_drained", ["stage.shear.to_strain=0.3"]), ("biaxial_extension", []),
+          ("isotropic_compression", []), ("complex_loading", []))
+
+
+def path_of(name):
+    return name if name.endswith(".toml") else str(PROTOCOLS / f"{name}.toml")
+
+
+def specimens(program, work, name, count):
+    recipe, settings, _ = RECIPES[name]
+    made = []
+    for seed in range(1, count + 1):
+        file = work / f"{name}_{seed}.h5"
+        if not file.exists():
+            answer = subprocess.run([program, "pack", path_of(recipe), "-o", file, "--threads", "1", "--set", f"pack.seed={seed}",
+                                     *(word for each in settings for word in ("--set", each))], cwd=work,
+                                    capture_output=True, text=True)
+            if answer.returncode != 0:
+                print(f"# {name} {seed}: {answer.stderr.strip()[-200:]}", flush=True)
+                continue
+        made.append(file)
+    return made
+
+
+def test(program, work, protocol, specimen, settings):
+    """Held errors, sub-steps, peak friction angle in degrees, and how it ended."""
+    out = work / "R.h5"
+    answer = subprocess.run([program, "run", path_of(protocol), "--specimen", specimen, "-o", out, "--force",
+                             *(word for each in settings for word in ("--set", each))], capture_output=True, text=True)
+    if not out.exists():
+        return np.zeros(0), np.zeros(0), np.nan, answer.stderr
+    with h5py.File(out) as file:
+        records = file["records"]
+        errors, substeps = records["held_error"][:], records["substeps"][:]
+        principal = np.linalg.eigvalsh(-records["stress_Pa"][:, :2, :2] if np.ptp(records["stress_Pa"][:, 2, 2]) == 0 else
+                                       -records["stress_Pa"][:])
+    major, minor = principal[:, -1], principal[:, 0]
+    peak = int(np.argmax(major - minor))
+    angle = np.degrees(np.arcsin((major[peak] - minor[peak]) / (major[peak] + minor[peak])))
+    out.unlink()
+    return errors, substeps, angle, "" if answer.returncode == 0 else answer.stderr
+
+
+def line(program, work, name, files, label):
+    protocol = "triaxial" if name == "hertz" else "biaxial"
+    errors, substeps, angles, ended = [], [], [], []
+    for file in files:
+        for pressure in RECIPES[name][2]:
+            e, s, angle, end = test(program, work, protocol, file, [f"test.pressure_Pa={pressure}"])
+            errors.append(e), substeps.append(s), angles.append(angle)
+            if end:
+                ended.append(end.strip()[-300:])
+    e, s = np.concatenate(errors), np.concatenate(substeps)
+    off = int((e > TOLERANCE).sum())
+    print(f"{name:8} {label:7} {len(files):5} {len(e):8} {off:5} {e.max() / TOLERANCE:10.4g} {len(ended):6} {s.sum():10.4g} "
+          f"{s.max():10.4g} {np.nanmean(angles):8.2f} +- {np.nanstd(angles, ddof=1):5.2f}", flush=True)
+    for text in ended:
+        print(f"#   {text}")
+    return off + len(ended)
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("program")
+    parser.add_argument("work", type=pathlib.Path)
+    parser.add_argument("--count", type=int, default=20)
+    parser.add_argument("--before")
+    parser.add_argument("recipes", nargs="*", default=list(RECIPES))
+    given = parser.parse_intermixed_args()
+    program, work = str(pathlib.Path(given.program).resolve()), given.work.resolve()
+    work.mkdir(parents=True, exist_ok=True)
+    (work / "sand.toml").write_text(SAND)
+    print("recipe   build   specs  records   off  error/tol  ended  sub-steps  in a record  friction angle")
+    missed = 0
+    for name in given.recipes:
+        files = specimens(program, work, name, min(given.count, 5) if name == "hertz" else given.count)
+        if given.before:
+            line(given.before, work, name, files, "before")
+        missed += line(program, work, name, files, "after" if given.before else "")
+    file = work / "sand_1.h5"
+    if file.exists():
+        for protocol, settings in OTHERS:
+            e, s, _, end = test(program, work, protocol, file, ["test.pressure_Pa=50e3", *settings])
+            off = int((e > TOLERANCE).sum())
+            print(f"{protocol:22} records {len(e):5}  off {off}  sub-steps {s.sum():.4g}  {end.strip()[-200:]}", flush=True)
+            missed += off + bool(end)
+    if missed:
+        sys.exit("held: bars missed")
+
+
+main()
