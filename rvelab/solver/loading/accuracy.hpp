@@ -89,7 +89,7 @@ constexpr double left_by_rest = 1;
 /// Where a path rests before it turns, its slowest modes (3000 sub-steps and more) keep back at least this share of
 /// what the rest has brought, or what its second half has: 0.007 to 0.02 in three flowing states of discs, 0.3 and 0.7
 /// in two that roll, which no rest of this length shows.
-constexpr double slow_share = 0.025;
+constexpr double slow_share = 0.02;
 /// Sub-steps from one rest of a copy to the next, where contacts stay what they are and where they do not.
 constexpr long rest_period = 1000, changed_period = 100;
 /// Sub-steps of an increment of strain that has a rest of its own; and of one that has where nothing is known.
@@ -101,8 +101,9 @@ constexpr double fitted_margin = 2.75;
 /// The estimate of an increment beyond the strain of the overlaps, at least, over K p u sqrt(x), u the mean on its way:
 /// errors at x = 70 and friction 0.05 were 6 K p u where the end was calm.
 constexpr double way_margin = 1;
-/// The estimate over what is allowed, up to which a tolerance counts as met: 95 % of the errors then are.
-constexpr double met_margin = 2.75;
+/// The estimate over what is allowed, up to which a tolerance counts as met: 92 % of the errors then are (742 drawn
+/// increments, half of them of packings that no constant was fitted to; 2.75: 91 %, 2: 94 %).
+constexpr double met_margin = 2.4;
 /// Sub-steps of an increment at most, and those for each strain of the overlaps: ten times the fewest.
 constexpr double most_steps = 50'000, most_steps_of_overlap = 1000;
 
