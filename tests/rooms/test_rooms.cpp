@@ -1,4 +1,4 @@
-// The rooms are used in the order that README.md prints: the table there is read, and every include is held against it.
+// The rooms are used in the order that rvelab/README.md prints: the table there is read, and every include is held against it.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -94,8 +94,8 @@ TEST_CASE("an include against the order is seen, in a folder within a room too")
   CHECK(against_order(order, "rvelab/solver/rve.hpp", "rvelab/cellar/wine.hpp"));  // of no room
 }
 
-TEST_CASE("each room includes only those above it in README.md") {
-  const auto order = order_in(text_of(root / "README.md"));
+TEST_CASE("each room includes only those above it in rvelab/README.md") {
+  const auto order = order_in(text_of(root / "rvelab/README.md"));
   REQUIRE(order.size() > 10);
   CHECK(std::set(order.begin(), order.end()).size() == order.size());
   for (const std::string& room : order) {
@@ -104,7 +104,7 @@ TEST_CASE("each room includes only those above it in README.md") {
   }
   std::size_t includes = 0;
   for (const std::string& file : code_under("rvelab")) {
-    if (row_of(order, file) == order.size()) FAIL_CHECK(file << " is in no room of README.md");
+    if (row_of(order, file) == order.size()) FAIL_CHECK(file << " is in no room of rvelab/README.md");
     for (const std::string& included : includes_of(file)) {
       ++includes;
       if (against_order(order, file, included))
