@@ -83,7 +83,8 @@ TEST_CASE("Installed and moved, the library is found by cmake and by pkg-config,
   std::ofstream example(folder / "pkg/readme.c");
   bool below = false;
   for (std::string line; std::getline(readme, line);) {
-    if (line.starts_with("#") && !line.starts_with("    ")) below = line == "## As the material of a continuum code: in C";
+    if (line.starts_with("#") && !line.starts_with("    "))
+      below = line == "## As the material of a continuum code: in C";
     if (below && line.starts_with("    ")) example << line.substr(4) << "\n";
   }
   example.close();

@@ -1,4 +1,4 @@
-// The rooms are used in the order that rvelab/README.md prints: the table there is read, and every include is held against it.
+// The rooms are used in the order that rvelab/README.md prints: every include is held against the table there.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
