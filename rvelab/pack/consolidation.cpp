@@ -56,8 +56,9 @@ Matrix3 next_stress(const StressGoal& goal, const Matrix3& stress, double larges
   return goal.stress - (1 - reach / rest) * (goal.stress - symmetric(stress));
 }
 
-Matrix3 upright_again(const Matrix3& deformation) {
-  return triangular_factors(deformation).rotation.transpose() - Matrix3::Identity();
+Matrix3 upright_again(const Matrix3& deformation, const Matrix3& frame) {
+  const Matrix3 turned = triangular_factors(frame.transpose() * deformation * frame).rotation;
+  return frame * turned.transpose() * frame.transpose() - Matrix3::Identity();
 }
 
 bool consolidate(Rve& rve, const StressGoal& goal, const Rest& rest, Matrix3& deformation) {

@@ -39,9 +39,9 @@ struct Rest {
 /// (F, laboratory frame) goes on by what the cell did.
 bool consolidate(Rve& rve, const StressGoal& goal, const Rest& rest, Matrix3& deformation);
 
-/// The rotation, as a displacement gradient, that after `deformation` (F) brings material lines that were along x back
-/// there, and planes that were along x and y. A shear stress that is driven to zero shears the cell: unless its first
-/// vector stays along x, simple shear v_x(y) makes the cell thin in the end.
-Matrix3 upright_again(const Matrix3& deformation);
+/// The rotation, as a displacement gradient, that after `deformation` (F) brings material lines that were along the
+/// first axis of `frame` back there, and planes of its first two. A shear stress that is driven to zero shears the
+/// cell: unless its first vector stays along x, simple shear v_x(y) makes the cell thin in the end.
+Matrix3 upright_again(const Matrix3& deformation, const Matrix3& frame);
 
 }  // namespace rvelab::pack

@@ -65,10 +65,11 @@ void expect_overlaps(const Recipe& recipe, const Rve& rve, double share) {
 
 /// Consolidates, and turns the cell so that it stands as it was drawn. A stress that is not isotropic is turned with
 /// it, by less each time, and corrected.
-bool consolidated_upright(Rve& rve, const StressGoal& goal, const Rest& rest, Matrix3& deformation) {
+bool consolidated_upright(Rve& rve, const StressGoal& goal, const Rest& rest, const Matrix3& frame,
+                          Matrix3& deformation) {
   for (long round = 0; round < rest.max_rounds; ++round) {
     if (!consolidate(rve, goal, rest, deformation)) return false;
-    const Matrix3 turn = upright_again(deformation);
+    const Matrix3 turn = upright_again(deformation, frame);
     rve.apply(turn, 0);
     deformation += turn * deformation;
     if (largest_gap(goal, rve.stress()) <= rest.stress_tolerance * goal.pressure()) return true;
@@ -90,6 +91,7 @@ Draw draw(const Recipe& recipe, long number, double friction, const std::atomic<
   rve = steered(rve, recipe, stop);
   Draw result;
   result.friction = friction;
+  const Matrix3 frame = rve.cell().rotation;  // as it was drawn: what came before shrank it
   Matrix3 deformation = Matrix3::Identity();
   if (recipe.stress) {
     StressGoal goal{isotropic_stress(mean_pressure(*recipe.stress, d), recipe.shape), true, d};
@@ -107,7 +109,7 @@ Draw draw(const Recipe& recipe, long number, double friction, const std::atomic<
     Rest rest;
     rest.stress_tolerance = recipe.stress_tolerance;
     rest.unbalanced = recipe.unbalanced;
-    result.at_rest = consolidated_upright(rve, goal, rest, deformation);
+    result.at_rest = consolidated_upright(rve, goal, rest, frame, deformation);
   } else {
     rve.set_materials(recipe.materials);
     result.at_rest = rve.relax(recipe.unbalanced, 100'000).target_held;

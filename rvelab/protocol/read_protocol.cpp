@@ -59,9 +59,6 @@ void read_loading(const toml::table& table, Protocol& protocol, toml::table& res
   loading.held_tolerance = reader.number("held_tolerance");
   const bool usual_tolerance = loading.physical && !reader.has("held_tolerance");
   if (usual_tolerance) loading.held_tolerance = LoadingSettings::held_tolerance_at_rate;
-  if (reader.has("held_wait"))
-    reader.mistake("held_wait",
-                   "means nothing any more: a test at dt = 0 waits until its held stress is back; remove it");
   reader.finish();
   toml::table complete = reader.resolved();
   if (usual_tolerance) complete.insert_or_assign("held_tolerance", loading.held_tolerance);

@@ -127,7 +127,8 @@ void drive(RunningTest& test, const IsotropicStage& stage) {
          << stage.max_rounds << " rounds; raise max_rounds, max_steps or the tolerances";
     throw test.failed(text.str());
   }
-  if (stage.shear_stress_free) test.apply(pack::upright_again(at.deformation), {}, 0, test.loading.held_tolerance);
+  if (stage.shear_stress_free)
+    test.apply(pack::upright_again(at.deformation, Matrix3::Identity()), {}, 0, test.loading.held_tolerance);
   // Pace and tolerance of what follows go by the pressure reached here, not by one that is long left behind (discs
   // swelled from 100 kPa to 40 Pa, then prescribed strain: p ended sixty times too high).
   const double change = stage.pressure / test.rve.reference_pressure();

@@ -205,10 +205,10 @@ TEST_CASE("a packed cell stands as it was drawn, its first vector along x, so th
 TEST_CASE("a turn that takes back what a deformation did to x leaves lines along x and planes xy where they were") {
   Matrix3 f = Matrix3::Identity();
   f << 1.01, 0.02, -0.03, 0.015, 0.98, 0.04, -0.02, 0.01, 1.02;
-  const Matrix3 turn = Matrix3::Identity() + pack::upright_again(f), all = turn * f;
+  const Matrix3 turn = Matrix3::Identity() + pack::upright_again(f, Matrix3::Identity()), all = turn * f;
   CHECK((turn.transpose() * turn - Matrix3::Identity()).cwiseAbs().maxCoeff() < 1e-14);
   CHECK(std::abs(all(1, 0)) + std::abs(all(2, 0)) + std::abs(all(2, 1)) < 1e-15);
-  CHECK(pack::upright_again(all.triangularView<Eigen::Upper>()).isZero(1e-14));
+  CHECK(pack::upright_again(all.triangularView<Eigen::Upper>(), Matrix3::Identity()).isZero(1e-14));
 }
 
 TEST_CASE("the next stress on the way is never further than the change allowed, and at last the goal") {

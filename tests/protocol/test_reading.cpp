@@ -161,7 +161,6 @@ TEST_CASE("Wrong types, numbers that are not finite and values out of range are 
   refused("stage.isotropic.max_rounds=1.5", "is not a whole number");
   refused("stage.isotropic.record=1", "is neither true nor false");
   refused("loading.held_tolerance=0", "out of range");
-  refused("loading.held_wait=200", "remove it");
   refused("contact.slip=sideways", "contact.slip");
   refused("solver.skin=-1", "solver.skin");
   refused("material.friction=-0.1", "material.friction");

@@ -4,7 +4,7 @@
 N specimens of each recipe (default: 20, of spheres 5), drained biaxial or triaxial compression at three pressures. For
 each recipe: records, those off by more than loading.held_tolerance, largest error over the tolerance, tests that ended
 early, sub-steps in all and in the worst record, friction angle at the peak (mean and standard deviation of all tests).
-With --before the same by another build, on the same specimens. Then other tests that hold a stress, on one specimen.
+With --before the same by another build, which then makes the specimens. Then other tests that hold a stress, on one specimen.
 
 Bars: no record off by more than the tolerance, and no test that ended early.
 """
@@ -136,7 +136,7 @@ def main():
     print("recipe   build   specs  records   off  error/tol  ended  sub-steps  in a record  friction angle")
     missed = 0
     for name in given.recipes:
-        files = specimens(program, work, name, min(given.count, 5) if name == "hertz" else given.count)
+        files = specimens(given.before or program, work, name, min(given.count, 5) if name == "hertz" else given.count)
         if given.before:
             line(given.before, work, name, files, "before")
         missed += line(program, work, name, files, "after" if given.before else "")
