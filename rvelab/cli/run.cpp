@@ -131,7 +131,7 @@ void tell_of_shear(const protocol::Protocol& protocol, const Specimen& specimen)
     const std::string plane = !shear->plane.empty() ? shear->plane : dimension == 2 ? "xy" : "xz";
     const double most = std::abs(shear->to_strain);
     const double thin_from = shear_until_thin(specimen.cell, plane[0] - 'x', plane[1] - 'x', 4 * diameter, most);
-    if (!std::isfinite(thin_from)) continue;
+    if (!std::isfinite(thin_from) || thin_from == 0) continue;  // thin from the start: its records tell of that
     tell("stage \"" + stage.name + "\": sheared beyond " + in_words(thin_from) +
          " a height of the cell is below four "
          "mean diameters, and its records are flagged (cell_thin): no vector of the cell lies along " +

@@ -79,7 +79,8 @@ constexpr double deferred_increment[9] = {1e-9, 0, 0, 0, -1e-9, 0, 0, 0, 0};
 
 /// A pool with three RVEs: as their template, gone on from it, and with a strain that is deferred.
 struct Host {
-  Host(const std::string& folder, const std::string& file, int workers, int trial_memory) : folder(folder), file(file) {
+  Host(const std::string& folder, const std::string& file, int workers, int trial_memory)
+      : now(folder + "/now.h5"), kept(folder + "/kept.h5"), file(file) {
     REQUIRE(rvelab_pool_def_init(&def, sizeof def) == RVELAB_OK);
     def.workers = workers;
     def.trial_memory = trial_memory;
@@ -137,7 +138,7 @@ struct Host {
            std::all_of(saved.begin(), saved.end(), [](char byte) { return byte == char(untouched); });
   }
 
-  std::string folder, file;
+  std::string now, kept, file;  ///< paths, made before requests for memory are counted
   rvelab_pool_def def;
   rvelab_pool *pool = nullptr, *other = nullptr;
   std::int64_t made = 0, ids[3] = {}, tokens_in[3] = {}, tokens_out[3] = {}, numbers[40];
@@ -251,14 +252,14 @@ const Call calls[] = {
      [](Host& h) { return rvelab_snapshot_load(h.pool, h.ids[1], h.start[2].data(), h.start[2].size()); }, nothing},
     {"file: template_load", Kind::one, 0, nothing,
      [](Host& h) { return rvelab_template_load(h.pool, h.file.c_str(), h.numbers); }, nothing},
-    {"file: pool_write", Kind::one, 0, nothing,
-     [](Host& h) { return rvelab_pool_write(h.pool, (h.folder + "/now.h5").c_str()); }, nothing},
+    {"file: pool_write", Kind::one, 0, nothing, [](Host& h) { return rvelab_pool_write(h.pool, h.now.c_str()); },
+     nothing},
     {"file: pool_read", Kind::one, 0,
      [](Host& h) {
-       REQUIRE(rvelab_pool_write(h.pool, (h.folder + "/kept.h5").c_str()) == RVELAB_OK);
+       REQUIRE(rvelab_pool_write(h.pool, h.kept.c_str()) == RVELAB_OK);
        REQUIRE(rvelab_pool_create(&h.def, &h.other) == RVELAB_OK);
      },
-     [](Host& h) { return rvelab_pool_read(h.other, (h.folder + "/kept.h5").c_str()); },
+     [](Host& h) { return rvelab_pool_read(h.other, h.kept.c_str()); },
      [](Host& h) {
        std::int64_t n = 0;
        REQUIRE(rvelab_ids(h.other, 0, nullptr, &n) == RVELAB_OK);

@@ -28,9 +28,11 @@ TEST_CASE("a pool file of every version is read with its ids and tokens, and its
     next.dH[1] = {one, one, 0, 0, 0, 0, 0, 0, 0};
     next.dH[2] = {0, one, 0, 0, -one, 0, 0, 0, 0};
     REQUIRE_OK(rvelab_trial(host.pool, &next.batch));
+    // Since 1.10 the sub-steps follow the true count of constraints, which files of 1.8 do not know: 1.5e-5 of the
+    // stress.
     const double expected[3][3] = {{-196542.71420004684, 2573.8855068332105, -196603.83781557955},
-                                   {-193737.04221840424, 2674.2476048991944, -196595.9682130681},
-                                   {-196564.61259327747, 2663.4511209151906, -199423.50653096524}};
+                                   {-193739.9542701108, 2659.6470436558, -196599.0131113649},
+                                   {-196567.4158855256, 2656.4913209554, -199426.3986139367}};
     for (std::size_t k = 0; k < 3; ++k) {
       CHECK(next.sigma[k][0] == Approx(expected[k][0]).epsilon(1e-8));
       CHECK(next.sigma[k][1] == Approx(expected[k][1]).epsilon(1e-6));

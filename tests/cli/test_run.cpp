@@ -72,8 +72,8 @@ TEST_CASE("a cell that gets thin is told of before and after the run, flagged in
   CHECK(turned["shear_until_thin"] > 10);
   CHECK(turned["shear_until_thin"] < 200);
   here.write("shear.toml",
-             "[test]\nname = \"shear\"\n[[stage]]\nkind = \"simple_shear\"\nto_strain = 1000\nrecord_every = 1e-4\n"
-             "[[stage.until]]\nquantity = \"strain\"\nabove = 1.5e-4\n");
+             "[test]\nname = \"shear\"\n[[stage]]\nkind = \"simple_shear\"\nto_strain = 1000\nrecord_every = 1e-3\n"
+             "[[stage.until]]\nquantity = \"strain\"\nabove = 1.5e-3\n");
   const Outcome upright = here.run("run shear.toml --specimen S.h5"),
                 tilted = here.run("run shear.toml --specimen T.h5");
   REQUIRE(tilted.code == 0);

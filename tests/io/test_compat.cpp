@@ -38,11 +38,13 @@ TEST_CASE("files of every version of the format are read with all that they hold
     CHECK(test.result.stages == std::vector<std::string>{"relax", "probe", "compression"});
     REQUIRE(test.result.records.size() == 7);
     CHECK(test.result.records.back().strain == 0.002);
-    CHECK(test.result.records.back().stress(1, 1) == Approx(-276447.88).epsilon(1e-8));
+    // From 1.10 on the sub-steps follow the true count of constraints.
+    const double end = version == "1_10" ? -276447.87316 : -276447.88;
+    CHECK(test.result.records.back().stress(1, 1) == Approx(end).epsilon(1e-8));
     CHECK(test.result.records[3].stage == 2);
     CHECK(test.result.probes.size() == (version == "1_0" ? 0 : 1));
     CHECK(test.provenance.protocol.find("constant_volume") != std::string::npos);
-    CHECK(Rve(test.checkpoint.specimen).stress()(1, 1) == Approx(-276447.88).epsilon(1e-8));
+    CHECK(Rve(test.checkpoint.specimen).stress()(1, 1) == Approx(end).epsilon(1e-8));
   }
   // The newest files are of the version that is written now: a step of the version asks for files of its own.
   CHECK(io::format_major == 1);

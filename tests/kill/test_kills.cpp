@@ -25,7 +25,7 @@ using namespace rvelab::test;
 
 namespace {
 
-/// The run that is killed: stages, increments, snapshots, and checkpoints five times a second.
+/// The run that is killed: stages, increments, snapshots, and checkpoints ten times a second.
 class Victim {
  public:
   explicit Victim(const Folder& folder) : specimen_(folder / "s.h5"), protocol_(folder / "p.toml") {
@@ -42,10 +42,10 @@ class Victim {
     return {RVELAB_PROGRAM, "run",      protocol_,
             "--specimen",   specimen_,  "-o",
             output,         "--resume", "--checkpoint-every",
-            "0.2",          "--set",    "stage.shear.record_every=" + std::to_string(spacing_)};
+            "0.1",          "--set",    "stage.shear.record_every=" + std::to_string(spacing_)};
   }
 
-  /// More records until an undisturbed run takes two seconds; it is left at `output`. Returns its time, s.
+  /// More records until an undisturbed run takes a second; it is left at `output`. Returns its time, s.
   double run_undisturbed(const Folder& folder, const std::string& output) {
     while (true) {
       const auto begin = std::chrono::steady_clock::now();
@@ -54,7 +54,7 @@ class Victim {
       const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
       CAPTURE(bytes_of(folder / "err"));
       REQUIRE(code == 0);
-      if (seconds >= 2) return seconds;
+      if (seconds >= 1) return seconds;
       std::filesystem::remove(output);
       spacing_ /= 1.25;
     }

@@ -15,6 +15,7 @@
 #include <tuple>
 #include <vector>
 
+#include "rvelab/error.hpp"
 #include "tests/oracle/specimens.hpp"
 
 using namespace rvelab;
@@ -171,6 +172,30 @@ TEST_CASE("The bound of the largest frequency lies between it and its double, as
               CHECK(bound <= 2 * std::sqrt(exact.slack * in_space) * exact.largest);
             }
   CHECK(networks > 80);
+}
+
+TEST_CASE(
+    "A given time step is taken up to 2 over the largest frequency, though it is beyond the bound, and refused above",
+    "[solver]") {
+  for (const Shape shape : {Shape::disc, Shape::sphere})
+    for (const Law law : {Law::linear_given, Law::hertz_mindlin})
+      for (const bool rolling : {false, true}) {
+        Specimen s = disordered(shape, 3, material_for(law, 1.0), law, 0.55, 1, 0.04);
+        s.contact.rolling = rolling;
+        s.solver.min_height = 1e-3;
+        const double limit = 2 / StiffNetwork(s).frequency().largest;
+        CAPTURE(shape == Shape::disc, name(law), rolling, limit);
+        REQUIRE(0.99 * limit > Rve(s).critical_time_step());
+        for (const double factor : {0.99, 1.05}) {
+          s.solver.fixed_time_step = factor * limit;
+          Rve rve(s);
+          const auto step = [&] { rve.apply(Matrix3::Zero(), factor * limit); };
+          if (factor < 1)
+            CHECK_NOTHROW(step());
+          else
+            CHECK_THROWS_AS(step(), IncrementFailed);
+        }
+      }
 }
 
 TEST_CASE("Two equal grains without friction have the frequency of the bound itself", "[solver]") {
