@@ -62,7 +62,7 @@ RECIPES = {
     "high": ("sand.toml", ["pack.number=100", "target.void_ratio_tolerance=0.03"], ("500e3", "1e6")),
 }
 OTHERS = (("constant_p", []), ("simple_shear_drained", ["stage.shear.to_strain=0.3"]), ("biaxial_extension", []),
-          ("isotropic_compression", []), ("complex_loading", []))
+          ("isotropic_compression", []))
 
 
 def path_of(name):
