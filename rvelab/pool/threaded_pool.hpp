@@ -11,6 +11,9 @@
 
 namespace rvelab::pool {
 
+/// What all ranks do or none: commit or revert trials, or end RVEs whose ids the other table gives out again.
+enum class Settling : std::int32_t { commit, revert, give_up };
+
 /// The share of a rank: RVEs come and go under ids that another table gives out.
 class Share : public Pool {
  public:
@@ -28,9 +31,12 @@ class Share : public Pool {
   virtual void give_up(std::span<const std::int64_t> ids) = 0;
 
   virtual bool is_pending(std::int64_t id) = 0;
-  /// Trials that are pending, their states at hand: `commit` of them cannot fail then. `ids` without data: all. Refused
-  /// (no_trial, no_memory): nothing has changed; its text names the `places` of the ids in what the host gave.
-  virtual void prepare_commit(std::span<const std::int64_t> ids, std::span<const std::int64_t> places) = 0;
+  /// Checks that `settle` can be done and brings what it needs. `ids` without data: all with a pending trial. Refused
+  /// (no_trial, no_memory): nothing has changed; the text of a commit names the `places` of the ids in what the host
+  /// gave.
+  virtual void prepare(Settling what, std::span<const std::int64_t> ids, std::span<const std::int64_t> places) = 0;
+  /// Does what was prepared last, without a request for memory. No other call may come between.
+  virtual void settle() noexcept = 0;
 };
 
 class Hold;
@@ -67,7 +73,8 @@ class ThreadedPool final : public Share {
   void forget_received() noexcept override;
   void give_up(std::span<const std::int64_t> ids) override;
   bool is_pending(std::int64_t id) override;
-  void prepare_commit(std::span<const std::int64_t> ids, std::span<const std::int64_t> places) override;
+  void prepare(Settling what, std::span<const std::int64_t> ids, std::span<const std::int64_t> places) override;
+  void settle() noexcept override;
 
  private:
   class AtWork;
@@ -92,12 +99,15 @@ class ThreadedPool final : public Share {
   Outcome attempt(Slot& slot, const Matrix3& displacement_gradient, double dt, const Batch& wanted);
   void accept(Slot& slot, std::int64_t token, const Matrix3& displacement_gradient);
   void run_entry(Entry& entry, const Batch& batch) noexcept;
-  void prepare(std::span<const Hold> holds, std::span<const std::int64_t> ids, std::span<const std::int64_t> places);
+  void expect_trials(std::span<const Hold> holds, std::span<const std::int64_t> ids,
+                     std::span<const std::int64_t> places);
 
   Options options_;
   Team team_;
   Slots slots_;
   Slots::Residents received_;
+  Settling prepared_for_ = Settling::revert;
+  std::vector<std::int64_t> prepared_;  ///< ids
   Templates templates_;
   std::int64_t next_template_;            ///< number of this pool in the process << 32, and a count from 1
   std::uint64_t process_;                 ///< forks before this process

@@ -13,12 +13,6 @@ namespace {
 using pool::Status;
 using pool::Verdict;
 
-/// Ids, and whether all RVEs of the share are meant instead.
-std::vector<std::int64_t> take_ids(Unpacker& given, bool& all) {
-  all = given.take<bool>();
-  return given.take_all<std::int64_t>();
-}
-
 std::span<const std::int64_t> ids_or_all(const std::vector<std::int64_t>& ids, bool all) {
   if (all) return {};
   static constexpr std::int64_t none = 0;  // a pointer that is not null: no ids are meant, not all
@@ -109,7 +103,6 @@ void Served::trial(Unpacker& given, Packer& found) {
 }
 
 void Served::perform(Call call, Unpacker& given, Packer& found) {
-  bool all = false;
   switch (call) {
     case Call::end:
       return;
@@ -162,22 +155,16 @@ void Served::perform(Call call, Unpacker& given, Packer& found) {
     case Call::trial:
       trial(given, found);
       return;
-    case Call::prepare_commit: {
-      const auto ids = take_ids(given, all);
-      const auto places = given.take_all<std::int64_t>();
-      share_->prepare_commit(ids_or_all(ids, all), places);
+    case Call::prepare: {
+      const auto what = given.take<pool::Settling>();
+      const auto all = given.take<bool>();
+      const auto ids = given.take_all<std::int64_t>(), places = given.take_all<std::int64_t>();
+      settled_ = answered(Status::ok, "", false).take();
+      share_->prepare(what, ids_or_all(ids, all), places);
       return;
     }
-    case Call::commit: {
-      const auto ids = take_ids(given, all);
-      share_->commit(ids_or_all(ids, all));
+    case Call::settle:  // answered before
       return;
-    }
-    case Call::revert: {
-      const auto ids = take_ids(given, all);
-      share_->revert(ids_or_all(ids, all));
-      return;
-    }
     case Call::cost: {
       const auto ids = given.take_all<std::int64_t>();
       std::vector<std::int64_t> costs(ids.size());
@@ -222,6 +209,10 @@ Bytes Served::answer(std::span<const std::byte> message) noexcept {
     try {
       Unpacker given(message);
       const auto call = given.take<Call>();
+      if (call == Call::settle) {
+        share_->settle();
+        return std::move(settled_);
+      }
       if (call == Call::forget_received) share_->forget_received();  // whether there is room for an answer or not
       Packer found = answered(Status::ok, "", false);
       perform(call, given, found);

@@ -18,9 +18,8 @@ enum class Call : std::int32_t {
   give_up,
   apply,
   trial,
-  prepare_commit,
-  commit,
-  revert,
+  prepare,
+  settle,
   info,
   cost,
   save,
@@ -51,6 +50,7 @@ class Served {
   std::unique_ptr<pool::Share> share_;
   std::map<std::int64_t, std::int64_t> templates_;  ///< of this share, by their numbers on the first rank
   std::vector<std::int64_t> tried_;                 ///< ids of trials that no answer tells of yet
+  Bytes settled_;                                   ///< the answer to Call::settle, made when it was prepared
 };
 
 /// An answer opened, which asks for no memory: what it tells of has been done.

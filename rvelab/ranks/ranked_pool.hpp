@@ -59,7 +59,10 @@ class RankedPool final : public pool::Pool {
   Place& place_of(std::int64_t id) { return places_[ids_.slot_of(id)]; }
   static Packer message(Call call) { return std::move(Packer().put(call)); }
   Messages no_messages() const { return Messages(std::size_t(link_->ranks())); }
-  std::vector<std::pair<int, Answer>> exchange(const Messages& messages);
+  using Answers = std::vector<std::pair<int, Answer>>;
+  struct Room;
+  Answers exchange(const Messages& messages);
+  Answers exchange(const Messages& messages, Room room);
   void expect_all_done(const Messages& messages);
   Answer answer_of(int rank, const Bytes& message);
   Answer ask(int rank, const Bytes& message);
@@ -67,7 +70,8 @@ class RankedPool final : public pool::Pool {
   std::vector<std::int64_t> costs_at(int rank, std::span<const std::int64_t> ids);
   void make_room(std::size_t n);
   std::vector<std::vector<std::size_t>> by_rank(std::span<const std::int64_t> ids);
-  Messages of_ids(Call call, std::span<const std::int64_t> ids, bool with_places);
+  Messages to_prepare(pool::Settling what, std::span<const std::int64_t> ids);
+  void settle(pool::Settling what, std::span<const std::int64_t> ids);
   void balance(std::span<const std::int64_t> ids);
   void move(int from, int to, std::span<const std::int64_t> ids);
   void worked(Place& place, std::int64_t cost_at_rank) noexcept;

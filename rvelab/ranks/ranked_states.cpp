@@ -93,16 +93,18 @@ void RankedPool::read(const std::function<pool::Population(const TakeState& take
 
 void serve(Link& link, std::unique_ptr<pool::Share> share) {
   Served served(std::move(share));
+  Bytes message;
   while (true) {
-    Bytes message;
     try {
-      message = link.receive(0);
+      link.receive(0, message);
     } catch (const std::bad_alloc&) {
       link.send(0, {});  // as an answer that could not be made
       continue;
     }
-    if (Unpacker(message).take<Call>() == Call::end) return;
+    const auto call = Unpacker(message).take<Call>();
+    if (call == Call::end) return;
     link.send(0, served.answer(message));
+    if (call != Call::prepare) message = Bytes();  // its room is that of the message to settle
   }
 }
 

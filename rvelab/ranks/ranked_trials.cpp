@@ -183,13 +183,12 @@ Verdict RankedPool::trial(const pool::Batch& batch) {
 
 void RankedPool::commit(std::span<const std::int64_t> ids) {
   const Lock lock = at_work();
-  expect_all_done(of_ids(Call::prepare_commit, ids, true));  // all or none
-  expect_all_done(of_ids(Call::commit, ids, false));
+  settle(pool::Settling::commit, ids);
 }
 
 void RankedPool::revert(std::span<const std::int64_t> ids) {
   const Lock lock = at_work();
-  expect_all_done(of_ids(Call::revert, ids, false));
+  settle(pool::Settling::revert, ids);
 }
 
 /// RVEs of a batch to other ranks, if their work lies too uneven. One that cannot be moved stays.
