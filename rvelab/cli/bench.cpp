@@ -14,7 +14,7 @@
 
 #include "rvelab/cli/commands.hpp"
 #include "rvelab/cli/report.hpp"
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/pack/repeated.hpp"
 #include "rvelab/pack/search.hpp"
 #include "rvelab/solver/batch.hpp"

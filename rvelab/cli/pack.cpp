@@ -15,11 +15,11 @@
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/report.hpp"
 #include "rvelab/error.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/io/publish.hpp"
-#include "rvelab/io/specimen_file.hpp"
 #include "rvelab/measure/measures.hpp"
+#include "rvelab/pack/read_recipe.hpp"
 #include "rvelab/pack/search.hpp"
-#include "rvelab/protocol/read_recipe.hpp"
 #include "rvelab/solver/rve.hpp"
 
 namespace rvelab::cli {

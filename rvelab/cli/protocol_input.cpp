@@ -3,9 +3,9 @@
 #include <filesystem>
 
 #include "rvelab/error.hpp"
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/keys/key.hpp"
-#include "rvelab/protocol/read_recipe.hpp"
+#include "rvelab/pack/read_recipe.hpp"
 
 namespace rvelab::cli {
 

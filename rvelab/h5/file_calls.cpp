@@ -4,7 +4,7 @@
 #include <string>
 
 #include "rvelab/h5/pool_file.hpp"
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/io/version.hpp"
 #include "rvelab/pool/status.hpp"
 #include "rvelab/solver/snapshot.hpp"

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "rvelab/pack/draw.hpp"
-#include "rvelab/solver/assembly/workers.hpp"
+#include "rvelab/threads/workers.hpp"
 
 namespace rvelab::pack {
 

@@ -5,10 +5,10 @@
 #include <sstream>
 
 #include "rvelab/error.hpp"
+#include "rvelab/keys/assign.hpp"
 #include "rvelab/keys/material_toml.hpp"
 #include "rvelab/keys/table_reader.hpp"
 #include "rvelab/keys/toml_source.hpp"
-#include "rvelab/protocol/assign.hpp"
 #include "rvelab/protocol/drive.hpp"
 #include "rvelab/protocol/protocol.hpp"
 #include "rvelab/protocol/protocol_keys.hpp"

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "rvelab/solver/assembly/workers.hpp"
 #include "rvelab/solver/rve.hpp"
+#include "rvelab/threads/workers.hpp"
 
 namespace rvelab {
 

@@ -4,13 +4,13 @@
 #include <limits>
 
 #include "rvelab/error.hpp"
-#include "rvelab/io/import_csv.hpp"
-#include "rvelab/io/record_journal.hpp"
-#include "rvelab/io/seal.hpp"
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/seal.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
+#include "rvelab/io/import/csv.hpp"
+#include "rvelab/io/journal/record_journal.hpp"
 #include "rvelab/keys/material_toml.hpp"
+#include "rvelab/pack/read_recipe.hpp"
 #include "rvelab/protocol/protocol.hpp"
-#include "rvelab/protocol/read_recipe.hpp"
 #include "rvelab/solver/rve.hpp"
 #include "rvelab/solver/snapshot.hpp"
 #include "tests/catch.hpp"

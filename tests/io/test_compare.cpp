@@ -1,14 +1,14 @@
 // "Bitwise the same" has one meaning: what compare_files finds no difference in.
-#include "rvelab/io/compare.hpp"
+#include "rvelab/io/hdf5/compare.hpp"
 
 #include <bit>
 #include <cmath>
 #include <limits>
 
 #include "random_specimen.hpp"
-#include "rvelab/io/hdf5_file.hpp"
-#include "rvelab/io/record_file.hpp"
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/file.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
+#include "rvelab/io/journal/record_file.hpp"
 #include "tests/catch.hpp"
 
 using namespace rvelab;

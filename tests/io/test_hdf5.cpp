@@ -1,6 +1,6 @@
 // What HDF5's own library makes of our files, and we of its: nothing leads out of a file, nothing is missing in
 // silence.
-#include "rvelab/io/hdf5_file.hpp"
+#include "rvelab/io/hdf5/file.hpp"
 
 #include <hdf5.h>
 
@@ -8,12 +8,12 @@
 #include <filesystem>
 
 #include "random_specimen.hpp"
-#include "rvelab/io/compare.hpp"
-#include "rvelab/io/record_file.hpp"
-#include "rvelab/io/recorded_test.hpp"
-#include "rvelab/io/seal.hpp"
-#include "rvelab/io/seal_file.hpp"
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/compare.hpp"
+#include "rvelab/io/hdf5/seal.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
+#include "rvelab/io/journal/record_file.hpp"
+#include "rvelab/io/journal/recorded_test.hpp"
+#include "rvelab/io/journal/seal_file.hpp"
 #include "tests/catch.hpp"
 
 using namespace rvelab;

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "random_specimen.hpp"
-#include "rvelab/io/record_file.hpp"
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
+#include "rvelab/io/journal/record_file.hpp"
 #include "rvelab/io/version.hpp"
 #include "tests/catch.hpp"
 

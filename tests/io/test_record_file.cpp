@@ -1,14 +1,14 @@
 // Record files: the records bitwise, the end state as a specimen, and a layout that is the documented one.
-#include "rvelab/io/record_file.hpp"
+#include "rvelab/io/journal/record_file.hpp"
 
 #include <map>
 #include <sstream>
 
 #include "random_specimen.hpp"
-#include "rvelab/io/hdf5_file.hpp"
-#include "rvelab/io/record_journal.hpp"
-#include "rvelab/io/recorded_test.hpp"
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/file.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
+#include "rvelab/io/journal/record_journal.hpp"
+#include "rvelab/io/journal/recorded_test.hpp"
 #include "rvelab/io/version.hpp"
 #include "tests/catch.hpp"
 

@@ -1,5 +1,5 @@
 // The store of a running test: what it refuses, what it keeps, what it publishes and when.
-#include "rvelab/io/record_store.hpp"
+#include "rvelab/io/journal/record_store.hpp"
 
 #include <sys/mount.h>
 #include <sys/resource.h>
@@ -8,8 +8,8 @@
 #include <filesystem>
 
 #include "random_specimen.hpp"
-#include "rvelab/io/hdf5_file.hpp"
-#include "rvelab/io/record_file.hpp"
+#include "rvelab/io/hdf5/file.hpp"
+#include "rvelab/io/journal/record_file.hpp"
 #include "same_contents.hpp"
 #include "tests/catch.hpp"
 

@@ -1,6 +1,6 @@
 // Damaged files: what rvelab writes carries a checksum that is held against every bit before anything reads it; files
 // of before 1.4 are read with every address held against their end.
-#include "rvelab/io/seal.hpp"
+#include "rvelab/io/hdf5/seal.hpp"
 
 #include <hdf5.h>
 
@@ -9,11 +9,11 @@
 #include <random>
 
 #include "random_specimen.hpp"
-#include "rvelab/io/compare.hpp"
-#include "rvelab/io/hdf5_file.hpp"
-#include "rvelab/io/record_file.hpp"
-#include "rvelab/io/record_journal.hpp"
-#include "rvelab/io/seal_file.hpp"
+#include "rvelab/io/hdf5/compare.hpp"
+#include "rvelab/io/hdf5/file.hpp"
+#include "rvelab/io/journal/record_file.hpp"
+#include "rvelab/io/journal/record_journal.hpp"
+#include "rvelab/io/journal/seal_file.hpp"
 #include "tests/catch.hpp"
 
 using namespace rvelab;

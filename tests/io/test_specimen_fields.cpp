@@ -7,11 +7,11 @@
 #include <map>
 
 #include "random_specimen.hpp"
-#include "rvelab/io/archive.hpp"
-#include "rvelab/io/compare.hpp"
-#include "rvelab/io/digest.hpp"
-#include "rvelab/io/schema.hpp"
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/archive.hpp"
+#include "rvelab/io/hdf5/compare.hpp"
+#include "rvelab/io/hdf5/digest.hpp"
+#include "rvelab/io/hdf5/schema.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/solver/snapshot.hpp"
 #include "tests/catch.hpp"
 

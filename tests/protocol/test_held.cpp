@@ -4,8 +4,8 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/measure/measures.hpp"
+#include "rvelab/pack/read_recipe.hpp"
 #include "rvelab/pack/search.hpp"
-#include "rvelab/protocol/read_recipe.hpp"
 #include "rvelab/protocol/run.hpp"
 #include "tests/catch.hpp"
 

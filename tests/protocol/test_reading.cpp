@@ -3,8 +3,8 @@
 #include <filesystem>
 
 #include "rvelab/error.hpp"
+#include "rvelab/pack/read_recipe.hpp"
 #include "rvelab/protocol/protocol.hpp"
-#include "rvelab/protocol/read_recipe.hpp"
 #include "tests/catch.hpp"
 
 using namespace rvelab;

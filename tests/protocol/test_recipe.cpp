@@ -5,8 +5,8 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/measure/measures.hpp"
+#include "rvelab/pack/read_recipe.hpp"
 #include "rvelab/protocol/protocol_keys.hpp"
-#include "rvelab/protocol/read_recipe.hpp"
 #include "tests/catch.hpp"
 
 using namespace rvelab;

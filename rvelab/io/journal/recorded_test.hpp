@@ -1,0 +1,53 @@
+// What a record file R.h5 and its journal hold together: a test, whole or as far as it got.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "rvelab/io/hdf5/file.hpp"
+#include "rvelab/records/progress.hpp"
+#include "rvelab/records/record.hpp"
+
+namespace rvelab::io {
+
+/// How a file came about. No host names, no dates. Nothing in a run is drawn at random, so there is no seed.
+struct Provenance {
+  std::string protocol;  ///< with every default and setting in it, TOML
+  std::string version, compiler;
+  std::vector<std::string> packages;  ///< libraries that numbers or files pass through, "name version"
+  std::uint64_t specimen_crc32c = 0;  ///< of the specimen that the test began with; 0: not known
+};
+
+/// The provenance of what this program writes.
+Provenance provenance_of(const std::string& protocol_text, const Specimen& start);
+
+/// Where the state of one record lies: in a frame of a journal, or in a record file that was read.
+struct Snapshot {
+  std::size_t record = 0;  ///< row of /records
+  std::string journal;
+  std::uint64_t payload_at = 0, length = 0;
+  std::shared_ptr<const Hdf5File> within = nullptr;
+};
+
+struct RecordedTest {
+  Provenance provenance;
+  records::TestResult
+      result;  ///< incomplete: with all stages of the protocol, and grain_steps and wall time of the checkpoint
+  records::Checkpoint
+      checkpoint;  ///< complete: the end state; else where the test goes on (perhaps before the last record)
+  bool complete = true;
+  std::vector<Snapshot> snapshots;  ///< in the order of their records
+};
+
+/// Reads R.h5 and, if it is not complete, what its journal has beyond it: the records of the one that has more, the
+/// checkpoint of the one that went further. InputError if there is neither file, or one of them is not rvelab's.
+RecordedTest read_recorded_test(const std::string& path);
+
+/// Writes (publish()) a whole record file.
+void write_recorded_test(const RecordedTest& test, const std::string& path);
+
+/// The state at a snapshot.
+Specimen read_snapshot(const Snapshot& snapshot);
+
+}  // namespace rvelab::io
