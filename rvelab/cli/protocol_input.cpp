@@ -13,9 +13,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-InputKind kind_of(const std::string& path) {
-  return protocol::is_recipe(path) ? InputKind::recipe : InputKind::protocol;
-}
+InputKind kind_of(const std::string& path) { return pack::is_recipe(path) ? InputKind::recipe : InputKind::protocol; }
 
 fs::path installed_folder() {
   std::error_code ignored;

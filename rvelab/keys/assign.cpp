@@ -7,13 +7,8 @@
 #include "rvelab/keys/shortened.hpp"
 #include "rvelab/keys/toml_source.hpp"
 
-namespace rvelab::protocol {
+namespace rvelab::keys {
 namespace {
-
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
-  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
-}
 
 /// "a.b.c" into its parts.
 std::vector<std::string> parts_of(const std::string& key) {
@@ -59,7 +54,7 @@ void put(toml::table& table, const std::string& key, const std::string& text, co
   if (key == "friction") table.erase("friction_angle_deg");
   if (key == "friction_angle_deg") table.erase("friction");
   // A node that is moved keeps its source, so that a mistake in it names the assignment.
-  toml::table value = keys::parsed_value(text, assignment);
+  toml::table value = parsed_value(text, assignment);
   toml::node& node = *value.get("value");
   const toml::source_region source = node.source();
   node.visit([&](auto& concrete) { table.insert_or_assign(toml::key(key, source), std::move(concrete)); });
@@ -72,10 +67,10 @@ void assign(toml::table& file, const std::string& assignment) {
   const std::string key = trimmed(assignment.substr(0, equals));
   const auto parts = parts_of(key);
   const bool incomplete =
-      parts.size() < 2 || parts.size() > keys::most_names || std::find(parts.begin(), parts.end(), "") != parts.end();
+      parts.size() < 2 || parts.size() > most_names || std::find(parts.begin(), parts.end(), "") != parts.end();
   if (equals == std::string::npos || trimmed(assignment.substr(equals + 1)).empty() || incomplete) {
     throw InputError(
-        "--set " + keys::shortened(assignment) +
+        "--set " + shortened(assignment) +
         " is not an assignment; allowed: table.key=value, of up to 8 names; write for example test.pressure_Pa=2e4");
   }
   const std::string text = trimmed(assignment.substr(equals + 1));
@@ -111,7 +106,7 @@ void assign(toml::table& file, const std::string& assignment) {
   put(*table, parts.back(), text, assignment);
 }
 
-void assign_all(toml::table& file, const std::vector<std::string>& assignments, std::vector<keys::KeyError>& errors) {
+void assign_all(toml::table& file, const std::vector<std::string>& assignments, std::vector<KeyError>& errors) {
   for (const std::string& assignment : assignments) {
     try {
       assign(file, assignment);
@@ -121,4 +116,4 @@ void assign_all(toml::table& file, const std::vector<std::string>& assignments, 
   }
 }
 
-}  // namespace rvelab::protocol
+}  // namespace rvelab::keys

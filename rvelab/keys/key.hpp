@@ -55,7 +55,9 @@ std::string choose_one(const std::string& word, const std::vector<std::string>& 
 /// of the command line come last. Does nothing if there are none.
 void raise(const std::string& path, std::vector<KeyError> errors);
 
-/// Parses a TOML file. InputError naming file, line and column if it is missing or not TOML.
+/// Parses a TOML file, or a text whose messages name `path`. InputError naming file, line and column: missing, not
+/// TOML.
 toml::table parse_toml_file(const std::string& path);
+toml::table parse_toml_text(const std::string& text, const std::string& path);
 
 }  // namespace rvelab::keys

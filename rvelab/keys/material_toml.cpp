@@ -1,33 +1,20 @@
 #include "rvelab/keys/material_toml.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <iterator>
 #include <set>
-#include <sstream>
 
 #include "rvelab/error.hpp"
 #include "rvelab/keys/enumerations.hpp"
 #include "rvelab/keys/key_units.hpp"
 #include "rvelab/keys/material_keys.hpp"
 #include "rvelab/keys/shortened.hpp"
+#include "rvelab/keys/table_reader.hpp"
 
 namespace rvelab::keys {
 namespace {
 
 const std::vector<std::string> table_names{"contact", "damping", "solver", "material"};
-
-std::string written(const toml::node& value) {
-  if (value.is_floating_point()) {
-    char shortest[32];
-    const auto end = std::to_chars(std::begin(shortest), std::end(shortest), value.as_floating_point()->get()).ptr;
-    return {shortest, end};
-  }
-  std::ostringstream text;
-  value.visit([&](const auto& node) { text << node; });
-  return shortened(text.str());
-}
 
 [[noreturn]] void refuse(const std::string& dotted, const toml::node& value, const std::string& reason,
                          const KeyEntry& entry, const std::string& remedy) {
@@ -181,11 +168,6 @@ Material read_material(const Specimen& specimen, const toml::table& table, std::
   one.materials.resize(1);
   read_table(one, "material", table, errors);
   return one.materials[0];
-}
-
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
-  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
 }
 
 }  // namespace

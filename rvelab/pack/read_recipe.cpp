@@ -10,10 +10,9 @@
 #include "rvelab/keys/table_reader.hpp"
 #include "rvelab/keys/toml_source.hpp"
 #include "rvelab/measure/measures.hpp"
-#include "rvelab/protocol/protocol_keys.hpp"
 #include "rvelab/specimen/field_layout.hpp"
 
-namespace rvelab::protocol {
+namespace rvelab::pack {
 namespace {
 
 using keys::line_of;
@@ -31,7 +30,7 @@ std::string text_of(const toml::table& table) {
 
 void read_pack(const toml::table& table, RecipeFile& file, toml::table& resolved, std::vector<keys::KeyError>& errors) {
   TableReader reader(table, recipe_keys(), "pack", "pack", line_of(table), errors);
-  pack::Recipe& recipe = file.recipe;
+  Recipe& recipe = file.recipe;
   file.name = reader.text("name");
   fields::from_text(reader.choice("shape"), recipe.shape);
   recipe.number = std::size_t(reader.whole_number("number"));
@@ -75,7 +74,7 @@ Grading read_grading(TableReader& reader) {
 }
 
 /// Aspect ratios and bedding of ellipses; of other shapes none may be given.
-void read_ellipses(TableReader& reader, pack::GrainFraction& fraction, Shape shape) {
+void read_ellipses(TableReader& reader, GrainFraction& fraction, Shape shape) {
   struct Key {
     const char* name;
     double* value;
@@ -98,9 +97,9 @@ void read_ellipses(TableReader& reader, pack::GrainFraction& fraction, Shape sha
     reader.mistake("smallest_aspect_ratio", "is above grains.largest_aspect_ratio; allowed: up to it; correct them");
 }
 
-void read_fraction(const toml::table& table, pack::Recipe& recipe, toml::array& resolved,
+void read_fraction(const toml::table& table, Recipe& recipe, toml::array& resolved,
                    std::vector<keys::KeyError>& errors) {
-  pack::GrainFraction fraction;
+  GrainFraction fraction;
   const std::string where = "grains." + table["name"].value_or(fraction.name);
   TableReader reader(table, recipe_keys(), "grains", table.contains("name") ? where : "grains", line_of(table), errors);
   fraction.name = reader.text("name", fraction.name);
@@ -131,8 +130,7 @@ void read_fraction(const toml::table& table, pack::Recipe& recipe, toml::array& 
   resolved.push_back(reader.resolved());
 }
 
-void read_grains(const toml::table& file, pack::Recipe& recipe, toml::table& resolved,
-                 std::vector<keys::KeyError>& errors) {
+void read_grains(const toml::table& file, Recipe& recipe, toml::table& resolved, std::vector<keys::KeyError>& errors) {
   const toml::node* node = file.get("grains");
   toml::array list;
   recipe.fractions.clear();
@@ -178,7 +176,7 @@ std::optional<Matrix3> stress_of(const std::vector<double>& list, Shape shape) {
 }
 
 void read_stress(TableReader& reader, RecipeFile& file) {
-  pack::Recipe& recipe = file.recipe;
+  Recipe& recipe = file.recipe;
   const auto pressure = reader.optional_number("pressure_Pa");
   file.pressures = reader.numbers("pressures_Pa");
   const auto components = reader.numbers("stress_Pa");
@@ -186,7 +184,7 @@ void read_stress(TableReader& reader, RecipeFile& file) {
     reader.mistake("pressures_Pa", "contradicts target.pressure_Pa; allowed: one of the two; remove one");
   if (pressure && reader.has("stress_Pa"))
     reader.mistake("stress_Pa", "contradicts target.pressure_Pa; allowed: one of the two; remove one");
-  if (pressure) recipe.stress = pack::isotropic_stress(*pressure, recipe.shape);
+  if (pressure) recipe.stress = isotropic_stress(*pressure, recipe.shape);
   if (!components.empty()) {
     recipe.stress = stress_of(components, recipe.shape);
     if (!recipe.stress) {
@@ -200,7 +198,7 @@ void read_stress(TableReader& reader, RecipeFile& file) {
     }
   }
   if (!file.pressures.empty() && file.pressures.front() > 0) {
-    if (!recipe.stress) recipe.stress = pack::isotropic_stress(1, recipe.shape);
+    if (!recipe.stress) recipe.stress = isotropic_stress(1, recipe.shape);
     *recipe.stress *= file.pressures.front() / mean_pressure(*recipe.stress, dimension_of(recipe.shape));
   }
 }
@@ -208,7 +206,7 @@ void read_stress(TableReader& reader, RecipeFile& file) {
 void read_target(const toml::table& table, RecipeFile& file, toml::table& resolved,
                  std::vector<keys::KeyError>& errors) {
   TableReader reader(table, recipe_keys(), "target", "target", line_of(table), errors);
-  pack::Recipe& recipe = file.recipe;
+  Recipe& recipe = file.recipe;
   read_stress(reader, file);
   recipe.void_ratio = reader.optional_number("void_ratio");
   if (const auto porosity = reader.optional_number("porosity")) {
@@ -228,11 +226,11 @@ void read_target(const toml::table& table, RecipeFile& file, toml::table& resolv
   resolved.insert("target", reader.resolved());
 }
 
-void read_preparation(const toml::table& table, pack::Recipe& recipe, toml::table& resolved,
+void read_preparation(const toml::table& table, Recipe& recipe, toml::table& resolved,
                       std::vector<keys::KeyError>& errors) {
   TableReader reader(table, recipe_keys(), "preparation", "preparation", line_of(table), errors);
-  pack::Preparation& preparation = recipe.preparation;
-  using Method = pack::Preparation::Method;
+  Preparation& preparation = recipe.preparation;
+  using Method = Preparation::Method;
   const std::string method = reader.choice("method");
   preparation.method = method == "growth"    ? Method::growth
                        : method == "regular" ? Method::regular
@@ -263,7 +261,7 @@ void read_preparation(const toml::table& table, pack::Recipe& recipe, toml::tabl
 }
 
 /// Materials, contact model, damping and solver.
-void read_parameters(const toml::table& file, pack::Recipe& recipe, toml::table& resolved,
+void read_parameters(const toml::table& file, Recipe& recipe, toml::table& resolved,
                      std::vector<keys::KeyError>& errors) {
   Specimen specimen;
   specimen.shape = recipe.shape;
@@ -291,7 +289,7 @@ void read_parameters(const toml::table& file, pack::Recipe& recipe, toml::table&
 
 RecipeFile read_file(toml::table file, const std::string& path, const std::vector<std::string>& assignments) {
   std::vector<keys::KeyError> errors;
-  assign_all(file, assignments, errors);
+  keys::assign_all(file, assignments, errors);
   RecipeFile read;
   toml::table resolved;
   keys::expect_top_tables(file, errors, tables);
@@ -302,7 +300,7 @@ RecipeFile read_file(toml::table file, const std::string& path, const std::vecto
   read_preparation(table_of(file, "preparation", errors), read.recipe, resolved, errors);
   keys::raise(path, errors);
   try {
-    pack::check_recipe(read.recipe);
+    check_recipe(read.recipe);
   } catch (const InputError& error) {
     throw InputError(path + ": " + error.what());
   }
@@ -331,14 +329,9 @@ RecipeFile read_recipe(const std::string& path, const std::vector<std::string>& 
 }
 
 RecipeFile parse_recipe(const std::string& text, const std::string& path, const std::vector<std::string>& assignments) {
-  try {
-    return read_file(keys::parse_toml(text), path, assignments);
-  } catch (const toml::parse_error& error) {
-    throw InputError(path + ":" + std::to_string(error.source().begin.line) + ": is not TOML (" +
-                     std::string(error.description()) + "); correct the line");
-  }
+  return read_file(keys::parse_toml_text(text, path), path, assignments);
 }
 
 bool is_recipe(const std::string& path) { return keys::parse_toml_file(path).contains("pack"); }
 
-}  // namespace rvelab::protocol
+}  // namespace rvelab::pack

@@ -5,14 +5,15 @@
 #include <string>
 #include <vector>
 
+#include "rvelab/keys/table_key.hpp"
 #include "rvelab/pack/recipe.hpp"
 
-namespace rvelab::protocol {
+namespace rvelab::pack {
 
 /// A checked recipe file.
 struct RecipeFile {
   std::string name;               ///< [pack] name
-  pack::Recipe recipe;            ///< with the first stress of a family
+  Recipe recipe;                  ///< with the first stress of a family
   std::vector<double> pressures;  ///< Pa, of a family; else empty
   std::string resolved;           ///< the recipe with every default and assignment in it, TOML
 
@@ -21,15 +22,18 @@ struct RecipeFile {
   RecipeFile member(std::uint64_t seed, std::optional<double> pressure = std::nullopt) const;
 };
 
-/// Reads a recipe after the assignments "key=value" have been applied to it. Throws InputError with every mistake, as
-/// read_protocol does.
+/// Reads a recipe after the assignments "key=value" have been applied to it. InputError with every mistake, each with
+/// its line.
 RecipeFile read_recipe(const std::string& path, const std::vector<std::string>& assignments = {});
 
 /// The same from a text; `path` serves messages only.
 RecipeFile parse_recipe(const std::string& text, const std::string& path,
                         const std::vector<std::string>& assignments = {});
 
+/// The table of keys of a recipe, beside which contact, damping, solver and material stand.
+const std::vector<keys::TableKey>& recipe_keys();
+
 /// Whether a TOML file is a recipe, and not a protocol: it has [pack].
 bool is_recipe(const std::string& path);
 
-}  // namespace rvelab::protocol
+}  // namespace rvelab::pack

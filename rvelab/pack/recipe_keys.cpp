@@ -1,10 +1,8 @@
-// The key table of recipes: what `rvelab pack` reads. Declared in protocol_keys.hpp.
+// The key table of recipes: what `rvelab pack` reads. Declared in read_recipe.hpp.
 #include "rvelab/keys/key_builders.hpp"
-#include "rvelab/pack/recipe.hpp"
-#include "rvelab/protocol/protocol_keys.hpp"
-#include "rvelab/protocol/stage_readers.hpp"
+#include "rvelab/pack/read_recipe.hpp"
 
-namespace rvelab::protocol {
+namespace rvelab::pack {
 namespace {
 
 using namespace keys;
@@ -16,7 +14,7 @@ constexpr Interval aspect_ratio{least_aspect_ratio, 1};
 
 std::vector<TableKey> pack() {
   const char* t = "pack";
-  const pack::Recipe initial;
+  const Recipe initial;
   return {
       required(text(t, "name", "", "what the recipe is called")),
       choice(t, "shape", {"disc", "sphere", "ellipse"}, "disc, ellipse: 2D; sphere: 3D"),
@@ -33,11 +31,11 @@ std::vector<TableKey> pack() {
 
 std::vector<TableKey> grains() {
   const char* t = "grains";
-  const pack::GrainFraction initial_fraction;
+  const GrainFraction initial_fraction;
   return {
       text(t, "name", "\"grains\"", "name of a fraction, for --set grains.NAME.key=value"),
       text(t, "material", "(the first)", "name of the material"),
-      number(t, "share", "1", pack::GrainFraction{}.share, {0, 1, true, false},
+      number(t, "share", "1", GrainFraction{}.share, {0, 1, true, false},
              "part of all grains by pack.share_by; the shares of all [[grains]] add up to 1"),
       choice(t, "grading", {"uniform", "linear", "tabulated"},
              "uniform: passing is straight over the radius; linear: straight over its logarithm; tabulated: points, "
@@ -69,7 +67,7 @@ std::vector<TableKey> grains() {
 
 std::vector<TableKey> target() {
   const char* t = "target";
-  const pack::Recipe initial;
+  const Recipe initial;
   return {
       number(t, "pressure_Pa", "Pa", "", pressures, "isotropic stress, compression positive; shear stresses are zero"),
       {{t, "pressures_Pa", "Pa", "list of numbers", "", "each " + in_words(pressures),
@@ -97,7 +95,7 @@ std::vector<TableKey> target() {
 
 std::vector<TableKey> preparation() {
   const char* t = "preparation";
-  const pack::Preparation initial;
+  const Preparation initial;
   return {
       choice(
           t, "method", {"compression", "growth", "regular"},
@@ -129,4 +127,4 @@ const std::vector<TableKey>& recipe_keys() {
   return all;
 }
 
-}  // namespace rvelab::protocol
+}  // namespace rvelab::pack

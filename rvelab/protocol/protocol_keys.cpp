@@ -4,6 +4,7 @@
 
 #include "rvelab/keys/key_builders.hpp"
 #include "rvelab/keys/material_toml.hpp"
+#include "rvelab/pack/read_recipe.hpp"
 #include "rvelab/protocol/events.hpp"
 #include "rvelab/protocol/protocol.hpp"
 #include "rvelab/protocol/stage_kinds.hpp"
@@ -77,7 +78,7 @@ std::vector<TableKey> output_specimen_and_calibrate() {
 
 std::vector<TableKey> stage() {
   Choices kinds;
-  for (const StageKind& kind : stage_kinds()) kinds.push_back(kind.name);
+  for (MakeStage* const make : stage_kinds) kinds.emplace_back(make()->name());
   const std::string events = "events, each of which ends the stage; not with " + kinds_with_events(false);
   return {
       required(choice("stage", "kind", kinds,
@@ -97,7 +98,7 @@ const std::vector<TableKey>& protocol_keys() {
       entries.insert(entries.end(), list.begin(), list.end());
     };
     for (const auto& list : {test(), loading(), output_specimen_and_calibrate(), stage(), event_keys()}) add(list);
-    for (const StageKind& kind : stage_kinds()) add(kind.keys);
+    for (MakeStage* const make : stage_kinds) add(make()->keys());
     return entries;
   }();
   return all;
@@ -121,7 +122,7 @@ const std::vector<keys::Key>& all_keys() {
   static const std::vector<keys::Key> keys = [] {
     std::vector<keys::Key> list;
     for (const auto& entry : protocol_keys()) list.push_back(entry.key);
-    for (const auto& entry : recipe_keys()) list.push_back(entry.key);
+    for (const auto& entry : pack::recipe_keys()) list.push_back(entry.key);
     list.insert(list.end(), keys::known_keys().begin(), keys::known_keys().end());
     return list;
   }();

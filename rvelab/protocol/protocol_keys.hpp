@@ -21,9 +21,6 @@ using keys::TableKey;
 
 const std::vector<TableKey>& protocol_keys();
 
-/// The keys of recipes, beside which contact, damping, solver and material stand (recipe_keys.cpp).
-const std::vector<TableKey>& recipe_keys();
-
 /// Tables that a protocol may have at its top level.
 const std::vector<std::string>& top_tables();
 

@@ -45,7 +45,7 @@ rolling_stiffness = 1
 rolling_friction = 0.05
 )";
   Workers workers(1);
-  return pack::pack(protocol::parse_recipe(recipe, "sand.toml", {"pack.seed=" + std::to_string(seed)}).recipe, workers)
+  return pack::pack(pack::parse_recipe(recipe, "sand.toml", {"pack.seed=" + std::to_string(seed)}).recipe, workers)
       .specimen;
 }
 

@@ -1,4 +1,4 @@
-// The bytes of an HDF5 file, asked for with care: what lies beyond them is damage. For hdf5_read*.cpp alone.
+// The bytes of an HDF5 file, asked for with care: what lies beyond them is damage. For read*.cpp alone.
 #pragma once
 
 #include <cstring>

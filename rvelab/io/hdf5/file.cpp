@@ -8,7 +8,6 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/io/hdf5/seal.hpp"
-#include "rvelab/io/journal/journal.hpp"
 #include "rvelab/io/publish.hpp"
 #include "rvelab/keys/regular_file.hpp"
 
@@ -96,6 +95,12 @@ std::string text_of(const hdf5::Object& object, const std::string& attribute) {
 }
 
 }  // namespace
+
+std::string in_words(const Shape64& shape) {
+  std::string text;
+  for (const auto extent : shape) text += (text.empty() ? "" : ", ") + std::to_string(extent);
+  return "(" + text + ")";
+}
 
 Hdf5File Hdf5File::open(const std::string& path, Seal seal) {
   if (!std::filesystem::exists(path) && std::filesystem::exists(journal_of(path))) {

@@ -1,7 +1,7 @@
 // An HDF5 file as one small class: typed arrays, text and attributes by name; its errors as rvelab's own.
 //
-// hdf5_*.cpp know the format and nothing of grains. A file is read whole, its seal is held against its bytes
-// (seal.hpp), and what is in it is taken apart in memory (hdf5_tree.hpp), with every address held against the end of
+// A file is read whole, its seal is held against its bytes
+// (seal.hpp), and what is in it is taken apart in memory (tree.hpp), with every address held against the end of
 // the file. Files are built in memory and written by publish(), so that no HDF5 file is ever open for writing on disc
 // and a full disc is one plain error.
 #pragma once
@@ -18,6 +18,9 @@
 namespace rvelab::io {
 
 using Shape64 = std::vector<std::uint64_t>;  ///< extents of an array, outermost first; empty: a scalar
+
+/// "(3, 0, 2)"; "()" for a scalar.
+std::string in_words(const Shape64& shape);
 
 /// A dataset as a walk through a file finds it.
 struct Hdf5Entry {
@@ -50,7 +53,7 @@ enum class Seal { required, if_any };
 class Hdf5File {
  public:
   /// Reads an existing file, once its seal was found to fit its bytes. InputError: missing, no regular file, not HDF5,
-  /// damaged, with parts that rvelab does not write (hdf5_tree.hpp), without the seal that is required.
+  /// damaged, with parts that rvelab does not write (tree.hpp), without the seal that is required.
   static Hdf5File open(const std::string& path, Seal seal = Seal::if_any);
   /// Reads bytes that a checksum vouches for, as image() gives them; `path` serves the messages only. InputError: not
   /// HDF5.

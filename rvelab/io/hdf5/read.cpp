@@ -1,4 +1,4 @@
-// Groups, links and object headers of an HDF5 file. Declared in hdf5_tree.hpp.
+// Groups, links and object headers of an HDF5 file. Declared in tree.hpp.
 #include <set>
 
 #include "rvelab/io/hdf5/bytes.hpp"

@@ -1,4 +1,4 @@
-// Types, extents and values in an HDF5 file. Declared in hdf5_bytes.hpp.
+// Types, extents and values in an HDF5 file. Declared in bytes.hpp.
 #include <algorithm>
 #include <set>
 

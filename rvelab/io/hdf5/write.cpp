@@ -1,4 +1,4 @@
-// The bytes of an HDF5 file. Declared in hdf5_tree.hpp.
+// The bytes of an HDF5 file. Declared in tree.hpp.
 #include <algorithm>
 #include <bit>
 #include <cstring>

@@ -21,9 +21,6 @@ namespace rvelab::io {
 inline constexpr std::uint32_t journal_version = 1;
 inline constexpr std::size_t journal_header_bytes = 16, frame_header_bytes = 16;
 
-/// Name of the journal of a record file: beside the file itself, where `record_file` is a link to it.
-inline std::string journal_of(const std::string& record_file) { return followed(record_file) + ".journal"; }
-
 struct Frame {
   std::uint32_t type;
   std::span<const std::byte> payload;  ///< valid during the visit only

@@ -6,7 +6,6 @@
 #include "rvelab/error.hpp"
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/pack/read_recipe.hpp"
-#include "rvelab/protocol/protocol_keys.hpp"
 #include "tests/catch.hpp"
 
 using namespace rvelab;
@@ -68,7 +67,7 @@ friction = 0.3
 
 std::string message_of(const std::string& text, const std::vector<std::string>& assignments = {}) {
   try {
-    protocol::parse_recipe(text, "r.toml", assignments);
+    pack::parse_recipe(text, "r.toml", assignments);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -78,9 +77,9 @@ std::string message_of(const std::string& text, const std::vector<std::string>& 
 }  // namespace
 
 TEST_CASE("a small recipe has the defaults that the key table states") {
-  const protocol::RecipeFile file = protocol::parse_recipe(small, "r.toml");
+  const pack::RecipeFile file = pack::parse_recipe(small, "r.toml");
   const auto resolved = toml::parse(file.resolved);
-  for (const auto& entry : protocol::recipe_keys()) {
+  for (const auto& entry : pack::recipe_keys()) {
     CAPTURE(entry.key.dotted());
     const toml::node* node = resolved[entry.key.table].is_array()
                                  ? (*resolved["grains"][0].as_table()).get(entry.key.name)
@@ -99,11 +98,11 @@ TEST_CASE("a small recipe has the defaults that the key table states") {
   CHECK(*file.recipe.stress == pack::isotropic_stress(1e5, Shape::disc));
   CHECK(!file.recipe.void_ratio);
   // What was read can be read again, with the same meaning.
-  CHECK(protocol::parse_recipe(file.resolved, "again.toml").resolved == file.resolved);
+  CHECK(pack::parse_recipe(file.resolved, "again.toml").resolved == file.resolved);
 }
 
 TEST_CASE("a mixture of two materials, gradings and a stress tensor comes out as it was written") {
-  const protocol::RecipeFile file = protocol::parse_recipe(mixture, "r.toml");
+  const pack::RecipeFile file = pack::parse_recipe(mixture, "r.toml");
   const pack::Recipe& recipe = file.recipe;
   REQUIRE(recipe.fractions.size() == 2);
   CHECK(recipe.fractions[0].material == 1);
@@ -116,9 +115,9 @@ TEST_CASE("a mixture of two materials, gradings and a stress tensor comes out as
   CHECK(pack::growth_void_ratio(recipe) == Approx(0.6));
   // A family scales the tensor to each mean pressure.
   REQUIRE(file.pressures == std::vector<double>{1e4, 2e4});
-  const protocol::RecipeFile member = file.member(9, 2e4);
+  const pack::RecipeFile member = file.member(9, 2e4);
   const pack::Recipe& second = member.recipe;
-  const protocol::RecipeFile again = protocol::parse_recipe(member.resolved, "again.toml");
+  const pack::RecipeFile again = pack::parse_recipe(member.resolved, "again.toml");
   CHECK(again.recipe.seed == 9);
   CHECK(*again.recipe.stress == *second.stress);
   CHECK(second.seed == 9);
@@ -130,22 +129,22 @@ TEST_CASE("a mixture of two materials, gradings and a stress tensor comes out as
 }
 
 TEST_CASE("a recipe of ellipses says their aspect ratios and bedding") {
-  const protocol::RecipeFile file = protocol::parse_recipe(
-      small, "r.toml",
-      {"pack.shape=ellipse", "grains.smallest_aspect_ratio=0.4", "grains.largest_aspect_ratio=0.8",
-       "grains.bedding_angle_deg=30", "grains.bedding_spread_deg=15"});
+  const pack::RecipeFile file =
+      pack::parse_recipe(small, "r.toml",
+                         {"pack.shape=ellipse", "grains.smallest_aspect_ratio=0.4", "grains.largest_aspect_ratio=0.8",
+                          "grains.bedding_angle_deg=30", "grains.bedding_spread_deg=15"});
   CHECK(file.recipe.shape == Shape::ellipse);
   const pack::GrainFraction& fraction = file.recipe.fractions.at(0);
   CHECK(fraction.smallest_aspect_ratio == 0.4);
   CHECK(fraction.largest_aspect_ratio == 0.8);
   CHECK(fraction.bedding_angle == 30);
   CHECK(fraction.bedding_spread == 15);
-  CHECK(protocol::parse_recipe(file.resolved, "again.toml").resolved == file.resolved);
+  CHECK(pack::parse_recipe(file.resolved, "again.toml").resolved == file.resolved);
 }
 
 TEST_CASE("porosity and void ratio say the same") {
   const auto with = [](const std::string& assignment) {
-    return *protocol::parse_recipe(small, "r.toml", {assignment}).recipe.void_ratio;
+    return *pack::parse_recipe(small, "r.toml", {assignment}).recipe.void_ratio;
   };
   CHECK(with("target.porosity=0.2") == Approx(0.25));
   CHECK(with("target.void_ratio=0.25") == 0.25);
@@ -227,10 +226,10 @@ TEST_CASE("every shipped recipe is one, and says in its head what it is and wher
     if (entry.is_directory()) continue;  // studies
     const std::string path = entry.path().string(), name = entry.path().stem().string();
     CAPTURE(path);
-    CHECK(protocol::is_recipe(path) == name.starts_with("pack_"));
-    if (!protocol::is_recipe(path)) continue;
+    CHECK(pack::is_recipe(path) == name.starts_with("pack_"));
+    if (!pack::is_recipe(path)) continue;
     ++recipes;
-    const protocol::RecipeFile file = protocol::read_recipe(path);
+    const pack::RecipeFile file = pack::read_recipe(path);
     CHECK(file.recipe.number >= 400);
     std::ifstream input(path);
     const std::string text{std::istreambuf_iterator<char>(input), {}};
