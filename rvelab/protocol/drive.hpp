@@ -135,9 +135,6 @@ class RunningTest {
   double time_ = 0;  ///< s, see Moment::time
 };
 
-/// Carries a stage out, as its kind does.
-void drive(RunningTest& test, const Stage& stage);
-
 /// InputError if a stage does not go with specimens of this dimension.
 void expect_fits(const Protocol& protocol, int dimension);
 

@@ -106,7 +106,7 @@ std::vector<Event> read_events(TableReader& reader, const Stage& stage, std::vec
   }
   if (events.empty()) return events;
   reader.resolve("until", resolved);
-  if (!kind_named(stage.kind).takes_events) {
+  if (!stage.what->takes_events()) {
     reader.mistake("until", "has no records to look at in kind = \"" + stage.kind + "\"; allowed: with " +
                                 kinds_with_events(true) + "; remove it");
   }

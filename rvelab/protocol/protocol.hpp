@@ -6,8 +6,8 @@
 #pragma once
 
 #include <toml++/toml.h>
-#include <any>
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -40,10 +40,12 @@ struct Event {
 /// "p_over_first below 0.001".
 std::string event_in_words(const Event& event);
 
+class StageKind;
+
 struct Stage {
-  std::string name;  ///< the kind, unless the file names it
-  std::string kind;  ///< as stage_kinds.hpp calls it
-  std::any what;     ///< its settings, of the type of the kind: std::any_cast<CompressionStage>(&stage.what)
+  std::string name;                       ///< the kind, unless the file names it
+  std::string kind;                       ///< as stage_kinds.hpp calls it
+  std::shared_ptr<const StageKind> what;  ///< the kind with its settings
   std::vector<Event> until;
   std::string then;  ///< after its own end; empty: the next; "end": none
 };
