@@ -6,7 +6,7 @@
 #include "rvelab/cli/commands.hpp"
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/report.hpp"
-#include "rvelab/io/journal/seal_file.hpp"
+#include "rvelab/io/journal/recorded_test.hpp"
 #include "rvelab/io/publish.hpp"
 
 namespace rvelab::cli {

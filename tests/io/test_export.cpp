@@ -15,12 +15,13 @@
 #include "rvelab/io/hdf5/schema.hpp"
 #include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/io/import/csv.hpp"
-#include "rvelab/io/journal/record_file.hpp"
+#include "rvelab/io/journal/recorded_test.hpp"
 #include "rvelab/io/journal/states.hpp"
 #include "rvelab/keys/material_toml.hpp"
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/solver/rve.hpp"
 #include "tests/catch.hpp"
+#include "tests/io/record_files.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
@@ -75,7 +76,7 @@ TEST_CASE("a packing goes through CSV and comes back bit for bit where its frame
     const Specimen specimen = packing(name);
     io::write_specimen(specimen, folder / "a.h5");
     io::write_specimen(through_csv(folder, specimen), folder / "b.h5");
-    CHECK(io::first_difference(folder / "a.h5", folder / "b.h5").value_or("") == "");
+    CHECK(test::first_difference(folder / "a.h5", folder / "b.h5").value_or("") == "");
   }
 }
 
@@ -431,7 +432,7 @@ TEST_CASE("the states of a file are its snapshots in the order of their records,
   io::write_specimen(end, folder / "s.h5");
   REQUIRE(io::read_states(folder / "s.h5").size() == 1);
   const records::TestResult result = random_result(4);
-  io::write_records(result, end, "", folder / "r.h5");
+  test::write_records(result, end, "", folder / "r.h5");
   const auto without = io::read_states(folder / "r.h5");
   REQUIRE(without.size() == 1);
   CHECK(without[0].record == 23);

@@ -11,10 +11,9 @@
 #include "rvelab/io/hdf5/compare.hpp"
 #include "rvelab/io/hdf5/seal.hpp"
 #include "rvelab/io/hdf5/specimen_file.hpp"
-#include "rvelab/io/journal/record_file.hpp"
 #include "rvelab/io/journal/recorded_test.hpp"
-#include "rvelab/io/journal/seal_file.hpp"
 #include "tests/catch.hpp"
+#include "tests/io/record_files.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
@@ -192,7 +191,7 @@ TEST_CASE("a dataset of the file's own version that is missing is refused by nam
   const Folder folder;
   const io::SpecimenOrigin origin{"[pack]\n", 1, 2, 0.5};
   io::write_specimen(random_specimen(6), folder / "s.h5", &origin);
-  io::write_records(random_result(6), random_specimen(7), "[test]\n", folder / "r.h5");
+  test::write_records(random_result(6), random_specimen(7), "[test]\n", folder / "r.h5");
   for (const std::string name : {"s.h5", "r.h5"}) {
     const auto read = [&](const std::string& path) {
       return input_error([&] {

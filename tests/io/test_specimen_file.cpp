@@ -6,7 +6,7 @@
 #include "random_specimen.hpp"
 #include "rvelab/io/hdf5/file.hpp"
 #include "rvelab/io/hdf5/schema.hpp"
-#include "rvelab/io/journal/record_file.hpp"
+#include "rvelab/io/journal/recorded_test.hpp"
 #include "tests/catch.hpp"
 
 using namespace rvelab;

@@ -8,9 +8,9 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/io/export/material_text.hpp"
-#include "rvelab/io/import/contacts.hpp"
 #include "rvelab/io/text_file.hpp"
 #include "rvelab/io/version.hpp"
+#include "rvelab/measure/stored_contact.hpp"
 #include "rvelab/solver/assembly/neighbour_list.hpp"
 
 namespace rvelab::io {

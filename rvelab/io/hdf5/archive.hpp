@@ -183,12 +183,6 @@ class Reader {
     }
   }
 
-  static std::string in_words(const Shape64& shape) {
-    std::string text;
-    for (const auto extent : shape) text += (text.empty() ? "" : ", ") + std::to_string(extent);
-    return "(" + text + ")";
-  }
-
   template <class Value, class At>
   void rows(const std::string& name, std::size_t count, At at) {
     const std::string path = group_ + "/" + name;

@@ -12,12 +12,6 @@
 namespace rvelab::io {
 namespace {
 
-std::string in_words(const Shape64& shape) {
-  std::string text;
-  for (const auto extent : shape) text += (text.empty() ? "" : ", ") + std::to_string(extent);
-  return "(" + text + ")";
-}
-
 /// Row-major number of a value as its index: "[3, 0, 2]"; nothing for a scalar.
 std::string index_in_words(std::size_t number, const Shape64& shape) {
   std::string text;
@@ -157,10 +151,6 @@ class Comparer {
 
 Comparison compare_files(const std::string& path_a, const std::string& path_b) {
   return Comparer(path_a, path_b).compare();
-}
-
-std::optional<std::string> first_difference(const std::string& path_a, const std::string& path_b) {
-  return compare_files(path_a, path_b).difference;
 }
 
 }  // namespace rvelab::io

@@ -1,15 +1,11 @@
 #include "rvelab/io/hdf5/seal.hpp"
 
-#include <sys/stat.h>
-
 #include <bit>
-#include <cerrno>
 #include <cstdint>
 #include <cstring>
 
 #include "rvelab/error.hpp"
 #include "rvelab/io/crc32c.hpp"
-#include "rvelab/io/descriptor.hpp"
 
 namespace rvelab::io {
 namespace {
@@ -60,14 +56,6 @@ bool take_seal(std::vector<std::byte>& bytes, const std::string& path) {
   }
   bytes.resize(length);
   return true;
-}
-
-bool check_seal(int descriptor, const std::string& path) {
-  struct stat status;
-  if (::fstat(descriptor, &status) != 0) refuse(path, std::strerror(errno));
-  std::vector<std::byte> bytes(static_cast<std::size_t>(status.st_size));
-  if (read_at(descriptor, 0, bytes) < bytes.size()) refuse(path, "it cannot be read to its end");
-  return take_seal(bytes, path);
 }
 
 }  // namespace rvelab::io

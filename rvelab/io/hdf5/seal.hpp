@@ -23,7 +23,4 @@ std::array<std::byte, seal_bytes> seal_of(std::span<const std::byte> bytes);
 /// fit them.
 bool take_seal(std::vector<std::byte>& bytes, const std::string& path);
 
-/// Whether an open file ends in a seal. InputError naming `path`: it does, and its bytes are others.
-bool check_seal(int descriptor, const std::string& path);
-
 }  // namespace rvelab::io

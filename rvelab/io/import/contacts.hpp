@@ -12,16 +12,4 @@ namespace rvelab::io {
 /// translation. Errors as import_csv says.
 void read_contacts(const CsvTable& table, const std::vector<Image>& wraps, Specimen& specimen);
 
-/// Of one contact, as the law makes it: branch x_j + L image - x_i (m, cell frame), overlap (m), parameters of the
-/// pair, elastic normal force (N, repulsion positive, 0 without overlap).
-Vector3 branch_of(const Specimen& specimen, const Contact& contact);
-/// Cell frame, from i to j; along the branch where the grains are round.
-Vector3 normal_of(const Specimen& specimen, const Contact& contact);
-double overlap_of(const Specimen& specimen, const Contact& contact);
-PairParameters parameters_of(const Specimen& specimen, const Contact& contact);
-double normal_force_of(const Specimen& specimen, const Contact& contact);
-
-/// Sets Contact::last_root_overlap: sqrt(overlap) with laws that store it (hertz_mindlin), else zero.
-void set_root_overlaps(Specimen& specimen);
-
 }  // namespace rvelab::io

@@ -17,86 +17,68 @@ using records::describe_progress;
 using records::describe_records;
 using Bytes = std::vector<std::byte>;
 
-/// Columns of a packed record, in their order. It stands in the begin frame, so that a reader of another version finds
-/// each column by its name.
-struct RowLayout {
+/// Shows Self every column of a record, chosen or not, as column(items, field).
+template <class Self>
+struct EveryColumn {
+  template <class Items, class... Columns>
+  void table(const std::string&, Items& items, const Columns&... columns) {
+    (static_cast<Self*>(this)->column(items, columns), ...);
+  }
+  template <class Items, class Column>
+  void choice(const std::string&, Items& items, const Column& column) {
+    static_cast<Self*>(this)->column(items, column);
+  }
+  template <class Items, class Column, class Mask, class Bit>
+  void chosen(const std::string&, Items& items, const Column& column, Mask, Bit) {
+    static_cast<Self*>(this)->column(items, column);
+  }
+};
+
+/// Columns of a packed record, in their order. The begin frame holds it, so that a reader of another version finds each
+/// column by its name.
+struct RowLayout : EveryColumn<RowLayout> {
   std::vector<std::string> names;
   std::vector<std::int64_t> bytes;
 
-  template <class Item, class... Columns>
-  void table(const std::string&, const std::vector<Item>&, const Columns&... columns) {
-    (add(columns), ...);
-  }
-  template <class Item, class Member>
-  void add(const Field<Item, Member>& column) {
+  template <class Items, class Item, class Member>
+  void column(Items&, const Field<Item, Member>& column) {
     names.emplace_back(column.name);
     bytes.push_back(sizeof(typename Layout<Member>::Scalar) * Layout<Member>::size);
   }
-  template <class Item, class Member>
-  void choice(const std::string&, const std::vector<Item>&, const Field<Item, Member>& column) {
-    add(column);
-  }
-  template <class Item, class Member, class Mask>
-  void chosen(const std::string&, const std::vector<Item>&, const Field<Item, Member>& column, Mask Item::*, Mask) {
-    add(column);
-  }
 };
 
-struct RowWriter {
+/// Packs one record.
+struct RowWriter : EveryColumn<RowWriter> {
   Bytes& bytes;
+  explicit RowWriter(Bytes& to) : bytes(to) {}
 
-  template <class Item, class... Columns>
-  void table(const std::string&, const std::vector<Item>& items, const Columns&... columns) {
-    for (const Item& item : items) (add(item.*columns.member), ...);
-  }
-  template <class Member>
-  void add(const Member& member) {
+  template <class Items, class Item, class Member>
+  void column(const Items& row, const Field<Item, Member>& column) {
     typename Layout<Member>::Scalar scalars[Layout<Member>::size];
-    Layout<Member>::put(member, scalars);
+    Layout<Member>::put(row.front().*column.member, scalars);
     const auto raw = std::as_bytes(std::span(scalars));
     bytes.insert(bytes.end(), raw.begin(), raw.end());
   }
-  template <class Item, class Member>
-  void choice(const std::string&, const std::vector<Item>& items, const Field<Item, Member>& column) {
-    for (const Item& item : items) add(item.*column.member);
-  }
-  template <class Item, class Member, class Mask>
-  void chosen(const std::string& group, const std::vector<Item>& items, const Field<Item, Member>& column, Mask Item::*,
-              Mask) {
-    choice(group, items, column);
-  }
 };
 
-/// Columns that the row does not have stay as they are.
-struct RowReader {
+/// Unpacks one record. Columns that the row does not have stay as they are.
+struct RowReader : EveryColumn<RowReader> {
   const RowLayout& layout;
   std::span<const std::byte> row;
+  RowReader(const RowLayout& of, std::span<const std::byte> from) : layout(of), row(from) {}
 
-  template <class Item, class... Columns>
-  void table(const std::string&, std::vector<Item>& items, const Columns&... columns) {
-    for (Item& item : items) (get(columns.name, item.*columns.member), ...);
-  }
-  template <class Member>
-  void get(const char* name, Member& member) {
+  template <class Items, class Item, class Member>
+  void column(Items& items, const Field<Item, Member>& column) const {
     typename Layout<Member>::Scalar scalars[Layout<Member>::size];
     std::size_t at = 0;
     for (std::size_t k = 0; k < layout.names.size(); ++k) {
       const auto size = static_cast<std::size_t>(layout.bytes[k]);
-      if (layout.names[k] == name && size == sizeof scalars && at + size <= row.size()) {
+      if (layout.names[k] == column.name && size == sizeof scalars && at + size <= row.size()) {
         std::memcpy(scalars, row.data() + at, size);
-        Layout<Member>::get(scalars, member);
+        Layout<Member>::get(scalars, items.front().*column.member);
       }
       at += size;
     }
-  }
-  template <class Item, class Member>
-  void choice(const std::string&, std::vector<Item>& items, const Field<Item, Member>& column) {
-    for (Item& item : items) get(column.name, item.*column.member);
-  }
-  template <class Item, class Member, class Mask>
-  void chosen(const std::string& group, std::vector<Item>& items, const Field<Item, Member>& column, Mask Item::*,
-              Mask) {
-    choice(group, items, column);
   }
 };
 
@@ -162,7 +144,7 @@ struct Assembler {
     if (frame.type == record_frame) {
       truncate(result.records, number);
       std::vector<records::Record> row(1);
-      RowReader reader{layout, rest};
+      RowReader reader(layout, rest);
       describe_records(reader, row);
       result.records.push_back(row.front());
       std::erase_if(journal.test->snapshots, [&](const Snapshot& snapshot) { return snapshot.record >= number; });
@@ -244,7 +226,7 @@ Bytes encode_begin(const RunStart& start) {
 Bytes encode_record(std::size_t number, const records::Record& record) {
   Bytes bytes = numbered(number);
   const std::vector<records::Record> row{record};
-  RowWriter writer{bytes};
+  RowWriter writer(bytes);
   describe_records(writer, row);
   return bytes;
 }

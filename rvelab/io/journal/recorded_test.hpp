@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "rvelab/io/hdf5/file.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/records/progress.hpp"
 #include "rvelab/records/record.hpp"
 
@@ -49,5 +49,16 @@ void write_recorded_test(const RecordedTest& test, const std::string& path);
 
 /// The state at a snapshot.
 Specimen read_snapshot(const Snapshot& snapshot);
+
+struct SealedFile {
+  FileKind kind = FileKind::specimen;
+  bool had_seal = false;
+  std::size_t datasets = 0;
+};
+
+/// Reads a specimen or record file that lacks its seal, because another program has made or changed it or because it is
+/// of a version before 1.4, and writes everything that it holds to `output` (publish()), sealed and of its own version.
+/// InputError: damaged, not rvelab's, datasets are missing or contradict each other, or a specimen in it makes no RVE.
+SealedFile seal_file(const std::string& path, const std::string& output);
 
 }  // namespace rvelab::io

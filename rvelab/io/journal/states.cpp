@@ -4,7 +4,6 @@
 #include <filesystem>
 
 #include "rvelab/io/hdf5/specimen_file.hpp"
-#include "rvelab/io/journal/record_file.hpp"
 #include "rvelab/io/journal/recorded_test.hpp"
 
 namespace rvelab::io {

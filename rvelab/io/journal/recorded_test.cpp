@@ -1,4 +1,4 @@
-#include "rvelab/io/journal/record_file.hpp"
+#include "rvelab/io/journal/recorded_test.hpp"
 
 #include <toml++/toml.h>
 #include <Eigen/Core>
@@ -13,8 +13,6 @@
 #include "rvelab/io/journal/journal.hpp"
 #include "rvelab/io/journal/probe_results.hpp"
 #include "rvelab/io/journal/record_journal.hpp"
-#include "rvelab/io/journal/recorded_test.hpp"
-#include "rvelab/io/journal/seal_file.hpp"
 #include "rvelab/io/version.hpp"
 #include "rvelab/records/record_fields.hpp"
 #include "rvelab/solver/rve.hpp"
@@ -190,19 +188,5 @@ RecordedTest read_recorded_test(const std::string& path) {
             [](const Snapshot& a, const Snapshot& b) { return a.record < b.record; });
   return merged;
 }
-
-void write_records(const records::TestResult& result, const Specimen& end_state,
-                   const std::string& resolved_protocol_text, const std::string& path) {
-  RecordedTest test;
-  test.provenance = provenance_of(resolved_protocol_text, end_state);
-  test.provenance.specimen_crc32c = 0;
-  test.result = result;
-  test.checkpoint.specimen = end_state;
-  write_recorded_test(test, path);
-}
-
-records::TestResult read_records(const std::string& path) { return read_recorded_test(path).result; }
-
-std::string read_protocol_text(const std::string& path) { return read_recorded_test(path).provenance.protocol; }
 
 }  // namespace rvelab::io
