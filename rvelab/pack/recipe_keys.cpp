@@ -16,16 +16,16 @@ std::vector<TableKey> pack() {
   const char* t = "pack";
   const Recipe initial;
   return {
-      required(text(t, "name", "", "what the recipe is called")),
+      required(text(t, "name", "", "name of the recipe")),
       choice(t, "shape", {"disc", "sphere", "ellipse"}, "disc, ellipse: 2D; sphere: 3D"),
       whole_number(t, "number", long(initial.number), {1, 1e8}, "grains in all"),
       whole_number(t, "seed", long(initial.seed), {0, 9e15},
-                   "of all that is random; specimens of --count have the following ones"),
+                   "seed of all random numbers; further specimens of --count take the next seeds"),
       number(t, "thickness_m", "m", initial.thickness, positive, "2D: thickness of the slab"),
       choice(t, "cell", {"upright", "oriented"},
-             "upright: square or cube; oriented: the lattice that no compression along the axes makes slender (Kraynik "
-             "and Reinelt in 2D, a cubic field in 3D)"),
-      choice(t, "share_by", {"number", "mass"}, "what grains.share counts"),
+             "upright: square or cube; oriented: a lattice that compression along the axes never makes slender "
+             "(Kraynik and Reinelt in 2D, a cubic field in 3D)"),
+      choice(t, "share_by", {"number", "mass"}, "measure of grains.share"),
   };
 }
 
@@ -36,28 +36,29 @@ std::vector<TableKey> grains() {
       text(t, "name", "\"grains\"", "name of a fraction, for --set grains.NAME.key=value"),
       text(t, "material", "(the first)", "name of the material"),
       number(t, "share", "1", GrainFraction{}.share, {0, 1, true, false},
-             "part of all grains by pack.share_by; the shares of all [[grains]] add up to 1"),
+             "fraction of all grains, by pack.share_by; the shares of all [[grains]] add up to 1"),
       choice(t, "grading", {"uniform", "linear", "tabulated"},
-             "uniform: passing is straight over the radius; linear: straight over its logarithm; tabulated: points, "
-             "straight over the radius between them"),
-      choice(t, "passing_by", {"number", "mass"}, "what the grading counts"),
+             "uniform: passing is linear in the radius; linear: linear in its logarithm; tabulated: given points, "
+             "linear in the radius between them"),
+      choice(t, "passing_by", {"number", "mass"}, "measure of the passing fraction"),
       number(t, "smallest_radius_m", "m", "", positive,
-             "grading = uniform, linear: where passing is 0; the radius of an ellipse is sqrt(a b)"),
-      number(t, "largest_radius_m", "m", "", positive, "grading = uniform, linear: where passing is 1"),
+             "grading = uniform, linear: radius at passing 0; the radius of an ellipse is sqrt(a b)"),
+      number(t, "largest_radius_m", "m", "", positive, "grading = uniform, linear: radius at passing 1"),
       number(t, "smallest_aspect_ratio", "1", initial_fraction.smallest_aspect_ratio, aspect_ratio,
-             "shape = ellipse: b/a, every value up to the largest equally frequent"),
-      number(t, "largest_aspect_ratio", "1", initial_fraction.largest_aspect_ratio, aspect_ratio, "shape = ellipse"),
+             "shape = ellipse: smallest b/a; values up to the largest are equally frequent"),
+      number(t, "largest_aspect_ratio", "1", initial_fraction.largest_aspect_ratio, aspect_ratio,
+             "shape = ellipse: largest b/a"),
       number(t, "bedding_angle_deg", "degrees", initial_fraction.bedding_angle, {-180, 180},
-             "shape = ellipse: from x to the long axes on average, as the grains are laid"),
+             "shape = ellipse: mean angle from x to the long axes when the grains are placed"),
       number(t, "bedding_spread_deg", "degrees", initial_fraction.bedding_spread, {0, 90},
-             "shape = ellipse: to either side of it, every angle equally frequent; 90: no bedding"),
+             "shape = ellipse: largest deviation from it, all angles equally frequent; 90: no bedding"),
       {{t, "radii_m", "m", "list of numbers", "", "each " + in_words(positive), "grading = tabulated: ascending radii"},
        KeyKind::numbers,
        positive,
        {},
        {}},
       {{t, "passing", "1", "list of numbers", "", "each 0 to 1",
-        "grading = tabulated: part that is not larger than each radius, 0 first, 1 last"},
+        "grading = tabulated: fraction not larger than each radius, 0 first, 1 last"},
        KeyKind::numbers,
        {0, 1},
        {},
@@ -84,11 +85,13 @@ std::vector<TableKey> target() {
        {},
        {}},
       number(t, "void_ratio", "1", "", {-1, infinity, true, true},
-             "of the finished specimen; the preparation friction is then searched. Without a stress: of the cell"),
-      number(t, "porosity", "1", "", {-10, 1, true, true}, "in place of void_ratio: n = e/(1 + e)"),
-      number(t, "void_ratio_tolerance", "1", initial.void_ratio_tolerance, below_one, "that a draw is accepted within"),
+             "void ratio of the finished specimen, for which rvelab finds the preparation friction; without a stress: "
+             "of the cell"),
+      number(t, "porosity", "1", "", {-10, 1, true, true}, "porosity n = e/(1 + e), in place of void_ratio"),
+      number(t, "void_ratio_tolerance", "1", initial.void_ratio_tolerance, below_one,
+             "allowed error of the void ratio"),
       number(t, "stress_tolerance", "1", initial.stress_tolerance, below_one,
-             "of the mean pressure, for each component"),
+             "allowed error of each stress component, over the mean pressure"),
       number(t, "unbalanced", "1", initial.unbalanced, below_one, "unbalanced force ratio of the finished specimen"),
   };
 }
@@ -97,20 +100,21 @@ std::vector<TableKey> preparation() {
   const char* t = "preparation";
   const Preparation initial;
   return {
-      choice(
-          t, "method", {"compression", "growth", "regular"},
-          "compression: the cell shrinks around scattered grains; growth: the radii grow in a cell that stands still; "
-          "regular: 2D, equal grains in rows that lie, with the cell, at the bedding angle"),
+      choice(t, "method", {"compression", "growth", "regular"},
+             "compression: the cell shrinks around scattered grains; growth: the radii grow in a cell that stands "
+             "still; regular: 2D, equal grains in rows that lie, with the cell, at the bedding angle"),
       number(t, "friction", "1", "(searched, or that of the materials; 0 without a stress)", friction,
-             "of all contacts while the specimen is prepared: low for dense, high for loose"),
+             "friction of all contacts during preparation: low for dense, high for loose specimens"),
       number(t, "rolling_friction", "1", initial.rolling_friction, {0, infinity, false, true},
-             "the same of eta, where it is below the material's"),
-      number(t, "lowest_friction", "1", initial.lowest_friction, friction, "of the search for target.void_ratio"),
-      number(t, "highest_friction", "1", initial.highest_friction, friction, "of the search for target.void_ratio"),
-      whole_number(t, "max_draws", initial.max_draws, {1, 1e6}, "of that search, before it fails"),
-      number(t, "first_size", "1", initial.first_size, below_one, "method = growth: first radii over the last ones"),
+             "largest eta of all materials during preparation"),
+      number(t, "lowest_friction", "1", initial.lowest_friction, friction,
+             "lower limit of the search for target.void_ratio"),
+      number(t, "highest_friction", "1", initial.highest_friction, friction,
+             "upper limit of the search for target.void_ratio"),
+      whole_number(t, "max_draws", initial.max_draws, {1, 1e6}, "most draws of that search; then it fails"),
+      number(t, "first_size", "1", initial.first_size, below_one, "method = growth: initial radii over the final ones"),
       number(t, "growth_void_ratio", "1", "(target.void_ratio + 0.1; without one 0.3 in 2D, 0.9 in 3D)",
-             {0, infinity, true, true}, "method = growth: of the cell when the grains have grown"),
+             {0, infinity, true, true}, "method = growth: void ratio of the cell once the grains have grown"),
   };
 }
 

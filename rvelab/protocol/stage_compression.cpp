@@ -30,11 +30,12 @@ struct Compression : KindOf<CompressionStage> {
                "constant_stress: each lateral normal stress is held (drained); constant_volume: det F = 1 (undrained); "
                "zero_strain: oedometer"),
         number(t, "lateral_pressure_Pa", "Pa", "(test.pressure_Pa)", positive,
-               "lateral = constant_stress: lateral normal stresses are held at minus this, which they start from"),
+               "lateral = constant_stress: lateral stress that is held, compression positive; the stage must start "
+               "from it"),
         whole_number(t, "cycles", CompressionStage{}.cycles.count, {0, 1e6},
-                     "0: straight to to_strain; else so many cycles between +-to_strain"),
+                     "number of cycles between +-to_strain; 0: monotonic to to_strain"),
         number(t, "reverse_at_Pa", "Pa", "", positive,
-               "cycles > 0: the strain turns where the axial less the mean lateral stress has this size"),
+               "cycles > 0: the strain reverses where the size of the axial less the mean lateral stress reaches this"),
     };
   }
 

@@ -58,7 +58,7 @@ struct Deviatoric : KindOf<DeviatoricStage> {
         number(t, "lode_angle_deg", "degree", initial.lode_angle_deg, {-180, 180},
                "3D: direction in the deviatoric plane; 0 compression along z, 60 extension along y"),
         number(t, "pressure_Pa", "Pa", "(test.pressure_Pa)", positive,
-               "p, which is held and which the stage starts from"),
+               "p, held constant; the stage must start from it"),
     };
   }
 

@@ -72,15 +72,17 @@ struct Envelope : KindOf<EnvelopeStage> {
     const char* t = "stage.envelope";
     const EnvelopeStage initial;
     return {
-        choice(t, "probes", {"strain", "stress"}, "what is the same in every direction"),
+        choice(t, "probes", {"strain", "stress"}, "quantity whose size is equal in every direction"),
         number(t, "size", "1", initial.size, {0, 0.1, true, false}, "probes = strain: norm of the strain"),
         number(t, "size_Pa", "Pa", "", positive, "probes = stress: norm of the change of stress"),
         whole_number(t, "directions", initial.directions, {1, 1e4},
-                     "of the plane y, x in 2D, z and the two others together in 3D, from compression along the axis"),
-        whole_number(t, "increments", initial.increments, {1, 1e6}, "of each probe"),
+                     "number of directions, from compression along the axis; in 2D in the plane of y and x, in 3D in "
+                     "that of z and of x and y together"),
+        whole_number(t, "increments", initial.increments, {1, 1e6}, "increments of each probe"),
         number(t, "unbalanced", "1", initial.unbalanced, ratio,
                "unbalanced force ratio to which each probe is relaxed"),
-        whole_number(t, "max_steps", initial.max_steps, steps, "sub-steps of that before it fails"),
+        whole_number(t, "max_steps", initial.max_steps, steps,
+                     "most sub-steps of that relaxation; then the stage fails"),
     };
   }
 

@@ -59,16 +59,17 @@ struct Isotropic : KindOf<IsotropicStage> {
     const IsotropicStage initial;
     return {
         number(t, "pressure_Pa", "Pa", "(test.pressure_Pa)", pressures,
-               "all normal stresses are brought to minus this"),
+               "target of all normal stresses, compression positive"),
         choice(t, "shear", {"zero_strain", "zero_stress"},
                "zero_strain: the cell keeps its angles; zero_stress: shear stresses are driven to zero"),
         number(t, "stress_tolerance", "1", initial.stress_tolerance, ratio,
-               "of the pressure; the stage ends within it"),
+               "allowed error of the stress at the end of the stage, over the pressure"),
         number(t, "unbalanced", "1", initial.unbalanced, ratio, "unbalanced force ratio below which the stage ends"),
         number(t, "largest_change", "1", initial.largest_change, {0, 1, true, false},
                "largest change of stress in one increment, over the pressure"),
-        whole_number(t, "max_rounds", initial.max_rounds, steps, "rounds of relaxing and correcting before it fails"),
-        whole_number(t, "max_steps", initial.max_steps, steps, "sub-steps of one relaxation before it fails"),
+        whole_number(t, "max_rounds", initial.max_rounds, steps,
+                     "most rounds of correction and relaxation; then the stage fails"),
+        whole_number(t, "max_steps", initial.max_steps, steps, "most sub-steps of one relaxation"),
         boolean(t, "record", initial.record, "records the state at the start and at the end"),
     };
   }

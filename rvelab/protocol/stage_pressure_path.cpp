@@ -29,8 +29,9 @@ struct PressurePath : KindOf<PressurePathStage> {
 
   std::vector<TableKey> keys() const override {
     const char* t = "stage.pressure_path";
-    TableKey targets = listed(t, "to_Pa", "Pa", "list of numbers", "", KeyKind::numbers,
-                              "pressures that all normal stresses go to one after the other; shear strains are zero");
+    TableKey targets =
+        listed(t, "to_Pa", "Pa", "list of numbers", "", KeyKind::numbers,
+               "pressures to which all normal stresses are brought, one after the other; shear strains are zero");
     targets.range = pressures;
     targets.key.range = "each " + in_words(pressures);
     return {required(targets), whole_number(t, "records_per_point", PressurePathStage{}.records_per_point, {1, 1e6},

@@ -40,8 +40,8 @@ struct StiffnessProbe : KindOf<ProbeStage> {
     stage.no_slip = reader.boolean("no_slip", linear);
     if (linear && !stage.no_slip) {
       reader.mistake("no_slip",
-                     "contradicts method = \"linear\", in which every contact is stuck; allowed: true with "
-                     "it; remove the key or take method = \"dynamic\"");
+                     "contradicts method = \"linear\", in which every contact is stuck; allowed: true with it; remove "
+                     "the key or take method = \"dynamic\"");
     }
   }
 

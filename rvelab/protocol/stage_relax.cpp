@@ -23,8 +23,8 @@ struct Relax : KindOf<RelaxStage> {
     const RelaxStage initial;
     return {
         number(t, "unbalanced", "1", initial.unbalanced, ratio, "unbalanced force ratio below which the stage ends"),
-        whole_number(t, "max_steps", initial.max_steps, steps, "sub-steps before it fails"),
-        boolean(t, "record", initial.record, "records the state at the end"),
+        whole_number(t, "max_steps", initial.max_steps, steps, "most sub-steps; then the stage fails"),
+        boolean(t, "record", initial.record, "records the state before and after"),
     };
   }
 

@@ -24,11 +24,13 @@ struct SimpleShear : KindOf<SimpleShearStage> {
                "gamma between records; at most 1e6 records"),
         choice(t, "normal", {"constant_volume", "constant_stress"},
                "constant_volume: only the shear moves (undrained); constant_stress: sigma_bb is held (drained)"),
-        number(t, "normal_pressure_Pa", "Pa", "(test.pressure_Pa)", positive,
-               "normal = constant_stress: sigma_bb is held at minus this, which it starts from"),
+        number(
+            t, "normal_pressure_Pa", "Pa", "(test.pressure_Pa)", positive,
+            "normal = constant_stress: normal stress that is held, compression positive; the stage must start from it"),
         whole_number(t, "cycles", SimpleShearStage{}.cycles.count, {0, 1e6},
-                     "0: straight to to_strain; else so many cycles between +-to_strain"),
-        number(t, "reverse_at_Pa", "Pa", "", positive, "cycles > 0: gamma turns where sigma_ab has this size"),
+                     "number of cycles between +-to_strain; 0: monotonic to to_strain"),
+        number(t, "reverse_at_Pa", "Pa", "", positive,
+               "cycles > 0: gamma reverses where the size of sigma_ab reaches this"),
     };
   }
 

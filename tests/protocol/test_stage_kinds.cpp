@@ -12,7 +12,7 @@ using namespace rvelab;
 using Catch::Matchers::Contains;
 
 TEST_CASE("each kind of stage stands in the table once, with keys of its own and its chapter in the README") {
-  std::ifstream readme(RVELAB_SOURCE_DIR "/rvelab/protocol/README.md");
+  std::ifstream readme(RVELAB_SOURCE_DIR "/protocols/README.md");
   std::set<std::string> lines, names;
   for (std::string line; std::getline(readme, line);) lines.insert(line);
   for (protocol::MakeStage* const make : protocol::stage_kinds) {
