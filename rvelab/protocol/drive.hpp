@@ -1,8 +1,8 @@
 // Driving an Rve through one stage: the targets of each increment, and the bookkeeping of a running test. Internal to
 // the room.
 //
-// A drive keeps its place in RunningTest::run.progress (phase, step) and in nothing else, changes it only together with
-// the state that it describes, and so goes on from any moment that it was left at.
+// A drive keeps its place in RunningTest::run.progress (phase, step) alone, and changes it only together with the state
+// that it describes, so that it can resume from any pause.
 #pragma once
 
 #include <functional>
@@ -95,13 +95,12 @@ class RunningTest {
   void record_now(double strain);  ///< a state that no increment led to
   void probed(const Eigen::MatrixXd& stiffness);
 
-  /// A moment at which the test can be left: shows it to the watcher; throws Interrupted if a stop was asked for.
+  /// A moment at which the test can be left: calls the watcher; throws Interrupted on request.
   void pause();
 
   /// At the start of a stage that holds a stress: InputError unless the stress `name` (Pa, compression positive) is
-  /// there already, within ten times the tolerance by which it is held. A drained test of the laboratory starts from
-  /// the consolidated state; a stress that jumped within the first record would be a load path that nobody prescribed,
-  /// with the waves and slips of a shock in all that follows.
+  /// within ten times its tolerance of the held value. A drained test starts from the consolidated state; a jump within
+  /// the first record would be a load path that nobody prescribed.
   void expect_consolidated(const std::string& name, double found, double held) const;
 
   /// Scale of a held stress: max(|target|, 1 % of the stage's first p). Error if both vanish.

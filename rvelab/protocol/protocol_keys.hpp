@@ -2,7 +2,8 @@
 // prints it, so that what is read, what is refused and what is documented cannot differ: a key that is read without an
 // entry, or an entry that its table's reader does not ask for, is a std::logic_error at the first reading.
 //
-// A new key: one entry here, one call in the reader of its table, one row in protocols/README.md (a test compares them).
+// A new key: one entry here, one call in the reader of its table, one row in protocols/README.md (a test compares
+// them).
 #pragma once
 
 #include <string>

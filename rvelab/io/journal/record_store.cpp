@@ -189,11 +189,11 @@ void RecordStore::put_snapshot(std::size_t record, const Specimen& state) {
   test_.snapshots.push_back({record, journal_.path(), payload_at, payload.size()});
 }
 
-bool RecordStore::ready(const Pace& pace, double shortest) const {
-  // Each at most a 400th of the time: with the records, checkpoints and files stay below a hundredth.
+bool RecordStore::ready(const Last& last, double shortest) const {
+  // Each takes at most a 400th of the time, so that records, checkpoints and files together stay below a hundredth.
   constexpr double cost_multiple = 400;
-  const double wait = checkpoint_every_ > 0 ? checkpoint_every_ : std::max(shortest, cost_multiple * pace.cost);
-  return seconds_since(pace.last) >= wait;
+  const double wait = checkpoint_every_ > 0 ? checkpoint_every_ : std::max(shortest, cost_multiple * last.cost);
+  return seconds_since(last.when) >= wait;
 }
 
 void RecordStore::offer(const std::function<records::Checkpoint()>& take) {
@@ -211,9 +211,7 @@ void RecordStore::keep(const records::Checkpoint& checkpoint) {
   test_.result.pressure = checkpoint.progress.pressure;
   test_.result.wall_seconds = checkpoint.progress.wall_seconds;
   test_.result.grain_steps = checkpoint.specimen.state.grain_steps - checkpoint.progress.first_grain_steps;
-  std::vector<std::byte> payload;
-  { payload = encode_checkpoint(checkpoint); }
-  journal_.append(checkpoint_frame, payload);
+  journal_.append(checkpoint_frame, encode_checkpoint(checkpoint));
   keeps_something_ = true;
   journal_.sync();
   drop_old_checkpoints();
@@ -221,8 +219,8 @@ void RecordStore::keep(const records::Checkpoint& checkpoint) {
 }
 
 void RecordStore::drop_old_checkpoints() {
-  // A journal is written anew with its last checkpoint only once the others are most of it: what that costs is then
-  // a fraction of what they have cost.
+  // The journal is rewritten with its last checkpoint only when the others are most of it: the cost is then a fraction
+  // of theirs.
   constexpr std::uint64_t small = 16 << 20;
   if (journal_.size() < std::max(small, 4 * size_without_)) return;
   auto snapshots = test_.snapshots;

@@ -56,9 +56,9 @@ class RecordStore {
 
  private:
   using Clock = std::chrono::steady_clock;
-  /// When something was done last, and what it cost.
-  struct Pace {
-    Clock::time_point last;
+  /// When something was done last, and the time that it took.
+  struct Last {
+    Clock::time_point when;
     double cost = 0;  ///< s
   };
 
@@ -66,7 +66,7 @@ class RecordStore {
   void keep(const records::Checkpoint& checkpoint);
   void publish_now();
   void drop_old_checkpoints();
-  bool ready(const Pace& pace, double shortest) const;
+  bool ready(const Last& last, double shortest) const;
 
   std::string path_;
   Journal journal_;
@@ -76,7 +76,7 @@ class RecordStore {
   std::size_t made_records_ = 0, made_probes_ = 0;
   std::uint64_t size_without_ = 0;  ///< bytes of the journal when old checkpoints were dropped last
   bool keeps_something_ = false;    ///< a record or a checkpoint is in the journal
-  Pace kept_, published_;
+  Last kept_, published_;
 };
 
 }  // namespace rvelab::io
