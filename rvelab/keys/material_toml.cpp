@@ -16,35 +16,6 @@ namespace {
 
 const std::vector<std::string> table_names{"contact", "damping", "solver", "material"};
 
-[[noreturn]] void refuse(const std::string& dotted, const toml::node& value, const std::string& reason,
-                         const KeyEntry& entry, const std::string& remedy) {
-  throw InputError(dotted + " = " + written(value) + " " + reason + "; allowed: " + entry.key.allowed() + "; " +
-                   remedy);
-}
-
-void convert(const std::string& dotted, const toml::node& value, const KeyEntry& entry, double& field) {
-  if (!value.is_number()) refuse(dotted, value, "is not a number", entry, "give a number");
-  const double number = number_in(value);
-  if (!std::isfinite(number)) refuse(dotted, value, "is not finite", entry, "give a finite number");
-  if (!entry.range.contains(number)) refuse(dotted, value, "is out of range", entry, "give a value in this range");
-  field = number;
-}
-
-void convert(const std::string& dotted, const toml::node& value, const KeyEntry& entry, long& field) {
-  if (!value.is_integer())
-    refuse(dotted, value, "is not a whole number", entry, "give a whole number, without a point");
-  const auto number = value.as_integer()->get();
-  if (!entry.range.contains(static_cast<double>(number))) {
-    refuse(dotted, value, "is out of range", entry, "give a value in this range");
-  }
-  field = number;
-}
-
-void convert(const std::string& dotted, const toml::node& value, const KeyEntry& entry, bool& field) {
-  if (!value.is_boolean()) refuse(dotted, value, "is neither true nor false", entry, "give true or false");
-  field = value.as_boolean()->get();
-}
-
 /// "linear, hertz_mindlin" as a list.
 std::vector<std::string> words_of(const std::string& range) {
   std::vector<std::string> words;
@@ -55,14 +26,18 @@ std::vector<std::string> words_of(const std::string& range) {
   return words;
 }
 
-template <class Word>
-void convert(const std::string& dotted, const toml::node& value, const KeyEntry& entry, Word& field) {
-  if (!value.is_string()) refuse(dotted, value, "is not a word", entry, "give one of these");
-  const std::string& word = value.as_string()->get();
-  try {
-    from_text(word, field);
-  } catch (const InputError&) {
-    refuse(dotted, value, "is not known", entry, choose_one(word, words_of(entry.key.range)));
+template <class Value>
+void convert(const std::string& dotted, const toml::node& value, const KeyEntry& entry, Value& field) {
+  const std::string wrong = wrong_with(value, entry.key, entry.range, words_of(entry.key.range));
+  if (!wrong.empty()) throw InputError(dotted + " = " + written(value) + " " + wrong);
+  if constexpr (std::is_same_v<Value, bool>) {
+    field = value.as_boolean()->get();
+  } else if constexpr (std::is_same_v<Value, long>) {
+    field = value.as_integer()->get();
+  } else if constexpr (std::is_same_v<Value, double>) {
+    field = number_in(value);
+  } else {
+    from_text(value.as_string()->get(), field);
   }
 }
 
