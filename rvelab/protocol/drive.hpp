@@ -1,5 +1,4 @@
-// Driving an Rve through one stage: the targets of each increment, and the bookkeeping of a running test. Internal to
-// the room.
+// Driving an Rve through one stage: targets of each increment, and the state of a running test. Internal to the room.
 //
 // A drive keeps its place in RunningTest::run.progress (phase, step) alone, and changes it only together with the state
 // that it describes, so that it can resume from any pause.
@@ -64,7 +63,7 @@ class RunningTest {
       step_done();
     }
   }
-  /// To and fro between the strains +-`to_strain`, as `cycles` says, in `steps` equal parts of each amplitude.
+  /// Cycles between the strains +-`to_strain`, in `steps` equal parts of each amplitude.
   /// `driving_stress()` grows with the driving strain.
   template <class Increment, class DrivingStress>
   void go_to_and_fro(double to_strain, long steps, const Cycles& cycles, Increment increment_to,
@@ -88,7 +87,7 @@ class RunningTest {
       step_done();
     }
   }
-  /// Counts a record of a stage, looks at its events, and pauses.
+  /// Counts a record of a stage, checks its events, and pauses.
   void step_done();
   bool ended() const { return run.progress.phase >= done_phase; }
   void record(double strain, const Report& report);

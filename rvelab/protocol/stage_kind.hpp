@@ -43,7 +43,7 @@ class StageKind {
   virtual StageRole role() const { return {}; }
   /// Settings with which that is a strength, in words; "": never.
   virtual const char* strength_when() const { return ""; }
-  /// It makes records on its way, which events can look at.
+  /// Whether it makes records at which events can be checked.
   virtual bool takes_events() const { return true; }
 };
 

@@ -22,8 +22,8 @@ CsvExport csv_files(const std::string& stem);
 /// Writes the four files, SI units, laboratory frame, every number exact. `import_csv` with all four gives the same
 /// cell, grains, contacts and parameters: bit for bit where the frame is not turned (rotation I, 3D), else to
 /// round-off; pairs that touch are contacts, with a history or without. What a resting state does not have (velocities,
-/// pace of the solver, ledger) is not carried. InputError if a material has no name that a CSV cell can hold, or two
-/// have the same.
+/// state of the solver, energy balance) is not kept. InputError if a material has no name that a CSV cell can hold, or
+/// two have the same.
 CsvExport export_csv(const Specimen& specimen, const std::string& stem);
 
 }  // namespace rvelab::io

@@ -7,7 +7,7 @@
 
 namespace rvelab::io {
 
-/// The material file (read_material_file) that says all parameters of the specimen.
+/// The material file (read_material_file) with all parameters of the specimen.
 std::string material_file_text(const Specimen& specimen);
 
 }  // namespace rvelab::io

@@ -16,7 +16,7 @@ namespace rvelab::io {
 ///   contacts  lines from centre i to that image of centre j which it touches: force_N on j, normal_force_N,
 ///             overlap_m, sliding (|f_t| at the Coulomb limit); left out of a state that has none
 ///   cell      the twelve edges of that parallelepiped; 2D: the four of the mid-plane
-/// Discs and spheres carry no orientation. Errors as publish() (hdf5_file.hpp).
+/// Discs and spheres carry no orientation. Errors as publish() (io/hdf5/file.hpp).
 void export_xdmf(const std::vector<ExportState>& states, const std::string& path);
 
 }  // namespace rvelab::io

@@ -1,4 +1,4 @@
-// Two files, bit by bit: what `rvelab compare` says, and what "the same" means in every test of a restart.
+// Comparison of two files, bit by bit: `rvelab compare`, and every test of a restart.
 #pragma once
 
 #include <cstddef>

@@ -32,7 +32,7 @@ struct Hdf5Entry {
 
 /// Values as a file stores them, for comparison: bytes in the file's own type, or texts, however long they may be.
 struct StoredValues {
-  std::string type;  ///< as Hdf5Entry says it
+  std::string type;  ///< as in Hdf5Entry
   Shape64 shape;
   std::vector<std::byte> bytes;
   std::vector<std::string> texts;

@@ -150,8 +150,7 @@ void check_normal_forces(const CsvTable& table, const std::vector<Contact>& cont
   }
 }
 
-/// Force and moment that friction and the rolling cap do not let stand were never those of a contact: the first step
-/// would cut them without a word.
+/// Force and moment must be within friction and the rolling cap: else the first step would cut them silently.
 void check_caps(const CsvTable& table, const std::vector<Contact>& contacts, const Specimen& specimen,
                 const ContactColumns& columns) {
   double largest = 0;

@@ -9,7 +9,7 @@
 namespace rvelab::io {
 
 /// Reads the contacts of a specimen whose grains, cell and parameters stand; `wraps` holds each grain's wrapping
-/// translation. Errors as import_csv says.
+/// translation. Errors as import_csv.
 void read_contacts(const CsvTable& table, const std::vector<Image>& wraps, Specimen& specimen);
 
 }  // namespace rvelab::io

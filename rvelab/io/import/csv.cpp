@@ -184,7 +184,7 @@ Particles read_particles(const std::string& path) {
   return {std::move(table), dimension, std::nullopt};
 }
 
-/// The cell that counts when a further source gives one too: none may contradict another.
+/// Takes the cell of one more source; only one source may give a cell.
 void take_cell(std::optional<Matrix3>& cell, std::string& source, const Matrix3& further, const std::string& from,
                const std::string& what) {
   if (cell) {
@@ -195,7 +195,7 @@ void take_cell(std::optional<Matrix3>& cell, std::string& source, const Matrix3&
   source = from;
 }
 
-/// What META.json says of the number of rows must be so: a table that was cut ends at a whole line as well.
+/// The table has the number of rows that META.json states: a table that was cut may end with a whole line.
 void expect_rows(const CsvTable& table, const std::optional<std::size_t>& stated, const char* key,
                  const std::optional<std::string>& meta) {
   if (!stated || *stated == table.rows()) return;

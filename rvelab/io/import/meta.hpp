@@ -1,4 +1,4 @@
-// META.json of a packing: law, parameters, cell and stress level, as import_csv.hpp lists the keys.
+// META.json of a packing: law, parameters, cell and stress level, keys as in csv.hpp.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,7 @@
 
 namespace rvelab::io {
 
-/// What META.json says. A missing key that is not optional, one of the wrong kind or out of range: InputError.
+/// Contents of META.json. InputError: a missing key that is not optional, one of the wrong kind or out of range.
 struct Meta {
   int dimension;
   std::optional<Matrix3> cell;      ///< m, cell vectors as columns, laboratory frame; 2D: (2, 2) is the thickness

@@ -1,10 +1,10 @@
-// The journal of a run, R.h5.journal: an append-only file of frames, each with its length and checksum. Whatever stops
-// a run, the frames before the last one are whole; the longest prefix of valid frames counts.
+// The journal of a run, R.h5.journal: an append-only file of frames, each with its length and checksum. If a run is
+// killed, all frames before the last one are whole; the longest prefix of valid frames counts.
 //
 // Layout, little-endian (rvelab/io/README.md has the meaning of the frames):
 //   header  8 bytes "rvejrnl\n", uint32 format version, uint32 CRC-32C of the twelve bytes before it
 //   frame   uint32 type, uint64 length of the payload, uint32 CRC-32C over type, length and payload, payload
-// This file knows frames and nothing of what is in them.
+// This file knows frames, not their contents.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ struct Frame {
   std::uint64_t payload_at;            ///< its offset in the file
 };
 
-/// What a journal is worth.
+/// How much of a journal is valid.
 struct JournalExtent {
   bool exists = false;
   bool begun = false;             ///< its header is whole

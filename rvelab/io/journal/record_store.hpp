@@ -1,8 +1,8 @@
-// Where the records of a running test go: at once into a journal, now and then as a whole into R.h5.
+// Records of a running test: each goes into a journal at once, all of them into R.h5 now and then.
 //
-// HDF5 files cannot be kept whole while they are written to (kill -9 ruins a few per cent of them), so R.h5 is never
-// open for writing. Each record is one write to R.h5.journal; checkpoints go there too; R.h5 is made anew from memory
-// beside its place and renamed into it (publish()). A run that is killed loses no more than the record under way.
+// An HDF5 file that is open for writing may be ruined by kill -9, so R.h5 never is. Each record is one write to
+// R.h5.journal; checkpoints go there too; R.h5 is written whole from memory and renamed (publish()). A run that is
+// killed loses at most the record under way.
 #pragma once
 
 #include <chrono>
@@ -71,7 +71,7 @@ class RecordStore {
   std::string path_;
   Journal journal_;
   double checkpoint_every_;
-  RecordedTest test_;  ///< as it stands in the journal; rows up to made_ belong to the run that is going on
+  RecordedTest test_;  ///< as in the journal; rows up to made_ are of the present run
   std::optional<records::Checkpoint> from_;
   std::size_t made_records_ = 0, made_probes_ = 0;
   std::uint64_t size_without_ = 0;  ///< bytes of the journal when old checkpoints were dropped last

@@ -1,4 +1,6 @@
-// What a record file R.h5 and its journal hold together: a test, whole or as far as it got.
+// A test, complete or as far as it got, as a record file R.h5 and its journal hold it together: one dataset a column
+// under /records, the test under /test, its origin under /provenance, the end state under /specimen
+// (rvelab/io/README.md). A running test writes through RecordStore.
 #pragma once
 
 #include <memory>
@@ -11,7 +13,7 @@
 
 namespace rvelab::io {
 
-/// How a file came about. No host names, no dates. Nothing in a run is drawn at random, so there is no seed.
+/// Origin of a file. No host names, no dates. A run draws no random numbers, so there is no seed.
 struct Provenance {
   std::string protocol;  ///< with every default and setting in it, TOML
   std::string version, compiler;
@@ -22,7 +24,7 @@ struct Provenance {
 /// The provenance of what this program writes.
 Provenance provenance_of(const std::string& protocol_text, const Specimen& start);
 
-/// Where the state of one record lies: in a frame of a journal, or in a record file that was read.
+/// Place of the state of one record: a frame of a journal, or a record file that was read.
 struct Snapshot {
   std::size_t record = 0;  ///< row of /records
   std::string journal;
