@@ -17,7 +17,7 @@ namespace {
 
 using namespace keys;
 
-constexpr double far_off = 20;  ///< from its reference pressure, a specimen needs another one
+constexpr double far_off = 20;  ///< ratio to the reference pressure from which a specimen needs a new one
 
 constexpr std::int32_t begun = 1;  ///< the phase before those of the consolidation
 
@@ -114,8 +114,8 @@ struct Isotropic : KindOf<IsotropicStage> {
     }
     if (stage.shear_stress_free)
       test.apply(pack::upright_again(at.deformation, Matrix3::Identity()), {}, 0, test.loading.held_tolerance);
-    // Pace and tolerance of what follows go by the pressure reached here, not by one that is long left behind (discs
-    // swelled from 100 kPa to 40 Pa, then prescribed strain: p ended sixty times too high).
+    // Tolerances of the following stages refer to the pressure reached here, if the old one is far away (discs swelled
+    // from 100 kPa to 40 Pa, then prescribed strain: p ended sixty times too high).
     const double change = stage.pressure / test.rve.reference_pressure();
     if (!(change > 1 / far_off && change < far_off)) test.rve.take_as_reference();
     if (stage.record) test.record_now(1 - at.deformation.determinant());

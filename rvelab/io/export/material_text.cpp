@@ -13,15 +13,17 @@ namespace {
 /// Keys that share a field and not its unit: the one that the law, or the dashpot, reads.
 bool in_use(const Specimen& specimen, const std::string& name) {
   const bool viscoelastic = specimen.damping.dashpot == Dashpot::viscoelastic;
-  // Where no law of this name reads the field, the first key of it stands.
+  // Where the law does not read the field, the first key of the field is used.
   const auto& all = law_parameters();
   const auto asked = std::find_if(all.begin(), all.end(), [&](const auto& each) { return name == each.parameter.key; });
-  if (asked != all.end())
-    for (const LawParameter& other : all)
-      if (other.value == asked->value && other.law == specimen.contact.law) return name == other.parameter.key;
-  if (asked != all.end())
-    return name ==
-           std::find_if(all.begin(), all.end(), [&](const auto& e) { return e.value == asked->value; })->parameter.key;
+  if (asked != all.end()) {
+    const auto of_field = [&](const LawParameter& each) { return each.value == asked->value; };
+    auto used = std::find_if(all.begin(), all.end(), [&](const LawParameter& each) {
+      return of_field(each) && each.law == specimen.contact.law;
+    });
+    if (used == all.end()) used = std::find_if(all.begin(), all.end(), of_field);
+    return name == used->parameter.key;
+  }
   if (name == "normal_coefficient_N_s_m") return !viscoelastic;
   if (name == "viscoelastic_1_m_s") return viscoelastic;
   return true;

@@ -15,6 +15,7 @@
 #include "rvelab/io/import/meta.hpp"
 #include "rvelab/keys/material_toml.hpp"
 #include "rvelab/keys/regular_file.hpp"
+#include "rvelab/measure/stored_contact.hpp"
 
 namespace rvelab::io {
 namespace {
