@@ -1,14 +1,13 @@
 #include "rvelab/calibrate/calibrate.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
 #include <map>
 #include <sstream>
 #include <thread>
 
 #include "rvelab/error.hpp"
+#include "rvelab/threads/workers.hpp"
 
 namespace rvelab::calibrate {
 namespace {
@@ -139,23 +138,9 @@ std::vector<protocol::TestRun> run_all(const std::vector<protocol::Protocol>& pr
   };
   if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
   std::vector<protocol::TestRun> runs(protocols.size());
-  std::vector<std::exception_ptr> errors(protocols.size());
-  std::atomic<std::size_t> next{0};
-  const auto work = [&] {
-    for (std::size_t k = next++; k < protocols.size(); k = next++) {
-      try {
-        runs[k] = run_one(k, protocols[k], specimens[number_of(k)], run);
-      } catch (...) {
-        errors[k] = std::current_exception();
-      }
-    }
-  };
-  std::vector<std::thread> workers;
-  for (std::size_t k = 0; k < std::min<std::size_t>(threads, protocols.size()); ++k) workers.emplace_back(work);
-  for (auto& worker : workers) worker.join();
-  for (const auto& error : errors) {
-    if (error) std::rethrow_exception(error);
-  }
+  Workers(unsigned(std::min<std::size_t>(threads, protocols.size()))).run(protocols.size(), [&](std::size_t k) {
+    runs[k] = run_one(k, protocols[k], specimens[number_of(k)], run);
+  });
   return runs;
 }
 

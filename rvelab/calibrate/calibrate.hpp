@@ -9,19 +9,19 @@
 
 namespace rvelab::calibrate {
 
-/// What one test gives. Pa, compression positive; degrees.
+/// Results of one test. Pa, compression positive; degrees.
 struct PressureResult {
   double pressure = 0;
   std::size_t specimen = 0;  ///< its number, from 0
   PrincipalStresses peak;
   double peak_strain = 0;
   double end_strain = 0;
-  bool rising_at_end = false;                  ///< the largest deviator stands at the end: no peak was passed
+  bool rising_at_end = false;                  ///< the largest deviator is at the end: the test shows no peak
   double friction_angle_deg = 0;               ///< of the peak
   double moving_mean_friction_angle_deg = 0;   ///< of the 1 % moving mean
   double large_strain_friction_angle_deg = 0;  ///< of the mean stresses from 12 to 15 %
   std::size_t records = 0;
-  std::size_t flagged = 0;  ///< records that could not be held
+  std::size_t flagged = 0;  ///< records whose stress was not held
   double wall_seconds = 0;
   unsigned long long grain_steps = 0;
 };
@@ -33,12 +33,12 @@ struct Statistics {
   double standard_error = 0;      ///< of the mean
 };
 
-/// What the tests of one specimen give: least squares through the origin over its peaks.
+/// Results of one specimen: least squares through the origin over its peaks.
 struct SpecimenResult {
   double friction_angle_deg = 0, bearing_capacity_Nq = 0;
 };
 
-/// What all tests give. Degrees, Pa; NaN where the tests do not reach.
+/// Results of all tests. Degrees, Pa; NaN where the tests do not reach.
 struct Calibration {
   double friction_angle_deg = 0;                ///< peaks, t = s sin phi through the origin
   double friction_angle_moving_mean_deg = 0;    ///< mean over the tests
@@ -48,7 +48,7 @@ struct Calibration {
   double large_strain_friction_angle_deg = 0;                               ///< mean over the tests
   double bearing_capacity_Nq = 0, local_shear_Nq = 0, wedge_angle_deg = 0;  ///< of friction_angle_deg
   std::vector<PressureResult> per_pressure;
-  std::vector<SpecimenResult> per_specimen;  ///< one packing is one draw: angles of equal recipes differ by degrees
+  std::vector<SpecimenResult> per_specimen;  ///< specimens of one recipe with other seeds differ by degrees
   Statistics friction_angle_of_specimens, Nq_of_specimens;
 };
 
@@ -60,14 +60,14 @@ Statistics statistics(const std::vector<double>& values);
 Calibration calibrate(const std::vector<records::TestResult>& tests, int dimension,
                       const std::vector<std::size_t>& specimens = {});
 
-/// Throws InputError unless the last stage is a compression at constant lateral stress whose pressure is the test's:
-/// what a friction angle can be read from.
+/// InputError unless the last stage gives a friction angle: compression at constant lateral stress, whose pressure is
+/// that of the test.
 void check_calibratable(const protocol::Protocol& protocol);
 
 /// InputError unless there is one specimen for all protocols, or one for each.
 void check_specimens(const std::vector<protocol::Protocol>& protocols, const std::vector<Specimen>& specimens);
 
-/// Does one test, by its number, on a thread that it has to itself.
+/// Runs one test, by its number.
 using RunOne = std::function<protocol::TestRun(std::size_t number, const protocol::Protocol&, const Specimen&)>;
 
 /// Runs protocol k on specimen k (or on the only one), `threads` at a time (0: as many as there are cores). The results

@@ -14,12 +14,12 @@
 
 #include "rvelab/cli/commands.hpp"
 #include "rvelab/cli/report.hpp"
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/pack/repeated.hpp"
 #include "rvelab/pack/search.hpp"
-#include "rvelab/solver/batch.hpp"
 #include "rvelab/solver/kernels/configuration.hpp"
 #include "rvelab/solver/rve.hpp"
+#include "rvelab/threads/workers.hpp"
 
 namespace rvelab::cli {
 
@@ -203,8 +203,7 @@ void run_batch(const Arguments& arguments) {
     const auto before = steps_made();
     const auto begin = std::chrono::steady_clock::now();
     for (int increment = 0; increment < 4; ++increment)
-      for (const BatchEntry& entry : apply_to_all(rves, gradients, dt, workers))
-        if (entry.failure) std::rethrow_exception(entry.failure);
+      workers.run(rves.size(), [&](std::size_t k) { rves[k].apply(gradients[k], dt); });
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     if (round > 0) speeds.push_back(double(steps_made() - before) / seconds);  // the first warms up
   }

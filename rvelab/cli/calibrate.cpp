@@ -21,8 +21,8 @@
 #include "rvelab/cli/recording.hpp"
 #include "rvelab/cli/report.hpp"
 #include "rvelab/error.hpp"
+#include "rvelab/io/hdf5/schema.hpp"
 #include "rvelab/io/publish.hpp"
-#include "rvelab/io/schema.hpp"
 
 namespace rvelab::cli {
 namespace {

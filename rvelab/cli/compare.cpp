@@ -4,7 +4,7 @@
 
 #include "rvelab/cli/commands.hpp"
 #include "rvelab/cli/report.hpp"
-#include "rvelab/io/compare.hpp"
+#include "rvelab/io/hdf5/compare.hpp"
 
 namespace rvelab::cli {
 

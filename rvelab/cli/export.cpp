@@ -6,12 +6,12 @@
 #include "rvelab/cli/commands.hpp"
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/report.hpp"
-#include "rvelab/io/export_csv.hpp"
-#include "rvelab/io/export_lammps.hpp"
-#include "rvelab/io/export_xdmf.hpp"
-#include "rvelab/io/journal.hpp"
+#include "rvelab/io/export/csv.hpp"
+#include "rvelab/io/export/lammps.hpp"
+#include "rvelab/io/export/xdmf.hpp"
+#include "rvelab/io/journal/journal.hpp"
+#include "rvelab/io/journal/states.hpp"
 #include "rvelab/io/publish.hpp"
-#include "rvelab/io/states.hpp"
 #include "rvelab/solver/rve.hpp"
 
 namespace rvelab::cli {

@@ -10,9 +10,9 @@
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/report.hpp"
 #include "rvelab/error.hpp"
-#include "rvelab/io/import_csv.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
+#include "rvelab/io/import/csv.hpp"
 #include "rvelab/io/publish.hpp"
-#include "rvelab/io/specimen_file.hpp"
 #include "rvelab/measure/proportions.hpp"
 #include "rvelab/solver/rve.hpp"
 

@@ -7,9 +7,9 @@
 
 #include "rvelab/cli/commands.hpp"
 #include "rvelab/cli/report.hpp"
-#include "rvelab/io/journal.hpp"
-#include "rvelab/io/recorded_test.hpp"
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
+#include "rvelab/io/journal/journal.hpp"
+#include "rvelab/io/journal/recorded_test.hpp"
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/records/quantities.hpp"
 #include "rvelab/solver/rve.hpp"

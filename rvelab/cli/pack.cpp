@@ -15,11 +15,11 @@
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/report.hpp"
 #include "rvelab/error.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/io/publish.hpp"
-#include "rvelab/io/specimen_file.hpp"
 #include "rvelab/measure/measures.hpp"
+#include "rvelab/pack/read_recipe.hpp"
 #include "rvelab/pack/search.hpp"
-#include "rvelab/protocol/read_recipe.hpp"
 #include "rvelab/solver/rve.hpp"
 
 namespace rvelab::cli {
@@ -35,7 +35,7 @@ struct PackArguments {
 
 /// One specimen to be made, and what became of it.
 struct Job {
-  protocol::RecipeFile what;
+  pack::RecipeFile what;
   std::string file;
   Json made;  ///< null: not made
   Sizes sizes;
@@ -48,7 +48,7 @@ std::string with_word(const std::string& file, const std::string& word) {
 }
 
 /// The specimens of a family, and of each member the wanted number, with seeds one after the other.
-std::vector<Job> jobs_of(const protocol::RecipeFile& file, const PackArguments& arguments) {
+std::vector<Job> jobs_of(const pack::RecipeFile& file, const PackArguments& arguments) {
   std::vector<Job> jobs;
   const std::size_t digits = std::to_string(arguments.count).size();
   const auto add = [&](std::optional<double> pressure, const std::string& name) {
@@ -122,7 +122,7 @@ void make(Job& job, Workers& workers, DrawLine& line, std::mutex& files) {
   io::write_specimen(packing.specimen, job.file, &origin);
 }
 
-void report(const protocol::RecipeFile& file, const std::vector<Job>& jobs, bool json) {
+void report(const pack::RecipeFile& file, const std::vector<Job>& jobs, bool json) {
   Listing listing;
   listing.add("recipe", file.name);
   if (jobs.size() == 1) {
@@ -147,7 +147,7 @@ std::string made_of(const std::vector<Job>& jobs) {
 
 void run_pack(const PackArguments& arguments) {
   const std::string recipe = input_path(arguments.recipe, InputKind::recipe);
-  const protocol::RecipeFile file = protocol::read_recipe(recipe, arguments.settings);
+  const pack::RecipeFile file = pack::read_recipe(recipe, arguments.settings);
   expect_folder_of(arguments.output);
   std::vector<Job> jobs = jobs_of(file, arguments);
   for (const Job& job : jobs) io::expect_output(job.file, arguments.force, {recipe});

@@ -6,7 +6,7 @@
 #include "rvelab/cli/commands.hpp"
 #include "rvelab/cli/report.hpp"
 #include "rvelab/error.hpp"
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/measure/probe.hpp"
 #include "rvelab/measure/tangent.hpp"
 #include "rvelab/protocol/stages.hpp"

@@ -3,9 +3,9 @@
 #include <filesystem>
 
 #include "rvelab/error.hpp"
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/keys/key.hpp"
-#include "rvelab/protocol/read_recipe.hpp"
+#include "rvelab/pack/read_recipe.hpp"
 
 namespace rvelab::cli {
 
@@ -13,9 +13,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-InputKind kind_of(const std::string& path) {
-  return protocol::is_recipe(path) ? InputKind::recipe : InputKind::protocol;
-}
+InputKind kind_of(const std::string& path) { return pack::is_recipe(path) ? InputKind::recipe : InputKind::protocol; }
 
 fs::path installed_folder() {
   std::error_code ignored;

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "rvelab/io/record_store.hpp"
+#include "rvelab/io/journal/record_store.hpp"
 #include "rvelab/protocol/run.hpp"
 
 namespace rvelab::cli {

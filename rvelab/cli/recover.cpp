@@ -8,9 +8,9 @@
 #include "rvelab/cli/commands.hpp"
 #include "rvelab/cli/report.hpp"
 #include "rvelab/error.hpp"
+#include "rvelab/io/journal/record_journal.hpp"
+#include "rvelab/io/journal/recorded_test.hpp"
 #include "rvelab/io/publish.hpp"
-#include "rvelab/io/record_journal.hpp"
-#include "rvelab/io/recorded_test.hpp"
 
 namespace rvelab::cli {
 namespace {

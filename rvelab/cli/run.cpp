@@ -294,7 +294,7 @@ void add_run(CLI::App& app) {
       "R.h5.journal at once and to R.h5 now and then; Ctrl-C and SIGTERM stop the test and keep both.\n"
       "Without -o and --json the records are lost. peak_: of the last stage, where sigma_1 - sigma_3 is largest.\n"
       "p: mean stress, compression positive; q: deviatoric stress, sqrt(s:s/2) in 2D, sqrt(3 s:s/2) in 3D; eps_q: its\n"
-      "strain, sqrt(2 e:e) and sqrt(2 e:e/3), with s and e the deviators (rvelab/protocol/README.md says more).\n"
+      "strain, sqrt(2 e:e) and sqrt(2 e:e/3), with s and e the deviators (more: protocols/README.md).\n"
       "Examples:\n"
       "  rvelab run biaxial --specimen dense.h5 -o R.h5\n"
       "  rvelab run biaxial --specimen dense.h5 --set stage.compression.to_strain=0.05 --json\n"

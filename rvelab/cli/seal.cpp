@@ -6,8 +6,8 @@
 #include "rvelab/cli/commands.hpp"
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/report.hpp"
+#include "rvelab/io/journal/recorded_test.hpp"
 #include "rvelab/io/publish.hpp"
-#include "rvelab/io/seal_file.hpp"
 
 namespace rvelab::cli {
 namespace {

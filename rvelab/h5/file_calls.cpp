@@ -4,7 +4,7 @@
 #include <string>
 
 #include "rvelab/h5/pool_file.hpp"
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/io/version.hpp"
 #include "rvelab/pool/status.hpp"
 #include "rvelab/solver/snapshot.hpp"
@@ -15,9 +15,9 @@ namespace {
 
 using pool::Status;
 
-/// Does a call on a file and says what became of it. What is wrong with the file is one kind of failure.
+/// Makes a call on a file and returns its status. All faults of the file have one status.
 template <class Call>
-std::int32_t told(const Receiver& failure, Call call) noexcept {
+std::int32_t status_of(const Receiver& failure, Call call) noexcept {
   try {
     call();
     return std::int32_t(Status::ok);
@@ -32,7 +32,7 @@ std::int32_t told(const Receiver& failure, Call call) noexcept {
 }
 
 std::int32_t give_specimen(const char* path, const Receiver& specimen, const Receiver& failure) noexcept {
-  return told(failure, [&] {
+  return status_of(failure, [&] {
     const std::vector<std::byte> bytes = to_bytes(io::read_specimen(path, io::Seal::required));
     specimen.take(specimen.self, bytes.data(), bytes.size());
   });
@@ -40,7 +40,7 @@ std::int32_t give_specimen(const char* path, const Receiver& specimen, const Rec
 
 std::int32_t keep_pool(const char* path, const PoolNumbers& numbers, const StateSource& states,
                        const Receiver& failure) noexcept {
-  return told(failure, [&] {
+  return status_of(failure, [&] {
     const pool::Population population{numbers.tag,
                                       {numbers.generations, numbers.generations + numbers.slots},
                                       {numbers.ids, numbers.ids + numbers.rves}};
@@ -68,7 +68,7 @@ std::int32_t keep_pool(const char* path, const PoolNumbers& numbers, const State
 
 std::int32_t give_pool(const char* path, const Receiver& state, const PoolReceiver& receiver,
                        const Receiver& failure) noexcept {
-  return told(failure, [&] {
+  return status_of(failure, [&] {
     const pool::Population population = h5::read_pool(
         path, [&](std::span<const std::byte> bytes) { state.take(state.self, bytes.data(), bytes.size()); });
     receiver.take(receiver.self, {population.tag, population.generations.data(), population.generations.size(),

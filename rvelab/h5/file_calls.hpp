@@ -1,5 +1,5 @@
-// What librvelab-h5.so does for librvelab.so: files, for hosts that need them. Plain functions and
-// bytes cross between the two; specimens go as Rve::save() makes them, states of a pool as pool::to_bytes.
+// librvelab-h5.so reads and writes files for librvelab.so. Plain functions and bytes cross between the two: specimens
+// as of Rve::save(), states of a pool as of pool::to_bytes.
 #pragma once
 
 #include <cstddef>

@@ -1,8 +1,8 @@
 #include "rvelab/h5/pool_file.hpp"
 
 #include "rvelab/error.hpp"
-#include "rvelab/io/archive.hpp"
-#include "rvelab/io/schema.hpp"
+#include "rvelab/io/hdf5/archive.hpp"
+#include "rvelab/io/hdf5/schema.hpp"
 #include "rvelab/pool/rve_state.hpp"
 #include "rvelab/solver/snapshot.hpp"
 

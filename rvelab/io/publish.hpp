@@ -12,6 +12,9 @@ namespace rvelab::io {
 /// The file that a path means: symbolic links are followed, to a file that is not there yet too.
 std::string followed(const std::string& path);
 
+/// Name of the journal of a record file: beside the file itself, where `record_file` is a link to it.
+inline std::string journal_of(const std::string& record_file) { return followed(record_file) + ".journal"; }
+
 /// Refuses an output (InputError) before any work for it is done: one that is among the inputs or beside which an input
 /// has the name that rvelab writes to meanwhile, one that is no regular file (a folder, a device, a pipe), and, without
 /// `force`, one that is there already. `otherwise`: what else than a new name and --force is allowed, ", or ...".

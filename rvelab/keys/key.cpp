@@ -92,8 +92,12 @@ void raise(const std::string& path, std::vector<KeyError> errors) {
 }
 
 toml::table parse_toml_file(const std::string& path) {
+  return parse_toml_text(whole_file<std::string>(path, "a TOML file", 16 << 20), path);
+}
+
+toml::table parse_toml_text(const std::string& text, const std::string& path) {
   try {
-    return parse_toml_at(path);
+    return parse_toml(text, path);
   } catch (const toml::parse_error& error) {
     const auto& begin = error.source().begin;
     throw InputError(path + ":" + std::to_string(begin.line) + ": column " + std::to_string(begin.column) +

@@ -1,5 +1,4 @@
-// A key of a TOML file: what there is to say about it, and the mistakes that are told of keys and values, each with its
-// line or with the assignment of the command line that made it.
+// Keys of TOML files, and mistakes in keys and values, each with its line or its assignment of the command line.
 #pragma once
 
 #include <toml++/toml.h>
@@ -8,7 +7,7 @@
 
 namespace rvelab::keys {
 
-/// A key that a file or the command line may set, and what there is to say about it.
+/// A key that a file or the command line may set.
 struct Key {
   std::string table;    ///< "contact", "damping", "solver", "material", or a table of a protocol
   std::string name;     ///< ends in its unit, for example "young_modulus_Pa"
@@ -32,10 +31,10 @@ struct KeyError {
 /// A mistake at a key or a value of a file, or of an assignment.
 KeyError key_error(const toml::source_region& place, const std::string& message);
 
-/// Where a key was set last: a value that an assignment put over that of the file stands under the file's key.
+/// Where a key was set last: a value by an assignment has the key of the file and a source of its own.
 const toml::source_region& place_of(const toml::key& key, const toml::node& value);
 
-/// What stands before the text of an assignment in messages, and marks the source of its nodes.
+/// Begins an assignment in messages, and marks the source of its nodes.
 inline constexpr const char* assignment_prefix = "--set ";
 
 /// The value of an assignment under the key "value": TOML, or a word where it is none. Its nodes know the assignment.
@@ -55,7 +54,9 @@ std::string choose_one(const std::string& word, const std::vector<std::string>& 
 /// of the command line come last. Does nothing if there are none.
 void raise(const std::string& path, std::vector<KeyError> errors);
 
-/// Parses a TOML file. InputError naming file, line and column if it is missing or not TOML.
+/// Parses a TOML file, or a text whose messages name `path`. InputError naming file, line and column: missing, not
+/// TOML.
 toml::table parse_toml_file(const std::string& path);
+toml::table parse_toml_text(const std::string& text, const std::string& path);
 
 }  // namespace rvelab::keys

@@ -19,6 +19,8 @@ inline constexpr Interval not_negative{0, infinity, false, true};
 inline constexpr Interval ratio{0, 1, true, true};
 inline constexpr Interval below_one{0, 1, false, true};
 inline constexpr Interval steps{1, 1e12};
+/// Of pressures that grains are brought to, Pa: beyond any solid's stiffness, and squares of forces would overflow.
+inline constexpr Interval pressures{0, 1e15, true, false};
 
 inline std::string as_toml(double value) {
   std::ostringstream text;

@@ -108,7 +108,7 @@ std::vector<KeyEntry> damping() {
   return {
       entry(t, "local", "1", &Damping::local, below_one, "Cundall's damping for dt > 0"),
       entry(t, "local_quasi_static", "1", &Damping::local_quasi_static, ratio, "Cundall's damping for dt = 0"),
-      entry(t, "local_form", "-", &Damping::local_form, any, "component depends on the axes, as YADE"),
+      entry(t, "local_form", "-", &Damping::local_form, any, "component: as in YADE, depends on the axes"),
       entry(t, "dashpot", "-", &Damping::dashpot, any, "contact dashpot; acts at dt > 0 only"),
       entry(t, "normal_coefficient_N_s_m", "N s/m", &Damping::normal_coefficient, not_negative,
             "dashpot = coefficient: c_n"),
@@ -129,32 +129,31 @@ std::vector<KeyEntry> solver() {
   const char* t = "solver";
   return {
       entry(t, "skin", "1", &SolverOptions::skin, {0, largest_skin_ratio, true, false},
-            "largest Verlet skin over the mean radius; fitted down while steps pass"),
+            "largest Verlet skin over the mean radius; rvelab reduces it to what is fastest"),
       entry(t, "time_step_factor", "1", &SolverOptions::time_step_factor, ratio,
             "fraction of the critical step 2/omega_max"),
       entry(t, "fixed_time_step_s", "s", &SolverOptions::fixed_time_step, not_negative,
             "dt > 0: equal steps of at most this; 0: from time_step_factor and collision_steps"),
-      entry(
-          t, "collision_steps", "1", &SolverOptions::collision_steps, {0, 100'000},
-          "dt > 0: sub-steps of a collision where collisions carry the energy, 5 or more; 0: the critical step alone, "
-          "whatever collisions become"),
+      entry(t, "collision_steps", "1", &SolverOptions::collision_steps, {0, 100'000},
+            "dt > 0: sub-steps per collision where collisions carry the energy, 5 or more; 0: the critical step alone, "
+            "which may not resolve collisions"),
       entry(t, "relative_tolerance", "1", &SolverOptions::relative_tolerance, {0, 1, true, false},
-            "dt = 0: error of an increment allowed, over the change of stress or a tenth of what an elastic network "
-            "would answer, whichever is more; where stress is held, over the mean pressure"),
-      entry(
-          t, "absolute_tolerance", "1", &SolverOptions::absolute_tolerance, {0, 1, true, false},
-          "dt = 0: error of an increment allowed beside that, over the mean pressure; where stress is held, the larger "
-          "of the two holds"),
+            "dt = 0: allowed error of the stress, over the larger of its change in the increment and a tenth of the "
+            "change of an elastic network; under stress control: over the mean pressure"),
+      entry(t, "absolute_tolerance", "1", &SolverOptions::absolute_tolerance, {0, 1, true, false},
+            "dt = 0: allowed error in addition to that, over the mean pressure; under stress control: the larger of "
+            "the two tolerances"),
       entry(t, "target_unbalanced", "1", &SolverOptions::target_unbalanced, not_negative,
-            "dt = 0: above 0: the unbalanced ratio that steers the number of sub-steps, instead of the tolerances"),
+            "dt = 0: if above 0, this unbalanced ratio determines the number of sub-steps, instead of the tolerances"),
       entry(t, "fixed_substeps", "1", &SolverOptions::fixed_substeps, not_negative,
-            "dt = 0: exactly so many sub-steps an increment of strain; 0: steered (where stress is held, always)"),
+            "dt = 0: number of sub-steps of every increment of strain; 0: by error control, as always under stress "
+            "control"),
       entry(t, "max_substeps", "1", &SolverOptions::max_substeps, positive, "an increment that needs more fails"),
       entry(t, "min_height_m", "m", &SolverOptions::min_height, not_negative,
             "shortest lattice vector allowed; 0: the largest grain's diameter"),
       entry(t, "max_overlap_ratio", "1", &SolverOptions::max_overlap_ratio, positive,
             "largest overlap over the smaller radius; more fails"),
-      entry(t, "ledger", "-", &SolverOptions::ledger, any, "keeps the energy ledger"),
+      entry(t, "ledger", "-", &SolverOptions::ledger, any, "computes the energy balance"),
   };
 }
 

@@ -1,62 +1,20 @@
 #include "rvelab/keys/material_toml.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <iterator>
 #include <set>
-#include <sstream>
 
 #include "rvelab/error.hpp"
 #include "rvelab/keys/enumerations.hpp"
 #include "rvelab/keys/key_units.hpp"
 #include "rvelab/keys/material_keys.hpp"
 #include "rvelab/keys/shortened.hpp"
+#include "rvelab/keys/table_reader.hpp"
 
 namespace rvelab::keys {
 namespace {
 
 const std::vector<std::string> table_names{"contact", "damping", "solver", "material"};
-
-std::string written(const toml::node& value) {
-  if (value.is_floating_point()) {
-    char shortest[32];
-    const auto end = std::to_chars(std::begin(shortest), std::end(shortest), value.as_floating_point()->get()).ptr;
-    return {shortest, end};
-  }
-  std::ostringstream text;
-  value.visit([&](const auto& node) { text << node; });
-  return shortened(text.str());
-}
-
-[[noreturn]] void refuse(const std::string& dotted, const toml::node& value, const std::string& reason,
-                         const KeyEntry& entry, const std::string& remedy) {
-  throw InputError(dotted + " = " + written(value) + " " + reason + "; allowed: " + entry.key.allowed() + "; " +
-                   remedy);
-}
-
-void convert(const std::string& dotted, const toml::node& value, const KeyEntry& entry, double& field) {
-  if (!value.is_number()) refuse(dotted, value, "is not a number", entry, "give a number");
-  const double number = number_in(value);
-  if (!std::isfinite(number)) refuse(dotted, value, "is not finite", entry, "give a finite number");
-  if (!entry.range.contains(number)) refuse(dotted, value, "is out of range", entry, "give a value in this range");
-  field = number;
-}
-
-void convert(const std::string& dotted, const toml::node& value, const KeyEntry& entry, long& field) {
-  if (!value.is_integer())
-    refuse(dotted, value, "is not a whole number", entry, "give a whole number, without a point");
-  const auto number = value.as_integer()->get();
-  if (!entry.range.contains(static_cast<double>(number))) {
-    refuse(dotted, value, "is out of range", entry, "give a value in this range");
-  }
-  field = number;
-}
-
-void convert(const std::string& dotted, const toml::node& value, const KeyEntry& entry, bool& field) {
-  if (!value.is_boolean()) refuse(dotted, value, "is neither true nor false", entry, "give true or false");
-  field = value.as_boolean()->get();
-}
 
 /// "linear, hertz_mindlin" as a list.
 std::vector<std::string> words_of(const std::string& range) {
@@ -68,14 +26,18 @@ std::vector<std::string> words_of(const std::string& range) {
   return words;
 }
 
-template <class Word>
-void convert(const std::string& dotted, const toml::node& value, const KeyEntry& entry, Word& field) {
-  if (!value.is_string()) refuse(dotted, value, "is not a word", entry, "give one of these");
-  const std::string& word = value.as_string()->get();
-  try {
-    from_text(word, field);
-  } catch (const InputError&) {
-    refuse(dotted, value, "is not known", entry, choose_one(word, words_of(entry.key.range)));
+template <class Value>
+void convert(const std::string& dotted, const toml::node& value, const KeyEntry& entry, Value& field) {
+  const std::string wrong = wrong_with(value, entry.key, entry.range, words_of(entry.key.range));
+  if (!wrong.empty()) throw InputError(dotted + " = " + written(value) + " " + wrong);
+  if constexpr (std::is_same_v<Value, bool>) {
+    field = value.as_boolean()->get();
+  } else if constexpr (std::is_same_v<Value, long>) {
+    field = value.as_integer()->get();
+  } else if constexpr (std::is_same_v<Value, double>) {
+    field = number_in(value);
+  } else {
+    from_text(value.as_string()->get(), field);
   }
 }
 
@@ -181,11 +143,6 @@ Material read_material(const Specimen& specimen, const toml::table& table, std::
   one.materials.resize(1);
   read_table(one, "material", table, errors);
   return one.materials[0];
-}
-
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
-  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
 }
 
 }  // namespace

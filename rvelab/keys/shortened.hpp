@@ -1,4 +1,4 @@
-// What a user wrote, in a message.
+// What a user wrote: as a message shows it, and without the blanks around it.
 #pragma once
 
 #include <string>
@@ -13,6 +13,11 @@ inline std::string shortened(const std::string& text) {
   std::string line;
   for (const char letter : text.substr(0, end)) line += letter == '\n' ? std::string("\\n") : std::string(1, letter);
   return line + (end < text.size() ? "..." : "");
+}
+
+inline std::string trimmed(const std::string& text) {
+  const auto first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t");
+  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
 }
 
 }  // namespace rvelab::keys

@@ -27,6 +27,27 @@ std::string written(const toml::node& node) {
   return shortened(text.str());
 }
 
+std::string wrong_with(const toml::node& value, const Key& key, const Interval& range,
+                       const std::vector<std::string>& choices) {
+  const std::string allowed = "; allowed: " + key.allowed() + "; ";
+  if (key.type == "boolean")
+    return value.is_boolean() ? "" : "is neither true nor false" + allowed + "give true or false";
+  if (key.type == "text") {
+    const bool good = value.is_string() && !value.as_string()->get().empty();
+    return good ? "" : "is not a text; allowed: any text that is not empty; write it in quotation marks";
+  }
+  if (key.type == "choice") {
+    const std::string word = value.is_string() ? value.as_string()->get() : written(value);
+    const bool good = value.is_string() && std::find(choices.begin(), choices.end(), word) != choices.end();
+    return good ? "" : (value.is_string() ? "is not known" : "is not a word") + allowed + choose_one(word, choices);
+  }
+  const bool whole = key.type == "whole number";
+  if (whole && !value.is_integer()) return "is not a whole number" + allowed + "give a whole number, without a point";
+  if (!value.is_number()) return "is not a number" + allowed + "give a number";
+  if (!std::isfinite(number_in(value))) return "is not finite" + allowed + "give a finite number";
+  return range.contains(number_in(value)) ? "" : "is out of range" + allowed + "give a value in this range";
+}
+
 void expect_top_tables(const toml::table& file, std::vector<KeyError>& errors, const std::vector<std::string>& known) {
   for (const auto& [key, value] : file) {
     const std::string name(key.str());
@@ -93,30 +114,26 @@ void TableReader::mistake(const std::string& name, const std::string& text) {
 }
 
 std::optional<double> TableReader::checked(const TableKey& key, const toml::node& node) {
-  const std::string& name = key.key.name;
-  const std::string allowed = "; allowed: " + key.key.allowed() + "; ";
-  if (!node.is_number()) {
-    mistake(name, "is not a number" + allowed + "give a number");
-    return std::nullopt;
-  }
-  const double value = number_in(node);
-  if (!std::isfinite(value)) {
-    mistake(name, "is not finite" + allowed + "give a finite number");
-    return std::nullopt;
-  }
-  if (!key.range.contains(value)) {
-    mistake(name, "is out of range" + allowed + "give a value in this range");
-    return std::nullopt;
-  }
-  return value;
+  Key number = key.key;
+  number.type = "number";  // of a list each
+  const std::string wrong = wrong_with(node, number, key.range, {});
+  if (wrong.empty()) return number_in(node);
+  mistake(key.key.name, wrong);
+  return std::nullopt;
+}
+
+const toml::node* TableReader::good(const TableKey& key, bool required) {
+  const toml::node* node = find(key, required);
+  const std::string wrong = node == nullptr ? "" : wrong_with(*node, key.key, key.range, key.choices);
+  if (!wrong.empty()) mistake(key.key.name, wrong);
+  return wrong.empty() ? node : nullptr;
 }
 
 double TableReader::number(const std::string& name, std::optional<double> instead) {
   const TableKey& key = entry(name);
   if (!instead && std::holds_alternative<double>(key.initial)) instead = std::get<double>(key.initial);
-  const toml::node* node = find(key, !instead);
-  const double initial = instead.value_or(0);
-  const double value = node != nullptr ? checked(key, *node).value_or(initial) : initial;
+  const toml::node* node = good(key, !instead);
+  const double value = node != nullptr ? number_in(*node) : instead.value_or(0);
   resolved_.insert_or_assign(name, value);
   return value;
 }
@@ -132,13 +149,8 @@ std::optional<double> TableReader::optional_number(const std::string& name) {
 long TableReader::whole_number(const std::string& name) {
   const TableKey& key = entry(name);
   const auto* initial = std::get_if<long>(&key.initial);
-  const toml::node* node = find(key, initial == nullptr);
-  long value = initial == nullptr ? 0 : *initial;
-  if (node != nullptr && !node->is_integer()) {
-    mistake(name, "is not a whole number; allowed: " + key.key.allowed() + "; give a whole number, without a point");
-  } else if (node != nullptr && checked(key, *node)) {
-    value = node->as_integer()->get();
-  }
+  const toml::node* node = good(key, initial == nullptr);
+  const long value = node != nullptr ? node->as_integer()->get() : initial == nullptr ? 0 : *initial;
   resolved_.insert_or_assign(name, value);
   return value;
 }
@@ -154,45 +166,23 @@ std::optional<long> TableReader::optional_whole_number(const std::string& name) 
 bool TableReader::boolean(const std::string& name, std::optional<bool> instead) {
   const TableKey& key = entry(name);
   if (!instead && std::holds_alternative<bool>(key.initial)) instead = std::get<bool>(key.initial);
-  const toml::node* node = find(key, !instead);
-  bool value = instead.value_or(false);
-  if (node != nullptr && !node->is_boolean()) {
-    mistake(name, "is neither true nor false; allowed: true, false; give one of these");
-  } else if (node != nullptr) {
-    value = node->as_boolean()->get();
-  }
+  const toml::node* node = good(key, !instead);
+  const bool value = node != nullptr ? node->as_boolean()->get() : instead.value_or(false);
   resolved_.insert_or_assign(name, value);
   return value;
 }
 
 std::string TableReader::text(const std::string& name, std::optional<std::string> instead) {
   const TableKey& key = entry(name);
-  const toml::node* node = find(key, !instead);
-  std::string value = instead.value_or("");
-  if (node != nullptr && (!node->is_string() || node->as_string()->get().empty())) {
-    mistake(name, "is not a text; allowed: any text that is not empty; write it in quotation marks");
-  } else if (node != nullptr) {
-    value = node->as_string()->get();
-  }
+  if (!instead && std::holds_alternative<std::string>(key.initial)) instead = std::get<std::string>(key.initial);
+  const toml::node* node = good(key, !instead);
+  const std::string value = node != nullptr ? node->as_string()->get() : instead.value_or("");
   if (!value.empty()) resolved_.insert_or_assign(name, value);
   return value;
 }
 
 std::string TableReader::choice(const std::string& name, std::optional<std::string> instead) {
-  const TableKey& key = entry(name);
-  if (!instead && std::holds_alternative<std::string>(key.initial)) instead = std::get<std::string>(key.initial);
-  const toml::node* node = find(key, !instead);
-  std::string value = instead.value_or("");
-  if (node != nullptr) {
-    const std::string word = node->is_string() ? node->as_string()->get() : written(*node);
-    if (node->is_string() && std::find(key.choices.begin(), key.choices.end(), word) != key.choices.end()) {
-      value = word;
-    } else {
-      mistake(name, "is not known; allowed: " + key.key.allowed() + "; " + choose_one(word, key.choices));
-    }
-  }
-  if (!value.empty()) resolved_.insert_or_assign(name, value);
-  return value;
+  return text(name, std::move(instead));
 }
 
 void TableReader::finish() {

@@ -18,7 +18,12 @@ long line_of(const toml::node& node);
 /// A node as TOML writes it.
 std::string written(const toml::node& node);
 
-/// Books what is none of the tables `known` at the top level of a file.
+/// What is wrong with a value of a key, with what is allowed and the remedy: "is out of range; allowed: > 0 Pa; give a
+/// value in this range". "" if nothing is. By the type of the key; `range` is of numbers, `choices` of a choice.
+std::string wrong_with(const toml::node& value, const Key& key, const Interval& range,
+                       const std::vector<std::string>& choices);
+
+/// Adds a mistake for what is none of the tables `known` at the top level of a file.
 void expect_top_tables(const toml::table& file, std::vector<KeyError>& errors, const std::vector<std::string>& known);
 
 /// A table of the file; an empty one where there is none, a mistake where it is something else.
@@ -61,11 +66,11 @@ class TableReader {
   bool has(const std::string& name) const { return table_.contains(name); }
   /// The key is there, but with another unit of the same quantity.
   bool has_in_another_unit(const std::string& name) const;
-  /// A mistake at a key: "where.name = value <text>", with its line; the table's if it is not there.
+  /// Adds a mistake at a key: "where.name = value <text>", with its line; the table's if it is not there.
   void mistake(const std::string& name, const std::string& text);
   /// Says that a key has no meaning here, so that it is not asked for.
   void leave(const std::string& name) { entry(name); }
-  /// Books every key that is not known. std::logic_error if a known one was not asked for.
+  /// Adds a mistake for every key that is not known. std::logic_error if a known one was not asked for.
   void finish();
 
   const toml::table& resolved() const { return resolved_; }
@@ -74,6 +79,8 @@ class TableReader {
   const TableKey& entry(const std::string& name);
   const toml::node* find(const TableKey& key, bool required);
   std::optional<double> checked(const TableKey& key, const toml::node& node);
+  /// The node of a key that must be in the file unless it has a default, if its value is good.
+  const toml::node* good(const TableKey& key, bool required);
 
   const toml::table& table_;
   const std::vector<TableKey>& all_;

@@ -8,8 +8,8 @@
 
 #include <vector>
 
+#include "rvelab/cell/pressure.hpp"
 #include "rvelab/solver/assembly/network.hpp"
-#include "rvelab/solver/assembly/pressure.hpp"
 
 namespace rvelab {
 

@@ -12,21 +12,21 @@ namespace rvelab::pack {
 
 namespace {
 
-/// Solid fraction of grains that are scattered in full size: most find their place at the first tries.
+/// Solid fraction at which grains of full size are placed at random: most fit at the first tries.
 double scattered_fraction(int dimension) { return dimension == 2 ? 0.45 : 0.25; }
 
-/// Contacts per grain from which grains are no longer on their own.
+/// Contacts per grain from which the assembly jams soon.
 double crowded(int dimension) { return 0.25 * dimension; }
 
 constexpr double clearance = 5e-4;  ///< of the radius, left around grains that need not touch
 
-/// Steps by which a cell shrinks, per axis: before grains find each other, and until they carry pressure. Where a draw
-/// starts within a step is drawn too: loose grains jam at the end of one, and from one common start their void ratios
-/// would come in steps of d (1 + e) press_step, with nothing between.
+/// Strains by which a cell shrinks, per axis: before grains touch, and until they carry pressure. Every draw starts at
+/// a random place within a step: loose grains jam at the end of one, and from a common start their void ratios would be
+/// multiples of d (1 + e) press_step.
 constexpr double approach_step = 1e-2, press_step = 1e-3;
 
-/// While grains find each other the pace is fixed, since no network is there whose balance could steer it, and overlaps
-/// are not bounded, since a light grain caught between two others is pushed out again.
+/// Before grains touch, there is no network whose balance could determine the number of sub-steps: it is fixed.
+/// Overlaps are not limited, since a light grain caught between two others is pushed out again.
 SolverOptions unsteered() {
   SolverOptions options;
   options.fixed_substeps = 50;
@@ -53,8 +53,8 @@ void shrink(Rve& rve, double strain) {
   rve.apply(gradient, 0);
 }
 
-/// Shrinks until a tenth of the pressure is there when the cell stands still: that of grains on their way falls then. A
-/// step that leads beyond the pressure is taken back and made shorter, or stiff grains would be pressed too dense.
+/// Shrinks until the grains carry a tenth of the pressure in a cell at rest. A step beyond the pressure is undone and
+/// repeated shorter, else stiff grains would become too dense.
 void press(const Recipe& recipe, Rve& rve) {
   const int d = dimension_of(recipe.shape);
   const double pressure = mean_pressure(*recipe.stress, d);

@@ -1,17 +1,13 @@
 #include "rvelab/pack/consolidation.hpp"
 
-#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "rvelab/cell/givens.hpp"
-#include "rvelab/measure/measures.hpp"
 
 namespace rvelab::pack {
 
 namespace {
-
-constexpr int most_increments = 1000;
-constexpr double held_tolerance = 5e-3;  ///< of increments on the way
 
 Matrix3 symmetric(const Matrix3& m) { return 0.5 * (m + m.transpose()); }
 
@@ -35,6 +31,34 @@ MixedTarget toward(const StressGoal& goal, const Matrix3& to, const Matrix3& pre
   target.wait = short_wait;
   return target;
 }
+
+/// An assembly by itself: consolidated without a pause.
+struct Assembly {
+  struct Place {
+    Matrix3 stress;
+    std::int32_t phase = approaching;
+    long step = 0;
+    double unbalanced_ratio = std::numeric_limits<double>::infinity();  ///< at least one round is made
+  };
+  Rve& rve;
+  const StressGoal& goal;
+  Matrix3& deformation;
+  Place at;
+
+  void bring(const Matrix3& to, double scale, double tolerance) {
+    const Response response = rve.apply(toward(goal, to, at.stress, scale, tolerance), 0);
+    deformation += response.displacement_gradient * deformation;
+    at.stress = response.stress;
+  }
+  static double on_the_way() { return 5e-3; }
+  void relax(double unbalanced, long max_steps) {
+    const Report report = rve.relax(unbalanced, max_steps);
+    at.stress = rve.stress();
+    at.unbalanced_ratio = report.target_held ? 0 : std::numeric_limits<double>::infinity();
+  }
+  void arrived() {}
+  void pause() {}
+};
 
 }  // namespace
 
@@ -62,28 +86,8 @@ Matrix3 upright_again(const Matrix3& deformation, const Matrix3& frame) {
 }
 
 bool consolidate(Rve& rve, const StressGoal& goal, const Rest& rest, Matrix3& deformation) {
-  const double pressure = goal.pressure();
-  const auto apply = [&](const MixedTarget& target) {
-    const Response response = rve.apply(target, 0);
-    deformation += response.displacement_gradient * deformation;
-    return response.stress;
-  };
-  Matrix3 stress = rve.stress();
-  for (int k = 0; k < most_increments; ++k) {
-    const Matrix3 next = next_stress(goal, stress, rest.largest_change);
-    if ((next - goal.stress).isZero(0)) break;
-    const double scale = std::max(mean_pressure(stress, goal.dimension), 0.1 * pressure);
-    stress = apply(toward(goal, next, stress, scale, held_tolerance));
-  }
-  for (long round = 0; round < rest.max_rounds; ++round) {
-    // Half the tolerance: the relaxation that follows moves the stress a little.
-    if (largest_gap(goal, stress) > 0.5 * rest.stress_tolerance * pressure)
-      apply(toward(goal, goal.stress, stress, pressure, 0.5 * rest.stress_tolerance));
-    const Report report = rve.relax(rest.unbalanced, rest.max_steps);
-    stress = rve.stress();
-    if (report.target_held && largest_gap(goal, stress) <= rest.stress_tolerance * pressure) return true;
-  }
-  return false;
+  Assembly assembly{rve, goal, deformation, {rve.stress()}};
+  return consolidate(assembly, goal, rest, goal.pressure()) == Consolidated::reached;
 }
 
 }  // namespace rvelab::pack

@@ -1,9 +1,11 @@
-// Bringing an assembly to a stress: far changes in small increments, then rounds of relaxing and correcting.
+// Consolidation: an assembly is brought to a stress and comes to rest there. Far changes go in small increments, then
+// rounds of correcting and relaxing follow. Packing and the isotropic stage of a test both use it.
 #pragma once
 
-#include <functional>
-#include <vector>
+#include <algorithm>
+#include <cstdint>
 
+#include "rvelab/cell/pressure.hpp"
 #include "rvelab/solver/rve.hpp"
 
 namespace rvelab::pack {
@@ -23,8 +25,9 @@ double largest_gap(const StressGoal& goal, const Matrix3& stress);
 /// present mean pressure, or of a tenth of the goal's. The goal itself once that is near enough.
 Matrix3 next_stress(const StressGoal& goal, const Matrix3& stress, double largest_change);
 
-/// Sub-steps that an increment waits for its stress: what it misses the rounds correct.
+/// Sub-steps that an increment waits for its stress: the rounds correct what it misses.
 constexpr long short_wait = 200;
+constexpr int most_increments = 1000;  ///< on the way to the goal
 
 /// How precisely a state is reached.
 struct Rest {
@@ -35,8 +38,55 @@ struct Rest {
   long max_steps = 100'000;  ///< of one relaxation
 };
 
-/// Drives an assembly to the goal and lets it come to rest there. False: not reached within the rounds. `deformation`
-/// (F, laboratory frame) goes on by what the cell did.
+enum class Consolidated {
+  reached,
+  far_off,   ///< the increments did not lead to the goal
+  not_still  ///< stress or balance is not within its tolerance after the rounds
+};
+
+/// Phases of a consolidation, in the order in which it begins; each round is the last two.
+enum ConsolidationPhase : std::int32_t { approaching = 2, correcting, relaxing };
+
+/// Consolidates by a `Drive`, which has
+///   at                              where it stands: phase, step, stress (Pa), unbalanced_ratio
+///   bring(stress, scale, tolerance) one increment to a stress; tolerance relative to the scale (Pa); renews at.stress
+///   on_the_way()                    the tolerance of increments on the way
+///   relax(unbalanced, max_steps)    at fixed cell; renews at.stress and at.unbalanced_ratio
+///   arrived(), pause()              the way is done; a moment at which the consolidation may be left and gone on with
+template <class Drive>
+Consolidated consolidate(Drive& drive, const StressGoal& goal, const Rest& rest, double pressure) {
+  auto& at = drive.at;
+  while (at.phase == approaching) {
+    const Matrix3 next = next_stress(goal, at.stress, rest.largest_change);
+    if ((next - goal.stress).isZero(0)) {
+      drive.arrived();
+      at.phase = correcting;
+      at.step = 0;
+      break;
+    }
+    if (at.step == most_increments) return Consolidated::far_off;
+    drive.bring(next, std::max(mean_pressure(at.stress, goal.dimension), 0.1 * pressure), drive.on_the_way());
+    ++at.step;
+    drive.pause();
+  }
+  const auto reached = [&] {
+    return largest_gap(goal, at.stress) <= rest.stress_tolerance * pressure && at.unbalanced_ratio <= rest.unbalanced;
+  };
+  while (at.phase == relaxing || (at.step < rest.max_rounds && !reached())) {
+    // Half the tolerance: the relaxation that follows moves the stress a little.
+    if (at.phase == correcting && largest_gap(goal, at.stress) > 0.5 * rest.stress_tolerance * pressure)
+      drive.bring(goal.stress, pressure, 0.5 * rest.stress_tolerance);
+    at.phase = relaxing;
+    drive.relax(rest.unbalanced, rest.max_steps);
+    at.phase = correcting;
+    ++at.step;
+    drive.pause();
+  }
+  return reached() ? Consolidated::reached : Consolidated::not_still;
+}
+
+/// Consolidates an assembly. False: the goal is not reached. `deformation` (F, laboratory frame) is multiplied by that
+/// of the cell.
 bool consolidate(Rve& rve, const StressGoal& goal, const Rest& rest, Matrix3& deformation);
 
 /// The rotation, as a displacement gradient, that after `deformation` (F) brings material lines that were along the

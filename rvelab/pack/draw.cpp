@@ -13,25 +13,25 @@ namespace rvelab::pack {
 
 namespace {
 
-/// With the friction of the preparation: what counts is how dense the grains lie, not how still.
+/// With the preparation friction only the density counts, not the balance.
 constexpr Rest prepared{5e-2, 1e-2, 0.5, 10, 200};
 
-/// Grains that collapse on the way lose their pressure; the cell then shrinks again.
+/// Times that the cell shrinks again after grains have collapsed and lost their pressure.
 constexpr int most_attempts = 5;
 
 /// With the final friction: the void ratio is there to a few 1e-4.
 constexpr Rest nearly{5e-3, 1e-3, 0.5, 10, 2000};
 
-/// What coming to rest may still change in a void ratio; further from the target it is not worth it.
+/// Change of the void ratio by coming to rest; a draw further from the target is given up.
 constexpr double still_to_come = 5e-4;
 
-/// The assembly with a pace that is steered from here on. The overlaps that the pressure will make set its scale, those
-/// of the start would make it idle; how dense it becomes does not depend on the balance that is asked for on the way.
+/// The assembly with the number of sub-steps by its balance. The overlaps at the final pressure set the scale of the
+/// strain per sub-step; with those of the start it would be far too small. The density does not depend on that balance.
 Rve steered(const Rve& rve, const Recipe& recipe, const std::atomic<bool>* stop) {
   Specimen s = rve.specimen();
   s.solver = SolverOptions{};
   s.solver.target_unbalanced = 1e-2;
-  s.solver.max_overlap_ratio = 1e3;  // soft grains on their way; what the pressure makes of them is theirs
+  s.solver.max_overlap_ratio = 1e3;  // on the way; the end is checked
   s.state = SolverState{};
   if (recipe.stress) {
     const Network network = rve.network();
@@ -63,8 +63,8 @@ void expect_overlaps(const Recipe& recipe, const Rve& rve, double share) {
   throw OverlapBeyondLimit(text + "; check the units of radii and stiffness");
 }
 
-/// Consolidates, and turns the cell so that it stands as it was drawn. A stress that is not isotropic is turned with
-/// it, by less each time, and corrected.
+/// Consolidates, and turns the cell back upright. A stress that is not isotropic turns with it and is corrected, by
+/// less each time.
 bool consolidated_upright(Rve& rve, const StressGoal& goal, const Rest& rest, const Matrix3& frame,
                           Matrix3& deformation) {
   for (long round = 0; round < rest.max_rounds; ++round) {
@@ -98,7 +98,7 @@ Draw draw(const Recipe& recipe, long number, double friction, const std::atomic<
     for (int attempt = 0; !consolidate(rve, goal, prepared, deformation) && attempt < most_attempts; ++attempt) {
       rve = steered(pressed_again(recipe, rve, stop), recipe, stop);
     }
-    expect_overlaps(recipe, rve, 1.5);  // what is so far beyond will not come back
+    expect_overlaps(recipe, rve, 1.5);  // this far beyond, no later step helps
     rve.set_materials(recipe.materials);
     goal.stress = *recipe.stress;
     consolidate(rve, goal, nearly, deformation);

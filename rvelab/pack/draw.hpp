@@ -8,8 +8,8 @@
 
 namespace rvelab::pack {
 
-/// Grains of a draw overlap by more than the recipe's solver.max_overlap_ratio. Other draws of the recipe will not do
-/// better: the message says what makes grains so soft.
+/// Grains of a draw overlap by more than the recipe's solver.max_overlap_ratio; other draws would too. The message says
+/// why the grains are so soft.
 struct OverlapBeyondLimit : IncrementFailed {
   using IncrementFailed::IncrementFailed;
 };
@@ -17,8 +17,8 @@ struct OverlapBeyondLimit : IncrementFailed {
 struct Draw {
   double friction = 0;    ///< of the preparation
   double void_ratio = 0;  ///< with the final friction, at the stress
-  bool at_rest = false;   ///< stress and balance within the recipe's tolerances; false: only nearly, since the void
-                          ///< ratio is too far from the target to be worth it
+  bool at_rest = false;   ///< stress and balance within the recipe's tolerances; false: given up, since the void ratio
+                          ///< is too far from the target
   Specimen specimen;      ///< of a draw at rest
 };
 

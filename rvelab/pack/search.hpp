@@ -1,9 +1,8 @@
 // The search for a void ratio.
 //
-// How dense a packing becomes depends on the friction that it is prepared with, and by chance: another place of the
-// grains, or a friction that differs by 1e-9 of itself, moves the void ratio by several thousandths. So every draw
-// scatters the grains anew, its friction lies where the mean curve of the draws so far meets the target, and the first
-// draw that falls within the tolerance is taken.
+// The void ratio depends on the preparation friction, and on chance: other places of the grains, or a friction that
+// differs by 1e-9 of itself, change it by several thousandths. So every draw places the grains anew, with the friction
+// at which the mean curve of the draws so far meets the target. The first draw within the tolerance is taken.
 #pragma once
 
 #include <atomic>
@@ -11,7 +10,7 @@
 #include <vector>
 
 #include "rvelab/pack/draw.hpp"
-#include "rvelab/solver/assembly/workers.hpp"
+#include "rvelab/threads/workers.hpp"
 
 namespace rvelab::pack {
 
@@ -28,10 +27,10 @@ struct CurvePoint {
 /// beyond the curve. The curve is the rising one of least squares (isotonic), smoothed by a local line.
 double fitted_coordinate(const std::vector<CurvePoint>& points, double target, double low, double high);
 
-/// Draws made at a time: what the next ones look at does not depend on the number of threads.
+/// Draws made at a time, whatever the number of threads: so the next ones know the same draws.
 inline constexpr long draws_at_a_time = 4;
 
-/// How a search is getting on: called after each draw, on any thread.
+/// Progress of a search: called after each draw, on any thread.
 struct PackWatch {
   std::function<void(long draw, double void_ratio)> on_draw;
   const std::atomic<bool>* stop = nullptr;

@@ -6,7 +6,7 @@
 #include <memory>
 #include <mutex>
 
-#include "rvelab/solver/assembly/workers.hpp"
+#include "rvelab/threads/workers.hpp"
 
 namespace rvelab::pool {
 

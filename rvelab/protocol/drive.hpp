@@ -1,8 +1,7 @@
-// Driving an Rve through one stage: the targets of each increment, and the bookkeeping of a running test. Internal to
-// the room.
+// Driving an Rve through one stage: targets of each increment, and the state of a running test. Internal to the room.
 //
-// A drive keeps its place in RunningTest::run.progress (phase, step) and in nothing else, changes it only together with
-// the state that it describes, and so goes on from any moment that it was left at.
+// A drive keeps its place in RunningTest::run.progress (phase, step) alone, and changes it only together with the state
+// that it describes, so that it can resume from any pause.
 #pragma once
 
 #include <functional>
@@ -64,7 +63,7 @@ class RunningTest {
       step_done();
     }
   }
-  /// To and fro between the strains +-`to_strain`, as `cycles` says, in `steps` equal parts of each amplitude.
+  /// Cycles between the strains +-`to_strain`, in `steps` equal parts of each amplitude.
   /// `driving_stress()` grows with the driving strain.
   template <class Increment, class DrivingStress>
   void go_to_and_fro(double to_strain, long steps, const Cycles& cycles, Increment increment_to,
@@ -88,20 +87,19 @@ class RunningTest {
       step_done();
     }
   }
-  /// Counts a record of a stage, looks at its events, and pauses.
+  /// Counts a record of a stage, checks its events, and pauses.
   void step_done();
   bool ended() const { return run.progress.phase >= done_phase; }
   void record(double strain, const Report& report);
   void record_now(double strain);  ///< a state that no increment led to
   void probed(const Eigen::MatrixXd& stiffness);
 
-  /// A moment at which the test can be left: shows it to the watcher; throws Interrupted if a stop was asked for.
+  /// A moment at which the test can be left: calls the watcher; throws Interrupted on request.
   void pause();
 
   /// At the start of a stage that holds a stress: InputError unless the stress `name` (Pa, compression positive) is
-  /// there already, within ten times the tolerance by which it is held. A drained test of the laboratory starts from
-  /// the consolidated state; a stress that jumped within the first record would be a load path that nobody prescribed,
-  /// with the waves and slips of a shock in all that follows.
+  /// within ten times its tolerance of the held value. A drained test starts from the consolidated state; a jump within
+  /// the first record would be a load path that nobody prescribed.
   void expect_consolidated(const std::string& name, double found, double held) const;
 
   /// Scale of a held stress: max(|target|, 1 % of the stage's first p). Error if both vanish.
@@ -134,9 +132,6 @@ class RunningTest {
   std::size_t records_planned_;
   double time_ = 0;  ///< s, see Moment::time
 };
-
-/// Carries a stage out, as its kind does.
-void drive(RunningTest& test, const Stage& stage);
 
 /// InputError if a stage does not go with specimens of this dimension.
 void expect_fits(const Protocol& protocol, int dimension);

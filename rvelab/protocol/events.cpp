@@ -69,16 +69,18 @@ std::vector<keys::TableKey> event_keys() {
   Choices names;
   for (const EventQuantity& each : event_quantities()) names.emplace_back(each.name);
   return {
-      required(choice(t, "quantity", names,
-                      "what is looked at with each record but the first; strain is that of the record; eps_v is "
-                      "compression positive, stresses tension positive; p_over_first: over p at the start of the stage",
-                      "")),
-      with_range(number(t, "above", "1", "", every, "the event: the quantity is above this, in its unit"),
+      required(
+          choice(t, "quantity", names,
+                 "quantity that is checked at each record after the first; strain: of the record; eps_v is compression "
+                 "positive, stresses tension positive; p_over_first: p over p at the start of the stage",
+                 "")),
+      with_range(number(t, "above", "1", "", every, "the stage ends when the quantity is above this, in its unit"),
                  "any finite number"),
-      with_range(number(t, "below", "1", "", every, "the event: the quantity is below this, in its unit"),
+      with_range(number(t, "below", "1", "", every, "the stage ends when the quantity is below this, in its unit"),
                  "any finite number"),
       number(t, "falls_by", "1", "", ratio,
-             "the event: the quantity has lost this fraction of its largest value in the stage (a peak is passed)"),
+             "the stage ends when the quantity has fallen by this fraction of its largest value in the stage (after a "
+             "peak)"),
       text(t, "then", "(the next)", "name of the stage that follows, \"end\" for none"),
   };
 }
@@ -106,7 +108,7 @@ std::vector<Event> read_events(TableReader& reader, const Stage& stage, std::vec
   }
   if (events.empty()) return events;
   reader.resolve("until", resolved);
-  if (!kind_named(stage.kind).takes_events) {
+  if (!stage.what->takes_events()) {
     reader.mistake("until", "has no records to look at in kind = \"" + stage.kind + "\"; allowed: with " +
                                 kinds_with_events(true) + "; remove it");
   }

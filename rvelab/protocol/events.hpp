@@ -1,4 +1,4 @@
-// Events: what ends a stage before its end. Internal to the room.
+// Events: conditions that end a stage early. Internal to the room.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace rvelab::protocol {
 
-/// A quantity that an event may look at, and what it is.
+/// A quantity that an event may check.
 struct EventQuantity {
   const char* name;
   double (*value)(const RunningTest&);

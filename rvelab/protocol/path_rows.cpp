@@ -162,12 +162,12 @@ double row_value(const PathRow& row, const Matrix3& strain_sum, const Matrix3& s
 double row_target(const PathStage& stage, const PathRow& row, long step, const Matrix3& first_stress) {
   const double first = row_value(row, Matrix3::Zero(), first_stress);
   if (row.to.empty() || step == 0) return first;
-  const long leg = (step - 1) / stage.records_per_point, point = leg % stage.points;
+  const long part = (step - 1) / stage.records_per_point, point = part % stage.points;
   const long within = (step - 1) % stage.records_per_point + 1;
   const double end = row.to[static_cast<std::size_t>(point)];
   if (within == stage.records_per_point) return end;
   const double start = std::isnan(row.from) ? first : row.from;
-  const double begin = leg == 0 ? start : point == 0 ? row.to.back() : row.to[static_cast<std::size_t>(point - 1)];
+  const double begin = part == 0 ? start : point == 0 ? row.to.back() : row.to[static_cast<std::size_t>(point - 1)];
   return begin + (end - begin) * static_cast<double>(within) / static_cast<double>(stage.records_per_point);
 }
 

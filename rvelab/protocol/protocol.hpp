@@ -6,8 +6,8 @@
 #pragma once
 
 #include <toml++/toml.h>
-#include <any>
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -17,7 +17,7 @@
 
 namespace rvelab::protocol {
 
-/// How driven stages (compression, simple shear, flow) pass through time. All other stages are quasi-static.
+/// Time in driven stages (compression, simple shear, flow, deformation). All other stages are quasi-static.
 struct LoadingSettings {
   bool physical = false;          ///< false: dt = 0; true: physical masses at the rate below
   double rate = 0;                ///< 1/s, true rate of the driving strain; 0: from the inertial number
@@ -25,10 +25,10 @@ struct LoadingSettings {
   double held_tolerance = 0.005;  ///< a held stress may miss by this times max(|target|, 1 % of the stage's first p);
                                   ///< physical: its mean over an increment may
   static constexpr double held_tolerance_at_rate =
-      0.05;  ///< where a protocol does not say: collisions make it fluctuate
+      0.05;  ///< default at a given rate, where collisions make it fluctuate
 };
 
-/// What ends a stage before its end: looked at with each of its records but the first.
+/// A condition that ends a stage, checked at each of its records after the first.
 struct Event {
   enum class When { above, below, falls_by };
   std::string quantity;  ///< see event_quantities()
@@ -40,10 +40,12 @@ struct Event {
 /// "p_over_first below 0.001".
 std::string event_in_words(const Event& event);
 
+class StageKind;
+
 struct Stage {
-  std::string name;  ///< the kind, unless the file names it
-  std::string kind;  ///< as stage_kinds.hpp calls it
-  std::any what;     ///< its settings, of the type of the kind: std::any_cast<CompressionStage>(&stage.what)
+  std::string name;                       ///< the kind, unless the file names it
+  std::string kind;                       ///< as stage_kinds.hpp calls it
+  std::shared_ptr<const StageKind> what;  ///< the kind with its settings
   std::vector<Event> until;
   std::string then;  ///< after its own end; empty: the next; "end": none
 };

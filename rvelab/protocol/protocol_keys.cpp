@@ -4,6 +4,7 @@
 
 #include "rvelab/keys/key_builders.hpp"
 #include "rvelab/keys/material_toml.hpp"
+#include "rvelab/pack/read_recipe.hpp"
 #include "rvelab/protocol/events.hpp"
 #include "rvelab/protocol/protocol.hpp"
 #include "rvelab/protocol/stage_kinds.hpp"
@@ -17,7 +18,7 @@ using namespace keys;
 std::vector<TableKey> test() {
   const char* t = "test";
   return {
-      required(text(t, "name", "", "what the records are called")),
+      required(text(t, "name", "", "name of the test, kept in the record file")),
       with_range({{t, "dimension", "1", "whole number", "(that of the specimen)", "", "dimension of the specimen"},
                   KeyKind::whole_number,
                   {2, 3},
@@ -25,7 +26,7 @@ std::vector<TableKey> test() {
                   {}},
                  "2, 3"),
       number(t, "pressure_Pa", "Pa", "", pressures,
-             "pressure, compression positive, of every stage that gives none of its own; `rvelab calibrate` sets it"),
+             "pressure, compression positive, of every stage without one of its own; `rvelab calibrate` sets it"),
   };
 }
 
@@ -33,22 +34,21 @@ std::vector<TableKey> loading() {
   const char* t = "loading";
   const LoadingSettings initial;
   return {
-      choice(
-          t, "mode", {"quasi_static", "physical"},
-          "how compression, simple shear, flow and deformation pass through time; physical: real masses at the given "
-          "rate"),
+      choice(t, "mode", {"quasi_static", "physical"},
+             "time in compression, simple shear, flow and deformation: quasi_static, or physical with true masses at "
+             "the given rate"),
       number(t, "rate_1_s", "1/s", "", positive, "mode = physical: true rate of the driving strain"),
       number(t, "inertial_number", "1", "", positive,
              "mode = physical, in place of rate_1_s: I = rate d sqrt(rho/p) with p at the start of the stage"),
       number(t, "held_tolerance", "1", initial.held_tolerance, ratio,
-             "a held stress may miss its target by this times the larger of the target's size and 1 % of the stage's "
-             "first p; mode = physical: its mean over an increment may, 0.05 unless given"),
+             "allowed error of a held stress, over the larger of its target and 1 % of p at the start of the stage; "
+             "mode = physical: of its mean over an increment, by default 0.05"),
   };
 }
 
 TableKey quantities() {
   TableKey key = listed("output", "quantities", "-", "list of choices", "", KeyKind::choices,
-                        "what is measured at each record beside strain and stress; the rest is not computed");
+                        "quantities measured at each record beside strain and stress; others are not computed");
   for (const records::QuantityRow& row : records::quantity_rows) {
     key.choices.emplace_back(row.text.name);
     key.key.range += (key.key.range.empty() ? "" : ", ") + key.choices.back();
@@ -62,12 +62,12 @@ TableKey quantities() {
 std::vector<TableKey> output_specimen_and_calibrate() {
   return {
       whole_number("output", "snapshots_every", Protocol{}.snapshots_every, {0, 1e9},
-                   "grains and contacts are kept at every so many records, from the first; 0: never"),
+                   "n: the file keeps grains and contacts of every n-th record, from the first; 0: of none"),
       quantities(),
       required(text("specimen", "file", "",
-                    "specimen file that the test runs on, relative to the protocol; --specimen goes before it")),
+                    "specimen file of the test, relative to the protocol's folder; --specimen overrides it")),
       {{"calibrate", "pressures_Pa", "Pa", "list of numbers", "", "each " + in_words(positive),
-        "pressures of `rvelab calibrate`; --pressures goes before them"},
+        "pressures of `rvelab calibrate`; --pressures overrides them"},
        KeyKind::numbers,
        positive,
        {},
@@ -77,12 +77,12 @@ std::vector<TableKey> output_specimen_and_calibrate() {
 
 std::vector<TableKey> stage() {
   Choices kinds;
-  for (const StageKind& kind : stage_kinds()) kinds.push_back(kind.name);
+  for (MakeStage* const make : stage_kinds) kinds.emplace_back(make()->name());
   const std::string events = "events, each of which ends the stage; not with " + kinds_with_events(false);
   return {
       required(choice("stage", "kind", kinds,
-                      "what the stage does; its other keys are those of [[stage]] with this kind", "")),
-      text("stage", "name", "(its kind)", "name of its own, for --set stage.NAME.key=value and in the records"),
+                      "kind of loading; the other keys of the stage are those listed under its kind", "")),
+      text("stage", "name", "(its kind)", "name of the stage, in records and in --set stage.NAME.key=value"),
       text("stage", "then", "(the next)", "name of the stage that follows, \"end\" for none"),
       listed("stage", "until", "-", "list of tables", "[[stage.until]], any number", KeyKind::tables, events.c_str()),
   };
@@ -97,7 +97,7 @@ const std::vector<TableKey>& protocol_keys() {
       entries.insert(entries.end(), list.begin(), list.end());
     };
     for (const auto& list : {test(), loading(), output_specimen_and_calibrate(), stage(), event_keys()}) add(list);
-    for (const StageKind& kind : stage_kinds()) add(kind.keys);
+    for (MakeStage* const make : stage_kinds) add(make()->keys());
     return entries;
   }();
   return all;
@@ -121,7 +121,7 @@ const std::vector<keys::Key>& all_keys() {
   static const std::vector<keys::Key> keys = [] {
     std::vector<keys::Key> list;
     for (const auto& entry : protocol_keys()) list.push_back(entry.key);
-    for (const auto& entry : recipe_keys()) list.push_back(entry.key);
+    for (const auto& entry : pack::recipe_keys()) list.push_back(entry.key);
     list.insert(list.end(), keys::known_keys().begin(), keys::known_keys().end());
     return list;
   }();

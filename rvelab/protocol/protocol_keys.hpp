@@ -2,7 +2,8 @@
 // prints it, so that what is read, what is refused and what is documented cannot differ: a key that is read without an
 // entry, or an entry that its table's reader does not ask for, is a std::logic_error at the first reading.
 //
-// A new key: one entry here, one call in the reader of its table, one row in README.md (a test compares them).
+// A new key: one entry here, one call in the reader of its table, one row in protocols/README.md (a test compares
+// them).
 #pragma once
 
 #include <string>
@@ -20,9 +21,6 @@ const std::vector<keys::Key>& all_keys();
 using keys::TableKey;
 
 const std::vector<TableKey>& protocol_keys();
-
-/// The keys of recipes, beside which contact, damping, solver and material stand (recipe_keys.cpp).
-const std::vector<TableKey>& recipe_keys();
 
 /// Tables that a protocol may have at its top level.
 const std::vector<std::string>& top_tables();

@@ -5,10 +5,10 @@
 #include <sstream>
 
 #include "rvelab/error.hpp"
+#include "rvelab/keys/assign.hpp"
 #include "rvelab/keys/material_toml.hpp"
 #include "rvelab/keys/table_reader.hpp"
 #include "rvelab/keys/toml_source.hpp"
-#include "rvelab/protocol/assign.hpp"
 #include "rvelab/protocol/drive.hpp"
 #include "rvelab/protocol/protocol.hpp"
 #include "rvelab/protocol/protocol_keys.hpp"
@@ -163,7 +163,7 @@ void read_stages(const toml::table& file, Protocol& protocol, toml::table& resol
 
 Protocol read_file(toml::table file, const std::string& path, const std::vector<std::string>& assignments) {
   std::vector<keys::KeyError> errors;
-  assign_all(file, assignments, errors);
+  keys::assign_all(file, assignments, errors);
   Protocol protocol;
   protocol.path = path;
   toml::table resolved;
@@ -196,12 +196,7 @@ Protocol read_protocol(const std::string& path, const std::vector<std::string>& 
 }
 
 Protocol parse_protocol(const std::string& text, const std::string& path, const std::vector<std::string>& assignments) {
-  try {
-    return read_file(keys::parse_toml(text), path, assignments);
-  } catch (const toml::parse_error& error) {
-    throw InputError(path + ":" + std::to_string(error.source().begin.line) + ": is not TOML (" +
-                     std::string(error.description()) + "); correct the line");
-  }
+  return read_file(keys::parse_toml_text(text, path), path, assignments);
 }
 
 Specimen with_overrides(const Protocol& protocol, Specimen specimen) {

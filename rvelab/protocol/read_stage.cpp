@@ -19,7 +19,9 @@ void read_stage(const toml::table& table, long number, Protocol& protocol, toml:
   reader.also("stage." + kind);
   Stage stage{reader.text("name", kind), kind, {}, {}, ""};
   StageSource source{table, reader, stage.name, protocol, errors};
-  stage.what = kind_named(kind).read(source);
+  auto what = stage_of_kind(kind);
+  what->read(source);
+  stage.what = std::move(what);
   stage.until = read_events(reader, stage, errors);
   stage.then = reader.text("then", "");
   reader.finish();

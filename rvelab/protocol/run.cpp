@@ -4,6 +4,7 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/protocol/drive.hpp"
+#include "rvelab/protocol/stage_kind.hpp"
 
 namespace rvelab::protocol {
 namespace {
@@ -20,7 +21,7 @@ TestRun finish(const Protocol& protocol, RunningTest& test, double wall_before) 
     while (run.progress.stage < static_cast<std::int32_t>(protocol.stages.size())) {
       const Stage& stage = protocol.stages[static_cast<std::size_t>(run.progress.stage)];
       test.enter(stage);
-      drive(test, stage);
+      stage.what->drive(test);
       test.leave_stage();
     }
   } catch (const Interrupted&) {

@@ -1,7 +1,7 @@
 // A protocol run on a specimen: every stage through Rve::apply, every record at its strain.
 //
-// This room drives and records; the servo and all error control are inside Rve::apply. It knows no file: who watches a
-// run may keep its records and checkpoints, show its progress, and stop it.
+// Stress control and error control are inside Rve::apply. The room writes no file: a Watch may keep records and
+// checkpoints, show progress, and stop the run.
 #pragma once
 
 #include <atomic>
@@ -16,10 +16,10 @@
 
 namespace rvelab::protocol {
 
-/// Where the time of a run went since it was begun or gone on with, s, and what its stresses may err by.
+/// Times of a run since it was begun or resumed, s, and the errors of its stresses.
 struct Costs {
   double grains = 0, pairs = 0, list = 0, control = 0;  ///< StepTimes; control: what calls took beyond the first three
-  double files = 0;                                     ///< for who keeps the records to fill in
+  double files = 0;                                     ///< filled in by who keeps the records
   long judged = 0;                                      ///< records at dt = 0 that an increment led to, at p > 0
   double mean_error = 0, largest_error = 0;             ///< of those, Report::error_estimate over p
   long substeps = 0, waited = 0;                        ///< Report::substeps and Report::waited of all increments
@@ -31,7 +31,7 @@ struct TestRun {
   Specimen end_state;
   records::Progress progress;  ///< with end_state the checkpoint from which a stopped test goes on
   bool complete = true;
-  std::vector<std::string> events;  ///< that ended stages since the run began or was gone on with, with their stages
+  std::vector<std::string> events;  ///< that ended stages since the run was begun or resumed, with the stages
   Costs costs;
 };
 
@@ -41,12 +41,12 @@ struct Moment {
   const records::TestResult& result;  ///< so far
   const Rve& rve;
   std::size_t records_planned;  ///< of all stages together
-  double time = 0;              ///< s, of the increments since the run began or was gone on with; 0: quasi-static
+  double time = 0;              ///< s, of the increments since the run was begun or resumed; 0: quasi-static
   records::Checkpoint checkpoint() const { return {progress, rve.specimen()}; }
 };
 
-/// Who watches a run, and who helps. All functions may be empty, are called on the thread that runs the test, and
-/// change nothing in it: results depend neither on what they do nor on when. What they throw ends the run.
+/// Functions that a run calls. Each may be empty, is called on the thread of the test and does not change its results.
+/// An exception ends the run.
 struct Watch {
   std::function<void(const records::Record&)> on_record;
   std::function<void(const records::ProbeResult&)> on_probe;

@@ -1,4 +1,4 @@
-// The bookkeeping of a running test. Declared in drive.hpp.
+// The state of a running test. Declared in drive.hpp.
 #include <algorithm>
 #include <cmath>
 #include <limits>

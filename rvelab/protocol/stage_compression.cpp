@@ -13,108 +13,105 @@ namespace {
 
 using namespace keys;
 
-std::vector<TableKey> entries() {
-  const char* t = "stage.compression";
-  return {
-      choice(t, "axis", {"x", "y", "z"}, "laboratory axis that is shortened", "(y in 2D, z in 3D)"),
-      required(with_range(number(t, "to_strain", "1", "", {-infinity, 1, true, true},
-                                 "strain 1 - F_aa at which the stage ends, compression positive"),
-                          "below 1, not 0")),
-      number(t, "record_every", "1", CompressionStage{}.record_every, positive,
-             "strain between records; at most 1e6 records"),
-      choice(t, "lateral", {"constant_stress", "constant_volume", "zero_strain"},
-             "constant_stress: each lateral normal stress is held (drained); constant_volume: det F = 1 (undrained); "
-             "zero_strain: oedometer"),
-      number(t, "lateral_pressure_Pa", "Pa", "(test.pressure_Pa)", positive,
-             "lateral = constant_stress: lateral normal stresses are held at minus this, which they start from"),
-      whole_number(t, "cycles", CompressionStage{}.cycles.count, {0, 1e6},
-                   "0: straight to to_strain; else so many cycles between +-to_strain"),
-      number(t, "reverse_at_Pa", "Pa", "", positive,
-             "cycles > 0: the strain turns where the axial less the mean lateral stress has this size"),
-  };
-}
+struct Compression : KindOf<CompressionStage> {
+  const char* name() const override { return "compression"; }
+  const char* strength_when() const override { return "lateral = \"constant_stress\" and to_strain > 0"; }
 
-CompressionStage read(StageSource& source) {
-  TableReader& reader = source.reader;
-  Protocol& protocol = source.protocol;
-  CompressionStage stage;
-  const char* usual = protocol.dimension == 0 ? "" : protocol.dimension == 2 ? "y" : "z";
-  stage.axis = reader.choice("axis", usual);
-  expect_in_plane(reader, "axis", stage.axis, protocol);
-  stage.to_strain = strain_of(source);
-  stage.record_every = spacing_of(reader, stage.to_strain);
-  const std::string lateral = reader.choice("lateral");
-  if (lateral == "constant_volume") stage.lateral = CompressionStage::Lateral::constant_volume;
-  if (lateral == "zero_strain") stage.lateral = CompressionStage::Lateral::zero_strain;
-  if (stage.lateral == CompressionStage::Lateral::constant_stress) {
-    stage.lateral_pressure = pressure_of(reader, "lateral_pressure_Pa", protocol);
-  } else {
-    refuse_pressure(reader, "lateral_pressure_Pa", "lateral = \"" + lateral + "\"");
+  std::vector<TableKey> keys() const override {
+    const char* t = "stage.compression";
+    return {
+        choice(t, "axis", {"x", "y", "z"}, "laboratory axis that is shortened", "(y in 2D, z in 3D)"),
+        required(with_range(number(t, "to_strain", "1", "", {-infinity, 1, true, true},
+                                   "strain 1 - F_aa at which the stage ends, compression positive"),
+                            "below 1, not 0")),
+        number(t, "record_every", "1", CompressionStage{}.record_every, positive,
+               "strain between records; at most 1e6 records"),
+        choice(t, "lateral", {"constant_stress", "constant_volume", "zero_strain"},
+               "constant_stress: each lateral normal stress is held (drained); constant_volume: det F = 1 (undrained); "
+               "zero_strain: oedometer"),
+        number(t, "lateral_pressure_Pa", "Pa", "(test.pressure_Pa)", positive,
+               "lateral = constant_stress: lateral stress that is held, compression positive; the stage must start "
+               "from it"),
+        whole_number(t, "cycles", CompressionStage{}.cycles.count, {0, 1e6},
+                     "number of cycles between +-to_strain; 0: monotonic to to_strain"),
+        number(t, "reverse_at_Pa", "Pa", "", positive,
+               "cycles > 0: the strain reverses where the size of the axial less the mean lateral stress reaches this"),
+    };
   }
-  stage.cycles = read_cycles(reader, stage.to_strain, stage.record_every);
-  return stage;
-}
 
-std::size_t planned_records(const CompressionStage& stage) {
-  return strain_records(stage.to_strain, stage.record_every, stage.cycles);
-}
-
-StageRole role(const CompressionStage& stage) {
-  using Lateral = CompressionStage::Lateral;
-  if (stage.lateral == Lateral::zero_strain) return {StageRole::Gives::oedometric_stiffness, stage.axis};
-  if (stage.lateral == Lateral::constant_stress && stage.to_strain > 0) return {StageRole::Gives::strength, stage.axis};
-  return {};
-}
-
-void drive(RunningTest& test, const CompressionStage& stage) {
-  const int dimension = test.dimension();
-  const std::string axis_name = !stage.axis.empty() ? stage.axis : dimension == 2 ? "y" : "z";
-  const int axis = axis_index(axis_name[0]);
-  const bool hold = stage.lateral == CompressionStage::Lateral::constant_stress;
-  const bool undrained = stage.lateral == CompressionStage::Lateral::constant_volume;
-  records::Progress& at = test.run.progress;
-  at.axis = axis_name;
-  at.pressure = hold ? stage.lateral_pressure : at.first_pressure;
-
-  std::vector<HeldStress> held;
-  for (int k = 0; k < dimension && hold; ++k) {
-    if (k == axis) continue;
-    if (at.step == 0) test.expect_consolidated(normal_stress(k), -at.first_stress(k, k), stage.lateral_pressure);
-    held.push_back({k, k, -stage.lateral_pressure, test.held_scale(stage.lateral_pressure)});
+  void read(StageSource& source) override {
+    TableReader& reader = source.reader;
+    Protocol& protocol = source.protocol;
+    const char* usual = protocol.dimension == 0 ? "" : protocol.dimension == 2 ? "y" : "z";
+    stage.axis = reader.choice("axis", usual);
+    expect_in_plane(reader, "axis", stage.axis, protocol);
+    stage.to_strain = strain_of(source);
+    stage.record_every = spacing_of(reader, stage.to_strain);
+    const std::string lateral = reader.choice("lateral");
+    if (lateral == "constant_volume") stage.lateral = CompressionStage::Lateral::constant_volume;
+    if (lateral == "zero_strain") stage.lateral = CompressionStage::Lateral::zero_strain;
+    if (stage.lateral == CompressionStage::Lateral::constant_stress) {
+      stage.lateral_pressure = pressure_of(reader, "lateral_pressure_Pa", protocol);
+    } else {
+      refuse_pressure(reader, "lateral_pressure_Pa", "lateral = \"" + lateral + "\"");
+    }
+    stage.cycles = read_cycles(reader, stage.to_strain, stage.record_every);
   }
-  const auto increment_to = [&](double strain) {
-    // From the accumulated F, so that round-off does not add up over a stage.
-    const Matrix3& deformation = at.deformation;
-    const double stretch = 1 - strain;
-    const double lateral_stretch = dimension == 2 ? 1 / stretch : std::sqrt(1 / stretch);
-    Matrix3 gradient = Matrix3::Zero();
-    for (int k = 0; k < dimension; ++k) {
-      if (k == axis) gradient(k, k) = stretch / deformation(k, k) - 1;
-      if (k != axis && undrained) gradient(k, k) = lateral_stretch / deformation(k, k) - 1;
+
+  std::size_t planned_records() const override {
+    return strain_records(stage.to_strain, stage.record_every, stage.cycles);
+  }
+
+  std::string misfit(int dimension) const override { return out_of_plane("axis", stage.axis, dimension); }
+
+  StageRole role() const override {
+    using Lateral = CompressionStage::Lateral;
+    if (stage.lateral == Lateral::zero_strain) return {StageRole::Gives::oedometric_stiffness, stage.axis};
+    if (stage.lateral == Lateral::constant_stress && stage.to_strain > 0)
+      return {StageRole::Gives::strength, stage.axis};
+    return {};
+  }
+
+  void drive(RunningTest& test) const override {
+    const int dimension = test.dimension();
+    const std::string axis_name = !stage.axis.empty() ? stage.axis : dimension == 2 ? "y" : "z";
+    const int axis = axis_index(axis_name[0]);
+    const bool hold = stage.lateral == CompressionStage::Lateral::constant_stress;
+    const bool undrained = stage.lateral == CompressionStage::Lateral::constant_volume;
+    records::Progress& at = test.run.progress;
+    at.axis = axis_name;
+    at.pressure = hold ? stage.lateral_pressure : at.first_pressure;
+
+    std::vector<HeldStress> held;
+    for (int k = 0; k < dimension && hold; ++k) {
+      if (k == axis) continue;
+      if (at.step == 0) test.expect_consolidated(normal_stress(k), -at.first_stress(k, k), stage.lateral_pressure);
+      held.push_back({k, k, -stage.lateral_pressure, test.held_scale(stage.lateral_pressure)});
     }
-    return test.apply(gradient, held, test.time_for(gradient(axis, axis)), test.loading.held_tolerance);
-  };
-  drive_strain(test, stage, increment_to, [&] {
-    double axial_less_lateral = -at.stress(axis, axis);
-    for (int k = 0; k < dimension; ++k) {
-      if (k != axis) axial_less_lateral += at.stress(k, k) / (dimension - 1);
-    }
-    return axial_less_lateral;
-  });
-}
+    const auto increment_to = [&](double strain) {
+      // From the accumulated F, so that round-off does not add up over a stage.
+      const Matrix3& deformation = at.deformation;
+      const double stretch = 1 - strain;
+      const double lateral_stretch = dimension == 2 ? 1 / stretch : std::sqrt(1 / stretch);
+      Matrix3 gradient = Matrix3::Zero();
+      for (int k = 0; k < dimension; ++k) {
+        if (k == axis) gradient(k, k) = stretch / deformation(k, k) - 1;
+        if (k != axis && undrained) gradient(k, k) = lateral_stretch / deformation(k, k) - 1;
+      }
+      return test.apply(gradient, held, test.time_for(gradient(axis, axis)), test.loading.held_tolerance);
+    };
+    drive_strain(test, stage, increment_to, [&] {
+      double axial_less_lateral = -at.stress(axis, axis);
+      for (int k = 0; k < dimension; ++k) {
+        if (k != axis) axial_less_lateral += at.stress(k, k) / (dimension - 1);
+      }
+      return axial_less_lateral;
+    });
+  }
+};
 
 }  // namespace
 
-StageKind compression_kind() {
-  return KindOf<CompressionStage>{.name = "compression",
-                                  .keys = entries,
-                                  .read = read,
-                                  .drive = drive,
-                                  .planned_records = planned_records,
-                                  .misfit = [](const CompressionStage& stage,
-                                               int dimension) { return out_of_plane("axis", stage.axis, dimension); },
-                                  .role = role,
-                                  .strength_when = "lateral = \"constant_stress\" and to_strain > 0"};
-}
+std::unique_ptr<StageKind> compression_kind() { return std::make_unique<Compression>(); }
 
 }  // namespace rvelab::protocol

@@ -10,57 +10,54 @@ namespace {
 
 using namespace keys;
 
-std::vector<TableKey> entries() {
-  return {
-      required(listed("stage.deformation", "gradients", "1", "list of lists of numbers",
-                      "4 (2D) or 9 numbers each, row by row", KeyKind::matrices,
-                      "deformation gradients F since the start of the stage, a record at each")),
-  };
-}
+struct Deformation : KindOf<DeformationStage> {
+  const char* name() const override { return "deformation"; }
 
-DeformationStage read(StageSource& source) {
-  TableReader& reader = source.reader;
-  const Protocol& protocol = source.protocol;
-  DeformationStage stage;
-  stage.gradients = reader.matrices("gradients");
-  for (const Matrix3& f : stage.gradients) {
-    if (f.determinant() <= 0) {
-      reader.mistake("gradients", "has a determinant <= 0; allowed: > 0; correct it");
-      break;
-    }
-    Matrix3 out = f - Matrix3::Identity();
-    out.topLeftCorner<2, 2>().setZero();
-    if (protocol.dimension == 2 && !out.isZero(0)) {
-      reader.mistake("gradients", "leave the plane of test.dimension = 2; allowed: 4 numbers each; correct them");
-      break;
+  std::vector<TableKey> keys() const override {
+    return {
+        required(listed("stage.deformation", "gradients", "1", "list of lists of numbers",
+                        "4 (2D) or 9 numbers each, row by row", KeyKind::matrices,
+                        "deformation gradients F since the start of the stage, a record at each")),
+    };
+  }
+
+  void read(StageSource& source) override {
+    TableReader& reader = source.reader;
+    const Protocol& protocol = source.protocol;
+    stage.gradients = reader.matrices("gradients");
+    for (const Matrix3& f : stage.gradients) {
+      if (f.determinant() <= 0) {
+        reader.mistake("gradients", "has a determinant <= 0; allowed: > 0; correct it");
+        break;
+      }
+      Matrix3 out = f - Matrix3::Identity();
+      out.topLeftCorner<2, 2>().setZero();
+      if (protocol.dimension == 2 && !out.isZero(0)) {
+        reader.mistake("gradients", "leave the plane of test.dimension = 2; allowed: 4 numbers each; correct them");
+        break;
+      }
     }
   }
-  return stage;
-}
 
-void drive(RunningTest& test, const DeformationStage& stage) {
-  records::Progress& at = test.run.progress;
-  at.axis = "";
-  at.pressure = at.first_pressure;
-  std::vector<double> numbers;
-  for (std::size_t k = 0; k <= stage.gradients.size(); ++k) numbers.push_back(static_cast<double>(k));
-  test.go_through(numbers, [&](double number) {
-    const Matrix3& next = stage.gradients[static_cast<std::size_t>(number) - 1];
-    const Matrix3 gradient = next * at.deformation.inverse() - Matrix3::Identity();
-    const double size = (0.5 * (gradient + gradient.transpose())).norm();
-    return test.apply(gradient, {}, test.time_for(size), test.loading.held_tolerance);
-  });
-}
+  std::size_t planned_records() const override { return stage.gradients.size() + 1; }
+
+  void drive(RunningTest& test) const override {
+    records::Progress& at = test.run.progress;
+    at.axis = "";
+    at.pressure = at.first_pressure;
+    std::vector<double> numbers;
+    for (std::size_t k = 0; k <= stage.gradients.size(); ++k) numbers.push_back(static_cast<double>(k));
+    test.go_through(numbers, [&](double number) {
+      const Matrix3& next = stage.gradients[static_cast<std::size_t>(number) - 1];
+      const Matrix3 gradient = next * at.deformation.inverse() - Matrix3::Identity();
+      const double size = (0.5 * (gradient + gradient.transpose())).norm();
+      return test.apply(gradient, {}, test.time_for(size), test.loading.held_tolerance);
+    });
+  }
+};
 
 }  // namespace
 
-StageKind deformation_kind() {
-  return KindOf<DeformationStage>{
-      .name = "deformation",
-      .keys = entries,
-      .read = read,
-      .drive = drive,
-      .planned_records = [](const DeformationStage& stage) { return stage.gradients.size() + 1; }};
-}
+std::unique_ptr<StageKind> deformation_kind() { return std::make_unique<Deformation>(); }
 
 }  // namespace rvelab::protocol

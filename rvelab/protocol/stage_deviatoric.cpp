@@ -13,33 +13,6 @@ namespace {
 
 using namespace keys;
 
-std::vector<TableKey> entries() {
-  const char* t = "stage.deviatoric";
-  const DeviatoricStage initial;
-  return {
-      required(number(t, "to_strain", "1", "", positive, "eps_q at which the stage ends")),
-      number(t, "record_every", "1", initial.record_every, positive, "eps_q between records; at most 1e6 records"),
-      number(t, "lode_angle_deg", "degree", initial.lode_angle_deg, {-180, 180},
-             "3D: direction in the deviatoric plane; 0 compression along z, 60 extension along y"),
-      number(t, "pressure_Pa", "Pa", "(test.pressure_Pa)", positive,
-             "p, which is held and which the stage starts from"),
-  };
-}
-
-DeviatoricStage read(StageSource& source) {
-  TableReader& reader = source.reader;
-  Protocol& protocol = source.protocol;
-  DeviatoricStage stage;
-  stage.to_strain = reader.number("to_strain");
-  stage.record_every = spacing_of(reader, stage.to_strain);
-  stage.lode_angle_deg = reader.number("lode_angle_deg");
-  stage.pressure = pressure_of(reader, "pressure_Pa", protocol);
-  if (protocol.dimension == 2 && reader.has("lode_angle_deg")) {
-    reader.mistake("lode_angle_deg", "means nothing with test.dimension = 2; allowed: in 3D only; remove it");
-  }
-  return stage;
-}
-
 PathStage path_of(const DeviatoricStage& stage, int dimension) {
   PathStage path;
   PathRow drive{"eps_q", {}, {}, {stage.to_strain}};
@@ -73,21 +46,45 @@ PathStage path_of(const DeviatoricStage& stage, int dimension) {
   return path;
 }
 
-void drive(RunningTest& test, const DeviatoricStage& stage) {
-  const records::Progress& at = test.run.progress;
-  if (at.step == 0) test.expect_consolidated("p", at.first_pressure, stage.pressure);
-  follow_path(test, path_of(stage, test.dimension()));
-}
+struct Deviatoric : KindOf<DeviatoricStage> {
+  const char* name() const override { return "deviatoric"; }
+
+  std::vector<TableKey> keys() const override {
+    const char* t = "stage.deviatoric";
+    const DeviatoricStage initial;
+    return {
+        required(number(t, "to_strain", "1", "", positive, "eps_q at which the stage ends")),
+        number(t, "record_every", "1", initial.record_every, positive, "eps_q between records; at most 1e6 records"),
+        number(t, "lode_angle_deg", "degree", initial.lode_angle_deg, {-180, 180},
+               "3D: direction in the deviatoric plane; 0 compression along z, 60 extension along y"),
+        number(t, "pressure_Pa", "Pa", "(test.pressure_Pa)", positive,
+               "p, held constant; the stage must start from it"),
+    };
+  }
+
+  void read(StageSource& source) override {
+    TableReader& reader = source.reader;
+    Protocol& protocol = source.protocol;
+    stage.to_strain = reader.number("to_strain");
+    stage.record_every = spacing_of(reader, stage.to_strain);
+    stage.lode_angle_deg = reader.number("lode_angle_deg");
+    stage.pressure = pressure_of(reader, "pressure_Pa", protocol);
+    if (protocol.dimension == 2 && reader.has("lode_angle_deg")) {
+      reader.mistake("lode_angle_deg", "means nothing with test.dimension = 2; allowed: in 3D only; remove it");
+    }
+  }
+
+  std::size_t planned_records() const override { return path_records(path_of(stage, 3)); }
+
+  void drive(RunningTest& test) const override {
+    const records::Progress& at = test.run.progress;
+    if (at.step == 0) test.expect_consolidated("p", at.first_pressure, stage.pressure);
+    follow_path(test, path_of(stage, test.dimension()));
+  }
+};
 
 }  // namespace
 
-StageKind deviatoric_kind() {
-  return KindOf<DeviatoricStage>{
-      .name = "deviatoric",
-      .keys = entries,
-      .read = read,
-      .drive = drive,
-      .planned_records = [](const DeviatoricStage& stage) { return path_records(path_of(stage, 3)); }};
-}
+std::unique_ptr<StageKind> deviatoric_kind() { return std::make_unique<Deviatoric>(); }
 
 }  // namespace rvelab::protocol

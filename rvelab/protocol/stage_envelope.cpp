@@ -15,42 +15,6 @@ namespace {
 
 using namespace keys;
 
-std::vector<TableKey> entries() {
-  const char* t = "stage.envelope";
-  const EnvelopeStage initial;
-  return {
-      choice(t, "probes", {"strain", "stress"}, "what is the same in every direction"),
-      number(t, "size", "1", initial.size, {0, 0.1, true, false}, "probes = strain: norm of the strain"),
-      number(t, "size_Pa", "Pa", "", positive, "probes = stress: norm of the change of stress"),
-      whole_number(t, "directions", initial.directions, {1, 1e4},
-                   "of the plane y, x in 2D, z and the two others together in 3D, from compression along the axis"),
-      whole_number(t, "increments", initial.increments, {1, 1e6}, "of each probe"),
-      number(t, "unbalanced", "1", initial.unbalanced, ratio, "unbalanced force ratio to which each probe is relaxed"),
-      whole_number(t, "max_steps", initial.max_steps, steps, "sub-steps of that before it fails"),
-  };
-}
-
-EnvelopeStage read(StageSource& source) {
-  TableReader& reader = source.reader;
-  EnvelopeStage stage;
-  stage.stress_probes = reader.choice("probes") == "stress";
-  stage.size = reader.number("size");
-  stage.stress_size = reader.optional_number("size_Pa").value_or(0);
-  if (stage.stress_probes && !reader.has("size_Pa") && !reader.has_in_another_unit("size_Pa")) {
-    reader.mistake("size_Pa", "is missing; allowed with probes = \"stress\": > 0 Pa; add it");
-  }
-  if (reader.has(stage.stress_probes ? "size" : "size_Pa")) {
-    reader.mistake(stage.stress_probes ? "size" : "size_Pa", std::string("contradicts probes = \"") +
-                                                                 (stage.stress_probes ? "stress" : "strain") +
-                                                                 "\"; allowed: the size of these only; remove it");
-  }
-  stage.directions = reader.whole_number("directions");
-  stage.increments = reader.whole_number("increments");
-  stage.unbalanced = reader.number("unbalanced");
-  stage.max_steps = reader.whole_number("max_steps");
-  return stage;
-}
-
 /// The probe's tensor, of norm one, compression along the axis first: 2D in the plane of y and x, 3D in that of z and
 /// the two lateral axes together (Rendulic).
 Matrix3 direction(double turns, int dimension) {
@@ -100,47 +64,83 @@ Report probe(RunningTest& test, const EnvelopeStage& stage, const Matrix3& along
   return worst;
 }
 
-void drive(RunningTest& test, const EnvelopeStage& stage) {
-  records::Progress& at = test.run.progress;
-  at.axis = test.dimension() == 2 ? "y" : "z";
-  at.pressure = at.first_pressure;
-  while (at.step <= stage.directions) {
-    if (at.step == 0) {
-      test.record_now(0);
-    } else {
-      const double turns = static_cast<double>(at.step - 1) / static_cast<double>(stage.directions);
-      const Rve start(test.rve);
-      const records::Progress before = at;
-      const auto put_back = [&] {
-        const std::int64_t records = at.records;
-        test.rve = start;
-        at = before;
-        at.records = records;
-      };
-      try {
-        const Report report = probe(test, stage, direction(turns, test.dimension()));
-        test.record(turns, report);
-      } catch (...) {
-        put_back();
-        throw;
-      }
-      put_back();
-    }
-    ++at.step;
-    test.pause();
+struct Envelope : KindOf<EnvelopeStage> {
+  const char* name() const override { return "envelope"; }
+  bool takes_events() const override { return false; }
+
+  std::vector<TableKey> keys() const override {
+    const char* t = "stage.envelope";
+    const EnvelopeStage initial;
+    return {
+        choice(t, "probes", {"strain", "stress"}, "quantity whose size is equal in every direction"),
+        number(t, "size", "1", initial.size, {0, 0.1, true, false}, "probes = strain: norm of the strain"),
+        number(t, "size_Pa", "Pa", "", positive, "probes = stress: norm of the change of stress"),
+        whole_number(t, "directions", initial.directions, {1, 1e4},
+                     "number of directions, from compression along the axis; in 2D in the plane of y and x, in 3D in "
+                     "that of z and of x and y together"),
+        whole_number(t, "increments", initial.increments, {1, 1e6}, "increments of each probe"),
+        number(t, "unbalanced", "1", initial.unbalanced, ratio,
+               "unbalanced force ratio to which each probe is relaxed"),
+        whole_number(t, "max_steps", initial.max_steps, steps,
+                     "most sub-steps of that relaxation; then the stage fails"),
+    };
   }
-}
+
+  void read(StageSource& source) override {
+    TableReader& reader = source.reader;
+    stage.stress_probes = reader.choice("probes") == "stress";
+    stage.size = reader.number("size");
+    stage.stress_size = reader.optional_number("size_Pa").value_or(0);
+    if (stage.stress_probes && !reader.has("size_Pa") && !reader.has_in_another_unit("size_Pa")) {
+      reader.mistake("size_Pa", "is missing; allowed with probes = \"stress\": > 0 Pa; add it");
+    }
+    if (reader.has(stage.stress_probes ? "size" : "size_Pa")) {
+      reader.mistake(stage.stress_probes ? "size" : "size_Pa", std::string("contradicts probes = \"") +
+                                                                   (stage.stress_probes ? "stress" : "strain") +
+                                                                   "\"; allowed: the size of these only; remove it");
+    }
+    stage.directions = reader.whole_number("directions");
+    stage.increments = reader.whole_number("increments");
+    stage.unbalanced = reader.number("unbalanced");
+    stage.max_steps = reader.whole_number("max_steps");
+  }
+
+  std::size_t planned_records() const override { return static_cast<std::size_t>(stage.directions) + 1; }
+
+  void drive(RunningTest& test) const override {
+    records::Progress& at = test.run.progress;
+    at.axis = test.dimension() == 2 ? "y" : "z";
+    at.pressure = at.first_pressure;
+    while (at.step <= stage.directions) {
+      if (at.step == 0) {
+        test.record_now(0);
+      } else {
+        const double turns = static_cast<double>(at.step - 1) / static_cast<double>(stage.directions);
+        const Rve start(test.rve);
+        const records::Progress before = at;
+        const auto put_back = [&] {
+          const std::int64_t records = at.records;
+          test.rve = start;
+          at = before;
+          at.records = records;
+        };
+        try {
+          const Report report = probe(test, stage, direction(turns, test.dimension()));
+          test.record(turns, report);
+        } catch (...) {
+          put_back();
+          throw;
+        }
+        put_back();
+      }
+      ++at.step;
+      test.pause();
+    }
+  }
+};
 
 }  // namespace
 
-StageKind envelope_kind() {
-  return KindOf<EnvelopeStage>{
-      .name = "envelope",
-      .keys = entries,
-      .read = read,
-      .drive = drive,
-      .planned_records = [](const EnvelopeStage& stage) { return static_cast<std::size_t>(stage.directions) + 1; },
-      .takes_events = false};
-}
+std::unique_ptr<StageKind> envelope_kind() { return std::make_unique<Envelope>(); }
 
 }  // namespace rvelab::protocol

@@ -11,17 +11,6 @@ namespace {
 
 using namespace keys;
 
-std::vector<TableKey> entries() {
-  const char* t = "stage.flow";
-  return {
-      required(listed(t, "gradient", "1", "components", "xx, xy, xz, yx, yy, yz, zx, zy, zz = numbers",
-                      KeyKind::components,
-                      "G of F = exp(s G), s the driving strain; physical loading: velocity gradient = rate G")),
-      required(number(t, "to_strain", "1", "", positive, "s at which the stage ends")),
-      number(t, "record_every", "1", FlowStage{}.record_every, positive, "s between records; at most 1e6 records"),
-  };
-}
-
 /// In 2D nothing moves along z.
 void expect_plane(TableReader& reader, const std::string& key, const Matrix3& f, const Protocol& protocol) {
   Matrix3 out = f;
@@ -29,23 +18,6 @@ void expect_plane(TableReader& reader, const std::string& key, const Matrix3& f,
   if (protocol.dimension == 2 && !out.isZero(0)) {
     reader.mistake(key, "leaves the plane of test.dimension = 2; allowed: xx, xy, yx, yy; remove the others");
   }
-}
-
-FlowStage read(StageSource& source) {
-  TableReader& reader = source.reader;
-  const Protocol& protocol = source.protocol;
-  FlowStage stage;
-  stage.gradient = reader.components("gradient", false);
-  expect_plane(reader, "gradient", stage.gradient, protocol);
-  stage.to_strain = reader.number("to_strain");
-  stage.record_every = spacing_of(reader, stage.to_strain);
-  return stage;
-}
-
-std::string misfit(const FlowStage& stage, int dimension) {
-  const bool in_plane = stage.gradient.row(2).isZero(0) && stage.gradient.col(2).isZero(0);
-  if (dimension == 3 || in_plane) return "";
-  return "gradient leaves the plane of a 2D specimen; allowed: x and y; change it";
 }
 
 /// exp(h) - I by its series; increments are small, and halving keeps larger ones exact.
@@ -59,30 +31,53 @@ Matrix3 exponential_less_one(const Matrix3& h) {
   return sum;
 }
 
-void drive(RunningTest& test, const FlowStage& stage) {
-  records::Progress& at = test.run.progress;
-  at.axis = "";
-  at.pressure = at.first_pressure;
-  const std::vector<double> strains = record_strains(stage.to_strain, stage.record_every);
-  test.go_through(strains, [&](double strain) {
-    // Each from the one before it in the list: a flow has no target that round-off could miss.
-    const double advance = strain - strains[static_cast<std::size_t>(at.step) - 1];
-    return test.apply(exponential_less_one(advance * stage.gradient), {}, test.time_for(advance),
-                      test.loading.held_tolerance);
-  });
-}
+struct Flow : KindOf<FlowStage> {
+  const char* name() const override { return "flow"; }
+
+  std::vector<TableKey> keys() const override {
+    const char* t = "stage.flow";
+    return {
+        required(listed(t, "gradient", "1", "components", "xx, xy, xz, yx, yy, yz, zx, zy, zz = numbers",
+                        KeyKind::components,
+                        "G of F = exp(s G), s the driving strain; physical loading: velocity gradient = rate G")),
+        required(number(t, "to_strain", "1", "", positive, "s at which the stage ends")),
+        number(t, "record_every", "1", FlowStage{}.record_every, positive, "s between records; at most 1e6 records"),
+    };
+  }
+
+  void read(StageSource& source) override {
+    TableReader& reader = source.reader;
+    const Protocol& protocol = source.protocol;
+    stage.gradient = reader.components("gradient", false);
+    expect_plane(reader, "gradient", stage.gradient, protocol);
+    stage.to_strain = reader.number("to_strain");
+    stage.record_every = spacing_of(reader, stage.to_strain);
+  }
+
+  std::size_t planned_records() const override { return record_strains(stage.to_strain, stage.record_every).size(); }
+
+  std::string misfit(int dimension) const override {
+    const bool in_plane = stage.gradient.row(2).isZero(0) && stage.gradient.col(2).isZero(0);
+    if (dimension == 3 || in_plane) return "";
+    return "gradient leaves the plane of a 2D specimen; allowed: x and y; change it";
+  }
+
+  void drive(RunningTest& test) const override {
+    records::Progress& at = test.run.progress;
+    at.axis = "";
+    at.pressure = at.first_pressure;
+    const std::vector<double> strains = record_strains(stage.to_strain, stage.record_every);
+    test.go_through(strains, [&](double strain) {
+      // Each from the one before it in the list: a flow has no target that round-off could miss.
+      const double advance = strain - strains[static_cast<std::size_t>(at.step) - 1];
+      return test.apply(exponential_less_one(advance * stage.gradient), {}, test.time_for(advance),
+                        test.loading.held_tolerance);
+    });
+  }
+};
 
 }  // namespace
 
-StageKind flow_kind() {
-  return KindOf<FlowStage>{
-      .name = "flow",
-      .keys = entries,
-      .read = read,
-      .drive = drive,
-      .planned_records =
-          [](const FlowStage& stage) { return record_strains(stage.to_strain, stage.record_every).size(); },
-      .misfit = misfit};
-}
+std::unique_ptr<StageKind> flow_kind() { return std::make_unique<Flow>(); }
 
 }  // namespace rvelab::protocol

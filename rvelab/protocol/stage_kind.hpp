@@ -1,11 +1,10 @@
 // What a kind of stage is: its keys, how its settings are read, and how a test is driven by them. Internal to the room.
 //
-// A kind is one file stage_NAME.cpp with a function NAME_kind() that fills a KindOf of its settings, and its line in
-// the table (stage_kinds.hpp).
+// A new kind is one file stage_NAME.cpp with a class of its settings and a function NAME_kind() that makes one, and its
+// line in stage_kinds.hpp.
 #pragma once
 
-#include <any>
-#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -25,51 +24,39 @@ struct StageSource {
   std::vector<keys::KeyError>& errors;  ///< mistakes that are not those of one key
 };
 
-/// A kind of stage with the type of its settings hidden.
-struct StageKind {
-  std::string name;  ///< stage.kind; its keys stand in the table "stage.NAME" and in those below it
-  std::vector<keys::TableKey> keys;
-  std::function<std::any(StageSource&)> read;
-  std::function<void(RunningTest&, const std::any&)> drive;
-  std::function<std::size_t(const std::any&)> planned_records;
-  std::function<std::string(const std::any&, int dimension)> misfit;
-  std::function<StageRole(const std::any&)> role;
-  std::string strength_when;
-  bool takes_events = true;
-};
+/// A kind of stage, with the settings of one stage of it.
+class StageKind {
+ public:
+  virtual ~StageKind() = default;
 
-/// A kind of stage; what has a default may be left out.
-template <class Settings>
-struct KindOf {
-  const char* name;
-  std::vector<keys::TableKey> (*keys)();
-  /// Reads every key of the kind. Mistakes are booked, and what is returned is then not used.
-  Settings (*read)(StageSource& source);
+  virtual const char* name() const = 0;  ///< stage.kind; its keys stand in the table "stage.NAME" and below it
+  virtual std::vector<keys::TableKey> keys() const = 0;
+  /// Reads every key of the kind. If a mistake is added to the source's errors, the settings are not used.
+  virtual void read(StageSource& source) = 0;
   /// From phase 1 to the end of the stage, or on from where run.progress says that it is (drive.hpp).
-  void (*drive)(RunningTest& test, const Settings& settings);
+  virtual void drive(RunningTest& test) const = 0;
   /// Records that it makes where no event ends it.
-  std::size_t (*planned_records)(const Settings& settings) = [](const Settings&) -> std::size_t { return 0; };
+  virtual std::size_t planned_records() const { return 0; }
   /// Why it does not go with specimens of this dimension, with the remedy; "": it does.
-  std::string (*misfit)(const Settings& settings, int dimension) = [](const Settings&, int) { return std::string(); };
+  virtual std::string misfit(int /*dimension*/) const { return ""; }
   /// What calibration may read from its records.
-  StageRole (*role)(const Settings& settings) = [](const Settings&) { return StageRole{}; };
-  const char* strength_when = "";  ///< settings with which that is a strength, in words; "": never
-  bool takes_events = true;        ///< it makes records on its way, which events can look at
-
-  operator StageKind() const {
-    const auto settings_of = [](const std::any& what) -> const Settings& { return *std::any_cast<Settings>(&what); };
-    return {name,
-            keys(),
-            [read = read](StageSource& source) { return std::any(read(source)); },
-            [settings_of, drive = drive](RunningTest& test, const std::any& what) { drive(test, settings_of(what)); },
-            [settings_of, planned = planned_records](const std::any& what) { return planned(settings_of(what)); },
-            [settings_of, misfit = misfit](const std::any& what, int dimension) {
-              return misfit(settings_of(what), dimension);
-            },
-            [settings_of, role = role](const std::any& what) { return role(settings_of(what)); },
-            strength_when,
-            takes_events};
-  }
+  virtual StageRole role() const { return {}; }
+  /// Settings with which that is a strength, in words; "": never.
+  virtual const char* strength_when() const { return ""; }
+  /// Whether it makes records at which events can be checked.
+  virtual bool takes_events() const { return true; }
 };
+
+/// A kind with its settings.
+template <class Settings>
+struct KindOf : StageKind {
+  Settings stage;
+};
+
+/// The settings of a stage of the kind that has them. std::bad_cast: it is of another kind.
+template <class Settings>
+const Settings& settings_of(const Stage& stage) {
+  return dynamic_cast<const KindOf<Settings>&>(*stage.what).stage;
+}
 
 }  // namespace rvelab::protocol

@@ -14,37 +14,6 @@ namespace {
 
 using namespace keys;
 
-std::vector<TableKey> entries() {
-  const char *t = "stage.path", *r = "stage.path.row";
-  const PathStage initial;
-  return {
-      required(listed(t, "row", "-", "list of tables", "[[stage.row]], at most 6", KeyKind::tables,
-                      "constraints A : d eps + B : d sigma = c; a strain component that no row names stays zero")),
-      whole_number(t, "records_per_point", initial.records_per_point, {1, 1e6},
-                   "records, and increments, on the way to each point"),
-      whole_number(t, "cycles", initial.cycles, {1, 1e6}, "times that the points are gone through"),
-      choice(t, "axis", {"x", "y", "z"}, "loading axis that is noted in the records", "(none)"),
-      required(text(r, "name", "", "name of the row, for messages and --set stage.NAME.row.ROW.key=value")),
-      listed(r, "strain", "1", "components", symmetric_components, KeyKind::components,
-             "A of a row without stress, tension positive; yz, xz, xy: of the engineering shear strain"),
-      listed(r, "stress", "1", "components", symmetric_components, KeyKind::components, "B, tension positive"),
-      listed(r, "strain_Pa", "Pa", "components", symmetric_components, KeyKind::components,
-             "A of a row with stress: a stiffness"),
-      {{r, "to", "1", "list of numbers", "", "one number a point",
-        "values of a row of strain, from 0 at the start of the stage; none: it stays 0"},
-       KeyKind::numbers,
-       every,
-       {},
-       {}},
-      {{r, "to_Pa", "Pa", "list of numbers", "", "one number a point",
-        "values of a row with stress; none: it keeps the value of the start of the stage"},
-       KeyKind::numbers,
-       every,
-       {},
-       {}},
-  };
-}
-
 PathRow read_row(const toml::table& table, const std::string& stage, std::size_t number, toml::array& resolved,
                  std::vector<keys::KeyError>& errors) {
   const std::string name = table["name"].value_or(std::to_string(number));
@@ -81,57 +50,89 @@ PathRow read_row(const toml::table& table, const std::string& stage, std::size_t
   return row;
 }
 
-PathStage read(StageSource& source) {
-  TableReader& reader = source.reader;
-  const std::string& name = source.name;
-  std::vector<keys::KeyError>& errors = source.errors;
-  PathStage stage;
-  toml::array resolved;
-  const auto tables = reader.tables("row");
-  const std::size_t mistakes = errors.size();
-  for (const toml::table* table : tables) {
-    stage.rows.push_back(read_row(*table, name, stage.rows.size(), resolved, errors));
+struct Path : KindOf<PathStage> {
+  const char* name() const override { return "path"; }
+
+  std::vector<TableKey> keys() const override {
+    const char *t = "stage.path", *r = "stage.path.row";
+    const PathStage initial;
+    return {
+        required(listed(t, "row", "-", "list of tables", "[[stage.row]], at most 6", KeyKind::tables,
+                        "constraints A : d eps + B : d sigma = c; a strain component that no row names stays zero")),
+        whole_number(t, "records_per_point", initial.records_per_point, {1, 1e6},
+                     "records, and increments, on the way to each point"),
+        whole_number(t, "cycles", initial.cycles, {1, 1e6}, "number of times that the path passes through its points"),
+        choice(t, "axis", {"x", "y", "z"}, "loading axis, kept in the record file", "(none)"),
+        required(text(r, "name", "", "name of the row, for messages and --set stage.NAME.row.ROW.key=value")),
+        listed(r, "strain", "1", "components", symmetric_components, KeyKind::components,
+               "A of a row without stress, tension positive; yz, xz, xy: of the engineering shear strain"),
+        listed(r, "stress", "1", "components", symmetric_components, KeyKind::components, "B, tension positive"),
+        listed(r, "strain_Pa", "Pa", "components", symmetric_components, KeyKind::components,
+               "A of a row with stress: a stiffness"),
+        {{r, "to", "1", "list of numbers", "", "one number a point",
+          "values of a row of strain, from 0 at the start of the stage; none: it stays 0"},
+         KeyKind::numbers,
+         every,
+         {},
+         {}},
+        {{r, "to_Pa", "Pa", "list of numbers", "", "one number a point",
+          "values of a row with stress; none: it keeps the value of the start of the stage"},
+         KeyKind::numbers,
+         every,
+         {},
+         {}},
+    };
   }
-  if (!tables.empty()) reader.resolve("row", resolved);
-  stage.records_per_point = reader.whole_number("records_per_point");
-  stage.cycles = reader.whole_number("cycles");
-  stage.axis = reader.choice("axis", "");
-  stage.points = 0;
-  for (const PathRow& row : stage.rows) {
-    const auto points = static_cast<long>(row.to.size());
-    if (points > 0 && stage.points > 0 && points != stage.points) {
-      reader.mistake("row", "\"" + row.name + "\" has " + std::to_string(points) + " points and a row before it " +
-                                std::to_string(stage.points) + "; allowed: the same number in all that have any");
+
+  void read(StageSource& source) override {
+    TableReader& reader = source.reader;
+    const std::string& name = source.name;
+    std::vector<keys::KeyError>& errors = source.errors;
+    toml::array resolved;
+    const auto tables = reader.tables("row");
+    const std::size_t mistakes = errors.size();
+    for (const toml::table* table : tables) {
+      stage.rows.push_back(read_row(*table, name, stage.rows.size(), resolved, errors));
     }
-    stage.points = std::max(stage.points, points);
-    const auto same = [&](const PathRow& other) { return &other != &row && other.name == row.name; };
-    if (std::any_of(stage.rows.begin(), stage.rows.end(), same) && &row == &stage.rows.back()) {
-      reader.mistake("row", "\"" + row.name + "\" is there twice; allowed: a name of its own for each; rename it");
+    if (!tables.empty()) reader.resolve("row", resolved);
+    stage.records_per_point = reader.whole_number("records_per_point");
+    stage.cycles = reader.whole_number("cycles");
+    stage.axis = reader.choice("axis", "");
+    stage.points = 0;
+    for (const PathRow& row : stage.rows) {
+      const auto points = static_cast<long>(row.to.size());
+      if (points > 0 && stage.points > 0 && points != stage.points) {
+        reader.mistake("row", "\"" + row.name + "\" has " + std::to_string(points) + " points and a row before it " +
+                                  std::to_string(stage.points) + "; allowed: the same number in all that have any");
+      }
+      stage.points = std::max(stage.points, points);
+      const auto same = [&](const PathRow& other) { return &other != &row && other.name == row.name; };
+      if (std::any_of(stage.rows.begin(), stage.rows.end(), same) && &row == &stage.rows.back()) {
+        reader.mistake("row", "\"" + row.name + "\" is there twice; allowed: a name of its own for each; rename it");
+      }
     }
+    if (errors.size() > mistakes || stage.rows.empty()) return;
+    if (stage.points == 0) {
+      reader.mistake("row", "gives no targets; allowed: to or to_Pa in at least one row; add them");
+      return;
+    }
+    if (static_cast<double>(stage.cycles) * stage.points * stage.records_per_point > most_records) {
+      reader.mistake("records_per_point", "gives more than 1000000 records; allowed: at most so many; give fewer");
+    }
+    if (source.protocol.dimension == 0) return;  // looked at when the specimen is there
+    const std::string mistake = mistake_of_rows(stage, source.protocol.dimension);
+    if (!mistake.empty()) errors.push_back({line_of(*tables.front()), "stage." + name + ": " + mistake});
   }
-  if (errors.size() > mistakes || stage.rows.empty()) return stage;
-  if (stage.points == 0) {
-    reader.mistake("row", "gives no targets; allowed: to or to_Pa in at least one row; add them");
-    return stage;
-  }
-  if (static_cast<double>(stage.cycles) * stage.points * stage.records_per_point > most_records) {
-    reader.mistake("records_per_point", "gives more than 1000000 records; allowed: at most so many; give fewer");
-  }
-  if (source.protocol.dimension == 0) return stage;  // looked at when the specimen is there
-  const std::string mistake = mistake_of_rows(stage, source.protocol.dimension);
-  if (!mistake.empty()) errors.push_back({line_of(*tables.front()), "stage." + name + ": " + mistake});
-  return stage;
-}
+
+  std::size_t planned_records() const override { return path_records(stage); }
+
+  std::string misfit(int dimension) const override { return mistake_of_rows(stage, dimension); }
+
+  void drive(RunningTest& test) const override { follow_path(test, stage); }
+};
 
 }  // namespace
 
-StageKind path_kind() {
-  return KindOf<PathStage>{.name = "path",
-                           .keys = entries,
-                           .read = read,
-                           .drive = follow_path,
-                           .planned_records = path_records,
-                           .misfit = mistake_of_rows};
-}
+std::unique_ptr<StageKind> path_kind() { return std::make_unique<Path>(); }
 
 }  // namespace rvelab::protocol

@@ -10,27 +10,6 @@ namespace {
 
 using namespace keys;
 
-std::vector<TableKey> entries() {
-  const char* t = "stage.pressure_path";
-  TableKey targets = listed(t, "to_Pa", "Pa", "list of numbers", "", KeyKind::numbers,
-                            "pressures that all normal stresses go to one after the other; shear strains are zero");
-  targets.range = pressures;
-  targets.key.range = "each " + in_words(pressures);
-  return {required(targets), whole_number(t, "records_per_point", PressurePathStage{}.records_per_point, {1, 1e6},
-                                          "records, and increments, on the way to each pressure")};
-}
-
-PressurePathStage read(StageSource& source) {
-  TableReader& reader = source.reader;
-  PressurePathStage stage;
-  stage.pressures = reader.numbers("to_Pa");
-  if (stage.pressures.empty() && !reader.has("to_Pa") && !reader.has_in_another_unit("to_Pa")) {
-    reader.mistake("to_Pa", "is missing; allowed: each " + in_words(pressures) + " Pa; add it");
-  }
-  stage.records_per_point = reader.whole_number("records_per_point");
-  return stage;
-}
-
 /// The pressures as a path of one row for each normal stress.
 PathStage path_of(const PressurePathStage& stage, int dimension) {
   PathStage path;
@@ -45,17 +24,36 @@ PathStage path_of(const PressurePathStage& stage, int dimension) {
   return path;
 }
 
-void drive(RunningTest& test, const PressurePathStage& stage) { follow_path(test, path_of(stage, test.dimension())); }
+struct PressurePath : KindOf<PressurePathStage> {
+  const char* name() const override { return "pressure_path"; }
+
+  std::vector<TableKey> keys() const override {
+    const char* t = "stage.pressure_path";
+    TableKey targets =
+        listed(t, "to_Pa", "Pa", "list of numbers", "", KeyKind::numbers,
+               "pressures to which all normal stresses are brought, one after the other; shear strains are zero");
+    targets.range = pressures;
+    targets.key.range = "each " + in_words(pressures);
+    return {required(targets), whole_number(t, "records_per_point", PressurePathStage{}.records_per_point, {1, 1e6},
+                                            "records, and increments, on the way to each pressure")};
+  }
+
+  void read(StageSource& source) override {
+    TableReader& reader = source.reader;
+    stage.pressures = reader.numbers("to_Pa");
+    if (stage.pressures.empty() && !reader.has("to_Pa") && !reader.has_in_another_unit("to_Pa")) {
+      reader.mistake("to_Pa", "is missing; allowed: each " + in_words(pressures) + " Pa; add it");
+    }
+    stage.records_per_point = reader.whole_number("records_per_point");
+  }
+
+  std::size_t planned_records() const override { return path_records(path_of(stage, 2)); }
+
+  void drive(RunningTest& test) const override { follow_path(test, path_of(stage, test.dimension())); }
+};
 
 }  // namespace
 
-StageKind pressure_path_kind() {
-  return KindOf<PressurePathStage>{
-      .name = "pressure_path",
-      .keys = entries,
-      .read = read,
-      .drive = drive,
-      .planned_records = [](const PressurePathStage& stage) { return path_records(path_of(stage, 2)); }};
-}
+std::unique_ptr<StageKind> pressure_path_kind() { return std::make_unique<PressurePath>(); }
 
 }  // namespace rvelab::protocol

@@ -12,57 +12,58 @@ namespace {
 
 using namespace keys;
 
-std::vector<TableKey> entries() {
-  const char* t = "stage.probe";
-  const ProbeStage initial;
-  return {
-      choice(t, "method", {"dynamic", "linear"},
-             "dynamic: increments of +-size, relaxed; linear: the contact network solved, every contact stuck"),
-      number(t, "size", "1", initial.size, {smallest_probe, 0.01}, "method = dynamic: strain of each increment"),
-      {{t, "no_slip", "-", "boolean", "(true with method = linear, else false)", "true, false",
-        "no contact slips or rolls over in the probed copy (friction 1e6)"},
-       KeyKind::boolean,
-       any,
-       {},
-       {}},
-  };
-}
+struct StiffnessProbe : KindOf<ProbeStage> {
+  const char* name() const override { return "probe"; }
+  bool takes_events() const override { return false; }
 
-ProbeStage read(StageSource& source) {
-  TableReader& reader = source.reader;
-  ProbeStage stage;
-  const bool linear = reader.choice("method") == "linear";
-  stage.method = linear ? ProbeStage::Method::linear : ProbeStage::Method::dynamic;
-  stage.size = reader.number("size");
-  stage.no_slip = reader.boolean("no_slip", linear);
-  if (linear && !stage.no_slip) {
-    reader.mistake("no_slip",
-                   "contradicts method = \"linear\", in which every contact is stuck; allowed: true with "
-                   "it; remove the key or take method = \"dynamic\"");
+  std::vector<TableKey> keys() const override {
+    const char* t = "stage.probe";
+    const ProbeStage initial;
+    return {
+        choice(t, "method", {"dynamic", "linear"},
+               "dynamic: increments of +-size, relaxed; linear: the contact network solved, every contact stuck"),
+        number(t, "size", "1", initial.size, {smallest_probe, 0.01}, "method = dynamic: strain of each increment"),
+        {{t, "no_slip", "-", "boolean", "(true with method = linear, else false)", "true, false",
+          "no contact slips or rolls over in the probed copy (friction 1e6)"},
+         KeyKind::boolean,
+         any,
+         {},
+         {}},
+    };
   }
-  return stage;
-}
 
-void drive(RunningTest& test, const ProbeStage& stage) {
-  if (stage.method == ProbeStage::Method::linear) {
-    test.probed(elastic_tangent(test.rve.network()));
-    return;
+  void read(StageSource& source) override {
+    TableReader& reader = source.reader;
+    const bool linear = reader.choice("method") == "linear";
+    stage.method = linear ? ProbeStage::Method::linear : ProbeStage::Method::dynamic;
+    stage.size = reader.number("size");
+    stage.no_slip = reader.boolean("no_slip", linear);
+    if (linear && !stage.no_slip) {
+      reader.mistake("no_slip",
+                     "contradicts method = \"linear\", in which every contact is stuck; allowed: true with it; remove "
+                     "the key or take method = \"dynamic\"");
+    }
   }
-  Rve copy(test.rve);
-  if (stage.no_slip) forbid_slip(copy);
-  const Probe probe = probe_stiffness(copy, stage.size);
-  if (!probe.relaxed) {
-    throw test.failed("the probes relaxed to the unbalanced ratio " + in_words(probe.unbalanced_ratio) +
-                      " only; allowed: below " + in_words(relaxed_ratio) +
-                      "; give a relax stage before, another size, or method = \"linear\"");
+
+  void drive(RunningTest& test) const override {
+    if (stage.method == ProbeStage::Method::linear) {
+      test.probed(elastic_tangent(test.rve.network()));
+      return;
+    }
+    Rve copy(test.rve);
+    if (stage.no_slip) forbid_slip(copy);
+    const Probe probe = probe_stiffness(copy, stage.size);
+    if (!probe.relaxed) {
+      throw test.failed("the probes relaxed to the unbalanced ratio " + in_words(probe.unbalanced_ratio) +
+                        " only; allowed: below " + in_words(relaxed_ratio) +
+                        "; give a relax stage before, another size, or method = \"linear\"");
+    }
+    test.probed(probe.stiffness);
   }
-  test.probed(probe.stiffness);
-}
+};
 
 }  // namespace
 
-StageKind probe_kind() {
-  return KindOf<ProbeStage>{.name = "probe", .keys = entries, .read = read, .drive = drive, .takes_events = false};
-}
+std::unique_ptr<StageKind> probe_kind() { return std::make_unique<StiffnessProbe>(); }
 
 }  // namespace rvelab::protocol

@@ -10,9 +10,6 @@ namespace rvelab::protocol {
 
 inline constexpr double most_records = 1e6;
 
-/// Of pressures that grains are brought to, Pa: beyond any solid's stiffness, and squares of forces would overflow.
-inline constexpr Interval pressures{0, 1e15, true, false};
-
 /// A stage's own pressure, or the test's.
 double pressure_of(keys::TableReader& reader, const std::string& name, Protocol& protocol);
 

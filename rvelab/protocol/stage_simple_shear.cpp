@@ -10,81 +10,79 @@ namespace {
 
 using namespace keys;
 
-std::vector<TableKey> entries() {
-  const char* t = "stage.simple_shear";
-  return {
-      choice(t, "plane", {"xy", "xz", "yz", "yx", "zx", "zy"}, "ab: shear dv_a/dx_b", "(xy in 2D, xz in 3D)"),
-      required(with_range(number(t, "to_strain", "1", "", {-infinity, infinity, true, true},
-                                 "gamma = F_ab at which the stage ends, either sign"),
-                          "any finite number but 0")),
-      number(t, "record_every", "1", SimpleShearStage{}.record_every, positive,
-             "gamma between records; at most 1e6 records"),
-      choice(t, "normal", {"constant_volume", "constant_stress"},
-             "constant_volume: only the shear moves (undrained); constant_stress: sigma_bb is held (drained)"),
-      number(t, "normal_pressure_Pa", "Pa", "(test.pressure_Pa)", positive,
-             "normal = constant_stress: sigma_bb is held at minus this, which it starts from"),
-      whole_number(t, "cycles", SimpleShearStage{}.cycles.count, {0, 1e6},
-                   "0: straight to to_strain; else so many cycles between +-to_strain"),
-      number(t, "reverse_at_Pa", "Pa", "", positive, "cycles > 0: gamma turns where sigma_ab has this size"),
-  };
-}
+struct SimpleShear : KindOf<SimpleShearStage> {
+  const char* name() const override { return "simple_shear"; }
 
-SimpleShearStage read(StageSource& source) {
-  TableReader& reader = source.reader;
-  Protocol& protocol = source.protocol;
-  SimpleShearStage stage;
-  const char* usual = protocol.dimension == 0 ? "" : protocol.dimension == 2 ? "xy" : "xz";
-  stage.plane = reader.choice("plane", usual);
-  expect_in_plane(reader, "plane", stage.plane, protocol);
-  stage.to_strain = strain_of(source);
-  stage.record_every = spacing_of(reader, stage.to_strain);
-  if (reader.choice("normal") == "constant_volume") {
-    refuse_pressure(reader, "normal_pressure_Pa", "normal = \"constant_volume\"");
-  } else {
-    stage.normal = SimpleShearStage::Normal::constant_stress;
-    stage.normal_pressure = pressure_of(reader, "normal_pressure_Pa", protocol);
+  std::vector<TableKey> keys() const override {
+    const char* t = "stage.simple_shear";
+    return {
+        choice(t, "plane", {"xy", "xz", "yz", "yx", "zx", "zy"}, "ab: shear dv_a/dx_b", "(xy in 2D, xz in 3D)"),
+        required(with_range(number(t, "to_strain", "1", "", {-infinity, infinity, true, true},
+                                   "gamma = F_ab at which the stage ends, either sign"),
+                            "any finite number but 0")),
+        number(t, "record_every", "1", SimpleShearStage{}.record_every, positive,
+               "gamma between records; at most 1e6 records"),
+        choice(t, "normal", {"constant_volume", "constant_stress"},
+               "constant_volume: only the shear moves (undrained); constant_stress: sigma_bb is held (drained)"),
+        number(
+            t, "normal_pressure_Pa", "Pa", "(test.pressure_Pa)", positive,
+            "normal = constant_stress: normal stress that is held, compression positive; the stage must start from it"),
+        whole_number(t, "cycles", SimpleShearStage{}.cycles.count, {0, 1e6},
+                     "number of cycles between +-to_strain; 0: monotonic to to_strain"),
+        number(t, "reverse_at_Pa", "Pa", "", positive,
+               "cycles > 0: gamma reverses where the size of sigma_ab reaches this"),
+    };
   }
-  stage.cycles = read_cycles(reader, stage.to_strain, stage.record_every);
-  return stage;
-}
 
-std::size_t planned_records(const SimpleShearStage& stage) {
-  return strain_records(stage.to_strain, stage.record_every, stage.cycles);
-}
-
-void drive(RunningTest& test, const SimpleShearStage& stage) {
-  const std::string plane = !stage.plane.empty() ? stage.plane : test.dimension() == 2 ? "xy" : "xz";
-  const int along = axis_index(plane[0]), normal = axis_index(plane[1]);
-  const bool hold = stage.normal == SimpleShearStage::Normal::constant_stress;
-  records::Progress& at = test.run.progress;
-  at.axis = plane;
-  at.pressure = hold ? stage.normal_pressure : at.first_pressure;
-
-  std::vector<HeldStress> held;
-  if (hold && at.step == 0) {
-    test.expect_consolidated(normal_stress(normal), -at.first_stress(normal, normal), stage.normal_pressure);
+  void read(StageSource& source) override {
+    TableReader& reader = source.reader;
+    Protocol& protocol = source.protocol;
+    const char* usual = protocol.dimension == 0 ? "" : protocol.dimension == 2 ? "xy" : "xz";
+    stage.plane = reader.choice("plane", usual);
+    expect_in_plane(reader, "plane", stage.plane, protocol);
+    stage.to_strain = strain_of(source);
+    stage.record_every = spacing_of(reader, stage.to_strain);
+    if (reader.choice("normal") == "constant_volume") {
+      refuse_pressure(reader, "normal_pressure_Pa", "normal = \"constant_volume\"");
+    } else {
+      stage.normal = SimpleShearStage::Normal::constant_stress;
+      stage.normal_pressure = pressure_of(reader, "normal_pressure_Pa", protocol);
+    }
+    stage.cycles = read_cycles(reader, stage.to_strain, stage.record_every);
   }
-  if (hold) held.push_back({normal, normal, -stage.normal_pressure, test.held_scale(stage.normal_pressure)});
-  const auto increment_to = [&](double strain) {
-    const Matrix3& deformation = at.deformation;
-    Matrix3 gradient = Matrix3::Zero();
-    gradient(along, normal) = (strain - deformation(along, normal)) / deformation(normal, normal);
-    return test.apply(gradient, held, test.time_for(gradient(along, normal)), test.loading.held_tolerance);
-  };
-  drive_strain(test, stage, increment_to, [&] { return 0.5 * (at.stress(along, normal) + at.stress(normal, along)); });
-}
+
+  std::size_t planned_records() const override {
+    return strain_records(stage.to_strain, stage.record_every, stage.cycles);
+  }
+
+  std::string misfit(int dimension) const override { return out_of_plane("plane", stage.plane, dimension); }
+
+  void drive(RunningTest& test) const override {
+    const std::string plane = !stage.plane.empty() ? stage.plane : test.dimension() == 2 ? "xy" : "xz";
+    const int along = axis_index(plane[0]), normal = axis_index(plane[1]);
+    const bool hold = stage.normal == SimpleShearStage::Normal::constant_stress;
+    records::Progress& at = test.run.progress;
+    at.axis = plane;
+    at.pressure = hold ? stage.normal_pressure : at.first_pressure;
+
+    std::vector<HeldStress> held;
+    if (hold && at.step == 0) {
+      test.expect_consolidated(normal_stress(normal), -at.first_stress(normal, normal), stage.normal_pressure);
+    }
+    if (hold) held.push_back({normal, normal, -stage.normal_pressure, test.held_scale(stage.normal_pressure)});
+    const auto increment_to = [&](double strain) {
+      const Matrix3& deformation = at.deformation;
+      Matrix3 gradient = Matrix3::Zero();
+      gradient(along, normal) = (strain - deformation(along, normal)) / deformation(normal, normal);
+      return test.apply(gradient, held, test.time_for(gradient(along, normal)), test.loading.held_tolerance);
+    };
+    drive_strain(test, stage, increment_to,
+                 [&] { return 0.5 * (at.stress(along, normal) + at.stress(normal, along)); });
+  }
+};
 
 }  // namespace
 
-StageKind simple_shear_kind() {
-  return KindOf<SimpleShearStage>{.name = "simple_shear",
-                                  .keys = entries,
-                                  .read = read,
-                                  .drive = drive,
-                                  .planned_records = planned_records,
-                                  .misfit = [](const SimpleShearStage& stage, int dimension) {
-                                    return out_of_plane("plane", stage.plane, dimension);
-                                  }};
-}
+std::unique_ptr<StageKind> simple_shear_kind() { return std::make_unique<SimpleShear>(); }
 
 }  // namespace rvelab::protocol

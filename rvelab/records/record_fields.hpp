@@ -1,5 +1,5 @@
 // The fields of records and of progress, once for every way in which they are kept: the datasets of R.h5 and the frames
-// of its journal. Each description is a template over the archive that writes or reads (rvelab/io/archive.hpp).
+// of its journal. Each description is a template over the archive that writes or reads (rvelab/io/hdf5/archive.hpp).
 #pragma once
 
 #include "rvelab/records/progress.hpp"

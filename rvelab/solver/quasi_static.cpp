@@ -7,8 +7,8 @@
 #include <limits>
 #include <vector>
 
+#include "rvelab/cell/pressure.hpp"
 #include "rvelab/error.hpp"
-#include "rvelab/solver/assembly/pressure.hpp"
 #include "rvelab/solver/loading/accuracy.hpp"
 #include "rvelab/solver/loading/strain_path.hpp"
 #include "rvelab/solver/rve_impl.hpp"

@@ -5,8 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "rvelab/cell/pressure.hpp"
 #include "rvelab/error.hpp"
-#include "rvelab/solver/assembly/pressure.hpp"
 #include "rvelab/solver/loading/step_times.hpp"
 #include "rvelab/solver/resting.hpp"
 #include "rvelab/solver/rve_impl.hpp"

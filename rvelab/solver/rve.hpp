@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "rvelab/solver/assembly/network.hpp"
-#include "rvelab/solver/assembly/workers.hpp"
 #include "rvelab/solver/loading/mixed_target.hpp"
 #include "rvelab/specimen/specimen.hpp"
+#include "rvelab/threads/workers.hpp"
 
 namespace rvelab {
 

@@ -1,5 +1,5 @@
-// What a whole path is judged by. Each measure is a number of a test that was run; means over repeats are compared,
-// since single paths of dense packings are chaotic.
+// Measures of whole paths. Each is a number of a test; means over repeats are compared, since single paths of dense
+// packings are chaotic.
 //
 // A new measure is a function in measures.cpp and its line in the table there; tables, files and figures follow.
 #pragma once

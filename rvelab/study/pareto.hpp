@@ -1,4 +1,4 @@
-// The Pareto front of runs: those that no other run beats at once in what they cost and in how far they are off.
+// The Pareto front of runs: no other run has both a lower cost and a lower error.
 #pragma once
 
 #include <vector>
@@ -9,8 +9,8 @@ struct Standing {
   double cost = 0, error = 0;
 };
 
-/// True for each standing that is on the front: no other one is at most as dear and at most as far off, and better in
-/// one of the two. Equal ones are all on it. One that is not finite is not on it and beats nothing.
+/// True for each standing on the front: no other one has at most its cost and at most its error, and less of one. Equal
+/// ones are all on it. Standings that are not finite are ignored.
 std::vector<bool> pareto_front(const std::vector<Standing>& standings);
 
 }  // namespace rvelab::study

@@ -9,7 +9,7 @@
 namespace rvelab::study {
 namespace {
 
-/// States met on the way. When there are more than twice as many as are asked for, every other one is let go of.
+/// States of the path. If there are more than twice as many as asked for, every other one is dropped.
 class Keeping {
  public:
   struct Met {
@@ -20,8 +20,8 @@ class Keeping {
 
   explicit Keeping(std::size_t count) : count_(count) {}
 
-  /// Looks at a moment: whether its state is that of a record, and of one to be kept.
-  void look(const protocol::Moment& moment) {
+  /// Keeps the state of a moment if it is that of a record, and of one to be kept.
+  void take(const protocol::Moment& moment) {
     const std::size_t records = moment.result.records.size();
     if (records == times_.size()) return;
     times_.resize(records, moment.time);
@@ -97,7 +97,7 @@ ReferencePath reference_path(const protocol::Protocol& protocol, const Specimen&
   Keeping keeping(count);
   watch.on_moment = [&, shown = watch.on_moment](const protocol::Moment& moment) {
     if (shown) shown(moment);
-    keeping.look(moment);
+    keeping.take(moment);
   };
   ReferencePath path;
   path.run = protocol::run_protocol(protocol, specimen, watch);

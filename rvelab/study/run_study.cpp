@@ -6,9 +6,9 @@
 #include <thread>
 
 #include "rvelab/error.hpp"
-#include "rvelab/solver/assembly/workers.hpp"
 #include "rvelab/study/processor_time.hpp"
 #include "rvelab/study/whole_path.hpp"
+#include "rvelab/threads/workers.hpp"
 
 namespace rvelab::study {
 namespace {

@@ -12,8 +12,8 @@
 
 namespace rvelab::study {
 
-/// Who watches a study and keeps its pieces. All functions may be empty. `keep` and `on_progress` come from any thread,
-/// one call at a time.
+/// Functions that a study calls to keep its pieces and to show progress. All functions may be empty. `keep` and
+/// `on_progress` come from any thread, one call at a time.
 struct Keeper {
   unsigned threads = 0;                                          ///< 0: one per core
   std::function<std::optional<Piece>(const std::string&)> kept;  ///< a piece that is there by its name

@@ -1,5 +1,5 @@
-// What the pieces of a study say of each grid point: errors of the increments, their cost, the Pareto fronts, and the
-// measures of the whole paths.
+// Results of each grid point: errors of the increments, their cost, the Pareto fronts, and the measures of the whole
+// paths.
 #pragma once
 
 #include <string>
@@ -19,7 +19,7 @@ struct ErrorSummary {
 /// exceed, and the largest.
 ErrorSummary summary_of(std::vector<double> errors);
 
-/// What the estimates of the errors are worth. NaN: there are none (dt > 0).
+/// Quality of the error estimates. NaN: there are none (dt > 0).
 struct EstimateSummary {
   double median_over_error = 0;  ///< of estimate over error
   double covered = 0;            ///< share of the increments whose error is at most the estimate

@@ -2,7 +2,7 @@
 #include <fstream>
 #include <utility>
 
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
 #include "tests/abi/host.hpp"
 #include "tests/abi/no_memory.hpp"
 #include "tests/folder.hpp"

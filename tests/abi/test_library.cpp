@@ -1,7 +1,7 @@
 // librvelab.so as a host finds it: what it exports and needs, a host of an older version, installation and the example.
 #include <sstream>
 
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
 #include "tests/abi/host.hpp"
 #include "tests/abi/shell.hpp"
 #include "tests/folder.hpp"

@@ -1,5 +1,5 @@
 // Memory that runs out at any request, of `new` and of malloc, in a host of its own (memory_host.cpp).
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
 #include "tests/abi/host.hpp"
 #include "tests/abi/shell.hpp"
 #include "tests/folder.hpp"

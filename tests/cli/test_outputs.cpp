@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
 #include "tests/child.hpp"
 #include "tests/cli/program.hpp"
 

@@ -1,7 +1,7 @@
 // rvelab pack as a user runs it.
 #include <nlohmann/json.hpp>
 
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
 #include "tests/cli/program.hpp"
 
 using namespace rvelab::test;

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/solver/rve.hpp"
 #include "tests/cli/program.hpp"

@@ -1,5 +1,5 @@
 // Stiffness, friction, damping and size far from ordinary ones.
-#include "rvelab/io/import_csv.hpp"
+#include "rvelab/io/import/csv.hpp"
 #include "tests/catch.hpp"
 #include "tests/extreme/specimens.hpp"
 

@@ -7,16 +7,15 @@
 #include <stdexcept>
 
 #include "rvelab/error.hpp"
-#include "rvelab/io/import_csv.hpp"
-#include "rvelab/io/recorded_test.hpp"
-#include "rvelab/io/seal.hpp"
-#include "rvelab/io/seal_file.hpp"
-#include "rvelab/io/specimen_file.hpp"
-#include "rvelab/io/states.hpp"
+#include "rvelab/io/hdf5/seal.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
+#include "rvelab/io/import/csv.hpp"
+#include "rvelab/io/journal/recorded_test.hpp"
+#include "rvelab/io/journal/states.hpp"
 #include "rvelab/keys/material_toml.hpp"
 #include "rvelab/measure/measures.hpp"
+#include "rvelab/pack/read_recipe.hpp"
 #include "rvelab/protocol/protocol.hpp"
-#include "rvelab/protocol/read_recipe.hpp"
 #include "rvelab/solver/rve.hpp"
 #include "rvelab/solver/snapshot.hpp"
 #include "tests/fuzz/hdf5_edits.hpp"
@@ -89,12 +88,10 @@ Answer check_protocol(View input) {
 Answer check_recipe(View input) {
   const std::string text = text_of(input);
   return answer([&] {
-    const protocol::RecipeFile recipe = protocol::parse_recipe(text, "fuzz.toml");
-    const auto again = [](const std::string& resolved) {
-      return protocol::parse_recipe(resolved, "fuzz.toml").resolved;
-    };
+    const pack::RecipeFile recipe = pack::parse_recipe(text, "fuzz.toml");
+    const auto again = [](const std::string& resolved) { return pack::parse_recipe(resolved, "fuzz.toml").resolved; };
     promise(again(recipe.resolved) == recipe.resolved, "a resolved recipe, read again, is another");
-    const protocol::RecipeFile member =
+    const pack::RecipeFile member =
         recipe.member(7, recipe.pressures.empty() ? std::nullopt : std::optional(recipe.pressures[0]));
     promise(again(member.resolved) == member.resolved, "a member of a family, read again, is another");
   });

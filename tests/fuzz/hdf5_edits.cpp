@@ -7,7 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "rvelab/io/hdf5_file.hpp"
+#include "rvelab/io/hdf5/file.hpp"
 
 namespace rvelab::fuzz {
 namespace {

@@ -4,8 +4,8 @@
 #include <cstring>
 
 #include "rvelab/io/crc32c.hpp"
-#include "rvelab/io/record_journal.hpp"
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
+#include "rvelab/io/journal/record_journal.hpp"
 #include "tests/fuzz/hdf5_edits.hpp"
 #include "tests/fuzz/seeds.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/solver/rve.hpp"
 #include "tests/fuzz/journals.hpp"
 #include "tests/io/random_specimen.hpp"

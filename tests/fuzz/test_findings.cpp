@@ -4,13 +4,14 @@
 #include <limits>
 
 #include "rvelab/error.hpp"
-#include "rvelab/io/import_csv.hpp"
-#include "rvelab/io/record_journal.hpp"
-#include "rvelab/io/seal.hpp"
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/seal.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
+#include "rvelab/io/import/csv.hpp"
+#include "rvelab/io/journal/record_journal.hpp"
 #include "rvelab/keys/material_toml.hpp"
+#include "rvelab/pack/read_recipe.hpp"
 #include "rvelab/protocol/protocol.hpp"
-#include "rvelab/protocol/read_recipe.hpp"
+#include "rvelab/protocol/stage_kind.hpp"
 #include "rvelab/solver/rve.hpp"
 #include "rvelab/solver/snapshot.hpp"
 #include "tests/catch.hpp"
@@ -55,7 +56,7 @@ TEST_CASE("a whole number that no double holds is a number like any other") {
   const std::string path = "[test]\nname = \"t\"\n[[stage]]\nkind = \"deformation\"\n";
   const protocol::Protocol far =
       protocol::parse_protocol(path + "gradients = [[9223372036854775807, 0, 0, 1]]\n", "t.toml");
-  CHECK(std::any_cast<const protocol::DeformationStage&>(far.stages.at(0).what).gradients.at(0)(0, 0) ==
+  CHECK(protocol::settings_of<protocol::DeformationStage>(far.stages.at(0)).gradients.at(0)(0, 0) ==
         9223372036854775808.0);
 }
 

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <string>
 
-#include "rvelab/io/hdf5_file.hpp"
+#include "rvelab/io/hdf5/file.hpp"
 
 namespace rvelab::test {
 

@@ -1,15 +1,16 @@
 // "Bitwise the same" has one meaning: what compare_files finds no difference in.
-#include "rvelab/io/compare.hpp"
+#include "rvelab/io/hdf5/compare.hpp"
 
 #include <bit>
 #include <cmath>
 #include <limits>
 
 #include "random_specimen.hpp"
-#include "rvelab/io/hdf5_file.hpp"
-#include "rvelab/io/record_file.hpp"
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/file.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
+#include "rvelab/io/journal/recorded_test.hpp"
 #include "tests/catch.hpp"
+#include "tests/io/record_files.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
@@ -22,7 +23,7 @@ std::string between(const std::vector<double>& a, const std::vector<double>& b, 
   const Folder folder;
   io::publish(folder / "a.h5", [&](io::Hdf5File& file) { file.write<double>("/d", a, shape, "m"); });
   io::publish(folder / "b.h5", [&](io::Hdf5File& file) { file.write<double>("/d", b, shape, "m"); });
-  return io::first_difference(folder / "a.h5", folder / "b.h5").value_or("");
+  return test::first_difference(folder / "a.h5", folder / "b.h5").value_or("");
 }
 
 }  // namespace
@@ -30,9 +31,9 @@ std::string between(const std::vector<double>& a, const std::vector<double>& b, 
 TEST_CASE("files of the same content are equal, whatever their provenance says") {
   const Folder folder;
   records::TestResult result = random_result(1);
-  io::write_records(result, random_specimen(1), "one", folder / "a.h5");
+  test::write_records(result, random_specimen(1), "one", folder / "a.h5");
   result.wall_seconds = 3;
-  io::write_records(result, random_specimen(1), "another", folder / "b.h5");
+  test::write_records(result, random_specimen(1), "another", folder / "b.h5");
   const auto same = io::compare_files(folder / "a.h5", folder / "b.h5");
   CHECK(!same.difference);
   std::size_t datasets = 0;
@@ -49,7 +50,7 @@ TEST_CASE("every field of a specimen counts, down to its last bit") {
   io::write_specimen(specimen, folder / "a.h5");
   const auto difference = [&](const Specimen& changed) {
     io::write_specimen(changed, folder / "b.h5");
-    return io::first_difference(folder / "a.h5", folder / "b.h5").value_or("");
+    return test::first_difference(folder / "a.h5", folder / "b.h5").value_or("");
   };
   CHECK(difference(specimen).empty());
   const auto one_bit = [](double& value) { value = std::bit_cast<double>(std::bit_cast<std::uint64_t>(value) ^ 1); };
@@ -90,8 +91,8 @@ TEST_CASE("names, kinds, types, shapes and attributes count too") {
   const auto difference = [&](auto fill_a, auto fill_b) {
     io::publish(folder / "a.h5", fill_a);
     io::publish(folder / "b.h5", fill_b);
-    const auto forth = io::first_difference(folder / "a.h5", folder / "b.h5");
-    CHECK(forth.has_value() == io::first_difference(folder / "b.h5", folder / "a.h5").has_value());
+    const auto forth = test::first_difference(folder / "a.h5", folder / "b.h5");
+    CHECK(forth.has_value() == test::first_difference(folder / "b.h5", folder / "a.h5").has_value());
     return forth.value_or("");
   };
   const auto plain = [&](io::Hdf5File& file) { file.write<double>("/g/d", {&number, 1}, {}, "m"); };
@@ -133,6 +134,6 @@ TEST_CASE("names, kinds, types, shapes and attributes count too") {
 TEST_CASE("what is no HDF5 file cannot be compared") {
   const Folder folder;
   write_bytes(folder / "a.h5", "text");
-  CHECK_THAT(input_error([&] { io::first_difference(folder / "a.h5", folder / "b.h5"); }),
+  CHECK_THAT(input_error([&] { test::first_difference(folder / "a.h5", folder / "b.h5"); }),
              Contains("not an HDF5 file"));
 }

@@ -1,10 +1,10 @@
 // Files of earlier versions of the format, as tests/data/compat/make wrote them, are read by this one.
 #include <cmath>
 
-#include "rvelab/io/hdf5_file.hpp"
-#include "rvelab/io/recorded_test.hpp"
-#include "rvelab/io/schema.hpp"
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/file.hpp"
+#include "rvelab/io/hdf5/schema.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
+#include "rvelab/io/journal/recorded_test.hpp"
 #include "rvelab/solver/rve.hpp"
 #include "tests/catch.hpp"
 #include "tests/folder.hpp"

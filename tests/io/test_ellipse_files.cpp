@@ -3,12 +3,12 @@
 #include <Eigen/Geometry>
 
 #include "random_specimen.hpp"
-#include "rvelab/io/export_csv.hpp"
-#include "rvelab/io/export_lammps.hpp"
-#include "rvelab/io/export_xdmf.hpp"
-#include "rvelab/io/hdf5_file.hpp"
-#include "rvelab/io/import_csv.hpp"
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/export/csv.hpp"
+#include "rvelab/io/export/lammps.hpp"
+#include "rvelab/io/export/xdmf.hpp"
+#include "rvelab/io/hdf5/file.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
+#include "rvelab/io/import/csv.hpp"
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/solver/rve.hpp"
 #include "tests/catch.hpp"

@@ -6,21 +6,22 @@
 #include <sstream>
 
 #include "random_specimen.hpp"
-#include "rvelab/io/compare.hpp"
-#include "rvelab/io/export_csv.hpp"
-#include "rvelab/io/export_lammps.hpp"
-#include "rvelab/io/export_xdmf.hpp"
-#include "rvelab/io/hdf5_file.hpp"
-#include "rvelab/io/import_csv.hpp"
-#include "rvelab/io/material_text.hpp"
-#include "rvelab/io/record_file.hpp"
-#include "rvelab/io/schema.hpp"
-#include "rvelab/io/specimen_file.hpp"
-#include "rvelab/io/states.hpp"
+#include "rvelab/io/export/csv.hpp"
+#include "rvelab/io/export/lammps.hpp"
+#include "rvelab/io/export/material_text.hpp"
+#include "rvelab/io/export/xdmf.hpp"
+#include "rvelab/io/hdf5/compare.hpp"
+#include "rvelab/io/hdf5/file.hpp"
+#include "rvelab/io/hdf5/schema.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
+#include "rvelab/io/import/csv.hpp"
+#include "rvelab/io/journal/recorded_test.hpp"
+#include "rvelab/io/journal/states.hpp"
 #include "rvelab/keys/material_toml.hpp"
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/solver/rve.hpp"
 #include "tests/catch.hpp"
+#include "tests/io/record_files.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
@@ -75,7 +76,7 @@ TEST_CASE("a packing goes through CSV and comes back bit for bit where its frame
     const Specimen specimen = packing(name);
     io::write_specimen(specimen, folder / "a.h5");
     io::write_specimen(through_csv(folder, specimen), folder / "b.h5");
-    CHECK(io::first_difference(folder / "a.h5", folder / "b.h5").value_or("") == "");
+    CHECK(test::first_difference(folder / "a.h5", folder / "b.h5").value_or("") == "");
   }
 }
 
@@ -431,7 +432,7 @@ TEST_CASE("the states of a file are its snapshots in the order of their records,
   io::write_specimen(end, folder / "s.h5");
   REQUIRE(io::read_states(folder / "s.h5").size() == 1);
   const records::TestResult result = random_result(4);
-  io::write_records(result, end, "", folder / "r.h5");
+  test::write_records(result, end, "", folder / "r.h5");
   const auto without = io::read_states(folder / "r.h5");
   REQUIRE(without.size() == 1);
   CHECK(without[0].record == 23);

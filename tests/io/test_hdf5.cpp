@@ -1,6 +1,6 @@
 // What HDF5's own library makes of our files, and we of its: nothing leads out of a file, nothing is missing in
 // silence.
-#include "rvelab/io/hdf5_file.hpp"
+#include "rvelab/io/hdf5/file.hpp"
 
 #include <hdf5.h>
 
@@ -8,13 +8,12 @@
 #include <filesystem>
 
 #include "random_specimen.hpp"
-#include "rvelab/io/compare.hpp"
-#include "rvelab/io/record_file.hpp"
-#include "rvelab/io/recorded_test.hpp"
-#include "rvelab/io/seal.hpp"
-#include "rvelab/io/seal_file.hpp"
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/compare.hpp"
+#include "rvelab/io/hdf5/seal.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
+#include "rvelab/io/journal/recorded_test.hpp"
 #include "tests/catch.hpp"
+#include "tests/io/record_files.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
@@ -192,7 +191,7 @@ TEST_CASE("a dataset of the file's own version that is missing is refused by nam
   const Folder folder;
   const io::SpecimenOrigin origin{"[pack]\n", 1, 2, 0.5};
   io::write_specimen(random_specimen(6), folder / "s.h5", &origin);
-  io::write_records(random_result(6), random_specimen(7), "[test]\n", folder / "r.h5");
+  test::write_records(random_result(6), random_specimen(7), "[test]\n", folder / "r.h5");
   for (const std::string name : {"s.h5", "r.h5"}) {
     const auto read = [&](const std::string& path) {
       return input_error([&] {

@@ -1,5 +1,5 @@
 // Import: the state in the files is the state of the specimen, and files that do not belong together are refused.
-#include "rvelab/io/import_csv.hpp"
+#include "rvelab/io/import/csv.hpp"
 
 #include <cmath>
 #include <nlohmann/json.hpp>

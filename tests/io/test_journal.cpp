@@ -1,5 +1,5 @@
 // The journal: what was written is read, and of what was cut or changed the longest valid prefix.
-#include "rvelab/io/journal.hpp"
+#include "rvelab/io/journal/journal.hpp"
 
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -8,8 +8,8 @@
 
 #include "random_specimen.hpp"
 #include "rvelab/io/crc32c.hpp"
-#include "rvelab/io/hdf5_file.hpp"
-#include "rvelab/io/record_journal.hpp"
+#include "rvelab/io/hdf5/file.hpp"
+#include "rvelab/io/journal/record_journal.hpp"
 #include "tests/catch.hpp"
 
 using namespace rvelab;

@@ -8,10 +8,11 @@
 #include <nlohmann/json.hpp>
 
 #include "random_specimen.hpp"
-#include "rvelab/io/record_file.hpp"
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
+#include "rvelab/io/journal/recorded_test.hpp"
 #include "rvelab/io/version.hpp"
 #include "tests/catch.hpp"
+#include "tests/io/record_files.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
@@ -121,7 +122,7 @@ TEST_CASE("a record file, inspected, tells its protocol and shows its end state;
   result.stages = {"shear"};
   result.records.resize(12);
   Specimen end = io::read_specimen(folder / "s.h5");
-  io::write_records(result, end, "", folder / "r.h5");
+  test::write_records(result, end, "", folder / "r.h5");
   const auto found = nlohmann::json::parse(run(folder, "inspect --json " + (folder / "r.h5")).output);
   CHECK(found["kind"] == "records");
   CHECK(found["records"] == 12);

@@ -1,16 +1,17 @@
 // Record files: the records bitwise, the end state as a specimen, and a layout that is the documented one.
-#include "rvelab/io/record_file.hpp"
+#include "rvelab/io/journal/recorded_test.hpp"
 
 #include <map>
 #include <sstream>
 
 #include "random_specimen.hpp"
-#include "rvelab/io/hdf5_file.hpp"
-#include "rvelab/io/record_journal.hpp"
-#include "rvelab/io/recorded_test.hpp"
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/file.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
+#include "rvelab/io/journal/record_journal.hpp"
+#include "rvelab/io/journal/recorded_test.hpp"
 #include "rvelab/io/version.hpp"
 #include "tests/catch.hpp"
+#include "tests/io/record_files.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
@@ -22,12 +23,12 @@ TEST_CASE("records and end state come back from their file bit for bit") {
   for (unsigned seed = 1; seed <= 4; ++seed) {
     const records::TestResult written = random_result(seed);
     const Specimen end = random_specimen(seed);
-    io::write_records(written, end, protocol, folder / "r.h5");
-    const records::TestResult read = io::read_records(folder / "r.h5");
+    test::write_records(written, end, protocol, folder / "r.h5");
+    const records::TestResult read = test::read_records(folder / "r.h5");
     CHECK(read.records.size() == 23);
     CHECK(differences(written, read) == 0);
     CHECK(differences(end, io::read_specimen(folder / "r.h5")) == 0);
-    CHECK(io::read_protocol_text(folder / "r.h5") == protocol);
+    CHECK(test::read_protocol_text(folder / "r.h5") == protocol);
   }
   CHECK(io::file_kind(folder / "r.h5") == io::FileKind::records);
   CHECK(differences(random_result(1), random_result(2)) > 200);
@@ -35,22 +36,22 @@ TEST_CASE("records and end state come back from their file bit for bit") {
 
 TEST_CASE("a test without records is a file all the same") {
   const Folder folder;
-  io::write_records(random_result(5, 0), random_specimen(5), "", folder / "r.h5");
-  CHECK(io::read_records(folder / "r.h5").records.empty());
+  test::write_records(random_result(5, 0), random_specimen(5), "", folder / "r.h5");
+  CHECK(test::read_records(folder / "r.h5").records.empty());
 }
 
 TEST_CASE("a specimen file has no records, and says so") {
   const Folder folder;
   io::write_specimen(random_specimen(6), folder / "s.h5");
   CHECK(io::file_kind(folder / "s.h5") == io::FileKind::specimen);
-  CHECK_THAT(input_error([&] { io::read_records(folder / "s.h5"); }), Contains("s.h5") && Contains("no records"));
+  CHECK_THAT(input_error([&] { test::read_records(folder / "s.h5"); }), Contains("s.h5") && Contains("no records"));
 }
 
 TEST_CASE("provenance names the version and the compiler, and neither a date nor a host") {
   const Folder folder;
   records::TestResult result = random_result(7);
-  io::write_records(result, random_specimen(7), "", folder / "a.h5");
-  io::write_records(result, random_specimen(7), "", folder / "b.h5");
+  test::write_records(result, random_specimen(7), "", folder / "a.h5");
+  test::write_records(result, random_specimen(7), "", folder / "b.h5");
   CHECK(bytes_of(folder / "a.h5") == bytes_of(folder / "b.h5"));
   const auto file = io::Hdf5File::open(folder / "a.h5");
   CHECK(file.read_text("/provenance/version") == std::vector<std::string>{io::version});
@@ -98,7 +99,7 @@ TEST_CASE("the README lists exactly the datasets of a file, with their types, sh
   const Folder folder;
   io::write_specimen(random_specimen(8), folder / "s.h5");
   // The end state of another file stands for a snapshot.
-  io::write_records(random_result(8), random_specimen(8), "", folder / "whole.h5");
+  test::write_records(random_result(8), random_specimen(8), "", folder / "whole.h5");
   io::RecordedTest test = io::read_recorded_test(folder / "whole.h5");
   test.complete = false;
   test.checkpoint = random_checkpoint(8);
@@ -155,14 +156,14 @@ TEST_CASE("the README lists exactly the datasets of a file, with their types, sh
   CHECK(io::Hdf5File::open(folder / "s.h5").attributes() == attributes);
   CHECK(io::Hdf5File::open(folder / "r.h5").attributes() == attributes);
 
-  io::write_records(random_result(8), random_specimen(8), "", folder / "c.h5");
+  test::write_records(random_result(8), random_specimen(8), "", folder / "c.h5");
   for (const auto& entry : io::Hdf5File::open(folder / "c.h5").entries())
     CHECK(!entry.name.starts_with("/checkpoint/"));
 }
 
 TEST_CASE("an incomplete test comes back with its checkpoint and its snapshots bit for bit") {
   const Folder folder;
-  io::write_records(random_result(9), random_specimen(9), "[test]", folder / "whole.h5");
+  test::write_records(random_result(9), random_specimen(9), "[test]", folder / "whole.h5");
   CHECK(io::read_recorded_test(folder / "whole.h5").complete);
   io::RecordedTest test = io::read_recorded_test(folder / "whole.h5");
   test.complete = false;
@@ -186,5 +187,5 @@ TEST_CASE("an incomplete test comes back with its checkpoint and its snapshots b
   REQUIRE(read.snapshots.size() == 1);
   CHECK(read.snapshots[0].record == 4);
   CHECK(differences(random_specimen(11), io::read_snapshot(read.snapshots[0])) == 0);
-  CHECK(io::read_records(folder / "whole.h5").probes.size() == 5);
+  CHECK(test::read_records(folder / "whole.h5").probes.size() == 5);
 }

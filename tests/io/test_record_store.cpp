@@ -1,5 +1,5 @@
 // The store of a running test: what it refuses, what it keeps, what it publishes and when.
-#include "rvelab/io/record_store.hpp"
+#include "rvelab/io/journal/record_store.hpp"
 
 #include <sys/mount.h>
 #include <sys/resource.h>
@@ -8,10 +8,11 @@
 #include <filesystem>
 
 #include "random_specimen.hpp"
-#include "rvelab/io/hdf5_file.hpp"
-#include "rvelab/io/record_file.hpp"
+#include "rvelab/io/hdf5/file.hpp"
+#include "rvelab/io/journal/recorded_test.hpp"
 #include "same_contents.hpp"
 #include "tests/catch.hpp"
+#include "tests/io/record_files.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
@@ -96,7 +97,7 @@ TEST_CASE("a finished test is one complete file and nothing beside it") {
   other.specimen.grains.radius[3] = -other.specimen.grains.radius[3];
   CHECK_THAT(input_error([&] { io::RecordStore(folder / "r.h5", other, io::Existing::resume); }),
              Contains("another specimen"));
-  CHECK(differences(io::read_records(folder / "r.h5"), result) == 0);
+  CHECK(differences(test::read_records(folder / "r.h5"), result) == 0);
 }
 
 TEST_CASE("what is there is refused without --force or --resume, and by a name for both") {
@@ -125,7 +126,7 @@ TEST_CASE("two writers: the second is refused at once, and the first goes on") {
     CHECK_THAT(input_error([&] { io::RecordStore(folder / "r.h5", start, existing); }), Contains("another rvelab"));
   }
   first.put(random_result(2).records[1]);
-  CHECK(io::read_records(folder / "r.h5").records.size() == 2);
+  CHECK(test::read_records(folder / "r.h5").records.size() == 2);
 }
 
 TEST_CASE("a killed test is gone on with from its last checkpoint, with all its records kept") {
@@ -135,7 +136,7 @@ TEST_CASE("a killed test is gone on with from its last checkpoint, with all its 
     const std::string path = folder / (every == at_once ? "a.h5" : "b.h5");
     record_some(path, every);
     const records::TestResult written = random_result(3, 12);
-    CHECK(io::read_records(path).records.size() == 12);
+    CHECK(test::read_records(path).records.size() == 12);
     if (every == at_once) CHECK(!io::read_recorded_test(path).complete);
     io::RecordStore store(path, start, io::Existing::resume, never);
     CHECK(store.test().result.records.size() == 12);
@@ -148,7 +149,7 @@ TEST_CASE("a killed test is gone on with from its last checkpoint, with all its 
     for (std::size_t k = from; k < 12; ++k) store.put(written.records[k]);
     CHECK(std::filesystem::file_size(path + ".journal") == size);
     store.put(random_result(9).records[0]);
-    CHECK(io::read_records(path).records.size() == 13);
+    CHECK(test::read_records(path).records.size() == 13);
   }
 }
 
@@ -160,7 +161,7 @@ TEST_CASE("if other bits are computed than before, what was made from there on i
   store.put(written.records[0]);
   store.put(random_result(9).records[0]);
   CHECK(store.test().snapshots.empty());
-  CHECK(io::read_records(folder / "r.h5").records.size() == 2);
+  CHECK(test::read_records(folder / "r.h5").records.size() == 2);
 }
 
 TEST_CASE("without its journal, or with a damaged one, a test goes on from its published file") {
@@ -174,7 +175,7 @@ TEST_CASE("without its journal, or with a damaged one, a test goes on from its p
     if (damage == "gone") std::filesystem::remove(path + ".journal");
     if (damage == "cut") write_bytes(path + ".journal", journal.substr(0, journal.size() * 2 / 3));
     if (damage == "only its header") write_bytes(path + ".journal", journal.substr(0, 16));
-    CHECK(io::read_records(path).records.size() == 12);
+    CHECK(test::read_records(path).records.size() == 12);
     {
       io::RecordStore store(path, start, io::Existing::resume, never);
       REQUIRE(store.checkpoint());
@@ -183,7 +184,7 @@ TEST_CASE("without its journal, or with a damaged one, a test goes on from its p
     }
     // Now the journal holds everything again.
     std::filesystem::remove(path);
-    CHECK(io::read_records(path).records.size() == 12);
+    CHECK(test::read_records(path).records.size() == 12);
     CHECK(differences(io::read_recorded_test(path).checkpoint, checkpoint_after(12)) == 0);
   }
   // Damaged at its start, with nothing published: said, and not thrown away.

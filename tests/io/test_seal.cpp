@@ -1,6 +1,6 @@
 // Damaged files: what rvelab writes carries a checksum that is held against every bit before anything reads it; files
 // of before 1.4 are read with every address held against their end.
-#include "rvelab/io/seal.hpp"
+#include "rvelab/io/hdf5/seal.hpp"
 
 #include <hdf5.h>
 
@@ -9,12 +9,12 @@
 #include <random>
 
 #include "random_specimen.hpp"
-#include "rvelab/io/compare.hpp"
-#include "rvelab/io/hdf5_file.hpp"
-#include "rvelab/io/record_file.hpp"
-#include "rvelab/io/record_journal.hpp"
-#include "rvelab/io/seal_file.hpp"
+#include "rvelab/io/hdf5/compare.hpp"
+#include "rvelab/io/hdf5/file.hpp"
+#include "rvelab/io/journal/record_journal.hpp"
+#include "rvelab/io/journal/recorded_test.hpp"
 #include "tests/catch.hpp"
+#include "tests/io/record_files.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
@@ -23,7 +23,7 @@ using Catch::Matchers::Contains;
 namespace {
 
 void write_random_records(const std::string& path) {
-  io::write_records(random_result(2), random_specimen(3), "[test]\nname = \"any\"\n", path);
+  test::write_records(random_result(2), random_specimen(3), "[test]\nname = \"any\"\n", path);
 }
 
 /// As h5py leaves a file that it opened for writing: HDF5 cuts off what stands behind its own end.
@@ -74,7 +74,7 @@ TEST_CASE("every single flipped bit of a specimen or record file is refused befo
   for (const std::string name : {"s.h5", "r.h5"}) {
     const std::string whole = bytes_of(folder / name);
     const auto read = [&] {
-      name == "s.h5" ? void(io::read_specimen(folder / "x.h5")) : void(io::read_records(folder / "x.h5"));
+      name == "s.h5" ? void(io::read_specimen(folder / "x.h5")) : void(test::read_records(folder / "x.h5"));
     };
     for (int k = 0; k < 300; ++k) {
       // Every fourth in the last bytes, where the checksum itself stands.
@@ -158,7 +158,7 @@ TEST_CASE("a file that another program changed is refused, and taken over when i
   specimen.solver.skin = 0.125;
   CHECK(differences(io::read_specimen(folder / "new.h5"), specimen) == 0);
   io::write_specimen(specimen, folder / "straight.h5");
-  CHECK(!io::first_difference(folder / "new.h5", folder / "straight.h5"));
+  CHECK(!test::first_difference(folder / "new.h5", folder / "straight.h5"));
   // What no RVE can be made of would only be refused when it is used.
   for (const double skin : {-1.0, std::numeric_limits<double>::quiet_NaN()}) {
     io::write_specimen(specimen, folder / "edited.h5");
@@ -183,8 +183,8 @@ TEST_CASE("a record file of an earlier version is sealed with all that it holds"
   const io::SealedFile sealed = io::seal_file(old, folder / "r.h5");
   CHECK(sealed.kind == io::FileKind::records);
   CHECK(io::Hdf5File::open(folder / "r.h5").sealed());
-  CHECK(!io::first_difference(old, folder / "r.h5"));
-  CHECK(io::read_protocol_text(folder / "r.h5") == io::read_protocol_text(old));
+  CHECK(!test::first_difference(old, folder / "r.h5"));
+  CHECK(test::read_protocol_text(folder / "r.h5") == test::read_protocol_text(old));
 }
 
 TEST_CASE("a damaged file of before 1.4 is refused or read, and harms nobody") {

@@ -7,13 +7,14 @@
 #include <map>
 
 #include "random_specimen.hpp"
-#include "rvelab/io/archive.hpp"
-#include "rvelab/io/compare.hpp"
-#include "rvelab/io/digest.hpp"
-#include "rvelab/io/schema.hpp"
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/archive.hpp"
+#include "rvelab/io/hdf5/compare.hpp"
+#include "rvelab/io/hdf5/digest.hpp"
+#include "rvelab/io/hdf5/schema.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/solver/snapshot.hpp"
 #include "tests/catch.hpp"
+#include "tests/io/record_files.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
@@ -266,7 +267,7 @@ TEST_CASE("one bit of any one field is seen by comparison, digest, snapshot and 
     CHECK(differing_fields(from_bytes(bytes), changed).empty());
 
     io::write_specimen(changed, folder / "b.h5");
-    CHECK_THAT(io::first_difference(folder / "a.h5", folder / "b.h5").value_or(""),
+    CHECK_THAT(test::first_difference(folder / "a.h5", folder / "b.h5").value_or(""),
                Contains("/" + change.path()) && Contains("differs"));
     Specimen read;
     const std::string refusal = input_error([&] { read = io::read_specimen(folder / "b.h5"); });
@@ -301,8 +302,8 @@ TEST_CASE("every field keeps every double: NaNs with what they carry, -0, infini
     io::write_specimen(written, folder / "b.h5");
     io::write_specimen(zero, folder / "c.h5");
     CHECK(differing_fields(io::read_specimen(folder / "a.h5"), written).empty());
-    CHECK(!io::first_difference(folder / "a.h5", folder / "b.h5"));
-    CHECK_THAT(io::first_difference(folder / "a.h5", folder / "c.h5").value_or(""), Contains("differs"));
+    CHECK(!test::first_difference(folder / "a.h5", folder / "b.h5"));
+    CHECK_THAT(test::first_difference(folder / "a.h5", folder / "c.h5").value_or(""), Contains("differs"));
   }
 }
 

@@ -1,12 +1,12 @@
 // Specimen files: out and back bitwise, whole or not at all, and a clear word for what is no specimen.
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
 
 #include <sys/stat.h>
 
 #include "random_specimen.hpp"
-#include "rvelab/io/hdf5_file.hpp"
-#include "rvelab/io/record_file.hpp"
-#include "rvelab/io/schema.hpp"
+#include "rvelab/io/hdf5/file.hpp"
+#include "rvelab/io/hdf5/schema.hpp"
+#include "rvelab/io/journal/recorded_test.hpp"
 #include "tests/catch.hpp"
 
 using namespace rvelab;

@@ -11,10 +11,10 @@
 #include <random>
 #include <thread>
 
-#include "rvelab/io/import_csv.hpp"
-#include "rvelab/io/journal.hpp"
-#include "rvelab/io/recorded_test.hpp"
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
+#include "rvelab/io/import/csv.hpp"
+#include "rvelab/io/journal/journal.hpp"
+#include "rvelab/io/journal/recorded_test.hpp"
 #include "tests/catch.hpp"
 #include "tests/child.hpp"
 #include "tests/io/random_specimen.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "rvelab/error.hpp"
-#include "rvelab/io/import_csv.hpp"
+#include "rvelab/io/import/csv.hpp"
 #include "rvelab/measure/tangent.hpp"
 #include "tests/catch.hpp"
 #include "tests/measure/reference_network.hpp"

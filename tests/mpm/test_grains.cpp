@@ -3,7 +3,7 @@
 #include <map>
 #include <sstream>
 
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
 #include "tests/catch.hpp"
 #include "tests/child.hpp"
 #include "tests/folder.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "rvelab/io/import_csv.hpp"
+#include "rvelab/io/import/csv.hpp"
 #include "rvelab/solver/rve.hpp"
 #include "tests/oracle/reference_table.hpp"
 

@@ -9,7 +9,7 @@
 #include <random>
 #include <string>
 
-#include "rvelab/io/import_csv.hpp"
+#include "rvelab/io/import/csv.hpp"
 #include "rvelab/solver/rve.hpp"
 #include "tests/catch.hpp"
 

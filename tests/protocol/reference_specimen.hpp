@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "rvelab/io/import_csv.hpp"
+#include "rvelab/io/import/csv.hpp"
 
 namespace rvelab {
 

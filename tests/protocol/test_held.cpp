@@ -4,8 +4,8 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/measure/measures.hpp"
+#include "rvelab/pack/read_recipe.hpp"
 #include "rvelab/pack/search.hpp"
-#include "rvelab/protocol/read_recipe.hpp"
 #include "rvelab/protocol/run.hpp"
 #include "tests/catch.hpp"
 
@@ -45,7 +45,7 @@ rolling_stiffness = 1
 rolling_friction = 0.05
 )";
   Workers workers(1);
-  return pack::pack(protocol::parse_recipe(recipe, "sand.toml", {"pack.seed=" + std::to_string(seed)}).recipe, workers)
+  return pack::pack(pack::parse_recipe(recipe, "sand.toml", {"pack.seed=" + std::to_string(seed)}).recipe, workers)
       .specimen;
 }
 

@@ -8,9 +8,10 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "rvelab/io/record_file.hpp"
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
+#include "rvelab/io/journal/recorded_test.hpp"
 #include "tests/catch.hpp"
+#include "tests/io/record_files.hpp"
 #include "tests/protocol/reference_specimen.hpp"
 
 using namespace rvelab;
@@ -72,7 +73,7 @@ TEST_CASE("A run prints its records as arrays by name and writes the same ones")
   CHECK(printed["pressure_Pa"] == 20e3);
   CHECK(printed["wall_s"].get<double>() > 0);
   CHECK(printed["grain_steps"].get<double>() > 0);
-  const records::TestResult written = io::read_records(folder.file("R.h5"));
+  const records::TestResult written = test::read_records(folder.file("R.h5"));
   REQUIRE(written.records.size() == 5);
   for (std::size_t k = 0; k < 5; ++k) {
     CHECK(printed["records"]["strain"][k].get<double>() == written.records[k].strain);
@@ -84,7 +85,7 @@ TEST_CASE("A run prints its records as arrays by name and writes the same ones")
     }
   }
   // The protocol that was run is kept, --set included, and can be run again.
-  std::ofstream(folder.file("again.toml")) << io::read_protocol_text(folder.file("R.h5"));
+  std::ofstream(folder.file("again.toml")) << test::read_protocol_text(folder.file("R.h5"));
   const Outcome again =
       rvelab_program("run " + folder.file("again.toml") + " --specimen " + folder.specimen() + " --json");
   INFO(again.text);
@@ -121,8 +122,8 @@ TEST_CASE("A calibration prints the words that other programs read and writes on
   CHECK(printed["per_pressure"][0]["pressure_Pa"] == 15e3);
   CHECK(printed["per_pressure"][0]["records"] == 7);
   CHECK(printed["friction_angle_deg"].get<double>() > 15);
-  CHECK(io::read_records(folder.file("R_15000.h5")).pressure == 15e3);
-  CHECK(io::read_records(folder.file("R_20000.h5")).records.size() == 7);
+  CHECK(test::read_records(folder.file("R_15000.h5")).pressure == 15e3);
+  CHECK(test::read_records(folder.file("R_20000.h5")).records.size() == 7);
 }
 
 TEST_CASE("A user's mistake is one line on standard error and exit code 2") {

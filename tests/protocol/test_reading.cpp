@@ -3,8 +3,9 @@
 #include <filesystem>
 
 #include "rvelab/error.hpp"
+#include "rvelab/pack/read_recipe.hpp"
 #include "rvelab/protocol/protocol.hpp"
-#include "rvelab/protocol/read_recipe.hpp"
+#include "rvelab/protocol/stage_kind.hpp"
 #include "tests/catch.hpp"
 
 using namespace rvelab;
@@ -42,7 +43,7 @@ std::size_t lines(const std::string& text) {
 
 template <class What>
 const What& stage_of(const protocol::Protocol& protocol, std::size_t number) {
-  return std::any_cast<const What&>(protocol.stages.at(number).what);
+  return protocol::settings_of<What>(protocol.stages.at(number));
 }
 
 }  // namespace
@@ -240,7 +241,7 @@ TEST_CASE("Every protocol that comes with rvelab is one, and opens with what it 
   for (const auto& entry : std::filesystem::directory_iterator(RVELAB_SOURCE_DIR "/protocols")) {
     if (entry.is_directory()) continue;  // studies
     INFO(entry.path());
-    if (protocol::is_recipe(entry.path().string())) continue;  // read in test_recipe.cpp
+    if (pack::is_recipe(entry.path().string())) continue;  // read in test_recipe.cpp
     CHECK_NOTHROW(protocol::read_protocol(entry.path().string()));
     ++found;
   }

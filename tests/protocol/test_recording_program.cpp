@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "rvelab/io/journal.hpp"
-#include "rvelab/io/recorded_test.hpp"
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
+#include "rvelab/io/journal/journal.hpp"
+#include "rvelab/io/journal/recorded_test.hpp"
 #include "tests/catch.hpp"
 #include "tests/child.hpp"
 #include "tests/io/random_specimen.hpp"

@@ -3,6 +3,7 @@
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <typeinfo>
 
 #include "rvelab/protocol/stage_kinds.hpp"
 #include "tests/catch.hpp"
@@ -11,22 +12,23 @@ using namespace rvelab;
 using Catch::Matchers::Contains;
 
 TEST_CASE("each kind of stage stands in the table once, with keys of its own and its chapter in the README") {
-  std::ifstream readme(RVELAB_SOURCE_DIR "/rvelab/protocol/README.md");
+  std::ifstream readme(RVELAB_SOURCE_DIR "/protocols/README.md");
   std::set<std::string> lines, names;
   for (std::string line; std::getline(readme, line);) lines.insert(line);
-  for (const protocol::StageKind& kind : protocol::stage_kinds()) {
-    CAPTURE(kind.name);
-    CHECK(names.insert(kind.name).second);
-    CHECK(&protocol::kind_named(kind.name) == &kind);
-    CHECK(lines.contains("### [[stage]] kind = \"" + kind.name + "\""));
-    CHECK(!kind.keys.empty());
-    const std::string table = "stage." + kind.name;
-    for (const keys::TableKey& entry : kind.keys) {
+  for (protocol::MakeStage* const make : protocol::stage_kinds) {
+    const auto kind = make();
+    const std::string name = kind->name(), table = "stage." + name;
+    CAPTURE(name);
+    CHECK(names.insert(name).second);
+    CHECK(typeid(*protocol::stage_of_kind(name)) == typeid(*kind));
+    CHECK(lines.contains("### [[stage]] kind = \"" + name + "\""));
+    CHECK(!kind->keys().empty());
+    for (const keys::TableKey& entry : kind->keys()) {
       CAPTURE(entry.key.dotted());
       CHECK((entry.key.table == table || entry.key.table.starts_with(table + ".")));
     }
   }
-  CHECK_THROWS_AS(protocol::kind_named("compresion"), std::logic_error);
+  CHECK_THROWS_AS(protocol::stage_of_kind("compresion"), std::logic_error);
 }
 
 TEST_CASE("a stage says what calibration may read from its records") {

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <span>
 
-#include "rvelab/io/seal.hpp"
+#include "rvelab/io/hdf5/seal.hpp"
 #include "rvelab/keys/regular_file.hpp"
 #include "tools/mpm/tensors.hpp"
 

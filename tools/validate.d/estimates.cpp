@@ -25,7 +25,7 @@
 #include <vector>
 
 #include "rvelab/grains/uniform.hpp"
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/pack/search.hpp"
 #include "rvelab/protocol/drive.hpp"
 #include "rvelab/solver/rve.hpp"

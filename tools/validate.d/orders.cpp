@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "rvelab/error.hpp"
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/solver/rve.hpp"
 
 using namespace rvelab;

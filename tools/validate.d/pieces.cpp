@@ -23,7 +23,7 @@
 #include <thread>
 #include <vector>
 
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/solver/rve.hpp"
 #include "rvelab/study/processor_time.hpp"
 

@@ -8,9 +8,9 @@
 
 #include "rvelab/solver/assembly/buffer.hpp"
 #include "rvelab/solver/assembly/neighbour_list.hpp"
-#include "rvelab/solver/assembly/workers.hpp"
 #include "rvelab/solver/kernels/configuration.hpp"
 #include "rvelab/specimen/specimen.hpp"
+#include "rvelab/threads/workers.hpp"
 
 namespace rvelab {
 

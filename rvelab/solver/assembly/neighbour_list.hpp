@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "rvelab/cell/cell.hpp"
-#include "rvelab/solver/assembly/workers.hpp"
+#include "rvelab/threads/workers.hpp"
 
 namespace rvelab {
 

@@ -3,8 +3,8 @@
 // result has the same bits on any team and on none.
 #pragma once
 
-#include "rvelab/solver/assembly/workers.hpp"
 #include "rvelab/solver/kernels/configuration.hpp"
+#include "rvelab/threads/workers.hpp"
 
 namespace rvelab {
 

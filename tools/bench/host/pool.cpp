@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "rvelab/io/specimen_file.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/solver/rve.hpp"
 
 namespace {

@@ -1,0 +1,202 @@
+#include "rvelab/io/export/xdmf.hpp"
+
+#include <cmath>
+#include <filesystem>
+
+#include "rvelab/io/hdf5/file.hpp"
+#include "rvelab/io/text_file.hpp"
+#include "rvelab/measure/measures.hpp"
+
+namespace rvelab::io {
+namespace {
+
+/// How XDMF calls a scalar type.
+template <class Scalar>
+constexpr const char* number_type = std::is_same_v<Scalar, double>         ? "NumberType=\"Float\" Precision=\"8\""
+                                    : std::is_same_v<Scalar, std::uint8_t> ? "NumberType=\"UChar\" Precision=\"1\""
+                                    : std::is_same_v<Scalar, std::int32_t> ? "NumberType=\"Int\" Precision=\"4\""
+                                                                           : "NumberType=\"Int\" Precision=\"8\"";
+
+/// Writes arrays into the heavy file and the light text that points to them.
+class Series {
+ public:
+  Series(Hdf5File& heavy, const std::string& heavy_name) : heavy_(heavy), heavy_name_(heavy_name) {}
+
+  void add(const ExportState& state, std::size_t number) {
+    group_ = "/state_" + std::to_string(number);
+    text += "   <Grid Name=\"state " + std::to_string(number) +
+            "\" GridType=\"Collection\" CollectionType=\"Spatial\">\n    <Time Value=\"" +
+            std::to_string(state.record) + "\"/>\n";
+    add_grains(state);
+    if (!state.network.contacts.empty()) add_contacts(state);
+    add_cell(state);
+    text += "   </Grid>\n";
+  }
+
+  std::string text;
+
+ private:
+  template <class Scalar>
+  std::string item(const std::string& name, const std::vector<Scalar>& values, std::size_t components,
+                   const std::string& units) {
+    const std::size_t rows = values.size() / components;
+    const Shape64 shape = components == 1 ? Shape64{rows} : Shape64{rows, components};
+    heavy_.write<Scalar>(group_ + "/" + name, values, shape, units);
+    const std::string extents = std::to_string(rows) + (components == 1 ? "" : " " + std::to_string(components));
+    return std::string("<DataItem Format=\"HDF\" ") + number_type<Scalar> + " Dimensions=\"" + extents + "\">" +
+           heavy_name_ + ":" + group_ + "/" + name + "</DataItem>";
+  }
+
+  template <class Scalar>
+  void attribute(const char* block, const char* name, const char* center, const std::vector<Scalar>& values,
+                 std::size_t components, const char* units) {
+    const char* type = components == 1 ? "Scalar" : components == 3 ? "Vector" : "Tensor";
+    text += std::string("     <Attribute Name=\"") + name + "\" AttributeType=\"" + type + "\" Center=\"" + center +
+            "\">" + item(std::string(block) + "/" + name, values, components, units) + "</Attribute>\n";
+  }
+
+  void begin(const char* block, const std::string& topology, const std::vector<double>& points) {
+    text += std::string("    <Grid Name=\"") + block + "\" GridType=\"Uniform\">\n     " + topology +
+            "\n     <Geometry GeometryType=\"XYZ\">" + item(std::string(block) + "/points_m", points, 3, "m") +
+            "</Geometry>\n";
+  }
+  void end() { text += "    </Grid>\n"; }
+
+  /// Two points a line, in the order of the points.
+  std::string lines(const char* block, std::size_t count) {
+    std::vector<std::int32_t> ends(2 * count);
+    for (std::size_t k = 0; k < ends.size(); ++k) ends[k] = static_cast<std::int32_t>(k);
+    return "<Topology TopologyType=\"Polyline\" NodesPerElement=\"2\" NumberOfElements=\"" + std::to_string(count) +
+           "\">" + item(std::string(block) + "/ends", ends, 2, "1") + "</Topology>";
+  }
+
+  static void append(std::vector<double>& values, const Vector3& vector) {
+    for (int k = 0; k < 3; ++k) values.push_back(vector[k]);
+  }
+
+  /// Of ellipses: the long axis, laboratory frame, and the two semi-axes.
+  void add_axes(const Network& network) {
+    std::vector<double> orientation, major, minor;
+    for (const GrainState& grain : network.grains) {
+      append(orientation, network.cell.rotation * grain.orientation);
+      major.push_back(grain.semi_major);
+      minor.push_back(grain.semi_minor);
+    }
+    attribute("grains", "orientation", "Node", orientation, 3, "1");
+    attribute("grains", "semi_major_m", "Node", major, 1, "m");
+    attribute("grains", "semi_minor_m", "Node", minor, 1, "m");
+  }
+
+  void add_grains(const ExportState& state) {
+    const Network& network = state.network;
+    const Matrix3& turn = network.cell.rotation;
+    const Box box(network.cell.lattice);
+    const double physical = network.quasi_static ? 0 : 1;
+    std::vector<double> points, radius, velocity, spin, stress;
+    for (const GrainState& grain : network.grains) {
+      append(points, turn * box.wrapped(grain.position));
+      radius.push_back(grain.radius);
+      append(velocity, physical * (turn * grain.velocity));
+      append(spin, physical * (turn * grain.spin));
+    }
+    for (const Matrix3& sigma : grain_stresses(network)) {
+      for (int k = 0; k < 9; ++k) stress.push_back(sigma(k / 3, k % 3));
+    }
+    const auto counts = contact_counts(network);
+    begin("grains",
+          "<Topology TopologyType=\"Polyvertex\" NodesPerElement=\"1\" NumberOfElements=\"" +
+              std::to_string(network.grains.size()) + "\"/>",
+          points);
+    attribute("grains", "radius_m", "Node", radius, 1, "m");
+    if (network.shape == Shape::ellipse) add_axes(network);
+    attribute("grains", "id", "Node", state.specimen.grains.id, 1, "1");
+    attribute("grains", "material", "Node", state.specimen.grains.material, 1, "1");
+    attribute("grains", "fluctuation_velocity_m_s", "Node", velocity, 3, "m/s");
+    attribute("grains", "fluctuation_spin_rad_s", "Node", spin, 3, "rad/s");
+    attribute("grains", "stress_Pa", "Node", stress, 9, "Pa");
+    attribute("grains", "contacts", "Node", std::vector<std::int32_t>(counts.begin(), counts.end()), 1, "1");
+    end();
+  }
+
+  void add_contacts(const ExportState& state) {
+    const Network& network = state.network;
+    const Matrix3& turn = network.cell.rotation;
+    const Box box(network.cell.lattice);
+    std::vector<double> points, force, normal_force, overlap;
+    std::vector<std::uint8_t> sliding;
+    for (const ContactState& contact : network.contacts) {
+      const Vector3 from = box.wrapped(network.grains[std::size_t(contact.i)].position);
+      append(points, turn * from);
+      append(points, turn * (from + contact.branch));
+      append(force, turn * contact.force());
+      normal_force.push_back(contact.normal_force);
+      overlap.push_back(contact.overlap);
+      sliding.push_back(is_sliding(contact) ? 1 : 0);
+    }
+    begin("contacts", lines("contacts", network.contacts.size()), points);
+    attribute("contacts", "force_N", "Cell", force, 3, "N");
+    attribute("contacts", "normal_force_N", "Cell", normal_force, 1, "N");
+    attribute("contacts", "overlap_m", "Cell", overlap, 1, "m");
+    attribute("contacts", "sliding", "Cell", sliding, 1, "1");
+    end();
+  }
+
+  void add_cell(const ExportState& state) {
+    const Cell& cell = state.network.cell;
+    const Box box(cell.lattice);
+    const int dimension = cell.dimension;
+    // 2D: the mid-plane, where the centres lie.
+    const Vector3 corner = box.corner() + (dimension == 2 ? Vector3(0.5 * cell.lattice.col(2)) : Vector3::Zero());
+    std::vector<double> points;
+    for (int axis = 0; axis < dimension; ++axis) {
+      for (int others = 0; others < (dimension == 2 ? 2 : 4); ++others) {
+        Vector3 start = corner;
+        for (int k = 0, bit = 1; k < dimension; ++k) {
+          if (k == axis) continue;
+          if ((others & bit) != 0) start += cell.lattice.col(k);
+          bit <<= 1;
+        }
+        append(points, cell.rotation * start);
+        append(points, cell.rotation * (start + cell.lattice.col(axis)));
+      }
+    }
+    begin("cell", lines("cell", points.size() / 6), points);
+    end();
+  }
+
+  static bool is_sliding(const ContactState& contact) {
+    return contact.tangential_force.norm() >= (1 - 1e-6) * contact.friction * std::abs(contact.pressing_force);
+  }
+
+  Hdf5File& heavy_;
+  std::string heavy_name_, group_;
+};
+
+/// A file name as XML text.
+std::string escaped(const std::string& name) {
+  std::string text;
+  for (const char letter : name) {
+    text += letter == '&'   ? std::string("&amp;")
+            : letter == '<' ? std::string("&lt;")
+            : letter == '>' ? std::string("&gt;")
+                            : std::string(1, letter);
+  }
+  return text;
+}
+
+}  // namespace
+
+void export_xdmf(const std::vector<ExportState>& states, const std::string& path) {
+  const std::string heavy_path = path + ".h5";
+  std::string text =
+      "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<Xdmf Version=\"3.0\">\n <Domain>\n"
+      "  <Grid Name=\"rvelab\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
+  publish(heavy_path, [&](Hdf5File& heavy) {
+    Series series(heavy, escaped(std::filesystem::path(heavy_path).filename().string()));
+    for (std::size_t k = 0; k < states.size(); ++k) series.add(states[k], k);
+    text += series.text;
+  });
+  publish_text(path, text + "  </Grid>\n </Domain>\n</Xdmf>\n");
+}
+
+}  // namespace rvelab::io

@@ -1,0 +1,221 @@
+#include "rvelab/io/hdf5/specimen_file.hpp"
+
+#include <charconv>
+
+#include "rvelab/error.hpp"
+#include "rvelab/io/hdf5/archive.hpp"
+#include "rvelab/io/hdf5/digest.hpp"
+#include "rvelab/io/hdf5/schema.hpp"
+#include "rvelab/io/version.hpp"
+#include "rvelab/specimen/specimen_fields.hpp"
+
+namespace rvelab::io {
+namespace {
+
+constexpr const char* specimen_format = "rvelab specimen";
+constexpr const char* records_format = "rvelab records";
+
+/// Every field of a specimen, once for every archive.
+template <class Archive, class Value>
+void describe(Archive& archive, Value& specimen) {
+  Described<Archive> described{archive};
+  fields::visit(described, specimen);
+}
+
+template <class Archive, class Value>
+void describe_origin(Archive& archive, Value& origin) {
+  auto& [recipe, seed, draw, preparation_friction] = origin;
+  archive.field("provenance/recipe", recipe, "-");
+  archive.field("provenance/seed", seed, "1");
+  archive.field("provenance/draw", draw, "1");
+  archive.field("provenance/preparation_friction", preparation_friction, "1");
+}
+
+/// Whether each field with a row for each grain has `grains` of them.
+struct GrainRows {
+  std::size_t grains;
+  bool agree = true;
+
+  template <class Value, class Declared>
+  void field(const fields::Path&, const Value& value, const Declared& field) {
+    if constexpr (fields::Listed<Value>::is_list) {
+      agree = agree && (field.rows != fields::Rows::per_grain || value.size() == grains);
+    }
+  }
+  template <class... Table>
+  void table(const Table&...) {}
+};
+
+/// What the datasets must agree on for the indices to point at something.
+void check_indices(const Specimen& specimen, const std::string& path) {
+  const auto expect = [&](bool condition, const std::string& what) {
+    if (!condition) throw InputError(path + ": " + what + "; the file is damaged: write it again");
+  };
+  const auto& grains = specimen.grains;
+  const auto count = grains.size();
+  GrainRows rows{count};
+  fields::visit(rows, specimen);
+  expect(rows.agree, "the datasets under /grains have different lengths; allowed: one row a grain in each, " +
+                         std::to_string(count) + " here");
+  expect(specimen.cell.dimension == dimension_of(specimen.shape),
+         "/cell/dimension is " + std::to_string(specimen.cell.dimension) + "; allowed: 2 with discs, 3 with spheres");
+  for (const auto material : grains.material) {
+    expect(material >= 0 && static_cast<std::size_t>(material) < specimen.materials.size(),
+           "/grains/material holds the index " + std::to_string(material) + "; allowed: 0 to " +
+               std::to_string(specimen.materials.size()) + " - 1");
+  }
+  for (const auto& contact : specimen.contacts) {
+    expect(contact.i >= 0 && contact.i <= contact.j && static_cast<std::size_t>(contact.j) < count,
+           "/contacts holds the pair " + std::to_string(contact.i) + ", " + std::to_string(contact.j) +
+               "; allowed: 0 <= i <= j < " + std::to_string(count));
+  }
+}
+
+}  // namespace
+
+std::uint32_t digest(const Specimen& specimen) {
+  Digest archive;
+  describe(archive, specimen);
+  return archive.sum();
+}
+
+void stamp(Hdf5File& file, FileKind kind) {
+  stamp(file, kind == FileKind::specimen ? specimen_format : records_format);
+}
+
+void stamp(Hdf5File& file, const std::string& format) {
+  file.set_attribute("format", format);
+  file.set_attribute("format_version", std::to_string(format_major) + "." + std::to_string(format_minor));
+}
+
+namespace {
+
+struct FormatVersion {
+  int major = 0, minor = 0;
+};
+
+FormatVersion format_version(const Hdf5File& file) {
+  const std::string text = file.attribute("format_version");
+  FormatVersion found;
+  const char* const end = text.data() + text.size();
+  const auto [dot, failed] = std::from_chars(text.data(), end, found.major);
+  if (failed != std::errc() || dot == end || *dot != '.' || std::from_chars(dot + 1, end, found.minor).ptr != end) {
+    throw InputError(file.path() + ": its attribute format_version is \"" + text +
+                     "\"; allowed: major.minor; the file is damaged: write it again");
+  }
+  if (found.major > format_major || (found.major == format_major && found.minor > format_minor)) {
+    throw InputError(file.path() + ": has the format version " + text + "; allowed: up to " +
+                     std::to_string(format_major) + "." + std::to_string(format_minor) +
+                     "; open it with a newer rvelab");
+  }
+  return found;
+}
+
+}  // namespace
+
+int minor_version(const Hdf5File& file) {
+  return file.attribute("format_version").empty() ? 0 : format_version(file).minor;
+}
+
+bool is_rvelab(const Hdf5File& file) {
+  const std::string format = file.attribute("format");
+  return format == specimen_format || format == records_format || format == pool_format;
+}
+
+FileKind kind_without_seal(const Hdf5File& file) {
+  const std::string format = file.attribute("format");
+  if (!is_rvelab(file)) {
+    throw InputError(file.path() + ": its attribute format is \"" + format + "\"; allowed: \"" + specimen_format +
+                     "\", \"" + records_format + "\", \"" + pool_format + "\"; give a file that rvelab wrote");
+  }
+  format_version(file);
+  return format == records_format ? FileKind::records : FileKind::specimen;
+}
+
+namespace {
+
+void expect_seal(const Hdf5File& file) {
+  const auto [major, minor] = format_version(file);
+  if (!file.sealed() && (major > 1 || minor >= sealed_minor)) {
+    throw InputError(file.path() +
+                     ": lacks the checksum at its end: it is truncated, or another program has changed it; copy it "
+                     "again, or, if the change is meant, take it over with `rvelab seal " +
+                     file.path() + " -o NEW.h5`");
+  }
+}
+
+}  // namespace
+
+FileKind checked_kind(const Hdf5File& file) {
+  const FileKind kind = kind_without_seal(file);
+  expect_seal(file);
+  return kind;
+}
+
+void check_format(const Hdf5File& file, const std::string& format) {
+  const std::string found = file.attribute("format");
+  if (found != format)
+    throw InputError(file.path() + ": its attribute format is \"" + found + "\"; allowed: \"" + format + "\"");
+  expect_seal(file);
+}
+
+void put_specimen(Hdf5File& file, const std::string& group, const Specimen& specimen) {
+  Writer writer(file, group);
+  describe(writer, specimen);
+}
+
+Specimen get_specimen(const Hdf5File& file, const std::string& group) {
+  Specimen specimen;
+  Reader reader(file, group);
+  describe(reader, specimen);
+  check_indices(specimen, file.path());
+  return specimen;
+}
+
+std::string specimen_group(const Hdf5File& file) {
+  if (kind_without_seal(file) == FileKind::records) return "/specimen";
+  if (file.attribute("format") != pool_format) return "";
+  const std::vector<std::string> rves = file.groups(pool_rves);
+  if (rves.size() == 1) return std::string(pool_rves) + "/" + rves.front();
+  throw InputError(file.path() + ": is a pool of " + std::to_string(rves.size()) +
+                   " RVEs; allowed: one; write the one that is meant into a pool of its own "
+                   "(rvelab_template_from_snapshot, rvelab_spawn, rvelab_pool_write)");
+}
+
+void write_specimen(const Specimen& specimen, const std::string& path, const SpecimenOrigin* origin) {
+  publish(path, [&](Hdf5File& file) {
+    stamp(file, FileKind::specimen);
+    put_specimen(file, "", specimen);
+    if (origin == nullptr) return;
+    Writer writer(file, "");
+    describe_origin(writer, *origin);
+    writer.field("provenance/version", std::string(version), "-");
+    writer.field("provenance/compiler", compiler(), "-");
+  });
+}
+
+std::optional<SpecimenOrigin> get_origin(const Hdf5File& file) {
+  if (kind_without_seal(file) != FileKind::specimen || !file.has("/provenance")) return std::nullopt;
+  SpecimenOrigin origin;
+  Reader reader(file, "");
+  describe_origin(reader, origin);
+  std::string by;  // said, and read by people
+  for (const char* name : {"provenance/version", "provenance/compiler"}) reader.field(name, by, "-");
+  return origin;
+}
+
+std::optional<SpecimenOrigin> read_origin(const std::string& path) {
+  const auto file = Hdf5File::open(path);
+  checked_kind(file);
+  return get_origin(file);
+}
+
+Specimen read_specimen(const std::string& path, Seal seal) {
+  const auto file = Hdf5File::open(path, seal);
+  checked_kind(file);
+  return get_specimen(file, specimen_group(file));
+}
+
+FileKind file_kind(const std::string& path) { return checked_kind(Hdf5File::open(path)); }
+
+}  // namespace rvelab::io

@@ -1,0 +1,262 @@
+#include "rvelab/io/import/csv.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <numeric>
+
+#include "rvelab/cell/givens.hpp"
+#include "rvelab/error.hpp"
+#include "rvelab/io/import/contacts.hpp"
+#include "rvelab/io/import/csv_table.hpp"
+#include "rvelab/io/import/lammps_dump.hpp"
+#include "rvelab/io/import/meta.hpp"
+#include "rvelab/keys/material_toml.hpp"
+#include "rvelab/keys/regular_file.hpp"
+#include "rvelab/measure/stored_contact.hpp"
+
+namespace rvelab::io {
+namespace {
+
+std::string in_words(const Matrix3& matrix) {
+  std::string text;
+  for (int k = 0; k < 9; ++k) {
+    char number[32];
+    std::snprintf(number, sizeof number, "%s%.9g", k == 0 ? "" : k % 3 == 0 ? "; " : " ", matrix(k / 3, k % 3));
+    text += number;
+  }
+  return "[" + text + "]";
+}
+
+/// The cell frame of a cell given by its vectors: H = Q L. An upper triangular H with positive diagonal is kept as
+/// it is.
+void set_cell(Specimen& specimen, int dimension, const Matrix3& vectors, const std::string& source) {
+  const auto factors = triangular_factors(vectors);
+  specimen.shape = dimension == 2 ? Shape::disc : Shape::sphere;
+  specimen.cell.dimension = dimension;
+  specimen.cell.lattice = factors.upper;
+  specimen.cell.rotation = factors.rotation;
+  if (!factors.upper.allFinite() || !(factors.upper.diagonal().array() > 0).all()) {
+    throw InputError(source + ": the cell vectors are the columns of " + in_words(vectors) +
+                     " m; allowed: a right-handed cell of positive volume (2D: positive thickness); correct the cell");
+  }
+}
+
+/// Material of each row by the number that LAMMPS gives it, from 1.
+std::vector<std::int32_t> materials_by_type(const CsvTable& table, const Specimen& specimen) {
+  std::vector<std::int32_t> index;
+  const auto column = table.column({"type"});
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const auto type = table.integer(row, column);
+    if (type < 1 || type > static_cast<std::int64_t>(specimen.materials.size())) {
+      throw InputError(table.place(row, column) + " is no material; allowed: 1 to " +
+                       std::to_string(specimen.materials.size()) + ", the materials in their order; add the material");
+    }
+    index.push_back(static_cast<std::int32_t>(type - 1));
+  }
+  return index;
+}
+
+/// Material of each row: by name or type where the file has the column, else the only one.
+std::vector<std::int32_t> materials_of(const CsvTable& table, const Specimen& specimen) {
+  std::vector<std::int32_t> index(table.rows(), 0);
+  if (!table.has("material")) {
+    if (specimen.materials.size() > 1 && table.has("type")) return materials_by_type(table, specimen);
+    if (specimen.materials.size() > 1) {
+      throw InputError(table.place(0) + ": there are " + std::to_string(specimen.materials.size()) +
+                       " materials and no column `material`; allowed: one material, or the column with a name for "
+                       "each grain; add the column");
+    }
+    return index;
+  }
+  std::map<std::string, std::int32_t, std::less<>> indices;
+  for (const auto& material : specimen.materials) {
+    indices.emplace(material.name, static_cast<std::int32_t>(indices.size()));
+  }
+  const auto column = table.column({"material"});
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const auto found = indices.find(table.text(row, column));
+    if (found == indices.end()) {
+      std::string known;
+      for (const auto& [name, number] : indices) known += (known.empty() ? "" : ", ") + name;
+      throw InputError(
+          table.place(row, column) + " names no material; allowed: " + known +
+          "; correct the name, or give a TOML file with a [[material]] of that name by --material (`rvelab "
+          "export --format csv` writes one)");
+    }
+    index[row] = found->second;
+  }
+  return index;
+}
+
+std::vector<Vector3> positions_of(const CsvTable& table, const Cell& cell) {
+  const auto x = table.column({"x"}), y = table.column({"y"});
+  const auto z = cell.dimension == 3 ? table.column({"z"}) : x;
+  std::vector<Vector3> positions;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const double height = cell.dimension == 3 ? table.number(row, z) : 0;
+    positions.push_back(cell.rotation.transpose() * Vector3(table.number(row, x), table.number(row, y), height));
+  }
+  return positions;
+}
+
+/// Rows of a particle table in the order of their ids.
+std::vector<std::size_t> order_by_id(const CsvTable& table) {
+  const auto column = table.column({"id"});
+  std::vector<std::size_t> order(table.rows());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<std::int64_t> id(table.rows());
+  for (const auto row : order) id[row] = table.integer(row, column);
+  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return id[a] < id[b]; });
+  for (std::size_t k = 1; k < order.size(); ++k) {
+    if (id[order[k]] == id[order[k - 1]]) {
+      throw InputError(table.place(order[k], column) + " is there twice (first at " + table.place(order[k - 1]) +
+                       "); allowed: an id of its own for each grain; renumber one");
+    }
+  }
+  return order;
+}
+
+void read_radius(const CsvTable& table, std::size_t row, Grains& grains) {
+  const auto radius = table.column({"r", "radius"});
+  grains.radius.push_back(table.number(row, radius));
+  if (!(grains.radius.back() > 0)) {
+    throw InputError(table.place(row, radius) + " m is not positive; allowed: > 0; correct the radius");
+  }
+}
+
+/// Takes one grain's axes (m) and the angle of the long one (degrees, laboratory frame) from its row.
+void read_ellipse(const CsvTable& table, std::size_t row, Specimen& specimen) {
+  const auto a = table.column({"a"}), b = table.column({"b"}), angle = table.column({"angle"});
+  const double major = table.number(row, a), minor = table.number(row, b);
+  if (!(minor > 0) || !(major >= minor) || !(major <= minor / least_aspect_ratio * (1 + 1e-12)))
+    throw InputError(table.place(row, b) + " m is no shorter semi-axis to " + std::to_string(major) +
+                     " m; allowed: 0 < b <= a <= 10 b; correct a and b");
+  const double radians = table.number(row, angle) * (3.14159265358979323846 / 180);
+  Grains& grains = specimen.grains;
+  grains.radius.push_back(std::sqrt(major * minor));
+  grains.semi_major.push_back(major);
+  grains.semi_minor.push_back(minor);
+  grains.orientation.push_back(specimen.cell.rotation.transpose() * Vector3(std::cos(radians), std::sin(radians), 0));
+}
+
+/// Fills the grains; returns each grain's wrapping translation w, x_new = x_old + L w.
+std::vector<Image> read_grains(const CsvTable& table, Specimen& specimen) {
+  if (table.rows() == 0) {
+    throw InputError(table.path() + ": has no rows; allowed: one row a grain, one at least; give the right file");
+  }
+  const auto positions = positions_of(table, specimen.cell);
+  const auto materials = materials_of(table, specimen);
+  const auto id = table.column({"id"});
+  std::vector<Image> wraps;
+  Grains& grains = specimen.grains;
+  for (const auto row : order_by_id(table)) {
+    grains.id.push_back(table.integer(row, id));
+    if (specimen.shape == Shape::ellipse)
+      read_ellipse(table, row, specimen);
+    else
+      read_radius(table, row, grains);
+    grains.material.push_back(materials[row]);
+    grains.position.push_back(positions[row]);
+    wraps.push_back(wrap(specimen.cell, grains.position.back()));
+  }
+  grains.velocity.assign(grains.size(), Vector3::Zero());
+  grains.spin.assign(grains.size(), Vector3::Zero());
+  return wraps;
+}
+
+/// A CSV file, or a dump of LAMMPS, which brings its cell.
+struct Particles {
+  std::unique_ptr<CsvTable> table;
+  int dimension;
+  std::optional<Matrix3> cell;
+};
+
+Particles read_particles(const std::string& path) {
+  auto text = keys::whole_file<std::string>(path, "a CSV file or a dump of LAMMPS");
+  if (is_lammps_dump(text)) {
+    auto dump = read_lammps_dump(path, text);
+    return {std::move(dump.atoms), dump.dimension, dump.cell};
+  }
+  auto table = std::make_unique<CsvTable>(path, std::move(text));
+  const int dimension = table->has("z") ? 3 : 2;
+  return {std::move(table), dimension, std::nullopt};
+}
+
+/// Takes the cell of one more source; only one source may give a cell.
+void take_cell(std::optional<Matrix3>& cell, std::string& source, const Matrix3& further, const std::string& from,
+               const std::string& what) {
+  if (cell) {
+    throw InputError(from + " gives a cell and " + source + " has a cell too; allowed: one of the two; leave " + what +
+                     " out");
+  }
+  cell = further;
+  source = from;
+}
+
+/// The table has the number of rows that META.json states: a table that was cut may end with a whole line.
+void expect_rows(const CsvTable& table, const std::optional<std::size_t>& stated, const char* key,
+                 const std::optional<std::string>& meta) {
+  if (!stated || *stated == table.rows()) return;
+  throw InputError(table.path() + ": has " + std::to_string(table.rows()) +
+                   " rows; allowed: " + std::to_string(*stated) + ", which is " + key + " in " + *meta +
+                   "; the file is cut, or of another state: give the files that belong together");
+}
+
+}  // namespace
+
+Specimen import_csv(const std::string& particles_path, const std::optional<std::string>& contacts_path,
+                    const std::optional<std::string>& meta_json_path, const ImportOptions& options) {
+  Specimen specimen;
+  const Particles particles = read_particles(particles_path);
+  int dimension = particles.dimension;
+  std::optional<Matrix3> vectors = particles.cell;
+  std::string source = particles_path;
+  std::optional<std::size_t> contact_rows;
+  if (meta_json_path) {
+    const auto meta = read_meta(*meta_json_path, specimen, !options.material_path);
+    dimension = meta.dimension;
+    expect_rows(*particles.table, meta.particles, "n_particles", meta_json_path);
+    contact_rows = meta.contacts;
+    if (meta.cell) take_cell(vectors, source, *meta.cell, *meta_json_path, "its hSize");
+    specimen.state.reference_pressure = meta.reference_pressure;
+  }
+  if (options.material_path) {
+    keys::read_material_file(*options.material_path, specimen);
+    check_parameters(specimen.contact, specimen.damping, specimen.materials);
+  }
+  if (specimen.materials.empty()) {
+    throw InputError(particles_path +
+                     ": comes without contact parameters; allowed: META.json or --material M.toml; give one of them");
+  }
+  if (options.cell) {
+    if (!(options.cell->array() > 0).all()) {
+      const Matrix3 given = options.cell->asDiagonal();
+      throw InputError("--cell gives the cell vectors " + in_words(given) + " m; allowed: lengths > 0; correct them");
+    }
+    take_cell(vectors, source, options.cell->asDiagonal(), "--cell", "--cell");
+  }
+  if (!vectors) {
+    throw InputError(particles_path +
+                     ": comes without a cell; allowed: META.json with hSize, or --cell Lxx,Lyy,Lzz in m (2D: Lzz is "
+                     "the thickness); give one of them");
+  }
+  set_cell(specimen, dimension, *vectors, source);
+
+  if (dimension == 2 && particles.table->has("a") && particles.table->has("b")) specimen.shape = Shape::ellipse;
+  const auto wraps = read_grains(*particles.table, specimen);
+  if (contacts_path) {
+    const CsvTable table(*contacts_path);
+    expect_rows(table, contact_rows, "n_contacts", meta_json_path);
+    read_contacts(table, wraps, specimen);
+  }
+
+  keys::set_keys(specimen, options.settings);
+  check_parameters(specimen.contact, specimen.damping, specimen.materials);
+  set_root_overlaps(specimen);
+  return specimen;
+}
+
+}  // namespace rvelab::io

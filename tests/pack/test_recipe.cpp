@@ -1,0 +1,240 @@
+// Recipes: every key is read, every mistake told, families and shipped recipes.
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "rvelab/error.hpp"
+#include "rvelab/measure/measures.hpp"
+#include "rvelab/pack/read_recipe.hpp"
+#include "tests/catch.hpp"
+
+using namespace rvelab;
+using Catch::Matchers::Contains;
+
+namespace {
+
+const char* const small = R"([pack]
+name = "small"
+[grains]
+smallest_radius_m = 3e-3
+largest_radius_m = 7e-3
+[target]
+pressure_Pa = 1e5
+[[material]]
+name = "sand"
+young_modulus_Pa = 8e8
+friction = 0.4
+)";
+
+const char* const mixture = R"([pack]
+name = "mixture"
+shape = "sphere"
+share_by = "mass"
+[[grains]]
+name = "coarse"
+material = "rock"
+share = 0.25
+grading = "tabulated"
+radii_m = [5e-3, 6e-3]
+passing = [0, 1]
+passing_by = "mass"
+[[grains]]
+name = "fine"
+share = 0.75
+grading = "linear"
+smallest_radius_m = 1e-3
+largest_radius_m = 2e-3
+[target]
+stress_Pa = [-100, -80, -120, 1, 2, 3]
+pressures_Pa = [1e4, 2e4]
+void_ratio = 0.5
+[preparation]
+method = "growth"
+[contact]
+law = "hertz_mindlin"
+[[material]]
+name = "sand"
+young_modulus_Pa = 7e9
+poisson_ratio = 0.25
+friction = 0.5
+[[material]]
+name = "rock"
+density_kg_m3 = 2700
+young_modulus_Pa = 50e9
+poisson_ratio = 0.2
+friction = 0.3
+)";
+
+std::string message_of(const std::string& text, const std::vector<std::string>& assignments = {}) {
+  try {
+    pack::parse_recipe(text, "r.toml", assignments);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("a small recipe has the defaults that the key table states") {
+  const pack::RecipeFile file = pack::parse_recipe(small, "r.toml");
+  const auto resolved = toml::parse(file.resolved);
+  for (const auto& entry : pack::recipe_keys()) {
+    CAPTURE(entry.key.dotted());
+    const toml::node* node = resolved[entry.key.table].is_array()
+                                 ? (*resolved["grains"][0].as_table()).get(entry.key.name)
+                                 : resolved[entry.key.table][entry.key.name].node();
+    if (entry.key.name == "first_size") continue;  // growth only
+    if (entry.key.name.find("aspect") != std::string::npos || entry.key.name.starts_with("bedding"))
+      continue;  // ellipses
+    if (const auto* number = std::get_if<double>(&entry.initial)) CHECK(node->value<double>() == *number);
+    if (const auto* whole = std::get_if<long>(&entry.initial)) CHECK(node->value<std::int64_t>() == *whole);
+    if (const auto* word = std::get_if<std::string>(&entry.initial)) CHECK(node->value<std::string>() == *word);
+  }
+  CHECK(file.name == "small");
+  CHECK(file.recipe.number == 400);
+  CHECK(file.recipe.fractions.at(0).grading.largest_radius == 7e-3);
+  CHECK(file.recipe.materials.at(0).friction == 0.4);
+  CHECK(*file.recipe.stress == pack::isotropic_stress(1e5, Shape::disc));
+  CHECK(!file.recipe.void_ratio);
+  // What was read can be read again, with the same meaning.
+  CHECK(pack::parse_recipe(file.resolved, "again.toml").resolved == file.resolved);
+}
+
+TEST_CASE("a mixture of two materials, gradings and a stress tensor comes out as it was written") {
+  const pack::RecipeFile file = pack::parse_recipe(mixture, "r.toml");
+  const pack::Recipe& recipe = file.recipe;
+  REQUIRE(recipe.fractions.size() == 2);
+  CHECK(recipe.fractions[0].material == 1);
+  CHECK(recipe.fractions[1].material == 0);
+  CHECK(recipe.fractions[0].grading.by_mass);
+  CHECK(recipe.fractions[0].grading.curve == GradingCurve::tabulated);
+  CHECK(recipe.fractions[1].grading.curve == GradingCurve::linear);
+  CHECK(recipe.share_by_mass);
+  CHECK(recipe.preparation.method == pack::Preparation::Method::growth);
+  CHECK(pack::growth_void_ratio(recipe) == Approx(0.6));
+  // A family scales the tensor to each mean pressure.
+  REQUIRE(file.pressures == std::vector<double>{1e4, 2e4});
+  const pack::RecipeFile member = file.member(9, 2e4);
+  const pack::Recipe& second = member.recipe;
+  const pack::RecipeFile again = pack::parse_recipe(member.resolved, "again.toml");
+  CHECK(again.recipe.seed == 9);
+  CHECK(*again.recipe.stress == *second.stress);
+  CHECK(second.seed == 9);
+  CHECK(mean_pressure(*second.stress, 3) == Approx(2e4));
+  CHECK((*second.stress)(1, 2) == Approx(200));
+  CHECK((*second.stress)(0, 2) == Approx(400));
+  CHECK((*second.stress)(0, 1) == Approx(600));
+  CHECK((*second.stress)(2, 2) == Approx(-24000));
+}
+
+TEST_CASE("a recipe of ellipses says their aspect ratios and bedding") {
+  const pack::RecipeFile file =
+      pack::parse_recipe(small, "r.toml",
+                         {"pack.shape=ellipse", "grains.smallest_aspect_ratio=0.4", "grains.largest_aspect_ratio=0.8",
+                          "grains.bedding_angle_deg=30", "grains.bedding_spread_deg=15"});
+  CHECK(file.recipe.shape == Shape::ellipse);
+  const pack::GrainFraction& fraction = file.recipe.fractions.at(0);
+  CHECK(fraction.smallest_aspect_ratio == 0.4);
+  CHECK(fraction.largest_aspect_ratio == 0.8);
+  CHECK(fraction.bedding_angle == 30);
+  CHECK(fraction.bedding_spread == 15);
+  CHECK(pack::parse_recipe(file.resolved, "again.toml").resolved == file.resolved);
+}
+
+TEST_CASE("porosity and void ratio say the same") {
+  const auto with = [](const std::string& assignment) {
+    return *pack::parse_recipe(small, "r.toml", {assignment}).recipe.void_ratio;
+  };
+  CHECK(with("target.porosity=0.2") == Approx(0.25));
+  CHECK(with("target.void_ratio=0.25") == 0.25);
+}
+
+TEST_CASE("every mistake of a recipe is told at once, with its line and what is allowed") {
+  const std::string message = message_of(R"([pack]
+name = "wrong"
+number = 0
+shap = "disc"
+[grains]
+smallest_radius_m = 7e-3
+largest_radius_m = 3e-3
+material = "gravel"
+[target]
+pressure_kPa = 100
+stress_Pa = [-1e5, -1e5]
+void_ratio = "loose"
+[preparation]
+lowest_friction = 1
+highest_friction = 0.5
+first_size = 0.3
+[[material]]
+name = "sand"
+young_modulus_Pa = -1
+)");
+  INFO(message);
+  for (const char* part :
+       {"r.toml:3: pack.number = 0 is out of range; allowed: 1 to 1e+08",
+        "r.toml:4: unknown key pack.shap; the nearest known key is pack.shape",
+        "grains.grains.smallest_radius_m = 0.007 and grains.grains.largest_radius_m = 0.003",
+        "r.toml:8: grains.material = 'gravel' is no material of the recipe; allowed: sand",
+        "r.toml:10: target.pressure_kPa is not known; write target.pressure_Pa, 1 kPa = 1000 Pa",
+        "r.toml:11: target.stress_Pa = [ -100000.0, -100000.0 ] is not a stress in 2D; allowed: [xx, yy, xy]",
+        "r.toml:12: target.void_ratio = 'loose' is not a number",
+        "r.toml:15: preparation.highest_friction = 0.5 is not above preparation.lowest_friction",
+        "r.toml:19: material.young_modulus_Pa = -1 is out of range"})
+    CHECK_THAT(message, Contains(part));
+}
+
+TEST_CASE("what contradicts something else is refused by name") {
+  CHECK_THAT(message_of(small, {"target.stress_Pa=[-1, -1, 0]"}), Contains("contradicts target.pressure_Pa"));
+  CHECK_THAT(message_of(small, {"target.pressures_Pa=[1e4]"}), Contains("contradicts target.pressure_Pa"));
+  CHECK_THAT(message_of(small, {"target.void_ratio=0.2", "target.porosity=0.2"}),
+             Contains("contradicts target.void_ratio"));
+  CHECK_THAT(message_of(small, {"target.void_ratio=0.2", "preparation.friction=0.1"}),
+             Contains("contradicts target.void_ratio, for which the friction is searched"));
+  CHECK_THAT(message_of(small, {"grains.radii_m=[1e-3, 2e-3]"}), Contains("contradicts grading = \"uniform\""));
+  CHECK_THAT(message_of(small, {"preparation.first_size=0.3"}), Contains("contradicts method = \"compression\""));
+  CHECK_THAT(message_of(mixture, {"pack.thickness_m=0.1"}), Contains("contradicts pack.shape = \"sphere\""));
+  CHECK_THAT(message_of(small, {"grains.share=0.5"}), Contains("add up to 0.5; allowed: 1"));
+  for (const char* key : {"smallest_aspect_ratio", "largest_aspect_ratio", "bedding_angle_deg", "bedding_spread_deg"})
+    CHECK_THAT(message_of(small, {std::string("grains.") + key + "=0.5"}),
+               Contains("contradicts pack.shape = \"disc\""));
+  CHECK_THAT(message_of(small, {"pack.shape=ellipse", "grains.largest_aspect_ratio=0.5"}),
+             Contains("is above grains.largest_aspect_ratio"));
+  const std::string regular = "preparation.method=regular";
+  CHECK_THAT(message_of(small, {regular}), Contains("grains of one size and form"));
+  CHECK_THAT(message_of(small, {regular, "preparation.first_size=0.3"}), Contains("contradicts method = \"regular\""));
+}
+
+TEST_CASE("stresses beyond those of any solid, which no packing would come to, are refused") {
+  CHECK_THAT(message_of(small, {"target.pressure_Pa=1e16"}), Contains("is out of range; allowed: above 0 to 1e+15 Pa"));
+  CHECK_THAT(message_of(small, {"target.pressures_Pa=[1e4, 1e16]"}), Contains("above 0 to 1e+15"));
+  CHECK_THAT(message_of(small, {"target.stress_Pa=[-1e16, -1e16, 0]"}), Contains("-1e+15 to 1e+15"));
+}
+
+TEST_CASE("what a recipe cannot do without is asked for") {
+  const std::string message = message_of("[pack]\nname = \"nothing\"\n");
+  INFO(message);
+  CHECK_THAT(message, Contains("the recipe has no grains") && Contains("the recipe has no material") &&
+                          Contains("target.pressure_Pa is missing, and so is target.void_ratio"));
+  CHECK_THAT(message_of("[test]\nname = \"x\"\n"), Contains("unknown key test") && Contains("pack.name is missing"));
+}
+
+TEST_CASE("every shipped recipe is one, and says in its head what it is and where its numbers are from") {
+  std::size_t recipes = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(RVELAB_SOURCE_DIR "/protocols")) {
+    if (entry.is_directory()) continue;  // studies
+    const std::string path = entry.path().string(), name = entry.path().stem().string();
+    CAPTURE(path);
+    CHECK(pack::is_recipe(path) == name.starts_with("pack_"));
+    if (!pack::is_recipe(path)) continue;
+    ++recipes;
+    const pack::RecipeFile file = pack::read_recipe(path);
+    CHECK(file.recipe.number >= 400);
+    std::ifstream input(path);
+    const std::string text{std::istreambuf_iterator<char>(input), {}};
+    CHECK(text.starts_with("# "));
+    CHECK_THAT(text, Contains("# Where the numbers are from.") && Contains("rvelab pack " + name));
+  }
+  CHECK(recipes >= 10);
+}
