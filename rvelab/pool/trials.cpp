@@ -166,7 +166,7 @@ void make_again(Slot& slot, const TrialRecord& record) {
 }
 
 /// The pending trial of that token is the state. Its RVE holds it.
-void settle(Resident& resident, std::int64_t token) noexcept {
+void commit_trial(Resident& resident, std::int64_t token) noexcept {
   resident.rve.commit();
   resident.inertial_number = resident.trial_inertial_number;
   resident.tokens.commit(token);
@@ -188,7 +188,7 @@ void ThreadedPool::accept(Slot& slot, std::int64_t token, const Matrix3& displac
     slot.awake.store(true, std::memory_order_relaxed);
     make_again(slot, *record);
   }
-  settle(resident, token);
+  commit_trial(resident, token);
 }
 
 Verdict ThreadedPool::apply(std::int64_t id, const Matrix3& displacement_gradient, double dt, double* stress) {
@@ -196,7 +196,7 @@ Verdict ThreadedPool::apply(std::int64_t id, const Matrix3& displacement_gradien
   expect_time(dt);
   const Hold hold = held(id, ++serial_);
   Outcome outcome = attempt(hold.slot(), displacement_gradient, dt, {});
-  settle(hold.resident(), outcome.token);
+  commit_trial(hold.resident(), outcome.token);
   store(outcome.response.stress, stress);
   return std::move(outcome.verdict);
 }
@@ -332,7 +332,7 @@ void ThreadedPool::commit(std::span<const std::int64_t> ids) {
   expect_trials(holds, ids, {});
   team_.share(holds.size(), [&](std::size_t k) {
     Resident& resident = holds[k].resident();
-    settle(resident, last_token(resident.tokens));
+    commit_trial(resident, last_token(resident.tokens));
   });
 }
 
@@ -354,7 +354,7 @@ void ThreadedPool::settle() noexcept {
   else
     team_.share(prepared_.size(), [this](std::size_t k) {
       Resident& resident = *slots_[Id::of(prepared_[k]).slot].resident;
-      if (prepared_for_ == Settling::commit) return pool::settle(resident, last_token(resident.tokens));
+      if (prepared_for_ == Settling::commit) return commit_trial(resident, last_token(resident.tokens));
       resident.rve.revert();
       resident.pending = false;
     });
