@@ -33,7 +33,7 @@ class StaleToken(RvelabError):
 
 
 class OutOfMemory(RvelabError, MemoryError):
-    """No memory was to be had."""
+    """There is not enough memory."""
 
 
 class RvelabWarning(UserWarning):
