@@ -12,6 +12,9 @@
 
 namespace rvelab::pool {
 
+/// What all ranks do or none: commit or revert trials, or end RVEs whose ids the first rank gives out again.
+enum class Settling : std::int32_t { commit, revert, give_up };
+
 /// The RVEs of one process: all of a pool, or the share of a rank, where they come and go under ids and numbers of
 /// templates that the first rank gives out.
 class Share : public Pool {
@@ -38,15 +41,18 @@ class Share : public Pool {
   virtual void give_up(std::span<const std::int64_t> ids) = 0;
 
   virtual bool is_pending(std::int64_t id) = 0;
-  /// Trials that are pending, their states at hand: `commit` of them cannot fail then. `ids` without data: all. Refused
-  /// (no_trial, no_memory): nothing has changed; its text names the `places` of the ids in what the host gave.
-  virtual void prepare_commit(std::span<const std::int64_t> ids, std::span<const std::int64_t> places) = 0;
+  /// Checks that `settle` can be done and brings what it needs. `ids` without data: all with a pending trial. Refused
+  /// (no_trial, no_memory): nothing has changed; the text of a commit names the `places` of the ids in what the host
+  /// gave.
+  virtual void prepare(Settling what, std::span<const std::int64_t> ids, std::span<const std::int64_t> places) = 0;
+  /// Does what was prepared last, without a request for memory. No other call may come between.
+  virtual void settle() noexcept = 0;
 };
 
 /// What hosts and other ranks may call of a share. A new function is added here.
 using ShareCalls = CallList<&Share::release_template, &Share::info, &Share::save, &Share::load, &Share::add_template_as,
                             &Share::spawn_as, &Share::clone_as, &Share::place, &Share::forget_received, &Share::give_up,
-                            &Share::prepare_commit, &Share::commit, &Share::revert>;
+                            &Share::prepare, &Share::settle>;
 
 template <auto function, class... Arguments>
 auto Pool::at(std::int64_t id, const Arguments&... arguments) {
@@ -97,7 +103,8 @@ class ThreadedPool final : public Share {
   void forget_received() noexcept override;
   void give_up(std::span<const std::int64_t> ids) override;
   bool is_pending(std::int64_t id) override;
-  void prepare_commit(std::span<const std::int64_t> ids, std::span<const std::int64_t> places) override;
+  void prepare(Settling what, std::span<const std::int64_t> ids, std::span<const std::int64_t> places) override;
+  void settle() noexcept override;
 
  private:
   class AtWork;
@@ -125,12 +132,15 @@ class ThreadedPool final : public Share {
   Outcome attempt(Slot& slot, const Matrix3& displacement_gradient, double dt, const Batch& wanted);
   void accept(Slot& slot, std::int64_t token, const Matrix3& displacement_gradient);
   void run_entry(Entry& entry, const Batch& batch) noexcept;
-  void prepare(std::span<const Hold> holds, std::span<const std::int64_t> ids, std::span<const std::int64_t> places);
+  void expect_trials(std::span<const Hold> holds, std::span<const std::int64_t> ids,
+                     std::span<const std::int64_t> places);
 
   Options options_;
   Team team_;
   Slots slots_;
   Slots::Residents received_;
+  Settling prepared_for_ = Settling::revert;
+  std::vector<std::int64_t> prepared_;  ///< ids
   Templates templates_;
   std::int64_t next_template_;            ///< number of this pool in the process << 32, and a count from 1
   std::uint64_t process_;                 ///< forks before this process

@@ -97,7 +97,7 @@ void make_again(Slot& slot, const TrialRecord& record) {
 }
 
 /// The pending trial of that token is the state. Its RVE holds it.
-void settle(Resident& resident, std::int64_t token) noexcept {
+void commit_trial(Resident& resident, std::int64_t token) noexcept {
   resident.rve.commit();
   resident.inertial_number = resident.trial_inertial_number;
   resident.tokens.commit(token);
@@ -119,7 +119,7 @@ void ThreadedPool::accept(Slot& slot, std::int64_t token, const Matrix3& displac
     slot.allocated.store(true, std::memory_order_relaxed);
     make_again(slot, *record);
   }
-  settle(resident, token);
+  commit_trial(resident, token);
 }
 
 Verdict ThreadedPool::apply(std::int64_t id, const Matrix3& displacement_gradient, double dt, double* stress) {
@@ -127,7 +127,7 @@ Verdict ThreadedPool::apply(std::int64_t id, const Matrix3& displacement_gradien
   expect_time(dt);
   const Hold hold = held(id, ++serial_);
   Outcome outcome = attempt(hold.slot(), displacement_gradient, dt, {});
-  settle(hold.resident(), outcome.token);
+  commit_trial(hold.resident(), outcome.token);
   store(outcome.response.stress, stress);
   return std::move(outcome.verdict);
 }
@@ -223,8 +223,8 @@ std::vector<Hold> ThreadedPool::all_pending(std::uint64_t call) {
 
 /// The trial of each is pending and its state at hand, or Refused and nothing has changed. `places`: what the text
 /// calls the ids; without: by their index.
-void ThreadedPool::prepare(std::span<const Hold> holds, std::span<const std::int64_t> ids,
-                           std::span<const std::int64_t> places) {
+void ThreadedPool::expect_trials(std::span<const Hold> holds, std::span<const std::int64_t> ids,
+                                 std::span<const std::int64_t> places) {
   enum Pending : char { none, let_go, at_hand };
   std::vector<Pending> found(holds.size());
   team_.share(holds.size(), [&](std::size_t k) {
@@ -260,17 +260,36 @@ void ThreadedPool::commit(std::span<const std::int64_t> ids) {
   const AtWork working(*this);
   const std::uint64_t call = ++serial_;
   const std::vector<Hold> holds = ids.data() == nullptr ? all_pending(call) : held(ids, call);
-  prepare(holds, ids, {});
+  expect_trials(holds, ids, {});
   team_.share(holds.size(), [&](std::size_t k) {
     Resident& resident = holds[k].resident();
-    settle(resident, last_token(resident.tokens));
+    commit_trial(resident, last_token(resident.tokens));
   });
 }
 
-void ThreadedPool::prepare_commit(std::span<const std::int64_t> ids, std::span<const std::int64_t> places) {
+void ThreadedPool::prepare(Settling what, std::span<const std::int64_t> ids, std::span<const std::int64_t> places) {
   const AtWork working(*this);
   const std::uint64_t call = ++serial_;
-  prepare(ids.data() == nullptr ? all_pending(call) : held(ids, call), ids, places);
+  prepared_for_ = what;
+  prepared_.assign(ids.begin(), ids.end());
+  const std::vector<Hold> holds = ids.data() == nullptr ? all_pending(call) : held(ids, call);
+  if (ids.data() == nullptr)
+    for (std::size_t k = 0; k < slots_.size(); ++k)
+      if (slots_[k].resident && slots_[k].resident->pending) prepared_.push_back(slots_.ids().id_of(k));
+  if (what == Settling::commit) expect_trials(holds, prepared_, places);
+}
+
+void ThreadedPool::settle() noexcept {
+  if (prepared_for_ == Settling::give_up)
+    for (const std::int64_t id : prepared_) slots_.give_up(id);
+  else
+    team_.share(prepared_.size(), [this](std::size_t k) {
+      Resident& resident = *slots_[Id::of(prepared_[k]).slot].resident;
+      if (prepared_for_ == Settling::commit) return commit_trial(resident, last_token(resident.tokens));
+      resident.rve.revert();
+      resident.pending = false;
+    });
+  prepared_.clear();
 }
 
 bool ThreadedPool::is_pending(std::int64_t id) {

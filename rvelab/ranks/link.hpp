@@ -13,9 +13,9 @@ class Link {
   virtual ~Link() = default;
   virtual int ranks() const = 0;
   virtual void send(int rank, std::span<const std::byte> message) = 0;
-  /// The next message from that rank. What cannot be kept for want of memory is taken all the same and let go of
-  /// (std::bad_alloc).
-  virtual Bytes receive(int rank) = 0;
+  /// The next message from that rank, in the room that `message` has if that is enough. What cannot be kept for want
+  /// of memory is taken all the same and let go of (std::bad_alloc).
+  virtual void receive(int rank, Bytes& message) = 0;
   /// Throws Refused (bad_input) if this thread may not send.
   virtual void expect_thread() const = 0;
 };

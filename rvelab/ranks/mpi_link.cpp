@@ -63,10 +63,9 @@ class MpiLink final : public Link {
           "a message");
   }
 
-  Bytes receive(int rank) override {
+  void receive(int rank, Bytes& message) override {
     std::uint64_t length = 0;
     expect_success(MPI_Recv(&length, 1, MPI_UINT64_T, rank, tag, communicator_, MPI_STATUS_IGNORE), "a message");
-    Bytes message;
     try {
       message.resize(length);
     } catch (...) {
@@ -79,7 +78,6 @@ class MpiLink final : public Link {
       expect_success(MPI_Recv(message.data() + at, int(std::min<std::uint64_t>(piece, length - at)), MPI_BYTE, rank,
                               tag, communicator_, MPI_STATUS_IGNORE),
                      "a message");
-    return message;
   }
 
   void expect_thread() const override {

@@ -108,6 +108,11 @@ Bytes Served::answer(std::span<const std::byte> message) noexcept {
     try {
       Unpacker given(message);
       const auto number = given.take<std::int32_t>();
+      if (number == ShareCalls::number<&pool::Share::settle>()) {
+        share_->settle();
+        return std::move(settled_);
+      }
+      if (number == ShareCalls::number<&pool::Share::prepare>()) settled_ = answered(Status::ok, "", false).take();
       // Whether there is memory for an answer or not.
       if (number == ShareCalls::number<&pool::Share::forget_received>()) share_->forget_received();
       Packer found = answered(Status::ok, "", false);

@@ -44,6 +44,7 @@ class Served {
 
   std::unique_ptr<pool::Share> share_;
   std::vector<std::int64_t> tried_;  ///< ids of trials that no answer tells of yet
+  Bytes settled_;                    ///< the answer to Share::settle, made with that to Share::prepare
 };
 
 /// An answer opened, which allocates nothing: what it tells of has been done.

@@ -53,13 +53,24 @@ void RankedPool::close() {
   own_.share().close();
 }
 
+/// What an exchange asks for, so that it can be asked for before.
+struct RankedPool::Room {
+  Answers answers;
+  Messages received;  ///< by rank
+  std::vector<int> asked;
+
+  explicit Room(std::size_t ranks, std::size_t bytes = 0) : received(ranks) {
+    answers.reserve(ranks);
+    asked.reserve(ranks);
+    for (Bytes& each : received) each.reserve(bytes);
+  }
+};
+
+RankedPool::Answers RankedPool::exchange(const Messages& messages) { return exchange(messages, Room(messages.size())); }
+
 /// Sends each rank its message and works on that of the first meanwhile. The answers, by rank. All are taken whatever
 /// goes wrong, so that the next exchange begins anew.
-std::vector<std::pair<int, Answer>> RankedPool::exchange(const Messages& messages) {
-  std::vector<std::pair<int, Answer>> answers;
-  answers.reserve(messages.size());
-  std::vector<int> asked;
-  asked.reserve(messages.size());
+RankedPool::Answers RankedPool::exchange(const Messages& messages, Room room) {
   std::exception_ptr failure;
   const auto guarded = [&](const auto& step) {
     try {
@@ -73,12 +84,17 @@ std::vector<std::pair<int, Answer>> RankedPool::exchange(const Messages& message
     if (!messages[std::size_t(rank)].empty())
       guarded([&] {
         link_->send(rank, messages[std::size_t(rank)]);
-        asked.push_back(rank);
+        room.asked.push_back(rank);
       });
-  if (!messages[0].empty()) answers.emplace_back(0, Answer(own_.answer(messages[0])));
-  for (const int rank : asked) guarded([&] { answers.emplace_back(rank, Answer(link_->receive(rank))); });
+  if (!messages[0].empty()) room.answers.emplace_back(0, Answer(own_.answer(messages[0])));
+  for (const int rank : room.asked)
+    guarded([&] {
+      Bytes& received = room.received[std::size_t(rank)];
+      link_->receive(rank, received);
+      room.answers.emplace_back(rank, Answer(std::move(received)));
+    });
   if (failure) std::rethrow_exception(failure);
-  return answers;
+  return std::move(room.answers);
 }
 
 /// Refused as the first rank that refused was.
@@ -91,7 +107,9 @@ Answer RankedPool::answer_of(int rank, const Bytes& bytes) {
   if (rank == 0) return Answer(own_.answer(bytes));
   try {
     link_->send(rank, bytes);
-    return Answer(link_->receive(rank));
+    Bytes received;
+    link_->receive(rank, received);
+    return Answer(std::move(received));
   } catch (...) {
     broken_ = true;
     throw;
@@ -116,6 +134,36 @@ std::vector<std::vector<std::size_t>> RankedPool::by_rank(std::span<const std::i
     found[std::size_t(place.rank)].push_back(k);
   }
   return found;
+}
+
+/// For each rank that has some of the ids; trials of `ids` without data: for all ranks, all of each.
+RankedPool::Messages RankedPool::to_prepare(pool::Settling what, std::span<const std::int64_t> ids) {
+  Messages messages = no_messages();
+  const bool all = ids.data() == nullptr && what != pool::Settling::give_up;
+  const auto indices = by_rank(ids);
+  for (std::size_t rank = 0; rank < messages.size(); ++rank) {
+    if (!all && indices[rank].empty()) continue;
+    std::vector<std::int64_t> own, places;
+    for (const std::size_t k : indices[rank]) {
+      own.push_back(ids[k]);
+      places.push_back(std::int64_t(k));
+    }
+    const std::span<const std::int64_t> of = all ? std::span<const std::int64_t>() : std::span(own);
+    messages[rank] = message<&pool::Share::prepare>(what, of, places);
+  }
+  return messages;
+}
+
+/// All ranks do it or none: first each says that it can, then each does it, and neither it nor the first rank asks for
+/// memory.
+void RankedPool::settle(pool::Settling what, std::span<const std::int64_t> ids) {
+  const Messages first = to_prepare(what, ids);
+  Messages then(first.size(), message<&pool::Share::settle>());
+  for (std::size_t rank = 0; rank < first.size(); ++rank)
+    if (first[rank].empty()) then[rank].clear();
+  Room room(first.size(), answer_room);
+  expect_all_done(first);
+  exchange(then, std::move(room));
 }
 
 RankedPool::Messages RankedPool::to_others(const Bytes& message) const {
@@ -224,16 +272,11 @@ std::int64_t RankedPool::clone(std::int64_t source) {
 
 void RankedPool::release(std::span<const std::int64_t> ids) {
   const Lock lock = alone();
-  std::vector<bool> failed(population_.size(), false);
-  const auto answers = exchange(of_ids<&pool::Share::give_up>(ids));
-  for (const auto& [rank, answer] : answers) failed[std::size_t(rank)] = answer.failed();
-  for (const std::int64_t id : ids) {  // those of a rank without memory for the message stay
-    const auto rank = std::size_t(place_of(id).rank);
-    if (failed[rank]) continue;
-    --population_[rank];
+  settle(pool::Settling::give_up, ids);
+  for (const std::int64_t id : ids) {
+    --population_[std::size_t(place_of(id).rank)];
     ids_.give_back(id);
   }
-  for (const auto& [rank, answer] : answers) answer.expect_done();
 }
 
 std::vector<std::int64_t> RankedPool::ids() {

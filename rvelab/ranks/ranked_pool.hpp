@@ -56,7 +56,10 @@ class RankedPool final : public pool::Pool {
   Lock alone();
   Place& place_of(std::int64_t id) { return places_[ids_.slot_of(id)]; }
   Messages no_messages() const { return Messages(std::size_t(link_->ranks())); }
-  std::vector<std::pair<int, Answer>> exchange(const Messages& messages);
+  using Answers = std::vector<std::pair<int, Answer>>;
+  struct Room;
+  Answers exchange(const Messages& messages);
+  Answers exchange(const Messages& messages, Room room);
   void expect_all_done(const Messages& messages);
   Answer answer_of(int rank, const Bytes& message);
   Answer ask(int rank, const Bytes& message);
@@ -65,28 +68,8 @@ class RankedPool final : public pool::Pool {
   std::vector<std::int64_t> costs_at(int rank, std::span<const std::int64_t> ids);
   void make_room(std::size_t n);
   std::vector<std::vector<std::size_t>> by_rank(std::span<const std::int64_t> ids);
-  /// A call of `function` with the ids of each rank (and their places, if it takes them); without data: all of every
-  /// rank.
-  template <auto function>
-  Messages of_ids(std::span<const std::int64_t> ids) {
-    Messages messages = no_messages();
-    const bool all = ids.data() == nullptr;
-    const auto indices = by_rank(ids);
-    for (std::size_t rank = 0; rank < messages.size(); ++rank) {
-      if (!all && indices[rank].empty()) continue;
-      std::vector<std::int64_t> own, places;
-      for (const std::size_t k : indices[rank]) {
-        own.push_back(ids[k]);
-        places.push_back(std::int64_t(k));
-      }
-      const std::span<const std::int64_t> of = all ? std::span<const std::int64_t>() : std::span(own);
-      if constexpr (std::tuple_size_v<typename pool::SignatureOf<function>::Given> == 2)
-        messages[rank] = message<function>(of, places);
-      else
-        messages[rank] = message<function>(of);
-    }
-    return messages;
-  }
+  Messages to_prepare(pool::Settling what, std::span<const std::int64_t> ids);
+  void settle(pool::Settling what, std::span<const std::int64_t> ids);
   void balance(std::span<const std::int64_t> ids);
   void move(int from, int to, std::span<const std::int64_t> ids);
   void worked(Place& place, std::int64_t cost_at_rank) noexcept;

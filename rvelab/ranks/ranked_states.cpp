@@ -76,16 +76,18 @@ void RankedPool::read(const std::function<pool::Population(const TakeState& take
 
 void serve(Link& link, std::unique_ptr<pool::Share> share) {
   Served served(std::move(share));
+  Bytes message;
   while (true) {
-    Bytes message;
     try {
-      message = link.receive(0);
+      link.receive(0, message);
     } catch (const std::bad_alloc&) {
       link.send(0, {});  // as an answer that could not be made
       continue;
     }
-    if (Unpacker(message).take<RankCall>() == RankCall::end) return;
+    const auto number = Unpacker(message).take<std::int32_t>();
+    if (number == std::int32_t(RankCall::end)) return;
     link.send(0, served.answer(message));
+    if (number != ShareCalls::number<&pool::Share::prepare>()) message = Bytes();  // its room is that of the message to settle
   }
 }
 

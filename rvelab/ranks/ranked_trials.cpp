@@ -184,13 +184,12 @@ Verdict RankedPool::trial(const pool::Batch& batch) {
 
 void RankedPool::commit(std::span<const std::int64_t> ids) {
   const Lock lock = at_work();
-  expect_all_done(of_ids<&pool::Share::prepare_commit>(ids));  // all or none
-  expect_all_done(of_ids<&pool::Share::commit>(ids));
+  settle(pool::Settling::commit, ids);
 }
 
 void RankedPool::revert(std::span<const std::int64_t> ids) {
   const Lock lock = at_work();
-  expect_all_done(of_ids<&pool::Share::revert>(ids));
+  settle(pool::Settling::revert, ids);
 }
 
 /// RVEs of a batch to other ranks, if their work lies too uneven. One that cannot be moved stays.

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "rvelab/error.hpp"
 #include "rvelab/measure/measures.hpp"
@@ -41,6 +42,30 @@ Specimen in_units(Specimen s, double length, double force) {
   }
   s.state = {};
   return s;
+}
+
+/// Without the grains that touch fewer than two others. These fly freely from wall to wall of their cage, which
+/// multiplies round-off: two of 64 discs brought 3e-13 of p to 1e-10 in one increment.
+Specimen without_rattlers(const Specimen& s) {
+  std::vector<int> touching(s.grains.size(), 0), kept(s.grains.size(), -1);
+  for (const ContactState& contact : Rve(s).network().contacts)
+    ++touching[std::size_t(contact.i)], ++touching[std::size_t(contact.j)];
+  Specimen rest = s;
+  rest.grains = {};
+  for (std::size_t g = 0; g < s.grains.size(); ++g) {
+    if (touching[g] < 2) continue;
+    kept[g] = int(rest.grains.size());
+    rest.grains.id.push_back(s.grains.id[g]);
+    rest.grains.radius.push_back(s.grains.radius[g]);
+    rest.grains.material.push_back(s.grains.material[g]);
+    rest.grains.position.push_back(s.grains.position[g]);
+    rest.grains.velocity.push_back(s.grains.velocity[g]);
+    rest.grains.spin.push_back(s.grains.spin[g]);
+  }
+  for (Contact& contact : rest.contacts)
+    contact.i = kept[std::size_t(contact.i)], contact.j = kept[std::size_t(contact.j)];
+  std::erase_if(rest.contacts, [](const Contact& contact) { return contact.i < 0 || contact.j < 0; });
+  return rest;
 }
 
 const Matrix3& some_increment(int dimension) {
@@ -128,7 +153,7 @@ void powers_of_two(const Case& asked, Verdict& verdict) {
 void other_lengths(const Case& asked, Verdict& verdict) {
   const int d = int(asked("dimension"));
   const double length = asked("radius");
-  const Specimen s = in_units(usual(d, asked("hertz") != 0), 1, 1);
+  const Specimen s = without_rattlers(in_units(usual(d, asked("hertz") != 0), 1, 1));
   Tested plain(s, verdict), scaled(in_units(s, length, length * length), verdict);
   const double p = plain.pressure();
   for (int k = 0; k < 10; ++k) {  // 0.02 % strain, over which round-off has not grown (solver/README.md)

@@ -26,7 +26,7 @@ class LocalRanks final : public Link {
     if (Unpacker(message).take<RankCall>() == RankCall::end) return;
     answers_[std::size_t(rank)] = others_[std::size_t(rank) - 1]->answer(message);
   }
-  Bytes receive(int rank) override { return std::move(answers_[std::size_t(rank)]); }
+  void receive(int rank, Bytes& message) override { message = std::move(answers_[std::size_t(rank)]); }
   void expect_thread() const override {}
 
  private:

@@ -92,6 +92,73 @@ TEST_CASE("Without memory at any request of any rank a call is refused and leave
   }
 }
 
+TEST_CASE("Without memory at any request of any rank a commit, revert or release is made by all ranks or by none") {
+  const auto ranks = GENERATE(1, 3);
+  const auto memory = GENERATE(pool::TrialMemory::keep, pool::TrialMemory::recompute);
+  const auto everything = GENERATE(false, true);  // all that are pending, or those named
+  pool::Options options = one_thread();
+  options.trial_memory = memory;
+  const auto pool = over(ranks, options);
+  const std::int64_t made = pool->add_template(packed(3));
+  const std::vector<double> gradients = Draw(3).gradients(5, 1e-4);
+  std::vector<std::int64_t> ids(5);
+  const auto seen = [&] {
+    std::vector<std::vector<std::byte>> states;
+    for (const std::int64_t id : ids) states.push_back(pool->at<&pool::Share::save>(id));
+    return states;
+  };
+  pool->spawn(made, 5, ids.data());
+  const auto before = seen();
+  trial(*pool, ids, gradients);
+  pool->commit(ids);
+  const auto committed = seen();
+  const std::span<const std::int64_t> named = everything ? std::span<const std::int64_t>() : std::span(ids);
+  enum What { commit, revert, release };
+  for (const What what : {commit, revert, release}) {
+    long refused = 0;
+    bool enough = false;
+    for (long n = 1; !enough; ++n) {
+      CAPTURE(ranks, int(memory), int(what), n);
+      pool->release(ids);
+      pool->spawn(made, 5, ids.data());
+      trial(*pool, ids, gradients);
+      const auto call = [&] {
+        if (what == release) return pool->release(ids);
+        what == commit ? pool->commit(named) : pool->revert(named);
+      };
+      bool done = true;
+      allocations_left = n;
+      try {
+        call();
+      } catch (const std::bad_alloc&) {
+        done = false;
+      } catch (const pool::Refused& reason) {
+        done = reason.status != pool::Status::no_memory;
+      }
+      enough = allocations_left > 0;
+      allocations_left = 0;
+      if (!done) {
+        ++refused;
+        REQUIRE(pool->ids() == ids);
+        REQUIRE((seen() == before));
+        if (what == revert) pool->commit(ids);  // each trial is pending still
+        if (what == revert) REQUIRE((seen() == committed));
+        if (what != revert) call();
+      }
+      if (what == commit) REQUIRE((seen() == committed));
+      if (what == revert && done) {
+        REQUIRE((seen() == before));
+        CHECK_THROWS_AS(pool->commit(std::span(ids).first(1)), pool::Refused);
+      }
+      if (what == release) {
+        REQUIRE(pool->ids().empty());
+        pool->spawn(made, 5, ids.data());
+      }
+    }
+    CHECK(refused > 0);
+  }
+}
+
 TEST_CASE("A batch over ranks without memory tells of each RVE what became of it") {
   const auto pool = over(3, one_thread());
   const std::int64_t made = pool->add_template(packed(3));

@@ -1,0 +1,154 @@
+#!/usr/bin/python3
+"""Cells under large strain: thin.py RVELAB WORK [PART...]. Parts: rate, rest, pure (default: all).
+
+rate: a specimen of every recipe (of spheres: 200 grains, whose cell is thin the sooner) sheared v_x(y), in space v_x(z),
+to gamma = 1e4 at dt > 0. rest: to 300 at dt = 0 by the loosest tolerance, 100 discs or 200 spheres. Printed: records,
+those of a thin cell (a height below four mean diameters), heights of the last cell over the mean diameter.
+pure: five upright and five oriented specimens of loose discs, compressed at constant volume to a Hencky strain of 2: p and
+sin phi by strain, of the records that are not flagged as thin; which are.
+
+Bars: no thin cell in simple shear. In pure shear every record of a thin cell is flagged and told, and p and sin phi of
+the others are within three standard errors of those of oriented cells.
+"""
+import pathlib
+import subprocess
+import sys
+import time
+
+import h5py
+import numpy as np
+
+PROTOCOLS = pathlib.Path("protocols").resolve()
+RECIPES = sorted(path.stem for path in PROTOCOLS.glob("pack_*.toml"))
+SPHERES = ("pack_hertz", "pack_mixture", "pack_qu282", "pack_qu371", "pack_qu548", "pack_qu738")
+# Grains of the Qu recipes have no pressure to give a rate by: v = rate d is 1 m/s.
+SHEAR = """[test]
+name = "large strain"
+[loading]
+mode = "{mode}"
+{rate}
+[solver]
+max_overlap_ratio = 1
+relative_tolerance = 1
+[[stage]]
+kind = "{kind}"
+to_strain = {strain}
+record_every = {every}
+{more}
+"""
+
+
+def call(*words):
+    answer = subprocess.run([str(word) for word in words], capture_output=True, text=True)
+    return answer.returncode, answer.stderr.strip()
+
+
+def packed(program, work, recipe, *settings):
+    file = work / ("_".join([recipe, *(each.split("=")[1] for each in settings)]) + ".h5")
+    if not file.exists():
+        code, errors = call(program, "pack", PROTOCOLS / f"{recipe}.toml", "-o", file, "--threads", 1,
+                            *(word for each in settings for word in ("--set", each)))
+        if code != 0:
+            raise SystemExit(f"thin: {recipe}: {errors[-300:]}")
+    return sorted(work.glob(file.stem + "_*Pa.h5"))[:1][0] if not file.exists() else file
+
+
+def run(program, work, specimen, **scene):
+    """The records, the last specimen's heights over the mean diameter, and what was said."""
+    test, out = work / "test.toml", work / "R.h5"
+    test.write_text(SHEAR.format(**scene))
+    code, errors = call(program, "run", test, "--specimen", specimen, "-o", out, "--force")
+    if not out.exists():
+        return None, None, errors
+    with h5py.File(out) as file:
+        records = {name: file["records"][name][:] for name in ("strain", "stress_Pa", "cell_thin")}
+        lattice, radius = file["specimen/cell/lattice_m"][:], file["specimen/grains/radius_m"][:]
+    inverse = np.linalg.inv(lattice)
+    dimension = 2 if np.ptp(records["stress_Pa"][:, 2, 2]) == 0 else 3
+    out.unlink()
+    return records, 1 / np.linalg.norm(inverse, axis=1)[:dimension] / (2 * radius.mean()), errors if code else ""
+
+
+def simple_shear(program, work, at_rate):
+    print(f"simple shear at dt {'> 0 to 1e4' if at_rate else '= 0 to 300'}: recipe, grains, records, thin, last heights/d, seconds")
+    missed = 0
+    for recipe in RECIPES:
+        sphere = recipe in SPHERES
+        number = ["pack.number=200"] if sphere else [] if at_rate else ["pack.number=100", "target.void_ratio_tolerance=0.02"]
+        if recipe == "pack_regular":
+            number = []
+        specimen = packed(program, work, recipe, *number)
+        rate = "" if not at_rate else "rate_1_s = 5" if "qu" in recipe else "inertial_number = 0.3"
+        begun = time.monotonic()
+        records, heights, errors = run(program, work, specimen, mode="physical" if at_rate else "quasi_static", rate=rate,
+                                       kind="simple_shear", strain=1e4 if at_rate else 300, every=1 if at_rate else 0.1, more="")
+        seconds = time.monotonic() - begun
+        if records is None or errors:
+            print(f"{recipe:14} {errors[-300:]}", flush=True)
+            missed += 1
+        if records is None:
+            continue
+        thin = int(records["cell_thin"].sum())
+        print(f"{recipe:14} {number[0][12:] if number else 'all':4} {len(records['strain']):6} {thin:6}  "
+              f"{' '.join(f'{each:6.2f}' for each in heights)} {seconds:8.0f}", flush=True)
+        missed += thin > 0
+    return missed
+
+
+def pure_shear(program, work, at_rate):
+    print(f"pure shear at constant volume, dt {'> 0' if at_rate else '= 0'}: Hencky strain; upright, oriented: records, thin, "
+          "p, sin phi; differences over their standard errors")
+    edges, found = np.linspace(0, 2, 11), {}
+    missed = 0
+    for cell in ("upright", "oriented"):
+        found[cell] = []
+        for seed in range(1, 6):
+            specimen = packed(program, work, "pack_loose", f"pack.cell={cell}", f"pack.seed={seed}")
+            records, _, errors = run(program, work, specimen, mode="physical" if at_rate else "quasi_static",
+                                     rate="inertial_number = 0.1" if at_rate else "", kind="compression",
+                                     strain=1 - np.exp(-2), every=0.0025, more='lateral = "constant_volume"')
+            if records is None or errors:
+                print(f"  {cell} {seed}: {errors[-300:]}", flush=True)
+            found[cell].append(records)
+    for low, high in zip(edges[:-1], edges[1:]):
+        line, means = f"  {low:.1f} to {high:.1f}", {}
+        for cell, runs in found.items():
+            values, count, thin = [], 0, 0
+            for records in runs:
+                hencky = -np.log(1 - records["strain"])
+                inside = (hencky > low) & (hencky <= high + 1e-9)
+                count, thin = count + int(inside.sum()), thin + int((inside & records["cell_thin"]).sum())
+                whole = inside & ~records["cell_thin"].astype(bool)
+                if not whole.any():
+                    continue
+                stress = -records["stress_Pa"][whole][:, :2, :2]
+                p = np.trace(stress, axis1=1, axis2=2) / 2
+                q = np.hypot((stress[:, 1, 1] - stress[:, 0, 0]) / 2, stress[:, 0, 1])
+                values.append((p.mean(), q.mean() / p.mean()))
+            means[cell] = np.array(values)
+            line += f"   {count:4} {thin:4}" + (" {:9.4g} {:6.3f}".format(*means[cell].mean(axis=0)) if values else 17 * " ")
+        if all(len(each) > 1 for each in means.values()):
+            apart = means["upright"].mean(axis=0) - means["oriented"].mean(axis=0)
+            error = np.sqrt(sum(each.var(axis=0, ddof=1) / len(each) for each in means.values()))
+            line += "   {:5.1f} {:5.1f}".format(*(apart / error))
+            missed += bool((abs(apart) > 3 * error).any())
+        print(line, flush=True)
+    return missed
+
+
+def main():
+    program, work = str(pathlib.Path(sys.argv[1]).resolve()), pathlib.Path(sys.argv[2]).resolve()
+    parts = sys.argv[3:] or ["rate", "rest", "pure"]
+    work.mkdir(parents=True, exist_ok=True)
+    missed = 0
+    if "pure" in parts:
+        missed += pure_shear(program, work, True) + pure_shear(program, work, False)
+    if "rate" in parts:
+        missed += simple_shear(program, work, True)
+    if "rest" in parts:
+        missed += simple_shear(program, work, False)
+    if missed:
+        sys.exit("thin: bars missed")
+
+
+main()
