@@ -6,16 +6,16 @@
  * dH      nine doubles, row-major, dH_ij = d(du_i)/dx_j over the step, laboratory frame, finite: F_inc = I + dH, spin
  *         included. A host that truncates a rotation inflates the volume by |dH|^2/2 a step: send the exponential.
  * sigma   nine doubles, row-major, Pa, laboratory frame, Cauchy, tension positive. SI units throughout. Symmetric to
- *         some 1e-5 of the mean pressure at dt = 0: what the grains lack in balance of torques.
- * dt      s. dt > 0: physical time, real inertia and rate. dt = 0: quasi-static, the RVE picks its own pace within its
- *         tolerance.
- * 2D      a slab of grains in the plane x, y: the z-components of dH must be zero (within 1e-12 + 1e-9 max|dH|), and
- *         those of sigma are.
+ *         some 1e-5 of the mean pressure at dt = 0: the torques on grains balance only within the tolerance.
+ * dt      s. dt > 0: physical time, real inertia and rate. dt = 0: quasi-static, the RVE chooses its sub-steps within
+ *         its tolerance.
+ * 2D      a slab of grains in the plane x, y: the z-components of dH must be zero (within 1e-12 + 1e-9 max|dH|); those
+ *         of sigma are zero.
  *
  * Every call returns a status: RVELAB_OK, a warning above it (the result is usable), RVELAB_DISCARD or an error below
- * it (the RVE is as before, and nothing is written but what the call says). rvelab_last_error() then names the cause
- * and the remedy. Nothing exits, prints or throws across this interface. Calls run in the default floating-point
- * environment, and that of the host is restored.
+ * it (the RVE is as before, and the call writes only the outputs that it names). rvelab_last_error() then gives cause
+ * and remedy. Nothing exits, prints or throws across this interface. Calls run in the default floating-point
+ * environment and restore that of the host.
  *
  * Threads: calls on different ids of one pool may run at once. Two calls on one id, or a call for population or files
  * beside any other call of the pool, return RVELAB_E_BUSY. Results do not depend on the number of workers. A child
@@ -82,7 +82,7 @@ int64_t rvelab_capabilities(void);
 #define RVELAB_E_NO_TRIAL (-7)      /* commit of an RVE without a pending trial */
 #define RVELAB_E_BUSY (-8)          /* another call is at work on it */
 #define RVELAB_E_FORKED (-9)        /* the pool belongs to the parent process */
-#define RVELAB_E_MEMORY (-10)       /* no memory was to be had */
+#define RVELAB_E_MEMORY (-10)       /* there is not enough memory */
 #define RVELAB_E_UNSUPPORTED (-11)  /* a field, flag or value of a later version */
 #define RVELAB_E_BUFFER (-12)       /* the buffer is too small; the size needed was written */
 #define RVELAB_E_SNAPSHOT (-13)     /* damaged, or of another build */
@@ -148,11 +148,11 @@ int32_t rvelab_pool_destroy(rvelab_pool* pool);
 /* From a specimen file, or the end state of a record file. Needs librvelab-h5.so beside this library. */
 int32_t rvelab_template_load(rvelab_pool* pool, const char* path, int64_t* tmpl);
 
-/* From the bytes of rvelab_snapshot_save. The options of the pool are laid over those of the specimen. */
+/* From the bytes of rvelab_snapshot_save. Options of the pool override those of the specimen. */
 int32_t rvelab_template_from_snapshot(rvelab_pool* pool, const void* buf, size_t size, int64_t* tmpl);
 
-/* Ends a template, since 1.1; the RVEs that were made from it stay. Its number is not given out again: RVELAB_E_ID from
- * then on, as any number that is no template of this pool. */
+/* Ends a template, since 1.1; RVEs made from it stay. Its number is not used again: from then on it is RVELAB_E_ID, as is
+ * any number that is no template of this pool. */
 int32_t rvelab_template_release(rvelab_pool* pool, int64_t tmpl);
 
 /* n RVEs in the state of the template, each its own from now on; ids[n] is written. All or none. n = 0 is allowed. */
@@ -225,10 +225,10 @@ int32_t rvelab_trial(rvelab_pool* pool, rvelab_batch* batch);
  * first, all or none: RVELAB_E_NO_TRIAL if one has none. */
 int32_t rvelab_commit(rvelab_pool* pool, int64_t n, const int64_t* ids);
 
-/* The pending trials of n RVEs are let go of; one without stays as it is. ids null: all. All ids are checked first. */
+/* Discards the pending trials of n RVEs; one without stays as it is. ids null: all. All ids are checked first. */
 int32_t rvelab_revert(rvelab_pool* pool, int64_t n, const int64_t* ids);
 
-/* ---- looking ---- */
+/* ---- measures ---- */
 
 /* Of the committed state, whether a trial is pending or not. Tensors row-major, laboratory frame unless said. */
 typedef struct rvelab_info {
@@ -254,7 +254,7 @@ typedef struct rvelab_info {
   int64_t grain_steps;           /* grains times sub-steps that led to this state since its specimen was made */
   int64_t bytes_resting;         /* held by the RVE at rest, without what its copies share */
   int64_t bytes_trial;           /* held by its pending trial; 0 without */
-  int64_t bytes_working;         /* what it holds beyond while it is kept ready for the next call; 0 at rest */
+  int64_t bytes_working;         /* held beside that between calls in quick succession; 0 at rest */
   int64_t token;                 /* of the committed state */
 } rvelab_info;
 
@@ -277,7 +277,7 @@ int32_t rvelab_cost(rvelab_pool* pool, int64_t n, const int64_t* ids, int64_t* g
 /* *need (not null): bytes of the snapshot. buf null with cap = 0: only that. RVELAB_E_BUFFER if cap < *need. */
 int32_t rvelab_snapshot_save(rvelab_pool* pool, int64_t id, void* buf, size_t cap, size_t* need);
 
-/* The RVE takes the state of the snapshot, of any specimen; a pending trial is let go of. */
+/* The RVE takes the state of the snapshot, of any specimen; a pending trial is discarded. */
 int32_t rvelab_snapshot_load(rvelab_pool* pool, int64_t id, const void* buf, size_t size);
 
 /* All RVEs, with ids and tokens; templates are not written. An existing file is replaced as a whole, or not at all. */

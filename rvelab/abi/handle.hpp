@@ -10,8 +10,8 @@
 #include <rvelab/rvelab.h>
 #pragma GCC visibility pop
 
-#include "rvelab/abi/wall.hpp"
-#include "rvelab/pool/pool.hpp"
+#include "rvelab/abi/c_boundary.hpp"
+#include "rvelab/pool/threaded_pool.hpp"
 
 namespace rvelab::abi {
 

@@ -57,7 +57,7 @@ std::unique_ptr<pool::Share> open_share(const pool::Options& options) {
 }
 
 std::int32_t give_pool(const rvelab_pool_def* def, void* self, MakePool make, rvelab_pool** pool) noexcept {
-  return behind_wall([&] {
+  return at_c_boundary([&] {
     std::unique_ptr<pool::Pool> made = make(self, [&] {
       expect_pointer(pool, "pool");
       return options_of(def);
@@ -78,21 +78,21 @@ using namespace rvelab;
 using namespace rvelab::abi;
 
 int32_t rvelab_pool_def_init(rvelab_pool_def* def, size_t struct_size) {
-  return behind_wall([&] {
+  return at_c_boundary([&] {
     expect_pointer(def, "def");
     init_struct(def, struct_size);
   });
 }
 
 int32_t rvelab_pool_create(const rvelab_pool_def* def, rvelab_pool** pool) {
-  return behind_wall([&] {
+  return at_c_boundary([&] {
     expect_pointer(pool, "pool");
     *pool = handle_of(std::make_unique<pool::ThreadedPool>(options_of(def)));
   });
 }
 
 int32_t rvelab_pool_destroy(rvelab_pool* pool) {
-  return behind_wall([&] {
+  return at_c_boundary([&] {
     if (pool == nullptr) return;
     pool_of(pool).close();
     delete &pool_of(pool);
@@ -100,7 +100,7 @@ int32_t rvelab_pool_destroy(rvelab_pool* pool) {
 }
 
 int32_t rvelab_template_load(rvelab_pool* pool, const char* path, int64_t* tmpl) {
-  return behind_wall([&] {
+  return at_c_boundary([&] {
     pool::Pool& of = pool_of(pool);
     expect_pointer(path, "path");
     expect_pointer(tmpl, "tmpl");
@@ -110,7 +110,7 @@ int32_t rvelab_template_load(rvelab_pool* pool, const char* path, int64_t* tmpl)
 }
 
 int32_t rvelab_template_from_snapshot(rvelab_pool* pool, const void* buf, size_t size, int64_t* tmpl) {
-  return behind_wall([&] {
+  return at_c_boundary([&] {
     pool::Pool& of = pool_of(pool);
     expect_pointer(buf, "buf");
     expect_pointer(tmpl, "tmpl");
@@ -120,11 +120,11 @@ int32_t rvelab_template_from_snapshot(rvelab_pool* pool, const void* buf, size_t
 }
 
 int32_t rvelab_template_release(rvelab_pool* pool, int64_t tmpl) {
-  return behind_wall([&] { pool_of(pool).release_template(tmpl); });
+  return at_c_boundary([&] { pool_of(pool).everywhere<&pool::Share::release_template>(tmpl); });
 }
 
 int32_t rvelab_spawn(rvelab_pool* pool, int64_t tmpl, int64_t n, int64_t* ids) {
-  return behind_wall([&] {
+  return at_c_boundary([&] {
     pool::Pool& of = pool_of(pool);
     if (n > 0) expect_pointer(ids, "ids");
     of.spawn(tmpl, n, ids);
@@ -132,7 +132,7 @@ int32_t rvelab_spawn(rvelab_pool* pool, int64_t tmpl, int64_t n, int64_t* ids) {
 }
 
 int32_t rvelab_clone(rvelab_pool* pool, int64_t src, int64_t* dst) {
-  return behind_wall([&] {
+  return at_c_boundary([&] {
     pool::Pool& of = pool_of(pool);
     expect_pointer(dst, "dst");
     *dst = of.clone(src);
@@ -140,11 +140,11 @@ int32_t rvelab_clone(rvelab_pool* pool, int64_t src, int64_t* dst) {
 }
 
 int32_t rvelab_release(rvelab_pool* pool, int64_t n, const int64_t* ids) {
-  return behind_wall([&] { pool_of(pool).release(ids_of(n, ids)); });
+  return at_c_boundary([&] { pool_of(pool).release(ids_of(n, ids)); });
 }
 
 int32_t rvelab_ids(rvelab_pool* pool, int64_t cap, int64_t* ids, int64_t* n) {
-  return behind_wall([&] {
+  return at_c_boundary([&] {
     pool::Pool& of = pool_of(pool);
     expect_pointer(n, "n");
     if (cap < 0) throw Refused(Status::bad_input, "rvelab_ids: cap is " + std::to_string(cap) + "; allowed: 0 or more");

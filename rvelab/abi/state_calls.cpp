@@ -1,4 +1,4 @@
-// Looking at RVEs, their snapshots, files of pools. Declared in handle.hpp.
+// Measures and snapshots of RVEs, files of pools. Declared in handle.hpp.
 #include <algorithm>
 
 #include "rvelab/abi/file_library.hpp"
@@ -10,19 +10,17 @@ using namespace rvelab::abi;
 
 namespace {
 
-using Rows = Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
-
 rvelab_info info_of(const pool::Info& found) {
   rvelab_info info{};
-  info.dimension = found.cell.dimension;
+  info.dimension = found.dimension;
   info.grains = std::int64_t(found.grains);
   info.contacts = std::int64_t(found.contacts);
-  Rows(info.lattice) = found.cell.lattice;
-  Rows(info.rotation) = found.cell.rotation;
-  info.volume = found.cell.volume();
+  std::ranges::copy(found.lattice, info.lattice);
+  std::ranges::copy(found.rotation, info.rotation);
+  info.volume = found.volume;
   info.void_ratio = found.void_ratio;
   info.coordination_number = found.coordination_number;
-  Rows(info.fabric) = found.fabric;
+  std::ranges::copy(found.fabric, info.fabric);
   info.fabric_anisotropy = found.fabric_anisotropy;
   info.sliding_fraction = found.sliding_fraction;
   info.p = found.p;
@@ -42,26 +40,26 @@ rvelab_info info_of(const pool::Info& found) {
 }  // namespace
 
 int32_t rvelab_info_init(rvelab_info* info, size_t struct_size) {
-  return behind_wall([&] {
+  return at_c_boundary([&] {
     expect_pointer(info, "info");
     init_struct(info, struct_size);
   });
 }
 
 int32_t rvelab_get_info(rvelab_pool* pool, int64_t id, rvelab_info* info) {
-  return behind_wall([&] {
+  return at_c_boundary([&] {
     pool::Pool& of = pool_of(pool);
     expect_pointer(info, "info");
     const std::size_t size = checked_size(info);
     expect_no_flags(info->flags, Layout<rvelab_info>::name);
-    rvelab_info found = info_of(of.info(id));
+    rvelab_info found = info_of(of.at<&pool::Share::info>(id));
     found.struct_size = std::uint32_t(size);
     std::memcpy(static_cast<void*>(info), &found, std::min(size, sizeof found));
   });
 }
 
 int32_t rvelab_cost(rvelab_pool* pool, int64_t n, const int64_t* ids, int64_t* grain_steps) {
-  return behind_wall([&] {
+  return at_c_boundary([&] {
     pool::Pool& of = pool_of(pool);
     const auto asked = ids_of(n, ids);
     if (n > 0) expect_pointer(grain_steps, "grain_steps");
@@ -70,11 +68,11 @@ int32_t rvelab_cost(rvelab_pool* pool, int64_t n, const int64_t* ids, int64_t* g
 }
 
 int32_t rvelab_snapshot_save(rvelab_pool* pool, int64_t id, void* buf, size_t cap, size_t* need) {
-  return behind_wall([&] {
+  return at_c_boundary([&] {
     pool::Pool& of = pool_of(pool);
     expect_pointer(need, "need");
     if (cap > 0) expect_pointer(buf, "buf");
-    const std::vector<std::byte> bytes = of.save(id);
+    const std::vector<std::byte> bytes = of.at<&pool::Share::save>(id);
     *need = bytes.size();
     if (buf == nullptr) return;
     if (cap < bytes.size())
@@ -85,15 +83,15 @@ int32_t rvelab_snapshot_save(rvelab_pool* pool, int64_t id, void* buf, size_t ca
 }
 
 int32_t rvelab_snapshot_load(rvelab_pool* pool, int64_t id, const void* buf, size_t size) {
-  return behind_wall([&] {
+  return at_c_boundary([&] {
     pool::Pool& of = pool_of(pool);
     expect_pointer(buf, "buf");
-    of.load(id, {static_cast<const std::byte*>(buf), size});
+    of.at<&pool::Share::load>(id, std::span(static_cast<const std::byte*>(buf), size));
   });
 }
 
 int32_t rvelab_pool_write(rvelab_pool* pool, const char* path) {
-  return behind_wall([&] {
+  return at_c_boundary([&] {
     pool::Pool& of = pool_of(pool);
     expect_pointer(path, "path");
     of.expect_this_process();
@@ -102,7 +100,7 @@ int32_t rvelab_pool_write(rvelab_pool* pool, const char* path) {
 }
 
 int32_t rvelab_pool_read(rvelab_pool* pool, const char* path) {
-  return behind_wall([&] {
+  return at_c_boundary([&] {
     pool::Pool& of = pool_of(pool);
     expect_pointer(path, "path");
     of.expect_this_process();

@@ -6,7 +6,7 @@ using namespace rvelab;
 using namespace rvelab::abi;
 
 int32_t rvelab_apply(rvelab_pool* pool, int64_t id, const double* dH, double dt, double* sigma) {
-  return behind_wall([&] {
+  return at_c_boundary([&] {
     pool::Pool& of = pool_of(pool);
     expect_pointer(dH, "dH");
     expect_pointer(sigma, "sigma");
@@ -17,14 +17,14 @@ int32_t rvelab_apply(rvelab_pool* pool, int64_t id, const double* dH, double dt,
 }
 
 int32_t rvelab_batch_init(rvelab_batch* batch, size_t struct_size) {
-  return behind_wall([&] {
+  return at_c_boundary([&] {
     expect_pointer(batch, "batch");
     init_struct(batch, struct_size);
   });
 }
 
 int32_t rvelab_trial(rvelab_pool* pool, rvelab_batch* batch) {
-  return behind_wall([&] {
+  return at_c_boundary([&] {
     pool::Pool& of = pool_of(pool);
     expect_pointer(batch, "batch");
     const rvelab_batch given = read_struct(batch);
@@ -52,14 +52,14 @@ int32_t rvelab_trial(rvelab_pool* pool, rvelab_batch* batch) {
 }
 
 int32_t rvelab_commit(rvelab_pool* pool, int64_t n, const int64_t* ids) {
-  return behind_wall([&] {
+  return at_c_boundary([&] {
     pool::Pool& of = pool_of(pool);
     of.commit(ids == nullptr ? std::span<const std::int64_t>() : ids_of(n, ids));
   });
 }
 
 int32_t rvelab_revert(rvelab_pool* pool, int64_t n, const int64_t* ids) {
-  return behind_wall([&] {
+  return at_c_boundary([&] {
     pool::Pool& of = pool_of(pool);
     of.revert(ids == nullptr ? std::span<const std::int64_t>() : ids_of(n, ids));
   });

@@ -1,10 +1,11 @@
-// A pool of RVEs: population, trials, states. What a host calls by way of rvelab/abi, as values and exceptions.
+// A pool of RVEs: population, trials, states. A host calls it through rvelab/abi; here it has values and exceptions.
 //
-// Calls that work on RVEs may run at once; each holds the RVEs that it works on, and one that is held is busy to all
-// others. Calls for population and files are alone in the pool, or busy. All calls throw Refused, add_template
-// and load InputError, apply InvalidIncrement and IncrementFailed too; what they change is then as it was.
+// Calls that work on RVEs may run at once; each holds its RVEs, and others find these busy. Calls for population and
+// files run alone in the pool, or find it busy. All calls throw Refused, add_template and load InputError, apply
+// InvalidIncrement and IncrementFailed too; what they change is then as it was.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <span>
@@ -55,12 +56,13 @@ struct Verdict {
   std::string text;
 };
 
-/// Of a committed state; see rvelab_info.
+/// Of a committed state; see rvelab_info. Tensors are row-major. It travels as its bytes (calls.hpp).
 struct Info {
-  Cell cell;
+  std::int64_t dimension = 0;
   std::size_t grains = 0, contacts = 0;
-  double void_ratio = 0, coordination_number = 0;
-  Matrix3 fabric = Matrix3::Zero();
+  std::array<double, 9> lattice{}, rotation{};
+  double volume = 0, void_ratio = 0, coordination_number = 0;
+  std::array<double, 9> fabric{};
   double fabric_anisotropy = 0, sliding_fraction = 0, p = 0, q = 0, unbalanced_force_ratio = 0, inertial_number = 0;
   double permeability_ratio = 0, min_height_ratio = 0;
   std::uint64_t grain_steps = 0;
@@ -75,7 +77,11 @@ struct Population {
   std::vector<std::int64_t> ids;
 };
 
-/// Where the RVEs live is the matter of those who implement it.
+class Share;
+class TravellingCall;
+
+/// Those who implement it decide where the RVEs live. What is declared here they do each in its own way; any other call
+/// is a function of Share, which `at` and `everywhere` take to the RVE.
 class Pool {
  public:
   using StateOf = std::function<std::vector<std::byte>(std::size_t)>;  ///< of the k-th id of a population
@@ -87,7 +93,6 @@ class Pool {
   Pool& operator=(const Pool&) = delete;
 
   virtual std::int64_t add_template(Specimen specimen) = 0;
-  virtual void release_template(std::int64_t of_template) = 0;
   virtual void spawn(std::int64_t of_template, std::int64_t n, std::int64_t* ids) = 0;
   virtual std::int64_t clone(std::int64_t source) = 0;
   virtual void release(std::span<const std::int64_t> ids) = 0;
@@ -101,11 +106,8 @@ class Pool {
   virtual void commit(std::span<const std::int64_t> ids) = 0;
   virtual void revert(std::span<const std::int64_t> ids) = 0;
 
-  virtual Info info(std::int64_t id) = 0;
   virtual void cost(std::span<const std::int64_t> ids, std::int64_t* grain_steps) = 0;
 
-  virtual std::vector<std::byte> save(std::int64_t id) = 0;
-  virtual void load(std::int64_t id, std::span<const std::byte> snapshot) = 0;
   /// Shows the population, then the bytes of each RVE (to_bytes(RveState)) in the order of its ids.
   virtual void write(const std::function<void(const Population&, const StateOf&)>& writer) = 0;
   /// Takes a population and the bytes of each RVE. The pool must be without RVEs.
@@ -115,6 +117,18 @@ class Pool {
   virtual void expect_this_process() const = 0;
   /// The last call before the end: Refused (busy) while another is at work; all later ones are busy.
   virtual void close() = 0;
+
+  /// What `function`(id, arguments...) of the share that holds the RVE returns; the function stands in ShareCalls.
+  template <auto function, class... Arguments>
+  auto at(std::int64_t id, const Arguments&... arguments);
+  /// What `function`(arguments...) of every share returns, the host's own being the last: until then the call can be
+  /// made again, and shares where it is made already refuse it with bad_id, which counts as done.
+  template <auto function, class... Arguments>
+  auto everywhere(const Arguments&... arguments);
+
+ private:
+  virtual void make_at(std::int64_t id, TravellingCall& call) = 0;
+  virtual void make_everywhere(TravellingCall& call) = 0;
 };
 
 }  // namespace rvelab::pool

@@ -37,7 +37,7 @@ void ThreadedPool::load(std::int64_t id, std::span<const std::byte> snapshot) {
   const AtWork working(*this);
   const Hold hold = held(id, ++serial_);
   std::unique_ptr<Resident> read = opened(rve_state_of(snapshot));
-  hold.slot().awake.store(false, std::memory_order_relaxed);
+  hold.slot().allocated.store(false, std::memory_order_relaxed);
   std::swap(hold.slot().resident, read);
 }
 

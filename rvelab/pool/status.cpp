@@ -28,7 +28,7 @@ Status status_of_exception(char* text, std::size_t size) noexcept {
   } catch (const InputError& error) {
     return told(Status::bad_input, error.what(), text, size);
   } catch (const std::bad_alloc&) {
-    return told(Status::no_memory, "no memory was to be had; free some, or use fewer RVEs or smaller ones", text, size);
+    return told(Status::no_memory, "there is not enough memory; free some, or use fewer or smaller RVEs", text, size);
   } catch (const std::length_error&) {
     return told(Status::no_memory, "more memory was asked for than there can be; use fewer RVEs", text, size);
   } catch (const std::exception& error) {

@@ -36,7 +36,7 @@ enum class Status : std::int32_t {
 constexpr bool is_error(Status status) { return status < Status::discard; }
 
 /// Order of statuses: error > DISCARD > warning > OK.
-constexpr int gravity(Status status) {
+constexpr int severity(Status status) {
   if (status == Status::ok) return 0;
   if (status > Status::ok) return 1;
   return status == Status::discard ? 2 : 3;

@@ -35,7 +35,7 @@ constexpr long long_call = 100;
 
 double void_ratio_of(const Rve& rve) { return void_ratio(rve.network()); }
 
-void lay_over(const Options& options, Specimen& specimen) {
+void override_settings(Specimen& specimen, const Options& options) {
   SolverOptions& solver = specimen.solver;
   if (options.tolerance_rel > 0) solver.relative_tolerance = options.tolerance_rel;
   if (options.tolerance_abs > 0) solver.absolute_tolerance = options.tolerance_abs;
@@ -107,13 +107,13 @@ std::vector<Hold> ThreadedPool::held(std::span<const std::int64_t> ids, std::uin
   return holds;
 }
 
-/// An RVE that was called stays awake for the next call, so that steps of a few sub-steps do not pay for waking. It
+/// An RVE that was called stays allocated for the next call, so that steps of a few sub-steps do not pay for waking. It
 /// rests at once after a long call, or when it was not called while two rounds of calls went by.
 void ThreadedPool::called(Slot& slot, long substeps) noexcept {
   slot.last_call.store(clock_.fetch_add(1, std::memory_order_relaxed), std::memory_order_relaxed);
   const bool rests = substeps >= long_call;
   if (rests) slot.resident->rve.rest();
-  slot.awake.store(!rests, std::memory_order_relaxed);
+  slot.allocated.store(!rests, std::memory_order_relaxed);
   rest_another();
 }
 
@@ -121,7 +121,7 @@ void ThreadedPool::called(Slot& slot, long substeps) noexcept {
 void ThreadedPool::rest_another() noexcept {
   Slot& slot = slots_[std::size_t(hand_.fetch_add(1, std::memory_order_relaxed) % slots_.size())];
   const auto forgotten = [&] {
-    return slot.awake.load(std::memory_order_relaxed) &&
+    return slot.allocated.load(std::memory_order_relaxed) &&
            clock_.load(std::memory_order_relaxed) >
                slot.last_call.load(std::memory_order_relaxed) + 2 * slots_.ids().population();
   };
@@ -129,22 +129,31 @@ void ThreadedPool::rest_another() noexcept {
   if (!forgotten() || !slot.owner.compare_exchange_strong(none, resting, std::memory_order_acquire)) return;
   if (forgotten()) {
     slot.resident->rve.rest();
-    slot.awake.store(false, std::memory_order_relaxed);
+    slot.allocated.store(false, std::memory_order_relaxed);
   }
   slot.owner.store(0, std::memory_order_release);
 }
 
-std::int64_t ThreadedPool::add_template(Specimen specimen) {
-  const Alone alone(*this);
-  lay_over(options_, specimen);
-  if ((next_template_ & most_templates) == most_templates)
-    throw Refused(Status::no_slot, "pool: " + std::to_string(most_templates - 1) +
-                                       " templates were made of it, and no number is left; make another pool");
+ThreadedPool::Template ThreadedPool::made_template(Specimen specimen) const {
+  override_settings(specimen, options_);
   Template made{Rve(specimen), 0};
   made.void_ratio = void_ratio_of(made.rve);
   made.rve.rest();
-  templates_.emplace(next_template_, std::move(made));
+  return made;
+}
+
+std::int64_t ThreadedPool::add_template(Specimen specimen) {
+  const Alone alone(*this);
+  if ((next_template_ & most_templates) == most_templates)
+    throw Refused(Status::no_slot, "pool: " + std::to_string(most_templates - 1) +
+                                       " templates were made of it, and no number is left; make another pool");
+  templates_.emplace(next_template_, made_template(std::move(specimen)));
   return next_template_++;
+}
+
+void ThreadedPool::add_template_as(Specimen specimen, std::int64_t number) {
+  const Alone alone(*this);
+  templates_.emplace(number, made_template(std::move(specimen)));
 }
 
 /// Refused (bad_id).

@@ -6,28 +6,38 @@
 #include <map>
 #include <memory>
 
+#include "rvelab/pool/calls.hpp"
 #include "rvelab/pool/pool.hpp"
 #include "rvelab/pool/slots.hpp"
 
 namespace rvelab::pool {
 
-/// What all ranks do or none: commit or revert trials, or end RVEs whose ids the other table gives out again.
+/// What all ranks do or none: commit or revert trials, or end RVEs whose ids the first rank gives out again.
 enum class Settling : std::int32_t { commit, revert, give_up };
 
-/// The share of a rank: RVEs come and go under ids that another table gives out.
+/// The RVEs of one process: all of a pool, or the share of a rank, where they come and go under ids and numbers of
+/// templates that the first rank gives out.
 class Share : public Pool {
  public:
+  /// Ends a template.
+  virtual void release_template(std::int64_t of_template) = 0;
+  virtual Info info(std::int64_t id) = 0;
+  /// The committed state with its tokens, as to_bytes(RveState), and back.
+  virtual std::vector<std::byte> save(std::int64_t id) = 0;
+  virtual void load(std::int64_t id, std::span<const std::byte> snapshot) = 0;
+
   /// Tag of the ids, taken from those of this process if there is none yet.
   virtual std::uint32_t tag() = 0;
+  virtual void add_template_as(Specimen specimen, std::int64_t number) = 0;
   /// RVEs of a template under these ids; all or none.
   virtual void spawn_as(std::int64_t of_template, std::span<const std::int64_t> ids) = 0;
   virtual void clone_as(std::int64_t source, std::int64_t id) = 0;
   /// RVEs that come as bytes (to_bytes(RveState)) wait until `place` gives them ids, in their order and all at once.
-  /// `pending`: so is the last trial of its tokens, which is made again when it is asked for.
+  /// `pending`: so is the last trial of its tokens, which is made again when it is needed.
   virtual void receive(std::span<const std::byte> state, bool pending) = 0;
   virtual void place(std::span<const std::int64_t> ids) = 0;
   virtual void forget_received() noexcept = 0;
-  /// Ends RVEs whose ids the other table gives out again.
+  /// Ends RVEs whose ids the first rank gives out again.
   virtual void give_up(std::span<const std::int64_t> ids) = 0;
 
   virtual bool is_pending(std::int64_t id) = 0;
@@ -38,6 +48,25 @@ class Share : public Pool {
   /// Does what was prepared last, without a request for memory. No other call may come between.
   virtual void settle() noexcept = 0;
 };
+
+/// What hosts and other ranks may call of a share. A new function is added here.
+using ShareCalls = CallList<&Share::release_template, &Share::info, &Share::save, &Share::load, &Share::add_template_as,
+                            &Share::spawn_as, &Share::clone_as, &Share::place, &Share::forget_received, &Share::give_up,
+                            &Share::prepare, &Share::settle>;
+
+template <auto function, class... Arguments>
+auto Pool::at(std::int64_t id, const Arguments&... arguments) {
+  CallOf<ShareCalls, function> call(id, arguments...);
+  make_at(id, call);
+  return call.result();
+}
+
+template <auto function, class... Arguments>
+auto Pool::everywhere(const Arguments&... arguments) {
+  CallOf<ShareCalls, function> call(arguments...);
+  make_everywhere(call);
+  return call.result();
+}
 
 class Hold;
 
@@ -66,6 +95,7 @@ class ThreadedPool final : public Share {
   void close() override;
 
   std::uint32_t tag() override;
+  void add_template_as(Specimen specimen, std::int64_t number) override;
   void spawn_as(std::int64_t of_template, std::span<const std::int64_t> ids) override;
   void clone_as(std::int64_t source, std::int64_t id) override;
   void receive(std::span<const std::byte> state, bool pending) override;
@@ -88,6 +118,9 @@ class ThreadedPool final : public Share {
   };
   using Templates = std::map<std::int64_t, Template>;  ///< by their numbers, none of which is given out twice
 
+  void make_at(std::int64_t, TravellingCall& call) override { call.make(*this); }
+  void make_everywhere(TravellingCall& call) override { call.make(*this); }
+  Template made_template(Specimen specimen) const;
   Templates::const_iterator template_of(std::int64_t number) const;
   Slots::Residents made_of(std::int64_t of_template, std::int64_t n) const;
   std::unique_ptr<Resident> copy_of(std::int64_t source);

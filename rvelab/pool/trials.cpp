@@ -5,91 +5,21 @@
 // take ten microseconds or more, so that a count is as good as stealing: the last thread ends at most one piece after
 // the first (Graham 1969).
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstdio>
 #include <string>
 
-#include "rvelab/measure/tangent.hpp"
 #include "rvelab/pool/checks.hpp"
 #include "rvelab/pool/hold.hpp"
 #include "rvelab/pool/threaded_pool.hpp"
-#include "rvelab/solver/loading/accuracy.hpp"
+#include "rvelab/pool/verdict.hpp"
 
 namespace rvelab::pool {
 
 namespace {
 
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-using Tangent = std::array<double, 36>;
 
 constexpr double scale_after_discard = 0.5;
-
-/// The exception that is being handled.
-Verdict verdict_of_failure() noexcept {
-  char text[1024];
-  Verdict verdict{status_of_exception(text, sizeof text), {}};
-  try {
-    verdict.text = text;
-  } catch (...) {  // no memory for words: the status says it
-  }
-  return verdict;
-}
-
-Verdict verdict_of(const Report& report, double dt) {
-  char text[320];
-  Status status = Status::ok;
-  if (!report.quasi_static && dt == 0) {
-    status = Status::not_quasi_static;
-    std::snprintf(text, sizeof text,
-                  "the state is no equilibrium: the unbalanced ratio is %g; the specimen flows or collapses: take "
-                  "smaller steps, or give a time (dt > 0)",
-                  report.unbalanced_ratio);
-  } else if (dt == 0 && !report.tolerance_met) {
-    status = Status::tolerance_missed;
-    std::snprintf(text, sizeof text,
-                  "the stress has an expected error of %g Pa; the tolerance allows %g Pa: take it as it is, or widen "
-                  "tolerance_rel or tolerance_abs",
-                  report.error_estimate / accuracy::met_margin, report.allowed_error);
-  } else if (report.cell_thin) {
-    status = Status::cell_thin;
-    std::snprintf(text, sizeof text,
-                  "a height of the cell is below four mean diameters: it stands for less and less of the material; "
-                  "use a larger specimen");
-  }
-  return status == Status::ok ? Verdict{} : Verdict{status, text};
-}
-
-/// A warning that stands already keeps its place.
-void tell_of_affine_tangent(Verdict& verdict) {
-  const char* const text =
-      "the contact network has no elastic tangent that balances its grains; the affine one, which is stiffer, was "
-      "written";
-  if (verdict.status == Status::ok)
-    verdict = {Status::tangent_affine, text};
-  else
-    verdict.text += std::string("; and ") + text;
-}
-
-/// xx yy zz yz xz xy whatever the dimension; false: the affine one.
-bool elastic(const Network& network, Tangent& tangent) {
-  Eigen::MatrixXd found;
-  bool condensed = true;
-  try {
-    found = elastic_tangent(network);
-  } catch (const Error&) {
-    found = affine_tangent(network);
-    condensed = false;
-  }
-  tangent.fill(0);
-  const int plane[3] = {0, 1, 5};
-  for (int i = 0; i < found.rows(); ++i)
-    for (int j = 0; j < found.cols(); ++j) {
-      const int row = found.rows() == 3 ? plane[i] : i, column = found.rows() == 3 ? plane[j] : j;
-      tangent[std::size_t(6 * row + column)] = found(i, j);
-    }
-  return condensed;
-}
 
 /// Books what is made for an RVE from now on, failed trials too.
 class Cost {
@@ -135,7 +65,7 @@ ThreadedPool::Outcome ThreadedPool::attempt(Slot& slot, const Matrix3& displacem
   Rve& rve = resident.rve;
   rve.revert();
   resident.pending = false;
-  slot.awake.store(true, std::memory_order_relaxed);
+  slot.allocated.store(true, std::memory_order_relaxed);
   const Cost cost(slot);
   Outcome outcome;
   outcome.response =
@@ -143,7 +73,8 @@ ThreadedPool::Outcome ThreadedPool::attempt(Slot& slot, const Matrix3& displacem
   try {
     const Report& report = outcome.response.report;
     outcome.verdict = verdict_of(report, dt);
-    if (wanted.tangent != nullptr && !elastic(rve.network(), outcome.tangent)) tell_of_affine_tangent(outcome.verdict);
+    if (wanted.tangent != nullptr && !write_tangent(rve.network(), outcome.tangent))
+      add_affine_warning(outcome.verdict);
   } catch (...) {
     rve.revert();
     throw;
@@ -185,7 +116,7 @@ void ThreadedPool::accept(Slot& slot, std::int64_t token, const Matrix3& displac
   const TrialRecord* const record = resident.tokens.find(token);
   if (!resident.rve.pending() || last_token(resident.tokens) != token || !resident.pending) {
     resident.pending = false;
-    slot.awake.store(true, std::memory_order_relaxed);
+    slot.allocated.store(true, std::memory_order_relaxed);
     make_again(slot, *record);
   }
   commit_trial(resident, token);
@@ -264,7 +195,7 @@ Verdict ThreadedPool::trial(const Batch& batch) {
     if (batch.status != nullptr) batch.status[k] = std::int32_t(status);
     if (batch.dt_scale != nullptr)
       batch.dt_scale[k] = is_error(status) ? 0 : status == Status::discard ? scale_after_discard : 1;
-    if (gravity(status) > gravity(entries[worst].verdict.status)) worst = k;
+    if (severity(status) > severity(entries[worst].verdict.status)) worst = k;
   }
   Verdict verdict = std::move(entries[worst].verdict);
   if (verdict.status != Status::ok) {

@@ -1,9 +1,11 @@
-// How messages get from rank to rank.
+// The way of messages from rank to rank.
 #pragma once
 
-#include "rvelab/ranks/message.hpp"
+#include "rvelab/pool/message.hpp"
 
 namespace rvelab::ranks {
+
+using pool::Bytes;
 
 /// Of the first rank, to all others. Each message to a rank is answered before the next is sent to it.
 class Link {

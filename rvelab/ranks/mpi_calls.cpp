@@ -37,7 +37,7 @@ Common common_of(const pool::Options& options) {
   return common;
 }
 
-void lay_over(const Common& common, pool::Options& options) {
+void override_options(pool::Options& options, const Common& common) {
   options.tolerance_rel = common.tolerance_rel;
   options.tolerance_abs = common.tolerance_abs;
   options.damping = common.damping;
@@ -63,7 +63,7 @@ std::unique_ptr<pool::Pool> made(void* self, const std::function<pool::Options()
   expect_all(*world.link, status, text);
   Common common = common_of(options);
   broadcast(*world.link, std::as_writable_bytes(std::span(&common, 1)));
-  lay_over(common, options);
+  override_options(options, common);
   if (options.workers == 0 && options.run_tasks == nullptr)  // the cores of a machine are shared by its ranks
     options.workers = std::max(1u, std::thread::hardware_concurrency() / unsigned(world.ranks_here));
   std::unique_ptr<pool::Share> share;

@@ -1,10 +1,6 @@
 #include "rvelab/ranks/perform.hpp"
 
-#include <algorithm>
 #include <utility>
-
-#include "rvelab/pool/rve_state.hpp"
-#include "rvelab/solver/snapshot.hpp"
 
 namespace rvelab::ranks {
 
@@ -13,52 +9,12 @@ namespace {
 using pool::Status;
 using pool::Verdict;
 
-std::span<const std::int64_t> ids_or_all(const std::vector<std::int64_t>& ids, bool all) {
-  if (all) return {};
-  static constexpr std::int64_t none = 0;  // a pointer that is not null: no ids are meant, not all
-  return {ids.empty() ? &none : ids.data(), ids.size()};
-}
-
-/// Each number of an Info, tensors by their elements.
-template <class Info, class Field>
-void each_field(Info& info, Field field) {
-  field(info.cell.dimension);
-  for (int k = 0; k < 9; ++k) field(info.cell.lattice(k / 3, k % 3));
-  for (int k = 0; k < 9; ++k) field(info.cell.rotation(k / 3, k % 3));
-  field(info.cell.increments);
-  field(info.grains);
-  field(info.contacts);
-  field(info.void_ratio);
-  field(info.coordination_number);
-  for (int k = 0; k < 9; ++k) field(info.fabric(k / 3, k % 3));
-  field(info.fabric_anisotropy);
-  field(info.sliding_fraction);
-  field(info.p);
-  field(info.q);
-  field(info.unbalanced_force_ratio);
-  field(info.inertial_number);
-  field(info.permeability_ratio);
-  field(info.min_height_ratio);
-  field(info.grain_steps);
-  field(info.memory.state);
-  field(info.memory.list);
-  field(info.memory.working);
-  field(info.memory.trial);
-  field(info.token);
-}
-
-/// Begins an answer; what was found follows.
+/// The beginning of an answer; what was found follows.
 Packer answered(Status status, const char* text, bool failed) {
   return std::move(Packer().make_room(answer_room).put(status).put(failed).put_text(text));
 }
 
 }  // namespace
-
-pool::Info take_info(Unpacker& from) {
-  pool::Info info;
-  each_field(info, [&](auto& value) { value = from.take<std::decay_t<decltype(value)>>(); });
-  return info;
-}
 
 void Served::trial(Unpacker& given, Packer& found) {
   pool::Batch batch;
@@ -102,103 +58,46 @@ void Served::trial(Unpacker& given, Packer& found) {
   found.put_all(std::span<const std::int64_t>(tokens_out));
 }
 
-void Served::perform(Call call, Unpacker& given, Packer& found) {
-  switch (call) {
-    case Call::end:
+void Served::apply(Unpacker& given, Packer& found) {
+  const auto id = given.take<std::int64_t>();
+  const auto dt = given.take<double>();
+  Matrix3 gradient;
+  for (int k = 0; k < 9; ++k) gradient(k / 3, k % 3) = given.take<double>();
+  double stress[9];
+  const Verdict verdict = share_->apply(id, gradient, dt, stress);
+  std::int64_t cost = 0;
+  share_->cost({&id, 1}, &cost);
+  found.put(verdict.status).put_text(verdict.text).put(cost);
+  for (const double component : stress) found.put(component);
+}
+
+void Served::perform(std::int32_t number, Unpacker& given, Packer& found) {
+  if (number >= 0) return ShareCalls::serve(number, *share_, given, found);
+  switch (RankCall(number)) {
+    case RankCall::end:
       return;
-    case Call::add_template: {
-      const auto number = given.take<std::int64_t>();  // 0: this is the first rank, whose own number it will be
-      const std::int64_t own = share_->add_template(from_bytes(given.rest()));
-      try {
-        templates_[number != 0 ? number : own] = own;
-      } catch (...) {
-        share_->release_template(own);
-        throw;
-      }
-      found.put(own);
-      return;
-    }
-    case Call::release_template: {  // one that this share has not is released already
-      const auto own = templates_.find(given.take<std::int64_t>());
-      if (own == templates_.end()) return;
-      share_->release_template(own->second);
-      templates_.erase(own);
-      return;
-    }
-    case Call::spawn: {
-      const auto number = given.take<std::int64_t>();
-      const auto own = templates_.find(number);  // the share refuses a number that it does not know
-      share_->spawn_as(own == templates_.end() ? number : own->second, given.take_all<std::int64_t>());
-      return;
-    }
-    case Call::clone: {
-      const auto source = given.take<std::int64_t>();
-      share_->clone_as(source, given.take<std::int64_t>());
-      return;
-    }
-    case Call::give_up:
-      share_->give_up(given.take_all<std::int64_t>());
-      return;
-    case Call::apply: {
-      const auto id = given.take<std::int64_t>();
-      const auto dt = given.take<double>();
-      Matrix3 gradient;
-      for (int k = 0; k < 9; ++k) gradient(k / 3, k % 3) = given.take<double>();
-      double stress[9];
-      const Verdict verdict = share_->apply(id, gradient, dt, stress);
-      std::int64_t cost = 0;
-      share_->cost({&id, 1}, &cost);
-      found.put(verdict.status).put_text(verdict.text).put(cost);
-      for (const double component : stress) found.put(component);
-      return;
-    }
-    case Call::trial:
-      trial(given, found);
-      return;
-    case Call::prepare: {
-      const auto what = given.take<pool::Settling>();
-      const auto all = given.take<bool>();
-      const auto ids = given.take_all<std::int64_t>(), places = given.take_all<std::int64_t>();
-      settled_ = answered(Status::ok, "", false).take();
-      share_->prepare(what, ids_or_all(ids, all), places);
-      return;
-    }
-    case Call::settle:  // answered before
-      return;
-    case Call::cost: {
+    case RankCall::trial:
+      return trial(given, found);
+    case RankCall::apply:
+      return apply(given, found);
+    case RankCall::cost: {
       const auto ids = given.take_all<std::int64_t>();
       std::vector<std::int64_t> costs(ids.size());
       share_->cost(ids, costs.data());
       found.put_all(std::span<const std::int64_t>(costs));
       return;
     }
-    case Call::info: {
-      const pool::Info info = share_->info(given.take<std::int64_t>());
-      each_field(info, [&](const auto& value) { found.put(value); });
-      return;
-    }
-    case Call::save:
+    case RankCall::save:
       for (const std::int64_t id : given.take_all<std::int64_t>()) {
         found.put(share_->is_pending(id));
         found.put_all(std::span<const std::byte>(share_->save(id)));
       }
       return;
-    case Call::load: {
-      const auto id = given.take<std::int64_t>();
-      share_->load(id, given.rest());
-      return;
-    }
-    case Call::receive:
+    case RankCall::receive:
       while (!given.rest().empty()) {
         const auto pending = given.take<bool>();
         share_->receive(given.take_all<std::byte>(), pending);
       }
-      return;
-    case Call::place:
-      share_->place(given.take_all<std::int64_t>());
-      return;
-    case Call::forget_received:
-      share_->forget_received();
       return;
   }
 }
@@ -208,14 +107,16 @@ Bytes Served::answer(std::span<const std::byte> message) noexcept {
   try {
     try {
       Unpacker given(message);
-      const auto call = given.take<Call>();
-      if (call == Call::settle) {
+      const auto number = given.take<std::int32_t>();
+      if (number == ShareCalls::number<&pool::Share::settle>()) {
         share_->settle();
         return std::move(settled_);
       }
-      if (call == Call::forget_received) share_->forget_received();  // whether there is room for an answer or not
+      if (number == ShareCalls::number<&pool::Share::prepare>()) settled_ = answered(Status::ok, "", false).take();
+      // Whether there is memory for an answer or not.
+      if (number == ShareCalls::number<&pool::Share::forget_received>()) share_->forget_received();
       Packer found = answered(Status::ok, "", false);
-      perform(call, given, found);
+      perform(number, given, found);
       return found.take();
     } catch (...) {
       char text[1024];

@@ -1,38 +1,32 @@
-// What a rank does with a message: one call on its share of the pool, and the answer.
+// What a rank does with a message: a call of its share of the pool, and the answer.
 #pragma once
 
-#include <map>
-
 #include "rvelab/pool/threaded_pool.hpp"
-#include "rvelab/ranks/message.hpp"
 
 namespace rvelab::ranks {
 
-/// Begins each message; what follows, and what the answer holds behind its verdict, stands in perform.cpp.
-enum class Call : std::int32_t {
-  end,
-  add_template,
-  release_template,
-  spawn,
-  clone,
-  give_up,
-  apply,
-  trial,
-  prepare,
-  settle,
-  info,
-  cost,
-  save,
-  load,
-  receive,
-  place,
-  forget_received,
-};
+using pool::Bytes;
+using pool::Packer;
+using pool::ShareCalls;
+using pool::Unpacker;
 
-/// Which results a trial is asked for beside stress, status, costs and factors on the step; whether it names tokens.
+/// A message begins with the number of a function in pool::ShareCalls, or with one of these, which ranks serve in their
+/// own way. What follows, and what the answer holds behind its verdict, stands in perform.cpp.
+enum class RankCall : std::int32_t { end = -1, trial = -2, apply = -3, cost = -4, save = -5, receive = -6 };
+
+/// Which results a trial computes beside stress, status, costs and factors on the step; whether it names tokens.
 struct Wanted {
   bool contact_stress, reynolds_stress, tangent, error_estimate, tokens_out, tokens_in;
 };
+
+inline Packer message(RankCall call) { return std::move(Packer().put(call)); }
+/// The call of a function in pool::ShareCalls.
+template <auto function, class... Arguments>
+Bytes message(const Arguments&... arguments) {
+  Packer packer;
+  ShareCalls::put<function>(packer, arguments...);
+  return packer.take();
+}
 
 class Served {
  public:
@@ -44,16 +38,16 @@ class Served {
   pool::Share& share() const { return *share_; }
 
  private:
-  void perform(Call call, Unpacker& given, Packer& found);
+  void perform(std::int32_t number, Unpacker& given, Packer& found);
   void trial(Unpacker& given, Packer& found);
+  void apply(Unpacker& given, Packer& found);
 
   std::unique_ptr<pool::Share> share_;
-  std::map<std::int64_t, std::int64_t> templates_;  ///< of this share, by their numbers on the first rank
-  std::vector<std::int64_t> tried_;                 ///< ids of trials that no answer tells of yet
-  Bytes settled_;                                   ///< the answer to Call::settle, made when it was prepared
+  std::vector<std::int64_t> tried_;  ///< ids of trials that no answer tells of yet
+  Bytes settled_;                    ///< the answer to Share::settle, made with that to Share::prepare
 };
 
-/// An answer opened, which asks for no memory: what it tells of has been done.
+/// An answer opened, which allocates nothing: what it tells of has been done.
 class Answer {
  public:
   explicit Answer(Bytes bytes);
@@ -72,10 +66,7 @@ class Answer {
   bool failed_ = false;
 };
 
-/// Room for what an answer holds beside its rows of values: what is done is told without a request for memory.
+/// Bytes reserved for what an answer holds beside its rows of values, so that telling what was done allocates nothing.
 constexpr std::size_t answer_room = 4096;
-
-/// As an answer to Call::info holds it.
-pool::Info take_info(Unpacker& from);
 
 }  // namespace rvelab::ranks

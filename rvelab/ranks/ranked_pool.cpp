@@ -17,7 +17,7 @@ RankedPool::RankedPool(std::unique_ptr<Link> link, std::unique_ptr<pool::Share> 
     : link_(std::move(link)), own_(std::move(own)), population_(std::size_t(link_->ranks()), 0) {}
 
 RankedPool::~RankedPool() {
-  constexpr Call end = Call::end;
+  constexpr RankCall end = RankCall::end;
   for (int rank = 1; rank < link_->ranks(); ++rank) try {
       link_->send(rank, std::as_bytes(std::span(&end, 1)));
     } catch (...) {  // that rank is gone
@@ -148,12 +148,8 @@ RankedPool::Messages RankedPool::to_prepare(pool::Settling what, std::span<const
       own.push_back(ids[k]);
       places.push_back(std::int64_t(k));
     }
-    messages[rank] = message(Call::prepare)
-                         .put(what)
-                         .put(all)
-                         .put_all(std::span<const std::int64_t>(own))
-                         .put_all(std::span<const std::int64_t>(places))
-                         .take();
+    const std::span<const std::int64_t> of = all ? std::span<const std::int64_t>() : std::span(own);
+    messages[rank] = message<&pool::Share::prepare>(what, of, places);
   }
   return messages;
 }
@@ -162,7 +158,7 @@ RankedPool::Messages RankedPool::to_prepare(pool::Settling what, std::span<const
 /// memory.
 void RankedPool::settle(pool::Settling what, std::span<const std::int64_t> ids) {
   const Messages first = to_prepare(what, ids);
-  Messages then(first.size(), message(Call::settle).take());
+  Messages then(first.size(), message<&pool::Share::settle>());
   for (std::size_t rank = 0; rank < first.size(); ++rank)
     if (first[rank].empty()) then[rank].clear();
   Room room(first.size(), answer_room);
@@ -170,32 +166,43 @@ void RankedPool::settle(pool::Settling what, std::span<const std::int64_t> ids) 
   exchange(then, std::move(room));
 }
 
+RankedPool::Messages RankedPool::to_others(const Bytes& message) const {
+  Messages messages(population_.size(), message);
+  messages[0].clear();
+  return messages;
+}
+
+void RankedPool::make_at(std::int64_t id, pool::TravellingCall& call) {
+  const Lock lock = at_work();
+  const int rank = place_of(id).rank;
+  Packer packer;
+  call.put(packer);
+  Answer answer = ask(rank, packer.take());
+  call.take_result(answer.found());
+}
+
+void RankedPool::make_everywhere(pool::TravellingCall& call) {
+  const Lock lock = alone();
+  Packer packer;
+  call.put(packer);
+  const Bytes message = packer.take();
+  for (const auto& [rank, answer] : exchange(to_others(message)))
+    if (answer.status() != Status::bad_id) answer.expect_done();
+  Answer answer = ask(0, message);
+  call.take_result(answer.found());
+}
+
 std::int64_t RankedPool::add_template(Specimen specimen) {
   const Lock lock = alone();
-  const Bytes bytes = to_bytes(specimen);
-  const auto with_number = [&](std::int64_t number) {
-    return message(Call::add_template).put(number).put_rest(bytes).take();
-  };
-  const auto number = ask(0, with_number(0)).found().take<std::int64_t>();
+  const std::int64_t number = own_.share().add_template(specimen);
   try {
-    Messages messages(population_.size(), with_number(number));
-    messages[0].clear();
-    expect_all_done(messages);
+    expect_all_done(to_others(message<&pool::Share::add_template_as>(specimen, number)));
   } catch (...) {
-    exchange(Messages(population_.size(), message(Call::release_template).put(number).take()));
+    own_.share().release_template(number);
+    exchange(to_others(message<&pool::Share::release_template>(number)));
     throw;
   }
   return number;
-}
-
-void RankedPool::release_template(std::int64_t of_template) {
-  const Lock lock = alone();
-  ask(0, message(Call::spawn).put(of_template).put_all(std::span<const std::int64_t>()).take());  // refused if none
-  const Bytes release = message(Call::release_template).put(of_template).take();
-  Messages messages(population_.size(), release);
-  messages[0].clear();
-  expect_all_done(messages);  // the first rank last: until all others have, it can be called again
-  ask(0, release);
 }
 
 void RankedPool::make_room(std::size_t n) {
@@ -209,7 +216,7 @@ void RankedPool::spawn(std::int64_t of_template, std::int64_t n, std::int64_t* i
   const Lock lock = alone();
   pool::expect_spawn(n);
   const auto spawned = [&](std::span<const std::int64_t> of) {
-    return message(Call::spawn).put(of_template).put_all(of).take();
+    return message<&pool::Share::spawn_as>(of_template, of);
   };
   ask(0, spawned({}));  // refused if there is no such template
   if (n == 0) return;
@@ -234,8 +241,7 @@ void RankedPool::spawn(std::int64_t of_template, std::int64_t n, std::int64_t* i
     if (failed != answers.end()) {
       for (const auto& [rank, answer] : answers)
         if (!answer.failed())
-          undo[std::size_t(rank)] =
-              message(Call::give_up).put_all(std::span<const std::int64_t>(of_rank[std::size_t(rank)])).take();
+          undo[std::size_t(rank)] = message<&pool::Share::give_up>(of_rank[std::size_t(rank)]);
       exchange(undo);
       failed->second.expect_done();
     }
@@ -254,7 +260,7 @@ std::int64_t RankedPool::clone(std::int64_t source) {
   make_room(1);
   const std::int64_t id = ids_.take();
   try {
-    ask(rank, message(Call::clone).put(source).put(id).take());
+    ask(rank, message<&pool::Share::clone_as>(source, id));
   } catch (...) {
     ids_.give_back(id);
     throw;

@@ -1,5 +1,5 @@
 // A pool whose RVEs are spread over ranks. It lives on the first rank, which the host calls; each of the others serves
-// its share (serve). Ids, templates and costs are kept here; where an RVE is changes neither its id nor a bit of it.
+// its share (serve). Ids and costs are kept here; the rank of an RVE changes neither its id nor a bit of its state.
 #pragma once
 
 #include <functional>
@@ -21,7 +21,6 @@ class RankedPool final : public pool::Pool {
   ~RankedPool() override;
 
   std::int64_t add_template(Specimen specimen) override;
-  void release_template(std::int64_t of_template) override;
   void spawn(std::int64_t of_template, std::int64_t n, std::int64_t* ids) override;
   std::int64_t clone(std::int64_t source) override;
   void release(std::span<const std::int64_t> ids) override;
@@ -30,10 +29,7 @@ class RankedPool final : public pool::Pool {
   pool::Verdict trial(const pool::Batch& batch) override;
   void commit(std::span<const std::int64_t> ids) override;
   void revert(std::span<const std::int64_t> ids) override;
-  pool::Info info(std::int64_t id) override;
   void cost(std::span<const std::int64_t> ids, std::int64_t* grain_steps) override;
-  std::vector<std::byte> save(std::int64_t id) override;
-  void load(std::int64_t id, std::span<const std::byte> snapshot) override;
   void write(const std::function<void(const pool::Population&, const StateOf&)>& writer) override;
   void read(const std::function<pool::Population(const TakeState& take)>& reader) override;
   void expect_this_process() const override;
@@ -54,10 +50,11 @@ class RankedPool final : public pool::Pool {
   using Messages = std::vector<Bytes>;
   using Lock = std::unique_lock<std::mutex>;
 
+  void make_at(std::int64_t id, pool::TravellingCall& call) override;
+  void make_everywhere(pool::TravellingCall& call) override;
   Lock at_work();
   Lock alone();
   Place& place_of(std::int64_t id) { return places_[ids_.slot_of(id)]; }
-  static Packer message(Call call) { return std::move(Packer().put(call)); }
   Messages no_messages() const { return Messages(std::size_t(link_->ranks())); }
   using Answers = std::vector<std::pair<int, Answer>>;
   struct Room;
@@ -66,6 +63,7 @@ class RankedPool final : public pool::Pool {
   void expect_all_done(const Messages& messages);
   Answer answer_of(int rank, const Bytes& message);
   Answer ask(int rank, const Bytes& message);
+  Messages to_others(const Bytes& message) const;
   Bytes saved(std::int64_t id);
   std::vector<std::int64_t> costs_at(int rank, std::span<const std::int64_t> ids);
   void make_room(std::size_t n);

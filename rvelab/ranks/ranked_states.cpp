@@ -1,4 +1,4 @@
-// Looking at RVEs on other ranks, their states, and files of the whole pool. Declared in ranked_pool.hpp.
+// Costs and states of RVEs on other ranks, and files of the whole pool. Declared in ranked_pool.hpp.
 #include <new>
 #include <utility>
 
@@ -6,12 +6,6 @@
 #include "rvelab/ranks/ranked_pool.hpp"
 
 namespace rvelab::ranks {
-
-pool::Info RankedPool::info(std::int64_t id) {
-  const Lock lock = at_work();
-  Answer answer = ask(place_of(id).rank, message(Call::info).put(id).take());
-  return take_info(answer.found());
-}
 
 void RankedPool::cost(std::span<const std::int64_t> ids, std::int64_t* grain_steps) {
   const Lock lock = at_work();
@@ -33,23 +27,12 @@ void RankedPool::cost(std::span<const std::int64_t> ids, std::int64_t* grain_ste
 
 /// What RVEs cost since they came to that rank, where they are. A commit that made a trial again is in it.
 std::vector<std::int64_t> RankedPool::costs_at(int rank, std::span<const std::int64_t> ids) {
-  return ask(rank, message(Call::cost).put_all(ids).take()).found().take_all<std::int64_t>();
+  return ask(rank, message(RankCall::cost).put_all(ids).take()).found().take_all<std::int64_t>();
 }
 
 Bytes RankedPool::saved(std::int64_t id) {
-  Answer answer = ask(place_of(id).rank, message(Call::save).put_all(std::span<const std::int64_t>(&id, 1)).take());
-  answer.found().take<bool>();
+  Answer answer = ask(place_of(id).rank, message<&pool::Share::save>(id));
   return answer.found().take_all<std::byte>();
-}
-
-Bytes RankedPool::save(std::int64_t id) {
-  const Lock lock = at_work();
-  return saved(id);
-}
-
-void RankedPool::load(std::int64_t id, std::span<const std::byte> snapshot) {
-  const Lock lock = at_work();
-  ask(place_of(id).rank, message(Call::load).put(id).put_rest(snapshot).take());
 }
 
 void RankedPool::write(const std::function<void(const pool::Population&, const StateOf&)>& writer) {
@@ -68,7 +51,7 @@ void RankedPool::read(const std::function<pool::Population(const TakeState& take
   std::size_t states = 0;
   try {
     const pool::Population population = reader([&](std::span<const std::byte> bytes) {
-      ask(int(states % ranks), message(Call::receive).put(false).put_all(bytes).take());
+      ask(int(states % ranks), message(RankCall::receive).put(false).put_all(bytes).take());
       ++states;
     });
     pool::expect_whole(population, states);
@@ -80,13 +63,13 @@ void RankedPool::read(const std::function<pool::Population(const TakeState& take
     }
     Messages messages = no_messages();
     for (std::size_t rank = 0; rank < ranks; ++rank)
-      messages[rank] = message(Call::place).put_all(std::span<const std::int64_t>(of_rank[rank])).take();
+      messages[rank] = message<&pool::Share::place>(of_rank[rank]);
     expect_all_done(messages);
     ids_.restore(population.tag, population.generations, population.ids);
     places_ = std::move(places);
     for (std::size_t rank = 0; rank < ranks; ++rank) population_[rank] = of_rank[rank].size();
   } catch (...) {
-    expect_all_done(Messages(ranks, message(Call::forget_received).take()));
+    expect_all_done(Messages(ranks, message<&pool::Share::forget_received>()));
     throw;
   }
 }
@@ -101,10 +84,10 @@ void serve(Link& link, std::unique_ptr<pool::Share> share) {
       link.send(0, {});  // as an answer that could not be made
       continue;
     }
-    const auto call = Unpacker(message).take<Call>();
-    if (call == Call::end) return;
+    const auto number = Unpacker(message).take<std::int32_t>();
+    if (number == std::int32_t(RankCall::end)) return;
     link.send(0, served.answer(message));
-    if (call != Call::prepare) message = Bytes();  // its room is that of the message to settle
+    if (number != ShareCalls::number<&pool::Share::prepare>()) message = Bytes();  // its room is that of the message to settle
   }
 }
 

@@ -11,6 +11,7 @@
 namespace rvelab::ranks {
 
 using pool::Refused;
+using pool::Row;
 using pool::Status;
 using pool::Verdict;
 
@@ -42,7 +43,7 @@ struct Worst {
   std::size_t entry = 0;
 
   void take(Status other, std::string_view of_other, std::size_t at) {
-    const int has = gravity(status), given = gravity(other);
+    const int has = severity(status), given = severity(other);
     if (given > has || (given == has && given > 0 && at < entry)) *this = {other, of_other, at};
   }
 };
@@ -91,7 +92,7 @@ void RankedPool::worked(Place& place, std::int64_t cost_at_rank) noexcept {
 Verdict RankedPool::apply(std::int64_t id, const Matrix3& displacement_gradient, double dt, double* stress) {
   const Lock lock = at_work();
   Place& place = place_of(id);
-  Packer packer = message(Call::apply);
+  Packer packer = message(RankCall::apply);
   packer.put(id).put(dt);
   for (int k = 0; k < 9; ++k) packer.put(displacement_gradient(k / 3, k % 3));
   std::string text = room_for_text();
@@ -143,7 +144,7 @@ Verdict RankedPool::trial(const pool::Batch& batch) {
       gradients.insert(gradients.end(), batch.displacement_gradients + 9 * entry,
                        batch.displacement_gradients + 9 * entry + 9);
     }
-    messages[rank] = message(Call::trial)
+    messages[rank] = message(RankCall::trial)
                          .put(batch.dt)
                          .put(wanted)
                          .put_all(std::span<const std::int64_t>(own))
@@ -209,13 +210,13 @@ void RankedPool::balance(std::span<const std::int64_t> ids) {
 }
 
 void RankedPool::move(int from, int to, std::span<const std::int64_t> ids) {
-  const Bytes forget = message(Call::forget_received).take(), place = message(Call::place).put_all(ids).take(),
-              give_up = message(Call::give_up).put_all(ids).take();
+  const Bytes forget = message<&pool::Share::forget_received>(), place = message<&pool::Share::place>(ids),
+              give_up = message<&pool::Share::give_up>(ids);
   std::vector<std::int64_t> costs;
   try {
     costs = costs_at(from, ids);
-    Answer saved = ask(from, message(Call::save).put_all(ids).take());
-    ask(to, message(Call::receive).put_rest(saved.found().rest()).take());
+    Answer saved = ask(from, message(RankCall::save).put_all(ids).take());
+    ask(to, message(RankCall::receive).put_rest(saved.found().rest()).take());
     ask(to, place);
   } catch (...) {  // no memory there, or here
     if (broken_) throw;

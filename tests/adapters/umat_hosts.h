@@ -175,4 +175,53 @@ static inline void print_log(FILE* to) {
   fclose(log);
 }
 
+/* A step of the reference: trial and commit, with the tangent. */
+static void reference_step(struct reference* of, const double* dH, double dt, double* sigma, double* tangent) {
+  rvelab_batch batch;
+  REQUIRE(rvelab_batch_init(&batch, sizeof batch) == RVELAB_OK);
+  batch.n = 1;
+  batch.ids = &of->id;
+  batch.dH = dH;
+  batch.dt = dt;
+  batch.sigma = sigma;
+  batch.tangent = tangent;
+  REQUIRE(rvelab_trial(of->pool, &batch) >= RVELAB_OK);
+  REQUIRE(rvelab_commit(of->pool, 1, &of->id) == RVELAB_OK);
+}
+
+static struct reference reference_of(const char* specimen) {
+  struct reference made = {NULL, 0};
+  int64_t tmpl = 0;
+  REQUIRE(rvelab_pool_create(NULL, &made.pool) == RVELAB_OK);
+  REQUIRE(rvelab_template_load(made.pool, specimen, &tmpl) == RVELAB_OK);
+  REQUIRE(rvelab_spawn(made.pool, tmpl, 1, &made.id) == RVELAB_OK);
+  return made;
+}
+
+/* Stress that the specimen has, as initial condition of the host. */
+static void first_stress(const char* specimen, int ndi, int nshr, double* stress) {
+  struct reference of = reference_of(specimen);
+  const double zero[9] = {0};
+  double sigma[9], tangent[36];
+  reference_step(&of, zero, 0, sigma, tangent);
+  rvelab_pool_destroy(of.pool);
+  to_host(sigma, ndi, nshr, stress);
+}
+
+/* Shear by steps of 2^-13: gradients and their differences are exact, so that both ways see the same bits. */
+static const double shear_step = 1.0 / 8192;
+
+static struct point new_point(int ndi, int nshr, double material, double corotational) {
+  struct point made;
+  memset(&made, 0, sizeof made);
+  made.ndi = ndi;
+  made.nshr = nshr;
+  made.ntens = ndi + nshr;
+  made.props[0] = material;
+  made.props[1] = corotational;
+  identity(made.F0);
+  identity(made.F1);
+  return made;
+}
+
 #endif

@@ -35,7 +35,7 @@ std::unique_ptr<Solver<D>> block(const std::array<int, D>& cells, double cell, c
     point.mass = density * point.volume;
     solver->points.push_back(point);
   }
-  solver->ranges.push_back({0, total, "elastic", std::make_shared<Elastic<D>>(moduli)});
+  solver->groups.push_back({0, total, "elastic", std::make_shared<Elastic<D>>(moduli)});
   return solver;
 }
 
@@ -66,9 +66,8 @@ Plane<D> roller(int axis, int node, bool soil_above) {
 /// Smooth, unless told.
 inline Body<2> half_space(const Vec<2>& centre, const Vec<2>& normal) {
   Body<2> body;
-  body.kind = BodyKind::half_space;
+  body.shape = HalfSpace<2>{normal};
   body.centre = centre;
-  body.normal = normal;
   body.rough = false;
   return body;
 }
@@ -80,6 +79,13 @@ void enclose(Solver<D>& solver, const std::array<int, D>& cells) {
     solver.planes.all.push_back(roller<D>(i, 0, true));
     solver.planes.all.push_back(roller<D>(i, cells[i], false));
   }
+}
+
+template <int D>
+Vec<D> momentum_of(const Solver<D>& solver) {
+  Vec<D> sum = Vec<D>::Zero();
+  for (const auto& point : solver.points) sum += point.mass * point.velocity;
+  return sum;
 }
 
 }  // namespace mpm::test

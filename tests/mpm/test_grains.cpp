@@ -57,7 +57,7 @@ TEST_CASE("grains in a point answer as the pure cell does along the same path, b
     for (int i = 0; i < 2; ++i) {
       for (int j = 0; j < 2; ++j) dH[3 * i + j] = map(i, j);
     }
-    need(rvelab_apply(pool->get(), id, dH, 0, sigma));
+    expect_ok(rvelab_apply(pool->get(), id, dH, 0, sigma));
     for (int i = 0; i < 2; ++i) {
       for (int j = 0; j < 2; ++j) REQUIRE(solver.points[1].stress(i, j) == sigma[3 * i + j]);
     }
@@ -80,18 +80,18 @@ TEST_CASE("specimens come to a pressure as exactly in a scene of coarse toleranc
     CHECK(family.prepared(pressure).p == Approx(pressure).epsilon(1e-3));
     const auto id = family.spawn(pressure), twin = exact.spawn(pressure);
     double sigma[9], other[9];
-    look(pool->get(), id, sigma, nullptr);
-    look(usual->get(), twin, other, nullptr);
+    read_state(pool->get(), id, sigma, nullptr);
+    read_state(usual->get(), twin, other, nullptr);
     for (int k = 0; k < 9; ++k) CHECK(sigma[k] == other[k]);
     // From there on each keeps its own tolerances.
     const double dH[9] = {0, 0, 0, 0, -1e-4, 0, 0, 0, 0};
     for (int k = 0; k < 20; ++k) {
-      need(rvelab_apply(pool->get(), id, dH, 0, sigma));
-      need(rvelab_apply(usual->get(), twin, dH, 0, other));
+      expect_ok(rvelab_apply(pool->get(), id, dH, 0, sigma));
+      expect_ok(rvelab_apply(usual->get(), twin, dH, 0, other));
     }
     std::int64_t few = 0, many = 0;
-    need(rvelab_cost(pool->get(), 1, &id, &few));
-    need(rvelab_cost(usual->get(), 1, &twin, &many));
+    expect_ok(rvelab_cost(pool->get(), 1, &id, &few));
+    expect_ok(rvelab_cost(usual->get(), 1, &twin, &many));
     CHECK(few < many);
   }
 }
@@ -119,7 +119,7 @@ TEST_CASE("a single element strains evenly, and carries what its RVE carries und
   double sigma[9] = {-20e3, 0, 0, 0, -20e3, 0, 0, 0, 0}, lateral = 0.4 * -step, last = -20e3;
   for (double strain = 0; strain > end; strain += step) {
     const double dH[9] = {lateral, 0, 0, 0, step, 0, 0, 0, 0};
-    need(rvelab_apply(pool->get(), id, dH, 0, sigma));
+    expect_ok(rvelab_apply(pool->get(), id, dH, 0, sigma));
     // Secant in the side stress: the modulus is some 15 MPa.
     lateral = std::max(0.0, lateral + 0.3 * (-20e3 - sigma[0] - 0.5 * (sigma[0] - last)) / 15e6);
     last = sigma[0];
@@ -335,7 +335,7 @@ TEST_CASE("an increment that an RVE cannot make ends the run, and names the poin
   std::string message;
   try {
     for (int k = 0; k < 2000; ++k) model->solver.step(model->solver.stable_step());
-  } catch (const Mistake&) {
+  } catch (const InputError&) {
     FAIL("it is nobody's mistake: exit code 1, not 2");
   } catch (const std::runtime_error& failure) {
     message = failure.what();

@@ -34,7 +34,7 @@ TEST_CASE("a block at rest on the surface of a half-space stays so, with quadrat
         CHECK(solver->points[k].stress(1, 1) == Approx(first[k].stress(1, 1)).margin(0.03 * 2000 * 9.81));
       }
       CHECK(farthest < 0.01 * 2000 * 9.81 / 1e6);  // of the settlement that the weight would make
-      CHECK(std::abs(balance_of<2>(*solver, start).residual) < 1e-4 * start.potential);
+      CHECK(std::abs(energy_balance<2>(*solver, start).residual) < 1e-4 * start.potential);
     }
   }
 }
@@ -152,8 +152,7 @@ TEST_CASE("oblique half-spaces let nothing through, with cells of unequal sides 
   const Vec<3> normal = Vec<3>(0.3, 0.5, 0.8).normalized();
   auto solver = block<3>({4, 4, 4}, 0.1, ElasticModuli{1e6, 0.3}, 2000);
   Body<3> slope;
-  slope.kind = BodyKind::half_space;
-  slope.normal = normal;
+  slope.shape = HalfSpace<3>{normal};
   slope.rough = false;
   slope.at_surface = true;
   slope.centre = -0.02 * normal;

@@ -85,7 +85,7 @@ std::string refusal(const std::vector<std::string>& assignments, std::string tex
   std::ofstream(folder / "scene.toml") << text;
   try {
     set_up<2>(read_scene(folder / "scene.toml", {}, assignments), 1, folder.path());
-  } catch (const Mistake& mistake) {
+  } catch (const InputError& mistake) {
     return mistake.what();
   }
   return "accepted";

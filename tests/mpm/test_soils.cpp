@@ -145,7 +145,7 @@ TEST_CASE("a soil sheared at constant volume reaches its strength, and takes its
   Strength strength;
   strength.friction = 30 * radians;
   Workers workers(1);
-  Plastic<2> soil({2e7, 0.3}, strength, Plastic<2>::Surface::mohr_coulomb, Cone::outer);
+  Plastic<2> soil({2e7, 0.3}, strength, YieldSurface::mohr_coulomb, Cone::outer);
   Point<2> point;
   point.volume = 1;
   point.stress = -1e5 * Mat<2>::Identity();

@@ -126,7 +126,7 @@ TEST_CASE("the wave modulus follows grains that stiffen, and that soften again, 
   CHECK(grains.wave_modulus() < 1.5 * soft);
   // A look goes through a few dozen sub-steps of one RVE.
   const double before = grains.grain_steps();
-  felt_modulus_of(*pool, ids[0], 2);
+  measured_modulus_of(*pool, ids[0], 2);
   CHECK((grains.grain_steps() - before) * grains.called / 25'000 < 0.01 * before);
 }
 
@@ -147,7 +147,7 @@ TEST_CASE("a block of Hertzian grains compressed from 20 kPa to 1 MPa stays stab
     solver.step(solver.stable_step());
     REQUIRE(solver.time < 2);
   }
-  const auto balance = balance_of<2>(solver, start);
+  const auto balance = energy_balance<2>(solver, start);
   CHECK(std::abs(balance.residual) < 0.01 * balance.stress_work);
   CHECK(balance.kinetic < 1e-3 * balance.stress_work);
   double wave = 0;

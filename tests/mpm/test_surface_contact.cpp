@@ -13,14 +13,14 @@ TEST_CASE("a plate compresses an elastic block evenly, wherever its face lies be
     solver->planes.all = {roller<2>(0, 0, true), roller<2>(0, 5, false)};
     for (auto& point : solver->points) point.position[1] += shift;
     Body<2> plate;
-    plate.half = Vec<2>(1, 0.3);
+    plate.shape = Box<2>{Vec<2>(1, 0.3)};
     plate.centre = Vec<2>(0.25, 1 + shift + 0.3);
     plate.velocity.times = {0, 0.1};
     plate.velocity.velocities = {Vec<2>(0, 0), Vec<2>(0, -0.002)};
     solver->bodies.all = {half_space({0, shift}, {0, 1}), plate};
     for (auto& body : solver->bodies.all) body.at_surface = true;
     while (solver->time < 0.55) solver->step(solver->stable_step());
-    const double strain = -solver->bodies.all[1].velocity.way(solver->time)[1], oedometer = 1e6 * 0.7 / (1.3 * 0.4);
+    const double strain = -solver->bodies.all[1].velocity.displacement(solver->time)[1], oedometer = 1e6 * 0.7 / (1.3 * 0.4);
     double mean = 0, most = 0;
     for (const auto& point : solver->points) {
       mean -= point.stress(1, 1) / double(solver->points.size());
@@ -37,10 +37,9 @@ TEST_CASE("soil in flight meets a surface when it gets there, not when its shape
     for (const double shift : {0.0, 0.03, 0.06}) {  // of the surface between two rows of nodes
       const double gap = 0.09;                      // m, a little less than a cell
       Body<2> disc, lid;
-      disc.kind = BodyKind::disc;
-      disc.radius = 0.3;
+      disc.shape = Disc<2>{0.3};
       disc.centre = Vec<2>(0.4 + gap + 0.3 + shift, 0.2 + shift);
-      lid.half = Vec<2>(1, 0.25);
+      lid.shape = Box<2>{Vec<2>(1, 0.25)};
       lid.centre = Vec<2>(0.2, 0.4 + gap + 0.25 + shift);
       const struct {
         Body<2> body;
@@ -61,7 +60,7 @@ TEST_CASE("soil in flight meets a surface when it gets there, not when its shape
         flying->bodies.all[0].at_surface = true;
         set_velocity<2>(*flying, [&](const Vec<2>&) { return each.velocity; });
         while (flying->bodies.all[0].reaction.impulse.isZero(0) && flying->time < 1) flying->step(2e-4);
-        CAPTURE(int(shape), shift, int(each.body.kind));
+        CAPTURE(int(shape), shift, each.body.shape.index());
         CHECK(flying->time > gap + shift - each.soon * 0.1);
         CHECK(flying->time < gap + shift + 0.2 * 0.1);
       }
@@ -72,7 +71,7 @@ TEST_CASE("soil in flight meets a surface when it gets there, not when its shape
 TEST_CASE("what lies below a footing is not beside it") {
   auto solver = block<2>({8, 4}, 0.1, ElasticModuli{1e6, 0.3}, 2000);
   Body<2> footing;
-  footing.half = Vec<2>(0.2, 0.2);
+  footing.shape = Box<2>{Vec<2>(0.2, 0.2)};
   footing.centre = Vec<2>(0.4, 0.6);
   footing.rough = false;
   footing.at_surface = true;
@@ -91,7 +90,7 @@ TEST_CASE("a body narrower than the points are apart is met all the same") {
   for (const double centre : {1.0, 1.06, 1.125}) {  // between two columns of points, and over one
     auto solver = block<2>({4, 2}, 0.5, ElasticModuli{1e6, 0.3}, 2000);
     Body<2> pile;
-    pile.half = Vec<2>(0.05, 1);
+    pile.shape = Box<2>{Vec<2>(0.05, 1)};
     pile.centre = Vec<2>(centre, 2.01);
     pile.velocity.times = {0};
     pile.velocity.velocities = {Vec<2>(0, -1)};
@@ -107,15 +106,14 @@ TEST_CASE("soil stays outside the outline of a disc that is pushed in, and all r
   auto solver = block<2>({20, 8}, 0.05, ElasticModuli{1e6, 0.3}, 2000);
   solver->planes.all = {roller<2>(0, 0, true), roller<2>(0, 20, false), roller<2>(1, 0, true)};
   Body<2> disc;
-  disc.kind = BodyKind::disc;
-  disc.radius = 0.13;
+  disc.shape = Disc<2>{0.13};
   disc.centre = Vec<2>(0.51, 0.4 + 0.13);
   disc.velocity.times = {0, 0.05};
   disc.velocity.velocities = {Vec<2>(0, 0), Vec<2>(0, -0.4)};
   disc.at_surface = true;
   solver->bodies.all = {disc};
   while (solver->time < 0.25) solver->step(solver->stable_step());
-  const Vec<2> centre = disc.centre + disc.velocity.way(solver->time);
+  const Vec<2> centre = disc.centre + disc.velocity.displacement(solver->time);
   double deepest = 1;
   Vec<2> momentum = Vec<2>::Zero(), pushed = solver->bodies.all[0].reaction.impulse;
   for (const auto& plane : solver->planes.all) pushed += plane.reaction.impulse;
@@ -137,18 +135,17 @@ TEST_CASE("in space a plate compresses an elastic block evenly, and a cylinder i
   }
   for (auto& point : solver->points) point.position[2] += 0.037;
   Body<3> base, plate;
-  base.kind = BodyKind::half_space;
+  base.shape = HalfSpace<3>{Vec<3>(0, 0, 1)};
   base.centre = Vec<3>(0, 0, 0.037);
-  base.normal = Vec<3>(0, 0, 1);
   base.rough = false;
-  plate.half = Vec<3>(1, 1, 0.3);
+  plate.shape = Box<3>{Vec<3>(1, 1, 0.3)};
   plate.centre = Vec<3>(0.15, 0.15, 0.4 + 0.037 + 0.3);
   plate.velocity.times = {0, 0.1};
   plate.velocity.velocities = {Vec<3>::Zero(), Vec<3>(0, 0, -0.002)};
   solver->bodies.all = {base, plate};
   for (auto& body : solver->bodies.all) body.at_surface = true;
   while (solver->time < 0.3) solver->step(solver->stable_step());
-  const double strain = -solver->bodies.all[1].velocity.way(solver->time)[2] / 0.4;
+  const double strain = -solver->bodies.all[1].velocity.displacement(solver->time)[2] / 0.4;
   double mean = 0;
   for (const auto& point : solver->points) mean -= point.stress(2, 2) / double(solver->points.size());
   CHECK(mean == Approx(1e6 * 0.7 / (1.3 * 0.4) * strain).epsilon(0.03));
@@ -156,8 +153,7 @@ TEST_CASE("in space a plate compresses an elastic block evenly, and a cylinder i
   // A cylinder along z pushes a block that is free: every layer of it alike.
   auto pushed = block<3>({4, 3, 3}, 0.1, moduli, 2000);
   Body<3> cylinder;
-  cylinder.kind = BodyKind::disc;
-  cylinder.radius = 0.3;
+  cylinder.shape = Disc<3>{0.3};
   cylinder.centre = Vec<3>(-0.3, 0.15, 0);
   cylinder.velocity.times = {0};
   cylinder.velocity.velocities = {Vec<3>(0.5, 0, 0)};

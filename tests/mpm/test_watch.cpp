@@ -67,7 +67,7 @@ TEST_CASE("points that gain speed in mapping have it from nothing") {
 TEST_CASE(
     "a step below a thousandth of the first is told with what asks for it, and below a millionth it ends the run") {
   auto solver = block<2>({4, 4}, 0.25, soil, 2000);
-  solver->ranges[0].name = "clay";
+  solver->groups[0].name = "clay";
   Watched seen;
   std::ostringstream told;
   const auto look = [&] { return reason([&] { watch_step<2>(*solver, solver->stable_step(), seen, told); }); };

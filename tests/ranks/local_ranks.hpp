@@ -23,7 +23,7 @@ class LocalRanks final : public Link {
   }
   int ranks() const override { return int(answers_.size()); }
   void send(int rank, std::span<const std::byte> message) override {
-    if (Unpacker(message).take<Call>() == Call::end) return;
+    if (Unpacker(message).take<RankCall>() == RankCall::end) return;
     answers_[std::size_t(rank)] = others_[std::size_t(rank) - 1]->answer(message);
   }
   void receive(int rank, Bytes& message) override { message = std::move(answers_[std::size_t(rank)]); }

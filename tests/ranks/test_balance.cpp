@@ -43,7 +43,7 @@ TEST_CASE("the states of a pool over ranks go to a file and into pools of other 
     CHECK(second->ids().empty());
     read_into(*second);
     CHECK(second->ids() == kept.ids);
-    for (std::size_t k = 0; k < kept.ids.size(); ++k) CHECK(second->save(kept.ids[k]) == states[k]);
+    for (std::size_t k = 0; k < kept.ids.size(); ++k) CHECK(second->at<&pool::Share::save>(kept.ids[k]) == states[k]);
     pool::ThreadedPool one(one_thread());
     read_into(one);
     const auto gradients = draw.gradients(6, 1e-4);

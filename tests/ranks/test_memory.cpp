@@ -32,29 +32,29 @@ TEST_CASE("Without memory at any request of any rank a call is refused and leave
   pool->apply(ids[1], gradient, 0, stress);
   const auto seen = [&] {
     std::vector<std::vector<std::byte>> states;
-    for (const std::int64_t id : ids) states.push_back(pool->save(id));
+    for (const std::int64_t id : ids) states.push_back(pool->at<&pool::Share::save>(id));
     return states;
   };
   const auto states = seen();
   const auto put_back = [&] {
-    for (std::size_t k = 0; k < ids.size(); ++k) pool->load(ids[k], states[k]);
+    for (std::size_t k = 0; k < ids.size(); ++k) pool->at<&pool::Share::load>(ids[k], states[k]);
   };
   std::int64_t other = 0;
   std::vector<std::int64_t> costs(4);
   const auto nothing = [] {};
   const std::vector<Step> calls = {
-      {"add_template", nothing, [&] { other = pool->add_template(start); }, [&] { pool->release_template(other); }},
-      {"release_template", [&] { other = pool->add_template(start); }, [&] { pool->release_template(other); }, nothing},
+      {"add_template", nothing, [&] { other = pool->add_template(start); }, [&] { pool->everywhere<&pool::Share::release_template>(other); }},
+      {"release_template", [&] { other = pool->add_template(start); }, [&] { pool->everywhere<&pool::Share::release_template>(other); }, nothing},
       {"spawn", nothing, [&] { pool->spawn(made, 4, more.data()); }, [&] { pool->release(more); }},
       {"clone", nothing, [&] { other = pool->clone(ids[1]); },
        [&] {
          pool->release({&other, 1});
        }},
       {"ids", nothing, [&] { pool->ids(); }, nothing},
-      {"info", nothing, [&] { pool->info(ids[1]); }, nothing},
+      {"info", nothing, [&] { pool->at<&pool::Share::info>(ids[1]); }, nothing},
       {"cost", nothing, [&] { pool->cost(ids, costs.data()); }, nothing},
-      {"save", nothing, [&] { pool->save(ids[2]); }, nothing},
-      {"load", nothing, [&] { pool->load(ids[2], states[2]); }, nothing},
+      {"save", nothing, [&] { pool->at<&pool::Share::save>(ids[2]); }, nothing},
+      {"load", nothing, [&] { pool->at<&pool::Share::load>(ids[2], states[2]); }, nothing},
       {"apply", nothing, [&] { pool->apply(ids[1], gradient, 0, stress); }, put_back},
       {"revert", [&] { trial(*pool, ids, gradients); }, [&] { pool->revert(ids); }, nothing},
   };
@@ -105,7 +105,7 @@ TEST_CASE("Without memory at any request of any rank a commit, revert or release
   std::vector<std::int64_t> ids(5);
   const auto seen = [&] {
     std::vector<std::vector<std::byte>> states;
-    for (const std::int64_t id : ids) states.push_back(pool->save(id));
+    for (const std::int64_t id : ids) states.push_back(pool->at<&pool::Share::save>(id));
     return states;
   };
   const auto spawn = [&] {
@@ -170,7 +170,7 @@ TEST_CASE("A batch over ranks without memory tells of each RVE what became of it
   std::vector<std::int64_t> ids(6);
   pool->spawn(made, 6, ids.data());
   std::vector<std::vector<std::byte>> states;
-  for (const std::int64_t id : ids) states.push_back(pool->save(id));
+  for (const std::int64_t id : ids) states.push_back(pool->at<&pool::Share::save>(id));
   const std::vector<double> gradients = Draw(3).gradients(6, 1e-4);
   const Found expected = trial(*pool, ids, gradients, nullptr, 0, true);
   pool->revert(ids);
@@ -185,7 +185,7 @@ TEST_CASE("A batch over ranks without memory tells of each RVE what became of it
   batch.status = status.data();
   for (long n = 1;; n += n < 200 ? 1 : 7) {
     CAPTURE(n);
-    for (std::size_t k = 0; k < ids.size(); ++k) pool->load(ids[k], states[k]);
+    for (std::size_t k = 0; k < ids.size(); ++k) pool->at<&pool::Share::load>(ids[k], states[k]);
     std::fill(stress.begin(), stress.end(), 7);
     std::fill(status.begin(), status.end(), std::int32_t(pool::Status::no_memory));
     allocations_left = n;
@@ -206,7 +206,7 @@ TEST_CASE("A batch over ranks without memory tells of each RVE what became of it
       CHECK(pool::Status(status[k]) == pool::Status::no_memory);
       CHECK(found == pool::Status::no_memory);
       CHECK(stress[9 * k] == 7);
-      CHECK((pool->save(ids[k]) == states[k]));
+      CHECK((pool->at<&pool::Share::save>(ids[k]) == states[k]));
     }
     CHECK(trial(*pool, ids, gradients, nullptr, 0, true).bits() == expected.bits());
   }

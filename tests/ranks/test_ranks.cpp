@@ -80,9 +80,9 @@ TEST_CASE("a pool over ranks gives the bits, ids, tokens and costs of a pool in 
       }
       CHECK(equal);
       for (const std::int64_t id : ids) {
-        CHECK(one.save(id) == spread->save(there_of.at(id)));
-        const pool::Info a = one.info(id), b = spread->info(there_of.at(id));
-        CHECK((a.p == b.p && a.fabric == b.fabric && a.cell.lattice == b.cell.lattice && a.token == b.token &&
+        CHECK(one.save(id) == spread->at<&pool::Share::save>(there_of.at(id)));
+        const pool::Info a = one.info(id), b = spread->at<&pool::Share::info>(there_of.at(id));
+        CHECK((a.p == b.p && a.fabric == b.fabric && a.lattice == b.lattice && a.token == b.token &&
                a.contacts == b.contacts && a.grain_steps == b.grain_steps && a.inertial_number == b.inertial_number));
         std::int64_t cost_here = 0, cost_there = 1;
         one.cost({&id, 1}, &cost_here);
@@ -115,7 +115,7 @@ TEST_CASE("RVEs that move between ranks keep their pending trials") {
   CHECK(refused.verdict.status == pool::Status::stale_token);
   spread->commit(busy);
   one.commit(busy_here);
-  for (std::size_t k = 0; k < busy.size(); ++k) CHECK(spread->save(busy[k]) == one.save(busy_here[k]));
+  for (std::size_t k = 0; k < busy.size(); ++k) CHECK(spread->at<&pool::Share::save>(busy[k]) == one.save(busy_here[k]));
 }
 
 TEST_CASE("a pool over ranks refuses what a pool in one process does, with the same words") {
@@ -147,7 +147,7 @@ TEST_CASE("a pool over ranks refuses what a pool in one process does, with the s
     say([&] { pool.release(std::vector{ids[1], std::int64_t(5)}); });
     say([&] { trial(pool, {ids[0], ids[1], ids[0]}, std::vector<double>(27, 0.0)); });
     say([&] { trial(pool, ids, std::vector<double>(36, 0.0), nullptr, -1); });
-    say([&] { pool.load(ids[3], std::vector<std::byte>(100)); });
+    say([&] { pool.at<&pool::Share::load>(ids[3], std::vector<std::byte>(100)); });
     say([&] { pool.read([](const auto&) { return pool::Population{}; }); });
     // One entry of a batch alone: the others are done.
     std::vector<double> gradients(36, 0.0);
@@ -161,12 +161,12 @@ TEST_CASE("a pool over ranks refuses what a pool in one process does, with the s
     CHECK((foreign.status[0] >= 0 && foreign.status[1] == -4 && foreign.scale[1] == 0 && foreign.status[2] >= 0));
     say([&] { throw pool::Refused(foreign.verdict.status, foreign.verdict.text); });
     say([&] { pool.commit(ids); });  // the second has no trial: none is committed
-    CHECK(pool.info(ids[0]).token == 1);
+    CHECK(pool.at<&pool::Share::info>(ids[0]).token == 1);
     pool.release(std::vector{ids[1]});
     say([&] { pool.apply(ids[1], none, 0, stress); });
     CHECK(pool.ids() == std::vector{ids[0], ids[2], ids[3]});
     std::int64_t again = pool.clone(ids[3]);
-    CHECK((pool::Id::of(again).slot == pool::Id::of(ids[1]).slot && pool.save(again) == pool.save(ids[3])));
+    CHECK((pool::Id::of(again).slot == pool::Id::of(ids[1]).slot && pool.at<&pool::Share::save>(again) == pool.at<&pool::Share::save>(ids[3])));
     return found;
   };
   pool::ThreadedPool one(one_thread());

@@ -5,54 +5,24 @@
 namespace mpm {
 
 template <int D>
-double Body<D>::distance(const Vec<D>& r, Vec<D>& outward, const Vec<D>& unit) const {
-  if (kind == BodyKind::half_space) {
-    outward = normal;
-    return r.dot(normal);
-  }
-  if (kind == BodyKind::disc) {
-    outward = r;
-    if (D == 3) outward[D - 1] = 0;
-    const double length = outward.norm();
-    if (length > 0) outward /= length;
-    return length - radius;
-  }
-  // The nearest face; of two at one distance that across the last axis, a footing's lower one.
-  int axis = 0;
-  double nearest = -1e300;
-  for (int i = 0; i < D; ++i) {
-    const double beyond = (std::abs(r[i]) - half[i]) / unit[i];
-    if (beyond < nearest - 1e-9 * half[i] / unit[i]) continue;
-    nearest = beyond;
-    axis = i;
-  }
-  outward.setZero();
-  outward[axis] = r[axis] < 0 ? -1 : 1;
-  return std::abs(r[axis]) - half[axis];
-}
-
-template <int D>
-void Bodies<D>::find(const Grid<D>& grid, const Planes<D>& planes, const std::vector<Point<D>>& soil, double time,
-                     Workers& workers) {
+void Bodies<D>::detect_contact(const Grid<D>& grid, const Planes<D>& planes, const std::vector<Point<D>>& soil,
+                               double time, Workers& workers) {
   contacts_.clear();
   surface_.clear();
   sweeps_ = 1;
   bool at_nodes = false;
   for (int k = 0; k < int(all.size()); ++k) {
-    if (all[k].at_surface) {
-      find_touched(grid, soil, k, time, workers);
-      all[k].kind == BodyKind::half_space ? find_half_space(grid, planes, k, time)
-                                          : find_outline(grid, planes, k, time);
-    } else {
+    if (all[k].at_surface)
+      detect_surface(grid, planes, soil, k, time, workers);
+    else
       at_nodes = true;
-    }
   }
-  if (at_nodes) find_inside(grid, planes, time, workers);
+  if (at_nodes) detect_nodes(grid, planes, time, workers);
 }
 
-/// Nodes in bodies with contact at nodes: pieces of the grid, one after the other.
+/// Nodes in bodies with contact at nodes, in the order of the grid.
 template <int D>
-void Bodies<D>::find_inside(const Grid<D>& grid, const Planes<D>& planes, double time, Workers& workers) {
+void Bodies<D>::detect_nodes(const Grid<D>& grid, const Planes<D>& planes, double time, Workers& workers) {
   const double touch = 1e-6 * grid.cell.minCoeff();
   std::vector<Vec<D>> centres;
   for (const auto& body : all) centres.push_back(body.centre_at(time));
@@ -60,7 +30,7 @@ void Bodies<D>::find_inside(const Grid<D>& grid, const Planes<D>& planes, double
   std::vector<std::vector<Contact>> pieces((n + chunk - 1) / chunk);
   workers.for_each(std::int64_t(pieces.size()), [&](std::int64_t piece) {
     for (long flat = long(piece) * chunk; flat < std::min(n, long(piece + 1) * chunk); ++flat) {
-      if (!(grid.nodes[flat].mass > 0) || planes.is_behind(flat)) continue;
+      if (!(grid.nodes[flat].mass > 0) || planes.is_mirror(flat)) continue;
       const Vec<D> x = grid.position(grid.index(flat));
       for (int k = 0; k < int(all.size()); ++k) {
         Vec<D> outward;
@@ -73,7 +43,7 @@ void Bodies<D>::find_inside(const Grid<D>& grid, const Planes<D>& planes, double
 }
 
 template <int D>
-Vec<D> Bodies<D>::meet(const Contact& contact, const Vec<D>& speed, double* velocity) const {
+Vec<D> Bodies<D>::stop(const Contact& contact, const Vec<D>& speed, double* velocity) const {
   const auto& body = all[contact.body];
   Vec<D> relative, jump;
   for (int i = 0; i < D; ++i) relative[i] = velocity[i] - speed[i];
@@ -86,9 +56,9 @@ Vec<D> Bodies<D>::meet(const Contact& contact, const Vec<D>& speed, double* velo
     along *= std::max(0.0, 1 + body.friction * across / slip);
   }
   for (int i = 0; i < D; ++i) {
-    const double met = speed[i] + along[i];
-    jump[i] = met - velocity[i];
-    velocity[i] = met;
+    const double stopped = speed[i] + along[i];
+    jump[i] = stopped - velocity[i];
+    velocity[i] = stopped;
   }
   return jump;
 }
@@ -97,7 +67,7 @@ template <int D>
 void Bodies<D>::set_start(Grid<D>& grid, double time) {
   for (auto& contact : contacts_) {
     auto& node = grid.nodes[contact.node];
-    contact.jump = meet(contact, all[contact.body].velocity.at(time), node.v);
+    contact.jump = stop(contact, all[contact.body].velocity.at(time), node.v);
   }
   for (auto& point : surface_) point.impulse.setZero();
   hold_surface(grid, time, false);
@@ -113,10 +83,10 @@ template <int D>
 void Bodies<D>::set_end(Grid<D>& grid, const Planes<D>& planes, double time) {
   for (auto& contact : contacts_) {
     auto& node = grid.nodes[contact.node];
-    contact.jump += meet(contact, all[contact.body].velocity.at(time), node.w);
+    contact.jump += stop(contact, all[contact.body].velocity.at(time), node.w);
   }
   hold_surface(grid, time, true);
-  // Work is done along the way that the node makes in the end, which a second body in it may have changed.
+  // Work is done over the displacement of the node in the end, which a second body at it may have changed.
   for (const auto& contact : contacts_) {
     const auto& node = grid.nodes[contact.node];
     for (int i = 0; i < D; ++i) {
@@ -133,8 +103,6 @@ void Bodies<D>::set_end(Grid<D>& grid, const Planes<D>& planes, double time) {
   }
 }
 
-template struct Body<2>;
-template struct Body<3>;
 template class Bodies<2>;
 template class Bodies<3>;
 

@@ -81,7 +81,7 @@ std::vector<double> clock_of(Progress progress) {
 
 [[noreturn]] void of_another_scene(const std::string& folder, const std::string& what, std::size_t found,
                                    std::size_t wanted) {
-  throw Mistake(folder + ": its checkpoint holds " + std::to_string(found) + " " + what + ", this scene needs " +
+  throw InputError(folder + ": its checkpoint holds " + std::to_string(found) + " " + what + ", this scene needs " +
                 std::to_string(wanted) +
                 "; leave out the --set that changes their number, or start the run anew in another folder");
 }
@@ -101,26 +101,24 @@ void write_checkpoint(const Model<D>& model, const Progress& progress, const std
   const std::size_t n = solver.points.size();
   file.write("points", rows, {n, n == 0 ? 0 : rows.size() / n});
   std::vector<double> reactions;
-  const auto keep = [&](const auto& each) {
+  solver.each_driven([&](const auto& each) {
     reactions.insert(reactions.end(), each.reaction.impulse.data(), each.reaction.impulse.data() + D);
     reactions.push_back(each.reaction.work);
-  };
-  for (const auto& plane : solver.planes.all) keep(plane);
-  for (const auto& body : solver.bodies.all) keep(body);
+  });
   file.write("reactions", reactions, {reactions.size()});
   auto clock = clock_of(progress);
-  clock.insert(clock.end(), {solver.time, solver.ledger.nodal_kinetic});
+  clock.insert(clock.end(), {solver.time, solver.nodal_kinetic});
   // A grid that follows a plane was placed at the start of the last step; the size of the next one hangs on it.
   clock.insert(clock.end(), solver.grid.cell.data(), solver.grid.cell.data() + D);
   file.write("clock", clock, {clock.size()});
   file.write("counts", std::vector<std::int64_t>{solver.steps, progress.history.bytes, progress.history.checksum,
                                                  progress.watched.bytes, progress.watched.checksum,
-                                                 progress.seen.told_step, progress.seen.told_energy});
+                                                 progress.seen.warned_step, progress.seen.warned_energy});
   file.write("impulses", progress.impulses, {progress.impulses.size()});
   file.write("frame_times", progress.frame_times, {progress.frame_times.size()});
   file.write("watched", std::vector<std::int64_t>(model.watched.begin(), model.watched.end()));
   file.write("contact_at_surface", contacts_of(solver));
-  for (const auto& range : solver.ranges) range.material->save(file, range.name);
+  for (const auto& group : solver.groups) group.material->save(file, group.name);
   file.publish(true);
   remove_old_pools<D>(model, place);
 }
@@ -143,31 +141,28 @@ void read_checkpoint(Model<D>& model, Progress& progress, const std::string& fol
     });
   }
   const auto reactions = file.read("reactions");
-  const std::size_t pushing = solver.planes.all.size() + solver.bodies.all.size();
-  if (reactions.size() != (D + 1) * pushing) {
-    of_another_scene(folder, "boundaries and bodies", reactions.size() / (D + 1), pushing);
+  if (reactions.size() != (D + 1) * solver.count_driven()) {
+    of_another_scene(folder, "boundaries and bodies", reactions.size() / (D + 1), solver.count_driven());
   }
   at = 0;
-  const auto take = [&](auto& each) {
+  solver.each_driven([&](auto& each) {
     for (int i = 0; i < D; ++i) each.reaction.impulse[i] = reactions[at++];
     each.reaction.work = reactions[at++];
-  };
-  for (auto& plane : solver.planes.all) take(plane);
-  for (auto& body : solver.bodies.all) take(body);
+  });
   auto clock = file.read("clock");
   const std::size_t own = clock_of(progress).size();
   if (clock.size() != own + 2 + D) of_another_scene(folder, "times", clock.size(), own + 2 + D);
   std::copy_n(clock.begin() + long(own) + 2, D, solver.grid.cell.data());
   solver.time = clock[own];
-  solver.ledger.nodal_kinetic = clock[own + 1];
+  solver.nodal_kinetic = clock[own + 1];
   each_clock(progress, [&, k = std::size_t(0)](double& value) mutable { value = clock[k++]; });
   const auto counts = file.read_whole("counts");
   if (counts.size() != 7) of_another_scene(folder, "counts", counts.size(), 7);
   solver.steps = long(counts[0]);
   progress.history = {long(counts[1]), std::uint32_t(counts[2])};
   progress.watched = {long(counts[3]), std::uint32_t(counts[4])};
-  progress.seen.told_step = counts[5] != 0;
-  progress.seen.told_energy = counts[6] != 0;
+  progress.seen.warned_step = counts[5] != 0;
+  progress.seen.warned_energy = counts[6] != 0;
   progress.impulses = file.read("impulses");
   progress.frame_times = file.read("frame_times");
   const auto watched = file.read_whole("watched");
@@ -175,17 +170,17 @@ void read_checkpoint(Model<D>& model, Progress& progress, const std::string& fol
   for (auto& [name, pool] : model.pools) {
     const auto path = place / pool_name(name, solver.steps);
     if (!std::filesystem::exists(path)) {
-      throw Mistake(path.string() +
+      throw InputError(path.string() +
                     ": the RVEs of the checkpoint are missing; put the file back, or start the run anew");
     }
     pool->read(path.string());
   }
   if (file.read_whole("contact_at_surface") != contacts_of(solver)) {
-    throw Mistake(folder +
+    throw InputError(folder +
                   ": its bodies were met by another contact than in this scene; leave out the --set of a body's "
                   "contact, or start the run anew in another folder");
   }
-  for (auto& range : solver.ranges) range.material->restore(file, range.name);
+  for (auto& group : solver.groups) group.material->restore(file, group.name);
 }
 
 template void write_checkpoint<2>(const Model<2>&, const Progress&, const std::string&);

@@ -1,4 +1,4 @@
-// The whole state of a run in files, bitwise: points, reactions and ledgers in checkpoint.h5, RVEs beside it.
+// The whole state of a run in files, bitwise: points, reactions and energies in checkpoint.h5, RVEs beside it.
 #pragma once
 
 #include "tools/mpm/energy.hpp"

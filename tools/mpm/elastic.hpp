@@ -1,7 +1,7 @@
 // Isotropic elasticity in rate form, with the objective rotation of Hughes and Winget, and what plastic laws share.
 #pragma once
 
-#include "tools/mpm/material.hpp"
+#include "tools/mpm/continuum.hpp"
 
 namespace mpm {
 
@@ -12,6 +12,9 @@ struct ElasticModuli {
   double shear() const { return young / (2 * (1 + poisson)); }
   double wave() const { return bulk() + 4 * shear() / 3; }
 };
+
+ElasticModuli read_moduli(Keys& keys);
+Continuum read_elastic(Keys& keys);
 
 /// Q s Q^T for the spin W of a step: Q = (I - W/2)^-1 (I + W/2) is orthogonal.
 template <int D>

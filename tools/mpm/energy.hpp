@@ -6,10 +6,9 @@
 namespace mpm {
 
 /// J. Since the start: kinetic + potential + stress_work + mapping_loss = boundary_work + pressure_work + residual. The
-/// residual is the error of the time integration and, once a body touches, that of contact at nodes (bodies.hpp): those
-/// outside the body that its surface reaches stay unbalanced.
+/// residual is the error of the time integration and, once a body touches soil, that of contact at nodes (bodies.hpp).
 template <int D>
-struct Balance {
+struct EnergyBalance {
   double kinetic = 0;        ///< of the points, now
   double potential = 0;      ///< change in gravity
   double stress_work = 0;    ///< of the stress in the points
@@ -20,7 +19,7 @@ struct Balance {
   Vec<D> momentum = Vec<D>::Zero();
 };
 
-/// What a balance is counted from.
+/// The state that an energy balance starts from.
 struct EnergyStart {
   double kinetic = 0, potential = 0, volume = 0;
 };
@@ -37,8 +36,8 @@ EnergyStart energy_start(const Solver<D>& solver) {
 }
 
 template <int D>
-Balance<D> balance_of(const Solver<D>& solver, const EnergyStart& start) {
-  Balance<D> balance;
+EnergyBalance<D> energy_balance(const Solver<D>& solver, const EnergyStart& start) {
+  EnergyBalance<D> balance;
   double volume = 0;
   balance.potential = -start.potential;
   for (const auto& point : solver.points) {
@@ -48,10 +47,9 @@ Balance<D> balance_of(const Solver<D>& solver, const EnergyStart& start) {
     balance.momentum += point.mass * point.velocity;
     volume += point.volume;
   }
-  for (const auto& plane : solver.planes.all) balance.boundary_work += plane.reaction.work;
-  for (const auto& body : solver.bodies.all) balance.boundary_work += body.reaction.work;
+  solver.each_driven([&](const auto& each) { balance.boundary_work += each.reaction.work; });
   balance.pressure_work = solver.options.surface_pressure * (start.volume - volume);
-  balance.mapping_loss = start.kinetic + solver.ledger.nodal_kinetic - balance.kinetic;
+  balance.mapping_loss = start.kinetic + solver.nodal_kinetic - balance.kinetic;
   balance.residual = balance.kinetic - start.kinetic + balance.potential + balance.stress_work + balance.mapping_loss -
                      balance.boundary_work - balance.pressure_work;
   return balance;

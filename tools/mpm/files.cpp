@@ -16,7 +16,7 @@ namespace mpm {
 namespace {
 
 hid_t checked(hid_t id, const std::string& path, const std::string& what) {
-  if (id < 0) throw Mistake(path + ": " + what);
+  if (id < 0) throw InputError(path + ": " + what);
   return id;
 }
 
@@ -80,7 +80,7 @@ void OutputFile::publish(bool sealed) {
 void publish_file(const std::string& path, const char* bytes, std::size_t size) {
   const std::string partial = path + ".partial";
   std::ofstream file(partial, std::ios::binary);
-  if (!file && errno != ENOSPC) throw Mistake(path + ": cannot be written; give a folder that you may write to");
+  if (!file && errno != ENOSPC) throw InputError(path + ": cannot be written; give a folder that you may write to");
   file.write(bytes, std::streamsize(size));
   file.close();
   std::error_code error;
@@ -95,7 +95,7 @@ std::vector<std::byte> file_bytes(const std::string& path) {
     return rvelab::keys::whole_file<std::vector<std::byte>>(
         path, "a file of this run, put back from a copy, or start the run anew");
   } catch (const rvelab::InputError& error) {
-    throw Mistake(error.what());
+    throw InputError(error.what());
   }
 }
 
@@ -107,7 +107,7 @@ InputFile::InputFile(const std::string& path) : path_(path) {
   const auto body = std::span(bytes).first(room ? whole - rvelab::io::seal_bytes : 0);
   const auto seal = rvelab::io::seal_of(body);
   if (!room || !std::equal(seal.begin(), seal.end(), bytes.begin() + std::ptrdiff_t(body.size()))) {
-    throw Mistake(path + ": is damaged (" + std::to_string(whole) +
+    throw InputError(path + ": is damaged (" + std::to_string(whole) +
                   " bytes, and its seal is not theirs); put it back from a copy, or start the run anew");
   }
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
@@ -133,7 +133,7 @@ std::vector<Value> InputFile::get(const std::string& name, std::int64_t type) co
   H5Sclose(space);
   H5Dclose(set);
   if (failed)
-    throw Mistake(path_ + ": " + name + " cannot be read; put the file back from a copy, or start the run anew");
+    throw InputError(path_ + ": " + name + " cannot be read; put the file back from a copy, or start the run anew");
   return values;
 }
 

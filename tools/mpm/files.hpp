@@ -28,17 +28,17 @@ class OutputFile {
   std::int64_t file_;
 };
 
-/// Writes a file beside its name and renames it: an old one stays whole until then. Mistake: not there;
+/// Writes a file beside its name and renames it: an old one stays whole until then. InputError: not there;
 /// std::runtime_error: the disc is full.
 void publish_file(const std::string& path, const char* bytes, std::size_t size);
 
-/// The bytes of a regular file; Mistake: it is missing, no regular file, or cannot be read.
+/// The bytes of a regular file; InputError: it is missing, no regular file, or cannot be read.
 std::vector<std::byte> file_bytes(const std::string& path);
 
 /// A sealed file. It is read into memory once: what the seal was compared with is what HDF5 reads.
 class InputFile {
  public:
-  /// Mistake if it is missing, no HDF5 file, or has no seal, or another than its bytes ask for.
+  /// InputError if it is missing, no HDF5 file, or has no seal, or another than its bytes ask for.
   explicit InputFile(const std::string& path);
   InputFile(const InputFile&) = delete;
   InputFile& operator=(const InputFile&) = delete;

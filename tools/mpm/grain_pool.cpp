@@ -15,7 +15,7 @@ void run_tasks(void* host, rvelab_task task, void* work, std::int64_t count) {
 /// A trial of one RVE from its committed state; its status.
 std::int32_t try_one(rvelab_pool* pool, std::int64_t id, const double* dH, double* sigma, double* tangent) {
   rvelab_batch batch;
-  need(rvelab_batch_init(&batch, sizeof batch));
+  expect_ok(rvelab_batch_init(&batch, sizeof batch));
   batch.n = 1;
   batch.ids = &id;
   batch.dH = dH;
@@ -26,49 +26,49 @@ std::int32_t try_one(rvelab_pool* pool, std::int64_t id, const double* dH, doubl
 
 }  // namespace
 
-void need(std::int32_t status) {
-  if (status < RVELAB_OK) throw Mistake(std::string(rvelab_status_name(status)) + ": " + rvelab_last_error());
+void expect_ok(std::int32_t status) {
+  if (status < RVELAB_OK) throw InputError(std::string(rvelab_status_name(status)) + ": " + rvelab_last_error());
 }
 
-void look(rvelab_pool* pool, std::int64_t id, double* sigma, double* tangent) {
+void read_state(rvelab_pool* pool, std::int64_t id, double* sigma, double* tangent) {
   const double zero[9] = {};
-  need(try_one(pool, id, zero, sigma, tangent));
-  need(rvelab_revert(pool, 1, &id));
+  expect_ok(try_one(pool, id, zero, sigma, tangent));
+  expect_ok(rvelab_revert(pool, 1, &id));
 }
 
 GrainPool::GrainPool(Workers& workers, const GrainOptions& options) {
   rvelab_pool_def def;
-  need(rvelab_pool_def_init(&def, sizeof def));
+  expect_ok(rvelab_pool_def_init(&def, sizeof def));
   def.tolerance_rel = options.tolerance_rel;
   def.tolerance_abs = options.tolerance_abs;
   def.workers = 1;
   def.run_tasks = run_tasks;
   def.host = &workers;
-  need(options.source.create(&def, &pool_));
+  expect_ok(options.source.create(&def, &pool_));
 }
 
 GrainPool::~GrainPool() { rvelab_pool_destroy(pool_); }
 
 rvelab_info GrainPool::info(std::int64_t id) const {
   rvelab_info info;
-  need(rvelab_info_init(&info, sizeof info));
-  need(rvelab_get_info(pool_, id, &info));
+  expect_ok(rvelab_info_init(&info, sizeof info));
+  expect_ok(rvelab_get_info(pool_, id, &info));
   return info;
 }
 
 void GrainPool::write(const std::string& path) const {
   if (rvelab_pool_write(pool_, path.c_str()) < RVELAB_OK) throw std::runtime_error(rvelab_last_error());
 }
-void GrainPool::read(const std::string& path) { need(rvelab_pool_read(pool_, path.c_str())); }
+void GrainPool::read(const std::string& path) { expect_ok(rvelab_pool_read(pool_, path.c_str())); }
 
 std::int64_t GrainPool::copy_from(const GrainPool& other, std::int64_t id) const {
   std::size_t size = 0;
-  need(rvelab_snapshot_save(other.get(), id, nullptr, 0, &size));
+  expect_ok(rvelab_snapshot_save(other.get(), id, nullptr, 0, &size));
   std::vector<unsigned char> state(size);
-  need(rvelab_snapshot_save(other.get(), id, state.data(), size, &size));
+  expect_ok(rvelab_snapshot_save(other.get(), id, state.data(), size, &size));
   std::int64_t tmpl = 0, copy = 0;
-  need(rvelab_template_from_snapshot(pool_, state.data(), size, &tmpl));
-  need(rvelab_spawn(pool_, tmpl, 1, &copy));
+  expect_ok(rvelab_template_from_snapshot(pool_, state.data(), size, &tmpl));
+  expect_ok(rvelab_spawn(pool_, tmpl, 1, &copy));
   return copy;
 }
 
@@ -82,14 +82,14 @@ void GrainPool::write_alone(std::int64_t id, const std::string& path) const {
 
 double wave_modulus_of(const GrainPool& pool, std::int64_t id) {
   double sigma[9], tangent[36];
-  look(pool.get(), id, sigma, tangent);
+  read_state(pool.get(), id, sigma, tangent);
   return std::max({tangent[0], tangent[7], tangent[14]});
 }
 
-double felt_modulus_of(const GrainPool& pool, std::int64_t id, int dimension) {
+double measured_modulus_of(const GrainPool& pool, std::int64_t id, int dimension) {
   constexpr double strain = 1e-5;
   double sigma[9], largest = 0;
-  look(pool.get(), id, sigma, nullptr);
+  read_state(pool.get(), id, sigma, nullptr);
   for (int axis = 0; axis < dimension; ++axis) {
     const double rest = sigma[4 * axis];
     double slope[2];
@@ -98,13 +98,13 @@ double felt_modulus_of(const GrainPool& pool, std::int64_t id, int dimension) {
       dH[4 * axis] = side == 0 ? strain : -strain;
       const auto status = try_one(pool.get(), id, dH, moved, nullptr);
       if (status == RVELAB_DISCARD) return 0;
-      need(status);
+      expect_ok(status);
       slope[side] = (moved[4 * axis] - rest) / dH[4 * axis];
     }
     // Grains that slip make one side soft, a state that drifts makes one too stiff: then by at most a factor of two.
     largest = std::max(largest, std::min(std::max(slope[0], slope[1]), slope[0] + slope[1]));
   }
-  need(rvelab_revert(pool.get(), 1, &id));
+  expect_ok(rvelab_revert(pool.get(), 1, &id));
   return largest;
 }
 
@@ -112,16 +112,16 @@ SpecimenFamily::SpecimenFamily(std::shared_ptr<GrainPool> pool, const std::vecto
     : pool_(std::move(pool)), preparation_(thread_, {}) {
   for (const auto& path : paths) {
     std::int64_t tmpl = 0, id = 0;
-    need(rvelab_template_load(preparation_.get(), path.c_str(), &tmpl));
-    need(rvelab_spawn(preparation_.get(), tmpl, 1, &id));
+    expect_ok(rvelab_template_load(preparation_.get(), path.c_str(), &tmpl));
+    expect_ok(rvelab_spawn(preparation_.get(), tmpl, 1, &id));
     specimens_.push_back({tmpl, preparation_.info(id).p});
-    need(rvelab_release(preparation_.get(), 1, &id));
+    expect_ok(rvelab_release(preparation_.get(), 1, &id));
   }
 }
 
-std::int64_t SpecimenFamily::handed_over(std::int64_t id) {
+std::int64_t SpecimenFamily::moved_to_scene(std::int64_t id) {
   const std::int64_t copy = pool_->copy_from(preparation_, id);
-  need(rvelab_release(preparation_.get(), 1, &id));
+  expect_ok(rvelab_release(preparation_.get(), 1, &id));
   return copy;
 }
 
@@ -132,8 +132,8 @@ std::int64_t SpecimenFamily::prepare(double pressure) {
     if (pressure > 0 && apart(s) < apart(*nearest)) nearest = &s;
   }
   std::int64_t id = 0;
-  need(rvelab_spawn(preparation_.get(), nearest->tmpl, 1, &id));
-  if (pressure <= 0) return handed_over(id);
+  expect_ok(rvelab_spawn(preparation_.get(), nearest->tmpl, 1, &id));
+  if (pressure <= 0) return moved_to_scene(id);
   const int d = int(preparation_.info(id).dimension);
   // Symmetric strains in the tangent's order; in the plane xx, yy, xy.
   const std::vector<int> rows = d == 2 ? std::vector<int>{0, 1, 5} : std::vector<int>{0, 1, 2, 3, 4, 5};
@@ -141,10 +141,10 @@ std::int64_t SpecimenFamily::prepare(double pressure) {
   const long n = long(rows.size());
   double sigma[9], tangent[36];
   for (int round = 0; round < 200; ++round) {
-    look(preparation_.get(), id, sigma, tangent);
+    read_state(preparation_.get(), id, sigma, tangent);
     double now = 0;
     for (int i = 0; i < d; ++i) now -= sigma[4 * i] / d;
-    // In steps of a fifth of the pressure at most: the network changes on the way.
+    // In steps of a fifth of the pressure at most, since the network changes.
     const double aim = std::min(std::max(pressure, now / 1.2), now * 1.2);
     Eigen::MatrixXd C(n, n);
     Eigen::VectorXd missing(n);
@@ -153,7 +153,7 @@ std::int64_t SpecimenFamily::prepare(double pressure) {
       missing[i] = (r < 3 ? -aim : 0) - 0.5 * (sigma[3 * first[r] + second[r]] + sigma[3 * second[r] + first[r]]);
       for (long j = 0; j < n; ++j) C(i, j) = tangent[6 * r + rows[j]];
     }
-    if (aim == pressure && missing.cwiseAbs().maxCoeff() < 1e-3 * pressure) return handed_over(id);
+    if (aim == pressure && missing.cwiseAbs().maxCoeff() < 1e-3 * pressure) return moved_to_scene(id);
     Eigen::VectorXd strain = C.fullPivLu().solve(missing);
     strain *= std::min(1.0, 2e-3 / strain.cwiseAbs().maxCoeff());
     double dH[9] = {};
@@ -161,9 +161,9 @@ std::int64_t SpecimenFamily::prepare(double pressure) {
       const int r = rows[i];
       dH[3 * first[r] + second[r]] = dH[3 * second[r] + first[r]] = r < 3 ? strain[i] : 0.5 * strain[i];
     }
-    need(rvelab_apply(preparation_.get(), id, dH, 0, sigma));
+    expect_ok(rvelab_apply(preparation_.get(), id, dH, 0, sigma));
   }
-  throw Mistake("a specimen at " + text_of(nearest->pressure) + " Pa does not come to " + text_of(pressure) +
+  throw InputError("a specimen at " + text_of(nearest->pressure) + " Pa does not come to " + text_of(pressure) +
                 " Pa; pack one nearer to that pressure (rvelab pack, target.pressures_Pa) and name it in specimens");
 }
 
@@ -171,7 +171,7 @@ std::int64_t SpecimenFamily::spawn(double pressure) {
   auto found = prepared_.find(pressure);
   if (found == prepared_.end()) found = prepared_.emplace(pressure, prepare(pressure)).first;
   std::int64_t id = 0;
-  need(rvelab_clone(pool_->get(), found->second, &id));
+  expect_ok(rvelab_clone(pool_->get(), found->second, &id));
   return id;
 }
 
@@ -185,15 +185,15 @@ double SpecimenFamily::wave_modulus() {
   double largest = 0;
   for (const auto& specimen : specimens_) {
     std::int64_t id = 0;
-    need(rvelab_spawn(preparation_.get(), specimen.tmpl, 1, &id));
+    expect_ok(rvelab_spawn(preparation_.get(), specimen.tmpl, 1, &id));
     largest = std::max(largest, wave_modulus_of(preparation_, id));
-    need(rvelab_release(preparation_.get(), 1, &id));
+    expect_ok(rvelab_release(preparation_.get(), 1, &id));
   }
   return largest;
 }
 
 void SpecimenFamily::release() {
-  for (const auto& [pressure, id] : prepared_) need(rvelab_release(pool_->get(), 1, &id));
+  for (const auto& [pressure, id] : prepared_) expect_ok(rvelab_release(pool_->get(), 1, &id));
   prepared_.clear();
 }
 

@@ -24,8 +24,8 @@ struct GrainOptions {
   PoolSource source;
 };
 
-/// Mistake with rvelab's own text if a call failed; warnings pass.
-void need(std::int32_t status);
+/// InputError with rvelab's own text if a call failed; warnings are ignored.
+void expect_ok(std::int32_t status);
 
 /// A pool of RVEs that work with the threads of the driver.
 class GrainPool {
@@ -47,7 +47,7 @@ class GrainPool {
   rvelab_pool* pool_ = nullptr;
 };
 
-/// Specimens of one material, brought to any pressure once and copied from there.
+/// Specimens of one material, consolidated to each pressure once and then copied.
 class SpecimenFamily {
  public:
   /// `paths`: one or more specimen files; that with the pressure nearest to the one asked for (by ratio) is taken.
@@ -60,7 +60,7 @@ class SpecimenFamily {
   /// Pa: of plane waves, in the stiffest of the specimens as their files have them.
   double wave_modulus();
   std::size_t classes() const { return prepared_.size(); }
-  /// Takes the prepared states out of the pool; their copies stay.
+  /// Releases the prepared states; their copies stay.
   void release();
 
  private:
@@ -69,24 +69,24 @@ class SpecimenFamily {
     double pressure;
   };
   std::int64_t prepare(double pressure);
-  /// The copy in the pool of the scene of what was prepared.
-  std::int64_t handed_over(std::int64_t id);
+  /// Its copy in the pool of the scene.
+  std::int64_t moved_to_scene(std::int64_t id);
   std::shared_ptr<GrainPool> pool_;
   Workers thread_{1};
-  GrainPool preparation_;  ///< where they are prepared, to the tolerances of the specimen, whatever those of the scene
+  GrainPool preparation_;  ///< with the tolerances of the specimen, whatever those of the scene
   std::vector<Specimen> specimens_;
   std::map<double, std::int64_t> prepared_;
 };
 
-/// Stress and, if asked for, tangent of the state as it is: a trial that is let go of.
-void look(rvelab_pool* pool, std::int64_t id, double* sigma, double* tangent);
+/// Stress and, if not null, tangent of the state as it is, by a trial that is discarded.
+void read_state(rvelab_pool* pool, std::int64_t id, double* sigma, double* tangent);
 
 /// Pa: the largest of the moduli of plane waves along the axes, of the contact network.
 double wave_modulus_of(const GrainPool& pool, std::int64_t id);
 
-/// Pa: the same as quasi-static strains of 1e-5 along the axes meet it, the stiffer side of each; 0 if they cannot be
-/// made. Along a biaxial test of dense discs within 4 % of the tangent's, in a tenth of its time; of 1000 spheres,
-/// where the tangent takes as long as 5000 increments, within 1 % in a hundredth.
-double felt_modulus_of(const GrainPool& pool, std::int64_t id, int dimension);
+/// Pa: the same measured by quasi-static strains of 1e-5 along the axes, the stiffer side of each; 0 if they cannot be
+/// made. Along a biaxial test of dense discs it is within 4 % of the tangent's in a tenth of its time; for 1000 spheres
+/// within 1 % in a hundredth.
+double measured_modulus_of(const GrainPool& pool, std::int64_t id, int dimension);
 
 }  // namespace mpm

@@ -46,30 +46,29 @@ void Grains<D>::read_stress(Point<D>* points) {
     const auto info = pool_->info(ids_[k]);
     if (info.p != last) wave_modulus_ = std::max(wave_modulus_, wave_modulus_of(*pool_, ids_[k]));
     last = info.p;
-    look(pool_->get(), ids_[k], sigma, nullptr);
+    read_state(pool_->get(), ids_[k], sigma, nullptr);
     points[k].stress = from_nine<D>(sigma);
     found_.compression = std::max(found_.compression, compression_of<D>(points[k]));
   }
   found_.first = found_.modulus = wave_modulus_;
 }
 
-/// The stable step needs the modulus of the stiffest RVE, which is taken to be the most compressed one. It is looked at
-/// again once the largest compression has doubled, and every 25,000 increments, which costs 1 % at most. Between,
-/// the modulus grows with the root of the compression: contacts of Hertz stiffen with its cube root, and new ones add
-/// to that (Goddard 1990, Proc. R. Soc. A 430). It never falls below a quarter of the first: what comes to rest on a
-/// stress again must not meet too long a step.
+/// The stable step needs the modulus of the stiffest RVE, taken to be the most compressed one. It is measured again once
+/// the largest compression has doubled, and every 25,000 increments, which costs 1 % at most. Between, the modulus is
+/// scaled by the root of the compression: contacts of Hertz stiffen with its cube root, and new ones add to that (Goddard
+/// 1990, Proc. R. Soc. A 430). It never falls below a quarter of the first, so that soil that lands gets no too long step.
 template <int D>
 void Grains<D>::follow_stiffness(const Point<D>* points, long count) {
-  constexpr double between_looks = 25'000, least = 0.25;
+  constexpr double between_checks = 25'000, least = 0.25;
   const auto* most = std::max_element(points, points + count, [](const Point<D>& a, const Point<D>& b) {
     return compression_of<D>(a) < compression_of<D>(b);
   });
   const double compression = count > 0 ? compression_of<D>(*most) : 0;
-  if (compression > 2 * found_.compression || called - found_.called >= between_looks) {
+  if (compression > 2 * found_.compression || called - found_.called >= between_checks) {
     const auto id = ids_[std::size_t(most - points)];
-    const double now = physical_ ? wave_modulus_of(*pool_, id) : felt_modulus_of(*pool_, id, D);
+    const double now = physical_ ? wave_modulus_of(*pool_, id) : measured_modulus_of(*pool_, id, D);
     if (now > 0) found_.modulus = std::max(now, least * found_.first);
-    // A hundredth at a time: a material in flight, under next to no stress, would double it at every step.
+    // By a factor of 100 at most: a material in flight, almost without stress, would double it at every step.
     found_.compression = std::max(compression, 0.01 * found_.compression);
     found_.called = called;
   }
@@ -77,7 +76,7 @@ void Grains<D>::follow_stiffness(const Point<D>* points, long count) {
 }
 
 template <int D>
-void Grains<D>::in_parts(Point<D>& point, std::int64_t id, const Mat<D>& gradient, double dt, double scale) {
+void Grains<D>::apply_in_parts(Point<D>& point, std::int64_t id, const Mat<D>& gradient, double dt, double scale) {
   ++split;
   double sigma[9], dH[9];
   long parts = long(std::ceil(1 / std::max(scale, 1e-3)));
@@ -103,12 +102,12 @@ void Grains<D>::in_parts(Point<D>& point, std::int64_t id, const Mat<D>& gradien
 template <int D>
 void Grains<D>::advance(Point<D>* points, long count, double dt, Workers&) {
   const auto begin = std::chrono::steady_clock::now();
-  waiting_.resize(std::size_t(count), Mat<D>::Zero());
+  gathered_.resize(std::size_t(count), Mat<D>::Zero());
   chosen_.clear();
   batch_ids_.clear();
   dH_.clear();
   for (long k = 0; k < count; ++k) {
-    Mat<D>& sum = waiting_[std::size_t(k)];
+    Mat<D>& sum = gathered_[std::size_t(k)];
     sum += points[k].gradient;
     if (sum.cwiseAbs().maxCoeff() < gather_) continue;
     chosen_.push_back(k);
@@ -123,7 +122,7 @@ void Grains<D>::advance(Point<D>* points, long count, double dt, Workers&) {
   scale_.resize(n);
   status_.resize(n);
   rvelab_batch batch;
-  need(rvelab_batch_init(&batch, sizeof batch));
+  expect_ok(rvelab_batch_init(&batch, sizeof batch));
   batch.n = std::int64_t(n);
   batch.dt = physical_ ? dt : 0;
   batch.ids = batch_ids_.data();
@@ -132,21 +131,21 @@ void Grains<D>::advance(Point<D>* points, long count, double dt, Workers&) {
   batch.dt_scale = scale_.data();
   batch.status = status_.data();
   const auto worst = n == 0 ? RVELAB_OK : rvelab_trial(pool_->get(), &batch);
-  if (worst < RVELAB_DISCARD) need(worst);
+  if (worst < RVELAB_DISCARD) expect_ok(worst);
   std::vector<std::int64_t> good;
   good.reserve(n);
   for (std::size_t k = 0; k < n; ++k) {
     if (status_[k] >= RVELAB_OK) good.push_back(batch_ids_[k]);
     warned += status_[k] == RVELAB_W_TOLERANCE || status_[k] == RVELAB_W_NOT_QUASI_STATIC;
   }
-  if (!good.empty()) need(rvelab_commit(pool_->get(), std::int64_t(good.size()), good.data()));
+  if (!good.empty()) expect_ok(rvelab_commit(pool_->get(), std::int64_t(good.size()), good.data()));
   for (std::size_t k = 0; k < n; ++k) {
     auto& point = points[chosen_[k]];
-    Mat<D>& sum = waiting_[std::size_t(chosen_[k])];
+    Mat<D>& sum = gathered_[std::size_t(chosen_[k])];
     if (status_[k] >= RVELAB_OK) {
       point.stress = from_nine<D>(sigma_.data() + 9 * k);
     } else {
-      in_parts(point, batch_ids_[k], sum, batch.dt, scale_[k]);
+      apply_in_parts(point, batch_ids_[k], sum, batch.dt, scale_[k]);
     }
     sum.setZero();
   }
@@ -163,7 +162,7 @@ Measures Grains<D>::measures(long point) const {
 template <int D>
 double Grains<D>::grain_steps() const {
   std::vector<std::int64_t> steps(ids_.size());
-  need(rvelab_cost(pool_->get(), std::int64_t(ids_.size()), ids_.data(), steps.data()));
+  expect_ok(rvelab_cost(pool_->get(), std::int64_t(ids_.size()), ids_.data(), steps.data()));
   double sum = earlier_;
   for (const auto each : steps) sum += double(each);
   return sum;
@@ -177,7 +176,7 @@ void Grains<D>::save(OutputFile& file, const std::string& name) const {
                                  found_.modulus, found_.compression, found_.called, grain_steps()},
              {10});
   std::vector<double> waiting;
-  for (const auto& each : waiting_) waiting.insert(waiting.end(), each.data(), each.data() + D * D);
+  for (const auto& each : gathered_) waiting.insert(waiting.end(), each.data(), each.data() + D * D);
   file.write("materials/" + name + "/waiting", waiting, {waiting.size()});
 }
 
@@ -195,9 +194,9 @@ void Grains<D>::restore(const InputFile& file, const std::string& name) {
   earlier_ = state[9] - grain_steps();
   found_ = {state[5], state[6], state[7], state[8]};
   const auto waiting = file.read("materials/" + name + "/waiting");
-  waiting_.clear();
+  gathered_.clear();
   for (std::size_t k = 0; k + D * D <= waiting.size(); k += D * D) {
-    waiting_.push_back(Eigen::Map<const Mat<D>>(waiting.data() + k));
+    gathered_.push_back(Eigen::Map<const Mat<D>>(waiting.data() + k));
   }
 }
 

@@ -13,8 +13,8 @@ template <int D>
 class Grains : public Material<D> {
  public:
   /// physical: the RVEs feel the time step (rate, inertia of grains); else they are quasi-static.
-  /// gather: increments whose sum (largest entry of the gradient) is below this wait for those to come; the stress
-  /// stays meanwhile. 0: none waits.
+  /// gather: increments are summed until the largest entry of the gradient reaches this; the stress stays meanwhile. 0:
+  /// each is applied at once.
   Grains(std::shared_ptr<GrainPool> pool, std::vector<std::int64_t> ids, bool physical, double gather);
   void advance(Point<D>* points, long count, double dt, Workers& workers) override;
   double wave_modulus() const override { return wave_modulus_; }
@@ -27,24 +27,24 @@ class Grains : public Material<D> {
   /// The RVE of a point in a file of its own: grains, contacts and their history.
   void write_network(long point, const std::string& path) const { pool_->write_alone(ids_[std::size_t(point)], path); }
   const std::vector<std::int64_t>& ids() const { return ids_; }
-  /// Increments that could be made in parts only, and those whose estimate was above the tolerance or not quasi-static.
+  /// Increments that had to be cut, and those with a warning of the tolerance or of missing equilibrium.
   long split = 0, warned = 0;
-  double called = 0, asked = 0;  ///< increments given to RVEs, and all there were
+  double called = 0, asked = 0;  ///< increments that RVEs got, and all of the points
 
  private:
   void follow_stiffness(const Point<D>* points, long count);
-  void in_parts(Point<D>& point, std::int64_t id, const Mat<D>& gradient, double dt, double scale);
+  void apply_in_parts(Point<D>& point, std::int64_t id, const Mat<D>& gradient, double dt, double scale);
   std::shared_ptr<GrainPool> pool_;
   std::vector<std::int64_t> ids_;
   bool physical_;
   double gather_;
   double wave_modulus_ = 0;
   double earlier_ = 0;  ///< grain-steps before the run was resumed
-  /// What the wave modulus was found to be, under which largest compression along an axis, after how many increments.
+  /// The last measured wave modulus, the largest compression along an axis then, and the count of increments.
   struct Found {
     double first = 0, modulus = 0, compression = 0, called = 0;  ///< first: at the start, Pa
   } found_;
-  std::vector<Mat<D>> waiting_;  ///< gradients times steps that were gathered
+  std::vector<Mat<D>> gathered_;  ///< gradients times steps, not applied yet
   std::vector<long> chosen_;     ///< points of the batch
   std::vector<std::int64_t> batch_ids_;
   std::vector<double> dH_, sigma_, scale_;

@@ -11,8 +11,8 @@
 
 namespace mpm {
 
-/// mass; v: momentum, then velocity at the start of the step; w: force, then velocity at its end; a: velocity that the
-/// points brought, then what the step added to it.
+/// mass; v: momentum, then velocity at the start of the step; w: force, then velocity at its end; a: velocity mapped
+/// from the points, then what the step added to it.
 /// Vectors of space have a fourth entry, zero: registers hold two or four numbers, and sums over nodes are then made in
 /// whole registers.
 template <int D>
@@ -53,7 +53,7 @@ class Grid {
       std::ostringstream words;
       words << "the background grid would need " << size << " nodes, and has " << double(most)
             << " at most: a material point flies far off; take a smaller time.cfl, or add a boundary that holds it";
-      throw Mistake(words.str());
+      throw InputError(words.str());
     }
     low = from;
     for (int i = 0; i < D; ++i) count[i] = to[i] - from[i] + 1;
@@ -63,6 +63,11 @@ class Grid {
   /// Of nodes from..to - 1.
   void clear(long from, long to) {
     std::memset(static_cast<void*>(nodes.data() + from), 0, std::size_t(to - from) * sizeof(Node<D>));
+  }
+  bool contains(const Index& node) const {
+    bool inside = true;
+    for (int i = 0; i < D; ++i) inside = inside && node[i] >= low[i] && node[i] < low[i] + count[i];
+    return inside;
   }
   long flat(const Index& node) const {
     long at = node[D - 1] - low[D - 1];

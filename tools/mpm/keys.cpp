@@ -66,7 +66,7 @@ const toml::node* Keys::get(const std::string& name) {
 }
 
 void Keys::wrong(const std::string& name, const std::string& message) const {
-  throw Mistake(place(path_, table_->get(name)) + dotted(name) + " " + message);
+  throw InputError(place(path_, table_->get(name)) + dotted(name) + " " + message);
 }
 
 void Keys::missing(const std::string& name, const std::string& remedy) {
@@ -146,9 +146,9 @@ std::string Keys::choice(const std::string& name, const std::vector<std::string>
     // Which keys belong here hangs on this one: of the others only one that is nearly it can be called unknown.
     for (const auto& [key, node] : *table_) {
       const std::string other(key.str());
-      if (!known_.contains(other) && edits(other, name) <= 2) throw Mistake(unknown(other, node, dotted(name)));
+      if (!known_.contains(other) && edits(other, name) <= 2) throw InputError(unknown(other, node, dotted(name)));
     }
-    throw Mistake(missing_);
+    throw InputError(missing_);
   }
   const std::string value = text(name, allowed.front());
   const std::set<std::string> words(allowed.begin(), allowed.end());
@@ -258,8 +258,8 @@ void Keys::finish() const {
       others += (others.empty() ? "; unknown too: " : ", ") + dotted(name) + " (" + nearest + ")";
     }
   }
-  if (!first.empty()) throw Mistake(first + others);
-  if (!missing_.empty()) throw Mistake(missing_);
+  if (!first.empty()) throw InputError(first + others);
+  if (!missing_.empty()) throw InputError(missing_);
 }
 
 }  // namespace mpm

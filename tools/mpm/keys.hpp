@@ -1,5 +1,5 @@
-// TOML read strictly: every key of a table must be asked for, and every value must be of its kind and in its range. A
-// mistake names file, line, key, what is allowed and what to do.
+// TOML read strictly: the reader must know every key of a table, and every value must be of its kind and in its range. An
+// error names file, line, key, what is allowed and what to do.
 #pragma once
 
 #include <toml++/toml.h>
@@ -12,8 +12,8 @@
 
 namespace mpm {
 
-/// One table. Reading a key makes it known; finish() then throws for those that nobody asked for, and after them for a
-/// required one that is not there (its value is 0, empty or not a number until then): a misspelt key is told as such.
+/// One table. Reading a key makes it known; finish() then throws for unknown keys, and after them for a missing one that is
+/// required (its value is 0, empty or not a number until then): a misspelt key is thus reported as such.
 class Keys {
  public:
   /// `where`: its dotted name, "" for the whole file. The table must outlive this.
@@ -43,7 +43,7 @@ class Keys {
   /// Names of the tables under a table, which are not read here.
   void known(const std::string& name) { known_.insert(name); }
   void finish() const;
-  /// Mistake at the value of a key.
+  /// InputError at the value of a key.
   [[noreturn]] void wrong(const std::string& name, const std::string& message) const;
 
  private:
@@ -66,10 +66,10 @@ std::string text_of(const std::vector<double>& values);
 /// The word with the fewest edits; "" if there are none.
 std::string nearest_word(const std::string& word, const std::set<std::string>& words);
 
-/// A whole file. Mistake if there is none, with line and column if it is no TOML.
+/// A whole file. InputError if there is none, with line and column if it is no TOML.
 toml::table parse_file(const std::string& path);
-/// Lays `over` over `base`: tables key by key, arrays of tables element by element, everything else as a whole.
-void lay_over(toml::table& base, const toml::table& over);
+/// Overrides `base` by `over`: tables key by key, arrays of tables element by element, everything else as a whole.
+void override_table(toml::table& base, const toml::table& over);
 /// One assignment of the command line, a.b.c=value. In an array of tables an element goes by its `name` or its number,
 /// from 0.
 void assign(toml::table& scene, const std::string& assignment);

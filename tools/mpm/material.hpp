@@ -16,7 +16,7 @@ struct Measures {
   double void_ratio = NAN, fabric_anisotropy = NAN, coordination_number = NAN, plastic_strain = NAN;
 };
 
-/// Of one contiguous range of points, `first` the number of its first.
+/// Of one material group: a contiguous range of points.
 template <int D>
 class Material {
  public:

@@ -35,20 +35,20 @@ Rows::Rows(const std::string& path, const std::string& header, const WrittenRows
     const auto bytes = file_bytes(path);
     const auto size = std::size_t(keep.bytes);
     if (bytes.size() < size) {
-      throw Mistake(path + ": has " + std::to_string(bytes.size()) + " bytes, and " + std::to_string(size) +
+      throw InputError(path + ": has " + std::to_string(bytes.size()) + " bytes, and " + std::to_string(size) +
                     " when the checkpoint was written; put the whole file back, or start the run anew");
     }
     if (rvelab::io::crc32c(std::span(bytes).first(size)) != keep.checksum) {
-      throw Mistake(path + ": is damaged (its first " + std::to_string(size) +
+      throw InputError(path + ": is damaged (its first " + std::to_string(size) +
                     " bytes are not those that it had when the checkpoint was written); put the file back from a copy, "
                     "or start the run anew");
     }
     std::error_code error;
     std::filesystem::resize_file(path, size, error);
-    if (error) throw Mistake(path + ": cannot be written; give yourself the right to write to it");
+    if (error) throw InputError(path + ": cannot be written; give yourself the right to write to it");
   }
   file_ = std::fopen(path.c_str(), keep.bytes > 0 ? "a" : "w");
-  if (file_ == nullptr) throw Mistake(path + ": cannot be written; give a folder that you may write to");
+  if (file_ == nullptr) throw InputError(path + ": cannot be written; give a folder that you may write to");
   if (keep.bytes <= 0) put(header);
 }
 
@@ -76,42 +76,38 @@ std::string history_header(const Solver<D>& solver) {
   std::string header =
       "time_s,steps,kinetic_J,potential_J,stress_work_J,pressure_work_J,boundary_work_J,mapping_loss_J,residual_J";
   for (int i = 0; i < D; ++i) header += std::string(",momentum_") + axes[i] + "_N_s";
-  const auto columns = [&](const std::string& name) {
-    for (int i = 0; i < D; ++i) header += "," + name + ".force_" + axes[i] + "_N";
-    for (int i = 0; i < D; ++i) header += "," + name + ".way_" + axes[i] + "_m";
-  };
-  for (const auto& plane : solver.planes.all) columns(plane.name);
-  for (const auto& body : solver.bodies.all) columns(body.name);
+  solver.each_driven([&](const auto& each) {
+    for (int i = 0; i < D; ++i) header += "," + each.name + ".force_" + axes[i] + "_N";
+    for (int i = 0; i < D; ++i) header += "," + each.name + ".way_" + axes[i] + "_m";
+  });
   return header;
 }
 
 template <int D>
 std::vector<double> history_row(const Solver<D>& solver, const EnergyStart& start, double since,
                                 std::vector<double>& before) {
-  const auto b = balance_of<D>(solver, start);
+  const auto b = energy_balance<D>(solver, start);
   std::vector<double> row{solver.time,     double(solver.steps), b.kinetic,      b.potential, b.stress_work,
                           b.pressure_work, b.boundary_work,      b.mapping_loss, b.residual};
   for (int i = 0; i < D; ++i) row.push_back(b.momentum[i]);
-  before.resize(D * (solver.planes.all.size() + solver.bodies.all.size()), 0.0);
+  before.resize(D * solver.count_driven(), 0.0);
   std::size_t at = 0;
-  const auto columns = [&](const auto& each) {
+  solver.each_driven([&](const auto& each) {
     for (int i = 0; i < D; ++i, ++at) {
-      // The soil's force on the boundary is the other way round.
+      // The soil's force on the boundary has the opposite sign.
       row.push_back(since > 0 ? -(each.reaction.impulse[i] - before[at]) / since : 0);
       before[at] = each.reaction.impulse[i];
     }
-    const Vec<D> way = each.velocity.way(solver.time);
-    for (int i = 0; i < D; ++i) row.push_back(way[i]);
-  };
-  for (const auto& plane : solver.planes.all) columns(plane);
-  for (const auto& body : solver.bodies.all) columns(body);
+    const Vec<D> displacement = each.velocity.displacement(solver.time);
+    for (int i = 0; i < D; ++i) row.push_back(displacement[i]);
+  });
   return row;
 }
 
 template <int D>
 Measures measures_of(const Solver<D>& solver, long point) {
-  const auto& range = solver.range_of(point);
-  return range.material->measures(point - range.first);
+  const auto& group = solver.group_of(point);
+  return group.material->measures(point - group.first);
 }
 
 template <int D>
@@ -197,10 +193,10 @@ void write_frame(const Model<D>& model, const std::string& folder, long frame) {
 template <int D>
 void write_networks(const Model<D>& model, const std::string& folder, long frame) {
   for (std::size_t k = 0; k < model.watched.size(); ++k) {
-    const auto& range = model.solver.range_of(model.watched[k]);
+    const auto& group = model.solver.group_of(model.watched[k]);
     const auto name = frame_name(frame, "network_" + std::to_string(k));
-    model.grains.at(range.name)
-        ->write_network(model.watched[k] - range.first, (std::filesystem::path(folder) / name).string());
+    model.grains.at(group.name)
+        ->write_network(model.watched[k] - group.first, (std::filesystem::path(folder) / name).string());
   }
 }
 
@@ -215,7 +211,7 @@ void expect_whole_scene(const std::string& folder) {
   const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   const auto last = text.rfind(checksum_line);
   if (last != std::string::npos && text == with_checksum(text.substr(0, last))) return;
-  throw Mistake(path +
+  throw InputError(path +
                 ": is damaged, or was changed by hand (its last line holds another checksum); put the file back from a "
                 "copy, change a scene by --resume with --set, or start the run anew");
 }

@@ -18,7 +18,7 @@ struct WrittenRows {
 /// A text file of rows that can go on where a checkpoint left it.
 class Rows {
  public:
-  /// `keep`: what stays (no bytes: a new file with this header). Mistake if the file is shorter, or was changed there:
+  /// `keep`: what stays (no bytes: a new file with this header). InputError if the file is shorter, or was changed there:
   /// what stands behind is left by a kill after the checkpoint, and is made again.
   Rows(const std::string& path, const std::string& header, const WrittenRows& keep);
   Rows(const Rows&) = delete;
@@ -54,7 +54,7 @@ template <int D>
 void write_networks(const Model<D>& model, const std::string& folder, long frame);
 /// scene.toml, whole or not at all, and its checksum in the last line.
 void write_scene(const std::string& folder, const std::string& toml);
-/// Mistake if scene.toml is not as write_scene left it.
+/// InputError if scene.toml is not as write_scene left it.
 void expect_whole_scene(const std::string& folder);
 /// points.xdmf for all frames so far.
 void write_xdmf(const std::string& folder, const std::vector<double>& times, long points);

@@ -11,70 +11,83 @@ bool Planes<D>::changed(double time) const {
 }
 
 template <int D>
-void Planes<D>::rebuild(const Grid<D>& grid, double time) {
-  built_ = time;
-  ties_.clear();
-  on_plane_.clear();
-  specials_.clear();
-  behind_.assign(all.empty() ? 0 : grid.nodes.size(), 0);
-  held_ = behind_;
-  if (all.empty()) return;
-  special_of_.assign(grid.nodes.size(), -1);
-  const auto touch = [&](long node, int plane) {
-    int& at = special_of_[std::size_t(node)];
-    if (at < 0) {
-      at = int(specials_.size());
-      specials_.push_back({node, {}});
-    }
-    auto& planes = specials_[std::size_t(at)].planes;
-    const auto axis = all[plane].axis;
-    const bool on = grid.index(node)[axis] == all[plane].node;
-    planes.insert(on ? planes.begin() : planes.end(), plane);
-  };
-  for (long flat = 0; flat < long(grid.nodes.size()); ++flat) {
-    auto node = grid.index(flat);
-    Tie tie{flat, flat, Vec<D>::Ones(), {}};
-    // Two planes may face each other one cell apart: a node may need more than one reflection.
-    for (bool again = true; again && tie.planes.size() < 8;) {
-      again = false;
-      for (int k = 0; k < int(all.size()); ++k) {
-        const auto& plane = all[k];
-        if (!active(k, time) || (node[plane.axis] - plane.node) * plane.inside >= 0) continue;
-        node[plane.axis] = 2 * plane.node - node[plane.axis];
-        for (int i = 0; i < D; ++i) {
-          if (plane.holds(i)) tie.sign[i] = -tie.sign[i];
-        }
-        tie.planes.push_back(k);
-        again = true;
+void Planes<D>::add_touched(const Grid<D>& grid, long node, int plane) {
+  int& at = touched_of_[std::size_t(node)];
+  if (at < 0) {
+    at = int(touched_.size());
+    touched_.push_back({node, {}});
+  }
+  auto& planes = touched_[std::size_t(at)].planes;
+  const bool on = grid.index(node)[all[plane].axis] == all[plane].node;
+  planes.insert(on ? planes.begin() : planes.end(), plane);
+}
+
+/// The reflections of a node that bring it to the soil's side of every plane; without any, it is no mirror node. Two
+/// planes may face each other one cell apart: a node may need more than one reflection.
+template <int D>
+MirrorNode<D> Planes<D>::reflected(const Grid<D>& grid, long node, typename Grid<D>::Index& image, double time) const {
+  MirrorNode<D> mirror{node, node, Vec<D>::Ones(), {}};
+  image = grid.index(node);
+  for (bool again = true; again && mirror.planes.size() < 8;) {
+    again = false;
+    for (int k = 0; k < int(all.size()); ++k) {
+      const auto& plane = all[k];
+      if (!active(k, time) || (image[plane.axis] - plane.node) * plane.inside >= 0) continue;
+      image[plane.axis] = 2 * plane.node - image[plane.axis];
+      for (int i = 0; i < D; ++i) {
+        if (plane.holds(i)) mirror.sign[i] = -mirror.sign[i];
       }
-    }
-    bool there = true;
-    for (int i = 0; i < D; ++i) there = there && node[i] >= grid.low[i] && node[i] < grid.low[i] + grid.count[i];
-    if (!tie.planes.empty()) behind_[flat] = 1;
-    if (!there) continue;
-    tie.before = grid.flat(node);
-    if (!tie.planes.empty()) {
-      for (const int k : tie.planes) {
-        touch(tie.behind, k);
-        touch(tie.before, k);
-      }
-      ties_.push_back(tie);
-      continue;
-    }
-    for (const bool fixed : {false, true}) {
-      for (int k = 0; k < int(all.size()); ++k) {
-        if (!active(k, time) || all[k].fixed != fixed || node[all[k].axis] != all[k].node) continue;
-        on_plane_.push_back({flat, k});
-        for (int i = 0; i < D; ++i) held_[flat] |= char(all[k].holds(i) << i);
-        touch(flat, k);
-      }
+      mirror.planes.push_back(k);
+      again = true;
     }
   }
-  // A node behind one plane may follow a node that lies on another, which then holds both.
-  for (const auto& tie : ties_) {
-    auto& behind = special(tie.behind).planes;
-    for (const int k : special(tie.before).planes) {
-      if (std::find(behind.begin(), behind.end(), k) == behind.end()) behind.push_back(k);
+  return mirror;
+}
+
+template <int D>
+void Planes<D>::add_on_planes(const Grid<D>& grid, long node, double time) {
+  const auto index = grid.index(node);
+  for (const bool fixed : {false, true}) {
+    for (int k = 0; k < int(all.size()); ++k) {
+      if (!active(k, time) || all[k].fixed != fixed || index[all[k].axis] != all[k].node) continue;
+      on_plane_.push_back({node, k});
+      for (int i = 0; i < D; ++i) held_[node] |= char(all[k].holds(i) << i);
+      add_touched(grid, node, k);
+    }
+  }
+}
+
+template <int D>
+void Planes<D>::rebuild(const Grid<D>& grid, double time) {
+  built_ = time;
+  mirrors_.clear();
+  on_plane_.clear();
+  touched_.clear();
+  is_mirror_.assign(all.empty() ? 0 : grid.nodes.size(), 0);
+  held_ = is_mirror_;
+  if (all.empty()) return;
+  touched_of_.assign(grid.nodes.size(), -1);
+  for (long node = 0; node < long(grid.nodes.size()); ++node) {
+    typename Grid<D>::Index image;
+    auto mirror = reflected(grid, node, image, time);
+    if (mirror.planes.empty()) {
+      add_on_planes(grid, node, time);
+      continue;
+    }
+    is_mirror_[node] = 1;
+    if (!grid.contains(image)) continue;
+    mirror.image = grid.flat(image);
+    for (const int k : mirror.planes) {
+      add_touched(grid, mirror.node, k);
+      add_touched(grid, mirror.image, k);
+    }
+    mirrors_.push_back(mirror);
+  }
+  // The image of a mirror node may lie on another plane, which then holds both.
+  for (const auto& mirror : mirrors_) {
+    auto& planes = touched(mirror.node).planes;
+    for (const int k : touched(mirror.image).planes) {
+      if (std::find(planes.begin(), planes.end(), k) == planes.end()) planes.push_back(k);
     }
   }
 }
@@ -87,9 +100,9 @@ std::vector<Vec<D>> Planes<D>::speeds(double time) const {
 }
 
 template <int D>
-Vec<D> Planes<D>::shift(const Tie& tie, const std::vector<Vec<D>>& speeds) const {
+Vec<D> Planes<D>::shift(const MirrorNode<D>& mirror, const std::vector<Vec<D>>& speeds) const {
   Vec<D> c = Vec<D>::Zero();
-  for (auto k = tie.planes.rbegin(); k != tie.planes.rend(); ++k) {
+  for (auto k = mirror.planes.rbegin(); k != mirror.planes.rend(); ++k) {
     for (int i = 0; i < D; ++i) {
       if (all[*k].holds(i)) c[i] = 2 * speeds[*k][i] - c[i];
     }
@@ -99,32 +112,32 @@ Vec<D> Planes<D>::shift(const Tie& tie, const std::vector<Vec<D>>& speeds) const
 
 template <int D>
 void Planes<D>::fold_momentum(Grid<D>& grid, double time) {
-  for (auto& special : specials_) {
-    const auto& node = grid.nodes[special.node];
-    special.mass = node.mass;
-    for (int i = 0; i < D; ++i) special.velocity[i] = node.a[i];
+  for (auto& each : touched_) {
+    const auto& node = grid.nodes[each.node];
+    each.mass = node.mass;
+    for (int i = 0; i < D; ++i) each.velocity[i] = node.a[i];
   }
   const auto now = speeds(time);
-  for (const auto& tie : ties_) {
-    const auto& behind = grid.nodes[tie.behind];
-    auto& before = grid.nodes[tie.before];
-    if (!(behind.mass > 0)) continue;
-    const Vec<D> c = shift(tie, now);
-    const double total = before.mass + behind.mass;
+  for (const auto& mirror : mirrors_) {
+    const auto& node = grid.nodes[mirror.node];
+    auto& image = grid.nodes[mirror.image];
+    if (!(node.mass > 0)) continue;
+    const Vec<D> c = shift(mirror, now);
+    const double total = image.mass + node.mass;
     for (int i = 0; i < D; ++i) {
-      before.v[i] = (before.mass * before.v[i] + behind.mass * tie.sign[i] * (behind.v[i] - c[i])) / total;
+      image.v[i] = (image.mass * image.v[i] + node.mass * mirror.sign[i] * (node.v[i] - c[i])) / total;
     }
-    before.mass = total;
+    image.mass = total;
   }
 }
 
 template <int D>
 void Planes<D>::fold_force(Grid<D>& grid) {
-  for (auto& special : specials_) {
-    for (int i = 0; i < D; ++i) special.force[i] = grid.nodes[special.node].w[i];
+  for (auto& each : touched_) {
+    for (int i = 0; i < D; ++i) each.force[i] = grid.nodes[each.node].w[i];
   }
-  for (const auto& tie : ties_) {
-    for (int i = 0; i < D; ++i) grid.nodes[tie.before].w[i] += tie.sign[i] * grid.nodes[tie.behind].w[i];
+  for (const auto& mirror : mirrors_) {
+    for (int i = 0; i < D; ++i) grid.nodes[mirror.image].w[i] += mirror.sign[i] * grid.nodes[mirror.node].w[i];
   }
 }
 
@@ -137,20 +150,20 @@ void Planes<D>::set(Grid<D>& grid, double time, bool end) const {
       if (all[on.plane].holds(i)) (end ? node.w : node.v)[i] = now[on.plane][i];
     }
   }
-  for (const auto& tie : ties_) {
-    auto& behind = grid.nodes[tie.behind];
-    const auto& before = grid.nodes[tie.before];
-    if (!(behind.mass > 0)) continue;
-    const Vec<D> c = shift(tie, now);
+  for (const auto& mirror : mirrors_) {
+    auto& node = grid.nodes[mirror.node];
+    const auto& image = grid.nodes[mirror.image];
+    if (!(node.mass > 0)) continue;
+    const Vec<D> c = shift(mirror, now);
     for (int i = 0; i < D; ++i) {
-      (end ? behind.w : behind.v)[i] = c[i] + tie.sign[i] * (end ? before.w : before.v)[i];
+      (end ? node.w : node.v)[i] = c[i] + mirror.sign[i] * (end ? image.w : image.v)[i];
     }
   }
 }
 
 template <int D>
 void Planes<D>::unfold(Grid<D>& grid) const {
-  for (const auto& special : specials_) grid.nodes[special.node].mass = special.mass;
+  for (const auto& each : touched_) grid.nodes[each.node].mass = each.mass;
 }
 
 /// The plane across a component has its reaction; a tangential one belongs to a plane that holds it.
@@ -172,49 +185,49 @@ void Planes<D>::book(int plane, int component, const Node<D>& node, double impul
 }
 
 template <int D>
-void Planes<D>::keep_brought(Grid<D>& grid) const {
-  for (const auto& special : specials_) {
-    auto& node = grid.nodes[special.node];
+void Planes<D>::keep_mapped(Grid<D>& grid) const {
+  for (const auto& each : touched_) {
+    auto& node = grid.nodes[each.node];
     for (int i = 0; i < D; ++i) node.a[i] = node.v[i];
   }
 }
 
 template <int D>
 void Planes<D>::react(const Grid<D>& grid, double dt, double pic_fraction) {
-  for (auto& each : specials_) {
-    each.given.setZero();
+  for (auto& each : touched_) {
+    each.folded.setZero();
     const auto& node = grid.nodes[each.node];
     for (int i = 0; i < D; ++i) {
       const int plane = owner(each.planes, i);
       if (plane < 0) continue;
-      const double brought = node.w[i] - node.a[i];
-      all[plane].reaction.impulse[i] += pic_fraction * each.mass * (brought - each.velocity[i]);
+      const double mapped = node.w[i] - node.a[i];
+      all[plane].reaction.impulse[i] += pic_fraction * each.mass * (mapped - each.velocity[i]);
     }
   }
-  // What a tie did to the node behind and to the one before it.
-  for (const auto& tie : ties_) {
-    const auto& behind = special(tie.behind);
-    auto& before = special(tie.before);
-    if (!(behind.mass > 0)) continue;
-    const auto& ghost = grid.nodes[tie.behind];
-    const auto& mirrored = grid.nodes[tie.before];
+  // What mirroring did to the mirror node and to its image.
+  for (const auto& mirror : mirrors_) {
+    const auto& before = touched(mirror.node);
+    auto& image_before = touched(mirror.image);
+    if (!(before.mass > 0)) continue;
+    const auto& node = grid.nodes[mirror.node];
+    const auto& image = grid.nodes[mirror.image];
     for (int i = 0; i < D; ++i) {
-      const int plane = owner(tie.planes, i);
-      const double passed = tie.sign[i] * behind.force[i] * dt - behind.mass * mirrored.a[i];
-      before.given[i] += passed;
+      const int plane = owner(mirror.planes, i);
+      const double folded = mirror.sign[i] * before.force[i] * dt - before.mass * image.a[i];
+      image_before.folded[i] += folded;
       if (plane < 0) continue;
-      book(plane, i, ghost, behind.mass * ghost.a[i] - behind.force[i] * dt);
-      book(plane, i, mirrored, passed);
+      book(plane, i, node, before.mass * node.a[i] - before.force[i] * dt);
+      book(plane, i, image, folded);
     }
   }
-  // The rest, on a plane, is of that plane.
+  // The rest of the change at a node on a plane is that plane's.
   for (const auto& on : on_plane_) {
-    auto& at = special(on.node);
+    auto& at = touched(on.node);
     for (int i = 0; i < D; ++i) {
       if (!all[on.plane].holds(i)) continue;
-      const double rest = at.mass * grid.nodes[on.node].a[i] - at.force[i] * dt - at.given[i];
+      const double rest = at.mass * grid.nodes[on.node].a[i] - at.force[i] * dt - at.folded[i];
       book(on.plane, i, grid.nodes[on.node], rest);
-      at.given[i] += rest;  // a second plane through this node finds nothing left
+      at.folded[i] += rest;  // a second plane through this node finds nothing left
     }
   }
 }

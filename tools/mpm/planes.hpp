@@ -1,8 +1,9 @@
-// Boundaries along planes of nodes: fixed (nothing moves against it) and roller (smooth wall, symmetry, gate).
+// Boundaries along planes of nodes: fixed (rough) and roller (smooth wall, symmetry, gate).
 //
-// Nodes behind a plane mirror those before it: v_behind = V + S (v_before - V), S = -1 for each component that the
-// plane holds and +1 for the others. Linear fields are then exact up to the wall whatever the shape function, and what
-// the points bring to nodes behind it is added to the mirrored node with the transposed map, so that momentum balances.
+// A node on the far side of a plane is a mirror node: it has the velocity of its image on the soil's side, mirrored:
+// v_mirror = V + S (v_image - V), with V the velocity of the plane and S = -1 for each component that the plane holds,
+// +1 for the others. Linear fields are then exact up to the wall with any shape function. Mass, momentum and force that
+// points map to a mirror node are added to its image by the transposed map, so that momentum balances.
 #pragma once
 
 #include <limits>
@@ -35,67 +36,74 @@ struct Plane {
   bool holds(int component) const { return fixed || component == axis; }
 };
 
+/// A node on the far side of planes, and the node whose velocity it mirrors.
+template <int D>
+struct MirrorNode {
+  long node, image;
+  Vec<D> sign;
+  std::vector<int> planes;  ///< in the order of the reflections
+};
+
 template <int D>
 class Planes {
  public:
   std::vector<Plane<D>> all;
 
-  /// Which nodes mirror which: to be called when the box of the grid changes.
+  /// Finds the mirror nodes and their images: to be called when the box of the grid changes.
   void rebuild(const Grid<D>& grid, double time);
   /// Whether a plane was removed since the last rebuild.
   bool changed(double time) const;
 
-  /// After division by mass: mass and velocity v of mirrored nodes, as if images of the points had been mapped too.
+  /// After division by mass: adds mass and velocity v of mirror nodes to their images.
   void fold_momentum(Grid<D>& grid, double time);
-  /// What the points brought (a) at nodes that a plane touches is what they brought with their images.
-  void keep_brought(Grid<D>& grid) const;
-  /// Velocities v on the planes, and behind them.
+  /// At nodes that a plane touches the mapped velocity (a) is that with the mirror nodes added.
+  void keep_mapped(Grid<D>& grid) const;
+  /// Velocities v on the planes, and of mirror nodes.
   void set_start(Grid<D>& grid, double time) const { set(grid, time, false); }
-  /// Before division: forces of mirrored nodes.
+  /// Before division: adds forces at mirror nodes to their images.
   void fold_force(Grid<D>& grid);
   /// Velocities w at the end of the step.
   void set_end(Grid<D>& grid, double time) const { set(grid, time, true); }
-  /// Once a is the change over the step: what each plane did.
-  /// pic_fraction: points take this part of the nodal velocity itself, not of its change; walls give it too.
+  /// Adds impulse and work of each plane, once a is the change over the step. pic_fraction: the part of the nodal
+  /// velocity itself, not of its change, that points take; planes give it too.
   void react(const Grid<D>& grid, double dt, double pic_fraction);
-  /// Total change of kinetic energy and momentum need the masses before folding: puts them back.
+  /// Restores the masses before folding, which the total change of kinetic energy and momentum need.
   void unfold(Grid<D>& grid) const;
-  /// Whether a plane that the node lies on holds this component: it has the last word there, and the reaction.
+  /// Whether a plane that the node lies on holds this component: the plane then sets it, and takes the reaction.
   bool holds(long node, int component) const { return !held_.empty() && (held_[node] >> component & 1) != 0; }
-  /// Whether a node lies behind a plane.
-  bool is_behind(long node) const { return !behind_.empty() && behind_[node] != 0; }
+  bool is_mirror(long node) const { return !is_mirror_.empty() && is_mirror_[node] != 0; }
+  /// Those whose image lies in the box of the grid.
+  const std::vector<MirrorNode<D>>& mirror_nodes() const { return mirrors_; }
 
  private:
-  struct Tie {
-    long behind, before;
-    Vec<D> sign;
-    std::vector<int> planes;  ///< in the order of the reflections
-  };
-  struct Special {  ///< a node that a plane touches, with what it had before
+  struct Touched {  ///< a node that a plane touches, with its values before folding
     long node;
-    std::vector<int> planes;  ///< that it lies on, then those that it mirrors at
+    std::vector<int> planes;  ///< that it lies on, then those that it is reflected at
     double mass = 0;
     Vec<D> force = Vec<D>::Zero(), velocity = Vec<D>::Zero();
-    Vec<D> given = Vec<D>::Zero();  ///< N s, by ties
+    Vec<D> folded = Vec<D>::Zero();  ///< N s, from its mirror nodes
   };
   struct OnPlane {
     long node;
     int plane;
   };
-  Special& special(long node) { return specials_[std::size_t(special_of_[std::size_t(node)])]; }
+  void add_touched(const Grid<D>& grid, long node, int plane);
+  MirrorNode<D> reflected(const Grid<D>& grid, long node, typename Grid<D>::Index& image, double time) const;
+  void add_on_planes(const Grid<D>& grid, long node, double time);
+  Touched& touched(long node) { return touched_[std::size_t(touched_of_[std::size_t(node)])]; }
   int owner(const std::vector<int>& planes, int component) const;
   void book(int plane, int component, const Node<D>& node, double impulse);
   void set(Grid<D>& grid, double time, bool end) const;
-  Vec<D> shift(const Tie& tie, const std::vector<Vec<D>>& speeds) const;
+  Vec<D> shift(const MirrorNode<D>& mirror, const std::vector<Vec<D>>& speeds) const;
   std::vector<Vec<D>> speeds(double time) const;
   bool active(int plane, double time) const { return time < all[plane].removed_at; }
 
-  std::vector<Tie> ties_;
-  std::vector<Special> specials_;
-  std::vector<OnPlane> on_plane_;  ///< rollers first, so that a fixed plane has the last word
-  std::vector<char> behind_;
+  std::vector<MirrorNode<D>> mirrors_;
+  std::vector<Touched> touched_;
+  std::vector<OnPlane> on_plane_;  ///< rollers first, so that a fixed plane decides
+  std::vector<char> is_mirror_;
   std::vector<char> held_;       ///< by node, one bit for each component
-  std::vector<int> special_of_;  ///< by node; -1: none
+  std::vector<int> touched_of_;  ///< by node; -1: none
   double built_ = -1;
 };
 

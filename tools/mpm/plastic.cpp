@@ -3,6 +3,52 @@
 #include "tools/mpm/files.hpp"
 
 namespace mpm {
+namespace {
+
+constexpr double radians = 0.017453292519943295;
+
+Strength read_strength(Keys& keys) {
+  Strength strength;
+  const auto law = keys.choice("hardening", {"none", "linear", "cubic_exponential"});
+  strength.cohesion = keys.number("cohesion_Pa", 0, 0);
+  strength.dilatancy = keys.number("dilatancy_angle_deg", 0, 0, 60) * radians;
+  if (law == "cubic_exponential") {
+    strength.law = Strength::Law::cubic_exponential;
+    const auto cubic = keys.numbers("cubic_rad", 4);
+    strength.a = cubic[0];
+    strength.b = cubic[1];
+    strength.c = cubic[2];
+    strength.d = cubic[3];
+    strength.peak_strain = keys.positive("peak_plastic_strain");
+    strength.decay = keys.number("decay");
+    if (!(strength.decay >= 0)) keys.wrong("decay", "must not be negative: the angle falls to the residual one");
+    strength.peak = keys.number("peak_friction_angle_deg", 30, 0, 89) * radians;
+    strength.residual = keys.number("residual_friction_angle_deg", 30, 0, 89) * radians;
+    return strength;
+  }
+  strength.friction = keys.number("friction_angle_deg", 30, 0, 89) * radians;
+  if (law == "linear") {
+    strength.law = Strength::Law::linear;
+    strength.friction_slope = keys.number("friction_slope_deg", 0) * radians;
+    strength.cohesion_slope = keys.number("cohesion_slope_Pa", 0);
+  }
+  return strength;
+}
+
+}  // namespace
+
+Continuum read_mohr_coulomb(Keys& keys) {
+  const auto moduli = read_moduli(keys);
+  return continuum_of<Plastic>(moduli.wave(), moduli, read_strength(keys), YieldSurface::mohr_coulomb, Cone::outer);
+}
+
+Continuum read_drucker_prager(Keys& keys) {
+  const auto moduli = read_moduli(keys);
+  const auto strength = read_strength(keys);
+  const auto name = keys.choice("cone", {"outer", "inner", "plane_strain"});
+  const auto cone = name == "outer" ? Cone::outer : name == "inner" ? Cone::inner : Cone::plane_strain;
+  return continuum_of<Plastic>(moduli.wave(), moduli, strength, YieldSurface::drucker_prager, cone);
+}
 
 double Strength::friction_at(double plastic) const {
   // Beyond these there is no surface to return to.
@@ -105,7 +151,7 @@ void Plastic<D>::advance(Point<D>* points, long count, double, Workers& workers)
       s.template topLeftCorner<D, D>() = point.stress;
       if (D == 2) s(2, 2) = point.stress_zz;
       const double phi = strength_.friction_at(plastic_[k]), cohesion = strength_.cohesion_at(plastic_[k]);
-      plastic_[k] += surface_ == Surface::mohr_coulomb
+      plastic_[k] += surface_ == YieldSurface::mohr_coulomb
                          ? return_to_mohr_coulomb(s, moduli_, phi, cohesion, strength_.dilatancy)
                          : return_to_drucker_prager(s, moduli_, phi, cohesion, strength_.dilatancy, cone_);
       point.stress = s.topLeftCorner<D, D>();

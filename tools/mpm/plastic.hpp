@@ -38,11 +38,15 @@ double return_to_drucker_prager(Mat<3>& stress, const ElasticModuli& moduli, dou
 double cone_slope(double friction, Cone cone);
 double cone_size(double friction, double cohesion, Cone cone);
 
+enum class YieldSurface { mohr_coulomb, drucker_prager };
+
+Continuum read_mohr_coulomb(Keys& keys);
+Continuum read_drucker_prager(Keys& keys);
+
 template <int D>
 class Plastic : public Material<D> {
  public:
-  enum class Surface { mohr_coulomb, drucker_prager };
-  Plastic(const ElasticModuli& moduli, const Strength& strength, Surface surface, Cone cone)
+  Plastic(const ElasticModuli& moduli, const Strength& strength, YieldSurface surface, Cone cone)
       : moduli_(moduli), strength_(strength), surface_(surface), cone_(cone) {}
   void advance(Point<D>* points, long count, double dt, Workers& workers) override;
   double wave_modulus() const override { return moduli_.wave(); }
@@ -53,7 +57,7 @@ class Plastic : public Material<D> {
  private:
   ElasticModuli moduli_;
   Strength strength_;
-  Surface surface_;
+  YieldSurface surface_;
   Cone cone_;
   std::vector<double> plastic_;
 };

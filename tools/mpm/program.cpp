@@ -24,7 +24,7 @@ class FolderLock {
     // Where a file system knows no locks, the run goes without.
     if (descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
       ::close(descriptor_);
-      throw Mistake(folder + ": another rvelab-mpm is writing there; wait for it, stop it, or give another folder");
+      throw InputError(folder + ": another rvelab-mpm is writing there; wait for it, stop it, or give another folder");
     }
   }
   FolderLock(const FolderLock&) = delete;
@@ -45,11 +45,11 @@ std::string toml_of(const toml::table& scene) {
 
 void check(const RunOptions& options) {
   if (options.threads < 0) {
-    throw Mistake("-j " + std::to_string(options.threads) +
+    throw InputError("-j " + std::to_string(options.threads) +
                   ": give a number of threads, or 0 for as many as the processor runs at once");
   }
   if (!(options.stop_at >= 0)) {
-    throw Mistake("--stop-at " + text_of(options.stop_at) + ": give a time in s, 0 or later");
+    throw InputError("--stop-at " + text_of(options.stop_at) + ": give a time in s, 0 or later");
   }
 }
 
@@ -64,7 +64,7 @@ int run(const std::string& scene_file, std::vector<std::string> cases, bool publ
     const FolderLock lock(options.folder);
     for (const char* name : {"scene.toml", "checkpoint.h5"}) {
       if (std::filesystem::exists(folder / name)) continue;
-      throw Mistake(options.folder + ": holds no " + name +
+      throw InputError(options.folder + ": holds no " + name +
                     " to go on from; give the folder of a run, or start one: rvelab-mpm SCENE.toml -o " +
                     options.folder);
     }
@@ -76,7 +76,7 @@ int run(const std::string& scene_file, std::vector<std::string> cases, bool publ
   const auto scene = read_scene(scene_file, cases, assignments, &resolved);
   std::error_code error;
   if (std::filesystem::exists(folder / "checkpoint.h5")) {
-    throw Mistake(options.folder + " holds a run already; go on with --resume, or give another folder");
+    throw InputError(options.folder + " holds a run already; go on with --resume, or give another folder");
   }
   std::filesystem::create_directories(folder, error);
   const FolderLock lock(options.folder);
@@ -100,10 +100,10 @@ int program(int argc, char** argv, const PoolSource& source) {
   auto* file = app.add_option("scene", scene, "Scene in TOML");
   auto* folder = app.add_option("-o,--output", options.folder, "Folder for histories, frames and checkpoints");
   app.add_option("--resume", resume, "Folder of a run to go on with")->excludes(file)->excludes(folder);
-  app.add_option("--case", cases, "A case of the scene ([case.NAME]), laid over it; may be given again");
+  app.add_option("--case", cases, "A case of the scene ([case.NAME]), which overrides its keys; may be given again");
   app.add_flag("--published", published, "The published size: the same as --case published");
   app.add_option("--set", assignments,
-                 "table.key=value, laid over the scene; [[tables]] by name or number: body.pipe.radius_m=0.4, "
+                 "table.key=value overrides the scene; [[tables]] by name or number: body.pipe.radius_m=0.4, "
                  "region.0.points_per_cell=9");
   app.add_option("--specimens", options.specimens, "Folder of the specimen files that materials name");
   app.add_option("-j,--threads", options.threads, "Threads; 0: as many as the processor runs at once");
@@ -112,14 +112,14 @@ int program(int argc, char** argv, const PoolSource& source) {
   try {
     app.parse(argc, argv);
     if (resume.empty() && (scene.empty() || options.folder.empty())) {
-      throw Mistake("give a scene and a folder (rvelab-mpm SCENE.toml -o FOLDER), or --resume FOLDER");
+      throw InputError("give a scene and a folder (rvelab-mpm SCENE.toml -o FOLDER), or --resume FOLDER");
     }
     check(options);
     return run(scene, cases, published, assignments, options, resume);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
-  } catch (const Mistake& mistake) {
-    std::cerr << "rvelab-mpm: " << mistake.what() << "\n";
+  } catch (const InputError& error) {
+    std::cerr << "rvelab-mpm: " << error.what() << "\n";
     return 2;
   } catch (const std::exception& failure) {
     std::cerr << "rvelab-mpm: " << failure.what() << "\n";

@@ -5,8 +5,8 @@
 
 namespace mpm {
 
-/// The exit code: 0 done, or stopped where --stop-at says, 130 interrupted with a checkpoint, 1 failed, 2 a mistake in
-/// what was given.
+/// The exit code: 0 done, or stopped where --stop-at says, 130 interrupted with a checkpoint, 1 failed, 2 an error in
+/// the input.
 int program(int argc, char** argv, const PoolSource& source);
 
 }  // namespace mpm

@@ -54,42 +54,150 @@ double processor_time() {
          1e-6 * double(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
 }
 
-/// What a loop took, and did.
-struct Cost {
-  double wall = 0, processor = 0;  ///< s
-  long steps = 0;
-  double grain_steps = 0;
-};
+double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
 template <int D>
 double grain_steps_of(const Model<D>& model) {
   double sum = 0;
-  for (const auto& range : model.solver.ranges) sum += range.material->grain_steps();
+  for (const auto& group : model.solver.groups) sum += group.material->grain_steps();
   return sum;
 }
 
+/// What the loop takes, and makes, from here on.
 template <int D>
-void tell_cost(const Model<D>& model, const Cost& cost, std::ostream& report) {
-  const auto& solver = model.solver;
-  const double points = double(solver.points.size());
-  const double whole = solver.grid_seconds + solver.material_seconds;
-  double grains = 0;
-  for (const auto& range : solver.ranges) grains += range.material->seconds;
-  report << std::setprecision(4) << "points " << solver.points.size() << ", steps " << solver.steps << " ("
-         << cost.steps << " now), threads " << model.solver.workers.count() << ", wall " << cost.wall
-         << " s, processor " << cost.processor << " s\n"
-         << "continuum " << whole - grains << " s, grains " << grains << " s (" << 100 * grains / std::max(whole, 1e-12)
-         << " %)\n";
-  if (grains > 0) {
-    report << "grain-steps " << grain_steps_of<D>(model) << ", " << cost.grain_steps / grains / 1e6 << " M a second";
-    for (const auto& [name, each] : model.grains) {
-      report << "; " << name << ": " << each->called << " of " << each->asked << " increments called, " << each->split
-             << " in parts, " << each->warned << " with a warning";
+class Cost {
+ public:
+  explicit Cost(const Model<D>& model)
+      : model_(model), steps_(model.solver.steps), processor_(processor_time()), grain_steps_(grain_steps_of(model)) {}
+
+  void print(std::ostream& report) const {
+    const auto& solver = model_.solver;
+    const double wall = seconds_since(begin_), processor = processor_time() - processor_;
+    const double grain_steps = grain_steps_of(model_), whole = solver.grid_seconds + solver.material_seconds;
+    const long steps = solver.steps - steps_;
+    double grains = 0;
+    for (const auto& group : solver.groups) grains += group.material->seconds;
+    report << std::setprecision(4) << "points " << solver.points.size() << ", steps " << solver.steps << " (" << steps
+           << " now), threads " << solver.workers.count() << ", wall " << wall << " s, processor " << processor
+           << " s\n"
+           << "continuum " << whole - grains << " s, grains " << grains << " s ("
+           << 100 * grains / std::max(whole, 1e-12) << " %)\n";
+    if (grains > 0) {
+      report << "grain-steps " << grain_steps << ", " << (grain_steps - grain_steps_) / grains / 1e6 << " M a second";
+      for (const auto& [name, each] : model_.grains) {
+        report << "; " << name << ": " << each->called << " of " << each->asked << " increments called, "
+               << each->split << " in parts, " << each->warned << " with a warning";
+      }
+      report << "\n";
+    } else if (steps > 0) {
+      report << double(solver.points.size()) * double(steps) / wall / 1e6 << " M point-steps a second\n";
     }
-    report << "\n";
-  } else if (cost.steps > 0) {
-    report << points * double(cost.steps) / cost.wall / 1e6 << " M point-steps a second\n";
   }
+
+ private:
+  const Model<D>& model_;
+  Clock::time_point begin_ = Clock::now();
+  long steps_;
+  double processor_, grain_steps_;
+};
+
+/// The first multiple of `every` above `now`, from `next` on.
+void advance_past(double now, double every, double& next) {
+  while (next <= now) next += every;
+}
+
+/// The outputs of a run, each at its time.
+template <int D>
+class Outputs {
+ public:
+  Outputs(const Scene& scene, const RunOptions& options, Model<D>& model, Progress& progress)
+      : scene_(scene),
+        folder_(options.folder),
+        model_(model),
+        progress_(progress),
+        history_(path("history.csv"), history_header<D>(model.solver), progress.history),
+        watched_(path("watched.csv"), watched_header<D>(model), progress.watched),
+        saved_(options.resume ? model.solver.time : -1) {
+    if (!options.scene_text.empty()) write_scene(folder_, options.scene_text);
+  }
+
+  void row() {
+    const auto& solver = model_.solver;
+    history_.add(history_row<D>(solver, progress_.start, solver.time - progress_.last_row, progress_.impulses));
+    watched_.add(watched_row<D>(model_));
+    progress_.last_row = solver.time;
+    advance_past(solver.time, scene_.history_every, progress_.next_row);
+  }
+  void frame() {
+    const auto& solver = model_.solver;
+    const long number = long(progress_.frame_times.size());
+    write_frame<D>(model_, folder_, number);
+    if (scene_.networks) write_networks<D>(model_, folder_, number);
+    progress_.frame_times.push_back(solver.time);
+    write_xdmf(folder_, progress_.frame_times, long(solver.points.size()));
+    advance_past(solver.time, scene_.frame_every, progress_.next_frame);
+  }
+  void save() {
+    progress_.history = history_.written();
+    progress_.watched = watched_.written();
+    write_checkpoint<D>(model_, progress_, folder_);
+    saved_ = model_.solver.time;
+  }
+  /// What is due after a step.
+  void after_step(bool last) {
+    if (model_.solver.time >= progress_.next_row || last) row();
+    if (model_.solver.time >= progress_.next_frame || last) frame();
+  }
+  void checkpoint_if_due(bool now) {
+    if (model_.solver.time < progress_.next_checkpoint && !now) return;
+    advance_past(model_.solver.time, scene_.checkpoint_every, progress_.next_checkpoint);
+    save();
+  }
+  /// A run that a check ends keeps a checkpoint.
+  template <class Check>
+  void checked(const Check& check) {
+    try {
+      check();
+    } catch (const std::runtime_error& reason) {
+      if (saved_ < 0) save();
+      throw std::runtime_error(reason.what() + ("; " + folder_) + " keeps the checkpoint of " + text_of(saved_) +
+                               " s");
+    }
+  }
+
+ private:
+  std::string path(const char* name) const { return (std::filesystem::path(folder_) / name).string(); }
+
+  const Scene& scene_;
+  const std::string& folder_;
+  Model<D>& model_;
+  Progress& progress_;
+  Rows history_, watched_;
+  double saved_;  ///< s, the time of the checkpoint; below 0: there is none
+};
+
+/// Steps to the end of the scene, or until the run is stopped; whether it was.
+template <int D>
+bool step_to_end(const Scene& scene, const RunOptions& options, Solver<D>& solver, Progress& progress,
+                 Outputs<D>& outputs) {
+  ProgressLine line(options.quiet, solver.time, scene.duration);
+  bool stopped = false;
+  while (solver.time < scene.duration && !stopped) {
+    double dt = solver.stable_step();
+    outputs.checked([&] { watch_step<D>(solver, dt, progress.seen, std::cerr); });
+    const bool last = solver.time + dt >= scene.duration;
+    if (last) dt = scene.duration - solver.time;
+    solver.step(dt);
+    if (last) solver.time = scene.duration;
+    outputs.after_step(last);
+    stopped = !last && (interrupted != 0 || solver.time >= options.stop_at);
+    if (solver.steps % steps_between_balances == 0 || last) {
+      outputs.checked([&] { watch_energy<D>(solver, progress.start, progress.seen, std::cerr); });
+    }
+    outputs.checkpoint_if_due(last || stopped);
+    line.show(solver.time, solver.steps);
+  }
+  return stopped;
 }
 
 template <int D>
@@ -110,76 +218,19 @@ int run_model(const Scene& scene, const RunOptions& options, std::ostream& repor
     report << "the run is at " << solver.time << " s, and ends at time.duration_s = " << scene.duration
            << "; give a longer one by --set to go on\n";
   }
-  const std::filesystem::path place(options.folder);
-  Rows history((place / "history.csv").string(), history_header<D>(solver), progress.history);
-  Rows watched((place / "watched.csv").string(), watched_header<D>(*model), progress.watched);
-  if (!options.scene_text.empty()) write_scene(options.folder, options.scene_text);
+  Outputs<D> outputs(scene, options, *model, progress);
   if (model->pressure_classes > 0) {
     report << model->pressure_classes << " states of specimens prepared for " << solver.points.size() << " points\n";
   }
-  const long first_steps = solver.steps;
-  const double setup = std::chrono::duration<double>(Clock::now() - begin).count();
-  const auto looped = Clock::now();
-  const double used = processor_time(), made = grain_steps_of<D>(*model);
-  ProgressLine line(options.quiet, solver.time, scene.duration);
-  double saved = options.resume ? solver.time : -1;  // s, the time of the checkpoint; below 0: there is none
-  const auto row = [&] {
-    history.add(history_row<D>(solver, progress.start, solver.time - progress.last_row, progress.impulses));
-    watched.add(watched_row<D>(*model));
-    progress.last_row = solver.time;
-    while (progress.next_row <= solver.time) progress.next_row += scene.history_every;
-  };
-  const auto frame = [&] {
-    const long number = long(progress.frame_times.size());
-    write_frame<D>(*model, options.folder, number);
-    if (scene.networks) write_networks<D>(*model, options.folder, number);
-    progress.frame_times.push_back(solver.time);
-    write_xdmf(options.folder, progress.frame_times, long(solver.points.size()));
-    while (progress.next_frame <= solver.time) progress.next_frame += scene.frame_every;
-  };
-  const auto save = [&] {
-    progress.history = history.written();
-    progress.watched = watched.written();
-    write_checkpoint<D>(*model, progress, options.folder);
-    saved = solver.time;
-  };
-  const auto watched_over = [&](const auto& watch) {
-    try {
-      watch();
-    } catch (const std::runtime_error& reason) {
-      if (saved < 0) save();
-      throw std::runtime_error(reason.what() + ("; " + options.folder) + " keeps the checkpoint of " + text_of(saved) +
-                               " s");
-    }
-  };
+  const double setup = seconds_since(begin);
+  const Cost<D> cost(*model);
   if (!options.resume) {
-    row();
-    frame();
+    outputs.row();
+    outputs.frame();
   }
-  bool stopped = false;
-  while (solver.time < scene.duration && !stopped) {
-    double dt = solver.stable_step();
-    watched_over([&] { watch_step<D>(solver, dt, progress.seen, std::cerr); });
-    const bool last = solver.time + dt >= scene.duration;
-    if (last) dt = scene.duration - solver.time;
-    solver.step(dt);
-    if (last) solver.time = scene.duration;
-    if (solver.time >= progress.next_row || last) row();
-    if (solver.time >= progress.next_frame || last) frame();
-    stopped = !last && (interrupted != 0 || solver.time >= options.stop_at);
-    if (solver.steps % steps_between_balances == 0 || last) {
-      watched_over([&] { watch_energy<D>(solver, progress.start, progress.seen, std::cerr); });
-    }
-    if (solver.time >= progress.next_checkpoint || last || stopped) {
-      while (progress.next_checkpoint <= solver.time) progress.next_checkpoint += scene.checkpoint_every;
-      save();
-    }
-    line.show(solver.time, solver.steps);
-  }
-  const Cost cost{std::chrono::duration<double>(Clock::now() - looped).count(), processor_time() - used,
-                  solver.steps - first_steps, grain_steps_of<D>(*model) - made};
+  const bool stopped = step_to_end(scene, options, solver, progress, outputs);
   report << std::setprecision(3) << "setup " << setup << " s\n";
-  tell_cost<D>(*model, cost, report);
+  cost.print(report);
   if (stopped)
     report << "stopped at " << solver.time << " s; go on with: rvelab-mpm --resume " << options.folder << "\n";
   return stopped && interrupted != 0 ? 130 : 0;

@@ -7,68 +7,31 @@
 namespace mpm {
 namespace {
 
-constexpr double radians = 0.017453292519943295;
-
-ElasticModuli read_moduli(Keys& keys) {
-  ElasticModuli moduli;
-  moduli.young = keys.positive("young_modulus_Pa");
-  moduli.poisson = keys.number("poisson_ratio", 0.3, -0.99, 0.499);
-  return moduli;
-}
-
-Strength read_strength(Keys& keys) {
-  Strength strength;
-  const auto law = keys.choice("hardening", {"none", "linear", "cubic_exponential"});
-  strength.cohesion = keys.number("cohesion_Pa", 0, 0);
-  strength.dilatancy = keys.number("dilatancy_angle_deg", 0, 0, 60) * radians;
-  if (law == "cubic_exponential") {
-    strength.law = Strength::Law::cubic_exponential;
-    const auto cubic = keys.numbers("cubic_rad", 4);
-    strength.a = cubic[0];
-    strength.b = cubic[1];
-    strength.c = cubic[2];
-    strength.d = cubic[3];
-    strength.peak_strain = keys.positive("peak_plastic_strain");
-    strength.decay = keys.number("decay");
-    if (!(strength.decay >= 0)) keys.wrong("decay", "must not be negative: the angle falls to the residual one");
-    strength.peak = keys.number("peak_friction_angle_deg", 30, 0, 89) * radians;
-    strength.residual = keys.number("residual_friction_angle_deg", 30, 0, 89) * radians;
-    return strength;
-  }
-  strength.friction = keys.number("friction_angle_deg", 30, 0, 89) * radians;
-  if (law == "linear") {
-    strength.law = Strength::Law::linear;
-    strength.friction_slope = keys.number("friction_slope_deg", 0) * radians;
-    strength.cohesion_slope = keys.number("cohesion_slope_Pa", 0);
-  }
-  return strength;
+GrainsOfScene read_grains(Keys& keys) {
+  GrainsOfScene grains;
+  grains.specimens = keys.texts("specimens");
+  grains.density = keys.number("grain_density_kg_m3", 2650, 1e-3);
+  grains.physical = keys.choice("loading", {"quasi_static", "physical"}) == "physical";
+  grains.tolerance_rel = keys.number("tolerance_rel", 0, 0, 1);
+  grains.tolerance_abs = keys.number("tolerance_abs", 0, 0, 1);
+  grains.gather = keys.number("gather", 0, 0, 1e-3);
+  if (grains.gather > 0 && grains.physical) keys.wrong("gather", "is for quasi_static loading; remove it");
+  return grains;
 }
 
 MaterialOfScene read_material(Keys& keys) {
   MaterialOfScene material;
   material.name = keys.name();
-  const auto kind = keys.choice("kind", {"grains", "elastic", "mohr_coulomb", "drucker_prager"}, true);
-  using Kind = MaterialOfScene::Kind;
+  std::vector<std::string> kinds{"grains"};
+  for (const auto& each : continuum_kinds) kinds.emplace_back(each.name);
+  const auto kind = keys.choice("kind", kinds, true);
   if (kind == "grains") {
-    material.kind = Kind::grains;
-    material.specimens = keys.texts("specimens");
-    material.density = keys.number("grain_density_kg_m3", 2650, 1e-3);
-    material.physical = keys.choice("loading", {"quasi_static", "physical"}) == "physical";
-    material.tolerance_rel = keys.number("tolerance_rel", 0, 0, 1);
-    material.tolerance_abs = keys.number("tolerance_abs", 0, 0, 1);
-    material.gather = keys.number("gather", 0, 0, 1e-3);
-    if (material.gather > 0 && material.physical) keys.wrong("gather", "is for quasi_static loading; remove it");
+    material.grains = read_grains(keys);
   } else {
     material.density = keys.number("density_kg_m3", 2000, 1e-3);
-    material.moduli = read_moduli(keys);
-    material.kind = kind == "elastic"        ? Kind::elastic
-                    : kind == "mohr_coulomb" ? Kind::mohr_coulomb
-                                             : Kind::drucker_prager;
-    if (kind != "elastic") material.strength = read_strength(keys);
-    if (kind == "drucker_prager") {
-      const auto cone = keys.choice("cone", {"outer", "inner", "plane_strain"});
-      material.cone = cone == "outer" ? Cone::outer : cone == "inner" ? Cone::inner : Cone::plane_strain;
-    }
+    const auto found = std::find_if(continuum_kinds.begin(), continuum_kinds.end(),
+                                    [&](const auto& each) { return each.name == kind; });
+    material.continuum = found->read(keys);
   }
   keys.finish();
   return material;
@@ -112,32 +75,24 @@ PlaneOfScene read_plane(Keys& keys, std::size_t d, const std::string& followed) 
   return plane;
 }
 
-BodyOfScene read_body(Keys& keys, std::size_t d) {
+template <int D>
+BodyOfScene read_body(Keys& keys) {
   BodyOfScene body;
+  BodyShape<D> shape;
   body.name = keys.name();
-  const auto kind = keys.choice("kind", {"box", "disc", "half_space"}, true);
-  body.kind = kind == "box" ? BodyKind::box : kind == "disc" ? BodyKind::disc : BodyKind::half_space;
-  body.centre = keys.vector("centre_m", d, {});
-  body.size.assign(d, 0);
-  body.normal.assign(d, 0);
-  if (kind == "box") body.size = keys.vector("size_m", d, {});
-  if (kind == "disc") body.radius = keys.positive("radius_m");
-  if (kind == "half_space") body.normal = keys.vector("normal", d, {});
-  body.rough = keys.boolean("rough", kind != "half_space");
+  const auto kind = keys.choice("kind", kinds_of(shape), true);
+  body.centre = keys.vector("centre_m", D, {});
+  read_shape(shape, kind, keys);
+  body.rough = keys.boolean("rough", std::visit([](const auto& any) { return any.rough_by_default; }, shape));
   body.friction = keys.number("friction", 0, 0, 100);
   if (body.rough && keys.has("friction")) {
     keys.wrong("friction", "is of a body that is not rough, and a " + kind + " is unless told; set rough = false");
   }
   body.at_surface = keys.choice("contact", {"surface", "nodes"}) == "surface";
-  body.motion = read_motion(keys, d);
+  body.motion = read_motion(keys, D);
   keys.finish();
-  const auto is_positive = [](double side) { return side > 0; };
-  if (kind == "box" && !std::all_of(body.size.begin(), body.size.end(), is_positive)) {
-    keys.wrong("size_m", "must be positive along every axis");
-  }
-  if (kind == "half_space" && std::all_of(body.normal.begin(), body.normal.end(), [](double n) { return n == 0; })) {
-    keys.wrong("normal", "is zero; give the direction from the surface into the soil");
-  }
+  std::visit([&](auto& any) { any.settle(keys); }, shape);
+  body.shape = shape;
   return body;
 }
 
@@ -232,15 +187,15 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& cases,
     const auto* over = file["case"][name].as_table();
     if (over == nullptr) {
       const auto known = cases_of(path);
-      throw Mistake(path + ": there is no case " + name + "; the nearest is " +
+      throw InputError(path + ": there is no case " + name + "; the nearest is " +
                     nearest_word(name, {known.begin(), known.end()}));
     }
     const toml::table copy = *over;
-    lay_over(file, copy);
+    override_table(file, copy);
   }
   for (const auto& assignment : assignments) assign(file, assignment);
   Keys keys(file, path, "");
-  // A table that is misspelt must be told before a key that it would hold is missed.
+  // A misspelt table is reported before a key that is missing because of it.
   for (const char* name :
        {"scene", "grid", "time", "loads", "initial", "output", "material", "region", "boundary", "body", "case"}) {
     keys.known(name);
@@ -257,7 +212,7 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& cases,
   for (auto& each : keys.tables("material")) scene.materials.push_back(read_material(each));
   for (auto& each : keys.tables("region")) scene.regions.push_back(read_region(each, d));
   for (auto& each : keys.tables("boundary")) scene.planes.push_back(read_plane(each, d, scene.follows));
-  for (auto& each : keys.tables("body")) scene.bodies.push_back(read_body(each, d));
+  for (auto& each : keys.tables("body")) scene.bodies.push_back(d == 2 ? read_body<2>(each) : read_body<3>(each));
   check_scene(scene, path);
   if (resolved != nullptr) {
     file.erase("case");

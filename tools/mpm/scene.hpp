@@ -1,26 +1,30 @@
 // A scene as its TOML file says it, with every default. Lengths of vectors are the dimension.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "tools/mpm/bodies.hpp"
+#include "tools/mpm/continuum.hpp"
 #include "tools/mpm/keys.hpp"
-#include "tools/mpm/plastic.hpp"
 #include "tools/mpm/solver.hpp"
 
 namespace mpm {
 
-struct MaterialOfScene {
-  enum class Kind { grains, elastic, mohr_coulomb, drucker_prager } kind = Kind::elastic;
-  std::string name;
-  double density = 0;  ///< kg/m^3; of the grains themselves where there are grains
+struct GrainsOfScene {
   std::vector<std::string> specimens;
+  double density = 0;  ///< kg/m^3, of the grains themselves
   bool physical = false;
   double tolerance_rel = 0, tolerance_abs = 0, gather = 0;
-  ElasticModuli moduli;
-  Strength strength;
-  Cone cone = Cone::outer;
+};
+
+struct MaterialOfScene {
+  std::string name;
+  std::optional<GrainsOfScene> grains;  ///< else:
+  Continuum continuum;
+  double density = 0;  ///< kg/m^3, of the continuum
 };
 
 struct RegionOfScene {
@@ -40,9 +44,9 @@ struct PlaneOfScene {
 
 struct BodyOfScene {
   std::string name;
-  BodyKind kind = BodyKind::box;
-  std::vector<double> centre, size, normal;
-  double radius = 0, friction = 0;
+  std::variant<BodyShape<2>, BodyShape<3>> shape;
+  std::vector<double> centre;
+  double friction = 0;
   bool at_surface = false;
   bool rough = true;
   std::vector<std::vector<double>> motion;
@@ -72,8 +76,8 @@ struct Scene {
   bool networks = false;  ///< with each frame, those of the watched points
 };
 
-/// Cases are laid over the scene in their order, then the assignments. The table without its cases is given back in
-/// `resolved`, as the run keeps it.
+/// Cases override the scene in their order, then the assignments. `resolved` becomes the table without its cases, as the
+/// run keeps it.
 Scene read_scene(const std::string& path, const std::vector<std::string>& cases,
                  const std::vector<std::string>& assignments, toml::table* resolved = nullptr);
 

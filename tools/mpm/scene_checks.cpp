@@ -22,17 +22,17 @@ double points_along(const Scene& scene, const RegionOfScene& region, std::size_t
 void check_materials(const Scene& scene, const std::string& path) {
   std::set<std::string> materials;
   for (const auto& material : scene.materials) {
-    if (!materials.insert(material.name).second) throw Mistake(path + ": two materials are called " + material.name);
-    if (material.kind == MaterialOfScene::Kind::grains && scene.stress == Scene::Stress::zero) {
-      throw Mistake(path + ": grains carry a pressure from the start; set initial.stress to isotropic or geostatic");
+    if (!materials.insert(material.name).second) throw InputError(path + ": two materials are called " + material.name);
+    if (material.grains && scene.stress == Scene::Stress::zero) {
+      throw InputError(path + ": grains carry a pressure from the start; set initial.stress to isotropic or geostatic");
     }
-    if (material.kind == MaterialOfScene::Kind::grains && scene.earth_pressure_ratio != 1) {
-      throw Mistake(path + ": grains are consolidated isotropically; set initial.earth_pressure_ratio to 1");
+    if (material.grains && scene.earth_pressure_ratio != 1) {
+      throw InputError(path + ": grains are consolidated isotropically; set initial.earth_pressure_ratio to 1");
     }
   }
   for (const auto& region : scene.regions) {
     if (materials.contains(region.material)) continue;
-    throw Mistake(path + ": region.material is \"" + region.material + "\"; the nearest material is \"" +
+    throw InputError(path + ": region.material is \"" + region.material + "\"; the nearest material is \"" +
                   nearest_word(region.material, materials) + "\"");
   }
 }
@@ -41,26 +41,26 @@ void check_boundaries(const Scene& scene, const std::string& path) {
   std::set<std::string> planes, all;
   const auto expect_new = [&](const std::string& name) {
     if (all.insert(name).second) return;
-    throw Mistake(path + ": two boundaries or bodies are called " + name + "; columns go by it: rename one");
+    throw InputError(path + ": two boundaries or bodies are called " + name + "; columns go by it: rename one");
   };
   for (const auto& plane : scene.planes) {
     expect_new(plane.name);
     planes.insert(plane.name);
     if (std::abs(plane.at / scene.cell[std::size_t(plane.axis)]) < farthest_cell) continue;
-    throw Mistake(path + ": boundary." + plane.name + ".at_m is " + text_of(plane.at) +
+    throw InputError(path + ": boundary." + plane.name + ".at_m is " + text_of(plane.at) +
                   ", too many cells from 0; move it nearer, or make grid.cell_m larger");
   }
   for (const auto& body : scene.bodies) expect_new(body.name);
   if (scene.follows.empty()) return;
   if (!planes.contains(scene.follows)) {
-    throw Mistake(path + ": grid.follows is \"" + scene.follows + "\"; the nearest boundary is \"" +
+    throw InputError(path + ": grid.follows is \"" + scene.follows + "\"; the nearest boundary is \"" +
                   nearest_word(scene.follows, planes) + "\"");
   }
   const auto& followed = *std::find_if(scene.planes.begin(), scene.planes.end(),
                                        [&](const auto& plane) { return plane.name == scene.follows; });
   for (const auto& plane : scene.planes) {
     if (plane.axis != followed.axis || plane.name == followed.name || plane.at == 0) continue;
-    throw Mistake(path + ": boundary." + plane.name + ".at_m is " + text_of(plane.at) +
+    throw InputError(path + ": boundary." + plane.name + ".at_m is " + text_of(plane.at) +
                   ", and would move along with grid.follows, which shortens all cells across " + axes[plane.axis] +
                   "; put it at 0, or take a [[body]] in its place");
   }
@@ -73,13 +73,13 @@ void check_sizes(const Scene& scene, const std::string& path) {
     for (std::size_t i = 0; i < scene.cell.size(); ++i) {
       points *= points_along(scene, region, i);
       if (std::max(std::abs(region.lower[i]), std::abs(region.upper[i])) < farthest_cell * scene.cell[i]) continue;
-      throw Mistake(path + ": " + region_name(scene, region) + " from " + text_of(region.lower) + " to " +
+      throw InputError(path + ": " + region_name(scene, region) + " from " + text_of(region.lower) + " to " +
                     text_of(region.upper) +
                     " m lies too many cells from 0; move it nearer, or make grid.cell_m larger");
     }
     total += points;
     if (total <= most_points) continue;
-    throw Mistake(path + ": " + region_name(scene, region) + " would have " + text_of(points) +
+    throw InputError(path + ": " + region_name(scene, region) + " would have " + text_of(points) +
                   " material points, and a scene has at most " + text_of(most_points) +
                   "; make grid.cell_m larger, or the region or points_per_cell smaller");
   }
@@ -94,7 +94,7 @@ void check_overlaps(const Scene& scene, const std::string& path) {
         apart = apart || shared < 1e-6 * scene.cell[i];
       }
       if (apart) continue;
-      throw Mistake(path + ": " + region_name(scene, *b) + " and " + region_name(scene, *a) +
+      throw InputError(path + ": " + region_name(scene, *b) + " and " + region_name(scene, *a) +
                     " overlap, and would fill that place twice; change lower_m or upper_m of one");
     }
   }
@@ -109,13 +109,13 @@ void check_sides(const Scene& scene, const std::string& path) {
       const double first = region.lower[i] + 0.5 * filling.side[i], last = region.upper[i] - 0.5 * filling.side[i];
       const double slack = 1e-6 * scene.cell[i];
       if (plane.soil_above ? first > plane.at - slack : last < plane.at + slack) continue;
-      throw Mistake(path + ": points of " + region_name(scene, region) + " lie behind boundary." + plane.name +
+      throw InputError(path + ": points of " + region_name(scene, region) + " lie behind boundary." + plane.name +
                     " (soil " + (plane.soil_above ? "above " : "below ") + axes[i] + " = " + text_of(plane.at) +
                     " m); set soil = \"" + (plane.soil_above ? "below" : "above") + "\" there, or move the region");
     }
     const double top = region.upper.back() - 0.5 * filling.side.back();
     if (scene.stress == Scene::Stress::geostatic && top > scene.surface + 1e-6 * scene.cell.back()) {
-      throw Mistake(path + ": points of " + region_name(scene, region) +
+      throw InputError(path + ": points of " + region_name(scene, region) +
                     " lie above initial.surface_m = " + text_of(scene.surface) +
                     ", and would start under tension; set it to the height of the free surface");
     }
@@ -134,7 +134,7 @@ void check_watched(const Scene& scene, const std::string& path) {
       return within;
     });
     if (near) continue;
-    throw Mistake(path + ": output.watched_points_m[" + std::to_string(k) + "] is " + text_of(scene.watched[k]) +
+    throw InputError(path + ": output.watched_points_m[" + std::to_string(k) + "] is " + text_of(scene.watched[k]) +
                   ", more than a cell from any material point; move it into a region, or take it away");
   }
 }
@@ -158,7 +158,7 @@ std::string region_name(const Scene& scene, const RegionOfScene& region) {
 void check_scene(const Scene& scene, const std::string& path) {
   check_materials(scene, path);
   check_boundaries(scene, path);
-  if (scene.regions.empty()) throw Mistake(path + ": there is no [[region]]; the scene has no material points");
+  if (scene.regions.empty()) throw InputError(path + ": there is no [[region]]; the scene has no material points");
   check_sizes(scene, path);
   check_overlaps(scene, path);
   check_sides(scene, path);
@@ -210,7 +210,7 @@ double relative_speed(const Moving& a, const Moving& b) {
 void check_loads(const Scene& scene, const std::string& material, double modulus, double density) {
   const auto refuse_pressure = [&](const std::string& key, const std::string& value, double pressure) {
     if (!(std::abs(pressure) > largest_strain * modulus)) return;
-    throw Mistake(key + " = " + value + ": a pressure of " + text_of(std::abs(pressure)) +
+    throw InputError(key + " = " + value + ": a pressure of " + text_of(std::abs(pressure)) +
                   " Pa would compress material " + material + ", of the modulus " + text_of(modulus) +
                   " Pa, by half of its height or more; allowed: up to " + text_of(largest_strain * modulus) +
                   " Pa; make the load smaller, or the material stiffer");
@@ -234,7 +234,7 @@ void check_loads(const Scene& scene, const std::string& material, double modulus
       // Two bodies press what is between them from both sides.
       const double speed = relative_speed(moving[a], moving[b]) / (moving[a].soil || moving[b].soil ? 1 : 2);
       if (!(speed > fastest)) continue;
-      throw Mistake(moving[b].key + ": against " + moving[a].key + " it moves at up to " + text_of(speed) +
+      throw InputError(moving[b].key + ": against " + moving[a].key + " it moves at up to " + text_of(speed) +
                     " m/s, and waves in material " + material + " at " + text_of(2 * fastest) +
                     " m/s: what they meet would be compressed by half or more at once; allowed: up to " +
                     text_of(fastest) + " m/s; make it slower, or the material stiffer");

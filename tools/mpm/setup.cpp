@@ -10,11 +10,6 @@ namespace mpm {
 namespace {
 
 template <int D>
-Vec<D> vec(const std::vector<double>& values) {
-  return Eigen::Map<const Vec<D>>(values.data());
-}
-
-template <int D>
 VelocityHistory<D> history(const std::vector<std::vector<double>>& rows) {
   VelocityHistory<D> history;
   for (const auto& row : rows) {
@@ -33,7 +28,7 @@ void place_planes(const Scene& scene, Solver<D>& solver) {
     const double node = (each.at - solver.grid.anchor[each.axis]) / solver.grid.cell[each.axis];
     plane.node = int(std::lround(node));
     if (std::abs(node - plane.node) > 1e-6) {
-      throw Mistake("boundary " + each.name + ": at_m must be a whole number of cells (grid.cell_m)");
+      throw InputError("boundary " + each.name + ": at_m must be a whole number of cells (grid.cell_m)");
     }
     plane.inside = each.soil_above ? 1 : -1;
     plane.fixed = each.fixed;
@@ -42,10 +37,10 @@ void place_planes(const Scene& scene, Solver<D>& solver) {
     if (each.name == scene.follows) {
       solver.follow_axis = each.axis;
       solver.followed = int(solver.planes.all.size());
-      if (plane.node <= 0) throw Mistake("boundary " + each.name + ": grid.follows needs it at a positive coordinate");
+      if (plane.node <= 0) throw InputError("boundary " + each.name + ": grid.follows needs it at a positive coordinate");
       // The step shrinks with the cells.
-      if (each.at + plane.velocity.least_way(each.axis, scene.duration) < 0.01 * each.at) {
-        throw Mistake("boundary " + each.name +
+      if (each.at + plane.velocity.least_displacement(each.axis, scene.duration) < 0.01 * each.at) {
+        throw InputError("boundary " + each.name +
                       ": its motion takes it to less than a hundredth of at_m within time.duration_s, and cells of no "
                       "height have no time step; shorten motion or time.duration_s");
       }
@@ -59,14 +54,8 @@ void place_bodies(const Scene& scene, Solver<D>& solver) {
   for (const auto& each : scene.bodies) {
     Body<D> body;
     body.name = each.name;
-    body.kind = each.kind;
-    body.centre = vec<D>(each.centre);
-    body.half = 0.5 * vec<D>(each.size);
-    body.normal = vec<D>(each.normal);
-    if (body.kind == BodyKind::half_space) {  // squares of very small entries vanish
-      body.normal = (body.normal / body.normal.cwiseAbs().maxCoeff()).normalized();
-    }
-    body.radius = each.radius;
+    body.shape = std::get<BodyShape<D>>(each.shape);
+    body.centre = vector_of<D>(each.centre);
     body.rough = each.rough;
     body.friction = each.friction;
     body.at_surface = each.at_surface;
@@ -84,7 +73,7 @@ void refuse_inside(const Scene& scene, const RegionOfScene& region, const Bodies
     const double depth = -body.distance(point.position - body.centre, outward, point.half);
     if (!body.at_surface || depth < 1e-6 * point.half.minCoeff()) continue;
     const std::vector<double> place(point.position.data(), point.position.data() + D);
-    throw Mistake(region_name(scene, region) + ": its point at " + text_of(place) + " m would lie inside body." +
+    throw InputError(region_name(scene, region) + ": its point at " + text_of(place) + " m would lie inside body." +
                   body.name + " at the start; move one of them, or set contact = \"nodes\" in body." + body.name +
                   ", which then holds what is inside");
   }
@@ -95,7 +84,7 @@ template <int D>
 void fill(const Scene& scene, const RegionOfScene& region, const Bodies<D>& bodies, std::vector<Point<D>>& points) {
   const auto filling = filling_of(scene, region);
   const auto& count = filling.count;
-  const Vec<D> side = vec<D>(filling.side);
+  const Vec<D> side = vector_of<D>(filling.side);
   for (long k = 0; k < filling.total; ++k) {
     Point<D> point;
     long rest = k;
@@ -104,7 +93,7 @@ void fill(const Scene& scene, const RegionOfScene& region, const Bodies<D>& bodi
       rest /= count[i];
     }
     point.first = point.position;
-    point.velocity = vec<D>(region.velocity);
+    point.velocity = vector_of<D>(region.velocity);
     point.half = 0.5 * side;
     point.volume = side.prod() * (D == 2 ? scene.thickness : 1);
     refuse_inside<D>(scene, region, bodies, point);
@@ -154,14 +143,14 @@ template <int D>
 void open_specimens(const Scene& scene, const MaterialOfScene& material, const std::shared_ptr<GrainPool>& pool,
                     const std::string& folder, Families& families, Densities& soils) {
   std::vector<std::string> paths;
-  for (const auto& name : material.specimens) paths.push_back((std::filesystem::path(folder) / name).string());
+  for (const auto& name : material.grains->specimens) paths.push_back((std::filesystem::path(folder) / name).string());
   auto& family = families[material.name] = std::make_unique<SpecimenFamily>(pool, paths);
   const auto first = family->prepared(0);
   if (first.dimension != D) {
-    throw Mistake("material " + material.name + ": its specimen is of dimension " + std::to_string(first.dimension) +
+    throw InputError("material " + material.name + ": its specimen is of dimension " + std::to_string(first.dimension) +
                   ", the scene of " + std::to_string(D) + "; name another in specimens, or set scene.dimension");
   }
-  soils[material.name] = material.density / (1 + first.void_ratio);
+  soils[material.name] = material.grains->density / (1 + first.void_ratio);
   check_loads(scene, material.name, family->wave_modulus(), soils[material.name]);
 }
 
@@ -175,16 +164,16 @@ std::shared_ptr<Grains<D>> load_grains(const Scene& scene, const MaterialOfScene
     const double exact = pressure_at<D>(scene, points[k].position, material.name, soils);
     const double pressure = std::stod(std::to_string(exact));
     if (!(pressure > 0)) {
-      throw Mistake("material " + material.name +
+      throw InputError("material " + material.name +
                     ": a point would carry no pressure; set initial.pressure_Pa, or "
                     "initial.surface_m to the height of the free surface");
     }
     ids.push_back(family.spawn(pressure));
-    points[k].mass = material.density / (1 + family.prepared(pressure).void_ratio) * points[k].volume;
+    points[k].mass = material.grains->density / (1 + family.prepared(pressure).void_ratio) * points[k].volume;
   }
   model.pressure_classes += long(family.classes()) - 1;
   family.release();
-  auto grains = std::make_shared<Grains<D>>(pool, std::move(ids), material.physical, material.gather);
+  auto grains = std::make_shared<Grains<D>>(pool, std::move(ids), material.grains->physical, material.grains->gather);
   grains->read_stress(points);
   return grains;
 }
@@ -193,20 +182,91 @@ std::shared_ptr<Grains<D>> load_grains(const Scene& scene, const MaterialOfScene
 template <int D>
 void expect_grains(const Model<D>& model) {
   for (std::size_t k = 0; k < model.watched.size(); ++k) {
-    const auto& range = model.solver.range_of(model.watched[k]);
-    if (model.grains.contains(range.name)) continue;
-    throw Mistake("output.networks is true, but the material " + range.name + " at output.watched_points_m[" +
+    const auto& group = model.solver.group_of(model.watched[k]);
+    if (model.grains.contains(group.name)) continue;
+    throw InputError("output.networks is true, but the material " + group.name + " at output.watched_points_m[" +
                   std::to_string(k) + "] has no grains; take that point away, or set output.networks = false");
   }
 }
 
 template <int D>
-std::shared_ptr<Material<D>> continuum(const MaterialOfScene& material) {
-  using Kind = MaterialOfScene::Kind;
-  if (material.kind == Kind::elastic) return std::make_shared<Elastic<D>>(material.moduli);
-  const auto surface =
-      material.kind == Kind::mohr_coulomb ? Plastic<D>::Surface::mohr_coulomb : Plastic<D>::Surface::drucker_prager;
-  return std::make_shared<Plastic<D>>(material.moduli, material.strength, surface, material.cone);
+void set_options(const Scene& scene, Solver<D>& solver) {
+  solver.grid.cell = solver.first_cell = vector_of<D>(scene.cell);
+  solver.options.shape = scene.shape;
+  solver.options.scheme = scene.scheme;
+  solver.options.pic_fraction = scene.pic_fraction;
+  solver.options.affine = scene.affine;
+  solver.options.cfl = scene.cfl;
+  solver.options.gravity = vector_of<D>(scene.gravity);
+  solver.options.surface_pressure = scene.surface_pressure;
+}
+
+/// What materials need before their points are there: pools of RVEs, specimens, densities.
+template <int D>
+struct Stock {
+  const std::string& folder;
+  bool populate;
+  Families families;
+  Densities soils;
+
+  void open(const Scene& scene, Model<D>& model, const PoolSource& source) {
+    for (const auto& material : scene.materials) {
+      const auto& grains = material.grains;
+      soils[material.name] = grains ? grains->density : material.density;
+      if (!grains) continue;
+      if (!model.pools.empty() && source.over_ranks) {
+        throw InputError("material." + material.name +
+                         ": a second material of grains, and ranks serve one pool; run this "
+                         "scene by rvelab-mpm, on threads");
+      }
+      const GrainOptions options{grains->tolerance_rel, grains->tolerance_abs, source};
+      const auto pool = std::make_shared<GrainPool>(model.solver.workers, options);
+      model.pools[material.name] = pool;
+      if (populate) open_specimens<D>(scene, material, pool, folder, families, soils);
+    }
+  }
+};
+
+/// The points of one material, and the law or the RVEs that they obey.
+template <int D>
+void add_group(const Scene& scene, const MaterialOfScene& material, Model<D>& model, Stock<D>& stock) {
+  auto& solver = model.solver;
+  MaterialGroup<D> group;
+  group.first = long(solver.points.size());
+  group.name = material.name;
+  for (const auto& region : scene.regions) {
+    if (region.material == material.name) fill<D>(scene, region, solver.bodies, solver.points);
+  }
+  group.count = long(solver.points.size()) - group.first;
+  Point<D>* points = solver.points.data() + group.first;
+  if (!material.grains) {
+    if (group.count > 0) check_loads(scene, material.name, material.continuum.wave_modulus, material.density);
+    load_continuum<D>(scene, material, stock.soils, points, group.count);
+    group.material = material.continuum.make<D>();
+  } else {
+    const auto& pool = model.pools.at(material.name);
+    auto grains = stock.populate
+                      ? load_grains<D>(scene, material, model, pool, *stock.families.at(material.name), stock.soils,
+                                       points, group.count)
+                      : std::make_shared<Grains<D>>(pool, std::vector<std::int64_t>{}, material.grains->physical,
+                                                    material.grains->gather);
+    model.grains[material.name] = grains;
+    group.material = grains;
+  }
+  solver.groups.push_back(group);
+}
+
+template <int D>
+void watch_points(const Scene& scene, Model<D>& model) {
+  const auto& points = model.solver.points;
+  for (const auto& place : scene.watched) {
+    const Vec<D> x = vector_of<D>(place);
+    const auto nearer = [&](const auto& a, const auto& b) {
+      return (a.position - x).squaredNorm() < (b.position - x).squaredNorm();
+    };
+    model.watched.push_back(std::min_element(points.begin(), points.end(), nearer) - points.begin());
+  }
+  if (scene.networks) expect_grains<D>(model);
 }
 
 }  // namespace
@@ -215,67 +275,13 @@ template <int D>
 std::unique_ptr<Model<D>> set_up(const Scene& scene, int threads, const std::string& specimens, bool populate,
                                  const PoolSource& source) {
   auto model = std::make_unique<Model<D>>(threads);
-  auto& solver = model->solver;
-  solver.grid.cell = solver.first_cell = vec<D>(scene.cell);
-  solver.options.shape = scene.shape;
-  solver.options.scheme = scene.scheme;
-  solver.options.pic_fraction = scene.pic_fraction;
-  solver.options.affine = scene.affine;
-  solver.options.cfl = scene.cfl;
-  solver.options.gravity = vec<D>(scene.gravity);
-  solver.options.surface_pressure = scene.surface_pressure;
-  place_planes(scene, solver);
-  place_bodies(scene, solver);
-  Families families;
-  Densities soils;
-  for (const auto& material : scene.materials) {
-    soils[material.name] = material.density;
-    if (material.kind != MaterialOfScene::Kind::grains) continue;
-    if (!model->pools.empty() && source.over_ranks) {
-      throw Mistake("material." + material.name +
-                    ": a second material of grains, and ranks serve one pool; run this "
-                    "scene by rvelab-mpm, on threads");
-    }
-    const auto pool = std::make_shared<GrainPool>(solver.workers,
-                                                  GrainOptions{material.tolerance_rel, material.tolerance_abs, source});
-    model->pools[material.name] = pool;
-    if (populate) open_specimens<D>(scene, material, pool, specimens, families, soils);
-  }
-  for (const auto& material : scene.materials) {
-    Range<D> range;
-    range.first = long(solver.points.size());
-    range.name = material.name;
-    for (const auto& region : scene.regions) {
-      if (region.material == material.name) fill<D>(scene, region, solver.bodies, solver.points);
-    }
-    range.count = long(solver.points.size()) - range.first;
-    Point<D>* points = solver.points.data() + range.first;
-    if (range.count > 0 && material.kind != MaterialOfScene::Kind::grains) {
-      check_loads(scene, material.name, material.moduli.wave(), material.density);
-    }
-    if (material.kind != MaterialOfScene::Kind::grains) {
-      load_continuum<D>(scene, material, soils, points, range.count);
-      range.material = continuum<D>(material);
-    } else {
-      const auto& pool = model->pools.at(material.name);
-      auto grains =
-          populate
-              ? load_grains<D>(scene, material, *model, pool, *families.at(material.name), soils, points, range.count)
-              : std::make_shared<Grains<D>>(pool, std::vector<std::int64_t>{}, material.physical, material.gather);
-      model->grains[material.name] = grains;
-      range.material = grains;
-    }
-    solver.ranges.push_back(range);
-  }
-  for (const auto& place : scene.watched) {
-    const Vec<D> x = vec<D>(place);
-    const auto nearer = [&](const auto& a, const auto& b) {
-      return (a.position - x).squaredNorm() < (b.position - x).squaredNorm();
-    };
-    model->watched.push_back(std::min_element(solver.points.begin(), solver.points.end(), nearer) -
-                             solver.points.begin());
-  }
-  if (scene.networks) expect_grains<D>(*model);
+  set_options(scene, model->solver);
+  place_planes(scene, model->solver);
+  place_bodies(scene, model->solver);
+  Stock<D> stock{specimens, populate, {}, {}};
+  stock.open(scene, *model, source);
+  for (const auto& material : scene.materials) add_group(scene, material, *model, stock);
+  watch_points(scene, *model);
   return model;
 }
 

@@ -20,7 +20,7 @@ struct Model {
 };
 
 /// `specimens`: folder in which specimen files are looked for. `populate`: false leaves points and RVEs to a
-/// checkpoint. Over ranks: Mistake if the scene needs more than one pool.
+/// checkpoint. Over ranks: InputError if the scene needs more than one pool.
 template <int D>
 std::unique_ptr<Model<D>> set_up(const Scene& scene, int threads, const std::string& specimens, bool populate = true,
                                  const PoolSource& source = {});

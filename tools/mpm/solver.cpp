@@ -25,42 +25,41 @@ int slab_of(int row) { return row >= 0 ? row / slab_rows : -((-row + slab_rows -
 }  // namespace
 
 template <int D>
-const Range<D>& Solver<D>::range_of(long point) const {
-  return *std::find_if(ranges.begin(), ranges.end(),
-                       [&](const auto& range) { return point < range.first + range.count; });
+const MaterialGroup<D>& Solver<D>::group_of(long point) const {
+  return *std::find_if(groups.begin(), groups.end(),
+                       [&](const auto& group) { return point < group.first + group.count; });
 }
 
 template <int D>
 double Solver<D>::stable_step() const {
   struct Extremes {
     double lightest = 1e300, fastest = 0;
-    void meet(double density, double square) {
+    void add(double density, double square) {
       lightest = std::min(lightest, density);
       fastest = std::max(fastest, square);
     }
   };
   double wave = 0, fastest = 0;
-  for (const auto& range : ranges) {
-    std::vector<Extremes> pieces((range.count + chunk - 1) / chunk);
+  for (const auto& group : groups) {
+    std::vector<Extremes> pieces((group.count + chunk - 1) / chunk);
     workers.for_each(std::int64_t(pieces.size()), [&](std::int64_t piece) {
       Extremes here;  // not in place: neighbours share cache lines
-      for (long k = piece * chunk; k < std::min(range.count, long(piece + 1) * chunk); ++k) {
-        const auto& point = points[range.first + k];
-        here.meet(point.mass / point.volume, point.velocity.squaredNorm());
+      for (long k = piece * chunk; k < std::min(group.count, long(piece + 1) * chunk); ++k) {
+        const auto& point = points[group.first + k];
+        here.add(point.mass / point.volume, point.velocity.squaredNorm());
       }
       pieces[piece] = here;
     });
     Extremes all;
-    for (const auto& piece : pieces) all.meet(piece.lightest, piece.fastest);
+    for (const auto& piece : pieces) all.add(piece.lightest, piece.fastest);
     fastest = std::max(fastest, all.fastest);
-    if (range.count > 0) wave = std::max(wave, range.material->wave_modulus() / all.lightest);
+    if (group.count > 0) wave = std::max(wave, group.material->wave_modulus() / all.lightest);
   }
   const double dt = options.cfl * grid.cell.minCoeff() / (std::sqrt(wave) + std::sqrt(fastest));
-  // What is driven faster than any wave must not jump over the soil: a fifth of a cell a step at most.
+  // A boundary or body faster than any wave must not jump over the soil: a fifth of a cell a step at most.
   double driven = 0;
   for (const double then : {time, time + dt}) {
-    for (const auto& plane : planes.all) driven = std::max(driven, plane.velocity.at(then).norm());
-    for (const auto& body : bodies.all) driven = std::max(driven, body.velocity.at(then).norm());
+    each_driven([&](const auto& each) { driven = std::max(driven, each.velocity.at(then).norm()); });
   }
   return driven > 0 ? std::min(dt, 0.2 * grid.cell.minCoeff() / driven) : dt;
 }
@@ -69,7 +68,7 @@ template <int D>
 void Solver<D>::place_grid() {
   if (follow_axis < 0) return;
   const auto& plane = planes.all[followed];
-  const double span = plane.node * first_cell[follow_axis] + plane.velocity.way(time)[follow_axis];
+  const double span = plane.node * first_cell[follow_axis] + plane.velocity.displacement(time)[follow_axis];
   grid.cell[follow_axis] = span / plane.node;
 }
 
@@ -86,7 +85,7 @@ void Solver<D>::find_supports() {
     for (long k = piece * chunk; k < std::min(n, long(piece + 1) * chunk); ++k) {
       for (int i = 0; i < D; ++i) {
         const double xi = (points[k].position[i] - grid.anchor[i]) * per_m[i];
-        if (!(std::abs(xi) < farthest_node)) throw_flown(points[k].position, range_of(k).name, time);
+        if (!(std::abs(xi) < farthest_node)) throw_flown(points[k].position, group_of(k).name, time);
         supports_[k].node[i] = shape_along_axis(options.shape, xi, per_m[i], points[k].half[i] * per_m[i],
                                                 supports_[k].weight[i], supports_[k].slope[i]);
         low[piece][i] = std::min(low[piece][i], supports_[k].node[i]);
@@ -161,8 +160,8 @@ void Solver<D>::start_velocities() {
   });
   planes.fold_momentum(grid, time);
   planes.set_start(grid, time);
-  planes.keep_brought(grid);
-  bodies.find(grid, planes, points, time, workers);
+  planes.keep_mapped(grid);
+  bodies.detect_contact(grid, planes, points, time, workers);
   bodies.set_start(grid, time);
   planes.set_start(grid, time);
 }
@@ -180,20 +179,20 @@ void Solver<D>::end_velocities(double dt) {
   over_nodes([&](auto& node, std::int64_t piece) {
     double change = 0;
     for (int i = 0; i < D; ++i) {
-      const double brought = node.a[i];
-      node.a[i] = node.w[i] - brought;
-      change += node.a[i] * (node.w[i] + brought);
+      const double mapped = node.a[i];
+      node.a[i] = node.w[i] - mapped;
+      change += node.a[i] * (node.w[i] + mapped);
     }
     kinetic_[piece] += 0.5 * node.mass * change;
   });
-  for (const double each : kinetic_) ledger.nodal_kinetic += each;
+  for (const double each : kinetic_) nodal_kinetic += each;
   planes.react(grid, dt, options.pic_fraction);
 }
 
 template <int D>
 void Solver<D>::stresses(double dt) {
   const double begin = now();
-  for (auto& range : ranges) range.material->advance(points.data() + range.first, range.count, dt, workers);
+  for (auto& group : groups) group.material->advance(points.data() + group.first, group.count, dt, workers);
   material_seconds += now() - begin;
   const long n = long(points.size());
   workers.for_each((n + chunk - 1) / chunk, [&](std::int64_t piece) {

@@ -21,7 +21,7 @@ enum class Scheme { usf, musl };
 
 /// Points first .. first + count - 1 are of one material.
 template <int D>
-struct Range {
+struct MaterialGroup {
   long first = 0, count = 0;
   std::string name;
   std::shared_ptr<Material<D>> material;
@@ -42,23 +42,18 @@ struct Options {
   double surface_pressure = 0;
 };
 
-/// What the steps added up, J.
-template <int D>
-struct Ledger {
-  double nodal_kinetic = 0;  ///< change of kinetic energy at the nodes; less that of the points is lost in mapping
-};
-
 template <int D>
 class Solver {
  public:
   mutable Workers workers;  ///< first, so that it outlives what works with it
   std::vector<Point<D>> points;
-  std::vector<Range<D>> ranges;
+  std::vector<MaterialGroup<D>> groups;
   Grid<D> grid;
   Planes<D> planes;
   Bodies<D> bodies;
   Options<D> options;
-  Ledger<D> ledger;
+  /// J, change of kinetic energy at the nodes since the start; what the points have less was lost in mapping.
+  double nodal_kinetic = 0;
   double time = 0;
   long steps = 0;
   double grid_seconds = 0, material_seconds = 0;
@@ -69,10 +64,22 @@ class Solver {
   std::function<Vec<D>(const Vec<D>&, double)> body_force;
 
   explicit Solver(int threads) : workers(threads) {}
-  const Range<D>& range_of(long point) const;
+  const MaterialGroup<D>& group_of(long point) const;
   /// s, from the fastest wave and the fastest point, or from a body or plane that is faster than both.
   double stable_step() const;
   void step(double dt);
+  /// visit(x) for each boundary, then each body: what has a name, a velocity and a reaction.
+  template <class Visit>
+  void each_driven(const Visit& visit) const {
+    for (const auto& plane : planes.all) visit(plane);
+    for (const auto& body : bodies.all) visit(body);
+  }
+  template <class Visit>
+  void each_driven(const Visit& visit) {
+    for (auto& plane : planes.all) visit(plane);
+    for (auto& body : bodies.all) visit(body);
+  }
+  std::size_t count_driven() const { return planes.all.size() + bodies.all.size(); }
 
  private:
   void place_grid();

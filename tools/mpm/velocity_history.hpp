@@ -22,8 +22,8 @@ struct VelocityHistory {
     }
     return velocities.back();
   }
-  /// Way since time 0, m: the exact integral.
-  Vec<D> way(double time) const {
+  /// Displacement since time 0, m: the exact integral.
+  Vec<D> displacement(double time) const {
     Vec<D> sum = Vec<D>::Zero();
     for (std::size_t k = 1; k < times.size() && times[k - 1] < time; ++k) {
       const double end = std::min(time, times[k]);
@@ -32,16 +32,16 @@ struct VelocityHistory {
     if (!times.empty() && time > times.back()) sum += (time - times.back()) * velocities.back();
     return sum;
   }
-  /// The least way along an axis up to a time: at its ends, or where the velocity along it turns.
-  double least_way(int axis, double until) const {
-    double least = std::min(0.0, way(until)[axis]);
+  /// The least displacement along an axis up to a time: at its ends, or where the velocity along it changes sign.
+  double least_displacement(int axis, double until) const {
+    double least = std::min(0.0, displacement(until)[axis]);
     for (std::size_t k = 0; k < times.size() && times[k] < until; ++k) {
-      least = std::min(least, way(times[k])[axis]);
+      least = std::min(least, displacement(times[k])[axis]);
       if (k == 0) continue;
       const double before = velocities[k - 1][axis], after = velocities[k][axis];
       if (!(before < 0 && after > 0)) continue;
       const double turn = times[k - 1] + (times[k] - times[k - 1]) * before / (before - after);
-      least = std::min(least, way(turn)[axis]);
+      least = std::min(least, displacement(turn)[axis]);
     }
     return least;
   }

@@ -15,25 +15,25 @@ std::string place_of(const Point<D>& point) {
   return text_of(std::vector<double>(point.position.data(), point.position.data() + D)) + " m";
 }
 
-/// What asks for the step that Solver::stable_step gives: the fastest wave, the fastest point, or what is driven.
+/// The cause of the time step of Solver::stable_step: the fastest wave, the fastest point, or a driven boundary or body.
 template <int D>
 std::string cause_of_step(const Solver<D>& solver) {
   double wave = 0, fastest = 0, driven = 0;
   std::string of_wave, of_point, of_driven;
-  for (const auto& range : solver.ranges) {
-    for (long k = range.first; k < range.first + range.count; ++k) {
+  for (const auto& group : solver.groups) {
+    for (long k = group.first; k < group.first + group.count; ++k) {
       const auto& point = solver.points[std::size_t(k)];
-      const double modulus = range.material->wave_modulus(), density = point.mass / point.volume;
+      const double modulus = group.material->wave_modulus(), density = point.mass / point.volume;
       const double speed = std::sqrt(modulus / density), own = point.velocity.norm();
       if (!(speed <= wave)) {
         wave = speed;
-        of_wave = "the wave of material " + range.name + ", " + text_of(speed) + " m/s, at its point at " +
+        of_wave = "the wave of material " + group.name + ", " + text_of(speed) + " m/s, at its point at " +
                   place_of<D>(point) + " (modulus " + text_of(modulus) + " Pa, density " + text_of(density) +
                   " kg/m^3)";
       }
       if (!(own <= fastest)) {
         fastest = own;
-        of_point = "the point of material " + range.name + " at " + place_of<D>(point) + ", which moves at " +
+        of_point = "the point of material " + group.name + " at " + place_of<D>(point) + ", which moves at " +
                    text_of(own) + " m/s";
       }
     }
@@ -51,17 +51,17 @@ std::string cause_of_step(const Solver<D>& solver) {
   return (wave >= fastest ? of_wave : of_point) + ", in cells of " + text_of(solver.grid.cell.minCoeff()) + " m";
 }
 
-/// J: what the stress of the soil stores, at strains up to a hundredth, and round-off of heights in gravity. Contact at
-/// nodes is sharp to a cell: the weight over that height counts with it. What is small beside these moves nothing.
+/// J, a scale for residuals: energy that the stress of the soil stores, at strains up to a hundredth; round-off of heights
+/// in gravity; with contact at nodes, which is sharp to a cell, the weight over the height of a cell.
 template <int D>
 double stored_energy(const Solver<D>& solver) {
   constexpr double most = 0.01, least = 1e-5, round_off = 1e-10;
   const bool at_nodes = std::any_of(solver.bodies.all.begin(), solver.bodies.all.end(),
                                     [](const auto& body) { return !body.at_surface; });
   double sum = 1e-300;
-  for (const auto& range : solver.ranges) {
-    const double modulus = range.material->wave_modulus();
-    for (long k = range.first; k < range.first + range.count; ++k) {
+  for (const auto& group : solver.groups) {
+    const double modulus = group.material->wave_modulus();
+    for (long k = group.first; k < group.first + group.count; ++k) {
       const auto& point = solver.points[std::size_t(k)];
       const double stress = point.stress.norm(), strain = stress / modulus;
       sum += 0.5 * point.volume * (stress * std::min(strain, most) + modulus * least * least);
@@ -77,7 +77,7 @@ double stored_energy(const Solver<D>& solver) {
 template <int D>
 void watch_step(const Solver<D>& solver, double dt, Watched& seen, std::ostream& tell) {
   if (seen.first_step == 0) seen.first_step = dt;
-  if (dt >= told_step * seen.first_step) return;
+  if (dt >= warning_step * seen.first_step) return;
   const std::string words = "at " + text_of(solver.time) + " s the time step is " + text_of(dt) +
                             " s, and the first was " + text_of(seen.first_step) + " s; ";
   // A step that is not a number comes here too.
@@ -85,14 +85,14 @@ void watch_step(const Solver<D>& solver, double dt, Watched& seen, std::ostream&
     throw std::runtime_error(words + "the run would stand still: it ends. What asks for it: " +
                              cause_of_step<D>(solver) + "; is the soil too soft for its load?");
   }
-  if (seen.told_step) return;
-  seen.told_step = true;
+  if (seen.warned_step) return;
+  seen.warned_step = true;
   tell << "rvelab-mpm: " << words << "what asks for it: " << cause_of_step<D>(solver) << std::endl;
 }
 
 template <int D>
 void watch_energy(const Solver<D>& solver, const EnergyStart& start, Watched& seen, std::ostream& tell) {
-  const auto b = balance_of<D>(solver, start);
+  const auto b = energy_balance<D>(solver, start);
   for (const double energy : {b.kinetic, start.kinetic, b.potential, b.stress_work, b.pressure_work, b.boundary_work,
                               stored_energy<D>(solver)}) {
     seen.energy = std::max(seen.energy, std::abs(energy));
@@ -100,7 +100,7 @@ void watch_energy(const Solver<D>& solver, const EnergyStart& start, Watched& se
   // Mapping may lose energy; what it gains comes from nothing too.
   const double nothing = std::abs(b.residual) + std::max(0.0, -b.mapping_loss);
   const double share = nothing / seen.energy, start_up = 4 / double(std::max(1L, solver.steps));
-  if (share < told_share + start_up) return;
+  if (share < warning_share + start_up) return;
   std::ostringstream words;
   words.precision(3);
   words << "at " << solver.time << " s " << nothing << " J are not accounted for, " << 100 * share
@@ -111,8 +111,8 @@ void watch_energy(const Solver<D>& solver, const EnergyStart& start, Watched& se
         words.str() + " (allowed: " + text_of(100 * ending_share) +
         "): the run ends; take a smaller time.cfl or grid.cell_m, or a load that the soil can carry");
   }
-  if (seen.told_energy) return;
-  seen.told_energy = true;
+  if (seen.warned_energy) return;
+  seen.warned_energy = true;
   tell << "rvelab-mpm: " << words.str() << " (the run ends at " << 100 * ending_share
        << "); take a smaller time.cfl or grid.cell_m" << std::endl;
 }

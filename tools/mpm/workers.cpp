@@ -28,7 +28,7 @@ Workers::Workers(int count) {
   } catch (const std::exception&) {
     const int started = this->count();
     end();
-    throw Mistake("-j " + std::to_string(count) + ": the system starts no more than " + std::to_string(started) +
+    throw InputError("-j " + std::to_string(count) + ": the system starts no more than " + std::to_string(started) +
                   " threads here; give fewer");
   }
 }

@@ -14,7 +14,7 @@ namespace mpm {
 
 class Workers {
  public:
-  /// `count` threads, the caller's included; 0: as many as the processor runs at once. Mistake if the system gives
+  /// `count` threads, the caller's included; 0: as many as the processor runs at once. InputError if the system gives
   /// fewer.
   explicit Workers(int count);
   Workers(const Workers&) = delete;

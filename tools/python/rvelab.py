@@ -10,14 +10,14 @@ sigma  (3, 3), Pa, laboratory frame, Cauchy, tension positive. Batches have a fi
 dt     s; > 0: physical time, real inertia and rate; 0: quasi-static. 2D: z-components of dH are zero.
 
 Needs numpy and librvelab.so.1: named by RVELAB_LIBRARY, else beside this file, else found by the loader. The meaning
-of every call is that of include/rvelab/rvelab.h. Calls on different RVEs may run in threads: the interpreter's lock
-is let go of meanwhile."""
+of every call is that of include/rvelab/rvelab.h. Calls on different RVEs may run in threads: ctypes releases the
+interpreter's lock meanwhile."""
 from __future__ import annotations
 
 import contextlib
 import os
 import sys
-from ctypes import byref, c_int64, c_size_t, c_void_p, create_string_buffer, sizeof
+from ctypes import byref, c_char_p, c_double, c_int64, c_size_t, c_void_p, create_string_buffer, sizeof
 from typing import Any, Iterable
 
 import numpy as np
@@ -30,6 +30,20 @@ from rvelab_program import Records, run
 __all__ = ["Batch", "Discard", "Info", "MEASURES", "OutOfMemory", "Pool", "Records", "Rve", "RvelabError",
            "RvelabWarning", "StaleToken", "run"]
 __version__ = library.rvelab_version().decode()
+
+_pool, _number, _ids, _size = c_void_p, c_int64, c_void_p, c_size_t
+for _name, _arguments in {
+        "pool_def_init": (c_void_p, _size), "pool_create": (c_void_p, c_void_p), "pool_destroy": (_pool,),
+        "template_load": (_pool, c_char_p, c_void_p), "template_from_snapshot": (_pool, c_char_p, _size, c_void_p),
+        "template_release": (_pool, _number), "spawn": (_pool, _number, _number, _ids),
+        "clone": (_pool, _number, c_void_p), "release": (_pool, _number, _ids), "ids": (_pool, _number, _ids, c_void_p),
+        "batch_init": (c_void_p, _size), "apply": (_pool, _number, c_void_p, c_double, c_void_p),
+        "trial": (_pool, c_void_p), "commit": (_pool, _number, _ids), "revert": (_pool, _number, _ids),
+        "info_init": (c_void_p, _size), "get_info": (_pool, _number, c_void_p),
+        "cost": (_pool, _number, _ids, c_void_p), "snapshot_save": (_pool, _number, c_void_p, _size, c_void_p),
+        "snapshot_load": (_pool, _number, c_char_p, _size), "pool_write": (_pool, c_char_p),
+        "pool_read": (_pool, c_char_p)}.items():
+    getattr(library, "rvelab_" + _name).argtypes = _arguments
 
 
 class Pool:
@@ -152,7 +166,7 @@ class Pool:
         self._settle("commit", rves)
 
     def revert(self, rves: ArrayLike | None = None) -> None:
-        """Pending trials are let go of; None: all."""
+        """Discards pending trials; None: all."""
         self._settle("revert", rves)
 
     def _settle(self, name: str, rves: ArrayLike | None) -> None:
@@ -182,7 +196,7 @@ class Pool:
         return buffer.raw[:need.value]
 
     def restore(self, rve: int, snapshot: bytes) -> None:
-        """The RVE takes the state of a snapshot, of any specimen; a pending trial is let go of."""
+        """The RVE takes the state of a snapshot, of any specimen; a pending trial is discarded."""
         call("snapshot_load", self._pool, id_of(rve), snapshot, len(snapshot))
 
     def write(self, path: str | os.PathLike[str]) -> None:
@@ -244,12 +258,12 @@ class Rve:
         self.pool.commit(self.id)
 
     def revert(self) -> None:
-        """The pending trial is let go of."""
+        """Discards the pending trial."""
         self.pool.revert(self.id)
 
     def tangent(self) -> np.ndarray:
-        """Elastic tangent (6, 6) of the contacts as they are, Pa: xx yy zz yz xz xy, engineering shear. By a trial of
-        dH = 0, which takes the place of a pending one and is let go of."""
+        """Elastic tangent (6, 6) of the contacts as they are, Pa: xx yy zz yz xz xy, engineering shear. Made by a trial
+        of dH = 0, which replaces a pending one and is discarded."""
         found = self.trial(np.zeros((3, 3)), want=("tangent",)).tangent[0]
         self.revert()
         return found

@@ -5,7 +5,7 @@ import ctypes
 import os
 import sys
 import warnings
-from ctypes import byref, c_char_p, c_double, c_int32, c_int64, c_size_t, c_uint32, c_void_p
+from ctypes import c_char_p, c_double, c_int32, c_int64, c_uint32, c_void_p
 from pathlib import Path
 from typing import Any, Iterable
 
@@ -33,7 +33,7 @@ class StaleToken(RvelabError):
 
 
 class OutOfMemory(RvelabError, MemoryError):
-    """No memory was to be had."""
+    """There is not enough memory."""
 
 
 class RvelabWarning(UserWarning):
@@ -108,18 +108,6 @@ def load() -> ctypes.CDLL:
     version = library.rvelab_abi_version()
     if version >> 16 != 1 or version & 65535 < 1:
         raise ImportError(f"{place} has ABI {version >> 16}.{version & 65535}; this module is for 1.1 and later 1.x")
-    pool, number, ids, size = c_void_p, c_int64, c_void_p, c_size_t
-    for call, arguments in {
-            "pool_def_init": (c_void_p, size), "pool_create": (c_void_p, c_void_p), "pool_destroy": (pool,),
-            "template_load": (pool, c_char_p, c_void_p), "template_from_snapshot": (pool, c_char_p, size, c_void_p),
-            "template_release": (pool, number), "spawn": (pool, number, number, ids), "clone": (pool, number, c_void_p),
-            "release": (pool, number, ids), "ids": (pool, number, ids, c_void_p), "batch_init": (c_void_p, size),
-            "apply": (pool, number, c_void_p, c_double, c_void_p), "trial": (pool, c_void_p),
-            "commit": (pool, number, ids), "revert": (pool, number, ids), "info_init": (c_void_p, size),
-            "get_info": (pool, number, c_void_p), "cost": (pool, number, ids, c_void_p),
-            "snapshot_save": (pool, number, c_void_p, size, c_void_p), "pool_write": (pool, c_char_p),
-            "snapshot_load": (pool, number, c_char_p, size), "pool_read": (pool, c_char_p)}.items():
-        getattr(library, "rvelab_" + call).argtypes = arguments
     return library
 
 

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-namespace rvelab::umat {
+namespace umat {
 
 using Matrix3 = Eigen::Matrix3d;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
@@ -40,4 +40,4 @@ Matrix6 in_order_of_hosts(const RowMajor6& tangent);
 /// The tangent in axes turned by R: that of R^T sigma R to R^T eps R, order of the host.
 Matrix6 turned(const Matrix6& tangent, const Matrix3& R);
 
-}  // namespace rvelab::umat
+}  // namespace umat

@@ -1,9 +1,9 @@
-#include "rvelab/umat/points.hpp"
+#include "tools/umat/points.hpp"
 
 #include <fstream>
 #include <stdexcept>
 
-namespace rvelab::umat {
+namespace umat {
 
 namespace {
 
@@ -123,4 +123,4 @@ void log_failure(const std::string& text) {
   std::ofstream("rvelab_umat.log", std::ios::app) << text << '\n';
 }
 
-}  // namespace rvelab::umat
+}  // namespace umat

@@ -1,9 +1,9 @@
-#include "rvelab/umat/kinematics.hpp"
+#include "tools/umat/kinematics.hpp"
 
 #include <Eigen/LU>
 #include <Eigen/SVD>
 
-namespace rvelab::umat {
+namespace umat {
 
 namespace {
 
@@ -66,4 +66,4 @@ Matrix6 turned(const Matrix6& tangent, const Matrix3& R) {
   return Q * tangent * Q.transpose();
 }
 
-}  // namespace rvelab::umat
+}  // namespace umat

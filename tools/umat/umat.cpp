@@ -1,4 +1,4 @@
-#include "rvelab/umat/umat.hpp"
+#include "tools/umat/umat.hpp"
 
 #include <Eigen/LU>
 #include <cmath>
@@ -7,9 +7,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "rvelab/umat/points.hpp"
+#include "tools/umat/points.hpp"
 
-namespace rvelab::umat {
+namespace umat {
 
 namespace {
 
@@ -137,9 +137,9 @@ void update(const Call& call) {
 
 }  // namespace
 
-}  // namespace rvelab::umat
+}  // namespace umat
 
-void rvelab::umat::umat_(double* stress, double* statev, double* ddsdde, double*, double*, double*, double*, double*,
+void umat::umat_(double* stress, double* statev, double* ddsdde, double*, double*, double*, double*, double*,
                          double*, double*, const double*, const double* dstran, const double*, const double* dtime,
                          const double*, const double*, const double*, const double*, const char*, const int* ndi,
                          const int* nshr, const int* ntens, const int* nstatv, const double* props, const int* nprops,

@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-namespace rvelab::umat {
+namespace umat {
 
 struct Material {
   std::string specimen;    ///< path
@@ -22,4 +22,4 @@ struct Settings {
 /// Throws std::runtime_error with file, key, value and remedy.
 Settings read_settings(const std::string& path);
 
-}  // namespace rvelab::umat
+}  // namespace umat

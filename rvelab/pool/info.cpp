@@ -1,4 +1,4 @@
-// What is measured of the RVEs of a pool. Declared in threaded_pool.hpp.
+// Measures and costs of the RVEs of a pool. Declared in threaded_pool.hpp.
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/pool/hold.hpp"
 #include "rvelab/pool/threaded_pool.hpp"
@@ -9,6 +9,12 @@ namespace {
 
 /// Kozeny-Carman: the permeability goes with e^3/(1 + e).
 double permeability(double void_ratio) { return void_ratio * void_ratio * void_ratio / (1 + void_ratio); }
+
+std::array<double, 9> rows_of(const Matrix3& tensor) {
+  std::array<double, 9> rows;
+  for (int k = 0; k < 9; ++k) rows[std::size_t(k)] = tensor(k / 3, k % 3);
+  return rows;
+}
 
 }  // namespace
 
@@ -25,13 +31,17 @@ Info ThreadedPool::info(std::int64_t id) {
   const Network network = resident.rve.network();
   const Matrix3 stress = resident.rve.stress();
   const int dimension = network.dimension();
-  info.cell = network.cell;
+  info.dimension = dimension;
+  info.lattice = rows_of(network.cell.lattice);
+  info.rotation = rows_of(network.cell.rotation);
+  info.volume = network.cell.volume();
   info.grains = network.grains.size();
   info.contacts = network.contacts.size();
   info.void_ratio = void_ratio(network);
   info.coordination_number = coordination_number(network);
-  info.fabric = fabric(network);
-  info.fabric_anisotropy = fabric_anisotropy(info.fabric, dimension);
+  const Matrix3 fabric_tensor = fabric(network);
+  info.fabric = rows_of(fabric_tensor);
+  info.fabric_anisotropy = fabric_anisotropy(fabric_tensor, dimension);
   info.sliding_fraction = sliding_fraction(network);
   info.p = mean_pressure(stress, dimension);
   info.q = deviatoric_stress(stress, dimension);

@@ -1,4 +1,4 @@
-#include "rvelab/abi/wall.hpp"
+#include "rvelab/abi/c_boundary.hpp"
 
 #include <cstdio>
 
@@ -6,17 +6,17 @@ namespace rvelab::abi {
 
 namespace {
 
-/// Room for a text; a plain array, so that there is always one.
+/// A plain array, so that a text always finds room.
 thread_local char text[1200];
 
 }  // namespace
 
-std::int32_t told(const pool::Verdict& verdict) noexcept {
+std::int32_t recorded(const pool::Verdict& verdict) noexcept {
   std::snprintf(text, sizeof text, "%s", verdict.text.c_str());
   return std::int32_t(verdict.status);
 }
 
-std::int32_t told_failure() noexcept { return std::int32_t(pool::status_of_exception(text, sizeof text)); }
+std::int32_t recorded_failure() noexcept { return std::int32_t(pool::status_of_exception(text, sizeof text)); }
 
 const char* last_text() noexcept { return text; }
 

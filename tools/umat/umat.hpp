@@ -1,7 +1,7 @@
 // umat_: the material of Abaqus/Standard, and of the codes that call it in the same way.
 #pragma once
 
-namespace rvelab::umat {
+namespace umat {
 
 /// Arguments as in Abaqus's manual, by Fortran's rules. Those read: STRESS (in: checked on the first call; out), STATEV
 /// (two numbers: id and token), DSTRAN, DTIME, NDI, NSHR, NTENS, NSTATV, PROPS, NPROPS, PNEWDT, DFGRD0, DFGRD1, NOEL,
@@ -16,4 +16,4 @@ extern "C" [[gnu::visibility("default")]] void umat_(
     const double* dfgrd1, const int* noel, const int* npt, const int* layer, const int* kspt, const int* kstep,
     const int* kinc);
 
-}  // namespace rvelab::umat
+}  // namespace umat

@@ -1,5 +1,5 @@
-// The wall between a host and the library: the default floating-point environment inside, no exception outside, a
-// status and a text instead.
+// The boundary between a host in C and the library: inside, the default floating-point environment; outside, a status and
+// a text in the place of exceptions.
 #pragma once
 
 #include <utility>
@@ -9,16 +9,16 @@
 
 namespace rvelab::abi {
 
-/// Keeps the status and its text for rvelab_last_error; returns the status as a number.
-std::int32_t told(const pool::Verdict& verdict) noexcept;
+/// Records the text for rvelab_last_error; returns the status as a number.
+std::int32_t recorded(const pool::Verdict& verdict) noexcept;
 /// The same of the exception that is being handled.
-std::int32_t told_failure() noexcept;
+std::int32_t recorded_failure() noexcept;
 /// Text of the last call on this thread that was not ok.
 const char* last_text() noexcept;
 
 /// Runs `call`, which returns a pool::Verdict or nothing (ok).
 template <class Call>
-std::int32_t behind_wall(Call&& call) noexcept {
+std::int32_t at_c_boundary(Call&& call) noexcept {
   const pool::FloatingPoint environment;
   try {
     if constexpr (std::is_void_v<decltype(call())>) {
@@ -26,10 +26,10 @@ std::int32_t behind_wall(Call&& call) noexcept {
       return 0;
     } else {
       const pool::Verdict verdict = call();
-      return verdict.status == pool::Status::ok ? 0 : told(verdict);
+      return verdict.status == pool::Status::ok ? 0 : recorded(verdict);
     }
   } catch (...) {
-    return told_failure();
+    return recorded_failure();
   }
 }
 

@@ -9,10 +9,10 @@
 #include <shared_mutex>
 #include <string>
 
-#include "rvelab/umat/kinematics.hpp"
-#include "rvelab/umat/settings.hpp"
+#include "tools/umat/kinematics.hpp"
+#include "tools/umat/settings.hpp"
 
-namespace rvelab::umat {
+namespace umat {
 
 /// NOEL, NPT, LAYER, KSPT. A host that leaves NOEL or NPT at 0 does not say which point it is.
 using PointName = std::array<int, 4>;
@@ -65,4 +65,4 @@ class Points {
 /// Appends a text to rvelab_umat.log in the working directory: each once, a hundred at most.
 void log_failure(const std::string& text);
 
-}  // namespace rvelab::umat
+}  // namespace umat

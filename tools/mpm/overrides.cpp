@@ -1,4 +1,4 @@
-// Files of a scene, and what is laid over them: cases, and assignments of the command line.
+// Scene files, and what overrides them: cases, and assignments of the command line. Declared in keys.hpp.
 #include <algorithm>
 #include <filesystem>
 #include <sstream>
@@ -24,7 +24,7 @@ std::string choices(const toml::array& tables, const std::string& array) {
 toml::table parse_file(const std::string& path) {
   const std::filesystem::path file(path);
   if (std::error_code none; !std::filesystem::exists(file, none) || std::filesystem::is_directory(file, none)) {
-    throw Mistake(path + ": there is no such file; a scene goes by its path, such as protocols/mpm/" +
+    throw InputError(path + ": there is no such file; a scene goes by its path, such as protocols/mpm/" +
                   (file.extension().empty() && !file.stem().empty() ? file.stem().string() : "column_soil") + ".toml");
   }
   try {
@@ -34,17 +34,17 @@ toml::table parse_file(const std::string& path) {
     text << path;
     if (error.source().begin.line > 0) text << ":" << error.source().begin.line << ":" << error.source().begin.column;
     text << ": " << error.description();
-    throw Mistake(text.str());
+    throw InputError(text.str());
   } catch (const rvelab::InputError& error) {
-    throw Mistake(error.what());
+    throw InputError(error.what());
   }
 }
 
-void lay_over(toml::table& base, const toml::table& over) {
+void override_table(toml::table& base, const toml::table& over) {
   for (const auto& [key, node] : over) {
     auto* mine = base.get(key.str());
     if (mine != nullptr && mine->is_table() && node.is_table()) {
-      lay_over(*mine->as_table(), *node.as_table());
+      override_table(*mine->as_table(), *node.as_table());
       continue;
     }
     if (mine != nullptr && mine->is_array_of_tables() && node.is_array_of_tables()) {
@@ -52,7 +52,7 @@ void lay_over(toml::table& base, const toml::table& over) {
       const auto& other = *node.as_array();
       for (std::size_t k = 0; k < other.size(); ++k) {
         if (k < list.size()) {
-          lay_over(*list[k].as_table(), *other[k].as_table());
+          override_table(*list[k].as_table(), *other[k].as_table());
         } else {
           list.push_back(*other[k].as_table());
         }
@@ -65,7 +65,7 @@ void lay_over(toml::table& base, const toml::table& over) {
 
 void assign(toml::table& scene, const std::string& assignment) {
   const auto equals = assignment.find('=');
-  if (equals == std::string::npos) throw Mistake("--set " + assignment + ": give it as table.key=value");
+  if (equals == std::string::npos) throw InputError("--set " + assignment + ": give it as table.key=value");
   const std::string value = assignment.substr(equals + 1);
   toml::table parsed;
   try {
@@ -78,10 +78,10 @@ void assign(toml::table& scene, const std::string& assignment) {
   for (std::string name; std::getline(dotted, name, '.');) names.push_back(name);
   if (names.empty() || equals == 0 || assignment[equals - 1] == '.' ||
       std::find(names.begin(), names.end(), "") != names.end()) {
-    throw Mistake("--set " + assignment + ": there is a name missing before the =; give it as table.key=value");
+    throw InputError("--set " + assignment + ": there is a name missing before the =; give it as table.key=value");
   }
   if (names.size() > rvelab::keys::most_names) {
-    throw Mistake("--set " + assignment.substr(0, 60) + "...: has more than 8 names before the =; give up to 8");
+    throw InputError("--set " + assignment.substr(0, 60) + "...: has more than 8 names before the =; give up to 8");
   }
   toml::table* at = &scene;
   for (std::size_t k = 0; k + 1 < names.size(); ++k) {
@@ -101,11 +101,11 @@ void assign(toml::table& scene, const std::string& assignment) {
       }
     }
     if (found == nullptr && node->is_array_of_tables()) {
-      throw Mistake("--set " + assignment + ": no [[" + names[k] + "]] of that name; " +
+      throw InputError("--set " + assignment + ": no [[" + names[k] + "]] of that name; " +
                     choices(*node->as_array(), names[k]));
     }
     if (found == nullptr) {
-      throw Mistake("--set " + assignment + ": " + names[k] + " is no table; give it as table.key=value");
+      throw InputError("--set " + assignment + ": " + names[k] + " is no table; give it as table.key=value");
     }
     at = found;
     ++k;

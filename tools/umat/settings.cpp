@@ -1,4 +1,4 @@
-#include "rvelab/umat/settings.hpp"
+#include "tools/umat/settings.hpp"
 
 #include <toml++/toml.h>
 
@@ -9,7 +9,7 @@
 
 #include "rvelab/keys/toml_source.hpp"
 
-namespace rvelab::umat {
+namespace umat {
 
 namespace {
 
@@ -67,12 +67,12 @@ struct Table {
 Settings read_settings(const std::string& path) {
   toml::table file;
   try {
-    file = keys::parse_toml_at(path);
+    file = rvelab::keys::parse_toml_at(path);
   } catch (const toml::parse_error& error) {
     throw std::runtime_error(path + ", line " + std::to_string(error.source().begin.line) + ": " +
                              std::string(error.description()) +
                              "; correct it, or let RVELAB_UMAT name the file of the materials");
-  } catch (const InputError& error) {
+  } catch (const rvelab::InputError& error) {
     throw std::runtime_error(std::string(error.what()) + ", or let RVELAB_UMAT name the file of the materials");
   }
   Settings settings;
@@ -112,4 +112,4 @@ Settings read_settings(const std::string& path) {
   return settings;
 }
 
-}  // namespace rvelab::umat
+}  // namespace umat

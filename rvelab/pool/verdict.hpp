@@ -1,0 +1,22 @@
+// The verdict of a trial, and its tangent.
+#pragma once
+
+#include <array>
+
+#include "rvelab/pool/pool.hpp"
+
+namespace rvelab::pool {
+
+/// Row-major, xx yy zz yz xz xy whatever the dimension.
+using Tangent = std::array<double, 36>;
+
+/// Of the exception that is being handled.
+Verdict verdict_of_failure() noexcept;
+/// Of a trial that could be made.
+Verdict verdict_of(const Report& report, double dt);
+/// RVELAB_W_TANGENT_AFFINE: a warning that stands already keeps its place, and its text is extended.
+void add_affine_warning(Verdict& verdict);
+/// Writes the elastic tangent, or, where the network has none, the affine one and returns false.
+bool write_tangent(const Network& network, Tangent& tangent);
+
+}  // namespace rvelab::pool
