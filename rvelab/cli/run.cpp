@@ -21,6 +21,7 @@
 #include "rvelab/cli/report.hpp"
 #include "rvelab/io/publish.hpp"
 #include "rvelab/protocol/run.hpp"
+#include "rvelab/protocol/stage_kind.hpp"
 #include "rvelab/records/record_fields.hpp"
 #include "rvelab/solver/loading/sweep.hpp"
 
@@ -126,7 +127,7 @@ void tell_of_shear(const protocol::Protocol& protocol, const Specimen& specimen)
   const double diameter = 2 * std::accumulate(specimen.grains.radius.begin(), specimen.grains.radius.end(), 0.0) /
                           double(specimen.grains.size());
   for (const protocol::Stage& stage : protocol.stages) {
-    const auto* shear = std::any_cast<protocol::SimpleShearStage>(&stage.what);
+    const auto* shear = protocol::settings_of<protocol::SimpleShearStage>(stage);
     if (shear == nullptr) continue;
     const std::string plane = !shear->plane.empty() ? shear->plane : dimension == 2 ? "xy" : "xz";
     const double most = std::abs(shear->to_strain);

@@ -53,10 +53,11 @@ struct KindOf : StageKind {
   Settings stage;
 };
 
-/// The settings of a stage of the kind that has them. std::bad_cast: it is of another kind.
+/// The settings of a stage; null if it is of another kind.
 template <class Settings>
-const Settings& settings_of(const Stage& stage) {
-  return dynamic_cast<const KindOf<Settings>&>(*stage.what).stage;
+const Settings* settings_of(const Stage& stage) {
+  const auto* kind = dynamic_cast<const KindOf<Settings>*>(stage.what.get());
+  return kind == nullptr ? nullptr : &kind->stage;
 }
 
 }  // namespace rvelab::protocol

@@ -56,7 +56,7 @@ TEST_CASE("a whole number that no double holds is a number like any other") {
   const std::string path = "[test]\nname = \"t\"\n[[stage]]\nkind = \"deformation\"\n";
   const protocol::Protocol far =
       protocol::parse_protocol(path + "gradients = [[9223372036854775807, 0, 0, 1]]\n", "t.toml");
-  CHECK(protocol::settings_of<protocol::DeformationStage>(far.stages.at(0)).gradients.at(0)(0, 0) ==
+  CHECK(protocol::settings_of<protocol::DeformationStage>(far.stages.at(0))->gradients.at(0)(0, 0) ==
         9223372036854775808.0);
 }
 

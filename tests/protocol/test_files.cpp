@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "rvelab/protocol/run.hpp"
+#include "rvelab/protocol/stage_kind.hpp"
 #include "tests/catch.hpp"
 #include "tests/protocol/reference_specimen.hpp"
 
@@ -21,26 +22,32 @@ std::vector<std::string> protocol_files() {
   return files;
 }
 
+/// The settings of a stage that was just read, to be changed; null if it is of another kind.
+template <class Settings>
+Settings* settings(protocol::Stage& stage) {
+  return const_cast<Settings*>(protocol::settings_of<Settings>(stage));
+}
+
 /// A few records of each stage.
 void shorten(protocol::Stage& stage) {
   constexpr long few = 2;
   const auto shorter = [](double& to_strain, double every) {
     to_strain = (to_strain < 0 ? -1 : 1) * std::min(std::abs(to_strain), few * every);
   };
-  if (auto* compression = std::any_cast<protocol::CompressionStage>(&stage.what))
+  if (auto* compression = settings<protocol::CompressionStage>(stage))
     shorter(compression->to_strain, compression->record_every);
-  if (auto* shear = std::any_cast<protocol::SimpleShearStage>(&stage.what)) {
+  if (auto* shear = settings<protocol::SimpleShearStage>(stage)) {
     shorter(shear->to_strain, shear->record_every);
     shear->cycles.count = std::min(shear->cycles.count, 1L);
   }
-  if (auto* deviatoric = std::any_cast<protocol::DeviatoricStage>(&stage.what))
+  if (auto* deviatoric = settings<protocol::DeviatoricStage>(stage))
     shorter(deviatoric->to_strain, deviatoric->record_every);
-  if (auto* flow = std::any_cast<protocol::FlowStage>(&stage.what)) shorter(flow->to_strain, flow->record_every);
-  if (auto* path = std::any_cast<protocol::PathStage>(&stage.what)) path->records_per_point = few;
-  if (auto* pressures = std::any_cast<protocol::PressurePathStage>(&stage.what)) pressures->pressures.resize(1);
-  if (auto* envelope = std::any_cast<protocol::EnvelopeStage>(&stage.what)) envelope->directions = 3;
-  if (auto* isotropic = std::any_cast<protocol::IsotropicStage>(&stage.what)) isotropic->stress_tolerance = 1e-2;
-  if (auto* probe = std::any_cast<protocol::ProbeStage>(&stage.what))
+  if (auto* flow = settings<protocol::FlowStage>(stage)) shorter(flow->to_strain, flow->record_every);
+  if (auto* path = settings<protocol::PathStage>(stage)) path->records_per_point = few;
+  if (auto* pressures = settings<protocol::PressurePathStage>(stage)) pressures->pressures.resize(1);
+  if (auto* envelope = settings<protocol::EnvelopeStage>(stage)) envelope->directions = 3;
+  if (auto* isotropic = settings<protocol::IsotropicStage>(stage)) isotropic->stress_tolerance = 1e-2;
+  if (auto* probe = settings<protocol::ProbeStage>(stage))
     probe->method = protocol::ProbeStage::Method::linear;
 }
 
@@ -69,8 +76,8 @@ TEST_CASE("Every protocol runs through all its stages") {
     // Large shear brings its contacts; those of 3D otherwise start at their own pressure.
     if (protocol.dimension == 3) {
       for (protocol::Stage& stage : protocol.stages) {
-        if (auto* isotropic = std::any_cast<protocol::IsotropicStage>(&stage.what)) isotropic->pressure = 100e3;
-        if (auto* compression = std::any_cast<protocol::CompressionStage>(&stage.what))
+        if (auto* isotropic = settings<protocol::IsotropicStage>(stage)) isotropic->pressure = 100e3;
+        if (auto* compression = settings<protocol::CompressionStage>(stage))
           compression->lateral_pressure = 100e3;
       }
     }

@@ -43,7 +43,7 @@ std::size_t lines(const std::string& text) {
 
 template <class What>
 const What& stage_of(const protocol::Protocol& protocol, std::size_t number) {
-  return protocol::settings_of<What>(protocol.stages.at(number));
+  return *protocol::settings_of<What>(protocol.stages.at(number));
 }
 
 }  // namespace
