@@ -134,7 +134,8 @@ void ThreadedPool::rest_another() noexcept {
   slot.owner.store(0, std::memory_order_release);
 }
 
-ThreadedPool::Template ThreadedPool::made_template(Specimen specimen) const {
+/// The options of the pool override settings of the specimen.
+ThreadedPool::Template ThreadedPool::made_template(Specimen& specimen) const {
   override_settings(specimen, options_);
   Template made{Rve(specimen), 0};
   made.void_ratio = void_ratio_of(made.rve);
@@ -147,13 +148,13 @@ std::int64_t ThreadedPool::add_template(Specimen specimen) {
   if ((next_template_ & most_templates) == most_templates)
     throw Refused(Status::no_slot, "pool: " + std::to_string(most_templates - 1) +
                                        " templates were made of it, and no number is left; make another pool");
-  templates_.emplace(next_template_, made_template(std::move(specimen)));
+  templates_.emplace(next_template_, made_template(specimen));
   return next_template_++;
 }
 
 void ThreadedPool::add_template_as(Specimen specimen, std::int64_t number) {
   const Alone alone(*this);
-  templates_.emplace(number, made_template(std::move(specimen)));
+  templates_.emplace(number, made_template(specimen));
 }
 
 /// Refused (bad_id).

@@ -120,7 +120,7 @@ class ThreadedPool final : public Share {
 
   void make_at(std::int64_t, TravellingCall& call) override { call.make(*this); }
   void make_everywhere(TravellingCall& call) override { call.make(*this); }
-  Template made_template(Specimen specimen) const;
+  Template made_template(Specimen& specimen) const;
   Templates::const_iterator template_of(std::int64_t number) const;
   Slots::Residents made_of(std::int64_t of_template, std::int64_t n) const;
   std::unique_ptr<Resident> copy_of(std::int64_t source);

@@ -72,7 +72,7 @@ ThreadedPool::Outcome ThreadedPool::attempt(Slot& slot, const Matrix3& displacem
       rve.attempt(displacement_gradient, dt, {wanted.contact_stress != nullptr || wanted.reynolds_stress != nullptr});
   try {
     const Report& report = outcome.response.report;
-    outcome.verdict = verdict_of(report, dt);
+    if (has_warning(report, dt)) outcome.verdict = warning_of(report, dt);
     if (wanted.tangent != nullptr && !write_tangent(rve.network(), outcome.tangent))
       add_affine_warning(outcome.verdict);
   } catch (...) {

@@ -17,9 +17,9 @@ Verdict verdict_of_failure() noexcept {
   return verdict;
 }
 
-Verdict verdict_of(const Report& report, double dt) {
+Verdict warning_of(const Report& report, double dt) {
   char text[320];
-  Status status = Status::ok;
+  Status status = Status::cell_thin;
   if (!report.quasi_static && dt == 0) {
     status = Status::not_quasi_static;
     std::snprintf(text, sizeof text,
@@ -32,13 +32,12 @@ Verdict verdict_of(const Report& report, double dt) {
                   "the stress has an expected error of %g Pa; the tolerance allows %g Pa: take it as it is, or widen "
                   "tolerance_rel or tolerance_abs",
                   report.error_estimate / accuracy::met_margin, report.allowed_error);
-  } else if (report.cell_thin) {
-    status = Status::cell_thin;
+  } else {
     std::snprintf(text, sizeof text,
                   "a height of the cell is below four mean diameters: it stands for less and less of the material; "
                   "use a larger specimen");
   }
-  return status == Status::ok ? Verdict{} : Verdict{status, text};
+  return {status, text};
 }
 
 void add_affine_warning(Verdict& verdict) {

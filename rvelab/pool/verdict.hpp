@@ -12,8 +12,11 @@ using Tangent = std::array<double, 36>;
 
 /// Of the exception that is being handled.
 Verdict verdict_of_failure() noexcept;
-/// Of a trial that could be made.
-Verdict verdict_of(const Report& report, double dt);
+/// Whether a trial that was made gets a warning, and that warning.
+inline bool has_warning(const Report& report, double dt) {
+  return report.cell_thin || (dt == 0 && (!report.quasi_static || !report.tolerance_met));
+}
+Verdict warning_of(const Report& report, double dt);
 /// RVELAB_W_TANGENT_AFFINE: a warning that stands already keeps its place, and its text is extended.
 void add_affine_warning(Verdict& verdict);
 /// Writes the elastic tangent, or, where the network has none, the affine one and returns false.

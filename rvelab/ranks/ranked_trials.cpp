@@ -79,6 +79,37 @@ struct Results {
   }
 };
 
+/// The trials of a batch for one rank: of the entries `of` of ids.
+Bytes trial_message(const pool::Batch& batch, std::span<const std::int64_t> ids, std::span<const std::int64_t> entries,
+                    const std::vector<std::size_t>& of) {
+  const Wanted wanted{batch.contact_stress != nullptr, batch.reynolds_stress != nullptr, batch.tangent != nullptr,
+                      batch.error_estimate != nullptr, batch.tokens_out != nullptr,      batch.tokens_in != nullptr};
+  std::vector<std::int64_t> own, places, tokens;
+  std::vector<double> gradients;
+  for (const std::size_t k : of) {
+    const auto entry = std::size_t(entries[k]);
+    own.push_back(ids[k]);
+    places.push_back(entries[k]);
+    if (wanted.tokens_in) tokens.push_back(batch.tokens_in[entry]);
+    gradients.insert(gradients.end(), batch.displacement_gradients + 9 * entry,
+                     batch.displacement_gradients + 9 * entry + 9);
+  }
+  return message(RankCall::trial)
+      .put(batch.dt)
+      .put(wanted)
+      .put_all(std::span<const std::int64_t>(own))
+      .put_all(std::span<const std::int64_t>(places))
+      .put_all(std::span<const std::int64_t>(tokens))
+      .put_all(std::span<const double>(gradients))
+      .take();
+}
+
+/// Of an entry whose trial was not made.
+void write_failure(const pool::Batch& batch, std::size_t entry, Status status) {
+  if (batch.status != nullptr) batch.status[entry] = std::int32_t(status);
+  if (batch.dt_scale != nullptr) batch.dt_scale[entry] = 0;
+}
+
 }  // namespace
 
 /// An RVE made `cost_at_rank` grain-steps since it came to its rank.
@@ -130,33 +161,9 @@ Verdict RankedPool::trial(const pool::Batch& batch) {
   const auto indices = by_rank(ids);
 
   Messages messages = no_messages();
-  const Wanted wanted{batch.contact_stress != nullptr, batch.reynolds_stress != nullptr, batch.tangent != nullptr,
-                      batch.error_estimate != nullptr, batch.tokens_out != nullptr,      batch.tokens_in != nullptr};
-  for (std::size_t rank = 0; rank < messages.size(); ++rank) {
-    if (indices[rank].empty()) continue;
-    std::vector<std::int64_t> own, places, tokens;
-    std::vector<double> gradients;
-    for (const std::size_t k : indices[rank]) {
-      const auto entry = std::size_t(entries[k]);
-      own.push_back(ids[k]);
-      places.push_back(entries[k]);
-      if (wanted.tokens_in) tokens.push_back(batch.tokens_in[entry]);
-      gradients.insert(gradients.end(), batch.displacement_gradients + 9 * entry,
-                       batch.displacement_gradients + 9 * entry + 9);
-    }
-    messages[rank] = message(RankCall::trial)
-                         .put(batch.dt)
-                         .put(wanted)
-                         .put_all(std::span<const std::int64_t>(own))
-                         .put_all(std::span<const std::int64_t>(places))
-                         .put_all(std::span<const std::int64_t>(tokens))
-                         .put_all(std::span<const double>(gradients))
-                         .take();
-  }
-  for (const std::size_t k : refused) {
-    if (batch.status != nullptr) batch.status[k] = std::int32_t(Status::bad_id);
-    if (batch.dt_scale != nullptr) batch.dt_scale[k] = 0;
-  }
+  for (std::size_t rank = 0; rank < messages.size(); ++rank)
+    if (!indices[rank].empty()) messages[rank] = trial_message(batch, ids, entries, indices[rank]);
+  for (const std::size_t k : refused) write_failure(batch, k, Status::bad_id);
   auto answers = exchange(messages);
   for (auto& [rank, answer] : answers) {
     const std::vector<std::size_t>& of = indices[std::size_t(rank)];
@@ -164,8 +171,7 @@ Verdict RankedPool::trial(const pool::Batch& batch) {
       for (const std::size_t k : of) {
         const auto entry = std::size_t(entries[k]);
         worst.take(answer.status(), answer.text(), entry);
-        if (batch.status != nullptr) batch.status[entry] = std::int32_t(answer.status());
-        if (batch.dt_scale != nullptr) batch.dt_scale[entry] = 0;
+        write_failure(batch, entry, answer.status());
       }
       continue;
     }
@@ -192,7 +198,7 @@ void RankedPool::revert(std::span<const std::int64_t> ids) {
   settle(pool::Settling::revert, ids);
 }
 
-/// RVEs of a batch to other ranks, if their work lies too uneven. One that cannot be moved stays.
+/// Moves RVEs of a batch to other ranks if their work is uneven. One that cannot be moved stays.
 void RankedPool::balance(std::span<const std::int64_t> ids) {
   if (link_->ranks() == 1) return;
   std::vector<double> costs;

@@ -77,8 +77,8 @@ std::string history_header(const Solver<D>& solver) {
       "time_s,steps,kinetic_J,potential_J,stress_work_J,pressure_work_J,boundary_work_J,mapping_loss_J,residual_J";
   for (int i = 0; i < D; ++i) header += std::string(",momentum_") + axes[i] + "_N_s";
   solver.each_driven([&](const auto& each) {
-    for (int i = 0; i < D; ++i) header += "," + each.name + ".force_" + axes[i] + "_N";
-    for (int i = 0; i < D; ++i) header += "," + each.name + ".way_" + axes[i] + "_m";
+    for (int i = 0; i < D; ++i) header.append(",").append(each.name).append(".force_").append(axes[i]).append("_N");
+    for (int i = 0; i < D; ++i) header.append(",").append(each.name).append(".way_").append(axes[i]).append("_m");
   });
   return header;
 }
