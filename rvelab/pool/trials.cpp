@@ -14,7 +14,7 @@
 #include "rvelab/pool/checks.hpp"
 #include "rvelab/pool/hold.hpp"
 #include "rvelab/pool/threaded_pool.hpp"
-#include "rvelab/solver/loading/accuracy.hpp"
+#include "rvelab/solver/quasi_static/constants.hpp"
 
 namespace rvelab::pool {
 
@@ -50,7 +50,7 @@ Verdict verdict_of(const Report& report, double dt) {
     std::snprintf(text, sizeof text,
                   "the stress has an expected error of %g Pa; the tolerance allows %g Pa: take it as it is, or widen "
                   "tolerance_rel or tolerance_abs",
-                  report.error_estimate / accuracy::met_margin, report.allowed_error);
+                  report.error_estimate / constants::met_margin, report.allowed_error);
   } else if (report.cell_thin) {
     status = Status::cell_thin;
     std::snprintf(text, sizeof text,
