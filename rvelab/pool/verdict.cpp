@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "rvelab/measure/tangent.hpp"
-#include "rvelab/solver/loading/accuracy.hpp"
+#include "rvelab/solver/quasi_static/constants.hpp"
 
 namespace rvelab::pool {
 
@@ -31,7 +31,7 @@ Verdict warning_of(const Report& report, double dt) {
     std::snprintf(text, sizeof text,
                   "the stress has an expected error of %g Pa; the tolerance allows %g Pa: take it as it is, or widen "
                   "tolerance_rel or tolerance_abs",
-                  report.error_estimate / accuracy::met_margin, report.allowed_error);
+                  report.error_estimate / constants::met_margin, report.allowed_error);
   } else {
     std::snprintf(text, sizeof text,
                   "a height of the cell is below four mean diameters: it stands for less and less of the material; "

@@ -9,58 +9,14 @@
 
 #include "rvelab/solver/assembly/network.hpp"
 #include "rvelab/solver/loading/mixed_target.hpp"
+#include "rvelab/solver/loading/report.hpp"
 #include "rvelab/specimen/specimen.hpp"
 #include "rvelab/threads/workers.hpp"
 
 namespace rvelab {
 
+class State;
 struct StepTimes;
-
-/// What a call may ask for beyond the Cauchy stress. What is not asked for is not computed.
-struct Want {
-  bool parts = false;  ///< contact and Reynolds stress apart
-};
-
-/// What was done, and in what state it ended. Of apply and of relax; what a call does not judge keeps its default.
-struct Report {
-  long substeps = 0;            ///< 0: the strain is left to the next sub-step, see Rve::apply
-  long waited = 0;              ///< mixed targets, dt = 0: those of them in which the target stood still
-  double unbalanced_ratio = 0;  ///< mean |resultant force|, or mean |torque|/r where larger, over max(mean contact
-                                ///< force, 1e-3 of the reference). dt = 0: when it was
-                                ///< measured last: at the end of an increment of 10 sub-steps or more, else up to 50
-                                ///< sub-steps before, or what a start since then leaves
-  double inertial_number = 0;   ///< dt > 0: sqrt(2 e:e) d sqrt(rho/p), infinite at p <= 0; dt = 0: zero
-  double held_error = 0;        ///< mixed targets: largest |residual| over its scale (dt > 0: of its mean over the
-                                ///< increment), see MixedTarget
-  bool target_held = true;      ///< mixed targets: held_error <= tolerance; at dt = 0 always, but with a wait given.
-                                ///< relax: the unbalanced ratio that was asked for is reached
-  bool quasi_static = true;   ///< apply at dt = 0: the state is an equilibrium as far as was asked for: the unbalanced
-                              ///< ratio is within three times its target and the target is held. A state that flows
-                              ///< creeps beyond that: relaxed, its stress falls by some ten times the ratio
-  double error_estimate = 0;  ///< dt = 0: of the stress, Frobenius norm, Pa: 19 of 20 errors are below it
-  double allowed_error = 0;  ///< dt = 0: relative_tolerance max(|d sigma|, 0.1 |C : d eps|) + absolute_tolerance p, Pa,
-                             ///< p at least a thousandth of reference_pressure(). d sigma and d eps since the path
-                             ///< turned last, up to 1e-4 of strain, where those are more than the increment's: a path
-                             ///< cut finely is the same path. Mixed targets: the larger tolerance times p
-  bool tolerance_met = true;  ///< dt = 0: the estimate over 2.4 is at most allowed_error: 92 % of the errors then are
-  bool cell_thin = false;     ///< a cell height is below four mean diameters
-};
-
-struct Response {
-  Matrix3 stress = Matrix3::Zero();                 ///< Cauchy, laboratory frame, tension positive, Pa
-  Matrix3 contact_stress = Matrix3::Zero();         ///< on request
-  Matrix3 reynolds_stress = Matrix3::Zero();        ///< on request; dt = 0: zero, but after dt > 0 while only rotated
-  Matrix3 displacement_gradient = Matrix3::Zero();  ///< what was applied (mixed targets: what was found)
-  Report report;
-};
-
-/// Bytes that an RVE holds, without the arrays that its copies share (ids, radii, materials, masses).
-struct Memory {
-  std::size_t state = 0;    ///< places, velocities, contact histories
-  std::size_t list = 0;     ///< neighbour list: pairs, and places when it was built
-  std::size_t working = 0;  ///< what rest() lets go of
-  std::size_t trial = 0;    ///< what a pending trial takes beside it
-};
 
 /// Calls that change the Rve (those without const) may not run beside any other call of the same one. Const calls
 /// change nothing and may run beside each other, except that those of a large cell share its team (share), which takes
@@ -78,11 +34,11 @@ class Rve {
   ~Rve();
 
   /// Applies dH_ij = d(du_i)/dx_j (laboratory frame, finite, spin included) over the time dt (s).
-  /// dt > 0: physical masses and rate. dt = 0: quasi-static, the RVE picks its pace; dH = 0 is then the identity. To
-  /// tolerances (solver.target_unbalanced and fixed_substeps are 0), increments that are a small part of a sub-step
-  /// share one: the strain is then in the cell at once, the stress follows from its slope over the increment before,
-  /// within the estimate, and Report::substeps is 0.
-  /// Throws InvalidIncrement (refused) or IncrementFailed; the RVE is then exactly as it was.
+  /// dt > 0: physical masses and rate. dt = 0: quasi-static, dH = 0 is then the identity; the strain per step follows
+  /// from the tolerances. To tolerances (solver.target_unbalanced and fixed_substeps are 0), increments that are a
+  /// small part of a sub-step share one: the strain is then in the cell at once, the stress follows from its slope over
+  /// the increment before, within the estimate, and Report::substeps is 0. Throws InvalidIncrement (refused) or
+  /// IncrementFailed; the RVE is then exactly as it was.
   Response apply(const Matrix3& displacement_gradient, double dt, const Want& want = {});
 
   /// The same as a trial: commit() makes it the state, revert() brings the committed state back, bit for bit. A pure
@@ -92,15 +48,15 @@ class Rve {
   bool pending() const;  ///< whether a trial is; a copy has none, and is in the state that its source showed
   void commit();         ///< nothing without a trial
   void revert() noexcept;
-  /// With a trial pending, calls that look (stress, network, specimen, cell, save) tell of its end. After exchange()
-  /// they tell of the committed state, after a second one of the trial again; nothing else may be called between.
+  /// With a trial pending, const calls (stress, network, specimen, cell, save) answer for its end. After exchange()
+  /// they answer for the committed state, after a second one for the trial again; nothing else may be called between.
   void exchange() noexcept;
 
   /// The same with a mixed target: the stress servo runs inside the sub-steps, and the response says which gradient it
   /// found. Throws InputError if the target is not a target (see MixedTarget), InvalidIncrement (dt is negative or not
   /// finite, or the strain that the rows ask for is no deformation) or IncrementFailed; the RVE is then exactly as it
   /// was. At dt = 0 the target waits for a stress that is let go, and one that the grains cannot carry is an
-  /// IncrementFailed (loading/recovery.hpp); at dt > 0 a stress that is missed is no error: Report::target_held says
+  /// IncrementFailed (quasi_static/recovery.hpp); at dt > 0 a stress that is missed is no error: Report::target_held says
   /// so.
   Response apply(const MixedTarget& target, double dt, const Want& want = {});
 
@@ -128,20 +84,20 @@ class Rve {
   /// state.deferred_stretch, not in the lattice.
   Specimen specimen() const;
 
-  /// Lets go of everything that can be made again from state and list, about two thirds of the memory. The next call
-  /// that changes the Rve makes it again, in the time of a few sub-steps; no bit changes. A const call that needs it
-  /// (stresses, unbalanced ratio, critical time step, network) works on a copy that it makes in the same time and lets
-  /// go of: the Rve stays at rest. A trial stays pending, its state and the committed one both at rest.
+  /// Releases the buffers that can be made again from state and list, about two thirds of the memory. The next call
+  /// that changes the Rve allocates them, in the time of a few sub-steps; no bit changes. A const call that needs them
+  /// (stresses, unbalanced ratio, critical time step, network) works on a copy, in the same time, and the Rve stays
+  /// released. A trial stays pending, its state and the committed one both released.
   void rest();
   bool resting() const;
   Memory memory() const;  ///< what is held at this moment
 
-  /// A flag that apply and relax look at after each sub-step: once it is true they throw Interrupted, and the RVE is as
-  /// it was before the call. Copies look at the same flag. It must outlive them; nullptr: none.
+  /// A flag that apply and relax read after each sub-step: once it is true they throw Interrupted, and the RVE is as it
+  /// was before the call. Copies read the same flag. It must outlive them; nullptr: none.
   void watch(const std::atomic<bool>* stop);
 
   /// A team that shares the steps of a large cell, from 30,000 grains on; below, it is left alone. The bits are the
-  /// same on any team and on none. Copies look at the same team, which must outlive them and must not be at work when a
+  /// same on any team and on none. Copies use the same team, which must outlive them and must not be at work when a
   /// call is made (an entry of a batch has the thread it runs on); nullptr: none.
   void share(Workers* team);
 
@@ -149,9 +105,9 @@ class Rve {
   /// must outlive them; nullptr: nothing is measured. No result depends on it.
   void measure_time(StepTimes* times);
 
-  /// The state that pace and unbalanced ratio are measured by: mean pressure, Pa; first that in which the specimen was
-  /// opened. Far below it quasi-static loading is faster, against the stress that is there, than target_unbalanced
-  /// asks.
+  /// Mean pressure of the reference state, Pa, by which strain per step and unbalanced ratio are measured; first that
+  /// in which the specimen was opened. Far below it quasi-static loading is faster, against the stress that is there,
+  /// than target_unbalanced asks.
   double reference_pressure() const;
   /// Makes it the present state, with its contact forces and overlaps.
   void take_as_reference();
@@ -164,7 +120,7 @@ class Rve {
   /// order of the specimen. In the plane the components out of it are left out. InputError if a number of entries is
   /// not size() or an entry is not finite; the RVE is then as it was.
   void set_velocities(const std::vector<Vector3>& velocity, const std::vector<Vector3>& spin);
-  /// Zeroes fluctuation velocities and spins; the kinetic energy is booked under `zeroing`.
+  /// Zeroes fluctuation velocities and spins; the kinetic energy is booked as removed.
   void zero_velocities();
 
   /// Bitwise snapshot of everything that decides the next bit, for builds whose specimens have the same fields (a
@@ -178,8 +134,7 @@ class Rve {
   void restore(std::span<const std::byte> snapshot);
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace rvelab

@@ -1,7 +1,8 @@
 // Quasi-static increments to a tolerance: errors against resolved increments from the same state, estimates above them,
 // a path cut finely, turns. Formulas by hand.
 #include "rvelab/pack/search.hpp"
-#include "rvelab/solver/loading/accuracy.hpp"
+#include "rvelab/solver/assembly/contact_states.hpp"
+#include "rvelab/solver/quasi_static/accuracy.hpp"
 #include "tests/oracle/specimens.hpp"
 
 using namespace rvelab;

@@ -46,7 +46,7 @@ TEST_CASE("The affine stiffness is the sum over contacts that move with the stra
     if (d == 3) strained(0, 2) = 3e-3;
     const Matrix3 turn = rotation_about_z(0.3) * strained - Matrix3::Identity();
     rve.apply(turn, 0);
-    Fixture fixture;
+    Model fixture;
     Assembly assembly;
     open_assembly(rve.specimen(), fixture, assembly);
     const Matrix6 stiffness = affine_stiffness(fixture, assembly);

@@ -38,7 +38,7 @@ Specimen spinning_needles() {
 }
 
 struct Opened {
-  Fixture fixture;
+  Model fixture;
   Assembly now;
   explicit Opened(const Specimen& s) { open_assembly(s, fixture, now); }
 
@@ -97,7 +97,7 @@ TEST_CASE("The outline of an ellipse moves by (a - b) |sin theta| where it turns
 TEST_CASE("No overlapping pair of needles is missing from the list while they are sheared, pressed and spin") {
   const Matrix3 flow = GENERATE(gradient(0, 0, 0, 0), gradient(0, 0.5, 0, 0), gradient(-0.15, 0.5, 0, -0.15));
   Opened opened(spinning_needles());
-  const Fixture& f = opened.fixture;
+  const Model& f = opened.fixture;
   Assembly& a = opened.now;
   begin_loading(f, a, Loading::physical);
   const double step = 2e-3;
@@ -122,7 +122,7 @@ TEST_CASE("No overlapping pair of needles is missing from the list while they ar
 
 TEST_CASE("Needles are listed where they are nearer than the skin, and seldom where they are not") {
   Opened opened(spinning_needles());
-  const Fixture& f = opened.fixture;
+  const Model& f = opened.fixture;
   Assembly& a = opened.now;
   begin_loading(f, a, Loading::physical);
   for (int k = 0; k < 5; ++k) {

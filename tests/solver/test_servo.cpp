@@ -1,6 +1,6 @@
 // The stress servo by itself, on a specimen whose answer is known: sigma = C eps, or C eps + V d(eps)/dt. What its
 // header says of it is held to the recursions that follow from it.
-#include "rvelab/solver/loading/servo.hpp"
+#include "rvelab/solver/quasi_static/servo.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <functional>

@@ -51,7 +51,7 @@ TEST_CASE("Pairs that are passed over come to touch, and to part again, as if th
     std::uniform_real_distribution<double> speed(-0.3, 0.3);
     for (Vector3& v : start.grains.velocity)
       for (int k = 0; k < start.cell.dimension; ++k) v[k] = speed(generator);
-    Fixture f;
+    Model f;
     Assembly passing, computing;
     open_assembly(start, f, passing);
     use_physical_inertia(f, passing);

@@ -21,15 +21,15 @@
 #include "rvelab/solver/assembly/assembly.hpp"
 #include "rvelab/solver/loading/inertia.hpp"
 #include "rvelab/solver/loading/sweep.hpp"
-#include "rvelab/solver/resting.hpp"
 #include "rvelab/solver/rve.hpp"
+#include "rvelab/solver/state/release.hpp"
 
 namespace {
 
 using namespace rvelab;
 
 struct Opened {
-  Fixture fixture;
+  Model fixture;
   Assembly assembly;
   StepConstants constants;
 };

@@ -33,7 +33,7 @@ struct Coefficients {
 };
 
 template <Shape shape, class Of>
-Moments moments_of(const Fixture& f, const Assembly& a, const Of& coefficients) {
+Moments moments_of(const Model& f, const Assembly& a, const Of& coefficients) {
   constexpr int D = dimension_of(shape);
   // Monomials of n of degree four and two; the servo renews its gain every few dozen sub-steps.
   constexpr int degree4 = D == 2 ? 5 : 15;
@@ -108,7 +108,7 @@ Matrix6 strain_turn(const Matrix3& rotation) {
 /// sum kn (n b)(n b) + kt (t b)(t b) over contacts whose normal is not along the branch, with symmetric parts of the
 /// dyads: under eps such a contact changes by n . eps b along n and by t . eps b across it. Cell frame, in the plane.
 template <class Of>
-Matrix6 sum_over_ellipses(const Fixture& f, const Assembly& a, const Of& coefficients) {
+Matrix6 sum_over_ellipses(const Model& f, const Assembly& a, const Of& coefficients) {
   Matrix6 sum = Matrix6::Zero();
   const PairGeometry<Shape::ellipse> pair(f, a);
   const auto dyad = [](double x, double y, const Branch& b) {
@@ -131,7 +131,7 @@ Matrix6 sum_over_ellipses(const Fixture& f, const Assembly& a, const Of& coeffic
 }
 
 template <Shape shape, class Of>
-Matrix6 sum_over_round(const Fixture& f, const Assembly& a, const Of& coefficients) {
+Matrix6 sum_over_round(const Model& f, const Assembly& a, const Of& coefficients) {
   // C_ijkl = sum l^2 [(kn - kt) n_i n_j n_k n_l
   //                   + kt/4 (n_i n_k d_jl + n_i n_l d_jk + n_j n_k d_il + n_j n_l d_ik)], see README.md.
   const Moments m = moments_of<shape>(f, a, coefficients);
@@ -147,7 +147,7 @@ Matrix6 sum_over_round(const Fixture& f, const Assembly& a, const Of& coefficien
 }
 
 template <class Of>
-Matrix6 affine_sum(const Fixture& f, const Assembly& a, const Of& coefficients) {
+Matrix6 affine_sum(const Model& f, const Assembly& a, const Of& coefficients) {
   const Matrix6 stiffness = with_shape(f.shape, [&](auto shape) -> Matrix6 {
     if constexpr (shape.value == Shape::ellipse)
       return sum_over_ellipses(f, a, coefficients);
@@ -160,7 +160,7 @@ Matrix6 affine_sum(const Fixture& f, const Assembly& a, const Of& coefficients) 
 
 }  // namespace
 
-Matrix6 affine_stiffness(const Fixture& f, const Assembly& a) {
+Matrix6 affine_stiffness(const Model& f, const Assembly& a) {
   return with_force(f, [&](auto force) {
     return affine_sum(f, a, [&](std::size_t p, const auto& at) -> Coefficients {
       const ContactStiffness k = stiffness_of<decltype(force)>(f, parameters_of(f, a.pairs, p), at.overlap,
@@ -170,7 +170,7 @@ Matrix6 affine_stiffness(const Fixture& f, const Assembly& a) {
   });
 }
 
-Matrix6 affine_viscosity(const Fixture& f, const Assembly& a) {
+Matrix6 affine_viscosity(const Model& f, const Assembly& a) {
   if (f.damping.dashpot == Dashpot::none) return Matrix6::Zero();
   return affine_sum(f, a, [&](std::size_t p, const auto& at) -> Coefficients {
     const double root = root_overlap(at.overlap, hertz_radius_ratio(f, a.pairs, p, at));

@@ -13,10 +13,10 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 /// d sigma / d eps, Pa, laboratory frame, order xx yy zz yz xz xy, engineering shear. Initial-stress terms left out.
-Matrix6 affine_stiffness(const Fixture& fixture, const Assembly& assembly);
+Matrix6 affine_stiffness(const Model& model, const Assembly& assembly);
 
 /// d sigma / d (rate of eps) of the contact dashpots, Pa s, in the same form; zero without.
-Matrix6 affine_viscosity(const Fixture& fixture, const Assembly& assembly);
+Matrix6 affine_viscosity(const Model& model, const Assembly& assembly);
 
 /// Symmetric matrix from strain components xx yy zz yz xz xy (engineering shear), and back.
 Matrix3 strain_matrix(const Vector6& components);

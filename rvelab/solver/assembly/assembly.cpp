@@ -11,22 +11,22 @@
 
 namespace rvelab {
 
-Vector3 Assembly::position(const Fixture& f, std::size_t g) const {
+Vector3 Assembly::position(const Model& f, std::size_t g) const {
   const double* row = rows.data() + g * f.row_length();
   return {row[0], row[1], f.dimension() == 2 ? 0.0 : row[2]};
 }
 
-Vector3 Assembly::velocity(const Fixture& f, std::size_t g) const {
+Vector3 Assembly::velocity(const Model& f, std::size_t g) const {
   const double* v = rows.data() + g * f.row_length() + f.velocity_offset();
   return {v[0], v[1], f.dimension() == 2 ? 0.0 : v[2]};
 }
 
-Vector3 Assembly::spin(const Fixture& f, std::size_t g) const {
+Vector3 Assembly::spin(const Model& f, std::size_t g) const {
   const double* row = rows.data() + g * f.row_length();
   return f.dimension() == 2 ? Vector3(0, 0, row[4]) : Vector3(row[8], row[9], row[10]);
 }
 
-void Assembly::set_velocity(const Fixture& f, std::size_t g, const Vector3& v, const Vector3& w) {
+void Assembly::set_velocity(const Model& f, std::size_t g, const Vector3& v, const Vector3& w) {
   double* row = rows.data() + g * f.row_length();
   for (int k = 0; k < f.dimension(); ++k) row[f.velocity_offset() + k] = v[k];
   if (f.dimension() == 2) {
@@ -36,12 +36,12 @@ void Assembly::set_velocity(const Fixture& f, std::size_t g, const Vector3& v, c
   }
 }
 
-Vector3 Assembly::orientation(const Fixture& f, std::size_t g) const {
+Vector3 Assembly::orientation(const Model& f, std::size_t g) const {
   const double* row = rows.data() + g * f.row_length();
   return {row[5], row[6], 0};
 }
 
-void set_ellipse_matrix(const Fixture& f, std::size_t g, double* row) {
+void set_ellipse_matrix(const Model& f, std::size_t g, double* row) {
   const double b = f.semi_minor[g];
   row[7] = f.semi_major[g] - b;
   const EllipseMatrix<double> m =
@@ -53,7 +53,7 @@ void set_ellipse_matrix(const Fixture& f, std::size_t g, double* row) {
 namespace {
 
 /// Semi-axes of ellipses, and what the grain loop makes of them.
-void take_axes(const Grains& grains, Fixture& f) {
+void take_axes(const Grains& grains, Model& f) {
   f.semi_major = grains.semi_major;
   f.semi_minor = grains.semi_minor;
   std::vector<double> squared(padded_to_lanes(grains.size()), 0.0), difference = squared;
@@ -83,7 +83,7 @@ void take_scaled_inertia(Assembly& a) {
 
 }  // namespace
 
-void open_assembly(const Specimen& specimen, Fixture& f, Assembly& a) {
+void open_assembly(const Specimen& specimen, Model& f, Assembly& a) {
   check_specimen(specimen);
   const std::size_t n = specimen.grains.size(), padded = padded_to_lanes(n);
   std::vector<std::int32_t> order = specimen.state.memory_order;
@@ -103,7 +103,7 @@ void open_assembly(const Specimen& specimen, Fixture& f, Assembly& a) {
     return kernels_for({f.shape, f.contact.law, f.contact.rolling, f.contact.slip, dashpot, f.contact.hertz_radius});
   };
   f.kernels = kernels_with(f.damping.dashpot != Dashpot::none);
-  f.resting_kernels = f.damping.dashpot == Dashpot::none ? f.kernels : kernels_with(false);
+  f.quasi_static_kernels = f.damping.dashpot == Dashpot::none ? f.kernels : kernels_with(false);
   if (f.shape == Shape::ellipse) take_axes(s.grains, f);
   f.largest_reach = *std::max_element(f.reach().begin(), f.reach().end());
   f.mean_radius = std::accumulate(f.radius.begin(), f.radius.end(), 0.0) / double(n);
@@ -144,7 +144,7 @@ void open_assembly(const Specimen& specimen, Fixture& f, Assembly& a) {
   }
 }
 
-Specimen close_assembly(const Fixture& f, const Assembly& a) {
+Specimen close_assembly(const Model& f, const Assembly& a) {
   Specimen s;
   s.shape = f.shape;
   s.cell = a.cell;
@@ -167,11 +167,11 @@ Specimen close_assembly(const Fixture& f, const Assembly& a) {
     for (std::size_t g = 0; g < f.size(); ++g) s.grains.orientation.push_back(a.orientation(f, g));
   }
   if (a.state.look_steps >= 0) {
-    const bool resting = a.mass.empty();
+    const bool released = a.mass.empty();
     for (std::size_t g = 0; g < f.size(); ++g) {
       const double* row = a.rows.data() + g * std::size_t(f.row_length());
-      s.state.scaled_mass.push_back(resting ? row[resting_mass(f.shape)] : a.mass[g]);
-      s.state.scaled_inverse_inertia.push_back(resting ? row[resting_inverse_inertia(f.shape)] : a.inverse_inertia[g]);
+      s.state.scaled_mass.push_back(released ? row[released_mass(f.shape)] : a.mass[g]);
+      s.state.scaled_inverse_inertia.push_back(released ? row[released_inverse_inertia(f.shape)] : a.inverse_inertia[g]);
     }
   }
   s.contacts = contacts_of(f, a.pairs);
@@ -203,7 +203,7 @@ PairArrays arrays_of(PairTable& t) {
   return p;
 }
 
-GrainArrays arrays_of(const Fixture& f, Assembly& a) {
+GrainArrays arrays_of(const Model& f, Assembly& a) {
   return {a.rows.data(),
           a.mass.data(),
           a.inverse_mass.data(),

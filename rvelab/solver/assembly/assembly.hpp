@@ -17,7 +17,7 @@ namespace rvelab {
 struct StepTimes;
 
 /// What an increment never changes.
-struct Fixture {
+struct Model {
   Shape shape = Shape::disc;
   std::vector<Material> materials;
   ContactModel contact;
@@ -33,7 +33,7 @@ struct Fixture {
   double largest_skin = 0;                             ///< m
   double min_height = 0;                               ///< m
   Kernels kernels;                                     ///< as the specimen states them, for dt > 0
-  Kernels resting_kernels;                             ///< dt = 0: without the dashpot, whose time a sub-step is not
+  Kernels quasi_static_kernels;                             ///< without the dashpot, whose time a sub-step of dt = 0 is not
   /// 1 without rolling stiffness; sqrt(4 kt r^2/(4 kt r^2 + 2 kr)) of typical grains: how much slower than the contacts
   /// grains answer that slip about a stiff rolling spring, once their inertia is scaled for that spring.
   double softest_answer = 1;
@@ -46,7 +46,7 @@ struct Fixture {
   std::size_t size() const { return id.size(); }
   /// The team where the assembly is large enough for one, else null.
   Workers* sharing() const { return size() >= least_shared_grains ? team : nullptr; }
-  const Kernels& kernels_at(bool quasi_static) const { return quasi_static ? resting_kernels : kernels; }
+  const Kernels& kernels_at(bool quasi_static) const { return quasi_static ? quasi_static_kernels : kernels; }
   bool radius_from_curvature() const { return contact.hertz_radius == HertzRadius::curvature; }
   /// Whether contacts keep sqrt(overlap) of the last sub-step.
   bool stores_root_overlap() const {
@@ -118,58 +118,58 @@ struct Assembly {
   SolverState state;
   TrialLink trial;
 
-  Vector3 position(const Fixture& f, std::size_t g) const;
-  Vector3 velocity(const Fixture& f, std::size_t g) const;  ///< fluctuation, in the units of the mode in use
-  Vector3 spin(const Fixture& f, std::size_t g) const;
-  Vector3 orientation(const Fixture& f, std::size_t g) const;  ///< of an ellipse
-  void set_velocity(const Fixture& f, std::size_t g, const Vector3& v, const Vector3& w);
+  Vector3 position(const Model& f, std::size_t g) const;
+  Vector3 velocity(const Model& f, std::size_t g) const;  ///< fluctuation, in the units of the mode in use
+  Vector3 spin(const Model& f, std::size_t g) const;
+  Vector3 orientation(const Model& f, std::size_t g) const;  ///< of an ellipse
+  void set_velocity(const Model& f, std::size_t g, const Vector3& v, const Vector3& w);
 };
 
 /// Where a grain row keeps the scaled mass, and 1 over the scaled inertia, while the working arrays are released: what
 /// stands there otherwise is zero, or what can be made again.
-constexpr std::size_t resting_mass(Shape shape) { return shape == Shape::disc ? 5 : 7; }
-constexpr std::size_t resting_inverse_inertia(Shape shape) { return shape == Shape::disc ? 6 : 11; }
+constexpr std::size_t released_mass(Shape shape) { return shape == Shape::disc ? 5 : 7; }
+constexpr std::size_t released_inverse_inertia(Shape shape) { return shape == Shape::disc ? 6 : 11; }
 /// Puts a - b and the matrix of an ellipse into its row, from the axis that stands there (kernels/configuration.hpp).
-void set_ellipse_matrix(const Fixture& fixture, std::size_t g, double* row);
+void set_ellipse_matrix(const Model& model, std::size_t g, double* row);
 
 /// Room for n grains or pairs in whole blocks of lanes, at least one padding entry.
 constexpr std::size_t padded_to_lanes(std::size_t n) { return (n / 8 + 1) * 8; }
 
 /// Checks a specimen and opens it; from some size on its grains are kept in an order of their own (memory_order.hpp),
-/// in which every index of Fixture and Assembly counts. Throws InputError.
-void open_assembly(const Specimen& specimen, Fixture& fixture, Assembly& assembly);
-Specimen close_assembly(const Fixture& fixture, const Assembly& assembly);
+/// in which every index of Model and Assembly counts. Throws InputError.
+void open_assembly(const Specimen& specimen, Model& model, Assembly& assembly);
+Specimen close_assembly(const Model& model, const Assembly& assembly);
 
 /// Throws IncrementFailed if the shortest lattice vector is below min_height.
-void check_height(const Fixture& fixture, const Cell& cell);
+void check_height(const Model& model, const Cell& cell);
 
 /// Reduces the lattice where needed, wraps the grains, lists anew, carries history over. Returns the reduction made.
 /// Throws IncrementFailed if the shortest lattice vector is below min_height, or if the list would be too long.
-Reduction rebuild(const Fixture& fixture, Assembly& assembly);
+Reduction rebuild(const Model& model, Assembly& assembly);
 
 /// Gap up to which every pair is listed, m, whenever the list was made: what lies between depends on the list.
-double listed_gap(const Fixture& fixture, const Assembly& assembly);
+double listed_gap(const Model& model, const Assembly& assembly);
 
 /// Whether a pair that is not listed might touch by now. May tighten the bound that the state keeps on displacements.
 /// `margin` (m): asks already while grains are that far from touching, so that those in flight are listed before they
 /// do.
-bool list_is_stale(const Fixture& fixture, Assembly& assembly, double margin = 0);
+bool list_is_stale(const Model& model, Assembly& assembly, double margin = 0);
 
-/// What follows from list and fixture, made anew: parameters, indices as the kernels want them; force rows are zero.
+/// What follows from list and model, made anew: parameters, indices as the kernels want them; force rows are zero.
 /// The gather table belongs to the list. Pairs not computed at every step must have no history unless they touch.
-void derive_pairs(const Fixture& fixture, PairTable& pairs);
+void derive_pairs(const Model& model, PairTable& pairs);
 
 /// Pair parameters from the materials, for all listed pairs (after listing, or when materials change).
-void set_pair_parameters(const Fixture& fixture, PairTable& pairs);
+void set_pair_parameters(const Model& model, PairTable& pairs);
 
 /// Force rows from the stored history; nothing advances.
-void evaluate_forces(const Fixture& fixture, Assembly& assembly);
+void evaluate_forces(const Model& model, Assembly& assembly);
 
 PairArrays arrays_of(PairTable& pairs);
-GrainArrays arrays_of(const Fixture& fixture, Assembly& assembly);
+GrainArrays arrays_of(const Model& model, Assembly& assembly);
 
 /// Constants that do not change from step to step, filled in; lattice from the cell, rate and step from the state.
-StepConstants base_constants(const Fixture& fixture, const Assembly& assembly);
+StepConstants base_constants(const Model& model, const Assembly& assembly);
 
 /// Inverse of an upper-triangular matrix, by hand: it is taken several times a sub-step.
 Matrix3 upper_inverse(const Matrix3& matrix);
@@ -178,19 +178,19 @@ UpperTriangle upper_triangle(const Matrix3& matrix);
 void set_rate(const Matrix3& rate, StepConstants& constants);
 
 /// (1/V)-less sum of F_on_j (x) b over the pairs, N m, cell frame, from force rows and present positions.
-Matrix3 contact_moment(const Fixture& fixture, const Assembly& assembly);
+Matrix3 contact_moment(const Model& model, const Assembly& assembly);
 
 /// Contact force on j of listed pair p as last computed, N.
-Vector3 force_of(const Fixture& fixture, const PairTable& pairs, std::size_t p);
+Vector3 force_of(const Model& model, const PairTable& pairs, std::size_t p);
 
 /// Resultant of a grain's contacts, cell frame.
 struct Resultant {
   Vector3 force = Vector3::Zero(), torque = Vector3::Zero();  ///< N, N m
 };
-std::vector<Resultant> resultants_of(const Fixture& fixture, const Assembly& assembly);
+std::vector<Resultant> resultants_of(const Model& model, const Assembly& assembly);
 
 /// What force and torque each grain is left with, and the mean and largest figures that control needs.
-struct Balance {
+struct OutOfBalance {
   double mean_resultant = 0;      ///< N, |force| over all grains
   double mean_couple = 0;         ///< N, |torque| over the radius
   double mean_contact_force = 0;  ///< N, over touching contacts; 0 without any
@@ -199,11 +199,11 @@ struct Balance {
   double mean_overlap = 0;           ///< m
   bool finite = true;
 };
-Balance balance_of(const Fixture& fixture, const Assembly& assembly);
+OutOfBalance balance_of(const Model& model, const Assembly& assembly);
 /// The larger of the two means over the mean contact force: a ratio of forces alone does not see grains that still turn
 /// (rolling stiffness 1e3 to 1e6: the stress was wrong by 2 to 12 % of p at a ratio of 1e-3).
-double unbalanced_ratio(const Balance& balance, double reference_contact_force);
+double unbalanced_ratio(const OutOfBalance& balance, double reference_contact_force);
 /// Throws IncrementFailed if a value is not finite or an overlap is beyond the limit.
-void check_overlaps(const Fixture& fixture, const Balance& balance);
+void check_overlaps(const Model& model, const OutOfBalance& balance);
 
 }  // namespace rvelab

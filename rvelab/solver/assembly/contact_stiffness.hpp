@@ -9,7 +9,7 @@
 namespace rvelab {
 
 /// Parameters of a listed pair.
-inline PairParameters parameters_of(const Fixture& f, const PairTable& pairs, std::size_t p) {
+inline PairParameters parameters_of(const Model& f, const PairTable& pairs, std::size_t p) {
   const bool rolling = f.contact.rolling;
   return {pairs.kn[p],
           pairs.kt[p],
@@ -26,8 +26,8 @@ struct ContactStiffness {
 };
 
 /// R*/r* of a listed pair that lies there: 1, but for Hertz's radius from curvature (contact/hertz_curvature.hpp).
-inline double hertz_radius_ratio(const Fixture&, const PairTable&, std::size_t, const PairPlace&) { return 1; }
-inline double hertz_radius_ratio(const Fixture& f, const PairTable& pairs, std::size_t p, const EllipsePlace& at) {
+inline double hertz_radius_ratio(const Model&, const PairTable&, std::size_t, const PairPlace&) { return 1; }
+inline double hertz_radius_ratio(const Model& f, const PairTable& pairs, std::size_t p, const EllipsePlace& at) {
   if (!f.radius_from_curvature()) return 1;
   return at.hertz_radius_ratio(f.radius[std::size_t(pairs.i[p])], f.radius[std::size_t(pairs.j[p])]);
 }
@@ -35,7 +35,7 @@ inline double hertz_radius_ratio(const Fixture& f, const PairTable& pairs, std::
 struct RadiusRatios {
   double least = 1, largest = 1;
 };
-inline RadiusRatios hertz_radius_ratios(const Fixture& f, const PairTable& pairs, std::size_t p) {
+inline RadiusRatios hertz_radius_ratios(const Model& f, const PairTable& pairs, std::size_t p) {
   if (!f.radius_from_curvature()) return {};
   const auto i = std::size_t(pairs.i[p]), j = std::size_t(pairs.j[p]);
   return {hertz_radius_ratio(f.radius[i], f.semi_major[i], f.radius[j], f.semi_major[j]),
@@ -46,14 +46,14 @@ inline RadiusRatios hertz_radius_ratios(const Fixture& f, const PairTable& pairs
 inline double root_overlap(double overlap, double radius_ratio) { return std::sqrt(overlap * radius_ratio); }
 
 /// c_n at an overlap whose square root is `root`, N s/m.
-inline double dashpot_now(const Fixture& f, double cn, double root) {
+inline double dashpot_now(const Model& f, double cn, double root) {
   const double power = dashpot_power(f.contact.law, f.damping.dashpot);
   return cn * (power == 0 ? 1.0 : (power == 0.5 ? root : std::sqrt(root)));
 }
 
 /// `Force`: that of the specimen's law (contact/laws.hpp). The overlap is > 0, m.
 template <class Force>
-ContactStiffness stiffness_of(const Fixture& f, const PairParameters& q, double overlap, double radius_ratio = 1) {
+ContactStiffness stiffness_of(const Model& f, const PairParameters& q, double overlap, double radius_ratio = 1) {
   const bool dashpot = f.damping.dashpot != Dashpot::none;
   const double root = Force::needs_root_overlap || dashpot ? root_overlap(overlap, radius_ratio) : 0;
   return {Force::normal_stiffness(q.kn, root), Force::tangential_stiffness(q.kt, root),
@@ -67,7 +67,7 @@ double normal_force_of(const PairParameters& q, double overlap, double radius_ra
 
 /// call(Force{}) with the Force of the specimen's law.
 template <class Call>
-auto with_force(const Fixture& f, const Call& call) {
+auto with_force(const Model& f, const Call& call) {
   return with_law(f.contact.law, [&](auto law) { return call(typename decltype(law)::Force{}); });
 }
 

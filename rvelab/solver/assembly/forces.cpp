@@ -27,7 +27,7 @@ void set_rate(const Matrix3& rate, StepConstants& c) {
   c.spin[2] = -0.5 * rate(0, 1);
 }
 
-StepConstants base_constants(const Fixture& f, const Assembly& a) {
+StepConstants base_constants(const Model& f, const Assembly& a) {
   StepConstants c;
   c.dt = a.state.last_step;
   c.lattice = upper_triangle(a.cell.lattice);
@@ -40,12 +40,12 @@ StepConstants base_constants(const Fixture& f, const Assembly& a) {
   return c;
 }
 
-void evaluate_forces(const Fixture& f, Assembly& a) {
+void evaluate_forces(const Model& f, Assembly& a) {
   const StepConstants c = base_constants(f, a);
   f.kernels_at(a.state.quasi_static).evaluate(c, arrays_of(a.pairs), a.rows.data(), 0, long(a.pairs.padded()), nullptr);
 }
 
-Vector3 force_of(const Fixture& f, const PairTable& pairs, std::size_t p) {
+Vector3 force_of(const Model& f, const PairTable& pairs, std::size_t p) {
   const double* row = pairs.force.data() + p * force_row_length(f.shape);
   return {row[0], row[1], f.dimension() == 2 ? 0.0 : row[2]};
 }
@@ -74,7 +74,7 @@ Matrix3 moment_of(const Assembly& a, const PairGeometry<shape>& pair, std::size_
 }
 
 template <Shape shape>
-Matrix3 moment_in(const Fixture& f, const Assembly& a) {
+Matrix3 moment_in(const Model& f, const Assembly& a) {
   const PairGeometry<shape> pair(f, a);
   std::vector<Matrix3> of_piece(pieces_in(a.pairs.listed));
   in_pieces(a.pairs.listed, f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
@@ -87,7 +87,7 @@ Matrix3 moment_in(const Fixture& f, const Assembly& a) {
 
 }  // namespace
 
-Matrix3 contact_moment(const Fixture& f, const Assembly& a) {
+Matrix3 contact_moment(const Model& f, const Assembly& a) {
   // Called every few sub-steps under stress control.
   return with_shape(f.shape, [&](auto shape) { return moment_in<shape.value>(f, a); });
 }
@@ -100,7 +100,7 @@ constexpr std::size_t resultant_row = D == 2 ? 3 : 6;
 
 /// Adds what contact p gives to one of its grains.
 template <int D>
-void add_resultant(const Fixture& f, const PairTable& pairs, std::size_t p, std::size_t g, bool as_j, double* r) {
+void add_resultant(const Model& f, const PairTable& pairs, std::size_t p, std::size_t g, bool as_j, double* r) {
   const double* row = pairs.force.data() + p * (D == 2 ? 4 : 8);
   for (std::size_t c = 0; c < D; ++c) r[c] = as_j ? r[c] + row[c] : r[c] - row[c];
   if constexpr (D == 2) {
@@ -122,7 +122,7 @@ struct ContactSums {
 
 /// Adds up the contacts at `order` [first, last), and their forces on each grain unless `resultants` is null.
 template <Shape shape>
-ContactSums contacts_in(const Fixture& f, const Assembly& a, const PairGeometry<shape>& pair, std::size_t first,
+ContactSums contacts_in(const Model& f, const Assembly& a, const PairGeometry<shape>& pair, std::size_t first,
                         std::size_t last, double* resultants) {
   constexpr int D = dimension_of(shape);
   ContactSums sums;
@@ -150,7 +150,7 @@ ContactSums contacts_in(const Fixture& f, const Assembly& a, const PairGeometry<
 
 /// Resultants of the grains [first, last), added in the same order as above; pairs that do not touch give nothing.
 template <Shape shape>
-void gather_resultants(const Fixture& f, const Assembly& a, const PairGeometry<shape>& pair, std::size_t first,
+void gather_resultants(const Model& f, const Assembly& a, const PairGeometry<shape>& pair, std::size_t first,
                        std::size_t last, double* resultants) {
   constexpr int D = dimension_of(shape);
   each_pair_of_grains<D>(a.pairs, first, last, [&](std::size_t g, std::size_t p, bool as_j) {
@@ -169,7 +169,7 @@ struct GrainFigures {
 };
 
 template <int D>
-GrainFigures grains_in(const Fixture& f, const Assembly& a, std::size_t first, std::size_t last,
+GrainFigures grains_in(const Model& f, const Assembly& a, std::size_t first, std::size_t last,
                        const double* resultants) {
   GrainFigures figures;
   for (std::size_t g = first; g < last; ++g) {
@@ -186,7 +186,7 @@ GrainFigures grains_in(const Fixture& f, const Assembly& a, std::size_t first, s
 }
 
 template <Shape shape>
-Balance balance_in(const Fixture& f, const Assembly& a) {
+OutOfBalance balance_in(const Model& f, const Assembly& a) {
   constexpr int D = dimension_of(shape);
   const PairGeometry<shape> pair(f, a);
   const bool shared = f.sharing() != nullptr;
@@ -200,7 +200,7 @@ Balance balance_in(const Fixture& f, const Assembly& a) {
     if (shared) gather_resultants<shape>(f, a, pair, first, last, resultants.data());
     of_grains[piece] = grains_in<D>(f, a, first, last, resultants.data());
   });
-  Balance balance;
+  OutOfBalance balance;
   double contact_force = 0, overlap_sum = 0, squares = 0;
   for (const ContactSums& piece : of_pairs) {
     contact_force += piece.force;
@@ -229,7 +229,7 @@ Balance balance_in(const Fixture& f, const Assembly& a) {
 namespace {
 
 template <Shape shape>
-std::vector<Resultant> resultants_in(const Fixture& f, const Assembly& a) {
+std::vector<Resultant> resultants_in(const Model& f, const Assembly& a) {
   constexpr int D = dimension_of(shape);
   const PairGeometry<shape> pair(f, a);
   std::vector<double> rows(resultant_row<D> * f.size(), 0.0);
@@ -251,20 +251,20 @@ std::vector<Resultant> resultants_in(const Fixture& f, const Assembly& a) {
 
 }  // namespace
 
-std::vector<Resultant> resultants_of(const Fixture& f, const Assembly& a) {
+std::vector<Resultant> resultants_of(const Model& f, const Assembly& a) {
   return with_shape(f.shape, [&](auto shape) { return resultants_in<shape.value>(f, a); });
 }
 
-Balance balance_of(const Fixture& f, const Assembly& a) {
+OutOfBalance balance_of(const Model& f, const Assembly& a) {
   return with_shape(f.shape, [&](auto shape) { return balance_in<shape.value>(f, a); });
 }
 
-double unbalanced_ratio(const Balance& balance, double reference_contact_force) {
+double unbalanced_ratio(const OutOfBalance& balance, double reference_contact_force) {
   const double scale = std::max(balance.mean_contact_force, 1e-3 * reference_contact_force);
   return scale > 0 ? std::max(balance.mean_resultant, balance.mean_couple) / scale : 0.0;
 }
 
-void check_overlaps(const Fixture& f, const Balance& balance) {
+void check_overlaps(const Model& f, const OutOfBalance& balance) {
   if (!balance.finite)
     throw IncrementFailed("the increment led to values that are not finite; apply it in smaller parts");
   if (balance.largest_overlap_ratio > f.options.max_overlap_ratio)

@@ -23,7 +23,7 @@ void sort_by_key(std::vector<Contact>& contacts) {
   if (!std::is_sorted(contacts.begin(), contacts.end(), before)) std::sort(contacts.begin(), contacts.end(), before);
 }
 
-void store(const Fixture& f, PairTable& pairs, std::size_t p, const Contact& c) {
+void store(const Model& f, PairTable& pairs, std::size_t p, const Contact& c) {
   if (f.dimension() == 2) {
     pairs.tangential[0][p] = c.tangential_force[0];
     if (f.contact.rolling) pairs.moment[0][p] = c.rolling_moment[2];
@@ -36,7 +36,7 @@ void store(const Fixture& f, PairTable& pairs, std::size_t p, const Contact& c) 
 }
 
 /// Pairs closer than the skin as the grains lie now.
-std::vector<ListedPair> near_pairs(const Fixture& f, const Assembly& a, double skin) {
+std::vector<ListedPair> near_pairs(const Model& f, const Assembly& a, double skin) {
   std::vector<ListedPair> pairs = list_pairs(a.cell, a.rows.data(), f.row_length(), f.reach(), skin, f.sharing());
   if (f.shape == Shape::ellipse) keep_near_ellipses(f, a, skin, pairs);
   return pairs;
@@ -46,7 +46,7 @@ std::vector<ListedPair> near_pairs(const Fixture& f, const Assembly& a, double s
 /// force ends with it as that of every contact that opens; in a specimen it is a mistake.
 enum class Lost { dropped, refused };
 
-bool touches(const Fixture& f, const Assembly& a, const ListedPair& pair) {
+bool touches(const Model& f, const Assembly& a, const ListedPair& pair) {
   const double* xi = a.rows.data() + std::size_t(pair.i) * f.row_length();
   const double* xj = a.rows.data() + std::size_t(pair.j) * f.row_length();
   const UpperTriangle l = upper_triangle(a.cell.lattice);
@@ -61,7 +61,7 @@ bool touches(const Fixture& f, const Assembly& a, const ListedPair& pair) {
 
 /// Places of the pairs of a new list in memory: first those that touch or have a history. The ledger's kernel adds up
 /// what all pairs lose as they lie, so with it they lie in order.
-void arrange(const Fixture& f, const Assembly& a, const std::vector<ListedPair>& listed,
+void arrange(const Model& f, const Assembly& a, const std::vector<ListedPair>& listed,
              const std::vector<const Contact*>& histories, PairTable& pairs) {
   const std::size_t n = listed.size();
   std::vector<std::uint8_t> near(n);
@@ -76,7 +76,7 @@ void arrange(const Fixture& f, const Assembly& a, const std::vector<ListedPair>&
 }
 
 /// Makes the arrays of a new list and fills in the carried history, which is sorted by key.
-void fill(const Fixture& f, const std::vector<ListedPair>& listed, const std::vector<Contact>& carried, Lost lost,
+void fill(const Model& f, const std::vector<ListedPair>& listed, const std::vector<Contact>& carried, Lost lost,
           Assembly& a) {
   const std::size_t n = listed.size(), padded = padded_to_lanes(n);
   std::vector<const Contact*> histories(n, nullptr);
@@ -122,7 +122,7 @@ void fill(const Fixture& f, const std::vector<ListedPair>& listed, const std::ve
 }
 
 /// The key of a pair after images changed; a grain's own image is kept pointing forward, forces turning round with it.
-void turn_round_if_needed(const Fixture& f, Contact& c) {
+void turn_round_if_needed(const Model& f, Contact& c) {
   if (c.i != c.j || points_forward(c.image)) return;
   for (int& n : c.image) n = -n;
   c.rolling_moment = -c.rolling_moment;
@@ -142,7 +142,7 @@ Matrix3 without_lower_part(const Matrix3& rate) {
   return rest;
 }
 
-void rotate_rows(const Fixture& f, const Matrix3& turn, Buffer& rows) {
+void rotate_rows(const Model& f, const Matrix3& turn, Buffer& rows) {
   for (std::size_t g = 0; g < f.size(); ++g) {
     double* row = rows.data() + g * f.row_length();
     const auto rotate = [&](double* v) {
@@ -167,7 +167,7 @@ void rotate_rows(const Fixture& f, const Matrix3& turn, Buffer& rows) {
 
 }  // namespace
 
-std::vector<Contact> contacts_of(const Fixture& f, const PairTable& pairs) {
+std::vector<Contact> contacts_of(const Model& f, const PairTable& pairs) {
   std::vector<std::vector<Contact>> found(pieces_in(pairs.listed));
   const auto look_at = [&](std::size_t p, std::vector<Contact>& here) {
     Contact c{pairs.i[p], pairs.j[p], pairs.image[p]};
@@ -191,7 +191,7 @@ std::vector<Contact> contacts_of(const Fixture& f, const PairTable& pairs) {
   return all;
 }
 
-void list_with(const Fixture& f, std::vector<Contact> contacts, Assembly& a) {
+void list_with(const Model& f, std::vector<Contact> contacts, Assembly& a) {
   sort_by_key(contacts);
   // The state says how far grains have come since the list of its run was made, and they may come back that far and as
   // far beyond before it is made anew: its pairs, of gaps below the skin then, have gaps below the skin and that now.
@@ -199,7 +199,7 @@ void list_with(const Fixture& f, std::vector<Contact> contacts, Assembly& a) {
   fill(f, near_pairs(f, a, skin + std::min(std::max(0.0, moved), skin)), contacts, Lost::refused, a);
 }
 
-void check_height(const Fixture& f, const Cell& cell) {
+void check_height(const Model& f, const Cell& cell) {
   const double shortest = shortest_vector(cell);
   if (shortest < f.min_height) {
     std::ostringstream text;
@@ -209,7 +209,7 @@ void check_height(const Fixture& f, const Cell& cell) {
   }
 }
 
-Reduction rebuild(const Fixture& f, Assembly& a) {
+Reduction rebuild(const Model& f, Assembly& a) {
   std::vector<Contact> carried = contacts_of(f, a.pairs);
   if (a.state.has_reference) a.state.list_skin = next_skin(f, a.state);
   const Reduction reduction = reduced(a.cell);

@@ -7,9 +7,9 @@ namespace rvelab {
 
 /// Lists the pairs of an assembly that is being opened and gives them their histories, in any order. Throws InputError
 /// if a contact is none of the pairs listed, IncrementFailed if the list would be too long (list_size.hpp).
-void list_with(const Fixture& fixture, std::vector<Contact> contacts, Assembly& assembly);
+void list_with(const Model& model, std::vector<Contact> contacts, Assembly& assembly);
 
 /// The pairs that have a history, ordered by (i, j, image).
-std::vector<Contact> contacts_of(const Fixture& fixture, const PairTable& pairs);
+std::vector<Contact> contacts_of(const Model& model, const PairTable& pairs);
 
 }  // namespace rvelab

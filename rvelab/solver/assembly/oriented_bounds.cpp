@@ -20,7 +20,7 @@ bool farther_apart_than(double skin, const EllipsePair<double>& p) {
 
 }  // namespace
 
-void keep_near_ellipses(const Fixture& f, const Assembly& a, double skin, std::vector<ListedPair>& pairs) {
+void keep_near_ellipses(const Model& f, const Assembly& a, double skin, std::vector<ListedPair>& pairs) {
   const UpperTriangle l = upper_triangle(a.cell.lattice);
   const auto matrix = [](const double* row) { return matrix_from(row[8], row[9], row[10], row[11]); };
   std::vector<std::uint8_t> near(pairs.size());

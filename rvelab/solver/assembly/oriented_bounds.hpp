@@ -19,7 +19,7 @@
 namespace rvelab {
 
 /// Takes the pairs out of which a direction shows that they are apart by more than `skin`, m.
-void keep_near_ellipses(const Fixture& fixture, const Assembly& assembly, double skin, std::vector<ListedPair>& pairs);
+void keep_near_ellipses(const Model& model, const Assembly& assembly, double skin, std::vector<ListedPair>& pairs);
 
 /// What a list notes of an axis in the plane: 2 plus the tangent of half its angle, 1 to 3, the same for the axis
 /// pointing the other way. 0, which files of earlier versions hold, is none.

@@ -24,7 +24,7 @@ class PairGeometry {
  public:
   static constexpr int D = dimension_of(shape);
 
-  PairGeometry(const Fixture& f, const Assembly& a)
+  PairGeometry(const Model& f, const Assembly& a)
       : rows_(a.rows.data()),
         radius_(f.radius.data()),
         i_(a.pairs.row_i.data()),

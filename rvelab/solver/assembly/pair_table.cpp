@@ -14,7 +14,7 @@ std::size_t bytes_of(const PairTable& t) {
   return sum;
 }
 
-void set_pair_parameters(const Fixture& f, PairTable& pairs) {
+void set_pair_parameters(const Model& f, PairTable& pairs) {
   const std::size_t padded = pairs.padded();
   const bool dashpot = f.damping.dashpot != Dashpot::none;
   for (Buffer* b : {&pairs.kn, &pairs.kt, &pairs.friction}) b->assign(padded, 0.0);
@@ -43,7 +43,7 @@ void set_pair_parameters(const Fixture& f, PairTable& pairs) {
   });
 }
 
-void derive_pairs(const Fixture& f, PairTable& pairs) {
+void derive_pairs(const Model& f, PairTable& pairs) {
   const std::size_t padded = pairs.padded();
   pairs.row_i.resize(padded);
   pairs.row_j.resize(padded);

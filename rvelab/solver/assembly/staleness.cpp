@@ -18,7 +18,7 @@ constexpr double smallest_skin = 0.01;  ///< mean radii
 /// Sum of the two largest displacements of grains since the list was built, beside the affine motion, m. Of ellipses
 /// that of their outlines: what the turn moves them is added to what the centre moved.
 template <bool oriented>
-double measured_displacements(const Fixture& f, const Assembly& a, const Matrix3& f_since) {
+double measured_displacements(const Model& f, const Assembly& a, const Matrix3& f_since) {
   struct Largest {
     double most = 0, second = 0;
     void add(double squared) {
@@ -56,26 +56,26 @@ double measured_displacements(const Fixture& f, const Assembly& a, const Matrix3
 
 }  // namespace
 
-double next_skin(const Fixture& f, const SolverState& state) {
+double next_skin(const Model& f, const SolverState& state) {
   double skin = state.list_skin;
   if (state.list_steps >= old_list) skin *= 0.7;
   if (state.list_steps < young_list) skin *= 1.4;
   return std::clamp(skin, std::min(smallest_skin * f.mean_radius, f.largest_skin), f.largest_skin);
 }
 
-Vector3 listed_place(const Fixture& f, const Assembly& a, std::size_t g) {
+Vector3 listed_place(const Model& f, const Assembly& a, std::size_t g) {
   Vector3 place = a.position(f, g);
   if (f.shape == Shape::ellipse) place[2] = noted_axis(a.orientation(f, g));
   return place;
 }
 
-double listed_gap(const Fixture& f, const Assembly& a) {
+double listed_gap(const Model& f, const Assembly& a) {
   const Matrix3 f_since = a.cell.lattice * upper_inverse(a.state.list_lattice);
   const double strain = (f_since - Matrix3::Identity()).norm(), reach = 2 * f.largest_reach;
   return (1 - strain) * (reach + a.state.list_skin) - reach - 2 * (1 + strain) * a.state.list_travel;
 }
 
-bool list_is_stale(const Fixture& f, Assembly& a, double margin) {
+bool list_is_stale(const Model& f, Assembly& a, double margin) {
   // A pair beyond reach r_i + r_j + skin when listed is, after the affine map F and two displacements of at most
   // `travel`, still beyond sigma_min(F) reach - 2 |F| travel, with sigma_min >= 1 - |F - I|, |F| <= 1 + |F - I|. The
   // same is allowed of ellipses that are nearer but apart by the skin along some direction (oriented_bounds.hpp).

@@ -54,8 +54,7 @@ double square(double x) { return x * x; }
 
 /// `Impact`: how the law's springs collide (contact/impact.hpp).
 template <Shape shape, class Impact>
-PairExtremes pairs_in(const Fixture& f, const Assembly& a, const Outlook& outlook, std::size_t first,
-                      std::size_t last) {
+PairExtremes pairs_in(const Model& f, const Assembly& a, const Outlook& outlook, std::size_t first, std::size_t last) {
   constexpr int D = dimension_of(shape);
   PairExtremes found;
   const UpperTriangle rate = upper_triangle(outlook.rate);
@@ -122,7 +121,7 @@ struct Motion {
 };
 
 template <Shape shape>
-Motion grains_in(const Fixture& f, const Assembly& a, const RowSums& sums, std::size_t first, std::size_t last) {
+Motion grains_in(const Model& f, const Assembly& a, const RowSums& sums, std::size_t first, std::size_t last) {
   constexpr int D = dimension_of(shape);
   constexpr std::size_t row = D == 2 ? 4 : 8;
   double force[piece_length * D] = {};
@@ -150,7 +149,7 @@ Motion grains_in(const Fixture& f, const Assembly& a, const RowSums& sums, std::
 }
 
 /// Longest sub-step that meets the restitution, s, of collisions of frequency omega.
-double dashpot_step(const Fixture& f, double damping, double omega) {
+double dashpot_step(const Model& f, double damping, double omega) {
   // At the overlap where omega^2 = 3/2 (k/m*) sqrt(delta).
   const double power = dashpot_power(f.contact.law, f.damping.dashpot);
   double gamma = damping;
@@ -166,7 +165,7 @@ double dashpot_step(const Fixture& f, double damping, double omega) {
 double dynamic_share(double moving, double elastic) { return moving < elastic ? std::sqrt(moving / elastic) : 1; }
 
 template <Shape shape, class Impact>
-Collisions ahead(const Fixture& f, const Assembly& a, const RowSums* known, bool find_step, const Outlook& outlook) {
+Collisions ahead(const Model& f, const Assembly& a, const RowSums* known, bool find_step, const Outlook& outlook) {
   std::vector<PairExtremes> of_pairs(pieces_in(a.pairs.listed));
   in_pieces(a.pairs.listed, f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
     of_pairs[piece] = pairs_in<shape, Impact>(f, a, outlook, first, last);
@@ -214,7 +213,7 @@ Collisions ahead(const Fixture& f, const Assembly& a, const RowSums* known, bool
 
 }  // namespace
 
-Collisions collisions_ahead(const Fixture& f, const Assembly& a, const RowSums* sums, bool find_step,
+Collisions collisions_ahead(const Model& f, const Assembly& a, const RowSums* sums, bool find_step,
                             const Outlook& outlook) {
   return with_law(f.contact.law, [&](auto law) {
     using Impact = typename decltype(law)::Force::Impact;

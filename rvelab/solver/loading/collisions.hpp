@@ -37,7 +37,7 @@ struct Outlook {
 /// Looks at all listed pairs that touch, or that meet within the horizon at their present velocities. The velocities
 /// must be physical (dt > 0). Row sums are made where they are not at hand (null). With `find_step` false only `deep`
 /// is found.
-Collisions collisions_ahead(const Fixture& fixture, const Assembly& assembly, const RowSums* sums, bool find_step,
+Collisions collisions_ahead(const Model& model, const Assembly& assembly, const RowSums* sums, bool find_step,
                             const Outlook& outlook);
 
 }  // namespace rvelab

@@ -67,25 +67,25 @@ double median(std::vector<double>& values) {
 }
 
 /// Two of the largest grains as a pair, and their radius.
-std::pair<PairParameters, double> typical_pair(const Fixture& f) {
+std::pair<PairParameters, double> typical_pair(const Model& f) {
   const auto g = std::size_t(std::max_element(f.radius.begin(), f.radius.end()) - f.radius.begin());
   const Material& m = f.materials[f.material[g]];
   const double section = grain_section(f.shape, f.radius[g], f.thickness);
   return {mix(f.contact, f.damping, m, f.radius[g], f.mass[g], m, f.radius[g], f.mass[g], section), f.radius[g]};
 }
 
-ContactStiffness stiffness_of(const Fixture& f, const PairParameters& q, double overlap) {
+ContactStiffness stiffness_of(const Model& f, const PairParameters& q, double overlap) {
   return with_force(f, [&](auto force) { return rvelab::stiffness_of<decltype(force)>(f, q, overlap); });
 }
 
 }  // namespace
 
-double typical_normal_force(const Fixture& f, double overlap) {
+double typical_normal_force(const Model& f, double overlap) {
   return with_force(
       f, [&](auto force) { return std::abs(normal_force_of<decltype(force)>(typical_pair(f).first, overlap)); });
 }
 
-void set_typical_answers(Fixture& f) {
+void set_typical_answers(Model& f) {
   f.softest_answer = 1;
   const auto [one, radius] = typical_pair(f);
   const double overlap = 1e-3 * radius;
@@ -123,7 +123,7 @@ struct PairTerms {
 // A look at the masses goes through all pairs, in the time of five sub-steps: inline, what a scene does not need falls
 // out.
 template <Shape shape, class Force>
-inline __attribute__((always_inline)) PairTerms terms_of(const Fixture& f, const Assembly& a,
+inline __attribute__((always_inline)) PairTerms terms_of(const Model& f, const Assembly& a,
                                                          const PairGeometry<shape>& pair, std::size_t p) {
   const auto place = pair(p);
   const double overlap = place.overlap;
@@ -161,7 +161,7 @@ double normal_to_translation(double kn, double turn, double r) { return 2 * kn *
 double normal_to_rotation(double kn, double turn, double r) { return 2 * kn * (turn * turn + turn * r); }
 
 template <Shape shape>
-inline __attribute__((always_inline)) void add(const Fixture& f, const PairTerms& t, std::size_t g, bool as_j,
+inline __attribute__((always_inline)) void add(const Model& f, const PairTerms& t, std::size_t g, bool as_j,
                                                GrainSums& sums) {
   constexpr int D = dimension_of(shape);
   const double r = f.radius[g];
@@ -191,7 +191,7 @@ inline __attribute__((always_inline)) void add(const Fixture& f, const PairTerms
 struct Firmness {
   std::vector<double> translation, rotation;
 
-  inline __attribute__((always_inline)) void add(const Fixture& f, const PairTable& pairs, std::size_t p,
+  inline __attribute__((always_inline)) void add(const Model& f, const PairTable& pairs, std::size_t p,
                                                  const PairTerms& t) {
     if (!t.touching) return;
     const double ri = f.radius[std::size_t(pairs.i[p])], rj = f.radius[std::size_t(pairs.j[p])];
@@ -203,7 +203,7 @@ struct Firmness {
 /// Sums of all grains. Each pair is looked at once; by a team once for each of its grains, so that threads share
 /// nothing. A grain adds its pairs in the same order either way.
 template <Shape shape, class Force>
-std::vector<GrainSums> sums_of_grains(const Fixture& f, const Assembly& a, Firmness& firmness) {
+std::vector<GrainSums> sums_of_grains(const Model& f, const Assembly& a, Firmness& firmness) {
   constexpr int D = dimension_of(shape);
   std::vector<GrainSums> sums(f.size());
   const PairGeometry<shape> pair(f, a);
@@ -240,7 +240,7 @@ std::vector<GrainSums> sums_of_grains(const Fixture& f, const Assembly& a, Firmn
 }
 
 template <Shape shape, class Force>
-RowSums sums_over_pairs(const Fixture& f, const Assembly& a) {
+RowSums sums_over_pairs(const Model& f, const Assembly& a) {
   constexpr int D = dimension_of(shape);
   const std::size_t n = f.size();
   const bool dashpot = f.damping.dashpot != Dashpot::none;
@@ -281,14 +281,14 @@ RowSums sums_over_pairs(const Fixture& f, const Assembly& a) {
 
 }  // namespace
 
-RowSums row_sums(const Fixture& f, const Assembly& a) {
+RowSums row_sums(const Model& f, const Assembly& a) {
   return with_force(f, [&](auto force) {
     using Force = decltype(force);
     return with_shape(f.shape, [&](auto shape) { return sums_over_pairs<shape.value, Force>(f, a); });
   });
 }
 
-double critical_step(const Fixture& f, const RowSums& sums) {
+double critical_step(const Model& f, const RowSums& sums) {
   double smallest = std::numeric_limits<double>::infinity();
   for (std::size_t g = 0; g < f.size(); ++g) {
     const double by_translation = sums.translation[g] / f.mass[g], by_rotation = sums.rotation[g] / f.inertia[g];
@@ -306,7 +306,7 @@ double critical_step(const Fixture& f, const RowSums& sums) {
   return smallest;
 }
 
-RowSums with_floor(RowSums sums, const Fixture& f) {
+RowSums with_floor(RowSums sums, const Model& f) {
   for (std::size_t g = 0; g < f.size(); ++g) {
     sums.translation[g] = std::max(sums.translation[g], sums.floor_translation);
     sums.rotation[g] = std::max(sums.rotation[g], sums.floor_rotation * f.radius[g] * f.radius[g]);
@@ -330,7 +330,7 @@ void keep_masses(const Assembly& a) {
 
 }  // namespace
 
-void scale_inertia(const Fixture& f, const RowSums& sums, Assembly& a) {
+void scale_inertia(const Model& f, const RowSums& sums, Assembly& a) {
   keep_masses(a);
   const double factor = f.options.time_step_factor;
   for (std::size_t g = 0; g < f.size(); ++g) {
@@ -341,12 +341,12 @@ void scale_inertia(const Fixture& f, const RowSums& sums, Assembly& a) {
   }
 }
 
-double least_stiffness(const Fixture& f, const Assembly& a) {
+double least_stiffness(const Model& f, const Assembly& a) {
   const double factor = f.options.time_step_factor;
   return 4 * factor * factor * *std::min_element(a.mass.begin(), a.mass.begin() + std::ptrdiff_t(f.size()));
 }
 
-void use_physical_inertia(const Fixture& f, Assembly& a) {
+void use_physical_inertia(const Model& f, Assembly& a) {
   keep_masses(a);
   for (std::size_t g = 0; g < f.size(); ++g) {
     a.mass[g] = f.mass[g];

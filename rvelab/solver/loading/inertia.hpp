@@ -20,27 +20,27 @@ struct RowSums {
 };
 
 /// Normal force of two of the largest grains at an overlap (m), N: a scale for specimens without any contact.
-double typical_normal_force(const Fixture& fixture, double overlap);
+double typical_normal_force(const Model& model, double overlap);
 
-/// Sets softest_answer and hardening of the fixture from two of the largest grains.
-void set_typical_answers(Fixture& fixture);
+/// Sets softest_answer and hardening of the model from two of the largest grains.
+void set_typical_answers(Model& model);
 
-RowSums row_sums(const Fixture& fixture, const Assembly& assembly);
+RowSums row_sums(const Model& model, const Assembly& assembly);
 
 /// Smallest 2/omega_max over the grains with physical masses (dashpots included: 2/omega (sqrt(1 + zeta^2) - zeta)), s;
 /// infinite without contacts.
-double critical_step(const Fixture& fixture, const RowSums& sums);
+double critical_step(const Model& model, const RowSums& sums);
 
 /// The sums with every grain at least at the floor, so that a contact about to form finds a step that is safe for it.
-RowSums with_floor(RowSums sums, const Fixture& fixture);
+RowSums with_floor(RowSums sums, const Model& model);
 
 /// Masses and inertias such that a unit step is `factor` times the critical one for every grain.
-void scale_inertia(const Fixture& fixture, const RowSums& sums, Assembly& assembly);
+void scale_inertia(const Model& model, const RowSums& sums, Assembly& assembly);
 
 /// Least row sum of translation behind the scaled masses, N/m: that of a grain of two typical contacts, where one has
 /// no more of them.
-double least_stiffness(const Fixture& fixture, const Assembly& assembly);
+double least_stiffness(const Model& model, const Assembly& assembly);
 
-void use_physical_inertia(const Fixture& fixture, Assembly& assembly);
+void use_physical_inertia(const Model& model, Assembly& assembly);
 
 }  // namespace rvelab

@@ -10,6 +10,7 @@
 #include "rvelab/solver/loading/collisions.hpp"
 #include "rvelab/solver/loading/inertia.hpp"
 #include "rvelab/solver/loading/step_times.hpp"
+#include "rvelab/solver/loading/strain_path.hpp"
 #include "rvelab/solver/loading/sweep.hpp"
 
 namespace rvelab {
@@ -93,131 +94,8 @@ KernelDamping damping_kind(const Damping& d, Loading loading) {
   return d.local_form == LocalDampingForm::vector ? KernelDamping::vector : KernelDamping::component;
 }
 
-}  // namespace
-
-Vector3 rotation_vector(const Matrix3& rotation) {
-  // Quaternion, halved until the angle is small enough for the series of asin.
-  Matrix3 r = rotation;
-  const double trace = r.trace();
-  double w, x, y, z;
-  if (trace > 0) {
-    const double s = std::sqrt(trace + 1) * 2;
-    w = 0.25 * s;
-    x = (r(2, 1) - r(1, 2)) / s;
-    y = (r(0, 2) - r(2, 0)) / s;
-    z = (r(1, 0) - r(0, 1)) / s;
-  } else {
-    int i = 0;
-    if (r(1, 1) > r(0, 0)) i = 1;
-    if (r(2, 2) > r(i, i)) i = 2;
-    const int j = (i + 1) % 3, k = (i + 2) % 3;
-    const double s = std::sqrt(r(i, i) - r(j, j) - r(k, k) + 1) * 2;
-    double q[3];
-    q[i] = 0.25 * s;
-    q[j] = (r(j, i) + r(i, j)) / s;
-    q[k] = (r(k, i) + r(i, k)) / s;
-    w = (r(k, j) - r(j, k)) / s;
-    x = q[0];
-    y = q[1];
-    z = q[2];
-    if (w < 0) {
-      w = -w;
-      x = -x;
-      y = -y;
-      z = -z;
-    }
-  }
-  double factor = 2;
-  for (int halving = 0; halving < 6; ++halving) {
-    const double half = std::sqrt(0.5 * (1 + w));
-    x /= 2 * half;
-    y /= 2 * half;
-    z /= 2 * half;
-    w = half;
-    factor *= 2;
-  }
-  const double s2 = x * x + y * y + z * z;
-  const double series = 1 + s2 * (1.0 / 6 + s2 * (3.0 / 40 + s2 * (15.0 / 336)));
-  return factor * series * Vector3(x, y, z);
-}
-
-Matrix3 kinetic_moment(const Fixture& f, const Assembly& a) {
-  // Called every few sub-steps under stress control.
-  const Vector3 mean = a.state.mean_velocity;
-  std::vector<Matrix3> of_piece(pieces_in(f.size()));
-  in_pieces(f.size(), f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
-    double xx = 0, yy = 0, zz = 0, yz = 0, xz = 0, xy = 0;
-    const double* v = a.rows.data() + first * f.row_length() + f.velocity_offset();
-    for (std::size_t g = first; g < last; ++g, v += f.row_length()) {
-      const double mass = a.mass[g], x = v[0] - mean[0], y = v[1] - mean[1];
-      xx -= mass * (x * x);
-      yy -= mass * (y * y);
-      xy -= mass * (x * y);
-      if (f.dimension() == 2) continue;
-      const double z = v[2] - mean[2];
-      zz -= mass * (z * z);
-      yz -= mass * (y * z);
-      xz -= mass * (x * z);
-    }
-    of_piece[piece] << xx, xy, xz, xy, yy, yz, xz, yz, zz;
-  });
-  Matrix3 sum = Matrix3::Zero();
-  for (const Matrix3& piece : of_piece) sum += piece;
-  return sum;
-}
-
-double kinetic_energy(const Fixture& f, const Assembly& a) {
-  double sum = 0;
-  for (std::size_t g = 0; g < f.size(); ++g) {
-    sum += 0.5 * a.velocity(f, g).squaredNorm() * a.mass[g];
-    if (a.inverse_inertia[g] > 0) sum += 0.5 * a.spin(f, g).squaredNorm() / a.inverse_inertia[g];
-  }
-  return sum;
-}
-
-namespace {
-
-void zero_velocities(const Fixture& f, Assembly& a) {
-  for (std::size_t g = 0; g < f.size(); ++g) a.set_velocity(f, g, Vector3::Zero(), Vector3::Zero());
-  a.state.mean_velocity.setZero();
-}
-
-}  // namespace
-
-void stop_grains(const Fixture& f, Assembly& a) {
-  if (f.options.ledger) a.state.ledger.zeroing += kinetic_energy(f, a);
-  zero_velocities(f, a);
-}
-
-void rescale_inertia(const Fixture& f, const RowSums& sums, Assembly& a) {
-  const double before = f.options.ledger ? kinetic_energy(f, a) : 0;
-  scale_inertia(f, sums, a);
-  if (f.options.ledger) a.state.ledger.zeroing += before - kinetic_energy(f, a);
-}
-
-void begin_loading(const Fixture& f, Assembly& a, Loading loading) {
-  const bool quasi_static = loading == Loading::quasi_static;
-  if (quasi_static != a.state.quasi_static) {
-    // Physical velocities mean nothing to scaled masses, nor the reverse: carried over they would be an impact. Their
-    // energy is booked.
-    if (f.options.ledger && !a.state.quasi_static) a.state.ledger.zeroing += kinetic_energy(f, a);
-    zero_velocities(f, a);
-    a.state.last_rate.setZero();
-    a.state.mean_spin.setZero();
-    a.state.servo_rate.setZero();
-    a.state.last_step = quasi_static ? 1 : 0;
-    a.state.quasi_static = quasi_static;
-    if (f.damping.dashpot != Dashpot::none) evaluate_forces(f, a);  // no velocity, no dashpot force
-  }
-  if (quasi_static) return;
-  use_physical_inertia(f, a);
-  a.state.look_steps = -1;
-}
-
-namespace {
-
 /// Books one sub-step; `moment_before` is the contacts' moment at its start, and becomes that at its end.
-void book_step(const Fixture& f, Assembly& a, const Dissipation& lost, const StepSums& sums, double step, bool physical,
+void book_step(const Model& f, Assembly& a, const Dissipation& lost, const StepSums& sums, double step, bool physical,
                const Matrix3& gradient, Matrix3& moment_before) {
   EnergyLedger& ledger = a.state.ledger;
   const Matrix3 moment = contact_moment(f, a);
@@ -237,7 +115,7 @@ void book_step(const Fixture& f, Assembly& a, const Dissipation& lost, const Ste
 /// Velocities are those of the half step behind. Where the step changes that half step does too: v' <- v' + (dt_old -
 /// dt_new)/2 f/m (and w'), without which a Hertz impact gains 2 % of its energy from the steps that it asks for.
 /// Changes of less than a hundredth are let be.
-void shift_half_step(const Fixture& f, Assembly& a, double step) {
+void shift_half_step(const Model& f, Assembly& a, double step) {
   const double shift = 0.5 * (a.state.last_step - step);
   if (f.options.fixed_time_step > 0 || !(a.state.last_step > 0) || std::abs(shift) < 0.005 * a.state.last_step) return;
   const std::vector<Resultant> resultants = resultants_of(f, a);
@@ -248,7 +126,7 @@ void shift_half_step(const Fixture& f, Assembly& a, double step) {
 }
 
 /// Divides the sub-steps that are left, so that the collisions that a new list shows are followed.
-void divide_rest(const Fixture& f, const Collisions& ahead, Assembly& a, LatticePath& path, double& step) {
+void divide_rest(const Model& f, const Collisions& ahead, Assembly& a, LatticePath& path, double& step) {
   if (!(ahead.step < step)) return;
   const double parts = std::ceil(step / ahead.step), left = double(path.steps - path.done) * parts;
   if (left > double(f.options.max_substeps))
@@ -262,108 +140,171 @@ void divide_rest(const Fixture& f, const Collisions& ahead, Assembly& a, Lattice
   shift_half_step(f, a, step);
 }
 
+/// The sub-steps of one Advance.
+class SubSteps {
+ public:
+  SubSteps(const Model& model, Assembly& assembly, const Advance& what);
+  Advanced make();
+
+ private:
+  /// Cell and constants of the next sub-step.
+  void move_cell();
+  void move_grains();
+  /// Lists the pairs anew; where the lattice is reduced, what is held in its frame turns with it.
+  void list_pairs_anew();
+  void turn_with(const Reduction& reduction, const Matrix3& lattice_before);
+  void update_pairs();
+  /// dt > 0: what the new list shows of collisions to come.
+  void look_ahead();
+
+  const Model& f_;
+  Assembly& a_;
+  const Advance& what_;
+  const bool physical_;
+  const Kernels& kernels_;
+  const GrainKernel move_;
+  Workers* const team_;
+  StepConstants c_;
+  LatticePath path_;
+  Vector3 omega_ = Vector3::Zero();  ///< rate at which the frame turns, rad/s, cell frame
+  double step_, total_mass_ = 0;
+  long check_every_;
+  PairArrays pairs_;
+  GrainArrays grains_;
+  StepSums sums_;
+  Matrix3 rate_end_, rate_mid_, moment_before_ = Matrix3::Zero();
+  StepClock clock_;
+};
+
+GrainKernel grain_kernel(const Model& f, const Assembly& a, Loading loading) {
+  const auto kind = std::size_t(damping_kind(f.damping, loading));
+  const Kernels& kernels = f.kernels_at(a.state.quasi_static);
+  return loading == Loading::physical ? kernels.dynamic[kind] : kernels.quasi_static[kind];
+}
+
+SubSteps::SubSteps(const Model& model, Assembly& assembly, const Advance& what)
+    : f_(model),
+      a_(assembly),
+      what_(what),
+      physical_(what.loading == Loading::physical),
+      kernels_(f_.kernels_at(a_.state.quasi_static)),
+      move_(grain_kernel(f_, a_, what.loading)),
+      team_(f_.sharing()),
+      c_(base_constants(f_, a_)),
+      path_{a_.cell.lattice, what.increment.stretch * a_.cell.lattice, what.increment.rotation, 0, what.steps},
+      step_(what.step),
+      check_every_(what.check_every),
+      clock_(f_.times) {
+  c_.losses = f_.options.ledger;
+  c_.local_damping = physical_ ? f_.damping.local : f_.damping.local_quasi_static;
+  if (physical_) {
+    shift_half_step(f_, a_, step_);
+    omega_ = rotation_vector(what.increment.rotation) / (step_ * double(what.steps));
+  }
+  for (std::size_t g = 0; g < f_.size(); ++g) total_mass_ += a_.mass[g];
+  pairs_ = arrays_of(a_.pairs);
+  grains_ = arrays_of(f_, a_);
+  if (f_.options.ledger) moment_before_ = contact_moment(f_, a_);
+}
+
+void SubSteps::move_cell() {
+  const Matrix3 before = a_.cell.lattice;
+  a_.cell.lattice = path_.lattice_after(++path_.done);
+  set_step(before, a_.cell.lattice, step_, c_, rate_end_, rate_mid_);
+  for (int k = 0; k < 3; ++k) c_.mean_velocity[k] = a_.state.mean_velocity[k];
+  if (!physical_) return;
+  const Vector3 mean_spin = axial(rate_mid_) + omega_;
+  set_frame_terms(rate_mid_, omega_, mean_spin - a_.state.mean_spin, c_);
+  a_.state.mean_spin = mean_spin;
+}
+
+void SubSteps::move_grains() {
+  clock_.begin_grains();
+  sweep_grains(move_, c_, grains_, pairs_, long(a_.mass.size()), team_, sums_);
+  clock_.end_grains();
+  // The rows that pad the lanes lose the mean velocity too, step after step; their speed must never count.
+  std::fill(a_.rows.begin() + std::ptrdiff_t(f_.size()) * f_.row_length(), a_.rows.end(), 0.0);
+  for (int k = 0; k < 3; ++k) a_.state.mean_velocity[k] = sums_.momentum[k] / total_mass_;
+  ++a_.state.list_steps;
+  a_.state.last_rate = rate_end_;
+  a_.state.last_step = step_;
+}
+
+void SubSteps::list_pairs_anew() {
+  clock_.begin_list();
+  const Matrix3 lattice_before = a_.cell.lattice;
+  const Reduction reduction = rebuild(f_, a_);
+  if (reduction.changed) turn_with(reduction, lattice_before);
+  pairs_ = arrays_of(a_.pairs);
+  grains_ = arrays_of(f_, a_);
+  clock_.end_list();
+}
+
+void SubSteps::turn_with(const Reduction& reduction, const Matrix3& lattice_before) {
+  const Matrix3 more = turn_path(path_, lattice_before, reduction, a_.cell);
+  omega_ = reduction.rotation.transpose() * omega_;
+  a_.state.mean_spin = reduction.rotation.transpose() * a_.state.mean_spin;
+  rate_mid_ = reduction.rotation.transpose() * rate_mid_ * reduction.rotation;
+  if (physical_ && path_.steps > 0) {
+    const Vector3 faster = rotation_vector(more) / (step_ * double(path_.steps));
+    omega_ += faster;
+    rate_mid_ -= cross_matrix(faster);  // their sum is the velocity gradient of the step just made
+  }
+  c_.lattice = upper_triangle(a_.cell.lattice);
+  set_rate(a_.state.last_rate, c_);
+  moment_before_ = reduction.rotation.transpose() * moment_before_ * reduction.rotation;
+}
+
+void SubSteps::update_pairs() {
+  Dissipation lost;
+  clock_.begin_pairs();
+  if (f_.options.ledger)
+    kernels_.pairs_ledger(c_, pairs_, a_.rows.data(), 0, long(a_.pairs.padded()), &lost);
+  else
+    sweep_pairs(kernels_.pairs, c_, pairs_, a_.rows.data(), long(a_.pairs.padded()), team_);
+  clock_.end_pairs();
+  if (f_.options.ledger)
+    book_step(f_, a_, lost, sums_, step_, physical_, rate_mid_ + cross_matrix(omega_), moment_before_);
+}
+
+void SubSteps::look_ahead() {
+  const double rest = step_ * double(path_.steps - path_.done);
+  const Collisions ahead = collisions_ahead(f_, a_, nullptr, what_.follow_collisions,
+                                            {a_.state.last_rate, rest, std::numeric_limits<double>::infinity()});
+  if (what_.follow_collisions) divide_rest(f_, ahead, a_, path_, step_);
+  if (ahead.deep) check_every_ = deep_check;
+}
+
+Advanced SubSteps::make() {
+  long made = 0, since_check = 0;
+  for (; path_.done < path_.steps; ++made) {
+    clock_.begin_step(made);
+    if (f_.stop != nullptr && f_.stop->load(std::memory_order_relaxed)) throw Interrupted();
+    move_cell();
+    move_grains();
+    const double travel = 1.01 * step_ * std::sqrt(sums_.largest_speed_squared);
+    a_.state.list_travel += travel;
+    const bool stale = list_is_stale(f_, a_, what_.follow_collisions ? 2 * travel : 0.0);
+    if (stale) list_pairs_anew();
+    update_pairs();
+    if (stale && physical_) look_ahead();
+    if (check_every_ > 0 && ++since_check >= check_every_) {
+      since_check = 0;
+      check_overlaps(f_, balance_of(f_, a_));
+    }
+  }
+  a_.state.grain_steps += std::uint64_t(made) * f_.size();
+  if (!physical_) {
+    a_.state.look_steps += made;
+    a_.state.lag_steps += made;
+    a_.state.rest_steps = what_.increment.rigid ? a_.state.rest_steps + made : 0;
+  }
+  turn_frame(a_.cell, path_.end_rotation);
+  return {made, step_};
+}
+
 }  // namespace
 
-Advanced advance(const Fixture& f, Assembly& a, const Advance& what) {
-  const bool physical = what.loading == Loading::physical;
-  StepConstants c = base_constants(f, a);
-  c.losses = f.options.ledger;
-  c.local_damping = physical ? f.damping.local : f.damping.local_quasi_static;
-  const auto kind = std::size_t(damping_kind(f.damping, what.loading));
-  const Kernels& kernels = f.kernels_at(a.state.quasi_static);
-  const GrainKernel move = physical ? kernels.dynamic[kind] : kernels.quasi_static[kind];
-
-  LatticePath path{a.cell.lattice, what.increment.stretch * a.cell.lattice, what.increment.rotation, 0, what.steps};
-  Vector3 omega = Vector3::Zero();
-  double step = what.step;
-  if (physical) shift_half_step(f, a, step);
-  long made = 0, look_every = what.look_every, since_look = 0;
-  if (physical) omega = rotation_vector(what.increment.rotation) / (step * double(what.steps));
-  double total_mass = 0;
-  for (std::size_t g = 0; g < f.size(); ++g) total_mass += a.mass[g];
-  PairArrays pairs = arrays_of(a.pairs);
-  GrainArrays grains = arrays_of(f, a);
-  const long padded_grains = long(a.mass.size());
-  Workers* team = f.sharing();
-  StepSums sums;
-  Matrix3 rate_end, rate_mid, moment_before = Matrix3::Zero();
-  if (f.options.ledger) moment_before = contact_moment(f, a);
-
-  StepClock clock(f.times);
-  for (; path.done < path.steps; ++made) {
-    clock.begin_step(made);
-    if (f.stop != nullptr && f.stop->load(std::memory_order_relaxed)) throw Interrupted();
-    const Matrix3 before = a.cell.lattice;
-    a.cell.lattice = path.lattice_after(++path.done);
-    set_step(before, a.cell.lattice, step, c, rate_end, rate_mid);
-    for (int k = 0; k < 3; ++k) c.mean_velocity[k] = a.state.mean_velocity[k];
-    if (physical) {
-      const Vector3 mean_spin = axial(rate_mid) + omega;
-      set_frame_terms(rate_mid, omega, mean_spin - a.state.mean_spin, c);
-      a.state.mean_spin = mean_spin;
-    }
-    clock.begin_grains();
-    sweep_grains(move, c, grains, pairs, padded_grains, team, sums);
-    clock.end_grains();
-    // The rows that pad the lanes lose the mean velocity too, step after step; their speed must never count.
-    std::fill(a.rows.begin() + std::ptrdiff_t(f.size()) * f.row_length(), a.rows.end(), 0.0);
-    for (int k = 0; k < 3; ++k) a.state.mean_velocity[k] = sums.momentum[k] / total_mass;
-    const double travel = 1.01 * step * std::sqrt(sums.largest_speed_squared);
-    a.state.list_travel += travel;
-    ++a.state.list_steps;
-    a.state.last_rate = rate_end;
-    a.state.last_step = step;
-    const bool listed_anew = list_is_stale(f, a, what.follow_collisions ? 2 * travel : 0.0);
-    if (listed_anew) {
-      clock.begin_list();
-      const Matrix3 lattice_before = a.cell.lattice;
-      const Reduction reduction = rebuild(f, a);
-      if (reduction.changed) {
-        const Matrix3 more = turn_path(path, lattice_before, reduction, a.cell);
-        omega = reduction.rotation.transpose() * omega;
-        a.state.mean_spin = reduction.rotation.transpose() * a.state.mean_spin;
-        rate_mid = reduction.rotation.transpose() * rate_mid * reduction.rotation;
-        if (physical && path.steps > 0) {
-          const Vector3 faster = rotation_vector(more) / (step * double(path.steps));
-          omega += faster;
-          rate_mid -= cross_matrix(faster);  // their sum is the velocity gradient of the step just made
-        }
-        c.lattice = upper_triangle(a.cell.lattice);
-        set_rate(a.state.last_rate, c);
-        moment_before = reduction.rotation.transpose() * moment_before * reduction.rotation;
-      }
-      pairs = arrays_of(a.pairs);
-      grains = arrays_of(f, a);
-      clock.end_list();
-    }
-    Dissipation lost;
-    clock.begin_pairs();
-    if (f.options.ledger)
-      kernels.pairs_ledger(c, pairs, a.rows.data(), 0, long(a.pairs.padded()), &lost);
-    else
-      sweep_pairs(kernels.pairs, c, pairs, a.rows.data(), long(a.pairs.padded()), team);
-    clock.end_pairs();
-    if (f.options.ledger) book_step(f, a, lost, sums, step, physical, rate_mid + cross_matrix(omega), moment_before);
-    if (listed_anew && physical) {
-      const double rest = step * double(path.steps - path.done);
-      const Collisions ahead = collisions_ahead(f, a, nullptr, what.follow_collisions,
-                                                {a.state.last_rate, rest, std::numeric_limits<double>::infinity()});
-      if (what.follow_collisions) divide_rest(f, ahead, a, path, step);
-      if (ahead.deep) look_every = deep_look;
-    }
-    if (look_every > 0 && ++since_look >= look_every) {
-      since_look = 0;
-      check_overlaps(f, balance_of(f, a));
-    }
-  }
-  a.state.grain_steps += std::uint64_t(made) * f.size();
-  if (!physical) {
-    a.state.look_steps += made;
-    a.state.lag_steps += made;
-    a.state.rest_steps = what.increment.rigid ? a.state.rest_steps + made : 0;
-  }
-  turn_frame(a.cell, path.end_rotation);
-  return {made, step};
-}
+Advanced advance(const Model& f, Assembly& a, const Advance& what) { return SubSteps(f, a, what).make(); }
 
 }  // namespace rvelab

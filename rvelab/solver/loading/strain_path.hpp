@@ -7,6 +7,8 @@ namespace rvelab {
 
 /// Rotation matrix of a rotation vector (rad), by series: no libm in what touches state.
 Matrix3 rotation_matrix(const Vector3& rotation_vector);
+/// Rotation vector (rad) of a proper rotation matrix, with square roots only.
+Vector3 rotation_vector(const Matrix3& rotation);
 
 /// The part of an increment done at fraction s, in the frame of its start (where quarter turns change no bit of it):
 /// straight in the stretch, geodesic in the rotation. At dt = 0 (not `turning`) the frame turns at the end, since

@@ -1,4 +1,5 @@
-// Rve::network: the contact network as a value. Declared in rve.hpp.
+#include "rvelab/solver/assembly/contact_states.hpp"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -6,17 +7,13 @@
 #include "rvelab/solver/assembly/contact_stiffness.hpp"
 #include "rvelab/solver/assembly/memory_order.hpp"
 #include "rvelab/solver/assembly/pair_geometry.hpp"
-#include "rvelab/solver/loading/accuracy.hpp"
-#include "rvelab/solver/resting.hpp"
-#include "rvelab/solver/rve.hpp"
-#include "rvelab/solver/rve_impl.hpp"
 
 namespace rvelab {
 
 namespace {
 
 /// Elastic stiffnesses and energies of a touching contact, from its pair parameters and history.
-void set_elastic(const Fixture& f, const PairTable& pairs, std::size_t p, double radius_ratio, ContactState& c) {
+void set_elastic(const Model& f, const PairTable& pairs, std::size_t p, double radius_ratio, ContactState& c) {
   const PairParameters q = parameters_of(f, pairs, p);
   with_force(f, [&](auto force) {
     using Force = decltype(force);
@@ -34,19 +31,19 @@ void set_elastic(const Fixture& f, const PairTable& pairs, std::size_t p, double
 }
 
 /// Normal and arms: the contact point halves the overlap.
-void set_arms(const Fixture& f, const PairPlace& at, ContactState& c) {
+void set_arms(const Model& f, const PairPlace& at, ContactState& c) {
   c.normal = c.branch / at.length;
   c.arm_i = (f.radius[std::size_t(c.i)] - 0.5 * at.overlap) * c.normal;
   c.arm_j = -((f.radius[std::size_t(c.j)] - 0.5 * at.overlap) * c.normal);
 }
-void set_arms(const Fixture&, const EllipsePlace& at, ContactState& c) {
+void set_arms(const Model&, const EllipsePlace& at, ContactState& c) {
   c.normal = {at.normal.x, at.normal.y, 0};
   const Vector3 across(-at.normal.y, at.normal.x, 0);
   c.arm_i = (at.reach_i - 0.5 * at.overlap) * c.normal + at.turn_i * across;
   c.arm_j = -((at.reach_j - 0.5 * at.overlap) * c.normal + at.turn_j * across);
 }
 
-void add_torques(const Fixture& f, const ContactState& c, const Vector3& force, Network& net) {
+void add_torques(const Model& f, const ContactState& c, const Vector3& force, Network& net) {
   GrainState &i = net.grains[std::size_t(c.i)], &j = net.grains[std::size_t(c.j)];
   if (f.shape == Shape::ellipse) {
     i.torque -= c.arm_i.cross(force) + c.rolling_moment;
@@ -60,7 +57,7 @@ void add_torques(const Fixture& f, const ContactState& c, const Vector3& force, 
 
 /// A touching contact; `at` is its place.
 template <class Place>
-ContactState state_of(const Fixture& f, const PairTable& pairs, std::size_t p, const Place& at) {
+ContactState state_of(const Model& f, const PairTable& pairs, std::size_t p, const Place& at) {
   ContactState c;
   c.i = pairs.i[p];
   c.j = pairs.j[p];
@@ -86,7 +83,7 @@ ContactState state_of(const Fixture& f, const PairTable& pairs, std::size_t p, c
 }
 
 template <Shape shape>
-void add_contacts(const Fixture& f, const Assembly& a, Network& net) {
+void add_contacts(const Model& f, const Assembly& a, Network& net) {
   const PairGeometry<shape> pair(f, a);
   for (const std::int32_t place : a.pairs.order) {
     const auto p = std::size_t(place);
@@ -102,7 +99,7 @@ void add_contacts(const Fixture& f, const Assembly& a, Network& net) {
 }
 
 template <Shape shape>
-bool some_contact_must_slip(const Fixture& f, const Assembly& a) {
+bool some_contact_must_slip(const Model& f, const Assembly& a) {
   constexpr double most = 1 + 1e-6;  // a sliding contact is at its limit, give or take round-off
   const PairGeometry<shape> pair(f, a);
   return std::any_of(a.pairs.order.begin(), a.pairs.order.end(), [&](std::int32_t place) {
@@ -120,7 +117,7 @@ bool some_contact_must_slip(const Fixture& f, const Assembly& a) {
 bool at_limit(double size, double limit) { return size >= (1 - 1e-6) * limit; }
 
 template <Shape shape>
-double constraints_over_motions(const Fixture& f, const Assembly& a) {
+double constraints_over_motions(const Model& f, const Assembly& a) {
   const PairGeometry<shape> pair(f, a);
   const int d = f.dimension(), turns = d == 2 ? 1 : 3;
   std::vector<int> contacts(f.size(), 0);
@@ -152,7 +149,9 @@ double constraints_over_motions(const Fixture& f, const Assembly& a) {
   return constraints / (double(held) * (d + turns * turning));
 }
 
-Network network_of(const Fixture& f, const Assembly& a) {
+}  // namespace
+
+Network network_of(const Model& f, const Assembly& a) {
   Network net;
   net.shape = f.shape;
   net.cell = a.cell;
@@ -180,18 +179,18 @@ Network network_of(const Fixture& f, const Assembly& a) {
   return in_id_order(std::move(net), a.state.memory_order);
 }
 
-}  // namespace
-
-double Rve::Impl::constraint_ratio() const {
-  return with_shape(fixture.shape, [&](auto shape) { return constraints_over_motions<shape.value>(fixture, now); });
+double grip_of(double friction) {
+  constexpr double half =
+      0.15;  // fitted to 21 packings with the ratio of stress error to unbalanced ratio (accuracy.hpp)
+  return friction / (friction + half);
 }
 
-bool Rve::Impl::holds_more_than_friction() const {
-  return with_shape(fixture.shape, [&](auto shape) { return some_contact_must_slip<shape.value>(fixture, now); });
+double constraint_ratio(const Model& f, const Assembly& a) {
+  return with_shape(f.shape, [&](auto shape) { return constraints_over_motions<shape.value>(f, a); });
 }
 
-Network Rve::network() const {
-  return brought_up_to_date(*impl_, [](const Impl& m) { return network_of(m.fixture, m.now); });
+bool holds_more_than_friction(const Model& f, const Assembly& a) {
+  return with_shape(f.shape, [&](auto shape) { return some_contact_must_slip<shape.value>(f, a); });
 }
 
 }  // namespace rvelab

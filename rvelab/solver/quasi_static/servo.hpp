@@ -47,10 +47,11 @@ class Servo {
   Vector6 residual(double fraction, const Matrix3& strain, const Matrix3& stress) const;
   /// Largest |residual| / scale over the rows that involve stress.
   double largest_error(const Vector6& residual) const;
+  /// The same at the end of the target.
+  double held_error(const Matrix3& strain_so_far, const Matrix3& stress) const {
+    return largest_error(residual(1.0, strain_so_far, stress));
+  }
 
-  /// Largest |residual| / scale over the rows that involve stress, at the end of the target.
-  double held_error(const Matrix3& strain_so_far, const Matrix3& stress) const;
-  bool controls_stress() const;
   /// Largest stress that the scales of the rows stand for, Pa; 0 without a row of stress.
   double held_stress() const;
 

@@ -28,12 +28,12 @@ class Trial {
   void begin(Assembly& assembly, Changes changes);
   Changes changes() const { return changes_; }
   /// The committed state and that of the trial change places, bit for bit; once more, and they are where they were.
-  /// Allocates nothing. Forces are those of the state then, unless it is `resting` and has none.
-  void exchange(const Fixture& fixture, Assembly& assembly, bool resting) noexcept;
+  /// Allocates nothing. Forces are those of the state then, unless its buffers are `released`.
+  void exchange(const Model& model, Assembly& assembly, bool released) noexcept;
   /// No trial is pending. What `assembly` is now is its state: the committed one after an exchange.
   void end(Assembly& assembly) noexcept;
   bool pending() const { return pending_; }
-  /// Lets go of the buffers that the next trial would use. Nothing may be pending.
+  /// Releases the buffers that the next trial would use. Nothing may be pending.
   void release() { *this = Trial(); }
   std::size_t bytes() const;
 

@@ -1,4 +1,4 @@
-#include "rvelab/solver/loading/frequency.hpp"
+#include "rvelab/solver/at_rate/frequency.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -20,7 +20,7 @@ struct Spring {
 };
 
 template <Shape shape, class Force>
-std::vector<Spring> springs_of(const Fixture& f, const Assembly& a) {
+std::vector<Spring> springs_of(const Model& f, const Assembly& a) {
   const PairGeometry<shape> pair(f, a);
   std::vector<Spring> springs;
   for (const std::int32_t place : a.pairs.order) {
@@ -64,7 +64,7 @@ double stiffness_times(const std::vector<Spring>& springs, const Motion& motion,
   return energy;
 }
 
-double largest_quotient(const Fixture& f, const std::vector<Spring>& springs) {
+double largest_quotient(const Model& f, const std::vector<Spring>& springs) {
   constexpr int iterations = 60;
   const std::size_t n = f.size();
   const int d = f.dimension();
@@ -98,7 +98,7 @@ double largest_quotient(const Fixture& f, const std::vector<Spring>& springs) {
 
 }  // namespace
 
-double frequency_reached(const Fixture& f, const Assembly& a) {
+double frequency_reached(const Model& f, const Assembly& a) {
   return with_force(f, [&](auto force) {
     using Force = decltype(force);
     return with_shape(f.shape, [&](auto shape) { return largest_quotient(f, springs_of<shape.value, Force>(f, a)); });

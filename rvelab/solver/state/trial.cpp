@@ -1,4 +1,4 @@
-#include "rvelab/solver/loading/trial.hpp"
+#include "rvelab/solver/state/trial.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -44,7 +44,7 @@ void Trial::end(Assembly& a) noexcept {
   }
 }
 
-void Trial::exchange(const Fixture& f, Assembly& a, bool resting) noexcept {
+void Trial::exchange(const Model& f, Assembly& a, bool released) noexcept {
   std::swap(a.cell, cell_);
   if (changes_ == Changes::deferred_strain) {
     std::swap(a.state.deferred_stretch, deferred_stretch_);
@@ -70,7 +70,7 @@ void Trial::exchange(const Fixture& f, Assembly& a, bool resting) noexcept {
     }
     a.pairs.root_overlap.swap(root_overlap_);
   }
-  if (resting) return;
+  if (released) return;
   std::fill(a.pairs.touched.begin(), a.pairs.touched.end(), 1);  // by the other state: nothing is passed over
   evaluate_forces(f, a);
 }

@@ -8,6 +8,7 @@
 #pragma once
 
 #include "rvelab/solver/loading/mixed_target.hpp"
+#include "rvelab/solver/quasi_static/constants.hpp"
 
 namespace rvelab {
 
@@ -25,8 +26,8 @@ class Recovery {
   void judge(double error);
   bool under_way() const { return under_way_; }
 
-  /// Strain of a sub-step at which the cell may go after the stress.
-  double pace() const { return 3e-3 * growth_ * strain_of_overlap_; }
+  /// Strain of a sub-step by which the cell may follow the stress.
+  double closing() const { return constants::closing_over_overlap * growth_ * strain_of_overlap_; }
 
   /// Sub-steps that the target may wait yet, after so many in all.
   long patience(long substeps);
@@ -34,10 +35,10 @@ class Recovery {
   void waited(long substeps, const Matrix3& strain);
   long substeps() const { return substeps_; }
 
-  /// After a look at the contacts: their number per grain, and the strain that the servo made last. Throws
+  /// After a check of the contacts: their number per grain, and the strain that the servo made last. Throws
   /// IncrementFailed where the grains cannot carry what is held: none touches another and the stress asks for more
   /// room, or the cell has sheared by a half while it waited.
-  void looked(double coordination, const Matrix3& last_strain);
+  void checked(double coordination, const Matrix3& last_strain);
 
  private:
   double tolerance_, strain_of_overlap_;

@@ -1,6 +1,6 @@
-// What an assembly can make again: the working arrays of its pairs, its masses, its forces. A resting one has
-// released them and keeps its list, so that rebuilding them searches nothing.
-#include "rvelab/solver/resting.hpp"
+// What an assembly can make again: the working arrays of its pairs, its masses, its forces. It keeps its list, so that
+// rebuilding them searches nothing.
+#include "rvelab/solver/state/release.hpp"
 
 #include <utility>
 
@@ -22,12 +22,12 @@ std::size_t bytes_of(const Array& array) {
 
 }  // namespace
 
-void put_masses_into_rows(const Fixture& f, Assembly& a) {
+void put_masses_into_rows(const Model& f, Assembly& a) {
   const std::size_t length = std::size_t(f.row_length());
   if (a.state.look_steps < 0 || a.mass.empty()) return;
   for (std::size_t g = 0; g < f.size(); ++g) {
-    a.rows[g * length + resting_mass(f.shape)] = a.mass[g];
-    a.rows[g * length + resting_inverse_inertia(f.shape)] = a.inverse_inertia[g];
+    a.rows[g * length + released_mass(f.shape)] = a.mass[g];
+    a.rows[g * length + released_inverse_inertia(f.shape)] = a.inverse_inertia[g];
   }
 }
 
@@ -38,11 +38,11 @@ void release_buffers(Assembly& a) {
   release(a.mass, a.inverse_mass, a.inverse_inertia);
 }
 
-void rebuild_buffers(const Fixture& f, Assembly& a) {
+void rebuild_buffers(const Model& f, Assembly& a) {
   try {
     derive_pairs(f, a.pairs);
     for (Buffer* b : {&a.mass, &a.inverse_mass, &a.inverse_inertia}) b->assign(padded_to_lanes(f.size()), 0.0);
-  } catch (...) {  // no memory: it goes on resting, the masses in its rows
+  } catch (...) {  // no memory: it stays released, the masses in its rows
     release_buffers(a);
     throw;
   }
@@ -52,10 +52,10 @@ void rebuild_buffers(const Fixture& f, Assembly& a) {
   } else {
     for (std::size_t g = 0; g < f.size(); ++g) {
       double* row = a.rows.data() + g * length;
-      a.mass[g] = std::exchange(row[resting_mass(f.shape)], 0.0);
+      a.mass[g] = std::exchange(row[released_mass(f.shape)], 0.0);
       a.inverse_mass[g] = 1 / a.mass[g];
       a.inverse_inertia[g] =
-          std::exchange(row[resting_inverse_inertia(f.shape)], f.shape == Shape::sphere ? row[3] : 0.0);
+          std::exchange(row[released_inverse_inertia(f.shape)], f.shape == Shape::sphere ? row[3] : 0.0);
       if (f.shape == Shape::ellipse) set_ellipse_matrix(f, g, row);
     }
   }

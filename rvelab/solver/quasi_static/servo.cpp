@@ -1,4 +1,4 @@
-#include "rvelab/solver/loading/servo.hpp"
+#include "rvelab/solver/quasi_static/servo.hpp"
 
 #include <Eigen/LU>
 #include <Eigen/QR>
@@ -7,15 +7,14 @@
 #include <string>
 
 #include "rvelab/error.hpp"
+#include "rvelab/solver/quasi_static/constants.hpp"
 
 namespace rvelab {
 
-namespace {
+using constants::integral_gain;
+using constants::proportional_gain;
 
-// Half of the error at each update, a twentieth into the integral term. Any value below one is stable; these settle a
-// change of loading direction in about twenty segments.
-constexpr double proportional_gain = 0.5;
-constexpr double integral_gain = 0.05;
+namespace {
 
 /// Components in use: xx, yy, xy of the six in 2D.
 constexpr int plane_components[3] = {0, 1, 5};
@@ -148,10 +147,6 @@ Matrix3 Servo::next_strain_at_rate(double to, double paced_strain, double full_p
   return strain_matrix(gain_ * rows_of(false, r - a_ * strain_components(held))) + held;
 }
 
-double Servo::held_error(const Matrix3& strain, const Matrix3& stress) const {
-  return largest_error(residual(1.0, strain, stress));
-}
-
 double Servo::largest_error(const Vector6& r) const {
   double largest = 0;
   for (int k = 0; k < rows_; ++k)
@@ -164,12 +159,6 @@ double Servo::held_stress() const {
   for (int r = 0; r < rows_; ++r)
     if (stress_row_[r]) largest = std::max(largest, scale_[r] / b_.row(r).norm());
   return largest;
-}
-
-bool Servo::controls_stress() const {
-  for (bool row : stress_row_)
-    if (row) return true;
-  return false;
 }
 
 }  // namespace rvelab

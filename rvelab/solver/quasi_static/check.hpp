@@ -1,0 +1,32 @@
+// The equilibrium check of quasi-static loading. Every 50 sub-steps, over as many calls as make them, an interval ends:
+// masses are scaled anew and the stiffness ratio of the interval is measured.
+#pragma once
+
+#include "rvelab/solver/state/state.hpp"
+
+namespace rvelab {
+
+class EquilibriumCheck {
+ public:
+  /// Begins quasi-static loading: velocities of another kind end, masses are scaled where none are.
+  explicit EquilibriumCheck(State& state);
+
+  /// Measures the unbalanced ratio. Throws as State::checked_balance.
+  const OutOfBalance& check();
+  /// Whether so many sub-steps are made since masses were scaled that a check is due.
+  bool is_due() const;
+  /// Whether the end of an increment of so many sub-steps and this strain is checked. If not, it is judged by what is
+  /// known already.
+  bool is_due_at_end(long substeps, double strain) const;
+
+ private:
+  void begin_interval();
+  void renew_interval();
+
+  State& state_;
+  /// Grains, contacts or parameters are others than those that masses were scaled for, and the state may be no
+  /// equilibrium any more: friction lowered shows in the forces after a sub-step only.
+  bool unknown_;
+};
+
+}  // namespace rvelab

@@ -1,0 +1,151 @@
+// The constants of quasi-static loading, with what each was measured on. u is the unbalanced ratio, p the pressure, n a
+// number of sub-steps, x a strain over that of the overlaps. "At least", "at most" are of what the name says.
+#pragma once
+
+namespace rvelab::constants {
+
+// Equilibrium checks.
+
+/// Sub-steps between checks, for which masses and row sums hold: a check takes the time of five.
+constexpr long check_interval = 50;
+/// The end of an increment is checked from this n or strain on; shorter ones are judged by what is expected, so that a
+/// call of one sub-step makes 2.2 times its instructions (tools/bench/count).
+constexpr long checked_steps = 10;
+constexpr double checked_strain = 1e-4;
+/// Increments in one direction are judged together up to this strain: a path cut finely is the same path. One direction
+/// is within acos(0.9) = 26 degrees: a straight path strays from it by less than a sub-step does.
+constexpr double judged_together = 1e-4, same_direction = 0.9;
+/// Quasi-static up to this u over its target: 97 % of the checks of a dense biaxial test are within 2.
+constexpr double quasi_static_ratio = 3;
+/// Least p in a scale of errors, over the reference pressure; u has the same floor. Without it a cell that had come
+/// apart took a million sub-steps to start, and 15 of 800 such took 98 % of a biaxial test's time.
+constexpr double least_pressure = 1e-3;
+
+// Unbalanced ratio that the tolerances ask for.
+
+/// K p u times this is allowed.
+constexpr double step_margin = 2;
+/// Part of |C : d eps| that counts as a change of stress at least, so that flow has a relative tolerance.
+constexpr double least_change = 0.1;
+/// Under stress control peak angles of dense discs are 29.0, 29.2, 29.4 degrees at u = 1e-2, 1e-3 (default) and 1e-4,
+/// for 1, 4 and 30 times the time.
+constexpr double least_target = 1e-7, largest_target = 2e-3, largest_target_of_held_path = 1e-2;
+/// Under stress control u is the tolerance over this: at a tolerance of 0.1, 0.01, 0.003, 0.001 dense discs to 5 % have
+/// a mean u of 1.7e-3, 1.1e-3, 3.5e-4, 1.2e-4 for 7, 18, 55, 156 million grain-steps.
+constexpr double tolerance_over_ratio = 10;
+
+// Strain increment per step.
+
+/// The first over the mean overlap by diameter: a dense packing has u = 2e-4 to 4e-4 at it.
+constexpr double first_step_over_overlap = 1e-3, ratio_of_first_step = 3e-4;
+/// Mean overlap over the reference one, at least.
+constexpr double least_overlap = 0.1;
+/// From check to check it changes by (u/target)^(3/4) within these: of all powers 0.7 was best.
+constexpr double least_change_of_step = 0.5, largest_change_of_step = 1.4;
+/// The largest changes the overlaps by a hundredth; where no grain touches another there is none.
+constexpr double largest_step_over_overlap = 1e-2, step_of_gas = 1e-5;
+/// Smallest over largest at a target of 1e-3, in proportion to it down to a quarter: in flow without a network u stays
+/// near one at any step. A held stress counts with this part of the reference pressure at least.
+constexpr double smallest_over_largest_step = 0.02, per_ratio = 1e3, least_share_of_smallest = 0.25;
+constexpr double least_held_share = 1e-4;
+/// Asked for by no scene: with less the number of sub-steps would be none.
+constexpr double least_step = 1e-30;
+
+// Number of sub-steps.
+
+/// With a given u: with fewer the grains cannot leave the affine motion (1 % of the stress increment takes 20). After a
+/// reversal, whose velocities still go on, 20 left 10 % of an increment of 1e-5, 30 4 %, 40 1 %.
+constexpr long fewest_steps = 20, fewest_steps_back = 40;
+/// A start is searched for up to this n, by this factor. Its u may be twice the target where the direction goes on:
+/// what a change of the step stirs up decays over the increments that follow.
+constexpr double most_steps_of_start = 1e6, growth_of_search = 1.1, onward_allowance = 2;
+/// n at most, and for each x: ten times the fewest; tolerances below the defaults take more in proportion.
+constexpr double most_steps = 50'000, most_steps_of_overlap = 1000;
+constexpr double default_relative = 1e-2, default_absolute = 1e-4;
+/// After a check that finds u below its target, so much of a start's n will do, down to twice check_interval: after a
+/// faster path the law of starts asks for up to 4e5 for a strain of 1e-6, where 600 are enough.
+constexpr double fewer_after_check = 0.5;
+/// n before an increment is refused for what its present step would need: an expansion by a tenth at kn/(p t) = 1e5
+/// made 18,482 where the start expected 6e7.
+constexpr long settling_steps = 100'000;
+
+// Relaxation.
+
+/// n between checks, and in all before a turn: 300 to 1,000 take a lag of 1e-2 p to 1e-4 p (drawn increments in flow).
+constexpr long relaxation_interval = 25, most_steps_before_turn = 2000;
+/// A target of u beyond this times that of the increment was that of a coarser path.
+constexpr double coarser_path = 2;
+/// What slow modes (n > 3000) keep back of what a relaxation brought, at least: 0.007 to 0.02 in three flowing states
+/// of discs, 0.3 and 0.7 in two that roll, which no relaxation of this length shows.
+constexpr double slow_share = 0.02;
+/// n after which grains are stopped at each peak of the kinetic energy (dynamic relaxation: Cundall 1976; Day 1965):
+/// damping by a part of the force hardly takes from modes without stiffness, such as even rings that turn like gears.
+constexpr long patience_of_damping = 20'000;
+
+// Error K p u with K fitted (accuracy.hpp).
+
+constexpr double share_of_directions = 0.7;  ///< sums of k d^2 over those of f d, kt/kn = 1/2: 2D 0.75, 3D 0.7
+constexpr double stiff_factor = 0.4, least_stiffness_ratio = 0.4;
+constexpr double hyperstatic_factor = 0.3, isostatic_factor = 1.7, isostatic_width = 70;
+constexpr double undamped_factor = 0.1, damped_factor = 3;
+/// x from which an increment errs by more than its end shows: of 348 errors 93 % are within the estimate so, 79 % else.
+constexpr double long_strain = 0.3;
+/// u of the first sub-steps of a start, over m x (1 + 2 x).
+constexpr double largest_start = 0.45;
+
+// Error with K measured on a copy that relaxes.
+
+/// n of the copy: of 190 drawn increments it showed 0.9 to 1.1 of the whole lag for two thirds. What that leaves, over
+/// p u.
+constexpr long rest_steps = 50;
+constexpr double left_by_rest = 1;
+/// n from one measurement to the next, where contacts stay what they are and where they do not.
+constexpr long rest_period = 1000, changed_period = 100;
+/// n of an increment that is measured in any case, and of the first that may be.
+constexpr long long_increment = 200, least_increment = 10;
+
+// Estimate of the error.
+
+/// Over what a measurement has shown: 97.5 % of 393 errors are within. Over the fitted K.
+constexpr double measured_margin = 1.9, fitted_margin = 2.75;
+/// Over sqrt(x) K p u, at least, u the mean on the way: at x = 70, friction 0.05 errors were 6 K p u, the end calm.
+constexpr double way_margin = 1;
+/// Over what is allowed, up to which a tolerance counts as met: 92 % of 742 errors then are (2.75: 91 %, 2: 94 %).
+constexpr double met_margin = 2.4;
+
+// Deferred strain.
+
+/// Of the allowed error, for the extrapolation: a biaxial path of 1 % in pieces of 1e-7 takes 13,697 sub-steps (0.1:
+/// 36,091), in pieces of 1e-4 10,641.
+constexpr double share_of_extrapolation = 0.3;
+/// The slope of the stress holds within acos(0.99) = 8 degrees of the path. Its error is twice its last change,
+/// remembered with a factor, since slips come in rows: 99.5 % of 33,000 stresses to 6 % of strain lay within (once,
+/// none: 94 %).
+constexpr double along_path = 0.99, change_of_slope = 2, memory_of_slope = 0.7;
+
+// Stress control (servo.hpp, recovery.hpp).
+
+/// Any proportional gain below one is stable; with these a change of direction settles in some twenty updates.
+constexpr double proportional_gain = 0.5, integral_gain = 0.05;
+/// n between updates of the servo, and between checks of contacts that form anew.
+constexpr long servo_interval = 5, recovery_interval = 10;
+/// The answer to stress errors at most, over the strain of a full update.
+constexpr double largest_answer = 10;
+/// Stiffness that keeps the gain regular in a gas, over that of one typical contact a grain.
+constexpr double gas_over_contact = 0.01;
+/// Held force over the reference contact force, at least, in the overlap that it is worth.
+constexpr double least_held_force = 1e-7;
+/// Errors from which the target waits, over its tolerance, and at least: a turn of the loading leaves less, which
+/// settles.
+constexpr double far_off = 4, least_far_off = 0.02;
+/// No network: fewer contacts a grain than any that carries stress, and an error next to the whole.
+constexpr double contacts_apart = 2, stress_gone = 0.9;
+/// Closing of the cell in a sub-step over the overlaps, its growth from check to check without a network, and in all:
+/// at a tenth of an overlap a sub-step the servo is still in time.
+constexpr double closing_over_overlap = 3e-3, growth_of_closing = 1.4, most_growth_of_closing = 30;
+/// Shear of a wait that is flow: cells that came apart in avalanches closed by 2e-2 at most.
+constexpr double shear_of_flow = 0.5;
+/// A given wait is this part of the increment's n at least: in stiff packings transients decay as slowly as it is made.
+constexpr long share_of_wait = 4;
+
+}  // namespace rvelab::constants

@@ -1,0 +1,138 @@
+#include "rvelab/solver/quasi_static/error_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "rvelab/cell/pressure.hpp"
+#include "rvelab/solver/assembly/contact_states.hpp"
+#include "rvelab/solver/quasi_static/accuracy.hpp"
+
+namespace rvelab {
+
+using namespace constants;
+
+bool by_tolerance(const State& s) {
+  return s.model().options.fixed_substeps == 0 && s.model().options.target_unbalanced == 0;
+}
+
+double pressure(State& s) { return mean_pressure(s.stress(), s.model().dimension()); }
+
+double pressure_scale(State& s) { return std::max(pressure(s), least_pressure * s.control().reference_pressure); }
+
+double network_change(const State& s, double strain) { return s.control().network_stiffness * strain; }
+
+double overlap_strain(State& s) {
+  const double network = s.control().network_stiffness;
+  return network > 0 ? strain_of_overlap(pressure_scale(s), network, s.model().hardening)
+                     : std::numeric_limits<double>::infinity();
+}
+
+double allowed_by_tolerances(State& s, double stress_change, double network) {
+  const SolverOptions& o = s.model().options;
+  return allowed_error(o.relative_tolerance, o.absolute_tolerance, stress_change, network, pressure_scale(s));
+}
+
+double error_factor(const State& s) {
+  return error_per_unbalance(s.control().softness, s.control().constraint_ratio, s.model().damping.local_quasi_static,
+                             s.model().dimension());
+}
+
+double expected_error(State& s, double ratio) { return error_factor(s) * pressure_scale(s) * ratio; }
+
+double target_ratio(State& s, double network) {
+  if (s.model().options.target_unbalanced > 0) return s.model().options.target_unbalanced;
+  if (!(pressure(s) > 0)) return largest_target;
+  const double allowed = allowed_by_tolerances(s, s.control().softness * network, network);
+  return std::clamp(allowed / (step_margin * expected_error(s, 1)), least_target, largest_target);
+}
+
+double held_tolerance(const State& s) {
+  return std::max(s.model().options.relative_tolerance, s.model().options.absolute_tolerance);
+}
+
+double held_target_ratio(const State& s) {
+  if (s.model().options.target_unbalanced > 0) return s.model().options.target_unbalanced;
+  return std::clamp(held_path_ratio(held_tolerance(s)), least_target, largest_target_of_held_path);
+}
+
+void judge_equilibrium(State& s, Report& report) {
+  const double target =
+      s.control().pace_target > 0 ? s.control().pace_target : target_ratio(s, 0);  // nothing loaded yet
+  report.quasi_static = report.unbalanced_ratio <= quasi_static_ratio * target && report.target_held;
+}
+
+namespace {
+
+Matrix3 stress_in_lab(const Model& f, const Assembly& a) {
+  return -a.cell.rotation * contact_moment(f, a) * a.cell.rotation.transpose() / a.cell.volume();
+}
+
+bool can_measure_lag(State& s) {
+  return by_tolerance(s) && s.ratio_is_measured() && s.control().unbalanced_ratio > 0 && pressure(s) > 0;
+}
+
+bool lag_is_due(State& s, long substeps) {
+  const SolverState& control = s.control();
+  if (!can_measure_lag(s)) return false;
+  if (control.lag_steps >= rest_period) return true;
+  const bool changed = control.lag_strain > overlap_strain(s) && control.lag_steps >= changed_period;
+  return (control.lag_factor == 0 || changed) && substeps >= least_increment;
+}
+
+/// Relaxes a copy, and notes in the state by what its stress was behind.
+void measure_lag(State& s) {
+  constexpr long part = rest_steps / 2;
+  const FrameSplit still{Matrix3::Identity(), Matrix3::Identity(), true};
+  const Matrix3 before = stress_in_lab(s.model(), s.assembly());
+  Assembly relaxed = s.assembly();
+  double change = 0;
+  for (int k = 0; k < 2; ++k) {
+    advance(s.model(), relaxed, {still, part, 1, Loading::quasi_static});
+    change = std::max(change, (stress_in_lab(s.model(), relaxed) - before).norm());
+  }
+  s.count(2 * part);
+  SolverState& control = s.control();
+  const double scale = pressure_scale(s), left = s.unbalanced_ratio(balance_of(s.model(), relaxed));
+  control.lag_factor = (change + left_by_rest * left * scale) / (control.unbalanced_ratio * scale);
+  control.lag_steps = 0;
+  control.lag_strain = 0;
+  control.constraint_ratio = constraint_ratio(s.model(), s.assembly());
+}
+
+void judge_tolerance(Report& report) {
+  report.tolerance_met = report.error_estimate <= met_margin * report.allowed_error;
+}
+
+}  // namespace
+
+void estimate_error(State& s, double network, const Matrix3& stress_before, const Judged& increment, Report& report) {
+  if (increment.strain > 0 && can_measure_lag(s) && report.substeps >= long_increment) measure_lag(s);
+  double changed = (s.stress() - stress_before).norm();
+  // A piece of a path is judged as its sub-steps are chosen (target_ratio), by what the path changes of the stress.
+  if (network > network_change(s, increment.strain)) changed = std::max(changed, s.control().softness * network);
+  estimate_error(s, allowed_by_tolerances(s, changed, network), increment, report);
+}
+
+void estimate_error(State& s, double allowed, const Judged& increment, Report& report) {
+  SolverState& control = s.control();
+  control.lag_strain += increment.strain;
+  if (increment.strain > 0 && lag_is_due(s, report.substeps)) measure_lag(s);
+  report.allowed_error = allowed;
+  const double scale = pressure_scale(s) * increment.unbalanced_ratio, overlap = overlap_strain(s);
+  const double measured = measured_margin * control.lag_factor * scale * rested_growth(increment.strain, overlap);
+  const double fitted = fitted_margin * error_factor(s) * scale * error_growth(increment.strain, overlap);
+  const bool just_measured = control.lag_factor > 0 && control.lag_steps == 0;
+  report.error_estimate = (just_measured ? measured : std::max(measured, fitted)) + increment.more;
+  judge_tolerance(report);
+}
+
+void estimate_way(State& s, double strain, double mean_ratio, Report& report) {
+  const double overlaps = strain / overlap_strain(s);
+  if (!(overlaps > 1)) return;
+  const double way = way_margin * std::sqrt(overlaps) * error_factor(s) * pressure_scale(s) * mean_ratio;
+  report.error_estimate = std::max(report.error_estimate, way);
+  judge_tolerance(report);
+}
+
+}  // namespace rvelab

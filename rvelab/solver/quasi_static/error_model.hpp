@@ -1,0 +1,56 @@
+// What the stress of an increment at dt = 0 may err by, and is expected to: the formulas of accuracy.hpp for a state.
+// Now and then a copy of the state relaxes for some sub-steps and shows by how much its stress lags; in between the
+// unbalanced ratio tells, by the factor that was found.
+#pragma once
+
+#include "rvelab/solver/state/state.hpp"
+
+namespace rvelab {
+
+/// Whether sub-steps follow from tolerances, not from a given number or unbalanced ratio.
+bool by_tolerance(const State& state);
+
+double pressure(State& state);  ///< mean, Pa
+/// Scale of errors, Pa: the pressure, or a thousandth of the reference where it is less.
+double pressure_scale(State& state);
+/// |C : d eps| of a strain, Pa.
+double network_change(const State& state, double strain);
+/// Strain that changes the contact forces by about as much as they are; infinite without a network.
+double overlap_strain(State& state);
+
+/// By the tolerances of the specimen, Pa; of a change of stress and |C : d eps|, Pa.
+double allowed_by_tolerances(State& state, double stress_change, double network_change);
+/// K, fitted.
+double error_factor(const State& state);
+/// K p u for an unbalanced ratio u, Pa.
+double expected_error(State& state, double ratio);
+
+/// Unbalanced ratio that an increment of this |C : d eps| (Pa) may have, by tolerance or as given.
+double target_ratio(State& state, double network_change);
+/// The same of a path under stress control, and what its stress may err by, over p.
+double held_target_ratio(const State& state);
+double held_tolerance(const State& state);
+
+/// Sets report.quasi_static from its unbalanced ratio and whether its target is held.
+void judge_equilibrium(State& state, Report& report);
+
+/// An increment for which an estimate is made.
+struct Judged {
+  double strain = 0;            ///< of the increment; 0: no sub-step was made for it
+  double unbalanced_ratio = 0;  ///< at its end
+  double more = 0;              ///< Pa, what else its stress may err by
+};
+
+/// Sets report.error_estimate, allowed_error and tolerance_met, with `allowed` in Pa.
+void estimate_error(State& state, double allowed, const Judged& increment, Report& report);
+
+/// The same, allowed by the tolerances: `network_change` (|C : d eps|, Pa) is that of the path which the increment is a
+/// piece of.
+void estimate_error(State& state, double network_change, const Matrix3& stress_before, const Judged& increment,
+                    Report& report);
+
+/// An increment beyond the strain of the overlaps, of this mean unbalanced ratio: what it lagged by on its way has slid
+/// contacts, of which its end knows nothing. The estimate is at least that.
+void estimate_way(State& state, double strain, double mean_ratio, Report& report);
+
+}  // namespace rvelab

@@ -1,0 +1,25 @@
+// Quasi-static loading (dt = 0) by a strain increment: choose the sub-steps, advance, check, estimate the error. The
+// strain of a sub-step follows the unbalanced ratio; what ratio an increment may have, and how many sub-steps a start
+// or a turn takes, follows from its tolerance.
+#pragma once
+
+#include "rvelab/solver/loading/mixed_target.hpp"
+#include "rvelab/solver/state/state.hpp"
+
+namespace rvelab {
+
+/// An increment in one with what is deferred. Throws IncrementFailed.
+Report load_quasi_static(State& state, FrameSplit increment);
+/// A rotation: grains and stress turn with the frame of the cell.
+Report load_rotation(State& state, const FrameSplit& increment, const Matrix3& displacement_gradient);
+/// Makes what is deferred; the number of sub-steps.
+long make_deferred(State& state);
+/// A mixed target (stress_control.cpp); `gradient` is what was found. Throws as Rve::apply says.
+Report load_quasi_static(State& state, const MixedTarget& target, Matrix3& gradient);
+/// Rve::relax (relaxation.cpp).
+Report relax(State& state, double unbalanced, long max_steps);
+
+/// Throws IncrementFailed if so many sub-steps are more than solver.max_substeps.
+void expect_substeps(const State& state, long needed);
+
+}  // namespace rvelab

@@ -1,0 +1,97 @@
+#include "rvelab/solver/quasi_static/strain_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "rvelab/solver/quasi_static/accuracy.hpp"
+#include "rvelab/solver/quasi_static/error_model.hpp"
+
+namespace rvelab {
+
+using namespace constants;
+
+namespace {
+
+/// Mean overlap, m, which control takes for its scale.
+double scale_of_overlaps(const State& s, const OutOfBalance& balance) {
+  return std::max(balance.mean_overlap, least_overlap * s.control().reference_overlap);
+}
+
+double first_strain_step(State& s) {
+  return first_step_over_overlap * scale_of_overlaps(s, s.out_of_balance()) / (2 * s.model().mean_radius);
+}
+
+/// How many sub-steps a start needs so that it leaves no more than `target` of imbalance, `steps` at least; `rate` is
+/// the strain of the sub-step before it.
+double steps_of_start(const Matrix3& change, double strain, const Matrix3& rate, double strain_of_overlap,
+                      double target, double steps) {
+  const double onward = change.cwiseProduct(rate).sum();
+  if (onward > same_direction * change.norm() * rate.norm()) target *= onward_allowance;
+  const double norm = change.norm();
+  if (!(norm > 0)) return steps;
+  while (steps < most_steps_of_start) {
+    const double mismatch = (change - steps * rate).norm() / norm;
+    if (unbalance_of_start(mismatch, strain, strain_of_overlap, steps) <= target) break;
+    steps = std::ceil(growth_of_search * steps + 0.5);
+  }
+  return steps;
+}
+
+}  // namespace
+
+void set_target_ratio(State& s, double target) {
+  SolverState& control = s.control();
+  if (control.strain_per_step == 0) {
+    control.strain_per_step = first_strain_step(s);
+    control.pace_target = s.model().options.target_unbalanced > 0 ? target : ratio_of_first_step;
+  }
+  if (control.pace_target > 0 && control.pace_target != target)
+    control.strain_per_step = std::clamp(control.strain_per_step * (target / control.pace_target), least_step, 1.0);
+  control.pace_target = target;
+}
+
+void adapt_strain_step(State& s, const OutOfBalance& balance, double held_stress) {
+  SolverState& control = s.control();
+  const double x = s.unbalanced_ratio(balance) / control.pace_target;
+  const double root = std::sqrt(x);  // square roots give the same bits everywhere
+  const double factor = std::clamp(root * std::sqrt(root), least_change_of_step, largest_change_of_step);
+  const double overlap = scale_of_overlaps(s, balance) / (2 * s.model().mean_radius);
+  const double largest = balance.touching > 0 ? largest_step_over_overlap * overlap : step_of_gas;
+  const double slow = smallest_over_largest_step * s.model().softest_answer *
+                      std::clamp(per_ratio * control.pace_target, least_share_of_smallest, 1.0);
+  double smallest = slow * largest;
+  // Where a stress is held far below the reference, the overlaps are judged by the stress that is asked for: the
+  // reference would let a step be as large as they are, and in an avalanche they vanish, after which one record cost as
+  // much as the whole test (730,000 sub-steps).
+  if (held_stress > 0 && control.reference_pressure > 0 && balance.touching > 0) {
+    const double share = std::clamp(held_stress / control.reference_pressure, least_held_share, 1.0);
+    smallest = std::min(
+        smallest, slow * largest_step_over_overlap * share * control.reference_overlap / (2 * s.model().mean_radius));
+  }
+  control.strain_per_step = std::clamp(control.strain_per_step / factor, smallest, largest);
+}
+
+bool was_coarser(State& s, double network) { return s.control().pace_target > coarser_path * target_ratio(s, network); }
+
+double most_substeps(State& s, double strain) {
+  if (!by_tolerance(s)) return std::numeric_limits<double>::infinity();
+  const SolverOptions& o = s.model().options;
+  const double overlaps = strain * 2 * s.model().mean_radius / s.control().reference_overlap;
+  const double strictness =
+      std::max(1.0, std::min(default_relative / o.relative_tolerance, default_absolute / o.absolute_tolerance));
+  return std::max(strictness * (most_steps + most_steps_of_overlap * overlaps), 1.0);
+}
+
+Start start_of(State& s, const Matrix3& change, double strain, bool turned_back) {
+  const SolverState& control = s.control();
+  if (!by_tolerance(s)) return {double(turned_back ? fewest_steps_back : fewest_steps), 0};
+  if (!(control.network_stiffness > 0)) return {1, 0};
+  const double overlap = overlap_strain(s);
+  const double by_strain = std::max(1.0, std::ceil(strain / control.strain_per_step));
+  const double steps = steps_of_start(change, strain, control.last_rate, overlap, control.pace_target, by_strain);
+  const double mismatch = (change - steps * control.last_rate).norm() / change.norm();
+  return {steps, unbalance_of_start(mismatch, strain, overlap, steps)};
+}
+
+}  // namespace rvelab

@@ -1,0 +1,138 @@
+// A mixed target at dt = 0: the servo runs inside the sub-steps, the strain per step follows the unbalanced ratio, and
+// the target waits for a stress that the grains let go (recovery.hpp). Declared in quasi_static.hpp.
+#include <algorithm>
+#include <string>
+
+#include "rvelab/error.hpp"
+#include "rvelab/solver/quasi_static/check.hpp"
+#include "rvelab/solver/quasi_static/error_model.hpp"
+#include "rvelab/solver/quasi_static/quasi_static.hpp"
+#include "rvelab/solver/quasi_static/recovery.hpp"
+#include "rvelab/solver/quasi_static/servo.hpp"
+#include "rvelab/solver/quasi_static/strain_step.hpp"
+#include "rvelab/solver/quasi_static/target_path.hpp"
+
+namespace rvelab {
+
+using namespace constants;
+
+namespace {
+
+/// Strain that the overlaps of grains which carry the held stress are worth.
+double strain_of_held(const State& s, const Servo& servo) {
+  // p = f N d/V for some four contacts a grain in the plane, six in space.
+  const double diameter = 2 * s.model().mean_radius;
+  const double force = servo.held_stress() * s.cell().volume() / (double(s.model().size()) * diameter);
+  const double share = std::clamp(force / s.control().reference_contact_force, least_held_force, 1.0);
+  return share * s.control().reference_overlap / diameter;
+}
+
+/// A mixed target on its way.
+class StressControl {
+ public:
+  StressControl(State& state, const MixedTarget& target)
+      : s_(state),
+        target_(target),
+        servo_(target, state.model().dimension(), stress(), Servo::Missed::evenly),
+        check_(state),
+        path_{target, state.model().dimension()},
+        recovery_(target, strain_of_held(state, servo_), state.model().dimension()) {}
+
+  Report make(Matrix3& gradient);
+
+ private:
+  Matrix3 stress() { return s_.to_lab(s_.stress()) + s_.reynolds_stress(); }
+  /// The servo's strain of some sub-steps, and that of the target beside.
+  Matrix3 next_strain(bool waiting);
+  void expect_substeps() const;
+  /// Checks where it is due, and lets the strain per step follow.
+  void check(bool waiting, const Matrix3& change);
+  Report judged();
+
+  State& s_;
+  const MixedTarget& target_;
+  Servo servo_;
+  EquilibriumCheck check_;
+  TargetPath path_;
+  Recovery recovery_;
+  Report report_;
+  double fraction_ = 0, strain_ = 0;  ///< of the target; expected of the whole
+  long since_update_ = 0;             ///< sub-steps since the gain was renewed
+  bool checked_ = false;
+};
+
+Matrix3 StressControl::next_strain(bool waiting) {
+  const double wanted = servo_.predicted_strain() + target_.spin.norm();
+  const double full = double(servo_interval) * s_.control().strain_per_step, left = 1 - fraction_;
+  const double advance_by = waiting ? 0.0 : wanted > 0 ? std::min(left, full / wanted) : left;
+  const double closing = recovery_.under_way() ? double(servo_interval) * recovery_.closing() : 0.0;
+  fraction_ = left - advance_by < 1e-12 ? 1.0 : fraction_ + advance_by;
+  return servo_.next_strain(fraction_, advance_by * wanted, full, std::max(largest_answer * full, closing),
+                            path_.strain, stress(), s_.control().servo_strain);
+}
+
+void StressControl::expect_substeps() const {
+  const long most = s_.model().options.max_substeps;
+  if (report_.substeps <= most) return;
+  throw IncrementFailed("the increment needs more than " + std::to_string(most) +
+                        " sub-steps (solver.max_substeps); the held stress is off by " + in_words(report_.held_error) +
+                        " of its scale");
+}
+
+void StressControl::check(bool waiting, const Matrix3& change) {
+  const bool arrived = !waiting && fraction_ >= 1;
+  const bool due = since_update_ >= (recovery_.under_way() ? recovery_interval : check_interval);
+  if (due) since_update_ = 0;
+  checked_ = due || (arrived && check_.is_due_at_end(report_.substeps, strain_));
+  if (!checked_) return;
+  const OutOfBalance balance = check_.check();
+  // The strain per step is judged before a wait, in which the ratio says nothing of it.
+  if (!waiting) adapt_strain_step(s_, balance, servo_.held_stress());
+  recovery_.checked(2 * double(balance.touching) / double(s_.model().size()), change);
+}
+
+Report StressControl::judged() {
+  report_.waited = recovery_.substeps();
+  report_.target_held = report_.held_error <= target_.tolerance;
+  report_.unbalanced_ratio = s_.control().unbalanced_ratio;
+  judge_equilibrium(s_, report_);
+  estimate_error(s_, held_tolerance(s_) * pressure_scale(s_), {strain_, report_.unbalanced_ratio, 0}, report_);
+  return report_;
+}
+
+Report StressControl::make(Matrix3& gradient) {
+  while (true) {
+    report_.held_error = servo_.largest_error(servo_.residual(fraction_, path_.strain, stress()));
+    if (fraction_ >= 1 && report_.held_error <= target_.tolerance) break;
+    recovery_.judge(report_.held_error);
+    if (since_update_ == 0)
+      servo_.set_stiffness(affine_stiffness(s_.model(), s_.assembly()),
+                           gas_stiffness(s_.model(), s_.cell(), least_stiffness(s_.model(), s_.assembly())));
+    if (report_.substeps == 0) {
+      strain_ = servo_.predicted_strain();
+      set_target_ratio(s_, held_target_ratio(s_));
+    }
+    const bool waiting = fraction_ >= 1 || recovery_.under_way();
+    const long steps = waiting ? std::min(servo_interval, recovery_.patience(report_.substeps)) : servo_interval;
+    if (steps <= 0) break;
+    const Matrix3 change = next_strain(waiting);
+    s_.advance({split_increment(s_.cell(), path_.go_on(change, fraction_)), steps, 1, Loading::quasi_static});
+    s_.control().interval_strain += change.norm();
+    report_.substeps += steps;
+    since_update_ += steps;
+    if (waiting) recovery_.waited(steps, change);
+    expect_substeps();
+    check(waiting, change);
+  }
+  if (!checked_ && check_.is_due_at_end(report_.substeps, strain_)) check_.check();
+  gradient = path_.gradient;
+  return judged();
+}
+
+}  // namespace
+
+Report load_quasi_static(State& s, const MixedTarget& target, Matrix3& gradient) {
+  return StressControl(s, target).make(gradient);
+}
+
+}  // namespace rvelab

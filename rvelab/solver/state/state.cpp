@@ -1,0 +1,237 @@
+#include "rvelab/solver/state/state.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "rvelab/cell/pressure.hpp"
+#include "rvelab/error.hpp"
+#include "rvelab/solver/assembly/contact_states.hpp"
+#include "rvelab/solver/state/release.hpp"
+
+namespace rvelab {
+
+namespace {
+
+/// Grains up to which an RVE keeps the buffers of a trial for the next one (some 10 MB).
+constexpr std::size_t largest_kept_trial = 20'000;
+
+/// An assembly beyond its limit would fail at its first increment, or hide that it was made with a wrong unit.
+void expect_overlaps(const OutOfBalance& balance, double limit) {
+  // A state within the limit is opened again, whatever its last bits became on the way.
+  if (balance.largest_overlap_ratio <= limit * (1 + 1e-9)) return;
+  throw InputError("specimen: grains overlap by " + in_words(balance.largest_overlap_ratio) +
+                   " of the smaller radius; solver.max_overlap_ratio allows " + in_words(limit) +
+                   "; a stiffness too low for the pressure, a slab much thicker than the grains, or mixed units "
+                   "(radii in mm?) lead there: correct them, or raise solver.max_overlap_ratio where grains are "
+                   "meant to be so soft");
+}
+
+/// Tangential springs that lose their stiffness let go; what they held is booked. `before`: their stiffnesses so far.
+void let_go_of_springs(const Model& f, const Buffer& before, Assembly& a) {
+  PairTable& pairs = a.pairs;
+  for (const std::int32_t place : pairs.order) {
+    const auto p = std::size_t(place);
+    if (pairs.kt[p] > 0 || !(before[p] > 0)) continue;
+    const double root = f.stores_root_overlap() ? pairs.root_overlap[p] : 1.0;
+    double squared = 0;
+    for (int k = 0; k < f.tangential_components(); ++k) {
+      squared += pairs.tangential[k][p] * pairs.tangential[k][p];
+      pairs.tangential[k][p] = 0;
+    }
+    if (f.options.ledger && squared > 0) a.state.ledger.law_loss += 0.5 * squared / (before[p] * root);
+  }
+}
+
+}  // namespace
+
+State::State(const Specimen& specimen) {
+  open_assembly(specimen, model_, assembly_);
+  set_typical_answers(model_);
+  if (control().look_steps < 0) use_physical_inertia(model_, assembly_);
+  evaluate_forces(model_, assembly_);
+  if (!out_of_balance().finite)
+    throw InputError("specimen: contact forces are not finite; do two grains lie at one place?");
+  expect_overlaps(out_of_balance(), model_.options.max_overlap_ratio);
+  if (!(to_lab(stress()) + reynolds_stress()).allFinite())
+    throw InputError("specimen: its stress is not finite (cell volume " + in_words(cell().volume()) +
+                     " m^3); are cell, masses or velocities in the wrong units? Give all in SI");
+  set_strained_cell();
+  if (control().look_steps >= 0 && holds_more_than_friction(model_, assembly_)) {
+    control().look_steps = -1;
+    use_physical_inertia(model_, assembly_);
+  }
+  if (!specimen.state.has_reference) set_missing_references();  // first opening
+}
+
+void State::set_missing_references() {
+  SolverState& state = control();
+  const OutOfBalance& balance = out_of_balance();
+  if (state.reference_overlap == 0)
+    state.reference_overlap = balance.touching > 0 ? balance.mean_overlap : 1e-2 * model_.mean_radius;
+  if (state.reference_contact_force == 0)
+    state.reference_contact_force =
+        balance.touching > 0 ? balance.mean_contact_force : typical_normal_force(model_, state.reference_overlap);
+  if (state.reference_pressure == 0)
+    state.reference_pressure = std::max(0.0, mean_pressure(contact_stress() + reynolds_stress(), model_.dimension()));
+}
+
+const Matrix3& State::stress() {
+  return stress_.of(generation_, [this] { return Matrix3(-contact_moment(model_, assembly_) / cell().volume()); });
+}
+
+const OutOfBalance& State::out_of_balance() {
+  return balance_.of(generation_, [this] { return balance_of(model_, assembly_); });
+}
+
+const RowSums& State::row_sums() {
+  return sums_.of(generation_, [this] { return rvelab::row_sums(model_, assembly_); });
+}
+
+const OutOfBalance& State::checked_balance() {
+  check_height(model_, cell());  // the list looks too, but only when it is built anew
+  check_overlaps(model_, out_of_balance());
+  return out_of_balance();
+}
+
+void State::note_unbalanced_ratio() {
+  control().unbalanced_ratio = unbalanced_ratio(out_of_balance());
+  ratio_generation_ = generation_;
+}
+
+double State::unbalanced_ratio(const OutOfBalance& balance) const {
+  return rvelab::unbalanced_ratio(balance, control().reference_contact_force);
+}
+
+Matrix3 State::contact_stress() const { return to_lab(-contact_moment(model_, assembly_) / cell().volume()); }
+
+Matrix3 State::reynolds_stress() const {
+  if (control().quasi_static) return Matrix3::Zero();
+  return to_lab(kinetic_moment(model_, assembly_) / cell().volume());
+}
+
+Advanced State::advance(const Advance& what) {
+  const Advanced made = rvelab::advance(model_, change(), what);
+  count(made.steps);
+  return made;
+}
+
+void State::begin_loading(Loading loading) {
+  // Dashpots let go where the kind of loading changes. Masses and half steps are nothing that stresses know.
+  const bool changes = control().quasi_static != (loading == Loading::quasi_static);
+  rvelab::begin_loading(model_, changes ? change() : assembly_, loading);
+}
+
+void State::turn(const Matrix3& frame_rotation) {
+  turn_frame(assembly_.cell, frame_rotation);
+  set_strained_cell();
+}
+
+void State::set_rotation(const Matrix3& rotation) {
+  assembly_.cell.rotation = rotation;
+  set_strained_cell();
+}
+
+void State::set_deferred(const Matrix3& stretch) {
+  control().deferred_stretch = stretch;
+  set_strained_cell();
+}
+
+void State::set_strained_cell() {
+  strained_cell_ = cell();
+  strained_cell_.lattice = control().deferred_stretch * cell().lattice;
+}
+
+void State::set_materials(const std::vector<Material>& materials) {
+  Assembly& a = change();
+  model_.materials = materials;
+  std::vector<double> mass(model_.size()), inertia(model_.size());
+  for (std::size_t g = 0; g < model_.size(); ++g) {
+    const double density = materials[std::size_t(model_.material[g])].density;
+    mass[g] = density * model_.volume_of(g);
+    inertia[g] = model_.inertia_of(g, mass[g]);
+  }
+  model_.mass = std::move(mass);
+  model_.inertia = std::move(inertia);
+  const Buffer before = a.pairs.kt;
+  set_pair_parameters(model_, a.pairs);
+  let_go_of_springs(model_, before, a);
+  set_typical_answers(model_);
+  a.state.look_steps = -1;
+  evaluate_forces(model_, a);
+}
+
+void State::set_velocities(const std::vector<Vector3>& velocity, const std::vector<Vector3>& spin) {
+  begin_loading(Loading::physical);
+  Assembly& a = change();
+  for (std::size_t place = 0; place < model_.size(); ++place)
+    a.set_velocity(model_, place, velocity[index_in_specimen(place)], spin[index_in_specimen(place)]);
+  a.state.mean_velocity.setZero();
+  evaluate_forces(model_, a);
+}
+
+void State::zero_velocities() {
+  Assembly& a = change();
+  stop_grains(model_, a);
+  evaluate_forces(model_, a);
+}
+
+void State::take_as_reference() {
+  SolverState& state = change().state;
+  state.reference_overlap = state.reference_contact_force = state.reference_pressure = 0;
+  set_missing_references();
+  state.look_steps = -1;  // what a barely touching contact counts as goes with the reference
+}
+
+void State::begin_trial(Trial::Changes changes) {
+  trial_.begin(assembly_, changes);
+  other_generation_ = generation_;
+  other_stress_ = stress_;
+}
+
+void State::exchange() noexcept {
+  trial_.exchange(model_, assembly_, released_);
+  std::swap(generation_, other_generation_);
+  std::swap(stress_, other_stress_);
+  set_strained_cell();
+}
+
+void State::revert() noexcept {
+  exchange();
+  commit();
+}
+
+void State::commit() noexcept {
+  trial_.end(assembly_);
+  if (released_ || model_.size() > largest_kept_trial) trial_.release();
+}
+
+void State::release() {
+  put_masses_into_rows(model_, assembly_);
+  sums_ = {};
+  released_ = true;
+  if (pending()) {
+    exchange();
+    put_masses_into_rows(model_, assembly_);  // often the same as those of the trial: released after both
+    release_buffers(assembly_);
+    exchange();
+  } else {
+    trial_.release();
+  }
+  release_buffers(assembly_);
+}
+
+void State::allocate() {
+  if (released_) rebuild_buffers(model_, assembly_);
+  released_ = false;
+}
+
+Memory State::memory() const {
+  Memory memory = memory_of(assembly_);
+  const RowSums& sums = sums_.last();
+  for (const auto* each : {&sums.translation, &sums.rotation, &sums.dashpot})
+    memory.working += each->capacity() * sizeof(double);
+  (pending() ? memory.trial : memory.working) += trial_.bytes();
+  return memory;
+}
+
+}  // namespace rvelab

@@ -1,0 +1,135 @@
+// What an RVE is: the model, which no increment changes, and the assembly in its cell. What follows from them is kept
+// with the number of the generation that it was derived from, and whoever changes the assembly raises that number: a
+// value that is no longer true cannot be had. Beside it stands the other state of a pending trial.
+#pragma once
+
+#include "rvelab/solver/assembly/assembly.hpp"
+#include "rvelab/solver/loading/inertia.hpp"
+#include "rvelab/solver/loading/report.hpp"
+#include "rvelab/solver/loading/stepping.hpp"
+#include "rvelab/solver/loading/velocities.hpp"
+#include "rvelab/solver/state/trial.hpp"
+
+namespace rvelab {
+
+/// A value derived from a state, and the generation of it.
+template <class Value>
+class Derived {
+ public:
+  template <class Make>
+  const Value& of(std::uint64_t generation, const Make& make) {
+    if (generation_ != generation) value_ = make();
+    generation_ = generation;
+    return value_;
+  }
+  /// As last derived, of whatever generation.
+  const Value& last() const { return value_; }
+
+ private:
+  Value value_{};
+  std::uint64_t generation_ = 0;  ///< 0: of none
+};
+
+class State {
+ public:
+  /// Opens a specimen; throws InputError as Rve's constructor says.
+  explicit State(const Specimen& specimen);
+
+  const Model& model() const { return model_; }
+  const Assembly& assembly() const { return assembly_; }
+  const Cell& cell() const { return assembly_.cell; }
+  /// To change grains, contacts, cell or references: raises the generation.
+  Assembly& change() {
+    generation_ = ++last_generation_;
+    return assembly_;
+  }
+  /// What decides how an increment is made (strain per step, lag, slopes, interval). Nothing is derived from it.
+  SolverState& control() { return assembly_.state; }
+  const SolverState& control() const { return assembly_.state; }
+
+  const Matrix3& stress();  ///< of the contacts, cell frame, Pa
+  const OutOfBalance& out_of_balance();
+  const RowSums& row_sums();  ///< of stiffness; they take as long as five sub-steps
+  /// The same. Throws IncrementFailed where the cell is too thin, an overlap beyond the limit or a value not finite.
+  const OutOfBalance& checked_balance();
+  /// Notes the present ratio as measured on the present generation, which ratio_is_measured tells of.
+  void note_unbalanced_ratio();
+  bool ratio_is_measured() const { return ratio_generation_ == generation_; }
+  /// With this specimen's reference force.
+  double unbalanced_ratio(const OutOfBalance& balance) const;
+
+  /// Index into the specimen's grains of the grain at a place in memory.
+  std::size_t index_in_specimen(std::size_t place) const {
+    return control().memory_order.empty() ? place : std::size_t(control().memory_order[place]);
+  }
+
+  Matrix3 to_lab(const Matrix3& cell_frame) const { return cell().rotation * cell_frame * cell().rotation.transpose(); }
+  Matrix3 contact_stress() const;   ///< laboratory frame, Pa; derived anew
+  Matrix3 reynolds_stress() const;  ///< laboratory frame, Pa; zero at dt = 0
+  /// A cell height is below four mean diameters.
+  bool is_thin(const Cell& cell) const { return heights(cell).minCoeff() < 8 * model_.mean_radius; }
+
+  /// Makes sub-steps (loading/stepping.hpp).
+  Advanced advance(const Advance& what);
+  /// Velocities, masses and spins for a kind of loading (loading/velocities.hpp).
+  void begin_loading(Loading loading);
+  /// Masses of quasi-static loading from the present row sums; the second books the change of kinetic energy.
+  void scale_masses() { scale_inertia(model_, row_sums(), assembly_); }
+  void rescale_masses() { rescale_inertia(model_, row_sums(), assembly_); }
+  /// At dt = 0, where no force depends on a velocity.
+  void stop_quasi_static() { stop_grains(model_, assembly_); }
+  /// Turns the frame of the cell.
+  void turn(const Matrix3& frame_rotation);
+  void set_rotation(const Matrix3& rotation);
+
+  /// Strain that is applied but left to the next sub-step (quasi_static/deferred.hpp).
+  bool has_deferred() const { return !(control().deferred_stretch.array() == Matrix3::Identity().array()).all(); }
+  void set_deferred(const Matrix3& stretch);
+  /// The cell with it.
+  const Cell& strained_cell() const { return has_deferred() ? strained_cell_ : cell(); }
+
+  // What Rve says of these; materials and velocities are checked there.
+  void set_materials(const std::vector<Material>& materials);
+  void set_velocities(const std::vector<Vector3>& velocity, const std::vector<Vector3>& spin);
+  void zero_velocities();
+  void take_as_reference();
+  void watch(const std::atomic<bool>* stop) { model_.stop = stop; }
+  void share(Workers* team) { model_.team = team; }
+  void measure_time(StepTimes* times) { model_.times = times; }
+  /// Of all calls, failed and reverted ones too; `count` adds those of a copy that was advanced beside.
+  std::uint64_t grain_steps_made() const { return grain_steps_made_; }
+  void count(long substeps) { grain_steps_made_ += std::uint64_t(substeps) * model_.size(); }
+
+  void begin_trial(Trial::Changes changes);
+  bool pending() const { return trial_.pending(); }
+  void exchange() noexcept;
+  void revert() noexcept;
+  void commit() noexcept;  ///< what is here is the state, and no trial is pending
+
+  /// Releases what can be made again, of both states of a pending trial; allocate makes it again.
+  void release();
+  void allocate();
+  bool released() const { return released_; }
+  Memory memory() const;
+
+ private:
+  void set_missing_references();
+  void set_strained_cell();
+
+  Model model_;
+  Assembly assembly_;
+  Trial trial_;
+  bool released_ = false;
+  Cell strained_cell_;
+  std::uint64_t grain_steps_made_ = 0;
+  std::uint64_t generation_ = 1, last_generation_ = 1;
+  std::uint64_t ratio_generation_ = 0;  ///< in which control().unbalanced_ratio was measured
+  Derived<Matrix3> stress_;
+  Derived<OutOfBalance> balance_;
+  Derived<RowSums> sums_;
+  // While a trial is pending: those of the state that is not in `assembly_`.
+  std::uint64_t other_generation_ = 0;
+  Derived<Matrix3> other_stress_;
+};
+
+}  // namespace rvelab
