@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "rvelab/solver/rve.hpp"
-#include "rvelab/stress_test/verdict.hpp"
+#include "tests/extreme/verdict.hpp"
 
-namespace rvelab::stress_test {
+namespace rvelab::test {
 
 /// Runs a call that must be refused: the refusal, or none if it was carried out. What is no rvelab::Error goes on.
 std::optional<Refused> refused(Rve& rve, const std::function<void(Rve&)>& call);
@@ -22,27 +22,26 @@ class Tested {
   Response apply(const MixedTarget& target, double dt);
 
   /// The laws of any loading so far: volume = V0 det F (round-off of `increments` products), no grain lost, every place
-  /// and stress a number, overlaps within the limit, and |sigma - sigma^T| <= 1.5 unbalanced p + 1e-9 p at dt = 0.
+  /// and stress a number, overlaps within the limit, |f_t| <= mu f_n without adhesion, and
+  /// |sigma - sigma^T| <= 1.5 unbalanced p + 1e-9 p at dt = 0.
   void check_laws();
 
   Rve& rve() { return rve_; }
   const Rve& rve() const { return rve_; }
   double pressure() const;
-  long substeps() const { return substeps_; }
-  double unbalanced() const { return last_.report.unbalanced_ratio; }
 
  private:
-  template <class Call>
-  Response guarded(const Call& call);
-  void take(const Response& response, double dt);
+  template <class Increment>
+  Response made(const Increment& increment, double dt);
 
   Rve rve_;
   Verdict* verdict_;
   double volume_, overlap_limit_;
   std::size_t grains_;
+  bool sticks_;
   long increments_ = 0, substeps_ = 0;
   bool quasi_static_ = true;
   Response last_;
 };
 
-}  // namespace rvelab::stress_test
+}  // namespace rvelab::test
