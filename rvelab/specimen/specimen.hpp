@@ -50,10 +50,10 @@ struct SolverOptions {
   long max_substeps = 50'000'000;    ///< an increment that needs more fails
   double min_height = 0;             ///< m; shortest lattice vector allowed; 0: 2 r_max
   double max_overlap_ratio = 0.25;   ///< largest overlap over the smaller radius; more fails
-  bool ledger = false;               ///< keep the energy ledger (measured cost in tools/bench)
+  bool ledger = false;               ///< keep the energy balance (measured cost in tools/bench)
 };
 
-/// Energy ledger, J, sums since the specimen was opened first (solver/README.md). Zero when not kept.
+/// Terms of the energy balance, J, sums since the specimen was opened first (solver/README.md). Zero when not kept.
 struct EnergyLedger {
   double boundary_work = 0;
   double friction = 0, rolling = 0, dashpot = 0;
@@ -71,8 +71,8 @@ struct SolverState {
   double list_travel = 0;                  ///< bound on the largest displacement since then beside the cell's, m
   double list_skin = 0;                    ///< skin that the list was built with, m; 0: solver.skin
   std::int64_t list_steps = 0;             ///< sub-steps made since then
-  double strain_per_step = 0;              ///< dt = 0: pace of the sub-step controller; 0: not yet known
-  double pace_target = 0;                  ///< dt = 0: unbalanced ratio that this pace is for
+  double strain_per_step = 0;              ///< dt = 0: strain increment per step; 0: not yet known
+  double pace_target = 0;                  ///< dt = 0: unbalanced ratio that this step is for
   double leg_strain = 0;                   ///< dt = 0: strain since the last turn, up to what is judged together
   double softness = 1;                     ///< dt = 0: |d sigma|/|C : d eps| of the last interval (accuracy.hpp)
   double constraint_ratio = 0;             ///< dt = 0: constraints of the contacts over the motions of the grains that
@@ -92,14 +92,15 @@ struct SolverState {
   std::int64_t look_steps = -1;     ///< dt = 0: sub-steps since masses were scaled; < 0: they are not
   std::vector<double> scaled_mass;  ///< dt = 0: masses in use, N/m (the sub-step is 1); empty: to be scaled
   std::vector<double> scaled_inverse_inertia;  ///< the same: 1 over the moments of inertia, 1/(N m)
-  Matrix3 servo_strain = Matrix3::Zero();  ///< mixed targets: integral term, strain per unit of paced strain, lab frame
-  Matrix3 servo_rate = Matrix3::Zero();    ///< dt > 0: rate of strain of its last update, 1/s, lab frame
-  double reference_contact_force = 0;      ///< N, mean contact force at the specimen's own p0; 0: set on opening
-  double reference_overlap = 0;            ///< m, mean overlap at the specimen's own p0; 0: set on opening
-  double reference_pressure = 0;           ///< Pa, the specimen's own p0; 0: set on opening
-  bool quasi_static = true;                ///< units of the stored velocities (see Grains)
-  Matrix3 last_rate = Matrix3::Zero();     ///< D of the last sub-step, cell frame (dashpot forces need it)
-  double last_step = 0;                    ///< length of the last sub-step: s, or 1 at dt = 0
+  Matrix3 servo_strain =
+      Matrix3::Zero();                   ///< mixed targets: integral term, strain per unit of planned strain, lab frame
+  Matrix3 servo_rate = Matrix3::Zero();  ///< dt > 0: rate of strain of its last update, 1/s, lab frame
+  double reference_contact_force = 0;    ///< N, mean contact force at the specimen's own p0; 0: set on opening
+  double reference_overlap = 0;          ///< m, mean overlap at the specimen's own p0; 0: set on opening
+  double reference_pressure = 0;         ///< Pa, the specimen's own p0; 0: set on opening
+  bool quasi_static = true;              ///< units of the stored velocities (see Grains)
+  Matrix3 last_rate = Matrix3::Zero();   ///< D of the last sub-step, cell frame (dashpot forces need it)
+  double last_step = 0;                  ///< length of the last sub-step: s, or 1 at dt = 0
   Vector3 mean_velocity = Vector3::Zero();  ///< mass-weighted mean v' that the next step takes out
   Vector3 mean_spin = Vector3::Zero();      ///< axial(W + Omega) of the last sub-step, rad/s (dt > 0)
   std::uint64_t grain_steps = 0;            ///< grains times sub-steps made so far
