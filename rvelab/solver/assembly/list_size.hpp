@@ -1,5 +1,5 @@
 // How long a neighbour list may become, said before it is made: radii in millimetres for metres put a thousand images
-// of every grain within reach of every other, and memory is gone before anything else could look.
+// of every grain within reach of every other, and memory is gone before anything else could fail.
 #pragma once
 
 #include <cstddef>

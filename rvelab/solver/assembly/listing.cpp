@@ -59,8 +59,8 @@ bool touches(const Model& f, const Assembly& a, const ListedPair& pair) {
   return x * x + y * y + z * z < radii * radii;
 }
 
-/// Places of the pairs of a new list in memory: first those that touch or have a history. The ledger's kernel adds up
-/// what all pairs lose as they lie, so with it they lie in order.
+/// Places of the pairs of a new list in memory: first those that touch or have a history. The kernel that books losses
+/// adds up what all pairs lose as they lie, so with it they lie in order.
 void arrange(const Model& f, const Assembly& a, const std::vector<ListedPair>& listed,
              const std::vector<const Contact*>& histories, PairTable& pairs) {
   const std::size_t n = listed.size();

@@ -1,4 +1,4 @@
-// The contact network as a value: what measures look at. Made by Rve::network(); no pointer into the solver.
+// The contact network as a value, from which measures are taken. Made by Rve::network(); no pointer into the solver.
 #pragma once
 
 #include <vector>

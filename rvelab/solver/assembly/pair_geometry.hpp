@@ -1,4 +1,4 @@
-// Geometry of listed pairs, inline: control looks at all pairs every few dozen sub-steps.
+// Geometry of listed pairs, inline: checks go through all pairs every few dozen sub-steps.
 #pragma once
 
 #include "rvelab/solver/assembly/assembly.hpp"

@@ -103,7 +103,7 @@ void check_cell(const Specimen& s) {
     refuse("specimen: the rotation of the cell frame must be orthogonal with determinant +1");
 }
 
-/// Every number of the state is finite. Lists are not looked at: those of the grains have checks of their own.
+/// Every number of the state is finite. Lists are left out: those of the grains have checks of their own.
 struct FiniteNumbers {
   template <class Value, class Described>
   void field(const fields::Path& path, const Value& value, const Described&) const {
@@ -116,7 +116,7 @@ struct FiniteNumbers {
   }
 };
 
-/// What the pace of quasi-static loading follows from.
+/// What the strain per step follows from.
 void check_state(const Specimen& s) {
   const SolverState& state = s.state;
   const FiniteNumbers finite_numbers;
@@ -140,8 +140,8 @@ void check_state(const Specimen& s) {
   expect(state.unbalanced_ratio >= 0, "unbalanced_ratio", state.unbalanced_ratio);
 }
 
-/// Strain that is left to the next sub-step: less than a hundredth, since no sub-step is longer, and no more than the
-/// pace. A damaged one of many sub-steps would be made by who looks at the grains.
+/// Strain that is left to the next sub-step: less than a hundredth, since no sub-step is longer, and no more than
+/// one of them. A damaged one of many sub-steps would be made by const calls that show grains.
 void check_deferred(const Specimen& s) {
   const SolverState& state = s.state;
   const Matrix3& u = state.deferred_stretch;

@@ -113,10 +113,10 @@ enum class KernelDamping { none, vector, component };
 
 /// The compiled kernels of one configuration.
 struct Kernels {
-  PairKernel pairs = nullptr;         ///< contact forces with their increments
-  PairKernel pairs_ledger = nullptr;  ///< the same, with dissipation (scalar)
-  PairKernel evaluate = nullptr;      ///< contact forces of the stored history, nothing advanced (scalar)
-  GrainKernel quasi_static[3] = {};   ///< by KernelDamping
+  PairKernel pairs = nullptr;              ///< contact forces with their increments
+  PairKernel pairs_with_losses = nullptr;  ///< the same, with dissipation (scalar)
+  PairKernel evaluate = nullptr;           ///< contact forces of the stored history, nothing advanced (scalar)
+  GrainKernel quasi_static[3] = {};        ///< by KernelDamping
   GrainKernel dynamic[3] = {};
   int lanes = 1;
   const char* instruction_set = "scalar";

@@ -16,7 +16,7 @@ RVELAB_DECLARE(v3);
 RVELAB_DECLARE(v4);
 #undef RVELAB_DECLARE
 
-/// Scalar on every machine: the pair loop with the ledger, and the evaluation of stored histories.
+/// Scalar on every machine: the pair loop with losses, and the evaluation of stored histories.
 void set_disc_kernels_shared(const KernelConfiguration&, Kernels&);
 void set_ellipse_kernels_shared(const KernelConfiguration&, Kernels&);
 void set_sphere_kernels_shared(const KernelConfiguration&, Kernels&);

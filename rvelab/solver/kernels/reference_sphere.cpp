@@ -1,4 +1,4 @@
-// Scalar kernels of spheres: the reference that every vector path equals bitwise, the one with the energy ledger,
+// Scalar kernels of spheres: the reference that every vector path equals bitwise, the one with the energy balance,
 // and the evaluation of the stored history on opening.
 //
 // Declared in instruction_sets.hpp.
@@ -12,7 +12,7 @@ void set_sphere_kernels_scalar(const KernelConfiguration& key, const char* instr
 }
 
 void set_sphere_kernels_shared(const KernelConfiguration& key, Kernels& kernels) {
-  kernels.pairs_ledger = pair_kernel_for<Shape::sphere, 1, true, true>(key);
+  kernels.pairs_with_losses = pair_kernel_for<Shape::sphere, 1, true, true>(key);
   kernels.evaluate = pair_kernel_for<Shape::sphere, 1, false, false>(key);
 }
 

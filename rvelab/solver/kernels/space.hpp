@@ -1,11 +1,11 @@
 // The contact update in space, for every shape and law: histories carried to the new tangent plane, spring and slip,
-// dashpot, rolling moment, ledger. The shape gives the geometry: where pairs are, how they overlap, how they move.
+// dashpot, rolling moment, losses. The shape gives the geometry: where pairs are, how they overlap, how they move.
 #pragma once
 
 #include "rvelab/contact/coulomb.hpp"
 #include "rvelab/contact/damping.hpp"
 #include "rvelab/contact/rolling.hpp"
-#include "rvelab/solver/kernels/ledger.hpp"
+#include "rvelab/solver/kernels/losses.hpp"
 #include "rvelab/solver/kernels/pairs.hpp"
 
 namespace rvelab {

@@ -45,7 +45,7 @@ struct PairExtremes {
 /// a gas is then right to 1 % (in one step it was wrong by half).
 constexpr double increment_steps = 32;
 
-/// Part of the skin that a sub-step may cross in flight, and part of it after which collisions are looked for anew.
+/// Part of the skin that a sub-step may cross in flight, and part of it after which collisions are sought anew.
 constexpr double flight_per_step = 0.05, flight_per_look = 0.5;
 
 constexpr double pi = 3.14159265358979323846;

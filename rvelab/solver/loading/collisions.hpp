@@ -24,19 +24,19 @@ namespace rvelab {
 struct Collisions {
   double step = 0;    ///< s, longest sub-step that follows them; infinite where nothing asks for one
   double look = 0;    ///< s, after which pairs that are not listed now may be about to collide; infinite likewise
-  bool deep = false;  ///< within the horizon an overlap may come near the limit: it is to be looked at every few steps
+  bool deep = false;  ///< within the horizon an overlap may come near the limit: it is checked every few steps
 };
 
-/// What is looked at: how far ahead.
+/// How far ahead collisions are sought.
 struct Outlook {
   Matrix3 rate = Matrix3::Zero();  ///< velocity gradient of the cell, cell frame, 1/s
-  double horizon = 0;              ///< s, until the next look
+  double horizon = 0;              ///< s, until the next check
   double increment = 0;            ///< s, of the whole increment: what the rate makes of the overlaps in it
 };
 
-/// Looks at all listed pairs that touch, or that meet within the horizon at their present velocities. The velocities
-/// must be physical (dt > 0). Row sums are made where they are not at hand (null). With `find_step` false only `deep`
-/// is found.
+/// Goes through all listed pairs that touch, or that meet within the horizon at their present velocities. The
+/// velocities must be physical (dt > 0). Row sums are made where they are not at hand (null). With `find_step` false
+/// only `deep` is found.
 Collisions collisions_ahead(const Model& model, const Assembly& assembly, const RowSums* sums, bool find_step,
                             const Outlook& outlook);
 

@@ -120,8 +120,7 @@ struct PairTerms {
   double reach[2] = {}, turn[2] = {};  ///< ellipses: arms of the tangential and the normal force about i and j, m
 };
 
-// A look at the masses goes through all pairs, in the time of five sub-steps: inline, what a scene does not need falls
-// out.
+// Row sums go through all pairs, in the time of five sub-steps: inline, so that what a scene does not need falls out.
 template <Shape shape, class Force>
 inline __attribute__((always_inline)) PairTerms terms_of(const Model& f, const Assembly& a,
                                                          const PairGeometry<shape>& pair, std::size_t p) {
@@ -200,7 +199,7 @@ struct Firmness {
   }
 };
 
-/// Sums of all grains. Each pair is looked at once; by a team once for each of its grains, so that threads share
+/// Sums of all grains. Each pair is visited once; by a team once for each of its grains, so that threads share
 /// nothing. A grain adds its pairs in the same order either way.
 template <Shape shape, class Force>
 std::vector<GrainSums> sums_of_grains(const Model& f, const Assembly& a, Firmness& firmness) {

@@ -21,7 +21,7 @@ namespace rvelab {
 ///  - the volume ratio is negative or not finite;
 ///  - the tolerance is not finite or not > 0.
 /// It throws InvalidIncrement if the gradient on the way to the target turns the cell inside out (det(I + dH) <= 0). In
-/// the plane the z components of A and B are not looked at.
+/// the plane the z components of A and B are ignored.
 struct MixedTarget {
   struct Row {
     Matrix3 strain = Matrix3::Zero();  ///< A, dimensionless, symmetric; A : dE sums all nine entries
@@ -40,7 +40,7 @@ struct MixedTarget {
                              ///< stress of the moment fluctuates with the collisions
   long wait = -1;            ///< dt = 0: < 0: the target waits until its stresses are held (quasi_static/recovery.hpp). Else
                              ///< its end waits so many sub-steps, or a quarter of those that it took where that is
-                             ///< more, for who corrects what is missed in rounds of his own
+                             ///< more, for callers that correct what is missed in rounds
 };
 
 }  // namespace rvelab

@@ -1,4 +1,4 @@
-// Where the time of an RVE goes, for who asks (Rve::measure_time): grains, pairs, neighbour list, and the calls as
+// Where the time of an RVE goes (Rve::measure_time): grains, pairs, neighbour list, and the calls as
 // wholes.
 #pragma once
 
@@ -17,7 +17,7 @@ struct StepTimes {
 };
 
 /// The clock of a row of sub-steps. Every sixteenth is measured and stands for the others, so that a sub-step of a
-/// small RVE, of some microseconds, is not made slower by being looked at; lists are measured each.
+/// small RVE, of some microseconds, is not made slower by the clock; lists are measured each.
 class StepClock {
  public:
   explicit StepClock(StepTimes* times) : times_(times) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "rvelab/error.hpp"
 #include "rvelab/solver/loading/collisions.hpp"
@@ -97,18 +98,18 @@ KernelDamping damping_kind(const Damping& d, Loading loading) {
 /// Books one sub-step; `moment_before` is the contacts' moment at its start, and becomes that at its end.
 void book_step(const Model& f, Assembly& a, const Dissipation& lost, const StepSums& sums, double step, bool physical,
                const Matrix3& gradient, Matrix3& moment_before) {
-  EnergyLedger& ledger = a.state.ledger;
+  EnergyLedger& booked = a.state.ledger;
   const Matrix3 moment = contact_moment(f, a);
   // V sigma = -sum F (x) b - sum m v' v'; the contact part by the trapezium, the kinetic one at the half step.
   Matrix3 work = -0.5 * (moment_before + moment);
   if (physical) work += kinetic_moment(f, a);
-  ledger.boundary_work += step * work.cwiseProduct(gradient).sum();
-  ledger.friction += lost.friction;
-  ledger.rolling += lost.rolling;
-  ledger.dashpot += lost.dashpot;
-  ledger.law_loss += lost.law_loss;
-  ledger.local_damping += sums.local_damping;
-  ledger.global_damping += sums.global_damping;
+  booked.boundary_work += step * work.cwiseProduct(gradient).sum();
+  booked.friction += lost.friction;
+  booked.rolling += lost.rolling;
+  booked.dashpot += lost.dashpot;
+  booked.law_loss += lost.law_loss;
+  booked.local_damping += sums.local_damping;
+  booked.global_damping += sums.global_damping;
   moment_before = moment;
 }
 
@@ -201,7 +202,7 @@ SubSteps::SubSteps(const Model& model, Assembly& assembly, const Advance& what)
     shift_half_step(f_, a_, step_);
     omega_ = rotation_vector(what.increment.rotation) / (step_ * double(what.steps));
   }
-  for (std::size_t g = 0; g < f_.size(); ++g) total_mass_ += a_.mass[g];
+  total_mass_ = std::accumulate(a_.mass.begin(), a_.mass.begin() + std::ptrdiff_t(f_.size()), 0.0);
   pairs_ = arrays_of(a_.pairs);
   grains_ = arrays_of(f_, a_);
   if (f_.options.ledger) moment_before_ = contact_moment(f_, a_);
@@ -259,7 +260,7 @@ void SubSteps::update_pairs() {
   Dissipation lost;
   clock_.begin_pairs();
   if (f_.options.ledger)
-    kernels_.pairs_ledger(c_, pairs_, a_.rows.data(), 0, long(a_.pairs.padded()), &lost);
+    kernels_.pairs_with_losses(c_, pairs_, a_.rows.data(), 0, long(a_.pairs.padded()), &lost);
   else
     sweep_pairs(kernels_.pairs, c_, pairs_, a_.rows.data(), long(a_.pairs.padded()), team_);
   clock_.end_pairs();

@@ -54,8 +54,8 @@ double rested_growth(double strain, double strain_of_overlap);
 
 /// Unbalanced ratio that `steps` sub-steps leave of a start: u = m x (1 + 2 x) min(0.45, n^-11/8), x = strain
 /// d/overlap, with `strain` that of the increment, `strain_of_overlap` the mean overlap over d, and m the part of the
-/// rate that is new: |d eps/n - rate before| n/|d eps|. 1 from rest, 2 for a reversal at the pace from before, 0 for
-/// the same going on.
+/// rate that is new: |d eps/n - rate before| n/|d eps|. 1 from rest, 2 for a reversal at the strain per step of before,
+/// 0 for the same going on.
 double unbalance_of_start(double mismatch, double strain, double strain_of_overlap, double steps);
 
 /// The ratio that a path under stress control may have, whose stress may err by `share` of the pressure, the larger of

@@ -74,10 +74,10 @@ bool can_measure_lag(State& s) {
 
 bool lag_is_due(State& s, long substeps) {
   const SolverState& control = s.control();
-  if (!can_measure_lag(s)) return false;
-  if (control.lag_steps >= rest_period) return true;
-  const bool changed = control.lag_strain > overlap_strain(s) && control.lag_steps >= changed_period;
-  return (control.lag_factor == 0 || changed) && substeps >= least_increment;
+  const bool old = control.lag_steps >= rest_period;
+  if (!(old || substeps >= least_increment) || !can_measure_lag(s)) return false;
+  return old || control.lag_factor == 0 ||
+         (control.lag_steps >= changed_period && control.lag_strain > overlap_strain(s));
 }
 
 /// Relaxes a copy, and notes in the state by what its stress was behind.
@@ -107,7 +107,7 @@ void judge_tolerance(Report& report) {
 }  // namespace
 
 void estimate_error(State& s, double network, const Matrix3& stress_before, const Judged& increment, Report& report) {
-  if (increment.strain > 0 && can_measure_lag(s) && report.substeps >= long_increment) measure_lag(s);
+  if (increment.strain > 0 && report.substeps >= long_increment && can_measure_lag(s)) measure_lag(s);
   double changed = (s.stress() - stress_before).norm();
   // A piece of a path is judged as its sub-steps are chosen (target_ratio), by what the path changes of the stress.
   if (network > network_change(s, increment.strain)) changed = std::max(changed, s.control().softness * network);

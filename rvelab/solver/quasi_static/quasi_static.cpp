@@ -31,9 +31,9 @@ void turn_back(State& s) {
 }
 
 /// The sub-steps of an increment, and what its checks find.
-class SubSteps {
+class CheckedSteps {
  public:
-  SubSteps(State& state, EquilibriumCheck& check, const StrainPath& path, double fewest)
+  CheckedSteps(State& state, EquilibriumCheck& check, const StrainPath& path, double fewest)
       : s_(state),
         check_(check),
         path_(path),
@@ -153,7 +153,7 @@ Report load_quasi_static(State& s, FrameSplit whole) {
   const double network = network_change(s, std::max(strain, control.leg_strain));
   set_target_ratio(s, target_ratio(s, network));
   const Start start = start_of(s, change, strain, along < 0);
-  SubSteps substeps(s, check, path, start.fewest);
+  CheckedSteps substeps(s, check, path, start.fewest);
   substeps.make(report.substeps);
   if (!s.stress().allFinite())
     throw IncrementFailed("the increment led to values that are not finite; apply it in smaller parts");

@@ -22,7 +22,7 @@ void Recovery::judge(double error) {
 
 long Recovery::patience(long substeps) {
   if (longest_wait_ < 0) return std::numeric_limits<long>::max();
-  // In stiff packings the increment itself takes thousands of sub-steps, and what it stirs up calms as slowly.
+  // In stiff packings the increment itself takes thousands of sub-steps, and transients decay as slowly.
   if (substeps_ == 0) longest_wait_ = std::max(longest_wait_, substeps / share_of_wait);
   return longest_wait_ - substeps_;
 }

@@ -112,21 +112,21 @@ Vector6 Servo::rows_of(bool stress, const Vector6& rows) const {
   return part;
 }
 
-Matrix3 Servo::next_strain(double to, double paced_strain, double full_pace, double limit, const Matrix3& strain_so_far,
-                           const Matrix3& stress, Matrix3& integral) {
+Matrix3 Servo::next_strain(double to, double planned_strain, double full_strain, double limit,
+                           const Matrix3& strain_so_far, const Matrix3& stress, Matrix3& integral) {
   const Vector6 r = residual(to, strain_so_far, stress);
   const Matrix3 answer = strain_matrix(gain_ * rows_of(true, r));
-  Matrix3 held = proportional_gain * answer + paced_strain * integral;
+  Matrix3 held = proportional_gain * answer + planned_strain * integral;
   const double size = held.norm();
   if (size > limit)
     held *= limit / size;
   else  // a short last segment says little about the rate: its weight is its share of a full one
-    integral += (integral_gain * paced_strain / (full_pace * full_pace)) * answer;
+    integral += (integral_gain * planned_strain / (full_strain * full_strain)) * answer;
   // Rows of strain get what `held` leaves of them: `integral` may stem from a target with other rows.
   return strain_matrix(gain_ * rows_of(false, r - a_ * strain_components(held))) + held;
 }
 
-Matrix3 Servo::next_strain_at_rate(double to, double paced_strain, double full_pace, double limit,
+Matrix3 Servo::next_strain_at_rate(double to, double planned_strain, double full_strain, double limit,
                                    const Matrix3& strain_so_far, const Matrix3& stress, const Matrix3& rate,
                                    Matrix3& integral) {
   const Vector6 r = residual(to, strain_so_far, stress);
@@ -134,8 +134,8 @@ Matrix3 Servo::next_strain_at_rate(double to, double paced_strain, double full_p
   // The strain that would leave the stress as it is, were there no dashpots; then what brings half of the error beside
   // it: K (de - steady) + C (de/time - rate) = half of the error, with the rows of strain met.
   const Vector6 steady =
-      strain_components(paced_strain * integral +
-                        strain_matrix(gain_ * rows_of(false, r - a_ * strain_components(paced_strain * integral))));
+      strain_components(planned_strain * integral +
+                        strain_matrix(gain_ * rows_of(false, r - a_ * strain_components(planned_strain * integral))));
   const Vector6 wanted = proportional_gain * r + b_ * (stiffness_ * steady + viscosity_ * strain_components(rate));
   const Matrix3 strain = strain_matrix(quick_gain_ * (rows_of(false, r) + rows_of(true, wanted)));
   Matrix3 held = strain - strain_matrix(gain_ * rows_of(false, r));
@@ -143,7 +143,7 @@ Matrix3 Servo::next_strain_at_rate(double to, double paced_strain, double full_p
   if (size > limit)
     held *= limit / size;
   else
-    integral += (integral_gain * paced_strain / (full_pace * full_pace)) * answer;
+    integral += (integral_gain * planned_strain / (full_strain * full_strain)) * answer;
   return strain_matrix(gain_ * rows_of(false, r - a_ * strain_components(held))) + held;
 }
 

@@ -29,17 +29,17 @@ class Servo {
   double predicted_strain() const;
 
   /// Strain of the next segment, symmetric: the target's fraction goes on to `to` (in [0, 1]).
-  /// `paced_strain` is the share of the predicted strain that the segment makes, `full_pace` what a full segment would;
-  /// the answer to stress errors is cut at `limit`. `integral` is the strain per unit of paced strain that
-  /// the sum of the errors has found (laboratory frame); it is updated.
-  Matrix3 next_strain(double to, double paced_strain, double full_pace, double limit, const Matrix3& strain_so_far,
+  /// `planned_strain` is the share of the predicted strain that the segment makes, `full_strain` what a full segment
+  /// would; the answer to stress errors is cut at `limit`. `integral` is the strain per unit of planned strain that the
+  /// sum of the errors has found (laboratory frame); it is updated.
+  Matrix3 next_strain(double to, double planned_strain, double full_strain, double limit, const Matrix3& strain_so_far,
                       const Matrix3& stress, Matrix3& integral);
 
   /// The same at dt > 0. The dashpots answer a rate and let go of it when it ends: an update changes the stress by
   /// K de + C (de/time - rate), with `rate` (1/s) that of the update before, and is solved for de. (With K alone a
   /// restitution of 0.1 made the servo swing by 1 to 5 times the stress that it held; with K + C/time for every strain
   /// it followed no faster than a collision, 4 to 16 % of scatter instead of 1 to 2.) The answer is cut at `limit`.
-  Matrix3 next_strain_at_rate(double to, double paced_strain, double full_pace, double limit,
+  Matrix3 next_strain_at_rate(double to, double planned_strain, double full_strain, double limit,
                               const Matrix3& strain_so_far, const Matrix3& stress, const Matrix3& rate,
                               Matrix3& integral);
 

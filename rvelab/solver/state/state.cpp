@@ -88,7 +88,7 @@ const RowSums& State::row_sums() {
 }
 
 const OutOfBalance& State::checked_balance() {
-  check_height(model_, cell());  // the list looks too, but only when it is built anew
+  check_height(model_, cell());  // as a list does, but only when it is built
   check_overlaps(model_, out_of_balance());
   return out_of_balance();
 }
@@ -137,6 +137,7 @@ void State::set_deferred(const Matrix3& stretch) {
 }
 
 void State::set_strained_cell() {
+  if (!has_deferred()) return;
   strained_cell_ = cell();
   strained_cell_.lattice = control().deferred_stretch * cell().lattice;
 }

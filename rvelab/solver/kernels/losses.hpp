@@ -1,4 +1,4 @@
-// What the springs of contacts lose in a sub-step, for the kernels that keep the energy ledger (scalar).
+// What the springs of contacts lose in a sub-step, for the kernels that keep the energy balance (scalar).
 #pragma once
 
 #include "rvelab/lanes/vectors.hpp"
