@@ -87,7 +87,7 @@ TEST_CASE("Costs count grains times sub-steps, trials that were reverted too") {
   REQUIRE_OK(rvelab_cost(host.pool, 2, ids.data(), cost));
   CHECK(made % 36 == 0);
   CHECK(made > 0);
-  // With the sub-steps of a copy that rested to show the error (rvelab/solver/estimate.cpp).
+  // With the sub-steps of a copy that relaxed to show the error (rvelab/solver/quasi_static/error_model.cpp).
   CHECK((cost[0] >= made && cost[0] % 36 == 0 && cost[1] == 3 * cost[0]));
 }
 
