@@ -56,8 +56,8 @@ class Rve {
   /// found. Throws InputError if the target is not a target (see MixedTarget), InvalidIncrement (dt is negative or not
   /// finite, or the strain that the rows ask for is no deformation) or IncrementFailed; the RVE is then exactly as it
   /// was. At dt = 0 the target waits for a stress that is let go, and one that the grains cannot carry is an
-  /// IncrementFailed (quasi_static/recovery.hpp); at dt > 0 a stress that is missed is no error: Report::target_held says
-  /// so.
+  /// IncrementFailed (quasi_static/recovery.hpp); at dt > 0 a stress that is missed is no error: Report::target_held
+  /// says so.
   Response apply(const MixedTarget& target, double dt, const Want& want = {});
 
   /// Quasi-static steps at fixed cell until the unbalanced ratio is at most `unbalanced` (dimensionless) or `max_steps`

@@ -88,7 +88,7 @@ TEST_CASE("Costs count grains times sub-steps, of the copy that rests to show th
   CHECK(host.info(ids[1]).grain_steps == before);
   REQUIRE_OK(rvelab_cost(host.pool, 2, ids.data(), cost));
   CHECK(made % 36 == 0);
-  REQUIRE(made >= 36 * constants::least_increment);  // so many that a copy rests once (rvelab/solver/quasi_static/error_model.hpp)
+  REQUIRE(made >= 36 * constants::least_increment);  // so many that a copy rests once (error_model.hpp)
   CHECK(cost[0] == made + 36 * constants::rest_steps);
   CHECK(cost[1] == 3 * cost[0]);
 }

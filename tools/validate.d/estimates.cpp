@@ -1,7 +1,8 @@
 // What the estimate of an increment's error is worth (tools/validate estimates), on packings drawn by seed: discs,
 // ellipses and spheres of radii up to 1:10, friction 0 to 10, with and without rolling, linear and Hertz, kn/(p t) of
 // 1e2 to 1e6. From each, at rest and after 1 % and 5 % of drained compression, increments of 1e-6 to 1e-2: on, back,
-// turned, on with a rotation, anyhow. The constants of loading/accuracy.cpp were fitted to packings of even seeds.
+// turned, on with a rotation, anyhow. The constants of quasi_static/constants.hpp were fitted to packings of even
+// seeds.
 //
 // The truth is 2,000 to 20,000 sub-steps and relaxation to an unbalanced ratio of 1e-8. It is known where half as many
 // sub-steps of a copy whose grains are moved by the last bit change it by less than a third of what the tolerance

@@ -38,9 +38,9 @@ struct MixedTarget {
                              ///< second order in theirs where they prescribe the volume to first order)
   double tolerance = 0.005;  ///< > 0, relative to each row's scale; dt > 0: of the mean over the increment, since the
                              ///< stress of the moment fluctuates with the collisions
-  long wait = -1;            ///< dt = 0: < 0: the target waits until its stresses are held (quasi_static/recovery.hpp). Else
-                             ///< its end waits so many sub-steps, or a quarter of those that it took where that is
-                             ///< more, for callers that correct what is missed in rounds
+  long wait = -1;  ///< dt = 0: < 0: the target waits until its stresses are held (quasi_static/recovery.hpp). Else
+                   ///< its end waits so many sub-steps, or a quarter of those that it took where that is
+                   ///< more, for callers that correct what is missed in rounds
 };
 
 }  // namespace rvelab
