@@ -19,7 +19,7 @@ void Slots::make_room(std::size_t n) {
 
 void Slots::settle(std::size_t index, std::unique_ptr<Resident> resident) noexcept {
   Slot& slot = slots_[index];
-  slot.allocated = !resident->rve.resting();
+  slot.allocated = !resident->rve.released();
   slot.resident = std::move(resident);
   slot.grain_steps = slot.last_grain_steps = 0;
 }

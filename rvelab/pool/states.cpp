@@ -21,7 +21,7 @@ std::vector<std::byte> bytes_of(Resident& resident) {
 std::unique_ptr<Resident> opened(const RveState& state) {
   auto resident = std::make_unique<Resident>(
       Resident{Rve(state.specimen), state.tokens, state.initial_void_ratio, state.inertial_number});
-  resident->rve.rest();
+  resident->rve.release();
   return resident;
 }
 

@@ -112,7 +112,7 @@ std::vector<Hold> ThreadedPool::held(std::span<const std::int64_t> ids, std::uin
 void ThreadedPool::called(Slot& slot, long substeps) noexcept {
   slot.last_call.store(clock_.fetch_add(1, std::memory_order_relaxed), std::memory_order_relaxed);
   const bool rests = substeps >= long_call;
-  if (rests) slot.resident->rve.rest();
+  if (rests) slot.resident->rve.release();
   slot.allocated.store(!rests, std::memory_order_relaxed);
   rest_another();
 }
@@ -128,7 +128,7 @@ void ThreadedPool::rest_another() noexcept {
   std::uint64_t none = 0;
   if (!forgotten() || !slot.owner.compare_exchange_strong(none, resting, std::memory_order_acquire)) return;
   if (forgotten()) {
-    slot.resident->rve.rest();
+    slot.resident->rve.release();
     slot.allocated.store(false, std::memory_order_relaxed);
   }
   slot.owner.store(0, std::memory_order_release);
@@ -139,7 +139,7 @@ ThreadedPool::Template ThreadedPool::made_template(Specimen& specimen) const {
   override_settings(specimen, options_);
   Template made{Rve(specimen), 0};
   made.void_ratio = void_ratio_of(made.rve);
-  made.rve.rest();
+  made.rve.release();
   return made;
 }
 
@@ -210,7 +210,7 @@ std::unique_ptr<Resident> ThreadedPool::copy_of(std::int64_t source) {
     made = std::make_unique<Resident>(
         Resident{original.rve, original.tokens, original.initial_void_ratio, original.inertial_number});
   }
-  made->rve.rest();
+  made->rve.release();
   return made;
 }
 

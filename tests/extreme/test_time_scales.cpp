@@ -42,7 +42,7 @@ TEST_CASE("a fast shear closes the energy ledger as the step falls") {
   // What is left was 0.5 to 9 % of the work at any step while kinetic energy was counted with w' alone.
   const double rate = GENERATE(0.3, 3.0);
   Specimen s = packed(gas(2, spread_radii(60, 0.2), 0.4, 3, material(1e6, 5e5, 0.3)), 1e4);
-  s.solver.ledger = true;
+  s.solver.energy_balance = true;
   s.solver.max_overlap_ratio = 0.9;
   s.solver.time_step_factor = 0.02;
   Rve rve(s);
