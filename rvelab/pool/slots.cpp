@@ -19,7 +19,7 @@ void Slots::make_room(std::size_t n) {
 
 void Slots::settle(std::size_t index, std::unique_ptr<Resident> resident) noexcept {
   Slot& slot = slots_[index];
-  slot.awake = !resident->rve.resting();
+  slot.allocated = !resident->rve.released();
   slot.resident = std::move(resident);
   slot.grain_steps = slot.last_grain_steps = 0;
 }
@@ -32,7 +32,7 @@ std::int64_t Slots::add(std::unique_ptr<Resident> resident) noexcept {
 
 void Slots::remove(std::int64_t id) noexcept {
   Slot& slot = slots_[Id::of(id).slot];
-  slot.awake = false;
+  slot.allocated = false;
   slot.resident.reset();
   ids_.give_back(id);
 }
@@ -57,7 +57,7 @@ void Slots::claim(std::span<const std::int64_t> ids, Residents residents) {
 
 void Slots::give_up(std::int64_t id) noexcept {
   Slot& slot = slots_[Id::of(id).slot];
-  slot.awake = false;
+  slot.allocated = false;
   slot.resident.reset();
   ids_.give_up(id);
 }

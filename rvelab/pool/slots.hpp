@@ -28,7 +28,7 @@ struct Slot {
   std::atomic<std::uint64_t> owner{0};        ///< serial number of the call that is at work on it; 0: none
   std::atomic<std::uint64_t> last_call{0};    ///< by the pool's count of calls on RVEs
   std::atomic<std::uint64_t> grain_steps{0};  ///< made in this pool, trials included
-  std::atomic<bool> awake{false};
+  std::atomic<bool> allocated{false};
   std::uint64_t last_grain_steps = 0;  ///< of the last call: what the next will cost
 };
 

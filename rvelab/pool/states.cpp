@@ -21,7 +21,7 @@ std::vector<std::byte> bytes_of(Resident& resident) {
 std::unique_ptr<Resident> opened(const RveState& state) {
   auto resident = std::make_unique<Resident>(
       Resident{Rve(state.specimen), state.tokens, state.initial_void_ratio, state.inertial_number});
-  resident->rve.rest();
+  resident->rve.release();
   return resident;
 }
 
@@ -37,7 +37,7 @@ void ThreadedPool::load(std::int64_t id, std::span<const std::byte> snapshot) {
   const AtWork working(*this);
   const Hold hold = held(id, ++serial_);
   std::unique_ptr<Resident> read = opened(rve_state_of(snapshot));
-  hold.slot().awake.store(false, std::memory_order_relaxed);
+  hold.slot().allocated.store(false, std::memory_order_relaxed);
   std::swap(hold.slot().resident, read);
 }
 

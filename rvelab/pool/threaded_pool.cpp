@@ -107,13 +107,13 @@ std::vector<Hold> ThreadedPool::held(std::span<const std::int64_t> ids, std::uin
   return holds;
 }
 
-/// An RVE that was called stays awake for the next call, so that steps of a few sub-steps do not pay for waking. It
+/// An RVE that was called stays allocated for the next call, so that steps of a few sub-steps do not pay for waking. It
 /// rests at once after a long call, or when it was not called while two rounds of calls went by.
 void ThreadedPool::called(Slot& slot, long substeps) noexcept {
   slot.last_call.store(clock_.fetch_add(1, std::memory_order_relaxed), std::memory_order_relaxed);
   const bool rests = substeps >= long_call;
-  if (rests) slot.resident->rve.rest();
-  slot.awake.store(!rests, std::memory_order_relaxed);
+  if (rests) slot.resident->rve.release();
+  slot.allocated.store(!rests, std::memory_order_relaxed);
   rest_another();
 }
 
@@ -121,15 +121,15 @@ void ThreadedPool::called(Slot& slot, long substeps) noexcept {
 void ThreadedPool::rest_another() noexcept {
   Slot& slot = slots_[std::size_t(hand_.fetch_add(1, std::memory_order_relaxed) % slots_.size())];
   const auto forgotten = [&] {
-    return slot.awake.load(std::memory_order_relaxed) &&
+    return slot.allocated.load(std::memory_order_relaxed) &&
            clock_.load(std::memory_order_relaxed) >
                slot.last_call.load(std::memory_order_relaxed) + 2 * slots_.ids().population();
   };
   std::uint64_t none = 0;
   if (!forgotten() || !slot.owner.compare_exchange_strong(none, resting, std::memory_order_acquire)) return;
   if (forgotten()) {
-    slot.resident->rve.rest();
-    slot.awake.store(false, std::memory_order_relaxed);
+    slot.resident->rve.release();
+    slot.allocated.store(false, std::memory_order_relaxed);
   }
   slot.owner.store(0, std::memory_order_release);
 }
@@ -142,7 +142,7 @@ std::int64_t ThreadedPool::add_template(Specimen specimen) {
                                        " templates were made of it, and no number is left; make another pool");
   Template made{Rve(specimen), 0};
   made.void_ratio = void_ratio_of(made.rve);
-  made.rve.rest();
+  made.rve.release();
   templates_.emplace(next_template_, std::move(made));
   return next_template_++;
 }
@@ -200,7 +200,7 @@ std::unique_ptr<Resident> ThreadedPool::copy_of(std::int64_t source) {
     made = std::make_unique<Resident>(
         Resident{original.rve, original.tokens, original.initial_void_ratio, original.inertial_number});
   }
-  made->rve.rest();
+  made->rve.release();
   return made;
 }
 

@@ -135,7 +135,7 @@ ThreadedPool::Outcome ThreadedPool::attempt(Slot& slot, const Matrix3& displacem
   Rve& rve = resident.rve;
   rve.revert();
   resident.pending = false;
-  slot.awake.store(true, std::memory_order_relaxed);
+  slot.allocated.store(true, std::memory_order_relaxed);
   const Cost cost(slot);
   Outcome outcome;
   outcome.response =
@@ -185,7 +185,7 @@ void ThreadedPool::accept(Slot& slot, std::int64_t token, const Matrix3& displac
   const TrialRecord* const record = resident.tokens.find(token);
   if (!resident.rve.pending() || last_token(resident.tokens) != token || !resident.pending) {
     resident.pending = false;
-    slot.awake.store(true, std::memory_order_relaxed);
+    slot.allocated.store(true, std::memory_order_relaxed);
     make_again(slot, *record);
   }
   settle(resident, token);

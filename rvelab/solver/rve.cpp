@@ -194,8 +194,8 @@ void Rve::exchange() noexcept {
   if (pending()) state_->exchange();
 }
 
-void Rve::rest() { state_->release(); }
-bool Rve::resting() const { return state_->released(); }
+void Rve::release() { state_->release(); }
+bool Rve::released() const { return state_->released(); }
 Memory Rve::memory() const { return state_->memory(); }
 
 Matrix3 Rve::contact_stress() const { return answer(*state_, strained_stress); }

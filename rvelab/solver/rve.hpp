@@ -88,8 +88,8 @@ class Rve {
   /// that changes the Rve allocates them, in the time of a few sub-steps; no bit changes. A const call that needs them
   /// (stresses, unbalanced ratio, critical time step, network) works on a copy, in the same time, and the Rve stays
   /// released. A trial stays pending, its state and the committed one both released.
-  void rest();
-  bool resting() const;
+  void release();
+  bool released() const;
   Memory memory() const;  ///< what is held at this moment
 
   /// A flag that apply and relax read after each sub-step: once it is true they throw Interrupted, and the RVE is as it

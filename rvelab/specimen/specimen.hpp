@@ -50,16 +50,16 @@ struct SolverOptions {
   long max_substeps = 50'000'000;    ///< an increment that needs more fails
   double min_height = 0;             ///< m; shortest lattice vector allowed; 0: 2 r_max
   double max_overlap_ratio = 0.25;   ///< largest overlap over the smaller radius; more fails
-  bool ledger = false;               ///< keep the energy balance (measured cost in tools/bench)
+  bool energy_balance = false;       ///< keep the energy balance (measured cost in tools/bench)
 };
 
 /// Terms of the energy balance, J, sums since the specimen was opened first (solver/README.md). Zero when not kept.
-struct EnergyLedger {
+struct EnergyTerms {
   double boundary_work = 0;
   double friction = 0, rolling = 0, dashpot = 0;
   double local_damping = 0, global_damping = 0;
-  double law_loss = 0;  ///< change of f_t^2/2kt at varying kt (Hertz-Mindlin), and M^2/2kr
-  double zeroing = 0;   ///< kinetic energy removed when scaled masses change or the mean velocity is taken out
+  double law_loss = 0;         ///< change of f_t^2/2kt at varying kt (Hertz-Mindlin), and M^2/2kr
+  double removed_kinetic = 0;  ///< kinetic energy removed when scaled masses change or the mean velocity is taken out
 };
 
 /// Solver state that decides the next bit, beside grains, contacts and cell.
@@ -72,9 +72,9 @@ struct SolverState {
   double list_skin = 0;                    ///< skin that the list was built with, m; 0: solver.skin
   std::int64_t list_steps = 0;             ///< sub-steps made since then
   double strain_per_step = 0;              ///< dt = 0: strain increment per step; 0: not yet known
-  double pace_target = 0;                  ///< dt = 0: unbalanced ratio that this step is for
-  double leg_strain = 0;                   ///< dt = 0: strain since the last turn, up to what is judged together
-  double softness = 1;                     ///< dt = 0: |d sigma|/|C : d eps| of the last interval (accuracy.hpp)
+  double target_unbalanced_ratio = 0;      ///< dt = 0: unbalanced ratio that this step is for
+  double strain_since_reversal = 0;        ///< dt = 0: strain since the last turn, up to what is judged together
+  double network_stiffness_ratio = 1;      ///< dt = 0: |d sigma|/|C : d eps| of the last interval (accuracy.hpp)
   double constraint_ratio = 0;             ///< dt = 0: constraints of the contacts over the motions of the grains that
                                            ///< have any, when the present one began (accuracy.hpp); 0: not known
   double lag_factor = 0;                   ///< dt = 0: K as a relaxed copy showed it last (accuracy.hpp); 0: not known
@@ -87,10 +87,10 @@ struct SolverState {
   double unbalanced_ratio = 0;                     ///< dt = 0: when it was measured last
   Matrix3 deferred_stretch = Matrix3::Identity();  ///< dt = 0: applied, but left to the next sub-step; cell frame
   Matrix3 stress_slope =
-      Matrix3::Zero();              ///< dt = 0: of the last increment, over the norm of its strain, cell frame, Pa
-  double slope_error = 0;           ///< dt = 0: twice what slopes missed of the next, which fades (0.7), Pa
-  std::int64_t look_steps = -1;     ///< dt = 0: sub-steps since masses were scaled; < 0: they are not
-  std::vector<double> scaled_mass;  ///< dt = 0: masses in use, N/m (the sub-step is 1); empty: to be scaled
+      Matrix3::Zero();     ///< dt = 0: of the last increment, over the norm of its strain, cell frame, Pa
+  double slope_error = 0;  ///< dt = 0: twice what slopes missed of the next, which fades (0.7), Pa
+  std::int64_t steps_since_scaling = -1;       ///< dt = 0: sub-steps since masses were scaled; < 0: they are not
+  std::vector<double> scaled_mass;             ///< dt = 0: masses in use, N/m (the sub-step is 1); empty: to be scaled
   std::vector<double> scaled_inverse_inertia;  ///< the same: 1 over the moments of inertia, 1/(N m)
   Matrix3 servo_strain =
       Matrix3::Zero();                   ///< mixed targets: integral term, strain per unit of planned strain, lab frame
@@ -107,7 +107,7 @@ struct SolverState {
   std::uint64_t list_builds = 0;
   std::vector<std::int32_t>
       memory_order;  ///< large assemblies: index into Grains by place in memory (memory_order.hpp)
-  EnergyLedger ledger;
+  EnergyTerms energy_balance;
 };
 
 struct Specimen {

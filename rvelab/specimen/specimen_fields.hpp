@@ -114,19 +114,19 @@ inline constexpr auto members_of<SolverOptions> = std::tuple{
     Field{"max_substeps", &SolverOptions::max_substeps, "1"},
     Field{"min_height_m", &SolverOptions::min_height, "m"},
     Field{"max_overlap_ratio", &SolverOptions::max_overlap_ratio, "1"},
-    Field{"ledger", &SolverOptions::ledger, "1"},
+    Field{"ledger", &SolverOptions::energy_balance, "1"},
 };
 
 template <>
-inline constexpr auto members_of<EnergyLedger> = std::tuple{
-    Field{"boundary_work_J", &EnergyLedger::boundary_work, "J"},
-    Field{"friction_J", &EnergyLedger::friction, "J"},
-    Field{"rolling_J", &EnergyLedger::rolling, "J"},
-    Field{"dashpot_J", &EnergyLedger::dashpot, "J"},
-    Field{"local_damping_J", &EnergyLedger::local_damping, "J"},
-    Field{"global_damping_J", &EnergyLedger::global_damping, "J"},
-    Field{"law_loss_J", &EnergyLedger::law_loss, "J"},
-    Field{"zeroing_J", &EnergyLedger::zeroing, "J"},
+inline constexpr auto members_of<EnergyTerms> = std::tuple{
+    Field{"boundary_work_J", &EnergyTerms::boundary_work, "J"},
+    Field{"friction_J", &EnergyTerms::friction, "J"},
+    Field{"rolling_J", &EnergyTerms::rolling, "J"},
+    Field{"dashpot_J", &EnergyTerms::dashpot, "J"},
+    Field{"local_damping_J", &EnergyTerms::local_damping, "J"},
+    Field{"global_damping_J", &EnergyTerms::global_damping, "J"},
+    Field{"law_loss_J", &EnergyTerms::law_loss, "J"},
+    Field{"zeroing_J", &EnergyTerms::removed_kinetic, "J"},
 };
 
 template <>
@@ -138,9 +138,9 @@ inline constexpr auto members_of<SolverState> = std::tuple{
     Field{"list_skin_m", &SolverState::list_skin, "m", Rows::one, InFiles{1}},
     Field{"list_steps", &SolverState::list_steps, "1", Rows::one, InFiles{1}},
     Field{"strain_per_step", &SolverState::strain_per_step, "1"},
-    Field{"pace_target", &SolverState::pace_target, "1", Rows::one, InFiles{6}},
-    Field{"leg_strain", &SolverState::leg_strain, "1", Rows::one, InFiles{6}},
-    Field{"softness", &SolverState::softness, "1", Rows::one, InFiles{6}},
+    Field{"pace_target", &SolverState::target_unbalanced_ratio, "1", Rows::one, InFiles{6}},
+    Field{"leg_strain", &SolverState::strain_since_reversal, "1", Rows::one, InFiles{6}},
+    Field{"softness", &SolverState::network_stiffness_ratio, "1", Rows::one, InFiles{6}},
     Field{"constraint_ratio", &SolverState::constraint_ratio, "1", Rows::one, InFiles{10}},
     Field{"lag_factor", &SolverState::lag_factor, "1", Rows::one, InFiles{10}},
     Field{"lag_strain", &SolverState::lag_strain, "1", Rows::one, InFiles{10}},
@@ -153,7 +153,7 @@ inline constexpr auto members_of<SolverState> = std::tuple{
     Field{"deferred_stretch", &SolverState::deferred_stretch, "1", Rows::one, InFiles{7}},
     Field{"stress_slope_Pa", &SolverState::stress_slope, "Pa", Rows::one, InFiles{7}},
     Field{"slope_error_Pa", &SolverState::slope_error, "Pa", Rows::one, InFiles{7}},
-    Field{"look_steps", &SolverState::look_steps, "1", Rows::one, InFiles{6}},
+    Field{"look_steps", &SolverState::steps_since_scaling, "1", Rows::one, InFiles{6}},
     Field{"scaled_mass", &SolverState::scaled_mass, "N/m", Rows::per_grain_or_none, InFiles{6}},
     Field{"scaled_inverse_inertia", &SolverState::scaled_inverse_inertia, "1/(N m)", Rows::per_grain_or_none,
           InFiles{6}},
@@ -170,7 +170,7 @@ inline constexpr auto members_of<SolverState> = std::tuple{
     Field{"grain_steps", &SolverState::grain_steps, "1"},
     Field{"list_builds", &SolverState::list_builds, "1"},
     Field{"memory_order", &SolverState::memory_order, "1", Rows::per_grain_or_none, InFiles{3}},
-    Part{"ledger", &SolverState::ledger},
+    Part{"ledger", &SolverState::energy_balance},
 };
 
 template <>

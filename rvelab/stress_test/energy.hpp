@@ -24,20 +24,21 @@ inline double energy_in(const Rve& rve, const Matrix3& rate = Matrix3::Zero()) {
   return kinetic + elastic_energy(network);
 }
 
-inline double losses_in(const EnergyLedger& l) {
-  return l.friction + l.rolling + l.dashpot + l.local_damping + l.global_damping + l.law_loss + l.zeroing;
+inline double losses_in(const EnergyTerms& l) {
+  return l.friction + l.rolling + l.dashpot + l.local_damping + l.global_damping + l.law_loss + l.removed_kinetic;
 }
 
-/// From a first look on. SolverOptions::ledger must be on.
+/// From a first look on. SolverOptions::energy_balance must be on.
 class EnergyBalance {
  public:
-  explicit EnergyBalance(const Rve& rve) : rve_(&rve), start_(energy_in(rve)), ledger_(rve.specimen().state.ledger) {
+  explicit EnergyBalance(const Rve& rve)
+      : rve_(&rve), start_(energy_in(rve)), ledger_(rve.specimen().state.energy_balance) {
     look();
   }
 
   /// Notes the largest work, change and loss so far: the residual is measured by them.
   void look(const Matrix3& rate = Matrix3::Zero()) {
-    const EnergyLedger now = rve_->specimen().state.ledger;
+    const EnergyTerms now = rve_->specimen().state.energy_balance;
     const double work = now.boundary_work - ledger_.boundary_work, loss = losses_in(now) - losses_in(ledger_);
     const double change = energy_in(*rve_, rate) - start_;
     residual_ = change - (work - loss);
@@ -50,7 +51,7 @@ class EnergyBalance {
  private:
   const Rve* rve_;
   double start_;
-  EnergyLedger ledger_;
+  EnergyTerms ledger_;
   double residual_ = 0, scale_ = 0;
 };
 

@@ -76,7 +76,7 @@ Specimen specimen_of(const HardGas& hard, bool hertz, double duration, unsigned 
   const double overlap = hertz ? contact_time * speed / 2.943275 : contact_time * speed / pi;
   s.contact.law = hertz ? Law::hertz_given : Law::linear_given;
   s.materials[0].normal_stiffness = constant_for(hertz, overlap, half_mass, speed);
-  s.solver.ledger = true;
+  s.solver.energy_balance = true;
   return s;
 }
 
@@ -137,12 +137,12 @@ namespace {
 double cooling_rate(const HardGas& hard, const Case& asked, unsigned seed, bool ledger, Verdict& verdict) {
   Specimen s = specimen_of(hard, asked("hertz") != 0, asked("contact_time"), seed);
   s.solver.time_step_factor = asked("time_step_factor");
-  s.solver.ledger = false;
+  s.solver.energy_balance = false;
   Rve mixing(s);
   mixing.set_velocities(thermal_velocities(hard, seed), std::vector<Vector3>(hard.grains, Vector3::Zero()));
   mixing.apply(Matrix3::Zero(), 2 / hard.collision_rate(1));
   s = mixing.specimen();
-  s.solver.ledger = ledger;
+  s.solver.energy_balance = ledger;
   const double e = asked("restitution");
   s.damping.dashpot = Dashpot::restitution;
   s.damping.restitution = e;

@@ -26,7 +26,7 @@ Specimen with_damping(Specimen s, const Case& asked) {
     s.damping.dashpot = Dashpot::restitution;
     s.damping.restitution = asked("restitution");
   }
-  s.solver.ledger = true;
+  s.solver.energy_balance = true;
   return s;
 }
 
@@ -63,7 +63,7 @@ void sheared_at_rate(const Case& asked, Verdict& verdict) {
 void shock_compression(const Case& asked, Verdict& verdict) {
   const int d = int(asked("dimension"));
   Specimen s = usual(d, asked("hertz") != 0, 0.5);
-  s.solver.ledger = true;
+  s.solver.energy_balance = true;
   s.solver.time_step_factor = asked("time_step_factor");
   Tested tested(s, verdict);
   // The speed at which the sides of a grain come together over that of sound in the packing, about r omega_max.

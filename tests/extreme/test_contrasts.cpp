@@ -211,7 +211,7 @@ TEST_CASE("A restitution of 0.01 leaves a hundredth of the speed of a head-on im
     s.damping.dashpot = Dashpot::restitution;
     s.damping.restitution = 0.01;
     s.solver.time_step_factor = 0.002;
-    s.solver.ledger = true;
+    s.solver.energy_balance = true;
     Rve rve(s);
     const double speed = 0.1;
     rve.set_velocities({Vector3(speed, 0, 0), Vector3(-speed, 0, 0)}, {Vector3::Zero(), Vector3::Zero()});
@@ -224,7 +224,7 @@ TEST_CASE("A restitution of 0.01 leaves a hundredth of the speed of a head-on im
       CHECK(net_momentum(rve).norm() <= 1e-13 * network.grains[0].mass * speed);
     }
     CHECK(rebound == Approx(0.01 * speed).epsilon(0.02));
-    const EnergyLedger ledger = rve.specimen().state.ledger;
+    const EnergyTerms ledger = rve.specimen().state.energy_balance;
     const double lost = start - kinetic_energy(rve.network()) - elastic_energy(rve.network());
     CHECK(ledger.dashpot == Approx(lost).epsilon(0.01));
     CHECK(ledger.boundary_work == 0);

@@ -94,16 +94,16 @@ TEST_CASE("an undamped gas keeps its energy at the default step") {
 TEST_CASE("a shock from a gas closes the energy ledger") {
   const double rate = GENERATE(1e2, 1e4);
   Specimen s = gas(2, spread_radii(60, 0.2), 0.45, 3, material(1e7, 5e6, 0.3));
-  s.solver.ledger = true;
+  s.solver.energy_balance = true;
   s.solver.max_overlap_ratio = 0.9;
   Rve rve(s);
   rve.apply(Matrix3::Zero(), 1e-12);
   const double before = energy(rve);
-  const EnergyLedger start = rve.specimen().state.ledger;
+  const EnergyTerms start = rve.specimen().state.energy_balance;
   rve.apply(isotropic(2, -0.25), 0.25 / rate);
-  const EnergyLedger end = rve.specimen().state.ledger;
+  const EnergyTerms end = rve.specimen().state.energy_balance;
   const double work = end.boundary_work - start.boundary_work;
-  const double lost = end.friction - start.friction + end.zeroing - start.zeroing;
+  const double lost = end.friction - start.friction + end.removed_kinetic - start.removed_kinetic;
   CAPTURE(rate, work, lost);
   CHECK(work > 0);
   CHECK(std::abs(energy(rve) - before - work + lost) < 0.01 * work);
@@ -113,17 +113,17 @@ TEST_CASE("a fast shear closes the energy ledger as the step falls") {
   // What is left was 0.5 to 9 % of the work at any step while kinetic energy was counted with w' alone.
   const double rate = GENERATE(0.3, 3.0);
   Specimen s = packed(gas(2, spread_radii(60, 0.2), 0.4, 3, material(1e6, 5e5, 0.3)), 1e4);
-  s.solver.ledger = true;
+  s.solver.energy_balance = true;
   s.solver.max_overlap_ratio = 0.9;
   s.solver.time_step_factor = 0.02;
   Rve rve(s);
   rve.apply(entry(0, 1, 0.05), 0.05 / rate);
   const double before = energy(rve);
-  const EnergyLedger start = rve.specimen().state.ledger;
+  const EnergyTerms start = rve.specimen().state.energy_balance;
   rve.apply(entry(0, 1, 0.1), 0.1 / rate);
-  const EnergyLedger end = rve.specimen().state.ledger;
+  const EnergyTerms end = rve.specimen().state.energy_balance;
   const double work = end.boundary_work - start.boundary_work;
-  const double lost = end.friction - start.friction + end.zeroing - start.zeroing;
+  const double lost = end.friction - start.friction + end.removed_kinetic - start.removed_kinetic;
   CAPTURE(rate, work, lost);
   CHECK(std::abs(energy(rve) - before - work + lost) < 3e-3 * work);  // kinetic energy is that of half a step before
 }

@@ -129,10 +129,11 @@ TEST_CASE("a number of the state that is not finite, or a pace below 0, is refus
              Contains("strain_per_step of the state is not"));
   CHECK_THAT(refusal([&](SolverState& s) { s.interval_stress(0, 1) = infinity; }), Contains("interval_stress_Pa"));
   CHECK_THAT(refusal([&](SolverState& s) { s.mean_velocity[1] = -infinity; }), Contains("mean_velocity"));
-  CHECK_THAT(refusal([&](SolverState& s) { s.ledger.friction = nan; }), Contains("ledger/friction_J"));
+  CHECK_THAT(refusal([&](SolverState& s) { s.energy_balance.friction = nan; }), Contains("ledger/friction_J"));
   CHECK_THAT(refusal([&](SolverState& s) { s.strain_per_step = -1e-6; }),
              Contains("strain_per_step") && Contains("-1e-06"));
-  CHECK_THAT(refusal([&](SolverState& s) { s.pace_target = -1; }), Contains("pace_target") && Contains("leave it 0"));
+  CHECK_THAT(refusal([&](SolverState& s) { s.target_unbalanced_ratio = -1; }),
+             Contains("pace_target") && Contains("leave it 0"));
 }
 
 TEST_CASE("a pace that is out of all proportion leaves an increment that is made or refused") {
@@ -141,7 +142,7 @@ TEST_CASE("a pace that is out of all proportion leaves an increment that is made
       CAPTURE(target, pace);
       Specimen specimen = nine_grains();
       specimen.state.strain_per_step = pace;
-      specimen.state.pace_target = target;
+      specimen.state.target_unbalanced_ratio = target;
       Matrix3 increment = Matrix3::Zero();
       if (pace > 1)
         specimen.state.deferred_stretch(1, 1) = 1.0087890625;

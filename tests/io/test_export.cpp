@@ -108,7 +108,7 @@ TEST_CASE("every parameter goes through the material file, whatever law and dash
       specimen.damping.normal_coefficient = 0.1 + 0.2;
       specimen.damping.global_viscous = 1e-300;
       specimen.solver.fixed_substeps = 17;
-      specimen.solver.ledger = true;
+      specimen.solver.energy_balance = true;
       specimen.materials.resize(2);
       for (auto& material : specimen.materials) {
         const bool given = law == Law::linear_given || law == Law::hertz_given;

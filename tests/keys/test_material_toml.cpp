@@ -97,7 +97,7 @@ TEST_CASE("assignments reach their fields") {
   CHECK(s.solver.fixed_substeps == 17);
   CHECK(s.solver.skin == 0.2);
   CHECK(s.solver.fixed_time_step == 1e-5);
-  CHECK(s.solver.ledger);
+  CHECK(s.solver.energy_balance);
 }
 
 TEST_CASE("a friction angle gives its tangent as friction") {

@@ -67,7 +67,7 @@ struct Gain {
 };
 Gain gain_by_radius(Specimen s, double step) {
   s.solver.fixed_time_step = step * (1 + 1e-9);
-  s.solver.ledger = true;
+  s.solver.energy_balance = true;
   Rve rve(s);
   rve.set_velocities(s.grains.velocity, s.grains.spin);
   const double before = conserved(rve).kinetic;
@@ -91,7 +91,7 @@ Gain gain_by_radius(Specimen s, double step) {
   }
   REQUIRE(touched);
   REQUIRE(last_work == 0);
-  const EnergyLedger ledger = rve.specimen().state.ledger;
+  const EnergyTerms ledger = rve.specimen().state.energy_balance;
   return {conserved(rve).kinetic / before - 1, gain.by_radius / before, (ledger.law_loss + ledger.friction) / before};
 }
 

@@ -34,17 +34,17 @@ Energies energies(const Rve& rve, const Matrix3& rate, double dt) {
   next.apply(rate * dt, dt);
   const Vector3 spin = 0.5 * Vector3(rate(2, 1) - rate(1, 2), rate(0, 2) - rate(2, 0), rate(1, 0) - rate(0, 1));
   const Network a = rve.network(), b = next.network();
-  const EnergyLedger l = rve.specimen().state.ledger;
+  const EnergyTerms l = rve.specimen().state.energy_balance;
   return {elastic_energy(a) +
               0.5 * (kinetic(a, a.cell.rotation.transpose() * spin) + kinetic(b, b.cell.rotation.transpose() * spin)),
           l.boundary_work,
-          l.friction + l.rolling + l.dashpot + l.local_damping + l.global_damping + l.law_loss + l.zeroing};
+          l.friction + l.rolling + l.dashpot + l.local_damping + l.global_damping + l.law_loss + l.removed_kinetic};
 }
 
 struct Flow {
   std::array<double, 5> residual{};  ///< J, at dt, dt/2, ... dt/16
   double work = 0;                   ///< J, at the smallest step
-  EnergyLedger ledger;
+  EnergyTerms energy_balance;
   double largest = 0;  ///< largest residual
 };
 
@@ -57,7 +57,7 @@ Specimen resting(const Specimen& s) {
     Specimen quiet = s;
     quiet.damping = {};
     quiet.contact.rolling = false;
-    quiet.solver.ledger = true;
+    quiet.solver.energy_balance = true;
     known[key] = at_rest(quiet, 1e-8).specimen();
   }
   return known[key];
@@ -68,7 +68,7 @@ Flow flow(const Specimen& s, const Matrix3& pattern, double strain) {
   Specimen start = resting(s);
   start.contact = s.contact;
   start.damping = s.damping;
-  start.state.ledger = {};
+  start.state.energy_balance = {};
   const double step = 0.25 * Rve(start).critical_time_step(), count = 64;
   const Matrix3 rate = strain / (count * step) * pattern;
   Flow found;
@@ -83,7 +83,7 @@ Flow flow(const Specimen& s, const Matrix3& pattern, double strain) {
     found.work = after.work - before.work;
     found.residual[std::size_t(halving)] = (after.stored - before.stored) - found.work + (after.lost - before.lost);
     found.largest = std::max(found.largest, std::abs(found.residual[std::size_t(halving)]));
-    found.ledger = rve.specimen().state.ledger;
+    found.energy_balance = rve.specimen().state.energy_balance;
   }
   return found;
 }
@@ -151,13 +151,13 @@ TEST_CASE("the ledger of stuck contacts closes") {
   const Flow f = flow(s, pattern(shape, turning), 1e-3);
   check_closed(f, 1e-6);
   // With kt constant nothing is lost; with kt falling as a Hertz-Mindlin contact opens, something is.
-  CHECK(f.ledger.friction == 0);
-  CHECK(f.ledger.rolling == 0);
-  CHECK(f.ledger.dashpot == 0);
+  CHECK(f.energy_balance.friction == 0);
+  CHECK(f.energy_balance.rolling == 0);
+  CHECK(f.energy_balance.dashpot == 0);
   if (law == Law::hertz_mindlin)
-    CHECK(f.ledger.law_loss > 0);
+    CHECK(f.energy_balance.law_loss > 0);
   else
-    CHECK(f.ledger.law_loss == 0);
+    CHECK(f.energy_balance.law_loss == 0);
 }
 
 TEST_CASE("the ledger of dashpots closes with the time step, and they only take") {
@@ -171,7 +171,7 @@ TEST_CASE("the ledger of dashpots closes with the time step, and they only take"
   s.damping.tangential_ratio = 0.5;
   const Flow f = flow(s, pattern(shape, turning), 1e-3);
   check_closed(f, 1e-6);
-  CHECK(f.ledger.dashpot > 1e3 * std::abs(f.residual[4]));
+  CHECK(f.energy_balance.dashpot > 1e3 * std::abs(f.residual[4]));
 }
 
 TEST_CASE("the ledger of sliding and rolling contacts closes with the time step") {
@@ -182,8 +182,8 @@ TEST_CASE("the ledger of sliding and rolling contacts closes with the time step"
   s.contact.rolling = true;
   const Flow f = flow(s, pattern(shape, turning), 1e-2);
   check_closed(f, 1e-4);
-  CHECK(f.ledger.friction > 0.01 * f.work);
-  CHECK(f.ledger.rolling > 1e-3 * f.work);
+  CHECK(f.energy_balance.friction > 0.01 * f.work);
+  CHECK(f.energy_balance.rolling > 1e-3 * f.work);
 }
 
 TEST_CASE("the ledger of viscous and of local damping closes with the time step") {
@@ -198,8 +198,8 @@ TEST_CASE("the ledger of viscous and of local damping closes with the time step"
   if (shape == Shape::sphere) stretch(2, 2) = -0.7;
   const Flow f = flow(s, stretch, 1e-3);
   check_closed(f, 1e-4);
-  CHECK((f.ledger.local_damping > 0) == local);
-  CHECK((f.ledger.global_damping > 0) == global);
+  CHECK((f.energy_balance.local_damping > 0) == local);
+  CHECK((f.energy_balance.global_damping > 0) == global);
 }
 
 TEST_CASE("momentum stays zero to round-off without local and viscous damping") {

@@ -46,10 +46,10 @@ TEST_CASE("The affine stiffness is the sum over contacts that move with the stra
     if (d == 3) strained(0, 2) = 3e-3;
     const Matrix3 turn = rotation_about_z(0.3) * strained - Matrix3::Identity();
     rve.apply(turn, 0);
-    Model fixture;
+    Model model;
     Assembly assembly;
-    open_assembly(rve.specimen(), fixture, assembly);
-    const Matrix6 stiffness = affine_stiffness(fixture, assembly);
+    open_assembly(rve.specimen(), model, assembly);
+    const Matrix6 stiffness = affine_stiffness(model, assembly);
     const Network net = rve.network();
     REQUIRE(net.contacts.size() > 50);
     for (int k = 0; k < 5; ++k) {

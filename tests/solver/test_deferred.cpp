@@ -77,7 +77,7 @@ TEST_CASE("Who looks at a cell with deferred strain sees its stress, and changes
   CHECK((network.cell.lattice - rve.cell().lattice).norm() <= 1e-14 * rve.cell().lattice.norm());
   CHECK(rve.save() == before);
   CHECK(Rve(rve).save() == before);
-  rve.rest();
+  rve.release();
   CHECK(rve.save() == before);
   CHECK((rve.stress() - last.stress).norm() <= 1e-12 * last.stress.norm());
 }
@@ -173,7 +173,7 @@ TEST_CASE("A trial of deferred strain copies no grain, and is committed and reve
   tried.revert();
   CHECK(tried.save() == start.save());
   CHECK(tried.attempt(small, 0).stress == response.stress);
-  tried.rest();
+  tried.release();
   tried.commit();
   CHECK(tried.save() == applied.save());
   // On from there, through increments that make sub-steps: trials of both kinds follow each other.

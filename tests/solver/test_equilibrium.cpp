@@ -83,7 +83,7 @@ TEST_CASE("a packing whose friction is lowered is no equilibrium, and its first 
         CHECK(missed < first.report.error_estimate);
         CHECK((strain > 5e-6 || missed > 5e-3 * first.stress.norm()));
         CHECK((strain > 5e-6 || first.report.unbalanced_ratio > 5e-3));
-        const double target = one->specimen().state.pace_target;
+        const double target = one->specimen().state.target_unbalanced_ratio;
         CHECK(first.report.quasi_static == (first.report.unbalanced_ratio <= 3 * target));
         CHECK((strain > 5e-6 || one->apply(entry(0, 1, strain), 0).report.unbalanced_ratio > 5e-3));
       }
@@ -102,15 +102,15 @@ TEST_CASE("a tangential force without a stiffness is refused, and let go of wher
   CHECK(contains(text, "clear the tangential forces"));
 
   Specimen booked = rve.specimen();
-  booked.solver.ledger = true;
+  booked.solver.energy_balance = true;
   Rve live(booked);
   double stored = 0;
   for (const ContactState& c : live.network().contacts)
     stored += 0.5 * c.tangential_force.squaredNorm() / c.tangential_stiffness;
-  const double before = live.specimen().state.ledger.law_loss;
+  const double before = live.specimen().state.energy_balance.law_loss;
   live.set_materials(held.materials);
   for (const ContactState& c : live.network().contacts) CHECK(c.tangential_force.norm() < 1e-12 * c.normal_force);
-  CHECK(std::abs(live.specimen().state.ledger.law_loss - before - stored) < 1e-12 * stored);
+  CHECK(std::abs(live.specimen().state.energy_balance.law_loss - before - stored) < 1e-12 * stored);
 }
 
 TEST_CASE("a dashpot does nothing at dt = 0") {
@@ -128,7 +128,7 @@ TEST_CASE("a dashpot does nothing at dt = 0") {
 TEST_CASE("the ledger books what a rolling spring holds when its contact opens") {
   Specimen s = dense(0.5, 1.0);
   s.materials[0].rolling_friction = 10;
-  s.solver.ledger = true;
+  s.solver.energy_balance = true;
   s.solver.max_overlap_ratio = 0.9;
   Rve rve(s);
   const auto energy = [&] {
@@ -137,13 +137,13 @@ TEST_CASE("the ledger books what a rolling spring holds when its contact opens")
   };
   rve.apply(entry(0, 1, 0.02), 0.02 / 0.3);
   const double before = energy();
-  const EnergyLedger start = rve.specimen().state.ledger;
+  const EnergyTerms start = rve.specimen().state.energy_balance;
   Matrix3 open = entry(0, 1, 0.02);
   open(0, 0) = open(1, 1) = 0.02;
   rve.apply(open, 0.02 / 0.3);
-  const EnergyLedger end = rve.specimen().state.ledger;
+  const EnergyTerms end = rve.specimen().state.energy_balance;
   const double work = end.boundary_work - start.boundary_work, rolling = end.rolling - start.rolling;
-  const double lost = end.friction - start.friction + rolling + end.zeroing - start.zeroing;
+  const double lost = end.friction - start.friction + rolling + end.removed_kinetic - start.removed_kinetic;
   CHECK(rolling > 0);
   CHECK(std::abs(energy() - before - work + lost) < 0.5 * rolling);  // the rest is that of a coarse step
 }

@@ -38,9 +38,9 @@ Specimen spinning_needles() {
 }
 
 struct Opened {
-  Model fixture;
+  Model model;
   Assembly now;
-  explicit Opened(const Specimen& s) { open_assembly(s, fixture, now); }
+  explicit Opened(const Specimen& s) { open_assembly(s, model, now); }
 
   std::set<ListedPair> listed() const {
     std::set<ListedPair> pairs;
@@ -51,16 +51,16 @@ struct Opened {
   /// All pairs, images included, whose circles are nearer than `within`.
   std::vector<ListedPair> candidates(double within) const {
     std::vector<Vector3> positions;
-    for (std::size_t g = 0; g < fixture.size(); ++g) positions.push_back(now.position(fixture, g));
-    return brute_force_pairs(now.cell, positions, fixture.reach(), within);
+    for (std::size_t g = 0; g < model.size(); ++g) positions.push_back(now.position(model, g));
+    return brute_force_pairs(now.cell, positions, model.reach(), within);
   }
   /// Overlap of a pair; where it is apart, less the distance.
   double overlap(const ListedPair& pair) const {
     const auto i = std::size_t(pair.i), j = std::size_t(pair.j);
-    const Vector3 b = now.position(fixture, j) - now.position(fixture, i) +
+    const Vector3 b = now.position(model, j) - now.position(model, i) +
                       now.cell.lattice * Vector3(pair.image[0], pair.image[1], pair.image[2]);
-    const double *row_i = now.rows.data() + i * std::size_t(fixture.row_length()),
-                 *row_j = now.rows.data() + j * std::size_t(fixture.row_length());
+    const double *row_i = now.rows.data() + i * std::size_t(model.row_length()),
+                 *row_j = now.rows.data() + j * std::size_t(model.row_length());
     EllipsePlace place = place_of_ellipses(Branch{b[0], b[1], 0}, row_i, row_j);
     if (place.overlap < 0) place = nearest_place_of_ellipses(place, row_i, row_j);
     return place.overlap;
@@ -97,7 +97,7 @@ TEST_CASE("The outline of an ellipse moves by (a - b) |sin theta| where it turns
 TEST_CASE("No overlapping pair of needles is missing from the list while they are sheared, pressed and spin") {
   const Matrix3 flow = GENERATE(gradient(0, 0, 0, 0), gradient(0, 0.5, 0, 0), gradient(-0.15, 0.5, 0, -0.15));
   Opened opened(spinning_needles());
-  const Model& f = opened.fixture;
+  const Model& f = opened.model;
   Assembly& a = opened.now;
   begin_loading(f, a, Loading::physical);
   const double step = 2e-3;
@@ -122,7 +122,7 @@ TEST_CASE("No overlapping pair of needles is missing from the list while they ar
 
 TEST_CASE("Needles are listed where they are nearer than the skin, and seldom where they are not") {
   Opened opened(spinning_needles());
-  const Model& f = opened.fixture;
+  const Model& f = opened.model;
   Assembly& a = opened.now;
   begin_loading(f, a, Loading::physical);
   for (int k = 0; k < 5; ++k) {

@@ -49,7 +49,7 @@ std::vector<Configuration> configurations() {
     s.damping.normal_coefficient = 2;
     s.damping.local = 0.1;
     s.damping.global_viscous = 0.1;
-    s.solver.ledger = true;
+    s.solver.energy_balance = true;
     all.push_back({"hertz_given, dashpot, dampings, ledger", s});
   }
   return all;
@@ -268,8 +268,8 @@ TEST_CASE("keeping the energy ledger changes no bit of what is done") {
   for (Configuration& configuration : configurations()) {
     CAPTURE(configuration.name, fields::text_of(configuration.specimen.shape));
     Specimen with = configuration.specimen, without = configuration.specimen;
-    with.solver.ledger = true;
-    without.solver.ledger = false;
+    with.solver.energy_balance = true;
+    without.solver.energy_balance = false;
     Rve kept(with), plain(without);
     for (int k = 0; k < 4; ++k) {
       const double dt = k % 2 == 0 ? slow_time(plain) : 0;
@@ -277,8 +277,8 @@ TEST_CASE("keeping the energy ledger changes no bit of what is done") {
       CHECK(same_stress(kept.apply(step, dt), plain.apply(step, dt)));
     }
     Specimen a = kept.specimen(), b = plain.specimen();
-    a.solver.ledger = b.solver.ledger = false;
-    a.state.ledger = b.state.ledger = {};
+    a.solver.energy_balance = b.solver.energy_balance = false;
+    a.state.energy_balance = b.state.energy_balance = {};
     CHECK(bool(Rve(a).save() == Rve(b).save()));
   }
 }

@@ -46,9 +46,9 @@ TEST_CASE("Resting between calls changes no bit of what an Rve does", "[solver]"
         const Response a = resting.apply(step(start.cell.dimension), dt);
         const Response b = restless.apply(step(start.cell.dimension), dt);
         CHECK(same_bits(a.stress, b.stress));
-        resting.rest();
+        resting.release();
         CHECK(resting.save() == restless.save());
-        if (k == 2) resting.rest();  // twice is once
+        if (k == 2) resting.release();  // twice is once
         if (k % 2 == 0) CHECK(same_bits(resting.stress(), restless.stress()));
       }
     }
@@ -60,7 +60,7 @@ TEST_CASE("A resting Rve answers every question as one at work", "[solver]") {
     rve.apply(step(start.cell.dimension), 1e-4);
     const auto rested = [&] {
       Rve copy = rve;
-      copy.rest();
+      copy.release();
       return copy;
     };
     CHECK(same_bits(rested().contact_stress(), rve.contact_stress()));
@@ -101,7 +101,7 @@ TEST_CASE("A const call leaves a resting Rve at rest, on several threads too", "
     const Matrix3 stress = rve.stress();
     const double unbalanced = rve.unbalanced_ratio(), critical = rve.critical_time_step();
     const std::size_t contacts = rve.network().contacts.size();
-    rve.rest();
+    rve.release();
     const auto bytes = rve.save();
     std::vector<Matrix3> found(4, Matrix3::Zero());
     std::vector<std::thread> askers;
@@ -121,7 +121,7 @@ TEST_CASE("A failed call leaves a resting Rve as it was", "[solver]") {
   Rve rve(configurations().front());
   rve.apply(step(2), 0);
   const auto before = rve.save();
-  rve.rest();
+  rve.release();
   CHECK_THROWS_AS(rve.apply(gradient(-2, 0, 0, 0), 0), InvalidIncrement);
   CHECK(rve.save() == before);
 }
@@ -132,7 +132,7 @@ TEST_CASE("A resting disc cell holds state and list alone", "[solver]") {
   const double grains = double(rve.size());
   const Memory working = rve.memory();
   CHECK(working.working > working.state + working.list);
-  rve.rest();
+  rve.release();
   const Memory resting = rve.memory();
   CHECK(resting.working == 0);
   CHECK(resting.state == working.state);

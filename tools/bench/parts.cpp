@@ -29,7 +29,7 @@ namespace {
 using namespace rvelab;
 
 struct Opened {
-  Model fixture;
+  Model model;
   Assembly assembly;
   StepConstants constants;
 };
@@ -65,12 +65,12 @@ Opened opened(Shape shape, const Image& times) {
   shear(0, dimension_of(shape) - 1) = 1e-3;
   rve.apply(shear, 500 * rve.critical_time_step());
   Opened o;
-  open_assembly(rve.specimen(), o.fixture, o.assembly);
-  o.constants = base_constants(o.fixture, o.assembly);
+  open_assembly(rve.specimen(), o.model, o.assembly);
+  o.constants = base_constants(o.model, o.assembly);
   o.constants.map = {1, 0, 0, 1, 0, 1};
   o.constants.local_damping = 0.1;
   // Physical masses, and a step so short that thousands of them move nothing.
-  use_physical_inertia(o.fixture, o.assembly);
+  use_physical_inertia(o.model, o.assembly);
   o.constants.dt = 1e-20;
   o.constants.velocity_map = {1e-20, 0, 0, 1e-20, 0, 1e-20};
   for (int k = 0; k < 3; ++k)
@@ -91,15 +91,15 @@ Opened& packing(const std::string& name) {
 /// Seconds a call, shown for each grain.
 void per_grain(benchmark::State& state, const Opened& o) {
   using benchmark::Counter;
-  state.counters["s/grain"] = Counter(double(o.fixture.size()), Counter::kIsIterationInvariantRate | Counter::kInvert);
-  state.counters["pairs/grain"] = double(o.assembly.pairs.listed) / double(o.fixture.size());
+  state.counters["s/grain"] = Counter(double(o.model.size()), Counter::kIsIterationInvariantRate | Counter::kInvert);
+  state.counters["pairs/grain"] = double(o.assembly.pairs.listed) / double(o.model.size());
 }
 
 void pairs(benchmark::State& state, const std::string& name) {
   Opened& o = packing(name);
   const PairArrays arrays = arrays_of(o.assembly.pairs);
   for (auto _ : state)
-    sweep_pairs(o.fixture.kernels.pairs, o.constants, arrays, o.assembly.rows.data(), long(o.assembly.pairs.padded()),
+    sweep_pairs(o.model.kernels.pairs, o.constants, arrays, o.assembly.rows.data(), long(o.assembly.pairs.padded()),
                 nullptr);
   per_grain(state, o);
 }
@@ -108,10 +108,10 @@ void gather_and_integrate(benchmark::State& state, const std::string& name, Kern
   Opened& o = packing(name);
   const Buffer rows = o.assembly.rows;
   const PairArrays arrays = arrays_of(o.assembly.pairs);
-  const GrainArrays grains = arrays_of(o.fixture, o.assembly);
+  const GrainArrays grains = arrays_of(o.model, o.assembly);
   StepSums sums;
   for (auto _ : state)
-    sweep_grains(o.fixture.kernels.dynamic[std::size_t(damping)], o.constants, grains, arrays,
+    sweep_grains(o.model.kernels.dynamic[std::size_t(damping)], o.constants, grains, arrays,
                  long(o.assembly.mass.size()), nullptr, sums);
   o.assembly.rows = rows;
   per_grain(state, o);
@@ -124,7 +124,7 @@ void list_rebuild(benchmark::State& state, const std::string& name) {
     state.PauseTiming();
     copy = o.assembly;
     state.ResumeTiming();
-    rebuild(o.fixture, copy);
+    rebuild(o.model, copy);
     benchmark::DoNotOptimize(copy.pairs.listed);
   }
   per_grain(state, o);
@@ -135,10 +135,10 @@ void waking(benchmark::State& state, const std::string& name) {
   for (auto _ : state) {
     state.PauseTiming();
     Assembly copy = o.assembly;
-    put_masses_into_rows(o.fixture, copy);
+    put_masses_into_rows(o.model, copy);
     release_buffers(copy);
     state.ResumeTiming();
-    rebuild_buffers(o.fixture, copy);
+    rebuild_buffers(o.model, copy);
     benchmark::DoNotOptimize(copy.pairs.listed);
   }
   per_grain(state, o);
@@ -146,13 +146,13 @@ void waking(benchmark::State& state, const std::string& name) {
 
 void look_at_balance(benchmark::State& state, const std::string& name) {
   Opened& o = packing(name);
-  for (auto _ : state) benchmark::DoNotOptimize(balance_of(o.fixture, o.assembly));
+  for (auto _ : state) benchmark::DoNotOptimize(balance_of(o.model, o.assembly));
   per_grain(state, o);
 }
 
 void look_at_stress(benchmark::State& state, const std::string& name) {
   Opened& o = packing(name);
-  for (auto _ : state) benchmark::DoNotOptimize(contact_moment(o.fixture, o.assembly));
+  for (auto _ : state) benchmark::DoNotOptimize(contact_moment(o.model, o.assembly));
   per_grain(state, o);
 }
 
@@ -171,20 +171,20 @@ int compare_widths() {
   for (const std::string name : {"disc_400", "sphere_1000"}) {
     Opened& o = packing(name);
     const KernelConfiguration key{
-        o.fixture.shape, o.fixture.contact.law,         o.fixture.contact.rolling, o.fixture.contact.slip,
-        false,           o.fixture.contact.hertz_radius};
+        o.model.shape, o.model.contact.law,         o.model.contact.rolling, o.model.contact.slip,
+        false,         o.model.contact.hertz_radius};
     Kernels kernels[2];
     for (const int k : {0, 1}) {
       setenv("RVELAB_ISA", k == 0 ? "v3" : "v4", 1);
       kernels[k] = kernels_for(key);
     }
     const PairArrays pairs = arrays_of(o.assembly.pairs);
-    const GrainArrays grains = arrays_of(o.fixture, o.assembly);
+    const GrainArrays grains = arrays_of(o.model, o.assembly);
     const Buffer rows = o.assembly.rows;
     StepSums sums;
     const auto slice = [&](const Kernels& of, bool of_pairs) {
       const auto begin = std::chrono::steady_clock::now();
-      for (int call = 0; call < (o.fixture.size() > 500 ? 15 : 100); ++call) {
+      for (int call = 0; call < (o.model.size() > 500 ? 15 : 100); ++call) {
         if (of_pairs)
           sweep_pairs(of.pairs, o.constants, pairs, o.assembly.rows.data(), long(o.assembly.pairs.padded()), nullptr);
         else

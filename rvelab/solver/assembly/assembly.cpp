@@ -70,8 +70,8 @@ void take_axes(const Grains& grains, Model& f) {
 void take_scaled_inertia(Assembly& a) {
   SolverState& state = a.state;
   const std::size_t n = state.scaled_mass.size();
-  if (!state.quasi_static || n == 0) state.look_steps = -1;  // a file of an earlier version, or dt > 0
-  if (state.look_steps >= 0) {
+  if (!state.quasi_static || n == 0) state.steps_since_scaling = -1;  // a file of an earlier version, or dt > 0
+  if (state.steps_since_scaling >= 0) {
     for (std::size_t g = 0; g < n; ++g) {
       a.mass[g] = state.scaled_mass[g];
       a.inverse_mass[g] = 1 / state.scaled_mass[g];
@@ -166,12 +166,13 @@ Specimen close_assembly(const Model& f, const Assembly& a) {
     s.grains.semi_minor = f.semi_minor;
     for (std::size_t g = 0; g < f.size(); ++g) s.grains.orientation.push_back(a.orientation(f, g));
   }
-  if (a.state.look_steps >= 0) {
+  if (a.state.steps_since_scaling >= 0) {
     const bool released = a.mass.empty();
     for (std::size_t g = 0; g < f.size(); ++g) {
       const double* row = a.rows.data() + g * std::size_t(f.row_length());
       s.state.scaled_mass.push_back(released ? row[released_mass(f.shape)] : a.mass[g]);
-      s.state.scaled_inverse_inertia.push_back(released ? row[released_inverse_inertia(f.shape)] : a.inverse_inertia[g]);
+      s.state.scaled_inverse_inertia.push_back(released ? row[released_inverse_inertia(f.shape)]
+                                                        : a.inverse_inertia[g]);
     }
   }
   s.contacts = contacts_of(f, a.pairs);

@@ -67,7 +67,7 @@ void arrange(const Model& f, const Assembly& a, const std::vector<ListedPair>& l
   std::vector<std::uint8_t> near(n);
   in_pieces(n, f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t k = first; k < last; ++k)
-      near[k] = f.options.ledger || histories[k] != nullptr || touches(f, a, listed[k]);
+      near[k] = f.options.energy_balance || histories[k] != nullptr || touches(f, a, listed[k]);
   });
   std::int32_t here = 0, beyond = std::int32_t(std::count(near.begin(), near.end(), 1));
   pairs.near = (std::size_t(beyond) + 7) / 8 * 8;

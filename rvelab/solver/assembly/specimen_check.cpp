@@ -127,9 +127,9 @@ void check_state(const Specimen& s) {
              "; it must not be negative; leave it 0");
   };
   expect(state.strain_per_step >= 0, "strain_per_step", state.strain_per_step);
-  expect(state.pace_target >= 0, "pace_target", state.pace_target);
-  expect(state.leg_strain >= 0, "leg_strain", state.leg_strain);
-  expect(state.softness >= 0, "softness", state.softness);
+  expect(state.target_unbalanced_ratio >= 0, "pace_target", state.target_unbalanced_ratio);
+  expect(state.strain_since_reversal >= 0, "leg_strain", state.strain_since_reversal);
+  expect(state.network_stiffness_ratio >= 0, "softness", state.network_stiffness_ratio);
   expect(state.constraint_ratio >= 0, "constraint_ratio", state.constraint_ratio);
   expect(state.lag_factor >= 0, "lag_factor", state.lag_factor);
   expect(state.lag_strain >= 0, "lag_strain", state.lag_strain);

@@ -49,7 +49,7 @@ struct Response {
 struct Memory {
   std::size_t state = 0;    ///< places, velocities, contact histories
   std::size_t list = 0;     ///< neighbour list: pairs, and places when it was built
-  std::size_t working = 0;  ///< what Rve::rest releases
+  std::size_t working = 0;  ///< what Rve::release releases
   std::size_t trial = 0;    ///< what a pending trial takes beside it
 };
 

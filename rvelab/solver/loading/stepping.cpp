@@ -98,7 +98,7 @@ KernelDamping damping_kind(const Damping& d, Loading loading) {
 /// Books one sub-step; `moment_before` is the contacts' moment at its start, and becomes that at its end.
 void book_step(const Model& f, Assembly& a, const Dissipation& lost, const StepSums& sums, double step, bool physical,
                const Matrix3& gradient, Matrix3& moment_before) {
-  EnergyLedger& booked = a.state.ledger;
+  EnergyTerms& booked = a.state.energy_balance;
   const Matrix3 moment = contact_moment(f, a);
   // V sigma = -sum F (x) b - sum m v' v'; the contact part by the trapezium, the kinetic one at the half step.
   Matrix3 work = -0.5 * (moment_before + moment);
@@ -196,7 +196,7 @@ SubSteps::SubSteps(const Model& model, Assembly& assembly, const Advance& what)
       step_(what.step),
       check_every_(what.check_every),
       clock_(f_.times) {
-  c_.losses = f_.options.ledger;
+  c_.losses = f_.options.energy_balance;
   c_.local_damping = physical_ ? f_.damping.local : f_.damping.local_quasi_static;
   if (physical_) {
     shift_half_step(f_, a_, step_);
@@ -205,7 +205,7 @@ SubSteps::SubSteps(const Model& model, Assembly& assembly, const Advance& what)
   total_mass_ = std::accumulate(a_.mass.begin(), a_.mass.begin() + std::ptrdiff_t(f_.size()), 0.0);
   pairs_ = arrays_of(a_.pairs);
   grains_ = arrays_of(f_, a_);
-  if (f_.options.ledger) moment_before_ = contact_moment(f_, a_);
+  if (f_.options.energy_balance) moment_before_ = contact_moment(f_, a_);
 }
 
 void SubSteps::move_cell() {
@@ -259,12 +259,12 @@ void SubSteps::turn_with(const Reduction& reduction, const Matrix3& lattice_befo
 void SubSteps::update_pairs() {
   Dissipation lost;
   clock_.begin_pairs();
-  if (f_.options.ledger)
+  if (f_.options.energy_balance)
     kernels_.pairs_with_losses(c_, pairs_, a_.rows.data(), 0, long(a_.pairs.padded()), &lost);
   else
     sweep_pairs(kernels_.pairs, c_, pairs_, a_.rows.data(), long(a_.pairs.padded()), team_);
   clock_.end_pairs();
-  if (f_.options.ledger)
+  if (f_.options.energy_balance)
     book_step(f_, a_, lost, sums_, step_, physical_, rate_mid_ + cross_matrix(omega_), moment_before_);
 }
 
@@ -296,7 +296,7 @@ Advanced SubSteps::make() {
   }
   a_.state.grain_steps += std::uint64_t(made) * f_.size();
   if (!physical_) {
-    a_.state.look_steps += made;
+    a_.state.steps_since_scaling += made;
     a_.state.lag_steps += made;
     a_.state.rest_steps = what_.increment.rigid ? a_.state.rest_steps + made : 0;
   }

@@ -48,14 +48,14 @@ void zero_velocities(const Model& f, Assembly& a) {
 }  // namespace
 
 void stop_grains(const Model& f, Assembly& a) {
-  if (f.options.ledger) a.state.ledger.zeroing += kinetic_energy(f, a);
+  if (f.options.energy_balance) a.state.energy_balance.removed_kinetic += kinetic_energy(f, a);
   zero_velocities(f, a);
 }
 
 void rescale_inertia(const Model& f, const RowSums& sums, Assembly& a) {
-  const double before = f.options.ledger ? kinetic_energy(f, a) : 0;
+  const double before = f.options.energy_balance ? kinetic_energy(f, a) : 0;
   scale_inertia(f, sums, a);
-  if (f.options.ledger) a.state.ledger.zeroing += before - kinetic_energy(f, a);
+  if (f.options.energy_balance) a.state.energy_balance.removed_kinetic += before - kinetic_energy(f, a);
 }
 
 void begin_loading(const Model& f, Assembly& a, Loading loading) {
@@ -63,7 +63,8 @@ void begin_loading(const Model& f, Assembly& a, Loading loading) {
   if (quasi_static != a.state.quasi_static) {
     // Physical velocities mean nothing to scaled masses, nor the reverse: carried over they would be an impact. Their
     // energy is booked.
-    if (f.options.ledger && !a.state.quasi_static) a.state.ledger.zeroing += kinetic_energy(f, a);
+    if (f.options.energy_balance && !a.state.quasi_static)
+      a.state.energy_balance.removed_kinetic += kinetic_energy(f, a);
     zero_velocities(f, a);
     a.state.last_rate.setZero();
     a.state.mean_spin.setZero();
@@ -74,7 +75,7 @@ void begin_loading(const Model& f, Assembly& a, Loading loading) {
   }
   if (quasi_static) return;
   use_physical_inertia(f, a);
-  a.state.look_steps = -1;
+  a.state.steps_since_scaling = -1;
 }
 
 }  // namespace rvelab

@@ -14,10 +14,10 @@ using namespace constants;
 EquilibriumCheck::EquilibriumCheck(State& state) : state_(state) {
   state_.begin_loading(Loading::quasi_static);
   SolverState& control = state_.control();
-  unknown_ = control.look_steps < 0;
+  unknown_ = control.steps_since_scaling < 0;
   if (!unknown_) return;
   state_.scale_masses();
-  control.softness = 1;
+  control.network_stiffness_ratio = 1;
   control.lag_factor = control.lag_strain = 0;
   control.lag_steps = control.rest_steps = 0;
   control.constraint_ratio = constraint_ratio(state_.model(), state_.assembly());
@@ -27,7 +27,7 @@ EquilibriumCheck::EquilibriumCheck(State& state) : state_(state) {
 void EquilibriumCheck::begin_interval() {
   SolverState& control = state_.control();
   const Model& model = state_.model();
-  control.look_steps = 0;
+  control.steps_since_scaling = 0;
   control.interval_strain = 0;
   control.interval_stress = state_.stress();
   control.network_stiffness =
@@ -42,7 +42,7 @@ void EquilibriumCheck::renew_interval() {
     const double measured =
         std::clamp((state_.stress() - control.interval_stress).norm() / network, least_stiffness_ratio, 1.0);
     // The geometric mean: stress falls by jumps in flow, and one jump is no stiffness.
-    control.softness = std::sqrt(control.softness * measured);
+    control.network_stiffness_ratio = std::sqrt(control.network_stiffness_ratio * measured);
   }
   begin_interval();
 }
@@ -55,7 +55,7 @@ const OutOfBalance& EquilibriumCheck::check() {
   return balance;
 }
 
-bool EquilibriumCheck::is_due() const { return state_.control().look_steps >= check_interval; }
+bool EquilibriumCheck::is_due() const { return state_.control().steps_since_scaling >= check_interval; }
 
 bool EquilibriumCheck::is_due_at_end(long substeps, double strain) const {
   return unknown_ || is_due() || substeps >= checked_steps || strain > checked_strain;

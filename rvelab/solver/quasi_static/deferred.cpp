@@ -22,7 +22,7 @@ Extrapolated extrapolated(const State& s, const Matrix3& stretch) {
 
 bool may_defer(State& s, const FrameSplit& increment) {
   const SolverState& control = s.control();
-  if (increment.rigid || !by_tolerance(s) || !control.quasi_static || control.look_steps < 0 ||
+  if (increment.rigid || !by_tolerance(s) || !control.quasi_static || control.steps_since_scaling < 0 ||
       control.stress_slope.isZero(0) || !(control.network_stiffness > 0))
     return false;
   const Matrix3 change = increment.stretch - Matrix3::Identity(),
@@ -31,7 +31,7 @@ bool may_defer(State& s, const FrameSplit& increment) {
   if ((stretch - Matrix3::Identity()).norm() + strain > control.strain_per_step) return false;
   // Increments off the path, for a tangent by differences, are never deferred.
   if (!(change.cwiseProduct(control.last_rate).sum() > along_path * strain * control.last_rate.norm())) return false;
-  const double network = network_change(s, control.leg_strain);
+  const double network = network_change(s, control.strain_since_reversal);
   if (was_coarser(s, network)) return false;
   return extrapolated(s, stretch).error <= share_of_extrapolation * allowed_by_tolerances(s, 0, network);
 }
@@ -45,7 +45,7 @@ Report defer(State& s, const FrameSplit& increment) {
   report.unbalanced_ratio = control.unbalanced_ratio;
   judge_equilibrium(s, report);
   const Extrapolated after = extrapolated(s, control.deferred_stretch);
-  estimate_error(s, network_change(s, control.leg_strain), s.stress() + before - after.stress,
+  estimate_error(s, network_change(s, control.strain_since_reversal), s.stress() + before - after.stress,
                  {0, control.unbalanced_ratio, after.error}, report);
   return report;
 }

@@ -34,8 +34,8 @@ double allowed_by_tolerances(State& s, double stress_change, double network) {
 }
 
 double error_factor(const State& s) {
-  return error_per_unbalance(s.control().softness, s.control().constraint_ratio, s.model().damping.local_quasi_static,
-                             s.model().dimension());
+  return error_per_unbalance(s.control().network_stiffness_ratio, s.control().constraint_ratio,
+                             s.model().damping.local_quasi_static, s.model().dimension());
 }
 
 double expected_error(State& s, double ratio) { return error_factor(s) * pressure_scale(s) * ratio; }
@@ -43,7 +43,7 @@ double expected_error(State& s, double ratio) { return error_factor(s) * pressur
 double target_ratio(State& s, double network) {
   if (s.model().options.target_unbalanced > 0) return s.model().options.target_unbalanced;
   if (!(pressure(s) > 0)) return largest_target;
-  const double allowed = allowed_by_tolerances(s, s.control().softness * network, network);
+  const double allowed = allowed_by_tolerances(s, s.control().network_stiffness_ratio * network, network);
   return std::clamp(allowed / (step_margin * expected_error(s, 1)), least_target, largest_target);
 }
 
@@ -57,8 +57,8 @@ double held_target_ratio(const State& s) {
 }
 
 void judge_equilibrium(State& s, Report& report) {
-  const double target =
-      s.control().pace_target > 0 ? s.control().pace_target : target_ratio(s, 0);  // nothing loaded yet
+  const double target = s.control().target_unbalanced_ratio > 0 ? s.control().target_unbalanced_ratio
+                                                                : target_ratio(s, 0);  // nothing loaded yet
   report.quasi_static = report.unbalanced_ratio <= quasi_static_ratio * target && report.target_held;
 }
 
@@ -110,7 +110,8 @@ void estimate_error(State& s, double network, const Matrix3& stress_before, cons
   if (increment.strain > 0 && report.substeps >= long_increment && can_measure_lag(s)) measure_lag(s);
   double changed = (s.stress() - stress_before).norm();
   // A piece of a path is judged as its sub-steps are chosen (target_ratio), by what the path changes of the stress.
-  if (network > network_change(s, increment.strain)) changed = std::max(changed, s.control().softness * network);
+  if (network > network_change(s, increment.strain))
+    changed = std::max(changed, s.control().network_stiffness_ratio * network);
   estimate_error(s, allowed_by_tolerances(s, changed, network), increment, report);
 }
 

@@ -25,7 +25,7 @@ void turn_back(State& s) {
   SolverState& control = s.control();
   s.stop_quasi_static();
   control.last_rate.setZero();
-  control.softness = 1;
+  control.network_stiffness_ratio = 1;
   control.interval_strain = 0;
   control.interval_stress = s.stress();
 }
@@ -94,7 +94,7 @@ class CheckedSteps {
     ratios_ += s_.control().unbalanced_ratio;
     ++checks_;
     // Where the fewest steps rule, their strain is not that of the control, but it may still be found too large.
-    const bool too_fast = s_.control().unbalanced_ratio > s_.control().pace_target;
+    const bool too_fast = s_.control().unbalanced_ratio > s_.control().target_unbalanced_ratio;
     if (s_.model().options.fixed_substeps == 0 && (by_strain_ || too_fast)) adapt_strain_step(s_, balance);
     // The transient has decayed: allow fewer sub-steps, where contacts stay what they are.
     constexpr double few = 2 * double(check_interval);
@@ -123,8 +123,8 @@ void join_deferred(State& s, FrameSplit& increment) {
 void note_direction(State& s, double strain, bool turns, bool back, bool reverses) {
   SolverState& control = s.control();
   if (turns) control.lag_strain = 1;  // what was measured before is no longer so
-  if (back) control.leg_strain = 0;
-  control.leg_strain = std::min(control.leg_strain + strain, judged_together);
+  if (back) control.strain_since_reversal = 0;
+  control.strain_since_reversal = std::min(control.strain_since_reversal + strain, judged_together);
   if (by_tolerance(s) && reverses) turn_back(s);
 }
 
@@ -150,7 +150,7 @@ Report load_quasi_static(State& s, FrameSplit whole) {
   const Matrix3 stress_before = s.stress();
   note_direction(s, strain, turns, along <= 0, along < 0);
 
-  const double network = network_change(s, std::max(strain, control.leg_strain));
+  const double network = network_change(s, std::max(strain, control.strain_since_reversal));
   set_target_ratio(s, target_ratio(s, network));
   const Start start = start_of(s, change, strain, along < 0);
   CheckedSteps substeps(s, check, path, start.fewest);
@@ -176,11 +176,12 @@ Report load_rotation(State& s, const FrameSplit& increment, const Matrix3& dh) {
   Report report;
   const SolverState& control = s.control();
   // The path that led here is what is judged, as it was at its end; a rotation adds nothing.
-  const bool known = control.quasi_static && control.look_steps >= 0;
+  const bool known = control.quasi_static && control.steps_since_scaling >= 0;
   report.unbalanced_ratio = known ? control.unbalanced_ratio : s.unbalanced_ratio(s.out_of_balance());
   judge_equilibrium(s, report);
   const double more = s.has_deferred() ? extrapolated(s, control.deferred_stretch).error : 0.0;
-  estimate_error(s, network_change(s, control.leg_strain), s.stress(), {0, report.unbalanced_ratio, more}, report);
+  estimate_error(s, network_change(s, control.strain_since_reversal), s.stress(), {0, report.unbalanced_ratio, more},
+                 report);
   if (dh.isZero(0)) return report;
   const Matrix3 turned = (Matrix3::Identity() + dh) * s.cell().rotation;
   const bool quarter_turn = (dh + Matrix3::Identity()).unaryExpr([](double x) { return x * x * x - x; }).isZero(0);

@@ -44,12 +44,12 @@ Report relax(State& s, double unbalanced, long max_steps) {
 }
 
 Relaxed relax_before(State& s, EquilibriumCheck& check, double strain, bool turns) {
-  const double so_far = s.control().leg_strain;
+  const double so_far = s.control().strain_since_reversal;
   const double path = turns ? so_far : std::max(strain, std::min(so_far + strain, judged_together));
   const double network = network_change(s, path);
   Relaxed relaxed;
   if (!turns && !was_coarser(s, network)) return relaxed;
-  const double allowed = allowed_by_tolerances(s, s.control().softness * network, network);
+  const double allowed = allowed_by_tolerances(s, s.control().network_stiffness_ratio * network, network);
   std::vector<Matrix3> stresses;
   while (relaxed.steps < most_steps_before_turn &&
          expected_error(s, s.control().unbalanced_ratio) > (relaxed.steps > 0 ? 1 / step_margin : 1) * allowed) {

@@ -44,22 +44,23 @@ void set_target_ratio(State& s, double target) {
   SolverState& control = s.control();
   if (control.strain_per_step == 0) {
     control.strain_per_step = first_strain_step(s);
-    control.pace_target = s.model().options.target_unbalanced > 0 ? target : ratio_of_first_step;
+    control.target_unbalanced_ratio = s.model().options.target_unbalanced > 0 ? target : ratio_of_first_step;
   }
-  if (control.pace_target > 0 && control.pace_target != target)
-    control.strain_per_step = std::clamp(control.strain_per_step * (target / control.pace_target), least_step, 1.0);
-  control.pace_target = target;
+  if (control.target_unbalanced_ratio > 0 && control.target_unbalanced_ratio != target)
+    control.strain_per_step =
+        std::clamp(control.strain_per_step * (target / control.target_unbalanced_ratio), least_step, 1.0);
+  control.target_unbalanced_ratio = target;
 }
 
 void adapt_strain_step(State& s, const OutOfBalance& balance, double held_stress) {
   SolverState& control = s.control();
-  const double x = s.unbalanced_ratio(balance) / control.pace_target;
+  const double x = s.unbalanced_ratio(balance) / control.target_unbalanced_ratio;
   const double root = std::sqrt(x);  // square roots give the same bits everywhere
   const double factor = std::clamp(root * std::sqrt(root), least_change_of_step, largest_change_of_step);
   const double overlap = scale_of_overlaps(s, balance) / (2 * s.model().mean_radius);
   const double largest = balance.touching > 0 ? largest_step_over_overlap * overlap : step_of_gas;
   const double slow = smallest_over_largest_step * s.model().softest_answer *
-                      std::clamp(per_ratio * control.pace_target, least_share_of_smallest, 1.0);
+                      std::clamp(per_ratio * control.target_unbalanced_ratio, least_share_of_smallest, 1.0);
   double smallest = slow * largest;
   // Where a stress is held far below the reference, the overlaps are judged by the stress that is asked for: the
   // reference would let a step be as large as they are, and in an avalanche they vanish, after which one record cost as
@@ -72,7 +73,9 @@ void adapt_strain_step(State& s, const OutOfBalance& balance, double held_stress
   control.strain_per_step = std::clamp(control.strain_per_step / factor, smallest, largest);
 }
 
-bool was_coarser(State& s, double network) { return s.control().pace_target > coarser_path * target_ratio(s, network); }
+bool was_coarser(State& s, double network) {
+  return s.control().target_unbalanced_ratio > coarser_path * target_ratio(s, network);
+}
 
 double most_substeps(State& s, double strain) {
   if (!by_tolerance(s)) return std::numeric_limits<double>::infinity();
@@ -89,7 +92,8 @@ Start start_of(State& s, const Matrix3& change, double strain, bool turned_back)
   if (!(control.network_stiffness > 0)) return {1, 0};
   const double overlap = overlap_strain(s);
   const double by_strain = std::max(1.0, std::ceil(strain / control.strain_per_step));
-  const double steps = steps_of_start(change, strain, control.last_rate, overlap, control.pace_target, by_strain);
+  const double steps =
+      steps_of_start(change, strain, control.last_rate, overlap, control.target_unbalanced_ratio, by_strain);
   const double mismatch = (change - steps * control.last_rate).norm() / change.norm();
   return {steps, unbalance_of_start(mismatch, strain, overlap, steps)};
 }

@@ -24,7 +24,7 @@ std::size_t bytes_of(const Array& array) {
 
 void put_masses_into_rows(const Model& f, Assembly& a) {
   const std::size_t length = std::size_t(f.row_length());
-  if (a.state.look_steps < 0 || a.mass.empty()) return;
+  if (a.state.steps_since_scaling < 0 || a.mass.empty()) return;
   for (std::size_t g = 0; g < f.size(); ++g) {
     a.rows[g * length + released_mass(f.shape)] = a.mass[g];
     a.rows[g * length + released_inverse_inertia(f.shape)] = a.inverse_inertia[g];
@@ -47,7 +47,7 @@ void rebuild_buffers(const Model& f, Assembly& a) {
     throw;
   }
   const std::size_t length = std::size_t(f.row_length());
-  if (a.state.look_steps < 0) {
+  if (a.state.steps_since_scaling < 0) {
     use_physical_inertia(f, a);
   } else {
     for (std::size_t g = 0; g < f.size(); ++g) {

@@ -38,7 +38,7 @@ void let_go_of_springs(const Model& f, const Buffer& before, Assembly& a) {
       squared += pairs.tangential[k][p] * pairs.tangential[k][p];
       pairs.tangential[k][p] = 0;
     }
-    if (f.options.ledger && squared > 0) a.state.ledger.law_loss += 0.5 * squared / (before[p] * root);
+    if (f.options.energy_balance && squared > 0) a.state.energy_balance.law_loss += 0.5 * squared / (before[p] * root);
   }
 }
 
@@ -47,7 +47,7 @@ void let_go_of_springs(const Model& f, const Buffer& before, Assembly& a) {
 State::State(const Specimen& specimen) {
   open_assembly(specimen, model_, assembly_);
   set_typical_answers(model_);
-  if (control().look_steps < 0) use_physical_inertia(model_, assembly_);
+  if (control().steps_since_scaling < 0) use_physical_inertia(model_, assembly_);
   evaluate_forces(model_, assembly_);
   if (!out_of_balance().finite)
     throw InputError("specimen: contact forces are not finite; do two grains lie at one place?");
@@ -56,8 +56,8 @@ State::State(const Specimen& specimen) {
     throw InputError("specimen: its stress is not finite (cell volume " + in_words(cell().volume()) +
                      " m^3); are cell, masses or velocities in the wrong units? Give all in SI");
   set_strained_cell();
-  if (control().look_steps >= 0 && holds_more_than_friction(model_, assembly_)) {
-    control().look_steps = -1;
+  if (control().steps_since_scaling >= 0 && holds_more_than_friction(model_, assembly_)) {
+    control().steps_since_scaling = -1;
     use_physical_inertia(model_, assembly_);
   }
   if (!specimen.state.has_reference) set_missing_references();  // first opening
@@ -157,7 +157,7 @@ void State::set_materials(const std::vector<Material>& materials) {
   set_pair_parameters(model_, a.pairs);
   let_go_of_springs(model_, before, a);
   set_typical_answers(model_);
-  a.state.look_steps = -1;
+  a.state.steps_since_scaling = -1;
   evaluate_forces(model_, a);
 }
 
@@ -180,7 +180,7 @@ void State::take_as_reference() {
   SolverState& state = change().state;
   state.reference_overlap = state.reference_contact_force = state.reference_pressure = 0;
   set_missing_references();
-  state.look_steps = -1;  // what a barely touching contact counts as goes with the reference
+  state.steps_since_scaling = -1;  // what a barely touching contact counts as goes with the reference
 }
 
 void State::begin_trial(Trial::Changes changes) {
