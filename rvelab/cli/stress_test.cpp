@@ -1,4 +1,4 @@
-// rvelab stress-test: the matrix of stiff and extreme cases, each in a process of its own. Declared in commands.hpp.
+// rvelab stress-test: the matrix of stiff and extreme cases, each in a process of its own.
 #include "rvelab/stress_test/runner.hpp"
 
 #include <algorithm>
@@ -154,7 +154,7 @@ void run_stress_test(const Arguments& arguments) {
     results = stress_test::run(cases, running);
   } catch (const Interrupted&) {
     std::cerr << "rvelab: stress-test: stopped by " << signal_name() << "; no case goes on" << std::endl;
-    throw Stopped(128 + signal_received());
+    throw Exit(128 + signal_received());
   }
   if (arguments.json) {
     Listing listing;
@@ -167,32 +167,32 @@ void run_stress_test(const Arguments& arguments) {
   }
   const bool any_wrong = std::any_of(results.begin(), results.end(),
                                      [](const Result& result) { return result.answer.outcome == Outcome::wrong; });
-  if (any_wrong) throw CLI::RuntimeError(1);
+  if (any_wrong) throw Exit(1);
 }
 
 }  // namespace
 
-void add_stress_test(CLI::App& app) {
-  auto* command = app.add_subcommand("stress-test", "Stiff and extreme cases against laws of nature and theory");
+Command stress_test_command() {
   auto arguments = std::make_shared<Arguments>();
-  command->add_option("--case", arguments->wanted, "this case, or all whose names begin so; several may be given")
-      ->expected(-1);
-  command->add_flag("--quick", arguments->quick, "the quick ones only, about a minute on two cores");
-  command->add_option("--jobs", arguments->jobs, "cases at a time; without: one a core")->check(CLI::Range(1u, 1024u));
-  command->add_option("--patience", arguments->patience, "limits on time are multiplied by this: for slow builds")
-      ->check(CLI::Range(1.0, 1000.0));
-  command->add_flag("--list", arguments->list, "only list the cases");
-  command->add_option("--matrix", arguments->matrix, "another file of cases");
-  command->add_flag("--json", arguments->json, "print one JSON object");
-  command->add_option("--child", arguments->child)->group("");
-  command->footer(
+  Command command{"stress-test", "Stiff and extreme cases against laws of nature and theory"};
+  command.add("--case", arguments->wanted, "this case, or all whose names begin so; several may be given");
+  command.add("--quick", arguments->quick, "the quick ones only, about a minute on two cores");
+  command.add("--jobs", arguments->jobs, "cases at a time; without: one a core").between(1, 1024);
+  command.add("--patience", arguments->patience, "limits on time are multiplied by this: for slow builds")
+      .between(1, 1000);
+  command.add("--list", arguments->list, "only list the cases");
+  command.add("--matrix", arguments->matrix, "another file of cases");
+  command.add_json(arguments->json);
+  command.add("--child", arguments->child, "");
+  command.notes =
       "Each case runs in a process of its own with limits on time and memory. It is right if its law or theory holds,\n"
       "refused if the program says no, as it should or may, and changes nothing; anything else is WRONG. The last\n"
       "column is the largest deviation over what the case allows. Exit code 1 if any case is WRONG.\n"
       "Examples:\n"
       "  rvelab stress-test --quick\n"
-      "  rvelab stress-test --case impact --case size/million --json");
-  command->callback([arguments] { run_stress_test(*arguments); });
+      "  rvelab stress-test --case impact --case size/million --json";
+  command.run = [arguments] { run_stress_test(*arguments); };
+  return command;
 }
 
 }  // namespace rvelab::cli
