@@ -109,11 +109,13 @@ void Option::read_word(const std::string& word) const {
   const auto read_into = [&]<class Value>(Value* value) {
     typename ElementOf<Value>::Type element{};
     using Element = decltype(element);
-    if constexpr (std::is_same_v<Element, std::string>) {
+    if constexpr (std::is_same_v<Element, bool>) {
+      element = true;
+    } else if constexpr (std::is_same_v<Element, std::string>) {
       element = word;
     } else if constexpr (std::is_same_v<Element, ThreeNumbers>) {
       if (!reads(word, element)) refuse("is not three numbers with commas between; write for example 1,1,0.5");
-    } else if constexpr (!std::is_same_v<Element, bool>) {
+    } else {
       if (!reads(word, element))
         refuse((std::is_integral_v<Element> ? "is not a whole number" : "is not a number") + allowed());
       if (range_ && !(double(element) >= range_->first && double(element) <= range_->second))
