@@ -1,20 +1,21 @@
-// rvelab bench: grain-steps per second of the product as a user runs it: apply() in simple shear, integration, list
-// rebuilds and control included, one thread unless asked otherwise.
+// rvelab bench: grain-steps per second of Rve::apply in simple shear, with integration, list rebuilds and control, on
+// one thread unless --threads is given.
 //
-// The packings are made here from fixed recipes: 400 discs, 400 ellipses of their areas (aspect ratio 0.743, Liang et
-// al. 2023) and 1000 spheres at 100 kPa, larger cases by repeating them periodically. Each case shears at constant
-// volume with physical masses at inertial number 1e-3 for a fixed number of steps, several times over; the median is
-// reported. Declared in commands.hpp.
+// The packings come from fixed recipes: 400 discs, 400 ellipses of the same areas (aspect ratio 0.743, Liang et al.
+// 2023) and 1000 spheres at 100 kPa; larger cases repeat them periodically. Each case shears at constant volume with
+// physical masses at inertial number 1e-3 for a fixed number of steps, several times; the median is reported.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <memory>
-#include <set>
 
 #include "rvelab/cli/commands.hpp"
+#include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/report.hpp"
+#include "rvelab/error.hpp"
 #include "rvelab/io/hdf5/specimen_file.hpp"
+#include "rvelab/keys/key.hpp"
 #include "rvelab/pack/repeated.hpp"
 #include "rvelab/pack/search.hpp"
 #include "rvelab/solver/kernels/configuration.hpp"
@@ -85,7 +86,7 @@ double shear_rate(const Rve& rve, const Specimen& specimen) {
   return 1e-3 / (diameter * std::sqrt(specimen.materials[0].density / pressure));
 }
 
-/// Steps the specimen in simple shear; `steps` sub-steps a repeat.
+/// Times simple shear of the specimen; `steps` sub-steps per repeat.
 Timing time_of(const Specimen& specimen, long steps, int repeats, Workers& team) {
   Specimen start = specimen;
   start.damping.local = 0.1;  // as published (Liang and Zhao 2019, table 2)
@@ -136,7 +137,7 @@ Json entry(const Specimen& specimen, double grain_steps, bool quick, Workers& te
   return out;
 }
 
-/// A case: which packing, how often repeated along each lattice vector, how much work.
+/// A packing, how often it is repeated along each lattice vector, and how many grain-steps are timed.
 struct Case {
   const char* name;
   pack::Recipe recipe;
@@ -154,7 +155,21 @@ std::vector<Case> cases() {
           {"sphere_256000_hertz", spheres(), {8, 8, 4}, 2.56e7, 2.56e7}};
 }
 
-/// About so many grains: packed as they are up to the number of the recipe, above by repeating its packing.
+std::vector<std::string> case_names() {
+  std::vector<std::string> names;
+  for (const Case& c : cases()) names.emplace_back(c.name);
+  return names;
+}
+
+void expect_cases(const std::vector<std::string>& wanted) {
+  const std::vector<std::string> names = case_names();
+  for (const std::string& name : wanted)
+    if (std::find(names.begin(), names.end(), name) == names.end())
+      throw InputError("bench: no case \"" + name + "\"; the nearest is " + keys::nearest(name, names) +
+                       "; see rvelab bench --help");
+}
+
+/// A specimen of about so many grains: a packing, or, above the number of the recipe, its packing repeated.
 Specimen of_size(Shape shape, std::size_t grains) {
   pack::Recipe recipe = shape == Shape::disc ? discs(false) : spheres();
   if (grains <= std::size_t(recipe.number)) {
@@ -184,13 +199,13 @@ struct Arguments {
   std::string folder;  ///< empty: time the cases; else: write their packings there
 };
 
-/// Many cells of 400 discs, 20 sub-steps each in every round, as a continuum code asks for.
+/// Times many cells of 400 discs with increments of 20 sub-steps, as a continuum code makes them.
 void run_batch(const Arguments& arguments) {
   const Specimen specimen = packed(discs(false));
   std::vector<Rve> rves(arguments.batch, Rve(specimen));
   const double dt = 20 * 0.7 * rves[0].critical_time_step();
   std::vector<Matrix3> gradients(rves.size(), Matrix3::Zero());
-  for (std::size_t k = 0; k < rves.size(); ++k)  // no two cells go the same way
+  for (std::size_t k = 0; k < rves.size(); ++k)  // each cell has its own rate
     gradients[k](0, 1) = shear_rate(rves[0], specimen) * dt * (1 + double(k) / double(rves.size()));
   Workers workers(arguments.threads);
   const auto steps_made = [&] {
@@ -216,6 +231,8 @@ void run_batch(const Arguments& arguments) {
 }
 
 void run_bench(const Arguments& arguments) {
+  expect_cases(arguments.wanted);
+  if (!arguments.folder.empty()) expect_folder_of(arguments.folder + "/packing.h5");
   if (arguments.batch > 0) return run_batch(arguments);
   Workers team(arguments.threads);
   Listing listing;
@@ -250,36 +267,27 @@ void run_bench(const Arguments& arguments) {
 
 }  // namespace
 
-void add_bench(CLI::App& app) {
-  auto* command = app.add_subcommand("bench", "Grain-steps per second of fixed cases");
+Command bench_command() {
   auto arguments = std::make_shared<Arguments>();
-  std::set<std::string> names;
-  for (const Case& c : cases()) names.insert(c.name);
-  std::string list;
-  for (const std::string& name : names) list += "  " + name + "\n";
-  CLI::Validator known = CLI::IsMember(names);
-  known.description("");  // as a type the names would make one line of 140 characters
-  command->add_option("--case", arguments->wanted, "this case only; may be given more than once")
-      ->expected(1)
-      ->allow_extra_args(false)
-      ->take_all()
-      ->check(known);
-  command->add_option("--batch", arguments->batch, "time a batch of so many cells of 400 discs instead of the cases")
-      ->check(CLI::Range(1, 1'000'000));
-  command->add_option("--grains", arguments->grains, "time a cell of about so many grains instead of the cases")
-      ->check(CLI::Range(20, 2'000'000));
-  command->add_option("--shape", arguments->shape, "of --grains")->check(CLI::IsMember({"disc", "sphere"}));
-  command->add_option("--threads", arguments->threads, "threads of the batch, and of cases from 30,000 grains on")
-      ->check(CLI::Range(1u, 4096u));
-  command->add_flag("--quick", arguments->quick, "a fifth of the work, three repeats");
-  command->add_option("--packings", arguments->folder, "write the packings of the cases there instead of timing them")
-      ->check(CLI::ExistingDirectory);
-  command->add_flag("--json", arguments->json, "print one JSON object");
-  command->footer("Cases:\n" + list +
-                  "Examples:\n"
-                  "  rvelab bench --quick --json\n"
-                  "  rvelab bench --case disc_400_linear --packings .");
-  command->callback([arguments] { run_bench(*arguments); });
+  Command command{"bench", "Grain-steps per second of fixed cases"};
+  command.add("--case", arguments->wanted, "run this case only; give it again for more");
+  command.add("--batch", arguments->batch, "time a batch of so many cells of 400 discs instead of the cases")
+      .between(1, 1'000'000);
+  command.add("--grains", arguments->grains, "time a cell of about so many grains instead of the cases")
+      .between(20, 2'000'000);
+  command.add("--shape", arguments->shape, "of the grains of --grains").one_of({"disc", "sphere"});
+  command.add_threads(arguments->threads, "for a batch, and for cells of 30,000 grains or more");
+  command.add("--quick", arguments->quick, "a fifth of the work, three repeats");
+  command.add("--packings", arguments->folder, "folder: write the packings of the cases there, time nothing");
+  command.add_json(arguments->json);
+  command.notes = "Cases:\n";
+  for (const std::string& name : case_names()) command.notes += "  " + name + "\n";
+  command.notes +=
+      "Examples:\n"
+      "  rvelab bench --quick --json\n"
+      "  rvelab bench --case disc_400_linear --packings .";
+  command.run = [arguments] { run_bench(*arguments); };
+  return command;
 }
 
 }  // namespace rvelab::cli

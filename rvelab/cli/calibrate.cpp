@@ -1,5 +1,4 @@
 // rvelab calibrate: one compression test at several pressures, and the strength of the soil from all of them.
-// Declared in commands.hpp.
 #include "rvelab/calibrate/calibrate.hpp"
 
 #include <algorithm>
@@ -7,13 +6,13 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
 #include <set>
 #include <sstream>
 
+#include "rvelab/cli/calibrate_report.hpp"
 #include "rvelab/cli/commands.hpp"
 #include "rvelab/cli/interrupt.hpp"
 #include "rvelab/cli/progress_line.hpp"
@@ -28,16 +27,14 @@ namespace rvelab::cli {
 namespace {
 
 struct CalibrateArguments {
-  std::string protocol, folder;
+  std::string folder;
   std::optional<std::string> pressures;
-  std::vector<std::string> specimens, settings;
-  unsigned threads = 0;
+  std::vector<std::string> specimens;
   bool every_pressure = false;
-  RecordingOptions recording;
-  bool json = false;
+  TestOptions test;
 };
 
-/// What is to be run: each test has a protocol, which is the general one at its pressure, and a specimen by its number.
+/// The tests to run. Each has its protocol (the given one at its pressure) and the number of its specimen.
 struct Plan {
   std::vector<protocol::Protocol> protocols;
   std::vector<std::size_t> specimen_of;
@@ -73,8 +70,8 @@ std::vector<double> parsed_pressures(const std::string& list) {
 std::string record_file_name(double pressure) { return "R_" + std::to_string(std::llround(pressure)) + ".h5"; }
 
 std::vector<protocol::Protocol> protocols_at(const CalibrateArguments& arguments) {
-  const std::string path = protocol_path(arguments.protocol);
-  const protocol::Protocol general = protocol::read_protocol(path, arguments.settings);
+  const std::string path = protocol_path(arguments.test.protocol);
+  const protocol::Protocol general = protocol::read_protocol(path, arguments.test.settings);
   const auto pressures = arguments.pressures ? parsed_pressures(*arguments.pressures) : general.calibration_pressures;
   if (pressures.empty()) {
     throw InputError(general.path +
@@ -90,7 +87,7 @@ std::vector<protocol::Protocol> protocols_at(const CalibrateArguments& arguments
       throw InputError((arguments.pressures ? "--pressures" : "[calibrate] pressures_Pa") + std::string(" holds ") +
                        in_words(pressure) + " Pa twice, to the pascal; allowed: each pressure once; leave one out");
     }
-    auto settings = arguments.settings;
+    auto settings = arguments.test.settings;
     settings.push_back(assignment.str());
     protocols.push_back(protocol::read_protocol(path, settings));
   }
@@ -98,7 +95,7 @@ std::vector<protocol::Protocol> protocols_at(const CalibrateArguments& arguments
   return protocols;
 }
 
-/// InputError where two files hold the same specimen, which would count as two draws without scatter.
+/// InputError if two files hold the same specimen: it would count twice in the statistics.
 void expect_different(const std::vector<Specimen>& specimens, const std::vector<std::string>& files) {
   std::map<std::uint32_t, std::size_t> first;
   for (std::size_t k = 0; k < specimens.size(); ++k) {
@@ -129,133 +126,19 @@ Plan plan_of(const std::vector<protocol::Protocol>& at_pressures, const std::vec
   return plan;
 }
 
-Json per_pressure(const calibrate::Calibration& calibration) {
-  Json tests = Json::array();
-  for (const calibrate::PressureResult& test : calibration.per_pressure) {
-    tests.push_back({{"pressure_Pa", test.pressure},
-                     {"specimen", test.specimen + 1},
-                     {"peak_sigma_1_Pa", test.peak.major},
-                     {"peak_sigma_3_Pa", test.peak.minor},
-                     {"peak_strain", test.peak_strain},
-                     {"end_strain", test.end_strain},
-                     {"rising_at_end", test.rising_at_end},
-                     {"friction_angle_deg", test.friction_angle_deg},
-                     {"friction_angle_moving_mean_deg", test.moving_mean_friction_angle_deg},
-                     {"large_strain_friction_angle_deg", test.large_strain_friction_angle_deg},
-                     {"records", test.records},
-                     {"flagged", test.flagged},
-                     {"wall_s", test.wall_seconds},
-                     {"grain_steps", test.grain_steps}});
-  }
-  return tests;
-}
-
-/// What a user is told of a mean over draws; nothing of a single one, which has no scatter to tell.
-void add_statistics(const calibrate::Calibration& calibration, const std::vector<std::string>& files,
-                    Listing& listing) {
-  listing.add("specimens", calibration.per_specimen.size());
-  if (calibration.per_specimen.size() < 2) return;
-  const std::string why = "a specimen has no friction angle, see per_specimen";
-  const auto add = [&](const std::string& stem, const std::string& end, const calibrate::Statistics& found,
-                       const std::string& unit) {
-    listing.add_or_why(stem + "_mean" + end, found.mean, unit, why);
-    listing.add_or_why(stem + "_standard_deviation" + end, found.standard_deviation, unit, why);
-    listing.add_or_why(stem + "_standard_error" + end, found.standard_error, unit, why);
-  };
-  add("friction_angle", "_deg", calibration.friction_angle_of_specimens, "degrees");
-  add("bearing_capacity_Nq", "", calibration.Nq_of_specimens, "");
-  Json rows = Json::array();
-  for (std::size_t k = 0; k < calibration.per_specimen.size(); ++k) {
-    const calibrate::SpecimenResult& one = calibration.per_specimen[k];
-    rows.push_back({{"specimen", k + 1},
-                    {"file", files[k]},
-                    {"friction_angle_deg", one.friction_angle_deg},
-                    {"bearing_capacity_Nq", one.bearing_capacity_Nq}});
-  }
-  listing.add("per_specimen", std::move(rows));
-}
-
-std::string percent(double strain) { return in_words(100 * std::abs(strain)) + " %"; }
-
-/// The tests whose largest deviator stands at their end, in words; empty: all passed a peak.
-std::string without_peak(const calibrate::Calibration& calibration) {
-  std::string tests;
-  double end = 0;
-  for (const calibrate::PressureResult& test : calibration.per_pressure) {
-    if (!test.rising_at_end) continue;
-    tests += tests.empty() ? "" : ", ";
-    if (calibration.per_specimen.size() > 1) tests += "specimen " + std::to_string(test.specimen + 1) + " at ";
-    tests += in_words(test.pressure) + " Pa";
-    end = std::max(end, std::abs(test.end_strain));
-  }
-  if (tests.empty()) return "";
-  return tests + ": still rising at the end: no peak; the angle is that of the largest deviator up to " + percent(end) +
-         " strain; let the tests go further (to_strain)";
-}
-
-/// Why the figures that need more of the tests than they give are not there.
-struct Reasons {
-  std::string peak, moving_mean, cohesion, cohesion_error, large_strain;
-};
-
-Reasons reasons_of(const calibrate::Calibration& calibration) {
-  double end = std::numeric_limits<double>::infinity();
-  bool tension = false;
-  for (const calibrate::PressureResult& test : calibration.per_pressure) {
-    end = std::min(end, std::abs(test.end_strain));
-    tension = tension || !(test.peak.minor > 0);
-  }
-  const std::string no_angle =
-      tension ? "a peak has a minor principal stress of 0 or in tension: no friction alone carries it"
-              : "the peaks give no angle: no principal stress is in compression";
-  return {no_angle, tension ? no_angle : "needs records over 1 % of strain; a test ends at " + percent(end),
-          calibration.per_pressure.size() < 2 ? "needs tests at two pressures or more" : "the peaks lie on no line",
-          calibration.per_pressure.size() < 3 ? "needs tests at three pressures or more" : "the peaks lie on no line",
-          "is the mean from 12 to 15 % of strain; a test ends at " + percent(end)};
-}
-
-void report(const calibrate::Calibration& calibration, const protocol::Protocol& protocol,
-            const std::vector<std::string>& specimens, double wall_seconds, bool json) {
-  Listing listing;
-  unsigned long long grain_steps = 0;
-  for (const auto& test : calibration.per_pressure) grain_steps += test.grain_steps;
-  const Reasons why = reasons_of(calibration);
-  listing.add("protocol", protocol.name);
-  listing.add_or_why("friction_angle_deg", calibration.friction_angle_deg, "degrees", why.peak);
-  listing.add_or_why("friction_angle_moving_mean_deg", calibration.friction_angle_moving_mean_deg, "degrees",
-                     why.moving_mean);
-  listing.add_or_why("friction_angle_with_cohesion_deg", calibration.friction_angle_with_cohesion_deg, "degrees",
-                     why.cohesion);
-  listing.add_or_why("friction_angle_with_cohesion_standard_error_deg",
-                     calibration.friction_angle_with_cohesion_error_deg, "degrees", why.cohesion_error);
-  listing.add_or_why("cohesion_Pa", calibration.cohesion, "Pa", why.cohesion);
-  listing.add_or_why("cohesion_standard_error_Pa", calibration.cohesion_error, "Pa", why.cohesion_error);
-  listing.add_or_why("large_strain_friction_angle_deg", calibration.large_strain_friction_angle_deg, "degrees",
-                     why.large_strain);
-  listing.add_or_why("bearing_capacity_Nq", calibration.bearing_capacity_Nq, "", why.peak);
-  listing.add_or_why("local_shear_Nq", calibration.local_shear_Nq, "", why.peak);
-  listing.add_or_why("wedge_angle_deg", calibration.wedge_angle_deg, "degrees", why.peak);
-  add_statistics(calibration, specimens, listing);
-  if (const std::string warning = without_peak(calibration); !warning.empty()) listing.add("warning", warning);
-  listing.add("per_pressure", per_pressure(calibration));
-  listing.add("wall_s", wall_seconds, "s");
-  listing.add("grain_steps", grain_steps);
-  listing.print(json);
-}
-
-/// Says what the stopped tests left, and ends the program with the code of the signal.
+/// Prints how many tests are complete, and ends the program with the code of the signal.
 [[noreturn]] void end_stopped(const std::vector<protocol::TestRun>& runs, const std::string& folder) {
   const auto done = std::count_if(runs.begin(), runs.end(), [](const protocol::TestRun& run) { return run.complete; });
   tell("stopped by " + std::string(signal_name()) + " with " + std::to_string(done) + " of " +
        std::to_string(runs.size()) + " tests complete; " +
-       (folder.empty() ? "their records are not kept without -o" : "go on with --resume"));
-  throw Stopped(128 + signal_received());
+       (folder.empty() ? "their records are not kept without -o" : "continue with --resume"));
+  throw Exit(128 + signal_received());
 }
 
 void run_calibration(const CalibrateArguments& arguments) {
   const auto begin = std::chrono::steady_clock::now();
   const auto at_pressures = protocols_at(arguments);
-  arguments.recording.expect_output(arguments.folder);
+  arguments.test.expect_output(arguments.folder);
   const auto specimens = specimens_for(at_pressures.front(), arguments.specimens);
   if (arguments.every_pressure || at_pressures.size() == 1) expect_different(specimens, arguments.specimens);
   const Plan plan = plan_of(at_pressures, specimens, arguments.every_pressure);
@@ -269,14 +152,14 @@ void run_calibration(const CalibrateArguments& arguments) {
     for (std::size_t k = 0; k < tests; ++k) {
       const std::string file = (std::filesystem::path(arguments.folder) / plan.files[k]).string();
       io::expect_place(file, inputs);
-      stores[k] = open_store(file, plan.protocols[k], specimens[plan.specimen_of[k]], arguments.recording);
+      stores[k] = open_store(file, plan.protocols[k], specimens[plan.specimen_of[k]], arguments.test);
     }
   }
   std::vector<protocol::TestRun> runs;
   {
     ProgressOfTests progress(tests);
     runs = calibrate::run_all(
-        plan.protocols, specimens, arguments.threads,
+        plan.protocols, specimens, arguments.test.threads,
         [&](std::size_t number, const protocol::Protocol& protocol, const Specimen& specimen) {
           protocol::Watch watch;
           watch.stop = &stop_on_signals();
@@ -295,49 +178,38 @@ void run_calibration(const CalibrateArguments& arguments) {
   std::vector<records::TestResult> results;
   for (const protocol::TestRun& run : runs) results.push_back(run.result);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
-  report(calibrate::calibrate(results, specimens.front().cell.dimension, plan.specimen_of), at_pressures.front(),
-         arguments.specimens, wall.count(), arguments.json);
+  report_calibration(calibrate::calibrate(results, specimens.front().cell.dimension, plan.specimen_of),
+                     at_pressures.front().name, arguments.specimens, wall.count(), arguments.test.json);
 }
 
 }  // namespace
 
-void add_calibrate(CLI::App& app) {
+Command calibrate_command() {
   auto arguments = std::make_shared<CalibrateArguments>();
-  CLI::App* command =
-      app.add_subcommand("calibrate", "Run a compression test at several pressures: friction angle, N_q");
-  command->add_option("protocol", arguments->protocol, "PROTOCOL.toml, or the name of an installed one: biaxial")
-      ->required();
-  command
-      ->add_option("--specimen", arguments->specimens,
-                   "specimen; given several times: all at one pressure, or one\n"
-                   "for each pressure; with --every-pressure each at all of them")
-      ->expected(1)
-      ->allow_extra_args(false)
-      ->take_all();
-  command->add_option("--pressures", arguments->pressures, "Pa, 10e3,15e3,...; else [calibrate] pressures_Pa");
-  command->add_flag("--every-pressure", arguments->every_pressure, "test each of several specimens at every pressure");
-  command->add_option("-o,--output", arguments->folder, "folder for record files R_<pressure>.h5; made if not there");
-  add_set_option(*command, arguments->settings, "contact.slip=consistent");
-  command->add_option("--threads", arguments->threads, "tests at a time; else as many as there are cores")
-      ->check(CLI::Range(1u, 4096u));
-  arguments->recording.add_to(*command);
-  command->add_flag("--json", arguments->json, "print one JSON object");
-  command->footer(
-      "phi: friction angle, sin phi = (sigma_1 - sigma_3)/(sigma_1 + sigma_3) at the peak, the record with the\n"
-      "largest sigma_1 - sigma_3; over several tests by least squares through the origin. _with_cohesion: the "
-      "straight\n"
-      "envelope of the peaks, t = s sin phi + c cos phi, with the standard errors of phi and c; of grains that stick\n"
-      "(contact.law = linear_adhesive) it is the one to use.\n"
-      "bearing_capacity_Nq: N_q = tan^2(45 + phi/2) exp(pi tan phi), bearing capacity factor of a footing's\n"
-      "surcharge in general shear; local_shear_Nq: the same with tan phi reduced to 2/3, for loose soil;\n"
-      "wedge_angle_deg: 45 + phi/2, of the active wedge below a footing against the horizontal.\n"
-      "One packing is one draw: equal recipes with other seeds differ by degrees. Of several specimens the mean, the\n"
-      "standard deviation and the standard error of phi and N_q are printed.\n"
+  Command command{"calibrate", "Run a compression test at several pressures: friction angle, N_q"};
+  command.add("--specimen", arguments->specimens,
+              "specimen; given several times: one for each pressure, or all at the one\n"
+              "pressure; with --every-pressure each at all pressures");
+  command.add("--pressures", arguments->pressures, "in Pa, 10e3,15e3,...; default: [calibrate] pressures_Pa");
+  command.add("--every-pressure", arguments->every_pressure, "test each specimen at every pressure");
+  command.add("-o,--output", arguments->folder, "folder for the record files R_<pressure>.h5; made if it is missing");
+  arguments->test.add_to(command, "contact.slip=consistent", "tests at a time");
+  command.notes =
+      "friction_angle: phi with sin phi = (sigma_1 - sigma_3)/(sigma_1 + sigma_3) at the peak, the record with the\n"
+      "largest sigma_1 - sigma_3; over several tests by least squares through the origin.\n"
+      "..._with_cohesion: the straight envelope of the peaks, t = s sin phi + c cos phi, with standard errors of phi\n"
+      "and c; use it for grains that stick (contact.law = linear_adhesive).\n"
+      "bearing_capacity_Nq: N_q = tan^2(45 + phi/2) exp(pi tan phi), the factor of a footing's surcharge in general\n"
+      "shear; local_shear_Nq: the same with 2/3 tan phi, for loose soil; wedge_angle_deg: 45 + phi/2, angle of the\n"
+      "active wedge below a footing against the horizontal.\n"
+      "Specimens with other seeds differ by some degrees; test several. For two or more, calibrate prints mean,\n"
+      "standard deviation and standard error of phi and N_q.\n"
       "Examples:\n"
       "  rvelab calibrate biaxial --specimen dense.h5 --pressures 10e3,20e3,30e3\n"
       "  rvelab calibrate biaxial --specimen a.h5 --specimen b.h5 --pressures 10e3,20e3 -o records\n"
-      "  rvelab calibrate biaxial --specimen S_1.h5 --specimen S_2.h5 --specimen S_3.h5 --every-pressure");
-  command->callback([arguments] { run_calibration(*arguments); });
+      "  rvelab calibrate biaxial --specimen S_1.h5 --specimen S_2.h5 --specimen S_3.h5 --every-pressure";
+  command.run = [arguments] { run_calibration(*arguments); };
+  return command;
 }
 
 }  // namespace rvelab::cli

@@ -1,4 +1,4 @@
-// rvelab compare: whether two files hold the same, bit by bit. Declared in commands.hpp.
+// rvelab compare: whether two files hold the same, bit by bit.
 #include <iostream>
 #include <memory>
 
@@ -7,38 +7,46 @@
 #include "rvelab/io/hdf5/compare.hpp"
 
 namespace rvelab::cli {
+namespace {
 
-void add_compare(CLI::App& app) {
-  struct Arguments {
-    std::string a, b;
-    bool json = false;
-  };
+struct Arguments {
+  std::string a, b;
+  bool json = false;
+};
+
+void run_compare(const Arguments& arguments) {
+  const io::Comparison result = io::compare_files(arguments.a, arguments.b);
+  if (arguments.json) {
+    Listing listing;
+    listing.add("equal", !result.difference);
+    listing.add("datasets_equal", result.datasets);
+    listing.add("difference", result.difference ? Json(*result.difference) : Json());
+    listing.print(true);
+  } else if (!result.difference) {
+    std::cout << "equal: " << result.datasets << " datasets\n";
+  } else {
+    std::cout << *result.difference << "\n";
+  }
+  if (result.difference) throw Exit(1);
+}
+
+}  // namespace
+
+Command compare_command() {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("compare", "Tell whether two files hold the same, bit by bit");
-  command->add_option("A.h5", arguments->a, "specimen or record file")->required();
-  command->add_option("B.h5", arguments->b, "the other one")->required();
-  command->add_flag("--json", arguments->json, "print one JSON object");
-  command->footer(
-      "Every dataset and attribute outside /provenance counts: name, type, shape, units, bits. Exit code 0: equal; 1: "
+  Command command{"compare", "Tell whether two files hold the same, bit by bit"};
+  command.add("A.h5", arguments->a, "specimen or record file").required();
+  command.add("B.h5", arguments->b, "the other file").required();
+  command.add_json(arguments->json);
+  command.notes =
+      "Every dataset and attribute outside /provenance is compared: name, type, shape, unit and bits. Exit code 0: "
       "the\n"
-      "first difference is printed. Of a run that was killed, rvelab recover the file first.\n\n"
+      "files are equal; 1: they are not, and the first difference is printed. After a run that was killed, use\n"
+      "rvelab recover on its file first.\n\n"
       "Example:\n"
-      "  rvelab compare whole.h5 resumed.h5");
-  command->callback([arguments] {
-    const io::Comparison result = io::compare_files(arguments->a, arguments->b);
-    if (arguments->json) {
-      Listing listing;
-      listing.add("equal", !result.difference);
-      listing.add("datasets_equal", result.datasets);
-      listing.add("difference", result.difference ? Json(*result.difference) : Json());
-      listing.print(true);
-    } else if (!result.difference) {
-      std::cout << "equal: " << result.datasets << " datasets\n";
-    } else {
-      std::cout << *result.difference << "\n";
-    }
-    if (result.difference) throw CLI::RuntimeError(1);
-  });
+      "  rvelab compare whole.h5 resumed.h5";
+  command.run = [arguments] { run_compare(*arguments); };
+  return command;
 }
 
 }  // namespace rvelab::cli

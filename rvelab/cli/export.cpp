@@ -1,4 +1,4 @@
-// rvelab export: states of a specimen or a test for other programs. Declared in commands.hpp.
+// rvelab export: states of a specimen or a test for other programs.
 #include <memory>
 #include <string>
 #include <vector>
@@ -49,7 +49,7 @@ std::vector<std::string> files_of(const ExportArguments& arguments) {
   return {output};
 }
 
-/// Writes the files of one format; what there is to say goes into the listing.
+/// Writes the files of one format, and adds to the listing what the user may want to know of them.
 void write_export(const ExportArguments& arguments, Listing& listing) {
   if (arguments.format == "csv") {
     const io::CsvExport files =
@@ -81,31 +81,34 @@ void run_export(const ExportArguments& arguments) {
 
 }  // namespace
 
-void add_export(CLI::App& app) {
+Command export_command() {
   auto arguments = std::make_shared<ExportArguments>();
-  CLI::App* command = app.add_subcommand("export", "Write a specimen or a test for ParaView, OVITO, LAMMPS or YADE");
-  command->add_option("file", arguments->file, "specimen or record file, *.h5")->required();
+  Command command{"export", "Write a specimen or a test for ParaView, OVITO, LAMMPS or YADE"};
+  command.add("file", arguments->file, "specimen or record file, *.h5").required();
   command
-      ->add_option("--format", arguments->format,
-                   "xdmf: ParaView (grains, contacts, cell)\n"
-                   "lammps: dump of LAMMPS, also for OVITO\n"
-                   "lammps-data: data file of LAMMPS\n"
-                   "csv: particles, contacts, parameters, as `rvelab import` reads them")
-      ->check(CLI::IsMember({"xdmf", "lammps", "lammps-data", "csv"}))
-      ->required();
-  command->add_option("-o,--output", arguments->output, "file to write; csv: what the names of the files begin with")
-      ->required();
-  command->add_flag("--force", arguments->force, "overwrite files that are there");
-  command->add_flag("--json", arguments->json, "print one JSON object");
-  command->footer(
-      "xdmf and lammps hold every snapshot of a record file and its end state, the others the last state.\n"
-      "xdmf and csv are in the laboratory frame, lammps in the cell frame, which is upper triangular as LAMMPS "
-      "wants.\n\n"
+      .add("--format", arguments->format,
+           "xdmf: grains, contacts and cell for ParaView\n"
+           "lammps: dump of LAMMPS, which OVITO reads too\n"
+           "lammps-data: data file of LAMMPS\n"
+           "csv: particles, contacts and parameters, as rvelab import reads them")
+      .one_of({"xdmf", "lammps", "lammps-data", "csv"})
+      .required();
+  command.add("-o,--output", arguments->output, "file to write; csv: what the names of the files begin with")
+      .required();
+  command.add("--force", arguments->force, "overwrite existing files");
+  command.add_json(arguments->json);
+  command.notes =
+      "xdmf and lammps write every snapshot of a record file and its end state; the other formats write the last "
+      "state.\n"
+      "xdmf and csv are in the laboratory frame, lammps in the cell frame, whose lattice is upper triangular as "
+      "LAMMPS\n"
+      "wants it.\n\n"
       "Examples:\n"
       "  rvelab export dense.h5 --format csv -o dense\n"
       "  rvelab export R.h5 --format xdmf -o R.xdmf\n"
-      "  rvelab export R.h5 --format lammps -o R.dump");
-  command->callback([arguments] { run_export(*arguments); });
+      "  rvelab export R.h5 --format lammps -o R.dump";
+  command.run = [arguments] { run_export(*arguments); };
+  return command;
 }
 
 }  // namespace rvelab::cli

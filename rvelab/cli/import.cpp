@@ -1,6 +1,5 @@
 // rvelab import: specimens from CSV files, as YADE scripts write them, and from dumps of LAMMPS.
-// Declared in commands.hpp.
-#include <algorithm>
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,13 +20,13 @@ namespace {
 
 struct ImportArguments {
   std::string inputs[3];
-  std::vector<double> cell;
+  std::optional<std::array<double, 3>> cell;
   std::string material, output;
   std::vector<std::string> settings;
   bool force = false, json = false;
 };
 
-/// Files that end in .json are META.json, the others particles and contacts, in this order.
+/// A file that ends in .json is META.json; of the others the first holds particles, the second contacts.
 struct Inputs {
   std::string particles;
   std::optional<std::string> contacts, meta;
@@ -55,11 +54,11 @@ void run_import(const ImportArguments& arguments) {
   for (const auto& file : arguments.inputs) files.push_back(file);
   io::expect_output(arguments.output, arguments.force, files);
   io::ImportOptions options;
-  if (!arguments.cell.empty()) options.cell = Vector3(arguments.cell[0], arguments.cell[1], arguments.cell[2]);
+  if (arguments.cell) options.cell = Vector3(arguments.cell->data());
   if (!arguments.material.empty()) options.material_path = arguments.material;
   options.settings = arguments.settings;
   const Specimen specimen = io::import_csv(inputs.particles, inputs.contacts, inputs.meta, options);
-  // Opened before it is written: what cannot be opened is no specimen.
+  // Opens it before writing it: a specimen that cannot be opened is refused here.
   const Sizes sizes = sizes_of(Rve(specimen).network());
   io::write_specimen(specimen, arguments.output);
 
@@ -78,32 +77,31 @@ void run_import(const ImportArguments& arguments) {
 
 }  // namespace
 
-void add_import(CLI::App& app) {
+Command import_command() {
   auto arguments = std::make_shared<ImportArguments>();
-  CLI::App* command = app.add_subcommand("import", "Make a specimen from CSV files, or from a dump of LAMMPS");
+  Command command{"import", "Make a specimen from CSV files, or from a dump of LAMMPS"};
   command
-      ->add_option("PARTICLES.csv", arguments->inputs[0],
-                   "columns id,x,y[,z] and r or radius, or a,b,angle of ellipses; or a text dump of LAMMPS (SI)")
-      ->required();
-  command->add_option("CONTACTS.csv", arguments->inputs[1], "columns id1,id2,sx,sy[,sz],fn,fsx,fsy[,fsz],mz");
-  command->add_option("META.json", arguments->inputs[2], "parameters and cell of the packing");
-  command->add_option("--cell", arguments->cell, "Lxx,Lyy,Lzz in m of a rectangular cell (2D: Lzz is the thickness)")
-      ->delimiter(',')
-      ->expected(3);
-  command->add_option("--material", arguments->material,
-                      "TOML file with [[material]], [contact], [damping], [solver]; a column\n"
-                      "`material` of PARTICLES.csv holds the names of its materials");
-  add_set_option(*command, arguments->settings, "contact.slip=full_radius_ratcheting");
-  command->add_option("-o,--output", arguments->output, "specimen file to write, S.h5")->required();
-  command->add_flag("--force", arguments->force, "overwrite the output");
-  command->add_flag("--json", arguments->json, "print one JSON object");
-  command->footer(
+      .add("PARTICLES.csv", arguments->inputs[0],
+           "columns id,x,y[,z] and r or radius, for ellipses a,b,angle; or a text dump of LAMMPS (SI units)")
+      .required();
+  command.add("CONTACTS.csv", arguments->inputs[1], "columns id1,id2,sx,sy[,sz],fn,fsx,fsy[,fsz],mz");
+  command.add("META.json", arguments->inputs[2], "parameters and cell of the packing");
+  command.add("--cell", arguments->cell, "Lxx,Lyy,Lzz of a rectangular cell in m; in 2D Lzz is the thickness");
+  command.add("--material", arguments->material,
+              "TOML file with [[material]], [contact], [damping], [solver]; of several\n"
+              "materials, a column `material` of PARTICLES.csv names that of each grain");
+  command.add_set(arguments->settings, "contact.slip=full_radius_ratcheting");
+  command.add("-o,--output", arguments->output, "specimen file to write, S.h5").required();
+  command.add("--force", arguments->force, "overwrite an existing file");
+  command.add_json(arguments->json);
+  command.notes =
       "Examples:\n"
       "  rvelab import dense.particles.csv dense.contacts.csv dense.json -o dense.h5\n"
       "  rvelab import E.particles.csv E.contacts.csv E.json --material E.material.toml -o E.h5   (of rvelab export)\n"
       "  rvelab import init.csv --cell 2,2,2 --material sand.toml -o loose.h5\n"
-      "  rvelab import relaxed.dump --material sand.toml -o relaxed.h5");
-  command->callback([arguments] { run_import(*arguments); });
+      "  rvelab import relaxed.dump --material sand.toml -o relaxed.h5";
+  command.run = [arguments] { run_import(*arguments); };
+  return command;
 }
 
 }  // namespace rvelab::cli

@@ -1,4 +1,4 @@
-// rvelab inspect: what is in a specimen or record file, and the measures of its state. Declared in commands.hpp.
+// rvelab inspect: what is in a specimen or record file, and the measures of its state.
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -78,7 +78,7 @@ void add_model(Listing& listing, const Specimen& specimen) {
 }
 
 void run_inspect(const std::string& path, bool as_json) {
-  // A run that has published nothing yet has its journal only.
+  // A run that has just begun has only its journal.
   const bool only_journal = !std::filesystem::exists(path) && std::filesystem::exists(io::journal_of(path));
   const bool has_records = only_journal || io::file_kind(path) == io::FileKind::records;
   Listing listing;
@@ -108,17 +108,10 @@ void run_inspect(const std::string& path, bool as_json) {
 
 }  // namespace
 
-void add_inspect(CLI::App& app) {
-  struct Arguments {
-    std::string file;
-    bool json = false;
-  };
-  auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("inspect", "Show a specimen, or the end state of a test (so far)");
-  command->add_option("file", arguments->file, "specimen or record file, *.h5")->required();
-  command->add_flag("--json", arguments->json, "print one JSON object");
-  command->footer("Example:\n  rvelab inspect dense.h5 --json");
-  command->callback([arguments] { run_inspect(arguments->file, arguments->json); });
+Command inspect_command() {
+  return command_of_one_word("inspect", "Show a specimen, or the last state of a test", "file",
+                             "specimen or record file, *.h5", true, "Example:\n  rvelab inspect dense.h5 --json",
+                             run_inspect);
 }
 
 }  // namespace rvelab::cli

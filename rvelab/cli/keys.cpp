@@ -1,4 +1,4 @@
-// rvelab keys: every key of protocols, recipes and material files. Declared in commands.hpp.
+// rvelab keys: every key of protocols, recipes and material files.
 #include <algorithm>
 #include <cctype>
 #include <iostream>
@@ -46,7 +46,7 @@ Json as_json(const keys::Key& key) {
   return json;
 }
 
-/// Two lines a key: what may be written, and what it means.
+/// Two lines: what may be written, and what it means.
 std::string as_text(const keys::Key& key) {
   const std::string unit = key.unit == "1" || key.unit == "-" ? "" : " in " + key.unit;
   const std::string initial = key.required ? "required" : key.initial.empty() ? "no default" : "default " + key.initial;
@@ -69,23 +69,16 @@ void run_keys(const std::string& pattern, bool json) {
 
 }  // namespace
 
-void add_keys(CLI::App& app) {
-  struct Arguments {
-    std::string pattern;
-    bool json = false;
-  };
-  auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("keys", "List the keys of protocols, recipes and material files");
-  command->add_option("pattern", arguments->pattern, "part of a key, for example pressure or stage.compression");
-  command->add_flag("--json", arguments->json, "print one JSON object");
-  command->footer(
-      "Keys of stages are written below [[stage]] with that kind, and as stage.NAME.key with --set; those of "
-      "[material]\n"
-      "as material.key for all materials or material.NAME.key for one.\n\n"
+Command keys_command() {
+  return command_of_one_word(
+      "keys", "List the keys of protocols, recipes and material files", "pattern",
+      "part of a key, for example pressure or stage.compression", false,
+      "A key of a stage stands in a file below [[stage]] with that kind; with --set it is stage.NAME.key. A key of\n"
+      "[material] is material.key for all materials, material.NAME.key for one.\n\n"
       "Examples:\n"
       "  rvelab keys stage.compression\n"
-      "  rvelab keys pressure --json");
-  command->callback([arguments] { run_keys(arguments->pattern, arguments->json); });
+      "  rvelab keys pressure --json",
+      run_keys);
 }
 
 }  // namespace rvelab::cli

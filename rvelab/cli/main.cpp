@@ -1,6 +1,6 @@
 // The program `rvelab`: its subcommands, and the one place where errors become exit codes. 0: done; 1: the run failed;
-// 2: a user's mistake. Every error is one line of UTF-8 on standard error, in rvelab's words: what the standard library
-// says for itself names neither file nor remedy. No colours, on a terminal or off it.
+// 2: a user's mistake. Each error is one line of UTF-8 on standard error that names file and remedy; messages of the
+// standard library name neither. No colours.
 #include <unistd.h>
 
 #include <csignal>
@@ -14,9 +14,10 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <vector>
 
+#include "rvelab/cli/command_line.hpp"
 #include "rvelab/cli/commands.hpp"
-#include "rvelab/cli/mistakes.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/io/utf8.hpp"
 #include "rvelab/io/version.hpp"
@@ -25,7 +26,7 @@ namespace {
 
 constexpr int run_failed = 1, users_mistake = 2;
 
-/// Several mistakes come as several lines of text; they are put into one.
+/// Joins several mistakes, one on each line, into one line.
 std::string on_one_line(std::string text) {
   while (!text.empty() && text.back() == '\n') text.pop_back();
   for (auto end = text.find('\n'); end != std::string::npos; end = text.find('\n', end)) text.replace(end, 1, " | ");
@@ -37,11 +38,11 @@ int fail(int code, const std::string& message) {
   return code;
 }
 
-/// The command as it was given, for the one message that cannot ask for memory.
+/// The command line, for the message that must not allocate.
 int word_count = 0;
 char** words = nullptr;
 
-/// Says it without asking for memory, of which there is none.
+/// Prints the message without allocating memory.
 int fail_without_memory() {
   std::fputs("rvelab: out of memory", stderr);
   for (int k = 0; k < word_count; ++k) {
@@ -59,7 +60,7 @@ int fail_without_memory() {
   return run_failed;
 }
 
-/// A path that could not even be looked at is the user's; a file system that fails is not.
+/// A path that cannot be reached is a mistake of the user's; a failing file system is not.
 int fail_at_path(const std::filesystem::filesystem_error& error) {
   const bool path_at_fault =
       error.code() == std::errc::filename_too_long || error.code() == std::errc::not_a_directory ||
@@ -71,13 +72,13 @@ int fail_at_path(const std::filesystem::filesystem_error& error) {
               error.path1().string() + ": cannot be used (" + error.code().message() + ")" + remedy);
 }
 
-/// The exit code of a command whose output has reached its reader: a full disc must not look like success.
+/// Flushes standard output; the exit code says if that fails, as on a full disc.
 int done(int code) {
   if (std::cout.flush() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
   return fail(run_failed, "standard output could not be written; free space or send it elsewhere");
 }
 
-/// Memory may end where no handler is reached: before main, and in destructors of the JSON library, which allocate.
+/// Memory may run out where no handler is reached: before main, and in destructors of the JSON library, which allocate.
 [[noreturn]] void end() {
   try {
     if (const auto error = std::current_exception()) std::rethrow_exception(error);
@@ -91,46 +92,47 @@ int done(int code) {
 /// Before all other initialisers of the program.
 [[gnu::constructor(101)]] void catch_the_end() { std::set_terminate(end); }
 
-/// The program but for what befalls it where not even a subcommand is there yet.
-int answer(int argc, char** argv) {
+const rvelab::cli::About about{
+    .summary = "rvelab: granular specimens in a periodic cell, deformed increment by increment",
+    .notes =
+        "`rvelab SUBCOMMAND --help` explains a subcommand, with examples. A first test:\n"
+        "  rvelab pack pack_dense -o dense.h5\n"
+        "  rvelab run biaxial --specimen dense.h5 -o R.h5",
+    .version = std::string("rvelab ") + rvelab::io::version};
+
+/// In the order of the help.
+std::vector<rvelab::cli::Command> commands() {
+  using namespace rvelab::cli;
+  return {pack_command(),    import_command(),    inspect_command(),   probe_command(), run_command(),
+          recover_command(), seal_command(),      calibrate_command(), study_command(), compare_command(),
+          export_command(),  protocols_command(), keys_command(),      bench_command()};
+}
+
+/// Does what the command line asks for and returns the exit code. Throws on failure.
+int carried_out(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit of `ulimit -f` is an error like any other
-  CLI::App app("rvelab: granular specimens in a periodic cell, deformed increment by increment", "rvelab");
-  app.set_version_flag("--version", std::string("rvelab ") + rvelab::io::version);
-  app.require_subcommand(1);
-  rvelab::cli::add_pack(app);
-  rvelab::cli::add_import(app);
-  rvelab::cli::add_inspect(app);
-  rvelab::cli::add_probe(app);
-  rvelab::cli::add_run(app);
-  rvelab::cli::add_recover(app);
-  rvelab::cli::add_seal(app);
-  rvelab::cli::add_calibrate(app);
-  rvelab::cli::add_study(app);
-  rvelab::cli::add_compare(app);
-  rvelab::cli::add_export(app);
-  rvelab::cli::add_protocols(app);
-  rvelab::cli::add_keys(app);
-  rvelab::cli::add_bench(app);
-  app.footer(
-      "rvelab SUBCOMMAND --help says more, with examples. A first test:\n"
-      "  rvelab pack pack_dense -o dense.h5\n"
-      "  rvelab run biaxial --specimen dense.h5 -o R.h5");
+  const std::vector<rvelab::cli::Command> all = commands();
   if (argc < 2) {
-    std::cerr << app.help() << std::flush;
+    std::cerr << rvelab::cli::help_of(all, about) << std::flush;
     return users_mistake;
   }
-  try {
-    rvelab::cli::expect_known_words(app, argc, argv);
-    app.parse(argc, argv);
+  const rvelab::cli::Asked asked = rvelab::cli::read_words(all, about, argc, argv);
+  if (asked.command == nullptr) {
+    std::cout << asked.text;
     return done(0);
-  } catch (const rvelab::cli::Stopped& stopped) {
-    return stopped.exit_code;
-  } catch (const CLI::Success& help_or_version) {
-    return done(app.exit(help_or_version));
-  } catch (const CLI::RuntimeError& outcome) {  // a subcommand's own exit code, said by what it printed
-    return done(outcome.get_exit_code());
-  } catch (const CLI::Error& error) {
-    return fail(users_mistake, rvelab::cli::with_remedy(app, error));
+  }
+  try {
+    asked.command->run();
+    return done(0);
+  } catch (const rvelab::cli::Exit& exit) {
+    return done(exit.code);
+  }
+}
+
+/// The exit code, and on failure one line on standard error.
+int answer(int argc, char** argv) {
+  try {
+    return carried_out(argc, argv);
   } catch (const rvelab::InputError& error) {
     return fail(users_mistake, error.what());
   } catch (const rvelab::Error& error) {

@@ -1,4 +1,4 @@
-// rvelab pack: specimens from a recipe. Declared in commands.hpp.
+// rvelab pack: specimens from a recipe.
 #include <unistd.h>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ struct PackArguments {
   bool force = false, json = false;
 };
 
-/// One specimen to be made, and what became of it.
+/// One specimen to make, and its results.
 struct Job {
   pack::RecipeFile what;
   std::string file;
@@ -47,7 +47,7 @@ std::string with_word(const std::string& file, const std::string& word) {
   return (path.parent_path() / (path.stem().string() + "_" + word + path.extension().string())).string();
 }
 
-/// The specimens of a family, and of each member the wanted number, with seeds one after the other.
+/// For each pressure of the recipe the wanted number of specimens, with consecutive seeds.
 std::vector<Job> jobs_of(const pack::RecipeFile& file, const PackArguments& arguments) {
   std::vector<Job> jobs;
   const std::size_t digits = std::to_string(arguments.count).size();
@@ -68,7 +68,7 @@ std::vector<Job> jobs_of(const pack::RecipeFile& file, const PackArguments& argu
   return jobs;
 }
 
-/// Shows on a terminal that something is going on.
+/// Progress on a terminal: seed, draw and void ratio.
 class DrawLine {
  public:
   ~DrawLine() {
@@ -108,7 +108,7 @@ Json summary_of(Job& job, const pack::Packing& packing, double seconds) {
   return made;
 }
 
-/// Makes one specimen and writes it; files one at a time.
+/// Makes one specimen and writes it; only one file is written at a time.
 void make(Job& job, Workers& workers, DrawLine& line, std::mutex& files) {
   const auto begin = std::chrono::steady_clock::now();
   pack::PackWatch watch;
@@ -176,7 +176,7 @@ void run_pack(const PackArguments& arguments) {
     }
   } catch (const Interrupted&) {
     tell("stopped by " + std::string(signal_name()) + "; " + made_of(jobs));
-    throw Stopped(128 + signal_received());
+    throw Exit(128 + signal_received());
   } catch (const InputError&) {
     throw;
   } catch (const Error& error) {
@@ -188,27 +188,27 @@ void run_pack(const PackArguments& arguments) {
 
 }  // namespace
 
-void add_pack(CLI::App& app) {
+Command pack_command() {
   auto arguments = std::make_shared<PackArguments>();
-  CLI::App* command = app.add_subcommand("pack", "Make specimens from a recipe in TOML");
-  command->add_option("recipe", arguments->recipe, "RECIPE.toml, or the name of an installed one: pack_dense")
-      ->required();
-  command->add_option("-o,--output", arguments->output, "specimen file to write, S.h5")->required();
-  command->add_option("--count", arguments->count, "so many specimens, S_1.h5 and on, with seeds one after the other")
-      ->check(CLI::Range(1, 1'000'000));
-  add_set_option(*command, arguments->settings, "target.pressure_Pa=50e3");
-  command->add_option("--threads", arguments->threads, "specimens or draws at a time; else as many as there are cores")
-      ->check(CLI::Range(1u, 4096u));
-  command->add_flag("--force", arguments->force, "overwrite specimen files that are there");
-  command->add_flag("--json", arguments->json, "print one JSON object");
-  command->footer(
-      "The same recipe gives the same bits on any number of threads. target.pressures_Pa makes a family, S_20000Pa.h5\n"
-      "and so on. `rvelab keys pack`, `keys grains`, `keys target` and `keys preparation` say what a recipe may hold.\n"
+  Command command{"pack", "Make specimens from a recipe in TOML"};
+  command.add("recipe", arguments->recipe, "RECIPE.toml, or the name of an installed recipe: pack_dense").required();
+  command.add("-o,--output", arguments->output, "specimen file to write, S.h5").required();
+  command.add("--count", arguments->count, "make so many, S_1.h5, S_2.h5, ..., each with the next seed")
+      .between(1, 1'000'000);
+  command.add_set(arguments->settings, "target.pressure_Pa=50e3");
+  command.add_threads(arguments->threads, "specimens or draws at a time; default: one per core");
+  command.add("--force", arguments->force, "overwrite existing specimen files");
+  command.add_json(arguments->json);
+  command.notes =
+      "The same recipe gives the same bits on any number of threads. target.pressures_Pa makes one specimen for each\n"
+      "pressure, S_20000Pa.h5 and so on. For the keys of a recipe: `rvelab keys pack`, `keys grains`, `keys target`,\n"
+      "`keys preparation`.\n"
       "Examples:\n"
       "  rvelab pack pack_dense -o dense.h5\n"
       "  rvelab pack pack_loose -o loose.h5 --count 20 --set pack.number=1000\n"
-      "  rvelab pack mine.toml -o S.h5 --set target.void_ratio=0.2 --set pack.seed=7");
-  command->callback([arguments] { run_pack(*arguments); });
+      "  rvelab pack mine.toml -o S.h5 --set target.void_ratio=0.2 --set pack.seed=7";
+  command.run = [arguments] { run_pack(*arguments); };
+  return command;
 }
 
 }  // namespace rvelab::cli

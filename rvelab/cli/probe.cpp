@@ -1,5 +1,4 @@
 // rvelab probe: the stiffness of a specimen at small strain, by increments or from its contact network.
-// Declared in commands.hpp.
 #include <memory>
 #include <string>
 
@@ -64,22 +63,22 @@ void run_probe(const Arguments& arguments) {
 
 }  // namespace
 
-void add_probe(CLI::App& app) {
+Command probe_command() {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("probe", "Measure the stiffness of a specimen at small strain");
-  command->add_option("file", arguments->file, "specimen file, *.h5")->required();
-  command->add_option("--size", arguments->size, "strain of each probe, plus and minus, 1e-12 to 0.01")
-      ->capture_default_str();
-  command->add_flag("--no-slip", arguments->no_slip, "let no contact slip or roll over (friction 1e6)");
+  Command command{"probe", "Measure the stiffness of a specimen at small strain"};
+  command.add("file", arguments->file, "specimen file, *.h5").required();
+  command.add("--size", arguments->size, "strain of each probe, made in both directions").shows_default();
+  command.add("--no-slip", arguments->no_slip, "let no contact slide or roll over (friction 1e6)");
   command
-      ->add_option("--method", arguments->method,
-                   "dynamic: small increments, relaxed\n"
-                   "linear: the elastic tangent of the contact network, all contacts stuck")
-      ->check(CLI::IsMember({"dynamic", "linear"}))
-      ->capture_default_str();
-  command->add_flag("--json", arguments->json, "print one JSON object");
-  command->footer("Example:\n  rvelab probe dense.h5 --size 1e-7 --no-slip --json");
-  command->callback([arguments] { run_probe(*arguments); });
+      .add("--method", arguments->method,
+           "dynamic: small increments, each relaxed\n"
+           "linear: elastic tangent of the contact network, without sliding")
+      .one_of({"dynamic", "linear"})
+      .shows_default();
+  command.add_json(arguments->json);
+  command.notes = "Example:\n  rvelab probe dense.h5 --size 1e-7 --no-slip --json";
+  command.run = [arguments] { run_probe(*arguments); };
+  return command;
 }
 
 }  // namespace rvelab::cli

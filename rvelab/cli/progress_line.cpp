@@ -32,7 +32,7 @@ std::size_t terminal_width() {
   return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
-/// Over the line before, as far as the terminal is wide and never in the middle of a character.
+/// Overwrites the line, cut to the width of the terminal between two characters.
 void write_over(const std::string& line) {
   const std::string text = io::printable(line);
   std::size_t end = 0;
@@ -46,7 +46,7 @@ void write_over(const std::string& line) {
 
 void wipe() { std::fputs("\r\033[K", stderr); }
 
-/// Strain of the last record of the stage under way, and q/p.
+/// Strain of the last record of the present stage, and q/p.
 std::string state_of(const protocol::Moment& moment) {
   const records::TestResult& result = moment.result;
   std::string text;
@@ -160,7 +160,7 @@ void ProgressOfTests::write_line(const std::string& name) {
     part += each.part;
     made += each.part - each.first_part;
   }
-  // What concerns all tests first: a narrow terminal cuts the end.
+  // The state of all tests comes first, because a narrow terminal cuts the end.
   std::string text = std::to_string(finished) + " of " + std::to_string(tests_.size()) + " " + noun_ + " done";
   const double to_make = static_cast<double>(tests_.size()) - part;
   if (made > 0 && to_make > 0) text += "  " + in_words(seconds(begin_) / made * to_make) + " left";

@@ -1,4 +1,4 @@
-// One line on a terminal that shows how a test is getting on; nothing in a pipe or a file.
+// One line on a terminal that shows the progress of a test; nothing in a pipe or a file.
 #pragma once
 
 #include <chrono>
@@ -10,7 +10,7 @@
 
 namespace rvelab::cli {
 
-/// Writes to standard error, over itself, at most five times a second, and wipes itself away at the end.
+/// A line on standard error, overwritten at most five times a second and removed at the end.
 class ProgressLine {
  public:
   ProgressLine();
@@ -31,8 +31,8 @@ class ProgressLine {
   std::size_t first_records_ = 0;
 };
 
-/// The same for several tests at a time: how many are done, where the one that was heard of last stands, grain-steps
-/// per second of all, time left. May be called from any thread.
+/// The same for several tests at a time: how many are done, the state of the one that reported last, grain-steps per
+/// second of all, time left. May be called from any thread.
 class ProgressOfTests {
  public:
   /// `noun`: what the line calls them.
@@ -43,7 +43,7 @@ class ProgressOfTests {
 
   /// `name` of the test by its number, from 0.
   void show(std::size_t number, const std::string& name, const protocol::Moment& moment);
-  /// The same of work that has no moments: the part of it that is done, 0 to 1, and its grain-steps since it began.
+  /// The same for other work: the part of it that is done, 0 to 1, and its grain-steps since it began.
   void show(std::size_t number, const std::string& name, double part, double grain_steps);
   void done(std::size_t number);
 
@@ -56,7 +56,7 @@ class ProgressOfTests {
     double grain_steps = 0;               ///< made since
     bool begun = false, finished = false;
   };
-  /// The line, if it is time for one. Under the lock.
+  /// Writes the line if it is time; needs the lock.
   void write_line(const std::string& name);
 
   const bool terminal_;

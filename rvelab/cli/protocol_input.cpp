@@ -85,13 +85,6 @@ std::string input_path(const std::string& name_or_path, InputKind kind) {
                    (recipe ? "RECIPE" : "PROTOCOL") + ".toml; see rvelab protocols");
 }
 
-void add_set_option(CLI::App& command, std::vector<std::string>& settings, const std::string& example) {
-  command.add_option("--set", settings, "key=value, for example " + example)
-      ->expected(1)
-      ->allow_extra_args(false)
-      ->take_all();
-}
-
 std::string installed_study(const std::string& name) {
   const fs::path path = installed_folder() / "studies" / (name + ".toml");
   std::error_code ignored;

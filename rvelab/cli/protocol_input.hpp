@@ -2,7 +2,6 @@
 // and the folder that results go to.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <map>
 #include <string>
 #include <vector>
@@ -18,18 +17,15 @@ enum class InputKind { protocol, recipe };
 /// which is where installation and build put them.
 std::map<std::string, std::string> installed(InputKind kind);
 
-/// Error, naming the folder, if nothing at all is installed there: the installation is broken.
+/// Error that names the folder if it holds no protocols: the installation is broken.
 void expect_installed();
 
-/// The path of a protocol, or recipe: what is no path (no separator, no .toml) names an installed one. InputError with
-/// the nearest name if none is called so, or if it is of the other kind.
+/// The path of a protocol or recipe. A word without separator and .toml is the name of an installed one. InputError
+/// with the nearest name if there is none, or if it is of the other kind.
 std::string input_path(const std::string& name_or_path, InputKind kind);
 inline std::string protocol_path(const std::string& name_or_path) {
   return input_path(name_or_path, InputKind::protocol);
 }
-
-/// The option --set KEY=VALUE, any number of times; `example` is one of them.
-void add_set_option(CLI::App& command, std::vector<std::string>& settings, const std::string& example);
 
 /// The path of the installed study of this name; "" if there is none.
 std::string installed_study(const std::string& name);
@@ -38,13 +34,13 @@ std::string installed_study(const std::string& name);
 /// protocol's folder). InputError if there is none.
 std::vector<Specimen> specimens_for(const protocol::Protocol& protocol, const std::vector<std::string>& files);
 
-/// Makes the folder that results go to, with those above it, unless it is there. InputError if it cannot be made.
+/// Makes the folder for results if it is missing, and those above it. InputError if it cannot be made.
 void make_folder(const std::string& folder);
 
 /// The files that specimens_for reads.
 std::vector<std::string> specimen_files(const protocol::Protocol& protocol, const std::vector<std::string>& files);
 
-/// InputError unless the folder that a file is to be written to is there: said before the work, not after it.
+/// InputError unless the folder of an output file exists: checked before the work, not after it.
 void expect_folder_of(const std::string& file);
 
 }  // namespace rvelab::cli

@@ -1,4 +1,4 @@
-// rvelab protocols: the tests and the recipes that are installed with the program. Declared in commands.hpp.
+// rvelab protocols: the tests and the recipes that are installed with the program.
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -56,21 +56,14 @@ void run_protocols(const std::string& name, bool json) {
 
 }  // namespace
 
-void add_protocols(CLI::App& app) {
-  struct Arguments {
-    std::string name;
-    bool json = false;
-  };
-  auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("protocols", "List the tests and recipes that come with rvelab, or print one");
-  command->add_option("name", arguments->name, "print this one");
-  command->add_flag("--json", arguments->json, "print one JSON object");
-  command->footer(
-      "Examples:\n"
-      "  rvelab protocols\n"
-      "  rvelab protocols biaxial > mine.toml\n"
-      "  rvelab protocols pack_dense > recipe.toml");
-  command->callback([arguments] { run_protocols(arguments->name, arguments->json); });
+Command protocols_command() {
+  return command_of_one_word("protocols", "List the tests and recipes that come with rvelab, or print one", "name",
+                             "print this one", false,
+                             "Examples:\n"
+                             "  rvelab protocols\n"
+                             "  rvelab protocols biaxial > mine.toml\n"
+                             "  rvelab protocols pack_dense > recipe.toml",
+                             run_protocols);
 }
 
 }  // namespace rvelab::cli

@@ -6,29 +6,32 @@
 
 namespace rvelab::cli {
 
-void RecordingOptions::add_to(CLI::App& command) {
-  CLI::Option* over = command.add_flag("--force", force, "overwrite record files that are there (they go at once)");
-  command.add_flag("--resume", resume, "go on with a test that was stopped or killed, from its last checkpoint")
-      ->excludes(over);
+void TestOptions::add_to(Command& command, const std::string& example, const std::string& threads_help) {
+  command.add("protocol", protocol, "PROTOCOL.toml, or the name of an installed test: biaxial").required();
+  command.add_set(settings, example);
+  command.add_threads(threads, threads_help + "; default: one per core");
+  command.add("--force", force, "overwrite existing record files; they are removed at once");
+  command.add("--resume", resume, "continue a stopped or killed test from its last checkpoint").not_with("--force");
   command
-      .add_option("--checkpoint-every", checkpoint_every,
-                  "seconds between checkpoints (else as often as costs less than 1 %)")
-      ->check(CLI::PositiveNumber);
+      .add("--checkpoint-every", checkpoint_every,
+           "seconds between checkpoints; default: as often as costs less than 1 % of the time")
+      .between(1e-3, 1e9);
+  command.add_json(json);
 }
 
-void RecordingOptions::expect_output(const std::string& output) const {
+void TestOptions::expect_output(const std::string& output) const {
   if (!output.empty()) return;
   const char* given = force ? "--force" : resume ? "--resume" : checkpoint_every > 0 ? "--checkpoint-every" : nullptr;
   if (given == nullptr) return;
   throw InputError(std::string(given) + " is given without -o; allowed: with -o; name the output");
 }
 
-io::Existing RecordingOptions::existing() const {
+io::Existing TestOptions::existing() const {
   return force ? io::Existing::overwrite : resume ? io::Existing::resume : io::Existing::refuse;
 }
 
 std::unique_ptr<io::RecordStore> open_store(const std::string& path, const protocol::Protocol& protocol,
-                                            const Specimen& specimen, const RecordingOptions& options) {
+                                            const Specimen& specimen, const TestOptions& options) {
   io::RunStart start{protocol.name, protocol.resolved, {}, specimen};
   for (const protocol::Stage& stage : protocol.stages) start.stages.push_back(stage.name);
   return std::make_unique<io::RecordStore>(path, start, options.existing(), options.checkpoint_every);
@@ -70,7 +73,7 @@ protocol::TestRun run_recorded(const protocol::Protocol& protocol, const Specime
     try {
       store->publish_what_is_there();
     } catch (const std::exception&) {
-      // The failure that ended the run is the one to be told; the journal still holds every record.
+      // Report the failure that ended the run, not this one; the journal still holds every record.
     }
     throw;
   }

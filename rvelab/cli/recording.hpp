@@ -1,21 +1,27 @@
-// What `run` and `calibrate` share: tests that are recorded while they run, stopped by signals, and gone on with.
+// What `run` and `calibrate` share: tests that are recorded while they run, stopped by signals, and continued.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "rvelab/cli/command.hpp"
 #include "rvelab/io/journal/record_store.hpp"
 #include "rvelab/protocol/run.hpp"
 
 namespace rvelab::cli {
 
-/// Options of a command that writes record files.
-struct RecordingOptions {
+/// What a command takes that runs a test and writes record files.
+struct TestOptions {
+  std::string protocol;
+  std::vector<std::string> settings;
+  unsigned threads = 0;  ///< 0: one per core
   bool force = false, resume = false;
   double checkpoint_every = 0;  ///< s; 0: as often as costs little
+  bool json = false;
 
-  void add_to(CLI::App& command);
+  /// Adds them; `example` of --set, and what --threads stands for.
+  void add_to(Command& command, const std::string& example, const std::string& threads_help);
   /// InputError if they are given without a place to write to.
   void expect_output(const std::string& output) const;
   io::Existing existing() const;
@@ -23,10 +29,10 @@ struct RecordingOptions {
 
 /// The place for the records of a test.
 std::unique_ptr<io::RecordStore> open_store(const std::string& path, const protocol::Protocol& protocol,
-                                            const Specimen& specimen, const RecordingOptions& options);
+                                            const Specimen& specimen, const TestOptions& options);
 
-/// Runs a test, or goes on with it, or (complete already) only returns it; every record and checkpoint goes into
-/// `store` (nullptr: nowhere). `watch` may have on_moment and stop. A test that is stopped or fails leaves what it has.
+/// Runs a test, continues it, or returns it if it is complete already. `store` gets every record and checkpoint;
+/// nullptr: they are not kept. `watch` may have on_moment and stop. A test that is stopped or fails keeps its records.
 protocol::TestRun run_recorded(const protocol::Protocol& protocol, const Specimen& specimen, io::RecordStore* store,
                                protocol::Watch watch);
 

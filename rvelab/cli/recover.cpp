@@ -1,4 +1,4 @@
-// rvelab recover: a record file from the journal that a stopped or killed run left. Declared in commands.hpp.
+// rvelab recover: a record file from the journal that a stopped or killed run left.
 #include <unistd.h>
 
 #include <filesystem>
@@ -29,7 +29,7 @@ void run_recover(const Arguments& arguments) {
     throw InputError(arguments.file + ": no such file, and no " + journal_path +
                      "; give the record file of a run, with or without \".journal\" beside it");
   }
-  // The lock keeps a run away from the file that is written here; elsewhere a running test may be copied.
+  // The lock prevents a run from writing the same file. A copy elsewhere may be made while the test runs.
   std::unique_ptr<io::Journal> lock;
   if (!elsewhere && std::filesystem::exists(journal_path)) lock = std::make_unique<io::Journal>(journal_path);
   const io::RecordJournal journal = io::read_record_journal(journal_path);
@@ -49,18 +49,18 @@ void run_recover(const Arguments& arguments) {
 
 }  // namespace
 
-void add_recover(CLI::App& app) {
+Command recover_command() {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("recover", "Make a record file from what a stopped or killed run left");
-  command->add_option("file", arguments->file, "record file R.h5 of the run; R.h5.journal stands beside it")
-      ->required();
-  command->add_option("-o,--output", arguments->output, "record file to write; else R.h5 itself");
-  command->add_flag("--force", arguments->force, "overwrite the output");
-  command->add_flag("--json", arguments->json, "print one JSON object");
-  command->footer(
-      "The journal stays: `rvelab run --resume` goes on from it.\n"
-      "Examples:\n  rvelab recover R.h5\n  rvelab recover R.h5 -o so_far.h5");
-  command->callback([arguments] { run_recover(*arguments); });
+  Command command{"recover", "Make a record file from what a stopped or killed run left"};
+  command.add("file", arguments->file, "record file R.h5 of the run, beside its R.h5.journal").required();
+  command.add("-o,--output", arguments->output, "record file to write; default: R.h5 itself");
+  command.add("--force", arguments->force, "overwrite an existing file");
+  command.add_json(arguments->json);
+  command.notes =
+      "The journal is kept: `rvelab run --resume` continues from it.\n"
+      "Examples:\n  rvelab recover R.h5\n  rvelab recover R.h5 -o so_far.h5";
+  command.run = [arguments] { run_recover(*arguments); };
+  return command;
 }
 
 }  // namespace rvelab::cli

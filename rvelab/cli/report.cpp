@@ -11,13 +11,12 @@
 namespace rvelab::cli {
 namespace {
 
-/// One value on one line: text without quotation marks, numbers with 9 digits.
+/// One value on one line: text without quotation marks, numbers with six digits.
 std::string on_one_line(const Json& value) {
   if (value.is_string()) return io::printable(value.get<std::string>());
   if (value.is_number_float()) {
     if (std::isnan(value.get<double>())) return "-";
     std::ostringstream text;
-    text.precision(9);
     text << value.get<double>();
     return text.str();
   }

@@ -12,14 +12,14 @@ namespace rvelab::cli {
 
 using Json = nlohmann::ordered_json;
 
-/// Results of a command, in the order in which they were added. Numbers keep every bit (up to 17 digits); NaN, which
-/// is what is not defined, and infinities are null in JSON, and NaN is "-" in the listing. Arrays are row-major.
+/// Results of a command, in the order in which they were added. JSON keeps every bit of a number; the listing shows six
+/// digits. NaN means not defined: null in JSON, "-" in the listing. Arrays are row-major.
 class Listing {
  public:
   /// `value`: number, text, boolean, array or object. `unit` stands in the listing only ("" for none); JSON keys end in
   /// their unit.
   void add(const std::string& key, Json value, const std::string& unit = "");
-  /// A line that only the one form or the other has.
+  /// A line of the listing only, or of JSON only.
   void add_to_text(const std::string& key, const std::string& text) { lines_.push_back({key, text, "", Form::text}); }
   void add_to_json(const std::string& key, Json value) { lines_.push_back({key, std::move(value), "", Form::json}); }
   /// A number that may not be defined: where it is NaN, `why` stands in its place in the listing, and in the object
@@ -43,13 +43,13 @@ class Listing {
   Json undefined_ = Json::object();  ///< reasons by key
 };
 
-/// One line on standard error, "rvelab: text", for what is no error and no result.
+/// A remark or warning: one line on standard error, "rvelab: text".
 void tell(const std::string& text);
 
 /// A matrix as an array of rows.
 Json row_major(const Eigen::MatrixXd& matrix);
 
-/// What the numbers of a specimen are to each other, and the two that show a wrong unit at once.
+/// Proportions of a specimen, and the two quantities that reveal a wrong unit.
 struct Sizes {
   Proportions proportions;
   double mean_diameter = 0;  ///< m
@@ -57,7 +57,7 @@ struct Sizes {
 };
 Sizes sizes_of(const Network& network);
 
-/// They as one line of the listing, as keys of their own in JSON.
+/// Adds them: one line in the listing, a key for each in JSON.
 void add_proportions(Listing& listing, const Sizes& sizes);
 /// Those keys.
 Json as_json(const Sizes& sizes);

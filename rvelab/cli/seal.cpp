@@ -1,5 +1,4 @@
-// rvelab seal: takes over a file that another program has changed, or one of an earlier version, with a checksum.
-// Declared in commands.hpp.
+// rvelab seal: accepts a file that another program has changed, or one of an early version, and adds a checksum.
 #include <memory>
 #include <string>
 
@@ -31,22 +30,22 @@ void run_seal(const Arguments& arguments) {
 
 }  // namespace
 
-void add_seal(CLI::App& app) {
+Command seal_command() {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app.add_subcommand("seal", "Take over a file that another program changed, with a new checksum");
-  command->add_option("file", arguments->file, "specimen or record file, changed or made by another program")
-      ->required();
-  command->add_option("-o,--output", arguments->output, "file to write, the same with a checksum")->required();
-  command->add_flag("--force", arguments->force, "overwrite the output");
-  command->add_flag("--json", arguments->json, "print one JSON object");
-  command->footer(
-      "rvelab's files end in a checksum, and a file whose bytes do not fit it is refused. A program that opens\n"
-      "one for writing takes the checksum away. If the change is meant, this command reads the file with care, as\n"
-      "far as rvelab knows it, and writes all of it anew. It cannot tell a change that is meant from damage: look\n"
-      "at the result.\n"
+  Command command{"seal", "Accept a file that another program has changed: write it with a new checksum"};
+  command.add("file", arguments->file, "specimen or record file, changed or made by another program").required();
+  command.add("-o,--output", arguments->output, "file to write, the same with a checksum").required();
+  command.add("--force", arguments->force, "overwrite an existing file");
+  command.add_json(arguments->json);
+  command.notes =
+      "Files of rvelab end in a checksum; a file whose bytes do not match it is refused. A program that opens such a\n"
+      "file for writing removes the checksum. If you meant the change, seal reads what rvelab knows of the file, "
+      "checks\n"
+      "it and writes it anew. It cannot tell an intended change from damage, so inspect the result.\n"
       "Example:\n"
-      "  rvelab seal edited.h5 -o S.h5");
-  command->callback([arguments] { run_seal(*arguments); });
+      "  rvelab seal edited.h5 -o S.h5";
+  command.run = [arguments] { run_seal(*arguments); };
+  return command;
 }
 
 }  // namespace rvelab::cli

@@ -1,5 +1,4 @@
-// rvelab study: a test over a grid of settings, errors against the best-resolved run and against cost. Declared in
-// commands.hpp.
+// rvelab study: a test over a grid of settings, errors against the best-resolved run and against cost.
 #include <unistd.h>
 
 #include <algorithm>
@@ -52,14 +51,14 @@ std::string text_of(const std::string& path) {
   return {std::istreambuf_iterator<char>(input), {}};
 }
 
-/// A path of a study as it is called from the present folder.
+/// A path in a study file, relative to the present folder.
 std::string from_folder_of(const std::string& study, const std::string& path) {
   return (fs::path(study).parent_path() / path).string();
 }
 
 bool is_path(const std::string& name) { return name.find('/') != std::string::npos || name.ends_with(".toml"); }
 
-/// The study file, or a new study of a protocol, before the options of the command line.
+/// The study file, or a new study of a protocol, before the options of the command line are added.
 Loaded loaded(const std::string& name) {
   Loaded found;
   const std::string installed = is_path(name) ? "" : installed_study(name);
@@ -76,7 +75,7 @@ Loaded loaded(const std::string& name) {
   if (found.study.protocol_text.empty()) {
     const std::string& named = found.study.protocol;
     found.path = protocol_path(named.empty() ? what : is_path(named) ? from_folder_of(what, named) : named);
-    protocol::read_protocol(found.path);  // its mistakes are told with its lines
+    protocol::read_protocol(found.path);  // reports its mistakes with their lines
     found.study.protocol_text = text_of(found.path);
     found.inputs.push_back(found.path);
   }
@@ -84,7 +83,7 @@ Loaded loaded(const std::string& name) {
   return found;
 }
 
-/// Options stand over what a study file says: a key that is varied there takes the values given here.
+/// Options override the study file: a key that is varied there takes the values given here.
 void add_options(study::Study& study, const StudyArguments& arguments) {
   const auto append = [](auto& list, const auto& more) { list.insert(list.end(), more.begin(), more.end()); };
   append(study.settings, arguments.settings);
@@ -159,7 +158,7 @@ std::optional<StudyFolder> folder_for(const StudyArguments& arguments, const Loa
 
 void tell_failures(const study::StudySummary& summary, const study::Study& study) {
   const auto one = [&](const study::PointSummary& point, const std::string& name) {
-    if (!point.failure.empty()) tell(name + ": something could not be carried out: " + point.failure);
+    if (!point.failure.empty()) tell(name + ": could not be carried out: " + point.failure);
   };
   one(summary.reference, "reference");
   for (std::size_t k = 0; k < summary.points.size(); ++k) {
@@ -167,8 +166,8 @@ void tell_failures(const study::StudySummary& summary, const study::Study& study
   }
   if (summary.not_at_rest == 0) return;
   tell(std::to_string(summary.not_at_rest) + " of " + std::to_string(summary.reference.increments) +
-       " answers of the reference did not come to rest at an unbalanced ratio of " +
-       in_words(study.relaxation.unbalanced) + " in " + std::to_string(study.relaxation.max_steps) +
+       " answers of the reference did not reach an unbalanced ratio of " + in_words(study.relaxation.unbalanced) +
+       " in " + std::to_string(study.relaxation.max_steps) +
        " sub-steps (study.relax_unbalanced, study.relax_max_steps)");
 }
 
@@ -198,8 +197,8 @@ void run_study(const StudyArguments& arguments) {
   if (!pieces.complete) {
     tell("stopped by " + signal_name() + " with " + std::to_string(pieces.by_name.size()) + " of " +
          std::to_string(study::planned_pieces(study, prepared)) + " pieces complete; " +
-         (folder ? "go on with --resume" : "they are not kept without -o"));
-    throw Stopped(128 + signal_received());
+         (folder ? "continue with --resume" : "they are not kept without -o"));
+    throw Exit(128 + signal_received());
   }
   const auto summary = study::summary_of(study, prepared, pieces);
   const std::string json = as_json(study, summary).dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -219,45 +218,46 @@ void run_study(const StudyArguments& arguments) {
 
 }  // namespace
 
-void add_study(CLI::App& app) {
+Command study_command() {
   auto arguments = std::make_shared<StudyArguments>();
-  CLI::App* command = app.add_subcommand("study", "Run a test over a grid of settings: error against run time");
-  const auto list = [&](const char* name, std::vector<std::string>& place, const char* help) {
-    command->add_option(name, place, help)->expected(1)->allow_extra_args(false)->take_all();
-  };
+  Command command{"study", "Run a test over a grid of settings: error against run time"};
   command
-      ->add_option("test", arguments->what,
-                   "PROTOCOL.toml or STUDY.toml, or the name of an installed one:\nbiaxial; tolerance, damping, "
-                   "time_step, record_density")
-      ->required();
-  command->add_option("specimen", arguments->specimens, "specimens; else those of the study");
-  list("--vary", arguments->vary, "KEY=v1,v2,...; several: all combinations");
-  list("--reference", arguments->reference, "KEY=value of the best-resolved run, which the others are held against");
-  list("--set", arguments->settings, "KEY=value of every run");
-  command->add_option("--repeat", arguments->repeats, "whole paths a grid point and specimen; 0: none (1)")
-      ->check(CLI::Range(0L, 10'000L));
+      .add("test", arguments->what,
+           "PROTOCOL.toml or STUDY.toml, or the name of an installed one:\nbiaxial; tolerance, damping, time_step, "
+           "record_density")
+      .required();
+  command.add("specimen", arguments->specimens, "specimens; default: those of the study");
+  command.add("--vary", arguments->vary, "KEY=v1,v2,...; given several times: all combinations");
+  command.add("--reference", arguments->reference, "KEY=value of the reference, the best-resolved run");
+  command.add("--set", arguments->settings, "KEY=value of every run");
+  command.add("--repeat", arguments->repeats, "whole paths for each grid point and specimen, default 1; 0: none")
+      .between(0, 10'000);
   command
-      ->add_option("--increments", arguments->increments,
-                   "increments a grid point and specimen, each from\na state of the best-resolved path; 0: none (300)")
-      ->check(CLI::Range(0L, 1'000'000L));
-  command->add_option("-o,--output", arguments->folder, "folder for study.toml, study.csv, study.json and pieces/");
-  command->add_option("--threads", arguments->threads, "else as many as there are cores")->check(CLI::Range(1u, 4096u));
-  CLI::Option* force = command->add_flag("--force", arguments->force, "start anew in a folder that holds a study");
-  command->add_flag("--resume", arguments->resume, "go on with a study that was stopped")->excludes(force);
-  command->add_flag("--json", arguments->json, "print one JSON object");
-  command->footer(
-      "The reference runs the path once. From states spread evenly over it each grid point makes the increment that\n"
-      "the reference made; its error is that of the stress against the reference's answer from the same state, which\n"
-      "at dt = 0 is relaxed, over the mean pressure. Whole paths differ by per cents between runs one bit apart, so\n"
-      "their measures are means over --repeat paths, all but the first with positions moved by 1e-10 of the radius.\n"
-      "FOLDER/study.toml holds the study: `rvelab study FOLDER/study.toml` runs it\n"
-      "again. The number of threads changes no bit but those of times. rvelab/study/README.md says more.\n"
+      .add("--increments", arguments->increments,
+           "increments for each grid point and specimen, default 300;\neach starts from a state of the reference path; "
+           "0: none")
+      .between(0, 1'000'000);
+  command.add("-o,--output", arguments->folder, "folder for study.toml, study.csv, study.json and pieces/");
+  command.add_threads(arguments->threads, "default: one per core");
+  command.add("--force", arguments->force, "start anew in a folder that holds a study");
+  command.add("--resume", arguments->resume, "continue a study that was stopped").not_with("--force");
+  command.add_json(arguments->json);
+  command.notes =
+      "The reference runs the path once. From states spread evenly over this path, each grid point makes the "
+      "increment\n"
+      "that the reference made from there. Its error is the difference of the two stresses over the mean pressure; at\n"
+      "dt = 0 the reference's answer is relaxed first. Whole paths differ by some per cent between runs that start "
+      "one\n"
+      "bit apart, so their results are means over --repeat paths; all but the first start with positions moved by\n"
+      "1e-10 of the radius. FOLDER/study.toml holds the study: `rvelab study FOLDER/study.toml` runs it again. The\n"
+      "number of threads changes times, and no other bit. More: rvelab/study/README.md.\n"
       "Examples:\n"
       "  rvelab study tolerance S.h5 -o F\n"
       "  rvelab study biaxial S.h5 --vary solver.relative_tolerance=0.1,0.01 -o F \\\n"
       "    --reference solver.target_unbalanced=3e-5 --reference solver.fixed_substeps=4000\n"
-      "  rvelab study F/study.toml -o F --resume");
-  command->callback([arguments] { run_study(*arguments); });
+      "  rvelab study F/study.toml -o F --resume";
+  command.run = [arguments] { run_study(*arguments); };
+  return command;
 }
 
 }  // namespace rvelab::cli

@@ -13,9 +13,9 @@ class StudyFolder {
  public:
   enum class Existing { refuse, overwrite, resume };
 
-  /// Takes the folder, made if it is not there, for a study, whose names of specimens count from the present folder.
-  /// resume: what is there must be the same study; overwrite: its pieces and results go. InputError: the folder cannot
-  /// be used, a result would replace an input or, refused, is there already, or another study is.
+  /// Prepares the folder for a study, whose specimens are named relative to the present folder; makes it if missing.
+  /// resume: it must hold the same study; overwrite: removes pieces and results. InputError: the folder cannot be used,
+  /// holds another study, or a result would replace an input or, with `refuse`, an existing file.
   StudyFolder(const std::string& path, const study::Study& study, Existing existing,
               const std::vector<std::string>& inputs);
 

@@ -71,7 +71,7 @@ std::string cell(const std::string& text) {
   return quoted + "\"";
 }
 
-/// Columns as wide as their widest cell, the first ones to the left.
+/// Columns as wide as their widest cell; the first `to_the_left` are aligned left.
 std::string aligned(const std::vector<std::vector<std::string>>& rows, std::size_t to_the_left) {
   std::vector<std::size_t> widths;
   for (const auto& row : rows) {
@@ -98,7 +98,7 @@ std::string rounded(double value, int digits = 3) {
   return text.str();
 }
 
-/// Mean and standard error, the mean to the digits that the error leaves certain.
+/// Mean and standard error.
 std::string with_error(double mean, double error) {
   if (std::isnan(error)) return rounded(mean, 5);
   return rounded(mean, 5) + " +- " + rounded(error, 2);
@@ -112,7 +112,7 @@ std::vector<std::string> name_cells(const Study& study, const PointSummary& poin
   return cells;
 }
 
-/// The varied keys without the tables they are in, where that leaves them apart.
+/// The varied keys, without their tables if they differ without them.
 std::vector<std::string> short_keys(const Study& study) {
   std::vector<std::string> keys, names;
   for (const auto& one : study.grid) {
@@ -123,7 +123,7 @@ std::vector<std::string> short_keys(const Study& study) {
   return apart ? names : keys;
 }
 
-/// A long name on two lines, broken behind the underscore nearest to its middle; a short one on the second.
+/// Breaks a long name after the underscore nearest to its middle; a short name is the second line.
 std::pair<std::string, std::string> on_two_lines(const std::string& name) {
   constexpr std::size_t longest = 15;
   std::size_t best = 0;
@@ -182,7 +182,7 @@ std::string increments_table(const Study& study, const StudySummary& summary) {
                });
 }
 
-/// The cost of paths is shown where no increments show one.
+/// Shows the cost of paths if there are no increments, whose table shows theirs.
 std::string paths_table(const Study& study, const StudySummary& summary) {
   std::vector<std::string> header;
   for (const study::Measure& measure : study::measures()) header.push_back(measure.name);

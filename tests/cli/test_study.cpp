@@ -84,7 +84,7 @@ TEST_CASE("a stopped study goes on with --resume, another study is refused, noth
     }
     child.signal(SIGINT);
     CHECK(child.wait() == 130);
-    CHECK_THAT(bytes_of(here / "err"), Contains("stopped by Ctrl-C with ") && Contains("go on with --resume"));
+    CHECK_THAT(bytes_of(here / "err"), Contains("stopped by Ctrl-C with ") && Contains("continue with --resume"));
   }
   const std::size_t kept = pieces_in(here, "F");
   CHECK(kept > 0);
