@@ -125,6 +125,10 @@ void one_large_increment(const Case& asked, Verdict& verdict) {
   const Response response = tested.apply(increment, asked("dt"));
   tested.check_laws();
   if (friction == 0) return compare_with_images(tested.rve(), 4, asked.tolerance, verdict);
+  bool coulomb = true;
+  for (const ContactState& c : tested.rve().network().contacts)
+    coulomb = coulomb && c.tangential_force.norm() <= c.friction * c.normal_force * (1 + 1e-12);
+  verdict.law("|f_t| <= mu f_n", coulomb);
   verdict.law("grains do not pull", tested.pressure() >= 0);
   const double p = std::max(tested.pressure(), 1e-3 * tested.rve().reference_pressure());
   verdict.law("torques balance as forces do", largest(response.stress - response.stress.transpose()),

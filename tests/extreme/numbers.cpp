@@ -176,7 +176,7 @@ void no_velocity(Rve& rve, Verdict& verdict) {
     const auto before = rve.save();
     set(rve);
     verdict.refusal("a velocity that is no number", Refused{text, rve.save() == before});
-    verdict.law("the grain is named (" + text + ")", contains(text, "grain " + std::to_string(rve.size() - 1)));
+    verdict.law("the grain is named (" + text + ")", contains(text, "grain " + std::to_string(rve.size())));
   }
 }
 

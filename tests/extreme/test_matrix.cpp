@@ -22,10 +22,19 @@ using Catch::Matchers::Contains;
 
 namespace {
 
+/// Those of a second or more of processor time are left to "the matrix".
+bool is_long(const Case& one) {
+  for (const char* name :
+       {"stiffness/ellipses/", "size/contrast/", "deformation/shear_large_increments/", "deformation/gas_and_back/",
+        "rate/ellipses/", "rate/flow/", "gas/energy/", "gas/energy_resolved/", "numbers/kernels_ellipses/"})
+    if (one.name.starts_with(name)) return true;
+  return false;
+}
+
 void expect_quick_cases(const std::string& topic) {
   std::vector<Case> cases;
   for (const Case& one : read_matrix())
-    if (one.quick && one.name.starts_with(topic + "/")) cases.push_back(one);
+    if (one.quick && !is_long(one) && one.name.starts_with(topic + "/")) cases.push_back(one);
   REQUIRE_FALSE(cases.empty());
   for (const Result& result : run(cases)) {
     CAPTURE(result.asked->name, result.answer.status, result.seconds);
@@ -106,9 +115,7 @@ TEST_CASE("energy closes and momentum is kept at any rate", "[extreme][matrix]")
 TEST_CASE("two grains part at the speed that energy and restitution give", "[extreme][matrix]") {
   expect_quick_cases("impact");
 }
-TEST_CASE("a gas keeps its energy over two hundred collisions a grain", "[extreme][matrix]") {
-  expect_quick_cases("gas");
-}
+TEST_CASE("a gas keeps its energy", "[extreme][matrix]") { expect_quick_cases("gas"); }
 TEST_CASE("units, denormals, what is no number, and instruction sets", "[extreme][matrix]") {
   expect_quick_cases("numbers");
 }

@@ -38,16 +38,16 @@ TEST_CASE("NaN in a specimen is refused with the grain's name", "[extreme]") {
       spoil(s);
       return refusal<InputError>([&] { Rve rve(s); });
     };
-    CHECK(contains(refused([&](Specimen& s) { s.grains.position[5][1] = bad; }), "grain 5"));
-    CHECK(contains(refused([&](Specimen& s) { s.grains.velocity[5][0] = bad; }), "grain 5"));
-    CHECK(contains(refused([&](Specimen& s) { s.grains.spin[5][2] = bad; }), "grain 5"));
-    CHECK(contains(refused([&](Specimen& s) { s.grains.radius[5] = bad; }), "grain 5: radius"));
+    CHECK(contains(refused([&](Specimen& s) { s.grains.position[5][1] = bad; }), "grain 6"));
+    CHECK(contains(refused([&](Specimen& s) { s.grains.velocity[5][0] = bad; }), "grain 6"));
+    CHECK(contains(refused([&](Specimen& s) { s.grains.spin[5][2] = bad; }), "grain 6"));
+    CHECK(contains(refused([&](Specimen& s) { s.grains.radius[5] = bad; }), "grain 6: radius"));
     CHECK(contains(refused([&](Specimen& s) { s.cell.lattice(0, 1) = bad; }), "lattice"));
     CHECK(contains(refused([&](Specimen& s) { s.cell.lattice(2, 2) = bad; }), "lattice"));
     CHECK(contains(refused([&](Specimen& s) { s.cell.rotation(1, 0) = bad; }), "rotation"));
     CHECK(contains(refused([&](Specimen& s) { s.materials[0].density = bad; }), "density"));
     CHECK(contains(refused([&](Specimen& s) { s.materials[0].normal_stiffness = bad; }), "normal_stiffness"));
-    CHECK(contains(refused([&](Specimen& s) { s.contacts = {{0, 1, {}, {bad, 0, 0}, {0, 0, 0}, 0}}; }), "grains 0"));
+    CHECK(contains(refused([&](Specimen& s) { s.contacts = {{0, 1, {}, {bad, 0, 0}, {0, 0, 0}, 0}}; }), "grains 1"));
   }
 }
 
@@ -59,11 +59,11 @@ TEST_CASE("A specimen that is none is refused", "[extreme]") {
     return refusal<InputError>([&] { Rve rve(s); });
   };
   CHECK(contains(refused([](Specimen& s) { s.grains = {}; }), "0 grains"));
-  CHECK(contains(refused([](Specimen& s) { s.grains.radius[3] = 0; }), "grain 3: radius 0 m; it must be > 0"));
-  CHECK(contains(refused([](Specimen& s) { s.grains.radius[3] = -1; }), "grain 3: radius -1 m; it must be > 0"));
+  CHECK(contains(refused([](Specimen& s) { s.grains.radius[3] = 0; }), "grain 4: radius 0 m; it must be > 0"));
+  CHECK(contains(refused([](Specimen& s) { s.grains.radius[3] = -1; }), "grain 4: radius -1 m; it must be > 0"));
   CHECK(contains(refused([](Specimen& s) { s.grains.radius.pop_back(); }), "differ in length"));
   CHECK(contains(refused([](Specimen& s) { s.grains.id[3] = 2; }), "ids must ascend"));
-  CHECK(contains(refused([](Specimen& s) { s.grains.material[3] = 1; }), "grain 3: material 1"));
+  CHECK(contains(refused([](Specimen& s) { s.grains.material[3] = 1; }), "grain 4: material 1"));
   CHECK(contains(refused([](Specimen& s) { s.cell.lattice(1, 0) = 0.1; }), "upper triangular"));
   CHECK(contains(refused([](Specimen& s) { s.cell.lattice(1, 1) = 0; }), "positive diagonal"));
   CHECK(contains(refused([](Specimen& s) { s.cell.dimension = 3; }), "dimension 3"));

@@ -32,8 +32,7 @@ Tested::Tested(const Specimen& specimen, Verdict& verdict)
       verdict_(&verdict),
       volume_(rve_.cell().volume()),
       overlap_limit_(specimen.solver.max_overlap_ratio),
-      grains_(rve_.size()),
-      sticks_(specimen.contact.law == Law::linear_adhesive) {}
+      grains_(rve_.size()) {}
 
 template <class Increment>
 Response Tested::made(const Increment& increment, double dt) {
@@ -72,10 +71,6 @@ void Tested::check_laws() {
     finite = finite && grain.position.allFinite() && grain.velocity.allFinite() && grain.spin.allFinite();
   verdict_->law("all places, velocities and stresses are numbers", finite);
   verdict_->law("overlap within the limit", largest_overlap_ratio(network), overlap_limit_);
-  bool coulomb = true;
-  for (const ContactState& c : network.contacts)
-    coulomb = coulomb && (sticks_ || c.tangential_force.norm() <= c.friction * c.normal_force * (1 + 1e-12));
-  verdict_->law("|f_t| <= mu f_n", coulomb);
   if (!quasi_static_ || increments_ == 0) return;
   const Matrix3 stress = rve_.stress();
   const double p = std::abs(mean_pressure(stress, network.dimension()));

@@ -22,8 +22,7 @@ class Tested {
   Response apply(const MixedTarget& target, double dt);
 
   /// The laws of any loading so far: volume = V0 det F (round-off of `increments` products), no grain lost, every place
-  /// and stress a number, overlaps within the limit, |f_t| <= mu f_n without adhesion, and
-  /// |sigma - sigma^T| <= 1.5 unbalanced p + 1e-9 p at dt = 0.
+  /// and stress a number, overlaps within the limit, and |sigma - sigma^T| <= 1.5 unbalanced p + 1e-9 p at dt = 0.
   void check_laws();
 
   Rve& rve() { return rve_; }
@@ -38,7 +37,6 @@ class Tested {
   Verdict* verdict_;
   double volume_, overlap_limit_;
   std::size_t grains_;
-  bool sticks_;
   long increments_ = 0, substeps_ = 0;
   bool quasi_static_ = true;
   Response last_;
