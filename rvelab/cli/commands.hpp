@@ -28,6 +28,5 @@ void add_export(CLI::App& app);
 void add_keys(CLI::App& app);
 void add_protocols(CLI::App& app);
 void add_bench(CLI::App& app);
-void add_stress_test(CLI::App& app);
 
 }  // namespace rvelab::cli

@@ -111,7 +111,6 @@ int answer(int argc, char** argv) {
   rvelab::cli::add_protocols(app);
   rvelab::cli::add_keys(app);
   rvelab::cli::add_bench(app);
-  rvelab::cli::add_stress_test(app);
   app.footer(
       "rvelab SUBCOMMAND --help says more, with examples. A first test:\n"
       "  rvelab pack pack_dense -o dense.h5\n"

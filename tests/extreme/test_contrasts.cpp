@@ -58,15 +58,6 @@ TEST_CASE("Stiffness times 8192 at the same strains gives 8192 times the stress,
   CHECK(soft.grain_steps() == stiff.grain_steps());
 }
 
-TEST_CASE("Stiffness times 10,000 at the same strains gives 10,000 times the stress", "[extreme]") {
-  Rve soft(stiffened(1)), stiff(stiffened(1e4));
-  CHECK(largest(1e4 * soft.stress() - stiff.stress()) <= 1e-10 * 1e9);
-  for (int k = 0; k < 10; ++k) {  // the first 0.02 % strain from rest: solver/README.md
-    const Matrix3 a = soft.apply(biaxial(2e-5), 0).stress, b = stiff.apply(biaxial(2e-5), 0).stress;
-    CHECK(largest(1e4 * a - b) <= 1e-10 * 1e9);
-  }
-}
-
 TEST_CASE("Grains 10,000 times stiffer are brought to the same stress, held there and sheared", "[extreme]") {
   const double p0 = 1e5;
   Rve rve(stiffened(1e4));

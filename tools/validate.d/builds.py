@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""The stress test of two builds, say with and without optimisation: the same outcomes and the same bits.
+"""The cases of tests/extreme of two builds, say with and without optimisation: the same outcomes and the same bits.
 
-Both files are what `rvelab stress-test --json` wrote. A hash is that of the stresses after every increment of a case.
+Both files are what test_extreme wrote (RVELAB_JSON). A hash is that of the stresses after every increment of a case.
 
     tools/validate.d/builds.py release.json other.json
 """

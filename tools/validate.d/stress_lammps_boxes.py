@@ -1,4 +1,4 @@
-"""Cases of the stress test that deform a box of grains, put to LAMMPS; see stress_lammps.py."""
+"""Cases of tests/extreme that deform a box of grains, put to LAMMPS; see stress_lammps.py."""
 import math
 
 import numpy

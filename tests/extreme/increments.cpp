@@ -1,33 +1,35 @@
 // Many: a million increments, a hundred thousand rotations, thousands of cycles. Round-off and pace must not add up.
-// Declared in experiments.hpp.
+//
 #include <Eigen/LU>
 #include <cmath>
 
 #include "rvelab/measure/measures.hpp"
-#include "rvelab/stress_test/experiments.hpp"
-#include "rvelab/stress_test/prepared.hpp"
-#include "rvelab/stress_test/tested.hpp"
+#include "tests/extreme/matrix.hpp"
+#include "tests/extreme/specimens.hpp"
+#include "tests/extreme/tested.hpp"
 
-namespace rvelab::stress_test {
+namespace rvelab::test {
+
+namespace {
 
 void rotated_often(const Case& asked, Verdict& verdict) {
   const int d = int(asked("dimension"));
   Rve rve(usual(d, d == 3));
+  rve.apply(1e-3 * shear_direction(d), 0);  // slip in the history
   const Specimen before = rve.specimen();
   const Matrix3 stress = rve.stress();
   Matrix3 turned = Matrix3::Identity();
   Random random(3);
   for (long k = 0; k < long(asked("rotations")); ++k) {
     const Vector3 axis = d == 2 ? Vector3(0, 0, 1) : Vector3(random(-1, 1), random(-1, 1), random(-1, 1));
-    const Matrix3 rotation = rotation_about(axis, random(-3, 3));
+    const Matrix3 rotation = rotation_about(axis, k % 2 == 0 ? random(-3, 3) : random(-1e-5, 1e-5));
     // What the RVE is given is I + dH, which round-off makes differ from the rotation by an ulp.
     const Matrix3 increment = rotation - Matrix3::Identity();
     rve.apply(increment, 0);
     turned = renormalised((Matrix3::Identity() + increment) * turned);
   }
   const Specimen after = rve.specimen();
-  verdict.law("grains bitwise where they were in the cell frame",
-              before.grains.position == after.grains.position && before.cell.lattice == after.cell.lattice);
+  verdict.law("the state is bitwise what it was in the cell frame", same_in_cell_frame(before, after));
   const Matrix3 expected = turned * stress * turned.transpose();
   verdict.law("the stress has turned with the cell", largest(rve.stress() - expected) / largest(stress),
               asked.tolerance);
@@ -81,4 +83,14 @@ void there_and_back(const Case& asked, Verdict& verdict) {
                     asked.tolerance);
 }
 
-}  // namespace rvelab::stress_test
+}  // namespace
+
+std::vector<Experiment> increment_experiments() {
+  return {{"increments/rotations", rotated_often, {{"dimension", 3}, {"rotations", 1e5}}},
+          {"increments/small", many_small_increments, {{"grains", 10}, {"increments", 1e6}, {"strain", 1e-9}}},
+          {"increments/there_and_back",
+           there_and_back,
+           {{"grains", 16}, {"strain", 1e-6}, {"cycles", 5000}, {"parts", 1}}}};
+}
+
+}  // namespace rvelab::test

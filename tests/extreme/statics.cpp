@@ -1,11 +1,11 @@
 // Quasi-static loading of what is no equilibrium any more: a right answer or a flag, never a silent wrong one.
-// Declared in experiments.hpp.
+//
 #include "rvelab/measure/measures.hpp"
-#include "rvelab/stress_test/experiments.hpp"
-#include "rvelab/stress_test/prepared.hpp"
-#include "rvelab/stress_test/tested.hpp"
+#include "tests/extreme/matrix.hpp"
+#include "tests/extreme/specimens.hpp"
+#include "tests/extreme/tested.hpp"
 
-namespace rvelab::stress_test {
+namespace rvelab::test {
 
 namespace {
 
@@ -27,8 +27,6 @@ Specimen propped(double friction) {
   s.state = {};
   return s;
 }
-
-}  // namespace
 
 void made_frictionless(const Case& asked, Verdict& verdict) {
   // Without the friction that held it the packing falls in; what it falls to depends on the pace, so the run at the
@@ -64,25 +62,43 @@ void asked_for_tension(const Case& asked, Verdict& verdict) {
   Tested tested(s, verdict);
   const Matrix3 stress = tested.rve().stress();
   const double p = mean_pressure(stress, d);
+  // Pulled along one axis with the other stresses held, or all round.
+  const bool all_round = asked("all_round") != 0;
   MixedTarget target;
   for (int i = 0; i < d; ++i)
     for (int k = i; k < d; ++k) {
       const Matrix3 component = entry(i, k, 0.5) + entry(k, i, 0.5);
       if (i == k)
-        target.rows.push_back({Matrix3::Zero(), component, 0.5 * p - stress(i, i), p});
+        target.rows.push_back({Matrix3::Zero(), component, i == 0 || all_round ? 0.5 * p - stress(i, i) : 0, p});
       else
         target.rows.push_back({component, Matrix3::Zero(), 0, 0});
     }
   const double dt = asked("critical_steps") * tested.rve().critical_time_step();
   if (dt == 0) {
-    verdict.refusal("a tension that grains cannot carry", refused(tested.rve(), [&](Rve& r) { r.apply(target, 0); }));
+    const auto found = refused(tested.rve(), [&](Rve& r) { r.apply(target, 0); });
+    verdict.refusal("a tension that grains cannot carry", found);
+    const std::string text = found ? found->text : "";
+    verdict.law("the refusal says why (" + text + ")",
+                contains(text, "the grains cannot carry it") &&
+                    (contains(text, "the cell sheared by") || (all_round && contains(text, "none touches another"))));
     return;
   }
   const Response response = tested.apply(target, dt);
   tested.check_laws();
   verdict.law("a tension that grains cannot carry is said not to be held", !response.report.target_held);
+  verdict.law("the error of the held stress is beyond its tolerance", response.report.held_error > target.tolerance);
+  verdict.law("it ends, in sub-steps", double(response.report.substeps), 5e6);
   verdict.law("no tension in the answer, of p", std::max(0.0, response.stress.diagonal().maxCoeff()) / p,
               asked.tolerance);
 }
 
-}  // namespace rvelab::stress_test
+}  // namespace
+
+std::vector<Experiment> statics_experiments() {
+  return {{"statics/frictionless",
+           made_frictionless,
+           {{"prepared_with", 1}, {"friction", 0}, {"shear", 1}, {"strain", 1e-4}, {"increments", 1}}},
+          {"statics/tension", asked_for_tension, {{"dimension", 2}, {"critical_steps", 0}, {"all_round", 1}}}};
+}
+
+}  // namespace rvelab::test

@@ -1,5 +1,5 @@
 // Far: shear to ten thousand, stretch by e^10, compression until it is refused, expansion to a gas. Frictionless
-// grains, so that the stress is known from their places at any moment. Declared in experiments.hpp.
+// grains, so that the stress is known from their places at any moment.
 #include <algorithm>
 #include <cmath>
 
@@ -7,28 +7,20 @@
 #include "rvelab/grains/uniform.hpp"
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/pack/scatter.hpp"
-#include "rvelab/stress_test/experiments.hpp"
-#include "rvelab/stress_test/prepared.hpp"
-#include "rvelab/stress_test/tested.hpp"
+#include "tests/extreme/matrix.hpp"
+#include "tests/extreme/specimens.hpp"
+#include "tests/extreme/tested.hpp"
 
-namespace rvelab::stress_test {
+namespace rvelab::test {
 
 namespace {
 
 /// Soft, frictionless, few enough that a far way is a short run.
 Specimen soft(const Cell& cell, int count, int dimension) {
-  Grains grains;
-  for (const double r : spread_radii(count, 0.2)) {
-    grains.id.push_back(std::int64_t(grains.id.size()));
-    grains.radius.push_back(r);
-    grains.material.push_back(0);
-    grains.position.push_back(Vector3::Zero());
-    grains.velocity.push_back(Vector3::Zero());
-    grains.spin.push_back(Vector3::Zero());
-  }
+  const std::vector<double> radii = spread_radii(count, 0.2);
+  Specimen s = specimen_of(cell, std::vector<Vector3>(radii.size(), Vector3::Zero()), radii);
   Uniform uniform(3);
-  if (!pack::scatter(cell, 1.0, grains, uniform)) throw Error("no free place is left for a grain");
-  Specimen s = specimen_of(cell, grains.position, grains.radius);
+  if (!pack::scatter(cell, 1.0, s.grains, uniform)) throw Error("no free place is left for a grain");
   s.solver.min_height = 0.5;
   s.solver.max_overlap_ratio = 0.9;
   return jammed(s, pressure_at(dimension, 50));
@@ -47,12 +39,6 @@ Cell cell_for(int count, int dimension, bool oriented) {
   return dimension == 2 ? kraynik_reinelt_cell(volume, 0.5) : cubic_field_cell(volume);
 }
 
-void compare_with_hand(const Tested& tested, double tolerance, Verdict& verdict) {
-  const Matrix3 expected = stress_by_hand(tested.rve().specimen(), stiffness, 4);
-  verdict.law("stress = sum over all images", largest(tested.rve().stress() - expected),
-              tolerance * std::max(largest(expected), 1.0));
-}
-
 /// `total` times the same increment; laws and stress are looked at twenty times on the way.
 void go(Tested& tested, const Matrix3& increment, long total, double tolerance, Verdict& verdict) {
   const long look_every = std::max(1L, total / 20);
@@ -60,11 +46,9 @@ void go(Tested& tested, const Matrix3& increment, long total, double tolerance, 
     tested.apply(increment, 0);
     if (k % look_every != 0) continue;
     tested.check_laws();
-    compare_with_hand(tested, tolerance, verdict);
+    compare_with_images(tested.rve(), 4, tolerance, verdict);
   }
 }
-
-}  // namespace
 
 void sheared_far(const Case& asked, Verdict& verdict) {
   const int d = int(asked("dimension")), count = int(asked("grains"));
@@ -119,7 +103,7 @@ void gas_and_back(const Case& asked, Verdict& verdict) {
     size = next;
     tested.check_laws();
   }
-  compare_with_hand(tested, 1e-10, verdict);
+  compare_with_images(tested.rve(), 4, 1e-10, verdict);
   // Packed anew by another way, frictionless grains are about as dense; a network pressed at the wrong pace is not.
   // 64 of them scatter by less than a percent in the volume at which they jam, and p/(kn/t) is the strain beyond it.
   tested.rve().relax(1e-6, 1'000'000);
@@ -129,16 +113,53 @@ void gas_and_back(const Case& asked, Verdict& verdict) {
 
 void one_large_increment(const Case& asked, Verdict& verdict) {
   const int d = int(asked("dimension"));
-  Tested tested(jammed_linear(d, int(asked("grains")), asked("kappa"), 0.5, 0), verdict);
+  const double friction = asked("friction");
+  Tested tested(jammed_linear(d, int(asked("grains")), asked("kappa"), 0.5, friction), verdict);
+  if (friction > 0) tested.apply(1e-3 * shear_direction(d), 0);  // slip in the history
   const Matrix3 increment =
       asked("shear") * shear_direction(d) + isotropic(d, asked("expansion")) - isotropic(d, asked("compression"));
   if (asked("compression") > 0) {
-    const auto refusal = refused(tested.rve(), [&](Rve& rve) { rve.apply(increment, 0); });
+    const auto refusal = refused(tested.rve(), [&](Rve& rve) { rve.apply(increment, asked("dt")); });
     return verdict.refusal("compression far beyond the overlap limit", refusal);
   }
-  tested.apply(increment, 0);
+  const Response response = tested.apply(increment, asked("dt"));
   tested.check_laws();
-  compare_with_hand(tested, asked.tolerance, verdict);
+  if (friction == 0) return compare_with_images(tested.rve(), 4, asked.tolerance, verdict);
+  bool coulomb = true;
+  for (const ContactState& c : tested.rve().network().contacts)
+    coulomb = coulomb && c.tangential_force.norm() <= c.friction * c.normal_force * (1 + 1e-12);
+  verdict.law("|f_t| <= mu f_n", coulomb);
+  verdict.law("grains do not pull", tested.pressure() >= 0);
+  const double p = std::max(tested.pressure(), 1e-3 * tested.rve().reference_pressure());
+  verdict.law("torques balance as forces do", largest(response.stress - response.stress.transpose()),
+              response.report.unbalanced_ratio * p);
 }
 
-}  // namespace rvelab::stress_test
+}  // namespace
+
+std::vector<Experiment> deformation_experiments() {
+  return {{"deformation/shear",
+           sheared_far,
+           {{"dimension", 2}, {"grains", 4}, {"gamma", 100}, {"increment", 0.1}, {"substeps", 0}}},
+          {"deformation/stretch",
+           stretched_far,
+           {{"dimension", 2}, {"grains", 32}, {"hencky", 10}, {"increment", 0.01}, {"oriented", 1}, {"substeps", 0}}},
+          {"deformation/compression",
+           compressed_until_refused,
+           {{"dimension", 2}, {"hertz", 0}, {"increment", 0.01}, {"rate", 0}}},
+          {"deformation/gas_and_back",
+           gas_and_back,
+           {{"dimension", 2}, {"kappa", 1e3}, {"expansion", 0.3}, {"increments", 50}}},
+          {"deformation/one_increment",
+           one_large_increment,
+           {{"dimension", 2},
+            {"grains", 64},
+            {"kappa", 100},
+            {"friction", 0},
+            {"dt", 0},
+            {"compression", 0},
+            {"shear", 0.5},
+            {"expansion", 0}}}};
+}
+
+}  // namespace rvelab::test

@@ -1,20 +1,18 @@
 // Two grains meet, in free flight before and after: speeds, energy and overlap are known from the contact law. The
 // approach takes a few contact times, with phases so that the contact begins anywhere within a step.
-#include "rvelab/stress_test/impacts.hpp"
+#include "tests/extreme/impacts.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "rvelab/measure/measures.hpp"
-#include "rvelab/stress_test/experiments.hpp"
-#include "rvelab/stress_test/specimens.hpp"
-#include "rvelab/stress_test/tested.hpp"
+#include "tests/extreme/matrix.hpp"
+#include "tests/extreme/specimens.hpp"
+#include "tests/extreme/tested.hpp"
 
-namespace rvelab::stress_test {
+namespace rvelab::test {
 
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 /// Two grains of radius 1 and one material that come together along x. `stiffness`: N/m, or Young's modulus in Pa.
 Specimen pair_of_grains(int dimension, bool hertz, double contact_stiffness) {
@@ -35,21 +33,6 @@ double law_constant(const Specimen& s) {
   const double nu = s.materials[0].poisson_ratio;
   return 4.0 / 3 * s.materials[0].young_modulus / (2 * (1 - nu * nu)) * std::sqrt(0.5);
 }
-
-}  // namespace
-
-Impact impact_of(bool hertz, double constant, double reduced_mass, double speed) {
-  if (!hertz) return {speed * std::sqrt(reduced_mass / constant), pi * std::sqrt(reduced_mass / constant)};
-  const double overlap = std::pow(1.25 * reduced_mass * speed * speed / constant, 0.4);
-  return {overlap, 2.943275 * overlap / speed};
-}
-
-double constant_for(bool hertz, double overlap, double reduced_mass, double speed) {
-  return hertz ? 1.25 * reduced_mass * speed * speed / std::pow(overlap, 2.5)
-               : reduced_mass * speed * speed / (overlap * overlap);
-}
-
-namespace {
 
 /// Speed of separation over that of approach, one approach phase. NaN while they still touch, or have gone through.
 double rebound(Specimen s, double speed, double phase, Verdict& verdict) {
@@ -77,8 +60,6 @@ Specimen stiff_pair(const Case& asked) {
   return s;
 }
 
-}  // namespace
-
 void elastic_rebound(const Case& asked, Verdict& verdict) {
   const Specimen s = stiff_pair(asked);
   const int phases = int(asked("phases"));
@@ -92,6 +73,7 @@ void restitution(const Case& asked, Verdict& verdict) {
   const double e = asked("restitution");
   s.damping.dashpot = Dashpot::restitution;
   s.damping.restitution = e;
+  s.damping.no_tension = asked("no_tension") != 0;
   const int phases = int(asked("phases"));
   for (int k = 0; k < phases; ++k)
     verdict.law("got over asked restitution, less one",
@@ -133,7 +115,7 @@ void impact_too_hard(const Case& asked, Verdict& verdict) {
   const bool hertz = asked("hertz") != 0;
   const double speed = 1;
   for (int k = 0; k < 20; ++k) {
-    Specimen s = pair_of_grains(3, hertz, 1e7);
+    Specimen s = pair_of_grains(int(asked("dimension")), hertz, 1e7);
     const double overlap = asked("overlap_over_limit") * s.solver.max_overlap_ratio;
     s.contact.law = hertz ? Law::hertz_given : Law::linear_given;
     s.solver.time_step_factor = asked("time_step_factor");
@@ -148,4 +130,27 @@ void impact_too_hard(const Case& asked, Verdict& verdict) {
   }
 }
 
-}  // namespace rvelab::stress_test
+}  // namespace
+
+std::vector<Experiment> impact_experiments() {
+  return {{"impact/rebound",
+           elastic_rebound,
+           {{"dimension", 3}, {"hertz", 0}, {"speed", 0.1}, {"phases", 20}, {"time_step_factor", 0.7}}},
+          {"impact/restitution",
+           restitution,
+           {{"dimension", 3},
+            {"hertz", 0},
+            {"restitution", 0.5},
+            {"no_tension", 0},
+            {"speed", 0.1},
+            {"phases", 20},
+            {"time_step_factor", 0.7}}},
+          {"impact/third_contact",
+           restitution_beside_contact,
+           {{"hertz", 0}, {"restitution", 0.5}, {"phases", 50}, {"time_step_factor", 0.7}}},
+          {"impact/too_hard",
+           impact_too_hard,
+           {{"dimension", 3}, {"hertz", 1}, {"overlap_over_limit", 2}, {"time_step_factor", 0.7}}}};
+}
+
+}  // namespace rvelab::test

@@ -1,4 +1,4 @@
-#include "rvelab/stress_test/verdict.hpp"
+#include "tests/extreme/verdict.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -6,17 +6,15 @@
 #include <cstdio>
 #include <limits>
 
-namespace rvelab::stress_test {
+namespace rvelab::test {
 
 const char* name(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::right:
-      return "right";
-    case Outcome::refused:
-      return "refused";
-    default:
-      return "WRONG";
-  }
+  return outcome == Outcome::right ? "right" : outcome == Outcome::refused ? "refused" : "WRONG";
+}
+
+std::uint64_t hashed(std::uint64_t hash, std::uint64_t bits) {
+  for (int byte = 0; byte < 8; ++byte) hash = (hash ^ (bits >> 8 * byte & 0xff)) * 1099511628211u;
+  return hash;
 }
 
 bool names_remedy(const std::string& message) {
@@ -43,11 +41,7 @@ void Verdict::agreement(const std::string& what, double measured, double allowed
   agreements_.take(what, measured, allowed);
 }
 
-void Verdict::bits(std::uint64_t value) {
-  std::uint64_t hash = hash_.value_or(14695981039346656037u);  // FNV-1a, 64 bits
-  for (int byte = 0; byte < 8; ++byte) hash = (hash ^ (value >> 8 * byte & 0xff)) * 1099511628211u;
-  hash_ = hash;
-}
+void Verdict::bits(std::uint64_t value) { hash_ = hashed(hash_.value_or(empty_hash), value); }
 
 void Verdict::bits(const Matrix3& value) {
   for (int k = 0; k < 9; ++k) bits(std::bit_cast<std::uint64_t>(value(k / 3, k % 3)));
@@ -98,4 +92,4 @@ Answer Verdict::answer(const Refused& refused, bool may_refuse) const {
   return answer;
 }
 
-}  // namespace rvelab::stress_test
+}  // namespace rvelab::test

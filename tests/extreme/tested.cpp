@@ -1,4 +1,4 @@
-#include "rvelab/stress_test/tested.hpp"
+#include "tests/extreme/tested.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -6,9 +6,9 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/measure/measures.hpp"
-#include "rvelab/stress_test/specimens.hpp"
+#include "tests/extreme/specimens.hpp"
 
-namespace rvelab::stress_test {
+namespace rvelab::test {
 
 namespace {
 
@@ -34,38 +34,26 @@ Tested::Tested(const Specimen& specimen, Verdict& verdict)
       overlap_limit_(specimen.solver.max_overlap_ratio),
       grains_(rve_.size()) {}
 
-template <class Call>
-Response Tested::guarded(const Call& call) {
+template <class Increment>
+Response Tested::made(const Increment& increment, double dt) {
   std::vector<std::byte> before;
   if (grains_ <= snapshots_up_to) before = rve_.save();
   try {
-    return call();
+    last_ = rve_.apply(increment, dt);
   } catch (const Error& error) {
     throw Refused{error.what(), grains_ > snapshots_up_to || rve_.save() == before};
   }
-}
-
-void Tested::take(const Response& response, double dt) {
-  volume_ *= (Matrix3::Identity() + response.displacement_gradient).determinant();
+  volume_ *= (Matrix3::Identity() + last_.displacement_gradient).determinant();
   ++increments_;
-  substeps_ += response.report.substeps;
+  substeps_ += last_.report.substeps;
   quasi_static_ = dt == 0;
-  last_ = response;
-  verdict_->note(response.report);
-  verdict_->bits(response.stress);
+  verdict_->note(last_.report);
+  verdict_->bits(last_.stress);
+  return last_;
 }
 
-Response Tested::apply(const Matrix3& displacement_gradient, double dt) {
-  const Response response = guarded([&] { return rve_.apply(displacement_gradient, dt); });
-  take(response, dt);
-  return response;
-}
-
-Response Tested::apply(const MixedTarget& target, double dt) {
-  const Response response = guarded([&] { return rve_.apply(target, dt); });
-  take(response, dt);
-  return response;
-}
+Response Tested::apply(const Matrix3& displacement_gradient, double dt) { return made(displacement_gradient, dt); }
+Response Tested::apply(const MixedTarget& target, double dt) { return made(target, dt); }
 
 double Tested::pressure() const { return mean_pressure(rve_.stress(), rve_.cell().dimension); }
 
@@ -91,4 +79,4 @@ void Tested::check_laws() {
                 1.5 * rve_.unbalanced_ratio() * floor + 1e-9 * floor);
 }
 
-}  // namespace rvelab::stress_test
+}  // namespace rvelab::test

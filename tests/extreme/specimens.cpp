@@ -1,17 +1,43 @@
-#include "rvelab/stress_test/prepared.hpp"
+#include "tests/extreme/specimens.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "rvelab/error.hpp"
 #include "rvelab/measure/measures.hpp"
-#include "rvelab/stress_test/tested.hpp"
+#include "tests/extreme/tested.hpp"
 
-namespace rvelab::stress_test {
+namespace rvelab::test {
+
+Specimen cubic_crystal(int n) {
+  const double spacing = 1.99, side = n * spacing;
+  std::vector<Vector3> positions;
+  positions.reserve(std::size_t(n) * n * n);
+  for (int c = 0; c < n; ++c)
+    for (int b = 0; b < n; ++b)
+      for (int a = 0; a < n; ++a) positions.push_back((Vector3(a, b, c).array() + 0.5 - 0.5 * n) * spacing);
+  return specimen_of(cell_of(3, side, side, side), positions, std::vector<double>(positions.size(), 1.0),
+                     material(stiffness, 0.5 * stiffness, 0.5));
+}
+
+Matrix3 cubic_crystal_stress(const Vector3& strain) {
+  const Vector3 spacing = 1.99 * (Vector3::Ones() + strain);
+  return Matrix3((-stiffness * (2 - spacing.array()) * spacing.array() / spacing.prod()).matrix().asDiagonal());
+}
+
+bool same_in_cell_frame(const Specimen& a, const Specimen& b) {
+  const auto same = [](const Contact& x, const Contact& y) {
+    return x.i == y.i && x.j == y.j && x.image == y.image && x.tangential_force == y.tangential_force &&
+           x.rolling_moment == y.rolling_moment && x.last_root_overlap == y.last_root_overlap;
+  };
+  return a.cell.lattice == b.cell.lattice && a.grains.position == b.grains.position &&
+         a.grains.velocity == b.grains.velocity && a.grains.spin == b.grains.spin &&
+         std::equal(a.contacts.begin(), a.contacts.end(), b.contacts.begin(), b.contacts.end(), same);
+}
 
 double pressure_at(int dimension, double kappa) { return stiffness / (kappa * (dimension == 2 ? 0.5 : 2.0)); }
 
-double pressure_of_level(const Specimen& s, double kappa) {
+double pressure_of_ratio(const Specimen& s, double kappa) {
   if (s.contact.law == Law::linear_given) {
     const double length = s.cell.dimension == 2 ? s.cell.lattice(2, 2) : 2.0;
     return s.materials[0].normal_stiffness / (kappa * length);
@@ -63,10 +89,10 @@ Specimen jammed(const Specimen& loose, double pressure) {
   for (Material& m : s.materials) m.friction = 0;
   s.solver.fixed_substeps = 100;
   Rve rve(s);
-  // Grains are pressed together at a moderate stiffness level first: at a high one any increment is too large.
+  // Grains are pressed together at a moderate stiffness ratio first: at a high one any increment is too large.
   const double power = loose.contact.law == Law::linear_given ? 1 : 2.0 / 3;
-  bring_together(rve, std::max(pressure, pressure_of_level(loose, 1e3)));
-  bring_to(rve, pressure, power, std::pow(pressure_of_level(loose, 1), power));
+  bring_together(rve, std::max(pressure, pressure_of_ratio(loose, 1e3)));
+  bring_to(rve, pressure, power, std::pow(pressure_of_ratio(loose, 1), power));
   rve.relax(1e-8, 50'000);
   rve.zero_velocities();
   rve.set_materials(loose.materials);
@@ -93,7 +119,7 @@ Specimen jammed_hertz(int dimension, int count, double young_modulus, double poi
   grain.friction = friction;
   Specimen loose = gas(dimension, spread_radii(count, 0.3), dimension == 2 ? 0.4 : 0.25, 5, grain);
   loose.contact.law = Law::hertz_mindlin;
-  if (pressure > pressure_of_level(loose, 100)) loose.solver.max_overlap_ratio = 0.9;
+  if (pressure > pressure_of_ratio(loose, 100)) loose.solver.max_overlap_ratio = 0.9;
   return jammed(loose, pressure);
 }
 
@@ -137,4 +163,10 @@ void compare_with_resolved(const Specimen& specimen, const Path& path, double to
   verdict.agreement("stress against the resolved run, of p", (tested.rve().stress() - fine).norm() / p, allowed);
 }
 
-}  // namespace rvelab::stress_test
+void compare_with_images(const Rve& rve, int range, double tolerance, Verdict& verdict) {
+  const Matrix3 expected = stress_by_hand(rve.specimen(), stiffness, range);
+  verdict.law("stress = sum over all images", largest(rve.stress() - expected),
+              tolerance * std::max(largest(expected), 1.0));
+}
+
+}  // namespace rvelab::test

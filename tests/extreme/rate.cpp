@@ -1,15 +1,15 @@
 // Physical rates, dt > 0: from creeping to faster than the grains can follow. Energy and momentum are the judges.
-// Declared in experiments.hpp.
+//
 #include <algorithm>
 #include <cmath>
 
 #include "rvelab/measure/measures.hpp"
-#include "rvelab/stress_test/energy.hpp"
-#include "rvelab/stress_test/experiments.hpp"
-#include "rvelab/stress_test/prepared.hpp"
-#include "rvelab/stress_test/tested.hpp"
+#include "tests/extreme/energy.hpp"
+#include "tests/extreme/matrix.hpp"
+#include "tests/extreme/specimens.hpp"
+#include "tests/extreme/tested.hpp"
 
-namespace rvelab::stress_test {
+namespace rvelab::test {
 
 namespace {
 
@@ -29,8 +29,6 @@ Specimen with_damping(Specimen s, const Case& asked) {
   s.solver.ledger = true;
   return s;
 }
-
-}  // namespace
 
 void sheared_at_rate(const Case& asked, Verdict& verdict) {
   const int d = int(asked("dimension"));
@@ -95,7 +93,9 @@ void slow_is_static(const Case& asked, Verdict& verdict) {
   Rve resolved(still);
   const double p = moving.pressure(), steps = asked("critical_steps");
   const Matrix3 increment = 2e-4 * biaxial_direction(2);
-  moving.apply(increment, steps * moving.rve().critical_time_step());
+  const Report report = moving.apply(increment, steps * moving.rve().critical_time_step()).report;
+  verdict.law("every critical step is a sub-step at least", double(report.substeps) >= steps);
+  verdict.law("inertial number", report.inertial_number, 1e-5);
   resolved.apply(increment, 0);
   moving.check_laws();
   verdict.law("stress against quasi-static loading, of p", largest(moving.rve().stress() - resolved.stress()) / p,
@@ -108,7 +108,7 @@ void flow_under_stress(const Case& asked, Verdict& verdict) {
   const double gamma = asked("gamma") / increments;
   Specimen s = jammed_linear(2, 200, 1e4, 0.5, 0.5);
   s.damping.dashpot = Dashpot::restitution;
-  s.damping.restitution = 0.5;
+  s.damping.restitution = asked("restitution");
   Tested tested(s, verdict);
   const double p = tested.pressure(), rate = rate_of(asked("inertial_number"), tested.rve());
   const auto target_from = [&](const Matrix3& stress) {
@@ -141,11 +141,10 @@ void flow_under_stress(const Case& asked, Verdict& verdict) {
   verdict.agreement("scatter of the held stress, of p", scatter, 10 * asked.tolerance);
   // The time that truly passes, counted in steps of known length: a wait for the stress would make the rate another.
   Specimen counting = tested.rve().specimen();
-  const long steps = 40;
-  counting.solver.fixed_time_step = gamma / rate / double(steps);
+  counting.solver.fixed_time_step = gamma / rate / 39.7;
   while (counting.solver.fixed_time_step > 0.7 * tested.rve().critical_time_step())
     counting.solver.fixed_time_step /= 2;
-  const double wanted = gamma / rate / counting.solver.fixed_time_step;
+  const double wanted = std::ceil(gamma / rate / counting.solver.fixed_time_step);
   Rve clock(counting);
   stress = clock.stress();
   double made = 0;
@@ -157,4 +156,31 @@ void flow_under_stress(const Case& asked, Verdict& verdict) {
   verdict.law("true over asked time, less one", std::abs(made / (50 * wanted) - 1), 1e-9);
 }
 
-}  // namespace rvelab::stress_test
+}  // namespace
+
+std::vector<Experiment> rate_experiments() {
+  return {{"rate/shear",
+           sheared_at_rate,
+           {{"dimension", 2},
+            {"hertz", 0},
+            {"inertial_number", 1e-3},
+            {"default_steps", 20000},
+            {"friction", 0.5},
+            {"kt_over_kn", 0.5},
+            {"rolling_stiffness", 0},
+            {"local_damping", 0},
+            {"restitution", 1},
+            {"density", 2650},
+            {"kappa", 1e3},
+            {"time_step_factor", 0.7},
+            {"aspect_ratio", 1}}},
+          {"rate/shock",
+           shock_compression,
+           {{"dimension", 3}, {"hertz", 1}, {"mach", 0.1}, {"strain", 0.06}, {"time_step_factor", 0.7}}},
+          {"rate/slow", slow_is_static, {{"local_damping", 0.3}, {"critical_steps", 1e5}}},
+          {"rate/flow",
+           flow_under_stress,
+           {{"dimension", 2}, {"inertial_number", 1e-2}, {"restitution", 0.5}, {"gamma", 4}, {"increments", 800}}}};
+}
+
+}  // namespace rvelab::test

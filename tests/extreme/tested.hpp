@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "rvelab/solver/rve.hpp"
-#include "rvelab/stress_test/verdict.hpp"
+#include "tests/extreme/verdict.hpp"
 
-namespace rvelab::stress_test {
+namespace rvelab::test {
 
 /// Runs a call that must be refused: the refusal, or none if it was carried out. What is no rvelab::Error goes on.
 std::optional<Refused> refused(Rve& rve, const std::function<void(Rve&)>& call);
@@ -28,13 +28,10 @@ class Tested {
   Rve& rve() { return rve_; }
   const Rve& rve() const { return rve_; }
   double pressure() const;
-  long substeps() const { return substeps_; }
-  double unbalanced() const { return last_.report.unbalanced_ratio; }
 
  private:
-  template <class Call>
-  Response guarded(const Call& call);
-  void take(const Response& response, double dt);
+  template <class Increment>
+  Response made(const Increment& increment, double dt);
 
   Rve rve_;
   Verdict* verdict_;
@@ -45,4 +42,4 @@ class Tested {
   Response last_;
 };
 
-}  // namespace rvelab::stress_test
+}  // namespace rvelab::test

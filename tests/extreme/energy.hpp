@@ -7,7 +7,7 @@
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/solver/rve.hpp"
 
-namespace rvelab::stress_test {
+namespace rvelab::test {
 
 /// Of the moment that the places belong to, J: kinetic energy is the mean of the half steps before and behind it, the
 /// later one made by a copy. `rate` is the velocity gradient, 1/s, laboratory frame. With one half step alone the
@@ -54,4 +54,4 @@ class EnergyBalance {
   double residual_ = 0, scale_ = 0;
 };
 
-}  // namespace rvelab::stress_test
+}  // namespace rvelab::test

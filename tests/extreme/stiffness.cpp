@@ -1,13 +1,13 @@
 // From soft grains to rigid ones at dt = 0: the solver's own pace must find what a well-resolved run finds, however
-// unlike the stiffnesses of normal, tangential and rolling springs are. Declared in experiments.hpp.
+// unlike the stiffnesses of normal, tangential and rolling springs are.
 #include <cmath>
 
 #include "rvelab/error.hpp"
-#include "rvelab/stress_test/experiments.hpp"
-#include "rvelab/stress_test/prepared.hpp"
-#include "rvelab/stress_test/tested.hpp"
+#include "tests/extreme/matrix.hpp"
+#include "tests/extreme/specimens.hpp"
+#include "tests/extreme/tested.hpp"
 
-namespace rvelab::stress_test {
+namespace rvelab::test {
 
 namespace {
 
@@ -18,8 +18,6 @@ Path path_of(const Case& asked, int dimension, double kappa) {
   path.increments = int(asked("increments"));
   return path;
 }
-
-}  // namespace
 
 void agrees_with_resolved_run(const Case& asked, Verdict& verdict) {
   const int d = int(asked("dimension"));
@@ -50,7 +48,7 @@ void hertz_agrees_with_resolved_run(const Case& asked, Verdict& verdict) {
   const int d = int(asked("dimension"));
   const double young = asked("young_modulus"), nu = asked("poisson_ratio"), p = asked("pressure");
   const Specimen s = jammed_hertz(d, int(asked("grains")), young, nu, asked("friction"), p);
-  const double kappa = std::pow(pressure_of_level(s, 1) / p, 2.0 / 3);
+  const double kappa = std::pow(pressure_of_ratio(s, 1) / p, 2.0 / 3);
   compare_with_resolved(s, path_of(asked, d, kappa), asked.tolerance, verdict);
 }
 
@@ -85,4 +83,38 @@ void refuses_orphaned_history(const Case&, Verdict& verdict) {
   if (!text.empty()) verdict.law("the refusal names the contact (" + text + ")", text.find("grains ") != text.npos);
 }
 
-}  // namespace rvelab::stress_test
+}  // namespace
+
+std::vector<Experiment> stiffness_experiments() {
+  return {{"stiffness/linear",
+           agrees_with_resolved_run,
+           {{"dimension", 2},
+            {"grains", 64},
+            {"kappa", 1e3},
+            {"kt_over_kn", 0.5},
+            {"friction", 0.5},
+            {"rolling_stiffness", 0},
+            {"rolling_friction", 0.1},
+            {"local_damping", 0.3},
+            {"restitution", 1},
+            {"adhesion", 0},
+            {"shear", 0},
+            {"strain_times_kappa", 0.5},
+            {"increments", 10},
+            {"aspect_ratio", 1}}},
+          {"stiffness/hertz",
+           hertz_agrees_with_resolved_run,
+           {{"dimension", 3},
+            {"grains", 64},
+            {"young_modulus", 1e9},
+            {"pressure", 1e5},
+            {"poisson_ratio", 0.2},
+            {"friction", 0.5},
+            {"shear", 0},
+            {"strain_times_kappa", 0.5},
+            {"increments", 10}}},
+          {"stiffness/density", does_not_see_density, {{"dimension", 2}, {"hertz", 0}, {"density", 1}}},
+          {"stiffness/orphaned_history", refuses_orphaned_history, {}}};
+}
+
+}  // namespace rvelab::test

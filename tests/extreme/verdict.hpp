@@ -11,7 +11,7 @@
 
 #include "rvelab/solver/rve.hpp"
 
-namespace rvelab::stress_test {
+namespace rvelab::test {
 
 enum class Outcome {
   right,    ///< did what is asked
@@ -36,12 +36,15 @@ struct Refused {
   bool unchanged = false;  ///< Rve::save() before and after are the same
 };
 
-/// The solver says of itself that what it returns is not what was asked for. One line more when Report has a
-/// `quasi_static`.
+/// The solver says of itself that what it returns is not what was asked for.
 inline bool flagged(const Report& report) { return !report.target_held || !report.quasi_static; }
 
 /// A message that says what to do or what is allowed, not only what is wrong.
 bool names_remedy(const std::string& message);
+
+/// A hash and the next number (FNV-1a, 64 bits).
+constexpr std::uint64_t empty_hash = 14695981039346656037u;
+std::uint64_t hashed(std::uint64_t hash, std::uint64_t bits);
 
 /// Collects what an experiment measures.
 class Verdict {
@@ -76,4 +79,4 @@ class Verdict {
   std::optional<std::uint64_t> hash_;
 };
 
-}  // namespace rvelab::stress_test
+}  // namespace rvelab::test

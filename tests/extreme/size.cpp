@@ -1,47 +1,17 @@
 // How many grains, how unlike, in how thin a cell. Stresses are known from positions alone (frictionless grains, the
 // sum over all images), from a crystal, or from a supercell in which no pair needs more than one image.
-// Declared in experiments.hpp.
 #include <algorithm>
 #include <cmath>
 
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/pack/repeated.hpp"
-#include "rvelab/stress_test/experiments.hpp"
-#include "rvelab/stress_test/prepared.hpp"
-#include "rvelab/stress_test/tested.hpp"
+#include "tests/extreme/matrix.hpp"
+#include "tests/extreme/specimens.hpp"
+#include "tests/extreme/tested.hpp"
 
-namespace rvelab::stress_test {
+namespace rvelab::test {
 
 namespace {
-
-void compare_with_hand(const Rve& rve, int range, double tolerance, Verdict& verdict) {
-  const Matrix3 expected = stress_by_hand(rve.specimen(), stiffness, range);
-  verdict.law("stress = sum over all images", largest(rve.stress() - expected),
-              tolerance * std::max(largest(expected), 1.0));
-}
-
-/// Simple cubic crystal of n^3 spheres of radius 1.
-constexpr double crystal_spacing = 1.99;
-Specimen crystal(int n) {
-  const double side = n * crystal_spacing;
-  std::vector<Vector3> positions;
-  positions.reserve(std::size_t(n) * n * n);
-  for (int c = 0; c < n; ++c)
-    for (int b = 0; b < n; ++b)
-      for (int a = 0; a < n; ++a) positions.push_back((Vector3(a, b, c).array() + 0.5 - 0.5 * n) * crystal_spacing);
-  Specimen s = specimen_of(cell_of(3, side, side, side), positions, std::vector<double>(positions.size(), 1.0),
-                           material(stiffness, 0.5 * stiffness, 0.5));
-  s.solver.fixed_substeps = 3;
-  return s;
-}
-
-/// One contact a face, f = kn (2 - spacing).
-Matrix3 crystal_stress(const Vector3& strain) {
-  const Vector3 spacing = crystal_spacing * (Vector3::Ones() + strain);
-  return Matrix3((-stiffness * (2 - spacing.array()) * spacing.array() / spacing.prod()).matrix().asDiagonal());
-}
-
-}  // namespace
 
 void few_grains(const Case& asked, Verdict& verdict) {
   const int d = int(asked("dimension")), count = int(asked("grains"));
@@ -59,7 +29,7 @@ void few_grains(const Case& asked, Verdict& verdict) {
   for (int k = 0; k < int(asked("increments")); ++k) {
     tested.apply(increment, 0);
     tested.check_laws();
-    compare_with_hand(tested.rve(), 6, asked.tolerance, verdict);
+    compare_with_images(tested.rve(), 6, asked.tolerance, verdict);
   }
 }
 
@@ -71,7 +41,7 @@ void unlike_radii(const Case& asked, Verdict& verdict) {
   loose.solver.max_overlap_ratio = 0.5;
   const Specimen s = jammed(loose, pressure_at(d, 1e3));
   const double p = mean_pressure(Rve(s).stress(), d);
-  compare_with_hand(Rve(s), 1, 1e-10, verdict);
+  compare_with_images(Rve(s), 1, 1e-10, verdict);
   Path path;
   path.direction = shear_direction(d);
   path.strain = 1e-5;
@@ -87,19 +57,12 @@ void grains_in_pores(const Case& asked, Verdict& verdict) {
   const double spacing = 1.95, row = std::sqrt(3.0) / 2 * spacing, small = 1 / asked("ratio");
   const Specimen frame = triangular(2 * side, side, spacing);
   Specimen s = frame;
-  const auto add = [&](const Vector3& place) {
-    s.grains.id.push_back(std::int64_t(s.grains.id.size()));
-    s.grains.radius.push_back(small);
-    s.grains.material.push_back(0);
-    s.grains.position.push_back(place);
-    s.grains.velocity.push_back(Vector3::Zero());
-    s.grains.spin.push_back(Vector3::Zero());
-  };
   for (const Vector3& corner : frame.grains.position)
     for (const double pore : {row * 2 / 3, -row * 2 / 3})  // above and below a disc
       for (int a = -2; a <= 2; ++a)
         for (int b = -2; b <= 2; ++b)
-          if (std::abs(a + b) <= 2) add(corner + Vector3(2.2 * small * (a + 0.5 * b), pore + 1.9 * small * b, 0));
+          if (std::abs(a + b) <= 2)
+            add_grain(s, corner + Vector3(2.2 * small * (a + 0.5 * b), pore + 1.9 * small * b, 0), small);
   Tested tested(s, verdict);
   Specimen moved = frame;
   for (int k = 0; k < 3; ++k) {
@@ -118,13 +81,24 @@ void grains_in_pores(const Case& asked, Verdict& verdict) {
 }
 
 void million_grains(const Case& asked, Verdict& verdict) {
-  const Specimen s = crystal(int(asked("side")));
+  Specimen s = cubic_crystal(int(asked("side")));
+  s.solver.fixed_substeps = 3;
   Tested tested(s, verdict);
   const Vector3 strain(1e-4, 0, -1e-3);
   const Response response = tested.apply(Matrix3(strain.asDiagonal()), 0);
-  const Matrix3 expected = crystal_stress(strain);
+  const Matrix3 expected = cubic_crystal_stress(strain);
   verdict.law("stress of the crystal", largest(response.stress - expected), asked.tolerance * largest(expected));
   tested.check_laws();
+}
+
+/// Whether a pair touches by more than one image, or a grain its own.
+bool several_images(const Network& network) {
+  const auto& contacts = network.contacts;
+  for (std::size_t c = 0; c < contacts.size(); ++c)
+    if (contacts[c].i == contacts[c].j ||
+        (c > 0 && contacts[c - 1].i == contacts[c].i && contacts[c - 1].j == contacts[c].j))
+      return true;
+  return false;
 }
 
 void thin_cell(const Case& asked, Verdict& verdict) {
@@ -141,13 +115,30 @@ void thin_cell(const Case& asked, Verdict& verdict) {
   small.solver.fixed_substeps = 100;
   Tested few(small, verdict), many(pack::repeated(small, {copies, copies, d == 3 ? copies : 1}), verdict);
   const double p = few.pressure();
+  verdict.law("the grains are pressed together", p > 1e4);
+  verdict.law("stress of the supercell at rest, of p", largest(few.rve().stress() - many.rve().stress()) / p, 1e-12);
+  verdict.law("pairs touch by several images", several_images(few.rve().network()));
+  verdict.law("none does in the supercell", !several_images(many.rve().network()));
   // The first 0.02 % strain from rest, over which round-off has not grown (solver/README.md).
   const Matrix3 increment = 5e-6 * biaxial_direction(d) + 1e-5 * shear_direction(d);
   for (int k = 0; k < 10; ++k) {
-    const Matrix3 one = few.apply(increment, 0).stress, all = many.apply(increment, 0).stress;
-    verdict.law("stress of the supercell, of p", largest(one - all) / p, asked.tolerance);
+    const Response one = few.apply(increment, 0), all = many.apply(increment, 0);
+    verdict.law("stress of the supercell, of p", largest(one.stress - all.stress) / p, asked.tolerance);
+    verdict.law("the thin cell is flagged", one.report.cell_thin);
   }
   few.check_laws();
 }
 
-}  // namespace rvelab::stress_test
+}  // namespace
+
+std::vector<Experiment> size_experiments() {
+  return {{"size/few", few_grains, {{"dimension", 2}, {"grains", 3}, {"strain", 1e-3}, {"increments", 20}}},
+          {"size/contrast",
+           unlike_radii,
+           {{"dimension", 2}, {"ratio", 10}, {"large", 4}, {"small", 400}, {"solid_fraction", 0.6}}},
+          {"size/pores", grains_in_pores, {{"side", 8}, {"ratio", 50}}},
+          {"size/million", million_grains, {{"side", 100}}},
+          {"size/thin", thin_cell, {{"dimension", 2}, {"grains", 4}, {"copies", 4}}}};
+}
+
+}  // namespace rvelab::test

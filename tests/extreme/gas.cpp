@@ -1,22 +1,20 @@
 // Gases of grains: energy over many collisions, and cooling against Haff's law (J. Fluid Mech. 134, 1983) with the
 // collision rate of Enskog and Carnahan and Starling (3D) or Henderson (2D), and the a2 of van Noije and Ernst (1998).
-// Declared in experiments.hpp.
+//
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "rvelab/measure/measures.hpp"
-#include "rvelab/stress_test/energy.hpp"
-#include "rvelab/stress_test/experiments.hpp"
-#include "rvelab/stress_test/impacts.hpp"
-#include "rvelab/stress_test/specimens.hpp"
-#include "rvelab/stress_test/tested.hpp"
+#include "tests/extreme/energy.hpp"
+#include "tests/extreme/impacts.hpp"
+#include "tests/extreme/matrix.hpp"
+#include "tests/extreme/specimens.hpp"
+#include "tests/extreme/tested.hpp"
 
-namespace rvelab::stress_test {
+namespace rvelab::test {
 
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 /// Gas of equal discs or spheres of diameter 2 and granular temperature 1 (m^2/s^2 per freedom), and its theory.
 struct HardGas {
@@ -109,8 +107,6 @@ HardGas asked_gas(const Case& asked, double solid_fraction) {
   return {int(asked("dimension")), std::size_t(asked("grains")), solid_fraction};
 }
 
-}  // namespace
-
 void gas_keeps_energy(const Case& asked, Verdict& verdict) {
   const HardGas hard = asked_gas(asked, int(asked("dimension")) == 2 ? 0.4 : 0.25);
   Specimen s = specimen_of(hard, asked("hertz") != 0, 0.02, 7);
@@ -128,8 +124,6 @@ void gas_keeps_energy(const Case& asked, Verdict& verdict) {
   verdict.law("momentum is zero, of sum m |v'|", net_momentum(tested.rve()).norm() / momentum_scale(tested.rve()),
               1e-10);
 }
-
-namespace {
 
 /// Rate of cooling of one gas over Haff's. Kept small: in cells wider than some dozen free paths, vortices grow that
 /// cool no more (Goldhirsch and Zanetti 1993).
@@ -166,8 +160,6 @@ double cooling_rate(const HardGas& hard, const Case& asked, unsigned seed, bool 
   return moment / squares;
 }
 
-}  // namespace
-
 void gas_cools(const Case& asked, Verdict& verdict) {
   // Several small gases: one, with some 1,900 collisions, scatters by 3 %.
   const HardGas hard = asked_gas(asked, asked("solid_fraction"));
@@ -177,4 +169,24 @@ void gas_cools(const Case& asked, Verdict& verdict) {
   verdict.law("rate of cooling over Haff's, less one", std::abs(mean - 1), asked.tolerance);
 }
 
-}  // namespace rvelab::stress_test
+}  // namespace
+
+std::vector<Experiment> gas_experiments() {
+  return {{"gas/energy",
+           gas_keeps_energy,
+           {{"dimension", 2}, {"hertz", 0}, {"grains", 100}, {"collisions", 100}, {"time_step_factor", 0.7}}},
+          {"gas/haff",
+           gas_cools,
+           {{"dimension", 2},
+            {"hertz", 0},
+            {"grains", 256},
+            {"gases", 16},
+            {"ledgers", 2},
+            {"solid_fraction", 0.1},
+            {"restitution", 0.9},
+            {"duration", 3},
+            {"contact_time", 3e-3},
+            {"time_step_factor", 0.7}}}};
+}
+
+}  // namespace rvelab::test
