@@ -1,7 +1,9 @@
 #include "rvelab/keys/table_reader.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <iterator>
 #include <sstream>
 #include <stdexcept>
 
@@ -22,6 +24,11 @@ void refuse_unknown(const toml::source_region& place, const std::string& prefix,
 long line_of(const toml::node& node) { return static_cast<long>(node.source().begin.line); }
 
 std::string written(const toml::node& node) {
+  if (node.is_floating_point()) {  // the library writes 17 digits
+    char shortest[32];
+    const auto end = std::to_chars(std::begin(shortest), std::end(shortest), node.as_floating_point()->get()).ptr;
+    return {shortest, end};
+  }
   std::ostringstream text;
   node.visit([&](const auto& value) { text << value; });
   return shortened(text.str());

@@ -43,8 +43,7 @@ std::string shortest(double value) {
 
 /// A node as what stands behind "=" in an assignment.
 std::string as_value(const toml::node& node) {
-  if (node.is_string()) return node.as_string()->get();
-  return node.is_floating_point() ? shortest(node.as_floating_point()->get()) : keys::written(node);
+  return node.is_string() ? node.as_string()->get() : keys::written(node);
 }
 
 /// A list of texts, which the reader leaves to this file.
