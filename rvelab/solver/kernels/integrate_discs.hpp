@@ -1,4 +1,4 @@
-// The grain loop of discs (kernel_integrate.hpp).
+// The grain loop of discs (integrate.hpp).
 #pragma once
 
 #include "rvelab/contact/damping.hpp"

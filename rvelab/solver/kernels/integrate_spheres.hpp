@@ -1,4 +1,4 @@
-// The grain loop of spheres (kernel_integrate.hpp).
+// The grain loop of spheres (integrate.hpp).
 #pragma once
 
 #include "rvelab/contact/damping.hpp"
