@@ -70,8 +70,8 @@ std::string without_peak(const calibrate::Calibration& calibration) {
     end = std::max(end, std::abs(test.end_strain));
   }
   if (tests.empty()) return "";
-  return tests + ": still rising at the end: no peak; the angle is that of the largest deviator up to a strain of " +
-         percent(end) + "; let the tests go further (to_strain)";
+  return tests + ": still rising at the end: no peak; the angle is that of the largest deviator up to " + percent(end) +
+         " strain; let the tests go further (to_strain)";
 }
 
 /// Why a result is not defined, for each that may not be.

@@ -49,7 +49,7 @@ bool slows_down_at_512_bits() {
 #endif
 }
 
-const InstructionSet& chosen_set() {
+const InstructionSet& widest_set() {
   const auto& sets = instruction_sets();
   const char* wanted = std::getenv("RVELAB_ISA");
   if (wanted == nullptr && slows_down_at_512_bits())
@@ -63,10 +63,19 @@ const InstructionSet& chosen_set() {
   throw InputError(std::string("RVELAB_ISA=") + wanted + " cannot run here; use one of " + names);
 }
 
+/// The slip conventions of other codes are compiled for the baseline and the scalar reference alone (table.hpp).
+const InstructionSet& chosen_set(Slip slip) {
+  const InstructionSet& widest = widest_set();
+  if (slip == Slip::consistent) return widest;
+  const auto& sets = instruction_sets();
+  const InstructionSet &baseline = sets[sets.size() - 2], &scalar = sets.back();
+  return std::string(widest.name) == scalar.name ? scalar : baseline;
+}
+
 }  // namespace
 
 Kernels kernels_for(const KernelConfiguration& key) {
-  const InstructionSet& set = chosen_set();
+  const InstructionSet& set = chosen_set(key.slip);
   Kernels kernels;
   if (key.shape == Shape::disc) {
     set_disc_kernels_shared(key, kernels);

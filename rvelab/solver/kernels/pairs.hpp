@@ -21,11 +21,12 @@ namespace rvelab {
 namespace {
 
 /// What a pair loop is compiled for beside its law.
-template <int W_, bool Rolling_, Slip slip_, bool Dashpot_, bool Advance_, bool Ledger_,
+template <int W_, bool Rolling_, Slip slip_, bool Dashpot_, bool Advance_,
           HertzRadius hertz_radius_ = HertzRadius::equivalent>
 struct PairTraits {
   static constexpr int W = W_;
-  static constexpr bool Rolling = Rolling_, Dashpot = Dashpot_, Advance = Advance_, Ledger = Ledger_;
+  static constexpr bool Rolling = Rolling_, Dashpot = Dashpot_, Advance = Advance_;
+  static constexpr bool Ledger = W == 1 && Advance;  ///< books what contacts lose, where a Dissipation is handed in
   static constexpr Slip slip = slip_;
   static constexpr bool Curvature = hertz_radius_ == HertzRadius::curvature;
 };

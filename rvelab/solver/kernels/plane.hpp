@@ -89,13 +89,15 @@ inline __attribute__((always_inline)) void plane_forces(const StepConstants& c, 
       tangential = touching ? tangential : zero;
       store_as(p.tangential[0] + at, tangential);
       if constexpr (Law::stores_root_overlap) store_as(p.root_overlap + at, root);
-      if constexpr (T::Ledger) {
-        const double last_kt = Law::stores_root_overlap ? p.kt[at] * last_root : kt;
-        book_spring<Law::stores_root_overlap>(SpringStep<V>{before, started, trial, tangential, increment, kt, last_kt},
-                                              touching, dissipation->friction, dissipation->law_loss);
-        if (T::Dashpot && touching)
-          dissipation->dashpot += c.dt * (c_normal * contact.opening * contact.opening + viscous * slip_rate);
-      }
+      if constexpr (T::Ledger)
+        if (dissipation != nullptr) {
+          const double last_kt = Law::stores_root_overlap ? p.kt[at] * last_root : kt;
+          book_spring<Law::stores_root_overlap>(
+              SpringStep<V>{before, started, trial, tangential, increment, kt, last_kt}, touching,
+              dissipation->friction, dissipation->law_loss);
+          if (T::Dashpot && touching)
+            dissipation->dashpot += c.dt * (c_normal * contact.opening * contact.opening + viscous * slip_rate);
+        }
     }
     V total = tangential;
     if constexpr (T::Dashpot) total = touching ? tangential - viscous : zero;
@@ -114,11 +116,12 @@ inline __attribute__((always_inline)) void plane_forces(const StepConstants& c, 
       moment = capped_moment(trial, load_as<V>(p.moment_cap + at) * pushing);
       moment = touching ? moment : zero;
       store_as(p.moment[0] + at, moment);
-      if constexpr (T::Ledger) {
-        const double last_kr = Law::stores_root_overlap ? p.kr[at] * last_root : kr;
-        book_spring<Law::stores_root_overlap>(SpringStep<V>{before, started, trial, moment, increment, kr, last_kr},
-                                              touching, dissipation->rolling, dissipation->law_loss);
-      }
+      if constexpr (T::Ledger)
+        if (dissipation != nullptr) {
+          const double last_kr = Law::stores_root_overlap ? p.kr[at] * last_root : kr;
+          book_spring<Law::stores_root_overlap>(SpringStep<V>{before, started, trial, moment, increment, kr, last_kr},
+                                                touching, dissipation->rolling, dissipation->law_loss);
+        }
     }
 
     V torque_j = contact.lever_j * total, torque_i = contact.lever_i * total;

@@ -12,8 +12,8 @@ void set_disc_kernels_scalar(const KernelConfiguration& key, const char* instruc
 }
 
 void set_disc_kernels_shared(const KernelConfiguration& key, Kernels& kernels) {
-  kernels.pairs_with_losses = pair_kernel_for<Shape::disc, 1, true, true>(key);
-  kernels.evaluate = pair_kernel_for<Shape::disc, 1, false, false>(key);
+  kernels.pairs_with_losses = pair_kernel_for<Shape::disc, 1, true>(key);
+  kernels.evaluate = pair_kernel_for<Shape::disc, 1, false>(key);
 }
 
 }  // namespace rvelab

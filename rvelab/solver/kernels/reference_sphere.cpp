@@ -12,8 +12,8 @@ void set_sphere_kernels_scalar(const KernelConfiguration& key, const char* instr
 }
 
 void set_sphere_kernels_shared(const KernelConfiguration& key, Kernels& kernels) {
-  kernels.pairs_with_losses = pair_kernel_for<Shape::sphere, 1, true, true>(key);
-  kernels.evaluate = pair_kernel_for<Shape::sphere, 1, false, false>(key);
+  kernels.pairs_with_losses = pair_kernel_for<Shape::sphere, 1, true>(key);
+  kernels.evaluate = pair_kernel_for<Shape::sphere, 1, false>(key);
 }
 
 }  // namespace rvelab

@@ -119,14 +119,15 @@ inline __attribute__((always_inline)) void space_forces(const StepConstants& c, 
       tangential = chosen(touching, within_friction<T::Dashpot>(trial, limit, viscous, slip_rate), none);
       store_triple(p.tangential, at, tangential);
       if constexpr (Law::stores_root_overlap) store_as(p.root_overlap + at, root);
-      if constexpr (T::Ledger) {
-        const double last_kt = Law::stores_root_overlap ? p.kt[at] * last_root : kt;
-        book_spring<Law::stores_root_overlap>(
-            SpringStep<Triple<V>>{before, carried, trial, tangential, times(kt * c.dt, slip_rate), kt, last_kt},
-            touching, dissipation->friction, dissipation->law_loss);
-        if (T::Dashpot && touching)
-          dissipation->dashpot += c.dt * (c_normal * opening * opening + viscous * dot(slip_rate, slip_rate));
-      }
+      if constexpr (T::Ledger)
+        if (dissipation != nullptr) {
+          const double last_kt = Law::stores_root_overlap ? p.kt[at] * last_root : kt;
+          book_spring<Law::stores_root_overlap>(
+              SpringStep<Triple<V>>{before, carried, trial, tangential, times(kt * c.dt, slip_rate), kt, last_kt},
+              touching, dissipation->friction, dissipation->law_loss);
+          if (T::Dashpot && touching)
+            dissipation->dashpot += c.dt * (c_normal * opening * opening + viscous * dot(slip_rate, slip_rate));
+        }
     }
     Triple<V> total = tangential;
     if constexpr (T::Dashpot) total = chosen(touching, plus(total, -viscous, slip_rate), none);
@@ -143,12 +144,13 @@ inline __attribute__((always_inline)) void space_forces(const StepConstants& c, 
       const V pushing = (pressing > 0.0) ? pressing : zero;
       const Triple<V> moment = chosen(touching, capped_moment(trial, load_as<V>(p.moment_cap + at) * pushing), none);
       store_triple(p.moment, at, moment);
-      if constexpr (T::Ledger) {
-        const double last_kr = Law::stores_root_overlap ? p.kr[at] * last_root : kr;
-        book_spring<Law::stores_root_overlap>(
-            SpringStep<Triple<V>>{before, carried, trial, moment, times(kr * c.dt, bending), kr, last_kr}, touching,
-            dissipation->rolling, dissipation->law_loss);
-      }
+      if constexpr (T::Ledger)
+        if (dissipation != nullptr) {
+          const double last_kr = Law::stores_root_overlap ? p.kr[at] * last_root : kr;
+          book_spring<Law::stores_root_overlap>(
+              SpringStep<Triple<V>>{before, carried, trial, moment, times(kr * c.dt, bending), kr, last_kr}, touching,
+              dissipation->rolling, dissipation->law_loss);
+        }
     }
 
     const Triple<V> torque = cross(n, total);

@@ -31,41 +31,41 @@ constexpr GrainKernel grain_kernel() {
     return &sphere_grains<T>;
 }
 
-template <Shape shape, int W, bool Advance, bool Ledger, class Law, bool Rolling, bool Dashpot>
+template <Shape shape, int W, bool Advance, class Law, bool Rolling, bool Dashpot>
 PairKernel by_slip(const KernelConfiguration& key) {
   // The conventions of other codes are those of round grains: a specimen of ellipses has no other.
   if constexpr (shape == Shape::ellipse) {
     if constexpr (Law::has_hertz_radius) {
       constexpr auto curvature = HertzRadius::curvature;
       if (key.hertz_radius == curvature)
-        return pair_kernel<shape, Law, PairTraits<W, Rolling, Slip::consistent, Dashpot, Advance, Ledger, curvature>>();
+        return pair_kernel<shape, Law, PairTraits<W, Rolling, Slip::consistent, Dashpot, Advance, curvature>>();
     }
-    return pair_kernel<shape, Law, PairTraits<W, Rolling, Slip::consistent, Dashpot, Advance, Ledger>>();
+    return pair_kernel<shape, Law, PairTraits<W, Rolling, Slip::consistent, Dashpot, Advance>>();
   }
-  switch (key.slip) {
-    case Slip::consistent:
-      return pair_kernel<shape, Law, PairTraits<W, Rolling, Slip::consistent, Dashpot, Advance, Ledger>>();
-    case Slip::full_radius:
-      return pair_kernel<shape, Law, PairTraits<W, Rolling, Slip::full_radius, Dashpot, Advance, Ledger>>();
-    case Slip::full_radius_ratcheting:
-      return pair_kernel<shape, Law, PairTraits<W, Rolling, Slip::full_radius_ratcheting, Dashpot, Advance, Ledger>>();
+  // Without motion there is no slip. The conventions of other codes serve comparison with these and are compiled for
+  // narrow lanes alone (choice.cpp).
+  if constexpr (W <= 2 && (Advance || Dashpot)) {
+    if (key.slip == Slip::full_radius)
+      return pair_kernel<shape, Law, PairTraits<W, Rolling, Slip::full_radius, Dashpot, Advance>>();
+    if (key.slip == Slip::full_radius_ratcheting)
+      return pair_kernel<shape, Law, PairTraits<W, Rolling, Slip::full_radius_ratcheting, Dashpot, Advance>>();
   }
-  return nullptr;
+  return pair_kernel<shape, Law, PairTraits<W, Rolling, Slip::consistent, Dashpot, Advance>>();
 }
 
-template <Shape shape, int W, bool Advance, bool Ledger, class Law>
+template <Shape shape, int W, bool Advance, class Law>
 PairKernel by_features(const KernelConfiguration& key) {
   if (key.rolling)
-    return key.dashpot ? by_slip<shape, W, Advance, Ledger, Law, true, true>(key)
-                       : by_slip<shape, W, Advance, Ledger, Law, true, false>(key);
-  return key.dashpot ? by_slip<shape, W, Advance, Ledger, Law, false, true>(key)
-                     : by_slip<shape, W, Advance, Ledger, Law, false, false>(key);
+    return key.dashpot ? by_slip<shape, W, Advance, Law, true, true>(key)
+                       : by_slip<shape, W, Advance, Law, true, false>(key);
+  return key.dashpot ? by_slip<shape, W, Advance, Law, false, true>(key)
+                     : by_slip<shape, W, Advance, Law, false, false>(key);
 }
 
-template <Shape shape, int W, bool Advance, bool Ledger>
+template <Shape shape, int W, bool Advance>
 PairKernel pair_kernel_for(const KernelConfiguration& key) {
   return with_law(key.law,
-                  [&](auto law) { return by_features<shape, W, Advance, Ledger, typename decltype(law)::Force>(key); });
+                  [&](auto law) { return by_features<shape, W, Advance, typename decltype(law)::Force>(key); });
 }
 
 template <Shape shape, int W, bool Rolling>
@@ -82,7 +82,7 @@ void set_grain_kernels(Kernels& kernels) {
 /// The advancing kernels of one shape at W lanes.
 template <Shape shape, int W>
 void set_kernels(const KernelConfiguration& key, const char* instruction_set, Kernels& kernels) {
-  kernels.pairs = pair_kernel_for<shape, W, true, false>(key);
+  kernels.pairs = pair_kernel_for<shape, W, true>(key);
   if (key.rolling)
     set_grain_kernels<shape, W, true>(kernels);
   else
