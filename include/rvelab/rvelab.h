@@ -31,8 +31,9 @@
  * drained biaxial test of 400 discs, in increments of 1e-3 by Newton's iteration with the tangent, has a peak of 30.4
  * degrees by these and by the tolerances of the specimen, with a ninth of the sub-steps. At dt = 0 a trial also brings
  * the state closer to equilibrium, by up to the tolerance, and a finite difference divides that by its increment h:
- * central ones take h = 1e-5 or more (1e-5: 1 % from the elastic tangent; 1e-6 and below: 7 to 40 %), one-sided ones
- * 1e-4 or more (1e-5: a factor of 1.9). tools/bench/implicit measures all of this. */
+ * central ones take h = 1e-5 or more (1e-5: 0 to 10 % from the elastic tangent; 1e-6: up to 33 %; below: up to 52 %,
+ * and the wrong sign is possible), one-sided ones 1e-4 or more (up to 9 %; 1e-5: up to a factor of 1.9). Of C_xxxx, dense
+ * discs and spheres at rest and after strains of 1e-3 and 1e-2; tools/bench/implicit measures all of this. */
 #ifndef RVELAB_RVELAB_H
 #define RVELAB_RVELAB_H
 

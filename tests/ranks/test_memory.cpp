@@ -1,4 +1,5 @@
 // Ranks whose memory runs out, the first one and the others alike: those of this process work on one thread.
+#include <algorithm>
 #include <functional>
 
 #include "rvelab/pool/rve_state.hpp"
@@ -107,8 +108,11 @@ TEST_CASE("Without memory at any request of any rank a commit, revert or release
     for (const std::int64_t id : ids) states.push_back(pool->at<&pool::Share::save>(id));
     return states;
   };
-  pool->spawn(made, 5, ids.data());
-  const auto before = seen();
+  const auto spawn = [&] {
+    pool->spawn(made, 5, ids.data());
+    std::sort(ids.begin(), ids.end());
+  };
+  spawn();
   trial(*pool, ids, gradients);
   pool->commit(ids);
   const auto committed = seen();
@@ -120,8 +124,9 @@ TEST_CASE("Without memory at any request of any rank a commit, revert or release
     for (long n = 1; !enough; ++n) {
       CAPTURE(ranks, int(memory), int(what), n);
       pool->release(ids);
-      pool->spawn(made, 5, ids.data());
+      spawn();
       trial(*pool, ids, gradients);
+      const auto before = seen();
       const auto call = [&] {
         if (what == release) return pool->release(ids);
         what == commit ? pool->commit(named) : pool->revert(named);
@@ -152,7 +157,7 @@ TEST_CASE("Without memory at any request of any rank a commit, revert or release
       }
       if (what == release) {
         REQUIRE(pool->ids().empty());
-        pool->spawn(made, 5, ids.data());
+        spawn();
       }
     }
     CHECK(refused > 0);
