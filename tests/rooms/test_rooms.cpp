@@ -220,6 +220,22 @@ TEST_CASE("a source without a header of its name says which header declares it")
   }
 }
 
+TEST_CASE("a function of the C interface stands in five files beside its test: ranks pass it on unseen") {
+  std::vector<std::string> files = code_under("rvelab"), found;
+  files.insert(files.end(), {"include/rvelab/rvelab.h", "tools/python/rvelab.py", "tools/python/rvelab_library.py"});
+  for (const std::string& file : files) {
+    const std::string text = text_of(root / file);
+    for (const char* name : {"rvelab_get_info(", "Share::info", " info(std::int64_t", "::info(", "\"get_info\""}) {
+      if (text.find(name) == std::string::npos) continue;
+      found.push_back(file);
+      break;
+    }
+  }
+  std::sort(found.begin(), found.end());
+  CHECK(found == std::vector<std::string>{"include/rvelab/rvelab.h", "rvelab/abi/state_calls.cpp", "rvelab/pool/info.cpp",
+                                          "rvelab/pool/threaded_pool.hpp", "tools/python/rvelab.py"});
+}
+
 TEST_CASE("expected_count is the number of tests that every machine has") {
   std::size_t cases = 1;  // the bench, which is a run of the program
   for (const std::string& file : code_under("tests")) {
