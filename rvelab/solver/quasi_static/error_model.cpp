@@ -86,17 +86,21 @@ void measure_lag(State& s) {
   const FrameSplit still{Matrix3::Identity(), Matrix3::Identity(), true};
   const Matrix3 before = stress_in_lab(s.model(), s.assembly());
   Assembly relaxed = s.assembly();
-  double change = 0;
-  for (int k = 0; k < 2; ++k) {
+  double changes[2];
+  for (double& change : changes) {
     advance(s.model(), relaxed, {still, part, 1, Loading::quasi_static});
-    change = std::max(change, (stress_in_lab(s.model(), relaxed) - before).norm());
+    change = (stress_in_lab(s.model(), relaxed) - before).norm();
   }
+  const double change = std::max(changes[0], changes[1]);
   s.count(2 * part);
   SolverState& control = s.control();
   const double scale = pressure_scale(s), left = s.unbalanced_ratio(balance_of(s.model(), relaxed));
-  control.lag_factor = (change + left_by_rest * left * scale) / (control.unbalanced_ratio * scale);
+  const double margin = control.lag_factor > 0 ? 1 : first_margin;
+  control.lag_factor = margin * (change + left_by_rest * left * scale) / (control.unbalanced_ratio * scale);
   control.lag_steps = 0;
-  control.lag_strain = 0;
+  // A change that grows with time is the beginning of a slow one: estimate_error takes it for that, and it is measured
+  // again soon, as after a turn.
+  control.lag_strain = changes[1] > slow_growth * changes[0] ? 1 : 0;
   control.constraint_ratio = constraint_ratio(s.model(), s.assembly());
 }
 
@@ -121,10 +125,14 @@ void estimate_error(State& s, double allowed, const Judged& increment, Report& r
   if (increment.strain > 0 && lag_is_due(s, report.substeps)) measure_lag(s);
   report.allowed_error = allowed;
   const double scale = pressure_scale(s) * increment.unbalanced_ratio, overlap = overlap_strain(s);
-  const double measured = measured_margin * control.lag_factor * scale * rested_growth(increment.strain, overlap);
-  const double fitted = fitted_margin * error_factor(s) * scale * error_growth(increment.strain, overlap);
   const bool just_measured = control.lag_factor > 0 && control.lag_steps == 0;
-  report.error_estimate = (just_measured ? measured : std::max(measured, fitted)) + increment.more;
+  const double begun = just_measured && control.lag_strain >= 1 ? slow_goes_on : 1;
+  const double measured =
+      begun * measured_margin * control.lag_factor * scale * rested_growth(increment.strain, overlap);
+  const double margin = control.lag_factor > 0 ? fitted_margin : unmeasured_margin;
+  const double fitted = margin * error_factor(s) * scale * error_growth(increment.strain, overlap);
+  const double least = increment.strain > overlap ? least_share_of_long : least_share;
+  report.error_estimate = (just_measured ? measured : std::max(measured, fitted)) + increment.more + least * allowed;
   judge_tolerance(report);
 }
 
@@ -132,7 +140,7 @@ void estimate_way(State& s, double strain, double mean_ratio, Report& report) {
   const double overlaps = strain / overlap_strain(s);
   if (!(overlaps > 1)) return;
   const double way = way_margin * std::sqrt(overlaps) * error_factor(s) * pressure_scale(s) * mean_ratio;
-  report.error_estimate = std::max(report.error_estimate, way);
+  report.error_estimate += way;
   judge_tolerance(report);
 }
 

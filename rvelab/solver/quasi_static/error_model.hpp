@@ -50,7 +50,7 @@ void estimate_error(State& state, double network_change, const Matrix3& stress_b
                     Report& report);
 
 /// An increment beyond the strain of the overlaps, of this mean unbalanced ratio: what it lagged by on its way has slid
-/// contacts, of which its end knows nothing. The estimate is at least that.
+/// contacts, of which its end knows nothing. That is added to the estimate.
 void estimate_way(State& state, double strain, double mean_ratio, Report& report);
 
 }  // namespace rvelab
