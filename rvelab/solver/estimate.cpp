@@ -49,16 +49,20 @@ void Rve::Impl::measure_lag() {
   const FrameSplit still{Matrix3::Identity(), Matrix3::Identity(), true};
   const Matrix3 before = stress_in_lab(fixture, now);
   Assembly rested = now;
-  double change = 0;
-  for (int k = 0; k < 2; ++k) {
+  double changes[2];
+  for (double& change : changes) {
     advance(fixture, rested, {still, part, 1, Loading::quasi_static});
-    change = std::max(change, (stress_in_lab(fixture, rested) - before).norm());
+    change = (stress_in_lab(fixture, rested) - before).norm();
   }
   grain_steps_made += std::uint64_t(2 * part) * fixture.size();
+  // A change that grows as fast as time does is the beginning of a slow one, and is measured again soon.
+  const bool drifts = changes[1] > accuracy::drift_growth * changes[0];
+  const double change =
+      drifts ? accuracy::drift_steps / double(2 * part) * changes[1] : std::max(changes[0], changes[1]);
   const double scale = pressure_scale(), left = unbalanced(balance_of(fixture, rested));
   state.lag_factor = (change + accuracy::left_by_rest * left * scale) / (state.unbalanced_ratio * scale);
   state.lag_steps = 0;
-  state.lag_strain = 0;
+  state.lag_strain = drifts ? 1 : 0;
   state.constraint_ratio = constraint_ratio();
 }
 
@@ -78,9 +82,11 @@ void Rve::Impl::judge_error(double allowed, double strain, double ratio, double 
   report.allowed_error = allowed;
   const double scale = pressure_scale() * ratio, overlap = overlap_strain();
   const double measured = accuracy::measured_margin * state.lag_factor * scale * rested_growth(strain, overlap);
-  const double fitted = accuracy::fitted_margin * error_factor() * scale * error_growth(strain, overlap);
+  const double margin = state.lag_factor > 0 ? accuracy::fitted_margin : accuracy::unmeasured_margin;
+  const double fitted = margin * error_factor() * scale * error_growth(strain, overlap);
   const bool just_measured = state.lag_factor > 0 && state.lag_steps == 0;
-  report.error_estimate = (just_measured ? measured : std::max(measured, fitted)) + more;
+  const double least = strain > overlap ? accuracy::least_share_of_long : accuracy::least_share;
+  report.error_estimate = (just_measured ? measured : std::max(measured, fitted)) + more + least * allowed;
   report.tolerance_met = report.error_estimate <= accuracy::met_margin * report.allowed_error;
 }
 
@@ -88,7 +94,7 @@ void Rve::Impl::judge_way(double strain, double mean_ratio, Report& report) {
   const double overlaps = strain / overlap_strain();
   if (!(overlaps > 1)) return;
   const double way = accuracy::way_margin * std::sqrt(overlaps) * error_factor() * pressure_scale() * mean_ratio;
-  report.error_estimate = std::max(report.error_estimate, way);
+  report.error_estimate += way;
   report.tolerance_met = report.error_estimate <= accuracy::met_margin * report.allowed_error;
 }
 

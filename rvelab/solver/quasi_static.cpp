@@ -68,6 +68,18 @@ double steps_of_start(const Matrix3& change, double strain, const Matrix3& rate,
   return steps;
 }
 
+/// By how much the stress of a copy changes within so many sub-steps at rest, Pa.
+double change_at_rest(const Fixture& f, Assembly copy, long steps) {
+  const FrameSplit still{Matrix3::Identity(), Matrix3::Identity(), true};
+  const auto stress = [&]() -> Matrix3 {
+    const Matrix3 in_cell = contact_moment(f, copy) / copy.cell.volume();
+    return copy.cell.rotation * in_cell * copy.cell.rotation.transpose();
+  };
+  const Matrix3 before = stress();
+  advance(f, copy, {still, steps, 1, Loading::quasi_static});
+  return (stress() - before).norm();
+}
+
 }  // namespace
 
 void Rve::Impl::begin_quasi_static() {
@@ -226,9 +238,14 @@ Rve::Impl::Rest Rve::Impl::follow_up(double strain, bool turns) {
     look();
     rest.steps += interval;
   }
-  if (rest.steps > 0)
-    rest.creep = std::max((present_stress() - stresses[stresses.size() / 2]).norm(),
-                          accuracy::slow_share * (present_stress() - stresses[0]).norm());
+  if (rest.steps == 0) return rest;
+  rest.creep = std::max((present_stress() - stresses[stresses.size() / 2]).norm(),
+                        accuracy::slow_share * (present_stress() - stresses[0]).norm());
+  if (!fixture.contact.rolling) return rest;
+  // Grains that roll past each other creep on at nearly the same rate long after the others are calm.
+  const double shown = change_at_rest(fixture, now, accuracy::creep_steps);
+  grain_steps_made += std::uint64_t(accuracy::creep_steps) * fixture.size();
+  rest.creep = std::max(rest.creep, accuracy::creep_goes_on * shown);
   return rest;
 }
 
