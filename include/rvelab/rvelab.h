@@ -69,7 +69,7 @@ int64_t rvelab_capabilities(void);
 /* Of several warnings NOT_QUASI_STATIC comes first, then TOLERANCE, CELL_THIN, TANGENT_AFFINE; the text of any tells of
  * an affine tangent too. */
 #define RVELAB_OK 0
-#define RVELAB_W_TOLERANCE 1        /* dt = 0: the error to be expected, estimate/2.4, is above the tolerance  */
+#define RVELAB_W_TOLERANCE 1        /* dt = 0: the error to be expected, estimate/2, is above the tolerance    */
 #define RVELAB_W_NOT_QUASI_STATIC 2 /* dt = 0: the state is no equilibrium, the specimen flows or collapses */
 #define RVELAB_W_CELL_THIN 3        /* a height of the cell is below four mean diameters */
 #define RVELAB_W_TANGENT_AFFINE 4   /* the network has no elastic tangent; the affine one (stiffer) was written */

@@ -55,14 +55,13 @@ void Rve::Impl::measure_lag() {
     change = (stress_in_lab(fixture, rested) - before).norm();
   }
   grain_steps_made += std::uint64_t(2 * part) * fixture.size();
-  // A change that grows as fast as time does is the beginning of a slow one, and is measured again soon.
-  const bool drifts = changes[1] > accuracy::drift_growth * changes[0];
-  const double change =
-      drifts ? accuracy::drift_steps / double(2 * part) * changes[1] : std::max(changes[0], changes[1]);
+  const double change = std::max(changes[0], changes[1]);
   const double scale = pressure_scale(), left = unbalanced(balance_of(fixture, rested));
   state.lag_factor = (change + accuracy::left_by_rest * left * scale) / (state.unbalanced_ratio * scale);
   state.lag_steps = 0;
-  state.lag_strain = drifts ? 1 : 0;
+  // A change that grows with time is the beginning of a slow one: judge_error takes it for that, and it is measured
+  // again soon, as after a turn.
+  state.lag_strain = changes[1] > accuracy::slow_growth * changes[0] ? 1 : 0;
   state.constraint_ratio = constraint_ratio();
 }
 
@@ -81,10 +80,11 @@ void Rve::Impl::judge_error(double allowed, double strain, double ratio, double 
   if (strain > 0 && lag_is_due(report.substeps)) measure_lag();
   report.allowed_error = allowed;
   const double scale = pressure_scale() * ratio, overlap = overlap_strain();
-  const double measured = accuracy::measured_margin * state.lag_factor * scale * rested_growth(strain, overlap);
+  const bool just_measured = state.lag_factor > 0 && state.lag_steps == 0;
+  const double begun = just_measured && state.lag_strain >= 1 ? accuracy::slow_goes_on : 1;
+  const double measured = begun * accuracy::measured_margin * state.lag_factor * scale * rested_growth(strain, overlap);
   const double margin = state.lag_factor > 0 ? accuracy::fitted_margin : accuracy::unmeasured_margin;
   const double fitted = margin * error_factor() * scale * error_growth(strain, overlap);
-  const bool just_measured = state.lag_factor > 0 && state.lag_steps == 0;
   const double least = strain > overlap ? accuracy::least_share_of_long : accuracy::least_share;
   report.error_estimate = (just_measured ? measured : std::max(measured, fitted)) + more + least * allowed;
   report.tolerance_met = report.error_estimate <= accuracy::met_margin * report.allowed_error;

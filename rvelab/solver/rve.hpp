@@ -42,7 +42,7 @@ struct Report {
                              ///< p at least a thousandth of reference_pressure(). d sigma and d eps since the path
                              ///< turned last, up to 1e-4 of strain, where those are more than the increment's: a path
                              ///< cut finely is the same path. Mixed targets: the larger tolerance times p
-  bool tolerance_met = true;  ///< dt = 0: the estimate over 2.4 is at most allowed_error: 92 % of the errors then are
+  bool tolerance_met = true;  ///< dt = 0: half of the estimate is at most allowed_error: 96 % of the errors then are
   bool cell_thin = false;     ///< a cell height is below four mean diameters
 };
 
