@@ -57,7 +57,8 @@ void Rve::Impl::measure_lag() {
   grain_steps_made += std::uint64_t(2 * part) * fixture.size();
   const double change = std::max(changes[0], changes[1]);
   const double scale = pressure_scale(), left = unbalanced(balance_of(fixture, rested));
-  state.lag_factor = (change + accuracy::left_by_rest * left * scale) / (state.unbalanced_ratio * scale);
+  const double margin = state.lag_factor > 0 ? 1 : accuracy::first_margin;
+  state.lag_factor = margin * (change + accuracy::left_by_rest * left * scale) / (state.unbalanced_ratio * scale);
   state.lag_steps = 0;
   // A change that grows with time is the beginning of a slow one: judge_error takes it for that, and it is measured
   // again soon, as after a turn.
