@@ -4,6 +4,7 @@
 // The packings come from fixed recipes: 400 discs, 400 ellipses of the same areas (aspect ratio 0.743, Liang et al.
 // 2023) and 1000 spheres at 100 kPa; larger cases repeat them periodically. Each case shears at constant volume with
 // physical masses at inertial number 1e-3 for a fixed number of steps, several times; the median is reported.
+// Declared in commands.hpp.
 #include <algorithm>
 #include <chrono>
 #include <cmath>

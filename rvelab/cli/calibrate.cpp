@@ -1,4 +1,5 @@
 // rvelab calibrate: one compression test at several pressures, and the strength of the soil from all of them.
+// Declared in commands.hpp.
 #include "rvelab/calibrate/calibrate.hpp"
 
 #include <algorithm>

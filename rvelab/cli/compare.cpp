@@ -1,4 +1,4 @@
-// rvelab compare: whether two files hold the same, bit by bit.
+// rvelab compare: whether two files hold the same, bit by bit. Declared in commands.hpp.
 #include <iostream>
 #include <memory>
 

@@ -1,4 +1,4 @@
-// rvelab export: states of a specimen or a test for other programs.
+// rvelab export: states of a specimen or a test for other programs. Declared in commands.hpp.
 #include <memory>
 #include <string>
 #include <vector>

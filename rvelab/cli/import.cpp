@@ -1,4 +1,5 @@
 // rvelab import: specimens from CSV files, as YADE scripts write them, and from dumps of LAMMPS.
+// Declared in commands.hpp.
 #include <array>
 #include <memory>
 #include <optional>

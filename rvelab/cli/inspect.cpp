@@ -1,4 +1,4 @@
-// rvelab inspect: what is in a specimen or record file, and the measures of its state.
+// rvelab inspect: what is in a specimen or record file, and the measures of its state. Declared in commands.hpp.
 #include <cmath>
 #include <filesystem>
 #include <memory>

@@ -1,4 +1,4 @@
-// rvelab keys: every key of protocols, recipes and material files.
+// rvelab keys: every key of protocols, recipes and material files. Declared in commands.hpp.
 #include <algorithm>
 #include <cctype>
 #include <iostream>

@@ -1,4 +1,4 @@
-// rvelab pack: specimens from a recipe.
+// rvelab pack: specimens from a recipe. Declared in commands.hpp.
 #include <unistd.h>
 
 #include <algorithm>

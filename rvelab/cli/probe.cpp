@@ -1,4 +1,5 @@
 // rvelab probe: the stiffness of a specimen at small strain, by increments or from its contact network.
+// Declared in commands.hpp.
 #include <memory>
 #include <string>
 

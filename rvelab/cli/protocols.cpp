@@ -1,4 +1,4 @@
-// rvelab protocols: the tests and the recipes that are installed with the program.
+// rvelab protocols: the tests and the recipes that are installed with the program. Declared in commands.hpp.
 #include <fstream>
 #include <iostream>
 #include <iterator>

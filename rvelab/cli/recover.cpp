@@ -1,4 +1,4 @@
-// rvelab recover: a record file from the journal that a stopped or killed run left.
+// rvelab recover: a record file from the journal that a stopped or killed run left. Declared in commands.hpp.
 #include <unistd.h>
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// rvelab run: one test on one specimen.
+// rvelab run: one test on one specimen. Declared in commands.hpp.
 #include <unistd.h>
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // rvelab seal: accepts a file that another program has changed, or one of an early version, and adds a checksum.
+// Declared in commands.hpp.
 #include <memory>
 #include <string>
 

@@ -1,4 +1,5 @@
 // rvelab study: a test over a grid of settings, errors against the best-resolved run and against cost.
+// Declared in commands.hpp.
 #include <unistd.h>
 
 #include <algorithm>

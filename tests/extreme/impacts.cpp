@@ -46,7 +46,7 @@ double rebound(Specimen s, double speed, double phase, Verdict& verdict) {
   tested.rve().set_velocities({v, -v}, {still, still});
   tested.apply(Matrix3::Zero(), 40 * impact.duration);
   const Network network = tested.rve().network();
-  verdict.law("momentum is zero, of m v", net_momentum(tested.rve()).norm() / (mass_of(s) * speed), 1e-10);
+  verdict.law("momentum is zero, of m v", net_momentum(tested.rve()).norm() / (mass_of(s) * speed), 1e-13);
   const bool apart = network.contacts.empty() && network.grains[0].position[0] < network.grains[1].position[0];
   if (!apart) return std::nan("");
   return (network.grains[1].velocity[0] - network.grains[0].velocity[0]) / (2 * speed);

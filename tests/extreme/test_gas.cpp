@@ -1,5 +1,7 @@
 // Cells without a single contact, and cells that lose them: no force, no stress at dt = 0; kinetic stress at dt > 0.
+// Gases of grains of several sizes that collide: their energy.
 #include "tests/catch.hpp"
+#include "tests/extreme/energy.hpp"
 #include "tests/extreme/specimens.hpp"
 
 using namespace rvelab;
@@ -163,4 +165,35 @@ TEST_CASE("Tension of a crystal without cohesion: stress goes to zero, stays, an
     CHECK(largest(stress - start) <= 1e-9 * largest(start));
     CHECK(rve.size() == 16);
   }
+}
+
+TEST_CASE("an undamped gas of grains of several sizes keeps its energy at the default step") {
+  const int dimension = GENERATE(2, 3);
+  const Law law = GENERATE(Law::linear_given, Law::hertz_mindlin);
+  CAPTURE(dimension, name(law));
+  Specimen s = gas(dimension, spread_radii(50, 0.2), dimension == 2 ? 0.4 : 0.25, 7, material(1e7));
+  s.contact.law = law;
+  s.materials[0].young_modulus = 1e7;
+  s.materials[0].poisson_ratio = 0.2;
+  Rve rve(s);
+  rve.set_velocities(thermal(rve, 5, 0.3), no_spin(rve));
+  rve.apply(Matrix3::Zero(), 1e-9);  // the net momentum is taken out
+  const double before = energy_in(rve);
+  rve.apply(Matrix3::Zero(), 60.0);
+  CHECK(energy_in(rve) == Approx(before).epsilon(2e-3));
+}
+
+TEST_CASE("a shock from a gas of grains of several sizes closes the energy balance") {
+  const double rate = GENERATE(1e2, 1e4);
+  Specimen s = gas(2, spread_radii(60, 0.2), 0.45, 3, material(1e7, 5e6, 0.3));
+  s.solver.energy_balance = true;
+  s.solver.max_overlap_ratio = 0.9;
+  Rve rve(s);
+  rve.apply(Matrix3::Zero(), 1e-12);
+  EnergyBalance energy(rve);
+  rve.apply(isotropic(2, -0.25), 0.25 / rate);
+  energy.look();
+  CAPTURE(rate);
+  CHECK(rve.specimen().state.energy_balance.boundary_work > 0);
+  CHECK(energy.residual() < 0.01);
 }

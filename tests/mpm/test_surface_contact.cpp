@@ -105,9 +105,10 @@ TEST_CASE("a body narrower than the points are apart is met all the same") {
 TEST_CASE("soil stays outside the outline of a disc that is pushed in, and all reactions are its momentum") {
   auto solver = block<2>({20, 8}, 0.05, ElasticModuli{1e6, 0.3}, 2000);
   solver->planes.all = {roller<2>(0, 0, true), roller<2>(0, 20, false), roller<2>(1, 0, true)};
+  constexpr double radius = 0.13;
   Body<2> disc;
-  disc.shape = Disc<2>{0.13};
-  disc.centre = Vec<2>(0.51, 0.4 + 0.13);
+  disc.shape = Disc<2>{radius};
+  disc.centre = Vec<2>(0.51, 0.4 + radius);
   disc.velocity.times = {0, 0.05};
   disc.velocity.velocities = {Vec<2>(0, 0), Vec<2>(0, -0.4)};
   disc.at_surface = true;
@@ -118,7 +119,7 @@ TEST_CASE("soil stays outside the outline of a disc that is pushed in, and all r
   Vec<2> momentum = Vec<2>::Zero(), pushed = solver->bodies.all[0].reaction.impulse;
   for (const auto& plane : solver->planes.all) pushed += plane.reaction.impulse;
   for (const auto& point : solver->points) {
-    deepest = std::min(deepest, (point.position - centre).norm() - disc.radius);
+    deepest = std::min(deepest, (point.position - centre).norm() - radius);
     momentum += point.mass * point.velocity;
   }
   CHECK(deepest > -0.3 * 0.05);  // of a cell
