@@ -39,7 +39,7 @@ TEST_CASE("protocols lists the installed ones with what they are, and prints one
   const auto list = nlohmann::json::parse(here.run("protocols --json").output);
   std::size_t sources = 0;
   for (const auto& entry : std::filesystem::directory_iterator(RVELAB_SOURCE_DIR "/protocols")) {
-    if (entry.is_directory()) continue;  // studies
+    if (entry.path().extension() != ".toml") continue;  // studies, README
     const std::string name = entry.path().stem().string();
     CAPTURE(name);
     CHECK(list.contains(name));

@@ -20,7 +20,8 @@ TEST_CASE("a plate compresses an elastic block evenly, wherever its face lies be
     solver->bodies.all = {half_space({0, shift}, {0, 1}), plate};
     for (auto& body : solver->bodies.all) body.at_surface = true;
     while (solver->time < 0.55) solver->step(solver->stable_step());
-    const double strain = -solver->bodies.all[1].velocity.displacement(solver->time)[1], oedometer = 1e6 * 0.7 / (1.3 * 0.4);
+    const double strain = -solver->bodies.all[1].velocity.displacement(solver->time)[1];
+    const double oedometer = 1e6 * 0.7 / (1.3 * 0.4);
     double mean = 0, most = 0;
     for (const auto& point : solver->points) {
       mean -= point.stress(1, 1) / double(solver->points.size());

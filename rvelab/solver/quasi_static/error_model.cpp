@@ -116,7 +116,9 @@ void estimate_error(State& s, double network, const Matrix3& stress_before, cons
   // A piece of a path is judged as its sub-steps are chosen (target_ratio), by what the path changes of the stress.
   if (network > network_change(s, increment.strain))
     changed = std::max(changed, s.control().network_stiffness_ratio * network);
-  estimate_error(s, allowed_by_tolerances(s, changed, network), increment, report);
+  Judged judged = increment;
+  judged.usual = allowed_by_tolerances(s, s.control().network_stiffness_ratio * network, network);
+  estimate_error(s, allowed_by_tolerances(s, changed, network), judged, report);
 }
 
 void estimate_error(State& s, double allowed, const Judged& increment, Report& report) {
@@ -132,7 +134,8 @@ void estimate_error(State& s, double allowed, const Judged& increment, Report& r
   const double margin = control.lag_factor > 0 ? fitted_margin : unmeasured_margin;
   const double fitted = margin * error_factor(s) * scale * error_growth(increment.strain, overlap);
   const double least = increment.strain > overlap ? least_share_of_long : least_share;
-  report.error_estimate = (just_measured ? measured : std::max(measured, fitted)) + increment.more + least * allowed;
+  report.error_estimate = (just_measured ? measured : std::max(measured, fitted)) + increment.more +
+                          least * (increment.usual > 0 ? increment.usual : allowed);
   judge_tolerance(report);
 }
 

@@ -39,6 +39,7 @@ struct Judged {
   double strain = 0;            ///< of the increment; 0: no sub-step was made for it
   double unbalanced_ratio = 0;  ///< at its end
   double more = 0;              ///< Pa, what else its stress may err by
+  double usual = 0;             ///< Pa, allowed of an increment that answers as the path did; 0: what is allowed
 };
 
 /// Sets report.error_estimate, allowed_error and tolerance_met, with `allowed` in Pa.
