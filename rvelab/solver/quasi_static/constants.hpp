@@ -104,6 +104,10 @@ constexpr long rest_period = 1000, changed_period = 100;
 /// n of an increment that is measured in any case, and of the first that may be.
 constexpr long long_increment = 200, least_increment = 10;
 
+/// SolverState::lag_strain counts on from these: after a measurement whose change grows (slow_growth), and after a turn,
+/// when what was measured is no longer so.
+constexpr double slow_mark = 1, turn_mark = 2;
+
 // Estimate of the error.
 
 /// Over what a measurement has shown: where its change does not grow, 95 % of the errors are below 0.8 times.

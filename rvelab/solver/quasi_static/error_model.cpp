@@ -76,8 +76,8 @@ bool lag_is_due(State& s, long substeps) {
   const SolverState& control = s.control();
   const bool old = control.lag_steps >= rest_period;
   if (!(old || substeps >= least_increment) || !can_measure_lag(s)) return false;
-  return old || control.lag_factor == 0 ||
-         (control.lag_steps >= changed_period && control.lag_strain > overlap_strain(s));
+  const double strain = control.lag_strain >= slow_mark ? control.lag_strain - slow_mark : control.lag_strain;
+  return old || control.lag_factor == 0 || (control.lag_steps >= changed_period && strain > overlap_strain(s));
 }
 
 /// Relaxes a copy, and notes in the state by what its stress was behind.
@@ -98,9 +98,8 @@ void measure_lag(State& s) {
   const double margin = control.lag_factor > 0 ? 1 : first_margin;
   control.lag_factor = margin * (change + left_by_rest * left * scale) / (control.unbalanced_ratio * scale);
   control.lag_steps = 0;
-  // A change that grows with time is the beginning of a slow one: estimate_error takes it for that, and it is measured
-  // again soon, as after a turn.
-  control.lag_strain = changes[1] > slow_growth * changes[0] ? 1 : 0;
+  // A change that grows with time is the beginning of a slow one: estimate_error takes it for that.
+  control.lag_strain = changes[1] > slow_growth * changes[0] ? slow_mark : 0;
   control.constraint_ratio = constraint_ratio(s.model(), s.assembly());
 }
 
@@ -128,7 +127,7 @@ void estimate_error(State& s, double allowed, const Judged& increment, Report& r
   report.allowed_error = allowed;
   const double scale = pressure_scale(s) * increment.unbalanced_ratio, overlap = overlap_strain(s);
   const bool just_measured = control.lag_factor > 0 && control.lag_steps == 0;
-  const double begun = just_measured && control.lag_strain >= 1 ? slow_goes_on : 1;
+  const double begun = just_measured && control.lag_strain >= slow_mark ? slow_goes_on : 1;
   const double measured =
       begun * measured_margin * control.lag_factor * scale * rested_growth(increment.strain, overlap);
   const double margin = control.lag_factor > 0 ? fitted_margin : unmeasured_margin;
