@@ -16,16 +16,23 @@ using namespace rvelab::test;
 
 namespace {
 
+/// Processor time without that of the kernel, which hands out pages: of small cells they are in use already.
+double user_seconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return double(usage.ru_utime.tv_sec) + 1e-6 * double(usage.ru_utime.tv_usec);
+}
+
 /// Opens a crystal, applies one increment, compares; returns processor time, s.
 double seconds_for(int n) {
   Specimen s = cubic_crystal(n);
   s.solver.fixed_substeps = 5;
-  const std::clock_t start = std::clock();
+  const double start = user_seconds();
   Rve rve(s);
   CHECK(largest(rve.stress() - cubic_crystal_stress(Vector3::Zero())) <= 1e-9 * largest(rve.stress()));
   const Vector3 strain(1e-4, 0, -1e-3);
   const Response response = rve.apply(strain.asDiagonal(), 0);
-  const double seconds = double(std::clock() - start) / CLOCKS_PER_SEC;
+  const double seconds = user_seconds() - start;
   CHECK(response.report.substeps == 5);
   CHECK(largest(response.stress - cubic_crystal_stress(strain)) <= 1e-9 * largest(response.stress));
   CHECK(rve.size() == std::size_t(n) * n * n);
@@ -56,7 +63,7 @@ double exponent(const std::vector<double>& number, const std::vector<double>& se
 TEST_CASE("A million spheres open and deform in memory and time proportional to their number", "[extreme][slow]") {
   std::vector<double> number, seconds;
   std::ostringstream table;
-  for (const int n : {16, 25, 40, 63, 100}) {
+  for (const int n : {63, 80, 100}) {  // all beyond the caches
     number.push_back(std::pow(n, 3));
     seconds.push_back(least_seconds_for(n, n < 60 ? 5 : 1));
     table << number.back() << ": " << 1e6 * seconds.back() / number.back() << "; ";
@@ -68,7 +75,7 @@ TEST_CASE("A million spheres open and deform in memory and time proportional to 
                                                << gibibytes << " GiB");
   CHECK(gibibytes < 8);
   // A search of all pairs has an exponent of 2, one over a grid of a fixed number of boxes of 1.5 and more. N log N
-  // gives 1.09 here; the rest of what is allowed is for the few that fit in the caches.
+  // gives 1.07 here.
   CHECK(power > 0.8);
   CHECK(power < 1.25);
 }

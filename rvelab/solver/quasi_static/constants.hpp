@@ -104,16 +104,16 @@ constexpr long rest_period = 1000, changed_period = 100;
 /// n of an increment that is measured in any case, and of the first that may be.
 constexpr long long_increment = 200, least_increment = 10;
 
-/// SolverState::lag_strain counts on from these: after a measurement whose change grows (slow_growth), and after a turn,
-/// when what was measured is no longer so.
+/// SolverState::lag_strain counts on from these: after a measurement whose change grows (slow_growth), and after a
+/// turn, when what was measured is no longer so.
 constexpr double slow_mark = 1, turn_mark = 2;
 
 // Estimate of the error.
 
 /// Over what a measurement has shown: where its change does not grow, 95 % of the errors are below 0.8 times.
 constexpr double measured_margin = 0.9;
-/// Times that where the state was never measured: grains whose friction was lowered slide on for longer than a path lags
-/// (errors up to 1.22 times the estimate without, friction 0 and an increment of 1e-6).
+/// Times that where the state was never measured: grains whose friction was lowered slide on for longer than a path
+/// lags (errors up to 1.22 times the estimate without, friction 0 and an increment of 1e-6).
 constexpr double first_margin = 1.35;
 /// Over the fitted K: at least, where an earlier measurement has shown more; and where there was none yet.
 constexpr double fitted_margin = 2.2, unmeasured_margin = 3;
@@ -122,12 +122,12 @@ constexpr double fitted_margin = 2.2, unmeasured_margin = 3;
 /// to 30 times the change. Measurements of up to 800 sub-steps told no more.
 constexpr double slow_growth = 1.5, slow_goes_on = 40;
 /// Where grains roll: n that a copy relaxes after the relaxation before a turn, and how many times its change of stress
-/// is still to come. Of eleven packings that roll two crept at a constant rate, within a factor of two, for 3000 to 6000
-/// sub-steps: with 20 times 73 and 100 % of their errors were within the estimate, with 30 times 91 and 100 %.
+/// is still to come. Of eleven packings that roll two crept at a constant rate, within a factor of two, for 3000 to
+/// 6000 sub-steps: with 20 times 73 and 100 % of their errors were within the estimate, with 30 times 91 and 100 %.
 constexpr long creep_steps = 200;
 constexpr double creep_goes_on = 30;
-/// Added beyond the strain of the overlaps, over sqrt(x) K p u, u the mean on the way: at x = 70 and friction 0.05 errors
-/// were 6 K p u, the end calm.
+/// Added beyond the strain of the overlaps, over sqrt(x) K p u, u the mean on the way: at x = 70 and friction 0.05
+/// errors were 6 K p u, the end calm.
 constexpr double way_margin = 1;
 /// Added, over what is allowed: resolved answers are no better known. Beyond the strain of the overlaps a path that was
 /// cut otherwise ends elsewhere by so much.
