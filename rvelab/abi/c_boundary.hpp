@@ -1,5 +1,5 @@
-// The boundary between a host in C and the library: inside, the default floating-point environment; outside, a status and
-// a text in the place of exceptions.
+// The boundary between a host in C and the library: inside, the default floating-point environment; outside, a status
+// and a text in the place of exceptions.
 #pragma once
 
 #include <utility>

@@ -1,6 +1,6 @@
 // Version, capabilities, names of statuses, the last text. Declared in handle.hpp.
-#include "rvelab/abi/handle.hpp"
 #include "rvelab/abi/c_boundary.hpp"
+#include "rvelab/abi/handle.hpp"
 #include "rvelab/io/version.hpp"
 
 namespace rvelab::abi {

@@ -107,8 +107,7 @@ class Unpacker {
     return some(n * sizeof(Value));
   }
   std::span<const std::byte> some(std::size_t size) {
-    if (size > left_.size())
-      throw Refused(Status::internal, "a message between ranks ends early: please report this");
+    if (size > left_.size()) throw Refused(Status::internal, "a message between ranks ends early: please report this");
     const auto found = left_.first(size);
     left_ = left_.subspan(size);
     return found;

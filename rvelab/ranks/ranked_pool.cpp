@@ -240,8 +240,7 @@ void RankedPool::spawn(std::int64_t of_template, std::int64_t n, std::int64_t* i
     const auto failed = std::find_if(answers.begin(), answers.end(), [](auto& each) { return each.second.failed(); });
     if (failed != answers.end()) {
       for (const auto& [rank, answer] : answers)
-        if (!answer.failed())
-          undo[std::size_t(rank)] = message<&pool::Share::give_up>(of_rank[std::size_t(rank)]);
+        if (!answer.failed()) undo[std::size_t(rank)] = message<&pool::Share::give_up>(of_rank[std::size_t(rank)]);
       exchange(undo);
       failed->second.expect_done();
     }

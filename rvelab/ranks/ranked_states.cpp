@@ -62,8 +62,7 @@ void RankedPool::read(const std::function<pool::Population(const TakeState& take
       of_rank[k % ranks].push_back(population.ids[k]);
     }
     Messages messages = no_messages();
-    for (std::size_t rank = 0; rank < ranks; ++rank)
-      messages[rank] = message<&pool::Share::place>(of_rank[rank]);
+    for (std::size_t rank = 0; rank < ranks; ++rank) messages[rank] = message<&pool::Share::place>(of_rank[rank]);
     expect_all_done(messages);
     ids_.restore(population.tag, population.generations, population.ids);
     places_ = std::move(places);
@@ -87,7 +86,8 @@ void serve(Link& link, std::unique_ptr<pool::Share> share) {
     const auto number = Unpacker(message).take<std::int32_t>();
     if (number == std::int32_t(RankCall::end)) return;
     link.send(0, served.answer(message));
-    if (number != ShareCalls::number<&pool::Share::prepare>()) message = Bytes();  // its room is that of the message to settle
+    if (number != ShareCalls::number<&pool::Share::prepare>())
+      message = Bytes();  // its room is that of the message to settle
   }
 }
 

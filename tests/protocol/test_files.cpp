@@ -47,8 +47,7 @@ void shorten(protocol::Stage& stage) {
   if (auto* pressures = settings<protocol::PressurePathStage>(stage)) pressures->pressures.resize(1);
   if (auto* envelope = settings<protocol::EnvelopeStage>(stage)) envelope->directions = 3;
   if (auto* isotropic = settings<protocol::IsotropicStage>(stage)) isotropic->stress_tolerance = 1e-2;
-  if (auto* probe = settings<protocol::ProbeStage>(stage))
-    probe->method = protocol::ProbeStage::Method::linear;
+  if (auto* probe = settings<protocol::ProbeStage>(stage)) probe->method = protocol::ProbeStage::Method::linear;
 }
 
 }  // namespace
@@ -77,8 +76,7 @@ TEST_CASE("Every protocol runs through all its stages") {
     if (protocol.dimension == 3) {
       for (protocol::Stage& stage : protocol.stages) {
         if (auto* isotropic = settings<protocol::IsotropicStage>(stage)) isotropic->pressure = 100e3;
-        if (auto* compression = settings<protocol::CompressionStage>(stage))
-          compression->lateral_pressure = 100e3;
+        if (auto* compression = settings<protocol::CompressionStage>(stage)) compression->lateral_pressure = 100e3;
       }
     }
     if (physical) {

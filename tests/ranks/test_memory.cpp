@@ -43,8 +43,10 @@ TEST_CASE("Without memory at any request of any rank a call is refused and leave
   std::vector<std::int64_t> costs(4);
   const auto nothing = [] {};
   const std::vector<Step> calls = {
-      {"add_template", nothing, [&] { other = pool->add_template(start); }, [&] { pool->everywhere<&pool::Share::release_template>(other); }},
-      {"release_template", [&] { other = pool->add_template(start); }, [&] { pool->everywhere<&pool::Share::release_template>(other); }, nothing},
+      {"add_template", nothing, [&] { other = pool->add_template(start); },
+       [&] { pool->everywhere<&pool::Share::release_template>(other); }},
+      {"release_template", [&] { other = pool->add_template(start); },
+       [&] { pool->everywhere<&pool::Share::release_template>(other); }, nothing},
       {"spawn", nothing, [&] { pool->spawn(made, 4, more.data()); }, [&] { pool->release(more); }},
       {"clone", nothing, [&] { other = pool->clone(ids[1]); },
        [&] {

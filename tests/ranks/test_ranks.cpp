@@ -115,7 +115,8 @@ TEST_CASE("RVEs that move between ranks keep their pending trials") {
   CHECK(refused.verdict.status == pool::Status::stale_token);
   spread->commit(busy);
   one.commit(busy_here);
-  for (std::size_t k = 0; k < busy.size(); ++k) CHECK(spread->at<&pool::Share::save>(busy[k]) == one.save(busy_here[k]));
+  for (std::size_t k = 0; k < busy.size(); ++k)
+    CHECK(spread->at<&pool::Share::save>(busy[k]) == one.save(busy_here[k]));
 }
 
 TEST_CASE("a pool over ranks refuses what a pool in one process does, with the same words") {
@@ -166,7 +167,8 @@ TEST_CASE("a pool over ranks refuses what a pool in one process does, with the s
     say([&] { pool.apply(ids[1], none, 0, stress); });
     CHECK(pool.ids() == std::vector{ids[0], ids[2], ids[3]});
     std::int64_t again = pool.clone(ids[3]);
-    CHECK((pool::Id::of(again).slot == pool::Id::of(ids[1]).slot && pool.at<&pool::Share::save>(again) == pool.at<&pool::Share::save>(ids[3])));
+    CHECK((pool::Id::of(again).slot == pool::Id::of(ids[1]).slot &&
+           pool.at<&pool::Share::save>(again) == pool.at<&pool::Share::save>(ids[3])));
     return found;
   };
   pool::ThreadedPool one(one_thread());

@@ -1,6 +1,6 @@
-// Rigid bodies with a prescribed velocity (shapes: body_shapes.hpp). Where the soil's velocity approaches that of a body,
-// the body stops it at its surface: rough (no slip) or with Coulomb friction, free to part. The reaction on the body is
-// equal and opposite.
+// Rigid bodies with a prescribed velocity (shapes: body_shapes.hpp). Where the soil's velocity approaches that of a
+// body, the body stops it at its surface: rough (no slip) or with Coulomb friction, free to part. The reaction on the
+// body is equal and opposite.
 //
 // Contact at nodes: each node inside the body is held by itself. Contact at the surface: the soil's velocity sum N_I
 // v_I is held at points of the surface, a cell apart, by impulses J that the nodes get as N_I J. A uniform stress is
@@ -46,14 +46,14 @@ class Bodies {
   std::vector<Body<D>> all;
   Shape shape = Shape::bspline;  ///< that of the grid
 
-  /// Detects contact at this time (s): the points of surfaces that soil touches, and the nodes in bodies with contact at
-  /// nodes. Mirror nodes are left out: they follow their images.
+  /// Detects contact at this time (s): the points of surfaces that soil touches, and the nodes in bodies with contact
+  /// at nodes. Mirror nodes are left out: they follow their images.
   void detect_contact(const Grid<D>& grid, const Planes<D>& planes, const std::vector<Point<D>>& soil, double time,
                       Workers& workers);
   /// Velocities v at the start of the step.
   void set_start(Grid<D>& grid, double time);
-  /// Velocities w at the end of the step; a is still the mapped velocity. The reaction of a component that a plane holds
-  /// at a node is the plane's, not the body's.
+  /// Velocities w at the end of the step; a is still the mapped velocity. The reaction of a component that a plane
+  /// holds at a node is the plane's, not the body's.
   void set_end(Grid<D>& grid, const Planes<D>& planes, double time);
 
  private:

@@ -82,8 +82,8 @@ std::vector<double> clock_of(Progress progress) {
 [[noreturn]] void of_another_scene(const std::string& folder, const std::string& what, std::size_t found,
                                    std::size_t wanted) {
   throw InputError(folder + ": its checkpoint holds " + std::to_string(found) + " " + what + ", this scene needs " +
-                std::to_string(wanted) +
-                "; leave out the --set that changes their number, or start the run anew in another folder");
+                   std::to_string(wanted) +
+                   "; leave out the --set that changes their number, or start the run anew in another folder");
 }
 
 }  // namespace
@@ -171,14 +171,14 @@ void read_checkpoint(Model<D>& model, Progress& progress, const std::string& fol
     const auto path = place / pool_name(name, solver.steps);
     if (!std::filesystem::exists(path)) {
       throw InputError(path.string() +
-                    ": the RVEs of the checkpoint are missing; put the file back, or start the run anew");
+                       ": the RVEs of the checkpoint are missing; put the file back, or start the run anew");
     }
     pool->read(path.string());
   }
   if (file.read_whole("contact_at_surface") != contacts_of(solver)) {
     throw InputError(folder +
-                  ": its bodies were met by another contact than in this scene; leave out the --set of a body's "
-                  "contact, or start the run anew in another folder");
+                     ": its bodies were met by another contact than in this scene; leave out the --set of a body's "
+                     "contact, or start the run anew in another folder");
   }
   for (auto& group : solver.groups) group.material->restore(file, group.name);
 }

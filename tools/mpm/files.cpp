@@ -108,7 +108,7 @@ InputFile::InputFile(const std::string& path) : path_(path) {
   const auto seal = rvelab::io::seal_of(body);
   if (!room || !std::equal(seal.begin(), seal.end(), bytes.begin() + std::ptrdiff_t(body.size()))) {
     throw InputError(path + ": is damaged (" + std::to_string(whole) +
-                  " bytes, and its seal is not theirs); put it back from a copy, or start the run anew");
+                     " bytes, and its seal is not theirs); put it back from a copy, or start the run anew");
   }
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   const hid_t access = H5Pcreate(H5P_FILE_ACCESS);

@@ -19,7 +19,8 @@ class OutputFile {
   ~OutputFile();
   void write(const std::string& name, const std::vector<double>& values, const Extents& extents);
   void write(const std::string& name, const std::vector<std::int64_t>& values);
-  /// publish_file, with the seal of rvelab/io/hdf5/seal.hpp behind it if the file is to be read back: InputFile wants it.
+  /// publish_file, with the seal of rvelab/io/hdf5/seal.hpp behind it if the file is to be read back: InputFile wants
+  /// it.
   void publish(bool sealed = false);
 
  private:

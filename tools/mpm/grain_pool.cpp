@@ -164,7 +164,7 @@ std::int64_t SpecimenFamily::prepare(double pressure) {
     expect_ok(rvelab_apply(preparation_.get(), id, dH, 0, sigma));
   }
   throw InputError("a specimen at " + text_of(nearest->pressure) + " Pa does not come to " + text_of(pressure) +
-                " Pa; pack one nearer to that pressure (rvelab pack, target.pressures_Pa) and name it in specimens");
+                   " Pa; pack one nearer to that pressure (rvelab pack, target.pressures_Pa) and name it in specimens");
 }
 
 std::int64_t SpecimenFamily::spawn(double pressure) {

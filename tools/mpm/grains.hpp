@@ -45,7 +45,7 @@ class Grains : public Material<D> {
     double first = 0, modulus = 0, compression = 0, called = 0;  ///< first: at the start, Pa
   } found_;
   std::vector<Mat<D>> gathered_;  ///< gradients times steps, not applied yet
-  std::vector<long> chosen_;     ///< points of the batch
+  std::vector<long> chosen_;      ///< points of the batch
   std::vector<std::int64_t> batch_ids_;
   std::vector<double> dH_, sigma_, scale_;
   std::vector<std::int32_t> status_;

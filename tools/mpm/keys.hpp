@@ -1,5 +1,5 @@
-// TOML read strictly: the reader must know every key of a table, and every value must be of its kind and in its range. An
-// error names file, line, key, what is allowed and what to do.
+// TOML read strictly: the reader must know every key of a table, and every value must be of its kind and in its range.
+// An error names file, line, key, what is allowed and what to do.
 #pragma once
 
 #include <toml++/toml.h>
@@ -12,8 +12,8 @@
 
 namespace mpm {
 
-/// One table. Reading a key makes it known; finish() then throws for unknown keys, and after them for a missing one that is
-/// required (its value is 0, empty or not a number until then): a misspelt key is thus reported as such.
+/// One table. Reading a key makes it known; finish() then throws for unknown keys, and after them for a missing one
+/// that is required (its value is 0, empty or not a number until then): a misspelt key is thus reported as such.
 class Keys {
  public:
   /// `where`: its dotted name, "" for the whole file. The table must outlive this.

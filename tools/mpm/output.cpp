@@ -36,12 +36,13 @@ Rows::Rows(const std::string& path, const std::string& header, const WrittenRows
     const auto size = std::size_t(keep.bytes);
     if (bytes.size() < size) {
       throw InputError(path + ": has " + std::to_string(bytes.size()) + " bytes, and " + std::to_string(size) +
-                    " when the checkpoint was written; put the whole file back, or start the run anew");
+                       " when the checkpoint was written; put the whole file back, or start the run anew");
     }
     if (rvelab::io::crc32c(std::span(bytes).first(size)) != keep.checksum) {
-      throw InputError(path + ": is damaged (its first " + std::to_string(size) +
-                    " bytes are not those that it had when the checkpoint was written); put the file back from a copy, "
-                    "or start the run anew");
+      throw InputError(
+          path + ": is damaged (its first " + std::to_string(size) +
+          " bytes are not those that it had when the checkpoint was written); put the file back from a copy, "
+          "or start the run anew");
     }
     std::error_code error;
     std::filesystem::resize_file(path, size, error);
@@ -211,9 +212,10 @@ void expect_whole_scene(const std::string& folder) {
   const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   const auto last = text.rfind(checksum_line);
   if (last != std::string::npos && text == with_checksum(text.substr(0, last))) return;
-  throw InputError(path +
-                ": is damaged, or was changed by hand (its last line holds another checksum); put the file back from a "
-                "copy, change a scene by --resume with --set, or start the run anew");
+  throw InputError(
+      path +
+      ": is damaged, or was changed by hand (its last line holds another checksum); put the file back from a "
+      "copy, change a scene by --resume with --set, or start the run anew");
 }
 
 void write_xdmf(const std::string& folder, const std::vector<double>& times, long points) {

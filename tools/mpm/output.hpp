@@ -18,8 +18,8 @@ struct WrittenRows {
 /// A text file of rows that can go on where a checkpoint left it.
 class Rows {
  public:
-  /// `keep`: what stays (no bytes: a new file with this header). InputError if the file is shorter, or was changed there:
-  /// what stands behind is left by a kill after the checkpoint, and is made again.
+  /// `keep`: what stays (no bytes: a new file with this header). InputError if the file is shorter, or was changed
+  /// there: what stands behind is left by a kill after the checkpoint, and is made again.
   Rows(const std::string& path, const std::string& header, const WrittenRows& keep);
   Rows(const Rows&) = delete;
   Rows& operator=(const Rows&) = delete;

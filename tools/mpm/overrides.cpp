@@ -25,7 +25,8 @@ toml::table parse_file(const std::string& path) {
   const std::filesystem::path file(path);
   if (std::error_code none; !std::filesystem::exists(file, none) || std::filesystem::is_directory(file, none)) {
     throw InputError(path + ": there is no such file; a scene goes by its path, such as protocols/mpm/" +
-                  (file.extension().empty() && !file.stem().empty() ? file.stem().string() : "column_soil") + ".toml");
+                     (file.extension().empty() && !file.stem().empty() ? file.stem().string() : "column_soil") +
+                     ".toml");
   }
   try {
     return rvelab::keys::parse_toml_at(path);
@@ -102,7 +103,7 @@ void assign(toml::table& scene, const std::string& assignment) {
     }
     if (found == nullptr && node->is_array_of_tables()) {
       throw InputError("--set " + assignment + ": no [[" + names[k] + "]] of that name; " +
-                    choices(*node->as_array(), names[k]));
+                       choices(*node->as_array(), names[k]));
     }
     if (found == nullptr) {
       throw InputError("--set " + assignment + ": " + names[k] + " is no table; give it as table.key=value");

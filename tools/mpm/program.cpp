@@ -46,7 +46,7 @@ std::string toml_of(const toml::table& scene) {
 void check(const RunOptions& options) {
   if (options.threads < 0) {
     throw InputError("-j " + std::to_string(options.threads) +
-                  ": give a number of threads, or 0 for as many as the processor runs at once");
+                     ": give a number of threads, or 0 for as many as the processor runs at once");
   }
   if (!(options.stop_at >= 0)) {
     throw InputError("--stop-at " + text_of(options.stop_at) + ": give a time in s, 0 or later");
@@ -65,8 +65,8 @@ int run(const std::string& scene_file, std::vector<std::string> cases, bool publ
     for (const char* name : {"scene.toml", "checkpoint.h5"}) {
       if (std::filesystem::exists(folder / name)) continue;
       throw InputError(options.folder + ": holds no " + name +
-                    " to go on from; give the folder of a run, or start one: rvelab-mpm SCENE.toml -o " +
-                    options.folder);
+                       " to go on from; give the folder of a run, or start one: rvelab-mpm SCENE.toml -o " +
+                       options.folder);
     }
     expect_whole_scene(options.folder);
     const auto scene = read_scene((folder / "scene.toml").string(), {}, assignments, &resolved);

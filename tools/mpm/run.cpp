@@ -85,8 +85,8 @@ class Cost {
     if (grains > 0) {
       report << "grain-steps " << grain_steps << ", " << (grain_steps - grain_steps_) / grains / 1e6 << " M a second";
       for (const auto& [name, each] : model_.grains) {
-        report << "; " << name << ": " << each->called << " of " << each->asked << " increments called, "
-               << each->split << " in parts, " << each->warned << " with a warning";
+        report << "; " << name << ": " << each->called << " of " << each->asked << " increments called, " << each->split
+               << " in parts, " << each->warned << " with a warning";
       }
       report << "\n";
     } else if (steps > 0) {
@@ -160,8 +160,7 @@ class Outputs {
       check();
     } catch (const std::runtime_error& reason) {
       if (saved_ < 0) save();
-      throw std::runtime_error(reason.what() + ("; " + folder_) + " keeps the checkpoint of " + text_of(saved_) +
-                               " s");
+      throw std::runtime_error(reason.what() + ("; " + folder_) + " keeps the checkpoint of " + text_of(saved_) + " s");
     }
   }
 

@@ -188,7 +188,7 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& cases,
     if (over == nullptr) {
       const auto known = cases_of(path);
       throw InputError(path + ": there is no case " + name + "; the nearest is " +
-                    nearest_word(name, {known.begin(), known.end()}));
+                       nearest_word(name, {known.begin(), known.end()}));
     }
     const toml::table copy = *over;
     override_table(file, copy);

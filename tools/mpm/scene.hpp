@@ -76,8 +76,8 @@ struct Scene {
   bool networks = false;  ///< with each frame, those of the watched points
 };
 
-/// Cases override the scene in their order, then the assignments. `resolved` becomes the table without its cases, as the
-/// run keeps it.
+/// Cases override the scene in their order, then the assignments. `resolved` becomes the table without its cases, as
+/// the run keeps it.
 Scene read_scene(const std::string& path, const std::vector<std::string>& cases,
                  const std::vector<std::string>& assignments, toml::table* resolved = nullptr);
 

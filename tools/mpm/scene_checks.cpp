@@ -33,7 +33,7 @@ void check_materials(const Scene& scene, const std::string& path) {
   for (const auto& region : scene.regions) {
     if (materials.contains(region.material)) continue;
     throw InputError(path + ": region.material is \"" + region.material + "\"; the nearest material is \"" +
-                  nearest_word(region.material, materials) + "\"");
+                     nearest_word(region.material, materials) + "\"");
   }
 }
 
@@ -48,21 +48,21 @@ void check_boundaries(const Scene& scene, const std::string& path) {
     planes.insert(plane.name);
     if (std::abs(plane.at / scene.cell[std::size_t(plane.axis)]) < farthest_cell) continue;
     throw InputError(path + ": boundary." + plane.name + ".at_m is " + text_of(plane.at) +
-                  ", too many cells from 0; move it nearer, or make grid.cell_m larger");
+                     ", too many cells from 0; move it nearer, or make grid.cell_m larger");
   }
   for (const auto& body : scene.bodies) expect_new(body.name);
   if (scene.follows.empty()) return;
   if (!planes.contains(scene.follows)) {
     throw InputError(path + ": grid.follows is \"" + scene.follows + "\"; the nearest boundary is \"" +
-                  nearest_word(scene.follows, planes) + "\"");
+                     nearest_word(scene.follows, planes) + "\"");
   }
   const auto& followed = *std::find_if(scene.planes.begin(), scene.planes.end(),
                                        [&](const auto& plane) { return plane.name == scene.follows; });
   for (const auto& plane : scene.planes) {
     if (plane.axis != followed.axis || plane.name == followed.name || plane.at == 0) continue;
     throw InputError(path + ": boundary." + plane.name + ".at_m is " + text_of(plane.at) +
-                  ", and would move along with grid.follows, which shortens all cells across " + axes[plane.axis] +
-                  "; put it at 0, or take a [[body]] in its place");
+                     ", and would move along with grid.follows, which shortens all cells across " + axes[plane.axis] +
+                     "; put it at 0, or take a [[body]] in its place");
   }
 }
 
@@ -74,14 +74,14 @@ void check_sizes(const Scene& scene, const std::string& path) {
       points *= points_along(scene, region, i);
       if (std::max(std::abs(region.lower[i]), std::abs(region.upper[i])) < farthest_cell * scene.cell[i]) continue;
       throw InputError(path + ": " + region_name(scene, region) + " from " + text_of(region.lower) + " to " +
-                    text_of(region.upper) +
-                    " m lies too many cells from 0; move it nearer, or make grid.cell_m larger");
+                       text_of(region.upper) +
+                       " m lies too many cells from 0; move it nearer, or make grid.cell_m larger");
     }
     total += points;
     if (total <= most_points) continue;
     throw InputError(path + ": " + region_name(scene, region) + " would have " + text_of(points) +
-                  " material points, and a scene has at most " + text_of(most_points) +
-                  "; make grid.cell_m larger, or the region or points_per_cell smaller");
+                     " material points, and a scene has at most " + text_of(most_points) +
+                     "; make grid.cell_m larger, or the region or points_per_cell smaller");
   }
 }
 
@@ -95,7 +95,7 @@ void check_overlaps(const Scene& scene, const std::string& path) {
       }
       if (apart) continue;
       throw InputError(path + ": " + region_name(scene, *b) + " and " + region_name(scene, *a) +
-                    " overlap, and would fill that place twice; change lower_m or upper_m of one");
+                       " overlap, and would fill that place twice; change lower_m or upper_m of one");
     }
   }
 }
@@ -110,14 +110,14 @@ void check_sides(const Scene& scene, const std::string& path) {
       const double slack = 1e-6 * scene.cell[i];
       if (plane.soil_above ? first > plane.at - slack : last < plane.at + slack) continue;
       throw InputError(path + ": points of " + region_name(scene, region) + " lie behind boundary." + plane.name +
-                    " (soil " + (plane.soil_above ? "above " : "below ") + axes[i] + " = " + text_of(plane.at) +
-                    " m); set soil = \"" + (plane.soil_above ? "below" : "above") + "\" there, or move the region");
+                       " (soil " + (plane.soil_above ? "above " : "below ") + axes[i] + " = " + text_of(plane.at) +
+                       " m); set soil = \"" + (plane.soil_above ? "below" : "above") + "\" there, or move the region");
     }
     const double top = region.upper.back() - 0.5 * filling.side.back();
     if (scene.stress == Scene::Stress::geostatic && top > scene.surface + 1e-6 * scene.cell.back()) {
       throw InputError(path + ": points of " + region_name(scene, region) +
-                    " lie above initial.surface_m = " + text_of(scene.surface) +
-                    ", and would start under tension; set it to the height of the free surface");
+                       " lie above initial.surface_m = " + text_of(scene.surface) +
+                       ", and would start under tension; set it to the height of the free surface");
     }
   }
 }
@@ -135,7 +135,7 @@ void check_watched(const Scene& scene, const std::string& path) {
     });
     if (near) continue;
     throw InputError(path + ": output.watched_points_m[" + std::to_string(k) + "] is " + text_of(scene.watched[k]) +
-                  ", more than a cell from any material point; move it into a region, or take it away");
+                     ", more than a cell from any material point; move it into a region, or take it away");
   }
 }
 
@@ -211,9 +211,9 @@ void check_loads(const Scene& scene, const std::string& material, double modulus
   const auto refuse_pressure = [&](const std::string& key, const std::string& value, double pressure) {
     if (!(std::abs(pressure) > largest_strain * modulus)) return;
     throw InputError(key + " = " + value + ": a pressure of " + text_of(std::abs(pressure)) +
-                  " Pa would compress material " + material + ", of the modulus " + text_of(modulus) +
-                  " Pa, by half of its height or more; allowed: up to " + text_of(largest_strain * modulus) +
-                  " Pa; make the load smaller, or the material stiffer");
+                     " Pa would compress material " + material + ", of the modulus " + text_of(modulus) +
+                     " Pa, by half of its height or more; allowed: up to " + text_of(largest_strain * modulus) +
+                     " Pa; make the load smaller, or the material stiffer");
   };
   refuse_pressure("loads.surface_pressure_Pa", text_of(scene.surface_pressure), scene.surface_pressure);
   refuse_pressure("initial.pressure_Pa", text_of(scene.pressure), scene.pressure);
@@ -235,9 +235,9 @@ void check_loads(const Scene& scene, const std::string& material, double modulus
       const double speed = relative_speed(moving[a], moving[b]) / (moving[a].soil || moving[b].soil ? 1 : 2);
       if (!(speed > fastest)) continue;
       throw InputError(moving[b].key + ": against " + moving[a].key + " it moves at up to " + text_of(speed) +
-                    " m/s, and waves in material " + material + " at " + text_of(2 * fastest) +
-                    " m/s: what they meet would be compressed by half or more at once; allowed: up to " +
-                    text_of(fastest) + " m/s; make it slower, or the material stiffer");
+                       " m/s, and waves in material " + material + " at " + text_of(2 * fastest) +
+                       " m/s: what they meet would be compressed by half or more at once; allowed: up to " +
+                       text_of(fastest) + " m/s; make it slower, or the material stiffer");
     }
   }
 }

@@ -37,12 +37,14 @@ void place_planes(const Scene& scene, Solver<D>& solver) {
     if (each.name == scene.follows) {
       solver.follow_axis = each.axis;
       solver.followed = int(solver.planes.all.size());
-      if (plane.node <= 0) throw InputError("boundary " + each.name + ": grid.follows needs it at a positive coordinate");
+      if (plane.node <= 0)
+        throw InputError("boundary " + each.name + ": grid.follows needs it at a positive coordinate");
       // The step shrinks with the cells.
       if (each.at + plane.velocity.least_displacement(each.axis, scene.duration) < 0.01 * each.at) {
-        throw InputError("boundary " + each.name +
-                      ": its motion takes it to less than a hundredth of at_m within time.duration_s, and cells of no "
-                      "height have no time step; shorten motion or time.duration_s");
+        throw InputError(
+            "boundary " + each.name +
+            ": its motion takes it to less than a hundredth of at_m within time.duration_s, and cells of no "
+            "height have no time step; shorten motion or time.duration_s");
       }
     }
     solver.planes.all.push_back(plane);
@@ -74,8 +76,8 @@ void refuse_inside(const Scene& scene, const RegionOfScene& region, const Bodies
     if (!body.at_surface || depth < 1e-6 * point.half.minCoeff()) continue;
     const std::vector<double> place(point.position.data(), point.position.data() + D);
     throw InputError(region_name(scene, region) + ": its point at " + text_of(place) + " m would lie inside body." +
-                  body.name + " at the start; move one of them, or set contact = \"nodes\" in body." + body.name +
-                  ", which then holds what is inside");
+                     body.name + " at the start; move one of them, or set contact = \"nodes\" in body." + body.name +
+                     ", which then holds what is inside");
   }
 }
 
@@ -148,7 +150,7 @@ void open_specimens(const Scene& scene, const MaterialOfScene& material, const s
   const auto first = family->prepared(0);
   if (first.dimension != D) {
     throw InputError("material " + material.name + ": its specimen is of dimension " + std::to_string(first.dimension) +
-                  ", the scene of " + std::to_string(D) + "; name another in specimens, or set scene.dimension");
+                     ", the scene of " + std::to_string(D) + "; name another in specimens, or set scene.dimension");
   }
   soils[material.name] = material.grains->density / (1 + first.void_ratio);
   check_loads(scene, material.name, family->wave_modulus(), soils[material.name]);
@@ -165,8 +167,8 @@ std::shared_ptr<Grains<D>> load_grains(const Scene& scene, const MaterialOfScene
     const double pressure = std::stod(std::to_string(exact));
     if (!(pressure > 0)) {
       throw InputError("material " + material.name +
-                    ": a point would carry no pressure; set initial.pressure_Pa, or "
-                    "initial.surface_m to the height of the free surface");
+                       ": a point would carry no pressure; set initial.pressure_Pa, or "
+                       "initial.surface_m to the height of the free surface");
     }
     ids.push_back(family.spawn(pressure));
     points[k].mass = material.grains->density / (1 + family.prepared(pressure).void_ratio) * points[k].volume;
@@ -185,7 +187,7 @@ void expect_grains(const Model<D>& model) {
     const auto& group = model.solver.group_of(model.watched[k]);
     if (model.grains.contains(group.name)) continue;
     throw InputError("output.networks is true, but the material " + group.name + " at output.watched_points_m[" +
-                  std::to_string(k) + "] has no grains; take that point away, or set output.networks = false");
+                     std::to_string(k) + "] has no grains; take that point away, or set output.networks = false");
   }
 }
 
@@ -245,11 +247,10 @@ void add_group(const Scene& scene, const MaterialOfScene& material, Model<D>& mo
     group.material = material.continuum.make<D>();
   } else {
     const auto& pool = model.pools.at(material.name);
-    auto grains = stock.populate
-                      ? load_grains<D>(scene, material, model, pool, *stock.families.at(material.name), stock.soils,
-                                       points, group.count)
-                      : std::make_shared<Grains<D>>(pool, std::vector<std::int64_t>{}, material.grains->physical,
-                                                    material.grains->gather);
+    auto grains = stock.populate ? load_grains<D>(scene, material, model, pool, *stock.families.at(material.name),
+                                                  stock.soils, points, group.count)
+                                 : std::make_shared<Grains<D>>(pool, std::vector<std::int64_t>{},
+                                                               material.grains->physical, material.grains->gather);
     model.grains[material.name] = grains;
     group.material = grains;
   }

@@ -15,7 +15,8 @@ std::string place_of(const Point<D>& point) {
   return text_of(std::vector<double>(point.position.data(), point.position.data() + D)) + " m";
 }
 
-/// The cause of the time step of Solver::stable_step: the fastest wave, the fastest point, or a driven boundary or body.
+/// The cause of the time step of Solver::stable_step: the fastest wave, the fastest point, or a driven boundary or
+/// body.
 template <int D>
 std::string cause_of_step(const Solver<D>& solver) {
   double wave = 0, fastest = 0, driven = 0;
@@ -51,8 +52,8 @@ std::string cause_of_step(const Solver<D>& solver) {
   return (wave >= fastest ? of_wave : of_point) + ", in cells of " + text_of(solver.grid.cell.minCoeff()) + " m";
 }
 
-/// J, a scale for residuals: energy that the stress of the soil stores, at strains up to a hundredth; round-off of heights
-/// in gravity; with contact at nodes, which is sharp to a cell, the weight over the height of a cell.
+/// J, a scale for residuals: energy that the stress of the soil stores, at strains up to a hundredth; round-off of
+/// heights in gravity; with contact at nodes, which is sharp to a cell, the weight over the height of a cell.
 template <int D>
 double stored_energy(const Solver<D>& solver) {
   constexpr double most = 0.01, least = 1e-5, round_off = 1e-10;

@@ -14,8 +14,8 @@ struct Watched {
   bool warned_step = false, warned_energy = false;
 };
 
-/// Shares of the largest energy so far that may come from nothing before a warning, and before the run ends; a mesh of one
-/// point a cell, far sheared, reaches 0.15 to 0.2. After n steps 4/n are allowed beside: free fall alone has 1/n.
+/// Shares of the largest energy so far that may come from nothing before a warning, and before the run ends; a mesh of
+/// one point a cell, far sheared, reaches 0.15 to 0.2. After n steps 4/n are allowed beside: free fall alone has 1/n.
 inline constexpr double warning_share = 0.25, ending_share = 0.5;
 /// Parts of the first time step at which the run gets a warning, and at which it ends.
 inline constexpr double warning_step = 1e-3, ending_step = 1e-6;

@@ -29,7 +29,7 @@ Workers::Workers(int count) {
     const int started = this->count();
     end();
     throw InputError("-j " + std::to_string(count) + ": the system starts no more than " + std::to_string(started) +
-                  " threads here; give fewer");
+                     " threads here; give fewer");
   }
 }
 

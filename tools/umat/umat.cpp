@@ -139,13 +139,12 @@ void update(const Call& call) {
 
 }  // namespace umat
 
-void umat::umat_(double* stress, double* statev, double* ddsdde, double*, double*, double*, double*, double*,
-                         double*, double*, const double*, const double* dstran, const double*, const double* dtime,
-                         const double*, const double*, const double*, const double*, const char*, const int* ndi,
-                         const int* nshr, const int* ntens, const int* nstatv, const double* props, const int* nprops,
-                         const double*, const double*, double* pnewdt, const double*, const double* dfgrd0,
-                         const double* dfgrd1, const int* noel, const int* npt, const int* layer, const int* kspt,
-                         const int*, const int*) {
+void umat::umat_(double* stress, double* statev, double* ddsdde, double*, double*, double*, double*, double*, double*,
+                 double*, const double*, const double* dstran, const double*, const double* dtime, const double*,
+                 const double*, const double*, const double*, const char*, const int* ndi, const int* nshr,
+                 const int* ntens, const int* nstatv, const double* props, const int* nprops, const double*,
+                 const double*, double* pnewdt, const double*, const double* dfgrd0, const double* dfgrd1,
+                 const int* noel, const int* npt, const int* layer, const int* kspt, const int*, const int*) {
   const PointName name{or_zero(noel), or_zero(npt), or_zero(layer), or_zero(kspt)};
   try {
     const Components components{or_zero(ndi), or_zero(nshr)};

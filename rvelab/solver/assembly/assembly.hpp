@@ -33,7 +33,7 @@ struct Model {
   double largest_skin = 0;                             ///< m
   double min_height = 0;                               ///< m
   Kernels kernels;                                     ///< as the specimen states them, for dt > 0
-  Kernels quasi_static_kernels;                             ///< without the dashpot, whose time a sub-step of dt = 0 is not
+  Kernels quasi_static_kernels;                        ///< without the dashpot, whose time a sub-step of dt = 0 is not
   /// 1 without rolling stiffness; sqrt(4 kt r^2/(4 kt r^2 + 2 kr)) of typical grains: how much slower than the contacts
   /// grains answer that slip about a stiff rolling spring, once their inertia is scaled for that spring.
   double softest_answer = 1;
