@@ -190,7 +190,7 @@ Specimen of_size(Shape shape, std::size_t grains) {
   return pack::repeated(packed(recipe), best);
 }
 
-struct Arguments {
+struct BenchArguments {
   std::size_t grains = 0;  ///< 0: the cases
   std::string shape = "disc";
   bool quick = false, json = false;
@@ -201,7 +201,7 @@ struct Arguments {
 };
 
 /// Times many cells of 400 discs with increments of 20 sub-steps, as a continuum code makes them.
-void run_batch(const Arguments& arguments) {
+void run_batch(const BenchArguments& arguments) {
   const Specimen specimen = packed(discs(false));
   std::vector<Rve> rves(arguments.batch, Rve(specimen));
   const double dt = 20 * 0.7 * rves[0].critical_time_step();
@@ -231,7 +231,7 @@ void run_batch(const Arguments& arguments) {
   listing.print(arguments.json);
 }
 
-void run_bench(const Arguments& arguments) {
+void run_bench(const BenchArguments& arguments) {
   expect_cases(arguments.wanted);
   if (!arguments.folder.empty()) expect_folder_of(arguments.folder + "/packing.h5");
   if (arguments.batch > 0) return run_batch(arguments);
@@ -269,7 +269,7 @@ void run_bench(const Arguments& arguments) {
 }  // namespace
 
 Command bench_command() {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<BenchArguments>();
   Command command{"bench", "Grain-steps per second of fixed cases"};
   command.add("--case", arguments->wanted, "run this case only; give it again for more");
   command.add("--batch", arguments->batch, "time a batch of so many cells of 400 discs instead of the cases")

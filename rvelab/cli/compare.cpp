@@ -9,12 +9,12 @@
 namespace rvelab::cli {
 namespace {
 
-struct Arguments {
+struct CompareArguments {
   std::string a, b;
   bool json = false;
 };
 
-void run_compare(const Arguments& arguments) {
+void run_compare(const CompareArguments& arguments) {
   const io::Comparison result = io::compare_files(arguments.a, arguments.b);
   if (arguments.json) {
     Listing listing;
@@ -33,7 +33,7 @@ void run_compare(const Arguments& arguments) {
 }  // namespace
 
 Command compare_command() {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<CompareArguments>();
   Command command{"compare", "Tell whether two files hold the same, bit by bit"};
   command.add("A.h5", arguments->a, "specimen or record file").required();
   command.add("B.h5", arguments->b, "the other file").required();

@@ -15,7 +15,7 @@
 namespace rvelab::cli {
 namespace {
 
-struct Arguments {
+struct ProbeArguments {
   std::string file;
   std::string method = "dynamic";
   double size = 1e-7;
@@ -38,7 +38,7 @@ void expect_size(double size) {
                    " (what is smaller drowns in the round-off of the stress) to 0.01; give 1e-7 for an elastic probe");
 }
 
-void run_probe(const Arguments& arguments) {
+void run_probe(const ProbeArguments& arguments) {
   Rve rve(io::read_specimen(arguments.file));
   if (arguments.no_slip) forbid_slip(rve);
   const int dimension = rve.cell().dimension;
@@ -65,7 +65,7 @@ void run_probe(const Arguments& arguments) {
 }  // namespace
 
 Command probe_command() {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ProbeArguments>();
   Command command{"probe", "Measure the stiffness of a specimen at small strain"};
   command.add("file", arguments->file, "specimen file, *.h5").required();
   command.add("--size", arguments->size, "strain of each probe, made in both directions").shows_default();

@@ -15,12 +15,12 @@
 namespace rvelab::cli {
 namespace {
 
-struct Arguments {
+struct RecoverArguments {
   std::string file, output;
   bool force = false, json = false;
 };
 
-void run_recover(const Arguments& arguments) {
+void run_recover(const RecoverArguments& arguments) {
   const std::string journal_path = io::journal_of(arguments.file);
   const bool elsewhere = !arguments.output.empty() && io::followed(arguments.output) != io::followed(arguments.file);
   const std::string output = elsewhere ? arguments.output : arguments.file;
@@ -50,7 +50,7 @@ void run_recover(const Arguments& arguments) {
 }  // namespace
 
 Command recover_command() {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<RecoverArguments>();
   Command command{"recover", "Make a record file from what a stopped or killed run left"};
   command.add("file", arguments->file, "record file R.h5 of the run, beside its R.h5.journal").required();
   command.add("-o,--output", arguments->output, "record file to write; default: R.h5 itself");

@@ -12,12 +12,12 @@
 namespace rvelab::cli {
 namespace {
 
-struct Arguments {
+struct SealArguments {
   std::string file, output;
   bool force = false, json = false;
 };
 
-void run_seal(const Arguments& arguments) {
+void run_seal(const SealArguments& arguments) {
   expect_folder_of(arguments.output);
   io::expect_output(arguments.output, arguments.force, {arguments.file});
   const io::SealedFile sealed = io::seal_file(arguments.file, arguments.output);
@@ -32,7 +32,7 @@ void run_seal(const Arguments& arguments) {
 }  // namespace
 
 Command seal_command() {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<SealArguments>();
   Command command{"seal", "Accept a file that another program has changed: write it with a new checksum"};
   command.add("file", arguments->file, "specimen or record file, changed or made by another program").required();
   command.add("-o,--output", arguments->output, "file to write, the same with a checksum").required();

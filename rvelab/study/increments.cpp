@@ -2,15 +2,12 @@
 
 #include <Eigen/LU>
 #include <cmath>
-#include <limits>
 
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/study/processor_time.hpp"
 
 namespace rvelab::study {
 namespace {
-
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 /// The state with the parameters of the specimen as it was given, and the settings over them.
 Specimen opened(const Specimen& state, const Opening& opening) {
@@ -38,8 +35,8 @@ Made applied(Rve& rve, const PathState& from, long parts) {
     const Response response = rve.apply(gradient, time);
     made.seconds += processor_seconds() - begin;
     made.stress = response.stress;
-    made.estimate = time == 0 ? response.report.error_estimate : none;
-    made.allowed = time == 0 ? response.report.allowed_error : none;
+    made.estimate = time == 0 ? response.report.error_estimate : no_value;
+    made.allowed = time == 0 ? response.report.allowed_error : no_value;
   }
   made.grain_steps = static_cast<double>(rve.grain_steps() - grain_steps);
   return made;

@@ -2,14 +2,12 @@
 
 #include <Eigen/LU>
 #include <cmath>
-#include <limits>
 
 #include "rvelab/calibrate/mohr.hpp"
+#include "rvelab/study/piece.hpp"
 
 namespace rvelab::study {
 namespace {
-
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 /// Half of the window around the peak that the dilation is taken over.
 constexpr double dilation_window = 0.005;
@@ -19,13 +17,13 @@ constexpr double secant_strain = 1e-3;
 
 double peak_friction_angle(const records::TestResult& test, int dimension) {
   const auto records = calibrate::last_stage(test);
-  return records.empty() ? none : calibrate::friction_angle_deg(calibrate::peak(records, dimension).stresses);
+  return records.empty() ? no_value : calibrate::friction_angle_deg(calibrate::peak(records, dimension).stresses);
 }
 
 /// Slope of ln det F, expansion positive, over the size of the driving strain: least squares around the peak.
 double dilation_at_peak(const records::TestResult& test, int dimension) {
   const auto records = calibrate::last_stage(test);
-  if (records.empty()) return none;
+  if (records.empty()) return no_value;
   const double middle = calibrate::peak(records, dimension).strain;
   double count = 0, x = 0, y = 0, xx = 0, xy = 0;
   for (const records::Record& record : records) {
@@ -39,11 +37,12 @@ double dilation_at_peak(const records::TestResult& test, int dimension) {
     xy += strain * expansion;
   }
   const double spread = count * xx - x * x;
-  return count < 3 || !(spread > 0) ? none : (count * xy - x * y) / spread;
+  return count < 3 || !(spread > 0) ? no_value : (count * xy - x * y) / spread;
 }
 
 double void_ratio_at_end(const records::TestResult& test, int) {
-  if (test.records.empty() || (test.records.back().quantities & records::asked<records::VoidRatio>) == 0) return none;
+  if (test.records.empty() || (test.records.back().quantities & records::asked<records::VoidRatio>) == 0)
+    return no_value;
   return test.records.back().void_ratio;
 }
 
@@ -60,7 +59,7 @@ double small_strain_stiffness(const records::TestResult& test, int dimension) {
     const double at = (1 - part) * difference(records[k - 1]) + part * difference(records[k]);
     return (at - difference(records.front())) / secant_strain;
   }
-  return none;
+  return no_value;
 }
 
 }  // namespace

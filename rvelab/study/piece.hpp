@@ -3,11 +3,15 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
 
 namespace rvelab::study {
+
+/// A value that could not be found.
+inline constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 
 struct Piece {
   std::map<std::string, std::vector<double>> columns;

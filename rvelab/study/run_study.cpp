@@ -1,7 +1,6 @@
 #include "rvelab/study/run_study.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <mutex>
 #include <thread>
 
@@ -12,8 +11,6 @@
 
 namespace rvelab::study {
 namespace {
-
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 class Running {
  public:
@@ -159,7 +156,7 @@ class Running {
   /// Does something with each state on the team; the failures of single states are noted, the first one as the piece's.
   template <class Make>
   void for_states(Piece& piece, std::size_t point, std::size_t s, Make make) {
-    for (const std::string& column : increment_columns) piece.columns[column].assign(states_.size(), none);
+    for (const std::string& column : increment_columns) piece.columns[column].assign(states_.size(), no_value);
     std::vector<std::string> failures(states_.size());
     std::size_t done = 0;
     double grain_steps = 0;
@@ -206,8 +203,8 @@ class Running {
     auto& stress = piece.columns["stress_Pa"];
     auto& at_rest = piece.columns["at_rest"];
     auto &stage = piece.columns["stage"], &strain = piece.columns["strain"];
-    stress.assign(9 * states_.size(), none);
-    for (auto* column : {&at_rest, &stage, &strain}) column->assign(states_.size(), none);
+    stress.assign(9 * states_.size(), no_value);
+    for (auto* column : {&at_rest, &stage, &strain}) column->assign(states_.size(), no_value);
     for_states(piece, 0, s, [&](std::size_t k) {
       const PathState& from = states_[k];
       const Answer answer = reference_answer(from, opening(0, s, from), study_.relaxation);

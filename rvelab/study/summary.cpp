@@ -2,20 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "rvelab/study/measures.hpp"
 #include "rvelab/study/pareto.hpp"
+#include "rvelab/study/piece.hpp"
 
 namespace rvelab::study {
 namespace {
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
-
 double mean_of(const std::vector<double>& values) {
   double sum = 0;
   for (const double value : values) sum += value;
-  return values.empty() ? none : sum / static_cast<double>(values.size());
+  return values.empty() ? no_value : sum / static_cast<double>(values.size());
 }
 
 void add_increments(const std::vector<const Piece*>& pieces, PointSummary& point) {
@@ -66,7 +64,7 @@ void add_paths(const std::vector<std::vector<const Piece*>>& paths, PointSummary
       std::vector<double> values;
       for (const Piece* piece : repeats) values.push_back(piece->column(measure.name).at(0));
       const calibrate::Statistics found = calibrate::statistics(values);
-      mean += values.empty() ? none : found.mean / specimens;
+      mean += values.empty() ? no_value : found.mean / specimens;
       square += found.standard_error * found.standard_error;
     }
     point.means.push_back(mean);
@@ -84,7 +82,7 @@ void mark_front(std::vector<PointSummary>& points, double PointSummary::*cost, b
 }  // namespace
 
 ErrorSummary summary_of(std::vector<double> errors) {
-  if (errors.empty()) return {none, none, none, none};
+  if (errors.empty()) return {no_value, no_value, no_value, no_value};
   std::sort(errors.begin(), errors.end());
   const std::size_t count = errors.size();
   double squares = 0;

@@ -1,6 +1,5 @@
 #include "rvelab/study/whole_path.hpp"
 
-#include <limits>
 #include <random>
 
 #include "rvelab/error.hpp"
@@ -44,10 +43,9 @@ Piece whole_path(const protocol::Protocol& protocol, const Specimen& specimen, c
   } catch (const Interrupted&) {
     throw;
   } catch (const Error& error) {
-    constexpr double none = std::numeric_limits<double>::quiet_NaN();
     Piece piece;
-    for (const Measure& measure : measures()) piece.columns[measure.name] = {none};
-    piece.columns["seconds"] = piece.columns["grain_steps"] = {none};
+    for (const Measure& measure : measures()) piece.columns[measure.name] = {no_value};
+    piece.columns["seconds"] = piece.columns["grain_steps"] = {no_value};
     piece.failure = error.what();
     return piece;
   }

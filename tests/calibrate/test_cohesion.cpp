@@ -10,7 +10,7 @@ using namespace rvelab;
 
 namespace {
 
-constexpr double degree = 3.14159265358979323846 / 180;
+constexpr double radians_per_degree = 3.14159265358979323846 / 180;
 
 struct Tests {
   calibrate::Calibration found;
@@ -53,7 +53,7 @@ TEST_CASE("A pull-off force shows as cohesion, of the size that its contacts giv
   double branch = 0;
   for (const double radius : specimen.grains.radius) branch += 2 * radius / double(specimen.grains.size());
   const double internal_pressure = contacts * pull_off * branch / (2 * specimen.cell.volume());
-  const double bound = std::tan(found.friction_angle_with_cohesion_deg * degree) * internal_pressure;
+  const double bound = std::tan(found.friction_angle_with_cohesion_deg * radians_per_degree) * internal_pressure;
   CHECK(found.cohesion < 1.2 * bound);
   CHECK(found.cohesion > 0.4 * bound);
 }

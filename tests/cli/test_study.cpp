@@ -6,7 +6,7 @@
 
 using namespace rvelab::test;
 using Catch::Matchers::Contains;
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 namespace {
 
@@ -14,14 +14,14 @@ const std::string small_test = "biaxial S.h5 --set stage.compression.to_strain=0
 const std::string grid = "--vary solver.target_unbalanced=1e-2,1e-3 --reference solver.fixed_substeps=200 ";
 
 /// A result without the times and what they decide.
-Json without_times(Json json) {
-  const auto strip = [](Json& run) {
+OrderedJson without_times(OrderedJson json) {
+  const auto strip = [](OrderedJson& run) {
     for (const char* name : {"processor_s_per_increment", "processor_s_per_path", "on_front_of_processor_time"}) {
       run.erase(name);
     }
   };
   strip(json["reference"]);
-  for (Json& point : json["points"]) strip(point);
+  for (OrderedJson& point : json["points"]) strip(point);
   json["study"].erase("specimens");  // called from another folder
   return json;
 }
@@ -45,7 +45,7 @@ TEST_CASE("a study prints and writes its results, and its file runs it again") {
   REQUIRE(outcome.code == 0);
   CHECK_THAT(outcome.output, Contains("over p, 3 increments") && Contains("in tol.") && Contains("angle_deg") &&
                                  Contains("means of 2 repeats") && Contains("tools/plot/study.py F -o F/study.png"));
-  const Json json = Json::parse(bytes_of(here / "F/study.json"));
+  const OrderedJson json = OrderedJson::parse(bytes_of(here / "F/study.json"));
   REQUIRE(json["points"].size() == 2);
   CHECK(json["points"][0]["values"]["solver.target_unbalanced"] == "1e-2");
   CHECK(json["points"][0]["rms_error_over_p"].get<double>() > json["points"][1]["rms_error_over_p"].get<double>());
@@ -59,7 +59,7 @@ TEST_CASE("a study prints and writes its results, and its file runs it again") {
   const Outcome again = here.run("study F/study.toml --json --threads 1");
   INFO(again.errors);
   REQUIRE(again.code == 0);
-  CHECK(without_times(Json::parse(again.output)) == without_times(json));
+  CHECK(without_times(OrderedJson::parse(again.output)) == without_times(json));
 
   const Outcome figure =
       here.run("-B '" RVELAB_SOURCE_DIR "/tools/plot/study.py' F -o F/study.png", "/usr/bin/python3");
@@ -102,8 +102,8 @@ TEST_CASE("a stopped study goes on with --resume, another study is refused, noth
   INFO(resumed.errors);
   REQUIRE(resumed.code == 0);
   CHECK(first_piece() == made);
-  CHECK(without_times(Json::parse(bytes_of(here / "F/study.json"))) ==
-        without_times(Json::parse(bytes_of(here / "whole/study.json"))));
+  CHECK(without_times(OrderedJson::parse(bytes_of(here / "F/study.json"))) ==
+        without_times(OrderedJson::parse(bytes_of(here / "whole/study.json"))));
 
   here.write("F/pieces/path_1_1_1.json", "{");
   expect_mistake(here.run("study F/study.toml -o F --resume"), "path_1_1_1.json: is damaged");
@@ -147,9 +147,9 @@ TEST_CASE("every kept study runs, cut short") {
                                      "--reference solver.fixed_substeps=100");
     INFO(outcome.errors);
     REQUIRE(outcome.code == 0);
-    const Json points = Json::parse(outcome.output)["points"];
+    const OrderedJson points = OrderedJson::parse(outcome.output)["points"];
     CHECK(points.size() >= 5);
-    for (const Json& point : points) {
+    for (const OrderedJson& point : points) {
       CAPTURE(point.dump());
       CHECK(point["failed_increments"] == 0);
       CHECK(point["rms_error_over_p"].get<double>() > 0);

@@ -66,7 +66,7 @@ double cooled_by(const HardGas& soft, double contact_time, double e, double star
 
 /// Frictionless, at random places, with Gaussian velocities of mean zero and temperature 1; contacts last `duration`
 /// times the mean time between collisions of a grain.
-Specimen specimen_of(const HardGas& hard, bool hertz, double duration, unsigned seed) {
+Specimen gas_specimen(const HardGas& hard, bool hertz, double duration, unsigned seed) {
   const int d = hard.dimension;
   Specimen s = gas(d, std::vector<double>(hard.grains, 1.0), hard.solid_fraction, seed);
   const double half_mass = 0.5 * s.materials[0].density * grain_volume(s.shape, 1, s.cell.lattice(2, 2));
@@ -109,7 +109,7 @@ HardGas asked_gas(const Case& asked, double solid_fraction) {
 
 void gas_keeps_energy(const Case& asked, Verdict& verdict) {
   const HardGas hard = asked_gas(asked, int(asked("dimension")) == 2 ? 0.4 : 0.25);
-  Specimen s = specimen_of(hard, asked("hertz") != 0, 0.02, 7);
+  Specimen s = gas_specimen(hard, asked("hertz") != 0, 0.02, 7);
   s.solver.time_step_factor = asked("time_step_factor");
   Tested tested(s, verdict);
   tested.rve().set_velocities(thermal_velocities(hard, 7), std::vector<Vector3>(hard.grains, Vector3::Zero()));
@@ -129,7 +129,7 @@ void gas_keeps_energy(const Case& asked, Verdict& verdict) {
 /// cool no more (Goldhirsch and Zanetti 1993).
 /// `ledger`: the energy is booked, which takes three times as long.
 double cooling_rate(const HardGas& hard, const Case& asked, unsigned seed, bool ledger, Verdict& verdict) {
-  Specimen s = specimen_of(hard, asked("hertz") != 0, asked("contact_time"), seed);
+  Specimen s = gas_specimen(hard, asked("hertz") != 0, asked("contact_time"), seed);
   s.solver.time_step_factor = asked("time_step_factor");
   s.solver.energy_balance = false;
   Rve mixing(s);

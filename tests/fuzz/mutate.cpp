@@ -7,34 +7,34 @@
 namespace rvelab::fuzz {
 namespace {
 
-constexpr std::string_view edge_numbers[] = {"0",
-                                             "-0",
-                                             "1",
-                                             "-1",
-                                             "2",
-                                             "1e308",
-                                             "-1e308",
-                                             "5e-324",
-                                             "1e-308",
-                                             "1e80",
-                                             "1e-80",
-                                             "1e160",
-                                             "nan",
-                                             "inf",
-                                             "-inf",
-                                             "2147483648",
-                                             "4294967296",
-                                             "9223372036854775807",
-                                             "-9223372036854775808",
-                                             "18446744073709551616",
-                                             "1e9",
-                                             "1e999",
-                                             "0.1",
-                                             "0.9999999",
-                                             "1_000",
-                                             "0x10",
-                                             "1e6",
-                                             "1e-6"};
+constexpr std::string_view edge_numerals[] = {"0",
+                                              "-0",
+                                              "1",
+                                              "-1",
+                                              "2",
+                                              "1e308",
+                                              "-1e308",
+                                              "5e-324",
+                                              "1e-308",
+                                              "1e80",
+                                              "1e-80",
+                                              "1e160",
+                                              "nan",
+                                              "inf",
+                                              "-inf",
+                                              "2147483648",
+                                              "4294967296",
+                                              "9223372036854775807",
+                                              "-9223372036854775808",
+                                              "18446744073709551616",
+                                              "1e9",
+                                              "1e999",
+                                              "0.1",
+                                              "0.9999999",
+                                              "1_000",
+                                              "0x10",
+                                              "1e6",
+                                              "1e-6"};
 constexpr std::string_view oddities[] = {"true",
                                          "false",
                                          "\"\"",
@@ -111,7 +111,7 @@ class Mutation {
       case 4:
       case 5: {
         const auto [begin, end] = number();
-        return replace(begin, end, bytes_of(edge_numbers[below(std::size(edge_numbers))]));
+        return replace(begin, end, bytes_of(edge_numerals[below(std::size(edge_numerals))]));
       }
       case 6: {
         const auto [begin, end] = below(2) == 0 ? word() : number();

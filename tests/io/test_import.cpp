@@ -16,7 +16,7 @@ namespace {
 
 const std::string packings = std::string(RVELAB_TEST_DATA) + "/yade/";
 
-Specimen packing(const std::string& name, const io::ImportOptions& options = {}) {
+Specimen imported_packing(const std::string& name, const io::ImportOptions& options = {}) {
   return io::import_csv(packings + name + ".particles.csv", packings + name + ".contacts.csv",
                         packings + name + ".json", options);
 }
@@ -56,7 +56,7 @@ nlohmann::json meta(const std::string& name) { return nlohmann::json::parse(byte
 TEST_CASE("an imported packing has the stress that was recorded with it") {
   for (const std::string name : {"dense", "hertz"}) {
     CAPTURE(name);
-    const Specimen s = packing(name);
+    const Specimen s = imported_packing(name);
     const auto recorded = meta(name)["stress_tension_positive_Pa"];
     const Matrix3 computed = stress(s);
     for (int k = 0; k < s.cell.dimension; ++k) {
@@ -71,7 +71,7 @@ TEST_CASE("an imported packing has the stress that was recorded with it") {
 }
 
 TEST_CASE("in an imported packing forces and moments balance on every grain") {
-  const Specimen s = packing("dense");
+  const Specimen s = imported_packing("dense");
   std::vector<Vector3> resultant(s.grains.size(), Vector3::Zero());
   std::vector<double> torque(s.grains.size(), 0.0);
   for (const Contact& c : s.contacts) {
@@ -96,7 +96,7 @@ TEST_CASE("in an imported packing forces and moments balance on every grain") {
 TEST_CASE("an imported specimen is sorted, wrapped into the primary cuboid, at rest, and of the given parameters") {
   for (const std::string name : {"dense", "hertz"}) {
     CAPTURE(name);
-    const Specimen s = packing(name);
+    const Specimen s = imported_packing(name);
     CHECK(std::is_sorted(s.grains.id.begin(), s.grains.id.end()));
     for (std::size_t g = 0; g < s.grains.size(); ++g) {
       for (int k = 0; k < s.cell.dimension; ++k) {
@@ -114,7 +114,7 @@ TEST_CASE("an imported specimen is sorted, wrapped into the primary cuboid, at r
       REQUIRE(std::tie(b.i, b.j, b.image) < std::tie(c.i, c.j, c.image));
     }
   }
-  const Specimen dense = packing("dense"), hertz = packing("hertz");
+  const Specimen dense = imported_packing("dense"), hertz = imported_packing("hertz");
   CHECK(dense.shape == Shape::disc);
   CHECK(dense.cell.lattice(2, 2) == 0.1);
   CHECK(dense.cell.rotation == Matrix3::Identity());
@@ -155,7 +155,7 @@ TEST_CASE("contacts written the other way round are the same contacts") {
     turned += "\r\n";
   }
   write_bytes(folder / "turned.csv", turned);
-  const Specimen s = packing("dense");
+  const Specimen s = imported_packing("dense");
   const Specimen t = io::import_csv(packings + "dense.particles.csv", folder / "turned.csv", packings + "dense.json");
   REQUIRE(s.contacts.size() == t.contacts.size());
   for (std::size_t k = 0; k < s.contacts.size(); ++k) {
@@ -252,13 +252,14 @@ TEST_CASE("several materials go by the column material") {
 TEST_CASE("what --set says is kept, and is the last word") {
   io::ImportOptions options;
   options.settings = {"contact.slip=full_radius_ratcheting", "material.friction=0", "solver.skin=0.15"};
-  const Specimen s = packing("dense", options);
+  const Specimen s = imported_packing("dense", options);
   CHECK(s.contact.slip == Slip::full_radius_ratcheting);
   CHECK(s.materials[0].friction == 0);
   CHECK(s.solver.skin == 0.15);
   CHECK(s.contacts.size() == 795);
   options.settings = {"contact.slip=ratcheting"};
-  CHECK_THAT(input_error([&] { packing("dense", options); }), Contains("contact.slip") && Contains("ratcheting"));
+  CHECK_THAT(input_error([&] { imported_packing("dense", options); }),
+             Contains("contact.slip") && Contains("ratcheting"));
 }
 
 TEST_CASE("a bad particle file is refused with file, line, column, value and remedy") {
@@ -289,7 +290,7 @@ TEST_CASE("a cell and parameters are needed, once") {
   CHECK_THAT(loose.error(), Contains("without contact parameters") && Contains("--material"));
   io::ImportOptions options;
   options.cell = Vector3(1, 1, 1);
-  CHECK_THAT(input_error([&] { packing("dense", options); }), Contains("leave --cell out"));
+  CHECK_THAT(input_error([&] { imported_packing("dense", options); }), Contains("leave --cell out"));
 }
 
 TEST_CASE("a bad META.json is refused with the key and the value") {

@@ -14,6 +14,11 @@
 
 namespace rvelab::test {
 
+/// Largest difference of two matrices over the largest entry of the second.
+inline double relative_distance(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  return (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff();
+}
+
 using Row = std::map<std::string, double>;
 
 inline nlohmann::json read_json(const std::string& name) {

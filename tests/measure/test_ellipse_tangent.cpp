@@ -9,6 +9,7 @@
 #include "rvelab/measure/tensor_order.hpp"
 #include "rvelab/pack/search.hpp"
 #include "rvelab/solver/kernels/ellipse_search.hpp"
+#include "tests/measure/reference_network.hpp"
 #include "tests/oracle/specimens.hpp"
 #include "tests/pack/recipes.hpp"
 
@@ -19,12 +20,8 @@ namespace {
 
 using Vector9 = Eigen::Matrix<double, 9, 1>;
 
-double relative_distance(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
-  return (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff();
-}
-
 /// Two ellipses with Hertz-like springs and a history.
-struct Pair {
+struct TwoEllipses {
   double a[2] = {0.9, 0.7}, b[2] = {0.5, 0.45}, angle[2] = {0.4, 1.7};
   Vector3 branch{0.95, 0.55, 0};
   double kn = 3e5, kt = 2e5, kr = 4e4, tangential = 3e3, moment = 700;
@@ -32,7 +29,7 @@ struct Pair {
   HertzRadius radius = HertzRadius::equivalent;
 };
 
-EllipseMatrix<double> matrix_of(const Pair& pair, int k, double turn) {
+EllipseMatrix<double> matrix_of(const TwoEllipses& pair, int k, double turn) {
   const double a = pair.a[k], b = pair.b[k], angle = pair.angle[k] + turn;
   return ellipse_matrix<double>({std::cos(angle), std::sin(angle)}, b * b, a * a - b * b, b * b / a);
 }
@@ -49,7 +46,7 @@ struct Moved {
   Vector9 forces;
 };
 
-Moved moved(const Pair& pair, const Vector9& q, const ContactState* first) {
+Moved moved(const TwoEllipses& pair, const Vector9& q, const ContactState* first) {
   const EllipseMatrix<double> mi = matrix_of(pair, 0, q[5]), mj = matrix_of(pair, 1, q[8]);
   ContactState c;
   c.branch = pair.branch + Vector3(q.head<3>());
@@ -191,7 +188,7 @@ TEST_CASE("A contact of ellipses, linearised: finite differences of the law", "[
                                           {true, HertzRadius::equivalent},
                                           {false, HertzRadius::curvature},
                                           {true, HertzRadius::curvature}}) {
-    Pair pair;
+    TwoEllipses pair;
     pair.rescale = unloading;
     pair.radius = radius;
     const Moved start = moved(pair, Vector9::Zero(), nullptr);

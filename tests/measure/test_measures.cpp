@@ -7,13 +7,12 @@
 
 #include "tests/catch.hpp"
 #include "tests/measure/crystals.hpp"
+#include "tests/oracle/specimens.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
 
 namespace {
-
-const double pi = std::acos(-1.0);
 
 double distance(const Matrix3& a, const Matrix3& b) { return (a - b).cwiseAbs().maxCoeff(); }
 

@@ -26,10 +26,6 @@ Rve open_packing(const std::string& name, const std::vector<std::string>& settin
   return rve;
 }
 
-double relative_distance(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
-  return (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff();
-}
-
 }  // namespace
 
 TEST_CASE("small increments without slip meet the elastic tangent within 1e-6", "[measure]") {

@@ -16,10 +16,6 @@ using namespace rvelab::test;
 
 namespace {
 
-double relative_distance(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
-  return (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff();
-}
-
 /// The affine sum of solver/README.md, all contacts, without initial-stress terms.
 Eigen::MatrixXd affine_sum(const Network& network) {
   const int dimension = network.dimension(), size = component_count(dimension);

@@ -12,6 +12,7 @@
 namespace mpm::test {
 
 constexpr double pi = 3.14159265358979323846;
+inline const ElasticModuli soil{1e7, 0.25};
 
 /// An elastic box from the origin on, with a number of cells along each side and 2^D points in each.
 template <int D>

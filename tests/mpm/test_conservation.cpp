@@ -5,11 +5,7 @@
 using namespace mpm;
 using namespace mpm::test;
 
-namespace {
-
-const ElasticModuli soil{1e7, 0.25};
-
-}  // namespace
+namespace {}  // namespace
 
 TEST_CASE("momentum of a free body is kept to round-off, and grows with gravity") {
   for (const Scheme scheme : {Scheme::usf, Scheme::musl}) {

@@ -5,11 +5,7 @@
 using namespace mpm;
 using namespace mpm::test;
 
-namespace {
-
-const ElasticModuli soil{1e7, 0.25};
-
-}  // namespace
+namespace {}  // namespace
 
 TEST_CASE("the finite map of a spin is a rotation, that of a stretch its exponential") {
   Mat<3> spin;

@@ -17,10 +17,10 @@ using rvelab::test::Folder;
 
 namespace {
 
-const std::string scenes = RVELAB_SOURCE_DIR "/protocols/mpm/";
+const std::string kept_scenes = RVELAB_SOURCE_DIR "/protocols/mpm/";
 
 /// The message of a scene that must be refused.
-std::string refusal(const std::string& text) {
+std::string refusal_of(const std::string& text) {
   const Folder folder;
   std::ofstream(folder / "scene.toml") << text;
   try {
@@ -32,8 +32,8 @@ std::string refusal(const std::string& text) {
   return "accepted";
 }
 
-std::string edited(const std::string& from, const std::string& to) {
-  std::string text = bytes_of(scenes + "elastic_block.toml");
+std::string edited_block(const std::string& from, const std::string& to) {
+  std::string text = bytes_of(kept_scenes + "elastic_block.toml");
   const auto at = text.find(from);
   REQUIRE(at != std::string::npos);
   return text.replace(at, from.size(), to);
@@ -43,7 +43,7 @@ std::string edited(const std::string& from, const std::string& to) {
 
 TEST_CASE("every scene is read, with each of its cases") {
   int files = 0, cases = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(scenes)) {
+  for (const auto& entry : std::filesystem::directory_iterator(kept_scenes)) {
     const auto path = entry.path().string();
     CAPTURE(path);
     ++files;
@@ -66,62 +66,63 @@ TEST_CASE("cases have the published meshes") {
     return std::lround((region.upper[0] - region.lower[0]) / scene.cell[0]) *
            std::lround((region.upper[1] - region.lower[1]) / scene.cell[1]) * region.points_per_cell;
   };
-  CHECK(points(read_scene(scenes + "biaxial.toml", {"C4"}, {})) == 16 * 8 * 4);
-  CHECK(points(read_scene(scenes + "biaxial.toml", {"M1"}, {})) == 20 * 10);
-  CHECK(points(read_scene(scenes + "biaxial.toml", {"M4", "published"}, {})) == 800);
-  CHECK(read_scene(scenes + "biaxial.toml", {"M4", "published"}, {}).planes[1].motion.back().back() == -0.02);
-  CHECK(points(read_scene(scenes + "biaxial.toml", {"M9"}, {})) == 1800);
-  CHECK(points(read_scene(scenes + "biaxial.toml", {"F4"}, {})) == 30 * 15 * 4);
-  CHECK(points(read_scene(scenes + "footing.toml", {"soft", "published"}, {})) == 7776);
-  CHECK(points(read_scene(scenes + "pipe.toml", {"published"}, {})) == 9800);
-  CHECK(points(read_scene(scenes + "column.toml", {"published"}, {})) == 1024);
+  CHECK(points(read_scene(kept_scenes + "biaxial.toml", {"C4"}, {})) == 16 * 8 * 4);
+  CHECK(points(read_scene(kept_scenes + "biaxial.toml", {"M1"}, {})) == 20 * 10);
+  CHECK(points(read_scene(kept_scenes + "biaxial.toml", {"M4", "published"}, {})) == 800);
+  CHECK(read_scene(kept_scenes + "biaxial.toml", {"M4", "published"}, {}).planes[1].motion.back().back() == -0.02);
+  CHECK(points(read_scene(kept_scenes + "biaxial.toml", {"M9"}, {})) == 1800);
+  CHECK(points(read_scene(kept_scenes + "biaxial.toml", {"F4"}, {})) == 30 * 15 * 4);
+  CHECK(points(read_scene(kept_scenes + "footing.toml", {"soft", "published"}, {})) == 7776);
+  CHECK(points(read_scene(kept_scenes + "pipe.toml", {"published"}, {})) == 9800);
+  CHECK(points(read_scene(kept_scenes + "column.toml", {"published"}, {})) == 1024);
 }
 
 TEST_CASE("bodies are met at their surface unless told") {
   for (const auto* name : {"footing", "pipe", "column"}) {
-    const auto scene = read_scene(scenes + name + ".toml", {}, {});
+    const auto scene = read_scene(kept_scenes + name + ".toml", {}, {});
     REQUIRE(scene.bodies.size() == 1);
     CHECK(scene.bodies[0].at_surface);
   }
-  CHECK_FALSE(read_scene(scenes + "footing.toml", {}, {"body.footing.contact=nodes"}).bodies[0].at_surface);
+  CHECK_FALSE(read_scene(kept_scenes + "footing.toml", {}, {"body.footing.contact=nodes"}).bodies[0].at_surface);
 }
 
 TEST_CASE("a mistake in a scene names line, key, what is allowed and the remedy") {
-  CHECK(refusal(edited("duration_s = 0.02", "duration_s = 0.02\npic_fracton = 0.1")) ==
+  CHECK(refusal_of(edited_block("duration_s = 0.02", "duration_s = 0.02\npic_fracton = 0.1")) ==
         "scene.toml:17: unknown key time.pic_fracton; the nearest known key is time.pic_fraction; correct the name or "
         "remove it");
-  CHECK(refusal(edited("density_kg_m3", "density_kg"))
+  CHECK(refusal_of(edited_block("density_kg_m3", "density_kg"))
             .find("unknown key material.density_kg; the nearest known key is "
                   "material.density_kg_m3") != std::string::npos);
   CHECK(
-      refusal(edited("kind = \"roller\"", "kind = \"rolling\"")) ==
+      refusal_of(edited_block("kind = \"roller\"", "kind = \"rolling\"")) ==
       "scene.toml:32: boundary.kind is \"rolling\"; the nearest allowed value is \"roller\" (allowed: roller, fixed)");
-  CHECK(refusal(edited("poisson_ratio = 0.3", "poisson_ratio = 0.7")).find("allowed: -0.99 to 0.499") !=
+  CHECK(refusal_of(edited_block("poisson_ratio = 0.3", "poisson_ratio = 0.7")).find("allowed: -0.99 to 0.499") !=
         std::string::npos);
-  CHECK(refusal(edited("young_modulus_Pa = 1e7\n", "")).find("material.young_modulus_Pa is missing") !=
+  CHECK(refusal_of(edited_block("young_modulus_Pa = 1e7\n", "")).find("material.young_modulus_Pa is missing") !=
         std::string::npos);
-  CHECK(refusal(edited("[[boundary]]", "[[boundry]]")).find("unknown key boundry; the nearest known key is boundary") !=
+  CHECK(refusal_of(edited_block("[[boundary]]", "[[boundry]]"))
+            .find("unknown key boundry; the nearest known key is boundary") != std::string::npos);
+  CHECK(refusal_of(edited_block("material = \"block\"", "material = \"blok\"")).find("nearest material is \"block\"") !=
         std::string::npos);
-  CHECK(refusal(edited("material = \"block\"", "material = \"blok\"")).find("nearest material is \"block\"") !=
-        std::string::npos);
-  CHECK(refusal(edited("[time]", "[time")).find("scene.toml:15:6") != std::string::npos);
-  CHECK(refusal(edited("lower_m = [0, 0]", "lower_m = [0, 0, 0]")).find("2 numbers") != std::string::npos);
-  CHECK(refusal(edited("upper_m = [1, 1]", "upper_m = [1, 1]\npoints_per_cell = 5")).find("must be a square") !=
-        std::string::npos);
-  CHECK(refusal(edited("frame_every_s = 0.02", "networks = true")).find("name them in watched_points_m") !=
+  CHECK(refusal_of(edited_block("[time]", "[time")).find("scene.toml:15:6") != std::string::npos);
+  CHECK(refusal_of(edited_block("lower_m = [0, 0]", "lower_m = [0, 0, 0]")).find("2 numbers") != std::string::npos);
+  CHECK(
+      refusal_of(edited_block("upper_m = [1, 1]", "upper_m = [1, 1]\npoints_per_cell = 5")).find("must be a square") !=
+      std::string::npos);
+  CHECK(refusal_of(edited_block("frame_every_s = 0.02", "networks = true")).find("name them in watched_points_m") !=
         std::string::npos);
   // A case is held to the same keys.
-  CHECK_THROWS_AS(read_scene(scenes + "biaxial.toml", {"M5"}, {}), InputError);
+  CHECK_THROWS_AS(read_scene(kept_scenes + "biaxial.toml", {"M5"}, {}), InputError);
 }
 
 TEST_CASE("assignments of the command line go by the names of tables") {
   const auto scene =
-      read_scene(scenes + "pipe.toml", {}, {"body.pipe.radius_m=0.4", "time.cfl=0.2", "grid.shape=gimp"});
+      read_scene(kept_scenes + "pipe.toml", {}, {"body.pipe.radius_m=0.4", "time.cfl=0.2", "grid.shape=gimp"});
   CHECK(std::get<Disc<2>>(std::get<BodyShape<2>>(scene.bodies[0].shape)).radius == 0.4);
   CHECK(scene.cfl == 0.2);
   CHECK(scene.shape == Shape::gimp);
-  CHECK_THROWS_AS(read_scene(scenes + "pipe.toml", {}, {"body.pip.radius_m=0.4"}), InputError);
-  CHECK_THROWS_AS(read_scene(scenes + "pipe.toml", {}, {"time.clf=0.2"}), InputError);
+  CHECK_THROWS_AS(read_scene(kept_scenes + "pipe.toml", {}, {"body.pip.radius_m=0.4"}), InputError);
+  CHECK_THROWS_AS(read_scene(kept_scenes + "pipe.toml", {}, {"time.clf=0.2"}), InputError);
 }
 
 TEST_CASE("the program ends with code 2 and one line for a user's mistake") {
@@ -135,8 +136,8 @@ TEST_CASE("the program ends with code 2 and one line for a user's mistake") {
     return code;
   };
   CHECK(run({folder / "none.toml", "-o", folder / "run"}) == 2);
-  CHECK(run({scenes + "elastic_block.toml", "-o", folder / "run", "--set", "time.durations_s=1"}) == 2);
-  CHECK(run({scenes + "element.toml", "-o", folder / "run2", "--specimens", folder.path()}) == 2);
+  CHECK(run({kept_scenes + "elastic_block.toml", "-o", folder / "run", "--set", "time.durations_s=1"}) == 2);
+  CHECK(run({kept_scenes + "element.toml", "-o", folder / "run2", "--specimens", folder.path()}) == 2);
   CHECK(bytes_of(folder / "err").find("dense.h5") != std::string::npos);
   CHECK(run({"--resume", folder / "nowhere"}) == 2);
   // As a run holds its folder.
@@ -144,7 +145,8 @@ TEST_CASE("the program ends with code 2 and one line for a user's mistake") {
   std::filesystem::create_directories(busy);
   const int held = open(busy.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   REQUIRE(flock(held, LOCK_EX) == 0);
-  for (const auto& given : {std::vector<std::string>{"--resume", busy}, {scenes + "elastic_block.toml", "-o", busy}}) {
+  for (const auto& given :
+       {std::vector<std::string>{"--resume", busy}, {kept_scenes + "elastic_block.toml", "-o", busy}}) {
     CHECK(run(given) == 2);
     CHECK(bytes_of(folder / "err").find("another rvelab-mpm is writing there") != std::string::npos);
   }

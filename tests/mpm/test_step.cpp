@@ -7,8 +7,6 @@ using namespace mpm::test;
 
 namespace {
 
-const ElasticModuli soil{1e7, 0.25};
-
 /// From the first to the second time at which the projection of the velocities on their first field changes its sign.
 double half_period(Solver<2>& solver) {
   std::vector<Vec<2>> field;

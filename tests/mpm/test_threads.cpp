@@ -5,11 +5,7 @@
 using namespace mpm;
 using namespace mpm::test;
 
-namespace {
-
-const ElasticModuli soil{1e7, 0.25};
-
-}  // namespace
+namespace {}  // namespace
 
 TEST_CASE("contact with three bodies has the same bits on any number of threads") {
   std::vector<std::vector<Point<2>>> ends;

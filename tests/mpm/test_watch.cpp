@@ -11,8 +11,6 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-const ElasticModuli soil{1e7, 0.25};
-
 template <class Work>
 std::string reason(const Work& work) {
   try {

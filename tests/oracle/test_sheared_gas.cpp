@@ -46,7 +46,7 @@ Specimen mapped(Specimen s, const Matrix3& map) {
 }
 
 /// The same specimen with cell vectors L N, in the frame of that basis; not to be reduced before the flow begins.
-Specimen in_basis(Specimen s, const Eigen::Matrix3i& basis) {
+Specimen in_lattice_basis(Specimen s, const Eigen::Matrix3i& basis) {
   const Matrix3 vectors = s.cell.lattice * basis.cast<double>();
   Matrix3 frame = vectors;
   for (int k = 0; k < 3; ++k) {
@@ -84,7 +84,7 @@ Stresses flow(Specimen s, const Matrix3& map, int steps_per_increment, int halvi
 }
 
 /// Largest difference over the time, over the largest stress.
-double difference(const std::vector<Matrix3>& a, const std::vector<Matrix3>& b) {
+double relative_difference(const std::vector<Matrix3>& a, const std::vector<Matrix3>& b) {
   REQUIRE(a.size() == b.size());
   double most = 0, scale = 0;
   for (std::size_t k = 0; k < a.size(); ++k) {
@@ -114,10 +114,12 @@ void check_map(const Matrix3& map) {
   const Specimen s = mapped(gas(), map);
   const Stresses fine = flow(s, map, 10), coarse = flow(s, map, 40), half = flow(s, map, 10, 1);
   CHECK(fine.reynolds.back().diagonal().maxCoeff() < 0);
-  CHECK(difference(along_xz(10).contact, fine.contact) < 5e-5);
-  CHECK(difference(along_xz(10).reynolds, fine.reynolds) < 3e-5);
-  CHECK(difference(along_xz(40).contact, coarse.contact) > 4 * difference(along_xz(10).contact, fine.contact));
-  CHECK(difference(along_xz(10, 1).reynolds, half.reynolds) < 0.7 * difference(along_xz(10).reynolds, fine.reynolds));
+  CHECK(relative_difference(along_xz(10).contact, fine.contact) < 5e-5);
+  CHECK(relative_difference(along_xz(10).reynolds, fine.reynolds) < 3e-5);
+  CHECK(relative_difference(along_xz(40).contact, coarse.contact) >
+        4 * relative_difference(along_xz(10).contact, fine.contact));
+  CHECK(relative_difference(along_xz(10, 1).reynolds, half.reynolds) <
+        0.7 * relative_difference(along_xz(10).reynolds, fine.reynolds));
 }
 
 }  // namespace
@@ -130,16 +132,16 @@ TEST_CASE("shear xy and its mirror image under yx have mirrored contact and Reyn
   // The flow xz seen as xy, and as its mirror image yx.
   const Matrix3 as_xy = matrix({1, 0, 0, 0, 0, 1, 0, 1, 0}), as_yx = matrix({0, 0, 1, 1, 0, 0, 0, 1, 0});
   const Stresses xy = flow(mapped(gas(), as_xy), as_xy, 10), yx = flow(mapped(gas(), as_yx), as_yx, 10);
-  CHECK(difference(xy.contact, yx.contact) < 5e-5);
-  CHECK(difference(xy.reynolds, yx.reynolds) < 3e-5);
+  CHECK(relative_difference(xy.contact, yx.contact) < 5e-5);
+  CHECK(relative_difference(xy.reynolds, yx.reynolds) < 3e-5);
 }
 
 TEST_CASE("shear xz and the same turned by a quarter turn agree after rotation") {
   check_map(matrix({0, 0, 1, 0, 1, 0, -1, 0, 0}));                     // about y: v_z(x), reversed
   const Matrix3 about_diagonal = matrix({0, 0, 1, 1, 0, 0, 0, 1, 0});  // v_y(x)
   const Stresses turned = flow(mapped(gas(), about_diagonal), about_diagonal, 10);
-  CHECK(difference(along_xz(10).contact, turned.contact) < 5e-5);
-  CHECK(difference(along_xz(10).reynolds, turned.reynolds) < 3e-5);
+  CHECK(relative_difference(along_xz(10).contact, turned.contact) < 5e-5);
+  CHECK(relative_difference(along_xz(10).reynolds, turned.reynolds) < 3e-5);
 }
 
 TEST_CASE("shear along a 45 degree axis agrees after rotation") {
@@ -150,23 +152,23 @@ TEST_CASE("shear along a 45 degree axis agrees after rotation") {
   s.cell.rotation = turn;
   const Stresses turned = flow(s, turn, 10);
   // The arithmetic differs by round-off alone, some 5000 steps of it.
-  CHECK(difference(along_xz(10).contact, turned.contact) < 1e-8);
-  CHECK(difference(along_xz(10).reynolds, turned.reynolds) < 1e-8);
+  CHECK(relative_difference(along_xz(10).contact, turned.contact) < 1e-8);
+  CHECK(relative_difference(along_xz(10).reynolds, turned.reynolds) < 1e-8);
 }
 
 TEST_CASE("shear of a lattice whose basis lies at 45 degrees is that of the cube, through its reduction too") {
   // Cell vectors a + c, b, c: the frame turns until the list is built anew, and the lattice is reduced in mid-flow.
   Eigen::Matrix3i basis;
   basis << 1, 0, 0, 0, 1, 0, 1, 0, 1;
-  const Specimen s = in_basis(gas(), basis);
+  const Specimen s = in_lattice_basis(gas(), basis);
   const Stresses fine = flow(s, Matrix3::Identity(), 10);
-  CHECK(difference(along_xz(10).contact, fine.contact) < 5e-5);
-  CHECK(difference(along_xz(10).reynolds, fine.reynolds) < 3e-5);
+  CHECK(relative_difference(along_xz(10).contact, fine.contact) < 5e-5);
+  CHECK(relative_difference(along_xz(10).reynolds, fine.reynolds) < 3e-5);
   // In increments as long as the intervals between renewals of the step, 50 steps, the way may differ by 25 times as
   // much, and the reduction falls into the middle of one.
   const Stresses coarse = flow(s, Matrix3::Identity(), 50);
-  CHECK(difference(along_xz(50).contact, coarse.contact) < 1e-3);
-  CHECK(difference(along_xz(50).reynolds, coarse.reynolds) < 1e-4);
+  CHECK(relative_difference(along_xz(50).contact, coarse.contact) < 1e-3);
+  CHECK(relative_difference(along_xz(50).reynolds, coarse.reynolds) < 1e-4);
 }
 
 TEST_CASE("a gas without contacts keeps its laboratory velocities whatever the cell does") {

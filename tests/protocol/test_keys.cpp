@@ -13,8 +13,10 @@
 #include "rvelab/protocol/protocol.hpp"
 #include "rvelab/protocol/protocol_keys.hpp"
 #include "tests/catch.hpp"
+#include "tests/protocol/texts.hpp"
 
 using namespace rvelab;
+using namespace rvelab::test;
 using Catch::Matchers::Contains;
 
 namespace {
@@ -96,15 +98,6 @@ kind = "relax"
 [[stage]]
 kind = "probe"
 )";
-
-std::string message_of(const std::string& text, const std::vector<std::string>& assignments = {}) {
-  try {
-    protocol::parse_protocol(text, "t.toml", assignments);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
 
 /// A value of a key's kind and range, as an assignment writes it.
 std::string some_value(const keys::TableKey& entry) {
@@ -270,8 +263,8 @@ TEST_CASE("a key in another unit of its quantity is answered with the right key 
       "[test]\nname = \"t\"\npressure_kPa = 20\n[[stage]]\nkind = \"isotropic\"\n"
       "[[stage]]\nkind = \"compression\"\nto_strain_percent = 1\n";
   CHECK(message_of(text) ==
-        "t.toml:3: test.pressure_kPa is not known; write test.pressure_Pa, 1 kPa = 1000 Pa\n"
-        "t.toml:8: stage.compression.to_strain_percent is not known; write stage.compression.to_strain, 1 percent = "
+        "test.toml:3: test.pressure_kPa is not known; write test.pressure_Pa, 1 kPa = 1000 Pa\n"
+        "test.toml:8: stage.compression.to_strain_percent is not known; write stage.compression.to_strain, 1 percent = "
         "0.01");
   // Another quantity is no unit of this one.
   CHECK_THAT(answer("test.pressure_mm=1"),

@@ -9,38 +9,30 @@
 #include "rvelab/protocol/run.hpp"
 #include "tests/catch.hpp"
 #include "tests/protocol/reference_specimen.hpp"
+#include "tests/protocol/texts.hpp"
 
 using namespace rvelab;
+using namespace rvelab::test;
 
 namespace {
 
-const std::string head = "[test]\nname = \"test\"\npressure_Pa = 20e3\n";
-
-protocol::TestRun run_text(const std::string& stages, const std::string& specimen) {
-  return protocol::run_protocol(protocol::parse_protocol(head + stages, "test.toml"), reference_specimen(specimen));
+protocol::TestRun run_path(const std::string& stages, const std::string& specimen) {
+  return run_stages(stages, reference_specimen(specimen));
 }
 
 std::string row(const std::string& name, const std::string& rest) {
   return "[[stage.row]]\nname = \"" + name + "\"\n" + rest + "\n";
 }
 
-std::string message_of(const std::string& rows, int dimension) {
-  try {
-    protocol::parse_protocol(
-        "[test]\nname = \"test\"\ndimension = " + std::to_string(dimension) + "\n[[stage]]\nkind = \"path\"\n" + rows,
-        "t.toml");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+std::string message_of_rows(const std::string& rows, int dimension) {
+  return message_of("[test]\nname = \"test\"\ndimension = " + std::to_string(dimension) +
+                    "\n[[stage]]\nkind = \"path\"\n" + rows);
 }
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 }  // namespace
 
 TEST_CASE("Rows of strain: the logarithmic strain goes from point to point in equal parts") {
-  const protocol::TestRun run = run_text("[[stage]]\nkind = \"path\"\nrecords_per_point = 4\n" +
+  const protocol::TestRun run = run_path("[[stage]]\nkind = \"path\"\nrecords_per_point = 4\n" +
                                              row("axial", "strain = {yy = -1}\nto = [0.002, 0.001]") +
                                              row("shear", "strain = {xy = 1}\nto = [0.0, 0.0004]"),
                                          "dense_p20");
@@ -61,7 +53,7 @@ TEST_CASE("Rows of strain: the logarithmic strain goes from point to point in eq
 
 TEST_CASE("Rows of stress and strain: both are held, in any combination") {
   // A spring beside the specimen: sigma_xx + 20 MPa eps_xx stays; p itself; and their records.
-  const protocol::TestRun run = run_text("[[stage]]\nkind = \"path\"\nrecords_per_point = 10\n" +
+  const protocol::TestRun run = run_path("[[stage]]\nkind = \"path\"\nrecords_per_point = 10\n" +
                                              row("axial", "strain = {yy = -1}\nto = [0.005]") +
                                              row("spring", "strain_Pa = {xx = 20e6}\nstress = {xx = 1}"),
                                          "dense_p20");
@@ -81,7 +73,7 @@ TEST_CASE("A volume that the rows say stays, stays to 1e-12, stress-driven or no
             row("tau", "stress = {xy = 1}\nto_Pa = [2e3, -2e3]"),
         row("volume", "strain = {xx = 1, yy = 1}") + row("axial", "strain = {yy = -1}\nto = [0.003, -0.001]"),
         row("volume", "strain = {xx = 1, yy = 1}") + row("q", "stress = {xx = 1, yy = -1}\nto_Pa = [6e3, -6e3]")}) {
-    const protocol::TestRun run = run_text(cycles + rows, "dense_p20");
+    const protocol::TestRun run = run_path(cycles + rows, "dense_p20");
     REQUIRE(run.result.records.size() == 25);
     for (const records::Record& record : run.result.records) {
       CHECK(record.deformation_gradient.determinant() == Approx(1).margin(1e-12));
@@ -92,7 +84,7 @@ TEST_CASE("A volume that the rows say stays, stays to 1e-12, stress-driven or no
 
 TEST_CASE("Stress-driven components move by a symmetric gradient: the cell does not spin") {
   const protocol::TestRun run =
-      run_text("[[stage]]\nkind = \"path\"\nrecords_per_point = 8\n" + row("xx", "stress = {xx = 1}") +
+      run_path("[[stage]]\nkind = \"path\"\nrecords_per_point = 8\n" + row("xx", "stress = {xx = 1}") +
                    row("yy", "stress = {yy = 1}") + row("tau", "stress = {xy = 1}\nto_Pa = [3e3]"),
                "dense_p20");
   const Matrix3& f = run.result.records.back().deformation_gradient;
@@ -102,14 +94,14 @@ TEST_CASE("Stress-driven components move by a symmetric gradient: the cell does 
 }
 
 TEST_CASE("Constant p: held within the tolerance, 2D and 3D; the Lode angle stays") {
-  const protocol::TestRun plane = run_text("[[stage]]\nkind = \"deviatoric\"\nto_strain = 0.006\n", "dense_p20");
+  const protocol::TestRun plane = run_path("[[stage]]\nkind = \"deviatoric\"\nto_strain = 0.006\n", "dense_p20");
   for (const records::Record& record : plane.result.records) {
     if (record.target_held) CHECK(mean_pressure(record.stress, 2) == Approx(20e3).epsilon(0.0051));
   }
   CHECK(deviatoric_stress(plane.result.records.back().stress, 2) > 4e3);
   for (const double angle : {0.0, 40.0}) {
     const protocol::TestRun run =
-        run_text("[[stage]]\nkind = \"deviatoric\"\nto_strain = 0.002\nlode_angle_deg = " + std::to_string(angle) +
+        run_path("[[stage]]\nkind = \"deviatoric\"\nto_strain = 0.002\nlode_angle_deg = " + std::to_string(angle) +
                      "\npressure_Pa = 100e3\n",
                  "hertz");
     REQUIRE(run.result.records.size() == 3);
@@ -140,7 +132,7 @@ TEST_CASE("Directions without libm are those of libm") {
 
 TEST_CASE("Pressures one after the other: both normal stresses reach each") {
   const protocol::TestRun run =
-      run_text("[[stage]]\nkind = \"pressure_path\"\nto_Pa = [40e3, 10e3]\nrecords_per_point = 3\n", "dense_p20");
+      run_path("[[stage]]\nkind = \"pressure_path\"\nto_Pa = [40e3, 10e3]\nrecords_per_point = 3\n", "dense_p20");
   REQUIRE(run.result.records.size() == 7);
   const double expected[] = {20e3, 26667, 33333, 40e3, 30e3, 20e3, 10e3};
   for (std::size_t k = 0; k < 7; ++k) {
@@ -154,33 +146,36 @@ TEST_CASE("Pressures one after the other: both normal stresses reach each") {
 TEST_CASE("Rows that say the same, or contradict each other, are refused by name") {
   const std::string xx = row("xx", "stress = {xx = -1}\nto_Pa = [1e4]"),
                     yy = row("yy", "stress = {yy = -1}\nto_Pa = [1e4]");
-  CHECK(message_of(xx + yy, 2).empty());
-  const std::string same = message_of(xx + yy + row("p", "stress = {xx = -0.5, yy = -0.5}\nto_Pa = [1e4]"), 2);
+  CHECK(message_of_rows(xx + yy, 2).empty());
+  const std::string same = message_of_rows(xx + yy + row("p", "stress = {xx = -0.5, yy = -0.5}\nto_Pa = [1e4]"), 2);
   CHECK(contains(same, "row \"p\" follows from \"xx\", \"yy\" (dependent constraints)"));
-  const std::string other = message_of(xx + yy + row("p", "stress = {xx = -0.5, yy = -0.5}\nto_Pa = [2e4]"), 2);
+  const std::string other = message_of_rows(xx + yy + row("p", "stress = {xx = -0.5, yy = -0.5}\nto_Pa = [2e4]"), 2);
   CHECK(contains(other, "row \"p\" contradicts \"xx\", \"yy\""));
   CHECK(contains(other, "remove one of them"));
   const std::string volume =
-      message_of(row("volume", "strain = {xx = 1, yy = 1}") + row("a", "strain = {xx = 1}\nto = [0.1]") +
-                     row("b", "strain = {yy = 2}\nto = [0.3]"),
-                 2);
+      message_of_rows(row("volume", "strain = {xx = 1, yy = 1}") + row("a", "strain = {xx = 1}\nto = [0.1]") +
+                          row("b", "strain = {yy = 2}\nto = [0.3]"),
+                      2);
   CHECK(contains(volume, "row \"b\" contradicts \"volume\", \"a\""));
-  const std::string few = message_of(row("p", "stress = {xx = -0.5, yy = -0.5}\nto_Pa = [1e4]"), 2);
+  const std::string few = message_of_rows(row("p", "stress = {xx = -0.5, yy = -0.5}\nto_Pa = [1e4]"), 2);
   CHECK(contains(few, "2 constraints (\"p\", \"strain xy = 0, since no row names it\"); allowed in 2D: 3; add a row"));
-  CHECK(contains(message_of(row("z", "strain = {zz = 1}\nto = [0.1]"), 2), "names a component along z"));
-  CHECK(contains(message_of(row("a", "strain = {xx = 1}"), 2), "gives no targets"));
-  CHECK(contains(message_of(row("a", "to = [1]"), 2), "neither strain nor stress"));
-  CHECK(contains(message_of(row("a", "stress = {xx = 1}\nto = [1]"), 2), "allowed: to_Pa; rename it"));
-  CHECK(contains(message_of(row("a", "strain = {xx = 1}\nto_Pa = [1]"), 2), "allowed in a row without stress: to"));
-  CHECK(contains(message_of(row("a", "strain = {yx = 1}\nto = [1]"), 2), "names no component \"yx\""));
-  CHECK(contains(message_of(row("a", "strain = {xx = 1}\nto = [1]") + row("a", "strain = {yy = 1}"), 2),
+  CHECK(contains(message_of_rows(row("z", "strain = {zz = 1}\nto = [0.1]"), 2), "names a component along z"));
+  CHECK(contains(message_of_rows(row("a", "strain = {xx = 1}"), 2), "gives no targets"));
+  CHECK(contains(message_of_rows(row("a", "to = [1]"), 2), "neither strain nor stress"));
+  CHECK(contains(message_of_rows(row("a", "stress = {xx = 1}\nto = [1]"), 2), "allowed: to_Pa; rename it"));
+  CHECK(
+      contains(message_of_rows(row("a", "strain = {xx = 1}\nto_Pa = [1]"), 2), "allowed in a row without stress: to"));
+  CHECK(contains(message_of_rows(row("a", "strain = {yx = 1}\nto = [1]"), 2), "names no component \"yx\""));
+  CHECK(contains(message_of_rows(row("a", "strain = {xx = 1}\nto = [1]") + row("a", "strain = {yy = 1}"), 2),
                  "is there twice"));
-  CHECK(contains(message_of(row("a", "strain = {xx = 1}\nto = [1]") + row("b", "strain = {yy = 1}\nto = [1, 2]"), 2),
-                 "allowed: the same number"));
+  CHECK(
+      contains(message_of_rows(row("a", "strain = {xx = 1}\nto = [1]") + row("b", "strain = {yy = 1}\nto = [1, 2]"), 2),
+               "allowed: the same number"));
 }
 
 TEST_CASE("Without a dimension in the file the rows are checked when the specimen is there, before anything runs") {
   const std::string rows = row("z", "strain = {zz = 1}\nto = [0.1]");
-  const protocol::Protocol protocol = protocol::parse_protocol(head + "[[stage]]\nkind = \"path\"\n" + rows, "t.toml");
+  const protocol::Protocol protocol = protocol::parse_protocol(
+      "[test]\nname = \"test\"\npressure_Pa = 20e3\n[[stage]]\nkind = \"path\"\n" + rows, "t.toml");
   CHECK_THROWS_AS(protocol::run_protocol(protocol, reference_specimen("dense_p20")), InputError);
 }

@@ -38,19 +38,19 @@ Outcome rvelab_program(const std::string& arguments) {
 }
 
 /// A folder of its own, removed at the end, with the specimen in it.
-struct Folder {
+struct SpecimenFolder {
   fs::path path;
-  explicit Folder(const std::string& name) : path(fs::temp_directory_path() / ("rvelab_test_" + name)) {
+  explicit SpecimenFolder(const std::string& name) : path(fs::temp_directory_path() / ("rvelab_test_" + name)) {
     fs::remove_all(path);
     fs::create_directories(path);
     io::write_specimen(reference_specimen("dense_p20"), specimen());
   }
-  ~Folder() { fs::remove_all(path); }
+  ~SpecimenFolder() { fs::remove_all(path); }
   std::string specimen() const { return (path / "S.h5").string(); }
   std::string file(const std::string& name) const { return (path / name).string(); }
 };
 
-const std::string biaxial = RVELAB_SOURCE_DIR "/protocols/biaxial.toml";
+const std::string biaxial_file = RVELAB_SOURCE_DIR "/protocols/biaxial.toml";
 
 void expect_users_mistake(const Outcome& outcome, const std::string& part) {
   INFO(outcome.text);
@@ -62,9 +62,9 @@ void expect_users_mistake(const Outcome& outcome, const std::string& part) {
 }  // namespace
 
 TEST_CASE("A run prints its records as arrays by name and writes the same ones") {
-  const Folder folder("run");
+  const SpecimenFolder folder("run");
   const Outcome outcome =
-      rvelab_program("run " + biaxial + " --specimen " + folder.specimen() + " -o " + folder.file("R.h5") +
+      rvelab_program("run " + biaxial_file + " --specimen " + folder.specimen() + " -o " + folder.file("R.h5") +
                      " --set stage.compression.to_strain=0.002 --set stage.isotropic.stress_tolerance=1e-3 --json");
   INFO(outcome.text);
   REQUIRE(outcome.code == 0);
@@ -94,16 +94,16 @@ TEST_CASE("A run prints its records as arrays by name and writes the same ones")
 }
 
 TEST_CASE("A specimen that the protocol names lies beside it") {
-  const Folder folder("named");
+  const SpecimenFolder folder("named");
   std::ofstream(folder.file("rest.toml")) << "[test]\nname = \"rest\"\n[specimen]\nfile = \"S.h5\"\n"
                                              "[[stage]]\nkind = \"relax\"\n";
   CHECK(rvelab_program("run " + folder.file("rest.toml")).code == 0);
 }
 
 TEST_CASE("A calibration prints the words that other programs read and writes one record file a pressure") {
-  const Folder folder("calibrate");
+  const SpecimenFolder folder("calibrate");
   const Outcome outcome =
-      rvelab_program("calibrate " + biaxial + " --specimen " + folder.specimen() +
+      rvelab_program("calibrate " + biaxial_file + " --specimen " + folder.specimen() +
                      " --pressures 15e3,20e3 --set stage.compression.to_strain=0.003 --threads 2 -o " +
                      folder.path.string() + " --json");
   INFO(outcome.text);
@@ -127,31 +127,32 @@ TEST_CASE("A calibration prints the words that other programs read and writes on
 }
 
 TEST_CASE("A user's mistake is one line on standard error and exit code 2") {
-  const Folder folder("mistakes");
+  const SpecimenFolder folder("mistakes");
   const std::string with = " --specimen " + folder.specimen();
   expect_users_mistake(rvelab_program("run no/such.toml" + with), "no/such.toml");
-  expect_users_mistake(rvelab_program("run " + biaxial), "no specimen");
-  expect_users_mistake(rvelab_program("run " + biaxial + " --specimen no/such.h5"), "no/such.h5");
-  expect_users_mistake(rvelab_program("run " + biaxial + with + " --set tets.pressure_Pa=1 --set contact.slop=2"),
+  expect_users_mistake(rvelab_program("run " + biaxial_file), "no specimen");
+  expect_users_mistake(rvelab_program("run " + biaxial_file + " --specimen no/such.h5"), "no/such.h5");
+  expect_users_mistake(rvelab_program("run " + biaxial_file + with + " --set tets.pressure_Pa=1 --set contact.slop=2"),
                        "nearest known key is contact.slip");
-  expect_users_mistake(rvelab_program("run " + biaxial + with + " -o no/such/folder/R.h5"), "no/such/folder");
-  expect_users_mistake(rvelab_program("run " + biaxial + with + " --set material.steel.friction=0.1"), "steel");
+  expect_users_mistake(rvelab_program("run " + biaxial_file + with + " -o no/such/folder/R.h5"), "no/such/folder");
+  expect_users_mistake(rvelab_program("run " + biaxial_file + with + " --set material.steel.friction=0.1"), "steel");
   expect_users_mistake(rvelab_program("run " + std::string(RVELAB_SOURCE_DIR) + "/protocols/triaxial.toml" + with),
                        "dimension");
-  expect_users_mistake(rvelab_program("calibrate " + biaxial + with + " --pressures 10e3,-1"), "-1");
-  expect_users_mistake(rvelab_program("calibrate " + biaxial + with + " --pressures 10e3,10e3"), "each pressure once");
-  expect_users_mistake(rvelab_program("calibrate " + biaxial + with + with + with + " --pressures 10e3,20e3"),
+  expect_users_mistake(rvelab_program("calibrate " + biaxial_file + with + " --pressures 10e3,-1"), "-1");
+  expect_users_mistake(rvelab_program("calibrate " + biaxial_file + with + " --pressures 10e3,10e3"),
+                       "each pressure once");
+  expect_users_mistake(rvelab_program("calibrate " + biaxial_file + with + with + with + " --pressures 10e3,20e3"),
                        "3 specimens for 2 pressures");
   expect_users_mistake(rvelab_program("calibrate " + std::string(RVELAB_SOURCE_DIR) + "/protocols/probe.toml" + with +
                                       " --pressures 10e3"),
                        "gives no friction angle");
-  expect_users_mistake(rvelab_program("run " + biaxial + with + " --threads 0"), "threads");
+  expect_users_mistake(rvelab_program("run " + biaxial_file + with + " --threads 0"), "threads");
 }
 
 TEST_CASE("A run that fails is one line on standard error and exit code 1") {
-  const Folder folder("failure");
+  const SpecimenFolder folder("failure");
   const Outcome outcome = rvelab_program(
-      "run " + biaxial + " --specimen " + folder.specimen() +
+      "run " + biaxial_file + " --specimen " + folder.specimen() +
       " --set stage.isotropic.max_rounds=1 --set stage.isotropic.max_steps=1 --set test.pressure_Pa=30e3");
   INFO(outcome.text);
   CHECK(outcome.code == 1);

@@ -7,12 +7,14 @@
 #include "rvelab/protocol/protocol.hpp"
 #include "rvelab/protocol/stage_kind.hpp"
 #include "tests/catch.hpp"
+#include "tests/protocol/texts.hpp"
 
 using namespace rvelab;
+using namespace rvelab::test;
 
 namespace {
 
-const std::string biaxial = R"([test]
+const std::string biaxial_text = R"([test]
 name = "biaxial"
 dimension = 2
 pressure_Pa = 20e3
@@ -24,18 +26,6 @@ kind = "isotropic"
 kind = "compression"
 to_strain = 0.15
 )";
-
-/// The message of the InputError that the text gives; "" if it gives none.
-std::string message_of(const std::string& text, const std::vector<std::string>& assignments = {}) {
-  try {
-    protocol::parse_protocol(text, "test.toml", assignments);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 std::size_t lines(const std::string& text) {
   return text.empty() ? 0 : 1 + static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
@@ -49,7 +39,7 @@ const What& stage_of(const protocol::Protocol& protocol, std::size_t number) {
 }  // namespace
 
 TEST_CASE("What a protocol leaves out has the documented defaults") {
-  const protocol::Protocol protocol = protocol::parse_protocol(biaxial, "test.toml");
+  const protocol::Protocol protocol = protocol::parse_protocol(biaxial_text, "test.toml");
   CHECK(protocol.name == "biaxial");
   CHECK(protocol.pressure == 20e3);
   CHECK(protocol.uses_pressure);
@@ -71,7 +61,7 @@ TEST_CASE("What a protocol leaves out has the documented defaults") {
 }
 
 TEST_CASE("A stage's own pressure goes before the test's") {
-  const std::string text = biaxial + "lateral_pressure_Pa = 35e3\n";
+  const std::string text = biaxial_text + "lateral_pressure_Pa = 35e3\n";
   const protocol::Protocol protocol = protocol::parse_protocol(text, "test.toml", {"stage.isotropic.pressure_Pa=30e3"});
   CHECK(stage_of<protocol::IsotropicStage>(protocol, 0).pressure == 30e3);
   CHECK(stage_of<protocol::CompressionStage>(protocol, 1).lateral_pressure == 35e3);
@@ -80,7 +70,7 @@ TEST_CASE("A stage's own pressure goes before the test's") {
 
 TEST_CASE("The resolved text is a protocol that says the same and stays as it is when read again") {
   const std::string text =
-      biaxial + "[contact]\nslip = \"full_radius\"\n[material]\nfriction = 0.4\n[solver]\nskin = 0.2\n";
+      biaxial_text + "[contact]\nslip = \"full_radius\"\n[material]\nfriction = 0.4\n[solver]\nskin = 0.2\n";
   const protocol::Protocol first =
       protocol::parse_protocol(text, "test.toml", {"stage.compression.record_every=0.0007"});
   const protocol::Protocol second = protocol::parse_protocol(first.resolved, "resolved.toml");
@@ -122,8 +112,8 @@ file = "S.h5"
 }
 
 TEST_CASE("A key of another kind of stage is unknown") {
-  CHECK(contains(message_of(biaxial + "plane = \"xy\"\n"), "unknown key stage.compression.plane"));
-  CHECK(contains(message_of(biaxial, {"stage.isotropic.to_strain=0.1"}), "unknown key stage.isotropic.to_strain"));
+  CHECK(contains(message_of(biaxial_text + "plane = \"xy\"\n"), "unknown key stage.compression.plane"));
+  CHECK(contains(message_of(biaxial_text, {"stage.isotropic.to_strain=0.1"}), "unknown key stage.isotropic.to_strain"));
 }
 
 TEST_CASE("Missing keys are told by name") {
@@ -140,7 +130,7 @@ TEST_CASE("Missing keys are told by name") {
 
 TEST_CASE("Wrong types, numbers that are not finite and values out of range are refused with what is allowed") {
   const auto refused = [](const std::string& assignment, const std::string& part) {
-    const std::string message = message_of(biaxial, {assignment});
+    const std::string message = message_of(biaxial_text, {assignment});
     INFO(assignment << " -> " << message);
     CHECK(lines(message) == 1);
     CHECK(contains(message, part));
@@ -174,40 +164,40 @@ TEST_CASE("Keys that contradict each other are refused") {
     CHECK(lines(message) == 1);
     CHECK(contains(message, part));
   };
-  refused(biaxial + "[loading]\nmode = \"physical\"\nrate_1_s = 0.1\ninertial_number = 1e-3\n", "contradicts");
-  refused(biaxial + "[loading]\nrate_1_s = 0.1\n", "contradicts loading.mode = \"quasi_static\"");
-  refused(biaxial + "[loading]\nmode = \"physical\"\n", "needs a rate");
-  refused(biaxial + "lateral = \"constant_volume\"\nlateral_pressure_Pa = 1e4\n", "contradicts lateral");
-  refused(biaxial + "[[stage]]\nkind = \"simple_shear\"\nto_strain = 0.1\nnormal_pressure_Pa = 1e4\n",
+  refused(biaxial_text + "[loading]\nmode = \"physical\"\nrate_1_s = 0.1\ninertial_number = 1e-3\n", "contradicts");
+  refused(biaxial_text + "[loading]\nrate_1_s = 0.1\n", "contradicts loading.mode = \"quasi_static\"");
+  refused(biaxial_text + "[loading]\nmode = \"physical\"\n", "needs a rate");
+  refused(biaxial_text + "lateral = \"constant_volume\"\nlateral_pressure_Pa = 1e4\n", "contradicts lateral");
+  refused(biaxial_text + "[[stage]]\nkind = \"simple_shear\"\nto_strain = 0.1\nnormal_pressure_Pa = 1e4\n",
           "contradicts normal");
-  refused(biaxial + "[[stage]]\nkind = \"probe\"\nmethod = \"linear\"\nno_slip = false\n", "contradicts method");
-  refused(biaxial + "[[stage]]\nkind = \"compression\"\nto_strain = -0.1\n", "is there twice");
+  refused(biaxial_text + "[[stage]]\nkind = \"probe\"\nmethod = \"linear\"\nno_slip = false\n", "contradicts method");
+  refused(biaxial_text + "[[stage]]\nkind = \"compression\"\nto_strain = -0.1\n", "is there twice");
 }
 
 TEST_CASE(
     "Assignments act before the file is checked, on stages by name or number, and words need no quotation marks") {
   const protocol::Protocol by_name =
-      protocol::parse_protocol(biaxial, "t", {"stage.compression.to_strain=0.05", "test.pressure_Pa=2e4"});
+      protocol::parse_protocol(biaxial_text, "t", {"stage.compression.to_strain=0.05", "test.pressure_Pa=2e4"});
   CHECK(stage_of<protocol::CompressionStage>(by_name, 1).to_strain == 0.05);
   const protocol::Protocol by_number =
-      protocol::parse_protocol(biaxial, "t", {"stage.1.lateral=constant_volume", "test.name = a b"});
+      protocol::parse_protocol(biaxial_text, "t", {"stage.1.lateral=constant_volume", "test.name = a b"});
   CHECK(stage_of<protocol::CompressionStage>(by_number, 1).lateral ==
         protocol::CompressionStage::Lateral::constant_volume);
   CHECK(by_number.name == "a b");
-  const protocol::Protocol new_tables =
-      protocol::parse_protocol(biaxial, "t", {"contact.slip=full_radius_ratcheting", "material.sand.friction=0.5"});
+  const protocol::Protocol new_tables = protocol::parse_protocol(
+      biaxial_text, "t", {"contact.slip=full_radius_ratcheting", "material.sand.friction=0.5"});
   CHECK(new_tables.overrides["contact"]["slip"].value<std::string>() == "full_radius_ratcheting");
   CHECK(new_tables.overrides["material"]["sand"]["friction"].value<double>() == 0.5);
   // The later one wins.
-  CHECK(protocol::parse_protocol(biaxial, "t", {"test.pressure_Pa=1e4", "test.pressure_Pa=3e4"}).pressure == 3e4);
+  CHECK(protocol::parse_protocol(biaxial_text, "t", {"test.pressure_Pa=1e4", "test.pressure_Pa=3e4"}).pressure == 3e4);
   // A mistake in one is told like one in the file.
-  CHECK(contains(message_of(biaxial, {"test.presure_Pa=1"}), "nearest known key is test.pressure_Pa"));
-  CHECK(contains(message_of(biaxial, {"stage.7.to_strain=0.1"}), "allowed: 0 (isotropic), 1 (compression)"));
-  CHECK(contains(message_of(biaxial, {"stage.shear.to_strain=0.1"}), "names no stage"));
+  CHECK(contains(message_of(biaxial_text, {"test.presure_Pa=1"}), "nearest known key is test.pressure_Pa"));
+  CHECK(contains(message_of(biaxial_text, {"stage.7.to_strain=0.1"}), "allowed: 0 (isotropic), 1 (compression)"));
+  CHECK(contains(message_of(biaxial_text, {"stage.shear.to_strain=0.1"}), "names no stage"));
   for (const char* wrong : {"pressure", "test.pressure_Pa", "test.pressure_Pa=", "=3", "pressure_Pa=3", "test..a=1",
                             "stage.1=3", "test.name.more=1"}) {
     INFO(wrong);
-    CHECK_THROWS_AS(protocol::parse_protocol(biaxial, "t", {wrong}), InputError);
+    CHECK_THROWS_AS(protocol::parse_protocol(biaxial_text, "t", {wrong}), InputError);
   }
 }
 
@@ -224,16 +214,16 @@ TEST_CASE("Overrides reach the specimen and must fit it") {
   specimen.materials[0].name = "sand";
   specimen.materials[1].name = "steel";
   const std::string text =
-      biaxial + "[contact]\nslip = \"full_radius\"\n[material]\nfriction = 0.3\nsteel.friction = 0.1\n";
+      biaxial_text + "[contact]\nslip = \"full_radius\"\n[material]\nfriction = 0.3\nsteel.friction = 0.1\n";
   const Specimen changed = protocol::with_overrides(protocol::parse_protocol(text, "t"), specimen);
   CHECK(changed.contact.slip == Slip::full_radius);
   CHECK(changed.materials[0].friction == 0.3);
   CHECK(changed.materials[1].friction == 0.1);
-  CHECK_THROWS_AS(
-      protocol::with_overrides(protocol::parse_protocol(biaxial + "[material.clay]\nfriction = 0.3\n", "t"), specimen),
-      InputError);
+  CHECK_THROWS_AS(protocol::with_overrides(
+                      protocol::parse_protocol(biaxial_text + "[material.clay]\nfriction = 0.3\n", "t"), specimen),
+                  InputError);
   specimen.cell.dimension = 3;
-  CHECK_THROWS_AS(protocol::with_overrides(protocol::parse_protocol(biaxial, "t"), specimen), InputError);
+  CHECK_THROWS_AS(protocol::with_overrides(protocol::parse_protocol(biaxial_text, "t"), specimen), InputError);
 }
 
 TEST_CASE("Every protocol that comes with rvelab is one, and opens with what it is") {

@@ -9,15 +9,12 @@
 #include "rvelab/solver/rve.hpp"
 #include "tests/catch.hpp"
 #include "tests/protocol/reference_specimen.hpp"
+#include "tests/protocol/texts.hpp"
 
 using namespace rvelab;
+using namespace rvelab::test;
 
 namespace {
-
-protocol::TestRun run_text(const std::string& stages, const Specimen& specimen) {
-  return protocol::run_protocol(
-      protocol::parse_protocol("[test]\nname = \"test\"\npressure_Pa = 20e3\n" + stages, "test.toml"), specimen);
-}
 
 void expect_same(const std::vector<records::Record>& a, const std::vector<records::Record>& b) {
   REQUIRE(a.size() == b.size());
@@ -33,8 +30,8 @@ void expect_same(const std::vector<records::Record>& a, const std::vector<record
 
 TEST_CASE("Drained compression records at its fixed strains, with the lateral stress held and no shear strain") {
   const protocol::TestRun run =
-      run_text("[[stage]]\nkind = \"compression\"\nto_strain = 0.0033\nrecord_every = 0.0005\n",
-               reference_specimen("dense_p20"));
+      run_stages("[[stage]]\nkind = \"compression\"\nto_strain = 0.0033\nrecord_every = 0.0005\n",
+                 reference_specimen("dense_p20"));
   const auto& records = run.result.records;
   REQUIRE(records.size() == 8);  // 0, 0.05 % ... 0.30 %, and the end
   CHECK(run.result.axis == "y");
@@ -55,7 +52,7 @@ TEST_CASE("Drained compression records at its fixed strains, with the lateral st
 }
 
 TEST_CASE("The integral term of one stage does not move the strains that the next one prescribes") {
-  const protocol::TestRun run = run_text(
+  const protocol::TestRun run = run_stages(
       "[[stage]]\nkind = \"isotropic\"\npressure_Pa = 24e3\n"
       "[[stage]]\nkind = \"compression\"\nto_strain = 0.003\nlateral_pressure_Pa = 24e3\n",
       reference_specimen("dense_p20"));
@@ -69,7 +66,7 @@ TEST_CASE("The integral term of one stage does not move the strains that the nex
 
 TEST_CASE("Constant-volume stages keep the volume to 1e-12") {
   const Specimen specimen = reference_specimen("dense_p20");
-  const protocol::TestRun run = run_text(
+  const protocol::TestRun run = run_stages(
       "[[stage]]\nkind = \"compression\"\nto_strain = 0.002\nlateral = \"constant_volume\"\n"
       "[[stage]]\nkind = \"simple_shear\"\nto_strain = -0.002\nrecord_every = 0.0005\n",
       specimen);
@@ -87,8 +84,8 @@ TEST_CASE("Constant-volume stages keep the volume to 1e-12") {
 
 TEST_CASE("Simple shear at constant normal stress lets the height go and nothing else") {
   const protocol::TestRun run =
-      run_text("[[stage]]\nkind = \"simple_shear\"\nto_strain = 0.004\nnormal = \"constant_stress\"\n",
-               reference_specimen("dense_p20"));
+      run_stages("[[stage]]\nkind = \"simple_shear\"\nto_strain = 0.004\nnormal = \"constant_stress\"\n",
+                 reference_specimen("dense_p20"));
   REQUIRE(run.result.records.size() == 5);
   for (const records::Record& record : run.result.records) {
     const Matrix3& f = record.deformation_gradient;
@@ -104,7 +101,7 @@ TEST_CASE("An isotropic stage ends at its pressure and at rest") {
   const std::string stage =
       "[[stage]]\nkind = \"isotropic\"\npressure_Pa = 60e3\nrecord = true\n[[stage]]\nkind = \"probe\"\nmethod = "
       "\"linear\"\n";
-  const protocol::TestRun run = run_text(stage, reference_specimen("dense"));  // from 100 kPa
+  const protocol::TestRun run = run_stages(stage, reference_specimen("dense"));  // from 100 kPa
   REQUIRE(run.result.records.size() == 2);
   const records::Record& end = run.result.records[1];
   CHECK(std::abs(end.stress(0, 0) + 60e3) <= 1e-4 * 60e3);
@@ -119,8 +116,8 @@ TEST_CASE("An isotropic stage ends at its pressure and at rest") {
   CHECK(run.result.probes[0].stiffness.rows() == 3);
 
   const protocol::TestRun freed =
-      run_text("[[stage]]\nkind = \"isotropic\"\npressure_Pa = 60e3\nshear = \"zero_stress\"\nrecord = true\n",
-               reference_specimen("dense"));
+      run_stages("[[stage]]\nkind = \"isotropic\"\npressure_Pa = 60e3\nshear = \"zero_stress\"\nrecord = true\n",
+                 reference_specimen("dense"));
   CHECK(std::abs(freed.result.records[1].stress(0, 1)) <= 1e-4 * 60e3);
   CHECK(std::abs(freed.result.records[1].deformation_gradient(0, 1)) > 1e-9);
 }
@@ -131,7 +128,7 @@ TEST_CASE(
   REQUIRE(start.state.reference_pressure == 1e5);
   const auto after = [&](double pressure) {
     const std::string stage = "[[stage]]\nkind = \"isotropic\"\npressure_Pa = " + std::to_string(pressure) + "\n";
-    return run_text(stage, start).end_state.state;
+    return run_stages(stage, start).end_state.state;
   };
   const SolverState near = after(10e3), far = after(1e3);
   CHECK(near.reference_pressure == 1e5);
@@ -144,7 +141,7 @@ TEST_CASE(
 
 TEST_CASE("A specimen that is where a stage wants it is left exactly as it was") {
   const Specimen specimen = reference_specimen("dense_p20");
-  const protocol::TestRun run = run_text(
+  const protocol::TestRun run = run_stages(
       "[[stage]]\nkind = \"isotropic\"\nstress_tolerance = 1e-3\n[[stage]]\nkind = \"relax\"\n"
       "[[stage]]\nkind = \"probe\"\nmethod = \"linear\"\n",
       specimen);
@@ -159,8 +156,8 @@ TEST_CASE("A specimen that is where a stage wants it is left exactly as it was")
 TEST_CASE("A probe stage moves nothing: the test goes on as without it") {
   const Specimen specimen = reference_specimen("dense_p20");
   const std::string compression = "[[stage]]\nkind = \"compression\"\nto_strain = 0.001\n";
-  const protocol::TestRun with = run_text("[[stage]]\nkind = \"probe\"\nno_slip = true\n" + compression, specimen);
-  const protocol::TestRun without = run_text(compression, specimen);
+  const protocol::TestRun with = run_stages("[[stage]]\nkind = \"probe\"\nno_slip = true\n" + compression, specimen);
+  const protocol::TestRun without = run_stages(compression, specimen);
   expect_same(with.result.records, without.result.records);
   REQUIRE(with.result.probes.size() == 1);
   // Positive definite: the packing is stable.
@@ -168,7 +165,7 @@ TEST_CASE("A probe stage moves nothing: the test goes on as without it") {
 }
 
 TEST_CASE("Physical loading runs at the inertial number that was asked for") {
-  const protocol::TestRun run = run_text(
+  const protocol::TestRun run = run_stages(
       "[loading]\nmode = \"physical\"\ninertial_number = 2e-3\n"
       "[[stage]]\nkind = \"simple_shear\"\nto_strain = 0.002\nrecord_every = 0.001\n",
       reference_specimen("dense_p20"));
@@ -184,7 +181,7 @@ TEST_CASE("Physical loading runs at the inertial number that was asked for") {
 TEST_CASE("A stage that cannot reach its end says which stage and what it reached") {
   const auto message_of = [](const std::string& stages) {
     try {
-      run_text(stages, reference_specimen("dense"));
+      run_stages(stages, reference_specimen("dense"));
     } catch (const Error& error) {
       return std::string(error.what());
     }
@@ -198,7 +195,7 @@ TEST_CASE("A stage that cannot reach its end says which stage and what it reache
   CHECK(isotropic.find("stage \"isotropic\"") != std::string::npos);
   CHECK(isotropic.find("after 1 rounds") != std::string::npos);
   CHECK_THROWS_AS(
-      run_text("[[stage]]\nkind = \"compression\"\naxis = \"z\"\nto_strain = 0.1\n", reference_specimen("dense")),
+      run_stages("[[stage]]\nkind = \"compression\"\naxis = \"z\"\nto_strain = 0.1\n", reference_specimen("dense")),
       InputError);
 }
 

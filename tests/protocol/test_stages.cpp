@@ -10,15 +10,12 @@
 #include "rvelab/solver/rve.hpp"
 #include "tests/catch.hpp"
 #include "tests/protocol/reference_specimen.hpp"
+#include "tests/protocol/texts.hpp"
 
 using namespace rvelab;
+using namespace rvelab::test;
 
 namespace {
-
-protocol::TestRun run_text(const std::string& text, const Specimen& specimen) {
-  return protocol::run_protocol(
-      protocol::parse_protocol("[test]\nname = \"test\"\npressure_Pa = 20e3\n" + text, "test.toml"), specimen);
-}
 
 double ratio(const records::Record& record) {
   return deviatoric_stress(record.stress, 2) / mean_pressure(record.stress, 2);
@@ -27,7 +24,7 @@ double ratio(const records::Record& record) {
 }  // namespace
 
 TEST_CASE("An event ends its stage at the first record that meets it") {
-  const protocol::TestRun run = run_text(
+  const protocol::TestRun run = run_stages(
       "[[stage]]\nkind = \"compression\"\nto_strain = 0.02\n"
       "  [[stage.until]]\n  quantity = \"q_over_p\"\n  above = 0.3\n",
       reference_specimen("dense_p20"));
@@ -38,7 +35,7 @@ TEST_CASE("An event ends its stage at the first record that meets it") {
 }
 
 TEST_CASE("A peak is passed when the stress has fallen by the given part of it") {
-  const protocol::TestRun run = run_text(
+  const protocol::TestRun run = run_stages(
       "[[stage]]\nkind = \"compression\"\nto_strain = 0.2\n"
       "  [[stage.until]]\n  quantity = \"q_Pa\"\n  falls_by = 0.05\n",
       reference_specimen("dense_p20"));
@@ -54,7 +51,7 @@ TEST_CASE("A peak is passed when the stress has fallen by the given part of it")
 
 TEST_CASE("Events switch to and fro between stages, until another ends the test") {
   // Stress-controlled cycles out of two monotonic stages.
-  const protocol::TestRun run = run_text(
+  const protocol::TestRun run = run_stages(
       "[[stage]]\nname = \"forth\"\nkind = \"simple_shear\"\nto_strain = 0.01\nrecord_every = 1e-4\n"
       "  [[stage.until]]\n  quantity = \"visits\"\n  above = 2\n  then = \"end\"\n"
       "  [[stage.until]]\n  quantity = \"stress_xy_Pa\"\n  above = 2e3\n  then = \"back\"\n"
@@ -105,8 +102,8 @@ TEST_CASE("An event names stages and quantities that are there, and only stages 
 
 TEST_CASE("Cycles of strain go to both amplitudes at constant volume and end where they began") {
   const protocol::TestRun run =
-      run_text("[[stage]]\nkind = \"simple_shear\"\nto_strain = 0.001\nrecord_every = 0.0005\ncycles = 2\n",
-               reference_specimen("dense_p20"));
+      run_stages("[[stage]]\nkind = \"simple_shear\"\nto_strain = 0.001\nrecord_every = 0.0005\ncycles = 2\n",
+                 reference_specimen("dense_p20"));
   const double expected[] = {0, 1, 2, 1, 0, -1, -2, -1, 0, 1, 2, 1, 0, -1, -2, -1, 0};
   REQUIRE(run.result.records.size() == 17);
   for (std::size_t k = 0; k < 17; ++k) {
@@ -117,7 +114,7 @@ TEST_CASE("Cycles of strain go to both amplitudes at constant volume and end whe
 }
 
 TEST_CASE("Cycles of stress turn at the first record beyond the stress, in both directions") {
-  const protocol::TestRun run = run_text(
+  const protocol::TestRun run = run_stages(
       "[[stage]]\nkind = \"compression\"\nlateral = \"constant_volume\"\nto_strain = 0.01\nrecord_every = 5e-5\n"
       "cycles = 3\nreverse_at_Pa = 4e3\n",
       reference_specimen("dense_p20"));
@@ -139,14 +136,14 @@ TEST_CASE("Cycles of stress turn at the first record beyond the stress, in both 
 TEST_CASE("A flow of simple shear is simple shear, and any flow keeps its exponential") {
   const Specimen specimen = reference_specimen("dense_p20");
   const protocol::TestRun flow =
-      run_text("[[stage]]\nkind = \"flow\"\ngradient = {xy = 1}\nto_strain = 0.003\n", specimen);
-  const protocol::TestRun shear = run_text("[[stage]]\nkind = \"simple_shear\"\nto_strain = 0.003\n", specimen);
+      run_stages("[[stage]]\nkind = \"flow\"\ngradient = {xy = 1}\nto_strain = 0.003\n", specimen);
+  const protocol::TestRun shear = run_stages("[[stage]]\nkind = \"simple_shear\"\nto_strain = 0.003\n", specimen);
   REQUIRE(flow.result.records.size() == 4);
   for (std::size_t k = 0; k < 4; ++k) {
     CHECK((flow.result.records[k].stress - shear.result.records[k].stress).norm() < 1e-6 * 20e3);
   }
   // F = exp(s G) of a triangular G has exponentials on its diagonal.
-  const protocol::TestRun mixed = run_text(
+  const protocol::TestRun mixed = run_stages(
       "[loading]\nmode = \"physical\"\nrate_1_s = 2\n"
       "[[stage]]\nkind = \"flow\"\ngradient = {xy = 1, xx = -0.02}\nto_strain = 0.01\n",
       specimen);
@@ -158,7 +155,7 @@ TEST_CASE("A flow of simple shear is simple shear, and any flow keeps its expone
 
 TEST_CASE("Recorded deformation gradients, given as a list, are passed through with their rotation") {
   const Specimen specimen = reference_specimen("dense_p20");
-  const protocol::TestRun run = run_text(
+  const protocol::TestRun run = run_stages(
       "[[stage]]\nkind = \"deformation\"\ngradients = [[1.0001, 0.0, 0.0, 0.9995], [1.0, 0.001, -0.001, 1.0]]\n",
       specimen);
   REQUIRE(run.result.records.size() == 3);
@@ -172,8 +169,8 @@ TEST_CASE("Probes of an envelope start from one state, which the test goes on fr
   const Specimen specimen = reference_specimen("dense_p20");
   const std::string shear = "[[stage]]\nkind = \"simple_shear\"\nto_strain = 0.001\n";
   const protocol::TestRun with =
-      run_text("[[stage]]\nkind = \"envelope\"\nsize = 1e-6\ndirections = 8\nunbalanced = 1e-9\n" + shear, specimen);
-  const protocol::TestRun without = run_text(shear, specimen);
+      run_stages("[[stage]]\nkind = \"envelope\"\nsize = 1e-6\ndirections = 8\nunbalanced = 1e-9\n" + shear, specimen);
+  const protocol::TestRun without = run_stages(shear, specimen);
   REQUIRE(with.result.records.size() == 9 + 2);
   for (std::size_t k = 0; k < 2; ++k) CHECK(with.result.records[9 + k].stress == without.result.records[k].stress);
   const Eigen::MatrixXd stiffness = elastic_tangent(Rve(specimen).network());
@@ -194,8 +191,8 @@ TEST_CASE("Probes of an envelope start from one state, which the test goes on fr
 
 TEST_CASE("Probes of stress make the change of stress that was asked for in every direction") {
   const protocol::TestRun run =
-      run_text("[[stage]]\nkind = \"envelope\"\nprobes = \"stress\"\nsize_Pa = 100\ndirections = 4\n",
-               reference_specimen("dense_p20"));
+      run_stages("[[stage]]\nkind = \"envelope\"\nprobes = \"stress\"\nsize_Pa = 100\ndirections = 4\n",
+                 reference_specimen("dense_p20"));
   const records::Record& first = run.result.records[0];
   for (std::size_t k = 1; k <= 4; ++k) {
     const Matrix3 change = run.result.records[k].stress - first.stress;
@@ -207,7 +204,7 @@ TEST_CASE("Oedometer and probes have the same moduli at small strain, 2 %") {
   for (const std::string name : {"dense", "hertz"}) {
     const Specimen specimen = reference_specimen(name);
     const int dimension = specimen.cell.dimension;
-    const protocol::TestRun run = run_text(
+    const protocol::TestRun run = run_stages(
         "[solver]\nrelative_tolerance = 1e-3\nabsolute_tolerance = 1e-6\n"  // C12 is a fifth of C11; a record changes
                                                                             // 6e-4 p
         "[[stage]]\nkind = \"relax\"\nunbalanced = 1e-8\n"
@@ -230,7 +227,7 @@ TEST_CASE("Oedometer and probes have the same moduli at small strain, 2 %") {
 }
 
 TEST_CASE("A record measures what is asked for and nothing else; the parts of the stress add up") {
-  const protocol::TestRun run = run_text(
+  const protocol::TestRun run = run_stages(
       "[loading]\nmode = \"physical\"\nrate_1_s = 5\n"
       "[output]\nquantities = [\"contact_stress_Pa\", \"reynolds_stress_Pa\", \"fabric\", \"kinetic_energy_J\"]\n"
       "[[stage]]\nkind = \"simple_shear\"\nto_strain = 0.004\n",
@@ -245,8 +242,8 @@ TEST_CASE("A record measures what is asked for and nothing else; the parts of th
   CHECK(end.void_ratio == 0);
   CHECK(end.coordination_number == 0);
   const protocol::TestRun none =
-      run_text("[output]\nquantities = []\n[[stage]]\nkind = \"simple_shear\"\nto_strain = 0.001\n",
-               reference_specimen("dense_p20"));
+      run_stages("[output]\nquantities = []\n[[stage]]\nkind = \"simple_shear\"\nto_strain = 0.001\n",
+                 reference_specimen("dense_p20"));
   CHECK(none.result.records.back().quantities == 0);
   CHECK(none.result.records.back().void_ratio == 0);
 }

@@ -50,7 +50,7 @@ MixedTarget compressed(double strain, double present_xx) {
 }
 
 /// Grains of radii 1 to `ratio` at 100 kPa, kn/(p t) or (E*/p)^(2/3) of 1e3; spheres have Hertz contacts.
-Specimen packed(Shape shape, std::size_t number, double ratio, double friction) {
+Specimen packed_grains(Shape shape, std::size_t number, double ratio, double friction) {
   pack::Recipe recipe;
   recipe.shape = shape;
   recipe.number = number;
@@ -205,8 +205,8 @@ TEST_CASE("Constraints are those of the contacts that hold, over the motions of 
 TEST_CASE("Of packings of low friction and of wide Hertz spheres most increments keep below their estimate",
           "[solver]") {
   int increments = 0, kept = 0, told = 0, true_told = 0;
-  for (const Specimen& s : {packed(Shape::disc, 80, 2, 0.02), packed(Shape::disc, 80, 2, 0.05),
-                            packed(Shape::disc, 80, 2, 0.1), packed(Shape::sphere, 80, 4, 0.3)})
+  for (const Specimen& s : {packed_grains(Shape::disc, 80, 2, 0.02), packed_grains(Shape::disc, 80, 2, 0.05),
+                            packed_grains(Shape::disc, 80, 2, 0.1), packed_grains(Shape::sphere, 80, 4, 0.3)})
     for (const Matrix3& direction : {forward, Matrix3(-forward), sheared})
       for (const double size : {1e-6, 1e-5, 1e-4}) {
         Rve rve(s);
@@ -224,7 +224,7 @@ TEST_CASE("Of packings of low friction and of wide Hertz spheres most increments
 }
 
 TEST_CASE("An increment that takes a specimen apart ends after a bounded number of sub-steps", "[solver]") {
-  const Specimen s = packed(Shape::disc, 80, 2, 0.05);
+  const Specimen s = packed_grains(Shape::disc, 80, 2, 0.05);
   const double overlap = Rve(s).specimen().state.reference_overlap / 6e-3;  // mean diameter 6 mm
   long apart = 0;
   for (const double size : {1e-3, 3e-3, 1e-2}) {

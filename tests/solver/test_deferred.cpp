@@ -12,14 +12,14 @@ using namespace rvelab::test;
 
 namespace {
 
-const Matrix3 forward = gradient(0.45, 0, 0, -0.9), sheared = gradient(0.3, 0.6, 0, -0.3);
+const Matrix3 biaxial_path = gradient(0.45, 0, 0, -0.9), sheared_path = gradient(0.3, 0.6, 0, -0.3);
 
 /// The dense packing on a biaxial path of 2e-5, and then in pieces of 1e-7 until one of them is deferred.
 Rve on_its_way() {
   Rve rve(recorded("dense"));
-  for (int k = 0; k < 20; ++k) rve.apply(1e-6 * forward, 0);
+  for (int k = 0; k < 20; ++k) rve.apply(1e-6 * biaxial_path, 0);
   for (int k = 0; k < 100; ++k)
-    if (rve.apply(1e-7 * forward, 0).report.substeps == 0) return rve;
+    if (rve.apply(1e-7 * biaxial_path, 0).report.substeps == 0) return rve;
   FAIL("none of a hundred increments of 1e-7 was deferred");
   return rve;
 }
@@ -43,11 +43,12 @@ Rest rest_of_path(Rve rve, const Matrix3& increment, int times) {
 
 TEST_CASE("Increments of 1e-7 and 1e-9 share sub-steps, and answer as the whole path", "[solver]") {
   const Specimen s = recorded("dense");
-  const Rest whole = rest_of_path(Rve(s), 1e-4 * forward, 1), fine = rest_of_path(Rve(s), 1e-7 * forward, 1000);
+  const Rest whole = rest_of_path(Rve(s), 1e-4 * biaxial_path, 1),
+             fine = rest_of_path(Rve(s), 1e-7 * biaxial_path, 1000);
   CHECK(fine.substeps < 300);
   const double change = (whole.stress - Rve(s).stress()).norm();
   CHECK((fine.stress - whole.stress).norm() <= 1e-2 * change + 1e-4 * 1e5);
-  const Rest finest = rest_of_path(on_its_way(), 1e-9 * forward, 1000);
+  const Rest finest = rest_of_path(on_its_way(), 1e-9 * biaxial_path, 1000);
   CHECK(finest.substeps < 20);
 }
 
@@ -57,7 +58,7 @@ TEST_CASE("Strain that is deferred is in the cell, to the last bit that a produc
   Matrix3 total = Matrix3::Identity();
   long deferred = 0;
   for (int k = 0; k < 500; ++k) {
-    const Matrix3 increment = (k < 400 ? 1e-7 : -1e-7) * sheared;
+    const Matrix3 increment = (k < 400 ? 1e-7 : -1e-7) * sheared_path;
     deferred += rve.apply(increment, 0).report.substeps == 0;
     total = (Matrix3::Identity() + increment) * total;
     const Matrix3 lattice = rve.cell().rotation * rve.cell().lattice, expected = total * start.rotation * start.lattice;
@@ -68,7 +69,7 @@ TEST_CASE("Strain that is deferred is in the cell, to the last bit that a produc
 
 TEST_CASE("Who looks at a cell with deferred strain sees its stress, and changes no bit of it", "[solver]") {
   Rve rve = on_its_way();
-  const Response last = rve.apply(1e-8 * forward, 0);
+  const Response last = rve.apply(1e-8 * biaxial_path, 0);
   REQUIRE(last.report.substeps == 0);
   const std::vector<std::byte> before = rve.save();
   CHECK((rve.stress() - last.stress).norm() <= 1e-12 * last.stress.norm());
@@ -87,7 +88,7 @@ TEST_CASE("Of deferred increments 19 in 20 are within their estimate of the line
   std::vector<Response> since;  // the last sub-step, what was deferred after it
   int deferred = 0, within = 0;
   for (int k = 0; k < 3000; ++k) {
-    const Response response = rve.apply(1e-7 * forward, 0);
+    const Response response = rve.apply(1e-7 * biaxial_path, 0);
     since.push_back(response);
     if (response.report.substeps == 0) continue;
     if (since.front().report.substeps > 0)
@@ -108,11 +109,11 @@ TEST_CASE("A turn, a reversal, a rotation and a refusal meet deferred strain", "
   const Matrix3 stress = way.stress();
 
   Rve back = way;  // what was deferred is made first, then the turn
-  CHECK(back.apply(-1e-7 * forward, 0).report.substeps > 1);
+  CHECK(back.apply(-1e-7 * biaxial_path, 0).report.substeps > 1);
   CHECK((back.stress() - stress).norm() < 1e-3 * 1e5);
 
   Rve aside = way;
-  CHECK(aside.apply(1e-9 * sheared, 0).report.substeps > 0);
+  CHECK(aside.apply(1e-9 * sheared_path, 0).report.substeps > 0);
 
   Rve turned = way;
   Matrix3 rotation;
@@ -136,7 +137,7 @@ TEST_CASE("A turn, a reversal, a rotation and a refusal meet deferred strain", "
   CHECK(refused.save() == before);
 
   Rve at_rate = way;  // physical masses know no deferred strain
-  const Matrix3 increment = 1e-7 * forward;
+  const Matrix3 increment = 1e-7 * biaxial_path;
   at_rate.apply(increment, 10 * at_rate.critical_time_step());
   const Matrix3 expected = (Matrix3::Identity() + increment) * way.cell().rotation * way.cell().lattice;
   CHECK((at_rate.cell().rotation * at_rate.cell().lattice - expected).norm() <= 1e-13 * expected.norm());
@@ -145,16 +146,16 @@ TEST_CASE("A turn, a reversal, a rotation and a refusal meet deferred strain", "
 TEST_CASE("No increment is deferred where none can be judged", "[solver]") {
   Specimen s = recorded("dense");
   s.solver.fixed_substeps = 1;
-  CHECK(rest_of_path(Rve(s), 1e-9 * forward, 50).substeps == 50);
+  CHECK(rest_of_path(Rve(s), 1e-9 * biaxial_path, 50).substeps == 50);
   s.solver.fixed_substeps = 0;
   s.solver.absolute_tolerance = 1e-12;  // stricter than what two slopes in turn can tell
   s.solver.relative_tolerance = 1e-12;
-  CHECK(rest_of_path(Rve(s), 1e-7 * forward, 20).substeps >= 20);
+  CHECK(rest_of_path(Rve(s), 1e-7 * biaxial_path, 20).substeps >= 20);
 }
 
 TEST_CASE("A trial of deferred strain copies no grain, and is committed and reverted as any other", "[solver]") {
   const Rve start = on_its_way();
-  const Matrix3 small = 1e-8 * forward;
+  const Matrix3 small = 1e-8 * biaxial_path;
   Rve applied(start), tried(start);
   const Response response = applied.apply(small, 0);
   REQUIRE(response.report.substeps == 0);
@@ -178,7 +179,7 @@ TEST_CASE("A trial of deferred strain copies no grain, and is committed and reve
   CHECK(tried.save() == applied.save());
   // On from there, through increments that make sub-steps: trials of both kinds follow each other.
   for (int k = 0; k < 300; ++k) {
-    const Matrix3 increment = (k % 3 + 1) * 1e-7 * forward;
+    const Matrix3 increment = (k % 3 + 1) * 1e-7 * biaxial_path;
     applied.apply(increment, 0);
     if (k % 5 == 0) {
       tried.attempt(0.5 * increment, 0);

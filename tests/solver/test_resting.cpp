@@ -11,7 +11,7 @@ using namespace rvelab::test;
 namespace {
 
 /// Configurations that differ in what has to be made again: parameters, histories, dashpot forces, radii, images.
-std::vector<Specimen> configurations() {
+std::vector<Specimen> resting_configurations() {
   std::vector<Specimen> all;
   Material rolling = linear_material(2e6, 1e6, 0.4);
   rolling.rolling_stiffness = 1;
@@ -39,7 +39,7 @@ Matrix3 step(int dimension) {
 }  // namespace
 
 TEST_CASE("Resting between calls changes no bit of what an Rve does", "[solver]") {
-  for (const Specimen& start : configurations())
+  for (const Specimen& start : resting_configurations())
     for (const double dt : {0.0, 1e-4}) {
       Rve resting(start), restless(start);
       for (int k = 0; k < 5; ++k) {
@@ -55,7 +55,7 @@ TEST_CASE("Resting between calls changes no bit of what an Rve does", "[solver]"
 }
 
 TEST_CASE("A resting Rve answers every question as one at work", "[solver]") {
-  for (const Specimen& start : configurations()) {
+  for (const Specimen& start : resting_configurations()) {
     Rve rve(start);
     rve.apply(step(start.cell.dimension), 1e-4);
     const auto rested = [&] {
@@ -95,7 +95,7 @@ TEST_CASE("A resting Rve answers every question as one at work", "[solver]") {
 }
 
 TEST_CASE("A const call leaves a resting Rve at rest, on several threads too", "[solver]") {
-  for (const Specimen& start : configurations()) {
+  for (const Specimen& start : resting_configurations()) {
     Rve rve(start);
     rve.apply(step(start.cell.dimension), 0);
     const Matrix3 stress = rve.stress();
@@ -118,7 +118,7 @@ TEST_CASE("A const call leaves a resting Rve at rest, on several threads too", "
 }
 
 TEST_CASE("A failed call leaves a resting Rve as it was", "[solver]") {
-  Rve rve(configurations().front());
+  Rve rve(resting_configurations().front());
   rve.apply(step(2), 0);
   const auto before = rve.save();
   rve.release();

@@ -10,8 +10,6 @@
 namespace mpm {
 namespace {
 
-constexpr const char* axes[3] = {"x", "y", "z"};
-
 std::string frame_name(long frame, const std::string& what = "points") {
   char name[32];
   std::snprintf(name, sizeof name, "_%04ld.h5", frame);
@@ -76,10 +74,11 @@ template <int D>
 std::string history_header(const Solver<D>& solver) {
   std::string header =
       "time_s,steps,kinetic_J,potential_J,stress_work_J,pressure_work_J,boundary_work_J,mapping_loss_J,residual_J";
-  for (int i = 0; i < D; ++i) header += std::string(",momentum_") + axes[i] + "_N_s";
+  for (int i = 0; i < D; ++i) header += std::string(",momentum_") + axis_names[i] + "_N_s";
   solver.each_driven([&](const auto& each) {
-    for (int i = 0; i < D; ++i) header.append(",").append(each.name).append(".force_").append(axes[i]).append("_N");
-    for (int i = 0; i < D; ++i) header.append(",").append(each.name).append(".way_").append(axes[i]).append("_m");
+    for (int i = 0; i < D; ++i)
+      header.append(",").append(each.name).append(".force_").append(axis_names[i]).append("_N");
+    for (int i = 0; i < D; ++i) header.append(",").append(each.name).append(".way_").append(axis_names[i]).append("_m");
   });
   return header;
 }
@@ -116,7 +115,7 @@ std::string watched_header(const Model<D>& model) {
   std::string header = "time_s";
   for (std::size_t k = 0; k < model.watched.size(); ++k) {
     const auto name = "," + std::to_string(k) + ".";
-    for (int i = 0; i < D; ++i) header += name + axes[i] + "_m";
+    for (int i = 0; i < D; ++i) header += name + axis_names[i] + "_m";
     for (const char* each : {"p_Pa", "q_Pa", "eps_q", "eps_v", "rotation_deg", "void_ratio", "fabric_anisotropy"}) {
       header += name + each;
     }

@@ -11,7 +11,6 @@ namespace {
 
 constexpr double most_points = 5e7;    // some 20 GB
 constexpr double farthest_cell = 1e9;  // numbers of nodes are int
-constexpr const char* axes[3] = {"x", "y", "z"};
 
 /// Points along one axis of a region, before it is known that they can be counted.
 double points_along(const Scene& scene, const RegionOfScene& region, std::size_t axis) {
@@ -61,8 +60,8 @@ void check_boundaries(const Scene& scene, const std::string& path) {
   for (const auto& plane : scene.planes) {
     if (plane.axis != followed.axis || plane.name == followed.name || plane.at == 0) continue;
     throw InputError(path + ": boundary." + plane.name + ".at_m is " + text_of(plane.at) +
-                     ", and would move along with grid.follows, which shortens all cells across " + axes[plane.axis] +
-                     "; put it at 0, or take a [[body]] in its place");
+                     ", and would move along with grid.follows, which shortens all cells across " +
+                     axis_names[plane.axis] + "; put it at 0, or take a [[body]] in its place");
   }
 }
 
@@ -110,8 +109,9 @@ void check_sides(const Scene& scene, const std::string& path) {
       const double slack = 1e-6 * scene.cell[i];
       if (plane.soil_above ? first > plane.at - slack : last < plane.at + slack) continue;
       throw InputError(path + ": points of " + region_name(scene, region) + " lie behind boundary." + plane.name +
-                       " (soil " + (plane.soil_above ? "above " : "below ") + axes[i] + " = " + text_of(plane.at) +
-                       " m); set soil = \"" + (plane.soil_above ? "below" : "above") + "\" there, or move the region");
+                       " (soil " + (plane.soil_above ? "above " : "below ") + axis_names[i] + " = " +
+                       text_of(plane.at) + " m); set soil = \"" + (plane.soil_above ? "below" : "above") +
+                       "\" there, or move the region");
     }
     const double top = region.upper.back() - 0.5 * filling.side.back();
     if (scene.stress == Scene::Stress::geostatic && top > scene.surface + 1e-6 * scene.cell.back()) {

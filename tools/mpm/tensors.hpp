@@ -13,6 +13,8 @@ using Vec = Eigen::Matrix<double, D, 1>;
 template <int D>
 using Mat = Eigen::Matrix<double, D, D>;
 
+inline constexpr const char* axis_names[3] = {"x", "y", "z"};
+
 /// An error that the user can correct: the program prints it in one line and ends with code 2.
 struct InputError : std::runtime_error {
   using std::runtime_error::runtime_error;

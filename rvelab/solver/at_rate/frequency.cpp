@@ -38,12 +38,12 @@ std::vector<Spring> springs_of(const Model& f, const Assembly& a) {
 }
 
 /// Displacements and rotations of all grains.
-struct Motion {
+struct Displacements {
   std::vector<Vector3> shift, turn;
 };
 
 /// forces = K motion; twice the energy of the motion.
-double stiffness_times(const std::vector<Spring>& springs, const Motion& motion, Motion& forces) {
+double stiffness_times(const std::vector<Spring>& springs, const Displacements& motion, Displacements& forces) {
   for (std::size_t g = 0; g < motion.shift.size(); ++g) forces.shift[g] = forces.turn[g] = Vector3::Zero();
   double energy = 0;
   for (const Spring& s : springs) {
@@ -69,7 +69,8 @@ double largest_quotient(const Model& f, const std::vector<Spring>& springs) {
   const std::size_t n = f.size();
   const int d = f.dimension();
   const bool turns = f.shape != Shape::ellipse;
-  Motion motion{std::vector<Vector3>(n, Vector3::Zero()), std::vector<Vector3>(n, Vector3::Zero())}, forces = motion;
+  Displacements motion{std::vector<Vector3>(n, Vector3::Zero()), std::vector<Vector3>(n, Vector3::Zero())},
+      forces = motion;
   std::uint64_t number = 1;
   const auto drawn = [&number] {  // of a linear congruential generator (Knuth, MMIX), -1/2 to 1/2
     number = number * 6364136223846793005u + 1442695040888963407u;

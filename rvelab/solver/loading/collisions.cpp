@@ -114,14 +114,14 @@ PairExtremes pairs_in(const Model& f, const Assembly& a, const Outlook& outlook,
 }
 
 /// What a piece of the grains shows.
-struct Motion {
+struct GrainMotion {
   double resultants = 0;  ///< J, sum R^2 / 2k: what they can still turn into motion
   double kinetic = 0;     ///< J
   double fastest = 0;     ///< m/s, squared; of ellipses with what their turn adds, as listed_gap counts it
 };
 
 template <Shape shape>
-Motion grains_in(const Model& f, const Assembly& a, const RowSums& sums, std::size_t first, std::size_t last) {
+GrainMotion grains_in(const Model& f, const Assembly& a, const RowSums& sums, std::size_t first, std::size_t last) {
   constexpr int D = dimension_of(shape);
   constexpr std::size_t row = D == 2 ? 4 : 8;
   double force[piece_length * D] = {};
@@ -131,7 +131,7 @@ Motion grains_in(const Model& f, const Assembly& a, const RowSums& sums, std::si
     const double* on_j = a.pairs.force.data() + p * row;
     for (std::size_t c = 0; c < D; ++c) r[c] = as_j ? r[c] + on_j[c] : r[c] - on_j[c];
   });
-  Motion motion;
+  GrainMotion motion;
   for (std::size_t g = first; g < last; ++g) {
     const double* v = a.rows.data() + g * std::size_t(f.row_length()) + std::size_t(f.velocity_offset());
     double resultant = 0, speed = 0;
@@ -179,12 +179,12 @@ Collisions ahead(const Model& f, const Assembly& a, const RowSums* known, bool f
 
   RowSums fresh;
   if (known == nullptr) fresh = row_sums(f, a);
-  std::vector<Motion> of_grains(pieces_in(f.size()));
+  std::vector<GrainMotion> of_grains(pieces_in(f.size()));
   in_pieces(f.size(), f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
     of_grains[piece] = grains_in<shape>(f, a, known == nullptr ? fresh : *known, first, last);
   });
-  Motion motion;
-  for (const Motion& piece : of_grains) {
+  GrainMotion motion;
+  for (const GrainMotion& piece : of_grains) {
     motion.resultants += piece.resultants;
     motion.kinetic += piece.kinetic;
     motion.fastest = std::max(motion.fastest, piece.fastest);

@@ -43,6 +43,8 @@ void sweep_pairs(PairKernel kernel, const StepConstants& constants, const PairAr
 void sweep_grains(GrainKernel kernel, const StepConstants& constants, const GrainArrays& grains,
                   const PairArrays& pairs, long padded_grains, Workers* team, StepSums& sums) {
   const std::size_t pieces = pieces_of(padded_grains, piece_grains);
+  // Most cells: the sums of a round, set to zero, took 3 % of the instructions of a biaxial test with 400 discs.
+  if (pieces == 1) return kernel(constants, grains, pairs, 0, padded_grains, &sums);
   std::array<StepSums, round_pieces> of_piece;
   for (std::size_t first = 0; first < pieces; first += round_pieces) {
     const std::size_t count = std::min(round_pieces, pieces - first);
