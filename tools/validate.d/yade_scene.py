@@ -1,6 +1,7 @@
 """YADE's half of tools/validate yade_increments: runs inside YADE, which brings O, Vector3 and the engines.
 
 usage: yade -n -x -j1 yade_scene.py biaxial PARENT STATE STRAIN    a state of a drained biaxial test, relaxed
+       yade -n -x -j1 yade_scene.py timed STATE STRAIN OUT.json    a drained biaxial test: time and records
        yade -n -x -j1 yade_scene.py increments STATE JOB.json OUT.json
 
 PARENT and STATE name files without .particles.csv, .contacts.csv, .json: packings with their contact history, as YADE's
@@ -109,16 +110,22 @@ def write(base, meta):
                        f"{i.phys.moment_bending[2]!r}\n")
 
 
-def biaxial(parent, state, strain):
-    """As the recorded tests: y shortened at 0.04 1/s, x held by a servo; then relaxed at fixed cell."""
-    meta = build(parent)
-    O.dt = 0.8 * p_wave_time_step(meta)
+def compress(meta, rate, time_step):
+    """Engines of a drained biaxial test as YADE's users run one: y shortened at a rate (1/s), x held by a servo."""
+    O.dt = time_step * p_wave_time_step(meta)
     newton = O.engines[-1]
     newton.damping = 0.1
     mass = sum(body.state.mass for body in O.bodies)
-    servo = PeriTriaxController(goal=(-meta["p0_Pa"], -10, 0), stressMask=1, maxStrainRate=(1, 0.04, 0), dynCell=True,
+    servo = PeriTriaxController(goal=(-meta["p0_Pa"], -10, 0), stressMask=1, maxStrainRate=(1, rate, 0), dynCell=True,
                                 mass=mass, globUpdate=1)
     O.engines = O.engines[:-1] + [servo, newton]
+    return newton
+
+
+def biaxial(parent, state, strain):
+    """As the recorded tests: y shortened at 0.04 1/s, x held by a servo; then relaxed at fixed cell."""
+    meta = build(parent)
+    newton = compress(meta, 0.04, 0.8)
     height = O.cell.hSize[1, 1]
     while O.cell.hSize[1, 1] > (1 - strain) * height:
         O.run(20, True)
@@ -132,6 +139,23 @@ def biaxial(parent, state, strain):
     stop()
     write(state, meta)
     print(f"{state}: relaxed in {made} steps to an unbalanced ratio of {unbalancedForce():.1e}")
+
+
+def timed(state, strain, out):
+    """At the rate and time step of the recorded tests (0.06 1/s, 0.9 of the P-wave step), records every 0.05 %."""
+    meta = build(state)
+    compress(meta, 0.06, 0.9)
+    height, every, seconds, made, records = O.cell.hSize[1, 1], 5e-4, 0.0, 0, []
+    steps = round(every / (0.06 * O.dt))
+    while O.cell.hSize[1, 1] > (1 - strain) * height:
+        begin = time.perf_counter()
+        O.run(steps, True)
+        seconds += time.perf_counter() - begin
+        made += steps
+        s = getStress()
+        records.append([1 - O.cell.hSize[1, 1] / height, s[0, 0], s[1, 1], unbalancedForce()])
+    with open(out, "w", encoding="utf-8") as file:
+        json.dump({"seconds": seconds, "steps": made, "records": records}, file)
 
 
 def gradient_of_step(increment, steps):
@@ -239,6 +263,7 @@ def increments(base, job_path, out_path):
 
 
 {"biaxial": lambda: biaxial(sys.argv[2], sys.argv[3], float(sys.argv[4])),
+ "timed": lambda: timed(sys.argv[2], float(sys.argv[3]), sys.argv[4]),
  "increments": lambda: increments(*sys.argv[2:5])}[sys.argv[1]]()
 sys.stdout.flush()
 os._exit(0)  # YADE's own end waits for its threads
