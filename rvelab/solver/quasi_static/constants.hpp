@@ -111,7 +111,7 @@ constexpr double slow_mark = 1, turn_mark = 2;
 // Estimate of the error.
 
 /// Over what a measurement has shown: where its change does not grow, 95 % of the errors are below 0.8 times.
-constexpr double measured_margin = 0.9;
+constexpr double measured_margin = 0.905;
 /// Times that where the state was never measured: grains whose friction was lowered slide on for longer than a path
 /// lags (errors up to 1.22 times the estimate without, friction 0 and an increment of 1e-6).
 constexpr double first_margin = 1.35;
