@@ -183,6 +183,7 @@ PairArrays arrays_of(PairTable& t) {
   PairArrays p;
   p.near = long(t.near);
   p.touched = t.touched.data();
+  p.shifted = t.shifted.data();
   p.row_i = t.row_i.data();
   p.row_j = t.row_j.data();
   for (int k = 0; k < 3; ++k) {

@@ -69,10 +69,10 @@ struct Model {
 /// they were listed stand first, so that the kernels can pass over the others. Every sum over pairs goes by `order`:
 /// what touched then, and with it the place of a pair, is nothing that a restart knows.
 struct PairTable {
-  std::size_t listed = 0;             ///< pairs without the padding
-  std::size_t near = 0;               ///< the first of them, computed at every step (kernels/configuration.hpp)
-  std::vector<std::int32_t> order;    ///< places of the pairs in the order of (i, j, image)
-  std::vector<std::uint8_t> touched;  ///< kernels/configuration.hpp
+  std::size_t listed = 0;           ///< pairs without the padding
+  std::size_t near = 0;             ///< the first of them, computed at every step (kernels/configuration.hpp)
+  std::vector<std::int32_t> order;  ///< places of the pairs in the order of (i, j, image)
+  std::vector<std::uint8_t> touched, shifted;  ///< kernels/configuration.hpp
   std::vector<std::int32_t> i, j;
   std::vector<std::int32_t> row_i, row_j;  ///< i, j times the length of a grain row
   std::vector<Image> image;

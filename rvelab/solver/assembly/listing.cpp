@@ -59,20 +59,26 @@ bool touches(const Model& f, const Assembly& a, const ListedPair& pair) {
   return x * x + y * y + z * z < radii * radii;
 }
 
-/// Places of the pairs of a new list in memory: first those that touch or have a history. The kernel that books losses
-/// adds up what all pairs lose as they lie, so with it they lie in order.
+/// Places of the pairs of a new list in memory: first those that touch or have a history, and of these and the others
+/// first those without an image, so that few blocks of eight have one. The kernel that books losses adds up what all
+/// pairs lose as they lie, so with it they lie in order.
 void arrange(const Model& f, const Assembly& a, const std::vector<ListedPair>& listed,
              const std::vector<const Contact*>& histories, PairTable& pairs) {
   const std::size_t n = listed.size();
-  std::vector<std::uint8_t> near(n);
-  in_pieces(n, f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
-    for (std::size_t k = first; k < last; ++k)
-      near[k] = f.options.energy_balance || histories[k] != nullptr || touches(f, a, listed[k]);
-  });
-  std::int32_t here = 0, beyond = std::int32_t(std::count(near.begin(), near.end(), 1));
-  pairs.near = (std::size_t(beyond) + 7) / 8 * 8;
+  std::vector<std::uint8_t> group(n, 0);  // 0, 1 near, 2, 3 beyond, the odd ones with an image
+  if (!f.options.energy_balance)
+    in_pieces(n, f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
+      for (std::size_t k = first; k < last; ++k) {
+        const bool near = histories[k] != nullptr || touches(f, a, listed[k]);
+        group[k] = std::uint8_t((near ? 0 : 2) + int(listed[k].image != Image{0, 0, 0}));
+      }
+    });
+  std::int32_t next[5] = {};
+  for (const std::uint8_t of_pair : group) ++next[of_pair + 1];
+  for (int k = 1; k < 5; ++k) next[k] += next[k - 1];
+  pairs.near = (std::size_t(next[2]) + 7) / 8 * 8;
   pairs.order.resize(n);
-  for (std::size_t k = 0; k < n; ++k) pairs.order[k] = near[k] ? here++ : beyond++;
+  for (std::size_t k = 0; k < n; ++k) pairs.order[k] = next[group[k]]++;
 }
 
 /// Makes the arrays of a new list and fills in the carried history, which is sorted by key.

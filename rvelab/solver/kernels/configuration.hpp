@@ -71,7 +71,8 @@ struct PairArrays {
   double* moment[3] = {};                                 ///< with rolling; 2D: [0] about z
   double* root_overlap = nullptr;                         ///< laws that carry sqrt(delta_old)
   const double *radius_i = nullptr, *radius_j = nullptr;  ///< discs; ellipses with Hertz's radius from curvature
-  double* force = nullptr;  ///< row per pair: 2D {fx, fy, T_j, T_i}; 3D {fx, fy, fz, delta/2, n x f_t, 0}
+  double* force = nullptr;                ///< row per pair: 2D {fx, fy, T_j, T_i}; 3D {fx, fy, fz, delta/2, n x f_t, 0}
+  const std::uint8_t* shifted = nullptr;  ///< by eight pairs: whether one is with an image, else all shifts are 0
 };
 
 /// Grains that are gathered and integrated together: their resultants stay in the first-level cache between.

@@ -60,9 +60,8 @@ __attribute__((noinline)) void ellipse_places(const StepConstants& c, const Pair
   const double half_dt = 0.5 * c.dt;
   for (long k = 0; k < count; k += T::W) {
     const long at = first + k;
-    const V image_x = load_as<V>(p.image[0] + at), image_y = load_as<V>(p.image[1] + at);
-    const V bx = load_as<V>(s.dx.at + k) + (c.lattice.xx * image_x + c.lattice.xy * image_y);
-    const V by = load_as<V>(s.dy.at + k) + c.lattice.yy * image_y;
+    V bx = load_as<V>(s.dx.at + k), by = load_as<V>(s.dy.at + k);
+    add_image_in_plane(c, p, at, bx, by);
     const auto matrix = [&](const ScratchColumn* m) {
       return matrix_from(load_as<V>(m[0].at + k), load_as<V>(m[1].at + k), load_as<V>(m[2].at + k),
                          load_as<V>(m[3].at + k));
@@ -141,10 +140,8 @@ __attribute__((noinline)) bool Ellipses::may_touch(const StepConstants& c, const
     gather_place_differences<W>(rows, p.row_i + at, p.row_j + at, d);
     ColumnsOf<W>::load([=](int lane) { return rows + p.row_i[at + lane] + 8; }, i);
     ColumnsOf<W>::load([=](int lane) { return rows + p.row_j[at + lane] + 8; }, j);
-    const V image_x = load_as<V>(p.image[0] + at), image_y = load_as<V>(p.image[1] + at);
-    const EllipsePair<V> pair = {d[0] + (c.lattice.xx * image_x + c.lattice.xy * image_y),
-                                 d[1] + c.lattice.yy * image_y, matrix_from(i[0], i[1], i[2], i[3]),
-                                 matrix_from(j[0], j[1], j[2], j[3])};
+    add_image_in_plane(c, p, at, d[0], d[1]);
+    const EllipsePair<V> pair = {d[0], d[1], matrix_from(i[0], i[1], i[2], i[3]), matrix_from(j[0], j[1], j[2], j[3])};
     if (any_of(!is_apart(ellipse_gap(pair, first_direction(pair))))) return true;
   }
   return false;

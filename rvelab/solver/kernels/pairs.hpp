@@ -1,10 +1,10 @@
 // What the pair loops of discs and spheres share: traits, loading grain rows by columns, small vectors of lanes.
 //
 // A pair loop goes from grain rows to force rows, W listed pairs at a time, a chunk of pairs in passes: the rows of the
-// two grains to columns, place and motion, the contact law. The passes hand columns on through a scratch buffer, and
-// each takes the number of lanes that suits it. In one pass every block of lanes is a chain of roots and divisions
-// longer than a processor looks ahead; split, the next block starts while this one waits (Cascade Lake, AVX2, ns a
-// pair: discs 8.0 in one pass, 7.1 in two, 6.6 in three; spheres 27.6, 21.2, 20.4).
+// two grains to columns, place and motion, the contact law. The passes hand columns on through a scratch buffer. In one
+// pass every block of lanes is a chain of roots and divisions longer than a processor looks ahead; split, the next
+// block starts while this one waits (Cascade Lake, AVX2, ns a pair: discs 8.0 in one pass, 7.1 in two;
+// spheres 27.6, 21.2). So a pass ends with its roots, and the shuffles that feed a root stand beside it.
 //
 // n from i to j, overlap delta = ri + rj - |b|, forces are those on j. Velocities: the relative velocity of the
 // centres over the step is dv' + D+ (b - dt/2 dv'), exactly (b_new - b_old)/dt. Slip (contact/README.md):
@@ -82,6 +82,9 @@ template <int W>
 inline __attribute__((always_inline)) typename Lanes<W>::V gather_spins(const double* rows, const std::int32_t* grain) {
   return Lanes<W>::collected([=](int lane) { return rows[grain[lane] + 4]; });
 }
+
+/// What was read from the arrays handed in is read anew when it is asked for again.
+inline __attribute__((always_inline)) void read_memory_again() { asm volatile("" ::: "memory"); }
 
 /// Pairs of one chunk: the scratch of all passes stays in the first-level cache.
 constexpr long chunk_pairs = 64;

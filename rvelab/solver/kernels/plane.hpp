@@ -23,6 +23,16 @@ struct PlaneContact {
   V radius_ratio = {};         ///< R*/r* (Hertz's radius from curvature)
 };
 
+/// Branches {x, y} of pairs, from the places in the cell of j less those of i.
+template <class V>
+inline __attribute__((always_inline)) void add_image_in_plane(const StepConstants& c, const PairArrays& p, long at,
+                                                              V& x, V& y) {
+  if (!p.shifted[std::size_t(at) / 8]) return;
+  const V image_x = load_as<V>(p.image[0] + at), image_y = load_as<V>(p.image[1] + at);
+  x = x + (c.lattice.xx * image_x + c.lattice.xy * image_y);
+  y = y + c.lattice.yy * image_y;
+}
+
 /// Places and velocities of j less those of i, and both spins, of W pairs, from grain rows to columns k .. k + W - 1.
 template <class T, int W, class Scratch>
 inline __attribute__((always_inline)) void motion_to_columns(const double* rows, const std::int32_t (&i)[W],

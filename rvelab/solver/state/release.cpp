@@ -34,7 +34,7 @@ void put_masses_into_rows(const Model& f, Assembly& a) {
 void release_buffers(Assembly& a) {
   PairTable& t = a.pairs;
   release(t.row_i, t.row_j, t.kn, t.kt, t.law_constant, t.friction, t.kr, t.moment_cap, t.cn, t.force, t.radius_i,
-          t.radius_j, t.touched, t.image_number[0], t.image_number[1], t.image_number[2]);
+          t.radius_j, t.touched, t.shifted, t.image_number[0], t.image_number[1], t.image_number[2]);
   release(a.mass, a.inverse_mass, a.inverse_inertia);
 }
 
@@ -73,7 +73,7 @@ Memory memory_of(const Assembly& a) {
        {&t.kn, &t.kt, &t.law_constant, &t.friction, &t.kr, &t.moment_cap, &t.cn, &t.force, &t.radius_i, &t.radius_j,
         &t.image_number[0], &t.image_number[1], &t.image_number[2], &a.mass, &a.inverse_mass, &a.inverse_inertia})
     m.working += bytes_of(*b);
-  m.working += bytes_of(t.row_i) + bytes_of(t.row_j) + bytes_of(t.touched);
+  m.working += bytes_of(t.row_i) + bytes_of(t.row_j) + bytes_of(t.touched) + bytes_of(t.shifted);
   return m;
 }
 
