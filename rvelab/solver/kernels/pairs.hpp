@@ -148,18 +148,23 @@ inline __attribute__((always_inline)) V without_tension(V normal, V law_constant
   return (pressing > 0.0) ? normal : normal - pressing;
 }
 
-/// History vector carried to the new normal: into the tangent plane at its old length, then turned about n by `angle`
-/// (mean spin times dt; first order, restored to length).
+/// A history vector in the tangent plane of the new normal, turned about n by the mean spin times dt (first order), and
+/// the factor that brings it back to its old length.
 template <class V>
-inline __attribute__((always_inline)) Triple<V> carried_history(const Triple<V>& history, const Triple<V>& n, V angle,
-                                                                bool twist) {
+struct TurnedHistory {
+  Triple<V> vector;
+  V factor;
+};
+template <class V>
+inline __attribute__((always_inline)) TurnedHistory<V> turned_history(const Triple<V>& history, const Triple<V>& n,
+                                                                      V angle, bool twist) {
   const V one = V{} + 1.0;
   const V before = dot(history, history);
   Triple<V> h = plus(history, -dot(history, n), n);
   if (twist) h = plus(h, angle, cross(n, h));
   const V after = dot(h, h);
   const V factor = square_root(before / ((after > 0.0) ? after : one));
-  return times((after > 0.0) ? factor : V{}, h);
+  return {h, (after > 0.0) ? factor : V{}};
 }
 
 }  // namespace
