@@ -7,21 +7,19 @@
 namespace rvelab {
 namespace {
 
-/// What the passes over a chunk of discs hand on; the number of lanes is chosen for each pass by itself.
+/// What the passes over a chunk of discs hand on.
 struct DiscColumns {
-  ScratchColumn fx, fy, torque;  ///< resultants, in the end damped
+  ScratchColumn fx, fy, torque;  ///< resultants
   ScratchColumn x, y, u, v, w;
+  ScratchColumn px, py, factor;  ///< velocity half a step ahead, and how much of it local damping takes off the force
 };
 
-/// Resultants of a chunk of discs: sum of the force rows of pairs in which they are j, less forces and plus T_i of
-/// those in which they are i.
+/// Sums of the force rows of a chunk of discs, over the pairs in which they are j and over those in which they are i.
 template <int W>
 inline __attribute__((always_inline)) void gather_disc_forces(const GrainArrays& g, const PairArrays& p, long first,
-                                                              long count, DiscColumns& out) {
+                                                              long count, TaskRows& sums) {
   using L = Lanes<W>;
   using Quad = typename L::Quad;
-  using V = typename L::V;
-  TaskRows sums;
   const std::int32_t* slot = g.slots + 4L * g.slot_begin[first / 2];
   for (long block = first / 2; block < (first + count) / 2; ++block) {
     const std::int32_t* last = g.slots + 4L * g.slot_begin[block + 1];
@@ -33,31 +31,36 @@ inline __attribute__((always_inline)) void gather_disc_forces(const GrainArrays&
 #pragma GCC unroll 4
     for (int k = 0; k < 4; ++k) store_as(sums.of(g.tasks[4 * block + k]), sum[k]);
   }
-  for (long k = 0; k < count; k += W) {
-    Quad net[W];
-    for (int lane = 0; lane < W; ++lane)
-      net[lane] = L::add(quad_at<W>(sums.as_j(k + lane)), L::seen_from_i(quad_at<W>(sums.as_i(k + lane))));
-    V columns[4];
-    L::transpose(net, columns);
-    store_as(out.fx.at + k, columns[0]);
-    store_as(out.fy.at + k, columns[1]);
-    store_as(out.torque.at + k, columns[2]);
-  }
 }
 
-/// Damps the resultants.
-template <class T>
+/// Resultants of a chunk: the sum as j, less forces and plus T_i of the sum as i. Then global damping and the factor of
+/// the local one. Two passes, the first of which ends with the root, as in the pair loops (time of the grain loop,
+/// AVX2: 1 with rows and damping in passes of their own, 0.93 so).
+template <class T, int length>
 inline __attribute__((always_inline)) void damp_discs(const StepConstants& c, const GrainArrays& g, long first,
-                                                      long count, DiscColumns& s, PartialSums<T::W>& lost_locally,
+                                                      long count, const TaskRows& sums, DiscColumns& s,
                                                       PartialSums<T::W>& lost_globally) {
-  using V = typename Lanes<T::W>::V;
+  constexpr int W = T::W;
+  using L = Lanes<W>;
+  using V = typename L::V;
   const double half_dt = 0.5 * c.dt;
   for (long eight = 0; eight < count; eight += 8)
 #pragma GCC unroll 2
-    for (int part = 0; part < 8 / T::W; ++part) {
-      const long k = eight + part * T::W, at = first + k;
-      V fx = load_as<V>(s.fx.at + k), fy = load_as<V>(s.fy.at + k), torque = load_as<V>(s.torque.at + k);
-      const V u = load_as<V>(s.u.at + k) - c.mean_velocity[0], v = load_as<V>(s.v.at + k) - c.mean_velocity[1];
+    for (int part = 0; part < 8 / W; ++part) {
+      const long k = eight + part * W, at = first + k;
+      typename L::Quad net[W];
+      for (int lane = 0; lane < W; ++lane)
+        net[lane] = L::add(quad_at<W>(sums.as_j(k + lane)), L::seen_from_i(quad_at<W>(sums.as_i(k + lane))));
+      V resultant[4], a[4];
+      L::transpose(net, resultant);
+      V fx = resultant[0], fy = resultant[1];
+      store_as(s.torque.at + k, resultant[2]);
+      columns_of<W>(g.rows + length * at, length, a);
+      store_as(s.x.at + k, a[0]);
+      store_as(s.y.at + k, a[1]);
+      const V u = a[2] - c.mean_velocity[0], v = a[3] - c.mean_velocity[1];
+      store_as(s.u.at + k, u);
+      store_as(s.v.at + k, v);
       if constexpr (T::Dynamic) {
         if (c.global_viscous != 0.0) {
           fx = fx - c.global_viscous * u;
@@ -65,13 +68,43 @@ inline __attribute__((always_inline)) void damp_discs(const StepConstants& c, co
           if (c.losses) lost_globally.add(part, c.dt * c.global_viscous * (u * u + v * v));
         }
       }
+      store_as(s.fx.at + k, fx);
+      store_as(s.fy.at + k, fy);
+      if constexpr (T::damping != KernelDamping::none) {
+        const V inverse_mass = load_as<V>(g.inverse_mass + at);
+        const V px = u + half_dt * (fx * inverse_mass), py = v + half_dt * (fy * inverse_mass);
+        store_as(s.px.at + k, px);
+        store_as(s.py.at + k, py);
+        if constexpr (T::damping == KernelDamping::vector)
+          store_as(s.factor.at + k, local_damping_factor(c.local_damping, fx * fx + fy * fy, px * px + py * py));
+      }
+    }
+}
+
+/// Local damping; velocities and places after the step, to the rows.
+template <class T, int length, bool turns>
+inline __attribute__((always_inline)) void move_discs(const StepConstants& c, const GrainArrays& g, long first,
+                                                      long count, DiscColumns& s, PartialSums<T::W>* momentum,
+                                                      typename Lanes<T::W>::V& fastest,
+                                                      PartialSums<T::W>& lost_locally) {
+  constexpr int W = T::W;
+  using V = typename Lanes<W>::V;
+  const double half_dt = 0.5 * c.dt;
+  for (long eight = 0; eight < count; eight += 8)
+#pragma GCC unroll 2
+    for (int part = 0; part < 8 / W; ++part) {
+      const long k = eight + part * W, at = first + k;
+      const V inverse_mass = load_as<V>(g.inverse_mass + at), inverse_inertia = load_as<V>(g.inverse_inertia + at);
+      V fx = load_as<V>(s.fx.at + k), fy = load_as<V>(s.fy.at + k), torque = load_as<V>(s.torque.at + k);
+      V u = load_as<V>(s.u.at + k), v = load_as<V>(s.v.at + k);
+      double* row = g.rows + length * at;
+      V w = Lanes<W>::collected([=](int lane) { return row[length * lane + 4]; });
       if constexpr (T::damping != KernelDamping::none) {
         [[maybe_unused]] const V free_x = fx, free_y = fy, free_torque = torque;
-        const V inverse_mass = load_as<V>(g.inverse_mass + at), inverse_inertia = load_as<V>(g.inverse_inertia + at);
-        const V px = u + half_dt * (fx * inverse_mass), py = v + half_dt * (fy * inverse_mass);
-        const V pw = load_as<V>(s.w.at + k) + half_dt * (torque * inverse_inertia);
+        const V px = load_as<V>(s.px.at + k), py = load_as<V>(s.py.at + k);
+        const V pw = w + half_dt * (torque * inverse_inertia);
         if constexpr (T::damping == KernelDamping::vector) {
-          const V factor = local_damping_factor(c.local_damping, fx * fx + fy * fy, px * px + py * py);
+          const V factor = load_as<V>(s.factor.at + k);
           fx = fx - factor * px;
           fy = fy - factor * py;
         } else {
@@ -81,28 +114,8 @@ inline __attribute__((always_inline)) void damp_discs(const StepConstants& c, co
         torque = damped_component(c.local_damping, torque, pw);
         if (T::Dynamic && c.losses)
           lost_locally.add(part, c.dt * ((free_x - fx) * px + (free_y - fy) * py + (free_torque - torque) * pw));
-        store_as(s.torque.at + k, torque);
       }
-      store_as(s.fx.at + k, fx);
-      store_as(s.fy.at + k, fy);
-    }
-}
-
-/// Velocities and places after the step.
-template <class T>
-inline __attribute__((always_inline)) void move_discs(const StepConstants& c, const GrainArrays& g, long first,
-                                                      long count, DiscColumns& s, PartialSums<T::W>* momentum,
-                                                      typename Lanes<T::W>::V& fastest) {
-  using V = typename Lanes<T::W>::V;
-  for (long eight = 0; eight < count; eight += 8)
-#pragma GCC unroll 2
-    for (int part = 0; part < 8 / T::W; ++part) {
-      const long k = eight + part * T::W, at = first + k;
-      const V inverse_mass = load_as<V>(g.inverse_mass + at), inverse_inertia = load_as<V>(g.inverse_inertia + at);
-      V u = load_as<V>(s.u.at + k) - c.mean_velocity[0], v = load_as<V>(s.v.at + k) - c.mean_velocity[1];
-      V w = load_as<V>(s.w.at + k);
-      const V ax = c.dt * (load_as<V>(s.fx.at + k) * inverse_mass),
-              ay = c.dt * (load_as<V>(s.fy.at + k) * inverse_mass);
+      const V ax = c.dt * (fx * inverse_mass), ay = c.dt * (fy * inverse_mass);
       if constexpr (T::Dynamic) {
         const V pu = (c.momentum_map[0] * u + c.momentum_map[1] * v) + (c.force_map[0] * ax + c.force_map[1] * ay);
         const V pv = (c.momentum_map[3] * u + c.momentum_map[4] * v) + (c.force_map[3] * ax + c.force_map[4] * ay);
@@ -113,47 +126,26 @@ inline __attribute__((always_inline)) void move_discs(const StepConstants& c, co
         u = u + ax;
         v = v + ay;
       }
-      w = w + c.dt * (load_as<V>(s.torque.at + k) * inverse_inertia);
+      w = w + c.dt * (torque * inverse_inertia);
       const V mass = load_as<V>(g.mass + at);
       momentum[0].add(part, mass * u);
       momentum[1].add(part, mass * v);
       const V squared = u * u + v * v;
       fastest = (squared > fastest) ? squared : fastest;
       const V x = load_as<V>(s.x.at + k), y = load_as<V>(s.y.at + k);
-      store_as(s.x.at + k, (c.map.xx * x + c.map.xy * y) + (c.velocity_map.xx * u + c.velocity_map.xy * v));
-      store_as(s.y.at + k, c.map.yy * y + c.velocity_map.yy * v);
-      store_as(s.u.at + k, u);
-      store_as(s.v.at + k, v);
-      store_as(s.w.at + k, w);
+      const V to[4] = {(c.map.xx * x + c.map.xy * y) + (c.velocity_map.xx * u + c.velocity_map.xy * v),
+                       c.map.yy * y + c.velocity_map.yy * v, u, v};
+      rows_of<W>(to, row, length);
+      double spins[W];
+      std::memcpy(spins, &w, sizeof(V));
+#pragma GCC unroll 8
+      for (int lane = 0; lane < W; ++lane) row[length * lane + 4] = spins[lane];
+      if constexpr (turns) {
+        store_as(s.u.at + k, u);
+        store_as(s.v.at + k, v);
+        store_as(s.w.at + k, w);
+      }
     }
-}
-
-/// Grain rows to columns and back; shuffles cost the same at every width, so these keep to four lanes.
-template <int W, int length>
-inline __attribute__((always_inline)) void disc_rows_to_columns(const double* rows, long first, long count,
-                                                                DiscColumns& s) {
-  using V = typename Lanes<W>::V;
-  for (long k = 0; k < count; k += W) {
-    const double* row = rows + length * (first + k);
-    V a[4];
-    columns_of<W>(row, length, a);
-    store_as(s.x.at + k, a[0]);
-    store_as(s.y.at + k, a[1]);
-    store_as(s.u.at + k, a[2]);
-    store_as(s.v.at + k, a[3]);
-    for (int lane = 0; lane < W; ++lane) s.w.at[k + lane] = row[length * lane + 4];
-  }
-}
-template <int W, int length>
-inline __attribute__((always_inline)) void disc_columns_to_rows(const DiscColumns& s, double* rows, long first,
-                                                                long count) {
-  using V = typename Lanes<W>::V;
-  for (long k = 0; k < count; k += W) {
-    double* row = rows + length * (first + k);
-    const V a[4] = {load_as<V>(s.x.at + k), load_as<V>(s.y.at + k), load_as<V>(s.u.at + k), load_as<V>(s.v.at + k)};
-    rows_of<W>(a, row, length);
-    for (int lane = 0; lane < W; ++lane) row[length * lane + 4] = s.w.at[k + lane];
-  }
 }
 
 /// What the grain loop in the plane asks of a shape: the length of its rows, and what turns with the grain.
@@ -175,13 +167,12 @@ void plane_grains(const StepConstants& constants, const GrainArrays& grains, con
   typename Lanes<W>::V fastest = {};
   [[maybe_unused]] typename Lanes<narrow>::V fastest_with_turn = {};
   DiscColumns s;
+  TaskRows task_sums;
   for (long chunk = begin; chunk < end; chunk += chunk_grains) {
     const long count = end - chunk < chunk_grains ? end - chunk : chunk_grains;
-    disc_rows_to_columns<narrow, Rows::length>(g.rows, chunk, count, s);
-    gather_disc_forces<narrow>(g, p, chunk, count, s);
-    damp_discs<T>(c, g, chunk, count, s, lost_locally, lost_globally);
-    move_discs<T>(c, g, chunk, count, s, momentum, fastest);
-    disc_columns_to_rows<narrow, Rows::length>(s, g.rows, chunk, count);
+    gather_disc_forces<narrow>(g, p, chunk, count, task_sums);
+    damp_discs<T, Rows::length>(c, g, chunk, count, task_sums, s, lost_globally);
+    move_discs<T, Rows::length, Rows::turns>(c, g, chunk, count, s, momentum, fastest, lost_locally);
     if constexpr (Rows::turns) Rows::template turn<T>(c, g, chunk, count, s, fastest_with_turn);
   }
   sums->momentum[0] = momentum[0].total();

@@ -19,20 +19,19 @@ inline __attribute__((always_inline)) Triple<V> mapped(const double* rows, const
 
 /// What the passes over a chunk of spheres hand on.
 struct SphereColumns {
-  TripleColumn force, torque;  ///< resultants, in the end damped
-  TripleColumn place, velocity, spin;
-  ScratchColumn radius;
+  TripleColumn force, torque;  ///< resultants
+  TripleColumn velocity, spin;
+  TripleColumn ahead, spin_ahead;  ///< velocity and spin half a step ahead
+  ScratchColumn along, about;      ///< how much of them local damping takes off force and torque
 };
 
 /// Resultant forces and torques of a chunk of spheres. Torque on either grain of a pair: -(r - delta/2) n x f_t; the
 /// moment of rolling is minus on i, plus on j.
 template <int W, bool Rolling>
 inline __attribute__((always_inline)) void gather_sphere_forces(const GrainArrays& g, const PairArrays& p, long first,
-                                                                long count, SphereColumns& s) {
+                                                                long count, TaskRows& forces, TaskRows& torques) {
   using L = Lanes<W>;
   using Quad = typename L::Quad;
-  using V = typename L::V;
-  TaskRows forces, torques;
   const std::int32_t* slot = g.slots + 4L * g.slot_begin[first / 2];
   for (long block = first / 2; block < (first + count) / 2; ++block) {
     const std::int32_t* last = g.slots + 4L * g.slot_begin[block + 1];
@@ -61,53 +60,82 @@ inline __attribute__((always_inline)) void gather_sphere_forces(const GrainArray
       store_as(torques.of(task), torque);
     }
   }
-  for (long k = 0; k < count; k += W) {
-    Quad force[W], torque[W];
-    for (int lane = 0; lane < W; ++lane) {
-      const long grain = k + lane;
-      force[lane] = L::sub(quad_at<W>(forces.as_j(grain)), quad_at<W>(forces.as_i(grain)));
-      torque[lane] = L::add(quad_at<W>(torques.as_j(grain)), quad_at<W>(torques.as_i(grain)));
-    }
-    V columns[4];
-    L::transpose(force, columns);
-    s.force.store(k, Triple<V>{columns[0], columns[1], columns[2]});
-    L::transpose(torque, columns);
-    s.torque.store(k, Triple<V>{columns[0], columns[1], columns[2]});
-  }
 }
 
-/// Damps the resultants.
+/// Resultants of a chunk, global damping and the factors of the local one; as for discs, this pass ends with the roots.
 template <class T>
 inline __attribute__((always_inline)) void damp_spheres(const StepConstants& c, const GrainArrays& g, long first,
-                                                        long count, SphereColumns& s, PartialSums<T::W>& lost_locally,
-                                                        PartialSums<T::W>& lost_globally) {
-  using V = typename Lanes<T::W>::V;
+                                                        long count, const TaskRows& forces, const TaskRows& torques,
+                                                        SphereColumns& s, PartialSums<T::W>& lost_globally) {
+  constexpr int W = T::W;
+  using L = Lanes<W>;
+  using V = typename L::V;
   const V half_dt = V{} + 0.5 * c.dt;
   const Triple<V> mean = {V{} + c.mean_velocity[0], V{} + c.mean_velocity[1], V{} + c.mean_velocity[2]};
   for (long eight = 0; eight < count; eight += 8)
 #pragma GCC unroll 2
-    for (int part = 0; part < 8 / T::W; ++part) {
-      const long k = eight + part * T::W, at = first + k;
+    for (int part = 0; part < 8 / W; ++part) {
+      const long k = eight + part * W, at = first + k;
       const V one = V{} + 1.0;
-      const Triple<V> v = plus(s.velocity.load<V>(k), -one, mean);
-      Triple<V> f = s.force.load<V>(k);
+      typename L::Quad quads[W];
+      V a[4];
+      for (int lane = 0; lane < W; ++lane)
+        quads[lane] = L::sub(quad_at<W>(forces.as_j(k + lane)), quad_at<W>(forces.as_i(k + lane)));
+      L::transpose(quads, a);
+      Triple<V> f = {a[0], a[1], a[2]};
+      for (int lane = 0; lane < W; ++lane)
+        quads[lane] = L::add(quad_at<W>(torques.as_j(k + lane)), quad_at<W>(torques.as_i(k + lane)));
+      L::transpose(quads, a);
+      const Triple<V> t = {a[0], a[1], a[2]};
+      const double* row = g.rows + 12 * at;
+      columns_of<W>(row + 4, 12, a);
+      const Triple<V> v = plus(Triple<V>{a[0], a[1], a[2]}, -one, mean);
+      s.velocity.store(k, v);
+      columns_of<W>(row + 8, 12, a);
+      const Triple<V> w = {a[0], a[1], a[2]};
+      s.spin.store(k, w);
       if constexpr (T::Dynamic) {
         if (c.global_viscous != 0.0) {
           f = plus(f, V{} - c.global_viscous, v);
           if (c.losses) lost_globally.add(part, c.dt * c.global_viscous * dot(v, v));
         }
       }
+      s.force.store(k, f);
+      s.torque.store(k, t);
       if constexpr (T::damping != KernelDamping::none) {
-        Triple<V> t = s.torque.load<V>(k);
-        [[maybe_unused]] const Triple<V> free_f = f, free_t = t;
         const V inverse_mass = load_as<V>(g.inverse_mass + at), inverse_inertia = load_as<V>(g.inverse_inertia + at);
         const Triple<V> pv = plus(v, half_dt, times(inverse_mass, f));
-        const Triple<V> pw = plus(s.spin.load<V>(k), half_dt, times(inverse_inertia, t));
+        const Triple<V> pw = plus(w, half_dt, times(inverse_inertia, t));
+        s.ahead.store(k, pv);
+        s.spin_ahead.store(k, pw);
         if constexpr (T::damping == KernelDamping::vector) {
-          const V along = local_damping_factor(c.local_damping, dot(f, f), dot(pv, pv));
-          const V about = local_damping_factor(c.local_damping, dot(t, t), dot(pw, pw));
-          f = plus(f, -along, pv);
-          t = plus(t, -about, pw);
+          store_as(s.along.at + k, local_damping_factor(c.local_damping, dot(f, f), dot(pv, pv)));
+          store_as(s.about.at + k, local_damping_factor(c.local_damping, dot(t, t), dot(pw, pw)));
+        }
+      }
+    }
+}
+
+/// Local damping; velocities and places after the step, to the rows.
+template <class T>
+inline __attribute__((always_inline)) void move_spheres(const StepConstants& c, const GrainArrays& g, long first,
+                                                        long count, SphereColumns& s, PartialSums<T::W>* momentum,
+                                                        typename Lanes<T::W>::V& fastest,
+                                                        PartialSums<T::W>& lost_locally) {
+  constexpr int W = T::W;
+  using V = typename Lanes<T::W>::V;
+  const V dt = V{} + c.dt, one = V{} + 1.0;
+  for (long eight = 0; eight < count; eight += 8)
+#pragma GCC unroll 2
+    for (int part = 0; part < 8 / W; ++part) {
+      const long k = eight + part * W, at = first + k;
+      Triple<V> f = s.force.load<V>(k), t = s.torque.load<V>(k);
+      if constexpr (T::damping != KernelDamping::none) {
+        [[maybe_unused]] const Triple<V> free_f = f, free_t = t;
+        const Triple<V> pv = s.ahead.load<V>(k), pw = s.spin_ahead.load<V>(k);
+        if constexpr (T::damping == KernelDamping::vector) {
+          f = plus(f, -load_as<V>(s.along.at + k), pv);
+          t = plus(t, -load_as<V>(s.about.at + k), pw);
         } else {
           f = {damped_component(c.local_damping, f.x, pv.x), damped_component(c.local_damping, f.y, pv.y),
                damped_component(c.local_damping, f.z, pv.z)};
@@ -116,26 +144,9 @@ inline __attribute__((always_inline)) void damp_spheres(const StepConstants& c, 
         }
         if (T::Dynamic && c.losses)
           lost_locally.add(part, c.dt * (dot(plus(free_f, -one, f), pv) + dot(plus(free_t, -one, t), pw)));
-        s.torque.store(k, t);
       }
-      s.force.store(k, f);
-    }
-}
-
-/// Velocities and places after the step.
-template <class T>
-inline __attribute__((always_inline)) void move_spheres(const StepConstants& c, const GrainArrays& g, long first,
-                                                        long count, SphereColumns& s, PartialSums<T::W>* momentum,
-                                                        typename Lanes<T::W>::V& fastest) {
-  using V = typename Lanes<T::W>::V;
-  const Triple<V> mean = {V{} + c.mean_velocity[0], V{} + c.mean_velocity[1], V{} + c.mean_velocity[2]};
-  const V dt = V{} + c.dt, one = V{} + 1.0;
-  for (long eight = 0; eight < count; eight += 8)
-#pragma GCC unroll 2
-    for (int part = 0; part < 8 / T::W; ++part) {
-      const long k = eight + part * T::W, at = first + k;
-      Triple<V> v = plus(s.velocity.load<V>(k), -one, mean), w = s.spin.load<V>(k);
-      const Triple<V> a = times(dt, times(load_as<V>(g.inverse_mass + at), s.force.load<V>(k)));
+      Triple<V> v = s.velocity.load<V>(k), w = s.spin.load<V>(k);
+      const Triple<V> a = times(dt, times(load_as<V>(g.inverse_mass + at), f));
       if constexpr (T::Dynamic) {
         v = plus(mapped(c.momentum_map, v), one, mapped(c.force_map, a));
         w = mapped(c.spin_map, w);
@@ -143,7 +154,7 @@ inline __attribute__((always_inline)) void move_spheres(const StepConstants& c, 
       } else {
         v = plus(v, one, a);
       }
-      w = plus(w, dt, times(load_as<V>(g.inverse_inertia + at), s.torque.load<V>(k)));
+      w = plus(w, dt, times(load_as<V>(g.inverse_inertia + at), t));
       const V mass = load_as<V>(g.mass + at);
       momentum[0].add(part, mass * v.x);
       momentum[1].add(part, mass * v.y);
@@ -151,45 +162,19 @@ inline __attribute__((always_inline)) void move_spheres(const StepConstants& c, 
       const V squared = dot(v, v);
       fastest = (squared > fastest) ? squared : fastest;
       const UpperTriangle &A = c.map, &B = c.velocity_map;
-      const Triple<V> x = s.place.load<V>(k);
-      s.place.store(k, Triple<V>{(A.xx * x.x + (A.xy * x.y + A.xz * x.z)) + (B.xx * v.x + (B.xy * v.y + B.xz * v.z)),
-                                 (A.yy * x.y + A.yz * x.z) + (B.yy * v.y + B.yz * v.z), A.zz * x.z + B.zz * v.z});
-      s.velocity.store(k, v);
-      s.spin.store(k, w);
+      double* row = g.rows + 12 * at;
+      V place[4];
+      columns_of<W>(row, 12, place);
+      const Triple<V> x = {place[0], place[1], place[2]};
+      const V radius = place[3];
+      const V places[4] = {(A.xx * x.x + (A.xy * x.y + A.xz * x.z)) + (B.xx * v.x + (B.xy * v.y + B.xz * v.z)),
+                           (A.yy * x.y + A.yz * x.z) + (B.yy * v.y + B.yz * v.z), A.zz * x.z + B.zz * v.z, radius};
+      const V velocities[4] = {v.x, v.y, v.z, V{}};
+      const V spins[4] = {w.x, w.y, w.z, radius};
+      rows_of<W>(places, row, 12);
+      rows_of<W>(velocities, row + 4, 12);
+      rows_of<W>(spins, row + 8, 12);
     }
-}
-
-/// Grain rows to columns and back, on four lanes at most as those of discs.
-template <int W>
-inline __attribute__((always_inline)) void sphere_rows_to_columns(const double* rows, long first, long count,
-                                                                  SphereColumns& s) {
-  using V = typename Lanes<W>::V;
-  for (long k = 0; k < count; k += W) {
-    const double* row = rows + 12 * (first + k);
-    V a[4];
-    columns_of<W>(row, 12, a);
-    s.place.store(k, Triple<V>{a[0], a[1], a[2]});
-    store_as(s.radius.at + k, a[3]);
-    columns_of<W>(row + 4, 12, a);
-    s.velocity.store(k, Triple<V>{a[0], a[1], a[2]});
-    columns_of<W>(row + 8, 12, a);
-    s.spin.store(k, Triple<V>{a[0], a[1], a[2]});
-  }
-}
-template <int W>
-inline __attribute__((always_inline)) void sphere_columns_to_rows(const SphereColumns& s, double* rows, long first,
-                                                                  long count) {
-  using V = typename Lanes<W>::V;
-  for (long k = 0; k < count; k += W) {
-    double* row = rows + 12 * (first + k);
-    const V radius = load_as<V>(s.radius.at + k);
-    const Triple<V> x = s.place.load<V>(k), v = s.velocity.load<V>(k), w = s.spin.load<V>(k);
-    const V places[4] = {x.x, x.y, x.z, radius}, velocities[4] = {v.x, v.y, v.z, V{}};
-    const V spins[4] = {w.x, w.y, w.z, radius};
-    rows_of<W>(places, row, 12);
-    rows_of<W>(velocities, row + 4, 12);
-    rows_of<W>(spins, row + 8, 12);
-  }
 }
 
 /// Spheres in 3D.
@@ -204,13 +189,12 @@ void sphere_grains(const StepConstants& constants, const GrainArrays& grains, co
   PartialSums<W> momentum[3], lost_locally, lost_globally;
   typename Lanes<W>::V fastest = {};
   SphereColumns s;
+  TaskRows forces, torques;
   for (long chunk = begin; chunk < end; chunk += chunk_grains) {
     const long count = end - chunk < chunk_grains ? end - chunk : chunk_grains;
-    sphere_rows_to_columns<narrow>(g.rows, chunk, count, s);
-    gather_sphere_forces<narrow, T::Rolling>(g, p, chunk, count, s);
-    damp_spheres<T>(c, g, chunk, count, s, lost_locally, lost_globally);
-    move_spheres<T>(c, g, chunk, count, s, momentum, fastest);
-    sphere_columns_to_rows<narrow>(s, g.rows, chunk, count);
+    gather_sphere_forces<narrow, T::Rolling>(g, p, chunk, count, forces, torques);
+    damp_spheres<T>(c, g, chunk, count, forces, torques, s, lost_globally);
+    move_spheres<T>(c, g, chunk, count, s, momentum, fastest, lost_locally);
   }
   for (int k = 0; k < 3; ++k) sums->momentum[k] = momentum[k].total();
   sums->largest_speed_squared = largest_of(fastest);
