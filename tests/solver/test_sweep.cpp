@@ -57,6 +57,7 @@ TEST_CASE("Pairs that are passed over come to touch, and to part again, as if th
     use_physical_inertia(f, passing);
     computing = passing;
     computing.pairs.near = computing.pairs.padded();
+    leave_out_pairs_beyond(force_row_length(shape), computing.pairs);
     REQUIRE(passing.pairs.near < passing.pairs.listed / 2);
     StepConstants c = base_constants(f, passing);
     c.dt = 2e-5;
@@ -65,17 +66,19 @@ TEST_CASE("Pairs that are passed over come to touch, and to part again, as if th
     for (int k = 0; k < 3; ++k) c.momentum_map[4 * k] = c.force_map[4 * k] = c.spin_map[4 * k] = 1;
     c.local_damping = 0.1;
     std::size_t asleep = 0, awoken = 0, parted = 0;
-    std::vector<std::uint8_t> before = passing.pairs.touched;
+    std::vector<std::uint8_t> before = passing.pairs.touched, ever = before;
     for (int step = 0; step < 150; ++step) {
       for (Assembly* a : {&passing, &computing}) {
         StepSums sums;
         sweep_grains(f.kernels.dynamic[1], c, arrays_of(f, *a), arrays_of(a->pairs), long(a->mass.size()), nullptr,
                      sums);
         sweep_pairs(f.kernels.pairs, c, arrays_of(a->pairs), a->rows.data(), long(a->pairs.padded()), nullptr);
+        gather_pairs_that_touch(a->pairs);
       }
       for (std::size_t unit = passing.pairs.near / 8; unit < before.size(); ++unit) {
         const bool now = passing.pairs.touched[unit] != 0;
         asleep += std::size_t(!now);
+        ever[unit] |= std::uint8_t(now);
         awoken += std::size_t(now && before[unit] == 0);
         parted += std::size_t(!now && before[unit] != 0);
       }
@@ -86,6 +89,14 @@ TEST_CASE("Pairs that are passed over come to touch, and to part again, as if th
       for (int k = 0; k < f.tangential_components(); ++k)
         REQUIRE(passing.pairs.tangential[k] == computing.pairs.tangential[k]);
     }
+    // The grain loop reads the force rows of the pairs that have touched, and of no others beyond the near ones.
+    const std::int32_t row = force_row_length(shape);
+    for (std::size_t p = passing.pairs.near; p < passing.pairs.listed; ++p)
+      for (std::size_t side = 0; side < 2; ++side) {
+        const auto slot = std::size_t(passing.pairs.slots_beyond[2 * (p - passing.pairs.near) + side]);
+        REQUIRE(passing.pairs.slots[slot] == row * std::int32_t(p));
+        REQUIRE(passing.pairs.gathered[slot] == row * std::int32_t(ever[p / 8] != 0 ? p : passing.pairs.listed));
+      }
     CAPTURE(int(shape), asleep, awoken, parted);
     CHECK(asleep > 100);
     CHECK(awoken > 3);

@@ -211,7 +211,7 @@ GrainArrays arrays_of(const Model& f, Assembly& a) {
           a.inverse_mass.data(),
           a.inverse_inertia.data(),
           a.pairs.slot_begin.data(),
-          a.pairs.slots.data(),
+          a.pairs.gathered.data(),
           a.pairs.tasks.data(),
           f.minor_squared.data(),
           f.axes_difference.data()};

@@ -82,6 +82,11 @@ struct PairTable {
   Buffer radius_i, radius_j;                    ///< discs; ellipses with Hertz's radius from curvature
   std::vector<std::int32_t> slot_begin, slots;  ///< gather table (kernels/configuration.hpp)
   std::vector<std::uint16_t> tasks;
+  /// `slots` as the grain loop reads them: those of pairs beyond `near` point to a padding pair until one of their
+  /// eight touches, since a row of zeros need not be fetched to be added (32,000 spheres with 2.5 contacts and 3.5
+  /// listed pairs each: the grain loop takes 0.75 of the time; 1000: 0.98). And where the slots of those pairs are, two
+  /// each.
+  std::vector<std::int32_t> gathered, slots_beyond;
 
   std::size_t padded() const { return i.size(); }
 };

@@ -43,6 +43,7 @@ StepConstants base_constants(const Model& f, const Assembly& a) {
 void evaluate_forces(const Model& f, Assembly& a) {
   const StepConstants c = base_constants(f, a);
   f.kernels_at(a.state.quasi_static).evaluate(c, arrays_of(a.pairs), a.rows.data(), 0, long(a.pairs.padded()), nullptr);
+  gather_pairs_that_touch(a.pairs);
 }
 
 Vector3 force_of(const Model& f, const PairTable& pairs, std::size_t p) {

@@ -57,6 +57,30 @@ void fill_gather_table(std::size_t padded_grains, std::int32_t force_row, PairTa
       next[task] += 4;
     }
   }
+  leave_out_pairs_beyond(force_row, pairs);
+}
+
+void leave_out_pairs_beyond(std::int32_t force_row, PairTable& pairs) {
+  const auto beyond = force_row * std::int32_t(pairs.near), nothing = force_row * std::int32_t(pairs.listed);
+  pairs.gathered = pairs.slots;
+  pairs.slots_beyond.assign(2 * (pairs.padded() - pairs.near), -1);
+  for (std::size_t slot = 0; slot < pairs.slots.size(); ++slot) {
+    const std::int32_t row = pairs.slots[slot];
+    if (row < beyond || row >= nothing) continue;
+    std::int32_t* of_pair = pairs.slots_beyond.data() + 2 * ((row - beyond) / force_row);
+    of_pair[of_pair[0] < 0 ? 0 : 1] = std::int32_t(slot);
+    pairs.gathered[slot] = nothing;
+  }
+}
+
+void gather_pairs_that_touch(PairTable& pairs) {
+  for (std::size_t eight = pairs.near / 8; eight < pairs.touched.size(); ++eight) {
+    if (pairs.touched[eight] == 0) continue;
+    const std::int32_t* slots_of = pairs.slots_beyond.data() + 2 * (8 * eight - pairs.near);
+    if (pairs.gathered[std::size_t(slots_of[0])] == pairs.slots[std::size_t(slots_of[0])]) continue;
+    for (int k = 0; k < 16 && slots_of[k] >= 0; ++k)
+      pairs.gathered[std::size_t(slots_of[k])] = pairs.slots[std::size_t(slots_of[k])];
+  }
 }
 
 }  // namespace rvelab

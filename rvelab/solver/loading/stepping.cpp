@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "rvelab/error.hpp"
+#include "rvelab/solver/assembly/gather_table.hpp"
 #include "rvelab/solver/loading/collisions.hpp"
 #include "rvelab/solver/loading/inertia.hpp"
 #include "rvelab/solver/loading/step_times.hpp"
@@ -263,6 +264,7 @@ void SubSteps::update_pairs() {
     kernels_.pairs_with_losses(c_, pairs_, a_.rows.data(), 0, long(a_.pairs.padded()), &lost);
   else
     sweep_pairs(kernels_.pairs, c_, pairs_, a_.rows.data(), long(a_.pairs.padded()), team_);
+  gather_pairs_that_touch(a_.pairs);
   clock_.end_pairs();
   if (f_.options.energy_balance)
     book_step(f_, a_, lost, sums_, step_, physical_, rate_mid_ + cross_matrix(omega_), moment_before_);

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "rvelab/solver/assembly/gather_table.hpp"
 #include "rvelab/solver/loading/inertia.hpp"
 
 namespace rvelab {
@@ -34,13 +35,15 @@ void put_masses_into_rows(const Model& f, Assembly& a) {
 void release_buffers(Assembly& a) {
   PairTable& t = a.pairs;
   release(t.row_i, t.row_j, t.kn, t.kt, t.law_constant, t.friction, t.kr, t.moment_cap, t.cn, t.force, t.radius_i,
-          t.radius_j, t.touched, t.shifted, t.image_number[0], t.image_number[1], t.image_number[2]);
+          t.radius_j, t.touched, t.shifted, t.gathered, t.slots_beyond, t.image_number[0], t.image_number[1],
+          t.image_number[2]);
   release(a.mass, a.inverse_mass, a.inverse_inertia);
 }
 
 void rebuild_buffers(const Model& f, Assembly& a) {
   try {
     derive_pairs(f, a.pairs);
+    leave_out_pairs_beyond(force_row_length(f.shape), a.pairs);
     for (Buffer* b : {&a.mass, &a.inverse_mass, &a.inverse_inertia}) b->assign(padded_to_lanes(f.size()), 0.0);
   } catch (...) {  // no memory: it stays released, the masses in its rows
     release_buffers(a);
@@ -73,7 +76,8 @@ Memory memory_of(const Assembly& a) {
        {&t.kn, &t.kt, &t.law_constant, &t.friction, &t.kr, &t.moment_cap, &t.cn, &t.force, &t.radius_i, &t.radius_j,
         &t.image_number[0], &t.image_number[1], &t.image_number[2], &a.mass, &a.inverse_mass, &a.inverse_inertia})
     m.working += bytes_of(*b);
-  m.working += bytes_of(t.row_i) + bytes_of(t.row_j) + bytes_of(t.touched) + bytes_of(t.shifted);
+  m.working += bytes_of(t.row_i) + bytes_of(t.row_j) + bytes_of(t.touched) + bytes_of(t.shifted) +
+               bytes_of(t.gathered) + bytes_of(t.slots_beyond);
   return m;
 }
 
