@@ -75,8 +75,8 @@ void leave_out_pairs_beyond(std::int32_t force_row, PairTable& pairs) {
 
 void gather_pairs_that_touch(PairTable& pairs) {
   for (std::size_t eight = pairs.near / 8; eight < pairs.touched.size(); ++eight) {
-    if (pairs.touched[eight] == 0) continue;
     const std::int32_t* slots_of = pairs.slots_beyond.data() + 2 * (8 * eight - pairs.near);
+    if (pairs.touched[eight] == 0 || slots_of[0] < 0) continue;  // nothing but padding, in a lattice that is not finite
     if (pairs.gathered[std::size_t(slots_of[0])] == pairs.slots[std::size_t(slots_of[0])]) continue;
     for (int k = 0; k < 16 && slots_of[k] >= 0; ++k)
       pairs.gathered[std::size_t(slots_of[k])] = pairs.slots[std::size_t(slots_of[k])];
