@@ -68,7 +68,7 @@ void add_model(Listing& listing, const Specimen& specimen) {
   listing.add("slip", name(specimen.contact.slip));
   listing.add("rolling", specimen.contact.rolling);
   listing.add("unload_rescale", specimen.contact.unload_rescale);
-  if (specimen.shape == Shape::ellipse) listing.add("hertz_radius", name(specimen.contact.hertz_radius));
+  if (has_hertz_curvature(specimen.shape)) listing.add("hertz_radius", name(specimen.contact.hertz_radius));
   listing.add("dashpot", name(specimen.damping.dashpot));
   listing.add("local_damping", specimen.damping.local);
   listing.add("reference_pressure_Pa", specimen.state.reference_pressure, "Pa");

@@ -1,33 +1,85 @@
-// Grain shapes and their mass properties. This room knows one grain at a time: no contact, no cell.
+// The shapes there are. A new shape is a file of its own, like its neighbours, and a line here. This room knows one
+// grain at a time: no contact, no cell.
 #pragma once
+
+#include "rvelab/grains/disc.hpp"
+#include "rvelab/grains/ellipse.hpp"
+#include "rvelab/grains/sphere.hpp"
 
 namespace rvelab {
 
+/// Enumerator and description of each, in the order of Shape.
+#define RVELAB_SHAPES(each) each(disc, Disc) each(sphere, Sphere) each(ellipse, Ellipse)
+
+#define RVELAB_ENUMERATOR(shape, description) shape,
+#define RVELAB_DESCRIBED(shape, description) \
+  template <>                                \
+  struct Described<Shape::shape> {           \
+    using By = description;                  \
+  };
+#define RVELAB_ONE_MORE(shape, description) +1
+
 /// The shape of all grains of a specimen; it fixes the dimension.
-enum class Shape { disc, sphere, ellipse };
+enum class Shape { RVELAB_SHAPES(RVELAB_ENUMERATOR) };
+constexpr int shape_count = RVELAB_SHAPES(RVELAB_ONE_MORE);
 
-constexpr int dimension_of(Shape shape) { return shape == Shape::sphere ? 3 : 2; }
+template <Shape shape>
+struct Described;
+RVELAB_SHAPES(RVELAB_DESCRIBED)
+/// What the shape says of itself (description.hpp).
+template <Shape shape>
+using Description = typename Described<shape>::By;
 
-/// Solid volume of a grain, m^3. Disc: pi r^2 thickness; sphere: 4/3 pi r^3 (thickness unused). The radius of an
-/// ellipse is that of the disc of its area, sqrt(a b).
+#undef RVELAB_ENUMERATOR
+#undef RVELAB_DESCRIBED
+#undef RVELAB_ONE_MORE
+
+/// A shape as a type, for loops that are compiled for it.
+template <Shape shape>
+struct ShapeIs {
+  static constexpr Shape value = shape;
+  using By = Description<shape>;
+};
+/// call(ShapeIs<...>{}) for the shape of this value.
+template <int number = 0, class Call>
+static inline __attribute__((always_inline)) constexpr auto with_shape(Shape shape, const Call& call) {
+  if constexpr (number + 1 < shape_count) {
+    if (shape != Shape(number)) return with_shape<number + 1>(shape, call);
+  }
+  return call(ShapeIs<Shape(number)>{});
+}
+
+#define RVELAB_PROPERTY(type, function, property)                                 \
+  constexpr type function(Shape shape) {                                          \
+    return with_shape(shape, [](auto is) { return decltype(is)::By::property; }); \
+  }
+RVELAB_PROPERTY(const char*, name, name)
+RVELAB_PROPERTY(int, dimension_of, dimension)
+RVELAB_PROPERTY(bool, is_round, round)
+RVELAB_PROPERTY(bool, pairs_hold_radii, pairs_hold_radii)
+RVELAB_PROPERTY(bool, fills_rows, fills_rows)
+RVELAB_PROPERTY(bool, has_hertz_curvature, has_hertz_curvature)
+RVELAB_PROPERTY(int, row_length_of, row_length)
+RVELAB_PROPERTY(int, released_mass, released_mass)
+RVELAB_PROPERTY(int, released_inverse_inertia, released_inverse_inertia)
+#undef RVELAB_PROPERTY
+
+/// The grains of this dimension that are round.
+constexpr Shape round_shape(int dimension) {
+  int found = 0;
+  while (!is_round(Shape(found)) || dimension_of(Shape(found)) != dimension) ++found;
+  return Shape(found);
+}
+
+/// Solid volume of a grain, m^3. In the plane pi r^2 thickness; sphere: 4/3 pi r^3 (thickness unused).
 constexpr double grain_volume(Shape shape, double radius, double thickness) {
   constexpr double pi = 3.14159265358979323846;
-  return shape == Shape::sphere ? 4.0 / 3.0 * pi * radius * radius * radius : pi * radius * radius * thickness;
+  return dimension_of(shape) == 3 ? 4.0 / 3.0 * pi * radius * radius * radius : pi * radius * radius * thickness;
 }
 
-/// Cross-section through the centre, m^2. Disc, and ellipse as the disc of its area: 2 r thickness; sphere: pi r^2.
+/// Cross-section through the centre, m^2, of the disc or sphere of its radius: 2 r thickness; pi r^2.
 constexpr double grain_section(Shape shape, double radius, double thickness) {
-  return shape == Shape::sphere ? 3.14159265358979323846 * radius * radius : 2 * radius * thickness;
+  return dimension_of(shape) == 3 ? 3.14159265358979323846 * radius * radius : 2 * radius * thickness;
 }
-
-/// Moment of inertia about the centre (disc: about its axis), kg m^2.
-constexpr double moment_of_inertia(Shape shape, double mass, double radius) {
-  return (shape == Shape::disc ? 0.5 : 0.4) * mass * radius * radius;
-}
-/// Of an ellipse of semi-axes a and b (m) about the axis through its centre, kg m^2.
-constexpr double ellipse_inertia(double mass, double a, double b) { return 0.25 * mass * (a * a + b * b); }
-
-/// Aspect ratios b/a that contacts of ellipses are held to be right for.
-inline constexpr double least_aspect_ratio = 0.1;
 
 }  // namespace rvelab

@@ -82,7 +82,7 @@ Matrix3 branch_fabric(const Network& network) {
 
 Matrix3 orientation_fabric(const Network& network) {
   Matrix3 sum = Matrix3::Zero();
-  if (network.shape != Shape::ellipse || network.grains.empty()) return Matrix3::Constant(not_defined);
+  if (is_round(network.shape) || network.grains.empty()) return Matrix3::Constant(not_defined);
   for (const GrainState& grain : network.grains) sum += grain.orientation * grain.orientation.transpose();
   return in_laboratory(network, sum / static_cast<double>(network.grains.size()));
 }

@@ -27,13 +27,13 @@ double deviatoric_stress(const Matrix3& stress, int dimension);
 /// eps_q of the symmetric deviator e: 2D sqrt(2 e:e), 3D sqrt(2 e:e/3). Takes rates as well.
 double deviatoric_strain(const Matrix3& strain, int dimension);
 
-/// <n (x) n> over all contacts; trace 1. The normal of ellipses is not along their branch.
+/// <n (x) n> over all contacts; trace 1. That of grains that are not round is not along their branch.
 Matrix3 fabric(const Network& network);
 
 /// sum b (x) b / sum b.b over all contacts: fabric weighted with the squared branch length; trace 1.
 Matrix3 branch_fabric(const Network& network);
 
-/// Ellipses: mean of e (x) e over all grains, e along the long axis; trace 1. NaN where the grains are round.
+/// Mean of e (x) e over all grains, e along the long axis; trace 1. NaN where the grains are round.
 Matrix3 orientation_fabric(const Network& network);
 
 /// Fa of a fabric tensor of trace 1. 2D: F = 4 (phi - I/2), sqrt(F:F/2), the a of E(theta) = (1 + a cos 2(theta -
@@ -65,7 +65,7 @@ double sliding_fraction(const Network& network);
 /// Mean resultant over all grains / max(mean contact force, 1e-3 of the reference force). Zero where both vanish.
 double unbalanced_force_ratio(const Network& network);
 
-/// The same of torques over the radius (ellipses: sqrt(a b)), N: mean |torque|/r over all grains / the same scale. What
+/// The same of torques over the radius, N: mean |torque|/r over all grains / the same scale. What
 /// an Rve reports as its unbalanced ratio is the larger of the two.
 double unbalanced_torque_ratio(const Network& network);
 
@@ -76,10 +76,10 @@ double elastic_energy(const Network& network);
 /// 1000 per s left 0.5 to 9 % of its work open). Zero for a quasi-static network.
 double kinetic_energy(const Network& network);
 
-/// Largest overlap over the smaller radius of its pair (ellipses: sqrt(a b)); zero without contacts.
+/// Largest overlap over the smaller radius of its pair; zero without contacts.
 double largest_overlap_ratio(const Network& network);
 
-/// Number mean of the grain diameters, m; of an ellipse that of the disc of its area, 2 sqrt(a b).
+/// Number mean of the grain diameters, m; twice the radius, which is that of the disc of its area.
 double mean_diameter(const Network& network);
 
 /// Mass over solid volume of all grains, kg/m^3.

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "rvelab/solver/assembly/pair_place.hpp"
+#include "rvelab/solver/assembly/outline.hpp"
 
 namespace rvelab {
 
@@ -15,26 +15,34 @@ Vector3 branch_of(const Specimen& specimen, const Contact& contact) {
 
 namespace {
 
-EllipsePlace ellipses_of(const Specimen& specimen, const Contact& contact) {
+/// Of grains that are not round.
+OutlinePlace place_of(const Specimen& specimen, const Contact& contact) {
   const Vector3 b = branch_of(specimen, contact);
-  const Grains& g = specimen.grains;
-  const auto form = [&](std::int32_t k) {
-    return EllipseForm{g.semi_major[std::size_t(k)], g.semi_minor[std::size_t(k)], g.orientation[std::size_t(k)][0],
-                       g.orientation[std::size_t(k)][1]};
-  };
-  return place_of_ellipses({b[0], b[1], 0}, form(contact.i), form(contact.j));
+  return with_shape(specimen.shape, [&](auto is) -> OutlinePlace {
+    using By = typename decltype(is)::By;
+    if constexpr (By::round) {
+      return {};
+    } else {
+      constexpr Shape shape = decltype(is)::value;
+      const auto row = [&](std::int32_t k) {
+        const Vector3& axis = specimen.grains.orientation[std::size_t(k)];
+        return LoneRow<shape>(own_of<By>(specimen.grains, std::size_t(k)), axis[0], axis[1]);
+      };
+      return Outline<shape>::place({b[0], b[1], 0}, row(contact.i).row, row(contact.j).row);
+    }
+  });
 }
 
 }  // namespace
 
 Vector3 normal_of(const Specimen& specimen, const Contact& contact) {
-  if (specimen.shape != Shape::ellipse) return branch_of(specimen, contact).normalized();
-  const Branch n = ellipses_of(specimen, contact).normal;
+  if (is_round(specimen.shape)) return branch_of(specimen, contact).normalized();
+  const Branch n = place_of(specimen, contact).normal;
   return {n.x, n.y, 0};
 }
 
 double overlap_of(const Specimen& specimen, const Contact& contact) {
-  if (specimen.shape == Shape::ellipse) return ellipses_of(specimen, contact).overlap;
+  if (!is_round(specimen.shape)) return place_of(specimen, contact).overlap;
   const auto& radius = specimen.grains.radius;
   return radius[static_cast<std::size_t>(contact.i)] + radius[static_cast<std::size_t>(contact.j)] -
          branch_of(specimen, contact).norm();
@@ -44,9 +52,9 @@ namespace {
 
 /// What laws take for sqrt(overlap) > 0, m^0.5.
 double root_overlap(const Specimen& specimen, const Contact& contact) {
-  if (specimen.shape != Shape::ellipse || specimen.contact.hertz_radius == HertzRadius::equivalent)
+  if (is_round(specimen.shape) || specimen.contact.hertz_radius == HertzRadius::equivalent)
     return std::sqrt(overlap_of(specimen, contact));
-  const EllipsePlace at = ellipses_of(specimen, contact);
+  const OutlinePlace at = place_of(specimen, contact);
   const auto& radius = specimen.grains.radius;
   return std::sqrt(at.overlap * at.hertz_radius_ratio(radius[std::size_t(contact.i)], radius[std::size_t(contact.j)]));
 }

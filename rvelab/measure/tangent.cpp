@@ -14,8 +14,8 @@
 #include "rvelab/error.hpp"
 #include "rvelab/measure/block_factors.hpp"
 #include "rvelab/measure/contact_linear.hpp"
-#include "rvelab/measure/ellipse_linear.hpp"
 #include "rvelab/measure/measures.hpp"
+#include "rvelab/measure/outline_linear.hpp"
 #include "rvelab/measure/tensor_order.hpp"
 
 namespace rvelab {
@@ -30,7 +30,7 @@ struct Spring {
   const ContactState* contact;
   Matrix9 law;                        ///< with half of the unloading terms
   Vector9 unloading;                  ///< half of the unloading terms; the other half is +- |dl|
-  Vector9 opening = Vector9::Zero();  ///< ellipses: dl per q, where round grains have n.db
+  Vector9 opening = Vector9::Zero();  ///< not round: dl per q, where round grains have n.db
 };
 
 Matrix9 rows_of(const LinearContact& linear) {
@@ -41,9 +41,9 @@ Matrix9 rows_of(const LinearContact& linear) {
 
 /// Half of the unloading terms stands in the linear law, so that with r = half the terms per dl the law is
 /// law q + r |dl|: exact for loading (dl < 0: nothing) and for unloading (dl > 0: all).
-Spring spring_of_ellipses(const Network& network, const ContactState& contact) {
-  const LinearEllipseContact linear =
-      linearised_ellipses(contact, network.grains[contact.i], network.grains[contact.j], hertz_radius(network));
+Spring spring_of_outlines(const Network& network, const ContactState& contact) {
+  const LinearOutlineContact linear = linearised_outlines(network.shape, contact, network.grains[contact.i],
+                                                          network.grains[contact.j], hertz_radius(network));
   Spring spring{&contact, rows_of(linear.law), Vector9::Zero(), linear.opening.transpose()};
   if (rescales(network)) {
     const Matrix9 half = 0.5 * rows_of(linear.unloading);
@@ -54,7 +54,7 @@ Spring spring_of_ellipses(const Network& network, const ContactState& contact) {
 }
 
 Spring spring_of(const Network& network, const ContactState& contact) {
-  if (network.shape == Shape::ellipse) return spring_of_ellipses(network, contact);
+  if (!is_round(network.shape)) return spring_of_outlines(network, contact);
   const double ri = network.grains[contact.i].radius, rj = network.grains[contact.j].radius;
   Spring spring{&contact, rows_of(linearised(contact, ri, rj, network.model.slip)), Vector9::Zero()};
   if (rescales(network)) {
@@ -193,7 +193,7 @@ class Condensed {
   }
 
   double elongation(const Spring& spring, const Vector9& q) const {
-    return network_.shape == Shape::ellipse ? spring.opening.dot(q) : spring.contact->normal.dot(q.head<3>());
+    return is_round(network_.shape) ? spring.contact->normal.dot(q.head<3>()) : spring.opening.dot(q);
   }
 
   /// Unbalanced load on the freedoms at the motion x, into `load`; its largest component.

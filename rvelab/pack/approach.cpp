@@ -89,8 +89,7 @@ std::vector<double> scaled(std::vector<double> lengths, double factor) {
 /// Gives grains the sizes of `full`, times `factor`.
 void set_sizes(const Grains& full, double factor, Grains& grains) {
   grains.radius = scaled(full.radius, factor);
-  grains.semi_major = scaled(full.semi_major, factor);
-  grains.semi_minor = scaled(full.semi_minor, factor);
+  each_own_column([&](const auto&, auto& to, const auto& from) { to = scaled(from, factor); }, grains, full);
 }
 
 /// The same assembly, at rest, with other sizes; contacts keep their history.
@@ -111,7 +110,7 @@ Rve by_compression(const Recipe& recipe, const Grains& graded, double friction, 
   const int d = dimension_of(recipe.shape);
   Grains grains = graded;
   double volume = solid_volume(recipe, grains) / scattered_fraction(d) * (1 + d * approach_step * uniform());
-  while (!scatter(cell_of(recipe, volume), 1, grains, uniform)) volume *= 1.1;
+  while (!scatter(recipe.shape, cell_of(recipe, volume), 1, grains, uniform)) volume *= 1.1;
   Rve rve(assembly(recipe, friction, grains, cell_of(recipe, volume)));
   rve.watch(stop);
   for (int round = 0; contacts_per_grain(rve) < crowded(d); ++round) {
@@ -148,7 +147,7 @@ Rve by_growth(const Recipe& recipe, const Grains& graded, double friction, Unifo
   if (recipe.stress) volume *= 1 + d * press_step * uniform();
   const Cell cell = cell_of(recipe, volume);
   Grains grains = graded;
-  if (!scatter(cell, preparation.first_size, grains, uniform))
+  if (!scatter(recipe.shape, cell, preparation.first_size, grains, uniform))
     throw InputError("preparation.first_size = " + std::to_string(preparation.first_size) +
                      " leaves no room to scatter the grains; allowed: above 0 to below 1; give a smaller one");
   set_sizes(graded, preparation.first_size, grains);

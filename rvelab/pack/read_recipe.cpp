@@ -73,8 +73,8 @@ Grading read_grading(TableReader& reader) {
   return grading;
 }
 
-/// Aspect ratios and bedding of ellipses; of other shapes none may be given.
-void read_ellipses(TableReader& reader, GrainFraction& fraction, Shape shape) {
+/// Aspect ratios and bedding of grains that are not round; of others none may be given.
+void read_outlines(TableReader& reader, GrainFraction& fraction, Shape shape) {
   struct Key {
     const char* name;
     double* value;
@@ -84,14 +84,15 @@ void read_ellipses(TableReader& reader, GrainFraction& fraction, Shape shape) {
                       {"bedding_angle_deg", &fraction.bedding_angle},
                       {"bedding_spread_deg", &fraction.bedding_spread}};
   for (const Key& key : keys) {
-    if (shape == Shape::ellipse) {
+    if (!is_round(shape)) {
       *key.value = reader.number(key.name);
       continue;
     }
     reader.leave(key.name);
     if (reader.has(key.name))
-      reader.mistake(key.name, "contradicts pack.shape = \"" + fields::text_of(shape) +
-                                   "\"; allowed: with ellipses only; remove one");
+      reader.mistake(key.name, "contradicts pack.shape = \"" + fields::text_of(shape) + "\"; allowed: with " +
+                                   names_of_shapes([](Shape each) { return !is_round(each); }, true) +
+                                   " only; remove one");
   }
   if (fraction.smallest_aspect_ratio > fraction.largest_aspect_ratio)
     reader.mistake("smallest_aspect_ratio", "is above grains.largest_aspect_ratio; allowed: up to it; correct them");
@@ -107,7 +108,7 @@ void read_fraction(const toml::table& table, Recipe& recipe, toml::array& resolv
   const std::size_t mistakes = errors.size();
   fraction.grading = read_grading(reader);
   const bool grading_read = errors.size() == mistakes;
-  read_ellipses(reader, fraction, recipe.shape);
+  read_outlines(reader, fraction, recipe.shape);
   const std::string material = reader.text("material", recipe.materials.front().name);
   std::string known;
   bool found = false;

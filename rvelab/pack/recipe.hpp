@@ -20,7 +20,7 @@ struct GrainFraction {
   double share = 1;          ///< of all grains, by number or by mass (Recipe::share_by_mass); all shares add up to 1
   std::size_t material = 0;  ///< row of Recipe::materials
   Grading grading;
-  // Ellipses: the grading is of sqrt(a b).
+  // Not round:
   double smallest_aspect_ratio = 1, largest_aspect_ratio = 1;  ///< b/a, every value between equally frequent
   double bedding_angle = 0,
          bedding_spread = 90;  ///< degrees: from x to the long axes on average; to either side, every
@@ -45,7 +45,7 @@ struct Preparation {
 
 /// A recipe. The same recipe gives the same bits on any number of threads.
 struct Recipe {
-  Shape shape = Shape::disc;
+  Shape shape = round_shape(2);
   std::size_t number = 400;  ///< grains in all
   std::uint64_t seed = 1;
   double thickness = 0.1;  ///< m, of the slab, 2D

@@ -15,9 +15,15 @@ constexpr Interval aspect_ratio{least_aspect_ratio, 1};
 std::vector<TableKey> pack() {
   const char* t = "pack";
   const Recipe initial;
+  const auto of_dimension = [](int d) {
+    return names_of_shapes([d](Shape shape) { return dimension_of(shape) == d; });
+  };
+  Choices shapes;
+  for (int number = 0; number < shape_count; ++number) shapes.emplace_back(name(Shape(number)));
+  const std::string dimensions = of_dimension(2) + ": 2D; " + of_dimension(3) + ": 3D";
   return {
       required(text(t, "name", "", "name of the recipe")),
-      choice(t, "shape", {"disc", "sphere", "ellipse"}, "disc, ellipse: 2D; sphere: 3D"),
+      choice(t, "shape", shapes, dimensions.c_str()),
       whole_number(t, "number", long(initial.number), {1, 1e8}, "grains in all"),
       whole_number(t, "seed", long(initial.seed), {0, 9e15},
                    "seed of all random numbers; further specimens of --count take the next seeds"),
@@ -42,16 +48,17 @@ std::vector<TableKey> grains() {
              "linear in the radius between them"),
       choice(t, "passing_by", {"number", "mass"}, "measure of the passing fraction"),
       number(t, "smallest_radius_m", "m", "", positive,
-             "grading = uniform, linear: radius at passing 0; the radius of an ellipse is sqrt(a b)"),
+             "grading = uniform, linear: radius at passing 0; of grains that are not round that of the disc of their "
+             "area"),
       number(t, "largest_radius_m", "m", "", positive, "grading = uniform, linear: radius at passing 1"),
       number(t, "smallest_aspect_ratio", "1", initial_fraction.smallest_aspect_ratio, aspect_ratio,
-             "shape = ellipse: smallest b/a; values up to the largest are equally frequent"),
+             "not round: smallest b/a; values up to the largest are equally frequent"),
       number(t, "largest_aspect_ratio", "1", initial_fraction.largest_aspect_ratio, aspect_ratio,
-             "shape = ellipse: largest b/a"),
+             "not round: largest b/a"),
       number(t, "bedding_angle_deg", "degrees", initial_fraction.bedding_angle, {-180, 180},
-             "shape = ellipse: mean angle from x to the long axes when the grains are placed"),
+             "not round: mean angle from x to the long axes when the grains are placed"),
       number(t, "bedding_spread_deg", "degrees", initial_fraction.bedding_spread, {0, 90},
-             "shape = ellipse: largest deviation from it, all angles equally frequent; 90: no bedding"),
+             "not round: largest deviation from it, all angles equally frequent; 90: no bedding"),
       {{t, "radii_m", "m", "list of numbers", "", "each " + in_words(positive), "grading = tabulated: ascending radii"},
        KeyKind::numbers,
        positive,

@@ -36,8 +36,9 @@ RowCounts row_counts(std::size_t number, double aspect_ratio) {
 
 void check_regular(const Recipe& recipe) {
   const std::string method = "preparation.method = \"regular\"";
-  if (recipe.shape == Shape::sphere)
-    refuse("pack.shape = \"sphere\" contradicts " + method + "; allowed: disc, ellipse; choose one of these");
+  if (!fills_rows(recipe.shape))
+    refuse("pack.shape = \"" + std::string(name(recipe.shape)) + "\" contradicts " + method +
+           "; allowed: " + names_of_shapes(fills_rows) + "; choose one of these");
   if (!recipe.stress)
     refuse("target.pressure_Pa is missing, which " + method + " presses its rows to; allowed: a stress; add it");
   if (recipe.void_ratio)
@@ -53,7 +54,7 @@ void check_regular(const Recipe& recipe) {
     refuse("grains." + fraction.name + ": " + method +
            " takes grains of one size and form; allowed: one [grains], smallest_radius_m = largest_radius_m and "
            "smallest_aspect_ratio = largest_aspect_ratio; make them equal");
-  if (recipe.shape == Shape::ellipse && fraction.bedding_spread != 0)
+  if (!is_round(recipe.shape) && fraction.bedding_spread != 0)
     refuse("grains." + fraction.name + ".bedding_spread_deg = " + in_words(fraction.bedding_spread) + " contradicts " +
            method + ", whose grains lie alike; allowed: 0; set it");
   if (row_counts(recipe.number, fraction.smallest_aspect_ratio).rows == 0) {
@@ -66,14 +67,12 @@ void check_regular(const Recipe& recipe) {
 Cell lay_rows(const Recipe& recipe, Grains& grains) {
   const GrainFraction& fraction = recipe.fractions.front();
   const RowCounts counts = row_counts(grains.size(), fraction.smallest_aspect_ratio);
-  const bool ellipses = recipe.shape == Shape::ellipse;
-  const double a = ellipses ? grains.semi_major[0] : grains.radius[0];
-  const double b = ellipses ? grains.semi_minor[0] : grains.radius[0];
-  const double apart = closeness * 2 * a, height = closeness * root_of_three * b;
+  const Extent extent = extent_of(recipe.shape, grains.radius[0], grains, 0);
+  const double apart = closeness * 2 * extent.outer, height = closeness * root_of_three * extent.inner;
   Cell cell;
   cell.dimension = 2;
   cell.lattice = Vector3(double(counts.in_row) * apart, double(counts.rows) * height, recipe.thickness).asDiagonal();
-  if (ellipses) {
+  if (!is_round(recipe.shape)) {
     const auto [c, s] = direction_of(fraction.bedding_angle);
     cell.rotation << c, -s, 0, s, c, 0, 0, 0, 1;
     grains.orientation.assign(grains.size(), Vector3::UnitX());

@@ -1,6 +1,6 @@
 // Regular packings: equal grains in rows, each row shifted by half a grain against the one below. Discs make the
-// triangular lattice, ellipses that lattice stretched along their long axes. All long axes lie along the rows, and the
-// rows, with the cell, at the bedding angle: so every angle fits the periodic cell.
+// triangular lattice, ellipses (and what else fills such rows) that lattice stretched along their long axes. All long
+// axes lie along the rows, and the rows, with the cell, at the bedding angle: so every angle fits the periodic cell.
 #pragma once
 
 #include "rvelab/pack/recipe.hpp"

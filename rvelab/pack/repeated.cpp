@@ -31,9 +31,12 @@ Specimen repeated(const Specimen& one, const Image& times) {
           all.grains.position.push_back(one.grains.position[g] + translation(one.cell, {x, y, z}));
           all.grains.velocity.push_back(one.grains.velocity[g]);
           all.grains.spin.push_back(one.grains.spin[g]);
-          if (one.shape != Shape::ellipse) continue;
-          all.grains.semi_major.push_back(one.grains.semi_major[g]);
-          all.grains.semi_minor.push_back(one.grains.semi_minor[g]);
+          if (is_round(one.shape)) continue;
+          each_own_column(
+              [&](const auto&, auto& to, const auto& from) {
+                if (!from.empty()) to.push_back(from[std::size_t(g)]);
+              },
+              all.grains, one.grains);
           all.grains.orientation.push_back(one.grains.orientation[g]);
         }
   for (int z = 0; z < nz; ++z)

@@ -111,12 +111,12 @@ class Boxes {
 
 namespace {
 
-/// Axes and orientation of the grain that was added last.
-void lay_ellipse(const GrainFraction& fraction, Uniform& uniform, Grains& grains) {
+/// Lengths and orientation of the grain that was added last.
+template <class By>
+void lay_outline(const GrainFraction& fraction, Uniform& uniform, Grains& grains) {
   const double range = fraction.largest_aspect_ratio - fraction.smallest_aspect_ratio;
-  const double root = std::sqrt(fraction.smallest_aspect_ratio + range * uniform()), radius = grains.radius.back();
-  grains.semi_major.push_back(radius / root);
-  grains.semi_minor.push_back(radius * root);
+  const auto own = By::of_aspect(grains.radius.back(), fraction.smallest_aspect_ratio + range * uniform());
+  each_column_of<By>([](const auto&, auto& column, double value) { column.push_back(value); }, grains, own);
   const auto [x, y] = direction_of(fraction.bedding_angle + fraction.bedding_spread * (2 * uniform() - 1));
   grains.orientation.emplace_back(x, y, 0);
 }
@@ -139,7 +139,10 @@ Grains graded_grains(const Recipe& recipe) {
       grains.id.push_back(std::int64_t(grains.id.size()));
       grains.radius.push_back(radius);
       grains.material.push_back(std::int32_t(recipe.fractions[f].material));
-      if (recipe.shape == Shape::ellipse) lay_ellipse(recipe.fractions[f], uniform, grains);
+      with_shape(recipe.shape, [&](auto is) {
+        using By = typename decltype(is)::By;
+        if constexpr (!By::round) lay_outline<By>(recipe.fractions[f], uniform, grains);
+      });
     }
   }
   grains.position.assign(recipe.number, Vector3::Zero());
@@ -160,8 +163,8 @@ Cell cell_of(const Recipe& recipe, double volume) {
   return d == 2 ? kraynik_reinelt_cell(volume, recipe.thickness) : cubic_field_cell(volume);
 }
 
-bool scatter(const Cell& cell, double size, Grains& grains, Uniform& uniform) {
-  const std::vector<double>& reach = grains.semi_major.empty() ? grains.radius : grains.semi_major;
+bool scatter(Shape shape, const Cell& cell, double size, Grains& grains, Uniform& uniform) {
+  const std::vector<double> reach = reach_of(shape, grains);
   const double largest = size * *std::max_element(reach.begin(), reach.end());
   if (shortest_vector(cell) < 2 * largest) return false;
   Boxes boxes(cell, 2 * largest);

@@ -5,7 +5,7 @@
 
 namespace rvelab::pack {
 
-/// The grains of a recipe, all at the origin: radii, materials, axes and orientations by its gradings and seed, the
+/// The grains of a recipe, all at the origin: radii, materials, lengths and orientations by its gradings and seed, the
 /// same for every draw. InputError if a fraction gets no grain.
 Grains graded_grains(const Recipe& recipe);
 
@@ -15,8 +15,8 @@ double solid_volume(const Recipe& recipe, const Grains& grains);
 /// The recipe's cell with the given volume, m^3.
 Cell cell_of(const Recipe& recipe, double volume);
 
-/// Random places in the cell at which no grain of `size` times its radius (the long semi-axis of an ellipse) touches
-/// another; the largest are placed first. Cell frame, m. False: no place was found for one of them.
-bool scatter(const Cell& cell, double size, Grains& grains, Uniform& uniform);
+/// Random places in the cell at which no circle (sphere) around a grain, `size` times as large, touches another; the
+/// largest are placed first. Cell frame, m. False: no place was found for one of them.
+bool scatter(Shape shape, const Cell& cell, double size, Grains& grains, Uniform& uniform);
 
 }  // namespace rvelab::pack

@@ -14,15 +14,12 @@
 #include "rvelab/cell/cell.hpp"
 #include "rvelab/contact/model.hpp"
 #include "rvelab/error.hpp"
-#include "rvelab/grains/shape.hpp"
+#include "rvelab/grains/own_columns.hpp"
 
 namespace rvelab::fields {
 
 /// Text for a value that is text or an enumeration, and the way back (InputError listing the names).
 inline std::string text_of(const std::string& value) { return value; }
-inline std::string text_of(Shape shape) {
-  return shape == Shape::disc ? "disc" : shape == Shape::sphere ? "sphere" : "ellipse";
-}
 template <class Enumeration>
 std::string text_of(Enumeration value) {
   return name(value);
@@ -35,12 +32,13 @@ inline void from_text(const std::string& text, HertzRadius& value) { value = her
 inline void from_text(const std::string& text, Dashpot& value) { value = dashpot_from(text); }
 inline void from_text(const std::string& text, LocalDampingForm& value) { value = local_damping_form_from(text); }
 inline void from_text(const std::string& text, Shape& value) {
-  for (const Shape shape : {Shape::disc, Shape::sphere, Shape::ellipse})
-    if (text == text_of(shape)) {
-      value = shape;
+  for (int number = 0; number < shape_count; ++number)
+    if (text == name(Shape(number))) {
+      value = Shape(number);
       return;
     }
-  throw InputError("shape = \"" + text + "\" is not known; allowed: disc, sphere, ellipse; choose one of these");
+  throw InputError("shape = \"" + text + "\" is not known; allowed: " + names_of_shapes([](Shape) { return true; }) +
+                   "; choose one of these");
 }
 
 template <class Value>

@@ -7,21 +7,21 @@
 
 #include "rvelab/cell/cell.hpp"
 #include "rvelab/contact/model.hpp"
+#include "rvelab/grains/own_columns.hpp"
 #include "rvelab/grains/shape.hpp"
 
 namespace rvelab {
 
 /// Grains, one entry each, in the order of their ids. Vectors are in the cell frame; in 2D z-components of position
-/// and velocity, and x and y of the spin, are zero.
-struct Grains {
+/// and velocity, and x and y of the spin, are zero. The columns of its shape stand before all others.
+struct Grains : OwnColumns<List> {
   std::vector<std::int64_t> id;
-  std::vector<double> radius;                  ///< m; of an ellipse sqrt(a b), the disc of its area
-  std::vector<std::int32_t> material;          ///< index into Specimen::materials
-  std::vector<Vector3> position;               ///< m
-  std::vector<Vector3> velocity;               ///< m/s, fluctuation v' (at the last half step); dt = 0: m per sub-step
-  std::vector<Vector3> spin;                   ///< rad/s, fluctuation w'; dt = 0: rad per sub-step
-  std::vector<double> semi_major, semi_minor;  ///< ellipses: a >= b, m; else empty
-  std::vector<Vector3> orientation;            ///< ellipses: along the long axis, of length 1; else empty
+  std::vector<double> radius;          ///< m; of a shape that is not round that of the disc of its area
+  std::vector<std::int32_t> material;  ///< index into Specimen::materials
+  std::vector<Vector3> position;       ///< m
+  std::vector<Vector3> velocity;       ///< m/s, fluctuation v' (at the last half step); dt = 0: m per sub-step
+  std::vector<Vector3> spin;           ///< rad/s, fluctuation w'; dt = 0: rad per sub-step
+  std::vector<Vector3> orientation;    ///< not round: along the long axis, of length 1; else empty
   std::size_t size() const { return id.size(); }
 };
 
@@ -67,7 +67,7 @@ struct SolverState {
   bool has_reference = false;              ///< the next five tell when the neighbour list must be rebuilt
   Matrix3 list_lattice = Matrix3::Zero();  ///< lattice when the list was built, m
   std::vector<Vector3> list_positions;     ///< positions then, m, cell frame; empty: only the bound below is used.
-                                           ///< Ellipses: z says how the long axis lay (oriented_bounds.hpp)
+                                           ///< Not round: z says how the long axis lay (oriented_bounds.hpp)
   double list_travel = 0;                  ///< bound on the largest displacement since then beside the cell's, m
   double list_skin = 0;                    ///< skin that the list was built with, m; 0: solver.skin
   std::int64_t list_steps = 0;             ///< sub-steps made since then
@@ -112,7 +112,7 @@ struct SolverState {
 };
 
 struct Specimen {
-  Shape shape = Shape::sphere;
+  Shape shape = round_shape(3);
   Cell cell;
   std::vector<Material> materials;
   ContactModel contact;

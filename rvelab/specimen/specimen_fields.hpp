@@ -23,18 +23,38 @@ inline constexpr auto members_of<Cell> = std::tuple{
     Field{"increments", &Cell::increments, "1"},
 };
 
+/// The columns of one shape, and of all.
+template <class By>
+constexpr auto fields_of_shape() {
+  if constexpr (By::round) {
+    return std::tuple{};
+  } else {
+    constexpr auto& columns = By::template columns<List>;
+    return []<std::size_t... k>(std::index_sequence<k...>) {
+      return std::tuple{Field<Grains, List<double>>{columns[k].dataset, columns[k].entries, "m",
+                                                    Rows::per_grain_or_none, InFiles{columns[k].since}}...};
+    }
+    (std::make_index_sequence<std::size(columns)>());
+  }
+}
+template <int... number>
+constexpr auto fields_of_shapes(std::integer_sequence<int, number...>) {
+  return std::tuple_cat(fields_of_shape<Description<Shape(number)>>()...);
+}
+constexpr auto own_fields() { return fields_of_shapes(std::make_integer_sequence<int, shape_count>()); }
+
 template <>
-inline constexpr auto members_of<Grains> = std::tuple{
-    Field{"id", &Grains::id, "1", Rows::per_grain},
-    Field{"radius_m", &Grains::radius, "m", Rows::per_grain},
-    Field{"material", &Grains::material, "1", Rows::per_grain},
-    Field{"position_m", &Grains::position, "m", Rows::per_grain},
-    Field{"velocity", &Grains::velocity, "m/s or m/step", Rows::per_grain},
-    Field{"spin", &Grains::spin, "rad/s or rad/step", Rows::per_grain},
-    Field{"semi_major_m", &Grains::semi_major, "m", Rows::per_grain_or_none, InFiles{8}},
-    Field{"semi_minor_m", &Grains::semi_minor, "m", Rows::per_grain_or_none, InFiles{8}},
-    Field{"orientation", &Grains::orientation, "1", Rows::per_grain_or_none, InFiles{8}},
-};
+inline constexpr auto members_of<Grains> = std::tuple_cat(
+    std::tuple{Field{"id", &Grains::id, "1", Rows::per_grain}, Field{"radius_m", &Grains::radius, "m", Rows::per_grain},
+               Field{"material", &Grains::material, "1", Rows::per_grain},
+               Field{"position_m", &Grains::position, "m", Rows::per_grain},
+               Field{"velocity", &Grains::velocity, "m/s or m/step", Rows::per_grain},
+               Field{"spin", &Grains::spin, "rad/s or rad/step", Rows::per_grain}},
+    own_fields(), std::tuple{Field{"orientation", &Grains::orientation, "1", Rows::per_grain_or_none, InFiles{8}}});
+
+/// The columns of shapes are a base of Grains, one initialiser for all of them.
+template <>
+inline constexpr std::size_t inherited_members<Grains> = std::tuple_size_v<decltype(own_fields())> - 1;
 
 template <>
 inline constexpr auto members_of<Contact> = std::tuple{

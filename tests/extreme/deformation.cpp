@@ -20,7 +20,7 @@ Specimen soft(const Cell& cell, int count, int dimension) {
   const std::vector<double> radii = spread_radii(count, 0.2);
   Specimen s = specimen_of(cell, std::vector<Vector3>(radii.size(), Vector3::Zero()), radii);
   Uniform uniform(3);
-  if (!pack::scatter(cell, 1.0, s.grains, uniform)) throw Error("no free place is left for a grain");
+  if (!pack::scatter(s.shape, cell, 1.0, s.grains, uniform)) throw Error("no free place is left for a grain");
   s.solver.min_height = 0.5;
   s.solver.max_overlap_ratio = 0.9;
   return jammed(s, pressure_at(dimension, 50));

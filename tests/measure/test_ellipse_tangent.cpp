@@ -2,8 +2,8 @@
 // increments, discs written as ellipses, and axes of stiffness that turn with the bedding.
 #include <cmath>
 
-#include "rvelab/measure/ellipse_linear.hpp"
 #include "rvelab/measure/measures.hpp"
+#include "rvelab/measure/outline_linear.hpp"
 #include "rvelab/measure/probe.hpp"
 #include "rvelab/measure/tangent.hpp"
 #include "rvelab/measure/tensor_order.hpp"
@@ -199,7 +199,8 @@ TEST_CASE("A contact of ellipses, linearised: finite differences of the law", "[
       grains[k].semi_major = pair.a[k];
       grains[k].semi_minor = pair.b[k];
     }
-    const LinearEllipseContact linear = linearised_ellipses(start.contact, grains[0], grains[1], radius);
+    const LinearOutlineContact linear =
+        linearised_outlines(Shape::ellipse, start.contact, grains[0], grains[1], radius);
     for (const int column : {0, 1, 5, 8}) {
       CAPTURE(unloading, radius == HertzRadius::curvature, column);
       Vector9 q = Vector9::Zero();

@@ -40,7 +40,7 @@ TEST_CASE("scattered grains do not touch, across the faces of upright and orient
       const double fraction = recipe.shape == Shape::disc ? 0.45 : 0.25;
       const Cell cell = pack::cell_of(recipe, pack::solid_volume(recipe, grains) / fraction);
       Uniform uniform(5);
-      REQUIRE(pack::scatter(cell, 1, grains, uniform));
+      REQUIRE(pack::scatter(recipe.shape, cell, 1, grains, uniform));
       CHECK(smallest_gap(cell, grains) > 0);
       for (const Vector3& at : grains.position)
         for (int k = 0; k < cell.dimension; ++k) CHECK(std::abs(at[k]) <= 0.5 * cell.lattice(k, k) * (1 + 1e-12));
@@ -53,8 +53,9 @@ TEST_CASE("few grains, and one, find their place; too many in too small a cell d
     const pack::Recipe recipe = discs(number);
     Grains grains = pack::graded_grains(recipe);
     Uniform uniform(1);
-    CHECK(!pack::scatter(pack::cell_of(recipe, 1.01 * pack::solid_volume(recipe, grains)), 1, grains, uniform));
-    REQUIRE(pack::scatter(pack::cell_of(recipe, 4 * pack::solid_volume(recipe, grains)), 1, grains, uniform));
+    const double solid = pack::solid_volume(recipe, grains);
+    CHECK(!pack::scatter(recipe.shape, pack::cell_of(recipe, 1.01 * solid), 1, grains, uniform));
+    REQUIRE(pack::scatter(recipe.shape, pack::cell_of(recipe, 4 * solid), 1, grains, uniform));
     CHECK(smallest_gap(pack::cell_of(recipe, 4 * pack::solid_volume(recipe, grains)), grains) > 0);
   }
 }

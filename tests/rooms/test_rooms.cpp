@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <regex>
 #include <set>
 #include <sstream>
 #include <string>
@@ -235,6 +236,51 @@ TEST_CASE("a function of the C interface stands in five files beside its test: r
   CHECK(found == std::vector<std::string>{"include/rvelab/rvelab.h", "rvelab/abi/state_calls.cpp",
                                           "rvelab/pool/info.cpp", "rvelab/pool/threaded_pool.hpp",
                                           "tools/python/rvelab.py"});
+}
+
+TEST_CASE("a shape is named in its own files and where shapes are listed") {
+  // Files that name shapes and are no shape's own, and why.
+  const std::map<std::string, std::string> others{
+      {"rvelab/grains/shape.hpp", "the list of shapes"},
+      {"rvelab/solver/kernels/integrate_discs.hpp", "the grain loop of the plane, which has the rows of discs"},
+      {"rvelab/cli/bench.cpp", "its cases are fixed, so that their times can be compared"}};
+  const std::regex comment("//[^\n]*"), text("\"(\\\\.|[^\"\\\\\n])*\"");
+  const std::regex shapes(
+      "Shape::(disc|sphere|ellipse)\\b|\\b(Disc|Sphere|Ellipse)\\b|[Ee]llipse|semi_(major|minor)|grains/"
+      "(disc|sphere)[.]");
+  const std::regex own("(grains|kernels|assembly)/(step_)?(disc|sphere|ellipse)s?(_outline|_overlap|_search)?[.]");
+  std::set<std::string> found, excepted;
+  for (const std::string& file : code_under("rvelab")) {
+    std::string code = std::regex_replace(std::regex_replace(text_of(root / file), comment, ""), text, "");
+    for (const std::string& included : includes_of(file)) code += included + "\n";
+    if (!std::regex_search(code, shapes)) continue;
+    found.insert(file);
+    if (std::regex_search(file, own)) continue;
+    excepted.insert(file);
+    if (!others.contains(file)) FAIL_CHECK(file << " names a shape; ask for a property of grains/description.hpp");
+  }
+  CHECK(excepted.size() == others.size());
+
+  // The row of a new shape in rvelab/README.md names the files that ellipses have: at most eight.
+  const std::string readme = text_of(root / "rvelab/README.md");
+  const std::string start = "| shape in the plane | ";
+  const auto at = readme.find(start);
+  REQUIRE(at != std::string::npos);
+  const std::string row = readme.substr(at, readme.find('\n', at) - at);
+  const std::regex named("`([^`]+[.](hpp|cpp|md))`");
+  std::size_t files = 0;
+  for (std::sregex_iterator name(row.begin(), row.end(), named), end; name != end; ++name, ++files) {
+    const std::string file = std::regex_replace((*name)[1].str(), std::regex("NAME"), "ellipse");
+    CAPTURE(file);
+    CHECK(std::filesystem::exists(root / file));
+    found.erase(file);
+  }
+  CHECK(row.substr(start.size(), row.find(" |", start.size()) - start.size()) == std::to_string(files));
+  CHECK(files <= 8);
+  // What is left is no ellipse's, or one of the two headers that their overlap takes beside ellipses.hpp.
+  for (const std::string& file : found)
+    if (file.find("ellipse") != std::string::npos)
+      CHECK((file.ends_with("ellipse_overlap.hpp") || file.ends_with("ellipse_search.hpp")));
 }
 
 TEST_CASE("expected_count is the number of tests that every machine has") {

@@ -3,7 +3,7 @@
 
 #include <set>
 
-#include "rvelab/solver/assembly/pair_place.hpp"
+#include "rvelab/solver/assembly/outline.hpp"
 #include "rvelab/solver/loading/stepping.hpp"
 #include "tests/oracle/specimens.hpp"
 #include "tests/solver/brute_force.hpp"
@@ -61,8 +61,9 @@ struct Opened {
                       now.cell.lattice * Vector3(pair.image[0], pair.image[1], pair.image[2]);
     const double *row_i = now.rows.data() + i * std::size_t(model.row_length()),
                  *row_j = now.rows.data() + j * std::size_t(model.row_length());
-    EllipsePlace place = place_of_ellipses(Branch{b[0], b[1], 0}, row_i, row_j);
-    if (place.overlap < 0) place = nearest_place_of_ellipses(place, row_i, row_j);
+    using Ellipses = Outline<Shape::ellipse>;
+    OutlinePlace place = Ellipses::place(Branch{b[0], b[1], 0}, row_i, row_j);
+    if (place.overlap < 0) place = Ellipses::nearest_place(place, row_i, row_j);
     return place.overlap;
   }
 };

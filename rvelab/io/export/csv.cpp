@@ -45,30 +45,40 @@ void expect_names(const Specimen& specimen) {
   }
 }
 
-/// Semi-axes (m) and the angle of the long one, degrees, laboratory frame.
-std::string axes_and_angle(const Specimen& specimen, std::size_t g) {
+/// What says how large a grain is: its radius; of one that is not round the lengths of its shape (m) and the angle of
+/// the long axis, degrees, laboratory frame.
+template <class By>
+std::string size_names() {
+  if constexpr (By::round) return ",r";
+  std::string names;
+  each_column_of<By>([&](const auto& described) { names += "," + std::string(described.csv); });
+  return names + ",angle";
+}
+template <class By>
+std::string size_of(const Specimen& specimen, std::size_t g) {
+  if constexpr (By::round) return "," + exact(specimen.grains.radius[g]);
+  std::string text;
+  each_column_of<By>([&](const auto&, const auto& column) { text += "," + exact(column[g]); }, specimen.grains);
   const Vector3 axis = specimen.cell.rotation * specimen.grains.orientation[g];
-  return exact(specimen.grains.semi_major[g]) + "," + exact(specimen.grains.semi_minor[g]) + "," +
-         exact(std::atan2(axis[1], axis[0]) * (180 / 3.14159265358979323846));
+  return text + "," + exact(std::atan2(axis[1], axis[0]) * (180 / 3.14159265358979323846));
 }
 
+template <class By>
 std::string particles_of(const Specimen& specimen) {
   const int dimension = specimen.cell.dimension;
-  const bool ellipses = specimen.shape == Shape::ellipse;
-  std::string text = first_line + "id" + axes("", dimension) + (ellipses ? ",a,b,angle,material\n" : ",r,material\n");
+  std::string text = first_line + "id" + axes("", dimension) + size_names<By>() + ",material\n";
   const Grains& grains = specimen.grains;
   for (std::size_t g = 0; g < grains.size(); ++g) {
     text += std::to_string(grains.id[g]);
     append(text, specimen.cell.rotation * grains.position[g], dimension);
-    text += "," + (ellipses ? axes_and_angle(specimen, g) : exact(grains.radius[g]));
-    text += "," + specimen.materials[std::size_t(grains.material[g])].name + "\n";
+    text += size_of<By>(specimen, g) + "," + specimen.materials[std::size_t(grains.material[g])].name + "\n";
   }
   return text;
 }
 
 /// The tangential force as a vector, cell frame; 2D: the file holds its component along t = (-n_y, n_x).
 Vector3 tangential_force(const Specimen& specimen, const Contact& contact) {
-  if (specimen.shape == Shape::sphere) return contact.tangential_force;
+  if (specimen.cell.dimension == 3) return contact.tangential_force;
   const Vector3 normal = normal_of(specimen, contact);
   return contact.tangential_force[0] * Vector3(-normal[1], normal[0], 0);
 }
@@ -78,7 +88,7 @@ Vector3 tangential_force(const Specimen& specimen, const Contact& contact) {
 std::vector<Contact> touching_contacts(const Specimen& specimen) {
   const auto key = [](const auto& pair) { return std::tie(pair.i, pair.j, pair.image); };
   std::vector<Contact> contacts = specimen.contacts;
-  const auto& reach = specimen.shape == Shape::ellipse ? specimen.grains.semi_major : specimen.grains.radius;
+  const std::vector<double> reach = reach_of(specimen.shape, specimen.grains);
   for (const ListedPair& pair : list_pairs(specimen.cell, specimen.grains.position.front().data(), 3, reach, 0)) {
     const auto same = std::lower_bound(specimen.contacts.begin(), specimen.contacts.end(), pair,
                                        [&](const Contact& c, const ListedPair& p) { return key(c) < key(p); });
@@ -93,11 +103,11 @@ std::vector<Contact> touching_contacts(const Specimen& specimen) {
 std::string text_of(const Specimen& specimen, const std::vector<Contact>& contacts) {
   const int dimension = specimen.cell.dimension;
   const Law law = specimen.contact.law;
-  const bool rolling = specimen.contact.rolling, ellipses = specimen.shape == Shape::ellipse;
+  const bool rolling = specimen.contact.rolling, round = is_round(specimen.shape);
   const bool hertz = with_law(law, [](auto each) { return decltype(each)::Force::Impact::stiffens; });
   std::string text = first_line + "id1,id2" + axes("s", dimension) + ",fn" + axes("fs", dimension);
   text += std::string(dimension == 2 ? ",ft" : "") + (hertz ? ",kno,kso" : ",kn,ks");
-  if (ellipses) text += axes("n", dimension);
+  if (!round) text += axes("n", dimension);
   if (rolling) text += (dimension == 3 ? axes("m", 3) : ",mz") + std::string(",kr");
   text += "\n";
   const Matrix3& turn = specimen.cell.rotation;
@@ -110,7 +120,7 @@ std::string text_of(const Specimen& specimen, const std::vector<Contact>& contac
     append(text, turn * tangential_force(specimen, contact), dimension);
     if (dimension == 2) text += "," + exact(contact.tangential_force[0]);
     text += "," + exact(pair.kn) + "," + exact(pair.kt);
-    if (ellipses) append(text, turn * normal_of(specimen, contact), dimension);
+    if (!round) append(text, turn * normal_of(specimen, contact), dimension);
     if (rolling) {
       const Vector3 moment = turn * contact.rolling_moment;
       if (dimension == 3) append(text, moment, 3);
@@ -165,7 +175,8 @@ CsvExport csv_files(const std::string& stem) {
 CsvExport export_csv(const Specimen& specimen, const std::string& stem) {
   expect_names(specimen);
   const CsvExport files = csv_files(stem);
-  publish_text(files.particles, particles_of(specimen));
+  publish_text(files.particles,
+               with_shape(specimen.shape, [&](auto is) { return particles_of<typename decltype(is)::By>(specimen); }));
   const std::vector<Contact> contacts = touching_contacts(specimen);
   publish_text(files.contacts, text_of(specimen, contacts));
   publish_text(files.meta, meta_of(specimen, contacts.size()));

@@ -26,15 +26,14 @@ std::string type_of(const ExportState& state, std::size_t grain) {
   return std::to_string(state.specimen.grains.material[grain] + 1);
 }
 
-void refuse_ellipses(const ExportState& state) {
-  if (state.network.shape == Shape::ellipse)
-    throw InputError(
-        "LAMMPS files of this form (atom_style sphere) know round grains only; the specimen has ellipses; "
-        "export it as xdmf");
+void refuse_outlines(const ExportState& state) {
+  if (!is_round(state.network.shape))
+    throw InputError("LAMMPS files of this form (atom_style sphere) know round grains only; the specimen has " +
+                     std::string(name(state.network.shape)) + "s; export it as xdmf");
 }
 
 void append_dump(std::string& text, const ExportState& state) {
-  refuse_ellipses(state);
+  refuse_outlines(state);
   const Box box(within_tilt_limits(state.network.cell.lattice));
   const Matrix3& l = box.lattice();
   const double xy = l(0, 1), xz = l(0, 2), yz = l(1, 2);
@@ -64,7 +63,7 @@ void export_lammps_dump(const std::vector<ExportState>& states, const std::strin
 }
 
 void export_lammps_data(const ExportState& state, const std::string& path) {
-  refuse_ellipses(state);
+  refuse_outlines(state);
   const Box box(within_tilt_limits(state.network.cell.lattice));
   const Matrix3& l = box.lattice();
   const Vector3 low = box.corner(), high = low + l.diagonal();

@@ -74,17 +74,18 @@ class Series {
     for (int k = 0; k < 3; ++k) values.push_back(vector[k]);
   }
 
-  /// Of ellipses: the long axis, laboratory frame, and the two semi-axes.
-  void add_axes(const Network& network) {
-    std::vector<double> orientation, major, minor;
-    for (const GrainState& grain : network.grains) {
-      append(orientation, network.cell.rotation * grain.orientation);
-      major.push_back(grain.semi_major);
-      minor.push_back(grain.semi_minor);
-    }
+  /// Of grains that are not round: the long axis, laboratory frame, and the lengths of the shape.
+  template <class By>
+  void add_outlines(const ExportState& state) {
+    std::vector<double> orientation;
+    for (const GrainState& grain : state.network.grains)
+      append(orientation, state.network.cell.rotation * grain.orientation);
     attribute("grains", "orientation", "Node", orientation, 3, "1");
-    attribute("grains", "semi_major_m", "Node", major, 1, "m");
-    attribute("grains", "semi_minor_m", "Node", minor, 1, "m");
+    each_column_of<By>(
+        [&](const auto& described, const std::vector<double>& column) {
+          attribute("grains", described.dataset, "Node", column, 1, "m");
+        },
+        state.specimen.grains);
   }
 
   void add_grains(const ExportState& state) {
@@ -108,7 +109,9 @@ class Series {
               std::to_string(network.grains.size()) + "\"/>",
           points);
     attribute("grains", "radius_m", "Node", radius, 1, "m");
-    if (network.shape == Shape::ellipse) add_axes(network);
+    with_shape(network.shape, [&](auto is) {
+      if constexpr (!decltype(is)::By::round) add_outlines<typename decltype(is)::By>(state);
+    });
     attribute("grains", "id", "Node", state.specimen.grains.id, 1, "1");
     attribute("grains", "material", "Node", state.specimen.grains.material, 1, "1");
     attribute("grains", "fluctuation_velocity_m_s", "Node", velocity, 3, "m/s");

@@ -92,7 +92,7 @@ void turn_round_if_needed(Contact& contact) {
 /// 2D: the in-plane force vector as its component along t = (-n_y, n_x), the form that a specimen stores.
 Vector3 along_tangent(const Specimen& specimen, const Contact& contact) {
   const Vector3& f = contact.tangential_force;
-  if (specimen.shape == Shape::ellipse) {
+  if (!is_round(specimen.shape)) {
     const Vector3 n = normal_of(specimen, contact);
     return {n[0] * f[1] - n[1] * f[0], 0, 0};
   }

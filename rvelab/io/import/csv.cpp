@@ -34,7 +34,6 @@ std::string in_words(const Matrix3& matrix) {
 /// it is.
 void set_cell(Specimen& specimen, int dimension, const Matrix3& vectors, const std::string& source) {
   const auto factors = triangular_factors(vectors);
-  specimen.shape = dimension == 2 ? Shape::disc : Shape::sphere;
   specimen.cell.dimension = dimension;
   specimen.cell.lattice = factors.upper;
   specimen.cell.rotation = factors.rotation;
@@ -127,19 +126,43 @@ void read_radius(const CsvTable& table, std::size_t row, Grains& grains) {
   }
 }
 
-/// Takes one grain's axes (m) and the angle of the long one (degrees, laboratory frame) from its row.
-void read_ellipse(const CsvTable& table, std::size_t row, Specimen& specimen) {
-  const auto a = table.column({"a"}), b = table.column({"b"}), angle = table.column({"angle"});
-  const double major = table.number(row, a), minor = table.number(row, b);
-  if (!(minor > 0) || !(major >= minor) || !(major <= minor / least_aspect_ratio * (1 + 1e-12)))
-    throw InputError(table.place(row, b) + " m is no shorter semi-axis to " + std::to_string(major) +
-                     " m; allowed: 0 < b <= a <= 10 b; correct a and b");
-  const double radians = table.number(row, angle) * (3.14159265358979323846 / 180);
+/// Takes one grain's lengths (m) and the angle of the long axis (degrees, laboratory frame) from its row.
+template <class By>
+void read_outline(const CsvTable& table, std::size_t row, Specimen& specimen) {
   Grains& grains = specimen.grains;
-  grains.radius.push_back(std::sqrt(major * minor));
-  grains.semi_major.push_back(major);
-  grains.semi_minor.push_back(minor);
+  typename By::Own own;
+  std::size_t last = 0;
+  each_column_of<By>(
+      [&](const auto& described, double& value, auto& column) {
+        last = table.column({described.csv});
+        value = table.number(row, last);
+        column.push_back(value);
+      },
+      own, grains);
+  if (!By::allowed(own))
+    throw InputError(table.place(row, last) + " m makes no " + By::name +
+                     " with the lengths before it; allowed: " + By::allowed_lengths + "; correct them");
+  const double radians = table.number(row, table.column({"angle"})) * (3.14159265358979323846 / 180);
+  grains.radius.push_back(By::radius(own));
   grains.orientation.push_back(specimen.cell.rotation.transpose() * Vector3(std::cos(radians), std::sin(radians), 0));
+}
+
+/// The shape whose columns are there: of two the one that has more; else the round one.
+Shape shape_of(const CsvTable& table, int dimension) {
+  Shape found = round_shape(dimension);
+  std::size_t most = 0;
+  for (int number = 0; number < shape_count; ++number)
+    with_shape(Shape(number), [&](auto is) {
+      std::size_t columns = 0, there = 0;
+      each_column_of<typename decltype(is)::By>([&](const auto& described) {
+        ++columns;
+        there += table.has(described.csv);
+      });
+      if (there < columns || columns <= most || decltype(is)::By::dimension != dimension) return;
+      most = columns;
+      found = Shape(number);
+    });
+  return found;
 }
 
 /// Fills the grains; returns each grain's wrapping translation w, x_new = x_old + L w.
@@ -154,10 +177,12 @@ std::vector<Image> read_grains(const CsvTable& table, Specimen& specimen) {
   Grains& grains = specimen.grains;
   for (const auto row : order_by_id(table)) {
     grains.id.push_back(table.integer(row, id));
-    if (specimen.shape == Shape::ellipse)
-      read_ellipse(table, row, specimen);
-    else
-      read_radius(table, row, grains);
+    with_shape(specimen.shape, [&](auto is) {
+      if constexpr (decltype(is)::By::round)
+        read_radius(table, row, grains);
+      else
+        read_outline<typename decltype(is)::By>(table, row, specimen);
+    });
     grains.material.push_back(materials[row]);
     grains.position.push_back(positions[row]);
     wraps.push_back(wrap(specimen.cell, grains.position.back()));
@@ -245,7 +270,7 @@ Specimen import_csv(const std::string& particles_path, const std::optional<std::
   }
   set_cell(specimen, dimension, *vectors, source);
 
-  if (dimension == 2 && particles.table->has("a") && particles.table->has("b")) specimen.shape = Shape::ellipse;
+  specimen.shape = shape_of(*particles.table, dimension);
   const auto wraps = read_grains(*particles.table, specimen);
   if (contacts_path) {
     const CsvTable table(*contacts_path);

@@ -2,12 +2,13 @@
 //
 // Particles: CSV, or a text dump of LAMMPS in SI units, whose last timestep brings the cell and the atoms (type: the
 // number of the material, from 1). Columns id, x, y[, z] and r or radius (m), or in the plane, of ellipses, the
-// semi-axes a >= b (m) and `angle` from x to the long one (degrees); optionally `material`, its name. Contacts: id1,
-// id2, sx, sy[, sz] (lattice shift of the second grain), fn and fsx, fsy[, fsz] (N, force on id2, tangential; in 2D
-// also ft, its component along (-n_y, n_x), which goes before them), mz (rolling moment on id2, N m; in 3D mx, my, mz),
-// and the stiffnesses kn or kno, ks or kso, kr, which are checked if they are there. Columns are found by their names,
-// others are ignored; the state is at rest. META.json: dim, E_Pa, kt_over_kn (linear law) or nu (hertz_mindlin),
-// phi_deg or mu, beta, eta, density, hSize or hSize_columns_are_cell_vectors (m), thickness_m (2D), p0_Pa.
+// semi-axes a >= b (m) and `angle` from x to the long one (degrees); of other shapes their own columns; optionally
+// `material`, its name. Contacts: id1, id2, sx, sy[, sz] (lattice shift of the second grain), fn and fsx, fsy[, fsz]
+// (N, force on id2, tangential; in 2D also ft, its component along (-n_y, n_x), which goes before them), mz (rolling
+// moment on id2, N m; in 3D mx, my, mz), and the stiffnesses kn or kno, ks or kso, kr, which are checked if they are
+// there. Columns are found by their names, others are ignored; the state is at rest. META.json: dim, E_Pa, kt_over_kn
+// (linear law) or nu (hertz_mindlin), phi_deg or mu, beta, eta, density, hSize or hSize_columns_are_cell_vectors (m),
+// thickness_m (2D), p0_Pa.
 #pragma once
 
 #include <optional>

@@ -107,10 +107,10 @@ Matrix6 strain_turn(const Matrix3& rotation) {
 
 /// sum kn (n b)(n b) + kt (t b)(t b) over contacts whose normal is not along the branch, with symmetric parts of the
 /// dyads: under eps such a contact changes by n . eps b along n and by t . eps b across it. Cell frame, in the plane.
-template <class Of>
-Matrix6 sum_over_ellipses(const Model& f, const Assembly& a, const Of& coefficients) {
+template <Shape shape, class Of>
+Matrix6 sum_over_outlines(const Model& f, const Assembly& a, const Of& coefficients) {
   Matrix6 sum = Matrix6::Zero();
-  const PairGeometry<Shape::ellipse> pair(f, a);
+  const PairGeometry<shape> pair(f, a);
   const auto dyad = [](double x, double y, const Branch& b) {
     Vector6 components = Vector6::Zero();
     components[0] = x * b.x;
@@ -120,7 +120,7 @@ Matrix6 sum_over_ellipses(const Model& f, const Assembly& a, const Of& coefficie
   };
   for (const std::int32_t place : a.pairs.order) {
     const auto p = std::size_t(place);
-    const EllipsePlace at = pair(p);
+    const OutlinePlace at = pair(p);
     if (!(at.overlap > 0)) continue;
     const auto [kn, kt] = coefficients(p, at);
     const Vector6 along = dyad(at.normal.x, at.normal.y, at.branch),
@@ -149,10 +149,10 @@ Matrix6 sum_over_round(const Model& f, const Assembly& a, const Of& coefficients
 template <class Of>
 Matrix6 affine_sum(const Model& f, const Assembly& a, const Of& coefficients) {
   const Matrix6 stiffness = with_shape(f.shape, [&](auto shape) -> Matrix6 {
-    if constexpr (shape.value == Shape::ellipse)
-      return sum_over_ellipses(f, a, coefficients);
-    else
+    if constexpr (is_round(shape.value))
       return sum_over_round<shape.value>(f, a, coefficients);
+    else
+      return sum_over_outlines<shape.value>(f, a, coefficients);
   });
   const Matrix6 turn = strain_turn(a.cell.rotation);
   return turn.transpose() * stiffness * turn / a.cell.volume();

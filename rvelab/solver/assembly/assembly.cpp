@@ -6,8 +6,8 @@
 #include "rvelab/error.hpp"
 #include "rvelab/solver/assembly/listing.hpp"
 #include "rvelab/solver/assembly/memory_order.hpp"
+#include "rvelab/solver/assembly/outline.hpp"
 #include "rvelab/solver/assembly/specimen_check.hpp"
-#include "rvelab/solver/kernels/ellipse_overlap.hpp"
 
 namespace rvelab {
 
@@ -41,29 +41,31 @@ Vector3 Assembly::orientation(const Model& f, std::size_t g) const {
   return {row[5], row[6], 0};
 }
 
-void set_ellipse_matrix(const Model& f, std::size_t g, double* row) {
-  const double b = f.semi_minor[g];
-  row[7] = f.semi_major[g] - b;
-  const EllipseMatrix<double> m =
-      ellipse_matrix<double>({row[5], row[6]}, f.minor_squared[g], f.axes_difference[g], b * b / f.semi_major[g]);
-  const double values[4] = {m.xx, m.xy, m.yy, m.sharpest};
-  std::copy_n(values, 4, row + 8);
+void complete_row(const Model& f, std::size_t g, double* row) {
+  with_shape(f.shape, [&](auto is) {
+    using By = typename decltype(is)::By;
+    if constexpr (By::round)
+      By::complete_row(f.radius[g], row);
+    else
+      Outline<decltype(is)::value>::complete_row(own_of<By>(f.own, g), row);
+  });
 }
 
 namespace {
 
-/// Semi-axes of ellipses, and what the grain loop makes of them.
-void take_axes(const Grains& grains, Model& f) {
-  f.semi_major = grains.semi_major;
-  f.semi_minor = grains.semi_minor;
-  std::vector<double> squared(padded_to_lanes(grains.size()), 0.0), difference = squared;
+/// The lengths of grains that are not round, and what the grain loop makes of them.
+template <class By>
+void take_lengths(const Grains& grains, Model& f) {
+  each_own_column([](const auto&, auto& to, const auto& from) { to = from; }, f.own, grains);
+  f.outer_radius = reach_of(f.shape, grains);
+  std::vector<double> first(padded_to_lanes(grains.size()), 0.0), second = first;
   for (std::size_t g = 0; g < grains.size(); ++g) {
-    const double a = grains.semi_major[g], b = grains.semi_minor[g];
-    squared[g] = b * b;
-    difference[g] = (a - b) * (a + b);
+    const TurnValues values = By::turn_values(own_of<By>(grains, g));
+    first[g] = values.first;
+    second[g] = values.second;
   }
-  f.minor_squared = std::move(squared);
-  f.axes_difference = std::move(difference);
+  f.turn_first = std::move(first);
+  f.turn_second = std::move(second);
 }
 
 /// The masses that a specimen at dt = 0 brings; the arrays of the state are empty while it is open.
@@ -104,7 +106,10 @@ void open_assembly(const Specimen& specimen, Model& f, Assembly& a) {
   };
   f.kernels = kernels_with(f.damping.dashpot != Dashpot::none);
   f.quasi_static_kernels = f.damping.dashpot == Dashpot::none ? f.kernels : kernels_with(false);
-  if (f.shape == Shape::ellipse) take_axes(s.grains, f);
+  with_shape(f.shape, [&](auto is) {
+    using By = typename decltype(is)::By;
+    if constexpr (!By::round) take_lengths<By>(s.grains, f);
+  });
   f.largest_reach = *std::max_element(f.reach().begin(), f.reach().end());
   f.mean_radius = std::accumulate(f.radius.begin(), f.radius.end(), 0.0) / double(n);
   f.largest_skin = f.options.skin * f.mean_radius;
@@ -122,12 +127,11 @@ void open_assembly(const Specimen& specimen, Model& f, Assembly& a) {
     inertia[g] = f.inertia_of(g, mass[g]);
     double* row = a.rows.data() + g * f.row_length();
     for (int k = 0; k < f.dimension(); ++k) row[k] = s.grains.position[g][k];
-    if (f.shape == Shape::sphere) row[3] = row[11] = f.radius[g];
-    if (f.shape == Shape::ellipse) {
+    if (!f.round()) {
       row[5] = s.grains.orientation[g][0];
       row[6] = s.grains.orientation[g][1];
-      set_ellipse_matrix(f, g, row);
     }
+    complete_row(f, g, row);
     a.set_velocity(f, g, s.grains.velocity[g], s.grains.spin[g]);
   }
   f.mass = std::move(mass);
@@ -161,9 +165,8 @@ Specimen close_assembly(const Model& f, const Assembly& a) {
     s.grains.velocity.push_back(a.velocity(f, g));
     s.grains.spin.push_back(a.spin(f, g));
   }
-  if (f.shape == Shape::ellipse) {
-    s.grains.semi_major = f.semi_major;
-    s.grains.semi_minor = f.semi_minor;
+  if (!f.round()) {
+    each_own_column([](const auto&, auto& to, const auto& from) { to = from; }, s.grains, f.own);
     for (std::size_t g = 0; g < f.size(); ++g) s.grains.orientation.push_back(a.orientation(f, g));
   }
   if (a.state.steps_since_scaling >= 0) {
@@ -213,8 +216,8 @@ GrainArrays arrays_of(const Model& f, Assembly& a) {
           a.pairs.slot_begin.data(),
           a.pairs.gathered.data(),
           a.pairs.tasks.data(),
-          f.minor_squared.data(),
-          f.axes_difference.data()};
+          f.turn_first.data(),
+          f.turn_second.data()};
 }
 
 }  // namespace rvelab

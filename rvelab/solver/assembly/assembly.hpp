@@ -18,22 +18,23 @@ struct StepTimes;
 
 /// What an increment never changes.
 struct Model {
-  Shape shape = Shape::disc;
+  Shape shape = round_shape(2);
   std::vector<Material> materials;
   ContactModel contact;
   Damping damping;
   SolverOptions options;
   SharedArray<std::int64_t> id;
   SharedArray<std::int32_t> material;
-  SharedArray<double> radius, mass, inertia;           ///< m, kg, kg m^2 (physical)
-  SharedArray<double> semi_major, semi_minor;          ///< ellipses: m
-  SharedArray<double> minor_squared, axes_difference;  ///< ellipses: b^2, a^2 - b^2, padded to lanes, m^2
-  double mean_radius = 0;                              ///< m
-  double largest_reach = 0;                            ///< m, of the circles around the grains
-  double largest_skin = 0;                             ///< m
-  double min_height = 0;                               ///< m
-  Kernels kernels;                                     ///< as the specimen states them, for dt > 0
-  Kernels quasi_static_kernels;                        ///< without the dashpot, whose time a sub-step of dt = 0 is not
+  SharedArray<double> radius, mass, inertia;    ///< m, kg, kg m^2 (physical)
+  OwnColumns<SharedArray> own;                  ///< of the shape
+  SharedArray<double> outer_radius;             ///< not round: of the circles around the grains, m
+  SharedArray<double> turn_first, turn_second;  ///< not round: TurnValues for the grain loop, padded to lanes
+  double mean_radius = 0;                       ///< m
+  double largest_reach = 0;                     ///< m, of the circles around the grains
+  double largest_skin = 0;                      ///< m
+  double min_height = 0;                        ///< m
+  Kernels kernels;                              ///< as the specimen states them, for dt > 0
+  Kernels quasi_static_kernels;                 ///< without the dashpot, whose time a sub-step of dt = 0 is not
   /// 1 without rolling stiffness; sqrt(4 kt r^2/(4 kt r^2 + 2 kr)) of typical grains: how much slower than the contacts
   /// grains answer that slip about a stiff rolling spring, once their inertia is scaled for that spring.
   double softest_answer = 1;
@@ -53,15 +54,16 @@ struct Model {
     return with_law(contact.law, [](auto law) { return decltype(law)::Force::stores_root_overlap; });
   }
   int dimension() const { return dimension_of(shape); }
-  int row_length() const { return grain_row_length(shape); }
+  int row_length() const { return row_length_of(shape); }
+  bool round() const { return is_round(shape); }
   int velocity_offset() const { return dimension() == 2 ? 2 : 4; }
   int tangential_components() const { return dimension() == 2 ? 1 : 3; }
   /// Radii of the circles (spheres) around the grains, by which they are listed, m.
-  const std::vector<double>& reach() const { return shape == Shape::ellipse ? semi_major : radius; }
+  const std::vector<double>& reach() const { return round() ? radius : outer_radius; }
+  Extent extent_of(std::size_t g) const { return rvelab::extent_of(shape, radius[g], own, g); }
   double volume_of(std::size_t g) const { return grain_volume(shape, radius[g], thickness); }
   double inertia_of(std::size_t g, double of_mass) const {
-    return shape == Shape::ellipse ? ellipse_inertia(of_mass, semi_major[g], semi_minor[g])
-                                   : moment_of_inertia(shape, of_mass, radius[g]);
+    return moment_of_inertia(shape, of_mass, radius[g], own_of(shape, own, g));
   }
 };
 
@@ -79,7 +81,7 @@ struct PairTable {
   Buffer image_number[3];
   Buffer kn, kt, law_constant, friction, kr, moment_cap, cn;
   Buffer tangential[3], moment[3], root_overlap, force;
-  Buffer radius_i, radius_j;                    ///< discs; ellipses with Hertz's radius from curvature
+  Buffer radius_i, radius_j;                    ///< where the kernels read them by pairs
   std::vector<std::int32_t> slot_begin, slots;  ///< gather table (kernels/configuration.hpp)
   std::vector<std::uint16_t> tasks;
   /// `slots` as the grain loop reads them: those of pairs beyond `near` point to a padding pair until one of their
@@ -126,16 +128,13 @@ struct Assembly {
   Vector3 position(const Model& f, std::size_t g) const;
   Vector3 velocity(const Model& f, std::size_t g) const;  ///< fluctuation, in the units of the mode in use
   Vector3 spin(const Model& f, std::size_t g) const;
-  Vector3 orientation(const Model& f, std::size_t g) const;  ///< of an ellipse
+  Vector3 orientation(const Model& f, std::size_t g) const;  ///< of a grain that is not round
   void set_velocity(const Model& f, std::size_t g, const Vector3& v, const Vector3& w);
 };
 
-/// Where a grain row keeps the scaled mass, and 1 over the scaled inertia, while the working arrays are released: what
-/// stands there otherwise is zero, or what can be made again.
-constexpr std::size_t released_mass(Shape shape) { return shape == Shape::disc ? 5 : 7; }
-constexpr std::size_t released_inverse_inertia(Shape shape) { return shape == Shape::disc ? 6 : 11; }
-/// Puts a - b and the matrix of an ellipse into its row, from the axis that stands there (kernels/configuration.hpp).
-void set_ellipse_matrix(const Model& model, std::size_t g, double* row);
+/// Puts into a grain row what does not move but turn with the grain, from the axis that stands there
+/// (kernels/configuration.hpp).
+void complete_row(const Model& model, std::size_t g, double* row);
 
 /// Room for n grains or pairs in whole blocks of lanes, at least one padding entry.
 constexpr std::size_t padded_to_lanes(std::size_t n) { return (n / 8 + 1) * 8; }

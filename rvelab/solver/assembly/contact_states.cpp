@@ -36,7 +36,7 @@ void set_arms(const Model& f, const PairPlace& at, ContactState& c) {
   c.arm_i = (f.radius[std::size_t(c.i)] - 0.5 * at.overlap) * c.normal;
   c.arm_j = -((f.radius[std::size_t(c.j)] - 0.5 * at.overlap) * c.normal);
 }
-void set_arms(const Model&, const EllipsePlace& at, ContactState& c) {
+void set_arms(const Model&, const OutlinePlace& at, ContactState& c) {
   c.normal = {at.normal.x, at.normal.y, 0};
   const Vector3 across(-at.normal.y, at.normal.x, 0);
   c.arm_i = (at.reach_i - 0.5 * at.overlap) * c.normal + at.turn_i * across;
@@ -45,7 +45,7 @@ void set_arms(const Model&, const EllipsePlace& at, ContactState& c) {
 
 void add_torques(const Model& f, const ContactState& c, const Vector3& force, Network& net) {
   GrainState &i = net.grains[std::size_t(c.i)], &j = net.grains[std::size_t(c.j)];
-  if (f.shape == Shape::ellipse) {
+  if (!f.round()) {
     i.torque -= c.arm_i.cross(force) + c.rolling_moment;
     j.torque += c.arm_j.cross(force) + c.rolling_moment;
     return;
@@ -144,7 +144,7 @@ double constraints_over_motions(const Model& f, const Assembly& a) {
   }
   if (counted == 0) return 0;
   // Round grains that nothing grips turn as they like.
-  const double turning = f.shape == Shape::ellipse ? 1 : grip / double(counted);
+  const double turning = f.round() ? grip / double(counted) : 1;
   const auto held = std::count_if(contacts.begin(), contacts.end(), [](int n) { return n >= 2; });
   return constraints / (double(held) * (d + turns * turning));
 }
@@ -170,10 +170,9 @@ Network network_of(const Model& f, const Assembly& a) {
     grain.velocity = a.velocity(f, g) - a.state.mean_velocity;
     grain.spin = a.spin(f, g);
     grain.resultant.setZero();
-    if (f.shape != Shape::ellipse) continue;
+    if (f.round()) continue;
     grain.orientation = a.orientation(f, g);
-    grain.semi_major = f.semi_major[g];
-    grain.semi_minor = f.semi_minor[g];
+    static_cast<OwnValues&>(grain) = own_of(f.shape, f.own, g);
   }
   with_shape(f.shape, [&](auto shape) { add_contacts<shape.value>(f, a, net); });
   return in_id_order(std::move(net), a.state.memory_order);

@@ -12,7 +12,7 @@ Network network_of(const Model& model, const Assembly& assembly);
 
 /// Constraints of the contacts over degrees of freedom of the grains that two of them hold at least (1: isostatic). A
 /// contact gives 1, d - 1 more if it sticks and d - 1 more if it rolls below its limit, both times grip_of its
-/// friction. A grain has d translations, and its rotations times the mean grip (ellipses: all of them). 0 without
+/// friction. A grain has d translations, and its rotations times the mean grip (all of them if not round). 0 without
 /// contacts.
 double constraint_ratio(const Model& model, const Assembly& assembly);
 

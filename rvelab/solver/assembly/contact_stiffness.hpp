@@ -27,7 +27,7 @@ struct ContactStiffness {
 
 /// R*/r* of a listed pair that lies there: 1, but for Hertz's radius from curvature (contact/hertz_curvature.hpp).
 inline double hertz_radius_ratio(const Model&, const PairTable&, std::size_t, const PairPlace&) { return 1; }
-inline double hertz_radius_ratio(const Model& f, const PairTable& pairs, std::size_t p, const EllipsePlace& at) {
+inline double hertz_radius_ratio(const Model& f, const PairTable& pairs, std::size_t p, const OutlinePlace& at) {
   if (!f.radius_from_curvature()) return 1;
   return at.hertz_radius_ratio(f.radius[std::size_t(pairs.i[p])], f.radius[std::size_t(pairs.j[p])]);
 }
@@ -38,8 +38,9 @@ struct RadiusRatios {
 inline RadiusRatios hertz_radius_ratios(const Model& f, const PairTable& pairs, std::size_t p) {
   if (!f.radius_from_curvature()) return {};
   const auto i = std::size_t(pairs.i[p]), j = std::size_t(pairs.j[p]);
-  return {hertz_radius_ratio(f.radius[i], f.semi_major[i], f.radius[j], f.semi_major[j]),
-          hertz_radius_ratio(f.radius[i], f.semi_minor[i], f.radius[j], f.semi_minor[j])};
+  const Extent at_i = f.extent_of(i), at_j = f.extent_of(j);
+  return {hertz_radius_ratio(f.radius[i], at_i.outer, f.radius[j], at_j.outer),
+          hertz_radius_ratio(f.radius[i], at_i.inner, f.radius[j], at_j.inner)};
 }
 
 /// What laws take for sqrt(overlap), m^0.5.

@@ -47,7 +47,7 @@ void evaluate_forces(const Model& f, Assembly& a) {
 }
 
 Vector3 force_of(const Model& f, const PairTable& pairs, std::size_t p) {
-  const double* row = pairs.force.data() + p * force_row_length(f.shape);
+  const double* row = pairs.force.data() + p * force_row_length(f.dimension());
   return {row[0], row[1], f.dimension() == 2 ? 0.0 : row[2]};
 }
 

@@ -22,7 +22,7 @@ void gather_pairs_that_touch(PairTable& pairs);
 /// each grain in the order of (i, j, image), since the pairs in which it is j all come before those in which it is i.
 template <int D, class At>
 void each_pair_of_grains(const PairTable& pairs, std::size_t first, std::size_t last, const At& at) {
-  constexpr std::int32_t force_row = force_row_length(D == 2 ? Shape::disc : Shape::sphere);
+  constexpr std::int32_t force_row = force_row_length(D);
   const auto chunk = std::size_t(chunk_grains), padded = pairs.tasks.size() / 2;
   for (std::size_t start = first; start < last; start += chunk) {
     const std::size_t end = std::min(start + chunk, padded);

@@ -9,7 +9,7 @@
 #include "rvelab/error.hpp"
 #include "rvelab/solver/assembly/gather_table.hpp"
 #include "rvelab/solver/assembly/oriented_bounds.hpp"
-#include "rvelab/solver/assembly/pair_place.hpp"
+#include "rvelab/solver/assembly/outline.hpp"
 #include "rvelab/solver/assembly/staleness.hpp"
 
 namespace rvelab {
@@ -38,7 +38,7 @@ void store(const Model& f, PairTable& pairs, std::size_t p, const Contact& c) {
 /// Pairs closer than the skin as the grains lie now.
 std::vector<ListedPair> near_pairs(const Model& f, const Assembly& a, double skin) {
   std::vector<ListedPair> pairs = list_pairs(a.cell, a.rows.data(), f.row_length(), f.reach(), skin, f.sharing());
-  if (f.shape == Shape::ellipse) keep_near_ellipses(f, a, skin, pairs);
+  keep_near_outlines(f, a, skin, pairs);
   return pairs;
 }
 
@@ -46,6 +46,7 @@ std::vector<ListedPair> near_pairs(const Model& f, const Assembly& a, double ski
 /// force ends with it as that of every contact that opens; in a specimen it is a mistake.
 enum class Lost { dropped, refused };
 
+template <Shape shape>
 bool touches(const Model& f, const Assembly& a, const ListedPair& pair) {
   const double* xi = a.rows.data() + std::size_t(pair.i) * f.row_length();
   const double* xj = a.rows.data() + std::size_t(pair.j) * f.row_length();
@@ -53,8 +54,8 @@ bool touches(const Model& f, const Assembly& a, const ListedPair& pair) {
   const Image& n = pair.image;
   const double x = xj[0] - xi[0] + l.xx * n[0] + l.xy * n[1] + l.xz * n[2];
   const double y = xj[1] - xi[1] + l.yy * n[1] + l.yz * n[2];
-  const double z = f.dimension() == 2 ? 0 : xj[2] - xi[2] + l.zz * n[2];
-  if (f.shape == Shape::ellipse) return place_of_ellipses({x, y, 0}, xi, xj).overlap > 0;
+  const double z = dimension_of(shape) == 2 ? 0 : xj[2] - xi[2] + l.zz * n[2];
+  if constexpr (!is_round(shape)) return Outline<shape>::place({x, y, 0}, xi, xj).overlap > 0;
   const double radii = f.radius[std::size_t(pair.i)] + f.radius[std::size_t(pair.j)];
   return x * x + y * y + z * z < radii * radii;
 }
@@ -67,11 +68,13 @@ void arrange(const Model& f, const Assembly& a, const std::vector<ListedPair>& l
   const std::size_t n = listed.size();
   std::vector<std::uint8_t> group(n, 0);  // 0, 1 near, 2, 3 beyond, the odd ones with an image
   if (!f.options.energy_balance)
-    in_pieces(n, f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
-      for (std::size_t k = first; k < last; ++k) {
-        const bool near = histories[k] != nullptr || touches(f, a, listed[k]);
-        group[k] = std::uint8_t((near ? 0 : 2) + int(listed[k].image != Image{0, 0, 0}));
-      }
+    with_shape(f.shape, [&](auto is) {
+      in_pieces(n, f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
+        for (std::size_t k = first; k < last; ++k) {
+          const bool near = histories[k] != nullptr || touches<decltype(is)::value>(f, a, listed[k]);
+          group[k] = std::uint8_t((near ? 0 : 2) + int(listed[k].image != Image{0, 0, 0}));
+        }
+      });
     });
   std::int32_t next[5] = {};
   for (const std::uint8_t of_pair : group) ++next[of_pair + 1];
@@ -124,7 +127,7 @@ void fill(const Model& f, const std::vector<ListedPair>& listed, const std::vect
     }
   });
   derive_pairs(f, pairs);
-  fill_gather_table(padded_to_lanes(f.size()), force_row_length(f.shape), pairs);
+  fill_gather_table(padded_to_lanes(f.size()), force_row_length(f.dimension()), pairs);
 }
 
 /// The key of a pair after images changed; a grain's own image is kept pointing forward, forces turning round with it.
@@ -133,7 +136,7 @@ void turn_round_if_needed(const Model& f, Contact& c) {
   for (int& n : c.image) n = -n;
   c.rolling_moment = -c.rolling_moment;
   // In 2D the component along t = (-n_y, n_x) keeps its sign: force and t both turn.
-  if (f.shape == Shape::sphere) c.tangential_force = -c.tangential_force;
+  if (f.dimension() == 3) c.tangential_force = -c.tangential_force;
 }
 
 /// A velocity gradient less the rigid spin that cancels its lower triangle. Grains and branches share that spin, so no
@@ -163,10 +166,10 @@ void rotate_rows(const Model& f, const Matrix3& turn, Buffer& rows) {
     };
     rotate(row);
     rotate(row + f.velocity_offset());
-    if (f.shape == Shape::sphere) rotate(row + 8);
-    if (f.shape == Shape::ellipse) {
+    if (f.dimension() == 3) rotate(row + 8);
+    if (!f.round()) {
       rotate(row + 5);
-      set_ellipse_matrix(f, g, row);
+      complete_row(f, g, row);
     }
   }
 }
@@ -229,7 +232,7 @@ Reduction rebuild(const Model& f, Assembly& a) {
     for (Contact& c : carried) {
       const Eigen::Vector3i n = reduction.inverse_basis * Eigen::Vector3i(c.image[0], c.image[1], c.image[2]);
       c.image = {n[0], n[1], n[2]};
-      if (f.shape == Shape::sphere) {
+      if (f.dimension() == 3) {
         c.tangential_force = back * c.tangential_force;
         c.rolling_moment = back * c.rolling_moment;
       }

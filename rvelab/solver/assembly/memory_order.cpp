@@ -28,7 +28,7 @@ void rearrange(std::vector<Value>& values, const std::vector<std::int32_t>& orde
 void turn_round(Contact& c, Shape shape) {
   c.rolling_moment = -c.rolling_moment;
   // In 2D the component along t = (-n_y, n_x) keeps its sign: force and t both turn.
-  if (shape == Shape::sphere) c.tangential_force = -c.tangential_force;
+  if (dimension_of(shape) == 3) c.tangential_force = -c.tangential_force;
 }
 
 void turn_round(ContactState& c, Shape) {
@@ -63,8 +63,7 @@ Specimen rearranged(Specimen s, const std::vector<std::int32_t>& order) {
   rearrange(s.grains.position, order);
   rearrange(s.grains.velocity, order);
   rearrange(s.grains.spin, order);
-  rearrange(s.grains.semi_major, order);
-  rearrange(s.grains.semi_minor, order);
+  each_own_column([&](const auto&, auto& column) { rearrange(column, order); }, s.grains);
   rearrange(s.grains.orientation, order);
   rearrange(s.state.list_positions, order);
   rearrange(s.state.scaled_mass, order);

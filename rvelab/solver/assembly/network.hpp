@@ -29,17 +29,16 @@ struct ContactState {
   Vector3 force() const { return normal_force * normal + tangential_force; }  ///< on j, N
 };
 
-struct GrainState {
-  double radius = 0, mass = 0, inertia = 0;  ///< m (of an ellipse sqrt(a b)), kg, kg m^2
+struct GrainState : OwnValues {
+  double radius = 0, mass = 0, inertia = 0;  ///< m, kg, kg m^2
   Vector3 position, velocity, spin;          ///< cell frame; fluctuation velocity and spin, physical (dt > 0)
   Vector3 resultant;                         ///< sum of contact forces, N
   Vector3 torque = Vector3::Zero();          ///< sum of contact torques, moments of rolling included, N m
-  Vector3 orientation = Vector3::Zero();     ///< ellipses: along the long axis, cell frame
-  double semi_major = 0, semi_minor = 0;     ///< ellipses: m
+  Vector3 orientation = Vector3::Zero();     ///< not round: along the long axis, cell frame
 };
 
 struct Network {
-  Shape shape = Shape::sphere;
+  Shape shape = round_shape(3);
   Cell cell;
   ContactModel model;
   std::vector<GrainState> grains;

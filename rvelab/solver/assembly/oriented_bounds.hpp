@@ -1,15 +1,18 @@
-// Which pairs of ellipses are listed: of those whose circles are nearer than the skin, the ones whose outlines are.
+// Which pairs of grains that are not round are listed: of those whose circles are nearer than the skin, the ones whose
+// outlines are.
 //
 // Along a direction n of length 1 the gap is s = n.x - h_i(n) - h_j(n), with x the branch and h the supports
-// (kernels/ellipse_overlap.hpp); no direction shows more than the distance. Where one shows s > skin, the pair is left
-// out. What it takes to bring such a pair to touch is, with the cell's strain e since and |x| < reach + skin,
+// (of ellipses kernels/ellipse_overlap.hpp); no direction shows more than the distance. Where one shows s > skin, the
+// pair is left out. What it takes to bring such a pair to touch is, with the cell's strain e since and |x| < reach +
+// skin,
 //   n.(F - I) x >= -e (reach + skin), and |d| + max |change of h| of either grain,
 // so it stays apart while the displacements, turns included, sum to less than (1 - e) (reach + skin) - reach: what
 // list_is_stale allows of circles too.
 //
 // An ellipse turned by theta: |h(p - theta) - h(p)| = (a^2 - b^2) |sin(2p - theta) sin theta|/(h(p - theta) + h(p)),
 // and from h(q) >= |a cos(q) sin(q') + b sin(q) cos(q')| for any q' the sum of the two h is not below
-// (a + b) |sin(2p - theta)|. So the outline moves by (a - b) |sin theta| at most.
+// (a + b) |sin(2p - theta)|. So the outline moves by (a - b) |sin theta| at most. Of other shapes l stands for a - b
+// (Extent::turning), the seventh of a row.
 #pragma once
 
 #include <vector>
@@ -19,7 +22,7 @@
 namespace rvelab {
 
 /// Takes the pairs out of which a direction shows that they are apart by more than `skin`, m.
-void keep_near_ellipses(const Model& model, const Assembly& assembly, double skin, std::vector<ListedPair>& pairs);
+void keep_near_outlines(const Model& model, const Assembly& assembly, double skin, std::vector<ListedPair>& pairs);
 
 /// What a list notes of an axis in the plane: 2 plus the tangent of half its angle, 1 to 3, the same for the axis
 /// pointing the other way. 0, which files of earlier versions hold, is none.
@@ -27,8 +30,8 @@ inline double noted_axis(const Vector3& axis) {
   return 2 + (axis[0] >= 0 ? axis[1] / (1 + axis[0]) : -axis[1] / (1 - axis[0]));
 }
 
-/// How far the turn from the noted axis has moved the outline of the ellipse of a row at most, m: (a - b) |e_0 x e|;
-/// a - b where none was noted.
+/// How far the turn from the noted axis has moved the outline of the grain of a row at most, m: l |e_0 x e|; l where
+/// none was noted.
 inline double outline_moved_by_turn(double noted, const double* row) {
   if (noted == 0) return row[7];
   const double t = noted - 2, cross = ((1 - t * t) * row[6] - 2 * t * row[5]) / (1 + t * t);

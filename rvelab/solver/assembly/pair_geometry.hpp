@@ -2,21 +2,9 @@
 #pragma once
 
 #include "rvelab/solver/assembly/assembly.hpp"
-#include "rvelab/solver/assembly/pair_place.hpp"
+#include "rvelab/solver/assembly/outline.hpp"
 
 namespace rvelab {
-
-/// A shape as a type, for loops that are compiled for it: call(ShapeIs<...>{}).
-template <Shape shape>
-struct ShapeIs {
-  static constexpr Shape value = shape;
-};
-template <class Call>
-auto with_shape(Shape shape, const Call& call) {
-  if (shape == Shape::disc) return call(ShapeIs<Shape::disc>{});
-  if (shape == Shape::ellipse) return call(ShapeIs<Shape::ellipse>{});
-  return call(ShapeIs<Shape::sphere>{});
-}
 
 /// Pairs of grains of a shape from the arrays of an assembly.
 template <Shape shape>
@@ -37,20 +25,20 @@ class PairGeometry {
 
   auto operator()(std::size_t p) const {
     const Branch b = branch(p);
-    if constexpr (shape == Shape::ellipse) {
-      return place_of_ellipses(b, rows_ + i_[p], rows_ + j_[p]);
+    if constexpr (!is_round(shape)) {
+      return Outline<shape>::place(b, rows_ + i_[p], rows_ + j_[p]);
     } else {
       const double length = b.length();
       return PairPlace{b, length, (radius_[grain_i_[p]] + radius_[grain_j_[p]]) - length};
     }
   }
-  /// The same, but of ellipses that are apart by less than `gap` (m) the true distance: an overlap < 0 else shows that
+  /// The same, but of outlines that are apart by less than `gap` (m) the true distance: an overlap < 0 else shows that
   /// they are apart, not how far.
   auto within(std::size_t p, double gap) const {
     auto place = (*this)(p);
-    if constexpr (shape == Shape::ellipse) {
+    if constexpr (!is_round(shape)) {
       if (place.overlap < 0 && -place.overlap < gap)
-        place = nearest_place_of_ellipses(place, rows_ + i_[p], rows_ + j_[p]);
+        place = Outline<shape>::nearest_place(place, rows_ + i_[p], rows_ + j_[p]);
     }
     return place;
   }

@@ -49,7 +49,7 @@ void derive_pairs(const Model& f, PairTable& pairs) {
   pairs.row_i.resize(padded);
   pairs.row_j.resize(padded);
   for (int k = 0; k < f.dimension(); ++k) pairs.image_number[k].resize(padded);
-  const bool radii = f.shape == Shape::disc || f.radius_from_curvature();
+  const bool radii = pairs_hold_radii(f.shape) || f.radius_from_curvature();
   if (radii) {
     pairs.radius_i.assign(padded, 0.0);
     pairs.radius_j.assign(padded, 0.0);
@@ -71,7 +71,7 @@ void derive_pairs(const Model& f, PairTable& pairs) {
   pairs.shifted.assign(padded / 8, 0);
   for (std::size_t p = 0; p < padded; ++p)
     if (pairs.image[p] != Image{0, 0, 0}) pairs.shifted[p / 8] = 1;
-  pairs.force.assign(padded * std::size_t(force_row_length(f.shape)), 0.0);
+  pairs.force.assign(padded * std::size_t(force_row_length(f.dimension())), 0.0);
   set_pair_parameters(f, pairs);
 }
 

@@ -51,33 +51,63 @@ void check_grains(const Specimen& s) {
   }
 }
 
-/// Semi-axes and orientation where the grains are ellipses, and nowhere else.
-void check_ellipses(const Specimen& s) {
-  const Grains& g = s.grains;
-  const std::size_t n = s.shape == Shape::ellipse ? g.size() : 0;
-  if (g.semi_major.size() != n || g.semi_minor.size() != n || g.orientation.size() != n)
-    refuse("specimen: semi_major, semi_minor and orientation have " + std::to_string(g.semi_major.size()) + ", " +
-           std::to_string(g.semi_minor.size()) + " and " + std::to_string(g.orientation.size()) +
-           " entries; allowed: one for each grain where the shape is ellipse, else none");
-  for (std::size_t k = 0; k < n; ++k) {
-    const double a = g.semi_major[k], b = g.semi_minor[k], length = g.orientation[k].norm();
-    const std::string who = "grain " + std::to_string(g.id[k]) + ": ";
-    if (!(b > 0) || !(a >= b) || !(b >= least_aspect_ratio * (1 - 1e-12) * a) || !std::isfinite(a))
-      refuse(who + "semi-axes " + in_words(a) + " and " + in_words(b) +
-             " m; allowed: semi_major >= semi_minor > 0, at most 10 times as long");
-    if (!(std::abs(g.radius[k] - std::sqrt(a * b)) <= 1e-9 * g.radius[k]))
-      refuse(who + "radius " + in_words(g.radius[k]) + " m; that of an ellipse is sqrt(semi_major semi_minor), " +
-             in_words(std::sqrt(a * b)) + " m here");
-    if (!(std::abs(length - 1) <= 1e-9) || g.orientation[k][2] != 0)
-      refuse(who + "orientation of length " + in_words(length) + "; it must be a vector of length 1 in the plane");
+/// The columns of the shape: one entry for each grain; none in those of other shapes.
+template <class By>
+void check_columns(const Grains& g, std::size_t entries, std::size_t axes) {
+  std::string names, found;
+  bool right = g.orientation.size() == axes;
+  each_column_of<By>(
+      [&](const auto& described, const auto& column) {
+        names += std::string(described.dataset) + ", ";
+        found += std::to_string(column.size()) + ", ";
+        right = right && column.size() == entries;
+      },
+      g);
+  if (!right)
+    refuse("specimen: " + names + "orientation have " + found + std::to_string(g.orientation.size()) +
+           " entries; allowed: one for each grain where the shape is " + By::name + ", else none");
+}
+
+template <class By>
+void check_outline(const Grains& g, std::size_t k) {
+  const OwnValues own = own_of<By>(g, k);
+  const std::string who = "grain " + std::to_string(g.id[k]) + ": ";
+  const double length = g.orientation[k].norm();
+  if (!By::allowed(own)) {
+    std::string lengths;
+    each_column_of<By>(
+        [&](const auto& described, double value) {
+          lengths += (lengths.empty() ? "" : ", ") + std::string(described.dataset) + " " + in_words(value);
+        },
+        own);
+    refuse(who + lengths + "; allowed: " + By::allowed_lengths);
   }
-  if (n > 0 && s.contact.slip != Slip::consistent)
-    refuse(std::string("contact.slip = \"") + name(s.contact.slip) +
-           "\" is for round grains; allowed for ellipses: \"consistent\"");
-  if (s.shape != Shape::ellipse && s.contact.hertz_radius != HertzRadius::equivalent)
-    refuse(std::string("contact.hertz_radius = \"") + name(s.contact.hertz_radius) +
-           "\" is for ellipses; allowed for " + fields::text_of(s.shape) +
-           "s, whose curvature is the same everywhere: \"equivalent\"");
+  if (!(std::abs(g.radius[k] - By::radius(own)) <= 1e-9 * g.radius[k]))
+    refuse(who + "radius " + in_words(g.radius[k]) + " m; that of its " + By::name + " is " + By::radius_in_words +
+           ", " + in_words(By::radius(own)) + " m here");
+  if (!(std::abs(length - 1) <= 1e-9) || g.orientation[k][2] != 0)
+    refuse(who + "orientation of length " + in_words(length) + "; it must be a vector of length 1 in the plane");
+}
+
+/// Lengths and orientation where the grains are not round, and nowhere else.
+void check_outlines(const Specimen& s) {
+  const std::size_t n = s.grains.size();
+  for (int number = 0; number < shape_count; ++number)
+    with_shape(Shape(number), [&](auto is) {
+      using By = typename decltype(is)::By;
+      const bool own = s.shape == decltype(is)::value;
+      if constexpr (!By::round) {
+        check_columns<By>(s.grains, own ? n : 0, is_round(s.shape) ? 0 : n);
+        for (std::size_t k = 0; own && k < n; ++k) check_outline<By>(s.grains, k);
+      }
+    });
+  const std::string plural = name(s.shape) + std::string("s");
+  if (!is_round(s.shape) && s.contact.slip != Slip::consistent)
+    refuse(std::string("contact.slip = \"") + name(s.contact.slip) + "\" is for round grains; allowed for " + plural +
+           ": \"consistent\"");
+  if (!has_hertz_curvature(s.shape) && s.contact.hertz_radius != HertzRadius::equivalent)
+    refuse(std::string("contact.hertz_radius = \"") + name(s.contact.hertz_radius) + "\" is for " +
+           names_of_shapes(has_hertz_curvature, true) + "; allowed for " + plural + ": \"equivalent\"");
 }
 
 void check_cell(const Specimen& s) {
@@ -231,7 +261,7 @@ void check_specimen(const Specimen& s) {
   check_parameters(s.contact, s.damping, s.materials);
   check_options(s.solver);
   check_grains(s);
-  check_ellipses(s);
+  check_outlines(s);
   check_cell(s);
   check_volumes(s);
   check_state(s);

@@ -15,8 +15,8 @@ namespace {
 constexpr std::int64_t old_list = 500, young_list = 200;
 constexpr double smallest_skin = 0.01;  ///< mean radii
 
-/// Sum of the two largest displacements of grains since the list was built, beside the affine motion, m. Of ellipses
-/// that of their outlines: what the turn moves them is added to what the centre moved.
+/// Sum of the two largest displacements of grains since the list was built, beside the affine motion, m. Of grains
+/// that are not round that of their outlines: what the turn moves them is added to what the centre moved.
 template <bool oriented>
 double measured_displacements(const Model& f, const Assembly& a, const Matrix3& f_since) {
   struct Largest {
@@ -65,7 +65,7 @@ double next_skin(const Model& f, const SolverState& state) {
 
 Vector3 listed_place(const Model& f, const Assembly& a, std::size_t g) {
   Vector3 place = a.position(f, g);
-  if (f.shape == Shape::ellipse) place[2] = noted_axis(a.orientation(f, g));
+  if (!f.round()) place[2] = noted_axis(a.orientation(f, g));
   return place;
 }
 
@@ -78,7 +78,7 @@ double listed_gap(const Model& f, const Assembly& a) {
 bool list_is_stale(const Model& f, Assembly& a, double margin) {
   // A pair beyond reach r_i + r_j + skin when listed is, after the affine map F and two displacements of at most
   // `travel`, still beyond sigma_min(F) reach - 2 |F| travel, with sigma_min >= 1 - |F - I|, |F| <= 1 + |F - I|. The
-  // same is allowed of ellipses that are nearer but apart by the skin along some direction (oriented_bounds.hpp).
+  // same is allowed of outlines that are nearer but apart by the skin along some direction (oriented_bounds.hpp).
   const Matrix3 f_since = a.cell.lattice * upper_inverse(a.state.list_lattice);
   const double strain = (f_since - Matrix3::Identity()).norm();
   const double reach = 2 * f.largest_reach;
@@ -88,8 +88,8 @@ bool list_is_stale(const Model& f, Assembly& a, double margin) {
   if (a.state.list_positions.size() != f.size()) return true;
   // The bound sums the fastest grain of every step; what the grains really moved is a fifth of it (measured: a third of
   // the rebuilds). Looking is worth it while a tenth of the skin is left.
-  const double moved = f.shape == Shape::ellipse ? measured_displacements<true>(f, a, f_since)
-                                                 : measured_displacements<false>(f, a, f_since);
+  const double moved =
+      f.round() ? measured_displacements<false>(f, a, f_since) : measured_displacements<true>(f, a, f_since);
   if (!(moved < allowed - 0.1 * skin)) return true;
   a.state.list_travel = moved / (2 * (1 + strain));
   return false;

@@ -68,7 +68,7 @@ double largest_quotient(const Model& f, const std::vector<Spring>& springs) {
   constexpr int iterations = 60;
   const std::size_t n = f.size();
   const int d = f.dimension();
-  const bool turns = f.shape != Shape::ellipse;
+  const bool turns = f.round();
   Displacements motion{std::vector<Vector3>(n, Vector3::Zero()), std::vector<Vector3>(n, Vector3::Zero())},
       forces = motion;
   std::uint64_t number = 1;

@@ -12,28 +12,32 @@ namespace rvelab {
 
 namespace {
 
-using Setter = void (*)(const KernelConfiguration&, const char*, Kernels&);
+using Setter = void (*)(const KernelConfiguration&, Kernels&);
 struct InstructionSet {
   const char* name;
   bool runs_here;
-  Setter disc, ellipse, sphere;
+  Setter (*of)(Shape);
 };
+
+#define RVELAB_SET(isa, runs_here)                                                               \
+  InstructionSet {                                                                               \
+#isa, bool(runs_here), [](Shape shape) {                                                       \
+      return with_shape(shape, [](auto is) -> Setter { return &StepKernels<decltype(is)::value>::isa; }); \
+    } \
+  }
 
 /// From widest to plainest.
 const std::vector<InstructionSet>& instruction_sets() {
   static const std::vector<InstructionSet> sets = [] {
     std::vector<InstructionSet> found;
 #ifdef RVELAB_HAVE_V4
-    found.push_back({"v4", bool(__builtin_cpu_supports("x86-64-v4")), set_disc_kernels_v4, set_ellipse_kernels_v4,
-                     set_sphere_kernels_v4});
+    found.push_back(RVELAB_SET(v4, __builtin_cpu_supports("x86-64-v4")));
 #endif
 #ifdef RVELAB_HAVE_V3
-    found.push_back({"v3", bool(__builtin_cpu_supports("x86-64-v3")), set_disc_kernels_v3, set_ellipse_kernels_v3,
-                     set_sphere_kernels_v3});
+    found.push_back(RVELAB_SET(v3, __builtin_cpu_supports("x86-64-v3")));
 #endif
-    found.push_back(
-        {"baseline", true, set_disc_kernels_baseline, set_ellipse_kernels_baseline, set_sphere_kernels_baseline});
-    found.push_back({"scalar", true, set_disc_kernels_scalar, set_ellipse_kernels_scalar, set_sphere_kernels_scalar});
+    found.push_back(RVELAB_SET(baseline, true));
+    found.push_back(RVELAB_SET(scalar, true));
     return found;
   }();
   return sets;
@@ -63,7 +67,7 @@ const InstructionSet& widest_set() {
   throw InputError(std::string("RVELAB_ISA=") + wanted + " cannot run here; use one of " + names);
 }
 
-/// The slip conventions of other codes are compiled for the baseline and the scalar reference alone (table.hpp).
+/// The slip conventions of other codes are compiled for the baseline and the scalar reference alone (step_kernels.hpp).
 const InstructionSet& chosen_set(Slip slip) {
   const InstructionSet& widest = widest_set();
   if (slip == Slip::consistent) return widest;
@@ -77,16 +81,9 @@ const InstructionSet& chosen_set(Slip slip) {
 Kernels kernels_for(const KernelConfiguration& key) {
   const InstructionSet& set = chosen_set(key.slip);
   Kernels kernels;
-  if (key.shape == Shape::disc) {
-    set_disc_kernels_shared(key, kernels);
-    set.disc(key, set.name, kernels);
-  } else if (key.shape == Shape::ellipse) {
-    set_ellipse_kernels_shared(key, kernels);
-    set.ellipse(key, set.name, kernels);
-  } else {
-    set_sphere_kernels_shared(key, kernels);
-    set.sphere(key, set.name, kernels);
-  }
+  instruction_sets().back().of(key.shape)(key, kernels);
+  set.of(key.shape)(key, kernels);
+  kernels.instruction_set = set.name;
   return kernels;
 }
 

@@ -14,7 +14,7 @@
 namespace rvelab {
 
 struct KernelConfiguration {
-  Shape shape = Shape::disc;
+  Shape shape = round_shape(2);
   Law law = Law::linear;
   bool rolling = false;
   Slip slip = Slip::consistent;
@@ -70,7 +70,7 @@ struct PairArrays {
   double* tangential[3] = {};                             ///< history on grain j; 2D: [0] along t = (-n_y, n_x)
   double* moment[3] = {};                                 ///< with rolling; 2D: [0] about z
   double* root_overlap = nullptr;                         ///< laws that carry sqrt(delta_old)
-  const double *radius_i = nullptr, *radius_j = nullptr;  ///< discs; ellipses with Hertz's radius from curvature
+  const double *radius_i = nullptr, *radius_j = nullptr;  ///< where the kernels read them by pairs
   double* force = nullptr;                ///< row per pair: 2D {fx, fy, T_j, T_i}; 3D {fx, fy, fz, delta/2, n x f_t, 0}
   const std::uint8_t* shifted = nullptr;  ///< by eight pairs: whether one is with an image, else all shifts are 0
 };
@@ -78,9 +78,10 @@ struct PairArrays {
 /// Grains that are gathered and integrated together: their resultants stay in the first-level cache between.
 constexpr long chunk_grains = 64;
 
-/// Grain rows: discs 8 doubles {x, y, u, v, w, 0, 0, 0}; ellipses 12, {x, y, u, v, w, ex, ey, a - b, Mxx, Mxy, Myy,
-/// b^2/a} with e along the long axis and M = a^2 e e + b^2 (1 - e e); spheres 12, {x, y, z, r, u, v, w, 0, wx, wy, wz,
-/// r}. Padded to a multiple of eight with grains of no extent and infinite mass, at least one of them.
+/// Grain rows: discs 8 doubles {x, y, u, v, w, 0, 0, 0}; spheres 12, {x, y, z, r, u, v, w, 0, wx, wy, wz, r}; shapes
+/// that are not round {x, y, u, v, w, ex, ey, l, ...} with e along the long axis and l = Extent::turning, and what they
+/// like from there on (ellipses.hpp). Padded to a multiple of eight with grains of no extent and infinite mass, at
+/// least one of them.
 struct GrainArrays {
   double* rows = nullptr;
   const double *mass = nullptr, *inverse_mass = nullptr, *inverse_inertia = nullptr;
@@ -90,14 +91,15 @@ struct GrainArrays {
   /// pointing to a padding pair, whose force is zero. Loop lengths are seldom mispredicted so, and hardly a slot is
   /// padding (against blocks of four neighbouring grains: spheres 32.6 ns a grain instead of 35.7, discs equal). Slots
   /// hold where the force row of the pair starts, in doubles; tasks, four a block, where the sum of the task goes: four
-  /// times the place of the grain in its chunk, plus 4 chunk_grains for i.
+  /// times the place of the grain in its chunk, plus 4 chunk_grains for i. Slots of pairs that have not touched since they
+  /// were listed point to a padding pair too (PairTable::gathered).
   const std::int32_t *slot_begin = nullptr, *slots = nullptr;
   const std::uint16_t* tasks = nullptr;
-  const double *minor_squared = nullptr, *axes_difference = nullptr;  ///< ellipses: b^2, a^2 - b^2, m^2
+  const double *turn_first = nullptr, *turn_second = nullptr;  ///< not round: TurnValues (grains/description.hpp)
 };
 
-/// Sums that the integration leaves behind: momentum (kg m/s), largest |v'|^2 (ellipses: (|v'| + (a - b) |w|)^2, as
-/// fast as their bounds can move), energy taken by local and global damping.
+/// Sums that the integration leaves behind: momentum (kg m/s), largest |v'|^2 (not round: (|v'| + l |w|)^2, as fast
+/// as their bounds can move), energy taken by local and global damping.
 struct StepSums {
   double momentum[3] = {};
   double largest_speed_squared = 0;
@@ -127,7 +129,6 @@ struct Kernels {
 /// names (scalar, baseline, v3, v4; InputError if it cannot run here). Every choice gives the same bits.
 Kernels kernels_for(const KernelConfiguration& key);
 
-constexpr int grain_row_length(Shape shape) { return shape == Shape::disc ? 8 : 12; }
-constexpr int force_row_length(Shape shape) { return dimension_of(shape) == 2 ? 4 : 8; }
+constexpr int force_row_length(int dimension) { return dimension == 2 ? 4 : 8; }
 
 }  // namespace rvelab

@@ -1,6 +1,7 @@
 // The geometry of pairs of discs for the contact update in the plane (plane.hpp).
 #pragma once
 
+#include "rvelab/solver/kernels/integrate_discs.hpp"
 #include "rvelab/solver/kernels/plane.hpp"
 
 namespace rvelab {
@@ -55,8 +56,9 @@ inline __attribute__((always_inline)) void disc_places(const StepConstants& c, c
 
 /// What the contact update in the plane (plane.hpp) asks of a shape.
 struct Discs {
+  using By = Disc;
   using Scratch = DiscScratch;
-  static constexpr bool round = true;
+  using Rows = DiscRows;
 
   template <class T>
   static inline __attribute__((always_inline)) void locate(const StepConstants& c, const PairArrays& p,

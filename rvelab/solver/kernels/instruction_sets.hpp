@@ -1,24 +1,31 @@
-// The functions that fill in the kernels of a configuration, one for each instruction set and shape. A build defines
-// those that its compiler can make.
+// The functions that fill in the kernels of a configuration, one for each shape and instruction set: SHAPE's are in
+// step_SHAPE.cpp. A build defines those that its compiler can make.
 #pragma once
 
 #include "rvelab/solver/kernels/configuration.hpp"
 
 namespace rvelab {
 
-#define RVELAB_DECLARE(isa)                                                          \
-  void set_disc_kernels_##isa(const KernelConfiguration&, const char*, Kernels&);    \
-  void set_ellipse_kernels_##isa(const KernelConfiguration&, const char*, Kernels&); \
-  void set_sphere_kernels_##isa(const KernelConfiguration&, const char*, Kernels&)
-RVELAB_DECLARE(scalar);
-RVELAB_DECLARE(baseline);
-RVELAB_DECLARE(v3);
-RVELAB_DECLARE(v4);
-#undef RVELAB_DECLARE
+template <Shape shape>
+struct StepKernels {
+  /// All of them, those with losses and the evaluation of stored histories too, which are scalar on every machine.
+  static void scalar(const KernelConfiguration&, Kernels&);
+  /// Pair and grain loops.
+  static void baseline(const KernelConfiguration&, Kernels&);
+  static void v3(const KernelConfiguration&, Kernels&);
+  static void v4(const KernelConfiguration&, Kernels&);
+};
 
-/// Scalar on every machine: the pair loop with losses, and the evaluation of stored histories.
-void set_disc_kernels_shared(const KernelConfiguration&, Kernels&);
-void set_ellipse_kernels_shared(const KernelConfiguration&, Kernels&);
-void set_sphere_kernels_shared(const KernelConfiguration&, Kernels&);
+#define RVELAB_DECLARE(shape, description)                                        \
+  template <>                                                                     \
+  void StepKernels<Shape::shape>::scalar(const KernelConfiguration&, Kernels&);   \
+  template <>                                                                     \
+  void StepKernels<Shape::shape>::baseline(const KernelConfiguration&, Kernels&); \
+  template <>                                                                     \
+  void StepKernels<Shape::shape>::v3(const KernelConfiguration&, Kernels&);       \
+  template <>                                                                     \
+  void StepKernels<Shape::shape>::v4(const KernelConfiguration&, Kernels&);
+RVELAB_SHAPES(RVELAB_DECLARE)
+#undef RVELAB_DECLARE
 
 }  // namespace rvelab

@@ -150,7 +150,7 @@ inline __attribute__((always_inline)) void move_discs(const StepConstants& c, co
 
 /// What the grain loop in the plane asks of a shape: the length of its rows, and what turns with the grain.
 struct DiscRows {
-  static constexpr int length = 8;
+  static constexpr int length = Disc::row_length;
   static constexpr bool turns = false;
 };
 

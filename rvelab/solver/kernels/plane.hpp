@@ -135,7 +135,7 @@ inline __attribute__((always_inline)) void plane_forces(const StepConstants& c, 
     }
 
     V torque_j = contact.lever_j * total, torque_i = contact.lever_i * total;
-    if constexpr (!Shape::round) {
+    if constexpr (!Shape::By::round) {
       torque_j = torque_j + contact.turn_j * normal;
       torque_i = torque_i + contact.turn_i * normal;
     }

@@ -53,6 +53,7 @@ inline __attribute__((always_inline)) void sphere_places(const StepConstants& c,
 
 /// What the contact update in space (space.hpp) asks of a shape.
 struct Spheres {
+  using By = Sphere;
   using Scratch = SphereScratch;
 
   template <class T>

@@ -77,7 +77,7 @@ PairExtremes pairs_in(const Model& f, const Assembly& a, const Outlook& outlook,
       by_cell += (b.x * rate.xz + b.y * rate.yz + b.z * rate.zz) * b.z;
       by_grains += b.z * (vj[2] - vi[2]);
     }
-    if constexpr (shape == Shape::ellipse) by_grains += place.opening_by(vi[2], vj[2]);
+    if constexpr (!is_round(shape)) by_grains += place.opening_by(vi[2], vj[2]);
     const double opening = (by_cell + by_grains) / place.along_length(), closing = -by_cell / place.along_length();
     if (closing * outlook.increment > gap && closing > 0) {
       found.closing = std::max(found.closing, closing);
@@ -117,7 +117,7 @@ PairExtremes pairs_in(const Model& f, const Assembly& a, const Outlook& outlook,
 struct GrainMotion {
   double resultants = 0;  ///< J, sum R^2 / 2k: what they can still turn into motion
   double kinetic = 0;     ///< J
-  double fastest = 0;     ///< m/s, squared; of ellipses with what their turn adds, as listed_gap counts it
+  double fastest = 0;     ///< m/s, squared; not round: with what their turn adds, as listed_gap counts it
 };
 
 template <Shape shape>
@@ -141,8 +141,7 @@ GrainMotion grains_in(const Model& f, const Assembly& a, const RowSums& sums, st
     }
     if (resultant > 0) motion.resultants += resultant / sums.translation[g];  // row sums count kn twice
     motion.kinetic += 0.5 * f.mass[g] * speed;
-    if constexpr (shape == Shape::ellipse)
-      speed = square(std::sqrt(speed) + outline_speed_by_turn(v - f.velocity_offset()));
+    if constexpr (!is_round(shape)) speed = square(std::sqrt(speed) + outline_speed_by_turn(v - f.velocity_offset()));
     motion.fastest = std::max(motion.fastest, speed);
   }
   return motion;

@@ -117,7 +117,7 @@ struct PairTerms {
   ContactStiffness now = {};
   double along = 0, across = 0, nx = 0, ny = 0, nz = 0;
   Symmetric stiffness = {};            ///< of round grains, the same for both
-  double reach[2] = {}, turn[2] = {};  ///< ellipses: arms of the tangential and the normal force about i and j, m
+  double reach[2] = {}, turn[2] = {};  ///< not round: arms of the tangential and the normal force about i and j, m
 };
 
 // Row sums go through all pairs, in the time of five sub-steps: inline, so that what a scene does not need falls out.
@@ -143,7 +143,7 @@ inline __attribute__((always_inline)) PairTerms terms_of(const Model& f, const A
   t.nx = n.x / place.along_length();
   t.ny = n.y / place.along_length();
   if constexpr (dimension_of(shape) == 3) t.nz = n.z / place.along_length();
-  if constexpr (shape == Shape::ellipse) {
+  if constexpr (!is_round(shape)) {
     t.reach[0] = place.reach_i;
     t.reach[1] = place.reach_j;
     t.turn[0] = std::abs(place.turn_i);
@@ -164,9 +164,10 @@ inline __attribute__((always_inline)) void add(const Model& f, const PairTerms& 
                                                GrainSums& sums) {
   constexpr int D = dimension_of(shape);
   const double r = f.radius[g];
-  if constexpr (shape == Shape::ellipse) {
-    // What may come to touch may do so anywhere: h <= a, |h'| <= a - b.
-    const double a = f.semi_major[g], farthest = a - f.semi_minor[g], turn = t.turn[as_j];
+  if constexpr (!is_round(shape)) {
+    // What may come to touch may do so anywhere.
+    const Extent extent = Description<shape>::extent(own_of<Description<shape>>(f.own, g));
+    const double a = extent.outer, farthest = extent.turning, turn = t.turn[as_j];
     sums.stiffest = std::max(sums.stiffest, t.firm_translation + normal_to_translation(t.firm.normal, farthest, r));
     sums.stiffest_turn = std::max(sums.stiffest_turn, 4 * t.firm.tangential * a * a + 2 * t.firm.rolling +
                                                           normal_to_rotation(t.firm.normal, farthest, r));

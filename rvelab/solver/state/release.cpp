@@ -2,8 +2,6 @@
 // rebuilding them searches nothing.
 #include "rvelab/solver/state/release.hpp"
 
-#include <utility>
-
 #include "rvelab/solver/assembly/gather_table.hpp"
 #include "rvelab/solver/loading/inertia.hpp"
 
@@ -43,7 +41,7 @@ void release_buffers(Assembly& a) {
 void rebuild_buffers(const Model& f, Assembly& a) {
   try {
     derive_pairs(f, a.pairs);
-    leave_out_pairs_beyond(force_row_length(f.shape), a.pairs);
+    leave_out_pairs_beyond(force_row_length(f.dimension()), a.pairs);
     for (Buffer* b : {&a.mass, &a.inverse_mass, &a.inverse_inertia}) b->assign(padded_to_lanes(f.size()), 0.0);
   } catch (...) {  // no memory: it stays released, the masses in its rows
     release_buffers(a);
@@ -55,11 +53,10 @@ void rebuild_buffers(const Model& f, Assembly& a) {
   } else {
     for (std::size_t g = 0; g < f.size(); ++g) {
       double* row = a.rows.data() + g * length;
-      a.mass[g] = std::exchange(row[released_mass(f.shape)], 0.0);
+      a.mass[g] = row[released_mass(f.shape)];
       a.inverse_mass[g] = 1 / a.mass[g];
-      a.inverse_inertia[g] =
-          std::exchange(row[released_inverse_inertia(f.shape)], f.shape == Shape::sphere ? row[3] : 0.0);
-      if (f.shape == Shape::ellipse) set_ellipse_matrix(f, g, row);
+      a.inverse_inertia[g] = row[released_inverse_inertia(f.shape)];
+      complete_row(f, g, row);
     }
   }
   evaluate_forces(f, a);

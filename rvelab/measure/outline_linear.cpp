@@ -1,20 +1,25 @@
-// One contact of ellipses, linearised (formulas at the head of ellipse_linear.hpp).
-#include "rvelab/measure/ellipse_linear.hpp"
+// One contact of grains that are not round, linearised (formulas at the head of outline_linear.hpp).
+#include "rvelab/measure/outline_linear.hpp"
 
 namespace rvelab {
 namespace {
 
 /// h, h', h'' of a grain in the direction of the contact; those of j lie opposite.
 struct Support {
-  double reach, turned, bend;
+  double reach, turned, bend, flattening;
   double radius_of_curvature() const { return reach + bend; }
-  /// d ln of that by a turn of the normal against the grain.
-  double flattening() const { return -3 * turned / reach; }
 };
 
-Support support_of(const GrainState& grain, double along, double across) {
-  const double axes = grain.semi_major * grain.semi_minor;
-  return {along, across, axes * axes / (along * along * along) - along};
+Support support_of(Shape shape, const GrainState& grain, double along, double across) {
+  return with_shape(shape, [&](auto is) -> Support {
+    using By = typename decltype(is)::By;
+    if constexpr (By::round) {
+      return {along, across, 0, 0};
+    } else {
+      const Bend bend = By::bend(grain, along, across);
+      return {along, across, bend.second, bend.flattening};
+    }
+  });
 }
 
 /// z-component of a x B for the columns of B.
@@ -22,13 +27,13 @@ ContactRow cross_z(const Vector3& a, const ContactMatrix& b) { return a.x() * b.
 
 }  // namespace
 
-LinearEllipseContact linearised_ellipses(const ContactState& contact, const GrainState& grain_i,
+LinearOutlineContact linearised_outlines(Shape shape, const ContactState& contact, const GrainState& grain_i,
                                          const GrainState& grain_j, HertzRadius hertz_radius) {
   const Vector3& n = contact.normal;
   const Vector3 t(-n.y(), n.x(), 0);
   const double half = 0.5 * contact.overlap, along_t = contact.tangential_force.dot(t);
-  const Support i = support_of(grain_i, contact.arm_i.dot(n) + half, contact.arm_i.dot(t));
-  const Support j = support_of(grain_j, half - contact.arm_j.dot(n), -contact.arm_j.dot(t));
+  const Support i = support_of(shape, grain_i, contact.arm_i.dot(n) + half, contact.arm_i.dot(t));
+  const Support j = support_of(shape, grain_j, half - contact.arm_j.dot(n), -contact.arm_j.dot(t));
 
   ContactMatrix db = ContactMatrix::Zero();
   db.block<3, 3>(0, 0).setIdentity();
@@ -47,10 +52,10 @@ LinearEllipseContact linearised_ellipses(const ContactState& contact, const Grai
   if (hertz_radius == HertzRadius::curvature) {
     const double sharp_i = 1 / i.radius_of_curvature(), sharp_j = 1 / j.radius_of_curvature();
     radius = contact.overlap / (sharp_i + sharp_j) *
-             (sharp_i * i.flattening() * (turn - turn_i) + sharp_j * j.flattening() * (turn - turn_j));
+             (sharp_i * i.flattening * (turn - turn_i) + sharp_j * j.flattening * (turn - turn_j));
   }
 
-  LinearEllipseContact linear;
+  LinearOutlineContact linear;
   linear.opening = -(overlap + radius);
   const ContactRow normal = contact.normal_stiffness * overlap + 0.5 * contact.normal_force / contact.overlap * radius;
   linear.law.force =

@@ -1,8 +1,9 @@
-// One contact of two ellipses, linearised: as contact_linear.hpp, where the normal turns with the grains too.
+// One contact of two grains that are not round, linearised: as contact_linear.hpp, where the normal turns with the
+// grains too.
 //
-// h_i(n) is the support of an ellipse about its centre, h' and h'' = rho - h its derivatives along the circle of
-// directions, rho = a^2 b^2/h^3 the radius of curvature at the support point; n is where f = h_i + h_j - n.b is least,
-// and t = (-n_y, n_x) (solver/kernels/ellipse_overlap.hpp). With dphi the turn of n:
+// h_i(n) is the support of a grain about its centre, h' and h'' = rho - h its derivatives along the circle of
+// directions, rho the radius of curvature at the support point (of ellipses a^2 b^2/h^3; Bend in
+// grains/description.hpp); n is where f = h_i + h_j - n.b is least, and t = (-n_y, n_x). With dphi the turn of n:
 //   d delta = -n.db - h_i' dtheta_i - h_j' dtheta_j                        f' = 0: a turn of n changes nothing
 //   dphi    = (t.db + h_i'' dtheta_i + h_j'' dtheta_j)/(rho_i + rho_j - delta)   f' stays 0
 //   d f_n   = k_n d delta
@@ -22,13 +23,13 @@
 
 namespace rvelab {
 
-struct LinearEllipseContact {
+struct LinearOutlineContact {
   LinearContact law;        ///< without rescaling on unloading
   LinearContact unloading;  ///< what that adds where the overlap falls
   ContactRow opening;       ///< -d delta; with the radius of curvature -(d delta + delta dR*/R*)
 };
 
-LinearEllipseContact linearised_ellipses(const ContactState& contact, const GrainState& i, const GrainState& j,
-                                         HertzRadius hertz_radius = HertzRadius::equivalent);
+LinearOutlineContact linearised_outlines(Shape shape, const ContactState& contact, const GrainState& i,
+                                         const GrainState& j, HertzRadius hertz_radius = HertzRadius::equivalent);
 
 }  // namespace rvelab

@@ -1,0 +1,15 @@
+// Step kernels of discs, for one instruction set or the scalar reference (step_kernels.hpp).
+//
+// Declared in instruction_sets.hpp.
+#include "rvelab/solver/kernels/discs.hpp"
+#include "rvelab/solver/kernels/instruction_sets.hpp"
+#include "rvelab/solver/kernels/step_kernels.hpp"
+
+namespace rvelab {
+
+template <>
+void StepKernels<Shape::disc>::RVELAB_ISA(const KernelConfiguration& key, Kernels& kernels) {
+  set_kernels<Discs, RVELAB_LANES>(key, kernels);
+}
+
+}  // namespace rvelab

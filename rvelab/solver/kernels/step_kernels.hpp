@@ -1,0 +1,102 @@
+// Turns a configuration into compiled kernels: one switch per flag, each ending in a template argument.
+//
+// The build compiles step_SHAPE.cpp once for each instruction set, with RVELAB_ISA its name and RVELAB_LANES its lanes;
+// nothing there may leave a weak symbol: a linker could pick the copy of a wider set. Compiled without them it is the
+// scalar reference that every vector path equals bitwise.
+#pragma once
+
+#include "rvelab/solver/kernels/integrate_discs.hpp"
+#include "rvelab/solver/kernels/integrate_spheres.hpp"
+#include "rvelab/solver/kernels/plane.hpp"
+#include "rvelab/solver/kernels/space.hpp"
+
+#ifndef RVELAB_ISA
+#define RVELAB_ISA scalar
+#define RVELAB_LANES 1
+#endif
+
+namespace rvelab {
+namespace {
+
+/// `Pairs`: the geometry of a shape, like Discs.
+template <class Pairs, class Law, class T>
+constexpr PairKernel pair_kernel() {
+  if constexpr (Pairs::By::dimension == 2)
+    return &plane_pairs<Pairs, Law, T>;
+  else
+    return &space_pairs<Pairs, Law, T>;
+}
+
+template <class Pairs, class T>
+constexpr GrainKernel grain_kernel() {
+  if constexpr (Pairs::By::dimension == 2)
+    return &plane_grains<typename Pairs::Rows, T>;
+  else
+    return &sphere_grains<T>;
+}
+
+template <class Pairs, int W, bool Advance, class Law, bool Rolling, bool Dashpot>
+PairKernel by_slip(const KernelConfiguration& key) {
+  // The conventions of other codes are those of round grains: a specimen of others has none of them.
+  if constexpr (!Pairs::By::round) {
+    if constexpr (Law::has_hertz_radius && Pairs::By::has_hertz_curvature) {
+      constexpr auto curvature = HertzRadius::curvature;
+      if (key.hertz_radius == curvature)
+        return pair_kernel<Pairs, Law, PairTraits<W, Rolling, Slip::consistent, Dashpot, Advance, curvature>>();
+    }
+    return pair_kernel<Pairs, Law, PairTraits<W, Rolling, Slip::consistent, Dashpot, Advance>>();
+  }
+  // Without motion there is no slip. The conventions of other codes serve comparison with these and are compiled for
+  // narrow lanes alone (choice.cpp).
+  if constexpr (W <= 2 && (Advance || Dashpot)) {
+    if (key.slip == Slip::full_radius)
+      return pair_kernel<Pairs, Law, PairTraits<W, Rolling, Slip::full_radius, Dashpot, Advance>>();
+    if (key.slip == Slip::full_radius_ratcheting)
+      return pair_kernel<Pairs, Law, PairTraits<W, Rolling, Slip::full_radius_ratcheting, Dashpot, Advance>>();
+  }
+  return pair_kernel<Pairs, Law, PairTraits<W, Rolling, Slip::consistent, Dashpot, Advance>>();
+}
+
+template <class Pairs, int W, bool Advance, class Law>
+PairKernel by_features(const KernelConfiguration& key) {
+  if (key.rolling)
+    return key.dashpot ? by_slip<Pairs, W, Advance, Law, true, true>(key)
+                       : by_slip<Pairs, W, Advance, Law, true, false>(key);
+  return key.dashpot ? by_slip<Pairs, W, Advance, Law, false, true>(key)
+                     : by_slip<Pairs, W, Advance, Law, false, false>(key);
+}
+
+template <class Pairs, int W, bool Advance>
+PairKernel pair_kernel_for(const KernelConfiguration& key) {
+  return with_law(key.law,
+                  [&](auto law) { return by_features<Pairs, W, Advance, typename decltype(law)::Force>(key); });
+}
+
+template <class Pairs, int W, bool Rolling>
+void set_grain_kernels(Kernels& kernels) {
+  constexpr auto none = KernelDamping::none, vector = KernelDamping::vector, component = KernelDamping::component;
+  kernels.quasi_static[0] = grain_kernel<Pairs, GrainTraits<W, Rolling, false, none>>();
+  kernels.quasi_static[1] = grain_kernel<Pairs, GrainTraits<W, Rolling, false, vector>>();
+  kernels.quasi_static[2] = grain_kernel<Pairs, GrainTraits<W, Rolling, false, component>>();
+  kernels.dynamic[0] = grain_kernel<Pairs, GrainTraits<W, Rolling, true, none>>();
+  kernels.dynamic[1] = grain_kernel<Pairs, GrainTraits<W, Rolling, true, vector>>();
+  kernels.dynamic[2] = grain_kernel<Pairs, GrainTraits<W, Rolling, true, component>>();
+}
+
+/// The advancing kernels of one shape at W lanes; of the scalar reference those that do not advance too.
+template <class Pairs, int W>
+void set_kernels(const KernelConfiguration& key, Kernels& kernels) {
+  kernels.pairs = pair_kernel_for<Pairs, W, true>(key);
+  if constexpr (W == 1) {
+    kernels.pairs_with_losses = kernels.pairs;
+    kernels.evaluate = pair_kernel_for<Pairs, W, false>(key);
+  }
+  if (key.rolling)
+    set_grain_kernels<Pairs, W, true>(kernels);
+  else
+    set_grain_kernels<Pairs, W, false>(kernels);
+  kernels.lanes = W;
+}
+
+}  // namespace
+}  // namespace rvelab
