@@ -19,11 +19,9 @@ struct InstructionSet {
   Setter (*of)(Shape);
 };
 
-#define RVELAB_SET(isa, runs_here)                                                               \
-  InstructionSet {                                                                               \
-#isa, bool(runs_here), [](Shape shape) {                                                       \
-      return with_shape(shape, [](auto is) -> Setter { return &StepKernels<decltype(is)::value>::isa; }); \
-    } \
+#define RVELAB_SETTERS(isa)                                                                             \
+  [](Shape shape) {                                                                                     \
+    return with_shape(shape, [](auto is) -> Setter { return &StepKernels<decltype(is)::value>::isa; }); \
   }
 
 /// From widest to plainest.
@@ -31,13 +29,13 @@ const std::vector<InstructionSet>& instruction_sets() {
   static const std::vector<InstructionSet> sets = [] {
     std::vector<InstructionSet> found;
 #ifdef RVELAB_HAVE_V4
-    found.push_back(RVELAB_SET(v4, __builtin_cpu_supports("x86-64-v4")));
+    found.push_back({"v4", bool(__builtin_cpu_supports("x86-64-v4")), RVELAB_SETTERS(v4)});
 #endif
 #ifdef RVELAB_HAVE_V3
-    found.push_back(RVELAB_SET(v3, __builtin_cpu_supports("x86-64-v3")));
+    found.push_back({"v3", bool(__builtin_cpu_supports("x86-64-v3")), RVELAB_SETTERS(v3)});
 #endif
-    found.push_back(RVELAB_SET(baseline, true));
-    found.push_back(RVELAB_SET(scalar, true));
+    found.push_back({"baseline", true, RVELAB_SETTERS(baseline)});
+    found.push_back({"scalar", true, RVELAB_SETTERS(scalar)});
     return found;
   }();
   return sets;
