@@ -23,7 +23,8 @@ struct Ellipse {
   static constexpr OwnColumn<Columns<Of>, Of<double>> columns[] = {{"semi_major_m", 8, "a", &Columns<Of>::semi_major},
                                                                    {"semi_minor_m", 8, "b", &Columns<Of>::semi_minor}};
 
-  static constexpr const char* allowed_lengths = "semi_major >= semi_minor > 0, at most 10 times as long";
+  static constexpr const char *allowed_lengths = "semi_major >= semi_minor > 0, at most 10 times as long",
+                              *allowed_in_tables = "0 < b <= a <= 10 b";
   static bool allowed(const Own& own) {
     const double a = own.semi_major, b = own.semi_minor;
     return b > 0 && a >= b && b >= least_aspect_ratio * (1 - 1e-12) * a && std::isfinite(a);

@@ -14,7 +14,7 @@ namespace {
 
 using Real = long double;
 
-struct Ellipse {
+struct Form {
   Real a, b, angle;
 };
 
@@ -22,7 +22,7 @@ struct Ellipse {
 struct Support {
   Real h, turned, radius;
 };
-Support support_of(const Ellipse& e, Real normal) {
+Support support_of(const Form& e, Real normal) {
   const Real c = e.a * std::cos(normal - e.angle), s = e.b * std::sin(normal - e.angle), h = std::sqrt(c * c + s * s);
   return {h, (e.b * e.b - e.a * e.a) * std::cos(normal - e.angle) * std::sin(normal - e.angle) / h,
           e.a * e.a * e.b * e.b / (h * h * h)};
@@ -32,13 +32,13 @@ Support support_of(const Ellipse& e, Real normal) {
 struct Place {
   Real x, y;
 };
-Place place_at(const Ellipse& i, const Ellipse& j, Real normal, Real overlap) {
+Place place_at(const Form& i, const Form& j, Real normal, Real overlap) {
   const Support of_i = support_of(i, normal), of_j = support_of(j, normal);
   const Real along = of_i.h + of_j.h - overlap, across = of_i.turned + of_j.turned;
   return {along * std::cos(normal) - across * std::sin(normal), along * std::sin(normal) + across * std::cos(normal)};
 }
 
-Real reduced_radius(const Ellipse& i, const Ellipse& j, Real normal) {
+Real reduced_radius(const Form& i, const Form& j, Real normal) {
   const Real ri = support_of(i, normal).radius, rj = support_of(j, normal).radius;
   return ri * rj / (ri + rj);
 }
@@ -52,7 +52,7 @@ Material material(double friction = 0) {
 }
 const Real compressive = 5e7L / (2 * (1 - 0.2L * 0.2L)), shear = 5e7L / (4 * (2 - 0.2L) * (1 + 0.2L));  // E*, G*
 
-Specimen two(const Ellipse& i, const Ellipse& j, const Place& at, HertzRadius radius, const Material& m = material()) {
+Specimen two(const Form& i, const Form& j, const Place& at, HertzRadius radius, const Material& m = material()) {
   Specimen s = empty_specimen(Shape::ellipse, 12, m, Law::hertz_mindlin);
   s.contact.hertz_radius = radius;
   s.solver.max_overlap_ratio = 2;
@@ -88,10 +88,10 @@ Real slope_of(const std::function<Real(Real)>& f, Real s) {
 
 /// A closed path of j about i at rest: overlap, direction of the contact and turn of j as functions of s, 0 to 2 pi.
 struct Loop {
-  Ellipse i{0.25L, 0.1L, 0.3L}, j{0.2L, 0.12L, 0};
+  Form i{0.25L, 0.1L, 0.3L}, j{0.2L, 0.12L, 0};
   Real overlap(Real s) const { return 2e-3L * (1 + 0.6L * std::cos(s)); }
   Real normal(Real s) const { return 0.4L + 0.3L * std::sin(2 * s); }
-  Ellipse turned(Real s) const { return {j.a, j.b, 1.1L + 0.8L * std::sin(s)}; }
+  Form turned(Real s) const { return {j.a, j.b, 1.1L + 0.8L * std::sin(s)}; }
   Place place(Real s) const { return place_at(i, turned(s), normal(s), overlap(s)); }
 
   /// Work of the springs over the loop, J: the trapezoidal rule, whose error falls as a power of e for what is smooth.
@@ -134,16 +134,16 @@ TEST_CASE("Any two ellipses press and stick as Hertz and Mindlin say, with the r
   for (int k = 0; k < 400; ++k) {
     const auto ellipse = [&] {
       const double a = 1 + uniform(generator);
-      return Ellipse{a, a * std::pow(10, -uniform(generator)), 2 * pi * uniform(generator)};
+      return Form{a, a * std::pow(10, -uniform(generator)), 2 * pi * uniform(generator)};
     };
-    const Ellipse i = ellipse(), j = ellipse();
+    const Form i = ellipse(), j = ellipse();
     const Real wanted = 2 * pi * uniform(generator);
     const Real least = std::min(i.b * i.b / i.a, j.b * j.b / j.a);
     const Place rounded = place_at(i, j, wanted, least * (0.05 + 0.5 * uniform(generator)));
     const Place at = {double(rounded.x), double(rounded.y)};
     // What lies there is rounded: Newton's method to the normal and overlap of these numbers.
     Real normal = wanted, overlap = 0;
-    const Ellipse di = {double(i.a), double(i.b), double(i.angle)}, dj = {double(j.a), double(j.b), double(j.angle)};
+    const Form di = {double(i.a), double(i.b), double(i.angle)}, dj = {double(j.a), double(j.b), double(j.angle)};
     for (int step = 0; step < 4; ++step) {
       const Support of_i = support_of(di, normal), of_j = support_of(dj, normal);
       const Real x = at.x * std::cos(normal) + at.y * std::sin(normal),
@@ -176,7 +176,7 @@ TEST_CASE("Tip to tip, flank to flank and tip to flank: R of b^2/a and a^2/b") {
   const double tip = b * b / a, flank = a * a / b;
   for (const Case& meeting : {Case{0, 0, tip, tip}, Case{pi / 2, pi / 2, flank, flank}, Case{0, pi / 2, tip, flank}}) {
     const double reach = (meeting.turn_i == 0 ? a : b) + (meeting.turn_j == 0 ? a : b) - overlap;
-    const Ellipse i{a, b, meeting.turn_i}, j{a, b, meeting.turn_j};
+    const Form i{a, b, meeting.turn_i}, j{a, b, meeting.turn_j};
     const double radius = 1 / (1 / meeting.radius_i + 1 / meeting.radius_j);
     Material m = material(1e6);
     m.rolling_stiffness = 0.5;
@@ -237,10 +237,10 @@ TEST_CASE("Round a closed path Hertz springs of equivalent radius give no work, 
 }
 
 TEST_CASE("Pressed flank to flank, turned at the same overlap and parted tip to tip: work of 2/5 (f2 - f1) overlap") {
-  const Ellipse lying{0.25L, 0.1L, 0};
+  const Form lying{0.25L, 0.1L, 0};
   const Real overlap = 1e-3L, half_turn = 3.14159265358979323846L / 2;
   const auto at = [&](Real angle, Real depth, HertzRadius radius) {
-    const Ellipse i{lying.a, lying.b, angle}, j = i;
+    const Form i{lying.a, lying.b, angle}, j = i;
     return two(i, j, place_at(i, j, half_turn, depth), radius);
   };
   for (const HertzRadius radius : {HertzRadius::equivalent, HertzRadius::curvature}) {
@@ -261,7 +261,7 @@ TEST_CASE("Pressed flank to flank, turned at the same overlap and parted tip to 
     for (int k = 0; k <= 20; ++k) {
       const Real angle = half_turn * k / 20;
       const auto place = [&](Real q) {
-        const Ellipse e{lying.a, lying.b, q};
+        const Form e{lying.a, lying.b, q};
         return place_at(e, e, half_turn, overlap);
       };
       const Springs f = springs_at(at(angle, overlap, radius));

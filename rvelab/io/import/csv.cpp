@@ -141,7 +141,7 @@ void read_outline(const CsvTable& table, std::size_t row, Specimen& specimen) {
       own, grains);
   if (!By::allowed(own))
     throw InputError(table.place(row, last) + " m makes no " + By::name +
-                     " with the lengths before it; allowed: " + By::allowed_lengths + "; correct them");
+                     " with the lengths before it; allowed: " + By::allowed_in_tables + "; correct them");
   const double radians = table.number(row, table.column({"angle"})) * (3.14159265358979323846 / 180);
   grains.radius.push_back(By::radius(own));
   grains.orientation.push_back(specimen.cell.rotation.transpose() * Vector3(std::cos(radians), std::sin(radians), 0));
