@@ -57,7 +57,7 @@ TEST_CASE("Pairs that are passed over come to touch, and to part again, as if th
     use_physical_inertia(f, passing);
     computing = passing;
     computing.pairs.near = computing.pairs.padded();
-    leave_out_pairs_beyond(force_row_length(shape), computing.pairs);
+    leave_out_pairs_beyond(force_row_length(dimension_of(shape)), computing.pairs);
     REQUIRE(passing.pairs.near < passing.pairs.listed / 2);
     StepConstants c = base_constants(f, passing);
     c.dt = 2e-5;
@@ -90,7 +90,7 @@ TEST_CASE("Pairs that are passed over come to touch, and to part again, as if th
         REQUIRE(passing.pairs.tangential[k] == computing.pairs.tangential[k]);
     }
     // The grain loop reads the force rows of the pairs that have touched, and of no others beyond the near ones.
-    const std::int32_t row = force_row_length(shape);
+    const std::int32_t row = force_row_length(dimension_of(shape));
     for (std::size_t p = passing.pairs.near; p < passing.pairs.listed; ++p)
       for (std::size_t side = 0; side < 2; ++side) {
         const auto slot = std::size_t(passing.pairs.slots_beyond[2 * (p - passing.pairs.near) + side]);
