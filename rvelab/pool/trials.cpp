@@ -6,6 +6,7 @@
 // the first (Graham 1969).
 #include <algorithm>
 #include <cstdio>
+#include <new>
 #include <string>
 
 #include "rvelab/pool/checks.hpp"
@@ -203,7 +204,10 @@ Verdict ThreadedPool::trial(const Batch& batch) {
     std::snprintf(place, sizeof place, "entry %lld (id %lld): ",
                   static_cast<long long>(batch.places != nullptr ? batch.places[worst] : std::int64_t(worst)),
                   static_cast<long long>(batch.ids[worst]));
-    verdict.text.insert(0, place);
+    try {
+      verdict.text.insert(0, place);
+    } catch (const std::bad_alloc&) {  // trials are made, and their statuses written: the text says less
+    }
   }
   return verdict;
 }
