@@ -15,6 +15,7 @@
 
 #include "rvelab/cli/calibrate_report.hpp"
 #include "rvelab/cli/commands.hpp"
+#include "rvelab/cli/ensemble.hpp"
 #include "rvelab/cli/interrupt.hpp"
 #include "rvelab/cli/progress_line.hpp"
 #include "rvelab/cli/protocol_input.hpp"
@@ -136,17 +137,31 @@ Plan plan_of(const std::vector<protocol::Protocol>& at_pressures, const std::vec
   throw Exit(128 + signal_received());
 }
 
+/// summary.json and summary.csv beside the records.
+void keep_summary(const std::string& folder, const Plan& plan, const std::vector<std::string>& files,
+                  const std::vector<records::TestResult>& results, int dimension) {
+  const Ensemble ensemble{plan.protocols, files, std::vector<std::size_t>(files.size(), 0), {"specimens"}};
+  std::vector<ensemble::TestOf> tests;
+  for (std::size_t k = 0; k < results.size(); ++k) {
+    tests.push_back({0, plan.specimen_of[k], plan.protocols[k].pressure,
+                     ensemble::measured(plan.protocols[k], results[k], dimension),
+                     ensemble::strength_of(plan.protocols[k], results[k], dimension)});
+  }
+  write_summary(folder, ensemble, tests, ensemble::summary_of(tests), {});
+}
+
 void run_calibration(const CalibrateArguments& arguments) {
   const auto begin = std::chrono::steady_clock::now();
   const auto at_pressures = protocols_at(arguments);
   arguments.test.expect_output(arguments.folder);
-  const auto specimens = specimens_for(at_pressures.front(), arguments.specimens);
-  if (arguments.every_pressure || at_pressures.size() == 1) expect_different(specimens, arguments.specimens);
+  const auto given = files_of(arguments.specimens);
+  const auto specimens = specimens_for(at_pressures.front(), given);
+  if (arguments.every_pressure || at_pressures.size() == 1) expect_different(specimens, given);
   const Plan plan = plan_of(at_pressures, specimens, arguments.every_pressure);
   const std::size_t tests = plan.protocols.size();
   std::vector<std::unique_ptr<io::RecordStore>> stores(tests);
   if (!arguments.folder.empty()) {
-    auto inputs = specimen_files(at_pressures.front(), arguments.specimens);
+    auto inputs = specimen_files(at_pressures.front(), given);
     inputs.push_back(at_pressures.front().path);
     for (std::size_t k = 0; k < tests; ++k) protocol::with_overrides(plan.protocols[k], specimens[plan.specimen_of[k]]);
     make_folder(arguments.folder);
@@ -179,8 +194,11 @@ void run_calibration(const CalibrateArguments& arguments) {
   std::vector<records::TestResult> results;
   for (const protocol::TestRun& run : runs) results.push_back(run.result);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
-  report_calibration(calibrate::calibrate(results, specimens.front().cell.dimension, plan.specimen_of),
-                     at_pressures.front().name, arguments.specimens, wall.count(), arguments.test.json);
+  const int dimension = specimens.front().cell.dimension;
+  if (!arguments.folder.empty())
+    keep_summary(arguments.folder, plan, specimen_files(at_pressures.front(), given), results, dimension);
+  report_calibration(calibrate::calibrate(results, dimension, plan.specimen_of), at_pressures.front().name,
+                     specimen_files(at_pressures.front(), given), wall.count(), arguments.test.json);
 }
 
 }  // namespace
@@ -189,11 +207,12 @@ Command calibrate_command() {
   auto arguments = std::make_shared<CalibrateArguments>();
   Command command{"calibrate", "Run a compression test at several pressures: friction angle, N_q"};
   command.add("--specimen", arguments->specimens,
-              "specimen; given several times: one for each pressure, or all at the one\n"
+              "specimen, or \"S_*.h5\"; several: one for each pressure, or all at the one\n"
               "pressure; with --every-pressure each at all pressures");
   command.add("--pressures", arguments->pressures, "in Pa, 10e3,15e3,...; default: [calibrate] pressures_Pa");
   command.add("--every-pressure", arguments->every_pressure, "test each specimen at every pressure");
-  command.add("-o,--output", arguments->folder, "folder for the record files R_<pressure>.h5; made if it is missing");
+  command.add("-o,--output", arguments->folder,
+              "folder for the record files R_<pressure>.h5, summary.json and\nsummary.csv; made if it is missing");
   arguments->test.add_to(command, "contact.slip=consistent", "tests at a time");
   command.notes =
       "friction_angle: phi with sin phi = (sigma_1 - sigma_3)/(sigma_1 + sigma_3) at the peak, the record with the\n"

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iostream>
 #include <limits>
 
+#include "rvelab/cli/columns.hpp"
 #include "rvelab/cli/report.hpp"
 #include "rvelab/error.hpp"
 
@@ -53,7 +55,21 @@ void add_statistics(const calibrate::Calibration& calibration, const std::vector
                     {"friction_angle_deg", one.friction_angle_deg},
                     {"bearing_capacity_Nq", one.bearing_capacity_Nq}});
   }
-  listing.add("per_specimen", std::move(rows));
+  listing.add_to_json("per_specimen", std::move(rows));
+}
+
+/// One line a test; the rest stands in --json.
+std::string tests_table(const calibrate::Calibration& calibration) {
+  std::vector<std::vector<std::string>> rows{{"specimen", "pressure, Pa", "peak angle", "at strain, %", "large strain",
+                                              "sigma_1, Pa", "sigma_3, Pa", "flagged"}};
+  const auto angle = [](double value) { return std::isnan(value) ? "-" : in_words(std::round(100 * value) / 100); };
+  for (const calibrate::PressureResult& test : calibration.per_pressure) {
+    rows.push_back({std::to_string(test.specimen + 1), in_words(test.pressure), angle(test.friction_angle_deg),
+                    in_words(100 * test.peak_strain), angle(test.large_strain_friction_angle_deg),
+                    in_words(std::round(test.peak.major)), in_words(std::round(test.peak.minor)),
+                    std::to_string(test.flagged) + " of " + std::to_string(test.records)});
+  }
+  return aligned(rows);
 }
 
 std::string percent(double strain) { return in_words(100 * std::abs(strain)) + " %"; }
@@ -120,10 +136,11 @@ void report_calibration(const calibrate::Calibration& calibration, const std::st
   listing.add_or_why("wedge_angle_deg", calibration.wedge_angle_deg, "degrees", why.peak);
   add_statistics(calibration, specimens, listing);
   if (const std::string warning = without_peak(calibration); !warning.empty()) listing.add("warning", warning);
-  listing.add("per_pressure", per_pressure(calibration));
+  listing.add_to_json("per_pressure", per_pressure(calibration));
   listing.add("wall_s", wall_seconds, "s");
   listing.add("grain_steps", grain_steps);
   listing.print(json);
+  if (!json) std::cout << "\n" << tests_table(calibration) << std::flush;
 }
 
 }  // namespace rvelab::cli

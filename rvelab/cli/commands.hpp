@@ -14,6 +14,7 @@ Command run_command();
 Command recover_command();
 Command seal_command();
 Command calibrate_command();
+Command fit_command();
 Command study_command();
 Command compare_command();
 Command export_command();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "rvelab/cli/commands.hpp"
+#include "rvelab/cli/ensemble.hpp"
 #include "rvelab/cli/interrupt.hpp"
 #include "rvelab/cli/progress_line.hpp"
 #include "rvelab/cli/protocol_input.hpp"
@@ -23,9 +24,23 @@ namespace rvelab::cli {
 namespace {
 
 struct RunArguments {
-  std::string specimen, output;
+  std::vector<std::string> specimens, more, against;
+  std::string output;
   TestOptions test;
 };
+
+/// Several specimens, or two groups of them.
+void run_several(const RunArguments& arguments, const protocol::Protocol& protocol, std::vector<std::string> files,
+                 const std::vector<std::string>& against) {
+  Ensemble ensemble{{protocol}, std::move(files), {}, {"group 1"}};
+  ensemble.groups.assign(ensemble.files.size(), 0);
+  if (!against.empty()) ensemble.names.emplace_back("group 2");
+  for (const std::string& file : against) {
+    ensemble.files.push_back(file);
+    ensemble.groups.push_back(1);
+  }
+  run_ensemble(ensemble, arguments.output, arguments.test);
+}
 
 /// Prints how many records a stopped run left, and ends the program with the code of the signal.
 [[noreturn]] void end_stopped(const protocol::TestRun& run, const std::string& output) {
@@ -41,7 +56,10 @@ void run_test(const RunArguments& arguments) {
   const protocol::Protocol protocol =
       protocol::read_protocol(protocol_path(arguments.test.protocol), arguments.test.settings);
   arguments.test.expect_output(arguments.output);
-  const auto given = arguments.specimen.empty() ? std::vector<std::string>{} : std::vector{arguments.specimen};
+  auto words = arguments.specimens;
+  words.insert(words.end(), arguments.more.begin(), arguments.more.end());
+  const auto given = files_of(words), against = files_of(arguments.against);
+  if (given.size() > 1 || !against.empty()) return run_several(arguments, protocol, given, against);
   const auto specimens = specimens_for(protocol, given);
   const Specimen& specimen = specimens.front();
   std::unique_ptr<io::RecordStore> store;
@@ -84,10 +102,14 @@ void run_test(const RunArguments& arguments) {
 Command run_command() {
   auto arguments = std::make_shared<RunArguments>();
   Command command{"run", "Run a test, a protocol in TOML, on a specimen"};
-  command.add("--specimen", arguments->specimen,
-              "specimen, or record file: its end state; default: [specimen] file of the protocol");
-  command.add("-o,--output", arguments->output, "record file to write, R.h5");
-  arguments->test.add_to(command, "test.pressure_Pa=2e4", "for specimens of 30,000 grains or more");
+  command.add("--specimen", arguments->specimens,
+              "specimen, or record file: its end state; default: [specimen] file of the protocol;\n"
+              "several of them, or \"S_*.h5\": an ensemble");
+  command.add("--against", arguments->against, "a second group of specimens; prints the differences of the means");
+  command.add("-o,--output", arguments->output,
+              "record file to write, R.h5; of several specimens the folder for records and summary");
+  arguments->test.add_to(command, "test.pressure_Pa=2e4", "for specimens of 30,000 grains or more; tests at a time");
+  command.add("specimens", arguments->more, "further specimens");
   command.notes =
       "A specimen of less than 30,000 grains runs on one thread; `rvelab calibrate --threads` runs several tests at a\n"
       "time. The number of threads changes no bit. Each record is written to R.h5.journal at once, and R.h5 is "
@@ -98,10 +120,15 @@ Command run_command() {
       "The keys peak_... are of the last stage, where sigma_1 - sigma_3 is largest. p: mean stress, compression\n"
       "positive; q: deviatoric stress, sqrt(s:s/2) in 2D, sqrt(3 s:s/2) in 3D; eps_q: deviatoric strain, sqrt(2 e:e)\n"
       "and sqrt(2 e:e/3), with s and e the deviators of stress and strain. More: protocols/README.md.\n"
+      "Several specimens run one to a core; summary.json and summary.csv give mean, standard deviation, standard "
+      "error\n"
+      "and 95 % interval of every measure. --resume after a kill gives the same summary.\n"
       "Examples:\n"
       "  rvelab run biaxial --specimen dense.h5 -o R.h5\n"
       "  rvelab run biaxial --specimen dense.h5 --set stage.compression.to_strain=0.05 --json\n"
-      "  rvelab run biaxial --specimen dense.h5 -o R.h5 --resume";
+      "  rvelab run biaxial --specimen dense.h5 -o R.h5 --resume\n"
+      "  rvelab run biaxial --specimen 'S_*.h5' -o D\n"
+      "  rvelab run biaxial --specimen 'dense_*.h5' --against 'loose_*.h5' -o D";
   command.run = [arguments] { run_test(*arguments); };
   return command;
 }

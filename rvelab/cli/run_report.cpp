@@ -9,7 +9,9 @@
 
 #include "rvelab/calibrate/mohr.hpp"
 #include "rvelab/calibrate/oedometer.hpp"
+#include "rvelab/cell/pressure.hpp"
 #include "rvelab/cli/report.hpp"
+#include "rvelab/ensemble/measures.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/protocol/stage_kind.hpp"
 #include "rvelab/records/record_fields.hpp"
@@ -76,6 +78,22 @@ void add_oedometers(const protocol::Protocol& protocol, const protocol::TestRun&
   }
 }
 
+/// Whether a stress-controlled cyclic test liquefied, and after how many cycles.
+void add_liquefaction(const protocol::Protocol& protocol, const protocol::TestRun& run, Listing& listing) {
+  const ensemble::Liquefaction found = ensemble::liquefaction_of(protocol, run.result, run.end_state.cell.dimension);
+  if (!found.cyclic) return;
+  listing.add("stress_ratio", found.stress_ratio, "of p at the start");
+  listing.add("cycles", found.cycles);
+  listing.add_to_json("liquefied", found.liquefied);
+  listing.add_to_json("least_p_over_first", found.least_p);
+  const std::string limit = in_words(100 * found.limit) + " %";
+  listing.add_to_text("liquefaction",
+                      found.liquefied
+                          ? "after " + in_words(found.cycles) + " cycles: p below " + limit + " of its start"
+                          : "none: the least p is " + in_words(std::round(1e3 * found.least_p) / 10) +
+                                " % of its start, and " + limit + " counts as liquefied");
+}
+
 /// Where the time of this run went, and the error estimates of its stresses; nothing of a test that was complete
 /// before.
 void add_costs(const protocol::TestRun& run, double wall, Listing& listing) {
@@ -116,14 +134,19 @@ void tell_of_thin(const records::TestResult& result, long thin) {
 /// How many records are doubtful, and why.
 struct Doubtful {
   long not_held = 0, not_quasi_static = 0, either = 0, thin = 0;
+  long without_pressure = 0;  ///< of either: p is below 5 % of that of the first record
 };
 
-Doubtful doubtful_of(const std::vector<records::Record>& records) {
+Doubtful doubtful_of(const std::vector<records::Record>& records, int dimension) {
+  constexpr double small_part = 0.05;
   Doubtful found;
+  const double first = records.empty() ? 0 : mean_pressure(records.front().stress, dimension);
   for (const records::Record& record : records) {
     found.not_held += record.target_held ? 0 : 1;
     found.not_quasi_static += record.quasi_static ? 0 : 1;
-    found.either += record.target_held && record.quasi_static ? 0 : 1;
+    const bool doubtful = !(record.target_held && record.quasi_static);
+    found.either += doubtful ? 1 : 0;
+    found.without_pressure += doubtful && mean_pressure(record.stress, dimension) < small_part * first ? 1 : 0;
     found.thin += record.cell_thin ? 1 : 0;
   }
   return found;
@@ -150,7 +173,12 @@ void add_end(const protocol::Protocol& protocol, const protocol::TestRun& run, L
 void tell_of_doubts(const protocol::TestRun& run, const Doubtful& doubtful) {
   const std::size_t records = run.result.records.size();
   // One record or two may be an avalanche of the specimen; more are the fault of the test's settings.
-  if (20 * doubtful.either > static_cast<long>(records))
+  if (20 * doubtful.either > static_cast<long>(records) && 2 * doubtful.without_pressure > doubtful.either)
+    tell(std::to_string(doubtful.without_pressure) + " of " + std::to_string(records) +
+         " records are of a specimen whose grains carry almost nothing, p below 5 % of its start: it has liquefied. No "
+         "tolerance makes equilibria of them (quasi_static, target_held); let the test end there, with an "
+         "[[stage.until]] of quantity = \"p_over_first\"");
+  else if (20 * doubtful.either > static_cast<long>(records))
     tell(std::to_string(doubtful.either) + " of " + std::to_string(records) +
          " records are doubtful: " + std::to_string(doubtful.not_held) + " did not hold their stress (target_held), " +
          std::to_string(doubtful.not_quasi_static) +
@@ -186,7 +214,7 @@ void tell_of_shear(const protocol::Protocol& protocol, const Specimen& specimen)
 void report_run(const protocol::Protocol& protocol, const protocol::TestRun& run, double wall,
                 const std::string& output, bool json) {
   const records::TestResult& result = run.result;
-  const Doubtful doubtful = doubtful_of(result.records);
+  const Doubtful doubtful = doubtful_of(result.records, run.end_state.cell.dimension);
   Listing listing;
   listing.add("protocol", result.protocol);
   if (!result.axis.empty()) {
@@ -200,6 +228,7 @@ void report_run(const protocol::Protocol& protocol, const protocol::TestRun& run
   listing.add("not_quasi_static", doubtful.not_quasi_static);
   listing.add("cell_thin", doubtful.thin);
   if (!result.records.empty()) add_end(protocol, run, listing);
+  add_liquefaction(protocol, run, listing);
   for (const records::ProbeResult& probe : result.probes) {
     const bool only = result.probes.size() == 1;
     listing.add(only ? "stiffness_Pa" : "stiffness_Pa_" + probe.stage, row_major(probe.stiffness), "Pa");

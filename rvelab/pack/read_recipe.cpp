@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "rvelab/error.hpp"
+#include "rvelab/grains/sieve_grading.hpp"
 #include "rvelab/keys/assign.hpp"
 #include "rvelab/keys/material_toml.hpp"
 #include "rvelab/keys/table_reader.hpp"
@@ -55,9 +56,25 @@ void refuse(TableReader& reader, const std::string& name, const std::string& gra
     reader.mistake(name, "contradicts grading = \"" + grading + "\"; allowed: one of the two; remove one");
 }
 
+/// The curve through d10, d50 and d60, which are in mm.
+Grading read_sieves(TableReader& reader, const std::string& curve) {
+  for (const char* name : {"radii_m", "passing", "smallest_radius_m", "largest_radius_m"}) refuse(reader, name, curve);
+  if (reader.has("passing_by") && reader.choice("passing_by") != "mass")
+    reader.mistake("passing_by", "contradicts grading = \"d10_d60\"; allowed: mass; remove it");
+  reader.leave("passing_by");
+  const double d10 = 1e-3 * reader.number("d10_mm"), d50 = 1e-3 * reader.number("d50_mm"),
+               d60 = 1e-3 * reader.number("d60_mm");
+  if (!(d10 > 0 && d50 > 0 && d60 > 0)) return {};  // a mistake that is told already
+  const std::string wrong = wrong_with_sieves(d10, d50, d60);
+  if (!wrong.empty()) reader.mistake("d50_mm", wrong);
+  return wrong.empty() ? sieve_grading(d10, d50, d60) : Grading{};
+}
+
 Grading read_grading(TableReader& reader) {
   Grading grading;
   const std::string curve = reader.choice("grading");
+  if (curve == "d10_d60") return read_sieves(reader, curve);
+  for (const char* name : {"d10_mm", "d50_mm", "d60_mm"}) refuse(reader, name, curve);
   grading.by_mass = reader.choice("passing_by") == "mass";
   if (curve == "tabulated") {
     grading.curve = GradingCurve::tabulated;
@@ -204,6 +221,22 @@ void read_stress(TableReader& reader, RecipeFile& file) {
   }
 }
 
+/// The void ratio of a relative density between the limits of the recipe.
+void read_relative_density(TableReader& reader, Recipe& recipe) {
+  const auto density = reader.optional_number("relative_density");
+  const auto e_min = reader.optional_number("e_min"), e_max = reader.optional_number("e_max");
+  if (!density) return;
+  if (recipe.void_ratio)
+    reader.mistake("relative_density", "contradicts target.void_ratio or porosity; allowed: one of them; remove one");
+  if (!e_min || !e_max || !(*e_min < *e_max)) {
+    reader.mistake("relative_density",
+                   "needs target.e_min below target.e_max, the void ratios that the recipe reaches with "
+                   "preparation.friction = 0 and 1e6; allowed: both; pack the two and give them");
+    return;
+  }
+  recipe.void_ratio = *e_max - *density * (*e_max - *e_min);
+}
+
 void read_target(const toml::table& table, RecipeFile& file, toml::table& resolved,
                  std::vector<keys::KeyError>& errors) {
   TableReader reader(table, recipe_keys(), "target", "target", line_of(table), errors);
@@ -215,10 +248,11 @@ void read_target(const toml::table& table, RecipeFile& file, toml::table& resolv
       reader.mistake("porosity", "contradicts target.void_ratio; allowed: one of the two; remove one");
     recipe.void_ratio = *porosity / (1 - *porosity);
   }
+  read_relative_density(reader, recipe);
   const bool stress_named = reader.has("pressure_Pa") || reader.has("pressures_Pa") || reader.has("stress_Pa") ||
                             reader.has_in_another_unit("pressure_Pa") || reader.has_in_another_unit("pressures_Pa") ||
                             reader.has_in_another_unit("stress_Pa");
-  if (!stress_named && !recipe.void_ratio && !table.contains("void_ratio"))
+  if (!stress_named && !recipe.void_ratio && !table.contains("void_ratio") && !table.contains("relative_density"))
     reader.mistake("pressure_Pa", "is missing, and so is target.void_ratio; allowed: one of them or both; add one");
   recipe.void_ratio_tolerance = reader.number("void_ratio_tolerance");
   recipe.stress_tolerance = reader.number("stress_tolerance");

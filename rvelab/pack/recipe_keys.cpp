@@ -43,9 +43,12 @@ std::vector<TableKey> grains() {
       text(t, "material", "(the first)", "name of the material"),
       number(t, "share", "1", GrainFraction{}.share, {0, 1, true, false},
              "fraction of all grains, by pack.share_by; the shares of all [[grains]] add up to 1"),
-      choice(t, "grading", {"uniform", "linear", "tabulated"},
+      choice(t, "grading", {"uniform", "linear", "tabulated", "d10_d60"},
              "uniform: passing is linear in the radius; linear: linear in its logarithm; tabulated: given points, "
-             "linear in the radius between them"),
+             "linear in the radius between them; d10_d60: by mass through d10, d50 and d60, linear in the logarithm"),
+      number(t, "d10_mm", "mm", "", positive, "grading = d10_d60: diameter that 10 % of the mass pass"),
+      number(t, "d50_mm", "mm", "", positive, "grading = d10_d60: mean diameter, that 50 % pass"),
+      number(t, "d60_mm", "mm", "", positive, "grading = d10_d60: diameter that 60 % pass; d60/d10 is the uniformity"),
       choice(t, "passing_by", {"number", "mass"}, "measure of the passing fraction"),
       number(t, "smallest_radius_m", "m", "", positive,
              "grading = uniform, linear: radius at passing 0; of grains that are not round that of the disc of their "
@@ -95,6 +98,12 @@ std::vector<TableKey> target() {
              "void ratio of the finished specimen, for which rvelab finds the preparation friction; without a stress: "
              "of the cell"),
       number(t, "porosity", "1", "", {-10, 1, true, true}, "porosity n = e/(1 + e), in place of void_ratio"),
+      number(t, "relative_density", "1", "", {-1, 2},
+             "D = (e_max - e)/(e_max - e_min) of the finished specimen, in place of void_ratio"),
+      number(t, "e_min", "1", "", {-1, infinity, true, true},
+             "relative_density: void ratio that the recipe reaches with preparation.friction = 0, without a target"),
+      number(t, "e_max", "1", "", {-1, infinity, true, true},
+             "relative_density: void ratio that it reaches with preparation.friction = 1e6"),
       number(t, "void_ratio_tolerance", "1", initial.void_ratio_tolerance, below_one,
              "allowed error of the void ratio"),
       number(t, "stress_tolerance", "1", initial.stress_tolerance, below_one,
