@@ -13,11 +13,14 @@
 namespace rvelab::calibrate {
 namespace {
 
-/// Mean stresses at large strain: from 12 to 15 % of a compression; of simple shear (whose axis names a plane) over the
-/// last 60 % of a strain of 1 or more, which leave the start behind.
+/// The axis of simple shear names a plane.
+bool is_simple_shear(const records::TestResult& test) { return test.axis.size() == 2; }
+
+/// Mean stresses at large strain: from 12 to 15 % of a compression; of simple shear over the last 60 % of a
+/// strain of 1 or more, which leave the start behind.
 PrincipalStresses at_large_strain(const records::TestResult& test, int dimension) {
   const auto records = last_stage(test);
-  if (test.axis.size() < 2) return large_strain_mean(records, dimension);
+  if (!is_simple_shear(test)) return large_strain_mean(records, dimension);
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   const double end = std::abs(records.back().strain);
   return end < 1 ? PrincipalStresses{nan, nan} : large_strain_mean(records, dimension, 0.4 * end, end);
@@ -28,6 +31,7 @@ PressureResult evaluate(const records::TestResult& test, int dimension) {
   const Peak highest = peak(records, dimension);
   PressureResult result;
   result.pressure = test.pressure;
+  result.simple_shear = is_simple_shear(test);
   result.peak = highest.stresses;
   result.peak_strain = highest.strain;
   result.end_strain = records.back().strain;

@@ -13,6 +13,7 @@ namespace rvelab::calibrate {
 struct PressureResult {
   double pressure = 0;
   std::size_t specimen = 0;  ///< its number, from 0
+  bool simple_shear = false;
   PrincipalStresses peak;
   double peak_strain = 0;
   double end_strain = 0;

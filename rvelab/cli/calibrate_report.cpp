@@ -78,14 +78,17 @@ std::string percent(double strain) { return in_words(100 * std::abs(strain)) + "
 std::string without_peak(const calibrate::Calibration& calibration) {
   std::string tests;
   double end = 0;
+  std::size_t count = 0;
   for (const calibrate::PressureResult& test : calibration.per_pressure) {
     if (!test.rising_at_end) continue;
+    ++count;
     tests += tests.empty() ? "" : ", ";
     if (calibration.per_specimen.size() > 1) tests += "specimen " + std::to_string(test.specimen + 1) + " at ";
     tests += in_words(test.pressure) + " Pa";
     end = std::max(end, std::abs(test.end_strain));
   }
   if (tests.empty()) return "";
+  if (count > 3) tests = std::to_string(count) + " of " + std::to_string(calibration.per_pressure.size()) + " tests";
   return tests + ": still rising at the end: no peak; the angle is that of the largest deviator up to " + percent(end) +
          " strain; let the tests go further (to_strain)";
 }
@@ -108,7 +111,10 @@ Reasons reasons_of(const calibrate::Calibration& calibration) {
   return {no_angle, tension ? no_angle : "needs records over 1 % of strain; a test ends at " + percent(end),
           calibration.per_pressure.size() < 2 ? "needs tests at two pressures or more" : "the peaks lie on no line",
           calibration.per_pressure.size() < 3 ? "needs tests at three pressures or more" : "the peaks lie on no line",
-          "is the mean from 12 to 15 % of strain; a test ends at " + percent(end)};
+          std::string(calibration.per_pressure.front().simple_shear
+                          ? "is the mean of the last 60 % of a strain of 1 or more; a test ends at "
+                          : "is the mean from 12 to 15 % of strain; a test ends at ") +
+              percent(end)};
 }
 
 }  // namespace

@@ -73,7 +73,7 @@ Eigen::MatrixXd halton(Eigen::Index count, Eigen::Index dimensions) {
 
 Eigen::MatrixXd sampled(const LogLikelihood& log_likelihood, Eigen::Index dimensions, Eigen::Index count,
                         std::uint64_t seed) {
-  constexpr int moves = 9;
+  constexpr int moves = 6;
   Uniform random(seed);
   Eigen::MatrixXd places = halton(count, dimensions);
   Eigen::VectorXd logarithms = log_likelihood(places);

@@ -46,11 +46,16 @@ Learned learned_from(const Problem& problem, const Finding& so_far) {
 /// A surrogate for each component of the targets, and the likelihood of these.
 class Judge {
  public:
-  Judge(const Problem& problem, const Learned& learned)
+  /// `before`: hyperparameters of each surrogate of a judge of fewer tests; brought up to those of this one.
+  Judge(const Problem& problem, const Learned& learned, std::vector<Eigen::VectorXd>& before)
       : components_(problem.targets, learned.values, problem.parameters) {
     const Eigen::MatrixXd scores = components_.of(learned.values);
-    for (Eigen::Index k = 0; k < scores.cols(); ++k)
-      surrogates_.emplace_back(learned.places, learned.specimens, scores.col(k));
+    before.resize(std::size_t(scores.cols()));
+    for (Eigen::Index k = 0; k < scores.cols(); ++k) {
+      Eigen::VectorXd& hyperparameters = before[std::size_t(k)];
+      surrogates_.emplace_back(learned.places, learned.specimens, scores.col(k), hyperparameters);
+      hyperparameters = surrogates_.back().hyperparameters();
+    }
   }
 
   Eigen::VectorXd log_likelihood(const Eigen::MatrixXd& places, double power, double widening) const {
@@ -116,8 +121,9 @@ Finding search(const Problem& problem, const RunTrials& run) {
   const std::size_t first =
       std::min<std::size_t>(problem.tests, std::size_t(std::max<Eigen::Index>(8, 5 * problem.parameters)));
   run_batch(problem, run, halton(Eigen::Index(first), problem.parameters), found);
+  std::vector<Eigen::VectorXd> hyperparameters;
   while (found.trials.size() < problem.tests) {
-    const Judge judge(problem, learned_from(problem, found));
+    const Judge judge(problem, learned_from(problem, found), hyperparameters);
     // Half of the likelihood's logarithm: wider than the posterior, so that its flanks are learned too.
     const Eigen::MatrixXd likely =
         sampled([&](const Eigen::MatrixXd& places) { return judge.log_likelihood(places, 0.5, 1); }, problem.parameters,
@@ -128,7 +134,7 @@ Finding search(const Problem& problem, const RunTrials& run) {
       next.row(Eigen::Index(k)) = likely.row(Eigen::Index(k) * likely.rows() / Eigen::Index(count));
     run_batch(problem, run, next, found);
   }
-  const Judge judge(problem, learned_from(problem, found));
+  const Judge judge(problem, learned_from(problem, found), hyperparameters);
   const auto sample = [&](double widening) {
     return sampled([&](const Eigen::MatrixXd& places) { return judge.log_likelihood(places, 1, widening); },
                    problem.parameters, problem.sample, found.trials.size());

@@ -100,7 +100,8 @@ TEST_CASE("A calibration keeps the summary of its specimens beside its records")
   REQUIRE(outcome.code == 0);
   std::size_t longest = 0;
   std::istringstream lines(outcome.output);
-  for (std::string line; std::getline(lines, line);) longest = std::max(longest, line.size());
+  for (std::string line; std::getline(lines, line);)
+    if (!line.starts_with("warning ")) longest = std::max(longest, line.size());
   CHECK(longest <= 130);
   const auto summary = nlohmann::json::parse(bytes_of(here / "D/summary.json"));
   CHECK(summary["tests"].size() == 6);

@@ -62,7 +62,7 @@ TEST_CASE("A measured curve is fitted, and the fit over the data is written and 
   REQUIRE(outcome.code == 0);
   const std::string csv = bytes_of(here / "F/curves.csv");
   CHECK_THAT(csv, Contains("curve,pressure_Pa,quantity,abscissa,x,measured,error,fit,low_95,high_95\n") &&
-                      Contains("1,0,deviator,strain,0.0005,4000,1000,"));
+                      Contains("1,0,deviator,strain,5e-04,4000,1000,"));
   CHECK(std::count(csv.begin(), csv.end(), '\n') == 5);
 }
 

@@ -9,7 +9,7 @@ using namespace rvelab;
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 constexpr double degree = std::numbers::pi / 180;
 
 /// A record of a test that is shortened along y: strains, and stresses (compression positive) as principal values.
@@ -41,7 +41,7 @@ TEST_CASE("Student's t is that of the tables") {
 }
 
 TEST_CASE("Mean, deviation, standard error and interval are of the values that are defined") {
-  const ensemble::Spread spread = ensemble::spread_of({1, nan, 2, 3, 4, 5});
+  const ensemble::Spread spread = ensemble::spread_of({1, undefined, 2, 3, 4, 5});
   CHECK(spread.n == 5);
   CHECK(spread.mean == 3);
   CHECK(spread.standard_deviation == Approx(std::sqrt(2.5)));
@@ -49,7 +49,7 @@ TEST_CASE("Mean, deviation, standard error and interval are of the values that a
   CHECK(spread.high - spread.mean == Approx(2.7764 * std::sqrt(0.5)).epsilon(1e-4));
   CHECK(spread.mean - spread.low == Approx(spread.high - spread.mean));
   CHECK(std::isnan(ensemble::spread_of({7}).standard_error));
-  CHECK(std::isnan(ensemble::spread_of({nan}).mean));
+  CHECK(std::isnan(ensemble::spread_of({undefined}).mean));
   CHECK(ensemble::spread_of({}).n == 0);
 }
 
@@ -69,8 +69,8 @@ TEST_CASE("A value is written to the second digit of its error") {
   CHECK(ensemble::with_error(-3012.34, 45.12) == "-3012 +- 45");
   CHECK(ensemble::with_error(2.5712e7, 1.234e6) == "(25.7 +- 1.2)e6");
   CHECK(ensemble::with_error(1.9e-5, 2.3e-7) == "(19.00 +- 0.23)e-6");
-  CHECK(ensemble::with_error(0.18741, nan) == "0.1874");
-  CHECK(ensemble::with_error(nan, 1) == "-");
+  CHECK(ensemble::with_error(0.18741, undefined) == "0.1874");
+  CHECK(ensemble::with_error(undefined, 1) == "-");
   CHECK(ensemble::with_error(0, 0) == "0");
 }
 

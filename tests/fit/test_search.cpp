@@ -86,9 +86,9 @@ int sets_within(Eigen::Index unknowns) {
 
 }  // namespace
 
-TEST_CASE("Of 20 hidden sets of two parameters 18 lie in their intervals") { CHECK(sets_within(2) >= 18); }
+TEST_CASE("Of 20 hidden sets of two parameters 18 lie in their intervals", "[slow]") { CHECK(sets_within(2) >= 18); }
 
-TEST_CASE("Of 20 hidden sets of three parameters 18 lie in their intervals") { CHECK(sets_within(3) >= 18); }
+TEST_CASE("Of 20 hidden sets of three parameters 18 lie in their intervals", "[slow]") { CHECK(sets_within(3) >= 18); }
 
 TEST_CASE("Better targets give narrower intervals, and a search is the same each time") {
   Laboratory coarse(2, 5), fine(2, 5), again(2, 5);
@@ -102,7 +102,7 @@ TEST_CASE("Better targets give narrower intervals, and a search is the same each
   CHECK(wide.trials.size() == fit::usual_tests(2));
 }
 
-TEST_CASE("Of 20 curves with two hidden parameters 18 lie in their intervals") {
+TEST_CASE("Of 20 curves with two hidden parameters 18 lie in their intervals", "[slow]") {
   // y = a (1 - exp(-x/b)), each specimen with a factor of its own, a test's scatter smooth along the curve.
   int count = 0;
   for (std::uint64_t set = 1; set <= 20; ++set) {

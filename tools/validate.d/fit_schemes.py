@@ -66,7 +66,7 @@ class Surrogate:
         self.same = specimens[:, None] == specimens[None, :]
         self.shift, self.scale = values.mean(), values.std() + 1e-12
         self.values = (values - self.shift) / self.scale
-        start = np.concatenate([np.zeros(self.m), [-1.0, -1.0]])
+        start = np.concatenate([np.zeros(self.m), [-1.0, -1.0, -1.0]])
         found = minimize(self.cost, start, method="Nelder-Mead", options={"maxiter": 400, "fatol": 1e-3})
         self.prepare(found.x)
 
@@ -79,32 +79,31 @@ class Surrogate:
 
     def prepare(self, x):
         self.lengths = np.exp(x[:self.m])
-        shared, own = np.exp(2 * x[self.m]), np.exp(2 * x[self.m + 1])
-        n = len(self.values)
-        matrix = self.correlation(self.points, self.points, self.lengths) + shared * self.same + (own + 1e-8) * np.eye(n)
+        self.process, shared, own = np.exp(2 * x[self.m:])
+        matrix = self.process * self.correlation(self.points, self.points, self.lengths) + shared * self.same
+        matrix += (own + 1e-8) * np.eye(len(self.values))
         self.factor = cho_factor(matrix, lower=True)
         h = self.trend(self.points)
         self.solved_h = cho_solve(self.factor, h)
         self.information = h.T @ self.solved_h
         self.beta = np.linalg.solve(self.information, self.solved_h.T @ self.values)
         self.weights = cho_solve(self.factor, self.values - h @ self.beta)
-        self.freedom = n - h.shape[1]
-        self.variance = (self.values - h @ self.beta) @ self.weights / self.freedom
+        self.misfit = (self.values - h @ self.beta) @ self.weights
 
     def cost(self, x):
         self.prepare(x)
         determinant = np.log(np.diag(self.factor[0])).sum()
         restricted = 0.5 * np.linalg.slogdet(self.information)[1]
         prior = 0.5 * (((x[:self.m] - 0.0) / 0.7) ** 2).sum() + 0.5 * (((x[self.m:] + 1) / 1.5) ** 2).sum()
-        return 0.5 * self.freedom * np.log(self.variance) + determinant + restricted + prior
+        return 0.5 * self.misfit + determinant + restricted + prior
 
     def at(self, points):
-        k = self.correlation(points, self.points, self.lengths)
+        k = self.process * self.correlation(points, self.points, self.lengths)
         h = self.trend(points)
         mean = h @ self.beta + k @ self.weights
         half = solve_triangular(self.factor[0], k.T, lower=True)
         rest = h - k @ self.solved_h
-        variance = self.variance * (1 - (half ** 2).sum(axis=0) + (rest @ np.linalg.inv(self.information) * rest).sum(axis=1))
+        variance = self.process - (half ** 2).sum(axis=0) + (rest @ np.linalg.inv(self.information) * rest).sum(axis=1)
         return self.shift + self.scale * mean, self.scale ** 2 * np.maximum(variance, 0)
 
 
