@@ -136,7 +136,9 @@ std::string as_text(const FitSetup& setup, const FitOutcome& outcome) {
   return text + aligned(rows);
 }
 
-void tell_of_doubts(const FitOutcome& outcome, std::size_t failed) {
+void tell_of_doubts(const FitSetup& setup, const FitOutcome& outcome, std::size_t failed) {
+  if (setup.specimen_count == 1)
+    tell("one specimen: the intervals do not hold the scatter from specimen to specimen; give ten");
   if (outcome.finding.misfit > 2)
     tell("the best parameters in their ranges miss the targets by " +
          ensemble::with_error(outcome.finding.misfit, std::nan("")) +
@@ -170,7 +172,7 @@ void report_fit(const FitSetup& setup, const FitOutcome& outcome, const std::str
                 << "\nfigure  /usr/bin/python3 tools/plot/fit.py " << folder << " -o fit.png\n";
     std::cout << std::flush;
   }
-  tell_of_doubts(outcome, failed);
+  tell_of_doubts(setup, outcome, failed);
 }
 
 void report_sweep(const FitSetup& setup, const std::vector<FitTest>& tests, const std::vector<FitResult>& results,

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <set>
 
+#include "rvelab/ensemble/statistics.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/fit/components.hpp"
 #include "rvelab/fit/posterior.hpp"
@@ -50,6 +51,9 @@ class Judge {
   Judge(const Problem& problem, const Learned& learned, std::vector<Eigen::VectorXd>& before)
       : components_(problem.targets, learned.values, problem.parameters) {
     const Eigen::MatrixXd scores = components_.of(learned.values);
+    const std::set<std::size_t> specimens(learned.specimens.begin(), learned.specimens.end());
+    constexpr double of_many = 1.96;
+    if (specimens.size() > 1) student_ = ensemble::students_t(double(specimens.size() - 1)) / of_many;
     before.resize(std::size_t(scores.cols()));
     for (Eigen::Index k = 0; k < scores.cols(); ++k) {
       Eigen::VectorXd& hyperparameters = before[std::size_t(k)];
@@ -93,11 +97,12 @@ class Judge {
   }
   Eigen::ArrayXd variance_of(std::size_t k, const Prediction& found) const {
     const double error = components_.error()[Eigen::Index(k)], floor = 1e-3 * surrogates_[k].scatter();
-    return found.variance.array() + (error * error + floor * floor + 1e-300);
+    return student_ * student_ * found.variance.array() + (error * error + floor * floor + 1e-300);
   }
 
   Components components_;
   std::vector<Surrogate> surrogates_;
+  double student_ = 1;  ///< Student's t of the specimens over that of infinitely many: few tell their scatter badly
 };
 
 /// Adds the trials of one batch and what they give.

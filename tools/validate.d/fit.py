@@ -2,8 +2,9 @@
 """Hidden parameters of real tests: fit.py PROGRAM [SETS] [FOLDER]
 
 For each set friction and rolling friction are drawn. Ten specimens of 150 discs are tested with them (biaxial, 20 kPa, to 4 %),
-and the means of friction angle and dilation angle with their standard errors are the targets. `rvelab fit` gets these and ten
-other specimens. Prints truth and 95 % interval of both parameters, and how many sets have both truths within.
+and the means of friction angle and dilation angle with their standard errors are the targets; the errors are widened by
+Student's t of nine degrees of freedom over that of the normal distribution. `rvelab fit` gets these and ten other specimens. Each
+set has specimens of its own, so that sets are independent. Prints truth and 95 % interval of both parameters, and how many sets have both truths within.
 """
 
 import json
@@ -29,21 +30,21 @@ def measured(specimens, truth):
     words = [word for key, value in truth.items() for word in ("--set", f"{key}={value}")]
     summary = json.loads(rvelab("run", "biaxial", "--specimen", *specimens, "--json", *TEST, *words))["summary"]
     rows = {row["measure"]: row for row in summary}
-    return {name: (rows[name]["mean"], rows[name]["standard_error"]) for name in TARGETS}
+    return {name: (rows[name]["mean"], 2.262 / 1.96 * rows[name]["standard_error"]) for name in TARGETS}
 
 
 def main():
     sets = int(sys.argv[2]) if len(sys.argv) > 2 else 20
     folder = pathlib.Path(sys.argv[3] if len(sys.argv) > 3 else "build/validate/fit")
     folder.mkdir(parents=True, exist_ok=True)
-    rvelab("pack", "pack_dense", "-o", str(folder / "S.h5"), "--count", "20", "--force", "--set", "pack.number=150",
-           "--set", "target.void_ratio_tolerance=0.01")
-    specimens = [str(folder / f"S_{number:02d}.h5") for number in range(1, 21)]
     draw = random.Random(7)
     print("10 specimens of 150 discs in the data, 10 others in the fit; two targets, two unknowns, 56 tests a set")
     print("set  friction: truth, 95 % interval  rolling friction: truth, 95 % interval  both within")
     inside = 0
     for number in range(1, sets + 1):
+        rvelab("pack", "pack_dense", "-o", str(folder / "S.h5"), "--count", "20", "--force", "--set", "pack.number=150",
+               "--set", "target.void_ratio_tolerance=0.01", "--set", f"pack.seed={100 * number}")
+        specimens = [str(folder / f"S_{k:02d}.h5") for k in range(1, 21)]
         truth = {key: round(low + (0.1 + 0.8 * draw.random()) * (high - low), 4) for key, (low, high) in KEYS.items()}
         targets = measured(specimens[:10], truth)
         words = [word for name, (mean, error) in targets.items() for word in ("--target", f"{name}={mean}+-{error}")]
