@@ -96,6 +96,10 @@ struct GrainArrays {
   const std::int32_t *slot_begin = nullptr, *slots = nullptr;
   const std::uint16_t* tasks = nullptr;
   const double *turn_first = nullptr, *turn_second = nullptr;  ///< not round: TurnValues (grains/description.hpp)
+  /// Called before a chunk is gathered, with the end of the chunk, where pairs are updated just in time
+  /// (loading/sweep.hpp).
+  void (*before_chunk)(void* sweep, long end) = nullptr;
+  void* sweep = nullptr;
 };
 
 /// Sums that the integration leaves behind: momentum (kg m/s), largest |v'|^2 (not round: (|v'| + l |w|)^2, as fast
