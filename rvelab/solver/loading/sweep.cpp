@@ -12,7 +12,7 @@ namespace {
 constexpr long piece_pairs = 8192, piece_grains = 4096;
 static_assert(piece_grains % chunk_grains == 0, "a chunk has one gather table");
 /// Grains whose pairs are updated at a time where they are just in time.
-constexpr long block_grains = 512;
+constexpr long block_grains = 2048;
 /// Pieces between two additions of their sums; their number is a limit on the team's size only.
 constexpr std::size_t round_pieces = 64;
 
@@ -107,9 +107,7 @@ void WaitingPairs::sweep_with_grains(GrainKernel kernel, const StepConstants& co
     places->next = places->begin;
   }
   grains.sweep = this;
-  grains.before_chunk = [](void* sweep, long end) {
-    static_cast<WaitingPairs*>(sweep)->update_up_to(end);
-  };
+  grains.before_chunk = [](void* sweep, long end) { static_cast<WaitingPairs*>(sweep)->update_up_to(end); };
   sweep_grains(kernel, constants, grains, pairs, padded_grains, nullptr, sums);
   waiting_ = false;
 }
