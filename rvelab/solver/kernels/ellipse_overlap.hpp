@@ -52,7 +52,13 @@ inline __attribute__((always_inline)) EllipseMatrix<V> ellipse_matrix(Direction<
 }
 
 template <class V>
-inline __attribute__((always_inline)) EllipseGap<V> ellipse_gap(const EllipsePair<V>& p, Direction<V> n) {
+inline __attribute__((always_inline)) V determinant(const EllipseMatrix<V>& m) {
+  return m.xx * m.yy - m.xy * m.xy;
+}
+
+template <class V>
+inline __attribute__((always_inline)) EllipseGap<V> ellipse_gap(const EllipsePair<V>& p, Direction<V> n, V det_i,
+                                                                V det_j) {
   const V ix = p.i.xx * n.x + p.i.xy * n.y, iy = p.i.xy * n.x + p.i.yy * n.y;
   const V jx = p.j.xx * n.x + p.j.xy * n.y, jy = p.j.xy * n.x + p.j.yy * n.y;
   EllipseGap<V> g;
@@ -64,11 +70,15 @@ inline __attribute__((always_inline)) EllipseGap<V> ellipse_gap(const EllipsePai
   g.turned_j = (n.x * jy - n.y * jx) * inverse_j;
   g.overlap = (g.support_i + g.support_j) - (n.x * p.x + n.y * p.y);
   g.slope = (g.turned_i + g.turned_j) - (n.x * p.y - n.y * p.x);
-  const V det_i = p.i.xx * p.i.yy - p.i.xy * p.i.xy, det_j = p.j.xx * p.j.yy - p.j.xy * p.j.xy;
   const V rho_i = det_i * (inverse_i * (inverse_i * inverse_i)), rho_j = det_j * (inverse_j * (inverse_j * inverse_j));
   g.curvature = (rho_i + rho_j) - g.overlap;
   g.third = -3.0 * (rho_i * (g.turned_i * inverse_i) + rho_j * (g.turned_j * inverse_j)) - g.slope;
   return g;
+}
+
+template <class V>
+inline __attribute__((always_inline)) EllipseGap<V> ellipse_gap(const EllipsePair<V>& p, Direction<V> n) {
+  return ellipse_gap(p, n, determinant(p.i), determinant(p.j));
 }
 
 /// Along the normal of the ellipse of M_i + M_j where the branch leaves it, m^3.

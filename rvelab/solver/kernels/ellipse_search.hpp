@@ -161,7 +161,7 @@ __attribute__((noinline)) void search_lanes(Mask open, const EllipsePair<V>& p, 
 template <class V>
 inline __attribute__((always_inline)) bool search_where_needed(const EllipsePair<V>& p, Direction<V>& n,
                                                                EllipseGap<V>& g) {
-  const auto left = is_open(g) | !(is_apart(g) | is_shallow(p, g));
+  const decltype(is_open(g)) left = is_open(g) | !(is_apart(g) | is_shallow(p, g));
   if (!any_of(left)) return false;
   search_lanes(left, p, n);
   g = ellipse_gap(p, n);

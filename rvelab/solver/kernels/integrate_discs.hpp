@@ -165,7 +165,7 @@ void plane_grains(const StepConstants& constants, const GrainArrays& grains, con
   const PairArrays p = pairs;
   PartialSums<W> momentum[2], lost_locally, lost_globally;
   typename Lanes<W>::V fastest = {};
-  [[maybe_unused]] typename Lanes<narrow>::V fastest_with_turn = {};
+  [[maybe_unused]] typename Lanes<W>::V fastest_with_turn = {};
   DiscColumns s;
   TaskRows task_sums;
   for (long chunk = begin; chunk < end; chunk += chunk_grains) {
