@@ -1,13 +1,12 @@
-#include "rvelab/abi/file_library.hpp"
+// Files by way of librvelab-h5.so. Declared in c_boundary.hpp.
 
 #include <dlfcn.h>
 
-#include <exception>
 #include <mutex>
 
+#include "rvelab/abi/c_boundary.hpp"
 #include "rvelab/h5/file_calls.hpp"
 #include "rvelab/io/version.hpp"
-#include "rvelab/solver/snapshot.hpp"
 
 namespace rvelab::abi {
 
@@ -59,117 +58,34 @@ const h5::FileCalls& file_calls() {
   return *calls;
 }
 
-/// Text of a failure.
-struct Failure {
-  std::string text;
-  h5::Receiver receiver() {
-    return {this, [](void* self, const void* bytes, std::size_t size) {
-              try {
-                static_cast<Failure*>(self)->text.assign(static_cast<const char*>(bytes), size);
-              } catch (...) {  // no memory for words
-              }
-            }};
-  }
-};
-
-/// Work that the other library asks for; an exception waits here until the other library has returned.
-struct Deferred {
-  std::exception_ptr exception;
-  template <class Work>
-  bool run(Work work) noexcept {
-    if (exception) return false;
-    try {
-      work();
-      return true;
-    } catch (...) {
-      exception = std::current_exception();
-      return false;
-    }
-  }
-  void expect_done(std::int32_t status, const Failure& failure) const {
-    if (exception) std::rethrow_exception(exception);
-    if (status != std::int32_t(Status::ok)) throw Refused(Status(status), failure.text);
-  }
-};
-
-std::span<const std::byte> span_of(const void* bytes, std::size_t size) {
-  return {static_cast<const std::byte*>(bytes), size};
-}
-
-using Take = std::function<void(std::span<const std::byte>)>;
-
-/// What is wrong with a state is wrong with the file that it came from.
-void take_from_file(const Take& take, std::span<const std::byte> bytes) {
+/// Makes a call on a file. All its faults have one status, and what is wrong with a state is wrong with its file.
+template <class Call>
+auto of_file(const Call& call) {
   try {
-    take(bytes);
-  } catch (const Error& error) {
-    throw Refused(Status::bad_file, error.what());
+    return call(file_calls());
+  } catch (...) {
+    char text[1024];
+    const Status status = pool::status_of_exception(text, sizeof text);
+    if (status != Status::bad_input && status != Status::bad_snapshot && status != Status::internal) throw;
+    throw Refused(Status::bad_file, text);
   }
 }
 
 }  // namespace
 
 Specimen read_specimen(const std::string& path) {
-  struct Read : Deferred {
-    Specimen specimen;
-  } read;
-  Failure failure;
-  const h5::Receiver take{&read, [](void* self, const void* bytes, std::size_t size) {
-                            Read& into = *static_cast<Read*>(self);
-                            into.run([&] { into.specimen = from_bytes(span_of(bytes, size)); });
-                          }};
-  const std::int32_t status = file_calls().read_specimen(path.c_str(), take, failure.receiver());
-  read.expect_done(status, failure);
-  return std::move(read.specimen);
+  return of_file([&](const h5::FileCalls& calls) { return calls.read_specimen(path); });
 }
 
 void write_pool(pool::Pool& pool, const std::string& path) {
-  pool.write([&](const pool::Population& population, const auto& state) {
-    const h5::FileCalls& calls = file_calls();
-    using State = std::remove_reference_t<decltype(state)>;
-    struct Source : Deferred {
-      State* state;
-    } source;
-    source.state = &state;
-    Failure failure;
-    const h5::StateSource give{&source, [](void* self, std::size_t k, const h5::Receiver& to) {
-                                 Source& from = *static_cast<Source*>(self);
-                                 return from.run([&] {
-                                   const std::vector<std::byte> bytes = (*from.state)(k);
-                                   to.take(to.self, bytes.data(), bytes.size());
-                                 });
-                               }};
-    const h5::PoolNumbers numbers{population.tag, population.generations.data(), population.generations.size(),
-                                  population.ids.data(), population.ids.size()};
-    const std::int32_t status = calls.write_pool(path.c_str(), numbers, give, failure.receiver());
-    source.expect_done(status, failure);
+  pool.write([&](const pool::Population& population, const pool::Pool::StateOf& state) {
+    of_file([&](const h5::FileCalls& calls) { calls.write_pool(path, population, state); });
   });
 }
 
 void read_pool(pool::Pool& pool, const std::string& path) {
-  pool.read([&](const Take& take) {
-    const h5::FileCalls& calls = file_calls();
-    struct Read : Deferred {
-      const Take* take;
-      pool::Population population;
-    } read;
-    read.take = &take;
-    Failure failure;
-    const h5::Receiver state{&read, [](void* self, const void* bytes, std::size_t size) {
-                               Read& into = *static_cast<Read*>(self);
-                               into.run([&] { take_from_file(*into.take, span_of(bytes, size)); });
-                             }};
-    const h5::PoolReceiver numbers{&read, [](void* self, const h5::PoolNumbers& found) {
-                                     Read& into = *static_cast<Read*>(self);
-                                     into.run([&] {
-                                       into.population = {found.tag,
-                                                          {found.generations, found.generations + found.slots},
-                                                          {found.ids, found.ids + found.rves}};
-                                     });
-                                   }};
-    const std::int32_t status = calls.read_pool(path.c_str(), state, numbers, failure.receiver());
-    read.expect_done(status, failure);
-    return std::move(read.population);
+  pool.read([&](const pool::Pool::TakeState& take) {
+    return of_file([&](const h5::FileCalls& calls) { return calls.read_pool(path, take); });
   });
 }
 

@@ -1,53 +1,16 @@
-// Pools and their population. Declared in handle.hpp.
+// Version and statuses, pools and their population. Declared in c_boundary.hpp.
 #include <algorithm>
-#include <memory>
 
-#include "rvelab/abi/file_library.hpp"
-#include "rvelab/abi/handle.hpp"
-#include "rvelab/abi/rank_calls.hpp"
+#include "rvelab/abi/c_boundary.hpp"
 #include "rvelab/abi/structs.hpp"
 #include "rvelab/io/version.hpp"
-#include "rvelab/pool/rve_state.hpp"
-#include "rvelab/pool/threaded_pool.hpp"
 
 namespace rvelab::abi {
-
-using pool::Refused;
-using pool::Status;
-
-std::span<const std::int64_t> ids_of(std::int64_t n, const std::int64_t* ids) {
-  if (n < 0) throw Refused(Status::bad_input, "n is " + std::to_string(n) + "; allowed: 0 or more");
-  if (n > 0) expect_pointer(ids, "ids");
-  static const std::int64_t none = 0;  // a pointer that is not null: no ids are meant, not all
-  return {n > 0 ? ids : &none, std::size_t(n)};
-}
 
 namespace {
 
 pool::Options options_of(const rvelab_pool_def* given) {
-  if (given == nullptr) return {};
-  const rvelab_pool_def def = read_struct(given);
-  if (def.workers < 0)
-    throw Refused(Status::bad_input, "pool_def.workers is " + std::to_string(def.workers) +
-                                         "; allowed: 1 or more, or 0 for as many as the processor runs at once");
-  if (def.trial_memory != RVELAB_TRIAL_KEEP && def.trial_memory != RVELAB_TRIAL_RECOMPUTE)
-    throw Refused(Status::unsupported, "pool_def.trial_memory is " + std::to_string(def.trial_memory) +
-                                           "; allowed: RVELAB_TRIAL_KEEP (0), RVELAB_TRIAL_RECOMPUTE (1)");
-  pool::Options options;
-  options.workers = unsigned(def.workers);
-  options.trial_memory = def.trial_memory == RVELAB_TRIAL_KEEP ? pool::TrialMemory::keep : pool::TrialMemory::recompute;
-  options.tolerance_rel = def.tolerance_rel;
-  options.tolerance_abs = def.tolerance_abs;
-  options.max_substeps = long(def.max_substeps);
-  options.damping = def.damping;
-  options.min_height = def.min_height;
-  options.run_tasks = def.run_tasks;
-  options.host = def.host;
-  return options;
-}
-
-std::span<const std::byte> bytes_of(const void* buf, std::size_t size) {
-  return {static_cast<const std::byte*>(buf), size};
+  return given == nullptr ? pool::Options() : pool::Options(read_struct(given));
 }
 
 rvelab_pool* handle_of(std::unique_ptr<pool::Pool> made) { return reinterpret_cast<rvelab_pool*>(made.release()); }
@@ -58,97 +21,99 @@ std::unique_ptr<pool::Share> open_share(const pool::Options& options) {
 
 std::int32_t give_pool(const rvelab_pool_def* def, void* self, MakePool make, rvelab_pool** pool) noexcept {
   return at_c_boundary([&] {
-    std::unique_ptr<pool::Pool> made = make(self, [&] {
-      expect_pointer(pool, "pool");
+    *pool = handle_of(make(self, [&] {
+      expect_pointers({{pool, "pool"}});
       return options_of(def);
-    });
-    *pool = handle_of(std::move(made));
+    }));
   });
 }
 
 }  // namespace
 }  // namespace rvelab::abi
 
-const void* rvelab_rank_calls() {
-  static constexpr rvelab::abi::RankCalls calls{rvelab::io::version, rvelab::abi::open_share, rvelab::abi::give_pool};
-  return &calls;
-}
-
 using namespace rvelab;
 using namespace rvelab::abi;
 
+const void* rvelab_rank_calls() {
+  static constexpr RankCalls calls{io::version, open_share, give_pool};
+  return &calls;
+}
+
+int32_t rvelab_abi_version(void) { return RVELAB_ABI_MAJOR << 16 | RVELAB_ABI_MINOR; }
+
+const char* rvelab_version(void) { return io::version; }
+
+int64_t rvelab_capabilities(void) {
+  return RVELAB_CAN_PLANE | RVELAB_CAN_SPACE | RVELAB_CAN_TANGENT | RVELAB_CAN_ERROR_ESTIMATE | RVELAB_CAN_HOST_TASKS |
+         RVELAB_CAN_FILES;
+}
+
+const char* rvelab_status_name(int32_t status) {
+  switch (status) {
+#define RVELAB_NAMED(status, number) \
+  case number:                       \
+    return #number;
+    RVELAB_STATUSES(RVELAB_NAMED)
+#undef RVELAB_NAMED
+  }
+  return "unknown status";
+}
+
 int32_t rvelab_pool_def_init(rvelab_pool_def* def, size_t struct_size) {
-  return at_c_boundary([&] {
-    expect_pointer(def, "def");
-    init_struct(def, struct_size);
-  });
+  return at_c_boundary([&] { init_struct(def, "def", struct_size); });
 }
 
 int32_t rvelab_pool_create(const rvelab_pool_def* def, rvelab_pool** pool) {
   return at_c_boundary([&] {
-    expect_pointer(pool, "pool");
-    *pool = handle_of(std::make_unique<pool::ThreadedPool>(options_of(def)));
+    expect_pointers({{pool, "pool"}});
+    *pool = handle_of(open_share(options_of(def)));
   });
 }
 
 int32_t rvelab_pool_destroy(rvelab_pool* pool) {
-  return at_c_boundary([&] {
-    if (pool == nullptr) return;
-    pool_of(pool).close();
-    delete &pool_of(pool);
+  if (pool == nullptr) return RVELAB_OK;
+  return of_pool(pool, {}, [](pool::Pool& of) {
+    of.close();
+    delete &of;
   });
 }
 
 int32_t rvelab_template_load(rvelab_pool* pool, const char* path, int64_t* tmpl) {
-  return at_c_boundary([&] {
-    pool::Pool& of = pool_of(pool);
-    expect_pointer(path, "path");
-    expect_pointer(tmpl, "tmpl");
+  return of_pool(pool, {{path, "path"}, {tmpl, "tmpl"}}, [&](pool::Pool& of) {
     of.expect_this_process();
     *tmpl = of.add_template(read_specimen(path));
   });
 }
 
 int32_t rvelab_template_from_snapshot(rvelab_pool* pool, const void* buf, size_t size, int64_t* tmpl) {
-  return at_c_boundary([&] {
-    pool::Pool& of = pool_of(pool);
-    expect_pointer(buf, "buf");
-    expect_pointer(tmpl, "tmpl");
+  return of_pool(pool, {{buf, "buf"}, {tmpl, "tmpl"}}, [&](pool::Pool& of) {
     of.expect_this_process();
-    *tmpl = of.add_template(pool::rve_state_of(abi::bytes_of(buf, size)).specimen);
+    *tmpl = of.add_template(pool::rve_state_of({static_cast<const std::byte*>(buf), size}).specimen);
   });
 }
 
 int32_t rvelab_template_release(rvelab_pool* pool, int64_t tmpl) {
-  return at_c_boundary([&] { pool_of(pool).everywhere<&pool::Share::release_template>(tmpl); });
+  return of_pool(pool, {}, [&](pool::Pool& of) { of.everywhere<&pool::Share::release_template>(tmpl); });
 }
 
 int32_t rvelab_spawn(rvelab_pool* pool, int64_t tmpl, int64_t n, int64_t* ids) {
-  return at_c_boundary([&] {
-    pool::Pool& of = pool_of(pool);
-    if (n > 0) expect_pointer(ids, "ids");
-    of.spawn(tmpl, n, ids);
-  });
+  return of_pool(pool, {{n > 0 ? ids : &n, "ids"}}, [&](pool::Pool& of) { of.spawn(tmpl, n, ids); });
 }
 
 int32_t rvelab_clone(rvelab_pool* pool, int64_t src, int64_t* dst) {
-  return at_c_boundary([&] {
-    pool::Pool& of = pool_of(pool);
-    expect_pointer(dst, "dst");
-    *dst = of.clone(src);
-  });
+  return of_pool(pool, {{dst, "dst"}}, [&](pool::Pool& of) { *dst = of.clone(src); });
 }
 
 int32_t rvelab_release(rvelab_pool* pool, int64_t n, const int64_t* ids) {
-  return at_c_boundary([&] { pool_of(pool).release(ids_of(n, ids)); });
+  return of_pool(pool, {}, [&](pool::Pool& of) { of.release(ids_of(n, ids)); });
 }
 
 int32_t rvelab_ids(rvelab_pool* pool, int64_t cap, int64_t* ids, int64_t* n) {
-  return at_c_boundary([&] {
-    pool::Pool& of = pool_of(pool);
-    expect_pointer(n, "n");
-    if (cap < 0) throw Refused(Status::bad_input, "rvelab_ids: cap is " + std::to_string(cap) + "; allowed: 0 or more");
-    if (cap > 0) expect_pointer(ids, "ids");
+  return of_pool(pool, {{n, "n"}}, [&](pool::Pool& of) {
+    if (cap < 0)
+      throw pool::Refused(pool::Status::bad_input,
+                          "rvelab_ids: cap is " + std::to_string(cap) + "; allowed: 0 or more");
+    if (cap > 0) expect_pointers({{ids, "ids"}});
     const std::vector<std::int64_t> all = of.ids();
     *n = std::int64_t(all.size());
     std::copy_n(all.begin(), std::min(*n, cap), ids);

@@ -1,77 +1,62 @@
-// Measures and snapshots of RVEs, files of pools. Declared in handle.hpp.
+// Work on RVEs, their measures and snapshots, files of pools. Declared in c_boundary.hpp.
 #include <algorithm>
 
-#include "rvelab/abi/file_library.hpp"
-#include "rvelab/abi/handle.hpp"
+#include "rvelab/abi/c_boundary.hpp"
 #include "rvelab/abi/structs.hpp"
 
 using namespace rvelab;
 using namespace rvelab::abi;
 
-namespace {
-
-rvelab_info info_of(const pool::Info& found) {
-  rvelab_info info{};
-  info.dimension = found.dimension;
-  info.grains = std::int64_t(found.grains);
-  info.contacts = std::int64_t(found.contacts);
-  std::ranges::copy(found.lattice, info.lattice);
-  std::ranges::copy(found.rotation, info.rotation);
-  info.volume = found.volume;
-  info.void_ratio = found.void_ratio;
-  info.coordination_number = found.coordination_number;
-  std::ranges::copy(found.fabric, info.fabric);
-  info.fabric_anisotropy = found.fabric_anisotropy;
-  info.sliding_fraction = found.sliding_fraction;
-  info.p = found.p;
-  info.q = found.q;
-  info.unbalanced_force_ratio = found.unbalanced_force_ratio;
-  info.inertial_number = found.inertial_number;
-  info.permeability_ratio = found.permeability_ratio;
-  info.min_height_ratio = found.min_height_ratio;
-  info.grain_steps = std::int64_t(found.grain_steps);
-  info.bytes_resting = std::int64_t(found.memory.state + found.memory.list);
-  info.bytes_trial = std::int64_t(found.memory.trial);
-  info.bytes_working = std::int64_t(found.memory.working);
-  info.token = found.token;
-  return info;
+int32_t rvelab_apply(rvelab_pool* pool, int64_t id, const double* dH, double dt, double* sigma) {
+  return of_pool(pool, {{dH, "dH"}, {sigma, "sigma"}},
+                 [&](pool::Pool& of) { return of.apply(id, pool::tensor_at(dH), dt, sigma); });
 }
 
-}  // namespace
+int32_t rvelab_batch_init(rvelab_batch* batch, size_t struct_size) {
+  return at_c_boundary([&] { init_struct(batch, "batch", struct_size); });
+}
 
-int32_t rvelab_info_init(rvelab_info* info, size_t struct_size) {
-  return at_c_boundary([&] {
-    expect_pointer(info, "info");
-    init_struct(info, struct_size);
+int32_t rvelab_trial(rvelab_pool* pool, rvelab_batch* batch) {
+  return of_pool(pool, {{batch, "batch"}}, [&](pool::Pool& of) {
+    const rvelab_batch given = read_struct(batch);
+    if (given.n > 0) expect_pointers({{given.ids, "batch.ids"}, {given.dH, "batch.dH"}, {given.sigma, "batch.sigma"}});
+    return of.trial(given);
   });
 }
 
+int32_t rvelab_commit(rvelab_pool* pool, int64_t n, const int64_t* ids) {
+  return of_pool(pool, {},
+                 [&](pool::Pool& of) { of.commit(ids == nullptr ? std::span<const std::int64_t>() : ids_of(n, ids)); });
+}
+
+int32_t rvelab_revert(rvelab_pool* pool, int64_t n, const int64_t* ids) {
+  return of_pool(pool, {},
+                 [&](pool::Pool& of) { of.revert(ids == nullptr ? std::span<const std::int64_t>() : ids_of(n, ids)); });
+}
+
+int32_t rvelab_info_init(rvelab_info* info, size_t struct_size) {
+  return at_c_boundary([&] { init_struct(info, "info", struct_size); });
+}
+
 int32_t rvelab_get_info(rvelab_pool* pool, int64_t id, rvelab_info* info) {
-  return at_c_boundary([&] {
-    pool::Pool& of = pool_of(pool);
-    expect_pointer(info, "info");
-    const std::size_t size = checked_size(info);
-    expect_no_flags(info->flags, Layout<rvelab_info>::name);
-    rvelab_info found = info_of(of.at<&pool::Share::info>(id));
-    found.struct_size = std::uint32_t(size);
-    std::memcpy(static_cast<void*>(info), &found, std::min(size, sizeof found));
+  return of_pool(pool, {{info, "info"}}, [&](pool::Pool& of) {
+    const std::uint32_t size = read_struct(info).struct_size;
+    rvelab_info found = of.at<&pool::Share::info>(id);
+    found.struct_size = size;
+    std::memcpy(static_cast<void*>(info), &found, std::min<std::size_t>(size, sizeof found));
   });
 }
 
 int32_t rvelab_cost(rvelab_pool* pool, int64_t n, const int64_t* ids, int64_t* grain_steps) {
-  return at_c_boundary([&] {
-    pool::Pool& of = pool_of(pool);
+  return of_pool(pool, {}, [&](pool::Pool& of) {
     const auto asked = ids_of(n, ids);
-    if (n > 0) expect_pointer(grain_steps, "grain_steps");
+    if (n > 0) expect_pointers({{grain_steps, "grain_steps"}});
     of.cost(asked, grain_steps);
   });
 }
 
 int32_t rvelab_snapshot_save(rvelab_pool* pool, int64_t id, void* buf, size_t cap, size_t* need) {
-  return at_c_boundary([&] {
-    pool::Pool& of = pool_of(pool);
-    expect_pointer(need, "need");
-    if (cap > 0) expect_pointer(buf, "buf");
+  return of_pool(pool, {{need, "need"}, {cap > 0 ? buf : need, "buf"}}, [&](pool::Pool& of) {
     const std::vector<std::byte> bytes = of.at<&pool::Share::save>(id);
     *need = bytes.size();
     if (buf == nullptr) return;
@@ -83,26 +68,20 @@ int32_t rvelab_snapshot_save(rvelab_pool* pool, int64_t id, void* buf, size_t ca
 }
 
 int32_t rvelab_snapshot_load(rvelab_pool* pool, int64_t id, const void* buf, size_t size) {
-  return at_c_boundary([&] {
-    pool::Pool& of = pool_of(pool);
-    expect_pointer(buf, "buf");
+  return of_pool(pool, {{buf, "buf"}}, [&](pool::Pool& of) {
     of.at<&pool::Share::load>(id, std::span(static_cast<const std::byte*>(buf), size));
   });
 }
 
 int32_t rvelab_pool_write(rvelab_pool* pool, const char* path) {
-  return at_c_boundary([&] {
-    pool::Pool& of = pool_of(pool);
-    expect_pointer(path, "path");
+  return of_pool(pool, {{path, "path"}}, [&](pool::Pool& of) {
     of.expect_this_process();
     write_pool(of, path);
   });
 }
 
 int32_t rvelab_pool_read(rvelab_pool* pool, const char* path) {
-  return at_c_boundary([&] {
-    pool::Pool& of = pool_of(pool);
-    expect_pointer(path, "path");
+  return of_pool(pool, {{path, "path"}}, [&](pool::Pool& of) {
     of.expect_this_process();
     read_pool(of, path);
   });

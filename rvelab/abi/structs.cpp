@@ -2,8 +2,6 @@
 
 #include <string>
 
-#include "rvelab/pool/status.hpp"
-
 namespace rvelab::abi {
 
 namespace {
@@ -43,8 +41,9 @@ void expect_size(std::size_t size, const char* name, std::span<const Field> fiel
 }
 
 std::size_t checked_size(const void* given, const char* name, std::span<const Field> fields) {
-  std::uint32_t size = 0;
-  std::memcpy(&size, given, sizeof size);
+  std::uint32_t head[2];  // struct_size and flags
+  std::memcpy(head, given, sizeof head);
+  const std::size_t size = head[0];
   expect_size(size, name, fields);
   const auto* const bytes = static_cast<const unsigned char*>(given);
   const std::size_t own = fields.back().end;
@@ -53,13 +52,10 @@ std::size_t checked_size(const void* given, const char* name, std::span<const Fi
       throw Refused(Status::unsupported, std::string(name) + ": the byte at offset " + std::to_string(at) +
                                              " is not zero, and this version knows " + std::to_string(own) +
                                              " bytes; leave later fields at zero, or use a later librvelab");
-  return size;
-}
-
-void expect_no_flags(std::uint32_t flags, const char* name) {
-  if (flags != 0)
+  if (head[1] != 0)
     throw Refused(Status::unsupported,
-                  std::string(name) + ".flags is " + std::to_string(flags) + "; this version knows none: give 0");
+                  std::string(name) + ".flags is " + std::to_string(head[1]) + "; this version knows none: give 0");
+  return size;
 }
 
 }  // namespace rvelab::abi

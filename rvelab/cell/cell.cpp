@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <limits>
 
-#include "rvelab/cell/givens.hpp"
 #include "rvelab/error.hpp"
 
 namespace rvelab {
@@ -80,6 +79,33 @@ int wrap_along(const Matrix3& lattice, int k, Vector3& position) {
       " m wide; it must be finite and within 2^31 cell widths: the grain has been lost, use " + "smaller time steps");
 }
 
+// Rotates rows p and q so that entry (q, p) vanishes and the pivot (p, p) becomes positive.
+void annihilate(TriangularFactors& factors, int p, int q) {
+  const double a = factors.upper(p, p);
+  const double b = factors.upper(q, p);
+  if (b == 0.0 && a >= 0.0) return;
+  const double length = std::sqrt(a * a + b * b);
+  const double c = a / length;
+  const double s = b / length;
+  for (int k = 0; k < 3; ++k) {
+    const double upper_p = factors.upper(p, k), upper_q = factors.upper(q, k);
+    factors.upper(p, k) = c * upper_p + s * upper_q;
+    factors.upper(q, k) = c * upper_q - s * upper_p;
+    const double rotation_p = factors.rotation(k, p), rotation_q = factors.rotation(k, q);
+    factors.rotation(k, p) = c * rotation_p + s * rotation_q;
+    factors.rotation(k, q) = c * rotation_q - s * rotation_p;
+  }
+  factors.upper(p, p) = length;
+  factors.upper(q, p) = 0.0;
+}
+
+// Cube root of a number near one by Newton's method: no libm in what touches state.
+double cube_root_near_one(double x) {
+  double y = 1;
+  for (int step = 0; step < 60; ++step) y -= (y * y * y - x) / (3 * y * y);
+  return y;
+}
+
 }  // namespace
 
 double Cell::volume() const { return lattice(0, 0) * lattice(1, 1) * lattice(2, 2); }
@@ -99,6 +125,15 @@ FrameSplit split_increment(const Cell& cell, const Matrix3& displacement_gradien
   const double deviation = (factors.upper - Matrix3::Identity()).cwiseAbs().maxCoeff();
   const bool rigid = deviation <= 8.0 * std::numeric_limits<double>::epsilon();
   return {factors.rotation, rigid ? Matrix3(Matrix3::Identity()) : factors.upper, rigid};
+}
+
+Matrix3 with_volume_ratio(const Matrix3& displacement_gradient, double ratio, int dimension) {
+  Matrix3 f = Matrix3::Identity() + displacement_gradient;
+  const double off = ratio / f.determinant();
+  if (!(off > 0)) throw InvalidIncrement("the increment turns the cell inside out; apply it in smaller parts");
+  const double stretch = dimension == 2 ? std::sqrt(off) : cube_root_near_one(off);
+  for (int k = 0; k < dimension; ++k) f.row(k) *= stretch;
+  return f - Matrix3::Identity();
 }
 
 void turn_frame(Cell& cell, const Matrix3& frame_rotation) {
@@ -134,6 +169,20 @@ Vector3 heights(const Cell& cell) {
     return {cell.lattice(0, 0) * cell.lattice(1, 1) / b.norm(), cell.lattice(1, 1),
             std::numeric_limits<double>::infinity()};
   return {volume / b.cross(c).norm(), volume / c.cross(a).norm(), cell.lattice(2, 2)};
+}
+
+TriangularFactors triangular_factors(const Matrix3& matrix) {
+  TriangularFactors factors{Matrix3::Identity(), matrix};
+  // The pivot's sign is put right by the neighbouring row, so that in 2D the z-row never takes part.
+  annihilate(factors, 0, 1);
+  annihilate(factors, 0, 2);
+  annihilate(factors, 1, 2);
+  // Three rotations leave R off the orthogonal matrices by some units of round-off, which would add up in the frame.
+  factors.rotation = renormalised(factors.rotation);
+  // Adding zero turns -0 into +0: equal states then are equal bit for bit.
+  factors.rotation.array() += 0.0;
+  factors.upper.array() += 0.0;
+  return factors;
 }
 
 }  // namespace rvelab

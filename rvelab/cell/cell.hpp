@@ -38,6 +38,10 @@ struct FrameSplit {
 /// finite, if det(I + dH) <= 0, or, in 2D, if a z-component exceeds 1e-12 + 1e-9 max|dH|.
 FrameSplit split_increment(const Cell& cell, const Matrix3& displacement_gradient);
 
+/// The displacement gradient dH (dimensionless) with an isotropic stretch on top, in the plane in 2D, such that
+/// det(I + dH) = `ratio` to round-off. Throws InvalidIncrement if det(I + dH) <= 0. `ratio` > 0, of order one.
+Matrix3 with_volume_ratio(const Matrix3& displacement_gradient, double ratio, int dimension);
+
 /// Turns the frame by R and counts the increment; every 100th one renormalises Q by one Newton step.
 void turn_frame(Cell& cell, const Matrix3& frame_rotation);
 
@@ -78,6 +82,19 @@ Reduction reduced(const Cell& cell);
 /// Applies a reduction to lattice and frame.
 void apply_reduction(Cell& cell, const Reduction& reduction);
 
+/// M = R U with R a proper rotation and U upper triangular.
+struct TriangularFactors {
+  Matrix3 rotation;  ///< R, det +1
+  Matrix3 upper;     ///< U; entries below the diagonal are exactly zero
+};
+
+/// Factors M (any unit). The first two diagonal entries of U are positive, the third has the sign of det M; a
+/// singular M gives a zero, negative or NaN diagonal entry, which the caller checks. Only + - * / sqrt are used. A
+/// rotation is made only where an entry below the diagonal is not zero or a diagonal entry is negative: an upper
+/// triangular M with positive diagonal comes back untouched with R = I, a signed permutation comes out exactly, and
+/// a matrix with z-components (0, 0, m) keeps them. (Golub and Van Loan, Matrix Computations, section 5.1.8.)
+TriangularFactors triangular_factors(const Matrix3& matrix);
+
 /// Square (2D) or simple cubic (3D) cell of the given volume (m^3), axes along the laboratory's.
 Cell cubic_cell(int dimension, double volume, double thickness = 1.0);
 
@@ -88,5 +105,10 @@ Cell kraynik_reinelt_cell(double volume, double thickness);
 /// 3D cell for diagonal (uniaxial, triaxial) flows along the laboratory axes: the lattice of the totally real cubic
 /// field of discriminant 49 (roots of x^3 + x^2 - 2x - 1), scaled to the given volume.
 Cell cubic_field_cell(double volume);
+
+/// p = -tr(sigma)/d, Pa, compression positive.
+inline double mean_pressure(const Matrix3& stress, int dimension) {
+  return -(stress(0, 0) + stress(1, 1) + (dimension == 3 ? stress(2, 2) : 0.0)) / dimension;
+}
 
 }  // namespace rvelab

@@ -10,7 +10,6 @@
 #include <string>
 
 #include "rvelab/cell/cell.hpp"
-#include "rvelab/cell/givens.hpp"
 #include "rvelab/error.hpp"
 
 namespace rvelab {

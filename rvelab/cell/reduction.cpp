@@ -14,7 +14,6 @@
 #include <utility>
 
 #include "rvelab/cell/cell.hpp"
-#include "rvelab/cell/givens.hpp"
 #include "rvelab/error.hpp"
 
 namespace rvelab {

@@ -7,13 +7,8 @@
 // The constants of a contact hold sqrt(r*) of r = sqrt(a b), so that sqrt(delta) is replaced by sqrt(delta R*/r*)
 // wherever a law takes it: force, stiffnesses, rescaling of f_t, and dashpots, whose k or r* is then that of R*.
 //
-// Such a force has no energy. Its work is -int f d(delta) over the path of the grains, and a sum of that kind is the
-// same for every path only if f is a function of delta alone; here d f ^ d delta = (f/2R*) dR* ^ d delta is not 0. Two
-// ellipses that are pressed together at R1, turned at the same overlap to R2 and parted there give 2/5 f2 delta - 2/5
-// f1 delta more than was put in. 2/5 f delta is what counts as elastic energy: the work of pressing them as they lie.
-// What is made or lost as R* changes, int (f delta/5)(dR*/R*), is in no entry of the ledger: it is what remains of it.
-// (Which contact forces of shapes that are not round have an energy: Feng, Han and Owen 2012, Comput. Methods Appl.
-// Mech. Engrg. 205-208, 169-177.)
+// Such a force has no energy. 2/5 f delta, the work of pressing two grains as they lie, is what counts as elastic
+// energy, and what is made or lost as R* changes is what remains of the ledger (README.md: Hertz's radius of ellipses).
 #pragma once
 
 namespace rvelab {

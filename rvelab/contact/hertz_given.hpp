@@ -26,20 +26,14 @@ struct HertzGivenForce : LinearForce {
   }
 };
 
-struct HertzGivenLaw {
+struct HertzGivenLaw : GivenLaw {
   static constexpr const char* name = "hertz_given";
   using Force = HertzGivenForce;
 
   template <class Each>
   static void parameters(Each each) {
-    each(Parameter{"normal_stiffness_N_m1_5", "normal_stiffness", "N/m^1.5", positive_number,
-                   "k of f_n = k overlap^1.5", "give the normal stiffness of a contact"},
-         &GivenStiffness::normal_stiffness);
-    each(given_tangential_stiffness, &GivenStiffness::tangential_stiffness);
-  }
-  template <class Material>
-  static ContactConstants mix(const Material& a, double /*ri*/, const Material& b, double /*rj*/, double /*section*/) {
-    return given_stiffness(a, b);
+    GivenLaw::parameters(each, {"normal_stiffness_N_m1_5", "normal_stiffness", "N/m^1.5", positive_number,
+                                "k of f_n = k overlap^1.5", "give the normal stiffness of a contact"});
   }
 };
 

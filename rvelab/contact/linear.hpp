@@ -9,7 +9,6 @@
 
 #include "rvelab/contact/impact.hpp"
 #include "rvelab/contact/parameter.hpp"
-#include "rvelab/contact/stiffness.hpp"
 
 namespace rvelab {
 

@@ -14,33 +14,30 @@ struct GivenStiffness {
       {"tangential_stiffness_N_m", &GivenStiffness::tangential_stiffness, "N/m"}};
 };
 
-template <class Material>
-static ContactConstants given_stiffness(const Material& a, const Material& b) {
-  return {harmonic_mean(a.normal_stiffness, b.normal_stiffness),
-          harmonic_mean(a.tangential_stiffness, b.tangential_stiffness)};
-}
+/// What laws of given stiffnesses share; `normal` is their own.
+struct GivenLaw {
+  template <class Each>
+  static void parameters(Each each, const Parameter& normal) {
+    each(normal, &GivenStiffness::normal_stiffness);
+    each(Parameter{"tangential_stiffness_N_m", "tangential_stiffness", "N/m", number_from_zero, "kt",
+                   "give the tangential stiffness of a contact, 0 for none"},
+         &GivenStiffness::tangential_stiffness);
+  }
+  template <class Material>
+  static ContactConstants mix(const Material& a, double /*ri*/, const Material& b, double /*rj*/, double /*section*/) {
+    return {harmonic_mean(a.normal_stiffness, b.normal_stiffness),
+            harmonic_mean(a.tangential_stiffness, b.tangential_stiffness)};
+  }
+};
 
-constexpr Parameter given_tangential_stiffness{"tangential_stiffness_N_m",
-                                               "tangential_stiffness",
-                                               "N/m",
-                                               number_from_zero,
-                                               "kt",
-                                               "give the tangential stiffness of a contact, 0 for none"};
-
-struct LinearGivenLaw {
+struct LinearGivenLaw : GivenLaw {
   static constexpr const char* name = "linear_given";
   using Force = LinearForce;
 
   template <class Each>
   static void parameters(Each each) {
-    each(Parameter{"normal_stiffness_N_m", "normal_stiffness", "N/m", positive_number, "kn",
-                   "give the normal stiffness of a contact"},
-         &GivenStiffness::normal_stiffness);
-    each(given_tangential_stiffness, &GivenStiffness::tangential_stiffness);
-  }
-  template <class Material>
-  static ContactConstants mix(const Material& a, double /*ri*/, const Material& b, double /*rj*/, double /*section*/) {
-    return given_stiffness(a, b);
+    GivenLaw::parameters(each, {"normal_stiffness_N_m", "normal_stiffness", "N/m", positive_number, "kn",
+                                "give the normal stiffness of a contact"});
   }
 };
 

@@ -1,57 +1,21 @@
 // Names, ranges and mixing of contact parameters. What a law reads and makes of it stands in its own file (laws.hpp).
 //
-// Sources: rolling: Liang and Zhao 2019, eq. 24-28. Dashpots: restitution.hpp, Tsuji, Tanaka and Ishida 1992,
+// Sources: rolling: Liang and Zhao 2019, eq. 24-28. Dashpots: impact.hpp, Tsuji, Tanaka and Ishida 1992,
 // Brilliantov et al. 1996 (viscoelastic). Pair parameters decide the next bit of a specimen, so that nothing here calls
 // the mathematical library but for the square root, which is correctly rounded everywhere.
 #include "rvelab/contact/model.hpp"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <iterator>
 #include <limits>
 #include <sstream>
-#include <utility>
 
-#include "rvelab/contact/restitution.hpp"
-#include "rvelab/error.hpp"
+#include "rvelab/contact/impact.hpp"
 
 namespace rvelab {
 namespace {
-
-constexpr std::array<std::pair<Slip, const char*>, 3> slip_names{
-    {{Slip::consistent, "consistent"},
-     {Slip::full_radius, "full_radius"},
-     {Slip::full_radius_ratcheting, "full_radius_ratcheting"}}};
-constexpr std::array<std::pair<HertzRadius, const char*>, 2> hertz_radius_names{
-    {{HertzRadius::equivalent, "equivalent"}, {HertzRadius::curvature, "curvature"}}};
-constexpr std::array<std::pair<Dashpot, const char*>, 5> dashpot_names{{{Dashpot::none, "none"},
-                                                                        {Dashpot::coefficient, "coefficient"},
-                                                                        {Dashpot::restitution, "restitution"},
-                                                                        {Dashpot::viscoelastic, "viscoelastic"},
-                                                                        {Dashpot::tsuji, "tsuji"}}};
-constexpr std::array<std::pair<LocalDampingForm, const char*>, 2> local_damping_form_names{
-    {{LocalDampingForm::vector, "vector"}, {LocalDampingForm::component, "component"}}};
-
-template <class Table, class Value>
-const char* name_in(const Table& table, Value value) {
-  for (const auto& [entry, text] : table) {
-    if (entry == value) return text;
-  }
-  return "unknown";
-}
-
-template <class Table>
-auto value_in(const Table& table, const char* key, const std::string& text) {
-  std::string allowed;
-  for (const auto& [entry, entry_name] : table) {
-    if (text == entry_name) return entry;
-    allowed += (allowed.empty() ? "" : ", ") + std::string(entry_name);
-  }
-  throw InputError(std::string(key) + " = \"" + text + "\" is not known; allowed: " + allowed +
-                   "; choose one of these");
-}
 
 /// Whether a collision is that of Hertz springs, f_n = k x^(3/2).
 bool stiffens(Law law) {
@@ -61,16 +25,6 @@ bool stiffens(Law law) {
 /// Whether r* of the grains is part of a law's constants.
 bool has_hertz_radius(Law law) {
   return with_law(law, [](auto each) { return decltype(each)::Force::has_hertz_radius; });
-}
-
-bool any_law(Law) { return true; }
-
-/// Names of the laws of which `listed` is true.
-std::string names_of_laws(bool (*listed)(Law)) {
-  std::string names;
-  for (int k = 0; k < law_count; ++k)
-    if (listed(Law(k))) names += (names.empty() ? "" : ", ") + std::string(name(Law(k)));
-  return names;
 }
 
 /// Tsuji's factor alpha(e) as the polynomial that LAMMPS fits. Tsuji's mass is that of one grain, LAMMPS' the reduced
@@ -129,26 +83,19 @@ void check_damping(const ContactModel& model, const Damping& damping, Findings& 
   if (damping.dashpot == Dashpot::none) return;
   findings.expect(damping.tangential_ratio >= 0, "damping.tangential_ratio", damping.tangential_ratio, ">= 0",
                   "give 0 for a normal dashpot alone");
-  if (damping.dashpot == Dashpot::coefficient) {
+  const bool viscoelastic = damping.dashpot == Dashpot::viscoelastic;
+  if ((viscoelastic || damping.dashpot == Dashpot::tsuji) && !stiffens(model.law))
+    findings.add(std::string("damping.dashpot = ") + name(damping.dashpot) +
+                 " does not go with contact.law = " + name(model.law) + "; allowed: " + names_where<Law>(stiffens) +
+                 "; use damping.dashpot = restitution" + (viscoelastic ? " or coefficient" : ""));
+  if (viscoelastic || damping.dashpot == Dashpot::coefficient)
     findings.expect(damping.normal_coefficient >= 0, "damping.normal_coefficient", damping.normal_coefficient,
-                    ">= 0 N s/m", "give the dashpot coefficient, or damping.dashpot = none");
-  }
-  if (damping.dashpot == Dashpot::tsuji && !stiffens(model.law)) {
-    findings.add("damping.dashpot = tsuji does not go with contact.law = " + std::string(name(model.law)) +
-                 "; allowed: " + names_of_laws(stiffens) + "; use damping.dashpot = restitution");
-  }
-  if (damping.dashpot == Dashpot::restitution || damping.dashpot == Dashpot::tsuji) {
+                    viscoelastic ? ">= 0 1/(m s)" : ">= 0 N s/m",
+                    viscoelastic ? "give the viscoelastic constant, or damping.dashpot = none"
+                                 : "give the dashpot coefficient, or damping.dashpot = none");
+  if (damping.dashpot == Dashpot::restitution || damping.dashpot == Dashpot::tsuji)
     findings.expect(damping.restitution > 0 && damping.restitution <= 1, "damping.restitution", damping.restitution,
                     "above 0 to 1", "give the coefficient of restitution of two grains; 1 is elastic");
-  }
-  if (damping.dashpot == Dashpot::viscoelastic) {
-    if (!stiffens(model.law)) {
-      findings.add("damping.dashpot = viscoelastic does not go with contact.law = " + std::string(name(model.law)) +
-                   "; allowed: " + names_of_laws(stiffens) + "; use damping.dashpot = restitution or coefficient");
-    }
-    findings.expect(damping.normal_coefficient >= 0, "damping.normal_coefficient", damping.normal_coefficient,
-                    ">= 0 1/(m s)", "give the viscoelastic constant, or damping.dashpot = none");
-  }
 }
 
 void check_material(const ContactModel& model, const Material& material, Findings& findings) {
@@ -198,12 +145,7 @@ PairParameters mix(const ContactModel& model, const Damping& damping, const Mate
                    const Material& b, double rj, double mj, double section) {
   const double reduced_radius = ri * rj / (ri + rj);
   const double reduced_mass = mi * mj / (mi + mj);
-  const ContactConstants constants =
-      with_law(model.law, [&](auto law) { return decltype(law)::mix(a, ri, b, rj, section); });
-  PairParameters pair;
-  pair.kn = constants.kn;
-  pair.kt = constants.kt;
-  pair.law_constant = constants.law_constant;
+  PairParameters pair{with_law(model.law, [&](auto law) { return decltype(law)::mix(a, ri, b, rj, section); })};
   pair.friction = std::min(a.friction, b.friction);
   if (model.rolling) {
     pair.kr = pair.kt * (ri * rj) * harmonic_mean(a.rolling_stiffness, b.rolling_stiffness);
@@ -217,7 +159,7 @@ void check_parameters(const ContactModel& model, const Damping& damping, const s
   Findings findings;
   if (model.hertz_radius == HertzRadius::curvature && !has_hertz_radius(model.law))
     findings.add("contact.hertz_radius = \"curvature\" does not go with contact.law = " + std::string(name(model.law)) +
-                 ", whose stiffness holds no radius of Hertz; allowed: " + names_of_laws(has_hertz_radius) +
+                 ", whose stiffness holds no radius of Hertz; allowed: " + names_where<Law>(has_hertz_radius) +
                  "; use contact.hertz_radius = \"equivalent\"");
   check_damping(model, damping, findings);
   if (materials.empty()) findings.add("materials: none given; allowed: one or more; name at least one grain material");
@@ -225,9 +167,6 @@ void check_parameters(const ContactModel& model, const Damping& damping, const s
   findings.raise();
 }
 
-const char* name(Law law) {
-  return with_law(law, [](auto each) { return decltype(each)::name; });
-}
 std::string in_words(const Interval& i) {
   std::ostringstream words;
   if (i.low == -no_bound && i.high == no_bound)
@@ -239,27 +178,6 @@ std::string in_words(const Interval& i) {
   else
     words << (i.low_open ? "above " : "") << i.low << " to " << (i.high_open ? "below " : "") << i.high;
   return words.str();
-}
-
-const char* name(Slip slip) { return name_in(slip_names, slip); }
-const char* name(HertzRadius radius) { return name_in(hertz_radius_names, radius); }
-const char* name(Dashpot dashpot) { return name_in(dashpot_names, dashpot); }
-const char* name(LocalDampingForm form) { return name_in(local_damping_form_names, form); }
-
-std::string law_names() { return names_of_laws(any_law); }
-
-Law law_from(const std::string& text) {
-  for (int k = 0; k < law_count; ++k)
-    if (text == name(Law(k))) return Law(k);
-  throw InputError("contact.law = \"" + text + "\" is not known; allowed: " + law_names() + "; choose one of these");
-}
-Slip slip_from(const std::string& text) { return value_in(slip_names, "contact.slip", text); }
-HertzRadius hertz_radius_from(const std::string& text) {
-  return value_in(hertz_radius_names, "contact.hertz_radius", text);
-}
-Dashpot dashpot_from(const std::string& text) { return value_in(dashpot_names, "damping.dashpot", text); }
-LocalDampingForm local_damping_form_from(const std::string& text) {
-  return value_in(local_damping_form_names, "damping.local_form", text);
 }
 
 }  // namespace rvelab

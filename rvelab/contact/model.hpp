@@ -4,11 +4,14 @@
 // This room knows two grains at a time: no list, no cell, no step loop.
 #pragma once
 
+#include <cstddef>
+#include <iterator>
 #include <string>
 #include <vector>
 
 #include "rvelab/contact/kinds.hpp"
 #include "rvelab/contact/laws.hpp"
+#include "rvelab/error.hpp"
 
 namespace rvelab {
 
@@ -58,14 +61,11 @@ std::string in_words(const Interval& interval);
 const std::vector<LawParameter>& law_parameters();
 
 /// Parameters of one pair of grains, computed once when the pair is listed.
-struct PairParameters {
-  double kn = 0;            ///< constant of f_n: linear N/m, Hertz N/m^1.5 (contact/laws.hpp)
-  double kt = 0;            ///< constant of k_t: N/m; hertz_mindlin N/m^1.5
-  double law_constant = 0;  ///< one more, of laws that have one
-  double friction = 0;      ///< the smaller of the two
-  double kr = 0;            ///< constant of k_r = kt ri rj beta: N m; hertz_mindlin N m/m^0.5
-  double moment_cap = 0;    ///< min(eta_i ri, eta_j rj), m
-  double cn = 0;            ///< dashpot: c_n = cn delta^dashpot_power
+struct PairParameters : ContactConstants {
+  double friction = 0;    ///< the smaller of the two
+  double kr = 0;          ///< constant of k_r = kt ri rj beta: N m; hertz_mindlin N m/m^0.5
+  double moment_cap = 0;  ///< min(eta_i ri, eta_j rj), m
+  double cn = 0;          ///< dashpot: c_n = cn delta^dashpot_power
 };
 
 /// Power of the overlap in the dashpot coefficient: 0 (coefficient, linear), 1/2 (viscoelastic), 1/4 (restitution and
@@ -80,16 +80,60 @@ PairParameters mix(const ContactModel& model, const Damping& damping, const Mate
 /// Checks every parameter that the model uses. Throws InputError naming key, value and range, one line each.
 void check_parameters(const ContactModel& model, const Damping& damping, const std::vector<Material>& materials);
 
-const char* name(Law);
-const char* name(Slip);
-const char* name(HertzRadius);
-const char* name(Dashpot);
-const char* name(LocalDampingForm);
-Law law_from(const std::string&);  ///< throws InputError listing the names
-std::string law_names();           ///< "linear, linear_given, ..."
-Slip slip_from(const std::string&);
-HertzRadius hertz_radius_from(const std::string&);
-Dashpot dashpot_from(const std::string&);
-LocalDampingForm local_damping_form_from(const std::string&);
+template <class>
+struct NamesOf;
+template <class... Each>
+struct NamesOf<TypeList<Each...>> {
+  static constexpr const char* names[] = {Each::name...};
+};
+/// The key of a choice, and the names of its values in their order.
+template <class Choice>
+struct Named;
+template <>
+struct Named<Law> : NamesOf<Laws> {
+  static constexpr const char* key = "contact.law";
+};
+template <>
+struct Named<Slip> {
+  static constexpr const char *key = "contact.slip", *names[] = {"consistent", "full_radius", "full_radius_ratcheting"};
+};
+template <>
+struct Named<HertzRadius> {
+  static constexpr const char *key = "contact.hertz_radius", *names[] = {"equivalent", "curvature"};
+};
+template <>
+struct Named<Dashpot> {
+  static constexpr const char *key = "damping.dashpot",
+                              *names[] = {"none", "coefficient", "restitution", "viscoelastic", "tsuji"};
+};
+template <>
+struct Named<LocalDampingForm> {
+  static constexpr const char *key = "damping.local_form", *names[] = {"vector", "component"};
+};
+template <class Choice>
+constexpr auto name(Choice choice) -> decltype(Named<Choice>::names[0] + 0) {
+  return Named<Choice>::names[std::size_t(choice)];
+}
+/// "linear, linear_given, ...": the names of the values for which this holds.
+template <class Choice, class Holds>
+std::string names_where(const Holds& holds) {
+  std::string names;
+  for (int k = 0; k < int(std::size(Named<Choice>::names)); ++k)
+    if (holds(Choice(k))) names += (names.empty() ? "" : ", ") + std::string(name(Choice(k)));
+  return names;
+}
+template <class Choice>
+std::string names_of() {
+  return names_where<Choice>([](Choice) { return true; });
+}
+inline std::string law_names() { return names_of<Law>(); }
+/// The value of a name; throws InputError listing the names.
+template <class Choice>
+Choice choice_from(const std::string& text) {
+  for (int k = 0; k < int(std::size(Named<Choice>::names)); ++k)
+    if (text == name(Choice(k))) return Choice(k);
+  throw InputError(std::string(Named<Choice>::key) + " = \"" + text +
+                   "\" is not known; allowed: " + names_of<Choice>() + "; choose one of these");
+}
 
 }  // namespace rvelab

@@ -1,5 +1,5 @@
-// A number of a grain material that a contact law reads, as the law declares it. No standard library: step kernels
-// include the laws.
+// What a law declares: the numbers of a grain material that it reads, and what it makes of two grains. No standard
+// library: step kernels include the laws.
 #pragma once
 
 namespace rvelab {
@@ -33,5 +33,15 @@ struct StoredConstant {
   const char* unit;
   int since = 0;
 };
+
+/// Constants of one contact: f_n and the current stiffnesses follow from them and the overlap.
+struct ContactConstants {
+  double kn = 0;            ///< of f_n: linear N/m, Hertz N/m^1.5
+  double kt = 0;            ///< of k_t: N/m; hertz_mindlin N/m^1.5
+  double law_constant = 0;  ///< one more, of laws that have one
+};
+
+/// 2ab/(a + b), zero if either is zero.
+static inline double harmonic_mean(double a, double b) { return a > 0 && b > 0 ? 2 * (a * b) / (a + b) : 0.0; }
 
 }  // namespace rvelab

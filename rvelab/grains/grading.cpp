@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
+#include <string>
 #include <utility>
 
 #include "rvelab/error.hpp"
@@ -65,32 +65,26 @@ double NumberCurve::mean_power(int dimension) const {
 }
 
 void check_grading(const Grading& grading, const char* where) {
-  std::ostringstream text;
-  if (grading.curve != GradingCurve::tabulated) {
-    if (!(grading.smallest_radius > 0) || !(grading.largest_radius >= grading.smallest_radius) ||
-        !std::isfinite(grading.largest_radius)) {
-      text << where << ".smallest_radius_m = " << grading.smallest_radius << " and " << where
-           << ".largest_radius_m = " << grading.largest_radius
-           << " are no limits of a grading; allowed: 0 < smallest <= largest; correct the radii";
-      throw InputError(text.str());
-    }
-    return;
-  }
-  const auto ascending = [](const std::vector<double>& list) {
-    return std::adjacent_find(list.begin(), list.end(), [](double a, double b) { return !(a < b); }) == list.end();
+  const std::string of = where + std::string(".");
+  const auto expect = [](bool allowed, const std::string& text) {
+    if (!allowed) throw InputError(text);
   };
+  if (grading.curve != GradingCurve::tabulated)
+    return expect(grading.smallest_radius > 0 && grading.largest_radius >= grading.smallest_radius &&
+                      std::isfinite(grading.largest_radius),
+                  of + "smallest_radius_m = " + in_words(grading.smallest_radius) + " and " + of +
+                      "largest_radius_m = " + in_words(grading.largest_radius) +
+                      " are no limits of a grading; allowed: 0 < smallest <= largest; correct the radii");
   const auto& radii = grading.radii;
   const auto& passing = grading.passing;
-  if (radii.size() < 2 || passing.size() != radii.size()) {
-    text << where << ".radii_m has " << radii.size() << " values, " << where << ".passing " << passing.size()
-         << "; allowed: as many in both, at least two; correct the lists";
-  } else if (!(radii.front() > 0) || !ascending(radii)) {
-    text << where << ".radii_m is not ascending from above 0; allowed: each larger than the one before; correct it";
-  } else if (passing.front() != 0 || passing.back() != 1 || !std::is_sorted(passing.begin(), passing.end())) {
-    text << where
-         << ".passing does not rise from 0 to 1; allowed: 0 first, 1 last, none below the one before; correct it";
-  }
-  if (!text.str().empty()) throw InputError(text.str());
+  expect(radii.size() >= 2 && passing.size() == radii.size(),
+         of + "radii_m has " + std::to_string(radii.size()) + " values, " + of + "passing " +
+             std::to_string(passing.size()) + "; allowed: as many in both, at least two; correct the lists");
+  const auto falls = [](double a, double b) { return !(a < b); };
+  expect(radii.front() > 0 && std::adjacent_find(radii.begin(), radii.end(), falls) == radii.end(),
+         of + "radii_m is not ascending from above 0; allowed: each larger than the one before; correct it");
+  expect(passing.front() == 0 && passing.back() == 1 && std::is_sorted(passing.begin(), passing.end()),
+         of + "passing does not rise from 0 to 1; allowed: 0 first, 1 last, none below the one before; correct it");
 }
 
 NumberCurve number_curve(const Grading& grading, int dimension) {

@@ -71,41 +71,6 @@ inline __attribute__((always_inline)) V8 square_root(V8 v) { return (V8)_mm512_s
 #endif
 
 template <>
-struct Lanes<1> {
-  using V = double;
-  struct Quad {
-    double at[4];
-  };
-  static inline __attribute__((always_inline)) Quad add(Quad a, Quad b) {
-    return {{a.at[0] + b.at[0], a.at[1] + b.at[1], a.at[2] + b.at[2], a.at[3] + b.at[3]}};
-  }
-  static inline __attribute__((always_inline)) Quad mul(Quad a, Quad b) {
-    return {{a.at[0] * b.at[0], a.at[1] * b.at[1], a.at[2] * b.at[2], a.at[3] * b.at[3]}};
-  }
-  static inline __attribute__((always_inline)) Quad sub(Quad a, Quad b) {
-    return {{a.at[0] - b.at[0], a.at[1] - b.at[1], a.at[2] - b.at[2], a.at[3] - b.at[3]}};
-  }
-  static inline __attribute__((always_inline)) Quad broadcast(double s) { return {{s, s, s, s}}; }
-  static inline __attribute__((always_inline)) Quad seen_from_i(Quad a) {
-    return {{-a.at[0], -a.at[1], a.at[3], a.at[2]}};
-  }
-  template <class At>
-  static inline __attribute__((always_inline)) V collected(const At& at) {
-    return at(0);
-  }
-  static inline __attribute__((always_inline)) void transpose_pairs(const V2* rows, V* columns) {
-    columns[0] = rows[0][0];
-    columns[1] = rows[0][1];
-  }
-  static inline __attribute__((always_inline)) void transpose(const Quad* rows, V* columns) {
-    for (int c = 0; c < 4; ++c) columns[c] = rows[0].at[c];
-  }
-  static inline __attribute__((always_inline)) void untranspose(const V* columns, Quad* rows) {
-    for (int c = 0; c < 4; ++c) rows[0].at[c] = columns[c];
-  }
-};
-
-template <>
 struct Lanes<2> {
   using V = V2;
   struct Quad {
@@ -137,6 +102,26 @@ struct Lanes<2> {
                __builtin_shufflevector(columns[2], columns[3], 0, 2)};
     rows[1] = {__builtin_shufflevector(columns[0], columns[1], 1, 3),
                __builtin_shufflevector(columns[2], columns[3], 1, 3)};
+  }
+};
+
+/// Its Quads are those of two lanes, with what is done to them.
+template <>
+struct Lanes<1> : Lanes<2> {
+  using V = double;
+  template <class At>
+  static inline __attribute__((always_inline)) V collected(const At& at) {
+    return at(0);
+  }
+  static inline __attribute__((always_inline)) void transpose_pairs(const V2* rows, V* columns) {
+    for (int c = 0; c < 2; ++c) columns[c] = rows[0][c];
+  }
+  static inline __attribute__((always_inline)) void transpose(const Quad* rows, V* columns) {
+    transpose_pairs(&rows[0].low, columns);
+    transpose_pairs(&rows[0].high, columns + 2);
+  }
+  static inline __attribute__((always_inline)) void untranspose(const V* columns, Quad* rows) {
+    rows[0] = {V2{columns[0], columns[1]}, V2{columns[2], columns[3]}};
   }
 };
 

@@ -45,6 +45,18 @@ double void_ratio_of(const Network& network, Counted counted) {
   return solid > 0 ? (network.cell.volume() - solid) / solid : not_defined;
 }
 
+/// A mean over the grains, over the force scale of the unbalanced ratio.
+template <class OfGrain>
+double unbalanced(const Network& network, const OfGrain& of_grain) {
+  double left = 0, force = 0;
+  for (const GrainState& grain : network.grains) left += of_grain(grain);
+  for (const ContactState& contact : network.contacts) force += contact.force().norm();
+  if (!network.grains.empty()) left /= network.grains.size();
+  if (!network.contacts.empty()) force /= network.contacts.size();
+  const double scale = std::max(force, 1e-3 * network.reference_contact_force);
+  return scale > 0 ? left / scale : 0.0;
+}
+
 }  // namespace
 
 Matrix3 contact_stress(const Network& network) {
@@ -148,22 +160,6 @@ double sliding_fraction(const Network& network) {
   });
   return static_cast<double>(sliding) / network.contacts.size();
 }
-
-namespace {
-
-/// A mean over the grains, over the force scale of the unbalanced ratio.
-template <class OfGrain>
-double unbalanced(const Network& network, const OfGrain& of_grain) {
-  double left = 0, force = 0;
-  for (const GrainState& grain : network.grains) left += of_grain(grain);
-  for (const ContactState& contact : network.contacts) force += contact.force().norm();
-  if (!network.grains.empty()) left /= network.grains.size();
-  if (!network.contacts.empty()) force /= network.contacts.size();
-  const double scale = std::max(force, 1e-3 * network.reference_contact_force);
-  return scale > 0 ? left / scale : 0.0;
-}
-
-}  // namespace
 
 double unbalanced_force_ratio(const Network& network) {
   return unbalanced(network, [](const GrainState& grain) { return grain.resultant.norm(); });

@@ -8,7 +8,7 @@
 
 #include <vector>
 
-#include "rvelab/cell/pressure.hpp"
+#include "rvelab/cell/cell.hpp"
 #include "rvelab/solver/assembly/network.hpp"
 
 namespace rvelab {

@@ -2,7 +2,6 @@
 #include "rvelab/measure/probe.hpp"
 
 #include <algorithm>
-#include <sstream>
 
 #include "rvelab/error.hpp"
 #include "rvelab/measure/tensor_order.hpp"
@@ -33,11 +32,9 @@ double relax_fully(Rve& rve, long max_steps) {
 }  // namespace
 
 Probe probe_stiffness(const Rve& rve, double size, long max_steps) {
-  if (!(size > 0 && size <= 0.01)) {
-    std::ostringstream message;
-    message << "probe size = " << size << " is out of range; allowed: above 0 to 0.01; give 1e-7 for an elastic probe";
-    throw InputError(message.str());
-  }
+  if (!(size > 0 && size <= 0.01))
+    throw InputError("probe size = " + in_words(size) +
+                     " is out of range; allowed: above 0 to 0.01; give 1e-7 for an elastic probe");
   const int dimension = rve.cell().dimension, components = component_count(dimension);
   const Eigen::VectorXd start = stress_components(rve.stress(), dimension);
   Probe probe;

@@ -7,12 +7,6 @@
 
 namespace rvelab {
 
-Vector3 branch_of(const Specimen& specimen, const Contact& contact) {
-  const auto& position = specimen.grains.position;
-  return position[static_cast<std::size_t>(contact.j)] + translation(specimen.cell, contact.image) -
-         position[static_cast<std::size_t>(contact.i)];
-}
-
 namespace {
 
 /// Of grains that are not round.
@@ -33,7 +27,22 @@ OutlinePlace place_of(const Specimen& specimen, const Contact& contact) {
   });
 }
 
+/// What laws take for sqrt(overlap) > 0, m^0.5.
+double root_overlap(const Specimen& specimen, const Contact& contact) {
+  if (is_round(specimen.shape) || specimen.contact.hertz_radius == HertzRadius::equivalent)
+    return std::sqrt(overlap_of(specimen, contact));
+  const OutlinePlace at = place_of(specimen, contact);
+  const auto& radius = specimen.grains.radius;
+  return std::sqrt(at.overlap * at.hertz_radius_ratio(radius[std::size_t(contact.i)], radius[std::size_t(contact.j)]));
+}
+
 }  // namespace
+
+Vector3 branch_of(const Specimen& specimen, const Contact& contact) {
+  const auto& position = specimen.grains.position;
+  return position[static_cast<std::size_t>(contact.j)] + translation(specimen.cell, contact.image) -
+         position[static_cast<std::size_t>(contact.i)];
+}
 
 Vector3 normal_of(const Specimen& specimen, const Contact& contact) {
   if (is_round(specimen.shape)) return branch_of(specimen, contact).normalized();
@@ -47,19 +56,6 @@ double overlap_of(const Specimen& specimen, const Contact& contact) {
   return radius[static_cast<std::size_t>(contact.i)] + radius[static_cast<std::size_t>(contact.j)] -
          branch_of(specimen, contact).norm();
 }
-
-namespace {
-
-/// What laws take for sqrt(overlap) > 0, m^0.5.
-double root_overlap(const Specimen& specimen, const Contact& contact) {
-  if (is_round(specimen.shape) || specimen.contact.hertz_radius == HertzRadius::equivalent)
-    return std::sqrt(overlap_of(specimen, contact));
-  const OutlinePlace at = place_of(specimen, contact);
-  const auto& radius = specimen.grains.radius;
-  return std::sqrt(at.overlap * at.hertz_radius_ratio(radius[std::size_t(contact.i)], radius[std::size_t(contact.j)]));
-}
-
-}  // namespace
 
 PairParameters parameters_of(const Specimen& specimen, const Contact& contact) {
   const auto& grains = specimen.grains;

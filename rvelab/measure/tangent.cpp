@@ -8,14 +8,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
+#include <string>
 #include <vector>
 
 #include "rvelab/error.hpp"
 #include "rvelab/measure/block_factors.hpp"
 #include "rvelab/measure/contact_linear.hpp"
 #include "rvelab/measure/measures.hpp"
-#include "rvelab/measure/outline_linear.hpp"
 #include "rvelab/measure/tensor_order.hpp"
 
 namespace rvelab {
@@ -41,27 +40,23 @@ Matrix9 rows_of(const LinearContact& linear) {
 
 /// Half of the unloading terms stands in the linear law, so that with r = half the terms per dl the law is
 /// law q + r |dl|: exact for loading (dl < 0: nothing) and for unloading (dl > 0: all).
-Spring spring_of_outlines(const Network& network, const ContactState& contact) {
-  const LinearOutlineContact linear = linearised_outlines(network.shape, contact, network.grains[contact.i],
-                                                          network.grains[contact.j], hertz_radius(network));
-  Spring spring{&contact, rows_of(linear.law), Vector9::Zero(), linear.opening.transpose()};
-  if (rescales(network)) {
-    const Matrix9 half = 0.5 * rows_of(linear.unloading);
-    spring.law += half;
-    spring.unloading = half * spring.opening / spring.opening.squaredNorm();
-  }
-  return spring;
-}
-
 Spring spring_of(const Network& network, const ContactState& contact) {
-  if (!is_round(network.shape)) return spring_of_outlines(network, contact);
-  const double ri = network.grains[contact.i].radius, rj = network.grains[contact.j].radius;
-  Spring spring{&contact, rows_of(linearised(contact, ri, rj, network.model.slip)), Vector9::Zero()};
-  if (rescales(network)) {
-    const Matrix9 half = 0.5 * rows_of(unloading_terms(contact, ri, rj));
+  const GrainState &i = network.grains[contact.i], &j = network.grains[contact.j];
+  const bool unloads = rescales(network);
+  if (is_round(network.shape)) {
+    Spring spring{&contact, rows_of(linearised(contact, i.radius, j.radius, network.model.slip)), Vector9::Zero()};
+    if (!unloads) return spring;
+    const Matrix9 half = 0.5 * rows_of(unloading_terms(contact, i.radius, j.radius));
     spring.law += half;
     spring.unloading = half.leftCols<3>() * contact.normal;
+    return spring;
   }
+  const LinearOutlineContact linear = linearised_outlines(network.shape, contact, i, j, hertz_radius(network));
+  Spring spring{&contact, rows_of(linear.law), Vector9::Zero(), linear.opening.transpose()};
+  if (!unloads) return spring;
+  const Matrix9 half = 0.5 * rows_of(linear.unloading);
+  spring.law += half;
+  spring.unloading = half * spring.opening / spring.opening.squaredNorm();
   return spring;
 }
 
@@ -231,10 +226,8 @@ class Condensed {
       }
     }
     if (smallest <= sufficient) return best;
-    std::ostringstream message;
-    message << "elastic tangent: grains are balanced to " << smallest << " of the load only, allowed: " << sufficient
-            << "; relax the specimen, or use the dynamic method";
-    throw Error(message.str());
+    throw Error("elastic tangent: grains are balanced to " + in_words(smallest) + " of the load only, allowed: " +
+                in_words(sufficient) + "; relax the specimen, or use the dynamic method");
   }
 
   /// Largest force that a contact feels when all grains move with the strain, N.

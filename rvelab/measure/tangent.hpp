@@ -21,10 +21,9 @@ namespace rvelab {
 /// unbalanced ratio of the state where that is larger.
 Eigen::MatrixXd elastic_tangent(const Network& network);
 
-/// All grains move with the strain and do not turn: C = (1/V) sum l^2 [kn nnnn + kt/4 (n_i n_k d_jl + n_i n_l d_jk +
-/// n_j n_k d_il + n_j n_l d_ik - 4 nnnn)] plus initial-stress terms, over all contacts. Stiffer than the condensed
-/// tangent (1.15 to 1.35 times for disordered packings): a preconditioner. Ellipses, whose normal is not along the
-/// branch b: kn (n b)(n b) + kt (t b)(t b) with the symmetric parts of the dyads in place of the bracket.
+/// All grains move with the strain and do not turn: the affine stiffness of solver/README.md plus initial-stress terms,
+/// over all contacts. Stiffer than the condensed tangent (1.15 to 1.35 times for disordered packings): a
+/// preconditioner.
 Eigen::MatrixXd affine_tangent(const Network& network);
 
 }  // namespace rvelab

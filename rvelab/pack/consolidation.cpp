@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "rvelab/cell/givens.hpp"
+#include "rvelab/cell/cell.hpp"
 
 namespace rvelab::pack {
 

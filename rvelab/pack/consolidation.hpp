@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "rvelab/cell/pressure.hpp"
+#include "rvelab/cell/cell.hpp"
 #include "rvelab/solver/rve.hpp"
 
 namespace rvelab::pack {

@@ -2,6 +2,7 @@
 // result travel as bytes. Any virtual function of Share can be called so that stands in ShareCalls (threaded_pool.hpp).
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -11,7 +12,8 @@
 
 namespace rvelab::pool {
 
-class Share;
+class ThreadedPool;
+using Share = ThreadedPool;  ///< of a rank: what it holds of a pool over many
 
 /// How a value travels, and what holds it on arrival. Numbers and plain structs: as they lie in memory.
 template <class Value>
@@ -53,7 +55,6 @@ struct Signature;
 template <class Class, class Returned, class... Arguments>
 struct Signature<Returned (Class::*)(Arguments...)> {
   using Result = Returned;
-  using Given = std::tuple<std::decay_t<Arguments>...>;
 
   static void put(Packer& to, const std::decay_t<Arguments>&... arguments) {
     (Travel<std::decay_t<Arguments>>::put(to, arguments), ...);
@@ -107,45 +108,27 @@ class CallList {
   struct Name;
 };
 
-/// A call on its way to the share that makes it.
-class TravellingCall {
- public:
-  virtual void make(Share& share) = 0;
-  virtual void put(Packer& message) const = 0;
-  virtual void take_result(Unpacker& found) = 0;
-
- protected:
-  ~TravellingCall() = default;
+/// A call on its way to the share that makes it: made there, or its number and arguments and then its result as bytes.
+struct TravellingCall {
+  std::function<void(Share&)> make;
+  std::function<void(Packer&)> put;
+  std::function<void(Unpacker&)> take_result;
 };
 
-/// The call of one function in `Calls`.
-template <class Calls, auto function>
-class CallOf final : public TravellingCall {
+/// The call of one function in `Calls`, by `way`(call); its result.
+template <class Calls, auto function, class Way, class... Given>
+ResultOf<function> travelled(const Way& way, const Given&... given) {
   using Result = ResultOf<function>;
-
- public:
-  template <class... Arguments>
-  explicit CallOf(const Arguments&... arguments) : arguments_(arguments...) {}
-  void make(Share& share) override {
-    const auto call = [&](const auto&... each) -> Result { return (share.*function)(each...); };
-    if constexpr (std::is_void_v<Result>)
-      std::apply(call, arguments_);
-    else
-      result_.emplace(std::apply(call, arguments_));
+  if constexpr (std::is_void_v<Result>) {
+    way({[&](Share& share) { (share.*function)(given...); },
+         [&](Packer& to) { Calls::template put<function>(to, given...); }, [](Unpacker&) {}});
+  } else {
+    std::optional<Result> result;
+    way({[&](Share& share) { result = (share.*function)(given...); },
+         [&](Packer& to) { Calls::template put<function>(to, given...); },
+         [&](Unpacker& from) { result = Travel<Result>::take(from); }});
+    return std::move(*result);
   }
-  void put(Packer& message) const override {
-    std::apply([&](const auto&... each) { Calls::template put<function>(message, each...); }, arguments_);
-  }
-  void take_result(Unpacker& found) override {
-    if constexpr (!std::is_void_v<Result>) result_.emplace(Travel<Result>::take(found));
-  }
-  Result result() {
-    if constexpr (!std::is_void_v<Result>) return std::move(*result_);
-  }
-
- private:
-  typename SignatureOf<function>::Given arguments_;
-  std::optional<std::conditional_t<std::is_void_v<Result>, char, Result>> result_;
-};
+}
 
 }  // namespace rvelab::pool

@@ -5,70 +5,39 @@
 // InvalidIncrement and IncrementFailed too; what they change is then as it was.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <functional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "rvelab/pool/status.hpp"
-#include "rvelab/pool/team.hpp"
 #include "rvelab/solver/rve.hpp"
 
 namespace rvelab::pool {
 
-enum class TrialMemory { keep, recompute };
-
-/// Zero: what the specimen says.
-struct Options {
-  unsigned workers = 0;
-  TrialMemory trial_memory = TrialMemory::keep;
-  double tolerance_rel = 0, tolerance_abs = 0;
-  long max_substeps = 0;
-  double damping = 0;
-  double min_height = 0;  ///< m
-  RunTasks run_tasks = nullptr;
-  void* host = nullptr;
+struct Options : rvelab_pool_def {
+  Options(const rvelab_pool_def& def = {}) : rvelab_pool_def(def) {}
 };
 
-/// Trials of many RVEs; arrays as in rvelab_batch. Null: not asked for.
-struct Batch {
-  std::int64_t n = 0;
-  double dt = 0;
-  const std::int64_t* ids = nullptr;
-  const double* displacement_gradients = nullptr;
-  const std::int64_t* tokens_in = nullptr;
-  double* stress = nullptr;
-  double* contact_stress = nullptr;
-  double* reynolds_stress = nullptr;
-  double* tangent = nullptr;
-  double* error_estimate = nullptr;
-  double* dt_scale = nullptr;
-  std::int32_t* status = nullptr;
-  std::int64_t* tokens_out = nullptr;
+/// Trials of many RVEs.
+struct Batch : rvelab_batch {
+  Batch(const rvelab_batch& batch = {}) : rvelab_batch(batch) {}
   const std::int64_t* places = nullptr;  ///< what texts call the entries; null: by their index
 };
 
-/// A status with its text, "" for ok.
-struct Verdict {
-  Status status = Status::ok;
-  std::string text;
+/// The results of a batch that are numbers, and how many of each an RVE has.
+struct BatchOutput {
+  double* rvelab_batch::*values;
+  std::size_t each;
 };
+inline constexpr BatchOutput batch_outputs[] = {{&rvelab_batch::sigma, 9},          {&rvelab_batch::contact, 9},
+                                                {&rvelab_batch::reynolds, 9},       {&rvelab_batch::tangent, 36},
+                                                {&rvelab_batch::error_estimate, 1}, {&rvelab_batch::dt_scale, 1}};
 
-/// Of a committed state; see rvelab_info. Tensors are row-major. It travels as its bytes (calls.hpp).
-struct Info {
-  std::int64_t dimension = 0;
-  std::size_t grains = 0, contacts = 0;
-  std::array<double, 9> lattice{}, rotation{};
-  double volume = 0, void_ratio = 0, coordination_number = 0;
-  std::array<double, 9> fabric{};
-  double fabric_anisotropy = 0, sliding_fraction = 0, p = 0, q = 0, unbalanced_force_ratio = 0, inertial_number = 0;
-  double permeability_ratio = 0, min_height_ratio = 0;
-  std::uint64_t grain_steps = 0;
-  Memory memory;
-  std::int64_t token = 0;
-};
+/// A tensor as the interface has it.
+using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+inline void store(const Matrix3& tensor, double* to) { Eigen::Map<RowMajor>(to, 3, 3) = tensor; }
+inline Matrix3 tensor_at(const double* from) { return Eigen::Map<const RowMajor>(from); }
 
 /// All that a pool file keeps beside the states, which go in and out as to_bytes(RveState) makes them.
 struct Population {
@@ -77,8 +46,7 @@ struct Population {
   std::vector<std::int64_t> ids;
 };
 
-class Share;
-class TravellingCall;
+struct TravellingCall;
 
 /// Those who implement it decide where the RVEs live. What is declared here they do each in its own way; any other call
 /// is a function of Share, which `at` and `everywhere` take to the RVE.
@@ -127,8 +95,19 @@ class Pool {
   auto everywhere(const Arguments&... arguments);
 
  private:
-  virtual void make_at(std::int64_t id, TravellingCall& call) = 0;
-  virtual void make_everywhere(TravellingCall& call) = 0;
+  virtual void make_at(std::int64_t id, const TravellingCall& call) = 0;
+  virtual void make_everywhere(const TravellingCall& call) = 0;
 };
+
+// What every kind of pool refuses.
+
+/// Throws Refused (bad_input, unsupported).
+void expect_options(const Options& options);
+/// Throws Refused (bad_input, no_slot) unless n RVEs can be asked for.
+void expect_spawn(std::int64_t n);
+/// Throws Refused (bad_file) unless ids, generations and tag belong together, for that many states.
+void expect_whole(const Population& population, std::size_t states);
+/// Throws Refused (bad_input) if the pool that is to take a file has RVEs.
+void expect_empty(std::size_t population);
 
 }  // namespace rvelab::pool

@@ -1,10 +1,7 @@
 #include "rvelab/pool/rve_state.hpp"
 
-#include <algorithm>
-#include <cstring>
-#include <string>
-
-#include "rvelab/pool/status.hpp"
+#include "rvelab/pool/message.hpp"
+#include "rvelab/pool/pool.hpp"
 #include "rvelab/solver/snapshot.hpp"
 
 namespace rvelab::pool {
@@ -35,40 +32,23 @@ struct Trial {
                                           "go from build to build");
 }
 
-template <class Value>
-Value take(std::span<const std::byte>& left) {
-  Value value;
-  if (left.size() < sizeof value) refuse("it ends before its tokens do");
-  std::memcpy(&value, left.data(), sizeof value);
-  left = left.subspan(sizeof value);
-  return value;
-}
-
-/// Puts a value where `to` is, and moves it behind.
-template <class Value>
-void put(std::byte*& to, const Value& value) {
-  std::memcpy(to, &value, sizeof value);
-  to += sizeof value;
-}
-
 }  // namespace
 
 std::vector<std::byte> to_bytes(const RveState& state, std::span<const std::byte> specimen) {
   const Tokens& tokens = state.tokens;
-  std::vector<std::byte> bytes(sizeof(Head) + sizeof(Numbers) + std::size_t(tokens.trials()) * sizeof(Trial) +
-                               specimen.size());
-  std::byte* to = bytes.data() + sizeof(Head);
-  put(to, Numbers{tokens.committed(), tokens.next(), tokens.trials(), state.initial_void_ratio, state.inertial_number});
+  Head head{{}, sizeof(Numbers) + std::size_t(tokens.trials()) * sizeof(Trial) + specimen.size(), 0};
+  std::memcpy(head.magic, magic, sizeof magic);
+  Packer packer;
+  packer.make_room(sizeof head + head.length).put(head);
+  packer.put(
+      Numbers{tokens.committed(), tokens.next(), tokens.trials(), state.initial_void_ratio, state.inertial_number});
   for (int k = 0; k < tokens.trials(); ++k) {
     const TrialRecord& record = tokens.trial(k);
     Trial trial{record.token, {}, record.dt};
-    for (int e = 0; e < 9; ++e) trial.gradient[e] = record.displacement_gradient(e / 3, e % 3);
-    put(to, trial);
+    store(record.displacement_gradient, trial.gradient);
+    packer.put(trial);
   }
-  std::copy(specimen.begin(), specimen.end(), to);
-  Head head{{}, 0, 0};
-  std::memcpy(head.magic, magic, sizeof magic);
-  head.length = bytes.size() - sizeof head;
+  Bytes bytes = packer.put_rest(specimen).take();
   head.checksum = snapshot_checksum(std::span(bytes).subspan(sizeof head));
   std::memcpy(bytes.data(), &head, sizeof head);
   return bytes;
@@ -78,12 +58,18 @@ RveState rve_state_of(std::span<const std::byte> bytes) {
   if (bytes.size() < sizeof(Head) || std::memcmp(bytes.data(), magic, sizeof magic) != 0)
     refuse("its " + std::to_string(bytes.size()) + " bytes do not begin as those of a snapshot of this version (\"" +
            std::string(magic, sizeof magic) + "\")");
-  const Head head = take<Head>(bytes);
+  Unpacker in(bytes);
+  const auto head = in.take<Head>();
+  bytes = in.rest();
   if (head.length != bytes.size())
     refuse("it has " + std::to_string(bytes.size()) + " bytes behind its head, which says " +
            std::to_string(head.length) + ": it was cut short or damaged");
   if (head.checksum != snapshot_checksum(bytes)) refuse("its checksum does not fit its bytes: it was damaged");
-  const auto numbers = take<Numbers>(bytes);
+  const auto expect_more = [&in](std::size_t size) {
+    if (in.rest().size() < size) refuse("it ends before its tokens do");
+  };
+  expect_more(sizeof(Numbers));
+  const auto numbers = in.take<Numbers>();
   if (numbers.trials < 0 || numbers.trials > Tokens::kept || numbers.committed < 1 ||
       numbers.next <= numbers.committed || !(numbers.initial_void_ratio > -1))
     refuse("its tokens cannot be: it was damaged");
@@ -91,14 +77,13 @@ RveState rve_state_of(std::span<const std::byte> bytes) {
   state.initial_void_ratio = numbers.initial_void_ratio;
   state.inertial_number = numbers.inertial_number;
   state.tokens.restore(numbers.committed, numbers.next);
-  for (int k = 0; k < int(numbers.trials); ++k) {
-    const auto trial = take<Trial>(bytes);
-    TrialRecord record{trial.token, Matrix3::Zero(), trial.dt};
-    for (int e = 0; e < 9; ++e) record.displacement_gradient(e / 3, e % 3) = trial.gradient[e];
-    state.tokens.add_again(record);
+  expect_more(std::size_t(numbers.trials) * sizeof(Trial));
+  for (std::int64_t k = 0; k < numbers.trials; ++k) {
+    const auto trial = in.take<Trial>();
+    state.tokens.add_again({trial.token, tensor_at(trial.gradient), trial.dt});
   }
   try {
-    state.specimen = from_bytes(bytes);
+    state.specimen = from_bytes(in.rest());
   } catch (const InputError& error) {
     refuse(error.what());
   }

@@ -1,16 +1,16 @@
-// States of RVEs out of the pool and into it. Declared in threaded_pool.hpp.
-#include <algorithm>
+// Measures, costs and states of the RVEs of a pool. Declared in threaded_pool.hpp.
 #include <string>
 #include <utility>
 
-#include "rvelab/pool/checks.hpp"
-#include "rvelab/pool/hold.hpp"
-#include "rvelab/pool/rve_state.hpp"
+#include "rvelab/measure/measures.hpp"
 #include "rvelab/pool/threaded_pool.hpp"
 
 namespace rvelab::pool {
 
 namespace {
+
+/// Kozeny-Carman: the permeability goes with e^3/(1 + e).
+double permeability(double void_ratio) { return void_ratio * void_ratio * void_ratio / (1 + void_ratio); }
 
 std::vector<std::byte> bytes_of(Resident& resident) {
   const Committed committed(resident.rve);
@@ -26,6 +26,49 @@ std::unique_ptr<Resident> opened(const RveState& state) {
 }
 
 }  // namespace
+
+rvelab_info ThreadedPool::info(std::int64_t id) {
+  const AtWork working(*this);
+  const Hold hold = held(id, ++serial_);
+  Resident& resident = hold.resident();
+  rvelab_info info{};
+  const Memory memory = resident.rve.memory();
+  info.bytes_resting = std::int64_t(memory.state + memory.list);
+  info.bytes_trial = resident.pending ? std::int64_t(memory.trial) : 0;
+  info.bytes_working = std::int64_t(memory.working);
+  info.token = resident.tokens.committed();
+  info.inertial_number = resident.inertial_number;
+  const Committed committed(resident.rve);
+  const Network network = resident.rve.network();
+  const Matrix3 stress = resident.rve.stress();
+  const int dimension = network.dimension();
+  info.dimension = dimension;
+  store(network.cell.lattice, info.lattice);
+  store(network.cell.rotation, info.rotation);
+  info.volume = network.cell.volume();
+  info.grains = std::int64_t(network.grains.size());
+  info.contacts = std::int64_t(network.contacts.size());
+  info.void_ratio = void_ratio(network);
+  info.coordination_number = coordination_number(network);
+  const Matrix3 fabric_tensor = fabric(network);
+  store(fabric_tensor, info.fabric);
+  info.fabric_anisotropy = fabric_anisotropy(fabric_tensor, dimension);
+  info.sliding_fraction = sliding_fraction(network);
+  info.p = mean_pressure(stress, dimension);
+  info.q = deviatoric_stress(stress, dimension);
+  info.unbalanced_force_ratio = resident.rve.unbalanced_ratio();
+  info.permeability_ratio = permeability(info.void_ratio) / permeability(resident.initial_void_ratio);
+  info.min_height_ratio = heights(network.cell).minCoeff() / mean_diameter(network);
+  info.grain_steps = std::int64_t(resident.rve.grain_steps());
+  return info;
+}
+
+void ThreadedPool::cost(std::span<const std::int64_t> ids, std::int64_t* grain_steps) {
+  const AtWork working(*this);
+  for (const std::int64_t id : ids) slots_.at(id);
+  for (const std::int64_t id : ids)
+    *grain_steps++ = std::int64_t(slots_.at(id).grain_steps.load(std::memory_order_relaxed));
+}
 
 std::vector<std::byte> ThreadedPool::save(std::int64_t id) {
   const AtWork working(*this);
@@ -43,15 +86,13 @@ void ThreadedPool::load(std::int64_t id, std::span<const std::byte> snapshot) {
 
 void ThreadedPool::write(const std::function<void(const Population&, const StateOf&)>& writer) {
   const Alone alone(*this);
-  Population population{slots_.ids().tag(), slots_.ids().generations(), {}};
-  for (std::size_t k = 0; k < slots_.size(); ++k)
-    if (slots_[k].resident) population.ids.push_back(slots_.ids().id_of(k));
+  const Population population{slots_.tag(), slots_.generations(), slots_.all()};
   writer(population, [&](std::size_t k) { return bytes_of(*slots_.at(population.ids[k]).resident); });
 }
 
 void ThreadedPool::read(const std::function<Population(const TakeState& take)>& reader) {
   const Alone alone(*this);
-  expect_empty(slots_.ids());
+  expect_empty(slots_.population());
   Slots::Residents states;
   const Population population =
       reader([&](std::span<const std::byte> bytes) { states.push_back(opened(rve_state_of(bytes))); });
@@ -59,10 +100,21 @@ void ThreadedPool::read(const std::function<Population(const TakeState& take)>& 
   slots_.restore(population.tag, population.generations, population.ids, std::move(states));
 }
 
-void ThreadedPool::receive(std::span<const std::byte> state, bool pending) {
+std::vector<std::byte> ThreadedPool::pack(std::span<const std::int64_t> ids) {
+  const AtWork working(*this);
+  Packer packed;
+  for (const Hold& hold : held(ids, ++serial_))
+    packed.put(hold.resident().pending).put_all(std::span<const std::byte>(bytes_of(hold.resident())));
+  return packed.take();
+}
+
+void ThreadedPool::receive(std::span<const std::byte> packed) {
   const Alone alone(*this);
-  received_.push_back(opened(rve_state_of(state)));
-  received_.back()->pending = pending && received_.back()->tokens.trials() > 0;
+  for (Unpacker in(packed); !in.rest().empty();) {
+    const auto pending = in.take<bool>();
+    received_.push_back(opened(rve_state_of(in.take_bytes())));
+    received_.back()->pending = pending && received_.back()->tokens.trials() > 0;
+  }
 }
 
 void ThreadedPool::place(std::span<const std::int64_t> ids) {

@@ -38,4 +38,14 @@ Status status_of_exception(char* text, std::size_t size) noexcept {
   }
 }
 
+Verdict verdict_of_failure() noexcept {
+  char text[1024];
+  Verdict verdict{status_of_exception(text, sizeof text), {}};
+  try {
+    verdict.text = text;
+  } catch (...) {  // no memory for words: the status says it
+  }
+  return verdict;
+}
+
 }  // namespace rvelab::pool

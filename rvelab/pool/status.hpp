@@ -1,37 +1,32 @@
-// What a call of the pool led to. The numbers are those of include/rvelab/rvelab.h (held there by rvelab/abi).
+// What a call of the pool led to; statuses and plain structs are those of include/rvelab/rvelab.h.
 #pragma once
 
 #include <cstdint>
 #include <string>
 
+#pragma GCC visibility push(default)  // what it declares is what librvelab.so exports
+#include <rvelab/rvelab.h>
+#pragma GCC visibility pop
+
 #include "rvelab/error.hpp"
 
 namespace rvelab::pool {
 
-enum class Status : std::int32_t {
-  ok = 0,
-  tolerance_missed = 1,
-  not_quasi_static = 2,
-  cell_thin = 3,
-  tangent_affine = 4,
-  discard = -1,
-  bad_input = -2,
-  null_pointer = -3,
-  bad_id = -4,
-  stale_token = -5,
-  duplicate = -6,
-  no_trial = -7,
-  busy = -8,
-  forked = -9,
-  no_memory = -10,
-  unsupported = -11,
-  small_buffer = -12,
-  bad_snapshot = -13,
-  bad_file = -14,
-  no_library = -15,
-  no_slot = -16,
-  internal = -17,
-};
+/// Enumerator and number of each status.
+#define RVELAB_STATUSES(each)                                                                                         \
+  each(ok, RVELAB_OK) each(tolerance_missed, RVELAB_W_TOLERANCE) each(not_quasi_static, RVELAB_W_NOT_QUASI_STATIC)    \
+      each(cell_thin, RVELAB_W_CELL_THIN) each(tangent_affine, RVELAB_W_TANGENT_AFFINE) each(discard, RVELAB_DISCARD) \
+          each(bad_input, RVELAB_E_INPUT) each(null_pointer, RVELAB_E_NULL) each(bad_id, RVELAB_E_ID)                 \
+              each(stale_token, RVELAB_E_STALE) each(duplicate, RVELAB_E_DUPLICATE) each(no_trial, RVELAB_E_NO_TRIAL) \
+                  each(busy, RVELAB_E_BUSY) each(forked, RVELAB_E_FORKED) each(no_memory, RVELAB_E_MEMORY)            \
+                      each(unsupported, RVELAB_E_UNSUPPORTED) each(small_buffer, RVELAB_E_BUFFER)                     \
+                          each(bad_snapshot, RVELAB_E_SNAPSHOT) each(bad_file, RVELAB_E_FILE)                         \
+                              each(no_library, RVELAB_E_LIBRARY) each(no_slot, RVELAB_E_LIMIT)                        \
+                                  each(internal, RVELAB_E_INTERNAL)
+
+#define RVELAB_ENUMERATOR(status, number) status = number,
+enum class Status : std::int32_t { RVELAB_STATUSES(RVELAB_ENUMERATOR) };
+#undef RVELAB_ENUMERATOR
 
 constexpr bool is_error(Status status) { return status < Status::discard; }
 
@@ -50,5 +45,13 @@ struct Refused : Error {
 
 /// The status of the exception that is being handled, and its text (cut to fit, always ended); allocates nothing.
 Status status_of_exception(char* text, std::size_t size) noexcept;
+
+/// A status with its text, "" for ok.
+struct Verdict {
+  Status status = Status::ok;
+  std::string text;
+};
+/// Of the exception that is being handled.
+Verdict verdict_of_failure() noexcept;
 
 }  // namespace rvelab::pool

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "rvelab/pool/floating_point.hpp"
-#include "rvelab/pool/status.hpp"
 
 namespace rvelab::pool {
 
@@ -54,10 +53,10 @@ struct Round {
 
 }  // namespace
 
-Team::Team(unsigned threads, RunTasks run_tasks, void* host)
-    : threads_(threads > 0 ? threads : std::max(1u, std::thread::hardware_concurrency())),
-      run_tasks_(run_tasks),
-      host_(host) {}
+Team::Team(const Options& options)
+    : threads_(options.workers > 0 ? unsigned(options.workers) : std::max(1u, std::thread::hardware_concurrency())),
+      run_tasks_(options.run_tasks),
+      host_(options.host) {}
 
 void Team::run_by_host(std::size_t count, const std::function<void(std::size_t)>& piece) {
   Round round{piece, std::vector<std::atomic<bool>>(count)};

@@ -2,13 +2,10 @@
 
 #include <pthread.h>
 
-#include <cmath>
 #include <string>
 #include <thread>
 
 #include "rvelab/measure/measures.hpp"
-#include "rvelab/pool/checks.hpp"
-#include "rvelab/pool/hold.hpp"
 
 namespace rvelab::pool {
 
@@ -33,37 +30,20 @@ constexpr std::uint64_t resting = 1;
 /// Sub-steps of a call after which an RVE rests at once: waking takes the time of three.
 constexpr long long_call = 100;
 
-double void_ratio_of(const Rve& rve) { return void_ratio(rve.network()); }
-
 void override_settings(Specimen& specimen, const Options& options) {
   SolverOptions& solver = specimen.solver;
   if (options.tolerance_rel > 0) solver.relative_tolerance = options.tolerance_rel;
   if (options.tolerance_abs > 0) solver.absolute_tolerance = options.tolerance_abs;
-  if (options.max_substeps > 0) solver.max_substeps = options.max_substeps;
+  if (options.max_substeps > 0) solver.max_substeps = long(options.max_substeps);
   if (options.min_height > 0) solver.min_height = options.min_height;
   if (options.damping > 0) specimen.damping.local = specimen.damping.local_quasi_static = options.damping;
-}
-
-void check(const Options& options) {
-  const auto expect = [](bool allowed, const char* name, double value, const char* range) {
-    if (!allowed)
-      throw Refused(Status::bad_input, std::string("pool_def.") + name + " is " + rvelab::in_words(value) +
-                                           "; allowed: " + range + ", or 0 for what the specimen says");
-  };
-  const auto positive = [](double value) { return value >= 0 && std::isfinite(value); };
-  const auto share = [](double value) { return value >= 0 && value <= 1; };
-  expect(share(options.tolerance_rel), "tolerance_rel", options.tolerance_rel, "above 0, at most 1");
-  expect(share(options.tolerance_abs), "tolerance_abs", options.tolerance_abs, "above 0, at most 1");
-  expect(options.max_substeps >= 0, "max_substeps", double(options.max_substeps), "1 or more");
-  expect(options.damping >= 0 && options.damping < 1, "damping", options.damping, "above 0 and below 1");
-  expect(positive(options.min_height), "min_height", options.min_height, "a positive length in m");
 }
 
 }  // namespace
 
 ThreadedPool::ThreadedPool(const Options& options)
-    : options_((check(options), options)),
-      team_(options.workers, options.run_tasks, options.host),
+    : options_((expect_options(options), options)),
+      team_(options),
       next_template_(std::int64_t(++pools_made & 0x7fffffff) << 32 | 1) {
   count_forks();
   process_ = forks;
@@ -123,7 +103,7 @@ void ThreadedPool::rest_another() noexcept {
   const auto forgotten = [&] {
     return slot.allocated.load(std::memory_order_relaxed) &&
            clock_.load(std::memory_order_relaxed) >
-               slot.last_call.load(std::memory_order_relaxed) + 2 * slots_.ids().population();
+               slot.last_call.load(std::memory_order_relaxed) + 2 * slots_.population();
   };
   std::uint64_t none = 0;
   if (!forgotten() || !slot.owner.compare_exchange_strong(none, resting, std::memory_order_acquire)) return;
@@ -135,10 +115,10 @@ void ThreadedPool::rest_another() noexcept {
 }
 
 /// The options of the pool override settings of the specimen.
-ThreadedPool::Template ThreadedPool::made_template(Specimen& specimen) const {
+Resident ThreadedPool::made_template(Specimen& specimen) const {
   override_settings(specimen, options_);
-  Template made{Rve(specimen), 0};
-  made.void_ratio = void_ratio_of(made.rve);
+  Resident made{Rve(specimen), {}};
+  made.initial_void_ratio = void_ratio(made.rve.network());
   made.rve.release();
   return made;
 }
@@ -174,12 +154,11 @@ void ThreadedPool::release_template(std::int64_t of_template) {
 
 /// n RVEs of a template. Refused (bad_id, bad_input, no_slot).
 Slots::Residents ThreadedPool::made_of(std::int64_t of_template, std::int64_t n) const {
-  const Template& source = template_of(of_template)->second;
+  const Resident& source = template_of(of_template)->second;
   expect_spawn(n);
   Slots::Residents made;
   made.reserve(std::size_t(n));
-  while (std::int64_t(made.size()) < n)
-    made.push_back(std::make_unique<Resident>(Resident{source.rve, {}, source.void_ratio}));
+  while (std::int64_t(made.size()) < n) made.push_back(std::make_unique<Resident>(source));
   return made;
 }
 
@@ -193,7 +172,7 @@ void ThreadedPool::spawn(std::int64_t of_template, std::int64_t n, std::int64_t*
 std::uint32_t ThreadedPool::tag() {
   const Alone alone(*this);
   slots_.take_tag();
-  return slots_.ids().tag();
+  return slots_.tag();
 }
 
 void ThreadedPool::spawn_as(std::int64_t of_template, std::span<const std::int64_t> ids) {
@@ -242,11 +221,7 @@ void ThreadedPool::give_up(std::span<const std::int64_t> ids) {
 
 std::vector<std::int64_t> ThreadedPool::ids() {
   const Alone alone(*this);
-  std::vector<std::int64_t> all;
-  all.reserve(slots_.ids().population());
-  for (std::size_t k = 0; k < slots_.size(); ++k)
-    if (slots_[k].resident) all.push_back(slots_.ids().id_of(k));
-  return all;
+  return slots_.all();
 }
 
 }  // namespace rvelab::pool

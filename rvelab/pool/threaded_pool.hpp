@@ -2,81 +2,62 @@
 // pool over many.
 #pragma once
 
-#include <atomic>
 #include <map>
-#include <memory>
+#include <utility>
 
 #include "rvelab/pool/calls.hpp"
 #include "rvelab/pool/pool.hpp"
 #include "rvelab/pool/slots.hpp"
+#include "rvelab/pool/team.hpp"
 
 namespace rvelab::pool {
 
 /// What all ranks do or none: commit or revert trials, or end RVEs whose ids the first rank gives out again.
 enum class Settling : std::int32_t { commit, revert, give_up };
 
-/// The RVEs of one process: all of a pool, or the share of a rank, where they come and go under ids and numbers of
-/// templates that the first rank gives out.
-class Share : public Pool {
+/// An RVE that a call is at work on; let go of at the end.
+class Hold {
  public:
-  /// Ends a template.
-  virtual void release_template(std::int64_t of_template) = 0;
-  virtual Info info(std::int64_t id) = 0;
-  /// The committed state with its tokens, as to_bytes(RveState), and back.
-  virtual std::vector<std::byte> save(std::int64_t id) = 0;
-  virtual void load(std::int64_t id, std::span<const std::byte> snapshot) = 0;
+  Hold() = default;
+  explicit Hold(Slot& slot) : slot_(&slot) {}
+  Hold(Hold&& other) noexcept : slot_(std::exchange(other.slot_, nullptr)) {}
+  Hold& operator=(Hold&& other) noexcept {
+    let_go();
+    slot_ = std::exchange(other.slot_, nullptr);
+    return *this;
+  }
+  ~Hold() { let_go(); }
+  bool empty() const { return slot_ == nullptr; }
+  Slot& slot() const { return *slot_; }
+  Resident& resident() const { return *slot_->resident; }
 
-  /// Tag of the ids, taken from those of this process if there is none yet.
-  virtual std::uint32_t tag() = 0;
-  virtual void add_template_as(Specimen specimen, std::int64_t number) = 0;
-  /// RVEs of a template under these ids; all or none.
-  virtual void spawn_as(std::int64_t of_template, std::span<const std::int64_t> ids) = 0;
-  virtual void clone_as(std::int64_t source, std::int64_t id) = 0;
-  /// RVEs that come as bytes (to_bytes(RveState)) wait until `place` gives them ids, in their order and all at once.
-  /// `pending`: so is the last trial of its tokens, which is made again when it is needed.
-  virtual void receive(std::span<const std::byte> state, bool pending) = 0;
-  virtual void place(std::span<const std::int64_t> ids) = 0;
-  virtual void forget_received() noexcept = 0;
-  /// Ends RVEs whose ids the first rank gives out again.
-  virtual void give_up(std::span<const std::int64_t> ids) = 0;
-
-  virtual bool is_pending(std::int64_t id) = 0;
-  /// Checks that `settle` can be done and brings what it needs. `ids` without data: all with a pending trial. Refused
-  /// (no_trial, no_memory): nothing has changed; the text of a commit names the `places` of the ids in what the host
-  /// gave.
-  virtual void prepare(Settling what, std::span<const std::int64_t> ids, std::span<const std::int64_t> places) = 0;
-  /// Does what was prepared last, without a request for memory. No other call may come between.
-  virtual void settle() noexcept = 0;
+ private:
+  void let_go() noexcept {
+    if (slot_ != nullptr) slot_->owner.store(0, std::memory_order_release);
+  }
+  Slot* slot_ = nullptr;
 };
 
-/// What hosts and other ranks may call of a share. A new function is added here.
-using ShareCalls = CallList<&Share::release_template, &Share::info, &Share::save, &Share::load, &Share::add_template_as,
-                            &Share::spawn_as, &Share::clone_as, &Share::place, &Share::forget_received, &Share::give_up,
-                            &Share::prepare, &Share::settle>;
+/// The committed state in the place of a pending trial, for as long as it is looked at.
+class Committed {
+ public:
+  explicit Committed(Rve& rve) : rve_(rve) { rve.exchange(); }
+  ~Committed() { rve_.exchange(); }
+  Committed(const Committed&) = delete;
+  Committed& operator=(const Committed&) = delete;
 
-template <auto function, class... Arguments>
-auto Pool::at(std::int64_t id, const Arguments&... arguments) {
-  CallOf<ShareCalls, function> call(id, arguments...);
-  make_at(id, call);
-  return call.result();
-}
+ private:
+  Rve& rve_;
+};
 
-template <auto function, class... Arguments>
-auto Pool::everywhere(const Arguments&... arguments) {
-  CallOf<ShareCalls, function> call(arguments...);
-  make_everywhere(call);
-  return call.result();
-}
-
-class Hold;
-
-class ThreadedPool final : public Share {
+/// The RVEs of one process: all of a pool, or the share of a rank, where they come and go under ids and numbers of
+/// templates that the first rank gives out. All that librvelab-mpi.so calls is virtual: the code is in librvelab.so.
+class ThreadedPool : public Pool {
  public:
   explicit ThreadedPool(const Options& options);
   ~ThreadedPool() override;
 
   std::int64_t add_template(Specimen specimen) override;
-  void release_template(std::int64_t of_template) override;
   void spawn(std::int64_t of_template, std::int64_t n, std::int64_t* ids) override;
   std::int64_t clone(std::int64_t source) override;
   void release(std::span<const std::int64_t> ids) override;
@@ -85,42 +66,80 @@ class ThreadedPool final : public Share {
   Verdict trial(const Batch& batch) override;
   void commit(std::span<const std::int64_t> ids) override;
   void revert(std::span<const std::int64_t> ids) override;
-  Info info(std::int64_t id) override;
   void cost(std::span<const std::int64_t> ids, std::int64_t* grain_steps) override;
-  std::vector<std::byte> save(std::int64_t id) override;
-  void load(std::int64_t id, std::span<const std::byte> snapshot) override;
   void write(const std::function<void(const Population&, const StateOf&)>& writer) override;
   void read(const std::function<Population(const TakeState& take)>& reader) override;
   void expect_this_process() const override;
   void close() override;
 
-  std::uint32_t tag() override;
-  void add_template_as(Specimen specimen, std::int64_t number) override;
-  void spawn_as(std::int64_t of_template, std::span<const std::int64_t> ids) override;
-  void clone_as(std::int64_t source, std::int64_t id) override;
-  void receive(std::span<const std::byte> state, bool pending) override;
-  void place(std::span<const std::int64_t> ids) override;
-  void forget_received() noexcept override;
-  void give_up(std::span<const std::int64_t> ids) override;
-  bool is_pending(std::int64_t id) override;
-  void prepare(Settling what, std::span<const std::int64_t> ids, std::span<const std::int64_t> places) override;
-  void settle() noexcept override;
+  /// Ends a template.
+  virtual void release_template(std::int64_t of_template);
+  virtual rvelab_info info(std::int64_t id);
+  /// The committed state with its tokens, as to_bytes(RveState), and back.
+  virtual std::vector<std::byte> save(std::int64_t id);
+  virtual void load(std::int64_t id, std::span<const std::byte> snapshot);
+
+  std::vector<std::int64_t> costs(std::span<const std::int64_t> ids) {
+    std::vector<std::int64_t> made(ids.size());
+    cost(ids, made.data());
+    return made;
+  }
+
+  /// Tag of the ids, taken from those of this process if there is none yet.
+  virtual std::uint32_t tag();
+  virtual void add_template_as(Specimen specimen, std::int64_t number);
+  /// RVEs of a template under these ids; all or none.
+  virtual void spawn_as(std::int64_t of_template, std::span<const std::int64_t> ids);
+  virtual void clone_as(std::int64_t source, std::int64_t id);
+  /// RVEs as bytes: of each whether a trial is pending, which is made again when it is needed, and to_bytes(RveState).
+  virtual std::vector<std::byte> pack(std::span<const std::int64_t> ids);
+  /// Such RVEs wait until `place` gives them ids, in their order and all at once.
+  virtual void receive(std::span<const std::byte> packed);
+  virtual void place(std::span<const std::int64_t> ids);
+  virtual void forget_received() noexcept;
+  /// Ends RVEs whose ids the first rank gives out again.
+  virtual void give_up(std::span<const std::int64_t> ids);
+
+  /// Checks that `settle` can be done and brings what it needs. `ids` without data: all with a pending trial. Refused
+  /// (no_trial, no_memory): nothing has changed; the text of a commit names the `places` of the ids in what the host
+  /// gave.
+  virtual void prepare(Settling what, std::span<const std::int64_t> ids, std::span<const std::int64_t> places);
+  /// Does what was prepared last, without a request for memory. No other call may come between.
+  virtual void settle() noexcept;
 
  private:
-  class AtWork;
-  class Alone;
+  /// A call that works on RVEs, beside others; or one that no other may run beside.
+  class AtWork {
+   public:
+    explicit AtWork(ThreadedPool& pool, bool alone = false) : pool_(pool), alone_(alone) {
+      pool.expect_this_process();
+      int calls = pool.calls_.load(std::memory_order_relaxed);
+      do {
+        if (calls < 0)
+          throw Refused(Status::busy, "pool: a call for population or files is under way; call again after");
+        if (alone && calls > 0)
+          throw Refused(Status::busy, "pool: another call is under way; population and files are for one call alone");
+      } while (!pool.calls_.compare_exchange_weak(calls, alone ? -1 : calls + 1, std::memory_order_acquire));
+    }
+    ~AtWork() { pool_.calls_.fetch_add(alone_ ? 1 : -1, std::memory_order_release); }
+    AtWork(const AtWork&) = delete;
+    AtWork& operator=(const AtWork&) = delete;
+
+   private:
+    ThreadedPool& pool_;
+    bool alone_;
+  };
+  struct Alone : AtWork {
+    explicit Alone(ThreadedPool& pool) : AtWork(pool, true) {}
+  };
   struct Entry;
   struct Outcome;
 
-  struct Template {
-    Rve rve;
-    double void_ratio;
-  };
-  using Templates = std::map<std::int64_t, Template>;  ///< by their numbers, none of which is given out twice
+  using Templates = std::map<std::int64_t, Resident>;  ///< by their numbers, none of which is given out twice
 
-  void make_at(std::int64_t, TravellingCall& call) override { call.make(*this); }
-  void make_everywhere(TravellingCall& call) override { call.make(*this); }
-  Template made_template(Specimen& specimen) const;
+  void make_at(std::int64_t, const TravellingCall& call) override { call.make(*this); }
+  void make_everywhere(const TravellingCall& call) override { call.make(*this); }
+  Resident made_template(Specimen& specimen) const;
   Templates::const_iterator template_of(std::int64_t number) const;
   Slots::Residents made_of(std::int64_t of_template, std::int64_t n) const;
   std::unique_ptr<Resident> copy_of(std::int64_t source);
@@ -149,5 +168,20 @@ class ThreadedPool final : public Share {
   std::atomic<std::uint64_t> clock_{0};   ///< calls on RVEs
   std::atomic<std::uint64_t> hand_{0};    ///< of the look for RVEs that are to rest
 };
+
+/// What hosts and other ranks may call of a share. A new function is added here.
+using ShareCalls = CallList<&Share::release_template, &Share::info, &Share::save, &Share::load, &Share::add_template_as,
+                            &Share::spawn_as, &Share::clone_as, &Share::costs, &Share::pack, &Share::receive,
+                            &Share::place, &Share::forget_received, &Share::give_up, &Share::prepare, &Share::settle>;
+
+template <auto function, class... Arguments>
+auto Pool::at(std::int64_t id, const Arguments&... arguments) {
+  return travelled<ShareCalls, function>([&](const TravellingCall& call) { make_at(id, call); }, id, arguments...);
+}
+
+template <auto function, class... Arguments>
+auto Pool::everywhere(const Arguments&... arguments) {
+  return travelled<ShareCalls, function>([&](const TravellingCall& call) { make_everywhere(call); }, arguments...);
+}
 
 }  // namespace rvelab::pool

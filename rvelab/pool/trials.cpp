@@ -9,16 +9,13 @@
 #include <new>
 #include <string>
 
-#include "rvelab/pool/checks.hpp"
-#include "rvelab/pool/hold.hpp"
+#include "rvelab/measure/tangent.hpp"
 #include "rvelab/pool/threaded_pool.hpp"
-#include "rvelab/pool/verdict.hpp"
+#include "rvelab/solver/quasi_static/constants.hpp"
 
 namespace rvelab::pool {
 
 namespace {
-
-using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 constexpr double scale_after_discard = 0.5;
 
@@ -38,9 +35,83 @@ class Cost {
   std::uint64_t before_;
 };
 
-void store(const Matrix3& tensor, double* to) {
-  Eigen::Map<RowMajor> target(to);
-  target = tensor;
+/// The trial is made again; it is pending then.
+void make_again(Slot& slot, const TrialRecord& record) {
+  const Cost cost(slot);
+  Resident& resident = *slot.resident;
+  const Response response = resident.rve.attempt(record.displacement_gradient, record.dt);
+  resident.trial_inertial_number = response.report.inertial_number;
+}
+
+/// The pending trial of that token is the state. Its RVE holds it.
+void commit_trial(Resident& resident, std::int64_t token) noexcept {
+  resident.rve.commit();
+  resident.inertial_number = resident.trial_inertial_number;
+  resident.tokens.commit(token);
+  resident.pending = false;
+}
+
+std::int64_t last_token(const Tokens& tokens) { return tokens.trial(tokens.trials() - 1).token; }
+
+/// Row-major, xx yy zz yz xz xy whatever the dimension.
+using Tangent = std::array<double, 36>;
+
+/// Whether a trial that was made gets a warning, and that warning.
+bool has_warning(const Report& report, double dt) {
+  return report.cell_thin || (dt == 0 && (!report.quasi_static || !report.tolerance_met));
+}
+Verdict warning_of(const Report& report, double dt) {
+  char text[320];
+  Status status = Status::cell_thin;
+  if (!report.quasi_static && dt == 0) {
+    status = Status::not_quasi_static;
+    std::snprintf(text, sizeof text,
+                  "the state is no equilibrium: the unbalanced ratio is %g; the specimen flows or collapses: take "
+                  "smaller steps, or give a time (dt > 0)",
+                  report.unbalanced_ratio);
+  } else if (dt == 0 && !report.tolerance_met) {
+    status = Status::tolerance_missed;
+    std::snprintf(text, sizeof text,
+                  "the stress has an expected error of %g Pa; the tolerance allows %g Pa: take it as it is, or widen "
+                  "tolerance_rel or tolerance_abs",
+                  report.error_estimate / constants::met_margin, report.allowed_error);
+  } else {
+    std::snprintf(text, sizeof text,
+                  "a height of the cell is below four mean diameters: it stands for less and less of the material; "
+                  "use a larger specimen");
+  }
+  return {status, text};
+}
+
+/// RVELAB_W_TANGENT_AFFINE: a warning that stands already keeps its place, and its text is extended.
+void add_affine_warning(Verdict& verdict) {
+  const char* const text =
+      "the contact network has no elastic tangent that balances its grains; the affine one, which is stiffer, was "
+      "written";
+  if (verdict.status == Status::ok)
+    verdict = {Status::tangent_affine, text};
+  else
+    verdict.text += std::string("; and ") + text;
+}
+
+/// Writes the elastic tangent, or, where the network has none, the affine one and returns false.
+bool write_tangent(const Network& network, Tangent& tangent) {
+  Eigen::MatrixXd found;
+  bool condensed = true;
+  try {
+    found = elastic_tangent(network);
+  } catch (const Error&) {
+    found = affine_tangent(network);
+    condensed = false;
+  }
+  tangent.fill(0);
+  const int plane[3] = {0, 1, 5};
+  for (int i = 0; i < found.rows(); ++i)
+    for (int j = 0; j < found.cols(); ++j) {
+      const int row = found.rows() == 3 ? plane[i] : i, column = found.rows() == 3 ? plane[j] : j;
+      tangent[std::size_t(6 * row + column)] = found(i, j);
+    }
+  return condensed;
 }
 
 }  // namespace
@@ -69,8 +140,7 @@ ThreadedPool::Outcome ThreadedPool::attempt(Slot& slot, const Matrix3& displacem
   slot.allocated.store(true, std::memory_order_relaxed);
   const Cost cost(slot);
   Outcome outcome;
-  outcome.response =
-      rve.attempt(displacement_gradient, dt, {wanted.contact_stress != nullptr || wanted.reynolds_stress != nullptr});
+  outcome.response = rve.attempt(displacement_gradient, dt);
   try {
     const Report& report = outcome.response.report;
     if (has_warning(report, dt)) outcome.verdict = warning_of(report, dt);
@@ -86,28 +156,6 @@ ThreadedPool::Outcome ThreadedPool::attempt(Slot& slot, const Matrix3& displacem
   called(slot, outcome.response.report.substeps);
   return outcome;
 }
-
-namespace {
-
-/// The trial is made again; it is pending then.
-void make_again(Slot& slot, const TrialRecord& record) {
-  const Cost cost(slot);
-  Resident& resident = *slot.resident;
-  const Response response = resident.rve.attempt(record.displacement_gradient, record.dt);
-  resident.trial_inertial_number = response.report.inertial_number;
-}
-
-/// The pending trial of that token is the state. Its RVE holds it.
-void commit_trial(Resident& resident, std::int64_t token) noexcept {
-  resident.rve.commit();
-  resident.inertial_number = resident.trial_inertial_number;
-  resident.tokens.commit(token);
-  resident.pending = false;
-}
-
-std::int64_t last_token(const Tokens& tokens) { return tokens.trial(tokens.trials() - 1).token; }
-
-}  // namespace
 
 /// The state that a token names becomes the committed one, for an increment that can be applied to it.
 void ThreadedPool::accept(Slot& slot, std::int64_t token, const Matrix3& displacement_gradient) {
@@ -136,14 +184,14 @@ Verdict ThreadedPool::apply(std::int64_t id, const Matrix3& displacement_gradien
 void ThreadedPool::run_entry(Entry& entry, const Batch& batch) noexcept {
   const std::size_t k = entry.index;
   try {
-    const Matrix3 gradient = Eigen::Map<const RowMajor>(batch.displacement_gradients + 9 * k);
+    const Matrix3 gradient = tensor_at(batch.dH + 9 * k);
     if (batch.tokens_in != nullptr) accept(*entry.slot, batch.tokens_in[k], gradient);
     Outcome outcome = attempt(*entry.slot, gradient, batch.dt, batch);
-    if (options_.trial_memory == TrialMemory::recompute) entry.slot->resident->rve.revert();
+    if (options_.trial_memory == RVELAB_TRIAL_RECOMPUTE) entry.slot->resident->rve.revert();
     const Response& response = outcome.response;
-    store(response.stress, batch.stress + 9 * k);
-    if (batch.contact_stress != nullptr) store(response.contact_stress, batch.contact_stress + 9 * k);
-    if (batch.reynolds_stress != nullptr) store(response.reynolds_stress, batch.reynolds_stress + 9 * k);
+    store(response.stress, batch.sigma + 9 * k);
+    if (batch.contact != nullptr) store(response.contact_stress, batch.contact + 9 * k);
+    if (batch.reynolds != nullptr) store(response.reynolds_stress, batch.reynolds + 9 * k);
     if (batch.tangent != nullptr) std::copy(outcome.tangent.begin(), outcome.tangent.end(), batch.tangent + 36 * k);
     if (batch.error_estimate != nullptr) batch.error_estimate[k] = response.report.error_estimate;
     if (batch.tokens_out != nullptr) batch.tokens_out[k] = outcome.token;
@@ -183,12 +231,12 @@ Verdict ThreadedPool::trial(const Batch& batch) {
       }
     }
   }
-  std::vector<std::pair<std::uint64_t, std::size_t>> order;
+  std::vector<Entry*> order;
   order.reserve(n);
-  for (std::size_t k = 0; k < n; ++k)
-    if (entries[k].slot != nullptr) order.emplace_back(entries[k].cost, k);
-  std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-  if (!order.empty()) team_.run(order.size(), [&](std::size_t k) { run_entry(entries[order[k].second], batch); });
+  for (Entry& entry : entries)
+    if (entry.slot != nullptr) order.push_back(&entry);
+  std::stable_sort(order.begin(), order.end(), [](const Entry* a, const Entry* b) { return a->cost > b->cost; });
+  if (!order.empty()) team_.run(order.size(), [&](std::size_t k) { run_entry(*order[k], batch); });
 
   std::size_t worst = 0;
   for (std::size_t k = 0; k < n; ++k) {
@@ -213,11 +261,7 @@ Verdict ThreadedPool::trial(const Batch& batch) {
 }
 
 std::vector<Hold> ThreadedPool::all_pending(std::uint64_t call) {
-  std::vector<std::int64_t> ids;
-  ids.reserve(slots_.ids().population());
-  for (std::size_t k = 0; k < slots_.size(); ++k)
-    if (slots_[k].resident) ids.push_back(slots_.ids().id_of(k));
-  std::vector<Hold> holds = held(ids, call);
+  std::vector<Hold> holds = held(slots_.all(), call);
   team_.share(holds.size(), [&](std::size_t k) {
     if (!holds[k].resident().pending) holds[k] = Hold();
   });
@@ -279,7 +323,7 @@ void ThreadedPool::prepare(Settling what, std::span<const std::int64_t> ids, std
   const std::vector<Hold> holds = ids.data() == nullptr ? all_pending(call) : held(ids, call);
   if (ids.data() == nullptr)
     for (std::size_t k = 0; k < slots_.size(); ++k)
-      if (slots_[k].resident && slots_[k].resident->pending) prepared_.push_back(slots_.ids().id_of(k));
+      if (slots_[k].resident && slots_[k].resident->pending) prepared_.push_back(slots_.id_of(k));
   if (what == Settling::commit) expect_trials(holds, prepared_, places);
 }
 
@@ -294,11 +338,6 @@ void ThreadedPool::settle() noexcept {
       resident.pending = false;
     });
   prepared_.clear();
-}
-
-bool ThreadedPool::is_pending(std::int64_t id) {
-  const AtWork working(*this);
-  return held(id, ++serial_).resident().pending;
 }
 
 void ThreadedPool::revert(std::span<const std::int64_t> ids) {

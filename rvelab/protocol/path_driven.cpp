@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "rvelab/cell/volume.hpp"
+#include "rvelab/cell/cell.hpp"
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/measure/tensor_order.hpp"
 

@@ -1,7 +1,8 @@
-#include "rvelab/ranks/balance.hpp"
-
+// Which RVEs change their rank. Declared in ranked_pool.hpp.
 #include <algorithm>
 #include <numeric>
+
+#include "rvelab/ranks/ranked_pool.hpp"
 
 namespace rvelab::ranks {
 

@@ -1,4 +1,5 @@
-#include "rvelab/ranks/mpi_link.hpp"
+// Messages by MPI. Declared in perform.hpp.
+#include "rvelab/ranks/perform.hpp"
 
 #define OMPI_SKIP_MPICXX 1
 #define MPICH_SKIP_MPICXX 1

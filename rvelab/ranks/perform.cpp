@@ -1,5 +1,7 @@
 #include "rvelab/ranks/perform.hpp"
 
+#include <array>
+#include <iterator>
 #include <utility>
 
 namespace rvelab::ranks {
@@ -24,82 +26,42 @@ void Served::trial(Unpacker& given, Packer& found) {
              tokens = given.take_all<std::int64_t>();
   const auto gradients = given.take_all<double>();
   const std::size_t n = ids.size();
-  std::vector<double> stress(9 * n), contact, reynolds, tangent, estimate, scale(n);
   std::vector<std::int64_t> tokens_out(wanted.tokens_out ? n : 0), costs(n);
   std::vector<std::int32_t> status(n);
-  const auto asked = [n](bool is, std::vector<double>& values, std::size_t each) {
-    if (is) values.resize(each * n);
-    return is ? values.data() : nullptr;
-  };
   batch.n = std::int64_t(n);
   batch.ids = ids.data();
   batch.places = places.data();
-  batch.displacement_gradients = gradients.data();
+  batch.dH = gradients.data();
   batch.tokens_in = wanted.tokens_in ? tokens.data() : nullptr;
-  batch.stress = stress.data();
-  batch.contact_stress = asked(wanted.contact_stress, contact, 9);
-  batch.reynolds_stress = asked(wanted.reynolds_stress, reynolds, 9);
-  batch.tangent = asked(wanted.tangent, tangent, 36);
-  batch.error_estimate = asked(wanted.error_estimate, estimate, 1);
-  batch.dt_scale = scale.data();
   batch.status = status.data();
   batch.tokens_out = wanted.tokens_out ? tokens_out.data() : nullptr;
-  tried_ = ids;
   std::size_t room = answer_room + n * (sizeof status[0] + sizeof costs[0]) + tokens_out.size() * sizeof tokens_out[0];
-  for (const auto* values : {&stress, &contact, &reynolds, &tangent, &estimate, &scale})
-    room += values->size() * sizeof(double);
+  std::vector<double> values[std::size(pool::batch_outputs)];
+  for (std::size_t k = 0; k < std::size(values); ++k) {
+    if ((wanted.outputs >> k & 1) == 0) continue;
+    values[k].resize(pool::batch_outputs[k].each * n);
+    batch.*pool::batch_outputs[k].values = values[k].data();
+    room += values[k].size() * sizeof(double);
+  }
+  tried_ = ids;
   found.make_room(room);
   const Verdict worst = share_->trial(batch);
   share_->cost(ids, costs.data());
-  found.put_text(worst.text);
-  found.put_all(std::span<const std::int32_t>(status)).put_all(std::span<const std::int64_t>(costs));
-  for (const auto* values : {&stress, &contact, &reynolds, &tangent, &estimate, &scale})
-    found.put_all(std::span<const double>(*values));
+  found.put_text(worst.text).put_all(std::span<const std::int32_t>(status));
+  found.put_all(std::span<const std::int64_t>(costs));
+  for (const auto& each : values) found.put_all(std::span<const double>(each));
   found.put_all(std::span<const std::int64_t>(tokens_out));
 }
 
 void Served::apply(Unpacker& given, Packer& found) {
   const auto id = given.take<std::int64_t>();
   const auto dt = given.take<double>();
-  Matrix3 gradient;
-  for (int k = 0; k < 9; ++k) gradient(k / 3, k % 3) = given.take<double>();
-  double stress[9];
-  const Verdict verdict = share_->apply(id, gradient, dt, stress);
+  const auto gradient = given.take<std::array<double, 9>>();
+  std::array<double, 9> stress;
+  const Verdict verdict = share_->apply(id, pool::tensor_at(gradient.data()), dt, stress.data());
   std::int64_t cost = 0;
   share_->cost({&id, 1}, &cost);
-  found.put(verdict.status).put_text(verdict.text).put(cost);
-  for (const double component : stress) found.put(component);
-}
-
-void Served::perform(std::int32_t number, Unpacker& given, Packer& found) {
-  if (number >= 0) return ShareCalls::serve(number, *share_, given, found);
-  switch (RankCall(number)) {
-    case RankCall::end:
-      return;
-    case RankCall::trial:
-      return trial(given, found);
-    case RankCall::apply:
-      return apply(given, found);
-    case RankCall::cost: {
-      const auto ids = given.take_all<std::int64_t>();
-      std::vector<std::int64_t> costs(ids.size());
-      share_->cost(ids, costs.data());
-      found.put_all(std::span<const std::int64_t>(costs));
-      return;
-    }
-    case RankCall::save:
-      for (const std::int64_t id : given.take_all<std::int64_t>()) {
-        found.put(share_->is_pending(id));
-        found.put_all(std::span<const std::byte>(share_->save(id)));
-      }
-      return;
-    case RankCall::receive:
-      while (!given.rest().empty()) {
-        const auto pending = given.take<bool>();
-        share_->receive(given.take_all<std::byte>(), pending);
-      }
-      return;
-  }
+  found.put(verdict.status).put_text(verdict.text).put(cost).put(stress);
 }
 
 Bytes Served::answer(std::span<const std::byte> message) noexcept {
@@ -116,7 +78,12 @@ Bytes Served::answer(std::span<const std::byte> message) noexcept {
       // Whether there is memory for an answer or not.
       if (number == ShareCalls::number<&pool::Share::forget_received>()) share_->forget_received();
       Packer found = answered(Status::ok, "", false);
-      perform(number, given, found);
+      if (number == std::int32_t(RankCall::trial))
+        trial(given, found);
+      else if (number == std::int32_t(RankCall::apply))
+        apply(given, found);
+      else
+        ShareCalls::serve(number, *share_, given, found);
       return found.take();
     } catch (...) {
       char text[1024];

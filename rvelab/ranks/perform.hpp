@@ -1,4 +1,4 @@
-// What a rank does with a message: a call of its share of the pool, and the answer.
+// Messages between ranks: a call of the share that a rank has of the pool, and the answer.
 #pragma once
 
 #include "rvelab/pool/threaded_pool.hpp"
@@ -12,11 +12,13 @@ using pool::Unpacker;
 
 /// A message begins with the number of a function in pool::ShareCalls, or with one of these, which ranks serve in their
 /// own way. What follows, and what the answer holds behind its verdict, stands in perform.cpp.
-enum class RankCall : std::int32_t { end = -1, trial = -2, apply = -3, cost = -4, save = -5, receive = -6 };
+enum class RankCall : std::int32_t { end = -1, trial = -2, apply = -3 };
 
-/// Which results a trial computes beside stress, status, costs and factors on the step; whether it names tokens.
+/// What a trial says beside ids and increments: which results it computes, a bit for each of pool::batch_outputs, and
+/// whether tokens go in and out.
 struct Wanted {
-  bool contact_stress, reynolds_stress, tangent, error_estimate, tokens_out, tokens_in;
+  std::uint32_t outputs;
+  bool tokens_in, tokens_out;
 };
 
 inline Packer message(RankCall call) { return std::move(Packer().put(call)); }
@@ -38,7 +40,6 @@ class Served {
   pool::Share& share() const { return *share_; }
 
  private:
-  void perform(std::int32_t number, Unpacker& given, Packer& found);
   void trial(Unpacker& given, Packer& found);
   void apply(Unpacker& given, Packer& found);
 
@@ -68,5 +69,34 @@ class Answer {
 
 /// Bytes reserved for what an answer holds beside its rows of values, so that telling what was done allocates nothing.
 constexpr std::size_t answer_room = 4096;
+
+// The way of messages from rank to rank. mpi_link.cpp alone knows of MPI.
+
+/// Of the first rank, to all others. Each message to a rank is answered before the next is sent to it.
+class Link {
+ public:
+  virtual ~Link() = default;
+  virtual int ranks() const = 0;
+  virtual void send(int rank, std::span<const std::byte> message) = 0;
+  /// The next message from that rank, in the room that `message` has if that is enough. What cannot be kept for want
+  /// of memory is taken all the same and let go of (std::bad_alloc).
+  virtual void receive(int rank, Bytes& message) = 0;
+  /// Throws Refused (bad_input) if this thread may not send.
+  virtual void expect_thread() const = 0;
+};
+
+/// A link over the communicator of a Fortran handle; collective. Throws Refused (bad_input) if MPI was not initialised,
+/// or the handle is none.
+struct World {
+  std::unique_ptr<Link> link;
+  int rank = 0;
+  int ranks_here = 1;  ///< that share the memory, and the cores, of this one
+};
+World join(std::int32_t fortran_communicator);
+
+/// Bytes of the first rank, at all of them; collective. They are as many everywhere.
+void broadcast(const Link& link, std::span<std::byte> bytes);
+/// Throws Refused unless `status` is ok at all ranks; collective. `text` explains that of this one.
+void expect_all(const Link& link, pool::Status status, const std::string& text);
 
 }  // namespace rvelab::ranks

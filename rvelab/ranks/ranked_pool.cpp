@@ -5,7 +5,6 @@
 #include <string>
 #include <utility>
 
-#include "rvelab/pool/checks.hpp"
 #include "rvelab/solver/snapshot.hpp"
 
 namespace rvelab::ranks {
@@ -172,7 +171,7 @@ RankedPool::Messages RankedPool::to_others(const Bytes& message) const {
   return messages;
 }
 
-void RankedPool::make_at(std::int64_t id, pool::TravellingCall& call) {
+void RankedPool::make_at(std::int64_t id, const pool::TravellingCall& call) {
   const Lock lock = at_work();
   const int rank = place_of(id).rank;
   Packer packer;
@@ -181,7 +180,7 @@ void RankedPool::make_at(std::int64_t id, pool::TravellingCall& call) {
   call.take_result(answer.found());
 }
 
-void RankedPool::make_everywhere(pool::TravellingCall& call) {
+void RankedPool::make_everywhere(const pool::TravellingCall& call) {
   const Lock lock = alone();
   Packer packer;
   call.put(packer);
@@ -280,11 +279,86 @@ void RankedPool::release(std::span<const std::int64_t> ids) {
 
 std::vector<std::int64_t> RankedPool::ids() {
   const Lock lock = alone();
-  std::vector<std::int64_t> all;
-  all.reserve(ids_.population());
-  for (std::size_t slot = 0; slot < ids_.size(); ++slot)
-    if (ids_.in_use(slot)) all.push_back(ids_.id_of(slot));
-  return all;
+  return ids_.all();
+}
+
+void RankedPool::cost(std::span<const std::int64_t> ids, std::int64_t* grain_steps) {
+  const Lock lock = at_work();
+  for (const std::int64_t id : ids) ids_.slot_of(id);
+  std::vector<std::vector<std::int64_t>> of_rank(population_.size());
+  std::vector<std::vector<std::size_t>> entries(population_.size());
+  for (std::size_t k = 0; k < ids.size(); ++k) {
+    const auto rank = std::size_t(place_of(ids[k]).rank);
+    of_rank[rank].push_back(ids[k]);
+    entries[rank].push_back(k);
+  }
+  for (std::size_t rank = 0; rank < of_rank.size(); ++rank) {
+    if (of_rank[rank].empty()) continue;
+    const std::vector<std::int64_t> costs = costs_at(int(rank), of_rank[rank]);
+    for (std::size_t k = 0; k < costs.size(); ++k)
+      grain_steps[entries[rank][k]] = place_of(of_rank[rank][k]).cost_before + costs[k];
+  }
+}
+
+/// What RVEs cost since they came to that rank, where they are. A commit that made a trial again is in it.
+std::vector<std::int64_t> RankedPool::costs_at(int rank, std::span<const std::int64_t> ids) {
+  return ask(rank, message<&pool::Share::costs>(ids)).found().take_all<std::int64_t>();
+}
+
+void RankedPool::write(const std::function<void(const pool::Population&, const StateOf&)>& writer) {
+  const Lock lock = alone();
+  const pool::Population population{ids_.tag(), ids_.generations(), ids_.all()};
+  writer(population, [&](std::size_t k) {
+    const std::int64_t id = population.ids[k];
+    return ask(place_of(id).rank, message<&pool::Share::save>(id)).found().take_all<std::byte>();
+  });
+}
+
+/// Each state goes to the next rank as it comes, so that no rank holds more than its share.
+void RankedPool::read(const std::function<pool::Population(const TakeState& take)>& reader) {
+  const Lock lock = alone();
+  pool::expect_empty(ids_.population());
+  const std::size_t ranks = population_.size();
+  std::size_t states = 0;
+  try {
+    const pool::Population population = reader([&](std::span<const std::byte> bytes) {
+      ask(int(states++ % ranks), message<&pool::Share::receive>(Packer().put(false).put_all(bytes).take()));
+    });
+    pool::expect_whole(population, states);
+    std::vector<Place> places(population.generations.size());
+    std::vector<std::vector<std::int64_t>> of_rank(ranks);
+    for (std::size_t k = 0; k < states; ++k) {
+      places[pool::Id::of(population.ids[k]).slot].rank = int(k % ranks);
+      of_rank[k % ranks].push_back(population.ids[k]);
+    }
+    Messages messages = no_messages();
+    for (std::size_t rank = 0; rank < ranks; ++rank) messages[rank] = message<&pool::Share::place>(of_rank[rank]);
+    expect_all_done(messages);
+    ids_.restore(population.tag, population.generations, population.ids);
+    places_ = std::move(places);
+    for (std::size_t rank = 0; rank < ranks; ++rank) population_[rank] = of_rank[rank].size();
+  } catch (...) {
+    expect_all_done(Messages(ranks, message<&pool::Share::forget_received>()));
+    throw;
+  }
+}
+
+void serve(Link& link, std::unique_ptr<pool::Share> share) {
+  Served served(std::move(share));
+  Bytes message;
+  while (true) {
+    try {
+      link.receive(0, message);
+    } catch (const std::bad_alloc&) {
+      link.send(0, {});  // as an answer that could not be made
+      continue;
+    }
+    const auto number = Unpacker(message).take<std::int32_t>();
+    if (number == std::int32_t(RankCall::end)) return;
+    link.send(0, served.answer(message));
+    if (number != ShareCalls::number<&pool::Share::prepare>())
+      message = Bytes();  // its room is that of the message to settle
+  }
 }
 
 }  // namespace rvelab::ranks

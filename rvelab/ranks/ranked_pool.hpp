@@ -6,8 +6,6 @@
 #include <map>
 #include <mutex>
 
-#include "rvelab/pool/id_table.hpp"
-#include "rvelab/ranks/link.hpp"
 #include "rvelab/ranks/perform.hpp"
 
 namespace rvelab::ranks {
@@ -50,8 +48,8 @@ class RankedPool final : public pool::Pool {
   using Messages = std::vector<Bytes>;
   using Lock = std::unique_lock<std::mutex>;
 
-  void make_at(std::int64_t id, pool::TravellingCall& call) override;
-  void make_everywhere(pool::TravellingCall& call) override;
+  void make_at(std::int64_t id, const pool::TravellingCall& call) override;
+  void make_everywhere(const pool::TravellingCall& call) override;
   Lock at_work();
   Lock alone();
   Place& place_of(std::int64_t id) { return places_[ids_.slot_of(id)]; }
@@ -64,7 +62,6 @@ class RankedPool final : public pool::Pool {
   Answer answer_of(int rank, const Bytes& message);
   Answer ask(int rank, const Bytes& message);
   Messages to_others(const Bytes& message) const;
-  Bytes saved(std::int64_t id);
   std::vector<std::int64_t> costs_at(int rank, std::span<const std::int64_t> ids);
   void make_room(std::size_t n);
   std::vector<std::vector<std::size_t>> by_rank(std::span<const std::int64_t> ids);
@@ -87,5 +84,18 @@ class RankedPool final : public pool::Pool {
 
 /// Service of the other ranks: answers what comes from the first one until the pool ends.
 void serve(Link& link, std::unique_ptr<pool::Share> share);
+
+// Which RVEs change their rank so that all ranks have the same work (balance.cpp).
+
+struct Move {
+  std::size_t index = 0;  ///< of the RVE in what was given
+  int from = 0, to = 0;
+};
+
+/// `cost[k]`: expected work of an RVE, grain-steps, at rank `rank[k]` of `ranks`. None if the busiest rank has at most
+/// `allowed` (0.1: 10 %) more than the mean. Else from the busiest rank to the idlest, again and again, the RVE that
+/// takes most of what they differ by: half of it at most, and not below a hundredth of the mean. Longest processing
+/// time first (Graham 1969), but that what is in its place stays.
+std::vector<Move> moves_to_balance(std::span<const double> cost, std::span<const int> rank, int ranks, double allowed);
 
 }  // namespace rvelab::ranks

@@ -1,11 +1,11 @@
 // Trials over ranks, their commitment, and the balance of work. Declared in ranked_pool.hpp.
 #include <algorithm>
+#include <array>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <utility>
 
-#include "rvelab/pool/checks.hpp"
-#include "rvelab/ranks/balance.hpp"
 #include "rvelab/ranks/ranked_pool.hpp"
 
 namespace rvelab::ranks {
@@ -52,38 +52,33 @@ struct Worst {
 struct Results {
   std::string_view text;
   Row<std::int32_t> status;
-  Row<std::int64_t> costs;
-  Row<double> stress, contact, reynolds, tangent, estimate, scale;
-  Row<std::int64_t> tokens;
+  Row<std::int64_t> costs, tokens;
+  Row<double> values[std::size(pool::batch_outputs)];
 
   explicit Results(Unpacker& found) : text(found.take_text()), status(found.take_row<std::int32_t>()) {
     costs = found.take_row<std::int64_t>();
-    for (auto* values : {&stress, &contact, &reynolds, &tangent, &estimate, &scale}) *values = found.take_row<double>();
+    for (auto& row : values) row = found.take_row<double>();
     tokens = found.take_row<std::int64_t>();
   }
 
   void write(std::size_t k, std::size_t entry, const pool::Batch& to) const {
-    const auto status_of = Status(status[k]);
+    const bool made = Status(status[k]) >= Status::ok;
     if (to.status != nullptr) to.status[entry] = status[k];
-    if (to.dt_scale != nullptr) to.dt_scale[entry] = scale[k];
-    if (status_of < Status::ok) return;
-    const auto copy = [&](const Row<double>& from, double* into, std::size_t each) {
-      if (into != nullptr) from.copy(each * k, each, into + each * entry);
-    };
-    copy(stress, to.stress, 9);
-    copy(contact, to.contact_stress, 9);
-    copy(reynolds, to.reynolds_stress, 9);
-    copy(tangent, to.tangent, 36);
-    copy(estimate, to.error_estimate, 1);
-    if (to.tokens_out != nullptr) to.tokens_out[entry] = tokens[k];
+    for (std::size_t of = 0; of < std::size(values); ++of) {
+      const auto [member, each] = pool::batch_outputs[of];
+      if (to.*member != nullptr && (made || member == &rvelab_batch::dt_scale))
+        values[of].copy(each * k, each, to.*member + each * entry);
+    }
+    if (made && to.tokens_out != nullptr) to.tokens_out[entry] = tokens[k];
   }
 };
 
 /// The trials of a batch for one rank: of the entries `of` of ids.
 Bytes trial_message(const pool::Batch& batch, std::span<const std::int64_t> ids, std::span<const std::int64_t> entries,
                     const std::vector<std::size_t>& of) {
-  const Wanted wanted{batch.contact_stress != nullptr, batch.reynolds_stress != nullptr, batch.tangent != nullptr,
-                      batch.error_estimate != nullptr, batch.tokens_out != nullptr,      batch.tokens_in != nullptr};
+  Wanted wanted{0, batch.tokens_in != nullptr, batch.tokens_out != nullptr};
+  for (std::size_t k = 0; k < std::size(pool::batch_outputs); ++k)
+    if (batch.*pool::batch_outputs[k].values != nullptr) wanted.outputs |= 1u << k;
   std::vector<std::int64_t> own, places, tokens;
   std::vector<double> gradients;
   for (const std::size_t k : of) {
@@ -91,17 +86,12 @@ Bytes trial_message(const pool::Batch& batch, std::span<const std::int64_t> ids,
     own.push_back(ids[k]);
     places.push_back(entries[k]);
     if (wanted.tokens_in) tokens.push_back(batch.tokens_in[entry]);
-    gradients.insert(gradients.end(), batch.displacement_gradients + 9 * entry,
-                     batch.displacement_gradients + 9 * entry + 9);
+    gradients.insert(gradients.end(), batch.dH + 9 * entry, batch.dH + 9 * entry + 9);
   }
-  return message(RankCall::trial)
-      .put(batch.dt)
-      .put(wanted)
-      .put_all(std::span<const std::int64_t>(own))
-      .put_all(std::span<const std::int64_t>(places))
-      .put_all(std::span<const std::int64_t>(tokens))
-      .put_all(std::span<const double>(gradients))
-      .take();
+  Packer packer = message(RankCall::trial);
+  packer.put(batch.dt).put(wanted);
+  for (const auto* each : {&own, &places, &tokens}) packer.put_all(std::span<const std::int64_t>(*each));
+  return packer.put_all(std::span<const double>(gradients)).take();
 }
 
 /// Of an entry whose trial was not made.
@@ -124,14 +114,15 @@ Verdict RankedPool::apply(std::int64_t id, const Matrix3& displacement_gradient,
   const Lock lock = at_work();
   Place& place = place_of(id);
   Packer packer = message(RankCall::apply);
-  packer.put(id).put(dt);
-  for (int k = 0; k < 9; ++k) packer.put(displacement_gradient(k / 3, k % 3));
+  std::array<double, 9> rows;
+  pool::store(displacement_gradient, rows.data());
+  packer.put(id).put(dt).put(rows);
   std::string text = room_for_text();
   Answer answer = ask(place.rank, packer.take());
   const auto status = answer.found().take<Status>();
   Verdict verdict = verdict_of(status, answer.found().take_text(), std::move(text));
   worked(place, answer.found().take<std::int64_t>());
-  for (int k = 0; k < 9; ++k) stress[k] = answer.found().take<double>();
+  std::ranges::copy(answer.found().take<std::array<double, 9>>(), stress);
   return verdict;
 }
 
@@ -139,7 +130,7 @@ Verdict RankedPool::trial(const pool::Batch& batch) {
   const Lock lock = at_work();
   if (batch.n < 0) throw Refused(Status::bad_input, "batch.n is " + std::to_string(batch.n) + "; allowed: 0 or more");
   if (batch.n == 0) return {};
-  pool::expect_time(batch.dt);
+  expect_time(batch.dt);
   const auto n = std::size_t(batch.n);
   Worst worst;
   std::string text = room_for_text(), text_of_refused;
@@ -176,14 +167,12 @@ Verdict RankedPool::trial(const pool::Batch& batch) {
       continue;
     }
     const Results results(answer.found());
-    Worst of_share;
     for (std::size_t k = 0; k < of.size(); ++k) {
       const auto entry = std::size_t(entries[of[k]]);
       results.write(k, entry, batch);
       worked(place_of(ids[of[k]]), results.costs[k]);
-      of_share.take(Status(results.status[k]), results.text, entry);
+      worst.take(Status(results.status[k]), results.text, entry);  // the text is that of the worst of its share
     }
-    worst.take(of_share.status, of_share.text, of_share.entry);
   }
   return verdict_of(worst.status, worst.text, std::move(text));
 }
@@ -221,8 +210,8 @@ void RankedPool::move(int from, int to, std::span<const std::int64_t> ids) {
   std::vector<std::int64_t> costs;
   try {
     costs = costs_at(from, ids);
-    Answer saved = ask(from, message(RankCall::save).put_all(ids).take());
-    ask(to, message(RankCall::receive).put_rest(saved.found().rest()).take());
+    Answer packed = ask(from, message<&pool::Share::pack>(ids));
+    ask(to, message<&pool::Share::receive>(packed.found().take_bytes()));
     ask(to, place);
   } catch (...) {  // no memory there, or here
     if (broken_) throw;

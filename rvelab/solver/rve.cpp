@@ -2,10 +2,9 @@
 
 #include <cmath>
 #include <limits>
-#include <sstream>
 #include <utility>
 
-#include "rvelab/cell/pressure.hpp"
+#include "rvelab/cell/cell.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/solver/assembly/contact_states.hpp"
 #include "rvelab/solver/at_rate/at_rate.hpp"
@@ -18,14 +17,6 @@
 namespace rvelab {
 
 namespace {
-
-void expect_time(double dt) {
-  constexpr double shortest = 1e-30;  // s; in less the squares of rates are beyond all numbers
-  if (dt == 0 || (dt >= shortest && std::isfinite(dt))) return;
-  std::ostringstream text;
-  text << "apply: dt = " << dt << " s; it must be 0 (quasi-static) or a time of at least 1e-30 s";
-  throw InvalidIncrement(text.str());
-}
 
 /// A state for a call that changes it: no trial is pending, all buffers are there.
 State& allocated(State& s) {
@@ -95,18 +86,11 @@ double inertial_number(const State& s, const Matrix3& gradient, double dt, const
   return rate > 0 ? std::numeric_limits<double>::infinity() : 0.0;
 }
 
-Response respond(State& s, const Report& report, const Matrix3& gradient, double dt, const Want& want) {
-  Response r;
-  r.report = report;
-  r.displacement_gradient = gradient;
+Response respond(State& s, const Report& report, const Matrix3& gradient, double dt) {
   Matrix3 in_cell = s.stress();
   if (s.has_deferred()) in_cell += extrapolated(s, s.control().deferred_stretch).stress;
   const Matrix3 contact = s.to_lab(in_cell), reynolds = s.reynolds_stress();
-  r.stress = contact + reynolds;
-  if (want.parts) {
-    r.contact_stress = contact;
-    r.reynolds_stress = reynolds;
-  }
+  Response r{contact + reynolds, contact, reynolds, gradient, report};
   r.report.cell_thin = s.is_thin(s.cell());
   if (dt > 0) r.report.inertial_number = inertial_number(s, gradient, dt, r.stress);
   return r;
@@ -134,6 +118,13 @@ Report load(State& s, Increment increment) {
 
 }  // namespace
 
+void expect_time(double dt) {
+  constexpr double shortest = 1e-30;  // s; in less the squares of rates are beyond all numbers
+  if (dt == 0 || (dt >= shortest && std::isfinite(dt))) return;
+  throw InvalidIncrement("apply: dt = " + in_words(dt) +
+                         " s; it must be 0 (quasi-static) or a time of at least 1e-30 s");
+}
+
 Rve::Rve(const Specimen& specimen) : state_(std::make_unique<State>(specimen)) {}
 Rve::Rve(const Rve& other) : state_(std::make_unique<State>(*other.state_)) {}
 Rve& Rve::operator=(const Rve& other) {
@@ -144,7 +135,7 @@ Rve::Rve(Rve&&) noexcept = default;
 Rve& Rve::operator=(Rve&&) noexcept = default;
 Rve::~Rve() = default;
 
-Response Rve::attempt(const Matrix3& displacement_gradient, double dt, const Want& want) {
+Response Rve::attempt(const Matrix3& displacement_gradient, double dt) {
   State& s = allocated(*state_);
   expect_time(dt);
   const CallClock clock(s.model().times);
@@ -153,17 +144,17 @@ Response Rve::attempt(const Matrix3& displacement_gradient, double dt, const Wan
   const bool deferred = dt == 0 && may_defer(s, increment.split);
   return tried(s, deferred ? Trial::Changes::deferred_strain : Trial::Changes::grains, [&] {
     const Report report = deferred ? defer(s, increment.split) : load(s, increment);
-    return respond(s, report, displacement_gradient, dt, want);
+    return respond(s, report, displacement_gradient, dt);
   });
 }
 
-Response Rve::apply(const Matrix3& displacement_gradient, double dt, const Want& want) {
-  const Response response = attempt(displacement_gradient, dt, want);
+Response Rve::apply(const Matrix3& displacement_gradient, double dt) {
+  const Response response = attempt(displacement_gradient, dt);
   commit();
   return response;
 }
 
-Response Rve::apply(const MixedTarget& target, double dt, const Want& want) {
+Response Rve::apply(const MixedTarget& target, double dt) {
   State& s = allocated(*state_);
   expect_time(dt);
   const CallClock clock(s.model().times);
@@ -173,7 +164,7 @@ Response Rve::apply(const MixedTarget& target, double dt, const Want& want) {
     s.control().stress_slope.setZero();
     Report report = dt > 0 ? load_at_rate(s, target, dt, gradient) : load_quasi_static(s, target, gradient);
     report.substeps += deferred;
-    return respond(s, report, gradient, dt, want);
+    return respond(s, report, gradient, dt);
   });
 }
 

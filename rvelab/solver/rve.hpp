@@ -18,6 +18,9 @@ namespace rvelab {
 class State;
 struct StepTimes;
 
+/// Throws InvalidIncrement unless dt (s) is 0 or a positive time.
+void expect_time(double dt);
+
 /// Calls that change the Rve (those without const) may not run beside any other call of the same one. Const calls
 /// change nothing and may run beside each other, except that those of a large cell share its team (share), which takes
 /// one call at a time. Different Rves know nothing of each other, copies included.
@@ -39,12 +42,12 @@ class Rve {
   /// small part of a sub-step share one: the strain is then in the cell at once, the stress follows from its slope over
   /// the increment before, within the estimate, and Report::substeps is 0. Throws InvalidIncrement (refused) or
   /// IncrementFailed; the RVE is then exactly as it was.
-  Response apply(const Matrix3& displacement_gradient, double dt, const Want& want = {});
+  Response apply(const Matrix3& displacement_gradient, double dt);
 
   /// The same as a trial: commit() makes it the state, revert() brings the committed state back, bit for bit. A pure
   /// function of the committed state and its arguments; apply is attempt and commit. A trial that is pending is
   /// reverted first, here and in every other call that changes the Rve. Throws as apply; no trial is pending then.
-  Response attempt(const Matrix3& displacement_gradient, double dt, const Want& want = {});
+  Response attempt(const Matrix3& displacement_gradient, double dt);
   bool pending() const;  ///< whether a trial is; a copy has none, and is in the state that its source showed
   void commit();         ///< nothing without a trial
   void revert() noexcept;
@@ -58,7 +61,7 @@ class Rve {
   /// was. At dt = 0 the target waits for a stress that is let go, and one that the grains cannot carry is an
   /// IncrementFailed (quasi_static/recovery.hpp); at dt > 0 a stress that is missed is no error: Report::target_held
   /// says so.
-  Response apply(const MixedTarget& target, double dt, const Want& want = {});
+  Response apply(const MixedTarget& target, double dt);
 
   /// Quasi-static steps at fixed cell until the unbalanced ratio is at most `unbalanced` (dimensionless) or `max_steps`
   /// sub-steps are made; Report::target_held says which of the two. Throws IncrementFailed (overlaps beyond

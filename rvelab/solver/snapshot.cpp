@@ -89,47 +89,31 @@ struct Writer {
   }
 
  private:
-  /// Room for the next bytes; nullptr: they are only counted.
-  std::byte* next(std::size_t bytes) {
-    std::byte* const at = to == nullptr ? nullptr : to + size;
+  void add(const void* from, std::size_t bytes) {
+    if (to != nullptr && bytes > 0) std::memcpy(to + size, from, bytes);
     size += bytes;
-    return at;
-  }
-  template <class Value>
-  static void store(const Value& value, std::byte* at) {
-    typename Layout<Value>::Scalar scalars[Layout<Value>::size];
-    Layout<Value>::put(value, scalars);
-    std::memcpy(at, scalars, sizeof scalars);
   }
   template <class Value>
   void put(const Value& value) {
     if constexpr (Textual<Value>) {
       const std::string text = fields::text_of(value);
       put(std::uint64_t(text.size()));
-      if (std::byte* const at = next(text.size()); at != nullptr && !text.empty())
-        std::memcpy(at, text.data(), text.size());
-    } else if (std::byte* const at = next(least_bytes<Value>())) {
-      store(value, at);
+      add(text.data(), text.size());
+    } else {
+      typename Layout<Value>::Scalar scalars[Layout<Value>::size];
+      Layout<Value>::put(value, scalars);
+      add(scalars, sizeof scalars);
     }
   }
   template <class Value>
   void put(const std::vector<Value>& values) {
-    put(std::uint64_t(values.size()));
-    std::byte* const at = next(values.size() * least_bytes<Value>());
     static_assert(Layout<Value>::in_order, "say here how a list of these is put");
-    if (at != nullptr && !values.empty())
-      std::memcpy(at, static_cast<const void*>(values.data()), values.size() * least_bytes<Value>());
+    put(std::uint64_t(values.size()));
+    add(values.data(), values.size() * least_bytes<Value>());
   }
   template <class Item, class Value>
   void column(const std::vector<Item>& items, const Field<Item, Value>& column) {
-    if constexpr (Textual<Value>) {
-      for (const Item& item : items) put(item.*column.member);
-    } else if (std::byte* at = next(items.size() * least_bytes<Value>())) {
-      for (const Item& item : items) {
-        store(item.*column.member, at);
-        at += least_bytes<Value>();
-      }
-    }
+    for (const Item& item : items) put(item.*column.member);
   }
 };
 
@@ -173,15 +157,6 @@ struct Reader {
     return least_bytes<Value>();
   }
   template <class Value>
-  static void load(const Path& path, const std::byte* at, Value& value) {
-    typename Layout<Value>::Scalar scalars[Layout<Value>::size];
-    std::memcpy(scalars, at, sizeof scalars);
-    if constexpr (std::is_same_v<Value, bool>) {
-      if (scalars[0] > 1) refuse(path, "is " + std::to_string(scalars[0]) + "; allowed: 0, 1");
-    }
-    Layout<Value>::get(scalars, value);
-  }
-  template <class Value>
   void get(const Path& path, Value& value) {
     if constexpr (Textual<Value>) {
       const std::size_t letters = count(path, 1);
@@ -192,7 +167,11 @@ struct Reader {
         refuse(path, std::string("holds no word that is known: ") + error.what());
       }
     } else {
-      load(path, next(path, least_bytes<Value>()), value);
+      typename Layout<Value>::Scalar scalars[Layout<Value>::size];
+      std::memcpy(scalars, next(path, sizeof scalars), sizeof scalars);
+      if constexpr (std::is_same_v<Value, bool>)
+        if (scalars[0] > 1) refuse(path, "is " + std::to_string(scalars[0]) + "; allowed: 0, 1");
+      Layout<Value>::get(scalars, value);
     }
   }
   template <class Value>
@@ -205,15 +184,7 @@ struct Reader {
   template <class Item, class Value>
   void column(const Path& table, std::vector<Item>& items, const Field<Item, Value>& column) {
     const Path path(&table, column.name);
-    if constexpr (Textual<Value>) {
-      for (Item& item : items) get(path, item.*column.member);
-    } else {
-      const std::byte* at = next(path, items.size() * least_bytes<Value>());
-      for (Item& item : items) {
-        load(path, at, item.*column.member);
-        at += least_bytes<Value>();
-      }
-    }
+    for (Item& item : items) get(path, item.*column.member);
   }
 };
 

@@ -109,17 +109,11 @@ constexpr bool all_distinct(const First& first, const Rest&... rest) {
   return (are_distinct(first, rest) && ...) && all_distinct(rest...);
 }
 
+/// Parts and tables have no rows of their own to say.
+constexpr bool says_its_rows(const auto&) { return true; }
 template <class Owner, class Value>
 constexpr bool says_its_rows(const Field<Owner, Value>& field) {
   return Listed<Value>::is_list == (field.rows != Rows::one);
-}
-template <class Owner, class Value>
-constexpr bool says_its_rows(const Part<Owner, Value>&) {
-  return true;
-}
-template <class Owner, class Item>
-constexpr bool says_its_rows(const Table<Owner, Item>&) {
-  return true;
 }
 
 /// Whether each member of the struct is described, once and under a name of its own.

@@ -26,11 +26,10 @@ std::string text_of(Enumeration value) {
 }
 
 inline void from_text(const std::string& text, std::string& value) { value = text; }
-inline void from_text(const std::string& text, Law& value) { value = law_from(text); }
-inline void from_text(const std::string& text, Slip& value) { value = slip_from(text); }
-inline void from_text(const std::string& text, HertzRadius& value) { value = hertz_radius_from(text); }
-inline void from_text(const std::string& text, Dashpot& value) { value = dashpot_from(text); }
-inline void from_text(const std::string& text, LocalDampingForm& value) { value = local_damping_form_from(text); }
+template <class Choice>
+void from_text(const std::string& text, Choice& value) {
+  value = choice_from<Choice>(text);
+}
 inline void from_text(const std::string& text, Shape& value) {
   for (int number = 0; number < shape_count; ++number)
     if (text == name(Shape(number))) {
@@ -73,27 +72,20 @@ struct Layout {
   static void get(const Scalar* row, Value& value) { value = static_cast<Value>(row[0]); }
 };
 
-template <>
-struct Layout<Vector3> {
-  using Scalar = double;
-  static_assert(sizeof(Vector3) == 3 * sizeof(double));
+template <class Value, class Number>
+struct RowOfThree {
+  using Scalar = Number;
+  static_assert(sizeof(Value) == 3 * sizeof(Number));
   static constexpr std::array<std::uint64_t, 1> extents{3};
   static constexpr std::size_t size = 3;
   static constexpr bool in_order = true;
-  static void put(const Vector3& value, double* row) { std::copy_n(value.data(), 3, row); }
-  static void get(const double* row, Vector3& value) { std::copy_n(row, 3, value.data()); }
+  static void put(const Value& value, Number* row) { std::copy_n(value.data(), 3, row); }
+  static void get(const Number* row, Value& value) { std::copy_n(row, 3, value.data()); }
 };
-
 template <>
-struct Layout<Image> {
-  using Scalar = std::int32_t;
-  static_assert(sizeof(Image) == 3 * sizeof(std::int32_t));
-  static constexpr std::array<std::uint64_t, 1> extents{3};
-  static constexpr std::size_t size = 3;
-  static constexpr bool in_order = true;
-  static void put(const Image& value, std::int32_t* row) { std::copy_n(value.data(), 3, row); }
-  static void get(const std::int32_t* row, Image& value) { std::copy_n(row, 3, value.data()); }
-};
+struct Layout<Vector3> : RowOfThree<Vector3, double> {};
+template <>
+struct Layout<Image> : RowOfThree<Image, std::int32_t> {};
 
 template <>
 struct Layout<Matrix3> {

@@ -39,7 +39,7 @@ TEST_CASE("the normal stiffness of a law is the slope of its force, the force th
 
 TEST_CASE("laws are found by their names, and each reads parameters of its own ranges", "[contact][quick]") {
   for (int k = 0; k < law_count; ++k) {
-    CHECK(law_from(name(Law(k))) == Law(k));
+    CHECK(choice_from<Law>(name(Law(k))) == Law(k));
     CHECK(law_names().find(name(Law(k))) != std::string::npos);
     int read = 0;
     for (const LawParameter& each : law_parameters()) {

@@ -2,8 +2,8 @@
 // increments, discs written as ellipses, and axes of stiffness that turn with the bedding.
 #include <cmath>
 
+#include "rvelab/measure/contact_linear.hpp"
 #include "rvelab/measure/measures.hpp"
-#include "rvelab/measure/outline_linear.hpp"
 #include "rvelab/measure/probe.hpp"
 #include "rvelab/measure/tangent.hpp"
 #include "rvelab/measure/tensor_order.hpp"

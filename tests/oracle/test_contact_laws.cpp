@@ -31,7 +31,7 @@ TEST_CASE("every contact law has the forces of its published equations") {
     for (const Shape shape : {Shape::disc, Shape::sphere}) {
       CAPTURE(row.at("name").get<std::string>(), shape == Shape::disc ? "discs" : "spheres");
       const double ri = row.at("radius_m")[0], rj = row.at("radius_m")[1], overlap = row.at("overlap_m");
-      Specimen s = empty_specimen(shape, 1, material_of(row.at("materials")[0]), law_from(row.at("law")));
+      Specimen s = empty_specimen(shape, 1, material_of(row.at("materials")[0]), choice_from<Law>(row.at("law")));
       s.materials.push_back(material_of(row.at("materials")[1]));
       s.contact.rolling = true;
       s.solver.fixed_time_step = 1e-3;

@@ -75,7 +75,7 @@ Stresses flow(Specimen s, const Matrix3& map, int steps_per_increment, int halvi
   Rve rve(s);
   Stresses found;
   for (int k = 1; k <= increments; ++k) {
-    const Response r = rve.apply(shear, steps_per_increment * time_step, Want{.parts = true});
+    const Response r = rve.apply(shear, steps_per_increment * time_step);
     if (k % (increments / 10) != 0) continue;
     found.contact.push_back(map.transpose() * r.contact_stress * map);
     found.reynolds.push_back(map.transpose() * r.reynolds_stress * map);

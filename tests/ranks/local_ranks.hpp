@@ -88,10 +88,10 @@ inline Found trial(pool::Pool& pool, const std::vector<std::int64_t>& ids, const
   batch.n = std::int64_t(n);
   batch.dt = dt;
   batch.ids = ids.data();
-  batch.displacement_gradients = gradients.data();
+  batch.dH = gradients.data();
   batch.tokens_in = tokens == nullptr ? nullptr : tokens->data();
-  batch.stress = found.stress.data();
-  batch.contact_stress = all ? found.contact.data() : nullptr;
+  batch.sigma = found.stress.data();
+  batch.contact = all ? found.contact.data() : nullptr;
   batch.tangent = all ? found.tangent.data() : nullptr;
   batch.error_estimate = found.estimate.data();
   batch.dt_scale = found.scale.data();

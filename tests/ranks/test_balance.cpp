@@ -3,7 +3,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "rvelab/ranks/balance.hpp"
 #include "tests/ranks/local_ranks.hpp"
 
 using namespace rvelab;

@@ -97,7 +97,7 @@ TEST_CASE("Without memory at any request of any rank a call is refused and leave
 
 TEST_CASE("Without memory at any request of any rank a commit, revert or release is made by all ranks or by none") {
   const auto ranks = GENERATE(1, 3);
-  const auto memory = GENERATE(pool::TrialMemory::keep, pool::TrialMemory::recompute);
+  const auto memory = GENERATE(RVELAB_TRIAL_KEEP, RVELAB_TRIAL_RECOMPUTE);
   const auto everything = GENERATE(false, true);  // all that are pending, or those named
   pool::Options options = one_thread();
   options.trial_memory = memory;
@@ -124,7 +124,7 @@ TEST_CASE("Without memory at any request of any rank a commit, revert or release
     long refused = 0;
     bool enough = false;
     for (long n = 1; !enough; ++n) {
-      CAPTURE(ranks, int(memory), int(what), n);
+      CAPTURE(ranks, memory, int(what), n);
       pool->release(ids);
       spawn();
       trial(*pool, ids, gradients);
@@ -181,8 +181,8 @@ TEST_CASE("A batch over ranks without memory tells of each RVE what became of it
   pool::Batch batch;
   batch.n = 6;
   batch.ids = ids.data();
-  batch.displacement_gradients = gradients.data();
-  batch.stress = stress.data();
+  batch.dH = gradients.data();
+  batch.sigma = stress.data();
   batch.tangent = tangent.data();
   batch.status = status.data();
   /// Whether n requests were enough.

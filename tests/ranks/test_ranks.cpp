@@ -1,5 +1,6 @@
 // A pool over ranks: whatever is done with it, results, ids, texts and states are those of the pool in one process.
 // tests/ranks/mpirun does the same under mpirun.
+#include <algorithm>
 #include <cstring>
 #include <limits>
 #include <regex>
@@ -11,7 +12,7 @@ using namespace rvelab::test;
 
 TEST_CASE("a pool over ranks gives the bits, ids, tokens and costs of a pool in one process") {
   for (const int ranks : {1, 2, 3, 5})
-    for (const auto memory : {pool::TrialMemory::keep, pool::TrialMemory::recompute}) {
+    for (const auto memory : {RVELAB_TRIAL_KEEP, RVELAB_TRIAL_RECOMPUTE}) {
       pool::Options options = one_thread();
       options.trial_memory = memory;
       pool::ThreadedPool one(options);
@@ -81,9 +82,10 @@ TEST_CASE("a pool over ranks gives the bits, ids, tokens and costs of a pool in 
       CHECK(equal);
       for (const std::int64_t id : ids) {
         CHECK(one.save(id) == spread->at<&pool::Share::save>(there_of.at(id)));
-        const pool::Info a = one.info(id), b = spread->at<&pool::Share::info>(there_of.at(id));
-        CHECK((a.p == b.p && a.fabric == b.fabric && a.lattice == b.lattice && a.token == b.token &&
-               a.contacts == b.contacts && a.grain_steps == b.grain_steps && a.inertial_number == b.inertial_number));
+        const rvelab_info a = one.info(id), b = spread->at<&pool::Share::info>(there_of.at(id));
+        CHECK((a.p == b.p && std::ranges::equal(a.fabric, b.fabric) && std::ranges::equal(a.lattice, b.lattice) &&
+               a.token == b.token && a.contacts == b.contacts && a.grain_steps == b.grain_steps &&
+               a.inertial_number == b.inertial_number));
         std::int64_t cost_here = 0, cost_there = 1;
         one.cost({&id, 1}, &cost_here);
         spread->cost({&there_of.at(id), 1}, &cost_there);

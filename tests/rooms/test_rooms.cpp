@@ -234,7 +234,7 @@ TEST_CASE("a function of the C interface stands in five files beside its test: r
   }
   std::sort(found.begin(), found.end());
   CHECK(found == std::vector<std::string>{"include/rvelab/rvelab.h", "rvelab/abi/state_calls.cpp",
-                                          "rvelab/pool/info.cpp", "rvelab/pool/threaded_pool.hpp",
+                                          "rvelab/pool/states.cpp", "rvelab/pool/threaded_pool.hpp",
                                           "tools/python/rvelab.py"});
 }
 

@@ -22,7 +22,7 @@
 #include "rvelab/solver/loading/inertia.hpp"
 #include "rvelab/solver/loading/sweep.hpp"
 #include "rvelab/solver/rve.hpp"
-#include "rvelab/solver/state/release.hpp"
+#include "rvelab/solver/state/state.hpp"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <memory>
 #include <numeric>
 
-#include "rvelab/cell/givens.hpp"
+#include "rvelab/cell/cell.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/io/import/contacts.hpp"
 #include "rvelab/io/import/csv_table.hpp"

@@ -7,18 +7,6 @@
 
 namespace rvelab {
 
-Matrix3 strain_matrix(const Vector6& e) {
-  Matrix3 m;
-  m << e[0], 0.5 * e[5], 0.5 * e[4], 0.5 * e[5], e[1], 0.5 * e[3], 0.5 * e[4], 0.5 * e[3], e[2];
-  return m;
-}
-
-Vector6 strain_components(const Matrix3& m) {
-  Vector6 e;
-  e << m(0, 0), m(1, 1), m(2, 2), m(1, 2) + m(2, 1), m(0, 2) + m(2, 0), m(0, 1) + m(1, 0);
-  return e;
-}
-
 namespace {
 
 /// Sums of l^2 (kn - kt) n n n n and l^2 kt n n over the contacts, cell frame: what the stiffness is made of.
@@ -34,66 +22,31 @@ struct Coefficients {
 
 template <Shape shape, class Of>
 Moments moments_of(const Model& f, const Assembly& a, const Of& coefficients) {
-  constexpr int D = dimension_of(shape);
+  constexpr int D = dimension_of(shape), pairs = D == 2 ? 3 : 6;
+  constexpr int place[6] = {0, 1, D == 2 ? 5 : 2, 3, 4, 5};  // of the products of two components of n
   // Monomials of n of degree four and two; the servo renews its gain every few dozen sub-steps.
-  constexpr int degree4 = D == 2 ? 5 : 15;
-  double four[degree4] = {}, two[6] = {};
-  const PairGeometry<shape> pair(f, a);
-  for (const std::int32_t place : a.pairs.order) {
-    const auto p = std::size_t(place);
-    const PairPlace at = pair(p);
+  double four[D][pairs] = {}, two[pairs] = {};
+  each_touching<shape>(f, a, [&](std::size_t p, const PairPlace& at) {
     const Branch& b = at.branch;
-    if (!(at.overlap > 0)) continue;
     const auto [kn, kt] = coefficients(p, at);
     const double part = (kn - kt) / (b.x * b.x + b.y * b.y + b.z * b.z);
-    const double x = b.x, y = b.y, xx = x * x, yy = y * y, xy = x * y;
-    two[0] += kt * xx;
-    two[1] += kt * yy;
-    two[5] += kt * xy;
-    four[0] += part * (xx * xx);
-    four[1] += part * (xx * xy);
-    four[2] += part * (xx * yy);
-    four[3] += part * (xy * yy);
-    four[4] += part * (yy * yy);
-    if constexpr (D == 3) {
-      const double z = b.z, zz = z * z, yz = y * z, xz = x * z;
-      two[2] += kt * zz;
-      two[3] += kt * yz;
-      two[4] += kt * xz;
-      four[5] += part * (zz * zz);
-      four[6] += part * (xx * zz);
-      four[7] += part * (yy * zz);
-      four[8] += part * (xx * yz);
-      four[9] += part * (xx * xz);
-      four[10] += part * (yy * yz);
-      four[11] += part * (yy * xz);
-      four[12] += part * (zz * yz);
-      four[13] += part * (zz * xz);
-      four[14] += part * (zz * xy);
-    }
-  }
+    const double all[6] = {b.x * b.x, b.y * b.y, b.z * b.z, b.y * b.z, b.x * b.z, b.x * b.y};
+    double products[pairs];
+    for (int k = 0; k < pairs; ++k) products[k] = all[place[k]];
+    for (int k = 0; k < pairs; ++k) two[k] += kt * products[k];
+    for (int i = 0; i < D; ++i)
+      for (int k = i; k < pairs; ++k) four[i][k] += part * (products[i] * products[k]);
+  });
   Moments m;
-  m.second << two[0], two[5], two[4], two[5], two[1], two[3], two[4], two[3], two[2];
-  double z4 = 0, xxzz = 0, yyzz = 0, xxyz = 0, xxxz = 0, yyyz = 0, yyxz = 0, zzyz = 0, zzxz = 0, zzxy = 0;
-  if constexpr (D == 3) {
-    z4 = four[5];
-    xxzz = four[6];
-    yyzz = four[7];
-    xxyz = four[8];
-    xxxz = four[9];
-    yyyz = four[10];
-    yyxz = four[11];
-    zzyz = four[12];
-    zzxz = four[13];
-    zzxy = four[14];
-  }
-  const double x4 = four[0], xxxy = four[1], xxyy = four[2], yyxy = four[3], y4 = four[4];
-  m.fourth << x4, xxyy, xxzz, xxyz, xxxz, xxxy,  //
-      xxyy, y4, yyzz, yyyz, yyxz, yyxy,          //
-      xxzz, yyzz, z4, zzyz, zzxz, zzxy,          //
-      xxyz, yyyz, zzyz, yyzz, zzxy, yyxz,        //
-      xxxz, yyxz, zzxz, zzxy, xxzz, xxyz,        //
-      xxxy, yyxy, zzxy, yyxz, xxyz, xxyy;
+  Vector6 second = Vector6::Zero();
+  for (int k = 0; k < pairs; ++k) second[place[k]] = two[k];
+  m.second << second[0], second[5], second[4], second[5], second[1], second[3], second[4], second[3], second[2];
+  for (int i = 0; i < D; ++i)
+    for (int k = i; k < pairs; ++k) m.fourth(i, place[k]) = m.fourth(place[k], i) = four[i][k];
+  // The same monomials: yz yz is yyzz, yz xz is zzxy, and so on.
+  const Matrix6& known = m.fourth;
+  m.fourth.bottomRightCorner<3, 3>() << known(1, 2), known(2, 5), known(1, 4), known(2, 5), known(0, 2), known(0, 3),
+      known(1, 4), known(0, 3), known(0, 1);
   return m;
 }
 
@@ -110,7 +63,6 @@ Matrix6 strain_turn(const Matrix3& rotation) {
 template <Shape shape, class Of>
 Matrix6 sum_over_outlines(const Model& f, const Assembly& a, const Of& coefficients) {
   Matrix6 sum = Matrix6::Zero();
-  const PairGeometry<shape> pair(f, a);
   const auto dyad = [](double x, double y, const Branch& b) {
     Vector6 components = Vector6::Zero();
     components[0] = x * b.x;
@@ -118,15 +70,12 @@ Matrix6 sum_over_outlines(const Model& f, const Assembly& a, const Of& coefficie
     components[5] = 0.5 * (x * b.y + y * b.x);
     return components;
   };
-  for (const std::int32_t place : a.pairs.order) {
-    const auto p = std::size_t(place);
-    const OutlinePlace at = pair(p);
-    if (!(at.overlap > 0)) continue;
+  each_touching<shape>(f, a, [&](std::size_t p, const OutlinePlace& at) {
     const auto [kn, kt] = coefficients(p, at);
     const Vector6 along = dyad(at.normal.x, at.normal.y, at.branch),
                   across = dyad(-at.normal.y, at.normal.x, at.branch);
     sum += kn * along * along.transpose() + kt * across * across.transpose();
-  }
+  });
   return sum;
 }
 
@@ -159,6 +108,18 @@ Matrix6 affine_sum(const Model& f, const Assembly& a, const Of& coefficients) {
 }
 
 }  // namespace
+
+Matrix3 strain_matrix(const Vector6& e) {
+  Matrix3 m;
+  m << e[0], 0.5 * e[5], 0.5 * e[4], 0.5 * e[5], e[1], 0.5 * e[3], 0.5 * e[4], 0.5 * e[3], e[2];
+  return m;
+}
+
+Vector6 strain_components(const Matrix3& m) {
+  Vector6 e;
+  e << m(0, 0), m(1, 1), m(2, 2), m(1, 2) + m(2, 1), m(0, 2) + m(2, 0), m(0, 1) + m(1, 0);
+  return e;
+}
 
 Matrix6 affine_stiffness(const Model& f, const Assembly& a) {
   return with_force(f, [&](auto force) {

@@ -84,18 +84,14 @@ ContactState state_of(const Model& f, const PairTable& pairs, std::size_t p, con
 
 template <Shape shape>
 void add_contacts(const Model& f, const Assembly& a, Network& net) {
-  const PairGeometry<shape> pair(f, a);
-  for (const std::int32_t place : a.pairs.order) {
-    const auto p = std::size_t(place);
-    const auto at = pair(p);
-    if (!(at.overlap > 0)) continue;
+  each_touching<shape>(f, a, [&](std::size_t p, const auto& at) {
     const ContactState c = state_of(f, a.pairs, p, at);
     const Vector3 force = force_of(f, a.pairs, p);
     net.grains[std::size_t(c.i)].resultant -= force;
     net.grains[std::size_t(c.j)].resultant += force;
     add_torques(f, c, force, net);
     net.contacts.push_back(c);
-  }
+  });
 }
 
 template <Shape shape>
@@ -118,22 +114,16 @@ bool at_limit(double size, double limit) { return size >= (1 - 1e-6) * limit; }
 
 template <Shape shape>
 double constraints_over_motions(const Model& f, const Assembly& a) {
-  const PairGeometry<shape> pair(f, a);
   const int d = f.dimension(), turns = d == 2 ? 1 : 3;
   std::vector<int> contacts(f.size(), 0);
-  for (const std::int32_t place : a.pairs.order) {
-    const auto p = std::size_t(place);
-    if (!(pair(p).overlap > 0)) continue;
+  each_touching<shape>(f, a, [&](std::size_t p, const auto&) {
     ++contacts[std::size_t(a.pairs.i[p])];
     ++contacts[std::size_t(a.pairs.j[p])];
-  }
+  });
   double constraints = 0, grip = 0;
   long counted = 0;
-  for (const std::int32_t place : a.pairs.order) {
-    const auto p = std::size_t(place);
-    const auto at = pair(p);
-    if (!(at.overlap > 0) || contacts[std::size_t(a.pairs.i[p])] < 2 || contacts[std::size_t(a.pairs.j[p])] < 2)
-      continue;
+  each_touching<shape>(f, a, [&](std::size_t p, const auto& at) {
+    if (contacts[std::size_t(a.pairs.i[p])] < 2 || contacts[std::size_t(a.pairs.j[p])] < 2) return;
     const ContactState c = state_of(f, a.pairs, p, at);
     const double pressing = std::abs(c.pressing_force), held = grip_of(c.friction);
     const bool slides = at_limit(c.tangential_force.norm(), c.friction * pressing);
@@ -141,7 +131,7 @@ double constraints_over_motions(const Model& f, const Assembly& a) {
     constraints += 1 + (slides ? 0 : (d - 1) * held) + (rolls ? 0 : (d - 1) * held);
     grip += held;
     ++counted;
-  }
+  });
   if (counted == 0) return 0;
   // Round grains that nothing grips turn as they like.
   const double turning = f.round() ? grip / double(counted) : 1;

@@ -86,15 +86,6 @@ Matrix3 moment_in(const Model& f, const Assembly& a) {
   return sum;
 }
 
-}  // namespace
-
-Matrix3 contact_moment(const Model& f, const Assembly& a) {
-  // Called every few sub-steps under stress control.
-  return with_shape(f.shape, [&](auto shape) { return moment_in<shape.value>(f, a); });
-}
-
-namespace {
-
 /// Doubles that a grain's resultants take: force, then torque over the radius (N).
 template <int D>
 constexpr std::size_t resultant_row = D == 2 ? 3 : 6;
@@ -225,10 +216,6 @@ OutOfBalance balance_in(const Model& f, const Assembly& a) {
   return balance;
 }
 
-}  // namespace
-
-namespace {
-
 template <Shape shape>
 std::vector<Resultant> resultants_in(const Model& f, const Assembly& a) {
   constexpr int D = dimension_of(shape);
@@ -251,6 +238,11 @@ std::vector<Resultant> resultants_in(const Model& f, const Assembly& a) {
 }
 
 }  // namespace
+
+Matrix3 contact_moment(const Model& f, const Assembly& a) {
+  // Called every few sub-steps under stress control.
+  return with_shape(f.shape, [&](auto shape) { return moment_in<shape.value>(f, a); });
+}
 
 std::vector<Resultant> resultants_of(const Model& f, const Assembly& a) {
   return with_shape(f.shape, [&](auto shape) { return resultants_in<shape.value>(f, a); });

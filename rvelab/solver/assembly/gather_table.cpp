@@ -73,8 +73,8 @@ void leave_out_pairs_beyond(std::int32_t force_row, PairTable& pairs) {
   }
 }
 
-void gather_pairs_that_touch(PairTable& pairs) {
-  for (std::size_t eight = pairs.near / 8; eight < pairs.touched.size(); ++eight) {
+void gather_pairs_that_touch(PairTable& pairs, std::size_t first, std::size_t last) {
+  for (std::size_t eight = std::max(first, pairs.near) / 8; eight < last / 8; ++eight) {
     const std::int32_t* slots_of = pairs.slots_beyond.data() + 2 * (8 * eight - pairs.near);
     if (pairs.touched[eight] == 0 || slots_of[0] < 0) continue;  // nothing but padding, in a lattice that is not finite
     if (pairs.gathered[std::size_t(slots_of[0])] == pairs.slots[std::size_t(slots_of[0])]) continue;

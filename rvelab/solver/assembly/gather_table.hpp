@@ -15,8 +15,10 @@ void fill_gather_table(std::size_t padded_grains, std::int32_t force_row, PairTa
 /// Fills `gathered` and `slots_beyond` as after listing: no pair beyond `near` has touched.
 void leave_out_pairs_beyond(std::int32_t force_row, PairTable& pairs);
 
-/// After a pair loop: the force rows of pairs beyond `near` are gathered from their first contact on.
-void gather_pairs_that_touch(PairTable& pairs);
+/// After a loop over the pairs of these places, multiples of eight: the force rows of those beyond `near` are gathered
+/// from their first contact on.
+void gather_pairs_that_touch(PairTable& pairs, std::size_t first, std::size_t last);
+inline void gather_pairs_that_touch(PairTable& pairs) { gather_pairs_that_touch(pairs, pairs.near, pairs.padded()); }
 
 /// Calls at(grain, place, as_j) for every pair of the grains [first, last), multiples of a chunk but for the end: for
 /// each grain in the order of (i, j, image), since the pairs in which it is j all come before those in which it is i.

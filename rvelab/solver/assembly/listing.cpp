@@ -72,7 +72,7 @@ void arrange(const Model& f, const Assembly& a, const std::vector<ListedPair>& l
       in_pieces(n, f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
         for (std::size_t k = first; k < last; ++k) {
           const bool near = histories[k] != nullptr || touches<decltype(is)::value>(f, a, listed[k]);
-          group[k] = std::uint8_t((near ? 0 : 2) + int(listed[k].image != Image{0, 0, 0}));
+          group[k] = std::uint8_t((near ? 0 : 2) + int(is_shifted(listed[k].image)));
         }
       });
     });
@@ -108,10 +108,13 @@ void fill(const Model& f, const std::vector<ListedPair>& listed, const std::vect
   PairTable& pairs = a.pairs;
   pairs.listed = n;
   arrange(f, a, listed, histories, pairs);
-  const auto outside = std::int32_t(f.size());  // a padding grain: no extent, no mass
-  pairs.i.assign(padded, outside);
-  pairs.j.assign(padded, outside);
-  pairs.image.assign(padded, Image{1, 0, 0});
+  pairs.i.resize(padded);
+  pairs.j.resize(padded);
+  pairs.image.resize(padded);
+  for (std::size_t p = n; p < padded; ++p) {
+    pairs.i[p] = pairs.j[p] = std::int32_t(f.size());  // a padding grain: no extent, no mass
+    pairs.image[p] = Image{1, 0, 0};
+  }
   for (int component = 0; component < f.tangential_components(); ++component) {
     pairs.tangential[component].assign(padded, 0.0);
     if (f.contact.rolling) pairs.moment[component].assign(padded, 0.0);

@@ -154,6 +154,16 @@ class Search {
   std::vector<std::vector<Run>> runs_, runs_after_;  ///< by bin of the grain along the first direction; those after it
 };
 
+/// Puts the few pairs of one grain i in order.
+void sort_by_j(ListedPair* begin, ListedPair* end) {
+  for (ListedPair* next = begin; next < end; ++next) {
+    const ListedPair pair = *next;
+    ListedPair* to = next;
+    for (; to > begin && (pair.j < to[-1].j || (pair.j == to[-1].j && pair.image < to[-1].image)); --to) *to = to[-1];
+    *to = pair;
+  }
+}
+
 /// By (i, j, image): counted by i, then the few of each i put in order.
 std::vector<ListedPair> in_order(const std::vector<std::vector<ListedPair>>& found, std::size_t grains, Workers* team) {
   std::vector<std::uint32_t> begin(grains + 1, 0);
@@ -165,7 +175,13 @@ std::vector<ListedPair> in_order(const std::vector<std::vector<ListedPair>>& fou
   for (const auto& of_piece : found)
     for (const ListedPair& pair : of_piece) pairs[next[std::size_t(pair.i)]++] = pair;
   in_pieces(grains, team, [&](std::size_t, std::size_t first, std::size_t last) {
-    for (std::size_t g = first; g < last; ++g) std::sort(pairs.begin() + begin[g], pairs.begin() + begin[g + 1]);
+    for (std::size_t g = first; g < last; ++g) {
+      ListedPair *from = pairs.data() + begin[g], *to = pairs.data() + begin[g + 1];
+      if (to - from <= 32)
+        sort_by_j(from, to);
+      else
+        std::sort(from, to);
+    }
   });
   return pairs;
 }

@@ -31,6 +31,8 @@ std::vector<ListedPair> list_pairs(const Cell& cell, const double* positions, st
 double pairs_at_most(const Cell& cell, const double* positions, std::size_t stride, const std::vector<double>& radii,
                      double skin);
 
+inline bool is_shifted(const Image& image) { return (image[0] | image[1] | image[2]) != 0; }
+
 /// True if the first non-zero entry is positive: of a grain and its own image each pair is listed once.
 bool points_forward(const Image& image);
 

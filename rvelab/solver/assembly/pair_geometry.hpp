@@ -59,4 +59,14 @@ class PairGeometry {
   UpperTriangle lattice_;
 };
 
+/// visit(p, place) for each listed pair that touches, in the order of every sum.
+template <Shape shape, class Visit>
+void each_touching(const Model& f, const Assembly& a, const Visit& visit) {
+  const PairGeometry<shape> pair(f, a);
+  for (const std::int32_t listed : a.pairs.order) {
+    const auto p = std::size_t(listed);
+    if (const auto at = pair(p); at.overlap > 0) visit(p, at);
+  }
+}
+
 }  // namespace rvelab

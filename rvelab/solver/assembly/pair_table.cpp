@@ -69,8 +69,7 @@ void derive_pairs(const Model& f, PairTable& pairs) {
   });
   pairs.touched.assign(padded / 8, 0);
   pairs.shifted.assign(padded / 8, 0);
-  for (std::size_t p = 0; p < padded; ++p)
-    if (pairs.image[p] != Image{0, 0, 0}) pairs.shifted[p / 8] = 1;
+  for (std::size_t p = 0; p < padded; ++p) pairs.shifted[p / 8] |= std::uint8_t(is_shifted(pairs.image[p]));
   pairs.force.assign(padded * std::size_t(force_row_length(f.dimension())), 0.0);
   set_pair_parameters(f, pairs);
 }

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "rvelab/error.hpp"
-#include "rvelab/solver/at_rate/time_step.hpp"
 #include "rvelab/solver/loading/strain_path.hpp"
 #include "rvelab/solver/quasi_static/quasi_static.hpp"
 #include "rvelab/solver/quasi_static/servo.hpp"

@@ -91,11 +91,15 @@ struct GrainArrays {
   /// pointing to a padding pair, whose force is zero. Loop lengths are seldom mispredicted so, and hardly a slot is
   /// padding (against blocks of four neighbouring grains: spheres 32.6 ns a grain instead of 35.7, discs equal). Slots
   /// hold where the force row of the pair starts, in doubles; tasks, four a block, where the sum of the task goes: four
-  /// times the place of the grain in its chunk, plus 4 chunk_grains for i. Slots of pairs that have not touched since they
-  /// were listed point to a padding pair too (PairTable::gathered).
+  /// times the place of the grain in its chunk, plus 4 chunk_grains for i. Slots of pairs that have not touched since
+  /// they were listed point to a padding pair too (PairTable::gathered).
   const std::int32_t *slot_begin = nullptr, *slots = nullptr;
   const std::uint16_t* tasks = nullptr;
   const double *turn_first = nullptr, *turn_second = nullptr;  ///< not round: TurnValues (grains/description.hpp)
+  /// Called before a chunk is gathered, with the end of the chunk, where pairs are updated just in time
+  /// (loading/sweep.hpp).
+  void (*before_chunk)(void* sweep, long end) = nullptr;
+  void* sweep = nullptr;
 };
 
 /// Sums that the integration leaves behind: momentum (kg m/s), largest |v'|^2 (not round: (|v'| + l |w|)^2, as fast

@@ -52,7 +52,13 @@ inline __attribute__((always_inline)) EllipseMatrix<V> ellipse_matrix(Direction<
 }
 
 template <class V>
-inline __attribute__((always_inline)) EllipseGap<V> ellipse_gap(const EllipsePair<V>& p, Direction<V> n) {
+inline __attribute__((always_inline)) V determinant(const EllipseMatrix<V>& m) {
+  return m.xx * m.yy - m.xy * m.xy;
+}
+
+template <class V>
+inline __attribute__((always_inline)) EllipseGap<V> ellipse_gap(const EllipsePair<V>& p, Direction<V> n, V det_i,
+                                                                V det_j) {
   const V ix = p.i.xx * n.x + p.i.xy * n.y, iy = p.i.xy * n.x + p.i.yy * n.y;
   const V jx = p.j.xx * n.x + p.j.xy * n.y, jy = p.j.xy * n.x + p.j.yy * n.y;
   EllipseGap<V> g;
@@ -64,20 +70,40 @@ inline __attribute__((always_inline)) EllipseGap<V> ellipse_gap(const EllipsePai
   g.turned_j = (n.x * jy - n.y * jx) * inverse_j;
   g.overlap = (g.support_i + g.support_j) - (n.x * p.x + n.y * p.y);
   g.slope = (g.turned_i + g.turned_j) - (n.x * p.y - n.y * p.x);
-  const V det_i = p.i.xx * p.i.yy - p.i.xy * p.i.xy, det_j = p.j.xx * p.j.yy - p.j.xy * p.j.xy;
   const V rho_i = det_i * (inverse_i * (inverse_i * inverse_i)), rho_j = det_j * (inverse_j * (inverse_j * inverse_j));
   g.curvature = (rho_i + rho_j) - g.overlap;
   g.third = -3.0 * (rho_i * (g.turned_i * inverse_i) + rho_j * (g.turned_j * inverse_j)) - g.slope;
   return g;
 }
 
-/// Where to begin: normal of the ellipse of M_i + M_j where the branch leaves it.
+template <class V>
+inline __attribute__((always_inline)) EllipseGap<V> ellipse_gap(const EllipsePair<V>& p, Direction<V> n) {
+  return ellipse_gap(p, n, determinant(p.i), determinant(p.j));
+}
+
+/// Along the normal of the ellipse of M_i + M_j where the branch leaves it, m^3.
+template <class V>
+inline __attribute__((always_inline)) Direction<V> leaving_direction(const EllipsePair<V>& p) {
+  const V xx = p.i.xx + p.j.xx, xy = p.i.xy + p.j.xy, yy = p.i.yy + p.j.yy;
+  return {yy * p.x - xy * p.y, xx * p.y - xy * p.x};
+}
+
+/// Where to begin.
 template <class V>
 inline __attribute__((always_inline)) Direction<V> first_direction(const EllipsePair<V>& p) {
-  const V xx = p.i.xx + p.j.xx, xy = p.i.xy + p.j.xy, yy = p.i.yy + p.j.yy;
-  const V x = yy * p.x - xy * p.y, y = xx * p.y - xy * p.x;
-  const V inverse = 1.0 / square_root(x * x + y * y);
-  return {x * inverse, y * inverse};
+  const Direction<V> v = leaving_direction(p);
+  const V inverse = 1.0 / square_root(v.x * v.x + v.y * v.y);
+  return {v.x * inverse, v.y * inverse};
+}
+
+/// Whether f < 0 along a vector of any length, so far that rounding cannot hide it from is_apart.
+template <class V>
+inline __attribute__((always_inline)) auto shows_apart(const EllipsePair<V>& p, Direction<V> v) {
+  const auto support = [&](const EllipseMatrix<V>& m) {
+    return square_root(v.x * (m.xx * v.x + m.xy * v.y) + v.y * (m.xy * v.x + m.yy * v.y));
+  };
+  const V both = support(p.i) + support(p.j);
+  return both - (v.x * p.x + v.y * p.y) < -2e-12 * both;
 }
 
 /// n turned by twice the angle whose tangent is -part/whole, |part| <= whole: of length 1 but for rounding.
@@ -105,11 +131,17 @@ template <class V>
 inline __attribute__((always_inline)) auto is_apart(const EllipseGap<V>& g) {
   return g.overlap < -1e-12 * (g.support_i + g.support_j);
 }
-/// Whether f is least around n, to a turn of 1e-10 (f itself to 1e-20), and whether it then is the least of all.
+/// Whether f is least around n, to a turn of 1e-10 (f itself to 1e-20).
 template <class V>
 inline __attribute__((always_inline)) auto is_least_nearby(const EllipseGap<V>& g) {
   return magnitude_of(g.slope) <= 1e-10 * g.curvature;
 }
+/// Whether steps go on.
+template <class V>
+inline __attribute__((always_inline)) auto is_open(const EllipseGap<V>& g) {
+  return !(is_apart(g) | is_least_nearby(g));
+}
+/// Whether f, where it is least nearby, is the least of all.
 template <class V>
 inline __attribute__((always_inline)) auto is_shallow(const EllipsePair<V>& p, const EllipseGap<V>& g) {
   return g.overlap <= p.i.sharpest + p.j.sharpest;

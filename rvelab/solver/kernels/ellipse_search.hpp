@@ -157,22 +157,28 @@ __attribute__((noinline)) void search_lanes(Mask open, const EllipsePair<V>& p, 
   std::memcpy(&n.y, y, sizeof(V));
 }
 
+/// Leaves to the search what steps left open or is too deep for them; false: nothing.
+template <class V>
+inline __attribute__((always_inline)) bool search_where_needed(const EllipsePair<V>& p, Direction<V>& n,
+                                                               EllipseGap<V>& g) {
+  const decltype(is_open(g)) left = is_open(g) | !(is_apart(g) | is_shallow(p, g));
+  if (!any_of(left)) return false;
+  search_lanes(left, p, n);
+  g = ellipse_gap(p, n);
+  return true;
+}
+
 /// Normals of W pairs and f there. Where f < 0 the pair is apart, and n is a direction that shows it.
 template <class V>
 inline __attribute__((always_inline)) EllipseGap<V> closest_gap(const EllipsePair<V>& p, Direction<V>& n) {
   EllipseGap<V> g = ellipse_gap(p, n);
-  auto open = !(is_apart(g) | is_least_nearby(g));
-  for (int step = 1; step < halley_steps && any_of(open); ++step) {
+  for (int step = 1; step < halley_steps && any_of(is_open(g)); ++step) {
+    const auto open = is_open(g);
     const Direction<V> next = next_direction(n, g);
     n = {open ? next.x : n.x, open ? next.y : n.y};
     g = ellipse_gap(p, n);
-    open = !(is_apart(g) | is_least_nearby(g));
   }
-  open = open | !(is_apart(g) | is_shallow(p, g));
-  if (any_of(open)) {
-    search_lanes(open, p, n);
-    g = ellipse_gap(p, n);
-  }
+  search_where_needed(p, n, g);
   return g;
 }
 

@@ -18,9 +18,9 @@ namespace {
 
 /// What the passes hand on.
 struct EllipseScratch {
-  ScratchColumn dx, dy, du, dv;  ///< place and velocity of j less those of i
+  ScratchColumn dx, dy, du, dv;  ///< place and velocity of j less those of i; then the branch
   ScratchColumn spin_i, spin_j;
-  ScratchColumn matrix_i[4], matrix_j[4];
+  ScratchColumn matrix_i[4], matrix_j[4], determinant_i, determinant_j;
   ScratchColumn nx, ny, overlap;
   ScratchColumn reach_i, reach_j;  ///< h
   ScratchColumn turn_i, turn_j;    ///< h' - f'/2
@@ -34,7 +34,7 @@ inline __attribute__((always_inline)) EllipseMatrix<V> matrix_from(const V& xx, 
   return {xx + 1e-100, xy, yy + 1e-100, sharpest};
 }
 
-/// Grain rows to columns, four lanes at most as for discs.
+/// Grain rows to columns.
 template <class T>
 inline __attribute__((always_inline)) void ellipse_rows(const PairArrays& p, const double* rows, long first, long count,
                                                         EllipseScratch& out) {
@@ -49,9 +49,101 @@ inline __attribute__((always_inline)) void ellipse_rows(const PairArrays& p, con
       const std::int32_t* grain = side == 0 ? i : j;
       ScratchColumn* matrix = side == 0 ? out.matrix_i : out.matrix_j;
       ColumnsOf<W>::load([=](int lane) { return rows + grain[lane] + 8; }, m);
-      for (int column = 0; column < 4; ++column) store_as(matrix[column].at + k, m[column]);
+      const EllipseMatrix<V> of_grain = matrix_from(m[0], m[1], m[2], m[3]);
+      store_as(matrix[0].at + k, of_grain.xx);
+      store_as(matrix[1].at + k, of_grain.xy);
+      store_as(matrix[2].at + k, of_grain.yy);
+      store_as(matrix[3].at + k, of_grain.sharpest);
     }
   }
+}
+
+template <class V>
+inline __attribute__((always_inline)) EllipsePair<V> pair_in(const EllipseScratch& s, long k) {
+  const auto matrix = [&](const ScratchColumn* m) {
+    return EllipseMatrix<V>{load_as<V>(m[0].at + k), load_as<V>(m[1].at + k), load_as<V>(m[2].at + k),
+                            load_as<V>(m[3].at + k)};
+  };
+  return {load_as<V>(s.dx.at + k), load_as<V>(s.dy.at + k), matrix(s.matrix_i), matrix(s.matrix_j)};
+}
+
+template <class V>
+inline __attribute__((always_inline)) void put_direction(EllipseScratch& s, long k, Direction<V> n) {
+  store_as(s.nx.at + k, n.x);
+  store_as(s.ny.at + k, n.y);
+}
+template <class V>
+inline __attribute__((always_inline)) Direction<V> direction_in(const EllipseScratch& s, long k) {
+  return {load_as<V>(s.nx.at + k), load_as<V>(s.ny.at + k)};
+}
+
+template <class V>
+inline __attribute__((always_inline)) void put_gap(EllipseScratch& s, long k, const EllipseGap<V>& g) {
+  const V half_slope = 0.5 * g.slope;
+  store_as(s.overlap.at + k, g.overlap);
+  store_as(s.reach_i.at + k, g.support_i);
+  store_as(s.reach_j.at + k, g.support_j);
+  store_as(s.turn_i.at + k, g.turned_i - half_slope);
+  store_as(s.turn_j.at + k, g.turned_j - half_slope);
+}
+
+/// f of W pairs at their directions, which turn where it is not least yet; whether one does. `first`: that is taken for
+/// granted, and what f is there is not kept.
+template <class V>
+inline __attribute__((always_inline)) bool turn_downhill(EllipseScratch& s, long k, bool first) {
+  const Direction<V> n = direction_in<V>(s, k);
+  const EllipseGap<V> gap =
+      ellipse_gap(pair_in<V>(s, k), n, load_as<V>(s.determinant_i.at + k), load_as<V>(s.determinant_j.at + k));
+  const auto open = is_open(gap);
+  if (!first) {
+    put_gap(s, k, gap);
+    if (!any_of(open)) return false;
+  }
+  const Direction<V> next = next_direction(n, gap);
+  put_direction(s, k, Direction<V>{open ? next.x : n.x, open ? next.y : n.y});
+  return true;
+}
+
+/// Leaves to the search what the steps did not end or what is too deep for them.
+template <class V>
+__attribute__((noinline)) void search_block(EllipseScratch& s, long k) {
+  const EllipsePair<V> pair = pair_in<V>(s, k);
+  Direction<V> n = direction_in<V>(s, k);
+  EllipseGap<V> gap = ellipse_gap(pair, n);
+  search_where_needed(pair, n, gap);
+  put_direction(s, k, n);
+  put_gap(s, k, gap);
+}
+
+/// What closest_gap finds, for the pairs of a chunk side by side: roots and divisions of one block of lanes fill the
+/// time of another's, where each to its end left the processor waiting (AVX-512: 0.00 of that time).
+template <class T>
+inline __attribute__((always_inline)) void ellipse_normals(const StepConstants& c, const PairArrays& p, long first,
+                                                           long count, EllipseScratch& s) {
+  using V = typename Lanes<T::W>::V;
+  long blocks[chunk_pairs / T::W], open = 0;
+  for (long k = 0; k < count; k += T::W) {
+    EllipsePair<V> pair = pair_in<V>(s, k);
+    if (p.shifted[std::size_t(first + k) / 8]) {
+      add_image_in_plane(c, p, first + k, pair.x, pair.y);
+      store_as(s.dx.at + k, pair.x);
+      store_as(s.dy.at + k, pair.y);
+    }
+    store_as(s.determinant_i.at + k, determinant(pair.i));
+    store_as(s.determinant_j.at + k, determinant(pair.j));
+    put_direction(s, k, first_direction(pair));
+    blocks[open++] = k;
+  }
+  for (long k = 0; k < count; k += T::W) turn_downhill<V>(s, k, true);
+  for (int step = 2; step < halley_steps && open > 0; ++step) {
+    const long all = open;
+    open = 0;
+    for (long block = 0; block < all; ++block) {
+      const long k = blocks[block];
+      if (turn_downhill<V>(s, k, false)) blocks[open++] = k;
+    }
+  }
+  for (long block = 0; block < open; ++block) search_block<V>(s, blocks[block]);
 }
 
 /// Normal, overlap, arms and the motion of the centres. Not inlined: it is long, and the same for every law.
@@ -60,27 +152,14 @@ __attribute__((noinline)) void ellipse_places(const StepConstants& c, const Pair
                                               EllipseScratch& s) {
   using V = typename Lanes<T::W>::V;
   const double half_dt = 0.5 * c.dt;
+  ellipse_normals<T>(c, p, first, count, s);
   for (long k = 0; k < count; k += T::W) {
-    const long at = first + k;
-    V bx = load_as<V>(s.dx.at + k), by = load_as<V>(s.dy.at + k);
-    add_image_in_plane(c, p, at, bx, by);
-    const auto matrix = [&](const ScratchColumn* m) {
-      return matrix_from(load_as<V>(m[0].at + k), load_as<V>(m[1].at + k), load_as<V>(m[2].at + k),
-                         load_as<V>(m[3].at + k));
-    };
-    const EllipsePair<V> pair = {bx, by, matrix(s.matrix_i), matrix(s.matrix_j)};
-    Direction<V> n = first_direction(pair);
-    const EllipseGap<V> gap = closest_gap(pair, n);
-    store_as(s.nx.at + k, n.x);
-    store_as(s.ny.at + k, n.y);
-    store_as(s.overlap.at + k, gap.overlap);
-    store_as(s.reach_i.at + k, gap.support_i);
-    store_as(s.reach_j.at + k, gap.support_j);
-    store_as(s.turn_i.at + k, gap.turned_i - 0.5 * gap.slope);
-    store_as(s.turn_j.at + k, gap.turned_j - 0.5 * gap.slope);
+    const V deepest = load_as<V>(s.matrix_i[3].at + k) + load_as<V>(s.matrix_j[3].at + k);
+    if (any_of(load_as<V>(s.overlap.at + k) > deepest)) search_block<V>(s, k);
     if constexpr (T::Advance || T::Dashpot) {
+      const Direction<V> n = direction_in<V>(s, k);
       const V du = load_as<V>(s.du.at + k), dv = load_as<V>(s.dv.at + k);
-      const V px = bx - half_dt * du, py = by - half_dt * dv;
+      const V px = load_as<V>(s.dx.at + k) - half_dt * du, py = load_as<V>(s.dy.at + k) - half_dt * dv;
       const V vx = du + (c.rate.xx * px + c.rate.xy * py), vy = dv + c.rate.yy * py;
       store_as(s.along.at + k, n.x * vy - n.y * vx);
       if constexpr (T::Dashpot) store_as(s.opening.at + k, n.x * vx + n.y * vy);
@@ -103,15 +182,16 @@ struct EllipseRows {
   template <class T, class Fastest>
   static inline __attribute__((always_inline)) void turn(const StepConstants& c, const GrainArrays& g, long first,
                                                          long count, const DiscColumns& s, Fastest& fastest) {
-    constexpr int W = T::W < 4 ? T::W : 4;
+    constexpr int W = T::W;
     using V = typename Lanes<W>::V;
     const double half_dt = 0.5 * c.dt, cell_spin = c.spin[2];
     for (long k = 0; k < count; k += W) {
       double* row = g.rows + length * (first + k);
-      const V x = Lanes<W>::collected([=](int lane) { return row[length * lane + 5]; });
-      const V y = Lanes<W>::collected([=](int lane) { return row[length * lane + 6]; });
+      V a[4];
+      columns_of<W>(row + 4, length, a);
+      const V x = a[1], y = a[2], axes_gap = a[3];
+      const V sharpest = Lanes<W>::collected([=](int lane) { return row[length * lane + 11]; });
       const V w = load_as<V>(s.w.at + k) + cell_spin, u = load_as<V>(s.u.at + k), v = load_as<V>(s.v.at + k);
-      const V axes_gap = Lanes<W>::collected([=](int lane) { return row[length * lane + 7]; });
       const V speed = square_root(u * u + v * v) + axes_gap * magnitude_of(w), squared = speed * speed;
       fastest = (squared > fastest) ? squared : fastest;
       const V q = half_dt * w;
@@ -120,14 +200,11 @@ struct EllipseRows {
       const V shorter = 1.5 - 0.5 * (tx * tx + ty * ty);
       const Direction<V> e = {tx * shorter, ty * shorter};
       const V minor = load_as<V>(g.turn_first + first + k), difference = load_as<V>(g.turn_second + first + k);
-      const EllipseMatrix<V> m = ellipse_matrix(e, minor, difference, V{});
-      const V columns[5] = {e.x, e.y, m.xx, m.xy, m.yy};
-      constexpr int at[5] = {5, 6, 8, 9, 10};
-      for (int column = 0; column < 5; ++column) {
-        double values[W];
-        std::memcpy(values, &columns[column], sizeof(V));
-        for (int lane = 0; lane < W; ++lane) row[length * lane + at[column]] = values[lane];
-      }
+      const EllipseMatrix<V> m = ellipse_matrix(e, minor, difference, sharpest);
+      const V spin_and_axis[4] = {load_as<V>(s.w.at + k), e.x, e.y, axes_gap},
+              matrix[4] = {m.xx, m.xy, m.yy, m.sharpest};
+      rows_of<W>(spin_and_axis, row + 4, length);
+      rows_of<W>(matrix, row + 8, length);
     }
   }
 };
@@ -177,7 +254,7 @@ struct Ellipses {
   static bool may_touch(const StepConstants& c, const PairArrays& p, const double* rows, long first);
 };
 
-/// Whether one of eight pairs is not shown to be apart by its first direction.
+/// Whether one of eight pairs is not shown to be apart along its first direction v, whatever its length.
 template <int W>
 __attribute__((noinline)) bool Ellipses::may_touch(const StepConstants& c, const PairArrays& p, const double* rows,
                                                    long first) {
@@ -189,7 +266,7 @@ __attribute__((noinline)) bool Ellipses::may_touch(const StepConstants& c, const
     ColumnsOf<W>::load([=](int lane) { return rows + p.row_j[at + lane] + 8; }, j);
     add_image_in_plane(c, p, at, d[0], d[1]);
     const EllipsePair<V> pair = {d[0], d[1], matrix_from(i[0], i[1], i[2], i[3]), matrix_from(j[0], j[1], j[2], j[3])};
-    if (any_of(!is_apart(ellipse_gap(pair, first_direction(pair))))) return true;
+    if (any_of(!shows_apart(pair, leaving_direction(pair)))) return true;
   }
   return false;
 }

@@ -165,11 +165,12 @@ void plane_grains(const StepConstants& constants, const GrainArrays& grains, con
   const PairArrays p = pairs;
   PartialSums<W> momentum[2], lost_locally, lost_globally;
   typename Lanes<W>::V fastest = {};
-  [[maybe_unused]] typename Lanes<narrow>::V fastest_with_turn = {};
+  [[maybe_unused]] typename Lanes<W>::V fastest_with_turn = {};
   DiscColumns s;
   TaskRows task_sums;
   for (long chunk = begin; chunk < end; chunk += chunk_grains) {
     const long count = end - chunk < chunk_grains ? end - chunk : chunk_grains;
+    if (g.before_chunk != nullptr) g.before_chunk(g.sweep, chunk + count);
     gather_disc_forces<narrow>(g, p, chunk, count, task_sums);
     damp_discs<T, Rows::length>(c, g, chunk, count, task_sums, s, lost_globally);
     move_discs<T, Rows::length, Rows::turns>(c, g, chunk, count, s, momentum, fastest, lost_locally);

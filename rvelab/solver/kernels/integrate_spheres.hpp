@@ -192,6 +192,7 @@ void sphere_grains(const StepConstants& constants, const GrainArrays& grains, co
   TaskRows forces, torques;
   for (long chunk = begin; chunk < end; chunk += chunk_grains) {
     const long count = end - chunk < chunk_grains ? end - chunk : chunk_grains;
+    if (g.before_chunk != nullptr) g.before_chunk(g.sweep, chunk + count);
     gather_sphere_forces<narrow, T::Rolling>(g, p, chunk, count, forces, torques);
     damp_spheres<T>(c, g, chunk, count, forces, torques, s, lost_globally);
     move_spheres<T>(c, g, chunk, count, s, momentum, fastest, lost_locally);

@@ -7,11 +7,6 @@
 
 namespace rvelab {
 
-/// What a call may ask for beyond the Cauchy stress. What is not asked for is not computed.
-struct Want {
-  bool parts = false;  ///< contact and Reynolds stress apart
-};
-
 /// What was done, and in what state it ended. Of apply and of relax; what a call does not judge keeps its default.
 struct Report {
   long substeps = 0;            ///< 0: the strain is left to the next sub-step, see Rve::apply
@@ -39,8 +34,8 @@ struct Report {
 
 struct Response {
   Matrix3 stress = Matrix3::Zero();                 ///< Cauchy, laboratory frame, tension positive, Pa
-  Matrix3 contact_stress = Matrix3::Zero();         ///< on request
-  Matrix3 reynolds_stress = Matrix3::Zero();        ///< on request; dt = 0: zero, but after dt > 0 while only rotated
+  Matrix3 contact_stress = Matrix3::Zero();         ///< of the contact forces
+  Matrix3 reynolds_stress = Matrix3::Zero();        ///< dt = 0: zero, but after dt > 0 while only rotated
   Matrix3 displacement_gradient = Matrix3::Zero();  ///< what was applied (mixed targets: what was found)
   Report report;
 };

@@ -34,8 +34,9 @@ class StepClock {
     times_->list += list_;
   }
 
+  bool samples(long number) const { return times_ != nullptr && number % 16 == 0; }
   void begin_step(long number) {
-    sampled_ = times_ != nullptr && number % 16 == 0;
+    sampled_ = samples(number);
     if (sampled_) last_ = Clock::now();
   }
   void begin_grains() { lap(rest_); }

@@ -152,10 +152,14 @@ class SubSteps {
   /// Cell and constants of the next sub-step.
   void move_cell();
   void move_grains();
+  void take_list();
   /// Lists the pairs anew; where the lattice is reduced, what is held in its frame turns with it.
   void list_pairs_anew();
   void turn_with(const Reduction& reduction, const Matrix3& lattice_before);
   void update_pairs();
+  /// Whether the pairs may wait for the grains of the next sub-step, where nothing asks for forces before. A sub-step
+  /// that is timed has both apart.
+  bool can_wait(bool forces_asked, long made) const;
   /// dt > 0: what the new list shows of collisions to come.
   void look_ahead();
 
@@ -174,6 +178,8 @@ class SubSteps {
   PairArrays pairs_;
   GrainArrays grains_;
   StepSums sums_;
+  const bool in_one_sweep_;
+  WaitingPairs waiting_;
   Matrix3 rate_end_, rate_mid_, moment_before_ = Matrix3::Zero();
   StepClock clock_;
 };
@@ -196,6 +202,8 @@ SubSteps::SubSteps(const Model& model, Assembly& assembly, const Advance& what)
       path_{a_.cell.lattice, what.increment.stretch * a_.cell.lattice, what.increment.rotation, 0, what.steps},
       step_(what.step),
       check_every_(what.check_every),
+      in_one_sweep_(f_.size() >= least_grains_in_one_sweep && !f_.options.energy_balance &&
+                    (team_ == nullptr || team_->threads() == 1)),
       clock_(f_.times) {
   c_.losses = f_.options.energy_balance;
   c_.local_damping = physical_ ? f_.damping.local : f_.damping.local_quasi_static;
@@ -204,8 +212,7 @@ SubSteps::SubSteps(const Model& model, Assembly& assembly, const Advance& what)
     omega_ = rotation_vector(what.increment.rotation) / (step_ * double(what.steps));
   }
   total_mass_ = std::accumulate(a_.mass.begin(), a_.mass.begin() + std::ptrdiff_t(f_.size()), 0.0);
-  pairs_ = arrays_of(a_.pairs);
-  grains_ = arrays_of(f_, a_);
+  take_list();
   if (f_.options.energy_balance) moment_before_ = contact_moment(f_, a_);
 }
 
@@ -222,7 +229,10 @@ void SubSteps::move_cell() {
 
 void SubSteps::move_grains() {
   clock_.begin_grains();
-  sweep_grains(move_, c_, grains_, pairs_, long(a_.mass.size()), team_, sums_);
+  if (waiting_.any())
+    waiting_.sweep_with_grains(move_, c_, grains_, pairs_, long(a_.mass.size()), sums_);
+  else
+    sweep_grains(move_, c_, grains_, pairs_, long(a_.mass.size()), team_, sums_);
   clock_.end_grains();
   // The rows that pad the lanes lose the mean velocity too, step after step; their speed must never count.
   std::fill(a_.rows.begin() + std::ptrdiff_t(f_.size()) * f_.row_length(), a_.rows.end(), 0.0);
@@ -232,13 +242,18 @@ void SubSteps::move_grains() {
   a_.state.last_step = step_;
 }
 
+void SubSteps::take_list() {
+  pairs_ = arrays_of(a_.pairs);
+  grains_ = arrays_of(f_, a_);
+  if (in_one_sweep_) waiting_.arrange(kernels_.pairs, a_.pairs);
+}
+
 void SubSteps::list_pairs_anew() {
   clock_.begin_list();
   const Matrix3 lattice_before = a_.cell.lattice;
   const Reduction reduction = rebuild(f_, a_);
   if (reduction.changed) turn_with(reduction, lattice_before);
-  pairs_ = arrays_of(a_.pairs);
-  grains_ = arrays_of(f_, a_);
+  take_list();
   clock_.end_list();
 }
 
@@ -270,6 +285,11 @@ void SubSteps::update_pairs() {
     book_step(f_, a_, lost, sums_, step_, physical_, rate_mid_ + cross_matrix(omega_), moment_before_);
 }
 
+bool SubSteps::can_wait(bool forces_asked, long made) const {
+  return in_one_sweep_ && !forces_asked && path_.done < path_.steps && !clock_.samples(made) &&
+         !clock_.samples(made + 1);
+}
+
 void SubSteps::look_ahead() {
   const double rest = step_ * double(path_.steps - path_.done);
   const Collisions ahead = collisions_ahead(f_, a_, nullptr, what_.follow_collisions,
@@ -289,8 +309,12 @@ Advanced SubSteps::make() {
     a_.state.list_travel += travel;
     const bool stale = list_is_stale(f_, a_, what_.follow_collisions ? 2 * travel : 0.0);
     if (stale) list_pairs_anew();
-    update_pairs();
-    if (stale && physical_) look_ahead();
+    const bool looks = stale && physical_;
+    if (can_wait(looks || (check_every_ > 0 && since_check + 1 >= check_every_), made))
+      waiting_.wait(c_);
+    else
+      update_pairs();
+    if (looks) look_ahead();
     if (check_every_ > 0 && ++since_check >= check_every_) {
       since_check = 0;
       check_overlaps(f_, balance_of(f_, a_));

@@ -5,50 +5,39 @@
 
 namespace rvelab {
 
-Vector3 rotation_vector(const Matrix3& rotation) {
+Vector3 rotation_vector(const Matrix3& r) {
   // Quaternion, halved until the angle is small enough for the series of asin.
-  Matrix3 r = rotation;
-  const double trace = r.trace();
-  double w, x, y, z;
-  if (trace > 0) {
+  double w;
+  Vector3 v;
+  if (const double trace = r.trace(); trace > 0) {
     const double s = std::sqrt(trace + 1) * 2;
     w = 0.25 * s;
-    x = (r(2, 1) - r(1, 2)) / s;
-    y = (r(0, 2) - r(2, 0)) / s;
-    z = (r(1, 0) - r(0, 1)) / s;
+    v = Vector3(r(2, 1) - r(1, 2), r(0, 2) - r(2, 0), r(1, 0) - r(0, 1)) / s;
   } else {
     int i = 0;
     if (r(1, 1) > r(0, 0)) i = 1;
     if (r(2, 2) > r(i, i)) i = 2;
     const int j = (i + 1) % 3, k = (i + 2) % 3;
     const double s = std::sqrt(r(i, i) - r(j, j) - r(k, k) + 1) * 2;
-    double q[3];
-    q[i] = 0.25 * s;
-    q[j] = (r(j, i) + r(i, j)) / s;
-    q[k] = (r(k, i) + r(i, k)) / s;
+    v[i] = 0.25 * s;
+    v[j] = (r(j, i) + r(i, j)) / s;
+    v[k] = (r(k, i) + r(i, k)) / s;
     w = (r(k, j) - r(j, k)) / s;
-    x = q[0];
-    y = q[1];
-    z = q[2];
     if (w < 0) {
       w = -w;
-      x = -x;
-      y = -y;
-      z = -z;
+      v = -v;
     }
   }
   double factor = 2;
   for (int halving = 0; halving < 6; ++halving) {
     const double half = std::sqrt(0.5 * (1 + w));
-    x /= 2 * half;
-    y /= 2 * half;
-    z /= 2 * half;
+    v /= 2 * half;
     w = half;
     factor *= 2;
   }
-  const double s2 = x * x + y * y + z * z;
+  const double s2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
   const double series = 1 + s2 * (1.0 / 6 + s2 * (3.0 / 40 + s2 * (15.0 / 336)));
-  return factor * series * Vector3(x, y, z);
+  return factor * series * v;
 }
 
 Matrix3 rotation_matrix(const Vector3& vector) {

@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <array>
 
+#include "rvelab/solver/assembly/gather_table.hpp"
+
 namespace rvelab {
 
 namespace {
 
 constexpr long piece_pairs = 8192, piece_grains = 4096;
 static_assert(piece_grains % chunk_grains == 0, "a chunk has one gather table");
+/// Grains whose pairs are updated at a time where they are just in time.
+constexpr long block_grains = 2048;
 /// Pieces between two additions of their sums; their number is a limit on the team's size only.
 constexpr std::size_t round_pieces = 64;
 
@@ -59,6 +63,53 @@ void sweep_grains(GrainKernel kernel, const StepConstants& constants, const Grai
         add(of_piece[k], sums);
     }
   }
+}
+
+void WaitingPairs::arrange(PairKernel kernel, PairTable& pairs) {
+  kernel_ = kernel;
+  table_ = &pairs;
+  const auto places = [&](std::size_t begin, std::size_t end) {
+    std::size_t ascending = begin;
+    while (ascending + 1 < end && pairs.i[ascending] <= pairs.i[ascending + 1]) ++ascending;
+    return Places{long(begin), ascending + 1 < end ? long(ascending + 1) / 8 * 8 : long(end), long(end), 0};
+  };
+  near_ = places(0, pairs.near);
+  beyond_ = places(pairs.near, pairs.padded());
+}
+
+void WaitingPairs::wait(const StepConstants& constants) {
+  constants_ = constants;
+  waiting_ = true;
+}
+
+void WaitingPairs::update(long begin, long end) {
+  if (begin == end) return;
+  kernel_(constants_, pairs_, rows_, begin, end, nullptr);
+  gather_pairs_that_touch(*table_, std::size_t(begin), std::size_t(end));
+}
+
+void WaitingPairs::update_up_to(long grain) {
+  grain = (grain + block_grains - 1) / block_grains * block_grains;
+  for (Places* places : {&near_, &beyond_}) {
+    long to = places->next;
+    while (to < places->ascending_end && table_->i[std::size_t(to)] < grain) to += 8;
+    update(places->next, to);
+    places->next = to;
+  }
+}
+
+void WaitingPairs::sweep_with_grains(GrainKernel kernel, const StepConstants& constants, GrainArrays grains,
+                                     const PairArrays& pairs, long padded_grains, StepSums& sums) {
+  pairs_ = pairs;
+  rows_ = grains.rows;
+  for (Places* places : {&near_, &beyond_}) {
+    update(places->ascending_end, places->end);
+    places->next = places->begin;
+  }
+  grains.sweep = this;
+  grains.before_chunk = [](void* sweep, long end) { static_cast<WaitingPairs*>(sweep)->update_up_to(end); };
+  sweep_grains(kernel, constants, grains, pairs, padded_grains, nullptr, sums);
+  waiting_ = false;
 }
 
 }  // namespace rvelab

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "rvelab/cell/pressure.hpp"
+#include "rvelab/cell/cell.hpp"
 #include "rvelab/solver/assembly/contact_states.hpp"
 #include "rvelab/solver/quasi_static/accuracy.hpp"
 

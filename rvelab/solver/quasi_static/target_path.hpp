@@ -3,7 +3,7 @@
 
 #include <Eigen/LU>
 
-#include "rvelab/cell/volume.hpp"
+#include "rvelab/cell/cell.hpp"
 #include "rvelab/solver/assembly/assembly.hpp"
 #include "rvelab/solver/loading/mixed_target.hpp"
 #include "rvelab/solver/quasi_static/constants.hpp"

@@ -1,17 +1,24 @@
 // What an assembly can make again: the working arrays of its pairs, its masses, its forces. It keeps its list, so that
-// rebuilding them searches nothing.
-#include "rvelab/solver/state/release.hpp"
+// rebuilding them searches nothing. Declared in state.hpp.
+#include <type_traits>
 
 #include "rvelab/solver/assembly/gather_table.hpp"
-#include "rvelab/solver/loading/inertia.hpp"
+#include "rvelab/solver/state/state.hpp"
 
 namespace rvelab {
 
 namespace {
 
-template <class... Arrays>
-void release(Arrays&... arrays) {
-  ((arrays = Arrays()), ...);
+/// each(array) for all that can be made again. `Of`: an Assembly, const or not.
+template <class Of, class Each>
+void each_working_array(Of& a, const Each& each) {
+  auto& t = a.pairs;
+  for (auto* buffer :
+       {&t.kn, &t.kt, &t.law_constant, &t.friction, &t.kr, &t.moment_cap, &t.cn, &t.force, &t.radius_i, &t.radius_j,
+        &t.image_number[0], &t.image_number[1], &t.image_number[2], &a.mass, &a.inverse_mass, &a.inverse_inertia})
+    each(*buffer);
+  for (auto* list : {&t.row_i, &t.row_j, &t.gathered, &t.slots_beyond}) each(*list);
+  for (auto* marks : {&t.touched, &t.shifted}) each(*marks);
 }
 
 template <class Array>
@@ -31,11 +38,7 @@ void put_masses_into_rows(const Model& f, Assembly& a) {
 }
 
 void release_buffers(Assembly& a) {
-  PairTable& t = a.pairs;
-  release(t.row_i, t.row_j, t.kn, t.kt, t.law_constant, t.friction, t.kr, t.moment_cap, t.cn, t.force, t.radius_i,
-          t.radius_j, t.touched, t.shifted, t.gathered, t.slots_beyond, t.image_number[0], t.image_number[1],
-          t.image_number[2]);
-  release(a.mass, a.inverse_mass, a.inverse_inertia);
+  each_working_array(a, [](auto& array) { array = std::remove_reference_t<decltype(array)>(); });
 }
 
 void rebuild_buffers(const Model& f, Assembly& a) {
@@ -69,12 +72,7 @@ Memory memory_of(const Assembly& a) {
   for (int k = 0; k < 3; ++k) m.state += bytes_of(t.tangential[k]) + bytes_of(t.moment[k]);
   m.list = bytes_of(t.i) + bytes_of(t.j) + bytes_of(t.image) + bytes_of(t.order) + bytes_of(t.slot_begin) +
            bytes_of(t.slots) + bytes_of(t.tasks) + bytes_of(a.state.list_positions);
-  for (const Buffer* b :
-       {&t.kn, &t.kt, &t.law_constant, &t.friction, &t.kr, &t.moment_cap, &t.cn, &t.force, &t.radius_i, &t.radius_j,
-        &t.image_number[0], &t.image_number[1], &t.image_number[2], &a.mass, &a.inverse_mass, &a.inverse_inertia})
-    m.working += bytes_of(*b);
-  m.working += bytes_of(t.row_i) + bytes_of(t.row_j) + bytes_of(t.touched) + bytes_of(t.shifted) +
-               bytes_of(t.gathered) + bytes_of(t.slots_beyond);
+  each_working_array(a, [&m](const auto& array) { m.working += bytes_of(array); });
   return m;
 }
 

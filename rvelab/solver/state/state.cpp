@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "rvelab/cell/pressure.hpp"
+#include "rvelab/cell/cell.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/solver/assembly/contact_states.hpp"
-#include "rvelab/solver/state/release.hpp"
 
 namespace rvelab {
 
