@@ -9,7 +9,7 @@
 
 #include "rvelab/calibrate/mohr.hpp"
 #include "rvelab/calibrate/oedometer.hpp"
-#include "rvelab/cell/pressure.hpp"
+#include "rvelab/cell/cell.hpp"
 #include "rvelab/cli/report.hpp"
 #include "rvelab/ensemble/measures.hpp"
 #include "rvelab/error.hpp"

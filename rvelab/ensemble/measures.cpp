@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "rvelab/calibrate/oedometer.hpp"
-#include "rvelab/cell/pressure.hpp"
+#include "rvelab/cell/cell.hpp"
 #include "rvelab/protocol/stage_kind.hpp"
 
 namespace rvelab::ensemble {

@@ -11,7 +11,7 @@
 #include <sstream>
 
 #include "rvelab/calibrate/mohr.hpp"
-#include "rvelab/cell/pressure.hpp"
+#include "rvelab/cell/cell.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/measure/measures.hpp"
 
