@@ -1,4 +1,4 @@
-#include "rvelab/keys/key_units.hpp"
+#include "rvelab/keys/key.hpp"
 
 namespace rvelab::keys {
 namespace {

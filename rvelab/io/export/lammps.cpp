@@ -1,9 +1,9 @@
-#include "rvelab/io/export/lammps.hpp"
+#include "rvelab/io/export/export.hpp"
 
 #include <algorithm>
 
 #include "rvelab/error.hpp"
-#include "rvelab/io/text_file.hpp"
+#include "rvelab/io/publish.hpp"
 #include "rvelab/io/version.hpp"
 
 namespace rvelab::io {

@@ -1,4 +1,4 @@
-#include "rvelab/io/export/state.hpp"
+#include "rvelab/io/export/export.hpp"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "rvelab/io/import/lammps_dump.hpp"
+#include "rvelab/io/import/inputs.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "rvelab/error.hpp"
-#include "rvelab/io/text_file.hpp"
+#include "rvelab/io/publish.hpp"
 
 namespace rvelab::io {
 namespace {
