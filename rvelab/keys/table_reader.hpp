@@ -66,9 +66,6 @@ class TableReader {
               std::vector<KeyError>& errors)
       : table_(table), key_table_(std::move(key_table)), where_(std::move(where)), line_(line), errors_(errors) {}
 
-  /// Keys that are asked for from here on are documented in this table.
-  void document_in(const std::string& key_table) { key_table_ = key_table; }
-
   void number(const char* name, double& value, const char* unit, const Interval& range, const char* meaning);
   /// Must be there; false: it is not, or wrong. `allowed`: the range in words, where it says more.
   bool required_number(const char* name, double& value, const char* unit, const Interval& range, const char* meaning,

@@ -80,7 +80,7 @@ std::vector<std::string> items_of(const std::string& list) {
       items.back() += letter;
     }
   }
-  for (std::string& item : items) item = trimmed(item);
+  for (std::string& item : items) item = keys::trimmed(item);
   return items;
 }
 
@@ -94,7 +94,7 @@ std::vector<std::string> items_of(const std::string& list) {
 Variation parsed_variation(const std::string& text) {
   const auto equals = text.find('=');
   if (equals == std::string::npos) refuse(text, "has no values");
-  Variation found{trimmed(text.substr(0, equals)), items_of(text.substr(equals + 1))};
+  Variation found{keys::trimmed(text.substr(0, equals)), items_of(text.substr(equals + 1))};
   if (found.key.empty()) refuse(text, "names no key");
   for (std::size_t k = 0; k < found.values.size(); ++k) {
     const auto before = found.values.begin() + std::ptrdiff_t(k);
