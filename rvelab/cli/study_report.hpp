@@ -1,5 +1,5 @@
-// What a study gives, as JSON, as CSV and as tables on a terminal; and its folder: study.toml (the study itself), pieces/
-// (what was run, one JSON file each), study.csv and study.json.
+// What a study gives, as JSON, as CSV and as tables on a terminal; and its folder: study.toml (the study itself),
+// pieces/ (what was run, one JSON file each), study.csv and study.json.
 #pragma once
 
 #include <optional>

@@ -1,5 +1,5 @@
-// What other programs are handed: states as they are shown, and the files of each format (csv.cpp, xdmf.cpp, lammps.cpp,
-// material_text.cpp).
+// What other programs are handed: states as they are shown, and the files of each format (csv.cpp, xdmf.cpp,
+// lammps.cpp, material_text.cpp).
 #pragma once
 
 #include <string>
