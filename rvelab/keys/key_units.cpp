@@ -1,3 +1,4 @@
+// Keys in another unit of the same quantity. Declared in key.hpp.
 #include "rvelab/keys/key.hpp"
 
 namespace rvelab::keys {

@@ -1,3 +1,4 @@
+// The table of keys of materials, contact, damping and solver. Declared in material_toml.hpp.
 #include "rvelab/keys/material_toml.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Events: conditions that end a stage. Declared in drive.hpp.
 #include "rvelab/protocol/drive.hpp"
 
 #include <Eigen/LU>

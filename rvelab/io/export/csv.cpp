@@ -1,3 +1,4 @@
+// A specimen as the files that import_csv reads. Declared in export.hpp.
 #include "rvelab/io/export/export.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Dumps and data files of LAMMPS. Declared in export.hpp.
 #include "rvelab/io/export/export.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// The parameters of a specimen as the TOML file that read_material_file reads. Declared in export.hpp.
 #include "rvelab/io/export/export.hpp"
 
 #include <algorithm>

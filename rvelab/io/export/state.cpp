@@ -1,3 +1,4 @@
+// The box that grains are drawn in, and their stresses. Declared in export.hpp.
 #include "rvelab/io/export/export.hpp"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// States as ParaView reads them: an XDMF file, and beside it an HDF5 file with the arrays. Declared in export.hpp.
 #include "rvelab/io/export/export.hpp"
 
 #include <cmath>

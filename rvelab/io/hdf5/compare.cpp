@@ -1,3 +1,4 @@
+// Comparison of two files, bit by bit: `rvelab compare`, and every test of a restart. Declared in specimen_file.hpp.
 #include "rvelab/io/hdf5/specimen_file.hpp"
 
 #include <charconv>

@@ -1,3 +1,5 @@
+// Contacts of an imported packing: their history, and the check that file and parameters belong together. Declared in
+// inputs.hpp.
 #include "rvelab/io/import/inputs.hpp"
 
 #include <algorithm>

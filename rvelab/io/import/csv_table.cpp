@@ -1,3 +1,4 @@
+// Tables of values in columns. Declared in inputs.hpp.
 #include "rvelab/io/import/inputs.hpp"
 
 #include <algorithm>

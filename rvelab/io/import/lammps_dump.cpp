@@ -1,3 +1,4 @@
+// Dumps of LAMMPS (and OVITO): the cell, and the atoms as a table. Declared in inputs.hpp.
 #include "rvelab/io/import/inputs.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// META.json of a packing: law, parameters, cell and stress level, keys as in csv.hpp. Declared in inputs.hpp.
 #include "rvelab/io/import/inputs.hpp"
 
 #include <cmath>
