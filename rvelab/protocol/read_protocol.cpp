@@ -31,8 +31,9 @@ void read_test(TableReader& reader, Protocol& protocol) {
       "pressure_Pa", "Pa", pressures,
       "pressure, compression positive, of every stage without one of its own; `rvelab calibrate` sets it");
   protocol.pressure = pressure.value_or(protocol.pressure);
-  // A pressure in another unit is one mistake, not one more for each stage that would have taken it.
-  if (reader.has_in_another_unit("pressure_Pa") && std::isnan(protocol.pressure)) protocol.pressure = 0;
+  // A pressure that is wrong, or in another unit, is one mistake, not one more for each stage that would have taken it.
+  const bool meant = reader.has("pressure_Pa") || reader.has_in_another_unit("pressure_Pa");
+  if (meant && std::isnan(protocol.pressure)) protocol.pressure = 0;
 }
 
 void read_loading(TableReader& reader, Protocol& protocol) {
