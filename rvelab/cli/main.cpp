@@ -16,8 +16,7 @@
 #include <system_error>
 #include <vector>
 
-#include "rvelab/cli/command_line.hpp"
-#include "rvelab/cli/commands.hpp"
+#include "rvelab/cli/command.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/io/utf8.hpp"
 #include "rvelab/io/version.hpp"

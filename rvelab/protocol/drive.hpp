@@ -5,9 +5,11 @@
 #pragma once
 
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "rvelab/error.hpp"
+#include "rvelab/keys/table_reader.hpp"
 #include "rvelab/protocol/run.hpp"
 #include "rvelab/solver/loading/step_times.hpp"
 #include "rvelab/solver/rve.hpp"
@@ -20,9 +22,6 @@ struct HeldStress {
   double target;
   double scale;  ///< Pa, > 0: what the tolerance is relative to
 };
-
-/// Independent components of a symmetric tensor: xx yy xy in 2D, xx yy zz yz xz xy in 3D.
-std::vector<std::pair<int, int>> components(int dimension);
 
 /// The mixed target that brings the held components from `stress` to their targets and gives all others the strain of
 /// the displacement gradient dH (dimensionless, relative to the start of the increment). The whole skew part is dH's.
@@ -56,8 +55,8 @@ class RunningTest {
   template <class Increment>
   void go_through(const std::vector<double>& strains, Increment increment_to) {
     std::int64_t& done = run.progress.step;
-    while (!ended() && done < static_cast<std::int64_t>(strains.size())) {
-      const double strain = strains[static_cast<std::size_t>(done)];
+    while (!ended() && done < std::int64_t(strains.size())) {
+      const double strain = strains[std::size_t(done)];
       if (done == 0) record_now(strain);
       if (done > 0) record(strain, increment_to(strain));
       step_done();
@@ -76,7 +75,7 @@ class RunningTest {
         record_now(0);
       } else {
         at.place += forth ? 1 : -1;
-        const double strain = to_strain * static_cast<double>(at.place) / static_cast<double>(steps);
+        const double strain = to_strain * double(at.place) / double(steps);
         record(strain, increment_to(strain));
         const double along = (forth ? sign : -sign) * driving_stress();
         const bool by_stress = cycles.reverse_at > 0 && along >= cycles.reverse_at;
@@ -135,5 +134,20 @@ class RunningTest {
 
 /// InputError if a stage does not go with specimens of this dimension.
 void expect_fits(const Protocol& protocol, int dimension);
+
+/// A quantity that an event may check.
+struct EventQuantity {
+  const char* name;
+  double (*value)(const RunningTest&);
+};
+
+/// Those of a running test, and every number of the table of measured quantities (rvelab/records/quantities.hpp).
+const std::vector<EventQuantity>& event_quantities();
+
+/// The events of a stage; the stages that they name are looked up once all are read.
+std::vector<Event> read_events(keys::TableReader& reader);
+
+/// The first event of the stage that its last record meets, from 0; -1: none. Renews progress.largest.
+int met_event(RunningTest& test, const Stage& stage);
 
 }  // namespace rvelab::protocol
