@@ -15,6 +15,7 @@ Command recover_command();
 Command seal_command();
 Command calibrate_command();
 Command study_command();
+Command report_command();
 Command compare_command();
 Command export_command();
 Command keys_command();

@@ -294,6 +294,8 @@ def run(draw, parser, read=read_driven_stages):
     try:
         with plt.rc_context(STYLE):
             print(draw(read(options.records), options))
+    except KeyboardInterrupt:
+        sys.exit(130)
     except OSError as error:
         print(f"{parser.prog}: {error.filename or options.output}: {error.strerror or error}; give a path in an existing "
               "folder that you may use", file=sys.stderr)
