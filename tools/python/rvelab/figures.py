@@ -11,9 +11,10 @@ from typing import Any, Iterable, Union
 
 from .laboratory import Records
 from .library import RvelabError
-from .program import ask, program
+from .program import Folder, ask, program
 from .rve import Rve
 
+_NO_FIGURES = ("records", "state", "curves", "tables", "report")
 _Source = Union[str, "os.PathLike[str]", Records, Rve]
 
 
@@ -75,11 +76,10 @@ def plot(figure: str, sources: _Source | Iterable[_Source], *, output: str | os.
     output: *.png, *.pdf or *.svg. options: those of the script, plot("rose", rve, of="branches"), plot("mohr", folder,
     colour="group"); truth values are flags. Needs h5py and matplotlib beside numpy."""
     script = _scripts() / f"{figure}.py"
-    if not script.exists() or figure in ("records", "state", "curves", "tables", "report"):
-        names = sorted(path.stem for path in _scripts().glob("*.py"))
-        raise ValueError(f"there is no figure {figure!r}; allowed: "
-                         + ", ".join(n for n in names if n not in ("records", "state", "curves", "tables", "report")))
-    kept = tempfile.TemporaryDirectory(prefix="rvelab-")
+    names = sorted(path.stem for path in _scripts().glob("*.py") if path.stem not in _NO_FIGURES)
+    if figure not in names:
+        raise ValueError(f"there is no figure {figure!r}; allowed: {', '.join(names)}")
+    kept = Folder()
     path = Path(output) if output is not None else Path(kept.name) / f"{figure}.{'gif' if figure == 'film' else 'png'}"
     words = [sys.executable, "-B", str(script), "-o", str(path)]
     for name, value in options.items():

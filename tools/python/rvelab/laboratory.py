@@ -9,7 +9,7 @@ from typing import Any, Callable, Iterable, Mapping, NamedTuple, Sequence, Union
 
 import numpy as np
 
-from .program import ask, words_of
+from .program import Folder, ask, words_of
 from .rve import Rve
 
 _PathLike = Union[str, "os.PathLike[str]"]
@@ -65,7 +65,7 @@ class _Journal:
     """Calls back with each new state of a test, from the journal that the program appends its records to."""
 
     def __init__(self, path: str, progress: Callable[[Moment], None]) -> None:
-        self._path, self._progress, self._offset = path, progress, 12
+        self._path, self._progress, self._offset = path, progress, 16  # behind the head
 
     def __call__(self) -> None:
         try:
@@ -99,7 +99,7 @@ def run(protocol: _PathLike, specimen: _PathLike | Rve | Records, settings: Mapp
 
     settings: keys of the protocol with dots, {"test.pressure_Pa": 50e3}, or tables in tables, {"test": {...}}.
     output: record file to keep. progress: called with a Moment some times a second. overwrite: an existing output."""
-    kept = tempfile.TemporaryDirectory(prefix="rvelab-")
+    kept = Folder()
     file = os.fspath(output) if output is not None else os.path.join(kept.name, "R.h5")
     words = ["run", protocol, "--specimen", _specimen(specimen, kept.name), "-o", file, *words_of(settings, more)]
     printed = ask(words + (["--force"] if overwrite else []), progress and _Journal(file + ".journal", progress))

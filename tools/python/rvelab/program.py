@@ -6,7 +6,9 @@ import os
 import shutil
 import subprocess
 import sys
+import tempfile
 import warnings
+import weakref
 from pathlib import Path
 from typing import Any, Callable, Mapping, Sequence
 
@@ -26,6 +28,14 @@ def program() -> str:
     if found is None:
         raise FileNotFoundError("the program rvelab was not found: let RVELAB_PROGRAM name it, or add it to PATH")
     return found
+
+
+class Folder:
+    """A folder that lives as long as this object."""
+
+    def __init__(self) -> None:
+        self.name = tempfile.mkdtemp(prefix="rvelab-")
+        weakref.finalize(self, shutil.rmtree, self.name, ignore_errors=True)
 
 
 def main() -> None:
@@ -63,7 +73,7 @@ def ask(words: Sequence[str | os.PathLike[str]], meanwhile: Callable[[], None] |
         try:
             while True:
                 try:
-                    printed, told = running.communicate(timeout=None if meanwhile is None else 0.2)
+                    printed, told = running.communicate(timeout=None if meanwhile is None else 0.1)
                     break
                 except subprocess.TimeoutExpired:
                     meanwhile()

@@ -195,5 +195,9 @@ def _read_csv(stem: str) -> dict[str, Any]:
     if touching and "nx" in touching[0]:  # ellipses
         normal = _columns(touching, ["nx", "ny", "nz"])
     force = np.array([float(contact["fn"]) for contact in touching])
+    # Files hold a grain wherever it went; its images within the cell are the same grain.
+    d = meta["dim"]
+    parts = np.linalg.solve(cell[:d, :d], positions[:, :d].T)
+    positions[:, :d] -= (cell[:d, :d] @ np.floor(parts + 0.5)).T
     return {"positions": positions, "radii": radii,
             "contacts": (first, second, branch, normal, force, _columns(touching, ["fsx", "fsy", "fsz"]))}
