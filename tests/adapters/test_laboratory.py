@@ -2,8 +2,10 @@
 
 RVELAB_LIBRARY and RVELAB_PROGRAM name what is tested, PYTHONPATH the package."""
 import copy
+import os
 import pickle
 import shutil
+import subprocess
 import sys
 import unittest
 import warnings
@@ -150,6 +152,42 @@ class Laboratory(unittest.TestCase):
             rvelab.run("biaxial", specimens["discs"], {"test.presure_Pa": 1})
         with self.assertRaisesRegex(TypeError, "allowed: numbers"):
             rvelab.run("biaxial", specimens["discs"], {"test.pressure_Pa": object()})
+
+
+ENSEMBLE = "--against" in subprocess.run([os.environ["RVELAB_PROGRAM"], "run", "--help"], capture_output=True, text=True).stdout
+
+
+@unittest.skipUnless(ENSEMBLE, "this program runs one specimen at a time")
+class Ensemble(unittest.TestCase):
+    def test_the_summary_of_several_specimens_is_that_of_single_tests(self) -> None:
+        made = rvelab.pack("pack_dense", folder / "group.h5", {"pack.number": 36, "target.void_ratio": 0.2}, count=3)
+        settings = {"stage.compression.to_strain": 0.04}
+        found = rvelab.ensemble("biaxial", made, settings, output=folder / "group")
+        alone = [rvelab.run("biaxial", path, settings).summary["peak_friction_angle_deg"] for path in made]
+        (row,) = [row for row in found["summary"] if row["measure"] == "friction_angle_deg"]
+        self.assertEqual(row["n"], 3)
+        self.assertAlmostEqual(row["mean"], np.mean(alone), places=5)
+        self.assertAlmostEqual(row["standard_deviation"], np.std(alone, ddof=1), places=5)
+
+
+FIT = subprocess.run([os.environ["RVELAB_PROGRAM"], "fit", "--help"], capture_output=True).returncode == 0
+
+
+@unittest.skipUnless(FIT, "this program has no subcommand fit")
+class Fit(unittest.TestCase):
+    def test_a_fit_is_that_of_the_program_and_is_drawn(self) -> None:
+        short = {"stage.compression.to_strain": 0.04}
+        found = rvelab.fit("biaxial", {"material.friction": (0.1, 0.9)}, {"friction_angle_deg": (30, 2)},
+                           specimens=[specimens["discs"]], tests=8, settings=short, output=folder / "fit")
+        (parameter,) = found["parameters"]
+        self.assertEqual(parameter["key"], "material.friction")
+        self.assertTrue(0.1 <= parameter["low_95"] < parameter["mean"] < parameter["high_95"] <= 0.9)
+        self.assertEqual(len(found["tests"]), 8)
+        rvelab.plot("fit", folder / "fit", output=folder / "fit.svg")
+        swept = rvelab.fit("biaxial", {"material.friction": (0.2, 0.6, 2)}, specimens=specimens["discs"], settings=short,
+                           output=folder / "sweep")
+        self.assertEqual([point["material.friction"] for point in swept["sweep"]], [0.2, 0.6])
+        rvelab.plot("fit", folder / "sweep", output=folder / "sweep.svg")
 
 
 class Figures(unittest.TestCase):

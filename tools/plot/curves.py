@@ -194,7 +194,8 @@ def log_axis(axis, values):
     room = (high / low) ** 0.05
     (axis.axes.set_xlim if axis.axis_name == "x" else axis.axes.set_ylim)(low / room, high * room)
     decades = np.log10(high / low)
-    subs = (1.0,) if decades > 3 else (1.0, 2.0, 5.0) if decades > 0.7 else tuple(np.arange(1.0, 10.0, 0.5))
+    subs = ((1.0,) if decades > 3 else (1.0, 2.0, 5.0) if decades > 0.7 else
+            tuple(np.arange(1.0, 10.0, 1.0 if decades > 0.3 else 0.2)))
     axis.set_major_locator(ticker.LogLocator(base=10, subs=subs, numticks=30))
     axis.set_minor_locator(ticker.LogLocator(base=10, subs=np.arange(1, 10), numticks=30))
     axis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value:g}"))

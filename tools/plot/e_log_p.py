@@ -75,10 +75,11 @@ def parts_of(p):
 
 
 def bend_of(x, y):
-    """Row from which two lines fit first loading best; 0 where one line does as well or the second is not the steeper."""
+    """Row at which two lines that share it fit first loading best; 0 where one line does as well or the second is not the
+    steeper."""
     whole, best, at = line_through(x, y)[3], math.inf, 0
-    for k in range(LEAST, len(x) - LEAST + 1):
-        first, second = line_through(x[:k], y[:k]), line_through(x[k:], y[k:])
+    for k in range(LEAST - 1, len(x) - LEAST + 1):
+        first, second = line_through(x[:k + 1], y[:k + 1]), line_through(x[k:], y[k:])
         if first[3] + second[3] < best and second[0] < first[0] < 0:
             best, at = first[3] + second[3], k
     # Two more numbers must earn their place: half of the squares left.
@@ -129,7 +130,7 @@ def draw_fits(axes, of_files, colour):
             axes.plot(ends / 1e3, at_zero - index * np.log10(ends), color=own, linewidth=2.2, alpha=0.5, zorder=1,
                       solid_capstyle="butt")
         name, index, error, low, high = mean_index(same, k)
-        range_of = f"{records.plain(low / 1e3)} to {records.plain(high / 1e3)} kPa"
+        range_of = f"{low / 1e3:.3g} to {high / 1e3:.3g} kPa"
         axes.plot([], [], color=own, linewidth=2.2, alpha=0.5,
                   label=f"${name}$ = {index:.4f} ± {error:.1g}, {range_of}")
         told.append(f"{NAMES[name]} {name} = {index:.4f} +- {error:.1g} ({range_of}; lambda "

@@ -202,6 +202,8 @@ def page(paths, options):
     title = options.title or "Laboratory report" + (": " + ", ".join(tests) if len(tests) < 3 else "")
     with tempfile.TemporaryDirectory() as folder:
         sections = [section_of_test(name, own, options, pathlib.Path(folder)) for name, own in tests.items()]
+    for path in paths:
+        sections.append(section(f"Means over the specimens of {pathlib.Path(path).name}", table_of(tables.summary(path))))
     count = sum(len(own) for own in tests.values())
     return f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><title>{html.escape(title)}</title>

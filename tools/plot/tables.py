@@ -1,7 +1,9 @@
 """The tables of a report: what was asked, the specimen, results of the tests, their error and run time. A table is a list of
 rows, a row a list of texts; the first row is the head."""
 
+import json
 import math
+import pathlib
 
 import records  # first: it says which package is missing
 import mohr
@@ -103,6 +105,25 @@ def results(tests):
         label = curve.label.split(" (mean of")[0].replace("$", "").replace("e_0", "e0")
         rows.append([label, str(len(found)), angle_in_words([row[1] for row in found]),
                      angle_in_words([row[0] for row in found]), angle_in_words([row[2] for row in found])])
+    return rows
+
+
+def summary(folder):
+    """The means that `rvelab run` and `calibrate` wrote beside the records of several specimens; no rows without them."""
+    path = pathlib.Path(folder) / "summary.json"
+    try:
+        found = json.loads(path.read_text())["summary"]
+    except (OSError, ValueError, KeyError, TypeError):
+        return []
+    rows = [["group", "pressure", "measure", "n", "mean", "standard error", "95 % interval of the mean"]]
+    for row in found:
+        pressure = row.get("pressure_Pa")
+        shown = [f"{row[name]:.4g}" if row.get(name) is not None else "" for name in ("mean", "standard_error", "low_95",
+                                                                                     "high_95")]
+        unit = row.get("unit", "")
+        rows.append([str(row.get("group", "")), "all" if pressure is None else f"{pressure / 1e3:.4g} kPa",
+                     row["measure"] + (f" ({unit})" if unit not in ("", "1") else ""), str(row["n"]), shown[0], shown[1],
+                     f"{shown[2]} to {shown[3]}" if shown[2] else ""])
     return rows
 
 

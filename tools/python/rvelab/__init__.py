@@ -19,9 +19,10 @@ from .library import (MEASURES, Batch, Discard, Info, OutOfMemory, RvelabError, 
                       library as _library)
 from .pool import Pool
 from .rve import Contacts, Rve
-from .laboratory import Moment, Records, calibrate, pack, run
+from .laboratory import Moment, Records, calibrate, ensemble, fit, pack, run
 from .figures import Picture, plot, report
 
 __all__ = ["Batch", "Contacts", "Discard", "Info", "MEASURES", "Moment", "OutOfMemory", "Picture", "Pool", "Records", "Rve",
-           "RvelabError", "RvelabWarning", "StaleToken", "calibrate", "pack", "plot", "report", "run"]
+           "RvelabError", "RvelabWarning", "StaleToken", "calibrate", "ensemble", "fit", "pack", "plot", "report",
+           "run"]
 __version__ = _library.rvelab_version().decode()

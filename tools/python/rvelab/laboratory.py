@@ -93,16 +93,18 @@ class _Journal:
 
 def run(protocol: _PathLike, specimen: _PathLike | Rve | Records, settings: Mapping[str, Any] | None = None, *,
         output: _PathLike | None = None, progress: Callable[[Moment], None] | None = None, overwrite: bool = False,
-        **more: Any) -> Records:
+        resume: bool = False, **more: Any) -> Records:
     """Runs a laboratory test: the name of an installed protocol ("biaxial") or a TOML file, on a specimen file, an Rve
     (its committed state, which stays as it is) or the end of other Records.
 
     settings: keys of the protocol with dots, {"test.pressure_Pa": 50e3}, or tables in tables, {"test": {...}}.
-    output: record file to keep. progress: called with a Moment some times a second. overwrite: an existing output."""
+    output: record file to keep. progress: called with a Moment some times a second. overwrite: an existing output; resume:
+    go on with one that was stopped."""
     kept = Folder()
     file = os.fspath(output) if output is not None else os.path.join(kept.name, "R.h5")
     words = ["run", protocol, "--specimen", _specimen(specimen, kept.name), "-o", file, *words_of(settings, more)]
-    printed = ask(words + (["--force"] if overwrite else []), progress and _Journal(file + ".journal", progress))
+    words += ["--force"] * overwrite + ["--resume"] * resume
+    printed = ask(words, progress and _Journal(file + ".journal", progress))
     records = Records()
     for name, rows in printed.pop("records").items():
         column = np.array(rows)  # a number that is not finite is null in JSON
@@ -114,6 +116,23 @@ def run(protocol: _PathLike, specimen: _PathLike | Rve | Records, settings: Mapp
         progress(Moment(len(records["strain"]), int(records["stage"][-1]) if "stage" in records else 0,
                         float(records["strain"][-1])))
     return records
+
+
+def ensemble(protocol: _PathLike, specimens: Iterable[_PathLike | Rve], settings: Mapping[str, Any] | None = None, *,
+             against: Iterable[_PathLike | Rve] = (), output: _PathLike | None = None, threads: int | None = None,
+             overwrite: bool = False, resume: bool = False, **more: Any) -> dict[str, Any]:
+    """Runs a test on two or more specimens, one to a core, and returns what the program finds: summary, a list with mean,
+    standard_deviation, standard_error, low_95, high_95 and n of each measure, and tests. against: a second group; then
+    differences holds those of the means.
+
+    output: folder for the record files, summary.json and summary.csv. settings as in run()."""
+    with tempfile.TemporaryDirectory(prefix="rvelab-") as folder:
+        words = ["run", protocol]
+        for option, group in (("--specimen", specimens), ("--against", against)):
+            words += [word for given in group for word in (option, _specimen(given, folder))]
+        words += words_of(settings, more) + (["-o", output] if output is not None else [])
+        words += ["--threads", str(threads)] if threads else []
+        return ask(words + ["--force"] * overwrite + ["--resume"] * resume)
 
 
 def calibrate(protocol: _PathLike, specimens: _PathLike | Rve | Iterable[_PathLike | Rve],
@@ -135,3 +154,36 @@ def calibrate(protocol: _PathLike, specimens: _PathLike | Rve | Iterable[_PathLi
         words += ["-o", output] if output is not None else []
         words += ["--threads", str(threads)] if threads else []
         return ask(words + (["--force"] if overwrite else []))
+
+
+def fit(protocol: _PathLike, vary: Mapping[str, Sequence[Any]], targets: Mapping[str, Any] | None = None,
+        curves: Mapping[_PathLike, float] | Iterable[_PathLike] = (), *,
+        specimens: _PathLike | Rve | Iterable[_PathLike | Rve] = (), recipe: _PathLike | None = None,
+        count: int | None = None, tests: int | None = None, settings: Mapping[str, Any] | None = None,
+        output: _PathLike | None = None, threads: int | None = None, overwrite: bool = False,
+        resume: bool = False) -> dict[str, Any]:
+    """Looks for the parameters whose tests give what was measured, and returns what `rvelab fit` finds: parameters (key,
+    mean, low_95, high_95, ...), targets, tests, posterior_sample. Without targets and curves a sweep.
+
+    vary: {"material.friction": (0.1, 1.0)}; (low, high, "log"); of a sweep (low, high, number of values). targets:
+    {"friction_angle_deg": 30} or (value, standard error); "friction_angle_deg@50e3" at a pressure in Pa. curves: measured
+    curves, CSV files, or {file: pressure in Pa}. specimens that all tests share, or a recipe with count specimens. tests:
+    how many to spend. output: folder for fit.json and all else; plot("fit", output) draws it. resume: go on there."""
+    words = ["fit", protocol]
+    for key, bounds in vary.items():
+        words += ["--vary", f"{key}=" + ":".join(map(str, bounds))]
+    for measure, value in (targets or {}).items():
+        pair = tuple(value) if isinstance(value, (tuple, list)) else (value,)
+        words += ["--target", f"{measure}=" + "+-".join(f"{float(number)!r}" for number in pair)]
+    pressures = curves if isinstance(curves, Mapping) else {file: 0 for file in curves}
+    for file, pressure in pressures.items():
+        words += ["--curve", os.fspath(file) + (f"@{float(pressure)!r}" if pressure else "")]
+    several = isinstance(specimens, Iterable) and not isinstance(specimens, (str, os.PathLike, Records))
+    with tempfile.TemporaryDirectory(prefix="rvelab-") as folder:
+        for given in specimens if several else [specimens]:
+            words += ["--specimen", _specimen(given, folder)]
+        for name, value in (("--recipe", recipe), ("--count", count), ("--tests", tests), ("-o", output),
+                            ("--threads", threads)):
+            words += [name, os.fspath(value) if isinstance(value, os.PathLike) else str(value)] if value is not None else []
+        words += words_of(settings, {})
+        return ask(words + (["--force"] if overwrite else []) + (["--resume"] if resume else []))
