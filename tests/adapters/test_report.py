@@ -83,7 +83,7 @@ class Report(unittest.TestCase):
         found = Texts(self.text)
         self.assertTrue(all(source.startswith("data:") for source in found.sources), found.sources)
         self.assertIn("default-src 'none'", self.text)
-        self.assertEqual(len(found.headings), len(set(found.headings)) + 6, found.headings)  # two tests share six
+        self.assertEqual([found.headings.count(name) for name in ("Curves", "Force chains", "Film")], [2, 2, 1])
         for heading in ("What was asked", "Specimen", "Results", "Curves", "Mohr circles", "Contact rose", "Force chains",
                         "Film", "Error and run time"):
             self.assertIn(heading, found.headings)
@@ -100,7 +100,7 @@ class Report(unittest.TestCase):
         probed.write_text(without_policy)
         done = browse(probed, "--dump-dom")
         self.assertNotIn("CONSOLE", done.stderr)
-        told = re.search(r'<pre id="found">(.*?)</pre>', done.stdout, re.S)
+        told = re.search(r'<pre id="found">(\{.*?\})</pre>', done.stdout, re.S)
         self.assertIsNotNone(told, done.stdout[-400:] + done.stderr[-400:])
         found = json.loads(html.unescape(told.group(1)))
         self.assertEqual(found["errors"], [])

@@ -141,9 +141,9 @@ TEST_CASE("tests that differ by their specimen alone are one curve, the mean wit
                  "a, b = (np.interp(x, s.strain, s.volumetric_strain) for s in c.stages)\n"
                  "print(abs(mean - (a + b) / 2).max() < 1e-15, abs(deviation - abs(a - b) / 2 ** 0.5).max() < 1e-15,\n"
                  "      abs(a - b).max() > 1e-5)\n") ==
-      "['low_1', 'low_2'] low_1 ..., 20 kPa (mean of 2)\n"
+      "['low_1', 'low_2'] low_1, 20 kPa (n = 2)\n"
       "['slippery'] slippery, 20 kPa\n"
-      "['high_1', 'high_2'] high_1 ..., 40 kPa (mean of 2)\n"
+      "['high_1', 'high_2'] 40 kPa (n = 2)\n"
       "True True True\n");
   // Of each pressure one entry in the legend of Mohr's circles, however many specimens; the interval is Student's.
   const Outcome mohr = plot(here, "mohr", "low_1.h5 low_2.h5 high_1.h5 high_2.h5 -o mohr.svg");

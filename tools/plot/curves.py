@@ -28,6 +28,7 @@ class Curve:
     colour: object
     dashes: object
     label: str
+    rest: tuple  # what curves of one kind of tests at several pressures share
 
     @property
     def turns(self):
@@ -129,41 +130,41 @@ def curves_of(stages, colour_by="auto"):
     varies = {name: len({kind[k] for kind in kinds}) > 1
               for k, name in enumerate(("group", "settings", "pressure", "void", "stage"))}
     by_pressure = varies["pressure"] and (colour_by == "pressure" or colour_by == "auto" and not varies["group"])
-    rest = list(dict.fromkeys(rest_of(kind, by_pressure) for kind in sorted(kinds, key=keys.index)))
+    rest = list(dict.fromkeys(rest_of(kind) for kind in sorted(kinds, key=keys.index)))
     shades = plt.get_cmap("viridis")(np.linspace(0.05, 0.85, len(pressures)))
     steps = sorted({kind[2] for kind in kinds})
     curves = []
-    for kind in kinds:
+    for kind, label in zip(kinds, labels_of(kinds, stages, keys, varies, pressures)):
         members = [stage for stage, key in zip(stages, keys) if key == kind]
-        place, step = rest.index(rest_of(kind, by_pressure)), steps.index(kind[2])
+        place, step = rest.index(rest_of(kind)), steps.index(kind[2])
         colour = shades[kind[2]] if by_pressure else QUALITATIVE[place % len(QUALITATIVE)]
         dashes = DASHES[(place if by_pressure else step) % len(DASHES)]
-        curves.append(Curve(members, colour, dashes, label_of(members, kind, varies, pressures)))
+        curves.append(Curve(members, colour, dashes, label, rest_of(kind)))
     return curves
 
 
-def rest_of(kind, by_pressure):
-    """What the other of colour and line style goes with."""
+def rest_of(kind):
+    """A kind of tests at all its pressures."""
     return kind[:2] + kind[3:]
 
 
-def label_of(members, kind, varies, pressures):
-    """What tells this curve from the others, and how many specimens it is the mean of."""
-    words = []
-    if varies["group"]:
-        words.append(kind[0])
-    if varies["pressure"]:
-        words.append(f"{records.plain(pressures[kind[2]] / 1e3)} kPa")
-    if varies["stage"]:
-        words.append(members[0].name)
-    if varies["void"]:
-        words.append(f"$e_0$ = {np.mean([first_void_ratio(stage) for stage in members]):.3f}")
-    if varies["settings"]:
-        words.insert(0, members[0].path.stem if len(members) == 1 else f"{members[0].path.stem} ...")
-    if not words:
-        words.append(f"{records.plain(pressures[kind[2]] / 1e3)} kPa")
-    files = len({stage.path for stage in members})
-    return ", ".join(words) + (f" (mean of {files})" if files > 1 else "")
+def labels_of(kinds, stages, keys, varies, pressures):
+    """For each kind what tells its curve from the others, and of how many specimens it is."""
+    labels, files = [], []
+    for kind in kinds:
+        members = [stage for stage, key in zip(stages, keys) if key == kind]
+        words = [kind[0]] if varies["group"] else []
+        if varies["pressure"] or not any(varies[name] for name in ("group", "stage", "void")):
+            words.append(f"{records.plain(pressures[kind[2]] / 1e3)} kPa")
+        if varies["stage"]:
+            words.append(members[0].name)
+        if varies["void"]:
+            words.append(f"$e_0$ = {np.mean([first_void_ratio(stage) for stage in members]):.3f}")
+        labels.append(", ".join(words))
+        files.append(list(dict.fromkeys(stage.path for stage in members)))
+    # Tests of other settings or materials that nothing else tells apart go by the name of their first file.
+    told = [f"{own[0].stem}, {label}" if labels.count(label) > 1 else label for label, own in zip(labels, files)]
+    return [label + (f" (n = {len(own)})" if len(own) > 1 else "") for label, own in zip(told, files)]
 
 
 def legend(axes, title=None):
@@ -177,7 +178,7 @@ def legend(axes, title=None):
 def band_in_words(curves):
     """Title of a legend: what a band is; None where there is none."""
     several = any(len(curve.stages) > 1 and not curve.turns for curve in curves)
-    return "band: one standard deviation\nover the specimens" if several else None
+    return "mean and standard deviation\nof n specimens" if several else None
 
 
 def log_axis(axis, values):

@@ -87,11 +87,11 @@ def line_of(axes, angle, right, label, **line):
     axes.plot([0, right], [0, right * math.tan(angle)], label=label, **line)
 
 
-def draw_circles(axes, tests, colour_by):
+def draw_circles(axes, drawn):
     """One circle a pressure (and group), that of the mean state; thin ones of each specimen. Largest stress, kPa."""
     around = np.linspace(0, math.pi, 300)
     reach = 0.0
-    for curve in kinds.curves_of(tests, colour_by):
+    for curve in drawn:
         states = np.array([peak_state(test) for test in curve.stages]) / 1e3
         if len(states) > 1:
             for centre, radius in states:
@@ -105,26 +105,47 @@ def draw_circles(axes, tests, colour_by):
     return reach
 
 
-def draw_envelopes(axes, tests, right):
+def draw_envelopes(axes, tests, right, colour="crimson", name=""):
     """Envelope of the peaks with its interval, and that of large strain; the words for both and the peak angle."""
     peak = math.asin(records.sine_through_origin(*np.array([peak_state(test) for test in tests]).T))
     interval = interval_of(tests)
     text = f"peak friction angle {math.degrees(peak):.3f} degrees"
-    label = f"peak: $\\varphi$ = {math.degrees(peak):.2f}°"
+    before = f"{name}, " if name else ""
+    label = f"{before}peak: $\\varphi$ = {math.degrees(peak):.2f}°"
     if interval is not None:
         mean, half, count = interval
         axes.fill_between([0, right], [0, right * math.tan(mean - half)], [0, right * math.tan(mean + half)],
-                          color="crimson", alpha=0.12, linewidth=0, label="95 % interval of the mean")
-        label = f"peak: $\\varphi$ = {math.degrees(mean):.1f}° ± {math.degrees(half):.1f}°"
+                          color=colour, alpha=0.12, linewidth=0, label="95 % interval of the mean" if not name else None)
+        label = f"{before}peak: $\\varphi$ = {math.degrees(mean):.1f}° ± {math.degrees(half):.1f}°"
         text += f" ({count} specimens: {math.degrees(mean):.2f} +- {math.degrees(half):.2f}, 95 % interval of the mean)"
-    line_of(axes, interval[0] if interval else peak, right, label, color="crimson", linewidth=1.6)
+    line_of(axes, interval[0] if interval else peak, right, label, color=colour, linewidth=1.6)
     large = [large_strain_angle(test) for test in tests]
     if None not in large:
         mean = sum(large) / len(large)
-        line_of(axes, mean, right, f"12 to 15 % strain: $\\varphi$ = {math.degrees(mean):.1f}°", color="0.35",
-                linestyle=(0, (5, 3)))
+        line_of(axes, mean, right, f"{before}12 to 15 % strain: $\\varphi$ = {math.degrees(mean):.1f}°",
+                color=colour if name else "0.35", linestyle=(0, (5, 3)))
         text += f", at large strain {math.degrees(mean):.3f} degrees"
-    return text, peak
+    return (f"{name}: " if name else "") + text, peak
+
+
+def sets_of(drawn):
+    """Tests of each kind at all its pressures, with their colour and the words that tell them apart."""
+    sets = {}
+    for curve in drawn:
+        sets.setdefault(curve.rest, []).append(curve)
+    if len(sets) == 1:
+        return [([stage for curve in drawn for stage in curve.stages], "crimson", "")]
+    found = []
+    for own in sets.values():
+        name = own[0].label.split(" (n =")[0]
+        parts = [part for part in name.split(", ") if len(own) == 1 or not part.endswith(" kPa")]
+        found.append(([stage for curve in own for stage in curve.stages], own[0].colour, ", ".join(parts)))
+    return found
+
+
+def several_groups(tests):
+    """More than the pressure tells the tests apart: then colours go with the kind of test."""
+    return len({curve.rest for curve in kinds.curves_of(tests)}) > 1
 
 
 def draw(stages, options):
@@ -134,8 +155,10 @@ def draw(stages, options):
     if not tests:
         raise ValueError("; ".join(rising))
     figure, axes = plt.subplots(figsize=(7, 4.4))
-    right = 1.06 * draw_circles(axes, tests, options.colour)
-    text, peak = draw_envelopes(axes, tests, right)
+    drawn = kinds.curves_of(tests, "group" if options.colour == "auto" and several_groups(tests) else options.colour)
+    right = 1.06 * draw_circles(axes, drawn)
+    found = [draw_envelopes(axes, own, right, colour, name) for own, colour, name in sets_of(drawn)]
+    text, peak = "; ".join(words for words, _ in found), max(angle for _, angle in found)
     axes.set_xlim(0, right)
     axes.set_ylim(0, max(0.56 * right, right * math.tan(peak)))
     axes.set_aspect("equal", adjustable="box")

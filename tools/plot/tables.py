@@ -102,7 +102,7 @@ def results(tests):
              "angle at 12 to 15 % strain (degrees)"]]
     for curve in kinds.curves_of(last):
         found = [peaks(test) for test in curve.stages]
-        label = curve.label.split(" (mean of")[0].replace("$", "").replace("e_0", "e0")
+        label = curve.label.split(" (n =")[0].replace("$", "").replace("e_0", "e0")
         rows.append([label, str(len(found)), angle_in_words([row[1] for row in found]),
                      angle_in_words([row[0] for row in found]), angle_in_words([row[2] for row in found])])
     return rows
