@@ -1,6 +1,4 @@
 // rvelab report: one page of tests that loads nothing, and what it says when it cannot be drawn.
-#include <regex>
-
 #include "tests/cli/program.hpp"
 
 using namespace rvelab::test;
@@ -12,6 +10,15 @@ std::size_t count_of(const std::string& text, const std::string& part) {
   std::size_t count = 0;
   for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
   return count;
+}
+
+/// The page without the bytes of its film: ffmpeg promises none.
+std::string without_film(std::string page) {
+  for (const char* kind : {"data:video/mp4", "data:image/gif"}) {
+    const auto begin = page.find(kind);
+    if (begin != std::string::npos) page.erase(begin, page.find('"', begin) - begin);
+  }
+  return page;
 }
 
 void make_two_tests(const Workplace& here) {
@@ -55,8 +62,7 @@ TEST_CASE("report draws every test of a folder into one page that loads nothing 
   const Outcome again = here.run("report records -o page.html --title 'A <title> & more' --force --json");
   CHECK(again.code == 0);
   CHECK_THAT(again.output, Contains("\"tests\": 2"));
-  const std::regex film("data:(video|image/gif)[^\"]*");  // ffmpeg promises no bytes
-  CHECK(std::regex_replace(bytes_of(here / "page.html"), film, "") == std::regex_replace(page, film, ""));
+  CHECK(without_film(bytes_of(here / "page.html")) == without_film(page));
 }
 
 TEST_CASE("report names what is missing: records, a folder, a Python with the packages") {
