@@ -59,7 +59,8 @@ TEST_CASE("report draws every test of a folder into one page that loads nothing 
 
   // The same records, the same page; it is not written over without --force.
   expect_mistake(here.run("report records -o page.html"), "--force");
-  const Outcome again = here.run("report records -o page.html --title 'A <title> & more' --force --json");
+  const Outcome again =
+      here.run("report records/b.h5 records/o.h5 -o page.html --title 'A <title> & more' --force --json");
   CHECK(again.code == 0);
   CHECK_THAT(again.output, Contains("\"tests\": 2"));
   CHECK(without_film(bytes_of(here / "page.html")) == without_film(page));

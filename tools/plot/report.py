@@ -62,6 +62,13 @@ def data_uri(kind, content):
     return f"data:{kind};base64,{base64.b64encode(content).decode()}"
 
 
+def settled(svg):
+    """The SVG without its date, and with clip paths numbered in their order: matplotlib names some by addresses."""
+    svg = re.sub(rb"<metadata>.*?</metadata>", b"", svg, flags=re.S)
+    number = {name: b"clip%d" % k for k, name in enumerate(dict.fromkeys(re.findall(rb'id="(p[0-9a-f]{10})"', svg)))}
+    return re.sub(rb"(?<=[\"#])p[0-9a-f]{10}(?=[\")])", lambda found: number.get(found.group(), found.group()), svg)
+
+
 def figure_of(module, given, options, folder, caption):
     """HTML of a figure that a script's draw makes of `given`; "" where that figure is none of these tests'."""
     path = folder / "figure.svg"
@@ -71,8 +78,7 @@ def figure_of(module, given, options, folder, caption):
         return ""
     finally:
         plt.close("all")
-    content, kind = path.read_bytes(), "image/svg+xml"
-    content = re.sub(rb"<metadata>.*?</metadata>", b"", content, flags=re.S)  # it holds a date
+    content, kind = settled(path.read_bytes()), "image/svg+xml"
     if len(content) > LARGEST_SVG:
         path = folder / "figure.png"
         module.draw(given, argparse.Namespace(**{**vars(options), "output": str(path)}))
