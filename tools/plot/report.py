@@ -218,7 +218,7 @@ def page(paths, options):
 <style>{STYLE}</style></head><body>
 <h1>{html.escape(title)}</h1>
 <p>{records.counted(count, 'test')}, rvelab {html.escape(version)}. SI units; compression is positive in this page.</p>
-{chr(10).join(sections)}
+{chr(10).join(filter(None, sections))}
 </body></html>
 """, count
 
