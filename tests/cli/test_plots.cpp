@@ -227,10 +227,10 @@ TEST_CASE("mpm.py draws any column of a history, and names the columns, frames a
   const Workplace here;
   std::filesystem::create_directory(here / "run");
   here.write("run/history.csv",
-             "time_s,steps,kinetic_J,plate.force_y_N,plate.way_y_m,plate.way_x_m\n0,0,0,0,0,0\n1,9,2,1e3,-0.1,0.2\n");
+             "time_s,steps,kinetic_J,plate.force_y_N,plate.displacement_y_m,plate.displacement_x_m\n0,0,0,0,0,0\n1,9,2,1e3,-0.1,0.2\n");
   const std::string force = "run --force plate.force_y";
-  expect_figure(here, "mpm", force + " --against plate.way_y", "plate.force_y_N against plate.way_y_m");
-  expect_figure(here, "mpm", force + "_N --against plate.way_x_m", "plate.force_y_N against plate.way_x_m");
+  expect_figure(here, "mpm", force + " --against plate.displacement_y", "plate.force_y_N against plate.displacement_y_m");
+  expect_figure(here, "mpm", force + "_N --against plate.displacement_x_m", "plate.force_y_N against plate.displacement_x_m");
   expect_figure(here, "mpm", "run --force kinetic --against time", "kinetic_J against time_s");
   expect_figure(here, "mpm", "run --force kinetic_J", "kinetic_J against time_s");
   const auto refused = [&](const std::string& arguments, const std::string& part) {

@@ -5,8 +5,6 @@
 using namespace mpm;
 using namespace mpm::test;
 
-namespace {}  // namespace
-
 TEST_CASE("momentum of a free body is kept to round-off, and grows with gravity") {
   for (const Scheme scheme : {Scheme::usf, Scheme::musl}) {
     for (const bool affine : {true, false}) {

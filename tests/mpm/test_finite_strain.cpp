@@ -5,8 +5,6 @@
 using namespace mpm;
 using namespace mpm::test;
 
-namespace {}  // namespace
-
 TEST_CASE("the finite map of a spin is a rotation, that of a stretch its exponential") {
   Mat<3> spin;
   spin << 0, -0.3, 0.2, 0.3, 0, -0.1, -0.2, 0.1, 0;

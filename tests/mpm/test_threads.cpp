@@ -5,8 +5,6 @@
 using namespace mpm;
 using namespace mpm::test;
 
-namespace {}  // namespace
-
 TEST_CASE("contact with three bodies has the same bits on any number of threads") {
   std::vector<std::vector<Point<2>>> ends;
   std::vector<double> works;

@@ -78,7 +78,8 @@ std::string history_header(const Solver<D>& solver) {
   solver.each_driven([&](const auto& each) {
     for (int i = 0; i < D; ++i)
       header.append(",").append(each.name).append(".force_").append(axis_names[i]).append("_N");
-    for (int i = 0; i < D; ++i) header.append(",").append(each.name).append(".way_").append(axis_names[i]).append("_m");
+    for (int i = 0; i < D; ++i)
+      header.append(",").append(each.name).append(".displacement_").append(axis_names[i]).append("_m");
   });
   return header;
 }

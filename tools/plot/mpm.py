@@ -3,7 +3,7 @@
     mpm.py RUN --field eps_q -o eps_q.png              # the last frame; --frame 3, --field void_ratio, velocity, ...
     mpm.py RUN --field eps_q --film -o film.gif        # all frames
     mpm.py RUN --energy -o energy.png                  # shares of energy
-    mpm.py RUN... --force plate.force_y --against plate.way_y -o force.png    # any columns of history.csv
+    mpm.py RUN... --force plate.force_y --against plate.displacement_y -o force.png    # any columns of history.csv
     mpm.py RUN --network 0 1 -o chains.png             # force chains of watched points (output.networks = true)
 
 RUN is the folder that rvelab-mpm wrote. Points are drawn at their deformed places, in their deformed shapes."""
@@ -209,7 +209,7 @@ def main():
     what.add_argument("--energy", action="store_true")
     what.add_argument("--force", help="a column of history.csv: plate.force_y, or with its unit kinetic_J")
     what.add_argument("--network", type=int, nargs="+", help="numbers of watched points, from 0")
-    parser.add_argument("--against", default="time", help="the same for the other axis: plate.way_y; default: time")
+    parser.add_argument("--against", default="time", help="the same for the other axis: plate.displacement_y; default: time")
     parser.add_argument("--frame", type=int, default=-1, help="number of the frame; negative: from the end")
     parser.add_argument("--film", action="store_true", help="all frames, as GIF or MP4")
     parser.add_argument("--limits", type=float, nargs=2, metavar=("LOW", "HIGH"), help="of the colours")

@@ -89,7 +89,7 @@ def element():
     strain, stress, volume = cell_test()
     h, _ = run("element", "element.toml")
     watched = np.genfromtxt(folder / "element/watched.csv", delimiter=",", names=True)
-    axial = -h["top.way_y_m"]
+    axial = -h["top.displacement_y_m"]
     point = np.mean([watched[f"{k}p_Pa"] + watched[f"{k}q_Pa"] for k in (0, 1)], axis=0) / 1e3
     dilated = np.mean([watched[f"{k}eps_v"] for k in (0, 1)], axis=0) * 100
     # Paths of grains part by chance: the same cell at tolerances that hardly differ.
@@ -114,7 +114,7 @@ def biaxial(chosen):
     for case in chosen:
         options = [] if case == "C1" else ["--case", case]
         h, printed = run(case, "biaxial.toml", *options)
-        axial, plate = -h["plate.way_y_m"] / 2, h["plate.force_y_N"] + 100e3
+        axial, plate = -h["plate.displacement_y_m"] / 2, h["plate.force_y_N"] + 100e3
         k = plate.argmax()
         with h5py.File(sorted((folder / case).glob("points_*.h5"))[-1]) as file:
             sheared = file["eps_q"][()]
@@ -122,7 +122,7 @@ def biaxial(chosen):
               f"{np.mean(plate[-10:]) / 1e3:<11.1f} {axial[-1]:<10.3f} {np.mean(sheared > 0.5):.2f}, {np.mean(sheared > 1):.2f}")
         print("    " + "\n    ".join(printed.strip().splitlines()[-3:]))
         picture(folder / case, "--field", "eps_q", "-o", results / f"mpm_{case}.png")
-    picture(*(folder / case for case in chosen), "--force", "plate.force_y", "--against", "plate.way_y", "-o",
+    picture(*(folder / case for case in chosen), "--force", "plate.force_y", "--against", "plate.displacement_y", "-o",
             results / "mpm_biaxial.png")
 
 
@@ -145,7 +145,7 @@ def under_load(scene, setting, *options, packed="dense"):
     name = "_".join(["tolerance", scene, f"{rel:g}", f"{absolute:g}", f"{gather:g}", packed, *options])
     h, printed = run(name.replace("=", "_"), f"{scene}.toml", "-j", "1", *chosen,
                      *(word for each in sets for word in ("--set", each)))
-    stress = [np.interp(window, -h[f"{plate}.way_y_m"] / height, h[f"{plate}.force_y_N"] + 100e3) for window in WINDOWS]
+    stress = [np.interp(window, -h[f"{plate}.displacement_y_m"] / height, h[f"{plate}.force_y_N"] + 100e3) for window in WINDOWS]
     words = printed.replace(",", "").split()
     return stress, grain_steps(printed), float(words[words.index("increments") - 3])
 

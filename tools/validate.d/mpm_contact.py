@@ -96,7 +96,7 @@ def block(contact, height, plate):
     with h5py.File(last) as file:
         stress, y = -file["stress_Pa"][()][:, 4], file["position_m"][()][:, 1]
     if plate:
-        return np.mean(stress) / (-h["plate.way_y_m"][-1] * 1e6 * 0.7 / (1.3 * 0.4)) - 1
+        return np.mean(stress) / (-h["plate.displacement_y_m"][-1] * 1e6 * 0.7 / (1.3 * 0.4)) - 1
     return np.max(abs(stress - 2000 * 9.81 * (1 + height - y))) / (2000 * 9.81)
 
 
@@ -123,7 +123,7 @@ def main():
                    "body.footing.motion=[[0, 0, 0], [1, 0, -0.02]]", "time.duration_s=12", "output.history_every_s=0.05")
         load = np.convolve(1 + h["footing.force_y_N"] / 20e3, np.ones(5) / 5, mode="same")
         print(f"cells of {cell:<6g} {contact:<8}"
-              + "".join(f"{np.interp(depth, -h['footing.way_y_m'] / 2, load):<8.1f}" for depth in depths), flush=True)
+              + "".join(f"{np.interp(depth, -h['footing.displacement_y_m'] / 2, load):<8.1f}" for depth in depths), flush=True)
     print("\npipe pushed 0.8 m into the same soil: largest force (kN/m)")
     for cell, contact in ((0.25, "nodes"), (0.25, "surface"), (0.125, "nodes"), (0.125, "surface")):
         h, _ = run("pipe_soil", soil("pipe.toml", 100), f"grid.cell_m={cell}", f"body.pipe.contact={contact}",

@@ -38,7 +38,7 @@ def footing_run(name, soil, seed, *options):
     """Settlement over width, load over surcharge (a mean of five), and grain-steps of a footing's run."""
     h, printed = run(name, "footing.toml", "--case", soil, "--set",
                      f'material.soil.specimens=["{packing(soil, seed)}.h5"]', *options)
-    depth, load = -h["footing.way_y_m"] / WIDTH, 1 + h["footing.force_y_N"] / (WIDTH / 2) / SURCHARGE
+    depth, load = -h["footing.displacement_y_m"] / WIDTH, 1 + h["footing.force_y_N"] / (WIDTH / 2) / SURCHARGE
     return depth[2:-2], np.convolve(load, np.ones(5) / 5, mode="valid"), grain_steps(printed)
 
 
@@ -212,7 +212,7 @@ def pipe():
     specimen()
     h, printed = run("pipe", "pipe.toml")
     time, up, aside = h["time_s"], h["pipe.force_y_N"] / 1e3, h["pipe.force_x_N"] / 1e3
-    depth, left = -h["pipe.way_y_m"], -h["pipe.way_x_m"]
+    depth, left = -h["pipe.displacement_y_m"], -h["pipe.displacement_x_m"]
     window = max(1, round(0.05 / np.median(np.diff(time))))
     mean = lambda values: np.convolve(values, np.ones(window) / window, mode="same")
     up, aside = mean(up), mean(aside)
@@ -269,10 +269,10 @@ cohesion_Pa = 100
 
 """ + text[end:]).replace('"dense"', '"soil"'))
             h, _ = run(scene.stem, scene.resolve(), "-j", "1", "--set", f"grid.cell_m={1 / across!r}", "--set", "region.0.upper_m=[9, 2.5]")
-            time, left = h["time_s"], -h["pipe.way_x_m"]
+            time, left = h["time_s"], -h["pipe.displacement_x_m"]
             window = np.ones(max(1, round(0.05 / np.median(np.diff(time)))))
             up, aside = (np.convolve(h[f"pipe.force_{axis}_N"] / 1e3, window / len(window), mode="same") for axis in "yx")
-            turn = float(time[np.argmax(h["pipe.way_y_m"] < h["pipe.way_y_m"].min() + 1e-9)])
+            turn = float(time[np.argmax(h["pipe.displacement_y_m"] < h["pipe.displacement_y_m"].min() + 1e-9)])
             lateral = (time > turn + 0.6) & (left < left.max())
             watched = np.genfromtxt(folder / scene.stem / "watched.csv", delimiter=",", names=True)
             at = np.searchsorted(watched["time_s"], turn)
