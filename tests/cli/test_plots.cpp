@@ -212,6 +212,31 @@ TEST_CASE("a film has a frame for each snapshot and the end, and says how to get
   refused("R.h5 -o R.gif --field eps_q", "allowed: chains, p");
 }
 
+TEST_CASE("fit.py draws posteriors over the data that were fitted, and sweeps") {
+  const Workplace here;
+  std::filesystem::create_directory(here / "fit");
+  std::filesystem::create_directory(here / "sweep");
+  here.write("fit/fit.json", R"({"parameters": [{"key": "material.friction", "range": [0.1, 1], "mean": 0.5,
+      "standard_deviation": 0.05, "low_95": 0.4, "high_95": 0.6}], "tests": [{"values": {"material.friction": 0.3}}],
+      "posterior_sample": {"material.friction": [0.4, 0.45, 0.5, 0.55, 0.6]}, "targets": [
+      {"name": "friction_angle_deg", "value": 30, "standard_error": 0.5, "fit": {"mean": 31, "standard_deviation": 1}},
+      {"name": "q_over_p", "value": 0.5, "standard_error": 0, "fit": {"mean": 0.5, "standard_deviation": 0.1}},
+      {"name": "q_over_p", "value": 0.6, "standard_error": 0, "fit": {"mean": 0.6, "standard_deviation": 0.1}}]})");
+  here.write(
+      "fit/curves.csv",
+      "curve,pressure_Pa,quantity,abscissa,x,measured,error,fit,low_95,high_95\n"
+      "1,100000,q_over_p,strain,0.01,0.5,0.02,0.5,0.4,0.6\n1,100000,q_over_p,strain,0.02,0.6,0.02,0.6,0.5,0.7\n");
+  here.write("sweep/sweep.csv",
+             "material.friction,friction_angle_deg,friction_angle_deg_standard_error,friction_angle_deg_n\n"
+             "0.1,20,0.5,5\n0.5,30,0.5,5\n");
+  expect_figure(here, "fit", "fit", "material.friction 0.5 (0.4 to 0.6); 1 tests");
+  expect_figure(here, "fit", "sweep", "1 measure against material.friction, 2 points");
+  std::filesystem::remove(here / "fit/fit.json");
+  expect_refusal(here, "fit", "fit", "fit.json: is not there");
+  here.write("fit/fit.json", "{}");
+  expect_refusal(here, "fit", "fit", "not the fit.json of rvelab");
+}
+
 TEST_CASE("loops.py counts cycles by the strain travelled, a quarter to the first turn") {
   const Workplace here;
   const Outcome outcome = here.run(
@@ -227,10 +252,13 @@ TEST_CASE("mpm.py draws any column of a history, and names the columns, frames a
   const Workplace here;
   std::filesystem::create_directory(here / "run");
   here.write("run/history.csv",
-             "time_s,steps,kinetic_J,plate.force_y_N,plate.displacement_y_m,plate.displacement_x_m\n0,0,0,0,0,0\n1,9,2,1e3,-0.1,0.2\n");
+             "time_s,steps,kinetic_J,plate.force_y_N,plate.displacement_y_m,plate.displacement_x_m\n0,0,0,0,0,0\n1,9,2,"
+             "1e3,-0.1,0.2\n");
   const std::string force = "run --force plate.force_y";
-  expect_figure(here, "mpm", force + " --against plate.displacement_y", "plate.force_y_N against plate.displacement_y_m");
-  expect_figure(here, "mpm", force + "_N --against plate.displacement_x_m", "plate.force_y_N against plate.displacement_x_m");
+  expect_figure(here, "mpm", force + " --against plate.displacement_y",
+                "plate.force_y_N against plate.displacement_y_m");
+  expect_figure(here, "mpm", force + "_N --against plate.displacement_x_m",
+                "plate.force_y_N against plate.displacement_x_m");
   expect_figure(here, "mpm", "run --force kinetic --against time", "kinetic_J against time_s");
   expect_figure(here, "mpm", "run --force kinetic_J", "kinetic_J against time_s");
   const auto refused = [&](const std::string& arguments, const std::string& part) {

@@ -18,6 +18,11 @@ import curves as kinds
 import matplotlib.pyplot as plt
 import numpy as np
 
+# Labels of what a curve measures and of what it goes with, and the factor to their units.
+QUANTITIES = {"q_over_p": ("$q/p$", 1), "deviator": ("$\\sigma_1 - \\sigma_3$ (kPa)", 1e-3),
+              "volumetric_strain": ("volumetric strain $\\varepsilon_v$ (%)", 100), "void_ratio": ("void ratio $e$", 1)}
+ABSCISSAE = {"strain": ("strain (%)", 100), "p": ("mean stress $p$ (kPa)", 1e-3)}
+
 
 def read_fit(folders):
     """("fit", fit.json, rows of curves.csv) or ("sweep", rows of sweep.csv) of the one folder."""
@@ -77,17 +82,20 @@ def draw_targets(axes, targets):
 
 def draw_curve(axes, rows):
     """Points of one measured curve, and the band of the fit."""
-    def column(name):
-        return np.array([float(row[name]) if row[name] else np.nan for row in rows])
-    order = np.argsort(column("x"))
-    x = column("x")[order]
-    axes.fill_between(x, column("low_95")[order], column("high_95")[order], color="tab:blue", alpha=0.2, linewidth=0,
-                      label="fit, 95 %")
-    axes.plot(x, column("fit")[order], color="tab:blue", label="fit")
-    axes.errorbar(x, column("measured")[order], yerr=column("error")[order], fmt="o", color="k", markersize=3, capsize=2,
-                  linewidth=0.8, label="measured")
-    axes.set_xlabel(rows[0]["abscissa"].replace("_", " "), fontsize=9)
-    axes.set_ylabel(rows[0]["quantity"].replace("_", " "), fontsize=9)
+    rows = sorted(rows, key=lambda row: float(row["x"]))
+    (label, scale), (below, across) = QUANTITIES[rows[0]["quantity"]], ABSCISSAE[rows[0]["abscissa"]]
+
+    def column(name, factor=scale):
+        return factor * np.array([float(row[name]) if row[name] else np.nan for row in rows])
+    x = column("x", across)
+    axes.fill_between(x, column("low_95"), column("high_95"), color="tab:blue", alpha=0.2, linewidth=0, label="fit, 95 %")
+    axes.plot(x, column("fit"), color="tab:blue", label="fit")
+    axes.errorbar(x, column("measured"), yerr=column("error"), fmt="o", color="k", markersize=3, capsize=2, linewidth=0.8,
+                  label="measured")
+    if rows[0]["abscissa"] == "p":
+        kinds.log_axis(axes.xaxis, x)
+    axes.set_xlabel(below, fontsize=9)
+    axes.set_ylabel(label, fontsize=9)
     pressure = float(rows[0]["pressure_Pa"] or 0)
     if pressure > 0:
         axes.set_title(f"{records.plain(pressure / 1e3)} kPa", fontsize=9)
