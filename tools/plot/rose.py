@@ -114,8 +114,13 @@ def draw(found, options):
 
 
 def read_same(paths):
-    """The states, of one dimension."""
-    found = states.read_states(paths)
+    """The states, of one dimension; of folders those of their *.h5."""
+    files = []
+    for path in map(pathlib.Path, paths):
+        files += sorted(path.glob("*.h5")) if path.is_dir() else [path]
+    found = states.read_states(files)
+    if not found:
+        raise ValueError(f"{', '.join(map(str, paths))}: no *.h5 there; give specimen or record files")
     if len({state.dimension for state in found}) > 1:
         raise ValueError(f"{', '.join(map(str, paths))}: 2D and 3D states; give one kind")
     return found
@@ -123,7 +128,7 @@ def read_same(paths):
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(prog="rose.py", description=__doc__.splitlines()[0])
-    parser.add_argument("records", nargs="+", help="specimen or record files")
+    parser.add_argument("records", nargs="+", help="specimen or record files, or folders of them")
     parser.add_argument("-o", "--output", default="rose.png", help="figure to write (PNG, PDF or SVG)")
     parser.add_argument("--of", choices=["normals", "branches", "orientations"], default="normals", help="what is counted")
     parser.add_argument("--plane", choices=["xy", "xz", "yz"], help="of 3D states; default xz")
