@@ -1,4 +1,5 @@
-"""pack, run, calibrate and plot of the Python package, and an RVE as arrays. Arguments: a folder to work in, then unittest's.
+"""pack, run, calibrate and plot of the Python package, and an RVE as arrays. Arguments: a folder to work in, then
+unittest's.
 
 RVELAB_LIBRARY and RVELAB_PROGRAM name what is tested, PYTHONPATH the package."""
 import copy
@@ -154,7 +155,7 @@ class Laboratory(unittest.TestCase):
             rvelab.run("biaxial", specimens["discs"], {"test.pressure_Pa": object()})
 
 
-ENSEMBLE = "--against" in subprocess.run([os.environ["RVELAB_PROGRAM"], "run", "--help"], capture_output=True, text=True).stdout
+ENSEMBLE = b"--against" in subprocess.run([os.environ["RVELAB_PROGRAM"], "run", "--help"], capture_output=True).stdout
 
 
 @unittest.skipUnless(ENSEMBLE, "this program runs one specimen at a time")

@@ -92,13 +92,13 @@ def figure_of(module, given, options, folder, caption):
 
 
 def film_of(path, folder):
-    """HTML of the film of a record file; "" where it has no snapshots or nothing here makes films."""
+    """HTML of the film of a record file, or why there is none."""
     kind = "mp4" if shutil.which("ffmpeg") else "gif"
     output = folder / f"film.{kind}"
     try:
         count = film.save(film.pictures_of_grains(path, "chains"), output, 8)
-    except ValueError:
-        return ""
+    except ValueError as error:
+        return f"<p>None: {html.escape(str(error).replace(str(output), path.name))}.</p>"
     content = output.read_bytes()
     shown = (f'<video controls muted loop autoplay playsinline src="{data_uri("video/mp4", content)}"></video>'
              if kind == "mp4" else f'<img alt="film" src="{data_uri("image/gif", content)}">')

@@ -95,7 +95,7 @@ def peaks(test):
 def results(tests):
     """One row a kind of test: mean and standard error over its specimens."""
     last = [test[-1] for test in tests if test[-1].kind in ("compression", "simple_shear", "deviatoric")
-            and test[-1].keys.get("lateral") != "zero_strain"]
+            and test[-1].keys.get("lateral") != "zero_strain" and not test[-1].cyclic]
     if not last:
         return []
     rows = [["test", "specimens", "peak friction angle (degrees)", "strain at the peak (%)",
