@@ -1,4 +1,4 @@
-"""The C interface of librvelab.so.1 as rvelab.py uses it: structs, exceptions, and calls that raise."""
+"""The C interface of librvelab.so.1: structs, exceptions, and calls that raise."""
 from __future__ import annotations
 
 import ctypes
@@ -95,8 +95,10 @@ class Batch:
 
 def load() -> ctypes.CDLL:
     here, name = Path(__file__).resolve().parent, "librvelab.so.1"
-    # Beside the module; PREFIX/lib of an installed one, PREFIX/lib/python3/dist-packages; the build of a checkout.
-    places = [folder / name for folder in (here, here.parents[1], here.parents[1] / "build/release/lib")]
+    # In the wheel; beside the module; PREFIX/lib of an installed one, PREFIX/lib/python3/dist-packages/rvelab; the build
+    # of a checkout.
+    folders = here / "native/lib", here, here.parent, here.parents[2], here.parents[2] / "build/release/lib"
+    places = [folder / name for folder in folders]
     place = os.environ.get("RVELAB_LIBRARY") or str(next((file for file in places if file.exists()), name))
     try:
         library = ctypes.CDLL(place)

@@ -1,35 +1,16 @@
-"""Granular representative volume elements: an increment of displacement gradient goes in, the Cauchy stress comes out.
-
-    import rvelab
-    rve = rvelab.Rve("S.h5")                                     # a specimen file, or a record file: its end state
-    sigma = rve.apply([[0, 1e-4, 0], [0, 0, 0], [0, 0, 0]])      # Pa
-    print(rve.p, rve.void_ratio)
-
-dH     (3, 3), dH[i, j] = d(du_i)/dx_j over the step, laboratory frame, finite (F_inc = I + dH), spin included.
-sigma  (3, 3), Pa, laboratory frame, Cauchy, tension positive. Batches have a first axis of length n. SI units.
-dt     s; > 0: physical time, real inertia and rate; 0: quasi-static. 2D: z-components of dH are zero.
-
-Needs numpy and librvelab.so.1: named by RVELAB_LIBRARY, else beside this file, else found by the loader. The meaning
-of every call is that of include/rvelab/rvelab.h. Calls on different RVEs may run in threads: ctypes releases the
-interpreter's lock meanwhile."""
+"""Many RVEs that are worked on together: Pool, over the C interface."""
 from __future__ import annotations
 
-import contextlib
 import os
 import sys
 from ctypes import byref, c_char_p, c_double, c_int64, c_size_t, c_void_p, create_string_buffer, sizeof
-from typing import Any, Iterable
+from typing import Iterable
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rvelab_library import (MEASURES, Batch, BatchStruct, Definition, Discard, Info, OutOfMemory, RvelabError,
-                            RvelabWarning, StaleToken, call, gradients_of, id_of, library, numbers_of)
-from rvelab_program import Records, run
-
-__all__ = ["Batch", "Discard", "Info", "MEASURES", "OutOfMemory", "Pool", "Records", "Rve", "RvelabError",
-           "RvelabWarning", "StaleToken", "run"]
-__version__ = library.rvelab_version().decode()
+from .library import (MEASURES, Batch, BatchStruct, Definition, Info, RvelabError, call, gradients_of, id_of, library,
+                      numbers_of)
 
 _pool, _number, _ids, _size = c_void_p, c_int64, c_void_p, c_size_t
 for _name, _arguments in {
@@ -207,68 +188,3 @@ class Pool:
         """The RVEs of a pool file, with their ids and tokens, into this pool, which must be without. Their ids."""
         call("pool_read", self._pool, os.fsencode(path))
         return self.ids()
-
-
-class Rve:
-    """One RVE, in a pool of its own or in one given. The fields of Info are its attributes: rve.void_ratio, rve.p. It
-    lives until close(), the end of its `with`, or the last reference to it: of a pool that was given nothing else
-    ends."""
-
-    def __init__(self, source: str | os.PathLike[str] | bytes, pool: Pool | None = None, **options: float) -> None:
-        if pool is not None and options:
-            raise TypeError("options are those of a pool of its own: give them to the Pool")
-        self.id, self._owns_pool = 0, pool is None
-        self.pool = Pool(workers=1, **options) if pool is None else pool
-        template = self.pool.template(source)
-        try:
-            self.id = int(self.pool.spawn(template)[0])
-        finally:
-            self.pool.release_template(template)
-
-    def close(self) -> None:
-        """Ends the RVE, and its pool if that is its own. A second time it does nothing; later calls raise."""
-        if self.id and self.pool._pool and not self._owns_pool:
-            self.pool.release(self.id)
-        self.id = 0
-        if self._owns_pool:
-            self.pool.close()
-
-    def __enter__(self) -> "Rve":
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
-
-    def __del__(self) -> None:
-        # As Pool.__del__. An RVE that cannot be ended now, for another thread is at work in its pool, ends with that.
-        if getattr(self, "id", 0) and not sys.is_finalizing():
-            with contextlib.suppress(RvelabError):
-                self.close()
-
-    def apply(self, dH: ArrayLike, dt: float = 0) -> np.ndarray:
-        """sigma (3, 3) after dH (3, 3) over dt."""
-        return self.pool.apply(self.id, dH, dt)
-
-    def trial(self, dH: ArrayLike, dt: float = 0, token: int | None = None, want: Iterable[str] = ()) -> Batch:
-        """A Batch of one: what dH would give. It pends until commit(), revert() or the next call."""
-        return self.pool.trial(self.id, np.asarray(dH, np.float64)[np.newaxis], dt, token, want)
-
-    def commit(self) -> None:
-        """The pending trial becomes the state."""
-        self.pool.commit(self.id)
-
-    def revert(self) -> None:
-        """Discards the pending trial."""
-        self.pool.revert(self.id)
-
-    def tangent(self) -> np.ndarray:
-        """Elastic tangent (6, 6) of the contacts as they are, Pa: xx yy zz yz xz xy, engineering shear. Made by a trial
-        of dH = 0, which replaces a pending one and is discarded."""
-        found = self.trial(np.zeros((3, 3)), want=("tangent",)).tangent[0]
-        self.revert()
-        return found
-
-    def __getattr__(self, name: str) -> Any:
-        if name.startswith("_") or name not in (field for field, _ in Info._fields_):
-            raise AttributeError(f"Rve has no attribute {name!r}; those of its state are the fields of rvelab.Info")
-        return getattr(self.pool.info(self.id), name)
