@@ -40,7 +40,7 @@ PressureResult evaluate(const records::TestResult& test, int dimension) {
   result.moving_mean_friction_angle_deg = friction_angle_deg(peak_of_moving_mean(records, dimension));
   result.large_strain_friction_angle_deg = friction_angle_deg(at_large_strain(test, dimension));
   result.records = records.size();
-  result.flagged = static_cast<std::size_t>(
+  result.flagged = std::size_t(
       std::count_if(records.begin(), records.end(), [](const records::Record& record) { return !record.target_held; }));
   result.wall_seconds = test.wall_seconds;
   result.grain_steps = test.grain_steps;
@@ -68,7 +68,7 @@ protocol::TestRun run_one(std::size_t number, const protocol::Protocol& protocol
 }  // namespace
 
 Statistics statistics(const std::vector<double>& values) {
-  const auto count = static_cast<double>(values.size());
+  const auto count = double(values.size());
   Statistics found;
   for (const double value : values) found.mean += value / count;
   double squares = 0;
@@ -106,8 +106,8 @@ Calibration calibrate(const std::vector<records::TestResult>& tests, int dimensi
     PressureResult& one = result.per_pressure.back();
     if (!specimens.empty()) one.specimen = specimens.at(k);
     peaks.push_back(one.peak);
-    result.friction_angle_moving_mean_deg += one.moving_mean_friction_angle_deg / static_cast<double>(tests.size());
-    result.large_strain_friction_angle_deg += one.large_strain_friction_angle_deg / static_cast<double>(tests.size());
+    result.friction_angle_moving_mean_deg += one.moving_mean_friction_angle_deg / double(tests.size());
+    result.large_strain_friction_angle_deg += one.large_strain_friction_angle_deg / double(tests.size());
   }
   result.friction_angle_deg = friction_angle_through_origin_deg(peaks);
   const CohesionFit fit = fit_with_cohesion(peaks);

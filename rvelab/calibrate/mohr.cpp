@@ -3,10 +3,12 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "rvelab/error.hpp"
 
 namespace rvelab::calibrate {
+
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
@@ -20,7 +22,7 @@ double median_spacing(std::span<const records::Record> records) {
   for (std::size_t k = 1; k < records.size(); ++k) {
     spacings.push_back(std::abs(records[k].strain - records[k - 1].strain));
   }
-  const auto middle = spacings.begin() + static_cast<long>(spacings.size() / 2);
+  const auto middle = spacings.begin() + long(spacings.size() / 2);
   std::nth_element(spacings.begin(), middle, spacings.end());
   return *middle;
 }
@@ -55,14 +57,14 @@ PrincipalStresses peak_of_moving_mean(std::span<const records::Record> records, 
   PrincipalStresses highest{nan, nan};
   const double spacing = records.size() < 2 ? 0 : median_spacing(records);
   if (spacing <= 0) return highest;
-  const auto width = static_cast<std::size_t>(std::max(1L, std::lround(window / spacing)));
+  const auto width = std::size_t(std::max(1L, std::lround(window / spacing)));
   std::vector<PrincipalStresses> stresses;
   for (const auto& record : records) stresses.push_back(principal_stresses(record.stress, dimension));
   for (std::size_t begin = 0; begin + width <= stresses.size(); ++begin) {
     PrincipalStresses mean;
     for (std::size_t k = begin; k < begin + width; ++k) {
-      mean.major += stresses[k].major / static_cast<double>(width);
-      mean.minor += stresses[k].minor / static_cast<double>(width);
+      mean.major += stresses[k].major / double(width);
+      mean.minor += stresses[k].minor / double(width);
     }
     // t/s grows with major/minor and needs no division by a minor stress that may vanish.
     if (begin == 0 || mean.t() * highest.s() > highest.t() * mean.s()) highest = mean;
@@ -96,7 +98,7 @@ double friction_angle_through_origin_deg(std::span<const PrincipalStresses> test
 }
 
 CohesionFit fit_with_cohesion(std::span<const PrincipalStresses> tests) {
-  const auto count = static_cast<double>(tests.size());
+  const auto count = double(tests.size());
   double mean_s = 0, mean_t = 0, st = 0, ss = 0;
   for (const auto& test : tests) {
     mean_s += test.s() / count;
@@ -139,6 +141,27 @@ std::span<const records::Record> last_stage(const records::TestResult& result) {
   std::size_t begin = records.size();
   while (begin > 0 && records[begin - 1].stage == records.back().stage) --begin;
   return std::span<const records::Record>(records).subspan(begin);
+}
+
+OedometerStiffness oedometer_stiffness(std::span<const records::Record> stage, const std::string& axis, int dimension,
+                                       double up_to) {
+  const int a = axis[0] - 'x';
+  double squares = 0, axial = 0, lateral = 0;
+  for (const records::Record& record : stage) {
+    if (std::abs(record.strain) > up_to * (1 + 1e-9)) break;
+    // Compression positive in both.
+    const Matrix3 change = stage.front().stress - record.stress;
+    const double strain = record.strain - stage.front().strain;
+    squares += strain * strain;
+    axial += strain * change(a, a);
+    for (int k = 0; k < dimension; ++k) {
+      if (k != a) lateral += strain * change(k, k) / (dimension - 1);
+    }
+  }
+  constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+  if (squares == 0) return {nothing, nothing, nothing, nothing, nothing};
+  const double c11 = axial / squares, c12 = lateral / squares, g = 0.5 * (c11 - c12);
+  return {c11, c12, g, c12 + 2 * g / 3, 0.5 * (c11 + c12)};
 }
 
 }  // namespace rvelab::calibrate

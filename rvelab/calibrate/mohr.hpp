@@ -6,7 +6,6 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "rvelab/records/record.hpp"
 
@@ -71,5 +70,19 @@ double wedge_angle_deg(double friction_angle_deg);
 
 /// The records of the last stage that has any.
 std::span<const records::Record> last_stage(const records::TestResult& result);
+
+/// Slopes of the normal stresses over the axial strain, and the moduli of an isotropic solid that has them, Pa. NaN
+/// where there are no two records.
+struct OedometerStiffness {
+  double C11;   ///< d sigma_axial / d eps_axial, = K_3D + 4 G/3
+  double C12;   ///< d sigma_lateral (mean) / d eps_axial, = K_3D - 2 G/3
+  double G;     ///< (C11 - C12)/2
+  double K_3D;  ///< C12 + 2 G/3 (Liang et al. 2023)
+  double K_2D;  ///< (C11 + C12)/2 = K_3D + G/3
+};
+
+/// Least squares through the first record, over the records of one stage with |strain| <= up_to; `axis`: "x", "y", "z".
+OedometerStiffness oedometer_stiffness(std::span<const records::Record> stage, const std::string& axis, int dimension,
+                                       double up_to = 1e-5);
 
 }  // namespace rvelab::calibrate

@@ -4,14 +4,13 @@
 // The packings come from fixed recipes: 400 discs, 400 ellipses of the same areas (aspect ratio 0.743, Liang et al.
 // 2023) and 1000 spheres at 100 kPa; larger cases repeat them periodically. Each case shears at constant volume with
 // physical masses at inertial number 1e-3 for a fixed number of steps, several times; the median is reported.
-// Declared in commands.hpp.
+// Declared in command.hpp.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <memory>
 
-#include "rvelab/cli/commands.hpp"
+#include "rvelab/cli/command.hpp"
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/report.hpp"
 #include "rvelab/error.hpp"
@@ -71,12 +70,21 @@ Specimen packed(const pack::Recipe& recipe) {
   return pack::pack(recipe, alone).specimen;
 }
 
-struct Timing {
-  double median = 0, least = 0, most = 0;
-  double contacts_per_grain = 0;
-  double steps_per_list = 0;
-  Memory memory;
-};
+/// Grain-steps per second of `work`, which is done `repeats` times, in ascending order. `prepare`: before each.
+template <class Steps, class Prepare, class Work>
+std::vector<double> speeds_of(int repeats, Steps steps_made, Prepare prepare, Work work) {
+  std::vector<double> speeds;
+  for (int k = 0; k < repeats; ++k) {
+    prepare();
+    const std::uint64_t before = steps_made();
+    const auto begin = std::chrono::steady_clock::now();
+    work();
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    speeds.push_back(double(steps_made() - before) / seconds);
+  }
+  std::sort(speeds.begin(), speeds.end());
+  return speeds;
+}
 
 /// Rate of simple shear at inertial number 1e-3, 1/s.
 double shear_rate(const Rve& rve, const Specimen& specimen) {
@@ -87,54 +95,33 @@ double shear_rate(const Rve& rve, const Specimen& specimen) {
   return 1e-3 / (diameter * std::sqrt(specimen.materials[0].density / pressure));
 }
 
-/// Times simple shear of the specimen; `steps` sub-steps per repeat.
-Timing time_of(const Specimen& specimen, long steps, int repeats, Workers& team) {
+/// Times simple shear of the specimen.
+Json entry(const Specimen& specimen, double grain_steps, bool quick, Workers& team) {
+  const double n = double(specimen.grains.size());
+  const long steps = std::max(20L, long(grain_steps / n));  // sub-steps per repeat
   Specimen start = specimen;
   start.damping.local = 0.1;  // as published (Liang and Zhao 2019, table 2)
   Rve rve(start);
   rve.share(&team);
-  const int d = rve.cell().dimension;
   const double rate = shear_rate(rve, specimen);
   const double dt = 0.7 * rve.critical_time_step() * double(steps);
   Matrix3 dh = Matrix3::Zero();
-  dh(0, d - 1) = rate * dt;
-  std::vector<double> speeds;
+  dh(0, rve.cell().dimension - 1) = rate * dt;
   rve.apply(dh, dt);                // warms up: caches, clock, the flow itself
   const auto flowing = rve.save();  // every repeat does the same work
-  for (int k = 0; k < repeats; ++k) {
-    rve.restore(flowing);
-    const auto before = rve.grain_steps();
-    const auto begin = std::chrono::steady_clock::now();
-    rve.apply(dh, dt);
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    speeds.push_back(double(rve.grain_steps() - before) / seconds);
-  }
-  std::sort(speeds.begin(), speeds.end());
-  const double contacts = double(rve.network().contacts.size()) / double(rve.size());
+  const auto speeds = speeds_of(
+      quick ? 3 : 7, [&] { return rve.grain_steps(); }, [&] { rve.restore(flowing); }, [&] { rve.apply(dh, dt); });
   const SolverState state = rve.specimen().state;
-  const double made = double(state.grain_steps) / double(rve.size());
-  return {speeds[speeds.size() / 2],
-          speeds.front(),
-          speeds.back(),
-          contacts,
-          made / double(std::max<std::uint64_t>(1, state.list_builds)),
-          rve.memory()};
-}
-
-Json entry(const Specimen& specimen, double grain_steps, bool quick, Workers& team) {
-  const long steps = std::max(20L, long(grain_steps / double(specimen.grains.size())));
-  const Timing t = time_of(specimen, steps, quick ? 3 : 7, team);
+  const Memory memory = rve.memory();
   Json out;
-  out["grain_steps_per_second"] = t.median;
-  out["least"] = t.least;
-  out["most"] = t.most;
+  out["grain_steps_per_second"] = speeds[speeds.size() / 2];
+  out["least"] = speeds.front();
+  out["most"] = speeds.back();
   out["grains"] = specimen.grains.size();
-  out["contacts_per_grain"] = t.contacts_per_grain;
-  out["steps_per_list"] = t.steps_per_list;
-  const double n = double(specimen.grains.size());
-  out["bytes_per_grain"] = {{"state", double(t.memory.state) / n},
-                            {"list", double(t.memory.list) / n},
-                            {"working", double(t.memory.working) / n}};
+  out["contacts_per_grain"] = double(rve.network().contacts.size()) / n;
+  out["steps_per_list"] = double(state.grain_steps) / n / double(std::max<std::uint64_t>(1, state.list_builds));
+  out["bytes_per_grain"] = {
+      {"state", double(memory.state) / n}, {"list", double(memory.list) / n}, {"working", double(memory.working) / n}};
   return out;
 }
 
@@ -214,16 +201,13 @@ void run_batch(const BenchArguments& arguments) {
     for (const Rve& rve : rves) steps += rve.grain_steps();
     return steps;
   };
-  std::vector<double> speeds;
-  for (int round = 0; round < (arguments.quick ? 4 : 8); ++round) {
-    const auto before = steps_made();
-    const auto begin = std::chrono::steady_clock::now();
+  const auto increments = [&] {
     for (int increment = 0; increment < 4; ++increment)
       workers.run(rves.size(), [&](std::size_t k) { rves[k].apply(gradients[k], dt); });
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    if (round > 0) speeds.push_back(double(steps_made() - before) / seconds);  // the first warms up
-  }
-  std::sort(speeds.begin(), speeds.end());
+  };
+  increments();  // warms up
+  const auto speeds = speeds_of(
+      arguments.quick ? 3 : 7, steps_made, [] {}, increments);
   Listing listing;
   listing.add("cells", rves.size());
   listing.add("threads", workers.threads());
@@ -269,25 +253,24 @@ void run_bench(const BenchArguments& arguments) {
 }  // namespace
 
 Command bench_command() {
-  auto arguments = std::make_shared<BenchArguments>();
   Command command{"bench", "Grain-steps per second of fixed cases"};
-  command.add("--case", arguments->wanted, "run this case only; give it again for more");
-  command.add("--batch", arguments->batch, "time a batch of so many cells of 400 discs instead of the cases")
+  auto& arguments = command.runs(run_bench);
+  command.add("--case", arguments.wanted, "run this case only; give it again for more");
+  command.add("--batch", arguments.batch, "time a batch of so many cells of 400 discs instead of the cases")
       .between(1, 1'000'000);
-  command.add("--grains", arguments->grains, "time a cell of about so many grains instead of the cases")
+  command.add("--grains", arguments.grains, "time a cell of about so many grains instead of the cases")
       .between(20, 2'000'000);
-  command.add("--shape", arguments->shape, "of the grains of --grains").one_of({"disc", "sphere"});
-  command.add_threads(arguments->threads, "for a batch, and for cells of 30,000 grains or more");
-  command.add("--quick", arguments->quick, "a fifth of the work, three repeats");
-  command.add("--packings", arguments->folder, "folder: write the packings of the cases there, time nothing");
-  command.add_json(arguments->json);
+  command.add("--shape", arguments.shape, "of the grains of --grains").one_of({"disc", "sphere"});
+  command.add_threads(arguments.threads, "for a batch, and for cells of 30,000 grains or more");
+  command.add("--quick", arguments.quick, "a fifth of the work, three repeats");
+  command.add("--packings", arguments.folder, "folder: write the packings of the cases there, time nothing");
+  command.add_json(arguments.json);
   command.notes = "Cases:\n";
   for (const std::string& name : case_names()) command.notes += "  " + name + "\n";
   command.notes +=
       "Examples:\n"
       "  rvelab bench --quick --json\n"
       "  rvelab bench --case disc_400_linear --packings .";
-  command.run = [arguments] { run_bench(*arguments); };
   return command;
 }
 

@@ -2,35 +2,13 @@
 
 #include <algorithm>
 #include <charconv>
-#include <memory>
 #include <type_traits>
 
 #include "rvelab/error.hpp"
+#include "rvelab/keys/table_reader.hpp"
 
 namespace rvelab::cli {
 namespace {
-
-using ThreeNumbers = std::array<double, 3>;
-
-std::string joined(const std::vector<std::string>& words, const std::string& between) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : between) + word;
-  return text;
-}
-
-/// The type itself, or that of an optional or a list.
-template <class Value>
-struct ElementOf {
-  using Type = Value;
-};
-template <class Value>
-struct ElementOf<std::optional<Value>> {
-  using Type = Value;
-};
-template <class Value>
-struct ElementOf<std::vector<Value>> {
-  using Type = Value;
-};
 
 /// Whether the whole word is the number.
 template <class Number>
@@ -40,97 +18,51 @@ bool reads(const std::string& word, Number& number) {
   return error == std::errc() && end == last;
 }
 
-/// "1,2,3".
-bool reads(const std::string& list, ThreeNumbers& numbers) {
-  const std::size_t first = list.find(','), second = list.find(',', first + 1);
-  return second != std::string::npos && reads(list.substr(0, first), numbers[0]) &&
-         reads(list.substr(first + 1, second - first - 1), numbers[1]) && reads(list.substr(second + 1), numbers[2]);
-}
-
-template <class Element>
-constexpr const char* shown_type() {
-  return std::is_same_v<Element, bool>           ? ""
-         : std::is_same_v<Element, std::string>  ? "TEXT"
-         : std::is_same_v<Element, ThreeNumbers> ? "NUMBER,NUMBER,NUMBER"
-         : std::is_integral_v<Element>           ? "INTEGER"
-                                                 : "NUMBER";
+template <class Number>
+void read_number(const Option& option, const std::string& word, Number& value) {
+  const std::string allowed =
+      option.range ? "; allowed: " + in_words(option.range->first) + " to " + in_words(option.range->second) : "";
+  if (!reads(word, value))
+    option.refuse(word, (std::is_integral_v<Number> ? "is not a whole number" : "is not a number") + allowed);
+  if (option.range && !(double(value) >= option.range->first && double(value) <= option.range->second))
+    option.refuse(word, "is out of range" + allowed);
 }
 
 }  // namespace
 
-Option& Option::required() {
-  needed = true;
-  return *this;
-}
-
-Option& Option::between(double least, double most) {
-  range_ = {least, most};
-  return *this;
-}
-
-Option& Option::one_of(std::vector<std::string> words) {
-  choices_ = std::move(words);
-  return *this;
-}
-
-Option& Option::shows_default() {
-  if (const auto* text = std::get_if<std::string*>(&place)) default_ = **text;
-  if (const auto* number = std::get_if<double*>(&place)) default_ = in_words(**number);
-  return *this;
-}
-
-Option& Option::not_with(const std::string& other) {
-  excluded = other;
-  return *this;
-}
-
 std::string Option::shown_value() const {
-  std::string text = std::visit(
-      []<class Value>(Value*) -> std::string { return shown_type<typename ElementOf<Value>::Type>(); }, place);
-  if (!choices_.empty()) text = joined(choices_, " | ");
-  if (range_) text += " from " + in_words(range_->first) + " to " + in_words(range_->second);
-  if (is_list() && is_positional()) text += " ...";
-  if (!default_.empty()) text += ", default " + default_;
+  std::string text = type;
+  for (std::size_t k = 0; k < words.size(); ++k) text = (k == 0 ? "" : text + " | ") + words[k];
+  if (range) text += " from " + in_words(range->first) + " to " + in_words(range->second);
+  if (list && is_positional()) text += " ...";
+  if (!initial.empty()) text += ", default " + initial;
   if (needed) text += ", required";
   return text;
 }
 
-std::string Option::allowed() const {
-  return range_ ? "; allowed: " + in_words(range_->first) + " to " + in_words(range_->second) : "";
+void Option::refuse(const std::string& word, const std::string& why) const {
+  const std::size_t at = names.find("--");
+  throw InputError(names.substr(at == std::string::npos ? 0 : at) + ": " + word + " " + why);
 }
 
-void Option::read_word(const std::string& word) const {
-  const auto refuse = [&](const std::string& why) {
-    const std::size_t at = names.find("--");
-    throw InputError(names.substr(at == std::string::npos ? 0 : at) + ": " + word + " " + why);
-  };
-  if (!choices_.empty() && std::find(choices_.begin(), choices_.end(), word) == choices_.end())
-    refuse("not in {" + joined(choices_, ", ") + "}");
-  const auto read_into = [&]<class Value>(Value* value) {
-    typename ElementOf<Value>::Type element{};
-    using Element = decltype(element);
-    if constexpr (std::is_same_v<Element, bool>) {
-      element = true;
-    } else if constexpr (std::is_same_v<Element, std::string>) {
-      element = word;
-    } else if constexpr (std::is_same_v<Element, ThreeNumbers>) {
-      if (!reads(word, element)) refuse("is not three numbers with commas between; write for example 1,1,0.5");
-    } else {
-      if (!reads(word, element))
-        refuse((std::is_integral_v<Element> ? "is not a whole number" : "is not a number") + allowed());
-      if (range_ && !(double(element) >= range_->first && double(element) <= range_->second))
-        refuse("is out of range" + allowed());
-    }
-    if constexpr (std::is_same_v<Value, std::vector<std::string>>)
-      value->push_back(element);
-    else
-      *value = element;
-  };
-  std::visit(read_into, place);
+void read_word(const Option&, const std::string&, bool& value) { value = true; }
+void read_word(const Option& option, const std::string& word, std::string& value) {
+  const auto& words = option.words;
+  if (!words.empty() && std::find(words.begin(), words.end(), word) == words.end())
+    option.refuse(word, "not in {" + keys::listed(words) + "}");
+  value = word;
 }
+void read_word(const Option& option, const std::string& word, double& value) { read_number(option, word, value); }
+void read_word(const Option& option, const std::string& word, long& value) { read_number(option, word, value); }
+void read_word(const Option& option, const std::string& word, std::size_t& value) { read_number(option, word, value); }
+void read_word(const Option& option, const std::string& word, unsigned& value) { read_number(option, word, value); }
 
-void Option::read(const std::vector<std::string>& words) const {
-  for (const std::string& word : words) read_word(word);
+void read_word(const Option& option, const std::string& word, ThreeNumbers& value) {
+  const std::size_t first = word.find(','), second = word.find(',', first + 1);
+  const bool good = second != std::string::npos && reads(word.substr(0, first), value[0]) &&
+                    reads(word.substr(first + 1, second - first - 1), value[1]) &&
+                    reads(word.substr(second + 1), value[2]);
+  if (!good) option.refuse(word, "is not three numbers with commas between; write for example 1,1,0.5");
 }
 
 Command command_of_one_word(std::string name, std::string summary, const std::string& word, const std::string& help,
@@ -139,8 +71,9 @@ Command command_of_one_word(std::string name, std::string summary, const std::st
     std::string word;
     bool json = false;
   };
-  auto arguments = std::make_shared<Arguments>();
-  Command command{std::move(name), std::move(summary), std::move(notes)};
+  const auto arguments = std::make_shared<Arguments>();
+  Command command{std::move(name), std::move(summary)};
+  command.notes = std::move(notes);
   command.add(word, arguments->word, help).needed = required;
   command.add_json(arguments->json);
   command.run = [arguments, run = std::move(run)] { run(arguments->word, arguments->json); };

@@ -1,40 +1,36 @@
-// The one file that knows CLI11.
-#include "rvelab/cli/command_line.hpp"
+// The words of a command line, read into the subcommand that they name. The one file that knows CLI11. Declared in
+// command.hpp.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 #include <sstream>
 
+#include "rvelab/cli/command.hpp"
 #include "rvelab/error.hpp"
-#include "rvelab/keys/key.hpp"
+#include "rvelab/keys/table_reader.hpp"
 
 namespace rvelab::cli {
 namespace {
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const auto& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
-}
-
 void add(CLI::App& to, const Option& option) {
-  const auto read = [&option](const CLI::results_t& words) {
-    option.read(words);
-    return true;
-  };
   if (option.is_flag()) {
     CLI::Option* flag = to.add_flag_callback(
-        option.names, [&option] { option.read({"true"}); }, option.help);
+        option.names, [&option] { option.read(option, ""); }, option.help);
     if (!option.excluded.empty()) flag->excludes(option.excluded);
     return;
   }
+  const auto read = [&option](const CLI::results_t& words) {
+    for (const std::string& word : words) option.read(option, word);
+    return true;
+  };
   CLI::Option* added = to.add_option(option.names, read, option.help)->required(option.needed);
   added->option_text(option.shown_value());
   if (option.help.empty()) added->group("");
-  if (option.is_list() && option.is_positional())
+  if (option.list && option.is_positional()) {
     added->expected(1, CLI::detail::expected_max_vector_size)->allow_extra_args();
-  if (option.is_list() && !option.is_positional()) added->take_all();
+  }
+  if (option.list && !option.is_positional()) added->take_all();
 }
 
 void fill(CLI::App& app, const std::vector<Command>& commands, const About& about) {
@@ -71,9 +67,9 @@ std::vector<KnownOption> known_options(const Command* command) {
   for (const KnownOption& known : known_options(command))
     if (known.name.starts_with("--")) names.push_back(known.name);
   const std::string of = command == nullptr ? "" : command->name + ": ";
-  throw InputError(
-      of + "unknown option " + word + (word.starts_with("--") ? "; the nearest is " + keys::nearest(word, names) : "") +
-      "; allowed: " + joined(names) + "; see rvelab " + (command == nullptr ? "" : command->name + " ") + "--help");
+  throw InputError(of + "unknown option " + word +
+                   (word.starts_with("--") ? "; the nearest is " + keys::nearest(word, names) : "") + "; allowed: " +
+                   keys::listed(names) + "; see rvelab " + (command == nullptr ? "" : command->name + " ") + "--help");
 }
 
 /// -1.5 and -.5 are values.
@@ -109,7 +105,7 @@ const Command* command_named(const std::vector<Command>& commands, int argc, con
   }
   if (named == nullptr && argc >= 2 && !word.starts_with("-"))
     throw InputError("unknown subcommand " + word + "; the nearest is " + keys::nearest(word, names) +
-                     "; allowed: " + joined(names) + "; see rvelab --help");
+                     "; allowed: " + keys::listed(names) + "; see rvelab --help");
   expect_known_options(named, named == nullptr ? 1 : 2, argc, argv);
   return named;
 }

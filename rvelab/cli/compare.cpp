@@ -1,10 +1,9 @@
-// rvelab compare: whether two files hold the same, bit by bit. Declared in commands.hpp.
+// rvelab compare: whether two files hold the same, bit by bit. Declared in command.hpp.
 #include <iostream>
-#include <memory>
 
-#include "rvelab/cli/commands.hpp"
+#include "rvelab/cli/command.hpp"
 #include "rvelab/cli/report.hpp"
-#include "rvelab/io/hdf5/compare.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
 
 namespace rvelab::cli {
 namespace {
@@ -33,11 +32,11 @@ void run_compare(const CompareArguments& arguments) {
 }  // namespace
 
 Command compare_command() {
-  auto arguments = std::make_shared<CompareArguments>();
   Command command{"compare", "Tell whether two files hold the same, bit by bit"};
-  command.add("A.h5", arguments->a, "specimen or record file").required();
-  command.add("B.h5", arguments->b, "the other file").required();
-  command.add_json(arguments->json);
+  auto& arguments = command.runs(run_compare);
+  command.add("A.h5", arguments.a, "specimen or record file").required();
+  command.add("B.h5", arguments.b, "the other file").required();
+  command.add_json(arguments.json);
   command.notes =
       "Every dataset and attribute outside /provenance is compared: name, type, shape, unit and bits. Exit code 0: "
       "the\n"
@@ -45,7 +44,6 @@ Command compare_command() {
       "rvelab recover on its file first.\n\n"
       "Example:\n"
       "  rvelab compare whole.h5 resumed.h5";
-  command.run = [arguments] { run_compare(*arguments); };
   return command;
 }
 

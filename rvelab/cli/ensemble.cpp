@@ -116,7 +116,7 @@ Outcome carried_out(const Ensemble& ensemble, const std::vector<Planned>& tests,
   const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
   const unsigned threads = options.threads > 0 ? options.threads : cores;
   Outcome outcome{std::vector<std::optional<ensemble::TestOf>>(tests.size()), std::vector<std::string>(tests.size())};
-  ProgressOfTests progress(tests.size());
+  ProgressLine progress(tests.size());
   const auto one = [&](std::size_t k) {
     const Planned& test = tests[k];
     const protocol::Protocol& protocol = ensemble.protocols[test.protocol];

@@ -5,7 +5,7 @@
 #include "rvelab/cli/columns.hpp"
 #include "rvelab/cli/ensemble.hpp"
 #include "rvelab/error.hpp"
-#include "rvelab/io/text_file.hpp"
+#include "rvelab/io/publish.hpp"
 
 namespace rvelab::cli {
 namespace {

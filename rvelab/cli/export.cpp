@@ -1,16 +1,13 @@
-// rvelab export: states of a specimen or a test for other programs. Declared in commands.hpp.
-#include <memory>
+// rvelab export: states of a specimen or a test for other programs. Declared in command.hpp.
 #include <string>
 #include <vector>
 
-#include "rvelab/cli/commands.hpp"
+#include "rvelab/cli/command.hpp"
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/report.hpp"
-#include "rvelab/io/export/csv.hpp"
-#include "rvelab/io/export/lammps.hpp"
-#include "rvelab/io/export/xdmf.hpp"
+#include "rvelab/io/export/export.hpp"
 #include "rvelab/io/journal/journal.hpp"
-#include "rvelab/io/journal/states.hpp"
+#include "rvelab/io/journal/recorded_test.hpp"
 #include "rvelab/io/publish.hpp"
 #include "rvelab/solver/rve.hpp"
 
@@ -82,21 +79,20 @@ void run_export(const ExportArguments& arguments) {
 }  // namespace
 
 Command export_command() {
-  auto arguments = std::make_shared<ExportArguments>();
   Command command{"export", "Write a specimen or a test for ParaView, OVITO, LAMMPS or YADE"};
-  command.add("file", arguments->file, "specimen or record file, *.h5").required();
+  auto& arguments = command.runs(run_export);
+  command.add("file", arguments.file, "specimen or record file, *.h5").required();
   command
-      .add("--format", arguments->format,
+      .add("--format", arguments.format,
            "xdmf: grains, contacts and cell for ParaView\n"
            "lammps: dump of LAMMPS, which OVITO reads too\n"
            "lammps-data: data file of LAMMPS\n"
            "csv: particles, contacts and parameters, as rvelab import reads them")
       .one_of({"xdmf", "lammps", "lammps-data", "csv"})
       .required();
-  command.add("-o,--output", arguments->output, "file to write; csv: what the names of the files begin with")
-      .required();
-  command.add("--force", arguments->force, "overwrite existing files");
-  command.add_json(arguments->json);
+  command.add("-o,--output", arguments.output, "file to write; csv: what the names of the files begin with").required();
+  command.add_force(arguments.force, "existing files");
+  command.add_json(arguments.json);
   command.notes =
       "xdmf and lammps write every snapshot of a record file and its end state; the other formats write the last "
       "state.\n"
@@ -107,7 +103,6 @@ Command export_command() {
       "  rvelab export dense.h5 --format csv -o dense\n"
       "  rvelab export R.h5 --format xdmf -o R.xdmf\n"
       "  rvelab export R.h5 --format lammps -o R.dump";
-  command.run = [arguments] { run_export(*arguments); };
   return command;
 }
 

@@ -1,4 +1,4 @@
-// rvelab fit: parameters whose tests give what was measured; without a target a sweep. Declared in commands.hpp.
+// rvelab fit: parameters whose tests give what was measured; without a target a sweep. Declared in command.hpp.
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 
-#include "rvelab/cli/commands.hpp"
+#include "rvelab/cli/command.hpp"
 #include "rvelab/cli/ensemble.hpp"
 #include "rvelab/cli/fit_report.hpp"
 #include "rvelab/cli/fit_tests.hpp"
@@ -15,7 +15,6 @@
 #include "rvelab/fit/search.hpp"
 #include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/io/publish.hpp"
-#include "rvelab/io/text_file.hpp"
 
 namespace rvelab::cli {
 namespace {
@@ -216,30 +215,36 @@ void run_sweep(const FitArguments& arguments, const FitSetup& setup) {
   report_sweep(setup, tests, results, arguments.folder, arguments.json);
 }
 
+void run_fit(const FitArguments& arguments) {
+  const FitSetup setup = setup_of(arguments);
+  prepare_folder(arguments, setup);
+  if (setup.targets.empty() && setup.curves.empty()) return run_sweep(arguments, setup);
+  run_search(arguments, setup);
+}
+
 }  // namespace
 
 Command fit_command() {
-  auto arguments = std::make_shared<FitArguments>();
   Command command{"fit", "Find parameters whose tests give what was measured; without a target: a sweep"};
-  command.add("protocol", arguments->protocol, "PROTOCOL.toml, or the name of an installed test: biaxial").required();
-  command.add("--vary", arguments->vary,
+  auto& arguments = command.runs(run_fit);
+  command.add("protocol", arguments.protocol, "PROTOCOL.toml, or the name of an installed test: biaxial").required();
+  command.add("--vary", arguments.vary,
               "KEY=low:high, or with :log behind it; up to 8 times;\nKEY=low:high:n without a target: a sweep");
-  command.add("--target", arguments->targets,
+  command.add("--target", arguments.targets,
               "MEASURE=value, =value+-standard error, MEASURE@pressure=value;\nfor example friction_angle_deg=30+-0.5");
-  command.add("--curve", arguments->curves, "measured curve, DATA.csv or DATA.csv@pressure");
-  command.add("--specimen", arguments->specimens, "specimens that all tests share, \"S_*.h5\"");
-  command.add("--recipe", arguments->recipe, "or a recipe: each test packs its own specimen, whose keys may be varied");
-  command.add("--count", arguments->count, "specimens of the recipe, one a seed; default 5").between(1, 1'000'000);
-  command.add("--tests", arguments->tests, "tests to spend; default 24 and 16 for each parameter").between(8, 100'000);
-  command.add("--batch", arguments->batch, "tests between two looks at the results, default 8").between(1, 10'000);
-  command.add("-o,--output", arguments->folder, "folder for fit.json, fit.csv, curves.csv (sweep.csv) and tests/");
-  command.add_set(arguments->settings, "stage.compression.to_strain=0.05");
-  command.add_threads(arguments->threads, "tests at a time; default: one per core");
-  command.add("--force", arguments->force, "start anew in a folder that holds a fit");
-  command.add("--resume", arguments->resume, "continue a fit that was stopped, or spend more tests")
-      .not_with("--force");
-  command.add_json(arguments->json);
-  command.add("specimens", arguments->more, "further specimens");
+  command.add("--curve", arguments.curves, "measured curve, DATA.csv or DATA.csv@pressure");
+  command.add("--specimen", arguments.specimens, "specimens that all tests share, \"S_*.h5\"");
+  command.add("--recipe", arguments.recipe, "or a recipe: each test packs its own specimen, whose keys may be varied");
+  command.add("--count", arguments.count, "specimens of the recipe, one a seed; default 5").between(1, 1'000'000);
+  command.add("--tests", arguments.tests, "tests to spend; default 24 and 16 for each parameter").between(8, 100'000);
+  command.add("--batch", arguments.batch, "tests between two looks at the results, default 8").between(1, 10'000);
+  command.add("-o,--output", arguments.folder, "folder for fit.json, fit.csv, curves.csv (sweep.csv) and tests/");
+  command.add_set(arguments.settings, "stage.compression.to_strain=0.05");
+  command.add_threads(arguments.threads, "tests at a time; default: one per core");
+  command.add("--force", arguments.force, "start anew in a folder that holds a fit");
+  command.add("--resume", arguments.resume, "continue a fit that was stopped, or spend more tests").not_with("--force");
+  command.add_json(arguments.json);
+  command.add("specimens", arguments.more, "further specimens");
   command.notes =
       "Tests scatter: fit learns the mean of each target as a function of the parameters (Gaussian processes), makes\n"
       "further tests where the parameters are likely, and prints mean and 95 % interval of each parameter, of a prior\n"
@@ -253,13 +258,6 @@ Command fit_command() {
       "  rvelab fit triaxial --recipe mine.toml --count 10 --curve data.csv@100e3 -o F \\\n"
       "    --vary material.friction=0.1:1 --vary target.void_ratio=0.6:0.75\n"
       "  rvelab fit biaxial --specimen 'S_*.h5' --vary material.friction=0.1:0.9:5 -o F";
-  command.run = [arguments] {
-    const FitSetup setup = setup_of(*arguments);
-    prepare_folder(*arguments, setup);
-    const bool sweep = setup.targets.empty() && setup.curves.empty();
-    if (sweep) return run_sweep(*arguments, setup);
-    run_search(*arguments, setup);
-  };
   return command;
 }
 

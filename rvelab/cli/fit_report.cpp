@@ -10,7 +10,7 @@
 #include "rvelab/ensemble/statistics.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/fit/posterior.hpp"
-#include "rvelab/io/text_file.hpp"
+#include "rvelab/io/publish.hpp"
 
 namespace rvelab::cli {
 namespace {

@@ -12,7 +12,7 @@
 #include "rvelab/cli/interrupt.hpp"
 #include "rvelab/cli/progress_line.hpp"
 #include "rvelab/error.hpp"
-#include "rvelab/io/text_file.hpp"
+#include "rvelab/io/publish.hpp"
 #include "rvelab/pack/read_recipe.hpp"
 #include "rvelab/pack/search.hpp"
 #include "rvelab/protocol/run.hpp"
@@ -64,7 +64,7 @@ Specimen specimen_of(const FitSetup& setup, const FitTest& test) {
 }
 
 /// Makes one test; none: it was stopped.
-std::optional<FitResult> carried_out(const FitSetup& setup, const FitTest& test, ProgressOfTests& progress) {
+std::optional<FitResult> carried_out(const FitSetup& setup, const FitTest& test, ProgressLine& progress) {
   FitResult result;
   try {
     const Specimen specimen = specimen_of(setup, test);
@@ -169,7 +169,7 @@ std::vector<FitResult> made(const FitSetup& setup, const std::vector<FitTest>& t
   const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
   const unsigned at_a_time = unsigned(std::min<std::size_t>(threads > 0 ? threads : cores, tests.size()));
   std::vector<std::optional<FitResult>> results(tests.size());
-  ProgressOfTests progress(planned);
+  ProgressLine progress(planned);
   for (std::size_t k = 0; k < tests.front().number; ++k) progress.done(k);
   Workers(at_a_time).run(tests.size(), [&](std::size_t k) {
     if (stop_on_signals().load()) return;

@@ -1,12 +1,11 @@
 // rvelab import: specimens from CSV files, as YADE scripts write them, and from dumps of LAMMPS.
-// Declared in commands.hpp.
+// Declared in command.hpp.
 #include <array>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "rvelab/cli/commands.hpp"
+#include "rvelab/cli/command.hpp"
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/report.hpp"
 #include "rvelab/cli/tell_of_sizes.hpp"
@@ -81,29 +80,28 @@ void run_import(const ImportArguments& arguments) {
 }  // namespace
 
 Command import_command() {
-  auto arguments = std::make_shared<ImportArguments>();
   Command command{"import", "Make a specimen from CSV files, or from a dump of LAMMPS"};
+  auto& arguments = command.runs(run_import);
   command
-      .add("PARTICLES.csv", arguments->inputs[0],
+      .add("PARTICLES.csv", arguments.inputs[0],
            "columns id,x,y[,z] and r or radius, for ellipses a,b,angle; or a text dump of LAMMPS (SI units)")
       .required();
-  command.add("CONTACTS.csv", arguments->inputs[1], "columns id1,id2,sx,sy[,sz],fn,fsx,fsy[,fsz],mz");
-  command.add("META.json", arguments->inputs[2], "parameters and cell of the packing");
-  command.add("--cell", arguments->cell, "Lxx,Lyy,Lzz of a rectangular cell in m; in 2D Lzz is the thickness");
-  command.add("--material", arguments->material,
+  command.add("CONTACTS.csv", arguments.inputs[1], "columns id1,id2,sx,sy[,sz],fn,fsx,fsy[,fsz],mz");
+  command.add("META.json", arguments.inputs[2], "parameters and cell of the packing");
+  command.add("--cell", arguments.cell, "Lxx,Lyy,Lzz of a rectangular cell in m; in 2D Lzz is the thickness");
+  command.add("--material", arguments.material,
               "TOML file with [[material]], [contact], [damping], [solver]; of several\n"
               "materials, a column `material` of PARTICLES.csv names that of each grain");
-  command.add_set(arguments->settings, "contact.slip=full_radius_ratcheting");
-  command.add("-o,--output", arguments->output, "specimen file to write, S.h5").required();
-  command.add("--force", arguments->force, "overwrite an existing file");
-  command.add_json(arguments->json);
+  command.add_set(arguments.settings, "contact.slip=full_radius_ratcheting");
+  command.add("-o,--output", arguments.output, "specimen file to write, S.h5").required();
+  command.add_force(arguments.force);
+  command.add_json(arguments.json);
   command.notes =
       "Examples:\n"
       "  rvelab import dense.particles.csv dense.contacts.csv dense.json -o dense.h5\n"
       "  rvelab import E.particles.csv E.contacts.csv E.json --material E.material.toml -o E.h5   (of rvelab export)\n"
       "  rvelab import init.csv --cell 2,2,2 --material sand.toml -o loose.h5\n"
       "  rvelab import relaxed.dump --material sand.toml -o relaxed.h5";
-  command.run = [arguments] { run_import(*arguments); };
   return command;
 }
 

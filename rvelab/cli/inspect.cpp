@@ -1,11 +1,10 @@
-// rvelab inspect: what is in a specimen or record file, and the measures of its state. Declared in commands.hpp.
+// rvelab inspect: what is in a specimen or record file, and the measures of its state. Declared in command.hpp.
 #include <cmath>
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <type_traits>
 
-#include "rvelab/cli/commands.hpp"
+#include "rvelab/cli/command.hpp"
 #include "rvelab/cli/report.hpp"
 #include "rvelab/cli/tell_of_sizes.hpp"
 #include "rvelab/io/hdf5/specimen_file.hpp"

@@ -2,6 +2,9 @@
 
 #include <csignal>
 
+#include "rvelab/cli/command.hpp"
+#include "rvelab/cli/report.hpp"
+
 namespace rvelab::cli {
 namespace {
 
@@ -30,8 +33,9 @@ const std::atomic<bool>& stop_on_signals() {
   return stop;
 }
 
-int signal_received() { return received; }
-
-std::string signal_name() { return received == SIGINT ? "Ctrl-C" : "SIGTERM"; }
+void end_stopped(const std::string& done) {
+  tell(std::string("stopped by ") + (received == SIGINT ? "Ctrl-C" : "SIGTERM") + done);
+  throw Exit(128 + received);
+}
 
 }  // namespace rvelab::cli

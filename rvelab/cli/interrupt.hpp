@@ -9,9 +9,8 @@ namespace rvelab::cli {
 /// Takes both signals from here on. True once one has come.
 const std::atomic<bool>& stop_on_signals();
 
-/// The signal that came; 0: none.
-int signal_received();
-/// "Ctrl-C" or "SIGTERM".
-std::string signal_name();
+/// Prints "stopped by Ctrl-C" (or SIGTERM) and what was done until then, and ends the command with the code of the
+/// signal.
+[[noreturn]] void end_stopped(const std::string& done);
 
 }  // namespace rvelab::cli

@@ -1,13 +1,12 @@
-// rvelab keys: every key of protocols, recipes and material files. Declared in commands.hpp.
+// rvelab keys: every key of protocols, recipes and material files. Declared in command.hpp.
 #include <algorithm>
 #include <cctype>
 #include <iostream>
-#include <memory>
 
-#include "rvelab/cli/commands.hpp"
+#include "rvelab/cli/command.hpp"
 #include "rvelab/cli/report.hpp"
 #include "rvelab/error.hpp"
-#include "rvelab/protocol/protocol_keys.hpp"
+#include "rvelab/protocol/protocol.hpp"
 
 namespace rvelab::cli {
 namespace {

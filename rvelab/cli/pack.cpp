@@ -1,18 +1,15 @@
-// rvelab pack: specimens from a recipe. Declared in commands.hpp.
-#include <unistd.h>
-
+// rvelab pack: specimens from a recipe. Declared in command.hpp.
 #include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <filesystem>
-#include <iostream>
-#include <memory>
 #include <mutex>
 #include <thread>
 
 #include "rvelab/cli/columns.hpp"
-#include "rvelab/cli/commands.hpp"
+#include "rvelab/cli/command.hpp"
 #include "rvelab/cli/interrupt.hpp"
+#include "rvelab/cli/progress_line.hpp"
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/report.hpp"
 #include "rvelab/error.hpp"
@@ -69,25 +66,6 @@ std::vector<Job> jobs_of(const pack::RecipeFile& file, const PackArguments& argu
   return jobs;
 }
 
-/// Progress on a terminal: seed, draw and void ratio.
-class DrawLine {
- public:
-  ~DrawLine() {
-    if (shown_) std::cerr << "\r\033[K" << std::flush;
-  }
-  void show(std::uint64_t seed, long draw, double void_ratio) {
-    if (!terminal_) return;
-    const std::lock_guard lock(mutex_);
-    std::cerr << "\rseed " << seed << "  draw " << draw << "  void ratio " << void_ratio << "\033[K" << std::flush;
-    shown_ = true;
-  }
-
- private:
-  const bool terminal_ = isatty(STDERR_FILENO) == 1;
-  bool shown_ = false;
-  std::mutex mutex_;
-};
-
 Json summary_of(Job& job, const pack::Packing& packing, double seconds) {
   const Rve rve(packing.specimen);
   const Network network = rve.network();
@@ -110,11 +88,14 @@ Json summary_of(Job& job, const pack::Packing& packing, double seconds) {
 }
 
 /// Makes one specimen and writes it; only one file is written at a time.
-void make(Job& job, Workers& workers, DrawLine& line, std::mutex& files) {
+void make(Job& job, Workers& workers, TerminalLine& line, std::mutex& files) {
   const auto begin = std::chrono::steady_clock::now();
   pack::PackWatch watch;
   watch.stop = &stop_on_signals();
-  watch.on_draw = [&](long draw, double void_ratio) { line.show(job.what.recipe.seed, draw, void_ratio); };
+  watch.on_draw = [&](long draw, double void_ratio) {
+    line.write("seed " + std::to_string(job.what.recipe.seed) + "  draw " + std::to_string(draw) + "  void ratio " +
+               in_words(void_ratio));
+  };
   const pack::Packing packing = pack::pack(job.what.recipe, workers, watch);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
   job.made = summary_of(job, packing, seconds.count());
@@ -168,7 +149,7 @@ void run_pack(const PackArguments& arguments) {
   for (const Job& job : jobs) io::expect_output(job.file, arguments.force, {recipe});
   const unsigned threads =
       arguments.threads > 0 ? arguments.threads : std::max(1u, std::thread::hardware_concurrency());
-  DrawLine line;
+  TerminalLine line;
   std::mutex files;
   try {
     if (jobs.size() == 1) {
@@ -190,8 +171,7 @@ void run_pack(const PackArguments& arguments) {
       });
     }
   } catch (const Interrupted&) {
-    tell("stopped by " + std::string(signal_name()) + "; " + made_of(jobs));
-    throw Exit(128 + signal_received());
+    end_stopped("; " + made_of(jobs));
   } catch (const InputError&) {
     throw;
   } catch (const Error& error) {
@@ -204,16 +184,16 @@ void run_pack(const PackArguments& arguments) {
 }  // namespace
 
 Command pack_command() {
-  auto arguments = std::make_shared<PackArguments>();
   Command command{"pack", "Make specimens from a recipe in TOML"};
-  command.add("recipe", arguments->recipe, "RECIPE.toml, or the name of an installed recipe: pack_dense").required();
-  command.add("-o,--output", arguments->output, "specimen file to write, S.h5").required();
-  command.add("--count", arguments->count, "make so many, S_1.h5, S_2.h5, ..., each with the next seed")
+  auto& arguments = command.runs(run_pack);
+  command.add("recipe", arguments.recipe, "RECIPE.toml, or the name of an installed recipe: pack_dense").required();
+  command.add("-o,--output", arguments.output, "specimen file to write, S.h5").required();
+  command.add("--count", arguments.count, "make so many, S_1.h5, S_2.h5, ..., each with the next seed")
       .between(1, 1'000'000);
-  command.add_set(arguments->settings, "target.pressure_Pa=50e3");
-  command.add_threads(arguments->threads, "specimens or draws at a time; default: one per core");
-  command.add("--force", arguments->force, "overwrite existing specimen files");
-  command.add_json(arguments->json);
+  command.add_set(arguments.settings, "target.pressure_Pa=50e3");
+  command.add_threads(arguments.threads, "specimens or draws at a time; default: one per core");
+  command.add_force(arguments.force, "existing specimen files");
+  command.add_json(arguments.json);
   command.notes =
       "The same recipe gives the same bits on any number of threads. target.pressures_Pa makes one specimen for each\n"
       "pressure, S_20000Pa.h5 and so on. For the keys of a recipe: `rvelab keys pack`, `keys grains`, `keys target`,\n"
@@ -222,7 +202,6 @@ Command pack_command() {
       "  rvelab pack pack_dense -o dense.h5\n"
       "  rvelab pack pack_loose -o loose.h5 --count 20 --set pack.number=1000\n"
       "  rvelab pack mine.toml -o S.h5 --set target.void_ratio=0.2 --set pack.seed=7";
-  command.run = [arguments] { run_pack(*arguments); };
   return command;
 }
 

@@ -1,9 +1,8 @@
 // rvelab probe: the stiffness of a specimen at small strain, by increments or from its contact network.
-// Declared in commands.hpp.
-#include <memory>
+// Declared in command.hpp.
 #include <string>
 
-#include "rvelab/cli/commands.hpp"
+#include "rvelab/cli/command.hpp"
 #include "rvelab/cli/report.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/io/hdf5/specimen_file.hpp"
@@ -65,20 +64,20 @@ void run_probe(const ProbeArguments& arguments) {
 }  // namespace
 
 Command probe_command() {
-  auto arguments = std::make_shared<ProbeArguments>();
   Command command{"probe", "Measure the stiffness of a specimen at small strain"};
-  command.add("file", arguments->file, "specimen file, *.h5").required();
-  command.add("--size", arguments->size, "strain of each probe, made in both directions").shows_default();
-  command.add("--no-slip", arguments->no_slip, "let no contact slide or roll over (friction 1e6)");
+  auto& arguments = command.runs(run_probe);
+  command.add("file", arguments.file, "specimen file, *.h5").required();
+  command.add("--size", arguments.size, "strain of each probe, made in both directions")
+      .shows_default(in_words(arguments.size));
+  command.add("--no-slip", arguments.no_slip, "let no contact slide or roll over (friction 1e6)");
   command
-      .add("--method", arguments->method,
+      .add("--method", arguments.method,
            "dynamic: small increments, each relaxed\n"
            "linear: elastic tangent of the contact network, without sliding")
       .one_of({"dynamic", "linear"})
-      .shows_default();
-  command.add_json(arguments->json);
+      .shows_default(arguments.method);
+  command.add_json(arguments.json);
   command.notes = "Example:\n  rvelab probe dense.h5 --size 1e-7 --no-slip --json";
-  command.run = [arguments] { run_probe(*arguments); };
   return command;
 }
 

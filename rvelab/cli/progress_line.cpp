@@ -14,8 +14,8 @@
 namespace rvelab::cli {
 namespace {
 
-std::string in_words(double seconds) {
-  const auto whole = static_cast<long>(std::ceil(seconds));
+std::string duration_in_words(double seconds) {
+  const auto whole = long(std::ceil(seconds));
   char text[64];
   if (whole < 60) {
     std::snprintf(text, sizeof text, "%ld s", whole);
@@ -31,20 +31,6 @@ std::size_t terminal_width() {
   winsize size{};
   return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
-
-/// Overwrites the line, cut to the width of the terminal between two characters.
-void write_over(const std::string& line) {
-  const std::string text = io::printable(line);
-  std::size_t end = 0;
-  for (std::size_t at = 0; at < text.size() && at < terminal_width() - 1;) {
-    at += std::max<std::size_t>(1, io::utf8_length(text, at));
-    if (at <= terminal_width() - 1) end = at;
-  }
-  std::fprintf(stderr, "\r%s\033[K", text.substr(0, end).c_str());
-  std::fflush(stderr);
-}
-
-void wipe() { std::fputs("\r\033[K", stderr); }
 
 /// Strain of the last record of the present stage, and q/p.
 std::string state_of(const protocol::Moment& moment) {
@@ -72,48 +58,27 @@ std::string speed_of(double grain_steps, double seconds) {
 
 }  // namespace
 
-ProgressLine::ProgressLine() : terminal_(isatty(STDERR_FILENO) == 1) {}
+TerminalLine::TerminalLine() : terminal_(isatty(STDERR_FILENO) == 1) {}
 
-ProgressLine::~ProgressLine() {
-  if (shown_) wipe();
+TerminalLine::~TerminalLine() {
+  if (shown_) std::fputs("\r\033[K", stderr);
 }
 
-void ProgressLine::show(const protocol::Moment& moment) {
+void TerminalLine::write(const std::string& line) {
   if (!terminal_) return;
-  const auto now = Clock::now();
-  const auto seconds = [&](Clock::time_point since) { return std::chrono::duration<double>(now - since).count(); };
-  const records::TestResult& result = moment.result;
-  if (!begun_) {
-    begun_ = true;
-    begin_ = last_ = now;
-    first_grain_steps_ = moment.rve.grain_steps();
-    first_records_ = result.records.size();
-    return;
+  const std::lock_guard lock(mutex_);
+  const std::string text = io::printable(line);
+  std::size_t end = 0;  // between two characters
+  for (std::size_t at = 0; at < text.size() && at < terminal_width() - 1;) {
+    at += std::max<std::size_t>(1, io::utf8_length(text, at));
+    if (at <= terminal_width() - 1) end = at;
   }
-  if (seconds(last_) < 0.2) return;
-  last_ = now;
-
-  const auto stage = static_cast<std::size_t>(moment.progress.stage);
-  std::string text = stage < result.stages.size() ? result.stages[stage] : std::string("done");
-  text += state_of(moment);
-  text += speed_of(static_cast<double>(moment.rve.grain_steps() - first_grain_steps_), seconds(begin_));
-  const std::size_t made = result.records.size() - first_records_;
-  if (made > 0 && moment.records_planned > result.records.size()) {
-    const auto to_make = static_cast<double>(moment.records_planned - result.records.size());
-    text += "  " + in_words(seconds(begin_) / static_cast<double>(made) * to_make) + " left";
-  }
-  write_over(text);
+  std::fprintf(stderr, "\r%s\033[K", text.substr(0, end).c_str());
+  std::fflush(stderr);
   shown_ = true;
 }
 
-ProgressOfTests::ProgressOfTests(std::size_t tests, std::string noun)
-    : terminal_(isatty(STDERR_FILENO) == 1), noun_(std::move(noun)), tests_(tests) {}
-
-ProgressOfTests::~ProgressOfTests() {
-  if (shown_) wipe();
-}
-
-void ProgressOfTests::done(std::size_t number) {
+void ProgressLine::done(std::size_t number) {
   const std::lock_guard lock(mutex_);
   Test& test = tests_[number];
   test.part = 1;
@@ -121,24 +86,26 @@ void ProgressOfTests::done(std::size_t number) {
   test.finished = true;
 }
 
-void ProgressOfTests::show(std::size_t number, const std::string& name, const protocol::Moment& moment) {
-  if (!terminal_) return;
+void ProgressLine::show(std::size_t number, const std::string& name, const protocol::Moment& moment) {
+  if (!line_.on_terminal()) return;
   const std::lock_guard lock(mutex_);
   Test& test = tests_[number];
-  test.part = moment.records_planned == 0 ? 0.0
-                                          : std::min(1.0, static_cast<double>(moment.result.records.size()) /
-                                                              static_cast<double>(moment.records_planned));
+  const records::TestResult& result = moment.result;
+  test.part =
+      moment.records_planned == 0 ? 0.0 : std::min(1.0, double(result.records.size()) / double(moment.records_planned));
   if (!test.begun) {
     test.begun = true;
     test.first_part = test.part;
     test.first_grain_steps = moment.rve.grain_steps();
   }
-  test.grain_steps = static_cast<double>(moment.rve.grain_steps() - test.first_grain_steps);
-  write_line(name + state_of(moment));
+  test.grain_steps = double(moment.rve.grain_steps() - test.first_grain_steps);
+  const auto stage = std::size_t(moment.progress.stage);
+  const std::string stage_name = stage < result.stages.size() ? result.stages[stage] : std::string("done");
+  write_line((name.empty() ? stage_name : name) + state_of(moment));
 }
 
-void ProgressOfTests::show(std::size_t number, const std::string& name, double part, double grain_steps) {
-  if (!terminal_) return;
+void ProgressLine::show(std::size_t number, const std::string& name, double part, double grain_steps) {
+  if (!line_.on_terminal()) return;
   const std::lock_guard lock(mutex_);
   Test& test = tests_[number];
   test.begun = true;
@@ -147,7 +114,7 @@ void ProgressOfTests::show(std::size_t number, const std::string& name, double p
   write_line(name);
 }
 
-void ProgressOfTests::write_line(const std::string& name) {
+void ProgressLine::write_line(const std::string& name) {
   const auto now = Clock::now();
   const auto seconds = [&](Clock::time_point since) { return std::chrono::duration<double>(now - since).count(); };
   if (seconds(last_) < 0.2) return;
@@ -160,13 +127,14 @@ void ProgressOfTests::write_line(const std::string& name) {
     part += each.part;
     made += each.part - each.first_part;
   }
+  const double to_make = double(tests_.size()) - part;
+  const std::string left =
+      made > 0 && to_make > 0 ? "  " + duration_in_words(seconds(begin_) / made * to_make) + " left" : std::string();
+  const std::string speed = speed_of(grain_steps, seconds(begin_));
+  if (tests_.size() == 1) return line_.write(name + speed + left);
   // The state of all tests comes first, because a narrow terminal cuts the end.
-  std::string text = std::to_string(finished) + " of " + std::to_string(tests_.size()) + " " + noun_ + " done";
-  const double to_make = static_cast<double>(tests_.size()) - part;
-  if (made > 0 && to_make > 0) text += "  " + in_words(seconds(begin_) / made * to_make) + " left";
-  text += speed_of(grain_steps, seconds(begin_)) + "  " + name;
-  write_over(text);
-  shown_ = true;
+  line_.write(std::to_string(finished) + " of " + std::to_string(tests_.size()) + " " + noun_ + " done" + left + speed +
+              "  " + name);
 }
 
 }  // namespace rvelab::cli

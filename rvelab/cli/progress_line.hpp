@@ -1,4 +1,4 @@
-// One line on a terminal that shows the progress of a test; nothing in a pipe or a file.
+// One line on a terminal that shows the progress of work; nothing in a pipe or a file.
 #pragma once
 
 #include <chrono>
@@ -10,38 +10,32 @@
 
 namespace rvelab::cli {
 
-/// A line on standard error, overwritten at most five times a second and removed at the end.
-class ProgressLine {
+/// A line on standard error that is overwritten, and removed at the end.
+class TerminalLine {
  public:
-  ProgressLine();
-  ProgressLine(const ProgressLine&) = delete;
-  ProgressLine& operator=(const ProgressLine&) = delete;
-  ~ProgressLine();
-
-  /// Stage, strain, stress ratio q/p, grain-steps per second, time left (from the records made and still to make).
-  void show(const protocol::Moment& moment);
+  TerminalLine();
+  TerminalLine(const TerminalLine&) = delete;
+  TerminalLine& operator=(const TerminalLine&) = delete;
+  ~TerminalLine();
+  /// From any thread. Cut to the width of the terminal.
+  void write(const std::string& line);
+  bool on_terminal() const { return terminal_; }
 
  private:
-  using Clock = std::chrono::steady_clock;
-  bool terminal_;
+  const bool terminal_;
   bool shown_ = false;
-  bool begun_ = false;
-  Clock::time_point begin_, last_;
-  std::uint64_t first_grain_steps_ = 0;
-  std::size_t first_records_ = 0;
+  std::mutex mutex_;
 };
 
-/// The same for several tests at a time: how many are done, the state of the one that reported last, grain-steps per
-/// second of all, time left. May be called from any thread.
-class ProgressOfTests {
+/// The line of one test: stage, strain, stress ratio q/p, grain-steps per second, time left. Of several at a time: how
+/// many are done, time left, grain-steps per second of all, and the state of the one that reported last. At most five
+/// times a second. May be called from any thread.
+class ProgressLine {
  public:
   /// `noun`: what the line calls them.
-  explicit ProgressOfTests(std::size_t tests, std::string noun = "tests");
-  ProgressOfTests(const ProgressOfTests&) = delete;
-  ProgressOfTests& operator=(const ProgressOfTests&) = delete;
-  ~ProgressOfTests();
+  explicit ProgressLine(std::size_t tests = 1, std::string noun = "tests") : noun_(std::move(noun)), tests_(tests) {}
 
-  /// `name` of the test by its number, from 0.
+  /// `name` of the test by its number, from 0; "": its stage.
   void show(std::size_t number, const std::string& name, const protocol::Moment& moment);
   /// The same for other work: the part of it that is done, 0 to 1, and its grain-steps since it began.
   void show(std::size_t number, const std::string& name, double part, double grain_steps);
@@ -59,9 +53,8 @@ class ProgressOfTests {
   /// Writes the line if it is time; needs the lock.
   void write_line(const std::string& name);
 
-  const bool terminal_;
+  TerminalLine line_;
   const std::string noun_;
-  bool shown_ = false;
   const Clock::time_point begin_ = Clock::now();
   Clock::time_point last_ = begin_;
   std::vector<Test> tests_;

@@ -4,7 +4,7 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/io/hdf5/specimen_file.hpp"
-#include "rvelab/keys/key.hpp"
+#include "rvelab/keys/table_reader.hpp"
 #include "rvelab/pack/read_recipe.hpp"
 
 namespace rvelab::cli {
@@ -58,33 +58,24 @@ void expect_installed() {
 }
 
 std::string input_path(const std::string& name_or_path, InputKind kind) {
-  if (name_or_path.ends_with(".h5")) {
-    throw InputError(
-        name_or_path +
-        (kind == InputKind::protocol
-             ? " is a specimen or record file and no protocol; allowed: the name or the file of a protocol, "
-               "and --specimen " +
-                   name_or_path + " beside it; see rvelab protocols"
-             : " is a specimen or record file and no recipe; allowed: the name or the file of a recipe; "
-               "see rvelab protocols"));
-  }
-  if (name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".toml")) {
+  const bool recipe = kind == InputKind::recipe;
+  const std::string noun = recipe ? "recipe" : "protocol";
+  if (name_or_path.ends_with(".h5"))
+    throw InputError(name_or_path + " is a specimen or record file and no " + noun +
+                     "; allowed: the name or the file of a " + noun +
+                     (recipe ? "" : ", and --specimen " + name_or_path + " beside it") + "; see rvelab protocols");
+  if (name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".toml"))
     return expect_kind(name_or_path, kind);
-  }
   const auto all = all_installed();
   if (const auto found = all.find(name_or_path); found != all.end()) return expect_kind(found->second, kind);
   std::vector<std::string> names;
-  std::string list;
-  for (const auto& [name, path] : installed(kind)) {
-    names.push_back(name);
-    list += name + ", ";
-  }
-  if (all.empty()) list = "none in " + installed_folder().string() + ", which is not there or empty; install it, ";
+  for (const auto& [name, path] : installed(kind)) names.push_back(name);
   const std::string near = keys::nearest(name_or_path, names);
-  const bool recipe = kind == InputKind::recipe;
-  throw InputError(std::string("no ") + (recipe ? "recipe" : "protocol") + " \"" + name_or_path + "\" is installed" +
-                   (near.empty() ? "" : "; the nearest is " + near) + "; allowed: " + list + "or the path of a file " +
-                   (recipe ? "RECIPE" : "PROTOCOL") + ".toml; see rvelab protocols");
+  throw InputError("no " + noun + " \"" + name_or_path + "\" is installed" +
+                   (near.empty() ? "" : "; the nearest is " + near) + "; allowed: " +
+                   (all.empty() ? "none in " + installed_folder().string() + ", which is not there or empty; install it"
+                                : keys::listed(names)) +
+                   ", or the path of a file " + (recipe ? "RECIPE" : "PROTOCOL") + ".toml; see rvelab protocols");
 }
 
 std::string installed_study(const std::string& name) {

@@ -1,20 +1,15 @@
-// rvelab protocols: the tests and the recipes that are installed with the program. Declared in commands.hpp.
-#include <fstream>
+// rvelab protocols: the tests and the recipes that are installed with the program. Declared in command.hpp.
 #include <iostream>
-#include <iterator>
-#include <memory>
 
-#include "rvelab/cli/commands.hpp"
+#include "rvelab/cli/command.hpp"
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/report.hpp"
+#include "rvelab/keys/regular_file.hpp"
 
 namespace rvelab::cli {
 namespace {
 
-std::string text_of(const std::string& path) {
-  std::ifstream input(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(input), {}};
-}
+std::string text_of(const std::string& path) { return keys::whole_file<std::string>(path, "a protocol or a recipe"); }
 
 /// The first sentence of the comment that a protocol opens with.
 std::string first_sentence(const std::string& text) {

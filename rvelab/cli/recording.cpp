@@ -26,15 +26,12 @@ void TestOptions::expect_output(const std::string& output) const {
   throw InputError(std::string(given) + " is given without -o; allowed: with -o; name the output");
 }
 
-io::Existing TestOptions::existing() const {
-  return force ? io::Existing::overwrite : resume ? io::Existing::resume : io::Existing::refuse;
-}
-
 std::unique_ptr<io::RecordStore> open_store(const std::string& path, const protocol::Protocol& protocol,
                                             const Specimen& specimen, const TestOptions& options) {
   io::RunStart start{protocol.name, protocol.resolved, {}, specimen};
   for (const protocol::Stage& stage : protocol.stages) start.stages.push_back(stage.name);
-  return std::make_unique<io::RecordStore>(path, start, options.existing(), options.checkpoint_every);
+  return std::make_unique<io::RecordStore>(path, start, existing_of(options.force, options.resume),
+                                           options.checkpoint_every);
 }
 
 protocol::TestRun run_recorded(const protocol::Protocol& protocol, const Specimen& specimen, io::RecordStore* store,

@@ -11,6 +11,11 @@
 
 namespace rvelab::cli {
 
+/// What --force and --resume say of files that are there.
+inline io::Existing existing_of(bool force, bool resume) {
+  return force ? io::Existing::overwrite : resume ? io::Existing::resume : io::Existing::refuse;
+}
+
 /// What a command takes that runs a test and writes record files.
 struct TestOptions {
   std::string protocol;
@@ -24,7 +29,6 @@ struct TestOptions {
   void add_to(Command& command, const std::string& example, const std::string& threads_help);
   /// InputError if they are given without a place to write to.
   void expect_output(const std::string& output) const;
-  io::Existing existing() const;
 };
 
 /// The place for the records of a test.

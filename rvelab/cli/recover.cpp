@@ -1,11 +1,10 @@
-// rvelab recover: a record file from the journal that a stopped or killed run left. Declared in commands.hpp.
-#include <unistd.h>
+// rvelab recover: a record file from the journal that a stopped or killed run left. Declared in command.hpp.
 
 #include <filesystem>
 #include <memory>
 #include <string>
 
-#include "rvelab/cli/commands.hpp"
+#include "rvelab/cli/command.hpp"
 #include "rvelab/cli/report.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/io/journal/record_journal.hpp"
@@ -50,16 +49,15 @@ void run_recover(const RecoverArguments& arguments) {
 }  // namespace
 
 Command recover_command() {
-  auto arguments = std::make_shared<RecoverArguments>();
   Command command{"recover", "Make a record file from what a stopped or killed run left"};
-  command.add("file", arguments->file, "record file R.h5 of the run, beside its R.h5.journal").required();
-  command.add("-o,--output", arguments->output, "record file to write; default: R.h5 itself");
-  command.add("--force", arguments->force, "overwrite an existing file");
-  command.add_json(arguments->json);
+  auto& arguments = command.runs(run_recover);
+  command.add("file", arguments.file, "record file R.h5 of the run, beside its R.h5.journal").required();
+  command.add("-o,--output", arguments.output, "record file to write; default: R.h5 itself");
+  command.add_force(arguments.force);
+  command.add_json(arguments.json);
   command.notes =
       "The journal is kept: `rvelab run --resume` continues from it.\n"
       "Examples:\n  rvelab recover R.h5\n  rvelab recover R.h5 -o so_far.h5";
-  command.run = [arguments] { run_recover(*arguments); };
   return command;
 }
 

@@ -1,26 +1,33 @@
-// rvelab run: one test on one specimen. Declared in commands.hpp.
+// rvelab run: one test on one specimen. Declared in command.hpp.
 #include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <memory>
+#include <numeric>
 #include <string>
 #include <thread>
+#include <type_traits>
 #include <vector>
 
-#include "rvelab/cli/commands.hpp"
+#include "rvelab/calibrate/mohr.hpp"
+#include "rvelab/cli/command.hpp"
 #include "rvelab/cli/ensemble.hpp"
 #include "rvelab/cli/interrupt.hpp"
 #include "rvelab/cli/progress_line.hpp"
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/recording.hpp"
 #include "rvelab/cli/report.hpp"
-#include "rvelab/cli/run_report.hpp"
+#include "rvelab/error.hpp"
 #include "rvelab/io/publish.hpp"
 #include "rvelab/protocol/run.hpp"
+#include "rvelab/protocol/stage_kinds.hpp"
+#include "rvelab/records/record_fields.hpp"
 #include "rvelab/solver/loading/sweep.hpp"
 
 namespace rvelab::cli {
+
 namespace {
 
 struct RunArguments {
@@ -42,14 +49,229 @@ void run_several(const RunArguments& arguments, const protocol::Protocol& protoc
   run_ensemble(ensemble, arguments.output, arguments.test);
 }
 
-/// Prints how many records a stopped run left, and ends the program with the code of the signal.
-[[noreturn]] void end_stopped(const protocol::TestRun& run, const std::string& output) {
-  const std::string made = std::to_string(run.result.records.size()) + " records";
-  const std::string kept = output.empty()               ? "they are not kept without -o"
-                           : run.result.records.empty() ? "continue with --resume"
-                                                        : output + " holds them; continue with --resume";
-  tell("stopped by " + std::string(signal_name()) + " after " + made + "; " + kept);
-  throw Exit(128 + signal_received());
+/// An archive for records::describe_records: each column becomes an array by its name.
+struct ArraysOfColumns {
+  Json& arrays;
+
+  template <class Member>
+  void column(const std::vector<records::Record>& records, const fields::Field<records::Record, Member>& column) {
+    Json values = Json::array();
+    for (const records::Record& record : records) {
+      if constexpr (std::is_same_v<Member, Matrix3>) {
+        values.push_back(row_major(record.*column.member));
+      } else {
+        values.push_back(record.*column.member);
+      }
+    }
+    arrays[column.name] = std::move(values);
+  }
+  template <class... Columns>
+  void table(const std::string&, const std::vector<records::Record>& records, const Columns&... columns) {
+    (column(records, columns), ...);
+  }
+  template <class Member>
+  void choice(const std::string&, const std::vector<records::Record>&, const fields::Field<records::Record, Member>&) {}
+  template <class Member>
+  void chosen(const std::string&, const std::vector<records::Record>& records,
+              const fields::Field<records::Record, Member>& column, std::uint64_t records::Record::*mask,
+              std::uint64_t bit) {
+    if (!records.empty() && (records.front().*mask & bit) != 0) this->column(records, column);
+  }
+};
+
+Json arrays_of(const std::vector<records::Record>& records) {
+  Json arrays;
+  ArraysOfColumns archive{arrays};
+  records::describe_records(archive, records);
+  return arrays;
+}
+
+/// Moduli of the oedometer stages that have records at small strain.
+void add_oedometers(const protocol::Protocol& protocol, const protocol::TestRun& run, Listing& listing) {
+  for (std::size_t k = 0; k < protocol.stages.size(); ++k) {
+    const protocol::StageRole role = protocol::role_of(protocol.stages[k]);
+    if (role.gives != protocol::StageRole::Gives::oedometric_stiffness) continue;
+    std::vector<records::Record> records;
+    for (const records::Record& record : run.result.records) {
+      if (record.stage == int(k)) records.push_back(record);
+    }
+    const int dimension = run.end_state.cell.dimension;
+    const std::string axis = !role.axis.empty() ? role.axis : dimension == 2 ? "y" : "z";
+    const calibrate::OedometerStiffness found = calibrate::oedometer_stiffness(records, axis, dimension);
+    if (!std::isfinite(found.C11)) continue;
+    const std::string stem = "stage_" + protocol.stages[k].name + "_";
+    listing.add(stem + "C11_Pa", found.C11, "Pa");
+    listing.add(stem + "C12_Pa", found.C12, "Pa");
+    listing.add(stem + "G_Pa", found.G, "Pa");
+    listing.add(stem + "K_3D_Pa", found.K_3D, "Pa");
+    listing.add(stem + "K_2D_Pa", found.K_2D, "Pa");
+  }
+}
+
+/// Whether a stress-controlled cyclic test liquefied, and after how many cycles.
+void add_liquefaction(const protocol::Protocol& protocol, const protocol::TestRun& run, Listing& listing) {
+  const ensemble::Liquefaction found = ensemble::liquefaction_of(protocol, run.result, run.end_state.cell.dimension);
+  if (!found.cyclic) return;
+  listing.add("stress_ratio", found.stress_ratio, "of p at the start");
+  listing.add("cycles", found.cycles);
+  listing.add_to_json("liquefied", found.liquefied);
+  listing.add_to_json("least_p_over_first", found.least_p);
+  const std::string limit = in_words(100 * found.limit) + " %";
+  listing.add_to_text("liquefaction",
+                      found.liquefied
+                          ? "after " + in_words(found.cycles) + " cycles: p below " + limit + " of its start"
+                          : "none: the least p is " + in_words(std::round(1e3 * found.least_p) / 10) +
+                                " % of its start, and " + limit + " counts as liquefied");
+}
+
+/// Where the time of this run went, and the error estimates of its stresses; nothing of a test that was complete
+/// before.
+void add_costs(const protocol::TestRun& run, double wall, Listing& listing) {
+  const protocol::Costs& costs = run.costs;
+  if (costs.judged > 0) {
+    listing.add("mean_error_estimate", costs.mean_error, "of p");
+    listing.add("largest_error_estimate", costs.largest_error, "of p");
+  }
+  if (costs.waited > 0)
+    listing.add("waited_for_held_stress", double(costs.waited) / double(costs.substeps), "of the sub-steps");
+  const double calls = costs.grains + costs.pairs + costs.list + costs.control;
+  if (!(calls > 0)) return;
+  listing.add("time_grains_s", costs.grains, "s");
+  listing.add("time_pairs_s", costs.pairs, "s");
+  listing.add("time_list_s", costs.list, "s");
+  listing.add("time_control_s", costs.control, "s");
+  listing.add("time_files_s", costs.files, "s");
+  listing.add("time_other_s", std::max(0.0, wall - calls - costs.files), "s");  // measured quantities, progress line
+}
+
+/// Whether the largest deviator of a stage is a strength: not on a path of pressures, nor of response envelopes.
+bool leads_to_failure(const protocol::Stage& stage) {
+  return stage.kind != "pressure_path" && stage.kind != "envelope";
+}
+
+/// Tells of records whose cell was too thin to represent the material.
+void tell_of_thin(const records::TestResult& result, long thin) {
+  if (thin == 0) return;
+  const auto first = std::find_if(result.records.begin(), result.records.end(),
+                                  [](const records::Record& record) { return record.cell_thin; });
+  tell(std::to_string(thin) + " of " + std::to_string(result.records.size()) +
+       " records are of a thin cell (cell_thin), from strain " + in_words(first->strain) + " of stage \"" +
+       result.stages.at(std::size_t(first->stage)) +
+       "\" on: a height is less than four mean diameters, too little to represent the material; use more grains, or a "
+       "cell that suits the deformation (pack.cell)");
+}
+
+/// How many records are doubtful, and why.
+struct Doubtful {
+  long not_held = 0, not_quasi_static = 0, either = 0, thin = 0;
+  long without_pressure = 0;  ///< of either: p is below 5 % of that of the first record
+};
+
+Doubtful doubtful_of(const std::vector<records::Record>& records, int dimension) {
+  constexpr double small_part = 0.05;
+  Doubtful found;
+  const double first = records.empty() ? 0 : mean_pressure(records.front().stress, dimension);
+  for (const records::Record& record : records) {
+    found.not_held += record.target_held ? 0 : 1;
+    found.not_quasi_static += record.quasi_static ? 0 : 1;
+    const bool doubtful = !(record.target_held && record.quasi_static);
+    found.either += doubtful ? 1 : 0;
+    found.without_pressure += doubtful && mean_pressure(record.stress, dimension) < small_part * first ? 1 : 0;
+    found.thin += record.cell_thin ? 1 : 0;
+  }
+  return found;
+}
+
+/// The peak of the last stage, and where the test ended.
+void add_end(const protocol::Protocol& protocol, const protocol::TestRun& run, Listing& listing) {
+  const auto records = calibrate::last_stage(run.result);
+  if (leads_to_failure(protocol.stages.at(std::size_t(records.back().stage)))) {
+    const calibrate::Peak highest = calibrate::peak(records, run.end_state.cell.dimension);
+    listing.add("peak_strain", highest.strain);
+    listing.add("peak_sigma_1_Pa", highest.stresses.major, "Pa");
+    listing.add("peak_sigma_3_Pa", highest.stresses.minor, "Pa");
+    listing.add_or_why("peak_friction_angle_deg", calibrate::friction_angle_deg(highest.stresses), "degrees",
+                       "the minor principal stress is in tension, or there is no stress");
+    listing.add("rising_at_end", calibrate::rising_at_end(records, highest));
+  }
+  listing.add("end_strain", records.back().strain);
+  listing.add("end_stress_Pa", row_major(records.back().stress), "Pa");
+  if ((records.back().quantities & records::asked<records::VoidRatio>) != 0)
+    listing.add("end_void_ratio", records.back().void_ratio);
+}
+
+void tell_of_doubts(const protocol::TestRun& run, const Doubtful& doubtful) {
+  const std::size_t records = run.result.records.size();
+  // One record or two may be an avalanche of the specimen; more are the fault of the test's settings.
+  if (20 * doubtful.either > long(records) && 2 * doubtful.without_pressure > doubtful.either)
+    tell(std::to_string(doubtful.without_pressure) + " of " + std::to_string(records) +
+         " records are of a specimen whose grains carry almost nothing, p below 5 % of its start: it has liquefied. No "
+         "tolerance makes equilibria of them (quasi_static, target_held); let the test end there, with an "
+         "[[stage.until]] of quantity = \"p_over_first\"");
+  else if (20 * doubtful.either > long(records))
+    tell(std::to_string(doubtful.either) + " of " + std::to_string(records) +
+         " records are doubtful: " + std::to_string(doubtful.not_held) + " did not hold their stress (target_held), " +
+         std::to_string(doubtful.not_quasi_static) +
+         " are not quasi-static (quasi_static); lower the tolerances of [solver] or the rate, or raise "
+         "loading.held_tolerance");
+  tell_of_thin(run.result, doubtful.thin);
+  if (2 * run.costs.waited > run.costs.substeps)
+    tell(std::to_string(run.costs.waited) + " of " + std::to_string(run.costs.substeps) +
+         " sub-steps waited for a held stress to return after avalanches");
+}
+
+void tell_of_shear(const protocol::Protocol& protocol, const Specimen& specimen) {
+  const int dimension = specimen.cell.dimension;
+  const double diameter = 2 * std::accumulate(specimen.grains.radius.begin(), specimen.grains.radius.end(), 0.0) /
+                          double(specimen.grains.size());
+  for (const protocol::Stage& stage : protocol.stages) {
+    const auto* shear = protocol::settings_of<protocol::SimpleShearStage>(stage);
+    if (shear == nullptr) continue;
+    const std::string plane = !shear->plane.empty() ? shear->plane : dimension == 2 ? "xy" : "xz";
+    const double most = std::abs(shear->to_strain);
+    const double thin_from = shear_until_thin(specimen.cell, plane[0] - 'x', plane[1] - 'x', 4 * diameter, most);
+    if (!std::isfinite(thin_from) || thin_from == 0) continue;  // thin from the start: its records say so
+    tell(
+        "stage \"" + stage.name + "\": beyond a shear strain of " + in_words(thin_from) +
+        " a height of the cell is less than four mean diameters, and the records are flagged (cell_thin): no vector of "
+        "the cell lies along " +
+        plane[0] + ", or the cell is small; pack an upright specimen with more grains, or shear it less");
+  }
+}
+
+void report_run(const protocol::Protocol& protocol, const protocol::TestRun& run, double wall,
+                const std::string& output, bool json) {
+  const records::TestResult& result = run.result;
+  const Doubtful doubtful = doubtful_of(result.records, run.end_state.cell.dimension);
+  Listing listing;
+  listing.add("protocol", result.protocol);
+  if (!result.axis.empty()) {
+    listing.add("axis", result.axis);
+    listing.add("pressure_Pa", result.pressure, "Pa");
+  }
+  listing.add("stages", result.stages);
+  if (!run.events.empty()) listing.add("ended_by", run.events);
+  listing.add("records", json ? arrays_of(result.records) : Json(result.records.size()));
+  listing.add("flagged", doubtful.not_held);
+  listing.add("not_quasi_static", doubtful.not_quasi_static);
+  listing.add("cell_thin", doubtful.thin);
+  if (!result.records.empty()) add_end(protocol, run, listing);
+  add_liquefaction(protocol, run, listing);
+  for (const records::ProbeResult& probe : result.probes) {
+    const bool only = result.probes.size() == 1;
+    listing.add(only ? "stiffness_Pa" : "stiffness_Pa_" + probe.stage, row_major(probe.stiffness), "Pa");
+  }
+  add_oedometers(protocol, run, listing);
+  if (!output.empty()) {
+    listing.add("file", output);
+  } else if (!json && !result.records.empty()) {
+    listing.add("file", "none: the records are not kept without -o R.h5");
+  }
+  listing.add("wall_s", result.wall_seconds, "s");
+  listing.add("grain_steps", result.grain_steps);
+  add_costs(run, wall, listing);
+  listing.print(json);
+  tell_of_doubts(run, doubtful);
 }
 
 void run_test(const RunArguments& arguments) {
@@ -80,7 +302,7 @@ void run_test(const RunArguments& arguments) {
   {
     ProgressLine line;
     protocol::Watch watch;
-    watch.on_moment = [&](const protocol::Moment& moment) { line.show(moment); };
+    watch.on_moment = [&](const protocol::Moment& moment) { line.show(0, "", moment); };
     watch.stop = &stop_on_signals();
     std::unique_ptr<Workers> team;
     if (specimen.grains.size() >= least_shared_grains) {
@@ -93,23 +315,29 @@ void run_test(const RunArguments& arguments) {
     run = run_recorded(protocol, specimen, store.get(), watch);
     wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   }
-  if (!run.complete) end_stopped(run, arguments.output);
+  if (!run.complete) {
+    const std::size_t made = run.result.records.size();
+    end_stopped(" after " + std::to_string(made) + " records; " +
+                (arguments.output.empty() ? "they are not kept without -o"
+                 : made == 0              ? "continue with --resume"
+                                          : arguments.output + " holds them; continue with --resume"));
+  }
   report_run(protocol, run, wall, arguments.output, arguments.test.json);
 }
 
 }  // namespace
 
 Command run_command() {
-  auto arguments = std::make_shared<RunArguments>();
   Command command{"run", "Run a test, a protocol in TOML, on a specimen"};
-  command.add("--specimen", arguments->specimens,
+  auto& arguments = command.runs(run_test);
+  command.add("--specimen", arguments.specimens,
               "specimen, or record file: its end state; default: [specimen] file of the protocol;\n"
               "several of them, or \"S_*.h5\": an ensemble");
-  command.add("--against", arguments->against, "a second group of specimens; prints the differences of the means");
-  command.add("-o,--output", arguments->output,
+  command.add("--against", arguments.against, "a second group of specimens; prints the differences of the means");
+  command.add("-o,--output", arguments.output,
               "record file to write, R.h5; of several specimens the folder for records and summary");
-  arguments->test.add_to(command, "test.pressure_Pa=2e4", "for specimens of 30,000 grains or more; tests at a time");
-  command.add("specimens", arguments->more, "further specimens");
+  arguments.test.add_to(command, "test.pressure_Pa=2e4", "for specimens of 30,000 grains or more; tests at a time");
+  command.add("specimens", arguments.more, "further specimens");
   command.notes =
       "A specimen of less than 30,000 grains runs on one thread; `rvelab calibrate --threads` runs several tests at a\n"
       "time. The number of threads changes no bit. Each record is written to R.h5.journal at once, and R.h5 is "
@@ -129,7 +357,6 @@ Command run_command() {
       "  rvelab run biaxial --specimen dense.h5 -o R.h5 --resume\n"
       "  rvelab run biaxial --specimen 'S_*.h5' -o D\n"
       "  rvelab run biaxial --specimen 'dense_*.h5' --against 'loose_*.h5' -o D";
-  command.run = [arguments] { run_test(*arguments); };
   return command;
 }
 

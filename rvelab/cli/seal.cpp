@@ -1,9 +1,8 @@
 // rvelab seal: accepts a file that another program has changed, or one of an early version, and adds a checksum.
-// Declared in commands.hpp.
-#include <memory>
+// Declared in command.hpp.
 #include <string>
 
-#include "rvelab/cli/commands.hpp"
+#include "rvelab/cli/command.hpp"
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/report.hpp"
 #include "rvelab/io/journal/recorded_test.hpp"
@@ -32,12 +31,12 @@ void run_seal(const SealArguments& arguments) {
 }  // namespace
 
 Command seal_command() {
-  auto arguments = std::make_shared<SealArguments>();
   Command command{"seal", "Accept a file that another program has changed: write it with a new checksum"};
-  command.add("file", arguments->file, "specimen or record file, changed or made by another program").required();
-  command.add("-o,--output", arguments->output, "file to write, the same with a checksum").required();
-  command.add("--force", arguments->force, "overwrite an existing file");
-  command.add_json(arguments->json);
+  auto& arguments = command.runs(run_seal);
+  command.add("file", arguments.file, "specimen or record file, changed or made by another program").required();
+  command.add("-o,--output", arguments.output, "file to write, the same with a checksum").required();
+  command.add_force(arguments.force);
+  command.add_json(arguments.json);
   command.notes =
       "Files of rvelab end in a checksum; a file whose bytes do not match it is refused. A program that opens such a\n"
       "file for writing removes the checksum. If you meant the change, seal reads what rvelab knows of the file, "
@@ -45,7 +44,6 @@ Command seal_command() {
       "it and writes it anew. It cannot tell an intended change from damage, so inspect the result.\n"
       "Example:\n"
       "  rvelab seal edited.h5 -o S.h5";
-  command.run = [arguments] { run_seal(*arguments); };
   return command;
 }
 

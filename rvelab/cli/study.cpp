@@ -1,29 +1,26 @@
 // rvelab study: a test over a grid of settings, errors against the best-resolved run and against cost.
-// Declared in commands.hpp.
+// Declared in command.hpp.
 #include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
-#include <iterator>
-#include <memory>
 #include <optional>
 
-#include "rvelab/cli/commands.hpp"
+#include "rvelab/cli/command.hpp"
 #include "rvelab/cli/interrupt.hpp"
 #include "rvelab/cli/progress_line.hpp"
 #include "rvelab/cli/protocol_input.hpp"
-#include "rvelab/cli/study_folder.hpp"
+#include "rvelab/cli/recording.hpp"
 #include "rvelab/cli/study_report.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/io/hdf5/schema.hpp"
 #include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/io/publish.hpp"
-#include "rvelab/io/text_file.hpp"
 #include "rvelab/io/version.hpp"
 #include "rvelab/keys/key.hpp"
+#include "rvelab/keys/regular_file.hpp"
 
 namespace rvelab::cli {
 
@@ -46,11 +43,6 @@ struct Loaded {
   std::string path;  ///< of the protocol, or of the study that holds its text
   std::vector<std::string> inputs;
 };
-
-std::string text_of(const std::string& path) {
-  std::ifstream input(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(input), {}};
-}
 
 /// A path in a study file, relative to the present folder.
 std::string from_folder_of(const std::string& study, const std::string& path) {
@@ -77,7 +69,7 @@ Loaded loaded(const std::string& name) {
     const std::string& named = found.study.protocol;
     found.path = protocol_path(named.empty() ? what : is_path(named) ? from_folder_of(what, named) : named);
     protocol::read_protocol(found.path);  // reports its mistakes with their lines
-    found.study.protocol_text = text_of(found.path);
+    found.study.protocol_text = keys::whole_file<std::string>(found.path, "a protocol");
     found.inputs.push_back(found.path);
   }
   found.study.protocol.clear();
@@ -149,12 +141,7 @@ std::optional<StudyFolder> folder_for(const StudyArguments& arguments, const Loa
   }
   auto inputs = from.inputs;
   inputs.insert(inputs.end(), from.study.specimens.begin(), from.study.specimens.end());
-  using Existing = StudyFolder::Existing;
-  return StudyFolder(arguments.folder, from.study,
-                     arguments.force    ? Existing::overwrite
-                     : arguments.resume ? Existing::resume
-                                        : Existing::refuse,
-                     inputs);
+  return StudyFolder(arguments.folder, from.study, existing_of(arguments.force, arguments.resume), inputs);
 }
 
 void tell_failures(const study::StudySummary& summary, const study::Study& study) {
@@ -181,7 +168,7 @@ void run_study(const StudyArguments& arguments) {
 
   study::Pieces pieces;
   {
-    ProgressOfTests progress(study::planned_pieces(study, prepared), "pieces");
+    ProgressLine progress(study::planned_pieces(study, prepared), "pieces");
     study::Keeper keeper;
     keeper.threads = arguments.threads;
     keeper.stop = &stop_on_signals();
@@ -195,12 +182,10 @@ void run_study(const StudyArguments& arguments) {
     }
     pieces = study::run_study(study, prepared, keeper);
   }
-  if (!pieces.complete) {
-    tell("stopped by " + signal_name() + " with " + std::to_string(pieces.by_name.size()) + " of " +
-         std::to_string(study::planned_pieces(study, prepared)) + " pieces complete; " +
-         (folder ? "continue with --resume" : "they are not kept without -o"));
-    throw Exit(128 + signal_received());
-  }
+  if (!pieces.complete)
+    end_stopped(" with " + std::to_string(pieces.by_name.size()) + " of " +
+                std::to_string(study::planned_pieces(study, prepared)) + " pieces complete; " +
+                (folder ? "continue with --resume" : "they are not kept without -o"));
   const auto summary = study::summary_of(study, prepared, pieces);
   const std::string json = as_json(study, summary).dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
   if (folder) {
@@ -220,29 +205,29 @@ void run_study(const StudyArguments& arguments) {
 }  // namespace
 
 Command study_command() {
-  auto arguments = std::make_shared<StudyArguments>();
   Command command{"study", "Run a test over a grid of settings: error against run time"};
+  auto& arguments = command.runs(run_study);
   command
-      .add("test", arguments->what,
+      .add("test", arguments.what,
            "PROTOCOL.toml or STUDY.toml, or the name of an installed one:\nbiaxial; tolerance, damping, time_step, "
            "record_density")
       .required();
-  command.add("specimen", arguments->specimens, "specimens; default: those of the study");
-  command.add("--vary", arguments->vary, "KEY=v1,v2,...; given several times: all combinations");
-  command.add("--reference", arguments->reference, "KEY=value of the reference, the best-resolved run");
-  command.add("--set", arguments->settings, "KEY=value of every run");
-  command.add("--repeat", arguments->repeats, "whole paths for each grid point and specimen, default 1; 0: none")
+  command.add("specimen", arguments.specimens, "specimens; default: those of the study");
+  command.add("--vary", arguments.vary, "KEY=v1,v2,...; given several times: all combinations");
+  command.add("--reference", arguments.reference, "KEY=value of the reference, the best-resolved run");
+  command.add("--set", arguments.settings, "KEY=value of every run");
+  command.add("--repeat", arguments.repeats, "whole paths for each grid point and specimen, default 1; 0: none")
       .between(0, 10'000);
   command
-      .add("--increments", arguments->increments,
+      .add("--increments", arguments.increments,
            "increments for each grid point and specimen, default 300;\neach starts from a state of the reference path; "
            "0: none")
       .between(0, 1'000'000);
-  command.add("-o,--output", arguments->folder, "folder for study.toml, study.csv, study.json and pieces/");
-  command.add_threads(arguments->threads, "default: one per core");
-  command.add("--force", arguments->force, "start anew in a folder that holds a study");
-  command.add("--resume", arguments->resume, "continue a study that was stopped").not_with("--force");
-  command.add_json(arguments->json);
+  command.add("-o,--output", arguments.folder, "folder for study.toml, study.csv, study.json and pieces/");
+  command.add_threads(arguments.threads, "default: one per core");
+  command.add("--force", arguments.force, "start anew in a folder that holds a study");
+  command.add("--resume", arguments.resume, "continue a study that was stopped").not_with("--force");
+  command.add_json(arguments.json);
   command.notes =
       "The reference runs the path once. From states spread evenly over this path, each grid point makes the "
       "increment\n"
@@ -257,7 +242,6 @@ Command study_command() {
       "  rvelab study biaxial S.h5 --vary solver.relative_tolerance=0.1,0.01 -o F \\\n"
       "    --reference solver.target_unbalanced=3e-5 --reference solver.fixed_substeps=4000\n"
       "  rvelab study F/study.toml -o F --resume";
-  command.run = [arguments] { run_study(*arguments); };
   return command;
 }
 

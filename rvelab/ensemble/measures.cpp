@@ -6,9 +6,8 @@
 #include <limits>
 #include <numbers>
 
-#include "rvelab/calibrate/oedometer.hpp"
 #include "rvelab/cell/cell.hpp"
-#include "rvelab/protocol/stage_kind.hpp"
+#include "rvelab/protocol/stage_kinds.hpp"
 
 namespace rvelab::ensemble {
 namespace {

@@ -2,11 +2,15 @@
 // them.
 #pragma once
 
-#include "rvelab/h5/pool_file.hpp"
+#include <string>
+
+#include "rvelab/pool/pool.hpp"
+#include "rvelab/specimen/specimen.hpp"
 
 namespace rvelab::h5 {
 
-/// Each throws as the function of pool_file.hpp or of io that it is.
+/// Each throws InputError or Error as io::read_specimen and io::write_specimen do. Files of pools are described in
+/// rvelab/io/README.md and read by every later version 1.x.
 struct FileCalls {
   const char* version;  ///< of rvelab; both libraries must be of one
   Specimen (*read_specimen)(const std::string& path);

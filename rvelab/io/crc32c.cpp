@@ -31,7 +31,7 @@ constexpr Tables tables = make_tables();
 
 std::uint32_t crc32c(std::span<const std::byte> bytes, std::uint32_t before) {
   std::uint32_t remainder = ~before;
-  const auto byte = [&](std::size_t k) { return static_cast<std::uint32_t>(bytes[k]); };
+  const auto byte = [&](std::size_t k) { return std::uint32_t(bytes[k]); };
   for (; bytes.size() >= 8; bytes = bytes.subspan(8)) {
     const std::uint32_t low = remainder ^ (byte(0) | byte(1) << 8 | byte(2) << 16 | byte(3) << 24);
     remainder = tables[7][low & 0xFF] ^ tables[6][low >> 8 & 0xFF] ^ tables[5][low >> 16 & 0xFF] ^

@@ -20,7 +20,7 @@ bool write_all(int descriptor, std::span<const std::byte> bytes) {
     if (written < 0 && errno == EINTR) continue;
     if (written == 0) errno = ENOSPC;
     if (written <= 0) return false;
-    bytes = bytes.subspan(static_cast<std::size_t>(written));
+    bytes = bytes.subspan(std::size_t(written));
   }
   return true;
 }
@@ -28,10 +28,10 @@ bool write_all(int descriptor, std::span<const std::byte> bytes) {
 std::size_t read_at(int descriptor, std::uint64_t offset, std::span<std::byte> bytes) {
   std::size_t done = 0;
   while (done < bytes.size()) {
-    const auto count = ::pread(descriptor, bytes.data() + done, bytes.size() - done, static_cast<off_t>(offset + done));
+    const auto count = ::pread(descriptor, bytes.data() + done, bytes.size() - done, off_t(offset + done));
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) break;
-    done += static_cast<std::size_t>(count);
+    done += std::size_t(count);
   }
   return done;
 }

@@ -6,15 +6,18 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
 #include <chrono>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <thread>
 
 #include "rvelab/error.hpp"
 #include "rvelab/io/descriptor.hpp"
 
 namespace rvelab::io {
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -114,6 +117,15 @@ void publish_bytes(const std::string& path, std::initializer_list<std::span<cons
     if (::rename(temporary.c_str(), place.c_str()) != 0) fail(path, temporary, errno);
   }
   sync_folder_of(place);
+}
+
+std::string exact(double value) {
+  char text[32];
+  return {text, std::to_chars(std::begin(text), std::end(text), value).ptr};
+}
+
+void publish_text(const std::string& path, const std::string& text) {
+  publish_bytes(path, {std::as_bytes(std::span(text))});
 }
 
 }  // namespace rvelab::io

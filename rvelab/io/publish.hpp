@@ -29,4 +29,10 @@ void expect_place(const std::string& path, const std::vector<std::string>& input
 /// is no regular file; Error if the writing fails (path.tmp is removed, path is as it was).
 void publish_bytes(const std::string& path, std::initializer_list<std::span<const std::byte>> parts);
 
+/// The shortest decimal that reads back as the same double (up to 17 digits).
+std::string exact(double value);
+
+/// Writes path.tmp and renames it to path. InputError if the place cannot be written to, Error if the writing fails.
+void publish_text(const std::string& path, const std::string& text);
+
 }  // namespace rvelab::io

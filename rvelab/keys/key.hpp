@@ -2,8 +2,12 @@
 #pragma once
 
 #include <toml++/toml.h>
+
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "rvelab/contact/model.hpp"
 
 namespace rvelab::keys {
 
@@ -16,7 +20,9 @@ struct Key {
   std::string initial;  ///< default, as TOML writes it, or in words; "" if the key has none of its own
   std::string range;    ///< allowed values in words
   std::string meaning;
-  bool required = false;  ///< the file must have it
+  Interval interval = {};                 ///< of numbers, each of a list too
+  std::vector<std::string> choices = {};  ///< of a choice, or a list of them
+  bool required = false;                  ///< the file must have it
   std::string dotted() const { return table + "." + name; }
   std::string allowed() const;  ///< range with its unit
 };
@@ -58,5 +64,18 @@ void raise(const std::string& path, std::vector<KeyError> errors);
 /// TOML.
 toml::table parse_toml_file(const std::string& path);
 toml::table parse_toml_text(const std::string& text, const std::string& path);
+
+/// Applies the assignments of the command line to a parsed file; a wrong one, without a value or of a stage that is not
+/// there, becomes an error, the others are applied.
+void assign_all(toml::table& file, const std::vector<std::string>& assignments, std::vector<KeyError>& errors);
+
+/// The right key and how the two units go together: "pressure_Pa", "1 kPa = 1000 Pa".
+struct UnitAnswer {
+  Key key;
+  std::string factor;
+};
+
+/// The known key that `name` (without its table) means in another unit; none if it is no known key with another unit.
+std::optional<UnitAnswer> in_another_unit(const std::string& name, const std::vector<Key>& known);
 
 }  // namespace rvelab::keys

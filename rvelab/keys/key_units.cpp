@@ -1,4 +1,5 @@
-#include "rvelab/keys/key_units.hpp"
+// Keys in another unit of the same quantity. Declared in key.hpp.
+#include "rvelab/keys/key.hpp"
 
 namespace rvelab::keys {
 namespace {

@@ -1,41 +1,58 @@
-#include "rvelab/keys/material_keys.hpp"
+// The table of keys of materials, contact, damping and solver. Declared in material_toml.hpp.
+#include "rvelab/keys/material_toml.hpp"
 
 #include <algorithm>
 #include <type_traits>
 #include <utility>
 
-#include "rvelab/keys/key_builders.hpp"
+#include "rvelab/keys/table_reader.hpp"
 #include "rvelab/solver/assembly/list_size.hpp"
+#include "rvelab/specimen/field_layout.hpp"
 
 namespace rvelab::keys {
 namespace {
 
-template <class Value>
-std::string allowed(const Interval& range) {
-  if constexpr (std::is_same_v<Value, bool>) return "true, false";
-  if constexpr (std::is_same_v<Value, std::string>) return "any text, different for each material";
-  if constexpr (std::is_same_v<Value, Law>) return law_names();
-  if constexpr (std::is_same_v<Value, Slip>) return "consistent, full_radius, full_radius_ratcheting";
-  if constexpr (std::is_same_v<Value, HertzRadius>) return "equivalent, curvature";
-  if constexpr (std::is_same_v<Value, Dashpot>) return "none, coefficient, restitution, viscoelastic, tsuji";
-  if constexpr (std::is_same_v<Value, LocalDampingForm>) return "vector, component";
-  return in_words(range);
+constexpr Interval any{0, 0};  // of what is no number
+
+Choices split(const std::string& names) {
+  Choices words;
+  for (std::size_t at = 0, end = 0; end != std::string::npos; at = end + 2) {
+    end = names.find(", ", at);
+    words.push_back(names.substr(at, end - at));
+  }
+  return words;
 }
 
+/// The words of an enumeration; none: it is none.
 template <class Value>
-const char* type_of() {
-  if constexpr (std::is_same_v<Value, bool>) return "boolean";
-  if constexpr (std::is_same_v<Value, double>) return "number";
-  if constexpr (std::is_same_v<Value, long>) return "whole number";
-  return std::is_same_v<Value, std::string> ? "text" : "choice";
+Choices words_of() {
+  if constexpr (std::is_same_v<Value, Law>) return split(law_names());
+  if constexpr (std::is_same_v<Value, Slip>) return {"consistent", "full_radius", "full_radius_ratcheting"};
+  if constexpr (std::is_same_v<Value, HertzRadius>) return {"equivalent", "curvature"};
+  if constexpr (std::is_same_v<Value, Dashpot>) return {"none", "coefficient", "restitution", "viscoelastic", "tsuji"};
+  if constexpr (std::is_same_v<Value, LocalDampingForm>) return {"vector", "component"};
+  return {};
 }
 
 /// The default is that of the struct: it is written nowhere twice.
 template <class Owner, class Value>
 KeyEntry entry(const char* table, const char* name, const char* unit, Value Owner::*member, const Interval& range,
-               const char* meaning) {
-  return {
-      {table, name, unit, type_of<Value>(), as_toml(Owner{}.*member), allowed<Value>(range), meaning}, member, range};
+               const std::string& meaning) {
+  const Value initial = Owner{}.*member;
+  Key key{table, name, unit, "number", "", in_words(range), meaning, range, words_of<Value>()};
+  if constexpr (std::is_same_v<Value, bool>) {
+    key.type = "boolean";
+    key.initial = initial ? "true" : "false";
+    key.range = "true, false";
+  } else if constexpr (std::is_arithmetic_v<Value>) {
+    if (std::is_same_v<Value, long>) key.type = "whole number";
+    key.initial = as_toml(double(initial));
+  } else {
+    key.type = key.choices.empty() ? "text" : "choice";
+    key.initial = as_toml(fields::text_of(initial));
+    key.range = key.choices.empty() ? "any text, different for each material" : listed(key.choices);
+  }
+  return {key, member};
 }
 
 /// What laws mean by a number that they read: "linear_given, hertz_given: kt".
@@ -62,13 +79,14 @@ std::vector<KeyEntry> law_constants() {
     const Parameter& p = each.parameter;
     const auto same = std::find_if(entries.begin(), entries.end(), [&](const auto& e) { return e.key.name == p.key; });
     if (same != entries.end()) continue;
-    entries.push_back(entry("material", p.key, p.unit, each.value, p.allowed, meaning_of(p.key).c_str()));
+    entries.push_back(entry("material", p.key, p.unit, each.value, p.allowed, meaning_of(p.key)));
   }
   return entries;
 }
 
 std::vector<KeyEntry> materials() {
   const char* t = "material";
+  constexpr Interval angle{0, 90, false, true};
   std::vector<KeyEntry> entries = {
       entry(t, "name", "-", &Material::name, any, "name of the material, for --set material.NAME.key"),
       entry(t, "density_kg_m3", "kg/m^3", &Material::density, positive, "density of the solid")};
@@ -76,10 +94,10 @@ std::vector<KeyEntry> materials() {
   entries.insert(entries.end(), constants.begin(), constants.end());
   const std::vector<KeyEntry> surface = {
       entry(t, "friction", "1", &Material::friction, {0, 1e6}, "Coulomb coefficient mu; 1e6: no slip"),
-      {{t, "friction_angle_deg", "degree", "number", "", in_words(Interval{0, 90, false, true}),
-        "in place of friction: mu is its tangent"},
-       FrictionAngle{},
-       {0, 90, false, true}},
+      {{t, "friction_angle_deg", "degree", "number", "", in_words(angle), "in place of friction: mu is its tangent",
+        angle},
+       &Material::friction,
+       true},
       entry(t, "rolling_stiffness", "1", &Material::rolling_stiffness, not_negative, "beta of k_r = kt ri rj beta"),
       entry(t, "rolling_friction", "1", &Material::rolling_friction, not_negative,
             "eta of the moment cap min(eta_i ri, eta_j rj) fn"),

@@ -6,94 +6,42 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/keys/edit_distance.hpp"
-#include "rvelab/keys/enumerations.hpp"
-#include "rvelab/keys/key_units.hpp"
-#include "rvelab/keys/material_keys.hpp"
+#include "rvelab/keys/key.hpp"
 #include "rvelab/keys/shortened.hpp"
 #include "rvelab/keys/table_reader.hpp"
+#include "rvelab/specimen/field_layout.hpp"
 
 namespace rvelab::keys {
 namespace {
 
 const std::vector<std::string> table_names{"contact", "damping", "solver", "material"};
 
-/// "linear, hertz_mindlin" as a list.
-std::vector<std::string> words_of(const std::string& range) {
-  std::vector<std::string> words;
-  for (std::size_t at = 0, end = 0; end != std::string::npos; at = end + 2) {
-    end = range.find(", ", at);
-    words.push_back(range.substr(at, end - at));
-  }
-  return words;
-}
-
 template <class Value>
 void convert(const std::string& dotted, const toml::node& value, const KeyEntry& entry, Value& field) {
-  const std::string wrong = wrong_with(value, entry.key, entry.range, words_of(entry.key.range));
+  const std::string wrong = wrong_with(value, entry.key);
   if (!wrong.empty()) throw InputError(dotted + " = " + written(value) + " " + wrong);
   if constexpr (std::is_same_v<Value, bool>) {
     field = value.as_boolean()->get();
   } else if constexpr (std::is_same_v<Value, long>) {
     field = value.as_integer()->get();
   } else if constexpr (std::is_same_v<Value, double>) {
-    field = number_in(value);
-  } else {
-    from_text(value.as_string()->get(), field);
-  }
-}
-
-/// Keys that share a field but not its unit: which one applies is the law's, or the dashpot's, to say.
-void expect_unit(const Specimen& specimen, const std::string& dotted, const KeyEntry& entry) {
-  const auto other = [&](bool wrong, const std::string& chosen, const std::string& instead) {
-    if (wrong) throw InputError(dotted + " does not go with " + chosen + "; allowed: " + instead + "; use that key");
-  };
-  const auto& name = entry.key.name;
-  const auto law = specimen.contact.law;
-  const auto dashpot = specimen.damping.dashpot;
-  const auto& parameters = law_parameters();
-  for (const LawParameter& asked : parameters)
-    for (const LawParameter& read : parameters)
-      other(name == asked.parameter.key && read.law == law && read.value == asked.value && name != read.parameter.key,
-            std::string("contact.law = ") + rvelab::name(law), read.parameter.key);
-  other(name == "normal_coefficient_N_s_m" && dashpot == Dashpot::viscoelastic, "damping.dashpot = viscoelastic",
-        "viscoelastic_1_m_s");
-  other(name == "viscoelastic_1_m_s" && dashpot == Dashpot::coefficient, "damping.dashpot = coefficient",
-        "normal_coefficient_N_s_m");
-}
-
-/// Sets the field of the struct that the member belongs to.
-struct Assignment {
-  const std::string& dotted;
-  const toml::node& value;
-  const KeyEntry& entry;
-  Specimen& specimen;
-  const std::vector<Material*>& materials;
-
-  template <class Value>
-  void operator()(Value Material::*member) const {
-    Material converted;
-    convert(dotted, value, entry, converted.*member);
-    for (Material* material : materials) material->*member = converted.*member;
-  }
-  void operator()(FrictionAngle) const {
     constexpr double degree = 3.14159265358979323846 / 180;
-    double angle = 0;
-    convert(dotted, value, entry, angle);
-    for (Material* material : materials) material->friction = std::tan(angle * degree);
+    field = entry.as_tangent ? std::tan(number_in(value) * degree) : number_in(value);
+  } else {
+    fields::from_text(value.as_string()->get(), field);
   }
-  template <class Value>
-  void operator()(Value Damping::*member) const {
-    convert(dotted, value, entry, specimen.damping.*member);
-  }
-  template <class Value>
-  void operator()(Value SolverOptions::*member) const {
-    convert(dotted, value, entry, specimen.solver.*member);
-  }
-  template <class Value>
-  void operator()(Value ContactModel::*member) const {
-    convert(dotted, value, entry, specimen.contact.*member);
-  }
-};
+}
+
+/// The key must be that of its field which the law, or the dashpot, reads.
+void expect_unit(const Specimen& specimen, const std::string& dotted, const KeyEntry& entry) {
+  const std::string instead = key_in_use(specimen, entry.key.name);
+  if (instead.empty() || instead == entry.key.name) return;
+  const bool of_law = entry.key.table == "material";
+  throw InputError(dotted + " does not go with " +
+                   (of_law ? "contact.law = " + fields::text_of(specimen.contact.law)
+                           : "damping.dashpot = " + fields::text_of(specimen.damping.dashpot)) +
+                   "; allowed: " + instead + "; use that key");
+}
 
 /// "material.sand.friction" into {"material.friction", "sand"}; other keys have no middle.
 std::pair<std::string, std::string> without_material_name(const std::string& dotted) {
@@ -111,15 +59,15 @@ const KeyEntry* find_entry(const std::string& dotted) {
 
 std::vector<Material*> materials_named(Specimen& specimen, const std::string& dotted, const std::string& material) {
   std::vector<Material*> found;
-  std::string known;
+  Choices known;
   for (auto& each : specimen.materials) {
     if (material.empty() || each.name == material) found.push_back(&each);
-    known += (known.empty() ? "" : ", ") + each.name;
+    known.push_back(each.name);
   }
   if (found.empty()) {
     throw InputError(dotted + ": no material " + (material.empty() ? "is" : "\"" + material + "\" is") +
-                     " in the specimen; allowed: " + (known.empty() ? "none, since it has no materials" : known) +
-                     "; name one of them");
+                     " in the specimen; allowed: " +
+                     (known.empty() ? "none, since it has no materials" : listed(known)) + "; name one of them");
   }
   return found;
 }
@@ -146,17 +94,26 @@ Material read_material(const Specimen& specimen, const toml::table& table, std::
   return one.materials[0];
 }
 
-}  // namespace
-
-const std::vector<Key>& known_keys() {
-  static const std::vector<Key> keys = [] {
-    std::vector<Key> list;
-    for (const auto& entry : key_entries()) list.push_back(entry.key);
-    return list;
-  }();
-  return keys;
+/// Replaces the materials by those of a list [[material]]; names must differ. Mistakes as in read_table.
+void read_materials(Specimen& specimen, const toml::array& list, std::vector<KeyError>& errors) {
+  std::vector<Material> materials;
+  std::set<std::string> names;
+  for (const auto& item : list) {
+    const auto line = long(item.source().begin.line);
+    if (!item.is_table()) {
+      errors.push_back({line, "material holds " + written(item) + "; allowed: tables; write [[material]] above each"});
+      continue;
+    }
+    materials.push_back(read_material(specimen, *item.as_table(), errors));
+    if (!names.insert(materials.back().name).second) {
+      errors.push_back({line, "material.name = \"" + materials.back().name +
+                                  "\" is there twice; allowed: a name of its own for each; rename one"});
+    }
+  }
+  specimen.materials = materials;
 }
 
+/// The known dotted key nearest to this one. A material's name ("material.sand.frictoin") is kept.
 std::string nearest_key(const std::string& dotted_key) {
   const auto [dotted, material] = without_material_name(dotted_key);
   const bool has_table = dotted.find('.') != std::string::npos;  // "friction" alone means some table's friction
@@ -165,7 +122,7 @@ std::string nearest_key(const std::string& dotted_key) {
   std::string found = nearest(dotted, names);
   if (!has_table) {
     const auto same = std::find(names.begin(), names.end(), found);
-    return known_keys()[static_cast<std::size_t>(same - names.begin())].dotted();
+    return known_keys()[std::size_t(same - names.begin())].dotted();
   }
   // A name that is one letter off in another table is meant, where the table itself has nothing as near.
   const std::string name = dotted.substr(dotted.find('.') + 1);
@@ -179,6 +136,28 @@ std::string nearest_key(const std::string& dotted_key) {
   return found;
 }
 
+}  // namespace
+
+std::string key_in_use(const Specimen& specimen, const std::string& name) {
+  for (const LawParameter& asked : law_parameters())
+    for (const LawParameter& read : law_parameters())
+      if (name == asked.parameter.key && read.law == specimen.contact.law && read.value == asked.value)
+        return read.parameter.key;
+  const char *const of_coefficient = "normal_coefficient_N_s_m", *const viscoelastic = "viscoelastic_1_m_s";
+  if (name != of_coefficient && name != viscoelastic) return "";
+  const Dashpot dashpot = specimen.damping.dashpot;
+  return dashpot == Dashpot::viscoelastic ? viscoelastic : dashpot == Dashpot::coefficient ? of_coefficient : "";
+}
+
+const std::vector<Key>& known_keys() {
+  static const std::vector<Key> keys = [] {
+    std::vector<Key> list;
+    for (const auto& entry : key_entries()) list.push_back(entry.key);
+    return list;
+  }();
+  return keys;
+}
+
 void set_key(Specimen& specimen, const std::string& dotted_key, const toml::node& value) {
   const auto [dotted, material] = without_material_name(dotted_key);
   const KeyEntry* entry = find_entry(dotted);
@@ -188,9 +167,11 @@ void set_key(Specimen& specimen, const std::string& dotted_key, const toml::node
                      "; correct the name or remove it");
   }
   expect_unit(specimen, dotted_key, *entry);
-  std::vector<Material*> materials;
+  Material none;
+  std::vector<Material*> materials{&none};
   if (entry->key.table == "material") materials = materials_named(specimen, dotted_key, material);
-  std::visit(Assignment{dotted_key, value, *entry, specimen, materials}, entry->target);
+  for (Material* each : materials)
+    with_field(*entry, specimen, *each, [&](auto& field) { convert(dotted_key, value, *entry, field); });
 }
 
 void set_key(Specimen& specimen, const std::string& assignment) {
@@ -235,24 +216,6 @@ void read_table(Specimen& specimen, const std::string& name, const toml::table& 
   }
 }
 
-void read_materials(Specimen& specimen, const toml::array& list, std::vector<KeyError>& errors) {
-  std::vector<Material> materials;
-  std::set<std::string> names;
-  for (const auto& item : list) {
-    const auto line = static_cast<long>(item.source().begin.line);
-    if (!item.is_table()) {
-      errors.push_back({line, "material holds " + written(item) + "; allowed: tables; write [[material]] above each"});
-      continue;
-    }
-    materials.push_back(read_material(specimen, *item.as_table(), errors));
-    if (!names.insert(materials.back().name).second) {
-      errors.push_back({line, "material.name = \"" + materials.back().name +
-                                  "\" is there twice; allowed: a name of its own for each; rename one"});
-    }
-  }
-  specimen.materials = materials;
-}
-
 void read_material_tables(const toml::table& file, Specimen& specimen, std::vector<KeyError>& errors) {
   for (const auto& name : table_names) {  // [contact] first: see read_table
     const toml::node* node = file.get(name);
@@ -272,7 +235,7 @@ void read_material_file(const std::string& path, Specimen& specimen) {
   std::vector<KeyError> errors;
   for (const auto& [key, value] : file) {
     const std::string name(key.str());
-    const auto line = static_cast<long>(key.source().begin.line);
+    const auto line = long(key.source().begin.line);
     if (std::find(table_names.begin(), table_names.end(), name) == table_names.end()) {
       errors.push_back({line, "unknown table [" + shortened(name) + "]; the nearest known one is [" +
                                   nearest(name, table_names) + "]; correct the name or remove it"});

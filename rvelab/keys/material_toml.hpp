@@ -5,8 +5,10 @@
 
 #include <toml++/toml.h>
 #include <string>
+#include <variant>
 #include <vector>
 
+#include "rvelab/contact/model.hpp"
 #include "rvelab/keys/key.hpp"
 #include "rvelab/specimen/specimen.hpp"
 
@@ -14,9 +16,6 @@ namespace rvelab::keys {
 
 /// All keys, in the order of the tables.
 const std::vector<Key>& known_keys();
-
-/// The known dotted key nearest to this one. A material's name ("material.sand.frictoin") is kept.
-std::string nearest_key(const std::string& dotted_key);
 
 /// Sets one field. `dotted_key`: "contact.slip"; "material.friction" for all materials, "material.NAME.friction" for
 /// one. Integers are accepted for floats, numbers must be finite. Throws InputError naming key, value, range and, for
@@ -35,14 +34,41 @@ void set_keys(Specimen& specimen, const std::vector<std::string>& assignments);
 /// law says which unit a normal stiffness has.
 void read_table(Specimen& specimen, const std::string& name, const toml::table& table, std::vector<KeyError>& errors);
 
-/// Replaces the materials by those of a list [[material]]; names must differ. Mistakes as in read_table.
-void read_materials(Specimen& specimen, const toml::array& list, std::vector<KeyError>& errors);
-
 /// Reads what there is of [[material]] (or one [material]), [contact], [damping] and [solver] in a file; what else it
 /// holds is the caller's. Mistakes as in read_table.
 void read_material_tables(const toml::table& file, Specimen& specimen, std::vector<KeyError>& errors);
 
 /// Reads a material file: [[material]] (or one [material]), [contact], [damping], [solver], and nothing else.
 void read_material_file(const std::string& path, Specimen& specimen);
+
+/// The field that a key sets.
+using Target =
+    std::variant<std::string Material::*, double Material::*, double Damping::*, bool Damping::*, Dashpot Damping::*,
+                 LocalDampingForm Damping::*, double SolverOptions::*, long SolverOptions::*, bool SolverOptions::*,
+                 bool ContactModel::*, Law ContactModel::*, Slip ContactModel::*, HertzRadius ContactModel::*>;
+
+struct KeyEntry {
+  Key key;
+  Target target;
+  bool as_tangent = false;  ///< an angle in degrees, of which the field holds the tangent
+};
+
+/// What `call` makes of the field that a key sets, of this material or of the rest of the specimen.
+template <class AnySpecimen, class AnyMaterial, class Call>
+auto with_field(const KeyEntry& entry, AnySpecimen& specimen, AnyMaterial& material, Call call) {
+  return std::visit(
+      [&]<class Value, class Owner>(Value Owner::*member) {
+        if constexpr (std::is_same_v<Owner, Material>) return call(material.*member);
+        if constexpr (std::is_same_v<Owner, Damping>) return call(specimen.damping.*member);
+        if constexpr (std::is_same_v<Owner, SolverOptions>) return call(specimen.solver.*member);
+        if constexpr (std::is_same_v<Owner, ContactModel>) return call(specimen.contact.*member);
+      },
+      entry.target);
+}
+
+/// Keys may share a field and not its unit: the one of them that the law, or the dashpot, reads; "" if it reads none.
+std::string key_in_use(const Specimen& specimen, const std::string& name);
+
+const std::vector<KeyEntry>& key_entries();
 
 }  // namespace rvelab::keys

@@ -37,7 +37,7 @@ Bytes whole_file(const std::string& path, const std::string& wanted, std::uint64
     refuse("cannot be opened (" + std::string(std::strerror(errno)) + "), check the permissions");
   }
   if (!S_ISREG(status.st_mode)) refuse("is not a regular file");
-  const auto size = static_cast<std::uint64_t>(status.st_size);
+  const auto size = std::uint64_t(status.st_size);
   if (size > most) {
     refuse("has " + std::to_string(size) + " bytes; allowed: up to " + std::to_string(most));
   }
@@ -50,7 +50,7 @@ Bytes whole_file(const std::string& path, const std::string& wanted, std::uint64
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) refuse("cannot be read (" + std::string(std::strerror(errno)) + ")");
     if (count == 0) break;  // shorter than it was a moment ago
-    done += static_cast<std::size_t>(count);
+    done += std::size_t(count);
   }
   bytes.resize(done);
   return bytes;

@@ -5,6 +5,7 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/pack/recipe.hpp"
+#include "rvelab/solver/rve.hpp"
 
 namespace rvelab::pack {
 

@@ -6,167 +6,173 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/grains/sieve_grading.hpp"
-#include "rvelab/keys/assign.hpp"
 #include "rvelab/keys/material_toml.hpp"
 #include "rvelab/keys/table_reader.hpp"
-#include "rvelab/keys/toml_source.hpp"
 #include "rvelab/measure/measures.hpp"
-#include "rvelab/specimen/field_layout.hpp"
 
 namespace rvelab::pack {
 namespace {
 
-using keys::line_of;
-using keys::table_of;
-using keys::TableReader;
+using namespace keys;
 
-const std::vector<std::string> tables{"pack",    "grains",  "target", "preparation",
-                                      "contact", "damping", "solver", "material"};
+constexpr Interval below_one{0, 1, true, true};
+constexpr Interval friction{0, 1e6};
+constexpr Interval stresses{-pressures.high, pressures.high};
+constexpr Interval aspect_ratio{least_aspect_ratio, 1};
 
-std::string text_of(const toml::table& table) {
-  std::ostringstream text;
-  text << toml::toml_formatter{table} << "\n";
-  return text.str();
-}
-
-void read_pack(const toml::table& table, RecipeFile& file, toml::table& resolved, std::vector<keys::KeyError>& errors) {
-  TableReader reader(table, recipe_keys(), "pack", "pack", line_of(table), errors);
+void read_pack(TableReader& reader, RecipeFile& file) {
   Recipe& recipe = file.recipe;
-  file.name = reader.text("name");
-  fields::from_text(reader.choice("shape"), recipe.shape);
-  recipe.number = std::size_t(reader.whole_number("number"));
-  recipe.seed = std::uint64_t(reader.whole_number("seed"));
-  if (dimension_of(recipe.shape) == 2) {
-    recipe.thickness = reader.number("thickness_m");
-  } else {
-    reader.leave("thickness_m");
-    if (reader.has("thickness_m"))
-      reader.mistake("thickness_m", "contradicts pack.shape = \"sphere\"; allowed: in 2D only; remove one");
-  }
-  recipe.oriented = reader.choice("cell") == "oriented";
-  recipe.share_by_mass = reader.choice("share_by") == "mass";
-  reader.finish();
-  resolved.insert("pack", reader.resolved());
-}
-
-/// A key that another kind of grading has.
-void refuse(TableReader& reader, const std::string& name, const std::string& grading) {
-  reader.leave(name);
-  if (reader.has(name))
-    reader.mistake(name, "contradicts grading = \"" + grading + "\"; allowed: one of the two; remove one");
+  file.name = reader.required_text("name", "name of the recipe");
+  const auto of_dimension = [](int d) {
+    return names_of_shapes([d](Shape shape) { return dimension_of(shape) == d; });
+  };
+  Choices shapes;
+  for (int number = 0; number < shape_count; ++number) shapes.emplace_back(name(Shape(number)));
+  reader.choice("shape", recipe.shape, shapes, of_dimension(2) + ": 2D; " + of_dimension(3) + ": 3D");
+  reader.whole_number("number", recipe.number, {1, 1e8}, "grains in all");
+  reader.whole_number("seed", recipe.seed, {0, 9e15},
+                      "seed of all random numbers; further specimens of --count take the next seeds");
+  reader.number("thickness_m", recipe.thickness, "m", positive, "2D: thickness of the slab");
+  if (dimension_of(recipe.shape) == 3)
+    reader.refuse("thickness_m", "contradicts pack.shape = \"sphere\"; allowed: in 2D only; remove one");
+  reader.choice("cell", recipe.oriented, {"upright", "oriented"},
+                "upright: square or cube; oriented: a lattice that compression along the axes never makes slender "
+                "(Kraynik and Reinelt in 2D, a cubic field in 3D)");
+  reader.choice("share_by", recipe.share_by_mass, {"number", "mass"}, "measure of grains.share");
 }
 
 /// The curve through d10, d50 and d60, which are in mm.
-Grading read_sieves(TableReader& reader, const std::string& curve) {
-  for (const char* name : {"radii_m", "passing", "smallest_radius_m", "largest_radius_m"}) refuse(reader, name, curve);
-  if (reader.has("passing_by") && reader.choice("passing_by") != "mass")
-    reader.mistake("passing_by", "contradicts grading = \"d10_d60\"; allowed: mass; remove it");
-  reader.leave("passing_by");
-  const double d10 = 1e-3 * reader.number("d10_mm"), d50 = 1e-3 * reader.number("d50_mm"),
-               d60 = 1e-3 * reader.number("d60_mm");
-  if (!(d10 > 0 && d50 > 0 && d60 > 0)) return {};  // a mistake that is told already
-  const std::string wrong = wrong_with_sieves(d10, d50, d60);
-  if (!wrong.empty()) reader.mistake("d50_mm", wrong);
-  return wrong.empty() ? sieve_grading(d10, d50, d60) : Grading{};
+void read_sieves(TableReader& reader, const std::string& curve, Grading& grading) {
+  const bool given = curve == "d10_d60";
+  const auto d10 =
+      reader.optional_number("d10_mm", "mm", positive, "grading = d10_d60: diameter that 10 % of the mass pass");
+  const auto d50 = reader.optional_number("d50_mm", "mm", positive, "grading = d10_d60: mean diameter, that 50 % pass");
+  const auto d60 = reader.optional_number("d60_mm", "mm", positive,
+                                          "grading = d10_d60: diameter that 60 % pass; d60/d10 is the uniformity");
+  for (const char* name : {"d10_mm", "d50_mm", "d60_mm"}) {
+    if (given)
+      reader.expect(name);
+    else
+      reader.refuse(name, "contradicts grading = " + as_toml(curve) + "; allowed: one of the two; remove one");
+  }
+  if (!given || !d10 || !d50 || !d60) return;
+  const std::string wrong = wrong_with_sieves(1e-3 * *d10, 1e-3 * *d50, 1e-3 * *d60);
+  if (wrong.empty())
+    grading = sieve_grading(1e-3 * *d10, 1e-3 * *d50, 1e-3 * *d60);
+  else
+    reader.mistake("d50_mm", wrong);
 }
 
-Grading read_grading(TableReader& reader) {
-  Grading grading;
-  const std::string curve = reader.choice("grading");
-  if (curve == "d10_d60") return read_sieves(reader, curve);
-  for (const char* name : {"d10_mm", "d50_mm", "d60_mm"}) refuse(reader, name, curve);
-  grading.by_mass = reader.choice("passing_by") == "mass";
-  if (curve == "tabulated") {
-    grading.curve = GradingCurve::tabulated;
-    grading.radii = reader.numbers("radii_m");
-    grading.passing = reader.numbers("passing");
-    for (const char* name : {"smallest_radius_m", "largest_radius_m"}) refuse(reader, name, curve);
-    return grading;
+/// The names of the gradings; the last is no curve of its own but a table that is made of three diameters.
+enum class GradingName { uniform, linear, tabulated, d10_d60 };
+
+void read_grading(TableReader& reader, Grading& grading) {
+  const Choices curves{"uniform", "linear", "tabulated", "d10_d60"};
+  GradingName curve = GradingName::uniform;
+  reader.choice(
+      "grading", curve, curves,
+      "uniform: passing is linear in the radius; linear: linear in its logarithm; tabulated: given points, "
+      "linear in the radius between them; d10_d60: by mass through d10, d50 and d60, linear in the logarithm");
+  const bool sieves = curve == GradingName::d10_d60;
+  if (!sieves) grading.curve = GradingCurve(curve);
+  reader.choice("passing_by", grading.by_mass, {"number", "mass"}, "measure of the passing fraction");
+  const auto smallest = reader.optional_number(
+      "smallest_radius_m", "m", positive,
+      "grading = uniform, linear: radius at passing 0; of grains that are not round that of the disc of their area");
+  const auto largest =
+      reader.optional_number("largest_radius_m", "m", positive, "grading = uniform, linear: radius at passing 1");
+  grading.smallest_radius = smallest.value_or(grading.smallest_radius);
+  grading.largest_radius = largest.value_or(grading.largest_radius);
+  grading.radii = reader.numbers("radii_m", "m", positive, "grading = tabulated: ascending radii");
+  grading.passing =
+      reader.numbers("passing", "1", {0, 1},
+                     "grading = tabulated: fraction not larger than each radius, 0 first, 1 last", "each 0 to 1");
+  const bool tabulated = curve == GradingName::tabulated;
+  if (sieves && reader.has("passing_by") && !grading.by_mass)
+    reader.mistake("passing_by", "contradicts grading = \"d10_d60\"; allowed: mass; remove it");
+  read_sieves(reader, curves[std::size_t(curve)], grading);
+  for (const char* name : {"smallest_radius_m", "largest_radius_m", "radii_m", "passing"}) {
+    const bool of_table = name[0] == 'r' || name[0] == 'p';
+    if (sieves || of_table != tabulated)
+      reader.refuse(name, "contradicts grading = " + as_toml(curves[std::size_t(curve)]) +
+                              "; allowed: one of the two; remove one");
+    else if (!tabulated)
+      reader.expect(name);
   }
-  grading.curve = curve == "linear" ? GradingCurve::linear : GradingCurve::uniform;
-  grading.smallest_radius = reader.number("smallest_radius_m");
-  grading.largest_radius = reader.number("largest_radius_m");
-  for (const char* name : {"radii_m", "passing"}) refuse(reader, name, curve);
-  return grading;
 }
 
 /// Aspect ratios and bedding of grains that are not round; of others none may be given.
 void read_outlines(TableReader& reader, GrainFraction& fraction, Shape shape) {
-  struct Key {
-    const char* name;
-    double* value;
-  };
-  const Key keys[] = {{"smallest_aspect_ratio", &fraction.smallest_aspect_ratio},
-                      {"largest_aspect_ratio", &fraction.largest_aspect_ratio},
-                      {"bedding_angle_deg", &fraction.bedding_angle},
-                      {"bedding_spread_deg", &fraction.bedding_spread}};
-  for (const Key& key : keys) {
-    if (!is_round(shape)) {
-      *key.value = reader.number(key.name);
-      continue;
-    }
-    reader.leave(key.name);
-    if (reader.has(key.name))
-      reader.mistake(key.name, "contradicts pack.shape = \"" + fields::text_of(shape) + "\"; allowed: with " +
-                                   names_of_shapes([](Shape each) { return !is_round(each); }, true) +
-                                   " only; remove one");
-  }
-  if (fraction.smallest_aspect_ratio > fraction.largest_aspect_ratio)
+  reader.number("smallest_aspect_ratio", fraction.smallest_aspect_ratio, "1", aspect_ratio,
+                "not round: smallest b/a; values up to the largest are equally frequent");
+  reader.number("largest_aspect_ratio", fraction.largest_aspect_ratio, "1", aspect_ratio, "not round: largest b/a");
+  reader.number("bedding_angle_deg", fraction.bedding_angle, "degrees", {-180, 180},
+                "not round: mean angle from x to the long axes when the grains are placed");
+  reader.number("bedding_spread_deg", fraction.bedding_spread, "degrees", {0, 90},
+                "not round: largest deviation from it, all angles equally frequent; 90: no bedding");
+  if (is_round(shape)) {
+    for (const char* name :
+         {"smallest_aspect_ratio", "largest_aspect_ratio", "bedding_angle_deg", "bedding_spread_deg"})
+      reader.refuse(name, "contradicts pack.shape = " + as_toml(std::string(rvelab::name(shape))) + "; allowed: with " +
+                              names_of_shapes([](Shape each) { return !is_round(each); }, true) + " only; remove one");
+  } else if (fraction.smallest_aspect_ratio > fraction.largest_aspect_ratio) {
     reader.mistake("smallest_aspect_ratio", "is above grains.largest_aspect_ratio; allowed: up to it; correct them");
+  }
 }
 
-void read_fraction(const toml::table& table, Recipe& recipe, toml::array& resolved,
-                   std::vector<keys::KeyError>& errors) {
+void read_fraction(TableReader& reader, Recipe& recipe) {
   GrainFraction fraction;
-  const std::string where = "grains." + table["name"].value_or(fraction.name);
-  TableReader reader(table, recipe_keys(), "grains", table.contains("name") ? where : "grains", line_of(table), errors);
-  fraction.name = reader.text("name", fraction.name);
-  fraction.share = reader.number("share");
-  const std::size_t mistakes = errors.size();
-  fraction.grading = read_grading(reader);
-  const bool grading_read = errors.size() == mistakes;
-  read_outlines(reader, fraction, recipe.shape);
-  const std::string material = reader.text("material", recipe.materials.front().name);
-  std::string known;
-  bool found = false;
-  for (std::size_t k = 0; k < recipe.materials.size(); ++k) {
-    known += (k == 0 ? "" : ", ") + recipe.materials[k].name;
-    if (recipe.materials[k].name != material) continue;
-    fraction.material = k;
-    found = true;
-  }
-  if (!found) reader.mistake("material", "is no material of the recipe; allowed: " + known + "; name one of these");
-  reader.finish();
-  if (grading_read) {
+  reader.text("name", fraction.name, "name of a fraction, for --set grains.NAME.key=value");
+  std::string material = recipe.materials.front().name;
+  reader.text("material", material, "name of the material", "(the first)");
+  reader.number("share", fraction.share, "1", {0, 1, true, false},
+                "fraction of all grains, by pack.share_by; the shares of all [[grains]] add up to 1");
+  const std::size_t mistakes = reader.mistakes();
+  read_grading(reader, fraction.grading);
+  if (reader.mistakes() == mistakes) {
     try {
-      check_grading(fraction.grading, where.c_str());
+      check_grading(fraction.grading, ("grains." + fraction.name).c_str());
     } catch (const InputError& error) {
-      errors.push_back({line_of(table), error.what()});
+      reader.mistake(error.what());
     }
   }
+  read_outlines(reader, fraction, recipe.shape);
+  Choices known;
+  for (const Material& each : recipe.materials) known.push_back(each.name);
+  const auto found = std::find(known.begin(), known.end(), material);
+  fraction.material = std::size_t(found - known.begin());
+  if (found == known.end())
+    reader.mistake("material", "is no material of the recipe; allowed: " + listed(known) + "; name one of these");
   recipe.fractions.push_back(fraction);
-  resolved.push_back(reader.resolved());
 }
 
-void read_grains(const toml::table& file, Recipe& recipe, toml::table& resolved, std::vector<keys::KeyError>& errors) {
+void read_grains(const toml::table& file, Recipe& recipe, toml::table& resolved, std::vector<KeyError>& errors) {
   const toml::node* node = file.get("grains");
   toml::array list;
   recipe.fractions.clear();
+  const auto read = [&](const toml::table& table) {
+    const std::string where =
+        table.contains("name") ? "grains." + table["name"].value_or(std::string("grains")) : "grains";
+    TableReader reader(table, "grains", where, line_of(table), errors);
+    read_fraction(reader, recipe);
+    reader.finish();
+    list.push_back(reader.resolved());
+  };
   if (node != nullptr && node->is_table()) {
-    read_fraction(*node->as_table(), recipe, list, errors);
+    read(*node->as_table());
   } else if (node != nullptr && node->is_array_of_tables()) {
-    for (const auto& item : *node->as_array()) read_fraction(*item.as_table(), recipe, list, errors);
+    for (const auto& item : *node->as_array()) read(*item.as_table());
   } else {
     const std::string text = "the recipe has no grains; allowed: [grains], or [[grains]] for each fraction; add it";
-    errors.push_back(node == nullptr ? keys::KeyError{0, text} : keys::key_error(node->source(), text));
+    errors.push_back(node == nullptr ? KeyError{0, text} : key_error(node->source(), text));
   }
   double shares = 0;
   for (std::size_t k = 0; k < recipe.fractions.size(); ++k) {
     shares += recipe.fractions[k].share;
     for (std::size_t other = 0; other < k; ++other) {
       if (recipe.fractions[k].name == recipe.fractions[other].name)
-        errors.push_back({line_of(*node), "grains.name = \"" + recipe.fractions[k].name +
-                                              "\" is there twice; allowed: a name of its own for each; rename one"});
+        errors.push_back({line_of(*node), "grains.name = " + as_toml(recipe.fractions[k].name) +
+                                              " is there twice; allowed: a name of its own for each; rename one"});
     }
   }
   if (!recipe.fractions.empty() && !(std::abs(shares - 1) <= 1e-6)) {
@@ -195,36 +201,46 @@ std::optional<Matrix3> stress_of(const std::vector<double>& list, Shape shape) {
 
 void read_stress(TableReader& reader, RecipeFile& file) {
   Recipe& recipe = file.recipe;
-  const auto pressure = reader.optional_number("pressure_Pa");
-  file.pressures = reader.numbers("pressures_Pa");
-  const auto components = reader.numbers("stress_Pa");
-  if (pressure && reader.has("pressures_Pa"))
-    reader.mistake("pressures_Pa", "contradicts target.pressure_Pa; allowed: one of the two; remove one");
-  if (pressure && reader.has("stress_Pa"))
-    reader.mistake("stress_Pa", "contradicts target.pressure_Pa; allowed: one of the two; remove one");
+  const int d = dimension_of(recipe.shape);
+  const auto pressure = reader.optional_number("pressure_Pa", "Pa", pressures,
+                                               "isotropic stress, compression positive; shear stresses are zero");
+  file.pressures =
+      reader.numbers("pressures_Pa", "Pa", pressures, "a family: the same grains at each of these pressures");
+  const auto components = reader.numbers(
+      "stress_Pa", "Pa", stresses,
+      "full stress, tension positive: xx, yy, xy in 2D, xx, yy, zz, yz, xz, xy in 3D; with pressures_Pa it is scaled "
+      "to each mean pressure");
+  for (const char* other : {"pressures_Pa", "stress_Pa"})
+    if (pressure) reader.refuse(other, "contradicts target.pressure_Pa; allowed: one of the two; remove one");
   if (pressure) recipe.stress = isotropic_stress(*pressure, recipe.shape);
   if (!components.empty()) {
     recipe.stress = stress_of(components, recipe.shape);
-    if (!recipe.stress) {
-      reader.mistake("stress_Pa", dimension_of(recipe.shape) == 2
+    if (!recipe.stress)
+      reader.mistake("stress_Pa", d == 2
                                       ? "is not a stress in 2D; allowed: [xx, yy, xy]; give three numbers"
                                       : "is not a stress in 3D; allowed: [xx, yy, zz, yz, xz, xy]; give six numbers");
-    } else if (!(mean_pressure(*recipe.stress, dimension_of(recipe.shape)) > 0)) {
+    else if (!(mean_pressure(*recipe.stress, d) > 0))
       reader.mistake("stress_Pa",
                      "has no mean pressure; allowed: tension positive with -(xx + yy [+ zz]) > 0; give "
                      "compressive normal stresses as negative numbers");
-    }
   }
   if (!file.pressures.empty() && file.pressures.front() > 0) {
     if (!recipe.stress) recipe.stress = isotropic_stress(1, recipe.shape);
-    *recipe.stress *= file.pressures.front() / mean_pressure(*recipe.stress, dimension_of(recipe.shape));
+    *recipe.stress *= file.pressures.front() / mean_pressure(*recipe.stress, d);
   }
 }
 
 /// The void ratio of a relative density between the limits of the recipe.
 void read_relative_density(TableReader& reader, Recipe& recipe) {
-  const auto density = reader.optional_number("relative_density");
-  const auto e_min = reader.optional_number("e_min"), e_max = reader.optional_number("e_max");
+  const auto density =
+      reader.optional_number("relative_density", "1", {-1, 2},
+                             "D = (e_max - e)/(e_max - e_min) of the finished specimen, in place of void_ratio");
+  const auto e_min = reader.optional_number(
+      "e_min", "1", {-1, infinity, true, true},
+      "relative_density: void ratio that the recipe reaches with preparation.friction = 0, without a target");
+  const auto e_max =
+      reader.optional_number("e_max", "1", {-1, infinity, true, true},
+                             "relative_density: void ratio that it reaches with preparation.friction = 1e6");
   if (!density) return;
   if (recipe.void_ratio)
     reader.mistake("relative_density", "contradicts target.void_ratio or porosity; allowed: one of them; remove one");
@@ -237,80 +253,77 @@ void read_relative_density(TableReader& reader, Recipe& recipe) {
   recipe.void_ratio = *e_max - *density * (*e_max - *e_min);
 }
 
-void read_target(const toml::table& table, RecipeFile& file, toml::table& resolved,
-                 std::vector<keys::KeyError>& errors) {
-  TableReader reader(table, recipe_keys(), "target", "target", line_of(table), errors);
+void read_target(TableReader& reader, RecipeFile& file) {
   Recipe& recipe = file.recipe;
   read_stress(reader, file);
-  recipe.void_ratio = reader.optional_number("void_ratio");
-  if (const auto porosity = reader.optional_number("porosity")) {
-    if (recipe.void_ratio)
-      reader.mistake("porosity", "contradicts target.void_ratio; allowed: one of the two; remove one");
-    recipe.void_ratio = *porosity / (1 - *porosity);
-  }
+  recipe.void_ratio = reader.optional_number(
+      "void_ratio", "1", {-1, infinity, true, true},
+      "void ratio of the finished specimen, for which rvelab finds the preparation friction; without a stress: of the "
+      "cell");
+  const auto porosity =
+      reader.optional_number("porosity", "1", {-10, 1, true, true}, "porosity n = e/(1 + e), in place of void_ratio");
+  if (porosity && recipe.void_ratio)
+    reader.mistake("porosity", "contradicts target.void_ratio; allowed: one of the two; remove one");
+  if (porosity) recipe.void_ratio = *porosity / (1 - *porosity);
   read_relative_density(reader, recipe);
-  const bool stress_named = reader.has("pressure_Pa") || reader.has("pressures_Pa") || reader.has("stress_Pa") ||
-                            reader.has_in_another_unit("pressure_Pa") || reader.has_in_another_unit("pressures_Pa") ||
-                            reader.has_in_another_unit("stress_Pa");
-  if (!stress_named && !recipe.void_ratio && !table.contains("void_ratio") && !table.contains("relative_density"))
+  bool stress_named = false;
+  for (const char* name : {"pressure_Pa", "pressures_Pa", "stress_Pa"})
+    stress_named = stress_named || reader.has(name) || reader.has_in_another_unit(name);
+  if (!stress_named && !recipe.void_ratio && !reader.has("void_ratio") && !reader.has("relative_density"))
     reader.mistake("pressure_Pa", "is missing, and so is target.void_ratio; allowed: one of them or both; add one");
-  recipe.void_ratio_tolerance = reader.number("void_ratio_tolerance");
-  recipe.stress_tolerance = reader.number("stress_tolerance");
-  recipe.unbalanced = reader.number("unbalanced");
-  reader.finish();
-  resolved.insert("target", reader.resolved());
+  reader.number("void_ratio_tolerance", recipe.void_ratio_tolerance, "1", below_one, "allowed error of the void ratio");
+  reader.number("stress_tolerance", recipe.stress_tolerance, "1", below_one,
+                "allowed error of each stress component, over the mean pressure");
+  reader.number("unbalanced", recipe.unbalanced, "1", below_one, "unbalanced force ratio of the finished specimen");
 }
 
-void read_preparation(const toml::table& table, Recipe& recipe, toml::table& resolved,
-                      std::vector<keys::KeyError>& errors) {
-  TableReader reader(table, recipe_keys(), "preparation", "preparation", line_of(table), errors);
-  Preparation& preparation = recipe.preparation;
-  using Method = Preparation::Method;
-  const std::string method = reader.choice("method");
-  preparation.method = method == "growth"    ? Method::growth
-                       : method == "regular" ? Method::regular
-                                             : Method::compression;
-  preparation.friction = reader.optional_number("friction");
-  preparation.rolling_friction = reader.number("rolling_friction");
-  preparation.lowest_friction = reader.number("lowest_friction");
-  preparation.highest_friction = reader.number("highest_friction");
-  preparation.max_draws = reader.whole_number("max_draws");
-  if (method == "growth" || !recipe.stress) {
-    preparation.first_size = reader.number("first_size");
-    preparation.growth_void_ratio = reader.optional_number("growth_void_ratio");
-  } else {
-    for (const char* name : {"first_size", "growth_void_ratio"}) {
-      reader.leave(name);
-      if (reader.has(name))
-        reader.mistake(name, "contradicts method = \"" + method + "\"; allowed: with method = \"growth\"; remove one");
-    }
-  }
-  if (preparation.friction && recipe.stress && recipe.void_ratio)
+void read_preparation(TableReader& reader, RecipeFile& file) {
+  Recipe& recipe = file.recipe;
+  Preparation& p = recipe.preparation;
+  const Choices methods{"compression", "growth", "regular"};
+  reader.choice("method", p.method, methods,
+                "compression: the cell shrinks around scattered grains; growth: the radii grow in a cell that stands "
+                "still; regular: 2D, equal grains in rows that lie, with the cell, at the bedding angle");
+  p.friction = reader.optional_number(
+      "friction", "1", friction, "friction of all contacts during preparation: low for dense, high for loose specimens",
+      "(searched, or that of the materials; 0 without a stress)");
+  reader.number("rolling_friction", p.rolling_friction, "1", not_negative,
+                "largest eta of all materials during preparation");
+  reader.number("lowest_friction", p.lowest_friction, "1", friction, "lower limit of the search for target.void_ratio");
+  reader.number("highest_friction", p.highest_friction, "1", friction,
+                "upper limit of the search for target.void_ratio");
+  reader.whole_number("max_draws", p.max_draws, {1, 1e6}, "most draws of that search; then it fails");
+  reader.number("first_size", p.first_size, "1", below_one, "method = growth: initial radii over the final ones");
+  p.growth_void_ratio = reader.optional_number("growth_void_ratio", "1", positive,
+                                               "method = growth: void ratio of the cell once the grains have grown",
+                                               "(target.void_ratio + 0.1; without one 0.3 in 2D, 0.9 in 3D)");
+  if (p.method != Preparation::Method::growth && recipe.stress)
+    for (const char* name : {"first_size", "growth_void_ratio"})
+      reader.refuse(name, "contradicts method = " + as_toml(methods[std::size_t(p.method)]) +
+                              "; allowed: with method = \"growth\"; remove one");
+  if (p.friction && recipe.stress && recipe.void_ratio)
     reader.mistake("friction",
                    "contradicts target.void_ratio, for which the friction is searched; allowed: one of the "
                    "two; remove one");
-  if (!(preparation.lowest_friction < preparation.highest_friction))
+  if (!(p.lowest_friction < p.highest_friction))
     reader.mistake("highest_friction", "is not above preparation.lowest_friction; allowed: above it; correct one");
-  reader.finish();
-  resolved.insert("preparation", reader.resolved());
 }
 
 /// Materials, contact model, damping and solver.
-void read_parameters(const toml::table& file, Recipe& recipe, toml::table& resolved,
-                     std::vector<keys::KeyError>& errors) {
+void read_parameters(const toml::table& file, Recipe& recipe, toml::table& resolved, std::vector<KeyError>& errors) {
   Specimen specimen;
   specimen.shape = recipe.shape;
   specimen.materials = {Material{}};
+  const std::size_t mistakes = errors.size();
   if (!file.contains("material"))
     errors.push_back({0, "the recipe has no material; allowed: [[material]] with its keys below; add it"});
-  const std::size_t mistakes = errors.size();
-  keys::read_material_tables(file, specimen, errors);
+  read_material_tables(file, specimen, errors);
   if (specimen.materials.empty()) specimen.materials = {Material{}};
   recipe.materials = specimen.materials;
   recipe.contact = specimen.contact;
   recipe.damping = specimen.damping;
   recipe.solver = specimen.solver;
-  if (errors.size() == mistakes && file.contains("material")) {
+  if (errors.size() == mistakes) {
     try {
       check_parameters(recipe.contact, recipe.damping, recipe.materials);
     } catch (const InputError& error) {
@@ -323,27 +336,53 @@ void read_parameters(const toml::table& file, Recipe& recipe, toml::table& resol
 }
 
 RecipeFile read_file(toml::table file, const std::string& path, const std::vector<std::string>& assignments) {
-  std::vector<keys::KeyError> errors;
-  keys::assign_all(file, assignments, errors);
-  RecipeFile read;
+  std::vector<KeyError> errors;
+  assign_all(file, assignments, errors);
+  RecipeFile recipe;
   toml::table resolved;
-  keys::expect_top_tables(file, errors, tables);
-  read_pack(table_of(file, "pack", errors), read, resolved, errors);
-  read_parameters(file, read.recipe, resolved, errors);
-  read_grains(file, read.recipe, resolved, errors);
-  read_target(table_of(file, "target", errors), read, resolved, errors);
-  read_preparation(table_of(file, "preparation", errors), read.recipe, resolved, errors);
-  keys::raise(path, errors);
+  expect_top_tables(file, errors,
+                    {"pack", "grains", "target", "preparation", "contact", "damping", "solver", "material"});
+  const auto read = [&](const char* name, void (*by)(TableReader&, RecipeFile&)) {
+    const toml::table& table = table_of(file, name, errors);
+    TableReader reader(table, name, name, line_of(table), errors);
+    by(reader, recipe);
+    reader.finish();
+    resolved.insert(name, reader.resolved());
+  };
+  read("pack", read_pack);
+  read_parameters(file, recipe.recipe, resolved, errors);
+  read_grains(file, recipe.recipe, resolved, errors);
+  read("target", read_target);
+  read("preparation", read_preparation);
+  raise(path, errors);
   try {
-    check_recipe(read.recipe);
+    check_recipe(recipe.recipe);
   } catch (const InputError& error) {
     throw InputError(path + ": " + error.what());
   }
-  read.resolved = text_of(resolved);
-  return read;
+  recipe.resolved = written_file(resolved);
+  return recipe;
 }
 
 }  // namespace
+
+std::vector<Key> recipe_keys() {
+  const toml::table nothing;
+  std::vector<KeyError> ignored;
+  std::vector<Key> all;
+  RecipeFile recipe;
+  const auto document = [&](const char* table, void (*read)(TableReader&, RecipeFile&)) {
+    TableReader reader(nothing, table, table, 0, ignored);
+    read(reader, recipe);
+    const std::vector<Key> keys = reader.keys();
+    all.insert(all.end(), keys.begin(), keys.end());
+  };
+  document("pack", read_pack);
+  document("grains", [](TableReader& reader, RecipeFile& file) { read_fraction(reader, file.recipe); });
+  document("target", read_target);
+  document("preparation", read_preparation);
+  return all;
+}
 
 RecipeFile RecipeFile::member(std::uint64_t seed, std::optional<double> pressure) const {
   RecipeFile one = *this;
@@ -355,18 +394,18 @@ RecipeFile RecipeFile::member(std::uint64_t seed, std::optional<double> pressure
     one.pressures = {*pressure};
     table["target"].as_table()->insert_or_assign("pressures_Pa", toml::array{*pressure});
   }
-  one.resolved = text_of(table);
+  one.resolved = written_file(table);
   return one;
 }
 
 RecipeFile read_recipe(const std::string& path, const std::vector<std::string>& assignments) {
-  return read_file(keys::parse_toml_file(path), path, assignments);
+  return read_file(parse_toml_file(path), path, assignments);
 }
 
 RecipeFile parse_recipe(const std::string& text, const std::string& path, const std::vector<std::string>& assignments) {
-  return read_file(keys::parse_toml_text(text, path), path, assignments);
+  return read_file(parse_toml_text(text, path), path, assignments);
 }
 
-bool is_recipe(const std::string& path) { return keys::parse_toml_file(path).contains("pack"); }
+bool is_recipe(const std::string& path) { return parse_toml_file(path).contains("pack"); }
 
 }  // namespace rvelab::pack

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "rvelab/keys/table_key.hpp"
+#include "rvelab/keys/key.hpp"
 #include "rvelab/pack/recipe.hpp"
 
 namespace rvelab::pack {
@@ -30,8 +30,8 @@ RecipeFile read_recipe(const std::string& path, const std::vector<std::string>& 
 RecipeFile parse_recipe(const std::string& text, const std::string& path,
                         const std::vector<std::string>& assignments = {});
 
-/// The table of keys of a recipe, beside which contact, damping, solver and material stand.
-const std::vector<keys::TableKey>& recipe_keys();
+/// The keys of a recipe, beside which those of contact, damping, solver and material stand.
+std::vector<keys::Key> recipe_keys();
 
 /// Whether a TOML file is a recipe, and not a protocol: it has [pack].
 bool is_recipe(const std::string& path);

@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "rvelab/error.hpp"
+#include "rvelab/keys/table_reader.hpp"
 #include "rvelab/protocol/run.hpp"
 #include "rvelab/solver/loading/step_times.hpp"
 #include "rvelab/solver/rve.hpp"
@@ -23,9 +25,6 @@ struct HeldStress {
   double target;
   double scale;  ///< Pa, > 0: what the tolerance is relative to
 };
-
-/// Independent components of a symmetric tensor: xx yy xy in 2D, xx yy zz yz xz xy in 3D.
-std::vector<std::pair<int, int>> components(int dimension);
 
 /// The mixed target that brings the held components from `stress` to their targets and gives all others the strain of
 /// the displacement gradient dH (dimensionless, relative to the start of the increment). The whole skew part is dH's.
@@ -59,8 +58,8 @@ class RunningTest {
   template <class Increment>
   void go_through(const std::vector<double>& strains, Increment increment_to) {
     std::int64_t& done = run.progress.step;
-    while (!ended() && done < static_cast<std::int64_t>(strains.size())) {
-      const double strain = strains[static_cast<std::size_t>(done)];
+    while (!ended() && done < std::int64_t(strains.size())) {
+      const double strain = strains[std::size_t(done)];
       if (done == 0) record_now(strain);
       if (done > 0) record(strain, increment_to(strain));
       step_done();
@@ -80,7 +79,7 @@ class RunningTest {
         record_now(0);
       } else {
         const double before = run.result.records.back().strain;
-        const double direction = forth ? sign : -sign, spacing = std::abs(to_strain) / static_cast<double>(steps);
+        const double direction = forth ? sign : -sign, spacing = std::abs(to_strain) / double(steps);
         // After a turn by stress the next strain of the grid is the first that is clearly ahead.
         do {
           at.place += forth ? 1 : -1;
@@ -103,7 +102,7 @@ class RunningTest {
     }
   }
   static double grid_strain(double to_strain, std::int64_t place, long steps) {
-    return to_strain * static_cast<double>(place) / static_cast<double>(steps);
+    return to_strain * double(place) / double(steps);
   }
   /// From the strain of the last record towards another in as many increments as it takes to pass a stress by less than
   /// 1 %. Each goes nine tenths of what is lacking at the slope of the one before it, and from 5 % on to 0.4 % beyond;
@@ -187,5 +186,20 @@ class RunningTest {
 
 /// InputError if a stage does not go with specimens of this dimension.
 void expect_fits(const Protocol& protocol, int dimension);
+
+/// A quantity that an event may check.
+struct EventQuantity {
+  const char* name;
+  double (*value)(const RunningTest&);
+};
+
+/// Those of a running test, and every number of the table of measured quantities (rvelab/records/quantities.hpp).
+const std::vector<EventQuantity>& event_quantities();
+
+/// The events of a stage; the stages that they name are looked up once all are read.
+std::vector<Event> read_events(keys::TableReader& reader);
+
+/// The first event of the stage that its last record meets, from 0; -1: none. Renews progress.largest.
+int met_event(RunningTest& test, const Stage& stage);
 
 }  // namespace rvelab::protocol

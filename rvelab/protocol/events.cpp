@@ -1,14 +1,13 @@
-#include "rvelab/protocol/events.hpp"
+// Events: conditions that end a stage. Declared in drive.hpp.
+#include "rvelab/protocol/drive.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include "rvelab/error.hpp"
-#include "rvelab/keys/key_builders.hpp"
+#include "rvelab/keys/table_reader.hpp"
 #include "rvelab/measure/measures.hpp"
-#include "rvelab/protocol/protocol_keys.hpp"
+#include "rvelab/protocol/protocol.hpp"
 #include "rvelab/protocol/stage_kinds.hpp"
 
 namespace rvelab::protocol {
@@ -53,66 +52,49 @@ const std::vector<EventQuantity>& event_quantities() {
             {Quantity::text.name, [](Test test) { return Quantity::measure(test.rve, test.rve.network()); }});
       }
     });
-    list.push_back({"cycles", [](Test test) { return 0.5 * static_cast<double>(test.run.progress.turns); }});
+    list.push_back({"cycles", [](Test test) { return 0.5 * double(test.run.progress.turns); }});
     list.push_back({"visits", [](Test test) {
                       const records::Progress& at = test.run.progress;
-                      return static_cast<double>(at.visits[static_cast<std::size_t>(at.stage)]);
+                      return double(at.visits[std::size_t(at.stage)]);
                     }});
     return list;
   }();
   return all;
 }
 
-std::vector<keys::TableKey> event_keys() {
-  using namespace keys;
-  const char* t = "stage.until";
-  Choices names;
-  for (const EventQuantity& each : event_quantities()) names.emplace_back(each.name);
-  return {
-      required(
-          choice(t, "quantity", names,
-                 "quantity that is checked at each record after the first; strain: of the record; eps_v is compression "
-                 "positive, stresses tension positive; p_over_first: p over p at the start of the stage",
-                 "")),
-      with_range(number(t, "above", "1", "", every, "the stage ends when the quantity is above this, in its unit"),
-                 "any finite number"),
-      with_range(number(t, "below", "1", "", every, "the stage ends when the quantity is below this, in its unit"),
-                 "any finite number"),
-      number(t, "falls_by", "1", "", ratio,
-             "the stage ends when the quantity has fallen by this fraction of its largest value in the stage (after a "
-             "peak)"),
-      text(t, "then", "(the next)", "name of the stage that follows, \"end\" for none"),
-  };
-}
-
-std::vector<Event> read_events(TableReader& reader, const Stage& stage, std::vector<keys::KeyError>& errors) {
-  std::vector<Event> events;
-  toml::array resolved;
-  for (const toml::table* table : reader.tables("until")) {
-    TableReader until(*table, protocol_keys(), "stage.until",
-                      "stage." + stage.name + ".until." + std::to_string(events.size()), keys::line_of(*table), errors);
+std::vector<Event> read_events(TableReader& reader) {
+  keys::Choices quantities;
+  for (const EventQuantity& each : event_quantities()) quantities.emplace_back(each.name);
+  const auto read_event = [&](TableReader& until) {
     Event event;
-    event.quantity = until.choice("quantity");
-    const auto above = until.optional_number("above"), below = until.optional_number("below"),
-               falls_by = until.optional_number("falls_by");
-    if (above) event = {event.quantity, Event::When::above, *above, ""};
-    if (below) event = {event.quantity, Event::When::below, *below, ""};
-    if (falls_by) event = {event.quantity, Event::When::falls_by, *falls_by, ""};
-    if (int(above.has_value()) + int(below.has_value()) + int(falls_by.has_value()) != 1) {
-      until.mistake("quantity", "needs one of above, below, falls_by; allowed: exactly one; give one");
-    }
-    event.then = until.text("then", "");
-    until.finish();
-    resolved.push_back(until.resolved());
-    events.push_back(event);
-  }
-  if (events.empty()) return events;
-  reader.resolve("until", resolved);
-  if (!stage.what->takes_events()) {
-    reader.mistake("until", "has no records to look at in kind = \"" + stage.kind + "\"; allowed: with " +
-                                kinds_with_events(true) + "; remove it");
-  }
-  return events;
+    event.quantity = until.required_choice(
+        "quantity", quantities,
+        "quantity that is checked at each record after the first; strain: of the record; eps_v is compression "
+        "positive, stresses tension positive; p_over_first: p over p at the start of the stage");
+    int given = 0;
+    const auto take = [&](const std::optional<double>& value, Event::When when) {
+      if (!value) return;
+      event.when = when;
+      event.value = *value;
+      ++given;
+    };
+    const char* const any = "any finite number";
+    take(until.optional_number("above", "1", keys::every, "the stage ends when the quantity is above this, in its unit",
+                               "", any),
+         Event::When::above);
+    take(until.optional_number("below", "1", keys::every, "the stage ends when the quantity is below this, in its unit",
+                               "", any),
+         Event::When::below);
+    take(until.optional_number("falls_by", "1", keys::ratio,
+                               "the stage ends when the quantity has fallen by this fraction of its largest value in "
+                               "the stage (after a peak)"),
+         Event::When::falls_by);
+    if (given != 1) until.mistake("quantity", "needs one of above, below, falls_by; allowed: exactly one; give one");
+    until.text("then", event.then, "name of the stage that follows, \"end\" for none", "(the next)");
+    return event;
+  };
+  return reader.tables("until", "stage.until", false, "[[stage.until]], any number",
+                       "events, each of which ends the stage; not with " + kinds_with_events(false), read_event);
 }
 
 std::string event_in_words(const Event& event) {
@@ -134,7 +116,7 @@ int met_event(RunningTest& test, const Stage& stage) {
     const bool above = event.when == Event::When::above && value > event.value;
     const bool below = event.when == Event::When::below && value < event.value;
     const bool fallen = event.when == Event::When::falls_by && value < (1 - event.value) * at.largest[k];
-    if (above || below || fallen) met = static_cast<int>(k);
+    if (above || below || fallen) met = int(k);
   }
   return met;
 }

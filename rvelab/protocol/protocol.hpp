@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "rvelab/keys/key.hpp"
 #include "rvelab/protocol/stages.hpp"
 #include "rvelab/records/record.hpp"
 #include "rvelab/specimen/specimen.hpp"
@@ -87,5 +88,13 @@ std::string strength_stages();
 /// The specimen with the protocol's overrides. InputError if one does not fit the specimen (a material that it has
 /// not, a stiffness key that its law does not take), or if its dimension is not the protocol's.
 Specimen with_overrides(const Protocol& protocol, Specimen specimen);
+
+/// Every key that a protocol or a recipe may have, in the order of its tables: those of the protocol itself ("test",
+/// "loading", "stage", "stage.compression", ...), those of a recipe ("pack", "grains", "target", "preparation"), then
+/// those of a material file (contact, damping, solver, material).
+std::vector<keys::Key> all_keys();
+
+/// Those of the protocol itself.
+std::vector<keys::Key> protocol_keys();
 
 }  // namespace rvelab::protocol

@@ -2,105 +2,152 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <sstream>
 
 #include "rvelab/error.hpp"
-#include "rvelab/keys/assign.hpp"
+#include "rvelab/keys/key.hpp"
 #include "rvelab/keys/material_toml.hpp"
 #include "rvelab/keys/table_reader.hpp"
-#include "rvelab/keys/toml_source.hpp"
+#include "rvelab/pack/read_recipe.hpp"
 #include "rvelab/protocol/drive.hpp"
 #include "rvelab/protocol/protocol.hpp"
-#include "rvelab/protocol/protocol_keys.hpp"
-#include "rvelab/protocol/read_stage.hpp"
+#include "rvelab/protocol/stage_kinds.hpp"
 #include "rvelab/solver/assembly/specimen_check.hpp"
 
 namespace rvelab::protocol {
+
 namespace {
 
-using keys::line_of;
-using keys::table_of;
-using keys::TableReader;
+using namespace keys;
 
 // [contact] before [material]: the law says which unit a stiffness has.
 constexpr std::array<const char*, 4> override_tables{"contact", "damping", "solver", "material"};
 
-void read_test(const toml::table& table, Protocol& protocol, toml::table& resolved,
-               std::vector<keys::KeyError>& errors) {
-  TableReader reader(table, protocol_keys(), "test", "test", line_of(table), errors);
-  protocol.name = reader.text("name");
-  protocol.dimension = static_cast<int>(reader.optional_whole_number("dimension").value_or(0));
-  if (const auto pressure = reader.optional_number("pressure_Pa")) protocol.pressure = *pressure;
-  // A pressure in another unit is one mistake, not one more for each stage that would have taken it.
-  if (reader.has_in_another_unit("pressure_Pa") && std::isnan(protocol.pressure)) protocol.pressure = 0;
-  reader.finish();
-  resolved.insert("test", reader.resolved());
+void read_test(TableReader& reader, Protocol& protocol) {
+  protocol.name = reader.required_text("name", "name of the test, kept in the record file");
+  const auto dimension =
+      reader.optional_whole_number("dimension", {2, 3}, "dimension of the specimen", "(that of the specimen)", "2, 3");
+  protocol.dimension = int(dimension.value_or(0));
+  const auto pressure = reader.optional_number(
+      "pressure_Pa", "Pa", pressures,
+      "pressure, compression positive, of every stage without one of its own; `rvelab calibrate` sets it");
+  protocol.pressure = pressure.value_or(protocol.pressure);
+  // A pressure that is wrong, or in another unit, is one mistake, not one more for each stage that would have taken it.
+  const bool meant = reader.has("pressure_Pa") || reader.has_in_another_unit("pressure_Pa");
+  if (meant && std::isnan(protocol.pressure)) protocol.pressure = 0;
 }
 
-void read_loading(const toml::table& table, Protocol& protocol, toml::table& resolved,
-                  std::vector<keys::KeyError>& errors) {
-  TableReader reader(table, protocol_keys(), "loading", "loading", line_of(table), errors);
+void read_loading(TableReader& reader, Protocol& protocol) {
   LoadingSettings& loading = protocol.loading;
-  loading.physical = reader.choice("mode") == "physical";
+  reader.choice(
+      "mode", loading.physical, {"quasi_static", "physical"},
+      "time in compression, simple shear, flow and deformation: quasi_static, or physical with true masses at "
+      "the given rate");
+  const auto rate =
+      reader.optional_number("rate_1_s", "1/s", positive, "mode = physical: true rate of the driving strain");
+  const auto inertial_number = reader.optional_number(
+      "inertial_number", "1", positive,
+      "mode = physical, in place of rate_1_s: I = rate d sqrt(rho/p) with p at the start of the stage");
   const bool has_rate = reader.has("rate_1_s"), has_number = reader.has("inertial_number");
-  loading.rate = reader.optional_number("rate_1_s").value_or(0);
-  loading.inertial_number = reader.optional_number("inertial_number").value_or(0);
-  if (has_rate && has_number) {
+  loading.rate = rate.value_or(0);
+  loading.inertial_number = inertial_number.value_or(0);
+  if (has_rate && has_number)
     reader.mistake("inertial_number", "contradicts loading.rate_1_s; allowed: one of the two; remove one");
-  }
-  if (!loading.physical && (has_rate || has_number)) {
-    reader.mistake(has_rate ? "rate_1_s" : "inertial_number",
-                   "contradicts loading.mode = \"quasi_static\", which has no rate; allowed: with mode = \"physical\" "
-                   "only; set the mode or remove the key");
-  }
-  if (loading.physical && !has_rate && !has_number && !reader.has_in_another_unit("rate_1_s")) {
+  if (!loading.physical)
+    reader.refuse(has_rate ? "rate_1_s" : "inertial_number",
+                  "contradicts loading.mode = \"quasi_static\", which has no rate; allowed: with mode = \"physical\" "
+                  "only; set the mode or remove the key");
+  if (loading.physical && !has_rate && !has_number && !reader.has_in_another_unit("rate_1_s"))
     reader.mistake("mode", "needs a rate; allowed: rate_1_s or inertial_number beside it; add one of them");
-  }
-  loading.held_tolerance = reader.number("held_tolerance");
-  const bool usual_tolerance = loading.physical && !reader.has("held_tolerance");
-  if (usual_tolerance) loading.held_tolerance = LoadingSettings::held_tolerance_at_rate;
-  reader.finish();
-  toml::table complete = reader.resolved();
-  if (usual_tolerance) complete.insert_or_assign("held_tolerance", loading.held_tolerance);
-  resolved.insert("loading", std::move(complete));
+  reader.number("held_tolerance", loading.held_tolerance, "1", ratio,
+                "allowed error of a held stress, over the larger of its target and 1 % of p at the start of the stage; "
+                "mode = physical: of its mean over an increment, by default 0.05");
+  if (!loading.physical || reader.has("held_tolerance")) return;
+  loading.held_tolerance = LoadingSettings::held_tolerance_at_rate;
+  reader.resolve("held_tolerance", loading.held_tolerance);
 }
 
-void read_specimen_name(const toml::table& file, Protocol& protocol, toml::table& resolved,
-                        std::vector<keys::KeyError>& errors) {
-  if (!file.contains("specimen")) return;
-  TableReader reader(table_of(file, "specimen", errors), protocol_keys(), "specimen", "specimen",
-                     line_of(*file.get("specimen")), errors);
-  protocol.specimen_file = reader.text("file");
-  reader.finish();
-  resolved.insert("specimen", reader.resolved());
-}
-
-void read_calibrate(const toml::table& file, Protocol& protocol, toml::table& resolved,
-                    std::vector<keys::KeyError>& errors) {
-  if (!file.contains("calibrate")) return;
-  TableReader reader(table_of(file, "calibrate", errors), protocol_keys(), "calibrate", "calibrate",
-                     line_of(*file.get("calibrate")), errors);
-  protocol.calibration_pressures = reader.numbers("pressures_Pa");
-  reader.finish();
-  resolved.insert("calibrate", reader.resolved());
-}
-
-void read_output(const toml::table& table, Protocol& protocol, toml::table& resolved,
-                 std::vector<keys::KeyError>& errors) {
-  TableReader reader(table, protocol_keys(), "output", "output", line_of(table), errors);
-  protocol.snapshots_every = reader.whole_number("snapshots_every");
-  const auto names = reader.choices("quantities");
-  if (reader.has("quantities")) protocol.quantities = 0;
+void read_output(TableReader& reader, Protocol& protocol) {
+  reader.whole_number("snapshots_every", protocol.snapshots_every, {0, 1e9},
+                      "n: the file keeps grains and contacts of every n-th record, from the first; 0: of none");
+  Choices all;
+  std::string usual;
   for (const records::QuantityRow& row : records::quantity_rows) {
-    if (std::find(names.begin(), names.end(), row.text.name) != names.end()) protocol.quantities |= row.bit;
+    all.emplace_back(row.text.name);
+    if (row.text.usual) usual += (usual.empty() ? "[" : ", ") + as_toml(all.back());
   }
+  const auto names = reader.choices(
+      "quantities", all, "quantities measured at each record beside strain and stress; others are not computed",
+      usual + "]");
+  if (reader.has("quantities")) protocol.quantities = 0;
+  for (const records::QuantityRow& row : records::quantity_rows)
+    if (std::find(names.begin(), names.end(), row.text.name) != names.end()) protocol.quantities |= row.bit;
+}
+
+void read_specimen_name(TableReader& reader, Protocol& protocol) {
+  protocol.specimen_file = reader.required_text(
+      "file", "specimen file of the test, relative to the protocol's folder; --specimen overrides it");
+}
+
+void read_calibrate(TableReader& reader, Protocol& protocol) {
+  protocol.calibration_pressures =
+      reader.numbers("pressures_Pa", "Pa", positive, "pressures of `rvelab calibrate`; --pressures overrides them");
+}
+
+/// The tables of a protocol beside its stages, in the order of the documentation.
+struct TableOfProtocol {
+  const char* name;
+  void (*read)(TableReader&, Protocol&);
+  bool optional = false;
+};
+constexpr TableOfProtocol tables_of_protocol[] = {{"test", read_test},
+                                                  {"loading", read_loading},
+                                                  {"output", read_output},
+                                                  {"specimen", read_specimen_name, true},
+                                                  {"calibrate", read_calibrate, true}};
+
+std::string read_kind(TableReader& reader) {
+  Choices kinds;
+  for (MakeStage* const make : stage_kinds) kinds.emplace_back(make()->name());
+  return reader.required_choice("kind", kinds,
+                                "kind of loading; the other keys of the stage are those listed under its kind");
+}
+
+/// What stages of every kind have.
+void read_common(TableReader& reader, Stage& stage) {
+  reader.text("name", stage.name, "name of the stage, in records and in --set stage.NAME.key=value", "(its kind)");
+  reader.text("then", stage.then, "name of the stage that follows, \"end\" for none", "(the next)");
+  stage.until = read_events(reader);
+}
+
+void read_stage(const toml::table& table, long number, Protocol& protocol, toml::array& resolved,
+                std::vector<KeyError>& errors) {
+  const std::string kind_given = table["kind"].value_or(std::string());
+  const std::string name = table["name"].value_or(kind_given.empty() ? std::to_string(number) : kind_given);
+  TableReader reader(table, "stage", "stage." + name, line_of(table), errors);
+  Stage stage;
+  stage.kind = stage.name = read_kind(reader);
+  if (stage.kind.empty()) return;  // without its kind no other key can be judged
+  read_common(reader, stage);
+  auto what = stage_of_kind(stage.kind);
+  what->read(reader, protocol);
+  if (!stage.until.empty() && !what->takes_events())
+    reader.mistake("until", "has no records to look at in kind = \"" + stage.kind + "\"; allowed: with " +
+                                kinds_with_events(true) + "; remove it");
+  stage.what = std::move(what);
   reader.finish();
-  resolved.insert("output", reader.resolved());
+  for (const Stage& other : protocol.stages) {
+    if (other.name != stage.name) continue;
+    errors.push_back({line_of(table), "stage.name = \"" + stage.name +
+                                          "\" is there twice; allowed: a name of its own for each (without one its "
+                                          "kind is its name); give this stage another name"});
+  }
+  protocol.stages.push_back(std::move(stage));
+  resolved.push_back(reader.resolved());
 }
 
 /// Checks the overrides on a specimen that has every material they name; how they fit the real one is seen when it is
 /// there.
-void check_overrides(const toml::table& file, std::vector<keys::KeyError>& errors) {
+void check_overrides(const toml::table& file, std::vector<KeyError>& errors) {
   Specimen any;
   any.materials.emplace_back();
   if (const toml::table* materials = file["material"].as_table()) {
@@ -111,13 +158,13 @@ void check_overrides(const toml::table& file, std::vector<keys::KeyError>& error
     }
   }
   for (const char* name : override_tables) {
-    if (const toml::table* table = file[name].as_table()) keys::read_table(any, name, *table, errors);
+    if (const toml::table* table = file[name].as_table()) read_table(any, name, *table, errors);
   }
 }
 
 /// `then` names stages that are there. `tables`: those that the stages were read from, one each.
 void expect_followers(const Protocol& protocol, const std::vector<const toml::table*>& tables,
-                      std::vector<keys::KeyError>& errors) {
+                      std::vector<KeyError>& errors) {
   std::string known = "end";
   std::vector<std::string> names{"end"};
   for (const Stage& stage : protocol.stages) {
@@ -127,8 +174,8 @@ void expect_followers(const Protocol& protocol, const std::vector<const toml::ta
   const auto expect = [&](const std::string& where, const std::string& then, const toml::node* place) {
     if (then.empty() || std::find(names.begin(), names.end(), then) != names.end()) return;
     const std::string message = where + ".then = \"" + then + "\" names no stage; allowed: " + known +
-                                "; the nearest is " + keys::nearest(then, names) + "; correct the name";
-    errors.push_back(keys::key_error(place->source(), message));
+                                "; the nearest is " + nearest(then, names) + "; correct the name";
+    errors.push_back(key_error(place->source(), message));
   };
   for (std::size_t s = 0; s < protocol.stages.size(); ++s) {
     const Stage& stage = protocol.stages[s];
@@ -140,14 +187,13 @@ void expect_followers(const Protocol& protocol, const std::vector<const toml::ta
   }
 }
 
-void read_stages(const toml::table& file, Protocol& protocol, toml::table& resolved,
-                 std::vector<keys::KeyError>& errors) {
+void read_stages(const toml::table& file, Protocol& protocol, toml::table& resolved, std::vector<KeyError>& errors) {
   const toml::node* node = file.get("stage");
   const bool is_list = node != nullptr && node->is_array_of_tables() && !node->as_array()->empty();
   if (!is_list) {
     const std::string message =
         "the protocol has no stage; allowed: at least one [[stage]] with its keys below; add it";
-    errors.push_back(node == nullptr ? keys::KeyError{0, message} : keys::key_error(node->source(), message));
+    errors.push_back(node == nullptr ? KeyError{0, message} : key_error(node->source(), message));
     return;
   }
   toml::array stages;
@@ -162,17 +208,23 @@ void read_stages(const toml::table& file, Protocol& protocol, toml::table& resol
 }
 
 Protocol read_file(toml::table file, const std::string& path, const std::vector<std::string>& assignments) {
-  std::vector<keys::KeyError> errors;
-  keys::assign_all(file, assignments, errors);
+  std::vector<KeyError> errors;
+  assign_all(file, assignments, errors);
   Protocol protocol;
   protocol.path = path;
   toml::table resolved;
-  keys::expect_top_tables(file, errors, top_tables());
-  read_test(table_of(file, "test", errors), protocol, resolved, errors);
-  read_loading(table_of(file, "loading", errors), protocol, resolved, errors);
-  read_output(table_of(file, "output", errors), protocol, resolved, errors);
-  read_specimen_name(file, protocol, resolved, errors);
-  read_calibrate(file, protocol, resolved, errors);
+  std::vector<std::string> known(override_tables.begin(), override_tables.end());
+  known.emplace_back("stage");
+  for (const TableOfProtocol& each : tables_of_protocol) known.emplace_back(each.name);
+  expect_top_tables(file, errors, known);
+  for (const auto& [name, read, optional] : tables_of_protocol) {
+    if (optional && !file.contains(name)) continue;
+    const toml::table& table = table_of(file, name, errors);
+    TableReader reader(table, name, name, line_of(table), errors);
+    read(reader, protocol);
+    reader.finish();
+    resolved.insert(name, reader.resolved());
+  }
   for (const char* name : override_tables) {
     if (!file.contains(name)) continue;
     const toml::table& overrides = table_of(file, name, errors);
@@ -181,22 +233,50 @@ Protocol read_file(toml::table file, const std::string& path, const std::vector<
   }
   check_overrides(file, errors);
   read_stages(file, protocol, resolved, errors);
-  keys::raise(path, errors);
-
-  std::ostringstream text;
-  text << toml::toml_formatter{resolved} << "\n";
-  protocol.resolved = text.str();
+  raise(path, errors);
+  protocol.resolved = written_file(resolved);
   return protocol;
 }
 
 }  // namespace
 
+std::vector<Key> protocol_keys() {
+  const toml::table nothing;
+  std::vector<KeyError> ignored;
+  std::vector<Key> all;
+  Protocol protocol;
+  const auto document = [&](const std::string& table, const auto& read) {
+    TableReader reader(nothing, table, table, 0, ignored);
+    read(reader);
+    const std::vector<Key> keys = reader.keys();
+    all.insert(all.end(), keys.begin(), keys.end());
+  };
+  for (const TableOfProtocol& each : tables_of_protocol)
+    document(each.name, [&](TableReader& reader) { each.read(reader, protocol); });
+  document("stage", [](TableReader& reader) {
+    Stage stage;
+    read_kind(reader);
+    read_common(reader, stage);
+  });
+  for (MakeStage* const make : stage_kinds) {
+    const auto kind = make();
+    document(std::string("stage.") + kind->name(), [&](TableReader& reader) { kind->read(reader, protocol); });
+  }
+  return all;
+}
+
+std::vector<Key> all_keys() {
+  std::vector<Key> all = protocol_keys();
+  for (const auto& list : {pack::recipe_keys(), known_keys()}) all.insert(all.end(), list.begin(), list.end());
+  return all;
+}
+
 Protocol read_protocol(const std::string& path, const std::vector<std::string>& assignments) {
-  return read_file(keys::parse_toml_file(path), path, assignments);
+  return read_file(parse_toml_file(path), path, assignments);
 }
 
 Protocol parse_protocol(const std::string& text, const std::string& path, const std::vector<std::string>& assignments) {
-  return read_file(keys::parse_toml_text(text, path), path, assignments);
+  return read_file(parse_toml_text(text, path), path, assignments);
 }
 
 Specimen with_overrides(const Protocol& protocol, Specimen specimen) {
@@ -205,12 +285,11 @@ Specimen with_overrides(const Protocol& protocol, Specimen specimen) {
                      "; allowed: test.dimension = " + std::to_string(protocol.dimension) +
                      "; give another specimen or another protocol");
   }
-  std::vector<keys::KeyError> errors;
+  std::vector<KeyError> errors;
   for (const char* name : override_tables) {
-    if (const toml::table* table = protocol.overrides[name].as_table())
-      keys::read_table(specimen, name, *table, errors);
+    if (const toml::table* table = protocol.overrides[name].as_table()) read_table(specimen, name, *table, errors);
   }
-  keys::raise(protocol.path, errors);
+  raise(protocol.path, errors);
   expect_fits(protocol, specimen.cell.dimension);
   clear_forces_without_stiffness(specimen);  // a material that was given none here
   return specimen;

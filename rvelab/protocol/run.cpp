@@ -1,12 +1,14 @@
 #include "rvelab/protocol/run.hpp"
 
 #include <chrono>
+#include <stdexcept>
 
 #include "rvelab/error.hpp"
 #include "rvelab/protocol/drive.hpp"
-#include "rvelab/protocol/stage_kind.hpp"
+#include "rvelab/protocol/stage_kinds.hpp"
 
 namespace rvelab::protocol {
+
 namespace {
 
 TestRun finish(const Protocol& protocol, RunningTest& test, double wall_before) {
@@ -18,8 +20,8 @@ TestRun finish(const Protocol& protocol, RunningTest& test, double wall_before) 
   };
   test.clock = clock;
   try {
-    while (run.progress.stage < static_cast<std::int32_t>(protocol.stages.size())) {
-      const Stage& stage = protocol.stages[static_cast<std::size_t>(run.progress.stage)];
+    while (run.progress.stage < std::int32_t(protocol.stages.size())) {
+      const Stage& stage = protocol.stages[std::size_t(run.progress.stage)];
       test.enter(stage);
       stage.what->drive(test);
       test.leave_stage();
@@ -44,6 +46,48 @@ TestRun finish(const Protocol& protocol, RunningTest& test, double wall_before) 
 
 }  // namespace
 
+std::unique_ptr<StageKind> stage_of_kind(const std::string& name) {
+  for (MakeStage* const make : stage_kinds) {
+    if (auto stage = make(); stage->name() == name) return stage;
+  }
+  throw std::logic_error("no kind of stage is called \"" + name + "\" in stage_kinds.hpp");
+}
+
+std::string kinds_with_events(bool taking) {
+  std::string names;
+  for (MakeStage* const make : stage_kinds) {
+    const auto kind = make();
+    if (kind->takes_events() == taking) names += (names.empty() ? "" : ", ") + std::string(kind->name());
+  }
+  return names;
+}
+
+void expect_fits(const Protocol& protocol, int dimension) {
+  for (const Stage& stage : protocol.stages) {
+    const std::string mistake = stage.what->misfit(dimension);
+    if (!mistake.empty()) throw InputError(protocol.path + ": stage \"" + stage.name + "\": " + mistake);
+  }
+}
+
+std::size_t planned_records(const Protocol& protocol) {
+  std::size_t count = 0;
+  for (const Stage& stage : protocol.stages) count += stage.what->planned_records();
+  return count;
+}
+
+StageRole role_of(const Stage& stage) { return stage.what->role(); }
+
+std::string strength_stages() {
+  std::string text;
+  for (MakeStage* const make : stage_kinds) {
+    const auto kind = make();
+    const std::string when = kind->strength_when();
+    if (when.empty()) continue;
+    text += (text.empty() ? "" : "; or ") + ("kind = \"" + std::string(kind->name()) + "\" with " + when);
+  }
+  return text;
+}
+
 TestRun run_protocol(const Protocol& protocol, const Specimen& specimen, const Watch& watch) {
   const Specimen start = with_overrides(protocol, specimen);
   RunningTest test(protocol, start, watch);
@@ -55,8 +99,8 @@ TestRun run_protocol(const Protocol& protocol, const Specimen& specimen, const W
 TestRun resume_protocol(const Protocol& protocol, const records::Checkpoint& checkpoint, records::TestResult so_far,
                         const Watch& watch) {
   const records::Progress& progress = checkpoint.progress;
-  const auto stages = static_cast<std::int32_t>(protocol.stages.size());
-  const auto records = static_cast<std::size_t>(progress.records), probes = static_cast<std::size_t>(progress.probes);
+  const auto stages = std::int32_t(protocol.stages.size());
+  const auto records = std::size_t(progress.records), probes = std::size_t(progress.probes);
   if (progress.stage < 0 || progress.stage > stages || progress.records < 0 || progress.probes < 0 ||
       records > so_far.records.size() || probes > so_far.probes.size()) {
     throw InputError(protocol.path + ": the checkpoint stands in stage " + std::to_string(progress.stage) + " after " +

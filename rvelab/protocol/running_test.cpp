@@ -5,9 +5,9 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/measure/measures.hpp"
+#include "rvelab/measure/tensor_order.hpp"
 #include "rvelab/protocol/drive.hpp"
-#include "rvelab/protocol/events.hpp"
-#include "rvelab/protocol/path_rows.hpp"
+#include "rvelab/protocol/path.hpp"
 
 namespace rvelab::protocol {
 namespace {
@@ -15,33 +15,21 @@ namespace {
 /// A protocol whose stages lead back for ever is stopped.
 constexpr std::int64_t most_visits = 1'000'000;
 
-/// E with E : dE = dE_ij for symmetric dE.
-Matrix3 selector(int i, int j) {
-  Matrix3 tensor = Matrix3::Zero();
-  tensor(i, j) += 0.5;
-  tensor(j, i) += 0.5;
-  return tensor;
-}
-
 }  // namespace
-
-std::vector<std::pair<int, int>> components(int dimension) {
-  if (dimension == 2) return {{0, 0}, {1, 1}, {0, 1}};
-  return {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};
-}
 
 MixedTarget mixed_target(const Matrix3& displacement_gradient, const std::vector<HeldStress>& held,
                          const Matrix3& stress, int dimension, bool held_before) {
   MixedTarget target;
   target.spin = 0.5 * (displacement_gradient - displacement_gradient.transpose());
   const Matrix3 strain = 0.5 * (displacement_gradient + displacement_gradient.transpose());
-  for (const auto& [i, j] : components(dimension)) {
+  for (int k = 0; k < component_count(dimension); ++k) {
+    const auto [i, j] = component_axes(k, dimension);
     MixedTarget::Row row;
-    row.strain = selector(i, j);
+    row.strain = unit_strain(k, dimension);  // E with E : dE = dE_ij for symmetric dE
     row.value = strain(i, j);
     for (const HeldStress& component : held) {
       if (component.i != i || component.j != j) continue;
-      row.stress = selector(i, j);
+      row.stress = row.strain;
       row.strain.setZero();
       // From the stress as it is: what the increment before missed is made good, not carried on.
       row.value = component.target - 0.5 * (stress(i, j) + stress(j, i));
@@ -78,7 +66,7 @@ void RunningTest::enter(const Stage& stage) {
   at.stress = at.first_stress = rve.stress();
   at.turns = at.place = 0;
   at.visits.resize(run.result.stages.size());
-  if (++at.visits[static_cast<std::size_t>(at.stage)] > most_visits) {
+  if (++at.visits[std::size_t(at.stage)] > most_visits) {
     throw failed("was begun " + std::to_string(most_visits) + " times; let an event with quantity = \"visits\" end it");
   }
   at.largest.assign(stage.until.size(), std::numeric_limits<double>::lowest());
@@ -99,13 +87,13 @@ void RunningTest::enter(const Stage& stage) {
 int RunningTest::stage_number(const std::string& name) const {
   const auto& stages = run.result.stages;
   if (name.empty()) return run.progress.stage + 1;
-  return static_cast<int>(std::find(stages.begin(), stages.end(), name) - stages.begin());  // "end": their number
+  return int(std::find(stages.begin(), stages.end(), name) - stages.begin());  // "end": their number
 }
 
 void RunningTest::leave_stage() {
   records::Progress& at = run.progress;
   const Event* const event =
-      at.phase > done_phase ? &stage_->until.at(static_cast<std::size_t>(at.phase - done_phase - 1)) : nullptr;
+      at.phase > done_phase ? &stage_->until.at(std::size_t(at.phase - done_phase - 1)) : nullptr;
   if (event != nullptr) run.events.push_back(stage_->name + ": " + event_in_words(*event));
   at.stage = stage_number(event != nullptr ? event->then : stage_->then);
   at.phase = 0;
@@ -199,10 +187,10 @@ Report RunningTest::relax(double unbalanced, long max_steps) {
   // Slices of about a second, between which a checkpoint can be taken. Each call of Rve::relax scales the masses anew,
   // so their length must depend on nothing but the specimen.
   constexpr long interval = 25, grain_steps = 20'000'000;
-  const long slice = interval * std::clamp(grain_steps / (interval * static_cast<long>(rve.size() + 1)), 10L, 1000L);
+  const long slice = interval * std::clamp(grain_steps / (interval * long(rve.size() + 1)), 10L, 1000L);
   records::Progress& at = run.progress;
   while (true) {
-    Report report = rve.relax(unbalanced, std::min(slice, max_steps - static_cast<long>(at.relaxation_steps)));
+    Report report = rve.relax(unbalanced, std::min(slice, max_steps - long(at.relaxation_steps)));
     at.stress = rve.stress();
     at.substeps += report.substeps;
     at.relaxation_steps += report.substeps;
@@ -220,7 +208,7 @@ void RunningTest::note_error(const Report& report) {
   if (!(report.error_estimate > 0 && p > 0)) return;
   Costs& costs = run.costs;
   const double error = report.error_estimate / p;
-  costs.mean_error += (error - costs.mean_error) / static_cast<double>(++costs.judged);
+  costs.mean_error += (error - costs.mean_error) / double(++costs.judged);
   costs.largest_error = std::max(costs.largest_error, error);
 }
 
@@ -245,7 +233,7 @@ void RunningTest::record(double strain, const Report& report) {
   run.result.records.push_back(record);
   ++run.progress.records;
   if (watch_.on_record) watch_.on_record(record);
-  if (watch_.on_snapshot && snapshots_every_ > 0 && number % static_cast<std::size_t>(snapshots_every_) == 0) {
+  if (watch_.on_snapshot && snapshots_every_ > 0 && number % std::size_t(snapshots_every_) == 0) {
     watch_.on_snapshot(number, rve.specimen());
   }
 }

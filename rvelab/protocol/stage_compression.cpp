@@ -2,11 +2,10 @@
 // stage_kinds.hpp.
 #include <cmath>
 
-#include "rvelab/keys/key_builders.hpp"
+#include "rvelab/keys/table_reader.hpp"
 #include "rvelab/protocol/drive.hpp"
 #include "rvelab/protocol/stage_kinds.hpp"
 #include "rvelab/protocol/stage_readers.hpp"
-#include "rvelab/protocol/strain_driven.hpp"
 
 namespace rvelab::protocol {
 namespace {
@@ -17,45 +16,23 @@ struct Compression : KindOf<CompressionStage> {
   const char* name() const override { return "compression"; }
   const char* strength_when() const override { return "lateral = \"constant_stress\" and to_strain > 0"; }
 
-  std::vector<TableKey> keys() const override {
-    const char* t = "stage.compression";
-    return {
-        choice(t, "axis", {"x", "y", "z"}, "laboratory axis that is shortened", "(y in 2D, z in 3D)"),
-        required(with_range(number(t, "to_strain", "1", "", {-infinity, 1, true, true},
-                                   "strain 1 - F_aa at which the stage ends, compression positive"),
-                            "below 1, not 0")),
-        number(t, "record_every", "1", CompressionStage{}.record_every, positive,
-               "strain between records; at most 1e6 records"),
-        choice(t, "lateral", {"constant_stress", "constant_volume", "zero_strain"},
-               "constant_stress: each lateral normal stress is held (drained); constant_volume: det F = 1 (undrained); "
-               "zero_strain: oedometer"),
-        number(t, "lateral_pressure_Pa", "Pa", "(test.pressure_Pa)", positive,
-               "lateral = constant_stress: lateral stress that is held, compression positive; the stage must start "
-               "from it"),
-        whole_number(t, "cycles", CompressionStage{}.cycles.count, {0, 1e6},
-                     "number of cycles between +-to_strain; 0: monotonic to to_strain"),
-        number(t, "reverse_at_Pa", "Pa", "", positive,
-               "cycles > 0: the strain reverses where the size of the axial less the mean lateral stress reaches this"),
-    };
-  }
-
-  void read(StageSource& source) override {
-    TableReader& reader = source.reader;
-    Protocol& protocol = source.protocol;
-    const char* usual = protocol.dimension == 0 ? "" : protocol.dimension == 2 ? "y" : "z";
-    stage.axis = reader.choice("axis", usual);
-    expect_in_plane(reader, "axis", stage.axis, protocol);
-    stage.to_strain = strain_of(source);
-    stage.record_every = spacing_of(reader, stage.to_strain);
-    const std::string lateral = reader.choice("lateral");
-    if (lateral == "constant_volume") stage.lateral = CompressionStage::Lateral::constant_volume;
-    if (lateral == "zero_strain") stage.lateral = CompressionStage::Lateral::zero_strain;
-    if (stage.lateral == CompressionStage::Lateral::constant_stress) {
-      stage.lateral_pressure = pressure_of(reader, "lateral_pressure_Pa", protocol);
-    } else {
-      refuse_pressure(reader, "lateral_pressure_Pa", "lateral = \"" + lateral + "\"");
-    }
-    stage.cycles = read_cycles(reader, stage.to_strain, stage.record_every);
+  void read(TableReader& reader, Protocol& protocol) override {
+    stage.axis = read_axes(reader, "axis", {"x", "y", "z"}, "laboratory axis that is shortened", "y", "z", protocol);
+    read_strain(reader, stage.to_strain, {-infinity, 1, true, true},
+                "strain 1 - F_aa at which the stage ends, compression positive", "below 1, not 0");
+    read_spacing(reader, stage.record_every, stage.to_strain, "strain between records; at most 1e6 records");
+    const Choices laterals{"constant_stress", "constant_volume", "zero_strain"};
+    reader.choice("lateral", stage.lateral, laterals,
+                  "constant_stress: each lateral normal stress is held (drained); constant_volume: det F = 1 "
+                  "(undrained); zero_strain: oedometer");
+    const bool held = stage.lateral == CompressionStage::Lateral::constant_stress;
+    stage.lateral_pressure = pressure_of(
+        reader, "lateral_pressure_Pa", positive,
+        "lateral = constant_stress: lateral stress that is held, compression positive; the stage must start from it",
+        protocol, held ? "" : "lateral = " + as_toml(laterals[std::size_t(stage.lateral)]));
+    read_cycles(
+        reader, stage.cycles, stage.to_strain, stage.record_every,
+        "cycles > 0: the strain reverses where the size of the axial less the mean lateral stress reaches this");
   }
 
   std::size_t planned_records() const override {

@@ -1,7 +1,7 @@
 // A given history of deformation gradients. Declared in stage_kinds.hpp.
 #include <Eigen/LU>
 
-#include "rvelab/keys/key_builders.hpp"
+#include "rvelab/keys/table_reader.hpp"
 #include "rvelab/protocol/drive.hpp"
 #include "rvelab/protocol/stage_kinds.hpp"
 
@@ -13,18 +13,9 @@ using namespace keys;
 struct Deformation : KindOf<DeformationStage> {
   const char* name() const override { return "deformation"; }
 
-  std::vector<TableKey> keys() const override {
-    return {
-        required(listed("stage.deformation", "gradients", "1", "list of lists of numbers",
-                        "4 (2D) or 9 numbers each, row by row", KeyKind::matrices,
-                        "deformation gradients F since the start of the stage, a record at each")),
-    };
-  }
-
-  void read(StageSource& source) override {
-    TableReader& reader = source.reader;
-    const Protocol& protocol = source.protocol;
-    stage.gradients = reader.matrices("gradients");
+  void read(TableReader& reader, Protocol& protocol) override {
+    stage.gradients =
+        reader.matrices("gradients", "deformation gradients F since the start of the stage, a record at each");
     for (const Matrix3& f : stage.gradients) {
       if (f.determinant() <= 0) {
         reader.mistake("gradients", "has a determinant <= 0; allowed: > 0; correct it");
@@ -46,9 +37,9 @@ struct Deformation : KindOf<DeformationStage> {
     at.axis = "";
     at.pressure = at.first_pressure;
     std::vector<double> numbers;
-    for (std::size_t k = 0; k <= stage.gradients.size(); ++k) numbers.push_back(static_cast<double>(k));
+    for (std::size_t k = 0; k <= stage.gradients.size(); ++k) numbers.push_back(double(k));
     test.go_through(numbers, [&](double number) {
-      const Matrix3& next = stage.gradients[static_cast<std::size_t>(number) - 1];
+      const Matrix3& next = stage.gradients[std::size_t(number) - 1];
       const Matrix3 gradient = next * at.deformation.inverse() - Matrix3::Identity();
       const double size = (0.5 * (gradient + gradient.transpose())).norm();
       return test.apply(gradient, {}, test.time_for(size), test.loading.held_tolerance);

@@ -1,10 +1,10 @@
 // Deviatoric loading at constant mean stress, in 3D at a constant Lode angle. Declared in stage_kinds.hpp.
 #include <cmath>
 
-#include "rvelab/keys/key_builders.hpp"
+#include "rvelab/keys/table_reader.hpp"
 #include "rvelab/protocol/directions.hpp"
 #include "rvelab/protocol/drive.hpp"
-#include "rvelab/protocol/path_driven.hpp"
+#include "rvelab/protocol/path.hpp"
 #include "rvelab/protocol/stage_kinds.hpp"
 #include "rvelab/protocol/stage_readers.hpp"
 
@@ -49,29 +49,15 @@ PathStage path_of(const DeviatoricStage& stage, int dimension) {
 struct Deviatoric : KindOf<DeviatoricStage> {
   const char* name() const override { return "deviatoric"; }
 
-  std::vector<TableKey> keys() const override {
-    const char* t = "stage.deviatoric";
-    const DeviatoricStage initial;
-    return {
-        required(number(t, "to_strain", "1", "", positive, "eps_q at which the stage ends")),
-        number(t, "record_every", "1", initial.record_every, positive, "eps_q between records; at most 1e6 records"),
-        number(t, "lode_angle_deg", "degree", initial.lode_angle_deg, {-180, 180},
-               "3D: direction in the deviatoric plane; 0 compression along z, 60 extension along y"),
-        number(t, "pressure_Pa", "Pa", "(test.pressure_Pa)", positive,
-               "p, held constant; the stage must start from it"),
-    };
-  }
-
-  void read(StageSource& source) override {
-    TableReader& reader = source.reader;
-    Protocol& protocol = source.protocol;
-    stage.to_strain = reader.number("to_strain");
-    stage.record_every = spacing_of(reader, stage.to_strain);
-    stage.lode_angle_deg = reader.number("lode_angle_deg");
-    stage.pressure = pressure_of(reader, "pressure_Pa", protocol);
-    if (protocol.dimension == 2 && reader.has("lode_angle_deg")) {
+  void read(TableReader& reader, Protocol& protocol) override {
+    reader.required_number("to_strain", stage.to_strain, "1", positive, "eps_q at which the stage ends");
+    read_spacing(reader, stage.record_every, stage.to_strain, "eps_q between records; at most 1e6 records");
+    reader.number("lode_angle_deg", stage.lode_angle_deg, "degree", {-180, 180},
+                  "3D: direction in the deviatoric plane; 0 compression along z, 60 extension along y");
+    stage.pressure =
+        pressure_of(reader, "pressure_Pa", positive, "p, held constant; the stage must start from it", protocol);
+    if (protocol.dimension == 2 && reader.has("lode_angle_deg"))
       reader.mistake("lode_angle_deg", "means nothing with test.dimension = 2; allowed: in 3D only; remove it");
-    }
   }
 
   std::size_t planned_records() const override { return path_records(path_of(stage, 3)); }

@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "rvelab/error.hpp"
-#include "rvelab/keys/key_builders.hpp"
+#include "rvelab/keys/table_reader.hpp"
 #include "rvelab/protocol/directions.hpp"
 #include "rvelab/protocol/drive.hpp"
 #include "rvelab/protocol/stage_kinds.hpp"
@@ -32,7 +32,7 @@ Matrix3 direction(double turns, int dimension) {
 
 Report probe(RunningTest& test, const EnvelopeStage& stage, const Matrix3& along) {
   const records::Progress& at = test.run.progress;
-  const double part = 1 / static_cast<double>(stage.increments);
+  const double part = 1 / double(stage.increments);
   Report worst;
   for (long k = 1; k <= stage.increments; ++k) {
     Report report;
@@ -42,7 +42,7 @@ Report probe(RunningTest& test, const EnvelopeStage& stage, const Matrix3& along
       // A probe of stress misses by no more than a fraction of itself.
       std::vector<HeldStress> held;
       for (int i = 0; i < test.dimension(); ++i) {
-        const double target = at.first_stress(i, i) + static_cast<double>(k) * part * stage.stress_size * along(i, i);
+        const double target = at.first_stress(i, i) + double(k) * part * stage.stress_size * along(i, i);
         held.push_back({i, i, target, stage.stress_size});
       }
       report = test.apply(Matrix3::Zero(), held, 0, test.loading.held_tolerance);
@@ -68,44 +68,28 @@ struct Envelope : KindOf<EnvelopeStage> {
   const char* name() const override { return "envelope"; }
   bool takes_events() const override { return false; }
 
-  std::vector<TableKey> keys() const override {
-    const char* t = "stage.envelope";
-    const EnvelopeStage initial;
-    return {
-        choice(t, "probes", {"strain", "stress"}, "quantity whose size is equal in every direction"),
-        number(t, "size", "1", initial.size, {0, 0.1, true, false}, "probes = strain: norm of the strain"),
-        number(t, "size_Pa", "Pa", "", positive, "probes = stress: norm of the change of stress"),
-        whole_number(t, "directions", initial.directions, {1, 1e4},
-                     "number of directions, from compression along the axis; in 2D in the plane of y and x, in 3D in "
-                     "that of z and of x and y together"),
-        whole_number(t, "increments", initial.increments, {1, 1e6}, "increments of each probe"),
-        number(t, "unbalanced", "1", initial.unbalanced, ratio,
-               "unbalanced force ratio to which each probe is relaxed"),
-        whole_number(t, "max_steps", initial.max_steps, steps,
-                     "most sub-steps of that relaxation; then the stage fails"),
-    };
+  void read(TableReader& reader, Protocol&) override {
+    reader.choice("probes", stage.stress_probes, {"strain", "stress"},
+                  "quantity whose size is equal in every direction");
+    reader.number("size", stage.size, "1", {0, 0.1, true, false}, "probes = strain: norm of the strain");
+    const auto size =
+        reader.optional_number("size_Pa", "Pa", positive, "probes = stress: norm of the change of stress");
+    stage.stress_size = size.value_or(0);
+    if (stage.stress_probes) reader.expect("size_Pa", "is missing; allowed with probes = \"stress\": > 0 Pa; add it");
+    const std::string probes = stage.stress_probes ? "stress" : "strain";
+    const char* const other = stage.stress_probes ? "size" : "size_Pa";
+    if (reader.has(other))
+      reader.mistake(other, "contradicts probes = " + as_toml(probes) + "; allowed: the size of these only; remove it");
+    reader.whole_number(
+        "directions", stage.directions, {1, 1e4},
+        "number of directions, from compression along the axis; in 2D in the plane of y and x, in 3D in "
+        "that of z and of x and y together");
+    reader.whole_number("increments", stage.increments, {1, 1e6}, "increments of each probe");
+    reader.number("unbalanced", stage.unbalanced, "1", ratio, "unbalanced force ratio to which each probe is relaxed");
+    reader.whole_number("max_steps", stage.max_steps, steps, "most sub-steps of that relaxation; then the stage fails");
   }
 
-  void read(StageSource& source) override {
-    TableReader& reader = source.reader;
-    stage.stress_probes = reader.choice("probes") == "stress";
-    stage.size = reader.number("size");
-    stage.stress_size = reader.optional_number("size_Pa").value_or(0);
-    if (stage.stress_probes && !reader.has("size_Pa") && !reader.has_in_another_unit("size_Pa")) {
-      reader.mistake("size_Pa", "is missing; allowed with probes = \"stress\": > 0 Pa; add it");
-    }
-    if (reader.has(stage.stress_probes ? "size" : "size_Pa")) {
-      reader.mistake(stage.stress_probes ? "size" : "size_Pa", std::string("contradicts probes = \"") +
-                                                                   (stage.stress_probes ? "stress" : "strain") +
-                                                                   "\"; allowed: the size of these only; remove it");
-    }
-    stage.directions = reader.whole_number("directions");
-    stage.increments = reader.whole_number("increments");
-    stage.unbalanced = reader.number("unbalanced");
-    stage.max_steps = reader.whole_number("max_steps");
-  }
-
-  std::size_t planned_records() const override { return static_cast<std::size_t>(stage.directions) + 1; }
+  std::size_t planned_records() const override { return std::size_t(stage.directions) + 1; }
 
   void drive(RunningTest& test) const override {
     records::Progress& at = test.run.progress;
@@ -115,7 +99,7 @@ struct Envelope : KindOf<EnvelopeStage> {
       if (at.step == 0) {
         test.record_now(0);
       } else {
-        const double turns = static_cast<double>(at.step - 1) / static_cast<double>(stage.directions);
+        const double turns = double(at.step - 1) / double(stage.directions);
         const Rve start(test.rve);
         const records::Progress before = at;
         const auto put_back = [&] {

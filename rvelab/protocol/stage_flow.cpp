@@ -1,7 +1,7 @@
 // Flows: a constant gradient. Declared in stage_kinds.hpp.
 #include <string>
 
-#include "rvelab/keys/key_builders.hpp"
+#include "rvelab/keys/table_reader.hpp"
 #include "rvelab/protocol/drive.hpp"
 #include "rvelab/protocol/stage_kinds.hpp"
 #include "rvelab/protocol/stage_readers.hpp"
@@ -10,15 +10,6 @@ namespace rvelab::protocol {
 namespace {
 
 using namespace keys;
-
-/// In 2D nothing moves along z.
-void expect_plane(TableReader& reader, const std::string& key, const Matrix3& f, const Protocol& protocol) {
-  Matrix3 out = f;
-  out.topLeftCorner<2, 2>().setZero();
-  if (protocol.dimension == 2 && !out.isZero(0)) {
-    reader.mistake(key, "leaves the plane of test.dimension = 2; allowed: xx, xy, yx, yy; remove the others");
-  }
-}
 
 /// exp(h) - I by its series; increments are small, and halving keeps larger ones exact.
 Matrix3 exponential_less_one(const Matrix3& h) {
@@ -34,33 +25,24 @@ Matrix3 exponential_less_one(const Matrix3& h) {
 struct Flow : KindOf<FlowStage> {
   const char* name() const override { return "flow"; }
 
-  std::vector<TableKey> keys() const override {
-    const char* t = "stage.flow";
-    return {
-        required(listed(t, "gradient", "1", "components", "xx, xy, xz, yx, yy, yz, zx, zy, zz = numbers",
-                        KeyKind::components,
-                        "G of F = exp(s G), s the driving strain; physical loading: velocity gradient = rate G")),
-        required(number(t, "to_strain", "1", "", positive, "s at which the stage ends")),
-        number(t, "record_every", "1", FlowStage{}.record_every, positive, "s between records; at most 1e6 records"),
-    };
-  }
-
-  void read(StageSource& source) override {
-    TableReader& reader = source.reader;
-    const Protocol& protocol = source.protocol;
-    stage.gradient = reader.components("gradient", false);
-    expect_plane(reader, "gradient", stage.gradient, protocol);
-    stage.to_strain = reader.number("to_strain");
-    stage.record_every = spacing_of(reader, stage.to_strain);
+  void read(TableReader& reader, Protocol& protocol) override {
+    stage.gradient = reader.components(
+        "gradient", "1", "G of F = exp(s G), s the driving strain; physical loading: velocity gradient = rate G",
+        false);
+    if (protocol.dimension == 2 && !in_plane())
+      reader.mistake("gradient", "leaves the plane of test.dimension = 2; allowed: xx, xy, yx, yy; remove the others");
+    reader.required_number("to_strain", stage.to_strain, "1", positive, "s at which the stage ends");
+    read_spacing(reader, stage.record_every, stage.to_strain, "s between records; at most 1e6 records");
   }
 
   std::size_t planned_records() const override { return record_strains(stage.to_strain, stage.record_every).size(); }
 
   std::string misfit(int dimension) const override {
-    const bool in_plane = stage.gradient.row(2).isZero(0) && stage.gradient.col(2).isZero(0);
-    if (dimension == 3 || in_plane) return "";
+    if (dimension == 3 || in_plane()) return "";
     return "gradient leaves the plane of a 2D specimen; allowed: x and y; change it";
   }
+
+  bool in_plane() const { return stage.gradient.row(2).isZero(0) && stage.gradient.col(2).isZero(0); }
 
   void drive(RunningTest& test) const override {
     records::Progress& at = test.run.progress;
@@ -69,7 +51,7 @@ struct Flow : KindOf<FlowStage> {
     const std::vector<double> strains = record_strains(stage.to_strain, stage.record_every);
     test.go_through(strains, [&](double strain) {
       // Each from the one before it in the list: a flow has no target that round-off could miss.
-      const double advance = strain - strains[static_cast<std::size_t>(at.step) - 1];
+      const double advance = strain - strains[std::size_t(at.step) - 1];
       return test.apply(exponential_less_one(advance * stage.gradient), {}, test.time_for(advance),
                         test.loading.held_tolerance);
     });

@@ -1,12 +1,11 @@
 // Isotropic stages: consolidation to a pressure. Declared in stage_kinds.hpp.
 #include <Eigen/LU>
-#include <algorithm>
-#include <cmath>
 #include <sstream>
 
 #include "rvelab/error.hpp"
-#include "rvelab/keys/key_builders.hpp"
+#include "rvelab/keys/table_reader.hpp"
 #include "rvelab/measure/measures.hpp"
+#include "rvelab/measure/tensor_order.hpp"
 #include "rvelab/pack/consolidation.hpp"
 #include "rvelab/protocol/drive.hpp"
 #include "rvelab/protocol/stage_kinds.hpp"
@@ -19,7 +18,7 @@ using namespace keys;
 
 constexpr double far_off = 20;  ///< ratio to the reference pressure from which a specimen needs a new one
 
-constexpr std::int32_t begun = 1;  ///< the phase before those of the consolidation
+constexpr std::int32_t first_phase = 1;  ///< the phase before those of the consolidation
 
 pack::StressGoal goal_of(const IsotropicStage& stage, int dimension) {
   pack::StressGoal goal;
@@ -37,7 +36,8 @@ struct ConsolidatedTest {
 
   void bring(const Matrix3& stress, double scale, double tolerance) {
     std::vector<HeldStress> held;
-    for (const auto& [i, j] : components(goal.dimension)) {
+    for (int k = 0; k < component_count(goal.dimension); ++k) {
+      const auto [i, j] = component_axes(k, goal.dimension);
       if (i == j || goal.shear) held.push_back({i, j, stress(i, j), scale});
     }
     test.apply(Matrix3::Zero(), held, 0, tolerance, pack::short_wait);
@@ -54,36 +54,20 @@ struct Isotropic : KindOf<IsotropicStage> {
   const char* name() const override { return "isotropic"; }
   bool takes_events() const override { return false; }
 
-  std::vector<TableKey> keys() const override {
-    const char* t = "stage.isotropic";
-    const IsotropicStage initial;
-    return {
-        number(t, "pressure_Pa", "Pa", "(test.pressure_Pa)", pressures,
-               "target of all normal stresses, compression positive"),
-        choice(t, "shear", {"zero_strain", "zero_stress"},
-               "zero_strain: the cell keeps its angles; zero_stress: shear stresses are driven to zero"),
-        number(t, "stress_tolerance", "1", initial.stress_tolerance, ratio,
-               "allowed error of the stress at the end of the stage, over the pressure"),
-        number(t, "unbalanced", "1", initial.unbalanced, ratio, "unbalanced force ratio below which the stage ends"),
-        number(t, "largest_change", "1", initial.largest_change, {0, 1, true, false},
-               "largest change of stress in one increment, over the pressure"),
-        whole_number(t, "max_rounds", initial.max_rounds, steps,
-                     "most rounds of correction and relaxation; then the stage fails"),
-        whole_number(t, "max_steps", initial.max_steps, steps, "most sub-steps of one relaxation"),
-        boolean(t, "record", initial.record, "records the state at the start and at the end"),
-    };
-  }
-
-  void read(StageSource& source) override {
-    TableReader& reader = source.reader;
-    stage.pressure = pressure_of(reader, "pressure_Pa", source.protocol);
-    stage.shear_stress_free = reader.choice("shear") == "zero_stress";
-    stage.stress_tolerance = reader.number("stress_tolerance");
-    stage.unbalanced = reader.number("unbalanced");
-    stage.largest_change = reader.number("largest_change");
-    stage.max_rounds = reader.whole_number("max_rounds");
-    stage.max_steps = reader.whole_number("max_steps");
-    stage.record = reader.boolean("record");
+  void read(TableReader& reader, Protocol& protocol) override {
+    stage.pressure =
+        pressure_of(reader, "pressure_Pa", pressures, "target of all normal stresses, compression positive", protocol);
+    reader.choice("shear", stage.shear_stress_free, {"zero_strain", "zero_stress"},
+                  "zero_strain: the cell keeps its angles; zero_stress: shear stresses are driven to zero");
+    reader.number("stress_tolerance", stage.stress_tolerance, "1", ratio,
+                  "allowed error of the stress at the end of the stage, over the pressure");
+    reader.number("unbalanced", stage.unbalanced, "1", ratio, "unbalanced force ratio below which the stage ends");
+    reader.number("largest_change", stage.largest_change, "1", {0, 1, true, false},
+                  "largest change of stress in one increment, over the pressure");
+    reader.whole_number("max_rounds", stage.max_rounds, steps,
+                        "most rounds of correction and relaxation; then the stage fails");
+    reader.whole_number("max_steps", stage.max_steps, steps, "most sub-steps of one relaxation");
+    reader.boolean("record", stage.record, "records the state at the start and at the end");
   }
 
   std::size_t planned_records() const override { return stage.record ? 2 : 0; }
@@ -91,7 +75,7 @@ struct Isotropic : KindOf<IsotropicStage> {
   void drive(RunningTest& test) const override {
     const pack::StressGoal goal = goal_of(stage, test.dimension());
     records::Progress& at = test.run.progress;
-    if (at.phase == begun) {
+    if (at.phase == first_phase) {
       if (stage.record) test.record_now(0);
       at.phase = pack::approaching;
     }

@@ -1,13 +1,55 @@
-// The table of the kinds of stages. The key stage.kind, the keys of each kind, reading, running and calibration use it.
-// Internal to the room.
+// What a kind of stage is: its keys, how they are read, how a test is driven by them; and the table of all kinds, which
+// the key stage.kind, reading, running and calibration use. Internal to the room.
+//
+// A new kind is one file stage_NAME.cpp with a class of its settings and a function NAME_kind() that makes one, and its
+// line here.
 #pragma once
 
 #include <memory>
-#include <vector>
+#include <string>
 
-#include "rvelab/protocol/stage_kind.hpp"
+#include "rvelab/keys/table_reader.hpp"
+#include "rvelab/protocol/protocol.hpp"
 
 namespace rvelab::protocol {
+
+class RunningTest;
+
+/// A kind of stage, with the settings of one stage of it.
+class StageKind {
+ public:
+  virtual ~StageKind() = default;
+
+  virtual const char* name() const = 0;  ///< stage.kind; its keys stand in the table "stage.NAME" and below it
+  /// Reads every key of the kind, whatever the others say, since so they are documented. `protocol`: what was read of
+  /// it before (dimension, pressure). If a mistake is added, the settings are not used.
+  virtual void read(keys::TableReader& reader, Protocol& protocol) = 0;
+  /// From phase 1 to the end of the stage, or on from where run.progress says that it is (drive.hpp).
+  virtual void drive(RunningTest& test) const = 0;
+  /// Records that it makes where no event ends it.
+  virtual std::size_t planned_records() const { return 0; }
+  /// Why it does not go with specimens of this dimension, with the remedy; "": it does.
+  virtual std::string misfit(int /*dimension*/) const { return ""; }
+  /// What calibration may read from its records.
+  virtual StageRole role() const { return {}; }
+  /// Settings with which that is a strength, in words; "": never.
+  virtual const char* strength_when() const { return ""; }
+  /// Whether it makes records at which events can be checked.
+  virtual bool takes_events() const { return true; }
+};
+
+/// A kind with its settings.
+template <class Settings>
+struct KindOf : StageKind {
+  Settings stage;
+};
+
+/// The settings of a stage; null if it is of another kind.
+template <class Settings>
+const Settings* settings_of(const Stage& stage) {
+  const auto* kind = dynamic_cast<const KindOf<Settings>*>(stage.what.get());
+  return kind == nullptr ? nullptr : &kind->stage;
+}
 
 /// Makes a stage of a kind, with its default settings.
 using MakeStage = std::unique_ptr<StageKind>();

@@ -1,7 +1,7 @@
 // Pressure paths: isotropic compression and swelling from pressure to pressure. Declared in stage_kinds.hpp.
-#include "rvelab/keys/key_builders.hpp"
+#include "rvelab/keys/table_reader.hpp"
 #include "rvelab/protocol/drive.hpp"
-#include "rvelab/protocol/path_driven.hpp"
+#include "rvelab/protocol/path.hpp"
 #include "rvelab/protocol/stage_kinds.hpp"
 #include "rvelab/protocol/stage_readers.hpp"
 
@@ -13,7 +13,7 @@ using namespace keys;
 /// The pressures as a path of one row for each normal stress.
 PathStage path_of(const PressurePathStage& stage, int dimension) {
   PathStage path;
-  path.points = static_cast<long>(stage.pressures.size());
+  path.points = long(stage.pressures.size());
   path.records_per_point = stage.records_per_point;
   path.isotropic = true;
   for (int k = 0; k < dimension; ++k) {
@@ -27,24 +27,13 @@ PathStage path_of(const PressurePathStage& stage, int dimension) {
 struct PressurePath : KindOf<PressurePathStage> {
   const char* name() const override { return "pressure_path"; }
 
-  std::vector<TableKey> keys() const override {
-    const char* t = "stage.pressure_path";
-    TableKey targets =
-        listed(t, "to_Pa", "Pa", "list of numbers", "", KeyKind::numbers,
-               "pressures to which all normal stresses are brought, one after the other; shear strains are zero");
-    targets.range = pressures;
-    targets.key.range = "each " + in_words(pressures);
-    return {required(targets), whole_number(t, "records_per_point", PressurePathStage{}.records_per_point, {1, 1e6},
-                                            "records, and increments, on the way to each pressure")};
-  }
-
-  void read(StageSource& source) override {
-    TableReader& reader = source.reader;
-    stage.pressures = reader.numbers("to_Pa");
-    if (stage.pressures.empty() && !reader.has("to_Pa") && !reader.has_in_another_unit("to_Pa")) {
-      reader.mistake("to_Pa", "is missing; allowed: each " + in_words(pressures) + " Pa; add it");
-    }
-    stage.records_per_point = reader.whole_number("records_per_point");
+  void read(TableReader& reader, Protocol&) override {
+    stage.pressures = reader.numbers(
+        "to_Pa", "Pa", pressures,
+        "pressures to which all normal stresses are brought, one after the other; shear strains are zero", nullptr,
+        true);
+    reader.whole_number("records_per_point", stage.records_per_point, {1, 1e6},
+                        "records, and increments, on the way to each pressure");
   }
 
   std::size_t planned_records() const override { return path_records(path_of(stage, 2)); }

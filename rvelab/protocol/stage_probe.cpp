@@ -1,7 +1,7 @@
 // Probe stages: the stiffness of the state as it is, measured on copies; the test itself is not moved. Declared in
 // stage_kinds.hpp.
 #include "rvelab/error.hpp"
-#include "rvelab/keys/key_builders.hpp"
+#include "rvelab/keys/table_reader.hpp"
 #include "rvelab/measure/probe.hpp"
 #include "rvelab/measure/tangent.hpp"
 #include "rvelab/protocol/drive.hpp"
@@ -16,33 +16,17 @@ struct StiffnessProbe : KindOf<ProbeStage> {
   const char* name() const override { return "probe"; }
   bool takes_events() const override { return false; }
 
-  std::vector<TableKey> keys() const override {
-    const char* t = "stage.probe";
-    const ProbeStage initial;
-    return {
-        choice(t, "method", {"dynamic", "linear"},
-               "dynamic: increments of +-size, relaxed; linear: the contact network solved, every contact stuck"),
-        number(t, "size", "1", initial.size, {smallest_probe, 0.01}, "method = dynamic: strain of each increment"),
-        {{t, "no_slip", "-", "boolean", "(true with method = linear, else false)", "true, false",
-          "no contact slips or rolls over in the probed copy (friction 1e6)"},
-         KeyKind::boolean,
-         any,
-         {},
-         {}},
-    };
-  }
-
-  void read(StageSource& source) override {
-    TableReader& reader = source.reader;
-    const bool linear = reader.choice("method") == "linear";
-    stage.method = linear ? ProbeStage::Method::linear : ProbeStage::Method::dynamic;
-    stage.size = reader.number("size");
-    stage.no_slip = reader.boolean("no_slip", linear);
-    if (linear && !stage.no_slip) {
+  void read(TableReader& reader, Protocol&) override {
+    reader.choice("method", stage.method, {"dynamic", "linear"},
+                  "dynamic: increments of +-size, relaxed; linear: the contact network solved, every contact stuck");
+    reader.number("size", stage.size, "1", {smallest_probe, 0.01}, "method = dynamic: strain of each increment");
+    stage.no_slip = stage.method == ProbeStage::Method::linear;
+    reader.boolean("no_slip", stage.no_slip, "no contact slips or rolls over in the probed copy (friction 1e6)",
+                   "(true with method = linear, else false)");
+    if (stage.method == ProbeStage::Method::linear && !stage.no_slip)
       reader.mistake("no_slip",
                      "contradicts method = \"linear\", in which every contact is stuck; allowed: true with it; remove "
                      "the key or take method = \"dynamic\"");
-    }
   }
 
   void drive(RunningTest& test) const override {

@@ -2,7 +2,7 @@
 #include <sstream>
 
 #include "rvelab/error.hpp"
-#include "rvelab/keys/key_builders.hpp"
+#include "rvelab/keys/table_reader.hpp"
 #include "rvelab/protocol/drive.hpp"
 #include "rvelab/protocol/stage_kinds.hpp"
 
@@ -18,21 +18,10 @@ struct Relax : KindOf<RelaxStage> {
   const char* name() const override { return "relax"; }
   bool takes_events() const override { return false; }
 
-  std::vector<TableKey> keys() const override {
-    const char* t = "stage.relax";
-    const RelaxStage initial;
-    return {
-        number(t, "unbalanced", "1", initial.unbalanced, ratio, "unbalanced force ratio below which the stage ends"),
-        whole_number(t, "max_steps", initial.max_steps, steps, "most sub-steps; then the stage fails"),
-        boolean(t, "record", initial.record, "records the state before and after"),
-    };
-  }
-
-  void read(StageSource& source) override {
-    TableReader& reader = source.reader;
-    stage.unbalanced = reader.number("unbalanced");
-    stage.max_steps = reader.whole_number("max_steps");
-    stage.record = reader.boolean("record");
+  void read(TableReader& reader, Protocol&) override {
+    reader.number("unbalanced", stage.unbalanced, "1", ratio, "unbalanced force ratio below which the stage ends");
+    reader.whole_number("max_steps", stage.max_steps, steps, "most sub-steps; then the stage fails");
+    reader.boolean("record", stage.record, "records the state before and after");
   }
 
   std::size_t planned_records() const override { return stage.record ? 2 : 0; }

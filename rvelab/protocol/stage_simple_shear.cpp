@@ -1,9 +1,8 @@
 // Simple shear in a plane, at constant volume or constant normal stress. Declared in stage_kinds.hpp.
-#include "rvelab/keys/key_builders.hpp"
+#include "rvelab/keys/table_reader.hpp"
 #include "rvelab/protocol/drive.hpp"
 #include "rvelab/protocol/stage_kinds.hpp"
 #include "rvelab/protocol/stage_readers.hpp"
-#include "rvelab/protocol/strain_driven.hpp"
 
 namespace rvelab::protocol {
 namespace {
@@ -19,42 +18,21 @@ struct SimpleShear : KindOf<SimpleShearStage> {
     return drained ? StageRole{StageRole::Gives::strength, ""} : StageRole{};
   }
 
-  std::vector<TableKey> keys() const override {
-    const char* t = "stage.simple_shear";
-    return {
-        choice(t, "plane", {"xy", "xz", "yz", "yx", "zx", "zy"}, "ab: shear dv_a/dx_b", "(xy in 2D, xz in 3D)"),
-        required(with_range(number(t, "to_strain", "1", "", {-infinity, infinity, true, true},
-                                   "gamma = F_ab at which the stage ends, either sign"),
-                            "any finite number but 0")),
-        number(t, "record_every", "1", SimpleShearStage{}.record_every, positive,
-               "gamma between records; at most 1e6 records"),
-        choice(t, "normal", {"constant_volume", "constant_stress"},
-               "constant_volume: only the shear moves (undrained); constant_stress: sigma_bb is held (drained)"),
-        number(
-            t, "normal_pressure_Pa", "Pa", "(test.pressure_Pa)", positive,
-            "normal = constant_stress: normal stress that is held, compression positive; the stage must start from it"),
-        whole_number(t, "cycles", SimpleShearStage{}.cycles.count, {0, 1e6},
-                     "number of cycles between +-to_strain; 0: monotonic to to_strain"),
-        number(t, "reverse_at_Pa", "Pa", "", positive,
-               "cycles > 0: gamma reverses where the size of sigma_ab reaches this"),
-    };
-  }
-
-  void read(StageSource& source) override {
-    TableReader& reader = source.reader;
-    Protocol& protocol = source.protocol;
-    const char* usual = protocol.dimension == 0 ? "" : protocol.dimension == 2 ? "xy" : "xz";
-    stage.plane = reader.choice("plane", usual);
-    expect_in_plane(reader, "plane", stage.plane, protocol);
-    stage.to_strain = strain_of(source);
-    stage.record_every = spacing_of(reader, stage.to_strain);
-    if (reader.choice("normal") == "constant_volume") {
-      refuse_pressure(reader, "normal_pressure_Pa", "normal = \"constant_volume\"");
-    } else {
-      stage.normal = SimpleShearStage::Normal::constant_stress;
-      stage.normal_pressure = pressure_of(reader, "normal_pressure_Pa", protocol);
-    }
-    stage.cycles = read_cycles(reader, stage.to_strain, stage.record_every);
+  void read(TableReader& reader, Protocol& protocol) override {
+    stage.plane =
+        read_axes(reader, "plane", {"xy", "xz", "yz", "yx", "zx", "zy"}, "ab: shear dv_a/dx_b", "xy", "xz", protocol);
+    read_strain(reader, stage.to_strain, every, "gamma = F_ab at which the stage ends, either sign",
+                "any finite number but 0");
+    read_spacing(reader, stage.record_every, stage.to_strain, "gamma between records; at most 1e6 records");
+    reader.choice("normal", stage.normal, {"constant_volume", "constant_stress"},
+                  "constant_volume: only the shear moves (undrained); constant_stress: sigma_bb is held (drained)");
+    const bool held = stage.normal == SimpleShearStage::Normal::constant_stress;
+    stage.normal_pressure = pressure_of(
+        reader, "normal_pressure_Pa", positive,
+        "normal = constant_stress: normal stress that is held, compression positive; the stage must start from it",
+        protocol, held ? "" : "normal = \"constant_volume\"");
+    read_cycles(reader, stage.cycles, stage.to_strain, stage.record_every,
+                "cycles > 0: gamma reverses where the size of sigma_ab reaches this");
   }
 
   std::size_t planned_records() const override {

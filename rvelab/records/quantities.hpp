@@ -2,16 +2,116 @@
 // here: records, record files and journals, the key output.quantities, the events of stages (those that are numbers)
 // and the program's --json.
 //
-// A new quantity is a header with its struct (quantity.hpp), its #include and its line here.
+// A new quantity is its struct (quantity.hpp says how) and its place in the list.
 #pragma once
 
+#include "rvelab/measure/measures.hpp"
 #include "rvelab/records/quantity.hpp"
-#include "rvelab/records/quantity_energy.hpp"
-#include "rvelab/records/quantity_fabric.hpp"
-#include "rvelab/records/quantity_packing.hpp"
-#include "rvelab/records/quantity_stress.hpp"
 
 namespace rvelab::records {
+
+// Quantities of how grains are packed (rvelab/measure/measures.hpp).
+
+struct VoidRatio {
+  double void_ratio = 0;
+  static constexpr QuantityText text{"void_ratio", "1", "overlaps not subtracted", true};
+  static constexpr auto member = &VoidRatio::void_ratio;
+  static double measure(const Rve&, const Network& network) { return rvelab::void_ratio(network); }
+};
+
+struct CoordinationNumber {
+  double coordination_number = 0;
+  static constexpr QuantityText text{"coordination_number", "1", "2 Nc/N, all grains", true};
+  static constexpr auto member = &CoordinationNumber::coordination_number;
+  static double measure(const Rve&, const Network& network) { return rvelab::coordination_number(network); }
+};
+
+struct SlidingFraction {
+  double sliding_fraction = 0;
+  static constexpr QuantityText text{"sliding_fraction", "1", "contacts on the Coulomb cone", true};
+  static constexpr auto member = &SlidingFraction::sliding_fraction;
+  static double measure(const Rve&, const Network& network) { return rvelab::sliding_fraction(network); }
+};
+
+struct MechanicalVoidRatio {
+  double mechanical_void_ratio = 0;
+  static constexpr QuantityText text{"mechanical_void_ratio", "1", "rattlers counted as voids"};
+  static constexpr auto member = &MechanicalVoidRatio::mechanical_void_ratio;
+  static double measure(const Rve&, const Network& network) { return rvelab::mechanical_void_ratio(network); }
+};
+
+struct MechanicalCoordinationNumber {
+  double mechanical_coordination_number = 0;
+  static constexpr QuantityText text{"mechanical_coordination_number", "1", "without rattlers and their contacts"};
+  static constexpr auto member = &MechanicalCoordinationNumber::mechanical_coordination_number;
+  static double measure(const Rve&, const Network& network) { return rvelab::mechanical_coordination_number(network); }
+};
+
+// Quantities of the directions of contacts and grains, laboratory frame (rvelab/measure/measures.hpp).
+
+struct Fabric {
+  Matrix3 fabric = Matrix3::Zero();
+  static constexpr QuantityText text{"fabric", "1", "mean of n (x) n over the contacts"};
+  static constexpr auto member = &Fabric::fabric;
+  static Matrix3 measure(const Rve&, const Network& network) { return rvelab::fabric(network); }
+};
+
+struct BranchFabric {
+  Matrix3 branch_fabric = Matrix3::Zero();
+  static constexpr QuantityText text{"branch_fabric", "1", "sum b (x) b / sum b.b"};
+  static constexpr auto member = &BranchFabric::branch_fabric;
+  static Matrix3 measure(const Rve&, const Network& network) { return rvelab::branch_fabric(network); }
+};
+
+struct OrientationFabric {
+  Matrix3 orientation_fabric = Matrix3::Zero();
+  static constexpr QuantityText text{"orientation_fabric", "1",
+                                     "ellipses: mean of e (x) e over the grains, e along the long axis; NaN if round"};
+  static constexpr auto member = &OrientationFabric::orientation_fabric;
+  static Matrix3 measure(const Rve&, const Network& network) { return rvelab::orientation_fabric(network); }
+};
+
+struct FabricAnisotropy {
+  double fabric_anisotropy = 0;
+  static constexpr QuantityText text{"fabric_anisotropy", "1", "of contact normals", true};
+  static constexpr auto member = &FabricAnisotropy::fabric_anisotropy;
+  static double measure(const Rve&, const Network& network) {
+    return rvelab::fabric_anisotropy(fabric(network), network.dimension());
+  }
+};
+
+// Parts of the stress, laboratory frame, tension positive; both together are that of the record.
+
+struct ContactStress {
+  Matrix3 contact_stress = Matrix3::Zero();
+  static constexpr QuantityText text{"contact_stress_Pa", "Pa", "of the contact forces alone"};
+  static constexpr auto member = &ContactStress::contact_stress;
+  static Matrix3 measure(const Rve& rve, const Network&) { return rve.contact_stress(); }
+};
+
+struct ReynoldsStress {
+  Matrix3 reynolds_stress = Matrix3::Zero();
+  static constexpr QuantityText text{"reynolds_stress_Pa", "Pa", "of the fluctuations alone"};
+  static constexpr auto member = &ReynoldsStress::reynolds_stress;
+  static Matrix3 measure(const Rve& rve, const Network&) { return rve.reynolds_stress(); }
+};
+
+// Energies of the whole cell (rvelab/measure/measures.hpp).
+
+struct ElasticEnergy {
+  double elastic_energy = 0;
+  static constexpr QuantityText text{"elastic_energy_J", "J", "in contact springs"};
+  static constexpr auto member = &ElasticEnergy::elastic_energy;
+  static double measure(const Rve&, const Network& network) { return rvelab::elastic_energy(network); }
+};
+
+struct KineticEnergy {
+  double kinetic_energy = 0;
+  static constexpr QuantityText text{"kinetic_energy_J", "J",
+                                     "of fluctuation velocities and whole spins; 0 when quasi-static"};
+  static constexpr auto member = &KineticEnergy::kinetic_energy;
+  static double measure(const Rve&, const Network& network) { return rvelab::kinetic_energy(network); }
+};
 
 /// New ones come last: journals name what was asked for by the places here.
 using Quantities = QuantityTable<  //

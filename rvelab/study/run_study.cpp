@@ -5,8 +5,7 @@
 #include <thread>
 
 #include "rvelab/error.hpp"
-#include "rvelab/study/processor_time.hpp"
-#include "rvelab/study/whole_path.hpp"
+#include "rvelab/study/measures.hpp"
 #include "rvelab/threads/workers.hpp"
 
 namespace rvelab::study {
@@ -33,7 +32,7 @@ class Running {
 
  private:
   std::size_t points() const { return prepared_.points.size(); }
-  std::size_t repeats() const { return static_cast<std::size_t>(study_.repeats); }
+  std::size_t repeats() const { return std::size_t(study_.repeats); }
   const protocol::Protocol& protocol(std::size_t point) const {
     return point == 0 ? prepared_.reference : prepared_.points[point - 1];
   }
@@ -96,9 +95,9 @@ class Running {
     watch.on_moment = [this, number, point,
                        first = std::optional<std::uint64_t>()](const protocol::Moment& moment) mutable {
       if (!first) first = moment.rve.grain_steps();
-      const double planned = static_cast<double>(std::max<std::size_t>(moment.records_planned, 1));
-      const double part = std::min(0.999, static_cast<double>(moment.result.records.size()) / planned);
-      tell(number, name(point), part, static_cast<double>(moment.rve.grain_steps() - *first));
+      const double planned = double(std::max<std::size_t>(moment.records_planned, 1));
+      const double part = std::min(0.999, double(moment.result.records.size()) / planned);
+      tell(number, name(point), part, double(moment.rve.grain_steps() - *first));
     };
     return watch;
   }
@@ -109,8 +108,8 @@ class Running {
     const double begin = processor_seconds();
     ReferencePath path;
     try {
-      path = reference_path(prepared_.reference, prepared_.specimens[s - 1],
-                            static_cast<std::size_t>(study_.increments), spans_, watch(number, 0));
+      path = reference_path(prepared_.reference, prepared_.specimens[s - 1], std::size_t(study_.increments), spans_,
+                            watch(number, 0));
     } catch (const InputError&) {
       throw;
     } catch (const Interrupted&) {
@@ -171,7 +170,7 @@ class Running {
       }
       std::unique_lock lock(mutex_);
       grain_steps += made;
-      const double part = 0.999 * static_cast<double>(++done) / static_cast<double>(states_.size());
+      const double part = 0.999 * double(++done) / double(states_.size());
       const double so_far = grain_steps;
       lock.unlock();
       tell(increments_number(point, s), name(point), part, so_far);
@@ -208,7 +207,7 @@ class Running {
     for_states(piece, 0, s, [&](std::size_t k) {
       const PathState& from = states_[k];
       const Answer answer = reference_answer(from, opening(0, s, from), study_.relaxation);
-      for (int c = 0; c < 9; ++c) stress[9 * k + static_cast<std::size_t>(c)] = answer.stress(c / 3, c % 3);
+      for (int c = 0; c < 9; ++c) stress[9 * k + std::size_t(c)] = answer.stress(c / 3, c % 3);
       at_rest[k] = answer.at_rest ? 1 : 0;
       stage[k] = from.stage;
       strain[k] = from.strain;
@@ -228,8 +227,7 @@ class Running {
     for_states(piece, point, s, [&](std::size_t k) {
       const Made made = made_increment(states_[k], opening(point, s, states_[k]));
       Matrix3 stress;
-      for (int c = 0; c < 9; ++c)
-        stress(c / 3, c % 3) = answers.column("stress_Pa")[9 * k + static_cast<std::size_t>(c)];
+      for (int c = 0; c < 9; ++c) stress(c / 3, c % 3) = answers.column("stress_Pa")[9 * k + std::size_t(c)];
       note(piece, k, (made.stress - stress).norm(), answers.column("pressure_Pa")[k], answers.column("increment_Pa")[k],
            made);
       return made.grain_steps;
@@ -249,7 +247,7 @@ class Running {
 }  // namespace
 
 std::size_t planned_pieces(const Study& study, const Prepared& prepared) {
-  const auto a_point = static_cast<std::size_t>(study.repeats + (study.increments > 0 ? 1 : 0));
+  const auto a_point = std::size_t(study.repeats + (study.increments > 0 ? 1 : 0));
   return prepared.specimens.size() * (prepared.points.size() + 1) * a_point;
 }
 

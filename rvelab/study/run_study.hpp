@@ -1,5 +1,5 @@
-// A study run over the cores, piece by piece (piece.hpp). What a piece gives depends on the study alone, times apart:
-// neither on the number of threads nor on which pieces were there before.
+// A study run over the cores, piece by piece (measures.hpp). What a piece gives depends on the study alone, times
+// apart: neither on the number of threads nor on which pieces were there before.
 #pragma once
 
 #include <atomic>
@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "rvelab/study/piece.hpp"
+#include "rvelab/study/measures.hpp"
 #include "rvelab/study/study.hpp"
 
 namespace rvelab::study {

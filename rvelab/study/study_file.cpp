@@ -1,78 +1,16 @@
 // The file of a study. Declared in study.hpp.
 #include <algorithm>
-#include <charconv>
-#include <sstream>
 
 #include "rvelab/error.hpp"
-#include "rvelab/keys/key_builders.hpp"
 #include "rvelab/keys/table_reader.hpp"
 #include "rvelab/study/study.hpp"
 
 namespace rvelab::study {
 namespace {
 
-using keys::TableKey;
-
-TableKey text_list(const char* name, const char* meaning) {
-  return keys::listed("study", name, "-", "list of texts", "any texts", keys::KeyKind::choices, meaning);
-}
-
-const std::vector<TableKey>& study_keys() {
-  static const std::vector<TableKey> all{
-      keys::text("study", "protocol", "", "protocol, or the name of an installed one"),
-      keys::text("study", "protocol_text", "", "the protocol itself"),
-      keys::text("study", "made_with", "", "version of the program that wrote the file"),
-      keys::whole_number("study", "repeats", Study{}.repeats, {0, 10'000}, "whole paths a grid point and specimen"),
-      keys::whole_number("study", "increments", Study{}.increments, {0, 1e6}, "increments a grid point and specimen"),
-      keys::number("study", "relax_unbalanced", "1", Relaxation{}.unbalanced, keys::ratio,
-                   "unbalanced force ratio that the reference's answers are relaxed to"),
-      keys::whole_number("study", "relax_max_steps", Relaxation{}.max_steps, keys::steps, "sub-steps of that"),
-      text_list("specimens", "files, relative to the folder of the study"),
-      text_list("digests", "of the specimens"),
-      text_list("settings", "KEY=value of every run"),
-      text_list("reference", "KEY=value of the best-resolved run"),
-  };
-  return all;
-}
-
-/// The shortest decimal that reads back as the same double.
-std::string shortest(double value) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, value).ptr};
-}
-
 /// A node as what stands behind "=" in an assignment.
 std::string as_value(const toml::node& node) {
   return node.is_string() ? node.as_string()->get() : keys::written(node);
-}
-
-/// A list of texts, which the reader leaves to this file.
-std::vector<std::string> texts(const toml::table& table, keys::TableReader& reader, const std::string& key) {
-  reader.leave(key);
-  const toml::node* node = table.get(key);
-  if (node == nullptr) return {};
-  std::vector<std::string> found;
-  const toml::array* list = node->as_array();
-  if (list != nullptr) {
-    for (const toml::node& item : *list) {
-      if (item.is_string()) found.push_back(item.as_string()->get());
-    }
-  }
-  if (list == nullptr || found.size() != list->size()) {
-    reader.mistake(key, "is no list of texts; allowed: [\"...\", ...]; correct it");
-  }
-  return found;
-}
-
-void expect_known(const toml::table& table, const std::string& where, const std::vector<std::string>& known,
-                  std::vector<keys::KeyError>& errors) {
-  for (const auto& [key, value] : table) {
-    const std::string name(key.str());
-    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    errors.push_back(keys::key_error(key.source(), "unknown key " + where + "." + name + "; the nearest known key is " +
-                                                       where + "." + keys::nearest(name, known) +
-                                                       "; correct the name or remove it"));
-  }
 }
 
 std::vector<Variation> read_grid(const toml::table& file, std::vector<keys::KeyError>& errors) {
@@ -86,7 +24,14 @@ std::vector<Variation> read_grid(const toml::table& file, std::vector<keys::KeyE
   }
   for (const toml::node& item : *node->as_array()) {
     const toml::table& table = *item.as_table();
-    expect_known(table, "vary", {"key", "values"}, errors);
+    const std::vector<std::string> known{"key", "values"};
+    for (const auto& [key, value] : table) {
+      const std::string name(key.str());
+      if (name != "key" && name != "values")
+        errors.push_back(keys::key_error(key.source(), "unknown key vary." + name + "; the nearest known key is vary." +
+                                                           keys::nearest(name, known) +
+                                                           "; correct the name or remove it"));
+    }
     Variation one{table["key"].value_or(std::string()), {}};
     if (const toml::array* values = table["values"].as_array()) {
       for (const toml::node& value : *values) one.values.push_back(as_value(value));
@@ -119,24 +64,25 @@ Study read_study(const toml::table& file, const std::string& path) {
   std::vector<keys::KeyError> errors;
   keys::expect_top_tables(file, errors, {"study", "vary"});
   const toml::table& table = keys::table_of(file, "study", errors);
-  keys::TableReader reader(table, study_keys(), "study", "study", keys::line_of(table), errors);
+  keys::TableReader reader(table, "study", "study", keys::line_of(table), errors);
   Study study;
-  study.protocol = reader.text("protocol", "");
-  study.protocol_text = reader.text("protocol_text", "");
-  study.made_with = reader.text("made_with", "");
-  study.repeats = reader.whole_number("repeats");
-  study.increments = reader.whole_number("increments");
-  study.relaxation.unbalanced = reader.number("relax_unbalanced");
-  study.relaxation.max_steps = reader.whole_number("relax_max_steps");
+  reader.text("protocol", study.protocol, "protocol, or the name of an installed one");
+  reader.text("protocol_text", study.protocol_text, "the protocol itself");
+  reader.text("made_with", study.made_with, "version of the program that wrote the file");
+  reader.whole_number("repeats", study.repeats, {0, 10'000}, "whole paths a grid point and specimen");
+  reader.whole_number("increments", study.increments, {0, 1e6}, "increments a grid point and specimen");
+  reader.number("relax_unbalanced", study.relaxation.unbalanced, "1", keys::ratio,
+                "unbalanced force ratio that the reference's answers are relaxed to");
+  reader.whole_number("relax_max_steps", study.relaxation.max_steps, keys::steps, "sub-steps of that");
   if (study.protocol.empty() == study.protocol_text.empty()) {
     reader.mistake("protocol",
                    "and study.protocol_text: exactly one of them names the test; allowed: protocol = \"biaxial\", the "
                    "path of a file, or the text of one; give one");
   }
-  study.specimens = texts(table, reader, "specimens");
-  study.digests = texts(table, reader, "digests");
-  study.settings = texts(table, reader, "settings");
-  study.reference = texts(table, reader, "reference");
+  study.specimens = reader.texts("specimens", "files, relative to the folder of the study");
+  study.digests = reader.texts("digests", "of the specimens");
+  study.settings = reader.texts("settings", "KEY=value of every run");
+  study.reference = reader.texts("reference", "KEY=value of the best-resolved run");
   reader.finish();
   study.grid = read_grid(file, errors);
   keys::raise(path, errors);
@@ -162,13 +108,11 @@ std::string written(const Study& study) {
     grid.push_back(toml::table{{"key", one.key}, {"values", as_array(one.values)}});
   }
   if (!grid.empty()) file.insert("vary", grid);
-  std::ostringstream text;
-  text << toml::toml_formatter{file} << "\n";
-  std::string written = text.str();
+  std::string written = keys::written_file(file);
   // By hand: the library writes 17 digits of every number.
   const std::string head = "[study]\n";
   written.insert(written.find(head) + head.size(),
-                 "relax_unbalanced = " + shortest(study.relaxation.unbalanced) + "\n");
+                 "relax_unbalanced = " + keys::written(toml::value<double>(study.relaxation.unbalanced)) + "\n");
   return "# A study of rvelab: `rvelab study` on this file runs it again.\n" + written;
 }
 

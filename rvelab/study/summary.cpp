@@ -4,16 +4,15 @@
 #include <cmath>
 
 #include "rvelab/study/measures.hpp"
-#include "rvelab/study/pareto.hpp"
-#include "rvelab/study/piece.hpp"
 
 namespace rvelab::study {
+
 namespace {
 
 double mean_of(const std::vector<double>& values) {
   double sum = 0;
   for (const double value : values) sum += value;
-  return values.empty() ? no_value : sum / static_cast<double>(values.size());
+  return values.empty() ? no_value : sum / double(values.size());
 }
 
 void add_increments(const std::vector<const Piece*>& pieces, PointSummary& point) {
@@ -59,7 +58,7 @@ void add_paths(const std::vector<std::vector<const Piece*>>& paths, PointSummary
   point.path_grain_steps = mean_of(grain_steps);
   for (const Measure& measure : measures()) {
     double mean = 0, square = 0;
-    const auto specimens = static_cast<double>(paths.size());
+    const auto specimens = double(paths.size());
     for (const auto& repeats : paths) {
       std::vector<double> values;
       for (const Piece* piece : repeats) values.push_back(piece->column(measure.name).at(0));
@@ -87,9 +86,9 @@ ErrorSummary summary_of(std::vector<double> errors) {
   const std::size_t count = errors.size();
   double squares = 0;
   for (const double error : errors) squares += error * error;
-  const auto rank_95 = static_cast<std::size_t>(std::ceil(0.95 * static_cast<double>(count) - 1e-9));
-  return {std::sqrt(squares / static_cast<double>(count)), 0.5 * (errors[(count - 1) / 2] + errors[count / 2]),
-          errors[rank_95 - 1], errors.back()};
+  const auto rank_95 = std::size_t(std::ceil(0.95 * double(count) - 1e-9));
+  return {std::sqrt(squares / double(count)), 0.5 * (errors[(count - 1) / 2] + errors[count / 2]), errors[rank_95 - 1],
+          errors.back()};
 }
 
 EstimateSummary summary_of_estimates(const std::vector<double>& errors, const std::vector<double>& estimates,
@@ -114,7 +113,7 @@ StudySummary summary_of(const Study& study, const Prepared& prepared, const Piec
     std::vector<std::vector<const Piece*>> paths;
     for (std::size_t s = 1; s <= prepared.specimens.size(); ++s) {
       paths.emplace_back();
-      for (std::size_t r = 1; r <= static_cast<std::size_t>(study.repeats); ++r) {
+      for (std::size_t r = 1; r <= std::size_t(study.repeats); ++r) {
         paths.back().push_back(&pieces.by_name.at(path_piece(number, s, r)));
       }
       if (study.increments > 0) increments.push_back(&pieces.by_name.at(increments_piece(number, s)));
@@ -134,9 +133,22 @@ StudySummary summary_of(const Study& study, const Prepared& prepared, const Piec
   mark_front(summary.points, &PointSummary::grain_steps, &PointSummary::front_grain_steps);
   for (std::size_t s = 1; s <= prepared.specimens.size() && study.increments > 0; ++s) {
     const auto& at_rest = pieces.by_name.at(increments_piece(0, s)).column("at_rest");
-    summary.not_at_rest += static_cast<std::size_t>(std::count(at_rest.begin(), at_rest.end(), 0.0));
+    summary.not_at_rest += std::size_t(std::count(at_rest.begin(), at_rest.end(), 0.0));
   }
   return summary;
+}
+
+std::vector<bool> pareto_front(const std::vector<Standing>& standings) {
+  const auto finite = [](const Standing& one) { return std::isfinite(one.cost) && std::isfinite(one.error); };
+  std::vector<bool> front;
+  for (const Standing& one : standings) {
+    const bool beaten = std::any_of(standings.begin(), standings.end(), [&](const Standing& other) {
+      return finite(other) && other.cost <= one.cost && other.error <= one.error &&
+             (other.cost < one.cost || other.error < one.error);
+    });
+    front.push_back(finite(one) && !beaten);
+  }
+  return front;
 }
 
 }  // namespace rvelab::study

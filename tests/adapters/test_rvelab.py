@@ -18,7 +18,7 @@ from pathlib import Path
 import element_test
 import numpy as np
 import rvelab
-import rvelab_library
+from rvelab import library as rvelab_library
 
 folder = Path(sys.argv.pop(1)) if len(sys.argv) > 1 else Path(".")
 specimen = folder / "discs.h5"
@@ -51,9 +51,9 @@ class Places(unittest.TestCase):
         prefix = (folder / "prefix").resolve()
         modules = prefix / "lib/python3/dist-packages"
         shutil.rmtree(prefix, ignore_errors=True)
-        shutil.copytree(Path(rvelab.__file__).parent, modules, ignore=shutil.ignore_patterns("__pycache__"))
+        shutil.copytree(Path(rvelab.__file__).parent, modules / "rvelab", ignore=shutil.ignore_patterns("__pycache__"))
         (prefix / "lib/librvelab.so.1").symlink_to(os.environ["RVELAB_LIBRARY"])
-        found = self.python("-c", "import rvelab_library; print(rvelab_library.library._name)", PYTHONPATH=str(modules))
+        found = self.python("-c", "import rvelab.library; print(rvelab.library.library._name)", PYTHONPATH=str(modules))
         self.assertEqual(found.strip(), str(prefix / "lib/librvelab.so.1"))
 
     def test_the_example_finds_the_module_of_its_checkout(self) -> None:

@@ -1,7 +1,7 @@
 // rvelab keys and rvelab protocols, and protocols found by their names.
 #include <nlohmann/json.hpp>
 
-#include "rvelab/protocol/protocol_keys.hpp"
+#include "rvelab/protocol/protocol.hpp"
 #include "tests/cli/program.hpp"
 
 using namespace rvelab::test;

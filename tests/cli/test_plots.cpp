@@ -68,7 +68,7 @@ TEST_CASE("every plot script draws what is its own and refuses the rest in one l
   expect_refusal(here, "mohr", "compression.h5 cyclic.h5", "cyclic.h5");
   expect_figure(here, "loops", "cyclic.h5", "2.0 cycles");
   expect_refusal(here, "loops", "compression.h5", "monotonic");
-  expect_figure(here, "e_log_p", "isotropic.h5", "recompression");
+  expect_figure(here, "e_log_p", "isotropic.h5", "recompression index C_r");
   expect_figure(here, "e_log_p", "oedometer.h5", "large");
   expect_refusal(here, "e_log_p", "compression.h5", "isotropic_compression or oedometer");
   expect_figure(here, "envelope", "envelope.h5", "2 envelopes");
@@ -83,6 +83,158 @@ TEST_CASE("every plot script draws what is its own and refuses the rest in one l
     expect_refusal(here, script, "S.h5", "not a record file");
     expect_refusal(here, script, "none.h5", "none.h5");
   }
+}
+
+namespace {
+
+/// What a line of Python prints that has the scripts as modules.
+std::string printed_by(const Workplace& here, const std::string& line) {
+  here.write("line.py", "import sys; sys.path.insert(0, '" RVELAB_SOURCE_DIR "/tools/plot')\n" + line);
+  const Outcome outcome = here.run("-B line.py", "/usr/bin/python3");
+  CAPTURE(line, outcome.errors);
+  CHECK(outcome.code == 0);
+  return outcome.output;
+}
+
+}  // namespace
+
+TEST_CASE("e_log_p.py finds the indices of a path of straight parts, and where first loading bends") {
+  const Workplace here;
+  // First loading 10 to 100 kPa by 0.05 and on to 1600 by 0.30, swelling to 100 by 0.04, reloading to 1600 by 0.06.
+  const std::string path =
+      "import numpy as np, e_log_p\n"
+      "x = np.concatenate([np.linspace(1, 3.2, 23), np.linspace(3.2, 2, 13), np.linspace(2, 3.2, 13)[1:]])\n"
+      "e = np.concatenate([1 - 0.05 * (x[:23] - 1) - 0.25 * np.maximum(x[:23] - 2, 0), np.zeros(25)])\n"
+      "e[23:36] = e[22] + 0.04 * (3.2 - x[23:36])\n"
+      "e[36:] = e[35] - 0.06 * (x[36:] - 2)\n"
+      "for fit in e_log_p.fits_of(1e3 * 10 ** x, e): print(fit[0], *('%.4f' % v for v in fit[1:3]), '%.3g' % fit[4])\n";
+  CHECK(printed_by(here, path) == "C_c 0.3000 0.0000 1e+05\nC_s 0.0400 0.0000 1.58e+06\nC_r 0.0600 0.0000 1e+05\n");
+  // A straight path has no bend; one within the tolerance of a held stress does not turn.
+  CHECK(printed_by(here,
+                   "import numpy as np, e_log_p\nx = np.linspace(4, 5, 20)\n"
+                   "p = 10 ** x * (1 + 1e-3 * (-1) ** np.arange(20))\n"
+                   "print(*('%s %.3f' % fit[:2] for fit in e_log_p.fits_of(p, 1 - 0.2 * np.log10(p))))\n") ==
+        "C_c 0.200\n");
+}
+
+TEST_CASE("tests that differ by their specimen alone are one curve, the mean with their standard deviation") {
+  const Workplace here;
+  REQUIRE(here.run("pack pack_dense -o S.h5 --count 2 --set pack.number=36 --set target.void_ratio=0.2").code == 0);
+  const auto test = [&](const std::string& output, const std::string& more) {
+    const Outcome outcome =
+        here.run("run biaxial --set stage.compression.to_strain=0.02 -o " + output + ".h5 --specimen " + more);
+    INFO(outcome.errors);
+    REQUIRE(outcome.code == 0);
+  };
+  for (const std::string number : {"1", "2"}) {
+    test("low_" + number, "S_" + number + ".h5 --set test.pressure_Pa=20e3");
+    test("high_" + number, "S_" + number + ".h5 --set test.pressure_Pa=40e3");
+  }
+  test("slippery", "S_1.h5 --set test.pressure_Pa=20e3 --set material.friction=0.1");
+  CHECK(
+      printed_by(here,
+                 "import curves, records, numpy as np\n"
+                 "found = curves.curves_of(records.read_driven_stages(['.']))\n"
+                 "for c in found: print(sorted(s.path.stem for s in c.stages), c.label)\n"
+                 "c = [c for c in found if len(c.stages) == 2][0]\n"
+                 "x, mean, deviation = c.mean(lambda stage: stage.volumetric_strain)\n"
+                 "a, b = (np.interp(x, s.strain, s.volumetric_strain) for s in c.stages)\n"
+                 "print(abs(mean - (a + b) / 2).max() < 1e-15, abs(deviation - abs(a - b) / 2 ** 0.5).max() < 1e-15,\n"
+                 "      abs(a - b).max() > 1e-5)\n") ==
+      "['low_1', 'low_2'] low_1, 20 kPa (n = 2)\n"
+      "['slippery'] slippery, 20 kPa\n"
+      "['high_1', 'high_2'] 40 kPa (n = 2)\n"
+      "True True True\n");
+  // Of each pressure one entry in the legend of Mohr's circles, however many specimens; the interval is Student's.
+  const Outcome mohr = plot(here, "mohr", "low_1.h5 low_2.h5 high_1.h5 high_2.h5 -o mohr.svg");
+  INFO(mohr.errors);
+  CHECK_THAT(mohr.output, Contains("(2 specimens: ") && Contains("95 % interval of the mean"));
+  CHECK_THAT(bytes_of(here / "mohr.svg"), Contains("<svg"));
+  CHECK(plot(here, "mohr", "low_1.h5 -o mohr.pdf").code == 0);
+  CHECK(bytes_of(here / "mohr.pdf").starts_with("%PDF"));
+  // Quantiles of the printed tables: 1, 10, 20 and 60 degrees of freedom.
+  CHECK(printed_by(here, "import mohr\nprint(*('%.3f' % mohr.student(n) for n in (1, 10, 20, 60)))\n") ==
+        "12.706 2.228 2.086 2.000\n");
+}
+
+TEST_CASE("stages that go on driving one strain are one curve") {
+  const Workplace here;
+  here.import_packing("dense_p20");
+  const Outcome outcome =
+      here.run("run oedometer --specimen S.h5 -o R.h5 --set test.pressure_Pa=20e3 --set stage.large.to_strain=0.002");
+  REQUIRE(outcome.code == 0);
+  // In an oedometer the volumetric strain is the axial strain, over both stages together.
+  CHECK(printed_by(here,
+                   "import curves, records\n"
+                   "stages = records.read_driven_stages(['R.h5'])\n"
+                   "one, = curves.joined(stages)\n"
+                   "print(len(stages), len(one.strain) == sum(len(s.strain) for s in stages), one.parts,\n"
+                   "      abs(one.strain - one.volumetric_strain).max() < 1e-12, '%.6f' % one.strain[-1])\n") ==
+        "2 True [" + std::to_string(11) + "] True 0.002010\n");
+}
+
+TEST_CASE("a logarithmic axis stands zeros, negative values and a single decade") {
+  const Workplace here;
+  CHECK(
+      printed_by(here,
+                 "import records, curves, matplotlib.pyplot as plt\n"
+                 "figure, axes = plt.subplots()\n"
+                 "curves.log_axis(axes.xaxis, [-5, 0, float('nan'), 20, 60])\n"
+                 "axes.plot([-5, 0, 20, 60], [1, 2, 3, 4])\n"
+                 "figure.canvas.draw()\n"
+                 "low, high = axes.get_xlim()\n"
+                 "ticks = [float(t.get_text()) for t in axes.get_xticklabels() if t.get_text()]\n"
+                 "print(axes.get_xscale(), 15 < low < 20, 60 < high < 80, sum(low <= t <= high for t in ticks) >= 3)\n"
+                 "try: curves.log_axis(axes.xaxis, [0, -1])\n"
+                 "except ValueError as error: print(error)\n") ==
+      "log True True True\nno value above 0 for a logarithmic axis; give records with a pressure above 0\n");
+}
+
+TEST_CASE("a film has a frame for each snapshot and the end, and says how to get snapshots") {
+  const Workplace here;
+  here.import_packing("dense_p20");
+  REQUIRE(here.run("run biaxial --specimen S.h5 -o R.h5 --set stage.compression.to_strain=0.002 --set "
+                   "output.snapshots_every=2")
+              .code == 0);
+  // Records 0 to 4 at every 0.05 %: snapshots 0, 2 and 4, which is the end.
+  const Outcome outcome = plot(here, "film", "R.h5 -o R.gif --field p");
+  INFO(outcome.errors);
+  CHECK_THAT(outcome.output, Contains("R.gif: 3 frames of p"));
+  CHECK(printed_by(here, "from PIL import Image\nprint(Image.open('R.gif').n_frames)\n") == "3\n");
+  const auto refused = [&](const std::string& arguments, const std::string& part) {
+    const Outcome wrong = plot(here, "film", arguments);
+    CAPTURE(arguments, wrong.errors);
+    CHECK(wrong.code == 2);
+    CHECK_THAT(wrong.errors, Contains(part));
+  };
+  refused("S.h5 -o S.gif", "output.snapshots_every=10");
+  refused("R.h5 -o R.png", "allowed: *.mp4, *.gif");
+  refused("R.h5 -o R.gif --field eps_q", "allowed: chains, p");
+}
+
+TEST_CASE("fit.py draws posteriors over the data that were fitted, and sweeps") {
+  const Workplace here;
+  std::filesystem::create_directory(here / "fit");
+  std::filesystem::create_directory(here / "sweep");
+  here.write("fit/fit.json", R"({"parameters": [{"key": "material.friction", "range": [0.1, 1], "mean": 0.5,
+      "standard_deviation": 0.05, "low_95": 0.4, "high_95": 0.6}], "tests": [{"values": {"material.friction": 0.3}}],
+      "posterior_sample": {"material.friction": [0.4, 0.45, 0.5, 0.55, 0.6]}, "targets": [
+      {"name": "friction_angle_deg", "value": 30, "standard_error": 0.5, "fit": {"mean": 31, "standard_deviation": 1}},
+      {"name": "q_over_p", "value": 0.5, "standard_error": 0, "fit": {"mean": 0.5, "standard_deviation": 0.1}},
+      {"name": "q_over_p", "value": 0.6, "standard_error": 0, "fit": {"mean": 0.6, "standard_deviation": 0.1}}]})");
+  here.write(
+      "fit/curves.csv",
+      "curve,pressure_Pa,quantity,abscissa,x,measured,error,fit,low_95,high_95\n"
+      "1,100000,q_over_p,strain,0.01,0.5,0.02,0.5,0.4,0.6\n1,100000,q_over_p,strain,0.02,0.6,0.02,0.6,0.5,0.7\n");
+  here.write("sweep/sweep.csv",
+             "material.friction,friction_angle_deg,friction_angle_deg_standard_error,friction_angle_deg_n\n"
+             "0.1,20,0.5,5\n0.5,30,0.5,5\n");
+  expect_figure(here, "fit", "fit", "material.friction 0.5 (0.4 to 0.6); 1 tests");
+  expect_figure(here, "fit", "sweep", "1 measure against material.friction, 2 points");
+  std::filesystem::remove(here / "fit/fit.json");
+  expect_refusal(here, "fit", "fit", "fit.json: is not there");
+  here.write("fit/fit.json", "{}");
+  expect_refusal(here, "fit", "fit", "not the fit.json of rvelab");
 }
 
 TEST_CASE("loops.py counts cycles by the strain travelled, a quarter to the first turn") {
@@ -100,10 +252,13 @@ TEST_CASE("mpm.py draws any column of a history, and names the columns, frames a
   const Workplace here;
   std::filesystem::create_directory(here / "run");
   here.write("run/history.csv",
-             "time_s,steps,kinetic_J,plate.force_y_N,plate.displacement_y_m,plate.displacement_x_m\n0,0,0,0,0,0\n1,9,2,1e3,-0.1,0.2\n");
+             "time_s,steps,kinetic_J,plate.force_y_N,plate.displacement_y_m,plate.displacement_x_m\n0,0,0,0,0,0\n1,9,2,"
+             "1e3,-0.1,0.2\n");
   const std::string force = "run --force plate.force_y";
-  expect_figure(here, "mpm", force + " --against plate.displacement_y", "plate.force_y_N against plate.displacement_y_m");
-  expect_figure(here, "mpm", force + "_N --against plate.displacement_x_m", "plate.force_y_N against plate.displacement_x_m");
+  expect_figure(here, "mpm", force + " --against plate.displacement_y",
+                "plate.force_y_N against plate.displacement_y_m");
+  expect_figure(here, "mpm", force + "_N --against plate.displacement_x_m",
+                "plate.force_y_N against plate.displacement_x_m");
   expect_figure(here, "mpm", "run --force kinetic --against time", "kinetic_J against time_s");
   expect_figure(here, "mpm", "run --force kinetic_J", "kinetic_J against time_s");
   const auto refused = [&](const std::string& arguments, const std::string& part) {

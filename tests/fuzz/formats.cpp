@@ -11,7 +11,6 @@
 #include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/io/import/csv.hpp"
 #include "rvelab/io/journal/recorded_test.hpp"
-#include "rvelab/io/journal/states.hpp"
 #include "rvelab/keys/material_toml.hpp"
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/pack/read_recipe.hpp"

@@ -11,7 +11,7 @@
 #include "rvelab/keys/material_toml.hpp"
 #include "rvelab/pack/read_recipe.hpp"
 #include "rvelab/protocol/protocol.hpp"
-#include "rvelab/protocol/stage_kind.hpp"
+#include "rvelab/protocol/stage_kinds.hpp"
 #include "rvelab/solver/rve.hpp"
 #include "rvelab/solver/snapshot.hpp"
 #include "tests/catch.hpp"

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "rvelab/io/hdf5/compare.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/io/journal/recorded_test.hpp"
 
 namespace rvelab::test {

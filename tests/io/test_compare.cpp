@@ -1,5 +1,5 @@
 // "Bitwise the same" has one meaning: what compare_files finds no difference in.
-#include "rvelab/io/hdf5/compare.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
 
 #include <bit>
 #include <cmath>
@@ -7,7 +7,6 @@
 
 #include "random_specimen.hpp"
 #include "rvelab/io/hdf5/file.hpp"
-#include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/io/journal/recorded_test.hpp"
 #include "tests/catch.hpp"
 #include "tests/io/record_files.hpp"

@@ -3,9 +3,7 @@
 #include <Eigen/Geometry>
 
 #include "random_specimen.hpp"
-#include "rvelab/io/export/csv.hpp"
-#include "rvelab/io/export/lammps.hpp"
-#include "rvelab/io/export/xdmf.hpp"
+#include "rvelab/io/export/export.hpp"
 #include "rvelab/io/hdf5/file.hpp"
 #include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/io/import/csv.hpp"

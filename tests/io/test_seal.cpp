@@ -9,8 +9,8 @@
 #include <random>
 
 #include "random_specimen.hpp"
-#include "rvelab/io/hdf5/compare.hpp"
 #include "rvelab/io/hdf5/file.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/io/journal/record_journal.hpp"
 #include "rvelab/io/journal/recorded_test.hpp"
 #include "tests/catch.hpp"

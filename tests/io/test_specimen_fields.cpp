@@ -8,8 +8,6 @@
 
 #include "random_specimen.hpp"
 #include "rvelab/io/hdf5/archive.hpp"
-#include "rvelab/io/hdf5/compare.hpp"
-#include "rvelab/io/hdf5/digest.hpp"
 #include "rvelab/io/hdf5/schema.hpp"
 #include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/solver/snapshot.hpp"

@@ -4,7 +4,7 @@
 #include <fstream>
 
 #include "rvelab/protocol/run.hpp"
-#include "rvelab/protocol/stage_kind.hpp"
+#include "rvelab/protocol/stage_kinds.hpp"
 #include "tests/catch.hpp"
 #include "tests/protocol/reference_specimen.hpp"
 

@@ -5,7 +5,7 @@
 #include "rvelab/error.hpp"
 #include "rvelab/pack/read_recipe.hpp"
 #include "rvelab/protocol/protocol.hpp"
-#include "rvelab/protocol/stage_kind.hpp"
+#include "rvelab/protocol/stage_kinds.hpp"
 #include "tests/catch.hpp"
 #include "tests/protocol/texts.hpp"
 

@@ -2,7 +2,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "rvelab/calibrate/oedometer.hpp"
+#include "rvelab/calibrate/mohr.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/measure/tangent.hpp"

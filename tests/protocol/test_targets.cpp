@@ -1,6 +1,7 @@
 // The mixed target of an increment: A : dE + B : d sigma = c, row by row.
 #include <Eigen/LU>
 
+#include "rvelab/measure/tensor_order.hpp"
 #include "rvelab/protocol/drive.hpp"
 #include "tests/catch.hpp"
 
@@ -48,7 +49,8 @@ TEST_CASE("An increment that does what was asked leaves no row open, and any oth
     CHECK((target.spin - 0.5 * (gradient - gradient.transpose())).norm() == 0);
 
     // Independent rows: missing any one component shows.
-    for (const auto& [i, j] : components(dimension)) {
+    for (int k = 0; k < component_count(dimension); ++k) {
+      const auto [i, j] = component_axes(k, dimension);
       Matrix3 other = done, missed = after;
       const bool is_held = i == j && i != 1;
       if (is_held) {

@@ -3,14 +3,12 @@
 #include "rvelab/pack/search.hpp"
 #include "rvelab/solver/assembly/contact_states.hpp"
 #include "rvelab/solver/quasi_static/accuracy.hpp"
-#include "tests/oracle/specimens.hpp"
+#include "tests/solver/resolved.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
 
 namespace {
-
-const Matrix3 forward = gradient(0.45, 0, 0, -0.9), sheared = gradient(0.3, 0.6, 0, -0.3);
 
 /// The dense packing after a biaxial strain (constant lateral strain rate), resolved so finely that its own lag is far
 /// below the tolerances.
@@ -19,20 +17,12 @@ Specimen dense_after(double strain) {
   if (strain > 0) {
     s.solver.fixed_substeps = 2000;
     Rve rve(s);
-    for (int k = 0; k < 10; ++k) rve.apply(strain / 10 * forward, 0);
+    for (int k = 0; k < 10; ++k) rve.apply(strain / 10 * biaxial_step, 0);
     rve.relax(1e-7, 100'000);
     s = rve.specimen();
     s.solver.fixed_substeps = 0;
   }
   return s;
-}
-
-Matrix3 resolved(Specimen s, const Matrix3& increment) {
-  s.solver.fixed_substeps = 4000;
-  Rve rve(s);
-  rve.apply(increment, 0);
-  rve.relax(1e-7, 100'000);
-  return rve.stress();
 }
 
 /// yy shortened by `strain` at the stress xx of -100 kPa.
@@ -107,12 +97,12 @@ TEST_CASE("Increments keep below their estimate, and 35 of 36 to their tolerance
   int increments = 0, kept = 0;
   for (const double strain : {0.0, 1e-3, 1e-2}) {
     const Specimen s = dense_after(strain);
-    for (const Matrix3& direction : {forward, Matrix3(-forward), sheared})
+    for (const Matrix3& direction : {biaxial_step, Matrix3(-biaxial_step), shear_step})
       for (const double size : {1e-6, 1e-5, 1e-4, 1e-3}) {
         CAPTURE(strain, size, direction(1, 1), direction(0, 1));
         Rve rve(s);
         const Response response = rve.apply(size * direction, 0);
-        const double error = (response.stress - resolved(s, size * direction)).norm();
+        const double error = (response.stress - resolved_stress(s, size * direction)).norm();
         CHECK(error <= response.report.error_estimate);
         CHECK(response.report.quasi_static);
         ++increments;
@@ -128,12 +118,12 @@ TEST_CASE("Nine of ten long increments of packings at rest keep below their esti
   int increments = 0, kept = 0;
   for (const char* packing : {"dense", "medium", "soft"}) {
     const Specimen s = recorded(packing);
-    for (const Matrix3& direction : {forward, Matrix3(-forward), sheared, Matrix3(-sheared)})
+    for (const Matrix3& direction : {biaxial_step, Matrix3(-biaxial_step), shear_step, Matrix3(-shear_step)})
       for (const double size : {1.2e-3, 2e-3, 3e-3, 5e-3, 8e-3}) {
         Rve rve(s);
         const Response response = rve.apply(size * direction, 0);
         ++increments;
-        kept += (response.stress - resolved(s, size * direction)).norm() <= response.report.error_estimate;
+        kept += (response.stress - resolved_stress(s, size * direction)).norm() <= response.report.error_estimate;
       }
   }
   CHECK(increments == 60);
@@ -144,17 +134,17 @@ TEST_CASE("What a coarser path lags by is made up for before an increment to a t
   Specimen s = recorded("dense");
   s.solver.target_unbalanced = 5e-3;
   Rve coarse(s);
-  for (int k = 0; k < 100; ++k) coarse.apply(2e-4 * forward, 0);
+  for (int k = 0; k < 100; ++k) coarse.apply(2e-4 * biaxial_step, 0);
   s = coarse.specimen();
   s.solver.target_unbalanced = 0;
   int told = 0;
-  const double lag = (coarse.stress() - resolved(s, Matrix3::Zero())).norm();
-  for (const Matrix3& direction : {forward, Matrix3(-forward), sheared, Matrix3(-sheared)})
+  const double lag = (coarse.stress() - resolved_stress(s, Matrix3::Zero())).norm();
+  for (const Matrix3& direction : {biaxial_step, Matrix3(-biaxial_step), shear_step, Matrix3(-shear_step)})
     for (const double size : {1e-7, 1e-6, 1e-5, 1e-4}) {
       CAPTURE(size, direction(1, 1), direction(0, 1));
       Rve rve(s);
       const Response response = rve.apply(size * direction, 0);
-      const double error = (response.stress - resolved(s, size * direction)).norm();
+      const double error = (response.stress - resolved_stress(s, size * direction)).norm();
       CHECK(response.report.allowed_error < 0.1 * lag);
       CHECK(error <= response.report.error_estimate);
       CHECK(error <= 2 * response.report.allowed_error);
@@ -167,12 +157,12 @@ TEST_CASE("What a coarser path lags by is made up for before an increment to a t
 TEST_CASE("A packing that few contacts hold is loaded from rest to its tolerance, like a dense one", "[solver]") {
   const Specimen s = recorded("noroll");  // friction alone: near isostatic at 3 contacts a grain
   int kept = 0, increments = 0;
-  for (const Matrix3& direction : {forward, Matrix3(-forward), sheared})
+  for (const Matrix3& direction : {biaxial_step, Matrix3(-biaxial_step), shear_step})
     for (const double size : {1e-6, 1e-5, 3e-5, 1e-4}) {
       CAPTURE(size, direction(1, 1), direction(0, 1));
       Rve rve(s);
       const Response response = rve.apply(size * direction, 0);
-      const double error = (response.stress - resolved(s, size * direction)).norm();
+      const double error = (response.stress - resolved_stress(s, size * direction)).norm();
       CHECK(error <= response.report.error_estimate);
       kept += error <= response.report.allowed_error;
       ++increments;
@@ -207,11 +197,11 @@ TEST_CASE("Of packings of low friction and of wide Hertz spheres most increments
   int increments = 0, kept = 0, told = 0, true_told = 0;
   for (const Specimen& s : {packed_grains(Shape::disc, 80, 2, 0.02), packed_grains(Shape::disc, 80, 2, 0.05),
                             packed_grains(Shape::disc, 80, 2, 0.1), packed_grains(Shape::sphere, 80, 4, 0.3)})
-    for (const Matrix3& direction : {forward, Matrix3(-forward), sheared})
+    for (const Matrix3& direction : {biaxial_step, Matrix3(-biaxial_step), shear_step})
       for (const double size : {1e-6, 1e-5, 1e-4}) {
         Rve rve(s);
         const Response response = rve.apply(size * direction, 0);
-        const double error = (response.stress - resolved(s, size * direction)).norm();
+        const double error = (response.stress - resolved_stress(s, size * direction)).norm();
         ++increments;
         kept += error <= response.report.error_estimate;
         told += response.report.tolerance_met;
@@ -240,7 +230,7 @@ TEST_CASE("What a rest has shown is a part of the state: trials, copies and rest
   Rve straight(recorded("dense")), restored(straight), tried(straight);
   bool measured = false;
   for (int k = 0; k < 24; ++k) {
-    const Matrix3 increment = (k % 8 < 5 ? 2e-4 : -1e-4) * (k % 3 == 2 ? sheared : forward);
+    const Matrix3 increment = (k % 8 < 5 ? 2e-4 : -1e-4) * (k % 3 == 2 ? shear_step : biaxial_step);
     const Response a = straight.apply(increment, 0), b = restored.apply(increment, 0);
     tried.attempt(0.5 * increment, 0);
     tried.revert();
@@ -261,9 +251,9 @@ TEST_CASE("What a rest has shown is a part of the state: trials, copies and rest
 
 TEST_CASE("A rest costs a few of a hundred sub-steps of a path that goes on", "[solver]") {
   Rve rve(recorded("dense"));
-  for (int k = 0; k < 100; ++k) rve.apply(2e-5 * forward, 0);
+  for (int k = 0; k < 100; ++k) rve.apply(2e-5 * biaxial_step, 0);
   const std::uint64_t made = rve.grain_steps_made(), kept = rve.grain_steps();
-  for (int k = 0; k < 400; ++k) rve.apply(1e-5 * forward, 0);
+  for (int k = 0; k < 400; ++k) rve.apply(1e-5 * biaxial_step, 0);
   const auto all = double(rve.grain_steps_made() - made), path = double(rve.grain_steps() - kept);
   CHECK(all > path);  // there were some
   CHECK(all < 1.3 * path);
@@ -283,7 +273,7 @@ TEST_CASE("A relaxation cut into calls is the same relaxation, the stop of grain
 
 TEST_CASE("Stricter tolerances take more sub-steps and err less", "[solver]") {
   Specimen s = dense_after(1e-3);
-  const Matrix3 increment = 3e-4 * sheared, truth = resolved(s, increment);
+  const Matrix3 increment = 3e-4 * shear_step, truth = resolved_stress(s, increment);
   const auto answer = [&](double factor) {
     s.solver.relative_tolerance = 1e-2 * factor;
     s.solver.absolute_tolerance = 1e-4 * factor;
@@ -294,63 +284,6 @@ TEST_CASE("Stricter tolerances take more sub-steps and err less", "[solver]") {
   CHECK((strict.stress - truth).norm() < 0.3 * (usual.stress - truth).norm());
   CHECK((strict.stress - truth).norm() <= strict.report.allowed_error);
   CHECK(strict.report.allowed_error == Approx(0.03 * usual.report.allowed_error).epsilon(0.02));
-}
-
-TEST_CASE("A path cut finely costs little more than the path in increments of 1e-4", "[solver]") {
-  const Specimen s = recorded("dense");
-  const auto run = [&](long pieces) {
-    Rve rve(s);
-    Response last;
-    for (long k = 0; k < pieces; ++k) last = rve.apply(2e-3 / double(pieces) * forward, 0);
-    return std::pair(last.stress, rve.grain_steps() / s.grains.size());
-  };
-  const auto [whole, steps] = run(20);
-  const auto [tenth, steps_tenth] = run(200);
-  const auto [hundredth, steps_hundredth] = run(2000);
-  CHECK(double(steps_tenth) <= 1.2 * double(steps));
-  CHECK(steps_hundredth <= std::max<std::uint64_t>(2 * steps, 2000 + 100));  // at least one for each call
-  const auto [thousandth, steps_thousandth] = run(20'000);                   // these share sub-steps
-  CHECK(steps_thousandth <= 6 * steps);
-  const double allowed = 1e-2 * (whole - Rve(s).stress()).norm() + 1e-4 * 1e5;
-  CHECK((tenth - whole).norm() <= allowed);
-  CHECK((hundredth - whole).norm() <= allowed);
-  CHECK((thousandth - whole).norm() <= allowed);
-}
-
-TEST_CASE("A path cut finely is not told to miss its tolerance piece by piece", "[solver]") {
-  for (const long pieces : {20L, 200L, 2000L, 20'000L}) {
-    CAPTURE(pieces);
-    Rve rve(recorded("dense"));
-    long missed = 0;
-    for (long k = 0; k < pieces; ++k)
-      missed += rve.apply(2e-3 / double(pieces) * forward, 0).report.tolerance_met ? 0 : 1;
-    CHECK(double(missed) <= 0.2 * double(pieces));  // one interval where contacts slip is 26 of 200
-  }
-}
-
-TEST_CASE("A path that turns back, aside, or waits keeps to the resolved one, finely cut", "[solver]") {
-  const Specimen s = recorded("dense");
-  const auto run = [&](long pieces, long substeps) {
-    Specimen t = s;
-    t.solver.fixed_substeps = substeps;
-    Rve rve(t);
-    std::vector<Matrix3> corners;
-    for (const Matrix3& leg : {forward, Matrix3(-forward), sheared, Matrix3(Matrix3::Zero()), forward}) {
-      for (long k = 0; k < pieces; ++k) rve.apply(3e-4 / double(pieces) * leg, 0);
-      corners.push_back(rve.stress());
-    }
-    return corners;
-  };
-  const std::vector<Matrix3> truth = run(3, 2000);
-  for (const long pieces : {3L, 30L, 300L, 3000L}) {
-    const std::vector<Matrix3> found = run(pieces, 0);
-    for (std::size_t k = 0; k < truth.size(); ++k) {
-      CAPTURE(pieces, k);
-      const Matrix3 from = k == 0 ? Rve(s).stress() : truth[k - 1];
-      // What a leg errs by is carried on: one allowance for each leg so far.
-      CHECK((found[k] - truth[k]).norm() <= double(k + 1) * (1e-2 * (truth[k] - from).norm() + 1e-4 * 1e5));
-    }
-  }
 }
 
 TEST_CASE("A cell that has come apart is strained on in as many sub-steps as another", "[solver]") {
@@ -402,34 +335,4 @@ TEST_CASE("Under stress control the larger tolerance, times the pressure, is kep
     substeps = f.substeps;
     CHECK(same_bits(found(1e-5, tolerance, 0).stress, f.stress));
   }
-}
-
-TEST_CASE("Tiny increments are no identity: they add up, save and restore bitwise", "[solver]") {
-  const Specimen s = recorded("dense");
-  Rve straight(s), restored(s);
-  for (int k = 0; k < 300; ++k) {
-    const Matrix3 increment = (k / 100 == 1 ? -1e-7 : 1e-7) * forward;
-    const Response a = straight.apply(increment, 0), b = restored.apply(increment, 0);
-    CHECK(same_bits(a.stress, b.stress));
-    CHECK(a.report.error_estimate == b.report.error_estimate);
-    if (k % 37 == 0) {
-      const std::vector<std::byte> bytes = restored.save();
-      restored = Rve(s);
-      restored.restore(bytes);
-    }
-  }
-  CHECK(straight.save() == restored.save());
-}
-
-TEST_CASE("A specimen that was never loaded is an equilibrium, and so is a pause", "[solver]") {
-  Rve rve(recorded("dense"));
-  const Response first = rve.apply(Matrix3::Zero(), 0);
-  CHECK(first.report.quasi_static);
-  CHECK(first.report.allowed_error == Approx(1e-4 * 1e5).epsilon(0.01));
-  CHECK(first.report.error_estimate < first.report.allowed_error);
-  rve.apply(1e-4 * forward, 0);
-  const Matrix3 stress = rve.stress();
-  const Response pause = rve.apply(Matrix3::Zero(), 0);
-  CHECK(same_bits(pause.stress, stress));
-  CHECK(pause.report.error_estimate > 0);
 }

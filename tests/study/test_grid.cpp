@@ -3,7 +3,6 @@
 #include <limits>
 
 #include "rvelab/error.hpp"
-#include "rvelab/study/pareto.hpp"
 #include "rvelab/study/summary.hpp"
 #include "tests/study/studies.hpp"
 

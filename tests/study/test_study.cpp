@@ -6,7 +6,6 @@
 #include "rvelab/keys/material_toml.hpp"
 #include "rvelab/study/measures.hpp"
 #include "rvelab/study/summary.hpp"
-#include "rvelab/study/whole_path.hpp"
 #include "tests/study/studies.hpp"
 
 using namespace rvelab;

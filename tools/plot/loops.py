@@ -3,13 +3,17 @@
 
 Left, the driving stress against the driving strain: shear stress for simple shear, axial less lateral stress for
 compression; right, against p: the stress path to liquefaction. Below, p over its start against the number of cycles.
+Colours go with the cycle.
 """
 
 import argparse
+import math
 
 import records  # first: it says which package is missing
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib import colors
+from matplotlib.collections import LineCollection
 
 
 def driving_stress(stage):
@@ -40,6 +44,26 @@ def cycles_of(strain):
     return cycles
 
 
+def add_line(axes, x, y, cycles, scale):
+    """A line whose colour goes with the cycle."""
+    points = np.stack([x, y], axis=1)
+    line = LineCollection(np.stack([points[:-1], points[1:]], axis=1), cmap=scale.cmap, norm=scale.norm, linewidths=1.0,
+                          capstyle="round")
+    line.set_array(0.5 * (cycles[1:] + cycles[:-1]))
+    axes.add_collection(line)
+    axes.autoscale_view()
+
+
+def scale_of(cycles):
+    """One colour a cycle, up to 20 of them; beyond, a continuous scale."""
+    count = max(1, math.ceil(cycles[-1] - 1e-9))
+    cmap = plt.get_cmap("viridis")
+    if count <= 20:
+        shades = colors.ListedColormap(cmap(np.linspace(0.0, 0.88, count)))
+        return plt.cm.ScalarMappable(colors.BoundaryNorm(np.arange(count + 1), count), shades), count
+    return plt.cm.ScalarMappable(colors.Normalize(0, count), cmap), count
+
+
 def draw(stages, options):
     cyclic = [stage for stage in stages if stage.cyclic]
     if not cyclic:
@@ -48,26 +72,32 @@ def draw(stages, options):
     stage = cyclic[-1]
     stress, label = driving_stress(stage)
     p, _ = stage.invariants()
-    figure = plt.figure(figsize=(9.5, 6.4))
+    cycles = cycles_of(stage.strain)
+    scale, count = scale_of(cycles)
+    figure = plt.figure(figsize=(9.5, 6.4), layout="constrained")
     grid = figure.add_gridspec(2, 2, height_ratios=(3, 1.6))
     loop, path, decay = (figure.add_subplot(place) for place in (grid[0, 0], grid[0, 1], grid[1, :]))
-    loop.plot(100 * stage.strain, stress / 1e3, linewidth=0.8, color="tab:blue")
+    add_line(loop, 100 * stage.strain, stress / 1e3, cycles, scale)
     loop.set_xlabel(stage.strain_in_words())
     loop.set_ylabel(label)
-    path.plot(p / 1e3, stress / 1e3, linewidth=0.8, color="tab:blue")
+    add_line(path, p / 1e3, stress / 1e3, cycles, scale)
     path.set_xlabel("mean stress $p$ (kPa)")
     path.set_ylabel(label)
-    path.set_xlim(left=0)
-    cycles = cycles_of(stage.strain)
-    decay.plot(cycles, p / p[0], color="tab:blue")
+    path.set_xlim(left=min(0, 1.05 * float(p.min()) / 1e3))
+    add_line(decay, cycles, p / p[0], cycles, scale)
     if p.min() < 0.5 * p[0]:
         decay.axhline(0.02, color="0.5", linewidth=0.8, linestyle="--", label="$p/p_0$ = 0.02, liquefied")
         decay.legend(fontsize=8, loc="upper right")
     decay.set_xlabel("cycles")
     decay.set_ylabel("$p/p_0$")
-    decay.set_ylim(bottom=0)
-    figure.suptitle(f"{stage.test_in_words()}: {stage.label}", fontsize=11, x=0.12, ha="left")
-    figure.tight_layout()
+    decay.set_xlim(left=0)
+    decay.set_ylim(bottom=min(0, 1.05 * float(p.min() / p[0])))
+    bar = figure.colorbar(scale, ax=[loop, path], aspect=30, pad=0.02)
+    bar.set_label("cycle")
+    if count <= 20:
+        bar.set_ticks(np.arange(count) + 0.5, labels=[str(k + 1) for k in range(count)])
+        bar.ax.tick_params(length=0)
+    figure.suptitle(f"{stage.test_in_words()}: {stage.label}", fontsize=11, x=0.06, ha="left")
     figure.savefig(options.output)
     return f"{options.output}: {cycles[-1]:.1f} cycles, p from {p[0]:.4g} to {p[-1]:.4g} Pa, lowest {p.min():.4g} Pa"
 
@@ -76,4 +106,4 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(prog="loops.py", description=__doc__.splitlines()[0])
     parser.add_argument("records", nargs=1, help="record file")
     parser.add_argument("-o", "--output", default="loops.png", help="figure to write (PNG, PDF or SVG)")
-    records.run(draw, parser, read=records.read_driven_stages)
+    records.run(draw, parser)

@@ -3,21 +3,26 @@
 
 Of each file the last drained compression or extension. Its peak is the record with the largest deviator sigma_1 - sigma_3,
 unsmoothed; a test that ends before 15 % strain with its largest deviator at the end has none: the others are drawn, with a
-warning. The envelope passes through the origin: t = s sin phi by least squares over the tests, s = (sigma_1 + sigma_3)/2,
-t = (sigma_1 - sigma_3)/2. Where all tests reach 15 % axial strain, the mean of their angles from 12 to 15 % is drawn
-beside it. Compression positive.
+warning. Of several specimens at one pressure the circle of their mean state is drawn over thin ones of each. The envelope
+passes through the origin: t = s sin phi by least squares over the tests, s = (sigma_1 + sigma_3)/2,
+t = (sigma_1 - sigma_3)/2; of several specimens the mean of their angles with its 95 % interval (Student's) is drawn and
+printed beside it. Where all tests reach 15 % axial strain, the mean of their angles from 12 to 15 % is drawn too.
+Compression positive.
 """
 
 import argparse
 import math
 
 import records  # first: it says which package is missing
+import curves as kinds
 import matplotlib.pyplot as plt
 import numpy as np
 
 
 LARGE_STRAIN = (0.12, 0.15)
 SLACK = 1e-9  # recorded strains are round numbers up to round-off
+# 97.5 % quantiles of Student's distribution for 1 to 10 degrees of freedom.
+STUDENT = (12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228)
 
 
 def drained_tests(stages):
@@ -58,9 +63,89 @@ def large_strain_angle(test):
     return math.asin((sigma_1 - sigma_3) / (sigma_1 + sigma_3))
 
 
-def envelope(axes, angle, right, label, **line):
+def student(freedom):
+    """97.5 % quantile of Student's distribution; beyond the table its expansion in 1/freedom, to 1e-3."""
+    if freedom <= len(STUDENT):
+        return STUDENT[freedom - 1]
+    z = 1.959964
+    return z + (z**3 + z) / (4 * freedom) + (5 * z**5 + 16 * z**3 + 3 * z) / (96 * freedom**2)
+
+
+def interval_of(tests):
+    """Mean of the peak angles of the specimens, radians, and half of its 95 % interval; None for a single specimen."""
+    specimens = {}
+    for test in tests:
+        specimens.setdefault(test.origin.specimen, []).append(peak_state(test))
+    angles = np.array([math.asin(records.sine_through_origin(*np.array(states).T)) for states in specimens.values()])
+    if len(angles) < 2:
+        return None
+    return float(angles.mean()), student(len(angles) - 1) * float(angles.std(ddof=1)) / math.sqrt(len(angles)), len(angles)
+
+
+def line_of(axes, angle, right, label, **line):
     """Draws tau = sigma tan phi, phi in radians."""
-    axes.plot([0, right], [0, right * math.tan(angle)], label=f"{label}: $\\varphi$ = {math.degrees(angle):.2f}°", **line)
+    axes.plot([0, right], [0, right * math.tan(angle)], label=label, **line)
+
+
+def draw_circles(axes, drawn):
+    """One circle a pressure (and group), that of the mean state; thin ones of each specimen. Largest stress, kPa."""
+    around = np.linspace(0, math.pi, 300)
+    reach = 0.0
+    for curve in drawn:
+        states = np.array([peak_state(test) for test in curve.stages]) / 1e3
+        if len(states) > 1:
+            for centre, radius in states:
+                axes.plot(centre + radius * np.cos(around), radius * np.sin(around), color=curve.colour, linewidth=0.4,
+                          alpha=0.45)
+        centre, radius = states.mean(axis=0)
+        x, y = centre + radius * np.cos(around), radius * np.sin(around)
+        axes.fill_between(x, 0, y, color=curve.colour, alpha=0.08, linewidth=0)
+        axes.plot(x, y, color=curve.colour, linestyle=curve.dashes, linewidth=1.5, label=curve.label)
+        reach = max(reach, float(states.sum(axis=1).max()))
+    return reach
+
+
+def draw_envelopes(axes, tests, right, colour="crimson", name=""):
+    """Envelope of the peaks with its interval, and that of large strain; the words for both and the peak angle."""
+    peak = math.asin(records.sine_through_origin(*np.array([peak_state(test) for test in tests]).T))
+    interval = interval_of(tests)
+    text = f"peak friction angle {math.degrees(peak):.3f} degrees"
+    before = f"{name}, " if name else ""
+    label = f"{before}peak: $\\varphi$ = {math.degrees(peak):.2f}°"
+    if interval is not None:
+        mean, half, count = interval
+        axes.fill_between([0, right], [0, right * math.tan(mean - half)], [0, right * math.tan(mean + half)],
+                          color=colour, alpha=0.12, linewidth=0, label="95 % interval of the mean" if not name else None)
+        label = f"{before}peak: $\\varphi$ = {math.degrees(mean):.1f}° ± {math.degrees(half):.1f}°"
+        text += f" ({count} specimens: {math.degrees(mean):.2f} +- {math.degrees(half):.2f}, 95 % interval of the mean)"
+    line_of(axes, interval[0] if interval else peak, right, label, color=colour, linewidth=1.6)
+    large = [large_strain_angle(test) for test in tests]
+    if None not in large:
+        mean = sum(large) / len(large)
+        line_of(axes, mean, right, f"{before}12 to 15 % strain: $\\varphi$ = {math.degrees(mean):.1f}°",
+                color=colour if name else "0.35", linestyle=(0, (5, 3)))
+        text += f", at large strain {math.degrees(mean):.3f} degrees"
+    return (f"{name}: " if name else "") + text, peak
+
+
+def sets_of(drawn):
+    """Tests of each kind at all its pressures, with their colour and the words that tell them apart."""
+    sets = {}
+    for curve in drawn:
+        sets.setdefault(curve.rest, []).append(curve)
+    if len(sets) == 1:
+        return [([stage for curve in drawn for stage in curve.stages], "crimson", "")]
+    found = []
+    for own in sets.values():
+        name = own[0].label.split(" (n =")[0]
+        parts = [part for part in name.split(", ") if len(own) == 1 or not part.endswith(" kPa")]
+        found.append(([stage for curve in own for stage in curve.stages], own[0].colour, ", ".join(parts)))
+    return found
+
+
+def several_groups(tests):
+    """More than the pressure tells the tests apart: then colours go with the kind of test."""
+    return len({curve.rest for curve in kinds.curves_of(tests)}) > 1
 
 
 def draw(stages, options):
@@ -69,36 +154,24 @@ def draw(stages, options):
     tests = [test for test in tests if not still_rising(test)]
     if not tests:
         raise ValueError("; ".join(rising))
-    figure, axes = plt.subplots(figsize=(8, 4.6))
-    states = np.array([peak_state(test) for test in tests]) / 1e3
-    right = 1.06 * float(np.max(states.sum(axis=1)))
-    around = np.linspace(0, math.pi, 400)
-    for test, (centre, radius), colour in zip(tests, states, records.pressure_colours(len(tests))):
-        x, y = centre + radius * np.cos(around), radius * np.sin(around)
-        axes.fill_between(x, 0, y, color=colour, alpha=0.08, linewidth=0)
-        axes.plot(x, y, color=colour, label=f"{records.plain(test.pressure / 1e3)} kPa")
-    peak = math.asin(records.sine_through_origin(*states.T))
-    envelope(axes, peak, right, "peak", color="crimson", linewidth=1.6)
-    text = f"peak friction angle {math.degrees(peak):.3f} degrees"
-    large = [large_strain_angle(test) for test in tests]
-    if None not in large:
-        mean = sum(large) / len(large)
-        envelope(axes, mean, right, "12 to 15 % strain", color="0.35", linestyle=(0, (5, 3)))
-        text += f", at large strain {math.degrees(mean):.3f} degrees"
+    figure, axes = plt.subplots(figsize=(7, 4.4))
+    drawn = kinds.curves_of(tests, "group" if options.colour == "auto" and several_groups(tests) else options.colour)
+    right = 1.06 * draw_circles(axes, drawn)
+    found = [draw_envelopes(axes, own, right, colour, name) for own, colour, name in sets_of(drawn)]
+    text, peak = "; ".join(words for words, _ in found), max(angle for _, angle in found)
     axes.set_xlim(0, right)
-    axes.set_ylim(0, max(1.12 * float(states[:, 1].max()), right * math.tan(peak)))
+    axes.set_ylim(0, max(0.56 * right, right * math.tan(peak)))
     axes.set_aspect("equal", adjustable="box")
     axes.set_xlabel("normal stress $\\sigma$, compression positive (kPa)")
     axes.set_ylabel("shear stress $\\tau$ (kPa)")
-    axes.legend(title="lateral pressure $\\sigma_r$, envelope", loc="upper left", fontsize=9)
-    kinds = " and ".join(dict.fromkeys(test.test_in_words() for test in tests))
-    axes.set_title(f"{kinds}: Mohr circles at peak", fontsize=11, loc="left")
+    kinds.legend(axes, "lateral pressure $\\sigma_r$, envelope")
+    words = " and ".join(dict.fromkeys(test.test_in_words() for test in tests))
+    axes.set_title(f"{words}: Mohr circles at peak", fontsize=11, loc="left")
     figure.savefig(options.output)
     return f"{options.output}: {text}" + "".join(f"\nwarning: not drawn: {why}" for why in rising)
 
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(prog="mohr.py", description=__doc__.splitlines()[0])
-    parser.add_argument("records", nargs="+", help="record files, or folders of them")
-    parser.add_argument("-o", "--output", default="mohr.png", help="figure to write (PNG, PDF or SVG)")
+    kinds.add_options(parser, "mohr.png")
     records.run(draw, parser)

@@ -133,18 +133,9 @@ def frame_of(frames, options):
 def field_figure(options):
     frames = frames_of(options.runs[0])
     if options.film:
-        from PIL import Image
-        box, pictures = box_of(frames[:: max(1, len(frames) // 8)] + frames[-1:], options.field), []
-        last = read(frames[-1], options.field)[2]
-        limits = options.limits or tuple(np.nanpercentile(last, [1, 99]))
-        for frame in frames:
-            figure = plt.figure(figsize=size_of(box), layout="constrained")  # a GIF is not cut to what is drawn
-            draw(figure, frame, options.field, limits, box)
-            figure.canvas.draw()
-            pictures.append(Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("P"))
-            plt.close(figure)
-        pictures[0].save(options.output, save_all=True, append_images=pictures[1:], duration=120, loop=0)
-        return f"{options.output}: {len(pictures)} frames of {options.field}"
+        import film
+        count = film.save(film.pictures_of_fields(options.runs[0], options.field, options.limits), options.output, 8)
+        return f"{options.output}: {count} frames of {options.field}"
     frame = frame_of(frames, options)
     box = box_of([frame], options.field)
     figure = plt.figure(figsize=size_of(box))
@@ -220,7 +211,7 @@ def main():
     what.add_argument("--network", type=int, nargs="+", help="numbers of watched points, from 0")
     parser.add_argument("--against", default="time", help="the same for the other axis: plate.displacement_y; default: time")
     parser.add_argument("--frame", type=int, default=-1, help="number of the frame; negative: from the end")
-    parser.add_argument("--film", action="store_true", help="all frames, as GIF")
+    parser.add_argument("--film", action="store_true", help="all frames, as GIF or MP4")
     parser.add_argument("--limits", type=float, nargs=2, metavar=("LOW", "HIGH"), help="of the colours")
     parser.add_argument("-o", "--output", required=True)
     options = parser.parse_args()

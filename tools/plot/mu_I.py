@@ -10,6 +10,7 @@ import argparse
 import math
 
 import records  # first: it says which package is missing
+import curves as kinds
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -49,8 +50,7 @@ def draw(stages, options):
     for axes, column, label in ((left, 1, "friction $\\mu = |\\sigma_{ab}|/\\sigma_{bb}$"), (right, 2, "void ratio $e$")):
         values = np.array([flow[column] for flow in flows])
         axes.errorbar(inertial, values[:, 0], yerr=values[:, 1], fmt="o", color="C0", markersize=4, capsize=3)
-        axes.set_xscale("log")
-        axes.set_xlim(inertial.min() / 2, 2 * inertial.max())
+        kinds.log_axis(axes.xaxis, [inertial.min() / 2, 2 * inertial.max()])
         axes.set_xlabel("inertial number $I$")
         axes.set_ylabel(label)
     line = np.geomspace(inertial.min() / 2, 2 * inertial.max(), 100)  # a single flow has room around it too

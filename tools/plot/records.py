@@ -1,13 +1,15 @@
-"""Record files of rvelab as arrays, and what the figures share: measures in soil mechanics' signs, colours, style.
+"""Record files of rvelab as arrays: stages with their measures in soil mechanics' signs, the style of the figures, and
+the command line of their scripts. curves.py says which stages are one curve.
 
 Files hold Cauchy stress in Pa, tension positive, laboratory frame; everything returned here whose name is a soil
 measure (sigma_1, sigma_3, p, q, eps_v, eps_a) is compression positive.
 """
 
 import math
+import os
 import pathlib
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 PACKAGES = {"h5py": "python3-h5py", "matplotlib": "python3-matplotlib", "numpy": "python3-numpy",
             "tomllib": "python3 (3.11 or later)"}
@@ -18,7 +20,8 @@ try:
     import h5py
     import matplotlib
 
-    matplotlib.use("Agg")
+    if "MPLBACKEND" not in os.environ:
+        matplotlib.use("Agg")
     import matplotlib.pyplot as plt
     import numpy as np
 except ModuleNotFoundError as missing:
@@ -39,7 +42,24 @@ STYLE = {
     "axes.spines.right": False,
     "legend.frameon": False,
     "lines.linewidth": 1.2,
+    "svg.hashsalt": "rvelab",  # the same figure, the same bytes
+    "pdf.fonttype": 42,  # text stays text
 }
+
+
+@dataclass(frozen=True)
+class Origin:
+    """What a record file says of the test as a whole."""
+
+    group: str  # folder of the file, or the folder that was given
+    specimen: int  # checksum of the specimen that the test began with
+    grains: int
+    material: tuple  # contact law and parameters of the materials
+    settings: str  # the protocol without its pressures
+    wall_seconds: float
+    grain_steps: int
+    complete: bool
+    version: str
 
 
 @dataclass
@@ -57,6 +77,9 @@ class Stage:
     deformation: np.ndarray  # (n, d, d), F since the start of the stage
     held: np.ndarray  # the held stress was within its tolerance
     columns: dict  # by the names of the datasets under /records
+    origin: object = None  # Origin of the file
+    first_record: int = 0  # number of its first record in the file
+    parts: list = field(default_factory=list)  # row at which each stage begins that was joined to the first
 
     @property
     def axis(self):
@@ -146,8 +169,29 @@ def texts(dataset):
     return [text.decode() if isinstance(text, bytes) else str(text) for text in np.ravel(dataset[()])]
 
 
+def without_pressures(table):
+    """A protocol with no key whose value is a pressure, so that tests at several pressures are of one kind."""
+    if isinstance(table, dict):
+        return {key: without_pressures(value) for key, value in sorted(table.items())
+                if key not in ("calibrate", "specimen") and "pressure" not in key}
+    return [without_pressures(item) for item in table] if isinstance(table, list) else table
+
+
+def origin_of(file, path, protocol):
+    """Origin of an open record file."""
+    specimen = file["specimen"]
+    material = [specimen["contact/law"][()]]
+    for name, values in specimen["materials"].items():
+        if name != "name":
+            material += [f"{name} {value:.6g}" for value in np.ravel(values[()])]
+    return Origin(path.resolve().parent.name, int(file["provenance/specimen_crc32c"][()]), len(specimen["grains/radius_m"]),
+                  tuple(map(str, material)), str(without_pressures(protocol)), float(file["provenance/wall_seconds"][()]),
+                  int(file["test/grain_steps"][()]), bool(file["complete"][()]), texts(file["provenance/version"])[0])
+
+
 def read_columns(path):
-    """The datasets under /records, the names of the stages and the protocol; ValueError, naming the file, if it is none."""
+    """The datasets under /records, the names of the stages, the protocol and its Origin; ValueError, naming the file, if
+    it is none."""
     path = pathlib.Path(path)
     journal = path.with_name(path.name + ".journal")
     if not path.exists() and journal.exists():
@@ -158,17 +202,18 @@ def read_columns(path):
             columns = {name: file["records/" + name][()] for name in file["records"]}
             names = texts(file["test/stages"])
             protocol = tomllib.loads(texts(file["provenance/protocol"])[0])
+            origin = origin_of(file, path, protocol)
     except (OSError, KeyError, RuntimeError, tomllib.TOMLDecodeError) as error:
         raise ValueError(f"{path}: not a record file of rvelab ({error}); give one that `rvelab run` or "
                          "`rvelab calibrate -o` wrote") from error
     if len(columns["stage"]) == 0:
         raise ValueError(f"{path}: holds no records; the test made none, or stopped before its first one")
-    return columns, names, protocol
+    return columns, names, protocol, origin
 
 
 def stages_of(path):
     """Every visit of a stage with at least two records, in order."""
-    columns, names, protocol = read_columns(path)
+    columns, names, protocol, origin = read_columns(path)
     # 2D output has sigma_zz = 0: there is no out-of-plane model.
     d = 2 if np.all(columns["stress_Pa"][:, 2, 2] == 0) else 3
     keys = {stage.get("name", stage["kind"]): stage for stage in protocol.get("stage", [])}
@@ -184,15 +229,30 @@ def stages_of(path):
         of_stage = keys.get(name, {})
         stages.append(Stage(pathlib.Path(path), of_stage.get("kind", ""), name, name, of_stage, d, own["strain"],
                             -own["stress_Pa"][:, :d, :d], own["deformation_gradient"][:, :d, :d],
-                            own["target_held"].astype(bool), own))
+                            own["target_held"].astype(bool), own, origin, int(rows[0])))
     return stages
+
+
+def files_of(paths):
+    """The files named, and of folders all *.h5 in them that are record files."""
+    files = []
+    for path in map(pathlib.Path, paths):
+        files += [file for file in sorted(path.glob("*.h5")) if is_record_file(file)] if path.is_dir() else [path]
+    return files
+
+
+def is_record_file(path):
+    """False for specimens that lie in a folder of records; whatever else is wrong is told when it is read."""
+    try:
+        with h5py.File(path, "r") as file:
+            return "records" in file or "materials" not in file
+    except OSError:
+        return True
 
 
 def read_stages(paths):
     """The stages of record files, or of all *.h5 of folders; labels name the file where there are several."""
-    files = []
-    for path in map(pathlib.Path, paths):
-        files += sorted(path.glob("*.h5")) if path.is_dir() else [path]
+    files = files_of(paths)
     stages = [stage for file in files for stage in stages_of(file)]
     for stage in stages:
         if len(files) > 1:
@@ -218,11 +278,6 @@ def sine_through_origin(s, t):
     return float(np.dot(s, t) / np.dot(s, s))
 
 
-def pressure_colours(count):
-    """One colour a test, dark to light with pressure."""
-    return plt.get_cmap("viridis")(np.linspace(0.05, 0.85, count)) if count > 1 else [plt.get_cmap("viridis")(0.3)]
-
-
 def plain(value):
     """A number as a label shows it: no trailing zeros."""
     return f"{value:.4g}"
@@ -237,9 +292,10 @@ def run(draw, parser, read=read_driven_stages):
     """Parses the command line, draws, and turns a user's mistake into one line on stderr and exit code 2."""
     options = parser.parse_args()
     try:
-        tests = read(options.records)
         with plt.rc_context(STYLE):
-            print(draw(tests, options))
+            print(draw(read(options.records), options))
+    except KeyboardInterrupt:
+        sys.exit(130)
     except OSError as error:
         print(f"{parser.prog}: {error.filename or options.output}: {error.strerror or error}; give a path in an existing "
               "folder that you may use", file=sys.stderr)

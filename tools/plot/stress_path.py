@@ -3,13 +3,15 @@
 
 Left, q against p of every stage with records, q = sqrt(s:s/2) in 2D and sqrt(3 s:s/2) in 3D; right, the stress path of 3D
 tests in the deviatoric plane (compression positive, axes z, x, y at 90, -30 and 210 degrees), of 2D tests the shear
-stress against the difference of the normal stresses. Compression positive.
+stress against the difference of the normal stresses. Compression positive. Of several specimens the mean path at equal
+strains is drawn over those of the specimens; --each leaves it out.
 """
 
 import argparse
 import math
 
 import records  # first: it says which package is missing
+import curves as kinds
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -20,38 +22,55 @@ def deviatoric_plane(stress):
     return (x - y) / math.sqrt(2), (2 * z - x - y) / math.sqrt(6)
 
 
+def shear_plane(stress):
+    """Coordinates of 2D stresses: difference of the normal stresses, shear stress."""
+    return 0.5 * (stress[:, 1, 1] - stress[:, 0, 0]), -0.5 * (stress[:, 0, 1] + stress[:, 1, 0])
+
+
+def draw_path(axes, curve, coordinates, label, each):
+    """The paths of all specimens of a curve, their starts marked; several ones thin under their mean."""
+    alone = len(curve.stages) == 1 or each or curve.turns
+    for stage in curve.stages:
+        x, y = (column / 1e3 for column in coordinates(stage))
+        axes.plot(x, y, color=curve.colour, linestyle=curve.dashes, linewidth=1.2 if alone else 0.5,
+                  alpha=1 if alone else 0.35)
+        axes.plot(x[0], y[0], "o", color=curve.colour, markersize=4 if alone else 2)
+    if not alone:
+        x, y = (curve.mean(lambda stage, k=k: coordinates(stage)[k])[1] / 1e3 for k in (0, 1))
+        axes.plot(x, y, color=curve.colour, linestyle=curve.dashes, linewidth=1.6)
+    axes.plot([], [], color=curve.colour, linestyle=curve.dashes, label=curve.label if label else None)
+
+
+def draw_axes_of_plane(plane):
+    """The three principal axes of stress in the deviatoric plane."""
+    plane.grid(False)
+    reach = 1.15 * max(float(np.abs(plane.get_ylim()).max()), float(np.abs(plane.get_xlim()).max()))
+    for name, angle in (("$\\sigma_z$", 90), ("$\\sigma_x$", -30), ("$\\sigma_y$", 210)):
+        end = reach * math.cos(math.radians(angle)), reach * math.sin(math.radians(angle))
+        plane.plot([0, end[0]], [0, end[1]], color="0.7", linewidth=0.8)
+        plane.annotate(name, end, xytext=(3, 3), textcoords="offset points", color="0.4")
+    plane.set_title("deviatoric plane (kPa)", fontsize=10, loc="left")
+
+
 def draw(stages, options):
     figure, (meridian, plane) = plt.subplots(1, 2, figsize=(10, 4.4))
     three = stages[0].dimension == 3
-    for stage, colour in zip(stages, records.pressure_colours(len(stages))):
-        p, q = stage.invariants()
-        meridian.plot(p / 1e3, q / 1e3, color=colour, label=stage.label)
-        meridian.plot(p[0] / 1e3, q[0] / 1e3, "o", color=colour, markersize=4)
-        if three:
-            across, along = deviatoric_plane(stage.stress)
-        else:
-            across = 0.5 * (stage.stress[:, 1, 1] - stage.stress[:, 0, 0])
-            along = -0.5 * (stage.stress[:, 0, 1] + stage.stress[:, 1, 0])
-        plane.plot(across / 1e3, along / 1e3, color=colour)
-        plane.plot(across[0] / 1e3, along[0] / 1e3, "o", color=colour, markersize=4)
+    for curve in kinds.curves_of(stages, options.colour):
+        draw_path(meridian, curve, lambda stage: stage.invariants(), False, options.each)
+        draw_path(plane, curve, lambda stage: (deviatoric_plane if three else shear_plane)(stage.stress), True, options.each)
     meridian.set_xlabel("mean stress $p$ (kPa)")
     meridian.set_ylabel("deviatoric stress $q$ (kPa)")
     # Room beside a path that goes straight up.
-    meridian.set_xlim(0, 1.05 * max(meridian.dataLim.x1, meridian.get_xlim()[1]))
+    meridian.set_xlim(min(0, meridian.dataLim.x0), 1.05 * max(meridian.dataLim.x1, meridian.get_xlim()[1]))
     meridian.set_ylim(bottom=0)
-    meridian.legend(fontsize=8)
+    kinds.legend(plane)
     plane.set_aspect("equal", adjustable="datalim")
     if three:
-        reach = 1.15 * max(float(np.abs(plane.get_ylim()).max()), float(np.abs(plane.get_xlim()).max()))
-        for name, angle in (("$\\sigma_z$", 90), ("$\\sigma_x$", -30), ("$\\sigma_y$", 210)):
-            end = reach * math.cos(math.radians(angle)), reach * math.sin(math.radians(angle))
-            plane.plot([0, end[0]], [0, end[1]], color="0.7", linewidth=0.8)
-            plane.annotate(name, end, color="0.4")
-        plane.set_title("deviatoric plane (kPa)", fontsize=10, loc="left")
+        draw_axes_of_plane(plane)
     else:
         plane.set_xlabel("$(\\sigma_y - \\sigma_x)/2$ (kPa)")
         plane.set_ylabel("$\\sigma_{xy}$ (kPa), positive with $\\gamma_{xy}$")
-    figure.suptitle("Stress paths", fontsize=11, x=0.12, ha="left")
+    meridian.set_title("Stress paths", fontsize=11, loc="left")
     figure.tight_layout()
     figure.savefig(options.output)
     return f"{options.output}: {records.counted(len(stages), 'stage')}"
@@ -59,6 +78,5 @@ def draw(stages, options):
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(prog="stress_path.py", description=__doc__.splitlines()[0])
-    parser.add_argument("records", nargs="+", help="record files, or folders of them")
-    parser.add_argument("-o", "--output", default="stress_path.png", help="figure to write (PNG, PDF or SVG)")
-    records.run(draw, parser, read=records.read_driven_stages)
+    kinds.add_options(parser, "stress_path.png")
+    records.run(draw, parser)

@@ -1,28 +1,45 @@
 #!/usr/bin/env python3
 """Volumetric curves: volumetric.py RECORDS.h5... -o volumetric.png (folders stand for their *.h5).
 
-Left, void ratio against the driving strain of each stage with records; right, against p (on a logarithmic axis where it
-changes by more than three), where the state goes to the critical state line. Needs void_ratio among [output] quantities,
-as it is by default.
+Left, void ratio against the driving strain of each stage with records (stages that go on are joined, mean and band over
+specimens as in stress_strain.py); right, against p (on a logarithmic axis where it changes by more than three), where the
+state goes to the critical state line, of every specimen. Needs void_ratio among [output] quantities, as it is by default.
 """
 
 import argparse
 
 import records  # first: it says which package is missing
+import curves as kinds
 import matplotlib.pyplot as plt
+import numpy as np
 
 SPAN = 1e-3  # of the axis of void ratio at least
 
 
+def draw_by_pressure(axes, drawn):
+    pressures = np.concatenate([stage.invariants()[0] for curve in drawn for stage in curve.stages]) / 1e3
+    for curve in drawn:
+        for stage in curve.stages:
+            p, void_ratio = stage.invariants()[0] / 1e3, stage.column("void_ratio")
+            carried = p > 0
+            alone = len(curve.stages) == 1
+            axes.plot(p[carried], void_ratio[carried], color=curve.colour, linestyle=curve.dashes,
+                      linewidth=1.0 if alone else 0.6, alpha=1 if alone else 0.6)
+            if p[0] > 0:
+                axes.plot(p[0], void_ratio[0], "o", color=curve.colour, markersize=4 if alone else 2.5)
+    carried = pressures[pressures > 0]
+    if len(carried) and carried.max() > 3 * carried.min():
+        kinds.log_axis(axes.xaxis, carried)
+    axes.set_xlabel("mean stress $p$ (kPa)")
+
+
 def draw(stages, options):
-    figure, (by_strain, by_pressure) = plt.subplots(1, 2, figsize=(9.5, 4.2), sharey=True)
-    for stage, colour in zip(stages, records.pressure_colours(len(stages))):
-        void_ratio = stage.column("void_ratio")
-        p, _ = stage.invariants()
-        by_strain.plot(100 * stage.strain, void_ratio, color=colour, label=stage.label)
-        carried = p > 0
-        by_pressure.plot(p[carried] / 1e3, void_ratio[carried], color=colour)
-        by_pressure.plot(p[0] / 1e3, void_ratio[0], "o", color=colour, markersize=4)
+    drawn = kinds.curves_of(kinds.joined(stages), options.colour)
+    figure, (by_strain, by_pressure) = plt.subplots(1, 2, figsize=(9, 4), sharey=True)
+    for curve in drawn:
+        curve.draw(by_strain, lambda stage: stage.column("void_ratio"), label=False, each=options.each, scale=(100, 1))
+        by_pressure.plot([], [], color=curve.colour, linestyle=curve.dashes, label=curve.label)
+    draw_by_pressure(by_pressure, drawn)
     strains = list(dict.fromkeys(stage.strain_in_words() for stage in stages))
     by_strain.set_xlabel(strains[0] if len(strains) == 1 else "driving strain of the stage (%)")
     by_strain.set_ylabel("void ratio $e$")
@@ -31,12 +48,8 @@ def draw(stages, options):
     if high - low < SPAN:
         by_strain.set_ylim(0.5 * (low + high - SPAN), 0.5 * (low + high + SPAN))
         by_strain.ticklabel_format(axis="y", useOffset=False)
-    by_strain.legend(fontsize=8)
-    pressures = [p for stage in stages for p in stage.invariants()[0] if p > 0]
-    if max(pressures) > 3 * min(pressures):
-        by_pressure.set_xscale("log")
-    by_pressure.set_xlabel("mean stress $p$ (kPa)")
-    figure.suptitle("Volumetric curves", fontsize=11, x=0.12, ha="left")
+    kinds.legend(by_pressure, None if options.each else kinds.band_in_words(drawn))
+    by_strain.set_title("Volumetric curves", fontsize=11, loc="left")
     figure.tight_layout()
     figure.savefig(options.output)
     return f"{options.output}: {records.counted(len(stages), 'stage')}"
@@ -44,6 +57,5 @@ def draw(stages, options):
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(prog="volumetric.py", description=__doc__.splitlines()[0])
-    parser.add_argument("records", nargs="+", help="record files, or folders of them")
-    parser.add_argument("-o", "--output", default="volumetric.png", help="figure to write (PNG, PDF or SVG)")
-    records.run(draw, parser, read=records.read_driven_stages)
+    kinds.add_options(parser, "volumetric.png")
+    records.run(draw, parser)

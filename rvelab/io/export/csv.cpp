@@ -1,4 +1,5 @@
-#include "rvelab/io/export/csv.hpp"
+// A specimen as the files that import_csv reads. Declared in export.hpp.
+#include "rvelab/io/export/export.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +8,7 @@
 #include <tuple>
 
 #include "rvelab/error.hpp"
-#include "rvelab/io/export/material_text.hpp"
-#include "rvelab/io/text_file.hpp"
+#include "rvelab/io/publish.hpp"
 #include "rvelab/io/version.hpp"
 #include "rvelab/measure/stored_contact.hpp"
 #include "rvelab/solver/assembly/neighbour_list.hpp"

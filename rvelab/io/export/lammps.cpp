@@ -1,9 +1,10 @@
-#include "rvelab/io/export/lammps.hpp"
+// Dumps and data files of LAMMPS. Declared in export.hpp.
+#include "rvelab/io/export/export.hpp"
 
 #include <algorithm>
 
 #include "rvelab/error.hpp"
-#include "rvelab/io/text_file.hpp"
+#include "rvelab/io/publish.hpp"
 #include "rvelab/io/version.hpp"
 
 namespace rvelab::io {

@@ -1,4 +1,5 @@
-#include "rvelab/io/export/state.hpp"
+// The box that grains are drawn in, and their stresses. Declared in export.hpp.
+#include "rvelab/io/export/export.hpp"
 
 #include <cmath>
 

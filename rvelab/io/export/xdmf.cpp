@@ -1,11 +1,12 @@
-#include "rvelab/io/export/xdmf.hpp"
+// States as ParaView reads them: an XDMF file, and beside it an HDF5 file with the arrays. Declared in export.hpp.
+#include "rvelab/io/export/export.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 
 #include "rvelab/io/hdf5/file.hpp"
-#include "rvelab/io/text_file.hpp"
+#include "rvelab/io/publish.hpp"
 #include "rvelab/measure/measures.hpp"
 
 namespace rvelab::io {
@@ -65,7 +66,7 @@ class Series {
   /// Two points a line, in the order of the points.
   std::string lines(const char* block, std::size_t count) {
     std::vector<std::int32_t> ends(2 * count);
-    for (std::size_t k = 0; k < ends.size(); ++k) ends[k] = static_cast<std::int32_t>(k);
+    for (std::size_t k = 0; k < ends.size(); ++k) ends[k] = std::int32_t(k);
     return "<Topology TopologyType=\"Polyline\" NodesPerElement=\"2\" NumberOfElements=\"" + std::to_string(count) +
            "\">" + item(std::string(block) + "/ends", ends, 2, "1") + "</Topology>";
   }

@@ -1,9 +1,11 @@
-#include "rvelab/io/hdf5/compare.hpp"
+// Comparison of two files, bit by bit: `rvelab compare`, and every test of a restart. Declared in specimen_file.hpp.
+#include "rvelab/io/hdf5/specimen_file.hpp"
 
 #include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <iterator>
+#include <set>
 
 #include "rvelab/io/hdf5/file.hpp"
 #include "rvelab/io/hdf5/schema.hpp"
@@ -53,6 +55,7 @@ std::string value_in_words(const std::string& type, const std::byte* bytes, std:
 
 std::string quoted(const std::string& text) { return "\"" + keys::shortened(text) + "\""; }
 
+/// The first difference that is found.
 class Comparer {
  public:
   Comparer(const std::string& path_a, const std::string& path_b) : path_a_(path_a), path_b_(path_b) {}
@@ -62,39 +65,26 @@ class Comparer {
     for (const auto* file : {&a, &b}) {
       if (is_rvelab(*file)) checked_kind(*file);
     }
-    const auto objects_a = compared(a), objects_b = compared(b);
-    for (auto in_a = objects_a.begin(), in_b = objects_b.begin(); in_a != objects_a.end() || in_b != objects_b.end();) {
-      if (in_b == objects_b.end() || (in_a != objects_a.end() && in_a->first < in_b->first)) {
-        found(in_a->first + " is in " + path_a_ + " only");
-      } else if (in_a == objects_a.end() || in_b->first < in_a->first) {
-        found(in_b->first + " is in " + path_b_ + " only");
-      } else if (in_a->second.is_dataset != in_b->second.is_dataset) {
-        found(in_a->first + " is a " + (in_a->second.is_dataset ? "dataset" : "group") + " in " + path_a_ + " and a " +
-              (in_b->second.is_dataset ? "dataset" : "group") + " in " + path_b_);
-      } else {
-        attributes(in_a->second, in_b->second);
-        if (in_a->second.is_dataset && !result_.difference) {
-          values(in_a->first, a.stored(in_a->first), b.stored(in_a->first));
-          if (!result_.difference) ++result_.datasets;
-        }
-      }
-      if (result_.difference) break;
-      ++in_a;
-      ++in_b;
+    const auto &in_a = a.tree().objects, &in_b = b.tree().objects;
+    auto names = names_in(in_a);
+    names.merge(names_in(in_b));
+    for (auto name = names.begin(); name != names.end() && !result_.difference; ++name) {
+      if (name->starts_with("/provenance/") || *name == "/provenance") continue;
+      const auto at_a = in_a.find(*name), at_b = in_b.find(*name);
+      if (at_a == in_a.end() || at_b == in_b.end())
+        found(*name + " is in " + (at_a == in_a.end() ? path_b_ : path_a_) + " only");
+      else
+        objects(*name, at_a->second, at_b->second);
     }
     return result_;
   }
 
  private:
-  using Objects = std::map<std::string, Hdf5Object>;
-
-  static Objects compared(const Hdf5File& file) {
-    Objects objects;
-    for (auto& object : file.objects()) {
-      const bool provenance = object.name == "/provenance" || object.name.starts_with("/provenance/");
-      if (!provenance) objects.emplace(object.name, std::move(object));
-    }
-    return objects;
+  template <class Value>
+  static std::set<std::string> names_in(const std::map<std::string, Value>& map) {
+    std::set<std::string> names;
+    for (const auto& [name, value] : map) names.insert(name);
+    return names;
   }
 
   void found(const std::string& difference) {
@@ -105,42 +95,51 @@ class Comparer {
     found(what + ": " + in_a + " in " + path_a_ + ", " + in_b + " in " + path_b_);
   }
 
-  void attributes(const Hdf5Object& a, const Hdf5Object& b) {
-    const auto whose = [&](const std::string& name) { return "attribute " + name + " of " + a.name; };
-    for (const auto& [name, value] : a.attributes) {
-      const auto other = b.attributes.find(name);
-      if (other == b.attributes.end()) {
-        found(whose(name) + " is in " + path_a_ + " only");
-      } else {
-        values(whose(name), value, other->second);
-      }
+  void objects(const std::string& name, const hdf5::Object& a, const hdf5::Object& b) {
+    const auto kind = [](const hdf5::Object& object) { return object.dataset ? "dataset" : "group"; };
+    if (a.dataset.has_value() != b.dataset.has_value())
+      return found(name + " is a " + kind(a) + " in " + path_a_ + " and a " + kind(b) + " in " + path_b_);
+    const auto whose = [&](const std::string& attribute) { return "attribute " + attribute + " of " + name; };
+    for (const auto& [attribute, value] : a.attributes) {
+      const auto other = b.attributes.find(attribute);
+      if (other == b.attributes.end())
+        found(whose(attribute) + " is in " + path_a_ + " only");
+      else
+        values(whose(attribute), value, other->second);
     }
-    for (const auto& [name, value] : b.attributes) {
-      if (!a.attributes.contains(name)) found(whose(name) + " is in " + path_b_ + " only");
+    for (const auto& [attribute, value] : b.attributes) {
+      if (!a.attributes.contains(attribute)) found(whose(attribute) + " is in " + path_b_ + " only");
     }
+    if (!a.dataset || result_.difference) return;
+    values(name, *a.dataset, *b.dataset);
+    if (!result_.difference) ++result_.datasets;
   }
 
-  void values(const std::string& what, const StoredValues& a, const StoredValues& b) {
-    if (a.type != b.type) return differ(what + " has another type", a.type, b.type);
+  void values(const std::string& what, const hdf5::Values& a, const hdf5::Values& b) {
+    const auto is_text = [](const hdf5::Values& each) { return each.type.kind == hdf5::Kind::text; };
+    if (hdf5::name(a.type) != hdf5::name(b.type))
+      return differ(what + " has another type", hdf5::name(a.type), hdf5::name(b.type));
     if (a.shape != b.shape) return differ(what + " has another shape", in_words(a.shape), in_words(b.shape));
-    for (std::size_t k = 0; k < a.texts.size(); ++k) {
-      if (a.texts[k] != b.texts[k]) {
-        return differ(what + index_in_words(k, a.shape) + " differs", quoted(a.texts[k]), quoted(b.texts[k]));
+    if (is_text(a)) {
+      const auto texts_a = texts_in(a), texts_b = texts_in(b);
+      for (std::size_t k = 0; k < texts_a.size(); ++k) {
+        if (texts_a[k] != texts_b[k])
+          return differ(what + index_in_words(k, a.shape) + " differs", quoted(texts_a[k]), quoted(texts_b[k]));
       }
+      return;
     }
-    if (a.bytes == b.bytes) return;
-    std::size_t number = 1;
-    for (const auto extent : a.shape) number *= extent;
-    const std::size_t size = a.bytes.size() / number;
-    std::size_t k = 0;
-    while (std::memcmp(a.bytes.data() + k * size, b.bytes.data() + k * size, size) == 0) ++k;
-    const std::byte *in_a = a.bytes.data() + k * size, *in_b = b.bytes.data() + k * size;
-    std::string text_a = value_in_words(a.type, in_a, size), text_b = value_in_words(b.type, in_b, size);
-    if (text_a == text_b) {  // NaNs of different bits
-      text_a += " (" + as_bytes(in_a, size) + ")";
-      text_b += " (" + as_bytes(in_b, size) + ")";
+    const std::size_t size = a.type.bytes;
+    for (std::size_t at = 0; at < a.bytes.size(); at += size) {
+      const std::byte *in_a = a.bytes.data() + at, *in_b = b.bytes.data() + at;
+      if (std::memcmp(in_a, in_b, size) == 0) continue;
+      const std::string type = hdf5::name(a.type);
+      std::string text_a = value_in_words(type, in_a, size), text_b = value_in_words(type, in_b, size);
+      if (text_a == text_b) {  // NaNs of different bits
+        text_a += " (" + as_bytes(in_a, size) + ")";
+        text_b += " (" + as_bytes(in_b, size) + ")";
+      }
+      return differ(what + index_in_words(at / size, a.shape) + " differs", text_a, text_b);
     }
-    differ(what + index_in_words(k, a.shape) + " differs", text_a, text_b);
   }
 
   const std::string &path_a_, &path_b_;

@@ -17,6 +17,16 @@ using hdf5::Kind;
 using hdf5::Type;
 using hdf5::Values;
 
+std::vector<std::string> texts_in(const Values& values) {
+  std::vector<std::string> texts;
+  for (std::size_t begin = 0; begin < values.bytes.size(); begin += values.type.bytes) {
+    std::size_t length = values.type.bytes;
+    while (length > 0 && values.bytes[begin + length - 1] == std::byte{0}) --length;
+    texts.emplace_back(reinterpret_cast<const char*>(values.bytes.data()) + begin, length);
+  }
+  return texts;
+}
+
 namespace {
 
 bool begins_as_hdf5(std::span<const std::byte> bytes) {
@@ -62,29 +72,10 @@ void with_stored(Type type, With with) {
   }
 }
 
-std::vector<std::string> unpadded(const Values& values) {
-  std::vector<std::string> texts;
-  for (std::size_t begin = 0; begin < values.bytes.size(); begin += values.type.bytes) {
-    std::size_t length = values.type.bytes;
-    while (length > 0 && values.bytes[begin + length - 1] == std::byte{0}) --length;
-    texts.emplace_back(reinterpret_cast<const char*>(values.bytes.data()) + begin, length);
-  }
-  return texts;
-}
-
-StoredValues as_stored(const Values& values) {
-  StoredValues stored{hdf5::name(values.type), values.shape, {}, {}};
-  if (values.type.kind == Kind::text)
-    stored.texts = unpadded(values);
-  else
-    stored.bytes.assign(values.bytes.begin(), values.bytes.end());
-  return stored;
-}
-
 std::string text_of(const hdf5::Object& object, const std::string& attribute) {
   const auto found = object.attributes.find(attribute);
   if (found == object.attributes.end() || found->second.type.kind != Kind::text) return {};
-  const auto texts = unpadded(found->second);
+  const auto texts = texts_in(found->second);
   return texts.empty() ? std::string() : texts.front();
 }
 
@@ -147,7 +138,7 @@ Values Hdf5File::kept(const std::vector<std::string>& texts, const Shape64& shap
   for (std::size_t k = 0; k < texts.size(); ++k) {
     std::memcpy(letters.data() + k * longest, texts[k].data(), texts[k].size());
   }
-  return {{Kind::text, static_cast<std::uint32_t>(longest)}, shape, letters};
+  return {{Kind::text, std::uint32_t(longest)}, shape, letters};
 }
 
 void Hdf5File::put(const std::string& name, Values values, const std::string& units) {
@@ -206,7 +197,7 @@ std::vector<Scalar> Hdf5File::read(const std::string& name) const {
 std::vector<std::string> Hdf5File::read_text(const std::string& name) const {
   const Values& values = dataset(name);
   if (values.type.kind != Kind::text) fail_kind(path_, name, hdf5::name(values.type), "text");
-  return unpadded(values);
+  return texts_in(values);
 }
 
 void Hdf5File::set_attribute(const std::string& name, const std::string& value) {
@@ -229,19 +220,6 @@ std::vector<Hdf5Entry> Hdf5File::entries() const {
   }
   return found;
 }
-
-std::vector<Hdf5Object> Hdf5File::objects() const {
-  std::vector<Hdf5Object> found;
-  for (const auto& [name, object] : tree_.objects) {
-    found.push_back({name, object.dataset.has_value(), {}});
-    for (const auto& [attribute, values] : object.attributes) {
-      found.back().attributes.emplace(attribute, as_stored(values));
-    }
-  }
-  return found;
-}
-
-StoredValues Hdf5File::stored(const std::string& name) const { return as_stored(dataset(name)); }
 
 std::vector<std::string> Hdf5File::groups(const std::string& group) const {
   const std::string within = group + "/";

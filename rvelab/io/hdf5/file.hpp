@@ -8,7 +8,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -30,20 +29,8 @@ struct Hdf5Entry {
   std::string units;  ///< its attribute `units`; "1" where it is a pure number, "-" where it is none
 };
 
-/// Values as a file stores them, for comparison: bytes in the file's own type, or texts, however long they may be.
-struct StoredValues {
-  std::string type;  ///< as in Hdf5Entry
-  Shape64 shape;
-  std::vector<std::byte> bytes;
-  std::vector<std::string> texts;
-};
-
-/// A group (the root, "/", among them) or a dataset, with its attributes by name.
-struct Hdf5Object {
-  std::string name;
-  bool is_dataset = false;
-  std::map<std::string, StoredValues> attributes;
-};
+/// The texts of a dataset or attribute, without what pads them.
+std::vector<std::string> texts_in(const hdf5::Values& values);
 
 /// Whether a file may lack its seal: what a library reads in a host must not.
 enum class Seal { required, if_any };
@@ -87,11 +74,8 @@ class Hdf5File {
   /// All datasets, in the order of their names.
   std::vector<Hdf5Entry> entries() const;
 
-  /// All groups and datasets, in the order of their names.
-  std::vector<Hdf5Object> objects() const;
-
-  /// A dataset as it is stored. InputError if it is missing.
-  StoredValues stored(const std::string& name) const;
+  /// All groups and datasets as they are stored.
+  const hdf5::Tree& tree() const { return tree_; }
 
   /// Names of the members of a group, in order; none if there is no such group.
   std::vector<std::string> groups(const std::string& group) const;

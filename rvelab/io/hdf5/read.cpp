@@ -129,7 +129,7 @@ class Reader {
                           shape_size = body.get<std::uint16_t>(6), at = version == 3 ? 9 : 8;
       const std::string attribute = body.part(at, name_size).text_to_nul(0);
       const std::string what = path_ + ": attribute " + attribute + " of " + name;
-      if (version > 1) expect_own({0, static_cast<std::uint8_t>((body.byte(1) & 3) != 0 ? 2 : 0), body}, what);
+      if (version > 1) expect_own({0, std::uint8_t((body.byte(1) & 3) != 0 ? 2 : 0), body}, what);
       const std::uint64_t type_at = at + padded(name_size), shape_at = type_at + padded(type_size);
       made.attributes[attribute] = values_.in_place(stored_type(body.part(type_at, type_size), what),
                                                     stored_shape(body.part(shape_at, shape_size), what),

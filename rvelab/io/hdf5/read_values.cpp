@@ -205,9 +205,9 @@ Values ValueReader::texts(const Values& references, const std::string& what) {
   }
   const auto letters = room(count * longest, what);
   for (std::uint64_t k = 0; k < count; ++k) {
-    std::copy(found[k].begin(), found[k].end(), letters.begin() + static_cast<std::ptrdiff_t>(k * longest));
+    std::copy(found[k].begin(), found[k].end(), letters.begin() + std::ptrdiff_t(k * longest));
   }
-  return {{Kind::text, static_cast<std::uint32_t>(longest)}, references.shape, letters};
+  return {{Kind::text, std::uint32_t(longest)}, references.shape, letters};
 }
 
 Part ValueReader::heap_object(std::uint64_t collection, std::uint32_t index) {

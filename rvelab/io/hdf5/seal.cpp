@@ -12,7 +12,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the seal is little-endian; swap bytes here");
 
-constexpr char magic[8] = {'r', 'v', 'e', 's', 'e', 'a', 'l', '\n'};
+constexpr char seal_magic[8] = {'r', 'v', 'e', 's', 'e', 'a', 'l', '\n'};
 constexpr std::uint32_t seal_version = 1;
 constexpr std::size_t summed_bytes = 20;  // of the seal: all but the checksum
 
@@ -26,7 +26,7 @@ constexpr std::size_t summed_bytes = 20;  // of the seal: all but the checksum
 std::array<std::byte, seal_bytes> seal_of(std::span<const std::byte> bytes) {
   std::array<std::byte, seal_bytes> seal;
   const std::uint64_t length = bytes.size();
-  std::memcpy(seal.data(), magic, sizeof magic);
+  std::memcpy(seal.data(), seal_magic, sizeof seal_magic);
   std::memcpy(seal.data() + 8, &length, sizeof length);
   std::memcpy(seal.data() + 16, &seal_version, sizeof seal_version);
   const std::uint32_t sum = crc32c({seal.data(), summed_bytes}, crc32c(bytes));
@@ -38,7 +38,7 @@ bool take_seal(std::vector<std::byte>& bytes, const std::string& path) {
   if (bytes.size() < seal_bytes) return false;
   const std::size_t found = bytes.size() - seal_bytes;
   const auto seal = std::span(bytes).subspan(found);
-  if (std::memcmp(seal.data(), magic, sizeof magic) != 0) return false;
+  if (std::memcmp(seal.data(), seal_magic, sizeof seal_magic) != 0) return false;
   std::uint64_t length = 0;
   std::uint32_t version = 0, sum = 0;
   std::memcpy(&length, seal.data() + 8, sizeof length);

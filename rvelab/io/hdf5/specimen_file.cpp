@@ -4,7 +4,6 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/io/hdf5/archive.hpp"
-#include "rvelab/io/hdf5/digest.hpp"
 #include "rvelab/io/hdf5/schema.hpp"
 #include "rvelab/io/version.hpp"
 #include "rvelab/specimen/specimen_fields.hpp"
@@ -60,12 +59,12 @@ void check_indices(const Specimen& specimen, const std::string& path) {
   expect(specimen.cell.dimension == dimension_of(specimen.shape),
          "/cell/dimension is " + std::to_string(specimen.cell.dimension) + "; allowed: 2 with discs, 3 with spheres");
   for (const auto material : grains.material) {
-    expect(material >= 0 && static_cast<std::size_t>(material) < specimen.materials.size(),
+    expect(material >= 0 && std::size_t(material) < specimen.materials.size(),
            "/grains/material holds the index " + std::to_string(material) + "; allowed: 0 to " +
                std::to_string(specimen.materials.size()) + " - 1");
   }
   for (const auto& contact : specimen.contacts) {
-    expect(contact.i >= 0 && contact.i <= contact.j && static_cast<std::size_t>(contact.j) < count,
+    expect(contact.i >= 0 && contact.i <= contact.j && std::size_t(contact.j) < count,
            "/contacts holds the pair " + std::to_string(contact.i) + ", " + std::to_string(contact.j) +
                "; allowed: 0 <= i <= j < " + std::to_string(count));
   }

@@ -34,19 +34,19 @@ void put_text(Bytes& to, const std::string& text) {
 }
 
 void put_space(Bytes& to, const std::vector<std::uint64_t>& shape) {
-  put(to, std::uint8_t{1}, static_cast<std::uint8_t>(shape.size()), std::uint16_t{0}, std::uint32_t{0});
+  put(to, std::uint8_t{1}, std::uint8_t(shape.size()), std::uint16_t{0}, std::uint32_t{0});
   for (const std::uint64_t extent : shape) put(to, extent);
 }
 
 void put_type(Bytes& to, Type type) {
   constexpr std::uint8_t version = 1 << 4;
-  const auto bits = static_cast<std::uint16_t>(8 * type.bytes);
+  const auto bits = std::uint16_t(8 * type.bytes);
   if (type.kind == Kind::text) {  // padded with NUL, UTF-8
     put(to, std::uint8_t{version | 3}, std::uint8_t{0x11}, std::uint16_t{0}, type.bytes);
   } else if (type.kind == Kind::floating) {  // implied leading bit; place of the sign; then offset, precision, parts
     const bool wide = type.bytes == 8;
-    put(to, std::uint8_t{version | 1}, std::uint8_t{0x20}, static_cast<std::uint8_t>(bits - 1), std::uint8_t{0},
-        type.bytes, std::uint16_t{0}, bits);
+    put(to, std::uint8_t{version | 1}, std::uint8_t{0x20}, std::uint8_t(bits - 1), std::uint8_t{0}, type.bytes,
+        std::uint16_t{0}, bits);
     const std::uint8_t mantissa = wide ? 52 : 23, exponent = wide ? 11 : 8;
     put(to, mantissa, exponent, std::uint8_t{0}, mantissa, std::uint32_t(wide ? 1023 : 127));
   } else {
@@ -61,7 +61,7 @@ class Header {
   void add(Message type, Bytes body, const std::string& path) {
     pad(body);
     if (body.size() > 65528) throw Error(path + ": an attribute is longer than 64 KiB, which HDF5 cannot store");
-    put(bytes_, std::uint16_t{type}, static_cast<std::uint16_t>(body.size()), std::uint32_t{0});
+    put(bytes_, std::uint16_t{type}, std::uint16_t(body.size()), std::uint32_t{0});
     bytes_.insert(bytes_.end(), body.begin(), body.end());
     ++count_;
   }
@@ -70,8 +70,8 @@ class Header {
     Bytes type, space, body;
     put_type(type, values.type);
     put_space(space, values.shape);
-    put(body, std::uint8_t{1}, std::uint8_t{0}, static_cast<std::uint16_t>(name.size() + 1),
-        static_cast<std::uint16_t>(type.size()), static_cast<std::uint16_t>(space.size()));
+    put(body, std::uint8_t{1}, std::uint8_t{0}, std::uint16_t(name.size() + 1), std::uint16_t(type.size()),
+        std::uint16_t(space.size()));
     put_text(body, name + '\0');
     pad(body);
     for (const Bytes* part : {&type, &space}) {
@@ -85,7 +85,7 @@ class Header {
   /// Appends the header to a file and returns where it begins.
   std::uint64_t append_to(Bytes& file) const {
     const std::uint64_t at = file.size();
-    put(file, std::uint8_t{1}, std::uint8_t{0}, count_, std::uint32_t{1}, static_cast<std::uint32_t>(bytes_.size()),
+    put(file, std::uint8_t{1}, std::uint8_t{0}, count_, std::uint32_t{1}, std::uint32_t(bytes_.size()),
         std::uint32_t{0});
     file.insert(file.end(), bytes_.begin(), bytes_.end());
     return at;
@@ -181,7 +181,7 @@ class Image {
       const std::size_t end = std::min(name_at.size(), begin + 2 * leaf_k);
       branches.push_back({file_.size(), name_at[end - 1]});
       put_text(file_, "SNOD");
-      put(file_, std::uint8_t{1}, std::uint8_t{0}, static_cast<std::uint16_t>(end - begin));
+      put(file_, std::uint8_t{1}, std::uint8_t{0}, std::uint16_t(end - begin));
       for (std::size_t k = begin; k < end; ++k) {
         put(file_, name_at[k], header_at[k], std::uint64_t{0}, std::uint64_t{0}, std::uint64_t{0});
       }
@@ -202,7 +202,7 @@ class Image {
       const std::size_t begin = k * most, end = std::min(below.size(), begin + most);
       const std::uint64_t at = file_.size();
       put_text(file_, "TREE");
-      put(file_, std::uint8_t{0}, level, static_cast<std::uint16_t>(end - begin));
+      put(file_, std::uint8_t{0}, level, std::uint16_t(end - begin));
       put(file_, k == 0 ? nowhere : at - bytes, k + 1 == count ? nowhere : at + bytes, name_before);
       for (std::size_t child = begin; child < end; ++child) {
         put(file_, below[child].at, below[child].last_name);

@@ -1,4 +1,6 @@
-#include "rvelab/io/import/contacts.hpp"
+// Contacts of an imported packing: their history, and the check that file and parameters belong together. Declared in
+// inputs.hpp.
+#include "rvelab/io/import/inputs.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -45,20 +47,20 @@ class ContactColumns {
         throw InputError(table_.place(row, shift_[k]) + " is out of range; allowed: " + std::to_string(-largest_shift) +
                          " to " + std::to_string(largest_shift) + " cells; correct the shift");
       }
-      image[k] = static_cast<int>(shift);
+      image[k] = int(shift);
     }
     return image;
   }
   Vector3 tangential_force(std::size_t row) const {
     Vector3 force = Vector3::Zero();
-    for (std::size_t k = 0; k < shear_.size(); ++k) force[static_cast<int>(k)] = table_.number(row, shear_[k]);
+    for (std::size_t k = 0; k < shear_.size(); ++k) force[int(k)] = table_.number(row, shear_[k]);
     return force;
   }
   /// 2D: about z; 3D: all three, or z alone where the table has no others.
   Vector3 rolling_moment(std::size_t row) const {
     Vector3 moment = Vector3::Zero();
     for (std::size_t k = 0; k < moment_.size(); ++k) {
-      moment[static_cast<int>(3 - moment_.size() + k)] = table_.number(row, moment_[k]);
+      moment[int(3 - moment_.size() + k)] = table_.number(row, moment_[k]);
     }
     return moment;
   }
@@ -135,9 +137,7 @@ void check_stiffnesses(const CsvTable& table, const std::vector<Contact>& contac
 
 /// The normal forces in the file must be those that the law makes of the overlaps.
 void check_normal_forces(const CsvTable& table, const std::vector<Contact>& contacts, const Specimen& specimen,
-                         const ContactColumns& columns) {
-  double largest = 0;
-  for (std::size_t row = 0; row < table.rows(); ++row) largest = std::max(largest, table.number(row, columns.fn));
+                         const ContactColumns& columns, double largest) {
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const double overlap = overlap_of(specimen, contacts[row]);
     const double computed = normal_force_of(specimen, contacts[row]);
@@ -152,9 +152,7 @@ void check_normal_forces(const CsvTable& table, const std::vector<Contact>& cont
 
 /// Force and moment must be within friction and the rolling cap: else the first step would cut them silently.
 void check_caps(const CsvTable& table, const std::vector<Contact>& contacts, const Specimen& specimen,
-                const ContactColumns& columns) {
-  double largest = 0;
-  for (std::size_t row = 0; row < table.rows(); ++row) largest = std::max(largest, table.number(row, columns.fn));
+                const ContactColumns& columns, double largest) {
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const PairParameters pair = parameters_of(specimen, contacts[row]);
     const double pressing = with_law(specimen.contact.law, [&](auto law) {
@@ -181,7 +179,7 @@ void read_contacts(const CsvTable& table, const std::vector<Image>& wraps, Speci
   const ContactColumns columns(table, specimen);
   std::unordered_map<std::int64_t, std::int32_t> index;
   for (std::size_t k = 0; k < specimen.grains.size(); ++k) {
-    index.emplace(specimen.grains.id[k], static_cast<std::int32_t>(k));
+    index.emplace(specimen.grains.id[k], std::int32_t(k));
   }
   const auto grain = [&](std::size_t row, std::size_t column) {
     const auto found = index.find(table.integer(row, column));
@@ -197,7 +195,7 @@ void read_contacts(const CsvTable& table, const std::vector<Image>& wraps, Speci
     Contact& contact = contacts[row];
     contact.i = grain(row, columns.id1);
     contact.j = grain(row, columns.id2);
-    const Image &wi = wraps[static_cast<std::size_t>(contact.i)], &wj = wraps[static_cast<std::size_t>(contact.j)];
+    const Image &wi = wraps[std::size_t(contact.i)], &wj = wraps[std::size_t(contact.j)];
     const Image shift = columns.image(row);
     for (std::size_t k = 0; k < 3; ++k) contact.image[k] = shift[k] - wj[k] + wi[k];
     contact.tangential_force = specimen.cell.rotation.transpose() * columns.tangential_force(row);
@@ -215,8 +213,10 @@ void read_contacts(const CsvTable& table, const std::vector<Image>& wraps, Speci
     if (specimen.cell.dimension == 2) contact.tangential_force = tangential_component(table, row, specimen, contact);
   }
   check_stiffnesses(table, contacts, specimen, columns);
-  check_normal_forces(table, contacts, specimen, columns);
-  check_caps(table, contacts, specimen, columns);
+  double largest = 0;
+  for (std::size_t row = 0; row < table.rows(); ++row) largest = std::max(largest, table.number(row, columns.fn));
+  check_normal_forces(table, contacts, specimen, columns, largest);
+  check_caps(table, contacts, specimen, columns, largest);
 
   std::vector<std::size_t> order(table.rows());
   std::iota(order.begin(), order.end(), std::size_t{0});

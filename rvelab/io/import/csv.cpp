@@ -9,18 +9,16 @@
 
 #include "rvelab/cell/cell.hpp"
 #include "rvelab/error.hpp"
-#include "rvelab/io/import/contacts.hpp"
-#include "rvelab/io/import/csv_table.hpp"
-#include "rvelab/io/import/lammps_dump.hpp"
-#include "rvelab/io/import/meta.hpp"
+#include "rvelab/io/import/inputs.hpp"
 #include "rvelab/keys/material_toml.hpp"
 #include "rvelab/keys/regular_file.hpp"
+#include "rvelab/keys/table_reader.hpp"
 #include "rvelab/measure/stored_contact.hpp"
 
 namespace rvelab::io {
 namespace {
 
-std::string in_words(const Matrix3& matrix) {
+std::string cell_in_words(const Matrix3& matrix) {
   std::string text;
   for (int k = 0; k < 9; ++k) {
     char number[32];
@@ -38,7 +36,7 @@ void set_cell(Specimen& specimen, int dimension, const Matrix3& vectors, const s
   specimen.cell.lattice = factors.upper;
   specimen.cell.rotation = factors.rotation;
   if (!factors.upper.allFinite() || !(factors.upper.diagonal().array() > 0).all()) {
-    throw InputError(source + ": the cell vectors are the columns of " + in_words(vectors) +
+    throw InputError(source + ": the cell vectors are the columns of " + cell_in_words(vectors) +
                      " m; allowed: a right-handed cell of positive volume (2D: positive thickness); correct the cell");
   }
 }
@@ -49,11 +47,11 @@ std::vector<std::int32_t> materials_by_type(const CsvTable& table, const Specime
   const auto column = table.column({"type"});
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const auto type = table.integer(row, column);
-    if (type < 1 || type > static_cast<std::int64_t>(specimen.materials.size())) {
+    if (type < 1 || type > std::int64_t(specimen.materials.size())) {
       throw InputError(table.place(row, column) + " is no material; allowed: 1 to " +
                        std::to_string(specimen.materials.size()) + ", the materials in their order; add the material");
     }
-    index.push_back(static_cast<std::int32_t>(type - 1));
+    index.push_back(std::int32_t(type - 1));
   }
   return index;
 }
@@ -72,16 +70,16 @@ std::vector<std::int32_t> materials_of(const CsvTable& table, const Specimen& sp
   }
   std::map<std::string, std::int32_t, std::less<>> indices;
   for (const auto& material : specimen.materials) {
-    indices.emplace(material.name, static_cast<std::int32_t>(indices.size()));
+    indices.emplace(material.name, std::int32_t(indices.size()));
   }
   const auto column = table.column({"material"});
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const auto found = indices.find(table.text(row, column));
     if (found == indices.end()) {
-      std::string known;
-      for (const auto& [name, number] : indices) known += (known.empty() ? "" : ", ") + name;
+      keys::Choices known;
+      for (const auto& [name, number] : indices) known.push_back(name);
       throw InputError(
-          table.place(row, column) + " names no material; allowed: " + known +
+          table.place(row, column) + " names no material; allowed: " + keys::listed(known) +
           "; correct the name, or give a TOML file with a [[material]] of that name by --material (`rvelab "
           "export --format csv` writes one)");
     }
@@ -259,7 +257,8 @@ Specimen import_csv(const std::string& particles_path, const std::optional<std::
   if (options.cell) {
     if (!(options.cell->array() > 0).all()) {
       const Matrix3 given = options.cell->asDiagonal();
-      throw InputError("--cell gives the cell vectors " + in_words(given) + " m; allowed: lengths > 0; correct them");
+      throw InputError("--cell gives the cell vectors " + cell_in_words(given) +
+                       " m; allowed: lengths > 0; correct them");
     }
     take_cell(vectors, source, options.cell->asDiagonal(), "--cell", "--cell");
   }

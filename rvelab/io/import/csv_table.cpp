@@ -1,4 +1,5 @@
-#include "rvelab/io/import/csv_table.hpp"
+// Tables of values in columns. Declared in inputs.hpp.
+#include "rvelab/io/import/inputs.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -117,7 +118,7 @@ CsvTable::CsvTable(const std::string& path, std::string text) : path_(path), con
 
 std::size_t CsvTable::index_of(const std::string& name) const {
   const auto found = std::find(columns_.begin(), columns_.end(), name);
-  if (found != columns_.end()) return static_cast<std::size_t>(found - columns_.begin());
+  if (found != columns_.end()) return std::size_t(found - columns_.begin());
   std::size_t index = columns_.size();
   for (std::size_t k = 0; k < columns_.size(); ++k) {
     if (lower(columns_[k]) != lower(name)) continue;

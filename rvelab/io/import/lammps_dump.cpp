@@ -1,4 +1,5 @@
-#include "rvelab/io/import/lammps_dump.hpp"
+// Dumps of LAMMPS (and OVITO): the cell, and the atoms as a table. Declared in inputs.hpp.
+#include "rvelab/io/import/inputs.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -7,7 +8,7 @@
 #include <vector>
 
 #include "rvelab/error.hpp"
-#include "rvelab/io/text_file.hpp"
+#include "rvelab/io/publish.hpp"
 
 namespace rvelab::io {
 namespace {

@@ -1,25 +1,26 @@
-#include "rvelab/io/import/meta.hpp"
+// META.json of a packing: law, parameters, cell and stress level, keys as in csv.hpp. Declared in inputs.hpp.
+#include "rvelab/io/import/inputs.hpp"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "rvelab/error.hpp"
-#include "rvelab/io/text_file.hpp"
+#include "rvelab/io/publish.hpp"
 #include "rvelab/keys/regular_file.hpp"
 #include "rvelab/keys/shortened.hpp"
 
 namespace rvelab::io {
 namespace {
 
-using Json = nlohmann::json;
+using Parsed = nlohmann::json;
 
 class MetaFile {
  public:
   explicit MetaFile(const std::string& path) : path_(path) {
     const auto text = keys::whole_file<std::string>(path, "the packing's JSON file", 16 << 20);
     try {
-      json_ = Json::parse(text);
-    } catch (const Json::exception& error) {  // a number beyond all doubles is no parse error to the library
+      json_ = Parsed::parse(text);
+    } catch (const Parsed::exception& error) {  // a number beyond all doubles is no parse error to the library
       const std::string what = error.what();
       const auto token = what.find("last read: ");
       const std::string begin = what.substr(0, token), rest = token == std::string::npos ? "" : what.substr(token);
@@ -41,7 +42,7 @@ class MetaFile {
   /// A number of rows; none if the key is not there.
   std::optional<std::size_t> count(const char* key) const {
     if (!has(key)) return std::nullopt;
-    const Json& value = json_[key];
+    const Parsed& value = json_[key];
     if (!value.is_number_unsigned()) {
       fail(std::string(key) + " = " + (value.is_structured() ? "a list or an object" : keys::shortened(value.dump())) +
            " is not a number of rows; allowed: whole numbers from 0; correct it");
@@ -50,14 +51,14 @@ class MetaFile {
   }
 
   Matrix3 matrix(const char* key, int dimension) const {
-    const Json& rows = json_[key];
-    const auto size = static_cast<std::size_t>(dimension);
+    const Parsed& rows = json_[key];
+    const auto size = std::size_t(dimension);
     Matrix3 matrix = Matrix3::Identity();
     bool square = rows.is_array() && rows.size() == size;
     for (std::size_t i = 0; square && i < size; ++i) {
       square = rows[i].is_array() && rows[i].size() == size;
       for (std::size_t j = 0; square && j < size; ++j) {
-        matrix(static_cast<int>(i), static_cast<int>(j)) = checked(key, rows[i][j]);
+        matrix(int(i), int(j)) = checked(key, rows[i][j]);
       }
     }
     if (!square) {
@@ -68,7 +69,7 @@ class MetaFile {
   }
 
  private:
-  double checked(const char* key, const Json& value) const {
+  double checked(const char* key, const Parsed& value) const {
     if (!value.is_number() || !std::isfinite(value.get<double>())) {
       // Lists in lists may go so deep that nobody writes them out.
       const std::string found = value.is_structured() ? "a list or an object" : keys::shortened(value.dump());
@@ -78,7 +79,7 @@ class MetaFile {
   }
 
   std::string path_;
-  Json json_;
+  Parsed json_;
 };
 
 double friction(const MetaFile& file) {
@@ -124,7 +125,7 @@ Meta read_meta(const std::string& path, Specimen& specimen, bool parameters) {
   if (dimension != 2 && dimension != 3) {
     file.fail("dim = " + exact(dimension) + "; allowed: 2 (discs), 3 (spheres); correct it");
   }
-  meta.dimension = static_cast<int>(dimension);
+  meta.dimension = int(dimension);
   if (meta.dimension == 2 && file.has("thickness_m")) meta.thickness = file.number("thickness_m");
   for (const char* key : {"hSize", "hSize_columns_are_cell_vectors"}) {
     if (!file.has(key)) continue;

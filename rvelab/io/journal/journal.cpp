@@ -18,7 +18,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the journal is little-endian; swap bytes here");
 
-constexpr char magic[8] = {'r', 'v', 'e', 'j', 'r', 'n', 'l', '\n'};
+constexpr char journal_magic[8] = {'r', 'v', 'e', 'j', 'r', 'n', 'l', '\n'};
 
 template <class Value>
 void put(std::byte* at, Value value) {
@@ -35,7 +35,7 @@ Value get(const std::byte* at) {
 /// Type and length, then the checksum over them and the payload.
 void put_header(std::byte* at, std::uint32_t type, std::span<const std::byte> payload) {
   put(at, type);
-  put(at + 4, static_cast<std::uint64_t>(payload.size()));
+  put(at + 4, std::uint64_t(payload.size()));
   put(at + 12, crc32c(payload, crc32c({at, 12})));
 }
 
@@ -47,7 +47,7 @@ void put_header(std::byte* at, std::uint32_t type, std::span<const std::byte> pa
 bool check_header(const std::string& path, int file) {
   std::byte header[journal_header_bytes];
   const auto found = read_at(file, 0, header);
-  if (std::memcmp(header, magic, std::min(found, sizeof magic)) != 0) {
+  if (std::memcmp(header, journal_magic, std::min(found, sizeof journal_magic)) != 0) {
     throw InputError(path +
                      ": is not a journal of rvelab, or damaged at its start; remove it or start anew with "
                      "--force");
@@ -73,7 +73,7 @@ JournalExtent read_journal(const std::string& path, const std::function<void(con
   struct stat status;
   if (!file.open() || ::fstat(file.number(), &status) != 0) refuse_opening(path, errno);
   extent.exists = true;
-  extent.file_bytes = static_cast<std::uint64_t>(status.st_size);
+  extent.file_bytes = std::uint64_t(status.st_size);
   extent.begun = check_header(path, file.number());
   extent.valid_bytes = extent.begun ? journal_header_bytes : 0;
   std::vector<std::byte> payload;
@@ -122,7 +122,7 @@ Journal::Journal(const std::string& path) : path_(path) {
     struct stat mine, named;
     if (::fstat(file_.number(), &mine) != 0) refuse_opening(path, errno);
     if (::stat(path.c_str(), &named) == 0 && mine.st_ino == named.st_ino && mine.st_dev == named.st_dev) {
-      size_ = static_cast<std::uint64_t>(mine.st_size);
+      size_ = std::uint64_t(mine.st_size);
       return;
     }
   }
@@ -137,7 +137,7 @@ void Journal::begin() {
   if (::ftruncate(file_.number(), 0) != 0 || ::lseek(file_.number(), 0, SEEK_SET) != 0) fail(errno);
   size_ = 0;
   std::byte header[journal_header_bytes];
-  std::memcpy(header, magic, sizeof magic);
+  std::memcpy(header, journal_magic, sizeof journal_magic);
   put(header + 8, journal_version);
   put(header + 12, crc32c({header, 12}));
   if (!write_all(file_.number(), header)) fail(errno);
@@ -145,8 +145,8 @@ void Journal::begin() {
 }
 
 void Journal::go_on(std::uint64_t valid_bytes) {
-  if (::ftruncate(file_.number(), static_cast<off_t>(valid_bytes)) != 0 ||
-      ::lseek(file_.number(), static_cast<off_t>(valid_bytes), SEEK_SET) < 0) {
+  if (::ftruncate(file_.number(), off_t(valid_bytes)) != 0 ||
+      ::lseek(file_.number(), off_t(valid_bytes), SEEK_SET) < 0) {
     fail(errno);
   }
   size_ = valid_bytes;
@@ -196,7 +196,7 @@ void Journal::remove() {
 void Journal::fail(int reason) {
   failed_ = true;
   // Best effort: a frame cut in two is cut off by the next reader all the same.
-  [[maybe_unused]] const int cut = ::ftruncate(file_.number(), static_cast<off_t>(size_));
+  [[maybe_unused]] const int cut = ::ftruncate(file_.number(), off_t(size_));
   throw Error(path_ + ": could not be written (" + std::strerror(reason) +
               "); free space, then go on with --resume; what was recorded before is kept");
 }

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cstring>
-#include <functional>
 
 #include "rvelab/error.hpp"
 #include "rvelab/io/hdf5/archive.hpp"
 #include "rvelab/io/hdf5/schema.hpp"
-#include "rvelab/io/journal/probe_results.hpp"
+#include "rvelab/io/journal/recorded_test.hpp"
 #include "rvelab/records/record_fields.hpp"
 
 namespace rvelab::io {
@@ -72,7 +71,7 @@ struct RowReader : EveryColumn<RowReader> {
     typename Layout<Member>::Scalar scalars[Layout<Member>::size];
     std::size_t at = 0;
     for (std::size_t k = 0; k < layout.names.size(); ++k) {
-      const auto size = static_cast<std::size_t>(layout.bytes[k]);
+      const auto size = std::size_t(layout.bytes[k]);
       if (layout.names[k] == column.name && size == sizeof scalars && at + size <= row.size()) {
         std::memcpy(scalars, row.data() + at, size);
         Layout<Member>::get(scalars, items.front().*column.member);
@@ -91,7 +90,7 @@ RowLayout row_layout() {
 
 /// A number in front of what it numbers.
 Bytes numbered(std::size_t number, const Bytes& rest = {}) {
-  const auto stored = static_cast<std::uint64_t>(number);
+  const auto stored = std::uint64_t(number);
   Bytes bytes(sizeof stored + rest.size());
   std::memcpy(bytes.data(), &stored, sizeof stored);
   std::copy(rest.begin(), rest.end(), bytes.begin() + sizeof stored);
@@ -186,16 +185,12 @@ struct Assembler {
 
   void checkpoint(std::span<const std::byte> payload) {
     const auto file = Hdf5File::from_image(path, payload);
-    records::Checkpoint& checkpoint = journal.test->checkpoint;
+    records::Checkpoint checkpoint = journal.test->checkpoint;
     Reader reader(file, "");
     describe_progress(reader, checkpoint.progress);
     reader.field("provenance/wall_seconds", checkpoint.progress.wall_seconds, "s");
     checkpoint.specimen = get_specimen(file, "/specimen");
-    records::TestResult& result = journal.test->result;
-    result.axis = checkpoint.progress.axis;
-    result.pressure = checkpoint.progress.pressure;
-    result.wall_seconds = checkpoint.progress.wall_seconds;
-    result.grain_steps = checkpoint.specimen.state.grain_steps - checkpoint.progress.first_grain_steps;
+    journal.test->take(checkpoint);
     journal.has_checkpoint = true;
   }
 };

@@ -61,6 +61,14 @@ std::string place_for(const std::string& path, Existing existing) {
   return journal_of(path);
 }
 
+/// Records and probes from the given ones on.
+void append_rows(Journal& journal, const records::TestResult& result, std::size_t records, std::size_t probes) {
+  for (std::size_t k = records; k < result.records.size(); ++k)
+    journal.append(record_frame, encode_record(k, result.records[k]));
+  for (std::size_t k = probes; k < result.probes.size(); ++k)
+    journal.append(probe_frame, encode_probe(k, result.probes[k]));
+}
+
 bool same_bits(const records::Record& a, const records::Record& b) {
   return encode_record(0, a) == encode_record(0, b);
 }
@@ -137,12 +145,7 @@ void RecordStore::resume(const RunStart& start) {
     journal_.begin();
     journal_.append(begin_frame, encode_begin(start));
   }
-  for (std::size_t k = records; k < test_.result.records.size(); ++k) {
-    journal_.append(record_frame, encode_record(k, test_.result.records[k]));
-  }
-  for (std::size_t k = probes; k < test_.result.probes.size(); ++k) {
-    journal_.append(probe_frame, encode_probe(k, test_.result.probes[k]));
-  }
+  append_rows(journal_, test_.result, records, probes);
   for (Snapshot& snapshot : test_.snapshots) {
     if (!snapshot.within) continue;
     const auto payload = encode_snapshot(snapshot.record, read_snapshot(snapshot));
@@ -155,8 +158,8 @@ void RecordStore::resume(const RunStart& start) {
   journal_.sync();
   if (at_start) return;
   from_ = test_.checkpoint;
-  made_records_ = static_cast<std::size_t>(from_->progress.records);
-  made_probes_ = static_cast<std::size_t>(from_->progress.probes);
+  made_records_ = std::size_t(from_->progress.records);
+  made_probes_ = std::size_t(from_->progress.probes);
 }
 
 void RecordStore::put(const records::Record& record) {
@@ -206,11 +209,7 @@ void RecordStore::offer(const std::function<records::Checkpoint()>& take) {
 
 void RecordStore::keep(const records::Checkpoint& checkpoint) {
   const auto begin = Clock::now();
-  test_.checkpoint = checkpoint;
-  test_.result.axis = checkpoint.progress.axis;
-  test_.result.pressure = checkpoint.progress.pressure;
-  test_.result.wall_seconds = checkpoint.progress.wall_seconds;
-  test_.result.grain_steps = checkpoint.specimen.state.grain_steps - checkpoint.progress.first_grain_steps;
+  test_.take(checkpoint);
   journal_.append(checkpoint_frame, encode_checkpoint(checkpoint));
   keeps_something_ = true;
   journal_.sync();
@@ -228,13 +227,7 @@ void RecordStore::drop_old_checkpoints() {
     read_journal(journal_.path(), [&](const Frame& frame) {
       if (frame.type == begin_frame) next.append(frame.type, frame.payload);
     });
-    const records::TestResult& result = test_.result;
-    for (std::size_t k = 0; k < result.records.size(); ++k) {
-      next.append(record_frame, encode_record(k, result.records[k]));
-    }
-    for (std::size_t k = 0; k < result.probes.size(); ++k) {
-      next.append(probe_frame, encode_probe(k, result.probes[k]));
-    }
+    append_rows(next, test_.result, 0, 0);
     for (Snapshot& snapshot : snapshots) {
       const auto payload = read_payload(journal_.path(), snapshot.payload_at, snapshot.length);
       snapshot.payload_at = next.append(snapshot_frame, payload);

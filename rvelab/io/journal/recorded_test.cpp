@@ -10,19 +10,20 @@
 #include "rvelab/error.hpp"
 #include "rvelab/io/hdf5/archive.hpp"
 #include "rvelab/io/hdf5/schema.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/io/journal/journal.hpp"
-#include "rvelab/io/journal/probe_results.hpp"
 #include "rvelab/io/journal/record_journal.hpp"
 #include "rvelab/io/version.hpp"
 #include "rvelab/records/record_fields.hpp"
 #include "rvelab/solver/rve.hpp"
 
 namespace rvelab::io {
+
 namespace {
 
 /// Every field of a test but records and probes, once for both directions.
 template <class Archive, class Value>
-void describe(Archive& archive, Value& test) {
+void describe_test(Archive& archive, Value& test) {
   archive.field("test/protocol", test.result.protocol, "-");
   archive.field("test/axis", test.result.axis, "-");
   archive.field("test/pressure_Pa", test.result.pressure, "Pa");
@@ -67,7 +68,7 @@ RecordedTest test_in(const std::shared_ptr<const Hdf5File>& opened) {
   const std::string& path = file.path();
   RecordedTest test;
   Reader reader(file, "");
-  describe(reader, test);
+  describe_test(reader, test);
   records::describe_records(reader, test.result.records);
   std::vector<std::string> quantities;
   reader.later_field("test/quantities", quantities, "-", InFiles{10});
@@ -104,6 +105,38 @@ void expect_opens(const Specimen& specimen, const std::string& where) {
 
 }  // namespace
 
+void put_probes(Hdf5File& file, const std::vector<records::ProbeResult>& probes) {
+  const auto size = probes.empty() ? 0 : std::size_t(probes.front().stiffness.rows());
+  std::vector<std::string> stages;
+  std::vector<double> rows;
+  for (const records::ProbeResult& probe : probes) {
+    stages.push_back(probe.stage);
+    const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> matrix = probe.stiffness;
+    rows.insert(rows.end(), matrix.data(), matrix.data() + matrix.size());
+  }
+  file.write_text("/probes/stage", stages, {probes.size()});
+  file.write<double>("/probes/stiffness_Pa", rows, {probes.size(), size, size}, "Pa");
+}
+
+std::vector<records::ProbeResult> get_probes(const Hdf5File& file) {
+  if (minor_version(file) == 0 && !file.has("/probes/stage")) return {};
+  const auto stages = file.read_text("/probes/stage");
+  const auto rows = file.read<double>("/probes/stiffness_Pa");
+  const Shape64 shape = file.shape("/probes/stiffness_Pa");
+  if (shape.size() != 3 || shape[0] != stages.size() || shape[1] != shape[2]) {
+    throw InputError(file.path() +
+                     ": /probes/stiffness_Pa is not one square matrix for each of /probes/stage; the file "
+                     "is damaged: write it again");
+  }
+  const auto size = Eigen::Index(shape[1]);
+  std::vector<records::ProbeResult> probes;
+  for (std::size_t k = 0; k < stages.size(); ++k) {
+    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    probes.push_back({stages[k], Eigen::Map<const RowMajor>(rows.data() + k * shape[1] * shape[2], size, size)});
+  }
+  return probes;
+}
+
 Provenance provenance_of(const std::string& protocol_text, const Specimen& start) {
   const auto dotted = [](int major, int minor, int patch) {
     return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(patch);
@@ -116,11 +149,19 @@ Provenance provenance_of(const std::string& protocol_text, const Specimen& start
           digest(start)};
 }
 
+void RecordedTest::take(const records::Checkpoint& reached) {
+  checkpoint = reached;
+  result.axis = reached.progress.axis;
+  result.pressure = reached.progress.pressure;
+  result.wall_seconds = reached.progress.wall_seconds;
+  result.grain_steps = reached.specimen.state.grain_steps - reached.progress.first_grain_steps;
+}
+
 void write_recorded_test(const RecordedTest& test, const std::string& path) {
   publish(path, [&](Hdf5File& file) {
     stamp(file, FileKind::records);
     Writer writer(file, "");
-    describe(writer, test);
+    describe_test(writer, test);
     records::describe_records(writer, test.result.records);
     writer.field("test/quantities", quantities_in(test.result.records), "-");
     put_probes(file, test.result.probes);
@@ -171,13 +212,7 @@ RecordedTest read_recorded_test(const std::string& path) {
                      "; allowed: a record file with its own journal; move one of the two away");
   }
   const auto steps = [](const RecordedTest& test) { return test.checkpoint.specimen.state.grain_steps; };
-  if (steps(file) > steps(merged)) {
-    merged.checkpoint = file.checkpoint;
-    merged.result.axis = file.result.axis;
-    merged.result.pressure = file.result.pressure;
-    merged.result.grain_steps = file.result.grain_steps;
-    merged.result.wall_seconds = file.result.wall_seconds;
-  }
+  if (steps(file) > steps(merged)) merged.take(file.checkpoint);
   if (file.result.records.size() > merged.result.records.size()) merged.result.records = file.result.records;
   if (file.result.probes.size() > merged.result.probes.size()) merged.result.probes = file.result.probes;
   for (const Snapshot& snapshot : file.snapshots) {
@@ -187,6 +222,20 @@ RecordedTest read_recorded_test(const std::string& path) {
   std::sort(merged.snapshots.begin(), merged.snapshots.end(),
             [](const Snapshot& a, const Snapshot& b) { return a.record < b.record; });
   return merged;
+}
+
+std::vector<StoredState> read_states(const std::string& path) {
+  if (std::filesystem::exists(path) && file_kind(path) == FileKind::specimen) return {{0, 0, read_specimen(path)}};
+  const RecordedTest test = read_recorded_test(path);
+  const auto& records = test.result.records;
+  const auto strain_of = [&](std::size_t record) {
+    return records.empty() ? 0.0 : records[std::min(record, records.size() - 1)].strain;
+  };
+  std::vector<StoredState> states;
+  for (const Snapshot& snapshot : test.snapshots)
+    states.push_back({long(snapshot.record), strain_of(snapshot.record), read_snapshot(snapshot)});
+  states.push_back({long(records.size()), strain_of(records.size()), test.checkpoint.specimen});
+  return states;
 }
 
 }  // namespace rvelab::io

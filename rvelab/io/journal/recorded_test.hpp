@@ -7,9 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "rvelab/io/hdf5/file.hpp"
 #include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/records/progress.hpp"
 #include "rvelab/records/record.hpp"
+#include "rvelab/specimen/specimen.hpp"
 
 namespace rvelab::io {
 
@@ -40,6 +42,8 @@ struct RecordedTest {
       checkpoint;  ///< complete: the end state; else where the test goes on (perhaps before the last record)
   bool complete = true;
   std::vector<Snapshot> snapshots;  ///< in the order of their records
+  /// A checkpoint that an incomplete test has reached, and what it says of the result.
+  void take(const records::Checkpoint& reached);
 };
 
 /// Reads R.h5 and, if it is not complete, what its journal has beyond it: the records of the one that has more, the
@@ -62,5 +66,20 @@ struct SealedFile {
 /// of a version before 1.4, and writes everything that it holds to `output` (publish()), sealed and of its own version.
 /// InputError: damaged, not rvelab's, datasets are missing or contradict each other, or a specimen in it makes no RVE.
 SealedFile seal_file(const std::string& path, const std::string& output);
+
+/// Probe results: the names of their stages, and one square matrix each (all of one size).
+void put_probes(Hdf5File& file, const std::vector<records::ProbeResult>& probes);
+/// InputError if names and matrices do not fit each other; none in files of version 1.0.
+std::vector<records::ProbeResult> get_probes(const Hdf5File& file);
+
+struct StoredState {
+  long record = 0;    ///< number of the record; an end state comes after all of them
+  double strain = 0;  ///< driving strain there; that of the last record for an end state; 0 without records
+  Specimen specimen;
+};
+
+/// The specimen of a specimen file; of a record file, with its journal, each snapshot in the order of the records, and
+/// the end state, or the last checkpoint of a test that has not ended. Never empty. InputError as read_specimen.
+std::vector<StoredState> read_states(const std::string& path);
 
 }  // namespace rvelab::io

@@ -1,0 +1,173 @@
+#!/usr/bin/env python3
+"""What `rvelab fit` found: fit.py FOLDER -o fit.png (the folder that it wrote; fit.json, or of a sweep sweep.csv).
+
+Of a fit: the posterior of each parameter with its mean and 95 % interval over the range that was searched, the tests that
+were spent as strokes below it; then each target as measured and as fitted, in standard deviations of both; of measured
+curves the points with their errors and the fit with its band of 95 %. Of a sweep: each measure against the first varied
+key, mean and standard error over the specimens, one curve for each combination of the others.
+"""
+
+import argparse
+import csv
+import json
+import math
+import pathlib
+
+import records  # first: it says which package is missing
+import curves as kinds
+import matplotlib.pyplot as plt
+import numpy as np
+
+# Labels of what a curve measures and of what it goes with, and the factor to their units.
+QUANTITIES = {"q_over_p": ("$q/p$", 1), "deviator": ("$\\sigma_1 - \\sigma_3$ (kPa)", 1e-3),
+              "volumetric_strain": ("volumetric strain $\\varepsilon_v$ (%)", 100), "void_ratio": ("void ratio $e$", 1)}
+ABSCISSAE = {"strain": ("strain (%)", 100), "p": ("mean stress $p$ (kPa)", 1e-3)}
+
+
+def read_fit(folders):
+    """("fit", fit.json, rows of curves.csv) or ("sweep", rows of sweep.csv) of the one folder."""
+    if len(folders) != 1:
+        raise ValueError(f"{' '.join(folders)}: one fit at a time; give the folder of one")
+    folder = pathlib.Path(folders[0])
+    own, sweep = folder / "fit.json", folder / "sweep.csv"
+    if sweep.exists() and not own.exists():
+        return "sweep", rows_of(sweep)
+    try:
+        found = json.loads(own.read_text())
+        if not found["parameters"] or not found["posterior_sample"]:
+            raise KeyError("parameters")
+    except (FileNotFoundError, NotADirectoryError) as error:
+        raise ValueError(f"{own}: is not there; give the folder that `rvelab fit -o` wrote") from error
+    except (json.JSONDecodeError, KeyError, TypeError, UnicodeDecodeError) as error:
+        raise ValueError(f"{own}: not the fit.json of rvelab ({error}); give the folder that `rvelab fit -o` wrote") from error
+    curves = folder / "curves.csv"
+    return "fit", found, rows_of(curves) if curves.exists() else []
+
+
+def rows_of(path):
+    with open(path, newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def draw_posterior(axes, parameter, sample, tests):
+    """Histogram of the posterior, mean, interval, and where tests were made."""
+    low, high = parameter["range"]
+    axes.hist(sample, bins=np.linspace(low, high, 41), density=True, color="tab:blue", alpha=0.45)
+    axes.axvspan(parameter["low_95"], parameter["high_95"], color="crimson", alpha=0.1, linewidth=0)
+    axes.axvline(parameter["mean"], color="crimson", linewidth=1.4)
+    made = [test["values"][parameter["key"]] for test in tests if "failure" not in test]
+    axes.plot(made, np.zeros(len(made)), "|", color="0.3", markersize=9, clip_on=False)
+    axes.set_xlim(low, high)
+    axes.set_yticks([])
+    axes.set_xlabel(parameter["key"], fontsize=9)
+    digits = 2 - math.floor(math.log10(parameter["high_95"] - parameter["low_95"])) - 1
+    shown = [f"{parameter[name]:.{max(digits, 0)}f}" for name in ("mean", "low_95", "high_95")]
+    axes.set_title(f"{shown[0]} ({shown[1]} to {shown[2]})", fontsize=9)
+
+
+def draw_targets(axes, targets):
+    """Scalar targets: difference of fit and measurement over the standard deviation of both, with that of the fit."""
+    for row, target in enumerate(targets):
+        fit = target["fit"]
+        scale = math.hypot(target["standard_error"] or 0, fit["standard_deviation"]) or 1
+        axes.errorbar((fit["mean"] - target["value"]) / scale, row, xerr=fit["standard_deviation"] / scale, fmt="o",
+                      color="tab:blue", capsize=3)
+    axes.axvline(0, color="crimson", linewidth=1)
+    axes.set_xlim(*(lambda reach: (-reach, reach))(max(3, *np.abs(axes.get_xlim()))))
+    axes.set_ylim(len(targets) - 0.5, -0.5)
+    axes.set_yticks(range(len(targets)), [f"{target['name']}\n{target['value']:.4g}, fit {target['fit']['mean']:.4g}"
+                                          for target in targets], fontsize=8)
+    axes.set_xlabel("fit less measured, in standard deviations", fontsize=9)
+
+
+def draw_curve(axes, rows):
+    """Points of one measured curve, and the band of the fit."""
+    rows = sorted(rows, key=lambda row: float(row["x"]))
+    (label, scale), (below, across) = QUANTITIES[rows[0]["quantity"]], ABSCISSAE[rows[0]["abscissa"]]
+
+    def column(name, factor=scale):
+        return factor * np.array([float(row[name]) if row[name] else np.nan for row in rows])
+    x = column("x", across)
+    axes.fill_between(x, column("low_95"), column("high_95"), color="tab:blue", alpha=0.2, linewidth=0, label="fit, 95 %")
+    axes.plot(x, column("fit"), color="tab:blue", label="fit")
+    axes.errorbar(x, column("measured"), yerr=column("error"), fmt="o", color="k", markersize=3, capsize=2, linewidth=0.8,
+                  label="measured")
+    if rows[0]["abscissa"] == "p":
+        kinds.log_axis(axes.xaxis, x)
+    axes.set_xlabel(below, fontsize=9)
+    axes.set_ylabel(label, fontsize=9)
+    pressure = float(rows[0]["pressure_Pa"] or 0)
+    if pressure > 0:
+        axes.set_title(f"{records.plain(pressure / 1e3)} kPa", fontsize=9)
+    axes.legend(fontsize=7)
+
+
+def panels(count):
+    """A figure of so many panels, at most three in a row, and its axes."""
+    columns = min(count, 3)
+    rows = -(-count // columns)
+    figure, axes = plt.subplots(rows, columns, figsize=(3.6 * columns + 0.6, 2.9 * rows), squeeze=False,
+                                layout="constrained")
+    for unused in axes.flat[count:]:
+        unused.set_visible(False)
+    return figure, list(axes.flat[:count])
+
+
+def draw_fit(found, rows, options):
+    measured = groups_of(rows)
+    points = sum(len(group) for group in measured)
+    scalars = found["targets"][:len(found["targets"]) - points]
+    count = len(found["parameters"]) + bool(scalars) + len(measured)
+    figure, axes = panels(count)
+    for parameter in found["parameters"]:
+        draw_posterior(axes.pop(0), parameter, found["posterior_sample"][parameter["key"]], found["tests"])
+    if scalars:
+        draw_targets(axes.pop(0), scalars)
+    for group in measured:
+        draw_curve(axes.pop(0), [rows[k] for k in group])
+    figure.savefig(options.output)
+    told = [f"{parameter['key']} {parameter['mean']:.4g} ({parameter['low_95']:.4g} to {parameter['high_95']:.4g})"
+            for parameter in found["parameters"]]
+    return f"{options.output}: {', '.join(told)}; {len(found['tests'])} tests"
+
+
+def groups_of(rows):
+    """Numbers of the rows of each curve and quantity, in their order."""
+    groups = {}
+    for number, row in enumerate(rows):
+        groups.setdefault((row["curve"], row["quantity"]), []).append(number)
+    return list(groups.values())
+
+
+def draw_sweep(rows, options):
+    names = list(rows[0]) if rows else []
+    measures = [name for name in names if name + "_standard_error" in names]
+    keys = names[:names.index(measures[0])] if measures else []
+    if not keys:
+        raise ValueError("sweep.csv: holds no measure; none of its tests was carried out")
+    figure, axes = panels(len(measures))
+    others = list(dict.fromkeys(tuple(row[key] for key in keys[1:]) for row in rows))
+    for panel, measure in zip(axes, measures):
+        for k, other in enumerate(others):
+            own = [row for row in rows if tuple(row[key] for key in keys[1:]) == other and row[measure]]
+            label = ", ".join(f"{key.split('.')[-1]} {float(value):.4g}" for key, value in zip(keys[1:], other))
+            panel.errorbar([float(row[keys[0]]) for row in own], [float(row[measure]) for row in own],
+                           yerr=[float(row[measure + "_standard_error"] or 0) for row in own], fmt="-o", markersize=3,
+                           capsize=2, color=kinds.QUALITATIVE[k % len(kinds.QUALITATIVE)], label=label or None)
+        panel.set_xlabel(keys[0], fontsize=9)
+        panel.set_ylabel(measure.replace("_", " "), fontsize=8)
+    if len(keys) > 1:
+        kinds.legend(axes[min(2, len(axes) - 1)])
+    figure.savefig(options.output)
+    return f"{options.output}: {records.counted(len(measures), 'measure')} against {', '.join(keys)}, {len(rows)} points"
+
+
+def draw(given, options):
+    return draw_fit(given[1], given[2], options) if given[0] == "fit" else draw_sweep(given[1], options)
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(prog="fit.py", description=__doc__.splitlines()[0])
+    parser.add_argument("records", nargs="+", metavar="FOLDER", help="folder of a fit or a sweep")
+    parser.add_argument("-o", "--output", default="fit.png", help="figure to write (PNG, PDF or SVG)")
+    records.run(draw, parser, read=read_fit)

@@ -1,0 +1,189 @@
+"""Specimens and laboratory tests by the program rvelab."""
+from __future__ import annotations
+
+import os
+import struct
+import tempfile
+from pathlib import Path
+from typing import Any, Callable, Iterable, Mapping, NamedTuple, Sequence, Union
+
+import numpy as np
+
+from .program import Folder, ask, words_of
+from .rve import Rve
+
+_PathLike = Union[str, "os.PathLike[str]"]
+
+
+class Records(dict):
+    """Records of a laboratory test by name, n rows each: strain (n), stress_Pa (n, 3, 3), void_ratio (n) and so on; the
+    names, units and signs of record files (stress in tension positive).
+
+    summary: what else the program printed (peak_friction_angle_deg, flagged, stiffness_Pa, ...).
+    file: path of the record file. Without `output` it lives as long as these records."""
+    summary: dict[str, Any]
+    file: Path
+
+    def __repr__(self) -> str:
+        n = len(self.get("strain", ()))
+        return f"<rvelab.Records of {self.summary.get('protocol', 'a test')}: {n} records of\n {', '.join(self)}>"
+
+
+class Moment(NamedTuple):
+    """How far a test is."""
+    records: int  #: made so far
+    stage: int  #: number of the stage, from 0
+    strain: float  #: driving strain of the stage at the last record
+
+
+def pack(recipe: _PathLike, output: _PathLike, settings: Mapping[str, Any] | None = None, *, count: int = 1,
+         threads: int | None = None, overwrite: bool = False, **more: Any) -> Path | list[Path]:
+    """Makes specimens from a recipe: the name of an installed one ("pack_dense") or a TOML file. Returns the path of the
+    specimen file; with count > 1 the list of them, output_1.h5 and so on, each with the next seed.
+
+    settings: keys of the recipe with dots, {"pack.number": 100, "target.pressure_Pa": 50e3}, or tables in tables."""
+    words = ["pack", recipe, "-o", output, *words_of(settings, more)]
+    words += ["--count", str(count)] if count != 1 else []
+    words += ["--threads", str(threads)] if threads else []
+    made = ask(words + (["--force"] if overwrite else []))
+    files = [Path(each["file"]) for each in made.get("specimens", [made])]
+    return files[0] if count == 1 and len(files) == 1 else files
+
+
+def _specimen(given: _PathLike | Rve | Records, folder: str) -> str:
+    """Path of a specimen file; an RVE is saved into the folder."""
+    if isinstance(given, Records):
+        return os.fspath(given.file)
+    if not isinstance(given, Rve):
+        return os.fspath(given)
+    path = os.path.join(folder, f"specimen_{given.id}.h5")
+    given.save(path)
+    return path
+
+
+class _Journal:
+    """Calls back with each new state of a test, from the journal that the program appends its records to."""
+
+    def __init__(self, path: str, progress: Callable[[Moment], None]) -> None:
+        self._path, self._progress, self._offset = path, progress, 16  # behind the head
+
+    def __call__(self) -> None:
+        try:
+            with open(self._path, "rb") as file:
+                last = self._last_record(file)
+        except FileNotFoundError:  # not begun, or ended
+            return
+        if last is not None:
+            self._progress(last)
+
+    def _last_record(self, file: Any) -> Moment | None:
+        """The last whole record frame behind the offset: type 2, its number, stage and strain (rvelab/io/README.md)."""
+        last, end = None, file.seek(0, os.SEEK_END)
+        while self._offset + 16 <= end:
+            file.seek(self._offset)
+            kind, length, _ = struct.unpack("<IQI", file.read(16))
+            if self._offset + 16 + length > end:
+                break
+            if kind == 2:
+                number, stage, strain = struct.unpack("<Qid", file.read(20))
+                last = Moment(number + 1, stage, strain)
+            self._offset += 16 + length
+        return last
+
+
+def run(protocol: _PathLike, specimen: _PathLike | Rve | Records, settings: Mapping[str, Any] | None = None, *,
+        output: _PathLike | None = None, progress: Callable[[Moment], None] | None = None, overwrite: bool = False,
+        resume: bool = False, **more: Any) -> Records:
+    """Runs a laboratory test: the name of an installed protocol ("biaxial") or a TOML file, on a specimen file, an Rve
+    (its committed state, which stays as it is) or the end of other Records.
+
+    settings: keys of the protocol with dots, {"test.pressure_Pa": 50e3}, or tables in tables, {"test": {...}}.
+    output: record file to keep. progress: called with a Moment some times a second. overwrite: an existing output; resume:
+    go on with one that was stopped."""
+    kept = Folder()
+    file = os.fspath(output) if output is not None else os.path.join(kept.name, "R.h5")
+    words = ["run", protocol, "--specimen", _specimen(specimen, kept.name), "-o", file, *words_of(settings, more)]
+    words += ["--force"] * overwrite + ["--resume"] * resume
+    printed = ask(words, progress and _Journal(file + ".journal", progress))
+    records = Records()
+    for name, rows in printed.pop("records").items():
+        column = np.array(rows)  # a number that is not finite is null in JSON
+        records[name] = column.astype(np.float64) if column.dtype == object else column
+    records.summary, records.file = printed, Path(file)
+    if output is None:
+        records._kept = kept
+    if progress is not None:
+        progress(Moment(len(records["strain"]), int(records["stage"][-1]) if "stage" in records else 0,
+                        float(records["strain"][-1])))
+    return records
+
+
+def ensemble(protocol: _PathLike, specimens: Iterable[_PathLike | Rve], settings: Mapping[str, Any] | None = None, *,
+             against: Iterable[_PathLike | Rve] = (), output: _PathLike | None = None, threads: int | None = None,
+             overwrite: bool = False, resume: bool = False, **more: Any) -> dict[str, Any]:
+    """Runs a test on two or more specimens, one to a core, and returns what the program finds: summary, a list with mean,
+    standard_deviation, standard_error, low_95, high_95 and n of each measure, and tests. against: a second group; then
+    differences holds those of the means.
+
+    output: folder for the record files, summary.json and summary.csv. settings as in run()."""
+    with tempfile.TemporaryDirectory(prefix="rvelab-") as folder:
+        words = ["run", protocol]
+        for option, group in (("--specimen", specimens), ("--against", against)):
+            words += [word for given in group for word in (option, _specimen(given, folder))]
+        words += words_of(settings, more) + (["-o", output] if output is not None else [])
+        words += ["--threads", str(threads)] if threads else []
+        return ask(words + ["--force"] * overwrite + ["--resume"] * resume)
+
+
+def calibrate(protocol: _PathLike, specimens: _PathLike | Rve | Iterable[_PathLike | Rve],
+              pressures: Sequence[float] | None = None, settings: Mapping[str, Any] | None = None, *,
+              output: _PathLike | None = None, threads: int | None = None, overwrite: bool = False,
+              **more: Any) -> dict[str, Any]:
+    """Runs a compression test of each specimen at every pressure, Pa, and returns what `rvelab calibrate` finds:
+    friction_angle_deg, bearing_capacity_Nq, of several specimens friction_angle_mean_deg and its standard error, and the
+    lists per_pressure and per_specimen.
+
+    output: folder for the record files R_<pressure>.h5. settings as in run()."""
+    several = isinstance(specimens, Iterable) and not isinstance(specimens, (str, os.PathLike, Records))
+    with tempfile.TemporaryDirectory(prefix="rvelab-") as folder:
+        files = [_specimen(given, folder) for given in (specimens if several else [specimens])]
+        words = ["calibrate", protocol, *(word for file in files for word in ("--specimen", file)),
+                 *words_of(settings, more)]
+        words += ["--pressures", ",".join(f"{float(pressure)!r}" for pressure in pressures)] if pressures is not None else []
+        words += ["--every-pressure"] if len(files) > 1 else []
+        words += ["-o", output] if output is not None else []
+        words += ["--threads", str(threads)] if threads else []
+        return ask(words + (["--force"] if overwrite else []))
+
+
+def fit(protocol: _PathLike, vary: Mapping[str, Sequence[Any]], targets: Mapping[str, Any] | None = None,
+        curves: Mapping[_PathLike, float] | Iterable[_PathLike] = (), *,
+        specimens: _PathLike | Rve | Iterable[_PathLike | Rve] = (), recipe: _PathLike | None = None,
+        count: int | None = None, tests: int | None = None, settings: Mapping[str, Any] | None = None,
+        output: _PathLike | None = None, threads: int | None = None, overwrite: bool = False,
+        resume: bool = False) -> dict[str, Any]:
+    """Looks for the parameters whose tests give what was measured, and returns what `rvelab fit` finds: parameters (key,
+    mean, low_95, high_95, ...), targets, tests, posterior_sample. Without targets and curves a sweep.
+
+    vary: {"material.friction": (0.1, 1.0)}; (low, high, "log"); of a sweep (low, high, number of values). targets:
+    {"friction_angle_deg": 30} or (value, standard error); "friction_angle_deg@50e3" at a pressure in Pa. curves: measured
+    curves, CSV files, or {file: pressure in Pa}. specimens that all tests share, or a recipe with count specimens. tests:
+    how many to spend. output: folder for fit.json and all else; plot("fit", output) draws it. resume: go on there."""
+    words = ["fit", protocol]
+    for key, bounds in vary.items():
+        words += ["--vary", f"{key}=" + ":".join(map(str, bounds))]
+    for measure, value in (targets or {}).items():
+        pair = tuple(value) if isinstance(value, (tuple, list)) else (value,)
+        words += ["--target", f"{measure}=" + "+-".join(f"{float(number)!r}" for number in pair)]
+    pressures = curves if isinstance(curves, Mapping) else {file: 0 for file in curves}
+    for file, pressure in pressures.items():
+        words += ["--curve", os.fspath(file) + (f"@{float(pressure)!r}" if pressure else "")]
+    several = isinstance(specimens, Iterable) and not isinstance(specimens, (str, os.PathLike, Records))
+    with tempfile.TemporaryDirectory(prefix="rvelab-") as folder:
+        for given in specimens if several else [specimens]:
+            words += ["--specimen", _specimen(given, folder)]
+        for name, value in (("--recipe", recipe), ("--count", count), ("--tests", tests), ("-o", output),
+                            ("--threads", threads)):
+            words += [name, os.fspath(value) if isinstance(value, os.PathLike) else str(value)] if value is not None else []
+        words += words_of(settings, {})
+        return ask(words + (["--force"] if overwrite else []) + (["--resume"] if resume else []))

@@ -1,0 +1,190 @@
+"""Many RVEs that are worked on together: Pool, over the C interface."""
+from __future__ import annotations
+
+import os
+import sys
+from ctypes import byref, c_char_p, c_double, c_int64, c_size_t, c_void_p, create_string_buffer, sizeof
+from typing import Iterable
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .library import (MEASURES, Batch, BatchStruct, Definition, Info, RvelabError, call, gradients_of, id_of, library,
+                      numbers_of)
+
+_pool, _number, _ids, _size = c_void_p, c_int64, c_void_p, c_size_t
+for _name, _arguments in {
+        "pool_def_init": (c_void_p, _size), "pool_create": (c_void_p, c_void_p), "pool_destroy": (_pool,),
+        "template_load": (_pool, c_char_p, c_void_p), "template_from_snapshot": (_pool, c_char_p, _size, c_void_p),
+        "template_release": (_pool, _number), "spawn": (_pool, _number, _number, _ids),
+        "clone": (_pool, _number, c_void_p), "release": (_pool, _number, _ids), "ids": (_pool, _number, _ids, c_void_p),
+        "batch_init": (c_void_p, _size), "apply": (_pool, _number, c_void_p, c_double, c_void_p),
+        "trial": (_pool, c_void_p), "commit": (_pool, _number, _ids), "revert": (_pool, _number, _ids),
+        "info_init": (c_void_p, _size), "get_info": (_pool, _number, c_void_p),
+        "cost": (_pool, _number, _ids, c_void_p), "snapshot_save": (_pool, _number, c_void_p, _size, c_void_p),
+        "snapshot_load": (_pool, _number, c_char_p, _size), "pool_write": (_pool, c_char_p),
+        "pool_read": (_pool, c_char_p)}.items():
+    getattr(library, "rvelab_" + _name).argtypes = _arguments
+
+
+class Pool:
+    """RVEs that are worked on together. Options are those of rvelab_pool_def: workers (0: one per core),
+    trial_memory (0 keep, 1 recompute), tolerance_rel, tolerance_abs, max_substeps, damping, min_height (m);
+    0: what the specimen says."""
+
+    def __init__(self, **options: float) -> None:
+        self._pool, definition = c_void_p(), Definition()
+        allowed = [name for name, _ in Definition._fields_[2:-2]]
+        call("pool_def_init", byref(definition), sizeof(definition))
+        for name, value in options.items():
+            if name not in allowed:
+                raise TypeError(f"Pool has no option {name!r}; allowed: {', '.join(allowed)}")
+            setattr(definition, name, value)
+        call("pool_create", byref(definition), byref(self._pool))
+
+    def close(self) -> None:
+        """Joins the workers and frees every RVE. A second time it does nothing; later calls of the pool raise."""
+        if self._pool:
+            call("pool_destroy", self._pool)
+            self._pool = c_void_p()
+
+    def __enter__(self) -> "Pool":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def __del__(self) -> None:
+        # As the interpreter ends, modules and other objects may be gone: the process gives all back.
+        if getattr(self, "_pool", None) and not sys.is_finalizing():
+            library.rvelab_pool_destroy(self._pool)
+            self._pool = c_void_p()
+
+    def template(self, source: str | os.PathLike[str] | bytes) -> int:
+        """From a specimen file, a record file (its end state), or the bytes of snapshot(). To spawn from."""
+        made = c_int64()
+        if isinstance(source, bytes):
+            call("template_from_snapshot", self._pool, source, len(source), byref(made))
+        else:
+            call("template_load", self._pool, os.fsencode(source), byref(made))
+        return made.value
+
+    def release_template(self, template: int) -> None:
+        """Ends a template; the RVEs that were made from it stay."""
+        call("template_release", self._pool, template)
+
+    def spawn(self, template: int, n: int = 1) -> np.ndarray:
+        """n RVEs in the state of the template: their ids, (n) of int64, each exact in a double too."""
+        ids = np.zeros(max(n, 0), np.int64)
+        call("spawn", self._pool, template, n, ids.ctypes.data)
+        return ids
+
+    def clone(self, rve: int) -> int:
+        """A second RVE in the committed state of the first, with its tokens."""
+        made = c_int64()
+        call("clone", self._pool, id_of(rve), byref(made))
+        return made.value
+
+    def release(self, rves: ArrayLike) -> None:
+        """Ends RVEs: all of those named, or none."""
+        ids = numbers_of(rves, "ids")
+        call("release", self._pool, len(ids), ids.ctypes.data)
+
+    def ids(self) -> np.ndarray:
+        """Of all RVEs, in the order of their slots."""
+        n = c_int64()
+        call("ids", self._pool, 0, None, byref(n))
+        ids = np.zeros(n.value, np.int64)
+        call("ids", self._pool, n.value, ids.ctypes.data, byref(n))
+        return ids
+
+    def apply(self, rve: int, dH: ArrayLike, dt: float = 0) -> np.ndarray:
+        """Trial and commit in one: sigma (3, 3) after dH (3, 3) over dt."""
+        gradient, sigma = gradients_of(dH, (3, 3)), np.empty((3, 3))
+        call("apply", self._pool, id_of(rve), gradient.ctypes.data, dt, sigma.ctypes.data)
+        return sigma
+
+    def trial(self, rves: ArrayLike, dH: ArrayLike, dt: float = 0, tokens: ArrayLike | None = None,
+              want: Iterable[str] = (), out: Batch | None = None) -> Batch:
+        """One trial of each of n RVEs, dH (n, 3, 3), from its committed state or from the one that its token names.
+        commit() makes trials the states. want: names among MEASURES. out: a Batch of n whose arrays are used again.
+        Raises if one fails; error.batch then holds what the others gave. int64 and float64 arrays are not copied."""
+        ids, batch = numbers_of(rves, "ids"), BatchStruct()
+        gradients = gradients_of(dH, (len(ids), 3, 3))
+        found = Batch(len(ids), tuple(want)) if out is None else out
+        if len(found.sigma) != len(ids):
+            raise ValueError(f"out is for {len(found.sigma)} RVEs, the call is of {len(ids)}")
+        named = None if tokens is None else numbers_of(tokens, "tokens")
+        if named is not None and len(named) != len(ids):
+            raise ValueError(f"tokens has the length {len(named)}; allowed: {len(ids)}, one for each RVE")
+        call("batch_init", byref(batch), sizeof(batch))
+        batch.n, batch.dt, batch.ids, batch.dH = len(ids), dt, ids.ctypes.data, gradients.ctypes.data
+        batch.tokens_in = None if named is None else named.ctypes.data
+        for name in ("sigma", *MEASURES):
+            array = getattr(found, name)
+            if array is not None:
+                array.fill(np.nan)
+                setattr(batch, name, array.ctypes.data)
+        found.tokens.fill(0)
+        batch.dt_scale, batch.status = found.dt_scale.ctypes.data, found.status.ctypes.data
+        batch.tokens_out = found.tokens.ctypes.data
+        call("trial", self._pool, byref(batch), batch=found)
+        return found
+
+    def batch(self, rves: ArrayLike, dH: ArrayLike, dt: float = 0, want: Iterable[str] = ()) -> Batch:
+        """Trial and commit of n RVEs. Those that could be made are committed, whether others failed or not."""
+        try:
+            found = self.trial(rves, dH, dt, want=want)
+        except RvelabError as error:
+            if error.batch is not None:
+                self.commit(numbers_of(rves, "ids")[error.batch.tokens != 0])
+            raise
+        self.commit(rves)
+        return found
+
+    def commit(self, rves: ArrayLike | None = None) -> None:
+        """Pending trials become the states; None: all that are pending."""
+        self._settle("commit", rves)
+
+    def revert(self, rves: ArrayLike | None = None) -> None:
+        """Discards pending trials; None: all."""
+        self._settle("revert", rves)
+
+    def _settle(self, name: str, rves: ArrayLike | None) -> None:
+        ids = None if rves is None else numbers_of(rves, "ids")
+        call(name, self._pool, 0 if ids is None else len(ids), None if ids is None else ids.ctypes.data)
+
+    def info(self, rve: int) -> Info:
+        """Measures of the committed state as attributes: void_ratio, p, q, fabric (3, 3), token ... (see Info)."""
+        found = Info()
+        call("info_init", byref(found), sizeof(found))
+        call("get_info", self._pool, id_of(rve), byref(found))
+        return found
+
+    def cost(self, rves: ArrayLike) -> np.ndarray:
+        """Grains times sub-steps made for each RVE in this pool, (n), trials that were reverted included."""
+        ids = numbers_of(rves, "ids")
+        made = np.zeros(len(ids), np.int64)
+        call("cost", self._pool, len(ids), ids.ctypes.data, made.ctypes.data)
+        return made
+
+    def snapshot(self, rve: int) -> bytes:
+        """The committed state with its tokens, bitwise, for the same build of rvelab; across builds: write()."""
+        need = c_size_t()
+        call("snapshot_save", self._pool, id_of(rve), None, 0, byref(need))
+        buffer = create_string_buffer(need.value)
+        call("snapshot_save", self._pool, id_of(rve), buffer, need.value, byref(need))
+        return buffer.raw[:need.value]
+
+    def restore(self, rve: int, snapshot: bytes) -> None:
+        """The RVE takes the state of a snapshot, of any specimen; a pending trial is discarded."""
+        call("snapshot_load", self._pool, id_of(rve), snapshot, len(snapshot))
+
+    def write(self, path: str | os.PathLike[str]) -> None:
+        """All RVEs with ids and tokens into a pool file (HDF5)."""
+        call("pool_write", self._pool, os.fsencode(path))
+
+    def read(self, path: str | os.PathLike[str]) -> np.ndarray:
+        """The RVEs of a pool file, with their ids and tokens, into this pool, which must be without. Their ids."""
+        call("pool_read", self._pool, os.fsencode(path))
+        return self.ids()

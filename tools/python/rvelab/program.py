@@ -1,0 +1,87 @@
+"""The program rvelab: where it is, and calls of it that raise."""
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import warnings
+import weakref
+from pathlib import Path
+from typing import Any, Callable, Mapping, Sequence
+
+from .library import RvelabError, RvelabWarning, library
+
+
+def program() -> str:
+    """Path of the program: RVELAB_PROGRAM, else that of the library's build, installation or wheel, else in the PATH."""
+    named = os.environ.get("RVELAB_PROGRAM")
+    if named:
+        return named
+    places = []
+    if os.sep in library._name:
+        folder = Path(library._name).resolve().parent
+        places = [folder / "rvelab", folder.parent / "bin/rvelab", folder.parent.parent / "bin/rvelab"]
+    found = next((str(file) for file in places if file.is_file()), None) or shutil.which("rvelab")
+    if found is None:
+        raise FileNotFoundError("the program rvelab was not found: let RVELAB_PROGRAM name it, or add it to PATH")
+    return found
+
+
+class Folder:
+    """A folder that lives as long as this object."""
+
+    def __init__(self) -> None:
+        self.name = tempfile.mkdtemp(prefix="rvelab-")
+        weakref.finalize(self, shutil.rmtree, self.name, ignore_errors=True)
+
+
+def main() -> None:
+    """The command `rvelab` of the wheel: becomes the program."""
+    os.execv(program(), [program(), *sys.argv[1:]])
+
+
+def words_of(settings: Mapping[str, Any] | None, more: Mapping[str, Any]) -> list[str]:
+    """--set KEY=VALUE for each key. Keys have dots ("test.pressure_Pa"), or are tables within tables."""
+    words = []
+    for key, value in {**flat(settings or {}), **flat(more)}.items():
+        words += ["--set", f"{key}={value if isinstance(value, str) else json.dumps(value, default=plain)}"]
+    return words
+
+
+def flat(table: Mapping[str, Any], before: str = "") -> dict[str, Any]:
+    found = {}
+    for key, value in table.items():
+        found.update(flat(value, f"{before}{key}.") if isinstance(value, Mapping) else {before + key: value})
+    return found
+
+
+def plain(value: Any) -> Any:
+    """A number or an array of numpy as JSON has it."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    raise TypeError(f"a setting is {value!r}; allowed: numbers, texts, truth values and lists of them")
+
+
+def ask(words: Sequence[str | os.PathLike[str]], meanwhile: Callable[[], None] | None = None) -> Any:
+    """Runs the program with --json and returns what it printed. Its warnings become RvelabWarning, its error
+    RvelabError. meanwhile is called some times a second."""
+    command = [program(), *map(os.fspath, words), "--json"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as running:
+        try:
+            while True:
+                try:
+                    printed, told = running.communicate(timeout=None if meanwhile is None else 0.1)
+                    break
+                except subprocess.TimeoutExpired:
+                    meanwhile()
+        except BaseException:
+            running.terminate()  # it keeps what it has recorded
+            raise
+    if running.returncode != 0:
+        raise RvelabError(told.strip() or f"{command[0]} ended with the exit code {running.returncode}")
+    for line in told.splitlines():
+        warnings.warn(line, RvelabWarning, stacklevel=3)
+    return json.loads(printed)
