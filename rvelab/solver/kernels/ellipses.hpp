@@ -116,7 +116,8 @@ __attribute__((noinline)) void search_block(EllipseScratch& s, long k) {
 }
 
 /// What closest_gap finds, for the pairs of a chunk side by side: roots and divisions of one block of lanes fill the
-/// time of another's, where each to its end left the processor waiting (AVX-512: 0.00 of that time).
+/// time of another's, where each to its end left the processor waiting (a sub-step takes 0.82 of that time with eight
+/// lanes, 0.77 with four).
 template <class T>
 inline __attribute__((always_inline)) void ellipse_normals(const StepConstants& c, const PairArrays& p, long first,
                                                            long count, EllipseScratch& s) {
