@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <sstream>
 #include <thread>
@@ -12,18 +13,32 @@
 namespace rvelab::calibrate {
 namespace {
 
+/// The axis of simple shear names a plane.
+bool is_simple_shear(const records::TestResult& test) { return test.axis.size() == 2; }
+
+/// Mean stresses at large strain: from 12 to 15 % of a compression; of simple shear over the last 60 % of a
+/// strain of 1 or more, which leave the start behind.
+PrincipalStresses at_large_strain(const records::TestResult& test, int dimension) {
+  const auto records = last_stage(test);
+  if (!is_simple_shear(test)) return large_strain_mean(records, dimension);
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  const double end = std::abs(records.back().strain);
+  return end < 1 ? PrincipalStresses{nan, nan} : large_strain_mean(records, dimension, 0.4 * end, end);
+}
+
 PressureResult evaluate(const records::TestResult& test, int dimension) {
   const auto records = last_stage(test);
   const Peak highest = peak(records, dimension);
   PressureResult result;
   result.pressure = test.pressure;
+  result.simple_shear = is_simple_shear(test);
   result.peak = highest.stresses;
   result.peak_strain = highest.strain;
   result.end_strain = records.back().strain;
   result.rising_at_end = rising_at_end(records, highest);
   result.friction_angle_deg = friction_angle_deg(highest.stresses);
   result.moving_mean_friction_angle_deg = friction_angle_deg(peak_of_moving_mean(records, dimension));
-  result.large_strain_friction_angle_deg = friction_angle_deg(large_strain_mean(records, dimension));
+  result.large_strain_friction_angle_deg = friction_angle_deg(at_large_strain(test, dimension));
   result.records = records.size();
   result.flagged = std::size_t(
       std::count_if(records.begin(), records.end(), [](const records::Record& record) { return !record.target_held; }));

@@ -13,13 +13,14 @@ namespace rvelab::calibrate {
 struct PressureResult {
   double pressure = 0;
   std::size_t specimen = 0;  ///< its number, from 0
+  bool simple_shear = false;
   PrincipalStresses peak;
   double peak_strain = 0;
   double end_strain = 0;
   bool rising_at_end = false;                  ///< the largest deviator is at the end: the test shows no peak
   double friction_angle_deg = 0;               ///< of the peak
   double moving_mean_friction_angle_deg = 0;   ///< of the 1 % moving mean
-  double large_strain_friction_angle_deg = 0;  ///< of the mean stresses from 12 to 15 %
+  double large_strain_friction_angle_deg = 0;  ///< from 12 to 15 %; simple shear: of its last 60 %
   std::size_t records = 0;
   std::size_t flagged = 0;  ///< records whose stress was not held
   double wall_seconds = 0;
@@ -60,8 +61,8 @@ Statistics statistics(const std::vector<double>& values);
 Calibration calibrate(const std::vector<records::TestResult>& tests, int dimension,
                       const std::vector<std::size_t>& specimens = {});
 
-/// InputError unless the last stage gives a friction angle: compression at constant lateral stress, whose pressure is
-/// that of the test.
+/// InputError unless the last stage gives a friction angle: compression at constant lateral stress or simple shear at
+/// constant normal stress, whose pressure is that of the test.
 void check_calibratable(const protocol::Protocol& protocol);
 
 /// InputError unless there is one specimen for all protocols, or one for each.

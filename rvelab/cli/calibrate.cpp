@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <iostream>
 #include <limits>
 #include <map>
 #include <memory>
@@ -14,7 +15,9 @@
 #include <set>
 #include <sstream>
 
+#include "rvelab/cli/columns.hpp"
 #include "rvelab/cli/command.hpp"
+#include "rvelab/cli/ensemble.hpp"
 #include "rvelab/cli/interrupt.hpp"
 #include "rvelab/cli/progress_line.hpp"
 #include "rvelab/cli/protocol_input.hpp"
@@ -171,7 +174,21 @@ void add_statistics(const calibrate::Calibration& calibration, const std::vector
                     {"friction_angle_deg", one.friction_angle_deg},
                     {"bearing_capacity_Nq", one.bearing_capacity_Nq}});
   }
-  listing.add("per_specimen", std::move(rows));
+  listing.add_to_json("per_specimen", std::move(rows));
+}
+
+/// One line a test; the rest stands in --json.
+std::string tests_table(const calibrate::Calibration& calibration) {
+  std::vector<std::vector<std::string>> rows{{"specimen", "pressure, Pa", "peak angle", "at strain, %", "large strain",
+                                              "sigma_1, Pa", "sigma_3, Pa", "flagged"}};
+  const auto angle = [](double value) { return std::isnan(value) ? "-" : in_words(std::round(100 * value) / 100); };
+  for (const calibrate::PressureResult& test : calibration.per_pressure) {
+    rows.push_back({std::to_string(test.specimen + 1), in_words(test.pressure), angle(test.friction_angle_deg),
+                    in_words(100 * test.peak_strain), angle(test.large_strain_friction_angle_deg),
+                    in_words(std::round(test.peak.major)), in_words(std::round(test.peak.minor)),
+                    std::to_string(test.flagged) + " of " + std::to_string(test.records)});
+  }
+  return aligned(rows);
 }
 
 std::string percent(double strain) { return in_words(100 * std::abs(strain)) + " %"; }
@@ -180,14 +197,17 @@ std::string percent(double strain) { return in_words(100 * std::abs(strain)) + "
 std::string without_peak(const calibrate::Calibration& calibration) {
   std::string tests;
   double end = 0;
+  std::size_t count = 0;
   for (const calibrate::PressureResult& test : calibration.per_pressure) {
     if (!test.rising_at_end) continue;
+    ++count;
     tests += tests.empty() ? "" : ", ";
     if (calibration.per_specimen.size() > 1) tests += "specimen " + std::to_string(test.specimen + 1) + " at ";
     tests += in_words(test.pressure) + " Pa";
     end = std::max(end, std::abs(test.end_strain));
   }
   if (tests.empty()) return "";
+  if (count > 3) tests = std::to_string(count) + " of " + std::to_string(calibration.per_pressure.size()) + " tests";
   return tests + ": still rising at the end: no peak; the angle is that of the largest deviator up to " + percent(end) +
          " strain; let the tests go further (to_strain)";
 }
@@ -210,7 +230,10 @@ Reasons reasons_of(const calibrate::Calibration& calibration) {
   return {no_angle, tension ? no_angle : "needs records over 1 % of strain; a test ends at " + percent(end),
           calibration.per_pressure.size() < 2 ? "needs tests at two pressures or more" : "the peaks lie on no line",
           calibration.per_pressure.size() < 3 ? "needs tests at three pressures or more" : "the peaks lie on no line",
-          "is the mean from 12 to 15 % of strain; a test ends at " + percent(end)};
+          std::string(calibration.per_pressure.front().simple_shear
+                          ? "is the mean of the last 60 % of a strain of 1 or more; a test ends at "
+                          : "is the mean from 12 to 15 % of strain; a test ends at ") +
+              percent(end)};
 }
 
 void report_calibration(const calibrate::Calibration& calibration, const std::string& protocol,
@@ -236,23 +259,38 @@ void report_calibration(const calibrate::Calibration& calibration, const std::st
   listing.add_or_why("wedge_angle_deg", calibration.wedge_angle_deg, "degrees", why.peak);
   add_statistics(calibration, specimens, listing);
   if (const std::string warning = without_peak(calibration); !warning.empty()) listing.add("warning", warning);
-  listing.add("per_pressure", per_pressure(calibration));
+  listing.add_to_json("per_pressure", per_pressure(calibration));
   listing.add("wall_s", wall_seconds, "s");
   listing.add("grain_steps", grain_steps);
   listing.print(json);
+  if (!json) std::cout << "\n" << tests_table(calibration) << std::flush;
+}
+
+/// summary.json and summary.csv beside the records.
+void keep_summary(const std::string& folder, const Plan& plan, const std::vector<std::string>& files,
+                  const std::vector<records::TestResult>& results, int dimension) {
+  const Ensemble ensemble{plan.protocols, files, std::vector<std::size_t>(files.size(), 0), {"specimens"}};
+  std::vector<ensemble::TestOf> tests;
+  for (std::size_t k = 0; k < results.size(); ++k) {
+    tests.push_back({0, plan.specimen_of[k], plan.protocols[k].pressure,
+                     ensemble::measured(plan.protocols[k], results[k], dimension),
+                     ensemble::strength_of(plan.protocols[k], results[k], dimension)});
+  }
+  write_summary(folder, ensemble, tests, ensemble::summary_of(tests), {});
 }
 
 void run_calibration(const CalibrateArguments& arguments) {
   const auto begin = std::chrono::steady_clock::now();
   const auto at_pressures = protocols_at(arguments);
   arguments.test.expect_output(arguments.folder);
-  const auto specimens = specimens_for(at_pressures.front(), arguments.specimens);
-  if (arguments.every_pressure || at_pressures.size() == 1) expect_different(specimens, arguments.specimens);
+  const auto given = files_of(arguments.specimens);
+  const auto specimens = specimens_for(at_pressures.front(), given);
+  if (arguments.every_pressure || at_pressures.size() == 1) expect_different(specimens, given);
   const Plan plan = plan_of(at_pressures, specimens, arguments.every_pressure);
   const std::size_t tests = plan.protocols.size();
   std::vector<std::unique_ptr<io::RecordStore>> stores(tests);
   if (!arguments.folder.empty()) {
-    auto inputs = specimen_files(at_pressures.front(), arguments.specimens);
+    auto inputs = specimen_files(at_pressures.front(), given);
     inputs.push_back(at_pressures.front().path);
     for (std::size_t k = 0; k < tests; ++k) protocol::with_overrides(plan.protocols[k], specimens[plan.specimen_of[k]]);
     make_folder(arguments.folder);
@@ -286,8 +324,11 @@ void run_calibration(const CalibrateArguments& arguments) {
   std::vector<records::TestResult> results;
   for (const protocol::TestRun& run : runs) results.push_back(run.result);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
-  report_calibration(calibrate::calibrate(results, specimens.front().cell.dimension, plan.specimen_of),
-                     at_pressures.front().name, arguments.specimens, wall.count(), arguments.test.json);
+  const int dimension = specimens.front().cell.dimension;
+  if (!arguments.folder.empty())
+    keep_summary(arguments.folder, plan, specimen_files(at_pressures.front(), given), results, dimension);
+  report_calibration(calibrate::calibrate(results, dimension, plan.specimen_of), at_pressures.front().name,
+                     specimen_files(at_pressures.front(), given), wall.count(), arguments.test.json);
 }
 
 }  // namespace
@@ -296,11 +337,12 @@ Command calibrate_command() {
   Command command{"calibrate", "Run a compression test at several pressures: friction angle, N_q"};
   auto& arguments = command.runs(run_calibration);
   command.add("--specimen", arguments.specimens,
-              "specimen; given several times: one for each pressure, or all at the one\n"
+              "specimen, or \"S_*.h5\"; several: one for each pressure, or all at the one\n"
               "pressure; with --every-pressure each at all pressures");
   command.add("--pressures", arguments.pressures, "in Pa, 10e3,15e3,...; default: [calibrate] pressures_Pa");
   command.add("--every-pressure", arguments.every_pressure, "test each specimen at every pressure");
-  command.add("-o,--output", arguments.folder, "folder for the record files R_<pressure>.h5; made if it is missing");
+  command.add("-o,--output", arguments.folder,
+              "folder for the record files R_<pressure>.h5, summary.json and\nsummary.csv; made if it is missing");
   arguments.test.add_to(command, "contact.slip=consistent", "tests at a time");
   command.notes =
       "friction_angle: phi with sin phi = (sigma_1 - sigma_3)/(sigma_1 + sigma_3) at the peak, the record with the\n"

@@ -8,6 +8,7 @@
 #include "rvelab/cli/command.hpp"
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/report.hpp"
+#include "rvelab/cli/tell_of_sizes.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/io/import/csv.hpp"
@@ -73,6 +74,7 @@ void run_import(const ImportArguments& arguments) {
   listing.add("lattice_m", row_major(specimen.cell.lattice), "m");
   add_proportions(listing, sizes);
   listing.print(arguments.json);
+  tell_of_sizes(sizes);
 }
 
 }  // namespace

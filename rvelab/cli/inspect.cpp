@@ -6,6 +6,7 @@
 
 #include "rvelab/cli/command.hpp"
 #include "rvelab/cli/report.hpp"
+#include "rvelab/cli/tell_of_sizes.hpp"
 #include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/io/journal/journal.hpp"
 #include "rvelab/io/journal/recorded_test.hpp"
@@ -100,9 +101,11 @@ void run_inspect(const std::string& path, bool as_json) {
       listing.add("preparation_friction", origin->preparation_friction);
     }
   }
-  add_state(listing, Rve(specimen));
+  const Rve rve(specimen);
+  add_state(listing, rve);
   add_model(listing, specimen);
   listing.print(as_json);
+  tell_of_sizes(sizes_of(rve.network()));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <thread>
 
+#include "rvelab/cli/columns.hpp"
 #include "rvelab/cli/command.hpp"
 #include "rvelab/cli/interrupt.hpp"
 #include "rvelab/cli/progress_line.hpp"
@@ -103,6 +104,19 @@ void make(Job& job, Workers& workers, TerminalLine& line, std::mutex& files) {
   io::write_specimen(packing.specimen, job.file, &origin);
 }
 
+/// One line a specimen; the rest stands in --json.
+std::string table_of(const std::vector<Job>& jobs) {
+  std::vector<std::vector<std::string>> rows{
+      {"file", "seed", "draw", "void ratio", "p, Pa", "contacts a grain", "overlap, %", "friction while packed"}};
+  for (const Job& job : jobs) {
+    const auto shown = [&](const char* key) { return in_words(job.made[key].get<double>()); };
+    rows.push_back({job.file, job.made["seed"].dump(), job.made["draw"].dump(), shown("void_ratio"),
+                    in_words(job.sizes.pressure), shown("coordination_number"),
+                    two_digits(100 * job.sizes.proportions.mean_overlap), shown("preparation_friction")});
+  }
+  return aligned(rows);
+}
+
 void report(const pack::RecipeFile& file, const std::vector<Job>& jobs, bool json) {
   Listing listing;
   listing.add("recipe", file.name);
@@ -116,9 +130,10 @@ void report(const pack::RecipeFile& file, const std::vector<Job>& jobs, bool jso
       rows.push_back(job.made);
       rows.back().update(as_json(job.sizes));
     }
-    listing.add("specimens", std::move(rows));
+    listing.add_to_json("specimens", std::move(rows));
   }
   listing.print(json);
+  if (jobs.size() > 1 && !json) std::cout << table_of(jobs) << std::flush;
 }
 
 std::string made_of(const std::vector<Job>& jobs) {

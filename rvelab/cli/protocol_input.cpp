@@ -24,8 +24,10 @@ fs::path installed_folder() {
 std::map<std::string, std::string> all_installed() {
   std::map<std::string, std::string> paths;
   std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(installed_folder(), ignored)) {
-    if (entry.path().extension() == ".toml") paths[entry.path().stem().string()] = entry.path().string();
+  for (const fs::path& folder : {installed_folder(), installed_folder() / "soils"}) {
+    for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+      if (entry.path().extension() == ".toml") paths[entry.path().stem().string()] = entry.path().string();
+    }
   }
   return paths;
 }

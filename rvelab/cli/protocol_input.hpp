@@ -14,7 +14,7 @@ namespace rvelab::cli {
 enum class InputKind { protocol, recipe };
 
 /// Paths of the installed protocols, or recipes, by their names: those in ../share/rvelab/protocols beside the program,
-/// which is where installation and build put them.
+/// which is where installation and build put them, and in its folder of soils.
 std::map<std::string, std::string> installed(InputKind kind);
 
 /// Error that names the folder if it holds no protocols: the installation is broken.

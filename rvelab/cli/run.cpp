@@ -13,6 +13,7 @@
 
 #include "rvelab/calibrate/mohr.hpp"
 #include "rvelab/cli/command.hpp"
+#include "rvelab/cli/ensemble.hpp"
 #include "rvelab/cli/interrupt.hpp"
 #include "rvelab/cli/progress_line.hpp"
 #include "rvelab/cli/protocol_input.hpp"
@@ -30,9 +31,23 @@ namespace rvelab::cli {
 namespace {
 
 struct RunArguments {
-  std::string specimen, output;
+  std::vector<std::string> specimens, more, against;
+  std::string output;
   TestOptions test;
 };
+
+/// Several specimens, or two groups of them.
+void run_several(const RunArguments& arguments, const protocol::Protocol& protocol, std::vector<std::string> files,
+                 const std::vector<std::string>& against) {
+  Ensemble ensemble{{protocol}, std::move(files), {}, {"group 1"}};
+  ensemble.groups.assign(ensemble.files.size(), 0);
+  if (!against.empty()) ensemble.names.emplace_back("group 2");
+  for (const std::string& file : against) {
+    ensemble.files.push_back(file);
+    ensemble.groups.push_back(1);
+  }
+  run_ensemble(ensemble, arguments.output, arguments.test);
+}
 
 /// An archive for records::describe_records: each column becomes an array by its name.
 struct ArraysOfColumns {
@@ -93,6 +108,22 @@ void add_oedometers(const protocol::Protocol& protocol, const protocol::TestRun&
   }
 }
 
+/// Whether a stress-controlled cyclic test liquefied, and after how many cycles.
+void add_liquefaction(const protocol::Protocol& protocol, const protocol::TestRun& run, Listing& listing) {
+  const ensemble::Liquefaction found = ensemble::liquefaction_of(protocol, run.result, run.end_state.cell.dimension);
+  if (!found.cyclic) return;
+  listing.add("stress_ratio", found.stress_ratio, "of p at the start");
+  listing.add("cycles", found.cycles);
+  listing.add_to_json("liquefied", found.liquefied);
+  listing.add_to_json("least_p_over_first", found.least_p);
+  const std::string limit = in_words(100 * found.limit) + " %";
+  listing.add_to_text("liquefaction",
+                      found.liquefied
+                          ? "after " + in_words(found.cycles) + " cycles: p below " + limit + " of its start"
+                          : "none: the least p is " + in_words(std::round(1e3 * found.least_p) / 10) +
+                                " % of its start, and " + limit + " counts as liquefied");
+}
+
 /// Where the time of this run went, and the error estimates of its stresses; nothing of a test that was complete
 /// before.
 void add_costs(const protocol::TestRun& run, double wall, Listing& listing) {
@@ -133,14 +164,19 @@ void tell_of_thin(const records::TestResult& result, long thin) {
 /// How many records are doubtful, and why.
 struct Doubtful {
   long not_held = 0, not_quasi_static = 0, either = 0, thin = 0;
+  long without_pressure = 0;  ///< of either: p is below 5 % of that of the first record
 };
 
-Doubtful doubtful_of(const std::vector<records::Record>& records) {
+Doubtful doubtful_of(const std::vector<records::Record>& records, int dimension) {
+  constexpr double small_part = 0.05;
   Doubtful found;
+  const double first = records.empty() ? 0 : mean_pressure(records.front().stress, dimension);
   for (const records::Record& record : records) {
     found.not_held += record.target_held ? 0 : 1;
     found.not_quasi_static += record.quasi_static ? 0 : 1;
-    found.either += record.target_held && record.quasi_static ? 0 : 1;
+    const bool doubtful = !(record.target_held && record.quasi_static);
+    found.either += doubtful ? 1 : 0;
+    found.without_pressure += doubtful && mean_pressure(record.stress, dimension) < small_part * first ? 1 : 0;
     found.thin += record.cell_thin ? 1 : 0;
   }
   return found;
@@ -167,7 +203,12 @@ void add_end(const protocol::Protocol& protocol, const protocol::TestRun& run, L
 void tell_of_doubts(const protocol::TestRun& run, const Doubtful& doubtful) {
   const std::size_t records = run.result.records.size();
   // One record or two may be an avalanche of the specimen; more are the fault of the test's settings.
-  if (20 * doubtful.either > long(records))
+  if (20 * doubtful.either > long(records) && 2 * doubtful.without_pressure > doubtful.either)
+    tell(std::to_string(doubtful.without_pressure) + " of " + std::to_string(records) +
+         " records are of a specimen whose grains carry almost nothing, p below 5 % of its start: it has liquefied. No "
+         "tolerance makes equilibria of them (quasi_static, target_held); let the test end there, with an "
+         "[[stage.until]] of quantity = \"p_over_first\"");
+  else if (20 * doubtful.either > long(records))
     tell(std::to_string(doubtful.either) + " of " + std::to_string(records) +
          " records are doubtful: " + std::to_string(doubtful.not_held) + " did not hold their stress (target_held), " +
          std::to_string(doubtful.not_quasi_static) +
@@ -201,7 +242,7 @@ void tell_of_shear(const protocol::Protocol& protocol, const Specimen& specimen)
 void report_run(const protocol::Protocol& protocol, const protocol::TestRun& run, double wall,
                 const std::string& output, bool json) {
   const records::TestResult& result = run.result;
-  const Doubtful doubtful = doubtful_of(result.records);
+  const Doubtful doubtful = doubtful_of(result.records, run.end_state.cell.dimension);
   Listing listing;
   listing.add("protocol", result.protocol);
   if (!result.axis.empty()) {
@@ -215,6 +256,7 @@ void report_run(const protocol::Protocol& protocol, const protocol::TestRun& run
   listing.add("not_quasi_static", doubtful.not_quasi_static);
   listing.add("cell_thin", doubtful.thin);
   if (!result.records.empty()) add_end(protocol, run, listing);
+  add_liquefaction(protocol, run, listing);
   for (const records::ProbeResult& probe : result.probes) {
     const bool only = result.probes.size() == 1;
     listing.add(only ? "stiffness_Pa" : "stiffness_Pa_" + probe.stage, row_major(probe.stiffness), "Pa");
@@ -236,7 +278,10 @@ void run_test(const RunArguments& arguments) {
   const protocol::Protocol protocol =
       protocol::read_protocol(protocol_path(arguments.test.protocol), arguments.test.settings);
   arguments.test.expect_output(arguments.output);
-  const auto given = arguments.specimen.empty() ? std::vector<std::string>{} : std::vector{arguments.specimen};
+  auto words = arguments.specimens;
+  words.insert(words.end(), arguments.more.begin(), arguments.more.end());
+  const auto given = files_of(words), against = files_of(arguments.against);
+  if (given.size() > 1 || !against.empty()) return run_several(arguments, protocol, given, against);
   const auto specimens = specimens_for(protocol, given);
   const Specimen& specimen = specimens.front();
   std::unique_ptr<io::RecordStore> store;
@@ -285,10 +330,14 @@ void run_test(const RunArguments& arguments) {
 Command run_command() {
   Command command{"run", "Run a test, a protocol in TOML, on a specimen"};
   auto& arguments = command.runs(run_test);
-  command.add("--specimen", arguments.specimen,
-              "specimen, or record file: its end state; default: [specimen] file of the protocol");
-  command.add("-o,--output", arguments.output, "record file to write, R.h5");
-  arguments.test.add_to(command, "test.pressure_Pa=2e4", "for specimens of 30,000 grains or more");
+  command.add("--specimen", arguments.specimens,
+              "specimen, or record file: its end state; default: [specimen] file of the protocol;\n"
+              "several of them, or \"S_*.h5\": an ensemble");
+  command.add("--against", arguments.against, "a second group of specimens; prints the differences of the means");
+  command.add("-o,--output", arguments.output,
+              "record file to write, R.h5; of several specimens the folder for records and summary");
+  arguments.test.add_to(command, "test.pressure_Pa=2e4", "for specimens of 30,000 grains or more; tests at a time");
+  command.add("specimens", arguments.more, "further specimens");
   command.notes =
       "A specimen of less than 30,000 grains runs on one thread; `rvelab calibrate --threads` runs several tests at a\n"
       "time. The number of threads changes no bit. Each record is written to R.h5.journal at once, and R.h5 is "
@@ -299,10 +348,15 @@ Command run_command() {
       "The keys peak_... are of the last stage, where sigma_1 - sigma_3 is largest. p: mean stress, compression\n"
       "positive; q: deviatoric stress, sqrt(s:s/2) in 2D, sqrt(3 s:s/2) in 3D; eps_q: deviatoric strain, sqrt(2 e:e)\n"
       "and sqrt(2 e:e/3), with s and e the deviators of stress and strain. More: protocols/README.md.\n"
+      "Several specimens run one to a core; summary.json and summary.csv give mean, standard deviation, standard "
+      "error\n"
+      "and 95 % interval of every measure. --resume after a kill gives the same summary.\n"
       "Examples:\n"
       "  rvelab run biaxial --specimen dense.h5 -o R.h5\n"
       "  rvelab run biaxial --specimen dense.h5 --set stage.compression.to_strain=0.05 --json\n"
-      "  rvelab run biaxial --specimen dense.h5 -o R.h5 --resume";
+      "  rvelab run biaxial --specimen dense.h5 -o R.h5 --resume\n"
+      "  rvelab run biaxial --specimen 'S_*.h5' -o D\n"
+      "  rvelab run biaxial --specimen 'dense_*.h5' --against 'loose_*.h5' -o D";
   return command;
 }
 

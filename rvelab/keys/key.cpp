@@ -5,30 +5,13 @@
 #include <numeric>
 
 #include "rvelab/error.hpp"
+#include "rvelab/keys/edit_distance.hpp"
 #include "rvelab/keys/shortened.hpp"
 #include "rvelab/keys/toml_source.hpp"
 
 namespace rvelab::keys {
 
 namespace {
-
-/// Edit distance times four; letters that the candidate goes on with, such as a unit left out, count one each.
-std::size_t edit_distance(const std::string& word, const std::string& candidate) {
-  std::vector<std::size_t> row(candidate.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= word.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= candidate.size(); ++j) {
-      const std::size_t changed = diagonal + (word[i - 1] == candidate[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({changed, row[j] + 1, row[j - 1] + 1});
-    }
-  }
-  std::size_t least = 4 * row.back();
-  for (std::size_t j = 0; j < candidate.size(); ++j) least = std::min(least, 4 * row[j] + candidate.size() - j);
-  return least;
-}
 
 bool is_assigned(const toml::source_region& place) { return place.path && place.path->starts_with(assignment_prefix); }
 
@@ -69,6 +52,23 @@ toml::table parsed_value(const std::string& text, const std::string& assignment)
 double number_in(const toml::node& node) {
   // toml++ gives no double for a whole number that it would have to round.
   return node.is_integer() ? double(node.as_integer()->get()) : node.as_floating_point()->get();
+}
+
+std::size_t edit_distance(const std::string& word, const std::string& candidate) {
+  std::vector<std::size_t> row(candidate.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= word.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= candidate.size(); ++j) {
+      const std::size_t changed = diagonal + (word[i - 1] == candidate[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({changed, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  std::size_t least = 4 * row.back();
+  for (std::size_t j = 0; j < candidate.size(); ++j) least = std::min(least, 4 * row[j] + candidate.size() - j);
+  return least;
 }
 
 std::string nearest(const std::string& word, const std::vector<std::string>& candidates) {

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "rvelab/error.hpp"
+#include "rvelab/keys/edit_distance.hpp"
 #include "rvelab/keys/key.hpp"
 #include "rvelab/keys/shortened.hpp"
 #include "rvelab/keys/table_reader.hpp"
@@ -122,6 +123,14 @@ std::string nearest_key(const std::string& dotted_key) {
   if (!has_table) {
     const auto same = std::find(names.begin(), names.end(), found);
     return known_keys()[std::size_t(same - names.begin())].dotted();
+  }
+  // A name that is one letter off in another table is meant, where the table itself has nothing as near.
+  const std::string name = dotted.substr(dotted.find('.') + 1);
+  const auto name_of = [](const std::string& key) { return key.substr(key.rfind('.') + 1); };
+  constexpr std::size_t letter = 4;
+  if (edit_distance(name, name_of(found)) > 2 * letter) {
+    for (const Key& key : known_keys())
+      if (edit_distance(name, key.name) <= letter) return key.dotted();
   }
   if (!material.empty() && found.starts_with("material.")) found.insert(9, material + ".");
   return found;

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <sstream>
 
+#include "rvelab/error.hpp"
 #include "rvelab/keys/shortened.hpp"
 
 namespace rvelab::keys {
@@ -74,7 +75,12 @@ std::string wrong_with(const toml::node& value, const Key& key) {
   if (whole && !value.is_integer()) return "is not a whole number" + allowed + "give a whole number, without a point";
   if (!value.is_number()) return "is not a number" + allowed + "give a number";
   if (!std::isfinite(number_in(value))) return "is not finite" + allowed + "give a finite number";
-  return key.interval.contains(number_in(value)) ? "" : "is out of range" + allowed + "give a value in this range";
+  if (key.interval.contains(number_in(value))) return "";
+  const double hundredth = number_in(value) / 100;
+  const bool per_cent =
+      key.unit == "1" && !whole && number_in(value) >= 1 && key.interval.high <= 1 && key.interval.contains(hundredth);
+  return "is out of range" + allowed +
+         (per_cent ? "if per cent was meant, write " + in_words(hundredth) : "give a value in this range");
 }
 
 void expect_top_tables(const toml::table& file, std::vector<KeyError>& errors, const std::vector<std::string>& known) {

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "rvelab/error.hpp"
+#include "rvelab/grains/sieve_grading.hpp"
 #include "rvelab/keys/material_toml.hpp"
 #include "rvelab/keys/table_reader.hpp"
 #include "rvelab/measure/measures.hpp"
@@ -40,11 +41,40 @@ void read_pack(TableReader& reader, RecipeFile& file) {
   reader.choice("share_by", recipe.share_by_mass, {"number", "mass"}, "measure of grains.share");
 }
 
+/// The curve through d10, d50 and d60, which are in mm.
+void read_sieves(TableReader& reader, const std::string& curve, Grading& grading) {
+  const bool given = curve == "d10_d60";
+  const auto d10 =
+      reader.optional_number("d10_mm", "mm", positive, "grading = d10_d60: diameter that 10 % of the mass pass");
+  const auto d50 = reader.optional_number("d50_mm", "mm", positive, "grading = d10_d60: mean diameter, that 50 % pass");
+  const auto d60 = reader.optional_number("d60_mm", "mm", positive,
+                                          "grading = d10_d60: diameter that 60 % pass; d60/d10 is the uniformity");
+  for (const char* name : {"d10_mm", "d50_mm", "d60_mm"}) {
+    if (given)
+      reader.expect(name);
+    else
+      reader.refuse(name, "contradicts grading = " + as_toml(curve) + "; allowed: one of the two; remove one");
+  }
+  if (!given || !d10 || !d50 || !d60) return;
+  const std::string wrong = wrong_with_sieves(1e-3 * *d10, 1e-3 * *d50, 1e-3 * *d60);
+  if (wrong.empty())
+    grading = sieve_grading(1e-3 * *d10, 1e-3 * *d50, 1e-3 * *d60);
+  else
+    reader.mistake("d50_mm", wrong);
+}
+
+/// The names of the gradings; the last is no curve of its own but a table that is made of three diameters.
+enum class GradingName { uniform, linear, tabulated, d10_d60 };
+
 void read_grading(TableReader& reader, Grading& grading) {
-  const Choices curves{"uniform", "linear", "tabulated"};
-  reader.choice("grading", grading.curve, curves,
-                "uniform: passing is linear in the radius; linear: linear in its logarithm; tabulated: given points, "
-                "linear in the radius between them");
+  const Choices curves{"uniform", "linear", "tabulated", "d10_d60"};
+  GradingName curve = GradingName::uniform;
+  reader.choice(
+      "grading", curve, curves,
+      "uniform: passing is linear in the radius; linear: linear in its logarithm; tabulated: given points, "
+      "linear in the radius between them; d10_d60: by mass through d10, d50 and d60, linear in the logarithm");
+  const bool sieves = curve == GradingName::d10_d60;
+  if (!sieves) grading.curve = GradingCurve(curve);
   reader.choice("passing_by", grading.by_mass, {"number", "mass"}, "measure of the passing fraction");
   const auto smallest = reader.optional_number(
       "smallest_radius_m", "m", positive,
@@ -57,11 +87,14 @@ void read_grading(TableReader& reader, Grading& grading) {
   grading.passing =
       reader.numbers("passing", "1", {0, 1},
                      "grading = tabulated: fraction not larger than each radius, 0 first, 1 last", "each 0 to 1");
-  const bool tabulated = grading.curve == GradingCurve::tabulated;
+  const bool tabulated = curve == GradingName::tabulated;
+  if (sieves && reader.has("passing_by") && !grading.by_mass)
+    reader.mistake("passing_by", "contradicts grading = \"d10_d60\"; allowed: mass; remove it");
+  read_sieves(reader, curves[std::size_t(curve)], grading);
   for (const char* name : {"smallest_radius_m", "largest_radius_m", "radii_m", "passing"}) {
     const bool of_table = name[0] == 'r' || name[0] == 'p';
-    if (of_table != tabulated)
-      reader.refuse(name, "contradicts grading = " + as_toml(curves[std::size_t(grading.curve)]) +
+    if (sieves || of_table != tabulated)
+      reader.refuse(name, "contradicts grading = " + as_toml(curves[std::size_t(curve)]) +
                               "; allowed: one of the two; remove one");
     else if (!tabulated)
       reader.expect(name);
@@ -197,6 +230,29 @@ void read_stress(TableReader& reader, RecipeFile& file) {
   }
 }
 
+/// The void ratio of a relative density between the limits of the recipe.
+void read_relative_density(TableReader& reader, Recipe& recipe) {
+  const auto density =
+      reader.optional_number("relative_density", "1", {-1, 2},
+                             "D = (e_max - e)/(e_max - e_min) of the finished specimen, in place of void_ratio");
+  const auto e_min = reader.optional_number(
+      "e_min", "1", {-1, infinity, true, true},
+      "relative_density: void ratio that the recipe reaches with preparation.friction = 0, without a target");
+  const auto e_max =
+      reader.optional_number("e_max", "1", {-1, infinity, true, true},
+                             "relative_density: void ratio that it reaches with preparation.friction = 1e6");
+  if (!density) return;
+  if (recipe.void_ratio)
+    reader.mistake("relative_density", "contradicts target.void_ratio or porosity; allowed: one of them; remove one");
+  if (!e_min || !e_max || !(*e_min < *e_max)) {
+    reader.mistake("relative_density",
+                   "needs target.e_min below target.e_max, the void ratios that the recipe reaches with "
+                   "preparation.friction = 0 and 1e6; allowed: both; pack the two and give them");
+    return;
+  }
+  recipe.void_ratio = *e_max - *density * (*e_max - *e_min);
+}
+
 void read_target(TableReader& reader, RecipeFile& file) {
   Recipe& recipe = file.recipe;
   read_stress(reader, file);
@@ -209,10 +265,11 @@ void read_target(TableReader& reader, RecipeFile& file) {
   if (porosity && recipe.void_ratio)
     reader.mistake("porosity", "contradicts target.void_ratio; allowed: one of the two; remove one");
   if (porosity) recipe.void_ratio = *porosity / (1 - *porosity);
+  read_relative_density(reader, recipe);
   bool stress_named = false;
   for (const char* name : {"pressure_Pa", "pressures_Pa", "stress_Pa"})
     stress_named = stress_named || reader.has(name) || reader.has_in_another_unit(name);
-  if (!stress_named && !recipe.void_ratio && !reader.has("void_ratio"))
+  if (!stress_named && !recipe.void_ratio && !reader.has("void_ratio") && !reader.has("relative_density"))
     reader.mistake("pressure_Pa", "is missing, and so is target.void_ratio; allowed: one of them or both; add one");
   reader.number("void_ratio_tolerance", recipe.void_ratio_tolerance, "1", below_one, "allowed error of the void ratio");
   reader.number("stress_tolerance", recipe.stress_tolerance, "1", below_one,

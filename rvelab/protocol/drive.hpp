@@ -4,8 +4,11 @@
 // that it describes, so that it can resume from any pause.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "rvelab/error.hpp"
@@ -63,7 +66,8 @@ class RunningTest {
     }
   }
   /// Cycles between the strains +-`to_strain`, in `steps` equal parts of each amplitude.
-  /// `driving_stress()` grows with the driving strain.
+  /// `driving_stress(stress)` grows with the driving strain. A turn by stress lies between two of these strains, where
+  /// the stress is reached.
   template <class Increment, class DrivingStress>
   void go_to_and_fro(double to_strain, long steps, const Cycles& cycles, Increment increment_to,
                      DrivingStress driving_stress) {
@@ -74,17 +78,65 @@ class RunningTest {
       if (at.step == 0) {
         record_now(0);
       } else {
-        at.place += forth ? 1 : -1;
-        const double strain = to_strain * double(at.place) / double(steps);
-        record(strain, increment_to(strain));
-        const double along = (forth ? sign : -sign) * driving_stress();
-        const bool by_stress = cycles.reverse_at > 0 && along >= cycles.reverse_at;
+        const double before = run.result.records.back().strain;
+        const double direction = forth ? sign : -sign, spacing = std::abs(to_strain) / double(steps);
+        // After a turn by stress the next strain of the grid is the first that is clearly ahead.
+        do {
+          at.place += forth ? 1 : -1;
+        } while (direction * (grid_strain(to_strain, at.place, steps) - before) < 1e-9 * spacing);
+        const double strain = grid_strain(to_strain, at.place, steps);
         const bool last = at.turns == 2 * cycles.count;
+        if (cycles.reverse_at > 0 && !last) {
+          const auto [reached, report] = approach(before, strain, cycles.reverse_at, increment_to,
+                                                  [&](const Matrix3& s) { return direction * driving_stress(s); });
+          record(reached, report);
+        } else {
+          record(strain, increment_to(strain));
+        }
+        const double along = direction * driving_stress(at.stress);
+        const bool by_stress = cycles.reverse_at > 0 && along >= cycles.reverse_at;
         if (last && (cycles.reverse_at > 0 ? along >= 0 || at.place == steps : at.place == 0)) at.phase = done_phase;
         if (!last && (by_stress || at.place == (forth ? steps : -steps))) ++at.turns;
       }
       step_done();
     }
+  }
+  static double grid_strain(double to_strain, std::int64_t place, long steps) {
+    return to_strain * double(place) / double(steps);
+  }
+  /// From the strain of the last record towards another in as many increments as it takes to pass a stress by less than
+  /// 1 %. Each goes nine tenths of what is lacking at the slope of the one before it, and from 5 % on to 0.4 % beyond;
+  /// the first after a turn, where the slope is not known, goes an eighth of the way. Ends at the strain, or where the
+  /// stress is reached; returns the strain and the report of the last increment.
+  template <class Increment, class Stress>
+  std::pair<double, Report> approach(double from, double to, double reverse_at, Increment increment_to,
+                                     Stress stress_along) {
+    const double way = to - from;
+    const auto part_for = [&](double stress, double slope, double most) {
+      constexpr double shortest = 1.0 / 1024;  // of the way
+      const double lacking = reverse_at - stress;
+      const double wanted = lacking > 0.05 * reverse_at ? 0.9 * lacking : lacking + 0.004 * reverse_at;
+      return slope > 0 ? std::clamp(wanted / slope, shortest, most) : most;
+    };
+    double strain = from, stress = stress_along(run.progress.stress);
+    double part = 0.125;
+    const auto& records = run.result.records;
+    const std::size_t count = records.size();
+    if (run.progress.step > 1 && (from - records[count - 2].strain) * way > 0) {
+      const double slope =
+          (stress - stress_along(records[count - 2].stress)) / (from - records[count - 2].strain) * way;
+      part = part_for(stress, slope, 1);
+    }
+    Report report;
+    do {
+      const double next = part > 0.999 * (to - strain) / way ? to : strain + part * way;
+      report = increment_to(next);
+      const double after = stress_along(run.progress.stress);
+      part = part_for(after, (after - stress) / (next - strain) * way, 2 * part);
+      strain = next;
+      stress = after;
+    } while (strain != to && stress < reverse_at);
+    return {strain, report};
   }
   /// Counts a record of a stage, checks its events, and pauses.
   void step_done();

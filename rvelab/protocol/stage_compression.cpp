@@ -77,10 +77,10 @@ struct Compression : KindOf<CompressionStage> {
       }
       return test.apply(gradient, held, test.time_for(gradient(axis, axis)), test.loading.held_tolerance);
     };
-    drive_strain(test, stage, increment_to, [&] {
-      double axial_less_lateral = -at.stress(axis, axis);
+    drive_strain(test, stage, increment_to, [&](const Matrix3& stress) {
+      double axial_less_lateral = -stress(axis, axis);
       for (int k = 0; k < dimension; ++k) {
-        if (k != axis) axial_less_lateral += at.stress(k, k) / (dimension - 1);
+        if (k != axis) axial_less_lateral += stress(k, k) / (dimension - 1);
       }
       return axial_less_lateral;
     });

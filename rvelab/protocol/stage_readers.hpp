@@ -46,8 +46,8 @@ inline int axis_index(char axis) { return axis - 'x'; }
 /// "-sigma_xx": what messages call a normal stress, compression positive.
 inline std::string normal_stress(int k) { return std::string("-sigma_") + "xyz"[k] + "xyz"[k]; }
 
-/// Goes through the stage: `increment_to(strain)` applies the increment to a record, `driving_stress()` grows with the
-/// driving strain.
+/// Goes through the stage: `increment_to(strain)` applies the increment to a record, `driving_stress(stress)` grows
+/// with the driving strain.
 template <class Settings, class Increment, class DrivingStress>
 void drive_strain(RunningTest& test, const Settings& stage, Increment increment_to, DrivingStress driving_stress) {
   if (stage.cycles.count == 0)

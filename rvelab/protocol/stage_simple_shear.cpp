@@ -11,6 +11,12 @@ using namespace keys;
 
 struct SimpleShear : KindOf<SimpleShearStage> {
   const char* name() const override { return "simple_shear"; }
+  const char* strength_when() const override { return "normal = \"constant_stress\" and without cycles"; }
+
+  StageRole role() const override {
+    const bool drained = stage.normal == SimpleShearStage::Normal::constant_stress && stage.cycles.count == 0;
+    return drained ? StageRole{StageRole::Gives::strength, ""} : StageRole{};
+  }
 
   void read(TableReader& reader, Protocol& protocol) override {
     stage.plane =
@@ -55,7 +61,7 @@ struct SimpleShear : KindOf<SimpleShearStage> {
       return test.apply(gradient, held, test.time_for(gradient(along, normal)), test.loading.held_tolerance);
     };
     drive_strain(test, stage, increment_to,
-                 [&] { return 0.5 * (at.stress(along, normal) + at.stress(normal, along)); });
+                 [&](const Matrix3& stress) { return 0.5 * (stress(along, normal) + stress(normal, along)); });
   }
 };
 

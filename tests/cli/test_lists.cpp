@@ -38,13 +38,15 @@ TEST_CASE("protocols lists the installed ones with what they are, and prints one
   const Workplace here;
   const auto list = nlohmann::json::parse(here.run("protocols --json").output);
   std::size_t sources = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(RVELAB_SOURCE_DIR "/protocols")) {
-    if (entry.path().extension() != ".toml") continue;  // studies, README
-    const std::string name = entry.path().stem().string();
-    CAPTURE(name);
-    CHECK(list.contains(name));
-    CHECK(here.run("protocols " + name).output == bytes_of(entry.path().string()));
-    ++sources;
+  for (const char* folder : {RVELAB_SOURCE_DIR "/protocols", RVELAB_SOURCE_DIR "/protocols/soils"}) {
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+      if (entry.path().extension() != ".toml") continue;  // studies, README
+      const std::string name = entry.path().stem().string();
+      CAPTURE(name);
+      CHECK(list.contains(name));
+      CHECK(here.run("protocols " + name).output == bytes_of(entry.path().string()));
+      ++sources;
+    }
   }
   CHECK(list.size() == sources);
   CHECK(list["biaxial"] == "Drained biaxial compression (2D)");

@@ -208,6 +208,31 @@ TEST_CASE("what contradicts something else is refused by name") {
   CHECK_THAT(message_of(small, {regular, "preparation.first_size=0.3"}), Contains("contradicts method = \"regular\""));
 }
 
+TEST_CASE("a relative density lies between the limits of the recipe, and d10, d50 and d60 make a grading") {
+  const pack::RecipeFile dense =
+      pack::parse_recipe(small, "r.toml", {"target.relative_density=0.75", "target.e_min=0.16", "target.e_max=0.24"});
+  CHECK(*dense.recipe.void_ratio == Approx(0.24 - 0.75 * 0.08));
+  // What was resolved reads as the same recipe again.
+  CHECK(*pack::parse_recipe(dense.resolved, "r.toml").recipe.void_ratio == *dense.recipe.void_ratio);
+  CHECK_THAT(message_of(small, {"target.relative_density=0.75", "target.e_min=0.16"}), Contains("needs target.e_min"));
+  CHECK_THAT(message_of(small, {"target.relative_density=0.7", "target.e_min=0.3", "target.e_max=0.2"}),
+             Contains("needs target.e_min below target.e_max"));
+  CHECK_THAT(message_of(small, {"target.relative_density=0.7", "target.e_min=0.1", "target.e_max=0.2",
+                                "target.void_ratio=0.2"}),
+             Contains("contradicts target.void_ratio"));
+  std::string sieved = small;
+  const auto at = sieved.find("smallest_radius_m"), end = sieved.find("\n", sieved.find("largest_radius_m"));
+  REQUIRE(at < end);
+  sieved.replace(at, end - at, "grading = \"d10_d60\"\nd10_mm = 5\nd50_mm = 7\nd60_mm = 7.6");
+  const auto grains = sieved.find("grading = \"uniform\"\n");
+  if (grains != std::string::npos) sieved.erase(grains, std::string("grading = \"uniform\"\n").size());
+  CHECK(message_of(sieved).empty());
+  CHECK(pack::parse_recipe(sieved, "r.toml").recipe.fractions[0].grading.by_mass);
+  CHECK_THAT(message_of(sieved, {"grains.d50_mm=8"}), Contains("does not lie between d10 and d60"));
+  CHECK_THAT(message_of(sieved, {"grains.passing_by=number"}), Contains("contradicts grading = \"d10_d60\""));
+  CHECK_THAT(message_of(small, {"grains.d50_mm=7"}), Contains("contradicts grading = \"uniform\""));
+}
+
 TEST_CASE("stresses beyond those of any solid, which no packing would come to, are refused") {
   CHECK_THAT(message_of(small, {"target.pressure_Pa=1e16"}), Contains("is out of range; allowed: above 0 to 1e+15 Pa"));
   CHECK_THAT(message_of(small, {"target.pressures_Pa=[1e4, 1e16]"}), Contains("above 0 to 1e+15"));

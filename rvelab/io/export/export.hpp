@@ -60,7 +60,8 @@ void export_lammps_dump(const std::vector<ExportState>& states, const std::strin
 void export_lammps_data(const ExportState& state, const std::string& path);
 
 /// Writes `path` and, beside it, `path`.h5, which the XDMF names relatively: move them together. Laboratory frame, SI
-/// units. A time series whose time is the number of the record; in each state the blocks
+/// units. A time series whose time is the strain of the record, or its number where the strain falls between two states
+/// (cycles, several stages); in each state the blocks
 ///   grains    points in the parallelepiped of the cell vectors: radius_m, id, material, fluctuation velocity and spin
 ///             (0 for quasi-static states, whose velocities are per sub-step), stress_Pa (mean over the grain),
 ///             contacts

@@ -1,6 +1,7 @@
 // States as ParaView reads them: an XDMF file, and beside it an HDF5 file with the arrays. Declared in export.hpp.
 #include "rvelab/io/export/export.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -23,11 +24,10 @@ class Series {
  public:
   Series(Hdf5File& heavy, const std::string& heavy_name) : heavy_(heavy), heavy_name_(heavy_name) {}
 
-  void add(const ExportState& state, std::size_t number) {
+  void add(const ExportState& state, std::size_t number, double time) {
     group_ = "/state_" + std::to_string(number);
     text += "   <Grid Name=\"state " + std::to_string(number) +
-            "\" GridType=\"Collection\" CollectionType=\"Spatial\">\n    <Time Value=\"" +
-            std::to_string(state.record) + "\"/>\n";
+            "\" GridType=\"Collection\" CollectionType=\"Spatial\">\n    <Time Value=\"" + exact(time) + "\"/>\n";
     add_grains(state);
     if (!state.network.contacts.empty()) add_contacts(state);
     add_cell(state);
@@ -190,6 +190,21 @@ std::string escaped(const std::string& name) {
 
 }  // namespace
 
+namespace {
+
+/// The strain where it never falls from state to state; else, of cycles and of several stages, the number of the
+/// record.
+std::vector<double> times_of(const std::vector<ExportState>& states) {
+  std::vector<double> strains, records;
+  for (const ExportState& state : states) {
+    strains.push_back(state.strain);
+    records.push_back(static_cast<double>(state.record));
+  }
+  return std::is_sorted(strains.begin(), strains.end()) && strains.front() < strains.back() ? strains : records;
+}
+
+}  // namespace
+
 void export_xdmf(const std::vector<ExportState>& states, const std::string& path) {
   const std::string heavy_path = path + ".h5";
   std::string text =
@@ -197,7 +212,8 @@ void export_xdmf(const std::vector<ExportState>& states, const std::string& path
       "  <Grid Name=\"rvelab\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
   publish(heavy_path, [&](Hdf5File& heavy) {
     Series series(heavy, escaped(std::filesystem::path(heavy_path).filename().string()));
-    for (std::size_t k = 0; k < states.size(); ++k) series.add(states[k], k);
+    const std::vector<double> times = times_of(states);
+    for (std::size_t k = 0; k < states.size(); ++k) series.add(states[k], k, times[k]);
     text += series.text;
   });
   publish_text(path, text + "  </Grid>\n </Domain>\n</Xdmf>\n");

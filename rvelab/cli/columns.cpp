@@ -1,0 +1,47 @@
+#include "rvelab/cli/columns.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "rvelab/ensemble/statistics.hpp"
+
+namespace rvelab::cli {
+
+std::string aligned(const std::vector<std::vector<std::string>>& rows, std::size_t width) {
+  std::vector<std::size_t> widths;
+  for (const auto& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()));
+    for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], row[k].size());
+  }
+  std::string text;
+  for (std::size_t first = 1, end = 1; first < widths.size() || first == 1; first = end) {
+    std::size_t length = widths.empty() ? 0 : widths[0];
+    while (end < widths.size() && (end == first || length + 2 + widths[end] <= width)) length += 2 + widths[end++];
+    for (const auto& row : rows) {
+      std::string line = row.empty() ? "" : row[0] + std::string(widths[0] - row[0].size(), ' ');
+      for (std::size_t k = first; k < std::min(end, row.size()); ++k)
+        line += "  " + row[k] + std::string(widths[k] - row[k].size(), ' ');
+      text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+    }
+    if (end < widths.size()) text += "\n";
+    if (end == first) break;
+  }
+  return text;
+}
+
+std::string in_digits_of(double value, double error) {
+  const std::string text = ensemble::with_error(value, error);
+  if (!text.starts_with('(')) return text.substr(0, text.find(" +-"));
+  return text.substr(1, text.find(" +-") - 1) + text.substr(text.find(')') + 1);
+}
+
+std::string two_digits(double value) {
+  if (!std::isfinite(value)) return "-";
+  std::ostringstream text;
+  text.precision(2);
+  text << value;
+  return text.str();
+}
+
+}  // namespace rvelab::cli

@@ -1,0 +1,29 @@
+// Targets as independent components: the points of a curve go together, so that each curve is described by the few
+// principal components in which the tests differ.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "rvelab/fit/search.hpp"
+
+namespace rvelab::fit {
+
+class Components {
+ public:
+  /// `values`: one row a test, one column a target. A curve gets the components that hold 99 % of the variance of its
+  /// points over all tests, at most `parameters` + 2.
+  Components(const std::vector<Target>& targets, const Eigen::MatrixXd& values, Eigen::Index parameters);
+
+  Eigen::MatrixXd of(const Eigen::MatrixXd& values) const;    ///< one column a component
+  Eigen::MatrixXd back(const Eigen::MatrixXd& scores) const;  ///< one column a target, without what was left out
+  const Eigen::VectorXd& target() const { return target_; }
+  /// Standard errors. Of a curve: as if the errors of all its points were the largest together.
+  const Eigen::VectorXd& error() const { return error_; }
+
+ private:
+  Eigen::MatrixXd directions_;  ///< one column a component; orthonormal in the scaled targets
+  Eigen::VectorXd shift_, scale_, target_, error_;
+};
+
+}  // namespace rvelab::fit

@@ -1,0 +1,60 @@
+// The search for parameters whose tests give what was measured.
+//
+// Tests scatter, so each is one observation of the surrogates (surrogate.hpp); the search makes tests where the
+// parameters are likely, and ends with a sample of their posterior. It knows no test and no file: `run` makes them.
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace rvelab::fit {
+
+/// A quantity that the tests give and that was measured.
+struct Target {
+  std::string name;
+  double value = 0;
+  double error = 0;  ///< standard error of the value; 0: exact
+  int curve = -1;    ///< targets of one number >= 0 are points of one curve, whose errors go together
+};
+
+struct Problem {
+  Eigen::Index parameters = 0;
+  std::vector<Target> targets;
+  std::size_t specimens = 1;
+  std::size_t tests = 0;       ///< to spend
+  std::size_t batch = 8;       ///< tests at a time, whatever the number of threads
+  Eigen::Index sample = 1000;  ///< places of the posterior sample
+};
+
+/// A test to make: its place in the unit cube of the parameters, and its specimen.
+struct Trial {
+  std::size_t number = 0;  ///< from 0
+  Eigen::VectorXd place;
+  std::size_t specimen = 0;
+};
+
+/// What it gave, in the order of the targets; empty: it could not be carried out.
+using Answer = std::vector<double>;
+
+using RunTrials = std::function<std::vector<Answer>(const std::vector<Trial>&)>;
+
+struct Finding {
+  std::vector<Trial> trials;
+  std::vector<Answer> answers;
+  Eigen::MatrixXd sample;     ///< places of the posterior, one a row
+  Eigen::MatrixXd predicted;  ///< mean of the tests at each of them, one column a target
+  double misfit = 0;          ///< root of the mean squared error of the best place over its standard deviation; above
+                              ///< about 2 no parameters in their ranges give the targets
+  double widening = 1;        ///< of the standard errors, where the targets contradict each other
+};
+
+/// Spends the tests and samples the posterior, of a prior that is uniform over the unit cube. Same problem and answers,
+/// same bits. Error if so many tests fail that too few are left.
+Finding search(const Problem& problem, const RunTrials& run);
+
+/// Tests that are spent without another number: 24 and 16 for each parameter.
+std::size_t usual_tests(Eigen::Index parameters);
+
+}  // namespace rvelab::fit

@@ -1,0 +1,125 @@
+// rvelab fit as a user runs it: a target, a measured curve, a sweep; stopped and resumed; mistakes.
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/program.hpp"
+
+using namespace rvelab::test;
+using Catch::Matchers::Contains;
+
+namespace {
+
+constexpr const char* brief = " --set stage.compression.to_strain=0.002 --set test.pressure_Pa=20e3 ";
+constexpr const char* stiffness = " --vary material.young_modulus_Pa=2e8:3.2e9:log ";
+
+Workplace& with_packings(Workplace& here) {
+  here.import_packing("dense_p20", "S_a.h5");
+  here.import_packing("medium_p20", "S_b.h5");
+  return here;
+}
+
+}  // namespace
+
+TEST_CASE("A fit finds the stiffness of the grains that a modulus was measured with, and goes on after a stop") {
+  Workplace place;
+  const Workplace& here = with_packings(place);
+  // The truth: E = 800 MPa, as the specimens have it.
+  const auto known =
+      nlohmann::json::parse(here.run(std::string("run biaxial --specimen S_a.h5 S_b.h5 --json") + brief).output);
+  double modulus = 0;
+  for (const auto& test : known["tests"]) modulus += test["E50_Pa"].get<double>() / 2;
+  const std::string fit = std::string("fit biaxial --specimen 'S_*.h5' --tests 16 --target E50_Pa=") +
+                          std::to_string(modulus) + stiffness + brief;
+  const Outcome outcome = here.run(fit + "-o F");
+  INFO(outcome.errors);
+  REQUIRE(outcome.code == 0);
+  CHECK_THAT(outcome.output,
+             Contains("material.young_modulus_Pa") && Contains("95 % interval") && Contains("tests   16"));
+  const auto found = nlohmann::json::parse(bytes_of(here / "F/fit.json"));
+  CHECK(found["parameters"][0]["low_95"].get<double>() <= 8e8);
+  CHECK(found["parameters"][0]["high_95"].get<double>() >= 8e8);
+  CHECK(found["parameters"][0]["high_95"].get<double>() < 3.2e9);
+  CHECK(found["tests"].size() == 16);
+  const std::string csv = bytes_of(here / "F/fit.csv");
+  CHECK(std::count(csv.begin(), csv.end(), '\n') == 17);
+  // Some tests are missing, as after a kill: they are made again, and nothing else changes.
+  std::filesystem::copy(here / "F", here / "G", std::filesystem::copy_options::recursive);
+  for (const char* name : {"G/fit.json", "G/fit.csv", "G/tests/0003.json", "G/tests/0016.json"})
+    std::filesystem::remove(here / name);
+  REQUIRE(here.run(fit + "-o G --resume --threads 2").code == 0);
+  CHECK(bytes_of(here / "G/fit.json") == bytes_of(here / "F/fit.json"));
+  expect_mistake(here.run(fit + "-o F"), "--resume");
+  expect_mistake(here.run(fit + "-o F --resume --set material.friction=0.3"), "is of another fit");
+}
+
+TEST_CASE("A measured curve is fitted, and the fit over the data is written and drawn") {
+  Workplace place;
+  const Workplace& here = with_packings(place);
+  here.write("data.csv",
+             "axial_strain_percent,deviator_kPa,deviator_kPa_error\n0.05,4,1\n0.1,7,1\n0.15,9,1\n0.2,11,1\n");
+  const Outcome outcome =
+      here.run(std::string("fit biaxial --specimen 'S_*.h5' --tests 10 --curve data.csv -o F") + stiffness + brief);
+  INFO(outcome.errors);
+  REQUIRE(outcome.code == 0);
+  const std::string csv = bytes_of(here / "F/curves.csv");
+  CHECK_THAT(csv, Contains("curve,pressure_Pa,quantity,abscissa,x,measured,error,fit,low_95,high_95\n") &&
+                      Contains("1,0,deviator,strain,5e-04,4000,1000,"));
+  CHECK(std::count(csv.begin(), csv.end(), '\n') == 5);
+}
+
+TEST_CASE("A sweep gives every combination on every specimen, as a table and as CSV") {
+  Workplace place;
+  const Workplace& here = with_packings(place);
+  const Outcome outcome = here.run(std::string("fit biaxial --specimen 'S_*.h5' --vary material.friction=0.2:0.6:2 "
+                                               "--vary material.young_modulus_Pa=4e8:8e8:2 -o F") +
+                                   brief);
+  INFO(outcome.errors);
+  REQUIRE(outcome.code == 0);
+  const std::string csv = bytes_of(here / "F/sweep.csv");
+  CHECK_THAT(csv, Contains("material.friction,material.young_modulus_Pa,friction_angle_deg,") &&
+                      Contains("\n0.2,8e+08,") && Contains("\n0.6,4e+08,"));
+  CHECK(std::count(csv.begin(), csv.end(), '\n') == 5);
+  // One point of it is what a run gives.
+  const auto run = nlohmann::json::parse(
+      here.run(std::string("run biaxial --specimen S_a.h5 S_b.h5 --set material.friction=0.6 --json "
+                           "--set material.young_modulus_Pa=4e8") +
+               brief)
+          .output);
+  const double mean =
+      (run["tests"][0]["friction_angle_deg"].get<double>() + run["tests"][1]["friction_angle_deg"].get<double>()) / 2;
+  std::istringstream row(csv.substr(csv.find("\n0.6,4e+08,") + 11));
+  double found = 0;
+  row >> found;
+  CHECK(found == Approx(mean));
+}
+
+TEST_CASE("A recipe packs a specimen for each test, and its keys may be varied") {
+  const Workplace here;
+  const Outcome outcome = here.run(
+      "fit biaxial --recipe pack_dense --count 2 --set pack.number=30 --set target.void_ratio_tolerance=0.02 "
+      "--set stage.compression.to_strain=0.001 --set test.pressure_Pa=100e3 --vary target.void_ratio=0.2:0.24:2 "
+      "--json");
+  INFO(outcome.errors);
+  REQUIRE(outcome.code == 0);
+  const auto sweep = nlohmann::json::parse(outcome.output)["sweep"];
+  REQUIRE(sweep.size() == 2);
+  CHECK(sweep[0]["start_void_ratio"]["mean"].get<double>() == Approx(0.2).margin(0.025));
+  CHECK(sweep[1]["start_void_ratio"]["mean"].get<double>() == Approx(0.24).margin(0.025));
+}
+
+TEST_CASE("Mistakes of a fit are told before any test") {
+  Workplace place;
+  const Workplace& here = with_packings(place);
+  const std::string fit = "fit biaxial --specimen S_a.h5 ";
+  expect_mistake(here.run(fit + "--target friction_angle_deg=30"), "nothing is varied");
+  expect_mistake(here.run(fit + "--vary material.friction=0.1:1"), "no number of values");
+  expect_mistake(here.run(fit + "--target friction_angle_deg=30 --vary material.friction=0.1:1:5"), "without a target");
+  expect_mistake(here.run(fit + "--target friction_angle_deg=30 --vary material.frction=0.1:1"),
+                 "the nearest known key is material.friction");
+  expect_mistake(here.run(fit + "--target friction_angle_deg=30 --vary target.void_ratio=0.2:0.3"), "--recipe");
+  expect_mistake(here.run("fit biaxial --vary material.friction=0.1:1 --target friction_angle_deg=30"),
+                 "no specimen is given");
+  expect_mistake(here.run(fit + "--recipe pack_dense --vary material.friction=0.1:1 --target friction_angle_deg=30"),
+                 "--recipe and --specimen are both given");
+  expect_mistake(here.run(fit + "--target angle=30 --vary material.friction=0.1:1"), "the nearest is");
+  expect_mistake(here.run(fit + "--curve none.csv --vary material.friction=0.1:1"), "none.csv: no such file");
+}

@@ -1,0 +1,99 @@
+// What the command line and a CSV file say of a fit.
+#include <cmath>
+
+#include "rvelab/error.hpp"
+#include "rvelab/fit/curve.hpp"
+#include "rvelab/fit/parameters.hpp"
+#include "tests/catch.hpp"
+
+using namespace rvelab;
+using Catch::Matchers::Contains;
+
+namespace {
+
+template <class Read>
+std::string message_of(Read read) {
+  try {
+    read();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("A varied key has a range, steps in its logarithm where asked, and values of a sweep") {
+  const fit::Parameter plain = fit::parsed_parameter("material.friction=0.1:0.9");
+  CHECK(plain.value(0.5) == Approx(0.5));
+  CHECK(plain.grid == 0);
+  const fit::Parameter steps = fit::parsed_parameter("material.young_modulus_Pa=1e7:1e9:5:log");
+  CHECK(steps.value(0.5) == Approx(1e8));
+  CHECK(steps.grid == 5);
+  CHECK(plain.assignment(0.1) == "material.friction=0.1");
+  for (const std::string wrong :
+       {"friction", "a.b=1", "a.b=2:1", "a.b=0:1:log", "a.b=x:1", "a.b=0:1:1.5", "a.b=0:1:2:3"})
+    CHECK_THAT(message_of([&] { fit::parsed_parameter(wrong); }), Contains("--vary " + wrong) && Contains("allowed"));
+}
+
+TEST_CASE("A target has a measure that tests give, a value, and where known its error and its pressure") {
+  const fit::ScalarTarget found = fit::parsed_target("friction_angle_deg@50e3=30+-0.5");
+  CHECK(found.measure == "friction_angle_deg");
+  CHECK(found.pressure == 50e3);
+  CHECK(found.value == 30);
+  CHECK(found.error == 0.5);
+  CHECK(fit::parsed_target("dilation_angle_deg=-2").value == -2);
+  CHECK_THAT(message_of([] { fit::parsed_target("friction_angle=30"); }),
+             Contains("the nearest is friction_angle_deg"));
+  for (const std::string wrong :
+       {"friction_angle_deg", "friction_angle_deg=a", "friction_angle_deg=1+--2", "friction_angle_deg@0=1"})
+    CHECK_THAT(message_of([&] { fit::parsed_target(wrong); }), Contains("--target " + wrong) && Contains("allowed"));
+}
+
+TEST_CASE("A measured curve is read with its units and brought to few abscissae") {
+  std::string text = "# drained\naxial_strain_percent, deviator_kPa, deviator_kPa_error, volumetric_strain_percent\n";
+  for (int k = 0; k <= 40; ++k)
+    text += std::to_string(0.25 * k) + "," + std::to_string(10.0 * k) + ",2," + std::to_string(-0.05 * k) + "\n";
+  const auto curves = fit::parsed_curves(text, "d.csv");
+  REQUIRE(curves.size() == 2);
+  CHECK(curves[0].name == "deviator");
+  CHECK(curves[0].x.size() == fit::most_points);
+  CHECK(curves[0].x.back() == Approx(0.1));
+  for (std::size_t k = 0; k < fit::most_points; ++k) {
+    CHECK(curves[0].y[k] == Approx(4e6 * curves[0].x[k]));
+    CHECK(curves[0].error[k] == Approx(2e3));
+    CHECK(curves[1].y[k] == Approx(-0.2 * curves[1].x[k]).margin(1e-15));
+    CHECK(curves[1].error[k] == 0);
+  }
+  const auto refused = [](const std::string& csv) { return message_of([&] { fit::parsed_curves(csv, "d.csv"); }); };
+  CHECK_THAT(refused("strain,q_over_p\n0,0\n1,1\n"), Contains("d.csv") && Contains("axial_strain_percent"));
+  CHECK_THAT(refused("axial_strain,q\n0,0\n1,1\n"), Contains("\"q\" is not known") && Contains("deviator_kPa"));
+  CHECK_THAT(refused("axial_strain,q_over_p\n0,0\n0,1\n"), Contains("does not rise"));
+  CHECK_THAT(refused("axial_strain,q_over_p\n0,0\n1,a\n"), Contains("d.csv:3") && Contains("is no number"));
+  CHECK_THAT(refused("axial_strain,q_over_p\n0,0\n1\n"), Contains("1 values; allowed: 2"));
+  CHECK_THAT(refused("axial_strain,q_over_p\n0,0\n"), Contains("at least 2"));
+}
+
+TEST_CASE("The curve of a test is that of its last stage, between its records and not beyond them") {
+  records::TestResult test;
+  for (int k = 0; k <= 10; ++k) {
+    records::Record record;
+    record.stage = 1;
+    record.strain = 0.01 * k;
+    record.stress(0, 0) = -1e4;
+    record.stress(1, 1) = -1e4 - 2e5 * record.strain;
+    record.deformation_gradient(1, 1) = 1 - record.strain;
+    record.void_ratio = 0.2 - record.strain;
+    test.records.push_back(record);
+  }
+  const fit::Curve like{"deviator", "strain", {0.005, 0.095, 0.2}, {0, 0, 0}, {0, 0, 0}};
+  const auto found = fit::curve_of(test, 2, like);
+  CHECK(found[0] == Approx(1e3));
+  CHECK(found[1] == Approx(19e3));
+  CHECK(std::isnan(found[2]));
+  // e over log p: p = 1e4 + 1e5 strain; straight in the logarithm between two records.
+  const double p = std::sqrt(12e3 * 13e3);
+  const auto e = fit::curve_of(test, 2, {"void_ratio", "p", {p}, {0}, {0}});
+  CHECK(e[0] == Approx(0.2 - 0.025));
+  CHECK(fit::targets_of(like, 3)[1].curve == 3);
+}
