@@ -7,8 +7,8 @@
 namespace rvelab {
 namespace {
 
-/// Ratio of the diameters at both ends of a tenth of the mass, of which there are five from d10 to d60: (d60/d10)^(1/5),
-/// by Newton's method.
+/// Ratio of the diameters at both ends of a tenth of the mass, of which there are five from d10 to d60:
+/// (d60/d10)^(1/5), by Newton's method.
 double ratio_per_tenth(double a) {
   double x = a > 1 ? a : 1;
   for (int round = 0; round < 200; ++round) x = (4 * x + a / (x * x * x * x)) / 5;
