@@ -34,7 +34,7 @@ namespace {
 struct CalibrateArguments {
   std::string folder;
   std::optional<std::string> pressures;
-  std::vector<std::string> specimens;
+  std::vector<std::string> specimens, more;
   bool every_pressure = false;
   TestOptions test;
 };
@@ -283,7 +283,9 @@ void run_calibration(const CalibrateArguments& arguments) {
   const auto begin = std::chrono::steady_clock::now();
   const auto at_pressures = protocols_at(arguments);
   arguments.test.expect_output(arguments.folder);
-  const auto given = files_of(arguments.specimens);
+  auto words = arguments.specimens;
+  words.insert(words.end(), arguments.more.begin(), arguments.more.end());
+  const auto given = files_of(words);
   const auto specimens = specimens_for(at_pressures.front(), given);
   if (arguments.every_pressure || at_pressures.size() == 1) expect_different(specimens, given);
   const Plan plan = plan_of(at_pressures, specimens, arguments.every_pressure);
@@ -344,6 +346,7 @@ Command calibrate_command() {
   command.add("-o,--output", arguments.folder,
               "folder for the record files R_<pressure>.h5, summary.json and\nsummary.csv; made if it is missing");
   arguments.test.add_to(command, "contact.slip=consistent", "tests at a time");
+  command.add("specimens", arguments.more, "further specimens");
   command.notes =
       "friction_angle: phi with sin phi = (sigma_1 - sigma_3)/(sigma_1 + sigma_3) at the peak, the record with the\n"
       "largest sigma_1 - sigma_3; over several tests by least squares through the origin.\n"

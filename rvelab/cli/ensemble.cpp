@@ -176,10 +176,9 @@ void run_ensemble(const Ensemble& ensemble, const std::string& folder, const Tes
     if (!outcome.failures[k].empty()) failures.push_back(outcome.failures[k]);
   }
   if (finished.size() + failures.size() < tests.size()) {
-    tell("stopped by " + signal_name() + " with " + std::to_string(finished.size()) + " of " +
-         std::to_string(tests.size()) + " tests complete; " +
-         (folder.empty() ? "their records are not kept without -o" : "continue with --resume"));
-    throw Exit(128 + signal_received());
+    end_stopped(" with " + std::to_string(finished.size()) + " of " + std::to_string(tests.size()) +
+                " tests complete; " +
+                (folder.empty() ? "their records are not kept without -o" : "continue with --resume"));
   }
   const ensemble::Summary summary = ensemble::summary_of(finished);
   if (!folder.empty()) write_summary(folder, ensemble, finished, summary, failures);

@@ -8,7 +8,6 @@
 #include <optional>
 #include <thread>
 
-#include "rvelab/cli/command.hpp"
 #include "rvelab/cli/interrupt.hpp"
 #include "rvelab/cli/progress_line.hpp"
 #include "rvelab/error.hpp"
@@ -183,9 +182,8 @@ std::vector<FitResult> made(const FitSetup& setup, const std::vector<FitTest>& t
   std::vector<FitResult> found;
   for (auto& result : results) {
     if (!result) {
-      tell("stopped by " + signal_name() + "; " +
-           (folder.empty() ? "the tests are not kept without -o" : "continue with --resume"));
-      throw Exit(128 + signal_received());
+      end_stopped(std::string("; ") +
+                  (folder.empty() ? "the tests are not kept without -o" : "continue with --resume"));
     }
     found.push_back(std::move(*result));
   }

@@ -94,7 +94,7 @@ TEST_CASE("A calibration keeps the summary of its specimens beside its records")
   Workplace place;
   const Workplace& here = with_packings(place);
   const Outcome outcome = here.run(
-      "calibrate biaxial --specimen 'S_*.h5' --every-pressure --pressures 15e3,20e3 -o D "
+      "calibrate biaxial --specimen S_a.h5 S_b.h5 S_c.h5 --every-pressure --pressures 15e3,20e3 -o D "
       "--set stage.compression.to_strain=0.01");
   INFO(outcome.errors);
   REQUIRE(outcome.code == 0);
