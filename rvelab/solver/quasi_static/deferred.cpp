@@ -33,7 +33,7 @@ bool may_defer(State& s, const FrameSplit& increment) {
   if (!(change.cwiseProduct(control.last_rate).sum() > along_path * strain * control.last_rate.norm())) return false;
   const double network = network_change(s, control.strain_since_reversal);
   if (was_coarser(s, network)) return false;
-  return extrapolated(s, stretch).error <= share_of_extrapolation * allowed_by_tolerances(s, 0, network);
+  return extrapolated(s, stretch).error <= share_of_extrapolation * allowed_on_path(s, network);
 }
 
 Report defer(State& s, const FrameSplit& increment) {
