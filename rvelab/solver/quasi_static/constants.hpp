@@ -153,7 +153,7 @@ constexpr double met_margin = 2;
 
 /// Of the allowed error, for the extrapolation: a biaxial path of 1 % in pieces of 1e-7 takes 13,697 sub-steps (0.1:
 /// 36,091), in pieces of 1e-4 10,641.
-constexpr double share_of_extrapolation = 0.3;
+constexpr double share_of_extrapolation = 0.5;
 /// The slope of the stress holds within acos(0.99) = 8 degrees of the path. Its error is twice its last change,
 /// remembered with a factor, since slips come in rows: 99.5 % of 33,000 stresses to 6 % of strain lay within (once,
 /// none: 94 %).

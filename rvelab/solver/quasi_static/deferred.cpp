@@ -39,8 +39,7 @@ bool may_defer(State& s, const FrameSplit& increment) {
 Report defer(State& s, const FrameSplit& increment) {
   const SolverState& control = s.control();
   const Matrix3 before = extrapolated(s, control.deferred_stretch).stress;
-  s.set_deferred(increment.stretch * control.deferred_stretch);
-  s.turn(increment.rotation);
+  s.defer(increment.stretch * control.deferred_stretch, increment.rotation);
   Report report;
   report.unbalanced_ratio = control.unbalanced_ratio;
   judge_equilibrium(s, report);

@@ -87,6 +87,8 @@ class State {
   /// Strain that is applied but left to the next sub-step (quasi_static/deferred.hpp).
   bool has_deferred() const { return !(control().deferred_stretch.array() == Matrix3::Identity().array()).all(); }
   void set_deferred(const Matrix3& stretch);
+  /// The same while the frame turns.
+  void defer(const Matrix3& stretch, const Matrix3& frame_rotation);
   /// The cell with it.
   const Cell& strained_cell() const { return has_deferred() ? strained_cell_ : cell(); }
 
