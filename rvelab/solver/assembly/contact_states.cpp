@@ -143,10 +143,9 @@ Held held_by(const Model& f, const PairTable& pairs, std::size_t p, const Place&
 
 // A first increment asks for it, which may be of four sub-steps: with whole contact states it took more than two.
 template <Shape shape, class Force>
-ConstraintRatio constraints_over_motions(const Model& f, const Assembly& a) {
+double constraints_over_motions(const Model& f, const Assembly& a) {
   const PairGeometry<shape> pair(f, a);
   const int d = f.dimension(), turns = d == 2 ? 1 : 3;
-  const double* radius = f.radius.data();
   std::vector<int> contacts(f.size(), 0);
   std::vector<std::int32_t> touching;
   touching.reserve(a.pairs.order.size());
@@ -157,7 +156,7 @@ ConstraintRatio constraints_over_motions(const Model& f, const Assembly& a) {
     ++contacts[std::size_t(a.pairs.i[p])];
     ++contacts[std::size_t(a.pairs.j[p])];
   }
-  double constraints = 0, firm = 0, grip = 0, friction = 0, held = grip_of(friction);
+  double constraints = 0, grip = 0, friction = 0, held = grip_of(friction);
   long counted = 0;
   for (const std::int32_t place : touching) {
     const auto p = std::size_t(place);
@@ -167,20 +166,15 @@ ConstraintRatio constraints_over_motions(const Model& f, const Assembly& a) {
       friction = a.pairs.friction[p];
       held = grip_of(friction);
     }
-    const double slip = 1 + (by.slides ? 0 : (d - 1) * held);
-    constraints += slip + (by.rolls ? 0 : (d - 1) * held);
-    firm += slip;
-    if (!by.rolls)
-      firm += (d - 1) * grip_of(a.pairs.moment_cap[p] / std::min(radius[a.pairs.i[p]], radius[a.pairs.j[p]]));
+    constraints += 1 + (by.slides ? 0 : (d - 1) * held) + (by.rolls ? 0 : (d - 1) * held);
     grip += held;
     ++counted;
   }
-  if (counted == 0) return {};
+  if (counted == 0) return 0;
   // Round grains that nothing grips turn as they like.
   const double turning = f.round() ? grip / double(counted) : 1;
   const auto grains = std::count_if(contacts.begin(), contacts.end(), [](int n) { return n >= 2; });
-  const double motions = double(grains) * (d + turns * turning);
-  return {constraints / motions, firm / motions};
+  return constraints / (double(grains) * (d + turns * turning));
 }
 
 }  // namespace
@@ -218,7 +212,7 @@ double grip_of(double friction) {
   return friction / (friction + half);
 }
 
-ConstraintRatio constraint_ratio(const Model& f, const Assembly& a) {
+double constraint_ratio(const Model& f, const Assembly& a) {
   return with_force(f, [&](auto force) {
     return with_shape(f.shape,
                       [&](auto shape) { return constraints_over_motions<shape.value, decltype(force)>(f, a); });

@@ -13,12 +13,8 @@ Network network_of(const Model& model, const Assembly& assembly);
 /// Constraints of the contacts over degrees of freedom of the grains that two of them hold at least (1: isostatic). A
 /// contact gives 1, d - 1 more if it sticks and d - 1 more if it rolls below its limit, both times grip_of its
 /// friction. A grain has d translations, and its rotations times the mean grip (all of them if not round). 0 without
-/// contacts. `firm`: where a contact that rolls counts by grip_of its rolling friction instead: a rolling spring that
-/// yields at once holds as little as a contact of little friction.
-struct ConstraintRatio {
-  double usual = 0, firm = 0;
-};
-ConstraintRatio constraint_ratio(const Model& model, const Assembly& assembly);
+/// contacts.
+double constraint_ratio(const Model& model, const Assembly& assembly);
 
 /// What a contact of this friction that sticks holds across its normal, in constraints: mu/(mu + 0.15), none without
 /// friction and one for each direction with much of it, so that nothing jumps where friction begins: at rest packings

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "rvelab/solver/assembly/contact_states.hpp"
 #include "rvelab/solver/assembly/contact_stiffness.hpp"
 #include "rvelab/solver/assembly/gather_table.hpp"
 #include "rvelab/solver/assembly/pair_geometry.hpp"
@@ -92,13 +93,16 @@ double typical_normal_force(const Model& f, double overlap) {
 }
 
 void set_typical_answers(Model& f) {
-  f.softest_answer = 1;
+  f.softest_answer = f.firm_share = 1;
   const auto [one, radius] = typical_pair(f);
   const double overlap = 1e-3 * radius;
   const ContactStiffness k = stiffness_of(f, one, overlap);
   const double force = typical_normal_force(f, overlap);
   f.hardening = force > 0 ? std::clamp(k.normal * overlap / force, 1.0, 3.0) : 1;
   if (!f.contact.rolling) return;
+  const int d = f.dimension();
+  const double grip = grip_of(one.friction), rolling_grip = grip_of(one.moment_cap / radius);
+  f.firm_share = (1 + (d - 1) * (grip + rolling_grip)) / (1 + 2 * (d - 1) * grip);
   const double slip = 4 * k.tangential * radius * radius;
   if (slip > 0) f.softest_answer = std::sqrt(slip / (slip + 2 * k.rolling));
 }
@@ -224,17 +228,13 @@ struct Firmness {
   std::vector<double> translation, rotation;
   std::size_t count = 0;  ///< of contacts so far
 
-  void expect(std::size_t contacts) {
-    translation.resize(contacts);
-    rotation.resize(contacts);
-  }
+  void expect(std::size_t contacts) { translation.resize(contacts), rotation.resize(contacts); }
   template <int D>
   inline __attribute__((always_inline)) void add(const PairTerms<D>& t, double ri, double rj) {
     if (!t.touching) return;
     translation[count] = t.firm_translation;
     rotation[count++] = 4 * t.firm.tangential + 2 * t.firm.rolling / std::min(ri * ri, rj * rj);
   }
-  void finish() { expect(count); }
 };
 
 /// Sums of all grains. Each pair is visited once; by a team once for each of its grains, so that threads share
@@ -255,7 +255,7 @@ std::vector<GrainSums<dimension_of(shape)>> sums_of_grains(const Model& f, const
       add<shape>(f, t, j, true, sums[j]);
       firmness.add(t, radius[i], radius[j]);
     }
-    firmness.finish();
+    firmness.expect(firmness.count);
     return sums;
   }
   std::vector<Firmness> of_piece(pieces_in(f.size()));
@@ -271,7 +271,7 @@ std::vector<GrainSums<dimension_of(shape)>> sums_of_grains(const Model& f, const
       if (own.count == own.translation.size()) own.expect(2 * own.count + 64);
       own.add(t, radius[std::size_t(grain_i[p])], radius[std::size_t(grain_j[p])]);
     });
-    own.finish();
+    own.expect(own.count);
   });
   for (const Firmness& piece : of_piece) {
     firmness.translation.insert(firmness.translation.end(), piece.translation.begin(), piece.translation.end());

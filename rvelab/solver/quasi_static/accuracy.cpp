@@ -28,8 +28,8 @@ double error_per_unbalance(double stiffness_ratio, double constraint_ratio, doub
   return damped * std::max(soft, hyperstatic_factor + isostatic_factor / (1 + isostatic_width * beyond * beyond));
 }
 
-double error_per_unbalance_of_start(double firm_constraint_ratio) {
-  const double beyond = std::max(firm_constraint_ratio, 1.0) - 1;
+double error_per_unbalance_of_start(double constraint_ratio) {
+  const double beyond = std::max(constraint_ratio, 1.0) - 1;
   return firm_factor_of_start + isostatic_factor_of_start / (1 + isostatic_width * beyond * beyond);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rvelab/solver/assembly/contact_states.hpp"
 #include "rvelab/solver/quasi_static/accuracy.hpp"
 #include "rvelab/solver/quasi_static/error_model.hpp"
 
@@ -19,7 +20,7 @@ EquilibriumCheck::EquilibriumCheck(State& state) : state_(state) {
   control.network_stiffness_ratio = 1;
   control.lag_factor = control.lag_strain = 0;
   control.lag_steps = control.rest_steps = 0;
-  control.constraint_ratio = state_.constraint_ratio().usual;
+  control.constraint_ratio = constraint_ratio(state_.model(), state_.assembly());
   begin_interval();
 }
 

@@ -45,7 +45,7 @@ Report defer(State& s, const FrameSplit& increment) {
   judge_equilibrium(s, report);
   const Extrapolated after = extrapolated(s, control.deferred_stretch);
   estimate_error(s, network_change(s, control.strain_since_reversal), s.stress() + before - after.stress,
-                 {0, control.unbalanced_ratio, after.error}, report);
+                 {0, control.unbalanced_ratio, 0, after.error}, report);
   return report;
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "rvelab/cell/pressure.hpp"
+#include "rvelab/solver/assembly/contact_states.hpp"
 #include "rvelab/solver/quasi_static/accuracy.hpp"
 
 namespace rvelab {
@@ -49,7 +50,9 @@ double target_ratio(State& s, double network) {
   return std::clamp(allowed_on_path(s, network) / (step_margin * expected_error(s, 1)), least_target, largest_target);
 }
 
-double error_factor_of_start(State& s) { return error_per_unbalance_of_start(s.constraint_ratio().firm); }
+double error_factor_of_start(const State& s) {
+  return error_per_unbalance_of_start(s.model().firm_share * s.control().constraint_ratio);
+}
 
 double target_ratio_of_start(State& s, double network, double factor) {
   return std::clamp(allowed_on_path(s, network) / (start_margin * factor * pressure_scale(s)), least_target,
@@ -82,10 +85,10 @@ bool can_measure_lag(State& s) {
   return by_tolerance(s) && s.ratio_is_measured() && s.control().unbalanced_ratio > 0 && pressure(s) > 0;
 }
 
-bool lag_is_due(State& s, long substeps) {
+bool lag_is_due(State& s, long substeps, long least) {
   const SolverState& control = s.control();
   const bool old = control.lag_steps >= rest_period;
-  if (!(old || substeps >= least_increment) || !can_measure_lag(s)) return false;
+  if (!(old || substeps >= least) || !can_measure_lag(s)) return false;
   const double strain = control.lag_strain >= slow_mark ? control.lag_strain - slow_mark : control.lag_strain;
   return old || control.lag_factor == 0 || (control.lag_steps >= changed_period && strain > overlap_strain(s));
 }
@@ -110,7 +113,7 @@ void measure_lag(State& s) {
   control.lag_steps = 0;
   // A change that grows with time is the beginning of a slow one: estimate_error takes it for that.
   control.lag_strain = changes[1] > slow_growth * changes[0] ? slow_mark : 0;
-  control.constraint_ratio = s.constraint_ratio().usual;
+  control.constraint_ratio = constraint_ratio(s.model(), s.assembly());
 }
 
 void judge_tolerance(Report& report) {
@@ -134,7 +137,7 @@ void estimate_error(State& s, double allowed, const Judged& increment, Report& r
   SolverState& control = s.control();
   control.lag_strain += increment.strain;
   const bool from_rest = increment.factor_from_rest > 0;
-  if (increment.strain > 0 && !from_rest && lag_is_due(s, report.substeps)) measure_lag(s);
+  if (increment.strain > 0 && lag_is_due(s, report.substeps, from_rest ? least_start : least_increment)) measure_lag(s);
   report.allowed_error = allowed;
   const double scale = pressure_scale(s) * increment.unbalanced_ratio, overlap = overlap_strain(s);
   const bool just_measured = control.lag_factor > 0 && control.lag_steps == 0;
@@ -145,10 +148,9 @@ void estimate_error(State& s, double allowed, const Judged& increment, Report& r
   const double factor = from_rest ? increment.factor_from_rest : error_factor(s);
   const double fitted = margin * factor * scale * error_growth(increment.strain, overlap);
   const double least = increment.strain > overlap ? least_share_of_long : least_share;
-  report.error_estimate = (from_rest       ? fitted
-                           : just_measured ? measured
-                                           : std::max(measured, fitted)) +
-                          increment.more + least * (increment.usual > 0 ? increment.usual : allowed);
+  const double lag = (just_measured ? measured : from_rest ? fitted : std::max(measured, fitted)) + increment.more;
+  report.error_estimate = std::sqrt(lag * lag + increment.apart * increment.apart) +
+                          least * (increment.usual > 0 ? increment.usual : allowed);
   judge_tolerance(report);
 }
 

@@ -31,7 +31,7 @@ double expected_error(State& state, double ratio);
 double target_ratio(State& state, double network_change);
 /// The same of a start from rest, by tolerance, whose K is `factor`; and that.
 double target_ratio_of_start(State& state, double network_change, double factor);
-double error_factor_of_start(State& state);
+double error_factor_of_start(const State& state);
 /// The same of a path under stress control, and what its stress may err by, over p.
 double held_target_ratio(const State& state);
 double held_tolerance(const State& state);
@@ -45,6 +45,7 @@ struct Judged {
   double strain = 0;            ///< of the increment; 0: no sub-step was made for it
   double unbalanced_ratio = 0;  ///< at its end
   double more = 0;              ///< Pa, what else its stress may err by
+  double apart = 0;             ///< Pa, an error that has nothing to do with the others: of an extrapolation
   double usual = 0;             ///< Pa, allowed of an increment that answers as the path did; 0: what is allowed
   double factor_from_rest = 0;  ///< K of a start from rest (strain_step.hpp); 0: another increment
 };

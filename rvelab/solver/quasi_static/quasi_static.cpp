@@ -85,7 +85,8 @@ class CheckedSteps {
       steps_left = std::max(1L, std::lround(left * double(o.fixed_substeps)));
       by_strain_ = false;
     } else {
-      const double count = std::ceil(left * strain_ / strain_per_step), at_least = std::ceil(left * fewest_);
+      const double count = std::ceil(left * strain_ / strain_per_step - rounded_off),
+                   at_least = std::ceil(left * fewest_);
       steps_left = long(std::clamp(std::max(count, at_least), 1.0, 1e15));
       by_strain_ = count >= at_least;
     }
@@ -193,7 +194,7 @@ Report load_rotation(State& s, const FrameSplit& increment, const Matrix3& dh) {
   report.unbalanced_ratio = known ? control.unbalanced_ratio : s.unbalanced_ratio(s.out_of_balance());
   judge_equilibrium(s, report);
   const double more = s.has_deferred() ? extrapolated(s, control.deferred_stretch).error : 0.0;
-  estimate_error(s, network_change(s, control.strain_since_reversal), s.stress(), {0, report.unbalanced_ratio, more},
+  estimate_error(s, network_change(s, control.strain_since_reversal), s.stress(), {0, report.unbalanced_ratio, 0, more},
                  report);
   if (dh.isZero(0)) return report;
   const Matrix3 turned = (Matrix3::Identity() + dh) * s.cell().rotation;

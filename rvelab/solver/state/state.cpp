@@ -5,6 +5,7 @@
 
 #include "rvelab/cell/pressure.hpp"
 #include "rvelab/error.hpp"
+#include "rvelab/solver/assembly/contact_states.hpp"
 #include "rvelab/solver/state/release.hpp"
 
 namespace rvelab {
@@ -84,10 +85,6 @@ const OutOfBalance& State::out_of_balance() {
 
 const RowSums& State::row_sums() {
   return sums_.of(generation_, [this] { return rvelab::row_sums(model_, assembly_); });
-}
-
-const ConstraintRatio& State::constraint_ratio() {
-  return constraints_.of(generation_, [this] { return rvelab::constraint_ratio(model_, assembly_); });
 }
 
 const OutOfBalance& State::checked_balance() {

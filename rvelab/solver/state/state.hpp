@@ -4,7 +4,6 @@
 #pragma once
 
 #include "rvelab/solver/assembly/assembly.hpp"
-#include "rvelab/solver/assembly/contact_states.hpp"
 #include "rvelab/solver/loading/inertia.hpp"
 #include "rvelab/solver/loading/report.hpp"
 #include "rvelab/solver/loading/stepping.hpp"
@@ -51,7 +50,6 @@ class State {
   const Matrix3& stress();  ///< of the contacts, cell frame, Pa
   const OutOfBalance& out_of_balance();
   const RowSums& row_sums();  ///< of stiffness; they take as long as two sub-steps
-  const ConstraintRatio& constraint_ratio();
   /// The same. Throws IncrementFailed where the cell is too thin, an overlap beyond the limit or a value not finite.
   const OutOfBalance& checked_balance();
   /// Notes the present ratio as measured on the present generation, which ratio_is_measured tells of.
@@ -131,7 +129,6 @@ class State {
   Derived<Matrix3> stress_;
   Derived<OutOfBalance> balance_;
   Derived<RowSums> sums_;
-  Derived<ConstraintRatio> constraints_;
   // While a trial is pending: those of the state that is not in `assembly_`.
   std::uint64_t other_generation_ = 0;
   Derived<Matrix3> other_stress_;
