@@ -28,7 +28,7 @@ bool may_defer(State& s, const FrameSplit& increment) {
   const Matrix3 change = increment.stretch - Matrix3::Identity(),
                 stretch = increment.stretch * control.deferred_stretch;
   const double strain = change.norm();
-  if ((stretch - Matrix3::Identity()).norm() + strain > control.strain_per_step) return false;
+  if ((stretch - Matrix3::Identity()).norm() + strain > part_of_step * control.strain_per_step) return false;
   // Increments off the path, for a tangent by differences, are never deferred.
   if (!(change.cwiseProduct(control.last_rate).sum() > along_path * strain * control.last_rate.norm())) return false;
   const double network = network_change(s, control.strain_since_reversal);

@@ -85,10 +85,11 @@ bool can_measure_lag(State& s) {
   return by_tolerance(s) && s.ratio_is_measured() && s.control().unbalanced_ratio > 0 && pressure(s) > 0;
 }
 
-bool lag_is_due(State& s, long substeps, long least) {
+bool lag_is_due(State& s, long substeps, bool from_rest) {
   const SolverState& control = s.control();
-  const bool old = control.lag_steps >= rest_period;
-  if (!(old || substeps >= least) || !can_measure_lag(s)) return false;
+  if (from_rest) return substeps >= least_start && can_measure_lag(s);
+  const bool old = control.lag_steps >= (control.lag_factor > 0 ? rest_period : first_period);
+  if (!(old || substeps >= least_increment) || !can_measure_lag(s)) return false;
   const double strain = control.lag_strain >= slow_mark ? control.lag_strain - slow_mark : control.lag_strain;
   return old || control.lag_factor == 0 || (control.lag_steps >= changed_period && strain > overlap_strain(s));
 }
@@ -137,7 +138,7 @@ void estimate_error(State& s, double allowed, const Judged& increment, Report& r
   SolverState& control = s.control();
   control.lag_strain += increment.strain;
   const bool from_rest = increment.factor_from_rest > 0;
-  if (increment.strain > 0 && lag_is_due(s, report.substeps, from_rest ? least_start : least_increment)) measure_lag(s);
+  if (increment.strain > 0 && lag_is_due(s, report.substeps, from_rest)) measure_lag(s);
   report.allowed_error = allowed;
   const double scale = pressure_scale(s) * increment.unbalanced_ratio, overlap = overlap_strain(s);
   const bool just_measured = control.lag_factor > 0 && control.lag_steps == 0;
