@@ -17,7 +17,7 @@
 
 #include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/solver/rve.hpp"
-#include "rvelab/study/processor_time.hpp"
+#include "rvelab/study/measures.hpp"
 
 using namespace rvelab;
 
