@@ -27,9 +27,8 @@ void add(CLI::App& to, const Option& option) {
   CLI::Option* added = to.add_option(option.names, read, option.help)->required(option.needed);
   added->option_text(option.shown_value());
   if (option.help.empty()) added->group("");
-  if (option.list && option.is_positional()) {
+  if (option.list && option.is_positional())
     added->expected(1, CLI::detail::expected_max_vector_size)->allow_extra_args();
-  }
   if (option.list && !option.is_positional()) added->take_all();
 }
 

@@ -7,8 +7,9 @@
 namespace rvelab {
 namespace {
 
-/// a^(1/5), by Newton's method.
-double fifth_root(double a) {
+/// Ratio of the diameters at both ends of a tenth of the mass, of which there are five from d10 to d60:
+/// (d60/d10)^(1/5), by Newton's method.
+double ratio_per_tenth(double a) {
   double x = a > 1 ? a : 1;
   for (int round = 0; round < 200; ++round) x = (4 * x + a / (x * x * x * x)) / 5;
   return x;
@@ -22,7 +23,7 @@ struct Ends {
 
 /// Diameters at 0 and at 100 %.
 Ends ends_of(double d10, double d50, double d60) {
-  const double root = fifth_root(d60 / d10);  // a tenth of the mass
+  const double root = ratio_per_tenth(d60 / d10);
   return {d10 / fourth_root(d50 / d10), d60 * root * root * root * root};
 }
 
@@ -67,7 +68,7 @@ std::string wrong_with_sieves(double d10, double d50, double d60) {
   if (d10 == d50 && d50 == d60) return "";
   if (!(d10 < d50 && d50 < d60))
     return "does not lie between d10 and d60; allowed: d10 < d50 < d60, or all three equal; correct the sieve curve";
-  const double root = fifth_root(d60 / d10), straight = d60 / root;
+  const double root = ratio_per_tenth(d60 / d10), straight = d60 / root;
   constexpr double most = 1.5;
   if (d50 > most * straight || straight > most * d50)
     return "lies off the curve from d10 to d60, whose d50 is about " + in_words(1e3 * straight) +

@@ -28,7 +28,7 @@ OutlinePlace place_of(const Specimen& specimen, const Contact& contact) {
 }
 
 /// What laws take for sqrt(overlap) > 0, m^0.5.
-double root_overlap(const Specimen& specimen, const Contact& contact) {
+double overlap_root_of(const Specimen& specimen, const Contact& contact) {
   if (is_round(specimen.shape) || specimen.contact.hertz_radius == HertzRadius::equivalent)
     return std::sqrt(overlap_of(specimen, contact));
   const OutlinePlace at = place_of(specimen, contact);
@@ -76,7 +76,7 @@ double normal_force_of(const Specimen& specimen, const Contact& contact) {
   if (overlap <= 0) return 0;
   const PairParameters pair = parameters_of(specimen, contact);
   return with_law(specimen.contact.law, [&](auto law) {
-    return decltype(law)::Force::normal_force(pair.kn, overlap, root_overlap(specimen, contact), pair.law_constant);
+    return decltype(law)::Force::normal_force(pair.kn, overlap, overlap_root_of(specimen, contact), pair.law_constant);
   });
 }
 
@@ -84,7 +84,7 @@ void set_root_overlaps(Specimen& specimen) {
   for (Contact& contact : specimen.contacts) {
     const bool kept =
         with_law(specimen.contact.law, [](auto law) { return decltype(law)::Force::stores_root_overlap; });
-    contact.last_root_overlap = kept ? root_overlap(specimen, contact) : 0;
+    contact.last_root_overlap = kept ? overlap_root_of(specimen, contact) : 0;
   }
 }
 

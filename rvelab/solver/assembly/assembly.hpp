@@ -38,6 +38,9 @@ struct Model {
   /// 1 without rolling stiffness; sqrt(4 kt r^2/(4 kt r^2 + 2 kr)) of typical grains: how much slower than the contacts
   /// grains answer that slip about a stiff rolling spring, once their inertia is scaled for that spring.
   double softest_answer = 1;
+  /// Of the constraint ratio at rest, what is left if contacts that roll count by grip_of their rolling friction: a
+  /// rolling spring that yields at once holds as little as a contact of little friction.
+  double firm_share = 1;
   double hardening = 1;                     ///< d ln f_n/d ln overlap of typical grains: 1 linear, 3/2 Hertz
   double thickness = 0;                     ///< m, 2D
   const std::atomic<bool>* stop = nullptr;  ///< true: advance throws Interrupted (Rve::watch)

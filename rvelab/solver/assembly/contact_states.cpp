@@ -112,31 +112,65 @@ bool some_contact_must_slip(const Model& f, const Assembly& a) {
 /// Whether a moment or force of this size is at its limit, give or take round-off.
 bool at_limit(double size, double limit) { return size >= (1 - 1e-6) * limit; }
 
-template <Shape shape>
+/// Length of (x, y, z), summed as Eigen does.
+double length_of(double x, double y, double z) { return std::sqrt(x * x + (y * y + z * z)); }
+
+/// What holds a touching contact: whether it slides, and whether it rolls.
+struct Held {
+  bool slides, rolls;
+};
+template <Shape shape, class Force, class Place>
+Held held_by(const Model& f, const PairTable& pairs, std::size_t p, const Place& at) {
+  constexpr int D = dimension_of(shape);
+  const double* force = pairs.force.data() + p * std::size_t(force_row_length(D));
+  const double fz = D == 2 ? 0.0 : force[2], nx = at.along().x / at.along_length(),
+               ny = at.along().y / at.along_length(), nz = D == 2 ? 0.0 : at.along().z / at.along_length();
+  const double normal = force[0] * nx + (force[1] * ny + fz * nz);
+  const double law_constant = pairs.law_constant.empty() ? 0 : pairs.law_constant[p];
+  const double pressing = std::abs(Force::pressing_force(normal, law_constant));
+  const double tangential = length_of(force[0] - normal * nx, force[1] - normal * ny, fz - normal * nz);
+  Held held{at_limit(tangential, pairs.friction[p] * pressing), true};
+  if (!f.contact.rolling) return held;
+  const double moment = D == 2 ? std::abs(pairs.moment[0][p])
+                               : length_of(pairs.moment[0][p], pairs.moment[D - 2][p], pairs.moment[D - 1][p]);
+  held.rolls = at_limit(moment, pairs.moment_cap[p] * pressing);
+  return held;
+}
+
+// A first increment asks for it, which may be of four sub-steps: with whole contact states it took more than two.
+template <Shape shape, class Force>
 double constraints_over_motions(const Model& f, const Assembly& a) {
+  const PairGeometry<shape> pair(f, a);
   const int d = f.dimension(), turns = d == 2 ? 1 : 3;
   std::vector<int> contacts(f.size(), 0);
-  each_touching<shape>(f, a, [&](std::size_t p, const auto&) {
+  std::vector<std::int32_t> touching;
+  touching.reserve(a.pairs.order.size());
+  for (const std::int32_t place : a.pairs.order) {
+    const auto p = std::size_t(place);
+    if (!(pair(p).overlap > 0)) continue;
+    touching.push_back(place);
     ++contacts[std::size_t(a.pairs.i[p])];
     ++contacts[std::size_t(a.pairs.j[p])];
-  });
-  double constraints = 0, grip = 0;
+  }
+  double constraints = 0, grip = 0, friction = 0, held = grip_of(friction);
   long counted = 0;
-  each_touching<shape>(f, a, [&](std::size_t p, const auto& at) {
-    if (contacts[std::size_t(a.pairs.i[p])] < 2 || contacts[std::size_t(a.pairs.j[p])] < 2) return;
-    const ContactState c = state_of(f, a.pairs, p, at);
-    const double pressing = std::abs(c.pressing_force), held = grip_of(c.friction);
-    const bool slides = at_limit(c.tangential_force.norm(), c.friction * pressing);
-    const bool rolls = !f.contact.rolling || at_limit(c.rolling_moment.norm(), c.moment_cap * pressing);
-    constraints += 1 + (slides ? 0 : (d - 1) * held) + (rolls ? 0 : (d - 1) * held);
+  for (const std::int32_t place : touching) {
+    const auto p = std::size_t(place);
+    if (contacts[std::size_t(a.pairs.i[p])] < 2 || contacts[std::size_t(a.pairs.j[p])] < 2) continue;
+    const Held by = held_by<shape, Force>(f, a.pairs, p, pair(p));
+    if (a.pairs.friction[p] != friction) {
+      friction = a.pairs.friction[p];
+      held = grip_of(friction);
+    }
+    constraints += 1 + (by.slides ? 0 : (d - 1) * held) + (by.rolls ? 0 : (d - 1) * held);
     grip += held;
     ++counted;
-  });
+  }
   if (counted == 0) return 0;
   // Round grains that nothing grips turn as they like.
   const double turning = f.round() ? grip / double(counted) : 1;
-  const auto held = std::count_if(contacts.begin(), contacts.end(), [](int n) { return n >= 2; });
-  return constraints / (double(held) * (d + turns * turning));
+  const auto grains = std::count_if(contacts.begin(), contacts.end(), [](int n) { return n >= 2; });
+  return constraints / (double(grains) * (d + turns * turning));
 }
 
 }  // namespace
@@ -175,7 +209,10 @@ double grip_of(double friction) {
 }
 
 double constraint_ratio(const Model& f, const Assembly& a) {
-  return with_shape(f.shape, [&](auto shape) { return constraints_over_motions<shape.value>(f, a); });
+  return with_force(f, [&](auto force) {
+    return with_shape(f.shape,
+                      [&](auto shape) { return constraints_over_motions<shape.value, decltype(force)>(f, a); });
+  });
 }
 
 bool holds_more_than_friction(const Model& f, const Assembly& a) {

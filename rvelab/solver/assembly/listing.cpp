@@ -47,10 +47,9 @@ std::vector<ListedPair> near_pairs(const Model& f, const Assembly& a, double ski
 enum class Lost { dropped, refused };
 
 template <Shape shape>
-bool touches(const Model& f, const Assembly& a, const ListedPair& pair) {
+bool touches(const Model& f, const Assembly& a, const UpperTriangle& l, const ListedPair& pair) {
   const double* xi = a.rows.data() + std::size_t(pair.i) * f.row_length();
   const double* xj = a.rows.data() + std::size_t(pair.j) * f.row_length();
-  const UpperTriangle l = upper_triangle(a.cell.lattice);
   const Image& n = pair.image;
   const double x = xj[0] - xi[0] + l.xx * n[0] + l.xy * n[1] + l.xz * n[2];
   const double y = xj[1] - xi[1] + l.yy * n[1] + l.yz * n[2];
@@ -66,12 +65,13 @@ bool touches(const Model& f, const Assembly& a, const ListedPair& pair) {
 void arrange(const Model& f, const Assembly& a, const std::vector<ListedPair>& listed,
              const std::vector<const Contact*>& histories, PairTable& pairs) {
   const std::size_t n = listed.size();
+  const UpperTriangle l = upper_triangle(a.cell.lattice);
   std::vector<std::uint8_t> group(n, 0);  // 0, 1 near, 2, 3 beyond, the odd ones with an image
   if (!f.options.energy_balance)
     with_shape(f.shape, [&](auto is) {
       in_pieces(n, f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
         for (std::size_t k = first; k < last; ++k) {
-          const bool near = histories[k] != nullptr || touches<decltype(is)::value>(f, a, listed[k]);
+          const bool near = histories[k] != nullptr || touches<decltype(is)::value>(f, a, l, listed[k]);
           group[k] = std::uint8_t((near ? 0 : 2) + int(is_shifted(listed[k].image)));
         }
       });
@@ -242,12 +242,16 @@ Reduction rebuild(const Model& f, Assembly& a) {
     }
   }
   check_height(f, a.cell);
-  std::vector<Image> moved(f.size());
+  std::vector<Image> moved(f.size(), Image{});
+  const Vector3 half = 0.5 * a.cell.lattice.diagonal();
   in_pieces(f.size(), f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t g = first; g < last; ++g) {
+      double* row = a.rows.data() + g * f.row_length();
+      bool inside = true;  // as most grains are: nothing to wrap
+      for (int k = 0; k < f.dimension(); ++k) inside &= row[k] >= -half[k] && row[k] < half[k];
+      if (inside) continue;
       Vector3 x = a.position(f, g);
       moved[g] = wrap(a.cell, x);
-      double* row = a.rows.data() + g * f.row_length();
       for (int k = 0; k < f.dimension(); ++k) row[k] = x[k];
     }
   });

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "rvelab/solver/assembly/contact_states.hpp"
 #include "rvelab/solver/assembly/contact_stiffness.hpp"
 #include "rvelab/solver/assembly/gather_table.hpp"
 #include "rvelab/solver/assembly/pair_geometry.hpp"
@@ -13,15 +14,21 @@ namespace rvelab {
 
 namespace {
 
-/// Symmetric 3x3 matrix; the z entries stay zero in the plane.
+/// Symmetric D x D matrix.
+template <int D>
 struct Symmetric {
   double xx = 0, xy = 0, yy = 0, xz = 0, yz = 0, zz = 0;
+};
+template <>
+struct Symmetric<2> {
+  double xx = 0, xy = 0, yy = 0;
 };
 
 /// along n n + across I.
 template <int D>
-Symmetric stiffness_along(double along, double across, double nx, double ny, double nz) {
-  Symmetric m{along * (nx * nx) + across, along * (nx * ny), along * (ny * ny) + across};
+inline __attribute__((always_inline)) Symmetric<D> stiffness_along(double along, double across, double nx, double ny,
+                                                                   double nz) {
+  Symmetric<D> m{along * (nx * nx) + across, along * (nx * ny), along * (ny * ny) + across};
   if constexpr (D == 3) {
     m.xz = along * (nx * nz);
     m.yz = along * (ny * nz);
@@ -31,7 +38,7 @@ Symmetric stiffness_along(double along, double across, double nx, double ny, dou
 }
 
 template <int D>
-void add_to(Symmetric& m, const Symmetric& more) {
+inline __attribute__((always_inline)) void add_to(Symmetric<D>& m, const Symmetric<D>& more) {
   m.xx += more.xx;
   m.xy += more.xy;
   m.yy += more.yy;
@@ -45,11 +52,11 @@ void add_to(Symmetric& m, const Symmetric& more) {
 /// Largest eigenvalue of a symmetric positive matrix, from above: exact in the plane, (tr M^8)^(1/8) in space, at most
 /// 3^(1/8) = 1.15 too much. Nothing that depends on the axes (row sums) will do: the scaled masses, and with them the
 /// path, must not know how the specimen is turned. An eigenvalue solver took a tenth of the stepping time.
-double largest_eigenvalue(const Symmetric& m, int dimension) {
-  if (dimension == 2) {
-    const double half = 0.5 * (m.xx + m.yy), difference = 0.5 * (m.xx - m.yy);
-    return half + std::sqrt(difference * difference + m.xy * m.xy);
-  }
+double largest_eigenvalue(const Symmetric<2>& m) {
+  const double half = 0.5 * (m.xx + m.yy), difference = 0.5 * (m.xx - m.yy);
+  return half + std::sqrt(difference * difference + m.xy * m.xy);
+}
+double largest_eigenvalue(const Symmetric<3>& m) {
   const double scale = m.xx + m.yy + m.zz;
   if (!(scale > 0)) return 0;
   Matrix3 one;
@@ -86,13 +93,16 @@ double typical_normal_force(const Model& f, double overlap) {
 }
 
 void set_typical_answers(Model& f) {
-  f.softest_answer = 1;
+  f.softest_answer = f.firm_share = 1;
   const auto [one, radius] = typical_pair(f);
   const double overlap = 1e-3 * radius;
   const ContactStiffness k = stiffness_of(f, one, overlap);
   const double force = typical_normal_force(f, overlap);
   f.hardening = force > 0 ? std::clamp(k.normal * overlap / force, 1.0, 3.0) : 1;
   if (!f.contact.rolling) return;
+  const int d = f.dimension();
+  const double grip = grip_of(one.friction), rolling_grip = grip_of(one.moment_cap / radius);
+  f.firm_share = (1 + (d - 1) * (grip + rolling_grip)) / (1 + 2 * (d - 1) * grip);
   const double slip = 4 * k.tangential * radius * radius;
   if (slip > 0) f.softest_answer = std::sqrt(slip / (slip + 2 * k.rolling));
 }
@@ -100,8 +110,9 @@ void set_typical_answers(Model& f) {
 namespace {
 
 /// What a grain collects from its pairs.
+template <int D>
 struct GrainSums {
-  Symmetric stiffness;
+  Symmetric<D> stiffness;
   double rotation = 0, dashpot = 0;
   // A listed pair may touch within the steps to come: a grain that is ready for the stiffest of them stays stable even
   // where that contact is ten thousand times stiffer than those it has.
@@ -109,6 +120,7 @@ struct GrainSums {
 };
 
 /// What a pair gives to each of its grains.
+template <int D>
 struct PairTerms {
   /// Barely touching Hertz contacts are soft but will not stay so: at a quarter of p0's overlap at least.
   ContactStiffness firm;
@@ -116,43 +128,67 @@ struct PairTerms {
   bool touching = false;
   ContactStiffness now = {};
   double along = 0, across = 0, nx = 0, ny = 0, nz = 0;
-  Symmetric stiffness = {};            ///< of round grains, the same for both
+  Symmetric<D> stiffness = {};         ///< of round grains, the same for both
   double reach[2] = {}, turn[2] = {};  ///< not round: arms of the tangential and the normal force about i and j, m
 };
 
-// Row sums go through all pairs, in the time of five sub-steps: inline, so that what a scene does not need falls out.
+// Row sums go through all pairs: inline and with what they read at hand, so that what a scene does not need falls out.
 template <Shape shape, class Force>
-inline __attribute__((always_inline)) PairTerms terms_of(const Model& f, const Assembly& a,
-                                                         const PairGeometry<shape>& pair, std::size_t p) {
-  const auto place = pair(p);
-  const double overlap = place.overlap;
-  const PairParameters q = parameters_of(f, a.pairs, p);
-  // What may come to touch may do so where its curvature is least.
-  const double ratio =
-      overlap > 0 ? hertz_radius_ratio(f, a.pairs, p, place) : hertz_radius_ratios(f, a.pairs, p).largest;
-  PairTerms t{rvelab::stiffness_of<Force>(f, q, std::max(overlap, 0.25 * a.state.reference_overlap), ratio)};
-  t.firm_translation = std::max(2 * t.firm.normal, 4 * t.firm.tangential);
-  t.touching = overlap > 0;
-  if (!t.touching) return t;
-  t.now = rvelab::stiffness_of<Force>(f, q, overlap, ratio);
-  // The force turning with the branch (initial stress) adds f_n / length to the tangential stiffness at most.
-  const double kt = t.now.tangential + 0.5 * normal_force_of<Force>(q, overlap, ratio) / place.length;
-  t.along = 2 * t.now.normal - 4 * kt;
-  t.across = 4 * kt;
-  const Branch& n = place.along();
-  t.nx = n.x / place.along_length();
-  t.ny = n.y / place.along_length();
-  if constexpr (dimension_of(shape) == 3) t.nz = n.z / place.along_length();
-  if constexpr (!is_round(shape)) {
-    t.reach[0] = place.reach_i;
-    t.reach[1] = place.reach_j;
-    t.turn[0] = std::abs(place.turn_i);
-    t.turn[1] = std::abs(place.turn_j);
-  } else {
-    t.stiffness = stiffness_along<dimension_of(shape)>(t.along, t.across, t.nx, t.ny, t.nz);
+class TermsOfPairs {
+ public:
+  static constexpr int D = dimension_of(shape);
+
+  TermsOfPairs(const Model& f, const Assembly& a)
+      : f_(f),
+        pairs_(a.pairs),
+        pair_(f, a),
+        kn_(a.pairs.kn.data()),
+        kt_(a.pairs.kt.data()),
+        kr_(f.contact.rolling ? a.pairs.kr.data() : nullptr),
+        cn_(f.damping.dashpot != Dashpot::none ? a.pairs.cn.data() : nullptr),
+        law_constant_(a.pairs.law_constant.empty() ? nullptr : a.pairs.law_constant.data()),
+        firm_overlap_(0.25 * a.state.reference_overlap) {}
+
+  inline __attribute__((always_inline)) PairTerms<D> operator()(std::size_t p) const {
+    const auto place = pair_(p);
+    const double overlap = place.overlap;
+    double ratio = 1;
+    // What may come to touch may do so where its curvature is least.
+    if constexpr (!is_round(shape))
+      ratio = overlap > 0 ? hertz_radius_ratio(f_, pairs_, p, place) : hertz_radius_ratios(f_, pairs_, p).largest;
+    const PairParameters q{kn_[p], kt_[p],          law_constant_ ? law_constant_[p] : 0, 0, kr_ ? kr_[p] : 0,
+                           0,      cn_ ? cn_[p] : 0};
+    PairTerms<D> t{rvelab::stiffness_of<Force>(f_, q, std::max(overlap, firm_overlap_), ratio)};
+    t.firm_translation = std::max(2 * t.firm.normal, 4 * t.firm.tangential);
+    t.touching = overlap > 0;
+    if (!t.touching) return t;
+    t.now = rvelab::stiffness_of<Force>(f_, q, overlap, ratio);
+    // The force turning with the branch (initial stress) adds f_n / length to the tangential stiffness at most.
+    const double kt = t.now.tangential + 0.5 * normal_force_of<Force>(q, overlap, ratio) / place.length;
+    t.along = 2 * t.now.normal - 4 * kt;
+    t.across = 4 * kt;
+    const Branch& n = place.along();
+    t.nx = n.x / place.along_length();
+    t.ny = n.y / place.along_length();
+    if constexpr (D == 3) t.nz = n.z / place.along_length();
+    if constexpr (!is_round(shape)) {
+      t.reach[0] = place.reach_i;
+      t.reach[1] = place.reach_j;
+      t.turn[0] = std::abs(place.turn_i);
+      t.turn[1] = std::abs(place.turn_j);
+    } else {
+      t.stiffness = stiffness_along<D>(t.along, t.across, t.nx, t.ny, t.nz);
+    }
+    return t;
   }
-  return t;
-}
+
+ private:
+  const Model& f_;
+  const PairTable& pairs_;
+  PairGeometry<shape> pair_;
+  const double *kn_, *kt_, *kr_, *cn_, *law_constant_;
+  double firm_overlap_;
+};
 
 /// To translation along n and to rotation, of a normal spring that also turns its grains, at the arm `turn` (m):
 /// (u + turn w)^2 <= (1 + turn/r) u^2 + (turn^2 + turn r) w^2.
@@ -160,10 +196,10 @@ double normal_to_translation(double kn, double turn, double r) { return 2 * kn *
 double normal_to_rotation(double kn, double turn, double r) { return 2 * kn * (turn * turn + turn * r); }
 
 template <Shape shape>
-inline __attribute__((always_inline)) void add(const Model& f, const PairTerms& t, std::size_t g, bool as_j,
-                                               GrainSums& sums) {
+inline __attribute__((always_inline)) void add(const Model& f, const PairTerms<dimension_of(shape)>& t, std::size_t g,
+                                               bool as_j, GrainSums<dimension_of(shape)>& sums) {
   constexpr int D = dimension_of(shape);
-  const double r = f.radius[g];
+  const double r = f.radius.data()[g];
   if constexpr (!is_round(shape)) {
     // What may come to touch may do so anywhere.
     const Extent extent = Description<shape>::extent(own_of<Description<shape>>(f.own, g));
@@ -190,47 +226,52 @@ inline __attribute__((always_inline)) void add(const Model& f, const PairTerms& 
 /// Stiffnesses of the contacts, of which floors are medians.
 struct Firmness {
   std::vector<double> translation, rotation;
+  std::size_t count = 0;  ///< of contacts so far
 
-  inline __attribute__((always_inline)) void add(const Model& f, const PairTable& pairs, std::size_t p,
-                                                 const PairTerms& t) {
+  void expect(std::size_t contacts) { translation.resize(contacts), rotation.resize(contacts); }
+  template <int D>
+  inline __attribute__((always_inline)) void add(const PairTerms<D>& t, double ri, double rj) {
     if (!t.touching) return;
-    const double ri = f.radius[std::size_t(pairs.i[p])], rj = f.radius[std::size_t(pairs.j[p])];
-    translation.push_back(t.firm_translation);
-    rotation.push_back(4 * t.firm.tangential + 2 * t.firm.rolling / std::min(ri * ri, rj * rj));
+    translation[count] = t.firm_translation;
+    rotation[count++] = 4 * t.firm.tangential + 2 * t.firm.rolling / std::min(ri * ri, rj * rj);
   }
 };
 
 /// Sums of all grains. Each pair is visited once; by a team once for each of its grains, so that threads share
 /// nothing. A grain adds its pairs in the same order either way.
 template <Shape shape, class Force>
-std::vector<GrainSums> sums_of_grains(const Model& f, const Assembly& a, Firmness& firmness) {
+std::vector<GrainSums<dimension_of(shape)>> sums_of_grains(const Model& f, const Assembly& a, Firmness& firmness) {
   constexpr int D = dimension_of(shape);
-  std::vector<GrainSums> sums(f.size());
-  const PairGeometry<shape> pair(f, a);
+  std::vector<GrainSums<D>> sums(f.size());
+  const TermsOfPairs<shape, Force> terms_of(f, a);
+  const double* radius = f.radius.data();
+  const std::int32_t *grain_i = a.pairs.i.data(), *grain_j = a.pairs.j.data();
   if (f.sharing() == nullptr) {
-    firmness.translation.reserve(a.pairs.listed);
-    firmness.rotation.reserve(a.pairs.listed);
+    firmness.expect(a.pairs.listed);
     for (const std::int32_t place : a.pairs.order) {
-      const auto p = std::size_t(place);
-      const PairTerms t = terms_of<shape, Force>(f, a, pair, p);
-      for (const bool as_j : {false, true}) {
-        const auto g = std::size_t(as_j ? a.pairs.j[p] : a.pairs.i[p]);
-        add<shape>(f, t, g, as_j, sums[g]);
-      }
-      firmness.add(f, a.pairs, p, t);
+      const auto p = std::size_t(place), i = std::size_t(grain_i[p]), j = std::size_t(grain_j[p]);
+      const PairTerms<D> t = terms_of(p);
+      add<shape>(f, t, i, false, sums[i]);
+      add<shape>(f, t, j, true, sums[j]);
+      firmness.add(t, radius[i], radius[j]);
     }
+    firmness.expect(firmness.count);
     return sums;
   }
   std::vector<Firmness> of_piece(pieces_in(f.size()));
   in_pieces(f.size(), f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
+    Firmness& own = of_piece[piece];
     each_pair_of_grains<D>(a.pairs, first, last, [&](std::size_t g, std::size_t p, bool as_j) {
-      const bool own_image = a.pairs.i[p] == a.pairs.j[p];
+      const bool own_image = grain_i[p] == grain_j[p];
       if (own_image && as_j) return;  // both at once where the grain is i, as above
-      const PairTerms t = terms_of<shape, Force>(f, a, pair, p);
+      const PairTerms<D> t = terms_of(p);
       add<shape>(f, t, g, as_j, sums[g]);
       if (own_image) add<shape>(f, t, g, true, sums[g]);
-      if (!as_j) of_piece[piece].add(f, a.pairs, p, t);
+      if (as_j) return;
+      if (own.count == own.translation.size()) own.expect(2 * own.count + 64);
+      own.add(t, radius[std::size_t(grain_i[p])], radius[std::size_t(grain_j[p])]);
     });
+    own.expect(own.count);
   });
   for (const Firmness& piece : of_piece) {
     firmness.translation.insert(firmness.translation.end(), piece.translation.begin(), piece.translation.end());
@@ -245,14 +286,14 @@ RowSums sums_over_pairs(const Model& f, const Assembly& a) {
   const std::size_t n = f.size();
   const bool dashpot = f.damping.dashpot != Dashpot::none;
   Firmness firmness;
-  const std::vector<GrainSums> of_grain = sums_of_grains<shape, Force>(f, a, firmness);
+  const std::vector<GrainSums<D>> of_grain = sums_of_grains<shape, Force>(f, a, firmness);
   RowSums sums;
   sums.rotation.resize(n);
   sums.translation.resize(n);
   if (dashpot) sums.dashpot.resize(n);
   in_pieces(n, f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t g = first; g < last; ++g) {
-      sums.translation[g] = std::max(largest_eigenvalue(of_grain[g].stiffness, D), of_grain[g].stiffest);
+      sums.translation[g] = std::max(largest_eigenvalue(of_grain[g].stiffness), of_grain[g].stiffest);
       sums.rotation[g] = std::max(of_grain[g].rotation, of_grain[g].stiffest_turn);
       if (dashpot) sums.dashpot[g] = of_grain[g].dashpot;
     }

@@ -206,7 +206,7 @@ SubSteps::SubSteps(const Model& model, Assembly& assembly, const Advance& what)
                     (team_ == nullptr || team_->threads() == 1)),
       clock_(f_.times) {
   c_.losses = f_.options.energy_balance;
-  c_.local_damping = physical_ ? f_.damping.local : f_.damping.local_quasi_static;
+  c_.local_damping = physical_ ? f_.damping.local : what.damping * f_.damping.local_quasi_static;
   if (physical_) {
     shift_half_step(f_, a_, step_);
     omega_ = rotation_vector(what.increment.rotation) / (step_ * double(what.steps));

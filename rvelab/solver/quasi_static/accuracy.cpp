@@ -28,6 +28,11 @@ double error_per_unbalance(double stiffness_ratio, double constraint_ratio, doub
   return damped * std::max(soft, hyperstatic_factor + isostatic_factor / (1 + isostatic_width * beyond * beyond));
 }
 
+double error_per_unbalance_of_start(double constraint_ratio) {
+  const double beyond = std::max(constraint_ratio, 1.0) - 1;
+  return firm_factor_of_start + isostatic_factor_of_start / (1 + isostatic_width * beyond * beyond);
+}
+
 double error_growth(double strain, double strain_of_overlap) {
   const double x = strain / strain_of_overlap / long_strain;
   if (!(x > 1)) return 1;

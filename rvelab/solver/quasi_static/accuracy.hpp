@@ -44,6 +44,10 @@ double allowed_error(double relative, double absolute, double stress_change, dou
 /// stress control flow changes no stress at all, and lags no more than at constant width; c to 1 at least.
 double error_per_unbalance(double stiffness_ratio, double constraint_ratio, double damping, int dimension);
 
+/// K of a start from rest, hardly damped: 0.1 + 3/(1 + 70 (c - 1)^2), c the constraint ratio times
+/// Model::firm_share.
+double error_per_unbalance_of_start(double constraint_ratio);
+
 /// max(1, x/0.3)^(3/4), x the strain of an increment over the mean overlap over d: a long increment has slid contacts
 /// by what it lagged on its way, of which its end knows nothing.
 double error_growth(double strain, double strain_of_overlap);

@@ -28,25 +28,24 @@ bool may_defer(State& s, const FrameSplit& increment) {
   const Matrix3 change = increment.stretch - Matrix3::Identity(),
                 stretch = increment.stretch * control.deferred_stretch;
   const double strain = change.norm();
-  if ((stretch - Matrix3::Identity()).norm() + strain > control.strain_per_step) return false;
+  if ((stretch - Matrix3::Identity()).norm() + strain > part_of_step * control.strain_per_step) return false;
   // Increments off the path, for a tangent by differences, are never deferred.
   if (!(change.cwiseProduct(control.last_rate).sum() > along_path * strain * control.last_rate.norm())) return false;
   const double network = network_change(s, control.strain_since_reversal);
   if (was_coarser(s, network)) return false;
-  return extrapolated(s, stretch).error <= share_of_extrapolation * allowed_by_tolerances(s, 0, network);
+  return extrapolated(s, stretch).error <= share_of_extrapolation * allowed_on_path(s, network);
 }
 
 Report defer(State& s, const FrameSplit& increment) {
   const SolverState& control = s.control();
   const Matrix3 before = extrapolated(s, control.deferred_stretch).stress;
-  s.set_deferred(increment.stretch * control.deferred_stretch);
-  s.turn(increment.rotation);
+  s.defer(increment.stretch * control.deferred_stretch, increment.rotation);
   Report report;
   report.unbalanced_ratio = control.unbalanced_ratio;
   judge_equilibrium(s, report);
   const Extrapolated after = extrapolated(s, control.deferred_stretch);
   estimate_error(s, network_change(s, control.strain_since_reversal), s.stress() + before - after.stress,
-                 {0, control.unbalanced_ratio, after.error}, report);
+                 {0, control.unbalanced_ratio, 0, after.error}, report);
   return report;
 }
 

@@ -40,11 +40,23 @@ double error_factor(const State& s) {
 
 double expected_error(State& s, double ratio) { return error_factor(s) * pressure_scale(s) * ratio; }
 
+double allowed_on_path(State& s, double network) {
+  return allowed_by_tolerances(s, s.control().network_stiffness_ratio * network, network);
+}
+
 double target_ratio(State& s, double network) {
   if (s.model().options.target_unbalanced > 0) return s.model().options.target_unbalanced;
   if (!(pressure(s) > 0)) return largest_target;
-  const double allowed = allowed_by_tolerances(s, s.control().network_stiffness_ratio * network, network);
-  return std::clamp(allowed / (step_margin * expected_error(s, 1)), least_target, largest_target);
+  return std::clamp(allowed_on_path(s, network) / (step_margin * expected_error(s, 1)), least_target, largest_target);
+}
+
+double error_factor_of_start(const State& s) {
+  return error_per_unbalance_of_start(s.model().firm_share * s.control().constraint_ratio);
+}
+
+double target_ratio_of_start(State& s, double network, double factor) {
+  return std::clamp(allowed_on_path(s, network) / (start_margin * factor * pressure_scale(s)), least_target,
+                    largest_target_of_start);
 }
 
 double held_tolerance(const State& s) {
@@ -56,9 +68,10 @@ double held_target_ratio(const State& s) {
   return std::clamp(held_path_ratio(held_tolerance(s)), least_target, largest_target_of_held_path);
 }
 
-void judge_equilibrium(State& s, Report& report) {
-  const double target = s.control().target_unbalanced_ratio > 0 ? s.control().target_unbalanced_ratio
-                                                                : target_ratio(s, 0);  // nothing loaded yet
+void judge_equilibrium(State& s, Report& report, double least_target_ratio) {
+  const double known = s.control().target_unbalanced_ratio > 0 ? s.control().target_unbalanced_ratio
+                                                               : target_ratio(s, 0);  // nothing loaded yet
+  const double target = std::max(known, least_target_ratio);
   report.quasi_static = report.unbalanced_ratio <= quasi_static_ratio * target && report.target_held;
 }
 
@@ -72,9 +85,10 @@ bool can_measure_lag(State& s) {
   return by_tolerance(s) && s.ratio_is_measured() && s.control().unbalanced_ratio > 0 && pressure(s) > 0;
 }
 
-bool lag_is_due(State& s, long substeps) {
+bool lag_is_due(State& s, long substeps, bool from_rest) {
   const SolverState& control = s.control();
-  const bool old = control.lag_steps >= rest_period;
+  if (from_rest) return substeps >= least_start && can_measure_lag(s);
+  const bool old = control.lag_steps >= (control.lag_factor > 0 ? rest_period : first_period);
   if (!(old || substeps >= least_increment) || !can_measure_lag(s)) return false;
   const double strain = control.lag_strain >= slow_mark ? control.lag_strain - slow_mark : control.lag_strain;
   return old || control.lag_factor == 0 || (control.lag_steps >= changed_period && strain > overlap_strain(s));
@@ -116,24 +130,27 @@ void estimate_error(State& s, double network, const Matrix3& stress_before, cons
   if (network > network_change(s, increment.strain))
     changed = std::max(changed, s.control().network_stiffness_ratio * network);
   Judged judged = increment;
-  judged.usual = allowed_by_tolerances(s, s.control().network_stiffness_ratio * network, network);
+  judged.usual = allowed_on_path(s, network);
   estimate_error(s, allowed_by_tolerances(s, changed, network), judged, report);
 }
 
 void estimate_error(State& s, double allowed, const Judged& increment, Report& report) {
   SolverState& control = s.control();
   control.lag_strain += increment.strain;
-  if (increment.strain > 0 && lag_is_due(s, report.substeps)) measure_lag(s);
+  const bool from_rest = increment.factor_from_rest > 0;
+  if (increment.strain > 0 && lag_is_due(s, report.substeps, from_rest)) measure_lag(s);
   report.allowed_error = allowed;
   const double scale = pressure_scale(s) * increment.unbalanced_ratio, overlap = overlap_strain(s);
   const bool just_measured = control.lag_factor > 0 && control.lag_steps == 0;
   const double begun = just_measured && control.lag_strain >= slow_mark ? slow_goes_on : 1;
   const double measured =
       begun * measured_margin * control.lag_factor * scale * rested_growth(increment.strain, overlap);
-  const double margin = control.lag_factor > 0 ? fitted_margin : unmeasured_margin;
-  const double fitted = margin * error_factor(s) * scale * error_growth(increment.strain, overlap);
+  const double margin = from_rest ? start_estimate_margin : control.lag_factor > 0 ? fitted_margin : unmeasured_margin;
+  const double factor = from_rest ? increment.factor_from_rest : error_factor(s);
+  const double fitted = margin * factor * scale * error_growth(increment.strain, overlap);
   const double least = increment.strain > overlap ? least_share_of_long : least_share;
-  report.error_estimate = (just_measured ? measured : std::max(measured, fitted)) + increment.more +
+  const double lag = (just_measured ? measured : from_rest ? fitted : std::max(measured, fitted)) + increment.more;
+  report.error_estimate = std::sqrt(lag * lag + increment.apart * increment.apart) +
                           least * (increment.usual > 0 ? increment.usual : allowed);
   judge_tolerance(report);
 }

@@ -20,6 +20,8 @@ double overlap_strain(State& state);
 
 /// By the tolerances of the specimen, Pa; of a change of stress and |C : d eps|, Pa.
 double allowed_by_tolerances(State& state, double stress_change, double network_change);
+/// The same where the stress changes as the path did so far.
+double allowed_on_path(State& state, double network_change);
 /// K, fitted.
 double error_factor(const State& state);
 /// K p u for an unbalanced ratio u, Pa.
@@ -27,19 +29,25 @@ double expected_error(State& state, double ratio);
 
 /// Unbalanced ratio that an increment of this |C : d eps| (Pa) may have, by tolerance or as given.
 double target_ratio(State& state, double network_change);
+/// The same of a start from rest, by tolerance, whose K is `factor`; and that.
+double target_ratio_of_start(State& state, double network_change, double factor);
+double error_factor_of_start(const State& state);
 /// The same of a path under stress control, and what its stress may err by, over p.
 double held_target_ratio(const State& state);
 double held_tolerance(const State& state);
 
-/// Sets report.quasi_static from its unbalanced ratio and whether its target is held.
-void judge_equilibrium(State& state, Report& report);
+/// Sets report.quasi_static from its unbalanced ratio and whether its target is held; the target of the ratio is that
+/// of the path, at least `least_target_ratio`.
+void judge_equilibrium(State& state, Report& report, double least_target_ratio = 0);
 
 /// An increment for which an estimate is made.
 struct Judged {
   double strain = 0;            ///< of the increment; 0: no sub-step was made for it
   double unbalanced_ratio = 0;  ///< at its end
   double more = 0;              ///< Pa, what else its stress may err by
+  double apart = 0;             ///< Pa, an error that has nothing to do with the others: of an extrapolation
   double usual = 0;             ///< Pa, allowed of an increment that answers as the path did; 0: what is allowed
+  double factor_from_rest = 0;  ///< K of a start from rest (strain_step.hpp); 0: another increment
 };
 
 /// Sets report.error_estimate, allowed_error and tolerance_met, with `allowed` in Pa.

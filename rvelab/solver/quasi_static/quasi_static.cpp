@@ -33,13 +33,14 @@ void turn_back(State& s) {
 /// The sub-steps of an increment, and what its checks find.
 class CheckedSteps {
  public:
-  CheckedSteps(State& state, EquilibriumCheck& check, const StrainPath& path, double fewest)
+  CheckedSteps(State& state, EquilibriumCheck& check, const StrainPath& path, const Start& start)
       : s_(state),
         check_(check),
         path_(path),
         strain_(path.strain()),
         most_(most_substeps(state, strain_)),
-        fewest_(std::min(fewest, most_)) {}
+        fewest_(std::min(start.fewest, most_)),
+        from_rest_(start.factor_from_rest > 0) {}
 
   /// Makes them; `substeps` were made before and counts on.
   void make(long& substeps) {
@@ -48,7 +49,12 @@ class CheckedSteps {
     while (fraction_ < 1) {
       const long steps = choose(substeps);
       const Matrix3 next = path_.at(fraction_);
-      s_.advance({next_part(start_frame, s_.cell(), done, next), steps, 1, Loading::quasi_static});
+      Advance part{next_part(start_frame, s_.cell(), done, next), steps};
+      if (from_rest_) {
+        part.step = std::max(1.0, start_step / s_.model().options.time_step_factor);
+        part.damping = start_damping;
+      }
+      s_.advance(part);
       done = next;
       substeps += steps;
       s_.control().interval_strain += (fraction_ - before_) * strain_;
@@ -72,11 +78,15 @@ class CheckedSteps {
         std::max(strain_per_step, left * strain_ / std::max(most_ - double(made), double(check_interval)));
     long steps_left = 0;
     by_strain_ = true;
-    if (o.fixed_substeps > 0) {
+    if (from_rest_) {
+      steps_left = std::max(1L, std::lround(left * fewest_));
+      by_strain_ = false;
+    } else if (o.fixed_substeps > 0) {
       steps_left = std::max(1L, std::lround(left * double(o.fixed_substeps)));
       by_strain_ = false;
     } else {
-      const double count = std::ceil(left * strain_ / strain_per_step), at_least = std::ceil(left * fewest_);
+      const double count = std::ceil(left * strain_ / strain_per_step - rounded_off),
+                   at_least = std::ceil(left * fewest_);
       steps_left = long(std::clamp(std::max(count, at_least), 1.0, 1e15));
       by_strain_ = count >= at_least;
     }
@@ -93,6 +103,7 @@ class CheckedSteps {
     const OutOfBalance balance = check_.check();
     ratios_ += s_.control().unbalanced_ratio;
     ++checks_;
+    if (from_rest_) return;
     // Where the fewest steps rule, their strain is not that of the control, but it may still be found too large.
     const bool too_fast = s_.control().unbalanced_ratio > s_.control().target_unbalanced_ratio;
     if (s_.model().options.fixed_substeps == 0 && (by_strain_ || too_fast)) adapt_strain_step(s_, balance);
@@ -107,6 +118,7 @@ class CheckedSteps {
   EquilibriumCheck& check_;
   const StrainPath& path_;
   double strain_, most_, fewest_;
+  bool from_rest_;
   double fraction_ = 0, before_ = 0, ratios_ = 0;
   long checks_ = 0;
   bool by_strain_ = true;  ///< the strain per step decides their number
@@ -152,8 +164,8 @@ Report load_quasi_static(State& s, FrameSplit whole) {
 
   const double network = network_change(s, std::max(strain, control.strain_since_reversal));
   set_target_ratio(s, target_ratio(s, network));
-  const Start start = start_of(s, change, strain, along < 0);
-  CheckedSteps substeps(s, check, path, start.fewest);
+  const Start start = start_of(s, change, strain, network, along < 0);
+  CheckedSteps substeps(s, check, path, start);
   substeps.make(report.substeps);
   if (!s.stress().allFinite())
     throw IncrementFailed("the increment led to values that are not finite; apply it in smaller parts");
@@ -161,8 +173,10 @@ Report load_quasi_static(State& s, FrameSplit whole) {
   // Between checks the ratio that is expected of a start is used.
   if (!substeps.end_is_checked()) control.unbalanced_ratio = std::max(start.unbalanced_ratio, control.unbalanced_ratio);
   report.unbalanced_ratio = control.unbalanced_ratio;
-  judge_equilibrium(s, report);
-  estimate_error(s, network, stress_before, {strain, control.unbalanced_ratio, relaxed.creep}, report);
+  judge_equilibrium(s, report, start.factor_from_rest > 0 ? start.unbalanced_ratio : 0);
+  Judged judged{strain, control.unbalanced_ratio, relaxed.creep};
+  judged.factor_from_rest = start.factor_from_rest;
+  estimate_error(s, network, stress_before, judged, report);
   estimate_way(s, strain, substeps.mean_ratio(), report);
   note_slope(s, whole.stretch, stress_before, (s.cell().rotation.array() == start_frame.array()).all());
   if (!(whole.rotation.array() == Matrix3::Identity().array()).all()) {
@@ -180,7 +194,7 @@ Report load_rotation(State& s, const FrameSplit& increment, const Matrix3& dh) {
   report.unbalanced_ratio = known ? control.unbalanced_ratio : s.unbalanced_ratio(s.out_of_balance());
   judge_equilibrium(s, report);
   const double more = s.has_deferred() ? extrapolated(s, control.deferred_stretch).error : 0.0;
-  estimate_error(s, network_change(s, control.strain_since_reversal), s.stress(), {0, report.unbalanced_ratio, more},
+  estimate_error(s, network_change(s, control.strain_since_reversal), s.stress(), {0, report.unbalanced_ratio, 0, more},
                  report);
   if (dh.isZero(0)) return report;
   const Matrix3 turned = (Matrix3::Identity() + dh) * s.cell().rotation;

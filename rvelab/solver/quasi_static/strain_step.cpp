@@ -33,7 +33,7 @@ double steps_of_start(const Matrix3& change, double strain, const Matrix3& rate,
   while (steps < most_steps_of_start) {
     const double mismatch = (change - steps * rate).norm() / norm;
     if (unbalance_of_start(mismatch, strain, strain_of_overlap, steps) <= target) break;
-    steps = std::ceil(growth_of_search * steps + 0.5);
+    steps = std::max(steps + 1, std::floor(growth_of_search * steps));
   }
   return steps;
 }
@@ -86,11 +86,19 @@ double most_substeps(State& s, double strain) {
   return std::max(strictness * (most_steps + most_steps_of_overlap * overlaps), 1.0);
 }
 
-Start start_of(State& s, const Matrix3& change, double strain, bool turned_back) {
+Start start_of(State& s, const Matrix3& change, double strain, double network, bool turned_back) {
   const SolverState& control = s.control();
   if (!by_tolerance(s)) return {double(turned_back ? fewest_steps_back : fewest_steps), 0};
   if (!(control.network_stiffness > 0)) return {1, 0};
   const double overlap = overlap_strain(s);
+  const bool elastic =
+      control.network_stiffness_ratio >= least_elastic_ratio && strain <= longest_elastic_strain * overlap;
+  if (elastic && control.last_rate.isZero(0) && !turned_back) {
+    const double factor = error_factor_of_start(s);
+    const double steps =
+        steps_of_start(change, strain, control.last_rate, overlap, target_ratio_of_start(s, network, factor), 1);
+    if (steps <= longest_start) return {steps, unbalance_of_start(1, strain, overlap, steps), factor};
+  }
   const double by_strain = std::max(1.0, std::ceil(strain / control.strain_per_step));
   const double steps =
       steps_of_start(change, strain, control.last_rate, overlap, control.target_unbalanced_ratio, by_strain);

@@ -22,8 +22,10 @@ double most_substeps(State& state, double strain);
 /// ratio that is expected then.
 struct Start {
   double fewest = 1, unbalanced_ratio = 0;
+  /// K of a start from rest in the elastic range, whose sub-steps are so many, hardly damped; 0: another.
+  double factor_from_rest = 0;
 };
-/// `change` is stretch - I, `strain` its Green strain.
-Start start_of(State& state, const Matrix3& change, double strain, bool turned_back);
+/// `change` is stretch - I, `strain` its Green strain; `network_change` (|C : d eps|, Pa) that of the path.
+Start start_of(State& state, const Matrix3& change, double strain, double network_change, bool turned_back);
 
 }  // namespace rvelab

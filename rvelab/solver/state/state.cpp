@@ -135,6 +135,11 @@ void State::set_deferred(const Matrix3& stretch) {
   set_strained_cell();
 }
 
+void State::defer(const Matrix3& stretch, const Matrix3& frame_rotation) {
+  control().deferred_stretch = stretch;
+  turn(frame_rotation);
+}
+
 void State::set_strained_cell() {
   if (!has_deferred()) return;
   strained_cell_ = cell();

@@ -61,7 +61,7 @@ class State {
 
   const Matrix3& stress();  ///< of the contacts, cell frame, Pa
   const OutOfBalance& out_of_balance();
-  const RowSums& row_sums();  ///< of stiffness; they take as long as five sub-steps
+  const RowSums& row_sums();  ///< of stiffness; they take as long as two sub-steps
   /// The same. Throws IncrementFailed where the cell is too thin, an overlap beyond the limit or a value not finite.
   const OutOfBalance& checked_balance();
   /// Notes the present ratio as measured on the present generation, which ratio_is_measured tells of.
@@ -97,6 +97,8 @@ class State {
   /// Strain that is applied but left to the next sub-step (quasi_static/deferred.hpp).
   bool has_deferred() const { return !(control().deferred_stretch.array() == Matrix3::Identity().array()).all(); }
   void set_deferred(const Matrix3& stretch);
+  /// The same while the frame turns.
+  void defer(const Matrix3& stretch, const Matrix3& frame_rotation);
   /// The cell with it.
   const Cell& strained_cell() const { return has_deferred() ? strained_cell_ : cell(); }
 
