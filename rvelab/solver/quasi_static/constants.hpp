@@ -133,7 +133,8 @@ constexpr double measured_margin = 0.905;
 /// Times that where the state was never measured: grains whose friction was lowered slide on for longer than a path
 /// lags (errors up to 1.22 times the estimate without, friction 0 and an increment of 1e-6).
 constexpr double first_margin = 1.35;
-/// Over the fitted K: at least, where an earlier measurement has shown more; and where there was none yet.
+/// Over the fitted K: at least, where an earlier measurement has shown more; where there was none yet; and over the K
+/// of a start from rest.
 constexpr double fitted_margin = 2.2, unmeasured_margin = 3, start_estimate_margin = 2.6;
 /// A change of stress that grows by this much over the second half of a measurement (2: in proportion to time) is the
 /// beginning of a slow one, and so many times as large when that ends: of 46 increments in which it grew errors were up
