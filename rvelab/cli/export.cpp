@@ -36,7 +36,7 @@ std::string stem_of(const std::string& output) {
 }
 
 /// The files that an export writes.
-std::vector<std::string> files_of(const ExportArguments& arguments) {
+std::vector<std::string> files_to_write(const ExportArguments& arguments) {
   const std::string& output = arguments.output;
   if (arguments.format == "csv") {
     const io::CsvExport files = io::csv_files(stem_of(output));
@@ -64,7 +64,7 @@ void write_export(const ExportArguments& arguments, Listing& listing) {
 
 void run_export(const ExportArguments& arguments) {
   expect_folder_of(arguments.output);
-  const auto files = files_of(arguments);
+  const auto files = files_to_write(arguments);
   for (const auto& file : files) {
     io::expect_output(file, arguments.force, {arguments.file, io::journal_of(arguments.file)});
   }

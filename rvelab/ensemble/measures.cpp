@@ -3,10 +3,10 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "rvelab/cell/cell.hpp"
+#include "rvelab/ensemble/statistics.hpp"
 #include "rvelab/protocol/stage_kinds.hpp"
 
 namespace rvelab::ensemble {
@@ -17,7 +17,6 @@ using protocol::CompressionStage;
 using protocol::SimpleShearStage;
 using Records = std::span<const records::Record>;
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double degree = std::numbers::pi / 180;
 
 double volumetric_strain(const records::Record& record) { return 1 - record.deformation_gradient.determinant(); }

@@ -3,13 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <numbers>
 
 namespace rvelab::ensemble {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Integral of cos(x)^power from 0 to `end`, by Simpson's rule.
 double integral_of_cosine(double power, double end) {

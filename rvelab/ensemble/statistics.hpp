@@ -1,10 +1,14 @@
 // Mean, scatter and intervals of values that specimens of one kind give, and numbers written with their errors.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
 namespace rvelab::ensemble {
+
+/// What a test does not tell.
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Of values that are defined (not NaN); all NaN but n where there are none, and all but n and mean of a single one.
 struct Spread {

@@ -154,6 +154,7 @@ def draw_sweep(rows, options):
             panel.errorbar([float(row[keys[0]]) for row in own], [float(row[measure]) for row in own],
                            yerr=[float(row[measure + "_standard_error"] or 0) for row in own], fmt="-o", markersize=3,
                            capsize=2, color=kinds.QUALITATIVE[k % len(kinds.QUALITATIVE)], label=label or None)
+        panel.ticklabel_format(axis="y", useOffset=False)
         panel.set_xlabel(keys[0], fontsize=9)
         panel.set_ylabel(measure.replace("_", " "), fontsize=8)
     if len(keys) > 1:
