@@ -8,10 +8,10 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-constexpr const char* brief = " --set stage.compression.to_strain=0.002 --set test.pressure_Pa=20e3 ";
+constexpr const char* in_the_elastic_range = " --set stage.compression.to_strain=0.002 --set test.pressure_Pa=20e3 ";
 constexpr const char* stiffness = " --vary material.young_modulus_Pa=2e8:3.2e9:log ";
 
-Workplace& with_packings(Workplace& here) {
+Workplace& with_two_packings(Workplace& here) {
   here.import_packing("dense_p20", "S_a.h5");
   here.import_packing("medium_p20", "S_b.h5");
   return here;
@@ -21,14 +21,14 @@ Workplace& with_packings(Workplace& here) {
 
 TEST_CASE("A fit finds the stiffness of the grains that a modulus was measured with, and goes on after a stop") {
   Workplace place;
-  const Workplace& here = with_packings(place);
+  const Workplace& here = with_two_packings(place);
   // The truth: E = 800 MPa, as the specimens have it.
-  const auto known =
-      nlohmann::json::parse(here.run(std::string("run biaxial --specimen S_a.h5 S_b.h5 --json") + brief).output);
+  const auto known = nlohmann::json::parse(
+      here.run(std::string("run biaxial --specimen S_a.h5 S_b.h5 --json") + in_the_elastic_range).output);
   double modulus = 0;
   for (const auto& test : known["tests"]) modulus += test["E50_Pa"].get<double>() / 2;
   const std::string fit = std::string("fit biaxial --specimen 'S_*.h5' --tests 16 --target E50_Pa=") +
-                          std::to_string(modulus) + stiffness + brief;
+                          std::to_string(modulus) + stiffness + in_the_elastic_range;
   const Outcome outcome = here.run(fit + "-o F");
   INFO(outcome.errors);
   REQUIRE(outcome.code == 0);
@@ -53,11 +53,11 @@ TEST_CASE("A fit finds the stiffness of the grains that a modulus was measured w
 
 TEST_CASE("A measured curve is fitted, and the fit over the data is written and drawn") {
   Workplace place;
-  const Workplace& here = with_packings(place);
+  const Workplace& here = with_two_packings(place);
   here.write("data.csv",
              "axial_strain_percent,deviator_kPa,deviator_kPa_error\n0.05,4,1\n0.1,7,1\n0.15,9,1\n0.2,11,1\n");
-  const Outcome outcome =
-      here.run(std::string("fit biaxial --specimen 'S_*.h5' --tests 10 --curve data.csv -o F") + stiffness + brief);
+  const Outcome outcome = here.run(std::string("fit biaxial --specimen 'S_*.h5' --tests 10 --curve data.csv -o F") +
+                                   stiffness + in_the_elastic_range);
   INFO(outcome.errors);
   REQUIRE(outcome.code == 0);
   const std::string csv = bytes_of(here / "F/curves.csv");
@@ -68,10 +68,10 @@ TEST_CASE("A measured curve is fitted, and the fit over the data is written and 
 
 TEST_CASE("A sweep gives every combination on every specimen, as a table and as CSV") {
   Workplace place;
-  const Workplace& here = with_packings(place);
+  const Workplace& here = with_two_packings(place);
   const Outcome outcome = here.run(std::string("fit biaxial --specimen 'S_*.h5' --vary material.friction=0.2:0.6:2 "
                                                "--vary material.young_modulus_Pa=4e8:8e8:2 -o F") +
-                                   brief);
+                                   in_the_elastic_range);
   INFO(outcome.errors);
   REQUIRE(outcome.code == 0);
   const std::string csv = bytes_of(here / "F/sweep.csv");
@@ -82,7 +82,7 @@ TEST_CASE("A sweep gives every combination on every specimen, as a table and as 
   const auto run = nlohmann::json::parse(
       here.run(std::string("run biaxial --specimen S_a.h5 S_b.h5 --set material.friction=0.6 --json "
                            "--set material.young_modulus_Pa=4e8") +
-               brief)
+               in_the_elastic_range)
           .output);
   const double mean =
       (run["tests"][0]["friction_angle_deg"].get<double>() + run["tests"][1]["friction_angle_deg"].get<double>()) / 2;
@@ -108,7 +108,7 @@ TEST_CASE("A recipe packs a specimen for each test, and its keys may be varied")
 
 TEST_CASE("Mistakes of a fit are told before any test") {
   Workplace place;
-  const Workplace& here = with_packings(place);
+  const Workplace& here = with_two_packings(place);
   const std::string fit = "fit biaxial --specimen S_a.h5 ";
   expect_mistake(here.run(fit + "--target friction_angle_deg=30"), "nothing is varied");
   expect_mistake(here.run(fit + "--vary material.friction=0.1:1"), "no number of values");

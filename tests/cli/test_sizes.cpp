@@ -17,7 +17,7 @@ using Json = nlohmann::json;
 
 namespace {
 
-const char* const small = R"([pack]
+const char* const few_grains = R"([pack]
 name = "small"
 number = 60
 [grains]
@@ -82,7 +82,7 @@ TEST_CASE("radii in mm or cm for m are refused by import with the unit in doubt,
 
 TEST_CASE("all of import, pack and inspect say what the numbers of a specimen are to each other") {
   const Workplace here;
-  here.write("small.toml", small);
+  here.write("small.toml", few_grains);
   const Outcome packed = here.run("pack small.toml -o P.h5");
   REQUIRE(packed.code == 0);
   here.import_packing("hertz");
@@ -124,7 +124,7 @@ TEST_CASE("all of import, pack and inspect say what the numbers of a specimen ar
 
 TEST_CASE("pack takes no overlaps beyond the limit, and tells discs in a thick slab why") {
   const Workplace here;
-  std::string text = small;
+  std::string text = few_grains;
   text.replace(text.find("3e-3"), 4, "1e-3");
   text.replace(text.find("7e-3"), 4, "2e-3");
   text.replace(text.find("8e8"), 3, "2e7");
@@ -156,7 +156,7 @@ TEST_CASE("pack takes no overlaps beyond the limit, and tells discs in a thick s
 
 TEST_CASE("a cell too small for its grains is no packing") {
   const Workplace here;
-  std::string text = small;
+  std::string text = few_grains;
   text.replace(text.find("pressure_Pa = 1e5"), 17, "void_ratio = -0.4");
   here.write("full.toml", text);
   const Outcome outcome = here.run("pack full.toml -o S.h5");
@@ -168,7 +168,7 @@ TEST_CASE("a cell too small for its grains is no packing") {
 
 TEST_CASE("a skin beyond all use is refused by its key before anything is packed or run") {
   const Workplace here;
-  here.write("small.toml", small);
+  here.write("small.toml", few_grains);
   for (const char* skin : {"100", "1000", "1e10", "2147483648", "4294967296"}) {
     CAPTURE(skin);
     expect_mistake(here.run("pack small.toml -o S.h5 --set solver.skin=" + std::string(skin)),
@@ -204,7 +204,7 @@ TEST_CASE("pack takes material.key for all materials, and material.NAME.key for 
 
 TEST_CASE("a void ratio far out of reach is refused after a few rounds of draws, with the range that was reached") {
   const Workplace here;
-  std::string text = small;
+  std::string text = few_grains;
   text.replace(text.find("[preparation]\nfriction = 0.1\n"), 29, "");
   here.write("search.toml", text);
   for (const char* target : {"0.05", "0.6"}) {
@@ -222,7 +222,7 @@ TEST_CASE("a void ratio far out of reach is refused after a few rounds of draws,
 
 TEST_CASE("a specimen without friction exports every contact that inspect counts") {
   const Workplace here;
-  here.write("small.toml", small);
+  here.write("small.toml", few_grains);
   REQUIRE(here.run("pack small.toml -o S.h5 --set material.friction=0").code == 0);
   const long contacts = Json::parse(here.run("inspect S.h5 --json").output)["contacts"];
   REQUIRE(contacts > 60);
