@@ -5,23 +5,27 @@
 #include <sstream>
 
 #include "rvelab/ensemble/statistics.hpp"
+#include "rvelab/io/publish.hpp"
 
 namespace rvelab::cli {
 
-std::string aligned(const std::vector<std::vector<std::string>>& rows, std::size_t width) {
+std::string aligned(const std::vector<std::vector<std::string>>& rows, std::size_t to_the_left, std::size_t width) {
   std::vector<std::size_t> widths;
   for (const auto& row : rows) {
     widths.resize(std::max(widths.size(), row.size()));
     for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], row[k].size());
   }
+  const auto padded = [&](const std::vector<std::string>& row, std::size_t k) {
+    const std::string blank(widths[k] - row[k].size(), ' ');
+    return k < to_the_left ? row[k] + blank : blank + row[k];
+  };
   std::string text;
   for (std::size_t first = 1, end = 1; first < widths.size() || first == 1; first = end) {
     std::size_t length = widths.empty() ? 0 : widths[0];
     while (end < widths.size() && (end == first || length + 2 + widths[end] <= width)) length += 2 + widths[end++];
     for (const auto& row : rows) {
-      std::string line = row.empty() ? "" : row[0] + std::string(widths[0] - row[0].size(), ' ');
-      for (std::size_t k = first; k < std::min(end, row.size()); ++k)
-        line += "  " + row[k] + std::string(widths[k] - row[k].size(), ' ');
+      std::string line = row.empty() ? "" : padded(row, 0);
+      for (std::size_t k = first; k < std::min(end, row.size()); ++k) line += "  " + padded(row, k);
       text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
     }
     if (end < widths.size()) text += "\n";
@@ -29,6 +33,15 @@ std::string aligned(const std::vector<std::vector<std::string>>& rows, std::size
   }
   return text;
 }
+
+std::string csv_cell(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char letter : text) quoted += letter == '"' ? std::string("\"\"") : std::string(1, letter);
+  return quoted + "\"";
+}
+
+std::string csv_cell(double value) { return std::isfinite(value) ? io::exact(value) : ""; }
 
 std::string in_digits_of(double value, double error) {
   const std::string text = ensemble::with_error(value, error);

@@ -6,9 +6,14 @@
 
 namespace rvelab::cli {
 
-/// Columns as wide as their widest cell, two blanks apart. A row that would be longer than `width` is continued in a
-/// second table below, which repeats the first column.
-std::string aligned(const std::vector<std::vector<std::string>>& rows, std::size_t width = 120);
+/// Columns as wide as their widest cell, two blanks apart; the first `to_the_left` are aligned left, the others right.
+/// A row that would be longer than `width` is continued in a second table below, which repeats the first column.
+std::string aligned(const std::vector<std::vector<std::string>>& rows, std::size_t to_the_left = 1000,
+                    std::size_t width = 120);
+
+/// A cell of a CSV table: quoted where it must be; the shortest number that reads back, nothing for NaN.
+std::string csv_cell(const std::string& text);
+std::string csv_cell(double value);
 
 /// A value in the digits that its error, or half of its interval, leaves it (ensemble::with_error).
 std::string in_digits_of(double value, double error);

@@ -15,8 +15,6 @@ using ensemble::Spread;
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
-std::string cell(double value) { return std::isfinite(value) ? io::exact(value) : ""; }
-
 /// "p = 20000 Pa", or of all pressures.
 std::string at_pressure(double pressure) {
   return std::isnan(pressure) ? "all tests of a specimen together" : "p = " + in_words(pressure) + " Pa";
@@ -80,14 +78,15 @@ std::string as_csv(const Ensemble& ensemble, const ensemble::Summary& summary) {
   };
   for (const ensemble::Row& row : summary.rows) {
     const Spread& spread = row.spread;
-    text += quoted(ensemble.names[row.group]) + "," + cell(row.pressure) + "," + row.name + "," + row.unit + "," +
-            std::to_string(spread.n) + "," + cell(spread.mean) + "," + cell(spread.standard_deviation) + "," +
-            cell(spread.standard_error) + "," + cell(spread.low) + "," + cell(spread.high) + "\n";
+    text += quoted(ensemble.names[row.group]) + "," + csv_cell(row.pressure) + "," + row.name + "," + row.unit + "," +
+            std::to_string(spread.n) + "," + csv_cell(spread.mean) + "," + csv_cell(spread.standard_deviation) + "," +
+            csv_cell(spread.standard_error) + "," + csv_cell(spread.low) + "," + csv_cell(spread.high) + "\n";
   }
   for (const ensemble::Comparison& each : summary.comparisons) {
     const ensemble::Difference& difference = each.difference;
-    text += "difference," + cell(each.pressure) + "," + each.name + "," + each.unit + ",," + cell(difference.value) +
-            ",," + cell(difference.standard_error) + "," + cell(difference.low) + "," + cell(difference.high) + "\n";
+    text += "difference," + csv_cell(each.pressure) + "," + each.name + "," + each.unit + ",," +
+            csv_cell(difference.value) + ",," + csv_cell(difference.standard_error) + "," + csv_cell(difference.low) +
+            "," + csv_cell(difference.high) + "\n";
   }
   return text;
 }

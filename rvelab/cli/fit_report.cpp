@@ -34,8 +34,6 @@ Eigen::VectorXd values_of(const fit::Parameter& parameter, const Eigen::VectorXd
   return values;
 }
 
-std::string cell(double value) { return std::isfinite(value) ? io::exact(value) : ""; }
-
 void publish(const std::string& folder, const char* name, const std::string& text) {
   io::publish_text((fs::path(folder) / name).string(), text);
 }
@@ -54,9 +52,10 @@ std::string tests_csv(const FitSetup& setup, const FitOutcome& outcome) {
     const fit::Trial& trial = outcome.finding.trials[k];
     text += std::to_string(k + 1) + "," + std::to_string(trial.specimen + 1);
     for (std::size_t p = 0; p < setup.parameters.size(); ++p)
-      text += "," + cell(setup.parameters[p].value(trial.place[Eigen::Index(p)]));
+      text += "," + csv_cell(setup.parameters[p].value(trial.place[Eigen::Index(p)]));
     const fit::Answer& answer = outcome.finding.answers[k];
-    for (std::size_t t = 0; t < outcome.targets.size(); ++t) text += "," + (t < answer.size() ? cell(answer[t]) : "");
+    for (std::size_t t = 0; t < outcome.targets.size(); ++t)
+      text += "," + (t < answer.size() ? csv_cell(answer[t]) : "");
     text += "\n";
   }
   return text;
@@ -69,9 +68,10 @@ std::string curves_csv(const FitSetup& setup, const FitOutcome& outcome) {
     const fit::Curve& curve = setup.curves[k].curve;
     for (std::size_t point = 0; point < curve.x.size(); ++point, ++column) {
       const Interval found = interval_of(outcome.finding.predicted.col(column));
-      text += std::to_string(k + 1) + "," + cell(setup.curves[k].pressure) + "," + curve.name + "," + curve.abscissa;
+      text +=
+          std::to_string(k + 1) + "," + csv_cell(setup.curves[k].pressure) + "," + curve.name + "," + curve.abscissa;
       for (const double value : {curve.x[point], curve.y[point], curve.error[point], found.mean, found.low, found.high})
-        text += "," + cell(value);
+        text += "," + csv_cell(value);
       text += "\n";
     }
   }
@@ -212,14 +212,14 @@ void report_sweep(const FitSetup& setup, const std::vector<FitTest>& tests, cons
     std::string line;
     for (std::size_t p = 0; p < setup.parameters.size(); ++p) {
       const double value = points[point][Eigen::Index(p)];
-      line += (line.empty() ? "" : ",") + cell(value);
+      line += (line.empty() ? "" : ",") + csv_cell(value);
       rows.back().push_back(in_words(value));
       one[setup.parameters[p].key] = value;
     }
     for (std::size_t m = 0; m < measures.size(); ++m) {
       if (!given[m]) continue;
       const ensemble::Spread& spread = spreads[point][m];
-      line += "," + cell(spread.mean) + "," + cell(spread.standard_error) + "," + std::to_string(spread.n);
+      line += "," + csv_cell(spread.mean) + "," + csv_cell(spread.standard_error) + "," + std::to_string(spread.n);
       rows.back().push_back(ensemble::with_error(spread.mean, spread.standard_error));
       one[measures[m].name] = {{"mean", spread.mean}, {"standard_error", spread.standard_error}, {"n", spread.n}};
     }
@@ -230,7 +230,7 @@ void report_sweep(const FitSetup& setup, const std::vector<FitTest>& tests, cons
   if (json)
     std::cout << Json{{"sweep", list}}.dump(1, ' ', false, Json::error_handler_t::replace) << std::endl;
   else
-    std::cout << aligned(rows, 150) << (folder.empty() ? "" : "file  " + folder + "/sweep.csv\n") << std::flush;
+    std::cout << aligned(rows, 1000, 150) << (folder.empty() ? "" : "file  " + folder + "/sweep.csv\n") << std::flush;
   const auto failed =
       std::find_if(results.begin(), results.end(), [](const auto& each) { return !each.failure.empty(); });
   if (failed != results.end()) tell("a test could not be carried out, the first: " + failed->failure);

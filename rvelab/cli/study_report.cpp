@@ -8,6 +8,7 @@
 #include <set>
 #include <sstream>
 
+#include "rvelab/cli/columns.hpp"
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/report.hpp"
 #include "rvelab/error.hpp"
@@ -70,32 +71,6 @@ Json json_of(const Study& study, const PointSummary& point) {
   for (const auto& [name, number] : numbers_of(study, point)) json[name] = number;
   if (!point.failure.empty()) json["failure"] = point.failure;
   return json;
-}
-
-std::string cell(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char letter : text) quoted += letter == '"' ? std::string("\"\"") : std::string(1, letter);
-  return quoted + "\"";
-}
-
-/// Columns as wide as their widest cell; the first `to_the_left` are aligned left.
-std::string aligned(const std::vector<std::vector<std::string>>& rows, std::size_t to_the_left) {
-  std::vector<std::size_t> widths;
-  for (const auto& row : rows) {
-    widths.resize(std::max(widths.size(), row.size()));
-    for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], row[k].size());
-  }
-  std::string text;
-  for (const auto& row : rows) {
-    std::string line;
-    for (std::size_t k = 0; k < row.size(); ++k) {
-      const std::string blank(widths[k] - row[k].size(), ' ');
-      line += (k == 0 ? "" : "  ") + (k < to_the_left ? row[k] + blank : blank + row[k]);
-    }
-    text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
-  }
-  return text;
 }
 
 std::string rounded(double value, int digits = 3) {
@@ -166,7 +141,7 @@ std::string table(const Study& study, const StudySummary& summary, const std::ve
   };
   add(summary.reference, true);
   for (const PointSummary& point : summary.points) add(point, false);
-  return aligned(rows, std::max<std::size_t>(study.grid.size(), 1));
+  return aligned(rows, std::max<std::size_t>(study.grid.size(), 1), 1000);
 }
 
 std::string increments_table(const Study& study, const StudySummary& summary) {
@@ -233,13 +208,13 @@ Json as_json(const Study& study, const StudySummary& summary) {
 
 std::string as_csv(const Study& study, const StudySummary& summary) {
   std::string text = "run";
-  for (const auto& one : study.grid) text += "," + cell(one.key);
+  for (const auto& one : study.grid) text += "," + csv_cell(one.key);
   for (const auto& [name, number] : numbers_of(study, summary.reference)) text += "," + name;
   text += "\n";
   const auto add = [&](const std::string& run, const PointSummary& point) {
     text += run;
     for (std::size_t k = 0; k < study.grid.size(); ++k)
-      text += "," + (point.values.empty() ? "" : cell(point.values[k]));
+      text += "," + (point.values.empty() ? "" : csv_cell(point.values[k]));
     for (const auto& [name, number] : numbers_of(study, point)) {
       const bool real = number.is_number_float();
       if (real) text += "," + (std::isnan(number.get<double>()) ? "" : io::exact(number.get<double>()));

@@ -178,7 +178,7 @@ TEST_CASE("a skin beyond all use is refused by its key before anything is packed
 
 TEST_CASE("pack takes material.key for all materials, and material.NAME.key for one, as keys says") {
   const Workplace here;
-  const std::string text = small + std::string("[[material]]\nname = \"glass\"\nyoung_modulus_Pa = 8e8\n") +
+  const std::string text = few_grains + std::string("[[material]]\nname = \"glass\"\nyoung_modulus_Pa = 8e8\n") +
                            "stiffness_ratio = 0.5\nfriction = 0.4\n";
   here.write("two.toml", text);
   const auto frictions = [&](const std::string& settings) {
