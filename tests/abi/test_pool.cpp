@@ -80,15 +80,16 @@ TEST_CASE("Costs count grains times sub-steps, of the copy that rests to show th
   REQUIRE_OK(rvelab_cost(host.pool, 2, ids.data(), cost));
   CHECK((cost[0] == 0 && cost[1] == 0));
   const std::int64_t before = host.info(ids[0]).grain_steps;
-  host.apply(ids[0], Nine{1e-4});
+  const Nine dH{3e-3};  // a start from rest of so many sub-steps that a copy rests once (error_model.hpp)
+  host.apply(ids[0], dH);
   const std::int64_t made = host.info(ids[0]).grain_steps - before;
   Trials trials({ids[1]});
-  trials.dH[0] = Nine{1e-4};
+  trials.dH[0] = dH;
   for (int k = 0; k < 3; ++k) REQUIRE_OK(rvelab_trial(host.pool, &trials.batch));
   CHECK(host.info(ids[1]).grain_steps == before);
   REQUIRE_OK(rvelab_cost(host.pool, 2, ids.data(), cost));
   CHECK(made % 36 == 0);
-  REQUIRE(made >= 36 * constants::least_increment);  // so many that a copy rests once (error_model.hpp)
+  REQUIRE(made >= 36 * constants::least_start);
   CHECK(cost[0] == made + 36 * constants::rest_steps);
   CHECK(cost[1] == 3 * cost[0]);
 }

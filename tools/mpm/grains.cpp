@@ -54,13 +54,13 @@ void Grains<D>::read_stress(Point<D>* points) {
 }
 
 /// The stable step needs the modulus of the stiffest RVE, taken to be the most compressed one. It is measured again
-/// once the largest compression has doubled, and every 25,000 increments, which costs 1 % at most. Between, the modulus
+/// once the largest compression has doubled, and every 75,000 increments, which costs 1 % at most. Between, the modulus
 /// is scaled by the root of the compression: contacts of Hertz stiffen with its cube root, and new ones add to that
 /// (Goddard 1990, Proc. R. Soc. A 430). It never falls below a quarter of the first, so that soil that lands gets no
 /// too long step.
 template <int D>
 void Grains<D>::follow_stiffness(const Point<D>* points, long count) {
-  constexpr double between_checks = 25'000, least = 0.25;
+  constexpr double between_checks = 75'000, least = 0.25;
   const auto* most = std::max_element(points, points + count, [](const Point<D>& a, const Point<D>& b) {
     return compression_of<D>(a) < compression_of<D>(b);
   });

@@ -41,6 +41,8 @@ struct Model {
   /// Of the constraint ratio at rest, what is left if contacts that roll count by grip_of their rolling friction: a
   /// rolling spring that yields at once holds as little as a contact of little friction.
   double firm_share = 1;
+  /// Grains of one size of all materials have contacts of one stiffness, within a factor of ten.
+  bool alike_contacts = true;
   double hardening = 1;                     ///< d ln f_n/d ln overlap of typical grains: 1 linear, 3/2 Hertz
   double thickness = 0;                     ///< m, 2D
   const std::atomic<bool>* stop = nullptr;  ///< true: advance throws Interrupted (Rve::watch)

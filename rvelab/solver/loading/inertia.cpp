@@ -66,6 +66,9 @@ double largest_eigenvalue(const Symmetric<3>& m) {
   return scale * std::sqrt(std::sqrt(four.norm()));
 }
 
+/// Normal stiffnesses that count as alike, over each other.
+constexpr double most_unlike = 10;
+
 double median(std::vector<double>& values) {
   if (values.empty()) return 0;
   const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
@@ -73,12 +76,20 @@ double median(std::vector<double>& values) {
   return *middle;
 }
 
+std::size_t largest_grain(const Model& f) {
+  return std::size_t(std::max_element(f.radius.begin(), f.radius.end()) - f.radius.begin());
+}
+
+/// Two grains of the size of grain g and of one material as a pair.
+PairParameters pair_of(const Model& f, std::size_t g, const Material& m) {
+  const double section = grain_section(f.shape, f.radius[g], f.thickness);
+  return mix(f.contact, f.damping, m, f.radius[g], f.mass[g], m, f.radius[g], f.mass[g], section);
+}
+
 /// Two of the largest grains as a pair, and their radius.
 std::pair<PairParameters, double> typical_pair(const Model& f) {
-  const auto g = std::size_t(std::max_element(f.radius.begin(), f.radius.end()) - f.radius.begin());
-  const Material& m = f.materials[f.material[g]];
-  const double section = grain_section(f.shape, f.radius[g], f.thickness);
-  return {mix(f.contact, f.damping, m, f.radius[g], f.mass[g], m, f.radius[g], f.mass[g], section), f.radius[g]};
+  const std::size_t g = largest_grain(f);
+  return {pair_of(f, g, f.materials[f.material[g]]), f.radius[g]};
 }
 
 ContactStiffness stiffness_of(const Model& f, const PairParameters& q, double overlap) {
@@ -97,6 +108,10 @@ void set_typical_answers(Model& f) {
   const auto [one, radius] = typical_pair(f);
   const double overlap = 1e-3 * radius;
   const ContactStiffness k = stiffness_of(f, one, overlap);
+  f.alike_contacts = std::all_of(f.materials.begin(), f.materials.end(), [&](const Material& m) {
+    const double other = stiffness_of(f, pair_of(f, largest_grain(f), m), overlap).normal;
+    return std::max(other, k.normal) <= most_unlike * std::min(other, k.normal);
+  });
   const double force = typical_normal_force(f, overlap);
   f.hardening = force > 0 ? std::clamp(k.normal * overlap / force, 1.0, 3.0) : 1;
   if (!f.contact.rolling) return;

@@ -54,6 +54,10 @@ double error_factor_of_start(const State& s) {
   return error_per_unbalance_of_start(s.model().firm_share * s.control().constraint_ratio);
 }
 
+double factor_of_last_start(const State& s) {
+  return s.control().lag_factor == 0 && s.control().lag_strain == start_mark ? error_factor_of_start(s) : 0;
+}
+
 double target_ratio_of_start(State& s, double network, double factor) {
   return std::clamp(allowed_on_path(s, network) / (start_margin * factor * pressure_scale(s)), least_target,
                     largest_target_of_start);
@@ -150,6 +154,7 @@ void estimate_error(State& s, double allowed, const Judged& increment, Report& r
   const double fitted = margin * factor * scale * error_growth(increment.strain, overlap);
   const double least = increment.strain > overlap ? least_share_of_long : least_share;
   const double lag = (just_measured ? measured : from_rest ? fitted : std::max(measured, fitted)) + increment.more;
+  if (from_rest && control.lag_factor == 0) control.lag_strain = start_mark;
   report.error_estimate = std::sqrt(lag * lag + increment.apart * increment.apart) +
                           least * (increment.usual > 0 ? increment.usual : allowed);
   judge_tolerance(report);

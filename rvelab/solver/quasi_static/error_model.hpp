@@ -32,6 +32,8 @@ double target_ratio(State& state, double network_change);
 /// The same of a start from rest, by tolerance, whose K is `factor`; and that.
 double target_ratio_of_start(State& state, double network_change, double factor);
 double error_factor_of_start(const State& state);
+/// That K if the last increment was such a start and was not measured, else 0.
+double factor_of_last_start(const State& state);
 /// The same of a path under stress control, and what its stress may err by, over p.
 double held_target_ratio(const State& state);
 double held_tolerance(const State& state);

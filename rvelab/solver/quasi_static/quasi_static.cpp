@@ -192,10 +192,12 @@ Report load_rotation(State& s, const FrameSplit& increment, const Matrix3& dh) {
   // The path that led here is what is judged, as it was at its end; a rotation adds nothing.
   const bool known = control.quasi_static && control.steps_since_scaling >= 0;
   report.unbalanced_ratio = known ? control.unbalanced_ratio : s.unbalanced_ratio(s.out_of_balance());
-  judge_equilibrium(s, report);
+  const double of_start = factor_of_last_start(s);
+  judge_equilibrium(s, report, of_start > 0 ? report.unbalanced_ratio : 0);
   const double more = s.has_deferred() ? extrapolated(s, control.deferred_stretch).error : 0.0;
-  estimate_error(s, network_change(s, control.strain_since_reversal), s.stress(), {0, report.unbalanced_ratio, 0, more},
-                 report);
+  Judged judged{0, report.unbalanced_ratio, 0, more};
+  judged.factor_from_rest = of_start;
+  estimate_error(s, network_change(s, control.strain_since_reversal), s.stress(), judged, report);
   if (dh.isZero(0)) return report;
   const Matrix3 turned = (Matrix3::Identity() + dh) * s.cell().rotation;
   const bool quarter_turn = (dh + Matrix3::Identity()).unaryExpr([](double x) { return x * x * x - x; }).isZero(0);
