@@ -42,10 +42,13 @@ Report defer(State& s, const FrameSplit& increment) {
   s.defer(increment.stretch * control.deferred_stretch, increment.rotation);
   Report report;
   report.unbalanced_ratio = control.unbalanced_ratio;
-  judge_equilibrium(s, report);
+  const double of_start = factor_of_last_start(s);
+  judge_equilibrium(s, report, of_start > 0 ? report.unbalanced_ratio : 0);
   const Extrapolated after = extrapolated(s, control.deferred_stretch);
-  estimate_error(s, network_change(s, control.strain_since_reversal), s.stress() + before - after.stress,
-                 {0, control.unbalanced_ratio, 0, after.error}, report);
+  Judged judged{0, control.unbalanced_ratio, 0, after.error};
+  judged.factor_from_rest = of_start;
+  estimate_error(s, network_change(s, control.strain_since_reversal), s.stress() + before - after.stress, judged,
+                 report);
   return report;
 }
 
