@@ -9,6 +9,7 @@
 #include "rvelab/solver/assembly/contact_stiffness.hpp"
 #include "rvelab/solver/assembly/gather_table.hpp"
 #include "rvelab/solver/assembly/pair_geometry.hpp"
+#include "rvelab/solver/loading/typical_answers.hpp"
 
 namespace rvelab {
 
@@ -66,63 +67,12 @@ double largest_eigenvalue(const Symmetric<3>& m) {
   return scale * std::sqrt(std::sqrt(four.norm()));
 }
 
-/// Normal stiffnesses that count as alike, over each other.
-constexpr double most_unlike = 10;
-
 double median(std::vector<double>& values) {
   if (values.empty()) return 0;
   const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
 }
-
-std::size_t largest_grain(const Model& f) {
-  return std::size_t(std::max_element(f.radius.begin(), f.radius.end()) - f.radius.begin());
-}
-
-/// Two grains of the size of grain g and of one material as a pair.
-PairParameters pair_of(const Model& f, std::size_t g, const Material& m) {
-  const double section = grain_section(f.shape, f.radius[g], f.thickness);
-  return mix(f.contact, f.damping, m, f.radius[g], f.mass[g], m, f.radius[g], f.mass[g], section);
-}
-
-/// Two of the largest grains as a pair, and their radius.
-std::pair<PairParameters, double> typical_pair(const Model& f) {
-  const std::size_t g = largest_grain(f);
-  return {pair_of(f, g, f.materials[f.material[g]]), f.radius[g]};
-}
-
-ContactStiffness stiffness_of(const Model& f, const PairParameters& q, double overlap) {
-  return with_force(f, [&](auto force) { return rvelab::stiffness_of<decltype(force)>(f, q, overlap); });
-}
-
-}  // namespace
-
-double typical_normal_force(const Model& f, double overlap) {
-  return with_force(
-      f, [&](auto force) { return std::abs(normal_force_of<decltype(force)>(typical_pair(f).first, overlap)); });
-}
-
-void set_typical_answers(Model& f) {
-  f.softest_answer = f.firm_share = 1;
-  const auto [one, radius] = typical_pair(f);
-  const double overlap = 1e-3 * radius;
-  const ContactStiffness k = stiffness_of(f, one, overlap);
-  f.alike_contacts = std::all_of(f.materials.begin(), f.materials.end(), [&](const Material& m) {
-    const double other = stiffness_of(f, pair_of(f, largest_grain(f), m), overlap).normal;
-    return std::max(other, k.normal) <= most_unlike * std::min(other, k.normal);
-  });
-  const double force = typical_normal_force(f, overlap);
-  f.hardening = force > 0 ? std::clamp(k.normal * overlap / force, 1.0, 3.0) : 1;
-  if (!f.contact.rolling) return;
-  const int d = f.dimension();
-  const double grip = grip_of(one.friction), rolling_grip = grip_of(one.moment_cap / radius);
-  f.firm_share = (1 + (d - 1) * (grip + rolling_grip)) / (1 + 2 * (d - 1) * grip);
-  const double slip = 4 * k.tangential * radius * radius;
-  if (slip > 0) f.softest_answer = std::sqrt(slip / (slip + 2 * k.rolling));
-}
-
-namespace {
 
 /// What a grain collects from its pairs.
 template <int D>
@@ -315,8 +265,7 @@ RowSums sums_over_pairs(const Model& f, const Assembly& a) {
   });
   if (firmness.translation.empty()) {
     // Nothing touches: what two contacts of typical grains would have at a thousandth of a radius of overlap.
-    const auto [one, radius] = typical_pair(f);
-    const ContactStiffness k = stiffness_of(f, one, 1e-3 * radius);
+    const auto [k, radius] = typical_contact(f);
     firmness.translation.push_back(std::max(2 * k.normal, 4 * k.tangential));
     firmness.rotation.push_back(4 * k.tangential + 2 * k.rolling / (radius * radius));
   }

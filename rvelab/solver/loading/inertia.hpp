@@ -19,12 +19,6 @@ struct RowSums {
   double floor_rotation = 0;        ///< over r^2, N/m
 };
 
-/// Normal force of two of the largest grains at an overlap (m), N: a scale for specimens without any contact.
-double typical_normal_force(const Model& model, double overlap);
-
-/// Sets softest_answer and hardening of the model from two of the largest grains.
-void set_typical_answers(Model& model);
-
 RowSums row_sums(const Model& model, const Assembly& assembly);
 
 /// Smallest 2/omega_max over the grains with physical masses (dashpots included: 2/omega (sqrt(1 + zeta^2) - zeta)), s;

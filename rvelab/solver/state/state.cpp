@@ -6,6 +6,7 @@
 #include "rvelab/cell/cell.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/solver/assembly/contact_states.hpp"
+#include "rvelab/solver/loading/typical_answers.hpp"
 
 namespace rvelab {
 
