@@ -85,9 +85,9 @@ std::string random_fault(std::mt19937& random) {
 /// What the files of a killed run hold; none if there is nothing yet. Throws if one of them does not open.
 std::optional<io::RecordedTest> left_by(const std::string& path) {
   if (std::filesystem::exists(path)) {
-    for (const auto& entry : io::Hdf5File::open(path).entries()) {
-      if (entry.type == "float64") io::Hdf5File::open(path).read<double>(entry.name);
-    }
+    const auto file = io::Hdf5File::open(path);  // once: a file of many snapshots has thousands of entries
+    for (const auto& entry : file.entries())
+      if (entry.type == "float64") file.read<double>(entry.name);
     return io::read_recorded_test(path);
   }
   bool begun = false;
