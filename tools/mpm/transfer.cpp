@@ -16,12 +16,13 @@ void Solver<D>::map_momentum() {
 template <int D>
 void Solver<D>::map_force() {
   const bool loaded = loads.any();
+  const Vec<D> frame = frame_acceleration();
   over_slabs([&](long k) {
     const auto& point = points[k];
     Lanes<D> stress[D] = {}, force = {};
     Vec<D> b = options.gravity;
     if (body_force) b += body_force(point.position, time);
-    if (loaded) b -= frame_acceleration();
+    if (loaded) b -= frame;
     for (int i = 0; i < D; ++i) {
       for (int j = 0; j < D; ++j) {
         stress[j][i] = -point.volume * (point.stress(i, j) + (i == j ? options.surface_pressure : 0));
