@@ -80,12 +80,16 @@ void Bodies<D>::book(int body, const Node<D>& node, int component, double impuls
 }
 
 template <int D>
-void Bodies<D>::set_end(Grid<D>& grid, const Planes<D>& planes, double time) {
+void Bodies<D>::hold_end(Grid<D>& grid, double time) {
   for (auto& contact : contacts_) {
     auto& node = grid.nodes[contact.node];
     contact.jump += stop(contact, all[contact.body].velocity.at(time), node.w);
   }
   hold_surface(grid, time, true);
+}
+
+template <int D>
+void Bodies<D>::book_reactions(const Grid<D>& grid, const Planes<D>& planes) {
   // Work is done over the displacement of the node in the end, which a second body at it may have changed.
   for (const auto& contact : contacts_) {
     const auto& node = grid.nodes[contact.node];

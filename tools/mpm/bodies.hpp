@@ -54,7 +54,13 @@ class Bodies {
   void set_start(Grid<D>& grid, double time);
   /// Velocities w at the end of the step; a is still the mapped velocity. The reaction of a component that a plane
   /// holds at a node is the plane's, not the body's.
-  void set_end(Grid<D>& grid, const Planes<D>& planes, double time);
+  void set_end(Grid<D>& grid, const Planes<D>& planes, double time) {
+    hold_end(grid, time);
+    book_reactions(grid, planes);
+  }
+  /// The two halves of it, for steps that hold velocities more than once.
+  void hold_end(Grid<D>& grid, double time);
+  void book_reactions(const Grid<D>& grid, const Planes<D>& planes);
 
  private:
   struct Contact {

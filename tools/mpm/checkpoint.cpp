@@ -27,6 +27,31 @@ void each_field(Point<D>& point, const Field& field) {
   field(point.half.data(), D);
 }
 
+template <int D, class Field>
+void each_field(FluidPoint<D>& point, const Field& field) {
+  field(point.velocity.data(), D);
+  field(point.affine.data(), D * D);
+  for (double* value : {&point.mass, &point.solids, &point.first_void_ratio, &point.conductivity, &point.pressure,
+                        &point.first_pressure, &point.first_vertical, &point.liquefied}) {
+    field(value, 1);
+  }
+}
+
+/// What the water has beside its points and the pressure, one by one.
+template <int D, class Visit>
+void each_total(Fluid<D>& water, Visit visit) {
+  for (double* value : {&water.nodal_kinetic, &water.gravity_work, &water.drag_loss, &water.water_work}) visit(*value);
+  for (double& value : water.outflow) visit(value);
+  const auto reactions = [&](auto& all) {
+    for (auto& each : all) {
+      for (double& value : each.reaction.impulse) visit(value);
+      visit(each.reaction.work);
+    }
+  };
+  reactions(water.planes.all);
+  reactions(water.bodies.all);
+}
+
 std::string pool_name(const std::string& material, long steps) {
   return "grains_" + material + "_" + std::to_string(steps) + ".h5";
 }
@@ -88,6 +113,59 @@ std::vector<double> clock_of(Progress progress) {
 
 }  // namespace
 
+namespace {
+
+template <int D>
+void write_water(Fluid<D>& water, OutputFile& file) {
+  std::vector<double> rows, totals;
+  for (auto& point : water.points) {
+    each_field<D>(point, [&](const double* values, int count) { rows.insert(rows.end(), values, values + count); });
+  }
+  file.write("fluid_points", rows, {water.points.size(), rows.size() / water.points.size()});
+  each_total<D>(water, [&](double value) { totals.push_back(value); });
+  file.write("fluid_totals", totals, {totals.size()});
+  const auto& pressure = water.pressure;
+  std::vector<std::int64_t> box(pressure.low().begin(), pressure.low().end());
+  box.insert(box.end(), pressure.count().begin(), pressure.count().end());
+  file.write("nodal_pressure_box", box);
+  file.write("nodal_pressure_Pa", pressure.values, {pressure.values.size()});
+}
+
+template <int D>
+void read_water(Fluid<D>& water, const InputFile& file, const std::string& folder) {
+  const auto rows = file.read("fluid_points");
+  std::size_t at = 0, width = 0, count = 0;
+  FluidPoint<D> any;
+  each_field<D>(any, [&](const double*, int each) { width += std::size_t(each); });
+  if (rows.size() != width * water.points.size()) {
+    of_another_scene(folder, "saturated points", rows.size() / width, water.points.size());
+  }
+  for (auto& point : water.points) {
+    each_field<D>(point, [&](double* values, int each) {
+      for (int i = 0; i < each; ++i) values[i] = rows[at++];
+    });
+  }
+  const auto totals = file.read("fluid_totals");
+  each_total<D>(water, [&](double&) { ++count; });
+  if (totals.size() != count) of_another_scene(folder, "totals of the water", totals.size(), count);
+  each_total<D>(water, [&, k = std::size_t(0)](double& value) mutable { value = totals[k++]; });
+  const auto box = file.read_whole("nodal_pressure_box");
+  const auto values = file.read("nodal_pressure_Pa");
+  typename Grid<D>::Index low, size;
+  std::int64_t nodes = 1;
+  for (std::size_t i = 0; i < D && box.size() == 2 * D; ++i) {
+    low[i] = int(box[i]);
+    size[i] = int(box[D + i]);
+    nodes *= box[D + i];
+  }
+  if (box.size() != 2 * D || nodes != std::int64_t(values.size())) {
+    of_another_scene(folder, "nodes of the pressure", values.size(), std::size_t(nodes));
+  }
+  water.pressure.restore(low, size, values);
+}
+
+}  // namespace
+
 template <int D>
 void write_checkpoint(const Model<D>& model, const Progress& progress, const std::string& folder) {
   const std::filesystem::path place(folder);
@@ -118,6 +196,8 @@ void write_checkpoint(const Model<D>& model, const Progress& progress, const std
   file.write("frame_times", progress.frame_times, {progress.frame_times.size()});
   file.write("watched", std::vector<std::int64_t>(model.watched.begin(), model.watched.end()));
   file.write("contact_at_surface", contacts_of(solver));
+  if (solver.loads.any()) file.write("load_work_J", {solver.load_work}, {1});
+  if (solver.fluid) write_water<D>(*solver.fluid, file);
   for (const auto& group : solver.groups) group.material->save(file, group.name);
   file.publish(true);
   remove_old_pools<D>(model, place);
@@ -180,6 +260,8 @@ void read_checkpoint(Model<D>& model, Progress& progress, const std::string& fol
                      ": its bodies were met by another contact than in this scene; leave out the --set of a body's "
                      "contact, or start the run anew in another folder");
   }
+  if (solver.loads.any()) solver.load_work = file.read("load_work_J").at(0);
+  if (solver.fluid) read_water<D>(*solver.fluid, file, folder);
   for (auto& group : solver.groups) group.material->restore(file, group.name);
 }
 

@@ -18,6 +18,9 @@ std::string frame_name(long frame, const std::string& what = "points") {
 
 std::span<const std::byte> bytes_of(const std::string& text) { return std::as_bytes(std::span(text)); }
 
+/// Of watched points in pore water.
+constexpr const char* water_columns[] = {"pore_pressure_Pa", "excess_pore_pressure_Pa", "pore_pressure_ratio"};
+
 constexpr const char* checksum_line = "# CRC-32C of the lines above: ";
 
 std::string with_checksum(const std::string& text) {
@@ -75,13 +78,36 @@ std::string history_header(const Solver<D>& solver) {
   std::string header =
       "time_s,steps,kinetic_J,potential_J,stress_work_J,pressure_work_J,boundary_work_J,mapping_loss_J,residual_J";
   for (int i = 0; i < D; ++i) header += std::string(",momentum_") + axis_names[i] + "_N_s";
+  if (solver.loads.any()) header += ",load_work_J";
+  if (solver.fluid) header += ",drag_loss_J,water_work_J,water_gravity_work_J,surface.outflow_m3";
   solver.each_driven([&](const auto& each) {
     for (int i = 0; i < D; ++i)
       header.append(",").append(each.name).append(".force_").append(axis_names[i]).append("_N");
     for (int i = 0; i < D; ++i)
       header.append(",").append(each.name).append(".displacement_").append(axis_names[i]).append("_m");
   });
+  if (solver.fluid) {
+    for (const auto& plane : solver.planes.all) {
+      header.append(",").append(plane.name).append(".water_force_N,").append(plane.name).append(".outflow_m3");
+    }
+  }
   return header;
+}
+
+/// N s, of planes and bodies on the water; empty without.
+template <int D>
+std::vector<double> water_impulses(const Solver<D>& solver) {
+  std::vector<double> impulses;
+  const auto add = [&](const auto& all) {
+    for (const auto& each : all) {
+      impulses.insert(impulses.end(), each.reaction.impulse.data(), each.reaction.impulse.data() + D);
+    }
+  };
+  if (solver.fluid) {
+    add(solver.fluid->planes.all);
+    add(solver.fluid->bodies.all);
+  }
+  return impulses;
 }
 
 template <int D>
@@ -91,17 +117,26 @@ std::vector<double> history_row(const Solver<D>& solver, const EnergyStart& star
   std::vector<double> row{solver.time,     double(solver.steps), b.kinetic,      b.potential, b.stress_work,
                           b.pressure_work, b.boundary_work,      b.mapping_loss, b.residual};
   for (int i = 0; i < D; ++i) row.push_back(b.momentum[i]);
+  if (solver.loads.any()) row.push_back(b.load_work);
+  if (solver.fluid) {
+    row.insert(row.end(), {b.drag_loss, b.water_work, b.water_gravity, solver.fluid->outflow.back()});
+  }
   before.resize(D * solver.count_driven(), 0.0);
+  const auto on_water = water_impulses<D>(solver);
   std::size_t at = 0;
   solver.each_driven([&](const auto& each) {
     for (int i = 0; i < D; ++i, ++at) {
+      const double impulse = each.reaction.impulse[i] + (on_water.empty() ? 0 : on_water[at]);
       // The soil's force on the boundary has the opposite sign.
-      row.push_back(since > 0 ? -(each.reaction.impulse[i] - before[at]) / since : 0);
-      before[at] = each.reaction.impulse[i];
+      row.push_back(since > 0 ? -(impulse - before[at]) / since : 0);
+      before[at] = impulse;
     }
     const Vec<D> displacement = each.velocity.displacement(solver.time);
     for (int i = 0; i < D; ++i) row.push_back(displacement[i]);
   });
+  for (std::size_t k = 0; solver.fluid && k < solver.planes.all.size(); ++k) {
+    row.insert(row.end(), {solver.fluid->force_on(solver.planes, int(k)), solver.fluid->outflow[k]});
+  }
   return row;
 }
 
@@ -120,6 +155,8 @@ std::string watched_header(const Model<D>& model) {
     for (const char* each : {"p_Pa", "q_Pa", "eps_q", "eps_v", "rotation_deg", "void_ratio", "fabric_anisotropy"}) {
       header += name + each;
     }
+    if (!model.solver.fluid) continue;
+    for (const char* each : water_columns) header += name + each;
   }
   return header;
 }
@@ -134,6 +171,9 @@ std::vector<double> watched_row(const Model<D>& model) {
     row.insert(row.end(),
                {mean_pressure<D>(point.stress), deviatoric_stress<D>(point.stress), deviatoric_strain<D>(point.strain),
                 -point.strain.trace(), rotation_degrees<D>(point.F), measures.void_ratio, measures.fabric_anisotropy});
+    if (!model.solver.fluid) continue;
+    const auto& water = model.solver.fluid->points[k];
+    row.insert(row.end(), {water.pressure, water.pressure - water.first_pressure, water.pressure_ratio()});
   }
   return row;
 }
@@ -188,6 +228,21 @@ void write_frame(const Model<D>& model, const std::string& folder, long frame) {
   scalars("fabric_anisotropy", [&](const P&, long k) { return all[k].fabric_anisotropy; });
   scalars("coordination_number", [&](const P&, long k) { return all[k].coordination_number; });
   scalars("plastic_strain", [&](const P&, long k) { return all[k].plastic_strain; });
+  if (model.solver.fluid) {
+    const auto& water = *model.solver.fluid;
+    const auto seepage = [&](const P& p) {
+      const auto& here = water.points[std::size_t(&p - points.data())];
+      return here.solids > 0 ? Vec<D>(here.porosity(p.volume) * (here.velocity - p.velocity)) : Vec<D>(Vec<D>::Zero());
+    };
+    vectors("seepage_m_s", seepage);
+    scalars("pore_pressure_Pa", [&](const P&, long k) { return water.points[k].pressure; });
+    scalars("excess_pore_pressure_Pa",
+            [&](const P&, long k) { return water.points[k].pressure - water.points[k].first_pressure; });
+    scalars("pore_pressure_ratio", [&](const P&, long k) { return water.points[k].pressure_ratio(); });
+    scalars("liquefied_at_s", [&](const P&, long k) { return water.points[k].liquefied; });
+    scalars("porosity",
+            [&](const P& p, long k) { return water.points[k].solids > 0 ? water.points[k].porosity(p.volume) : NAN; });
+  }
   file.publish();
 }
 
@@ -218,7 +273,7 @@ void expect_whole_scene(const std::string& folder) {
       "copy, change a scene by --resume with --set, or start the run anew");
 }
 
-void write_xdmf(const std::string& folder, const std::vector<double>& times, long points) {
+void write_xdmf(const std::string& folder, const std::vector<double>& times, long points, bool saturated) {
   std::ostringstream file;
   file << "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\"><Domain>\n"
           "<Grid Name=\"points\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
@@ -242,6 +297,13 @@ void write_xdmf(const std::string& folder, const std::vector<double>& times, lon
     for (const char* name : {"volume_m3", "p_Pa", "q_Pa", "eps_q", "eps_v", "rotation_deg", "void_ratio",
                              "fabric_anisotropy", "coordination_number", "plastic_strain"}) {
       attribute(name, "Scalar", n);
+    }
+    if (saturated) {
+      attribute("seepage_m_s", "Vector", n + " 3");
+      for (const char* name :
+           {"pore_pressure_Pa", "excess_pore_pressure_Pa", "pore_pressure_ratio", "liquefied_at_s", "porosity"}) {
+        attribute(name, "Scalar", n);
+      }
     }
     file << "</Grid>\n";
   }

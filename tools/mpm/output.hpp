@@ -57,6 +57,6 @@ void write_scene(const std::string& folder, const std::string& toml);
 /// InputError if scene.toml is not as write_scene left it.
 void expect_whole_scene(const std::string& folder);
 /// points.xdmf for all frames so far.
-void write_xdmf(const std::string& folder, const std::vector<double>& times, long points);
+void write_xdmf(const std::string& folder, const std::vector<double>& times, long points, bool saturated);
 
 }  // namespace mpm

@@ -29,11 +29,12 @@ struct Plane {
   int node = 0;    ///< number of its nodes along the axis
   int inside = 1;  ///< +1: the soil is on the upper side
   bool fixed = false;
+  bool open = false;  ///< to this phase (pore water at a drained plane): it holds nothing, and mirrors as it is
   VelocityHistory<D> velocity;
   double removed_at = std::numeric_limits<double>::infinity();  ///< s
   Reaction<D> reaction;
 
-  bool holds(int component) const { return fixed || component == axis; }
+  bool holds(int component) const { return fixed || (component == axis && !open); }
 };
 
 /// A node on the far side of planes, and the node whose velocity it mirrors.
@@ -67,8 +68,15 @@ class Planes {
   /// Adds impulse and work of each plane, once a is the change over the step. pic_fraction: the part of the nodal
   /// velocity itself, not of its change, that points take; planes give it too.
   void react(const Grid<D>& grid, double dt, double pic_fraction);
+  /// force(node, f): adds to the forces f (N) of the nodes that planes touch, after fold_force, what acts at them
+  /// beside those that were folded.
+  template <class Force>
+  void add_forces(const Force& force) {
+    for (auto& each : touched_) force(each.node, each.force.data());
+  }
   /// Restores the masses before folding, which the total change of kinetic energy and momentum need.
   void unfold(Grid<D>& grid) const;
+  bool active(int plane, double time) const { return time < all[plane].removed_at; }
   /// Whether a plane that the node lies on holds this component: the plane then sets it, and takes the reaction.
   bool holds(long node, int component) const { return !held_.empty() && (held_[node] >> component & 1) != 0; }
   bool is_mirror(long node) const { return !is_mirror_.empty() && is_mirror_[node] != 0; }
@@ -96,7 +104,6 @@ class Planes {
   void set(Grid<D>& grid, double time, bool end) const;
   Vec<D> shift(const MirrorNode<D>& mirror, const std::vector<Vec<D>>& speeds) const;
   std::vector<Vec<D>> speeds(double time) const;
-  bool active(int plane, double time) const { return time < all[plane].removed_at; }
 
   std::vector<MirrorNode<D>> mirrors_;
   std::vector<Touched> touched_;

@@ -81,7 +81,12 @@ class Cost {
            << " now), threads " << solver.workers.count() << ", wall " << wall << " s, processor " << processor
            << " s\n"
            << "continuum " << whole - grains << " s, grains " << grains << " s ("
-           << 100 * grains / std::max(whole, 1e-12) << " %)\n";
+           << 100 * grains / std::max(whole, 1e-12) << " %)";
+    if (solver.fluid) {
+      report << ", pore pressure " << solver.fluid->seconds << " s ("
+             << 100 * solver.fluid->seconds / std::max(whole, 1e-12) << " %)";
+    }
+    report << "\n";
     if (grains > 0) {
       report << "grain-steps " << grain_steps << ", " << (grain_steps - grain_steps_) / grains / 1e6 << " M a second";
       for (const auto& [name, each] : model_.grains) {
@@ -134,7 +139,7 @@ class Outputs {
     write_frame<D>(model_, folder_, number);
     if (scene_.networks) write_networks<D>(model_, folder_, number);
     progress_.frame_times.push_back(solver.time);
-    write_xdmf(folder_, progress_.frame_times, long(solver.points.size()));
+    write_xdmf(folder_, progress_.frame_times, long(solver.points.size()), solver.fluid != nullptr);
     advance_past(solver.time, scene_.frame_every, progress_.next_frame);
   }
   void save() {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "tools/mpm/scene_checks.hpp"
+#include "tools/mpm/scene_water.hpp"
 
 namespace mpm {
 namespace {
@@ -49,7 +50,7 @@ std::vector<std::vector<double>> read_motion(Keys& keys, std::size_t d) {
 
 int axis_of(const std::string& name) { return name == "x" ? 0 : name == "y" ? 1 : 2; }
 
-PlaneOfScene read_plane(Keys& keys, std::size_t d, const std::string& followed) {
+PlaneOfScene read_plane(Keys& keys, std::size_t d, const std::string& followed, bool with_water) {
   PlaneOfScene plane;
   plane.name = keys.name();
   plane.fixed = keys.choice("kind", {"roller", "fixed"}, true) == "fixed";
@@ -59,6 +60,7 @@ PlaneOfScene read_plane(Keys& keys, std::size_t d, const std::string& followed) 
   plane.soil_above = keys.choice("soil", {"above", "below"}) == "above";
   plane.removed_at = keys.number("removed_at_s", 1e300, 0);
   plane.motion = read_motion(keys, d);
+  plane.water = read_water_boundary(keys, with_water);
   keys.finish();
   for (const auto& row : plane.motion) {
     for (int i = 0; i < int(d); ++i) {
@@ -96,7 +98,7 @@ BodyOfScene read_body(Keys& keys) {
   return body;
 }
 
-RegionOfScene read_region(Keys& keys, std::size_t d) {
+RegionOfScene read_region(Keys& keys, std::size_t d, const std::optional<WaterOfScene>& water) {
   RegionOfScene region;
   region.material = keys.text("material");
   region.lower = keys.vector("lower_m", d, {});
@@ -107,6 +109,7 @@ RegionOfScene read_region(Keys& keys, std::size_t d) {
   if (std::lround(std::pow(double(along), double(d))) != region.points_per_cell) {
     keys.wrong("points_per_cell", d == 2 ? "must be a square: 1, 4, 9, 16" : "must be a cube: 1, 8, 27");
   }
+  read_region_water(keys, water, region);
   keys.finish();
   for (std::size_t i = 0; i < d; ++i) {
     if (!(region.lower[i] < region.upper[i])) keys.wrong("upper_m", "must be above lower_m along every axis");
@@ -135,6 +138,7 @@ void read_rest(Keys& file, Scene& scene) {
   auto loads = file.table("loads");
   scene.gravity = loads.vector("gravity_m_s2", d, std::vector<double>(d, 0));
   scene.surface_pressure = loads.number("surface_pressure_Pa", 0);
+  scene.loads = read_loads(loads, scene);
   loads.finish();
   auto initial = file.table("initial");
   const auto stress = initial.choice("stress", {"zero", "isotropic", "geostatic"});
@@ -155,6 +159,7 @@ void read_rest(Keys& file, Scene& scene) {
                                   (d == 2 ? "[0, -9.81]" : "[0, 0, -9.81]") + ", or another initial.stress");
     }
   }
+  scene.water = read_water(file, scene);
   auto output = file.table("output");
   // Outputs come once a step at most; intervals far below any step would be counted through one by one.
   const double least = 1e-6 * scene.duration;
@@ -194,10 +199,11 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& cases,
     override_table(file, copy);
   }
   for (const auto& assignment : assignments) assign(file, assignment);
+  include_record(file, path);
   Keys keys(file, path, "");
   // A misspelt table is reported before a key that is missing because of it.
-  for (const char* name :
-       {"scene", "grid", "time", "loads", "initial", "output", "material", "region", "boundary", "body", "case"}) {
+  for (const char* name : {"scene", "grid", "time", "loads", "initial", "fluid", "output", "material", "region",
+                           "boundary", "body", "case"}) {
     keys.known(name);
   }
   keys.finish();
@@ -210,8 +216,10 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& cases,
   read_rest(keys, scene);
   const auto d = std::size_t(scene.dimension);
   for (auto& each : keys.tables("material")) scene.materials.push_back(read_material(each));
-  for (auto& each : keys.tables("region")) scene.regions.push_back(read_region(each, d));
-  for (auto& each : keys.tables("boundary")) scene.planes.push_back(read_plane(each, d, scene.follows));
+  for (auto& each : keys.tables("region")) scene.regions.push_back(read_region(each, d, scene.water));
+  for (auto& each : keys.tables("boundary")) {
+    scene.planes.push_back(read_plane(each, d, scene.follows, scene.water.has_value()));
+  }
   for (auto& each : keys.tables("body")) scene.bodies.push_back(d == 2 ? read_body<2>(each) : read_body<3>(each));
   check_scene(scene, path);
   if (resolved != nullptr) {

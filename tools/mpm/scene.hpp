@@ -8,6 +8,7 @@
 
 #include "tools/mpm/bodies.hpp"
 #include "tools/mpm/continuum.hpp"
+#include "tools/mpm/fluid.hpp"
 #include "tools/mpm/keys.hpp"
 #include "tools/mpm/solver.hpp"
 
@@ -31,6 +32,14 @@ struct RegionOfScene {
   std::string material;
   std::vector<double> lower, upper, velocity;
   long points_per_cell = 4;
+  bool saturated = false;
+  double conductivity = 0, porosity = 0;  ///< m/s, 1; of a continuum (that of grains is their own)
+};
+
+/// Water that saturated soil begins with. table: m, height at which it has no pressure; NaN: it has none anywhere.
+struct WaterOfScene {
+  FluidOptions options;
+  double conductivity = 0, porosity = 0, table = NAN;
 };
 
 struct PlaneOfScene {
@@ -40,6 +49,7 @@ struct PlaneOfScene {
   bool soil_above = true, fixed = false;
   double removed_at = 0;
   std::vector<std::vector<double>> motion;
+  WaterBoundary water;
 };
 
 struct BodyOfScene {
@@ -67,6 +77,8 @@ struct Scene {
   double surface_pressure = 0;
   Stress stress = Stress::zero;
   double pressure = 0, surface = 0, earth_pressure_ratio = 1;
+  Loads loads;
+  std::optional<WaterOfScene> water;  ///< none: dry soil
   std::vector<MaterialOfScene> materials;
   std::vector<RegionOfScene> regions;
   std::vector<PlaneOfScene> planes;

@@ -1,5 +1,7 @@
 #include "tools/mpm/scene_checks.hpp"
 
+#include "tools/mpm/scene_water.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -163,6 +165,7 @@ void check_scene(const Scene& scene, const std::string& path) {
   check_overlaps(scene, path);
   check_sides(scene, path);
   check_watched(scene, path);
+  check_water(scene, path);
 }
 
 namespace {

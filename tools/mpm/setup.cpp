@@ -103,19 +103,51 @@ void fill(const Scene& scene, const RegionOfScene& region, const Bodies<D>& bodi
   }
 }
 
-/// kg/m^3 of the soil itself, by the name of the material.
+/// kg/m^3 of the soil itself without its water, by the name of the material.
 using Densities = std::map<std::string, double>;
 
-/// Pa, compression positive: what a point of this material and height carries at the start. Geostatic: of its own soil
-/// up to the surface, and by how much the layers of other soils above it are heavier.
+/// Of the soil of a region: with grains that of their first specimen.
+double porosity_of(const Scene& scene, const RegionOfScene& region, const Densities& soils) {
+  const auto& material = *std::find_if(scene.materials.begin(), scene.materials.end(),
+                                       [&](const auto& each) { return each.name == region.material; });
+  return material.grains ? 1 - soils.at(region.material) / material.grains->density : region.porosity;
+}
+
+/// kg/m^3, with the water of a saturated region.
+double density_of(const Scene& scene, const RegionOfScene& region, const Densities& soils) {
+  const double dry = soils.at(region.material);
+  return region.saturated ? dry + porosity_of(scene, region, soils) * scene.water->options.density : dry;
+}
+
+/// The region that a point of this material was filled from.
+template <int D>
+const RegionOfScene& region_of(const Scene& scene, const Vec<D>& position, const std::string& material) {
+  return *std::find_if(scene.regions.begin(), scene.regions.end(), [&](const auto& region) {
+    bool inside = region.material == material;
+    for (int i = 0; i < D; ++i) inside = inside && position[i] > region.lower[i] && position[i] < region.upper[i];
+    return inside;
+  });
+}
+
+/// Pa, of the pore water at a height.
+template <int D>
+double water_pressure_at(const Scene& scene, const RegionOfScene& region, double height) {
+  if (!region.saturated || std::isnan(scene.water->table)) return 0;
+  return scene.water->options.density * -scene.gravity[D - 1] * (scene.water->table - height);
+}
+
+/// Pa, compression positive, without the pore pressure: what a point of this material and height carries at the start.
+/// Geostatic: of its own soil up to the surface, and by how much the layers of other soils above it are heavier.
 template <int D>
 double pressure_at(const Scene& scene, const Vec<D>& position, const std::string& material, const Densities& soils) {
   if (scene.stress == Scene::Stress::isotropic) return scene.pressure;
   if (scene.stress == Scene::Stress::zero) return 0;
-  const double depth = scene.surface - position[D - 1], density = soils.at(material);
+  const auto& own = region_of<D>(scene, position, material);
+  const double depth = scene.surface - position[D - 1], density = density_of(scene, own, soils);
   double pressure = scene.surface_pressure + density * -scene.gravity[D - 1] * depth;
+  pressure -= water_pressure_at<D>(scene, own, position[D - 1]);
   for (const auto& region : scene.regions) {
-    const double excess = soils.at(region.material) - density;
+    const double excess = density_of(scene, region, soils) - density;
     const double layer = region.upper[D - 1] - std::max(region.lower[D - 1], position[D - 1]);
     bool above = excess != 0 && layer > 0;
     for (int i = 0; i + 1 < D; ++i) above = above && position[i] > region.lower[i] && position[i] < region.upper[i];
@@ -191,6 +223,36 @@ void expect_grains(const Model<D>& model) {
   }
 }
 
+/// Water in the points of saturated regions.
+template <int D>
+void fill_with_water(const Scene& scene, bool populate, Solver<D>& solver) {
+  auto water = std::make_unique<Fluid<D>>();
+  water->options = scene.water->options;
+  for (const auto& plane : scene.planes) water->options.boundaries.push_back(plane.water);
+  make_water_boundaries<D>(solver.planes, solver.bodies, *water);
+  water->points.resize(solver.points.size());
+  const auto& of = *scene.water;
+  water->first_pressure = [table = of.table, weight = of.options.density * -vector_of<D>(scene.gravity)[D - 1]](
+                              double y) { return std::isnan(table) ? 0 : weight * std::max(0.0, table - y); };
+  for (const auto& group : solver.groups) {
+    for (long k = group.first; populate && k < group.first + group.count; ++k) {
+      const auto& point = solver.points[k];
+      const auto& region = region_of<D>(scene, point.position, group.name);
+      if (!region.saturated) continue;
+      const auto& material = *std::find_if(scene.materials.begin(), scene.materials.end(),
+                                           [&](const auto& each) { return each.name == group.name; });
+      auto& here = water->points[k];
+      here.solids = material.grains ? point.mass / material.grains->density : (1 - region.porosity) * point.volume;
+      here.first_void_ratio = here.void_ratio(point.volume);
+      here.conductivity = region.conductivity;
+      here.pressure = here.first_pressure = water_pressure_at<D>(scene, region, point.position[D - 1]);
+      here.first_vertical = -point.stress(D - 1, D - 1);
+      here.velocity = point.velocity;
+    }
+  }
+  solver.fluid = std::move(water);
+}
+
 template <int D>
 void set_options(const Scene& scene, Solver<D>& solver) {
   solver.grid.cell = solver.first_cell = vector_of<D>(scene.cell);
@@ -201,6 +263,7 @@ void set_options(const Scene& scene, Solver<D>& solver) {
   solver.options.cfl = scene.cfl;
   solver.options.gravity = vector_of<D>(scene.gravity);
   solver.options.surface_pressure = scene.surface_pressure;
+  solver.loads = scene.loads;
 }
 
 /// What materials need before their points are there: pools of RVEs, specimens, densities.
@@ -282,6 +345,7 @@ std::unique_ptr<Model<D>> set_up(const Scene& scene, int threads, const std::str
   Stock<D> stock{specimens, populate, {}, {}};
   stock.open(scene, *model, source);
   for (const auto& material : scene.materials) add_group(scene, material, *model, stock);
+  if (scene.water) fill_with_water<D>(scene, populate, model->solver);
   watch_points(scene, *model);
   return model;
 }

@@ -3,6 +3,9 @@
 #include <chrono>
 #include <sstream>
 
+#include "tools/mpm/fluid.hpp"
+#include "tools/mpm/transfer.hpp"
+
 namespace mpm {
 namespace {
 
@@ -23,6 +26,11 @@ double now() { return std::chrono::duration<double>(std::chrono::steady_clock::n
 int slab_of(int row) { return row >= 0 ? row / slab_rows : -((-row + slab_rows - 1) / slab_rows); }
 
 }  // namespace
+
+template <int D>
+Solver<D>::Solver(int threads) : workers(threads) {}
+template <int D>
+Solver<D>::~Solver() = default;
 
 template <int D>
 const MaterialGroup<D>& Solver<D>::group_of(long point) const {
@@ -132,51 +140,44 @@ void Solver<D>::sort_into_slabs() {
   if ((first & 1) != 0) slab_begin_.insert(slab_begin_.begin(), 0);
 }
 
-/// work(node, piece) for each node with mass, in pieces that no number of threads changes.
 template <int D>
-template <class Work>
-void Solver<D>::over_nodes(const Work& work) {
-  const long n = long(grid.nodes.size());
-  workers.for_each((n + chunk - 1) / chunk, [&](std::int64_t piece) {
-    for (long k = piece * chunk; k < std::min(n, long(piece + 1) * chunk); ++k) {
-      if (grid.nodes[k].mass > 0) work(grid.nodes[k], piece);
-    }
-  });
-}
-
-template <int D>
-void Solver<D>::clear_grid() {
-  const long n = long(grid.nodes.size());
+void Solver<D>::clear(Grid<D>& of) {
+  const long n = long(of.nodes.size());
   workers.for_each((n + chunk - 1) / chunk, [&](std::int64_t piece) {
     const long from = long(piece) * chunk;
-    grid.clear(from, std::min(n, from + chunk));
+    of.clear(from, std::min(n, from + chunk));
   });
 }
 
 template <int D>
-void Solver<D>::start_velocities() {
-  over_nodes([](auto& node, std::int64_t) {
+void Solver<D>::start_velocities(Phase<D> phase) {
+  over_nodes(phase.grid, [](auto& node, std::int64_t) {
     for (int i = 0; i < D; ++i) node.a[i] = node.v[i] = node.v[i] / node.mass;
   });
-  planes.fold_momentum(grid, time);
-  planes.set_start(grid, time);
-  planes.keep_mapped(grid);
-  bodies.detect_contact(grid, planes, points, time, workers);
-  bodies.set_start(grid, time);
-  planes.set_start(grid, time);
+  phase.planes.fold_momentum(phase.grid, time);
+  phase.planes.set_start(phase.grid, time);
+  phase.planes.keep_mapped(phase.grid);
+  phase.bodies.detect_contact(phase.grid, phase.planes, points, time, workers);
+  phase.bodies.set_start(phase.grid, time);
+  phase.planes.set_start(phase.grid, time);
 }
 
 template <int D>
 void Solver<D>::end_velocities(double dt) {
   planes.fold_force(grid);
-  over_nodes([&](auto& node, std::int64_t) {
+  over_nodes(grid, [&](auto& node, std::int64_t) {
     for (int i = 0; i < D; ++i) node.w[i] = node.v[i] + dt * (node.w[i] / node.mass);
   });
   bodies.set_end(grid, planes, time + dt);
   planes.set_end(grid, time + dt);
-  planes.unfold(grid);
-  kinetic_.assign((grid.nodes.size() + chunk - 1) / chunk, 0);
-  over_nodes([&](auto& node, std::int64_t piece) {
+  take_changes(solid(), dt);
+}
+
+template <int D>
+void Solver<D>::take_changes(Phase<D> phase, double dt) {
+  phase.planes.unfold(phase.grid);
+  kinetic_.assign((phase.grid.nodes.size() + chunk - 1) / chunk, 0);
+  over_nodes(phase.grid, [&](auto& node, std::int64_t piece) {
     double change = 0;
     for (int i = 0; i < D; ++i) {
       const double mapped = node.a[i];
@@ -185,8 +186,35 @@ void Solver<D>::end_velocities(double dt) {
     }
     kinetic_[piece] += 0.5 * node.mass * change;
   });
-  for (const double each : kinetic_) nodal_kinetic += each;
-  planes.react(grid, dt, options.pic_fraction);
+  for (const double each : kinetic_) phase.nodal_kinetic += each;
+  phase.planes.react(phase.grid, dt, options.pic_fraction);
+}
+
+/// Of the mean velocities of the step at the nodes; strips, over the points' gradients.
+template <int D>
+void Solver<D>::add_load_work(double dt) {
+  const Vec<D> frame = frame_acceleration();
+  const auto power = [&](const Grid<D>& of, const Vec<D>& b) {
+    double sum = 0;
+    for (const auto& node : of.nodes) {
+      for (int i = 0; i < D; ++i) sum += node.mass * b[i] * (node.w[i] - 0.5 * node.a[i]);
+    }
+    return sum;
+  };
+  load_work -= dt * power(grid, frame);
+  if (fluid) {
+    load_work -= dt * power(fluid->grid, frame);
+    fluid->gravity_work += dt * power(fluid->grid, options.gravity);
+  }
+  if (loads.strips.empty()) return;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const double pressure = loads.strip_pressure(points[k].position[0], time);
+    if (pressure == 0) continue;
+    Taken<D> taken;
+    take_velocity<D>(grid, supports_[k], true, taken);
+    const double mean = 0.5 * (points[k].gradient(D - 1, D - 1) + dt * taken.gradient[D - 1][D - 1]);
+    load_work -= points[k].volume * pressure * mean;
+  }
 }
 
 template <int D>
@@ -210,9 +238,9 @@ void Solver<D>::stresses(double dt) {
 /// MUSL: nodal velocities from what the points have now, at the weights that the step began with.
 template <int D>
 void Solver<D>::second_map(double dt) {
-  clear_grid();
+  clear(grid);
   map_momentum();
-  over_nodes([](auto& node, std::int64_t) {
+  over_nodes(grid, [](auto& node, std::int64_t) {
     for (int i = 0; i < D; ++i) node.a[i] = node.v[i] = node.v[i] / node.mass;
   });
   planes.fold_momentum(grid, time + dt);
@@ -220,24 +248,33 @@ void Solver<D>::second_map(double dt) {
   planes.set_start(grid, time + dt);
 }
 
+/// Grid, supports and slabs of this step's places.
 template <int D>
-void Solver<D>::step(double dt) {
-  const double begin = now(), before = material_seconds;
+void Solver<D>::begin_step() {
   place_grid();
   find_supports();
   sort_into_slabs();
-  clear_grid();
+  clear(grid);
+}
+
+template <int D>
+void Solver<D>::step(double dt) {
+  if (fluid) return saturated_step(dt);
+  const double begin = now(), before = material_seconds;
+  begin_step();
   map_momentum();
-  start_velocities();
+  start_velocities(solid());
   if (options.scheme == Scheme::usf) {
     gradients(dt);
     stresses(dt);
     map_force();
     end_velocities(dt);
+    if (loads.any()) add_load_work(dt);
     move_points(dt);
   } else {
     map_force();
     end_velocities(dt);
+    if (loads.any()) add_load_work(dt);
     move_points(dt);
     second_map(dt);
     gradients(dt);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tools/mpm/bodies.hpp"
+#include "tools/mpm/loads.hpp"
 #include "tools/mpm/material.hpp"
 #include "tools/mpm/planes.hpp"
 #include "tools/mpm/shape.hpp"
@@ -42,6 +43,18 @@ struct Options {
   double surface_pressure = 0;
 };
 
+/// What solid and pore water have each for itself.
+template <int D>
+struct Phase {
+  Grid<D>& grid;
+  Planes<D>& planes;
+  Bodies<D>& bodies;
+  double& nodal_kinetic;
+};
+
+template <int D>
+struct Fluid;
+
 template <int D>
 class Solver {
  public:
@@ -54,6 +67,8 @@ class Solver {
   Options<D> options;
   /// J, change of kinetic energy at the nodes since the start; what the points have less was lost in mapping.
   double nodal_kinetic = 0;
+  Loads loads;
+  double load_work = 0;  ///< J, of `loads` on the soil and its water
   double time = 0;
   long steps = 0;
   double grid_seconds = 0, material_seconds = 0;
@@ -63,7 +78,10 @@ class Solver {
   /// Body force of position and time, m/s^2, beside gravity; empty: none.
   std::function<Vec<D>(const Vec<D>&, double)> body_force;
 
-  explicit Solver(int threads) : workers(threads) {}
+  std::unique_ptr<Fluid<D>> fluid;  ///< null: dry soil
+
+  explicit Solver(int threads);
+  ~Solver();
   const MaterialGroup<D>& group_of(long point) const;
   /// s, from the fastest wave and the fastest point, or from a body or plane that is faster than both.
   double stable_step() const;
@@ -82,22 +100,64 @@ class Solver {
   std::size_t count_driven() const { return planes.all.size() + bodies.all.size(); }
 
  private:
+  void begin_step();
   void place_grid();
   void find_supports();
   void sort_into_slabs();
-  template <class Work>
-  void over_slabs(const Work& work);
-  template <class Work>
-  void over_nodes(const Work& work);
-  void clear_grid();
+  void clear(Grid<D>& of);
   void map_momentum();
   void map_force();
-  void start_velocities();
+  void start_velocities(Phase<D> phase);
   void end_velocities(double dt);
+  void take_changes(Phase<D> phase, double dt);
+  void add_load_work(double dt);
+  /// m/s^2, of the frame that the scene is seen from.
+  Vec<D> frame_acceleration() const { return loads.shaking.acceleration(time) * Vec<D>::Unit(loads.shaking.axis); }
   void gradients(double dt);
   void stresses(double dt);
   void move_points(double dt);
   void second_map(double dt);
+  Phase<D> solid() { return {grid, planes, bodies, nodal_kinetic}; }
+  // saturated_step.cpp
+  void saturated_step(double dt);
+  void map_saturated_force();
+  void assemble_water();
+  void predict_velocities(double dt);
+  void hold_velocities(double dt);
+  void project(double dt);
+  void correct_velocities(const std::vector<double>& dp, double dt);
+  void balance_water(double dt);
+  void move_water(double dt);
+
+  /// work(point) in parallel, in an order of sums that no number of threads changes: even slabs, then odd ones.
+  template <class Work>
+  void over_slabs(const Work& work) {
+    const long slabs = long(slab_begin_.size()) - 1;
+    for (const long parity : {0L, 1L}) {
+      workers.for_each((slabs - parity + 1) / 2, [&](std::int64_t piece) {
+        const long slab = 2 * piece + parity;
+        for (long k = slab_begin_[slab]; k < slab_begin_[slab + 1]; ++k) work(order_[k]);
+      });
+    }
+  }
+  /// work(node, piece) for each node with mass, in pieces that no number of threads changes.
+  template <class Work>
+  void over_nodes(Grid<D>& of, const Work& work) {
+    const long n = long(of.nodes.size());
+    workers.for_each((n + chunk - 1) / chunk, [&](std::int64_t piece) {
+      for (long k = piece * chunk; k < std::min(n, long(piece + 1) * chunk); ++k) {
+        if (of.nodes[k].mass > 0) work(of.nodes[k], piece);
+      }
+    });
+  }
+  /// work(point) in parallel, where points are written alone.
+  template <class Work>
+  void over_points(const Work& work) {
+    const long n = long(points.size());
+    workers.for_each((n + chunk - 1) / chunk, [&](std::int64_t piece) {
+      for (long k = piece * chunk; k < std::min(n, long(piece + 1) * chunk); ++k) work(k);
+    });
+  }
 
   static constexpr long chunk = 1024;  ///< points of one piece of work; sums over pieces are made in their order
   std::vector<Support<D>> supports_;

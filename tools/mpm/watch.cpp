@@ -95,7 +95,7 @@ template <int D>
 void watch_energy(const Solver<D>& solver, const EnergyStart& start, Watched& seen, std::ostream& tell) {
   const auto b = energy_balance<D>(solver, start);
   for (const double energy : {b.kinetic, start.kinetic, b.potential, b.stress_work, b.pressure_work, b.boundary_work,
-                              stored_energy<D>(solver)}) {
+                              b.load_work, b.drag_loss, b.water_work, b.water_gravity, stored_energy<D>(solver)}) {
     seen.energy = std::max(seen.energy, std::abs(energy));
   }
   // Mapping may lose energy; what it gains comes from nothing too.

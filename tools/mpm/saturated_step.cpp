@@ -1,0 +1,312 @@
+// One step of saturated soil (USF). With lumped mass and drag each node is a system of two:
+//
+//   H = [m_s + dt d, -dt d; -dt d, m_f + dt d],   (v_s*, v_f*) = H^-1 (m_s v_s + dt F_s, m_f v_f + dt F_f)
+//
+// Stress of the solid explicit; forces with the pressure of the step before; then L dp = -D(v*), and both velocities
+// change by dt H^-1 D^T dp (pore_pressure.hpp). The step is stable for every conductivity: its bound is that of the
+// skeleton without water.
+#include <chrono>
+
+#include "tools/mpm/fluid.hpp"
+#include "tools/mpm/solver.hpp"
+#include "tools/mpm/transfer.hpp"
+
+namespace mpm {
+namespace {
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+/// Pressure and its gradient (Pa/m) at a point.
+template <int D>
+double pressure_at(const Grid<D>& grid, const Hat<D>& hat, const std::vector<double>& values, Vec<D>& gradient) {
+  double pressure = 0;
+  gradient.setZero();
+  for (int c = 0; c < 1 << D; ++c) {
+    typename Grid<D>::Index node;
+    double weight = 1;
+    for (int i = 0; i < D; ++i) {
+      node[i] = hat.node[i] + (c >> i & 1);
+      weight *= hat.weight[i][c >> i & 1];
+    }
+    const double value = values[grid.flat(node)];
+    pressure += weight * value;
+    for (int i = 0; i < D; ++i) {
+      double slope = value * ((c >> i & 1) != 0 ? 1 : -1) / grid.cell[i];
+      for (int j = 0; j < D; ++j) slope *= j == i ? 1 : hat.weight[j][c >> j & 1];
+      gradient[i] += slope;
+    }
+  }
+  return pressure;
+}
+
+}  // namespace
+
+template <int D>
+void Solver<D>::map_saturated_force() {
+  auto& water = *fluid;
+  const Vec<D> b = options.gravity - frame_acceleration();
+  over_slabs([&](long k) {
+    const auto& point = points[k];
+    const auto& here = water.points[k];
+    Vec<D> gradient = Vec<D>::Zero();
+    double pressure = 0;
+    if (here.mass > 0) {
+      pressure = pressure_at<D>(grid, hat_at<D>(grid, point.position), water.pressure.values, gradient);
+      gradient *= here.porosity(point.volume) * point.volume;
+    }
+    Lanes<D> stress[D] = {}, force = {}, none[D] = {}, on_water = {};
+    const double outside = options.surface_pressure - pressure;
+    for (int i = 0; i < D; ++i) {
+      for (int j = 0; j < D; ++j) stress[j][i] = -point.volume * (point.stress(i, j) + (i == j ? outside : 0));
+      force[i] = point.mass * b[i] + gradient[i];
+      on_water[i] = here.mass * b[i] - gradient[i];
+    }
+    if (!loads.strips.empty()) stress[D - 1][D - 1] -= point.volume * loads.strip_pressure(point.position[0], time);
+    give_force<D>(grid, supports_[k], stress, force);
+    if (here.mass > 0) give_force<D>(water.grid, supports_[k], none, on_water);
+  });
+}
+
+/// D and the drag, of the places and volumes of now.
+template <int D>
+void Solver<D>::assemble_water() {
+  auto& water = *fluid;
+  water.pressure.clear(grid);
+  water.drag.assign(grid.nodes.size(), 0);
+  for (const auto& group : groups) {
+    const double shear = 0.25 * group.material->wave_modulus();
+    over_slabs([&](long k) {
+      if (k < group.first || k >= group.first + group.count || water.points[k].mass == 0) return;
+      const auto& point = points[k];
+      const double n = water.points[k].porosity(point.volume);
+      water.pressure.add(grid, supports_[k], hat_at<D>(grid, point.position), point.volume, n, shear,
+                         n / water.options.bulk_modulus);
+      const double drag = n * n * water.options.density * FluidOptions::standard_gravity /
+                          water.conductivity(k, point.volume) * point.volume;
+      each_row<D>(water.drag.data(), grid, supports_[k], [&](double* row, double across, const double*, const double*) {
+        for (int r = 0; r < 3; ++r) row[r] += drag * across * supports_[k].weight[0][r];
+      });
+    });
+  }
+  water.pressure.fold(grid, planes, water.planes);
+  water.set_roles(*this);
+}
+
+/// H^-1 and v* of the nodes; held components have the velocity of what holds them.
+template <int D>
+void Solver<D>::predict_velocities(double dt) {
+  auto& water = *fluid;
+  const auto held = [&](long node, int i) { return std::pair(planes.holds(node, i), water.planes.holds(node, i)); };
+  water.folded_drag = water.drag;
+  for (const auto& mirror : planes.mirror_nodes()) water.folded_drag[mirror.image] += water.drag[mirror.node];
+  water.mobility.assign(grid.nodes.size() * D, Mobility{-1, 0, 0});
+  const auto each_node = [&](const auto& work) {
+    const long n = long(grid.nodes.size());
+    workers.for_each((n + chunk - 1) / chunk, [&](std::int64_t piece) {
+      for (long at = piece * chunk; at < std::min(n, long(piece + 1) * chunk); ++at) {
+        auto& s = grid.nodes[at];
+        auto& f = water.grid.nodes[at];
+        if (s.mass > 0 && !planes.is_mirror(at)) work(at, s, f);
+      }
+    });
+  };
+  each_node([&](long at, auto& s, auto& f) {
+    const double e = dt * water.folded_drag[at], both = s.mass * f.mass + e * (s.mass + f.mass);
+    for (int i = 0; i < D; ++i) {
+      auto& m = water.mobility[at * D + i];
+      const auto [solid_held, fluid_held] = held(at, i);
+      m = {solid_held ? 0 : 1 / (s.mass + e), 0, fluid_held || !(f.mass > 0) ? 0 : 1 / (f.mass + e)};
+      if (!solid_held && !fluid_held && f.mass > 0) m = {(f.mass + e) / both, e / both, (s.mass + e) / both};
+      const double on_solid = s.mass * s.v[i] + dt * s.w[i], on_fluid = f.mass * f.v[i] + dt * f.w[i];
+      s.w[i] = m.solid * on_solid + m.both * on_fluid;
+      f.w[i] = m.both * on_solid + m.fluid * on_fluid;
+    }
+  });
+  planes.set_end(grid, time + dt);
+  water.planes.set_end(water.grid, time + dt);
+  // One phase held, the other drags along it.
+  each_node([&](long at, auto& s, auto& f) {
+    const double e = dt * water.folded_drag[at];
+    for (int i = 0; i < D; ++i) {
+      const auto [solid_held, fluid_held] = held(at, i);
+      const auto& m = water.mobility[at * D + i];
+      if (solid_held && !fluid_held) f.w[i] += m.fluid * e * s.w[i];
+      if (fluid_held && !solid_held) s.w[i] += m.solid * e * f.w[i];
+    }
+  });
+  hold_velocities(dt);
+}
+
+/// Bodies and planes hold both phases.
+template <int D>
+void Solver<D>::hold_velocities(double dt) {
+  bodies.hold_end(grid, time + dt);
+  fluid->bodies.hold_end(fluid->grid, time + dt);
+  planes.set_end(grid, time + dt);
+  fluid->planes.set_end(fluid->grid, time + dt);
+}
+
+/// Both velocities by dt H^-1 D^T dp.
+template <int D>
+void Solver<D>::correct_velocities(const std::vector<double>& dp, double dt) {
+  auto& water = *fluid;
+  const long n = long(grid.nodes.size());
+  workers.for_each((n + chunk - 1) / chunk, [&](std::int64_t piece) {
+    for (long at = piece * chunk; at < std::min(n, long(piece + 1) * chunk); ++at) {
+      if (!water.pressure.reaches(at) || water.mobility[at * D].solid < 0) continue;
+      double solid[D], fluid_force[D];
+      water.pressure.force(grid, at, dp, true, solid, fluid_force);
+      for (int i = 0; i < D; ++i) {
+        const auto& m = water.mobility[at * D + i];
+        grid.nodes[at].w[i] += dt * (m.solid * solid[i] + m.both * fluid_force[i]);
+        water.grid.nodes[at].w[i] += dt * (m.both * solid[i] + m.fluid * fluid_force[i]);
+      }
+    }
+  });
+  planes.set_end(grid, time + dt);
+  water.planes.set_end(water.grid, time + dt);
+}
+
+template <int D>
+void Solver<D>::project(double dt) {
+  const double begin = now();
+  auto& water = *fluid;
+  auto& pressure = water.pressure;
+  using Role = typename PorePressure<D>::Role;
+  std::vector<double> dp(grid.nodes.size(), 0.0), right(grid.nodes.size(), 0.0), stored(grid.nodes.size(), 0.0);
+  for (std::size_t at = 0; at < dp.size(); ++at) {
+    if (pressure.roles[at] == Role::given) dp[at] = pressure.targets[at] - pressure.values[at];
+    if (pressure.roles[at] == Role::none) pressure.values[at] = 0;
+  }
+  correct_velocities(dp, dt);
+  const auto velocity = [&](long at) {
+    return std::pair<const double*, const double*>(grid.nodes[at].w, water.grid.nodes[at].w);
+  };
+  pressure.divergence(grid, workers, velocity, right);
+  pressure.stored(grid, dp, dt, workers, stored);
+  for (std::size_t at = 0; at < dp.size(); ++at) right[at] = -right[at] - stored[at];
+  std::vector<double> change(grid.nodes.size(), 0.0);
+  pressure.solve(grid, water.mobility, right, dt, workers, change);
+  correct_velocities(change, dt);
+  for (std::size_t at = 0; at < dp.size(); ++at) {
+    dp[at] += change[at];
+    pressure.values[at] += dp[at];
+  }
+  hold_velocities(dt);
+  // What the step added to the forces that the planes have recorded.
+  const auto add = [&](double sign, bool of_solid) {
+    return [&, sign, of_solid](long at, double* force) {
+      double solid[D], on_water[D];
+      pressure.force(grid, at, dp, false, solid, on_water);
+      for (int i = 0; i < D; ++i) {
+        const double slip = water.grid.nodes[at].w[i] - grid.nodes[at].w[i];
+        force[i] += (of_solid ? solid[i] : on_water[i]) + sign * water.drag[at] * slip;
+      }
+    };
+  };
+  planes.add_forces(add(1, true));
+  water.planes.add_forces(add(-1, false));
+  water.seconds += now() - begin;
+}
+
+/// Energy that the water took and gave, and what flowed out.
+template <int D>
+void Solver<D>::balance_water(double dt) {
+  auto& water = *fluid;
+  auto& pressure = water.pressure;
+  using Role = typename PorePressure<D>::Role;
+  std::vector<double> rate(grid.nodes.size(), 0.0);
+  for (long at = 0; at < long(grid.nodes.size()); ++at) {
+    const auto& s = grid.nodes[at];
+    const auto& f = water.grid.nodes[at];
+    if (!(f.mass > 0)) continue;
+    for (int i = 0; i < D; ++i) {
+      const double solid = 0.5 * (s.w[i] + s.a[i]), fluid_mean = 0.5 * (f.w[i] + f.a[i]);
+      water.drag_loss += dt * water.drag[at] * (f.w[i] - s.w[i]) * (fluid_mean - solid);
+    }
+  }
+  const auto mean = [&](long at) {
+    std::pair<Vec<D>, Vec<D>> mean;
+    for (int i = 0; i < D; ++i) {
+      mean.first[i] = 0.5 * (grid.nodes[at].w[i] + grid.nodes[at].a[i]);
+      mean.second[i] = 0.5 * (water.grid.nodes[at].w[i] + water.grid.nodes[at].a[i]);
+    }
+    return mean;
+  };
+  pressure.divergence(grid, workers, mean, rate);
+  for (std::size_t at = 0; at < rate.size(); ++at) {
+    if (pressure.roles[at] != Role::none) water.water_work += dt * pressure.values[at] * rate[at];
+  }
+  const auto end = [&](long at) {
+    return std::pair<const double*, const double*>(grid.nodes[at].w, water.grid.nodes[at].w);
+  };
+  pressure.divergence(grid, workers, end, rate);
+  for (long at = 0; at < long(rate.size()); ++at) {
+    if (pressure.roles[at] == Role::given) water.outflow[water.outlet_at(grid.index(at), time)] -= dt * rate[at];
+  }
+}
+
+template <int D>
+void Solver<D>::move_water(double dt) {
+  auto& water = *fluid;
+  const double pic = options.pic_fraction;
+  over_points([&](long k) {
+    auto& here = water.points[k];
+    if (here.mass == 0) return;
+    Taken<D> taken;
+    take_velocity<D>(water.grid, supports_[k], options.affine, taken);
+    for (int i = 0; i < D; ++i) {
+      here.velocity[i] = pic * taken.w[i] + (1 - pic) * (here.velocity[i] + taken.added[i]);
+      for (int j = 0; j < D; ++j) here.affine(i, j) = taken.gradient[j][i];
+    }
+    here.affine = carried_gradient<D>(here.affine, dt);
+    Vec<D> gradient;
+    here.pressure = pressure_at<D>(grid, hat_at<D>(grid, points[k].position), water.pressure.values, gradient);
+    if (std::isnan(here.liquefied) && here.first_vertical > 0 && here.pressure_ratio() > 0.9) {
+      here.liquefied = time + dt;
+    }
+  });
+}
+
+template <int D>
+void Solver<D>::saturated_step(double dt) {
+  const double begin = now(), before = material_seconds;
+  auto& water = *fluid;
+  begin_step();
+  water.begin_step(*this);
+  clear(water.grid);
+  map_momentum();
+  over_slabs([&](long k) {
+    const auto& here = water.points[k];
+    if (here.mass > 0)
+      give_momentum<D>(water.grid, supports_[k], here.mass, here.velocity, here.affine, options.affine);
+  });
+  start_velocities(solid());
+  start_velocities(water.phase());
+  gradients(dt);
+  stresses(dt);
+  assemble_water();
+  map_saturated_force();
+  planes.fold_force(grid);
+  water.planes.fold_force(water.grid);
+  predict_velocities(dt);
+  project(dt);
+  bodies.book_reactions(grid, planes);
+  water.bodies.book_reactions(water.grid, water.planes);
+  planes.unfold(grid);
+  water.planes.unfold(water.grid);
+  balance_water(dt);
+  take_changes(solid(), dt);
+  take_changes(water.phase(), dt);
+  add_load_work(dt);
+  move_water(dt);
+  move_points(dt);
+  time += dt;
+  ++steps;
+  grid_seconds += now() - begin - (material_seconds - before);
+}
+
+template void Solver<2>::saturated_step(double);
+template void Solver<3>::saturated_step(double);
+
+}  // namespace mpm
