@@ -22,6 +22,8 @@ double rate_of(double inertial_number, const Rve& rve) {
 
 Specimen with_damping(Specimen s, const Case& asked) {
   s.damping.local = asked("local_damping");
+  // Grains damped by 0.99 move as if they were a hundred times heavier, and are pushed deep.
+  if (s.damping.local > 0.9) s.solver.max_overlap_ratio = 0.5;
   if (asked("restitution") < 1) {
     s.damping.dashpot = Dashpot::restitution;
     s.damping.restitution = asked("restitution");
