@@ -147,6 +147,26 @@ TEST_CASE("Loads in time that are wrong are refused, with the key and the remedy
   CHECK_THAT(refusal(", history = [[0, 0], [0.01, 1e3]]", ""), Contains("give rows [s, Pa], or a pulse"));
 }
 
+TEST_CASE("Absorbing and periodic boundaries that are wrong are refused, with the key and the remedy") {
+  const std::string base = "kind = \"fixed\"\naxis = \"y\"\nat_m = 0\n";
+  const auto at_base = [&](const std::string& to) { return refusal(base, to + "axis = \"y\"\nat_m = 0\n"); };
+  const std::string absorbing = "kind = \"absorbing\"\ndensity_kg_m3 = 2600\n";
+  CHECK(at_base(absorbing + "shear_wave_m_s = 500\n") == "accepted");
+  CHECK(at_base(absorbing + "shear_wave_m_s = 500\nmotion = [[0, 0, 0], [0.01, 0.1, 0]]\n") == "accepted");
+  CHECK_THAT(at_base(absorbing), Contains("the key boundary.shear_wave_m_s is missing"));
+  CHECK_THAT(at_base(absorbing + "shear_wave_m_s = -1\n"), Contains("it must be positive"));
+  CHECK_THAT(at_base(absorbing + "shear_wave_m_s = 500\nmotion = [[0, 0, 0.1]]\n"),
+             Contains("boundary.motion is the shear wave that comes up: along the plane"));
+  const std::string left = "name = \"left\"\nkind = \"roller\"\naxis = \"x\"\nat_m = 0\n";
+  const auto at_left = [&](const std::string& to) {
+    return refusal(left, "name = \"left\"\nkind = \"periodic\"\naxis = \"x\"\nat_m = 0\n" + to);
+  };
+  CHECK_THAT(at_left(""), Contains("the key boundary.to_m is missing"));
+  CHECK_THAT(at_left("to_m = -1\n"), Contains("boundary.to_m is the upper of two planes"));
+  CHECK_THAT(at_left("to_m = 1.9\n"), Contains("lie beyond boundary.left.to_m = 1.9"));
+  CHECK_THAT(at_left("to_m = 2.1\n"), Contains("to_m must be a whole number of cells"));
+}
+
 TEST_CASE("Water that is enclosed and cannot be compressed is refused for want of a datum") {
   const std::string lid =
       "[[boundary]]\nname = \"lid\"\nkind = \"roller\"\naxis = \"y\"\nat_m = 1.5\nsoil = \"below\"\n[output]";

@@ -93,9 +93,9 @@ TEST_CASE("a mistake in a scene names line, key, what is allowed and the remedy"
   CHECK(refusal_of(edited_block("density_kg_m3", "density_kg"))
             .find("unknown key material.density_kg; the nearest known key is "
                   "material.density_kg_m3") != std::string::npos);
-  CHECK(
-      refusal_of(edited_block("kind = \"roller\"", "kind = \"rolling\"")) ==
-      "scene.toml:32: boundary.kind is \"rolling\"; the nearest allowed value is \"roller\" (allowed: roller, fixed)");
+  CHECK(refusal_of(edited_block("kind = \"roller\"", "kind = \"rolling\"")) ==
+        "scene.toml:32: boundary.kind is \"rolling\"; the nearest allowed value is \"roller\" (allowed: roller, fixed, "
+        "absorbing, periodic)");
   CHECK(refusal_of(edited_block("poisson_ratio = 0.3", "poisson_ratio = 0.7")).find("allowed: -0.99 to 0.499") !=
         std::string::npos);
   CHECK(refusal_of(edited_block("young_modulus_Pa = 1e7\n", "")).find("material.young_modulus_Pa is missing") !=

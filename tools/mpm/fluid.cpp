@@ -9,6 +9,7 @@ void make_water_boundaries(const Planes<D>& planes, const Bodies<D>& bodies, Flu
     auto& plane = fluid.planes.all[k];
     plane.fixed = false;
     plane.open = fluid.options.boundaries[k].open();
+    if (plane.period > 0) fluid.pressure.repeat(plane.axis, plane.node, plane.period);
   }
   fluid.bodies.all = bodies.all;
   fluid.bodies.shape = bodies.shape;
@@ -55,7 +56,8 @@ double Fluid<D>::whole_hat(const Solver<D>& solver, long node) const {
   double volume = grid.cell.prod() * options.thickness;
   const auto index = grid.index(node);
   for (int k = 0; k < int(planes.all.size()); ++k) {
-    if (planes.active(k, solver.time) && index[planes.all[k].axis] == planes.all[k].node) volume *= 0.5;
+    const auto& plane = planes.all[k];
+    if (plane.period == 0 && planes.active(k, solver.time) && index[plane.axis] == plane.node) volume *= 0.5;
   }
   if (solver.bodies.all.empty()) return volume;
   constexpr int samples = 8;  // along each axis, of the two cells of a hat

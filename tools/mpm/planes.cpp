@@ -32,8 +32,13 @@ MirrorNode<D> Planes<D>::reflected(const Grid<D>& grid, long node, typename Grid
     again = false;
     for (int k = 0; k < int(all.size()); ++k) {
       const auto& plane = all[k];
-      if (!active(k, time) || (image[plane.axis] - plane.node) * plane.inside >= 0) continue;
-      image[plane.axis] = 2 * plane.node - image[plane.axis];
+      if (!active(k, time)) continue;
+      const int beyond = (image[plane.axis] - plane.node) * plane.inside;
+      if (plane.period > 0 ? beyond >= 0 && beyond < plane.period : beyond >= 0) continue;
+      if (plane.period > 0)
+        image[plane.axis] += beyond < 0 ? plane.period : -plane.period;
+      else
+        image[plane.axis] = 2 * plane.node - image[plane.axis];
       for (int i = 0; i < D; ++i) {
         if (plane.holds(i)) mirror.sign[i] = -mirror.sign[i];
       }
@@ -170,7 +175,7 @@ void Planes<D>::unfold(Grid<D>& grid) const {
 template <int D>
 int Planes<D>::owner(const std::vector<int>& planes, int component) const {
   for (const int k : planes) {
-    if (all[k].axis == component) return k;
+    if (all[k].axis == component && all[k].holds(component)) return k;
   }
   for (const int k : planes) {
     if (all[k].holds(component)) return k;

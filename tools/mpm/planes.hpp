@@ -1,4 +1,5 @@
-// Boundaries along planes of nodes: fixed (rough) and roller (smooth wall, symmetry, gate).
+// Boundaries along planes of nodes: fixed (rough), roller (smooth wall, symmetry, gate), absorbing (a roller on a
+// half-space that takes shear waves in, dashpots.cpp) and periodic (two planes, of which one continues the other).
 //
 // A node on the far side of a plane is a mirror node: it has the velocity of its image on the soil's side, mirrored:
 // v_mirror = V + S (v_image - V), with V the velocity of the plane and S = -1 for each component that the plane holds,
@@ -6,6 +7,7 @@
 // points map to a mirror node are added to its image by the transposed map, so that momentum balances.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <string>
 #include <vector>
@@ -29,12 +31,15 @@ struct Plane {
   int node = 0;    ///< number of its nodes along the axis
   int inside = 1;  ///< +1: the soil is on the upper side
   bool fixed = false;
+  int period = 0;               ///< cells to the plane that it is one with; 0: none. It holds nothing
+  double impedance = 0;         ///< kg/(m^2 s), rho c_s of the half-space behind an absorbing plane; 0: it reflects
+  VelocityHistory<D> incoming;  ///< m/s, of the shear wave that comes up through the half-space
   bool open = false;  ///< to this phase (pore water at a drained plane): it holds nothing, and mirrors as it is
   VelocityHistory<D> velocity;
   double removed_at = std::numeric_limits<double>::infinity();  ///< s
   Reaction<D> reaction;
 
-  bool holds(int component) const { return fixed || (component == axis && !open); }
+  bool holds(int component) const { return fixed || (component == axis && !open && period == 0); }
 };
 
 /// A node on the far side of planes, and the node whose velocity it mirrors.
@@ -76,6 +81,9 @@ class Planes {
   }
   /// Restores the masses before folding, which the total change of kinetic energy and momentum need.
   void unfold(Grid<D>& grid) const;
+  bool absorb() const {
+    return std::any_of(all.begin(), all.end(), [](const auto& plane) { return plane.impedance > 0; });
+  }
   bool active(int plane, double time) const { return time < all[plane].removed_at; }
   /// Whether a plane that the node lies on holds this component: the plane then sets it, and takes the reaction.
   bool holds(long node, int component) const { return !held_.empty() && (held_[node] >> component & 1) != 0; }

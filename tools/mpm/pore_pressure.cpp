@@ -97,6 +97,43 @@ void PorePressure<D>::add(const Grid<D>& grid, const Support<D>& support, const 
 }
 
 template <int D>
+void PorePressure<D>::gather_repeated(const Grid<D>& grid) {
+  if (!repeats()) return;
+  for (long at = 0; at < long(filled.size()); ++at) {
+    Index node = grid.index(at);
+    const Index before = node;
+    wrap(node);
+    if (node == before || !grid.contains(node)) continue;
+    const long to = grid.flat(node);
+    filled[to] += filled[at];
+    cells_[to].soft += cells_[at].soft;
+    cells_[to].storage += cells_[at].storage;
+    filled[at] = 0;
+    cells_[at] = Cell{};
+    if (!used_[at]) continue;
+    used_[at] = 0;
+    used_[to] = 1;
+    for (int i = 0; i < D; ++i) {
+      for (int k = 0; k < reach; ++k) {
+        columns_[to].solid[i][k] += columns_[at].solid[i][k];
+        columns_[to].fluid[i][k] += columns_[at].fluid[i][k];
+      }
+    }
+    columns_[at] = Columns{};
+  }
+}
+
+template <int D>
+void PorePressure<D>::copy_repeated(const Grid<D>& grid) {
+  if (!repeats()) return;
+  for (long at = 0; at < long(values.size()); ++at) {
+    Index node = grid.index(at);
+    wrap(node);
+    if (grid.contains(node)) values[at] = values[grid.flat(node)];
+  }
+}
+
+template <int D>
 void PorePressure<D>::fold(const Grid<D>& grid, const Planes<D>& solid, const Planes<D>& fluid) {
   folded_of_.assign(grid.nodes.size(), -1);
   folded_columns_.clear();
@@ -112,12 +149,11 @@ void PorePressure<D>::fold(const Grid<D>& grid, const Planes<D>& solid, const Pl
     }
     auto& image = folded_columns_[folded_of_[mirror.image]];
     const auto from = grid.index(mirror.node), to = grid.index(mirror.image);
-    each_near(grid, from, 2, [&](long hat, int place) {
+    each_near(grid, from, 2, [&](long, int place) {
       int at = 0;
       bool inside = true;
-      const auto node = grid.index(hat);
       for (int i = D - 1; i >= 0; --i) {
-        const int away = node[i] - to[i] + 2;
+        const int away = from[i] + offset(place, i) - to[i] + 2;
         inside = inside && away >= 0 && away < 5;
         at = at * 5 + away;
       }
@@ -179,6 +215,10 @@ void PorePressure<D>::number_unknowns(const Grid<D>& grid) {
     each_near(grid, grid.index(at), 4, [&](long other, int) {
       if (number_[other] >= number_[at]) rows.push_back(number_[other]);
     });
+    if (repeats()) {  // in few cells a node is met more than once
+      std::sort(rows.begin() + starts.back(), rows.end());
+      rows.erase(std::unique(rows.begin() + starts.back(), rows.end()), rows.end());
+    }
     starts.push_back(int(rows.size()));
   }
   matrix_.makeCompressed();
@@ -195,6 +235,7 @@ void PorePressure<D>::add_cells(const Grid<D>& grid, const Index& node, double d
   for (int mine = 0; mine < corners; ++mine) {
     Index lowest;
     for (int i = 0; i < D; ++i) lowest[i] = node[i] - (mine >> i & 1);
+    wrap(lowest);
     if (!grid.contains(lowest)) continue;
     const auto& cell = cells_[grid.flat(lowest)];
     if (cell.soft == 0) continue;
@@ -220,9 +261,8 @@ void PorePressure<D>::fill_row(const Grid<D>& grid, const std::vector<Mobility>&
     const auto& columns = folded(other);
     const int mine = reach - 1 - place;
     // The other's window begins here in that of the row.
-    const auto away = grid.index(other);
     int begin = 0;
-    for (int i = D - 1; i >= 0; --i) begin = begin * 9 + away[i] - node[i] + 2;
+    for (int i = D - 1; i >= 0; --i) begin = begin * 9 + offset(place, i) + 2;
     for (int a = 0; a < D; ++a) {
       const auto& m = mobility[other * D + a];
       const double solid = columns.solid[a][mine], fluid = columns.fluid[a][mine];
@@ -247,7 +287,11 @@ void PorePressure<D>::add_ties(const Grid<D>& grid, long at, double* row) const 
   const auto place = [&](long other) {
     const auto node = grid.index(at), there = grid.index(other);
     int k = 0;
-    for (int i = D - 1; i >= 0; --i) k = k * 9 + there[i] - node[i] + 4;
+    for (int i = D - 1; i >= 0; --i) {
+      int away = there[i] - node[i];
+      if (std::abs(away) > 1) away += away < 0 ? period_[i] : -period_[i];  // neighbours
+      k = k * 9 + away + 4;
+    }
     return k;
   };
   for (const auto& tie : ties_) {
@@ -310,6 +354,15 @@ void PorePressure<D>::solve(const Grid<D>& grid, const std::vector<Mobility>& mo
       fill_row(grid, mobility, dt, at, row.data());
       add_ties(grid, at, row.data());
       double* out = value + starts[k];
+      if (repeats()) {
+        const int* found = matrix_.innerIndexPtr();
+        std::fill(out, value + starts[k + 1], 0.0);
+        each_near(grid, grid.index(at), 4, [&](long other, int place) {
+          if (number_[other] < k) return;
+          value[std::lower_bound(found + starts[k], found + starts[k + 1], number_[other]) - found] += row[place];
+        });
+        continue;
+      }
       each_near(grid, grid.index(at), 4, [&](long other, int place) {
         if (number_[other] >= k) *out++ = row[place];
       });

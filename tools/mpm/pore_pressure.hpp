@@ -17,6 +17,7 @@
 
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -74,6 +75,14 @@ class PorePressure {
   void follow(const Grid<D>& grid);
   /// Before the points are added: nothing is known of any node.
   void clear(const Grid<D>& grid);
+  /// Nodes from `lowest` on an axis repeat after `cells`: they are one unknown.
+  void repeat(int axis, int lowest, int cells) {
+    lowest_[axis] = lowest;
+    period_[axis] = cells;
+  }
+  /// What was added at nodes that repeat others goes to those; values go back to them.
+  void gather_repeated(const Grid<D>& grid);
+  void copy_repeated(const Grid<D>& grid);
   /// Adds a saturated point. `shear`: Pa, G; `storage`: n/K_f, 1/Pa. Points whose supports share nodes must be added
   /// one after the other.
   void add(const Grid<D>& grid, const Support<D>& support, const Hat<D>& hat, double volume, double porosity,
@@ -141,7 +150,7 @@ class PorePressure {
   }
   /// visit(flat, place) for the nodes of the box up to `far` away, x fastest; place counts all of them.
   template <class Visit>
-  static void each_near(const Grid<D>& grid, const Index& node, int far, const Visit& visit) {
+  void each_near(const Grid<D>& grid, const Index& node, int far, const Visit& visit) const {
     Index at;
     int place = 0;
     const int top = D == 3 ? far : 0;
@@ -151,10 +160,23 @@ class PorePressure {
           at[0] = node[0] + i;
           at[1] = node[1] + j;
           if constexpr (D == 3) at[2] = node[2] + k;
+          wrap(at);
           if (grid.contains(at)) visit(grid.flat(at), place);
         }
       }
     }
+  }
+  /// Of a place of each_near with far = 2, along an axis.
+  static int offset(int place, int axis) { return place / (axis == 0 ? 1 : axis == 1 ? 5 : 25) % 5 - 2; }
+  /// The node that this one repeats.
+  void wrap(Index& node) const {
+    for (int i = 0; i < D; ++i) {
+      if (period_[i] == 0) continue;
+      node[i] = lowest_[i] + ((node[i] - lowest_[i]) % period_[i] + period_[i]) % period_[i];
+    }
+  }
+  bool repeats() const {
+    return std::any_of(period_.begin(), period_.end(), [](int cells) { return cells > 0; });
   }
   const Columns& folded(long node) const {
     return folded_of_[node] < 0 ? columns_[node] : folded_columns_[folded_of_[node]];
@@ -171,7 +193,7 @@ class PorePressure {
   std::vector<char> used_;      ///< by node: a saturated point reaches it
   std::vector<Cell> cells_;
   std::vector<Tie> ties_;
-  Index low_{}, count_{};
+  Index low_{}, count_{}, lowest_{}, period_{};
   // The matrix, lower triangle by columns; its pattern stays while the unknowns are the same.
   std::vector<long> unknown_;  ///< nodes, in their order
   std::vector<int> number_;    ///< by node; -1: none

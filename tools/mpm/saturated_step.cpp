@@ -88,6 +88,7 @@ void Solver<D>::assemble_water() {
       });
     });
   }
+  water.pressure.gather_repeated(grid);
   water.pressure.fold(grid, planes, water.planes);
   water.set_roles(*this);
 }
@@ -134,6 +135,7 @@ void Solver<D>::predict_velocities(double dt) {
       if (fluid_held && !solid_held) s.w[i] += m.solid * e * f.w[i];
     }
   });
+  if (planes.absorb()) add_dashpots(dt);
   hold_velocities(dt);
 }
 
@@ -192,6 +194,7 @@ void Solver<D>::project(double dt) {
     dp[at] += change[at];
     pressure.values[at] += dp[at];
   }
+  pressure.copy_repeated(grid);
   hold_velocities(dt);
   // What the step added to the forces that the planes have recorded.
   const auto add = [&](double sign, bool of_solid) {
@@ -291,6 +294,7 @@ void Solver<D>::saturated_step(double dt) {
   water.planes.fold_force(water.grid);
   predict_velocities(dt);
   project(dt);
+  if (planes.absorb()) book_dashpots(dt);
   bodies.book_reactions(grid, planes);
   water.bodies.book_reactions(water.grid, water.planes);
   planes.unfold(grid);

@@ -53,13 +53,20 @@ int axis_of(const std::string& name) { return name == "x" ? 0 : name == "y" ? 1 
 PlaneOfScene read_plane(Keys& keys, std::size_t d, const std::string& followed, bool with_water) {
   PlaneOfScene plane;
   plane.name = keys.name();
-  plane.fixed = keys.choice("kind", {"roller", "fixed"}, true) == "fixed";
+  const auto kind = keys.choice("kind", {"roller", "fixed", "absorbing", "periodic"}, true);
+  plane.fixed = kind == "fixed";
   plane.axis = axis_of(
       keys.choice("axis", d == 2 ? std::vector<std::string>{"x", "y"} : std::vector<std::string>{"x", "y", "z"}, true));
   plane.at = keys.number("at_m");
-  plane.soil_above = keys.choice("soil", {"above", "below"}) == "above";
+  if (kind == "periodic") {
+    plane.to = keys.number("to_m");
+    if (!(plane.to > plane.at)) keys.wrong("to_m", "is the upper of two planes that are one; give more than at_m");
+  } else {
+    plane.soil_above = keys.choice("soil", {"above", "below"}) == "above";
+    plane.motion = read_motion(keys, d);
+  }
+  if (kind == "absorbing") plane.impedance = keys.positive("density_kg_m3") * keys.positive("shear_wave_m_s");
   plane.removed_at = keys.number("removed_at_s", 1e300, 0);
-  plane.motion = read_motion(keys, d);
   plane.water = read_water_boundary(keys, with_water);
   keys.finish();
   for (const auto& row : plane.motion) {
@@ -69,7 +76,9 @@ PlaneOfScene read_plane(Keys& keys, std::size_t d, const std::string& followed, 
         keys.wrong("motion", "moves the plane off its nodes, which stay; set grid.follows = \"" + plane.name +
                                  "\", or take a [[body]] in its place");
       }
-      if (i != plane.axis && !plane.fixed) {
+      if (i == plane.axis && kind == "absorbing")
+        keys.wrong("motion", "is the shear wave that comes up: along the plane");
+      if (i != plane.axis && !plane.fixed && kind != "absorbing") {
         keys.wrong("motion", "is along a smooth plane, which takes no soil along; set kind = \"fixed\", or make it 0");
       }
     }

@@ -49,6 +49,8 @@ struct PlaneOfScene {
   bool soil_above = true, fixed = false;
   double removed_at = 0;
   std::vector<std::vector<double>> motion;
+  double to = NAN;       ///< m, the plane that a periodic one is one with
+  double impedance = 0;  ///< kg/(m^2 s), of an absorbing one
   WaterBoundary water;
 };
 

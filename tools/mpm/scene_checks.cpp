@@ -109,6 +109,10 @@ void check_sides(const Scene& scene, const std::string& path) {
       const auto i = std::size_t(plane.axis);
       const double first = region.lower[i] + 0.5 * filling.side[i], last = region.upper[i] - 0.5 * filling.side[i];
       const double slack = 1e-6 * scene.cell[i];
+      if (!std::isnan(plane.to) && last > plane.to + slack) {
+        throw InputError(path + ": points of " + region_name(scene, region) + " lie beyond boundary." + plane.name +
+                         ".to_m = " + text_of(plane.to) + "; end the region there, or set to_m to its end");
+      }
       if (plane.soil_above ? first > plane.at - slack : last < plane.at + slack) continue;
       throw InputError(path + ": points of " + region_name(scene, region) + " lie behind boundary." + plane.name +
                        " (soil " + (plane.soil_above ? "above " : "below ") + axis_names[i] + " = " +

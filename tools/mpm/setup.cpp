@@ -33,7 +33,15 @@ void place_planes(const Scene& scene, Solver<D>& solver) {
     plane.inside = each.soil_above ? 1 : -1;
     plane.fixed = each.fixed;
     plane.removed_at = each.removed_at;
-    plane.velocity = history<D>(each.motion);
+    plane.impedance = each.impedance;
+    (each.impedance > 0 ? plane.incoming : plane.velocity) = history<D>(each.motion);
+    if (!std::isnan(each.to)) {
+      const double cells = (each.to - each.at) / solver.grid.cell[each.axis];
+      plane.period = int(std::lround(cells));
+      if (std::abs(cells - plane.period) > 1e-6) {
+        throw InputError("boundary " + each.name + ": to_m must be a whole number of cells (grid.cell_m) above at_m");
+      }
+    }
     if (each.name == scene.follows) {
       solver.follow_axis = each.axis;
       solver.followed = int(solver.planes.all.size());

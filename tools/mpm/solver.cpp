@@ -168,8 +168,10 @@ void Solver<D>::end_velocities(double dt) {
   over_nodes(grid, [&](auto& node, std::int64_t) {
     for (int i = 0; i < D; ++i) node.w[i] = node.v[i] + dt * (node.w[i] / node.mass);
   });
+  if (planes.absorb()) add_dashpots(dt);
   bodies.set_end(grid, planes, time + dt);
   planes.set_end(grid, time + dt);
+  if (planes.absorb()) book_dashpots(dt);
   take_changes(solid(), dt);
 }
 

@@ -118,6 +118,15 @@ class Solver {
   void move_points(double dt);
   void second_map(double dt);
   Phase<D> solid() { return {grid, planes, bodies, nodal_kinetic}; }
+  // dashpots.cpp, of absorbing planes
+  struct Dashpot {
+    int plane;
+    long node, inside;  ///< on the plane, and the next one
+    Vec<D> force;       ///< N, on the soil
+  };
+  std::vector<double> areas_on(const Plane<D>& plane) const;
+  void add_dashpots(double dt);
+  void book_dashpots(double dt);
   // saturated_step.cpp
   void saturated_step(double dt);
   void map_saturated_force();
@@ -162,6 +171,7 @@ class Solver {
   static constexpr long chunk = 1024;  ///< points of one piece of work; sums over pieces are made in their order
   std::vector<Support<D>> supports_;
   std::vector<long> order_, slab_begin_, slab_next_;
+  std::vector<Dashpot> dashpots_;
   std::vector<double> kinetic_;  ///< J, of each piece of nodes
 };
 
