@@ -60,7 +60,8 @@ PlaneOfScene read_plane(Keys& keys, std::size_t d, const std::string& followed, 
   plane.at = keys.number("at_m");
   if (kind == "periodic") {
     plane.to = keys.number("to_m");
-    if (!(plane.to > plane.at)) keys.wrong("to_m", "is the upper of two planes that are one; give more than at_m");
+    if (keys.has("to_m") && !(plane.to > plane.at))
+      keys.wrong("to_m", "is the upper of two planes that are one; give more than at_m");
   } else {
     plane.soil_above = keys.choice("soil", {"above", "below"}) == "above";
     plane.motion = read_motion(keys, d);
@@ -72,12 +73,12 @@ PlaneOfScene read_plane(Keys& keys, std::size_t d, const std::string& followed, 
   for (const auto& row : plane.motion) {
     for (int i = 0; i < int(d); ++i) {
       if (row[std::size_t(i) + 1] == 0) continue;
+      if (i == plane.axis && kind == "absorbing")
+        keys.wrong("motion", "is the shear wave that comes up: along the plane");
       if (i == plane.axis && plane.name != followed) {
         keys.wrong("motion", "moves the plane off its nodes, which stay; set grid.follows = \"" + plane.name +
                                  "\", or take a [[body]] in its place");
       }
-      if (i == plane.axis && kind == "absorbing")
-        keys.wrong("motion", "is the shear wave that comes up: along the plane");
       if (i != plane.axis && !plane.fixed && kind != "absorbing") {
         keys.wrong("motion", "is along a smooth plane, which takes no soil along; set kind = \"fixed\", or make it 0");
       }
