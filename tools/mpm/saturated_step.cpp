@@ -5,16 +5,14 @@
 // Stress of the solid explicit; forces with the pressure of the step before; then L dp = -D(v*), and both velocities
 // change by dt H^-1 D^T dp (pore_pressure.hpp). The step is stable for every conductivity: its bound is that of the
 // skeleton without water.
-#include <chrono>
 
+#include "tools/mpm/clock.hpp"
 #include "tools/mpm/fluid.hpp"
 #include "tools/mpm/solver.hpp"
 #include "tools/mpm/transfer.hpp"
 
 namespace mpm {
 namespace {
-
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 /// Pressure and its gradient (Pa/m) at a point.
 template <int D>
@@ -171,7 +169,7 @@ void Solver<D>::correct_velocities(const std::vector<double>& dp, double dt) {
 
 template <int D>
 void Solver<D>::project(double dt) {
-  const double begin = now();
+  const double begin = wall_seconds();
   auto& water = *fluid;
   auto& pressure = water.pressure;
   using Role = typename PorePressure<D>::Role;
@@ -209,7 +207,7 @@ void Solver<D>::project(double dt) {
   };
   planes.add_forces(add(1, true));
   water.planes.add_forces(add(-1, false));
-  water.seconds += now() - begin;
+  water.seconds += wall_seconds() - begin;
 }
 
 /// Energy that the water took and gave, and what flowed out.
@@ -273,7 +271,7 @@ void Solver<D>::move_water(double dt) {
 
 template <int D>
 void Solver<D>::saturated_step(double dt) {
-  const double begin = now(), before = material_seconds;
+  const double begin = wall_seconds(), before = material_seconds;
   auto& water = *fluid;
   begin_step();
   water.begin_step(*this);
@@ -307,7 +305,7 @@ void Solver<D>::saturated_step(double dt) {
   move_points(dt);
   time += dt;
   ++steps;
-  grid_seconds += now() - begin - (material_seconds - before);
+  grid_seconds += wall_seconds() - begin - (material_seconds - before);
 }
 
 template void Solver<2>::saturated_step(double);

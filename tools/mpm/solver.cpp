@@ -1,8 +1,8 @@
 #include "tools/mpm/solver.hpp"
 
-#include <chrono>
 #include <sstream>
 
+#include "tools/mpm/clock.hpp"
 #include "tools/mpm/fluid.hpp"
 #include "tools/mpm/transfer.hpp"
 
@@ -20,8 +20,6 @@ template <int D>
         << " m, more than 1e9 cells from 0; take a smaller time.cfl, or a load that the soil can carry";
   throw std::runtime_error(words.str());
 }
-
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 int slab_of(int row) { return row >= 0 ? row / slab_rows : -((-row + slab_rows - 1) / slab_rows); }
 
@@ -221,9 +219,9 @@ void Solver<D>::add_load_work(double dt) {
 
 template <int D>
 void Solver<D>::stresses(double dt) {
-  const double begin = now();
+  const double begin = wall_seconds();
   for (auto& group : groups) group.material->advance(points.data() + group.first, group.count, dt, workers);
-  material_seconds += now() - begin;
+  material_seconds += wall_seconds() - begin;
   const long n = long(points.size());
   workers.for_each((n + chunk - 1) / chunk, [&](std::int64_t piece) {
     for (long k = piece * chunk; k < std::min(n, long(piece + 1) * chunk); ++k) {
@@ -262,7 +260,7 @@ void Solver<D>::begin_step() {
 template <int D>
 void Solver<D>::step(double dt) {
   if (fluid) return saturated_step(dt);
-  const double begin = now(), before = material_seconds;
+  const double begin = wall_seconds(), before = material_seconds;
   begin_step();
   map_momentum();
   start_velocities(solid());
@@ -284,7 +282,7 @@ void Solver<D>::step(double dt) {
   }
   time += dt;
   ++steps;
-  grid_seconds += now() - begin - (material_seconds - before);
+  grid_seconds += wall_seconds() - begin - (material_seconds - before);
 }
 
 template class Solver<2>;
