@@ -92,9 +92,13 @@ struct Fluid {
   /// N, of the pressure on a plane, along its axis.
   double force_on(const Planes<D>& all, int plane) const;
 
+  /// kg/s, as H has it: that of mirror nodes acts at their images.
+  double drag_at(long node) const { return planes.is_mirror(node) ? 0 : folded_drag[node]; }
+
   // Within a step, by node.
   std::vector<double> drag;         ///< kg/s, sum of N V d
   std::vector<double> folded_drag;  ///< with that of mirror nodes
+  std::vector<double> slip;         ///< node * D + axis, m/s: v_f - v_s that the drag of the step came from
   std::vector<Mobility> mobility;   ///< node * D + axis; of nodes that mirror none
 
  private:

@@ -134,7 +134,21 @@ void Solver<D>::predict_velocities(double dt) {
     }
   });
   if (planes.absorb()) add_dashpots(dt);
+  // What bodies change is no drag: the slip is that of H^-1 alone.
+  water.slip.assign(grid.nodes.size() * D, 0);
+  add_slip(1);
   hold_velocities(dt);
+  add_slip(-1);
+}
+
+template <int D>
+void Solver<D>::add_slip(double sign) {
+  auto& water = *fluid;
+  for (std::size_t at = 0; at < grid.nodes.size(); ++at) {
+    for (int i = 0; i < D; ++i) {
+      water.slip[at * D + i] += sign * (water.grid.nodes[at].w[i] - grid.nodes[at].w[i]);
+    }
+  }
 }
 
 /// Bodies and planes hold both phases.
@@ -193,6 +207,7 @@ void Solver<D>::project(double dt) {
     pressure.values[at] += dp[at];
   }
   pressure.copy_repeated(grid);
+  add_slip(1);
   hold_velocities(dt);
   // What the step added to the forces that the planes have recorded.
   const auto add = [&](double sign, bool of_solid) {
@@ -200,8 +215,7 @@ void Solver<D>::project(double dt) {
       double solid[D], on_water[D];
       pressure.force(grid, at, dp, false, solid, on_water);
       for (int i = 0; i < D; ++i) {
-        const double slip = water.grid.nodes[at].w[i] - grid.nodes[at].w[i];
-        force[i] += (of_solid ? solid[i] : on_water[i]) + sign * water.drag[at] * slip;
+        force[i] += (of_solid ? solid[i] : on_water[i]) + sign * water.drag_at(at) * water.slip[at * D + i];
       }
     };
   };
@@ -223,7 +237,7 @@ void Solver<D>::balance_water(double dt) {
     if (!(f.mass > 0)) continue;
     for (int i = 0; i < D; ++i) {
       const double solid = 0.5 * (s.w[i] + s.a[i]), fluid_mean = 0.5 * (f.w[i] + f.a[i]);
-      water.drag_loss += dt * water.drag[at] * (f.w[i] - s.w[i]) * (fluid_mean - solid);
+      water.drag_loss += dt * water.drag_at(at) * water.slip[at * D + i] * (fluid_mean - solid);
     }
   }
   const auto mean = [&](long at) {

@@ -132,6 +132,7 @@ class Solver {
   void map_saturated_force();
   void assemble_water();
   void predict_velocities(double dt);
+  void add_slip(double sign);
   void hold_velocities(double dt);
   void project(double dt);
   void correct_velocities(const std::vector<double>& dp, double dt);
