@@ -237,7 +237,7 @@ Command fit_command() {
   command.add("--recipe", arguments.recipe, "or a recipe: each test packs its own specimen, whose keys may be varied");
   command.add("--count", arguments.count, "specimens of the recipe, one a seed; default 5").between(1, 1'000'000);
   command.add("--tests", arguments.tests, "tests to spend; default 24 and 16 for each parameter").between(8, 100'000);
-  command.add("--batch", arguments.batch, "tests between two looks at the results, default 8").between(1, 10'000);
+  command.add("--batch", arguments.batch, "tests between two evaluations of the results, default 8").between(1, 10'000);
   command.add("-o,--output", arguments.folder, "folder for fit.json, fit.csv, curves.csv (sweep.csv) and tests/");
   command.add_set(arguments.settings, "stage.compression.to_strain=0.05");
   command.add_threads(arguments.threads, "tests at a time; default: one per core");

@@ -61,7 +61,7 @@ std::string python() {
     if (exit_code_of({candidate, "-c", "import numpy, h5py, matplotlib"}, true) == 0) return candidate;
     list += (list.empty() ? "" : ", ") + candidate;
   }
-  throw InputError("report: no Python here has numpy, h5py and matplotlib (looked at " + list +
+  throw InputError("report: no Python here has numpy, h5py and matplotlib (tried " + list +
                    "); apt-get install python3-h5py python3-matplotlib, or let RVELAB_PYTHON name one that has them");
 }
 

@@ -206,7 +206,7 @@ void tell_of_doubts(const protocol::TestRun& run, const Doubtful& doubtful) {
   if (20 * doubtful.either > long(records) && 2 * doubtful.without_pressure > doubtful.either)
     tell(std::to_string(doubtful.without_pressure) + " of " + std::to_string(records) +
          " records are of a specimen whose grains carry almost nothing, p below 5 % of its start: it has liquefied. No "
-         "tolerance makes equilibria of them (quasi_static, target_held); let the test end there, with an "
+         "tolerance makes them equilibria (quasi_static, target_held); let the test end there, with an "
          "[[stage.until]] of quantity = \"p_over_first\"");
   else if (20 * doubtful.either > long(records))
     tell(std::to_string(doubtful.either) + " of " + std::to_string(records) +
