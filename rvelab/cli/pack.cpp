@@ -189,7 +189,7 @@ Command pack_command() {
   auto& arguments = command.runs(run_pack);
   command.add("recipe", arguments.recipe, "RECIPE.toml, or the name of an installed recipe: pack_dense").required();
   command.add("-o,--output", arguments.output, "specimen file to write, S.h5").required();
-  command.add("--count", arguments.count, "make so many, S_1.h5, S_2.h5, ..., each with the next seed")
+  command.add("--count", arguments.count, "number of specimens, S_1.h5, S_2.h5, ..., each with the next seed")
       .between(1, 1'000'000);
   command.add_set(arguments.settings, "target.pressure_Pa=50e3");
   command.add_threads(arguments.threads, "specimens or trial packings at a time; default: one per core");

@@ -340,7 +340,7 @@ Command run_command() {
   command.add("specimens", arguments.more, "further specimens");
   command.notes =
       "A specimen of less than 30,000 grains runs on one thread; `rvelab calibrate --threads` runs several tests at a\n"
-      "time. The number of threads changes no bit. Each record is written to R.h5.journal at once, and R.h5 is "
+      "time. Any number of threads gives the same bits. Each record is written to R.h5.journal at once, and R.h5 is "
       "brought\n"
       "up to date from time to time; Ctrl-C and SIGTERM stop the test and keep both. Without -o and --json the "
       "records\n"
