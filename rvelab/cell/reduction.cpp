@@ -197,7 +197,7 @@ double shear_until_thin(const Cell& cell, int i, int k, double least_height, dou
 double shortest_vector(const Cell& cell) {
   const Matrix3 lattice = reduced(cell).lattice;
   // The shortest vector of a reduced basis is a shortest one of the lattice, but for the tolerance: sums and
-  // differences are looked at too. One of each pair v, -v is enough.
+  // differences are tried too. One of each pair v, -v is enough.
   const int depth = cell.dimension == 3 ? 1 : 0;
   double least = std::numeric_limits<double>::infinity();
   for (int n2 = 0; n2 <= depth; ++n2)

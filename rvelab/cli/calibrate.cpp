@@ -107,7 +107,7 @@ void expect_different(const std::vector<Specimen>& specimens, const std::vector<
     const auto [found, is_new] = first.emplace(io::digest(specimens[k]), k);
     if (is_new) continue;
     throw InputError("--specimen " + files[k] + " holds the same specimen as --specimen " + files[found->second] +
-                     "; allowed: specimens of different draws; leave one out, or pack one with another seed");
+                     "; allowed: specimens that differ; leave one out, or pack one with another seed");
   }
 }
 

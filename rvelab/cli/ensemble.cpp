@@ -79,7 +79,7 @@ int expect_specimens(const Ensemble& ensemble) {
     const auto [found, is_new] = first.emplace(io::digest(specimen), k);
     if (!is_new)
       throw InputError(ensemble.files[k] + " holds the same specimen as " + ensemble.files[found->second] +
-                       "; allowed: specimens of different draws; leave one out, or pack one with another seed");
+                       "; allowed: specimens that differ; leave one out, or pack one with another seed");
     if (k > 0 && specimen.cell.dimension != dimension)
       throw InputError(ensemble.files[k] + " is " + std::to_string(specimen.cell.dimension) + "D and " +
                        ensemble.files[0] + " is " + std::to_string(dimension) +

@@ -90,7 +90,7 @@ Command export_command() {
            "csv: particles, contacts and parameters, as rvelab import reads them")
       .one_of({"xdmf", "lammps", "lammps-data", "csv"})
       .required();
-  command.add("-o,--output", arguments.output, "file to write; csv: what the names of the files begin with").required();
+  command.add("-o,--output", arguments.output, "file to write; csv: beginning of the file names").required();
   command.add_force(arguments.force, "existing files");
   command.add_json(arguments.json);
   command.notes =

@@ -237,7 +237,7 @@ Command fit_command() {
   command.add("--recipe", arguments.recipe, "or a recipe: each test packs its own specimen, whose keys may be varied");
   command.add("--count", arguments.count, "specimens of the recipe, one a seed; default 5").between(1, 1'000'000);
   command.add("--tests", arguments.tests, "tests to spend; default 24 and 16 for each parameter").between(8, 100'000);
-  command.add("--batch", arguments.batch, "tests between two looks at the results, default 8").between(1, 10'000);
+  command.add("--batch", arguments.batch, "tests between two evaluations of the results, default 8").between(1, 10'000);
   command.add("-o,--output", arguments.folder, "folder for fit.json, fit.csv, curves.csv (sweep.csv) and tests/");
   command.add_set(arguments.settings, "stage.compression.to_strain=0.05");
   command.add_threads(arguments.threads, "tests at a time; default: one per core");
@@ -248,10 +248,10 @@ Command fit_command() {
   command.notes =
       "Tests scatter: fit learns the mean of each target as a function of the parameters (Gaussian processes), makes\n"
       "further tests where the parameters are likely, and prints mean and 95 % interval of each parameter, of a prior\n"
-      "that is uniform in its range. The interval holds the error of the targets and that of not knowing the mean of\n"
-      "all specimens better; use ten specimens or more. Measures: protocols/README.md. Columns of a curve:\n"
+      "that is uniform in its range. The interval contains the error of the targets and that of the mean over\n"
+      "specimens; use ten specimens or more. Measures: protocols/README.md. Columns of a curve:\n"
       "axial_strain (or _percent), shear_strain, p_kPa first; q_over_p, deviator_kPa (sigma_1 - sigma_3),\n"
-      "volumetric_strain, void_ratio; standard errors in NAME_error. The number of threads changes no bit.\n"
+      "volumetric_strain, void_ratio; standard errors in NAME_error. Any number of threads gives the same bits.\n"
       "Examples:\n"
       "  rvelab fit biaxial --specimen 'S_*.h5' --target friction_angle_deg=30+-0.5 --vary material.friction=0.1:1 -o "
       "F\n"

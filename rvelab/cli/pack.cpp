@@ -94,7 +94,7 @@ void make(Job& job, Workers& workers, TerminalLine& line, std::mutex& files) {
   pack::PackWatch watch;
   watch.stop = &stop_on_signals();
   watch.on_draw = [&](long draw, double void_ratio) {
-    line.write("seed " + std::to_string(job.what.recipe.seed) + "  draw " + std::to_string(draw) + "  void ratio " +
+    line.write("seed " + std::to_string(job.what.recipe.seed) + "  packing " + std::to_string(draw) + "  void ratio " +
                in_words(void_ratio));
   };
   const pack::Packing packing = pack::pack(job.what.recipe, workers, watch);
@@ -108,7 +108,7 @@ void make(Job& job, Workers& workers, TerminalLine& line, std::mutex& files) {
 /// One line a specimen; the rest stands in --json.
 std::string table_of(const std::vector<Job>& jobs) {
   std::vector<std::vector<std::string>> rows{
-      {"file", "seed", "draw", "void ratio", "p, Pa", "contacts a grain", "overlap, %", "friction while packed"}};
+      {"file", "seed", "packing", "void ratio", "p, Pa", "contacts a grain", "overlap, %", "friction while packed"}};
   for (const Job& job : jobs) {
     const auto shown = [&](const char* key) { return in_words(job.made[key].get<double>()); };
     rows.push_back({job.file, job.made["seed"].dump(), job.made["draw"].dump(), shown("void_ratio"),
@@ -189,10 +189,10 @@ Command pack_command() {
   auto& arguments = command.runs(run_pack);
   command.add("recipe", arguments.recipe, "RECIPE.toml, or the name of an installed recipe: pack_dense").required();
   command.add("-o,--output", arguments.output, "specimen file to write, S.h5").required();
-  command.add("--count", arguments.count, "make so many, S_1.h5, S_2.h5, ..., each with the next seed")
+  command.add("--count", arguments.count, "number of specimens, S_1.h5, S_2.h5, ..., each with the next seed")
       .between(1, 1'000'000);
   command.add_set(arguments.settings, "target.pressure_Pa=50e3");
-  command.add_threads(arguments.threads, "specimens or draws at a time; default: one per core");
+  command.add_threads(arguments.threads, "specimens or trial packings at a time; default: one per core");
   command.add_force(arguments.force, "existing specimen files");
   command.add_json(arguments.json);
   command.notes =

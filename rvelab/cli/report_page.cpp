@@ -61,7 +61,7 @@ std::string python() {
     if (exit_code_of({candidate, "-c", "import numpy, h5py, matplotlib"}, true) == 0) return candidate;
     list += (list.empty() ? "" : ", ") + candidate;
   }
-  throw InputError("report: no Python here has numpy, h5py and matplotlib (looked at " + list +
+  throw InputError("report: no Python here has numpy, h5py and matplotlib (tried " + list +
                    "); apt-get install python3-h5py python3-matplotlib, or let RVELAB_PYTHON name one that has them");
 }
 
@@ -105,7 +105,7 @@ Command report_command() {
   command.notes =
       "The page holds all of its figures and loads nothing. Tests that differ by their specimen alone are one curve, "
       "their\n"
-      "mean, with a band of one standard deviation. A film is in it where a test was run with\n"
+      "mean, with a band of one standard deviation. It has a film where a test was run with\n"
       "--set output.snapshots_every=10. Needs a Python with numpy, h5py and matplotlib: RVELAB_PYTHON, python3 or\n"
       "/usr/bin/python3; for the film ffmpeg or Pillow.\n"
       "Examples:\n"

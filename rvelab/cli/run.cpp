@@ -206,7 +206,7 @@ void tell_of_doubts(const protocol::TestRun& run, const Doubtful& doubtful) {
   if (20 * doubtful.either > long(records) && 2 * doubtful.without_pressure > doubtful.either)
     tell(std::to_string(doubtful.without_pressure) + " of " + std::to_string(records) +
          " records are of a specimen whose grains carry almost nothing, p below 5 % of its start: it has liquefied. No "
-         "tolerance makes equilibria of them (quasi_static, target_held); let the test end there, with an "
+         "tolerance makes them equilibria (quasi_static, target_held); let the test end there, with an "
          "[[stage.until]] of quantity = \"p_over_first\"");
   else if (20 * doubtful.either > long(records))
     tell(std::to_string(doubtful.either) + " of " + std::to_string(records) +
@@ -340,7 +340,7 @@ Command run_command() {
   command.add("specimens", arguments.more, "further specimens");
   command.notes =
       "A specimen of less than 30,000 grains runs on one thread; `rvelab calibrate --threads` runs several tests at a\n"
-      "time. The number of threads changes no bit. Each record is written to R.h5.journal at once, and R.h5 is "
+      "time. Any number of threads gives the same bits. Each record is written to R.h5.journal at once, and R.h5 is "
       "brought\n"
       "up to date from time to time; Ctrl-C and SIGTERM stop the test and keep both. Without -o and --json the "
       "records\n"

@@ -8,7 +8,7 @@
 // wherever a law takes it: force, stiffnesses, rescaling of f_t, and dashpots, whose k or r* is then that of R*.
 //
 // Such a force has no energy. 2/5 f delta, the work of pressing two grains as they lie, is what counts as elastic
-// energy, and what is made or lost as R* changes is what remains of the ledger (README.md: Hertz's radius of ellipses).
+// energy, and what is made or lost as R* changes is the residual of the energy balance (README.md: Hertz's radius).
 #pragma once
 
 namespace rvelab {

@@ -52,7 +52,7 @@ double dashpot_constant(Law law, const Damping& damping, double kn, double reduc
   return 0;
 }
 
-/// Collects what is wrong, in the order in which it was looked at.
+/// Collects what is wrong, in the order of the checks.
 class Findings {
  public:
   void add(const std::string& line) { lines_ += (lines_.empty() ? "" : "\n") + line; }

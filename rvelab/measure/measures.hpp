@@ -1,6 +1,6 @@
 // Measures of a contact network: stress, fabric, coordination, void ratio, sliding, energies, dimensionless numbers.
 //
-// This room looks at a Network (or at tensors) and changes nothing; it knows no list, no step and no file. The network
+// This room reads a Network (or tensors) and changes nothing; it knows no list, no step and no file. The network
 // stands in the cell frame; every tensor that leaves here is in the laboratory frame. SI units; stress is Cauchy,
 // tension positive; p and q are compression positive as soil mechanics writes them. 2D: volumes are those of the slab,
 // tensors have zero z-components. A mean over nothing (fabric without a contact, void ratio without a grain) is NaN.
@@ -72,8 +72,8 @@ double unbalanced_torque_ratio(const Network& network);
 /// Energy stored in contacts, J: normal, tangential and rolling springs.
 double elastic_energy(const Network& network);
 
-/// sum m v'^2/2 + I w^2/2, J, with w the whole spin, as the energy ledger counts it (with w' alone a shear at 300 to
-/// 1000 per s left 0.5 to 9 % of its work open). Zero for a quasi-static network.
+/// sum m v'^2/2 + I w^2/2, J, with w the whole spin, as the energy balance counts it (with w' alone the balance of a
+/// shear at 300 to 1000 per s would miss 0.5 to 9 % of the work). Zero for a quasi-static network.
 double kinetic_energy(const Network& network);
 
 /// Largest overlap over the smaller radius of its pair; zero without contacts.

@@ -1,5 +1,5 @@
-// Elastic tangent by static condensation of all grain freedoms, and the affine sum. Derived in tangent.hpp and in
-// solver/README.md.
+// Elastic tangent by static condensation of all degrees of freedom of the grains, and the affine sum. Derived in
+// tangent.hpp and in solver/README.md.
 //
 // Unknowns of a grain: displacement (m) and rotation times the mean radius (m), so that every stiffness is in N/m. For
 // a contact, q = (db, dtheta_i, dtheta_j) = P x + (H b, 0, 0), and its forces load the grains by the transpose:
@@ -143,7 +143,7 @@ class Condensed {
     if (count_ > 0) length_ /= count_;
   }
 
-  /// P of one contact: motions q, 9 rows, of the freedoms of i, then those of j.
+  /// P of one contact: motions q, 9 rows, of the degrees of freedom of i, then those of j.
   Eigen::Matrix<double, 9, 2 * F> compatibility() const {
     Eigen::Matrix<double, 9, 2 * F> p = Eigen::Matrix<double, 9, 2 * F>::Zero();
     constexpr int displacements = plane ? 2 : 3;
@@ -191,7 +191,7 @@ class Condensed {
     return is_round(network_.shape) ? spring.contact->normal.dot(q.head<3>()) : spring.opening.dot(q);
   }
 
-  /// Unbalanced load on the freedoms at the motion x, into `load`; its largest component.
+  /// Unbalanced load on the degrees of freedom at the motion x, into `load`; its largest component.
   double residual(const CellStrain& strain, const Vector& x, Vector& load) const {
     load.setZero();
     for (const Spring& spring : springs_) {

@@ -12,11 +12,11 @@
 
 namespace rvelab {
 
-/// All grain freedoms condensed: each grain keeps its force and torque balance while the cell strains. Rattlers (see
-/// measures.hpp) and their contacts are left out. Free mechanisms (spins without stiffness, the uniform translation)
-/// carry nothing and do no harm. Where a Hertz-Mindlin contact rescales its tangential force on unloading the response
-/// is piecewise linear; the mean of the plus and the minus direction is returned (the limit of small probes, which at
-/// 1e-7 are 7e-6 away from it). Cost: one sparse LU, 4 ms for 400 discs and 0.4 s for 1000
+/// All degrees of freedom of the grains condensed: each grain keeps its force and torque balance while the cell
+/// strains. Rattlers (see measures.hpp) and their contacts are left out. Free mechanisms (spins without stiffness, the
+/// uniform translation) carry nothing and do no harm. Where a Hertz-Mindlin contact rescales its tangential force on
+/// unloading the response is piecewise linear; the mean of the plus and the minus direction is returned (the limit of
+/// small probes, which at 1e-7 are 7e-6 away from it). Cost: one sparse LU, 4 ms for 400 discs and 0.4 s for 1000
 /// spheres (tools/bench/tangent). Throws Error if the balance cannot be solved to 1e-6 of the load, or to the
 /// unbalanced ratio of the state where that is larger.
 Eigen::MatrixXd elastic_tangent(const Network& network);

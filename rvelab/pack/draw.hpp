@@ -1,4 +1,5 @@
-// One draw: grains scattered at random, brought into contact, to the stress, and to rest with their final friction.
+// One draw (trial packing): grains scattered at random, brought into contact, to the stress, and to rest with their
+// final friction.
 #pragma once
 
 #include <atomic>

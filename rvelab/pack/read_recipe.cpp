@@ -232,7 +232,7 @@ void read_preparation(TableReader& reader, RecipeFile& file) {
   reader.number("lowest_friction", p.lowest_friction, "1", friction, "lower limit of the search for target.void_ratio");
   reader.number("highest_friction", p.highest_friction, "1", friction,
                 "upper limit of the search for target.void_ratio");
-  reader.whole_number("max_draws", p.max_draws, {1, 1e6}, "most draws of that search; then it fails");
+  reader.whole_number("max_draws", p.max_draws, {1, 1e6}, "most trial packings of that search; then it fails");
   reader.number("first_size", p.first_size, "1", below_one, "method = growth: initial radii over the final ones");
   p.growth_void_ratio = reader.optional_number("growth_void_ratio", "1", positive,
                                                "method = growth: void ratio of the cell once the grains have grown",

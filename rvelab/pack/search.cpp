@@ -63,10 +63,10 @@ Error not_found(const Recipe& recipe, const std::vector<Draw>& draws, std::size_
   const auto [lowest, highest] = std::minmax_element(draws.begin(), draws.end(), order);
   std::ostringstream text;
   text << "target.void_ratio = " << *recipe.void_ratio << " was not met within " << recipe.void_ratio_tolerance
-       << " in " << draws.size() + failed << " draws" << (failed > 0 ? " (" + std::to_string(failed) + " failed)" : "")
-       << "; reached: " << lowest->void_ratio << " (preparation friction " << lowest->friction << ") to "
-       << highest->void_ratio << " (" << highest->friction << ")"
-       << (end == End::out_of_reach ? ", too far from it for more draws to help; " : "; ");
+       << " in " << draws.size() + failed << " packings"
+       << (failed > 0 ? " (" + std::to_string(failed) + " failed)" : "") << "; reached: " << lowest->void_ratio
+       << " (preparation friction " << lowest->friction << ") to " << highest->void_ratio << " (" << highest->friction
+       << ")" << (end == End::out_of_reach ? ", too far from it for more packings to help; " : "; ");
   if (*recipe.void_ratio > highest->void_ratio) {
     text << "give a lower void ratio, a lower pressure, rolling friction in the preparation, or raise "
             "preparation.highest_friction";

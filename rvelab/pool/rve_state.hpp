@@ -78,7 +78,7 @@ struct RveState {
 };
 
 /// Bitwise, for builds with the same fields: a head with magic, length and checksum, tokens, the bytes of Rve::save().
-/// `specimen`: these bytes; state.specimen is not looked at.
+/// `specimen`: these bytes; state.specimen is not read.
 std::vector<std::byte> to_bytes(const RveState& state, std::span<const std::byte> specimen);
 
 /// Throws Refused (bad_snapshot) if the bytes are not such, were cut or changed, or are of another build.

@@ -97,7 +97,7 @@ void ThreadedPool::called(Slot& slot, long substeps) noexcept {
   rest_another();
 }
 
-/// Each call looks at one other RVE: in a round of calls all are looked at.
+/// Each call checks one other RVE: a round of calls checks all.
 void ThreadedPool::rest_another() noexcept {
   Slot& slot = slots_[std::size_t(hand_.fetch_add(1, std::memory_order_relaxed) % slots_.size())];
   const auto forgotten = [&] {

@@ -38,7 +38,7 @@ class Hold {
   Slot* slot_ = nullptr;
 };
 
-/// The committed state in the place of a pending trial, for as long as it is looked at.
+/// The committed state in the place of a pending trial, for as long as it is read.
 class Committed {
  public:
   explicit Committed(Rve& rve) : rve_(rve) { rve.exchange(); }
@@ -166,7 +166,7 @@ class ThreadedPool : public Pool {
   std::atomic<int> calls_{0};             ///< at work; -1: one is alone
   std::atomic<std::uint64_t> serial_{1};  ///< of calls
   std::atomic<std::uint64_t> clock_{0};   ///< calls on RVEs
-  std::atomic<std::uint64_t> hand_{0};    ///< of the look for RVEs that are to rest
+  std::atomic<std::uint64_t> hand_{0};    ///< the next slot whose memory may be released
 };
 
 /// What hosts and other ranks may call of a share. A new function is added here.

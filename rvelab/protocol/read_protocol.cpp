@@ -131,7 +131,7 @@ void read_stage(const toml::table& table, long number, Protocol& protocol, toml:
   auto what = stage_of_kind(stage.kind);
   what->read(reader, protocol);
   if (!stage.until.empty() && !what->takes_events())
-    reader.mistake("until", "has no records to look at in kind = \"" + stage.kind + "\"; allowed: with " +
+    reader.mistake("until", "has no records to check in kind = \"" + stage.kind + "\"; allowed: with " +
                                 kinds_with_events(true) + "; remove it");
   stage.what = std::move(what);
   reader.finish();

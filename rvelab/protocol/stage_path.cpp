@@ -68,7 +68,7 @@ struct Path : KindOf<PathStage> {
     if (double(stage.cycles) * stage.points * stage.records_per_point > most_records) {
       reader.mistake("records_per_point", "gives more than 1000000 records; allowed: at most so many; give fewer");
     }
-    if (protocol.dimension == 0) return;  // looked at when the specimen is there
+    if (protocol.dimension == 0) return;  // checked when the specimen is there
     const std::string mistake = mistake_of_rows(stage, protocol.dimension);
     if (!mistake.empty()) reader.mistake_in("row", mistake);
   }

@@ -32,7 +32,7 @@ TEST_CASE("a pool file of every version is read with its ids and tokens, and its
       states.push_back(host.state(ids[k]));
     }
     REQUIRE_OK(rvelab_trial(host.pool, &next.batch));
-    // Printed by 1.8, and the sub-steps that it made: with as many the stresses are the same. Only the pace is another.
+    // Printed by 1.8: with as many sub-steps the stresses are the same, only their number differs.
     const double expected[3][3] = {{-196542.71420004684, 2573.8855068332105, -196603.83781557955},
                                    {-193737.04221840424, 2674.2476048991944, -196595.9682130681},
                                    {-196564.61259327747, 2663.4511209151906, -199423.50653096524}};

@@ -120,7 +120,7 @@ class Laboratory(unittest.TestCase):
         made = [moment.records for moment in moments]
         self.assertEqual(made, sorted(made))
         self.assertEqual(made[-1], len(records["strain"]))
-        self.assertGreater(len(moments), 1, "the test took less than the time between two looks")
+        self.assertGreater(len(moments), 1, "the test took less than the time between two readings")
         for moment in moments:
             self.assertEqual(moment.strain, records["strain"][moment.records - 1])
             self.assertEqual(moment.stage, records["stage"][moment.records - 1])

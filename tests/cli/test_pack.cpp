@@ -94,7 +94,7 @@ TEST_CASE("pack says what is wrong before it works, and what was reached after i
       here.run("pack small.toml -o S.h5 --set target.void_ratio=0.05 --set preparation.max_draws=4");
   CHECK(outcome.code == 1);
   CHECK_THAT(outcome.errors,
-             Contains("was not met within 0.002 in 4 draws; reached: 0.") && !Contains("lowest_friction"));
+             Contains("was not met within 0.002 in 4 packings; reached: 0.") && !Contains("lowest_friction"));
   CHECK(!std::filesystem::exists(here / "S.h5"));
 }
 

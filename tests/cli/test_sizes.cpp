@@ -142,7 +142,7 @@ TEST_CASE("pack takes no overlaps beyond the limit, and tells discs in a thick s
   CHECK_THAT(thick.errors, Contains("solver.max_overlap_ratio allows 0.25") &&
                                Contains("pack.thickness_m = 0.1 m is") && Contains("stiffer grains"));
   CHECK(!std::filesystem::exists(here / "S.h5"));
-  // A search does not go on for a hundred draws.
+  // A search does not go on for a hundred packings.
   here.write("search.toml", text.substr(0, text.find("[preparation]")) + "void_ratio = 0.2\n" +
                                 text.substr(text.find("[[material]]")));
   CHECK(work_of("pack search.toml -o S.h5 --threads 1", search) < 20 * one_draw);
@@ -202,7 +202,7 @@ TEST_CASE("pack takes material.key for all materials, and material.NAME.key for 
   expect_mistake(here.run("pack two.toml -o S.h5 --force --set material.clay.friction=0.3"), "0 (sand), 1 (glass)");
 }
 
-TEST_CASE("a void ratio far out of reach is refused after a few rounds of draws, with the range that was reached") {
+TEST_CASE("a void ratio far out of reach is refused after a few rounds of packings, with the range that was reached") {
   const Workplace here;
   std::string text = few_grains;
   text.replace(text.find("[preparation]\nfriction = 0.1\n"), 29, "");
@@ -212,10 +212,10 @@ TEST_CASE("a void ratio far out of reach is refused after a few rounds of draws,
     const Outcome outcome = here.run("pack search.toml -o S.h5 --set target.void_ratio=" + std::string(target));
     CHECK(outcome.code == 1);
     INFO(outcome.errors);
-    const auto at = outcome.errors.find(" draws");
+    const auto at = outcome.errors.find(" packings");
     REQUIRE(at != std::string::npos);
     CHECK(std::stoi(outcome.errors.substr(outcome.errors.rfind(' ', at - 1))) <= 16);  // of 100
-    CHECK_THAT(outcome.errors, Contains("; reached: 0.") && Contains("too far from it for more draws") &&
+    CHECK_THAT(outcome.errors, Contains("; reached: 0.") && Contains("too far from it for more packings") &&
                                    Contains(target[2] == '0' ? "give a higher void ratio" : "give a lower void ratio"));
   }
 }

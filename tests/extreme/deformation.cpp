@@ -104,7 +104,7 @@ void gas_and_back(const Case& asked, Verdict& verdict) {
     tested.check_laws();
   }
   compare_with_images(tested.rve(), 4, 1e-10, verdict);
-  // Packed anew by another way, frictionless grains are about as dense; a network pressed at the wrong pace is not.
+  // Packed anew by another way, frictionless grains are about as dense; a network pressed in wrong increments is not.
   // 64 of them scatter by less than a percent in the volume at which they jam, and p/(kn/t) is the strain beyond it.
   tested.rve().relax(1e-6, 1'000'000);
   verdict.agreement("excess pressure after the way back, as a strain",

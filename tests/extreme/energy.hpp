@@ -1,4 +1,4 @@
-// The energy of an RVE and its ledger: what boundary work and losses leave must be what is there.
+// The energy balance of an RVE: the change of its energy must equal boundary work less losses.
 #pragma once
 
 #include <algorithm>
@@ -28,7 +28,7 @@ inline double losses_in(const EnergyTerms& l) {
   return l.friction + l.rolling + l.dashpot + l.local_damping + l.global_damping + l.law_loss + l.removed_kinetic;
 }
 
-/// From a first look on. SolverOptions::energy_balance must be on.
+/// From the first evaluation on. SolverOptions::energy_balance must be on.
 class EnergyBalance {
  public:
   explicit EnergyBalance(const Rve& rve)
@@ -45,7 +45,7 @@ class EnergyBalance {
     scale_ = std::max({scale_, std::abs(work), std::abs(change), std::abs(loss)});
   }
 
-  /// |dE - (W - L)| over the largest of |W|, |dE|, |L| at any look. NaN stays NaN.
+  /// |dE - (W - L)| over the largest of |W|, |dE|, |L| at any evaluation. NaN stays NaN.
   double residual() const { return residual_ == 0 ? 0 : std::abs(residual_) / scale_; }
 
  private:

@@ -127,7 +127,7 @@ void gas_keeps_energy(const Case& asked, Verdict& verdict) {
 
 /// Rate of cooling of one gas over Haff's. Kept small: in cells wider than some dozen free paths, vortices grow that
 /// cool no more (Goldhirsch and Zanetti 1993).
-/// `ledger`: the energy is booked, which takes three times as long.
+/// `ledger`: the energy balance is computed, which takes three times as long.
 double cooling_rate(const HardGas& hard, const Case& asked, unsigned seed, bool ledger, Verdict& verdict) {
   Specimen s = gas_specimen(hard, asked("hertz") != 0, asked("contact_time"), seed);
   s.solver.time_step_factor = asked("time_step_factor");

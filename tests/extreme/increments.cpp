@@ -1,4 +1,5 @@
-// Many: a million increments, a hundred thousand rotations, thousands of cycles. Round-off and pace must not add up.
+// Many: a million increments, a hundred thousand rotations, thousands of cycles. Round-off and errors of increments
+// must not add up.
 //
 #include <Eigen/LU>
 #include <cmath>

@@ -9,7 +9,7 @@ namespace rvelab::test {
 
 namespace {
 
-/// Packed with friction: loose, and held up by tangential forces. At a pace of its own, so that the specimen is the
+/// Packed with friction: loose, and held up by tangential forces. In increments of its own, so that the specimen is the
 /// same whatever is made of tolerances.
 Specimen propped(double friction) {
   Specimen loose = gas(2, spread_radii(100, 0.3), 0.4, 7, material(stiffness, 0.5 * stiffness, friction));
@@ -29,8 +29,8 @@ Specimen propped(double friction) {
 }
 
 void made_frictionless(const Case& asked, Verdict& verdict) {
-  // Without the friction that held it the packing falls in; what it falls to depends on the pace, so the run at the
-  // solver's own must agree with a slow one or say that it is none.
+  // Without the friction that held it the packing falls in; what it falls to depends on the increments, so the run at
+  // the solver's own must agree with a slow one or say that it is none.
   Specimen s = propped(asked("prepared_with"));
   const double p = mean_pressure(Rve(s).stress(), 2);
   for (Material& m : s.materials) m.friction = asked("friction");

@@ -1,5 +1,5 @@
-// From soft grains to rigid ones at dt = 0: the solver's own pace must find what a well-resolved run finds, however
-// unlike the stiffnesses of normal, tangential and rolling springs are.
+// From soft grains to rigid ones at dt = 0: the solver's own increments must find what a well-resolved run finds,
+// however unlike the stiffnesses of normal, tangential and rolling springs are.
 #include <cmath>
 
 #include "rvelab/error.hpp"

@@ -38,7 +38,7 @@ TEST_CASE("In a time too short for any grain to move by itself the packing follo
   }
 }
 
-TEST_CASE("a fast shear closes the energy ledger as the step falls") {
+TEST_CASE("a fast shear closes the energy balance as the step falls") {
   // What is left was 0.5 to 9 % of the work at any step while kinetic energy was counted with w' alone.
   const double rate = GENERATE(0.3, 3.0);
   Specimen s = packed(gas(2, spread_radii(60, 0.2), 0.4, 3, material(1e6, 5e5, 0.3)), 1e4);

@@ -119,7 +119,7 @@ TEST_CASE("a state whose stress or void ratio is beyond all numbers is refused w
   CHECK_THAT(input_error([&] { Rve rve(specimen); }), Contains("grains of 0 m^3 in a cell of 9e-05 m^3"));
 }
 
-TEST_CASE("a number of the state that is not finite, or a pace below 0, is refused by name") {
+TEST_CASE("a number of the state that is not finite, or a strain increment below 0, is refused by name") {
   const auto refusal = [](auto change) {
     Specimen specimen = nine_grains();
     change(specimen.state);
@@ -137,7 +137,7 @@ TEST_CASE("a number of the state that is not finite, or a pace below 0, is refus
              Contains("pace_target") && Contains("leave it 0"));
 }
 
-TEST_CASE("a pace that is out of all proportion leaves an increment that is made or refused") {
+TEST_CASE("a strain increment per sub-step out of all proportion leaves an increment that is made or refused") {
   for (const double target : {1e-322, 1e300})
     for (const double pace : {1e-322, 1e-6, 1e300}) {
       CAPTURE(target, pace);

@@ -124,7 +124,7 @@ TEST_CASE("the wave modulus follows grains that stiffen, and that soften again, 
   CHECK(soft < 0.6 * stiff);
   CHECK(grains.wave_modulus() > 0.95 * soft);
   CHECK(grains.wave_modulus() < 1.5 * soft);
-  // A look goes through a few dozen sub-steps of one RVE.
+  // A check goes through a few dozen sub-steps of one RVE.
   const double before = grains.grain_steps();
   measured_modulus_of(*pool, ids[0], 2);
   CHECK((grains.grain_steps() - before) * grains.called / 75'000 < 0.01 * before);

@@ -46,7 +46,7 @@ inline Pace as_recorded(const RecordedTable& path) {
   return {Pace::Kind::as_recorded, number_after(shear ? "rate g" : "rate"), number_after("dt")};
 }
 
-/// A specimen opened for a pace.
+/// A specimen opened for loading at dt = 0 or at the recorded rate.
 inline Rve open_for(Specimen specimen, const Pace& pace) {
   if (pace.kind == Pace::Kind::as_recorded) {
     specimen.damping.local = 0.1;
@@ -103,8 +103,8 @@ inline PathDifference follow_biaxial(const std::string& test, const std::string&
   const RecordedTable path("yade/paths/biaxial_" + test + ".csv");
   const Pace pace = physical ? as_recorded(path) : Pace{};
   Specimen specimen = yade_packing(packing);
-  // Finer than the default by three: what the pace and the held stress cost together (up to 0.45 % of P at the default)
-  // is no part of the comparison.
+  // Finer than the default by three: the error of increments and held stress together (up to 0.45 % of P at the
+  // default) is no part of the comparison.
   specimen.solver.target_unbalanced = 3e-4;
   Rve rve = open_for(specimen, pace);
   PathDifference worst;

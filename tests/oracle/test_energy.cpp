@@ -1,4 +1,5 @@
-// The energy ledger at dt > 0 (solver/README.md): change of elastic and kinetic energy = boundary work less all losses.
+// The energy balance at dt > 0 (solver/README.md): change of elastic and kinetic energy = boundary work less all
+// losses.
 //
 // Kinetic energy is the mean of the two half steps about the state, with v' and the whole spin w' + axial(W + Omega).
 // The residual is a matter of the time step alone. It falls as dt^2 for normal forces. Tangential springs are stretched
@@ -125,7 +126,7 @@ Matrix3 pattern(Shape shape, bool turning) {
 
 }  // namespace
 
-TEST_CASE("the ledger of normal forces closes as the square of the time step") {
+TEST_CASE("the energy balance of normal forces closes as the square of the time step") {
   const Shape shape = GENERATE(Shape::disc, Shape::sphere, Shape::ellipse);
   const Law law = GENERATE(Law::linear_given, Law::hertz_given);
   const bool turning = GENERATE(false, true);
@@ -141,7 +142,7 @@ TEST_CASE("the ledger of normal forces closes as the square of the time step") {
   CHECK(ratio < 500);
 }
 
-TEST_CASE("the ledger of stuck contacts closes") {
+TEST_CASE("the energy balance of stuck contacts closes") {
   const Shape shape = GENERATE(Shape::disc, Shape::sphere, Shape::ellipse);
   const Law law = GENERATE(Law::linear_given, Law::hertz_given, Law::hertz_mindlin);
   const bool turning = GENERATE(false, true), rolling = GENERATE(false, true);
@@ -160,7 +161,7 @@ TEST_CASE("the ledger of stuck contacts closes") {
     CHECK(f.energy_balance.law_loss == 0);
 }
 
-TEST_CASE("the ledger of dashpots closes with the time step, and they only take") {
+TEST_CASE("the energy balance of dashpots closes with the time step, and they only take") {
   const Shape shape = GENERATE(Shape::disc, Shape::sphere, Shape::ellipse);
   const Law law = GENERATE(Law::linear_given, Law::hertz_mindlin);
   const bool turning = GENERATE(false, true);
@@ -174,7 +175,7 @@ TEST_CASE("the ledger of dashpots closes with the time step, and they only take"
   CHECK(f.energy_balance.dashpot > 1e3 * std::abs(f.residual[4]));
 }
 
-TEST_CASE("the ledger of sliding and rolling contacts closes with the time step") {
+TEST_CASE("the energy balance of sliding and rolling contacts closes with the time step") {
   const Shape shape = GENERATE(Shape::disc, Shape::sphere, Shape::ellipse);
   const bool turning = GENERATE(false, true);
   CAPTURE(fields::text_of(shape), turning);
@@ -186,7 +187,7 @@ TEST_CASE("the ledger of sliding and rolling contacts closes with the time step"
   CHECK(f.energy_balance.rolling > 1e-3 * f.work);
 }
 
-TEST_CASE("the ledger of viscous and of local damping closes with the time step") {
+TEST_CASE("the energy balance of viscous and of local damping closes with the time step") {
   const Shape shape = GENERATE(Shape::disc, Shape::sphere, Shape::ellipse);
   const bool local = GENERATE(false, true), global = GENERATE(false, true);
   CAPTURE(fields::text_of(shape), local, global);

@@ -77,14 +77,14 @@ TEST_CASE("a void ratio out of reach is told with the range that was reached, an
       message = error.what();
     }
     INFO(message);
-    CHECK_THAT(message, Contains("was not met within 0.001 in ") && Contains(" draws; reached: 0.") &&
+    CHECK_THAT(message, Contains("was not met within 0.001 in ") && Contains(" packings; reached: 0.") &&
                             Contains("preparation friction"));
     CHECK(draws <= 16);  // of the hundred that it may take
     CHECK_THAT(message, Contains(target < 0.2 ? "give a higher void ratio" : "give a lower void ratio"));
   }
 }
 
-TEST_CASE("a tolerance below the usual one is met too, with more draws") {
+TEST_CASE("a tolerance below the usual one is met too, with more packings") {
   pack::Recipe recipe = discs(60);
   recipe.void_ratio = 0.21;
   recipe.void_ratio_tolerance = 3e-4;

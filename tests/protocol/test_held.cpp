@@ -74,7 +74,7 @@ TEST_CASE("every record of a drained test is of its lateral stress, through aval
     }
     CHECK(worst <= 0.005 * (1 + 1e-9));
     CHECK(drained.costs.waited > 1000);  // an avalanche was there to be waited for
-    CHECK(longest < 50'000);             // and closed in less than a cell of stiff grains would need at the last pace
+    CHECK(longest < 50'000);  // and closed in less than a cell of stiff grains would need at the last increment
   }
 }
 

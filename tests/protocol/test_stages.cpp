@@ -95,7 +95,7 @@ TEST_CASE("An event names stages and quantities that are there, and only stages 
   CHECK_THAT(message_of(stage + "  quantity = \"q_Pa\"\n"), Contains("needs one of above, below, falls_by"));
   CHECK_THAT(message_of(stage + "  quantity = \"q_Pa\"\n  above = 1\n  below = 0\n"), Contains("allowed: exactly one"));
   CHECK_THAT(message_of("[[stage]]\nkind = \"relax\"\n  [[stage.until]]\n  quantity = \"q_Pa\"\n  above = 1\n"),
-             Contains("has no records to look at"));
+             Contains("has no records to check"));
   CHECK_THAT(message_of("[[stage]]\nkind = \"relax\"\nthen = \"nowhere\"\n"),
              Contains("t.toml:6: ") && Contains("names no stage"));
 }

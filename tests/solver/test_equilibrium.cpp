@@ -126,7 +126,7 @@ TEST_CASE("a dashpot does nothing at dt = 0") {
   for (int k = 0; k < 5; ++k) CHECK(a.apply(entry(0, 1, 1e-3), 0).stress == b.apply(entry(0, 1, 1e-3), 0).stress);
 }
 
-TEST_CASE("the ledger books what a rolling spring holds when its contact opens") {
+TEST_CASE("the energy balance counts what a rolling spring holds when its contact opens") {
   Specimen s = dense(0.5, 1.0);
   s.materials[0].rolling_friction = 10;
   s.solver.energy_balance = true;

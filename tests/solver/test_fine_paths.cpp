@@ -56,7 +56,7 @@ TEST_CASE("A path that turns back, aside, or waits keeps to the resolved one, fi
     for (std::size_t k = 0; k < truth.size(); ++k) {
       CAPTURE(pieces, k);
       const Matrix3 from = k == 0 ? Rve(s).stress() : truth[k - 1];
-      // What a leg errs by is carried on: one allowance for each leg so far.
+      // The error of each straight part is carried on: one allowance for each part so far.
       CHECK((found[k] - truth[k]).norm() <= double(k + 1) * (1e-2 * (truth[k] - from).norm() + 1e-4 * 1e5));
     }
   }

@@ -264,7 +264,7 @@ TEST_CASE("what is asked for changes no bit of what is done") {
   }
 }
 
-TEST_CASE("keeping the energy ledger changes no bit of what is done") {
+TEST_CASE("computing the energy balance changes no bit of the motion") {
   for (Configuration& configuration : configurations()) {
     CAPTURE(configuration.name, fields::text_of(configuration.specimen.shape));
     Specimen with = configuration.specimen, without = configuration.specimen;

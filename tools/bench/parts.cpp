@@ -1,4 +1,4 @@
-// What each part of a step costs, a grain: pairs, gather and integration, a list rebuild, the looks at balance and
+// What each part of a step costs, a grain: pairs, gather and integration, a list rebuild, the checks of equilibrium and
 // stress.
 //
 //   build/release/bin/rvelab-bench --benchmark_repetitions=5 --benchmark_report_aggregates_only=true

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Stress ratio and volumetric strain: stress_strain.py RECORDS.h5... -o stress_strain.png (folders: their *.h5).
 
-Every stage that drives a strain one way; stages of one test that go on driving the same strain are joined. Above, q/p
+Every monotonic stage; stages of one test that continue the same strain are joined. Above, q/p
 against the driving strain, q = sqrt(s:s/2) in 2D (then q/p is the sine of the mobilised friction angle) and
 sqrt(3 s:s/2) in 3D. Below, volumetric strain 1 - V/V0, compression positive, so that dilation goes down. Tests that differ
 by their specimen alone are one curve, their mean, with a band of one standard deviation (curves.py); --each draws every

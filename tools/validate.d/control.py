@@ -6,8 +6,8 @@ Drained compression through peak and softening, 2D and 3D, at kappa = kn/(p t) (
 
 - each increment from the state of the record before it (every tenth: "again"), so that both do the same work;
 - the whole path in one run ("path"). A path is chaotic: prescribed to stiff grains after the peak, p drifts by orders
-  of magnitude, and with it the pace, so that its cost says little. It is shown and not judged where p at its end is
-  off by more than a half. Where it has not ended after ten minutes it is given up ("nan").
+  of magnitude, and with it the strain increments, so that its cost says little. It is shown and not judged where p at
+  its end is off by more than a half. Where it has not ended after ten minutes it is given up ("nan").
 
 Bars: at most 1 % of the records flagged; at most 1.3 times the grain-steps.
 """

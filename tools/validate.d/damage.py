@@ -32,7 +32,7 @@ def measures(output):
 
 
 def flip(command, original, number, sealed, damaged):
-    """`command` looks at the file `damaged`, which is `original` with a bit flipped."""
+    """`command` reads the file `damaged`, which is `original` with a bit flipped."""
     whole = original.read_bytes()
     damaged.write_bytes(whole)
     code, output, errors = answer(command)

@@ -1,6 +1,6 @@
 // Increments of displacement gradient from one state, over settings of the solver: stress and processor time of
-// Rve::apply (tools/validate yade_increments). Before each call the state is restored from a snapshot; what is timed is
-// the call, whole: its looks and its estimate with its sub-steps, and the first scaling of the masses too, unless the
+// Rve::apply (tools/validate yade_increments). Before each call the state is restored from a snapshot; timed is the
+// whole call: sub-steps, equilibrium checks and estimate, and the first scaling of the masses too, unless the
 // setting says `warm`: then that has been done before.
 //
 //   rvelab-increments STATE.h5 JOB.json     prints JSON

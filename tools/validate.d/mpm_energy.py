@@ -1,9 +1,9 @@
-"""tools/validate mpm_energy: mutated scenes must not end well with energy from nothing. mpm_energy.py RVELAB FOLDER [NUMBER]
+"""tools/validate mpm_energy: mutated scenes must not end successfully with energy from nothing. mpm_energy.py RVELAB FOLDER [NUMBER]
 
 NUMBER (1000) scenes: those of protocols/mpm, with a coarse mesh and small specimens, and one to three of their numbers
 changed by seed: by up to three powers of ten, in sign, to nothing or to what no soil bears. Each is refused (2), ends by
-itself with words (1), or ends (0); after some seconds it is stopped (130). What ended or was stopped is looked at from
-outside: kinetic and stored energy beyond what gravity, bodies and pressure gave, over the largest of them."""
+itself with a message (1), or ends (0); after some seconds it is stopped (130). The check of those that ended or were
+stopped: kinetic and stored energy beyond what gravity, bodies and pressure gave, over the largest of them."""
 
 import collections
 import pathlib

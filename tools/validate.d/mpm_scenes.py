@@ -163,7 +163,7 @@ def collapse(name, h, density):
           f"at                              {h['time_s'][peak]:<8.2f} 0.4 s\n"
           f"dissipated                      {lost / whole:<8.2f} 0.55\n"
           f"kinetic energy at the end       {h['kinetic_J'][-1] / whole:<8.4f} at rest\n"
-          f"not accounted for by the ledger {h['residual_J'][-1] / whole:.4f}")
+          f"not accounted for by the balance {h['residual_J'][-1] / whole:.4f}")
     picture(folder / name, "--field", "eps_q", "-o", results / f"mpm_{name}.png")
     picture(folder / name, "--energy", "-o", results / f"mpm_{name}_energy.png")
 

@@ -3,10 +3,10 @@
 
 A line for each run: records, flagged ones, grain-steps, and what the test holds: the volume (det F - 1), a stress or
 combination of stresses (largest miss of a record that is not flagged, over p), moduli of the oedometer against those of
-the probe. Beside it the same test paced by an unbalanced ratio of 1e-3 instead of the protocol's tolerances (or its own ratio): its
+the probe. Beside it the same test controlled by an unbalanced ratio of 1e-3 instead of the protocol's tolerances (or its own ratio): its
 grain-steps, and the means over the last stage of sin phi, mobilised, and of p over its start, as it is and by ratio. Paths of dense
-packings part by chance (peaks by a degree), so that these are to be read, not held to a bar.
-Bars: volume to 1e-12; held stresses within loading.held_tolerance (0.005); K and G within 2 %; p of `soft`
+packings diverge by chance (peaks by a degree), so these values have no limit.
+Limits: volume to 1e-12; held stresses within loading.held_tolerance (0.005); K and G within 2 %; p of `soft`
 at constant volume over gamma 0.25 to 0.5 below 30 % of its start, of `dense` above twice its start. The soft packing
 loses its pressure and may find it again, 3 to 69 % of it with one unit in the last place of a radius (means 34 +- 8,
 11 +- 3, 39 +- 9 % at ratios of 1e-3, 3e-4, 1e-4: no trend), so that the mean of sixteen such copies is held.

@@ -49,7 +49,7 @@ class Packing:
 
 
 def stresses(packing, folder, n, strain):
-    """20 looks while x grows by 3/5 and y shrinks by the strain."""
+    """Stresses at 20 states while x grows by 3/5 and y shrinks by the strain."""
     steps = 20 * n
     rates = [0.6 * strain / (20 * packing.contact), -strain / (20 * packing.contact), 0.0][:packing.dimension]
     area = packing.length if packing.dimension == 2 else packing.length**2

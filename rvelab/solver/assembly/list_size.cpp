@@ -76,7 +76,7 @@ void refuse_pairs(double pairs, const Cell& cell, const std::vector<double>& rad
 
 void refuse_looks(double looks, const Cell& cell) {
   const Vector3 height = heights(cell);
-  throw IncrementFailed("the neighbour list would look into " + in_words(looks) +
+  throw IncrementFailed("the neighbour list would search " + in_words(looks) +
                         " bins; the cell is very skew or thin: edges " + edges_in_words(cell) + " m, least height " +
                         in_words(height.head(cell.dimension).minCoeff()) +
                         " m; give its shortest lattice vectors, and all lengths in m");

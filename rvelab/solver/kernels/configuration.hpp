@@ -56,7 +56,7 @@ struct StepConstants {
 
 /// Listed pairs, padded with pairs that never touch to a multiple of eight. The first `near` of them touched when they
 /// were listed, or so; they are computed at every step. The others seldom come to touch: eight at a time they are only
-/// looked at, until one does (next_run in kernels/pairs.hpp).
+/// checked, until one does (next_run in kernels/pairs.hpp).
 struct PairArrays {
   long near = 0;                        ///< a multiple of eight
   std::uint8_t* touched = nullptr;      ///< by eight pairs: whether one touched when they were computed last

@@ -26,7 +26,7 @@ template <int W_, bool Rolling_, Slip slip_, bool Dashpot_, bool Advance_,
 struct PairTraits {
   static constexpr int W = W_;
   static constexpr bool Rolling = Rolling_, Dashpot = Dashpot_, Advance = Advance_;
-  static constexpr bool Ledger = W == 1 && Advance;  ///< books what contacts lose, where a Dissipation is handed in
+  static constexpr bool Ledger = W == 1 && Advance;  ///< adds up what contacts lose, where a Dissipation is handed in
   static constexpr Slip slip = slip_;
   static constexpr bool Curvature = hertz_radius_ == HertzRadius::curvature;
 };

@@ -71,7 +71,7 @@ constexpr double fewer_after_check = 0.5;
 /// made 18,482 where the start expected 6e7.
 constexpr long settling_steps = 100'000;
 
-// Starts from rest, in the elastic range: hardly damped grains follow in fewer sub-steps. Of 282 such starts of drawn
+// Starts from rest, in the elastic range: hardly damped grains follow in fewer sub-steps. Of 282 such starts of random
 // packings (29 seeds, 1e-6 to 1e-2) 76 % of the errors are allowed, with the usual damping, K and step_margin 57 %, in
 // 0.8 times the sub-steps; 96 % are within the estimate.
 
@@ -87,7 +87,7 @@ constexpr double longest_start = 50, longest_elastic_strain = 0.3, least_elastic
 
 // Relaxation.
 
-/// n between checks, and in all before a turn: 300 to 1,000 take a lag of 1e-2 p to 1e-4 p (drawn increments in flow).
+/// n between checks, and in all before a turn: 300 to 1,000 take a lag of 1e-2 p to 1e-4 p (random increments in flow).
 constexpr long relaxation_interval = 25, most_steps_before_turn = 2000;
 /// A target of u beyond this times that of the increment was that of a coarser path.
 constexpr double coarser_path = 2;
@@ -111,7 +111,7 @@ constexpr double largest_start = 0.45;
 
 // Error with K measured on a copy that relaxes.
 
-/// n of the copy: of 190 drawn increments it showed 0.9 to 1.1 of the whole lag for two thirds. What that leaves, over
+/// n of the copy: of 190 random increments it showed 0.9 to 1.1 of the whole lag for two thirds. What that leaves, over
 /// p u.
 constexpr long rest_steps = 50;
 constexpr double left_by_rest = 1;
@@ -148,7 +148,7 @@ constexpr double slow_growth = 1.5, slow_goes_on = 40;
 constexpr long creep_steps = 200;
 constexpr double creep_goes_on = 30;
 /// Added beyond the strain of the overlaps, over sqrt(x) K p u, u the mean on the way: at x = 70 and friction 0.05
-/// errors were 6 K p u, the end calm.
+/// errors were 6 K p u, with the end in equilibrium.
 constexpr double way_margin = 1;
 /// Added, over what is allowed: resolved answers are no better known. Beyond the strain of the overlaps a path that was
 /// cut otherwise ends elsewhere by so much.

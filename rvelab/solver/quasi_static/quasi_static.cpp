@@ -72,8 +72,8 @@ class CheckedSteps {
     const SolverOptions& o = s_.model().options;
     double& strain_per_step = s_.control().strain_per_step;
     const double left = 1 - fraction_;
-    // Where contacts open no strain per step may calm the grains: the sub-steps have an end, and the estimate says what
-    // they leave.
+    // Where contacts open, perhaps no strain per step brings equilibrium: the number of sub-steps is limited, and the
+    // estimate tells the error.
     strain_per_step =
         std::max(strain_per_step, left * strain_ / std::max(most_ - double(made), double(check_interval)));
     long steps_left = 0;

@@ -50,7 +50,7 @@ def _scripts() -> Path:
     places = here / "native/share/rvelab/plot", here.parents[1] / "plot", here.parents[3] / "share/rvelab/plot"
     found = next((place for place in places if (place / "records.py").exists()), None)
     if found is None:
-        raise FileNotFoundError(f"the scripts of the figures were not found; looked at {', '.join(map(str, places))}; "
+        raise FileNotFoundError(f"the scripts of the figures were not found; tried {', '.join(map(str, places))}; "
                                 "install rvelab anew")
     return found
 

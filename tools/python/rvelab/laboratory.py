@@ -162,13 +162,13 @@ def fit(protocol: _PathLike, vary: Mapping[str, Sequence[Any]], targets: Mapping
         count: int | None = None, tests: int | None = None, settings: Mapping[str, Any] | None = None,
         output: _PathLike | None = None, threads: int | None = None, overwrite: bool = False,
         resume: bool = False) -> dict[str, Any]:
-    """Looks for the parameters whose tests give what was measured, and returns what `rvelab fit` finds: parameters (key,
+    """Finds the parameters whose tests give what was measured, and returns what `rvelab fit` prints: parameters (key,
     mean, low_95, high_95, ...), targets, tests, posterior_sample. Without targets and curves a sweep.
 
     vary: {"material.friction": (0.1, 1.0)}; (low, high, "log"); of a sweep (low, high, number of values). targets:
     {"friction_angle_deg": 30} or (value, standard error); "friction_angle_deg@50e3" at a pressure in Pa. curves: measured
     curves, CSV files, or {file: pressure in Pa}. specimens that all tests share, or a recipe with count specimens. tests:
-    how many to spend. output: folder for fit.json and all else; plot("fit", output) draws it. resume: go on there."""
+    their number. output: folder for fit.json and the other files; plot("fit", output) draws it. resume: go on there."""
     words = ["fit", protocol]
     for key, bounds in vary.items():
         words += ["--vary", f"{key}=" + ":".join(map(str, bounds))]
