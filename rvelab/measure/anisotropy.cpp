@@ -46,8 +46,8 @@ Matrix3 fitted(const Network& network, const std::vector<Matrix3>& tensors, cons
 }
 
 /// (n.A n) n and A n - (n.A n) n.
-Vector3 along(const Matrix3& tensor, const Vector3& n) { return n.dot(tensor * n) * n; }
-Vector3 across(const Matrix3& tensor, const Vector3& n) { return tensor * n - along(tensor, n); }
+Vector3 along_normal(const Matrix3& tensor, const Vector3& n) { return n.dot(tensor * n) * n; }
+Vector3 across_normal(const Matrix3& tensor, const Vector3& n) { return tensor * n - along_normal(tensor, n); }
 
 /// Mean and anisotropies of a vector at each contact, along and across the normal: mean (1 + n.a n), mean (a_t n -
 /// ...).
@@ -63,9 +63,9 @@ Directional directional(const Network& network, const VectorAt& vector_at) {
   const auto normal_part = [&](const ContactState& contact) {
     return Vector3(contact.normal.dot(vector_at(contact)) * contact.normal);
   };
-  const Matrix3 a = fitted(network, tensors, along, normal_part);
+  const Matrix3 a = fitted(network, tensors, along_normal, normal_part);
   tensors.pop_back();  // an isotropic tensor has no part across n
-  const Matrix3 across_n = fitted(network, tensors, across, [&](const ContactState& contact) {
+  const Matrix3 across_n = fitted(network, tensors, across_normal, [&](const ContactState& contact) {
     return Vector3(vector_at(contact) - normal_part(contact));
   });
   const double mean = a.trace() / dimension;

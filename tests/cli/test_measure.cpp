@@ -97,3 +97,72 @@ TEST_CASE("spheres in a triaxial test: force and fabric make the stress", "[slow
   here.import_packing("hertz");
   expect_relation(records_of(here, "triaxial --set stage.compression.to_strain=0.03"), 3);
 }
+
+TEST_CASE("measure gives modulus and damping of each loop of a cyclic test, and no instability") {
+  const Workplace here;
+  here.import_packing("dense_p20");
+  REQUIRE(here.run("run cyclic_shear --specimen S.h5 -o C.h5 --set stage.cycles.cycles=3").code == 0);
+  const auto json = nlohmann::json::parse(here.run("measure C.h5 --json").output);
+  CHECK(!json.contains("unstable_from_strain"));
+  REQUIRE(json.at("loops").size() == 2);
+  for (const auto& loop : json.at("loops")) {
+    CHECK(loop.at("gamma").get<double>() == Approx(0.005).epsilon(0.01));
+    CHECK(loop.at("G_over_G_max").get<double>() < 1);
+    CHECK(loop.at("G_over_G_max").get<double>() > 0);
+    // Of a solid that yields at once it is 2/pi (Masing); grains that are stuck dissipate nothing.
+    CHECK(loop.at("damping_ratio").get<double>() > 0.01);
+    CHECK(loop.at("damping_ratio").get<double>() < 0.64);
+  }
+}
+
+TEST_CASE("a dense biaxial test turns unstable at its peak; bands by Roscoe, Arthur and Coulomb", "[slow]") {
+  const Workplace here;
+  here.import_packing("dense_p20");
+  const Outcome run = here.run("run biaxial --specimen S.h5 -o R.h5 --json");
+  REQUIRE(run.code == 0);
+  const auto json = nlohmann::json::parse(here.run("measure R.h5 --json").output);
+  const double peak = nlohmann::json::parse(run.output).at("peak_strain").get<double>();
+  CHECK(json.at("unstable_from_strain").get<double>() < peak + 0.005);
+  CHECK(json.at("second_order_work_least").get<double>() < 0);
+  CHECK(json.at("strains").size() == json.at("second_order_work_Pa").size());
+  const double coulomb = json.at("coulomb_angle_deg"), arthur = json.at("arthur_angle_deg"),
+               roscoe = json.at("roscoe_angle_deg");
+  CHECK(arthur == Approx(0.5 * (coulomb + roscoe)));
+  CHECK(roscoe > 45);  // dense grains dilate
+  CHECK(coulomb > roscoe);
+  // A sheared state is weaker in its weakest band than its contacts would be, were all of them stuck.
+  const auto probe = nlohmann::json::parse(here.run("probe R.h5 --bands --size 1e-5 --json").output);
+  CHECK(probe.at("acoustic_ratio").get<double>() < 0.95);
+  CHECK(probe.at("acoustic_ratio").get<double>() <= probe.at("acoustic_mean_ratio").get<double>() + 0.05);
+  const auto elastic = nlohmann::json::parse(here.run("probe R.h5 --bands --method linear --json").output);
+  CHECK(elastic.at("acoustic_ratio").get<double>() == 1);
+}
+
+TEST_CASE("critical fits the line through the ends of tests, and says what it lacks", "[slow]") {
+  const Workplace here;
+  here.import_packing("dense_p20");
+  for (const char* p : {"100", "400"}) {
+    const std::string pressure = p;
+    REQUIRE(here.run("run simple_shear_drained --specimen S.h5 -o R" + pressure + ".h5 --set test.pressure_Pa=" +
+                     pressure + "e3 --set stage.shear.to_strain=0.5 --set stage.shear.record_every=0.02")
+                .code == 0);
+  }
+  const auto json = nlohmann::json::parse(here.run("critical R100.h5 R400.h5 --json").output);
+  const auto& states = json.at("states");
+  REQUIRE(states.size() == 2);
+  for (const auto& state : states) {
+    // The line goes through two states; a dense packing lies below it.
+    const double p = state.at("p_Pa"), e = state.at("void_ratio");
+    CHECK(json.at("logarithmic_Gamma").get<double>() -
+              json.at("logarithmic_lambda").get<double>() * std::log(p / 1e3) ==
+          Approx(e).epsilon(1e-9));
+    CHECK(state.at("state_parameter").get<double>() < 0);
+    CHECK(state.at("q_over_p").get<double>() > 0.1);
+  }
+  expect_mistake(here.run("critical R100.h5 --from 3"), "beyond the end");
+  expect_mistake(here.run("critical S.h5"), "S.h5");
+  REQUIRE(here.run("run biaxial --specimen S.h5 -o N.h5 --set 'output.quantities=[]' --set "
+                   "stage.compression.to_strain=0.001")
+              .code == 0);
+  expect_mistake(here.run("critical N.h5"), "void_ratio");
+}
