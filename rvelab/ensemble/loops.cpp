@@ -1,6 +1,5 @@
 #include "rvelab/ensemble/loops.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -52,17 +51,16 @@ std::vector<std::size_t> turns_of(const std::vector<Shear>& path) {
   return turns;
 }
 
-Loop loop_between(const std::vector<Shear>& path, std::size_t first, std::size_t last) {
-  const auto [low, high] =
-      std::minmax_element(path.begin() + std::ptrdiff_t(first), path.begin() + std::ptrdiff_t(last) + 1,
-                          [](const Shear& a, const Shear& b) { return a.driving < b.driving; });
-  const double strain = high->gamma - low->gamma, stress = high->tau - low->tau;
+/// The loop of three turns: it opens at the first and closes at the last, on the same side.
+Loop loop_of(const std::vector<Shear>& path, std::size_t first, std::size_t opposite, std::size_t last) {
+  const double strain = 0.5 * (path[first].gamma + path[last].gamma) - path[opposite].gamma;
+  const double stress = 0.5 * (path[first].tau + path[last].tau) - path[opposite].tau;
   double area = 0;
   for (std::size_t k = first + 1; k <= last; ++k)
     area += 0.5 * (path[k].tau + path[k - 1].tau) * (path[k].gamma - path[k - 1].gamma);
   // The loop need not close: a straight line back to its beginning closes it.
   area += 0.5 * (path[first].tau + path[last].tau) * (path[first].gamma - path[last].gamma);
-  return {0.5 * strain, stress / strain, area / (0.5 * std::numbers::pi * stress * strain)};
+  return {0.5 * std::abs(strain), stress / strain, area / (0.5 * std::numbers::pi * stress * strain)};
 }
 
 bool has_plane(const std::string& axis) {
@@ -84,7 +82,8 @@ std::vector<Loop> loops_of(std::span<const records::Record> stage, const std::st
     const std::size_t last = turns.back(), end = path.size() - 1;
     if (travelled(last, end) > 0.95 * travelled(turns[turns.size() - 2], last)) turns.push_back(end);
   }
-  for (std::size_t k = 2; k < turns.size(); k += 2) loops.push_back(loop_between(path, turns[k - 2], turns[k]));
+  for (std::size_t k = 2; k < turns.size(); k += 2)
+    loops.push_back(loop_of(path, turns[k - 2], turns[k - 1], turns[k]));
   return loops;
 }
 

@@ -1,9 +1,9 @@
 // Secant shear modulus and damping ratio of the loops of a cyclic test (Hardin and Drnevich 1972; Kramer 1996, section
 // 6.4):
 //   G = dtau/dgamma     D = area of the loop/(pi/2 dtau dgamma)
-// dgamma and dtau are differences between the records with the largest and the least driving strain of the loop, the
-// area is the work of one cycle per volume. Of a loop about the origin D = Delta W/(4 pi W), W the energy
-// at the amplitude. Simple shear: tau and gamma of its plane. Compression: tau = (sigma_a - sigma_r)/2, gamma = eps_a -
+// dgamma and dtau are differences between the turn at which the loop opens and closes (their mean) and the opposite
+// one, the area is the work of one cycle per volume. Of a loop about the origin D = Delta W/(4 pi W), W the energy at
+// the amplitude. Simple shear: tau and gamma of its plane. Compression: tau = (sigma_a - sigma_r)/2, gamma = eps_a -
 // eps_r, the largest shear; sigma_r, eps_r the mean of the lateral ones.
 #pragma once
 
