@@ -1,13 +1,18 @@
 #include "rvelab/measure/anisotropy.hpp"
 
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 #include "rvelab/measure/deviator.hpp"
 #include "rvelab/measure/measures.hpp"
 
 namespace rvelab {
 namespace {
+
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();  // a mean over nothing
 
 /// Symmetric tensors of the plane or of space, orthonormal under A:B. The isotropic one is the last.
 std::vector<Matrix3> orthonormal_tensors(int dimension) {
@@ -93,8 +98,11 @@ double fourth_order_amplitude(const Network& network) {
 }  // namespace
 
 Anisotropies anisotropies(const Network& network) {
+  if (network.contacts.empty()) {
+    const Matrix3 none = Matrix3::Constant(nothing);
+    return {none, none, none, none, none, nothing, nothing, nothing};
+  }
   Anisotropies found;
-  if (network.contacts.empty()) return found;
   const int dimension = network.dimension();
   const Directional forces = directional(network, [](const ContactState& contact) { return contact.force(); });
   const Directional branches = directional(network, [](const ContactState& contact) { return contact.branch; });
@@ -116,6 +124,7 @@ double predicted_stress_ratio(const StressForceFabric& a, int dimension) {
 }
 
 StressForceFabric stress_force_fabric(const Network& network) {
+  if (network.contacts.empty()) return {nothing, nothing, nothing, nothing, nothing, nothing, nothing};
   const int dimension = network.dimension();
   const Matrix3 stress = contact_stress(network), s = -deviator(stress, dimension);
   StressForceFabric found;

@@ -19,7 +19,7 @@
 
 namespace rvelab {
 
-/// Laboratory frame, symmetric, traceless. Zero without contacts.
+/// Laboratory frame, symmetric, traceless. NaN without contacts.
 struct Anisotropies {
   Matrix3 normals = Matrix3::Zero();              ///< a_c
   Matrix3 normal_forces = Matrix3::Zero();        ///< a_n
@@ -35,7 +35,7 @@ Anisotropies anisotropies(const Network& network);
 
 /// Amplitudes along the deviator s of the contact stress (compression positive): sqrt(1/2) a:s/|s| in 2D, sqrt(3/2)
 /// a:s/|s| in 3D. Of a tensor with the axes of the stress that is its amplitude, positive if it adds to q. All zero
-/// without a deviator. q, p as in measures.hpp.
+/// without a deviator, NaN without contacts. q, p as in measures.hpp.
 struct StressForceFabric {
   double a_c = 0, a_n = 0, a_t = 0, a_l = 0, a_lt = 0;
   double predicted = 0;  ///< q/p by the relation above

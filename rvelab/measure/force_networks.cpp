@@ -29,7 +29,12 @@ ForceNetwork measured(const Network& whole, const Network& part) {
 
 ForceNetworks force_networks(const Network& network) {
   ForceNetworks found;
-  if (network.contacts.empty()) return found;
+  if (network.contacts.empty()) {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    const Matrix3 zero = Matrix3::Zero();
+    const ForceNetwork part{none, Matrix3::Constant(none), none, zero, none, none, none};
+    return {none, part, part};
+  }
   for (const ContactState& contact : network.contacts) found.mean_normal_force += contact.normal_force;
   found.mean_normal_force /= double(network.contacts.size());
   Network strong = network, weak = network;

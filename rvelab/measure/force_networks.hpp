@@ -18,7 +18,8 @@ struct ForceNetwork {
   double sliding = 0;                ///< share of its contacts on the Coulomb cone
 };
 
-/// Shares of both add up to 1, stresses to contact_stress(). All zero without contacts.
+/// Shares of both add up to 1, stresses to contact_stress(). Shares, fabrics and the mean force are NaN without
+/// contacts.
 struct ForceNetworks {
   double mean_normal_force = 0;  ///< N
   ForceNetwork strong, weak;
