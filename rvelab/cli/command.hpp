@@ -120,9 +120,9 @@ Command command_of_one_word(std::string name, std::string summary, const std::st
                             bool required, std::string notes, std::function<void(const std::string&, bool json)> run);
 
 // The subcommands of the program, one file each; main.cpp puts them together.
-Command pack_command(), import_command(), inspect_command(), probe_command(), run_command(), recover_command(),
-    seal_command(), calibrate_command(), fit_command(), study_command(), report_command(), compare_command(),
-    export_command(), protocols_command(), keys_command(), bench_command();
+Command pack_command(), import_command(), inspect_command(), measure_command(), probe_command(), run_command(),
+    recover_command(), seal_command(), calibrate_command(), critical_command(), fit_command(), study_command(),
+    report_command(), compare_command(), export_command(), protocols_command(), keys_command(), bench_command();
 
 /// What the words of a command line ask for: a command, its options filled in, or a text (help, version).
 struct Asked {

@@ -102,10 +102,10 @@ const rvelab::cli::About about{
 /// In the order of the help.
 std::vector<rvelab::cli::Command> commands() {
   using namespace rvelab::cli;
-  return {pack_command(),   import_command(),    inspect_command(), probe_command(),
-          run_command(),    recover_command(),   seal_command(),    calibrate_command(),
-          fit_command(),    study_command(),     report_command(),  compare_command(),
-          export_command(), protocols_command(), keys_command(),    bench_command()};
+  return {pack_command(),      import_command(),  inspect_command(), measure_command(),   probe_command(),
+          run_command(),       recover_command(), seal_command(),    calibrate_command(), critical_command(),
+          fit_command(),       study_command(),   report_command(),  compare_command(),   export_command(),
+          protocols_command(), keys_command(),    bench_command()};
 }
 
 /// Does what the command line asks for and returns the exit code. Throws on failure.

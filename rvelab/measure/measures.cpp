@@ -5,31 +5,12 @@
 #include <cmath>
 #include <limits>
 
+#include "rvelab/measure/deviator.hpp"
+
 namespace rvelab {
 namespace {
 
 constexpr double not_defined = std::numeric_limits<double>::quiet_NaN();
-
-Matrix3 in_laboratory(const Network& network, const Matrix3& tensor) {
-  const Matrix3& rotation = network.cell.rotation;
-  return rotation * tensor * rotation.transpose();
-}
-
-Matrix3 isotropic(int dimension) {
-  Matrix3 identity = Matrix3::Identity();
-  if (dimension == 2) identity(2, 2) = 0;
-  return identity;
-}
-
-/// Symmetric deviator in the space of the given dimension. In 2D out-of-plane components are left out.
-Matrix3 deviator(const Matrix3& tensor, int dimension) {
-  Matrix3 symmetric = 0.5 * (tensor + tensor.transpose());
-  if (dimension == 2) {
-    symmetric.row(2).setZero();
-    symmetric.col(2).setZero();
-  }
-  return symmetric - symmetric.trace() / dimension * isotropic(dimension);
-}
 
 double solid_volume(const Network& network, const GrainState& grain) {
   return grain_volume(network.shape, grain.radius, network.cell.lattice(2, 2));
@@ -100,7 +81,7 @@ Matrix3 orientation_fabric(const Network& network) {
 }
 
 double fabric_anisotropy(const Matrix3& fabric, int dimension) {
-  const Matrix3 difference = fabric - isotropic(dimension) / dimension;
+  const Matrix3 difference = fabric - identity_in(dimension) / dimension;
   return dimension == 2 ? 4 * std::sqrt(0.5) * difference.norm() : 7.5 * std::sqrt(1.5) * difference.norm();
 }
 

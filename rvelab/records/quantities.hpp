@@ -5,6 +5,9 @@
 // A new quantity is its struct (quantity.hpp says how) and its place in the list.
 #pragma once
 
+#include "rvelab/measure/anisotropy.hpp"
+#include "rvelab/measure/deviator.hpp"
+#include "rvelab/measure/force_networks.hpp"
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/records/quantity.hpp"
 
@@ -113,6 +116,76 @@ struct KineticEnergy {
   static double measure(const Rve&, const Network& network) { return rvelab::kinetic_energy(network); }
 };
 
+// Anisotropies along the deviator of the stress, and what they make of it (rvelab/measure/anisotropy.hpp).
+
+struct ContactAnisotropy {
+  double a_c = 0;
+  static constexpr QuantityText text{"a_c", "1", "anisotropy of contact normals along the stress"};
+  static constexpr auto member = &ContactAnisotropy::a_c;
+  static double measure(const Rve&, const Network& network) { return stress_force_fabric(network).a_c; }
+};
+
+struct NormalForceAnisotropy {
+  double a_n = 0;
+  static constexpr QuantityText text{"a_n", "1", "of normal forces"};
+  static constexpr auto member = &NormalForceAnisotropy::a_n;
+  static double measure(const Rve&, const Network& network) { return stress_force_fabric(network).a_n; }
+};
+
+struct TangentialForceAnisotropy {
+  double a_t = 0;
+  static constexpr QuantityText text{"a_t", "1", "of tangential forces"};
+  static constexpr auto member = &TangentialForceAnisotropy::a_t;
+  static double measure(const Rve&, const Network& network) { return stress_force_fabric(network).a_t; }
+};
+
+struct BranchAnisotropy {
+  double a_l = 0;
+  static constexpr QuantityText text{"a_l", "1", "of branches along the normals"};
+  static constexpr auto member = &BranchAnisotropy::a_l;
+  static double measure(const Rve&, const Network& network) { return stress_force_fabric(network).a_l; }
+};
+
+struct TangentialBranchAnisotropy {
+  double a_lt = 0;
+  static constexpr QuantityText text{"a_lt", "1", "of branches across the normals, 0 of round grains"};
+  static constexpr auto member = &TangentialBranchAnisotropy::a_lt;
+  static double measure(const Rve&, const Network& network) { return stress_force_fabric(network).a_lt; }
+};
+
+struct StressForceFabricRatio {
+  double stress_force_fabric = 0;
+  static constexpr QuantityText text{"stress_force_fabric", "1", "q/p that a_c, a_n, a_t, a_l, a_lt predict"};
+  static constexpr auto member = &StressForceFabricRatio::stress_force_fabric;
+  static double measure(const Rve&, const Network& network) { return rvelab::stress_force_fabric(network).predicted; }
+};
+
+struct FabricAngle {
+  double fabric_angle_deg = 0;
+  static constexpr QuantityText text{"fabric_angle_deg", "degrees",
+                                     "between the major axes of stress and contact normals"};
+  static constexpr auto member = &FabricAngle::fabric_angle_deg;
+  static double measure(const Rve& rve, const Network& network) {
+    return axes_angle_deg(-rve.stress(), rvelab::fabric(network), network.dimension());
+  }
+};
+
+// Contacts with a normal force above the mean (rvelab/measure/force_networks.hpp).
+
+struct StrongContacts {
+  double strong_contacts = 0;
+  static constexpr QuantityText text{"strong_contacts", "1", "share of contacts above the mean normal force"};
+  static constexpr auto member = &StrongContacts::strong_contacts;
+  static double measure(const Rve&, const Network& network) { return force_networks(network).strong.contacts; }
+};
+
+struct StrongDeviator {
+  double strong_deviator = 0;
+  static constexpr QuantityText text{"strong_deviator", "1", "share of q that these bear"};
+  static constexpr auto member = &StrongDeviator::strong_deviator;
+  static double measure(const Rve&, const Network& network) { return force_networks(network).strong.deviator_share; }
+};
+
 /// New ones come last: journals name what was asked for by the places here.
 using Quantities = QuantityTable<  //
     VoidRatio,                     //
@@ -127,7 +200,16 @@ using Quantities = QuantityTable<  //
     ReynoldsStress,                //
     ElasticEnergy,                 //
     KineticEnergy,                 //
-    OrientationFabric              //
+    OrientationFabric,             //
+    ContactAnisotropy,             //
+    NormalForceAnisotropy,         //
+    TangentialForceAnisotropy,     //
+    BranchAnisotropy,              //
+    TangentialBranchAnisotropy,    //
+    StressForceFabricRatio,        //
+    FabricAngle,                   //
+    StrongContacts,                //
+    StrongDeviator                 //
     >;
 
 inline constexpr auto quantity_rows = Quantities::rows();

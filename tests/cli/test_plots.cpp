@@ -1,5 +1,7 @@
 // The scripts of tools/plot on what the protocols give: figures where they make sense, else one line that says what
 // they need.
+#include <nlohmann/json.hpp>
+
 #include "tests/cli/program.hpp"
 
 using namespace rvelab::test;
@@ -45,6 +47,9 @@ TEST_CASE("every plot script draws what is its own and refuses the rest in one l
     REQUIRE(outcome.code == 0);
   };
   test("biaxial", "compression.h5", "--set stage.compression.to_strain=0.03");
+  test("biaxial", "network.h5",
+       "--set stage.compression.to_strain=0.01 --set 'output.quantities=[\"a_c\",\"a_n\",\"a_t\",\"a_l\","
+       "\"stress_force_fabric\",\"strong_contacts\",\"strong_deviator\"]'");
   test("biaxial", "rising.h5", "--set stage.compression.to_strain=0.003");
   test("biaxial_extension", "extension.h5", "--set stage.compression.to_strain=-0.04");
   test("simple_shear", "shear.h5", "--set stage.shear.to_strain=0.02");
@@ -68,6 +73,10 @@ TEST_CASE("every plot script draws what is its own and refuses the rest in one l
   expect_refusal(here, "mohr", "compression.h5 cyclic.h5", "cyclic.h5");
   expect_figure(here, "loops", "cyclic.h5", "2.0 cycles");
   expect_refusal(here, "loops", "compression.h5", "monotonic");
+  expect_figure(here, "stiffness", "cyclic.h5", "1 loop, G_max");
+  expect_refusal(here, "stiffness", "compression.h5", "no whole loop");
+  expect_figure(here, "stress_force_fabric", "network.h5", "q/p of force and fabric within 0.0");
+  expect_refusal(here, "stress_force_fabric", "compression.h5", "[output] quantities");
   expect_figure(here, "e_log_p", "isotropic.h5", "recompression index C_r");
   expect_figure(here, "e_log_p", "oedometer.h5", "large");
   expect_refusal(here, "e_log_p", "compression.h5", "isotropic_compression or oedometer");
@@ -115,6 +124,31 @@ TEST_CASE("e_log_p.py finds the indices of a path of straight parts, and where f
                    "p = 10 ** x * (1 + 1e-3 * (-1) ** np.arange(20))\n"
                    "print(*('%s %.3f' % fit[:2] for fit in e_log_p.fits_of(p, 1 - 0.2 * np.log10(p))))\n") ==
         "C_c 0.200\n");
+}
+
+TEST_CASE("stiffness.py has the loops that rvelab measure has, of the smallest amplitudes too") {
+  const Workplace here;
+  here.import_packing("dense_p20");
+  for (const char* amplitude : {"1e-5", "2e-3"}) {
+    REQUIRE(here.run("run cyclic_shear --specimen S.h5 -o C.h5 --force --set test.pressure_Pa=20e3 --set "
+                     "stage.cycles.cycles=3 --set stage.cycles.to_strain=" +
+                     std::string(amplitude) +
+                     " --set stage.cycles.record_every=" + (amplitude[0] == '1' ? "2e-7" : "4e-5"))
+                .code == 0);
+    const auto measured = nlohmann::json::parse(here.run("measure C.h5 --json").output).at("loops");
+    const auto drawn = nlohmann::json::parse(
+        printed_by(here,
+                   "import json, records, stiffness\nstage, = records.read_driven_stages(['C.h5'])\n"
+                   "print(json.dumps(stiffness.loops_of(stage).tolist()))\n"));
+    CAPTURE(amplitude);
+    REQUIRE(drawn.size() == measured.size());
+    REQUIRE(drawn.size() == 2);
+    for (std::size_t k = 0; k < 2; ++k) {
+      CHECK(drawn[k][0].get<double>() == Approx(measured[k].at("gamma").get<double>()));
+      CHECK(drawn[k][1].get<double>() == Approx(measured[k].at("G_Pa").get<double>()));
+      CHECK(drawn[k][2].get<double>() == Approx(measured[k].at("damping_ratio").get<double>()).margin(1e-9));
+    }
+  }
 }
 
 TEST_CASE("tests that differ by their specimen alone are one curve, the mean with their standard deviation") {

@@ -287,6 +287,7 @@ TEST_CASE("a shape is named in its own files and where shapes are listed") {
 TEST_CASE("expected_count is the number of tests that every machine has") {
   std::size_t cases = 1;  // the bench, which is a run of the program
   for (const std::string& file : code_under("tests")) {
+    if (file.starts_with("tests/voids/")) continue;  // not where CGAL is missing
     std::istringstream lines(text_of(root / file));
     for (std::string line; std::getline(lines, line);)  // "[.]": run by name only
       cases += std::size_t(line.starts_with("TEST_CASE(") && line.find("\"[.") == std::string::npos);

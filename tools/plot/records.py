@@ -219,6 +219,9 @@ def stages_of(path):
     keys = {stage.get("name", stage["kind"]): stage for stage in protocol.get("stage", [])}
     # A stage begins with a record that no sub-step led to.
     begin = (columns["substeps"] == 0) & np.all(columns["deformation_gradient"] == np.eye(3), axis=(1, 2))
+    # So does one of a small cycle that comes back to zero, with increments that share a sub-step: by one step, not at once.
+    strain = columns["strain"]
+    begin[2:] &= np.abs(strain[1:-1]) > 1.5 * np.abs(np.diff(strain)[:-1])
     change = np.flatnonzero((np.diff(columns["stage"]) != 0) | begin[1:]) + 1
     stages = []
     for rows in np.split(np.arange(len(columns["stage"])), change):

@@ -27,6 +27,8 @@ import loops
 import mohr
 import rose
 import state as states
+import stiffness
+import stress_force_fabric
 import stress_path
 import stress_strain
 import tables
@@ -132,9 +134,11 @@ def curves_of(stages, options, folder):
         if cyclic:
             first = [stage for stage in driven if stage.path == cyclic[0].path]
             parts.append(figure_of(loops, first, options, folder, f"Loops of {cyclic[0].path.name}."))
+            parts.append(figure_of(stiffness, cyclic, options, folder, "Shear modulus and damping of the loops."))
         for module, caption in ((stress_strain, "Mobilised stress ratio and volumetric strain."),
                                 (e_log_p, "Void ratio against mean stress."), (volumetric, "Void ratio."),
-                                (stress_path, "Stress paths."), (fabric, "Anisotropy of the contact network.")):
+                                (stress_path, "Stress paths."), (fabric, "Anisotropy of the contact network."),
+                                (stress_force_fabric, "Stress, force and fabric.")):
             given = one if module is stress_strain else driven
             parts.append(figure_of(module, given, options, folder, caption) if given else "")
     for path in list(dict.fromkeys(stage.path for stage in stages if stage.kind == "envelope"))[:1]:

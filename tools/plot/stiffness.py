@@ -1,0 +1,89 @@
+#!/usr/bin/env python3
+"""Shear modulus and damping against strain: stiffness.py RECORDS.h5... -o stiffness.png (folders stand for their *.h5).
+
+One point a loop of each cyclic stage: secant shear modulus G over G_max, and damping ratio, against the amplitude of the
+shear strain, as `rvelab measure` has them (rvelab/ensemble/loops.hpp). G_max: the mean shear stiffness of the first probe
+stage that a file holds, else the secant from the first record of a stage to its second, the median over the stages.
+"""
+
+import argparse
+
+import records  # first: it says which package is missing
+import curves as kinds
+import h5py
+import matplotlib.pyplot as plt
+import numpy as np
+
+
+def shear_of(stage):
+    """gamma and tau, Pa: of the plane of a simple shear, else axial less lateral strain and half of that stress."""
+    if len(stage.axis) == 2:
+        a, b = ("xyz".index(letter) for letter in stage.axis)
+        return stage.deformation[:, a, b], -0.5 * (stage.stress[:, a, b] + stage.stress[:, b, a])
+    axis = "xyz".index(stage.axis) if stage.axis else stage.dimension - 1
+    lateral = [k for k in range(stage.dimension) if k != axis]
+    less = lambda tensor: tensor[:, axis, axis] - sum(tensor[:, k, k] for k in lateral) / len(lateral)
+    return -less(stage.deformation), 0.5 * less(stage.stress)
+
+
+def loops_of(stage):
+    """Rows gamma, G, damping ratio: of each loop from a turn of the driving strain to the next but one."""
+    gamma, tau = shear_of(stage)
+    step = np.diff(stage.strain)
+    moving = np.flatnonzero(step)  # records may stand at a turn
+    turns = list(moving[1:][step[moving[1:]] * step[moving[:-1]] < 0])
+    travelled = lambda one, other: abs(stage.strain[other] - stage.strain[one])
+    if len(turns) > 1 and travelled(turns[-1], -1) > 0.95 * travelled(turns[-2], turns[-1]):
+        turns.append(len(gamma) - 1)
+    rows = []
+    for first, opposite, last in zip(turns[:-2:2], turns[1:-1:2], turns[2::2]):
+        part = slice(first, last + 1)
+        x, y = np.append(gamma[part], gamma[first]), np.append(tau[part], tau[first])  # closed
+        strain, stress = (0.5 * (value[first] + value[last]) - value[opposite] for value in (gamma, tau))
+        area = np.sum(0.5 * (y[1:] + y[:-1]) * np.diff(x))
+        rows.append((0.5 * abs(strain), stress / strain, area / (0.5 * np.pi * stress * strain)))
+    return np.array(rows).reshape(-1, 3)
+
+
+def largest_modulus(stages):
+    """G_max, Pa, and where it is from."""
+    for path in dict.fromkeys(stage.path for stage in stages):
+        with h5py.File(path) as file:
+            if "probes/stiffness_Pa" in file and len(file["probes/stiffness_Pa"]):
+                stiffness = file["probes/stiffness_Pa"][0]
+                return float(np.mean(np.diag(stiffness)[stages[0].dimension:])), "probe"
+    secants = [(tau[1] - tau[0]) / (gamma[1] - gamma[0]) for gamma, tau in map(shear_of, stages)]
+    return float(np.median(secants)), "first record"
+
+
+def draw(stages, options):
+    found = [(stage, loops_of(stage)) for stage in stages if stage.cyclic]
+    found = [(stage, loops) for stage, loops in found if len(loops)]
+    if not found:
+        raise ValueError(f"{stages[-1].path}: no whole loop; give records of cyclic_shear, or of a stage with cycles > 1")
+    greatest, source = largest_modulus([stage for stage, _ in found])
+    figure, (upper, lower) = plt.subplots(2, 1, figsize=(6.4, 6.2), sharex=True)
+    for number, (stage, loops) in enumerate(found):
+        style = {"color": kinds.QUALITATIVE[number % len(kinds.QUALITATIVE)], "markersize": 4}
+        upper.plot(loops[:, 0], loops[:, 1] / greatest, "o", label=stage.label, **style)
+        lower.plot(loops[:, 0], 100 * loops[:, 2], "o", **style)
+    amplitudes = np.concatenate([loops[:, 0] for _, loops in found])
+    kinds.log_axis(lower.xaxis, [amplitudes.min() / 2, 2 * amplitudes.max()])
+    upper.set_title(f"Cyclic shear, $G_{{max}}$ = {records.plain(greatest / 1e6)} MPa ({source})", fontsize=11, loc="left")
+    upper.set_ylabel("$G/G_{max}$")
+    upper.set_ylim(0, 1.1)
+    lower.set_ylabel("damping ratio (%)")
+    lower.set_ylim(bottom=0)
+    lower.set_xlabel("amplitude of the shear strain $\\gamma$")
+    if len(found) > 1:
+        upper.legend(fontsize=8, loc="lower left")
+    figure.align_ylabels()
+    figure.savefig(options.output)
+    return f"{options.output}: {records.counted(len(amplitudes), 'loop')}, G_max {records.plain(greatest)} Pa of the {source}"
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(prog="stiffness.py", description=__doc__.splitlines()[0])
+    parser.add_argument("records", nargs="+", help="record files, or folders of them")
+    parser.add_argument("-o", "--output", default="stiffness.png", help="figure to write (PNG, PDF or SVG)")
+    records.run(draw, parser)
