@@ -123,6 +123,7 @@ TEST_CASE("Keys of saturated soil that are wrong are refused, with the key and t
   CHECK_THAT(set("fluid.water_table_m=2"), Contains("lies above initial.surface_m = 1.5"));
   CHECK_THAT(set("region.0.saturated=false"), Contains("set saturated = true in one"));
   CHECK_THAT(set("region.0.porosity=0"), Contains("region.porosity is 0; allowed"));
+  CHECK_THAT(set("region.0.points_per_cell=1"), Contains("points_per_cell is 1") && Contains("fewer than 4"));
   CHECK_THAT(set("time.scheme=musl"), Contains("set time.scheme = \"usf\""));
   CHECK_THAT(refusal("head_m = 1\n", "head_m = 1\ndrained = true\n"), Contains("say the same thing twice"));
   CHECK_THAT(refusal("head_m = 1\n", "head_m = \"up\"\n"), Contains("boundary.head_m must be a number"));

@@ -172,6 +172,13 @@ void check_water(const Scene& scene, const std::string& path) {
       throw InputError(name +
                        ": the porosity of a saturated continuum is not told; set fluid.porosity or its porosity");
     }
+    const long least = scene.dimension == 2 ? 4 : 8;
+    if (region.points_per_cell < least) {
+      throw InputError(name + ": points_per_cell is " + std::to_string(region.points_per_cell) +
+                       ", and water seeps in and out of "
+                       "cells with fewer than " +
+                       std::to_string(least) + " saturated points for ever; set it to that at least");
+    }
     if (region.upper.back() > water.table + 1e-6 * scene.cell.back()) {
       throw InputError(name + ": reaches " + text_of(region.upper.back()) +
                        " m, above fluid.water_table_m = " + text_of(water.table) +
