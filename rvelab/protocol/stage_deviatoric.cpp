@@ -64,6 +64,9 @@ struct Deviatoric : KindOf<DeviatoricStage> {
 
   void drive(RunningTest& test) const override {
     const records::Progress& at = test.run.progress;
+    if (test.dimension() == 2 && stage.lode_angle_deg != 0) {
+      throw InputError("stage.deviatoric.lode_angle_deg means nothing in 2D, and the specimen is 2D; remove it");
+    }
     if (at.step == 0) test.expect_consolidated("p", at.first_pressure, stage.pressure);
     follow_path(test, path_of(stage, test.dimension()));
   }

@@ -99,6 +99,8 @@ TEST_CASE("Constant p: held within the tolerance, 2D and 3D; the Lode angle stay
     if (record.target_held) CHECK(mean_pressure(record.stress, 2) == Approx(20e3).epsilon(0.0051));
   }
   CHECK(deviatoric_stress(plane.result.records.back().stress, 2) > 4e3);
+  CHECK_THROWS_WITH(run_path("[[stage]]\nkind = \"deviatoric\"\nto_strain = 0.006\nlode_angle_deg = 30\n", "dense_p20"),
+                    Catch::Matchers::Contains("lode_angle_deg means nothing in 2D"));
   for (const double angle : {0.0, 40.0}) {
     const protocol::TestRun run =
         run_path("[[stage]]\nkind = \"deviatoric\"\nto_strain = 0.002\nlode_angle_deg = " + std::to_string(angle) +
