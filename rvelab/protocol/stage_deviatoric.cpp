@@ -60,13 +60,15 @@ struct Deviatoric : KindOf<DeviatoricStage> {
       reader.mistake("lode_angle_deg", "means nothing with test.dimension = 2; allowed: in 3D only; remove it");
   }
 
+  std::string misfit(int dimension) const override {
+    if (dimension == 3 || stage.lode_angle_deg == 0) return "";
+    return "lode_angle_deg means nothing in 2D, and the specimen is 2D; remove it";
+  }
+
   std::size_t planned_records() const override { return path_records(path_of(stage, 3)); }
 
   void drive(RunningTest& test) const override {
     const records::Progress& at = test.run.progress;
-    if (test.dimension() == 2 && stage.lode_angle_deg != 0) {
-      throw InputError("stage.deviatoric.lode_angle_deg means nothing in 2D, and the specimen is 2D; remove it");
-    }
     if (at.step == 0) test.expect_consolidated("p", at.first_pressure, stage.pressure);
     follow_path(test, path_of(stage, test.dimension()));
   }
