@@ -21,7 +21,7 @@ from records import STYLE, plt  # noqa: E402
 from mpm import cases, folder, picture, results, rvelab, specimen  # noqa: E402
 import mpm as scenes  # noqa: E402
 
-# Beside the options of a part: RVELAB_MPM_THREADS, and those of single parts.
+# Of the environment: threads of each run, more options of rvelab-mpm for single parts, seeds of the shaken soils.
 THREADS = ["-j", os.environ["RVELAB_MPM_THREADS"]] if "RVELAB_MPM_THREADS" in os.environ else []
 SOLIDS, WATER, GRAVITY = 2650.0, 1000.0, 9.81  # kg/m3, m/s2
 missed = []
@@ -204,6 +204,39 @@ def mean_of(w, column, points=4):
     return np.mean([w[f"{k}.{column}"] for k in range(points)], axis=0)
 
 
+ELASTIC = """[[material]]
+name = "soil"
+kind = "elastic"
+density_kg_m3 = {density:g}
+young_modulus_Pa = {young:g}
+poisson_ratio = {poisson:g}
+
+"""
+
+
+def elastic_scene(name, scene, edits, **moduli):
+    """FOLDER/name.toml: a scene without its cases, an elastic soil in place of its grains, and further edits."""
+    text = (scenes.ROOT / "protocols/mpm" / scene).read_text().split("\n[case.")[0]
+    begin, end = text.index("[[material]]"), text.index("[[region]]")
+    text = text[:begin] + ELASTIC.format(**moduli) + text[end:]
+    for old, new in edits:
+        text = text.replace(old, new)
+    path = folder / f"{name}.toml"
+    path.write_text(text)
+    return path.resolve()
+
+
+def elastic_volume(cfl):
+    """Relative change of the volume of the undrained block of elastic soil."""
+    name = f"undrained_elastic_{cfl:g}"
+    scene = elastic_scene(name, "undrained_element.toml", [
+        ("conductivity_m_s = 1e-9", "conductivity_m_s = 1e-9\nporosity = 0.161")], density=0.839 * SOLIDS, young=24e6,
+                          poisson=0.1356)
+    run(name, scene, "--set", f"time.cfl={cfl:g}")
+    volumes = [np.sum(frame_at(name, time)["volume_m3"]) for time in (0, 1e9)]
+    return volumes[1] / volumes[0] - 1
+
+
 def undrained():
     specimen()
     h, _ = run("undrained", "undrained_element.toml")
@@ -236,6 +269,8 @@ def undrained():
     verdict("undrained: mean of pore pressure - sigma'_xx over 100 kPa, less 1", f"{off:.5f}", "0.005", off <= 0.005)
     off = np.max(abs(total / total[0] - 1))
     verdict("undrained: volume of the block, largest change", f"{off:.2e}", "1e-6", off <= 1e-6)
+    print("    what the time step leaves of it: elastic soil at time.cfl = 0.4, 0.2, 0.1 changes its volume by "
+          + ", ".join(f"{elastic_volume(cfl):.1e}" for cfl in (0.4, 0.2, 0.1)))
     off = max(np.max(abs(frame["eps_v"])) for frame in all_frames)
     verdict("undrained: volumetric strain of any point", f"{off:.2e}", "1e-3", off <= 1e-3)
     costs("undrained")
@@ -500,26 +535,17 @@ def elastic_fronts(name, half_width, depth, distances, G, lame, porosity):
     """The same pulse on an elastic soil of these moduli: speeds of the troughs of u_y between the distances (m) from the
     strip's middle."""
     K = lame + 2 * G / 3
-    text = (scenes.ROOT / "protocols/mpm/wave.toml").read_text().split("\n[case.")[0]
-    begin, end, watch = (text.index(word) for word in ("[[material]]", "[[region]]", "watched_points_m"))
-    text = text[:begin] + f"""[[material]]
-name = "soil"
-kind = "elastic"
-density_kg_m3 = {(1 - porosity) * SOLIDS:g}
-young_modulus_Pa = {9 * K * G / (3 * K + G):g}
-poisson_ratio = {(3 * K - 2 * G) / (2 * (3 * K + G)):g}
-
-""" + text[end:watch] + f"watched_points_m = {[[half_width - d, depth] for d in distances]}\n"
-    for old, new in (("upper_m = [21, 10]", f"upper_m = [{2 * half_width:g}, {depth:g}]"),
-                     ("at_m = 21", f"at_m = {2 * half_width:g}"),
-                     ("lower_m = 10, upper_m = 11", f"lower_m = {half_width - 0.5:g}, upper_m = {half_width + 0.5:g}"),
-                     ("conductivity_m_s = 1e-2", f"conductivity_m_s = 1e-2\nporosity = {porosity:g}"),
-                     ("duration_s = 0.15", f"duration_s = {0.08 + distances[-1] / 75:g}"),
-                     ("frame_every_s = 0.01", "frame_every_s = 1")):
-        text = text.replace(old, new)
-    scene = folder / f"{name}.toml"
-    scene.write_text(text)
-    run(name, scene.resolve())
+    watched_text = "watched_points_m = [[5, 10], [10.5, 10], [16, 10], [8.5, 10], [12.5, 10], [7, 10], [14, 10]]"
+    edits = [("upper_m = [21, 10]", f"upper_m = [{2 * half_width:g}, {depth:g}]"),
+             ("at_m = 21", f"at_m = {2 * half_width:g}"),
+             ("lower_m = 10, upper_m = 11", f"lower_m = {half_width - 0.5:g}, upper_m = {half_width + 0.5:g}"),
+             ("conductivity_m_s = 1e-2", f"conductivity_m_s = 1e-2\nporosity = {porosity:g}"),
+             ("duration_s = 0.15", f"duration_s = {0.08 + distances[-1] / 75:g}"),
+             ("frame_every_s = 0.01", "frame_every_s = 1"),
+             (watched_text, f"watched_points_m = {[[half_width - d, depth] for d in distances]}")]
+    scene = elastic_scene(name, "wave.toml", edits, density=(1 - porosity) * SOLIDS,
+                          young=9 * K * G / (3 * K + G), poisson=(3 * K - 2 * G) / (2 * (3 * K + G)))
+    run(name, scene)
     w = watched(name)
     when = np.array([trough(w["time_s"], moved(w, k, "y")) for k in range(len(distances))])
     where = np.array([half_width - w[f"{k}.x_m"][0] for k in range(len(distances))])
@@ -588,7 +614,7 @@ def scan():
 # --- shaking ----------------------------------------------------------------------------------------------------------
 
 SHAKING_OPTIONS = os.environ.get("RVELAB_MPM_SHAKING", "").split()
-SEEDS = (1, 2)
+SEEDS = tuple(int(seed) for seed in os.environ.get("RVELAB_MPM_SEEDS", "1 2").split())
 PERIOD = 0.4  # s
 
 
@@ -600,8 +626,8 @@ def shaking():
             names = family(soil, seed)
             name = f"shaking_{soil}_{seed}"
             listed = "[" + ",".join(f'"{each}"' for each in names) + "]"
-            h, _ = run(name, "shaking.toml", "--case", soil, "--set", f"material.sand.specimens={listed}",
-                       *SHAKING_OPTIONS)
+            run(name, "shaking.toml", "--case", soil, "--set", f"material.sand.specimens={listed}", "--set",
+                f"output.frame_every_s={PERIOD / 10:g}", "--set", "output.networks=false", *SHAKING_OPTIONS)
             found[soil, seed] = shaken(name)
             costs(name)
     print()
