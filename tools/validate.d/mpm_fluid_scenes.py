@@ -37,6 +37,11 @@ def verdict(what, found, asked, met):
     print(f"{what:<80} {found:<24} {asked:<26} {'met' if met else 'MISSED'}", flush=True)
 
 
+def told(options):
+    """What a part was run with beside its scene."""
+    return f"\n(with {' '.join(options)})" if options else ""
+
+
 def columns(path):
     names = path.open().readline().strip().split(",")
     return dict(zip(names, np.loadtxt(path, delimiter=",", skiprows=1, ndmin=2).T))
@@ -372,7 +377,7 @@ def column():
     for soil in ("dense", "medium", "loose"):
         family(soil)
     print("\nSaturated column, 1 x 1 m, k 1e-2 m/s, from the removal of the gate on: front beyond 1 m (m), mean excess\n"
-          "pore pressure of all points (Pa), kinetic and potential energy over the first potential energy")
+          "pore pressure of all points (Pa), kinetic and potential energy over the first potential energy" + told(COLUMN_OPTIONS))
     found = {}
     for case in ("dry", "medium", "dense", "loose"):
         name = f"column_saturated_{case}"
@@ -473,7 +478,7 @@ def wave():
     print("\nWaves, 21 x 10 m of elliptic grains, k 1e-2 m/s: shear modulus of the specimen, Rayleigh speed\n"
           "0.955 sqrt(G/rho) of the soil with its water; speeds along the surface, 2 to 5.6 m from the strip's middle,\n"
           "right and left (a wave of 0.08 s is 7 to 11 m long: these points are nearer than one, where crests and troughs\n"
-          "move apart)")
+          "move apart)" + told(WAVE_OPTIONS))
     depth, asymmetry, shares = {}, {}, {}
     for case in PACKINGS:
         name = wave_run(case)
@@ -619,7 +624,7 @@ PERIOD = 0.4  # s
 
 
 def shaking():
-    print("\nShaken box, 2 x 1 m, k 1e-3 m/s: points A (top), B (middle), C (base) of the middle")
+    print("\nShaken box, 2 x 1 m, k 1e-3 m/s: points A (top), B (middle), C (base) of the middle" + told(SHAKING_OPTIONS))
     found = {}
     for seed in SEEDS:
         for soil in ("dense", "medium"):
@@ -643,7 +648,7 @@ def shaking():
         verdict(f"shaking, seed {seed}: onset at A, B, C, medium (s)", ", ".join(f"{t:.1f}" for t in medium["onset"]),
                 "A < B < C",
                 medium["onset"][0] < medium["onset"][1] < medium["onset"][2])
-        verdict(f"shaking, seed {seed}: secant stiffness of B, last over first cycle, dense",
+        verdict(f"shaking, seed {seed}: stiffness of B, last over second cycle, dense",
                 f"{dense['stiffness']:.2f}", ">= 0.8", dense["stiffness"] >= 0.8)
         verdict(f"shaking, seed {seed}: the same, medium", f"{medium['stiffness']:.2f}", "<= 0.5",
                 medium["stiffness"] <= 0.5)
