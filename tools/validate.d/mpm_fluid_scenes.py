@@ -387,11 +387,13 @@ def column():
         n = 0.0 if case == "dry" else np.mean(first["porosity"])
         e = np.mean(first["void_ratio"])
         whole = (SOLIDS / (1 + e) + WATER * n) * GRAVITY * 0.5
-        excess = lambda at: np.nan if case == "dry" else np.mean(frame_at(name, GATE + at)["excess_pore_pressure_Pa"])
-        found[case] = {"e": e, "front 0.5": front(frame_at(name, GATE + 0.5)) - 1, "excess 0.06": excess(0.06),
+        mean = lambda at, field: np.nan if case == "dry" else np.mean(frame_at(name, GATE + at)[f"{field}_Pa"])
+        found[case] = {"e": e, "front 0.5": front(frame_at(name, GATE + 0.5)) - 1,
+                       "excess 0.06": mean(0.06, "excess_pore_pressure"),
+                       "water 0.06": mean(0.06, "pore_pressure"),
                        "front": front(frame_at(name, 1e9)) - 1, "peak": h["kinetic_J"].max() / whole,
                        "peak at": t[np.argmax(h["kinetic_J"])], "potential": (h["potential_J"] / whole, t),
-                       "end": t[-1], "excess": [excess(at) for at in (0.06, 0.2, 0.5, t[-1])]}
+                       "end": t[-1], "excess": [mean(at, "excess_pore_pressure") for at in (0.06, 0.2, 0.5, t[-1])]}
         f = found[case]
         print(f"{case}: e {e:.4f}; front at 0.5 s {f['front 0.5']:.3f}, at {f['end']:.2f} s {f['front']:.3f}; excess at 0.06, "
               "0.2, 0.5 s and the end " + ", ".join(f"{value:.0f}" for value in f["excess"])
@@ -406,6 +408,9 @@ def column():
     verdict("column: mean excess pressure at 0.06 s, dense, medium, loose (Pa)",
             ", ".join(f"{value:.0f}" for value in excess),
             "rising, medium < 0 < loose", excess[0] < excess[1] < 0 < excess[2])
+    water = [found[case]["water 0.06"] for case in wet]
+    verdict("column: the pore pressure itself (the cut face loses that of rest too)",
+            ", ".join(f"{value:.0f}" for value in water), "the same", water[0] < water[1] < 0 < water[2])
     fronts = [found[case]["front 0.5"] for case in wet]
     verdict("column: front beyond 1 m at 0.5 s, dry", f"{found['dry']['front 0.5']:.3f}", "> 1 m",
             found["dry"]["front 0.5"] > 1)
