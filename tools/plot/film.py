@@ -149,16 +149,16 @@ def pictures_of_grains(path, field):
 
 
 def pictures_of_fields(run, field, limits=None):
-    """Pictures of the frames of rvelab-mpm; colours go with the last one."""
+    """Pictures of the frames of rvelab-mpm in one scale of colours, wide enough for all of them."""
     import mpm
     if field not in mpm.FIELDS:
         raise ValueError(f"--field {field}: {run} is a run of rvelab-mpm; allowed: {', '.join(sorted(mpm.FIELDS))}; give one")
     frames = mpm.frames_of(run)
-    box = mpm.box_of(frames[:: max(1, len(frames) // 8)] + frames[-1:], field)
-    last = mpm.read(frames[-1], field)[2]
-    if not np.isfinite(last).any():
-        raise ValueError(f"{frames[-1]}: no point has {field}; it is a measure of other materials")
-    limits = limits or tuple(np.nanpercentile(last, [1, 99]))
+    some = frames[:: max(1, len(frames) // 8)] + frames[-1:]
+    box = mpm.box_of(some, field)
+    if limits is None:
+        each = np.array([mpm.limits_of(frame, field, mpm.read(frame, field)[2]) for frame in some[1:]])
+        limits = each[:, 0].min(), each[:, 1].max()
     for frame in frames:
         figure = plt.figure(figsize=mpm.size_of(box), layout="constrained")
         mpm.draw(figure, frame, field, limits, box)

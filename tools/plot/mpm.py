@@ -6,7 +6,8 @@
     mpm.py RUN... --force plate.force_y --against plate.displacement_y -o force.png    # any columns of history.csv
     mpm.py RUN --network 0 1 -o chains.png             # force chains of watched points (output.networks = true)
 
-RUN is the folder that rvelab-mpm wrote. Points are drawn at their deformed places, in their deformed shapes."""
+RUN is the folder that rvelab-mpm wrote. Points are drawn at their deformed places, in their deformed shapes. Of saturated
+soil also --field pore_pressure_Pa, excess_pore_pressure_Pa, pore_pressure_ratio, seepage."""
 
 import argparse
 import pathlib
@@ -26,7 +27,13 @@ FIELDS = {"eps_q": ("deviatoric strain $\\varepsilon_q$", "viridis", False),
           "fabric_anisotropy": ("fabric anisotropy $F_a$", "viridis", False),
           "velocity": ("speed (m/s)", "magma", False), "displacement": ("displacement (m)", "viridis", False),
           "p_Pa": ("mean pressure $p$ (Pa)", "viridis", False), "q_Pa": ("deviator $q$ (Pa)", "viridis", False),
-          "plastic_strain": ("plastic strain", "viridis", False)}
+          "plastic_strain": ("plastic strain", "viridis", False),
+          "pore_pressure_Pa": ("pore pressure (Pa)", "Blues", False),
+          "excess_pore_pressure_Pa": ("excess pore pressure (Pa)", "RdBu_r", True),
+          "pore_pressure_ratio": ("excess pore pressure over $\\sigma'_{v0}$", "RdBu_r", True),
+          "seepage": ("seepage (m/s)", "magma", False)}
+# Where the name of a field is not that of the dataset.
+DATASETS = {"velocity": "velocity_m_s", "displacement": "displacement_m", "seepage": "seepage_m_s"}
 
 
 def frames_of(run):
@@ -64,7 +71,9 @@ def column_of(run, history, name):
 def read(frame, field):
     """Time, corners of the points (n, 4, 2) and values; in space, the points as seen along y."""
     with h5py.File(frame, "r") as file:
-        name = {"velocity": "velocity_m_s", "displacement": "displacement_m"}.get(field, field)
+        name = DATASETS.get(field, field)
+        if name not in file:
+            raise ValueError(f"{frame}: has no {field}; it is a measure of saturated soil, and the scene has no [fluid]")
         values = file[name][()]
         if values.ndim == 2:
             values = np.linalg.norm(values, axis=1)
@@ -88,17 +97,24 @@ def size_of(box):
     return (5, min(6, max(2.6, 0.9 + 4 * height / width))) if height < width else (4.2, 5)
 
 
+def limits_of(frame, field, values):
+    """Of the colours; one value everywhere gets a range of its own, which a film needs too."""
+    finite = values[np.isfinite(values)]
+    if len(finite) == 0:
+        raise ValueError(f"{frame}: no point has {field}; it is a measure of other materials")
+    low, high = np.percentile(finite, [1, 99])
+    if FIELDS[field][2]:
+        low, high = -max(abs(low), abs(high)), max(abs(low), abs(high))
+    return (low, high) if low < high else (low - 1, high + 1)
+
+
 def draw(figure, frame, field, limits, box):
     time, corners, values = read(frame, field)
     label, colours, centred = FIELDS[field]
     axes = figure.add_subplot()
     axes.grid(False)
     if limits is None:
-        finite = values[np.isfinite(values)]
-        if len(finite) == 0:
-            raise ValueError(f"{frame}: no point has {field}; it is a measure of other materials")
-        low, high = np.percentile(finite, [1, 99])
-        limits = (-max(abs(low), abs(high)), max(abs(low), abs(high))) if centred else (low, high)
+        limits = limits_of(frame, field, values)
     patches = PolyCollection(corners, array=values, cmap=colours, edgecolors="none")
     patches.set_clim(*limits)
     axes.add_collection(patches)
