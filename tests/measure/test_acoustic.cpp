@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "rvelab/measure/tangent.hpp"
@@ -15,8 +16,6 @@ using namespace rvelab;
 using namespace rvelab::test;
 
 namespace {
-
-const double pi = std::acos(-1.0);
 
 Eigen::MatrixXd isotropic_stiffness(int dimension, double lame, double shear) {
   const int size = component_count(dimension);
@@ -82,9 +81,9 @@ TEST_CASE("the first band of plastic flow lies between the angles of Coulomb and
       const Band band = weakest_band(plastic_stiffness(lame, shear, phi, psi, hardening));
       CHECK(std::abs(band.determinant) < 1e-9 * shear * (lame + 2 * shear));
       const double angle = band_angle_deg(band, Vector3(-1, -3, 0).asDiagonal(), 2);
-      CHECK(angle == Approx(theta * 180 / pi).margin(1e-3));
-      CHECK(angle <= 45 + 0.5 * phi * 180 / pi);
-      CHECK(angle >= 45 + 0.5 * psi * 180 / pi);
+      CHECK(angle == Approx(theta * 180 / std::numbers::pi).margin(1e-3));
+      CHECK(angle <= 45 + 0.5 * phi * 180 / std::numbers::pi);
+      CHECK(angle >= 45 + 0.5 * psi * 180 / std::numbers::pi);
       CHECK(weakest_band(plastic_stiffness(lame, shear, phi, psi, hardening + 0.1)).determinant > 0);
       CHECK(weakest_band(plastic_stiffness(lame, shear, phi, psi, hardening - 0.1)).determinant < 0);
     }
