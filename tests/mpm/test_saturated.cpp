@@ -45,6 +45,12 @@ TEST_CASE("Where nothing drains the water takes the load and the volume stays") 
 
 TEST_CASE("Pressure and drag within saturated soil leave its momentum") { check(momentum(5)); }
 
+TEST_CASE("A point without room for water ends the run, and says where") {
+  auto solver = loaded_column(4, 1e-3);
+  solver->fluid->points[3].solids = solver->points[3].volume;
+  CHECK_THROWS_WITH(solver->step(solver->stable_step()), Catch::Matchers::Contains("no room for water"));
+}
+
 TEST_CASE("Nearly undrained pressure does not alternate under a strip load") { check(strip(12)); }
 
 TEST_CASE("In full: rest, seepage, undrained", "[.saturated]") {

@@ -1,6 +1,13 @@
 #include "tools/mpm/fluid.hpp"
 
+#include <sstream>
+
 namespace mpm {
+namespace {
+
+constexpr double least_porosity = 1e-3;
+
+}  // namespace
 
 template <int D>
 void make_water_boundaries(const Planes<D>& planes, const Bodies<D>& bodies, Fluid<D>& fluid) {
@@ -34,9 +41,17 @@ void Fluid<D>::begin_step(const Solver<D>& solver) {
     pressure.values[node] = first_pressure(grid.position(grid.index(node))[D - 1]);
   }
   for (std::size_t k = 0; k < points.size(); ++k) {
-    if (points[k].solids > 0) {
-      points[k].mass = options.density * points[k].porosity(solver.points[k].volume) * solver.points[k].volume;
+    if (!(points[k].solids > 0)) continue;
+    const double volume = solver.points[k].volume, porosity = points[k].porosity(volume);
+    if (!(porosity > least_porosity)) {
+      std::ostringstream words;
+      words << "at " << solver.time << " s the saturated point at " << solver.points[k].position.transpose()
+            << " m has a porosity of " << porosity
+            << ", and no room for water; take a smaller time.cfl, or a load that "
+            << "the soil can carry";
+      throw std::runtime_error(words.str());
     }
+    points[k].mass = options.density * porosity * volume;
   }
 }
 

@@ -183,7 +183,6 @@ void Solver<D>::correct_velocities(const std::vector<double>& dp, double dt) {
 
 template <int D>
 void Solver<D>::project(double dt) {
-  const double begin = wall_seconds();
   auto& water = *fluid;
   auto& pressure = water.pressure;
   using Role = typename PorePressure<D>::Role;
@@ -221,7 +220,6 @@ void Solver<D>::project(double dt) {
   };
   planes.add_forces(add(1, true));
   water.planes.add_forces(add(-1, false));
-  water.seconds += wall_seconds() - begin;
 }
 
 /// Energy that the water took and gave, and what flowed out.
@@ -300,12 +298,16 @@ void Solver<D>::saturated_step(double dt) {
   start_velocities(water.phase());
   gradients(dt);
   stresses(dt);
+  const double assembling = wall_seconds();
   assemble_water();
+  water.seconds += wall_seconds() - assembling;
   map_saturated_force();
   planes.fold_force(grid);
   water.planes.fold_force(water.grid);
   predict_velocities(dt);
+  const double solving = wall_seconds();
   project(dt);
+  water.seconds += wall_seconds() - solving;
   if (planes.absorb()) book_dashpots(dt);
   bodies.book_reactions(grid, planes);
   water.bodies.book_reactions(water.grid, water.planes);
