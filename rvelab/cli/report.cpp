@@ -37,6 +37,7 @@ bool has_rows(const Json& value) {
 }  // namespace
 
 void Listing::add(const std::string& key, Json value, const std::string& unit) {
+  if (value.is_number_float() && value.get<double>() == 0) value = 0.0;  // not -0
   lines_.push_back({key, std::move(value), unit});
 }
 
