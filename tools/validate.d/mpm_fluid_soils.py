@@ -1,0 +1,160 @@
+"""The saturated column and the shaken box: parts of mpm_fluid_scenes.py."""
+
+import os
+
+import h5py
+import numpy as np
+
+from mpm_fluid_runs import GRAVITY, SOLIDS, WATER, costs, family, frame_at, frames, run, told, verdict, watched
+from mpm import folder, picture, results
+
+
+GATE = 0.1  # s, when it is removed
+
+
+def front(frame, apart=1):
+    """Where the deposit ends, m: the first gap of more than so many cells along x."""
+    x = np.sort(frame["position_m"][:, 0])
+    gaps = np.flatnonzero(np.diff(x) > apart * frame["grid_cell_m"][0])
+    return x[gaps[0]] if len(gaps) else x[-1]
+
+
+COLUMN_OPTIONS = os.environ.get("RVELAB_MPM_COLUMN", "").split()
+
+
+def column():
+    for soil in ("dense", "medium", "loose"):
+        family(soil)
+    print("\nSaturated column, 1 x 1 m, k 1e-2 m/s, from the removal of the gate on: front beyond 1 m (m), mean excess\n"
+          "pore pressure of all points (Pa), kinetic and potential energy over the first potential energy" + told(COLUMN_OPTIONS))
+    found = {}
+    for case in ("dry", "medium", "dense", "loose"):
+        name = f"column_saturated_{case}"
+        h, _ = run(name, "column_saturated.toml", "--case", case, *COLUMN_OPTIONS)
+        t = h["time_s"] - GATE
+        first = frame_at(name, 0)
+        n = 0.0 if case == "dry" else np.mean(first["porosity"])
+        e = np.mean(first["void_ratio"])
+        whole = (SOLIDS / (1 + e) + WATER * n) * GRAVITY * 0.5
+        mean = lambda at, field: np.nan if case == "dry" else np.mean(frame_at(name, GATE + at)[f"{field}_Pa"])
+        found[case] = {"e": e, "front 0.5": front(frame_at(name, GATE + 0.5)) - 1,
+                       "excess 0.06": mean(0.06, "excess_pore_pressure"),
+                       "water 0.06": mean(0.06, "pore_pressure"),
+                       "front": front(frame_at(name, 1e9)) - 1, "peak": h["kinetic_J"].max() / whole,
+                       "peak at": t[np.argmax(h["kinetic_J"])], "potential": (h["potential_J"] / whole, t),
+                       "end": t[-1], "excess": [mean(at, "excess_pore_pressure") for at in (0.06, 0.2, 0.5, t[-1])]}
+        f = found[case]
+        print(f"{case}: e {e:.4f}; front at 0.5 s {f['front 0.5']:.3f}, at {f['end']:.2f} s {f['front']:.3f}; excess at 0.06, "
+              "0.2, 0.5 s and the end " + ", ".join(f"{value:.0f}" for value in f["excess"])
+              + f"; E_k peak {f['peak']:.4f} at {f['peak at']:.2f} s")
+        costs(name)
+        if f["end"] > 1:
+            picture(folder / name, "--field", "excess_pore_pressure_Pa" if case != "dry" else "eps_q", "-o",
+                    results / f"mpm_{name}.png")
+    print()
+    wet = ("dense", "medium", "loose")
+    excess = [found[case]["excess 0.06"] for case in wet]
+    verdict("column: mean excess pressure at 0.06 s, dense, medium, loose (Pa)",
+            ", ".join(f"{value:.0f}" for value in excess),
+            "rising, medium < 0 < loose", excess[0] < excess[1] < 0 < excess[2])
+    water = [found[case]["water 0.06"] for case in wet]
+    verdict("column: the pore pressure itself (the cut face loses that of rest too)",
+            ", ".join(f"{value:.0f}" for value in water), "the same", water[0] < water[1] < 0 < water[2])
+    fronts = [found[case]["front 0.5"] for case in wet]
+    verdict("column: front beyond 1 m at 0.5 s, dry", f"{found['dry']['front 0.5']:.3f}", "> 1 m",
+            found["dry"]["front 0.5"] > 1)
+    verdict("column: the same, dense, medium, loose", ", ".join(f"{value:.3f}" for value in fronts), "< 0.2 m",
+            max(fronts) < 0.2)
+    verdict("column: their order", "", "dense <= medium <= loose", fronts[0] <= fronts[1] <= fronts[2])
+    peaks = [found[case]["peak"] for case in wet]
+    verdict("column: peak of E_k over the dry one, dense, medium, loose",
+            ", ".join(f"{peak / found['dry']['peak']:.3f}" for peak in peaks), "< 0.6, rising",
+            max(peaks) < 0.6 * found["dry"]["peak"] and peaks[0] < peaks[1] < peaks[2])
+    if min(found[case]["end"] for case in wet) > 1.5:
+        ends = [found[case]["front"] for case in wet]
+        verdict("column: run-out at the end, dense, medium, loose", ", ".join(f"{value:.3f}" for value in ends),
+                "within 15 %", max(ends) <= 1.15 * min(ends))
+        verdict("column: run-out of the dry one", f"{found['dry']['front']:.3f}", "below all three",
+                found["dry"]["front"] < min(ends))
+        slopes = []
+        for case in wet:
+            potential, t = found[case]["potential"]
+            slopes.append(np.interp(t[-1], t, potential) - np.interp(t[-1] - 0.2, t, potential))
+        verdict("column: change of E_p over the last 0.2 s, dense, medium, loose",
+                ", ".join(f"{slope:.1e}" for slope in slopes),
+                "still falling", max(slopes) < 0)
+
+
+# --- shaking ----------------------------------------------------------------------------------------------------------
+
+SHAKING_OPTIONS = os.environ.get("RVELAB_MPM_SHAKING", "").split()
+SEEDS = tuple(int(seed) for seed in os.environ.get("RVELAB_MPM_SEEDS", "1 2").split())
+PERIOD = 0.4  # s
+
+
+def shaking():
+    print("\nShaken box, 2 x 1 m, k 1e-3 m/s: points A (top), B (middle), C (base) of the middle" + told(SHAKING_OPTIONS))
+    found = {}
+    for seed in SEEDS:
+        for soil in ("dense", "medium"):
+            names = family(soil, seed)
+            name = f"shaking_{soil}_{seed}"
+            listed = "[" + ",".join(f'"{each}"' for each in names) + "]"
+            run(name, "shaking.toml", "--case", soil, "--set", f"material.sand.specimens={listed}", "--set",
+                f"output.frame_every_s={PERIOD / 10:g}", "--set", "output.networks=false", *SHAKING_OPTIONS)
+            found[soil, seed] = shaken(name)
+            costs(name)
+    print()
+    for seed in SEEDS:
+        dense, medium = found["dense", seed], found["medium", seed]
+        verdict(f"shaking, seed {seed}: mean top ratio of the last quarter, medium", f"{medium['ratio']:.3f}",
+                ">= 0.3 (0.4)", medium["ratio"] >= 0.3)
+        verdict(f"shaking, seed {seed}: the same, dense", f"{dense['ratio']:.3f}", "-0.05 to 0.05",
+                abs(dense["ratio"]) <= 0.05)
+        verdict(f"shaking, seed {seed}: settlement of A, medium and dense (mm)",
+                f"{medium['settled']:.2f}, {dense['settled']:.2f}",
+                "medium >= 10 x dense", medium["settled"] >= 10 * abs(dense["settled"]))
+        verdict(f"shaking, seed {seed}: onset at A, B, C, medium (s)", ", ".join(f"{t:.1f}" for t in medium["onset"]),
+                "A < B < C",
+                medium["onset"][0] < medium["onset"][1] < medium["onset"][2])
+        verdict(f"shaking, seed {seed}: stiffness of B, last over second cycle, dense",
+                f"{dense['stiffness']:.2f}", ">= 0.8", dense["stiffness"] >= 0.8)
+        verdict(f"shaking, seed {seed}: the same, medium", f"{medium['stiffness']:.2f}", "<= 0.5",
+                medium["stiffness"] <= 0.5)
+        verdict(f"shaking, seed {seed}: contacts a grain of B, medium, start and end",
+                "{:.2f}, {:.2f}".format(*medium["contacts"]), "falls",
+                medium["contacts"][1] < medium["contacts"][0])
+
+
+def shaken(name):
+    w = watched(name)
+    t, end = w["time_s"], w["time_s"][-1]
+    late = t > 0.75 * end
+    window = np.ones(max(1, round(PERIOD / np.median(np.diff(t)))))
+    ratios = [np.convolve(w[f"{k}.pore_pressure_ratio"], window / len(window), mode="same") for k in (0, 1, 2)]
+    onset = [next((float(time) for time, ratio in zip(t, r) if ratio > 0.05), np.inf) for r in ratios]
+    # Stress and place of B in each frame; the watched point is the nearest one.
+    times, shear, aside, contacts = [], [], [], []
+    with h5py.File(frames(name)[0]) as file:
+        at = file["position_m"][()]
+    b = int(np.argmin(np.hypot(at[:, 0] - w["1.x_m"][0], at[:, 1] - w["1.y_m"][0])))
+    for path in frames(name):
+        with h5py.File(path) as file:
+            times.append(float(file["time_s"][0]))
+            shear.append(file["stress_Pa"][b, 1])
+            aside.append(file["displacement_m"][b, 0])
+            contacts.append(file["coordination_number"][b])
+    times, shear, aside = map(np.array, (times, shear, aside))
+    cycles = []
+    for k in range(int(end / PERIOD)):
+        within = (times >= k * PERIOD - 1e-9) & (times <= (k + 1) * PERIOD + 1e-9)
+        if within.sum() > 3:
+            cycles.append(np.polyfit(aside[within], shear[within], 1)[0] if np.ptp(aside[within]) > 0 else np.nan)
+    told = {"ratio": float(np.mean(w["0.pore_pressure_ratio"][late])), "onset": onset,
+            "settled": float((w["0.y_m"][0] - w["0.y_m"][-1]) * 1e3), "stiffness": cycles[-1] / cycles[1],
+            "contacts": (contacts[0], contacts[-1])}
+    parts = [(t >= a * end / 4) & (t <= (a + 1) * end / 4) for a in range(4)]
+    quarters = [", ".join(f"{np.mean(r[part]):.3f}" for part in parts) for r in ratios]
+    print(f"{name}: {end:.1f} s; ratio by quarters at A {quarters[0]}; B {quarters[1]}; C {quarters[2]};\n"
+          f"    settlement {told['settled']:.2f} mm; stiffness of B by cycles {cycles[1]:.3g}, {cycles[len(cycles) // 2]:.3g}, {cycles[-1]:.3g} Pa/m")
+    return told
