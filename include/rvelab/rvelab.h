@@ -152,8 +152,8 @@ int32_t rvelab_template_load(rvelab_pool* pool, const char* path, int64_t* tmpl)
 /* From the bytes of rvelab_snapshot_save. Options of the pool override those of the specimen. */
 int32_t rvelab_template_from_snapshot(rvelab_pool* pool, const void* buf, size_t size, int64_t* tmpl);
 
-/* Ends a template, since 1.1; RVEs made from it stay. Its number is not used again: from then on it is RVELAB_E_ID, as is
- * any number that is no template of this pool. */
+/* Ends a template, since 1.1; RVEs made from it stay. Its number is not used again: from then on it is RVELAB_E_ID, as
+ * is any number that is no template of this pool. */
 int32_t rvelab_template_release(rvelab_pool* pool, int64_t tmpl);
 
 /* n RVEs in the state of the template, each its own from now on; ids[n] is written. All or none. n = 0 is allowed. */

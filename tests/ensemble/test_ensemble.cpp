@@ -4,6 +4,7 @@
 
 #include "rvelab/ensemble/summary.hpp"
 #include "tests/catch.hpp"
+#include "tests/ensemble/made_records.hpp"
 
 using namespace rvelab;
 
@@ -12,15 +13,9 @@ namespace {
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 constexpr double degree = std::numbers::pi / 180;
 
-/// A record of a test that is shortened along y: strains, and stresses (compression positive) as principal values.
 records::Record record_of(int stage, double axial, double lateral, double sigma_1, double sigma_3) {
-  records::Record record;
+  records::Record record = test::biaxial_record(axial, lateral, sigma_1, sigma_3);
   record.stage = stage;
-  record.strain = axial;
-  record.deformation_gradient(0, 0) = 1 - lateral;
-  record.deformation_gradient(1, 1) = 1 - axial;
-  record.stress(0, 0) = -sigma_3;
-  record.stress(1, 1) = -sigma_1;
   return record;
 }
 

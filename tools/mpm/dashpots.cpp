@@ -11,7 +11,8 @@
 namespace mpm {
 namespace {
 
-/// Weights of the place of a plane at its own nodes and at the next row inside; what is mirrored is added.
+/// Weights of the place of a plane at its own nodes and at the next row inside; what is mirrored is added. GIMP: as
+/// linear, which neglects the width of a point's domain.
 struct RowWeights {
   double on, inside;
 };

@@ -128,6 +128,7 @@ template <int D>
 double Fluid<D>::force_on(const Planes<D>& all, int plane) const {
   const auto& of = all.all[plane];
   double force = 0;
+  if (of.period > 0) return force;  // the water goes on behind it
   for (long node = 0; node < long(pressure.filled.size()); ++node) {
     const auto index = grid.index(node);
     if (!(pressure.filled[node] > 0) || index[of.axis] != of.node) continue;

@@ -16,7 +16,8 @@ void Solver<D>::map_momentum() {
 template <int D>
 void Solver<D>::map_force() {
   const bool loaded = loads.any();
-  const Vec<D> frame = frame_acceleration();
+  Vec<D> frame = Vec<D>::Zero();
+  if (loaded) frame = frame_acceleration();
   over_slabs([&](long k) {
     const auto& point = points[k];
     Lanes<D> stress[D] = {}, force = {};
