@@ -38,6 +38,11 @@ PrincipalStresses principal_stresses(const Matrix3& stress, int dimension) {
 
 double friction_angle_deg(const PrincipalStresses& stresses) { return std::asin(stresses.t() / stresses.s()) / degree; }
 
+double dilation_angle_deg(const Matrix3& strain, int dimension) {
+  const double dilation = strain.topLeftCorner(dimension, dimension).trace();
+  return std::asin(dilation / (2 * principal_stresses(strain, dimension).major + dilation)) / degree;
+}
+
 Peak peak(std::span<const records::Record> records, int dimension) {
   if (records.empty()) throw InputError("peak: 0 records; allowed: at least 1; give a test that records");
   Peak highest;

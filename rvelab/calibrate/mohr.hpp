@@ -24,6 +24,10 @@ PrincipalStresses principal_stresses(const Matrix3& stress, int dimension);
 /// asin(t/s), degrees: the circle alone, without cohesion.
 double friction_angle_deg(const PrincipalStresses& stresses);
 
+/// Of an increment of strain (tension positive), symmetrised; in 2D within the plane: sin psi = -eps_v/(2 eps_1 -
+/// eps_v), compression positive, degrees (Vermeer and de Borst 1984).
+double dilation_angle_deg(const Matrix3& strain, int dimension);
+
 struct Peak {
   std::size_t record = 0;  ///< index into the records
   double strain = 0;

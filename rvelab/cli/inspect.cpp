@@ -23,7 +23,8 @@ void add_measured(Listing& listing, const records::QuantityText& text, double va
 }
 
 void add_state(Listing& listing, const Rve& rve) {
-  const Network network = rve.network();
+  const records::MeasuredState state(rve);
+  const Network& network = state.network;
   const int dimension = network.dimension();
   const Matrix3 stress = rve.stress();
   listing.add("dimension", dimension);
@@ -33,7 +34,7 @@ void add_state(Listing& listing, const Rve& rve) {
   listing.add("p_Pa", mean_pressure(stress, dimension), "Pa");
   listing.add("q_Pa", deviatoric_stress(stress, dimension), "Pa");
   records::Quantities::for_each([&]<class Quantity>(std::type_identity<Quantity>, std::uint64_t) {
-    if constexpr (Quantity::text.usual) add_measured(listing, Quantity::text, Quantity::measure(rve, network));
+    if constexpr (Quantity::text.usual) add_measured(listing, Quantity::text, Quantity::measure(state));
   });
   listing.add("unbalanced_force_ratio", unbalanced_force_ratio(network));
   listing.add("unbalanced_torque_ratio", unbalanced_torque_ratio(network));

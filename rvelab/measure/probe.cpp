@@ -1,7 +1,9 @@
 // Stiffness probes by quasi-static increments.
 #include "rvelab/measure/probe.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
+#include <cmath>
 
 #include "rvelab/error.hpp"
 #include "rvelab/measure/tensor_order.hpp"
@@ -29,6 +31,39 @@ double relax_fully(Rve& rve, long max_steps) {
   return rve.unbalanced_ratio();
 }
 
+/// Orthonormal symmetric tensors (A:B), the first along `direction`.
+std::vector<Matrix3> tensors_from(const Matrix3& direction, int dimension) {
+  const int components = component_count(dimension);
+  std::vector<Matrix3> units;
+  Eigen::VectorXd along(components);
+  for (int k = 0; k < components; ++k) {
+    const Matrix3 strain = unit_strain(k, dimension);
+    units.push_back(strain / strain.norm());
+    along[k] = units.back().cwiseProduct(direction).sum();
+  }
+  const double length = along.norm();
+  if (!(length > 0 && std::isfinite(length)))
+    throw InputError("the direction of loading is no strain; give a symmetric part that is finite and not zero");
+  const Eigen::MatrixXd basis = Eigen::HouseholderQR<Eigen::MatrixXd>(along).householderQ();
+  std::vector<Matrix3> tensors(std::size_t(components), Matrix3::Zero());
+  for (int k = 0; k < components; ++k) {
+    tensors[0] += along[k] / length * units[std::size_t(k)];
+    for (int t = 1; t < components; ++t) tensors[std::size_t(t)] += basis(k, t) * units[std::size_t(k)];
+  }
+  return tensors;
+}
+
+/// Change of stress over strain in the second half of a path.
+Eigen::VectorXd second_half(const Rve& rve, const Matrix3& strain, double size) {
+  Rve copy(rve);
+  const int dimension = rve.cell().dimension;
+  const Matrix3 half = 0.5 * size * strain;
+  copy.apply(half, 0);
+  const Eigen::VectorXd middle = stress_components(copy.stress(), dimension);
+  copy.apply(half, 0);
+  return (stress_components(copy.stress(), dimension) - middle) / (0.5 * size);
+}
+
 }  // namespace
 
 Probe probe_stiffness(const Rve& rve, double size, long max_steps) {
@@ -54,6 +89,27 @@ Probe probe_stiffness(const Rve& rve, double size, long max_steps) {
   if (largest > 0) probe.plus_minus_difference = (plus - minus).cwiseAbs().maxCoeff() / largest;
   probe.relaxed = probe.unbalanced_ratio < relaxed_ratio;
   return probe;
+}
+
+Eigen::MatrixXd loading_stiffness(const Rve& rve, const Matrix3& direction, double size) {
+  if (!(size >= smallest_loading_probe && size <= largest_loading_probe))
+    throw InputError("size of a loading probe = " + in_words(size) +
+                     " is out of range; allowed: " + in_words(smallest_loading_probe) + " to " +
+                     in_words(largest_loading_probe) + "; give " + in_words(usual_loading_probe));
+  constexpr double aside = 0.3;
+  const int dimension = rve.cell().dimension, components = component_count(dimension);
+  const std::vector<Matrix3> tensors = tensors_from(direction, dimension);
+  Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(components, components);
+  for (std::size_t t = 0; t < tensors.size(); ++t) {
+    const Matrix3& tensor = tensors[t];
+    const Eigen::VectorXd response = t == 0 ? second_half(rve, tensor, size)
+                                            : Eigen::VectorXd((second_half(rve, tensors[0] + aside * tensor, size) -
+                                                               second_half(rve, tensors[0] - aside * tensor, size)) /
+                                                              (2 * aside));
+    for (int k = 0; k < components; ++k)
+      stiffness.col(k) += response * tensor.cwiseProduct(unit_strain(k, dimension)).sum();
+  }
+  return stiffness;
 }
 
 void forbid_slip(Rve& rve) {

@@ -1,4 +1,5 @@
-// Stiffness probes: the response of an RVE to small strains, one component at a time, plus and minus.
+// Stiffness probes: the response of an RVE to small strains, either each component by itself, plus and minus, or all
+// beside the direction in which a test loads it.
 //
 // Rows are the symmetric part of the Cauchy stress (tension positive, Pa), columns strains with engineering shear
 // (dH_xy = dH_yx = gamma/2), laboratory frame; order of tensor_order.hpp: xx yy xy in 2D, xx yy zz yz xz xy in 3D.
@@ -28,6 +29,22 @@ struct Probe {
 /// not relax within `max_steps` is returned with relaxed = false: its stiffness is then off by about unbalanced ratio
 /// times p over size. IncrementFailed as apply.
 Probe probe_stiffness(const Rve& rve, double size, long max_steps = 2'000'000);
+
+/// Strain of a loading probe: beyond the strain that a relaxed state takes until its contacts slide again, short beside
+/// the strains over which a test hardens.
+inline constexpr double usual_loading_probe = 1e-3, smallest_loading_probe = 1e-5, largest_loading_probe = 1e-2;
+
+/// The stiffness while loading goes on: d(sigma)/d(strain) near one direction of strain, not averaged with unloading,
+/// whose response is another in an assembly with sliding contacts. `direction`: its symmetric part counts, of any
+/// length, laboratory frame. With d0 of unit length (Frobenius) along it, t of unit length across it, a = 0.3:
+///   D d0 = s(d0),   D t = (s(d0 + a t) - s(d0 - a t))/2a
+/// s(d): change of stress over strain in the second half of the straight path size d from a copy of the RVE. In the
+/// first half contacts begin to slide and the lag of the state decays: relaxed and unrelaxed copies then give the same.
+/// At the peak of biaxial tests det of the acoustic tensor is -0.02 +- 0.02 of the elastic one; by probe_stiffness,
+/// which averages loading and unloading, 0.39 (tools/validate bands).
+/// InputError without a direction, or unless smallest_loading_probe <= size <= largest_loading_probe. IncrementFailed
+/// as apply.
+Eigen::MatrixXd loading_stiffness(const Rve& rve, const Matrix3& direction, double size = usual_loading_probe);
 
 /// Friction and rolling friction so large (1e6) that no contact slips: the state of the elastic tangent.
 void forbid_slip(Rve& rve);

@@ -28,6 +28,16 @@ inline Matrix3 unit_strain(int k, int dimension) {
   return strain;
 }
 
+/// Components of the symmetric part of a strain, shear as gamma.
+inline Eigen::VectorXd strain_components(const Matrix3& strain, int dimension) {
+  Eigen::VectorXd components(component_count(dimension));
+  for (int k = 0; k < components.size(); ++k) {
+    const auto [row, column] = component_axes(k, dimension);
+    components[k] = row == column ? strain(row, row) : strain(row, column) + strain(column, row);
+  }
+  return components;
+}
+
 /// Components of the symmetric part of a stress.
 inline Eigen::VectorXd stress_components(const Matrix3& stress, int dimension) {
   Eigen::VectorXd components(component_count(dimension));

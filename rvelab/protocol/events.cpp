@@ -49,7 +49,7 @@ const std::vector<EventQuantity>& event_quantities() {
     records::Quantities::for_each([&]<class Quantity>(std::type_identity<Quantity>, std::uint64_t) {
       if constexpr (std::is_same_v<records::ValueOf<Quantity>, double>) {
         list.push_back(
-            {Quantity::text.name, [](Test test) { return Quantity::measure(test.rve, test.rve.network()); }});
+            {Quantity::text.name, [](Test test) { return Quantity::measure(records::MeasuredState(test.rve)); }});
       }
     });
     list.push_back({"cycles", [](Test test) { return 0.5 * double(test.run.progress.turns); }});

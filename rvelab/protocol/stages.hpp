@@ -142,9 +142,10 @@ inline constexpr double smallest_probe = 1e-12;
 struct ProbeStage {
   enum class Method {
     dynamic,  ///< increments of +-size, relaxed (probe_stiffness)
-    linear    ///< the contact network solved, every contact stuck (elastic_tangent); size and no_slip mean nothing
+    linear,   ///< the contact network solved, every contact stuck (elastic_tangent); size and no_slip mean nothing
+    loading   ///< increments that go on in the direction of the records before (loading_stiffness)
   };
-  double size = 1e-7;    ///< strain of a dynamic probe
+  double size = 1e-7;    ///< strain of a dynamic or loading probe
   bool no_slip = false;  ///< friction 1e6 in the probed copy
   Method method = Method::dynamic;
 };

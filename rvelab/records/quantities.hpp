@@ -5,9 +5,7 @@
 // A new quantity is its struct (quantity.hpp says how) and its place in the list.
 #pragma once
 
-#include "rvelab/measure/anisotropy.hpp"
 #include "rvelab/measure/deviator.hpp"
-#include "rvelab/measure/force_networks.hpp"
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/records/quantity.hpp"
 
@@ -19,35 +17,35 @@ struct VoidRatio {
   double void_ratio = 0;
   static constexpr QuantityText text{"void_ratio", "1", "overlaps not subtracted", true};
   static constexpr auto member = &VoidRatio::void_ratio;
-  static double measure(const Rve&, const Network& network) { return rvelab::void_ratio(network); }
+  static double measure(const MeasuredState& state) { return rvelab::void_ratio(state.network); }
 };
 
 struct CoordinationNumber {
   double coordination_number = 0;
   static constexpr QuantityText text{"coordination_number", "1", "2 Nc/N, all grains", true};
   static constexpr auto member = &CoordinationNumber::coordination_number;
-  static double measure(const Rve&, const Network& network) { return rvelab::coordination_number(network); }
+  static double measure(const MeasuredState& state) { return rvelab::coordination_number(state.network); }
 };
 
 struct SlidingFraction {
   double sliding_fraction = 0;
   static constexpr QuantityText text{"sliding_fraction", "1", "contacts on the Coulomb cone", true};
   static constexpr auto member = &SlidingFraction::sliding_fraction;
-  static double measure(const Rve&, const Network& network) { return rvelab::sliding_fraction(network); }
+  static double measure(const MeasuredState& state) { return rvelab::sliding_fraction(state.network); }
 };
 
 struct MechanicalVoidRatio {
   double mechanical_void_ratio = 0;
   static constexpr QuantityText text{"mechanical_void_ratio", "1", "rattlers counted as voids"};
   static constexpr auto member = &MechanicalVoidRatio::mechanical_void_ratio;
-  static double measure(const Rve&, const Network& network) { return rvelab::mechanical_void_ratio(network); }
+  static double measure(const MeasuredState& state) { return rvelab::mechanical_void_ratio(state.network); }
 };
 
 struct MechanicalCoordinationNumber {
   double mechanical_coordination_number = 0;
   static constexpr QuantityText text{"mechanical_coordination_number", "1", "without rattlers and their contacts"};
   static constexpr auto member = &MechanicalCoordinationNumber::mechanical_coordination_number;
-  static double measure(const Rve&, const Network& network) { return rvelab::mechanical_coordination_number(network); }
+  static double measure(const MeasuredState& state) { return rvelab::mechanical_coordination_number(state.network); }
 };
 
 // Quantities of the directions of contacts and grains, laboratory frame (rvelab/measure/measures.hpp).
@@ -56,14 +54,14 @@ struct Fabric {
   Matrix3 fabric = Matrix3::Zero();
   static constexpr QuantityText text{"fabric", "1", "mean of n (x) n over the contacts"};
   static constexpr auto member = &Fabric::fabric;
-  static Matrix3 measure(const Rve&, const Network& network) { return rvelab::fabric(network); }
+  static Matrix3 measure(const MeasuredState& state) { return rvelab::fabric(state.network); }
 };
 
 struct BranchFabric {
   Matrix3 branch_fabric = Matrix3::Zero();
   static constexpr QuantityText text{"branch_fabric", "1", "sum b (x) b / sum b.b"};
   static constexpr auto member = &BranchFabric::branch_fabric;
-  static Matrix3 measure(const Rve&, const Network& network) { return rvelab::branch_fabric(network); }
+  static Matrix3 measure(const MeasuredState& state) { return rvelab::branch_fabric(state.network); }
 };
 
 struct OrientationFabric {
@@ -71,15 +69,15 @@ struct OrientationFabric {
   static constexpr QuantityText text{"orientation_fabric", "1",
                                      "ellipses: mean of e (x) e over the grains, e along the long axis; NaN if round"};
   static constexpr auto member = &OrientationFabric::orientation_fabric;
-  static Matrix3 measure(const Rve&, const Network& network) { return rvelab::orientation_fabric(network); }
+  static Matrix3 measure(const MeasuredState& state) { return rvelab::orientation_fabric(state.network); }
 };
 
 struct FabricAnisotropy {
   double fabric_anisotropy = 0;
   static constexpr QuantityText text{"fabric_anisotropy", "1", "of contact normals", true};
   static constexpr auto member = &FabricAnisotropy::fabric_anisotropy;
-  static double measure(const Rve&, const Network& network) {
-    return rvelab::fabric_anisotropy(fabric(network), network.dimension());
+  static double measure(const MeasuredState& state) {
+    return rvelab::fabric_anisotropy(fabric(state.network), state.network.dimension());
   }
 };
 
@@ -89,14 +87,14 @@ struct ContactStress {
   Matrix3 contact_stress = Matrix3::Zero();
   static constexpr QuantityText text{"contact_stress_Pa", "Pa", "of the contact forces alone"};
   static constexpr auto member = &ContactStress::contact_stress;
-  static Matrix3 measure(const Rve& rve, const Network&) { return rve.contact_stress(); }
+  static Matrix3 measure(const MeasuredState& state) { return state.rve.contact_stress(); }
 };
 
 struct ReynoldsStress {
   Matrix3 reynolds_stress = Matrix3::Zero();
   static constexpr QuantityText text{"reynolds_stress_Pa", "Pa", "of the fluctuations alone"};
   static constexpr auto member = &ReynoldsStress::reynolds_stress;
-  static Matrix3 measure(const Rve& rve, const Network&) { return rve.reynolds_stress(); }
+  static Matrix3 measure(const MeasuredState& state) { return state.rve.reynolds_stress(); }
 };
 
 // Energies of the whole cell (rvelab/measure/measures.hpp).
@@ -105,7 +103,7 @@ struct ElasticEnergy {
   double elastic_energy = 0;
   static constexpr QuantityText text{"elastic_energy_J", "J", "in contact springs"};
   static constexpr auto member = &ElasticEnergy::elastic_energy;
-  static double measure(const Rve&, const Network& network) { return rvelab::elastic_energy(network); }
+  static double measure(const MeasuredState& state) { return rvelab::elastic_energy(state.network); }
 };
 
 struct KineticEnergy {
@@ -113,7 +111,7 @@ struct KineticEnergy {
   static constexpr QuantityText text{"kinetic_energy_J", "J",
                                      "of fluctuation velocities and whole spins; 0 when quasi-static"};
   static constexpr auto member = &KineticEnergy::kinetic_energy;
-  static double measure(const Rve&, const Network& network) { return rvelab::kinetic_energy(network); }
+  static double measure(const MeasuredState& state) { return rvelab::kinetic_energy(state.network); }
 };
 
 // Anisotropies along the deviator of the stress, and what they make of it (rvelab/measure/anisotropy.hpp).
@@ -122,42 +120,42 @@ struct ContactAnisotropy {
   double a_c = 0;
   static constexpr QuantityText text{"a_c", "1", "anisotropy of contact normals along the stress"};
   static constexpr auto member = &ContactAnisotropy::a_c;
-  static double measure(const Rve&, const Network& network) { return stress_force_fabric(network).a_c; }
+  static double measure(const MeasuredState& state) { return state.relation().a_c; }
 };
 
 struct NormalForceAnisotropy {
   double a_n = 0;
   static constexpr QuantityText text{"a_n", "1", "of normal forces"};
   static constexpr auto member = &NormalForceAnisotropy::a_n;
-  static double measure(const Rve&, const Network& network) { return stress_force_fabric(network).a_n; }
+  static double measure(const MeasuredState& state) { return state.relation().a_n; }
 };
 
 struct TangentialForceAnisotropy {
   double a_t = 0;
   static constexpr QuantityText text{"a_t", "1", "of tangential forces"};
   static constexpr auto member = &TangentialForceAnisotropy::a_t;
-  static double measure(const Rve&, const Network& network) { return stress_force_fabric(network).a_t; }
+  static double measure(const MeasuredState& state) { return state.relation().a_t; }
 };
 
 struct BranchAnisotropy {
   double a_l = 0;
   static constexpr QuantityText text{"a_l", "1", "of branches along the normals"};
   static constexpr auto member = &BranchAnisotropy::a_l;
-  static double measure(const Rve&, const Network& network) { return stress_force_fabric(network).a_l; }
+  static double measure(const MeasuredState& state) { return state.relation().a_l; }
 };
 
 struct TangentialBranchAnisotropy {
   double a_lt = 0;
   static constexpr QuantityText text{"a_lt", "1", "of branches across the normals, 0 of round grains"};
   static constexpr auto member = &TangentialBranchAnisotropy::a_lt;
-  static double measure(const Rve&, const Network& network) { return stress_force_fabric(network).a_lt; }
+  static double measure(const MeasuredState& state) { return state.relation().a_lt; }
 };
 
 struct StressForceFabricRatio {
   double stress_force_fabric = 0;
   static constexpr QuantityText text{"stress_force_fabric", "1", "q/p that a_c, a_n, a_t, a_l, a_lt predict"};
   static constexpr auto member = &StressForceFabricRatio::stress_force_fabric;
-  static double measure(const Rve&, const Network& network) { return rvelab::stress_force_fabric(network).predicted; }
+  static double measure(const MeasuredState& state) { return state.relation().predicted; }
 };
 
 struct FabricAngle {
@@ -165,8 +163,8 @@ struct FabricAngle {
   static constexpr QuantityText text{"fabric_angle_deg", "degrees",
                                      "between the major axes of stress and contact normals"};
   static constexpr auto member = &FabricAngle::fabric_angle_deg;
-  static double measure(const Rve& rve, const Network& network) {
-    return axes_angle_deg(-rve.stress(), rvelab::fabric(network), network.dimension());
+  static double measure(const MeasuredState& state) {
+    return axes_angle_deg(-state.rve.stress(), rvelab::fabric(state.network), state.network.dimension());
   }
 };
 
@@ -176,14 +174,14 @@ struct StrongContacts {
   double strong_contacts = 0;
   static constexpr QuantityText text{"strong_contacts", "1", "share of contacts above the mean normal force"};
   static constexpr auto member = &StrongContacts::strong_contacts;
-  static double measure(const Rve&, const Network& network) { return force_networks(network).strong.contacts; }
+  static double measure(const MeasuredState& state) { return state.networks().strong.contacts; }
 };
 
 struct StrongDeviator {
   double strong_deviator = 0;
   static constexpr QuantityText text{"strong_deviator", "1", "share of q that these bear"};
   static constexpr auto member = &StrongDeviator::strong_deviator;
-  static double measure(const Rve&, const Network& network) { return force_networks(network).strong.deviator_share; }
+  static double measure(const MeasuredState& state) { return state.networks().strong.deviator_share; }
 };
 
 /// New ones come last: journals name what was asked for by the places here.

@@ -3,20 +3,43 @@
 // A quantity is a struct with one member, the value (a number or a 3x3 tensor), and
 //   static constexpr QuantityText text   what it is called, its unit, what it means
 //   static constexpr auto member         its member
-//   static measure(rve, network)         the function that measures it; `network` is that of `rve`
+//   static measure(state)                the function that measures it
 // A record inherits the structs of the table (quantities.hpp), so that the value is a member of the record by its name.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <type_traits>
 
 #include "rvelab/cell/cell.hpp"
+#include "rvelab/measure/anisotropy.hpp"
+#include "rvelab/measure/force_networks.hpp"
 #include "rvelab/solver/assembly/network.hpp"
 #include "rvelab/solver/rve.hpp"
 
 namespace rvelab::records {
+
+/// A state that is measured. What several quantities share is made once, when the first of them is.
+class MeasuredState {
+ public:
+  explicit MeasuredState(const Rve& measured) : rve(measured), network(measured.network()) {}
+  const Rve& rve;
+  const Network network;
+  const StressForceFabric& relation() const {
+    if (!relation_) relation_ = stress_force_fabric(network);
+    return *relation_;
+  }
+  const ForceNetworks& networks() const {
+    if (!networks_) networks_ = force_networks(network);
+    return *networks_;
+  }
+
+ private:
+  mutable std::optional<StressForceFabric> relation_;
+  mutable std::optional<ForceNetworks> networks_;
+};
 
 struct QuantityText {
   const char* name;  ///< in [output] quantities, in --json, and of the dataset under /records; ends in its unit

@@ -56,9 +56,9 @@ struct TestResult {
 /// Measures what record.quantities asks for at the state of an Rve.
 inline void measure_quantities(Record& record, const Rve& rve) {
   if (record.quantities == 0) return;
-  const Network network = rve.network();
+  const MeasuredState state(rve);
   Quantities::for_each([&]<class Quantity>(std::type_identity<Quantity>, std::uint64_t bit) {
-    if ((record.quantities & bit) != 0) record.*Quantity::member = Quantity::measure(rve, network);
+    if ((record.quantities & bit) != 0) record.*Quantity::member = Quantity::measure(state);
   });
 }
 

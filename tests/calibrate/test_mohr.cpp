@@ -65,6 +65,19 @@ TEST_CASE("Principal stresses are those of the tensor, compression positive, wha
   CHECK(calibrate::principal_stresses(unbalanced, 2).major == Approx(43e3).epsilon(1e-13));
 }
 
+TEST_CASE("dilation: an elastic column of Poisson's ratio 1/2 has none; tan psi of a shear plane is its opening") {
+  CHECK(calibrate::dilation_angle_deg(Vector3(0.5, 0.5, -1).asDiagonal(), 3) == Approx(0).margin(1e-12));
+  CHECK(calibrate::dilation_angle_deg(Vector3(1, -1, 7).asDiagonal(), 2) == Approx(0).margin(1e-12));
+  CHECK(calibrate::dilation_angle_deg(Vector3(0, -1, 0).asDiagonal(), 2) == Approx(-90));  // oedometer
+  Matrix3 shear = Matrix3::Zero();
+  shear(0, 1) = 1;
+  shear(1, 1) = std::tan(0.2);
+  CHECK(calibrate::dilation_angle_deg(shear, 2) == Approx(0.2 / degree).epsilon(1e-12));
+  // Triaxial: eps_v/eps_1 = -2 sin psi/(1 - sin psi).
+  CHECK(calibrate::dilation_angle_deg(Vector3(1, 1, -1).asDiagonal(), 3) ==
+        Approx(std::asin(1.0 / 3) / degree).epsilon(1e-12));
+}
+
 TEST_CASE("The peak is the record with the largest deviator, without smoothing") {
   std::vector<records::Record> records;
   for (int k = 0; k < 40; ++k) records.push_back(biaxial_record(0.001 * k, 20e3 + 100 * k, 10e3));

@@ -131,11 +131,38 @@ TEST_CASE("a dense biaxial test turns unstable at its peak; bands by Roscoe, Art
   CHECK(roscoe > 45);  // dense grains dilate
   CHECK(coulomb > roscoe);
   // A sheared state is weaker in its weakest band than its contacts would be, were all of them stuck.
-  const auto probe = nlohmann::json::parse(here.run("probe R.h5 --bands --size 1e-5 --json").output);
+  const auto probe = nlohmann::json::parse(here.run("probe R.h5 --bands --method dynamic --size 1e-5 --json").output);
   CHECK(probe.at("acoustic_ratio").get<double>() < 0.95);
   CHECK(probe.at("acoustic_ratio").get<double>() <= probe.at("acoustic_mean_ratio").get<double>() + 0.05);
   const auto elastic = nlohmann::json::parse(here.run("probe R.h5 --bands --method linear --json").output);
   CHECK(elastic.at("acoustic_ratio").get<double>() == 1);
+}
+
+TEST_CASE("at its peak a biaxial test takes no more second-order work, and a band is about to form", "[slow]") {
+  const Workplace here;
+  here.import_packing("dense_p20");
+  const Outcome whole = here.run("run biaxial --specimen S.h5 -o W.h5 --json --set test.pressure_Pa=1e5");
+  const double peak = nlohmann::json::parse(whole.output).at("peak_strain").get<double>();
+  const auto probed = [&](double strain, const std::string& options) {
+    here.run(
+        "run biaxial --specimen S.h5 -o R.h5 --force --set test.pressure_Pa=1e5 --set stage.compression.to_strain=" +
+        std::to_string(strain));
+    return nlohmann::json::parse(here.run("probe R.h5 --bands --json " + options).output);
+  };
+  const auto early = probed(0.001, ""), at_peak = probed(peak, "");
+  CHECK(early.at("method") == "loading");
+  CHECK(early.at("acoustic_ratio").get<double>() > 0.5);
+  CHECK(early.at("second_order_work_ratio").get<double>() > 0.5);
+  CHECK(std::abs(at_peak.at("acoustic_ratio").get<double>()) < 0.15);
+  CHECK(std::abs(at_peak.at("second_order_work_ratio").get<double>()) < 0.15);
+  // The band of the loading stiffness lies where those of soils do, the averaged one does not form.
+  CHECK(at_peak.at("band_angle_deg").get<double>() > at_peak.at("roscoe_angle_deg").get<double>() - 8);
+  CHECK(at_peak.at("band_angle_deg").get<double>() < at_peak.at("coulomb_angle_deg").get<double>() + 8);
+  const auto averaged =
+      nlohmann::json::parse(here.run("probe R.h5 --bands --method dynamic --size 1e-3 --json").output);
+  CHECK(averaged.at("acoustic_ratio").get<double>() > at_peak.at("acoustic_ratio").get<double>() + 0.1);
+
+  expect_mistake(here.run("probe S.h5 --bands"), "give the record file of a test");
 }
 
 TEST_CASE("critical fits the line through the ends of tests, and says what it lacks", "[slow]") {

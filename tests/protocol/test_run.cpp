@@ -5,7 +5,9 @@
 
 #include "rvelab/calibrate/calibrate.hpp"
 #include "rvelab/error.hpp"
+#include "rvelab/measure/probe.hpp"
 #include "rvelab/protocol/run.hpp"
+#include "rvelab/records/loading_direction.hpp"
 #include "rvelab/solver/rve.hpp"
 #include "tests/catch.hpp"
 #include "tests/protocol/reference_specimen.hpp"
@@ -151,6 +153,20 @@ TEST_CASE("A specimen that is where a stage wants it is left exactly as it was")
     CHECK(run.end_state.grains.position[g] == untouched.grains.position[g]);
   }
   CHECK(run.end_state.cell.lattice == untouched.cell.lattice);
+}
+
+TEST_CASE("A probe of loading goes on as the test before it, and asks for one") {
+  const Specimen specimen = reference_specimen("dense_p20");
+  const std::string probe = "[[stage]]\nkind = \"probe\"\nmethod = \"loading\"\n";
+  const std::string shear = "[[stage]]\nkind = \"simple_shear\"\nto_strain = 0.004\n";
+  const protocol::TestRun run = run_stages(shear + probe, specimen);
+  REQUIRE(run.result.probes.size() == 1);
+  const Matrix3 direction = records::loading_direction(run.result.records);
+  CHECK(direction(0, 1) == Approx(0.002).epsilon(1e-3));
+  const Eigen::MatrixXd& stiffness = run.result.probes[0].stiffness;
+  CHECK(stiffness == loading_stiffness(Rve(run.end_state), direction));
+  CHECK(stiffness(2, 2) > 0);
+  CHECK_THROWS_WITH(run_stages(probe, specimen), Catch::Matchers::Contains("needs a direction"));
 }
 
 TEST_CASE("A probe stage moves nothing: the test goes on as without it") {

@@ -109,22 +109,23 @@ def draw_envelopes(axes, tests, right, colour="crimson", name=""):
     """Envelope of the peaks with its interval, and that of large strain; the words for both and the peak angle."""
     peak = math.asin(records.sine_through_origin(*np.array([peak_state(test) for test in tests]).T))
     interval = interval_of(tests)
-    text = f"peak friction angle {math.degrees(peak):.3f} degrees"
+    digits = 3 if interval is None else 1  # specimens scatter by degrees
+    text = f"peak friction angle {math.degrees(peak):.{digits}f} degrees"
     before = f"{name}, " if name else ""
-    label = f"{before}peak: $\\varphi$ = {math.degrees(peak):.2f}°"
+    label = f"{before}peak: $\\varphi$ = {math.degrees(peak):.1f}°"
     if interval is not None:
         mean, half, count = interval
         axes.fill_between([0, right], [0, right * math.tan(mean - half)], [0, right * math.tan(mean + half)],
                           color=colour, alpha=0.12, linewidth=0, label="95 % interval of the mean" if not name else None)
         label = f"{before}peak: $\\varphi$ = {math.degrees(mean):.1f}° ± {math.degrees(half):.1f}°"
-        text += f" ({count} specimens: {math.degrees(mean):.2f} +- {math.degrees(half):.2f}, 95 % interval of the mean)"
+        text += f" ({count} specimens: {math.degrees(mean):.1f} +- {math.degrees(half):.1f}, 95 % interval of the mean)"
     line_of(axes, interval[0] if interval else peak, right, label, color=colour, linewidth=1.6)
     large = [large_strain_angle(test) for test in tests]
     if None not in large:
         mean = sum(large) / len(large)
         line_of(axes, mean, right, f"{before}12 to 15 % strain: $\\varphi$ = {math.degrees(mean):.1f}°",
                 color=colour if name else "0.35", linestyle=(0, (5, 3)))
-        text += f", at large strain {math.degrees(mean):.3f} degrees"
+        text += f", at large strain {math.degrees(mean):.{digits}f} degrees"
     return (f"{name}: " if name else "") + text, peak
 
 

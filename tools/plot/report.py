@@ -88,7 +88,7 @@ def figure_of(module, given, options, folder, caption):
         content, kind = path.read_bytes(), "image/png"
     name = module.__name__.replace("_", " ")
     told = said.replace(str(path), "").replace(str(folder / "figure.svg"), "").lstrip(": ")
-    told = told[:1].upper() + told[1:] + "."
+    told = (told[:1].upper() if told[1:2].isalpha() else told[:1]) + told[1:] + "."  # "a = 0.3" stays
     return (f'<figure><img alt="{name}" src="{data_uri(kind, content)}">'
             f"<figcaption>{html.escape(caption)} {html.escape(told).replace(chr(10), '<br>')}</figcaption></figure>")
 

@@ -45,9 +45,9 @@ def plane_of(state, plane):
 def number_axes(rose, plane, top, every):
     """Circles with their numbers, and the names of the axes of the plane."""
     rose.set_ylim(0, top)
-    ticks = np.arange(every, top, every)
+    ticks = np.arange(every, 0.9 * top, every)  # a number at the rim would run into those of the angles
     rose.set_yticks(ticks, labels=[f"{tick:.3g}" for tick in ticks], fontsize=7, color="0.3")
-    rose.set_rlabel_position(67.5)
+    rose.set_rlabel_position(75)
     named = {0: "$" + "xyz"[plane[0]] + "$", 90: "$" + "xyz"[plane[1]] + "$"}
     rose.set_xticks(np.radians(np.arange(0, 360, 30)),
                     labels=[named.get(degrees, f"{degrees}°") for degrees in range(0, 360, 30)], fontsize=8)

@@ -55,7 +55,8 @@ def draw_axes_of_plane(plane):
 def draw(stages, options):
     figure, (meridian, plane) = plt.subplots(1, 2, figsize=(10, 4.4))
     three = stages[0].dimension == 3
-    for curve in kinds.curves_of(stages, options.colour):
+    curves = kinds.curves_of(stages, options.colour)
+    for curve in curves:
         draw_path(meridian, curve, lambda stage: stage.invariants(), False, options.each)
         draw_path(plane, curve, lambda stage: (deviatoric_plane if three else shear_plane)(stage.stress), True, options.each)
     meridian.set_xlabel("mean stress $p$ (kPa)")
@@ -63,7 +64,8 @@ def draw(stages, options):
     # Room beside a path that goes straight up.
     meridian.set_xlim(min(0, meridian.dataLim.x0), 1.05 * max(meridian.dataLim.x1, meridian.get_xlim()[1]))
     meridian.set_ylim(bottom=0)
-    kinds.legend(plane)
+    averaged = not options.each and kinds.band_in_words(curves)
+    kinds.legend(plane, "mean of n specimens,\nthin: each of them" if averaged else None)
     plane.set_aspect("equal", adjustable="datalim")
     if three:
         draw_axes_of_plane(plane)

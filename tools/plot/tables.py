@@ -108,6 +108,16 @@ def results(tests):
     return rows
 
 
+def to_error(values, error):
+    """Texts of values with the digits that a standard error leaves: two of its own; powers of 1000 where they are long."""
+    values = [value for value in values if value is not None]
+    if not error or not all(map(math.isfinite, [error, *values])):
+        return [f"{value:.4g}" for value in values]
+    power = 3 * int(math.log10(max(map(abs, values)) or 1) // 3) if max(map(abs, values)) >= 1e5 else 0
+    digits = max(0, 1 - math.floor(math.log10(error / 10 ** power)))
+    return [f"{value / 10 ** power:.{digits}f}" + (f"e{power}" if power else "") for value in values]
+
+
 def summary(folder):
     """The means that `rvelab run` and `calibrate` wrote beside the records of several specimens; no rows without them."""
     path = pathlib.Path(folder) / "summary.json"
@@ -118,8 +128,9 @@ def summary(folder):
     rows = [["group", "pressure", "measure", "n", "mean", "standard error", "95 % interval of the mean"]]
     for row in found:
         pressure = row.get("pressure_Pa")
-        shown = [f"{row[name]:.4g}" if row.get(name) is not None else "" for name in ("mean", "standard_error", "low_95",
-                                                                                     "high_95")]
+        names = ("mean", "standard_error", "low_95", "high_95")
+        shown = to_error([row.get(name) for name in names], row.get("standard_error"))
+        shown += [""] * (len(names) - len(shown))
         unit = row.get("unit", "")
         rows.append([str(row.get("group", "")), "all" if pressure is None else f"{pressure / 1e3:.4g} kPa",
                      row["measure"] + (f" ({unit})" if unit not in ("", "1") else ""), str(row["n"]), shown[0], shown[1],
