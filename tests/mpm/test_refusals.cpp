@@ -200,8 +200,8 @@ TEST_CASE("loads that would strain the soil by half at once are refused, with th
 }
 
 TEST_CASE("names are told apart, regions share no place, and watched points lie at soil") {
-  CHECK_THAT(refusal({"boundary.right.name=left"}), Contains("two boundaries or bodies are called left"));
-  CHECK_THAT(refusal({"body.footing.name=left"}), Contains("two boundaries or bodies are called left"));
+  CHECK_THAT(refusal({"boundary.right.name=left"}), Contains("two boundaries, bodies or rocks are called left"));
+  CHECK_THAT(refusal({"body.footing.name=left"}), Contains("two boundaries, bodies or rocks are called left"));
   CHECK_THAT(refusal({"material.clay.name=\"clay/2\""}),
              Contains("is \"clay/2\"") && Contains("letters, digits, _ and -"));
   CHECK_THAT(refusal({"region.1.lower_m=[0, 0.9]"}), Contains("region.0 (of clay) and region.1 (of sand) overlap"));

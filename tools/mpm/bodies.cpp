@@ -18,6 +18,7 @@ void Bodies<D>::detect_contact(const Grid<D>& grid, const Planes<D>& planes, con
       at_nodes = true;
   }
   if (at_nodes) detect_nodes(grid, planes, time, workers);
+  if (rocks != nullptr) detect_rocks(grid, planes, soil);
 }
 
 /// Nodes in bodies with contact at nodes, in the order of the grid.
@@ -70,6 +71,7 @@ void Bodies<D>::set_start(Grid<D>& grid, double time) {
     contact.jump = stop(contact, all[contact.body].velocity.at(time), node.v);
   }
   for (auto& point : surface_) point.impulse.setZero();
+  if (rocks != nullptr) start_rocks();
   hold_surface(grid, time, false);
 }
 
@@ -98,6 +100,7 @@ void Bodies<D>::book_reactions(const Grid<D>& grid, const Planes<D>& planes) {
     }
   }
   for (const auto& point : surface_) {
+    if (point.body >= int(all.size())) break;  // a rock's: the last ones
     for (int j = 0; j < point.count; ++j) {
       for (int i = 0; i < D; ++i) {
         if (planes.holds(point.node[j], i)) continue;
@@ -105,6 +108,7 @@ void Bodies<D>::book_reactions(const Grid<D>& grid, const Planes<D>& planes) {
       }
     }
   }
+  if (rocks != nullptr) book_rocks(grid, planes);
 }
 
 template class Bodies<2>;

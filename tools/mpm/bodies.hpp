@@ -41,10 +41,14 @@ struct Body {
 };
 
 template <int D>
+class Rocks;
+
+template <int D>
 class Bodies {
  public:
   std::vector<Body<D>> all;
   Shape shape = Shape::bspline;  ///< that of the grid
+  Rocks<D>* rocks = nullptr;     ///< met at their surface as well, where there are any
 
   /// Detects contact at this time (s): the points of surfaces that soil touches, and the nodes in bodies with contact
   /// at nodes. Mirror nodes are left out: they follow their images.
@@ -52,6 +56,10 @@ class Bodies {
                       Workers& workers);
   /// Velocities v at the start of the step.
   void set_start(Grid<D>& grid, double time);
+  /// Rocks with the velocities that they have now; impulses of the start change them.
+  void start_rocks();
+  /// Rocks as free bodies at the end of the step: their velocities before the soil acts.
+  void predict_rocks(const Vec<D>& gravity, double dt);
   /// Velocities w at the end of the step; a is still the mapped velocity. The reaction of a component that a plane
   /// holds at a node is the plane's, not the body's.
   void set_end(Grid<D>& grid, const Planes<D>& planes, double time) {
@@ -73,7 +81,7 @@ class Bodies {
   static constexpr long chunk = 1024;  ///< points or nodes of one piece of work
   /// A point of a surface: the nodes that reach it, and their weights there, of sum 1.
   struct SurfacePoint {
-    int body;
+    int body;  ///< from the number of bodies on: a rock
     Vec<D> normal;
     long node[reach];
     double weight[reach];
@@ -91,12 +99,17 @@ class Bodies {
   int surface_weights(double xi, double* weight) const;
   void hold_point(const Grid<D>& grid, const Planes<D>& planes, SurfacePoint& point, double time, const Vec<D>& at,
                   unsigned char face);
+  void hold_at(const Grid<D>& grid, const Planes<D>& planes, SurfacePoint& point, double time, const Vec<D>& at);
   void hold_in_column(const Grid<D>& grid, const Planes<D>& planes, SurfacePoint& point, double time, const Vec<D>& at,
                       unsigned char face, int axis);
   static void add_node(const Grid<D>& grid, const Planes<D>& planes, const typename Grid<D>::Index& node, double weight,
                        SurfacePoint& point);
   void hold(SurfacePoint& point, const Grid<D>& grid, double time);
   void hold_surface(Grid<D>& grid, double time, bool end);
+  // rock_surface.cpp
+  void detect_rocks(const Grid<D>& grid, const Planes<D>& planes, const std::vector<Point<D>>& soil);
+  void hold_rock(std::size_t k, Grid<D>& grid, bool end);
+  void book_rocks(const Grid<D>& grid, const Planes<D>& planes);
   /// Stops the soil at a node; the change of its velocity.
   Vec<D> stop(const Contact& contact, const Vec<D>& speed, double* velocity) const;
   void book(int body, const Node<D>& node, int component, double impulse);

@@ -5,6 +5,8 @@
 #include <set>
 
 #include "tools/mpm/files.hpp"
+#include "tools/mpm/rock_output.hpp"
+#include "tools/mpm/rocks.hpp"
 
 namespace mpm {
 namespace {
@@ -198,6 +200,7 @@ void write_checkpoint(const Model<D>& model, const Progress& progress, const std
   file.write("contact_at_surface", contacts_of(solver));
   if (solver.loads.any()) file.write("load_work_J", {solver.load_work}, {1});
   if (solver.fluid) write_water<D>(*solver.fluid, file);
+  if (solver.rocks) write_rocks<D>(solver, file);
   for (const auto& group : solver.groups) group.material->save(file, group.name);
   file.publish(true);
   remove_old_pools<D>(model, place);
@@ -262,6 +265,7 @@ void read_checkpoint(Model<D>& model, Progress& progress, const std::string& fol
   }
   if (solver.loads.any()) solver.load_work = file.read("load_work_J").at(0);
   if (solver.fluid) read_water<D>(*solver.fluid, file, folder);
+  if (solver.rocks) read_rocks<D>(solver, file, folder);
   for (auto& group : solver.groups) group.material->restore(file, group.name);
 }
 

@@ -16,7 +16,7 @@ struct EnergyBalance {
   double potential = 0;      ///< change in gravity
   double stress_work = 0;    ///< of the stress in the points
   double pressure_work = 0;  ///< of the pressure on free surfaces
-  double boundary_work = 0;  ///< of planes and bodies, on the soil
+  double boundary_work = 0;  ///< of planes, bodies and rocks, on the soil
   double mapping_loss = 0;   ///< between points and nodes (PIC, lumping)
   double load_work = 0;      ///< of shaking and strips
   double drag_loss = 0;      ///< between soil and water
@@ -58,6 +58,7 @@ EnergyBalance<D> energy_balance(const Solver<D>& solver, const EnergyStart& star
     volume += point.volume;
   }
   solver.each_driven([&](const auto& each) { balance.boundary_work += each.reaction.work; });
+  balance.boundary_work += solver.rock_work();
   balance.pressure_work = solver.options.surface_pressure * (start.volume - volume);
   double nodal = solver.nodal_kinetic;
   if (solver.fluid) {

@@ -206,6 +206,12 @@ std::vector<std::vector<double>> Keys::rows(const std::string& name, std::size_t
   return rows;
 }
 
+std::size_t Keys::row_length(const std::string& name) const {
+  const auto* rows = table_->get_as<toml::array>(name);
+  const auto* first = rows == nullptr || rows->empty() ? nullptr : rows->front().as_array();
+  return first == nullptr ? 0 : first->size();
+}
+
 std::vector<std::string> Keys::texts(const std::string& name) {
   const auto* node = get(name);
   if (node == nullptr) missing(name, no_default);

@@ -36,6 +36,8 @@ class Keys {
   std::vector<double> numbers(const std::string& name, std::size_t size);  ///< required
   /// Rows of `size` numbers each; none if the key is not there.
   std::vector<std::vector<double>> rows(const std::string& name, std::size_t size);
+  /// Numbers in the first row of such a list; 0 if there is none.
+  std::size_t row_length(const std::string& name) const;
   std::vector<std::string> texts(const std::string& name);  ///< required, not empty
   /// Tables under a name: [name] (empty if it is not there), or each [[name]].
   Keys table(const std::string& name);

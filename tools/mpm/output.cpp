@@ -6,6 +6,8 @@
 
 #include "rvelab/io/crc32c.hpp"
 #include "tools/mpm/files.hpp"
+#include "tools/mpm/rock_output.hpp"
+#include "tools/mpm/rocks.hpp"
 
 namespace mpm {
 namespace {
@@ -91,13 +93,19 @@ std::string history_header(const Solver<D>& solver) {
       header.append(",").append(plane.name).append(".water_force_N,").append(plane.name).append(".outflow_m3");
     }
   }
-  return header;
+  return header + rock_columns<D>(solver);
 }
 
-/// N s, of planes and bodies on the water; empty without.
+/// N s, of planes and bodies on the water, or on rocks; empty without.
 template <int D>
-std::vector<double> water_impulses(const Solver<D>& solver) {
+std::vector<double> further_impulses(const Solver<D>& solver) {
   std::vector<double> impulses;
+  if (solver.rocks) {
+    for (const auto& impulse : solver.rocks->wall_impulse) {
+      for (const double x : impulse) impulses.push_back(-x);
+    }
+    impulses.resize(D * solver.count_driven(), 0.0);
+  }
   const auto add = [&](const auto& all) {
     for (const auto& each : all) {
       impulses.insert(impulses.end(), each.reaction.impulse.data(), each.reaction.impulse.data() + D);
@@ -121,12 +129,12 @@ std::vector<double> history_row(const Solver<D>& solver, const EnergyStart& star
   if (solver.fluid) {
     row.insert(row.end(), {b.drag_loss, b.water_work, b.water_gravity, solver.fluid->outflow.back()});
   }
-  before.resize(D * solver.count_driven(), 0.0);
-  const auto on_water = water_impulses<D>(solver);
+  before.resize(std::max(before.size(), D * solver.count_driven()), 0.0);
+  const auto further = further_impulses<D>(solver);
   std::size_t at = 0;
   solver.each_driven([&](const auto& each) {
     for (int i = 0; i < D; ++i, ++at) {
-      const double impulse = each.reaction.impulse[i] + (on_water.empty() ? 0 : on_water[at]);
+      const double impulse = each.reaction.impulse[i] + (further.empty() ? 0 : further[at]);
       // The soil's force on the boundary has the opposite sign.
       row.push_back(since > 0 ? -(impulse - before[at]) / since : 0);
       before[at] = impulse;
@@ -137,6 +145,7 @@ std::vector<double> history_row(const Solver<D>& solver, const EnergyStart& star
   for (std::size_t k = 0; solver.fluid && k < solver.planes.all.size(); ++k) {
     row.insert(row.end(), {solver.fluid->force_on(solver.planes, int(k)), solver.fluid->outflow[k]});
   }
+  add_rock_values<D>(solver, since, before, row);
   return row;
 }
 
@@ -242,6 +251,9 @@ void write_frame(const Model<D>& model, const std::string& folder, long frame) {
     scalars("liquefied_at_s", [&](const P&, long k) { return water.points[k].liquefied; });
     scalars("porosity",
             [&](const P& p, long k) { return water.points[k].solids > 0 ? water.points[k].porosity(p.volume) : NAN; });
+  }
+  if (model.solver.rocks) {
+    write_rock_frame<D>(model.solver, (std::filesystem::path(folder) / frame_name(frame, "rocks")).string());
   }
   file.publish();
 }

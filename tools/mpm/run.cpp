@@ -11,6 +11,8 @@
 
 #include "tools/mpm/checkpoint.hpp"
 #include "tools/mpm/output.hpp"
+#include "tools/mpm/rock_output.hpp"
+#include "tools/mpm/rocks.hpp"
 
 namespace mpm {
 namespace {
@@ -86,6 +88,10 @@ class Cost {
       report << ", pore pressure " << solver.fluid->seconds << " s ("
              << 100 * solver.fluid->seconds / std::max(whole, 1e-12) << " %)";
     }
+    if (solver.rocks) {
+      report << ", rocks " << solver.rocks->seconds << " s, soil on rocks " << solver.rocks->soil_seconds << " s ("
+             << 100 * (solver.rocks->seconds + solver.rocks->soil_seconds) / std::max(whole, 1e-12) << " %)";
+    }
     report << "\n";
     if (grains > 0) {
       report << "grain-steps " << grain_steps << ", " << (grain_steps - grain_steps_) / grains / 1e6 << " M a second";
@@ -94,7 +100,7 @@ class Cost {
                << " in parts, " << each->warned << " with a warning";
       }
       report << "\n";
-    } else if (steps > 0) {
+    } else if (steps > 0 && !solver.points.empty()) {
       report << double(solver.points.size()) * double(steps) / wall / 1e6 << " M point-steps a second\n";
     }
   }
@@ -140,6 +146,7 @@ class Outputs {
     if (scene_.networks) write_networks<D>(model_, folder_, number);
     progress_.frame_times.push_back(solver.time);
     write_xdmf(folder_, progress_.frame_times, long(solver.points.size()), solver.fluid != nullptr);
+    if (solver.rocks) write_rock_xdmf(folder_, progress_.frame_times, solver.rocks->all.size());
     advance_past(solver.time, scene_.frame_every, progress_.next_frame);
   }
   void save() {
@@ -188,6 +195,7 @@ bool step_to_end(const Scene& scene, const RunOptions& options, Solver<D>& solve
   bool stopped = false;
   while (solver.time < scene.duration && !stopped) {
     double dt = solver.stable_step();
+    if (solver.points.empty()) dt = std::min(dt, scene.history_every);  // rocks alone have sub-steps
     outputs.checked([&] { watch_step<D>(solver, dt, progress.seen, std::cerr); });
     const bool last = solver.time + dt >= scene.duration;
     if (last) dt = scene.duration - solver.time;
@@ -226,6 +234,7 @@ int run_model(const Scene& scene, const RunOptions& options, std::ostream& repor
   if (model->pressure_classes > 0) {
     report << model->pressure_classes << " states of specimens prepared for " << solver.points.size() << " points\n";
   }
+  for (const auto& line : model->told) report << line << "\n";
   const double setup = seconds_since(begin);
   const Cost<D> cost(*model);
   if (!options.resume) {

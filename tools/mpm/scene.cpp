@@ -119,6 +119,7 @@ RegionOfScene read_region(Keys& keys, std::size_t d, const std::optional<WaterOf
   if (std::lround(std::pow(double(along), double(d))) != region.points_per_cell) {
     keys.wrong("points_per_cell", d == 2 ? "must be a square: 1, 4, 9, 16" : "must be a cube: 1, 8, 27");
   }
+  region.ellipsoid = keys.choice("shape", {"box", "ellipsoid"}) == "ellipsoid";
   read_region_water(keys, water, region);
   keys.finish();
   for (std::size_t i = 0; i < d; ++i) {
@@ -144,6 +145,7 @@ void read_rest(Keys& file, Scene& scene) {
   scene.pic_fraction = time.number("pic_fraction", 0.1, 0, 1);
   scene.affine = time.boolean("affine", true);
   scene.cfl = time.number("cfl", 0.4, 1e-4, 1);
+  scene.rock_steps = time.number("rock_steps_per_collision", 50, 10, 1e5);
   time.finish();
   auto loads = file.table("loads");
   scene.gravity = loads.vector("gravity_m_s2", d, std::vector<double>(d, 0));
@@ -210,10 +212,11 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& cases,
   }
   for (const auto& assignment : assignments) assign(file, assignment);
   include_record(file, path);
+  include_rocks(file, path);
   Keys keys(file, path, "");
   // A misspelt table is reported before a key that is missing because of it.
   for (const char* name : {"scene", "grid", "time", "loads", "initial", "fluid", "output", "material", "region",
-                           "boundary", "body", "case"}) {
+                           "boundary", "body", "rock_material", "rock", "rocks", "rock_soil", "case"}) {
     keys.known(name);
   }
   keys.finish();
@@ -231,6 +234,7 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& cases,
     scene.planes.push_back(read_plane(each, d, scene.follows, scene.water.has_value()));
   }
   for (auto& each : keys.tables("body")) scene.bodies.push_back(d == 2 ? read_body<2>(each) : read_body<3>(each));
+  read_rocks(keys, scene);
   check_scene(scene, path);
   if (resolved != nullptr) {
     file.erase("case");

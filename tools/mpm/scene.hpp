@@ -10,6 +10,7 @@
 #include "tools/mpm/continuum.hpp"
 #include "tools/mpm/fluid.hpp"
 #include "tools/mpm/keys.hpp"
+#include "tools/mpm/scene_rocks.hpp"
 #include "tools/mpm/solver.hpp"
 
 namespace mpm {
@@ -32,6 +33,7 @@ struct RegionOfScene {
   std::string material;
   std::vector<double> lower, upper, velocity;
   long points_per_cell = 4;
+  bool ellipsoid = false;  ///< that which the box holds, instead of the box
   bool saturated = false;
   double conductivity = 0, porosity = 0;  ///< m/s, 1; of a continuum (that of grains is their own)
 };
@@ -85,6 +87,8 @@ struct Scene {
   std::vector<RegionOfScene> regions;
   std::vector<PlaneOfScene> planes;
   std::vector<BodyOfScene> bodies;
+  double rock_steps = 50;             ///< sub-steps of the shortest collision of rocks
+  std::optional<RocksOfScene> rocks;  ///< none: no rocks
   double frame_every = 0, history_every = 0, checkpoint_every = 0;
   std::vector<std::vector<double>> watched;
   bool networks = false;  ///< with each frame, those of the watched points

@@ -42,7 +42,7 @@ void check_boundaries(const Scene& scene, const std::string& path) {
   std::set<std::string> planes, all;
   const auto expect_new = [&](const std::string& name) {
     if (all.insert(name).second) return;
-    throw InputError(path + ": two boundaries or bodies are called " + name + "; columns go by it: rename one");
+    throw InputError(path + ": two boundaries, bodies or rocks are called " + name + "; columns go by it: rename one");
   };
   for (const auto& plane : scene.planes) {
     expect_new(plane.name);
@@ -52,6 +52,9 @@ void check_boundaries(const Scene& scene, const std::string& path) {
                      ", too many cells from 0; move it nearer, or make grid.cell_m larger");
   }
   for (const auto& body : scene.bodies) expect_new(body.name);
+  for (std::size_t k = 0; scene.rocks && k < scene.rocks->all.size(); ++k) {
+    if (scene.rocks->all[k].single) expect_new(scene.rocks->all[k].name);
+  }
   if (scene.follows.empty()) return;
   if (!planes.contains(scene.follows)) {
     throw InputError(path + ": grid.follows is \"" + scene.follows + "\"; the nearest boundary is \"" +
@@ -164,12 +167,15 @@ std::string region_name(const Scene& scene, const RegionOfScene& region) {
 void check_scene(const Scene& scene, const std::string& path) {
   check_materials(scene, path);
   check_boundaries(scene, path);
-  if (scene.regions.empty()) throw InputError(path + ": there is no [[region]]; the scene has no material points");
+  if (scene.regions.empty() && !scene.rocks) {
+    throw InputError(path + ": there is no [[region]]; the scene has no material points");
+  }
   check_sizes(scene, path);
   check_overlaps(scene, path);
   check_sides(scene, path);
   check_watched(scene, path);
   check_water(scene, path);
+  check_rocks(scene, path);
 }
 
 namespace {

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "tools/mpm/scene_checks.hpp"
+#include "tools/mpm/setup_rocks.hpp"
 
 namespace mpm {
 namespace {
@@ -91,7 +92,7 @@ void refuse_inside(const Scene& scene, const RegionOfScene& region, const Bodies
 
 /// Points of one region, x fastest.
 template <int D>
-void fill(const Scene& scene, const RegionOfScene& region, const Bodies<D>& bodies, std::vector<Point<D>>& points) {
+void fill(const Scene& scene, const RegionOfScene& region, Solver<D>& solver) {
   const auto filling = filling_of(scene, region);
   const auto& count = filling.count;
   const Vec<D> side = vector_of<D>(filling.side);
@@ -106,8 +107,13 @@ void fill(const Scene& scene, const RegionOfScene& region, const Bodies<D>& bodi
     point.velocity = vector_of<D>(region.velocity);
     point.half = 0.5 * side;
     point.volume = side.prod() * (D == 2 ? scene.thickness : 1);
-    refuse_inside<D>(scene, region, bodies, point);
-    points.push_back(point);
+    refuse_inside<D>(scene, region, solver.bodies, point);
+    if (region.ellipsoid) {
+      const Vec<D> low = vector_of<D>(region.lower), high = vector_of<D>(region.upper);
+      if ((2 * point.position - low - high).cwiseQuotient(high - low).squaredNorm() > 1) continue;
+    }
+    if (left_out<D>(solver, point)) continue;
+    solver.points.push_back(point);
   }
 }
 
@@ -308,7 +314,7 @@ void add_group(const Scene& scene, const MaterialOfScene& material, Model<D>& mo
   group.first = long(solver.points.size());
   group.name = material.name;
   for (const auto& region : scene.regions) {
-    if (region.material == material.name) fill<D>(scene, region, solver.bodies, solver.points);
+    if (region.material == material.name) fill<D>(scene, region, solver);
   }
   group.count = long(solver.points.size()) - group.first;
   Point<D>* points = solver.points.data() + group.first;
@@ -350,9 +356,11 @@ std::unique_ptr<Model<D>> set_up(const Scene& scene, int threads, const std::str
   set_options(scene, model->solver);
   place_planes(scene, model->solver);
   place_bodies(scene, model->solver);
+  place_rocks<D>(scene, model->solver);
   Stock<D> stock{specimens, populate, {}, {}};
   stock.open(scene, *model, source);
   for (const auto& material : scene.materials) add_group(scene, material, *model, stock);
+  finish_rocks<D>(scene, model->solver, model->told);
   if (scene.water) fill_with_water<D>(scene, populate, model->solver);
   watch_points(scene, *model);
   return model;

@@ -16,6 +16,7 @@ struct Model {
   std::map<std::string, std::shared_ptr<GrainPool>> pools;  ///< by the name of the material
   std::map<std::string, std::shared_ptr<Grains<D>>> grains;
   std::vector<long> watched;  ///< numbers of the points nearest to those asked for
+  std::vector<std::string> told;  ///< what the user should know of the rocks
   long pressure_classes = 0;  ///< prepared states that points share
 };
 

@@ -4,6 +4,7 @@
 
 #include "tools/mpm/clock.hpp"
 #include "tools/mpm/fluid.hpp"
+#include "tools/mpm/rocks.hpp"
 #include "tools/mpm/transfer.hpp"
 
 namespace mpm {
@@ -61,13 +62,19 @@ double Solver<D>::stable_step() const {
     fastest = std::max(fastest, all.fastest);
     if (group.count > 0) wave = std::max(wave, group.material->wave_modulus() / all.lightest);
   }
-  const double dt = options.cfl * grid.cell.minCoeff() / (std::sqrt(wave) + std::sqrt(fastest));
+  // Rocks alone fall by no more than a hundredth of a cell a step from rest.
+  const double alone = std::sqrt(0.02 * grid.cell.minCoeff() / std::max(1e-9, options.gravity.norm()));
+  const double dt =
+      points.empty() ? alone : options.cfl * grid.cell.minCoeff() / (std::sqrt(wave) + std::sqrt(fastest));
   // A boundary or body faster than any wave must not jump over the soil: a fifth of a cell a step at most.
   double driven = 0;
   for (const double then : {time, time + dt}) {
     each_driven([&](const auto& each) { driven = std::max(driven, each.velocity.at(then).norm()); });
   }
-  return driven > 0 ? std::min(dt, 0.2 * grid.cell.minCoeff() / driven) : dt;
+  if (!rocks) return driven > 0 ? std::min(dt, 0.2 * grid.cell.minCoeff() / driven) : dt;
+  driven = std::max(driven, rocks->fastest());
+  const double until = std::min(dt, options.cfl / std::max(1e-300, rocks->ghost_frequency));
+  return driven > 0 ? std::min(until, 0.2 * grid.cell.minCoeff() / driven) : until;
 }
 
 template <int D>
@@ -167,10 +174,37 @@ void Solver<D>::end_velocities(double dt) {
     for (int i = 0; i < D; ++i) node.w[i] = node.v[i] + dt * (node.w[i] / node.mass);
   });
   if (planes.absorb()) add_dashpots(dt);
+  if (rocks) bodies.predict_rocks(options.gravity, dt);
   bodies.set_end(grid, planes, time + dt);
   planes.set_end(grid, time + dt);
   if (planes.absorb()) book_dashpots(dt);
   take_changes(solid(), dt);
+  if (rocks) advance_rocks(dt);
+}
+
+/// Their contacts with each other and with walls, and the impulses of the soil.
+template <int D>
+void Solver<D>::advance_rocks(double dt) {
+  const double begin = wall_seconds();
+  if (rocks->soil.ghosts) rocks->work_on_soil += ghost_work(dt);
+  rocks->advance([&](double then) { return walls_at<D>(grid, planes, bodies, then); }, options.gravity, time, dt);
+  rocks->seconds += wall_seconds() - begin;
+}
+
+template <int D>
+double Solver<D>::rock_work() const {
+  return rocks ? rocks->work_on_soil : 0;
+}
+
+/// A step of rocks without soil.
+template <int D>
+void Solver<D>::rocks_alone(double dt) {
+  const double begin = wall_seconds();
+  place_grid();
+  if (rocks) advance_rocks(dt);
+  time += dt;
+  ++steps;
+  grid_seconds += wall_seconds() - begin;
 }
 
 template <int D>
@@ -260,8 +294,11 @@ void Solver<D>::begin_step() {
 template <int D>
 void Solver<D>::step(double dt) {
   if (fluid) return saturated_step(dt);
+  if (points.empty()) return rocks_alone(dt);
   const double begin = wall_seconds(), before = material_seconds;
   begin_step();
+  if (rocks) rocks->step = dt;
+  if (rocks && rocks->soil.ghosts) touch_ghosts(dt);
   map_momentum();
   start_velocities(solid());
   if (options.scheme == Scheme::usf) {

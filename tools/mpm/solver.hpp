@@ -79,10 +79,12 @@ class Solver {
   std::function<Vec<D>(const Vec<D>&, double)> body_force;
 
   std::unique_ptr<Fluid<D>> fluid;  ///< null: dry soil
+  std::unique_ptr<Rocks<D>> rocks;  ///< null: none; with soil in it, bodies.rocks as well
 
   explicit Solver(int threads);
   ~Solver();
   const MaterialGroup<D>& group_of(long point) const;
+  double rock_work() const;  ///< J, of rocks on the soil
   /// s, from the fastest wave and the fastest point, or from a body or plane that is faster than both.
   double stable_step() const;
   void step(double dt);
@@ -127,6 +129,12 @@ class Solver {
   std::vector<double> areas_on(const Plane<D>& plane) const;
   void add_dashpots(double dt);
   void book_dashpots(double dt);
+  // ghost_contact.cpp
+  void touch_ghosts(double dt);
+  void give_ghost_forces();
+  double ghost_work(double dt) const;
+  void advance_rocks(double dt);
+  void rocks_alone(double dt);
   // saturated_step.cpp
   void saturated_step(double dt);
   void map_saturated_force();

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tools/mpm/bodies.hpp"
+#include "tools/mpm/touching.hpp"
 
 namespace mpm {
 namespace {
@@ -11,28 +12,6 @@ namespace {
 // Sweeps over points that share nodes; the steps that follow correct what they leave. Before the peak the load on a
 // footing differs from that with 40 sweeps by 3 % with 5, by 1 % with 10 (Mohr-Coulomb soil).
 constexpr int many_sweeps = 10;
-// Cells from the surface within which a domain touches it: straining moves a point against its domain by so much.
-constexpr double early = 0.1;
-
-/// The number of the node nearest to a place, which may lie outside the box of the grid.
-template <int D>
-typename Grid<D>::Index rounded(const Grid<D>& grid, const Vec<D>& at) {
-  typename Grid<D>::Index node;
-  for (int i = 0; i < D; ++i) node[i] = int(floor_of((at[i] - grid.anchor[i]) / grid.cell[i] + 0.5));
-  return node;
-}
-
-/// False outside the box of the grid.
-template <int D>
-bool nearest_node(const Grid<D>& grid, const Vec<D>& at, typename Grid<D>::Index& node) {
-  for (int i = 0; i < D; ++i) {
-    const double xi = (at[i] - grid.anchor[i]) / grid.cell[i] + 0.5;
-    if (!(xi >= grid.low[i] && xi < grid.low[i] + grid.count[i])) return false;
-  }
-  node = rounded(grid, at);
-  return true;
-}
-
 /// The faces of a body that a point of the soil touches, and the node nearest to the contact; no bits: none. A point
 /// touches where its domain, of its first form and the size that its volume tells, ends at the surface.
 template <int D, class Outline>
@@ -115,19 +94,21 @@ void Bodies<D>::add_node(const Grid<D>& grid, const Planes<D>& planes, const typ
 
 /// Adds a point of the surface to those that are held. A node of little mass, which the soil only just reaches, would
 /// take the impulse and leave the soil where it is (a plate on an elastic block: 16 % of the stress lost): it is left
-/// out, and moves with the body if it lies in it.
+/// out, and moves with a prescribed body if it lies in it.
 template <int D>
 void Bodies<D>::hold(SurfacePoint& point, const Grid<D>& grid, double time) {
   if (point.count == 0) return;
   constexpr double little = 0.1;  // of the mass per weight at the node of most weight
   const int most = int(std::max_element(point.weight, point.weight + point.count) - point.weight);
   const double usual = grid.nodes[point.node[most]].mass / point.weight[most];
-  const Vec<D> centre = all[point.body].centre_at(time);
+  const bool of_rock = point.body >= int(all.size());
+  const Vec<D> centre = of_rock ? Vec<D>(Vec<D>::Zero()) : all[point.body].centre_at(time);
   double sum = 0;
   int kept = 0;
   for (int j = 0; j < point.count; ++j) {
     const long node = point.node[j];
     if (grid.nodes[node].mass < little * usual * point.weight[j]) {
+      if (of_rock) continue;
       Vec<D> outward;
       const bool inside = all[point.body].distance(grid.position(grid.index(node)) - centre, outward) <= 0;
       if (inside) contacts_.push_back({node, point.body, point.normal, Vec<D>::Zero()});
@@ -157,10 +138,18 @@ int Bodies<D>::surface_weights(double xi, double* weight) const {
 template <int D>
 void Bodies<D>::hold_point(const Grid<D>& grid, const Planes<D>& planes, SurfacePoint& point, double time,
                            const Vec<D>& at, unsigned char face) {
-  typename Grid<D>::Index base, nearest;
+  typename Grid<D>::Index nearest;
   if (!nearest_node(grid, at, nearest) || planes.is_mirror(grid.flat(nearest)) || !has_soil_near(grid, nearest, face)) {
     return;
   }
+  hold_at(grid, planes, point, time, at);
+}
+
+/// By the nodes that reach a place, which is in the box of the grid.
+template <int D>
+void Bodies<D>::hold_at(const Grid<D>& grid, const Planes<D>& planes, SurfacePoint& point, double time,
+                        const Vec<D>& at) {
+  typename Grid<D>::Index base;
   double weight[D][3];
   for (int i = 0; i < D; ++i) base[i] = surface_weights((at[i] - grid.anchor[i]) / grid.cell[i], weight[i]);
   for (int n = 0; n < reach; ++n) {
@@ -199,7 +188,12 @@ void Bodies<D>::hold_surface(Grid<D>& grid, double time, bool end) {
   for (auto& point : surface_) point.now.setZero();
   for (int sweep = 0; sweep < sweeps_; ++sweep) {
     for (std::size_t k = 0; k < surface_.size(); ++k) {
-      auto& point = surface_[sweep % 2 == 0 ? k : surface_.size() - 1 - k];  // to and fro: sides alike
+      const std::size_t at = sweep % 2 == 0 ? k : surface_.size() - 1 - k;  // to and fro: sides alike
+      auto& point = surface_[at];
+      if (point.body >= int(all.size())) {
+        hold_rock(at, grid, end);
+        continue;
+      }
       const auto& body = all[point.body];
       Vec<D> relative = -body.velocity.at(time);
       for (int j = 0; j < point.count; ++j) {
@@ -232,5 +226,7 @@ template void Bodies<2>::hold_surface(Grid<2>&, double, bool);
 template void Bodies<3>::detect_surface(const Grid<3>&, const Planes<3>&, const std::vector<Point<3>>&, int, double,
                                         Workers&);
 template void Bodies<3>::hold_surface(Grid<3>&, double, bool);
+template void Bodies<2>::hold_at(const Grid<2>&, const Planes<2>&, SurfacePoint&, double, const Vec<2>&);
+template void Bodies<3>::hold_at(const Grid<3>&, const Planes<3>&, SurfacePoint&, double, const Vec<3>&);
 
 }  // namespace mpm

@@ -1,6 +1,7 @@
 // What points give to nodes and take from them: where the time of the continuum goes.
 #include "tools/mpm/transfer.hpp"
 
+#include "tools/mpm/rocks.hpp"
 #include "tools/mpm/solver.hpp"
 
 namespace mpm {
@@ -33,6 +34,7 @@ void Solver<D>::map_force() {
     if (loaded) stress[D - 1][D - 1] -= point.volume * loads.strip_pressure(point.position[0], time);
     give_force<D>(grid, supports_[k], stress, force);
   });
+  if (rocks && rocks->soil.ghosts) give_ghost_forces();
 }
 
 template <int D>

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "tools/mpm/keys.hpp"
+#include "tools/mpm/rocks.hpp"
 
 namespace mpm {
 namespace {
@@ -97,6 +98,15 @@ void watch_energy(const Solver<D>& solver, const EnergyStart& start, Watched& se
   for (const double energy : {b.kinetic, start.kinetic, b.potential, b.stress_work, b.pressure_work, b.boundary_work,
                               b.load_work, b.drag_loss, b.water_work, b.water_gravity, stored_energy<D>(solver)}) {
     seen.energy = std::max(seen.energy, std::abs(energy));
+  }
+  if (solver.rocks) {
+    // What rocks bring, and their weight over a twentieth of a cell: contact is found that early.
+    const auto rocks = solver.rocks->energy(solver.options.gravity);
+    double weight = 0;
+    for (const auto& rock : solver.rocks->all) weight += rock.body.mass * solver.options.gravity.norm();
+    for (const double energy : {rocks.kinetic, rocks.soil_work, 0.05 * weight * solver.grid.cell.minCoeff()}) {
+      seen.energy = std::max(seen.energy, std::abs(energy));
+    }
   }
   // Mapping may lose energy; what it gains comes from nothing too.
   const double nothing = std::abs(b.residual) + std::max(0.0, -b.mapping_loss);

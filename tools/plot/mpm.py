@@ -7,7 +7,8 @@
     mpm.py RUN --network 0 1 -o chains.png             # force chains of watched points (output.networks = true)
 
 RUN is the folder that rvelab-mpm wrote. Points are drawn at their deformed places, in their deformed shapes. Of saturated
-soil also --field pore_pressure_Pa, excess_pore_pressure_Pa, pore_pressure_ratio, seepage."""
+soil also --field pore_pressure_Pa, excess_pore_pressure_Pa, pore_pressure_ratio, seepage. Rocks are drawn in grey, as the
+ellipsoids that their axes span."""
 
 import argparse
 import pathlib
@@ -108,6 +109,23 @@ def limits_of(frame, field, values):
     return (low, high) if low < high else (low - 1, high + 1)
 
 
+def outlines_of_rocks(frame):
+    """Closed curves (n, 49, 2) of the rocks of a frame, seen as the points are; none without rocks."""
+    path = frame.with_name(frame.name.replace("points_", "rocks_"))
+    if not path.exists():
+        return np.zeros((0, 49, 2))
+    with h5py.File(path, "r") as file:
+        centre, axes = file["position_m"][()], file["turned_half_axes_m"][()].reshape(-1, 3, 3)
+    with h5py.File(frame, "r") as file:
+        plane = [0, 1] if np.all(file["position_m"][()][:, 2] == 0) and np.all(centre[:, 2] == 0) else [0, 2]
+    # The outline of an ellipsoid A u, |u| = 1, seen along an axis, is that of the ellipse with the root of (A A^T) there.
+    around = np.linspace(0, 2 * np.pi, 49)
+    circle = np.stack([np.cos(around), np.sin(around)])
+    seen = axes[:, plane] if plane == [0, 2] else axes[:, :2, :2]
+    square = np.einsum("nik,njk->nij", seen, seen)
+    return centre[:, None, plane] + np.einsum("nij,jk->nki", np.linalg.cholesky(square), circle)
+
+
 def draw(figure, frame, field, limits, box):
     time, corners, values = read(frame, field)
     label, colours, centred = FIELDS[field]
@@ -118,6 +136,8 @@ def draw(figure, frame, field, limits, box):
     patches = PolyCollection(corners, array=values, cmap=colours, edgecolors="none")
     patches.set_clim(*limits)
     axes.add_collection(patches)
+    axes.add_collection(PolyCollection(outlines_of_rocks(pathlib.Path(frame)), facecolors="0.75", edgecolors="0.2",
+                                       linewidths=0.7))
     axes.set_xlim(box[0])
     axes.set_ylim(box[1])
     axes.set_aspect("equal")
@@ -131,7 +151,8 @@ def box_of(frames, field):
     """What all the frames need."""
     low, high = [], []
     for frame in frames:
-        corners = read(frame, field)[1].reshape(-1, 2)
+        corners = np.concatenate([read(frame, field)[1].reshape(-1, 2),
+                                  outlines_of_rocks(pathlib.Path(frame)).reshape(-1, 2)])
         low.append(corners.min(axis=0))
         high.append(corners.max(axis=0))
     low, high = np.min(low, axis=0), np.max(high, axis=0)

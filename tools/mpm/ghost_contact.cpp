@@ -1,0 +1,111 @@
+// Points of soil against rocks as balls (Li et al. 2023, eq. 22 to 29): a ball of the solids of the point,
+//
+//   r_g = cbrt(3/(4 pi) V (1 - porosity)),  in the plane sqrt(V (1 - porosity)/(pi l)),  half of its side at most,
+//
+// of the volume V at the start (a radius that changes would do work that nobody pays; one that would overlap a rock
+// there is made to touch it), touches a rock by rock_contact.hpp. The force f on it acts at the contact, r from the
+// point: the nodes get N f + (f (x) r) grad N, the first terms of N(x + r) f on nodes of the point itself. Momentum and
+// angular momentum are kept; the printed eq. 29, without the second term, loses r x f (`moment = false`). The velocity
+// of the soil at the contact is v + A r, A its gradient: what f does work on by that mapping.
+#include <algorithm>
+#include <cmath>
+
+#include "tools/mpm/clock.hpp"
+#include "tools/mpm/rocks.hpp"
+#include "tools/mpm/solver.hpp"
+#include "tools/mpm/touching.hpp"
+#include "tools/mpm/transfer.hpp"
+
+namespace mpm {
+template <int D>
+void Solver<D>::touch_ghosts(double dt) {
+  const double begin = wall_seconds();
+  const PointsByCell<D> cells(grid, points);
+  std::vector<typename Rocks<D>::Ghost> touching;
+  double widest = 0, stiffest = 0;
+  for (const auto& point : points) widest = std::max(widest, point.half.maxCoeff());
+  for (std::size_t k = 0; k < rocks->all.size(); ++k) {
+    const auto& rock = rocks->all[k];
+    const auto& shape = rocks->shapes[std::size_t(rock.shape)];
+    cells.each_near(rock.body.centre, shape.bounding_radius() + 2.5 * widest, [&](long p) {
+      const auto& point = points[std::size_t(p)];
+      const double radius = rocks->balls[std::size_t(p)];
+      const Vec<D> r = point.position - rock.body.centre;
+      if (r.squaredNorm() > std::pow(shape.bounding_radius() + radius + widest, 2)) return;
+      Vec<D> outward;
+      const double gap = shape.distance(to_body<D>(rock.body.orientation, r), outward) - radius;
+      if (!(gap < widest)) return;
+      const auto pair = rocks->ghost_constants(int(k), radius);
+      const double speed = (point.velocity - rock.body.velocity_at(r)).norm();
+      const double overlap = std::max(-gap, pair.reach(point.mass, speed));
+      stiffest = std::max(stiffest, pair.normal_stiffness(overlap) / point.mass);
+      if (!(gap < 0)) return;
+      typename Rocks<D>::Ghost ghost;
+      ghost.point = p;
+      ghost.rock = int(k);
+      ghost.normal = to_world<D>(rock.body.orientation, outward);
+      ghost.overlap = -gap;
+      ghost.arm = -(radius - 0.5 * ghost.overlap) * ghost.normal;
+      touching.push_back(ghost);
+    });
+  }
+  std::sort(touching.begin(), touching.end(),
+            [](const auto& a, const auto& b) { return a.point != b.point ? a.point < b.point : a.rock < b.rock; });
+  rocks->keep_ghosts(touching);
+  for (auto& ghost : touching) {
+    const auto& point = points[std::size_t(ghost.point)];
+    auto& rock = rocks->all[std::size_t(ghost.rock)];
+    const Vec<D> r = point.position + ghost.arm - rock.body.centre;
+    const Vec<D> speed = point.velocity + point.affine * ghost.arm;
+    const auto pair = rocks->ghost_constants(ghost.rock, rocks->balls[std::size_t(ghost.point)]);
+    ghost.force = ghost.contact.advance(pair, ghost.overlap, ghost.normal, speed - rock.body.velocity_at(r), dt,
+                                        rocks->ghost_loss);
+    rock.impulse -= dt * ghost.force;
+    rock.angular_impulse -= dt * moment<D>(r, ghost.force);
+  }
+  rocks->ghosts = std::move(touching);
+  rocks->ghost_frequency = std::sqrt(stiffest);
+  rocks->soil_contacts = long(rocks->ghosts.size());
+  rocks->soil_seconds += wall_seconds() - begin;
+}
+
+template <int D>
+void Solver<D>::give_ghost_forces() {
+  for (const auto& ghost : rocks->ghosts) {
+    Lanes<D> stress[D] = {}, force = {};
+    for (int i = 0; i < D; ++i) {
+      force[i] = ghost.force[i];
+      for (int j = 0; rocks->soil.moment && j < D; ++j) stress[j][i] = ghost.force[i] * ghost.arm[j];
+    }
+    give_force<D>(grid, supports_[std::size_t(ghost.point)], stress, force);
+  }
+}
+
+/// J, on the soil over a step: of the forces at the nodes over their mean velocities.
+template <int D>
+double Solver<D>::ghost_work(double dt) const {
+  double work = 0;
+  for (const auto& ghost : rocks->ghosts) {
+    const auto& support = supports_[std::size_t(ghost.point)];
+    const Vec<D> arm = rocks->soil.moment ? ghost.arm : Vec<D>(Vec<D>::Zero());
+    each_row<D>(grid.nodes.data(), grid, support,
+                [&](const Node<D>* row, double across, const double* slope, const double*) {
+                  double along = across;  // N and its slopes times the arm, but for the factor along x
+                  for (int j = 1; j < D; ++j) along += slope[j - 1] * arm[j];
+                  for (int r = 0; r < 3; ++r) {
+                    const double weight = support.weight[0][r] * along + support.slope[0][r] * across * arm[0];
+                    for (int i = 0; i < D; ++i) work += weight * ghost.force[i] * (row[r].w[i] - 0.5 * row[r].a[i]);
+                  }
+                });
+  }
+  return dt * work;
+}
+
+template void Solver<2>::touch_ghosts(double);
+template void Solver<2>::give_ghost_forces();
+template double Solver<2>::ghost_work(double) const;
+template void Solver<3>::touch_ghosts(double);
+template void Solver<3>::give_ghost_forces();
+template double Solver<3>::ghost_work(double) const;
+
+}  // namespace mpm

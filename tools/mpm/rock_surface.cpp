@@ -1,0 +1,199 @@
+// Soil met at the surface of rocks: as with bodies (surface_contact.cpp), and the impulses move the rock too. Declared
+// in bodies.hpp.
+//
+//   K J = -u,   K = (sum N_I^2/m_I) 1 + 1/M + (r x) I^-1 (r x)^T
+//
+// u: velocity of the soil at a point of the surface less that of the rock there, r from the centre of the rock. J n >=
+// 0 and |J_t| <= mu J_n; where it slides, J_n is that with which the soil does not enter: no stiffness, no time step.
+#include <algorithm>
+#include <cmath>
+
+#include "tools/mpm/clock.hpp"
+#include "tools/mpm/rocks.hpp"
+#include "tools/mpm/touching.hpp"
+
+namespace mpm {
+namespace {
+
+constexpr int rock_sweeps = 20;
+
+/// The outline of a rock where it stands.
+template <int D>
+struct RockOutline {
+  const RockShape<D>& shape;
+  Mat<D> axes;
+  Vec<D> half;  ///< m, of the box that holds it
+
+  explicit RockOutline(const RockShape<D>& of, const Rot<D>& orientation) : shape(of), axes(matrix_of(orientation)) {
+    for (int i = 0; i < D; ++i) half[i] = shape.height(Vec<D>::Unit(i));
+  }
+  /// m, from the surface to r from the centre; beyond `reach` a part of it, and no normal.
+  double distance(const Vec<D>& r, double reach, Vec<D>& outward) const {
+    const double length = r.norm(), beyond = length - shape.bounding_radius();
+    if (beyond > reach) return beyond;
+    if (shape.is_sphere()) {
+      outward = length > 0 ? Vec<D>(r / length) : Vec<D>(Vec<D>::Unit(D - 1));
+      return beyond;
+    }
+    // The box that holds the rock, and its tangent plane across r, are no farther than the rock itself.
+    const Vec<D> own = axes.transpose() * r;
+    double beside = (own.cwiseAbs() - half).maxCoeff();
+    if (beside > reach) return beside;
+    beside = length > 0 ? length - shape.height(own / length) : 0;
+    if (beside > reach) return beside;
+    const double distance = shape.distance(own, outward);
+    outward = (axes * outward).eval();
+    return distance;
+  }
+};
+
+}  // namespace
+
+template <int D>
+void Bodies<D>::detect_rocks(const Grid<D>& grid, const Planes<D>& planes, const std::vector<Point<D>>& soil) {
+  rocks->surface.clear();
+  if (rocks->soil.ghosts) return;
+  const double begin = wall_seconds();
+  const PointsByCell<D> points(grid, soil);
+  struct Foot {
+    Vec<D> place, normal;
+    double gap;
+  };
+  std::vector<Foot> feet;
+  // Half of the distance between surface points and half of that between points of soil.
+  const double cell = grid.cell.minCoeff(), near = 0.75 * cell, slack = early * cell;
+  double widest = 0;
+  for (const auto& point : soil) widest = std::max(widest, point.half.norm());
+  const double reach = slack + 2 * widest;
+  for (std::size_t k = 0; k < rocks->all.size(); ++k) {
+    const auto& rock = rocks->all[k];
+    const auto& shape = rocks->shapes[std::size_t(rock.shape)];
+    const RockOutline<D> outline(shape, rock.body.orientation);
+    feet.clear();
+    points.each_near(rock.body.centre, shape.bounding_radius() + reach, [&](long p) {
+      const auto& point = soil[std::size_t(p)];
+      Vec<D> outward;
+      const Vec<D> r = point.position - rock.body.centre;
+      // No domain reaches farther than its corners, swollen by half.
+      const double near_enough = slack + 1.5 * point.half.norm();
+      const double distance = outline.distance(r, near_enough, outward);
+      if (distance > near_enough) return;
+      const double gap = distance - half_width<D>(point, outward);
+      if (gap < slack) feet.push_back({r - distance * outward, outward, std::max(0.0, gap)});
+    });
+    if (feet.empty()) continue;
+    sweeps_ = std::max(sweeps_, rock_sweeps);
+    for (const auto& place : rocks->outline(rock.shape, cell)) {
+      const Vec<D> r = to_world<D>(rock.body.orientation, place.at);
+      const Vec<D> normal = to_world<D>(rock.body.orientation, place.normal);
+      // Soil under a block does not touch its front: their normals differ.
+      double gap = 1e300;
+      for (const auto& foot : feet) {
+        const bool here = (foot.place - r).squaredNorm() < near * near && foot.normal.dot(normal) > 0.5;
+        if (here) gap = std::min(gap, foot.gap);
+      }
+      typename Grid<D>::Index nearest;
+      const Vec<D> at = rock.body.centre + r;
+      if (gap > slack || !nearest_node(grid, at, nearest) || planes.is_mirror(grid.flat(nearest))) continue;
+      const std::size_t before = surface_.size();
+      SurfacePoint point;
+      point.body = int(all.size() + k);
+      point.normal = normal;
+      hold_at(grid, planes, point, 0, at);
+      if (surface_.size() == before) continue;
+      const Mat<D> soil_part = surface_.back().mobility * Mat<D>::Identity();
+      rocks->surface.push_back({r, soil_part + rock.body.mobility(r, r), gap});
+    }
+  }
+  rocks->soil_contacts = long(rocks->surface.size());
+  rocks->soil_seconds += wall_seconds() - begin;
+}
+
+template <int D>
+void Bodies<D>::predict_rocks(const Vec<D>& gravity, double dt) {
+  for (std::size_t k = 0; k < rocks->motion.size(); ++k) {
+    const auto& rock = rocks->all[k];
+    rocks->motion[k].velocity += dt * (gravity + rock.mean_force / rock.body.mass).cwiseProduct(rock.body.free);
+    rocks->motion[k].spin += rock.body.spin_of(dt * rock.mean_torque);
+  }
+}
+
+template <int D>
+void Bodies<D>::hold_rock(std::size_t k, Grid<D>& grid, bool end) {
+  auto& point = surface_[k];
+  const auto& here = rocks->surface[k + rocks->surface.size() - surface_.size()];
+  const std::size_t number = std::size_t(point.body) - all.size();
+  const auto& rock = rocks->all[number].body;
+  auto& motion = rocks->motion[number];
+  Vec<D> relative = -motion.velocity - spun<D>(motion.spin, here.r);
+  for (int j = 0; j < point.count; ++j) {
+    const auto& node = grid.nodes[point.node[j]];
+    for (int i = 0; i < D; ++i) relative[i] += point.weight[j] * (end ? node.w : node.v)[i];
+  }
+  relative -= here.mobility * point.now;  // without this point's impulse
+  relative += here.gap / rocks->step * point.normal;
+  Vec<D> impulse = Vec<D>::Zero();
+  const double across = relative.dot(point.normal);
+  const Vec<D> stuck = -here.mobility.inverse() * relative;
+  const double pressed = stuck.dot(point.normal);
+  if (pressed > 0 || across < 0) {
+    impulse = stuck;
+    Vec<D> along = stuck - pressed * point.normal;
+    const double size = along.norm(), friction = rocks->soil.friction;
+    if (!rocks->soil.rough && (size > friction * pressed || pressed <= 0)) {
+      if (size > 0) along /= size;
+      const Vec<D> direction = point.normal + friction * along;
+      const double gives = point.normal.dot(here.mobility * direction);
+      impulse = across < 0 && gives > 0 ? Vec<D>(-across / gives * direction) : Vec<D>(Vec<D>::Zero());
+    } else if (pressed <= 0) {
+      impulse.setZero();
+    }
+  }
+  const Vec<D> more = impulse - point.now;
+  if (more.isZero(0)) return;
+  point.now = impulse;
+  for (int j = 0; j < point.count; ++j) {
+    auto& node = grid.nodes[point.node[j]];
+    for (int i = 0; i < D; ++i) (end ? node.w : node.v)[i] += point.weight[j] / node.mass * more[i];
+  }
+  motion.velocity -= (more / rock.mass).cwiseProduct(rock.free);
+  motion.spin -= rock.spin_of(moment<D>(here.r, more));
+}
+
+/// Impulse and work on the soil, and what the rocks get of it.
+template <int D>
+void Bodies<D>::book_rocks(const Grid<D>& grid, const Planes<D>& planes) {
+  const std::size_t first = surface_.size() - rocks->surface.size();
+  for (std::size_t k = first; k < surface_.size(); ++k) {
+    const auto& point = surface_[k];
+    auto& rock = rocks->all[std::size_t(point.body) - all.size()];
+    rock.impulse -= point.impulse;
+    rock.angular_impulse -= moment<D>(rocks->surface[k - first].r, point.impulse);
+    for (int j = 0; j < point.count; ++j) {
+      const auto& node = grid.nodes[point.node[j]];
+      for (int i = 0; i < D; ++i) {
+        if (planes.holds(point.node[j], i)) continue;
+        rocks->work_on_soil += 0.5 * point.weight[j] * point.impulse[i] * (node.w[i] + node.a[i]);
+      }
+    }
+  }
+}
+
+template <int D>
+void Bodies<D>::start_rocks() {
+  if (rocks == nullptr) return;
+  rocks->motion.clear();
+  for (const auto& rock : rocks->all) rocks->motion.push_back({rock.body.velocity, rock.body.spin()});
+}
+
+#define MPM_INSTANTIATE(D)                                                                               \
+  template void Bodies<D>::detect_rocks(const Grid<D>&, const Planes<D>&, const std::vector<Point<D>>&); \
+  template void Bodies<D>::predict_rocks(const Vec<D>&, double);                                         \
+  template void Bodies<D>::hold_rock(std::size_t, Grid<D>&, bool);                                       \
+  template void Bodies<D>::book_rocks(const Grid<D>&, const Planes<D>&);                                 \
+  template void Bodies<D>::start_rocks();
+MPM_INSTANTIATE(2)
+MPM_INSTANTIATE(3)
+#undef MPM_INSTANTIATE
+
+}  // namespace mpm

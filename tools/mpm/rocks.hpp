@@ -1,0 +1,182 @@
+// Free rigid bodies in the soil and on it: discrete elements beside material points (Li et al. 2023). Rocks touch each
+// other, boundaries and prescribed bodies by rock_contact.hpp, in sub-steps of their own; forces of the soil are
+// constant over them, so that its impulse is exact. Points of soil touch a rock at its surface (rock_surface.cpp) or as
+// balls (ghost_contact.cpp).
+//
+// Everything is done in the order of the rocks' numbers and by one thread: rocks are few beside the points.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/mpm/bodies.hpp"
+#include "tools/mpm/rigid.hpp"
+#include "tools/mpm/rock_contact.hpp"
+
+namespace mpm {
+
+template <int D>
+struct Rock {
+  std::string name;             ///< its own, or that of its group
+  bool single = true;           ///< it has a name of its own
+  int material = 0, shape = 0;  ///< numbers in Rocks
+  Rigid<D> body;
+  /// N s and N m s, of the soil over the step that is made, and its mean force and torque, N and N m.
+  Vec<D> impulse = Vec<D>::Zero(), soil_force = Vec<D>::Zero();
+  Spin<D> angular_impulse = Spin<D>::Zero(), soil_torque = Spin<D>::Zero();
+  /// N and N m, of rocks and walls: at the end of the sub-step before, and their means over the step before.
+  Vec<D> force = Vec<D>::Zero(), mean_force = Vec<D>::Zero();
+  Spin<D> torque = Spin<D>::Zero(), mean_torque = Spin<D>::Zero();
+  Vec<D> soil_impulse = Vec<D>::Zero();  ///< N s, since the start
+
+  Placed<D> placed(const std::vector<RockShape<D>>& shapes) const {
+    return {&shapes[std::size_t(shape)], body.centre, body.orientation};
+  }
+};
+
+/// What rocks touch that is no rock: boundaries, then prescribed bodies.
+template <int D>
+struct Wall {
+  const Body<D>* body = nullptr;                           ///< none: a plane
+  Vec<D> point = Vec<D>::Zero(), normal = Vec<D>::Zero();  ///< of a plane, into the soil
+  Vec<D> velocity = Vec<D>::Zero();                        ///< m/s
+  bool follows_material = true;                            ///< its friction is the rock's; else:
+  double friction = 0;
+  bool there = true;
+  int number = 0;  ///< of the body
+};
+
+/// J, of all rocks.
+struct RockEnergy {
+  double kinetic = 0, potential = 0;
+  double springs = 0;                   ///< of contacts of rocks and walls, and of ghosts
+  double contact_loss = 0;              ///< to friction and dashpots among them
+  double soil_work = 0, wall_work = 0;  ///< on the rocks
+  double residual = 0;                  ///< error of the time integration
+};
+
+template <int D>
+class Rocks {
+ public:
+  std::vector<RockMaterial> materials;
+  std::vector<RockShape<D>> shapes;
+  struct SurfacePlace {
+    Vec<D> at, normal;  ///< m, from the centre, along the principal axes
+  };
+  /// Points of the surface of a shape, about this far apart (m); kept.
+  const std::vector<SurfacePlace>& outline(int shape, double spacing);
+  std::vector<Rock<D>> all;
+  RockSoil soil;
+  double thickness = 1;             ///< m, of the plane
+  double steps_per_collision = 50;  ///< sub-steps of the shortest collision
+  double first_energy = 0;          ///< J, of all rocks at the start
+  double contact_loss = 0, soil_work = 0, wall_work = 0;
+  double work_on_soil = 0;               ///< J, of rocks on the soil
+  double wall_power = 0;                 ///< W, of moving walls at the end of the sub-step before
+  std::vector<Vec<D>> wall_impulse;      ///< N s, of the rocks on each wall
+  double seconds = 0, soil_seconds = 0;  ///< wall time: of rocks among themselves, of soil against them
+  long sub_steps = 0, touching = 0;      ///< since the start; contacts of rocks and walls now
+  long soil_contacts = 0;                ///< with points or surface points of soil, at the last step
+
+  long left_out = 0;           ///< points that would have stood in rocks at the start
+  double left_out_volume = 0;  ///< m^3
+
+  /// Shapes of bodies as rocks need them; after any change of bodies.
+  void prepare_walls(const Bodies<D>& bodies);
+  /// m, of a place from the surface of a rock; where it is more than `reach`, some distance beyond that.
+  double distance(const Rock<D>& rock, const Vec<D>& place, double reach) const;
+  /// Pairs of rocks whose bounding spheres are this near (m) or nearer, in order.
+  std::vector<std::pair<int, int>> rocks_within(double margin) const;
+  /// Finds what may touch within a step of dt (s). `walls`: those at the time now.
+  void find_candidates(const std::vector<Wall<D>>& walls, const Vec<D>& gravity, double dt);
+  /// A step under gravity (m/s^2), the soil's forces and contacts; `walls(t)`: those at a time in s.
+  template <class Walls>
+  void advance(const Walls& walls, const Vec<D>& gravity, double time, double dt) {
+    find_candidates(walls(time), gravity, dt);
+    const long n = sub_steps_for(gravity, dt);
+    take_impulses(dt);
+    for (long k = 0; k < n; ++k) {
+      kick(gravity, 0.5 * dt / double(n));
+      for (auto& rock : all) rock.body.drift(dt / double(n));
+      book_soil_work(dt / double(n));
+      contact_forces(walls(time + dt * double(k + 1) / double(n)), dt / double(n), 1.0 / double(n));
+      kick(gravity, 0.5 * dt / double(n));
+    }
+    sub_steps += n;
+  }
+  RockEnergy energy(const Vec<D>& gravity) const;
+  /// m/s, of the fastest point of a rock, and of all.
+  double surface_speed(const Rock<D>& rock) const;
+  double fastest() const;
+
+  /// A point of a rock's surface that soil touches, or may within a step.
+  struct SurfacePoint {
+    Vec<D> r;         ///< m, from the centre of the rock
+    Mat<D> mobility;  ///< m/s of N s, of soil and rock together
+    double gap;       ///< m, to the soil
+  };
+  std::vector<SurfacePoint> surface;  ///< with the last surface points of Bodies
+  /// Velocities of a rock as impulses of the soil change them over the step.
+  struct Motion {
+    Vec<D> velocity;
+    Spin<D> spin;
+  };
+  std::vector<Motion> motion;
+  double step = 0;  ///< s, of the step that is made
+
+  struct Pair {
+    int first, second;  ///< second: a rock, or the number of rocks and that of the wall
+    RockPair<D> constants;
+    RockContact<D> contact;
+    double clearance = 0;  ///< m, that the two must move before they can touch
+  };
+  std::vector<Pair> pairs;  ///< in the order of (first, second)
+  /// A point of soil as a ball that touches a rock.
+  struct Ghost {
+    long point = 0;
+    int rock = 0;
+    Vec<D> normal, arm;  ///< from the rock to the point; m, from the point to the contact
+    double overlap = 0;  ///< m
+    Vec<D> force;        ///< N, on the soil
+    RockContact<D> contact;
+  };
+  std::vector<Ghost> ghosts;  ///< in the order of (point, rock)
+  std::vector<double> balls;  ///< m, radius of each point as a ball
+  /// Of the solids of points; of one that would overlap a rock, so small that it touches it.
+  void size_balls(const std::vector<Point<D>>& points);
+  double ghost_loss = 0;       ///< J, to friction with ghosts
+  double ghost_frequency = 0;  ///< 1/s, of the stiffest contact with a ghost that is or may come within a step
+  /// Contacts that go on take their memory along from `ghosts`.
+  void keep_ghosts(std::vector<Ghost>& now);
+  RockPair<D> ghost_constants(int rock, double radius) const;
+
+  /// Gap (m) of a rock and a wall, normal from the rock to the wall.
+  Gap<D> gap_to(const Rock<D>& rock, const Wall<D>& wall) const;
+  RockPair<D> constants_of(int first, int second, const Wall<D>* wall) const;
+
+ private:
+  long sub_steps_for(const Vec<D>& gravity, double dt) const;
+  void take_impulses(double dt);
+  void kick(const Vec<D>& gravity, double dt);
+  void book_soil_work(double dt);
+  void contact_forces(const std::vector<Wall<D>>& walls, double dt, double share);
+
+  std::vector<std::optional<RockShape<D>>> box_shapes_;  ///< of bodies that are boxes, in space
+  std::vector<std::vector<SurfacePlace>> outlines_;      ///< by shape
+};
+
+/// m, of a point as a ball: of its solids, and no larger than its domain. A ball of all of a domain's volume would
+/// stand out of a flat surface by an eighth of the distance between points.
+template <int D>
+double ghost_radius(const Point<D>& point, double porosity) {
+  const double solids = (1 - porosity) * point.half.prod() * (D == 2 ? 4 : 8);
+  const double radius = D == 2 ? std::sqrt(solids / std::numbers::pi) : std::cbrt(0.75 / std::numbers::pi * solids);
+  return std::min(radius, point.half.minCoeff());
+}
+
+/// Boundaries, then bodies, as rocks meet them at a time (s).
+template <int D>
+std::vector<Wall<D>> walls_at(const Grid<D>& grid, const Planes<D>& planes, const Bodies<D>& bodies, double time);
+
+}  // namespace mpm

@@ -1,0 +1,164 @@
+#include "tools/mpm/setup_rocks.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/mpm/rocks.hpp"
+#include "tools/mpm/scene_checks.hpp"
+
+namespace mpm {
+namespace {
+
+std::string name_of(const RockOfScene& rock, std::size_t number) {
+  return rock.single ? "rock." + rock.name : "rock " + std::to_string(number) + " of rocks." + rock.name;
+}
+
+template <int D>
+Rock<D> made(const RockOfScene& each, const RockMaterialOfScene& material, double thickness, Rocks<D>& rocks) {
+  Rock<D> rock;
+  rock.name = each.name;
+  rock.single = each.single;
+  rock.material = int(each.material);
+  rock.shape = int(rocks.shapes.size());
+  Vec<3> centre = Vec<3>::Zero();
+  Eigen::Quaterniond axes = Eigen::Quaterniond::Identity();
+  rocks.shapes.push_back(shape_of<D>(each, &centre, &axes));
+  const auto& shape = rocks.shapes.back();
+  auto& body = rock.body;
+  body.mass = material.density * shape.volume() * thickness;
+  body.inertia = material.density * thickness * shape.inertia();
+  body.centre = vector_of<D>(each.centre);
+  body.orientation = orientation_of<D>(each);
+  // A polyhedron is turned about the origin of its file, and that is put at centre_m.
+  if constexpr (D == 3) {
+    body.centre += body.orientation * centre;
+    body.orientation = body.orientation * axes;
+  }
+  body.velocity = vector_of<D>(each.velocity);
+  body.set_spin(Eigen::Map<const Spin<D>>(each.spin.data()));
+  for (const auto& held : each.held) {
+    if (held == "rotation") body.turns = false;
+    for (int i = 0; i < D; ++i) {
+      if (held == axis_names[i]) body.free[i] = 0;
+    }
+  }
+  return rock;
+}
+
+/// m, the largest side of a domain of soil.
+template <int D>
+double point_size(const Scene& scene) {
+  double size = 0;
+  for (const auto& region : scene.regions) {
+    const auto side = filling_of(scene, region).side;
+    size = std::max(size, *std::max_element(side.begin(), side.end()));
+  }
+  return size;
+}
+
+template <int D>
+void check_places(const Scene& scene, const Solver<D>& solver) {
+  auto& rocks = *solver.rocks;
+  const auto walls = walls_at<D>(solver.grid, solver.planes, solver.bodies, 0);
+  const auto& all = scene.rocks->all;
+  const double size = point_size<D>(scene);
+  rocks.find_candidates(walls, Vec<D>::Zero(), 0);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const double across = 2 * rocks.shapes[k].inner_radius();
+    if (across >= 2.5 * size) continue;
+    throw InputError(name_of(all[k], k) + ": is " + text_of(across) + " m across, and the soil's points " +
+                     text_of(size) +
+                     " m: soil cannot part before it; allowed: two and a half points or more; make it larger, or "
+                     "grid.cell_m smaller");
+  }
+  for (const auto& pair : rocks.pairs) {
+    const auto& a = rocks.all[std::size_t(pair.first)];
+    const bool wall = pair.second >= int(rocks.all.size());
+    const auto number = std::size_t(pair.second) - (wall ? rocks.all.size() : 0);
+    const double gap = wall ? rocks.gap_to(a, walls[number]).gap
+                            : gap_between<D>(a.placed(rocks.shapes), rocks.all[number].placed(rocks.shapes)).gap;
+    const double allowed = 0.05 * rocks.shapes[std::size_t(a.shape)].inner_radius();
+    if (gap >= -allowed) continue;
+    const std::string other = !wall ? name_of(all[number], number)
+                              : number < solver.planes.all.size()
+                                  ? "boundary." + solver.planes.all[number].name
+                                  : "body." + solver.bodies.all[number - solver.planes.all.size()].name;
+    throw InputError(name_of(all[std::size_t(pair.first)], std::size_t(pair.first)) + ": stands " + text_of(-gap) +
+                     " m in " + other + " at the start; move one of them");
+  }
+}
+
+}  // namespace
+
+template <int D>
+void place_rocks(const Scene& scene, Solver<D>& solver) {
+  if (!scene.rocks) return;
+  const auto& of = *scene.rocks;
+  auto rocks = std::make_unique<Rocks<D>>();
+  rocks->soil = of.soil;
+  rocks->thickness = scene.thickness;
+  rocks->steps_per_collision = of.steps_per_collision;
+  for (const auto& material : of.materials) rocks->materials.push_back(material.constants);
+  for (const auto& each : of.all) {
+    rocks->all.push_back(made<D>(each, of.materials[each.material], D == 2 ? scene.thickness : 1, *rocks));
+  }
+  rocks->prepare_walls(solver.bodies);
+  solver.rocks = std::move(rocks);
+  if (!scene.regions.empty()) solver.bodies.rocks = solver.rocks.get();
+  check_places<D>(scene, solver);
+  solver.rocks->first_energy = solver.rocks->energy(vector_of<D>(scene.gravity)).residual;
+}
+
+template <int D>
+bool left_out(Solver<D>& solver, const Point<D>& point) {
+  if (!solver.rocks) return false;
+  auto& rocks = *solver.rocks;
+  const double ball = rocks.soil.ghosts ? 0.5 * ghost_radius<D>(point, rocks.soil.porosity) : 0;
+  const bool inside = std::any_of(rocks.all.begin(), rocks.all.end(),
+                                  [&](const auto& rock) { return rocks.distance(rock, point.position, ball) < ball; });
+  rocks.left_out += inside;
+  rocks.left_out_volume += inside ? point.volume : 0;
+  return inside;
+}
+
+template <int D>
+void finish_rocks(const Scene& scene, Solver<D>& solver, std::vector<std::string>& told) {
+  if (!solver.rocks) return;
+  auto& rocks = *solver.rocks;
+  double volume = 0;
+  for (const auto& rock : rocks.all) volume += rocks.shapes[std::size_t(rock.shape)].volume() * rocks.thickness;
+  told.push_back(std::to_string(rocks.all.size()) + " rocks of " + text_of(volume) + " m3; " +
+                 std::to_string(rocks.left_out) + " points of " + text_of(rocks.left_out_volume) +
+                 " m3 left out where they stand");
+  const double size = point_size<D>(scene), cell = solver.grid.cell.minCoeff();
+  const auto small = std::count_if(rocks.all.begin(), rocks.all.end(), [&](const auto& rock) {
+    return 2 * rocks.shapes[std::size_t(rock.shape)].inner_radius() < 5 * size;
+  });
+  if (small > 0) {
+    told.push_back(std::to_string(small) +
+                   " rocks are less than five points of soil across: what soil does between them "
+                   "is coarse");
+  }
+  long narrow = 0;
+  for (const auto& [first, second] : rocks.rocks_within(cell)) {
+    const auto& a = rocks.all[std::size_t(first)];
+    const auto& b = rocks.all[std::size_t(second)];
+    narrow += size > 0 && gap_between<D>(a.placed(rocks.shapes), b.placed(rocks.shapes)).gap < cell;
+  }
+  if (narrow > 0) {
+    told.push_back(std::to_string(narrow) +
+                   " gaps between rocks are narrower than a cell: soil in them has no stress of "
+                   "its own");
+  }
+  if (rocks.soil.ghosts) rocks.size_balls(solver.points);
+}
+
+#define MPM_INSTANTIATE(D)                                \
+  template void place_rocks<D>(const Scene&, Solver<D>&); \
+  template bool left_out<D>(Solver<D>&, const Point<D>&); \
+  template void finish_rocks<D>(const Scene&, Solver<D>&, std::vector<std::string>&);
+MPM_INSTANTIATE(2)
+MPM_INSTANTIATE(3)
+#undef MPM_INSTANTIATE
+
+}  // namespace mpm
