@@ -9,7 +9,7 @@
 
 namespace mpm::test {
 
-inline constexpr const char* of_any = R"(
+inline constexpr const char* of_any_rocks = R"(
 [time]
 duration_s = 1
 [[material]]
@@ -22,7 +22,7 @@ name = "basalt"
 density_kg_m3 = 2700
 young_modulus_Pa = 1e8
 )";
-inline const std::string plane = std::string(of_any) + R"(
+inline const std::string rocks_in_plane = std::string(of_any_rocks) + R"(
 [scene]
 name = "plane"
 [grid]
@@ -63,7 +63,7 @@ diameters_m = [[0.8, 1]]
 [rock_soil]
 friction = 0.5
 )";
-inline const std::string space = std::string(of_any) + R"(
+inline const std::string rocks_in_space = std::string(of_any_rocks) + R"(
 [scene]
 name = "space"
 dimension = 3
@@ -87,7 +87,7 @@ struct Told {
   std::vector<std::pair<std::string, std::string>> files;
 };
 
-inline std::string told(std::string text, const Told& what) {
+inline std::string told_of(std::string text, const Told& what) {
   const rvelab::test::Folder folder;
   if (!what.from.empty()) {
     REQUIRE(text.find(what.from) != std::string::npos);
@@ -107,18 +107,24 @@ inline std::string told(std::string text, const Told& what) {
   }
   return "accepted";
 }
-inline std::string with(const std::vector<std::string>& assignments) { return told(plane, {assignments, "", "", {}}); }
-inline std::string edited(const std::string& from, const std::string& to) { return told(plane, {{}, from, to, {}}); }
-inline std::string in_space(const std::string& from, const std::string& to) { return told(space, {{}, from, to, {}}); }
+inline std::string rocks_with(const std::vector<std::string>& assignments) {
+  return told_of(rocks_in_plane, {assignments, "", "", {}});
+}
+inline std::string rocks_edited(const std::string& from, const std::string& to) {
+  return told_of(rocks_in_plane, {{}, from, to, {}});
+}
+inline std::string in_space(const std::string& from, const std::string& to) {
+  return told_of(rocks_in_space, {{}, from, to, {}});
+}
 inline std::string with_table(const std::string& base, const std::string& rows) {
-  return told(base + "\n[[rocks]]\nname = \"table\"\nmaterial = \"basalt\"\ntable = \"rocks.csv\"\n",
-              {{}, "", "", {{"rocks.csv", rows}}});
+  return told_of(base + "\n[[rocks]]\nname = \"table\"\nmaterial = \"basalt\"\ntable = \"rocks.csv\"\n",
+                 {{}, "", "", {{"rocks.csv", rows}}});
 }
 inline std::string with_stl(const std::string& facets, const std::string& key = "file_stl") {
-  return told(space, {{},
-                      "radius_m = 0.4",
-                      "shape = \"polyhedron\"\n" + key + " = \"rock.stl\"",
-                      {{"rock.stl", "solid rock\n" + facets + "endsolid rock\n"}}});
+  return told_of(rocks_in_space, {{},
+                                  "radius_m = 0.4",
+                                  "shape = \"polyhedron\"\n" + key + " = \"rock.stl\"",
+                                  {{"rock.stl", "solid rock\n" + facets + "endsolid rock\n"}}});
 }
 /// The first faces of a pyramid of 0.8 m: two of its base, four of its sides.
 inline std::string pyramid(std::size_t faces) {

@@ -9,7 +9,7 @@ using namespace mpm::test;
 
 namespace {
 
-const auto without_walls = [](double) { return std::vector<Wall<3>>{}; };
+const auto in_the_open = [](double) { return std::vector<Wall<3>>{}; };
 
 /// Of the grains of rvelab.
 struct Grain : rvelab::YoungModulus, rvelab::PoissonRatio {};
@@ -93,7 +93,7 @@ struct Compared {
   double largest_velocity = 0, largest_spin = 0;          // of the record
 };
 
-Compared compare(const std::string& name) {
+Compared compare_with_record(const std::string& name) {
   using rvelab::test::vector_from;
   const auto parameters = rvelab::test::recorded_json("lammps/micro/params.json").at(name);
   const rvelab::test::RecordedTable record("lammps/micro/" + name + ".csv");
@@ -118,7 +118,7 @@ Compared compare(const std::string& name) {
   long step = 0;
   for (std::size_t row = 0; row < record.rows(); ++row) {
     for (const double dt = parameters.at("dt"); step < long(record.at(row, "step")); ++step) {
-      rocks.advance(without_walls, Vec<3>::Zero(), 0, dt);
+      rocks.advance(in_the_open, Vec<3>::Zero(), 0, dt);
       formulas.step(dt);
       at_contact.step(dt);
     }
@@ -140,7 +140,7 @@ Compared compare(const std::string& name) {
 }
 
 /// A sphere and superquadrics that fly at each other, turned and spinning.
-Rocks<3> flying(int count, double friction, double restitution) {
+Rocks<3> flying_rocks(int count, double friction, double restitution) {
   Rocks<3> rocks;
   rocks.materials = {{5e7, 0.2, friction, restitution}};
   const Vec<3> centres[] = {Vec<3>(0, 0, 0), Vec<3>(0.25, 0.02, -0.03), Vec<3>(0.1, 0.26, 0.02)};
@@ -181,7 +181,7 @@ Books books_of(double friction, double restitution, double finer) {
   books.kinetic = rocks.all[0].body.kinetic();
   bool touched = false;
   for (long step = 0; step < long(2500 * finer); ++step) {
-    rocks.advance(without_walls, Vec<3>::Zero(), 0, 2e-5 / finer);
+    rocks.advance(in_the_open, Vec<3>::Zero(), 0, 2e-5 / finer);
     touched = touched || rocks.touching > 0;
     books.worst = std::max(books.worst, std::abs(rocks.energy(Vec<3>::Zero()).residual));
   }
@@ -207,7 +207,7 @@ TEST_CASE("two materials mix as grains of the Hertz-Mindlin law do") {
 }
 
 TEST_CASE("an oblique collision of spinning spheres is that of LAMMPS, but for where the slip is taken") {
-  const auto found = compare("obl_hm_stick_mindlin_rescale_force");
+  const auto found = compare_with_record("obl_hm_stick_mindlin_rescale_force");
   CHECK(found.velocity < 1e-9 * found.largest_velocity);
   CHECK(found.spin < 1e-9 * found.largest_spin);
   CHECK(found.rock_velocity < 1e-9 * found.largest_velocity);
@@ -235,13 +235,13 @@ TEST_CASE("two and three superquadrics that collide keep momentum, angular momen
   for (const int count : {2, 3}) {
     for (const double restitution : {1.0, 0.5}) {
       CAPTURE(count, restitution);
-      auto rocks = flying(count, 0.4, restitution);
+      auto rocks = flying_rocks(count, 0.4, restitution);
       const Vec<3> momentum = momentum_of<3>(rocks), angular = angular_momentum_of(rocks);
       const double scale = rocks.all[1].body.mass, energy = rocks.energy(Vec<3>::Zero()).kinetic;
       double worst = 0;
       long touched = 0, pairs = 0;
       for (int step = 0; step < 300; ++step) {
-        rocks.advance(without_walls, Vec<3>::Zero(), 0, 1e-3);
+        rocks.advance(in_the_open, Vec<3>::Zero(), 0, 1e-3);
         touched += rocks.touching;
         pairs = std::max(pairs, long(rocks.pairs.size()));
         worst = std::max(worst, std::abs(rocks.energy(Vec<3>::Zero()).residual));

@@ -7,7 +7,7 @@ using namespace mpm::test;
 
 namespace {
 
-const Vec<3> down(0, 0, -9.81);
+const Vec<3> gravity_down(0, 0, -9.81);
 
 Wall<3> wall_at(const Vec<3>& point, const Vec<3>& normal, double friction) {
   Wall<3> wall;
@@ -19,10 +19,10 @@ Wall<3> wall_at(const Vec<3>& point, const Vec<3>& normal, double friction) {
 }
 
 /// Two balls or two round superquadrics that fall on soil, the second onto the first.
-std::unique_ptr<Solver<3>> falling(bool superquadric, bool ghosts) {
+std::unique_ptr<Solver<3>> falling_rocks(bool superquadric, bool ghosts) {
   auto solver = block<3>({4, 4, 3}, 0.1, ElasticModuli{1e6, 0.3}, 2000);
   enclose<3>(*solver, {4, 4, 12});
-  solver->options.gravity = down;
+  solver->options.gravity = gravity_down;
   auto rocks = std::make_unique<Rocks<3>>();
   rocks->materials = {{1e7, 0.2, 0.3, 0.5}};
   rocks->soil.ghosts = ghosts;
@@ -38,7 +38,7 @@ std::unique_ptr<Solver<3>> falling(bool superquadric, bool ghosts) {
 }  // namespace
 
 TEST_CASE("a superquadric of exponent 2 and equal half axes falls on soil and on another as a sphere does") {
-  auto spheres = falling(false, true), others = falling(true, true);
+  auto spheres = falling_rocks(false, true), others = falling_rocks(true, true);
   long touched = 0;
   double apart = 0, turned = 0;
   for (int step = 0; step < 200; ++step) {
@@ -70,7 +70,7 @@ TEST_CASE("a block on a floor stays where it is, also when it is set down askew"
     block.centre[2] = shape.height(to_body<3>(block.orientation, Vec<3>(0, 0, -1)));
     const std::vector<Wall<3>> floor{wall_at(Vec<3>::Zero(), Vec<3>::UnitZ(), 0.6)};
     const auto walls = [&](double) { return floor; };
-    for (int step = 0; step < 2000; ++step) rocks.advance(walls, down, 0, 1e-3);
+    for (int step = 0; step < 2000; ++step) rocks.advance(walls, gravity_down, 0, 1e-3);
     const auto& body = rocks.all[0].body;
     // It turns about its lowest corner.
     CHECK(std::hypot(body.centre[0], body.centre[1]) < 1.1 * askew * 0.075 + 1e-12);
@@ -79,7 +79,7 @@ TEST_CASE("a block on a floor stays where it is, also when it is set down askew"
     CHECK((body.orientation * Vec<3>::UnitZ())[2] > std::cos(askew) - 1e-12);
     CHECK(body.velocity.norm() < 1e-3);
     const Vec<3> before = rocks.wall_impulse[0];
-    for (int step = 0; step < 500; ++step) rocks.advance(walls, down, 0, 1e-3);
+    for (int step = 0; step < 500; ++step) rocks.advance(walls, gravity_down, 0, 1e-3);
     CHECK((rocks.wall_impulse[0] - before)[2] / 0.5 == Approx(-9.81 * body.mass).epsilon(2e-3));
   }
 }
@@ -97,11 +97,11 @@ TEST_CASE("three spheres in a tube of smooth walls come to rest, and the floor c
       tube.push_back(wall_at(side * 0.11 * Vec<3>::Unit(axis), -side * Vec<3>::Unit(axis), 0));
   }
   const auto walls = [&](double) { return tube; };
-  rocks.first_energy = rocks.energy(down).residual;
-  const double fallen = rocks.energy(down).potential;
-  for (int step = 0; step < 4000; ++step) rocks.advance(walls, down, 0, 1e-3);
+  rocks.first_energy = rocks.energy(gravity_down).residual;
+  const double fallen = rocks.energy(gravity_down).potential;
+  for (int step = 0; step < 4000; ++step) rocks.advance(walls, gravity_down, 0, 1e-3);
   const auto before = rocks.wall_impulse;
-  for (int step = 0; step < 500; ++step) rocks.advance(walls, down, 0, 1e-3);
+  for (int step = 0; step < 500; ++step) rocks.advance(walls, gravity_down, 0, 1e-3);
   const double weight = 3 * 9.81 * rocks.all[0].body.mass;
   Vec<3> sides = Vec<3>::Zero(), floor = (rocks.wall_impulse[0] - before[0]) / 0.5;
   for (std::size_t k = 1; k < 5; ++k) sides += (rocks.wall_impulse[k] - before[k]) / 0.5;
@@ -111,8 +111,8 @@ TEST_CASE("three spheres in a tube of smooth walls come to rest, and the floor c
   // Turning about their lines of contact nothing holds them.
   for (const auto& rock : rocks.all) CHECK(rock.body.velocity.norm() < 1e-5);
   for (const auto& rock : rocks.all) CHECK(rock.body.spin().norm() < 1);
-  CHECK(rocks.energy(down).springs > 0);
-  CHECK(std::abs(rocks.energy(down).residual) < 1e-2 * fallen);
+  CHECK(rocks.energy(gravity_down).springs > 0);
+  CHECK(std::abs(rocks.energy(gravity_down).residual) < 1e-2 * fallen);
 }
 
 TEST_CASE("held axes and a held rotation stay as they are while rocks and soil push, and their books balance") {
@@ -128,11 +128,11 @@ TEST_CASE("held axes and a held rotation stay as they are while rocks and soil p
     const Vec<3> spin = spins ? Vec<3>(0.5, -1, 2) : Vec<3>(Vec<3>::Zero());
     anvil.set_spin(spin);
     add_rock<3>(rocks, RockShape<3>::sphere(0.1), 2600, Vec<3>(0.05, 0.08, 0.25), Vec<3>(0, 0, -3));
-    rocks.first_energy = rocks.energy(down).residual;
+    rocks.first_energy = rocks.energy(gravity_down).residual;
     const auto none = [](double) { return std::vector<Wall<3>>{}; };
     const double came = rocks.all[1].body.kinetic();
     double time = 0;
-    for (int step = 0; step < 200; ++step, time += 1e-3) rocks.advance(none, down, time, 1e-3);
+    for (int step = 0; step < 200; ++step, time += 1e-3) rocks.advance(none, gravity_down, time, 1e-3);
     const auto& body = rocks.all[0].body;
     CHECK(rocks.all[1].body.velocity[2] > 0);
     CHECK(body.velocity[0] == 0.1);
@@ -146,7 +146,7 @@ TEST_CASE("held axes and a held rotation stay as they are while rocks and soil p
         Eigen::AngleAxisd(0.2 * spin.norm(), spins ? Vec<3>(spin.normalized()) : Vec<3>::UnitZ()));
     CHECK(body.orientation.angularDistance(turned) < 1e-12);
     if (!spins) CHECK(body.orientation.coeffs() == Eigen::Quaterniond::Identity().coeffs());
-    CHECK(std::abs(rocks.energy(down).residual) < 3e-3 * came);
+    CHECK(std::abs(rocks.energy(gravity_down).residual) < 3e-3 * came);
   }
 }
 
@@ -155,7 +155,7 @@ TEST_CASE("a rock that is held along x and in its rotation sinks into soil strai
     CAPTURE(ghosts);
     auto solver = block<3>({4, 4, 3}, 0.1, ElasticModuli{1e6, 0.3}, 2000);
     enclose<3>(*solver, {4, 4, 12});
-    solver->options.gravity = down;
+    solver->options.gravity = gravity_down;
     auto rocks = std::make_unique<Rocks<3>>();
     rocks->materials = {{1e7, 0.2, 0.3, 0.5}};
     rocks->soil.ghosts = ghosts;

@@ -8,8 +8,8 @@
 #include "tools/mpm/setup.hpp"
 
 using namespace mpm;
-using mpm::test::alone;
 using mpm::test::pi;
+using mpm::test::rocks_alone;
 using rvelab::test::Folder;
 
 namespace {
@@ -56,7 +56,7 @@ void expect_apart(const Rocks<3>& rocks, double gap) {
 }  // namespace
 
 TEST_CASE("rocks are drawn to their share of the volume and their grading, inside the box and apart") {
-  const auto model = model_of<3>(alone(3, drawn), {"rocks.mix.seed=5", "rocks.mix.gap_m=0.002"});
+  const auto model = model_of<3>(rocks_alone(3, drawn), {"rocks.mix.seed=5", "rocks.mix.gap_m=0.002"});
   const auto& rocks = *model->solver.rocks;
   expect_apart(rocks, 0.002);
   const double box = 1.5, parts[] = {0.5, 0.3, 0.2}, diameters[] = {0.3, 0.2, 0.12};
@@ -77,15 +77,17 @@ TEST_CASE("rocks are drawn to their share of the volume and their grading, insid
 TEST_CASE("spheres that fill half of a box are apart, whatever the seed") {
   for (const char* seed : {"1", "2", "3", "4", "5", "6"}) {
     CAPTURE(seed);
-    const auto model = model_of<3>(alone(3, drawn), {"rocks.mix.volume_share=0.5", "rocks.mix.diameters_m=[[0.15, 1]]",
-                                                     "rocks.mix.seed=" + std::string(seed)});
+    const auto model = model_of<3>(
+        rocks_alone(3, drawn),
+        {"rocks.mix.volume_share=0.5", "rocks.mix.diameters_m=[[0.15, 1]]", "rocks.mix.seed=" + std::string(seed)});
     expect_apart(*model->solver.rocks, 0);
   }
 }
 
 TEST_CASE("one seed draws one and the same rocks, another others") {
-  const auto first = model_of<3>(alone(3, drawn)), again = model_of<3>(alone(3, drawn), {"rocks.mix.seed=1"});
-  const auto other = model_of<3>(alone(3, drawn), {"rocks.mix.seed=2"});
+  const auto first = model_of<3>(rocks_alone(3, drawn)),
+             again = model_of<3>(rocks_alone(3, drawn), {"rocks.mix.seed=1"});
+  const auto other = model_of<3>(rocks_alone(3, drawn), {"rocks.mix.seed=2"});
   const auto &a = *first->solver.rocks, &b = *again->solver.rocks, &c = *other->solver.rocks;
   REQUIRE(a.all.size() == b.all.size());
   REQUIRE(a.all.size() == c.all.size());
@@ -100,13 +102,13 @@ TEST_CASE("one seed draws one and the same rocks, another others") {
 
 TEST_CASE("drawn superquadrics have the aspect, the volume and the turns that were asked for, close together too") {
   const std::vector<std::string> shape{"rocks.mix.aspect=[3, 2, 1.5]", "rocks.mix.blockiness=[4, 3]",
-                                       "rocks.mix.diameters_m=[[0.25, 1]]"};
+                                       "rocks.mix.diameters_m=[[0.25, 1]]", "rocks.mix.volume_share=0.3"};
   const auto check = [&](std::vector<std::string> more, bool aligned) {
     more.insert(more.end(), shape.begin(), shape.end());
-    const auto model = model_of<3>(alone(3, drawn), more);
+    const auto model = model_of<3>(rocks_alone(3, drawn), more);
     const auto& rocks = *model->solver.rocks;
     expect_apart(rocks, 0);
-    CHECK(rocks.all.size() == std::size_t(std::round(0.4 * 1.5 / (pi / 6 * std::pow(0.25, 3)))));
+    CHECK(rocks.all.size() == std::size_t(std::round(0.3 * 1.5 / (pi / 6 * std::pow(0.25, 3)))));
     Vec<3> mean = Vec<3>::Zero();
     for (const auto& rock : rocks.all) {
       const auto& outline = rocks.shapes[std::size_t(rock.shape)];
@@ -128,7 +130,7 @@ TEST_CASE("drawn superquadrics have the aspect, the volume and the turns that we
 }
 
 TEST_CASE("diameters that vary within a grading keep to it, and the volume to its share") {
-  const auto model = model_of<3>(alone(3, drawn), {"rocks.mix.diameters_m=[[0.15, 1]]", "rocks.mix.spread=0.5"});
+  const auto model = model_of<3>(rocks_alone(3, drawn), {"rocks.mix.diameters_m=[[0.15, 1]]", "rocks.mix.spread=0.5"});
   const auto& rocks = *model->solver.rocks;
   expect_apart(rocks, 0);
   double volume = 0, least = 1, most = 0;
@@ -145,9 +147,9 @@ TEST_CASE("diameters that vary within a grading keep to it, and the volume to it
 }
 
 TEST_CASE("a superquadric of equal half axes and exponents of 2 is a sphere to the bit") {
-  const auto model = model_of<3>(alone(3,
-                                       "[[rock]]\nname = \"a\"\nmaterial = \"basalt\"\nshape = \"superquadric\"\n"
-                                       "half_axes_m = [0.3, 0.3, 0.3]\ncentre_m = [0, 0, 0]\n"));
+  const auto model = model_of<3>(rocks_alone(3,
+                                             "[[rock]]\nname = \"a\"\nmaterial = \"basalt\"\nshape = \"superquadric\"\n"
+                                             "half_axes_m = [0.3, 0.3, 0.3]\ncentre_m = [0, 0, 0]\n"));
   const auto& shape = model->solver.rocks->shapes[0];
   CHECK(shape.is_sphere());
   CHECK(shape.volume() == RockShape<3>::sphere(0.3).volume());
@@ -155,18 +157,19 @@ TEST_CASE("a superquadric of equal half axes and exponents of 2 is a sphere to t
 
 TEST_CASE("tables of rocks: place and radius, or place, half axes and turn, in the plane and in space") {
   const std::string table = "[[rocks]]\nname = \"t\"\nmaterial = \"basalt\"\ntable = \"rocks.csv\"\n";
-  const auto discs = model_of<2>(alone(2, table), {}, "x, y, radius\n1, 2, 0.5\n\n 3 4 0.25\r\n");
+  const auto discs = model_of<2>(rocks_alone(2, table), {}, "x, y, radius\n1, 2, 0.5\n\n 3 4 0.25\r\n");
   REQUIRE(discs->solver.rocks->all.size() == 2);
   CHECK(discs->solver.rocks->all[1].body.centre == Vec<2>(3, 4));
   CHECK(discs->solver.rocks->all[0].body.mass == Approx(2700 * pi * 0.25));
-  const auto slabs = model_of<2>(alone(2, table), {"rocks.t.blockiness=[2]"}, "1,2,0.5,0.2,90\n");
+  const auto slabs = model_of<2>(rocks_alone(2, table), {"rocks.t.blockiness=[2]"}, "1,2,0.5,0.2,90\n");
   CHECK(slabs->solver.rocks->all[0].body.orientation == Approx(pi / 2));
   CHECK(slabs->solver.rocks->all[0].body.mass == Approx(2700 * pi * 0.1));
-  const auto balls = model_of<3>(alone(3, table), {}, "1,2,3,0.5\n3,4,5,0.25\n");
+  const auto balls = model_of<3>(rocks_alone(3, table), {}, "1,2,3,0.5\n3,4,5,0.25\n");
   CHECK(balls->solver.rocks->all[1].body.centre == Vec<3>(3, 4, 5));
   CHECK(balls->solver.rocks->all[1].body.mass == Approx(2700 * 4.0 / 3 * pi / 64));
   // A quaternion w, x, y, z of any length: a quarter about z.
-  const auto blocks = model_of<3>(alone(3, table), {"rocks.t.blockiness=[20, 20]"}, "1,2,3,0.3,0.2,0.1,2,0,0,2\n");
+  const auto blocks =
+      model_of<3>(rocks_alone(3, table), {"rocks.t.blockiness=[20, 20]"}, "1,2,3,0.3,0.2,0.1,2,0,0,2\n");
   const auto& block = blocks->solver.rocks->all[0].body;
   CHECK((block.orientation * Vec<3>::UnitX() - Vec<3>::UnitY()).norm() < 1e-12);
   CHECK(block.mass == Approx(2700 * 7.910481 * 0.006).epsilon(1e-6));

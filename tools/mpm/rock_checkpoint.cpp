@@ -40,13 +40,15 @@ void each_total(Rocks<D>& rocks, const Visit& visit) {
                         &rocks.work_on_soil, &rocks.ghost_loss, &rocks.ghost_frequency, &rocks.wall_power}) {
     visit(*value);
   }
-  for (auto& impulse : rocks.wall_impulse) {
-    for (double& x : impulse) visit(x);
+  for (auto* of_walls : {&rocks.wall_impulse, &rocks.wall_force}) {
+    for (auto& each : *of_walls) {
+      for (double& x : each) visit(x);
+    }
   }
 }
 
 template <class Each>
-std::vector<double> numbers_of(Each&& each) {
+std::vector<double> collected(Each&& each) {
   std::vector<double> values;
   each([&](double value) { values.push_back(value); });
   return values;
@@ -77,18 +79,18 @@ void write_rocks(const Solver<D>& solver, OutputFile& file) {
   const auto put = [&](const char* name, const std::vector<double>& values) {
     file.write(name, values, {values.size()});
   };
-  put("rocks", numbers_of([&](const auto& visit) {
+  put("rocks", collected([&](const auto& visit) {
         for (auto& rock : rocks.all) each_number<D>(rock, visit);
       }));
-  put("rock_totals", numbers_of([&](const auto& visit) { each_total<D>(rocks, visit); }));
-  put("rock_contacts", numbers_of([&](const auto& visit) {
+  put("rock_totals", collected([&](const auto& visit) { each_total<D>(rocks, visit); }));
+  put("rock_contacts", collected([&](const auto& visit) {
         for (auto& pair : rocks.pairs) {
           visit(pair.first);
           visit(pair.second);
           each_number<D>(pair.contact, visit);
         }
       }));
-  put("ghost_contacts", numbers_of([&](const auto& visit) {
+  put("ghost_contacts", collected([&](const auto& visit) {
         for (auto& ghost : rocks.ghosts) {
           visit(double(ghost.point));
           visit(ghost.rock);
@@ -112,6 +114,7 @@ void read_rocks(Solver<D>& solver, const InputFile& file, const std::string& fol
   for (auto& rock : rocks.all) each_number<D>(rock, [&](double& value) { value = of_bodies(); });
   const auto walls = walls_at<D>(solver.grid, solver.planes, solver.bodies, solver.time);
   rocks.wall_impulse.assign(walls.size(), Vec<D>::Zero());
+  rocks.wall_force.assign(walls.size(), Vec<D>::Zero());
   each_total<D>(rocks, [&](double& value) { value = of_totals(); });
   const auto contacts = file.read("rock_contacts"), touching = file.read("ghost_contacts");
   rocks.pairs.clear();

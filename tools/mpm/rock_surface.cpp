@@ -61,7 +61,7 @@ void Bodies<D>::detect_rocks(const Grid<D>& grid, const Planes<D>& planes, const
   };
   std::vector<Foot> feet;
   // Half of the distance between surface points and half of that between points of soil.
-  const double cell = grid.cell.minCoeff(), near = 0.75 * cell, slack = early * cell;
+  const double cell = grid.cell.minCoeff(), near = 0.6 * cell, slack = early * cell;
   double widest = 0;
   for (const auto& point : soil) widest = std::max(widest, point.half.norm());
   const double reach = slack + 2 * widest;
@@ -79,18 +79,19 @@ void Bodies<D>::detect_rocks(const Grid<D>& grid, const Planes<D>& planes, const
       const double distance = outline.distance(r, near_enough, outward);
       if (distance > near_enough) return;
       const double gap = distance - half_width<D>(point, outward);
-      if (gap < slack) feet.push_back({r - distance * outward, outward, std::max(0.0, gap)});
+      if (gap < slack) feet.push_back({r - distance * outward, outward, gap});
     });
     if (feet.empty()) continue;
     sweeps_ = std::max(sweeps_, rock_sweeps);
-    for (const auto& place : rocks->outline(rock.shape, cell)) {
+    for (const auto& place : rocks->outline(rock.shape, 0.5 * cell)) {
       const Vec<D> r = to_world<D>(rock.body.orientation, place.at);
       const Vec<D> normal = to_world<D>(rock.body.orientation, place.normal);
-      // Soil under a block does not touch its front: their normals differ.
+      // From each place to the soil, whose end is plane about the foot of each point: the rounded edge of a block
+      // stands over it. Soil under a block does not touch its front: their normals differ.
       double gap = 1e300;
       for (const auto& foot : feet) {
         const bool here = (foot.place - r).squaredNorm() < near * near && foot.normal.dot(normal) > 0.5;
-        if (here) gap = std::min(gap, foot.gap);
+        if (here) gap = std::min(gap, foot.gap + foot.normal.dot(foot.place - r));
       }
       typename Grid<D>::Index nearest;
       const Vec<D> at = rock.body.centre + r;
@@ -102,7 +103,7 @@ void Bodies<D>::detect_rocks(const Grid<D>& grid, const Planes<D>& planes, const
       hold_at(grid, planes, point, 0, at);
       if (surface_.size() == before) continue;
       const Mat<D> soil_part = surface_.back().mobility * Mat<D>::Identity();
-      rocks->surface.push_back({r, soil_part + rock.body.mobility(r, r), gap});
+      rocks->surface.push_back({r, soil_part + rock.body.mobility(r, r), std::max(0.0, gap)});
     }
   }
   rocks->soil_contacts = long(rocks->surface.size());

@@ -75,28 +75,41 @@ void Rocks<D>::find_candidates(const std::vector<Wall<D>>& walls, const Vec<D>& 
   std::sort(found.begin(), found.end());
   std::vector<Pair> next;
   auto old = pairs.begin();
+  // Of a wall that is removed: what its springs hold goes with it.
+  const auto leave = [&](const Pair& pair) { contact_loss += pair.contact.energy(pair.constants); };
   for (const auto& [i, j] : found) {
-    while (old != pairs.end() && std::pair(old->first, old->second) < std::pair(i, j)) ++old;
+    for (; old != pairs.end() && std::pair(old->first, old->second) < std::pair(i, j); ++old) leave(*old);
     if (old != pairs.end() && old->first == i && old->second == j) {
-      next.push_back(*old);
+      next.push_back(*old++);
       continue;
     }
     const Wall<D>* wall = j < int(all.size()) ? nullptr : &walls[std::size_t(j) - all.size()];
     next.push_back({i, j, constants_of(i, j, wall), {}});
   }
+  for (; old != pairs.end(); ++old) leave(*old);
   pairs = std::move(next);
   wall_impulse.resize(walls.size(), Vec<D>::Zero());
+  wall_force.resize(walls.size(), Vec<D>::Zero());
 }
 
 /// So many that the shortest collision that may come within the step has steps_per_collision of them.
 template <int D>
-long Rocks<D>::sub_steps_for(const Vec<D>& gravity, double dt) const {
+long Rocks<D>::sub_steps_for(const std::vector<Wall<D>>& walls, const Vec<D>& gravity, double dt) const {
+  // By a spin w a surface nears along its normal n at w |r x n| or less, and r.n is the inner radius at least: of a
+  // sphere it does not.
+  const auto speed_of = [&](const Rock<D>& rock) {
+    const auto& shape = shapes[std::size_t(rock.shape)];
+    const double outer = shape.bounding_radius(), inner = shape.inner_radius();
+    return rock.body.velocity.norm() +
+           rock.body.spin().norm() * std::sqrt(std::max(0.0, (outer - inner) * (outer + inner)));
+  };
   double highest = 0;  // 1/s^2, square of the frequency of a contact
   for (const auto& pair : pairs) {
     const auto& a = all[std::size_t(pair.first)];
     const Rock<D>* b = pair.second < int(all.size()) ? &all[std::size_t(pair.second)] : nullptr;
     const double mass = b != nullptr ? a.body.mass * b->body.mass / (a.body.mass + b->body.mass) : a.body.mass;
-    const double speed = a.body.velocity.norm() + (b != nullptr ? b->body.velocity.norm() : 0) + gravity.norm() * dt;
+    const double other = b != nullptr ? speed_of(*b) : walls[std::size_t(pair.second) - all.size()].velocity.norm();
+    const double speed = speed_of(a) + other + gravity.norm() * dt;
     const double overlap = std::max(pair.contact.overlap, pair.constants.reach(mass, speed));
     // Along the contact a sphere turns too: 2/7 of its mass is in the way.
     const double stiffness =
@@ -148,6 +161,12 @@ void Rocks<D>::contact_forces(const std::vector<Wall<D>>& walls, double dt, doub
   }
   touching = 0;
   double power = 0;
+  // A force acts over half a sub-step on both sides of its moment, and sub-steps may differ.
+  const auto book_walls = [&] {
+    for (std::size_t k = 0; k < wall_force.size(); ++k) wall_impulse[k] += 0.5 * dt * wall_force[k];
+  };
+  book_walls();
+  for (auto& force : wall_force) force.setZero();
   for (auto& pair : pairs) {
     auto& a = all[std::size_t(pair.first)];
     const bool with_rock = pair.second < int(all.size());
@@ -159,7 +178,10 @@ void Rocks<D>::contact_forces(const std::vector<Wall<D>>& walls, double dt, doub
     const Gap<D> gap = with_rock ? gap_between<D>(a.placed(shapes), b->placed(shapes)) : gap_to(a, *wall);
     if (!(gap.gap < 0) || (wall != nullptr && !wall->there)) {
       const Vec<D> second = with_rock ? b->body.velocity_at(gap.place - b->body.centre) : wall->velocity;
-      contact_loss += pair.contact.end_loss(pair.constants, second - a.body.velocity_at(gap.place - a.body.centre), dt);
+      const bool gone = wall != nullptr && !wall->there;
+      contact_loss +=
+          gone ? pair.contact.energy(pair.constants)
+               : pair.contact.end_loss(pair.constants, second - a.body.velocity_at(gap.place - a.body.centre), dt);
       pair.contact = {};
       pair.clearance = 0.99 * gap.gap;
       continue;
@@ -176,7 +198,7 @@ void Rocks<D>::contact_forces(const std::vector<Wall<D>>& walls, double dt, doub
       b->force += force;
       b->torque += moment<D>(gap.place - b->body.centre, force);
     } else {
-      wall_impulse[std::size_t(pair.second) - all.size()] += dt * force;
+      wall_force[std::size_t(pair.second) - all.size()] += force;
       power -= force.dot(wall->velocity);
     }
   }
@@ -184,6 +206,7 @@ void Rocks<D>::contact_forces(const std::vector<Wall<D>>& walls, double dt, doub
     rock.mean_force += share * rock.force;
     rock.mean_torque += share * rock.torque;
   }
+  book_walls();
   wall_work += 0.5 * dt * (power + wall_power);
   wall_power = power;
 }

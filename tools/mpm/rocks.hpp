@@ -75,6 +75,7 @@ class Rocks {
   double work_on_soil = 0;               ///< J, of rocks on the soil
   double wall_power = 0;                 ///< W, of moving walls at the end of the sub-step before
   std::vector<Vec<D>> wall_impulse;      ///< N s, of the rocks on each wall
+  std::vector<Vec<D>> wall_force;        ///< N, of the rocks on each wall at the end of the sub-step before
   double seconds = 0, soil_seconds = 0;  ///< wall time: of rocks among themselves, of soil against them
   long sub_steps = 0, touching = 0;      ///< since the start; contacts of rocks and walls now
   long soil_contacts = 0;                ///< with points or surface points of soil, at the last step
@@ -93,8 +94,9 @@ class Rocks {
   /// A step under gravity (m/s^2), the soil's forces and contacts; `walls(t)`: those at a time in s.
   template <class Walls>
   void advance(const Walls& walls, const Vec<D>& gravity, double time, double dt) {
-    find_candidates(walls(time), gravity, dt);
-    const long n = sub_steps_for(gravity, dt);
+    const std::vector<Wall<D>> now = walls(time);
+    find_candidates(now, gravity, dt);
+    const long n = sub_steps_for(now, gravity, dt);
     take_impulses(dt);
     for (long k = 0; k < n; ++k) {
       kick(gravity, 0.5 * dt / double(n));
@@ -156,7 +158,7 @@ class Rocks {
   RockPair<D> constants_of(int first, int second, const Wall<D>* wall) const;
 
  private:
-  long sub_steps_for(const Vec<D>& gravity, double dt) const;
+  long sub_steps_for(const std::vector<Wall<D>>& walls, const Vec<D>& gravity, double dt) const;
   void take_impulses(double dt);
   void kick(const Vec<D>& gravity, double dt);
   void book_soil_work(double dt);

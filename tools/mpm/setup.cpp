@@ -337,6 +337,9 @@ void add_group(const Scene& scene, const MaterialOfScene& material, Model<D>& mo
 template <int D>
 void watch_points(const Scene& scene, Model<D>& model) {
   const auto& points = model.solver.points;
+  if (points.empty() && !scene.watched.empty()) {
+    throw InputError("output.watched_points_m: the scene has no material points; remove the key");
+  }
   for (const auto& place : scene.watched) {
     const Vec<D> x = vector_of<D>(place);
     const auto nearer = [&](const auto& a, const auto& b) {
