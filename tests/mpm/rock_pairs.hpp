@@ -99,11 +99,11 @@ double gap_along(const Placed<D>& a, const Placed<D>& b, const Vec<D>& n) {
 
 /// Two rocks at random; b is moved along a random line until the gap is about as asked for.
 template <int D>
-struct RockPair {
+struct PlacedPair {
   RockShape<D> first, second;
   Vec<D> place_a, place_b;
   Rot<D> turn_a, turn_b;
-  RockPair(Draw& draw, const RockShape<D>& one, const RockShape<D>& other, double gap)
+  PlacedPair(Draw& draw, const RockShape<D>& one, const RockShape<D>& other, double gap)
       : first(one),
         second(other),
         place_a(2 * draw.direction<D>()),

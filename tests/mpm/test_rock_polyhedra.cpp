@@ -153,11 +153,11 @@ TEST_CASE(
   Draw draw;
   for (const double gap : {0.3, 1e-3, -1e-3, -0.05}) {
     for (int k = 0; k < 8; ++k) {
-      const RockPair<3> pair(draw, sheared(draw), sheared(draw), gap);
+      const PlacedPair<3> pair(draw, sheared(draw), sheared(draw), gap);
       check_gap(draw, pair.a(), pair.b());
-      const RockPair<3> other(draw, sheared(draw), draw.superquadric<3>(2, k % 2 ? 4 : 30), gap);
+      const PlacedPair<3> other(draw, sheared(draw), draw.superquadric<3>(2, k % 2 ? 4 : 30), gap);
       check_gap(draw, other.a(), other.b());
-      const RockPair<3> round(draw, sheared(draw), RockShape<3>::sphere(0.5), gap);
+      const PlacedPair<3> round(draw, sheared(draw), RockShape<3>::sphere(0.5), gap);
       check_gap(draw, round.a(), round.b());
       const auto ball = RockShape<3>::superquadric({0.5, 0.5, 0.5}, 2, 2);
       const Placed<3> in_its_place{&ball, round.place_b, round.turn_b};
@@ -170,7 +170,7 @@ TEST_CASE("the gap of polyhedra is a potential, and does not see a common rotati
   Draw draw;
   for (int k = 0; k < 30; ++k) {
     const auto second = k % 2 ? sheared(draw) : draw.superquadric<3>(2, 5);
-    const RockPair<3> pair(draw, sheared(draw), second, k % 3 ? -0.01 : 0.1);
+    const PlacedPair<3> pair(draw, sheared(draw), second, k % 3 ? -0.01 : 0.1);
     const auto a = pair.a(), b = pair.b();
     const Gap<3> found = gap_between(a, b);
     constexpr double step = 1e-7;

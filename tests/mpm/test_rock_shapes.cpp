@@ -207,7 +207,7 @@ TEMPLATE_TEST_CASE_SIG("the gap is reached along its normal, and no direction of
   for (const auto& [least, most] : ranges) {
     for (const double gap : {0.4, 0.01, -0.001, -0.03}) {
       for (int k = 0; k < 5; ++k) {
-        const RockPair<D> pair(draw, draw.superquadric<D>(least, most), draw.superquadric<D>(least, most), gap);
+        const PlacedPair<D> pair(draw, draw.superquadric<D>(least, most), draw.superquadric<D>(least, most), gap);
         const auto a = pair.a(), b = pair.b();
         const Gap<D> found = gap_between(a, b);
         CHECK(found.gap == Approx(gap).margin(1e-6));
@@ -230,7 +230,7 @@ TEMPLATE_TEST_CASE_SIG("the gap is a potential: a shift of a rock changes it by 
   Draw draw;
   for (int k = 0; k < 30; ++k) {
     const auto second = k % 3 == 0 ? RockShape<D>::sphere(0.6) : draw.superquadric<D>(2, 6);
-    const RockPair<D> pair(draw, draw.superquadric<D>(2, 6), second, k % 2 ? 0.1 : -0.01);
+    const PlacedPair<D> pair(draw, draw.superquadric<D>(2, 6), second, k % 2 ? 0.1 : -0.01);
     const auto a = pair.a(), b = pair.b();
     const Gap<D> found = gap_between(a, b);
     constexpr double step = 1e-6;
@@ -264,7 +264,7 @@ TEMPLATE_TEST_CASE_SIG("a rotation and a translation of both rocks turn the norm
   Draw draw;
   for (int k = 0; k < 30; ++k) {
     const double most = k % 2 ? 4 : 50;
-    const RockPair<D> pair(draw, draw.superquadric<D>(2, most), draw.superquadric<D>(2, most), k % 3 ? -0.01 : 0.1);
+    const PlacedPair<D> pair(draw, draw.superquadric<D>(2, most), draw.superquadric<D>(2, most), k % 3 ? -0.01 : 0.1);
     Placed<D> a = pair.a(), b = pair.b();
     const Gap<D> before = gap_between(a, b);
     const Rot<D> turn = draw.orientation<D>();

@@ -16,7 +16,7 @@ using rvelab::test::Folder;
 namespace {
 
 /// A small block that falls on a base.
-constexpr const char* block = R"(
+constexpr const char* block_scene = R"(
 [scene]
 name = "block"
 [grid]
@@ -42,9 +42,9 @@ normal = [0, 1]
 watched_points_m = [[0.5, 0.5]]
 )";
 
-struct Bench {
+struct BlockBench {
   Folder folder;
-  Bench() { std::ofstream(folder / "block.toml") << block; }
+  BlockBench() { std::ofstream(folder / "block.toml") << block_scene; }
 
   int run(std::vector<std::string> arguments) const {
     arguments.insert(arguments.begin(), RVELAB_MPM_PROGRAM);
@@ -66,7 +66,7 @@ struct Bench {
 }  // namespace
 
 TEST_CASE("runs that are the same have the same bytes in every file") {
-  const Bench bench;
+  const BlockBench bench;
   REQUIRE(bench.start("a") == 0);
   std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // stamps count seconds
   REQUIRE(bench.start("b") == 0);
@@ -81,7 +81,7 @@ TEST_CASE("runs that are the same have the same bytes in every file") {
 }
 
 TEST_CASE("a run stops where it was asked to as one that succeeded, and says what it took") {
-  const Bench bench;
+  const BlockBench bench;
   REQUIRE(bench.start("a", {"--stop-at", "0.05"}) == 0);
   CHECK_THAT(bench.output(), Contains("go on with: rvelab-mpm --resume") && Contains(" s, processor "));
   CHECK(bench.start("b", {"--stop-at", "nan"}) == 2);
@@ -95,7 +95,7 @@ TEST_CASE("a run stops where it was asked to as one that succeeded, and says wha
 }
 
 TEST_CASE("what a resumed run is told stays told: the scene in its folder is the one that it goes on with") {
-  const Bench bench;
+  const BlockBench bench;
   REQUIRE(bench.start("a") == 0);
   REQUIRE(bench.run({"--resume", bench.folder / "a"}) == 0);
   CHECK_THAT(bench.output(), Contains("the run is at 0.1 s, and ends at time.duration_s = 0.1"));
@@ -116,7 +116,7 @@ TEST_CASE("what a resumed run is told stays told: the scene in its folder is the
 }
 
 TEST_CASE("a folder that lost something is refused with the remedy") {
-  const Bench bench;
+  const BlockBench bench;
   REQUIRE(bench.start("a", {"--stop-at", "0.05"}) == 0);
   const auto history = bench.folder / "a/history.csv", checkpoint = bench.folder / "a/checkpoint.h5";
   const auto rows = bytes_of(history), state = bytes_of(checkpoint);
@@ -137,7 +137,7 @@ TEST_CASE("a folder that lost something is refused with the remedy") {
 
 TEST_CASE(
     "a flipped bit in what a run is resumed from is refused, and what a kill left behind a checkpoint is cut off") {
-  const Bench bench;
+  const BlockBench bench;
   REQUIRE(bench.start("a", {"--stop-at", "0.05"}) == 0);
   const auto resume = [&] { return bench.run({"--resume", bench.folder / "a", "-j", "1"}); };
   for (const char* name : {"checkpoint.h5", "history.csv", "watched.csv", "scene.toml"}) {
@@ -169,7 +169,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a scene or a checkpoint that is no regular file is refused at once") {
-  const Bench bench;
+  const BlockBench bench;
   const auto pipe = bench.folder / "pipe";
   REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
   Child child({RVELAB_MPM_PROGRAM, pipe, "-o", bench.folder / "a"}, bench.folder / "out", bench.folder / "err");
@@ -184,7 +184,7 @@ TEST_CASE("a scene or a checkpoint that is no regular file is refused at once") 
 }
 
 TEST_CASE("a full disc fails the run by name, and what was whole stays whole") {
-  const Bench bench;
+  const BlockBench bench;
   const auto run_with = [&](const std::string& blocks, const std::string& name) {  // of 512 bytes, for each file
     Child child({"/bin/sh", "-c", "trap '' XFSZ; ulimit -f " + blocks + "; exec \"$0\" \"$@\"", RVELAB_MPM_PROGRAM,
                  bench.folder / "block.toml", "-j", "1", "-o", bench.folder / name},
@@ -206,7 +206,7 @@ TEST_CASE("a full disc fails the run by name, and what was whole stays whole") {
 }
 
 TEST_CASE("a first signal stops a run with a checkpoint, and threads that the system refuses are told") {
-  const Bench bench;
+  const BlockBench bench;
   {
     Child child({RVELAB_MPM_PROGRAM, bench.folder / "block.toml", "-o", bench.folder / "a", "-j", "1", "--set",
                  "time.duration_s=1e4"},

@@ -3,6 +3,24 @@
 #include "tools/mpm/rocks.hpp"
 
 namespace mpm {
+
+/// Takes numbers one by one. Not in an anonymous namespace: lambdas of templates hold it.
+class Taker {
+ public:
+  Taker(const std::vector<double>& values, std::string what) : values_(values), what_(std::move(what)) {}
+  double operator()() {
+    if (at_ < values_.size()) return values_[at_++];
+    throw InputError(what_ +
+                     "; leave out the --set that changes their number, or start the run anew in another folder");
+  }
+  bool more() const { return at_ < values_.size(); }
+
+ private:
+  const std::vector<double>& values_;
+  std::string what_;
+  std::size_t at_ = 0;
+};
+
 namespace {
 
 template <class Visit>
@@ -53,23 +71,6 @@ std::vector<double> collected(Each&& each) {
   each([&](double value) { values.push_back(value); });
   return values;
 }
-
-/// Takes numbers one by one.
-class Taker {
- public:
-  Taker(const std::vector<double>& values, std::string what) : values_(values), what_(std::move(what)) {}
-  double operator()() {
-    if (at_ < values_.size()) return values_[at_++];
-    throw InputError(what_ +
-                     "; leave out the --set that changes their number, or start the run anew in another folder");
-  }
-  bool more() const { return at_ < values_.size(); }
-
- private:
-  const std::vector<double>& values_;
-  std::string what_;
-  std::size_t at_ = 0;
-};
 
 }  // namespace
 

@@ -13,9 +13,8 @@
 #include "tools/mpm/touching.hpp"
 
 namespace mpm {
-namespace {
 
-constexpr int rock_sweeps = 20;
+// Not in an anonymous namespace: lambdas of templates hold it.
 
 /// The outline of a rock where it stands.
 template <int D>
@@ -47,6 +46,8 @@ struct RockOutline {
   }
 };
 
+namespace {
+constexpr int rock_sweeps = 20;
 }  // namespace
 
 template <int D>
