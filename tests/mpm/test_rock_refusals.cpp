@@ -41,7 +41,7 @@ TEST_CASE("rocks too small for the soil are refused with the size that will do")
 
 TEST_CASE("what the method has no answer for is refused beside rocks") {
   CHECK_THAT(rocks_with({"loads.surface_pressure_Pa=1000"}),
-             Contains("loads.surface_pressure_Pa") && Contains("do not go together") && Contains("pressure_Pa"));
+             Contains("loads.surface_pressure_Pa") && Contains("do not go together"));
   CHECK_THAT(rocks_with({"fluid={conductivity_m_s=1e-3, porosity=0.4}"}),
              Contains("[fluid] and rocks do not go together yet; remove one of them"));
   CHECK_THAT(rocks_edited("kind = \"roller\"\naxis = \"x\"\nat_m = 0\n",

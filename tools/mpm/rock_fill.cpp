@@ -195,7 +195,7 @@ void check_rocks(const Scene& scene, const std::string& path) {
   if (scene.surface_pressure != 0) {
     refuse(
         "loads.surface_pressure_Pa and rocks do not go together: contact would see only what exceeds it; load the "
-        "soil by a [[body]] with pressure_Pa");
+        "soil by a boundary or a [[body]] that moves");
   }
   if (scene.water) refuse("[fluid] and rocks do not go together yet; remove one of them");
   if (scene.loads.any()) refuse("loads that change with time and rocks do not go together yet; remove one of them");
