@@ -15,9 +15,9 @@ struct Model {
   Solver<D> solver;
   std::map<std::string, std::shared_ptr<GrainPool>> pools;  ///< by the name of the material
   std::map<std::string, std::shared_ptr<Grains<D>>> grains;
-  std::vector<long> watched;  ///< numbers of the points nearest to those asked for
+  std::vector<long> watched;      ///< numbers of the points nearest to those asked for
   std::vector<std::string> told;  ///< what the user should know of the rocks
-  long pressure_classes = 0;  ///< prepared states that points share
+  long pressure_classes = 0;      ///< prepared states that points share
 };
 
 /// `specimens`: folder in which specimen files are looked for. `populate`: false leaves points and RVEs to a
