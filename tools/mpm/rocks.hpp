@@ -50,7 +50,7 @@ struct Wall {
 /// J, of all rocks.
 struct RockEnergy {
   double kinetic = 0, potential = 0;
-  double springs = 0;                   ///< of contacts of rocks and walls, and of ghosts
+  double springs = 0;                   ///< of contacts of rocks and walls
   double contact_loss = 0;              ///< to friction and dashpots among them
   double soil_work = 0, wall_work = 0;  ///< on the rocks
   double residual = 0;                  ///< error of the time integration
