@@ -1,4 +1,5 @@
 // Parts of the fit against what is known exactly: functions, Gaussian posteriors, sequences.
+#include <Eigen/LU>
 #include <cmath>
 
 #include "rvelab/fit/components.hpp"
