@@ -120,6 +120,10 @@ TEST_CASE("Mistakes of a fit are told before any test") {
                  "no specimen is given");
   expect_mistake(here.run(fit + "--recipe pack_dense --vary material.friction=0.1:1 --target friction_angle_deg=30"),
                  "--recipe and --specimen are both given");
+  expect_mistake(here.run("fit biaxial --recipe pack_dense --same-specimens --vary material.friction=0.1:1 --target "
+                          "friction_angle_deg=30"),
+                 "--same-specimens is given with --recipe");
+  expect_mistake(here.run(fit + "--same-specimens --vary material.friction=0.1:1:5"), "without a target");
   expect_mistake(here.run(fit + "--target angle=30 --vary material.friction=0.1:1"), "the nearest is");
   expect_mistake(here.run(fit + "--curve none.csv --vary material.friction=0.1:1"), "none.csv: no such file");
 }
