@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Force chains with the outline of the cell: chains.py S.h5|R.h5|FOLDER... -o chains.png (of record files the last state).
 
-Several states stand side by side, each with its own mean force and key. Each contact is a line along its branch, as wide as its normal force; contacts that carry more than the mean are red,
-the others blue. Ellipses are drawn as they lie. The cell is dashed, grains of one cell are drawn once. In 3D one sees a
-slab, a mean diameter to both sides of the middle of the cell along y, projected onto the plane of x and z.
+Several states stand side by side, each with its own mean force and key. Each contact is a line along its branch, as wide as its
+normal force; contacts that carry more than the mean are red, the others blue. Ellipses are drawn as they lie. The cell is dashed,
+grains of one cell are drawn once. In 3D one sees a slab, a mean diameter to both sides of the middle of the cell along y,
+projected onto the plane of x and z.
 """
 
 import argparse
