@@ -75,8 +75,8 @@ double determinant(const Eigen::MatrixXd& stiffness, const Vector3& normal) {
   return acoustic_tensor(stiffness, normal.normalized()).determinant();
 }
 
-const Matrix3 some_turn = Eigen::AngleAxisd(0.8, Vector3(1, -2, 0.5).normalized()).toRotationMatrix();
-const Matrix3 triaxial = Vector3(0.3, 0.3, -1).asDiagonal();
+const Matrix3 other_frame = Eigen::AngleAxisd(0.8, Vector3(1, -2, 0.5).normalized()).toRotationMatrix();
+const Matrix3 compression = Vector3(0.3, 0.3, -1).asDiagonal();
 
 }  // namespace
 
@@ -86,7 +86,7 @@ TEST_CASE("loading probes of a face-centred crystal give its cubic constants and
   const double kn = 2e6, kt = 1.5e6, overlap = 1e-3, accuracy = 3 * overlap, root = std::sqrt(2.0);
   const double c11 = root * (kn + kt), c12 = (kn - kt) / root, c44 = (kn + kt) / root;
   const Rve rve(crystal(overlap, kn, kt));
-  for (const Matrix3& direction : {triaxial, unit_strain(3, 3)}) {
+  for (const Matrix3& direction : {compression, unit_strain(3, 3)}) {
     CAPTURE(direction);
     const Eigen::MatrixXd c = loading_stiffness(rve, direction, 1e-5);
     // All bonds stretch by at most 1e-5, a hundredth of their overlap: none opens, the law is linear, only angles
@@ -114,47 +114,47 @@ TEST_CASE("loading probes of spheres that do not slip: the elastic tangent, its 
   const Eigen::MatrixXd elastic = elastic_tangent(rve.network());
   const Band stuck = weakest_band(elastic);
   CHECK(stuck.determinant > 0);
-  const Eigen::MatrixXd loading = loading_stiffness(rve, triaxial, 1e-5);
+  const Eigen::MatrixXd loading = loading_stiffness(rve, compression, 1e-5);
   CHECK(relative_distance(loading, elastic) < 0.01);
   const Band band = weakest_band(loading);
   CHECK(band.determinant == Approx(stuck.determinant).epsilon(0.03));  // det: of the third power
 
-  specimen.cell.rotation = some_turn;
+  specimen.cell.rotation = other_frame;
   Rve turned(specimen);
   forbid_slip(turned);
-  const Matrix3 direction = some_turn * triaxial * some_turn.transpose();
+  const Matrix3 direction = other_frame * compression * other_frame.transpose();
   const Eigen::MatrixXd there = loading_stiffness(turned, direction, 1e-5);
-  CHECK(relative_distance(there, turned_stiffness(loading, some_turn)) < 1e-3);
+  CHECK(relative_distance(there, turned_stiffness(loading, other_frame)) < 1e-3);
   CHECK(weakest_band(there).determinant == Approx(band.determinant).epsilon(3e-3));
 }
 
 TEST_CASE("spheres that slide: the probe gives what loading gives, in a turned frame too, and less than unloading",
           "[measure][slow]") {
   Rve rve(packing({}));
-  for (int k = 0; k < 6; ++k) rve.apply(1e-3 * triaxial, 0);
+  for (int k = 0; k < 6; ++k) rve.apply(1e-3 * compression, 0);
   const double size = 2e-4;
-  const Matrix3 half = 0.5 * size * triaxial / triaxial.norm();
+  const Matrix3 half = 0.5 * size * compression / compression.norm();
   Rve copy(rve);
   copy.apply(half, 0);
   const Eigen::VectorXd middle = stress_components(copy.stress(), 3);
   copy.apply(half, 0);
   const Eigen::VectorXd change = stress_components(copy.stress(), 3) - middle, strain = strain_components(half, 3);
-  const Eigen::MatrixXd loading = loading_stiffness(rve, triaxial, size);
+  const Eigen::MatrixXd loading = loading_stiffness(rve, compression, size);
   CHECK((loading * strain - change).norm() < 1e-12 * change.norm());
 
   const Eigen::MatrixXd elastic = elastic_tangent(rve.network());
   const double work = strain.dot(loading * strain);
   CHECK(work < 0.5 * strain.dot(elastic * strain));
-  CHECK(work < 0.5 * strain.dot(loading_stiffness(rve, Matrix3(-triaxial), 2e-5) * strain));
+  CHECK(work < 0.5 * strain.dot(loading_stiffness(rve, Matrix3(-compression), 2e-5) * strain));
   const Band band = weakest_band(loading), stuck = weakest_band(elastic);
   CHECK(stuck.determinant > 0);
   CHECK(band.determinant < 0.5 * stuck.determinant);
 
   // Beside the direction of loading, the probes of another frame take other strains, whose response is another.
   Specimen specimen = rve.specimen();
-  specimen.cell.rotation = some_turn * specimen.cell.rotation;
-  const Matrix3 direction = some_turn * triaxial * some_turn.transpose();
+  specimen.cell.rotation = other_frame * specimen.cell.rotation;
+  const Matrix3 direction = other_frame * compression * other_frame.transpose();
   const Eigen::VectorXd there = loading_stiffness(Rve(specimen), direction, size) * strain_components(direction, 3);
-  const Eigen::VectorXd here = turned_stiffness(loading, some_turn) * strain_components(direction, 3);
+  const Eigen::VectorXd here = turned_stiffness(loading, other_frame) * strain_components(direction, 3);
   CHECK((there - here).norm() < 1e-6 * here.norm());
 }
