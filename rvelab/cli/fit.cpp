@@ -28,7 +28,7 @@ struct FitArguments {
   std::optional<long> count, tests, batch;
   std::string folder;
   unsigned threads = 0;
-  bool force = false, resume = false, json = false;
+  bool same_specimens = false, force = false, resume = false, json = false;
 };
 
 /// "data.csv@50e3": a file and its pressure.
@@ -54,6 +54,11 @@ void read_specimens(FitSetup& setup, const FitArguments& arguments) {
     throw InputError(std::string("fit: ") +
                      (words.empty() ? "no specimen is given" : "--recipe and --specimen are both given") +
                      "; allowed: --specimen 'S_*.h5', or --recipe RECIPE with --count; give one of them");
+  if (arguments.recipe && arguments.same_specimens)
+    throw InputError(
+        "--same-specimens is given with --recipe, which packs other specimens; allowed: with --specimen; "
+        "leave it out, or give the specimens that were measured");
+  setup.same_specimens = arguments.same_specimens;
   if (arguments.recipe) {
     setup.recipe = input_path(*arguments.recipe, InputKind::recipe);
     setup.specimen_count = std::size_t(arguments.count.value_or(5));
@@ -76,6 +81,8 @@ FitSetup setup_of(const FitArguments& arguments) {
     throw InputError("fit: nothing is varied; allowed: --vary KEY=low:high, up to 8 of them; give one");
   if (setup.parameters.size() > 8) throw InputError("fit: more than 8 keys are varied; allowed: 8; leave some out");
   const bool sweep = setup.targets.empty() && setup.curves.empty();
+  if (sweep && arguments.same_specimens)
+    throw InputError("--same-specimens is given without a target; allowed: with --target or --curve; leave it out");
   for (const fit::Parameter& parameter : setup.parameters) {
     if (sweep && parameter.grid == 0)
       throw InputError("--vary " + parameter.key +
@@ -112,6 +119,7 @@ std::string described(const FitArguments& arguments, const FitSetup& setup) {
             {"recipe", setup.recipe.empty() ? "" : text_of(setup.recipe)},
             {"specimen_count", setup.specimen_count},
             {"batch", arguments.batch.value_or(8)}};
+  if (arguments.same_specimens) json["same_specimens"] = true;
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -172,6 +180,7 @@ void run_search(const FitArguments& arguments, const FitSetup& setup) {
   problem.parameters = Eigen::Index(setup.parameters.size());
   problem.targets = targets_of(setup);
   problem.specimens = setup.specimen_count;
+  problem.same_specimens = setup.same_specimens;
   problem.tests = std::size_t(arguments.tests.value_or(long(fit::usual_tests(problem.parameters))));
   problem.batch = std::size_t(arguments.batch.value_or(8));
   FitOutcome outcome;
@@ -234,6 +243,9 @@ Command fit_command() {
               "MEASURE=value, =value+-standard error, MEASURE@pressure=value;\nfor example friction_angle_deg=30+-0.5");
   command.add("--curve", arguments.curves, "measured curve, DATA.csv or DATA.csv@pressure");
   command.add("--specimen", arguments.specimens, "specimens that all tests share, \"S_*.h5\"");
+  command.add("--same-specimens", arguments.same_specimens,
+              "the targets were measured on these very specimens (their mean), as those of\n"
+              "another code or of a scan; else on others of their kind");
   command.add("--recipe", arguments.recipe, "or a recipe: each test packs its own specimen, whose keys may be varied");
   command.add("--count", arguments.count, "specimens of the recipe, one a seed; default 5").between(1, 1'000'000);
   command.add("--tests", arguments.tests, "tests to spend; default 24 and 16 for each parameter").between(8, 100'000);

@@ -97,6 +97,7 @@ Json as_json(const FitSetup& setup, const FitOutcome& outcome) {
   json["misfit"] = finding.misfit;
   json["widening"] = finding.widening;
   json["specimens"] = setup.specimen_count;
+  json["same_specimens"] = setup.same_specimens;
   json["tests"] = Json::array();
   for (std::size_t k = 0; k < finding.trials.size(); ++k) {
     Json one{{"specimen", finding.trials[k].specimen + 1}, {"values", Json::object()}};
@@ -137,8 +138,10 @@ std::string as_text(const FitSetup& setup, const FitOutcome& outcome) {
 }
 
 void tell_of_doubts(const FitSetup& setup, const FitOutcome& outcome, std::size_t failed) {
-  if (setup.specimen_count == 1)
-    tell("one specimen: the intervals do not hold the scatter from specimen to specimen; give ten");
+  if (setup.specimen_count == 1 && !setup.same_specimens)
+    tell(
+        "one specimen: how much others differ is assumed, a third of how much the tests differ; give ten, or "
+        "--same-specimens if the targets were measured on this one");
   if (outcome.finding.misfit > 2)
     tell("the best parameters in their ranges miss the targets by " +
          ensemble::with_error(outcome.finding.misfit, std::nan("")) +

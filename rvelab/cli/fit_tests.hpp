@@ -28,6 +28,7 @@ struct FitSetup {
   std::vector<std::string> files;     ///< of the specimens
   std::vector<Specimen> specimens;
   std::size_t specimen_count = 0;  ///< of the recipe: seeds from its own on
+  bool same_specimens = false;     ///< the targets were measured on the given specimens
   std::vector<fit::Parameter> parameters;
   std::vector<fit::ScalarTarget> targets;
   std::vector<MeasuredCurve> curves;

@@ -25,10 +25,14 @@ Eigen::MatrixXd principal_directions(const Eigen::MatrixXd& scaled, Eigen::Index
 
 Components::Components(const std::vector<Target>& targets, const Eigen::MatrixXd& values, Eigen::Index parameters) {
   const auto count = Eigen::Index(targets.size());
+  Eigen::VectorXd measured(count), errors(count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    measured[k] = targets[std::size_t(k)].value;
+    errors[k] = targets[std::size_t(k)].error;
+  }
   shift_ = values.colwise().mean().transpose();
-  scale_ = ((values.rowwise() - shift_.transpose()).colwise().squaredNorm().transpose() / double(values.rows()))
-               .cwiseSqrt()
-               .cwiseMax(1e-300);
+  const Eigen::VectorXd squares = (values.rowwise() - shift_.transpose()).colwise().squaredNorm().transpose();
+  scale_ = (squares / double(values.rows()) + errors.cwiseAbs2()).cwiseSqrt().cwiseMax(1e-300);
   const Eigen::MatrixXd scaled = (values.rowwise() - shift_.transpose()) * scale_.cwiseInverse().asDiagonal();
   std::map<int, std::vector<Eigen::Index>> curves;
   std::vector<Eigen::VectorXd> directions;
@@ -48,11 +52,6 @@ Components::Components(const std::vector<Target>& targets, const Eigen::MatrixXd
   }
   directions_.resize(count, Eigen::Index(directions.size()));
   for (std::size_t c = 0; c < directions.size(); ++c) directions_.col(Eigen::Index(c)) = directions[c];
-  Eigen::VectorXd measured(count), errors(count);
-  for (Eigen::Index k = 0; k < count; ++k) {
-    measured[k] = targets[std::size_t(k)].value;
-    errors[k] = targets[std::size_t(k)].error;
-  }
   target_ = directions_.transpose() * (measured - shift_).cwiseQuotient(scale_);
   error_ = directions_.cwiseAbs().transpose() * errors.cwiseQuotient(scale_);
 }

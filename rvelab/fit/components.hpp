@@ -12,7 +12,8 @@ namespace rvelab::fit {
 class Components {
  public:
   /// `values`: one row a test, one column a target. A curve gets the components that hold 99 % of the variance of its
-  /// points over all tests, at most `parameters` + 2.
+  /// points over all tests, at most `parameters` + 2. Points are scaled by deviation of the tests and standard error,
+  /// sqrt(d^2 + e^2), so that one that was measured worse than the tests differ weighs little.
   Components(const std::vector<Target>& targets, const Eigen::MatrixXd& values, Eigen::Index parameters);
 
   Eigen::MatrixXd of(const Eigen::MatrixXd& values) const;    ///< one column a component

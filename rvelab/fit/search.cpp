@@ -53,7 +53,10 @@ class Judge {
     const Eigen::MatrixXd scores = components_.of(learned.values);
     const std::set<std::size_t> specimens(learned.specimens.begin(), learned.specimens.end());
     constexpr double of_many = 1.96;
-    if (specimens.size() > 1) student_ = ensemble::students_t(double(specimens.size() - 1)) / of_many;
+    if (problem.same_specimens)
+      of_specimens_ = problem.specimens;
+    else if (specimens.size() > 1)
+      student_ = ensemble::students_t(double(specimens.size() - 1)) / of_many;
     before.resize(std::size_t(scores.cols()));
     for (Eigen::Index k = 0; k < scores.cols(); ++k) {
       Eigen::VectorXd& hyperparameters = before[std::size_t(k)];
@@ -65,7 +68,7 @@ class Judge {
   Eigen::VectorXd log_likelihood(const Eigen::MatrixXd& places, double power, double widening) const {
     Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(places.rows());
     for (std::size_t k = 0; k < surrogates_.size(); ++k) {
-      const Prediction found = surrogates_[k].at(places);
+      const Prediction found = surrogates_[k].at(places, of_specimens_);
       const Eigen::ArrayXd variance = widening * widening * variance_of(k, found);
       sum -= 0.5 * (off(k, found).square() / variance + variance.log());
     }
@@ -76,7 +79,7 @@ class Judge {
   Eigen::VectorXd squares(const Eigen::MatrixXd& places) const {
     Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(places.rows());
     for (std::size_t k = 0; k < surrogates_.size(); ++k) {
-      const Prediction found = surrogates_[k].at(places);
+      const Prediction found = surrogates_[k].at(places, of_specimens_);
       sum += off(k, found).square() / variance_of(k, found);
     }
     return sum;
@@ -85,7 +88,8 @@ class Judge {
   /// Means of all targets at the places.
   Eigen::MatrixXd predicted(const Eigen::MatrixXd& places) const {
     Eigen::MatrixXd scores(places.rows(), Eigen::Index(surrogates_.size()));
-    for (std::size_t k = 0; k < surrogates_.size(); ++k) scores.col(Eigen::Index(k)) = surrogates_[k].at(places).mean;
+    for (std::size_t k = 0; k < surrogates_.size(); ++k)
+      scores.col(Eigen::Index(k)) = surrogates_[k].at(places, of_specimens_).mean;
     return components_.back(scores);
   }
 
@@ -102,6 +106,7 @@ class Judge {
 
   Components components_;
   std::vector<Surrogate> surrogates_;
+  std::size_t of_specimens_ = 0;  ///< whose mean was measured; 0: of all that there could be
   double student_ = 1;  ///< Student's t of the specimens over that of infinitely many: few tell their scatter badly
 };
 

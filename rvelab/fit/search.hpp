@@ -23,9 +23,10 @@ struct Problem {
   Eigen::Index parameters = 0;
   std::vector<Target> targets;
   std::size_t specimens = 1;
-  std::size_t tests = 0;       ///< to spend
-  std::size_t batch = 8;       ///< tests at a time, whatever the number of threads
-  Eigen::Index sample = 1000;  ///< places of the posterior sample
+  bool same_specimens = false;  ///< the targets were measured on these specimens (their mean), not on others of a kind
+  std::size_t tests = 0;        ///< to spend
+  std::size_t batch = 8;        ///< tests at a time, whatever the number of threads
+  Eigen::Index sample = 1000;   ///< places of the posterior sample
 };
 
 /// A test to make: its place in the unit cube of the parameters, and its specimen.

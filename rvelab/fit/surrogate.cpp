@@ -91,14 +91,17 @@ double Surrogate::cost(const Eigen::VectorXd& logarithms) {
   return std::isfinite(found) ? found : 1e300;
 }
 
-Prediction Surrogate::at(const Eigen::MatrixXd& places) const {
-  const Eigen::MatrixXd between = process_ * correlation(places, places_), terms = trend_at(places);
+Prediction Surrogate::at(const Eigen::MatrixXd& places, std::size_t of_specimens) const {
+  // The mean of n effects has the covariance shared/n with each of them, and with itself.
+  const double of_effects = of_specimens > 0 ? shared_ / double(of_specimens) : 0;
+  const Eigen::MatrixXd between = (process_ * correlation(places, places_)).array() + of_effects;
+  const Eigen::MatrixXd terms = trend_at(places);
   const Eigen::MatrixXd half = factor_.matrixL().solve(between.transpose());
   const Eigen::MatrixXd rest = (terms - between * solved_trend_).transpose();
   const Eigen::MatrixXd of_trend = information_.matrixL().solve(rest);
   Prediction found;
   found.mean = (shift_ + scale_ * (terms * trend_ + between * weights_).array()).matrix();
-  const Eigen::ArrayXd variance = process_ - half.colwise().squaredNorm().transpose().array() +
+  const Eigen::ArrayXd variance = process_ + of_effects - half.colwise().squaredNorm().transpose().array() +
                                   of_trend.colwise().squaredNorm().transpose().array();
   found.variance = (scale_ * scale_ * variance.max(0)).matrix();
   return found;

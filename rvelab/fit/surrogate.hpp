@@ -24,8 +24,10 @@ class Surrogate {
   Surrogate(const Eigen::MatrixXd& places, const std::vector<std::size_t>& specimens, const Eigen::VectorXd& values,
             const Eigen::VectorXd& before = {});
 
-  /// Of the mean over all specimens that there could be: the variance is that of not knowing it better.
-  Prediction at(const Eigen::MatrixXd& places) const;
+  /// Of the mean over all specimens that there could be, or over `of_specimens`, those of the tests among them: the
+  /// variance is that of not knowing it better. Of one specimen alone the former is known only as well as the prior
+  /// says how specimens scatter.
+  Prediction at(const Eigen::MatrixXd& places, std::size_t of_specimens = 0) const;
 
   /// Logarithms of the lengths, then of the standard deviations of process, specimen and test over that of the values.
   const Eigen::VectorXd& hyperparameters() const { return hyperparameters_; }

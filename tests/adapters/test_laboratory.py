@@ -179,11 +179,11 @@ class Fit(unittest.TestCase):
     def test_a_fit_is_that_of_the_program_and_is_drawn(self) -> None:
         short = {"stage.compression.to_strain": 0.04}
         found = rvelab.fit("biaxial", {"material.friction": (0.1, 0.9)}, {"friction_angle_deg": (30, 2)},
-                           specimens=[specimens["discs"]], tests=8, settings=short, output=folder / "fit")
+                           specimens=[specimens["discs"]], same_specimens=True, tests=8, settings=short, output=folder / "fit")
         (parameter,) = found["parameters"]
         self.assertEqual(parameter["key"], "material.friction")
         self.assertTrue(0.1 <= parameter["low_95"] < parameter["mean"] < parameter["high_95"] <= 0.9)
-        self.assertEqual(len(found["tests"]), 8)
+        self.assertEqual((len(found["tests"]), found["same_specimens"]), (8, True))
         rvelab.plot("fit", folder / "fit", output=folder / "fit.svg")
         swept = rvelab.fit("biaxial", {"material.friction": (0.2, 0.6, 2)}, specimens=specimens["discs"], settings=short,
                            output=folder / "sweep")

@@ -1,4 +1,5 @@
 // rvelab fit as a user runs it: a target, a measured curve, a sweep; stopped and resumed; mistakes.
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "tests/cli/program.hpp"
@@ -106,6 +107,22 @@ TEST_CASE("A recipe packs a specimen for each test, and its keys may be varied")
   CHECK(sweep[1]["start_void_ratio"]["mean"].get<double>() == Approx(0.24).margin(0.025));
 }
 
+TEST_CASE("The scatter of the friction angle falls with the root of the number of grains", "[slow]") {
+  const Workplace here;
+  const Outcome outcome = here.run(
+      "fit biaxial --recipe pack_dense --count 8 --vary pack.number=30:480:2 --set stage.compression.to_strain=0.05 "
+      "--set target.void_ratio_tolerance=0.003 --json");
+  INFO(outcome.errors);
+  REQUIRE(outcome.code == 0);
+  const auto sweep = nlohmann::json::parse(outcome.output)["sweep"];
+  const auto error = [&](int point) { return sweep[point]["friction_angle_deg"]["standard_error"].get<double>(); };
+  CHECK(sweep[1]["friction_angle_deg"]["n"] == 8);
+  // Sixteen times the grains: a quarter. Ratios of two variances of eight numbers scatter as F with 7 and 7 degrees of
+  // freedom, 1/4.99 to 4.99 in 95 %.
+  CHECK(error(0) / error(1) > 4 / std::sqrt(4.99));
+  CHECK(error(0) / error(1) < 4 * std::sqrt(4.99));
+}
+
 TEST_CASE("Mistakes of a fit are told before any test") {
   Workplace place;
   const Workplace& here = with_two_packings(place);
@@ -120,6 +137,10 @@ TEST_CASE("Mistakes of a fit are told before any test") {
                  "no specimen is given");
   expect_mistake(here.run(fit + "--recipe pack_dense --vary material.friction=0.1:1 --target friction_angle_deg=30"),
                  "--recipe and --specimen are both given");
+  expect_mistake(here.run("fit biaxial --recipe pack_dense --same-specimens --vary material.friction=0.1:1 --target "
+                          "friction_angle_deg=30"),
+                 "--same-specimens is given with --recipe");
+  expect_mistake(here.run(fit + "--same-specimens --vary material.friction=0.1:1:5"), "without a target");
   expect_mistake(here.run(fit + "--target angle=30 --vary material.friction=0.1:1"), "the nearest is");
   expect_mistake(here.run(fit + "--curve none.csv --vary material.friction=0.1:1"), "none.csv: no such file");
 }

@@ -165,6 +165,32 @@ TEST_CASE("at its peak a biaxial test takes no more second-order work, and a ban
   expect_mistake(here.run("probe S.h5 --bands"), "give the record file of a test");
 }
 
+TEST_CASE("spheres in triaxial compression: elastic at first, and at the peak no band before the work is spent",
+          "[slow]") {
+  // Axisymmetric compression resists bands (Rudnicki and Rice 1975): with second-order work at zero det Q is not below.
+  const Workplace here;
+  here.import_packing("hertz");
+  const auto probed = [&](const std::string& settings, const std::string& size) {
+    REQUIRE(here.run("run triaxial --specimen S.h5 -o R.h5 --force " + settings).code == 0);
+    return nlohmann::json::parse(here.run("probe R.h5 --bands --json " + size).output);
+  };
+  const auto early =
+      probed("--set stage.compression.to_strain=1e-4 --set stage.compression.record_every=2e-5", "--size 5e-5");
+  CHECK(early.at("acoustic_ratio").get<double>() > 0.8);
+  CHECK(early.at("acoustic_ratio").get<double>() < 1.05);
+  CHECK(early.at("second_order_work_ratio").get<double>() > 0.9);
+  const Outcome whole = here.run("run triaxial --specimen S.h5 -o W.h5 --json --set stage.compression.to_strain=0.03");
+  const double peak = nlohmann::json::parse(whole.output).at("peak_strain").get<double>();
+  const auto at_peak = probed("--set stage.compression.to_strain=" + std::to_string(peak), "");
+  CHECK(at_peak.at("stiffness_Pa").size() == 6);
+  CHECK(std::abs(at_peak.at("second_order_work_ratio").get<double>()) < 0.15);
+  CHECK(at_peak.at("acoustic_ratio").get<double>() > -0.05);  // what one specimen scatters by
+  CHECK(at_peak.at("acoustic_ratio").get<double>() < 0.15);
+  CHECK(at_peak.at("acoustic_mean_ratio").get<double>() > 0);
+  CHECK(at_peak.at("band_angle_deg").get<double>() > at_peak.at("roscoe_angle_deg").get<double>() - 8);
+  CHECK(at_peak.at("band_angle_deg").get<double>() < at_peak.at("coulomb_angle_deg").get<double>() + 8);
+}
+
 TEST_CASE("critical fits the line through the ends of tests, and says what it lacks", "[slow]") {
   const Workplace here;
   here.import_packing("dense_p20");

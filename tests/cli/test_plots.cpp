@@ -224,6 +224,29 @@ TEST_CASE("a logarithmic axis stands zeros, negative values and a single decade"
       "log True True True\nno value above 0 for a logarithmic axis; give records with a pressure above 0\n");
 }
 
+TEST_CASE("chains.py and rose.py draw the states of several files, and of all files in a folder") {
+  const Workplace here;
+  std::filesystem::create_directory(here / "all");
+  std::filesystem::create_directory(here / "none");
+  here.import_packing("dense_p20", "all/dense.h5");
+  here.import_packing("soft_p20", "all/soft.h5");
+  REQUIRE(
+      here.run("run biaxial --specimen all/dense.h5 -o all/ended.h5 --set stage.compression.to_strain=0.001").code ==
+      0);
+  const auto contacts = [&](const std::string& file) {
+    const auto found = nlohmann::json::parse(here.run("inspect " + file + " --json").output);
+    return std::to_string(found.at("contacts").get<int>()) + " contacts, ";
+  };
+  const std::string dense = contacts("all/dense.h5"), soft = contacts("all/soft.h5");
+  expect_figure(here, "chains", "all/dense.h5", "figure.png: " + dense);
+  expect_figure(here, "chains", "all/dense.h5 all/soft.h5", "dense.h5: " + dense);
+  expect_figure(here, "chains", "all", "dense.h5: " + dense);
+  expect_figure(here, "chains", "all", "; ended.h5: ");
+  expect_figure(here, "chains", "all", "; soft.h5: " + soft);
+  expect_figure(here, "rose", "all --together", "figure.png: ");
+  for (const char* script : {"chains", "rose"}) expect_refusal(here, script, "none", "none: no *.h5 there");
+}
+
 TEST_CASE("a film has a frame for each snapshot and the end, and says how to get snapshots") {
   const Workplace here;
   here.import_packing("dense_p20");

@@ -100,6 +100,48 @@ TEST_CASE("A surrogate knows the mean of all specimens no better than so many sp
   CHECK(found.mean[0] == Approx(12).margin(0.1));
 }
 
+TEST_CASE("Of its own specimens a surrogate knows the mean well, of one alone too") {
+  // A straight line, three specimens of ten, or only the first: each is off by its own amount in all of its tests.
+  const double effects[] = {0.9, -0.4, 0.1};
+  for (const std::size_t count : {std::size_t(3), std::size_t(1)}) {
+    CAPTURE(count);
+    const Eigen::MatrixXd places = fit::halton(30, 1);
+    Eigen::VectorXd values(30);
+    std::vector<std::size_t> specimens;
+    for (Eigen::Index k = 0; k < 30; ++k) {
+      specimens.push_back(std::size_t(k) % count);
+      values[k] = 10 + 4 * places(k, 0) + effects[specimens.back()] + 0.05 * std::sin(37.0 * double(k));
+    }
+    const fit::Surrogate surrogate(places, specimens, values);
+    const Eigen::MatrixXd middle = Eigen::MatrixXd::Constant(1, 1, 0.5);
+    const fit::Prediction own = surrogate.at(middle, count), any = surrogate.at(middle);
+    CHECK(own.mean[0] == Approx(12 + (count == 1 ? 0.9 : 0.2)).margin(0.03));  // three standard errors
+    CHECK(std::sqrt(own.variance[0]) < 0.05);
+    CHECK(std::sqrt(any.variance[0]) > 0.2);  // 0.66/sqrt 3; of one specimen the prior alone
+  }
+}
+
+TEST_CASE("A point of a curve that was measured worse than the tests differ does not blur the others") {
+  std::vector<fit::Target> targets;
+  Eigen::MatrixXd values(9, 12);
+  for (int point = 0; point < 12; ++point) {
+    targets.push_back({"y", 1.5, 0.05, 0});
+    for (int test = 0; test < 9; ++test) values(test, point) = 1 + (0.5 + 0.1 * test) * (point + 1) / 12.0;
+  }
+  // The curve begins where all tests agree but for 1e-5, known like every other point to 0.05.
+  std::vector<fit::Target> more = targets;
+  more.insert(more.begin(), {"y", 1.0, 0.05, 0});
+  Eigen::MatrixXd wider(9, 13);
+  for (int test = 0; test < 9; ++test) wider(test, 0) = 1 + 1e-5 * ((5 * test) % 9);
+  wider.rightCols(12) = values;
+  const auto blur = [](const fit::Components& components, const Eigen::MatrixXd& tests) {
+    const Eigen::VectorXd scores = components.of(tests).col(0);
+    return components.error()[0] / std::sqrt((scores.array() - scores.mean()).square().mean());
+  };
+  const double without = blur(fit::Components(targets, values, 2), values);
+  CHECK(blur(fit::Components(more, wider, 2), wider) == Approx(without).epsilon(0.01));
+}
+
 TEST_CASE("The points of a curve go into few components and come back") {
   // Two shapes in twelve points: two components hold them.
   std::vector<fit::Target> targets;

@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
-"""Force chains with the outline of the cell: chains.py S.h5|R.h5 -o chains.png (of a record file the last state).
+"""Force chains with the outline of the cell: chains.py S.h5|R.h5|FOLDER... -o chains.png (of record files the last state).
 
-Each contact is a line along its branch, as wide as its normal force; contacts that carry more than the mean are red,
-the others blue. Ellipses are drawn as they lie. The cell is dashed, grains of one cell are drawn once. In 3D one sees a
-slab, a mean diameter to both sides of the middle of the cell along y, projected onto the plane of x and z.
+Several states stand side by side, each with its own mean force and key. Each contact is a line along its branch, as wide as its
+normal force; contacts that carry more than the mean are red, the others blue. Ellipses are drawn as they lie. The cell is dashed,
+grains of one cell are drawn once. In 3D one sees a slab, a mean diameter to both sides of the middle of the cell along y,
+projected onto the plane of x and z.
 """
 
 import argparse
+import math
+import pathlib
 
 import records  # first: it says which package is missing
 import curves as kinds
@@ -87,19 +90,37 @@ def add_key(axes, mean):
                 title_fontsize=8, alignment="left")
 
 
-def draw(found, options):
-    state = found[0]
-    figure, axes = plt.subplots(figsize=(6, 6))
+def draw_state(axes, state, title):
+    """One state with its key under a title; what the summary says of it."""
     mean, strong = draw_network(axes, state)
     add_key(axes, mean)
     slab = "" if state.dimension == 2 else ", slab of two mean diameters"
-    axes.set_title(f"Normal forces, red above the mean{slab}", fontsize=11, loc="left")
+    axes.set_title(title + slab, fontsize=11, loc="left")
+    return f"{len(state.normal_force)} contacts, {strong} above the mean force of {mean:.4g} N"
+
+
+def draw(found, options):
+    title = "Normal forces, red above the mean"
+    if len(found) == 1:
+        figure, axes = plt.subplots(figsize=(6, 6))
+        told = draw_state(axes, found[0], title)
+        figure.savefig(options.output)
+        return f"{options.output}: {told}"
+    columns = math.ceil(math.sqrt(len(found)))
+    rows = math.ceil(len(found) / columns)
+    figure = plt.figure(figsize=(8 * columns, 6 * rows))  # with room for the key beside each state
+    lines = []
+    for k, state in enumerate(found):
+        name = pathlib.Path(state.path).name
+        lines.append(f"{name}: {draw_state(figure.add_subplot(rows, columns, k + 1), state, name)}")
+    figure.suptitle(title, fontsize=12)
+    figure.tight_layout()
     figure.savefig(options.output)
-    return f"{options.output}: {len(state.normal_force)} contacts, {strong} above the mean force of {mean:.4g} N"
+    return f"{options.output}: " + "; ".join(lines)
 
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(prog="chains.py", description=__doc__.splitlines()[0])
-    parser.add_argument("records", nargs=1, help="specimen or record file")
+    parser.add_argument("records", nargs="+", help="specimen or record files, or folders of them")
     parser.add_argument("-o", "--output", default="chains.png", help="figure to write (PNG, PDF or SVG)")
     records.run(draw, parser, read=states.read_states)

@@ -114,13 +114,8 @@ def draw(found, options):
 
 
 def read_same(paths):
-    """The states, of one dimension; of folders those of their *.h5."""
-    files = []
-    for path in map(pathlib.Path, paths):
-        files += sorted(path.glob("*.h5")) if path.is_dir() else [path]
-    found = states.read_states(files)
-    if not found:
-        raise ValueError(f"{', '.join(map(str, paths))}: no *.h5 there; give specimen or record files")
+    """The states, of one dimension."""
+    found = states.read_states(paths)
     if len({state.dimension for state in found}) > 1:
         raise ValueError(f"{', '.join(map(str, paths))}: 2D and 3D states; give one kind")
     return found

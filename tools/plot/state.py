@@ -53,8 +53,13 @@ def program():
 
 
 def read_states(paths):
-    """One state for each specimen or record file, of record files the last."""
-    return [read_state(path) for path in paths]
+    """One state for each specimen or record file, of record files the last; of folders those of their *.h5."""
+    files = []
+    for path in map(pathlib.Path, paths):
+        files += sorted(path.glob("*.h5")) if path.is_dir() else [path]
+    if not files:
+        raise ValueError(f"{', '.join(map(str, paths))}: no *.h5 there; give specimen or record files")
+    return [read_state(file) for file in files]
 
 
 def read_state(path):

@@ -159,16 +159,16 @@ def calibrate(protocol: _PathLike, specimens: _PathLike | Rve | Iterable[_PathLi
 def fit(protocol: _PathLike, vary: Mapping[str, Sequence[Any]], targets: Mapping[str, Any] | None = None,
         curves: Mapping[_PathLike, float] | Iterable[_PathLike] = (), *,
         specimens: _PathLike | Rve | Iterable[_PathLike | Rve] = (), recipe: _PathLike | None = None,
-        count: int | None = None, tests: int | None = None, settings: Mapping[str, Any] | None = None,
-        output: _PathLike | None = None, threads: int | None = None, overwrite: bool = False,
-        resume: bool = False) -> dict[str, Any]:
+        same_specimens: bool = False, count: int | None = None, tests: int | None = None,
+        settings: Mapping[str, Any] | None = None, output: _PathLike | None = None, threads: int | None = None,
+        overwrite: bool = False, resume: bool = False) -> dict[str, Any]:
     """Finds the parameters whose tests give what was measured, and returns what `rvelab fit` prints: parameters (key,
     mean, low_95, high_95, ...), targets, tests, posterior_sample. Without targets and curves a sweep.
 
     vary: {"material.friction": (0.1, 1.0)}; (low, high, "log"); of a sweep (low, high, number of values). targets:
     {"friction_angle_deg": 30} or (value, standard error); "friction_angle_deg@50e3" at a pressure in Pa. curves: measured
-    curves, CSV files, or {file: pressure in Pa}. specimens that all tests share, or a recipe with count specimens. tests:
-    their number. output: folder for fit.json and the other files; plot("fit", output) draws it. resume: go on there."""
+    curves, CSV files, or {file: pressure in Pa}. specimens that all tests share, or a recipe with count specimens.
+    same_specimens: the targets were measured on these very specimens. tests: their number. output: folder for fit.json and the other files; plot("fit", output) draws it. resume: go on there."""
     words = ["fit", protocol]
     for key, bounds in vary.items():
         words += ["--vary", f"{key}=" + ":".join(map(str, bounds))]
@@ -185,5 +185,5 @@ def fit(protocol: _PathLike, vary: Mapping[str, Sequence[Any]], targets: Mapping
         for name, value in (("--recipe", recipe), ("--count", count), ("--tests", tests), ("-o", output),
                             ("--threads", threads)):
             words += [name, os.fspath(value) if isinstance(value, os.PathLike) else str(value)] if value is not None else []
-        words += words_of(settings, {})
+        words += words_of(settings, {}) + (["--same-specimens"] if same_specimens else [])
         return ask(words + (["--force"] if overwrite else []) + (["--resume"] if resume else []))
