@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "tools/mpm/rocks.hpp"
+
 namespace mpm {
 
 template <int D>
@@ -12,10 +14,12 @@ void Bodies<D>::detect_contact(const Grid<D>& grid, const Planes<D>& planes, con
   sweeps_ = 1;
   bool at_nodes = false;
   for (int k = 0; k < int(all.size()); ++k) {
+    const std::size_t first = surface_.size();
     if (all[k].at_surface)
       detect_surface(grid, planes, soil, k, time, workers);
     else
       at_nodes = true;
+    if (all[k].plate) all[k].plate->first = first, all[k].plate->last = surface_.size();
   }
   if (at_nodes) detect_nodes(grid, planes, time, workers);
   if (rocks != nullptr) detect_rocks(grid, planes, soil);
@@ -44,17 +48,21 @@ void Bodies<D>::detect_nodes(const Grid<D>& grid, const Planes<D>& planes, doubl
 }
 
 template <int D>
-Vec<D> Bodies<D>::stop(const Contact& contact, const Vec<D>& speed, double* velocity) const {
-  const auto& body = all[contact.body];
+Vec<D> Bodies<D>::stop(const Grid<D>& grid, const Contact& contact, double time, double* velocity) const {
+  const bool of_rock = contact.body >= int(all.size());
+  const bool rough = of_rock ? rocks->soil.rough : all[contact.body].rough;
+  const double friction = of_rock ? rocks->soil.friction : all[contact.body].friction;
+  const Vec<D> speed = of_rock ? rocks->speed_at(contact.body - int(all.size()), grid.position(grid.index(contact.node)))
+                               : all[contact.body].velocity_at(time);
   Vec<D> relative, jump;
   for (int i = 0; i < D; ++i) relative[i] = velocity[i] - speed[i];
   const double across = relative.dot(contact.normal);
   if (across >= 0) return Vec<D>::Zero();
   Vec<D> along = relative - across * contact.normal;
-  if (body.rough) {
+  if (rough) {
     along.setZero();
   } else if (const double slip = along.norm(); slip > 0) {
-    along *= std::max(0.0, 1 + body.friction * across / slip);
+    along *= std::max(0.0, 1 + friction * across / slip);
   }
   for (int i = 0; i < D; ++i) {
     const double stopped = speed[i] + along[i];
@@ -66,12 +74,10 @@ Vec<D> Bodies<D>::stop(const Contact& contact, const Vec<D>& speed, double* velo
 
 template <int D>
 void Bodies<D>::set_start(Grid<D>& grid, double time) {
-  for (auto& contact : contacts_) {
-    auto& node = grid.nodes[contact.node];
-    contact.jump = stop(contact, all[contact.body].velocity.at(time), node.v);
-  }
-  for (auto& point : surface_) point.impulse.setZero();
+  start_plates();
   if (rocks != nullptr) start_rocks();
+  for (auto& contact : contacts_) contact.jump = stop(grid, contact, time, grid.nodes[contact.node].v);
+  for (auto& point : surface_) point.impulse.setZero();
   hold_surface(grid, time, false);
 }
 
@@ -83,10 +89,7 @@ void Bodies<D>::book(int body, const Node<D>& node, int component, double impuls
 
 template <int D>
 void Bodies<D>::hold_end(Grid<D>& grid, double time) {
-  for (auto& contact : contacts_) {
-    auto& node = grid.nodes[contact.node];
-    contact.jump += stop(contact, all[contact.body].velocity.at(time), node.w);
-  }
+  for (auto& contact : contacts_) contact.jump += stop(grid, contact, time, grid.nodes[contact.node].w);
   hold_surface(grid, time, true);
 }
 
@@ -94,6 +97,7 @@ template <int D>
 void Bodies<D>::book_reactions(const Grid<D>& grid, const Planes<D>& planes) {
   // Work is done over the displacement of the node in the end, which a second body at it may have changed.
   for (const auto& contact : contacts_) {
+    if (contact.body >= int(all.size())) continue;
     const auto& node = grid.nodes[contact.node];
     for (int i = 0; i < D; ++i) {
       if (!planes.holds(contact.node, i)) book(contact.body, node, i, node.mass * contact.jump[i]);

@@ -139,7 +139,7 @@ std::vector<double> history_row(const Solver<D>& solver, const EnergyStart& star
       row.push_back(since > 0 ? -(impulse - before[at]) / since : 0);
       before[at] = impulse;
     }
-    const Vec<D> displacement = each.velocity.displacement(solver.time);
+    const Vec<D> displacement = each.displacement_at(solver.time);
     for (int i = 0; i < D; ++i) row.push_back(displacement[i]);
   });
   for (std::size_t k = 0; solver.fluid && k < solver.planes.all.size(); ++k) {

@@ -127,11 +127,7 @@ void Bodies<D>::hold_rock(std::size_t k, Grid<D>& grid, bool end) {
   const std::size_t number = std::size_t(point.body) - all.size();
   const auto& rock = rocks->all[number].body;
   auto& motion = rocks->motion[number];
-  Vec<D> relative = -motion.velocity - spun<D>(motion.spin, here.r);
-  for (int j = 0; j < point.count; ++j) {
-    const auto& node = grid.nodes[point.node[j]];
-    for (int i = 0; i < D; ++i) relative[i] += point.weight[j] * (end ? node.w : node.v)[i];
-  }
+  Vec<D> relative = velocity_at(grid, point, end) - motion.velocity - spun<D>(motion.spin, here.r);
   relative -= here.mobility * point.now;  // without this point's impulse
   relative += here.gap / rocks->step * point.normal;
   Vec<D> impulse = Vec<D>::Zero();
@@ -154,10 +150,7 @@ void Bodies<D>::hold_rock(std::size_t k, Grid<D>& grid, bool end) {
   const Vec<D> more = impulse - point.now;
   if (more.isZero(0)) return;
   point.now = impulse;
-  for (int j = 0; j < point.count; ++j) {
-    auto& node = grid.nodes[point.node[j]];
-    for (int i = 0; i < D; ++i) (end ? node.w : node.v)[i] += point.weight[j] / node.mass * more[i];
-  }
+  push(grid, point, more, end);
   motion.velocity -= (more / rock.mass).cwiseProduct(rock.free);
   motion.spin -= rock.spin_of(moment<D>(here.r, more));
 }
@@ -165,6 +158,17 @@ void Bodies<D>::hold_rock(std::size_t k, Grid<D>& grid, bool end) {
 /// Impulse and work on the soil, and what the rocks get of it.
 template <int D>
 void Bodies<D>::book_rocks(const Grid<D>& grid, const Planes<D>& planes) {
+  for (const auto& contact : contacts_) {
+    if (contact.body < int(all.size())) continue;
+    auto& rock = rocks->all[std::size_t(contact.body) - all.size()];
+    const auto& node = grid.nodes[contact.node];
+    const Vec<D> impulse = node.mass * contact.jump, r = grid.position(grid.index(contact.node)) - rock.body.centre;
+    rock.impulse -= impulse;
+    rock.angular_impulse -= moment<D>(r, impulse);
+    for (int i = 0; i < D; ++i) {
+      if (!planes.holds(contact.node, i)) rocks->work_on_soil += 0.5 * impulse[i] * (node.w[i] + node.a[i]);
+    }
+  }
   const std::size_t first = surface_.size() - rocks->surface.size();
   for (std::size_t k = first; k < surface_.size(); ++k) {
     const auto& point = surface_[k];

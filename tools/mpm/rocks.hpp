@@ -6,6 +6,7 @@
 // Everything is done in the order of the rocks' numbers and by one thread: rocks are few beside the points.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,8 +44,15 @@ struct Wall {
   Vec<D> velocity = Vec<D>::Zero();                        ///< m/s
   bool follows_material = true;                            ///< its friction is the rock's; else:
   double friction = 0;
+  double mass = std::numeric_limits<double>::infinity();  ///< kg
   bool there = true;
   int number = 0;  ///< of the body
+};
+
+struct NoPlates {
+  template <class Forces>
+  void kick(const Forces&, double) const {}
+  void drift(double) const {}
 };
 
 /// J, of all rocks.
@@ -91,19 +99,23 @@ class Rocks {
   std::vector<std::pair<int, int>> rocks_within(double margin) const;
   /// Finds what may touch within a step of dt (s). `walls`: those at the time now.
   void find_candidates(const std::vector<Wall<D>>& walls, const Vec<D>& gravity, double dt);
-  /// A step under gravity (m/s^2), the soil's forces and contacts; `walls(t)`: those at a time in s.
-  template <class Walls>
-  void advance(const Walls& walls, const Vec<D>& gravity, double time, double dt) {
+  /// A step under gravity (m/s^2), the soil's forces and contacts; `walls(t)`: those at a time in s. `plates`: the
+  /// walls that rocks move, which take part in the sub-steps.
+  template <class Walls, class Plates = NoPlates>
+  void advance(const Walls& walls, const Vec<D>& gravity, double time, double dt, const Plates& plates = {}) {
     const std::vector<Wall<D>> now = walls(time);
     find_candidates(now, gravity, dt);
     const long n = sub_steps_for(now, gravity, dt);
     take_impulses(dt);
     for (long k = 0; k < n; ++k) {
       kick(gravity, 0.5 * dt / double(n));
+      plates.kick(wall_force, 0.5 * dt / double(n));
       for (auto& rock : all) rock.body.drift(dt / double(n));
+      plates.drift(dt / double(n));
       book_soil_work(dt / double(n));
       contact_forces(walls(time + dt * double(k + 1) / double(n)), dt / double(n), 1.0 / double(n));
       kick(gravity, 0.5 * dt / double(n));
+      plates.kick(wall_force, 0.5 * dt / double(n));
     }
     sub_steps += n;
   }
@@ -125,6 +137,10 @@ class Rocks {
     Spin<D> spin;
   };
   std::vector<Motion> motion;
+  Vec<D> speed_at(int rock, const Vec<D>& place) const {  ///< m/s
+    const auto& of = motion[std::size_t(rock)];
+    return of.velocity + spun<D>(of.spin, place - all[std::size_t(rock)].body.centre);
+  }
   double step = 0;  ///< s, of the step that is made
 
   struct Pair {

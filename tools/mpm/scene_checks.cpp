@@ -1,6 +1,7 @@
 #include "tools/mpm/scene_checks.hpp"
 
 #include "tools/mpm/scene_water.hpp"
+#include "tools/mpm/setup_plates.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -175,6 +176,7 @@ void check_scene(const Scene& scene, const std::string& path) {
   check_sides(scene, path);
   check_watched(scene, path);
   check_water(scene, path);
+  check_plates(scene, path);
   check_rocks(scene, path);
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tools/mpm/bodies.hpp"
+#include "tools/mpm/rocks.hpp"
 #include "tools/mpm/touching.hpp"
 
 namespace mpm {
@@ -92,26 +93,31 @@ void Bodies<D>::add_node(const Grid<D>& grid, const Planes<D>& planes, const typ
   point.weight[point.count++] = weight;
 }
 
+template <int D>
+bool Bodies<D>::is_inside(int body, const Vec<D>& place, double time) const {
+  Vec<D> outward;
+  const int rock = body - int(all.size());
+  if (rock < 0) return all[body].distance(place - all[body].centre_at(time), outward) <= 0;
+  return rocks->distance(rocks->all[std::size_t(rock)], place, 0) <= 0;
+}
+
 /// Adds a point of the surface to those that are held. A node of little mass, which the soil only just reaches, would
 /// take the impulse and leave the soil where it is (a plate on an elastic block: 16 % of the stress lost): it is left
-/// out, and moves with a prescribed body if it lies in it.
+/// out, and moves with the body if it lies in it: alone, a node outside of the soil has forces that fall more slowly
+/// than its mass, and grows unstable.
 template <int D>
 void Bodies<D>::hold(SurfacePoint& point, const Grid<D>& grid, double time) {
   if (point.count == 0) return;
   constexpr double little = 0.1;  // of the mass per weight at the node of most weight
   const int most = int(std::max_element(point.weight, point.weight + point.count) - point.weight);
   const double usual = grid.nodes[point.node[most]].mass / point.weight[most];
-  const bool of_rock = point.body >= int(all.size());
-  const Vec<D> centre = of_rock ? Vec<D>(Vec<D>::Zero()) : all[point.body].centre_at(time);
   double sum = 0;
   int kept = 0;
   for (int j = 0; j < point.count; ++j) {
     const long node = point.node[j];
     if (grid.nodes[node].mass < little * usual * point.weight[j]) {
-      if (of_rock) continue;
-      Vec<D> outward;
-      const bool inside = all[point.body].distance(grid.position(grid.index(node)) - centre, outward) <= 0;
-      if (inside) contacts_.push_back({node, point.body, point.normal, Vec<D>::Zero()});
+      if (is_inside(point.body, grid.position(grid.index(node)), time))
+        contacts_.push_back({node, point.body, point.normal, Vec<D>::Zero()});
       continue;
     }
     point.node[kept] = node;
@@ -182,6 +188,25 @@ void Bodies<D>::hold_in_column(const Grid<D>& grid, const Planes<D>& planes, Sur
   hold(point, grid, time);
 }
 
+/// m/s, of the soil.
+template <int D>
+Vec<D> Bodies<D>::velocity_at(const Grid<D>& grid, const SurfacePoint& point, bool end) const {
+  Vec<D> sum = Vec<D>::Zero();
+  for (int j = 0; j < point.count; ++j) {
+    const auto& node = grid.nodes[point.node[j]];
+    for (int i = 0; i < D; ++i) sum[i] += point.weight[j] * (end ? node.w : node.v)[i];
+  }
+  return sum;
+}
+
+template <int D>
+void Bodies<D>::push(Grid<D>& grid, SurfacePoint& point, const Vec<D>& impulse, bool end) const {
+  for (int j = 0; j < point.count; ++j) {
+    auto& node = grid.nodes[point.node[j]];
+    for (int i = 0; i < D; ++i) (end ? node.w : node.v)[i] += point.weight[j] / node.mass * impulse[i];
+  }
+}
+
 /// Impulses that keep the soil from entering: across the surface they only push, along it they act up to friction.
 template <int D>
 void Bodies<D>::hold_surface(Grid<D>& grid, double time, bool end) {
@@ -195,11 +220,8 @@ void Bodies<D>::hold_surface(Grid<D>& grid, double time, bool end) {
         continue;
       }
       const auto& body = all[point.body];
-      Vec<D> relative = -body.velocity.at(time);
-      for (int j = 0; j < point.count; ++j) {
-        const auto& node = grid.nodes[point.node[j]];
-        for (int i = 0; i < D; ++i) relative[i] += point.weight[j] * (end ? node.w : node.v)[i];
-      }
+      if (body.pressed()) continue;
+      const Vec<D> relative = velocity_at(grid, point, end) - body.velocity.at(time);
       const Vec<D> wanted = point.now - relative / point.mobility;
       const double across = std::max(0.0, wanted.dot(point.normal));
       Vec<D> along = Vec<D>::Zero();
@@ -211,10 +233,10 @@ void Bodies<D>::hold_surface(Grid<D>& grid, double time, bool end) {
       const Vec<D> more = across * point.normal + along - point.now;
       if (more.isZero(0)) continue;
       point.now += more;
-      for (int j = 0; j < point.count; ++j) {
-        auto& node = grid.nodes[point.node[j]];
-        for (int i = 0; i < D; ++i) (end ? node.w : node.v)[i] += point.weight[j] / node.mass * more[i];
-      }
+      push(grid, point, more, end);
+    }
+    for (auto& body : all) {
+      if (body.pressed()) hold_plate(body, grid, end);
     }
   }
   for (auto& point : surface_) point.impulse += point.now;
@@ -226,6 +248,10 @@ template void Bodies<2>::hold_surface(Grid<2>&, double, bool);
 template void Bodies<3>::detect_surface(const Grid<3>&, const Planes<3>&, const std::vector<Point<3>>&, int, double,
                                         Workers&);
 template void Bodies<3>::hold_surface(Grid<3>&, double, bool);
+template Vec<2> Bodies<2>::velocity_at(const Grid<2>&, const SurfacePoint&, bool) const;
+template Vec<3> Bodies<3>::velocity_at(const Grid<3>&, const SurfacePoint&, bool) const;
+template void Bodies<2>::push(Grid<2>&, SurfacePoint&, const Vec<2>&, bool) const;
+template void Bodies<3>::push(Grid<3>&, SurfacePoint&, const Vec<3>&, bool) const;
 template void Bodies<2>::hold_at(const Grid<2>&, const Planes<2>&, SurfacePoint&, double, const Vec<2>&);
 template void Bodies<3>::hold_at(const Grid<3>&, const Planes<3>&, SurfacePoint&, double, const Vec<3>&);
 
