@@ -40,7 +40,7 @@ void Bodies<D>::detect_nodes(const Grid<D>& grid, const Planes<D>& planes, doubl
       for (int k = 0; k < int(all.size()); ++k) {
         Vec<D> outward;
         if (all[k].at_surface || all[k].distance(x - centres[k], outward) > touch) continue;
-        pieces[piece].push_back({flat, k, outward, Vec<D>::Zero()});
+        pieces[piece].push_back({flat, k, outward, Vec<D>::Zero(), Vec<D>::Zero()});
       }
     }
   });
@@ -52,8 +52,9 @@ Vec<D> Bodies<D>::stop(const Grid<D>& grid, const Contact& contact, double time,
   const bool of_rock = contact.body >= int(all.size());
   const bool rough = of_rock ? rocks->soil.rough : all[contact.body].rough;
   const double friction = of_rock ? rocks->soil.friction : all[contact.body].friction;
-  const Vec<D> speed = of_rock ? rocks->speed_at(contact.body - int(all.size()), grid.position(grid.index(contact.node)))
-                               : all[contact.body].velocity_at(time);
+  const Vec<D> speed = of_rock
+                           ? rocks->speed_at(contact.body - int(all.size()), grid.position(grid.index(contact.node)))
+                           : all[contact.body].velocity_at(time);
   Vec<D> relative, jump;
   for (int i = 0; i < D; ++i) relative[i] = velocity[i] - speed[i];
   const double across = relative.dot(contact.normal);
@@ -76,31 +77,35 @@ template <int D>
 void Bodies<D>::set_start(Grid<D>& grid, double time) {
   start_plates();
   if (rocks != nullptr) start_rocks();
-  for (auto& contact : contacts_) contact.jump = stop(grid, contact, time, grid.nodes[contact.node].v);
-  for (auto& point : surface_) point.impulse.setZero();
+  for (auto& contact : contacts_) {
+    contact.at_start = stop(grid, contact, time, grid.nodes[contact.node].v);
+    contact.at_end.setZero();
+  }
+  for (auto& point : surface_) point.at_start.setZero(), point.at_end.setZero();
   hold_surface(grid, time, false);
 }
 
 template <int D>
-void Bodies<D>::book(int body, const Node<D>& node, int component, double impulse) {
-  all[body].reaction.impulse[component] += impulse;
-  all[body].reaction.work += 0.5 * impulse * (node.w[component] + node.a[component]);
+void Bodies<D>::book(int body, const Node<D>& node, int component, double at_start, double at_end) {
+  all[body].reaction.impulse[component] += at_start + at_end;
+  all[body].reaction.work += work_at(node, component, at_start, at_end);
 }
 
 template <int D>
 void Bodies<D>::hold_end(Grid<D>& grid, double time) {
-  for (auto& contact : contacts_) contact.jump += stop(grid, contact, time, grid.nodes[contact.node].w);
+  for (auto& contact : contacts_) contact.at_end += stop(grid, contact, time, grid.nodes[contact.node].w);
   hold_surface(grid, time, true);
 }
 
 template <int D>
 void Bodies<D>::book_reactions(const Grid<D>& grid, const Planes<D>& planes) {
-  // Work is done over the displacement of the node in the end, which a second body at it may have changed.
+  // A second body at a node may change its velocity once more.
   for (const auto& contact : contacts_) {
     if (contact.body >= int(all.size())) continue;
     const auto& node = grid.nodes[contact.node];
     for (int i = 0; i < D; ++i) {
-      if (!planes.holds(contact.node, i)) book(contact.body, node, i, node.mass * contact.jump[i]);
+      if (planes.holds(contact.node, i)) continue;
+      book(contact.body, node, i, node.mass * contact.at_start[i], node.mass * contact.at_end[i]);
     }
   }
   for (const auto& point : surface_) {
@@ -108,7 +113,8 @@ void Bodies<D>::book_reactions(const Grid<D>& grid, const Planes<D>& planes) {
     for (int j = 0; j < point.count; ++j) {
       for (int i = 0; i < D; ++i) {
         if (planes.holds(point.node[j], i)) continue;
-        book(point.body, grid.nodes[point.node[j]], i, point.weight[j] * point.impulse[i]);
+        const double weight = point.weight[j];
+        book(point.body, grid.nodes[point.node[j]], i, weight * point.at_start[i], weight * point.at_end[i]);
       }
     }
   }

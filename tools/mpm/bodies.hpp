@@ -1,6 +1,6 @@
-// Rigid bodies with a prescribed velocity (shapes: body_shapes.hpp), and plates under pressure (plate.hpp). Where the soil's velocity approaches that of a
-// body, the body stops it at its surface: rough (no slip) or with Coulomb friction, free to part. The reaction on the
-// body is equal and opposite.
+// Rigid bodies with a prescribed velocity (shapes: body_shapes.hpp), and plates under pressure (plate.hpp). Where the
+// soil's velocity approaches that of a body, the body stops it at its surface: rough (no slip) or with Coulomb
+// friction, free to part. The reaction on the body is equal and opposite.
 //
 // Contact at nodes: each node inside the body is held by itself. Contact at the surface: the soil's velocity sum N_I
 // v_I is held at points of the surface, a cell apart, by impulses J that the nodes get as N_I J. A uniform stress is
@@ -31,8 +31,8 @@ struct Body {
   bool rough = true;               ///< no slip while it is pressed
   double friction = 0;             ///< coefficient, where it is not rough
   bool at_surface = false;         ///< contact at the surface, not at nodes
-  VelocityHistory<D> velocity;  ///< prescribed
-  std::optional<Plate> plate;   ///< under pressure, up to a time
+  VelocityHistory<D> velocity;     ///< prescribed
+  std::optional<Plate> plate;      ///< under pressure, up to a time
   Reaction<D> reaction;
 
   bool pressed() const { return plate && plate->free(); }
@@ -97,7 +97,8 @@ class Bodies {
     long node;
     int body;  ///< from the number of bodies on: a rock
     Vec<D> normal;
-    Vec<D> jump;  ///< m/s, what this body alone changed the soil's velocity by over the step
+    /// m/s, what this body alone changed the soil's velocity by: at the start, at the end of the step.
+    Vec<D> at_start, at_end;
   };
   static constexpr int reach = D == 2 ? 9 : 27;
   static constexpr long chunk = 1024;  ///< points or nodes of one piece of work
@@ -109,7 +110,8 @@ class Bodies {
     double weight[reach];
     int count = 0;
     double mobility = 0;  ///< m/s of N s: sum of weight^2/mass
-    Vec<D> now, impulse;  ///< N s, of the body on the soil: at this start or end, over the step
+    Vec<D> now, at_start,
+        at_end;  ///< N s, of the body on the soil: as it is held, at the start, at the end of the step
   };
   template <class Outline>
   void detect_soil(const Grid<D>& grid, const Outline& outline, const Vec<D>& centre, const std::vector<Point<D>>& soil,
@@ -140,7 +142,12 @@ class Bodies {
   void book_rocks(const Grid<D>& grid, const Planes<D>& planes);
   /// Stops the soil at a node; the change of its velocity.
   Vec<D> stop(const Grid<D>& grid, const Contact& contact, double time, double* velocity) const;
-  void book(int body, const Node<D>& node, int component, double impulse);
+  /// J, of impulses (N s) of one component at the start and at the end of the step, over the changes of the velocity
+  /// there.
+  static double work_at(const Node<D>& node, int i, double at_start, double at_end) {
+    return 0.5 * (at_start * (node.a[i] + node.v[i]) + at_end * (node.v[i] + node.w[i]));
+  }
+  void book(int body, const Node<D>& node, int component, double at_start, double at_end);
   std::vector<Contact> contacts_;
   std::vector<SurfacePoint> surface_;
   std::vector<SurfaceMobility> met_;    ///< of one plate at a time

@@ -96,8 +96,8 @@ void each_plate(Bodies<D>& bodies, Visit visit) {
   for (auto& body : bodies.all) {
     if (!body.plate) continue;
     auto& plate = *body.plate;
-    for (double* value : {&plate.mass, &plate.area, &plate.displacement, &plate.velocity, &plate.rock_force,
-                          &plate.held_from}) {
+    for (double* value :
+         {&plate.mass, &plate.area, &plate.displacement, &plate.velocity, &plate.rock_force, &plate.held_from}) {
       visit(*value);
     }
   }

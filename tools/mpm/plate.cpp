@@ -109,9 +109,11 @@ void Bodies<D>::sum_plate_forces(const Grid<D>& grid, double time, double dt) {
     if (!body.pressed()) continue;
     auto& plate = *body.plate;
     double soil = 0;
-    for (std::size_t k = plate.first; k < plate.last; ++k) soil -= surface_[k].impulse.dot(body.plate_normal());
+    for (std::size_t k = plate.first; k < plate.last; ++k)
+      soil -= (surface_[k].at_start + surface_[k].at_end).dot(body.plate_normal());
     for (const auto& contact : contacts_) {
-      if (&body == all.data() + contact.body) soil -= grid.nodes[contact.node].mass * contact.jump.dot(body.plate_normal());
+      if (&body == all.data() + contact.body)
+        soil -= grid.nodes[contact.node].mass * (contact.at_start + contact.at_end).dot(body.plate_normal());
     }
     plate.force = plate.pressure.at(time) * plate.area + soil / dt;
     plate.rock_impulse = 0;
@@ -143,14 +145,14 @@ void Bodies<D>::end_plates(double dt) {
   }
 }
 
-#define MPM_INSTANTIATE(D)                                                                        \
-  template void Bodies<D>::place_plates(const Grid<D>&, const Planes<D>&, double);                \
-  template void Bodies<D>::start_plates();                                                        \
-  template void Bodies<D>::predict_plates(double, double);                                        \
-  template void Bodies<D>::hold_plate(Body<D>&, Grid<D>&, bool);                                  \
-  template void Bodies<D>::sum_plate_forces(const Grid<D>&, double, double);                                      \
-  template void Bodies<D>::kick_plates(const std::vector<Vec<D>>&, std::size_t, double);          \
-  template void Bodies<D>::drift_plates(double);                                                  \
+#define MPM_INSTANTIATE(D)                                                               \
+  template void Bodies<D>::place_plates(const Grid<D>&, const Planes<D>&, double);       \
+  template void Bodies<D>::start_plates();                                               \
+  template void Bodies<D>::predict_plates(double, double);                               \
+  template void Bodies<D>::hold_plate(Body<D>&, Grid<D>&, bool);                         \
+  template void Bodies<D>::sum_plate_forces(const Grid<D>&, double, double);             \
+  template void Bodies<D>::kick_plates(const std::vector<Vec<D>>&, std::size_t, double); \
+  template void Bodies<D>::drift_plates(double);                                         \
   template void Bodies<D>::end_plates(double);
 MPM_INSTANTIATE(2)
 MPM_INSTANTIATE(3)

@@ -162,24 +162,27 @@ void Bodies<D>::book_rocks(const Grid<D>& grid, const Planes<D>& planes) {
     if (contact.body < int(all.size())) continue;
     auto& rock = rocks->all[std::size_t(contact.body) - all.size()];
     const auto& node = grid.nodes[contact.node];
-    const Vec<D> impulse = node.mass * contact.jump, r = grid.position(grid.index(contact.node)) - rock.body.centre;
+    const Vec<D> impulse = node.mass * (contact.at_start + contact.at_end),
+                 r = grid.position(grid.index(contact.node)) - rock.body.centre;
     rock.impulse -= impulse;
     rock.angular_impulse -= moment<D>(r, impulse);
     for (int i = 0; i < D; ++i) {
-      if (!planes.holds(contact.node, i)) rocks->work_on_soil += 0.5 * impulse[i] * (node.w[i] + node.a[i]);
+      if (planes.holds(contact.node, i)) continue;
+      rocks->work_on_soil += node.mass * work_at(node, i, contact.at_start[i], contact.at_end[i]);
     }
   }
   const std::size_t first = surface_.size() - rocks->surface.size();
   for (std::size_t k = first; k < surface_.size(); ++k) {
     const auto& point = surface_[k];
     auto& rock = rocks->all[std::size_t(point.body) - all.size()];
-    rock.impulse -= point.impulse;
-    rock.angular_impulse -= moment<D>(rocks->surface[k - first].r, point.impulse);
+    const Vec<D> impulse = point.at_start + point.at_end;
+    rock.impulse -= impulse;
+    rock.angular_impulse -= moment<D>(rocks->surface[k - first].r, impulse);
     for (int j = 0; j < point.count; ++j) {
       const auto& node = grid.nodes[point.node[j]];
       for (int i = 0; i < D; ++i) {
         if (planes.holds(point.node[j], i)) continue;
-        rocks->work_on_soil += 0.5 * point.weight[j] * point.impulse[i] * (node.w[i] + node.a[i]);
+        rocks->work_on_soil += point.weight[j] * work_at(node, i, point.at_start[i], point.at_end[i]);
       }
     }
   }

@@ -40,8 +40,8 @@ std::vector<PlateSide> sides_of(const Solver<D>& solver, const Body<D>& body) {
       if (found.size() != 1) {
         throw InputError("body." + body.name + ".pressure_Pa: acts on the area between the boundaries beside it, and " +
                          std::to_string(found.size()) + " bound the specimen along " + axis_names[axis] +
-                         (above ? " from above" : " from below") +
-                         "; give body." + body.name + ".area_m2, or one [[boundary]] or half-space on each side");
+                         (above ? " from above" : " from below") + "; give body." + body.name +
+                         ".area_m2, or one [[boundary]] or half-space on each side");
       }
       sides.push_back(found[0]);
     }
@@ -66,8 +66,9 @@ std::optional<PlateOfScene> read_plate(Keys& keys) {
   keys.known("plate_mass_kg");
   keys.known("area_m2");
   for (const double value : plate.pressure.values) {
-    if (value < 0) keys.wrong(keys.has("pressure_Pa") ? "pressure_Pa" : "pressure_history",
-                              "is negative, and a plate only pushes; give pressures of 0 and more");
+    if (value < 0)
+      keys.wrong(keys.has("pressure_Pa") ? "pressure_Pa" : "pressure_history",
+                 "is negative, and a plate only pushes; give pressures of 0 and more");
   }
   if (!plate.pressure.times.empty()) return plate;
   for (const char* name : {"pressure_until_s", "plate_mass_kg", "area_m2"}) {
@@ -94,14 +95,16 @@ void check_plates(const Scene& scene, const std::string& path) {
         },
         body.shape);
     if (!along_axis) {
-      refuse(".pressure_Pa: is of a plate, which moves along its normal; set kind = \"half_space\" and a normal along "
-             "an axis");
+      refuse(
+          ".pressure_Pa: is of a plate, which moves along its normal; set kind = \"half_space\" and a normal along "
+          "an axis");
     }
     if (!body.at_surface) refuse(".contact: of a plate under pressure is \"surface\"; remove the key");
     if (scene.water) refuse(".pressure_Pa: is for dry scenes, and this one has [fluid]; set motion instead");
     if (!body.motion.empty() && body.plate->until == 1e300) {
-      refuse(".motion: and pressure_Pa both move the plate; remove one of them, or set pressure_until_s, from which "
-             "time on it has its motion");
+      refuse(
+          ".motion: and pressure_Pa both move the plate; remove one of them, or set pressure_until_s, from which "
+          "time on it has its motion");
     }
   }
 }
@@ -142,8 +145,8 @@ void weigh_plates(Solver<D>& solver) {
   }
 }
 
-#define MPM_INSTANTIATE(D)                                       \
-  template void place_plates<D>(const Scene&, Solver<D>&);       \
+#define MPM_INSTANTIATE(D)                                 \
+  template void place_plates<D>(const Scene&, Solver<D>&); \
   template void weigh_plates<D>(Solver<D>&);
 MPM_INSTANTIATE(2)
 MPM_INSTANTIATE(3)

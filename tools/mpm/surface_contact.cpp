@@ -117,7 +117,7 @@ void Bodies<D>::hold(SurfacePoint& point, const Grid<D>& grid, double time) {
     const long node = point.node[j];
     if (grid.nodes[node].mass < little * usual * point.weight[j]) {
       if (is_inside(point.body, grid.position(grid.index(node)), time))
-        contacts_.push_back({node, point.body, point.normal, Vec<D>::Zero()});
+        contacts_.push_back({node, point.body, point.normal, Vec<D>::Zero(), Vec<D>::Zero()});
       continue;
     }
     point.node[kept] = node;
@@ -129,7 +129,6 @@ void Bodies<D>::hold(SurfacePoint& point, const Grid<D>& grid, double time) {
     point.weight[j] /= sum;
     point.mobility += point.weight[j] * point.weight[j] / grid.nodes[point.node[j]].mass;
   }
-  point.impulse.setZero();
   surface_.push_back(point);
 }
 
@@ -239,7 +238,7 @@ void Bodies<D>::hold_surface(Grid<D>& grid, double time, bool end) {
       if (body.pressed()) hold_plate(body, grid, end);
     }
   }
-  for (auto& point : surface_) point.impulse += point.now;
+  for (auto& point : surface_) (end ? point.at_end : point.at_start) += point.now;
 }
 
 template void Bodies<2>::detect_surface(const Grid<2>&, const Planes<2>&, const std::vector<Point<2>>&, int, double,
