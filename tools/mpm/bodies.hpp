@@ -138,6 +138,9 @@ class Bodies {
   void hold_plate(Body<D>& body, Grid<D>& grid, bool end);
   // rock_surface.cpp
   void detect_rocks(const Grid<D>& grid, const Planes<D>& planes, const std::vector<Point<D>>& soil);
+  void press_rocks(Grid<D>& grid);
+  void keep_pressed();
+  void push_rock(std::size_t k, const Vec<D>& impulse, Grid<D>& grid, bool end);
   void hold_rock(std::size_t k, Grid<D>& grid, bool end);
   void book_rocks(const Grid<D>& grid, const Planes<D>& planes);
   /// Stops the soil at a node; the change of its velocity.

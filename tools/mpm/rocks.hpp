@@ -126,10 +126,14 @@ class Rocks {
 
   /// A point of a rock's surface that soil touches, or may within a step.
   struct SurfacePoint {
-    Vec<D> r;         ///< m, from the centre of the rock
-    Mat<D> mobility;  ///< m/s of N s, of soil and rock together
-    double gap;       ///< m, to the soil
+    Vec<D> r;           ///< m, from the centre of the rock
+    Mat<D> mobility;    ///< m/s of N s, of soil and rock together
+    double gap;         ///< m, to the soil
+    std::size_t place;  ///< number in the outline of the rock
   };
+  /// N, of each rock at each place of its outline on the soil, at the end of the step before, along its principal
+  /// axes: what the sweeps over surface points start from.
+  std::vector<std::vector<Vec<D>>> pressed;
   std::vector<SurfacePoint> surface;  ///< with the last surface points of Bodies
   /// Velocities of a rock as impulses of the soil change them over the step.
   struct Motion {

@@ -210,6 +210,8 @@ void Bodies<D>::push(Grid<D>& grid, SurfacePoint& point, const Vec<D>& impulse, 
 template <int D>
 void Bodies<D>::hold_surface(Grid<D>& grid, double time, bool end) {
   for (auto& point : surface_) point.now.setZero();
+  const bool pressed = end && rocks != nullptr && !rocks->surface.empty();
+  if (pressed) press_rocks(grid);
   for (int sweep = 0; sweep < sweeps_; ++sweep) {
     for (std::size_t k = 0; k < surface_.size(); ++k) {
       const std::size_t at = sweep % 2 == 0 ? k : surface_.size() - 1 - k;  // to and fro: sides alike
@@ -238,6 +240,7 @@ void Bodies<D>::hold_surface(Grid<D>& grid, double time, bool end) {
       if (body.pressed()) hold_plate(body, grid, end);
     }
   }
+  if (pressed) keep_pressed();
   for (auto& point : surface_) (end ? point.at_end : point.at_start) += point.now;
 }
 
