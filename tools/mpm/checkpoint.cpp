@@ -110,6 +110,14 @@ std::vector<double> plates_of(Bodies<D> bodies) {
   return values;
 }
 
+/// Lowest node and number of nodes along each axis.
+template <int D>
+std::vector<std::int64_t> box_of(const Grid<D>& grid) {
+  std::vector<std::int64_t> box(grid.low.begin(), grid.low.end());
+  box.insert(box.end(), grid.count.begin(), grid.count.end());
+  return box;
+}
+
 /// The times and energies of a run's progress, one by one.
 template <class Visit>
 void each_clock(Progress& progress, Visit visit) {
@@ -214,6 +222,8 @@ void write_checkpoint(const Model<D>& model, const Progress& progress, const std
   file.write("counts", std::vector<std::int64_t>{solver.steps, progress.history.bytes, progress.history.checksum,
                                                  progress.watched.bytes, progress.watched.checksum,
                                                  progress.seen.warned_step, progress.seen.warned_energy});
+  // Sums over nodes are made in pieces of the box.
+  file.write("grid_box", box_of<D>(solver.grid));
   file.write("impulses", progress.impulses, {progress.impulses.size()});
   file.write("frame_times", progress.frame_times, {progress.frame_times.size()});
   file.write("watched", std::vector<std::int64_t>(model.watched.begin(), model.watched.end()));
@@ -267,6 +277,12 @@ void read_checkpoint(Model<D>& model, Progress& progress, const std::string& fol
   progress.watched = {long(counts[3]), std::uint32_t(counts[4])};
   progress.seen.warned_step = counts[5] != 0;
   progress.seen.warned_energy = counts[6] != 0;
+  const auto box = file.read_whole("grid_box");
+  if (box.size() != 2 * D) of_another_scene(folder, "ends of the grid", box.size(), 2 * D);
+  if (!solver.points.empty()) {
+    solver.grid.restore(box.data());
+    solver.planes.rebuild(solver.grid, solver.time);
+  }
   progress.impulses = file.read("impulses");
   progress.frame_times = file.read("frame_times");
   const auto watched = file.read_whole("watched");
