@@ -27,12 +27,9 @@ double plate_velocity(double mass, double free_velocity, const std::vector<Surfa
 template <int D>
 void Bodies<D>::place_plates(const Grid<D>& grid, const Planes<D>& planes, double time) {
   for (auto& body : all) {
-    if (!body.pressed()) continue;
+    if (!body.plate) continue;
     auto& plate = *body.plate;
-    if (time >= plate.until) {
-      plate.held_from = time;
-      continue;
-    }
+    if (plate.free() && time >= plate.until) plate.held_from = time;
     if (plate.sides.empty()) continue;
     int own = 0;
     body.plate_normal().cwiseAbs().maxCoeff(&own);
