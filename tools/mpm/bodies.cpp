@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "tools/mpm/rocks.hpp"
-
 namespace mpm {
 
 template <int D>
@@ -48,22 +46,18 @@ void Bodies<D>::detect_nodes(const Grid<D>& grid, const Planes<D>& planes, doubl
 }
 
 template <int D>
-Vec<D> Bodies<D>::stop(const Grid<D>& grid, const Contact& contact, double time, double* velocity) const {
-  const bool of_rock = contact.body >= int(all.size());
-  const bool rough = of_rock ? rocks->soil.rough : all[contact.body].rough;
-  const double friction = of_rock ? rocks->soil.friction : all[contact.body].friction;
-  const Vec<D> speed = of_rock
-                           ? rocks->speed_at(contact.body - int(all.size()), grid.position(grid.index(contact.node)))
-                           : all[contact.body].velocity_at(time);
+Vec<D> Bodies<D>::stop(const Contact& contact, double time, double* velocity) const {
+  const auto& body = all[contact.body];
+  const Vec<D> speed = body.velocity_at(time);
   Vec<D> relative, jump;
   for (int i = 0; i < D; ++i) relative[i] = velocity[i] - speed[i];
   const double across = relative.dot(contact.normal);
   if (across >= 0) return Vec<D>::Zero();
   Vec<D> along = relative - across * contact.normal;
-  if (rough) {
+  if (body.rough) {
     along.setZero();
   } else if (const double slip = along.norm(); slip > 0) {
-    along *= std::max(0.0, 1 + friction * across / slip);
+    along *= std::max(0.0, 1 + body.friction * across / slip);
   }
   for (int i = 0; i < D; ++i) {
     const double stopped = speed[i] + along[i];
@@ -78,7 +72,7 @@ void Bodies<D>::set_start(Grid<D>& grid, double time) {
   start_plates();
   if (rocks != nullptr) start_rocks();
   for (auto& contact : contacts_) {
-    contact.at_start = stop(grid, contact, time, grid.nodes[contact.node].v);
+    contact.at_start = stop(contact, time, grid.nodes[contact.node].v);
     contact.at_end.setZero();
   }
   for (auto& point : surface_) point.at_start.setZero(), point.at_end.setZero();
@@ -93,7 +87,7 @@ void Bodies<D>::book(int body, const Node<D>& node, int component, double at_sta
 
 template <int D>
 void Bodies<D>::hold_end(Grid<D>& grid, double time) {
-  for (auto& contact : contacts_) contact.at_end += stop(grid, contact, time, grid.nodes[contact.node].w);
+  for (auto& contact : contacts_) contact.at_end += stop(contact, time, grid.nodes[contact.node].w);
   hold_surface(grid, time, true);
 }
 
@@ -101,7 +95,6 @@ template <int D>
 void Bodies<D>::book_reactions(const Grid<D>& grid, const Planes<D>& planes) {
   // A second body at a node may change its velocity once more.
   for (const auto& contact : contacts_) {
-    if (contact.body >= int(all.size())) continue;
     const auto& node = grid.nodes[contact.node];
     for (int i = 0; i < D; ++i) {
       if (planes.holds(contact.node, i)) continue;

@@ -95,7 +95,7 @@ class Bodies {
  private:
   struct Contact {
     long node;
-    int body;  ///< from the number of bodies on: a rock
+    int body;
     Vec<D> normal;
     /// m/s, what this body alone changed the soil's velocity by: at the start, at the end of the step.
     Vec<D> at_start, at_end;
@@ -128,7 +128,6 @@ class Bodies {
                       unsigned char face, int axis);
   static void add_node(const Grid<D>& grid, const Planes<D>& planes, const typename Grid<D>::Index& node, double weight,
                        SurfacePoint& point);
-  bool is_inside(int body, const Vec<D>& place, double time) const;
   void hold(SurfacePoint& point, const Grid<D>& grid, double time);
   void hold_surface(Grid<D>& grid, double time, bool end);
   Vec<D> velocity_at(const Grid<D>& grid, const SurfacePoint& point, bool end) const;
@@ -144,7 +143,7 @@ class Bodies {
   void hold_rock(std::size_t k, Grid<D>& grid, bool end);
   void book_rocks(const Grid<D>& grid, const Planes<D>& planes);
   /// Stops the soil at a node; the change of its velocity.
-  Vec<D> stop(const Grid<D>& grid, const Contact& contact, double time, double* velocity) const;
+  Vec<D> stop(const Contact& contact, double time, double* velocity) const;
   /// J, of impulses (N s) of one component at the start and at the end of the step, over the changes of the velocity
   /// there.
   static double work_at(const Node<D>& node, int i, double at_start, double at_end) {

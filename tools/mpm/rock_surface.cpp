@@ -197,19 +197,6 @@ void Bodies<D>::hold_rock(std::size_t k, Grid<D>& grid, bool end) {
 /// Impulse and work on the soil, and what the rocks get of it.
 template <int D>
 void Bodies<D>::book_rocks(const Grid<D>& grid, const Planes<D>& planes) {
-  for (const auto& contact : contacts_) {
-    if (contact.body < int(all.size())) continue;
-    auto& rock = rocks->all[std::size_t(contact.body) - all.size()];
-    const auto& node = grid.nodes[contact.node];
-    const Vec<D> impulse = node.mass * (contact.at_start + contact.at_end),
-                 r = grid.position(grid.index(contact.node)) - rock.body.centre;
-    rock.impulse -= impulse;
-    rock.angular_impulse -= moment<D>(r, impulse);
-    for (int i = 0; i < D; ++i) {
-      if (planes.holds(contact.node, i)) continue;
-      rocks->work_on_soil += node.mass * work_at(node, i, contact.at_start[i], contact.at_end[i]);
-    }
-  }
   const std::size_t first = surface_.size() - rocks->surface.size();
   for (std::size_t k = first; k < surface_.size(); ++k) {
     const auto& point = surface_[k];

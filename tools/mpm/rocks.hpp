@@ -141,10 +141,6 @@ class Rocks {
     Spin<D> spin;
   };
   std::vector<Motion> motion;
-  Vec<D> speed_at(int rock, const Vec<D>& place) const {  ///< m/s
-    const auto& of = motion[std::size_t(rock)];
-    return of.velocity + spun<D>(of.spin, place - all[std::size_t(rock)].body.centre);
-  }
   double step = 0;  ///< s, of the step that is made
 
   struct Pair {

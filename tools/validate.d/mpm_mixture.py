@@ -92,7 +92,7 @@ found = {}
 def mixture(share, contact, seed):
     case = ("--case", f"rocks_{share}", "--set", f"rocks.coarse.seed={seed}") if share else SLOW
     if contact == "surface":
-        case += ("--set", 'rock_soil.contact="surface"', "--set", "time.cfl=0.15")
+        case += ("--set", 'rock_soil={contact="surface", friction=0.35}', "--set", "time.cfl=0.15")
     a, v, q, h, printed = test(f"mixture_{share}_{contact}_{seed}", *case)
     peak, where, residual = peak_of(a, q)
     found.setdefault((share, contact), []).append((peak, where, residual))
@@ -130,7 +130,7 @@ for share, volume in ((20, 0.158), (40, 0.311)):
     for contact in ("ghost", "surface"):
         # Cohesion of 1 MPa: the soil stays elastic.
         a, v, q, h, printed = test(f"elastic_{share}_{contact}", "--case", f"rocks_{share}", "--set",
-                                   f'rock_soil.contact="{contact}"', "--set", "rock_soil.friction=0.99", "--set",
+                                   "rock_soil={" + f'contact="{contact}", rough=true' + "}", "--set",
                                    "material.soil.cohesion_Pa=1e6", "--set", "time.duration_s=0.026")
         rows = (a > 0.001) & (a < 0.003)
         stiff = np.polyfit(a[rows], q[rows], 1)[0] / E
