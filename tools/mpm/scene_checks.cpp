@@ -232,6 +232,12 @@ void check_loads(const Scene& scene, const std::string& material, double modulus
   };
   refuse_pressure("loads.surface_pressure_Pa", text_of(scene.surface_pressure), scene.surface_pressure);
   refuse_pressure("initial.pressure_Pa", text_of(scene.pressure), scene.pressure);
+  for (const auto& body : scene.bodies) {
+    if (!body.plate) continue;
+    const auto& values = body.plate->pressure.values;
+    const double most = *std::max_element(values.begin(), values.end());
+    refuse_pressure("body." + body.name + ".pressure_Pa", text_of(most), most);
+  }
   const auto moving = all_moving(scene);
   for (std::size_t i = 0; i < scene.cell.size(); ++i) {
     double lowest = 1e300, highest = -1e300;
