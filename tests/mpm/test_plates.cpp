@@ -1,0 +1,346 @@
+// Plates under pressure against mechanics: falling, at rest, on an elastic block, in collisions, on columns of rocks.
+#include <random>
+
+#include "tests/catch.hpp"
+#include "tests/mpm/rocks.hpp"
+
+using namespace mpm;
+using namespace mpm::test;
+
+namespace {
+
+/// Across an axis at a height along it, over the soil; `area`: m^2, constant.
+template <int D>
+Body<D> plate_over(int axis, double height, double pressure, double mass, double area) {
+  Body<D> body;
+  body.shape = HalfSpace<D>{-Vec<D>::Unit(axis)};
+  body.centre = height * Vec<D>::Unit(axis);
+  body.rough = false;
+  body.at_surface = true;
+  body.plate.emplace();
+  body.plate->mass = mass;
+  body.plate->pressure = {{0}, {pressure}};
+  body.plate->area = area;
+  return body;
+}
+
+template <int D>
+double mass_of(const Solver<D>& solver) {
+  double sum = 0;
+  for (const auto& point : solver.points) sum += point.mass;
+  return sum;
+}
+
+/// A column of soil 0.25 m wide and 1 m high between smooth walls under a plate.
+std::unique_ptr<Solver<2>> pressed_column(double pressure, double mass_ratio) {
+  auto solver = block<2>({2, 8}, 0.125, soil, 2000);
+  solver->planes.all = {roller<2>(0, 0, true), roller<2>(0, 2, false), roller<2>(1, 0, true)};
+  solver->bodies.all = {plate_over<2>(1, 1, pressure, mass_ratio * mass_of(*solver), 0.25)};
+  return solver;
+}
+
+/// Soil under the same pressure from rollers and plates, one of each along every axis; `trim`: cells taken off the
+/// upper ends.
+template <int D>
+void expect_rest(Scheme scheme, Shape shape, double trim) {
+  constexpr double p = 2e4, cell = 0.1, length = 0.4;
+  std::array<int, D> cells;
+  cells.fill(4);
+  auto solver = block<D>(cells, cell, soil, 2000);
+  const double side = length - trim * cell, mass = mass_of(*solver) / 4;
+  std::erase_if(solver->points, [&](const auto& point) { return point.position.maxCoeff() > side; });
+  solver->groups[0].count = long(solver->points.size());
+  for (auto& point : solver->points) {
+    point.stress = -p * Mat<D>::Identity();
+    point.stress_zz = D == 2 ? -p : 0;
+  }
+  solver->options.scheme = scheme;
+  solver->options.shape = solver->bodies.shape = shape;
+  for (int axis = 0; axis < D; ++axis) {
+    solver->planes.all.push_back(roller<D>(axis, 0, true));
+    solver->bodies.all.push_back(plate_over<D>(axis, side, p, mass, std::pow(side, D - 1)));
+  }
+  for (int step = 0; step < 100; ++step) solver->step(solver->stable_step());
+  const double wave = std::sqrt(soil.wave() / 2000), force = p * std::pow(side, D - 1);
+  double fastest = 0, changed = 0;
+  for (const auto& point : solver->points) {
+    fastest = std::max(fastest, point.velocity.norm());
+    changed = std::max(changed, (point.stress + p * Mat<D>::Identity()).norm());
+  }
+  CAPTURE(D, int(scheme), int(shape), trim);
+  CHECK(fastest < 1e-10 * wave);
+  CHECK(changed < 1e-8 * p);
+  for (int axis = 0; axis < D; ++axis) {
+    const auto& body = solver->bodies.all[std::size_t(axis)];
+    CHECK(std::abs(body.plate->velocity) < 1e-10 * wave);
+    CHECK((body.reaction.impulse / solver->time + force * Vec<D>::Unit(axis)).norm() < 1e-9 * force);
+    const Vec<D> held = solver->planes.all[std::size_t(axis)].reaction.impulse / solver->time;
+    CHECK((held - force * Vec<D>::Unit(axis)).norm() < 1e-9 * force);
+  }
+}
+
+/// A block that flies into a plate, which comes to meet it, with nothing else in space.
+template <int D>
+void expect_momentum(Scheme scheme, double pressure) {
+  std::array<int, D> cells;
+  cells.fill(3);
+  auto solver = block<D>(cells, 0.1, soil, 2000);
+  const double mass = 0.4 * mass_of(*solver), area = std::pow(0.3, D - 1);
+  const Vec<D> up = Vec<D>::Unit(D - 1);
+  solver->options.scheme = scheme;
+  set_velocity<D>(*solver, [&](const Vec<D>&) { return Vec<D>(2 * up + 0.3 * Vec<D>::Unit(0)); });
+  solver->bodies.all = {plate_over<D>(D - 1, 0.32, pressure, mass, area)};
+  auto& body = solver->bodies.all[0];
+  body.plate->velocity = 1;
+  const Vec<D> soil_before = momentum_of<D>(*solver), before = soil_before - mass * up;
+  CAPTURE(D, int(scheme), pressure);
+  double pushed = 0, off = 0, unbooked = 0;
+  for (int step = 0; step < 150; ++step) {
+    solver->step(solver->stable_step());
+    const Vec<D> soil_now = momentum_of<D>(*solver), now = soil_now - mass * body.plate->velocity * up;
+    off = std::max(off, (now - before + pressure * area * solver->time * up).norm());
+    unbooked = std::max(unbooked, (soil_now - soil_before - body.reaction.impulse).norm());
+    pushed = std::max(pushed, -body.reaction.impulse[D - 1]);
+  }
+  CHECK(pushed > mass);  // they have met, and parted but for the pressure
+  if (pressure == 0) CHECK(momentum_of<D>(*solver)[D - 1] / mass_of(*solver) < -body.plate->velocity);
+  CHECK(off < 1e-12 * before.norm());
+  CHECK(unbooked < 1e-12 * before.norm());
+}
+
+/// Three rocks in a row from the floor to the plate, of radius 0.1 m.
+template <int D>
+std::unique_ptr<Solver<D>> rocks_under_plate(double pressure, double mass, double area, double restitution) {
+  auto solver = std::make_unique<Solver<D>>(1);
+  solver->grid.cell.setConstant(0.1);
+  auto rocks = std::make_unique<Rocks<D>>();
+  rocks->materials = {{1e8, 0.25, 0.4, restitution}};
+  const auto shape = RockShape<D>::sphere(0.1);
+  for (int k = 0; k < 3; ++k) add_rock<D>(*rocks, shape, 2600, (0.1 + 0.2 * k) * Vec<D>::Unit(D - 1));
+  solver->planes.all = {roller<D>(D - 1, 0, true)};
+  solver->bodies.all = {plate_over<D>(D - 1, 0.6, pressure, mass, area)};
+  rocks->prepare_walls(solver->bodies);
+  put_rocks<D>(*solver, std::move(rocks));
+  return solver;
+}
+
+template <int D>
+void expect_carried(double mass_ratio) {
+  constexpr double p = 1e5, area = 0.02, force = p * area;
+  auto solver = rocks_under_plate<D>(p, 1, area, 0.2);
+  auto& body = solver->bodies.all[0];
+  body.plate->mass = mass_ratio * solver->rocks->all[0].body.mass;
+  for (int step = 0; step < 600; ++step) solver->step(1e-3);
+  CAPTURE(D, mass_ratio);
+  const auto& rocks = *solver->rocks;
+  CHECK(rocks.touching == 4);
+  for (const auto& pair : rocks.pairs) {
+    if (pair.contact.overlap > 0)
+      CHECK(pair.constants.normal_force(pair.contact.overlap) == Approx(force).epsilon(1e-3));
+  }
+  CHECK(rocks.wall_force[0][D - 1] == Approx(-force).epsilon(1e-3));
+  CHECK(rocks.wall_force[1][D - 1] == Approx(force).epsilon(1e-3));
+  const auto before = rocks.wall_impulse;
+  for (int step = 0; step < 20; ++step) solver->step(1e-3);
+  CHECK((rocks.wall_impulse[1] - before[1])[D - 1] == Approx(0.02 * force).epsilon(1e-3));
+  // Hertz: F = pi/4 E* delta for cylinders, 4/3 E* sqrt(r*) delta^1.5 for spheres, r* = r at walls, r/2 among them.
+  const double e_star = 1e8 / (2 * (1 - 0.0625));
+  const auto overlap = [&](double r) {
+    return D == 2 ? force / (pi / 4 * e_star) : std::pow(force / (4.0 / 3 * e_star * std::sqrt(r)), 2.0 / 3);
+  };
+  CHECK(body.plate->displacement == Approx(2 * overlap(0.1) + 2 * overlap(0.05)).epsilon(1e-3));
+}
+
+}  // namespace
+
+TEST_CASE("a plate's velocity is the root of its momentum balance, whatever the soil under it does") {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> even(-1, 1);
+  int touched = 0;
+  for (int set = 0; set < 300; ++set) {
+    const double mass = std::pow(10.0, 3 * even(random)), free = even(random);
+    std::vector<SurfaceMobility> points(std::size_t(set % 40));
+    for (auto& point : points) point = {even(random), std::pow(10.0, 2 * even(random))};
+    const auto excess = [&](double v) {
+      double sum = mass * (v - free);
+      for (const auto& point : points) sum += std::max(0.0, v - point.speed) / point.mobility;
+      return sum;
+    };
+    double low = -1, high = free;  // no soil is slower than -1
+    for (int halving = 0; halving < 200; ++halving) {
+      const double middle = 0.5 * (low + high);
+      (excess(middle) > 0 ? high : low) = middle;
+    }
+    const double v = plate_velocity(mass, free, points);
+    CAPTURE(set, mass, free);
+    CHECK(std::abs(v - high) < 1e-12);
+    double impulse = 0;
+    for (const auto& point : points) impulse += std::max(0.0, v - point.speed) / point.mobility;
+    CHECK(std::abs(mass * (free - v) - impulse) <= 1e-12 * (mass + impulse));
+    touched += impulse > 0;
+  }
+  CHECK(touched > 200);
+  CHECK(plate_velocity(3, 0.7, {}) == 0.7);
+  CHECK(plate_velocity(3, 0.7, {{0.7, 1}, {2, 1}}) == 0.7);  // soil that moves away
+}
+
+TEST_CASE("a plate with nothing under it is accelerated by its pressure on the area between its sides") {
+  Solver<2> solver(1);
+  solver.grid.cell = Vec<2>(0.1, 0.2);
+  solver.planes.all = {roller<2>(0, 1, true), roller<2>(1, 0, true)};
+  solver.bodies.all = {plate_over<2>(1, 5, 300, 20, 0), plate_over<2>(0, 4.1, 50, 10, 0)};
+  auto &top = solver.bodies.all[0], &right = solver.bodies.all[1];
+  for (auto* body : {&top, &right}) body->plate->thickness = 2;
+  top.plate->sides = {{false, 0}, {true, 1}};  // 4 m apart at the start, then less
+  right.plate->area = 6;
+  const auto run = [&](int steps) {
+    for (int step = 0; step < steps; ++step) {
+      const double between = 4 - right.plate->displacement;
+      solver.step(1e-3);
+      CHECK(top.plate->area == Approx(2 * between).epsilon(1e-14));
+    }
+  };
+  run(400);
+  const double a = 50 * 6 / 10.0, t = solver.time;
+  CHECK(right.plate->velocity == Approx(a * t).epsilon(1e-12));
+  CHECK(right.plate->displacement == Approx(0.5 * a * t * t).epsilon(1e-12));
+  CHECK((right.displacement_at(t) + right.plate->displacement * Vec<2>::UnitX()).norm() < 1e-15);
+  CHECK((right.velocity_at(t) + right.plate->velocity * Vec<2>::UnitX()).norm() < 1e-15);
+  CHECK(right.reaction.impulse.norm() == 0);
+  // 300 Pa * 2 m * (4 - a t^2/2)/20 kg over time, to the half step by which the area is behind.
+  CHECK(top.plate->velocity == Approx(30 * (4 * t - a * t * t * t / 6)).epsilon(1e-3));
+}
+
+TEST_CASE("the pressure of a plate follows its history") {
+  Solver<3> solver(1);
+  solver.bodies.all = {plate_over<3>(2, 1, 0, 5, 0.5)};
+  auto& plate = *solver.bodies.all[0].plate;
+  plate.pressure = {{0, 0.1, 0.3}, {0, 1000, 200}};
+  for (int step = 0; step < 100; ++step) solver.step(1e-3);
+  CHECK(plate.velocity == Approx(0.5 * 0.5 * 1000 * 0.1 / 5).epsilon(1e-10));
+  for (int step = 0; step < 300; ++step) solver.step(1e-3);
+  CHECK(plate.velocity == Approx(0.5 / 5 * (50 + 600 * 0.2 + 200 * 0.1)).epsilon(1e-10));
+}
+
+TEST_CASE("soil in balance with plates and rollers stays at rest and pushes them with its pressure") {
+  for (const Scheme scheme : {Scheme::usf, Scheme::musl}) {
+    expect_rest<2>(scheme, Shape::bspline, 0);
+    expect_rest<2>(scheme, Shape::bspline, 0.5);
+    expect_rest<2>(scheme, Shape::gimp, 0.5);
+    expect_rest<3>(scheme, Shape::bspline, 0.5);
+  }
+}
+
+TEST_CASE("a plate settles on elastic soil by p h/M") {
+  const double p = 1e-4 * soil.wave();
+  for (const double mass_ratio : {0.02, 0.5}) {  // lighter than a row of nodes, and heavier
+    for (const Scheme scheme : {Scheme::usf, Scheme::musl}) {
+      CAPTURE(mass_ratio, int(scheme));
+      auto solver = pressed_column(p, mass_ratio);
+      solver->options.scheme = scheme;
+      solver->options.pic_fraction = 1;
+      solver->options.affine = false;
+      while (solver->time < 40 / std::sqrt(soil.wave() / 2000)) solver->step(solver->stable_step());
+      const auto& body = solver->bodies.all[0];
+      CHECK(body.plate->displacement == Approx(1e-4).epsilon(0.01));
+      for (const auto& point : solver->points) CHECK(point.stress(1, 1) == Approx(-p).epsilon(0.01));
+    }
+  }
+}
+
+TEST_CASE("a heavy plate swings on elastic soil with the period of its mass on that spring, and its energy is kept") {
+  constexpr double ratio = 30;
+  const double p = 1e-4 * soil.wave(), wave = std::sqrt(soil.wave() / 2000);
+  auto solver = pressed_column(p, ratio);
+  solver->options.pic_fraction = 0;
+  const auto start = energy_start<2>(*solver);
+  const auto& body = solver->bodies.all[0];
+  const double mass = body.plate->mass;
+  std::vector<double> turns;
+  double most = 0, unbooked = 0, residual = 0;
+  while (turns.size() < 4) {
+    const double before = body.plate->velocity, dt = solver->stable_step();
+    solver->step(dt);
+    const double now = body.plate->velocity, d = body.plate->displacement;
+    if (before * now < 0) turns.push_back(solver->time - dt * now / (now - before));
+    most = std::max(most, d);
+    unbooked = std::max(unbooked, std::abs(p * 0.25 * d - 0.5 * mass * now * now - body.reaction.work));
+    residual = std::max(residual, std::abs(energy_balance<2>(*solver, start).residual));
+    REQUIRE(solver->time < 1000 / wave);
+  }
+  // A rod with a mass M on its end: w tan w = m/M, w = omega h/c; for m << M that is omega^2 = E A/(M h).
+  double low = 0, high = pi / 2 - 1e-9;
+  for (int halving = 0; halving < 60; ++halving) {
+    const double middle = 0.5 * (low + high);
+    (middle * std::tan(middle) > 1 / ratio ? high : low) = middle;
+  }
+  CHECK(2 * pi * std::sqrt(mass / (soil.wave() * 0.25)) == Approx(2 * pi / (low * wave)).epsilon(0.01));
+  CHECK(turns[3] - turns[1] == Approx(2 * pi / (low * wave)).epsilon(0.005));
+  CHECK(most == Approx(2e-4).epsilon(0.01));
+  CHECK(unbooked < 2e-3 * p * 0.25 * most);
+  CHECK(residual < 2e-3 * p * 0.25 * most);
+}
+
+TEST_CASE("soil and a plate that meet keep their momentum but for that of the pressure") {
+  for (const Scheme scheme : {Scheme::usf, Scheme::musl}) {
+    for (const double pressure : {0.0, 1e4}) {
+      expect_momentum<2>(scheme, pressure);
+      expect_momentum<3>(scheme, pressure);
+    }
+  }
+}
+
+TEST_CASE("a plate on a column of rocks is carried by each of its contacts, light or heavy") {
+  for (const double mass_ratio : {0.01, 1.0, 20.0}) {
+    expect_carried<2>(mass_ratio);
+    expect_carried<3>(mass_ratio);
+  }
+}
+
+TEST_CASE("a plate takes part in the sub-steps of a collision with a rock, which keeps momentum and its restitution") {
+  for (const double e : {1.0, 0.5}) {
+    for (const double mass_ratio : {0.1, 1.0, 10.0}) {
+      auto solver = rocks_under_plate<3>(0, 1, 0.02, e);
+      auto& rocks = *solver->rocks;
+      rocks.all.resize(1);
+      auto& rock = rocks.all[0].body;
+      rock.centre[2] = 0.49;
+      auto& plate = *solver->bodies.all[0].plate;
+      const double m = rock.mass, mass = plate.mass = mass_ratio * m;
+      plate.velocity = 5;
+      CAPTURE(e, mass_ratio);
+      // One step as long as the collision or longer; the floor is not reached.
+      const long before = rocks.sub_steps;
+      double time = 0;
+      while (time < 0.03 && rock.centre[2] > 0.15) {
+        solver->step(6e-3);
+        time += 6e-3;
+      }
+      CHECK(rocks.sub_steps - before > 20);
+      const double common = mass * 5 / (mass + m);
+      CHECK(-rock.velocity[2] == Approx(common * (1 + e)).epsilon(0.01));
+      CHECK(mass * plate.velocity - m * rock.velocity[2] == Approx(mass * 5).epsilon(1e-12));
+    }
+  }
+}
+
+TEST_CASE("a plate whose pressure ends keeps its place, and then has its motion") {
+  Solver<2> solver(1);
+  solver.bodies.all = {plate_over<2>(1, 1, 1000, 5, 0.5)};
+  auto& body = solver.bodies.all[0];
+  body.plate->until = 0.0105;  // within the step from 0.010 to 0.011 s
+  body.velocity.times = {0, 0.02, 0.03};
+  body.velocity.velocities = {Vec<2>(0, 0), Vec<2>(0, 0), Vec<2>(0, -0.4)};
+  const double a = 1000 * 0.5 / 5, gone = 0.5 * a * 0.011 * 0.011;
+  for (int step = 0; step < 11; ++step) solver.step(1e-3);
+  CHECK(body.displacement_at(solver.time)[1] == Approx(-gone).epsilon(1e-12));
+  for (int step = 0; step < 8; ++step) {
+    solver.step(1e-3);
+    CHECK_FALSE(body.pressed());
+    CHECK(body.velocity_at(solver.time).norm() < 1e-15);
+    CHECK(body.centre_at(solver.time)[1] == Approx(1 - gone).epsilon(1e-12));
+  }
+  for (int step = 0; step < 21; ++step) solver.step(1e-3);
+  CHECK(body.velocity_at(solver.time)[1] == -0.4);
+  CHECK(body.displacement_at(solver.time)[1] == Approx(-gone - 0.002 - 0.4 * 0.01).epsilon(1e-12));
+}
