@@ -115,7 +115,7 @@ name = "right"
 kind = "roller"
 axis = "x"
 at_m = 0.4
-side = "below"
+soil = "below"
 [[boundary]]
 name = "bottom"
 kind = "roller"
