@@ -1,4 +1,4 @@
-// Plates under pressure on rocks, without soil: at rest on a column of them, and in collisions.
+// Plates under pressure on rocks: at rest on a column of them, in collisions, and beside soil.
 #include "tests/catch.hpp"
 #include "tests/mpm/plates.hpp"
 
@@ -84,4 +84,37 @@ TEST_CASE("a plate takes part in the sub-steps of a collision with a rock, which
       CHECK(mass * plate.velocity - m * rock.velocity[2] == Approx(mass * 5).epsilon(1e-12));
     }
   }
+}
+
+TEST_CASE("a plate that soil and a rock carry side by side settles as their stiffnesses together") {
+  constexpr double load = 6e3;
+  auto solver = block<2>({3, 3}, 0.1, soil, 2000);
+  // The soil meets the plate with the rocks' force of the step before: dt^2/M of that force is between the two.
+  solver->options.cfl = 0.1;
+  solver->planes.all = {roller<2>(0, 0, true), roller<2>(1, 0, true)};
+  solver->bodies.all = {plate_over<2>(1, 0.3, 0, 30, 0.8)};
+  auto& body = solver->bodies.all[0];
+  body.plate->pressure = {{0, 0.3}, {0, load / 0.8}};
+  auto rocks = std::make_unique<Rocks<2>>();
+  rocks->materials = {{5e7, 0.25, 0.4, 0.5}};
+  add_rock<2>(*rocks, RockShape<2>::sphere(0.15), 2600, Vec<2>(0.65, 0.15));
+  rocks->prepare_walls(solver->bodies);
+  put_rocks<2>(*solver, std::move(rocks));
+  while (solver->time < 0.4) solver->step(solver->stable_step());
+  double settled = 0, samples = 0;
+  const double start = solver->time;
+  const Vec<2> on_soil = body.reaction.impulse, on_plate = solver->rocks->wall_impulse[2];
+  while (solver->time < 0.5) {
+    solver->step(solver->stable_step());
+    settled += body.plate->displacement;
+    ++samples;
+  }
+  // Soil in plane strain, free to one side: E/(1 - nu^2); the disc between two walls: half of pi/4 E*
+  // (rock_contact.hpp).
+  const double of_soil = soil.young / (1 - 0.0625), of_rock = pi / 8 * 5e7 / (2 * (1 - 0.0625));
+  CHECK(settled / samples == Approx(load / (of_soil + of_rock)).epsilon(0.01));
+  const double took = solver->time - start;
+  CHECK(-(body.reaction.impulse - on_soil)[1] / took == Approx(load * of_soil / (of_soil + of_rock)).epsilon(0.01));
+  CHECK((solver->rocks->wall_impulse[2] - on_plate)[1] / took ==
+        Approx(load * of_rock / (of_soil + of_rock)).epsilon(0.01));
 }

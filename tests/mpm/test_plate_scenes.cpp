@@ -1,4 +1,5 @@
-// Plates under pressure in scenes: stress of soil and rocks, runs that are stopped and resumed.
+// Plates under pressure in scenes: stress of soil and rocks, areas and masses, the end of the pressure, runs that are
+// stopped and resumed.
 #include <filesystem>
 #include <fstream>
 
@@ -185,6 +186,27 @@ TEST_CASE("plates of a scene: areas between rollers, half-spaces and periodic si
   round.replace(from, to - from,
                 "[[boundary]]\nname = \"sides\"\nkind = \"periodic\"\naxis = \"x\"\nat_m = 0\nto_m = 0.4\n");
   CHECK(plates_of<2>(round)->solver.bodies.all[0].plate->area == Approx(0.8).epsilon(1e-14));
+}
+
+TEST_CASE("a plate whose pressure ends keeps its place, and then has its motion") {
+  Solver<2> solver(1);
+  solver.bodies.all = {plate_over<2>(1, 1, 1000, 5, 0.5)};
+  auto& body = solver.bodies.all[0];
+  body.plate->until = 0.0105;  // within the step from 0.010 to 0.011 s
+  body.velocity.times = {0, 0.02, 0.03};
+  body.velocity.velocities = {Vec<2>(0, 0), Vec<2>(0, 0), Vec<2>(0, -0.4)};
+  const double a = 1000 * 0.5 / 5, gone = 0.5 * a * 0.011 * 0.011;
+  for (int step = 0; step < 11; ++step) solver.step(1e-3);
+  CHECK(body.displacement_at(solver.time)[1] == Approx(-gone).epsilon(1e-12));
+  for (int step = 0; step < 8; ++step) {
+    solver.step(1e-3);
+    CHECK_FALSE(body.pressed());
+    CHECK(body.velocity_at(solver.time).norm() < 1e-15);
+    CHECK(body.centre_at(solver.time)[1] == Approx(1 - gone).epsilon(1e-12));
+  }
+  for (int step = 0; step < 21; ++step) solver.step(1e-3);
+  CHECK(body.velocity_at(solver.time)[1] == -0.4);
+  CHECK(body.displacement_at(solver.time)[1] == Approx(-gone - 0.002 - 0.4 * 0.01).epsilon(1e-12));
 }
 
 TEST_CASE("pressed soil and a rock leave the same bytes by any number of threads, and stopped and resumed") {

@@ -270,23 +270,24 @@ TEST_CASE("soil, a rock and a plate that meet keep their momentum but for that o
   }
 }
 
-TEST_CASE("a plate whose pressure ends keeps its place, and then has its motion") {
-  Solver<2> solver(1);
-  solver.bodies.all = {plate_over<2>(1, 1, 1000, 5, 0.5)};
-  auto& body = solver.bodies.all[0];
-  body.plate->until = 0.0105;  // within the step from 0.010 to 0.011 s
-  body.velocity.times = {0, 0.02, 0.03};
-  body.velocity.velocities = {Vec<2>(0, 0), Vec<2>(0, 0), Vec<2>(0, -0.4)};
-  const double a = 1000 * 0.5 / 5, gone = 0.5 * a * 0.011 * 0.011;
-  for (int step = 0; step < 11; ++step) solver.step(1e-3);
-  CHECK(body.displacement_at(solver.time)[1] == Approx(-gone).epsilon(1e-12));
-  for (int step = 0; step < 8; ++step) {
-    solver.step(1e-3);
-    CHECK_FALSE(body.pressed());
-    CHECK(body.velocity_at(solver.time).norm() < 1e-15);
-    CHECK(body.centre_at(solver.time)[1] == Approx(1 - gone).epsilon(1e-12));
+TEST_CASE("soil that slides along a rough plate is slowed by the friction of its pressure") {
+  for (const double mu : {0.1, 0.4}) {
+    constexpr double p = 1e4;
+    auto solver = block<2>({6, 3}, 0.1, soil, 2000);
+    solver->planes.all = {roller<2>(1, 0, true)};
+    solver->bodies.all = {plate_over<2>(1, 0.3, p, mass_of(*solver), 0.6)};
+    solver->bodies.all[0].friction = mu;
+    for (auto& point : solver->points) {
+      point.velocity = Vec<2>(3, 0);
+      point.stress(1, 1) = -p;
+      point.stress_zz = -0.25 * p;
+    }
+    const double before = momentum_of<2>(*solver)[0];
+    while (solver->time < 0.1) solver->step(solver->stable_step());
+    CAPTURE(mu);
+    const double lost = mu * p * 0.6 * solver->time;
+    CHECK(before - momentum_of<2>(*solver)[0] == Approx(lost).epsilon(0.01));
+    CHECK(-solver->bodies.all[0].reaction.impulse[0] == Approx(lost).epsilon(0.01));
+    CHECK(-solver->bodies.all[0].reaction.impulse[1] == Approx(p * 0.6 * solver->time).epsilon(0.01));
   }
-  for (int step = 0; step < 21; ++step) solver.step(1e-3);
-  CHECK(body.velocity_at(solver.time)[1] == -0.4);
-  CHECK(body.displacement_at(solver.time)[1] == Approx(-gone - 0.002 - 0.4 * 0.01).epsilon(1e-12));
 }
