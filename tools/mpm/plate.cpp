@@ -67,7 +67,7 @@ void Bodies<D>::predict_plates(double time, double dt) {
   for (auto& body : all) {
     if (!body.pressed()) continue;
     auto& plate = *body.plate;
-    const double force = plate.pressure.at(time) * plate.area + plate.rock_force;
+    const double force = plate.pressure.at(time + 0.5 * dt) * plate.area + plate.rock_force;
     plate.free_velocity = plate.met_velocity = plate.met_velocity + dt / plate.mass * force;
   }
 }
@@ -112,7 +112,7 @@ void Bodies<D>::sum_plate_forces(const Grid<D>& grid, double time, double dt) {
       if (&body == all.data() + contact.body)
         soil -= grid.nodes[contact.node].mass * (contact.at_start + contact.at_end).dot(body.plate_normal());
     }
-    plate.force = plate.pressure.at(time) * plate.area + soil / dt;
+    plate.force = plate.pressure.at(time + 0.5 * dt) * plate.area + soil / dt;
     plate.rock_impulse = 0;
   }
 }
