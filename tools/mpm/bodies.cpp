@@ -12,10 +12,12 @@ void Bodies<D>::detect_contact(const Grid<D>& grid, const Planes<D>& planes, con
   sweeps_ = 1;
   bool at_nodes = false;
   for (int k = 0; k < int(all.size()); ++k) {
+    const std::size_t first = surface_.size();
     if (all[k].at_surface)
       detect_surface(grid, planes, soil, k, time, workers);
     else
       at_nodes = true;
+    if (all[k].plate) all[k].plate->first = first, all[k].plate->last = surface_.size();
   }
   if (at_nodes) detect_nodes(grid, planes, time, workers);
   if (rocks != nullptr) detect_rocks(grid, planes, soil);
@@ -36,7 +38,7 @@ void Bodies<D>::detect_nodes(const Grid<D>& grid, const Planes<D>& planes, doubl
       for (int k = 0; k < int(all.size()); ++k) {
         Vec<D> outward;
         if (all[k].at_surface || all[k].distance(x - centres[k], outward) > touch) continue;
-        pieces[piece].push_back({flat, k, outward, Vec<D>::Zero()});
+        pieces[piece].push_back({flat, k, outward, Vec<D>::Zero(), Vec<D>::Zero()});
       }
     }
   });
@@ -44,8 +46,9 @@ void Bodies<D>::detect_nodes(const Grid<D>& grid, const Planes<D>& planes, doubl
 }
 
 template <int D>
-Vec<D> Bodies<D>::stop(const Contact& contact, const Vec<D>& speed, double* velocity) const {
+Vec<D> Bodies<D>::stop(const Contact& contact, double time, double* velocity) const {
   const auto& body = all[contact.body];
+  const Vec<D> speed = body.velocity_at(time);
   Vec<D> relative, jump;
   for (int i = 0; i < D; ++i) relative[i] = velocity[i] - speed[i];
   const double across = relative.dot(contact.normal);
@@ -66,37 +69,36 @@ Vec<D> Bodies<D>::stop(const Contact& contact, const Vec<D>& speed, double* velo
 
 template <int D>
 void Bodies<D>::set_start(Grid<D>& grid, double time) {
-  for (auto& contact : contacts_) {
-    auto& node = grid.nodes[contact.node];
-    contact.jump = stop(contact, all[contact.body].velocity.at(time), node.v);
-  }
-  for (auto& point : surface_) point.impulse.setZero();
+  start_plates();
   if (rocks != nullptr) start_rocks();
+  for (auto& contact : contacts_) {
+    contact.at_start = stop(contact, time, grid.nodes[contact.node].v);
+    contact.at_end.setZero();
+  }
+  for (auto& point : surface_) point.at_start.setZero(), point.at_end.setZero();
   hold_surface(grid, time, false);
 }
 
 template <int D>
-void Bodies<D>::book(int body, const Node<D>& node, int component, double impulse) {
-  all[body].reaction.impulse[component] += impulse;
-  all[body].reaction.work += 0.5 * impulse * (node.w[component] + node.a[component]);
+void Bodies<D>::book(int body, const Node<D>& node, int component, double at_start, double at_end) {
+  all[body].reaction.impulse[component] += at_start + at_end;
+  all[body].reaction.work += work_at(node, component, at_start, at_end);
 }
 
 template <int D>
 void Bodies<D>::hold_end(Grid<D>& grid, double time) {
-  for (auto& contact : contacts_) {
-    auto& node = grid.nodes[contact.node];
-    contact.jump += stop(contact, all[contact.body].velocity.at(time), node.w);
-  }
+  for (auto& contact : contacts_) contact.at_end += stop(contact, time, grid.nodes[contact.node].w);
   hold_surface(grid, time, true);
 }
 
 template <int D>
 void Bodies<D>::book_reactions(const Grid<D>& grid, const Planes<D>& planes) {
-  // Work is done over the displacement of the node in the end, which a second body at it may have changed.
+  // A second body at a node may change its velocity once more.
   for (const auto& contact : contacts_) {
     const auto& node = grid.nodes[contact.node];
     for (int i = 0; i < D; ++i) {
-      if (!planes.holds(contact.node, i)) book(contact.body, node, i, node.mass * contact.jump[i]);
+      if (planes.holds(contact.node, i)) continue;
+      book(contact.body, node, i, node.mass * contact.at_start[i], node.mass * contact.at_end[i]);
     }
   }
   for (const auto& point : surface_) {
@@ -104,7 +106,8 @@ void Bodies<D>::book_reactions(const Grid<D>& grid, const Planes<D>& planes) {
     for (int j = 0; j < point.count; ++j) {
       for (int i = 0; i < D; ++i) {
         if (planes.holds(point.node[j], i)) continue;
-        book(point.body, grid.nodes[point.node[j]], i, point.weight[j] * point.impulse[i]);
+        const double weight = point.weight[j];
+        book(point.body, grid.nodes[point.node[j]], i, weight * point.at_start[i], weight * point.at_end[i]);
       }
     }
   }

@@ -1,6 +1,6 @@
-// Rigid bodies with a prescribed velocity (shapes: body_shapes.hpp). Where the soil's velocity approaches that of a
-// body, the body stops it at its surface: rough (no slip) or with Coulomb friction, free to part. The reaction on the
-// body is equal and opposite.
+// Rigid bodies with a prescribed velocity (shapes: body_shapes.hpp), and plates under pressure (plate.hpp). Where the
+// soil's velocity approaches that of a body, the body stops it at its surface: rough (no slip) or with Coulomb
+// friction, free to part. The reaction on the body is equal and opposite.
 //
 // Contact at nodes: each node inside the body is held by itself. Contact at the surface: the soil's velocity sum N_I
 // v_I is held at points of the surface, a cell apart, by impulses J that the nodes get as N_I J. A uniform stress is
@@ -10,11 +10,13 @@
 // that have a column of nodes each need one sweep.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "tools/mpm/body_shapes.hpp"
 #include "tools/mpm/planes.hpp"
+#include "tools/mpm/plate.hpp"
 #include "tools/mpm/point.hpp"
 #include "tools/mpm/shape.hpp"
 #include "tools/mpm/workers.hpp"
@@ -29,11 +31,21 @@ struct Body {
   bool rough = true;               ///< no slip while it is pressed
   double friction = 0;             ///< coefficient, where it is not rough
   bool at_surface = false;         ///< contact at the surface, not at nodes
-  VelocityHistory<D> velocity;
+  VelocityHistory<D> velocity;     ///< prescribed
+  std::optional<Plate> plate;      ///< under pressure, up to a time
   Reaction<D> reaction;
 
-  /// m, at a time in s.
-  Vec<D> centre_at(double time) const { return centre + velocity.displacement(time); }
+  bool pressed() const { return plate && plate->free(); }
+  const Vec<D>& plate_normal() const { return std::get<HalfSpace<D>>(shape).normal; }
+  /// m/s and m, at a time in s; of a plate under pressure as they are now.
+  Vec<D> velocity_at(double time) const { return pressed() ? plate->velocity * plate_normal() : velocity.at(time); }
+  Vec<D> displacement_at(double time) const {
+    if (!plate) return velocity.displacement(time);
+    const Vec<D> pushed = plate->displacement * plate_normal();
+    if (plate->free()) return pushed;
+    return pushed + velocity.displacement(time) - velocity.displacement(plate->held_from);
+  }
+  Vec<D> centre_at(double time) const { return centre + displacement_at(time); }
   /// As the distance of its shape.
   double distance(const Vec<D>& r, Vec<D>& outward, const Vec<D>& unit = Vec<D>::Ones()) const {
     return std::visit([&](const auto& any) { return any.distance(r, outward, unit); }, shape);
@@ -69,13 +81,24 @@ class Bodies {
   /// The two halves of it, for steps that hold velocities more than once.
   void hold_end(Grid<D>& grid, double time);
   void book_reactions(const Grid<D>& grid, const Planes<D>& planes);
+  // plate.cpp
+  /// Areas of the plates under pressure at this time (s), and whether it still acts. Without plates nothing is done.
+  void place_plates(const Grid<D>& grid, const Planes<D>& planes, double time);
+  /// Their velocities at the end of the step before the soil acts, and the force on them but for the rocks'.
+  void predict_plates(double time, double dt);
+  void sum_plate_forces(const Grid<D>& grid, double time, double dt);
+  /// Leap-frog under that and the forces of rocks on each body (N, from the first one on).
+  void kick_plates(const std::vector<Vec<D>>& rock_forces, std::size_t first, double dt);
+  void drift_plates(double dt);
+  void end_plates(double dt);
 
  private:
   struct Contact {
     long node;
     int body;
     Vec<D> normal;
-    Vec<D> jump;  ///< m/s, what this body alone changed the soil's velocity by over the step
+    /// m/s, what this body alone changed the soil's velocity by: at the start, at the end of the step.
+    Vec<D> at_start, at_end;
   };
   static constexpr int reach = D == 2 ? 9 : 27;
   static constexpr long chunk = 1024;  ///< points or nodes of one piece of work
@@ -87,7 +110,8 @@ class Bodies {
     double weight[reach];
     int count = 0;
     double mobility = 0;  ///< m/s of N s: sum of weight^2/mass
-    Vec<D> now, impulse;  ///< N s, of the body on the soil: at this start or end, over the step
+    Vec<D> now, at_start,
+        at_end;  ///< N s, of the body on the soil: as it is held, at the start, at the end of the step
   };
   template <class Outline>
   void detect_soil(const Grid<D>& grid, const Outline& outline, const Vec<D>& centre, const std::vector<Point<D>>& soil,
@@ -106,15 +130,29 @@ class Bodies {
                        SurfacePoint& point);
   void hold(SurfacePoint& point, const Grid<D>& grid, double time);
   void hold_surface(Grid<D>& grid, double time, bool end);
+  Vec<D> velocity_at(const Grid<D>& grid, const SurfacePoint& point, bool end) const;
+  void push(Grid<D>& grid, SurfacePoint& point, const Vec<D>& impulse, bool end) const;
+  // plate.cpp
+  void start_plates();
+  void hold_plate(Body<D>& body, Grid<D>& grid, bool end);
   // rock_surface.cpp
   void detect_rocks(const Grid<D>& grid, const Planes<D>& planes, const std::vector<Point<D>>& soil);
+  void press_rocks(Grid<D>& grid);
+  void keep_pressed();
+  void push_rock(std::size_t k, const Vec<D>& impulse, Grid<D>& grid, bool end);
   void hold_rock(std::size_t k, Grid<D>& grid, bool end);
   void book_rocks(const Grid<D>& grid, const Planes<D>& planes);
   /// Stops the soil at a node; the change of its velocity.
-  Vec<D> stop(const Contact& contact, const Vec<D>& speed, double* velocity) const;
-  void book(int body, const Node<D>& node, int component, double impulse);
+  Vec<D> stop(const Contact& contact, double time, double* velocity) const;
+  /// J, of impulses (N s) of one component at the start and at the end of the step, over the changes of the velocity
+  /// there.
+  static double work_at(const Node<D>& node, int i, double at_start, double at_end) {
+    return 0.5 * (at_start * (node.a[i] + node.v[i]) + at_end * (node.v[i] + node.w[i]));
+  }
+  void book(int body, const Node<D>& node, int component, double at_start, double at_end);
   std::vector<Contact> contacts_;
   std::vector<SurfacePoint> surface_;
+  std::vector<SurfaceMobility> met_;    ///< of one plate at a time
   std::vector<unsigned char> soil_at_;  ///< by node, for one body at a time: its faces that soil near the node touches
   int sweeps_ = 1;
 };

@@ -90,6 +90,34 @@ std::vector<std::int64_t> contacts_of(const Solver<D>& solver) {
   return kinds;
 }
 
+/// What plates under pressure have come to, one by one.
+template <int D, class Visit>
+void each_plate(Bodies<D>& bodies, Visit visit) {
+  for (auto& body : bodies.all) {
+    if (!body.plate) continue;
+    auto& plate = *body.plate;
+    for (double* value :
+         {&plate.mass, &plate.area, &plate.displacement, &plate.velocity, &plate.rock_force, &plate.held_from}) {
+      visit(*value);
+    }
+  }
+}
+
+template <int D>
+std::vector<double> plates_of(Bodies<D> bodies) {
+  std::vector<double> values;
+  each_plate<D>(bodies, [&](double value) { values.push_back(value); });
+  return values;
+}
+
+/// Lowest node and number of nodes along each axis.
+template <int D>
+std::vector<std::int64_t> box_of(const Grid<D>& grid) {
+  std::vector<std::int64_t> box(grid.low.begin(), grid.low.end());
+  box.insert(box.end(), grid.count.begin(), grid.count.end());
+  return box;
+}
+
 /// The times and energies of a run's progress, one by one.
 template <class Visit>
 void each_clock(Progress& progress, Visit visit) {
@@ -194,10 +222,13 @@ void write_checkpoint(const Model<D>& model, const Progress& progress, const std
   file.write("counts", std::vector<std::int64_t>{solver.steps, progress.history.bytes, progress.history.checksum,
                                                  progress.watched.bytes, progress.watched.checksum,
                                                  progress.seen.warned_step, progress.seen.warned_energy});
+  // Sums over nodes are made in pieces of the box.
+  file.write("grid_box", box_of<D>(solver.grid));
   file.write("impulses", progress.impulses, {progress.impulses.size()});
   file.write("frame_times", progress.frame_times, {progress.frame_times.size()});
   file.write("watched", std::vector<std::int64_t>(model.watched.begin(), model.watched.end()));
   file.write("contact_at_surface", contacts_of(solver));
+  if (const auto plates = plates_of<D>(solver.bodies); !plates.empty()) file.write("plates", plates, {plates.size()});
   if (solver.loads.any()) file.write("load_work_J", {solver.load_work}, {1});
   if (solver.fluid) write_water<D>(*solver.fluid, file);
   if (solver.rocks) write_rocks<D>(solver, file);
@@ -246,6 +277,12 @@ void read_checkpoint(Model<D>& model, Progress& progress, const std::string& fol
   progress.watched = {long(counts[3]), std::uint32_t(counts[4])};
   progress.seen.warned_step = counts[5] != 0;
   progress.seen.warned_energy = counts[6] != 0;
+  const auto box = file.read_whole("grid_box");
+  if (box.size() != 2 * D) of_another_scene(folder, "ends of the grid", box.size(), 2 * D);
+  if (!solver.points.empty()) {
+    solver.grid.restore(box.data());
+    solver.planes.rebuild(solver.grid, solver.time);
+  }
   progress.impulses = file.read("impulses");
   progress.frame_times = file.read("frame_times");
   const auto watched = file.read_whole("watched");
@@ -262,6 +299,11 @@ void read_checkpoint(Model<D>& model, Progress& progress, const std::string& fol
     throw InputError(folder +
                      ": its bodies were met by another contact than in this scene; leave out the --set of a body's "
                      "contact, or start the run anew in another folder");
+  }
+  if (const std::size_t own = plates_of<D>(solver.bodies).size(); own > 0) {
+    const auto plates = file.read("plates");
+    if (plates.size() != own) of_another_scene(folder, "plates", plates.size(), own);
+    each_plate<D>(solver.bodies, [&, k = std::size_t(0)](double& value) mutable { value = plates[k++]; });
   }
   if (solver.loads.any()) solver.load_work = file.read("load_work_J").at(0);
   if (solver.fluid) read_water<D>(*solver.fluid, file, folder);

@@ -2,7 +2,9 @@
 // anchor, so that nothing that is computed depends on where the box ends.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <cstring>
 #include <sstream>
 #include <vector>
@@ -59,6 +61,18 @@ class Grid {
     for (int i = 0; i < D; ++i) count[i] = to[i] - from[i] + 1;
     nodes.resize(std::size_t(size));
     return true;
+  }
+  /// The box of a checkpoint: `low`, then `count`.
+  void restore(const std::int64_t* box) {
+    double size = 1;
+    for (int i = 0; i < D; ++i) {
+      low[i] = int(box[i]);
+      count[i] = int(box[D + i]);
+      size *= double(box[D + i]);
+    }
+    if (*std::min_element(count.begin(), count.end()) < 0 || size > most)
+      throw InputError("the checkpoint has a grid of no size; start the run anew");
+    nodes.resize(std::size_t(size));
   }
   /// Of nodes from..to - 1.
   void clear(long from, long to) {

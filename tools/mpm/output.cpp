@@ -75,6 +75,14 @@ void Rows::add(const std::vector<double>& values) {
   if (std::fflush(file_) != 0) throw std::runtime_error(path_ + ": cannot be written; is the disc full?");
 }
 
+bool is_plate(const auto& driven) {
+  if constexpr (requires { driven.plate; }) {
+    return driven.plate.has_value();
+  } else {
+    return false;
+  }
+}
+
 template <int D>
 std::string history_header(const Solver<D>& solver) {
   std::string header =
@@ -87,6 +95,7 @@ std::string history_header(const Solver<D>& solver) {
       header.append(",").append(each.name).append(".force_").append(axis_names[i]).append("_N");
     for (int i = 0; i < D; ++i)
       header.append(",").append(each.name).append(".displacement_").append(axis_names[i]).append("_m");
+    if (is_plate(each)) header.append(",").append(each.name).append(".pressure_Pa");
   });
   if (solver.fluid) {
     for (const auto& plane : solver.planes.all) {
@@ -139,8 +148,15 @@ std::vector<double> history_row(const Solver<D>& solver, const EnergyStart& star
       row.push_back(since > 0 ? -(impulse - before[at]) / since : 0);
       before[at] = impulse;
     }
-    const Vec<D> displacement = each.velocity.displacement(solver.time);
+    const Vec<D> displacement = each.displacement_at(solver.time);
     for (int i = 0; i < D; ++i) row.push_back(displacement[i]);
+    if constexpr (requires { each.plate; }) {
+      if (!each.plate) return;
+      // Of soil and rocks, whose force on the plate is against its normal.
+      double pressure = 0;
+      for (int i = 0; i < D; ++i) pressure -= each.plate_normal()[i] * row[row.size() - std::size_t(2 * D - i)];
+      row.push_back(pressure / each.plate->area);
+    }
   });
   for (std::size_t k = 0; solver.fluid && k < solver.planes.all.size(); ++k) {
     row.insert(row.end(), {solver.fluid->force_on(solver.planes, int(k)), solver.fluid->outflow[k]});

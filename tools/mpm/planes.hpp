@@ -39,6 +39,8 @@ struct Plane {
   double removed_at = std::numeric_limits<double>::infinity();  ///< s
   Reaction<D> reaction;
 
+  Vec<D> velocity_at(double time) const { return velocity.at(time); }                ///< m/s
+  Vec<D> displacement_at(double time) const { return velocity.displacement(time); }  ///< m
   bool holds(int component) const { return fixed || (component == axis && !open && period == 0); }
 };
 

@@ -99,6 +99,16 @@ void write_rocks(const Solver<D>& solver, OutputFile& file) {
         }
       }));
   put("ghost_radii_m", rocks.balls);
+  put("surface_forces_N", collected([&](const auto& visit) {
+        for (std::size_t k = 0; k < rocks.pressed.size(); ++k) {
+          for (std::size_t place = 0; place < rocks.pressed[k].size(); ++place) {
+            if (rocks.pressed[k][place].isZero(0)) continue;
+            visit(double(k));
+            visit(double(place));
+            for (const double x : rocks.pressed[k][place]) visit(x);
+          }
+        }
+      }));
   file.write("rock_counts", std::vector<std::int64_t>{std::int64_t(rocks.all.size()), rocks.sub_steps, rocks.left_out});
 }
 
@@ -135,6 +145,16 @@ void read_rocks(Solver<D>& solver, const InputFile& file, const std::string& fol
     ghost.rock = int(take());
     each_number<D>(ghost.contact, [&](double& value) { value = take(); });
     rocks.ghosts.push_back(ghost);
+  }
+  const auto forces = file.read("surface_forces_N");
+  rocks.pressed.assign(rocks.all.size(), {});
+  for (Taker take(forces, other); take.more();) {
+    const auto rock = std::size_t(take()), place = std::size_t(take());
+    if (rock >= rocks.all.size()) Taker({}, other)();
+    const auto& outline = rocks.outline(rocks.all[rock].shape, 0.5 * solver.grid.cell.minCoeff());
+    if (place >= outline.size()) Taker({}, other)();
+    rocks.pressed[rock].resize(outline.size(), Vec<D>::Zero());
+    for (double& x : rocks.pressed[rock][place]) x = take();
   }
   rocks.balls = file.read("ghost_radii_m");
   if (rocks.soil.ghosts && rocks.balls.size() != solver.points.size()) Taker({}, other)();

@@ -47,7 +47,7 @@ struct RockOutline {
 };
 
 namespace {
-constexpr int rock_sweeps = 20;
+constexpr int rock_sweeps = 8;
 }  // namespace
 
 template <int D>
@@ -84,7 +84,9 @@ void Bodies<D>::detect_rocks(const Grid<D>& grid, const Planes<D>& planes, const
     });
     if (feet.empty()) continue;
     sweeps_ = std::max(sweeps_, rock_sweeps);
-    for (const auto& place : rocks->outline(rock.shape, 0.5 * cell)) {
+    const auto& places = rocks->outline(rock.shape, 0.5 * cell);
+    for (std::size_t number = 0; number < places.size(); ++number) {
+      const auto& place = places[number];
       const Vec<D> r = to_world<D>(rock.body.orientation, place.at);
       const Vec<D> normal = to_world<D>(rock.body.orientation, place.normal);
       // From each place to the soil, whose end is plane about the foot of each point: the rounded edge of a block
@@ -104,7 +106,7 @@ void Bodies<D>::detect_rocks(const Grid<D>& grid, const Planes<D>& planes, const
       hold_at(grid, planes, point, 0, at);
       if (surface_.size() == before) continue;
       const Mat<D> soil_part = surface_.back().mobility * Mat<D>::Identity();
-      rocks->surface.push_back({r, soil_part + rock.body.mobility(r, r), std::max(0.0, gap)});
+      rocks->surface.push_back({r, soil_part + rock.body.mobility(r, r), std::max(0.0, gap), number});
     }
   }
   rocks->soil_contacts = long(rocks->surface.size());
@@ -120,18 +122,53 @@ void Bodies<D>::predict_rocks(const Vec<D>& gravity, double dt) {
   }
 }
 
+/// The impulses of the step before, so that the sweeps of one step go on with those of the last.
 template <int D>
-void Bodies<D>::hold_rock(std::size_t k, Grid<D>& grid, bool end) {
+void Bodies<D>::press_rocks(Grid<D>& grid) {
+  const std::size_t first = surface_.size() - rocks->surface.size();
+  rocks->pressed.resize(rocks->all.size());
+  for (std::size_t k = first; k < surface_.size(); ++k) {
+    auto& point = surface_[k];
+    const auto& here = rocks->surface[k - first];
+    const std::size_t number = std::size_t(point.body) - all.size();
+    const auto& rock = rocks->all[number];
+    auto& pressed = rocks->pressed[number];
+    pressed.resize(rocks->outline(rock.shape, 0).size(), Vec<D>::Zero());
+    point.now = rocks->step * to_world<D>(rock.body.orientation, pressed[here.place]);
+    push_rock(k, point.now, grid, true);
+  }
+  for (auto& each : rocks->pressed) std::fill(each.begin(), each.end(), Vec<D>::Zero());
+}
+
+template <int D>
+void Bodies<D>::keep_pressed() {
+  const std::size_t first = surface_.size() - rocks->surface.size();
+  for (std::size_t k = first; k < surface_.size(); ++k) {
+    const std::size_t number = std::size_t(surface_[k].body) - all.size();
+    rocks->pressed[number][rocks->surface[k - first].place] =
+        to_body<D>(rocks->all[number].body.orientation, Vec<D>(surface_[k].now / rocks->step));
+  }
+}
+
+/// An impulse (N s) on the soil at a point of a rock, and its opposite on the rock.
+template <int D>
+void Bodies<D>::push_rock(std::size_t k, const Vec<D>& impulse, Grid<D>& grid, bool end) {
   auto& point = surface_[k];
   const auto& here = rocks->surface[k + rocks->surface.size() - surface_.size()];
   const std::size_t number = std::size_t(point.body) - all.size();
   const auto& rock = rocks->all[number].body;
   auto& motion = rocks->motion[number];
-  Vec<D> relative = -motion.velocity - spun<D>(motion.spin, here.r);
-  for (int j = 0; j < point.count; ++j) {
-    const auto& node = grid.nodes[point.node[j]];
-    for (int i = 0; i < D; ++i) relative[i] += point.weight[j] * (end ? node.w : node.v)[i];
-  }
+  push(grid, point, impulse, end);
+  motion.velocity -= (impulse / rock.mass).cwiseProduct(rock.free);
+  motion.spin -= rock.spin_of(moment<D>(here.r, impulse));
+}
+
+template <int D>
+void Bodies<D>::hold_rock(std::size_t k, Grid<D>& grid, bool end) {
+  auto& point = surface_[k];
+  const auto& here = rocks->surface[k + rocks->surface.size() - surface_.size()];
+  const auto& motion = rocks->motion[std::size_t(point.body) - all.size()];
+  Vec<D> relative = velocity_at(grid, point, end) - motion.velocity - spun<D>(motion.spin, here.r);
   relative -= here.mobility * point.now;  // without this point's impulse
   relative += here.gap / rocks->step * point.normal;
   Vec<D> impulse = Vec<D>::Zero();
@@ -154,12 +191,7 @@ void Bodies<D>::hold_rock(std::size_t k, Grid<D>& grid, bool end) {
   const Vec<D> more = impulse - point.now;
   if (more.isZero(0)) return;
   point.now = impulse;
-  for (int j = 0; j < point.count; ++j) {
-    auto& node = grid.nodes[point.node[j]];
-    for (int i = 0; i < D; ++i) (end ? node.w : node.v)[i] += point.weight[j] / node.mass * more[i];
-  }
-  motion.velocity -= (more / rock.mass).cwiseProduct(rock.free);
-  motion.spin -= rock.spin_of(moment<D>(here.r, more));
+  push_rock(k, more, grid, end);
 }
 
 /// Impulse and work on the soil, and what the rocks get of it.
@@ -169,13 +201,14 @@ void Bodies<D>::book_rocks(const Grid<D>& grid, const Planes<D>& planes) {
   for (std::size_t k = first; k < surface_.size(); ++k) {
     const auto& point = surface_[k];
     auto& rock = rocks->all[std::size_t(point.body) - all.size()];
-    rock.impulse -= point.impulse;
-    rock.angular_impulse -= moment<D>(rocks->surface[k - first].r, point.impulse);
+    const Vec<D> impulse = point.at_start + point.at_end;
+    rock.impulse -= impulse;
+    rock.angular_impulse -= moment<D>(rocks->surface[k - first].r, impulse);
     for (int j = 0; j < point.count; ++j) {
       const auto& node = grid.nodes[point.node[j]];
       for (int i = 0; i < D; ++i) {
         if (planes.holds(point.node[j], i)) continue;
-        rocks->work_on_soil += 0.5 * point.weight[j] * point.impulse[i] * (node.w[i] + node.a[i]);
+        rocks->work_on_soil += point.weight[j] * work_at(node, i, point.at_start[i], point.at_end[i]);
       }
     }
   }
@@ -191,6 +224,8 @@ void Bodies<D>::start_rocks() {
 #define MPM_INSTANTIATE(D)                                                                               \
   template void Bodies<D>::detect_rocks(const Grid<D>&, const Planes<D>&, const std::vector<Point<D>>&); \
   template void Bodies<D>::predict_rocks(const Vec<D>&, double);                                         \
+  template void Bodies<D>::press_rocks(Grid<D>&);                                                        \
+  template void Bodies<D>::keep_pressed();                                                               \
   template void Bodies<D>::hold_rock(std::size_t, Grid<D>&, bool);                                       \
   template void Bodies<D>::book_rocks(const Grid<D>&, const Planes<D>&);                                 \
   template void Bodies<D>::start_rocks();

@@ -1,4 +1,4 @@
-// What rocks touch that is no rock: planes, and bodies with a prescribed velocity. Declared in rocks.hpp.
+// What rocks touch that is no rock: planes, prescribed bodies, plates. Declared in rocks.hpp.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -132,7 +132,8 @@ std::vector<Wall<D>> walls_at(const Grid<D>& grid, const Planes<D>& planes, cons
     Wall<D> wall;
     wall.body = &body;
     wall.point = body.centre_at(time);
-    wall.velocity = body.velocity.at(time);
+    wall.velocity = body.velocity_at(time);
+    if (body.pressed()) wall.mass = body.plate->mass;
     wall.follows_material = body.rough;
     wall.friction = body.friction;
     wall.number = int(&body - bodies.all.data());

@@ -15,6 +15,9 @@ double radius_of(const Rocks<D>& rocks, const Rock<D>& rock) {
   return rocks.shapes[std::size_t(rock.shape)].bounding_radius();
 }
 
+/// Of two bodies, the second of which may be infinitely heavy.
+double reduced_mass(double a, double b) { return std::isinf(b) ? a : a * b / (a + b); }
+
 }  // namespace
 
 template <int D>
@@ -24,7 +27,7 @@ RockPair<D> Rocks<D>::constants_of(int first, int second, const Wall<D>* wall) c
   const double ra = shapes[std::size_t(a.shape)].equivalent_radius();
   if (wall == nullptr) {
     const auto& b = all[std::size_t(second)];
-    const double mass = a.body.mass * b.body.mass / (a.body.mass + b.body.mass);
+    const double mass = reduced_mass(a.body.mass, b.body.mass);
     return {of_a, ra,       materials[std::size_t(b.material)], shapes[std::size_t(b.shape)].equivalent_radius(),
             mass, thickness};
   }
@@ -32,7 +35,7 @@ RockPair<D> Rocks<D>::constants_of(int first, int second, const Wall<D>* wall) c
   if (wall->body != nullptr) {
     if (const auto* disc = std::get_if<Disc<D>>(&wall->body->shape)) rw = disc->radius;
   }
-  RockPair<D> pair(of_a, ra, of_a, rw, a.body.mass, thickness);
+  RockPair<D> pair(of_a, ra, of_a, rw, reduced_mass(a.body.mass, wall->mass), thickness);
   if (!wall->follows_material) pair.friction = wall->friction;
   return pair;
 }
@@ -103,19 +106,23 @@ long Rocks<D>::sub_steps_for(const std::vector<Wall<D>>& walls, const Vec<D>& gr
     return rock.body.velocity.norm() +
            rock.body.spin().norm() * std::sqrt(std::max(0.0, (outer - inner) * (outer + inner)));
   };
-  double highest = 0;  // 1/s^2, square of the frequency of a contact
+  double highest = 0;  // 1/s^2, square of the frequency of a contact, and of a plate on all of its own
+  std::vector<double> on_plate(walls.size(), 0.0);
   for (const auto& pair : pairs) {
     const auto& a = all[std::size_t(pair.first)];
     const Rock<D>* b = pair.second < int(all.size()) ? &all[std::size_t(pair.second)] : nullptr;
-    const double mass = b != nullptr ? a.body.mass * b->body.mass / (a.body.mass + b->body.mass) : a.body.mass;
-    const double other = b != nullptr ? speed_of(*b) : walls[std::size_t(pair.second) - all.size()].velocity.norm();
+    const Wall<D>* wall = b != nullptr ? nullptr : &walls[std::size_t(pair.second) - all.size()];
+    const double mass = reduced_mass(a.body.mass, b != nullptr ? b->body.mass : wall->mass);
+    const double other = b != nullptr ? speed_of(*b) : wall->velocity.norm();
     const double speed = speed_of(a) + other + gravity.norm() * dt;
     const double overlap = std::max(pair.contact.overlap, pair.constants.reach(mass, speed));
     // Along the contact a sphere turns too: 2/7 of its mass is in the way.
     const double stiffness =
         std::max(pair.constants.normal_stiffness(overlap), 3.5 * pair.constants.tangential_stiffness(overlap));
     highest = std::max(highest, stiffness / mass);
+    if (wall != nullptr) on_plate[std::size_t(pair.second) - all.size()] += stiffness / wall->mass;
   }
+  for (const double each : on_plate) highest = std::max(highest, each);
   if (highest == 0) return 1;
   return std::max(1L, long(std::ceil(dt * std::sqrt(highest) / std::numbers::pi * steps_per_collision)));
 }

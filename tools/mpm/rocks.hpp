@@ -6,6 +6,7 @@
 // Everything is done in the order of the rocks' numbers and by one thread: rocks are few beside the points.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,8 +44,15 @@ struct Wall {
   Vec<D> velocity = Vec<D>::Zero();                        ///< m/s
   bool follows_material = true;                            ///< its friction is the rock's; else:
   double friction = 0;
+  double mass = std::numeric_limits<double>::infinity();  ///< kg
   bool there = true;
   int number = 0;  ///< of the body
+};
+
+struct NoPlates {
+  template <class Forces>
+  void kick(const Forces&, double) const {}
+  void drift(double) const {}
 };
 
 /// J, of all rocks.
@@ -91,19 +99,23 @@ class Rocks {
   std::vector<std::pair<int, int>> rocks_within(double margin) const;
   /// Finds what may touch within a step of dt (s). `walls`: those at the time now.
   void find_candidates(const std::vector<Wall<D>>& walls, const Vec<D>& gravity, double dt);
-  /// A step under gravity (m/s^2), the soil's forces and contacts; `walls(t)`: those at a time in s.
-  template <class Walls>
-  void advance(const Walls& walls, const Vec<D>& gravity, double time, double dt) {
+  /// A step under gravity (m/s^2), the soil's forces and contacts; `walls(t)`: those at a time in s. `plates`: the
+  /// walls that rocks move, which take part in the sub-steps.
+  template <class Walls, class Plates = NoPlates>
+  void advance(const Walls& walls, const Vec<D>& gravity, double time, double dt, const Plates& plates = {}) {
     const std::vector<Wall<D>> now = walls(time);
     find_candidates(now, gravity, dt);
     const long n = sub_steps_for(now, gravity, dt);
     take_impulses(dt);
     for (long k = 0; k < n; ++k) {
       kick(gravity, 0.5 * dt / double(n));
+      plates.kick(wall_force, 0.5 * dt / double(n));
       for (auto& rock : all) rock.body.drift(dt / double(n));
+      plates.drift(dt / double(n));
       book_soil_work(dt / double(n));
       contact_forces(walls(time + dt * double(k + 1) / double(n)), dt / double(n), 1.0 / double(n));
       kick(gravity, 0.5 * dt / double(n));
+      plates.kick(wall_force, 0.5 * dt / double(n));
     }
     sub_steps += n;
   }
@@ -114,10 +126,14 @@ class Rocks {
 
   /// A point of a rock's surface that soil touches, or may within a step.
   struct SurfacePoint {
-    Vec<D> r;         ///< m, from the centre of the rock
-    Mat<D> mobility;  ///< m/s of N s, of soil and rock together
-    double gap;       ///< m, to the soil
+    Vec<D> r;           ///< m, from the centre of the rock
+    Mat<D> mobility;    ///< m/s of N s, of soil and rock together
+    double gap;         ///< m, to the soil
+    std::size_t place;  ///< number in the outline of the rock
   };
+  /// N, of each rock at each place of its outline on the soil, at the end of the step before, along its principal
+  /// axes: what the sweeps over surface points start from.
+  std::vector<std::vector<Vec<D>>> pressed;
   std::vector<SurfacePoint> surface;  ///< with the last surface points of Bodies
   /// Velocities of a rock as impulses of the soil change them over the step.
   struct Motion {

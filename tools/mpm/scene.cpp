@@ -4,6 +4,7 @@
 
 #include "tools/mpm/scene_checks.hpp"
 #include "tools/mpm/scene_water.hpp"
+#include "tools/mpm/setup_plates.hpp"
 
 namespace mpm {
 namespace {
@@ -102,6 +103,7 @@ BodyOfScene read_body(Keys& keys) {
   }
   body.at_surface = keys.choice("contact", {"surface", "nodes"}) == "surface";
   body.motion = read_motion(keys, D);
+  body.plate = read_plate(keys);
   keys.finish();
   std::visit([&](auto& any) { any.settle(keys); }, shape);
   body.shape = shape;

@@ -56,6 +56,12 @@ struct PlaneOfScene {
   WaterBoundary water;
 };
 
+/// A body under pressure. mass: kg, area: m^2; 0: to be found.
+struct PlateOfScene {
+  TimeHistory pressure;
+  double until = 1e300, mass = 0, area = 0;
+};
+
 struct BodyOfScene {
   std::string name;
   std::variant<BodyShape<2>, BodyShape<3>> shape;
@@ -64,6 +70,7 @@ struct BodyOfScene {
   bool at_surface = false;
   bool rough = true;
   std::vector<std::vector<double>> motion;
+  std::optional<PlateOfScene> plate;
 };
 
 struct Scene {

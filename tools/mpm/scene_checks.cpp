@@ -1,6 +1,7 @@
 #include "tools/mpm/scene_checks.hpp"
 
 #include "tools/mpm/scene_water.hpp"
+#include "tools/mpm/setup_plates.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -175,6 +176,7 @@ void check_scene(const Scene& scene, const std::string& path) {
   check_sides(scene, path);
   check_watched(scene, path);
   check_water(scene, path);
+  check_plates(scene, path);
   check_rocks(scene, path);
 }
 
@@ -230,6 +232,12 @@ void check_loads(const Scene& scene, const std::string& material, double modulus
   };
   refuse_pressure("loads.surface_pressure_Pa", text_of(scene.surface_pressure), scene.surface_pressure);
   refuse_pressure("initial.pressure_Pa", text_of(scene.pressure), scene.pressure);
+  for (const auto& body : scene.bodies) {
+    if (!body.plate) continue;
+    const auto& values = body.plate->pressure.values;
+    const double most = *std::max_element(values.begin(), values.end());
+    refuse_pressure("body." + body.name + ".pressure_Pa", text_of(most), most);
+  }
   const auto moving = all_moving(scene);
   for (std::size_t i = 0; i < scene.cell.size(); ++i) {
     double lowest = 1e300, highest = -1e300;

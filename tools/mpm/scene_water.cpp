@@ -13,9 +13,11 @@ namespace {
 
 constexpr const char* dry_scene = "is of saturated soil, and the scene has no [fluid]; add it, or remove the key";
 
-TimeHistory history_of(const Keys& keys, const std::string& name, const std::vector<std::vector<double>>& rows) {
+}  // namespace
+
+TimeHistory read_time_history(Keys& keys, const std::string& name) {
   TimeHistory history;
-  for (const auto& row : rows) {
+  for (const auto& row : keys.rows(name, 2)) {
     if (!history.times.empty() && row[0] <= history.times.back()) {
       keys.wrong(name, "must go forward in time, and goes from " + text_of(history.times.back()) + " to " +
                            text_of(row[0]) + " s; sort its rows, and leave out what is there twice");
@@ -26,12 +28,14 @@ TimeHistory history_of(const Keys& keys, const std::string& name, const std::vec
   return history;
 }
 
+namespace {
+
 Shaking read_shaking(Keys keys, int dimension) {
   Shaking shaking;
   std::vector<std::string> axes(axis_names, axis_names + dimension);
   const auto axis = keys.choice("axis", axes);
   shaking.axis = int(std::find(axes.begin(), axes.end(), axis) - axes.begin());
-  shaking.record = history_of(keys, "record", keys.rows("record", 2));
+  shaking.record = read_time_history(keys, "record");
   if (shaking.record.times.empty()) {
     shaking.velocity = keys.number("velocity_m_s");
     shaking.frequency = keys.positive("frequency_Hz");
@@ -48,7 +52,7 @@ Strip read_strip(Keys& keys) {
   Strip strip;
   strip.lower = keys.number("lower_m");
   strip.upper = keys.number("upper_m");
-  strip.history = history_of(keys, "history", keys.rows("history", 2));
+  strip.history = read_time_history(keys, "history");
   strip.peak = keys.number("half_sine_Pa", 0);
   if (strip.peak != 0) strip.duration = keys.positive("half_sine_s");
   keys.finish();

@@ -10,6 +10,8 @@ std::optional<WaterOfScene> read_water(Keys& file, const Scene& scene);
 /// drained, pressure_Pa or head_m of a boundary.
 WaterBoundary read_water_boundary(Keys& keys, bool with_water);
 void read_region_water(Keys& keys, const std::optional<WaterOfScene>& water, RegionOfScene& region);
+/// Rows of s and a value, forward in time; none if the key is not there.
+TimeHistory read_time_history(Keys& keys, const std::string& name);
 /// loads.shaking and loads.strip.
 Loads read_loads(Keys& keys, const Scene& scene);
 /// Replaces loads.shaking.record_csv, a file beside the scene, by the rows that it holds.

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "tools/mpm/scene_checks.hpp"
+#include "tools/mpm/setup_plates.hpp"
 #include "tools/mpm/setup_rocks.hpp"
 
 namespace mpm {
@@ -359,11 +360,13 @@ std::unique_ptr<Model<D>> set_up(const Scene& scene, int threads, const std::str
   set_options(scene, model->solver);
   place_planes(scene, model->solver);
   place_bodies(scene, model->solver);
+  place_plates<D>(scene, model->solver);
   place_rocks<D>(scene, model->solver);
   Stock<D> stock{specimens, populate, {}, {}};
   stock.open(scene, *model, source);
   for (const auto& material : scene.materials) add_group(scene, material, *model, stock);
   finish_rocks<D>(scene, model->solver, model->told);
+  weigh_plates<D>(model->solver);
   if (scene.water) fill_with_water<D>(scene, populate, model->solver);
   watch_points(scene, *model);
   return model;

@@ -69,7 +69,7 @@ double Solver<D>::stable_step() const {
   // A boundary or body faster than any wave must not jump over the soil: a fifth of a cell a step at most.
   double driven = 0;
   for (const double then : {time, time + dt}) {
-    each_driven([&](const auto& each) { driven = std::max(driven, each.velocity.at(then).norm()); });
+    each_driven([&](const auto& each) { driven = std::max(driven, each.velocity_at(then).norm()); });
   }
   if (!rocks) return driven > 0 ? std::min(dt, 0.2 * grid.cell.minCoeff() / driven) : dt;
   driven = std::max(driven, rocks->fastest());
@@ -174,20 +174,42 @@ void Solver<D>::end_velocities(double dt) {
     for (int i = 0; i < D; ++i) node.w[i] = node.v[i] + dt * (node.w[i] / node.mass);
   });
   if (planes.absorb()) add_dashpots(dt);
+  bodies.predict_plates(time, dt);
   if (rocks) bodies.predict_rocks(options.gravity, dt);
   bodies.set_end(grid, planes, time + dt);
   planes.set_end(grid, time + dt);
   if (planes.absorb()) book_dashpots(dt);
   take_changes(solid(), dt);
-  if (rocks) advance_rocks(dt);
+  advance_free(dt);
+}
+
+/// Plates without rocks take the step as one.
+template <int D>
+void Solver<D>::advance_free(double dt) {
+  bodies.sum_plate_forces(grid, time, dt);
+  if (rocks) {
+    advance_rocks(dt);
+  } else {
+    bodies.kick_plates({}, 0, 0.5 * dt);
+    bodies.drift_plates(dt);
+    bodies.kick_plates({}, 0, 0.5 * dt);
+  }
+  bodies.end_plates(dt);
 }
 
 /// Their contacts with each other and with walls, and the impulses of the soil.
 template <int D>
 void Solver<D>::advance_rocks(double dt) {
+  struct Plates {
+    Bodies<D>& bodies;
+    std::size_t first;
+    void kick(const std::vector<Vec<D>>& forces, double h) const { bodies.kick_plates(forces, first, h); }
+    void drift(double h) const { bodies.drift_plates(h); }
+  };
   const double begin = wall_seconds();
   if (rocks->soil.ghosts) rocks->work_on_soil += ghost_work(dt);
-  rocks->advance([&](double then) { return walls_at<D>(grid, planes, bodies, then); }, options.gravity, time, dt);
+  rocks->advance([&](double then) { return walls_at<D>(grid, planes, bodies, then); }, options.gravity, time, dt,
+                 Plates{bodies, planes.all.size()});
   rocks->seconds += wall_seconds() - begin;
 }
 
@@ -201,7 +223,8 @@ template <int D>
 void Solver<D>::rocks_alone(double dt) {
   const double begin = wall_seconds();
   place_grid();
-  if (rocks) advance_rocks(dt);
+  bodies.place_plates(grid, planes, time);
+  advance_free(dt);
   time += dt;
   ++steps;
   grid_seconds += wall_seconds() - begin;
@@ -297,6 +320,7 @@ void Solver<D>::step(double dt) {
   if (points.empty()) return rocks_alone(dt);
   const double begin = wall_seconds(), before = material_seconds;
   begin_step();
+  bodies.place_plates(grid, planes, time);
   if (rocks) rocks->step = dt;
   if (rocks && rocks->soil.ghosts) touch_ghosts(dt);
   map_momentum();

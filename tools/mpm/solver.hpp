@@ -133,6 +133,7 @@ class Solver {
   void touch_ghosts(double dt);
   void give_ghost_forces();
   double ghost_work(double dt) const;
+  void advance_free(double dt);
   void advance_rocks(double dt);
   void rocks_alone(double dt);
   // saturated_step.cpp

@@ -40,14 +40,14 @@ std::string cause_of_step(const Solver<D>& solver) {
       }
     }
   }
-  const auto drive = [&](const std::string& name, const VelocityHistory<D>& velocity) {
-    const double speed = velocity.at(solver.time).norm();
+  const auto drive = [&](const std::string& name, const auto& each) {
+    const double speed = each.velocity_at(solver.time).norm();
     if (speed <= driven) return;
     driven = speed;
     of_driven = name + ", which moves at " + text_of(speed) + " m/s";
   };
-  for (const auto& plane : solver.planes.all) drive("boundary." + plane.name, plane.velocity);
-  for (const auto& body : solver.bodies.all) drive("body." + body.name, body.velocity);
+  for (const auto& plane : solver.planes.all) drive("boundary." + plane.name, plane);
+  for (const auto& body : solver.bodies.all) drive("body." + body.name, body);
   const double own = solver.options.cfl / (wave + fastest);
   if (driven > 0 && 0.2 / driven < own) return of_driven;
   return (wave >= fastest ? of_wave : of_point) + ", in cells of " + text_of(solver.grid.cell.minCoeff()) + " m";

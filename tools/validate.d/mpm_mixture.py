@@ -1,0 +1,140 @@
+"""tools/validate mpm_mixture: triaxial tests of a softening soil without and with rocks, between plates under pressure.
+
+    mpm_mixture.py RVELAB FOLDER RESULTS
+
+The soil alone beside the exact curve of its law, mixtures of three seeds with points as balls (Li et al. 2023, 4.3, half
+their edge), one of them with contact at the surface of the rocks, and the stiffness of an elastic mixture beside Hashin and
+Shtrikman's bound for rough rigid spheres. Runs that are whole in FOLDER are used again."""
+
+import numpy as np
+
+from mpm import folder, run
+
+EDGE = 0.0375  # m
+SCENE = "mixture_triaxial.toml"
+E, NU, PRESSURE, PSI = 4.6e6, 0.12, 50e3, np.radians(16)
+CUBIC, PEAK_STRAIN, DECAY = (1075.64, -407.93, 16.39, 0.32463), 0.022, 50
+PEAK, RESIDUAL = np.radians(28.6), np.radians(18.6)
+missed = []
+
+
+def verdict(what, found, asked, met):
+    if not met:
+        missed.append(what)
+    print(f"{what:<72} {found:<18} {asked:<20} {'met' if met else 'MISSED'}", flush=True)
+
+
+def slope(angle):
+    """Of the outer cone."""
+    return 2 * np.sin(angle) / (np.sqrt(3) * (3 - np.sin(angle)))
+
+
+def exact(plastic):
+    """Axial strain, deviatoric stress (Pa), volumetric strain (compression +) at deviatoric plastic strains, the lateral
+    stress held: q/sqrt(3) = alpha (3 p + q); deps_p = -(1/sqrt(3) - beta) dlambda along, dplastic = dlambda/sqrt(3)."""
+    cubic = np.polyval(CUBIC, plastic)
+    angle = np.where(plastic < PEAK_STRAIN, cubic, RESIDUAL + (PEAK - RESIDUAL) * np.exp(-DECAY * (plastic - PEAK_STRAIN)))
+    alpha, beta = slope(angle), slope(PSI)
+    q = 3 * alpha * PRESSURE / (1 / np.sqrt(3) - alpha)
+    return q / E + (1 - np.sqrt(3) * beta) * plastic, q, q * (1 - 2 * NU) / E - 3 * np.sqrt(3) * beta * plastic
+
+
+def test(name, *options, begins=0.02):
+    """Logarithmic axial and volumetric strain, deviatoric stress (Pa) from the plates."""
+    h, printed = run(name, SCENE, "-j", "1", *options)
+    sides = [EDGE + h[f"{plate}.displacement_{axis}_m"] for plate, axis in (("right", "x"), ("back", "y"), ("top", "z"))]
+    first = np.searchsorted(h["time_s"], begins)
+    axial = -np.log(sides[2] / sides[2][first])
+    volumetric = -np.log(np.prod(sides, axis=0) / np.prod(sides, axis=0)[first])
+    q = h["top.pressure_Pa"] - 0.5 * (h["right.pressure_Pa"] + h["back.pressure_Pa"])
+    rows = slice(first, None)
+    return axial[rows], volumetric[rows], q[rows], h, printed
+
+
+def at(strains, axial, values):
+    return " ".join(f"{x:6.1f}" for x in np.interp(strains, axial, values))
+
+
+print("Drucker-Prager soil with the softening of Li et al. (eq. 43) at 50 kPa, 8,000 points, plates at 0.02 m/s\n")
+strains = np.array([1, 2, 3, 4, 5, 6, 8, 10, 15]) / 100
+ep = np.linspace(0, 0.25, 100_001)
+curve = exact(ep)
+along = np.concatenate(([0], curve[0])), np.concatenate(([0], curve[1])), np.concatenate(([0], curve[2]))
+axial, volumetric, q, h, printed = test("soil")
+print("axial strain, %           " + " ".join(f"{100 * s:6.0f}" for s in strains))
+print("q, exact, kPa             " + at(strains, along[0], along[1] / 1e3))
+print("q, plates                 " + at(strains, axial, q / 1e3))
+print("volumetric, exact, %      " + at(strains, along[0], 100 * along[2]))
+print("volumetric, plates        " + at(strains, axial, 100 * volumetric) + "\n")
+peak_at = curve[0][curve[1].argmax()]
+before = axial < peak_at
+error = np.abs(q - np.interp(axial, along[0], along[1]))[before].max() / curve[1].max()
+verdict("largest error up to the peak over the peak", f"{100 * error:.2f} %", "2 %", error < 0.02)
+residual = q[(axial > 0.1) & (axial < 0.16)].mean() / 1e3
+verdict("mean from 10 to 16 %, kPa", f"{residual:.1f}", "46.9 +- 2", abs(residual - 46.9) < 2)
+before_load = (h["time_s"] > 0.005) & (h["time_s"] < 0.02)
+rest = max(np.abs(h[f"{plate}.pressure_Pa"][before_load] / PRESSURE - 1).max() for plate in ("right", "back", "top"))
+verdict("pressure on the plates at rest, largest error", f"{rest:.1e}", "0.5 %", rest < 5e-3)
+
+
+def peak_of(axial, q):
+    smooth = np.convolve(q, np.ones(3) / 3, "same")
+    k = smooth[1:-1].argmax() + 1
+    return q[k] / 1e3, axial[k], q[(axial > 0.1) & (axial < 0.16)].mean() / 1e3
+
+
+print("\nMixtures, rocks of 10 mm, points of 1.9 mm (1:5), plates at 0.05 m/s, seeds 1 to 3\n")
+print("part     contact  seed  rocks  peak, kPa  at strain, %  residual, kPa  volumetric at 10 %, %  soil's residual, J  s a million")
+SLOW = ("--set", "time.duration_s=0.14", "--set", "body.top.motion=[[0,0,0,0],[0.02,0,0,0],[0.022,0,0,-0.05]]")
+found = {}
+
+
+def mixture(share, contact, seed):
+    case = ("--case", f"rocks_{share}", "--set", f"rocks.coarse.seed={seed}") if share else SLOW
+    if contact == "surface":
+        case += ("--set", 'rock_soil={contact="surface", friction=0.35}', "--set", "time.cfl=0.15")
+    a, v, q, h, printed = test(f"mixture_{share}_{contact}_{seed}", *case)
+    peak, where, residual = peak_of(a, q)
+    found.setdefault((share, contact), []).append((peak, where, residual))
+    rocks = printed.split(" rocks of ")[0].split()[-1] if share else "0"
+    rate = float(printed.split(" M point-steps")[0].split()[-1])
+    print(f"{share:2d} %     {contact:<8} {seed:<5} {rocks:<6} {peak:<10.1f} {100 * where:<13.2f} {residual:<14.1f} "
+          f"{100 * np.interp(0.1, a, v):<22.2f} {np.abs(h['residual_J']).max():<19.3f} {1 / rate:.2f}", flush=True)
+
+
+mixture(0, "-", 1)
+for share in (20, 40):
+    for seed in (1, 2, 3):
+        mixture(share, "ghost", seed)
+for share in (20, 40):
+    mixture(share, "surface", 1)
+mean = {key: np.mean(rows, axis=0) for key, rows in found.items()}
+error = {key: np.std(rows, axis=0, ddof=1) / np.sqrt(len(rows)) for key, rows in found.items() if len(rows) > 1}
+for key, value in error.items():
+    print(f"mean of {key[0]} %: peak {mean[key][0]:.1f} +- {value[0]:.1f} kPa at {100 * mean[key][1]:.2f} %, residual "
+          f"{mean[key][2]:.1f} +- {value[2]:.1f} kPa")
+peaks = [mean[0, "-"][0], mean[20, "ghost"][0], mean[40, "ghost"][0]]
+verdict("peaks of 0, 20, 40 % rise, kPa", " ".join(f"{p:.1f}" for p in peaks), "in order", peaks[0] < peaks[1] < peaks[2])
+ends = [mean[0, "-"][2], mean[20, "ghost"][2], mean[40, "ghost"][2]]
+verdict("residuals of 0, 20, 40 %, kPa", " ".join(f"{p:.1f}" for p in ends), "within 10 %", max(ends) < 1.1 * min(ends))
+for share in (20, 40):
+    ratio = found[share, "surface"][0][0] / found[share, "ghost"][0][0]
+    verdict(f"{share} %: peak, contact at the surface over balls, one seed", f"{ratio:.3f}", "1 +- 0.05", abs(ratio - 1) < 0.05)
+
+print("\nElastic soil (4.6 MPa, 0.12) with rough rocks of 0.8 GPa and 10 mm: stiffness between 0.1 and 0.3 % over the soil's\n")
+for share, volume in ((20, 0.158), (40, 0.311)):
+    g, k = E / (2 * (1 + NU)), E / (3 * (1 - 2 * NU))
+    bound_k = k + volume / (1 - volume) * (k + 4 / 3 * g)
+    bound_g = g + volume / (1 - volume) * 5 * g * (3 * k + 4 * g) / (6 * (k + 2 * g))
+    bound = 9 * bound_k * bound_g / (3 * bound_k + bound_g) / E
+    for contact in ("ghost", "surface"):
+        # Cohesion of 1 MPa: the soil stays elastic.
+        a, v, q, h, printed = test(f"elastic_{share}_{contact}", "--case", f"rocks_{share}", "--set",
+                                   "rock_soil={" + f'contact="{contact}", rough=true' + "}", "--set",
+                                   "material.soil.cohesion_Pa=1e6", "--set", "time.duration_s=0.026")
+        rows = (a > 0.001) & (a < 0.003)
+        stiff = np.polyfit(a[rows], q[rows], 1)[0] / E
+        verdict(f"{share} %, {contact}: E over that of the soil", f"{stiff:.2f}", f"{bound:.2f} to {1.3 * bound:.2f}",
+                bound <= stiff <= 1.3 * bound)
+
+print(f"\n{len(missed)} missed" + (": " + "; ".join(missed) if missed else ""))
