@@ -110,8 +110,8 @@ class Bodies {
     double weight[reach];
     int count = 0;
     double mobility = 0;  ///< m/s of N s: sum of weight^2/mass
-    Vec<D> now, at_start,
-        at_end;  ///< N s, of the body on the soil: as it is held, at the start, at the end of the step
+    /// N s, of the body on the soil: while the sweeps go on, at the start, at the end of the step.
+    Vec<D> now, at_start, at_end;
   };
   template <class Outline>
   void detect_soil(const Grid<D>& grid, const Outline& outline, const Vec<D>& centre, const std::vector<Point<D>>& soil,

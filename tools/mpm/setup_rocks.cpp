@@ -151,6 +151,9 @@ void finish_rocks(const Scene& scene, Solver<D>& solver, std::vector<std::string
                    "its own");
   }
   if (rocks.soil.ghosts) rocks.size_balls(solver.points);
+  // With the first size of the cells, also in a run that is resumed.
+  const bool met = !rocks.soil.ghosts && solver.bodies.rocks != nullptr;
+  for (int k = 0; met && k < int(rocks.shapes.size()); ++k) rocks.outline(k, 0.5 * cell);
 }
 
 #define MPM_INSTANTIATE(D)                                \

@@ -206,7 +206,7 @@ void Bodies<D>::push(Grid<D>& grid, SurfacePoint& point, const Vec<D>& impulse, 
 template <int D>
 void Bodies<D>::hold_surface(Grid<D>& grid, double time, bool end) {
   for (auto& point : surface_) point.now.setZero();
-  const bool pressed = end && rocks != nullptr && !rocks->surface.empty();
+  const bool pressed = end && rocks != nullptr && !rocks->soil.ghosts;
   if (pressed) press_rocks(grid);
   for (int sweep = 0; sweep < sweeps_; ++sweep) {
     for (std::size_t k = 0; k < surface_.size(); ++k) {
