@@ -11,6 +11,7 @@
 #include "rvelab/measure/tensor_order.hpp"
 #include "tests/catch.hpp"
 #include "tests/measure/crystals.hpp"
+#include "tests/measure/turned.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
@@ -94,17 +95,7 @@ TEST_CASE("Q_ik = n_j C_ijkl n_l of any stiffness: the same for -n, and turned w
   CHECK(acoustic_tensor(c, Vector3(-n)) == q);
 
   const Matrix3& turn = some_turn;
-  Eigen::MatrixXd turned(6, 6);
-  for (int k = 0; k < 6; ++k) {
-    const Eigen::VectorXd response = c * strain_components(turn.transpose() * unit_strain(k, 3) * turn, 3);
-    Matrix3 stress = Matrix3::Zero();
-    for (int m = 0; m < 6; ++m) {
-      const auto [i, j] = component_axes(m, 3);
-      stress(i, j) = stress(j, i) = response[m];
-    }
-    turned.col(k) = stress_components(turn * stress * turn.transpose(), 3);
-  }
-  CHECK((acoustic_tensor(turned, turn * n) - turn * q * turn.transpose()).norm() < 1e-13);
+  CHECK((acoustic_tensor(turned_stiffness(c, turn), turn * n) - turn * q * turn.transpose()).norm() < 1e-13);
 }
 
 TEST_CASE("in space the first band of Drucker and Prager's material is that of Rudnicki and Rice", "[measure]") {

@@ -13,6 +13,7 @@
 #include "rvelab/measure/tensor_order.hpp"
 #include "tests/catch.hpp"
 #include "tests/measure/crystals.hpp"
+#include "tests/measure/turned.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
@@ -54,21 +55,6 @@ Specimen packing(const std::vector<std::string>& settings) {
   io::ImportOptions options;
   options.settings = settings;
   return io::import_csv(base + ".particles.csv", base + ".contacts.csv", base + ".json", options);
-}
-
-/// The same response in a frame that is turned: C'(e) = Q C(Q^T e Q) Q^T.
-Eigen::MatrixXd turned_stiffness(const Eigen::MatrixXd& stiffness, const Matrix3& turn) {
-  Eigen::MatrixXd turned(6, 6);
-  for (int k = 0; k < 6; ++k) {
-    const Eigen::VectorXd response = stiffness * strain_components(turn.transpose() * unit_strain(k, 3) * turn, 3);
-    Matrix3 stress;
-    for (int m = 0; m < 6; ++m) {
-      const auto [i, j] = component_axes(m, 3);
-      stress(i, j) = stress(j, i) = response[m];
-    }
-    turned.col(k) = stress_components(turn * stress * turn.transpose(), 3);
-  }
-  return turned;
 }
 
 double determinant(const Eigen::MatrixXd& stiffness, const Vector3& normal) {

@@ -1,17 +1,16 @@
 // Plates under pressure in scenes: stress of soil and rocks, areas and masses, the end of the pressure, runs that are
 // stopped and resumed.
-#include <filesystem>
-#include <fstream>
+#include <algorithm>
+#include <sstream>
 
-#include "tests/child.hpp"
 #include "tests/mpm/plates.hpp"
 #include "tests/mpm/rock_refusals.hpp"
+#include "tests/mpm/scene_runs.hpp"
 
 using namespace mpm;
 using namespace mpm::test;
 using Catch::Matchers::Contains;
 using rvelab::test::bytes_of;
-using rvelab::test::Child;
 using rvelab::test::Folder;
 
 namespace {
@@ -116,29 +115,6 @@ struct History {
   }
 };
 
-struct PlateBench {
-  Folder folder;
-  explicit PlateBench(const std::string& scene) { std::ofstream(folder / "scene.toml") << scene; }
-  int run(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), RVELAB_MPM_PROGRAM);
-    return Child(arguments, folder / "out", folder / "err").wait();
-  }
-  int start(const std::string& name, std::vector<std::string> more) const {
-    more.insert(more.begin(), {folder / "scene.toml", "-o", folder / name});
-    return run(more);
-  }
-  void expect_same(const std::string& a, const std::string& b) const {
-    std::size_t files = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(folder / a)) {
-      const auto name = entry.path().filename().string();
-      CAPTURE(a, b, name);
-      ++files;
-      CHECK(bytes_of(entry.path()) == bytes_of(folder / (b + "/" + name)));
-    }
-    CHECK(files >= 10);
-  }
-};
-
 }  // namespace
 
 TEST_CASE("the mean stress of soil and a rock in it is that of the plates around them") {
@@ -210,7 +186,7 @@ TEST_CASE("a plate whose pressure ends keeps its place, and then has its motion"
 }
 
 TEST_CASE("pressed soil and a rock leave the same bytes by any number of threads, and stopped and resumed") {
-  const PlateBench bench(pressed_cube);
+  const SceneRuns bench(pressed_cube);
   // From a larger pressure than that of the soil, so that all moves; the top is under way from 10 ms on.
   const std::vector<std::string> set{"--set", "body.top.pressure_until_s=0.01",
                                      "--set", "body.top.motion=[[0, 0, 0, 0], [0.012, 0, 0, 0], [0.013, 0, 0, -0.2]]",
@@ -222,12 +198,12 @@ TEST_CASE("pressed soil and a rock leave the same bytes by any number of threads
   };
   REQUIRE(start("one", {"-j", "1"}) == 0);
   REQUIRE(start("three", {"-j", "3"}) == 0);
-  bench.expect_same("one", "three");
+  bench.expect_same("one", "three", 10);
   for (const char* stop : {"0.0043", "0.0111", "0.0155"}) {  // pressed, held, under way
     const std::string name = "stopped_" + std::string(stop);
     REQUIRE(start(name, {"-j", "1", "--stop-at", stop}) == 0);
     REQUIRE(bench.run({"--resume", bench.folder / name, "-j", "3"}) == 0);
-    bench.expect_same("one", name);
+    bench.expect_same("one", name, 10);
   }
   const History history(bench.folder / "one/history.csv");
   double held = NAN;
@@ -249,9 +225,9 @@ TEST_CASE("pressed soil and a rock leave the same bytes by any number of threads
 }
 
 TEST_CASE("the program refuses a plate that is none with status 2") {
-  const PlateBench bench(pressed_block);
+  const SceneRuns bench(pressed_block);
   CHECK(bench.start("a", {"--set", "body.lid.pressure_Pa=-1"}) == 2);
-  CHECK_THAT(bytes_of(bench.folder / "err"), Contains("pressure_Pa"));
+  CHECK_THAT(bench.errors(), Contains("pressure_Pa"));
   CHECK(bench.start("b", {"--set", "body.lid.contact=nodes"}) == 2);
   CHECK_FALSE(std::filesystem::exists(bench.folder / "a/history.csv"));
 }

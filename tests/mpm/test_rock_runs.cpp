@@ -1,16 +1,14 @@
 // Rocks in runs of the program: the same bytes by any number of threads, and after a stop.
-#include <filesystem>
-#include <fstream>
+#include <sstream>
 
-#include "tests/catch.hpp"
-#include "tests/child.hpp"
-#include "tests/folder.hpp"
 #include "tests/mpm/blocks.hpp"
 #include "tests/mpm/rocks_alone.hpp"
+#include "tests/mpm/scene_runs.hpp"
 
 using Catch::Matchers::Contains;
 using mpm::test::pi;
 using mpm::test::rocks_alone;
+using mpm::test::SceneRuns;
 using rvelab::test::bytes_of;
 using rvelab::test::Child;
 using rvelab::test::Folder;
@@ -89,30 +87,6 @@ history_every_s = 0.002
 checkpoint_every_s = 0.03
 )";
 
-struct RockBench {
-  Folder folder;
-  explicit RockBench(const std::string& scene) { std::ofstream(folder / "scene.toml") << scene; }
-  int run(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), RVELAB_MPM_PROGRAM);
-    return Child(arguments, folder / "out", folder / "err").wait();
-  }
-  int start(const std::string& name, std::vector<std::string> more = {}) const {
-    more.insert(more.begin(), {folder / "scene.toml", "-o", folder / name});
-    return run(more);
-  }
-  std::string errors() const { return bytes_of(folder / "err"); }
-  void expect_same(const std::string& a, const std::string& b, std::size_t least) const {
-    std::size_t files = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(folder / a)) {
-      const auto name = entry.path().filename().string();
-      CAPTURE(name);
-      ++files;
-      CHECK(bytes_of(entry.path()) == bytes_of(folder / (b + "/" + name)));
-    }
-    CHECK(files >= least);
-  }
-};
-
 /// A value of the last row of history.csv.
 double last_value(const std::string& history, const std::string& column) {
   std::istringstream header(history.substr(0, history.find('\n')));
@@ -129,7 +103,7 @@ double last_value(const std::string& history, const std::string& column) {
 TEST_CASE("rocks that fall on soil leave the same bytes by any number of threads, and stopped and resumed") {
   for (const std::string contact : {"surface", "ghost"}) {
     CAPTURE(contact);
-    const RockBench bench(falling_scene);
+    const SceneRuns bench(falling_scene);
     const std::vector<std::string> set{"--set", "rock_soil.contact=" + contact};
     const auto start = [&](const std::string& name, std::vector<std::string> more) {
       more.insert(more.end(), set.begin(), set.end());
@@ -151,7 +125,7 @@ TEST_CASE("rocks that fall on soil leave the same bytes by any number of threads
 }
 
 TEST_CASE("a flipped bit in the checkpoint of rocks is refused") {
-  const RockBench bench(falling_scene);
+  const SceneRuns bench(falling_scene);
   REQUIRE(bench.start("a", {"-j", "1", "--stop-at", "0.003"}) == 0);
   const auto path = bench.folder / "a/checkpoint.h5";
   const auto whole = bytes_of(path);
@@ -172,7 +146,7 @@ TEST_CASE("rocks alone, without any soil, fall freely, come to rest on a floor a
   for (const int d : {2, 3}) {
     CAPTURE(d);
     const std::string axis = d == 2 ? "y" : "z", floor = d == 2 ? "[0, 0]" : "[0, 0, 0]";
-    const RockBench bench(
+    const SceneRuns bench(
         rocks_alone(d, "[[rock]]\nname = \"ball\"\nmaterial = \"basalt\"\nradius_m = 0.2\ncentre_m = " +
                            std::string(d == 2 ? "[0, 1.2]" : "[0, 0, 1.2]") +
                            "\n[[rock]]\nname = \"still\"\nmaterial = \"basalt\"\nradius_m = 0.1\ncentre_m = " +

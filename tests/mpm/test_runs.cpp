@@ -4,9 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "tests/catch.hpp"
-#include "tests/child.hpp"
-#include "tests/folder.hpp"
+#include "tests/mpm/scene_runs.hpp"
 
 using Catch::Matchers::Contains;
 using rvelab::test::bytes_of;
@@ -42,21 +40,12 @@ normal = [0, 1]
 watched_points_m = [[0.5, 0.5]]
 )";
 
-struct BlockBench {
-  Folder folder;
-  BlockBench() { std::ofstream(folder / "block.toml") << block_scene; }
-
-  int run(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), RVELAB_MPM_PROGRAM);
-    Child child(arguments, folder / "out", folder / "err");
-    return child.wait();
-  }
+struct BlockRuns : mpm::test::SceneRuns {
+  BlockRuns() : SceneRuns(block_scene, "block.toml") {}
   int start(const std::string& name, std::vector<std::string> more = {}) const {
-    more.insert(more.begin(), {folder / "block.toml", "-j", "1", "-o", folder / name});
-    return run(more);
+    more.insert(more.begin(), {"-j", "1"});
+    return SceneRuns::start(name, more);
   }
-  std::string errors() const { return bytes_of(folder / "err"); }
-  std::string output() const { return bytes_of(folder / "out"); }
   double last_time(const std::string& name) const {
     const auto text = bytes_of(folder / (name + "/history.csv"));
     return std::stod(text.substr(text.rfind('\n', text.size() - 2) + 1));
@@ -66,22 +55,15 @@ struct BlockBench {
 }  // namespace
 
 TEST_CASE("runs that are the same have the same bytes in every file") {
-  const BlockBench bench;
+  const BlockRuns bench;
   REQUIRE(bench.start("a") == 0);
   std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // stamps count seconds
   REQUIRE(bench.start("b") == 0);
-  int files = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(bench.folder / "a")) {
-    const auto name = entry.path().filename().string();
-    CAPTURE(name);
-    ++files;
-    CHECK(bytes_of(entry.path()) == bytes_of(bench.folder / ("b/" + name)));
-  }
-  CHECK(files >= 24);
+  bench.expect_same("a", "b", 24);
 }
 
 TEST_CASE("a run stops where it was asked to as one that succeeded, and says what it took") {
-  const BlockBench bench;
+  const BlockRuns bench;
   REQUIRE(bench.start("a", {"--stop-at", "0.05"}) == 0);
   CHECK_THAT(bench.output(), Contains("go on with: rvelab-mpm --resume") && Contains(" s, processor "));
   CHECK(bench.start("b", {"--stop-at", "nan"}) == 2);
@@ -95,7 +77,7 @@ TEST_CASE("a run stops where it was asked to as one that succeeded, and says wha
 }
 
 TEST_CASE("what a resumed run is told stays told: the scene in its folder is the one that it goes on with") {
-  const BlockBench bench;
+  const BlockRuns bench;
   REQUIRE(bench.start("a") == 0);
   REQUIRE(bench.run({"--resume", bench.folder / "a"}) == 0);
   CHECK_THAT(bench.output(), Contains("the run is at 0.1 s, and ends at time.duration_s = 0.1"));
@@ -116,7 +98,7 @@ TEST_CASE("what a resumed run is told stays told: the scene in its folder is the
 }
 
 TEST_CASE("a folder that lost something is refused with the remedy") {
-  const BlockBench bench;
+  const BlockRuns bench;
   REQUIRE(bench.start("a", {"--stop-at", "0.05"}) == 0);
   const auto history = bench.folder / "a/history.csv", checkpoint = bench.folder / "a/checkpoint.h5";
   const auto rows = bytes_of(history), state = bytes_of(checkpoint);
@@ -137,7 +119,7 @@ TEST_CASE("a folder that lost something is refused with the remedy") {
 
 TEST_CASE(
     "a flipped bit in what a run is resumed from is refused, and what a kill left behind a checkpoint is cut off") {
-  const BlockBench bench;
+  const BlockRuns bench;
   REQUIRE(bench.start("a", {"--stop-at", "0.05"}) == 0);
   const auto resume = [&] { return bench.run({"--resume", bench.folder / "a", "-j", "1"}); };
   for (const char* name : {"checkpoint.h5", "history.csv", "watched.csv", "scene.toml"}) {
@@ -169,7 +151,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a scene or a checkpoint that is no regular file is refused at once") {
-  const BlockBench bench;
+  const BlockRuns bench;
   const auto pipe = bench.folder / "pipe";
   REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
   Child child({RVELAB_MPM_PROGRAM, pipe, "-o", bench.folder / "a"}, bench.folder / "out", bench.folder / "err");
@@ -184,7 +166,7 @@ TEST_CASE("a scene or a checkpoint that is no regular file is refused at once") 
 }
 
 TEST_CASE("a full disc fails the run by name, and what was whole stays whole") {
-  const BlockBench bench;
+  const BlockRuns bench;
   const auto run_with = [&](const std::string& blocks, const std::string& name) {  // of 512 bytes, for each file
     Child child({"/bin/sh", "-c", "trap '' XFSZ; ulimit -f " + blocks + "; exec \"$0\" \"$@\"", RVELAB_MPM_PROGRAM,
                  bench.folder / "block.toml", "-j", "1", "-o", bench.folder / name},
@@ -206,7 +188,7 @@ TEST_CASE("a full disc fails the run by name, and what was whole stays whole") {
 }
 
 TEST_CASE("a first signal stops a run with a checkpoint, and threads that the system refuses are told") {
-  const BlockBench bench;
+  const BlockRuns bench;
   {
     Child child({RVELAB_MPM_PROGRAM, bench.folder / "block.toml", "-o", bench.folder / "a", "-j", "1", "--set",
                  "time.duration_s=1e4"},

@@ -2,15 +2,12 @@
 #include <filesystem>
 #include <fstream>
 
-#include "tests/catch.hpp"
-#include "tests/child.hpp"
-#include "tests/folder.hpp"
+#include "tests/mpm/scene_runs.hpp"
 #include "tools/mpm/setup.hpp"
 
 using namespace mpm;
 using Catch::Matchers::Contains;
 using rvelab::test::bytes_of;
-using rvelab::test::Child;
 using rvelab::test::Folder;
 
 namespace {
@@ -95,16 +92,6 @@ std::string refusal(const std::string& from, const std::string& to, const std::v
 }
 
 std::string set(const std::string& assignment) { return refusal("", "", {assignment}); }
-
-struct Bench {
-  Folder folder;
-  int run(std::vector<std::string> arguments) const {
-    std::ofstream(folder / "scene.toml") << shaken;
-    arguments.insert(arguments.begin(), RVELAB_MPM_PROGRAM);
-    arguments.insert(arguments.end(), {"-q"});
-    return Child(arguments, folder / "out", folder / "err").wait();
-  }
-};
 
 }  // namespace
 
@@ -191,26 +178,18 @@ TEST_CASE("Water that is enclosed and cannot be compressed is refused for want o
 }
 
 TEST_CASE("A saturated run that was stopped goes on with the same bytes, over any number of threads") {
-  const Bench bench;
-  REQUIRE(bench.run({bench.folder / "scene.toml", "-j", "1", "-o", bench.folder / "a"}) == 0);
-  REQUIRE(bench.run({bench.folder / "scene.toml", "-j", "3", "-o", bench.folder / "b", "--stop-at", "0.02"}) == 0);
-  REQUIRE(bench.run({"--resume", bench.folder / "b", "-j", "2"}) == 0);
-  int files = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(bench.folder / "a")) {
-    const auto name = entry.path().filename().string();
-    CAPTURE(name);
-    ++files;
-    CHECK(bytes_of(entry.path()) == bytes_of(bench.folder / ("b/" + name)));
-  }
-  CHECK(files >= 24);
+  const test::SceneRuns bench(shaken);
+  REQUIRE(bench.start("a", {"-q", "-j", "1"}) == 0);
+  REQUIRE(bench.start("b", {"-q", "-j", "3", "--stop-at", "0.02"}) == 0);
+  REQUIRE(bench.run({"--resume", bench.folder / "b", "-q", "-j", "2"}) == 0);
+  bench.expect_same("a", "b", 24);
 }
 
 TEST_CASE("Energy of a shaken, loaded, saturated scene is accounted for, drained and undrained") {
-  const Bench bench;
+  const test::SceneRuns bench(shaken);
   const std::string conductivity = GENERATE("1e-3", "1e-9");
   CAPTURE(conductivity);
-  REQUIRE(bench.run({bench.folder / "scene.toml", "-j", "1", "-o", bench.folder / "a", "--set",
-                     "fluid.conductivity_m_s=" + conductivity}) == 0);
+  REQUIRE(bench.start("a", {"-q", "-j", "1", "--set", "fluid.conductivity_m_s=" + conductivity}) == 0);
   const auto text = bytes_of(bench.folder / "a/history.csv");
   const auto split = [](std::string line) {
     std::vector<std::string> words;

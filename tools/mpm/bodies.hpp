@@ -37,6 +37,7 @@ struct Body {
 
   bool pressed() const { return plate && plate->free(); }
   const Vec<D>& plate_normal() const { return std::get<HalfSpace<D>>(shape).normal; }
+  int plate_axis() const { return std::get<HalfSpace<D>>(shape).column_axis(); }
   /// m/s and m, at a time in s; of a plate under pressure as they are now.
   Vec<D> velocity_at(double time) const { return pressed() ? plate->velocity * plate_normal() : velocity.at(time); }
   Vec<D> displacement_at(double time) const {
@@ -131,6 +132,8 @@ class Bodies {
   void hold(SurfacePoint& point, const Grid<D>& grid, double time);
   void hold_surface(Grid<D>& grid, double time, bool end);
   Vec<D> velocity_at(const Grid<D>& grid, const SurfacePoint& point, bool end) const;
+  /// N s along the surface, as much as friction gives for that across it.
+  static Vec<D> along_surface(const Body<D>& body, const SurfacePoint& point, const Vec<D>& wanted, double across);
   void push(Grid<D>& grid, SurfacePoint& point, const Vec<D>& impulse, bool end) const;
   // plate.cpp
   void start_plates();

@@ -31,11 +31,9 @@ void Bodies<D>::place_plates(const Grid<D>& grid, const Planes<D>& planes, doubl
     auto& plate = *body.plate;
     if (plate.free() && time >= plate.until) plate.held_from = time;
     if (plate.sides.empty()) continue;
-    int own = 0;
-    body.plate_normal().cwiseAbs().maxCoeff(&own);
     plate.area = plate.thickness;
     for (int axis = 0, k = 0; axis < D; ++axis) {
-      if (axis == own) continue;
+      if (axis == body.plate_axis()) continue;
       double at[2];
       for (int above = 0; above < 2; ++above, ++k) {
         const auto& side = plate.sides[std::size_t(k)];
@@ -88,12 +86,8 @@ void Bodies<D>::hold_plate(Body<D>& body, Grid<D>& grid, bool end) {
     auto& point = surface_[k];
     const auto& soil = met_[k - plate.first];
     const double across = std::max(0.0, plate.met_velocity - soil.speed) / soil.mobility;
-    Vec<D> along = point.now - velocity_at(grid, point, end) / point.mobility;
-    along -= along.dot(normal) * normal;
-    const double most = body.friction * across, size = along.norm();
-    if (across == 0) along.setZero();
-    if (!body.rough && size > most) along *= most / size;
-    const Vec<D> more = across * normal + along - point.now;
+    const Vec<D> wanted = point.now - velocity_at(grid, point, end) / point.mobility;
+    const Vec<D> more = across * normal + along_surface(body, point, wanted, across) - point.now;
     if (more.isZero(0)) continue;
     point.now += more;
     push(grid, point, more, end);

@@ -54,6 +54,7 @@ template <int D>
 void Bodies<D>::detect_rocks(const Grid<D>& grid, const Planes<D>& planes, const std::vector<Point<D>>& soil) {
   rocks->surface.clear();
   if (rocks->soil.ghosts) return;
+  rocks->pressed.resize(rocks->all.size());
   const double begin = wall_seconds();
   const PointsByCell<D> points(grid, soil);
   struct Foot {
@@ -85,6 +86,7 @@ void Bodies<D>::detect_rocks(const Grid<D>& grid, const Planes<D>& planes, const
     if (feet.empty()) continue;
     sweeps_ = std::max(sweeps_, rock_sweeps);
     const auto& places = rocks->outline(rock.shape, 0.5 * cell);
+    rocks->pressed[k].resize(places.size(), Vec<D>::Zero());
     for (std::size_t number = 0; number < places.size(); ++number) {
       const auto& place = places[number];
       const Vec<D> r = to_world<D>(rock.body.orientation, place.at);
@@ -126,15 +128,12 @@ void Bodies<D>::predict_rocks(const Vec<D>& gravity, double dt) {
 template <int D>
 void Bodies<D>::press_rocks(Grid<D>& grid) {
   const std::size_t first = surface_.size() - rocks->surface.size();
-  rocks->pressed.resize(rocks->all.size());
   for (std::size_t k = first; k < surface_.size(); ++k) {
     auto& point = surface_[k];
     const auto& here = rocks->surface[k - first];
     const std::size_t number = std::size_t(point.body) - all.size();
     const auto& rock = rocks->all[number];
-    auto& pressed = rocks->pressed[number];
-    pressed.resize(rocks->outline(rock.shape, 0).size(), Vec<D>::Zero());
-    point.now = rocks->step * to_world<D>(rock.body.orientation, pressed[here.place]);
+    point.now = rocks->step * to_world<D>(rock.body.orientation, rocks->pressed[number][here.place]);
     push_rock(k, point.now, grid, true);
   }
   for (auto& each : rocks->pressed) std::fill(each.begin(), each.end(), Vec<D>::Zero());

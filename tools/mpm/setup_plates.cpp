@@ -6,7 +6,7 @@
 namespace mpm {
 namespace {
 
-/// The axis and the sign of a normal along an axis; 0: it is along none.
+/// Of a normal along that axis; 0: it is along another, or along none.
 template <int D>
 int sign_along(const Vec<D>& normal, int axis) {
   for (int i = 0; i < D; ++i) {
@@ -34,7 +34,7 @@ template <int D>
 std::vector<PlateSide> sides_of(const Solver<D>& solver, const Body<D>& body) {
   std::vector<PlateSide> sides;
   for (int axis = 0; axis < D; ++axis) {
-    if (sign_along<D>(body.plate_normal(), axis) != 0) continue;
+    if (axis == body.plate_axis()) continue;
     for (const bool above : {false, true}) {
       const auto found = sides_along<D>(solver, axis, above);
       if (found.size() != 1) {
@@ -139,9 +139,7 @@ void weigh_plates(Solver<D>& solver) {
   }
   for (auto& body : solver.bodies.all) {
     if (!body.plate || body.plate->mass > 0) continue;
-    int axis = 0;
-    body.plate_normal().cwiseAbs().maxCoeff(&axis);
-    body.plate->mass = mass / volume * body.plate->area * solver.grid.cell[axis];
+    body.plate->mass = mass / volume * body.plate->area * solver.grid.cell[body.plate_axis()];
   }
 }
 

@@ -202,6 +202,15 @@ void Bodies<D>::push(Grid<D>& grid, SurfacePoint& point, const Vec<D>& impulse, 
   }
 }
 
+template <int D>
+Vec<D> Bodies<D>::along_surface(const Body<D>& body, const SurfacePoint& point, const Vec<D>& wanted, double across) {
+  if (!(across > 0)) return Vec<D>::Zero();
+  Vec<D> along = wanted - wanted.dot(point.normal) * point.normal;
+  const double most = body.friction * across, size = along.norm();
+  if (!body.rough && size > most) along *= most / size;
+  return along;
+}
+
 /// Impulses that keep the soil from entering: across the surface they only push, along it they act up to friction.
 template <int D>
 void Bodies<D>::hold_surface(Grid<D>& grid, double time, bool end) {
@@ -221,13 +230,7 @@ void Bodies<D>::hold_surface(Grid<D>& grid, double time, bool end) {
       const Vec<D> relative = velocity_at(grid, point, end) - body.velocity.at(time);
       const Vec<D> wanted = point.now - relative / point.mobility;
       const double across = std::max(0.0, wanted.dot(point.normal));
-      Vec<D> along = Vec<D>::Zero();
-      if (across > 0) {
-        along = wanted - wanted.dot(point.normal) * point.normal;
-        const double most = body.friction * across, size = along.norm();
-        if (!body.rough && size > most) along *= most / size;
-      }
-      const Vec<D> more = across * point.normal + along - point.now;
+      const Vec<D> more = across * point.normal + along_surface(body, point, wanted, across) - point.now;
       if (more.isZero(0)) continue;
       point.now += more;
       push(grid, point, more, end);
@@ -248,6 +251,8 @@ template void Bodies<3>::detect_surface(const Grid<3>&, const Planes<3>&, const 
 template void Bodies<3>::hold_surface(Grid<3>&, double, bool);
 template Vec<2> Bodies<2>::velocity_at(const Grid<2>&, const SurfacePoint&, bool) const;
 template Vec<3> Bodies<3>::velocity_at(const Grid<3>&, const SurfacePoint&, bool) const;
+template Vec<2> Bodies<2>::along_surface(const Body<2>&, const SurfacePoint&, const Vec<2>&, double);
+template Vec<3> Bodies<3>::along_surface(const Body<3>&, const SurfacePoint&, const Vec<3>&, double);
 template void Bodies<2>::push(Grid<2>&, SurfacePoint&, const Vec<2>&, bool) const;
 template void Bodies<3>::push(Grid<3>&, SurfacePoint&, const Vec<3>&, bool) const;
 template void Bodies<2>::hold_at(const Grid<2>&, const Planes<2>&, SurfacePoint&, double, const Vec<2>&);

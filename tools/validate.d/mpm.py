@@ -42,6 +42,19 @@ def run(name, scene, *options):
     return dict(zip(names, np.loadtxt(history, delimiter=",", skiprows=1).T)), printed.read_text() if printed.exists() else ""
 
 
+missed = []  # bars
+
+
+def verdict(what, found, asked, met):
+    if not met:
+        missed.append(what)
+    print(f"{what:<76} {found:<20} {asked:<22} {'met' if met else 'MISSED'}", flush=True)
+
+
+def tell_missed():
+    print(f"\n{len(missed)} missed" + (": " + "; ".join(missed) if missed else ""))
+
+
 def grain_steps(printed):
     """Of a run and of those that it went on from: the last figure counts them all."""
     return float(printed.replace(",", "").rsplit("grain-steps ", 1)[1].split()[0])

@@ -8,20 +8,13 @@ Shtrikman's bound for rough rigid spheres. Runs that are whole in FOLDER are use
 
 import numpy as np
 
-from mpm import folder, run
+from mpm import run, tell_missed, verdict
 
 EDGE = 0.0375  # m
 SCENE = "mixture_triaxial.toml"
 E, NU, PRESSURE, PSI = 4.6e6, 0.12, 50e3, np.radians(16)
 CUBIC, PEAK_STRAIN, DECAY = (1075.64, -407.93, 16.39, 0.32463), 0.022, 50
 PEAK, RESIDUAL = np.radians(28.6), np.radians(18.6)
-missed = []
-
-
-def verdict(what, found, asked, met):
-    if not met:
-        missed.append(what)
-    print(f"{what:<72} {found:<18} {asked:<20} {'met' if met else 'MISSED'}", flush=True)
 
 
 def slope(angle):
@@ -137,4 +130,4 @@ for share, volume in ((20, 0.158), (40, 0.311)):
         verdict(f"{share} %, {contact}: E over that of the soil", f"{stiff:.2f}", f"{bound:.2f} to {1.3 * bound:.2f}",
                 bound <= stiff <= 1.3 * bound)
 
-print(f"\n{len(missed)} missed" + (": " + "; ".join(missed) if missed else ""))
+tell_missed()

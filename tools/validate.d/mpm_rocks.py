@@ -13,15 +13,7 @@ import subprocess
 import h5py
 import numpy as np
 
-from mpm import ROOT, folder, mpm, picture, results, run
-
-missed = []
-
-
-def verdict(what, found, asked, met):
-    if not met:
-        missed.append(what)
-    print(f"{what:<76} {found:<20} {asked:<22} {'met' if met else 'MISSED'}", flush=True)
+from mpm import ROOT, folder, mpm, picture, results, run, tell_missed, verdict
 
 
 def momentum(name):
@@ -265,4 +257,4 @@ block()
 floating()
 boulders()
 cost()
-print(f"\n{len(missed)} missed" + (": " + "; ".join(missed) if missed else ""))
+tell_missed()

@@ -168,7 +168,8 @@ def fit(protocol: _PathLike, vary: Mapping[str, Sequence[Any]], targets: Mapping
     vary: {"material.friction": (0.1, 1.0)}; (low, high, "log"); of a sweep (low, high, number of values). targets:
     {"friction_angle_deg": 30} or (value, standard error); "friction_angle_deg@50e3" at a pressure in Pa. curves: measured
     curves, CSV files, or {file: pressure in Pa}. specimens that all tests share, or a recipe with count specimens.
-    same_specimens: the targets were measured on these very specimens. tests: their number. output: folder for fit.json and the other files; plot("fit", output) draws it. resume: go on there."""
+    same_specimens: the targets were measured on these very specimens. tests: their number. output: folder for fit.json
+    and the other files; plot("fit", output) draws it. resume: go on there."""
     words = ["fit", protocol]
     for key, bounds in vary.items():
         words += ["--vary", f"{key}=" + ":".join(map(str, bounds))]
