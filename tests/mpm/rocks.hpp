@@ -26,7 +26,9 @@ template <int D>
 void put_rocks(Solver<D>& solver, std::unique_ptr<Rocks<D>> rocks) {
   solver.rocks = std::move(rocks);
   solver.bodies.rocks = solver.rocks.get();
-  solver.rocks->size_balls(solver.points);
+  for (const auto& point : solver.points) {
+    solver.rocks->add_ball(point, ghost_radius<D>(point, solver.rocks->soil.porosity), false);
+  }
   solver.rocks->first_energy = 0;
   solver.rocks->first_energy = solver.rocks->energy(solver.options.gravity).residual;
 }

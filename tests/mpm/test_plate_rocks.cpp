@@ -23,6 +23,13 @@ std::unique_ptr<Solver<D>> rocks_under_plate(double pressure, double mass, doubl
   return solver;
 }
 
+/// Hertz: F = pi/4 E* delta for cylinders, 4/3 E* sqrt(r*) delta^1.5 for spheres; r* = r at walls, r/2 among them.
+template <int D>
+double overlap_of(double force, double r) {
+  const double e_star = 1e8 / (2 * (1 - 0.0625));
+  return D == 2 ? force / (pi / 4 * e_star) : std::pow(force / (4.0 / 3 * e_star * std::sqrt(r)), 2.0 / 3);
+}
+
 template <int D>
 void expect_carried(double mass_ratio) {
   constexpr double p = 1e5, area = 0.02, force = p * area;
@@ -42,12 +49,7 @@ void expect_carried(double mass_ratio) {
   const auto before = rocks.wall_impulse;
   for (int step = 0; step < 20; ++step) solver->step(1e-3);
   CHECK((rocks.wall_impulse[1] - before[1])[D - 1] == Approx(0.02 * force).epsilon(1e-3));
-  // Hertz: F = pi/4 E* delta for cylinders, 4/3 E* sqrt(r*) delta^1.5 for spheres, r* = r at walls, r/2 among them.
-  const double e_star = 1e8 / (2 * (1 - 0.0625));
-  const auto overlap = [&](double r) {
-    return D == 2 ? force / (pi / 4 * e_star) : std::pow(force / (4.0 / 3 * e_star * std::sqrt(r)), 2.0 / 3);
-  };
-  CHECK(body.plate->displacement == Approx(2 * overlap(0.1) + 2 * overlap(0.05)).epsilon(1e-3));
+  CHECK(body.plate->displacement == Approx(2 * overlap_of<D>(force, 0.1) + 2 * overlap_of<D>(force, 0.05)).epsilon(1e-3));
 }
 
 }  // namespace
@@ -117,4 +119,23 @@ TEST_CASE("a plate that soil and a rock carry side by side settles as their stif
   CHECK(-(body.reaction.impulse - on_soil)[1] / took == Approx(load * of_soil / (of_soil + of_rock)).epsilon(0.01));
   CHECK((solver->rocks->wall_impulse[2] - on_plate)[1] / took ==
         Approx(load * of_rock / (of_soil + of_rock)).epsilon(0.01));
+}
+
+TEST_CASE("a plate that has a way to go to rocks is met by them") {
+  // 3 ms at 25,000 m/s^2 take a light plate over the gap; a step must not take it through the rocks.
+  constexpr double p = 1e5, area = 0.02, mass = 0.08, gap = 0.1;
+  auto solver = rocks_under_plate<3>(p, mass, area, 0.2);
+  auto& body = solver->bodies.all[0];
+  body.centre[2] += gap;
+  CHECK(solver->stable_step() <= std::sqrt(2 * 0.011 * 0.1 / (p * area / mass)));
+  double lowest = 1e300;
+  while (solver->time < 1) {
+    solver->step(solver->stable_step());
+    lowest = std::min(lowest, body.centre_at(solver->time)[2]);
+  }
+  CHECK(solver->rocks->touching == 4);
+  CHECK(lowest > 0.5);
+  const double pressed = 2 * overlap_of<3>(p * area, 0.1) + 2 * overlap_of<3>(p * area, 0.05);
+  CHECK(body.plate->displacement == Approx(gap + pressed).epsilon(1e-3));
+  CHECK(solver->rocks->wall_force[0][2] == Approx(-p * area).epsilon(1e-2));
 }

@@ -240,6 +240,7 @@ std::vector<Keys> Keys::tables(const std::string& name) {
   std::vector<Keys> list;
   if (node == nullptr) return list;
   const auto* array = node->as_array();
+  if (array != nullptr && array->empty()) return list;  // --set region=[] takes them away
   if (array == nullptr || !array->is_homogeneous<toml::table>()) {
     wrong(name, "must be tables in double brackets: [[" + dotted(name) + "]]");
   }

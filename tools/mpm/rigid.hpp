@@ -3,8 +3,9 @@
 //
 //   m dv/dt = f,  dL/dt = t,  w = R I^-1 R^T L
 //
-// Leap-frog: half a kick, a drift, half a kick. A drift turns the body by turns about its principal axes, each at the
-// rate that the angular momentum has along it (x/2, y/2, z, y/2, x/2): L stays as it is to the bit, R a rotation.
+// Leap-frog: half a kick, a drift, half a kick. A drift turns a sphere about its spin, another body about its principal
+// axes, each at the rate that the angular momentum has along it (x/2, y/2, z, y/2, x/2): L stays as it is to the bit, R a
+// rotation.
 #pragma once
 
 #include "tools/mpm/rock_shape.hpp"
@@ -51,13 +52,20 @@ struct Rigid {
   Vec<D> free = Vec<D>::Ones();                ///< by axis: 1, or 0 where its velocity is held
   bool turns = true;                           ///< false: its spin is held
 
+  /// A sphere, or a body that turns as one.
+  bool even() const {
+    if constexpr (D == 2) {
+      return true;
+    } else {
+      return inertia[0] == inertia[1] && inertia[1] == inertia[2];
+    }
+  }
   /// rad/s
   Spin<D> spin() const {
-    if constexpr (D == 2) {
-      return angular_momentum / inertia[0];
-    } else {
-      return orientation * (orientation.conjugate() * angular_momentum).cwiseQuotient(inertia);
+    if constexpr (D == 3) {
+      if (!even()) return orientation * (orientation.conjugate() * angular_momentum).cwiseQuotient(inertia);
     }
+    return angular_momentum / inertia[0];
   }
   void set_spin(const Spin<D>& spin) {
     if constexpr (D == 2) {
@@ -98,13 +106,13 @@ struct Rigid {
   void turn(double dt) {
     if constexpr (D == 2) {
       orientation += dt * angular_momentum[0] / inertia[0];
-    } else if (!turns) {
+    } else if (!turns || even()) {
       const Vec<3> rate = spin();
       const double speed = rate.norm();
       if (!(speed > 0)) return;
       orientation = Eigen::Quaterniond(Eigen::AngleAxisd(dt * speed, rate / speed)) * orientation;
       orientation.normalize();
-      set_spin(rate);
+      if (!even()) set_spin(rate);
     } else {
       const auto about = [&](int axis, double part) {
         const double momentum = (orientation.conjugate() * angular_momentum)[axis];

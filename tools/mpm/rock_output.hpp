@@ -1,5 +1,5 @@
-// What a run tells of its rocks: columns of history.csv, frames rocks_NNNN.h5 with rocks.xdmf, and their part of a
-// checkpoint.
+// What a run tells of its rocks: columns of history.csv, frames rocks_NNNN.h5 with rocks.xdmf, where each stands at the
+// last frame, and their part of a checkpoint.
 #pragma once
 
 #include <string>
@@ -19,6 +19,9 @@ void add_rock_values(const Solver<D>& solver, double since, std::vector<double>&
 template <int D>
 void write_rock_frame(const Solver<D>& solver, const std::string& path);
 void write_rock_xdmf(const std::string& folder, const std::vector<double>& times, std::size_t rocks);
+/// rocks_NAME.csv of each [[rocks]], in the form that their key table reads.
+template <int D>
+void write_rock_tables(const Solver<D>& solver, const std::string& folder);
 
 template <int D>
 void write_rocks(const Solver<D>& solver, OutputFile& file);

@@ -133,7 +133,10 @@ std::vector<Wall<D>> walls_at(const Grid<D>& grid, const Planes<D>& planes, cons
     wall.body = &body;
     wall.point = body.centre_at(time);
     wall.velocity = body.velocity_at(time);
-    if (body.pressed()) wall.mass = body.plate->mass;
+    if (body.pressed()) {
+      wall.mass = body.plate->mass;
+      wall.acceleration = body.plate->acceleration(time);
+    }
     wall.follows_material = body.rough;
     wall.friction = body.friction;
     wall.number = int(&body - bodies.all.data());

@@ -45,6 +45,7 @@ struct Wall {
   bool follows_material = true;                            ///< its friction is the rock's; else:
   double friction = 0;
   double mass = std::numeric_limits<double>::infinity();  ///< kg
+  double acceleration = 0;                                ///< m/s^2, that the pressure on a plate gives it alone
   bool there = true;
   int number = 0;  ///< of the body
 };
@@ -161,8 +162,8 @@ class Rocks {
   };
   std::vector<Ghost> ghosts;  ///< in the order of (point, rock)
   std::vector<double> balls;  ///< m, radius of each point as a ball
-  /// Of the solids of points; of one that would overlap a rock, so small that it touches it.
-  void size_balls(const std::vector<Point<D>>& points);
+  /// Of the next point. One that would overlap a rock is made so small that it touches it; a grain may by a twentieth.
+  void add_ball(const Point<D>& point, double radius, bool grain);
   double ghost_loss = 0;       ///< J, to friction with ghosts
   double ghost_frequency = 0;  ///< 1/s, of the stiffest contact with a ghost that is or may come within a step
   /// Contacts that go on take their memory along from `ghosts`.
@@ -180,6 +181,8 @@ class Rocks {
   void book_soil_work(double dt);
   void contact_forces(const std::vector<Wall<D>>& walls, double dt, double share);
 
+  std::vector<Spin<D>> spins_;                           ///< rad/s, and
+  std::vector<double> speeds_;                           ///< m/s of the surface, in this sub-step
   std::vector<std::optional<RockShape<D>>> box_shapes_;  ///< of bodies that are boxes, in space
   std::vector<std::vector<SurfacePlace>> outlines_;      ///< by shape
 };

@@ -146,7 +146,10 @@ class Outputs {
     if (scene_.networks) write_networks<D>(model_, folder_, number);
     progress_.frame_times.push_back(solver.time);
     write_xdmf(folder_, progress_.frame_times, long(solver.points.size()), solver.fluid != nullptr);
-    if (solver.rocks) write_rock_xdmf(folder_, progress_.frame_times, solver.rocks->all.size());
+    if (solver.rocks) {
+      write_rock_xdmf(folder_, progress_.frame_times, solver.rocks->all.size());
+      write_rock_tables<D>(solver, folder_);
+    }
     advance_past(solver.time, scene_.frame_every, progress_.next_frame);
   }
   void save() {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "tools/mpm/scene_checks.hpp"
+#include "tools/mpm/scene_regions.hpp"
 #include "tools/mpm/scene_water.hpp"
 #include "tools/mpm/setup_plates.hpp"
 
@@ -110,26 +111,6 @@ BodyOfScene read_body(Keys& keys) {
   return body;
 }
 
-RegionOfScene read_region(Keys& keys, std::size_t d, const std::optional<WaterOfScene>& water) {
-  RegionOfScene region;
-  region.material = keys.text("material");
-  region.lower = keys.vector("lower_m", d, {});
-  region.upper = keys.vector("upper_m", d, {});
-  region.velocity = keys.vector("velocity_m_s", d, std::vector<double>(d, 0));
-  region.points_per_cell = keys.whole_number("points_per_cell", d == 2 ? 4 : 8, 1, 1000);
-  const long along = std::lround(std::pow(double(region.points_per_cell), 1.0 / double(d)));
-  if (std::lround(std::pow(double(along), double(d))) != region.points_per_cell) {
-    keys.wrong("points_per_cell", d == 2 ? "must be a square: 1, 4, 9, 16" : "must be a cube: 1, 8, 27");
-  }
-  region.ellipsoid = keys.choice("shape", {"box", "ellipsoid"}) == "ellipsoid";
-  read_region_water(keys, water, region);
-  keys.finish();
-  for (std::size_t i = 0; i < d; ++i) {
-    if (!(region.lower[i] < region.upper[i])) keys.wrong("upper_m", "must be above lower_m along every axis");
-  }
-  return region;
-}
-
 void read_rest(Keys& file, Scene& scene) {
   const auto d = std::size_t(scene.dimension);
   auto grid = file.table("grid");
@@ -214,6 +195,7 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& cases,
   }
   for (const auto& assignment : assignments) assign(file, assignment);
   include_record(file, path);
+  include_grains(file, path);
   include_rocks(file, path);
   Keys keys(file, path, "");
   // A misspelt table is reported before a key that is missing because of it.

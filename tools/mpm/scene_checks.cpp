@@ -74,9 +74,9 @@ void check_boundaries(const Scene& scene, const std::string& path) {
 void check_sizes(const Scene& scene, const std::string& path) {
   double total = 0;
   for (const auto& region : scene.regions) {
-    double points = 1;
+    double points = region.grains.empty() ? 1 : double(region.grains.size());
     for (std::size_t i = 0; i < scene.cell.size(); ++i) {
-      points *= points_along(scene, region, i);
+      if (region.grains.empty()) points *= points_along(scene, region, i);
       if (std::max(std::abs(region.lower[i]), std::abs(region.upper[i])) < farthest_cell * scene.cell[i]) continue;
       throw InputError(path + ": " + region_name(scene, region) + " from " + text_of(region.lower) + " to " +
                        text_of(region.upper) +
@@ -93,7 +93,7 @@ void check_sizes(const Scene& scene, const std::string& path) {
 void check_overlaps(const Scene& scene, const std::string& path) {
   for (auto a = scene.regions.begin(); a != scene.regions.end(); ++a) {
     for (auto b = scene.regions.begin(); b != a; ++b) {
-      bool apart = false;
+      bool apart = !a->grains.empty() || !b->grains.empty();
       for (std::size_t i = 0; i < scene.cell.size(); ++i) {
         const double shared = std::min(a->upper[i], b->upper[i]) - std::max(a->lower[i], b->lower[i]);
         apart = apart || shared < 1e-6 * scene.cell[i];
@@ -153,6 +153,13 @@ void check_watched(const Scene& scene, const std::string& path) {
 
 Filling filling_of(const Scene& scene, const RegionOfScene& region) {
   Filling filling;
+  if (!region.grains.empty()) {
+    double largest = 0;
+    for (const auto& grain : region.grains) largest = std::max(largest, region.volume_of(grain));
+    filling.total = long(region.grains.size());
+    filling.side.assign(scene.cell.size(), std::pow(largest, 1.0 / double(scene.dimension)));
+    return filling;
+  }
   for (std::size_t i = 0; i < scene.cell.size(); ++i) {
     filling.count.push_back(long(points_along(scene, region, i)));
     filling.side.push_back((region.upper[i] - region.lower[i]) / double(filling.count[i]));

@@ -6,7 +6,7 @@
 namespace mpm {
 
 /// How a region is filled with points: their number and distance along each axis; the first lies half a distance
-/// inside.
+/// inside. Of a table of grains: their number, and the side of the largest domain.
 struct Filling {
   std::vector<long> count;
   std::vector<double> side;  ///< m

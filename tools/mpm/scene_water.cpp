@@ -111,13 +111,18 @@ WaterBoundary read_water_boundary(Keys& keys, bool with_water) {
   return boundary;
 }
 
-void read_region_water(Keys& keys, const std::optional<WaterOfScene>& water, RegionOfScene& region) {
+void read_region_water(Keys& keys, const std::optional<WaterOfScene>& water, RegionOfScene& region, bool grains) {
   region.saturated = keys.boolean("saturated", water.has_value());
   region.conductivity = keys.number("conductivity_m_s", water ? water->conductivity : 0, 1e-300);
-  region.porosity = keys.number("porosity", water ? water->porosity : 0, 0.01, 0.99);
-  for (const char* name : {"saturated", "conductivity_m_s", "porosity"}) {
+  for (const char* name : {"saturated", "conductivity_m_s"}) {
     if (keys.has(name) && !water) keys.wrong(name, dry_scene);
   }
+  if (grains && !water) {
+    keys.positive("porosity");
+  } else if (keys.has("porosity") && !water) {
+    keys.wrong("porosity", "is of a table of grains or of saturated soil, and the scene has no [fluid]; remove the key");
+  }
+  region.porosity = keys.number("porosity", water ? water->porosity : 0, 0.01, 0.99);
 }
 
 Loads read_loads(Keys& keys, const Scene& scene) {

@@ -9,7 +9,8 @@ namespace mpm {
 std::optional<WaterOfScene> read_water(Keys& file, const Scene& scene);
 /// drained, pressure_Pa or head_m of a boundary.
 WaterBoundary read_water_boundary(Keys& keys, bool with_water);
-void read_region_water(Keys& keys, const std::optional<WaterOfScene>& water, RegionOfScene& region);
+/// `grains`: of a table of grains, whose porosity dry soil has too.
+void read_region_water(Keys& keys, const std::optional<WaterOfScene>& water, RegionOfScene& region, bool grains);
 /// Rows of s and a value, forward in time; none if the key is not there.
 TimeHistory read_time_history(Keys& keys, const std::string& name);
 /// loads.shaking and loads.strip.

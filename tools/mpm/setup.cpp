@@ -6,6 +6,7 @@
 
 #include "tools/mpm/scene_checks.hpp"
 #include "tools/mpm/setup_plates.hpp"
+#include "tools/mpm/setup_points.hpp"
 #include "tools/mpm/setup_rocks.hpp"
 
 namespace mpm {
@@ -74,47 +75,6 @@ void place_bodies(const Scene& scene, Solver<D>& solver) {
     body.velocity = history<D>(each.motion);
     solver.bodies.all.push_back(body);
     solver.bodies.shape = scene.shape;
-  }
-}
-
-/// What lies inside a body that is met at its surface would be left there, and move through it.
-template <int D>
-void refuse_inside(const Scene& scene, const RegionOfScene& region, const Bodies<D>& bodies, const Point<D>& point) {
-  for (const auto& body : bodies.all) {
-    Vec<D> outward;
-    const double depth = -body.distance(point.position - body.centre, outward, point.half);
-    if (!body.at_surface || depth < 1e-6 * point.half.minCoeff()) continue;
-    const std::vector<double> place(point.position.data(), point.position.data() + D);
-    throw InputError(region_name(scene, region) + ": its point at " + text_of(place) + " m would lie inside body." +
-                     body.name + " at the start; move one of them, or set contact = \"nodes\" in body." + body.name +
-                     ", which then holds what is inside");
-  }
-}
-
-/// Points of one region, x fastest.
-template <int D>
-void fill(const Scene& scene, const RegionOfScene& region, Solver<D>& solver) {
-  const auto filling = filling_of(scene, region);
-  const auto& count = filling.count;
-  const Vec<D> side = vector_of<D>(filling.side);
-  for (long k = 0; k < filling.total; ++k) {
-    Point<D> point;
-    long rest = k;
-    for (int i = 0; i < D; ++i) {
-      point.position[i] = region.lower[i] + (double(rest % count[i]) + 0.5) * side[i];
-      rest /= count[i];
-    }
-    point.first = point.position;
-    point.velocity = vector_of<D>(region.velocity);
-    point.half = 0.5 * side;
-    point.volume = side.prod() * (D == 2 ? scene.thickness : 1);
-    refuse_inside<D>(scene, region, solver.bodies, point);
-    if (region.ellipsoid) {
-      const Vec<D> low = vector_of<D>(region.lower), high = vector_of<D>(region.upper);
-      if ((2 * point.position - low - high).cwiseQuotient(high - low).squaredNorm() > 1) continue;
-    }
-    if (left_out<D>(solver, point)) continue;
-    solver.points.push_back(point);
   }
 }
 

@@ -110,14 +110,16 @@ void place_rocks(const Scene& scene, Solver<D>& solver) {
 }
 
 template <int D>
-bool left_out(Solver<D>& solver, const Point<D>& point) {
+bool left_out(Solver<D>& solver, const Point<D>& point, double grain) {
   if (!solver.rocks) return false;
   auto& rocks = *solver.rocks;
-  const double ball = rocks.soil.ghosts ? 0.5 * ghost_radius<D>(point, rocks.soil.porosity) : 0;
+  const double radius = grain > 0 ? grain : ghost_radius<D>(point, rocks.soil.porosity);
+  const double ball = rocks.soil.ghosts ? 0.5 * radius : 0;
   const bool inside = std::any_of(rocks.all.begin(), rocks.all.end(),
                                   [&](const auto& rock) { return rocks.distance(rock, point.position, ball) < ball; });
   rocks.left_out += inside;
   rocks.left_out_volume += inside ? point.volume : 0;
+  if (!inside && rocks.soil.ghosts) rocks.add_ball(point, radius, grain > 0);
   return inside;
 }
 
@@ -150,15 +152,14 @@ void finish_rocks(const Scene& scene, Solver<D>& solver, std::vector<std::string
                    " gaps between rocks are narrower than a cell: soil in them has no stress of "
                    "its own");
   }
-  if (rocks.soil.ghosts) rocks.size_balls(solver.points);
   // With the first size of the cells, also in a run that is resumed.
   const bool met = !rocks.soil.ghosts && solver.bodies.rocks != nullptr;
   for (int k = 0; met && k < int(rocks.shapes.size()); ++k) rocks.outline(k, 0.5 * cell);
 }
 
-#define MPM_INSTANTIATE(D)                                \
-  template void place_rocks<D>(const Scene&, Solver<D>&); \
-  template bool left_out<D>(Solver<D>&, const Point<D>&); \
+#define MPM_INSTANTIATE(D)                                        \
+  template void place_rocks<D>(const Scene&, Solver<D>&);         \
+  template bool left_out<D>(Solver<D>&, const Point<D>&, double); \
   template void finish_rocks<D>(const Scene&, Solver<D>&, std::vector<std::string>&);
 MPM_INSTANTIATE(2)
 MPM_INSTANTIATE(3)

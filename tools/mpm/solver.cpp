@@ -62,8 +62,12 @@ double Solver<D>::stable_step() const {
     fastest = std::max(fastest, all.fastest);
     if (group.count > 0) wave = std::max(wave, group.material->wave_modulus() / all.lightest);
   }
-  // Rocks alone fall by no more than a hundredth of a cell a step from rest.
-  const double alone = std::sqrt(0.02 * grid.cell.minCoeff() / std::max(1e-9, options.gravity.norm()));
+  // Rocks and plates alone move by no more than a hundredth of a cell a step from rest.
+  double pull = std::max(1e-9, options.gravity.norm());
+  for (const auto& body : bodies.all) {
+    if (body.pressed()) pull = std::max(pull, std::abs(body.plate->acceleration(time)));
+  }
+  const double alone = std::sqrt(0.02 * grid.cell.minCoeff() / pull);
   const double dt =
       points.empty() ? alone : options.cfl * grid.cell.minCoeff() / (std::sqrt(wave) + std::sqrt(fastest));
   // A boundary or body faster than any wave must not jump over the soil: a fifth of a cell a step at most.

@@ -42,6 +42,25 @@ def run(name, scene, *options):
     return dict(zip(names, np.loadtxt(history, delimiter=",", skiprows=1).T)), printed.read_text() if printed.exists() else ""
 
 
+def between_plates(h, edges, begins):
+    """Logarithmic axial and volumetric strain and deviatoric stress (Pa) of a triaxial test in the corner of three
+    boundaries, the plates at `edges` (m) at first, from the time `begins` (s) on."""
+    sides = [edge + h[f"{plate}.displacement_{axis}_m"]
+             for edge, plate, axis in zip(edges, ("right", "back", "top"), "xyz")]
+    rows = slice(np.searchsorted(h["time_s"], begins), None)
+    axial = -np.log(sides[2] / sides[2][rows][0])
+    volumetric = -np.log(np.prod(sides, axis=0) / np.prod(sides, axis=0)[rows][0])
+    q = h["top.pressure_Pa"] - 0.5 * (h["right.pressure_Pa"] + h["back.pressure_Pa"])
+    return axial[rows], volumetric[rows], q[rows]
+
+
+def peak_of(axial, q):
+    """Peak of a running mean of three rows (kPa), its strain, and the mean from 10 to 16 % (kPa)."""
+    smooth = np.convolve(q, np.ones(3) / 3, "same")
+    k = smooth[1:-1].argmax() + 1
+    return q[k] / 1e3, axial[k], q[(axial > 0.1) & (axial < 0.16)].mean() / 1e3
+
+
 missed = []  # bars
 
 

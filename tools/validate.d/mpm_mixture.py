@@ -8,7 +8,7 @@ Shtrikman's bound for rough rigid spheres. Runs that are whole in FOLDER are use
 
 import numpy as np
 
-from mpm import run, tell_missed, verdict
+from mpm import between_plates, peak_of, run, tell_missed, verdict
 
 EDGE = 0.0375  # m
 SCENE = "mixture_triaxial.toml"
@@ -35,13 +35,7 @@ def exact(plastic):
 def test(name, *options, begins=0.02):
     """Logarithmic axial and volumetric strain, deviatoric stress (Pa) from the plates."""
     h, printed = run(name, SCENE, "-j", "1", *options)
-    sides = [EDGE + h[f"{plate}.displacement_{axis}_m"] for plate, axis in (("right", "x"), ("back", "y"), ("top", "z"))]
-    first = np.searchsorted(h["time_s"], begins)
-    axial = -np.log(sides[2] / sides[2][first])
-    volumetric = -np.log(np.prod(sides, axis=0) / np.prod(sides, axis=0)[first])
-    q = h["top.pressure_Pa"] - 0.5 * (h["right.pressure_Pa"] + h["back.pressure_Pa"])
-    rows = slice(first, None)
-    return axial[rows], volumetric[rows], q[rows], h, printed
+    return *between_plates(h, [EDGE] * 3, begins), h, printed
 
 
 def at(strains, axial, values):
@@ -68,12 +62,6 @@ verdict("mean from 10 to 16 %, kPa", f"{residual:.1f}", "46.9 +- 2", abs(residua
 before_load = (h["time_s"] > 0.005) & (h["time_s"] < 0.02)
 rest = max(np.abs(h[f"{plate}.pressure_Pa"][before_load] / PRESSURE - 1).max() for plate in ("right", "back", "top"))
 verdict("pressure on the plates at rest, largest error", f"{rest:.1e}", "0.5 %", rest < 5e-3)
-
-
-def peak_of(axial, q):
-    smooth = np.convolve(q, np.ones(3) / 3, "same")
-    k = smooth[1:-1].argmax() + 1
-    return q[k] / 1e3, axial[k], q[(axial > 0.1) & (axial < 0.16)].mean() / 1e3
 
 
 print("\nMixtures, rocks of 10 mm, points of 1.9 mm (1:5), plates at 0.05 m/s, seeds 1 to 3\n")

@@ -1,0 +1,62 @@
+// Places of rocks as [[rocks]] table reads them. Declared in rock_output.hpp.
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <numbers>
+
+#include "tools/mpm/rock_output.hpp"
+#include "tools/mpm/rocks.hpp"
+
+namespace mpm {
+namespace {
+
+std::vector<double> numbers_of(double angle) { return {angle * 180 / std::numbers::pi}; }
+std::vector<double> numbers_of(const Eigen::Quaterniond& q) { return {q.w(), q.x(), q.y(), q.z()}; }
+
+template <int D>
+std::string header_of(const RockShape<D>& shape) {
+  const std::string place = D == 2 ? "x_m,y_m," : "x_m,y_m,z_m,";
+  if (shape.is_sphere()) return place + "radius_m\n";
+  return place + (D == 2 ? "a_m,b_m,angle_deg\n" : "a_m,b_m,c_m,w,x,y,z\n");
+}
+
+template <int D>
+std::vector<double> row_of(const RockShape<D>& shape, const Rigid<D>& body) {
+  std::vector<double> row(body.centre.data(), body.centre.data() + D);
+  if (shape.is_sphere()) {
+    row.push_back(shape.bounding_radius());
+    return row;
+  }
+  for (int i = 0; i < D; ++i) row.push_back(shape.height(Vec<D>::Unit(i)));
+  for (const double each : numbers_of(body.orientation)) row.push_back(each);
+  return row;
+}
+
+}  // namespace
+
+template <int D>
+void write_rock_tables(const Solver<D>& solver, const std::string& folder) {
+  std::map<std::string, std::string> tables;
+  for (const auto& rock : solver.rocks->all) {
+    if (rock.single) continue;
+    const auto& shape = solver.rocks->shapes[std::size_t(rock.shape)];
+    auto& table = tables[rock.name];
+    if (table.empty()) table = header_of<D>(shape);
+    const char* before = "";
+    for (const double each : row_of<D>(shape, rock.body)) {
+      char text[40];
+      std::snprintf(text, sizeof text, "%s%.17g", before, each);
+      table += text;
+      before = ",";
+    }
+    table += "\n";
+  }
+  for (const auto& [name, table] : tables) {
+    publish_file((std::filesystem::path(folder) / ("rocks_" + name + ".csv")).string(), table.data(), table.size());
+  }
+}
+
+template void write_rock_tables<2>(const Solver<2>&, const std::string&);
+template void write_rock_tables<3>(const Solver<3>&, const std::string&);
+
+}  // namespace mpm

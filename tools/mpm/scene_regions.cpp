@@ -1,0 +1,77 @@
+#include "tools/mpm/scene_regions.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "tools/mpm/included.hpp"
+#include "tools/mpm/scene_water.hpp"
+
+namespace mpm {
+namespace {
+
+void read_box(Keys& keys, std::size_t d, RegionOfScene& region) {
+  region.lower = keys.vector("lower_m", d, {});
+  region.upper = keys.vector("upper_m", d, {});
+  region.points_per_cell = keys.whole_number("points_per_cell", d == 2 ? 4 : 8, 1, 1000);
+  const long along = std::lround(std::pow(double(region.points_per_cell), 1.0 / double(d)));
+  if (std::lround(std::pow(double(along), double(d))) != region.points_per_cell) {
+    keys.wrong("points_per_cell", d == 2 ? "must be a square: 1, 4, 9, 16" : "must be a cube: 1, 8, 27");
+  }
+  region.ellipsoid = keys.choice("shape", {"box", "ellipsoid"}) == "ellipsoid";
+}
+
+/// lower and upper: what the domains of all points fill.
+void read_grains(Keys& keys, std::size_t d, RegionOfScene& region) {
+  for (const char* name : {"lower_m", "upper_m", "points_per_cell", "shape"}) {
+    if (keys.has(name)) keys.wrong(name, "is of a region that is filled, and this one has a table of grains; remove it");
+  }
+  if (keys.row_length("rows_m") != d + 1) {
+    keys.wrong("rows_m", "has rows of " + std::to_string(keys.row_length("rows_m")) + " numbers; give " +
+                             (d == 2 ? "x, y, radius" : "x, y, z, radius") + " of each grain");
+  }
+  region.grains = keys.rows("rows_m", d + 1);
+  region.lower.assign(d, 1e300);
+  region.upper.assign(d, -1e300);
+  for (const auto& grain : region.grains) {
+    if (!(grain[d] > 0)) keys.wrong("rows_m", "has a grain of radius " + text_of(grain[d]) + "; radii must be positive");
+    const double half = 0.5 * std::pow(region.volume_of(grain), 1.0 / double(d));
+    for (std::size_t i = 0; i < d; ++i) {
+      region.lower[i] = std::min(region.lower[i], grain[i] - half);
+      region.upper[i] = std::max(region.upper[i], grain[i] + half);
+    }
+  }
+}
+
+}  // namespace
+
+double RegionOfScene::volume_of(const std::vector<double>& grain) const {
+  const double r = grain.back();
+  const double solids = grain.size() == 3 ? std::numbers::pi * r * r : 4 * std::numbers::pi / 3 * r * r * r;
+  return solids / (1 - porosity);
+}
+
+RegionOfScene read_region(Keys& keys, std::size_t d, const std::optional<WaterOfScene>& water) {
+  RegionOfScene region;
+  const bool table = keys.has("rows_m");
+  region.material = keys.text("material");
+  region.velocity = keys.vector("velocity_m_s", d, std::vector<double>(d, 0));
+  keys.known("rows_m");
+  if (!table) {
+    keys.known("table");
+    read_box(keys, d, region);
+  }
+  read_region_water(keys, water, region, table);
+  if (table) read_grains(keys, d, region);
+  keys.finish();
+  for (std::size_t i = 0; i < d; ++i) {
+    if (!(region.lower[i] < region.upper[i])) keys.wrong("upper_m", "must be above lower_m along every axis");
+  }
+  return region;
+}
+
+void include_grains(toml::table& file, const std::string& scene_path) {
+  include_rows(file, "region", "table", "rows_m", scene_path);
+}
+
+}  // namespace mpm

@@ -1,0 +1,147 @@
+"""tools/validate mpm_grains: triaxial tests of mixtures with every grain as a rock, and with the fine ones as points.
+
+    mpm_grains.py RVELAB FOLDER RESULTS
+
+Three packings each of 0, 20 and 40 % of coarse grains (Li et al. 2023, 4.3: half their edge, fine grains of a fifth of
+the size) are pressed between smooth plates (mixture_grains.toml) and sheared at 50 kPa twice in the same plates: all
+grains as rocks; and the fine grains as material points of a softening soil, each of which touches the coarse ones as
+the ball that it was. The soil's constants are fitted to the tests of all fine grains. Runs that are whole in FOLDER are
+used again."""
+
+import numpy as np
+
+from mpm import between_plates, folder, peak_of, run, tell_missed, verdict
+
+DRAWN, PRESSURE, NU, SOLID = 0.045, 50e3, 0.12, 2600
+SEEDS = (1, 2, 3)
+STRAINS = np.array([0.5, 1, 2, 3, 4, 6, 8, 10, 12, 15]) / 100
+BEGINS = 0.02  # s
+
+
+def pressed(share, seed):
+    """Edges (m), parts of volume of coarse grains and of pores in the soil between them, and the folder of tables."""
+    name = f"pressed_{share}_{seed}"
+    case = ("--case", f"rocks_{share}", "--set", f"rocks.coarse.seed={seed}") if share else ()
+    h, _ = run(name, "mixture_grains.toml", "-j", "1", *case, "--set", f"rocks.fine.seed={seed}")
+    edges = [DRAWN + h[f"{plate}.displacement_{axis}_m"][-1] for plate, axis in (("right", "x"), ("back", "y"), ("top", "z"))]
+    solids = {group: 4 / 3 * np.pi * (np.loadtxt(folder / name / f"rocks_{group}.csv", delimiter=",", skiprows=1)[:, 3]**3).sum()
+              for group in (("fine", "coarse") if share else ("fine",))}
+    coarse = solids.get("coarse", 0) / np.prod(edges)
+    return edges, coarse, 1 - solids["fine"] / np.prod(edges) / (1 - coarse), (folder / name).resolve()
+
+
+def shear(kind, share, seed, soil=None):
+    """Strains, deviatoric stress and the rows of history of one test. soil: keys of the material of the points."""
+    edges, _, pores, place = pressed(share, seed)
+    table = {group: f'{{name="{group}", material="grain", table="{place}/rocks_{group}.csv"}}' for group in ("fine", "coarse")}
+    groups = ["coarse"] if share else []
+    sets = [f"body.{plate}.centre_m={[edge if k == axis else 0 for k in range(3)]}"
+            for axis, (plate, edge) in enumerate(zip(("right", "back", "top"), edges))]
+    sets += ["time.duration_s=0.145", "body.top.motion=[[0,0,0,0],[0.02,0,0,0],[0.022,0,0,-0.05]]", "output.frame_every_s=0.07"]
+    if kind == "grains":
+        groups.append("fine")
+        sets += ["region=[]", "time.rock_steps_per_collision=10"]
+    else:
+        sets += [f'region=[{{material="soil", table="{place}/rocks_fine.csv", porosity={pores}}}]',
+                 f"material.soil.density_kg_m3={SOLID * (1 - pores)}", *(f"material.soil.{key}={value}" for key, value in soil.items())]
+        if share:
+            sets.append(f'rock_soil={{contact="ghost", porosity={pores}, friction=0.35}}')
+    if groups:
+        sets += ['rock_material=[{name="grain", density_kg_m3=2600, young_modulus_Pa=0.8e9, poisson_ratio=0.12, friction=0.35, '
+                 'restitution=0.5}]', f"rocks=[{', '.join(table[group] for group in groups)}]"]
+    name = f"{kind}_{share}_{seed}"
+    h, printed = run(name, "mixture_triaxial.toml", "-j", "1", *(word for each in sets for word in ("--set", each)))
+    return *between_plates(h, edges, BEGINS), h, printed
+
+
+def slope(angle):
+    """Of the outer cone."""
+    return 2 * np.sin(angle) / (np.sqrt(3) * (3 - np.sin(angle)))
+
+
+def law(constants):
+    """Axial strain, deviatoric stress (Pa), volumetric strain of an element of the soil at deviatoric plastic strains."""
+    young, peak, at, residual, decay, dilation = constants
+    ep = np.linspace(0, 0.3, 3001)
+    angle = np.where(ep < at, peak - (peak - residual) * (1 - ep / at)**3, residual + (peak - residual) * np.exp(-decay * (ep - at)))
+    alpha, beta = slope(angle), slope(dilation)
+    q = 3 * alpha * PRESSURE / (1 / np.sqrt(3) - alpha)
+    strain = q / young + (1 - np.sqrt(3) * beta) * ep
+    return (np.concatenate(([0], each)) for each in (strain, q, q * (1 - 2 * NU) / young - 3 * np.sqrt(3) * beta * ep))
+
+
+def fitted(q, volumetric):
+    """Constants of the soil by least squares (Gauss and Newton, damped) over STRAINS: q (Pa), volumetric strain."""
+    def error(x):
+        strain, stress, volume = law(np.exp(x))
+        return np.concatenate(((np.interp(STRAINS, strain, stress) - q) / q.max(),
+                               np.interp(STRAINS, strain, volume) - volumetric))
+
+    x, damping = np.log([9e6, 0.43, 0.01, 0.33, 6, 0.15]), 1e-3
+    for _ in range(200):
+        e = error(x)
+        slopes = np.array([(error(x + 1e-4 * unit) - e) / 1e-4 for unit in np.eye(len(x))]).T
+        step = np.linalg.solve(slopes.T @ slopes + damping * np.eye(len(x)), -slopes.T @ e)
+        better = (error(x + step)**2).sum() < (e**2).sum()
+        x, damping = (x + step, damping / 3) if better else (x, damping * 4)
+    return np.exp(x), np.sqrt((error(x)[:len(STRAINS)]**2).mean())
+
+
+def keys_of(constants):
+    young, peak, at, residual, decay, dilation = constants
+    d = peak - residual
+    return {"young_modulus_Pa": young, "dilatancy_angle_deg": np.degrees(dilation), "peak_plastic_strain": at, "decay": decay,
+            "cubic_rad": [d / at**3, -3 * d / at**2, 3 * d / at, residual],
+            "peak_friction_angle_deg": np.degrees(peak), "residual_friction_angle_deg": np.degrees(residual)}
+
+
+def row(title, values):
+    print(f"{title:<36}" + " ".join(f"{x:6.1f}" for x in values), flush=True)
+
+
+print(f"All grains as rocks, 50 kPa, plates at 0.05 m/s, packings 1 to {len(SEEDS)}\n")
+print("part  seed  edges, mm            coarse  pores of the soil  peak, kPa  at strain, %  10 to 16 %, kPa")
+found = {}
+
+
+def tests(kind, soil=None):
+    for share in (0, 20, 40):
+        for seed in SEEDS:
+            edges, coarse, pores, _ = pressed(share, seed)
+            axial, volumetric, q, h, printed = shear(kind, share, seed, soil)
+            peak = peak_of(axial, q)
+            found.setdefault((kind, share), []).append([*peak, *np.interp(STRAINS, axial, q / 1e3), *np.interp(STRAINS, axial, 100 * volumetric)])
+            print(f"{share:2d} %  {seed:<5} {' '.join(f'{1e3 * e:.2f}' for e in edges)}    {coarse:.3f}   {pores:<18.3f} {peak[0]:<10.1f} "
+                  f"{100 * peak[1]:<13.2f} {peak[2]:.1f}", flush=True)
+
+
+def mean(kind, share):
+    return np.mean(found[kind, share], axis=0)
+
+
+n = len(STRAINS)
+tests("grains")
+fine = mean("grains", 0)
+constants, error = fitted(1e3 * fine[3:3 + n], fine[3 + n:] / 100)
+soil = keys_of(constants)
+print(f"\nSoil fitted to fine grains alone: E {constants[0] / 1e6:.2f} MPa, friction {np.degrees(constants[1]):.2f} degrees at a plastic "
+      f"strain of {constants[2]:.4f}, residual {np.degrees(constants[3]):.2f}, decay {constants[4]:.2f}, dilation "
+      f"{np.degrees(constants[5]):.2f} degrees; root mean square {100 * error:.1f} % of the peak\n")
+print("Fine grains as points\n")
+tests("points", soil)
+print("\n" + f"{'axial strain, %':<36}" + " ".join(f"{100 * s:6.1f}" for s in STRAINS))
+for share in (0, 20, 40):
+    for kind in ("grains", "points"):
+        row(f"{share:2d} %, {kind}: q, kPa", mean(kind, share)[3:3 + n])
+        row("      volumetric, %", mean(kind, share)[3 + n:])
+print()
+for share in (0, 20, 40):
+    for k, what in ((0, "peak"), (2, "mean from 10 to 16 %")):
+        ratio = mean("points", share)[k] / mean("grains", share)[k]
+        scatter = [np.std([one[k] for one in found[kind, share]], ddof=1) / np.sqrt(len(SEEDS)) / mean(kind, share)[k] for kind in ("grains", "points")]
+        verdict(f"{share} %, {what}: points over grains, means of {len(SEEDS)}", f"{ratio:.3f} +- {ratio * np.hypot(*scatter):.3f}", "1 +- 0.1",
+                abs(ratio - 1) < 0.1)
+    ratio = mean("points", share)[1] / mean("grains", share)[1]
+    verdict(f"{share} %, strain at the peak: points over grains", f"{ratio:.2f}", "1 +- 0.2", abs(ratio - 1) < 0.2)
+
+tell_missed()
