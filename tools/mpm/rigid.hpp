@@ -95,11 +95,10 @@ struct Rigid {
   /// rad/s, of an angular impulse (N m s).
   Spin<D> spin_of(const Spin<D>& impulse) const {
     if (!turns) return Spin<D>::Zero();
-    if constexpr (D == 2) {
-      return impulse / inertia[0];
-    } else {
-      return orientation * (orientation.conjugate() * impulse).cwiseQuotient(inertia);
+    if constexpr (D == 3) {
+      if (!even()) return orientation * (orientation.conjugate() * impulse).cwiseQuotient(inertia);
     }
+    return impulse / inertia[0];
   }
 
  private:

@@ -108,7 +108,8 @@ void Bodies<D>::detect_rocks(const Grid<D>& grid, const Planes<D>& planes, const
       hold_at(grid, planes, point, 0, at);
       if (surface_.size() == before) continue;
       const Mat<D> soil_part = surface_.back().mobility * Mat<D>::Identity();
-      rocks->surface.push_back({r, soil_part + rock.body.mobility(r, r), std::max(0.0, gap), number});
+      const Mat<D> mobility = soil_part + rock.body.mobility(r, r);
+      rocks->surface.push_back({r, mobility, mobility.inverse(), std::max(0.0, gap), number});
     }
   }
   rocks->soil_contacts = long(rocks->surface.size());
@@ -172,7 +173,7 @@ void Bodies<D>::hold_rock(std::size_t k, Grid<D>& grid, bool end) {
   relative += here.gap / rocks->step * point.normal;
   Vec<D> impulse = Vec<D>::Zero();
   const double across = relative.dot(point.normal);
-  const Vec<D> stuck = -here.mobility.inverse() * relative;
+  const Vec<D> stuck = -here.resistance * relative;
   const double pressed = stuck.dot(point.normal);
   if (pressed > 0 || across < 0) {
     impulse = stuck;

@@ -129,6 +129,7 @@ class Rocks {
   struct SurfacePoint {
     Vec<D> r;           ///< m, from the centre of the rock
     Mat<D> mobility;    ///< m/s of N s, of soil and rock together
+    Mat<D> resistance;  ///< its inverse
     double gap;         ///< m, to the soil
     std::size_t place;  ///< number in the outline of the rock
   };
