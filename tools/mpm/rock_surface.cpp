@@ -62,7 +62,7 @@ void Bodies<D>::detect_rocks(const Grid<D>& grid, const Planes<D>& planes, const
     double gap;
   };
   std::vector<Foot> feet;
-  // Half of the distance between surface points and half of that between points of soil.
+  // More than half of the distance between points of soil.
   const double cell = grid.cell.minCoeff(), near = 0.6 * cell, slack = early * cell;
   double widest = 0;
   for (const auto& point : soil) widest = std::max(widest, point.half.norm());
@@ -85,7 +85,7 @@ void Bodies<D>::detect_rocks(const Grid<D>& grid, const Planes<D>& planes, const
     });
     if (feet.empty()) continue;
     sweeps_ = std::max(sweeps_, rock_sweeps);
-    const auto& places = rocks->outline(rock.shape, 0.5 * cell);
+    const auto& places = rocks->outline(rock.shape, outline_spacing * cell);
     rocks->pressed[k].resize(places.size(), Vec<D>::Zero());
     for (std::size_t number = 0; number < places.size(); ++number) {
       const auto& place = places[number];

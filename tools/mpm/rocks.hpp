@@ -50,6 +50,10 @@ struct Wall {
   int number = 0;  ///< of the body
 };
 
+/// Cells between the points of a rock's surface: as many as nodes move them. At half a cell the sweeps do not end, and
+/// the soil of a mixture at rest left its rocks: 4 to 9 % of volume in 20 ms, here 0.4 %.
+constexpr double outline_spacing = 1;
+
 struct NoPlates {
   template <class Forces>
   void kick(const Forces&, double) const {}

@@ -109,10 +109,51 @@ void place_rocks(const Scene& scene, Solver<D>& solver) {
   solver.rocks->first_energy = solver.rocks->energy(vector_of<D>(scene.gravity)).residual;
 }
 
+/// What lies outside of all rocks of a point's domain: the point becomes that part, at its centre of mass. False: there
+/// is less than a twentieth.
 template <int D>
-bool left_out(Solver<D>& solver, const Point<D>& point, double grain) {
+bool cut(const Rocks<D>& rocks, Point<D>& point) {
+  constexpr int along = 6;
+  const double corner = point.half.norm();
+  std::vector<const Rock<D>*> near;
+  for (const auto& rock : rocks.all) {
+    if (rocks.distance(rock, point.position, corner) < corner) near.push_back(&rock);
+  }
+  if (near.empty()) return true;
+  Vec<D> sum = Vec<D>::Zero();
+  long outside = 0, all = 1;
+  for (int i = 0; i < D; ++i) all *= along;
+  for (long k = 0; k < all; ++k) {
+    Vec<D> place = point.position;
+    long rest = k;
+    for (int i = 0; i < D; ++i, rest /= along) {
+      place[i] += (double(rest % along) + 0.5 - 0.5 * along) * 2 / along * point.half[i];
+    }
+    const bool inside = std::any_of(near.begin(), near.end(),
+                                    [&](const Rock<D>* rock) { return rocks.distance(*rock, place, 0) < 0; });
+    if (inside) continue;
+    sum += place;
+    ++outside;
+  }
+  if (20 * outside < all) return false;
+  const double part = double(outside) / double(all);
+  point.position = point.first = sum / double(outside);
+  point.volume *= part;
+  point.half *= std::pow(part, 1.0 / D);
+  return true;
+}
+
+template <int D>
+bool left_out(Solver<D>& solver, Point<D>& point, double grain) {
   if (!solver.rocks) return false;
   auto& rocks = *solver.rocks;
+  if (!rocks.soil.ghosts) {
+    const double volume = point.volume;
+    const bool whole = cut<D>(rocks, point);
+    rocks.left_out += !whole;
+    rocks.left_out_volume += whole ? volume - point.volume : volume;
+    return !whole;
+  }
   const double radius = grain > 0 ? grain : ghost_radius<D>(point, rocks.soil.porosity);
   const double ball = rocks.soil.ghosts ? 0.5 * radius : 0;
   const bool inside = std::any_of(rocks.all.begin(), rocks.all.end(),
@@ -154,12 +195,12 @@ void finish_rocks(const Scene& scene, Solver<D>& solver, std::vector<std::string
   }
   // With the first size of the cells, also in a run that is resumed.
   const bool met = !rocks.soil.ghosts && solver.bodies.rocks != nullptr;
-  for (int k = 0; met && k < int(rocks.shapes.size()); ++k) rocks.outline(k, 0.5 * cell);
+  for (int k = 0; met && k < int(rocks.shapes.size()); ++k) rocks.outline(k, outline_spacing * cell);
 }
 
 #define MPM_INSTANTIATE(D)                                        \
   template void place_rocks<D>(const Scene&, Solver<D>&);         \
-  template bool left_out<D>(Solver<D>&, const Point<D>&, double); \
+  template bool left_out<D>(Solver<D>&, Point<D>&, double);       \
   template void finish_rocks<D>(const Scene&, Solver<D>&, std::vector<std::string>&);
 MPM_INSTANTIATE(2)
 MPM_INSTANTIATE(3)

@@ -13,7 +13,7 @@ void place_rocks(const Scene& scene, Solver<D>& solver);
 /// Whether a point stands where a rock does, as a ball by more than half of its radius: it is then counted as left out.
 /// Else it has a ball from then on. grain: m, radius of the grain that it is; 0: it is none.
 template <int D>
-bool left_out(Solver<D>& solver, const Point<D>& point, double grain);
+bool left_out(Solver<D>& solver, Point<D>& point, double grain);
 
 /// Once the points are there: what the user should know.
 template <int D>
