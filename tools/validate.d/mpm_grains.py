@@ -70,21 +70,21 @@ def law(constants):
     return (np.concatenate(([0], each)) for each in (strain, q, q * (1 - 2 * NU) / young - 3 * np.sqrt(3) * beta * ep))
 
 
-def fitted(q, volumetric):
+def fitted(young, q, volumetric):
     """Constants of the soil by least squares (Gauss and Newton, damped) over STRAINS: q (Pa), volumetric strain."""
     def error(x):
-        strain, stress, volume = law(np.exp(x))
+        strain, stress, volume = law([young, *np.exp(x)])
         return np.concatenate(((np.interp(STRAINS, strain, stress) - q) / q.max(),
                                np.interp(STRAINS, strain, volume) - volumetric))
 
-    x, damping = np.log([9e6, 0.43, 0.01, 0.33, 6, 0.15]), 1e-3
+    x, damping = np.log([0.43, 0.01, 0.33, 6, 0.15]), 1e-3
     for _ in range(200):
         e = error(x)
         slopes = np.array([(error(x + 1e-4 * unit) - e) / 1e-4 for unit in np.eye(len(x))]).T
         step = np.linalg.solve(slopes.T @ slopes + damping * np.eye(len(x)), -slopes.T @ e)
         better = (error(x + step)**2).sum() < (e**2).sum()
         x, damping = (x + step, damping / 3) if better else (x, damping * 4)
-    return np.exp(x), np.sqrt((error(x)[:len(STRAINS)]**2).mean())
+    return [young, *np.exp(x)], np.sqrt((error(x)[:len(STRAINS)]**2).mean())
 
 
 def keys_of(constants):
@@ -101,7 +101,7 @@ def row(title, values):
 
 print(f"All grains as rocks, 50 kPa, plates at 0.05 m/s, packings 1 to {len(SEEDS)}\n")
 print("part  seed  edges, mm            coarse  pores of the soil  peak, kPa  at strain, %  10 to 16 %, kPa")
-found = {}
+found, stiff = {}, {}
 
 
 def tests(kind, soil=None):
@@ -110,6 +110,8 @@ def tests(kind, soil=None):
             edges, coarse, pores, _ = pressed(share, seed)
             axial, volumetric, q, h, printed = shear(kind, share, seed, soil)
             peak = peak_of(axial, q)
+            rows = (axial > 5e-4) & (axial < 3e-3)
+            stiff.setdefault((kind, share), []).append(np.polyfit(axial[rows], q[rows], 1)[0])
             found.setdefault((kind, share), []).append([*peak, *np.interp(STRAINS, axial, q / 1e3), *np.interp(STRAINS, axial, 100 * volumetric)])
             print(f"{share:2d} %  {seed:<5} {' '.join(f'{1e3 * e:.2f}' for e in edges)}    {coarse:.3f}   {pores:<18.3f} {peak[0]:<10.1f} "
                   f"{100 * peak[1]:<13.2f} {peak[2]:.1f}", flush=True)
@@ -122,7 +124,7 @@ def mean(kind, share):
 n = len(STRAINS)
 tests("grains")
 fine = mean("grains", 0)
-constants, error = fitted(1e3 * fine[3:3 + n], fine[3 + n:] / 100)
+constants, error = fitted(np.mean(stiff["grains", 0]), 1e3 * fine[3:3 + n], fine[3 + n:] / 100)
 soil = keys_of(constants)
 print(f"\nSoil fitted to fine grains alone: E {constants[0] / 1e6:.2f} MPa, friction {np.degrees(constants[1]):.2f} degrees at a plastic "
       f"strain of {constants[2]:.4f}, residual {np.degrees(constants[3]):.2f}, decay {constants[4]:.2f}, dilation "
