@@ -18,7 +18,8 @@ std::string block(const std::string& rock, const std::string& contact, const std
     return "[" + x + ", " + y + (D == 3 ? ", " + z : "") + "]\n";
   };
   return "[scene]\nname = \"block\"\ndimension = " + std::to_string(D) +
-         "\n[grid]\ncell_m = 0.125\n[time]\nduration_s = 1\ncfl = 0.3\n[initial]\nstress = \"isotropic\"\npressure_Pa = "
+         "\n[grid]\ncell_m = 0.125\n[time]\nduration_s = 1\ncfl = 0.3\n[initial]\nstress = \"isotropic\"\npressure_Pa "
+         "= "
          "5e4\n[[material]]\nname = \"soil\"\nkind = \"elastic\"\ndensity_kg_m3 = 1600\nyoung_modulus_Pa = 4.6e6\n"
          "poisson_ratio = 0.12\n[[region]]\nmaterial = \"soil\"\nlower_m = " +
          vector("0", "0", "0") + "upper_m = " + vector("1", "1", "1") +
@@ -68,8 +69,8 @@ double way_at_rest(const std::string& contact) {
       return text + "]\n";
     };
     walls += std::string("[[boundary]]\nname = \"low") + axis_names[axis] + "\"\nkind = \"roller\"\naxis = \"" +
-             axis_names[axis] + "\"\nat_m = 0\n[[body]]\nname = \"" + names[axis] + "\"\nkind = \"half_space\"\ncentre_m = " +
-             along("1") + "normal = " + along("-1") + "pressure_Pa = 5e4\n";
+             axis_names[axis] + "\"\nat_m = 0\n[[body]]\nname = \"" + names[axis] +
+             "\"\nkind = \"half_space\"\ncentre_m = " + along("1") + "normal = " + along("-1") + "pressure_Pa = 5e4\n";
   }
   const auto model = model_of<3>(block<3>("radius_m = 0.32", contact, walls));
   auto& solver = model->solver;
@@ -85,7 +86,9 @@ TEST_CASE("soil is cut at the surface of the rocks that stand in it: volume and 
   expect_cut<2>("radius_m = 0.3", 3e-3);
   expect_cut<2>("shape = \"superquadric\"\nhalf_axes_m = [0.35, 0.2]\nblockiness = [6]\nrotation_deg = 25", 5e-3);
   expect_cut<3>("radius_m = 0.3", 3e-3);
-  expect_cut<3>("shape = \"superquadric\"\nhalf_axes_m = [0.35, 0.2, 0.25]\nblockiness = [4, 4]\nrotation_deg = [1, 1, 0, 25]", 5e-3);
+  expect_cut<3>(
+      "shape = \"superquadric\"\nhalf_axes_m = [0.35, 0.2, 0.25]\nblockiness = [4, 4]\nrotation_deg = [1, 1, 0, 25]",
+      5e-3);
 }
 
 TEST_CASE("soil at rest around a rock keeps its volume, with friction and without slip") {

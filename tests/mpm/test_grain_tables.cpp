@@ -103,7 +103,8 @@ TEST_CASE("what a table of grains may not be is refused") {
 TEST_CASE("a run leaves tables of its rocks, from which another one goes on") {
   const std::string drawn =
       "[[rocks]]\nname = \"discs\"\nmaterial = \"basalt\"\nlower_m = [0, 0]\nupper_m = [2, 1]\nvolume_share = 0.2\n"
-      "diameters_m = [[0.3, 1]]\n[[rocks]]\nname = \"slabs\"\nmaterial = \"basalt\"\nlower_m = [0, 1]\nupper_m = [2, 2]\n"
+      "diameters_m = [[0.3, 1]]\n[[rocks]]\nname = \"slabs\"\nmaterial = \"basalt\"\nlower_m = [0, 1]\nupper_m = [2, "
+      "2]\n"
       "volume_share = 0.2\ndiameters_m = [[0.3, 1]]\naspect = [2, 1]\nblockiness = [4]\n";
   const std::string from_tables =
       "[[rocks]]\nname = \"discs\"\nmaterial = \"basalt\"\ntable = \"first/rocks_discs.csv\"\n[[rocks]]\nname = "

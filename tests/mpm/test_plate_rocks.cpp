@@ -49,7 +49,8 @@ void expect_carried(double mass_ratio) {
   const auto before = rocks.wall_impulse;
   for (int step = 0; step < 20; ++step) solver->step(1e-3);
   CHECK((rocks.wall_impulse[1] - before[1])[D - 1] == Approx(0.02 * force).epsilon(1e-3));
-  CHECK(body.plate->displacement == Approx(2 * overlap_of<D>(force, 0.1) + 2 * overlap_of<D>(force, 0.05)).epsilon(1e-3));
+  CHECK(body.plate->displacement ==
+        Approx(2 * overlap_of<D>(force, 0.1) + 2 * overlap_of<D>(force, 0.05)).epsilon(1e-3));
 }
 
 }  // namespace

@@ -4,8 +4,8 @@
 //   m dv/dt = f,  dL/dt = t,  w = R I^-1 R^T L
 //
 // Leap-frog: half a kick, a drift, half a kick. A drift turns a sphere about its spin, another body about its principal
-// axes, each at the rate that the angular momentum has along it (x/2, y/2, z, y/2, x/2): L stays as it is to the bit, R a
-// rotation.
+// axes, each at the rate that the angular momentum has along it (x/2, y/2, z, y/2, x/2): L stays as it is to the bit, R
+// a rotation.
 #pragma once
 
 #include "tools/mpm/rock_shape.hpp"

@@ -71,8 +71,8 @@ void add_rock_values(const Solver<D>& solver, double since, std::vector<double>&
   if (!solver.rocks) return;
   const auto& rocks = *solver.rocks;
   const auto e = rocks.energy(solver.options.gravity);
-  row.insert(row.end(), {e.kinetic, e.potential, e.springs, e.contact_loss, e.soil_work, e.wall_work, e.residual, rocks.ghost_loss,
-                         double(rocks.touching), double(rocks.soil_contacts), double(rocks.sub_steps),
+  row.insert(row.end(), {e.kinetic, e.potential, e.springs, e.contact_loss, e.soil_work, e.wall_work, e.residual,
+                         rocks.ghost_loss, double(rocks.touching), double(rocks.soil_contacts), double(rocks.sub_steps),
                          rock_virial<D>(rocks), soil_virial<D>(solver)});
   const std::size_t first = D * solver.count_driven();
   std::size_t at = first;

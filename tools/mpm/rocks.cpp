@@ -197,9 +197,8 @@ void Rocks<D>::contact_forces(const std::vector<Wall<D>>& walls, double dt, doub
     if (!(gap.gap < 0) || (wall != nullptr && !wall->there)) {
       const Vec<D> second = with_rock ? velocity_at(pair.second, gap.place) : wall->velocity;
       const bool gone = wall != nullptr && !wall->there;
-      contact_loss +=
-          gone ? pair.contact.energy(pair.constants)
-               : pair.contact.end_loss(pair.constants, second - velocity_at(pair.first, gap.place), dt);
+      contact_loss += gone ? pair.contact.energy(pair.constants)
+                           : pair.contact.end_loss(pair.constants, second - velocity_at(pair.first, gap.place), dt);
       pair.contact = {};
       pair.clearance = 0.99 * gap.gap;
       continue;

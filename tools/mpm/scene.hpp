@@ -34,13 +34,15 @@ struct RegionOfScene {
   std::vector<double> lower, upper, velocity;
   long points_per_cell = 4;
   bool ellipsoid = false;  ///< that which the box holds, instead of the box
-  /// Of a table: x, y(, z), radius (m) of a grain for each point, which has the grain's solids and is its ball to rocks.
+  /// Of a table: x, y(, z), radius (m) of a grain for each point, which has the grain's solids and is its ball to
+  /// rocks.
   std::vector<std::vector<double>> grains;
   bool saturated = false;
   double conductivity = 0, porosity = 0;  ///< m/s, 1; of a continuum (that of grains is their own)
 
   /// m^3 (m^2 in the plane), of the soil of a grain: its solids and their pores.
   double volume_of(const std::vector<double>& grain) const;
+  double largest_side() const;  ///< m, of the domains of the grains
 };
 
 /// Water that saturated soil begins with. table: m, height at which it has no pressure; NaN: it has none anywhere.

@@ -154,10 +154,8 @@ void check_watched(const Scene& scene, const std::string& path) {
 Filling filling_of(const Scene& scene, const RegionOfScene& region) {
   Filling filling;
   if (!region.grains.empty()) {
-    double largest = 0;
-    for (const auto& grain : region.grains) largest = std::max(largest, region.volume_of(grain));
     filling.total = long(region.grains.size());
-    filling.side.assign(scene.cell.size(), std::pow(largest, 1.0 / double(scene.dimension)));
+    filling.side.assign(scene.cell.size(), region.largest_side());
     return filling;
   }
   for (std::size_t i = 0; i < scene.cell.size(); ++i) {

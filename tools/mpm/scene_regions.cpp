@@ -21,10 +21,11 @@ void read_box(Keys& keys, std::size_t d, RegionOfScene& region) {
   region.ellipsoid = keys.choice("shape", {"box", "ellipsoid"}) == "ellipsoid";
 }
 
-/// lower and upper: what the domains of all points fill.
+/// lower and upper: half of the largest domain beyond the outermost points.
 void read_grains(Keys& keys, std::size_t d, RegionOfScene& region) {
   for (const char* name : {"lower_m", "upper_m", "points_per_cell", "shape"}) {
-    if (keys.has(name)) keys.wrong(name, "is of a region that is filled, and this one has a table of grains; remove it");
+    if (keys.has(name))
+      keys.wrong(name, "is of a region that is filled, and this one has a table of grains; remove it");
   }
   if (keys.row_length("rows_m") != d + 1) {
     keys.wrong("rows_m", "has rows of " + std::to_string(keys.row_length("rows_m")) + " numbers; give " +
@@ -33,9 +34,10 @@ void read_grains(Keys& keys, std::size_t d, RegionOfScene& region) {
   region.grains = keys.rows("rows_m", d + 1);
   region.lower.assign(d, 1e300);
   region.upper.assign(d, -1e300);
+  const double half = 0.5 * region.largest_side();
   for (const auto& grain : region.grains) {
-    if (!(grain[d] > 0)) keys.wrong("rows_m", "has a grain of radius " + text_of(grain[d]) + "; radii must be positive");
-    const double half = 0.5 * std::pow(region.volume_of(grain), 1.0 / double(d));
+    if (!(grain[d] > 0))
+      keys.wrong("rows_m", "has a grain of radius " + text_of(grain[d]) + "; radii must be positive");
     for (std::size_t i = 0; i < d; ++i) {
       region.lower[i] = std::min(region.lower[i], grain[i] - half);
       region.upper[i] = std::max(region.upper[i], grain[i] + half);
@@ -49,6 +51,12 @@ double RegionOfScene::volume_of(const std::vector<double>& grain) const {
   const double r = grain.back();
   const double solids = grain.size() == 3 ? std::numbers::pi * r * r : 4 * std::numbers::pi / 3 * r * r * r;
   return solids / (1 - porosity);
+}
+
+double RegionOfScene::largest_side() const {
+  double largest = 0;
+  for (const auto& grain : grains) largest = std::max(largest, volume_of(grain));
+  return std::pow(largest, 1.0 / double(lower.size()));
 }
 
 RegionOfScene read_region(Keys& keys, std::size_t d, const std::optional<WaterOfScene>& water) {

@@ -120,7 +120,8 @@ void read_region_water(Keys& keys, const std::optional<WaterOfScene>& water, Reg
   if (grains && !water) {
     keys.positive("porosity");
   } else if (keys.has("porosity") && !water) {
-    keys.wrong("porosity", "is of a table of grains or of saturated soil, and the scene has no [fluid]; remove the key");
+    keys.wrong("porosity",
+               "is of a table of grains or of saturated soil, and the scene has no [fluid]; remove the key");
   }
   region.porosity = keys.number("porosity", water ? water->porosity : 0, 0.01, 0.99);
 }

@@ -32,8 +32,7 @@ void put(const Scene& scene, const RegionOfScene& region, const Vec<D>& place, c
   point.half = 0.5 * side;
   point.volume = side.prod() * (D == 2 ? scene.thickness : 1);
   refuse_inside<D>(scene, region, solver.bodies, point);
-  if (left_out<D>(solver, point, grain)) return;
-  solver.points.push_back(point);
+  if (clear_of_rocks<D>(solver, point, grain)) solver.points.push_back(point);
 }
 
 template <int D>

@@ -109,8 +109,8 @@ void place_rocks(const Scene& scene, Solver<D>& solver) {
   solver.rocks->first_energy = solver.rocks->energy(vector_of<D>(scene.gravity)).residual;
 }
 
-/// What lies outside of all rocks of a point's domain: the point becomes that part, at its centre of mass. False: there
-/// is less than a twentieth.
+/// The part of a point's domain that is outside of all rocks, by 6 places along each axis: the point becomes that part,
+/// at its centre of mass. False: there is less than a twentieth.
 template <int D>
 bool cut(const Rocks<D>& rocks, Point<D>& point) {
   constexpr int along = 6;
@@ -119,22 +119,21 @@ bool cut(const Rocks<D>& rocks, Point<D>& point) {
   for (const auto& rock : rocks.all) {
     if (rocks.distance(rock, point.position, corner) < corner) near.push_back(&rock);
   }
-  if (near.empty()) return true;
   Vec<D> sum = Vec<D>::Zero();
   long outside = 0, all = 1;
   for (int i = 0; i < D; ++i) all *= along;
-  for (long k = 0; k < all; ++k) {
+  for (long k = 0; k < all && !near.empty(); ++k) {
     Vec<D> place = point.position;
     long rest = k;
     for (int i = 0; i < D; ++i, rest /= along) {
       place[i] += (double(rest % along) + 0.5 - 0.5 * along) * 2 / along * point.half[i];
     }
-    const bool inside = std::any_of(near.begin(), near.end(),
-                                    [&](const Rock<D>* rock) { return rocks.distance(*rock, place, 0) < 0; });
-    if (inside) continue;
+    if (std::any_of(near.begin(), near.end(), [&](const auto* rock) { return rocks.distance(*rock, place, 0) < 0; }))
+      continue;
     sum += place;
     ++outside;
   }
+  if (near.empty() || outside == all) return true;
   if (20 * outside < all) return false;
   const double part = double(outside) / double(all);
   point.position = point.first = sum / double(outside);
@@ -143,25 +142,26 @@ bool cut(const Rocks<D>& rocks, Point<D>& point) {
   return true;
 }
 
+/// Its ball, if it is in no rock by more than half.
 template <int D>
-bool left_out(Solver<D>& solver, Point<D>& point, double grain) {
-  if (!solver.rocks) return false;
-  auto& rocks = *solver.rocks;
-  if (!rocks.soil.ghosts) {
-    const double volume = point.volume;
-    const bool whole = cut<D>(rocks, point);
-    rocks.left_out += !whole;
-    rocks.left_out_volume += whole ? volume - point.volume : volume;
-    return !whole;
+bool give_ball(Rocks<D>& rocks, const Point<D>& point, double grain) {
+  const double radius = grain > 0 ? grain : ghost_radius<D>(point, rocks.soil.porosity), reach = 0.5 * radius;
+  for (const auto& rock : rocks.all) {
+    if (rocks.distance(rock, point.position, reach) < reach) return false;
   }
-  const double radius = grain > 0 ? grain : ghost_radius<D>(point, rocks.soil.porosity);
-  const double ball = rocks.soil.ghosts ? 0.5 * radius : 0;
-  const bool inside = std::any_of(rocks.all.begin(), rocks.all.end(),
-                                  [&](const auto& rock) { return rocks.distance(rock, point.position, ball) < ball; });
-  rocks.left_out += inside;
-  rocks.left_out_volume += inside ? point.volume : 0;
-  if (!inside && rocks.soil.ghosts) rocks.add_ball(point, radius, grain > 0);
-  return inside;
+  rocks.add_ball(point, radius, grain > 0);
+  return true;
+}
+
+template <int D>
+bool clear_of_rocks(Solver<D>& solver, Point<D>& point, double grain) {
+  if (!solver.rocks) return true;
+  auto& rocks = *solver.rocks;
+  const double volume = point.volume;
+  const bool stays = rocks.soil.ghosts ? give_ball<D>(rocks, point, grain) : cut<D>(rocks, point);
+  rocks.left_out += !stays;
+  rocks.left_out_volume += volume - (stays ? point.volume : 0);
+  return stays;
 }
 
 template <int D>
@@ -200,7 +200,7 @@ void finish_rocks(const Scene& scene, Solver<D>& solver, std::vector<std::string
 
 #define MPM_INSTANTIATE(D)                                        \
   template void place_rocks<D>(const Scene&, Solver<D>&);         \
-  template bool left_out<D>(Solver<D>&, Point<D>&, double);       \
+  template bool clear_of_rocks<D>(Solver<D>&, Point<D>&, double); \
   template void finish_rocks<D>(const Scene&, Solver<D>&, std::vector<std::string>&);
 MPM_INSTANTIATE(2)
 MPM_INSTANTIATE(3)

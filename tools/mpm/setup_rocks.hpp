@@ -10,10 +10,11 @@ namespace mpm {
 template <int D>
 void place_rocks(const Scene& scene, Solver<D>& solver);
 
-/// Whether a point stands where a rock does, as a ball by more than half of its radius: it is then counted as left out.
-/// Else it has a ball from then on. grain: m, radius of the grain that it is; 0: it is none.
+/// Soil is not where a rock is. At the surface a point loses what of its domain lies in rocks; as a ball it goes whole
+/// if more than half of its radius does, and is else given its ball. grain: m, radius of the grain that it is; 0: it is
+/// none. False: nothing is left of the point. What goes is counted.
 template <int D>
-bool left_out(Solver<D>& solver, Point<D>& point, double grain);
+bool clear_of_rocks(Solver<D>& solver, Point<D>& point, double grain);
 
 /// Once the points are there: what the user should know.
 template <int D>
