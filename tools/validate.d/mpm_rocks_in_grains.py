@@ -83,7 +83,7 @@ def scene(seed, rocks, one_point):
     name = f"{'with' if rocks else 'without'}_rocks_{seed}" + ("_one" if one_point else "")
     h, printed = run(name, "rocks_in_grains.toml", "-j", "1", "--set", f'material.fine.specimens=["fine_{seed}.h5"]',
                      *(("--set", f"rocks.coarse.seed={seed}") if rocks else ("--case", "none")),
-                     *(("--set", "grid.cell_m=0.035", "--set", "region.0.points_per_cell=1") if one_point else ()))
+                     *(() if one_point else ("--case", "two_points")))
     rows = slice(np.searchsorted(h["time_s"], BEGINS), None)
     x, y = EDGE + h["right.displacement_x_m"][rows], EDGE + h["top.displacement_y_m"][rows]
     major, minor = h["top.pressure_Pa"][rows], h["right.pressure_Pa"][rows]
