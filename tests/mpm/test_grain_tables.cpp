@@ -21,7 +21,7 @@ std::string grains_scene() {
          "velocity_m_s = " +
          (D == 2 ? "[0, -1]" : "[0, 0, -1]") +
          "\n[[rock]]\nname = \"big\"\nmaterial = \"basalt\"\nradius_m = 0.5\ncentre_m = " +
-         (D == 2 ? "[0, 0]" : "[0, 0, 0]") + "\n[rock_soil]\ncontact = \"ghost\"\nporosity = 0.4\n";
+         (D == 2 ? "[0, 0]" : "[0, 0, 0]") + "\n[rock_soil]\ncontact = \"ghost\"\n";
 }
 
 template <int D>
@@ -96,8 +96,16 @@ TEST_CASE("what a table of grains may not be is refused") {
   CHECK_THAT(grains_told("1,9,0.1\n", "fine.csv", "none.csv"), Contains("none.csv: cannot be read; region.table"));
   for (const auto& told : {grains_told("1,9,0.1\n", "table =", "tabel ="),
                            told_of(rocks_in_plane, {{"region.0.porosity=0.4"}, "", "", {}})}) {
-    CHECK_THAT(told, Contains("region.porosity is of a table of grains or of saturated soil"));
+    CHECK_THAT(told, Contains("region.porosity is of a table of grains or of saturated soil; give table"));
   }
+  CHECK_THAT(grains_told("1,9,0.1\n", "contact = \"ghost\"", "contact = \"ghost\"\nporosity = 0.4"),
+             Contains("rock_soil.porosity is of points that fill a box"));
+  CHECK_THAT(grains_told("1,9,0.1\n", "table = \"fine.csv\"", "table = 5"), Contains("region.table"));
+  const std::string box =
+      "[[region]]\nmaterial = \"soil\"\nlower_m = [0, 8.5]\nupper_m = [2, 9.5]\n[[region]]\nmaterial = \"soil\"\ntable";
+  CHECK_THAT(grains_told("1,9,0.1\n", "[[region]]\nmaterial = \"soil\"\ntable", box),
+             Contains("would fill that place twice"));
+  CHECK(grains_told("1,7,0.1\n", "[[region]]\nmaterial = \"soil\"\ntable", box) == "accepted");
 }
 
 TEST_CASE("a run leaves tables of its rocks, from which another one goes on") {

@@ -76,3 +76,12 @@ TEST_CASE("plates without one boundary on each side are refused unless their are
   CHECK(told_of(text(""), {{}, "pressure_Pa", bounded, {}}) == "accepted");
   CHECK(told_of(text(right + second), {{}, "pressure_Pa", bounded, {}}) == "accepted");
 }
+
+TEST_CASE("a rock that stands in a plate is refused, also where the mass of the plate is not given") {
+  const std::string rock =
+      "[[rock_material]]\nname = \"basalt\"\ndensity_kg_m3 = 2700\nyoung_modulus_Pa = 1e8\n[[rock]]\nname = \"disc\"\n"
+      "material = \"basalt\"\nradius_m = 0.08\ncentre_m = ";
+  CHECK_THAT(told_of(pressed_block + rock + "[0.2, 0.25]\n", {}),
+             Contains("rock.disc: stands") && Contains("body.lid"));
+  CHECK(told_of(pressed_block + rock + "[0.2, 0.2]\n", {}) == "accepted");
+}

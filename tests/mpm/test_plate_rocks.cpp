@@ -122,12 +122,14 @@ TEST_CASE("a plate that soil and a rock carry side by side settles as their stif
         Approx(load * of_rock / (of_soil + of_rock)).epsilon(0.01));
 }
 
-TEST_CASE("a plate that has a way to go to rocks is met by them") {
+TEST_CASE("a plate that has a way to go to rocks is met by them, also under a pressure that rises from nothing") {
   // 3 ms at 25,000 m/s^2 take a light plate over the gap; a step must not take it through the rocks.
   constexpr double p = 1e5, area = 0.02, mass = 0.08, gap = 0.1;
+  const TimeHistory pressure = GENERATE(TimeHistory{{0}, {p}}, TimeHistory{{0, 1e-4}, {0, p}});
   auto solver = rocks_under_plate<3>(p, mass, area, 0.2);
   auto& body = solver->bodies.all[0];
   body.centre[2] += gap;
+  body.plate->pressure = pressure;
   CHECK(solver->stable_step() <= std::sqrt(2 * 0.011 * 0.1 / (p * area / mass)));
   double lowest = 1e300;
   while (solver->time < 1) {

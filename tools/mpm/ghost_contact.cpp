@@ -3,10 +3,11 @@
 //   r_g = cbrt(3/(4 pi) V (1 - porosity)),  in the plane sqrt(V (1 - porosity)/(pi l)),  half of its side at most,
 //
 // of the volume V at the start (a radius that changes would do work that nobody pays; one that would overlap a rock
-// there is made to touch it), touches a rock by rock_contact.hpp. The force f on it acts at the contact, r from the
-// point: the nodes get N f + (f (x) r) grad N, the first terms of N(x + r) f on nodes of the point itself. Momentum and
-// angular momentum are kept; the printed eq. 29, without the second term, loses r x f (`moment = false`). The velocity
-// of the soil at the contact is v + A r, A its gradient: what f does work on by that mapping.
+// there is made to touch it), or the grain that it is by its table (an overlap of a twentieth stays), touches a rock by
+// rock_contact.hpp. The force f on it acts at the contact, r from the point: the nodes get N f + (f (x) r) grad N, the
+// first terms of N(x + r) f on nodes of the point itself. Momentum and angular momentum are kept; the printed eq. 29,
+// without the second term, loses r x f (`moment = false`). The velocity of the soil at the contact is v + A r, A its
+// gradient: what f does work on by that mapping.
 #include <algorithm>
 #include <cmath>
 

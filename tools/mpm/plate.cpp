@@ -24,6 +24,12 @@ double plate_velocity(double mass, double free_velocity, const std::vector<Surfa
   return velocity;
 }
 
+double Plate::acceleration() const {
+  double largest = 0;
+  for (const double each : pressure.values) largest = std::max(largest, std::abs(each));
+  return mass > 0 ? largest * area / mass : 0;  // no mass yet: of a scene that is being set up
+}
+
 template <int D>
 void Bodies<D>::place_plates(const Grid<D>& grid, const Planes<D>& planes, double time) {
   for (auto& body : all) {

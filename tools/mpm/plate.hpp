@@ -44,8 +44,8 @@ struct Plate {
   std::size_t first = 0, last = 0;  ///< its points among those of all surfaces
 
   bool free() const { return held_from < 0; }
-  /// m/s^2, of the pressure alone.
-  double acceleration(double time) const { return pressure.at(time) * area / mass; }
+  /// m/s^2, of the largest pressure of all times alone.
+  double acceleration() const;
 };
 
 struct SurfaceMobility {

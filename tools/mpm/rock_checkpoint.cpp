@@ -151,7 +151,7 @@ void read_rocks(Solver<D>& solver, const InputFile& file, const std::string& fol
   for (Taker take(forces, other); take.more();) {
     const auto rock = std::size_t(take()), place = std::size_t(take());
     if (rock >= rocks.all.size()) Taker({}, other)();
-    const auto& outline = rocks.outline(rocks.all[rock].shape, 0.5 * solver.grid.cell.minCoeff());
+    const auto& outline = rocks.outline(rocks.all[rock].shape, outline_spacing * solver.grid.cell.minCoeff());
     if (place >= outline.size()) Taker({}, other)();
     rocks.pressed[rock].resize(outline.size(), Vec<D>::Zero());
     for (double& x : rocks.pressed[rock][place]) x = take();

@@ -197,6 +197,11 @@ void check_rocks(const Scene& scene, const std::string& path) {
         "loads.surface_pressure_Pa and rocks do not go together: contact would see only what exceeds it; load the "
         "soil by a boundary or a [[body]] that moves");
   }
+  const auto of_table = [](const auto& region) { return !region.grains.empty(); };
+  if (scene.rocks->soil.porosity > 0 && !scene.regions.empty() &&
+      std::all_of(scene.regions.begin(), scene.regions.end(), of_table)) {
+    refuse("rock_soil.porosity is of points that fill a box, and all are balls of a table here; remove it");
+  }
   if (scene.water) refuse("[fluid] and rocks do not go together yet; remove one of them");
   if (scene.loads.any()) refuse("loads that change with time and rocks do not go together yet; remove one of them");
   for (const auto& plane : scene.planes) {

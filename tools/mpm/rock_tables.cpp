@@ -14,16 +14,16 @@ std::vector<double> numbers_of(double angle) { return {angle * 180 / std::number
 std::vector<double> numbers_of(const Eigen::Quaterniond& q) { return {q.w(), q.x(), q.y(), q.z()}; }
 
 template <int D>
-std::string header_of(const RockShape<D>& shape) {
+std::string header_of(bool round) {
   const std::string place = D == 2 ? "x_m,y_m," : "x_m,y_m,z_m,";
-  if (shape.is_sphere()) return place + "radius_m\n";
+  if (round) return place + "radius_m\n";
   return place + (D == 2 ? "a_m,b_m,angle_deg\n" : "a_m,b_m,c_m,w,x,y,z\n");
 }
 
 template <int D>
-std::vector<double> row_of(const RockShape<D>& shape, const Rigid<D>& body) {
+std::vector<double> row_of(const RockShape<D>& shape, const Rigid<D>& body, bool round) {
   std::vector<double> row(body.centre.data(), body.centre.data() + D);
-  if (shape.is_sphere()) {
+  if (round) {
     row.push_back(shape.bounding_radius());
     return row;
   }
@@ -36,14 +36,18 @@ std::vector<double> row_of(const RockShape<D>& shape, const Rigid<D>& body) {
 
 template <int D>
 void write_rock_tables(const Solver<D>& solver, const std::string& folder) {
+  const auto& shapes = solver.rocks->shapes;
+  std::map<std::string, bool> round;  // all of a group
+  for (const auto& rock : solver.rocks->all) {
+    if (!rock.single) round.try_emplace(rock.name, true).first->second &= shapes[std::size_t(rock.shape)].is_sphere();
+  }
   std::map<std::string, std::string> tables;
   for (const auto& rock : solver.rocks->all) {
     if (rock.single) continue;
-    const auto& shape = solver.rocks->shapes[std::size_t(rock.shape)];
     auto& table = tables[rock.name];
-    if (table.empty()) table = header_of<D>(shape);
+    if (table.empty()) table = header_of<D>(round[rock.name]);
     const char* before = "";
-    for (const double each : row_of<D>(shape, rock.body)) {
+    for (const double each : row_of<D>(shapes[std::size_t(rock.shape)], rock.body, round[rock.name])) {
       char text[40];
       std::snprintf(text, sizeof text, "%s%.17g", before, each);
       table += text;

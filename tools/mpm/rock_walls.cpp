@@ -135,7 +135,7 @@ std::vector<Wall<D>> walls_at(const Grid<D>& grid, const Planes<D>& planes, cons
     wall.velocity = body.velocity_at(time);
     if (body.pressed()) {
       wall.mass = body.plate->mass;
-      wall.acceleration = body.plate->acceleration(time);
+      wall.acceleration = body.plate->acceleration();
     }
     wall.follows_material = body.rough;
     wall.friction = body.friction;

@@ -94,7 +94,7 @@ class Rocks {
   long soil_contacts = 0;                ///< with points or surface points of soil, at the last step
 
   long left_out = 0;           ///< points that would have stood in rocks at the start
-  double left_out_volume = 0;  ///< m^3
+  double left_out_volume = 0;  ///< m^3, of soil, with what was cut from others
 
   /// Shapes of bodies as rocks need them; after any change of bodies.
   void prepare_walls(const Bodies<D>& bodies);

@@ -90,10 +90,25 @@ void check_sizes(const Scene& scene, const std::string& path) {
   }
 }
 
+/// Of a box and a table, either way round.
+bool no_grain_inside(const RegionOfScene& a, const RegionOfScene& b) {
+  const auto& box = a.grains.empty() ? a : b;
+  const auto& table = a.grains.empty() ? b : a;
+  return std::none_of(table.grains.begin(), table.grains.end(), [&](const auto& grain) {
+    bool inside = true;
+    for (std::size_t i = 0; i < box.lower.size(); ++i) {
+      inside = inside && grain[i] > box.lower[i] && grain[i] < box.upper[i];
+    }
+    return inside;
+  });
+}
+
+/// Two tables may share a place, but not under a geostatic stress, of which each region is a layer.
 void check_overlaps(const Scene& scene, const std::string& path) {
   for (auto a = scene.regions.begin(); a != scene.regions.end(); ++a) {
     for (auto b = scene.regions.begin(); b != a; ++b) {
-      bool apart = !a->grains.empty() || !b->grains.empty();
+      bool apart = !a->grains.empty() && !b->grains.empty() && scene.stress != Scene::Stress::geostatic;
+      if (a->grains.empty() != b->grains.empty()) apart = no_grain_inside(*a, *b);
       for (std::size_t i = 0; i < scene.cell.size(); ++i) {
         const double shared = std::min(a->upper[i], b->upper[i]) - std::max(a->lower[i], b->lower[i]);
         apart = apart || shared < 1e-6 * scene.cell[i];

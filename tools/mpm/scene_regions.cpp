@@ -65,6 +65,8 @@ RegionOfScene read_region(Keys& keys, std::size_t d, const std::optional<WaterOf
   region.material = keys.text("material");
   region.velocity = keys.vector("velocity_m_s", d, std::vector<double>(d, 0));
   keys.known("rows_m");
+  if (keys.has("table")) keys.text("table");  // a text would have become rows
+  if (table && water) keys.wrong("rows_m", "(table) is of dry soil, and the scene has [fluid]; fill a box instead");
   if (!table) {
     keys.known("table");
     read_box(keys, d, region);

@@ -243,8 +243,8 @@ void read_rocks(Keys& file, Scene& scene) {
   file.known("rock_soil");
   rocks.steps_per_collision = scene.rock_steps;
   if (rocks.all.empty()) {
-    // rocks = [], as a case has it, takes them away from a scene.
-    if (!file.has("rocks") && (!rocks.materials.empty() || file.has("rock_soil"))) {
+    // rocks = [] or rock = [], as a case has it, takes them away from a scene.
+    if (!file.has("rocks") && !file.has("rock") && (!rocks.materials.empty() || file.has("rock_soil"))) {
       throw InputError(
           "the scene has [[rock_material]] or [rock_soil], and no rock; add [[rock]] or [[rocks]], or "
           "remove them");

@@ -21,7 +21,7 @@ struct RockMaterialOfScene {
 /// One rock; lengths of vectors are the dimension.
 struct RockOfScene {
   std::string name;
-  bool single = true;  ///< of [[rock]]: its path is kept in rocks.csv
+  bool single = true;  ///< of [[rock]]: its path is kept in history.csv
   std::size_t material = 0;
   enum class Form { sphere, superquadric, polyhedron } form = Form::sphere;
   double radius = 0;

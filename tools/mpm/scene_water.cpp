@@ -117,11 +117,11 @@ void read_region_water(Keys& keys, const std::optional<WaterOfScene>& water, Reg
   for (const char* name : {"saturated", "conductivity_m_s"}) {
     if (keys.has(name) && !water) keys.wrong(name, dry_scene);
   }
-  if (grains && !water) {
+  if (grains) {
     keys.positive("porosity");
   } else if (keys.has("porosity") && !water) {
     keys.wrong("porosity",
-               "is of a table of grains or of saturated soil, and the scene has no [fluid]; remove the key");
+               "is of a table of grains or of saturated soil; give table, or the scene a [fluid], or remove the key");
   }
   region.porosity = keys.number("porosity", water ? water->porosity : 0, 0.01, 0.99);
 }

@@ -6,7 +6,7 @@
 namespace mpm {
 
 /// Adds the points of a region to the solver's: x fastest, or as its table has them. Bodies and rocks must be there;
-/// where rocks stand none is put. InputError where one would lie inside a body that is met at its surface.
+/// what lies in rocks is left out. InputError where one would lie inside a body that is met at its surface.
 template <int D>
 void fill(const Scene& scene, const RegionOfScene& region, Solver<D>& solver);
 

@@ -137,6 +137,9 @@ bool cut(const Rocks<D>& rocks, Point<D>& point) {
   if (20 * outside < all) return false;
   const double part = double(outside) / double(all);
   point.position = point.first = sum / double(outside);
+  // The middle of what surrounds the cap of a small rock lies in the rock.
+  const auto holds = [&](const auto* rock) { return rocks.distance(*rock, point.position, 0) < 0; };
+  if (std::any_of(near.begin(), near.end(), holds)) return false;
   point.volume *= part;
   point.half *= std::pow(part, 1.0 / D);
   return true;
@@ -171,8 +174,8 @@ void finish_rocks(const Scene& scene, Solver<D>& solver, std::vector<std::string
   double volume = 0;
   for (const auto& rock : rocks.all) volume += rocks.shapes[std::size_t(rock.shape)].volume() * rocks.thickness;
   told.push_back(std::to_string(rocks.all.size()) + " rocks of " + text_of(volume) + " m3; " +
-                 std::to_string(rocks.left_out) + " points of " + text_of(rocks.left_out_volume) +
-                 " m3 left out where they stand");
+                 std::to_string(rocks.left_out) + " points left out where they stand, " +
+                 text_of(rocks.left_out_volume) + " m3 of soil in all");
   const double size = point_size<D>(scene), cell = solver.grid.cell.minCoeff();
   const auto small = std::count_if(rocks.all.begin(), rocks.all.end(), [&](const auto& rock) {
     return 2 * rocks.shapes[std::size_t(rock.shape)].inner_radius() < 5 * size;

@@ -65,7 +65,7 @@ double Solver<D>::stable_step() const {
   // Rocks and plates alone move by no more than a hundredth of a cell a step from rest.
   double pull = std::max(1e-9, options.gravity.norm());
   for (const auto& body : bodies.all) {
-    if (body.pressed()) pull = std::max(pull, std::abs(body.plate->acceleration(time)));
+    if (body.pressed()) pull = std::max(pull, body.plate->acceleration());
   }
   const double alone = std::sqrt(0.02 * grid.cell.minCoeff() / pull);
   const double dt =

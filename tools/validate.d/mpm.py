@@ -55,7 +55,7 @@ def between_plates(h, edges, begins):
 
 
 def peak_of(axial, q):
-    """Peak of a running mean of three rows (kPa), its strain, and the mean from 10 to 16 % (kPa)."""
+    """Stress (kPa) and strain where the running mean of three rows is largest, and the mean from 10 to 16 % (kPa)."""
     smooth = np.convolve(q, np.ones(3) / 3, "same")
     k = smooth[1:-1].argmax() + 1
     return q[k] / 1e3, axial[k], q[(axial > 0.1) & (axial < 0.16)].mean() / 1e3

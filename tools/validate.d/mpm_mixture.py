@@ -64,7 +64,8 @@ rest = max(np.abs(h[f"{plate}.pressure_Pa"][before_load] / PRESSURE - 1).max() f
 verdict("pressure on the plates at rest, largest error", f"{rest:.1e}", "0.5 %", rest < 5e-3)
 
 
-print("\nMixtures, rocks of 10 mm, points of 1.9 mm (1:5), plates at 0.05 m/s, seeds 1 to 3\n")
+print("\nMixtures, rocks of 10 mm, points of 1.9 mm (1:5), plates at 0.05 m/s, seeds 1 to 3; at the surface of the rocks from a\n"
+      "quarter of the pressure, and to 14 % of strain: its energy is not accounted for any longer there\n")
 print("part     contact  seed  rocks  peak, kPa  at strain, %  residual, kPa  volumetric at 10 %, %  soil's residual, J  s a million")
 SLOW = ("--set", "time.duration_s=0.14", "--set", "body.top.motion=[[0,0,0,0],[0.02,0,0,0],[0.022,0,0,-0.05]]")
 found = {}
@@ -83,7 +84,7 @@ def at_surface():
 def mixture(share, contact, seed):
     case = ("--case", f"rocks_{share}", "--set", f"rocks.coarse.seed={seed}") if share else SLOW
     if contact == "surface":
-        case += ("--set", 'rock_soil={contact="surface", friction=0.35}', *at_surface())
+        case += ("--set", 'rock_soil={contact="surface", friction=0.35}', "--set", "time.duration_s=0.12", *at_surface())
     a, v, q, h, printed = test(f"mixture_{share}_{contact}_{seed}", *case)
     peak, where, residual = peak_of(a, q)
     found.setdefault((share, contact), []).append((peak, where, residual))

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """Cells under large strain: thin.py RVELAB WORK [PART...] [RECIPE...]. Parts: rate, rest, pure (default: all).
 
-rate: a specimen of every recipe (or of those named) sheared v_x(y), in space v_x(z), to gamma = 1e4 at dt > 0: of four
-recipes of discs as it is, of the others 100 discs or 200 spheres, whose cell is thin the sooner. rest: to 300 at dt = 0
+rate: a specimen of every recipe (or of those named) sheared v_x(y), in space v_x(z), to gamma = 1e4 at dt > 0: of pack_regular
+and four recipes of discs as it is, of the others 100 discs or 200 spheres, whose cell is thin the sooner. rest: to 300 at dt = 0
 by the loosest tolerance, 100 discs or 200 spheres. Printed: records, those of a thin cell (a height below four mean
 diameters), heights of the last cell over the mean diameter.
 pure: five upright and five oriented specimens of loose discs, compressed at constant volume to a Hencky strain of 2: p and
