@@ -83,12 +83,19 @@ def read(frame, field):
         first = position - file["displacement_m"][()]
         time = float(file["time_s"][0])
     axes = [0, 1] if np.all(position[:, 2] == 0) else [0, 2]
-    # Sides of the points at the start, from their spacing; stretched ones are drawn no longer than three times that.
-    sides = [np.min(np.diff(np.unique(np.round(first[:, a], 9)))) if len(np.unique(np.round(first[:, a], 9))) > 1
-             else volume[0] ** 0.5 for a in axes]
+    # Sides of the points at the start, from the spacing of the whole ones; those cut at rocks are smaller by their volume, and
+    # grains of a table are squares. Stretched ones are drawn no longer than three times that.
+    d = 2 if axes == [0, 1] else 3
+    at_start = volume / np.linalg.det(F[:, :d, :d])
+    whole = at_start > 0.999 * at_start.max()
+    places = [np.unique(np.round(first[whole, a], 9)) for a in axes]
+    lattice = np.mean(whole) > 0.1
+    sides = [np.min(np.diff(x)) if lattice and len(x) > 1 else at_start.max() ** (1 / d)
+             for x in places]
     corner = 0.5 * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * sides
     stretch = F[:, axes][:, :, axes]
     scale = np.minimum(1, 3 / np.maximum(np.linalg.norm(stretch, axis=(1, 2)) / 2**0.5, 1e-9))
+    scale *= (at_start / at_start.max()) ** (1 / d)
     return time, position[:, None, axes] + np.einsum("nij,kj->nki", stretch * scale[:, None, None], corner), values
 
 

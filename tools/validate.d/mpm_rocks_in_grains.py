@@ -12,7 +12,7 @@ import subprocess
 import h5py
 import numpy as np
 
-from mpm import ROOT, folder, run, rvelab, specimen, tell_missed, verdict
+from mpm import ROOT, folder, picture, results, run, rvelab, specimen, tell_missed, verdict
 
 EDGE, BEGINS, SEEDS = 0.7, 0.05, (1, 2, 3)
 STRAINS = np.array([0.2, 0.5, 1, 1.5, 2, 2.5, 3]) / 100
@@ -128,5 +128,6 @@ for what in mean:
     spread = ratio * np.hypot(error[what] / mean[what], error[cells] / mean[cells])
     verdict(f"{what}: peak over that of the periodic cell, means of {len(SEEDS)}", f"{ratio:.3f} +- {spread:.3f}", "1 +- 0.1",
             abs(ratio - 1) < 0.1)
+picture(folder / "with_rocks_1_one", "--field", "eps_q", "-o", results / "mpm_rocks_in_grains.png")
 
 tell_missed()
