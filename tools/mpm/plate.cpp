@@ -1,6 +1,7 @@
 #include "tools/mpm/plate.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "tools/mpm/bodies.hpp"

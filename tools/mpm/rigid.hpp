@@ -52,8 +52,8 @@ struct Rigid {
   Vec<D> free = Vec<D>::Ones();                ///< by axis: 1, or 0 where its velocity is held
   bool turns = true;                           ///< false: its spin is held
 
-  /// A sphere, or a body that turns as one.
-  bool even() const {
+  /// Equal moments of inertia, as those of a sphere or a cube: the spin is along the angular momentum.
+  bool isotropic() const {
     if constexpr (D == 2) {
       return true;
     } else {
@@ -63,7 +63,7 @@ struct Rigid {
   /// rad/s
   Spin<D> spin() const {
     if constexpr (D == 3) {
-      if (!even()) return orientation * (orientation.conjugate() * angular_momentum).cwiseQuotient(inertia);
+      if (!isotropic()) return orientation * (orientation.conjugate() * angular_momentum).cwiseQuotient(inertia);
     }
     return angular_momentum / inertia[0];
   }
@@ -96,7 +96,7 @@ struct Rigid {
   Spin<D> spin_of(const Spin<D>& impulse) const {
     if (!turns) return Spin<D>::Zero();
     if constexpr (D == 3) {
-      if (!even()) return orientation * (orientation.conjugate() * impulse).cwiseQuotient(inertia);
+      if (!isotropic()) return orientation * (orientation.conjugate() * impulse).cwiseQuotient(inertia);
     }
     return impulse / inertia[0];
   }
@@ -105,13 +105,13 @@ struct Rigid {
   void turn(double dt) {
     if constexpr (D == 2) {
       orientation += dt * angular_momentum[0] / inertia[0];
-    } else if (!turns || even()) {
+    } else if (!turns || isotropic()) {
       const Vec<3> rate = spin();
       const double speed = rate.norm();
       if (!(speed > 0)) return;
       orientation = Eigen::Quaterniond(Eigen::AngleAxisd(dt * speed, rate / speed)) * orientation;
       orientation.normalize();
-      if (!even()) set_spin(rate);
+      if (!isotropic()) set_spin(rate);
     } else {
       const auto about = [&](int axis, double part) {
         const double momentum = (orientation.conjugate() * angular_momentum)[axis];
