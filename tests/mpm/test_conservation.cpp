@@ -103,24 +103,61 @@ TEST_CASE("a plane of symmetry halves a footing's force to round-off, and nothin
   }
 }
 
-TEST_CASE("energy: the balance closes, and what is left falls with the time step") {
-  std::vector<double> left;
+namespace {
+
+/// A unit square that swings between rollers in gravity for a third of a period; in the order of cfl.
+template <class Change>
+std::vector<EnergyBalance<2>> swings(double cell, const Change& change) {
+  std::vector<EnergyBalance<2>> balances;
   for (const double cfl : {0.2, 0.1, 0.05}) {
     const std::array<int, 2> cells{8, 8};
+    const int side = int(std::lround(1 / cell));
     auto solver = block<2>(cells, 0.125, soil, 2000);
+    solver->grid.cell.setConstant(cell);
+    solver->first_cell = solver->grid.cell;
     solver->options.cfl = cfl;
     solver->options.gravity = Vec<2>(0, -9.81);
-    enclose<2>(*solver, cells);
+    change(*solver);
+    enclose<2>(*solver, {side, side});
     set_velocity<2>(*solver, [](const Vec<2>& x) {
       return Vec<2>(0.3 * std::sin(pi * x[0]) * std::cos(pi * x[1]), 0.3 * std::cos(pi * x[0]) * std::sin(pi * x[1]));
     });
     const auto start = energy_start<2>(*solver);
     while (solver->time < 0.004) solver->step(solver->stable_step());
-    const auto balance = energy_balance<2>(*solver, start);
-    CHECK(std::abs(balance.stress_work) > 0.2 * start.kinetic);
-    left.push_back(std::abs(balance.residual) / start.kinetic);
+    balances.push_back(energy_balance<2>(*solver, start));
+    CHECK(std::abs(balances.back().stress_work) > 0.2 * start.kinetic);
+    balances.back().residual /= start.kinetic;
+    balances.back().mapping_loss /= start.kinetic;
   }
-  CHECK(left[0] < 0.05);
-  CHECK(left[1] < 0.8 * left[0]);
-  CHECK(left[2] < 0.5 * left[0]);
+  return balances;
+}
+
+}  // namespace
+
+TEST_CASE("energy: the balance closes, and what is left falls with the time step") {
+  const double bound = GENERATE(0.005, 0.05);
+  const auto balances = swings(0.125, [&](Solver<2>& solver) {
+    if (bound > 0.01)
+      solver.options.scheme = Scheme::musl;  // its stress has not half a step of the velocity at the end
+  });
+  CHECK(std::abs(balances[0].residual) < bound);
+  CHECK(std::abs(balances[1].residual) < 0.8 * std::abs(balances[0].residual));
+  CHECK(std::abs(balances[2].residual) < 0.5 * std::abs(balances[0].residual));
+}
+
+TEST_CASE("energy: points at random places, one a cell, lose it in mapping, and the balance closes") {
+  // Their stress is not in balance at the nodes: what it does there in a step is gone with the next mapping.
+  const auto balances = swings(0.0625, [](Solver<2>& solver) {
+    std::uint32_t draw = 1;
+    for (auto& point : solver.points) {
+      for (int i = 0; i < 2; ++i) {
+        draw = 1664525u * draw + 1013904223u;
+        point.position[i] += 0.06 * (draw / 4294967296.0 - 0.5);
+      }
+      point.half.setConstant(0.03125);
+    }
+  });
+  CHECK(balances[0].mapping_loss > 10 * std::abs(balances[0].residual));
+  for (const auto& balance : balances) CHECK(std::abs(balance.residual) < 0.002);
+  CHECK(std::abs(balances[2].residual) < 0.5 * std::abs(balances[0].residual));
 }

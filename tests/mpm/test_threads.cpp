@@ -25,7 +25,7 @@ TEST_CASE("contact with three bodies has the same bits on any number of threads"
     for (auto& body : solver->bodies.all) body.at_surface = &body != &solver->bodies.all[1];
     for (int k = 0; k < 150; ++k) solver->step(solver->stable_step());
     ends.push_back(solver->points);
-    works.push_back(solver->nodal_kinetic);
+    works.push_back(solver->nodal_energy);
     for (const auto& body : solver->bodies.all) {
       CHECK(body.reaction.impulse.norm() > 1);
       works.push_back(body.reaction.work);

@@ -42,7 +42,7 @@ void each_field(FluidPoint<D>& point, const Field& field) {
 /// What the water has beside its points and the pressure, one by one.
 template <int D, class Visit>
 void each_total(Fluid<D>& water, Visit visit) {
-  for (double* value : {&water.nodal_kinetic, &water.gravity_work, &water.drag_loss, &water.water_work}) visit(*value);
+  for (double* value : {&water.nodal_energy, &water.gravity_work, &water.drag_loss, &water.water_work}) visit(*value);
   for (double& value : water.outflow) visit(value);
   const auto reactions = [&](auto& all) {
     for (auto& each : all) {
@@ -215,7 +215,7 @@ void write_checkpoint(const Model<D>& model, const Progress& progress, const std
   });
   file.write("reactions", reactions, {reactions.size()});
   auto clock = clock_of(progress);
-  clock.insert(clock.end(), {solver.time, solver.nodal_kinetic});
+  clock.insert(clock.end(), {solver.time, solver.nodal_energy});
   // A grid that follows a plane was placed at the start of the last step; the size of the next one hangs on it.
   clock.insert(clock.end(), solver.grid.cell.data(), solver.grid.cell.data() + D);
   file.write("clock", clock, {clock.size()});
@@ -268,7 +268,7 @@ void read_checkpoint(Model<D>& model, Progress& progress, const std::string& fol
   if (clock.size() != own + 2 + D) of_another_scene(folder, "times", clock.size(), own + 2 + D);
   std::copy_n(clock.begin() + long(own) + 2, D, solver.grid.cell.data());
   solver.time = clock[own];
-  solver.nodal_kinetic = clock[own + 1];
+  solver.nodal_energy = clock[own + 1];
   each_clock(progress, [&, k = std::size_t(0)](double& value) mutable { value = clock[k++]; });
   const auto counts = file.read_whole("counts");
   if (counts.size() != 7) of_another_scene(folder, "counts", counts.size(), 7);

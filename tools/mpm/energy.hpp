@@ -17,7 +17,7 @@ struct EnergyBalance {
   double stress_work = 0;    ///< of the stress in the points
   double pressure_work = 0;  ///< of the pressure on free surfaces
   double boundary_work = 0;  ///< of planes, bodies and rocks, on the soil
-  double mapping_loss = 0;   ///< between points and nodes (PIC, lumping)
+  double mapping_loss = 0;   ///< between points and nodes (PIC, lumping), with the stress's half step (solver.hpp)
   double load_work = 0;      ///< of shaking and strips
   double drag_loss = 0;      ///< between soil and water
   double water_work = 0;     ///< of the pore pressure on both: what came in at given pressures, or was stored
@@ -60,7 +60,7 @@ EnergyBalance<D> energy_balance(const Solver<D>& solver, const EnergyStart& star
   solver.each_driven([&](const auto& each) { balance.boundary_work += each.reaction.work; });
   balance.boundary_work += solver.rock_work();
   balance.pressure_work = solver.options.surface_pressure * (start.volume - volume);
-  double nodal = solver.nodal_kinetic;
+  double nodal = solver.nodal_energy;
   if (solver.fluid) {
     const auto& water = *solver.fluid;
     for (const auto& point : water.points) {
@@ -69,7 +69,7 @@ EnergyBalance<D> energy_balance(const Solver<D>& solver, const EnergyStart& star
     }
     for (const auto& plane : water.planes.all) balance.boundary_work += plane.reaction.work;
     for (const auto& body : water.bodies.all) balance.boundary_work += body.reaction.work;
-    nodal += water.nodal_kinetic;
+    nodal += water.nodal_energy;
     balance.drag_loss = water.drag_loss;
     balance.water_work = water.water_work;
     balance.water_gravity = water.gravity_work;

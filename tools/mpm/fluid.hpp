@@ -65,14 +65,14 @@ struct Fluid {
   Bodies<D> bodies;                   ///< those of the solid, smooth
   PorePressure<D> pressure;
   std::function<double(double)> first_pressure;  ///< Pa of a height (m); empty: none at the start
-  double nodal_kinetic = 0;
+  double nodal_energy = 0;
   double gravity_work = 0;      ///< J, of gravity on the water
   double drag_loss = 0;         ///< J, between the phases
   double water_work = 0;        ///< J, of the pressure on both phases: what came in at given pressures, or was stored
   std::vector<double> outflow;  ///< m^3, through each plane, then through free surfaces
   double seconds = 0;           ///< of the pressure: assembled and solved
 
-  Phase<D> phase() { return {grid, planes, bodies, nodal_kinetic}; }
+  Phase<D> phase() { return {grid, planes, bodies, nodal_energy}; }
   /// m/s, at the void ratio of now.
   double conductivity(long point, double volume) const {
     const auto& at = points[point];

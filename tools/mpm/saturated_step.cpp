@@ -267,7 +267,7 @@ void Solver<D>::move_water(double dt) {
     auto& here = water.points[k];
     if (here.mass == 0) return;
     Taken<D> taken;
-    take_velocity<D>(water.grid, supports_[k], options.affine, taken);
+    take_velocity<D>(water.grid, supports_[k], taken);
     for (int i = 0; i < D; ++i) {
       here.velocity[i] = pic * taken.w[i] + (1 - pic) * (here.velocity[i] + taken.added[i]);
       for (int j = 0; j < D; ++j) here.affine(i, j) = taken.gradient[j][i];

@@ -237,7 +237,7 @@ void Solver<D>::rocks_alone(double dt) {
 template <int D>
 void Solver<D>::take_changes(Phase<D> phase, double dt) {
   phase.planes.unfold(phase.grid);
-  kinetic_.assign((phase.grid.nodes.size() + chunk - 1) / chunk, 0);
+  sums_.assign((phase.grid.nodes.size() + chunk - 1) / chunk, 0);
   over_nodes(phase.grid, [&](auto& node, std::int64_t piece) {
     double change = 0;
     for (int i = 0; i < D; ++i) {
@@ -245,9 +245,9 @@ void Solver<D>::take_changes(Phase<D> phase, double dt) {
       node.a[i] = node.w[i] - mapped;
       change += node.a[i] * (node.w[i] + mapped);
     }
-    kinetic_[piece] += 0.5 * node.mass * change;
+    sums_[piece] += 0.5 * node.mass * change;
   });
-  for (const double each : kinetic_) phase.nodal_kinetic += each;
+  for (const double each : sums_) phase.nodal_energy += each;
   phase.planes.react(phase.grid, dt, options.pic_fraction);
 }
 
@@ -272,7 +272,7 @@ void Solver<D>::add_load_work(double dt) {
     const double pressure = loads.strip_pressure(points[k].position[0], time);
     if (pressure == 0) continue;
     Taken<D> taken;
-    take_velocity<D>(grid, supports_[k], true, taken);
+    take_velocity<D>(grid, supports_[k], taken);
     const double mean = 0.5 * (points[k].gradient(D - 1, D - 1) + dt * taken.gradient[D - 1][D - 1]);
     load_work -= points[k].volume * pressure * mean;
   }

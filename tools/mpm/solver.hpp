@@ -49,7 +49,7 @@ struct Phase {
   Grid<D>& grid;
   Planes<D>& planes;
   Bodies<D>& bodies;
-  double& nodal_kinetic;
+  double& nodal_energy;
 };
 
 template <int D>
@@ -65,8 +65,10 @@ class Solver {
   Planes<D> planes;
   Bodies<D> bodies;
   Options<D> options;
-  /// J, change of kinetic energy at the nodes since the start; what the points have less was lost in mapping.
-  double nodal_kinetic = 0;
+  /// J, change of energy at the nodes over all steps since the start; what the points have less was lost in mapping. It
+  /// is kinetic energy, and the half step by which stress lags velocity: 1/2 V sigma:(grad w - grad v) dt, of the
+  /// velocities w that one step ends with and v that mapping makes of them for the next.
+  double nodal_energy = 0;
   Loads loads;
   double load_work = 0;  ///< J, of `loads` on the soil and its water
   double time = 0;
@@ -119,7 +121,7 @@ class Solver {
   void stresses(double dt);
   void move_points(double dt);
   void second_map(double dt);
-  Phase<D> solid() { return {grid, planes, bodies, nodal_kinetic}; }
+  Phase<D> solid() { return {grid, planes, bodies, nodal_energy}; }
   // dashpots.cpp, of absorbing planes
   struct Dashpot {
     int plane;
@@ -182,7 +184,7 @@ class Solver {
   std::vector<Support<D>> supports_;
   std::vector<long> order_, slab_begin_, slab_next_;
   std::vector<Dashpot> dashpots_;
-  std::vector<double> kinetic_;  ///< J, of each piece of nodes
+  std::vector<double> sums_;  ///< J, of each piece of nodes or points
 };
 
 }  // namespace mpm

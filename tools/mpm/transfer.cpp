@@ -41,7 +41,10 @@ template <int D>
 void Solver<D>::gradients(double dt) {
   const Node<D>* nodes = grid.nodes.data();
   const long n = long(points.size());
+  const double pressure = options.surface_pressure;
+  sums_.assign((n + chunk - 1) / chunk, 0);
   workers.for_each((n + chunk - 1) / chunk, [&](std::int64_t piece) {
+    double work = 0;
     for (long k = piece * chunk; k < std::min(n, long(piece + 1) * chunk); ++k) {
       auto& point = points[k];
       const auto& support = supports_[k];
@@ -64,29 +67,38 @@ void Solver<D>::gradients(double dt) {
       // they went from.
       point.gradient = options.scheme == Scheme::usf ? strain_of_step<D>(step) : Mat<D>(-strain_of_step<D>(-step));
       if (options.scheme == Scheme::musl) point.affine = carried_gradient<D>(point.affine, dt);
-      point.work += 0.5 * point.volume * point.stress.cwiseProduct(point.gradient).sum();
+      const double half = 0.5 * point.volume * point.stress.cwiseProduct(point.gradient).sum();
+      point.work += half;
+      work += half + 0.5 * point.volume * pressure * point.gradient.trace();
     }
+    sums_[piece] = work;
   });
+  for (const double each : sums_) nodal_energy -= each;
 }
 
 template <int D>
 void Solver<D>::move_points(double dt) {
   const long n = long(points.size());
-  const double pic = options.pic_fraction;
-  const bool affine = options.affine;
+  const double pic = options.pic_fraction, pressure = options.surface_pressure;
+  sums_.assign((n + chunk - 1) / chunk, 0);
   workers.for_each((n + chunk - 1) / chunk, [&](std::int64_t piece) {
+    double work = 0;
     for (long k = piece * chunk; k < std::min(n, long(piece + 1) * chunk); ++k) {
       auto& point = points[k];
       Taken<D> taken;
-      take_velocity<D>(grid, supports_[k], affine, taken);
+      take_velocity<D>(grid, supports_[k], taken);
       for (int i = 0; i < D; ++i) {
         point.velocity[i] = pic * taken.w[i] + (1 - pic) * (point.velocity[i] + taken.added[i]);
         point.position[i] += dt * taken.w[i];
         for (int j = 0; j < D; ++j) point.affine(i, j) = taken.gradient[j][i];
       }
+      work +=
+          0.5 * dt * point.volume * (point.stress.cwiseProduct(point.affine).sum() + pressure * point.affine.trace());
       if (options.scheme == Scheme::usf) point.affine = carried_gradient<D>(point.affine, dt);
     }
+    sums_[piece] = work;
   });
+  for (const double each : sums_) nodal_energy += each;
 }
 
 template void Solver<2>::map_momentum();

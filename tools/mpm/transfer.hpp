@@ -96,14 +96,14 @@ inline void give_force(Grid<D>& grid, const Support<D>& support, const Lanes<D> 
   });
 }
 
-/// Velocities at a point at the end of a step: w (nodal), what the step added, and, if `affine`, the gradient of w.
+/// Velocities at a point at the end of a step: w (nodal), what the step added, and the gradient of w.
 template <int D>
 struct Taken {
   Lanes<D> w = {}, added = {}, gradient[D] = {};  ///< gradient[j]: d/dx_j
 };
 
 template <int D>
-inline void take_velocity(const Grid<D>& grid, const Support<D>& support, bool affine, Taken<D>& taken) {
+inline void take_velocity(const Grid<D>& grid, const Support<D>& support, Taken<D>& taken) {
   each_row<D>(grid.nodes.data(), grid, support,
               [&](const Node<D>* row, double across, const double* slope, const double*) {
                 Lanes<D> along = {}, steep = {}, added = {};
@@ -118,7 +118,7 @@ inline void take_velocity(const Grid<D>& grid, const Support<D>& support, bool a
                   taken.w[i] += along[i] * across;
                   taken.added[i] += added[i] * across;
                 }
-                if (affine) add_gradient<D>(taken.gradient, along, steep, across, slope);
+                add_gradient<D>(taken.gradient, along, steep, across, slope);
               });
 }
 

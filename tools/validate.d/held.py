@@ -19,6 +19,8 @@ import numpy as np
 
 PROTOCOLS = pathlib.Path("protocols").resolve()
 PRESSURES = ("50e3", "100e3", "200e3")
+LOW = ("2e3", "5e3", "15e3")  # of families under their own weight, 0.25 to 1 m deep
+SPHERES = ("hertz", "mixture")
 TOLERANCE = 0.005  # loading.held_tolerance
 # 400 discs of a sand by mass, d60/d10 2.1, with rolling friction: its loose states come apart in avalanches.
 SAND = """[pack]
@@ -55,7 +57,13 @@ RECIPES = {
     "medium": ("pack_medium", [], PRESSURES),
     "loose": ("pack_loose", [], PRESSURES),
     "soft": ("pack_soft", [], ("5e3", "10e3", "20e3")),
+    "column": ("pack_column", [], LOW),
+    "saturated": ("pack_saturated", [], LOW),
+    "consolidation": ("pack_consolidation", [], PRESSURES),
+    "bedded": ("pack_bedded", [], PRESSURES),
+    "regular": ("pack_regular", [], PRESSURES),
     "hertz": ("pack_hertz", [], PRESSURES),
+    "mixture": ("pack_mixture", [], PRESSURES),
     "smooth": ("pack_dense", ["material.friction_angle_deg=6", "target.void_ratio_tolerance=0.02"], PRESSURES),
     "rough": ("sand.toml", ["material.friction_angle_deg=40", "material.rolling_friction=0.5"], PRESSURES),
     "sand_low": ("sand.toml", [], ("1e3", "2e3")),
@@ -87,16 +95,18 @@ def path_of(name):
 def specimens(program, work, name, count):
     recipe, settings, _ = RECIPES[name]
     made = []
-    for seed in range(1, count + 1):
+    for seed in range(1, 1 + (1 if name == "regular" else count)):
         file = work / f"{name}_{seed}.h5"
-        if not file.exists():
+        # A family is a file for each depth: here the least deep.
+        depths = f"{name}_{seed}_*Pa.h5"
+        if not file.exists() and not any(work.glob(depths)):
             answer = subprocess.run([program, "pack", path_of(recipe), "-o", file, "--threads", "1", "--set", f"pack.seed={seed}",
                                      *(word for each in settings for word in ("--set", each))], cwd=work,
                                     capture_output=True, text=True)
             if answer.returncode != 0:
                 print(f"# {name} {seed}: {answer.stderr.strip()[-200:]}", flush=True)
                 continue
-        made.append(file)
+        made.append(file if file.exists() else min(work.glob(depths), key=lambda each: int(each.stem.split("_")[-1][:-2])))
     return made
 
 
@@ -125,7 +135,7 @@ def test(program, work, protocol, specimen, settings):
 
 
 def line(program, work, name, files, label):
-    protocol = "triaxial" if name == "hertz" else "biaxial"
+    protocol = "triaxial" if name in SPHERES else "biaxial"
     errors, substeps, angles, ended = [], [], [], []
     for file in files:
         for pressure in RECIPES[name][2]:
@@ -135,7 +145,7 @@ def line(program, work, name, files, label):
                 ended.append(end.strip()[-300:])
     e, s = np.concatenate(errors), np.concatenate(substeps)
     off = int((e > TOLERANCE).sum())
-    print(f"{name:8} {label:7} {len(files):5} {len(e):8} {off:5} {e.max() / TOLERANCE:10.4g} {len(ended):6} {s.sum():10.4g} "
+    print(f"{name:13} {label:7} {len(files):5} {len(e):8} {off:5} {e.max() / TOLERANCE:10.4g} {len(ended):6} {s.sum():10.4g} "
           f"{s.max():10.4g} {np.nanmean(angles):8.2f} +- {np.nanstd(angles, ddof=1):5.2f}", flush=True)
     for text in ended:
         print(f"#   {text}")
@@ -171,10 +181,10 @@ def main():
     program, work = str(pathlib.Path(given.program).resolve()), given.work.resolve()
     work.mkdir(parents=True, exist_ok=True)
     (work / "sand.toml").write_text(SAND)
-    print("recipe   build   specs  records   off  error/tol  ended  sub-steps  in a record  friction angle")
+    print("recipe        build   specs  records   off  error/tol  ended  sub-steps  in a record  friction angle")
     missed = 0
     for name in given.recipes:
-        files = specimens(given.before or program, work, name, min(given.count, 5) if name == "hertz" else given.count)
+        files = specimens(given.before or program, work, name, min(given.count, 5) if name in SPHERES else given.count)
         if given.before:
             line(given.before, work, name, files, "before")
         missed += line(program, work, name, files, "after" if given.before else "")

@@ -3,10 +3,10 @@
     mpm_grains.py RVELAB FOLDER RESULTS
 
 Three packings each of 0, 20 and 40 % of coarse grains (Li et al. 2023, 4.3: half their edge, fine grains of a fifth of
-the size) are pressed between smooth plates (mixture_grains.toml) and sheared at 50 kPa twice in the same plates: all
+the size) are pressed between smooth plates (mixture_grains.toml) and sheared at 50 kPa three times in the same plates: all
 grains as rocks; and the fine grains as material points of a softening soil, each of which touches the coarse ones as
-the ball that it was. The soil's constants are fitted to the tests of all fine grains. Runs that are whole in FOLDER are
-used again."""
+the ball that it was, in cells of 3.75 mm, two points a side, and in cells of one point. The soil's constants are fitted
+to the tests of all fine grains. Runs that are whole in FOLDER are used again."""
 
 import numpy as np
 
@@ -16,23 +16,27 @@ DRAWN, PRESSURE, NU, SOLID = 0.045, 50e3, 0.12, 2600
 SEEDS = (1, 2, 3)
 STRAINS = np.array([0.5, 1, 2, 3, 4, 6, 8, 10, 12, 15]) / 100
 BEGINS = 0.02  # s
+POINTS = {"points": "cells of 3.75 mm", "single": "cells of one point"}
 
 
 def pressed(share, seed):
-    """Edges (m), parts of volume of coarse grains and of pores in the soil between them, and the folder of tables."""
+    """Edges (m), parts of volume of coarse grains and of pores in the soil between them, the cell (m) of one fine grain
+    with its pores, and the folder of tables."""
     name = f"pressed_{share}_{seed}"
     case = ("--case", f"rocks_{share}", "--set", f"rocks.coarse.seed={seed}") if share else ()
     h, _ = run(name, "mixture_grains.toml", "-j", "1", *case, "--set", f"rocks.fine.seed={seed}")
     edges = [DRAWN + float(h[f"{plate}.displacement_{axis}_m"][-1]) for plate, axis in (("right", "x"), ("back", "y"), ("top", "z"))]
-    solids = {group: 4 / 3 * np.pi * (np.loadtxt(folder / name / f"rocks_{group}.csv", delimiter=",", skiprows=1)[:, 3]**3).sum()
-              for group in (("fine", "coarse") if share else ("fine",))}
-    coarse = solids.get("coarse", 0) / np.prod(edges)
-    return edges, coarse, 1 - solids["fine"] / np.prod(edges) / (1 - coarse), (folder / name).resolve()
+    radii = {group: np.loadtxt(folder / name / f"rocks_{group}.csv", delimiter=",", skiprows=1)[:, 3]
+             for group in (("fine", "coarse") if share else ("fine",))}
+    solids = {group: 4 / 3 * np.pi * (r**3).sum() for group, r in radii.items()}
+    soil = np.prod(edges) - solids.get("coarse", 0)
+    return (edges, 1 - soil / np.prod(edges), 1 - solids["fine"] / soil, np.cbrt(soil / len(radii["fine"])),
+            (folder / name).resolve())
 
 
 def shear(kind, share, seed, soil=None):
     """Axial and volumetric strain and deviatoric stress of one test. soil: keys of the material of the points."""
-    edges, _, pores, place = pressed(share, seed)
+    edges, _, pores, cell, place = pressed(share, seed)
     table = {group: f'{{name="{group}", material="grain", table="{place}/rocks_{group}.csv"}}' for group in ("fine", "coarse")}
     groups = ["coarse"] if share else []
     sets = [f"body.{plate}.centre_m={[edge if k == axis else 0 for k in range(3)]}"
@@ -44,6 +48,8 @@ def shear(kind, share, seed, soil=None):
     else:
         sets += [f'region=[{{material="soil", table="{place}/rocks_fine.csv", porosity={pores}}}]',
                  f"material.soil.density_kg_m3={SOLID * (1 - pores)}", *(f"material.soil.{key}={value}" for key, value in soil.items())]
+        if kind == "single":
+            sets.append(f"grid.cell_m={cell:.3g}")
         if share:
             sets.append(f'rock_soil={{contact="ghost", friction=0.35}}')
     if groups:
@@ -107,7 +113,7 @@ found, stiff = {}, {}
 def tests(kind, soil=None):
     for share in (0, 20, 40):
         for seed in SEEDS:
-            edges, coarse, pores, _ = pressed(share, seed)
+            edges, coarse, pores, _, _ = pressed(share, seed)
             axial, volumetric, q = shear(kind, share, seed, soil)
             peak = peak_of(axial, q)
             rows = (axial > 5e-4) & (axial < 3e-3)
@@ -129,21 +135,26 @@ soil = keys_of(constants)
 print(f"\nSoil fitted to fine grains alone: E {constants[0] / 1e6:.2f} MPa, friction {np.degrees(constants[1]):.2f} degrees at a plastic "
       f"strain of {constants[2]:.4f}, residual {np.degrees(constants[3]):.2f}, decay {constants[4]:.2f}, dilation "
       f"{np.degrees(constants[5]):.2f} degrees; root mean square {100 * error:.1f} % of the peak\n")
-print("Fine grains as points\n")
-tests("points", soil)
-print("\n" + f"{'axial strain, %':<36}" + " ".join(f"{100 * s:6.1f}" for s in STRAINS))
+for kind, cells in POINTS.items():
+    print(f"Fine grains as points, {cells}\n")
+    tests(kind, soil)
+    print()
+print(f"{'axial strain, %':<36}" + " ".join(f"{100 * s:6.1f}" for s in STRAINS))
 for share in (0, 20, 40):
-    for kind in ("grains", "points"):
-        row(f"{share:2d} %, {kind}: q, kPa", mean(kind, share)[3:3 + n])
+    for kind, name in {"grains": "grains", **POINTS}.items():
+        row(f"{share:2d} %, {name}: q, kPa", mean(kind, share)[3:3 + n])
         row("      volumetric, %", mean(kind, share)[3 + n:])
 print()
-for share in (0, 20, 40):
-    for k, what in ((0, "peak"), (2, "mean from 10 to 16 %")):
-        ratio = mean("points", share)[k] / mean("grains", share)[k]
-        scatter = [np.std([one[k] for one in found[kind, share]], ddof=1) / np.sqrt(len(SEEDS)) / mean(kind, share)[k] for kind in ("grains", "points")]
-        verdict(f"{share} %, {what}: points over grains, means of {len(SEEDS)}", f"{ratio:.3f} +- {ratio * np.hypot(*scatter):.3f}", "1 +- 0.1",
-                abs(ratio - 1) < 0.1)
-    ratio = mean("points", share)[1] / mean("grains", share)[1]
-    verdict(f"{share} %, strain at the peak: points over grains", f"{ratio:.2f}", "1 +- 0.2", abs(ratio - 1) < 0.2)
+for kind, cells in POINTS.items():
+    print(f"Points in {cells} over grains, means of {len(SEEDS)}")
+    for share in (0, 20, 40):
+        for k, what in ((0, "peak"), (2, "mean from 10 to 16 %")):
+            ratio = mean(kind, share)[k] / mean("grains", share)[k]
+            scatter = [np.std([one[k] for one in found[each, share]], ddof=1) / np.sqrt(len(SEEDS)) / mean(each, share)[k]
+                       for each in (kind, "grains")]
+            verdict(f"{share} %, {what}", f"{ratio:.3f} +- {ratio * np.hypot(*scatter):.3f}", "1 +- 0.1", abs(ratio - 1) < 0.1)
+        ratio = mean(kind, share)[1] / mean("grains", share)[1]
+        verdict(f"{share} %, strain at the peak", f"{ratio:.2f}", "1 +- 0.2", abs(ratio - 1) < 0.2)
+    print()
 
 tell_missed()
