@@ -18,6 +18,7 @@
 
 #include "tools/mpm/grid.hpp"
 #include "tools/mpm/keys.hpp"
+#include "tools/mpm/terrain.hpp"
 
 namespace mpm {
 
@@ -187,7 +188,7 @@ struct HalfSpace {
 };
 
 template <int D>
-using BodyShape = std::variant<Box<D>, Disc<D>, HalfSpace<D>>;
+using BodyShape = std::variant<Box<D>, Disc<D>, HalfSpace<D>, Terrain<D>>;
 
 /// The kinds of shapes in a scene.
 template <class... Shapes>

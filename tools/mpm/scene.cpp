@@ -197,6 +197,7 @@ Scene read_scene(const std::string& path, const std::vector<std::string>& cases,
   include_record(file, path);
   include_grains(file, path);
   include_rocks(file, path);
+  include_terrain(file, path);
   Keys keys(file, path, "");
   // A misspelt table is reported before a key that is missing because of it.
   for (const char* name : {"scene", "grid", "time", "loads", "initial", "fluid", "output", "material", "region",

@@ -2,11 +2,28 @@
 
 #include <cmath>
 
+#include "tools/mpm/cut_point.hpp"
 #include "tools/mpm/scene_checks.hpp"
 #include "tools/mpm/setup_rocks.hpp"
 
 namespace mpm {
 namespace {
+
+/// What lies under ground is left out; false: all of the point.
+template <int D>
+bool above_ground(const Bodies<D>& bodies, Point<D>& point) {
+  for (const auto& body : bodies.all) {
+    const auto* ground = std::get_if<Terrain<D>>(&body.shape);
+    if (ground == nullptr) continue;
+    Vec<D> outward;
+    const auto under = [&](const Vec<D>& place) {
+      return ground->distance(place - body.centre, outward, point.half) < 0;
+    };
+    if (ground->distance(point.position - body.centre, outward, point.half) > point.half.norm()) continue;
+    if (!cut_point<D>(point, under)) return false;
+  }
+  return true;
+}
 
 /// What lies inside a body that is met at its surface would be left there, and move through it.
 template <int D>
@@ -31,6 +48,7 @@ void put(const Scene& scene, const RegionOfScene& region, const Vec<D>& place, c
   point.velocity = vector_of<D>(region.velocity);
   point.half = 0.5 * side;
   point.volume = side.prod() * (D == 2 ? scene.thickness : 1);
+  if (!above_ground<D>(solver.bodies, point)) return;
   refuse_inside<D>(scene, region, solver.bodies, point);
   if (clear_of_rocks<D>(solver, point, grain)) solver.points.push_back(point);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/mpm/cut_point.hpp"
 #include "tools/mpm/rocks.hpp"
 #include "tools/mpm/scene_checks.hpp"
 
@@ -109,40 +110,18 @@ void place_rocks(const Scene& scene, Solver<D>& solver) {
   solver.rocks->first_energy = solver.rocks->energy(vector_of<D>(scene.gravity)).residual;
 }
 
-/// The part of a point's domain that is outside of all rocks, by 6 places along each axis: the point becomes that part,
-/// at its centre of mass. False: there is less than a twentieth.
+/// What lies in rocks; false: the point goes as a whole.
 template <int D>
 bool cut(const Rocks<D>& rocks, Point<D>& point) {
-  constexpr int along = 6;
   const double corner = point.half.norm();
   std::vector<const Rock<D>*> near;
   for (const auto& rock : rocks.all) {
     if (rocks.distance(rock, point.position, corner) < corner) near.push_back(&rock);
   }
-  Vec<D> sum = Vec<D>::Zero();
-  long outside = 0, all = 1;
-  for (int i = 0; i < D; ++i) all *= along;
-  for (long k = 0; k < all && !near.empty(); ++k) {
-    Vec<D> place = point.position;
-    long rest = k;
-    for (int i = 0; i < D; ++i, rest /= along) {
-      place[i] += (double(rest % along) + 0.5 - 0.5 * along) * 2 / along * point.half[i];
-    }
-    if (std::any_of(near.begin(), near.end(), [&](const auto* rock) { return rocks.distance(*rock, place, 0) < 0; }))
-      continue;
-    sum += place;
-    ++outside;
-  }
-  if (near.empty() || outside == all) return true;
-  if (20 * outside < all) return false;
-  const double part = double(outside) / double(all);
-  point.position = point.first = sum / double(outside);
-  // The middle of what surrounds the cap of a small rock lies in the rock.
-  const auto holds = [&](const auto* rock) { return rocks.distance(*rock, point.position, 0) < 0; };
-  if (std::any_of(near.begin(), near.end(), holds)) return false;
-  point.volume *= part;
-  point.half *= std::pow(part, 1.0 / D);
-  return true;
+  return near.empty() || cut_point<D>(point, [&](const Vec<D>& place) {
+           return std::any_of(near.begin(), near.end(),
+                              [&](const auto* rock) { return rocks.distance(*rock, place, 0) < 0; });
+         });
 }
 
 /// Its ball, if it is in no rock by more than half.
