@@ -1,5 +1,6 @@
 #include "tools/mpm/terrain.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -8,27 +9,28 @@
 namespace mpm {
 namespace {
 
-/// Four heights along one axis, the first of them number `first`, with their weights and the derivatives of these.
+/// Four heights along one axis, the first of them number `first`, with their weights and two derivatives of these.
 struct Convolution {
   int first;
-  double weight[4], slope[4];
+  double weight[4], slope[4], bend[4];
 };
 
 Convolution convolution(double place, int count) {
   const int cell = std::clamp(int(std::floor(std::clamp(place, -1.0, double(count)))), 0, count - 2);
   const double t = place - cell;
-  if (t < 0 || t > 1) return {cell - 1, {0, 1 - t, t, 0}, {0, -1, 1, 0}};
+  if (t < 0 || t > 1) return {cell - 1, {0, 1 - t, t, 0}, {0, -1, 1, 0}, {}};
   const double t2 = t * t, t3 = t2 * t;
   Convolution c{cell - 1,
                 {-0.5 * t3 + t2 - 0.5 * t, 1.5 * t3 - 2.5 * t2 + 1, -1.5 * t3 + 2 * t2 + 0.5 * t, 0.5 * t3 - 0.5 * t2},
-                {-1.5 * t2 + 2 * t - 0.5, 4.5 * t2 - 5 * t, -4.5 * t2 + 4 * t + 0.5, 1.5 * t2 - t}};
+                {-1.5 * t2 + 2 * t - 0.5, 4.5 * t2 - 5 * t, -4.5 * t2 + 4 * t + 0.5, 1.5 * t2 - t},
+                {-3 * t + 2, 9 * t - 5, -9 * t + 4, 3 * t - 1}};
   // Beyond an edge the line through the last two goes on.
   const auto fold = [](double* w, int gone, int next, int after) {
     w[next] += 2 * w[gone];
     w[after] -= w[gone];
     w[gone] = 0;
   };
-  for (double* w : {c.weight, c.slope}) {
+  for (double* w : {c.weight, c.slope, c.bend}) {
     if (cell == 0) fold(w, 0, 1, 2);
     if (cell == count - 2) fold(w, 3, 2, 1);
   }
@@ -84,65 +86,82 @@ void Terrain<D>::settle(const Keys& keys) {
 }
 
 template <int D>
-double Terrain<D>::height(const Vec<D>& r, Vec<D>& slope) const {
+double Terrain<D>::height(const Vec<D>& r, Vec<D>& slope, Mat<D>* curvature) const {
   slope.setZero();
+  if (curvature != nullptr) curvature->setZero();
   const auto along = convolution(r[0] / spacing, count[0]);
-  const auto row = [&](const double* first, double& steep) {
-    double sum = 0;
-    steep = 0;
+  // Of a row of heights: value and two derivatives along it, times the spacing.
+  const auto row = [&](const double* heights_of_row, double(&sums)[3]) {
     for (int i = 0; i < 4; ++i) {
-      if (along.weight[i] == 0 && along.slope[i] == 0) continue;
-      sum += along.weight[i] * first[along.first + i];
-      steep += along.slope[i] * first[along.first + i];
+      const int k = std::clamp(along.first + i, 0, count[0] - 1);  // beyond an edge the weights are 0
+      sums[0] += along.weight[i] * heights_of_row[k];
+      sums[1] += along.slope[i] * heights_of_row[k];
+      sums[2] += along.bend[i] * heights_of_row[k];
     }
-    return sum;
   };
-  double steep = 0;
+  const double per_m = 1 / spacing;
   if constexpr (D == 2) {
-    const double sum = row(heights.data(), steep);
-    slope[0] = steep / spacing;
-    return sum;
+    double sums[3] = {};
+    row(heights.data(), sums);
+    slope[0] = sums[1] * per_m;
+    if (curvature != nullptr) (*curvature)(0, 0) = sums[2] * per_m * per_m;
+    return sums[0];
   } else {
     const auto across = convolution(r[1] / spacing, count[1]);
-    double sum = 0;
+    double sum = 0, mixed = 0, bend[2] = {};
     for (int j = 0; j < 4; ++j) {
-      if (across.weight[j] == 0 && across.slope[j] == 0) continue;
-      const double here = row(heights.data() + long(across.first + j) * count[0], steep);
-      sum += across.weight[j] * here;
-      slope[0] += across.weight[j] * steep / spacing;
-      slope[1] += across.slope[j] * here / spacing;
+      double sums[3] = {};
+      row(heights.data() + long(std::clamp(across.first + j, 0, count[1] - 1)) * count[0], sums);
+      sum += across.weight[j] * sums[0];
+      slope[0] += across.weight[j] * sums[1] * per_m;
+      slope[1] += across.slope[j] * sums[0] * per_m;
+      bend[0] += across.weight[j] * sums[2];
+      bend[1] += across.bend[j] * sums[0];
+      mixed += across.slope[j] * sums[1];
+    }
+    if (curvature != nullptr) {
+      (*curvature)(0, 0) = bend[0] * per_m * per_m;
+      (*curvature)(1, 1) = bend[1] * per_m * per_m;
+      (*curvature)(0, 1) = (*curvature)(1, 0) = mixed * per_m * per_m;
     }
     return sum;
   }
 }
 
 template <int D>
-double Terrain<D>::distance(const Vec<D>& r, Vec<D>& outward, const Vec<D>&) const {
+double Terrain<D>::distance(const Vec<D>& r, Vec<D>& outward, const Vec<D>& unit) const {
   Vec<D> foot = r, slope;
-  foot[up] = height(r, slope);
+  Mat<D> curvature;
+  foot[up] = height(r, slope, &curvature);
   const double above = r[up] - foot[up];
-  if (above * cosine > far) {
+  if (above * cosine > std::min(far, 16 * unit.maxCoeff())) {
     outward = Vec<D>::Unit(up);
     return above * cosine;
   }
-  // Gauss and Newton on half the squared distance over the horizontal place of the foot.
+  // Newton on half the squared distance over the horizontal place of the foot; without the curvature where that bends
+  // more than the distance allows, or a step leads away.
   for (int round = 0; round < 50; ++round) {
-    Vec<D> step = r - foot;
-    const double vertical = step[up];
-    step[up] = 0;
-    step += vertical * slope;
-    step -= slope * (slope.dot(step) / (1 + slope.squaredNorm()));
-    if (step.norm() < 1e-11 * spacing) break;
-    Vec<D> next, there;
+    Vec<D> pull = r - foot;
+    const double vertical = pull[up];
+    pull[up] = 0;
+    pull += vertical * slope;
+    if (pull.norm() < 1e-12 * spacing) break;
+    const Vec<D> flat = pull - slope * (slope.dot(pull) / (1 + slope.squaredNorm()));
+    const Mat<D> stiff = Mat<D>::Identity() + slope * slope.transpose() - vertical * curvature;
+    const Eigen::LLT<Mat<D>> factor(stiff);
+    Vec<D> next, there, step = factor.info() == Eigen::Success ? Vec<D>(factor.solve(pull)) : flat;
+    Mat<D> bend;
     bool nearer = false;
-    for (int half = 0; half < 8 && !nearer; ++half, step *= 0.5) {
+    for (int half = 0; half < 8 && !nearer; ++half) {
       next = foot + step;
-      next[up] = height(next, there);
+      next[up] = height(next, there, &bend);
       nearer = (r - next).squaredNorm() < (r - foot).squaredNorm();
+      step = half == 0 ? flat : Vec<D>(0.5 * step);
     }
     if (!nearer) break;
     foot = next;
     slope = there;
+    curvature = bend;
   }
   outward = upward(slope);
   return outward.dot(r - foot);

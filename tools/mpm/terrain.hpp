@@ -24,9 +24,11 @@ struct Terrain {
 
   static Terrain read(Keys& keys);
   void settle(const Keys& keys);
-  /// m, at a place from the first height; slope: its gradient, 0 along the last axis.
-  double height(const Vec<D>& r, Vec<D>& slope) const;
-  /// To the nearest place of the surface, found from the one below; of what is far above, a lower bound.
+  /// m, at a place from the first height; slope: its gradient, 0 along the last axis; curvature, 1/m, if it is asked
+  /// for: its second derivatives likewise.
+  double height(const Vec<D>& r, Vec<D>& slope, Mat<D>* curvature = nullptr) const;
+  /// To the nearest place of the surface, found from the one below; a lower bound of what is farther than `far` or 16
+  /// times `unit`.
   double distance(const Vec<D>& r, Vec<D>& outward, const Vec<D>& unit) const;
   bool spans(const Vec<D>&, const Vec<D>&) const { return true; }
   unsigned char face_of(const Vec<D>&) const { return 1; }

@@ -8,10 +8,11 @@
 
 RUN is the folder that rvelab-mpm wrote. Points are drawn at their deformed places, in their deformed shapes. Of saturated
 soil also --field pore_pressure_Pa, excess_pore_pressure_Pa, pore_pressure_ratio, seepage. Rocks are drawn in grey, as the
-ellipsoids that their axes span."""
+ellipsoids that their axes span, terrain as a line through its heights, in space the lowest along y."""
 
 import argparse
 import pathlib
+import tomllib
 
 from records import STYLE, plt  # first: it says which package is missing
 import chains
@@ -133,6 +134,17 @@ def outlines_of_rocks(frame):
     return centre[:, None, plane] + np.einsum("nij,jk->nki", np.linalg.cholesky(square), circle)
 
 
+def ground_of(frame):
+    """Lines (x, heights) of the terrain of a run as it was at the start; in space the lowest along y."""
+    scene = tomllib.loads((pathlib.Path(frame).parent / "scene.toml").read_text())
+    lines = []
+    for body in scene.get("body", []):
+        if body["kind"] == "terrain":
+            heights = np.min(body["heights_m"], axis=0) + body["centre_m"][-1]
+            lines.append((body["centre_m"][0] + body["spacing_m"] * np.arange(len(heights)), heights))
+    return lines
+
+
 def draw(figure, frame, field, limits, box):
     time, corners, values = read(frame, field)
     label, colours, centred = FIELDS[field]
@@ -145,6 +157,8 @@ def draw(figure, frame, field, limits, box):
     axes.add_collection(patches)
     axes.add_collection(PolyCollection(outlines_of_rocks(pathlib.Path(frame)), facecolors="0.75", edgecolors="0.2",
                                        linewidths=0.7))
+    for x, heights in ground_of(frame):
+        axes.plot(x, heights, color="0.3", linewidth=1)
     axes.set_xlim(box[0])
     axes.set_ylim(box[1])
     axes.set_aspect("equal")
