@@ -330,6 +330,29 @@ TEST_CASE("mpm.py draws any column of a history, and names the columns, frames a
   refused("run --field eps_q --frame 300", "--frame 300: run has 1 frames; allowed: 0 to 0");
 }
 
+TEST_CASE("mpm.py draws how far rocks are ahead of the soil and above it, by classes of size") {
+  const Workplace here;
+  std::filesystem::create_directory(here / "run");
+  // Soil of volumes 1 and 3 at the start at x = 0 and 4: its middle is 3; rocks of 0.1 and 0.2 m at 3 and 5.
+  here.write("frames.py", R"(import h5py, numpy as np
+for frame, up in ((0, 1.0), (1, 2.0)):
+    with h5py.File(f"run/points_{frame:04}.h5", "w") as f:
+        f["position_m"] = np.array([[0.0, 0, 0], [4, 0, 0]])
+        f["deformation_gradient"] = np.array([2 * np.eye(3).ravel(), np.eye(3).ravel()])
+        f["volume_m3"] = np.array([8.0, 3])
+    with h5py.File(f"run/rocks_{frame:04}.h5", "w") as f:
+        f["position_m"] = np.array([[3, up, 0], [5, 0, 0]])
+        f["radius_m"], f["mass_kg"], f["time_s"] = np.array([0.1, 0.2]), np.array([1.0, 8]), np.array([frame * 0.5])
+)");
+  REQUIRE(here.run("frames.py", "/usr/bin/python3").code == 0);
+  expect_figure(here, "mpm", "run --segregation",
+                "smaller rocks, 200 mm: +0 m along x, +2 m up; larger rocks, 400 mm: +2 m along x, +0 m up");
+  std::filesystem::remove(here / "run/rocks_0001.h5");
+  const Outcome outcome = plot(here, "mpm", "run --segregation -o figure.png");
+  CHECK(outcome.code == 2);
+  CHECK_THAT(outcome.errors, Contains("segregation is of runs with [[rock]] or [[rocks]]"));
+}
+
 TEST_CASE("the friction angle that mohr.py draws is the one that run prints, in compression and in extension") {
   const Workplace here;
   here.import_packing("dense_p20");

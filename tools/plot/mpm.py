@@ -4,6 +4,7 @@
     mpm.py RUN --field eps_q --film -o film.gif        # all frames
     mpm.py RUN --energy -o energy.png                  # shares of energy
     mpm.py RUN... --force plate.force_y --against plate.displacement_y -o force.png    # any columns of history.csv
+    mpm.py RUN --segregation -o segregation.png        # rocks ahead of the soil and above it, by classes of size
     mpm.py RUN --network 0 1 -o chains.png             # force chains of watched points (output.networks = true)
 
 RUN is the folder that rvelab-mpm wrote. Points are drawn at their deformed places, in their deformed shapes. Of saturated
@@ -259,6 +260,11 @@ def network_figure(options):
     return f"{options.output}: " + "; ".join(told)
 
 
+def segregation_figure(options):
+    import segregation
+    return segregation.figure(options.runs[0], frames_of(options.runs[0]), options.output)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("runs", nargs="+", help="folders of runs")
@@ -266,6 +272,7 @@ def main():
     what.add_argument("--field", choices=sorted(FIELDS))
     what.add_argument("--energy", action="store_true")
     what.add_argument("--force", help="a column of history.csv: plate.force_y, or with its unit kinetic_J")
+    what.add_argument("--segregation", action="store_true", help="mean places of rocks less that of the soil")
     what.add_argument("--network", type=int, nargs="+", help="numbers of watched points, from 0")
     parser.add_argument("--against", default="time", help="the same for the other axis: plate.displacement_y; default: time")
     parser.add_argument("--frame", type=int, default=-1, help="number of the frame; negative: from the end")
@@ -279,6 +286,7 @@ def main():
                 *options.limits))
         with plt.rc_context(STYLE):
             draw_it = (energy_figure if options.energy else force_figure if options.force
+                       else segregation_figure if options.segregation
                        else network_figure if options.network is not None else field_figure)
             print(draw_it(options))
     except ValueError as error:
