@@ -118,6 +118,41 @@ TEST_CASE("rocks that are no balls stand as far from a map of a plane as from th
   CHECK((on_map.place - on_plane.place).norm() < 1e-12);
 }
 
+TEST_CASE("a ball much larger than the spacing of the map slides on its slope as on a half-space") {
+  const auto place_after = [](const std::string& below) {
+    const auto model =
+        model_of<2>(rocks_alone(2, below + "[[rock]]\nname = \"ball\"\nmaterial = \"basalt\"\nradius_m = 0.3\n"
+                                           "centre_m = [0.5, 1.1]\n"));
+    auto& solver = model->solver;
+    while (solver.time < 0.3) solver.step(1e-3);
+    return solver.rocks->all[0].body.centre;
+  };
+  const Vec<2> on_map =
+      place_after(ground(2, "[0, 0]", map_of(2, 0.05, 41, [](double x, double) { return 1 - 0.5 * x; })));
+  const Vec<2> on_plane =
+      place_after("[[body]]\nname = \"p\"\nkind = \"half_space\"\ncentre_m = [0, 1]\nnormal = [0.5, 1]\n");
+  CHECK(on_plane[0] > 0.6);
+  CHECK((on_map - on_plane).norm() < 1e-9);
+}
+
+TEST_CASE("a slab that is laid on a ridge rocks there and keeps its energy") {
+  const auto model = model_of<2>(rocks_alone(
+      2, ground(2, "[0, 0]", map_of(2, 0.1, 41, [](double x, double) { return 1 - (x - 2) * (x - 2) / 4; })) +
+             "[[rock]]\nname = \"slab\"\nmaterial = \"basalt\"\nshape = \"superquadric\"\nhalf_axes_m = [0.6, 0.15]\n"
+             "blockiness = [10]\ncentre_m = [2.05, 1.16]\n"));
+  auto& solver = model->solver;
+  double kinetic = 0, worst = 0;
+  while (solver.time < 0.5) {
+    solver.step(1e-3);
+    const auto energy = solver.rocks->energy(solver.options.gravity);
+    kinetic = std::max(kinetic, energy.kinetic);
+    worst = std::max(worst, std::abs(energy.residual));
+  }
+  CHECK(kinetic > 1);
+  CHECK(worst < 0.01 * kinetic);
+  CHECK(solver.rocks->all[0].body.centre[1] > 1);
+}
+
 TEST_CASE("soil is filled in above ground, and moves on a slope of a map as on a half-space") {
   const auto soil = [](const std::string& below, const std::string& lower) {
     return "[scene]\nname = \"soil\"\ndimension = 2\n[grid]\ncell_m = 0.1\n[time]\nduration_s = 1\n[loads]\n"
@@ -157,6 +192,23 @@ TEST_CASE("soil is filled in above ground, and moves on a slope of a map as on a
   }
 }
 
+TEST_CASE("soil does not fall through steep sides of a gorge, and a region under ground is refused") {
+  const auto scene = [](double height) {
+    return "[scene]\nname = \"gorge\"\ndimension = 2\n[grid]\ncell_m = 0.1\n[time]\nduration_s = 1\n[loads]\n"
+           "gravity_m_s2 = [0, -10]\n[[material]]\nname = \"soil\"\nkind = \"elastic\"\ndensity_kg_m3 = 1600\n"
+           "young_modulus_Pa = 1e6\n[[region]]\nmaterial = \"soil\"\nlower_m = [1.1, 0.1]\nupper_m = [1.9, 0.8]\n" +
+           ground(2, "[0, " + std::to_string(height) + "]", map_of(2, 0.1, 31, [](double x, double) {
+                    return std::max(0.0, 3.7 * (std::abs(x - 1.5) - 0.4));  // 75 degrees
+                  }));
+  };
+  const auto model = model_of<2>(scene(0));
+  auto& solver = model->solver;
+  while (solver.time < 0.5) solver.step(solver.stable_step());
+  Vec<2> outward;
+  for (const auto& point : solver.points) CHECK(solver.bodies.all[0].distance(point.position, outward) > 0);
+  CHECK_THROWS_WITH(model_of<2>(scene(3)), Catch::Matchers::Contains("no point that is clear of terrain and rocks"));
+}
+
 TEST_CASE("maps that cannot be used are refused with what to do") {
   const auto refusal = [](const std::string& body) {
     try {
@@ -172,6 +224,7 @@ TEST_CASE("maps that cannot be used are refused with what to do") {
   CHECK_THAT(refusal("heights_m = [[0, 0], [0, 1]]\n"), Contains("spacing_m"));
   CHECK_THAT(refusal("spacing_m = 1\n"), Contains("heights_m (rows along x) or file_csv"));
   CHECK_THAT(refusal("spacing_m = 1\nheights_m = [[0, 0], [0]]\n"), Contains("heights_m must be rows of 2 numbers"));
+  CHECK_THAT(refusal("spacing_m = 1\nheights_m = [0, 1, 0]\n"), Contains("heights_m = [[0.5, 0.3, 0.2]]"));
   CHECK_THAT(refusal("spacing_m = 1\nheights_m = [[0, 1, 0]]\n"), Contains("two heights or more along each"));
   CHECK_THAT(refusal("spacing_m = 1\nheights_m = [[0, 9], [0, 9]]\n"), Contains("degrees; allowed: 80"));
   CHECK_THAT(refusal("spacing_m = 1\nfile_csv = \"none.csv\"\n"), Contains("none.csv: cannot be read"));

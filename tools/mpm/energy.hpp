@@ -8,8 +8,9 @@ namespace mpm {
 
 /// J. Since the start: kinetic + potential + stress_work + mapping_loss = boundary_work + pressure_work + residual;
 /// with pore water, kinetic energy, mapping and boundaries are those of both phases, drag_loss is on the left and
-/// water_work and water_gravity on the right; so is load_work where loads change with time. The residual is the error
-/// of the time integration and, once a body touches soil, that of contact at nodes (bodies.hpp).
+/// water_work and water_gravity on the right; so is load_work where loads change with time. The residual is what
+/// the time integration leaves besides (MUSL more than USF) and, once a body touches soil, the error of contact at
+/// nodes (bodies.hpp); steps too long for their material show as a mapping loss below 0.
 template <int D>
 struct EnergyBalance {
   double kinetic = 0;        ///< of the points, now

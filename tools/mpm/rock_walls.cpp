@@ -17,24 +17,25 @@ Gap<D> gap_to_plane(const Placed<D>& rock, const Vec<D>& point, const Vec<D>& no
   return {gap, -normal, rock.centre + lowest - 0.5 * gap * normal};
 }
 
-/// Of a rock that is no ball and ground under it, which its middle is above: at the point of the rock that is lowest
-/// along the normal of the ground below, in turns. The least of the gaps found, should they not settle (faces over
-/// ridges).
+/// Of a rock and ground: a ball's from its middle. Of others at the point of the rock that is lowest along the normal
+/// of the ground below it, in turns, and at the place of the ground that is nearest to the rock's middle, for faces
+/// over ridges: the least of these.
 template <int D>
 Gap<D> gap_to_terrain(const Placed<D>& rock, const Vec<D>& first, const Terrain<D>& ground) {
-  Gap<D> best{1e300, -Vec<D>::Unit(D - 1), rock.centre};
+  const double radius = rock.shape->bounding_radius(), reach = radius + ground.far;
   Vec<D> normal;
-  const Vec<D> any = Vec<D>::Ones();
-  const double above = ground.distance(rock.centre - first, normal, any);
-  if (above > ground.far + rock.shape->bounding_radius()) {
-    best.gap = above - rock.shape->bounding_radius();
-    return best;
-  }
+  const double above = ground.distance_within(reach, rock.centre - first, normal);
+  Gap<D> best{above - radius, -normal, rock.centre - (radius + 0.5 * (above - radius)) * normal};
+  if (rock.shape->is_sphere() || above > reach) return best;
+  const Vec<D> foot = rock.centre - above * normal;
+  Vec<D> outward;
+  const double depth = rock.shape->distance(to_body<D>(rock.orientation, Vec<D>(foot - rock.centre)), outward);
+  best = {depth, to_world<D>(rock.orientation, outward), foot};
   for (int turn = 0; turn < 20; ++turn) {
     const Vec<D> lowest =
         rock.centre + to_world<D>(rock.orientation, rock.shape->support(to_body<D>(rock.orientation, Vec<D>(-normal))));
     const Vec<D> before = normal;
-    const double gap = ground.distance(lowest - first, normal, any);
+    const double gap = ground.distance_within(reach, lowest - first, normal);
     if (gap < best.gap) best = {gap, -normal, lowest - 0.5 * gap * normal};
     if ((normal - before).squaredNorm() < 1e-20) break;
   }
@@ -113,6 +114,9 @@ Gap<D> Rocks<D>::gap_to(const Rock<D>& rock, const Wall<D>& wall) const {
   if (const auto* half = std::get_if<HalfSpace<D>>(&wall.body->shape)) {
     return gap_to_plane<D>(placed, wall.point, half->normal);
   }
+  if (const auto* ground = std::get_if<Terrain<D>>(&wall.body->shape)) {
+    return gap_to_terrain<D>(placed, wall.point, *ground);
+  }
   const double radius = placed.shape->bounding_radius();
   const auto* box = std::get_if<Box<D>>(&wall.body->shape);
   if (placed.shape->is_sphere() && box != nullptr)
@@ -126,9 +130,6 @@ Gap<D> Rocks<D>::gap_to(const Rock<D>& rock, const Wall<D>& wall) const {
     const Placed<D> other{&*box_shapes_[std::size_t(wall.number)], wall.point, unturned<D>()};
     const bool far = (placed.centre - other.centre).norm() > radius + other.shape->bounding_radius();
     return far ? Gap<D>{1e300, Vec<D>::Unit(0), placed.centre} : gap_between<D>(placed, other);
-  }
-  if (const auto* ground = std::get_if<Terrain<D>>(&wall.body->shape)) {
-    return gap_to_terrain<D>(placed, wall.point, *ground);
   }
   // A box in the plane, or a disc; in space a cylinder along z.
   const auto* disc = std::get_if<Disc<D>>(&wall.body->shape);

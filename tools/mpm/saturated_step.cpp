@@ -270,7 +270,7 @@ void Solver<D>::move_water(double dt) {
     take_velocity<D>(water.grid, supports_[k], taken);
     for (int i = 0; i < D; ++i) {
       here.velocity[i] = pic * taken.w[i] + (1 - pic) * (here.velocity[i] + taken.added[i]);
-      for (int j = 0; j < D; ++j) here.affine(i, j) = taken.gradient[j][i];
+      for (int j = 0; options.affine && j < D; ++j) here.affine(i, j) = taken.gradient[j][i];
     }
     here.affine = carried_gradient<D>(here.affine, dt);
     Vec<D> gradient;

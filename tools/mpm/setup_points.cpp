@@ -9,9 +9,9 @@
 namespace mpm {
 namespace {
 
-/// What lies under ground is left out; false: all of the point.
+/// What lies under ground is left out; false: all of the point. A grain stays or goes as a whole.
 template <int D>
-bool above_ground(const Bodies<D>& bodies, Point<D>& point) {
+bool above_ground(const Bodies<D>& bodies, Point<D>& point, double grain) {
   for (const auto& body : bodies.all) {
     const auto* ground = std::get_if<Terrain<D>>(&body.shape);
     if (ground == nullptr) continue;
@@ -19,6 +19,8 @@ bool above_ground(const Bodies<D>& bodies, Point<D>& point) {
     const auto under = [&](const Vec<D>& place) {
       return ground->distance(place - body.centre, outward, point.half) < 0;
     };
+    if (grain > 0 && under(point.position)) return false;
+    if (grain > 0) continue;
     if (ground->distance(point.position - body.centre, outward, point.half) > point.half.norm()) continue;
     if (!cut_point<D>(point, under)) return false;
   }
@@ -48,7 +50,7 @@ void put(const Scene& scene, const RegionOfScene& region, const Vec<D>& place, c
   point.velocity = vector_of<D>(region.velocity);
   point.half = 0.5 * side;
   point.volume = side.prod() * (D == 2 ? scene.thickness : 1);
-  if (!above_ground<D>(solver.bodies, point)) return;
+  if (!above_ground<D>(solver.bodies, point, grain)) return;
   refuse_inside<D>(scene, region, solver.bodies, point);
   if (clear_of_rocks<D>(solver, point, grain)) solver.points.push_back(point);
 }
@@ -60,10 +62,9 @@ bool outside(const RegionOfScene& region, const Vec<D>& place) {
   return (2 * place - low - high).cwiseQuotient(high - low).squaredNorm() > 1;
 }
 
-}  // namespace
-
+/// Its points, whatever stands there.
 template <int D>
-void fill(const Scene& scene, const RegionOfScene& region, Solver<D>& solver) {
+void fill_all(const Scene& scene, const RegionOfScene& region, Solver<D>& solver) {
   for (const auto& grain : region.grains) {
     const double side = std::pow(region.volume_of(grain), 1.0 / D);
     put<D>(scene, region, Eigen::Map<const Vec<D>>(grain.data()), Vec<D>::Constant(side), grain.back(), solver);
@@ -81,6 +82,16 @@ void fill(const Scene& scene, const RegionOfScene& region, Solver<D>& solver) {
     }
     if (!outside<D>(region, place)) put<D>(scene, region, place, side, 0, solver);
   }
+}
+
+}  // namespace
+
+template <int D>
+void fill(const Scene& scene, const RegionOfScene& region, Solver<D>& solver) {
+  const std::size_t before = solver.points.size();
+  fill_all<D>(scene, region, solver);
+  if (solver.points.size() > before) return;
+  throw InputError(region_name(scene, region) + ": has no point that is clear of terrain and rocks; move it, or them");
 }
 
 template void fill<2>(const Scene&, const RegionOfScene&, Solver<2>&);

@@ -44,12 +44,15 @@ Terrain<D> Terrain<D>::read(Keys& keys) {
   Terrain terrain;
   terrain.spacing = keys.positive("spacing_m");
   const auto along = keys.row_length("heights_m");
+  if (keys.has("heights_m") && along == 0)
+    keys.wrong("heights_m", "must be rows of heights along x, in the plane one: heights_m = [[0.5, 0.3, 0.2]]");
   const auto rows = keys.rows("heights_m", along);
   keys.known("file_csv");
   terrain.count[0] = int(along);
   if constexpr (D == 3) terrain.count[1] = int(rows.size());
   for (const auto& row : rows) terrain.heights.insert(terrain.heights.end(), row.begin(), row.end());
-  if (D == 2 && rows.size() > 1) keys.wrong("heights_m", "has one row in the plane: the heights along x");
+  if (D == 2 && rows.size() > 1)
+    keys.wrong("heights_m", "(or file_csv) has one row in the plane: the heights along x, on one line");
   return terrain;
 }
 
@@ -130,11 +133,16 @@ double Terrain<D>::height(const Vec<D>& r, Vec<D>& slope, Mat<D>* curvature) con
 
 template <int D>
 double Terrain<D>::distance(const Vec<D>& r, Vec<D>& outward, const Vec<D>& unit) const {
+  return distance_within(std::min(far, 16 * unit.maxCoeff()), r, outward);
+}
+
+template <int D>
+double Terrain<D>::distance_within(double reach, const Vec<D>& r, Vec<D>& outward) const {
   Vec<D> foot = r, slope;
   Mat<D> curvature;
   foot[up] = height(r, slope, &curvature);
   const double above = r[up] - foot[up];
-  if (above * cosine > std::min(far, 16 * unit.maxCoeff())) {
+  if (above * cosine > reach) {
     outward = Vec<D>::Unit(up);
     return above * cosine;
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "tools/mpm/grid.hpp"
@@ -28,12 +29,15 @@ struct Terrain {
   /// for: its second derivatives likewise.
   double height(const Vec<D>& r, Vec<D>& slope, Mat<D>* curvature = nullptr) const;
   /// To the nearest place of the surface, found from the one below; a lower bound of what is farther than `far` or 16
-  /// times `unit`.
+  /// times `unit`, which is enough for soil.
   double distance(const Vec<D>& r, Vec<D>& outward, const Vec<D>& unit) const;
+  /// The same of whatever is not farther than `reach` (m).
+  double distance_within(double reach, const Vec<D>& r, Vec<D>& outward) const;
   bool spans(const Vec<D>&, const Vec<D>&) const { return true; }
   unsigned char face_of(const Vec<D>&) const { return 1; }
   int column_axis() const { return -1; }
-  /// Where columns of nodes come through the surface.
+  /// Where columns of nodes come through the surface, on steep ground more closely, so that points stay a cell or so
+  /// apart.
   template <class Visit>
   void each_surface_point(const Grid<D>& grid, const Vec<D>& centre, const Visit& visit) const {
     long columns = 1;
@@ -45,9 +49,23 @@ struct Terrain {
         node[i] += int(rest % grid.count[i]);
         rest /= grid.count[i];
       }
-      Vec<D> at = grid.position(node), slope;
+      const Vec<D> middle = grid.position(node);
+      Vec<D> at = middle, slope;
       at[up] = centre[up] + height(at - centre, slope);
-      visit(at, upward(slope));
+      const long parts = std::lround(std::ceil(0.7 / upward(slope)[up]));
+      if (parts <= 1) {
+        visit(at, upward(slope));
+        continue;
+      }
+      for (long part = 0; part < (up == 1 ? parts : parts * parts); ++part) {
+        long left = part;
+        for (int i = 0; i < up; ++i) {
+          at[i] = middle[i] + ((double(left % parts) + 0.5) / double(parts) - 0.5) * grid.cell[i];
+          left /= parts;
+        }
+        at[up] = centre[up] + height(at - centre, slope);
+        visit(at, upward(slope));
+      }
     }
   }
 

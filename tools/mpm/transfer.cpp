@@ -80,20 +80,22 @@ template <int D>
 void Solver<D>::move_points(double dt) {
   const long n = long(points.size());
   const double pic = options.pic_fraction, pressure = options.surface_pressure;
+  const bool affine = options.affine;
   sums_.assign((n + chunk - 1) / chunk, 0);
   workers.for_each((n + chunk - 1) / chunk, [&](std::int64_t piece) {
     double work = 0;
     for (long k = piece * chunk; k < std::min(n, long(piece + 1) * chunk); ++k) {
       auto& point = points[k];
       Taken<D> taken;
+      Mat<D> gradient;
       take_velocity<D>(grid, supports_[k], taken);
       for (int i = 0; i < D; ++i) {
         point.velocity[i] = pic * taken.w[i] + (1 - pic) * (point.velocity[i] + taken.added[i]);
         point.position[i] += dt * taken.w[i];
-        for (int j = 0; j < D; ++j) point.affine(i, j) = taken.gradient[j][i];
+        for (int j = 0; j < D; ++j) gradient(i, j) = taken.gradient[j][i];
       }
-      work +=
-          0.5 * dt * point.volume * (point.stress.cwiseProduct(point.affine).sum() + pressure * point.affine.trace());
+      work += 0.5 * dt * point.volume * (point.stress.cwiseProduct(gradient).sum() + pressure * gradient.trace());
+      if (affine) point.affine = gradient;
       if (options.scheme == Scheme::usf) point.affine = carried_gradient<D>(point.affine, dt);
     }
     sums_[piece] = work;

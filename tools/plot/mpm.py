@@ -12,6 +12,7 @@ soil also --field pore_pressure_Pa, excess_pore_pressure_Pa, pore_pressure_ratio
 ellipsoids that their axes span, terrain as a line through its heights, in space the lowest along y."""
 
 import argparse
+import functools
 import pathlib
 import tomllib
 
@@ -135,9 +136,12 @@ def outlines_of_rocks(frame):
     return centre[:, None, plane] + np.einsum("nij,jk->nki", np.linalg.cholesky(square), circle)
 
 
-def ground_of(frame):
-    """Lines (x, heights) of the terrain of a run as it was at the start; in space the lowest along y."""
-    scene = tomllib.loads((pathlib.Path(frame).parent / "scene.toml").read_text())
+@functools.cache
+def ground_of(run):
+    """Lines (x, heights) of the terrain of a run as it was at the start; in space the lowest along y. None without its
+    scene."""
+    path = run / "scene.toml"
+    scene = tomllib.loads(path.read_text()) if path.exists() else {}
     lines = []
     for body in scene.get("body", []):
         if body["kind"] == "terrain":
@@ -158,7 +162,7 @@ def draw(figure, frame, field, limits, box):
     axes.add_collection(patches)
     axes.add_collection(PolyCollection(outlines_of_rocks(pathlib.Path(frame)), facecolors="0.75", edgecolors="0.2",
                                        linewidths=0.7))
-    for x, heights in ground_of(frame):
+    for x, heights in ground_of(pathlib.Path(frame).parent):
         axes.plot(x, heights, color="0.3", linewidth=1)
     axes.set_xlim(box[0])
     axes.set_ylim(box[1])

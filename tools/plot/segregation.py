@@ -20,7 +20,7 @@ def classes_of(radius):
 
 
 def means_of(frames):
-    """Times (s), and for each class the mean place (m) less that of the soil, by mass; without soil, of all rocks."""
+    """Times (s), and for each class the mean place (m) less that of the soil, by mass."""
     times, means = [], {}
     for frame in frames:
         path = frame.with_name(frame.name.replace("points_", "rocks_"))
@@ -30,10 +30,13 @@ def means_of(frames):
             place, radius, mass = (file[name][()] for name in ("position_m", "radius_m", "mass_kg"))
             times.append(float(file["time_s"][0]))
         with h5py.File(frame, "r") as file:
-            soil = file["position_m"][()]
-            # By the volumes at the start, which are as their masses in soil of one density.
-            first = file["volume_m3"][()] / np.linalg.det(file["deformation_gradient"][()].reshape(-1, 3, 3))
-        middle = np.average(soil, axis=0, weights=first) if len(soil) else np.average(place, axis=0, weights=mass)
+            soil, F = file["position_m"][()], file["deformation_gradient"][()].reshape(-1, 3, 3)
+            volume = file["volume_m3"][()]
+        if len(soil) == 0:
+            raise ValueError(f"{frame}: has no soil that rocks could part from; segregation is of runs with [[region]]")
+        # By the volumes at the start, which are as their masses in soil of one density.
+        d = 2 if np.all(soil[:, 2] == 0) else 3
+        middle = np.average(soil, axis=0, weights=volume / np.linalg.det(F[:, :d, :d]))
         for name, members in classes_of(radius).items():
             means.setdefault(name, []).append(np.average(place[members], axis=0, weights=mass[members]) - middle)
     return np.array(times), {name: np.array(each) for name, each in means.items()}

@@ -20,7 +20,7 @@ import numpy as np
 PROTOCOLS = pathlib.Path("protocols").resolve()
 PRESSURES = ("50e3", "100e3", "200e3")
 LOW = ("2e3", "5e3", "15e3")  # of families under their own weight, 0.25 to 1 m deep
-SPHERES = ("hertz", "mixture")
+SPHERES = ("hertz", "mixture", "qu282", "qu371")
 TOLERANCE = 0.005  # loading.held_tolerance
 # 400 discs of a sand by mass, d60/d10 2.1, with rolling friction: its loose states come apart in avalanches.
 SAND = """[pack]
@@ -64,6 +64,8 @@ RECIPES = {
     "regular": ("pack_regular", [], PRESSURES),
     "hertz": ("pack_hertz", [], PRESSURES),
     "mixture": ("pack_mixture", [], PRESSURES),
+    "qu282": ("pack_qu282", [], PRESSURES),
+    "qu371": ("pack_qu371", [], PRESSURES),  # no contact at the start; so are qu548 and qu738
     "smooth": ("pack_dense", ["material.friction_angle_deg=6", "target.void_ratio_tolerance=0.02"], PRESSURES),
     "rough": ("sand.toml", ["material.friction_angle_deg=40", "material.rolling_friction=0.5"], PRESSURES),
     "sand_low": ("sand.toml", [], ("1e3", "2e3")),
