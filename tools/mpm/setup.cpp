@@ -267,6 +267,22 @@ struct Stock {
   }
 };
 
+/// Says how much of a region that was filled last lies above terrain.
+template <int D>
+void tell_of_ground(const Scene& scene, const RegionOfScene& region, std::size_t first, Model<D>& model) {
+  const auto& solver = model.solver;
+  const auto& bodies = solver.bodies.all;
+  const bool ground = std::any_of(bodies.begin(), bodies.end(),
+                                  [](const auto& body) { return std::holds_alternative<Terrain<D>>(body.shape); });
+  if (!ground || region.ellipsoid || !region.grains.empty()) return;
+  const auto filling = filling_of(scene, region);
+  const double whole = double(filling.total) * vector_of<D>(filling.side).prod() * (D == 2 ? scene.thickness : 1);
+  double volume = 0;
+  for (std::size_t k = first; k < solver.points.size(); ++k) volume += solver.points[k].volume;
+  model.told.push_back(region_name(scene, region) + ": " + text_of(volume) + " of its " + text_of(whole) +
+                       " m3 are soil; the others lie in terrain or rocks");
+}
+
 /// The points of one material, and the law or the RVEs that they obey.
 template <int D>
 void add_group(const Scene& scene, const MaterialOfScene& material, Model<D>& model, Stock<D>& stock) {
@@ -275,7 +291,10 @@ void add_group(const Scene& scene, const MaterialOfScene& material, Model<D>& mo
   group.first = long(solver.points.size());
   group.name = material.name;
   for (const auto& region : scene.regions) {
-    if (region.material == material.name) fill<D>(scene, region, solver);
+    if (region.material != material.name) continue;
+    const std::size_t first = solver.points.size();
+    fill<D>(scene, region, solver);
+    tell_of_ground<D>(scene, region, first, model);
   }
   group.count = long(solver.points.size()) - group.first;
   Point<D>* points = solver.points.data() + group.first;

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "tools/mpm/included.hpp"
 
@@ -81,7 +82,7 @@ void Terrain<D>::settle(const Keys& keys) {
   }
   constexpr double most = 5.7;  // 80 degrees
   if (!(steepest < most)) {
-    keys.wrong("heights_m", "has a slope of " + text_of(std::atan(steepest) * 180 / 3.14159265358979323846) +
+    keys.wrong("heights_m", "has a slope of " + text_of(std::atan(steepest) * 180 / std::numbers::pi) +
                                 " degrees; allowed: 80; smooth the heights, or put a [[body]] box or half_space there");
   }
   cosine = 1 / std::hypot(1, 1.1 * steepest);
