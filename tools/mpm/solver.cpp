@@ -163,7 +163,7 @@ void Solver<D>::clear(Grid<D>& of) {
 
 template <int D>
 void Solver<D>::start_velocities(Phase<D> phase) {
-  over_nodes(phase.grid, [](auto& node, std::int64_t) {
+  over_nodes(phase.grid, [](auto& node) {
     for (int i = 0; i < D; ++i) node.a[i] = node.v[i] = node.v[i] / node.mass;
   });
   phase.planes.fold_momentum(phase.grid, time);
@@ -177,7 +177,7 @@ void Solver<D>::start_velocities(Phase<D> phase) {
 template <int D>
 void Solver<D>::end_velocities(double dt) {
   planes.fold_force(grid);
-  over_nodes(grid, [&](auto& node, std::int64_t) {
+  over_nodes(grid, [&](auto& node) {
     for (int i = 0; i < D; ++i) node.w[i] = node.v[i] + dt * (node.w[i] / node.mass);
   });
   if (planes.absorb()) add_dashpots(dt);
@@ -312,7 +312,7 @@ template <int D>
 void Solver<D>::second_map(double dt) {
   clear(grid);
   map_momentum();
-  over_nodes(grid, [](auto& node, std::int64_t) {
+  over_nodes(grid, [](auto& node) {
     for (int i = 0; i < D; ++i) node.a[i] = node.v[i] = node.v[i] / node.mass;
   });
   planes.fold_momentum(grid, time + dt);

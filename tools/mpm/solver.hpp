@@ -161,13 +161,13 @@ class Solver {
       });
     }
   }
-  /// work(node, piece) for each node with mass, in pieces that no number of threads changes.
+  /// work(node) for each node with mass.
   template <class Work>
   void over_nodes(Grid<D>& of, const Work& work) {
     const long n = long(of.nodes.size());
     workers.for_each((n + chunk - 1) / chunk, [&](std::int64_t piece) {
       for (long k = piece * chunk; k < std::min(n, long(piece + 1) * chunk); ++k) {
-        if (of.nodes[k].mass > 0) work(of.nodes[k], piece);
+        if (of.nodes[k].mass > 0) work(of.nodes[k]);
       }
     });
   }
