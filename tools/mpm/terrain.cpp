@@ -38,6 +38,16 @@ Convolution convolution(double place, int count) {
   return c;
 }
 
+/// Of a row of `count` heights: adds the value and two derivatives along it, times the spacing.
+void convolve(const Convolution& along, const double* heights, int count, double (&sums)[3]) {
+  for (int i = 0; i < 4; ++i) {
+    const int k = std::clamp(along.first + i, 0, count - 1);  // beyond an edge the weights are 0
+    sums[0] += along.weight[i] * heights[k];
+    sums[1] += along.slope[i] * heights[k];
+    sums[2] += along.bend[i] * heights[k];
+  }
+}
+
 }  // namespace
 
 template <int D>
@@ -94,19 +104,10 @@ double Terrain<D>::height(const Vec<D>& r, Vec<D>& slope, Mat<D>* curvature) con
   slope.setZero();
   if (curvature != nullptr) curvature->setZero();
   const auto along = convolution(r[0] / spacing, count[0]);
-  // Of a row of heights: value and two derivatives along it, times the spacing.
-  const auto row = [&](const double* heights_of_row, double(&sums)[3]) {
-    for (int i = 0; i < 4; ++i) {
-      const int k = std::clamp(along.first + i, 0, count[0] - 1);  // beyond an edge the weights are 0
-      sums[0] += along.weight[i] * heights_of_row[k];
-      sums[1] += along.slope[i] * heights_of_row[k];
-      sums[2] += along.bend[i] * heights_of_row[k];
-    }
-  };
   const double per_m = 1 / spacing;
   if constexpr (D == 2) {
     double sums[3] = {};
-    row(heights.data(), sums);
+    convolve(along, heights.data(), count[0], sums);
     slope[0] = sums[1] * per_m;
     if (curvature != nullptr) (*curvature)(0, 0) = sums[2] * per_m * per_m;
     return sums[0];
@@ -115,7 +116,7 @@ double Terrain<D>::height(const Vec<D>& r, Vec<D>& slope, Mat<D>* curvature) con
     double sum = 0, mixed = 0, bend[2] = {};
     for (int j = 0; j < 4; ++j) {
       double sums[3] = {};
-      row(heights.data() + long(std::clamp(across.first + j, 0, count[1] - 1)) * count[0], sums);
+      convolve(along, heights.data() + long(std::clamp(across.first + j, 0, count[1] - 1)) * count[0], count[0], sums);
       sum += across.weight[j] * sums[0];
       slope[0] += across.weight[j] * sums[1] * per_m;
       slope[1] += across.slope[j] * sums[0] * per_m;
