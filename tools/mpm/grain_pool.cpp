@@ -9,7 +9,7 @@ namespace mpm {
 namespace {
 
 void run_tasks(void* host, rvelab_task task, void* work, std::int64_t count) {
-  static_cast<Workers*>(host)->for_each(count, [&](std::int64_t k) { task(work, k); });
+  static_cast<Workers*>(host)->for_each_in_turn(count, [&](std::int64_t k) { task(work, k); });
 }
 
 /// A trial of one RVE from its committed state; its status.

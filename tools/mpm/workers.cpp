@@ -23,8 +23,9 @@ bool soon(const Condition& condition) {
 
 Workers::Workers(int count) {
   if (count <= 0) count = int(std::max(1u, std::thread::hardware_concurrency()));
+  parts_ = std::vector<Part>(count);
   try {
-    for (int k = 1; k < count; ++k) threads_.emplace_back([this] { serve(); });
+    for (int k = 1; k < count; ++k) threads_.emplace_back([this, k] { serve(k); });
   } catch (const std::exception&) {
     const int started = this->count();
     end();
@@ -44,7 +45,7 @@ void Workers::end() {
   for (auto& thread : threads_) thread.join();
 }
 
-void Workers::for_each(std::int64_t pieces, const std::function<void(std::int64_t)>& work) {
+void Workers::share(std::int64_t pieces, std::int64_t parts, const std::function<void(std::int64_t)>& work) {
   if (threads_.empty() || pieces <= 1) {
     for (std::int64_t k = 0; k < pieces; ++k) work(k);
     return;
@@ -52,13 +53,15 @@ void Workers::for_each(std::int64_t pieces, const std::function<void(std::int64_
   {
     const std::lock_guard lock(mutex_);
     work_ = &work;
-    pieces_ = pieces;
-    next_ = 0;
+    for (std::int64_t k = 0; k < std::int64_t(parts_.size()); ++k) {
+      parts_[k].next = k < parts ? pieces * k / parts : 0;
+      parts_[k].end = k < parts ? pieces * (k + 1) / parts : 0;
+    }
     busy_ = int(threads_.size());
     ++round_;
   }
   begin_.notify_all();
-  take();
+  take(0);
   if (!soon([this] { return busy_ == 0; })) {
     std::unique_lock lock(mutex_);
     end_.wait(lock, [this] { return busy_ == 0; });
@@ -67,17 +70,20 @@ void Workers::for_each(std::int64_t pieces, const std::function<void(std::int64_
   if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 
-void Workers::take() {
+void Workers::take(int thread) {
   try {
-    for (std::int64_t k; (k = next_.fetch_add(1)) < pieces_;) (*work_)(k);
+    for (std::size_t k = 0; k < parts_.size(); ++k) {
+      Part& part = parts_[(thread + k) % parts_.size()];
+      for (std::int64_t piece; (piece = part.next.fetch_add(1)) < part.end;) (*work_)(piece);
+    }
   } catch (...) {
-    next_ = pieces_;
+    for (Part& part : parts_) part.next = part.end;
     const std::lock_guard lock(mutex_);
     if (!failure_) failure_ = std::current_exception();
   }
 }
 
-void Workers::serve() {
+void Workers::serve(int thread) {
   std::uint64_t seen = 0;
   for (;;) {
     const auto called = [&] { return stop_ || round_ != seen; };
@@ -87,7 +93,7 @@ void Workers::serve() {
     }
     if (stop_) return;
     seen = round_;
-    take();
+    take(thread);
     if (busy_.fetch_sub(1) == 1) {
       const std::lock_guard lock(mutex_);
       end_.notify_one();
