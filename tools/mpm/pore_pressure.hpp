@@ -151,17 +151,29 @@ class PorePressure {
   /// visit(flat, place) for the nodes of the box up to `far` away, x fastest; place counts all of them.
   template <class Visit>
   void each_near(const Grid<D>& grid, const Index& node, int far, const Visit& visit) const {
-    Index at;
-    int place = 0;
-    const int top = D == 3 ? far : 0;
+    const int top = D == 3 ? far : 0, width = 2 * far + 1;
+    const bool straight = period_[0] == 0;
+    const int first = straight ? std::max(-far, grid.low[0] - node[0]) : -far;
+    const int last = straight ? std::min(far, grid.low[0] + grid.count[0] - 1 - node[0]) : far;
+    int place = far;  // of the middle of a row
     for (int k = -top; k <= top; ++k) {
-      for (int j = -far; j <= far; ++j) {
-        for (int i = -far; i <= far; ++i, ++place) {
-          at[0] = node[0] + i;
-          at[1] = node[1] + j;
-          if constexpr (D == 3) at[2] = node[2] + k;
+      for (int j = -far; j <= far; ++j, place += width) {
+        Index at = node;
+        at[1] += j;
+        if constexpr (D == 3) at[2] += k;
+        if (straight) {
           wrap(at);
-          if (grid.contains(at)) visit(grid.flat(at), place);
+          at[0] = grid.low[0];  // what is left of the row lies in the box
+          if (!grid.contains(at)) continue;
+          const long middle = grid.flat(at) + node[0] - grid.low[0];
+          for (int i = first; i <= last; ++i) visit(middle + i, place + i);
+          continue;
+        }
+        for (int i = first; i <= last; ++i) {
+          Index wrapped = at;
+          wrapped[0] += i;
+          wrap(wrapped);
+          if (grid.contains(wrapped)) visit(grid.flat(wrapped), place + i);
         }
       }
     }

@@ -1,6 +1,7 @@
 // The matrix of the pore pressure: its pattern, its rows, its solution.
 #include <Eigen/IterativeLinearSolvers>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -68,6 +69,7 @@ template <int D>
 void PorePressure<D>::fill_row(const Grid<D>& grid, const std::vector<Mobility>& mobility, double dt, long at,
                                double* row) const {
   const auto node = grid.index(at);
+  const int from = repeats() ? 0 : pattern / 2;  // the upper half is what is read; where nodes repeat it is no half
   each_near(grid, node, 2, [&](long other, int place) {
     if (!used_[other] || mobility[other * D].solid < 0) return;
     const auto& columns = folded(other);
@@ -82,6 +84,7 @@ void PorePressure<D>::fill_row(const Grid<D>& grid, const std::vector<Mobility>&
       if (s == 0 && f == 0) continue;
       for (int k = 0; k < (D == 3 ? 5 : 1); ++k) {
         for (int j = 0; j < 5; ++j) {
+          if (begin + 9 * j + 81 * k + 4 < from) continue;
           const double* cs = columns.solid[a] + 5 * j + 25 * k;
           const double* cf = columns.fluid[a] + 5 * j + 25 * k;
           double* out = row + begin + 9 * j + 81 * k;
@@ -215,10 +218,14 @@ void PorePressure<D>::stored(const Grid<D>& grid, const std::vector<double>& p, 
                              std::vector<double>& rate) const {
   over_nodes(grid, workers, [&](long at, const Index& node) {
     if (roles[at] == Role::none) return;
-    std::vector<double> row(pattern, 0.0);
+    std::array<double, pattern> row{};
     add_cells(grid, node, dt, row.data());
     double sum = 0;
-    each_near(grid, node, 4, [&](long other, int place) { sum += row[place] * p[other]; });
+    each_near(grid, node, 1, [&](long other, int place) {
+      int there = 0;
+      for (int i = 0, left = place, stride = 1; i < D; ++i, left /= 3, stride *= 9) there += (left % 3 + 3) * stride;
+      sum += row[there] * p[other];
+    });
     rate[at] = sum;
   });
 }

@@ -6,6 +6,8 @@
 // change by dt H^-1 D^T dp (pore_pressure.hpp). The step is stable for every conductivity: its bound is that of the
 // skeleton without water.
 
+#include <algorithm>
+
 #include "tools/mpm/clock.hpp"
 #include "tools/mpm/fluid.hpp"
 #include "tools/mpm/solver.hpp"
@@ -191,12 +193,13 @@ void Solver<D>::project(double dt) {
     if (pressure.roles[at] == Role::given) dp[at] = pressure.targets[at] - pressure.values[at];
     if (pressure.roles[at] == Role::none) pressure.values[at] = 0;
   }
-  correct_velocities(dp, dt);
+  const bool driven = std::any_of(dp.begin(), dp.end(), [](double each) { return each != 0; });
+  if (driven) correct_velocities(dp, dt);
   const auto velocity = [&](long at) {
     return std::pair<const double*, const double*>(grid.nodes[at].w, water.grid.nodes[at].w);
   };
   pressure.divergence(grid, workers, velocity, right);
-  pressure.stored(grid, dp, dt, workers, stored);
+  if (driven) pressure.stored(grid, dp, dt, workers, stored);
   for (std::size_t at = 0; at < dp.size(); ++at) right[at] = -right[at] - stored[at];
   std::vector<double> change(grid.nodes.size(), 0.0);
   pressure.solve(grid, water.mobility, right, dt, workers, change);
