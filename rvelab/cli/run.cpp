@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
-#include <numeric>
 #include <string>
 #include <thread>
 #include <type_traits>
@@ -13,6 +12,7 @@
 
 #include "rvelab/calibrate/mohr.hpp"
 #include "rvelab/cli/command.hpp"
+#include "rvelab/cli/doubts.hpp"
 #include "rvelab/cli/ensemble.hpp"
 #include "rvelab/cli/interrupt.hpp"
 #include "rvelab/cli/progress_line.hpp"
@@ -149,39 +149,6 @@ bool leads_to_failure(const protocol::Stage& stage) {
   return stage.kind != "pressure_path" && stage.kind != "envelope";
 }
 
-/// Tells of records whose cell was too thin to represent the material.
-void tell_of_thin(const records::TestResult& result, long thin) {
-  if (thin == 0) return;
-  const auto first = std::find_if(result.records.begin(), result.records.end(),
-                                  [](const records::Record& record) { return record.cell_thin; });
-  tell(std::to_string(thin) + " of " + std::to_string(result.records.size()) +
-       " records are of a thin cell (cell_thin), from strain " + in_words(first->strain) + " of stage \"" +
-       result.stages.at(std::size_t(first->stage)) +
-       "\" on: a height is less than four mean diameters, too little to represent the material; use more grains, or a "
-       "cell that suits the deformation (pack.cell)");
-}
-
-/// How many records are doubtful, and why.
-struct Doubtful {
-  long not_held = 0, not_quasi_static = 0, either = 0, thin = 0;
-  long without_pressure = 0;  ///< of either: p is below 5 % of that of the first record
-};
-
-Doubtful doubtful_of(const std::vector<records::Record>& records, int dimension) {
-  constexpr double small_part = 0.05;
-  Doubtful found;
-  const double first = records.empty() ? 0 : mean_pressure(records.front().stress, dimension);
-  for (const records::Record& record : records) {
-    found.not_held += record.target_held ? 0 : 1;
-    found.not_quasi_static += record.quasi_static ? 0 : 1;
-    const bool doubtful = !(record.target_held && record.quasi_static);
-    found.either += doubtful ? 1 : 0;
-    found.without_pressure += doubtful && mean_pressure(record.stress, dimension) < small_part * first ? 1 : 0;
-    found.thin += record.cell_thin ? 1 : 0;
-  }
-  return found;
-}
-
 /// The peak of the last stage, and where the test ended.
 void add_end(const protocol::Protocol& protocol, const protocol::TestRun& run, Listing& listing) {
   const auto records = calibrate::last_stage(run.result);
@@ -200,47 +167,7 @@ void add_end(const protocol::Protocol& protocol, const protocol::TestRun& run, L
     listing.add("end_void_ratio", records.back().void_ratio);
 }
 
-void tell_of_doubts(const protocol::TestRun& run, const Doubtful& doubtful) {
-  const std::size_t records = run.result.records.size();
-  // One record or two may be an avalanche of the specimen; more are the fault of the test's settings.
-  if (20 * doubtful.either > long(records) && 2 * doubtful.without_pressure > doubtful.either)
-    tell(std::to_string(doubtful.without_pressure) + " of " + std::to_string(records) +
-         " records are of a specimen whose grains carry almost nothing, p below 5 % of its start: it has liquefied. No "
-         "tolerance makes them equilibria (quasi_static, target_held); let the test end there, with an "
-         "[[stage.until]] of quantity = \"p_over_first\"");
-  else if (20 * doubtful.either > long(records))
-    tell(std::to_string(doubtful.either) + " of " + std::to_string(records) +
-         " records are doubtful: " + std::to_string(doubtful.not_held) + " did not hold their stress (target_held), " +
-         std::to_string(doubtful.not_quasi_static) +
-         " are not quasi-static (quasi_static); lower the tolerances of [solver] or the rate, or raise "
-         "loading.held_tolerance");
-  tell_of_thin(run.result, doubtful.thin);
-  constexpr long noticed = 1000;  // sub-steps: fewer cost no time
-  if (run.costs.waited > noticed && 2 * run.costs.waited > run.costs.substeps)
-    tell(std::to_string(run.costs.waited) + " of " + std::to_string(run.costs.substeps) +
-         " sub-steps waited for a held stress to return after avalanches");
-}
-
-void tell_of_shear(const protocol::Protocol& protocol, const Specimen& specimen) {
-  const int dimension = specimen.cell.dimension;
-  const double diameter = 2 * std::accumulate(specimen.grains.radius.begin(), specimen.grains.radius.end(), 0.0) /
-                          double(specimen.grains.size());
-  for (const protocol::Stage& stage : protocol.stages) {
-    const auto* shear = protocol::settings_of<protocol::SimpleShearStage>(stage);
-    if (shear == nullptr) continue;
-    const std::string plane = !shear->plane.empty() ? shear->plane : dimension == 2 ? "xy" : "xz";
-    const double most = std::abs(shear->to_strain);
-    const double thin_from = shear_until_thin(specimen.cell, plane[0] - 'x', plane[1] - 'x', 4 * diameter, most);
-    if (!std::isfinite(thin_from) || thin_from == 0) continue;  // thin from the start: its records say so
-    tell(
-        "stage \"" + stage.name + "\": beyond a shear strain of " + in_words(thin_from) +
-        " a height of the cell is less than four mean diameters, and the records are flagged (cell_thin): no vector of "
-        "the cell lies along " +
-        plane[0] + ", or the cell is small; pack an upright specimen with more grains, or shear it less");
-  }
-}
-
-void report_run(const protocol::Protocol& protocol, const protocol::TestRun& run, double wall,
+void report_run(const protocol::Protocol& protocol, const Specimen& specimen, const protocol::TestRun& run, double wall,
                 const std::string& output, bool json) {
   const records::TestResult& result = run.result;
   const Doubtful doubtful = doubtful_of(result.records, run.end_state.cell.dimension);
@@ -272,7 +199,7 @@ void report_run(const protocol::Protocol& protocol, const protocol::TestRun& run
   listing.add("grain_steps", result.grain_steps);
   add_costs(run, wall, listing);
   listing.print(json);
-  tell_of_doubts(run, doubtful);
+  tell_of_doubts(specimen, run, doubtful);
 }
 
 void run_test(const RunArguments& arguments) {
@@ -323,7 +250,7 @@ void run_test(const RunArguments& arguments) {
                  : made == 0              ? "continue with --resume"
                                           : arguments.output + " holds them; continue with --resume"));
   }
-  report_run(protocol, run, wall, arguments.output, arguments.test.json);
+  report_run(protocol, specimen, run, wall, arguments.output, arguments.test.json);
 }
 
 }  // namespace

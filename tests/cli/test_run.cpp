@@ -91,3 +91,20 @@ TEST_CASE("a cell that gets thin is told of before and after the run, flagged in
   CHECK(told["records"]["cell_thin"] == std::vector<bool>{true, true, true});
   CHECK(small.errors.find("3 of 3 records are of a thin cell (cell_thin)") != std::string::npos);
 }
+
+TEST_CASE("a cell that pure shear makes low is told of, one that stays high is not") {
+  const Workplace here;
+  here.import_packing("dense_p20");
+  const std::string test =
+      "run pure.toml --specimen S.h5 --set solver.relative_tolerance=1 --set solver.max_overlap_ratio=1";
+  here.write("pure.toml",
+             "[test]\nname = \"pure shear\"\n[[stage]]\nkind = \"compression\"\nlateral = \"constant_volume\"\n"
+             "to_strain = 0.6\nrecord_every = 0.05\n");
+  const Outcome low = here.run(test), high = here.run(test + " --set stage.compression.to_strain=0.2");
+  INFO(low.errors << high.errors);
+  REQUIRE(low.code == 0);
+  REQUIRE(high.code == 0);
+  CHECK(low.errors.find("the cell became ") != std::string::npos);
+  CHECK(low.errors.find("of a thin cell") == std::string::npos);
+  CHECK(high.errors.find("the cell became ") == std::string::npos);
+}
