@@ -78,21 +78,81 @@ Directional directional(const Network& network, const VectorAt& vector_at) {
   return {mean, deviator(a, dimension) / mean, across_n / mean};
 }
 
+/// n_i n_j, each pair once; products of two such vectors are squares of the product of their directions.
+using Squares = Eigen::Matrix<double, 6, 1>;
+using Moments = Eigen::Matrix<double, 6, 6>;
+Squares squares(const Vector3& n) {
+  Squares all;
+  all << n.cwiseProduct(n), std::sqrt(2) * n[1] * n[2], std::sqrt(2) * n[0] * n[2], std::sqrt(2) * n[0] * n[1];
+  return all;
+}
+
+/// <n n n n> of the normals, cell frame.
+Moments fourth_moments(const Network& network) {
+  Moments sum = Moments::Zero();
+  for (const ContactState& contact : network.contacts) {
+    const Squares all = squares(contact.normal);
+    sum += all * all.transpose();
+  }
+  return sum / static_cast<double>(network.contacts.size());
+}
+
 /// Amplitude of the fourth order: E:E of <n n n n> less the parts of lower order (Kanatani 1984).
 double fourth_order_amplitude(const Network& network) {
-  using Moments = Eigen::Matrix<double, 6, 6>;
-  Moments fourth = Moments::Zero();
-  for (const ContactState& contact : network.contacts) {
-    const Vector3& n = contact.normal;
-    Eigen::Matrix<double, 6, 1> squares;
-    squares << n.cwiseProduct(n), std::sqrt(2) * n[1] * n[2], std::sqrt(2) * n[0] * n[2], std::sqrt(2) * n[0] * n[1];
-    fourth += squares * squares.transpose();
-  }
-  fourth /= static_cast<double>(network.contacts.size());
-  const double second = fabric(network).squaredNorm(), whole = fourth.squaredNorm();
+  const double second = fabric(network).squaredNorm(), whole = fourth_moments(network).squaredNorm();
   const bool plane = network.dimension() == 2;
   const double traceless = plane ? whole - second + 1.0 / 8 : whole - 6.0 / 7 * second + 3.0 / 35;
   return (plane ? std::sqrt(32.0) : 315.0 / 8 * std::sqrt(8.0 / 35)) * std::sqrt(std::max(traceless, 0.0));
+}
+
+struct Direction {
+  Vector3 n;
+  double weight;
+};
+/// Half of all directions, for functions that are even and of degree 10 at most: their mean is the weighted sum.
+std::vector<Direction> directions(int dimension) {
+  constexpr int around = 12;
+  constexpr double pi = 3.14159265358979323846;
+  std::vector<Direction> all;
+  if (dimension == 2) {
+    for (int k = 0; k < around; ++k) {
+      const double angle = pi * k / around;
+      all.push_back({{std::cos(angle), std::sin(angle), 0}, 1.0 / around});
+    }
+    return all;
+  }
+  constexpr double heights[] = {0.2386191860831969, 0.6612093864662645, 0.9324695142031521},  // Gauss and Legendre
+      weights[] = {0.4679139345726910, 0.3607615730481386, 0.1713244923791704};
+  for (int i = 0; i < 3; ++i) {
+    const double across = std::sqrt(1 - heights[i] * heights[i]);
+    for (int k = 0; k < around; ++k) {
+      const double angle = 2 * pi * k / around;
+      all.push_back({{across * std::cos(angle), across * std::sin(angle), heights[i]}, weights[i] / around});
+    }
+  }
+  return all;
+}
+
+/// n (1 + n.a n) and, across n, a_t n - (n.a_t n) n.
+Vector3 vector_at(const Vector3& n, const Matrix3& along, const Matrix3& across) {
+  return n + along_normal(along, n) + across_normal(across, n);
+}
+
+/// Stress of the distributions over f_0 l_0 N/V, compression positive, laboratory frame.
+Matrix3 stress_of(const Network& network, const Anisotropies& a) {
+  const int dimension = network.dimension();
+  const Matrix3 phi = fabric(network);
+  const Moments fourth = fourth_moments(network);
+  Matrix3 sum = Matrix3::Zero();
+  for (const auto& [n, weight] : directions(dimension)) {
+    const Squares all = squares(network.cell.rotation.transpose() * n);
+    const double m2 = n.dot(phi * n), m4 = all.dot(fourth * all);
+    const double density = dimension == 2 ? 1 + 2 * (2 * m2 - 1) + 2 * (8 * m4 - 8 * m2 + 1)
+                                          : 1 + 2.5 * (3 * m2 - 1) + 9.0 / 8 * (35 * m4 - 30 * m2 + 3);
+    sum += weight * density * vector_at(n, a.normal_forces, a.tangential_forces) *
+           vector_at(n, a.branches, a.tangential_branches).transpose();
+  }
+  return 0.5 * (sum + sum.transpose());
 }
 
 }  // namespace
@@ -117,12 +177,6 @@ Anisotropies anisotropies(const Network& network) {
   return found;
 }
 
-double predicted_stress_ratio(const StressForceFabric& a, int dimension) {
-  if (dimension == 3) return 0.4 * (a.a_c + a.a_n + a.a_l + 1.5 * (a.a_t + a.a_lt));
-  const double products = a.a_c * a.a_n + a.a_c * a.a_l + a.a_n * a.a_l + a.a_t * a.a_lt;
-  return 0.5 * (a.a_c + a.a_n + a.a_t + a.a_l + a.a_lt) / (1 + 0.5 * products);
-}
-
 StressForceFabric stress_force_fabric(const Network& network) {
   if (network.contacts.empty()) return {nothing, nothing, nothing, nothing, nothing, nothing, nothing};
   const int dimension = network.dimension();
@@ -139,7 +193,9 @@ StressForceFabric stress_force_fabric(const Network& network) {
   found.a_t = amplitude(a.tangential_forces);
   found.a_l = amplitude(a.branches);
   found.a_lt = amplitude(a.tangential_branches);
-  found.predicted = predicted_stress_ratio(found, dimension);
+  const Matrix3 predicted = stress_of(network, a);
+  found.predicted = std::sqrt(dimension == 2 ? 0.5 : 1.5) * deviator(predicted, dimension).cwiseProduct(s).sum() /
+                    size / (predicted.trace() / dimension);
   found.measured = deviatoric_stress(stress, dimension) / p;
   return found;
 }
