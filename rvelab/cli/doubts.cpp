@@ -31,16 +31,15 @@ void tell_of_thin(const records::TestResult& result, long thin) {
 }
 
 /// Tells of a cell that the test made low, though not thin: at constant volume its p comes out too high (tools/validate
-/// thin: by up to a third at 7 mean diameters).
+/// thin).
 void tell_of_low(const Specimen& specimen, const protocol::TestRun& run) {
   constexpr double low = 10;  // mean diameters
   const double diameter = mean_diameter(specimen), first = heights(specimen.cell).minCoeff() / diameter,
                last = heights(run.end_state.cell).minCoeff() / diameter;
   if (last >= low || last >= 0.75 * first) return;
   tell("the cell became " + in_words(last) + " mean diameters high, from " + in_words(first) +
-       ": below ten, stresses at constant volume come out higher than in larger cells, p at 7 by up to a third; use "
-       "more "
-       "grains, or a cell that suits the deformation (pack.cell)");
+       ": below ten, p at constant volume comes out too high, by a tenth to a third at seven, several times where the "
+       "specimen has liquefied; use more grains, or a cell that suits the deformation (pack.cell)");
 }
 
 }  // namespace
