@@ -133,6 +133,7 @@ def wave_far():
     region = f'[{{material="soil",lower_m=[0,0],upper_m=[{WIDE:g},{DEEP:g}],points_per_cell=4}}]'
     strip = f"[{{lower_m={middle - 0.5:g},upper_m={middle + 0.5:g},half_sine_Pa=100e3,half_sine_s=0.04}}]"
     watch = [[middle + d, DEEP] for d in FAR] + [[middle - d, DEEP] for d in FAR]
+    sideways = {}
     for case, (packed, recipe, *keys) in PACKINGS.items():
         specimen(packed, *(word for key in keys for word in ("--set", key)), recipe=recipe)
         name = f"wave_far_{case}"
@@ -147,12 +148,37 @@ def wave_far():
                   for k in [*far, *(n + k for k in far)] for early in [w["time_s"] < (WIDE - FAR[k % n]) / rayleigh]]
         speeds = [np.polyfit(passed[first:first + len(far)], [FAR[k] for k in far], 1)[0] for first in (0, len(far))]
         pairs = [right_over_left(frame_at(name, time), middle) for time in (*SNAPSHOTS, 0.2)]
+        sideways[case] = amplitudes_right_over_left(name, middle)
         print(f"{case}: Rayleigh {rayleigh:.1f} m/s; {speeds[0]:.1f}, {speeds[1]:.1f} m/s; right/left at 0.04, 0.07, 0.09, 0.12, 0.2 s "
               + ", ".join(f"{pair:.3f}" for pair in pairs))
         costs(name)
         verdict(f"wave, {case}, 44 x 20 m: speed over that of Rayleigh, right and left",
                 ", ".join(f"{speed / rayleigh:.3f}" for speed in speeds), "1 within 10 %",
                 max(abs(speed / rayleigh - 1) for speed in speeds) <= 0.1)
+    straight, inclined, isotropic = (sideways[case] for case in PACKINGS)
+    verdict("wave, 44 x 20 m: amplitudes of u_x on the surface, right over left, 0 degrees", f"{straight:.3f}", "1 within 0.05",
+            abs(straight - 1) <= 0.05)
+    verdict("wave, 44 x 20 m: the same, 30 degrees", f"{inclined:.3f}", ">= 1.2", inclined >= 1.2)
+    verdict("wave, 44 x 20 m: the same, isotropic", f"{isotropic:.3f}", "between",
+            min(straight, inclined) < isotropic < max(straight, inclined))
+
+
+def amplitudes_right_over_left(name, middle, near=5.0, far=18.0, until=0.2):
+    """Of the range of u_x in time at the uppermost points, beside those at the same distance (m) from the strip."""
+    moves = []
+    for path in frames(name):
+        with h5py.File(path) as file:
+            if file["time_s"][0] > until + 1e-9:
+                break
+            u, at = file["displacement_m"][()], file["position_m"][()] - file["displacement_m"][()]
+        top = at[:, 1] > at[:, 1].max() - 1e-6
+        moves.append(u[top, 0][np.argsort(at[top, 0])])
+    where = np.sort(at[top, 0]) - middle
+    spans = np.ptp(moves, axis=0)
+    right, left = ([spans[sign * where > 0] for sign in (1, -1)])
+    away = where[where > 0]
+    there = (away >= near) & (away <= far)
+    return float(np.exp(np.mean(np.log(right[there] / left[::-1][there]))))
 
 
 def elastic_fronts(name, half_width, depth, distances, G, lame, porosity):
