@@ -8,16 +8,18 @@
 namespace mpm {
 namespace {
 
-/// Whether it comes true within some 20 microseconds. A step has a score of calls, many of which are shorter than it
-/// takes to wake a thread.
+/// Whether it comes true within so many times that a thread gives way, a third of a microsecond each. A step has a
+/// score of calls, many of which are shorter than it takes to wake a thread.
 template <class Condition>
-bool soon(const Condition& condition) {
-  for (int k = 0; k < 64; ++k) {
+bool soon(int times, const Condition& condition) {
+  for (int k = 0; k < times; ++k) {
     if (condition()) return true;
     std::this_thread::yield();
   }
   return false;
 }
+
+constexpr int until_sleep = 512, until_help = 64;
 
 }  // namespace
 
@@ -53,6 +55,7 @@ void Workers::share(std::int64_t pieces, std::int64_t parts, const std::function
   {
     const std::lock_guard lock(mutex_);
     work_ = &work;
+    own_parts_ = parts > 1;
     for (std::int64_t k = 0; k < std::int64_t(parts_.size()); ++k) {
       parts_[k].next = k < parts ? pieces * k / parts : 0;
       parts_[k].end = k < parts ? pieces * (k + 1) / parts : 0;
@@ -62,7 +65,7 @@ void Workers::share(std::int64_t pieces, std::int64_t parts, const std::function
   }
   begin_.notify_all();
   take(0);
-  if (!soon([this] { return busy_ == 0; })) {
+  if (!soon(until_sleep, [this] { return busy_ == 0; })) {
     std::unique_lock lock(mutex_);
     end_.wait(lock, [this] { return busy_ == 0; });
   }
@@ -72,10 +75,17 @@ void Workers::share(std::int64_t pieces, std::int64_t parts, const std::function
 
 void Workers::take(int thread) {
   try {
-    for (std::size_t k = 0; k < parts_.size(); ++k) {
-      Part& part = parts_[(thread + k) % parts_.size()];
+    const auto make = [this](Part& part) {
       for (std::int64_t piece; (piece = part.next.fetch_add(1)) < part.end;) (*work_)(piece);
-    }
+    };
+    make(parts_[thread]);
+    // Points that another thread moves come late to its core's cache in this loop and late back in the next: a thread
+    // that is behind by less than a wake-up is waited for.
+    const auto all_begun = [this] {
+      return std::all_of(parts_.begin(), parts_.end(), [](const Part& part) { return part.next >= part.end; });
+    };
+    if (own_parts_ && soon(until_help, all_begun)) return;
+    for (std::size_t k = 1; k < parts_.size(); ++k) make(parts_[(thread + k) % parts_.size()]);
   } catch (...) {
     for (Part& part : parts_) part.next = part.end;
     const std::lock_guard lock(mutex_);
@@ -87,7 +97,7 @@ void Workers::serve(int thread) {
   std::uint64_t seen = 0;
   for (;;) {
     const auto called = [&] { return stop_ || round_ != seen; };
-    if (!soon(called)) {
+    if (!soon(until_sleep, called)) {
       std::unique_lock lock(mutex_);
       begin_.wait(lock, called);
     }

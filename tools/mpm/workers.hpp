@@ -44,6 +44,7 @@ class Workers {
   void take(int thread);
   std::vector<std::thread> threads_;
   std::vector<Part> parts_;
+  bool own_parts_ = false;  ///< of this call: each thread has one
   std::mutex mutex_;
   std::condition_variable begin_, end_;
   const std::function<void(std::int64_t)>* work_ = nullptr;

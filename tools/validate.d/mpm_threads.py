@@ -70,7 +70,7 @@ def counted():
                           capture_output=True, text=True).stdout
     def of(name):
         return sum(int(line.split("(")[0].replace(",", "")) for line in told.splitlines() if f"mpm::{name}(" in line)
-    return of("Solver<2>::step") + of("Solver<2>::stable_step"), of("Workers::for_each")
+    return of("Solver<2>::step") + of("Solver<2>::stable_step"), of("Workers::share")
 
 
 def main():
