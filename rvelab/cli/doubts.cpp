@@ -13,7 +13,7 @@ namespace rvelab::cli {
 
 namespace {
 
-double mean_diameter(const Specimen& specimen) {
+double mean_diameter_of(const Specimen& specimen) {
   const auto& radius = specimen.grains.radius;
   return 2 * std::accumulate(radius.begin(), radius.end(), 0.0) / double(radius.size());
 }
@@ -30,16 +30,16 @@ void tell_of_thin(const records::TestResult& result, long thin) {
        "cell that suits the deformation (pack.cell)");
 }
 
-/// Tells of a cell that the test made low, though not thin: at constant volume its p comes out too high (tools/validate
-/// thin).
+/// Tells of a cell that the test made low, though not thin (tools/validate thin).
 void tell_of_low(const Specimen& specimen, const protocol::TestRun& run) {
   constexpr double low = 10;  // mean diameters
-  const double diameter = mean_diameter(specimen), first = heights(specimen.cell).minCoeff() / diameter,
+  const double diameter = mean_diameter_of(specimen), first = heights(specimen.cell).minCoeff() / diameter,
                last = heights(run.end_state.cell).minCoeff() / diameter;
   if (last >= low || last >= 0.75 * first) return;
   tell("the cell became " + in_words(last) + " mean diameters high, from " + in_words(first) +
-       ": below ten, p at constant volume comes out too high, by a tenth to a third at seven, several times where the "
-       "specimen has liquefied; use more grains, or a cell that suits the deformation (pack.cell)");
+       ": below ten, few grains bear more than many; of quasi-static discs at constant volume p is higher by 10 to 30 "
+       "% at "
+       "seven; use more grains, or a cell that suits the deformation (pack.cell)");
 }
 
 }  // namespace
@@ -83,7 +83,7 @@ void tell_of_doubts(const Specimen& specimen, const protocol::TestRun& run, cons
 
 void tell_of_shear(const protocol::Protocol& protocol, const Specimen& specimen) {
   const int dimension = specimen.cell.dimension;
-  const double diameter = mean_diameter(specimen);
+  const double diameter = mean_diameter_of(specimen);
   for (const protocol::Stage& stage : protocol.stages) {
     const auto* shear = protocol::settings_of<protocol::SimpleShearStage>(stage);
     if (shear == nullptr) continue;

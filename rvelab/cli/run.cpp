@@ -22,7 +22,6 @@
 #include "rvelab/error.hpp"
 #include "rvelab/io/publish.hpp"
 #include "rvelab/protocol/run.hpp"
-#include "rvelab/protocol/stage_kinds.hpp"
 #include "rvelab/records/record_fields.hpp"
 #include "rvelab/solver/loading/sweep.hpp"
 

@@ -105,15 +105,15 @@ double fourth_order_amplitude(const Network& network) {
   return (plane ? std::sqrt(32.0) : 315.0 / 8 * std::sqrt(8.0 / 35)) * std::sqrt(std::max(traceless, 0.0));
 }
 
-struct Direction {
+struct QuadraturePoint {
   Vector3 n;
   double weight;
 };
 /// Half of all directions, for functions that are even and of degree 10 at most: their mean is the weighted sum.
-std::vector<Direction> directions(int dimension) {
+std::vector<QuadraturePoint> quadrature(int dimension) {
   constexpr int around = 12;
   constexpr double pi = 3.14159265358979323846;
-  std::vector<Direction> all;
+  std::vector<QuadraturePoint> all;
   if (dimension == 2) {
     for (int k = 0; k < around; ++k) {
       const double angle = pi * k / around;
@@ -121,20 +121,20 @@ std::vector<Direction> directions(int dimension) {
     }
     return all;
   }
-  constexpr double heights[] = {0.2386191860831969, 0.6612093864662645, 0.9324695142031521},  // Gauss and Legendre
+  constexpr double z[] = {0.2386191860831969, 0.6612093864662645, 0.9324695142031521},  // Gauss and Legendre
       weights[] = {0.4679139345726910, 0.3607615730481386, 0.1713244923791704};
   for (int i = 0; i < 3; ++i) {
-    const double across = std::sqrt(1 - heights[i] * heights[i]);
+    const double across = std::sqrt(1 - z[i] * z[i]);
     for (int k = 0; k < around; ++k) {
       const double angle = 2 * pi * k / around;
-      all.push_back({{across * std::cos(angle), across * std::sin(angle), heights[i]}, weights[i] / around});
+      all.push_back({{across * std::cos(angle), across * std::sin(angle), z[i]}, weights[i] / around});
     }
   }
   return all;
 }
 
 /// n (1 + n.a n) and, across n, a_t n - (n.a_t n) n.
-Vector3 vector_at(const Vector3& n, const Matrix3& along, const Matrix3& across) {
+Vector3 distributed(const Vector3& n, const Matrix3& along, const Matrix3& across) {
   return n + along_normal(along, n) + across_normal(across, n);
 }
 
@@ -144,13 +144,13 @@ Matrix3 stress_of(const Network& network, const Anisotropies& a) {
   const Matrix3 phi = fabric(network);
   const Moments fourth = fourth_moments(network);
   Matrix3 sum = Matrix3::Zero();
-  for (const auto& [n, weight] : directions(dimension)) {
+  for (const auto& [n, weight] : quadrature(dimension)) {
     const Squares all = squares(network.cell.rotation.transpose() * n);
     const double m2 = n.dot(phi * n), m4 = all.dot(fourth * all);
     const double density = dimension == 2 ? 1 + 2 * (2 * m2 - 1) + 2 * (8 * m4 - 8 * m2 + 1)
                                           : 1 + 2.5 * (3 * m2 - 1) + 9.0 / 8 * (35 * m4 - 30 * m2 + 3);
-    sum += weight * density * vector_at(n, a.normal_forces, a.tangential_forces) *
-           vector_at(n, a.branches, a.tangential_branches).transpose();
+    sum += weight * density * distributed(n, a.normal_forces, a.tangential_forces) *
+           distributed(n, a.branches, a.tangential_branches).transpose();
   }
   return 0.5 * (sum + sum.transpose());
 }

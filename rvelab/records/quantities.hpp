@@ -153,7 +153,7 @@ struct TangentialBranchAnisotropy {
 
 struct StressForceFabricRatio {
   double stress_force_fabric = 0;
-  static constexpr QuantityText text{"stress_force_fabric", "1", "q/p that a_c, a_n, a_t, a_l, a_lt make"};
+  static constexpr QuantityText text{"stress_force_fabric", "1", "q/p predicted from the distributions of contact normals, forces and branches"};
   static constexpr auto member = &StressForceFabricRatio::stress_force_fabric;
   static double measure(const MeasuredState& state) { return state.relation().predicted; }
 };

@@ -25,7 +25,6 @@ constexpr int until_sleep = 512, until_help = 64;
 
 Workers::Workers(int count) {
   if (count <= 0) count = int(std::max(1u, std::thread::hardware_concurrency()));
-  parts_ = std::vector<Part>(count);
   try {
     for (int k = 1; k < count; ++k) threads_.emplace_back([this, k] { serve(k); });
   } catch (const std::exception&) {
@@ -34,6 +33,7 @@ Workers::Workers(int count) {
     throw InputError("-j " + std::to_string(count) + ": the system starts no more than " + std::to_string(started) +
                      " threads here; give fewer");
   }
+  parts_ = std::vector<Part>(count);
 }
 
 Workers::~Workers() { end(); }
@@ -79,7 +79,7 @@ void Workers::take(int thread) {
       for (std::int64_t piece; (piece = part.next.fetch_add(1)) < part.end;) (*work_)(piece);
     };
     make(parts_[thread]);
-    // Points that another thread moves come late to its core's cache in this loop and late back in the next: a thread
+    // A piece that is taken over moves its points to this core's cache, and the next loop moves them back: a thread
     // that is behind by less than a wake-up is waited for.
     const auto all_begun = [this] {
       return std::all_of(parts_.begin(), parts_.end(), [](const Part& part) { return part.next >= part.end; });

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Stress, force and fabric: stress_force_fabric.py RECORDS.h5 -o stress_force_fabric.png (the last stage that has them).
 
-Above, q/p measured, and predicted of the anisotropies below it: contact normals a_c, normal forces a_n, tangential forces
-a_t, branches a_l (rvelab/measure/anisotropy.hpp has the relation). Last, where the file has them, the share of contacts
+Above, q/p measured, and predicted from the distributions of contact normals, forces and branches
+(rvelab/measure/anisotropy.hpp); below, their anisotropies along the stress: contact normals a_c, normal forces a_n,
+tangential forces a_t, branches a_l. Last, where the file has them, the share of contacts
 above the mean normal force and the share of q that they bear. The line that is printed has the largest difference of the
 prediction, and the mean one, relative, where q/p is above 0.1.
 """

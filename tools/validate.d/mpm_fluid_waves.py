@@ -128,7 +128,7 @@ def density_and_shear(packed, frame):
 def wave_far():
     """The same soils in a box of 44 x 20 m: beyond a wavelength a front has the speed of a Rayleigh wave."""
     print(f"\nWaves in {WIDE:g} x {DEEP:g} m of the same grains: speeds of the troughs of u_y, 14 to 18 m from the strip's middle,\n"
-          "right and left, before the sides send waves back; right over left of u_x")
+          "right and left, before Rayleigh waves return from the sides; right over left of u_x")
     middle = WIDE / 2
     region = f'[{{material="soil",lower_m=[0,0],upper_m=[{WIDE:g},{DEEP:g}],points_per_cell=4}}]'
     strip = f"[{{lower_m={middle - 0.5:g},upper_m={middle + 0.5:g},half_sine_Pa=100e3,half_sine_s=0.04}}]"
@@ -143,7 +143,7 @@ def wave_far():
         density, G = density_and_shear(packed, frame_at(name, 0))
         rayleigh, w, n = 0.955 * np.sqrt(G / density), watched(name), len(FAR)
         far = [k for k, d in enumerate(FAR) if d >= 14]
-        # Before what the sides send back.
+        # Before Rayleigh waves return from the sides.
         passed = [trough(w["time_s"][early], moved(w, k, "y")[early])
                   for k in [*far, *(n + k for k in far)] for early in [w["time_s"] < (WIDE - FAR[k % n]) / rayleigh]]
         speeds = [np.polyfit(passed[first:first + len(far)], [FAR[k] for k in far], 1)[0] for first in (0, len(far))]
@@ -158,12 +158,12 @@ def wave_far():
     straight, inclined, isotropic = (sideways[case] for case in PACKINGS)
     verdict("wave, 44 x 20 m: amplitudes of u_x on the surface, right over left, 0 degrees", f"{straight:.3f}", "1 within 0.05",
             abs(straight - 1) <= 0.05)
-    verdict("wave, 44 x 20 m: the same, 30 degrees", f"{inclined:.3f}", ">= 1.2", inclined >= 1.2)
-    verdict("wave, 44 x 20 m: the same, isotropic", f"{isotropic:.3f}", "between",
+    verdict("wave, 44 x 20 m: amplitudes of u_x on the surface, right over left, 30 degrees", f"{inclined:.3f}", ">= 1.2", inclined >= 1.2)
+    verdict("wave, 44 x 20 m: amplitudes of u_x on the surface, right over left, isotropic", f"{isotropic:.3f}", "between",
             min(straight, inclined) < isotropic < max(straight, inclined))
 
 
-def amplitudes_right_over_left(name, middle, near=5.0, far=18.0, until=0.2):
+def amplitudes_right_over_left(name, middle, near=5.0, far=15.0, until=0.2):
     """Of the range of u_x in time at the uppermost points, beside those at the same distance (m) from the strip."""
     moves = []
     for path in frames(name):
