@@ -28,6 +28,63 @@ TEST_CASE("In space soil consolidates as in the plane, over any number of thread
   CHECK(base[0] == base[1]);
 }
 
+namespace {
+
+/// Pa at the base and half way up of a column along the last axis, with these sides, at T = 0.05.
+template <int D>
+std::array<double, 2> pressures_between(const std::array<int, D>& cells, const std::vector<Plane<D>>& sides) {
+  std::vector<Plane<D>> planes = sides;
+  planes.push_back(roller<D>(D - 1, 0, true));
+  auto solver = saturated<D>(cells, 1.0 / cells[D - 1], 1e-3, planes);
+  solver->options.surface_pressure = 1e4;
+  solver->fluid->options.follows_void_ratio = false;
+  const double time = 0.05 / column_of(1e-3).consolidation();
+  while (solver->time < time) solver->step(std::min(solver->stable_step(), time - solver->time));
+  typename Grid<D>::Index base{}, middle{};
+  middle[D - 1] = cells[D - 1] / 2;
+  return {pressure_at<D>(*solver, base), pressure_at<D>(*solver, middle)};
+}
+
+template <int D>
+std::vector<Plane<D>> walls(int axis, int cells) {
+  return {roller<D>(axis, 0, true), roller<D>(axis, cells, false)};
+}
+
+template <int D>
+std::vector<Plane<D>> periodic_sides(int axis, int cells) {
+  Plane<D> plane = roller<D>(axis, 0, true);
+  plane.period = cells;
+  return {plane};
+}
+
+template <int D>
+std::vector<Plane<D>> together(std::vector<Plane<D>> sides, const std::vector<Plane<D>>& more) {
+  sides.insert(sides.end(), more.begin(), more.end());
+  return sides;
+}
+
+}  // namespace
+
+TEST_CASE("A column between periodic sides consolidates as one between smooth walls") {
+  for (const int wide : {1, 3, 6}) {
+    const auto plane = pressures_between<2>({wide, 10}, walls<2>(0, wide));
+    const auto periodic = pressures_between<2>({wide, 10}, periodic_sides<2>(0, wide));
+    const auto space = pressures_between<3>({wide, 2, 10}, together(walls<3>(0, wide), walls<3>(1, 2)));
+    const auto along_x = pressures_between<3>({wide, 2, 10}, together(periodic_sides<3>(0, wide), walls<3>(1, 2)));
+    const auto along_y = pressures_between<3>({2, wide, 10}, together(walls<3>(0, 2), periodic_sides<3>(1, wide)));
+    const auto both =
+        pressures_between<3>({wide, 2, 10}, together(periodic_sides<3>(0, wide), periodic_sides<3>(1, 2)));
+    CAPTURE(wide);
+    CHECK(plane[0] > 9e3);
+    CHECK(plane[1] < plane[0]);
+    for (const int at : {0, 1}) {
+      for (const double other : {periodic[at], space[at], along_x[at], along_y[at], both[at]}) {
+        CHECK(other == Approx(plane[at]).epsilon(1e-9));
+      }
+    }
+  }
+}
+
 TEST_CASE("Pressure waves in saturated soil have the speeds of both phases") { check(pressure_waves(40)); }
 
 TEST_CASE("Shear waves carry the water along where it cannot move, and leave it where nothing drags it") {
