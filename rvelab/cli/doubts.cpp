@@ -37,9 +37,8 @@ void tell_of_low(const Specimen& specimen, const protocol::TestRun& run) {
                last = heights(run.end_state.cell).minCoeff() / diameter;
   if (last >= low || last >= 0.75 * first) return;
   tell("the cell became " + in_words(last) + " mean diameters high, from " + in_words(first) +
-       ": below ten, few grains bear more than many; of quasi-static discs at constant volume p is higher by 10 to 30 "
-       "% at "
-       "seven; use more grains, or a cell that suits the deformation (pack.cell)");
+       ": below ten, few grains bear more than many; of quasi-static discs at constant volume p is higher by 10 to "
+       "30 % at seven; use more grains, or a cell that suits the deformation (pack.cell)");
 }
 
 }  // namespace

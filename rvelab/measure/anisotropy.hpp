@@ -8,14 +8,13 @@
 // a_c is that of the moments of n: 4 (phi - I/2) in 2D, 15/2 (phi - I/3) in 3D, phi = <n (x) n>. The others are least
 // squares over the contacts (Kanatani 1984), for which the integrals of the literature over f_n(n) stand where every
 // direction counts the same. The stress of these distributions, compression positive, is N/V times the integral of
-// E(n) f(n) (x) l(n) over the directions, f and l with their parts along and across n. It is integrated numerically, not
-// expanded for small amplitudes: anisotropies of bedded ellipses are of order one, on axes of their own. Where they are
-// small and have the axes of the stress it is, of the amplitudes (2D sqrt(a:a/2), 3D sqrt(3 a:a/2)),
+// E(n) f(n) (x) l(n) over the directions, f and l with their parts along and across n. It is integrated numerically,
+// not expanded for small amplitudes: anisotropies of bedded ellipses are of order one, on axes of their own. Where they
+// are small and have the axes of the stress it is, of the amplitudes (2D sqrt(a:a/2), 3D sqrt(3 a:a/2)),
 //   2D: q/p = (a_c + a_n + a_t + a_l + a_lt)/2 / (1 + (a_c a_n + a_c a_l + a_n a_l + a_t a_lt)/2)
 //   3D: q/p = 2/5 (a_c + a_n + a_l + 3/2 (a_t + a_lt))
 // 2D: Rothenburg and Bathurst (1989); ellipses, with a_lt: Rothenburg and Bathurst (1992). 3D: Chantawarangul (1993),
-// Guo and Zhao (2013). Bedded ellipses of b/a = 0.5, sheared to q/p = 0.63: by the integral within 0.011, by this
-// 0.093.
+// Guo and Zhao (2013).
 #pragma once
 
 #include "rvelab/solver/assembly/network.hpp"

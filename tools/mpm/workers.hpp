@@ -25,7 +25,7 @@ class Workers {
 
   /// work(k) for k in 0 .. pieces - 1, each once; returns when all are done. The first exception is thrown again. A
   /// thread begins with a part of its own, the same in every call: points stay in the cache of its core. Then it helps
-  /// others.
+  /// those that are far behind.
   void for_each(std::int64_t pieces, const std::function<void(std::int64_t)>& work) {
     share(pieces, std::int64_t(parts_.size()), work);
   }
