@@ -153,7 +153,8 @@ struct TangentialBranchAnisotropy {
 
 struct StressForceFabricRatio {
   double stress_force_fabric = 0;
-  static constexpr QuantityText text{"stress_force_fabric", "1", "q/p predicted from the distributions of contact normals, forces and branches"};
+  static constexpr QuantityText text{"stress_force_fabric", "1",
+                                     "q/p predicted from the distributions of contact normals, forces and branches"};
   static constexpr auto member = &StressForceFabricRatio::stress_force_fabric;
   static double measure(const MeasuredState& state) { return state.relation().predicted; }
 };
