@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 #include "rvelab/measure/deviator.hpp"
@@ -112,11 +113,10 @@ struct QuadraturePoint {
 /// Half of all directions, for functions that are even and of degree 10 at most: their mean is the weighted sum.
 std::vector<QuadraturePoint> quadrature(int dimension) {
   constexpr int around = 12;
-  constexpr double pi = 3.14159265358979323846;
   std::vector<QuadraturePoint> all;
   if (dimension == 2) {
     for (int k = 0; k < around; ++k) {
-      const double angle = pi * k / around;
+      const double angle = std::numbers::pi * k / around;
       all.push_back({{std::cos(angle), std::sin(angle), 0}, 1.0 / around});
     }
     return all;
@@ -126,7 +126,7 @@ std::vector<QuadraturePoint> quadrature(int dimension) {
   for (int i = 0; i < 3; ++i) {
     const double across = std::sqrt(1 - z[i] * z[i]);
     for (int k = 0; k < around; ++k) {
-      const double angle = 2 * pi * k / around;
+      const double angle = 2 * std::numbers::pi * k / around;
       all.push_back({{across * std::cos(angle), across * std::sin(angle), z[i]}, weights[i] / around});
     }
   }
