@@ -23,6 +23,7 @@
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/recording.hpp"
 #include "rvelab/cli/report.hpp"
+#include "rvelab/cli/sharing.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/io/hdf5/schema.hpp"
 #include "rvelab/io/publish.hpp"
@@ -290,7 +291,7 @@ void run_calibration(const CalibrateArguments& arguments) {
   if (arguments.every_pressure || at_pressures.size() == 1) expect_different(specimens, given);
   const Plan plan = plan_of(at_pressures, specimens, arguments.every_pressure);
   const std::size_t tests = plan.protocols.size();
-  std::vector<std::unique_ptr<io::RecordStore>> stores(tests);
+  std::vector<KeptTest> kept;
   if (!arguments.folder.empty()) {
     auto inputs = specimen_files(at_pressures.front(), given);
     inputs.push_back(at_pressures.front().path);
@@ -299,9 +300,14 @@ void run_calibration(const CalibrateArguments& arguments) {
     for (std::size_t k = 0; k < tests; ++k) {
       const std::string file = (std::filesystem::path(arguments.folder) / plan.files[k]).string();
       io::expect_place(file, inputs);
-      stores[k] = open_store(file, plan.protocols[k], specimens[plan.specimen_of[k]], arguments.test);
+      kept.push_back({&plan.protocols[k], [&, k] { return specimens[plan.specimen_of[k]]; }, file});
     }
   }
+  TestOptions options = arguments.test;
+  if (!shared_out(kept, !arguments.folder.empty(), options)) return;
+  std::vector<std::unique_ptr<io::RecordStore>> stores(tests);
+  for (std::size_t k = 0; k < kept.size(); ++k)
+    stores[k] = open_store(kept[k].file, plan.protocols[k], specimens[plan.specimen_of[k]], options);
   std::vector<protocol::TestRun> runs;
   {
     ProgressLine progress(tests);

@@ -16,6 +16,7 @@
 #include "rvelab/cli/interrupt.hpp"
 #include "rvelab/cli/progress_line.hpp"
 #include "rvelab/cli/protocol_input.hpp"
+#include "rvelab/cli/sharing.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/io/hdf5/schema.hpp"
 #include "rvelab/io/hdf5/specimen_file.hpp"
@@ -105,6 +106,15 @@ void expect_places(const Ensemble& ensemble, const std::vector<Planned>& tests, 
                       ", --resume to go on with the tests");
 }
 
+/// Its share of the tests, if this is one of several ranks; true if the rest is for this process.
+bool shared_out(const Ensemble& ensemble, const std::vector<Planned>& tests, bool kept, TestOptions& options) {
+  std::vector<KeptTest> shared;
+  for (const Planned& test : tests)
+    shared.push_back({&ensemble.protocols[test.protocol],
+                      [&, k = test.specimen] { return io::read_specimen(ensemble.files[k]); }, test.file});
+  return shared_out(shared, kept, options);
+}
+
 /// What came of the tests.
 struct Outcome {
   std::vector<std::optional<ensemble::TestOf>> tests;
@@ -163,11 +173,13 @@ std::vector<std::string> files_of(const std::vector<std::string>& words) {
   return files;
 }
 
-void run_ensemble(const Ensemble& ensemble, const std::string& folder, const TestOptions& options) {
+void run_ensemble(const Ensemble& ensemble, const std::string& folder, TestOptions options) {
   const auto begin = std::chrono::steady_clock::now();
   const std::vector<Planned> tests = planned(ensemble, folder);
   const int dimension = expect_specimens(ensemble);
+  options.resume = options.resume || launched_ranks().count > 1;  // another rank may have begun
   if (!folder.empty()) expect_places(ensemble, tests, folder, options);
+  if (!shared_out(ensemble, tests, !folder.empty(), options)) return;
   const Outcome outcome = carried_out(ensemble, tests, dimension, options);
   std::vector<ensemble::TestOf> finished;
   std::vector<std::string> failures;

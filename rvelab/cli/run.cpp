@@ -277,13 +277,15 @@ Command run_command() {
       "and sqrt(2 e:e/3), with s and e the deviators of stress and strain. More: protocols/README.md.\n"
       "Several specimens run one to a core; summary.json and summary.csv give mean, standard deviation, standard "
       "error\n"
-      "and 95 % interval of every measure. --resume after a kill gives the same summary.\n"
+      "and 95 % interval of every measure. --resume after a kill gives the same summary. Started by mpirun, the ranks\n"
+      "share the tests, as if --resume were given: on several machines too, if all see the folder.\n"
       "Examples:\n"
       "  rvelab run biaxial --specimen dense.h5 -o R.h5\n"
       "  rvelab run biaxial --specimen dense.h5 --set stage.compression.to_strain=0.05 --json\n"
       "  rvelab run biaxial --specimen dense.h5 -o R.h5 --resume\n"
       "  rvelab run biaxial --specimen 'S_*.h5' -o D\n"
-      "  rvelab run biaxial --specimen 'dense_*.h5' --against 'loose_*.h5' -o D";
+      "  rvelab run biaxial --specimen 'dense_*.h5' --against 'loose_*.h5' -o D\n"
+      "  mpirun -np 8 rvelab run biaxial --specimen 'S_*.h5' -o D";
   return command;
 }
 

@@ -113,7 +113,7 @@ Journal::Journal(const std::string& path) : path_(path) {
     if (::flock(file_.number(), LOCK_EX | LOCK_NB) != 0) {
       if (errno == EINTR) continue;
       if (errno == EWOULDBLOCK) {
-        throw InputError(path + ": another rvelab is writing it; wait for it, stop it, or give another name with -o");
+        throw Busy(path + ": another rvelab is writing it; wait for it, stop it, or give another name with -o");
       }
       throw InputError(path + ": cannot be locked (" + std::strerror(errno) +
                        "); give a path on a file system with locks, and copy the file later");

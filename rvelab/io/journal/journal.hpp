@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "rvelab/error.hpp"
 #include "rvelab/io/descriptor.hpp"
 #include "rvelab/io/publish.hpp"
 
@@ -43,11 +44,16 @@ JournalExtent read_journal(const std::string& path, const std::function<void(con
 /// The payload of one frame that read_journal or append placed at `payload_at`.
 std::vector<std::byte> read_payload(const std::string& path, std::uint64_t payload_at, std::uint64_t length);
 
+/// Another process, or another part of this one, writes to that place.
+struct Busy : InputError {
+  using InputError::InputError;
+};
+
 /// The one writer of a journal: holds its lock as long as it lives.
 class Journal {
  public:
-  /// Opens the journal, or makes an empty file of its name, and takes its lock. InputError: another process holds it;
-  /// the place cannot be written to; its file system has no locks.
+  /// Opens the journal, or makes an empty file of its name, and takes its lock. Busy: another process holds it;
+  /// InputError: the place cannot be written to; its file system has no locks.
   explicit Journal(const std::string& path);
   Journal(Journal&&) = default;
   Journal& operator=(Journal&&) = default;

@@ -24,8 +24,8 @@ enum class Existing {
 class RecordStore {
  public:
   /// Takes the place: InputError if something is there that `existing` does not allow, if it is of another protocol or
-  /// specimen, if another process writes there, or if the folder cannot be written to. `checkpoint_every`: s between
-  /// checkpoints, each published; 0: as often as costs little.
+  /// specimen, or if the folder cannot be written to; Busy if another process writes there. `checkpoint_every`: s
+  /// between checkpoints, each published; 0: as often as costs little.
   RecordStore(const std::string& path, const RunStart& start, Existing existing, double checkpoint_every = 0);
 
   RecordStore(const RecordStore&) = delete;
