@@ -49,8 +49,10 @@ class Search {
       fill_periodic_bins(c.count[k], reach_[k], periodic_bins_[k]);
     }
     for (int home = 0; home < c.count[0]; ++home) {
-      runs_.push_back(runs_of(home, 0));
-      runs_after_.push_back(runs_of(home, reach_[0] + 1));
+      runs_.begin_row();
+      put_runs(home, 0, runs_.of_rows);
+      runs_after_.begin_row();
+      put_runs(home, reach_[0] + 1, runs_after_.of_rows);
     }
   }
 
@@ -74,6 +76,16 @@ class Search {
   struct Run {
     int first, last, shift;
   };
+  /// Runs around each bin of a row, one bin after the other.
+  struct Runs {
+    std::vector<Run> of_rows;
+    std::vector<std::size_t> begins;
+    void begin_row() { begins.push_back(of_rows.size()); }
+    std::span<const Run> around(std::size_t bin) const {
+      const std::size_t end = bin + 1 < begins.size() ? begins[bin + 1] : of_rows.size();
+      return std::span(of_rows).subspan(begins[bin], end - begins[bin]);
+    }
+  };
 
   /// Calls look(begin, end, shift, least) for the grains in rows of bins around one: those from `begin` to `end` of the
   /// class, with their images by `shift`, of numbers from `least` on.
@@ -92,23 +104,22 @@ class Search {
         };
         const bool own_row = own_class && z == reach_[2] && y == reach_[1];
         if (own_row) look_at(home, home, 0, p.binned.grain + 1);
-        for (const Run& run : (own_row ? runs_after_ : runs_)[std::size_t(home)])
+        for (const Run& run : (own_row ? runs_after_ : runs_).around(std::size_t(home)))
           look_at(run.first, run.last, run.shift, 0);
       }
   }
 
   /// Bins around `home` along the first direction, from the given one on. Those that follow each other do so in memory:
   /// they are looked into as one.
-  std::vector<Run> runs_of(int home, int from) const {
-    std::vector<Run> runs;
+  void put_runs(int home, int from, std::vector<Run>& runs) const {
+    const std::size_t before = runs.size();
     for (int x = from; x <= 2 * reach_[0]; ++x) {
       const PeriodicBin& l = periodic_bins_[0][std::size_t(home + x)];
-      if (!runs.empty() && runs.back().shift == l.shift && runs.back().last + 1 == l.bin)
+      if (runs.size() > before && runs.back().shift == l.shift && runs.back().last + 1 == l.bin)
         runs.back().last = l.bin;
       else
         runs.push_back({l.bin, l.bin, l.shift});
     }
-    return runs;
   }
 
   /// Grains from number `least` on that are near enough, among those binned from `begin` to `end`.
@@ -151,7 +162,7 @@ class Search {
   const SizeClass& class_;
   int reach_[3] = {0, 0, 0};
   std::vector<PeriodicBin> periodic_bins_[3];
-  std::vector<std::vector<Run>> runs_, runs_after_;  ///< by bin of the grain along the first direction; those after it
+  Runs runs_, runs_after_;  ///< by bin of the grain along the first direction; those after it
 };
 
 /// Puts the few pairs of one grain i in order.

@@ -57,7 +57,6 @@ class RateControl {
 };
 
 void RateControl::check() {
-  s_.checked_balance();
   time_step_ = time_step(s_, s_.control().last_rate, control_interval, (1 - fraction_) * dt_);
   servo_.set_stiffness(affine_stiffness(s_.model(), s_.assembly()),
                        gas_stiffness(s_.model(), s_.cell(), s_.row_sums().floor_translation));
@@ -134,8 +133,8 @@ Report load_at_rate(State& s, const FrameSplit& whole, double dt) {
     const Matrix3 next = path.at(fraction);
     report.substeps += advance(s, next_part(start_frame, s.cell(), done, next), steps, step, limit.deep).steps;
     done = next;
-    report.unbalanced_ratio = s.unbalanced_ratio(s.checked_balance());
   }
+  report.unbalanced_ratio = s.unbalanced_ratio(s.checked_balance());
   return report;
 }
 

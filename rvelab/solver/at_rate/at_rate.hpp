@@ -21,7 +21,8 @@ struct TimeStep {
 };
 
 /// In an increment of the time dt (s), at the velocity gradient `rate` of the cell (1/s, cell frame); the next check is
-/// after `interval` sub-steps at the latest. Throws IncrementFailed where a given step is unstable.
+/// after `interval` sub-steps at the latest. Throws IncrementFailed where a given step is unstable, and as
+/// State::checked_balance.
 TimeStep time_step(State& state, const Matrix3& rate, long interval, double dt);
 
 }  // namespace rvelab

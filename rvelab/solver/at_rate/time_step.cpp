@@ -124,10 +124,12 @@ void expect_stable(State& s, double step) {
 
 TimeStep time_step(State& s, const Matrix3& rate, long interval, double dt) {
   const Model& f = s.model();
+  check_height(f, s.cell());  // as a list does, but only when it is built
   const double fixed = f.options.fixed_time_step;
   if (fixed > 0) {
     expect_stable(s, std::min(fixed, dt));
     const Collisions ahead = collisions_ahead(f, s.assembly(), nullptr, false, {rate, double(interval) * fixed, dt});
+    if (ahead.beyond) s.checked_balance();
     return {fixed, interval, ahead.deep};
   }
   double stable = f.options.time_step_factor * critical_step(f, with_floor(s.row_sums(), f));
@@ -138,6 +140,7 @@ TimeStep time_step(State& s, const Matrix3& rate, long interval, double dt) {
   if (damping < 1) stable *= std::sqrt(damping * std::sqrt(damping));
   const double horizon = std::min(double(interval) * stable, dt);
   const Collisions ahead = collisions_ahead(f, s.assembly(), &s.row_sums(), true, {rate, horizon, dt});
+  if (ahead.beyond) s.checked_balance();
   const double longest = std::min(stable, ahead.step);
   const double steps = std::clamp(std::ceil(ahead.look / longest), 10.0, double(interval));
   return {longest, long(steps), ahead.deep};

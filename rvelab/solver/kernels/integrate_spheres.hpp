@@ -25,27 +25,51 @@ struct SphereColumns {
   ScratchColumn along, about;      ///< how much of them local damping takes off force and torque
 };
 
+/// Sum of force rows: force and, apart, n x f_t. With eight lanes a row is one vector (1,000 spheres:
+/// 0.977 of the time).
+template <int W>
+struct RowSum {
+  using L = Lanes<W>;
+  using Quad = typename L::Quad;
+  Quad force = L::broadcast(0.0), turn = L::broadcast(0.0);
+  inline __attribute__((always_inline)) void add(const double* row) {
+    force = L::add(force, quad_at<W>(row));
+    turn = L::add(turn, quad_at<W>(row + 4));
+  }
+  inline __attribute__((always_inline)) Quad first_half() const { return force; }
+  inline __attribute__((always_inline)) Quad second_half() const { return turn; }
+};
+#if defined(__AVX512F__)
+template <>
+struct RowSum<8> {
+  V8 sum = {};
+  inline __attribute__((always_inline)) void add(const double* row) { sum = sum + load_as<V8>(row); }
+  inline __attribute__((always_inline)) V4 first_half() const { return __builtin_shufflevector(sum, sum, 0, 1, 2, 3); }
+  inline __attribute__((always_inline)) V4 second_half() const { return __builtin_shufflevector(sum, sum, 4, 5, 6, 7); }
+};
+#endif
+
 /// Resultant forces and torques of a chunk of spheres. Torque on either grain of a pair: -(r - delta/2) n x f_t; the
 /// moment of rolling is minus on i, plus on j.
 template <int W, bool Rolling>
 inline __attribute__((always_inline)) void gather_sphere_forces(const GrainArrays& g, const PairArrays& p, long first,
                                                                 long count, TaskRows& forces, TaskRows& torques) {
-  using L = Lanes<W>;
+  constexpr int narrow = W < 4 ? W : 4;
+  using L = Lanes<narrow>;
   using Quad = typename L::Quad;
   const std::int32_t* slot = g.slots + 4L * g.slot_begin[first / 2];
   for (long block = first / 2; block < (first + count) / 2; ++block) {
     const std::int32_t* last = g.slots + 4L * g.slot_begin[block + 1];
-    Quad force[4], turn[4], arm[4];
-    for (int k = 0; k < 4; ++k) force[k] = turn[k] = arm[k] = L::broadcast(0.0);
+    RowSum<W> sum[4];
+    Quad arm[4];
+    for (int k = 0; k < 4; ++k) arm[k] = L::broadcast(0.0);
     double moment[4][4] = {};
     for (; slot != last; slot += 4)
 #pragma GCC unroll 4
       for (int k = 0; k < 4; ++k) {
         const double* row = p.force + slot[k];
-        const Quad t = quad_at<W>(row + 4);
-        force[k] = L::add(force[k], quad_at<W>(row));
-        turn[k] = L::add(turn[k], t);
-        arm[k] = L::add(arm[k], L::mul(L::broadcast(row[3]), t));
+        sum[k].add(row);
+        arm[k] = L::add(arm[k], L::mul(L::broadcast(row[3]), quad_at<narrow>(row + 4)));
         if constexpr (Rolling)
           for (int m = 0; m < 3; ++m) moment[k][m] += p.moment[m][slot[k] / 8];
       }
@@ -53,10 +77,11 @@ inline __attribute__((always_inline)) void gather_sphere_forces(const GrainArray
     for (int k = 0; k < 4; ++k) {
       const std::uint16_t task = g.tasks[4 * block + k];
       const double radius = g.rows[12 * first + 3 * (task % (4 * chunk_grains)) + 3];
-      Quad torque = L::sub(arm[k], L::mul(L::broadcast(radius), turn[k]));
+      Quad torque = L::sub(arm[k], L::mul(L::broadcast(radius), sum[k].second_half()));
       if constexpr (Rolling)
-        torque = L::add(torque, L::mul(L::broadcast(task < 4 * chunk_grains ? 1.0 : -1.0), quad_at<W>(moment[k])));
-      store_as(forces.of(task), force[k]);
+        torque =
+            L::add(torque, L::mul(L::broadcast(task < 4 * chunk_grains ? 1.0 : -1.0), quad_at<narrow>(moment[k])));
+      store_as(forces.of(task), sum[k].first_half());
       store_as(torques.of(task), torque);
     }
   }
@@ -181,7 +206,7 @@ inline __attribute__((always_inline)) void move_spheres(const StepConstants& c, 
 template <class T>
 void sphere_grains(const StepConstants& constants, const GrainArrays& grains, const PairArrays& pairs, long begin,
                    long end, StepSums* sums) {
-  constexpr int W = T::W, narrow = W < 4 ? W : 4;
+  constexpr int W = T::W;
   // Copies that no store can change (kernels/pairs.hpp).
   const StepConstants c = constants;
   const GrainArrays g = grains;
@@ -193,7 +218,7 @@ void sphere_grains(const StepConstants& constants, const GrainArrays& grains, co
   for (long chunk = begin; chunk < end; chunk += chunk_grains) {
     const long count = end - chunk < chunk_grains ? end - chunk : chunk_grains;
     if (g.before_chunk != nullptr) g.before_chunk(g.sweep, chunk + count);
-    gather_sphere_forces<narrow, T::Rolling>(g, p, chunk, count, forces, torques);
+    gather_sphere_forces<W, T::Rolling>(g, p, chunk, count, forces, torques);
     damp_spheres<T>(c, g, chunk, count, forces, torques, s, lost_globally);
     move_spheres<T>(c, g, chunk, count, s, momentum, fastest, lost_locally);
   }

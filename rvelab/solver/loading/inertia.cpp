@@ -9,6 +9,7 @@
 #include "rvelab/solver/assembly/contact_stiffness.hpp"
 #include "rvelab/solver/assembly/gather_table.hpp"
 #include "rvelab/solver/assembly/pair_geometry.hpp"
+#include "rvelab/solver/loading/median.hpp"
 #include "rvelab/solver/loading/typical_answers.hpp"
 
 namespace rvelab {
@@ -65,13 +66,6 @@ double largest_eigenvalue(const Symmetric<3>& m) {
   one /= scale;
   const Matrix3 two = one * one, four = two * two;
   return scale * std::sqrt(std::sqrt(four.norm()));
-}
-
-double median(std::vector<double>& values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// What a grain collects from its pairs.
