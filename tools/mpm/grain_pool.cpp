@@ -126,14 +126,23 @@ std::int64_t SpecimenFamily::moved_to_scene(std::int64_t id) {
 }
 
 std::int64_t SpecimenFamily::prepare(double pressure) {
-  const Specimen* nearest = &specimens_.front();
+  std::vector<Specimen> nearest_first = specimens_;
   const auto apart = [&](const Specimen& s) { return std::abs(std::log(s.pressure / pressure)); };
-  for (const auto& s : specimens_) {
-    if (pressure > 0 && apart(s) < apart(*nearest)) nearest = &s;
+  if (pressure > 0)
+    std::stable_sort(nearest_first.begin(), nearest_first.end(),
+                     [&](const Specimen& one, const Specimen& other) { return apart(one) < apart(other); });
+  for (const Specimen& from : nearest_first) {
+    std::int64_t id = 0;
+    expect_ok(rvelab_spawn(preparation_.get(), from.tmpl, 1, &id));
+    if (pressure <= 0 || brought_to(pressure, id)) return moved_to_scene(id);
+    expect_ok(rvelab_release(preparation_.get(), 1, &id));
   }
-  std::int64_t id = 0;
-  expect_ok(rvelab_spawn(preparation_.get(), nearest->tmpl, 1, &id));
-  if (pressure <= 0) return moved_to_scene(id);
+  throw InputError("a specimen at " + text_of(nearest_first.front().pressure) + " Pa does not come to " +
+                   text_of(pressure) + " Pa" + (nearest_first.size() > 1 ? ", and none of the others does" : "") +
+                   "; pack one nearer to that pressure (rvelab pack, target.pressures_Pa) and name it in specimens");
+}
+
+bool SpecimenFamily::brought_to(double pressure, std::int64_t id) {
   const int d = int(preparation_.info(id).dimension);
   // Symmetric strains in the tangent's order; in the plane xx, yy, xy.
   const std::vector<int> rows = d == 2 ? std::vector<int>{0, 1, 5} : std::vector<int>{0, 1, 2, 3, 4, 5};
@@ -144,6 +153,7 @@ std::int64_t SpecimenFamily::prepare(double pressure) {
     read_state(preparation_.get(), id, sigma, tangent);
     double now = 0;
     for (int i = 0; i < d; ++i) now -= sigma[4 * i] / d;
+    if (!(now > 1e-3 * pressure)) return false;  // loose grains fell in
     // In steps of a fifth of the pressure at most, since the network changes.
     const double aim = std::min(std::max(pressure, now / 1.2), now * 1.2);
     Eigen::MatrixXd C(n, n);
@@ -153,7 +163,7 @@ std::int64_t SpecimenFamily::prepare(double pressure) {
       missing[i] = (r < 3 ? -aim : 0) - 0.5 * (sigma[3 * first[r] + second[r]] + sigma[3 * second[r] + first[r]]);
       for (long j = 0; j < n; ++j) C(i, j) = tangent[6 * r + rows[j]];
     }
-    if (aim == pressure && missing.cwiseAbs().maxCoeff() < 1e-3 * pressure) return moved_to_scene(id);
+    if (aim == pressure && missing.cwiseAbs().maxCoeff() < 1e-3 * pressure) return true;
     Eigen::VectorXd strain = C.fullPivLu().solve(missing);
     strain *= std::min(1.0, 2e-3 / strain.cwiseAbs().maxCoeff());
     double dH[9] = {};
@@ -163,8 +173,7 @@ std::int64_t SpecimenFamily::prepare(double pressure) {
     }
     expect_ok(rvelab_apply(preparation_.get(), id, dH, 0, sigma));
   }
-  throw InputError("a specimen at " + text_of(nearest->pressure) + " Pa does not come to " + text_of(pressure) +
-                   " Pa; pack one nearer to that pressure (rvelab pack, target.pressures_Pa) and name it in specimens");
+  return false;
 }
 
 std::int64_t SpecimenFamily::spawn(double pressure) {

@@ -50,7 +50,8 @@ class GrainPool {
 /// Specimens of one material, consolidated to each pressure once and then copied.
 class SpecimenFamily {
  public:
-  /// `paths`: one or more specimen files; that with the pressure nearest to the one asked for (by ratio) is taken.
+  /// `paths`: one or more specimen files; that with the pressure nearest to the one asked for (by ratio) is taken,
+  /// the next one if it does not come to that pressure.
   SpecimenFamily(std::shared_ptr<GrainPool> pool, const std::vector<std::string>& paths);
   /// An RVE under the isotropic stress -pressure (0: as the file has it). The first call for a pressure consolidates,
   /// drained, by the tangent of the contact network; later ones copy.
@@ -68,7 +69,11 @@ class SpecimenFamily {
     std::int64_t tmpl;
     double pressure;
   };
+  /// From the specimen of the nearest pressure that comes there: loose grains that are unloaded may fall in, where
+  /// others of a lower pressure are only pressed.
   std::int64_t prepare(double pressure);
+  /// Strains an RVE to the isotropic stress -pressure; false if it does not come there.
+  bool brought_to(double pressure, std::int64_t id);
   /// Its copy in the pool of the scene.
   std::int64_t moved_to_scene(std::int64_t id);
   std::shared_ptr<GrainPool> pool_;
