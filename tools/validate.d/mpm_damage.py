@@ -1,8 +1,8 @@
 """tools/validate mpm_damage: single flipped bits in what rvelab-mpm reads back. mpm_damage.py RVELAB FOLDER [NUMBER]
 
-A run of grains is stopped, rows that a kill might have left are added, and one bit at a time is flipped, seeded, NUMBER
-(1000) in each file that --resume reads. Each must be refused (exit code 2, one line that names the file) or be without
-effect: the run goes on to the same bytes."""
+A run of grains, dry and saturated, is stopped, rows that a kill might have left are added, and one bit at a time is
+flipped, seeded, NUMBER (1000) in each file that --resume reads. Each must be refused (exit code 2, one line that names
+the file) or be without effect: the run goes on to the same bytes."""
 
 import pathlib
 import random
@@ -14,7 +14,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 rvelab, folder = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2])
 number = int(sys.argv[3]) if len(sys.argv) > 3 else 1000
 mpm = rvelab.with_name("rvelab-mpm")
-STOP, END = "0.1", "0.13"
+SCENES = {"dry": ("element", "0.1", "0.13"), "saturated": ("undrained_element", "0.01", "0.02")}  # stopped, end; s
 
 
 def resume(run):
@@ -31,9 +31,19 @@ def main():
     folder.mkdir(parents=True)
     subprocess.run([rvelab, "pack", ROOT / "protocols/pack_dense.toml", "-o", folder / "dense.h5", "--set", "pack.number=60"], check=True,
                    stdout=subprocess.DEVNULL)
-    kept, run = folder / "kept", folder / "run"
-    subprocess.run([mpm, ROOT / "protocols/mpm/element.toml", "-o", kept, "--specimens", folder, "-q", "-j", "1", "--stop-at",
-                    STOP, "--set", f"time.duration_s={END}"], check=True, stdout=subprocess.DEVNULL)
+    bad = 0
+    for name, (scene, stop, end) in SCENES.items():
+        print(name)
+        bad += flipped(folder / name, ROOT / f"protocols/mpm/{scene}.toml", stop, end)
+    sys.exit(1 if bad else 0)
+
+
+def flipped(place, scene, stop, duration):
+    """How many flips were neither refused nor without effect."""
+    kept, run = place / "kept", place / "run"
+    subprocess.run([mpm, scene, "-o", kept, "--specimens", folder, "-q", "-j", "1", "--stop-at", stop, "--set",
+                    f"time.duration_s={duration}", "--set", f"output.history_every_s={float(stop) / 10}"], check=True,
+                   stdout=subprocess.DEVNULL)
     for name in ("history.csv", "watched.csv"):
         rows = (kept / name).read_text()
         (kept / name).write_text(rows + rows.splitlines()[-1] + "\n")
@@ -67,7 +77,7 @@ def main():
         print(f"{name}: {len(start[name])} bytes, {number} flips: " + ", ".join(f"{n} {k}" for k, n in counts.items()),
               flush=True)
         bad += counts["bad"]
-    sys.exit(1 if bad else 0)
+    return bad
 
 
 if __name__ == "__main__":

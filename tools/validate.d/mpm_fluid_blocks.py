@@ -4,7 +4,7 @@ import h5py
 import numpy as np
 
 from mpm_fluid_runs import (
-    GRAVITY, SOLIDS, WATER, cell_test, columns, costs, elastic_scene, frame_at, mean_of, run, verdict,
+    GRAVITY, SOLIDS, WATER, cell_test, columns, costs, elastic_scene, frame_at, frames, mean_of, run, verdict,
     void_ratio, watched)
 from mpm import folder, specimen
 
@@ -127,14 +127,30 @@ def elastic_volume(cfl):
     return volumes[1] / volumes[0] - 1
 
 
+def constant_volume():
+    """Strain, p and q of the specimen alone, Pa."""
+    strain, side, axial, *_ = cell_test("undrained_cell", "biaxial_undrained", "dense",
+                                        "stage.compression.to_strain=0.045",
+                                        "solver.target_unbalanced=0")
+    return strain, (axial + side) / 2, (axial - side) / 2
+
+
+def beside_cell(what, at, mine, strain, cell):
+    """Largest differences of p' and q of a block from those of the cell."""
+    for low, high, bar in ((0.0005, 0.015, 0.02), (0.015, 0.0395, 0.05)):
+        grid = np.linspace(low, high, 200)
+        off = max(np.max(abs(np.interp(grid, at, one) - np.interp(grid, strain, other)))
+                  for one, other in zip(mine, cell)) / 100e3
+        verdict(f"{what}: p', q beside the cell, strains {low:g} to {high:g}, over p0", f"{off:.4f}", f"{bar:g}",
+                off <= bar)
+
+
 def undrained():
     specimen()
     h, _ = run("undrained", "undrained_element.toml")
     w = watched("undrained")
-    strain, side, axial, *_ = cell_test("undrained_cell", "biaxial_undrained", "dense",
-                                        "stage.compression.to_strain=0.045",
-                                        "solver.target_unbalanced=0")
-    p, q, at = (axial + side) / 2, (axial - side) / 2, -h["top.displacement_y_m"]
+    strain, p, q = constant_volume()
+    at = -h["top.displacement_y_m"]
     found_p, found_q, water = mean_of(w, "p_Pa"), mean_of(w, "q_Pa"), mean_of(w, "pore_pressure_Pa")
     print("\nUndrained block, 2 x 2 cells with four points of the dense specimen: p', q and pore pressure (kPa), mean of\n"
           "the watched points, beside the constant-volume test of the specimen\n\n"
@@ -145,12 +161,7 @@ def undrained():
                   np.interp(a, at, water), 100e3 - np.interp(a, at, found_p - found_q)]
         print(f"{a:<8g}" + "".join(f"{value / 1e3:<8.2f}" for value in values))
     print()
-    for low, high, bar in ((0.0005, 0.015, 0.02), (0.015, 0.0395, 0.05)):
-        grid = np.linspace(low, high, 200)
-        off = max(np.max(abs(np.interp(grid, at, mine) - np.interp(grid, strain, cell)))
-                  for mine, cell in ((found_p, p), (found_q, q))) / 100e3
-        verdict(f"undrained: p', q beside the cell, strains {low:g} to {high:g}, over p0", f"{off:.4f}", f"{bar:g}",
-                off <= bar)
+    beside_cell("undrained", at, (found_p, found_q), strain, (p, q))
     all_frames = [frame_at("undrained", t) for t in np.linspace(0, h["time_s"][-1], 9)]
     total = np.array([np.sum(frame["volume_m3"]) for frame in all_frames])
     lateral = np.array([np.sum(frame["volume_m3"] * (frame["pore_pressure_Pa"] - frame["stress_Pa"][:, 0]))
@@ -166,6 +177,29 @@ def undrained():
     off = max(np.max(abs(frame["eps_v"])) for frame in all_frames)
     verdict("undrained: volumetric strain of any point", f"{off:.2e}", "1e-3", off <= 1e-3)
     costs("undrained")
+
+
+def undrained_64():
+    """The published block of 4 x 4 cells, by means over all of its points."""
+    specimen()
+    name = "undrained_64"
+    h, _ = run(name, "undrained_element.toml", "--case", "published", "--set", "output.frame_every_s=0.0125")
+    times, found_p, found_q, strains = [], [], [], []
+    for path in frames(name):
+        with h5py.File(path) as file:
+            weight, stress = file["volume_m3"][()] / np.sum(file["volume_m3"]), file["stress_Pa"][()]
+            times.append(float(file["time_s"][0]))
+            strains.append(np.max(abs(file["eps_v"][()])))
+        mean = weight @ stress
+        found_p.append(-(mean[0] + mean[4]) / 2)
+        found_q.append((mean[0] - mean[4]) / 2)
+    at = np.interp(times, h["time_s"], -h["top.displacement_y_m"])
+    print("\nUndrained block, 4 x 4 cells with four points each, means over the block\n")
+    strain, p, q = constant_volume()
+    beside_cell("undrained, 64 RVEs", at, (found_p, found_q), strain, (p, q))
+    off = max(strains)
+    verdict("undrained, 64 RVEs: volumetric strain of any point", f"{off:.2e}", "1e-3", off <= 1e-3)
+    costs(name)
 
 
 def drained():

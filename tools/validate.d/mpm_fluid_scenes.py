@@ -11,15 +11,16 @@ again, and those that were stopped go on."""
 
 
 from mpm_fluid_runs import missed
-from mpm_fluid_blocks import consolidation, cyclic, drained, mandel, undrained
+from mpm_fluid_blocks import consolidation, cyclic, drained, mandel, undrained, undrained_64
 from mpm_fluid_soils import column, shaking
 from mpm_fluid_waves import scan, wave, wave_far
 from records import STYLE, plt
 from mpm import cases, folder
 
 
-PARTS = {"consolidation": consolidation, "undrained": undrained, "drained": drained, "cyclic": cyclic, "mandel": mandel,
-         "column": column, "wave": wave, "wave_far": wave_far, "scan": scan, "shaking": shaking}
+PARTS = {"consolidation": consolidation, "undrained": undrained, "undrained_64": undrained_64, "drained": drained,
+         "cyclic": cyclic, "mandel": mandel, "column": column, "wave": wave, "wave_far": wave_far, "scan": scan,
+         "shaking": shaking}
 
 
 def main():
