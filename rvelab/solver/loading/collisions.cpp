@@ -124,23 +124,47 @@ struct GrainMotion {
   double fastest = 0;     ///< m/s, squared; not round: with what their turn adds, as listed_gap counts it
 };
 
-template <Shape shape>
-GrainMotion grains_in(const Model& f, const Assembly& a, const RowSums& sums, std::size_t first, std::size_t last) {
-  constexpr int D = dimension_of(shape);
-  constexpr std::size_t row = D == 2 ? 4 : 8;
-  double force[piece_length * D] = {};
-  each_pair_of_grains<D>(a.pairs, first, last, [&](std::size_t g, std::size_t p, bool as_j) {
-    if (a.pairs.i[p] == a.pairs.j[p]) return;
-    double* r = force + D * (g - first);
-    const double* on_j = a.pairs.force.data() + p * row;
-    for (std::size_t c = 0; c < D; ++c) r[c] = as_j ? r[c] + on_j[c] : r[c] - on_j[c];
+/// Adds the forces of a pair to those of its grains, D numbers each.
+template <int D>
+inline void add_pair(const PairTable& pairs, std::size_t p, double* on_i, double* on_j) {
+  const double* row = pairs.force.data() + p * (D == 2 ? 4 : 8);
+  for (std::size_t c = 0; c < D; ++c) {
+    if (on_j != nullptr) on_j[c] += row[c];
+    if (on_i != nullptr) on_i[c] -= row[c];
+  }
+}
+
+/// Resultant forces of all grains; on a team a piece of grains gathers its own, in the same order.
+template <int D>
+std::vector<double> resultants_in(const Model& f, const Assembly& a) {
+  std::vector<double> force(D * f.size(), 0.0);
+  const PairTable& pairs = a.pairs;
+  if (f.sharing() == nullptr) {
+    for (const std::int32_t place : pairs.order) {
+      const auto p = std::size_t(place), i = std::size_t(pairs.i[p]), j = std::size_t(pairs.j[p]);
+      if (i != j) add_pair<D>(pairs, p, force.data() + D * i, force.data() + D * j);
+    }
+    return force;
+  }
+  in_pieces(f.size(), f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
+    each_pair_of_grains<D>(pairs, first, last, [&](std::size_t g, std::size_t p, bool as_j) {
+      double* on_g = force.data() + D * g;
+      if (pairs.i[p] != pairs.j[p]) add_pair<D>(pairs, p, as_j ? nullptr : on_g, as_j ? on_g : nullptr);
+    });
   });
+  return force;
+}
+
+template <Shape shape>
+GrainMotion grains_in(const Model& f, const Assembly& a, const RowSums& sums, const std::vector<double>& force,
+                      std::size_t first, std::size_t last) {
+  constexpr int D = dimension_of(shape);
   GrainMotion motion;
   for (std::size_t g = first; g < last; ++g) {
     const double* v = a.rows.data() + g * std::size_t(f.row_length()) + std::size_t(f.velocity_offset());
     double resultant = 0, speed = 0;
     for (std::size_t c = 0; c < D; ++c) {
-      resultant += square(force[D * (g - first) + c]);
+      resultant += square(force[D * g + c]);
       speed += square(v[c]);
     }
     if (resultant > 0) motion.resultants += resultant / sums.translation[g];  // row sums count kn twice
@@ -183,9 +207,10 @@ Collisions ahead(const Model& f, const Assembly& a, const RowSums* known, bool f
 
   RowSums fresh;
   if (known == nullptr) fresh = row_sums(f, a);
+  const std::vector<double> force = resultants_in<dimension_of(shape)>(f, a);
   std::vector<GrainMotion> of_grains(pieces_in(f.size()));
   in_pieces(f.size(), f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
-    of_grains[piece] = grains_in<shape>(f, a, known == nullptr ? fresh : *known, first, last);
+    of_grains[piece] = grains_in<shape>(f, a, known == nullptr ? fresh : *known, force, first, last);
   });
   GrainMotion motion;
   for (const GrainMotion& piece : of_grains) {

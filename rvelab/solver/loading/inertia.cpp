@@ -58,14 +58,27 @@ double largest_eigenvalue(const Symmetric<2>& m) {
   const double half = 0.5 * (m.xx + m.yy), difference = 0.5 * (m.xx - m.yy);
   return half + std::sqrt(difference * difference + m.xy * m.xy);
 }
+/// a times a. The terms are added in the order of Eigen's product, of which this was one: masses keep their bits.
+void square(const double (&a)[3][3], double (&of)[3][3]) {
+  for (int j = 0; j < 3; ++j) {
+    for (int i = 0; i < 2; ++i) of[i][j] = (a[i][0] * a[0][j] + a[i][1] * a[1][j]) + a[i][2] * a[2][j];
+    of[2][j] = a[2][0] * a[0][j] + (a[2][1] * a[1][j] + a[2][2] * a[2][j]);
+  }
+}
+/// By numbers, not by matrices, which are written one by one and read by twos: 33 ns instead of 75.
 double largest_eigenvalue(const Symmetric<3>& m) {
   const double scale = m.xx + m.yy + m.zz;
   if (!(scale > 0)) return 0;
-  Matrix3 one;
-  one << m.xx, m.xy, m.xz, m.xy, m.yy, m.yz, m.xz, m.yz, m.zz;
-  one /= scale;
-  const Matrix3 two = one * one, four = two * two;
-  return scale * std::sqrt(std::sqrt(four.norm()));
+  const double xx = m.xx / scale, xy = m.xy / scale, yy = m.yy / scale;
+  const double xz = m.xz / scale, yz = m.yz / scale, zz = m.zz / scale;
+  double two[3][3], four[3][3];
+  square({{xx, xy, xz}, {xy, yy, yz}, {xz, yz, zz}}, two);
+  square(two, four);
+  const auto squared = [&](int i, int j) { return four[i][j] * four[i][j]; };
+  const double one_half = (squared(0, 0) + squared(2, 0)) + (squared(1, 1) + squared(0, 2));
+  const double other_half = (squared(1, 0) + squared(0, 1)) + (squared(2, 1) + squared(1, 2));
+  const double norm = std::sqrt((one_half + other_half) + squared(2, 2));
+  return scale * std::sqrt(std::sqrt(norm));
 }
 
 /// What a grain collects from its pairs.
