@@ -19,6 +19,7 @@
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/recording.hpp"
 #include "rvelab/cli/report.hpp"
+#include "rvelab/cli/sharing.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/io/publish.hpp"
 #include "rvelab/protocol/run.hpp"
@@ -209,6 +210,7 @@ void run_test(const RunArguments& arguments) {
   words.insert(words.end(), arguments.more.begin(), arguments.more.end());
   const auto given = files_of(words), against = files_of(arguments.against);
   if (given.size() > 1 || !against.empty()) return run_several(arguments, protocol, given, against);
+  if (launched_ranks().rank > 0) return;  // ranks share tests; a single one is that of the first
   const auto specimens = specimens_for(protocol, given);
   const Specimen& specimen = specimens.front();
   std::unique_ptr<io::RecordStore> store;
@@ -278,7 +280,9 @@ Command run_command() {
       "Several specimens run one to a core; summary.json and summary.csv give mean, standard deviation, standard "
       "error\n"
       "and 95 % interval of every measure. --resume after a kill gives the same summary. Started by mpirun, the ranks\n"
-      "share the tests, as if --resume were given: on several machines too, if all see the folder.\n"
+      "share the tests, as if --resume were given, on several machines if all see the folder; a single test runs on "
+      "the\n"
+      "first rank.\n"
       "Examples:\n"
       "  rvelab run biaxial --specimen dense.h5 -o R.h5\n"
       "  rvelab run biaxial --specimen dense.h5 --set stage.compression.to_strain=0.05 --json\n"

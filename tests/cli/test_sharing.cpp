@@ -65,6 +65,17 @@ TEST_CASE("The first rank takes over the test of a rank that is killed") {
   CHECK(bytes_of(here / "shared/summary.json") == bytes_of(here / "alone/summary.json"));
 }
 
+TEST_CASE("A single test runs on the first rank alone") {
+  Workplace here;
+  here.import_packing("dense_p20", "S_a.h5");
+  const std::string test = std::string("run biaxial --specimen S_a.h5") + brief + "-o R.h5 --json";
+  REQUIRE(shell(here, as_rank(1, 2, test)).code == 0);
+  CHECK(bytes_of(here / "rank1.out").empty());
+  CHECK_FALSE(std::filesystem::exists(here / "R.h5"));
+  REQUIRE(shell(here, as_rank(0, 2, test)).code == 0);
+  CHECK(std::filesystem::exists(here / "R.h5"));
+}
+
 TEST_CASE("Ranks without a folder for the records, or told to overwrite, are refused") {
   Workplace here;
   here.import_packing("dense_p20", "S_a.h5");
