@@ -303,11 +303,10 @@ void run_calibration(const CalibrateArguments& arguments) {
       kept.push_back({&plan.protocols[k], [&, k] { return specimens[plan.specimen_of[k]]; }, file});
     }
   }
-  TestOptions options = arguments.test;
-  if (!shared_out(kept, !arguments.folder.empty(), options)) return;
+  if (!shared_out(kept, arguments.test)) return;
   std::vector<std::unique_ptr<io::RecordStore>> stores(tests);
   for (std::size_t k = 0; k < kept.size(); ++k)
-    stores[k] = open_store(kept[k].file, plan.protocols[k], specimens[plan.specimen_of[k]], options);
+    stores[k] = open_shared_store(kept[k].file, plan.protocols[k], specimens[plan.specimen_of[k]], arguments.test);
   std::vector<protocol::TestRun> runs;
   {
     ProgressLine progress(tests);
@@ -366,7 +365,8 @@ Command calibrate_command() {
       "Examples:\n"
       "  rvelab calibrate biaxial --specimen dense.h5 --pressures 10e3,20e3,30e3\n"
       "  rvelab calibrate biaxial --specimen a.h5 --specimen b.h5 --pressures 10e3,20e3 -o records\n"
-      "  rvelab calibrate biaxial --specimen S_1.h5 --specimen S_2.h5 --specimen S_3.h5 --every-pressure";
+      "  rvelab calibrate biaxial --specimen S_1.h5 --specimen S_2.h5 --specimen S_3.h5 --every-pressure\n"
+      "  mpirun -np 8 rvelab calibrate biaxial 'S_*.h5' --every-pressure -o D --share";
   return command;
 }
 

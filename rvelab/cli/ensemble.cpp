@@ -106,13 +106,13 @@ void expect_places(const Ensemble& ensemble, const std::vector<Planned>& tests, 
                       ", --resume to go on with the tests");
 }
 
-/// Its share of the tests, if this is one of several ranks; true if the rest is for this process.
-bool shared_out(const Ensemble& ensemble, const std::vector<Planned>& tests, bool kept, TestOptions& options) {
+/// This process's share of the tests; true if what is left to do is its own.
+bool shared_out(const Ensemble& ensemble, const std::vector<Planned>& tests, const TestOptions& options) {
   std::vector<KeptTest> shared;
   for (const Planned& test : tests)
     shared.push_back({&ensemble.protocols[test.protocol],
                       [&, k = test.specimen] { return io::read_specimen(ensemble.files[k]); }, test.file});
-  return shared_out(shared, kept, options);
+  return shared_out(shared, options);
 }
 
 /// What came of the tests.
@@ -134,7 +134,7 @@ Outcome carried_out(const Ensemble& ensemble, const std::vector<Planned>& tests,
     try {
       const Specimen specimen = io::read_specimen(ensemble.files[test.specimen]);
       std::unique_ptr<io::RecordStore> store;
-      if (!test.file.empty()) store = open_store(test.file, protocol, specimen, options);
+      if (!test.file.empty()) store = open_shared_store(test.file, protocol, specimen, options);
       protocol::Watch watch;
       watch.stop = &stop_on_signals();
       watch.on_moment = [&](const protocol::Moment& moment) { progress.show(k, test.name, moment); };
@@ -177,9 +177,9 @@ void run_ensemble(const Ensemble& ensemble, const std::string& folder, TestOptio
   const auto begin = std::chrono::steady_clock::now();
   const std::vector<Planned> tests = planned(ensemble, folder);
   const int dimension = expect_specimens(ensemble);
-  options.resume = options.resume || launched_ranks().count > 1;  // another rank may have begun
+  options.resume = options.resume || options.share;  // another process may have begun
   if (!folder.empty()) expect_places(ensemble, tests, folder, options);
-  if (!shared_out(ensemble, tests, !folder.empty(), options)) return;
+  if (!shared_out(ensemble, tests, options)) return;
   const Outcome outcome = carried_out(ensemble, tests, dimension, options);
   std::vector<ensemble::TestOf> finished;
   std::vector<std::string> failures;

@@ -35,8 +35,8 @@ void write_summary(const std::string& folder, const Ensemble& ensemble, const st
                    const ensemble::Summary& summary, const std::vector<std::string>& failures);
 
 /// Runs every protocol on every specimen and prints the summary; with an output folder, records and summary go there.
-/// Several ranks share the tests, and the first one prints. Exit code 1 through Error if a test fails; the others are
-/// finished first.
+/// Processes may share the tests (sharing.hpp); the first rank prints. Exit code 1 through Error if a test fails; the
+/// others are finished first.
 void run_ensemble(const Ensemble& ensemble, const std::string& folder, TestOptions options);
 
 }  // namespace rvelab::cli

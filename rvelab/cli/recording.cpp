@@ -13,6 +13,11 @@ void TestOptions::add_to(Command& command, const std::string& example, const std
   command.add("--force", force, "overwrite existing record files; they are removed at once");
   command.add("--resume", resume, "continue a stopped or killed test from its last checkpoint").not_with("--force");
   command
+      .add("--share", share,
+           "share the tests with other processes that are given the same command: ranks\n"
+           "of mpirun, or shells; as --resume, in a folder with locks that all see")
+      .not_with("--force");
+  command
       .add("--checkpoint-every", checkpoint_every,
            "seconds between checkpoints; default: as often as costs less than 1 % of the time")
       .between(1e-3, 1e9);
@@ -21,7 +26,11 @@ void TestOptions::add_to(Command& command, const std::string& example, const std
 
 void TestOptions::expect_output(const std::string& output) const {
   if (!output.empty()) return;
-  const char* given = force ? "--force" : resume ? "--resume" : checkpoint_every > 0 ? "--checkpoint-every" : nullptr;
+  const char* given = force                  ? "--force"
+                      : resume               ? "--resume"
+                      : share                ? "--share"
+                      : checkpoint_every > 0 ? "--checkpoint-every"
+                                             : nullptr;
   if (given == nullptr) return;
   throw InputError(std::string(given) + " is given without -o; allowed: with -o; name the output");
 }
@@ -30,7 +39,7 @@ std::unique_ptr<io::RecordStore> open_store(const std::string& path, const proto
                                             const Specimen& specimen, const TestOptions& options) {
   io::RunStart start{protocol.name, protocol.resolved, {}, specimen};
   for (const protocol::Stage& stage : protocol.stages) start.stages.push_back(stage.name);
-  return std::make_unique<io::RecordStore>(path, start, existing_of(options.force, options.resume),
+  return std::make_unique<io::RecordStore>(path, start, existing_of(options.force, options.resume || options.share),
                                            options.checkpoint_every);
 }
 

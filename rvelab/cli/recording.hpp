@@ -22,6 +22,7 @@ struct TestOptions {
   std::vector<std::string> settings;
   unsigned threads = 0;  ///< 0: one per core
   bool force = false, resume = false;
+  bool share = false;           ///< with other processes; implies resume
   double checkpoint_every = 0;  ///< s; 0: as often as costs little
   bool json = false;
 

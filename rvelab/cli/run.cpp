@@ -19,7 +19,6 @@
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/recording.hpp"
 #include "rvelab/cli/report.hpp"
-#include "rvelab/cli/sharing.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/io/publish.hpp"
 #include "rvelab/protocol/run.hpp"
@@ -210,7 +209,8 @@ void run_test(const RunArguments& arguments) {
   words.insert(words.end(), arguments.more.begin(), arguments.more.end());
   const auto given = files_of(words), against = files_of(arguments.against);
   if (given.size() > 1 || !against.empty()) return run_several(arguments, protocol, given, against);
-  if (launched_ranks().rank > 0) return;  // ranks share tests; a single one is that of the first
+  if (arguments.test.share)
+    throw InputError("--share is given with one specimen; allowed: tests on several; give more, or leave --share out");
   const auto specimens = specimens_for(protocol, given);
   const Specimen& specimen = specimens.front();
   std::unique_ptr<io::RecordStore> store;
@@ -279,17 +279,16 @@ Command run_command() {
       "and sqrt(2 e:e/3), with s and e the deviators of stress and strain. More: protocols/README.md.\n"
       "Several specimens run one to a core; summary.json and summary.csv give mean, standard deviation, standard "
       "error\n"
-      "and 95 % interval of every measure. --resume after a kill gives the same summary. Started by mpirun, the ranks\n"
-      "share the tests, as if --resume were given, on several machines if all see the folder; a single test runs on "
-      "the\n"
-      "first rank.\n"
+      "and 95 % interval of every measure. --resume after a kill gives the same summary. With --share several "
+      "processes\n"
+      "carry them out, each the next one that no other has in hand; the first rank of mpirun prints.\n"
       "Examples:\n"
       "  rvelab run biaxial --specimen dense.h5 -o R.h5\n"
       "  rvelab run biaxial --specimen dense.h5 --set stage.compression.to_strain=0.05 --json\n"
       "  rvelab run biaxial --specimen dense.h5 -o R.h5 --resume\n"
       "  rvelab run biaxial --specimen 'S_*.h5' -o D\n"
       "  rvelab run biaxial --specimen 'dense_*.h5' --against 'loose_*.h5' -o D\n"
-      "  mpirun -np 8 rvelab run biaxial --specimen 'S_*.h5' -o D";
+      "  mpirun -np 8 rvelab run biaxial --specimen 'S_*.h5' -o D --share";
   return command;
 }
 

@@ -1,6 +1,9 @@
 #include "rvelab/cli/sharing.hpp"
 
+#include <sched.h>
+
 #include <algorithm>
+#include <atomic>
 #include <charconv>
 #include <chrono>
 #include <cstdlib>
@@ -8,6 +11,7 @@
 #include <thread>
 
 #include "rvelab/cli/interrupt.hpp"
+#include "rvelab/cli/report.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/threads/workers.hpp"
 
@@ -22,23 +26,30 @@ unsigned count_of(const char* variable, unsigned otherwise) {
   return value;
 }
 
-enum class State { open, elsewhere, over };
+enum class State { open, elsewhere, complete, failed };
 
 /// Runs a test unless it is complete or another process has it.
-State taken(const KeptTest& test, const TestOptions& options) {
+State taken(const KeptTest& test, const TestOptions& options, const std::atomic<bool>& stop) {
   try {
     const Specimen specimen = test.specimen();
     const auto store = open_store(test.file, *test.protocol, specimen, options);
     protocol::Watch watch;
-    watch.stop = &stop_on_signals();
-    return run_recorded(*test.protocol, specimen, store.get(), watch).complete ? State::over : State::open;
+    watch.stop = &stop;
+    return run_recorded(*test.protocol, specimen, store.get(), watch).complete ? State::complete : State::open;
   } catch (const io::Busy&) {
     return State::elsewhere;
-  } catch (const InputError&) {
-    throw;
   } catch (const Error&) {
-    return State::over;  // the first rank meets the same failure and tells it
+    return State::failed;  // the first rank meets it again, and tells it
   }
+}
+
+/// Tests at a time: the cores that this process is bound to, or its part of those of the machine.
+std::size_t tests_at_a_time(const TestOptions& options, const Ranks& ranks) {
+  if (options.threads > 0) return options.threads;
+  const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
+  cpu_set_t bound;
+  const unsigned own = sched_getaffinity(0, sizeof bound, &bound) == 0 ? unsigned(CPU_COUNT(&bound)) : cores;
+  return std::max(1u, own < cores ? own : cores / ranks.on_machine);
 }
 
 }  // namespace
@@ -55,29 +66,40 @@ Ranks launched_ranks() {
   return {};
 }
 
-bool shared_out(const std::vector<KeptTest>& tests, bool kept, TestOptions& options) {
+bool shared_out(const std::vector<KeptTest>& tests, const TestOptions& options) {
+  if (!options.share) return true;
   const Ranks ranks = launched_ranks();
-  if (ranks.count == 1) return true;
-  const std::string who = std::to_string(ranks.count) + " ranks share the tests by their record files";
-  if (!kept) throw InputError(who + "; allowed: with -o; name a folder that all of them see");
-  if (options.force)
-    throw InputError(who +
-                     ", and each would overwrite with --force what another has done; allowed: a new folder, or "
-                     "the one of the same tests, which then go on");
-  options.resume = true;
-  const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
-  Workers workers(options.threads > 0 ? options.threads : std::max(1u, cores / ranks.on_machine));
+  const std::atomic<bool>& stop = stop_on_signals();
+  Workers workers(unsigned(std::min(tests_at_a_time(options, ranks), tests.size())));
   std::vector<State> states(tests.size(), State::open);
+  const auto count = [&](State state) { return std::count(states.begin(), states.end(), state); };
   const std::size_t first = tests.size() * ranks.rank / ranks.count;  // ranks begin apart
-  while (true) {
+  for (bool told = false;; told = true) {
     workers.run(tests.size(), [&](std::size_t k) {
-      const std::size_t at = (first + k) % tests.size();
-      if (states[at] != State::over && !stop_on_signals().load()) states[at] = taken(tests[at], options);
+      State& state = states[(first + k) % tests.size()];
+      if (state == State::open || state == State::elsewhere)
+        if (!stop.load()) state = taken(tests[(first + k) % tests.size()], options, stop);
     });
+    if (stop.load())
+      end_stopped(" with " + std::to_string(count(State::complete)) + " of " + std::to_string(tests.size()) +
+                  " tests complete; the same command goes on with them");
     if (ranks.rank > 0) return false;
-    // The first rank stays to the end, and takes over what a rank that ended early leaves.
-    const bool waits = std::find(states.begin(), states.end(), State::elsewhere) != states.end();
-    if (!waits || stop_on_signals().load()) return true;
+    // The first rank stays to the end, and takes over what a process that ended early leaves.
+    if (count(State::elsewhere) == 0) return true;
+    if (!told)
+      tell("waits for " + std::to_string(count(State::elsewhere)) + " tests that other processes have in hand");
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+  }
+}
+
+std::unique_ptr<io::RecordStore> open_shared_store(const std::string& path, const protocol::Protocol& protocol,
+                                                   const Specimen& specimen, const TestOptions& options) {
+  while (true) {
+    try {
+      return open_store(path, protocol, specimen, options);
+    } catch (const io::Busy&) {
+      if (!options.share || stop_on_signals().load()) throw;
+    }
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
   }
 }

@@ -1,5 +1,5 @@
-// Tests that several processes share: the ranks of mpirun, on one machine or on several that see one folder. No rank
-// sends messages: a test belongs to the rank that holds the lock of its journal.
+// Tests that several processes share (--share): ranks of mpirun, or shells on one machine or several that see one
+// folder. They send no messages: a test belongs to the process that holds the lock of its journal.
 #pragma once
 
 #include <functional>
@@ -11,7 +11,7 @@
 namespace rvelab::cli {
 
 /// Who this process is among those that a launcher started: Open MPI's mpirun, or one that speaks PMI (MPICH, Intel
-/// MPI, srun --mpi=pmi2). Alone without one.
+/// MPI, srun --mpi=pmi2). The first and only one without a launcher.
 struct Ranks {
   unsigned rank = 0, count = 1;
   unsigned on_machine = 1;  ///< ranks beside each other on this machine, this one included
@@ -25,10 +25,13 @@ struct KeptTest {
   std::string file;
 };
 
-/// Carries out what no other rank has in hand, each rank on its share of the cores. True on the first rank, when all
-/// tests are complete, failed or stopped: it goes on with `options`, which then say to resume, and reads them. False on
-/// the others, when nothing is left for them to take. True at once for a process that is alone. InputError without
-/// files (`kept` false) and with --force.
-bool shared_out(const std::vector<KeptTest>& tests, bool kept, TestOptions& options);
+/// With options.share: carries out what no other process has in hand. True on the first rank, once every test is
+/// complete or has failed; it then reads them, and meets the failures again. False on other ranks, when nothing is left
+/// for them to take. True at once without options.share. Exit through end_stopped if it is stopped.
+bool shared_out(const std::vector<KeptTest>& tests, const TestOptions& options);
+
+/// As open_store; with options.share it waits where another process is just looking at the file.
+std::unique_ptr<io::RecordStore> open_shared_store(const std::string& path, const protocol::Protocol& protocol,
+                                                   const Specimen& specimen, const TestOptions& options);
 
 }  // namespace rvelab::cli

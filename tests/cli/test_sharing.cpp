@@ -1,4 +1,5 @@
-// Tests shared by ranks, which a launcher names in the environment; tests/ranks/mpirun does the same under mpirun.
+// Tests shared by processes: --share. A launcher names ranks in the environment; tests/ranks/mpirun does the same under
+// mpirun.
 #include <nlohmann/json.hpp>
 
 #include "tests/cli/program.hpp"
@@ -32,8 +33,9 @@ TEST_CASE("Ranks share the tests of an ensemble; the first one prints what a sin
   const std::string test = std::string("run biaxial --specimen 'S_*.h5'") + brief + "-o ";
   const Outcome alone = here.run(test + "alone");
   REQUIRE(alone.code == 0);
-  const Outcome ranks = shell(here, as_rank(2, 3, test + "shared", "&\n") + as_rank(1, 3, test + "shared", "&\n") +
-                                        as_rank(0, 3, test + "shared", "\n") + "first=$?; wait; exit $first");
+  const std::string shared = test + "shared --share";
+  const Outcome ranks = shell(here, as_rank(2, 3, shared, "&\n") + as_rank(1, 3, shared, "&\n") +
+                                        as_rank(0, 3, shared, "\n") + "first=$?; wait; exit $first");
   INFO(bytes_of(here / "rank0.err") << bytes_of(here / "rank1.err"));
   REQUIRE(ranks.code == 0);
   CHECK(bytes_of(here / "shared/summary.json") == bytes_of(here / "alone/summary.json"));
@@ -48,42 +50,62 @@ TEST_CASE("Ranks share the tests of an ensemble; the first one prints what a sin
     CHECK_THAT(entry.path().filename().string(), !Contains("journal"));
 }
 
+TEST_CASE("Another rank carries out what it finds, and leaves the summary to the first one") {
+  Workplace here;
+  here.import_packing("dense_p20", "S_a.h5");
+  here.import_packing("medium_p20", "S_b.h5");
+  const std::string test = std::string("run biaxial --specimen 'S_*.h5'") + brief + "-o ";
+  REQUIRE(here.run(test + "alone").code == 0);
+  REQUIRE(shell(here, as_rank(1, 2, test + "shared --share")).code == 0);
+  CHECK(std::filesystem::exists(here / "shared/R_a.h5"));
+  CHECK(std::filesystem::exists(here / "shared/R_b.h5"));
+  CHECK_FALSE(std::filesystem::exists(here / "shared/summary.json"));
+  const auto written = std::filesystem::last_write_time(here / "shared/R_b.h5");
+  REQUIRE(shell(here, as_rank(0, 2, test + "shared --share")).code == 0);
+  CHECK(std::filesystem::last_write_time(here / "shared/R_b.h5") == written);
+  CHECK(bytes_of(here / "shared/summary.json") == bytes_of(here / "alone/summary.json"));
+}
+
 TEST_CASE("The first rank takes over the test of a rank that is killed") {
   Workplace here;
   here.import_packing("dense_p20", "S_a.h5");
   here.import_packing("medium_p20", "S_b.h5");
-  const std::string test =
-      "calibrate biaxial --pressures 20e3 --set stage.compression.to_strain=0.03 S_a.h5 S_b.h5 -o ";
+  const std::string test = "calibrate biaxial --pressures 20e3 --set stage.compression.to_strain=0.1 S_a.h5 S_b.h5 -o ";
   REQUIRE(here.run(test + "alone").code == 0);
   // The second rank begins with the second specimen, and is killed once that is in its hands.
-  const Outcome ranks = shell(
-      here, "exec_rank() { exec env " + as_rank(1, 2, test + "shared --threads 1") + "; }\nexec_rank & second=$!\n" +
-                "while [ ! -s shared/R_20000_2.h5.journal ]; do sleep 0.01; done\nkill -9 $second\n" +
-                as_rank(0, 2, test + "shared --threads 1"));
+  const std::string shared = test + "shared --share --threads 1";
+  const Outcome ranks =
+      shell(here, "second() { exec env " + as_rank(1, 2, shared) + "; }\nsecond & killed=$!\ntries=0\n" +
+                      "while [ ! -s shared/R_20000_2.h5.journal ] && [ $tries -lt 2000 ]; do sleep 0.005; "
+                      "tries=$((tries + 1)); done\nkill -9 $killed || exit 9\n" +
+                      as_rank(0, 2, shared));
   INFO(bytes_of(here / "rank0.err"));
   REQUIRE(ranks.code == 0);
   CHECK(bytes_of(here / "shared/summary.json") == bytes_of(here / "alone/summary.json"));
 }
 
-TEST_CASE("A single test runs on the first rank alone") {
-  Workplace here;
-  here.import_packing("dense_p20", "S_a.h5");
-  const std::string test = std::string("run biaxial --specimen S_a.h5") + brief + "-o R.h5 --json";
-  REQUIRE(shell(here, as_rank(1, 2, test)).code == 0);
-  CHECK(bytes_of(here / "rank1.out").empty());
-  CHECK_FALSE(std::filesystem::exists(here / "R.h5"));
-  REQUIRE(shell(here, as_rank(0, 2, test)).code == 0);
-  CHECK(std::filesystem::exists(here / "R.h5"));
-}
-
-TEST_CASE("Ranks without a folder for the records, or told to overwrite, are refused") {
+TEST_CASE("A first rank that is stopped says how far the tests are") {
   Workplace here;
   here.import_packing("dense_p20", "S_a.h5");
   here.import_packing("medium_p20", "S_b.h5");
-  const std::string test = std::string("run biaxial --specimen 'S_*.h5'") + brief;
-  CHECK(shell(here, as_rank(0, 4, test)).code == 2);
-  CHECK_THAT(bytes_of(here / "rank0.err"), Contains("4 ranks share the tests") && Contains("-o"));
-  CHECK(shell(here, as_rank(0, 4, test + "-o D --force")).code == 2);
-  CHECK_THAT(bytes_of(here / "rank0.err"), Contains("4 ranks share the tests") && Contains("--force"));
-  CHECK_FALSE(std::filesystem::exists(here / "D/R_a.h5"));
+  const std::string test =
+      "run biaxial --set stage.compression.to_strain=0.1 --specimen S_a.h5 S_b.h5 -o D --share --threads 1";
+  const Outcome outcome = shell(here, as_rank(0, 2, test, "& first=$!\ntries=0\n") +
+                                          "while [ ! -s D/R_a.h5.journal ] && [ $tries -lt 2000 ]; do sleep 0.005; "
+                                          "tries=$((tries + 1)); done\nkill -TERM $first; wait $first");
+  CHECK(outcome.code == 128 + 15);
+  CHECK_THAT(bytes_of(here / "rank0.err"),
+             Contains("stopped by SIGTERM with 0 of 2 tests complete; the same command goes on with them"));
+  CHECK(shell(here, as_rank(0, 2, test)).code == 0);
+}
+
+TEST_CASE("Sharing without a folder, of a single test, or with overwriting is refused") {
+  Workplace here;
+  here.import_packing("dense_p20", "S_a.h5");
+  here.import_packing("medium_p20", "S_b.h5");
+  const std::string test = std::string("run biaxial --share") + brief;
+  expect_mistake(here.run(test + "--specimen S_a.h5 S_b.h5"), "--share is given without -o");
+  expect_mistake(here.run(test + "--specimen S_a.h5 -o D"), "--share is given with one specimen");
+  expect_mistake(here.run(test + "--specimen S_a.h5 S_b.h5 -o D --force"), "--force");
+  CHECK_FALSE(std::filesystem::exists(here / "D"));
 }

@@ -65,7 +65,7 @@ TEST_CASE("grains in a point answer as the pure cell does along the same path, b
   CHECK(std::abs(solver.points[1].stress(1, 1)) > 21e3);  // it was compressed
 }
 
-TEST_CASE("loose grains that fall in on their way to a pressure are taken from the next specimen of the family") {
+TEST_CASE("loose grains that collapse on their way to a pressure are taken from the next specimen of the family") {
   const Folder folder;
   Child child({RVELAB_PROGRAM, "pack", RVELAB_SOURCE_DIR "/protocols/pack_saturated.toml", "-o", folder / "loose.h5",
                "--set", "pack.number=64", "--set", "target.void_ratio=0.2394", "--set", "pack.seed=3", "--set",

@@ -148,12 +148,13 @@ bool SpecimenFamily::brought_to(double pressure, std::int64_t id) {
   const std::vector<int> rows = d == 2 ? std::vector<int>{0, 1, 5} : std::vector<int>{0, 1, 2, 3, 4, 5};
   const int first[6] = {0, 1, 2, 1, 0, 0}, second[6] = {0, 1, 2, 2, 2, 1};
   const long n = long(rows.size());
-  double sigma[9], tangent[36];
+  double sigma[9], tangent[36], start = 0;
   for (int round = 0; round < 200; ++round) {
     read_state(preparation_.get(), id, sigma, tangent);
     double now = 0;
     for (int i = 0; i < d; ++i) now -= sigma[4 * i] / d;
-    if (!(now > 1e-3 * pressure)) return false;  // loose grains fell in
+    if (round == 0) start = now;
+    if (!(now > 1e-3 * std::min(pressure, start))) return false;  // the grains have lost their contacts
     // In steps of a fifth of the pressure at most, since the network changes.
     const double aim = std::min(std::max(pressure, now / 1.2), now * 1.2);
     Eigen::MatrixXd C(n, n);
@@ -171,7 +172,9 @@ bool SpecimenFamily::brought_to(double pressure, std::int64_t id) {
       const int r = rows[i];
       dH[3 * first[r] + second[r]] = dH[3 * second[r] + first[r]] = r < 3 ? strain[i] : 0.5 * strain[i];
     }
-    expect_ok(rvelab_apply(preparation_.get(), id, dH, 0, sigma));
+    const auto status = rvelab_apply(preparation_.get(), id, dH, 0, sigma);
+    if (status == RVELAB_DISCARD) return false;
+    expect_ok(status);
   }
   return false;
 }

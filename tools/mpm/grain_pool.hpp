@@ -69,8 +69,8 @@ class SpecimenFamily {
     std::int64_t tmpl;
     double pressure;
   };
-  /// From the specimen of the nearest pressure that comes there: loose grains that are unloaded may fall in, where
-  /// others of a lower pressure are only pressed.
+  /// From the specimen of the nearest pressure that comes there: loose grains may collapse where they are unloaded, and
+  /// are only pressed from a lower pressure.
   std::int64_t prepare(double pressure);
   /// Strains an RVE to the isotropic stress -pressure; false if it does not come there.
   bool brought_to(double pressure, std::int64_t id);

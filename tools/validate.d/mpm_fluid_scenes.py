@@ -5,8 +5,8 @@
 
 Published: Liang, Zhao, Wu, Zhao and Wang (2023, Comput. Methods Appl. Mech. Eng. 405, 115871). Each line: what, found,
 asked for, verdict. consolidation: the specimen's own modulus and the exact answer of the two-phase equations.
-undrained, drained, cyclic: blocks beside the test of their specimen. mandel: the analytic answer. column, wave, scan:
-trends that the paper describes, at reduced size; shaking: the same, hours. Runs that are whole in FOLDER are used
+undrained, undrained_64, drained, cyclic: blocks beside the test of their specimen. mandel: the analytic answer.
+column, wave, wave_far, scan: trends that the paper describes, at reduced size; shaking: the same, hours. Runs that are whole in FOLDER are used
 again, and those that were stopped go on."""
 
 

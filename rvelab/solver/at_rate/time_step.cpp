@@ -124,12 +124,12 @@ void expect_stable(State& s, double step) {
 
 TimeStep time_step(State& s, const Matrix3& rate, long interval, double dt) {
   const Model& f = s.model();
-  check_height(f, s.cell());  // as a list does, but only when it is built
+  check_height(f, s.cell());  // lists do it too, but may live long
   const double fixed = f.options.fixed_time_step;
   if (fixed > 0) {
-    expect_stable(s, std::min(fixed, dt));
     const Collisions ahead = collisions_ahead(f, s.assembly(), nullptr, false, {rate, double(interval) * fixed, dt});
     if (ahead.beyond) s.checked_balance();
+    expect_stable(s, std::min(fixed, dt));
     return {fixed, interval, ahead.deep};
   }
   double stable = f.options.time_step_factor * critical_step(f, with_floor(s.row_sums(), f));

@@ -219,7 +219,7 @@ Collisions ahead(const Model& f, const Assembly& a, const RowSums* known, bool f
     motion.fastest = std::max(motion.fastest, piece.fastest);
   }
 
-  found.beyond = found.beyond || !std::isfinite(motion.kinetic);
+  found.beyond = found.beyond || !std::isfinite(motion.kinetic + motion.resultants);
   const double skin = a.state.list_skin;
   const double speed = 2 * std::sqrt(motion.fastest) + outlook.rate.norm() * (2 * f.largest_reach + skin);
   const double flight = dynamic_share(motion.kinetic, all.elastic);

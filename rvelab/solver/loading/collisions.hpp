@@ -25,7 +25,7 @@ struct Collisions {
   double step = 0;      ///< s, longest sub-step that follows them; infinite where nothing asks for one
   double look = 0;      ///< s, after which pairs that are not listed now may be about to collide; infinite likewise
   bool deep = false;    ///< within the horizon an overlap may come near the limit: it is checked every few steps
-  bool beyond = false;  ///< an overlap is beyond the limit now, or a value is not finite
+  bool beyond = false;  ///< an overlap is beyond the limit now, or energies of the pairs and grains are not finite
 };
 
 /// How far ahead collisions are sought.
