@@ -1,6 +1,6 @@
 """tools/validate mpm_damage: single flipped bits in what rvelab-mpm reads back. mpm_damage.py RVELAB FOLDER [NUMBER]
 
-A run of grains, dry and saturated, is stopped, rows that a kill might have left are added, and one bit at a time is
+Runs of grains, dry and saturated, and one with a rock are stopped, rows that a kill might have left are added, and one bit at a time is
 flipped, seeded, NUMBER (1000) in each file that --resume reads. Each must be refused (exit code 2, one line that names
 the file) or be without effect: the run goes on to the same bytes."""
 
@@ -14,7 +14,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 rvelab, folder = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2])
 number = int(sys.argv[3]) if len(sys.argv) > 3 else 1000
 mpm = rvelab.with_name("rvelab-mpm")
-SCENES = {"dry": ("element", "0.1", "0.13"), "saturated": ("undrained_element", "0.01", "0.02")}  # stopped, end; s
+SCENES = {"dry": ("element", "0.1", "0.13"), "saturated": ("undrained_element", "0.01", "0.02"),
+          "rocks": ("block_slide", "0.002", "0.0022")}  # stopped, end; s
 
 
 def resume(run):
@@ -54,7 +55,7 @@ def flipped(place, scene, stop, duration):
     end = outcome(run)
     bad = 0
     for name in sorted(start):
-        if name.startswith("points"):
+        if name.startswith(("points", "rocks")):
             continue  # frames are not read
         rng = random.Random(len(start[name]))
         counts = {"refused": 0, "without effect": 0, "bad": 0}
