@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "tools/mpm/keys.hpp"
 
@@ -127,7 +128,9 @@ std::int64_t SpecimenFamily::moved_to_scene(std::int64_t id) {
 
 std::int64_t SpecimenFamily::prepare(double pressure) {
   std::vector<Specimen> nearest_first = specimens_;
-  const auto apart = [&](const Specimen& s) { return std::abs(std::log(s.pressure / pressure)); };
+  const auto apart = [&](const Specimen& s) {
+    return s.pressure > 0 ? std::abs(std::log(s.pressure / pressure)) : std::numeric_limits<double>::infinity();
+  };
   if (pressure > 0)
     std::stable_sort(nearest_first.begin(), nearest_first.end(),
                      [&](const Specimen& one, const Specimen& other) { return apart(one) < apart(other); });

@@ -25,8 +25,8 @@ struct SphereColumns {
   ScratchColumn along, about;      ///< how much of them local damping takes off force and torque
 };
 
-/// Sum of force rows: force and, apart, n x f_t. With eight lanes a row is one vector (1,000 spheres:
-/// 0.977 of the time).
+/// Sum of force rows: force and, apart, n x f_t. With eight lanes a row is one vector (1,000 spheres: 0.977 of the
+/// time).
 template <int W>
 struct RowSum {
   using L = Lanes<W>;

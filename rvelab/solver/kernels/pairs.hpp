@@ -99,8 +99,8 @@ struct PairRun {
 /// which this is false holds neither force nor history, and its overlap would come out at 0 or less: with |b|^2 not
 /// below (ri + rj)^2, as rounded, the correctly rounded root of |b|^2 is not below ri + rj.
 /// Spheres with 2.4 contacts and 3.6 listed pairs a grain: 469 instructions a grain-step instead of 556 (AVX2), 1.16
-/// times the grain-steps a second. Not to look at blocks of eight that cannot have closed
-/// their gaps since the last look was no gain (speed over that of this: spheres 1.01, discs 0.97).
+/// times the grain-steps a second. Not to look at blocks of eight that cannot have closed their gaps since the last
+/// look was no gain (speed over that of this: spheres 1.01, discs 0.97).
 template <class Touches>
 inline __attribute__((always_inline)) PairRun next_run(const PairArrays& p, long at, long end, const Touches& touches) {
   if (at < p.near) {

@@ -9,9 +9,9 @@
 
 namespace rvelab {
 
-/// The value, not below 0, with half of the others below it; 0 of none. `values` are spent. They are
-/// counted by exponent and six bits of the fraction, and those of the middle count alone are put in order (a tenth
-/// to a fifth of the time of nth_element on all, of 200 to 2,400 values).
+/// The value, not below 0, with half of the others below it; 0 of none. `values` are spent. They are counted by
+/// exponent and six bits of the fraction, and those of the middle count alone are put in order (a tenth to a fifth of
+/// the time of nth_element on all, of 200 to 2,400 values).
 inline double median(std::vector<double>& values) {
   if (values.empty()) return 0;
   // Places of 64 to a power of two, which grow with the value, around that of the first one.
