@@ -97,7 +97,7 @@ void add_contacts(const Model& f, const Assembly& a, Network& net) {
 template <Shape shape>
 bool some_contact_must_slip(const Model& f, const Assembly& a) {
   constexpr double most = 1 + 1e-6;  // a sliding contact is at its limit, give or take round-off
-  const PairGeometry<shape> pair(f, a);
+  const PairPlaces<shape> pair(f, a);
   return std::any_of(a.pairs.order.begin(), a.pairs.order.end(), [&](std::int32_t place) {
     const auto p = std::size_t(place);
     const auto at = pair(p);
@@ -140,7 +140,7 @@ Held held_by(const Model& f, const PairTable& pairs, std::size_t p, const Place&
 // A first increment asks for it, which may be of four sub-steps: with whole contact states it took more than two.
 template <Shape shape, class Force>
 double constraints_over_motions(const Model& f, const Assembly& a) {
-  const PairGeometry<shape> pair(f, a);
+  const PairPlaces<shape> pair(f, a);
   const int d = f.dimension(), turns = d == 2 ? 1 : 3;
   std::vector<int> contacts(f.size(), 0);
   std::vector<std::int32_t> touching;

@@ -114,7 +114,7 @@ struct ContactSums {
 
 /// Adds up the contacts at `order` [first, last), and their forces on each grain unless `resultants` is null.
 template <Shape shape>
-ContactSums contacts_in(const Model& f, const Assembly& a, const PairGeometry<shape>& pair, std::size_t first,
+ContactSums contacts_in(const Model& f, const Assembly& a, const PairPlaces<shape>& pair, std::size_t first,
                         std::size_t last, double* resultants) {
   constexpr int D = dimension_of(shape);
   ContactSums sums;
@@ -142,7 +142,7 @@ ContactSums contacts_in(const Model& f, const Assembly& a, const PairGeometry<sh
 
 /// Resultants of the grains [first, last), added in the same order as above; pairs that do not touch give nothing.
 template <Shape shape>
-void gather_resultants(const Model& f, const Assembly& a, const PairGeometry<shape>& pair, std::size_t first,
+void gather_resultants(const Model& f, const Assembly& a, const PairPlaces<shape>& pair, std::size_t first,
                        std::size_t last, double* resultants) {
   constexpr int D = dimension_of(shape);
   each_pair_of_grains<D>(a.pairs, first, last, [&](std::size_t g, std::size_t p, bool as_j) {
@@ -180,7 +180,7 @@ GrainFigures grains_in(const Model& f, const Assembly& a, std::size_t first, std
 template <Shape shape>
 OutOfBalance balance_in(const Model& f, const Assembly& a) {
   constexpr int D = dimension_of(shape);
-  const PairGeometry<shape> pair(f, a);
+  const PairPlaces<shape> pair(f, a);
   const bool shared = f.sharing() != nullptr;
   std::vector<double> resultants(resultant_row<D> * f.size(), 0.0);
   std::vector<ContactSums> of_pairs(pieces_in(a.pairs.listed));
@@ -219,7 +219,7 @@ OutOfBalance balance_in(const Model& f, const Assembly& a) {
 template <Shape shape>
 std::vector<Resultant> resultants_in(const Model& f, const Assembly& a) {
   constexpr int D = dimension_of(shape);
-  const PairGeometry<shape> pair(f, a);
+  const PairPlaces<shape> pair(f, a);
   std::vector<double> rows(resultant_row<D> * f.size(), 0.0);
   std::vector<Resultant> resultants(f.size());
   in_pieces(f.size(), f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {

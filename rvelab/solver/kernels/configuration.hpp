@@ -115,6 +115,13 @@ using PairKernel = void (*)(const StepConstants&, const PairArrays&, const doubl
 using GrainKernel = void (*)(const StepConstants&, const GrainArrays&, const PairArrays&, long begin, long end,
                              StepSums*);
 
+/// Doubles that a kernel of places writes for a pair: n_x, n_y, overlap, h_i, h_j, torques of a force of 1 along n on i
+/// and on j (kernels/ellipses.hpp), 0; m.
+constexpr int place_row_length = 8;
+/// Reads rows, images and, of the constants, the lattice.
+using PlaceKernel = void (*)(const StepConstants&, const PairArrays&, const double* grain_rows, long begin, long end,
+                             double* places);
+
 /// Form of local damping that an integration kernel is compiled for.
 enum class KernelDamping { none, vector, component };
 
@@ -123,6 +130,7 @@ struct Kernels {
   PairKernel pairs = nullptr;              ///< contact forces with their increments
   PairKernel pairs_with_losses = nullptr;  ///< the same, with dissipation (scalar)
   PairKernel evaluate = nullptr;           ///< contact forces of the stored history, nothing advanced (scalar)
+  PlaceKernel places = nullptr;            ///< shapes that are not round: where pairs are, for sums outside the loops
   GrainKernel quasi_static[3] = {};        ///< by KernelDamping
   GrainKernel dynamic[3] = {};
   int lanes = 1;

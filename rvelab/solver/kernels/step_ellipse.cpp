@@ -10,6 +10,7 @@ namespace rvelab {
 template <>
 void StepKernels<Shape::ellipse>::RVELAB_ISA(const KernelConfiguration& key, Kernels& kernels) {
   set_kernels<Ellipses, RVELAB_LANES>(key, kernels);
+  kernels.places = &ellipse_pair_places<RVELAB_LANES>;
 }
 
 }  // namespace rvelab

@@ -157,7 +157,7 @@ class TermsOfPairs {
  private:
   const Model& f_;
   const PairTable& pairs_;
-  PairGeometry<shape> pair_;
+  PairPlaces<shape> pair_;
   const double *kn_, *kt_, *kr_, *cn_, *law_constant_;
   double firm_overlap_;
 };

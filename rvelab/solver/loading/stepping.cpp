@@ -293,7 +293,7 @@ bool SubSteps::can_wait(bool forces_asked, long made) const {
 void SubSteps::look_ahead() {
   const double rest = step_ * double(path_.steps - path_.done);
   const Collisions ahead = collisions_ahead(f_, a_, nullptr, what_.follow_collisions,
-                                            {a_.state.last_rate, rest, std::numeric_limits<double>::infinity()});
+                                            {a_.state.last_rate, rest, std::numeric_limits<double>::infinity(), step_});
   if (what_.follow_collisions) divide_rest(f_, ahead, a_, path_, step_);
   if (ahead.deep) check_every_ = deep_check;
 }
