@@ -157,28 +157,37 @@ __attribute__((noinline)) void search_lanes(Mask open, const EllipsePair<V>& p, 
   std::memcpy(&n.y, y, sizeof(V));
 }
 
-/// Leaves to the search what steps left open or is too deep for them; false: nothing.
-template <class V>
-inline __attribute__((always_inline)) bool search_where_needed(const EllipsePair<V>& p, Direction<V>& n,
+/// Leaves to the search what the steps left open or is too deep for them.
+template <class Mask, class V>
+inline __attribute__((always_inline)) void search_where_needed(const EllipsePair<V>& p, Mask open, Direction<V>& n,
                                                                EllipseGap<V>& g) {
-  const decltype(is_open(g)) left = is_open(g) | !(is_apart(g) | is_shallow(p, g));
-  if (!any_of(left)) return false;
+  const Mask left = open | !(is_apart(g) | is_shallow(p, g));
+  if (!any_of(left)) return;
   search_lanes(left, p, n);
-  g = ellipse_gap(p, n);
-  return true;
+  const EllipseGap<V> found = ellipse_gap(p, n);
+  g.support_i = left ? found.support_i : g.support_i;
+  g.support_j = left ? found.support_j : g.support_j;
+  g.turned_i = left ? found.turned_i : g.turned_i;
+  g.turned_j = left ? found.turned_j : g.turned_j;
+  g.overlap = left ? found.overlap : g.overlap;
+  g.slope = left ? found.slope : g.slope;
 }
 
-/// Normals of W pairs and f there. Where f < 0 the pair is apart, and n is a direction that shows it.
+/// Normals of W pairs and h, h', f, f' there. Where f < 0 the pair is apart, and n is a direction that shows it.
 template <class V>
 inline __attribute__((always_inline)) EllipseGap<V> closest_gap(const EllipsePair<V>& p, Direction<V>& n) {
-  EllipseGap<V> g = ellipse_gap(p, n);
-  for (int step = 1; step < halley_steps && any_of(is_open(g)); ++step) {
-    const auto open = is_open(g);
+  const V det_i = determinant(p.i), det_j = determinant(p.j);
+  n = next_direction(n, ellipse_gap(p, n, det_i, det_j));
+  EllipseGap<V> g = ellipse_gap(p, n, det_i, det_j);
+  auto open = is_open(g);
+  for (int evaluation = 2; evaluation < halley_steps && any_of(open); ++evaluation) {
     const Direction<V> next = next_direction(n, g);
     n = {open ? next.x : n.x, open ? next.y : n.y};
-    g = ellipse_gap(p, n);
+    g = ellipse_gap(p, n, det_i, det_j);
+    open = is_open(g);
   }
-  search_where_needed(p, n, g);
+  turn_to_least(p, n, g);
+  search_where_needed(p, open, n, g);
   return g;
 }
 

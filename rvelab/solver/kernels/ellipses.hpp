@@ -87,21 +87,31 @@ inline __attribute__((always_inline)) void put_gap(EllipseScratch& s, long k, co
   store_as(s.turn_j.at + k, g.turned_j - half_slope);
 }
 
-/// f of W pairs at their directions, which turn where it is not least yet; whether one does. `first`: that is taken for
-/// granted, and what f is there is not kept.
+/// f of W pairs at their directions, which turn where it is not least yet; whether one does. `evaluation`: the first
+/// one turns them in any case; after the last, what has not ended is put down as too deep for steps.
 template <class V>
-inline __attribute__((always_inline)) bool turn_downhill(EllipseScratch& s, long k, bool first) {
-  const Direction<V> n = direction_in<V>(s, k);
-  const EllipseGap<V> gap =
-      ellipse_gap(pair_in<V>(s, k), n, load_as<V>(s.determinant_i.at + k), load_as<V>(s.determinant_j.at + k));
-  const auto open = is_open(gap);
-  if (!first) {
-    put_gap(s, k, gap);
-    if (!any_of(open)) return false;
+inline __attribute__((always_inline)) bool turn_downhill(EllipseScratch& s, long k, int evaluation) {
+  const EllipsePair<V> pair = pair_in<V>(s, k);
+  Direction<V> n = direction_in<V>(s, k);
+  const V det_i = load_as<V>(s.determinant_i.at + k), det_j = load_as<V>(s.determinant_j.at + k);
+  EllipseGap<V> gap = ellipse_gap(pair, n, det_i, det_j);
+  if (evaluation == 1) {
+    put_direction(s, k, next_direction(n, gap));
+    return true;
   }
-  const Direction<V> next = next_direction(n, gap);
-  put_direction(s, k, Direction<V>{open ? next.x : n.x, open ? next.y : n.y});
-  return true;
+  const auto open = is_open(gap);
+  if (evaluation < halley_steps && any_of(open)) {
+    const Direction<V> next = next_direction(n, gap);
+    put_direction(s, k, Direction<V>{open ? next.x : n.x, open ? next.y : n.y});
+    return true;
+  }
+  const Direction<V> before = n;
+  turn_to_least(pair, n, gap);
+  const V infinite = V{} + __builtin_inf();
+  gap.overlap = open ? infinite : gap.overlap;
+  put_direction(s, k, Direction<V>{open ? before.x : n.x, open ? before.y : n.y});
+  put_gap(s, k, gap);
+  return false;
 }
 
 /// Leaves to the search what the steps did not end or what is too deep for them.
@@ -109,10 +119,20 @@ template <class V>
 __attribute__((noinline)) void search_block(EllipseScratch& s, long k) {
   const EllipsePair<V> pair = pair_in<V>(s, k);
   Direction<V> n = direction_in<V>(s, k);
-  EllipseGap<V> gap = ellipse_gap(pair, n);
-  search_where_needed(pair, n, gap);
+  const V overlap = load_as<V>(s.overlap.at + k);
+  const auto deep = overlap > pair.i.sharpest + pair.j.sharpest;
+  search_lanes(deep, pair, n);
   put_direction(s, k, n);
-  put_gap(s, k, gap);
+  const EllipseGap<V> found = ellipse_gap(pair, n);
+  const V half_slope = 0.5 * found.slope;
+  const auto put = [&](ScratchColumn& column, V value) {
+    store_as(column.at + k, deep ? value : load_as<V>(column.at + k));
+  };
+  put(s.overlap, found.overlap);
+  put(s.reach_i, found.support_i);
+  put(s.reach_j, found.support_j);
+  put(s.turn_i, found.turned_i - half_slope);
+  put(s.turn_j, found.turned_j - half_slope);
 }
 
 /// What closest_gap finds, for the pairs of a chunk side by side: roots and divisions of one block of lanes fill the
@@ -133,21 +153,20 @@ inline __attribute__((always_inline)) void ellipse_normals(const StepConstants& 
     store_as(s.determinant_j.at + k, determinant(pair.j));
     put_direction(s, k, first_direction(pair));
   }
-  for (long k = 0; k < count; k += T::W) turn_downhill<V>(s, k, true);
+  for (long k = 0; k < count; k += T::W) turn_downhill<V>(s, k, 1);
   long blocks[chunk_pairs / T::W], open = 0;
   for (long k = 0; k < count; k += T::W) {
     blocks[open] = k;
-    open += turn_downhill<V>(s, k, false);
+    open += turn_downhill<V>(s, k, 2);
   }
-  for (int step = 3; step < halley_steps && open > 0; ++step) {
+  for (int evaluation = 3; open > 0; ++evaluation) {
     const long all = open;
     open = 0;
     for (long block = 0; block < all; ++block) {
       const long k = blocks[block];
-      if (turn_downhill<V>(s, k, false)) blocks[open++] = k;
+      if (turn_downhill<V>(s, k, evaluation)) blocks[open++] = k;
     }
   }
-  for (long block = 0; block < open; ++block) search_block<V>(s, blocks[block]);
 }
 
 /// Normal, overlap, arms and the motion of the centres. Not inlined: it is long, and the same for every law.
