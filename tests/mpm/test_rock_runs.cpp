@@ -87,6 +87,77 @@ history_every_s = 0.002
 checkpoint_every_s = 0.03
 )";
 
+/// Soil with a third of rocks by volume under a plate that presses it.
+constexpr const char* pressed_scene = R"(
+[scene]
+name = "pressed"
+dimension = 3
+[grid]
+cell_m = 0.05
+[time]
+duration_s = 0.01
+[initial]
+stress = "isotropic"
+pressure_Pa = 5e3
+[[material]]
+name = "soil"
+kind = "mohr_coulomb"
+density_kg_m3 = 1600
+young_modulus_Pa = 1e6
+[[region]]
+material = "soil"
+lower_m = [0, 0, 0]
+upper_m = [0.5, 0.5, 0.5]
+[[rock_material]]
+name = "basalt"
+density_kg_m3 = 2700
+young_modulus_Pa = 1e8
+[[rocks]]
+name = "stones"
+material = "basalt"
+lower_m = [0, 0, 0]
+upper_m = [0.5, 0.5, 0.5]
+volume_share = 0.3
+diameters_m = [[0.14, 1]]
+gap_m = 2e-3
+[[boundary]]
+name = "left"
+kind = "roller"
+axis = "x"
+at_m = 0
+[[boundary]]
+name = "right"
+kind = "roller"
+axis = "x"
+at_m = 0.5
+soil = "below"
+[[boundary]]
+name = "front"
+kind = "roller"
+axis = "y"
+at_m = 0
+[[boundary]]
+name = "back"
+kind = "roller"
+axis = "y"
+at_m = 0.5
+soil = "below"
+[[boundary]]
+name = "bottom"
+kind = "roller"
+axis = "z"
+at_m = 0
+[[body]]
+name = "lid"
+kind = "half_space"
+centre_m = [0, 0, 0.5]
+normal = [0, 0, -1]
+pressure_Pa = 1e4
+[output]
+frame_every_s = 0.01
+history_every_s = 0.001
+)";
+
 /// A value of the last row of history.csv.
 double last_value(const std::string& history, const std::string& column) {
   std::istringstream header(history.substr(0, history.find('\n')));
@@ -122,6 +193,16 @@ TEST_CASE("rocks that fall on soil leave the same bytes by any number of threads
     CHECK(last_value(history, "rocks.contact_loss_J") > 0);
     CHECK(std::abs(last_value(history, "rocks.residual_J")) < 5e-3 * last_value(history, "rocks.contact_loss_J"));
   }
+}
+
+TEST_CASE("threads that share the sweeps over the surfaces of many rocks leave the same bytes") {
+  const SceneRuns bench(pressed_scene);
+  for (const std::string threads : {"1", "2", "3"}) REQUIRE(bench.start(threads, {"-j", threads}) == 0);
+  bench.expect_same("1", "2", 5);
+  bench.expect_same("1", "3", 5);
+  const auto history = bytes_of(bench.folder / "1/history.csv");
+  CHECK(last_value(history, "rocks.soil_contacts") > 500);
+  CHECK(last_value(history, "rocks.soil_work_J") != 0);
 }
 
 TEST_CASE("a flipped bit in the checkpoint of rocks is refused") {

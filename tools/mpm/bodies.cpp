@@ -10,6 +10,8 @@ void Bodies<D>::detect_contact(const Grid<D>& grid, const Planes<D>& planes, con
   contacts_.clear();
   surface_.clear();
   sweeps_ = 1;
+  workers_ = &workers;
+  levels_.clear();
   bool at_nodes = false;
   for (int k = 0; k < int(all.size()); ++k) {
     const std::size_t first = surface_.size();
@@ -20,7 +22,9 @@ void Bodies<D>::detect_contact(const Grid<D>& grid, const Planes<D>& planes, con
     if (all[k].plate) all[k].plate->first = first, all[k].plate->last = surface_.size();
   }
   if (at_nodes) detect_nodes(grid, planes, time, workers);
-  if (rocks != nullptr) detect_rocks(grid, planes, soil);
+  if (rocks == nullptr) return;
+  detect_rocks(grid, planes, soil);
+  find_levels(grid);
 }
 
 /// Nodes in bodies with contact at nodes, in the order of the grid.

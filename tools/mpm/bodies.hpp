@@ -124,13 +124,28 @@ class Bodies {
   int surface_weights(double xi, double* weight) const;
   void hold_point(const Grid<D>& grid, const Planes<D>& planes, SurfacePoint& point, double time, const Vec<D>& at,
                   unsigned char face);
-  void hold_at(const Grid<D>& grid, const Planes<D>& planes, SurfacePoint& point, double time, const Vec<D>& at);
+  bool hold_at(const Grid<D>& grid, const Planes<D>& planes, SurfacePoint& point, double time, const Vec<D>& at);
   void hold_in_column(const Grid<D>& grid, const Planes<D>& planes, SurfacePoint& point, double time, const Vec<D>& at,
                       unsigned char face, int axis);
   static void add_node(const Grid<D>& grid, const Planes<D>& planes, const typename Grid<D>::Index& node, double weight,
                        SurfacePoint& point);
-  void hold(SurfacePoint& point, const Grid<D>& grid, double time);
+  bool hold(SurfacePoint& point, const Grid<D>& grid, double time);
   void hold_surface(Grid<D>& grid, double time, bool end);
+  void hold_here(std::size_t k, Grid<D>& grid, double time, bool end);
+  /// Points [first, last) of surface_, of one body.
+  struct Run {
+    std::size_t first, last;
+  };
+  void find_levels(const Grid<D>& grid);
+  /// visit(run) for all points, one run after the other, to or fro; those of one level side by side.
+  template <class Visit>
+  void each_run(bool fro, const Visit& visit) {
+    if (levels_.empty()) return visit(Run{0, surface_.size()});
+    for (std::size_t k = 0; k < levels_.size(); ++k) {
+      const auto& level = levels_[fro ? levels_.size() - 1 - k : k];
+      workers_->for_each(std::int64_t(level.size()), [&](std::int64_t run) { visit(level[std::size_t(run)]); });
+    }
+  }
   Vec<D> velocity_at(const Grid<D>& grid, const SurfacePoint& point, bool end) const;
   /// N s along the surface, as much as friction gives for that across it.
   static Vec<D> along_surface(const Body<D>& body, const SurfacePoint& point, const Vec<D>& wanted, double across);
@@ -139,6 +154,7 @@ class Bodies {
   void start_plates();
   void hold_plate(Body<D>& body, Grid<D>& grid, bool end);
   // rock_surface.cpp
+  struct RockFound;
   void detect_rocks(const Grid<D>& grid, const Planes<D>& planes, const std::vector<Point<D>>& soil);
   void press_rocks(Grid<D>& grid);
   void keep_pressed();
@@ -158,6 +174,11 @@ class Bodies {
   std::vector<SurfaceMobility> met_;    ///< of one plate at a time
   std::vector<unsigned char> soil_at_;  ///< by node, for one body at a time: its faces that soil near the node touches
   int sweeps_ = 1;
+  Workers* workers_ = nullptr;  ///< those of detect_contact
+  /// No two runs of a level share a node, and of two that do the later one has the higher level: level after level is
+  /// the same as one point after the other, to the bit. Empty: one run.
+  std::vector<std::vector<Run>> levels_;
+  std::vector<int> level_at_;  ///< by node
 };
 
 }  // namespace mpm

@@ -50,6 +50,14 @@ namespace {
 constexpr int rock_sweeps = 8;
 }  // namespace
 
+/// What is found of one rock.
+template <int D>
+struct Bodies<D>::RockFound {
+  bool near_soil = false;
+  std::vector<SurfacePoint> points;
+  std::vector<typename Rocks<D>::SurfacePoint> of_rock;
+};
+
 template <int D>
 void Bodies<D>::detect_rocks(const Grid<D>& grid, const Planes<D>& planes, const std::vector<Point<D>>& soil) {
   rocks->surface.clear();
@@ -61,32 +69,47 @@ void Bodies<D>::detect_rocks(const Grid<D>& grid, const Planes<D>& planes, const
     Vec<D> place, normal;
     double gap;
   };
-  std::vector<Foot> feet;
   // More than half of the distance between points of soil.
   const double cell = grid.cell.minCoeff(), near = 0.6 * cell, slack = early * cell;
-  double widest = 0;
-  for (const auto& point : soil) widest = std::max(widest, point.half.norm());
-  const double reach = slack + 2 * widest;
-  for (std::size_t k = 0; k < rocks->all.size(); ++k) {
-    const auto& rock = rocks->all[k];
+  // What a rock reads of a point, in the order in which it comes to them.
+  struct Near {
+    Vec<D> position, half;  ///< m
+    double reach;           ///< m, no farther does it touch
+  };
+  std::vector<Near> near_points(soil.size());
+  const long chunks = (long(soil.size()) + chunk - 1) / chunk;
+  std::vector<double> widest(std::size_t(chunks), 0.0);
+  workers_->for_each(chunks, [&](std::int64_t piece) {
+    const std::size_t end = std::min(soil.size(), std::size_t(piece + 1) * chunk);
+    for (std::size_t k = std::size_t(piece) * chunk; k < end; ++k) {
+      const auto& point = soil[std::size_t(points.numbers()[k])];
+      const Vec<D> half = half_size<D>(point);
+      near_points[k] = {point.position, half, slack + (1 + 1e-12) * half.maxCoeff()};
+      widest[std::size_t(piece)] = std::max(widest[std::size_t(piece)], near_points[k].reach);
+    }
+  });
+  const double reach = chunks > 0 ? *std::max_element(widest.begin(), widest.end()) : 0;
+  for (std::size_t k = 0; k < rocks->shapes.size(); ++k) rocks->outline(int(k), outline_spacing * cell);
+  std::vector<RockFound> found(rocks->all.size());
+  workers_->for_each(std::int64_t(found.size()), [&](std::int64_t k) {
+    const auto& rock = rocks->all[std::size_t(k)];
     const auto& shape = rocks->shapes[std::size_t(rock.shape)];
     const RockOutline<D> outline(shape, rock.body.orientation);
-    feet.clear();
-    points.each_near(rock.body.centre, shape.bounding_radius() + reach, [&](long p) {
-      const auto& point = soil[std::size_t(p)];
+    RockFound& here = found[std::size_t(k)];
+    std::vector<Foot> feet;
+    points.each_entry_near(rock.body.centre, shape.bounding_radius() + reach, [&](long entry) {
+      const Near& point = near_points[std::size_t(entry)];
       Vec<D> outward;
       const Vec<D> r = point.position - rock.body.centre;
-      // No domain reaches farther than its corners, swollen by half.
-      const double near_enough = slack + 1.5 * point.half.norm();
-      const double distance = outline.distance(r, near_enough, outward);
-      if (distance > near_enough) return;
-      const double gap = distance - half_width<D>(point, outward);
+      const double distance = outline.distance(r, point.reach, outward);
+      if (distance > point.reach) return;
+      const double gap = distance - point.half.cwiseProduct(outward).norm();
       if (gap < slack) feet.push_back({r - distance * outward, outward, gap});
     });
-    if (feet.empty()) continue;
-    sweeps_ = std::max(sweeps_, rock_sweeps);
+    here.near_soil = !feet.empty();
+    if (!here.near_soil) return;
     const auto& places = rocks->outline(rock.shape, outline_spacing * cell);
-    rocks->pressed[k].resize(places.size(), Vec<D>::Zero());
+    rocks->pressed[std::size_t(k)].resize(places.size(), Vec<D>::Zero());
     for (std::size_t number = 0; number < places.size(); ++number) {
       const auto& place = places[number];
       const Vec<D> r = to_world<D>(rock.body.orientation, place.at);
@@ -95,22 +118,26 @@ void Bodies<D>::detect_rocks(const Grid<D>& grid, const Planes<D>& planes, const
       // stands over it. Soil under a block does not touch its front: their normals differ.
       double gap = 1e300;
       for (const auto& foot : feet) {
-        const bool here = (foot.place - r).squaredNorm() < near * near && foot.normal.dot(normal) > 0.5;
-        if (here) gap = std::min(gap, foot.gap + foot.normal.dot(foot.place - r));
+        const bool about = (foot.place - r).squaredNorm() < near * near && foot.normal.dot(normal) > 0.5;
+        if (about) gap = std::min(gap, foot.gap + foot.normal.dot(foot.place - r));
       }
       typename Grid<D>::Index nearest;
       const Vec<D> at = rock.body.centre + r;
       if (gap > slack || !nearest_node(grid, at, nearest) || planes.is_mirror(grid.flat(nearest))) continue;
-      const std::size_t before = surface_.size();
       SurfacePoint point;
-      point.body = int(all.size() + k);
+      point.body = int(all.size()) + int(k);
       point.normal = normal;
-      hold_at(grid, planes, point, 0, at);
-      if (surface_.size() == before) continue;
-      const Mat<D> soil_part = surface_.back().mobility * Mat<D>::Identity();
+      if (!hold_at(grid, planes, point, 0, at)) continue;
+      const Mat<D> soil_part = point.mobility * Mat<D>::Identity();
       const Mat<D> mobility = soil_part + rock.body.mobility(r, r);
-      rocks->surface.push_back({r, mobility, mobility.inverse(), std::max(0.0, gap), number});
+      here.points.push_back(point);
+      here.of_rock.push_back({r, mobility, mobility.inverse(), std::max(0.0, gap), number});
     }
+  });
+  for (const RockFound& here : found) {
+    if (here.near_soil) sweeps_ = std::max(sweeps_, rock_sweeps);
+    surface_.insert(surface_.end(), here.points.begin(), here.points.end());
+    rocks->surface.insert(rocks->surface.end(), here.of_rock.begin(), here.of_rock.end());
   }
   rocks->soil_contacts = long(rocks->surface.size());
   rocks->soil_seconds += wall_seconds() - begin;
@@ -129,14 +156,16 @@ void Bodies<D>::predict_rocks(const Vec<D>& gravity, double dt) {
 template <int D>
 void Bodies<D>::press_rocks(Grid<D>& grid) {
   const std::size_t first = surface_.size() - rocks->surface.size();
-  for (std::size_t k = first; k < surface_.size(); ++k) {
-    auto& point = surface_[k];
-    const auto& here = rocks->surface[k - first];
-    const std::size_t number = std::size_t(point.body) - all.size();
-    const auto& rock = rocks->all[number];
-    point.now = rocks->step * to_world<D>(rock.body.orientation, rocks->pressed[number][here.place]);
-    push_rock(k, point.now, grid, true);
-  }
+  each_run(false, [&](const Run& run) {
+    for (std::size_t k = std::max(first, run.first); k < run.last; ++k) {
+      auto& point = surface_[k];
+      const auto& here = rocks->surface[k - first];
+      const std::size_t number = std::size_t(point.body) - all.size();
+      const auto& rock = rocks->all[number];
+      point.now = rocks->step * to_world<D>(rock.body.orientation, rocks->pressed[number][here.place]);
+      push_rock(k, point.now, grid, true);
+    }
+  });
   for (auto& each : rocks->pressed) std::fill(each.begin(), each.end(), Vec<D>::Zero());
 }
 

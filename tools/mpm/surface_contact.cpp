@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tools/mpm/bodies.hpp"
+#include "tools/mpm/clock.hpp"
 #include "tools/mpm/rocks.hpp"
 #include "tools/mpm/touching.hpp"
 
@@ -23,8 +24,7 @@ unsigned char faces_touched(const Grid<D>& grid, const Outline& outline, const V
   const Vec<D> r = point.position - centre;
   const double distance = outline.distance(r, outward, point.half);
   if (distance > slack + 0.5 * grid.cell.sum()) return 0;  // the roots below are for few points
-  const double swollen = D == 2 ? std::sqrt(point.F.determinant()) : std::cbrt(point.F.determinant());
-  const Vec<D> half = swollen * point.half;
+  const Vec<D> half = half_size<D>(point);
   if (distance > slack + half.cwiseProduct(outward).norm()) return 0;
   const Vec<D> foot = r - distance * outward;
   if (!outline.spans(foot, half)) return 0;
@@ -93,13 +93,14 @@ void Bodies<D>::add_node(const Grid<D>& grid, const Planes<D>& planes, const typ
   point.weight[point.count++] = weight;
 }
 
-/// Adds a point of the surface to those that are held. A node of little mass, which the soil only just reaches, would
-/// take the impulse and leave the soil where it is (a plate on an elastic block: 16 % of the stress lost): it is left
-/// out, and moves with a prescribed body or a plate if it lies in it: alone, a node outside of the soil has forces that
-/// fall more slowly than its mass, and grows unstable. In rocks that cost a ball of points another 4 % of its speed.
+/// Whether a point of the surface is one of those that are held. A node of little mass, which the soil only just
+/// reaches, would take the impulse and leave the soil where it is (a plate on an elastic block: 16 % of the stress
+/// lost): it is left out, and moves with a prescribed body or a plate if it lies in it: alone, a node outside of the
+/// soil has forces that fall more slowly than its mass, and grows unstable. In rocks that cost a ball of points another
+/// 4 % of its speed.
 template <int D>
-void Bodies<D>::hold(SurfacePoint& point, const Grid<D>& grid, double time) {
-  if (point.count == 0) return;
+bool Bodies<D>::hold(SurfacePoint& point, const Grid<D>& grid, double time) {
+  if (point.count == 0) return false;
   constexpr double little = 0.1;  // of the mass per weight at the node of most weight
   const int most = int(std::max_element(point.weight, point.weight + point.count) - point.weight);
   const double usual = grid.nodes[point.node[most]].mass / point.weight[most];
@@ -125,7 +126,7 @@ void Bodies<D>::hold(SurfacePoint& point, const Grid<D>& grid, double time) {
     point.weight[j] /= sum;
     point.mobility += point.weight[j] * point.weight[j] / grid.nodes[point.node[j]].mass;
   }
-  surface_.push_back(point);
+  return true;
 }
 
 /// Weights at a point of a surface along one axis. GIMP carries a uniform stress to the edge of a point's domain as the
@@ -143,12 +144,12 @@ void Bodies<D>::hold_point(const Grid<D>& grid, const Planes<D>& planes, Surface
   if (!nearest_node(grid, at, nearest) || planes.is_mirror(grid.flat(nearest)) || !has_soil_near(grid, nearest, face)) {
     return;
   }
-  hold_at(grid, planes, point, time, at);
+  if (hold_at(grid, planes, point, time, at)) surface_.push_back(point);
 }
 
 /// By the nodes that reach a place, which is in the box of the grid.
 template <int D>
-void Bodies<D>::hold_at(const Grid<D>& grid, const Planes<D>& planes, SurfacePoint& point, double time,
+bool Bodies<D>::hold_at(const Grid<D>& grid, const Planes<D>& planes, SurfacePoint& point, double time,
                         const Vec<D>& at) {
   typename Grid<D>::Index base;
   double weight[D][3];
@@ -163,7 +164,7 @@ void Bodies<D>::hold_at(const Grid<D>& grid, const Planes<D>& planes, SurfacePoi
     }
     add_node(grid, planes, node, product, point);
   }
-  hold(point, grid, time);
+  return hold(point, grid, time);
 }
 
 /// A point whose nodes lie in one column along an axis.
@@ -180,7 +181,7 @@ void Bodies<D>::hold_in_column(const Grid<D>& grid, const Planes<D>& planes, Sur
     node[axis] = base + j;
     add_node(grid, planes, node, weight[j], point);
   }
-  hold(point, grid, time);
+  if (hold(point, grid, time)) surface_.push_back(point);
 }
 
 /// m/s, of the soil.
@@ -211,38 +212,68 @@ Vec<D> Bodies<D>::along_surface(const Body<D>& body, const SurfacePoint& point, 
   return along;
 }
 
+/// Runs that other threads could take are worth it from so many points on.
+constexpr std::size_t least_shared_points = 256;
+
+template <int D>
+void Bodies<D>::find_levels(const Grid<D>& grid) {
+  if (workers_->count() == 1 || surface_.size() < least_shared_points) return;
+  level_at_.assign(grid.nodes.size(), 0);
+  for (std::size_t first = 0; first < surface_.size();) {
+    std::size_t last = first;
+    int level = 0;
+    for (; last < surface_.size() && surface_[last].body == surface_[first].body; ++last) {
+      const auto& point = surface_[last];
+      for (int j = 0; j < point.count; ++j) level = std::max(level, level_at_[point.node[j]]);
+    }
+    for (std::size_t k = first; k < last; ++k)
+      for (int j = 0; j < surface_[k].count; ++j) level_at_[surface_[k].node[j]] = level + 1;
+    if (levels_.size() == std::size_t(level)) levels_.emplace_back();
+    levels_[std::size_t(level)].push_back({first, last});
+    first = last;
+  }
+}
+
+/// The impulse at one point, as those at the others are now.
+template <int D>
+void Bodies<D>::hold_here(std::size_t k, Grid<D>& grid, double time, bool end) {
+  auto& point = surface_[k];
+  if (point.body >= int(all.size())) return hold_rock(k, grid, end);
+  const auto& body = all[point.body];
+  if (body.pressed()) return;
+  const Vec<D> relative = velocity_at(grid, point, end) - body.velocity.at(time);
+  const Vec<D> wanted = point.now - relative / point.mobility;
+  const double across = std::max(0.0, wanted.dot(point.normal));
+  const Vec<D> more = across * point.normal + along_surface(body, point, wanted, across) - point.now;
+  if (more.isZero(0)) return;
+  point.now += more;
+  push(grid, point, more, end);
+}
+
 /// Impulses that keep the soil from entering: across the surface they only push, along it they act up to friction.
 template <int D>
 void Bodies<D>::hold_surface(Grid<D>& grid, double time, bool end) {
   for (auto& point : surface_) point.now.setZero();
-  const bool pressed = end && rocks != nullptr && !rocks->soil.ghosts;
+  const bool of_rocks = rocks != nullptr && !rocks->soil.ghosts, pressed = end && of_rocks;
+  const double begin = of_rocks ? wall_seconds() : 0;
   if (pressed) press_rocks(grid);
   for (int sweep = 0; sweep < sweeps_; ++sweep) {
-    for (std::size_t k = 0; k < surface_.size(); ++k) {
-      const std::size_t at = sweep % 2 == 0 ? k : surface_.size() - 1 - k;  // to and fro: sides alike
-      auto& point = surface_[at];
-      if (point.body >= int(all.size())) {
-        hold_rock(at, grid, end);
-        continue;
-      }
-      const auto& body = all[point.body];
-      if (body.pressed()) continue;
-      const Vec<D> relative = velocity_at(grid, point, end) - body.velocity.at(time);
-      const Vec<D> wanted = point.now - relative / point.mobility;
-      const double across = std::max(0.0, wanted.dot(point.normal));
-      const Vec<D> more = across * point.normal + along_surface(body, point, wanted, across) - point.now;
-      if (more.isZero(0)) continue;
-      point.now += more;
-      push(grid, point, more, end);
-    }
+    const bool fro = sweep % 2 == 1;  // to and fro: sides alike
+    each_run(fro, [&](const Run& run) {
+      for (std::size_t k = run.first; k < run.last; ++k)
+        hold_here(fro ? run.first + run.last - 1 - k : k, grid, time, end);
+    });
     for (auto& body : all) {
       if (body.pressed()) hold_plate(body, grid, end);
     }
   }
   if (pressed) keep_pressed();
   for (auto& point : surface_) (end ? point.at_end : point.at_start) += point.now;
+  if (of_rocks) rocks->soil_seconds += wall_seconds() - begin;
 }
 
+template void Bodies<2>::find_levels(const Grid<2>&);
+template void Bodies<3>::find_levels(const Grid<3>&);
 template void Bodies<2>::detect_surface(const Grid<2>&, const Planes<2>&, const std::vector<Point<2>>&, int, double,
                                         Workers&);
 template void Bodies<2>::hold_surface(Grid<2>&, double, bool);
@@ -255,7 +286,7 @@ template Vec<2> Bodies<2>::along_surface(const Body<2>&, const SurfacePoint&, co
 template Vec<3> Bodies<3>::along_surface(const Body<3>&, const SurfacePoint&, const Vec<3>&, double);
 template void Bodies<2>::push(Grid<2>&, SurfacePoint&, const Vec<2>&, bool) const;
 template void Bodies<3>::push(Grid<3>&, SurfacePoint&, const Vec<3>&, bool) const;
-template void Bodies<2>::hold_at(const Grid<2>&, const Planes<2>&, SurfacePoint&, double, const Vec<2>&);
-template void Bodies<3>::hold_at(const Grid<3>&, const Planes<3>&, SurfacePoint&, double, const Vec<3>&);
+template bool Bodies<2>::hold_at(const Grid<2>&, const Planes<2>&, SurfacePoint&, double, const Vec<2>&);
+template bool Bodies<3>::hold_at(const Grid<3>&, const Planes<3>&, SurfacePoint&, double, const Vec<3>&);
 
 }  // namespace mpm

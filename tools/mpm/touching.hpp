@@ -33,11 +33,11 @@ inline bool nearest_node(const Grid<D>& grid, const Vec<D>& at, typename Grid<D>
   return true;
 }
 
-/// m, from a point to the end of its domain along a direction: of its first form and the size that its volume tells.
+/// m, half sides of a point's domain: of its first form and the size that its volume tells.
 template <int D>
-inline double half_width(const Point<D>& point, const Vec<D>& direction) {
+inline Vec<D> half_size(const Point<D>& point) {
   const double swollen = D == 2 ? std::sqrt(point.F.determinant()) : std::cbrt(point.F.determinant());
-  return (swollen * point.half).cwiseProduct(direction).norm();
+  return swollen * point.half;
 }
 
 /// Numbers of points by the cell that they are in, in their order.
@@ -56,14 +56,21 @@ class PointsByCell {
     auto next = begin_;
     for (std::size_t k = 0; k < points.size(); ++k) numbers_[std::size_t(next[std::size_t(cells[k])]++)] = long(k);
   }
+  /// Numbers in the order of the cells.
+  const std::vector<long>& numbers() const { return numbers_; }
   /// visit(number) for the points in all cells that a box about a place, of this half side (m), reaches.
   template <class Visit>
   void each_near(const Vec<D>& centre, double half, const Visit& visit) const {
+    each_entry_near(centre, half, [&](long k) { visit(numbers_[std::size_t(k)]); });
+  }
+  /// The same with where the point stands in numbers().
+  template <class Visit>
+  void each_entry_near(const Vec<D>& centre, double half, const Visit& visit) const {
     const auto first = cell_of(centre.array() - half), last = cell_of(centre.array() + half);
     auto cell = first;
     while (true) {
       const auto flat = std::size_t(grid_.flat(cell));
-      for (long k = begin_[flat]; k < begin_[flat + 1]; ++k) visit(numbers_[std::size_t(k)]);
+      for (long k = begin_[flat]; k < begin_[flat + 1]; ++k) visit(k);
       int axis = 0;
       while (axis < D && ++cell[axis] > last[axis]) cell[axis] = first[axis], ++axis;
       if (axis == D) return;

@@ -232,9 +232,9 @@ SIDE = '[[boundary]]\nname = "{name}"\nkind = "roller"\naxis = "{axis}"\nat_m = 
 
 
 def cost():
-    print("\nCost: 0.05 s of 50,000 points with spheres of 0.3 m in them (three points across), one thread\n")
-    print("contact   rocks  points   steps   s a million   soil on rocks   among rocks   contacts with soil\n"
-          "                                  point-steps        %              %")
+    print("\nCost: 0.05 s of 50,000 points with spheres of 0.3 m in them (three points across); the shares on one thread\n")
+    print("contact   rocks  points   steps   s a million   on two    soil on rocks   among rocks   contacts with soil\n"
+          "                                  point-steps   threads        %              %")
     sides = "".join(SIDE.format(name=f"{axis}{k}", axis=axis, at=5 * k, soil=("above", "below")[k])
                     for axis in "xy" for k in (0, 1))
     box = 4.8 * 4.8 * 1.8
@@ -245,9 +245,10 @@ def cost():
             scene.write_text(FIELD.format(contact=contact, sides=sides, share=count * np.pi / 6 * 0.027 / box))
             h, printed = run(name, scene, "-j", "1")
             points, rocks, soil, rate = shares(printed)
+            two = shares(run(name + "_two", scene, "-j", "2")[1])[-1]
             with h5py.File(folder / name / "points_0000.h5") as file:
                 n = len(file["position_m"])
-            print(f"{contact:<9} {count:<6} {n:<8} {int(h['steps'][-1]):<7} {1 / rate:<13.2f} "
+            print(f"{contact:<9} {count:<6} {n:<8} {int(h['steps'][-1]):<7} {1 / rate:<13.2f} {1 / two:<9.2f} "
                   f"{100 * soil / points:<15.1f} {100 * rocks / points:<13.2f} {int(h['rocks.soil_contacts'][-1])}",
                   flush=True)
 
