@@ -2,6 +2,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "rvelab/solver/kernels/ellipses.hpp"
 #include "tests/catch.hpp"
 #include "tests/oracle/ellipse_pairs.hpp"
 
@@ -9,6 +10,35 @@ using namespace rvelab;
 using namespace rvelab::test;
 
 namespace {
+
+/// Rows of the grains of some pairs, and the pairs as the kernels have them, without images.
+struct ManyPairs {
+  std::vector<double> rows;
+  std::vector<std::int32_t> i, j;
+  std::vector<std::uint8_t> shifted;
+
+  explicit ManyPairs(const std::vector<EllipsePair<double>>& pairs) : shifted(pairs.size() / 8, 0) {
+    const auto add = [this](double x, double y, const EllipseMatrix<double>& m) {
+      const auto at = std::int32_t(rows.size());
+      rows.insert(rows.end(), {x, y, 0, 0, 0, 0, 0, 0, m.xx, m.xy, m.yy, m.sharpest});
+      return at;
+    };
+    for (const auto& pair : pairs) {
+      i.push_back(add(0, 0, pair.i));
+      j.push_back(add(pair.x, pair.y, pair.j));
+    }
+  }
+  template <int W>
+  std::vector<double> places() const {
+    PairArrays arrays;
+    arrays.row_i = i.data();
+    arrays.row_j = j.data();
+    arrays.shifted = shifted.data();
+    std::vector<double> found(std::size_t(place_row_length) * i.size());
+    ellipse_pair_places<W>({}, arrays, rows.data(), 0, long(i.size()), found.data());
+    return found;
+  }
+};
 
 struct Found {
   Direction<double> normal;
@@ -132,6 +162,28 @@ TEST_CASE("Ellipses with one centre are told apart by the shortest way out", "[s
   const Found f = found({0, 0, i.matrix(), j.matrix()});
   CHECK(f.gap.overlap == Approx(1.5));
   CHECK(std::abs(-f.normal.x * std::sin(0.3) + f.normal.y * std::cos(0.3)) == Approx(1));
+}
+
+TEST_CASE("Places of many pairs of ellipses are those of each alone, whoever its neighbours", "[solver]") {
+  EllipsePairs draws(7);
+  std::vector<EllipsePair<double>> pairs;
+  for (std::size_t k = 0; k < 1200; ++k) pairs.push_back(draws.draw(meetings[(k + k / 8) % meetings.size()]));
+  const ManyPairs many(pairs);
+  const std::vector<double> one = many.places<1>(), two = many.places<2>();
+  CHECK(one == two);
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const Found alone = found(pairs[k]);
+    const double half_slope = 0.5 * alone.gap.slope;
+    const double expected[place_row_length] = {alone.normal.x,
+                                               alone.normal.y,
+                                               alone.gap.overlap,
+                                               alone.gap.support_i,
+                                               alone.gap.support_j,
+                                               alone.gap.turned_i - half_slope,
+                                               alone.gap.turned_j - half_slope,
+                                               0};
+    for (std::size_t c = 0; c < place_row_length; ++c) REQUIRE(one[place_row_length * k + c] == expected[c]);
+  }
 }
 
 TEST_CASE("Lanes of ellipses are those of one alone, bit for bit", "[solver]") {

@@ -260,8 +260,8 @@ Collisions ahead(const Model& f, const Assembly& a, const RowSums* known, bool f
   if (!find_step || f.options.collision_steps == 0) return found;
 
   const std::vector<double> force = resultants_in<dimension_of(shape)>(f, a);
-  // The sums are a third of a look: where those of the softest pair ask for no shorter step, none would (time of dense
-  // discs 0.98, of ellipses 0.97).
+  // Where the sums of the softest pair ask for no shorter step, those of none would (400 discs 1.02, 1,000 spheres 1.04
+  // times as fast).
   const double least = known == nullptr && outlook.step > 0 ? least_row_sum(f, a, all.least_kn) : 0;
   if (least > 0) {
     const GrainMotion motion = motion_of<shape>(
