@@ -147,7 +147,7 @@ double constraints_over_motions(const Model& f, const Assembly& a) {
   touching.reserve(a.pairs.order.size());
   for (const std::int32_t place : a.pairs.order) {
     const auto p = std::size_t(place);
-    if (!(pair(p).overlap > 0)) continue;
+    if (pair.is_apart(p) || !(pair(p).overlap > 0)) continue;
     touching.push_back(place);
     ++contacts[std::size_t(a.pairs.i[p])];
     ++contacts[std::size_t(a.pairs.j[p])];

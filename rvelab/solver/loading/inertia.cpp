@@ -122,7 +122,8 @@ class TermsOfPairs {
         firm_overlap_(0.25 * a.state.reference_overlap) {}
 
   inline __attribute__((always_inline)) PairTerms<D> operator()(std::size_t p) const {
-    const auto place = pair_(p);
+    decltype(pair_(p)) place{};
+    if (!pair_.is_apart(p)) place = pair_(p);
     const double overlap = place.overlap;
     double ratio = 1;
     // What may come to touch may do so where its curvature is least.
