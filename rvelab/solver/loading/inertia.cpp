@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "rvelab/lanes/vectors.hpp"
 #include "rvelab/solver/assembly/contact_states.hpp"
 #include "rvelab/solver/assembly/contact_stiffness.hpp"
 #include "rvelab/solver/assembly/gather_table.hpp"
@@ -16,14 +17,14 @@ namespace rvelab {
 
 namespace {
 
-/// Symmetric D x D matrix.
-template <int D>
+/// Symmetric D x D matrix, or one in each lane.
+template <int D, class V = double>
 struct Symmetric {
-  double xx = 0, xy = 0, yy = 0, xz = 0, yz = 0, zz = 0;
+  V xx = {}, xy = {}, yy = {}, xz = {}, yz = {}, zz = {};
 };
-template <>
-struct Symmetric<2> {
-  double xx = 0, xy = 0, yy = 0;
+template <class V>
+struct Symmetric<2, V> {
+  V xx = {}, xy = {}, yy = {};
 };
 
 /// along n n + across I.
@@ -54,31 +55,46 @@ inline __attribute__((always_inline)) void add_to(Symmetric<D>& m, const Symmetr
 /// Largest eigenvalue of a symmetric positive matrix, from above: exact in the plane, (tr M^8)^(1/8) in space, at most
 /// 3^(1/8) = 1.15 too much. Nothing that depends on the axes (row sums) will do: the scaled masses, and with them the
 /// path, must not know how the specimen is turned. An eigenvalue solver took a tenth of the stepping time.
-double largest_eigenvalue(const Symmetric<2>& m) {
-  const double half = 0.5 * (m.xx + m.yy), difference = 0.5 * (m.xx - m.yy);
-  return half + std::sqrt(difference * difference + m.xy * m.xy);
+template <class V>
+V largest_eigenvalue(const Symmetric<2, V>& m) {
+  const V half = 0.5 * (m.xx + m.yy), difference = 0.5 * (m.xx - m.yy);
+  return half + square_root(difference * difference + m.xy * m.xy);
 }
 /// a times a. The terms are added in the order of Eigen's product, of which this was one: masses keep their bits.
-void square(const double (&a)[3][3], double (&of)[3][3]) {
+template <class V>
+inline __attribute__((always_inline)) void square(const V (&a)[3][3], V (&of)[3][3]) {
   for (int j = 0; j < 3; ++j) {
     for (int i = 0; i < 2; ++i) of[i][j] = (a[i][0] * a[0][j] + a[i][1] * a[1][j]) + a[i][2] * a[2][j];
     of[2][j] = a[2][0] * a[0][j] + (a[2][1] * a[1][j] + a[2][2] * a[2][j]);
   }
 }
-/// By numbers, not by matrices, which are written one by one and read by twos: 33 ns instead of 75.
-double largest_eigenvalue(const Symmetric<3>& m) {
-  const double scale = m.xx + m.yy + m.zz;
-  if (!(scale > 0)) return 0;
-  const double xx = m.xx / scale, xy = m.xy / scale, yy = m.yy / scale;
-  const double xz = m.xz / scale, yz = m.yz / scale, zz = m.zz / scale;
-  double two[3][3], four[3][3];
-  square({{xx, xy, xz}, {xy, yy, yz}, {xz, yz, zz}}, two);
-  square(two, four);
+/// By numbers, two grains at a time (1,000 spheres 1.02 times as fast): 33 ns a grain one by one, 75 by matrices.
+template <class V>
+V largest_eigenvalue(const Symmetric<3, V>& m) {
+  const V scale = m.xx + m.yy + m.zz, zero = V{};
+  const V xx = m.xx / scale, xy = m.xy / scale, yy = m.yy / scale;
+  const V xz = m.xz / scale, yz = m.yz / scale, zz = m.zz / scale;
+  V two[3][3], four[3][3];
+  square<V>({{xx, xy, xz}, {xy, yy, yz}, {xz, yz, zz}}, two);
+  square<V>(two, four);
   const auto squared = [&](int i, int j) { return four[i][j] * four[i][j]; };
-  const double one_half = (squared(0, 0) + squared(2, 0)) + (squared(1, 1) + squared(0, 2));
-  const double other_half = (squared(1, 0) + squared(0, 1)) + (squared(2, 1) + squared(1, 2));
-  const double norm = std::sqrt((one_half + other_half) + squared(2, 2));
-  return scale * std::sqrt(std::sqrt(norm));
+  const V one_half = (squared(0, 0) + squared(2, 0)) + (squared(1, 1) + squared(0, 2));
+  const V other_half = (squared(1, 0) + squared(0, 1)) + (squared(2, 1) + squared(1, 2));
+  const V norm = square_root((one_half + other_half) + squared(2, 2));
+  const V largest = scale * square_root(square_root(norm));
+  return scale > 0.0 ? largest : zero;
+}
+
+/// Of two matrices.
+template <int D>
+V2 largest_eigenvalues(const Symmetric<D>& a, const Symmetric<D>& b) {
+  Symmetric<D, V2> both{{a.xx, b.xx}, {a.xy, b.xy}, {a.yy, b.yy}};
+  if constexpr (D == 3) {
+    both.xz = V2{a.xz, b.xz};
+    both.yz = V2{a.yz, b.yz};
+    both.zz = V2{a.zz, b.zz};
+  }
+  return largest_eigenvalue(both);
 }
 
 /// What a grain collects from its pairs.
@@ -265,8 +281,13 @@ RowSums sums_over_pairs(const Model& f, const Assembly& a) {
   sums.translation.resize(n);
   if (dashpot) sums.dashpot.resize(n);
   in_pieces(n, f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t g = first; g < last; g += 2) {
+      const std::size_t next = std::min(g + 1, last - 1);
+      const V2 largest = largest_eigenvalues(of_grain[g].stiffness, of_grain[next].stiffness);
+      sums.translation[g] = std::max(largest[0], of_grain[g].stiffest);
+      sums.translation[next] = std::max(largest[next - g], of_grain[next].stiffest);
+    }
     for (std::size_t g = first; g < last; ++g) {
-      sums.translation[g] = std::max(largest_eigenvalue(of_grain[g].stiffness), of_grain[g].stiffest);
       sums.rotation[g] = std::max(of_grain[g].rotation, of_grain[g].stiffest_turn);
       if (dashpot) sums.dashpot[g] = of_grain[g].dashpot;
     }
