@@ -3,7 +3,7 @@
 // constant over them, so that its impulse is exact. Points of soil touch a rock at its surface (rock_surface.cpp) or as
 // balls (ghost_contact.cpp).
 //
-// Everything is done in the order of the rocks' numbers and by one thread: rocks are few beside the points.
+// Everything is done in the order of the rocks' numbers, and among rocks by one thread: they are few beside the points.
 #pragma once
 
 #include <limits>

@@ -105,11 +105,10 @@ inline __attribute__((always_inline)) bool turn_downhill(EllipseScratch& s, long
     put_direction(s, k, Direction<V>{open ? next.x : n.x, open ? next.y : n.y});
     return true;
   }
-  const Direction<V> before = n;
   turn_to_least(pair, n, gap);
   const V infinite = V{} + __builtin_inf();
   gap.overlap = open ? infinite : gap.overlap;
-  put_direction(s, k, Direction<V>{open ? before.x : n.x, open ? before.y : n.y});
+  put_direction(s, k, n);
   put_gap(s, k, gap);
   return false;
 }
