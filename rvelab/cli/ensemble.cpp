@@ -193,15 +193,8 @@ void run_ensemble(const Ensemble& ensemble, const std::string& folder, TestOptio
                 (folder.empty() ? "their records are not kept without -o" : "continue with --resume"));
   }
   const ensemble::Summary summary = ensemble::summary_of(finished);
-  const auto tell_failures = [&failures] {
-    for (const std::string& failure : failures) tell(failure);
-  };
-  try {
-    if (!folder.empty()) write_summary(folder, ensemble, finished, summary, failures);
-  } catch (...) {  // a full disk has ended the tests too
-    tell_failures();
-    throw;
-  }
+  for (const std::string& failure : failures) tell(failure);  // before the summary, which a full disk refuses too
+  if (!folder.empty()) write_summary(folder, ensemble, finished, summary, failures);
   if (options.json) {
     std::cout << as_json(ensemble, finished, summary, failures).dump(1, ' ', false, Json::error_handler_t::replace)
               << std::endl;
@@ -212,7 +205,6 @@ void run_ensemble(const Ensemble& ensemble, const std::string& folder, TestOptio
     std::cout << "wall_s  " << in_words(wall.count()) << std::endl;
   }
   if (failures.empty()) return;
-  tell_failures();
   throw Error(std::to_string(failures.size()) + " of " + std::to_string(tests.size()) +
               " tests could not be carried out; the summary is of the others");
 }

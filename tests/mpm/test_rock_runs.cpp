@@ -153,6 +153,8 @@ kind = "half_space"
 centre_m = [0, 0, 0.5]
 normal = [0, 0, -1]
 pressure_Pa = 1e4
+pressure_until_s = 0.005
+motion = [[0, 0, 0, 0], [0.005, 0, 0, -0.5]]
 [output]
 frame_every_s = 0.01
 history_every_s = 0.001

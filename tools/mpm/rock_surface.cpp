@@ -74,7 +74,7 @@ void Bodies<D>::detect_rocks(const Grid<D>& grid, const Planes<D>& planes, const
   // What a rock reads of a point, in the order in which it comes to them.
   struct Near {
     Vec<D> position, half;  ///< m
-    double reach;           ///< m, no farther does it touch
+    double reach;           ///< m, no farther does it touch, rounding included
   };
   std::vector<Near> near_points(soil.size());
   const long chunks = (long(soil.size()) + chunk - 1) / chunk;
@@ -108,7 +108,7 @@ void Bodies<D>::detect_rocks(const Grid<D>& grid, const Planes<D>& planes, const
     });
     here.near_soil = !feet.empty();
     if (!here.near_soil) return;
-    const auto& places = rocks->outline(rock.shape, outline_spacing * cell);
+    const auto& places = rocks->kept_outline(rock.shape);
     rocks->pressed[std::size_t(k)].resize(places.size(), Vec<D>::Zero());
     for (std::size_t number = 0; number < places.size(); ++number) {
       const auto& place = places[number];

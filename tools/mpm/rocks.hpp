@@ -3,7 +3,8 @@
 // constant over them, so that its impulse is exact. Points of soil touch a rock at its surface (rock_surface.cpp) or as
 // balls (ghost_contact.cpp).
 //
-// Everything is done in the order of the rocks' numbers, and among rocks by one thread: they are few beside the points.
+// Everything is done in the order of the rocks' numbers. Contacts among rocks run on one thread: rocks are few beside
+// the points.
 #pragma once
 
 #include <limits>
@@ -77,21 +78,25 @@ class Rocks {
   struct SurfacePlace {
     Vec<D> at, normal;  ///< m, from the centre, along the principal axes
   };
-  /// Points of the surface of a shape, about this far apart (m); kept.
+  /// Points of the surface of a shape, about this far apart (m); kept. Not for several threads.
   const std::vector<SurfacePlace>& outline(int shape, double spacing);
+  /// Those that are kept.
+  const std::vector<SurfacePlace>& kept_outline(int shape) const { return outlines_[std::size_t(shape)]; }
   std::vector<Rock<D>> all;
   RockSoil soil;
   double thickness = 1;             ///< m, of the plane
   double steps_per_collision = 50;  ///< sub-steps of the shortest collision
   double first_energy = 0;          ///< J, of all rocks at the start
   double contact_loss = 0, soil_work = 0, wall_work = 0;
-  double work_on_soil = 0;               ///< J, of rocks on the soil
-  double wall_power = 0;                 ///< W, of moving walls at the end of the sub-step before
-  std::vector<Vec<D>> wall_impulse;      ///< N s, of the rocks on each wall
-  std::vector<Vec<D>> wall_force;        ///< N, of the rocks on each wall at the end of the sub-step before
-  double seconds = 0, soil_seconds = 0;  ///< wall time: of rocks among themselves, of soil against them
-  long sub_steps = 0, touching = 0;      ///< since the start; contacts of rocks and walls now
-  long soil_contacts = 0;                ///< with points or surface points of soil, at the last step
+  double work_on_soil = 0;           ///< J, of rocks on the soil
+  double wall_power = 0;             ///< W, of moving walls at the end of the sub-step before
+  std::vector<Vec<D>> wall_impulse;  ///< N s, of the rocks on each wall
+  std::vector<Vec<D>> wall_force;    ///< N, of the rocks on each wall at the end of the sub-step before
+  /// Wall time: of rocks among themselves; of soil against them (detection and sweeps, at the surface those over bodies
+  /// too).
+  double seconds = 0, soil_seconds = 0;
+  long sub_steps = 0, touching = 0;  ///< since the start; contacts of rocks and walls now
+  long soil_contacts = 0;            ///< with points or surface points of soil, at the last step
 
   long left_out = 0;           ///< points that would have stood in rocks at the start
   double left_out_volume = 0;  ///< m^3, of soil, with what was cut from others

@@ -93,7 +93,8 @@ void Bodies<D>::add_node(const Grid<D>& grid, const Planes<D>& planes, const typ
   point.weight[point.count++] = weight;
 }
 
-/// Whether a point of the surface is one of those that are held. A node of little mass, which the soil only just
+/// Completes a point of the surface; false: no node with soil reaches it. Of rocks it changes the point alone, so that
+/// threads may call it. A node of little mass, which the soil only just
 /// reaches, would take the impulse and leave the soil where it is (a plate on an elastic block: 16 % of the stress
 /// lost): it is left out, and moves with a prescribed body or a plate if it lies in it: alone, a node outside of the
 /// soil has forces that fall more slowly than its mass, and grows unstable. In rocks that cost a ball of points another
@@ -217,7 +218,7 @@ constexpr std::size_t least_shared_points = 256;
 
 template <int D>
 void Bodies<D>::find_levels(const Grid<D>& grid) {
-  if (workers_->count() == 1 || surface_.size() < least_shared_points) return;
+  if (workers_->count() == 1 || rocks->surface.empty() || surface_.size() < least_shared_points) return;
   level_at_.assign(grid.nodes.size(), 0);
   for (std::size_t first = 0; first < surface_.size();) {
     std::size_t last = first;
@@ -234,7 +235,7 @@ void Bodies<D>::find_levels(const Grid<D>& grid) {
   }
 }
 
-/// The impulse at one point, as those at the others are now.
+/// Sweeps one point: its impulse, with those at the others as they are now.
 template <int D>
 void Bodies<D>::hold_here(std::size_t k, Grid<D>& grid, double time, bool end) {
   auto& point = surface_[k];

@@ -8,6 +8,7 @@ and what rocks cost. Runs that are whole in FOLDER are used again."""
 
 import filecmp
 import re
+import shutil
 import subprocess
 
 import h5py
@@ -243,6 +244,8 @@ def cost():
             name = f"field_{contact}_{count}"
             scene = folder.resolve() / f"{name}.toml"
             scene.write_text(FIELD.format(contact=contact, sides=sides, share=count * np.pi / 6 * 0.027 / box))
+            for each in (name, name + "_two"):  # times of one program
+                shutil.rmtree(folder / each, ignore_errors=True)
             h, printed = run(name, scene, "-j", "1")
             points, rocks, soil, rate = shares(printed)
             two = shares(run(name + "_two", scene, "-j", "2")[1])[-1]

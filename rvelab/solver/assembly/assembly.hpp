@@ -79,7 +79,9 @@ struct PairTable {
   std::size_t listed = 0;           ///< pairs without the padding
   std::size_t near = 0;             ///< the first of them, computed at every step (kernels/configuration.hpp)
   std::vector<std::int32_t> order;  ///< places of the pairs in the order of (i, j, image)
-  std::vector<std::uint8_t> touched, shifted;  ///< kernels/configuration.hpp
+  /// kernels/configuration.hpp. Sums over pairs pass over what has not touched: forces must be those of the places that
+  /// the grains have.
+  std::vector<std::uint8_t> touched, shifted;
   std::vector<std::int32_t> i, j;
   std::vector<std::int32_t> row_i, row_j;  ///< i, j times the length of a grain row
   std::vector<Image> image;

@@ -8,7 +8,7 @@
 
 namespace rvelab {
 
-/// Pairs of grains of a shape from the arrays of an assembly: their branches.
+/// Pairs of grains of a shape from the arrays of an assembly, looked at one by one.
 template <Shape shape>
 class PairGeometry {
  public:
@@ -72,7 +72,7 @@ class PairPlaces : public PairGeometry<shape> {
     if constexpr (is_round(shape)) {
       return this->round_place(p);
     } else {
-      const double* row = rows_.get() + place_row_length * p;
+      const double* row = places_.get() + place_row_length * p;
       const Branch b = this->branch(p);
       return OutlinePlace{b, b.length(), row[2], {row[0], row[1], 0}, row[3], row[4], row[5], row[6]};
     }
@@ -89,13 +89,13 @@ class PairPlaces : public PairGeometry<shape> {
  private:
   void find(const Model& f, const Assembly& a);
 
-  std::unique_ptr<double[]> rows_;
+  std::unique_ptr<double[]> places_;
 };
 
 template <Shape shape>
 void PairPlaces<shape>::find(const Model& f, const Assembly& a) {
   const std::size_t padded = a.pairs.padded();
-  rows_ = std::make_unique_for_overwrite<double[]>(place_row_length * padded);
+  places_ = std::make_unique_for_overwrite<double[]>(place_row_length * padded);
   StepConstants c;
   c.lattice = upper_triangle(a.cell.lattice);
   PairArrays pairs;
@@ -103,9 +103,9 @@ void PairPlaces<shape>::find(const Model& f, const Assembly& a) {
   pairs.row_j = a.pairs.row_j.data();
   for (int k = 0; k < dimension_of(shape); ++k) pairs.image[k] = a.pairs.image_number[k].data();
   pairs.shifted = a.pairs.shifted.data();
-  const PlaceKernel places = f.kernels_at(a.state.quasi_static).places;
+  const PlaceKernel find_places = f.kernels_at(a.state.quasi_static).places;
   in_pieces(padded, f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
-    places(c, pairs, a.rows.data(), long(first), long(last), rows_.get());
+    find_places(c, pairs, a.rows.data(), long(first), long(last), places_.get());
   });
 }
 

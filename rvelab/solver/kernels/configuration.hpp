@@ -115,10 +115,11 @@ using PairKernel = void (*)(const StepConstants&, const PairArrays&, const doubl
 using GrainKernel = void (*)(const StepConstants&, const GrainArrays&, const PairArrays&, long begin, long end,
                              StepSums*);
 
-/// Doubles that a kernel of places writes for a pair: n_x, n_y, overlap, h_i, h_j, torques of a force of 1 along n on i
-/// and on j (kernels/ellipses.hpp), 0; m.
+/// Doubles that a kernel of places writes for a pair: n_x, n_y, and in m overlap (< 0: apart by that or more), h_i,
+/// h_j, torques of a force of 1 along n on i and on j (kernels/ellipses.hpp), 0.
 constexpr int place_row_length = 8;
-/// Reads rows, images and, of the constants, the lattice.
+/// Of the pairs [begin, end), multiples of eight; pair p goes to places + 8 p. Reads rows, images and, of the
+/// constants, the lattice.
 using PlaceKernel = void (*)(const StepConstants&, const PairArrays&, const double* grain_rows, long begin, long end,
                              double* places);
 

@@ -146,10 +146,12 @@ inline __attribute__((always_inline)) auto is_least_nearby(const EllipseGap<V>& 
   return magnitude_of(g.slope) <= 1e-10 * g.curvature;
 }
 /// Whether f is least so near, a turn of |u| <= 5e-5 away, u = -f'/f'', that its derivatives at hand tell where, to
-/// 1e-10 of n or better.
+/// 1e-10 of n or better: f'' changes by a thousandth on the way.
 template <class V>
 inline __attribute__((always_inline)) auto is_near_least(const EllipseGap<V>& g) {
-  return (g.slope * g.slope <= 2.5e-9 * (g.curvature * g.curvature)) & (g.curvature > 0.0);
+  const V squared = g.curvature * g.curvature;
+  return (g.slope * g.slope <= 2.5e-9 * squared) & (magnitude_of(g.slope * g.third) <= 1e-3 * squared) &
+         (g.curvature > 0.0);
 }
 /// Whether steps go on.
 template <class V>
@@ -183,10 +185,10 @@ inline __attribute__((always_inline)) auto is_shallow(const EllipsePair<V>& p, c
   return g.overlap <= p.i.sharpest + p.j.sharpest;
 }
 
-/// Evaluations of f before a pair is left to the search; 17 were the most that 4e5 shallow contacts took. Contacts at
-/// aspect 0.743, 1/3 and 1/10 take 2.0, 2.7 and 3.5 from the first direction on (2.9, 3.4 and 4.3 where the last one
-/// only confirms: a sub-step takes 1.1 times as long). In one run (AVX2, ns a pair, confirmed): Halley 48, 62, 86;
-/// Newton 55, 79, 279; the least of 16 directions, then Halley, 117, 120, 127.
+/// Evaluations of f before a pair is left to the search; 11 were the most that 3e5 shallow contacts took. Contacts at
+/// aspect 0.743, 1/3 and 1/10 take 2.0, 2.7 and 3.5 from the first direction on (2.9, 3.4 and 4.3 with a last one
+/// that confirms: a sub-step takes 1.1 times as long, eight lanes). In one run with that last one (AVX2, ns a pair):
+/// Halley 48, 62, 86; Newton 55, 79, 279; the least of 16 directions, then Halley, 117, 120, 127.
 constexpr int halley_steps = 24;
 
 }  // namespace

@@ -33,13 +33,12 @@ struct Outlook {
   Matrix3 rate = Matrix3::Zero();  ///< velocity gradient of the cell, cell frame, 1/s
   double horizon = 0;              ///< s, until the next check
   double increment = 0;            ///< s, of the whole increment: what the rate makes of the overlaps in it
-  double step = 0;                 ///< s, the sub-step in use where nothing asks for a shorter one; 0: none
+  double step = 0;                 ///< s, the sub-step in use: only shorter ones matter; 0: all do
 };
 
 /// Goes through all listed pairs that touch, or that meet within the horizon at their present velocities. The
-/// velocities must be physical (dt > 0). Row sums are made where they are not at hand (null) and could tell of a step
-/// shorter than the one in use: one that is not shorter may then come out too short. With `find_step` false only `deep`
-/// is found.
+/// velocities must be physical (dt > 0). Row sums are made where they are not at hand (null) and could matter: a step
+/// that is not shorter than the one in use is then a lower bound. With `find_step` false only `deep` is found.
 Collisions collisions_ahead(const Model& model, const Assembly& assembly, const RowSums* sums, bool find_step,
                             const Outlook& outlook);
 

@@ -138,7 +138,7 @@ class TermsOfPairs {
         firm_overlap_(0.25 * a.state.reference_overlap) {}
 
   inline __attribute__((always_inline)) PairTerms<D> operator()(std::size_t p) const {
-    decltype(pair_(p)) place{};
+    decltype(pair_(p)) place{};  // of no overlap
     if (!pair_.is_apart(p)) place = pair_(p);
     const double overlap = place.overlap;
     double ratio = 1;
