@@ -62,7 +62,6 @@ Matrix3 moment_of(const Assembly& a, const PairGeometry<shape>& pair, std::size_
   double m[9] = {};
   for (std::size_t k = first; k < last; ++k) {
     const auto p = std::size_t(a.pairs.order[k]);
-    if (pair.is_apart(p)) continue;
     const Branch b = pair.branch(p);
     for (int r = 0; r < D; ++r) {
       m[3 * r] += force[row * p + std::size_t(r)] * b.x;
@@ -122,7 +121,6 @@ ContactSums contacts_in(const Model& f, const Assembly& a, const PairPlaces<shap
   const double* force = a.pairs.force.data();
   for (std::size_t k = first; k < last; ++k) {
     const auto p = std::size_t(a.pairs.order[k]);
-    if (pair.is_apart(p)) continue;
     const auto i = std::size_t(a.pairs.i[p]), j = std::size_t(a.pairs.j[p]);
     const double overlap = pair(p).overlap;
     if (!std::isfinite(overlap)) sums.finite = false;
@@ -149,7 +147,7 @@ void gather_resultants(const Model& f, const Assembly& a, const PairPlaces<shape
   constexpr int D = dimension_of(shape);
   each_pair_of_grains<D>(a.pairs, first, last, [&](std::size_t g, std::size_t p, bool as_j) {
     // The place of a pair that opened still holds the moment of rolling until the kernel passes by.
-    if (pair.is_apart(p) || !(pair(p).overlap > 0)) return;
+    if (!(pair(p).overlap > 0)) return;
     const bool own_image = a.pairs.i[p] == a.pairs.j[p];
     if (own_image && as_j) return;  // both at once where the grain is i, as above
     add_resultant<D>(f, a.pairs, p, g, as_j, resultants + resultant_row<D> * g);
