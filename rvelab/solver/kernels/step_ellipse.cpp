@@ -1,7 +1,7 @@
 // Step kernels of ellipses, for one instruction set or the scalar reference (step_kernels.hpp).
 //
 // Declared in instruction_sets.hpp.
-#include "rvelab/solver/kernels/ellipse_places.hpp"
+#include "rvelab/solver/kernels/ellipses.hpp"
 #include "rvelab/solver/kernels/instruction_sets.hpp"
 #include "rvelab/solver/kernels/step_kernels.hpp"
 
