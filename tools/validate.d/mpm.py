@@ -61,19 +61,6 @@ def peak_of(axial, q):
     return q[k] / 1e3, axial[k], q[(axial > 0.1) & (axial < 0.16)].mean() / 1e3
 
 
-missed = []  # bars
-
-
-def verdict(what, found, asked, met):
-    if not met:
-        missed.append(what)
-    print(f"{what:<76} {found:<20} {asked:<22} {'met' if met else 'MISSED'}", flush=True)
-
-
-def tell_missed():
-    print(f"\n{len(missed)} missed" + (": " + "; ".join(missed) if missed else ""))
-
-
 def grain_steps(printed):
     """Of a run and of those that it went on from: the last figure counts them all."""
     return float(printed.replace(",", "").rsplit("grain-steps ", 1)[1].split()[0])

@@ -4,9 +4,10 @@ import h5py
 import numpy as np
 
 from mpm_fluid_runs import (
-    GRAVITY, SOLIDS, WATER, cell_test, columns, costs, elastic_scene, frame_at, frames, mean_of, run, verdict,
+    GRAVITY, SOLIDS, WATER, cell_test, columns, costs, elastic_scene, frame_at, frames, mean_of, run,
     void_ratio, watched)
 from mpm import folder, specimen
+from verdict import verdict
 
 
 # --- consolidation ----------------------------------------------------------------------------------------------------

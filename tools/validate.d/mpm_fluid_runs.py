@@ -1,4 +1,4 @@
-"""Runs of saturated scenes and what is read of them; verdicts. Used by mpm_fluid_scenes.py."""
+"""Runs of saturated scenes and what is read of them. Used by mpm_fluid_scenes.py."""
 
 import os
 import subprocess
@@ -15,17 +15,10 @@ import mpm as scenes  # noqa: E402
 # Of the environment: threads of each run, more options of rvelab-mpm for single parts, seeds of the shaken soils.
 THREADS = ["-j", os.environ["RVELAB_MPM_THREADS"]] if "RVELAB_MPM_THREADS" in os.environ else []
 SOLIDS, WATER, GRAVITY = 2650.0, 1000.0, 9.81  # kg/m3, m/s2
-missed = []
 
 
 def run(name, scene, *options):
     return scenes.run(name, scene, *options, *THREADS)
-
-
-def verdict(what, found, asked, met):
-    if not met:
-        missed.append(what)
-    print(f"{what:<80} {found:<24} {asked:<26} {'met' if met else 'MISSED'}", flush=True)
 
 
 def told(options):

@@ -10,12 +10,12 @@ column, wave, wave_far, scan: trends that the paper describes, at reduced size; 
 again, and those that were stopped go on."""
 
 
-from mpm_fluid_runs import missed
 from mpm_fluid_blocks import consolidation, cyclic, drained, mandel, undrained, undrained_64
 from mpm_fluid_soils import column, shaking
 from mpm_fluid_waves import scan, wave, wave_far
 from records import STYLE, plt
 from mpm import cases, folder
+from verdict import tell_verdicts
 
 
 PARTS = {"consolidation": consolidation, "undrained": undrained, "undrained_64": undrained_64, "drained": drained,
@@ -28,7 +28,7 @@ def main():
     plt.rcParams.update(STYLE)
     for part in cases or [part for part in PARTS if part != "shaking"]:
         PARTS[part]()
-    print(f"\n{len(missed)} missed" + (": " + "; ".join(missed) if missed else ""))
+    tell_verdicts()
 
 
 if __name__ == "__main__":

@@ -5,7 +5,8 @@ import os
 import h5py
 import numpy as np
 
-from mpm_fluid_runs import GRAVITY, SOLIDS, WATER, costs, family, frame_at, frames, run, told, verdict, watched
+from mpm_fluid_runs import GRAVITY, SOLIDS, WATER, costs, family, frame_at, frames, run, told, watched
+from verdict import verdict
 from mpm import folder, picture, results
 
 

@@ -6,9 +6,10 @@ import h5py
 import numpy as np
 
 from mpm_fluid_runs import (
-    SOLIDS, WATER, cell_test, costs, elastic_scene, frame_at, frames, run, told, verdict, watched)
+    SOLIDS, WATER, cell_test, costs, elastic_scene, frame_at, frames, run, told, watched)
 from mpm_fluid_blocks import oedometer
 from mpm import folder, picture, results, specimen
+from verdict import verdict
 
 
 # --- waves ------------------------------------------------------------------------------------------------------------

@@ -10,7 +10,8 @@ to the tests of all fine grains. Runs that are whole in FOLDER are used again.""
 
 import numpy as np
 
-from mpm import between_plates, folder, peak_of, run, tell_missed, verdict
+from mpm import between_plates, folder, peak_of, run
+from verdict import tell_verdicts, verdict
 
 DRAWN, PRESSURE, NU, SOLID = 0.045, 50e3, 0.12, 2600
 SEEDS = (1, 2, 3)
@@ -157,4 +158,4 @@ for kind, cells in POINTS.items():
         verdict(f"{share} %, strain at the peak", f"{ratio:.2f}", "1 +- 0.2", abs(ratio - 1) < 0.2)
     print()
 
-tell_missed()
+tell_verdicts()

@@ -9,7 +9,8 @@ one point, where no node carries soil of both sides of a rock (the soil without 
 
 import numpy as np
 
-from mpm import between_plates, peak_of, run, tell_missed, verdict
+from mpm import between_plates, peak_of, run
+from verdict import tell_verdicts, verdict
 
 EDGE = 0.0375  # m
 SCENE = "mixture_triaxial.toml"
@@ -144,4 +145,4 @@ def elastic_mixtures(cell):
 for cell in CELLS:
     mixtures(cell)
     elastic_mixtures(cell)
-tell_missed()
+tell_verdicts()

@@ -14,7 +14,8 @@ import subprocess
 import h5py
 import numpy as np
 
-from mpm import ROOT, folder, mpm, picture, results, run, tell_missed, verdict
+from mpm import ROOT, folder, mpm, picture, results, run
+from verdict import tell_verdicts, verdict
 
 
 def momentum(name):
@@ -261,4 +262,4 @@ block()
 floating()
 boulders()
 cost()
-tell_missed()
+tell_verdicts()

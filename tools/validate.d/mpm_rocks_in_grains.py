@@ -12,7 +12,8 @@ import subprocess
 import h5py
 import numpy as np
 
-from mpm import ROOT, folder, picture, results, run, rvelab, specimen, tell_missed, verdict
+from mpm import ROOT, folder, picture, results, run, rvelab, specimen
+from verdict import tell_verdicts, verdict
 
 EDGE, BEGINS, SEEDS = 0.7, 0.05, (1, 2, 3)
 STRAINS = np.array([0.2, 0.5, 1, 1.5, 2, 2.5, 3]) / 100
@@ -130,4 +131,4 @@ for what in mean:
             abs(ratio - 1) < 0.1)
 picture(folder / "with_rocks_1_one", "--field", "eps_q", "-o", results / "mpm_rocks_in_grains.png")
 
-tell_missed()
+tell_verdicts()

@@ -8,7 +8,8 @@ are whole in FOLDER are used again."""
 
 import numpy as np
 
-from mpm import between_plates, cases, run, tell_missed, verdict
+from mpm import between_plates, cases, run
+from verdict import tell_verdicts, verdict
 
 EDGES, BEGINS = (0.075, 0.075, 0.15), 0.02  # m, s
 SOIL = {200: (3.0e6, 471), 400: (4.8e6, 871), 800: (8.5e6, 1671)}  # Pa, kPa: E, and q at which the soil alone yields
@@ -88,4 +89,4 @@ for pressure in pressures:
         verdict("200 kPa, first drawing: q at the surface over that of ghosts at 14.5 %", " ".join(f"{x:.3f}" for x in ratios),
                 "0.95 to 1.05", all(0.95 <= x <= 1.05 for x in ratios))
 
-tell_missed()
+tell_verdicts()
