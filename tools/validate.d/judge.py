@@ -1,6 +1,6 @@
 """Verdicts of kept tables by the bars of today, without making their runs again.
 
-    judge.py RVELAB FOLDER RESULTS TABLE...     # mpm_fluid_scenes, mpm_shaking, mpm_pipe, steady_state
+    judge.py RVELAB FOLDER RESULTS TABLE...     # mpm_fluid_scenes, mpm_shaking, mpm_pipe, steady_state, pieces
 
 What a table measured is read from its rows as they were printed, and judged by the functions that judge a new run; runs that
 isolate a cause are made, or found in FOLDER. The rows of a group are written again where its first one stood, and the third line
@@ -14,7 +14,7 @@ import mpm_fluid_soils as soils
 import mpm_fluid_waves as waves
 import mpm_scenes
 import steady_state
-from mpm import cases, folder, results
+from mpm import ROOT, cases, folder, results
 
 NOTE = "# verdicts of {}: by the present bars, from the figures that the runs printed (judge.py)"
 
@@ -67,7 +67,7 @@ def mpm_fluid_scenes():
     def columns():
         soils.column_bars(excess, water, dry, fronts, peaks, soils.column_causes())
 
-    table.replace(["column: ", "Mohr-Coulomb soil of", "medium column with linear"], columns)
+    table.replace(["column: ", "Mohr-Coulomb soil of"], columns)
     packings = list(waves.PACKINGS)
     near = {case: table.found(f"wave, {case}: speed of the fronts over that of Rayleigh, right and left") for case in packings}
     elastic = table.found("wave: elastic soil, moduli of the isotropic packing: the same ratio")[0]
@@ -114,11 +114,25 @@ def large_shear():
     table.write("porosity 0.282")
 
 
+def pieces():
+    """Time ratio and its bar, then error, standard error and tolerance of each quarter, by the constant of pieces.cpp."""
+    table = Table("pieces")
+    by_chance = float(re.search(r"by_chance = ([\d.]+);", (ROOT / "tools/validate.d/pieces.cpp").read_text())[1])
+    for k, line in enumerate(table.lines):
+        if not line.endswith((" met", " MISSED")):
+            continue
+        ratio, bar, *quarters = map(float, line.split()[-15:-1])
+        met = ratio <= bar and all(error <= allowed + by_chance * scatter
+                                   for error, scatter, allowed in zip(quarters[::3], quarters[1::3], quarters[2::3]))
+        table.lines[k] = re.sub(r"(met|MISSED)$", "met" if met else "MISSED", line)
+    table.write("the means")
+
+
 def main():
     folder.mkdir(parents=True, exist_ok=True)
     for name in cases:
         {"mpm_fluid_scenes": mpm_fluid_scenes, "mpm_shaking": mpm_shaking, "mpm_pipe": mpm_pipe,
-         "steady_state": large_shear}[name]()
+         "steady_state": large_shear, "pieces": pieces}[name]()
 
 
 if __name__ == "__main__":

@@ -104,31 +104,26 @@ rough = false
 
 
 def column_causes():
-    """What the front and the pressure hang on: cells, base, points, shape functions, by a Mohr-Coulomb soil, seconds each; and
-    the medium column with the linear shape functions of the paper."""
+    """What front and pressure hang on: cells, base, points, shape functions, the surface, by a Mohr-Coulomb soil, seconds each."""
     cells = (0.1, 0.05, 0.025)
     fronts = [soil_column(f"column_soil_{cell:g}", cell=cell)[0] for cell in cells]
     base = soil_column("column_soil_friction", base=SMOOTH)[0]
-    dry = soil_column("column_soil_paper", "grid.shape=linear", points=25)
-    spline, linear = soil_column("column_soil_wet", water=True), soil_column(
-        "column_soil_wet_paper", "grid.shape=linear", points=25, water=True)
-    print(f"Mohr-Coulomb soil of {ANGLE} degrees in the same scene, no dilation: front at 0.5 s with cells of 0.1, 0.05, 0.025 m "
-          + ", ".join(f"{each:.3f}" for each in fronts)
-          + f";\n    with base friction 0.4 instead of a rough base {base:.3f}; with the paper's linear shape functions and 25 points a\n"
-          f"    cell {dry[0]:.3f}; saturated {spline[0]:.3f}, as the paper's {linear[0]:.3f}, peak of E_k over the dry one of the same\n"
-          f"    shape functions {linear[2] / dry[2]:.3f}; mean excess pressure at 0.06 s {spline[1]:.0f}, {linear[1]:.0f} Pa")
-    name = "column_linear_medium"
-    family("medium")
-    h, _ = run(name, "column_saturated.toml", "--case", "medium", "--set", "grid.shape=linear", "--set", "time.duration_s=0.62")
-    grains = front(frame_at(name, GATE + 0.5)) - 1
-    print(f"medium column with linear shape functions: front at 0.5 s {grains:.3f}; excess pressure at 0.06, 0.2 s "
-          + ", ".join(f"{np.mean(frame_at(name, GATE + t)['excess_pore_pressure_Pa']):.0f}" for t in (0.06, 0.2)) + " Pa")
-    costs(name)
-    print()
-    # Aitken's limit of a sequence over halved cells.
+    dry, dry_linear, wet, wet_linear, closed = (
+        soil_column(f"column_soil_{name}", *options, points=25, water=water)
+        for name, water, options in (
+            ("dry_25", False, ()), ("dry_linear", False, ["grid.shape=linear"]), ("wet_25", True, ()),
+            ("wet_linear", True, ["grid.shape=linear"]), ("membrane", True, ['fluid.free_surface="membrane"'])))
     first, last = np.diff(fronts)
-    return {"fronts": fronts, "limit": fronts[-1] + last**2 / (first - last), "base": base, "still": spline[1],
-            "wet": spline[0], "linear": linear[0], "ratio": linear[2] / dry[2], "grains": grains}
+    causes = {"fronts": fronts, "limit": fronts[-1] + last**2 / (first - last), "base": base, "still": wet[1],
+              "wet": wet[0], "linear": wet_linear[0], "slower": wet_linear[0] / wet[0],
+              "weaker": (wet_linear[2] / dry_linear[2]) / (wet[2] / dry[2])}
+    told = lambda *values: ", ".join(f"{value:.3f}" for value in values)
+    print(f"Mohr-Coulomb soil of {ANGLE} degrees in the same scene, no dilation: front at 0.5 s with cells of 0.1, 0.05, 0.025 m\n"
+          f"    {told(*fronts)}, Aitken's limit {causes['limit']:.3f}; base friction 0.4 instead of a rough base {base:.3f}. With 25 points a cell,\n"
+          f"    B-splines and linear shape functions: dry {told(dry[0], dry_linear[0])}, saturated {told(wet[0], wet_linear[0])}, peak of E_k of the\n"
+          f"    saturated over the dry one {told(wet[2] / dry[2], wet_linear[2] / dry_linear[2])}; mean excess pressure at 0.06 s {wet[1]:.0f}, "
+          f"{wet_linear[1]:.0f} Pa;\n    B-splines, no pressure given at free surfaces: front {told(closed[0])}\n")
+    return causes
 
 
 def column_bars(excess, water, dry, fronts, peaks, causes):
@@ -148,16 +143,21 @@ def column_bars(excess, water, dry, fronts, peaks, causes):
             and causes["limit"] > 1,
             cause=f"cells of 0.1 m hold the front back: Mohr-Coulomb soil has {cells} m in cells of 0.1, 0.05, 0.025 m, in the limit\n"
                   f"    {causes['limit']:.2f}; the base matters little ({causes['base']:.2f} with friction 0.4)")
+    moved = [each * causes["slower"] for each in fronts]
     verdict("column: the same, dense, medium, loose", ", ".join(f"{value:.3f}" for value in fronts), "< 0.2 m, it just touches",
             max(fronts) < 0.2,
-            explained=causes["grains"] < 0.2 and causes["linear"] < 0.75 * causes["wet"],
-            cause="the paper's linear shape functions hold saturated soil back, which can change no volume: the medium column has\n"
-                  f"    {causes['grains']:.3f} m with them, Mohr-Coulomb soil {causes['linear']:.2f} instead of {causes['wet']:.2f}")
+            # Points are half a cell apart: so well is a front known.
+            explained=max(moved) < 0.2 + 0.05,
+            cause="the paper's linear shape functions hold back saturated soil, which can change no volume: Mohr-Coulomb soil comes\n"
+                  f"    {causes['linear']:.2f} m far with them, {causes['wet']:.2f} with B-splines; in that ratio the three have "
+                  + ", ".join(f"{each:.2f}" for each in moved))
     verdict("column: their order", "", "dense <= medium <= loose", fronts[0] <= fronts[1] <= fronts[2])
+    weaker = [each * causes["weaker"] for each in peaks]
     verdict("column: peak of E_k over the dry one, dense, medium, loose", ", ".join(f"{peak:.3f}" for peak in peaks),
             "< 0.6, rising", max(peaks) < 0.6 and peaks[0] < peaks[1] < peaks[2],
-            explained=peaks[0] < peaks[1] < peaks[2] < 1 and causes["ratio"] < 0.6,
-            cause=f"the same shape functions: with them the peak of Mohr-Coulomb soil is {causes['ratio']:.2f} of the dry one's")
+            explained=peaks[0] < peaks[1] < peaks[2] and max(weaker) < 0.6,
+            cause="the same shape functions: they make the ratio of Mohr-Coulomb soil smaller by "
+                  f"{causes['weaker']:.2f}, these " + ", ".join(f"{each:.2f}" for each in weaker))
 
 
 # --- shaking ----------------------------------------------------------------------------------------------------------

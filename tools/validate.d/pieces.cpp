@@ -37,8 +37,8 @@ constexpr double by_value = 0.003;         ///< strain
 constexpr int quarters = 4, pauses = 100;
 constexpr double quarter_length = 2.5e-3;
 constexpr double displacement = 5e-7;  ///< over the radius
-/// Standard errors that a mean may be beyond its tolerance. Some 50 means are looked at that are independent: one of them is
-/// beyond two by chance in most runs of the table, beyond three in one of fifteen.
+/// Standard errors that a mean may be beyond its tolerance. Some 50 means are looked at that are independent: one of
+/// them is beyond two by chance in most runs of the table, beyond three in one of fifteen.
 constexpr double by_chance = 3;
 
 /// A deviator of unit largest principal value whose axes are turned, in the space of deviators, by an angle.
