@@ -31,14 +31,14 @@ class Table:
         return [float(each) for each in numbers[1].split(",")]
 
     def replace(self, whats, judge, *figures):
-        """The rows that begin so, and the reasons below them, by what judge(*figures) prints."""
+        """The rows that begin so, and what is indented below them, by what judge(*figures) prints."""
         printed = io.StringIO()
         with contextlib.redirect_stdout(printed):
             judge(*figures)
         kept, first, skipping = [], None, False
         for line in self.lines:
             old = any(line.startswith(what) for what in whats)
-            skipping = old or (skipping and line.startswith("    why:"))
+            skipping = old or (skipping and line.startswith("    "))
             if not old and not skipping:
                 kept.append(line)
             elif first is None:
@@ -53,7 +53,7 @@ class Table:
         text = re.sub(r"\n\d+ missed[^\n]*$", f"\n{len(missed)} missed"
                       + (": " + "; ".join(re.split(r"  +", line)[0] for line in missed) if missed else "")
                       + f"; {different} differ from their source, with the cause", text)
-        self.path.write_text(text + "\n")
+        self.path.write_text(re.sub(r"\n{3,}", "\n\n", text).rstrip("\n") + "\n")
 
 
 def mpm_fluid_scenes():
@@ -72,12 +72,21 @@ def mpm_fluid_scenes():
     near = {case: table.found(f"wave, {case}: speed of the fronts over that of Rayleigh, right and left") for case in packings}
     elastic = table.found("wave: elastic soil, moduli of the isotropic packing: the same ratio")[0]
     table.replace([f"wave, {case}: speed of the fronts" for case in packings], waves.near_bars, near, elastic)
-    sides = dict(zip(packings, (table.found(f"wave: right over left of u_x, {each}")[0]
-                                for each in ("0 degrees", "30 degrees", "isotropic"))))
-    table.replace(["wave: right over left of u_x"], waves.sides_bars, sides, waves.surface_of_30())
+    kinds = ("0 degrees", "30 degrees", "isotropic")
+    try:
+        sides = [table.found(f"wave: right over left of u_x, {each}")[0] for each in kinds]
+    except StopIteration:  # judged before
+        sides = [table.found(f"wave: right over left of u_x, {kinds[0]}")[0], table.found("    30 degrees:")[0],
+                 table.found(f"wave: right over left of u_x, {kinds[2]}")[0]]
+    table.replace(["wave: right over left of u_x", "    30 degrees:"], waves.sides_bars, *sides)
     what = "wave, 44 x 20 m: amplitudes of u_x on the surface, right over left,"
-    far = [table.found(f"{what} {each}")[0] for each in ("0 degrees", "30 degrees", "isotropic")]
-    table.replace([what], waves.far_bars, *far)
+    far = [table.found(f"{what} {each}")[0] for each in kinds]
+
+    def far_and_near():
+        waves.far_bars(*far)
+        waves.inclined_bar(sides[1], far[1])
+
+    table.replace([what, "wave, 21 x 10 m: right over left"], far_and_near)
     table.write("the column, the waves")
 
 
