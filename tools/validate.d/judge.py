@@ -104,7 +104,7 @@ def mpm_shaking():
 
 def mpm_pipe():
     table = Table("mpm_pipe")
-    found = [table.found(what)[0] for what in ("vertical peak ", "vertical, sideways ", "horizontal plateau ")]
+    found = [table.found(what)[0] for what in ("vertical peak", "vertical, sideways", "horizontal plateau")]
     table.replace(["vertical peak", "vertical, sideways", "horizontal plateau"], mpm_scenes.pipe_bars, *found)
     table.write("the forces")
 
