@@ -199,7 +199,7 @@ def shaking():
                 "{:.2f}, {:.2f}".format(*medium["contacts"]), "falls",
                 medium["contacts"][1] < medium["contacts"][0])
     if len(SEEDS) > 1:
-        onset_bars([found[seed, "medium"]["onset"] for seed in SEEDS])
+        onset_bars([found["medium", seed]["onset"] for seed in SEEDS])
 
 
 def onset_bar(seed, onset):

@@ -263,4 +263,5 @@ def main():
         sys.exit("thin: bars missed")
 
 
-main()
+if __name__ == "__main__":
+    main()
