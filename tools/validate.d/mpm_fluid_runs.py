@@ -96,16 +96,31 @@ poisson_ratio = {poisson:g}
 """
 
 
-def elastic_scene(name, scene, edits, **moduli):
-    """FOLDER/name.toml: a scene without its cases, an elastic soil in place of its grains, and further edits."""
+MOHR_COULOMB = """[[material]]
+name = "{name}"
+kind = "mohr_coulomb"
+density_kg_m3 = {density:g}
+young_modulus_Pa = 5e6
+poisson_ratio = 0.3
+friction_angle_deg = {angle:g}
+
+"""
+
+
+def continuum_scene(name, scene, edits, material):
+    """FOLDER/name.toml: a scene without its cases, a continuum in place of its grains, and further edits."""
     text = (scenes.ROOT / "protocols/mpm" / scene).read_text().split("\n[case.")[0]
     begin, end = text.index("[[material]]"), text.index("[[region]]")
-    text = text[:begin] + ELASTIC.format(**moduli) + text[end:]
+    text = text[:begin] + material + text[end:]
     for old, new in edits:
         text = text.replace(old, new)
     path = folder / f"{name}.toml"
     path.write_text(text)
     return path.resolve()
+
+
+def elastic_scene(name, scene, edits, **moduli):
+    return continuum_scene(name, scene, edits, ELASTIC.format(**moduli))
 
 
 # --- column -----------------------------------------------------------------------------------------------------------

@@ -9,11 +9,15 @@ pure: upright and oriented specimens of discs, compressed at constant volume to 
 dt > 0 and at dt = 0, at dt = 0 of pack_medium and pack_dense 20 each of 400 grains and ten of 1600: heights of the upright
 cell, p and sin phi by strain, of the records that are not flagged as thin; which are.
 
+    thin.py --kept TABLE...: the verdicts of pure shear of kept tables anew, by their figures.
+
 Bars: no thin cell in simple shear. In pure shear every record of a thin cell is flagged and told, and p and sin phi of
-the others are within three standard errors of those of oriented cells; below ten mean diameters
-they are off, and the run tells of a low cell.
+the others are as in oriented cells, as far as means of so many specimens tell; below ten mean diameters they are off, and the
+run tells of a low cell. Where a higher cell differs by as much at the same strain (1600 grains beside 400), it is no matter of the
+height: the row says DIFFERS.
 """
 import pathlib
+import re
 import subprocess
 import sys
 import time
@@ -40,6 +44,93 @@ to_strain = {strain}
 record_every = {every}
 {more}
 """
+
+
+COMPARISONS = 60  # of means in cells higher than ten diameters, in all tables of pure shear
+LEVEL = 0.01  # that one of them is beyond the bar by chance: one false alarm in a hundred makings of the tables
+
+
+def beyond(freedom):
+    """What Student's t of so many degrees of freedom exceeds, to both sides, with a chance of LEVEL / COMPARISONS."""
+    t = np.linspace(0, 200, 2_000_001)
+    density = (1 + t**2 / freedom) ** (-(freedom + 1) / 2)
+    above = 1 - np.cumsum(density) / density.sum()
+    return float(t[np.argmax(above < LEVEL / COMPARISONS)])
+
+
+class Row:
+    """Of a table of pure shear: what is printed before the verdict; height over d; p over that of oriented cells and its standard
+    error; differences of p and sin phi over their standard errors."""
+
+    def __init__(self, text):
+        self.text = text
+        self.height = float(text.split()[3])
+        compared = re.search(r"   +([\d.]+) +(-?[\d.]+) +(-?[\d.]+)$", text) if len(text.split()) > 12 else None
+        self.compared = [float(each) for each in compared.groups()] if compared else None
+
+    def strain(self):
+        return self.text.split()[0]
+
+    def error(self):
+        """Of p over that of oriented cells; at least what rounding in the table leaves."""
+        ratio, apart, _ = self.compared
+        return max(abs(ratio - 1), 0.005) / max(abs(apart), 0.05)
+
+
+def judge(tables):
+    """Prints tables (head, seeds, rows, tail) of one recipe, one size after the other; missed bars."""
+    missed = 0
+    for k, (head, seeds, rows, tail) in enumerate(tables):
+        bar, different = beyond(2 * seeds - 2), []
+        print(head, flush=True)
+        for row in rows:
+            word = ""
+            if row.compared and max(map(abs, row.compared[1:])) > bar:
+                others = [other for j, table in enumerate(tables) if j != k for other in table[2]
+                          if other.strain() == row.strain() and other.compared and other.height >= 10]
+                same = [other for other in others
+                        if abs(other.compared[0] - row.compared[0]) <= 3 * np.hypot(row.error(), other.error())]
+                if row.height < 10:
+                    word = " low"
+                elif same and abs(row.compared[2]) <= bar:
+                    word = " DIFFERS"
+                    different.append(f"{row.compared[0]:.2f} at {row.height:.0f} d, {same[0].compared[0]:.2f} at {same[0].height:.0f} d")
+                else:
+                    word = " MISSED"
+                    missed += 1
+            print(row.text + word, flush=True)
+        print(tail + f"; bar {bar:.1f} standard errors", flush=True)
+        if different:
+            print("  why: p depends on how the edges of the periodic cell lie to the strain, not on its height: over that of oriented\n"
+                  "  cells at the same strain " + "; ".join(different), flush=True)
+    return missed
+
+
+def kept(path):
+    """A kept table with new verdicts of its pure shear."""
+    lines, k, missed = pathlib.Path(path).read_text().splitlines(), 0, 0
+    groups = {}
+    head = re.compile(r"pure shear at constant volume, (dt [>=] 0), (pack_\w+), (\d+) grains")
+    plain = lambda line: re.sub(r" (MISSED|low|DIFFERS)$", "", line)
+    while k < len(lines):
+        found = head.match(lines[k])
+        if not found:
+            if groups:
+                missed += sum(judge(tables) for tables in groups.values())
+                groups = {}
+            if lines[k] != "thin: bars missed":
+                print(lines[k])
+            k += 1
+            continue
+        end = next(j for j in range(k, len(lines)) if "told of as low" in lines[j])
+        each = {"pack_loose": 5, "pack_medium": 20, "pack_dense": 20}[found[2]]
+        seeds = each if found[3] == "400" else 10
+        groups.setdefault((found[1], found[2]), []).append(
+            (lines[k], seeds, [Row(plain(line)) for line in lines[k + 1:end]], lines[end].split("; bar")[0]))
+        k = end + 1
+        while k < len(lines) and lines[k].startswith(("  why:", "  cells at")):
+            k += 1
+    return missed + sum(judge(tables) for tables in groups.values())
 
 
 def call(*words):
@@ -101,10 +192,11 @@ def simple_shear(program, work, recipes, at_rate):
 
 
 def pure_shear(program, work, at_rate, recipe="pack_loose", number=400, seeds=5):
-    print(f"pure shear at constant volume, dt {'> 0' if at_rate else '= 0'}, {recipe}, {number} grains: Hencky strain; upright height over "
-          "d; upright, oriented: records, thin, p, sin phi; p over that of oriented cells; differences over their standard errors")
-    edges, found, heights = np.linspace(0, 2, 11), {}, []
-    missed = told = to_tell = 0
+    """A table for judge(), and how many runs did not tell what they should."""
+    head = (f"pure shear at constant volume, dt {'> 0' if at_rate else '= 0'}, {recipe}, {number} grains: Hencky strain; upright height "
+            "over d; upright, oriented: records, thin, p, sin phi; p over that of oriented cells; differences over their standard errors")
+    edges, found, heights, rows = np.linspace(0, 2, 11), {}, [], []
+    told = to_tell = 0
     for cell in ("upright", "oriented"):
         found[cell] = []
         for seed in range(1, seeds + 1):
@@ -145,25 +237,24 @@ def pure_shear(program, work, at_rate, recipe="pack_loose", number=400, seeds=5)
             error = np.sqrt(sum(each.var(axis=0, ddof=1) / len(each) for each in means.values()))
             apart = (of_upright - of_oriented) / error
             line += "   {:5.2f} {:5.1f} {:5.1f}".format(of_upright[0] / of_oriented[0], *apart)
-            off = (abs(apart) > 3).any()
-            line += "" if not off else " MISSED" if height >= 10 else " low"
-            missed += bool(off and height >= 10)
-        print(line, flush=True)
-    print(f"  runs of upright cells that are told of as low, and as thin: {told} of {to_tell}", flush=True)
-    return missed + (told < to_tell)
+        rows.append(Row(line))
+    tail = f"  runs of upright cells that are told of as low, and as thin: {told} of {to_tell}"
+    return (head, seeds, rows, tail), told < to_tell
 
 
 def main():
+    if sys.argv[1] == "--kept":
+        sys.exit("thin: bars missed" if sum(kept(path) for path in sys.argv[2:]) else 0)
     program, work = str(pathlib.Path(sys.argv[1]).resolve()), pathlib.Path(sys.argv[2]).resolve()
     recipes = [each for each in sys.argv[3:] if each in RECIPES] or RECIPES
     parts = [each for each in sys.argv[3:] if each not in RECIPES] or ["rate", "rest", "pure"]
     work.mkdir(parents=True, exist_ok=True)
     missed = 0
     if "pure" in parts:
-        missed += pure_shear(program, work, True) + pure_shear(program, work, False)
-        for recipe in ("pack_medium", "pack_dense"):
-            missed += pure_shear(program, work, False, recipe, seeds=20)
-            missed += pure_shear(program, work, False, recipe, 1600, 10)
+        for at_rate, recipe, sizes in ((True, "pack_loose", ((400, 5),)), (False, "pack_loose", ((400, 5),)),
+                                       (False, "pack_medium", ((400, 20), (1600, 10))), (False, "pack_dense", ((400, 20), (1600, 10)))):
+            tables, untold = zip(*(pure_shear(program, work, at_rate, recipe, number, seeds) for number, seeds in sizes))
+            missed += judge(tables) + sum(untold)
     if "rate" in parts:
         missed += simple_shear(program, work, recipes, True)
     if "rest" in parts:
@@ -172,4 +263,5 @@ def main():
         sys.exit("thin: bars missed")
 
 
-main()
+if __name__ == "__main__":
+    main()
