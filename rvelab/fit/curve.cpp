@@ -153,6 +153,9 @@ std::vector<Curve> curves_in(const io::CsvTable& table) {
     for (const double at : curve.x) {
       curve.y.push_back(column.factor * interpolated(x, y, at, logarithm));
       curve.error.push_back(column.factor * interpolated(x, error, at, logarithm));
+      if (!std::isfinite(curve.y.back()) || !std::isfinite(curve.error.back()))
+        throw InputError(path + ": " + header[k] + " has no finite value at " + curve.abscissa + " = " + in_words(at) +
+                         "; allowed: numbers of a test, not those at the ends of what a computer holds; correct them");
     }
     curves.push_back(curve);
   }

@@ -106,6 +106,7 @@ TEST_CASE("A column that is given twice, a quantity in two units, or an error of
   CHECK_THAT(refused("axial_strain,axial_strain\n0,0\n1,1\n"), Contains("axial_strain twice"));
   CHECK_THAT(refused("axial_strain,q_over_p,deviator_kPa_error\n0,0,0\n1,1,2\n"),
              Contains("\"deviator_kPa_error\" is the error of no column"));
+  CHECK_THAT(refused("p_kPa,void_ratio\n5e-324,0.8\n20,0.7\n"), Contains("void_ratio has no finite value"));
   CHECK_THAT(refused("axial_strain;q_over_p\n0,5;0\n1.5;1\n"), Contains("decimal comma") && Contains("decimal point"));
 }
 

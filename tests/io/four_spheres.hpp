@@ -1,6 +1,7 @@
 // Four spheres in a tilted cell, as other programs write them.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <iomanip>
 #include <sstream>
 #include <vector>
@@ -9,7 +10,7 @@
 
 namespace rvelab::test {
 
-struct Sphere {
+struct PlacedSphere {
   Vector3 at;
   double radius;
 };
@@ -18,10 +19,10 @@ struct Sphere {
 struct FourSpheres {
   Matrix3 cell = (Matrix3() << 1, 0.2, -0.3, 0, 1.25, 0.125, 0, 0, 0.75).finished();
   Vector3 low{-0.5, -0.625, -0.375};
-  std::vector<Sphere> grains{{{-0.31, 0.17, 0.02}, 0.21},
-                             {{0.13, 0.21, -0.11}, 0.27},
-                             {{0.37, -0.41, 0.3}, 0.1875},
-                             {{-0.2, -0.35, 0.1}, 0.3}};
+  std::vector<PlacedSphere> grains{{{-0.31, 0.17, 0.02}, 0.21},
+                                   {{0.13, 0.21, -0.11}, 0.27},
+                                   {{0.37, -0.41, 0.3}, 0.1875},
+                                   {{-0.2, -0.35, 0.1}, 0.3}};
 };
 
 inline std::string digits(double value) {

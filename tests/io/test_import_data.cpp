@@ -81,6 +81,8 @@ TEST_CASE("another atom_style, and units without metres, are refused by name") {
   CHECK_THAT(read_as(exchanged(data_of({}, ""), "1 atom types", "3 bonds")).error, Contains("atoms with bonds"));
   CHECK_THAT(read_as(exchanged(data_of({}), " 2650 ", " ")).error,
              Contains("the row of Atoms has 9 columns; allowed: id type"));
+  CHECK_THAT(read_as(exchanged(data_of({}, ""), "LAMMPS data file", "LIGGGHTS Description")).error,
+             Contains("YADE's liggghts_in has the radius for the diameter"));
   const std::string units = "timestep = 0, units = ";
   expect_four_spheres(read_as(exchanged(data_of({}), "timestep = 0", units + "si")));
   CHECK_THAT(read_as(exchanged(data_of({}), "timestep = 0", units + "lj")).error,

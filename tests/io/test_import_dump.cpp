@@ -81,7 +81,7 @@ TEST_CASE("units and time of a dump are read: si as it is, cgs, micro and nano i
   FourSpheres centimetres;
   centimetres.cell *= 100;
   centimetres.low *= 100;
-  for (Sphere& grain : centimetres.grains) {
+  for (PlacedSphere& grain : centimetres.grains) {
     grain.at *= 100;
     grain.radius *= 100;
   }
@@ -181,7 +181,7 @@ TEST_CASE("a column that stands twice in a dump is taken where its values are eq
 TEST_CASE("boundaries: pp pp pp, and along z any of discs") {
   FourSpheres discs;
   discs.cell(0, 2) = discs.cell(1, 2) = 0;
-  for (Sphere& grain : discs.grains) grain.at[2] = 0;
+  for (PlacedSphere& grain : discs.grains) grain.at[2] = 0;
   const Read flat = read_as(frame_of(discs, 0, "pp pp ff"));
   INFO(flat.error);
   CHECK(flat.specimen.cell.dimension == 2);
@@ -197,7 +197,7 @@ TEST_CASE("boundaries: pp pp pp, and along z any of discs") {
 TEST_CASE("centres in one plane: what they were taken for is told, and --dimension chooses") {
   FourSpheres layer;
   layer.cell(0, 2) = layer.cell(1, 2) = 0;
-  for (Sphere& grain : layer.grains) grain.at[2] = 0.002;
+  for (PlacedSphere& grain : layer.grains) grain.at[2] = 0.002;
   const Read discs = read_as(frame_of(layer, 0));
   CHECK(discs.specimen.shape == Shape::disc);
   CHECK_THAT(said(discs), Contains("the same z; taken as discs (2D); --dimension 3"));
@@ -208,7 +208,7 @@ TEST_CASE("centres in one plane: what they were taken for is told, and --dimensi
   CHECK_THAT(read_as(frame_of({}, 0), of_dimension(2)).error,
              Contains("--dimension 2 wants all centres at one z") && Contains("-0.11 to 0.3 m"));
   FourSpheres wall = {};
-  for (Sphere& grain : wall.grains) grain.at[1] = 0.25;
+  for (PlacedSphere& grain : wall.grains) grain.at[1] = 0.25;
   const Read upright = read_as(frame_of(wall, 0));
   expect_four_spheres(upright, wall);
   CHECK_THAT(said(upright), Contains("the same y; taken as spheres (3D), a layer"));

@@ -61,6 +61,10 @@ class DataFile {
   /// LAMMPS skips the first line; write_data says its units there.
   void read_title(const Tell& tell) {
     const std::string_view line = lines_.line(), key = "units = ";
+    if (line.starts_with("LIGGGHTS Description"))  // the title of YADE's export.textExt(format='liggghts_in')
+      fail(1,
+           "YADE's liggghts_in has the radius for the diameter and a box around the grains for the cell; allowed: a "
+           "file with diameters and a periodic cell; write it by export.text, and give --cell");
     const auto at = line.find(key);
     if (!line.starts_with("LAMMPS data file") || at == std::string_view::npos) return;
     const auto units = line.substr(at + key.size());
