@@ -80,7 +80,7 @@ TEST_CASE("a SpherePack of YADE brings its cell; members of a clump are refused"
   CHECK_THAT(said(read), Contains("taken as x, y, z, radius"));
   expect_four_spheres(read_as(table_of(head, " ", false)), upright());
   CHECK_THAT(read_as(table_of(head, " ", false, false, "\n", {"-1", "3", "3", "-1"})).error,
-             Contains("in.txt:4: column clumpId = 3 is the clump of in.txt:3 too"));
+             Contains("in.txt:4: column clumpId = 3 is the clump of ") && Contains("in.txt:3 too"));
   CHECK_THAT(read_as(table_of("##PERIODIC:: 1 -1 1\n", " ", false)).error,
              Contains("in.txt:1:") && Contains("states no cell"));
   CHECK_THAT(read_as(table_of(head, " ", false), in_cell()).error, Contains("leave --cell out"));
@@ -117,7 +117,8 @@ TEST_CASE("tables without ids, with sep=, semicolons, decimal commas and empty c
 
 TEST_CASE("a comma that may group digits is refused, and decimal commas beside decimal points") {
   CHECK_THAT(read_as("x;y;z;r\n0,5;0;0;0,1\n0.25;0;0;0,1\n", in_cell()).error,
-             Contains("in.txt:2: column x = 0,5 has a decimal comma, and in.txt:3: column x = 0.25 a decimal point"));
+             Contains("in.txt:2: column x = 0,5 has a decimal comma, and ") &&
+                 Contains("in.txt:3: column x = 0.25 a decimal point"));
   CHECK_THAT(read_as("x,y,z,r\n\"1,234\",0,0,1\n", in_cell()).error,
              Contains("may be a decimal comma or groups of digits"));
   CHECK_THAT(read_as("x,y,z,r\n0,1,0,2,0,3,0,1\n", in_cell()).error, Contains("8 cells") && Contains("decimal commas"));
