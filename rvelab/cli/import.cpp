@@ -1,4 +1,5 @@
-// rvelab import: specimens from CSV files, as YADE scripts write them, and from dumps of LAMMPS.
+// rvelab import: specimens from tables, as YADE scripts and spreadsheets write them, and from dumps and data files of
+// LAMMPS.
 // Declared in command.hpp.
 #include <array>
 #include <optional>
@@ -23,6 +24,7 @@ struct ImportArguments {
   std::string inputs[3];
   std::optional<std::array<double, 3>> cell;
   std::string material, output;
+  std::optional<long> timestep, dimension;
   std::vector<std::string> settings;
   bool force = false, json = false;
 };
@@ -58,6 +60,9 @@ void run_import(const ImportArguments& arguments) {
   if (arguments.cell) options.cell = Vector3(arguments.cell->data());
   if (!arguments.material.empty()) options.material_path = arguments.material;
   options.settings = arguments.settings;
+  if (arguments.timestep) options.timestep = *arguments.timestep;
+  if (arguments.dimension) options.dimension = int(*arguments.dimension);
+  options.tell = tell;
   const Specimen specimen = io::import_csv(inputs.particles, inputs.contacts, inputs.meta, options);
   // Opens it before writing it: a specimen that cannot be opened is refused here.
   const Sizes sizes = sizes_of(Rve(specimen).network());
@@ -80,14 +85,21 @@ void run_import(const ImportArguments& arguments) {
 }  // namespace
 
 Command import_command() {
-  Command command{"import", "Make a specimen from CSV files, or from a dump of LAMMPS"};
+  Command command{"import", "Make a specimen from tables, or from a dump or data file of LAMMPS"};
   auto& arguments = command.runs(run_import);
   command
       .add("PARTICLES.csv", arguments.inputs[0],
-           "columns id,x,y[,z] and r or radius, for ellipses a,b,angle; or a text dump of LAMMPS (SI units)")
+           "columns [id,]x,y[,z] and r, radius or diameter, for ellipses a,b,angle; YADE's export.text; or a\n"
+           "text dump or data file (atom_style sphere) of LAMMPS in SI units; packed by gzip or not")
       .required();
   command.add("CONTACTS.csv", arguments.inputs[1], "columns id1,id2,sx,sy[,sz],fn,fsx,fsy[,fsz],mz");
   command.add("META.json", arguments.inputs[2], "parameters and cell of the packing");
+  command.add("--timestep", arguments.timestep, "of a dump; without it the last one");
+  command
+      .add("--dimension", arguments.dimension,
+           "2 reads discs, 3 spheres; without it, centres at one z are discs in files of LAMMPS, and\n"
+           "a layer of spheres in tables")
+      .between(2, 3);
   command.add("--cell", arguments.cell, "Lxx,Lyy,Lzz of a rectangular cell in m; in 2D Lzz is the thickness");
   command.add("--material", arguments.material,
               "TOML file with [[material]], [contact], [damping], [solver]; of several\n"
@@ -101,7 +113,9 @@ Command import_command() {
       "  rvelab import dense.particles.csv dense.contacts.csv dense.json -o dense.h5\n"
       "  rvelab import E.particles.csv E.contacts.csv E.json --material E.material.toml -o E.h5   (of rvelab export)\n"
       "  rvelab import init.csv --cell 2,2,2 --material sand.toml -o loose.h5\n"
-      "  rvelab import relaxed.dump --material sand.toml -o relaxed.h5";
+      "  rvelab import relaxed.dump.gz --timestep 20000 --material sand.toml -o relaxed.h5\n"
+      "  rvelab import sphere.data --material sand.toml -o sphere.h5\n"
+      "  rvelab import packing.txt --cell 0.01,0.01,0.02 --material sand.toml -o packing.h5   (of YADE's export.text)";
   return command;
 }
 

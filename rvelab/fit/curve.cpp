@@ -2,17 +2,16 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <map>
-#include <sstream>
 
 #include "rvelab/calibrate/mohr.hpp"
 #include "rvelab/cell/cell.hpp"
 #include "rvelab/error.hpp"
+#include "rvelab/io/import/csv_table.hpp"
+#include "rvelab/io/utf8.hpp"
+#include "rvelab/keys/shortened.hpp"
 #include "rvelab/measure/measures.hpp"
 
 namespace rvelab::fit {
@@ -52,42 +51,6 @@ std::string known_columns(bool abscissa) {
   return text;
 }
 
-std::vector<std::string> cells_of(std::string line) {
-  if (!line.empty() && line.back() == '\r') line.pop_back();
-  std::vector<std::string> cells;
-  std::istringstream stream(line);
-  for (std::string cell; std::getline(stream, cell, ',');) {
-    const auto first = cell.find_first_not_of(" \t"), last = cell.find_last_not_of(" \t");
-    cells.push_back(first == std::string::npos ? "" : cell.substr(first, last - first + 1));
-  }
-  return cells;
-}
-
-/// Numbers by column name, all of one length.
-using Table = std::vector<std::vector<double>>;
-
-Table numbers_in(std::istringstream& lines, const std::vector<std::string>& header, const std::string& path,
-                 long number) {
-  Table table(header.size());
-  for (std::string line; std::getline(lines, line);) {
-    ++number;
-    if (line.empty() || line[0] == '#' || line == "\r") continue;
-    const std::vector<std::string> cells = cells_of(line);
-    const std::string place = path + ":" + std::to_string(number) + ": ";
-    if (cells.size() != header.size())
-      throw InputError(place + std::to_string(cells.size()) + " values; allowed: " + std::to_string(header.size()) +
-                       ", as the header has; correct the line");
-    for (std::size_t k = 0; k < cells.size(); ++k) {
-      double value = 0;
-      const auto [end, error] = std::from_chars(cells[k].data(), cells[k].data() + cells[k].size(), value);
-      if (error != std::errc() || end != cells[k].data() + cells[k].size() || !std::isfinite(value))
-        throw InputError(place + header[k] + " = \"" + cells[k] + "\" is no number; allowed: a finite number");
-      table[k].push_back(value);
-    }
-  }
-  return table;
-}
-
 /// Linear between the points of rising x, on the logarithm of a pressure.
 double interpolated(const std::vector<double>& x, const std::vector<double>& y, double at, bool logarithm) {
   const double slack = 1e-9 * std::abs(at);
@@ -123,46 +86,76 @@ double value_of(const records::Record& record, const std::string& quantity, int 
 
 }  // namespace
 
-std::vector<Curve> parsed_curves(const std::string& text, const std::string& path) {
-  std::istringstream lines(text);
-  std::string line;
-  long number = 0;
-  while (std::getline(lines, line)) {
-    ++number;
-    if (!line.empty() && line[0] != '#') break;
-  }
-  const std::vector<std::string> header = cells_of(line);
+namespace {
+
+/// Numbers of a column, in the units of the file.
+std::vector<double> values_of(const io::CsvTable& table, std::size_t column) {
+  std::vector<double> values;
+  for (std::size_t row = 0; row < table.rows(); ++row) values.push_back(table.number(row, column));
+  return values;
+}
+
+/// What each column is. InputError: the first is no abscissa, one is unknown, a quantity twice, an error of no column.
+std::vector<Column> kinds_of(const io::CsvTable& table) {
+  const auto& header = table.columns();
   const auto kind = [&](const std::string& name) {
     const auto found = columns().find(name);
     return found == columns().end() ? Column{} : found->second;
   };
-  if (header.empty() || !kind(header[0]).abscissa)
-    throw InputError(path + ": the first column is \"" + (header.empty() ? "" : header[0]) +
-                     "\"; allowed: " + known_columns(true) + "; name the column with its unit");
-  const Table table = numbers_in(lines, header, path, number);
-  std::vector<double> x = table[0];
-  for (double& value : x) value *= kind(header[0]).factor;
+  const auto quoted = [](const std::string& name) { return "\"" + keys::shortened(io::printable(name)) + "\""; };
+  if (!kind(header[0]).abscissa)
+    throw InputError(table.path() + ": the first column is " + quoted(header[0]) + "; allowed: " + known_columns(true) +
+                     "; name the column with its unit");
+  std::vector<Column> kinds;
+  std::map<std::string, std::string> named;
+  for (const std::string& name : header) {
+    const std::string of = name.ends_with("_error") ? name.substr(0, name.size() - 6) : "";
+    if (!of.empty() && std::find(header.begin() + 1, header.end(), of) == header.end())
+      throw InputError(table.path() + ": the column " + quoted(name) +
+                       " is the error of no column; allowed: that of a "
+                       "curve beside it; name it as its curve, with _error behind");
+    kinds.push_back(of.empty() ? kind(name) : Column{});
+    const Column& column = kinds.back();
+    if (!of.empty() || kinds.size() == 1) continue;
+    if (column.quantity.empty() || column.abscissa)
+      throw InputError(table.path() + ": the column " + quoted(name) + " is not known; allowed: " +
+                       known_columns(false) + ", and each with _error behind it; name it with its unit");
+    if (const auto [first, fresh] = named.emplace(column.quantity, name); !fresh)
+      throw InputError(table.path() + ": the columns " + first->second + " and " + name +
+                       " are one quantity twice; allowed: one column for each; remove one");
+  }
+  return kinds;
+}
+
+std::vector<Curve> curves_in(const io::CsvTable& table) {
+  const auto& header = table.columns();
+  const auto& path = table.path();
+  const std::vector<Column> kinds = kinds_of(table);
+  std::vector<double> x = values_of(table, 0);
+  for (double& value : x) value *= kinds[0].factor;
   if (x.size() < 2) throw InputError(path + ": " + std::to_string(x.size()) + " rows; allowed: at least 2");
   for (std::size_t k = 1; k < x.size(); ++k)
     if (!(x[k] > x[k - 1]))
-      throw InputError(path + ": " + header[0] + " does not rise at " + in_words(table[0][k]) +
-                       "; allowed: rising values; sort the rows, or leave unloading out");
-  const bool logarithm = kind(header[0]).quantity == "p";
+      throw InputError(table.place(k, 0) +
+                       " does not rise; allowed: rising values; sort the rows, or leave unloading out");
+  const bool logarithm = kinds[0].quantity == "p";
   if (logarithm && !(x.front() > 0)) throw InputError(path + ": p is not above 0; allowed: p > 0; leave the row out");
   std::vector<Curve> curves;
   for (std::size_t k = 1; k < header.size(); ++k) {
-    if (header[k].ends_with("_error")) continue;
-    const Column column = kind(header[k]);
-    if (column.quantity.empty() || column.abscissa)
-      throw InputError(path + ": the column \"" + header[k] + "\" is not known; allowed: " + known_columns(false) +
-                       ", and each with _error behind it; name it with its unit");
-    const auto own_error = std::find(header.begin(), header.end(), header[k] + "_error");
-    Curve curve{column.quantity, kind(header[0]).quantity, abscissae(x, logarithm), {}, {}};
+    const Column& column = kinds[k];
+    if (column.quantity.empty()) continue;
+    const std::string error_name = header[k] + "_error";
+    const auto own_error = std::find(header.begin(), header.end(), error_name);
+    const std::vector<double> y = values_of(table, k);
+    std::vector<double> error(y.size(), 0);
+    if (own_error != header.end()) error = values_of(table, std::size_t(own_error - header.begin()));
+    Curve curve{column.quantity, kinds[0].quantity, abscissae(x, logarithm), {}, {}};
     for (const double at : curve.x) {
-      curve.y.push_back(column.factor * interpolated(x, table[k], at, logarithm));
-      const bool known = own_error != header.end();
-      curve.error.push_back(
-          known ? column.factor * interpolated(x, table[std::size_t(own_error - header.begin())], at, logarithm) : 0);
+      curve.y.push_back(column.factor * interpolated(x, y, at, logarithm));
+      curve.error.push_back(column.factor * interpolated(x, error, at, logarithm));
+      if (!std::isfinite(curve.y.back()) || !std::isfinite(curve.error.back()))
+        throw InputError(path + ": " + header[k] + " has no finite value at " + curve.abscissa + " = " + in_words(at) +
+                         "; allowed: numbers of a test, not those at the ends of what a computer holds; correct them");
     }
     curves.push_back(curve);
   }
@@ -171,10 +164,14 @@ std::vector<Curve> parsed_curves(const std::string& text, const std::string& pat
   return curves;
 }
 
+}  // namespace
+
+std::vector<Curve> parsed_curves(const std::string& text, const std::string& path) {
+  return curves_in(io::CsvTable(path, text));
+}
+
 std::vector<Curve> read_curves(const std::string& path) {
-  std::ifstream input(path, std::ios::binary);
-  if (!input) throw InputError(path + ": no such file; allowed: a CSV file with named columns");
-  return parsed_curves({std::istreambuf_iterator<char>(input), {}}, path);
+  return parsed_curves(io::whole_text(path, "a CSV file with named columns"), path);
 }
 
 std::vector<double> curve_of(const records::TestResult& test, int dimension, const Curve& like) {

@@ -23,8 +23,9 @@ struct Curve {
 
 inline constexpr std::size_t most_points = 12;
 
-/// The curves of a CSV file. InputError: no such file, an unknown column (with the known ones), a value that is no
-/// number, an abscissa that does not rise, fewer than two rows.
+/// The curves of a CSV file (io/import/csv_table.hpp: semicolons, decimal commas, quotation marks, `sep=`). InputError:
+/// no such file, an unknown column (with the known ones), a column or a quantity twice, an error of no column, a value
+/// that is no number, an abscissa that does not rise, fewer than two rows.
 std::vector<Curve> read_curves(const std::string& path);
 /// The same from a text; `path` serves messages.
 std::vector<Curve> parsed_curves(const std::string& text, const std::string& path);

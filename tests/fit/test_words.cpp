@@ -69,9 +69,45 @@ TEST_CASE("A measured curve is read with its units and brought to few abscissae"
   CHECK_THAT(refused("strain,q_over_p\n0,0\n1,1\n"), Contains("d.csv") && Contains("axial_strain_percent"));
   CHECK_THAT(refused("axial_strain,q\n0,0\n1,1\n"), Contains("\"q\" is not known") && Contains("deviator_kPa"));
   CHECK_THAT(refused("axial_strain,q_over_p\n0,0\n0,1\n"), Contains("does not rise"));
-  CHECK_THAT(refused("axial_strain,q_over_p\n0,0\n1,a\n"), Contains("d.csv:3") && Contains("is no number"));
-  CHECK_THAT(refused("axial_strain,q_over_p\n0,0\n1\n"), Contains("1 values; allowed: 2"));
+  CHECK_THAT(refused("axial_strain,q_over_p\n0,0\n1,a\n"),
+             Contains("d.csv:3: column q_over_p = a is not a finite number"));
+  CHECK_THAT(refused("axial_strain,q_over_p\n0,0\n1\n"), Contains("d.csv:3: the row has 1 cells"));
   CHECK_THAT(refused("axial_strain,q_over_p\n0,0\n"), Contains("at least 2"));
+}
+
+TEST_CASE("A measured curve of a spreadsheet is the same curve: semicolons, decimal commas, quotation marks, sep=") {
+  const auto expect = [](const std::string& text) {
+    CAPTURE(text);
+    const auto curves = fit::parsed_curves(text, "d.csv");
+    REQUIRE(curves.size() == 1);
+    CHECK(curves[0].name == "deviator");
+    CHECK(curves[0].x == std::vector<double>{0.1 * 0.01, 1.5 * 0.01, 3 * 0.01});
+    CHECK(curves[0].y == std::vector<double>{121.15e3, 252.4e3, 275.77e3});
+    CHECK(curves[0].error == std::vector<double>{2e3, 2e3, 2.5e3});
+  };
+  const std::string names = "axial_strain_percent,deviator_kPa,deviator_kPa_error\n";
+  expect(names + "0.1,121.15,2\n1.5,252.4,2\n3,275.77,2.5\n");
+  std::string semicolons = "axial_strain_percent;deviator_kPa;deviator_kPa_error\r\n";
+  semicolons += "0,1;121,15;2\r\n1,5;252,4;2\r\n3;275,77;2,5\r\n";
+  expect(semicolons);
+  expect("\xef\xbb\xbfsep=;\r\n" + semicolons + ";;\r\n");
+  expect(
+      "\"axial_strain_percent\",\"deviator_kPa\",\"deviator_kPa_error\"\n\"0,1\",\"121,15\",2\n\"1,5\",\"252,4\",2\n3,"
+      "\"275,77\",\"2,5\"\n");
+  expect("axial_strain_percent\tdeviator_kPa\tdeviator_kPa_error\n0,1\t121,15\t2\n1,5\t252,4\t2\n3\t275,77\t2,5");
+}
+
+TEST_CASE("A column that is given twice, a quantity in two units, or an error of no column is refused by name") {
+  const auto refused = [](const std::string& csv) { return message_of([&] { fit::parsed_curves(csv, "d.csv"); }); };
+  CHECK_THAT(refused("axial_strain,deviator_kPa,deviator_kPa\n0,0,0\n1,1,2\n"),
+             Contains("the column deviator_kPa twice"));
+  CHECK_THAT(refused("axial_strain,deviator_kPa,deviator_Pa\n0,0,0\n1,1,2\n"),
+             Contains("deviator_kPa and deviator_Pa are one quantity twice"));
+  CHECK_THAT(refused("axial_strain,axial_strain\n0,0\n1,1\n"), Contains("axial_strain twice"));
+  CHECK_THAT(refused("axial_strain,q_over_p,deviator_kPa_error\n0,0,0\n1,1,2\n"),
+             Contains("\"deviator_kPa_error\" is the error of no column"));
+  CHECK_THAT(refused("p_kPa,void_ratio\n5e-324,0.8\n20,0.7\n"), Contains("void_ratio has no finite value"));
+  CHECK_THAT(refused("axial_strain;q_over_p\n0,5;0\n1.5;1\n"), Contains("decimal comma") && Contains("decimal point"));
 }
 
 TEST_CASE("The curve of a test is that of its last stage, between its records and not beyond them") {

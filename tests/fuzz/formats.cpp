@@ -1,5 +1,9 @@
 #include "tests/fuzz/formats.hpp"
 
+#include <zlib.h>
+
+#include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -7,6 +11,7 @@
 #include <stdexcept>
 
 #include "rvelab/error.hpp"
+#include "rvelab/fit/curve.hpp"
 #include "rvelab/io/hdf5/seal.hpp"
 #include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/io/import/csv.hpp"
@@ -118,6 +123,102 @@ Answer check_csv(View input) {
   return answer([&] { open_state(io::import_csv(*particles, contacts, meta, options)); });
 }
 
+/// The specimen of a file of another program.
+Specimen import_other(const std::string& path, const std::string& text) {
+  io::ImportOptions options;
+  options.material_path = data_file("compat/soil.toml");
+  const bool has_cell = text.starts_with("ITEM:") || text.find("xlo") != std::string::npos ||
+                        text.find("avec") != std::string::npos || text.find("PERIODIC::") != std::string::npos;
+  if (!has_cell) options.cell = Vector3(0.04, 0.05, 0.1);
+  options.tell = [&](const std::string& line) { promise(!line.empty(), "nothing is told"); };
+  return io::import_csv(path, std::nullopt, std::nullopt, options);
+}
+
+/// Whole or not at all: what is taken ends in a line break and has as many grains as it says.
+Answer check_dump(View input) {
+  const std::string text = text_of(input), path = file_of("p.dump", text);
+  return answer([&] {
+    const Specimen specimen = import_other(path, text);
+    if (text.starts_with("ITEM:")) {
+      const auto last = text.find_last_not_of(" \t\r\f\v");
+      promise(last != std::string::npos && text[last] == '\n', "a dump was taken whose last line may be cut");
+      const auto at = text.rfind("NUMBER OF ATOMS");
+      promise(at != std::string::npos, "a dump was taken without a number of atoms");
+      std::int64_t stated = -1;
+      const auto digit = text.find_first_of("+-0123456789", text.find('\n', at));
+      std::from_chars(text.data() + digit + (text[digit] == '+'), text.data() + text.size(), stated);
+      promise(stated == std::int64_t(specimen.grains.size()), "a dump was taken with another number of grains");
+    }
+    open_state(specimen);
+  });
+}
+
+Answer check_data(View input) {
+  const std::string text = text_of(input), path = file_of("p.data", text);
+  return answer([&] { open_state(import_other(path, text)); });
+}
+
+/// A table has no count: each row that is no comment is a grain, but for those before the first and empty ones.
+Answer check_text(View input) {
+  const std::string text = text_of(input), path = file_of("p.txt", text);
+  return answer([&] {
+    const Specimen specimen = import_other(path, text);
+    promise(std::int64_t(specimen.grains.size()) <= std::count(text.begin(), text.end(), '\n') + 1,
+            "a table was taken with more grains than lines");
+    open_state(specimen);
+  });
+}
+
+std::string packed_by_gzip(const std::string& text) {
+  z_stream stream{};
+  if (deflateInit2(&stream, 1, Z_DEFLATED, 16 + MAX_WBITS, 8, Z_DEFAULT_STRATEGY) != Z_OK) std::abort();
+  std::string packed(deflateBound(&stream, text.size()), '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
+  stream.avail_in = static_cast<uInt>(text.size());
+  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
+  stream.avail_out = static_cast<uInt>(packed.size());
+  if (deflate(&stream, Z_FINISH) != Z_STREAM_END) std::abort();
+  packed.resize(stream.total_out);
+  deflateEnd(&stream);
+  return packed;
+}
+
+/// The packed file is what it holds; and changed in a byte or cut it is refused, or holds the same.
+Answer check_gz(View input) {
+  const std::string text = text_of(input), path = file_of("p", text);
+  std::size_t grains = 0, grains_packed = 0;
+  const auto count = [&](std::size_t& number) {
+    return answer([&] { number = import_other(path, text).grains.size(); });
+  };
+  const Answer plain = count(grains);
+  const std::string packed = packed_by_gzip(text);
+  file_of("p", packed);
+  const bool packed_itself = text.starts_with("\x1f\x8b");
+  promise(packed_itself || (count(grains_packed) == plain && grains_packed == grains),
+          "a file and the same packed are not the same");
+  const std::size_t chosen = snapshot_checksum(input);
+  std::string damaged = packed;
+  damaged[chosen % packed.size()] ^= char(1 << chosen / 7 % 8);
+  if (chosen % 3 == 0) damaged.resize(chosen % packed.size());
+  file_of("p", damaged);
+  std::size_t grains_damaged = 0;
+  // A changed magic number makes it a text, which names no columns.
+  if (count(grains_damaged) == Answer::taken)
+    promise(plain == Answer::taken && grains_damaged == grains, "a damaged gzip file is taken as something else");
+  return plain;
+}
+
+Answer check_curve(View input) {
+  const std::string text = text_of(input);
+  return answer([&] {
+    for (const fit::Curve& curve : fit::parsed_curves(text, "fuzz.csv")) {
+      promise(curve.x.size() == curve.y.size() && curve.x.size() == curve.error.size(), "a curve has a ragged table");
+      for (std::size_t k = 0; k < curve.x.size(); ++k)
+        promise(!std::isnan(curve.y[k]), "a measured curve is no number");
+    }
+  });
+}
+
 Answer check_specimen_file(const std::string& path) {
   return answer([&] {
     io::file_kind(path);
@@ -218,6 +319,11 @@ const std::vector<Format>& formats() {
       {"recipe", true, check_recipe, recipe_seeds},
       {"material", true, check_material, material_seeds},
       {"csv", true, check_csv, csv_seeds},
+      {"dump", true, check_dump, dump_seeds},
+      {"data", true, check_data, data_seeds},
+      {"text", true, check_text, text_seeds},
+      {"gz", true, check_gz, gz_seeds},
+      {"curve", true, check_curve, curve_seeds},
       {"specimen", false, check_specimen, specimen_seeds},
       {"specimen_values", false, check_specimen_values, choice_seeds},
       {"records", false, check_records, record_seeds},

@@ -64,6 +64,11 @@ std::vector<Bytes> protocol_seeds() {
 std::vector<Bytes> recipe_seeds() { return joined(files_in(shipped, "[pack]"), files_in(corpus + "recipe")); }
 std::vector<Bytes> material_seeds() { return joined({seed_file("compat/soil.toml")}, files_in(corpus + "material")); }
 std::vector<Bytes> csv_seeds() { return joined({seed_file("compat/grains.csv")}, files_in(corpus + "csv")); }
+std::vector<Bytes> dump_seeds() { return joined(files_in(corpus + "csv", "ITEM:"), files_in(corpus + "dump")); }
+std::vector<Bytes> data_seeds() { return files_in(corpus + "data"); }
+std::vector<Bytes> text_seeds() { return files_in(corpus + "text"); }
+std::vector<Bytes> gz_seeds() { return joined(joined(dump_seeds(), data_seeds()), text_seeds()); }
+std::vector<Bytes> curve_seeds() { return files_in(corpus + "curve"); }
 
 std::vector<Bytes> specimen_seeds() {
   return {seed_file("compat/specimen_1_4.h5"), seed_file("compat/specimen_1_3.h5"), seed_file("compat/specimen_1_0.h5"),

@@ -20,6 +20,12 @@ std::vector<Bytes> protocol_seeds();
 std::vector<Bytes> recipe_seeds();
 std::vector<Bytes> material_seeds();
 std::vector<Bytes> csv_seeds();
+std::vector<Bytes> dump_seeds();
+std::vector<Bytes> data_seeds();
+std::vector<Bytes> text_seeds();
+/// Those of the three before, which the check packs.
+std::vector<Bytes> gz_seeds();
+std::vector<Bytes> curve_seeds();
 std::vector<Bytes> specimen_seeds();
 std::vector<Bytes> record_seeds();
 std::vector<Bytes> journal_seeds();

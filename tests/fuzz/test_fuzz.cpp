@@ -64,6 +64,11 @@ TEST_CASE("damaged protocols are taken or refused") { expect_no_finding("protoco
 TEST_CASE("damaged recipes are taken or refused") { expect_no_finding("recipe", 4000); }
 TEST_CASE("damaged material files are taken or refused") { expect_no_finding("material", 5000); }
 TEST_CASE("damaged tables of grains and contacts are taken or refused") { expect_no_finding("csv", 5000); }
+TEST_CASE("damaged dumps are taken whole or refused") { expect_no_finding("dump", 4000); }
+TEST_CASE("damaged data files of LAMMPS are taken whole or refused") { expect_no_finding("data", 4000); }
+TEST_CASE("damaged tables of YADE and spreadsheets are taken or refused") { expect_no_finding("text", 4000); }
+TEST_CASE("damaged files packed by gzip are taken or refused") { expect_no_finding("gz", 3000); }
+TEST_CASE("damaged measured curves are taken or refused") { expect_no_finding("curve", 20000); }
 TEST_CASE("damaged specimen files are taken or refused") { expect_no_finding("specimen", 100); }
 TEST_CASE("specimens with other values and a seal are taken or refused") { expect_no_finding("specimen_values", 200); }
 TEST_CASE("damaged record files are taken or refused") { expect_no_finding("records", 100); }

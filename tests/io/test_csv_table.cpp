@@ -1,6 +1,6 @@
 // Tables as spreadsheets and other programs write them: byte order mark, semicolons, decimal commas, quotation marks,
 // capitals, CRLF; and bytes that are no text.
-#include "rvelab/io/import/inputs.hpp"
+#include "rvelab/io/import/csv_table.hpp"
 
 #include "rvelab/error.hpp"
 #include "rvelab/io/utf8.hpp"

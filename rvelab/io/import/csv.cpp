@@ -10,6 +10,7 @@
 #include "rvelab/cell/cell.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/io/import/inputs.hpp"
+#include "rvelab/io/publish.hpp"
 #include "rvelab/keys/material_toml.hpp"
 #include "rvelab/keys/regular_file.hpp"
 #include "rvelab/keys/table_reader.hpp"
@@ -41,26 +42,30 @@ void set_cell(Specimen& specimen, int dimension, const Matrix3& vectors, const s
   }
 }
 
-/// Material of each row by the number that LAMMPS gives it, from 1.
-std::vector<std::int32_t> materials_by_type(const CsvTable& table, const Specimen& specimen) {
+/// Material of each row by its number: `type` of LAMMPS, from 1, or `matId` of YADE, from 0.
+std::vector<std::int32_t> materials_by_number(const CsvTable& table, const Specimen& specimen, const char* name,
+                                              std::int64_t first) {
   std::vector<std::int32_t> index;
-  const auto column = table.column({"type"});
+  const auto column = table.column({name});
+  const auto last = first + std::int64_t(specimen.materials.size()) - 1;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const auto type = table.integer(row, column);
-    if (type < 1 || type > std::int64_t(specimen.materials.size())) {
-      throw InputError(table.place(row, column) + " is no material; allowed: 1 to " +
-                       std::to_string(specimen.materials.size()) + ", the materials in their order; add the material");
+    if (type < first || type > last) {
+      throw InputError(table.place(row, column) + " is no material; allowed: " + std::to_string(first) + " to " +
+                       std::to_string(last) + ", the materials in their order; add the material");
     }
-    index.push_back(std::int32_t(type - 1));
+    index.push_back(std::int32_t(type - first));
   }
   return index;
 }
 
-/// Material of each row: by name or type where the file has the column, else the only one.
+/// Material of each row: by name or number where the file has the column, else the only one.
 std::vector<std::int32_t> materials_of(const CsvTable& table, const Specimen& specimen) {
   std::vector<std::int32_t> index(table.rows(), 0);
   if (!table.has("material")) {
-    if (specimen.materials.size() > 1 && table.has("type")) return materials_by_type(table, specimen);
+    const bool several = specimen.materials.size() > 1;
+    if (several && table.has("type")) return materials_by_number(table, specimen, "type", 1);
+    if (several && table.has("matId")) return materials_by_number(table, specimen, "matId", 0);
     if (specimen.materials.size() > 1) {
       throw InputError(table.place(0) + ": there are " + std::to_string(specimen.materials.size()) +
                        " materials and no column `material`; allowed: one material, or the column with a name for "
@@ -93,34 +98,57 @@ std::vector<Vector3> positions_of(const CsvTable& table, const Cell& cell) {
   const auto z = cell.dimension == 3 ? table.column({"z"}) : x;
   std::vector<Vector3> positions;
   for (std::size_t row = 0; row < table.rows(); ++row) {
-    const double height = cell.dimension == 3 ? table.number(row, z) : 0;
-    positions.push_back(cell.rotation.transpose() * Vector3(table.number(row, x), table.number(row, y), height));
+    const double height = cell.dimension == 3 ? table.length(row, z) : 0;
+    positions.push_back(cell.rotation.transpose() * Vector3(table.length(row, x), table.length(row, y), height));
   }
   return positions;
 }
 
-/// Rows of a particle table in the order of their ids.
-std::vector<std::size_t> order_by_id(const CsvTable& table) {
+/// Id of each row; without the column, the number of the row from 1.
+std::vector<std::int64_t> ids_of(const CsvTable& table) {
+  std::vector<std::int64_t> id(table.rows());
+  std::iota(id.begin(), id.end(), std::int64_t{1});
+  if (!table.has("id")) return id;
   const auto column = table.column({"id"});
+  for (std::size_t row = 0; row < table.rows(); ++row) id[row] = table.integer(row, column);
+  return id;
+}
+
+/// Rows of a particle table in the order of their ids.
+std::vector<std::size_t> order_by_id(const CsvTable& table, const std::vector<std::int64_t>& id) {
   std::vector<std::size_t> order(table.rows());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::vector<std::int64_t> id(table.rows());
-  for (const auto row : order) id[row] = table.integer(row, column);
   std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return id[a] < id[b]; });
   for (std::size_t k = 1; k < order.size(); ++k) {
     if (id[order[k]] == id[order[k - 1]]) {
-      throw InputError(table.place(order[k], column) + " is there twice (first at " + table.place(order[k - 1]) +
-                       "); allowed: an id of its own for each grain; renumber one");
+      throw InputError(table.place(order[k], table.column({"id"})) + " is there twice (first at " +
+                       table.place(order[k - 1]) + "); allowed: an id of its own for each grain; renumber one");
     }
   }
   return order;
 }
 
+/// Members of a clump move as one grain, which spheres do not. Single spheres have the clump -1, or one of their own.
+void refuse_clumps(const CsvTable& table) {
+  if (!table.has("clumpId")) return;
+  const auto column = table.column({"clumpId"});
+  std::map<std::int64_t, std::size_t> first;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const auto clump = table.integer(row, column);
+    const auto [found, fresh] = first.emplace(clump, row);
+    if (fresh || clump < 0) continue;
+    throw InputError(table.place(row, column) + " is the clump of " + table.place(found->second) +
+                     " too; allowed: spheres that are in no clump; replace the clumps by spheres");
+  }
+}
+
 void read_radius(const CsvTable& table, std::size_t row, Grains& grains) {
-  const auto radius = table.column({"r", "radius"});
-  grains.radius.push_back(table.number(row, radius));
+  const auto radius = table.column({"r", "radius", "diameter"});
+  const bool whole = !table.has("r") && !table.has("radius");
+  grains.radius.push_back(table.length(row, radius) / (whole ? 2 : 1));
   if (!(grains.radius.back() > 0)) {
-    throw InputError(table.place(row, radius) + " m is not positive; allowed: > 0; correct the radius");
+    throw InputError(table.place(row, radius) + " m is not positive; allowed: > 0; correct the " +
+                     (whole ? "diameter" : "radius"));
   }
 }
 
@@ -133,7 +161,7 @@ void read_outline(const CsvTable& table, std::size_t row, Specimen& specimen) {
   each_column_of<By>(
       [&](const auto& described, double& value, auto& column) {
         last = table.column({described.csv});
-        value = table.number(row, last);
+        value = table.length(row, last);
         column.push_back(value);
       },
       own, grains);
@@ -170,11 +198,12 @@ std::vector<Image> read_grains(const CsvTable& table, Specimen& specimen) {
   }
   const auto positions = positions_of(table, specimen.cell);
   const auto materials = materials_of(table, specimen);
-  const auto id = table.column({"id"});
+  refuse_clumps(table);
+  const auto id = ids_of(table);
   std::vector<Image> wraps;
   Grains& grains = specimen.grains;
-  for (const auto row : order_by_id(table)) {
-    grains.id.push_back(table.integer(row, id));
+  for (const auto row : order_by_id(table, id)) {
+    grains.id.push_back(id[row]);
     with_shape(specimen.shape, [&](auto is) {
       if constexpr (decltype(is)::By::round)
         read_radius(table, row, grains);
@@ -190,22 +219,19 @@ std::vector<Image> read_grains(const CsvTable& table, Specimen& specimen) {
   return wraps;
 }
 
-/// A CSV file, or a dump of LAMMPS, which brings its cell.
-struct Particles {
-  std::unique_ptr<CsvTable> table;
-  int dimension;
-  std::optional<Matrix3> cell;
-};
-
-Particles read_particles(const std::string& path) {
-  auto text = keys::whole_file<std::string>(path, "a CSV file or a dump of LAMMPS");
-  if (is_lammps_dump(text)) {
-    auto dump = read_lammps_dump(path, text);
-    return {std::move(dump.atoms), dump.dimension, dump.cell};
+/// Densities of a file are told where they are not those of the materials, which hold.
+void tell_of_densities(const CsvTable& table, const Specimen& specimen, const ImportOptions& options) {
+  if (!table.has("density") || table.metres() != 1) return;
+  const auto column = table.column({"density"});
+  const auto materials = materials_of(table, specimen);
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const double held = specimen.materials[std::size_t(materials[row])].density;
+    double given = 0;
+    if (!parsed(table.text(row, column), given) || std::abs(given - held) <= 1e-6 * held) continue;
+    options.tell(table.place(row, column) + " kg/m3, and that of the material is " + exact(held) +
+                 " kg/m3; the material's density is taken");
+    return;
   }
-  auto table = std::make_unique<CsvTable>(path, std::move(text));
-  const int dimension = table->has("z") ? 3 : 2;
-  return {std::move(table), dimension, std::nullopt};
 }
 
 /// Takes the cell of one more source; only one source may give a cell.
@@ -233,18 +259,17 @@ void expect_rows(const CsvTable& table, const std::optional<std::size_t>& stated
 Specimen import_csv(const std::string& particles_path, const std::optional<std::string>& contacts_path,
                     const std::optional<std::string>& meta_json_path, const ImportOptions& options) {
   Specimen specimen;
-  const Particles particles = read_particles(particles_path);
-  int dimension = particles.dimension;
+  std::optional<Meta> meta;
+  if (meta_json_path) meta = read_meta(*meta_json_path, specimen, !options.material_path);
+  const auto stated = meta ? std::optional(meta->dimension) : std::nullopt;
+  const Particles particles = read_particles(particles_path, stated, options);
+  const CsvTable& table = *particles.table;
   std::optional<Matrix3> vectors = particles.cell;
   std::string source = particles_path;
-  std::optional<std::size_t> contact_rows;
-  if (meta_json_path) {
-    const auto meta = read_meta(*meta_json_path, specimen, !options.material_path);
-    dimension = meta.dimension;
-    expect_rows(*particles.table, meta.particles, "n_particles", meta_json_path);
-    contact_rows = meta.contacts;
-    if (meta.cell) take_cell(vectors, source, *meta.cell, *meta_json_path, "its hSize");
-    specimen.state.reference_pressure = meta.reference_pressure;
+  if (meta) {
+    expect_rows(table, meta->particles, "n_particles", meta_json_path);
+    if (meta->cell) take_cell(vectors, source, *meta->cell, *meta_json_path, "its hSize");
+    specimen.state.reference_pressure = meta->reference_pressure;
   }
   if (options.material_path) {
     keys::read_material_file(*options.material_path, specimen);
@@ -267,19 +292,24 @@ Specimen import_csv(const std::string& particles_path, const std::optional<std::
                      ": comes without a cell; allowed: META.json with hSize, or --cell Lxx,Lyy,Lzz in m (2D: Lzz is "
                      "the thickness); give one of them");
   }
-  set_cell(specimen, dimension, *vectors, source);
+  set_cell(specimen, particles.dimension, *vectors, source);
 
-  specimen.shape = shape_of(*particles.table, dimension);
-  const auto wraps = read_grains(*particles.table, specimen);
+  specimen.shape = shape_of(table, particles.dimension);
+  const auto wraps = read_grains(table, specimen);
+  if (!table.has("id")) options.tell(particles_path + " has no column id: grains are numbered from 1 in its order");
   if (contacts_path) {
-    const CsvTable table(*contacts_path);
-    expect_rows(table, contact_rows, "n_contacts", meta_json_path);
-    read_contacts(table, wraps, specimen);
+    if (!table.has("id")) {
+      throw InputError(particles_path + ": has no column id, and " + *contacts_path +
+                       " names grains by it; allowed: contacts of particles with ids; add the column");
+    }
+    const CsvTable contacts(*contacts_path);
+    expect_rows(contacts, meta ? meta->contacts : std::nullopt, "n_contacts", meta_json_path);
+    read_contacts(contacts, wraps, specimen);
   }
-
   keys::set_keys(specimen, options.settings);
   check_parameters(specimen.contact, specimen.damping, specimen.materials);
   set_root_overlaps(specimen);
+  tell_of_densities(table, specimen, options);
   return specimen;
 }
 

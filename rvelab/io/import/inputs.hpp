@@ -1,14 +1,9 @@
-// What import_csv reads: tables (csv_table.cpp), dumps of LAMMPS, META.json, and the contacts of a packing.
-//
-// A table has a header line and is read whole; cells are asked for by row and column name.
-// Text is UTF-8, with or without a byte order mark, lines end in LF or CRLF. Cells are apart by commas, or by
-// semicolons where the header has those and no commas; numbers then may have a decimal comma. Cells may stand in
-// quotation marks, doubled inside. Names of columns are found whatever their case. Lines that begin with '#' and empty
-// lines are skipped. Every message names file, line, column and value.
+// What import_csv reads: tables (csv_table.hpp), dumps and data files of LAMMPS, META.json, and the contacts of a
+// packing.
 #pragma once
 
 #include <cstdint>
-#include <deque>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,66 +11,60 @@
 #include <vector>
 
 #include "rvelab/cell/cell.hpp"
+#include "rvelab/io/import/csv.hpp"
+#include "rvelab/io/import/csv_table.hpp"
 #include "rvelab/specimen/specimen.hpp"
 
 namespace rvelab::io {
 
-class CsvTable {
- public:
-  /// Reads a file. InputError: missing, no UTF-8, no header, a row with another number of cells than the header, an
-  /// open quotation mark, a column name twice.
-  explicit CsvTable(const std::string& path);
-  /// The same of a text; `path` serves the messages only.
-  CsvTable(const std::string& path, std::string text);
-  CsvTable(const CsvTable&) = delete;  // cells view the text
-  CsvTable& operator=(const CsvTable&) = delete;
+/// Says something that a user should know, on one line.
+using Tell = std::function<void(const std::string&)>;
 
-  const std::string& path() const { return path_; }
-  std::size_t rows() const { return lines_.size(); }
-  bool has(const std::string& column) const;
-
-  /// Index of the first of these names that the header has. InputError if it has none.
-  std::size_t column(const std::vector<std::string>& names) const;
-
-  double number(std::size_t row, std::size_t column) const;         ///< finite, or InputError
-  std::int64_t integer(std::size_t row, std::size_t column) const;  ///< a whole number, or InputError
-  std::string_view text(std::size_t row, std::size_t column) const;
-
-  /// "path:line: column NAME = VALUE", for messages about a cell.
-  std::string place(std::size_t row, std::size_t column) const;
-  /// "path:line", for messages about a row.
-  std::string place(std::size_t row) const;
-
- private:
-  template <class Put>
-  void split(std::string_view line, long number, Put put);
-  void read_header(std::string_view line, long number);
-  /// Index of a column by its name, else by its name in another case; columns_.size(): none.
-  std::size_t index_of(const std::string& name) const;
-
-  std::string path_, content_;
-  char delimiter_ = ',';
-  std::deque<std::string> unquoted_;  // cells that are not in content_ as they are
-  std::vector<std::string> columns_;
-  std::vector<std::string_view> cells_;  // row-major
-  std::vector<long> lines_;              // line number of each row
+/// A box of LAMMPS.
+struct LammpsBox {
+  Matrix3 cell;                           ///< m, vectors as columns; of a general triclinic box in its own frame
+  Vector3 low;                            ///< m, its corner
+  bool periodic[3] = {true, true, true};  ///< along a, b, c
 };
 
-/// The last timestep of a dump.
-struct LammpsDump {
-  int dimension;  ///< 2 if every z is the same, as in a 2D simulation, else 3
-  Matrix3 cell;   ///< m, cell vectors as columns, upper triangular; 2D: (2, 2) is the box' thickness
-  /// Columns as in ITEM: ATOMS, but xu, xs and xsu are x (m) there, and diameter is radius; places name the dump's
-  /// lines.
-  std::unique_ptr<CsvTable> atoms;
+/// The atoms of one timestep of a dump, or of a data file.
+struct LammpsAtoms {
+  LammpsBox box;
+  std::string box_place;  ///< "path:line: what stands there", for messages about the box
+  /// Columns as in the file, but xu, xs and xsu are x (m) there; places name the file's lines.
+  std::unique_ptr<CsvTable> table;
 };
 
-/// Whether a text begins as a dump does.
-bool is_lammps_dump(const std::string& text);
+/// Length of a unit of LAMMPS' `units`, in m: si, cgs, micro, nano. InputError by name for the others, which state
+/// neither kilograms nor metres, or those of atoms; `place` goes before the message.
+double metres_of(const std::string& units, const std::string& place);
 
-/// Takes a dump in SI units apart; `path` serves the messages. InputError naming the line: not a dump, no box, a box
-/// that is not periodic.
-LammpsDump read_lammps_dump(const std::string& path, const std::string& text);
+/// Whether a text begins as a dump does: with an ITEM.
+bool is_lammps_dump(std::string_view text);
+
+/// One timestep of a dump: the last, or the one asked for. Of units si, cgs, micro or nano; without ITEM: UNITS in SI
+/// units. InputError naming the line: not a dump of atoms, an item missing or cut, more or fewer rows than ITEM: NUMBER
+/// OF ATOMS, a row that is not whole, a last line that is not ended; where frames before it are whole, the last of
+/// them is offered.
+LammpsAtoms read_lammps_dump(const std::string& path, const Text& text, const std::optional<std::int64_t>& timestep,
+                             const Tell& tell);
+
+/// Whether a text has the line "N atoms" of a data file.
+bool is_lammps_data(std::string_view text);
+
+/// A data file of atom_style sphere. InputError naming the line: another style, a box or section missing or cut, more
+/// or fewer rows than atoms.
+LammpsAtoms read_lammps_data(const std::string& path, const Text& text, const Tell& tell);
+
+/// The particles of any file, with the dimension that is meant and the cell that the file states.
+struct Particles {
+  std::unique_ptr<CsvTable> table;
+  int dimension;
+  std::optional<Matrix3> cell;  ///< m, vectors as columns; 2D: (2, 2) is the thickness
+};
+
+/// Reads a table, a dump or a data file. `stated`: the dimension that META.json says; `options` as of import_csv.
+Particles read_particles(const std::string& path, const std::optional<int>& stated, const ImportOptions& options);
 
 /// Contents of META.json. InputError: a missing key that is not optional, one of the wrong kind or out of range.
 struct Meta {

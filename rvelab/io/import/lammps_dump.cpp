@@ -1,184 +1,314 @@
-// Dumps of LAMMPS (and OVITO): the cell, and the atoms as a table. Declared in inputs.hpp.
-#include "rvelab/io/import/inputs.hpp"
-
+// Dumps of LAMMPS, LIGGGHTS and OVITO: one of the timesteps, whole. Declared in inputs.hpp.
 #include <algorithm>
-#include <charconv>
-#include <iterator>
-#include <sstream>
-#include <vector>
+#include <map>
 
 #include "rvelab/error.hpp"
+#include "rvelab/io/import/lammps_box.hpp"
 #include "rvelab/io/publish.hpp"
+#include "rvelab/io/utf8.hpp"
+#include "rvelab/keys/shortened.hpp"
 
 namespace rvelab::io {
 namespace {
 
-constexpr const char* first_item = "ITEM: TIMESTEP";
+constexpr std::string_view item = "ITEM:";
 
-std::vector<std::string> lines_of(const std::string& text) {
-  std::istringstream input(text);
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(input, line);) lines.push_back(line);
-  return lines;
-}
-
-[[noreturn]] void fail(const std::string& path, std::size_t line, const std::string& message) {
-  throw InputError(path + ":" + std::to_string(line + 1) + ": " + message);
-}
-
-/// The line of an item of the last timestep.
-std::size_t item(const std::string& path, const std::vector<std::string>& lines, std::size_t begin,
-                 const std::string& start) {
-  for (std::size_t k = begin; k < lines.size(); ++k) {
-    if (lines[k].starts_with(start)) return k;
-  }
-  fail(path, begin, "the timestep has no " + start + "; allowed: a whole text dump of LAMMPS; write it again");
-}
-
-struct Box {
-  Matrix3 cell;  ///< m, vectors as columns
-  Vector3 low;   ///< m, its corner
+/// Where a timestep stands in the text, with what the items around it say.
+struct Frame {
+  std::size_t begin, end;
+  long line;                             ///< number of the first one
+  std::optional<std::int64_t> timestep;  ///< none: cut or no number
+  std::string units;                     ///< LAMMPS states them once, before the first timestep
+  std::string units_place;
 };
 
-/// ITEM: BOX BOUNDS [xy xz yz] and three lines "low high [tilt]" of the cuboid around the tilted box.
-Box box_of(const std::string& path, const std::vector<std::string>& lines, std::size_t at) {
-  const std::string& header = lines[at];
-  const bool tilted = header.find("xy xz yz") != std::string::npos;
-  if (header.find("pp pp pp") == std::string::npos) {
-    fail(path, at, header + ": the box is not periodic; allowed: pp pp pp; give a periodic packing");
-  }
-  double low[3], high[3], tilt[3] = {0, 0, 0};
-  for (std::size_t k = 0; k < 3; ++k) {
-    std::istringstream numbers(at + 1 + k < lines.size() ? lines[at + 1 + k] : "");
-    numbers >> low[k] >> high[k];
-    if (tilted) numbers >> tilt[k];
-    if (!numbers) {
-      fail(path, std::min(at + 1 + k, lines.size() - 1),
-           std::string("is no line of box bounds; allowed: ") + (tilted ? "low high tilt" : "low high") +
-               "; write the dump again");
+/// The timesteps of a dump: each begins with the first item after the atoms of the one before it. A last line that is
+/// cut within "ITEM:" begins one too.
+std::vector<Frame> frames_of(const std::string& path, std::string_view text) {
+  std::vector<Frame> frames;
+  std::string units, units_place;
+  bool atoms_before = true;
+  for (TextLines lines(text); lines.next();) {
+    const std::string_view line = lines.line();
+    const bool cut_item = !lines.ended() && !line.empty() && item.starts_with(line);
+    if (!line.starts_with(item) && !cut_item) continue;
+    const std::string_view what = without_blanks(line.substr(std::min(line.size(), item.size())));
+    const bool again = what == "TIMESTEP" && !frames.empty() && frames.back().timestep;
+    if (atoms_before || again) {
+      const auto offset = std::size_t(line.data() - text.data());
+      if (!frames.empty()) frames.back().end = offset;
+      frames.push_back({offset, text.size(), lines.number(), std::nullopt, units, units_place});
+    }
+    atoms_before = what.starts_with("ATOMS");
+    TextLines next(lines.rest(), lines.number() + 1);
+    if (what == "TIMESTEP" && next.next()) {
+      std::int64_t step = 0;
+      if (next.ended() && parsed(without_blanks(next.line()), step)) frames.back().timestep = step;
+    } else if (what == "UNITS" && next.next()) {
+      units = without_blanks(next.line());
+      units_place = path + ":" + std::to_string(next.number());
+      frames.back().units = units;
+      frames.back().units_place = units_place;
     }
   }
-  const double xy = tilt[0], xz = tilt[1], yz = tilt[2];
-  Matrix3 cell = Matrix3::Zero();
-  low[0] -= std::min({0.0, xy, xz, xy + xz});
-  low[1] -= std::min(0.0, yz);
-  cell(0, 0) = (high[0] - std::max({0.0, xy, xz, xy + xz})) - low[0];
-  cell(1, 1) = (high[1] - std::max(0.0, yz)) - low[1];
-  cell(2, 2) = high[2] - low[2];
-  cell(0, 1) = xy;
-  cell(0, 2) = xz;
-  cell(1, 2) = yz;
-  return {cell, Vector3(low[0], low[1], low[2])};
+  return frames;
 }
 
-std::vector<std::string> words_of(const std::string& line) {
-  std::istringstream input(line);
-  return {std::istream_iterator<std::string>(input), {}};
-}
-
-std::string as_row(const std::vector<std::string>& words) {
-  std::string row;
-  for (const auto& word : words) row += (row.empty() ? "" : ",") + word;
-  return row + "\n";
-}
-
-/// What dumps write besides x, y, z and radius: xu (not wrapped into the box, as any position may be), xs and xsu (in
-/// parts of the box), diameter. The header gets the usual names, and rows the usual numbers.
-class Columns {
+/// Reads one timestep and believes nothing that is not whole.
+class FrameReader {
  public:
-  Columns(std::vector<std::string>& header, const Box& box) : box_(box) {
-    const auto find = [&](const std::string& name) {
-      const auto at = std::find(header.begin(), header.end(), name);
-      return at == header.end() ? -1 : int(at - header.begin());
-    };
-    if (find("radius") < 0 && find("diameter") >= 0) header[std::size_t(diameter_ = find("diameter"))] = "radius";
-    for (int k = 0; k < 3; ++k) {
-      const std::string axis(1, "xyz"[k]);
-      if (find(axis) >= 0) continue;
-      if (const int at = find(axis + "u"); at >= 0) {
-        header[std::size_t(at)] = axis;
-        continue;
+  FrameReader(const std::string& path, const Text& text, const Frame& frame)
+      : path_(path),
+        text_(text),
+        lines_(std::string_view(*text).substr(0, frame.end).substr(frame.begin), frame.line) {}
+
+  LammpsAtoms read(double metres) {
+    read_items(metres);
+    for (const char* needed : {"TIMESTEP", "NUMBER OF ATOMS", "BOX BOUNDS", "ATOMS"}) {
+      if (seen_.count(needed) == 0) {
+        fail(lines_.number(), std::string("the timestep has no ITEM: ") + needed +
+                                  "; allowed: a whole text dump of LAMMPS; the file is cut, write or copy it again");
       }
-      scaled_[k] = std::max(find(axis + "s"), find(axis + "su"));
-      if (scaled_[k] >= 0) header[std::size_t(scaled_[k])] = axis;
     }
-  }
-
-  /// Whether some are in parts of the box and others are not.
-  bool mixed(const std::vector<std::string>& header) const {
-    int in_parts = 0, axes = 0;
-    for (int k = 0; k < 3; ++k) {
-      in_parts += scaled_[k] >= 0;
-      axes += int(std::count(header.begin(), header.end(), std::string(1, "xyz"[k])));
-    }
-    return in_parts > 0 && in_parts != axes;
-  }
-
-  void convert(std::vector<std::string>& row) const {
-    double value = 0;
-    if (number(row, diameter_, value)) row[std::size_t(diameter_)] = exact(value / 2);
-    Vector3 parts = Vector3::Zero();
-    for (int k = 0; k < 3; ++k) {
-      // What is no number stays as it is, and the table tells it with its place.
-      if (scaled_[k] >= 0 && !number(row, scaled_[k], parts[k])) return;
-    }
-    const Vector3 position = box_.low + box_.cell * parts;
-    for (int k = 0; k < 3; ++k) {
-      if (scaled_[k] >= 0) row[std::size_t(scaled_[k])] = exact(position[k]);
-    }
+    scale_box(atoms_.box, metres);
+    return std::move(atoms_);
   }
 
  private:
-  static bool number(const std::vector<std::string>& row, int at, double& value) {
-    if (at < 0 || std::size_t(at) >= row.size()) return false;
-    const std::string& word = row[std::size_t(at)];
-    const char *begin = word.data() + (word.starts_with('+') ? 1 : 0), *end = word.data() + word.size();
-    const auto [rest, error] = std::from_chars(begin, end, value);
-    return error == std::errc() && rest == end;
+  [[noreturn]] void fail(long line, const std::string& message) const {
+    throw InputError(path_ + ":" + std::to_string(line) + ": " + message);
   }
 
-  Box box_;
-  int diameter_ = -1, scaled_[3] = {-1, -1, -1};
+  static std::string shown(std::string_view text) { return keys::shortened(printable(without_blanks(text))); }
+
+  void read_items(double metres) {
+    bool more = lines_.next();
+    while (more) {
+      const std::string_view line = without_blanks(lines_.line());
+      if (line.empty()) {
+        more = lines_.next();
+        continue;
+      }
+      if (!line.starts_with(item)) fail(lines_.number(), shown(line) + " is no ITEM; allowed: those of a dump");
+      const std::string_view what = without_blanks(line.substr(item.size()));
+      const auto is = [&](std::string_view name) {
+        const bool found =
+            what == name || (what.starts_with(name) && what.size() > name.size() && what[name.size()] == ' ');
+        if (found && !seen_.emplace(name, lines_.number()).second)
+          fail(lines_.number(), "ITEM: " + std::string(name) + " stands twice in a timestep; allowed: once");
+        return found;
+      };
+      if (is("ATOMS")) {
+        read_atoms(what, metres);
+        return;
+      }
+      if (is("NUMBER OF ATOMS")) {
+        count_ = whole_number("a number of atoms");
+        if (count_ < 0) fail(lines_.number(), shown(lines_.line()) + " is no number of atoms; allowed: from 0");
+      } else if (is("TIMESTEP")) {
+        whole_number("a timestep");
+      } else if (is("BOX BOUNDS")) {
+        read_box(line);
+      } else if (is("ENTRIES") || is("GRID CELLS") || is("NUMBER OF ENTRIES")) {
+        fail(lines_.number(), shown(line) +
+                                  " is not of atoms; allowed: a dump of style custom, id type x y z radius; "
+                                  "dump the atoms");
+      }
+      do more = lines_.next();
+      while (more && !lines_.line().starts_with(item));
+    }
+  }
+
+  /// The next line, which must be ended.
+  void next_line(const std::string& wanted) {
+    const long before = lines_.number();
+    if (!lines_.next()) fail(before, "the file ends here; allowed: " + wanted + " in the next line; " + again_);
+    if (!lines_.ended())
+      fail(lines_.number(),
+           shown(lines_.line()) + " is not ended by a line break and may be cut; allowed: " + wanted + "; " + again_);
+  }
+
+  std::int64_t whole_number(const std::string& wanted) {
+    next_line(wanted);
+    std::int64_t value = 0;
+    if (!parsed(without_blanks(lines_.line()), value))
+      fail(lines_.number(), shown(lines_.line()) + " is no whole number; allowed: " + wanted + "; " + again_);
+    return value;
+  }
+
+  /// ITEM: BOX BOUNDS [xy xz yz | abc origin] pp pp pp and three lines.
+  void read_box(std::string_view line) {
+    atoms_.box_place = path_ + ":" + std::to_string(lines_.number()) + ": " + shown(line);
+    std::vector<std::string_view> words;
+    split_words(line, words);
+    words.erase(words.begin(), words.begin() + std::min<long>(3, long(words.size())));
+    const auto begins = [&](std::initializer_list<std::string_view> names) {
+      if (words.size() < names.size() || !std::equal(names.begin(), names.end(), words.begin())) return false;
+      words.erase(words.begin(), words.begin() + long(names.size()));
+      return true;
+    };
+    const bool general = begins({"abc", "origin"}), tilted = !general && begins({"xy", "xz", "yz"});
+    const auto is_boundary = [](std::string_view word) {
+      return word.size() == 2 && word.find_first_not_of("pfsm") == std::string_view::npos;
+    };
+    if (words.size() != 3 || !std::all_of(words.begin(), words.end(), is_boundary)) {
+      throw InputError(atoms_.box_place +
+                       " does not say which boundaries are periodic; allowed: ITEM: BOX BOUNDS [xy xz yz, or abc "
+                       "origin] pp pp pp; give a dump that says it");
+    }
+    bool periodic[3];
+    for (std::size_t k = 0; k < 3; ++k) periodic[k] = words[k] == "pp";
+    const std::size_t count = general ? 4 : tilted ? 3 : 2;
+    double rows[3][4] = {};
+    for (auto& row : rows) {
+      const std::string wanted = general  ? "a vector and a coordinate of the origin, four numbers"
+                                 : tilted ? "low high tilt"
+                                          : "low high";
+      next_line(wanted);
+      split_words(lines_.line(), words);
+      if (words.size() != count || !finite_numbers(words, count, row))
+        fail(lines_.number(), shown(lines_.line()) + " is no line of box bounds; allowed: " + wanted + "; " + again_);
+    }
+    if (general) {
+      for (int k = 0; k < 3; ++k) {
+        for (int i = 0; i < 3; ++i) atoms_.box.cell(i, k) = rows[k][i];
+        atoms_.box.low[k] = rows[k][3];
+      }
+    } else {
+      atoms_.box = box_inside({{rows[0][0], rows[1][0], rows[2][0]},
+                               {rows[0][1], rows[1][1], rows[2][1]},
+                               rows[0][2],
+                               rows[1][2],
+                               rows[2][2]});
+    }
+    std::copy(std::begin(periodic), std::end(periodic), atoms_.box.periodic);
+  }
+
+  void read_atoms(std::string_view what, double metres) {
+    const long header_line = lines_.number();
+    for (const char* needed : {"NUMBER OF ATOMS", "BOX BOUNDS"}) {
+      if (seen_.count(needed) == 0)
+        fail(header_line, std::string("the timestep has no ITEM: ") + needed +
+                              " before its atoms; allowed: a whole dump; " + again_);
+    }
+    if (!lines_.ended())
+      fail(header_line, "the file ends in the line of ITEM: ATOMS; allowed: a whole dump; " + again_);
+    std::vector<std::string_view> words;
+    split_words(what, words);
+    std::vector<std::string> names(words.begin() + 1, words.end());
+    std::vector<std::pair<std::size_t, std::size_t>> twice;  // LIGGGHTS' tutorials dump `type type`
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      const auto first = std::find(names.begin(), names.begin() + long(k), names[k]);
+      if (first != names.begin() + long(k)) twice.emplace_back(first - names.begin(), k);
+    }
+    const std::vector<std::string> named = names;
+    for (const auto& [first, second] : twice) names[second].clear();
+    const ScaledColumns scaled(names, atoms_.box);
+    if (scaled.mixed())
+      fail(header_line, "has some coordinates in parts of the box (xs) and others not; allowed: all alike; dump x y z");
+    atoms_.table = std::make_unique<CsvTable>(path_, text_, names);
+    atoms_.table->lengths_in(metres);
+    // Parts of the box give lengths in the dump's unit, too: the box is brought to metres at the end.
+    std::int64_t rows = 0;
+    while (lines_.next()) {
+      split_words(lines_.line(), words);
+      if (words.empty()) continue;
+      if (++rows > count_) continue;
+      if (words.size() != names.size())
+        fail(lines_.number(), "the row has " + std::to_string(words.size()) + " cells; allowed: one for each of the " +
+                                  std::to_string(names.size()) + " columns of ITEM: ATOMS; " + again_);
+      if (!lines_.ended())
+        fail(lines_.number(),
+             "the last row is not ended by a line break, so its last number may be cut; allowed: "
+             "whole rows; " +
+                 again_ + ", or end the line if the number is whole");
+      for (const auto& [first, second] : twice) expect_same(named[first], words[first], words[second]);
+      scaled.convert(words, *atoms_.table);
+      atoms_.table->add_row(lines_.number(), words);
+    }
+    if (rows != count_)
+      fail(header_line, "ITEM: NUMBER OF ATOMS says " + std::to_string(count_) + ", and " + std::to_string(rows) +
+                            " rows follow; allowed: as many rows as it says; " + again_);
+  }
+
+  void expect_same(const std::string& name, std::string_view first, std::string_view second) const {
+    double one = 0, other = 0;
+    if (first == second || (parsed(first, one) && parsed(second, other) && one == other)) return;
+    fail(lines_.number(), "the column " + keys::shortened(name) + " stands twice, here with " + shown(first) + " and " +
+                              shown(second) + "; allowed: once, or twice with equal values; dump it once");
+  }
+
+  const std::string again_ = "the file is cut or damaged: write or copy it again";
+  const std::string& path_;
+  Text text_;
+  TextLines lines_;
+  std::map<std::string, long, std::less<>> seen_;
+  std::int64_t count_ = 0;
+  LammpsAtoms atoms_{};
 };
+
+LammpsAtoms whole_frame(const std::string& path, const Text& text, const Frame& frame) {
+  const double metres = frame.units.empty() ? 1 : metres_of(frame.units, frame.units_place);
+  return FrameReader(path, text, frame).read(metres);
+}
+
+/// The last frame of a timestep; a run that went on from an earlier state has it twice.
+std::size_t frame_of(const std::string& path, const std::vector<Frame>& frames, std::int64_t timestep) {
+  for (std::size_t k = frames.size(); k-- > 0;) {
+    if (frames[k].timestep == timestep) return k;
+  }
+  std::string there;
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    if (frames.size() > 10 && k >= 4 && k + 4 < frames.size()) {
+      if (k == 4) there += ", ...";
+      continue;
+    }
+    if (frames[k].timestep) there += (there.empty() ? "" : ", ") + std::to_string(*frames[k].timestep);
+  }
+  throw InputError(path + ": has no timestep " + std::to_string(timestep) + "; allowed: " + there +
+                   "; give one of these by --timestep, or none for the last");
+}
+
+/// The end of a refusal: which timestep before a broken one can be had.
+std::string offer_before(const std::string& path, const Text& text, const std::vector<Frame>& frames,
+                         std::size_t broken) {
+  for (std::size_t k = broken; k-- > 0;) {
+    if (!frames[k].timestep || frame_of(path, frames, *frames[k].timestep) != k) continue;
+    try {
+      whole_frame(path, text, frames[k]);
+      const std::string step = std::to_string(*frames[k].timestep);
+      return "; the last whole timestep before it is " + step + ": --timestep " + step + " reads it";
+    } catch (const InputError&) {
+      continue;
+    }
+  }
+  return frames.size() > 1 ? "; no timestep before it is whole" : "";
+}
 
 }  // namespace
 
-bool is_lammps_dump(const std::string& text) { return text.starts_with(first_item); }
+bool is_lammps_dump(std::string_view text) { return text.starts_with(item); }
 
-LammpsDump read_lammps_dump(const std::string& path, const std::string& text) {
-  const auto lines = lines_of(text);
-  std::size_t begin = lines.size();
-  while (begin > 0 && !lines[begin - 1].starts_with(first_item)) --begin;
-  if (begin == 0) fail(path, 0, "is no text dump of LAMMPS; allowed: ITEM: TIMESTEP first; give a dump");
-  const auto box = item(path, lines, begin, "ITEM: BOX BOUNDS"), atoms = item(path, lines, begin, "ITEM: ATOMS");
-  const Box bounds = box_of(path, lines, box);
-  LammpsDump dump{3, bounds.cell, nullptr};
-
-  std::string table(atoms, '\n');  // so that rows keep the numbers of their lines
-  auto header = words_of(lines[atoms].substr(std::string("ITEM: ATOMS").size()));
-  const Columns columns(header, bounds);
-  if (columns.mixed(header)) {
-    fail(path, atoms, "has some coordinates in parts of the box (xs) and others not; allowed: all alike; dump x y z");
-  }
-  table += as_row(header);
-  for (std::size_t k = atoms + 1; k < lines.size(); ++k) {
-    auto row = words_of(lines[k]);
-    columns.convert(row);
-    table += as_row(row);
-  }
-  dump.atoms = std::make_unique<CsvTable>(path, table);
-  if (dump.atoms->has("z") && dump.atoms->rows() > 0) {
-    const auto z = dump.atoms->column({"z"});
-    bool flat = true;
-    for (std::size_t row = 1; row < dump.atoms->rows(); ++row) {
-      flat = flat && dump.atoms->number(row, z) == dump.atoms->number(0, z);
+LammpsAtoms read_lammps_dump(const std::string& path, const Text& text, const std::optional<std::int64_t>& timestep,
+                             const Tell& tell) {
+  const auto frames = frames_of(path, *text);
+  const std::size_t chosen = timestep ? frame_of(path, frames, *timestep) : frames.size() - 1;
+  const Frame& frame = frames[chosen];
+  if (!frame.units.empty()) metres_of(frame.units, frame.units_place);
+  try {
+    auto atoms = whole_frame(path, text, frame);
+    if (!timestep && frames.size() > 1 && frame.timestep && frames.front().timestep) {
+      tell(path + " holds " + std::to_string(frames.size()) + " timesteps, " +
+           std::to_string(*frames.front().timestep) + " to " + std::to_string(*frame.timestep) +
+           "; the last is read, --timestep N reads another");
     }
-    if (flat) dump.dimension = 2;
-  } else if (!dump.atoms->has("z")) {
-    dump.dimension = 2;
+    if (!frame.units.empty() && frame.units != "si")
+      tell(path + " is in units " + frame.units + ": its lengths are times " + exact(metres_of(frame.units, "")) +
+           " m");
+    return atoms;
+  } catch (const InputError& error) {
+    throw InputError(error.what() + offer_before(path, text, frames, chosen));
   }
-  if (dump.dimension == 2) dump.cell(0, 2) = dump.cell(1, 2) = 0;
-  return dump;
 }
 
 }  // namespace rvelab::io

@@ -1,0 +1,104 @@
+// Declared in text.hpp.
+#include "rvelab/io/import/text.hpp"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+
+#include "rvelab/error.hpp"
+#include "rvelab/keys/regular_file.hpp"
+
+namespace rvelab::io {
+namespace {
+
+constexpr std::string_view gzip_magic{"\x1f\x8b", 2};
+
+[[noreturn]] void refuse_packed(const std::string& path, const std::string& what) {
+  throw InputError(path + ": " + what);
+}
+
+/// zlib's state of one member of a gzip file.
+class Inflation {
+ public:
+  Inflation() {
+    constexpr int gzip_only = 16 + MAX_WBITS;
+    if (inflateInit2(&stream_, gzip_only) != Z_OK) throw std::bad_alloc();
+  }
+  ~Inflation() { inflateEnd(&stream_); }
+  Inflation(const Inflation&) = delete;
+  Inflation& operator=(const Inflation&) = delete;
+  z_stream* operator->() { return &stream_; }
+  int inflate_on() { return inflate(&stream_, Z_NO_FLUSH); }
+
+ private:
+  z_stream stream_{};
+};
+
+/// Appends what one member holds; returns the bytes that it took of `packed`.
+std::size_t unpack_member(const std::string& path, std::string_view packed, std::size_t most, std::string& text) {
+  Inflation state;
+  std::array<char, 1 << 16> block;
+  std::size_t taken = 0;
+  for (int code = Z_OK; code != Z_STREAM_END;) {
+    if (state->avail_in == 0) {
+      const auto portion = std::min<std::size_t>(packed.size() - taken, 1 << 20);
+      if (portion == 0) refuse_packed(path, "the gzip file ends early; allowed: a whole one; copy or write it again");
+      state->next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data() + taken));
+      state->avail_in = static_cast<uInt>(portion);
+      taken += portion;
+    }
+    state->next_out = reinterpret_cast<Bytef*>(block.data());
+    state->avail_out = block.size();
+    code = state.inflate_on();
+    if (code == Z_MEM_ERROR) throw std::bad_alloc();
+    if (code != Z_OK && code != Z_STREAM_END && code != Z_BUF_ERROR) {
+      refuse_packed(path, "the gzip file is damaged (" + std::string(state->msg != nullptr ? state->msg : "zlib") +
+                              "); allowed: one that gzip -t finds right; copy or write it again");
+    }
+    text.append(block.data(), block.size() - state->avail_out);
+    if (text.size() > most) {
+      refuse_packed(path, "unpacks to more than " + std::to_string(most) +
+                              " bytes; allowed: 64 MiB and 40 times the packed size, which no text exceeds; unpack it "
+                              "with gunzip if it is right, and give the unpacked file");
+    }
+  }
+  return taken - state->avail_in;
+}
+
+std::string unpacked(const std::string& path, std::string_view packed) {
+  const std::size_t most = (std::size_t{64} << 20) + 40 * packed.size();
+  std::string text;
+  while (packed.starts_with(gzip_magic)) packed.remove_prefix(unpack_member(path, packed, most, text));
+  if (packed.find_first_not_of('\0') != std::string_view::npos) {  // padding is allowed, as gzip allows it
+    refuse_packed(path, "other bytes follow the gzip data; allowed: nothing behind it; copy or write the file again");
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string whole_text(const std::string& path, const std::string& wanted) {
+  auto text = keys::whole_file<std::string>(path, wanted);
+  if (std::string_view(text).starts_with(gzip_magic)) return unpacked(path, text);
+  struct Packed {
+    std::string_view magic;
+    const char *program, *unpack;
+  };
+  for (const auto& [magic, program, unpack] :
+       {Packed{{"\x28\xb5\x2f\xfd", 4}, "zstd", "unzstd"},
+        Packed{{"\xfd"
+                "7zXZ",
+                5},
+               "xz",
+               "unxz"},
+        Packed{{"BZh", 3}, "bzip2", "bunzip2"}, Packed{{"PK\x03\x04", 4}, "zip", "unzip"}}) {
+    if (!std::string_view(text).starts_with(magic)) continue;
+    refuse_packed(path, std::string("is packed by ") + program +
+                            "; allowed: text, or text packed by gzip; unpack it with " + unpack +
+                            " (a workbook of Excel: save it as CSV)");
+  }
+  return text;
+}
+
+}  // namespace rvelab::io
