@@ -32,8 +32,11 @@ std::string digits_of(double value) {
   return {digits, std::to_chars(std::begin(digits), std::end(digits), value).ptr};
 }
 
-std::string with_unit(const std::string& words, const char* unit) {
-  return unit == std::string("1") ? words : words + " " + unit;
+/// A range with its unit, and that it holds finite numbers only where one is not.
+std::string words(const Interval& range, const char* unit, double found) {
+  if (range.low == -no_bound && range.high == no_bound) return in_words(range);
+  return in_words(range) + (unit == std::string("1") ? "" : std::string(" ") + unit) +
+         (std::isfinite(found) ? "" : ", finite");
 }
 
 /// Whether a component of a vector is 0 in 2D.
@@ -98,7 +101,7 @@ class Ranges {
         if (Layout<Entry>::size == 3) index += (index.empty() ? "" : ", ") + std::to_string(k);
         if (Layout<Entry>::size == 9) index += std::to_string(k / 3) + ", " + std::to_string(k % 3);
         out_of_range(path, index, row, value,
-                     in_range ? flat_words(field.plane) : with_unit(in_words(field.allowed), field.units));
+                     in_range ? flat_words(field.plane) : words(field.allowed, field.units, value));
       }
     }
   }
@@ -110,7 +113,7 @@ class Ranges {
     if (row != nullptr && name.starts_with("grains/")) who = " of grain " + std::to_string(s_.grains.id[*row]);
     if (row != nullptr && name.starts_with("materials/")) who = " of material \"" + s_.materials[*row].name + "\"";
     refuse(path, (index.empty() ? "" : "[" + index + "]") + who + " = " + digits_of(value) +
-                     " is out of range; allowed: " + allowed + (std::isfinite(value) ? "" : ", and finite"));
+                     " is out of range; allowed: " + allowed);
   }
 
   /// What a law reads is in the range that the law states; what none of this specimen reads is 0, or in that of
@@ -128,9 +131,9 @@ class Ranges {
       if (read) break;
     }
     if (stated != nullptr)
-      out_of_range(path, std::to_string(row), &row, value,
-                   with_unit(in_words(stated->parameter.allowed), stated->parameter.unit) + " with contact/law " +
-                       name(stated->law));
+      out_of_range(
+          path, std::to_string(row), &row, value,
+          words(stated->parameter.allowed, stated->parameter.unit, value) + " with contact/law " + name(stated->law));
   }
 
   const Specimen& s_;
@@ -158,7 +161,9 @@ class Relations {
   }
 
  private:
-  [[noreturn]] void refuse(const std::string& what) const { throw InputError(where_ + what + remedy); }
+  [[noreturn]] void refuse(const std::string& what) const { advise(what + remedy); }
+  /// The same of what has a remedy of its own.
+  [[noreturn]] void advise(const std::string& what) const { throw InputError(where_ + what); }
 
   static std::string at(const char* field, std::size_t k) { return field + ("[" + std::to_string(k) + "]"); }
   std::string of_grain(const char* field, std::size_t k) const {
@@ -168,19 +173,19 @@ class Relations {
   void check_lists() const {
     const SolverState& state = s.state;
     if (state.scaled_mass.size() != state.scaled_inverse_inertia.size())
-      refuse("state/scaled_mass has " + std::to_string(state.scaled_mass.size()) +
+      advise("state/scaled_mass has " + std::to_string(state.scaled_mass.size()) +
              " rows, state/scaled_inverse_inertia " + std::to_string(state.scaled_inverse_inertia.size()) +
              "; allowed: both one for each grain, or both none, and they are made anew");
     const std::size_t n = s.grains.size();
     if (!state.memory_order.empty() && !is_permutation(state.memory_order, n))
-      refuse("state/memory_order is no permutation of the " + std::to_string(n) + " grains; leave it empty");
+      advise("state/memory_order is no permutation of the " + std::to_string(n) + " grains; leave it empty");
   }
 
   void check_grains() const {
     const Grains& g = s.grains;
     for (std::size_t k = 0; k < g.size(); ++k) {
       if (k > 0 && g.id[k] <= g.id[k - 1])
-        refuse(of_grain("grains/id", k) + " follows " + std::to_string(g.id[k - 1]) +
+        advise(of_grain("grains/id", k) + " follows " + std::to_string(g.id[k - 1]) +
                "; ids must ascend, each once: sort the grains by id");
       if (std::size_t(g.material[k]) >= s.materials.size())
         refuse(of_grain("grains/material", k) + " = " + std::to_string(g.material[k]) + "; allowed: 0 to " +
@@ -257,10 +262,10 @@ class Relations {
         const std::string who =
             "cell/lattice_m[" + std::to_string(row) + ", " + std::to_string(column) + "] = " + digits_of(value);
         if (row < column && !flat)
-          refuse(who + " m is a tilt of more than " + in_words(largest_tilt) + " times cell/lattice_m[" +
+          advise(who + " m is a tilt of more than " + in_words(largest_tilt) + " times cell/lattice_m[" +
                  std::to_string(row) + ", " + std::to_string(row) + "] = " + in_words(l(row, row)) +
                  " m; give the same lattice by shorter vectors");
-        refuse(who +
+        advise(who +
                "; the lattice must be upper triangular with a positive diagonal, in 2D with the thickness alone in "
                "its last row and column: turn cell and grains into that frame first");
       }
@@ -276,7 +281,7 @@ class Relations {
     for (std::size_t k = 0; k < s.grains.size(); ++k) {
       const Vector3 periods = s.cell.lattice.triangularView<Eigen::Upper>().solve(s.grains.position[k]);
       if (periods.head(s.cell.dimension).cwiseAbs().maxCoeff() <= most_periods) continue;
-      refuse(
+      advise(
           of_grain("grains/position_m", k) + " is " + in_words(s.grains.position[k].stableNorm()) +
           " m from the origin, more than 2^30 cell widths; give coordinates and cell in m, both of the same packing");
     }
@@ -287,7 +292,7 @@ class Relations {
     for (const double radius : s.grains.radius) solid += grain_volume(s.shape, radius, s.cell.lattice(2, 2));
     const double volume = s.cell.volume();
     if (!(solid > 0) || !(volume > 0) || !std::isfinite(volume / solid))
-      refuse("grains/radius_m, cell/lattice_m: grains of " + in_words(solid) + " m^3 in a cell of " + in_words(volume) +
+      advise("grains/radius_m, cell/lattice_m: grains of " + in_words(solid) + " m^3 in a cell of " + in_words(volume) +
              " m^3; both must be above 0, and their ratio finite; give all lengths in m");
     for (std::size_t k = 0; k < s.grains.size(); ++k) {
       const double radius = s.grains.radius[k], density = s.materials[std::size_t(s.grains.material[k])].density;
@@ -309,11 +314,11 @@ class Relations {
     const bool in_plane = s.cell.dimension == 3 || (u(0, 2) == 0 && u(1, 2) == 0 && u(2, 2) == 1);
     const double strain = (u - Matrix3::Identity()).norm();
     if (!upper || !in_plane || !(strain < 0.01))
-      refuse(
+      advise(
           "state/deferred_stretch must be an upper triangular stretch within 0.01 of the identity, and in 2D leave z "
           "alone; leave it the identity");
     if (!(strain <= (1 + 1e-9) * s.state.strain_per_step))
-      refuse("state/deferred_stretch is a strain of " + in_words(strain) +
+      advise("state/deferred_stretch is a strain of " + in_words(strain) +
              ", more than a sub-step's, state/strain_per_step = " + in_words(s.state.strain_per_step) +
              "; leave it the identity");
   }
@@ -366,7 +371,7 @@ void Relations::check_history(std::size_t k) const {
   if (c.tangential_force.isZero(0) && c.rolling_moment.isZero(0)) return;
   const PairParameters parameters = parameters_of(s, c);
   if (!c.tangential_force.isZero(0) && !(parameters.kt > 0))
-    refuse(pair(k) + " holds a tangential force of " + in_words(c.tangential_force.stableNorm()) +
+    advise(pair(k) + " holds a tangential force of " + in_words(c.tangential_force.stableNorm()) +
            " N, but its tangential stiffness is 0; give a stiffness > 0, or clear the tangential forces");
   if (s.cell.dimension == 2) return;
   const Vector3 &xi = s.grains.position[std::size_t(c.i)], &xj = s.grains.position[std::size_t(c.j)];

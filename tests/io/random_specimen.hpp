@@ -4,6 +4,7 @@
 // compared too.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -151,15 +152,12 @@ class RandomFill {
   void table(const fields::Path&, std::vector<Item>& items, const Columns&... columns) {
     for (Item& item : items) (put(item.*columns.member), ...);
   }
-  /// Any number of this range that is finite; in a narrow one from all over it.
+  /// A finite number of this range: evenly in a narrow one, of any size in a wide one.
   double within(const Interval& range) {
-    const double low = std::max(range.low, -1e300), high = std::min(range.high, 1e300);
     for (;;) {
-      double value;
-      put(value);
+      double value = range.low + (range.high - range.low) * std::ldexp(double(bits_() >> 11), -53);
+      if (!(range.high - range.low < 1e9)) put(value);
       if (std::isfinite(value) && range.contains(value)) return value;
-      value = low + (high - low) * std::ldexp(double(bits_() >> 11), -53);
-      if (high - low < 1e9 && range.contains(value)) return value;
     }
   }
 
@@ -229,7 +227,7 @@ class Mend {
                              std::min(field.allowed.high, double(std::numeric_limits<Scalar>::max() / 2)),
                              field.allowed.low_open, field.allowed.high_open};
         if (!std::isfinite(double(value)) || !field.allowed.contains(double(value)))
-          value = Scalar(random_.within(range));
+          value = Scalar(random_.within(range)) + Scalar(std::is_integral_v<Scalar> && range.low_open);
         const bool flat = field.plane == fields::InPlane::along     ? k == 2
                           : field.plane == fields::InPlane::normal  ? k != 2
                           : field.plane == fields::InPlane::tangent ? k != 0
