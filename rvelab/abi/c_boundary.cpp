@@ -1,6 +1,9 @@
 #include "rvelab/abi/c_boundary.hpp"
 
 #include <cstdio>
+#include <cstring>
+
+#include "rvelab/io/utf8.hpp"
 
 namespace rvelab::abi {
 
@@ -9,14 +12,26 @@ namespace {
 /// A plain array, so that a text always finds room.
 thread_local char text[1200];
 
+/// What a name in the text holds that hosts cannot print, and a letter that its end cuts, becomes a question mark.
+std::int32_t printable(pool::Status status) noexcept {
+  const std::size_t size = std::strlen(text);
+  for (std::size_t at = 0; at < size;) {
+    const std::size_t length = io::utf8_length({text, size}, at);
+    const auto byte = static_cast<unsigned char>(text[at]);
+    if (length == 0 || (byte < 0x20 && byte != '\n') || byte == 0x7f) text[at] = '?';
+    at += length > 0 ? length : 1;
+  }
+  return std::int32_t(status);
+}
+
 }  // namespace
 
 std::int32_t recorded(const pool::Verdict& verdict) noexcept {
   std::snprintf(text, sizeof text, "%s", verdict.text.c_str());
-  return std::int32_t(verdict.status);
+  return printable(verdict.status);
 }
 
-std::int32_t recorded_failure() noexcept { return std::int32_t(pool::status_of_exception(text, sizeof text)); }
+std::int32_t recorded_failure() noexcept { return printable(pool::status_of_exception(text, sizeof text)); }
 
 void expect_pointers(std::initializer_list<Needed> needed) {
   for (const Needed& each : needed)

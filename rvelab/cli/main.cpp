@@ -3,6 +3,7 @@
 // standard library name neither. No colours.
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -25,21 +26,15 @@ namespace {
 
 constexpr int run_failed = 1, users_mistake = 2;
 
-/// Joins several mistakes, one on each line, into one line.
-std::string on_one_line(std::string text) {
-  while (!text.empty() && text.back() == '\n') text.pop_back();
-  for (auto end = text.find('\n'); end != std::string::npos; end = text.find('\n', end)) text.replace(end, 1, " | ");
-  return text;
-}
-
-int fail(int code, const std::string& message) {
-  std::cerr << "rvelab: " << rvelab::io::printable(on_one_line(message)) << std::endl;
-  return code;
-}
-
-/// The command line, for the message that must not allocate.
+/// The command line, for messages, also for the one that must not allocate.
 int word_count = 0;
 char** words = nullptr;
+
+int fail(int code, const std::string& message) {
+  std::cerr << "rvelab: " << rvelab::io::message_line(message, {words + std::min(word_count, 1), words + word_count})
+            << std::endl;
+  return code;
+}
 
 /// Prints the message without allocating memory.
 int fail_without_memory() {

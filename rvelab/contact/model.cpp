@@ -57,12 +57,14 @@ class Findings {
  public:
   void add(const std::string& line) { lines_ += (lines_.empty() ? "" : "\n") + line; }
 
-  /// One number against its range; `range` is that range in words, with the unit.
-  void expect(bool allowed, const std::string& key, double value, const char* range, const char* remedy) {
-    if (allowed && std::abs(value) <= std::numeric_limits<double>::max()) return;
+  /// One number against its range, in this unit.
+  void expect(const Interval& range, const std::string& key, double value, const std::string& unit,
+              const char* remedy) {
+    if (range.contains(value) && std::abs(value) <= std::numeric_limits<double>::max()) return;
     char digits[32];  // as many as tell it from the end of the range
     const std::string found(digits, std::to_chars(std::begin(digits), std::end(digits), value).ptr);
-    add(key + " = " + found + " is out of range; allowed: " + range + "; " + remedy);
+    add(key + " = " + found + " is out of range; allowed: " + in_words(range) + (unit.empty() ? "" : " " + unit) +
+        "; " + remedy);
   }
 
   void raise() const {
@@ -74,14 +76,13 @@ class Findings {
 };
 
 void check_damping(const ContactModel& model, const Damping& damping, Findings& findings) {
-  findings.expect(damping.local >= 0 && damping.local < 1, "damping.local", damping.local, "0 to below 1",
+  findings.expect(ranges::local_damping, "damping.local", damping.local, "",
                   "give 0 for no local damping in loading at a rate");
-  findings.expect(damping.local_quasi_static > 0 && damping.local_quasi_static < 1, "damping.local_quasi_static",
-                  damping.local_quasi_static, "above 0 to below 1", "give 0.3, the default");
-  findings.expect(damping.global_viscous >= 0, "damping.global_viscous", damping.global_viscous, ">= 0 N s/m",
-                  "give 0 for none");
+  findings.expect(ranges::local_damping_quasi_static, "damping.local_quasi_static", damping.local_quasi_static, "",
+                  "give 0.3, the default");
+  findings.expect(number_from_zero, "damping.global_viscous", damping.global_viscous, "N s/m", "give 0 for none");
   if (damping.dashpot == Dashpot::none) return;
-  findings.expect(damping.tangential_ratio >= 0, "damping.tangential_ratio", damping.tangential_ratio, ">= 0",
+  findings.expect(number_from_zero, "damping.tangential_ratio", damping.tangential_ratio, "",
                   "give 0 for a normal dashpot alone");
   const bool viscoelastic = damping.dashpot == Dashpot::viscoelastic;
   if ((viscoelastic || damping.dashpot == Dashpot::tsuji) && !stiffens(model.law))
@@ -89,32 +90,30 @@ void check_damping(const ContactModel& model, const Damping& damping, Findings& 
                  " does not go with contact.law = " + name(model.law) + "; allowed: " + names_where<Law>(stiffens) +
                  "; use damping.dashpot = restitution" + (viscoelastic ? " or coefficient" : ""));
   if (viscoelastic || damping.dashpot == Dashpot::coefficient)
-    findings.expect(damping.normal_coefficient >= 0, "damping.normal_coefficient", damping.normal_coefficient,
-                    viscoelastic ? ">= 0 1/(m s)" : ">= 0 N s/m",
+    findings.expect(number_from_zero, "damping.normal_coefficient", damping.normal_coefficient,
+                    viscoelastic ? "1/(m s)" : "N s/m",
                     viscoelastic ? "give the viscoelastic constant, or damping.dashpot = none"
                                  : "give the dashpot coefficient, or damping.dashpot = none");
   if (damping.dashpot == Dashpot::restitution || damping.dashpot == Dashpot::tsuji)
-    findings.expect(damping.restitution > 0 && damping.restitution <= 1, "damping.restitution", damping.restitution,
-                    "above 0 to 1", "give the coefficient of restitution of two grains; 1 is elastic");
+    findings.expect(ranges::restitution, "damping.restitution", damping.restitution, "",
+                    "give the coefficient of restitution of two grains; 1 is elastic");
 }
 
 void check_material(const ContactModel& model, const Material& material, Findings& findings) {
   const auto key = [&](const char* field) { return "material \"" + material.name + "\": " + field; };
-  findings.expect(material.density > 0, key("density"), material.density, "> 0 kg/m^3",
+  findings.expect(ranges::density, key("density"), material.density, "kg/m^3",
                   "give the density of the solid, 2650 for quartz");
   for (const LawParameter& each : law_parameters()) {
     if (each.law != model.law) continue;
     const Parameter& p = each.parameter;
-    const std::string unit = p.unit == std::string("1") ? "" : std::string(" ") + p.unit;
-    findings.expect(p.allowed.contains(material.*each.value), key(p.field), material.*each.value,
-                    (in_words(p.allowed) + unit).c_str(), p.remedy);
+    findings.expect(p.allowed, key(p.field), material.*each.value, p.unit == std::string("1") ? "" : p.unit, p.remedy);
   }
-  findings.expect(material.friction >= 0 && material.friction <= 1e6, key("friction"), material.friction, "0 to 1e6",
+  findings.expect(ranges::friction, key("friction"), material.friction, "",
                   "give mu, the tangent of the contact friction angle; 1e6 means no slip");
   if (model.rolling) {
-    findings.expect(material.rolling_stiffness >= 0, key("rolling_stiffness"), material.rolling_stiffness, ">= 0",
+    findings.expect(number_from_zero, key("rolling_stiffness"), material.rolling_stiffness, "",
                     "give beta of k_r = kt ri rj beta, or contact.rolling = false");
-    findings.expect(material.rolling_friction >= 0, key("rolling_friction"), material.rolling_friction, ">= 0",
+    findings.expect(number_from_zero, key("rolling_friction"), material.rolling_friction, "",
                     "give eta of the moment cap, or contact.rolling = false");
   }
 }

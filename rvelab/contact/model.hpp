@@ -15,10 +15,19 @@
 
 namespace rvelab {
 
+/// What parameters may be, for keys, files and checks alike. Those of a law stand in its file.
+namespace ranges {
+/// kg/m^3: masses and moments of inertia, and 1 over them, stay numbers; a grain of 1e30 counts as fixed.
+inline constexpr Interval density{1e-50, 1e50};
+inline constexpr Interval friction{0, 1e6};  ///< 1e6: no slip
+inline constexpr Interval local_damping{0, 1, false, true}, local_damping_quasi_static{0, 1, true, true};
+inline constexpr Interval restitution{0, 1, true, false};  ///< dashpots divide by its logarithm
+}  // namespace ranges
+
 /// One grain material. Of the laws' constants only those that the specimen's law uses are read; the others keep zero.
 struct Material : LawConstants {
   std::string name = "grain";
-  double density = 2650;         ///< kg/m^3, > 0
+  double density = 2650;         ///< kg/m^3
   double friction = 0;           ///< Coulomb coefficient mu = tan(phi_mu), 0 to 1e6 (1e6: no slip)
   double rolling_stiffness = 0;  ///< beta of k_r = kt ri rj beta, >= 0
   double rolling_friction = 0;   ///< eta of the cap min(eta_i ri, eta_j rj) fn, >= 0

@@ -1,24 +1,8 @@
 #include "rvelab/io/utf8.hpp"
 
-namespace rvelab::io {
+#include <algorithm>
 
-std::size_t utf8_length(std::string_view text, std::size_t at) {
-  const auto byte = [&](std::size_t k) {
-    return k < text.size() ? static_cast<unsigned>(static_cast<unsigned char>(text[k])) : 0u;
-  };
-  const unsigned first = byte(at);
-  if (first < 0x80) return 1;
-  const std::size_t length = first >= 0xc2 && first < 0xe0 ? 2 : first >= 0xe0 && first < 0xf0 ? 3 : 4;
-  if (first < 0xc2 || first > 0xf4) return 0;
-  for (std::size_t k = 1; k < length; ++k) {
-    if ((byte(at + k) & 0xc0) != 0x80) return 0;
-  }
-  // The second byte tells overlong forms, surrogates and what lies beyond U+10FFFF.
-  const unsigned second = byte(at + 1);
-  const bool allowed = (first != 0xe0 || second >= 0xa0) && (first != 0xed || second < 0xa0) &&
-                       (first != 0xf0 || second >= 0x90) && (first != 0xf4 || second < 0x90);
-  return allowed ? length : 0;
-}
+namespace rvelab::io {
 
 std::size_t first_non_utf8(std::string_view text) {
   for (std::size_t at = 0; at < text.size();) {
@@ -44,6 +28,45 @@ std::string printable(std::string_view text) {
     ++at;
   }
   return shown;
+}
+
+std::string in_one_line(std::string text) {
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  for (auto end = text.find('\n'); end != std::string::npos; end = text.find('\n', end)) text.replace(end, 1, " | ");
+  return text;
+}
+
+namespace {
+
+/// The begin and the end of a text that is printable, with 80 letters in all where it has more.
+std::string with_80_letters(std::string_view text) {
+  constexpr std::size_t most = 80, first = 45, last = most - 3 - first;
+  std::vector<std::size_t> letters;
+  for (std::size_t at = 0; at < text.size(); at += std::max<std::size_t>(utf8_length(text, at), 1))
+    letters.push_back(at);
+  if (letters.size() <= most) return std::string(text);
+  return std::string(text.substr(0, letters[first])) + "..." + std::string(text.substr(letters[letters.size() - last]));
+}
+
+}  // namespace
+
+std::string message_line(const std::string& text, const std::vector<std::string>& given) {
+  std::string whole = in_one_line(text);
+  for (const std::string& each : given) {
+    const std::string flat = in_one_line(each), shown = with_80_letters(printable(flat));
+    if (flat.size() <= 80) continue;
+    for (auto at = whole.find(flat); at != std::string::npos; at = whole.find(flat, at + shown.size()))
+      whole.replace(at, flat.size(), shown);
+  }
+  whole = printable(whole);
+  std::string line;
+  for (std::size_t at = 0; at < whole.size();) {
+    const std::size_t end = std::min(whole.find(' ', at), whole.size());
+    line += with_80_letters(std::string_view(whole).substr(at, end - at));
+    if (end < whole.size()) line += ' ';
+    at = end + 1;
+  }
+  return line;
 }
 
 }  // namespace rvelab::io

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "rvelab/keys/table_reader.hpp"
-#include "rvelab/solver/assembly/list_size.hpp"
 #include "rvelab/specimen/field_layout.hpp"
+#include "rvelab/specimen/specimen.hpp"
 
 namespace rvelab::keys {
 namespace {

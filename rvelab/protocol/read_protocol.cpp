@@ -11,7 +11,7 @@
 #include "rvelab/protocol/drive.hpp"
 #include "rvelab/protocol/protocol.hpp"
 #include "rvelab/protocol/stage_kinds.hpp"
-#include "rvelab/solver/assembly/specimen_check.hpp"
+#include "rvelab/specimen/specimen_check.hpp"
 
 namespace rvelab::protocol {
 

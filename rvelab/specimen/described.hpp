@@ -29,7 +29,13 @@ struct InFiles {
   int since = 0;
 };
 
-/// One member: its name in a file and its unit ("1" for a pure number, "-" for text).
+/// Where the vectors of a field lie in 2D: anywhere, in the plane (z = 0), along its normal (x = y = 0), or as the one
+/// component along the tangent of a contact (y = z = 0).
+enum class InPlane { any, along, normal, tangent };
+
+/// One member: its name in a file, its unit ("1" for a pure number, "-" for text) and what its numbers may be: finite
+/// and in this range, of vectors and matrices each component. What fields must be beside one another is in
+/// specimen_check.cpp.
 template <class Owner, class Value>
 struct Field {
   const char* name;
@@ -37,6 +43,19 @@ struct Field {
   const char* units;
   Rows rows = Rows::one;
   InFiles in_files{};
+  Interval allowed{-no_bound, no_bound};
+  InPlane plane = InPlane::any;
+
+  constexpr Field within(Interval range) const {
+    Field stated = *this;
+    stated.allowed = range;
+    return stated;
+  }
+  constexpr Field lying(InPlane how) const {
+    Field stated = *this;
+    stated.plane = how;
+    return stated;
+  }
 };
 template <class Owner, class Value, class... More>
 Field(const char*, Value Owner::*, const char*, More...) -> Field<Owner, Value>;

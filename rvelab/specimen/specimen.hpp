@@ -36,6 +36,9 @@ struct Contact {
   double last_root_overlap = 0;              ///< sqrt(delta) at the last step, m^0.5 (hertz_mindlin)
 };
 
+/// solver.skin at most: a wider list holds hundreds of pairs a grain and serves nothing.
+inline constexpr double largest_skin_ratio = 10;
+
 /// Settings of the solver.
 struct SolverOptions {
   double skin = 0.15;                ///< largest Verlet skin over the mean radius, > 0; adapted at run time

@@ -2,6 +2,9 @@
 // (described.hpp). Names, units and order are those of the file (rvelab/io/README.md); a member of a struct that has no
 // entry here does not compile.
 //
+// Each field states the range of its numbers where it is not every finite one (Field::within); of what a law reads, the
+// law does (contact/parameter.hpp). check_specimen holds them (specimen_check.hpp).
+//
 // A field that files did not have from the start says since which minor version they do, InFiles{10}: the default of
 // its struct must be what the version before it did. A new field is of the next version (io/schema.hpp).
 #pragma once
@@ -17,10 +20,10 @@ namespace rvelab::fields {
 
 template <>
 inline constexpr auto members_of<Cell> = std::tuple{
-    Field{"dimension", &Cell::dimension, "1"},
+    Field{"dimension", &Cell::dimension, "1"}.within({2, 3}),
     Field{"lattice_m", &Cell::lattice, "m"},
     Field{"rotation", &Cell::rotation, "1"},
-    Field{"increments", &Cell::increments, "1"},
+    Field{"increments", &Cell::increments, "1"}.within(number_from_zero),
 };
 
 /// The columns of one shape, and of all.
@@ -32,7 +35,8 @@ constexpr auto fields_of_shape() {
     constexpr auto& columns = By::template columns<List>;
     return []<std::size_t... k>(std::index_sequence<k...>) {
       return std::tuple{Field<Grains, List<double>>{columns[k].dataset, columns[k].entries, "m",
-                                                    Rows::per_grain_or_none, InFiles{columns[k].since}}...};
+                                                    Rows::per_grain_or_none, InFiles{columns[k].since}}
+                            .within(positive_number)...};
     }
     (std::make_index_sequence<std::size(columns)>());
   }
@@ -45,12 +49,15 @@ constexpr auto own_fields() { return fields_of_shapes(std::make_integer_sequence
 
 template <>
 inline constexpr auto members_of<Grains> = std::tuple_cat(
-    std::tuple{Field{"id", &Grains::id, "1", Rows::per_grain}, Field{"radius_m", &Grains::radius, "m", Rows::per_grain},
-               Field{"material", &Grains::material, "1", Rows::per_grain},
-               Field{"position_m", &Grains::position, "m", Rows::per_grain},
-               Field{"velocity", &Grains::velocity, "m/s or m/step", Rows::per_grain},
-               Field{"spin", &Grains::spin, "rad/s or rad/step", Rows::per_grain}},
-    own_fields(), std::tuple{Field{"orientation", &Grains::orientation, "1", Rows::per_grain_or_none, InFiles{8}}});
+    std::tuple{Field{"id", &Grains::id, "1", Rows::per_grain},
+               Field{"radius_m", &Grains::radius, "m", Rows::per_grain}.within(positive_number),
+               Field{"material", &Grains::material, "1", Rows::per_grain}.within(number_from_zero),
+               Field{"position_m", &Grains::position, "m", Rows::per_grain}.lying(InPlane::along),
+               Field{"velocity", &Grains::velocity, "m/s or m/step", Rows::per_grain}.lying(InPlane::along),
+               Field{"spin", &Grains::spin, "rad/s or rad/step", Rows::per_grain}.lying(InPlane::normal)},
+    own_fields(),
+    std::tuple{
+        Field{"orientation", &Grains::orientation, "1", Rows::per_grain_or_none, InFiles{8}}.lying(InPlane::along)});
 
 /// The columns of shapes are a base of Grains, one initialiser for all of them.
 template <>
@@ -58,12 +65,12 @@ inline constexpr std::size_t inherited_members<Grains> = std::tuple_size_v<declt
 
 template <>
 inline constexpr auto members_of<Contact> = std::tuple{
-    Field{"i", &Contact::i, "1"},
-    Field{"j", &Contact::j, "1"},
-    Field{"image", &Contact::image, "1"},
-    Field{"tangential_force_N", &Contact::tangential_force, "N"},
-    Field{"rolling_moment_N_m", &Contact::rolling_moment, "N m"},
-    Field{"last_root_overlap_m0_5", &Contact::last_root_overlap, "m^0.5"},
+    Field{"i", &Contact::i, "1"}.within(number_from_zero),
+    Field{"j", &Contact::j, "1"}.within(number_from_zero),
+    Field{"image", &Contact::image, "1"}.lying(InPlane::along),
+    Field{"tangential_force_N", &Contact::tangential_force, "N"}.lying(InPlane::tangent),
+    Field{"rolling_moment_N_m", &Contact::rolling_moment, "N m"}.lying(InPlane::normal),
+    Field{"last_root_overlap_m0_5", &Contact::last_root_overlap, "m^0.5"}.within(number_from_zero),
 };
 
 /// The constants of one group, as its law file lists them.
@@ -84,11 +91,12 @@ constexpr auto fields_of_laws(TypeList<Groups...>) {
 /// Density, the constants of the laws, friction and rolling.
 constexpr auto material_fields() {
   return std::tuple_cat(
-      std::tuple{Field{"name", &Material::name, "-"}, Field{"density_kg_m3", &Material::density, "kg/m^3"}},
+      std::tuple{Field{"name", &Material::name, "-"},
+                 Field{"density_kg_m3", &Material::density, "kg/m^3"}.within(ranges::density)},
       fields_of_laws(ConstantGroups{}),
-      std::tuple{Field{"friction", &Material::friction, "1"},
-                 Field{"rolling_stiffness", &Material::rolling_stiffness, "1"},
-                 Field{"rolling_friction", &Material::rolling_friction, "1"}});
+      std::tuple{Field{"friction", &Material::friction, "1"}.within(ranges::friction),
+                 Field{"rolling_stiffness", &Material::rolling_stiffness, "1"}.within(number_from_zero),
+                 Field{"rolling_friction", &Material::rolling_friction, "1"}.within(number_from_zero)});
 }
 
 /// The laws' constants are a base of Material, one initialiser for all of them.
@@ -110,30 +118,32 @@ inline constexpr auto members_of<ContactModel> = std::tuple{
 
 template <>
 inline constexpr auto members_of<Damping> = std::tuple{
-    Field{"local", &Damping::local, "1"},
-    Field{"local_quasi_static", &Damping::local_quasi_static, "1"},
+    Field{"local", &Damping::local, "1"}.within(ranges::local_damping),
+    Field{"local_quasi_static", &Damping::local_quasi_static, "1"}.within(ranges::local_damping_quasi_static),
     Field{"local_form", &Damping::local_form, "-"},
     Field{"dashpot", &Damping::dashpot, "-"},
-    Field{"normal_coefficient", &Damping::normal_coefficient, "N s/m or 1/(m s)"},
-    Field{"restitution", &Damping::restitution, "1"},
-    Field{"tangential_ratio", &Damping::tangential_ratio, "1"},
+    Field{"normal_coefficient", &Damping::normal_coefficient, "N s/m or 1/(m s)"}.within(number_from_zero),
+    Field{"restitution", &Damping::restitution, "1"}.within(ranges::restitution),
+    Field{"tangential_ratio", &Damping::tangential_ratio, "1"}.within(number_from_zero),
     Field{"no_tension", &Damping::no_tension, "1"},
-    Field{"global_viscous_N_s_m", &Damping::global_viscous, "N s/m"},
+    Field{"global_viscous_N_s_m", &Damping::global_viscous, "N s/m"}.within(number_from_zero),
 };
 
 template <>
 inline constexpr auto members_of<SolverOptions> = std::tuple{
-    Field{"skin", &SolverOptions::skin, "1"},
-    Field{"time_step_factor", &SolverOptions::time_step_factor, "1"},
-    Field{"fixed_time_step_s", &SolverOptions::fixed_time_step, "s"},
-    Field{"collision_steps", &SolverOptions::collision_steps, "1", Rows::one, InFiles{3}},
-    Field{"relative_tolerance", &SolverOptions::relative_tolerance, "1", Rows::one, InFiles{6}},
-    Field{"absolute_tolerance", &SolverOptions::absolute_tolerance, "1", Rows::one, InFiles{6}},
-    Field{"target_unbalanced", &SolverOptions::target_unbalanced, "1"},
-    Field{"fixed_substeps", &SolverOptions::fixed_substeps, "1"},
-    Field{"max_substeps", &SolverOptions::max_substeps, "1"},
-    Field{"min_height_m", &SolverOptions::min_height, "m"},
-    Field{"max_overlap_ratio", &SolverOptions::max_overlap_ratio, "1"},
+    Field{"skin", &SolverOptions::skin, "1"}.within({0, largest_skin_ratio, true, false}),
+    Field{"time_step_factor", &SolverOptions::time_step_factor, "1"}.within({0, 1, true, true}),
+    Field{"fixed_time_step_s", &SolverOptions::fixed_time_step, "s"}.within(number_from_zero),
+    Field{"collision_steps", &SolverOptions::collision_steps, "1", Rows::one, InFiles{3}}.within({0, 100'000}),
+    Field{"relative_tolerance", &SolverOptions::relative_tolerance, "1", Rows::one, InFiles{6}}.within(
+        {0, 1, true, false}),
+    Field{"absolute_tolerance", &SolverOptions::absolute_tolerance, "1", Rows::one, InFiles{6}}.within(
+        {0, 1, true, false}),
+    Field{"target_unbalanced", &SolverOptions::target_unbalanced, "1"}.within(number_from_zero),
+    Field{"fixed_substeps", &SolverOptions::fixed_substeps, "1"}.within(number_from_zero),
+    Field{"max_substeps", &SolverOptions::max_substeps, "1"}.within(positive_number),
+    Field{"min_height_m", &SolverOptions::min_height, "m"}.within(number_from_zero),
+    Field{"max_overlap_ratio", &SolverOptions::max_overlap_ratio, "1"}.within(positive_number),
     Field{"ledger", &SolverOptions::energy_balance, "1"},
 };
 
@@ -154,29 +164,31 @@ inline constexpr auto members_of<SolverState> = std::tuple{
     Field{"has_reference", &SolverState::has_reference, "1"},
     Field{"list_lattice_m", &SolverState::list_lattice, "m"},
     Field{"list_positions_m", &SolverState::list_positions, "m", Rows::per_grain_or_none, InFiles{1}},
-    Field{"list_travel_m", &SolverState::list_travel, "m"},
-    Field{"list_skin_m", &SolverState::list_skin, "m", Rows::one, InFiles{1}},
-    Field{"list_steps", &SolverState::list_steps, "1", Rows::one, InFiles{1}},
-    Field{"strain_per_step", &SolverState::strain_per_step, "1"},
-    Field{"pace_target", &SolverState::target_unbalanced_ratio, "1", Rows::one, InFiles{6}},
-    Field{"leg_strain", &SolverState::strain_since_reversal, "1", Rows::one, InFiles{6}},
-    Field{"softness", &SolverState::network_stiffness_ratio, "1", Rows::one, InFiles{6}},
-    Field{"constraint_ratio", &SolverState::constraint_ratio, "1", Rows::one, InFiles{10}},
-    Field{"lag_factor", &SolverState::lag_factor, "1", Rows::one, InFiles{10}},
-    Field{"lag_strain", &SolverState::lag_strain, "1", Rows::one, InFiles{10}},
-    Field{"lag_steps", &SolverState::lag_steps, "1", Rows::one, InFiles{10}},
-    Field{"rest_steps", &SolverState::rest_steps, "1", Rows::one, InFiles{10}},
-    Field{"network_stiffness_Pa", &SolverState::network_stiffness, "Pa", Rows::one, InFiles{6}},
-    Field{"interval_strain", &SolverState::interval_strain, "1", Rows::one, InFiles{6}},
+    Field{"list_travel_m", &SolverState::list_travel, "m"}.within(number_from_zero),
+    Field{"list_skin_m", &SolverState::list_skin, "m", Rows::one, InFiles{1}}.within(number_from_zero),
+    Field{"list_steps", &SolverState::list_steps, "1", Rows::one, InFiles{1}}.within(number_from_zero),
+    Field{"strain_per_step", &SolverState::strain_per_step, "1"}.within(number_from_zero),
+    Field{"pace_target", &SolverState::target_unbalanced_ratio, "1", Rows::one, InFiles{6}}.within(number_from_zero),
+    Field{"leg_strain", &SolverState::strain_since_reversal, "1", Rows::one, InFiles{6}}.within(number_from_zero),
+    Field{"softness", &SolverState::network_stiffness_ratio, "1", Rows::one, InFiles{6}}.within(number_from_zero),
+    Field{"constraint_ratio", &SolverState::constraint_ratio, "1", Rows::one, InFiles{10}}.within(number_from_zero),
+    Field{"lag_factor", &SolverState::lag_factor, "1", Rows::one, InFiles{10}}.within(number_from_zero),
+    Field{"lag_strain", &SolverState::lag_strain, "1", Rows::one, InFiles{10}}.within(number_from_zero),
+    Field{"lag_steps", &SolverState::lag_steps, "1", Rows::one, InFiles{10}}.within(number_from_zero),
+    Field{"rest_steps", &SolverState::rest_steps, "1", Rows::one, InFiles{10}}.within(number_from_zero),
+    Field{"network_stiffness_Pa", &SolverState::network_stiffness, "Pa", Rows::one, InFiles{6}}.within(
+        number_from_zero),
+    Field{"interval_strain", &SolverState::interval_strain, "1", Rows::one, InFiles{6}}.within(number_from_zero),
     Field{"interval_stress_Pa", &SolverState::interval_stress, "Pa", Rows::one, InFiles{6}},
-    Field{"unbalanced_ratio", &SolverState::unbalanced_ratio, "1", Rows::one, InFiles{6}},
+    Field{"unbalanced_ratio", &SolverState::unbalanced_ratio, "1", Rows::one, InFiles{6}}.within(number_from_zero),
     Field{"deferred_stretch", &SolverState::deferred_stretch, "1", Rows::one, InFiles{7}},
     Field{"stress_slope_Pa", &SolverState::stress_slope, "Pa", Rows::one, InFiles{7}},
-    Field{"slope_error_Pa", &SolverState::slope_error, "Pa", Rows::one, InFiles{7}},
+    Field{"slope_error_Pa", &SolverState::slope_error, "Pa", Rows::one, InFiles{7}}.within(number_from_zero),
     Field{"look_steps", &SolverState::steps_since_scaling, "1", Rows::one, InFiles{6}},
-    Field{"scaled_mass", &SolverState::scaled_mass, "N/m", Rows::per_grain_or_none, InFiles{6}},
+    Field{"scaled_mass", &SolverState::scaled_mass, "N/m", Rows::per_grain_or_none, InFiles{6}}.within(positive_number),
     Field{"scaled_inverse_inertia", &SolverState::scaled_inverse_inertia, "1/(N m)", Rows::per_grain_or_none,
-          InFiles{6}},
+          InFiles{6}}
+        .within(positive_number),
     Field{"servo_strain", &SolverState::servo_strain, "1"},
     Field{"servo_rate_1_s", &SolverState::servo_rate, "1/s", Rows::one, InFiles{3}},
     Field{"reference_contact_force_N", &SolverState::reference_contact_force, "N"},
@@ -184,7 +196,7 @@ inline constexpr auto members_of<SolverState> = std::tuple{
     Field{"reference_pressure_Pa", &SolverState::reference_pressure, "Pa"},
     Field{"quasi_static", &SolverState::quasi_static, "1"},
     Field{"last_rate", &SolverState::last_rate, "1/s or 1/step"},
-    Field{"last_step", &SolverState::last_step, "s or step"},
+    Field{"last_step", &SolverState::last_step, "s or step"}.within(number_from_zero),
     Field{"mean_velocity", &SolverState::mean_velocity, "m/s or m/step"},
     Field{"mean_spin_rad_s", &SolverState::mean_spin, "rad/s"},
     Field{"grain_steps", &SolverState::grain_steps, "1"},

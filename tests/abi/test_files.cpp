@@ -2,6 +2,7 @@
 #include <fstream>
 #include <utility>
 
+#include "rvelab/io/hdf5/schema.hpp"
 #include "rvelab/io/hdf5/specimen_file.hpp"
 #include "tests/abi/host.hpp"
 #include "tests/abi/no_memory.hpp"
@@ -25,6 +26,49 @@ TEST_CASE("A template from a specimen file is that specimen") {
   CHECK_THAT(rvelab_last_error(), Contains("none.h5"));
   std::ofstream(folder / "text.h5") << "no HDF5";
   CHECK(rvelab_template_load(host.pool, (folder / "text.h5").c_str(), &made) == RVELAB_E_FILE);
+}
+
+TEST_CASE("A file that was edited and sealed again is refused by its field, and echoes no byte that is no letter") {
+  const Folder folder;
+  Specimen bad = packed(Shape::disc, 6);
+  bad.grains.position[3][2] = 0.5;
+  const std::string path = folder / "s\x1b\xff.h5";
+  io::write_specimen(bad, path);
+  Host host;
+  std::int64_t made = 0;
+  CHECK(rvelab_template_load(host.pool, path.c_str(), &made) == RVELAB_E_FILE);
+  CHECK_THAT(rvelab_last_error(), Contains("s??.h5: /grains/position_m[3, 2] of grain") && Contains("= 0.5"));
+
+  // The RVE of a pool file, of which the first is whole.
+  host.spawn(packed(Shape::disc, 6), 2);
+  REQUIRE_OK(rvelab_pool_write(host.pool, (folder / "pool.h5").c_str()));
+  const auto whole = io::Hdf5File::open(folder / "pool.h5");
+  const std::string name = whole.groups("/rves")[1];
+  io::publish(folder / "edited.h5", [&](io::Hdf5File& file) {
+    for (const char* attribute : {"format", "format_version"})
+      file.set_attribute(attribute, whole.attribute(attribute));
+    for (const io::Hdf5Entry& entry : whole.entries()) {
+      if (entry.name.starts_with("/rves/" + name + "/")) continue;
+      if (entry.type == "text") file.write_text(entry.name, whole.read_text(entry.name), entry.shape);
+      if (entry.type == "float64")
+        file.write<double>(entry.name, whole.read<double>(entry.name), entry.shape, entry.units);
+      if (entry.type == "int32")
+        file.write<std::int32_t>(entry.name, whole.read<std::int32_t>(entry.name), entry.shape, entry.units);
+      if (entry.type == "int64")
+        file.write<std::int64_t>(entry.name, whole.read<std::int64_t>(entry.name), entry.shape, entry.units);
+      if (entry.type == "uint64")
+        file.write<std::uint64_t>(entry.name, whole.read<std::uint64_t>(entry.name), entry.shape, entry.units);
+      if (entry.type == "uint8")
+        file.write<std::uint8_t>(entry.name, whole.read<std::uint8_t>(entry.name), entry.shape, entry.units);
+    }
+    io::put_specimen(file, "/rves/" + name, bad);
+  });
+  Host empty;
+  CHECK(rvelab_pool_read(empty.pool, (folder / "edited.h5").c_str()) == RVELAB_E_FILE);
+  CHECK_THAT(rvelab_last_error(), Contains("/rves/" + name + "/grains/position_m[3, 2]"));
+  std::int64_t id = 0, n = -1;
+  REQUIRE_OK(rvelab_ids(empty.pool, 1, &id, &n));
+  CHECK(n == 0);
 }
 
 TEST_CASE("A pool read from its file goes on with the same ids, tokens and bits; stale ids stay stale") {

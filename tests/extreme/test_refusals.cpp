@@ -41,13 +41,16 @@ TEST_CASE("NaN in a specimen is refused with the grain's name", "[extreme]") {
     CHECK(contains(refused([&](Specimen& s) { s.grains.position[5][1] = bad; }), "grain 6"));
     CHECK(contains(refused([&](Specimen& s) { s.grains.velocity[5][0] = bad; }), "grain 6"));
     CHECK(contains(refused([&](Specimen& s) { s.grains.spin[5][2] = bad; }), "grain 6"));
-    CHECK(contains(refused([&](Specimen& s) { s.grains.radius[5] = bad; }), "grain 6: radius"));
+    CHECK(contains(refused([&](Specimen& s) { s.grains.radius[5] = bad; }), "grains/radius_m[5] of grain 6 = "));
     CHECK(contains(refused([&](Specimen& s) { s.cell.lattice(0, 1) = bad; }), "lattice"));
     CHECK(contains(refused([&](Specimen& s) { s.cell.lattice(2, 2) = bad; }), "lattice"));
     CHECK(contains(refused([&](Specimen& s) { s.cell.rotation(1, 0) = bad; }), "rotation"));
     CHECK(contains(refused([&](Specimen& s) { s.materials[0].density = bad; }), "density"));
     CHECK(contains(refused([&](Specimen& s) { s.materials[0].normal_stiffness = bad; }), "normal_stiffness"));
-    CHECK(contains(refused([&](Specimen& s) { s.contacts = {{0, 1, {}, {bad, 0, 0}, {0, 0, 0}, 0}}; }), "grains 1"));
+    CHECK(contains(refused([&](Specimen& s) {
+                     s.contacts = {{0, 1, {}, {bad, 0, 0}, {0, 0, 0}, 0}};
+                   }),
+                   "contacts/tangential_force_N[0, 0] = "));
   }
 }
 
@@ -59,14 +62,16 @@ TEST_CASE("A specimen that is none is refused", "[extreme]") {
     return refusal<InputError>([&] { Rve rve(s); });
   };
   CHECK(contains(refused([](Specimen& s) { s.grains = {}; }), "0 grains"));
-  CHECK(contains(refused([](Specimen& s) { s.grains.radius[3] = 0; }), "grain 4: radius 0 m; it must be > 0"));
-  CHECK(contains(refused([](Specimen& s) { s.grains.radius[3] = -1; }), "grain 4: radius -1 m; it must be > 0"));
-  CHECK(contains(refused([](Specimen& s) { s.grains.radius.pop_back(); }), "differ in length"));
+  CHECK(contains(refused([](Specimen& s) { s.grains.radius[3] = 0; }),
+                 "grains/radius_m[3] of grain 4 = 0 is out of range; allowed: > 0 m"));
+  CHECK(contains(refused([](Specimen& s) { s.grains.radius[3] = -1; }),
+                 "grains/radius_m[3] of grain 4 = -1 is out of range; allowed: > 0 m"));
+  CHECK(contains(refused([](Specimen& s) { s.grains.radius.pop_back(); }), "grains/radius_m has 15 rows; allowed: 16"));
   CHECK(contains(refused([](Specimen& s) { s.grains.id[3] = 2; }), "ids must ascend"));
-  CHECK(contains(refused([](Specimen& s) { s.grains.material[3] = 1; }), "grain 4: material 1"));
+  CHECK(contains(refused([](Specimen& s) { s.grains.material[3] = 1; }), "grains/material[3] of grain 4 = 1"));
   CHECK(contains(refused([](Specimen& s) { s.cell.lattice(1, 0) = 0.1; }), "upper triangular"));
   CHECK(contains(refused([](Specimen& s) { s.cell.lattice(1, 1) = 0; }), "positive diagonal"));
-  CHECK(contains(refused([](Specimen& s) { s.cell.dimension = 3; }), "dimension 3"));
+  CHECK(contains(refused([](Specimen& s) { s.cell.dimension = 3; }), "dimension = 3"));
   CHECK(contains(refused([](Specimen& s) { s.cell.rotation *= 1.01; }), "rotation"));
   CHECK(contains(refused([](Specimen& s) { s.contacts = {{0, 16, {}, {}, {}, 0}}; }), "0 <= i <= j < 16"));
   CHECK(contains(refused([](Specimen& s) { s.materials.clear(); }), "materials: none given"));
@@ -80,24 +85,27 @@ TEST_CASE("A parameter out of range stops the opening with its key, value and ra
     std::function<void(Specimen&)> spoil;
   };
   const std::vector<Case> cases = {
-      {"density", "-1", "> 0 kg/m^3", [](Specimen& s) { s.materials[0].density = -1; }},
-      {"normal_stiffness", "0", "> 0 N/m", [](Specimen& s) { s.materials[0].normal_stiffness = 0; }},
-      {"friction", "-0.5", "0 to 1e6", [](Specimen& s) { s.materials[0].friction = -0.5; }},
-      {"damping.local", "1", "0 to below 1", [](Specimen& s) { s.damping.local = 1; }},
-      {"damping.local_quasi_static", "0", "above 0 to below 1", [](Specimen& s) { s.damping.local_quasi_static = 0; }},
-      {"solver.skin", "0", "above 0 to 10", [](Specimen& s) { s.solver.skin = 0; }},
-      {"solver.time_step_factor", "1", "above 0 to below 1", [](Specimen& s) { s.solver.time_step_factor = 1; }},
-      {"solver.time_step_factor", "0", "above 0 to below 1", [](Specimen& s) { s.solver.time_step_factor = 0; }},
-      {"solver.fixed_time_step_s", "-1e-06", ">= 0 s", [](Specimen& s) { s.solver.fixed_time_step = -1e-6; }},
-      {"solver.relative_tolerance", "0", "above 0 to 1", [](Specimen& s) { s.solver.relative_tolerance = 0; }},
-      {"solver.absolute_tolerance", "2", "above 0 to 1", [](Specimen& s) { s.solver.absolute_tolerance = 2; }},
-      {"solver.target_unbalanced", "-1", ">= 0", [](Specimen& s) { s.solver.target_unbalanced = -1; }},
-      {"solver.fixed_substeps", "-1", ">= 0", [](Specimen& s) { s.solver.fixed_substeps = -1; }},
-      {"solver.max_substeps", "0", "> 0", [](Specimen& s) { s.solver.max_substeps = 0; }},
-      {"solver.min_height_m", "-1", ">= 0 m", [](Specimen& s) { s.solver.min_height = -1; }},
-      {"solver.max_overlap_ratio", "0", "> 0", [](Specimen& s) { s.solver.max_overlap_ratio = 0; }},
-      {"solver.skin", "nan", "above 0 to 10", [](Specimen& s) { s.solver.skin = not_a_number; }},
-      {"solver.max_overlap_ratio", "nan", "> 0", [](Specimen& s) { s.solver.max_overlap_ratio = not_a_number; }}};
+      {"materials/density_kg_m3[0] of material \"grain\"", "-1", "1e-50 to 1e+50 kg/m^3",
+       [](Specimen& s) { s.materials[0].density = -1; }},
+      {"materials/normal_stiffness[0] of material \"grain\"", "0", "> 0 N/m",
+       [](Specimen& s) { s.materials[0].normal_stiffness = 0; }},
+      {"materials/friction[0] of material \"grain\"", "-0.5", "0 to 1e+06",
+       [](Specimen& s) { s.materials[0].friction = -0.5; }},
+      {"damping/local", "1", "0 to below 1", [](Specimen& s) { s.damping.local = 1; }},
+      {"damping/local_quasi_static", "0", "above 0 to below 1", [](Specimen& s) { s.damping.local_quasi_static = 0; }},
+      {"solver/skin", "0", "above 0 to 10", [](Specimen& s) { s.solver.skin = 0; }},
+      {"solver/time_step_factor", "1", "above 0 to below 1", [](Specimen& s) { s.solver.time_step_factor = 1; }},
+      {"solver/time_step_factor", "0", "above 0 to below 1", [](Specimen& s) { s.solver.time_step_factor = 0; }},
+      {"solver/fixed_time_step_s", "-1e-06", ">= 0 s", [](Specimen& s) { s.solver.fixed_time_step = -1e-6; }},
+      {"solver/relative_tolerance", "0", "above 0 to 1", [](Specimen& s) { s.solver.relative_tolerance = 0; }},
+      {"solver/absolute_tolerance", "2", "above 0 to 1", [](Specimen& s) { s.solver.absolute_tolerance = 2; }},
+      {"solver/target_unbalanced", "-1", ">= 0", [](Specimen& s) { s.solver.target_unbalanced = -1; }},
+      {"solver/fixed_substeps", "-1", ">= 0", [](Specimen& s) { s.solver.fixed_substeps = -1; }},
+      {"solver/max_substeps", "0", "> 0", [](Specimen& s) { s.solver.max_substeps = 0; }},
+      {"solver/min_height_m", "-1", ">= 0 m", [](Specimen& s) { s.solver.min_height = -1; }},
+      {"solver/max_overlap_ratio", "0", "> 0", [](Specimen& s) { s.solver.max_overlap_ratio = 0; }},
+      {"solver/skin", "nan", "above 0 to 10", [](Specimen& s) { s.solver.skin = not_a_number; }},
+      {"solver/max_overlap_ratio", "nan", "> 0", [](Specimen& s) { s.solver.max_overlap_ratio = not_a_number; }}};
   for (const Case& one : cases) {
     Specimen s = triangular(4, 2, 1.95);
     one.spoil(s);

@@ -96,7 +96,7 @@ class Editor {
     if (names_.empty()) return;
     const std::string& name = choices_.among(names_);
     if (H5Lexists(file_, name.c_str(), H5P_DEFAULT) <= 0) return;
-    switch (choices_.below(10)) {
+    switch (choices_.below(12)) {
       case 0:
       case 1:
       case 2:
@@ -114,6 +114,10 @@ class Editor {
         return;
       case 8:
         return exchange(name, choices_.among(names_));
+      case 10:
+        return rearrange("/contacts/");
+      case 11:
+        return rearrange("/grains/");
       default:
         return change_attribute(choices_.below(2) == 0 ? "format_version" : "format");
     }
@@ -211,6 +215,30 @@ class Editor {
     H5Tset_size(type, std::max<std::size_t>(1, text.size()));
     H5Tset_strpad(type, H5T_STR_NULLPAD);
     return type;
+  }
+
+  /// Writes one row of a table over another in all of its columns, or lets the two change places.
+  void rearrange(const std::string& table) {
+    const std::size_t a = choices_.below(65536), b = choices_.below(65536);
+    const bool swapped = choices_.below(2) == 0;
+    for (const std::string& name : names_) {
+      const std::size_t at = name.find(table);
+      if (at == std::string::npos || H5Lexists(file_, name.c_str(), H5P_DEFAULT) <= 0) continue;
+      const std::vector<hsize_t> extents = extents_of(name);
+      std::size_t count = 1;
+      for (const auto extent : extents) count *= extent;
+      if (extents.empty() || count == 0 || count > 65536) continue;
+      const hid_t dataset = H5Dopen2(file_, name.c_str(), H5P_DEFAULT), type = H5Dget_type(dataset);
+      const std::size_t width = H5Tget_size(type) * (count / extents[0]);
+      std::vector<std::byte> rows(width * extents[0]);
+      if (H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()) >= 0) {
+        std::byte *from = rows.data() + a % extents[0] * width, *to = rows.data() + b % extents[0] * width;
+        if (from != to) swapped ? void(std::swap_ranges(from, from + width, to)) : void(std::copy_n(from, width, to));
+        H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data());
+      }
+      H5Tclose(type);
+      H5Dclose(dataset);
+    }
   }
 
   void exchange(const std::string& a, const std::string& b) {

@@ -1,12 +1,21 @@
-// Specimens whose every field holds random bits, and their comparison bit by bit. A specimen is filled and compared
-// through its description (specimen_fields.hpp), which names every member; records and progress are taken apart by
-// structured bindings: a field that is added to one does not compile here until it is filled and compared too.
+// Specimens whose every field holds random bits, and such as may be read; their comparison bit by bit. A specimen is
+// filled and compared through its description (specimen_fields.hpp), which names every member; records and progress are
+// taken apart by structured bindings: a field that is added to one does not compile here until it is filled and
+// compared too.
 #pragma once
 
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <iterator>
+#include <limits>
 #include <map>
+#include <numeric>
 #include <random>
+#include <set>
 #include <string>
+#include <tuple>
 #include <type_traits>
 #include <vector>
 
@@ -143,6 +152,14 @@ class RandomFill {
   void table(const fields::Path&, std::vector<Item>& items, const Columns&... columns) {
     for (Item& item : items) (put(item.*columns.member), ...);
   }
+  /// A finite number of this range: evenly in a narrow one, of any size in a wide one.
+  double within(const Interval& range) {
+    for (;;) {
+      double value = range.low + (range.high - range.low) * std::ldexp(double(bits_() >> 11), -53);
+      if (!(range.high - range.low < 1e9)) put(value);
+      if (std::isfinite(value) && range.contains(value)) return value;
+    }
+  }
 
  private:
   void put(bool& value) { value = bits_() % 2 == 1; }
@@ -179,6 +196,52 @@ class RandomFill {
   std::mt19937_64 bits_;
 };
 
+/// Draws the numbers of a specimen again that are out of the range of their field.
+class Mend {
+ public:
+  Mend(unsigned seed, int dimension) : random_(seed), plane_(dimension == 2) {}
+
+  template <class Value, class Owner>
+  void field(const fields::Path&, Value& value, const fields::Field<Owner, Value>& field) {
+    if constexpr (fields::Listed<Value>::is_list) {
+      for (auto& entry : value) mend(entry, field);
+    } else {
+      mend(value, field);
+    }
+  }
+  template <class Item, class... Columns>
+  void table(const fields::Path&, std::vector<Item>& items, const Columns&... columns) {
+    for (Item& item : items) (mend(item.*columns.member, columns), ...);
+  }
+
+ private:
+  template <class Entry, class Described>
+  void mend(Entry& entry, const Described& field) {
+    if constexpr (!fields::Textual<Entry> && !std::is_same_v<Entry, bool>) {
+      typename fields::Layout<Entry>::Scalar scalars[fields::Layout<Entry>::size];
+      fields::Layout<Entry>::put(entry, scalars);
+      for (std::size_t k = 0; k < std::size(scalars); ++k) {
+        auto& value = scalars[k];
+        using Scalar = std::remove_reference_t<decltype(value)>;
+        const Interval range{std::max(field.allowed.low, double(std::numeric_limits<Scalar>::lowest())),
+                             std::min(field.allowed.high, double(std::numeric_limits<Scalar>::max() / 2)),
+                             field.allowed.low_open, field.allowed.high_open};
+        if (!std::isfinite(double(value)) || !field.allowed.contains(double(value)))
+          value = Scalar(random_.within(range)) + Scalar(std::is_integral_v<Scalar> && range.low_open);
+        const bool flat = field.plane == fields::InPlane::along     ? k == 2
+                          : field.plane == fields::InPlane::normal  ? k != 2
+                          : field.plane == fields::InPlane::tangent ? k != 0
+                                                                    : false;
+        if (plane_ && flat) value = 0;
+      }
+      fields::Layout<Entry>::get(scalars, entry);
+    }
+  }
+
+  RandomFill random_;
+  bool plane_;
+};
+
 /// Counts the fields that differ in a bit.
 struct BitComparison {
   int* differences;
@@ -209,8 +272,8 @@ int differences(Value a, Value b) {
   return count;
 }
 
-/// Random in every field, with indices that point at something.
-inline Specimen random_specimen(unsigned seed, std::size_t grain_count = 17, std::size_t contact_count = 31) {
+/// Random bits in every field.
+inline Specimen random_bits(unsigned seed, std::size_t grain_count = 17, std::size_t contact_count = 31) {
   Specimen specimen;
   Grains& grains = specimen.grains;
   grains.id.resize(grain_count);
@@ -227,16 +290,61 @@ inline Specimen random_specimen(unsigned seed, std::size_t grain_count = 17, std
   specimen.contacts.resize(contact_count);
   specimen.materials.resize(3);
   Pairs<RandomFill>{RandomFill(seed)}(specimen, specimen);
-
-  specimen.cell.dimension = dimension_of(specimen.shape);
-  std::mt19937 choose(seed);
-  const auto below = [&](std::size_t limit) { return static_cast<std::int32_t>(choose() % limit); };
-  for (auto& material : grains.material) material = below(3);
-  for (auto& contact : specimen.contacts) {
-    contact.j = below(grain_count);
-    contact.i = below(static_cast<std::size_t>(contact.j) + 1);
-  }
   return specimen;
+}
+
+/// Random in every field within what the field may be, so that it may be read; no state that could be.
+inline Specimen random_specimen(unsigned seed, std::size_t grain_count = 17, std::size_t contact_count = 31) {
+  Specimen s = random_bits(seed, grain_count, contact_count);
+  s.cell.dimension = dimension_of(s.shape);
+  Mend mend(seed, s.cell.dimension);
+  fields::visit(mend, s);
+  RandomFill random(seed + 1);
+  const auto below = [&](std::size_t limit) { return std::int32_t(random.within({0, double(limit), false, true})); };
+
+  Grains& grains = s.grains;
+  grains.semi_major = grains.semi_minor = {};
+  grains.orientation = {};
+  for (std::size_t k = 0; k < grain_count; ++k) {
+    grains.id[k] = std::int64_t(7 * k) + below(7);
+    grains.material[k] = below(3);
+    grains.radius[k] = random.within({0.001, 0.01});
+    for (int i = 0; i < s.cell.dimension; ++i) grains.position[k][i] = random.within({-0.5, 0.5});
+  }
+  s.cell.lattice << random.within({0.5, 2}), random.within({-1, 1}), random.within({-1, 1}), 0, random.within({0.5, 2}),
+      random.within({-1, 1}), 0, 0, random.within({0.5, 2});
+  if (s.cell.dimension == 2) s.cell.lattice(0, 2) = s.cell.lattice(1, 2) = 0;
+  const double cosine = random.within({-1, 1}), sine = std::sqrt(1 - cosine * cosine);
+  s.cell.rotation << cosine, -sine, 0, sine, cosine, 0, 0, 0, 1;
+
+  s.contact.hertz_radius = HertzRadius::equivalent;
+  s.damping.dashpot = Dashpot(below(3));
+  for (Material& material : s.materials) {
+    material.density = random.within({1, 1e4});
+    for (const LawParameter& each : law_parameters()) material.*each.value = 0;
+    for (const LawParameter& each : law_parameters())
+      if (each.law == s.contact.law)
+        material.*each.value = std::min(each.parameter.allowed.high, random.within({0.1, 1e9}));
+  }
+  s.solver.collision_steps = 5 + below(100);
+  s.state.deferred_stretch = Matrix3::Identity();
+  std::iota(s.state.memory_order.rbegin(), s.state.memory_order.rend(), 0);
+
+  std::set<std::tuple<std::int32_t, std::int32_t, Image>> pairs;
+  while (pairs.size() < contact_count) {
+    const std::int32_t j = below(grain_count), i = below(std::size_t(j) + 1);
+    pairs.insert({i, j, Image{1, below(3), s.cell.dimension == 2 ? 0 : below(3)}});
+  }
+  auto pair = pairs.begin();
+  for (Contact& c : s.contacts) {
+    std::tie(c.i, c.j, c.image) = *pair++;
+    if (s.cell.dimension == 2) continue;
+    const Vector3 branch =
+        grains.position[std::size_t(c.j)] + translation(s.cell, c.image) - grains.position[std::size_t(c.i)];
+    for (Vector3* history : {&c.tangential_force, &c.rolling_moment})
+      *history = branch.cross(Vector3(random.within({-1, 1}), random.within({-1, 1}), random.within({-1, 1})));
+  }
+  return s;
 }
 
 inline records::TestResult random_result(unsigned seed, std::size_t record_count = 23) {

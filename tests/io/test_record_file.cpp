@@ -97,7 +97,7 @@ std::string in_readme(const io::Shape64& shape) {
 
 TEST_CASE("the README lists exactly the datasets of a file, with their types, shapes and units") {
   const Folder folder;
-  io::write_specimen(random_specimen(8), folder / "s.h5");
+  io::write_specimen(random_bits(8), folder / "s.h5");
   // The end state of another file stands for a snapshot.
   test::write_records(random_result(8), random_specimen(8), "", folder / "whole.h5");
   io::RecordedTest test = io::read_recorded_test(folder / "whole.h5");
@@ -116,7 +116,7 @@ TEST_CASE("the README lists exactly the datasets of a file, with their types, sh
   for (const auto& entry : io::Hdf5File::open(folder / "s.h5").entries()) found[entry.name] = entry;
   const std::size_t of_a_specimen = found.size();
   const io::SpecimenOrigin origin{"recipe", 1, 2, 0.5};
-  io::write_specimen(random_specimen(8), folder / "packed.h5", &origin);
+  io::write_specimen(random_bits(8), folder / "packed.h5", &origin);
   for (const auto& entry : io::Hdf5File::open(folder / "packed.h5").entries()) found[entry.name] = entry;
   CHECK(found.size() == of_a_specimen + 6);
   std::size_t states = 0;

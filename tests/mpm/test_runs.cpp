@@ -1,9 +1,14 @@
 // Runs as a user starts, stops and resumes them: folders, signals, threads.
 #include <sys/stat.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 
+#include "rvelab/io/hdf5/seal.hpp"
+#include "rvelab/io/hdf5/tree.hpp"
 #include "tests/mpm/scene_runs.hpp"
 
 using Catch::Matchers::Contains;
@@ -95,6 +100,54 @@ TEST_CASE("what a resumed run is told stays told: the scene in its folder is the
   CHECK(bench.run({"--resume", bench.folder / "a", "--set", "grid.cell_m=0.5"}) == 2);
   CHECK_THAT(bench.errors(), Contains("holds 64 material points, this scene needs 16"));
   CHECK(bytes_of(bench.folder / "a/scene.toml") == kept);
+}
+
+TEST_CASE("what rvelab-mpm echoes of its command line is printable and short") {
+  const BlockRuns bench;
+  const std::string odd = "a\x1b[31mb\xff", word(9000, 'x');
+  std::string words = "x=";
+  while (words.size() < 9000) words += "a b ";
+  const std::vector<std::vector<std::string>> all{{odd, "-o", bench.folder / "c"},
+                                                  {word, "-o", bench.folder / "c"},
+                                                  {bench.scene, "-o", bench.folder / "c", "--set", odd + word + "=1"},
+                                                  {bench.scene, "-o", bench.folder / "c", "--set", words},
+                                                  {bench.scene, "-o", bench.folder / "c", "--case", odd + word},
+                                                  {bench.scene, "-o", bench.folder / "c", "--no" + odd + word},
+                                                  {bench.scene, "-o", bench.folder / "c", "-j", odd + words},
+                                                  {"--resume", odd + word}};
+  for (const auto& arguments : all) {
+    CHECK(bench.run(arguments) == 2);
+    const std::string said = bench.errors();
+    CAPTURE(said);
+    CHECK(said.starts_with("rvelab-mpm: "));
+    CHECK(said.size() < 500);
+    CHECK(std::count_if(said.begin(), said.end(), [](char c) { return c < ' ' || c > '~'; }) == 1);
+  }
+}
+
+TEST_CASE("a checkpoint that was edited and sealed again is refused by what is no state") {
+  const BlockRuns bench;
+  REQUIRE(bench.start("a", {"--stop-at", "0.05"}) == 0);
+  const auto path = bench.folder / "a/checkpoint.h5";
+  const auto whole = bytes_of(path);
+  const auto refusal = [&](std::size_t column, double value) {
+    std::string bytes = whole.substr(0, whole.size() - rvelab::io::seal_bytes);
+    std::vector<std::byte> image(bytes.size());
+    std::memcpy(image.data(), bytes.data(), bytes.size());
+    const auto rows = rvelab::io::hdf5::read(path, image).objects.at("/points").dataset->bytes;
+    const std::size_t at = bytes.find(std::string(reinterpret_cast<const char*>(rows.data()), rows.size()));
+    REQUIRE(at != std::string::npos);
+    std::memcpy(bytes.data() + at + column * sizeof value, &value, sizeof value);
+    std::memcpy(image.data(), bytes.data(), bytes.size());
+    const auto seal = rvelab::io::seal_of(image);
+    bytes.append(reinterpret_cast<const char*>(seal.data()), seal.size());
+    std::ofstream(path, std::ios::binary) << bytes;
+    CHECK(bench.run({"--resume", bench.folder / "a", "-j", "1"}) == 2);
+    return bench.errors();
+  };
+  CHECK_THAT(refusal(1, std::nan("")), Contains("checkpoint.h5: points[0, 1] = nan; allowed: a finite number"));
+  CHECK_THAT(refusal(9, -1), Contains("checkpoint.h5: mass of points[0] = -1; allowed: > 0 kg"));
+  CHECK_THAT(refusal(10, 0), Contains("checkpoint.h5: volume of points[0] = 0; allowed: > 0 m^3"));
 }
 
 TEST_CASE("a folder that lost something is refused with the remedy") {

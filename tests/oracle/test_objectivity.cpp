@@ -110,6 +110,9 @@ Specimen supercell(const Specimen& s, int nx, int ny) {
         }
         big.contacts.push_back(copy);
       }
+  std::sort(big.contacts.begin(), big.contacts.end(), [](const Contact& a, const Contact& b) {
+    return std::tie(a.i, a.j, a.image) < std::tie(b.i, b.j, b.image);
+  });
   // Wrapped into the primary cuboid about the origin, as an import would.
   return shifted(big, Vector3::Zero());
 }

@@ -156,3 +156,33 @@ TEST_CASE("rvelab-voids prints what fills the cell, writes its tables, and refus
   CHECK(run(folder / "E.h5") == 2);
   CHECK(rvelab::test::bytes_of(folder / "err").find("ellipses") != std::string::npos);
 }
+
+TEST_CASE("The program refuses a specimen that is none by its field, and prints what it was given as letters") {
+  const rvelab::test::Folder folder;
+  const Specimen good = reference_specimen("dense_p20");
+  const auto refusal = [&](const std::string& words) {
+    rvelab::test::Child child({RVELAB_VOIDS_PROGRAM, words, "-o", folder / "v"}, folder / "out", folder / "err");
+    CHECK(child.wait() == 2);
+    CHECK(!std::filesystem::exists(folder / "v.cells.csv"));
+    return rvelab::test::bytes_of(folder / "err");
+  };
+  const auto refused = [&](auto edit) {
+    Specimen bad = good;
+    edit(bad);
+    io::write_specimen(bad, folder / "S.h5");
+    return refusal(folder / "S.h5");
+  };
+  using Catch::Matchers::Contains;
+  CHECK_THAT(refused([](Specimen& s) { s.cell.lattice(0, 0) = std::nan(""); }),
+             Contains("S.h5: /cell/lattice_m[0, 0] = nan") && Contains("finite"));
+  CHECK_THAT(refused([](Specimen& s) { s.cell.lattice(0, 1) = 1e6 * s.cell.lattice(0, 0); }),
+             Contains("/cell/lattice_m[0, 1]") && Contains("tilt"));
+  CHECK_THAT(refused([](Specimen& s) { s.grains.radius[2] *= -1; }), Contains("/grains/radius_m[2] of grain"));
+  for (const std::size_t length : {0, 200, 9000}) {
+    const std::string said = refusal("a\x1b[31m\xff" + std::string(length, 'x'));
+    CHECK_THAT(said, Contains("rvelab-voids: a\\x1b[31m\\xff"));
+    CHECK(std::count_if(said.begin(), said.end(), [](char c) { return c < ' ' || c > '~'; }) ==
+          1);  // the end of the line
+    CHECK(said.find(std::string(81, 'x')) == std::string::npos);
+  }
+}

@@ -1,6 +1,7 @@
 #include "tools/mpm/checkpoint.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <set>
 
@@ -141,6 +142,31 @@ std::vector<double> clock_of(Progress progress) {
                    "; leave out the --set that changes their number, or start the run anew in another folder");
 }
 
+/// A checkpoint that was edited and sealed again.
+[[noreturn]] void not_a_state(const std::string& folder, const std::string& what, double value,
+                              const std::string& allowed) {
+  throw InputError(folder + "/checkpoint.h5: " + what + " = " + text_of(value) + "; allowed: " + allowed +
+                   "; put the file back from a copy, or start the run anew");
+}
+
+void expect_finite(const std::vector<double>& values, const std::string& name, std::size_t width,
+                   const std::string& folder) {
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (std::isfinite(values[k])) continue;
+    const std::string column = width == 1 ? "" : ", " + std::to_string(k % width);
+    not_a_state(folder, name + "[" + std::to_string(k / width) + column + "]", values[k], "a finite number");
+  }
+}
+
+template <int D>
+void expect_masses(const std::vector<Point<D>>& points, const std::string& folder) {
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const std::string of_point = " of points[" + std::to_string(k) + "]";
+    if (!(points[k].mass > 0)) not_a_state(folder, "mass" + of_point, points[k].mass, "> 0 kg");
+    if (!(points[k].volume > 0)) not_a_state(folder, "volume" + of_point, points[k].volume, "> 0 m^3");
+  }
+}
+
 }  // namespace
 
 namespace {
@@ -170,6 +196,7 @@ void read_water(Fluid<D>& water, const InputFile& file, const std::string& folde
   if (rows.size() != width * water.points.size()) {
     of_another_scene(folder, "saturated points", rows.size() / width, water.points.size());
   }
+  expect_finite(rows, "fluid_points", width, folder);
   for (auto& point : water.points) {
     each_field<D>(point, [&](double* values, int each) {
       for (int i = 0; i < each; ++i) values[i] = rows[at++];
@@ -249,11 +276,13 @@ void read_checkpoint(Model<D>& model, Progress& progress, const std::string& fol
   if (rows.size() != width * solver.points.size()) {
     of_another_scene(folder, "material points", rows.size() / width, solver.points.size());
   }
+  expect_finite(rows, "points", width, folder);
   for (auto& point : solver.points) {
     each_field<D>(point, [&](double* values, int count) {
       for (int i = 0; i < count; ++i) values[i] = rows[at++];
     });
   }
+  expect_masses<D>(solver.points, folder);
   const auto reactions = file.read("reactions");
   if (reactions.size() != (D + 1) * solver.count_driven()) {
     of_another_scene(folder, "boundaries and bodies", reactions.size() / (D + 1), solver.count_driven());
@@ -263,6 +292,7 @@ void read_checkpoint(Model<D>& model, Progress& progress, const std::string& fol
     for (int i = 0; i < D; ++i) each.reaction.impulse[i] = reactions[at++];
     each.reaction.work = reactions[at++];
   });
+  expect_finite(reactions, "reactions", D + 1, folder);
   auto clock = file.read("clock");
   const std::size_t own = clock_of(progress).size();
   if (clock.size() != own + 2 + D) of_another_scene(folder, "times", clock.size(), own + 2 + D);

@@ -5,11 +5,13 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cerrno>
 #include <filesystem>
 #include <iostream>
 #include <sstream>
 
+#include "rvelab/io/utf8.hpp"
 #include "tools/mpm/output.hpp"
 #include "tools/mpm/run.hpp"
 
@@ -109,6 +111,10 @@ int program(int argc, char** argv, const PoolSource& source) {
   app.add_option("-j,--threads", options.threads, "Threads; 0: as many as the processor runs at once");
   app.add_option("--stop-at", options.stop_at, "Stop at this time (s) with a checkpoint");
   app.add_flag("-q,--quiet", options.quiet, "No progress line");
+  const auto fail = [&](int code, const std::string& message) {
+    std::cerr << "rvelab-mpm: " << rvelab::io::message_line(message, {argv + std::min(argc, 1), argv + argc}) << "\n";
+    return code;
+  };
   try {
     app.parse(argc, argv);
     if (resume.empty() && (scene.empty() || options.folder.empty())) {
@@ -117,13 +123,15 @@ int program(int argc, char** argv, const PoolSource& source) {
     check(options);
     return run(scene, cases, published, assignments, options, resume);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
+    if (error.get_exit_code() == 0) return app.exit(error);
+    return fail(2, error.what() + std::string("; rvelab-mpm --help explains the options"));
   } catch (const InputError& error) {
-    std::cerr << "rvelab-mpm: " << error.what() << "\n";
-    return 2;
+    return fail(2, error.what());
+  } catch (const std::filesystem::filesystem_error& error) {
+    return fail(2, error.path1().string() + ": cannot be used (" + error.code().message() +
+                       "); give the path of a file in a folder that you may use");
   } catch (const std::exception& failure) {
-    std::cerr << "rvelab-mpm: " << failure.what() << "\n";
-    return 1;
+    return fail(1, failure.what());
   }
 }
 

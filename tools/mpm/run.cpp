@@ -9,6 +9,7 @@
 #include <iomanip>
 #include <iostream>
 
+#include "rvelab/io/utf8.hpp"
 #include "tools/mpm/checkpoint.hpp"
 #include "tools/mpm/output.hpp"
 #include "tools/mpm/rock_output.hpp"
@@ -248,7 +249,8 @@ int run_model(const Scene& scene, const RunOptions& options, std::ostream& repor
   report << std::setprecision(3) << "setup " << setup << " s\n";
   cost.print(report);
   if (stopped)
-    report << "stopped at " << solver.time << " s; go on with: rvelab-mpm --resume " << options.folder << "\n";
+    report << "stopped at " << solver.time << " s; go on with: rvelab-mpm --resume "
+           << rvelab::io::printable(options.folder) << "\n";
   return stopped && interrupted != 0 ? 130 : 0;
 }
 

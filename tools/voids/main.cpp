@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <iostream>
 #include <string>
 
@@ -11,6 +12,7 @@
 #include "rvelab/io/journal/journal.hpp"
 #include "rvelab/io/journal/recorded_test.hpp"
 #include "rvelab/io/publish.hpp"
+#include "rvelab/io/utf8.hpp"
 #include "tools/voids/pores.hpp"
 
 namespace rvelab::voids {
@@ -139,16 +141,22 @@ int main(int argc, char** argv) {
   app.add_option("--kozeny", options.kozeny_constant, "Constant c of Kozeny and Carman, 5")->check(CLI::PositiveNumber);
   app.add_flag("--force", options.force, "Overwrite existing tables");
   app.add_flag("--json", options.json, "Print one JSON object");
+  const auto fail = [&](int code, const std::string& message) {
+    std::cerr << "rvelab-voids: " << rvelab::io::message_line(message, {argv + std::min(argc, 1), argv + argc}) << "\n";
+    return code;
+  };
   try {
     app.parse(argc, argv);
     return rvelab::voids::run(options);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
+    if (error.get_exit_code() == 0) return app.exit(error);
+    return fail(2, error.what() + std::string("; rvelab-voids --help explains the options"));
   } catch (const rvelab::InputError& error) {
-    std::cerr << "rvelab-voids: " << error.what() << "\n";
-    return 2;
+    return fail(2, error.what());
+  } catch (const std::filesystem::filesystem_error& error) {
+    return fail(2, error.path1().string() + ": cannot be used (" + error.code().message() +
+                       "); give the path of a file in a folder that you may use");
   } catch (const std::exception& failure) {
-    std::cerr << "rvelab-voids: " << failure.what() << "\n";
-    return 1;
+    return fail(1, failure.what());
   }
 }

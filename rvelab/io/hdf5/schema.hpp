@@ -35,9 +35,11 @@ FileKind kind_without_seal(const Hdf5File& file);
 /// Whether its attribute `format` is one of rvelab's.
 bool is_rvelab(const Hdf5File& file);
 
-/// Writes a specimen under a group ("" for the root), or reads it from there and checks its indices.
+/// Writes a specimen under a group ("" for the root), or reads it from there and checks it (check_specimen).
 void put_specimen(Hdf5File& file, const std::string& group, const Specimen& specimen);
 Specimen get_specimen(const Hdf5File& file, const std::string& group);
+/// Its bits as they are stored, whatever they mean.
+Specimen stored_specimen(const Hdf5File& file, const std::string& group);
 /// How the specimen of a specimen file was packed; none if it was not, or of another file.
 std::optional<SpecimenOrigin> get_origin(const Hdf5File& file);
 /// Group of the specimen of a file: of records the end state, of a pool its RVE. InputError: a pool of none or many.

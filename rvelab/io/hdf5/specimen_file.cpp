@@ -6,6 +6,7 @@
 #include "rvelab/io/hdf5/archive.hpp"
 #include "rvelab/io/hdf5/schema.hpp"
 #include "rvelab/io/version.hpp"
+#include "rvelab/specimen/specimen_check.hpp"
 #include "rvelab/specimen/specimen_fields.hpp"
 
 namespace rvelab::io {
@@ -28,46 +29,6 @@ void describe_origin(Archive& archive, Value& origin) {
   archive.field("provenance/seed", seed, "1");
   archive.field("provenance/draw", draw, "1");
   archive.field("provenance/preparation_friction", preparation_friction, "1");
-}
-
-/// Whether each field with a row for each grain has `grains` of them.
-struct GrainRows {
-  std::size_t grains;
-  bool agree = true;
-
-  template <class Value, class Declared>
-  void field(const fields::Path&, const Value& value, const Declared& field) {
-    if constexpr (fields::Listed<Value>::is_list) {
-      agree = agree && (field.rows != fields::Rows::per_grain || value.size() == grains);
-    }
-  }
-  template <class... Table>
-  void table(const Table&...) {}
-};
-
-/// What the datasets must agree on for the indices to point at something.
-void check_indices(const Specimen& specimen, const std::string& path) {
-  const auto expect = [&](bool condition, const std::string& what) {
-    if (!condition) throw InputError(path + ": " + what + "; the file is damaged: write it again");
-  };
-  const auto& grains = specimen.grains;
-  const auto count = grains.size();
-  GrainRows rows{count};
-  fields::visit(rows, specimen);
-  expect(rows.agree, "the datasets under /grains have different lengths; allowed: one row a grain in each, " +
-                         std::to_string(count) + " here");
-  expect(specimen.cell.dimension == dimension_of(specimen.shape),
-         "/cell/dimension is " + std::to_string(specimen.cell.dimension) + "; allowed: 2 with discs, 3 with spheres");
-  for (const auto material : grains.material) {
-    expect(material >= 0 && std::size_t(material) < specimen.materials.size(),
-           "/grains/material holds the index " + std::to_string(material) + "; allowed: 0 to " +
-               std::to_string(specimen.materials.size()) + " - 1");
-  }
-  for (const auto& contact : specimen.contacts) {
-    expect(contact.i >= 0 && contact.i <= contact.j && std::size_t(contact.j) < count,
-           "/contacts holds the pair " + std::to_string(contact.i) + ", " + std::to_string(contact.j) +
-               "; allowed: 0 <= i <= j < " + std::to_string(count));
-  }
 }
 
 }  // namespace
@@ -163,11 +124,16 @@ void put_specimen(Hdf5File& file, const std::string& group, const Specimen& spec
   describe(writer, specimen);
 }
 
-Specimen get_specimen(const Hdf5File& file, const std::string& group) {
+Specimen stored_specimen(const Hdf5File& file, const std::string& group) {
   Specimen specimen;
   Reader reader(file, group);
   describe(reader, specimen);
-  check_indices(specimen, file.path());
+  return specimen;
+}
+
+Specimen get_specimen(const Hdf5File& file, const std::string& group) {
+  Specimen specimen = stored_specimen(file, group);
+  check_specimen(specimen, file.path() + ": " + group + "/");
   return specimen;
 }
 

@@ -94,12 +94,27 @@ RecordedTest test_in(const std::shared_ptr<const Hdf5File>& opened) {
   return test;
 }
 
-/// InputError where no RVE can be made of the specimen: a radius below zero, a number that is none.
+/// InputError where no RVE can be made of the specimen: grains at one place, an overlap beyond its limit.
 void expect_opens(const Specimen& specimen, const std::string& where) {
   try {
     const Rve rve(specimen);
   } catch (const Error& error) {
-    throw InputError(where + ": " + error.what() + "; correct it in the file; nothing was written");
+    throw InputError(where + ": " + error.what());
+  }
+}
+
+/// InputError where something in the file would be refused when it is read.
+void expect_readable(const std::shared_ptr<const Hdf5File>& opened, FileKind kind) {
+  const Hdf5File& file = *opened;
+  if (kind == FileKind::specimen) {
+    get_origin(file);
+    return expect_opens(get_specimen(file, specimen_group(file)), file.path());
+  }
+  const RecordedTest test = test_in(opened);
+  expect_opens(test.checkpoint.specimen, file.path());
+  for (const Snapshot& snapshot : test.snapshots) {
+    const std::string group = snapshot_group(snapshot.record);
+    expect_opens(get_specimen(file, group), file.path() + ", " + group);
   }
 }
 
@@ -177,16 +192,10 @@ SealedFile seal_file(const std::string& path, const std::string& output) {
   const auto opened = std::make_shared<const Hdf5File>(Hdf5File::open(path));
   const Hdf5File& file = *opened;
   const SealedFile found{kind_without_seal(file), file.sealed(), file.entries().size()};
-  // What cannot be read as one of rvelab's would only be refused later.
-  if (found.kind == FileKind::specimen) {
-    get_origin(file);
-    expect_opens(get_specimen(file, specimen_group(file)), path);
-  } else {
-    const RecordedTest test = test_in(opened);
-    expect_opens(test.checkpoint.specimen, path);
-    for (const Snapshot& snapshot : test.snapshots) {
-      expect_opens(get_specimen(file, snapshot_group(snapshot.record)), path + ", " + snapshot_group(snapshot.record));
-    }
+  try {
+    expect_readable(opened, found.kind);
+  } catch (const InputError& error) {
+    throw InputError(error.what() + std::string("; nothing was written"));
   }
   publish(output, file);
   return found;

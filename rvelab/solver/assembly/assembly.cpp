@@ -7,7 +7,7 @@
 #include "rvelab/solver/assembly/listing.hpp"
 #include "rvelab/solver/assembly/memory_order.hpp"
 #include "rvelab/solver/assembly/outline.hpp"
-#include "rvelab/solver/assembly/specimen_check.hpp"
+#include "rvelab/specimen/specimen_check.hpp"
 
 namespace rvelab {
 

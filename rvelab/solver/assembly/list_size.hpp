@@ -9,9 +9,6 @@
 
 namespace rvelab {
 
-/// solver.skin at most: a wider list holds hundreds of pairs a grain and serves nothing.
-inline constexpr double largest_skin_ratio = 10;
-
 /// Pairs that a list may have: 1000 a grain, 100,000 in a small assembly, 10^9 in all. Packings list 3 (2D) to 10 (3D)
 /// a grain; a pair takes some 300 bytes.
 double allowed_pairs(std::size_t grains);

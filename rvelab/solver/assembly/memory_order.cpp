@@ -105,16 +105,6 @@ std::vector<std::int32_t> space_filling_order(const Cell& cell, const std::vecto
   return order;
 }
 
-bool is_permutation(const std::vector<std::int32_t>& order, std::size_t grains) {
-  if (order.size() != grains) return false;
-  std::vector<bool> seen(grains, false);
-  for (const std::int32_t g : order) {
-    if (g < 0 || std::size_t(g) >= grains || seen[std::size_t(g)]) return false;
-    seen[std::size_t(g)] = true;
-  }
-  return true;
-}
-
 Specimen in_memory_order(Specimen specimen, const std::vector<std::int32_t>& order) {
   return order.empty() ? std::move(specimen) : rearranged(std::move(specimen), order);
 }

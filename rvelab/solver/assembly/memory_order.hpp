@@ -19,9 +19,6 @@ constexpr std::size_t least_ordered_grains = 2000;
 /// Morton order of the places in units of the lattice vectors, 1024 steps each (2D: 65,536).
 std::vector<std::int32_t> space_filling_order(const Cell& cell, const std::vector<Vector3>& positions);
 
-/// Whether each of 0 .. grains - 1 comes once.
-bool is_permutation(const std::vector<std::int32_t>& order, std::size_t grains);
-
 /// Grains, contacts and list positions by place in memory (ids then no longer ascend), and back. A contact whose grains
 /// change sides is turned round. An empty order changes nothing.
 Specimen in_memory_order(Specimen specimen, const std::vector<std::int32_t>& order);
