@@ -17,7 +17,7 @@ constexpr std::uint64_t inside = 0xffff, open = 0x10000, next_call = 0x20000;
 constexpr double until_sleep = 150e-6, until_sleep_late = 20e-6, until_help = 20e-6;
 // s. A loss as large as `loss` ends the sharing for `patience` times as long; gains are put by up to `most`, so that
 // one bad moment does not end it. A loop that is not done in `brief` alone has an account of its own.
-constexpr double loss = 0.2e-3, most = 10e-3, patience = 20, brief = 2e-3;
+constexpr double loss = 5e-3, most = 20e-3, patience = 20, brief = 2e-3;
 
 void rest() {
 #if defined(__x86_64__)
