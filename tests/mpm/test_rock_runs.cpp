@@ -4,6 +4,8 @@
 #include "tests/mpm/blocks.hpp"
 #include "tests/mpm/rocks_alone.hpp"
 #include "tests/mpm/scene_runs.hpp"
+#include "tools/mpm/rocks.hpp"
+#include "tools/mpm/setup.hpp"
 
 using Catch::Matchers::Contains;
 using mpm::test::pi;
@@ -205,6 +207,38 @@ TEST_CASE("threads that share the sweeps over the surfaces of many rocks leave t
   const auto history = bytes_of(bench.folder / "1/history.csv");
   CHECK(last_value(history, "rocks.soil_contacts") > 500);
   CHECK(last_value(history, "rocks.soil_work_J") != 0);
+}
+
+TEST_CASE("sweeps over the surfaces of many rocks have the same bits, whether threads share them or not") {
+  using mpm::Workers;
+  const Folder folder;
+  std::ofstream(folder / "scene.toml") << pressed_scene;
+  const auto scene = mpm::read_scene(folder / "scene.toml", {}, {});
+  const auto end_of = [&](int threads, Workers::Sharing sharing) {
+    auto model = mpm::set_up<3>(scene, threads, folder.path());
+    model->solver.workers.sharing = sharing;
+    for (int k = 0; k < 25; ++k) model->solver.step(model->solver.stable_step());
+    return model;
+  };
+  const auto one = end_of(1, Workers::Sharing::never);
+  CHECK(one->solver.rocks->surface.size() > 500);
+  for (const int threads : {2, 3, 5}) {
+    for (const auto sharing : {Workers::Sharing::always, Workers::Sharing::never, Workers::Sharing::measured}) {
+      if (sharing != Workers::Sharing::always && threads == 5) continue;
+      CAPTURE(threads, int(sharing));
+      const auto other = end_of(threads, sharing);
+      REQUIRE(other->solver.time == one->solver.time);
+      for (std::size_t k = 0; k < one->solver.points.size(); ++k) {
+        REQUIRE(other->solver.points[k].position == one->solver.points[k].position);
+        REQUIRE(other->solver.points[k].stress == one->solver.points[k].stress);
+      }
+      for (std::size_t k = 0; k < one->solver.rocks->all.size(); ++k) {
+        REQUIRE(other->solver.rocks->all[k].body.centre == one->solver.rocks->all[k].body.centre);
+        REQUIRE(other->solver.rocks->all[k].soil_impulse == one->solver.rocks->all[k].soil_impulse);
+      }
+      CHECK(other->solver.rocks->work_on_soil == one->solver.rocks->work_on_soil);
+    }
+  }
 }
 
 TEST_CASE("a flipped bit in the checkpoint of rocks is refused") {

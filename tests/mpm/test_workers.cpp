@@ -2,35 +2,143 @@
 #include "tools/mpm/workers.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "tests/catch.hpp"
 
 using mpm::Workers;
 
-TEST_CASE("each piece is made once, whatever the number of threads and of pieces", "[workers]") {
+namespace {
+
+using Sharing = Workers::Sharing;
+constexpr Sharing each_sharing[] = {Sharing::measured, Sharing::always, Sharing::never};
+
+/// Of so many calls of ten pieces, those in which other threads than the caller's made some.
+template <class Piece>
+long shared_calls(Workers& workers, long calls, const Piece& piece) {
+  const auto caller = std::this_thread::get_id();
+  long shared = 0;
+  for (long call = 0; call < calls; ++call) {
+    std::atomic<bool> other{false};
+    workers.for_each(10, [&](std::int64_t) {
+      const bool away = std::this_thread::get_id() != caller;
+      if (away) other = true;
+      piece(away);
+    });
+    shared += other;
+  }
+  return shared;
+}
+
+}  // namespace
+
+TEST_CASE("each piece is made once, whatever the number of threads and of pieces, and however they share",
+          "[workers]") {
   for (const int threads : {1, 2, 3, 8}) {
     Workers workers(threads);
-    for (const long pieces : {0, 1, 2, 7, 8, 1000}) {
-      for (const bool in_turn : {false, true}) {
-        std::vector<std::atomic<int>> made(std::size_t(pieces) + 1);
-        const auto make = [&](std::int64_t k) { ++made[std::size_t(k)]; };
-        if (in_turn)
-          workers.for_each_in_turn(pieces, make);
-        else
-          workers.for_each(pieces, make);
-        bool once = true;
-        for (long k = 0; k < pieces; ++k) once = once && made[std::size_t(k)] == 1;
-        once = once && made[std::size_t(pieces)] == 0;
-        CAPTURE(threads, pieces, in_turn);
-        CHECK(once);
+    for (const Sharing sharing : each_sharing) {
+      workers.sharing = sharing;
+      for (const long pieces : {0, 1, 2, 7, 8, 1000}) {
+        for (const bool in_turn : {false, true}) {
+          std::vector<std::atomic<int>> made(std::size_t(pieces) + 1);
+          const auto make = [&](std::int64_t k) { ++made[std::size_t(k)]; };
+          if (in_turn)
+            workers.for_each_in_turn(pieces, make);
+          else
+            workers.for_each(pieces, make);
+          bool once = true;
+          for (long k = 0; k < pieces; ++k) once = once && made[std::size_t(k)] == 1;
+          once = once && made[std::size_t(pieces)] == 0;
+          CAPTURE(threads, pieces, in_turn, int(sharing));
+          CHECK(once);
+        }
       }
     }
   }
+}
+
+TEST_CASE("pieces that come after others find what these left, on any number of threads", "[workers]") {
+  // Each piece changes three of 40 places, and comes after the last that changed one of them.
+  constexpr std::size_t pieces = 3000, places = 40;
+  const auto places_of = [](std::size_t k) {
+    return std::array<std::size_t, 3>{k * 7 % places, k * k % places, (k * 13 + k / 40) % places};
+  };
+  std::vector<mpm::WorkOrder::Pair> pairs;
+  std::array<std::int64_t, places> last;
+  last.fill(-1);
+  for (std::size_t k = 0; k < pieces; ++k) {
+    for (const std::size_t place : places_of(k)) {
+      const auto before = std::exchange(last[place], std::int64_t(k));
+      if (before >= 0 && before != std::int64_t(k)) pairs.push_back({before, std::int64_t(k)});
+    }
+  }
+  const mpm::WorkOrder order(pieces, pairs);
+  REQUIRE(order.pieces() == std::int64_t(pieces));
+  std::vector<std::array<double, places>> ends;
+  for (const int threads : {1, 2, 3, 5}) {
+    Workers workers(threads);
+    for (const Sharing sharing : each_sharing) {
+      workers.sharing = sharing;
+      std::array<double, places> values;
+      values.fill(1);
+      for (int call = 0; call < 5; ++call) {
+        workers.for_each_after(order, [&](std::int64_t k) {
+          double sum = 0.1 * double(k % 11);
+          for (const std::size_t place : places_of(std::size_t(k))) sum = 0.7 * sum + values[place];
+          for (const std::size_t place : places_of(std::size_t(k))) values[place] = std::sin(sum + double(place));
+        });
+      }
+      ends.push_back(values);
+    }
+  }
+  for (const auto& end : ends) CHECK(end == ends[0]);
+}
+
+TEST_CASE("a failure of a piece that others come after is thrown again, and nobody waits for it", "[workers]") {
+  std::vector<mpm::WorkOrder::Pair> pairs;
+  for (std::int64_t k = 1; k < 100; ++k) pairs.push_back({k - 1, k});
+  const mpm::WorkOrder chain(100, pairs);
+  for (const Sharing sharing : each_sharing) {
+    Workers workers(3);
+    workers.sharing = sharing;
+    std::atomic<long> last{-1};
+    CHECK_THROWS_AS(workers.for_each_after(chain,
+                                           [&](std::int64_t k) {
+                                             last = k;
+                                             if (k == 42) throw std::runtime_error("piece 42");
+                                           }),
+                    std::runtime_error);
+    CHECK(last == 42);
+    workers.for_each_after(chain, [&](std::int64_t k) { last = k; });
+    CHECK(last == 99);
+  }
+}
+
+TEST_CASE("a team whose meetings cost more than the work goes on alone", "[workers]") {
+  // A millisecond or two alone; a thread that comes is off its core for 10 ms in the middle of a piece. Asleep, so that
+  // it does not matter what else the machine does.
+  const auto piece = [](bool away) { std::this_thread::sleep_for(std::chrono::microseconds(away ? 10'000 : 100)); };
+  Workers workers(2);
+  workers.sharing = Sharing::always;
+  const long always = shared_calls(workers, 30, piece);
+  CHECK(always > 10);
+  workers.sharing = Sharing::measured;
+  CHECK(shared_calls(workers, 300, piece) < 10 * always / 4);
+  workers.sharing = Sharing::never;
+  CHECK(shared_calls(workers, 100, piece) == 0);
+}
+
+TEST_CASE("a team that gains by its meetings goes on together", "[workers]") {
+  const auto piece = [](bool) { std::this_thread::sleep_for(std::chrono::microseconds(500)); };
+  Workers workers(2);
+  CHECK(shared_calls(workers, 100, piece) > 90);
 }
 
 TEST_CASE("a failure of one piece is thrown again, and the threads work on", "[workers]") {

@@ -11,7 +11,7 @@ void Bodies<D>::detect_contact(const Grid<D>& grid, const Planes<D>& planes, con
   surface_.clear();
   sweeps_ = 1;
   workers_ = &workers;
-  levels_.clear();
+  runs_.clear();
   bool at_nodes = false;
   for (int k = 0; k < int(all.size()); ++k) {
     const std::size_t first = surface_.size();
@@ -24,7 +24,7 @@ void Bodies<D>::detect_contact(const Grid<D>& grid, const Planes<D>& planes, con
   if (at_nodes) detect_nodes(grid, planes, time, workers);
   if (rocks == nullptr) return;
   detect_rocks(grid, planes, soil);
-  find_levels(grid);
+  order_runs(grid);
 }
 
 /// Nodes in bodies with contact at nodes, in the order of the grid.

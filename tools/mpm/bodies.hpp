@@ -136,15 +136,14 @@ class Bodies {
   struct Run {
     std::size_t first, last;
   };
-  void find_levels(const Grid<D>& grid);
-  /// visit(run) for all points, one run after the other, to or fro; those of one level side by side.
+  void order_runs(const Grid<D>& grid);
+  /// visit(run) for all points, to or fro; threads share the runs where there are many.
   template <class Visit>
   void each_run(bool fro, const Visit& visit) {
-    if (levels_.empty()) return visit(Run{0, surface_.size()});
-    for (std::size_t k = 0; k < levels_.size(); ++k) {
-      const auto& level = levels_[fro ? levels_.size() - 1 - k : k];
-      workers_->for_each(std::int64_t(level.size()), [&](std::int64_t run) { visit(level[std::size_t(run)]); });
-    }
+    if (runs_.empty()) return visit(Run{0, surface_.size()});
+    const std::size_t last = runs_.size() - 1;
+    workers_->for_each_after(fro ? fro_ : to_,
+                             [&](std::int64_t k) { visit(runs_[fro ? last - std::size_t(k) : std::size_t(k)]); });
   }
   Vec<D> velocity_at(const Grid<D>& grid, const SurfacePoint& point, bool end) const;
   /// N s along the surface, as much as friction gives for that across it.
@@ -175,10 +174,11 @@ class Bodies {
   std::vector<unsigned char> soil_at_;  ///< by node, for one body at a time: its faces that soil near the node touches
   int sweeps_ = 1;
   Workers* workers_ = nullptr;  ///< those of detect_contact
-  /// No two runs of a level share a node, and of two that do the later one has the higher level: level after level is
-  /// the same as one point after the other, to the bit. Empty: one run.
-  std::vector<std::vector<Run>> levels_;
-  std::vector<int> level_at_;  ///< by node
+  /// Of two runs that share a node the later one comes after the other: that is the same as one point after the other,
+  /// to the bit. First those that come after none, then those that come after these alone, and so on. None: one run.
+  std::vector<Run> runs_;
+  WorkOrder to_, fro_;           ///< of runs_, and of runs_ from the last to the first
+  std::vector<int> visited_by_;  ///< by node: the last run so far
 };
 
 }  // namespace mpm

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "tools/mpm/bodies.hpp"
 #include "tools/mpm/clock.hpp"
@@ -217,22 +219,39 @@ Vec<D> Bodies<D>::along_surface(const Body<D>& body, const SurfacePoint& point, 
 constexpr std::size_t least_shared_points = 256;
 
 template <int D>
-void Bodies<D>::find_levels(const Grid<D>& grid) {
+void Bodies<D>::order_runs(const Grid<D>& grid) {
   if (workers_->count() == 1 || rocks->surface.empty() || surface_.size() < least_shared_points) return;
-  level_at_.assign(grid.nodes.size(), 0);
-  for (std::size_t first = 0; first < surface_.size();) {
-    std::size_t last = first;
-    int level = 0;
-    for (; last < surface_.size() && surface_[last].body == surface_[first].body; ++last) {
-      const auto& point = surface_[last];
-      for (int j = 0; j < point.count; ++j) level = std::max(level, level_at_[point.node[j]]);
+  visited_by_.assign(grid.nodes.size(), -1);
+  std::vector<Run> runs;
+  std::vector<int> level, linked_to;  // by run: how many come before it in a row; the last one that comes after it
+  std::vector<WorkOrder::Pair> pairs;
+  for (std::size_t first = 0; first < surface_.size(); first = runs.back().last) {
+    const int run = int(runs.size());
+    runs.push_back({first, first});
+    level.push_back(0);
+    linked_to.push_back(-1);
+    for (std::size_t& k = runs.back().last; k < surface_.size() && surface_[k].body == surface_[first].body; ++k) {
+      for (int j = 0; j < surface_[k].count; ++j) {
+        const int before = std::exchange(visited_by_[std::size_t(surface_[k].node[j])], run);
+        if (before < 0 || before == run || std::exchange(linked_to[std::size_t(before)], run) == run) continue;
+        pairs.push_back({before, run});
+        level.back() = std::max(level.back(), level[std::size_t(before)] + 1);
+      }
     }
-    for (std::size_t k = first; k < last; ++k)
-      for (int j = 0; j < surface_[k].count; ++j) level_at_[surface_[k].node[j]] = level + 1;
-    if (levels_.size() == std::size_t(level)) levels_.emplace_back();
-    levels_[std::size_t(level)].push_back({first, last});
-    first = last;
   }
+  std::vector<std::int64_t> order(runs.size()), place(runs.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](auto a, auto b) { return level[std::size_t(a)] < level[std::size_t(b)]; });
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    runs_.push_back(runs[std::size_t(order[k])]);
+    place[std::size_t(order[k])] = std::int64_t(k);
+  }
+  const std::int64_t last = std::int64_t(runs.size()) - 1;
+  for (auto& [before, after] : pairs) before = place[std::size_t(before)], after = place[std::size_t(after)];
+  to_ = WorkOrder(last + 1, pairs);
+  for (auto& [before, after] : pairs) before = last - std::exchange(after, last - before);
+  fro_ = WorkOrder(last + 1, pairs);
 }
 
 /// Sweeps one point: its impulse, with those at the others as they are now.
@@ -273,8 +292,8 @@ void Bodies<D>::hold_surface(Grid<D>& grid, double time, bool end) {
   if (of_rocks) rocks->soil_seconds += wall_seconds() - begin;
 }
 
-template void Bodies<2>::find_levels(const Grid<2>&);
-template void Bodies<3>::find_levels(const Grid<3>&);
+template void Bodies<2>::order_runs(const Grid<2>&);
+template void Bodies<3>::order_runs(const Grid<3>&);
 template void Bodies<2>::detect_surface(const Grid<2>&, const Planes<2>&, const std::vector<Point<2>>&, int, double,
                                         Workers&);
 template void Bodies<2>::hold_surface(Grid<2>&, double, bool);
