@@ -3,6 +3,7 @@
 // standard library name neither. No colours.
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -20,6 +21,7 @@
 #include "rvelab/error.hpp"
 #include "rvelab/io/utf8.hpp"
 #include "rvelab/io/version.hpp"
+#include "rvelab/keys/shortened.hpp"
 
 namespace {
 
@@ -32,14 +34,16 @@ std::string on_one_line(std::string text) {
   return text;
 }
 
-int fail(int code, const std::string& message) {
-  std::cerr << "rvelab: " << rvelab::io::printable(on_one_line(message)) << std::endl;
-  return code;
-}
-
-/// The command line, for the message that must not allocate.
+/// The command line, for what a message echoes of it.
 int word_count = 0;
 char** words = nullptr;
+
+int fail(int code, const std::string& message) {
+  const std::vector<std::string> given(words, words + word_count);
+  const std::string text = rvelab::keys::with_short_words(on_one_line(message), given);
+  std::cerr << "rvelab: " << rvelab::io::printable(text) << std::endl;
+  return code;
+}
 
 /// Prints the message without allocating memory.
 int fail_without_memory() {
@@ -47,7 +51,8 @@ int fail_without_memory() {
   for (int k = 0; k < word_count; ++k) {
     std::fputs(k == 0 ? " in " : " ", stderr);
     const std::string_view word = words[k];
-    for (std::size_t at = 0; at < word.size();) {
+    constexpr std::size_t most = 80;
+    for (std::size_t at = 0; at < std::min(word.size(), most);) {
       const std::size_t length = rvelab::io::utf8_length(word, at);
       const bool shown = length > 0 && static_cast<unsigned char>(word[at]) >= 0x20;
       if (shown) std::fwrite(word.data() + at, 1, length, stderr);

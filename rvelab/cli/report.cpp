@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "rvelab/io/utf8.hpp"
+#include "rvelab/keys/shortened.hpp"
 #include "rvelab/measure/measures.hpp"
 
 namespace rvelab::cli {
@@ -82,7 +83,9 @@ std::string Listing::text() const {
 
 void Listing::print(bool as_json) const { std::cout << (as_json ? json() : text()) << std::flush; }
 
-void tell(const std::string& text) { std::cerr << "rvelab: " << io::printable(text) << std::endl; }
+void tell(const std::string& text) {
+  std::cerr << "rvelab: " << io::printable(keys::with_short_words(text)) << std::endl;
+}
 
 Json row_major(const Eigen::MatrixXd& matrix) {
   Json rows = Json::array();
