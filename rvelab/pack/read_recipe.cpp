@@ -140,6 +140,14 @@ std::optional<Matrix3> stress_of(const std::vector<double>& list, Shape shape) {
   return stress;
 }
 
+/// What the mean pressure of a stress is looked at by.
+Key stress_as_key() {
+  Key key;
+  key.unit = "Pa";
+  key.usual = pressures.usual;
+  return key;
+}
+
 void read_stress(TableReader& reader, RecipeFile& file) {
   Recipe& recipe = file.recipe;
   const int d = dimension_of(recipe.shape);
@@ -165,7 +173,7 @@ void read_stress(TableReader& reader, RecipeFile& file) {
                      "has no mean pressure; allowed: tension positive with -(xx + yy [+ zz]) > 0; give "
                      "compressive normal stresses as negative numbers");
     else if (file.pressures.empty())
-      reader.doubt("stress_Pa", unusual_in({.unit = "Pa", .usual = pressures.usual}, mean_pressure(*recipe.stress, d)));
+      reader.doubt("stress_Pa", keys::unusual_in(stress_as_key(), mean_pressure(*recipe.stress, d)));
   }
   if (!file.pressures.empty() && file.pressures.front() > 0) {
     if (!recipe.stress) recipe.stress = isotropic_stress(1, recipe.shape);
