@@ -86,7 +86,7 @@ void evaluate_specimens(Calibration& result) {
   for (const PressureResult& test : result.per_pressure) peaks[test.specimen].push_back(test.peak);
   std::vector<double> angles, factors;
   for (const auto& [specimen, own] : peaks) {
-    angles.push_back(friction_angle_through_origin_deg(own));
+    angles.push_back(strength_angle_deg(own, result.cohesive));
     factors.push_back(bearing_capacity_Nq(angles.back()));
     result.per_specimen.push_back({angles.back(), factors.back()});
   }
@@ -97,7 +97,7 @@ void evaluate_specimens(Calibration& result) {
 }  // namespace
 
 Calibration calibrate(const std::vector<records::TestResult>& tests, int dimension,
-                      const std::vector<std::size_t>& specimens) {
+                      const std::vector<std::size_t>& specimens, bool sticks) {
   if (tests.empty()) throw InputError("calibrate: 0 tests; allowed: at least 1; give a pressure");
   Calibration result;
   std::vector<PrincipalStresses> peaks;
@@ -109,17 +109,28 @@ Calibration calibrate(const std::vector<records::TestResult>& tests, int dimensi
     result.friction_angle_moving_mean_deg += one.moving_mean_friction_angle_deg / double(tests.size());
     result.large_strain_friction_angle_deg += one.large_strain_friction_angle_deg / double(tests.size());
   }
-  result.friction_angle_deg = friction_angle_through_origin_deg(peaks);
+  result.cohesive = cohesive(peaks, sticks);
+  result.friction_angle_deg = strength_angle_deg(peaks, result.cohesive);
+  result.secant_friction_angle_deg = friction_angle_through_origin_deg(peaks);
   const CohesionFit fit = fit_with_cohesion(peaks);
   result.friction_angle_with_cohesion_deg = fit.friction_angle_deg;
   result.cohesion = fit.cohesion;
   result.friction_angle_with_cohesion_error_deg = fit.friction_angle_error_deg;
   result.cohesion_error = fit.cohesion_error;
   result.bearing_capacity_Nq = bearing_capacity_Nq(result.friction_angle_deg);
+  result.bearing_capacity_Nc = bearing_capacity_Nc(result.friction_angle_deg);
   result.local_shear_Nq = local_shear_Nq(result.friction_angle_deg);
   result.wedge_angle_deg = wedge_angle_deg(result.friction_angle_deg);
   evaluate_specimens(result);
   return result;
+}
+
+bool grains_stick(const Specimen& specimen) {
+  const bool may_stick =
+      with_law(specimen.contact.law, [](auto law) { return decltype(law)::Force::has_law_constant; });
+  return may_stick && std::any_of(specimen.materials.begin(), specimen.materials.end(), [](const Material& material) {
+           return material.adhesion_pressure > 0 || material.pull_off_force > 0;
+         });
 }
 
 void check_calibratable(const protocol::Protocol& protocol) {

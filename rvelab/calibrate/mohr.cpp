@@ -130,6 +130,25 @@ CohesionFit fit_with_cohesion(std::span<const PrincipalStresses> tests) {
           std::sqrt(of_cohesion < 0 ? 0 : of_cohesion)};
 }
 
+Cohesive cohesive(std::span<const PrincipalStresses> tests, bool grains_stick) {
+  if (grains_stick) return Cohesive::by_law;
+  const CohesionFit fit = fit_with_cohesion(tests);
+  double mean_s = 0;
+  for (const auto& test : tests) mean_s += test.s() / double(tests.size());
+  const bool is_beyond = fit.cohesion > cohesive_errors * fit.cohesion_error && fit.cohesion > cohesive_share * mean_s;
+  return is_beyond ? Cohesive::by_line : Cohesive::no;  // NaN is not beyond
+}
+
+double strength_angle_deg(std::span<const PrincipalStresses> tests, Cohesive cohesive) {
+  return cohesive == Cohesive::no ? friction_angle_through_origin_deg(tests)
+                                  : fit_with_cohesion(tests).friction_angle_deg;
+}
+
+double bearing_capacity_Nc(double friction_angle_deg) {
+  if (friction_angle_deg == 0) return pi + 2;
+  return (bearing_capacity_Nq(friction_angle_deg) - 1) / std::tan(friction_angle_deg * degree);
+}
+
 double bearing_capacity_Nq(double friction_angle_deg) {
   const double root = std::tan((45 + 0.5 * friction_angle_deg) * degree);
   return root * root * std::exp(pi * std::tan(friction_angle_deg * degree));

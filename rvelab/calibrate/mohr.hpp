@@ -63,6 +63,25 @@ struct CohesionFit {
 /// Straight envelope: least squares of t = s sin phi + c cos phi. NaN for fewer than two different s.
 CohesionFit fit_with_cohesion(std::span<const PrincipalStresses> tests);
 
+/// Whether the strength of a soil has a part that does not grow with the stress, and by what that is known.
+enum class Cohesive {
+  no,
+  by_law,  ///< its grains stick: their contacts pull
+  by_line  ///< c of the straight envelope is above twice its standard error, and above 5 % of the mean s of the tests
+};
+inline constexpr double cohesive_errors = 2, cohesive_share = 0.05;
+
+/// `grains_stick`: the contact law pulls. Fewer than three tests have no standard error: then by the law alone.
+Cohesive cohesive(std::span<const PrincipalStresses> tests, bool grains_stick);
+
+/// The angle that factors of a footing go with. Not cohesive: through the origin (a secant, the same for all tests).
+/// Cohesive: the tangent, that of the straight envelope; a secant would count c as friction, and fall as the stress
+/// rises. NaN as the fits.
+double strength_angle_deg(std::span<const PrincipalStresses> tests, Cohesive cohesive);
+
+/// N_c = (N_q - 1) cot phi (Prandtl 1920), the factor of the cohesion of a footing in general shear; pi + 2 at 0.
+double bearing_capacity_Nc(double friction_angle_deg);
+
 /// N_q = tan^2(45 + phi/2) exp(pi tan phi) (Prandtl 1920, Reissner 1924), general shear.
 double bearing_capacity_Nq(double friction_angle_deg);
 

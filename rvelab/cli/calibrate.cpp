@@ -17,6 +17,7 @@
 
 #include "rvelab/cli/columns.hpp"
 #include "rvelab/cli/command.hpp"
+#include "rvelab/cli/doubts.hpp"
 #include "rvelab/cli/ensemble.hpp"
 #include "rvelab/cli/interrupt.hpp"
 #include "rvelab/cli/progress_line.hpp"
@@ -143,6 +144,7 @@ Json per_pressure(const calibrate::Calibration& calibration) {
                      {"end_strain", test.end_strain},
                      {"rising_at_end", test.rising_at_end},
                      {"friction_angle_deg", test.friction_angle_deg},
+                     {"secant_friction_angle_deg", test.friction_angle_deg},
                      {"friction_angle_moving_mean_deg", test.moving_mean_friction_angle_deg},
                      {"large_strain_friction_angle_deg", test.large_strain_friction_angle_deg},
                      {"records", test.records},
@@ -158,7 +160,9 @@ void add_statistics(const calibrate::Calibration& calibration, const std::vector
                     Listing& listing) {
   listing.add("specimens", calibration.per_specimen.size());
   if (calibration.per_specimen.size() < 2) return;
-  const std::string why = "a specimen has no friction angle, see per_specimen";
+  const std::string why = calibration.cohesive == calibrate::Cohesive::no
+                              ? "a specimen has no friction angle, see per_specimen"
+                              : "of a cohesive soil each specimen needs tests at two pressures or more";
   const auto add = [&](const std::string& stem, const std::string& end, const calibrate::Statistics& found,
                        const std::string& unit) {
     listing.add_or_why(stem + "_mean" + end, found.mean, unit, why);
@@ -180,8 +184,8 @@ void add_statistics(const calibrate::Calibration& calibration, const std::vector
 
 /// One line a test; the rest stands in --json.
 std::string tests_table(const calibrate::Calibration& calibration) {
-  std::vector<std::vector<std::string>> rows{{"specimen", "pressure, Pa", "peak angle", "at strain, %", "large strain",
-                                              "sigma_1, Pa", "sigma_3, Pa", "flagged"}};
+  std::vector<std::vector<std::string>> rows{{"specimen", "pressure, Pa", "secant angle", "at strain, %",
+                                              "large strain", "sigma_1, Pa", "sigma_3, Pa", "flagged"}};
   const auto angle = [](double value) { return std::isnan(value) ? "-" : in_words(std::round(100 * value) / 100); };
   for (const calibrate::PressureResult& test : calibration.per_pressure) {
     rows.push_back({std::to_string(test.specimen + 1), in_words(test.pressure), angle(test.friction_angle_deg),
@@ -213,9 +217,33 @@ std::string without_peak(const calibrate::Calibration& calibration) {
          " strain; let the tests go further (to_strain)";
 }
 
+/// What is said of the cohesion; "" where there is nothing to say.
+std::string cohesion_in_words(const calibrate::Calibration& found) {
+  using calibrate::Cohesive;
+  const bool beyond_error = found.cohesion > calibrate::cohesive_errors * found.cohesion_error;
+  const std::string line =
+      "c = " + in_words(std::round(found.cohesion)) + " Pa" +
+      (std::isfinite(found.cohesion_error) ? " +- " + in_words(std::round(found.cohesion_error)) : "");
+  const auto degrees = [](double angle) { return in_words(std::round(10 * angle) / 10) + " degrees"; };
+  if (found.cohesive == Cohesive::no)
+    return beyond_error ? "the straight envelope has " + line +
+                              ", beyond its error but below 5 % of the mean stress: "
+                              "taken as cohesionless, N_q by the secant angle through the origin"
+                        : "";
+  const std::string why = found.cohesive == Cohesive::by_law
+                              ? "the grains stick (adhesion of the contact law)"
+                              : "c is beyond twice its standard error and beyond 5 % of the mean stress";
+  if (!std::isfinite(found.friction_angle_with_cohesion_deg))
+    return "cohesive: " + why + "; N_q needs the straight envelope, of tests at two pressures or more";
+  return "cohesive: " + why + ", " + line +
+         "; N_q, N_c and the wedge take the tangent angle of the straight envelope, " +
+         degrees(found.friction_angle_with_cohesion_deg) + "; the secant angle through the origin, " +
+         degrees(found.secant_friction_angle_deg) + ", counts c as friction and falls as the pressure rises";
+}
+
 /// Why a result is not defined, for each that may not be.
 struct Reasons {
-  std::string peak, moving_mean, cohesion, cohesion_error, large_strain;
+  std::string peak, secant, moving_mean, cohesion, cohesion_error, large_strain;
 };
 
 Reasons reasons_of(const calibrate::Calibration& calibration) {
@@ -228,8 +256,13 @@ Reasons reasons_of(const calibrate::Calibration& calibration) {
   const std::string no_angle =
       tension ? "at a peak the minor principal stress is 0 or in tension, which friction alone cannot carry"
               : "the peaks give no angle: no principal stress is in compression";
-  return {no_angle, tension ? no_angle : "needs records over 1 % of strain; a test ends at " + percent(end),
-          calibration.per_pressure.size() < 2 ? "needs tests at two pressures or more" : "the peaks lie on no line",
+  const std::string line =
+      calibration.per_pressure.size() < 2 ? "needs tests at two pressures or more" : "the peaks lie on no line";
+  const bool is_cohesive = calibration.cohesive != calibrate::Cohesive::no;
+  return {is_cohesive ? "the soil is cohesive: " + line : no_angle,
+          no_angle,
+          tension ? no_angle : "needs records over 1 % of strain; a test ends at " + percent(end),
+          line,
           calibration.per_pressure.size() < 3 ? "needs tests at three pressures or more" : "the peaks lie on no line",
           std::string(calibration.per_pressure.front().simple_shear
                           ? "is the mean of the last 60 % of a strain of 1 or more; a test ends at "
@@ -245,6 +278,7 @@ void report_calibration(const calibrate::Calibration& calibration, const std::st
   const Reasons why = reasons_of(calibration);
   listing.add("protocol", protocol);
   listing.add_or_why("friction_angle_deg", calibration.friction_angle_deg, "degrees", why.peak);
+  listing.add_or_why("secant_friction_angle_deg", calibration.secant_friction_angle_deg, "degrees", why.secant);
   listing.add_or_why("friction_angle_moving_mean_deg", calibration.friction_angle_moving_mean_deg, "degrees",
                      why.moving_mean);
   listing.add_or_why("friction_angle_with_cohesion_deg", calibration.friction_angle_with_cohesion_deg, "degrees",
@@ -256,8 +290,11 @@ void report_calibration(const calibrate::Calibration& calibration, const std::st
   listing.add_or_why("large_strain_friction_angle_deg", calibration.large_strain_friction_angle_deg, "degrees",
                      why.large_strain);
   listing.add_or_why("bearing_capacity_Nq", calibration.bearing_capacity_Nq, "", why.peak);
+  listing.add_or_why("bearing_capacity_Nc", calibration.bearing_capacity_Nc, "", why.peak);
   listing.add_or_why("local_shear_Nq", calibration.local_shear_Nq, "", why.peak);
   listing.add_or_why("wedge_angle_deg", calibration.wedge_angle_deg, "degrees", why.peak);
+  listing.add("cohesive", calibration.cohesive != calibrate::Cohesive::no);
+  if (const std::string text = cohesion_in_words(calibration); !text.empty()) listing.add("cohesion", text);
   add_statistics(calibration, specimens, listing);
   if (const std::string warning = without_peak(calibration); !warning.empty()) listing.add("warning", warning);
   listing.add_to_json("per_pressure", per_pressure(calibration));
@@ -269,13 +306,13 @@ void report_calibration(const calibrate::Calibration& calibration, const std::st
 
 /// summary.json and summary.csv beside the records.
 void keep_summary(const std::string& folder, const Plan& plan, const std::vector<std::string>& files,
-                  const std::vector<records::TestResult>& results, int dimension) {
+                  const std::vector<records::TestResult>& results, int dimension, bool sticks) {
   const Ensemble ensemble{plan.protocols, files, std::vector<std::size_t>(files.size(), 0), {"specimens"}};
   std::vector<ensemble::TestOf> tests;
   for (std::size_t k = 0; k < results.size(); ++k) {
     tests.push_back({0, plan.specimen_of[k], plan.protocols[k].pressure,
                      ensemble::measured(plan.protocols[k], results[k], dimension),
-                     ensemble::strength_of(plan.protocols[k], results[k], dimension)});
+                     ensemble::strength_of(plan.protocols[k], results[k], dimension), sticks});
   }
   write_summary(folder, ensemble, tests, ensemble::summary_of(tests), {});
 }
@@ -290,6 +327,8 @@ void run_calibration(const CalibrateArguments& arguments) {
   const auto specimens = specimens_for(at_pressures.front(), given);
   if (arguments.every_pressure || at_pressures.size() == 1) expect_different(specimens, given);
   const Plan plan = plan_of(at_pressures, specimens, arguments.every_pressure);
+  for (std::size_t k = 0; k < plan.protocols.size(); ++k)
+    tell_of_units(plan.protocols[k].path, protocol::unusual_in(plan.protocols[k], specimens[plan.specimen_of[k]]));
   const std::size_t tests = plan.protocols.size();
   std::vector<KeptTest> kept;
   if (!arguments.folder.empty()) {
@@ -332,9 +371,11 @@ void run_calibration(const CalibrateArguments& arguments) {
   for (const protocol::TestRun& run : runs) results.push_back(run.result);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   const int dimension = specimens.front().cell.dimension;
+  const bool sticks = std::any_of(runs.begin(), runs.end(),
+                                  [](const protocol::TestRun& run) { return calibrate::grains_stick(run.end_state); });
   if (!arguments.folder.empty())
-    keep_summary(arguments.folder, plan, specimen_files(at_pressures.front(), given), results, dimension);
-  report_calibration(calibrate::calibrate(results, dimension, plan.specimen_of), at_pressures.front().name,
+    keep_summary(arguments.folder, plan, specimen_files(at_pressures.front(), given), results, dimension, sticks);
+  report_calibration(calibrate::calibrate(results, dimension, plan.specimen_of, sticks), at_pressures.front().name,
                      specimen_files(at_pressures.front(), given), wall.count(), arguments.test.json);
 }
 
@@ -353,13 +394,17 @@ Command calibrate_command() {
   arguments.test.add_to(command, "contact.slip=consistent", "tests at a time");
   command.add("specimens", arguments.more, "further specimens");
   command.notes =
-      "friction_angle: phi with sin phi = (sigma_1 - sigma_3)/(sigma_1 + sigma_3) at the peak, the record with the\n"
-      "largest sigma_1 - sigma_3; over several tests by least squares through the origin.\n"
-      "..._with_cohesion: the straight envelope of the peaks, t = s sin phi + c cos phi, with standard errors of phi\n"
-      "and c; use it for grains that stick (contact.law = linear_adhesive).\n"
-      "bearing_capacity_Nq: N_q = tan^2(45 + phi/2) exp(pi tan phi), the factor of a footing's surcharge in general\n"
-      "shear; local_shear_Nq: the same with 2/3 tan phi, for loose soil; wedge_angle_deg: 45 + phi/2, angle of the\n"
-      "active wedge below a footing against the horizontal.\n"
+      "secant_friction_angle: phi with sin phi = (sigma_1 - sigma_3)/(sigma_1 + sigma_3) at the peak, the record with\n"
+      "the largest sigma_1 - sigma_3; over several tests by least squares through the origin.\n"
+      "..._with_cohesion: the tangent angle, of the straight envelope of the peaks t = s sin phi + c cos phi, with\n"
+      "standard errors of phi and c.\n"
+      "friction_angle: the secant angle; of a cohesive soil the tangent angle. A soil is cohesive if its grains stick\n"
+      "(an adhesion above 0), or if c is above twice its standard error and above 5 % of the mean stress of the "
+      "peaks.\n"
+      "bearing_capacity_Nq: N_q = tan^2(45 + phi/2) exp(pi tan phi) of friction_angle, the factor of a footing's\n"
+      "surcharge in general shear; bearing_capacity_Nc: N_c = (N_q - 1) cot phi, that of its cohesion;\n"
+      "local_shear_Nq: N_q with 2/3 tan phi, for loose soil; wedge_angle_deg: 45 + phi/2, angle of the active wedge\n"
+      "below a footing against the horizontal.\n"
       "Specimens with other seeds differ by some degrees; test several. For two or more, calibrate prints mean,\n"
       "standard deviation and standard error of phi and N_q.\n"
       "Examples:\n"

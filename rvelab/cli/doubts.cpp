@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 #include <string>
 
 #include "rvelab/cli/report.hpp"
 #include "rvelab/error.hpp"
+#include "rvelab/keys/key.hpp"
 #include "rvelab/protocol/stage_kinds.hpp"
 
 namespace rvelab::cli {
@@ -78,6 +80,12 @@ void tell_of_doubts(const Specimen& specimen, const protocol::TestRun& run, cons
     tell(std::to_string(run.costs.waited) + " of " + std::to_string(run.costs.substeps) +
          " sub-steps waited for a held stress to return after avalanches");
   tell_of_low(specimen, run);
+}
+
+void tell_of_units(const std::string& file, const std::vector<std::string>& doubts) {
+  static std::set<std::string> told;
+  for (const std::string& doubt : doubts)
+    if (told.insert(keys::key_of_doubt(doubt)).second) tell("warning: " + file + ": " + doubt);
 }
 
 void tell_of_shear(const protocol::Protocol& protocol, const Specimen& specimen) {

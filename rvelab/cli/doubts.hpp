@@ -15,6 +15,9 @@ struct Doubtful {
 
 Doubtful doubtful_of(const std::vector<records::Record>& records, int dimension);
 
+/// Values that are likely in another unit, each key once in the life of the program. `file`: that holds them.
+void tell_of_units(const std::string& file, const std::vector<std::string>& doubts);
+
 /// Before the test: stages whose shear makes the cell thin.
 void tell_of_shear(const protocol::Protocol& protocol, const Specimen& specimen);
 

@@ -13,6 +13,8 @@
 #include <set>
 #include <thread>
 
+#include "rvelab/calibrate/calibrate.hpp"
+#include "rvelab/cli/doubts.hpp"
 #include "rvelab/cli/interrupt.hpp"
 #include "rvelab/cli/progress_line.hpp"
 #include "rvelab/cli/protocol_input.hpp"
@@ -76,7 +78,8 @@ int expect_specimens(const Ensemble& ensemble) {
   int dimension = 0;
   for (std::size_t k = 0; k < ensemble.files.size(); ++k) {
     const Specimen specimen = io::read_specimen(ensemble.files[k]);
-    protocol::with_overrides(ensemble.protocols.front(), specimen);
+    for (const protocol::Protocol& protocol : ensemble.protocols)
+      tell_of_units(protocol.path, protocol::unusual_in(protocol, specimen));
     const auto [found, is_new] = first.emplace(io::digest(specimen), k);
     if (!is_new)
       throw InputError(ensemble.files[k] + " holds the same specimen as " + ensemble.files[found->second] +
@@ -141,9 +144,12 @@ Outcome carried_out(const Ensemble& ensemble, const std::vector<Planned>& tests,
       const protocol::TestRun run = run_recorded(protocol, specimen, store.get(), watch);
       if (!run.complete) return;
       progress.done(k);
-      outcome.tests[k] = {ensemble.groups[test.specimen], test.specimen, protocol.pressure,
+      outcome.tests[k] = {ensemble.groups[test.specimen],
+                          test.specimen,
+                          protocol.pressure,
                           ensemble::measured(protocol, run.result, dimension),
-                          ensemble::strength_of(protocol, run.result, dimension)};
+                          ensemble::strength_of(protocol, run.result, dimension),
+                          calibrate::grains_stick(run.end_state)};
     } catch (const InputError& error) {
       throw InputError(test.name + ": " + error.what());
     } catch (const Error& error) {

@@ -67,6 +67,9 @@ Json as_json(const Ensemble& ensemble, const std::vector<ensemble::TestOf>& test
                                    {"low_95", number(each.difference.low)},
                                    {"high_95", number(each.difference.high)}});
   }
+  json["cohesive"] = Json::array();  // of each group: its factors of a footing go with the tangent angle
+  for (const calibrate::Cohesive cohesive : summary.cohesive_groups)
+    json["cohesive"].push_back(cohesive != calibrate::Cohesive::no);
   json["failures"] = failures;
   return json;
 }
@@ -114,6 +117,14 @@ std::string as_table(const Ensemble& ensemble, const ensemble::Summary& summary)
     before = &row;
   }
   finish();
+  for (std::size_t k = 0; k < summary.cohesive_groups.size(); ++k)
+    if (summary.cohesive_groups[k] != calibrate::Cohesive::no)
+      text += "\n" + ensemble.names[k] +
+              (summary.cohesive_groups[k] == calibrate::Cohesive::by_law
+                   ? ": cohesive, the grains stick"
+                   : ": cohesive, c is beyond twice its standard error and 5 % of the mean "
+                     "stress") +
+              "; factors of a footing take the tangent angle (cohesive_friction_angle_deg), not a secant\n";
   if (summary.comparisons.empty()) return text;
   text += "\n" + ensemble.names[0] + " less " + ensemble.names[1] + "\n";
   rows.push_back({"measure", "at", "difference +- standard error", "95 % interval"});

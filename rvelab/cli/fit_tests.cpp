@@ -8,6 +8,7 @@
 #include <optional>
 #include <thread>
 
+#include "rvelab/cli/doubts.hpp"
 #include "rvelab/cli/interrupt.hpp"
 #include "rvelab/cli/progress_line.hpp"
 #include "rvelab/error.hpp"
@@ -158,8 +159,11 @@ void expect_runnable(const FitSetup& setup) {
                          " is a key of a recipe; allowed: with --recipe; name one, or vary a key of the "
                          "protocol");
     const auto protocols = protocols_of(setup, values);
-    if (!setup.recipe.empty()) pack::read_recipe(setup.recipe, assignments_of(setup, values, true));
-    for (const Specimen& specimen : setup.specimens) protocol::with_overrides(protocols.front(), specimen);
+    if (!setup.recipe.empty())
+      tell_of_units(setup.recipe, pack::read_recipe(setup.recipe, assignments_of(setup, values, true)).doubts);
+    for (const protocol::Protocol& each : protocols) tell_of_units(setup.protocol, each.doubts);
+    for (const Specimen& specimen : setup.specimens)
+      tell_of_units(setup.protocol, protocol::unusual_in(protocols.front(), specimen));
   }
 }
 

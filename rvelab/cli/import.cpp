@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "rvelab/cli/command.hpp"
+#include "rvelab/cli/doubts.hpp"
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/report.hpp"
 #include "rvelab/cli/tell_of_sizes.hpp"
@@ -15,6 +16,7 @@
 #include "rvelab/io/import/csv.hpp"
 #include "rvelab/io/publish.hpp"
 #include "rvelab/measure/proportions.hpp"
+#include "rvelab/pack/plausible.hpp"
 #include "rvelab/solver/rve.hpp"
 
 namespace rvelab::cli {
@@ -80,6 +82,7 @@ void run_import(const ImportArguments& arguments) {
   add_proportions(listing, sizes);
   listing.print(arguments.json);
   tell_of_sizes(sizes);
+  tell_of_units(inputs.particles, pack::unusual_in(specimen));
 }
 
 }  // namespace

@@ -41,6 +41,7 @@ Json as_json(const keys::Key& key) {
   json["required"] = key.required;
   json["default"] = key.initial.empty() ? Json() : Json(key.initial);
   json["range"] = key.range;
+  json["usual"] = key.usual.is_stated() ? Json(keys::usual_in_words(key)) : Json();
   json["meaning"] = key.meaning;
   return json;
 }
@@ -49,7 +50,9 @@ Json as_json(const keys::Key& key) {
 std::string as_text(const keys::Key& key) {
   const std::string unit = key.unit == "1" || key.unit == "-" ? "" : " in " + key.unit;
   const std::string initial = key.required ? "required" : key.initial.empty() ? "no default" : "default " + key.initial;
-  return key.dotted() + "  (" + key.type + unit + ": " + key.range + "; " + initial + ")\n    " + key.meaning + "\n";
+  const std::string usual = key.usual.is_stated() ? "; usual " + keys::usual_in_words(key) : "";
+  return key.dotted() + "  (" + key.type + unit + ": " + key.range + usual + "; " + initial + ")\n    " + key.meaning +
+         "\n";
 }
 
 void run_keys(const std::string& pattern, bool json) {

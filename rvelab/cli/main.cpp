@@ -42,7 +42,8 @@ int fail_without_memory() {
   for (int k = 0; k < word_count; ++k) {
     std::fputs(k == 0 ? " in " : " ", stderr);
     const std::string_view word = words[k];
-    for (std::size_t at = 0; at < word.size();) {
+    constexpr std::size_t most = 80;
+    for (std::size_t at = 0; at < std::min(word.size(), most);) {
       const std::size_t length = rvelab::io::utf8_length(word, at);
       const bool shown = length > 0 && static_cast<unsigned char>(word[at]) >= 0x20;
       if (shown) std::fwrite(word.data() + at, 1, length, stderr);

@@ -9,6 +9,7 @@
 
 #include "rvelab/cli/columns.hpp"
 #include "rvelab/cli/command.hpp"
+#include "rvelab/cli/doubts.hpp"
 #include "rvelab/cli/interrupt.hpp"
 #include "rvelab/cli/progress_line.hpp"
 #include "rvelab/cli/protocol_input.hpp"
@@ -121,6 +122,7 @@ std::string table_of(const std::vector<Job>& jobs) {
 void report(const pack::RecipeFile& file, const std::vector<Job>& jobs, bool json) {
   Listing listing;
   listing.add("recipe", file.name);
+  if (!file.doubts.empty()) listing.add_to_json("unusual", file.doubts);
   if (jobs.size() == 1) {
     const auto unit = [](const std::string& key) { return key.ends_with("_Pa") ? "Pa" : key == "wall_s" ? "s" : ""; };
     for (const auto& [key, value] : jobs.front().made.items()) listing.add(key, value, unit(key));
@@ -145,6 +147,7 @@ std::string made_of(const std::vector<Job>& jobs) {
 void run_pack(const PackArguments& arguments) {
   const std::string recipe = input_path(arguments.recipe, InputKind::recipe);
   const pack::RecipeFile file = pack::read_recipe(recipe, arguments.settings);
+  tell_of_units(recipe, file.doubts);
   expect_folder_of(arguments.output);
   std::vector<Job> jobs = jobs_of(file, arguments);
   for (const Job& job : jobs) io::expect_output(job.file, arguments.force, {recipe});

@@ -37,7 +37,8 @@ void TestOptions::expect_output(const std::string& output) const {
 
 std::unique_ptr<io::RecordStore> open_store(const std::string& path, const protocol::Protocol& protocol,
                                             const Specimen& specimen, const TestOptions& options) {
-  io::RunStart start{protocol.name, protocol.resolved, {}, specimen};
+  const std::vector<std::string> doubts = protocol::unusual_in(protocol, specimen);
+  io::RunStart start{protocol.name, keys::with_doubts(doubts, protocol.resolved), {}, specimen};
   for (const protocol::Stage& stage : protocol.stages) start.stages.push_back(stage.name);
   return std::make_unique<io::RecordStore>(path, start, existing_of(options.force, options.resume || options.share),
                                            options.checkpoint_every);

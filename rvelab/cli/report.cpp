@@ -82,7 +82,9 @@ std::string Listing::text() const {
 
 void Listing::print(bool as_json) const { std::cout << (as_json ? json() : text()) << std::flush; }
 
-void tell(const std::string& text) { std::cerr << "rvelab: " << io::printable(text) << std::endl; }
+void tell(const std::string& text) {
+  std::cerr << "rvelab: " << io::message_line(text) << std::endl;
+}
 
 Json row_major(const Eigen::MatrixXd& matrix) {
   Json rows = Json::array();

@@ -129,7 +129,8 @@ void add_costs(const protocol::TestRun& run, double wall, Listing& listing) {
   const protocol::Costs& costs = run.costs;
   if (costs.judged > 0) {
     listing.add("mean_error_estimate", costs.mean_error, "of p");
-    listing.add("largest_error_estimate", costs.largest_error, "of p");
+    listing.add("largest_error_estimate", costs.largest_error,
+                "of p: so far the stress of a record may be from that of loading without any haste");
   }
   if (costs.waited > 0)
     listing.add("waited_for_held_stress", double(costs.waited) / double(costs.substeps), "of the sub-steps");
@@ -225,6 +226,7 @@ void run_test(const RunArguments& arguments) {
   } else if (!arguments.test.json && protocol::planned_records(protocol) > 0 && isatty(STDERR_FILENO) == 1) {
     tell("the records will not be kept: no -o R.h5 is given");  // before the work; off a terminal the listing says it
   }
+  tell_of_units(protocol.path, protocol::unusual_in(protocol, specimen));
   tell_of_shear(protocol, specimen);
   protocol::TestRun run;
   double wall = 0;

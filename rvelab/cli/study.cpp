@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "rvelab/cli/command.hpp"
+#include "rvelab/cli/doubts.hpp"
 #include "rvelab/cli/interrupt.hpp"
 #include "rvelab/cli/progress_line.hpp"
 #include "rvelab/cli/protocol_input.hpp"
@@ -68,7 +69,7 @@ Loaded loaded(const std::string& name) {
   if (found.study.protocol_text.empty()) {
     const std::string& named = found.study.protocol;
     found.path = protocol_path(named.empty() ? what : is_path(named) ? from_folder_of(what, named) : named);
-    protocol::read_protocol(found.path);  // reports its mistakes with their lines
+    tell_of_units(found.path, protocol::read_protocol(found.path).doubts);  // and its mistakes with their lines
     found.study.protocol_text = keys::whole_file<std::string>(found.path, "a protocol");
     found.inputs.push_back(found.path);
   }

@@ -117,7 +117,7 @@ std::vector<double> in_order(const std::vector<std::pair<const char*, double>>& 
 
 const std::vector<Measure>& measures() {
   static const std::vector<Measure> all{
-      {"friction_angle_deg", "degrees", "at the largest sigma_1 - sigma_3"},
+      {"friction_angle_deg", "degrees", "secant through the origin, at the largest sigma_1 - sigma_3"},
       {"large_strain_friction_angle_deg", "degrees", "mean from 12 to 15 % of strain; simple shear: of its last 60 %"},
       {"dilation_angle_deg", "degrees", "at the peak, over 1 % of strain"},
       {"peak_strain", "", "driving strain at the largest sigma_1 - sigma_3"},
@@ -222,10 +222,6 @@ std::vector<double> measured(const protocol::Protocol& protocol, const records::
     found.emplace_back("poisson_ratio", secant.poisson_ratio);
   }
   return in_order(found);
-}
-
-double bearing_capacity_Nc(double friction_angle_deg) {
-  return (calibrate::bearing_capacity_Nq(friction_angle_deg) - 1) / std::tan(friction_angle_deg * degree);
 }
 
 double bearing_capacity_Ngamma(double friction_angle_deg) {

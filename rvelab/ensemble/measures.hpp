@@ -50,7 +50,7 @@ struct Secant {
 Secant secant_at_half(std::span<const records::Record> records, int axis, int dimension);
 
 // Factors of a strip footing. N_q is calibrate::bearing_capacity_Nq.
-double bearing_capacity_Nc(double friction_angle_deg);      ///< (N_q - 1) cot phi (Prandtl 1920)
+using calibrate::bearing_capacity_Nc;
 double bearing_capacity_Ngamma(double friction_angle_deg);  ///< 2 (N_q + 1) tan phi (Vesic 1973)
 /// Radius of the log spiral at its end over that at its beginning, exp(pi/2 tan phi): the fan of 90 degrees between
 /// the active and the passive wedge (Prandtl 1920).

@@ -13,7 +13,7 @@ struct Strength {
 };
 
 const std::vector<Strength>& strengths() {
-  static const std::vector<Strength> all{{"envelope_friction_angle_deg", "degrees"},
+  static const std::vector<Strength> all{{"secant_friction_angle_deg", "degrees"},
                                          {"cohesive_friction_angle_deg", "degrees"},
                                          {"cohesion_Pa", "Pa"},
                                          {"bearing_capacity_Nq", ""},
@@ -25,11 +25,11 @@ const std::vector<Strength>& strengths() {
   return all;
 }
 
-std::vector<double> strengths_of(const std::vector<calibrate::PrincipalStresses>& peaks) {
-  const double angle = calibrate::friction_angle_through_origin_deg(peaks);
+std::vector<double> strengths_of(const std::vector<calibrate::PrincipalStresses>& peaks, calibrate::Cohesive cohesive) {
+  const double angle = calibrate::strength_angle_deg(peaks, cohesive);
   calibrate::CohesionFit fit{nan, nan, nan, nan};
   if (peaks.size() > 1) fit = calibrate::fit_with_cohesion(peaks);
-  return {angle,
+  return {calibrate::friction_angle_through_origin_deg(peaks),
           fit.friction_angle_deg,
           fit.cohesion,
           calibrate::bearing_capacity_Nq(angle),
@@ -64,11 +64,18 @@ void add_measures(Summary& summary, const std::vector<TestOf>& tests, std::size_
 
 void add_strengths(Summary& summary, const std::vector<TestOf>& tests, std::size_t group) {
   std::map<std::size_t, std::vector<calibrate::PrincipalStresses>> peaks;
-  for (const TestOf& test : tests)
-    if (test.group == group && std::isfinite(test.strength.major)) peaks[test.specimen].push_back(test.strength);
+  std::vector<calibrate::PrincipalStresses> all;
+  bool sticks = false;
+  for (const TestOf& test : tests) {
+    if (test.group != group || !std::isfinite(test.strength.major)) continue;
+    peaks[test.specimen].push_back(test.strength);
+    all.push_back(test.strength);
+    sticks = sticks || test.grains_stick;
+  }
+  summary.cohesive_groups.push_back(calibrate::cohesive(all, sticks));
   std::vector<std::vector<double>> values(strengths().size());
   for (const auto& [specimen, own] : peaks) {
-    const std::vector<double> found = strengths_of(own);
+    const std::vector<double> found = strengths_of(own, summary.cohesive_groups.back());
     for (std::size_t k = 0; k < found.size(); ++k) values[k].push_back(found[k]);
   }
   for (std::size_t k = 0; k < values.size(); ++k)

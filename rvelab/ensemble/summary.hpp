@@ -16,6 +16,7 @@ struct TestOf {
   double pressure = 0;                    ///< Pa
   std::vector<double> values;             ///< of measures()
   calibrate::PrincipalStresses strength;  ///< strength_of(); Pa
+  bool grains_stick = false;              ///< calibrate::grains_stick of the specimen
 };
 
 /// One measure over the specimens of a group.
@@ -35,12 +36,14 @@ struct Comparison {
 
 struct Summary {
   std::vector<Row> rows;
-  std::vector<Comparison> comparisons;  ///< of two groups; else empty
+  std::vector<Comparison> comparisons;               ///< of two groups; else empty
+  std::vector<calibrate::Cohesive> cohesive_groups;  ///< of each group
 };
 
 /// Every measure that a test gives, pressure by pressure; then what each specimen's strengths together give: the
-/// friction angle (least squares through the origin), angle and cohesion of the straight envelope where there are two
-/// pressures or more, factors of a footing and geometry of its failure mechanism by the first angle.
+/// secant friction angle (least squares through the origin), tangent angle and cohesion of the straight envelope where
+/// there are two pressures or more, factors of a footing and geometry of its failure mechanism: by the first angle, of
+/// a cohesive group (calibrate::cohesive, over all of its tests) by the tangent angle.
 Summary summary_of(const std::vector<TestOf>& tests);
 
 }  // namespace rvelab::ensemble

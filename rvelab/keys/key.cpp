@@ -82,7 +82,34 @@ std::string choose_one(const std::string& word, const std::vector<std::string>& 
   return "the nearest is " + nearest(word, choices) + "; choose one of these";
 }
 
+std::size_t mistakes_in(const std::vector<KeyError>& errors) {
+  return std::size_t(std::count_if(errors.begin(), errors.end(), [](const KeyError& error) { return !error.doubt; }));
+}
+
+std::vector<std::string> doubts_in(const std::vector<KeyError>& errors) {
+  std::vector<std::string> doubts;
+  for (const KeyError& error : errors) {
+    const bool known = std::find(doubts.begin(), doubts.end(), error.message) != doubts.end();
+    if (error.doubt && !known) doubts.push_back(error.message);
+  }
+  return doubts;
+}
+
+std::string key_of_doubt(const std::string& doubt) {
+  const auto equals = doubt.find(" = ");
+  if (equals == std::string::npos) return doubt;
+  const auto begin = doubt.find_last_of(". ", equals - 1);
+  return doubt.substr(begin + 1, equals - begin - 1);
+}
+
+std::string with_doubts(const std::vector<std::string>& doubts, const std::string& text) {
+  std::string comments;
+  for (const std::string& doubt : doubts) comments += "# " + shortened(doubt, 400) + "\n";
+  return comments + text;
+}
+
 void raise(const std::string& path, std::vector<KeyError> errors) {
+  std::erase_if(errors, [](const KeyError& error) { return error.doubt; });
   if (errors.empty()) return;
   const auto order = [](const KeyError& error) { return std::pair(error.assigned, error.line); };
   std::stable_sort(errors.begin(), errors.end(), [&](const auto& a, const auto& b) { return order(a) < order(b); });

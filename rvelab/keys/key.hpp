@@ -11,6 +11,23 @@
 
 namespace rvelab::keys {
 
+/// The values that a key usually has; 0, where it is allowed, is never unusual. One beyond them is allowed too, but
+/// likely in another unit.
+struct Usual {
+  Interval values{-no_bound, no_bound};
+  double again_from = no_bound;  ///< from here on a value is meant: friction of 1e6 stands for no slip
+  constexpr bool holds(double value) const { return value == 0 || values.contains(value) || value >= again_from; }
+  constexpr bool is_stated() const { return values.low > -no_bound || values.high < no_bound; }
+};
+
+/// What a number may be, and what it usually is.
+struct Range : Interval {
+  Usual usual{};
+  constexpr Range(double low = 0, double high = 0, bool low_open = false, bool high_open = false)
+      : Interval{low, high, low_open, high_open} {}
+  constexpr Range(const Interval& allowed, const Usual& usually = {}) : Interval(allowed), usual(usually) {}
+};
+
 /// A key that a file or the command line may set.
 struct Key {
   std::string table;    ///< "contact", "damping", "solver", "material", or a table of a protocol
@@ -23,6 +40,7 @@ struct Key {
   Interval interval = {};                 ///< of numbers, each of a list too
   std::vector<std::string> choices = {};  ///< of a choice, or a list of them
   bool required = false;                  ///< the file must have it
+  Usual usual = {};                       ///< of numbers
   std::string dotted() const { return table + "." + name; }
   std::string allowed() const;  ///< range with its unit
 };
@@ -32,7 +50,32 @@ struct KeyError {
   long line;
   std::string message;
   bool assigned = false;  ///< from the command line; the message names it
+  bool doubt = false;     ///< no mistake, but a value that is unusual: raise() passes it by
 };
+
+/// How many are mistakes.
+std::size_t mistakes_in(const std::vector<KeyError>& errors);
+
+/// The messages of the doubts among them, each once. Without path and line: files of results hold them.
+std::vector<std::string> doubts_in(const std::vector<KeyError>& errors);
+
+/// The last name of the key that a doubt begins with, "friction" of "--set ...: material.sand.friction = 27 is
+/// unusual"; the whole text if it names none.
+std::string key_of_doubt(const std::string& doubt);
+
+/// Them as comments in front of a text of TOML.
+std::string with_doubts(const std::vector<std::string>& doubts, const std::string& text);
+
+/// "1000 to 1e+09 Pa, or from 100 on" of a key; "" if nothing is stated.
+std::string usual_in_words(const Key& key);
+
+/// What is unusual in a value that is allowed, with its likely unit: "is unusual; usual: 1000 to 1e+09 Pa; likely in
+/// kPa: write 100000". "" if nothing is.
+std::string unusual_in(const Key& key, double value);
+
+/// "likely in MPa or GPa: write 7e+07 or 7e+10": the units in which a value that was given in `unit` is usual; without
+/// any a word to check it.
+std::string likely_unit(const std::string& unit, double value, const Usual& usual);
 
 /// A mistake at a key or a value of a file, or of an assignment.
 KeyError key_error(const toml::source_region& place, const std::string& message);
@@ -56,8 +99,8 @@ std::string nearest(const std::string& word, const std::vector<std::string>& can
 /// Remedy for a word that is none of the choices: "the nearest is simple_shear; choose one of these".
 std::string choose_one(const std::string& word, const std::vector<std::string>& choices);
 
-/// Throws InputError with all mistakes in the order of their lines, one line of text each: "path:line: message"; those
-/// of the command line come last. Does nothing if there are none.
+/// Throws InputError with all mistakes (not doubts) in the order of their lines, one line of text each: "path:line:
+/// message"; those of the command line come last. Does nothing if there are none.
 void raise(const std::string& path, std::vector<KeyError> errors);
 
 /// Parses a TOML file, or a text whose messages name `path`. InputError naming file, line and column: missing, not

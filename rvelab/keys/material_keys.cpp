@@ -37,9 +37,9 @@ Choices words_of() {
 /// The default is that of the struct: it is written nowhere twice.
 template <class Owner, class Value>
 KeyEntry entry(const char* table, const char* name, const char* unit, Value Owner::*member, const Interval& range,
-               const std::string& meaning) {
+               const std::string& meaning, const Usual& usual = {}) {
   const Value initial = Owner{}.*member;
-  Key key{table, name, unit, "number", "", in_words(range), meaning, range, words_of<Value>()};
+  Key key{table, name, unit, "number", "", in_words(range), meaning, range, words_of<Value>(), false, usual};
   if constexpr (std::is_same_v<Value, bool>) {
     key.type = "boolean";
     key.initial = initial ? "true" : "false";
@@ -72,6 +72,13 @@ std::string meaning_of(const char* key) {
   return text;
 }
 
+/// Moduli from a gel to diamond, stiffnesses of contacts of such grains from 1e-6 to 1 m.
+Usual usual_of(const std::string& unit) {
+  if (unit == "Pa") return {{1e4, 2e12}};
+  if (unit == "N/m" || unit == "N/m^1.5") return {{1e-2, 1e15}};
+  return {};
+}
+
 /// A key for each number that laws read.
 std::vector<KeyEntry> law_constants() {
   std::vector<KeyEntry> entries;
@@ -79,7 +86,9 @@ std::vector<KeyEntry> law_constants() {
     const Parameter& p = each.parameter;
     const auto same = std::find_if(entries.begin(), entries.end(), [&](const auto& e) { return e.key.name == p.key; });
     if (same != entries.end()) continue;
-    entries.push_back(entry("material", p.key, p.unit, each.value, p.allowed, meaning_of(p.key)));
+    const bool is_stiffness = p.allowed.low_open;  // a law may do without the others
+    entries.push_back(entry("material", p.key, p.unit, each.value, p.allowed, meaning_of(p.key),
+                            is_stiffness ? usual_of(p.unit) : Usual{}));
   }
   return entries;
 }
@@ -89,18 +98,28 @@ std::vector<KeyEntry> materials() {
   constexpr Interval angle{0, 90, false, true};
   std::vector<KeyEntry> entries = {
       entry(t, "name", "-", &Material::name, any, "name of the material, for --set material.NAME.key"),
-      entry(t, "density_kg_m3", "kg/m^3", &Material::density, positive, "density of the solid")};
+      entry(t, "density_kg_m3", "kg/m^3", &Material::density, positive, "density of the solid",
+            {{10, 2.5e4}})};  // foam to osmium
   const std::vector<KeyEntry> constants = law_constants();
   entries.insert(entries.end(), constants.begin(), constants.end());
   const std::vector<KeyEntry> surface = {
-      entry(t, "friction", "1", &Material::friction, {0, 1e6}, "Coulomb coefficient mu; 1e6: no slip"),
-      {{t, "friction_angle_deg", "degree", "number", "", in_words(angle), "in place of friction: mu is its tangent",
-        angle},
+      entry(t, "friction", "1", &Material::friction, {0, 1e6}, "Coulomb coefficient mu; 1e6: no slip", friction_values),
+      {{t,
+        "friction_angle_deg",
+        "degree",
+        "number",
+        "",
+        in_words(angle),
+        "in place of friction: mu is its tangent",
+        angle,
+        {},
+        false,
+        {{1, 75}}},
        &Material::friction,
        true},
       entry(t, "rolling_stiffness", "1", &Material::rolling_stiffness, not_negative, "beta of k_r = kt ri rj beta"),
       entry(t, "rolling_friction", "1", &Material::rolling_friction, not_negative,
-            "eta of the moment cap min(eta_i ri, eta_j rj) fn"),
+            "eta of the moment cap min(eta_i ri, eta_j rj) fn", friction_values),
   };
   entries.insert(entries.end(), surface.begin(), surface.end());
   return entries;

@@ -174,6 +174,39 @@ void set_key(Specimen& specimen, const std::string& dotted_key, const toml::node
     with_field(*entry, specimen, *each, [&](auto& field) { convert(dotted_key, value, *entry, field); });
 }
 
+std::string unusual_in(const std::string& dotted_key, const toml::node& value) {
+  const KeyEntry* entry = find_entry(without_material_name(dotted_key).first);
+  if (entry == nullptr || !value.is_number()) return "";
+  const std::string unusual = unusual_in(entry->key, number_in(value));
+  return unusual.empty() ? "" : dotted_key + " = " + written(value) + " " + unusual;
+}
+
+std::vector<std::string> unusual_materials(const ContactModel& model, const std::vector<Material>& materials) {
+  Specimen any;
+  any.contact = model;
+  std::vector<std::string> found;
+  for (const KeyEntry& entry : key_entries()) {
+    const Key& key = entry.key;
+    const std::string in_use = key_in_use(any, key.name);
+    const bool of_law = std::any_of(law_parameters().begin(), law_parameters().end(),
+                                    [&](const LawParameter& each) { return each.parameter.key == key.name; });
+    if (key.table != "material" || entry.as_tangent || (of_law && in_use != key.name)) continue;
+    for (const Material& material : materials) {
+      std::string unusual;
+      with_field(entry, any, material, [&](const auto& field) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(field)>, double>) {
+          if (std::string why = unusual_in(key, field); !why.empty())
+            unusual = key.table + "." + material.name + "." + key.name + " = " + as_toml(field) + " " + why;
+        }
+      });
+      if (unusual.empty()) continue;
+      found.push_back(unusual);
+      break;
+    }
+  }
+  return found;
+}
+
 void set_key(Specimen& specimen, const std::string& assignment) {
   const auto equals = assignment.find('=');
   if (equals == std::string::npos) {
@@ -210,6 +243,10 @@ void read_table(Specimen& specimen, const std::string& name, const toml::table& 
     }
     try {
       set_key(specimen, dotted, value);
+      if (std::string unusual = unusual_in(dotted, value); !unusual.empty()) {
+        errors.push_back(key_error(place_of(key, value), unusual));
+        errors.back().doubt = true;
+      }
     } catch (const InputError& error) {
       errors.push_back(key_error(place_of(key, value), error.what()));
     }

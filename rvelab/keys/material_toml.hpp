@@ -22,6 +22,12 @@ const std::vector<Key>& known_keys();
 /// an unknown key, the nearest known one; the specimen is then as it was.
 void set_key(Specimen& specimen, const std::string& dotted_key, const toml::node& value);
 
+/// What is unusual in a value that set_key takes, "material.sand.friction = 27 is unusual; ..."; "" if nothing is.
+std::string unusual_in(const std::string& dotted_key, const toml::node& value);
+
+/// The unusual values among those that the contact law of a specimen reads of its materials, each key once.
+std::vector<std::string> unusual_materials(const ContactModel& model, const std::vector<Material>& materials);
+
 /// The same from an assignment as in --set: "contact.slip=full_radius_ratcheting". The value is TOML; what is not is
 /// taken as a string, so that words need no quotation marks.
 void set_key(Specimen& specimen, const std::string& assignment);

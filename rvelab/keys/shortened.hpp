@@ -5,9 +5,8 @@
 
 namespace rvelab::keys {
 
-/// The first 60 bytes of a text, to the end of a letter of UTF-8, on one line.
-inline std::string shortened(const std::string& text) {
-  constexpr std::size_t most = 60;
+/// The first bytes of a text, to the end of a letter of UTF-8, on one line.
+inline std::string shortened(const std::string& text, std::size_t most = 60) {
   std::size_t end = text.size() <= most ? text.size() : most;
   while (end < text.size() && end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) --end;
   std::string line;

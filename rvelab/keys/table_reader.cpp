@@ -77,8 +77,9 @@ std::string wrong_with(const toml::node& value, const Key& key) {
   if (!std::isfinite(number_in(value))) return "is not finite" + allowed + "give a finite number";
   if (key.interval.contains(number_in(value))) return "";
   const double hundredth = number_in(value) / 100;
-  const bool per_cent =
-      key.unit == "1" && !whole && number_in(value) >= 1 && key.interval.high <= 1 && key.interval.contains(hundredth);
+  constexpr double of_shares = 10;  // a range that ends below it is one of shares and ratios
+  const bool per_cent = key.unit == "1" && !whole && number_in(value) >= 1 && key.interval.high <= of_shares &&
+                        key.interval.contains(hundredth);
   return "is out of range" + allowed +
          (per_cent ? "if per cent was meant, write " + in_words(hundredth) : "give a value in this range");
 }
@@ -101,7 +102,8 @@ const toml::table& table_of(const toml::table& file, const std::string& name, st
 }
 
 Key TableReader::asked(Asked a) {
-  Key key{key_table_, a.name, a.unit, a.type, a.initial, a.range, a.meaning, a.interval, a.choices, a.required};
+  Key key{key_table_, a.name,     a.unit,    a.type,     a.initial,       a.range,
+          a.meaning,  a.interval, a.choices, a.required, a.interval.usual};
   known_.push_back(key);
   return key;
 }
@@ -128,6 +130,13 @@ void TableReader::mistake(const std::string& name, const std::string& text) {
   }
 }
 
+void TableReader::doubt(const std::string& name, const std::string& text) {
+  const toml::node* node = table_.get(name);
+  if (text.empty() || node == nullptr) return;
+  errors_.push_back(key_error(node->source(), where_ + "." + name + " = " + written(*node) + " " + text));
+  errors_.back().doubt = true;
+}
+
 void TableReader::refuse(const std::string& name, const std::string& text) {
   if (has(name)) mistake(name, text);
   resolved_.erase(name);
@@ -147,7 +156,10 @@ std::optional<double> TableReader::checked(const Key& key, const toml::node& nod
   Key number = key;
   number.type = "number";  // of a list each
   const std::string wrong = wrong_with(node, number);
-  if (wrong.empty()) return number_in(node);
+  if (wrong.empty()) {
+    doubt(key.name, unusual_in(key, number_in(node)));
+    return number_in(node);
+  }
   mistake(key.name, wrong);
   return std::nullopt;
 }
@@ -164,8 +176,10 @@ std::optional<double> TableReader::number_given(Asked key) {
   if (key.range.empty()) key.range = in_words(key.interval);
   const toml::node* node = good(asked(key));
   if (node == nullptr) return std::nullopt;
-  resolved_.insert_or_assign(key.name, number_in(*node));
-  return number_in(*node);
+  const double value = number_in(*node);
+  doubt(key.name, unusual_in(known_.back(), value));
+  resolved_.insert_or_assign(key.name, value);
+  return value;
 }
 
 std::optional<long> TableReader::whole_given(Asked key) {
@@ -186,20 +200,19 @@ std::optional<std::string> TableReader::word_given(Asked key) {
   return node->as_string()->get();
 }
 
-void TableReader::number(const char* name, double& value, const char* unit, const Interval& range,
-                         const char* meaning) {
+void TableReader::number(const char* name, double& value, const char* unit, const Range& range, const char* meaning) {
   value = optional_number(name, unit, range, meaning, as_toml(value)).value_or(value);
   resolve(name, value);
 }
 
-bool TableReader::required_number(const char* name, double& value, const char* unit, const Interval& range,
+bool TableReader::required_number(const char* name, double& value, const char* unit, const Range& range,
                                   const char* meaning, const char* allowed) {
   const auto given = number_given({name, unit, "", "", allowed, meaning, range, {}, true});
   value = given.value_or(value);
   return given.has_value();
 }
 
-std::optional<double> TableReader::optional_number(const char* name, const char* unit, const Interval& range,
+std::optional<double> TableReader::optional_number(const char* name, const char* unit, const Range& range,
                                                    const char* meaning, const std::string& initial,
                                                    const char* allowed) {
   return number_given({name, unit, "", initial, allowed, meaning, range});
@@ -247,7 +260,7 @@ std::string TableReader::required_choice(const char* name, const Choices& words,
   return word_given({name, "", "", "", "", meaning, {}, words, true}).value_or("");
 }
 
-std::vector<double> TableReader::numbers(const char* name, const char* unit, const Interval& each, const char* meaning,
+std::vector<double> TableReader::numbers(const char* name, const char* unit, const Range& each, const char* meaning,
                                          const char* allowed, bool required) {
   const std::string words = allowed != nullptr ? allowed : "each " + in_words(each);
   const Key key = asked({name, unit, "list of numbers", "", words, meaning, each, {}, required});

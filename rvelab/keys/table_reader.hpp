@@ -26,7 +26,12 @@ inline constexpr Interval ratio{0, 1, true, true};
 inline constexpr Interval below_one{0, 1, false, true};
 inline constexpr Interval steps{1, 1e12};
 /// Of pressures that grains are brought to, Pa: beyond any solid's stiffness, and squares of forces would overflow.
-inline constexpr Interval pressures{0, 1e15, true, false};
+/// Below 1 kPa, 6 cm of soil, kPa was likely left out.
+inline constexpr Range pressures{{0, 1e15, true, false}, {{1e3, 1e9}}};
+/// Of sizes of grains, m: colloids to boulders.
+inline constexpr Range radii{positive, {{1e-8, 1}}};
+/// Of coefficients that an angle in degrees may have been written for; from 100 on no slip is meant.
+inline constexpr Usual friction_values{{0, 2}, 100};
 
 inline constexpr const char* symmetric_components = "xx, yy, zz, yz, xz, xy = numbers";
 
@@ -66,12 +71,12 @@ class TableReader {
               std::vector<KeyError>& errors)
       : table_(table), key_table_(std::move(key_table)), where_(std::move(where)), line_(line), errors_(errors) {}
 
-  void number(const char* name, double& value, const char* unit, const Interval& range, const char* meaning);
+  void number(const char* name, double& value, const char* unit, const Range& range, const char* meaning);
   /// Must be there; false: it is not, or wrong. `allowed`: the range in words, where it says more.
-  bool required_number(const char* name, double& value, const char* unit, const Interval& range, const char* meaning,
+  bool required_number(const char* name, double& value, const char* unit, const Range& range, const char* meaning,
                        const char* allowed = "");
   /// `initial`: in words, what holds where the key is not there.
-  std::optional<double> optional_number(const char* name, const char* unit, const Interval& range, const char* meaning,
+  std::optional<double> optional_number(const char* name, const char* unit, const Range& range, const char* meaning,
                                         const std::string& initial = "", const char* allowed = "");
   template <class Integer>
   void whole_number(const char* name, Integer& value, const Interval& range, const char* meaning) {
@@ -95,7 +100,7 @@ class TableReader {
   /// "" if it is not there, or wrong.
   std::string required_choice(const char* name, const Choices& words, const char* meaning);
   /// Lists are empty where the key is not there. `allowed`: "each > 0" unless said.
-  std::vector<double> numbers(const char* name, const char* unit, const Interval& each, const char* meaning,
+  std::vector<double> numbers(const char* name, const char* unit, const Range& each, const char* meaning,
                               const char* allowed = nullptr, bool required = false);
   /// Some of the words.
   std::vector<std::string> choices(const char* name, const Choices& words, const char* meaning,
@@ -147,7 +152,9 @@ class TableReader {
   void finish();
 
   const std::string& where() const { return where_; }
-  std::size_t mistakes() const { return errors_.size(); }
+  /// Adds a doubt of a key that is there: "where.name = value <text>", with its line; nothing where the text is empty.
+  void doubt(const std::string& name, const std::string& text);
+  std::size_t mistakes() const { return mistakes_in(errors_); }
   const toml::table& resolved() const { return resolved_; }
   /// Every key that was asked for, in order, and those of the tables in lists.
   std::vector<Key> keys() const;
@@ -158,7 +165,7 @@ class TableReader {
     const char *name, *unit, *type;
     std::string initial, range;
     std::string meaning;
-    Interval interval{};
+    Range interval{};
     Choices choices{};
     bool required = false;
   };

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "rvelab/cell/cell.hpp"
+#include "rvelab/measure/measures.hpp"
 
 namespace rvelab::pack {
 
@@ -43,18 +44,26 @@ struct Assembly {
   Rve& rve;
   const StressGoal& goal;
   Matrix3& deformation;
+  StepsLeft* left;
   Place at;
+
+  void spend(long substeps) {
+    if (left == nullptr || (left->made += substeps) <= left->most) return;
+    throw NotAtRest("the grains do not come to rest at the stress: " + rest_in_words(rve, goal, left->made));
+  }
 
   void bring(const Matrix3& to, double scale, double tolerance) {
     const Response response = rve.apply(toward(goal, to, at.stress, scale, tolerance), 0);
     deformation += response.displacement_gradient * deformation;
     at.stress = response.stress;
+    spend(response.report.substeps);
   }
   static double on_the_way() { return 5e-3; }
   void relax(double unbalanced, long max_steps) {
     const Report report = rve.relax(unbalanced, max_steps);
     at.stress = rve.stress();
     at.unbalanced_ratio = report.target_held ? 0 : std::numeric_limits<double>::infinity();
+    spend(report.substeps);
   }
   void arrived() {}
   void pause() {}
@@ -85,8 +94,17 @@ Matrix3 upright_again(const Matrix3& deformation, const Matrix3& frame) {
   return frame * turned.transpose() * frame.transpose() - Matrix3::Identity();
 }
 
-bool consolidate(Rve& rve, const StressGoal& goal, const Rest& rest, Matrix3& deformation) {
-  Assembly assembly{rve, goal, deformation, {rve.stress()}};
+std::string rest_in_words(const Rve& rve, const StressGoal& goal, long substeps) {
+  const Network network = rve.network();
+  const double contacts = double(network.contacts.size()) / double(rve.size());
+  return "after " + std::to_string(substeps) + " sub-steps the unbalanced ratio is " +
+         in_words(rve.unbalanced_ratio()) + ", and the stress is off by " +
+         in_words(largest_gap(goal, rve.stress()) / goal.pressure()) + " of the pressure; void ratio " +
+         in_words(void_ratio(network)) + ", " + in_words(contacts) + " contacts a grain";
+}
+
+bool consolidate(Rve& rve, const StressGoal& goal, const Rest& rest, Matrix3& deformation, StepsLeft* left) {
+  Assembly assembly{rve, goal, deformation, left, {rve.stress()}};
   return consolidate(assembly, goal, rest, goal.pressure()) == Consolidated::reached;
 }
 

@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
+#include <string>
 
 #include "rvelab/cell/cell.hpp"
+#include "rvelab/error.hpp"
 #include "rvelab/solver/rve.hpp"
 
 namespace rvelab::pack {
@@ -85,9 +88,23 @@ Consolidated consolidate(Drive& drive, const StressGoal& goal, const Rest& rest,
   return reached() ? Consolidated::reached : Consolidated::not_still;
 }
 
+/// Sub-steps that a consolidation may make, over all of its calls.
+struct StepsLeft {
+  long made = 0, most = std::numeric_limits<long>::max();
+};
+
 /// Consolidates an assembly. False: the goal is not reached. `deformation` (F, laboratory frame) is multiplied by that
-/// of the cell.
-bool consolidate(Rve& rve, const StressGoal& goal, const Rest& rest, Matrix3& deformation);
+/// of the cell. NotAtRest once it has made more sub-steps than are left.
+bool consolidate(Rve& rve, const StressGoal& goal, const Rest& rest, Matrix3& deformation, StepsLeft* left = nullptr);
+
+/// Grains that do not come to rest; the message says how far they came.
+struct NotAtRest : IncrementFailed {
+  using IncrementFailed::IncrementFailed;
+};
+
+/// "after 100 sub-steps the unbalanced ratio is 0.1 and the stress 0.3 of the pressure off; void ratio 0.2, 3 contacts
+/// a grain".
+std::string rest_in_words(const Rve& rve, const StressGoal& goal, long substeps);
 
 /// The rotation, as a displacement gradient, that after `deformation` (F) brings material lines that were along the
 /// first axis of `frame` back there, and planes of its first two. A shear stress that is driven to zero shears the

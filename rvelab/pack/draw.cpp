@@ -187,6 +187,14 @@ constexpr int most_attempts = 5;
 /// With the final friction: the void ratio is there to a few 1e-4.
 constexpr Rest nearly{5e-3, 1e-3, 0.5, 10, 2000};
 
+/// Sub-steps that a draw may make once its grains bear the pressure: a multiple of what packings need, which
+/// grows with the edge of the cell.
+long most_substeps(const Recipe& recipe) {
+  constexpr double of_small_cells = 3e6, grains_of_small_cells = 400;
+  const double edge = std::pow(double(recipe.number) / grains_of_small_cells, 1.0 / dimension_of(recipe.shape));
+  return long(of_small_cells * std::max(1.0, edge));
+}
+
 /// Change of the void ratio by coming to rest; a draw further from the target is given up.
 constexpr double still_to_come = 5e-4;
 
@@ -231,9 +239,9 @@ void expect_overlaps(const Recipe& recipe, const Rve& rve, double share) {
 /// Consolidates, and turns the cell back upright. A stress that is not isotropic turns with it and is corrected, by
 /// less each time.
 bool consolidated_upright(Rve& rve, const StressGoal& goal, const Rest& rest, const Matrix3& frame,
-                          Matrix3& deformation) {
+                          Matrix3& deformation, StepsLeft& left) {
   for (long round = 0; round < rest.max_rounds; ++round) {
-    if (!consolidate(rve, goal, rest, deformation)) return false;
+    if (!consolidate(rve, goal, rest, deformation, &left)) return false;
     const Matrix3 turn = upright_again(deformation, frame);
     rve.apply(turn, 0);
     deformation += turn * deformation;
@@ -259,14 +267,15 @@ Draw draw(const Recipe& recipe, long number, double friction, const std::atomic<
   const Matrix3 frame = rve.cell().rotation;  // as it was drawn: what came before shrank it
   Matrix3 deformation = Matrix3::Identity();
   if (recipe.stress) {
+    StepsLeft left{0, most_substeps(recipe)};
     StressGoal goal{isotropic_stress(mean_pressure(*recipe.stress, d), recipe.shape), true, d};
-    for (int attempt = 0; !consolidate(rve, goal, prepared, deformation) && attempt < most_attempts; ++attempt) {
+    for (int attempt = 0; !consolidate(rve, goal, prepared, deformation, &left) && attempt < most_attempts; ++attempt) {
       rve = steered(pressed_again(recipe, rve, stop), recipe, stop);
     }
     expect_overlaps(recipe, rve, 1.5);  // this far beyond, no later step helps
     rve.set_materials(recipe.materials);
     goal.stress = *recipe.stress;
-    consolidate(rve, goal, nearly, deformation);
+    consolidate(rve, goal, nearly, deformation, &left);
     expect_overlaps(recipe, rve, 1);
     result.void_ratio = void_ratio(rve.network());
     const double miss = recipe.void_ratio ? std::abs(result.void_ratio - *recipe.void_ratio) : 0;
@@ -274,7 +283,8 @@ Draw draw(const Recipe& recipe, long number, double friction, const std::atomic<
     Rest rest;
     rest.stress_tolerance = recipe.stress_tolerance;
     rest.unbalanced = recipe.unbalanced;
-    result.at_rest = consolidated_upright(rve, goal, rest, frame, deformation);
+    result.at_rest = consolidated_upright(rve, goal, rest, frame, deformation, left);
+    if (!result.at_rest) result.why_not = rest_in_words(rve, goal, left.made);
   } else {
     rve.set_materials(recipe.materials);
     result.at_rest = rve.relax(recipe.unbalanced, 100'000).target_held;

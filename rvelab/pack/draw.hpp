@@ -21,11 +21,12 @@ struct Draw {
   double void_ratio = 0;  ///< with the final friction, at the stress
   bool at_rest = false;   ///< stress and balance within the recipe's tolerances; false: given up, since the void ratio
                           ///< is too far from the target
+  std::string why_not;    ///< how far the grains were from rest, where they were not at rest
   Specimen specimen;      ///< of a draw at rest
 };
 
 /// Makes draw `number` (from 1) of a recipe with the given preparation friction; the same bits for the same three.
-/// IncrementFailed if the grains do not come to the stress; OverlapBeyondLimit; Interrupted.
+/// IncrementFailed if the grains do not come to the stress; NotAtRest; OverlapBeyondLimit; Interrupted.
 Draw draw(const Recipe& recipe, long number, double friction, const std::atomic<bool>* stop);
 
 }  // namespace rvelab::pack

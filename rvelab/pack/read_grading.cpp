@@ -8,13 +8,17 @@ using namespace keys;
 
 namespace {
 
+/// Diameters of colloids to boulders.
+constexpr Range sieves_mm{positive, {{2e-5, 2e3}}};
+
 /// The curve through d10, d50 and d60, which are in mm.
 void read_sieves(TableReader& reader, const std::string& curve, Grading& grading) {
   const bool given = curve == "d10_d60";
   const auto d10 =
-      reader.optional_number("d10_mm", "mm", positive, "grading = d10_d60: diameter that 10 % of the mass pass");
-  const auto d50 = reader.optional_number("d50_mm", "mm", positive, "grading = d10_d60: mean diameter, that 50 % pass");
-  const auto d60 = reader.optional_number("d60_mm", "mm", positive,
+      reader.optional_number("d10_mm", "mm", sieves_mm, "grading = d10_d60: diameter that 10 % of the mass pass");
+  const auto d50 =
+      reader.optional_number("d50_mm", "mm", sieves_mm, "grading = d10_d60: mean diameter, that 50 % pass");
+  const auto d60 = reader.optional_number("d60_mm", "mm", sieves_mm,
                                           "grading = d10_d60: diameter that 60 % pass; d60/d10 is the uniformity");
   for (const char* name : {"d10_mm", "d50_mm", "d60_mm"}) {
     if (given)
@@ -46,13 +50,13 @@ void read_grading(TableReader& reader, Grading& grading) {
   if (!sieves) grading.curve = GradingCurve(curve);
   reader.choice("passing_by", grading.by_mass, {"number", "mass"}, "measure of the passing fraction");
   const auto smallest = reader.optional_number(
-      "smallest_radius_m", "m", positive,
+      "smallest_radius_m", "m", radii,
       "grading = uniform, linear: radius at passing 0; of grains that are not round that of the disc of their area");
   const auto largest =
-      reader.optional_number("largest_radius_m", "m", positive, "grading = uniform, linear: radius at passing 1");
+      reader.optional_number("largest_radius_m", "m", radii, "grading = uniform, linear: radius at passing 1");
   grading.smallest_radius = smallest.value_or(grading.smallest_radius);
   grading.largest_radius = largest.value_or(grading.largest_radius);
-  grading.radii = reader.numbers("radii_m", "m", positive, "grading = tabulated: ascending radii");
+  grading.radii = reader.numbers("radii_m", "m", radii, "grading = tabulated: ascending radii");
   grading.passing =
       reader.numbers("passing", "1", {0, 1},
                      "grading = tabulated: fraction not larger than each radius, 0 first, 1 last", "each 0 to 1");

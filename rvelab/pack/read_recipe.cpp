@@ -8,6 +8,7 @@
 #include "rvelab/keys/material_toml.hpp"
 #include "rvelab/keys/table_reader.hpp"
 #include "rvelab/measure/measures.hpp"
+#include "rvelab/pack/plausible.hpp"
 #include "rvelab/pack/read_grading.hpp"
 
 namespace rvelab::pack {
@@ -16,7 +17,7 @@ namespace {
 using namespace keys;
 
 constexpr Interval below_one{0, 1, true, true};
-constexpr Interval friction{0, 1e6};
+constexpr Range friction{{0, 1e6}, friction_values};
 constexpr Interval stresses{-pressures.high, pressures.high};
 constexpr Interval aspect_ratio{least_aspect_ratio, 1};
 
@@ -32,7 +33,7 @@ void read_pack(TableReader& reader, RecipeFile& file) {
   reader.whole_number("number", recipe.number, {1, 1e8}, "grains in all");
   reader.whole_number("seed", recipe.seed, {0, 9e15},
                       "seed of all random numbers; further specimens of --count take the next seeds");
-  reader.number("thickness_m", recipe.thickness, "m", positive, "2D: thickness of the slab");
+  reader.number("thickness_m", recipe.thickness, "m", {positive, {{1e-7, 10}}}, "2D: thickness of the slab");
   if (dimension_of(recipe.shape) == 3)
     reader.refuse("thickness_m", "contradicts pack.shape = \"sphere\"; allowed: in 2D only; remove one");
   reader.choice("cell", recipe.oriented, {"upright", "oriented"},
@@ -139,6 +140,14 @@ std::optional<Matrix3> stress_of(const std::vector<double>& list, Shape shape) {
   return stress;
 }
 
+/// What the mean pressure of a stress is looked at by.
+Key stress_as_key() {
+  Key key;
+  key.unit = "Pa";
+  key.usual = pressures.usual;
+  return key;
+}
+
 void read_stress(TableReader& reader, RecipeFile& file) {
   Recipe& recipe = file.recipe;
   const int d = dimension_of(recipe.shape);
@@ -163,6 +172,8 @@ void read_stress(TableReader& reader, RecipeFile& file) {
       reader.mistake("stress_Pa",
                      "has no mean pressure; allowed: tension positive with -(xx + yy [+ zz]) > 0; give "
                      "compressive normal stresses as negative numbers");
+    else if (file.pressures.empty())
+      reader.doubt("stress_Pa", keys::unusual_in(stress_as_key(), mean_pressure(*recipe.stress, d)));
   }
   if (!file.pressures.empty() && file.pressures.front() > 0) {
     if (!recipe.stress) recipe.stress = isotropic_stress(1, recipe.shape);
@@ -197,7 +208,7 @@ void read_target(TableReader& reader, RecipeFile& file) {
   Recipe& recipe = file.recipe;
   read_stress(reader, file);
   recipe.void_ratio = reader.optional_number(
-      "void_ratio", "1", {-1, infinity, true, true},
+      "void_ratio", "1", {{-1, infinity, true, true}, {{-1, 10}}},
       "void ratio of the finished specimen, for which rvelab finds the preparation friction; without a stress: of the "
       "cell");
   const auto porosity =
@@ -254,7 +265,7 @@ void read_parameters(const toml::table& file, Recipe& recipe, toml::table& resol
   Specimen specimen;
   specimen.shape = recipe.shape;
   specimen.materials = {Material{}};
-  const std::size_t mistakes = errors.size();
+  const std::size_t mistakes = mistakes_in(errors);
   if (!file.contains("material"))
     errors.push_back({0, "the recipe has no material; allowed: [[material]] with its keys below; add it"});
   read_material_tables(file, specimen, errors);
@@ -263,7 +274,7 @@ void read_parameters(const toml::table& file, Recipe& recipe, toml::table& resol
   recipe.contact = specimen.contact;
   recipe.damping = specimen.damping;
   recipe.solver = specimen.solver;
-  if (errors.size() == mistakes) {
+  if (mistakes_in(errors) == mistakes) {
     try {
       check_parameters(recipe.contact, recipe.damping, recipe.materials);
     } catch (const InputError& error) {
@@ -272,6 +283,24 @@ void read_parameters(const toml::table& file, Recipe& recipe, toml::table& resol
   }
   for (const char* name : {"contact", "damping", "solver", "material"}) {
     if (const toml::node* node = file.get(name)) resolved.insert(name, *node);
+  }
+}
+
+/// Whether its grains can carry its largest pressure, and are likely to be meant for it.
+void read_together(const RecipeFile& file, std::vector<KeyError>& errors) {
+  const Recipe& recipe = file.recipe;
+  if (!recipe.stress) return;
+  const int d = dimension_of(recipe.shape);
+  double pressure = mean_pressure(*recipe.stress, d);
+  for (const double each : file.pressures) pressure = std::max(pressure, each);
+  for (const GrainFraction& fraction : recipe.fractions) {
+    const double radius = number_curve(fraction.grading, d).radius_at(0.5);
+    const Pressed pressed{file.pressures.empty() ? "target.pressure_Pa" : "target.pressures_Pa", pressure, recipe.shape,
+                          radius, recipe.thickness};
+    const std::vector<Material> own{recipe.materials.at(fraction.material)};
+    expect_possible(pressed, recipe.contact, own);
+    for (const std::string& line : unusual_overlaps(pressed, recipe.contact, own))
+      errors.push_back({0, line, false, true});
   }
 }
 
@@ -297,10 +326,12 @@ RecipeFile read_file(toml::table file, const std::string& path, const std::vecto
   raise(path, errors);
   try {
     check_recipe(recipe.recipe);
+    read_together(recipe, errors);
   } catch (const InputError& error) {
     throw InputError(path + ": " + error.what());
   }
-  recipe.resolved = written_file(resolved);
+  recipe.doubts = doubts_in(errors);
+  recipe.resolved = with_doubts(recipe.doubts, written_file(resolved));
   return recipe;
 }
 
@@ -334,7 +365,7 @@ RecipeFile RecipeFile::member(std::uint64_t seed, std::optional<double> pressure
     one.pressures = {*pressure};
     table["target"].as_table()->insert_or_assign("pressures_Pa", toml::array{*pressure});
   }
-  one.resolved = written_file(table);
+  one.resolved = with_doubts(doubts, written_file(table));
   return one;
 }
 

@@ -12,10 +12,11 @@ namespace rvelab::pack {
 
 /// A checked recipe file.
 struct RecipeFile {
-  std::string name;               ///< [pack] name
-  Recipe recipe;                  ///< with the first stress of a family
-  std::vector<double> pressures;  ///< Pa, of a family; else empty
-  std::string resolved;           ///< the recipe with every default and assignment in it, TOML
+  std::string name;                 ///< [pack] name
+  Recipe recipe;                    ///< with the first stress of a family
+  std::vector<double> pressures;    ///< Pa, of a family; else empty
+  std::vector<std::string> doubts;  ///< values that are likely in another unit, one line each
+  std::string resolved;             ///< the recipe with every default and assignment in it, TOML; doubts as comments
 
   /// The recipe of one specimen: with a seed of its own and, of a family, its mean pressure (Pa; all stresses are
   /// scaled).

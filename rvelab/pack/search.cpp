@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "rvelab/error.hpp"
+#include "rvelab/pack/consolidation.hpp"
 
 namespace rvelab::pack {
 
@@ -16,6 +17,10 @@ namespace {
 constexpr double half_friction = 0.1;     ///< whose coordinate is one half
 constexpr double least_deviation = 1e-3;  ///< of void ratios of one friction, where few draws show less
 constexpr double bandwidth = 0.2;         ///< of the local line, over the range of coordinates
+
+constexpr const char* remedy_of_unrest =
+    "; raise target.unbalanced or target.stress_tolerance, give stiffer grains, some friction, or a stress that this "
+    "packing can carry";
 
 /// Level pieces of the best rising curve.
 struct Level {
@@ -100,6 +105,8 @@ class Search {
       }
       if (const auto found = make(first, count)) return packing(*found);
       if (made().empty() && overlap_) std::rethrow_exception(overlap_);
+      if (made().empty() && unrest_ == draws_.size())
+        throw IncrementFailed("packing: " + failures_.front() + remedy_of_unrest);
       if (out_of_reach()) throw not_found(recipe_, made(), draws_.size() - made().size(), End::out_of_reach);
     }
     if (made().empty()) throw IncrementFailed(failures_.front());
@@ -168,6 +175,10 @@ class Search {
         failures_[number] = failure.what();
         if (number == 0) overlap_ = std::current_exception();
         return;
+      } catch (const NotAtRest& failure) {
+        failures_[number] = failure.what();
+        ++unrest_;
+        return;
       } catch (const IncrementFailed& failure) {
         failures_[number] = failure.what();
         return;
@@ -200,8 +211,9 @@ class Search {
   double low_, high_;
   Uniform uniform_;
   std::vector<Draw> draws_;
-  std::exception_ptr overlap_;         ///< of the first draw, if its grains overlapped too much
-  std::vector<std::string> failures_;  ///< of each draw, written by its own thread; empty: it was made
+  std::atomic<std::size_t> unrest_{0};  ///< draws whose grains did not come to rest
+  std::exception_ptr overlap_;          ///< of the first draw, if its grains overlapped too much
+  std::vector<std::string> failures_;   ///< of each draw, written by its own thread; empty: it was made
 };
 
 /// The friction of a draw that no void ratio is searched with.
@@ -254,11 +266,15 @@ double fitted_coordinate(const std::vector<CurvePoint>& points, double target, d
 Packing pack(const Recipe& recipe, Workers& workers, const PackWatch& watch) {
   check_recipe(recipe);
   if (recipe.stress && recipe.void_ratio) return Search(recipe, workers, watch).run();
-  Draw made = draw(recipe, 1, only_friction(recipe), watch.stop);
+  Draw made;
+  try {
+    made = draw(recipe, 1, only_friction(recipe), watch.stop);
+  } catch (const NotAtRest& failure) {
+    throw IncrementFailed("packing: " + std::string(failure.what()) + remedy_of_unrest);
+  }
   if (!made.at_rest)
-    throw IncrementFailed(
-        "packing: the grains did not come to rest at the target stress; raise target.unbalanced or "
-        "target.stress_tolerance, or give a stress that this packing can carry");
+    throw IncrementFailed("packing: the grains did not come to rest at the target stress" +
+                          (made.why_not.empty() ? "" : ": " + made.why_not) + remedy_of_unrest);
   if (watch.on_draw) watch.on_draw(1, made.void_ratio);
   return {std::move(made.specimen), 1, made.friction, made.void_ratio};
 }

@@ -173,7 +173,7 @@ class RunningTest {
  private:
   template <class Apply>
   Report applied(Apply apply, double dt);
-  void note_error(const Report& report);
+  void note_error(const Report& report, records::Record& record);
   int stage_number(const std::string& name) const;
 
   const Watch& watch_;

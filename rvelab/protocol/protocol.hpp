@@ -65,7 +65,9 @@ struct Protocol {
   long snapshots_every = 0;  ///< [output]: grains and contacts are kept at every so many records; 0: never
   std::uint64_t quantities = records::usual_quantities;  ///< [output]: what is measured at each record
   std::vector<Stage> stages;
-  std::string resolved;  ///< the protocol with every default and assignment in it, TOML
+  double largest_pressure = 0;      ///< Pa, that a stage brings the grains to
+  std::vector<std::string> doubts;  ///< values that are likely in another unit, one line each
+  std::string resolved;             ///< the protocol with every default and assignment in it, TOML
 };
 
 /// Reads a protocol file after the assignments "key=value" have been applied to it ("test.pressure_Pa=2e4",
@@ -88,6 +90,10 @@ std::string strength_stages();
 /// The specimen with the protocol's overrides. InputError if one does not fit the specimen (a material that it has
 /// not, a stiffness key that its law does not take), or if its dimension is not the protocol's.
 Specimen with_overrides(const Protocol& protocol, Specimen specimen);
+
+/// What is likely in another unit: in the protocol, in the specimen with its overrides, and in both together (overlaps
+/// that follow from the pressures). One line each. InputError as with_overrides.
+std::vector<std::string> unusual_in(const Protocol& protocol, const Specimen& specimen);
 
 /// Every key that a protocol or a recipe may have, in the order of its tables: those of the protocol itself ("test",
 /// "loading", "stage", "stage.compression", ...), those of a recipe ("pack", "grains", "target", "preparation"), then

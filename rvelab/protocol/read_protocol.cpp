@@ -7,6 +7,7 @@
 #include "rvelab/keys/key.hpp"
 #include "rvelab/keys/material_toml.hpp"
 #include "rvelab/keys/table_reader.hpp"
+#include "rvelab/pack/plausible.hpp"
 #include "rvelab/pack/read_recipe.hpp"
 #include "rvelab/protocol/drive.hpp"
 #include "rvelab/protocol/protocol.hpp"
@@ -18,6 +19,8 @@ namespace rvelab::protocol {
 namespace {
 
 using namespace keys;
+
+constexpr const char* pressure_words = "the largest pressure of the test, in Pa,";
 
 // [contact] before [material]: the law says which unit a stiffness has.
 constexpr std::array<const char*, 4> override_tables{"contact", "damping", "solver", "material"};
@@ -89,8 +92,8 @@ void read_specimen_name(TableReader& reader, Protocol& protocol) {
 }
 
 void read_calibrate(TableReader& reader, Protocol& protocol) {
-  protocol.calibration_pressures =
-      reader.numbers("pressures_Pa", "Pa", positive, "pressures of `rvelab calibrate`; --pressures overrides them");
+  protocol.calibration_pressures = reader.numbers("pressures_Pa", "Pa", {positive, pressures.usual},
+                                                  "pressures of `rvelab calibrate`; --pressures overrides them");
 }
 
 /// The tables of a protocol beside its stages, in the order of the documentation.
@@ -119,6 +122,20 @@ void read_common(TableReader& reader, Stage& stage) {
   stage.until = read_events(reader);
 }
 
+/// The largest of the pressures that a stage brings its grains to, Pa.
+double largest_pressure(const TableReader& reader) {
+  double largest = 0;
+  for (const Key& key : reader.keys()) {
+    if (key.unit != "Pa" || key.interval.high != pressures.high || key.interval.low != 0) continue;
+    const toml::node* node = reader.resolved().get(key.name);
+    if (node == nullptr) continue;
+    if (node->is_number()) largest = std::max(largest, number_in(*node));
+    if (const toml::array* list = node->as_array())
+      for (const auto& each : *list) largest = std::max(largest, number_in(each));
+  }
+  return largest;
+}
+
 void read_stage(const toml::table& table, long number, Protocol& protocol, toml::array& resolved,
                 std::vector<KeyError>& errors) {
   const std::string kind_given = table["kind"].value_or(std::string());
@@ -130,6 +147,7 @@ void read_stage(const toml::table& table, long number, Protocol& protocol, toml:
   read_common(reader, stage);
   auto what = stage_of_kind(stage.kind);
   what->read(reader, protocol);
+  protocol.largest_pressure = std::max(protocol.largest_pressure, largest_pressure(reader));
   if (!stage.until.empty() && !what->takes_events())
     reader.mistake("until", "has no records to check in kind = \"" + stage.kind + "\"; allowed: with " +
                                 kinds_with_events(true) + "; remove it");
@@ -234,6 +252,7 @@ Protocol read_file(toml::table file, const std::string& path, const std::vector<
   check_overrides(file, errors);
   read_stages(file, protocol, resolved, errors);
   raise(path, errors);
+  protocol.doubts = doubts_in(errors);
   protocol.resolved = written_file(resolved);
   return protocol;
 }
@@ -291,8 +310,29 @@ Specimen with_overrides(const Protocol& protocol, Specimen specimen) {
   }
   raise(protocol.path, errors);
   expect_fits(protocol, specimen.cell.dimension);
+  try {
+    pack::expect_possible(pack::pressed(specimen, pressure_words, protocol.largest_pressure), specimen.contact,
+                          specimen.materials);
+  } catch (const InputError& error) {
+    throw InputError(protocol.path + ": " + error.what());
+  }
   clear_forces_without_stiffness(specimen);  // a material that was given none here
   return specimen;
+}
+
+std::vector<std::string> unusual_in(const Protocol& protocol, const Specimen& specimen) {
+  std::vector<std::string> doubts = protocol.doubts;
+  const Specimen used = with_overrides(protocol, specimen);
+  std::vector<std::string> of_specimen = pack::unusual_in(used);
+  for (const std::string& line : pack::unusual_overlaps(pack::pressed(used, pressure_words, protocol.largest_pressure),
+                                                        used.contact, used.materials))
+    of_specimen.push_back(line);
+  for (const std::string& line : of_specimen) {
+    const bool known = std::any_of(protocol.doubts.begin(), protocol.doubts.end(),
+                                   [&](const std::string& doubt) { return key_of_doubt(doubt) == key_of_doubt(line); });
+    if (!known) doubts.push_back(line);
+  }
+  return doubts;
 }
 
 }  // namespace rvelab::protocol

@@ -203,11 +203,11 @@ Report RunningTest::relax(double unbalanced, long max_steps) {
   }
 }
 
-void RunningTest::note_error(const Report& report) {
+void RunningTest::note_error(const Report& report, records::Record& record) {
   const double p = mean_pressure(run.progress.stress, dimension());
   if (!(report.error_estimate > 0 && p > 0)) return;
   Costs& costs = run.costs;
-  const double error = report.error_estimate / p;
+  const double error = record.error_estimate = report.error_estimate / p;
   costs.mean_error += (error - costs.mean_error) / double(++costs.judged);
   costs.largest_error = std::max(costs.largest_error, error);
 }
@@ -228,7 +228,7 @@ void RunningTest::record(double strain, const Report& report) {
   record.quasi_static = report.quasi_static;
   record.cell_thin = rve.cell_thin();
   run.progress.substeps = 0;
-  note_error(report);
+  note_error(report, record);
   const std::size_t number = run.result.records.size();
   run.result.records.push_back(record);
   ++run.progress.records;

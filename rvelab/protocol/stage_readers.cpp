@@ -7,7 +7,7 @@ namespace rvelab::protocol {
 
 using keys::TableReader;
 
-double pressure_of(TableReader& reader, const char* name, const Interval& range, const char* meaning,
+double pressure_of(TableReader& reader, const char* name, const keys::Range& range, const char* meaning,
                    Protocol& protocol, const std::string& unless) {
   const auto own = reader.optional_number(name, "Pa", range, meaning, "(test.pressure_Pa)");
   if (!unless.empty()) reader.refuse(name, "contradicts " + unless + "; allowed: one of the two; remove one");

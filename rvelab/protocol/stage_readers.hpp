@@ -14,7 +14,7 @@ inline constexpr double most_records = 1e6;
 
 /// A stage's own pressure, Pa, or the test's. `unless`: what it contradicts, since the stage then holds nothing at it;
 /// "": it does.
-double pressure_of(keys::TableReader& reader, const char* name, const Interval& range, const char* meaning,
+double pressure_of(keys::TableReader& reader, const char* name, const keys::Range& range, const char* meaning,
                    Protocol& protocol, const std::string& unless = "");
 
 /// record_every, for a stage that goes to `to_strain`.

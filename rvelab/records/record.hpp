@@ -25,6 +25,8 @@ struct RecordedState {
   bool target_held = true;   ///< false: kept, but the held stress was not within the tolerance (dt > 0)
   bool quasi_static = true;  ///< dt = 0; false: kept, but no equilibrium (Report::quasi_static); dt > 0: not judged
 
+  double error_estimate = 0;  ///< Report::error_estimate over p; 0: not judged (dt > 0, no increment, no pressure)
+
   bool cell_thin = false;  ///< a cell height is below four mean diameters: the record stands for less of the material
 
   std::uint64_t quantities = usual_quantities;  ///< bits of those that were measured

@@ -35,7 +35,8 @@ void describe_records(Archive& archive, Value& records) {
                 column("held_error", &Record::held_error, "1"),                          //
                 column("target_held", &Record::target_held, "1"),                        //
                 later_column("quasi_static", &Record::quasi_static, "1", 3),             //
-                later_column("cell_thin", &Record::cell_thin, "1", 10));
+                later_column("cell_thin", &Record::cell_thin, "1", 10),                  //
+                later_column("error_estimate", &Record::error_estimate, "1", 11));
   archive.choice("records", records, column("quantities", &Record::quantities, "1"));
   Quantities::for_each([&]<class Quantity>(std::type_identity<Quantity>, std::uint64_t bit) {
     archive.chosen("records", records, column(Quantity::text.name, Quantity::member, Quantity::text.unit),

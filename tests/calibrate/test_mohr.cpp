@@ -218,6 +218,70 @@ TEST_CASE("Bearing capacity factors of 28.1 degrees are 14.883 and 6.147, its we
         Approx(1).epsilon(1e-14));  // Prandtl: without friction the surcharge alone
 }
 
+TEST_CASE("Cohesion is that of the law, or of a line whose c is beyond its error and a share of the stress") {
+  using calibrate::Cohesive;
+  const auto tests = [](double angle, double cohesion, double scatter) {
+    std::vector<calibrate::PrincipalStresses> found;
+    double sign = 1;
+    for (const double s : {50e3, 100e3, 150e3, 200e3, 250e3}) {
+      auto one = on_envelope(s, angle, cohesion);
+      one.major += sign * scatter * s, one.minor -= sign * scatter * s;
+      sign = -sign;
+      found.push_back(one);
+    }
+    return found;
+  };
+  CHECK(calibrate::cohesive(tests(30, 0, 0), false) == Cohesive::no);
+  CHECK(calibrate::cohesive(tests(30, 0, 0), true) == Cohesive::by_law);
+  CHECK(calibrate::cohesive(tests(30, 20e3, 1e-3), false) == Cohesive::by_line);  // mean stress 150 kPa
+  CHECK(calibrate::cohesive(tests(30, 5e3, 1e-4), false) == Cohesive::no);        // beyond its error, below 5 %
+  CHECK(calibrate::cohesive(tests(30, 9e3, 0.05), false) == Cohesive::no);        // above 5 %, within its error
+  CHECK(calibrate::cohesive(tests(30, -20e3, 1e-3), false) == Cohesive::no);
+  // Two tests have no error.
+  const std::vector<calibrate::PrincipalStresses> two{on_envelope(50e3, 30, 20e3), on_envelope(90e3, 30, 20e3)};
+  CHECK(calibrate::cohesive(two, false) == Cohesive::no);
+  CHECK(calibrate::cohesive(two, true) == Cohesive::by_law);
+
+  CHECK(calibrate::strength_angle_deg(tests(30, 20e3, 0), Cohesive::by_line) == Approx(30).epsilon(1e-10));
+  CHECK(calibrate::strength_angle_deg(tests(30, 20e3, 0), Cohesive::no) > 33);
+}
+
+TEST_CASE("N_c is that of the tables, and goes to pi + 2 without friction") {
+  CHECK(calibrate::bearing_capacity_Nc(30) == Approx(30.14).epsilon(1e-3));  // Vesic (1973), table 1
+  CHECK(calibrate::bearing_capacity_Nc(20) == Approx(14.83).epsilon(1e-3));
+  CHECK(calibrate::bearing_capacity_Nc(0) == Approx(pi + 2));
+  CHECK(calibrate::bearing_capacity_Nc(1e-4) == Approx(pi + 2).epsilon(1e-4));
+}
+
+TEST_CASE("A soil whose grains stick takes N_q, N_c and wedge of the line, at whatever pressures it is tested") {
+  const auto at = [](double lateral) {
+    records::TestResult test;
+    test.pressure = lateral;
+    const double sine = std::sin(20 * degree), cosine = std::cos(20 * degree), c = 30e3;
+    const double s = (lateral + c * cosine) / (1 - sine), t = s * sine + c * cosine;
+    for (int k = 0; k <= 300; ++k)
+      test.records.push_back(biaxial_record(0.0005 * k, lateral + 2 * t * std::min(1.0, k / 20.0), lateral));
+    return test;
+  };
+  const auto low = calibrate::calibrate({at(20e3), at(50e3), at(100e3)}, 2, {}, true);
+  const auto high = calibrate::calibrate({at(200e3), at(500e3), at(900e3)}, 2, {}, true);
+  for (const auto& found : {low, high}) {
+    CHECK(found.cohesive == calibrate::Cohesive::by_law);
+    CHECK(found.friction_angle_deg == Approx(20).epsilon(1e-9));
+    CHECK(found.cohesion == Approx(30e3).epsilon(1e-7));
+    CHECK(found.bearing_capacity_Nq == Approx(6.399).epsilon(1e-3));
+    CHECK(found.bearing_capacity_Nc == Approx(14.83).epsilon(1e-3));
+    CHECK(found.wedge_angle_deg == Approx(55).epsilon(1e-9));
+    CHECK(found.per_specimen.at(0).bearing_capacity_Nq == Approx(6.399).epsilon(1e-3));
+  }
+  CHECK(low.secant_friction_angle_deg > high.secant_friction_angle_deg + 5);
+  // One pressure leaves friction and cohesion undivided.
+  const auto one = calibrate::calibrate({at(50e3)}, 2, {}, true);
+  CHECK(std::isnan(one.friction_angle_deg));
+  CHECK(std::isnan(one.bearing_capacity_Nq));
+  CHECK(one.secant_friction_angle_deg > 25);
+}
+
 TEST_CASE("Tests of one frictional soil at any pressures calibrate to its angle") {
   const calibrate::Calibration found = calibrate::calibrate({hardening_test(10e3, 30), hardening_test(25e3, 30)}, 2);
   CHECK(found.friction_angle_deg == Approx(30).epsilon(1e-12));

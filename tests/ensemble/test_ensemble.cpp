@@ -152,6 +152,8 @@ TEST_CASE("A summary holds each measure at each pressure, the envelope of each s
   CHECK(row(0, "cohesive_friction_angle_deg").spread.mean == Approx(30.5));
   CHECK(row(1, "cohesive_friction_angle_deg").spread.mean == Approx(25.5));
   CHECK(row(0, "cohesive_friction_angle_deg").spread.n == 2);
+  CHECK(row(0, "bearing_capacity_Nq").spread.mean > calibrate::bearing_capacity_Nq(30.5));  // by the secant
+  CHECK(summary.cohesive_groups.at(0) == calibrate::Cohesive::no);
   CHECK(row(0, "friction_angle_deg").pressure == 1e4);
   CHECK(row(0, "peak_strain").spread.mean == Approx(3e-3));
   bool compared = false;
@@ -162,4 +164,16 @@ TEST_CASE("A summary holds each measure at each pressure, the envelope of each s
       CHECK(each.difference.standard_error == Approx(std::sqrt(0.25 + 0.25)));
     }
   CHECK(compared);
+
+  // Where the grains of the first group stick, its factors take the line; the second group keeps the secant.
+  for (auto& test : tests) test.grains_stick = test.group == 0;
+  const ensemble::Summary sticking = ensemble::summary_of(tests);
+  for (const auto& each : sticking.rows) {
+    if (each.name != "bearing_capacity_Nq") continue;
+    const double of_line = 0.5 * (calibrate::bearing_capacity_Nq(each.group == 0 ? 30 : 25) +
+                                  calibrate::bearing_capacity_Nq(each.group == 0 ? 31 : 26));
+    if (each.group == 0) CHECK(each.spread.mean == Approx(of_line));
+    if (each.group == 1) CHECK(each.spread.mean > 1.02 * of_line);
+  }
+  CHECK(sticking.cohesive_groups == std::vector{calibrate::Cohesive::by_law, calibrate::Cohesive::no});
 }

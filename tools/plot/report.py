@@ -178,7 +178,8 @@ def section_of_test(name, tests, options, folder):
                                           f"End state of {records.counted(len(found), 'test')}.")),
         section("Force chains", figure_of(chains, found[:1], options, folder, f"End state of {tests[0][0].path.name}.")),
         section("Film", film_of(filmed, folder) if filmed else ""),
-        section("Error and run time", table_of(tables.error_and_time(tests)))]
+        section("Error and run time", table_of(tables.error_and_time(tests)),
+                f"<p>{tables.ERROR_IN_WORDS}</p>")]
     return f"<h2>{html.escape(name)}</h2>\n" + "\n".join(part for part in parts if part)
 
 

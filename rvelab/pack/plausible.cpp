@@ -1,0 +1,115 @@
+#include "rvelab/pack/plausible.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "rvelab/error.hpp"
+#include "rvelab/keys/material_toml.hpp"
+#include "rvelab/keys/shortened.hpp"
+#include "rvelab/keys/table_reader.hpp"
+
+namespace rvelab::pack {
+namespace {
+
+constexpr double most_usual_overlap = 0.1, least_usual_overlap = 1e-9;  // over the radius
+
+/// Force of a contact, N.
+double mean_force(const Pressed& pressed) {
+  const double r = pressed.radius;
+  if (dimension_of(pressed.shape) == 2)
+    return pressed.pressure * pressed.thickness * std::numbers::pi * r * 1.2 * 2 / 4;
+  return pressed.pressure * std::numbers::pi * r * r * 1.65 * 4 / 5.5;
+}
+
+bool stiffens(Law law) {
+  return with_law(law, [](auto each) { return decltype(each)::Force::needs_root_overlap; });
+}
+
+/// The stiffness that a law reads is the first of its parameters.
+const LawParameter& stiffness_of(Law law) {
+  return *std::find_if(law_parameters().begin(), law_parameters().end(),
+                       [&](const LawParameter& each) { return each.law == law; });
+}
+
+/// "material.sand.young_modulus_Pa = 70".
+std::string stiffness_in_words(const ContactModel& model, const Material& material) {
+  const LawParameter& stiffness = stiffness_of(model.law);
+  return "material." + keys::shortened(material.name) + "." + stiffness.parameter.key + " = " +
+         keys::as_toml(material.*stiffness.value);
+}
+
+/// "; likely in MPa or GPa: write ..." of a stiffness, by what leads to overlaps that are usual.
+std::string likely(const Pressed& pressed, const ContactModel& model, const Material& material, double overlap) {
+  const LawParameter& stiffness = stiffness_of(model.law);
+  const double given = material.*stiffness.value, power = stiffens(model.law) ? 1.5 : 1;
+  const auto stiffness_at = [&](double wanted) { return given * std::pow(overlap / wanted, power); };
+  std::string text = keys::likely_unit(stiffness.parameter.unit, given,
+                                       {{stiffness_at(most_usual_overlap), stiffness_at(least_usual_overlap)}});
+  if (dimension_of(pressed.shape) == 2 && pressed.thickness > 20 * pressed.radius)
+    text += "; the slab is " + in_words(pressed.thickness / (2 * pressed.radius)) +
+            " diameters thick, and the force on a grain grows with it";
+  return text;
+}
+
+}  // namespace
+
+double expected_overlap(const Pressed& pressed, const ContactModel& model, const Material& material) {
+  const double r = pressed.radius, section = grain_section(pressed.shape, r, pressed.thickness);
+  const PairParameters pair = mix(model, Damping{}, material, r, 1, material, r, 1, section);
+  const double ratio = (mean_force(pressed) + pair.law_constant) / pair.kn;
+  return (stiffens(model.law) ? std::pow(ratio, 2.0 / 3) : ratio) / r;
+}
+
+void expect_possible(const Pressed& pressed, const ContactModel& model, const std::vector<Material>& materials) {
+  if (!(pressed.pressure > 0) || !(pressed.radius > 0)) return;
+  for (const Material& material : materials) {
+    const double overlap = expected_overlap(pressed, model, material);
+    if (!(overlap > 1)) continue;
+    const LawParameter& stiffness = stiffness_of(model.law);
+    const double least = material.*stiffness.value * std::pow(overlap, stiffens(model.law) ? 1.5 : 1);
+    throw InputError(stiffness_in_words(model, material) + " is too soft for " + pressed.by + " = " +
+                     in_words(pressed.pressure) + ": grains would overlap by " + in_words(overlap) +
+                     " of their radius, no such specimen exists; allowed: less than 1, above some " + in_words(least) +
+                     " " + stiffness.parameter.unit + " here; " + likely(pressed, model, material, overlap));
+  }
+}
+
+std::vector<std::string> unusual_overlaps(const Pressed& pressed, const ContactModel& model,
+                                          const std::vector<Material>& materials) {
+  std::vector<std::string> found;
+  if (!(pressed.pressure > 0) || !(pressed.radius > 0)) return found;
+  for (const Material& material : materials) {
+    const double overlap = expected_overlap(pressed, model, material);
+    if (overlap <= most_usual_overlap && overlap >= least_usual_overlap) continue;
+    found.push_back(stiffness_in_words(model, material) + " with " + pressed.by + " = " + in_words(pressed.pressure) +
+                    " is unusual: grains overlap by some " + in_words(overlap) +
+                    " of their radius; usual: 1e-09 to 0.1; " + likely(pressed, model, material, overlap));
+    break;  // one line a key
+  }
+  return found;
+}
+
+Pressed pressed(const Specimen& specimen, const std::string& by, double pressure) {
+  const auto& radius = specimen.grains.radius;
+  if (radius.empty()) return {};
+  const double mean = std::accumulate(radius.begin(), radius.end(), 0.0) / double(radius.size());
+  return {by, pressure, specimen.shape, mean, specimen.cell.lattice(2, 2)};
+}
+
+std::vector<std::string> unusual_in(const Specimen& specimen) {
+  std::vector<std::string> found = keys::unusual_materials(specimen.contact, specimen.materials);
+  keys::Key radius;
+  radius.unit = "m";
+  radius.usual = keys::radii.usual;
+  for (const double each : specimen.grains.radius) {
+    const std::string why = keys::unusual_in(radius, each);
+    if (why.empty()) continue;
+    found.push_back("a radius of " + keys::as_toml(each) + " m " + why);
+    break;
+  }
+  return found;
+}
+
+}  // namespace rvelab::pack
