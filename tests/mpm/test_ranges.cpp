@@ -17,9 +17,9 @@ using rvelab::test::Folder;
 namespace {
 
 /// What the shipped scenes below do not show.
-constexpr const char* others = R"(
+constexpr const char* other_keys = R"(
 [scene]
-name = "others"
+name = "other_keys"
 thickness_m = 1
 [grid]
 cell_m = [0.25, 0.25]
@@ -210,7 +210,7 @@ long sweep(const std::string& path) {
 
 std::string shipped(const char* name) { return std::string(RVELAB_SOURCE_DIR) + "/protocols/mpm/" + name + ".toml"; }
 
-std::string told(const std::string& text, const std::vector<std::string>& assignments) {
+std::string outcome_of(const std::string& text, const std::vector<std::string>& assignments) {
   const Folder folder;
   std::ofstream(folder / "scene.toml") << text;
   try {
@@ -225,8 +225,8 @@ std::string told(const std::string& text, const std::vector<std::string>& assign
 
 TEST_CASE("numbers that nothing has are refused by their key, and the others run: dry soil, loads, bodies, plates") {
   const Folder folder;
-  std::ofstream(folder / "scene.toml") << others;
-  CHECK(told(others, {}) == "");
+  std::ofstream(folder / "scene.toml") << other_keys;
+  CHECK(outcome_of(other_keys, {}) == "");
   CHECK(sweep(folder / "scene.toml") > 300);
 }
 
@@ -241,30 +241,31 @@ TEST_CASE("numbers that nothing has are refused by their key, and the others run
 }
 
 TEST_CASE("a range is told with the value, its unit and what to do") {
-  CHECK_THAT(told(others, {"material.soil.young_modulus_Pa=1e300"}),
+  CHECK_THAT(outcome_of(other_keys, {"material.soil.young_modulus_Pa=1e300"}),
              Contains("material.young_modulus_Pa is 1e+300; allowed: ") &&
                  Contains("to 1e+13 Pa; give a number within, in Pa"));
-  CHECK_THAT(told(others, {"body.pipe.radius_m=1e-300"}),
+  CHECK_THAT(outcome_of(other_keys, {"body.pipe.radius_m=1e-300"}),
              Contains("body.radius_m is 1e-300; allowed: 1e-09 to 1e+09 m"));
-  CHECK_THAT(told(others, {"loads.gravity_m_s2=[0, -1e10]"}),
+  CHECK_THAT(outcome_of(other_keys, {"loads.gravity_m_s2=[0, -1e10]"}),
              Contains("loads.gravity_m_s2 holds -1e+10; allowed: -1e+09 to 1e+09 m/s^2"));
-  CHECK_THAT(told(others, {"boundary.bottom.motion=[[0, 1e7, 0]]"}),
+  CHECK_THAT(outcome_of(other_keys, {"boundary.bottom.motion=[[0, 1e7, 0]]"}),
              Contains("boundary.motion holds 1e+07; allowed: -1e+06"));
 }
 
 TEST_CASE("more steps, points or nodes than a run can have are refused with their number before anything is made") {
   CHECK_THAT(
-      told(others, {"material.soil.young_modulus_Pa=1e13", "material.soil.density_kg_m3=1e-3", "time.duration_s=1e4"}),
+      outcome_of(other_keys,
+                 {"material.soil.young_modulus_Pa=1e13", "material.soil.density_kg_m3=1e-3", "time.duration_s=1e4"}),
       Contains("time.duration_s = 10000 would need 1.16") && Contains("e+13 steps") && Contains("young_modulus_Pa"));
-  CHECK_THAT(told(others, {"grid.cell_m=1e-7"}), Contains("GB)") && Contains("make grid.cell_m larger"));
-  CHECK_THAT(told(others, {"region.1.lower_m=[4e4, 0]", "region.1.upper_m=[40001, 1e3]"}),
+  CHECK_THAT(outcome_of(other_keys, {"grid.cell_m=1e-7"}), Contains("GB)") && Contains("make grid.cell_m larger"));
+  CHECK_THAT(outcome_of(other_keys, {"region.1.lower_m=[4e4, 0]", "region.1.upper_m=[40001, 1e3]"}),
              Contains("the box around all regions would have 6.4") && Contains("GB)"));
-  CHECK_THAT(told(others, {"body.footing.size_m=[1e8, 0.5]"}),
+  CHECK_THAT(outcome_of(other_keys, {"body.footing.size_m=[1e8, 0.5]"}),
              Contains("body.footing.size_m: the surface would have 8e+08"));
 }
 
 TEST_CASE("shaking that throws the soil about is refused, and a record of times and accelerations that nothing has") {
-  const std::string plain = others;
+  const std::string plain = other_keys;
   const auto from = plain.find("velocity_m_s = 0.1\nfrequency_Hz = 5\n");
   const auto record = [&](const std::string& rows) {
     auto text = plain;
@@ -286,7 +287,7 @@ TEST_CASE("shaking that throws the soil about is refused, and a record of times 
   CHECK_THAT(record("0,0\n0.01,nan\n"), Contains("shake.csv:2: is no row"));
   CHECK_THAT(record("0,0\n0.01,1e6\n0.02,1e6\n"),
              Contains("loads.shaking.record: it moves the box at up to 15000 m/s"));
-  CHECK_THAT(told(others, {"loads.shaking.velocity_m_s=500"}),
+  CHECK_THAT(outcome_of(other_keys, {"loads.shaking.velocity_m_s=500"}),
              Contains("loads.shaking.velocity_m_s: it moves the box"));
 }
 
@@ -302,14 +303,14 @@ TEST_CASE("one point that flies off does not fill the memory with nodes") {
 
 TEST_CASE("files that a scene names are regular files: what has no end is not read") {
   const Folder folder;
-  std::string text = others;
+  std::string text = other_keys;
   text.replace(text.find("velocity_m_s = 0.1\nfrequency_Hz = 5\n"), 35, "record_csv = \"/dev/zero\"\n");
-  CHECK_THAT(told(text, {}), Contains("/dev/zero: cannot be read; loads.shaking.record_csv names a file"));
+  CHECK_THAT(outcome_of(text, {}), Contains("/dev/zero: cannot be read; loads.shaking.record_csv names a file"));
 }
 
 TEST_CASE("a step from which the end of the run cannot be reached ends it, and says how many there would be") {
   const Folder folder;
-  std::ofstream(folder / "scene.toml") << others;
+  std::ofstream(folder / "scene.toml") << other_keys;
   const auto model = set_up<2>(read_scene(folder / "scene.toml", {}, {}), 1, folder.path());
   auto& solver = model->solver;
   CHECK_NOTHROW(watch_length<2>(solver, 1e-3, 1, 1e8));
