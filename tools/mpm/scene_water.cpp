@@ -77,7 +77,7 @@ std::optional<WaterOfScene> read_water(Keys& file, const Scene& scene) {
   if (keys.has("bulk_modulus_Pa")) options.bulk_modulus = keys.positive("bulk_modulus_Pa");
   options.drained_surface = keys.choice("free_surface", {"drained", "membrane"}) == "drained";
   options.thickness = scene.thickness;
-  water.porosity = keys.number("porosity", 0, 0, 0.99);
+  water.porosity = keys.number("porosity", 0, 0.01, 0.99);  // 0: not told
   if (keys.has("water_table_m")) {
     water.table = keys.number("water_table_m");
   } else if (scene.stress == Scene::Stress::geostatic) {
