@@ -92,8 +92,8 @@ void expect_settling() {
         }
       }
       const double weight = block_density * 9.81 * along * node_distance;
-      // MUSL has stress half a step late besides.
-      CHECK(residual < (scheme == Scheme::usf ? 0.02 : 0.05) * largest);
+      // MUSL has stress and heights half a step late.
+      CHECK(residual < (scheme == Scheme::usf ? 0.02 : 0.08) * largest);
       CHECK(moved < 2.5 * weight * along * node_distance / soft_block.young);
       CHECK(moved > 0.3 * weight * along * node_distance / soft_block.young);
       CHECK(pressed < 2.5 * weight);
