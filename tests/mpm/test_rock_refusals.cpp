@@ -76,7 +76,7 @@ TEST_CASE("shapes of rocks: sizes, blockiness, turns and held axes that are none
   }
   CHECK_THAT(rocks_with({"rock.slab.blockiness=[51]"}), Contains("allowed: 2 (round) to 50 (a box)"));
   CHECK_THAT(rocks_with({"rock.slab.half_axes_m=[0.5, 0]"}),
-             Contains("rock.half_axes_m must be positive along every axis"));
+             Contains("rock.half_axes_m is 0; it must be positive"));
   CHECK_THAT(rocks_with({"rock.slab.half_axes_m=[0.5, 0.3, 0.3]"}), Contains("rock.half_axes_m must be 2 numbers"));
   CHECK_THAT(rocks_with({"rock.disc.radius_m=-1"}), Contains("rock.radius_m is -1; it must be positive"));
   CHECK_THAT(rocks_with({"rock.disc.held=[\"w\"]"}), Contains("rock.held names \"w\"; allowed: x, y, rotation"));
@@ -145,13 +145,14 @@ TEST_CASE("rocks to be drawn that do not fit, or are none, are refused") {
       rocks_with({"rocks.coarse.diameters_m=[[4.4, 1]]", "rocks.coarse.volume_share=0.6"}),
       Contains("rocks.coarse.diameters_m") && Contains("a rock of 4.4 m does not fit between lower_m and upper_m"));
   CHECK_THAT(rocks_with({"rocks.coarse.diameters_m=[[0.8, 0]]"}),
-             Contains("rocks.diameters_m has a row that is not positive"));
+             Contains("rocks.diameters_m has the row [0.8, 0], which is not positive"));
   CHECK_THAT(rocks_with({"rocks.coarse.diameters_m=[0.8]"}), Contains("rocks.diameters_m must be rows of 2 numbers"));
   CHECK_THAT(rocks_with({"rocks.coarse.diameters_m=[[1e-4, 1]]"}),
              Contains("take larger ones, or a smaller volume_share"));
   CHECK_THAT(rocks_with({"rocks.coarse.upper_m=[4, 4]"}),
              Contains("rocks.upper_m must be above lower_m along every axis"));
-  CHECK_THAT(rocks_with({"rocks.coarse.aspect=[1, 0]"}), Contains("rocks.aspect must be positive along every axis"));
+  CHECK_THAT(rocks_with({"rocks.coarse.aspect=[1, 0]"}),
+             Contains("rocks.aspect holds 0; allowed: 0.001 to 1000 along every axis"));
   CHECK_THAT(rocks_with({"rocks.coarse.seed=-1"}), Contains("rocks.seed is -1; allowed: 0 to "));
   CHECK_THAT(rocks_with({"rocks.coarse.rotation_deg=30"}), Contains("rocks.rotation_deg") && Contains("aligned"));
 }

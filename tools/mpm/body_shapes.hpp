@@ -36,7 +36,7 @@ struct Box {
 
   static Box read(Keys& keys) { return {0.5 * vector_of<D>(keys.vector("size_m", D, {}))}; }
   void settle(const Keys& keys) {
-    if (!(half.minCoeff() > 0)) keys.wrong("size_m", "must be positive along every axis");
+    for (const double each : half) keys.expect_positive("size_m", 2 * each);
   }
   /// Of two faces at one distance that across the last axis is the nearest, a footing's lower one.
   double distance(const Vec<D>& r, Vec<D>& outward, const Vec<D>& unit) const {

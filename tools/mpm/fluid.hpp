@@ -34,8 +34,10 @@ struct FluidPoint {
 
   double porosity(double volume) const { return 1 - solids / volume; }
   double void_ratio(double volume) const { return volume / solids - 1; }
-  /// Excess pore pressure over the initial effective vertical stress.
-  double pressure_ratio() const { return (pressure - first_pressure) / first_vertical; }
+  /// Excess pore pressure over the initial effective vertical stress; NaN where there was none but round-off.
+  double pressure_ratio() const {
+    return first_vertical > 1e-9 * std::abs(first_pressure) ? (pressure - first_pressure) / first_vertical : NAN;
+  }
 };
 
 /// What a boundary is to the water. head: p = rho_f g (value - height), 0 above it.

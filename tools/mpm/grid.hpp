@@ -34,9 +34,11 @@ class Grid {
   std::vector<Node<D>> nodes;      ///< x fastest
   Index low{}, count = none();     ///< lowest node and number of nodes along each axis
   static constexpr long most = 40'000'000;
+  /// As many as a box with so many points may have: one point that flies off must not fill the memory.
+  static long most_for(long points) { return std::clamp(100 * points, most / 10, most); }
 
-  /// Makes room for nodes from `first` to `last`; true if the box changed.
-  bool cover(const Index& first, const Index& last) {
+  /// Makes room for nodes from `first` to `last`; true if the box changed. InputError: more than `allowed`.
+  bool cover(const Index& first, const Index& last, long allowed = most) {
     Index from = low, to;
     bool fits = true;
     for (int i = 0; i < D; ++i) {
@@ -51,9 +53,9 @@ class Grid {
       if (count[i] == 0 || last[i] > to[i]) to[i] = last[i] + 4;
       size *= double(to[i]) - from[i] + 1;
     }
-    if (size > most) {
+    if (size > double(allowed)) {
       std::ostringstream words;
-      words << "the background grid would need " << size << " nodes, and has " << double(most)
+      words << "the background grid would need " << size << " nodes, and has " << double(allowed)
             << " at most: a material point flies far off; take a smaller time.cfl, or add a boundary that holds it";
       throw InputError(words.str());
     }

@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <sstream>
+
+#include "rvelab/keys/regular_file.hpp"
 
 namespace mpm {
 namespace {
 
 /// Numbers of a CSV file; a first line of words is left out.
 toml::array rows_of(const std::filesystem::path& path, const std::string& key) {
-  std::ifstream csv(path);
-  if (!csv) throw InputError(path.string() + ": cannot be read; " + key + " names a file beside the scene");
+  std::istringstream csv(text_of_file(path, key, "rows of numbers"));
   toml::array rows;
   std::string line;
   for (long number = 1; std::getline(csv, line); ++number) {
@@ -38,6 +38,18 @@ toml::array rows_of(const std::filesystem::path& path, const std::string& key) {
 }
 
 }  // namespace
+
+std::string text_of_file(const std::filesystem::path& path, const std::string& key, const std::string& holds) {
+  // A pipe or a device may have no end.
+  if (std::error_code none; std::filesystem::is_regular_file(path, none)) {
+    try {
+      return rvelab::keys::whole_file<std::string>(path.string(), "a CSV file");
+    } catch (const rvelab::InputError& error) {
+      throw InputError(error.what());
+    }
+  }
+  throw InputError(path.string() + ": cannot be read; " + key + " names a file beside the scene, of " + holds);
+}
 
 void include_files(toml::table& file, const std::string& of, const std::string& key, const std::string& scene_path,
                    const std::function<void(toml::table&, const std::filesystem::path&)>& put) {

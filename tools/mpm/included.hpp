@@ -17,4 +17,7 @@ void include_files(toml::table& file, const std::string& of, const std::string& 
 void include_rows(toml::table& file, const std::string& of, const std::string& key, const std::string& rows,
                   const std::string& scene_path);
 
+/// The text of a file that a key names: a regular one, read once. InputError: there is none.
+std::string text_of_file(const std::filesystem::path& path, const std::string& key, const std::string& holds);
+
 }  // namespace mpm

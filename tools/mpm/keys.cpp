@@ -33,6 +33,13 @@ std::string place(const std::string& path, const toml::node* node) {
   return line == 0 ? path + ": " : path + ":" + std::to_string(line) + ": ";
 }
 
+/// "allowed: 0 to 1e+13 Pa; ..."
+std::string allowed_between(double least, double most, const Range& range) {
+  const std::string unit = *range.unit == 0 ? "" : std::string(" ") + range.unit;
+  return "; allowed: " + text_of(least) + " to " + text_of(most) + unit + "; give a number within" +
+         (unit.empty() ? "" : ", in" + unit);
+}
+
 constexpr const char* no_default = "it has no default: give it a value";
 
 }  // namespace
@@ -73,10 +80,19 @@ void Keys::missing(const std::string& name, const std::string& remedy) {
   if (missing_.empty()) missing_ = place(path_, table_) + "the key " + dotted(name) + " is missing; " + remedy;
 }
 
-double Keys::finite(const std::string& name, const toml::node& value) const {
+double Keys::within(const std::string& name, const toml::node& value, const Range& range) const {
   const double number = *value.value<double>();
   if (!std::isfinite(number)) wrong(name, "holds " + text_of(number) + "; give numbers that are finite");
+  if (!(std::abs(number) <= range.most))
+    wrong(name, "holds " + text_of(number) + allowed_between(-range.most, range.most, range));
   return number;
+}
+
+void Keys::expect_positive(const std::string& name, double value) const {
+  const auto range = range_of(name);
+  if (value <= 0) wrong(name, "is " + text_of(value) + "; it must be positive");
+  if (!(value >= range.least && value <= range.most))
+    wrong(name, "is " + text_of(value) + allowed_between(range.least, range.most, range));
 }
 
 double Keys::number(const std::string& name, double initial, double least, double most) {
@@ -84,9 +100,10 @@ double Keys::number(const std::string& name, double initial, double least, doubl
   if (node == nullptr) return initial;
   if (!node->is_number()) wrong(name, "must be a number");
   const double value = *node->value<double>();
-  if (!(value >= least && value <= most)) {
-    wrong(name, "is " + text_of(value) + "; allowed: " + text_of(least) + " to " + text_of(most));
-  }
+  const auto range = range_of(name);
+  least = std::max(least, -range.most);
+  most = std::min(most, range.most);
+  if (!(value >= least && value <= most)) wrong(name, "is " + text_of(value) + allowed_between(least, most, range));
   return value;
 }
 
@@ -96,8 +113,10 @@ double Keys::number(const std::string& name) {
 }
 
 double Keys::positive(const std::string& name) {
-  const double value = number(name);
-  if (has(name) && !(value > 0)) wrong(name, "is " + text_of(value) + "; it must be positive");
+  const auto* node = get(name);
+  if (node == nullptr || !node->is_number()) return number(name);
+  const double value = *node->value<double>();
+  expect_positive(name, value);
   return value;
 }
 
@@ -162,7 +181,7 @@ std::vector<double> Keys::list(const std::string& name, std::size_t size, const 
   std::vector<double> values;
   if (array != nullptr) {
     for (const auto& each : *array) {
-      if (each.is_number()) values.push_back(finite(name, each));
+      if (each.is_number()) values.push_back(within(name, each, range_of(name)));
     }
   }
   if (array == nullptr || values.size() != size || array->size() != size) {
@@ -176,7 +195,7 @@ std::vector<double> Keys::vector(const std::string& name, std::size_t axes, cons
   const auto* node = get(name);
   if (node == nullptr && initial.empty()) missing(name, no_default);
   if (node == nullptr) return initial.empty() ? std::vector<double>(axes, 0) : initial;
-  if (one_for_all && node->is_number()) return std::vector<double>(axes, finite(name, *node));
+  if (one_for_all && node->is_number()) return std::vector<double>(axes, within(name, *node, range_of(name)));
   return list(name, axes, one_for_all ? ", one for each axis, or one number for all" : ", one for each axis");
 }
 
@@ -186,7 +205,8 @@ std::vector<double> Keys::numbers(const std::string& name, std::size_t size) {
   return std::vector<double>(size, 0);
 }
 
-std::vector<std::vector<double>> Keys::rows(const std::string& name, std::size_t size) {
+std::vector<std::vector<double>> Keys::rows(const std::string& name, std::size_t size,
+                                            const std::vector<std::string>& units) {
   const auto* node = get(name);
   std::vector<std::vector<double>> rows;
   if (node == nullptr) return rows;
@@ -196,7 +216,8 @@ std::vector<std::vector<double>> Keys::rows(const std::string& name, std::size_t
     std::vector<double> row;
     if (const auto* inner = each.as_array()) {
       for (const auto& value : *inner) {
-        if (value.is_number()) row.push_back(finite(name, value));
+        const auto column = std::min(row.size(), units.size() - 1);  // of no units any
+        if (value.is_number()) row.push_back(within(name, value, range_of(units.empty() ? name : units[column])));
       }
       if (row.size() != inner->size()) row.clear();
     }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/mpm/ranges.hpp"
 #include "tools/mpm/tensors.hpp"
 
 namespace mpm {
@@ -20,6 +21,7 @@ class Keys {
   Keys(const toml::table& table, std::string path, std::string where);
 
   bool has(const std::string& name) const { return table_->contains(name); }
+  /// All numbers lie within the range of their unit (ranges.hpp), those of `least` and `most` too.
   double number(const std::string& name, double initial, double least = -1e300, double most = 1e300);
   double number(const std::string& name);    ///< required
   double positive(const std::string& name);  ///< required, above 0
@@ -34,8 +36,12 @@ class Keys {
   std::vector<double> vector(const std::string& name, std::size_t axes, const std::vector<double>& initial,
                              bool one_for_all = false);
   std::vector<double> numbers(const std::string& name, std::size_t size);  ///< required
-  /// Rows of `size` numbers each; none if the key is not there.
-  std::vector<std::vector<double>> rows(const std::string& name, std::size_t size);
+  /// Rows of `size` numbers each; none if the key is not there. units: as keys end with them, of the columns ("_s",
+  /// "_m_s"), the last for all that follow; none: that of the key.
+  std::vector<std::vector<double>> rows(const std::string& name, std::size_t size,
+                                        const std::vector<std::string>& units = {});
+  /// InputError unless a number that was read is positive, and as large as its unit has it.
+  void expect_positive(const std::string& name, double value) const;
   /// Numbers in the first row of such a list; 0 if there is none.
   std::size_t row_length(const std::string& name) const;
   std::vector<std::string> texts(const std::string& name);  ///< required, not empty
@@ -53,7 +59,7 @@ class Keys {
   std::string dotted(const std::string& name) const { return where_.empty() ? name : where_ + "." + name; }
   void missing(const std::string& name, const std::string& remedy);
   std::string unknown(const std::string& name, const toml::node& node, const std::string& nearest) const;
-  double finite(const std::string& name, const toml::node& value) const;
+  double within(const std::string& name, const toml::node& value, const Range& range) const;
   std::vector<double> list(const std::string& name, std::size_t size, const std::string& what) const;
   const toml::table* table_;  ///< copies of a table would not know their lines
   std::string path_, where_;

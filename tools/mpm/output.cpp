@@ -18,6 +18,12 @@ std::string frame_name(long frame, const std::string& what = "points") {
   return what + name;
 }
 
+/// Measures that not all soils have.
+bool may_be_undefined(const std::string& column) {
+  constexpr const char* names[] = {".void_ratio", ".fabric_anisotropy", ".pore_pressure_ratio"};
+  return std::any_of(std::begin(names), std::end(names), [&](const char* name) { return column.ends_with(name); });
+}
+
 std::span<const std::byte> bytes_of(const std::string& text) { return std::as_bytes(std::span(text)); }
 
 /// Of watched points in pore water.
@@ -34,6 +40,8 @@ std::string with_checksum(const std::string& text) {
 }  // namespace
 
 Rows::Rows(const std::string& path, const std::string& header, const WrittenRows& keep) : path_(path), written_(keep) {
+  std::istringstream names(header);
+  for (std::string name; std::getline(names, name, ',');) columns_.push_back(name);
   if (keep.bytes > 0) {
     const auto bytes = file_bytes(path);
     const auto size = std::size_t(keep.bytes);
@@ -66,10 +74,17 @@ void Rows::put(const std::string& line) {
 
 void Rows::add(const std::vector<double>& values) {
   std::string line;
-  for (const double value : values) {
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (k > 0) line += ',';
+    if (std::isnan(values[k]) && may_be_undefined(columns_.at(k))) continue;
+    if (!std::isfinite(values[k])) {
+      throw std::runtime_error(
+          path_ + ": at " + text_of(values[0]) + " s " + columns_.at(k) + " is " + text_of(values[k]) +
+          ": the run is broken, and ends; take a smaller time.cfl, or a load " + "that the soil can carry");
+    }
     char number[32];
-    std::snprintf(number, sizeof number, "%.9g", value);
-    line += (line.empty() ? "" : ",") + std::string(number);
+    std::snprintf(number, sizeof number, "%.9g", values[k]);
+    line += number;
   }
   put(line);
   if (std::fflush(file_) != 0) throw std::runtime_error(path_ + ": cannot be written; is the disc full?");

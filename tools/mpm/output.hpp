@@ -24,12 +24,15 @@ class Rows {
   Rows(const Rows&) = delete;
   Rows& operator=(const Rows&) = delete;
   ~Rows();
+  /// A value that is not defined (pore_pressure_ratio without effective stress, void_ratio of a continuum: NaN) is an
+  /// empty cell. std::runtime_error: any other that is not finite, or the disc is full.
   void add(const std::vector<double>& values);
   const WrittenRows& written() const { return written_; }
 
  private:
   void put(const std::string& line);
   std::string path_;
+  std::vector<std::string> columns_;
   WrittenRows written_;
   std::FILE* file_;
 };

@@ -1,8 +1,7 @@
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 
+#include "rvelab/keys/regular_file.hpp"
 #include "tools/mpm/keys.hpp"
 #include "tools/mpm/rock_shape.hpp"
 
@@ -77,9 +76,12 @@ std::vector<Triangle> ascii_triangles(const std::string& path, const std::string
 }  // namespace
 
 std::vector<Triangle> read_stl(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(path + ": no such file, or it cannot be read; give the path of an STL file");
-  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  std::string bytes;
+  try {
+    bytes = rvelab::keys::whole_file<std::string>(path, "an STL file");
+  } catch (const rvelab::InputError& error) {
+    throw InputError(error.what());
+  }
   // Binary files may begin with "solid" too: then their size tells.
   const bool binary_size = bytes.size() >= title_bytes && bytes.size() == title_bytes + triangle_bytes * counted(bytes);
   const bool ascii = bytes.compare(0, 5, "solid") == 0 && !binary_size;

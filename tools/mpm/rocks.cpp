@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <sstream>
 
 namespace mpm {
 namespace {
@@ -124,7 +125,14 @@ long Rocks<D>::sub_steps_for(const std::vector<Wall<D>>& walls, const Vec<D>& gr
   }
   for (const double each : on_plate) highest = std::max(highest, each);
   if (highest == 0) return 1;
-  return std::max(1L, long(std::ceil(dt * std::sqrt(highest) / std::numbers::pi * steps_per_collision)));
+  const double count = std::ceil(dt * std::sqrt(highest) / std::numbers::pi * steps_per_collision);
+  constexpr double most = 1e8;
+  if (count <= most) return std::max(1L, long(count));
+  std::ostringstream words;
+  words << "the contacts of rocks would need " << count << " sub-steps in a step of " << dt << " s; allowed: up to "
+        << most << "; make rocks larger, slower or softer (young_modulus_Pa)";
+  if (sub_steps == 0) throw InputError(words.str());
+  throw std::runtime_error(words.str());
 }
 
 template <int D>

@@ -14,6 +14,8 @@
 #include "tools/mpm/output.hpp"
 #include "tools/mpm/rock_output.hpp"
 #include "tools/mpm/rocks.hpp"
+#include "tools/mpm/scene_checks.hpp"
+#include "tools/mpm/watch.hpp"
 
 namespace mpm {
 namespace {
@@ -200,11 +202,19 @@ bool step_to_end(const Scene& scene, const RunOptions& options, Solver<D>& solve
   while (solver.time < scene.duration && !stopped) {
     double dt = solver.stable_step();
     if (solver.points.empty()) dt = std::min(dt, scene.history_every);  // rocks alone have sub-steps
-    outputs.checked([&] { watch_step<D>(solver, dt, progress.seen, std::cerr); });
+    outputs.checked([&] {
+      watch_step<D>(solver, dt, progress.seen, std::cerr);
+      watch_length<D>(solver, dt, 1, scene.duration);
+    });
+    const double before = solver.rocks ? double(solver.rocks->sub_steps) : 0;
     const bool last = solver.time + dt >= scene.duration;
     if (last) dt = scene.duration - solver.time;
     solver.step(dt);
     if (last) solver.time = scene.duration;
+    if (solver.rocks && !last) {
+      const double sub_steps = double(solver.rocks->sub_steps) - before;
+      outputs.checked([&] { watch_length<D>(solver, dt, sub_steps, scene.duration); });
+    }
     outputs.after_step(last);
     stopped = !last && (interrupted != 0 || solver.time >= options.stop_at);
     if (solver.steps % steps_between_balances == 0 || last) {
@@ -219,6 +229,7 @@ bool step_to_end(const Scene& scene, const RunOptions& options, Solver<D>& solve
 template <int D>
 int run_model(const Scene& scene, const RunOptions& options, std::ostream& report) {
   const auto begin = Clock::now();
+  expect_memory(scene);
   auto model = set_up<D>(scene, options.threads, options.specimens, !options.resume, options.source);
   auto& solver = model->solver;
   Progress progress;
@@ -228,6 +239,7 @@ int run_model(const Scene& scene, const RunOptions& options, std::ostream& repor
     progress.start = energy_start<D>(solver);
     progress.next_checkpoint = scene.checkpoint_every;
   }
+  if (!options.resume) watch_length<D>(solver, solver.stable_step(), 1, scene.duration);
   // The time of grains is that of this call; so is that of the continuum.
   solver.grid_seconds = solver.material_seconds = 0;
   if (options.resume && solver.time >= scene.duration) {

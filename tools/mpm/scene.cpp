@@ -41,7 +41,7 @@ MaterialOfScene read_material(Keys& keys) {
 }
 
 std::vector<std::vector<double>> read_motion(Keys& keys, std::size_t d) {
-  auto rows = keys.rows("motion", d + 1);
+  auto rows = keys.rows("motion", d + 1, {"_s", "_m_s"});
   for (std::size_t k = 0; k < rows.size(); ++k) {
     if (k == 0 ? rows[k][0] != 0 : rows[k][0] <= rows[k - 1][0]) {
       keys.wrong("motion", "must begin at time 0 and go forward in time: rows of s and m/s");
@@ -120,7 +120,7 @@ void read_rest(Keys& file, Scene& scene) {
   scene.follows = grid.text("follows", "");
   grid.finish();
   for (const double side : scene.cell) {
-    if (!(side > 0)) grid.wrong("cell_m", "must be positive");
+    if (grid.has("cell_m")) grid.expect_positive("cell_m", side);
   }
   auto time = file.table("time");
   scene.duration = time.positive("duration_s");

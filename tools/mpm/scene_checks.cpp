@@ -2,6 +2,9 @@
 
 #include "tools/mpm/scene_water.hpp"
 #include "tools/mpm/setup_plates.hpp"
+#include "tools/mpm/watch.hpp"
+
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +15,7 @@ namespace mpm {
 
 namespace {
 
-constexpr double most_points = 5e7;    // some 20 GB
+constexpr double most_points = 5e7;
 constexpr double farthest_cell = 1e9;  // numbers of nodes are int
 
 /// Points along one axis of a region, before it is known that they can be counted.
@@ -71,6 +74,55 @@ void check_boundaries(const Scene& scene, const std::string& path) {
   }
 }
 
+/// GB, of points with their supports and of the nodes of the background grid.
+double memory_of(const Scene& scene, double points, double nodes) {
+  const bool plane = scene.dimension == 2;
+  const double point = plane ? sizeof(Point<2>) + sizeof(Support<2>) : sizeof(Point<3>) + sizeof(Support<3>);
+  return 1e-9 * (points * (point + 2 * sizeof(long)) + nodes * (plane ? sizeof(Node<2>) : sizeof(Node<3>)));
+}
+
+/// Of the box that holds all regions, with four to each side.
+double nodes_of(const Scene& scene) {
+  double nodes = scene.regions.empty() ? 0 : 1;
+  for (std::size_t i = 0; i < scene.cell.size() && nodes > 0; ++i) {
+    double lowest = 1e300, highest = -1e300;
+    for (const auto& region : scene.regions) {
+      lowest = std::min(lowest, region.lower[i]);
+      highest = std::max(highest, region.upper[i]);
+    }
+    nodes *= std::ceil((highest - lowest) / scene.cell[i]) + 9;
+  }
+  return nodes;
+}
+
+void check_grid(const Scene& scene, const std::string& path) {
+  const double nodes = nodes_of(scene), most = double(Grid<3>::most);
+  if (nodes <= most) return;
+  throw InputError(path + ": grid.cell_m is " + text_of(scene.cell) + ": the box around all regions would have " +
+                   text_of(nodes) + " nodes (" + text_of(memory_of(scene, 0, nodes)) +
+                   " GB), and a scene has at most " + text_of(most) +
+                   "; make grid.cell_m larger, or put the regions nearer to each other");
+}
+
+/// The step follows from the fastest wave, before any point is there.
+void check_steps(const Scene& scene, const std::string& path) {
+  const double cell = *std::min_element(scene.cell.begin(), scene.cell.end());
+  for (const auto& material : scene.materials) {
+    if (material.grains) continue;
+    const double speed = std::sqrt(material.continuum.wave_modulus / material.density);
+    const double steps = scene.duration * speed / (scene.cfl * cell);
+    if (steps <= most_steps) continue;
+    throw InputError(path + ": time.duration_s = " + text_of(scene.duration) + " would need " + text_of(steps) +
+                     " steps of " + text_of(scene.cfl * cell / speed) + " s, in which the wave of material " +
+                     material.name + " (" + text_of(speed) + " m/s: modulus " +
+                     text_of(material.continuum.wave_modulus) + " Pa, density " + text_of(material.density) +
+                     " kg/m^3) crosses a part of a cell of " + text_of(cell) +
+                     " m (grid.cell_m, time.cfl); allowed: up to " + text_of(most_steps) +
+                     "; make young_modulus_Pa smaller, density_kg_m3 or grid.cell_m larger, or "
+                     "time.duration_s shorter");
+  }
+}
+
 void check_sizes(const Scene& scene, const std::string& path) {
   double total = 0;
   for (const auto& region : scene.regions) {
@@ -85,8 +137,8 @@ void check_sizes(const Scene& scene, const std::string& path) {
     total += points;
     if (total <= most_points) continue;
     throw InputError(path + ": " + region_name(scene, region) + " would have " + text_of(points) +
-                     " material points, and a scene has at most " + text_of(most_points) +
-                     "; make grid.cell_m larger, or the region or points_per_cell smaller");
+                     " material points (" + text_of(memory_of(scene, points, 0)) + " GB), and a scene has at most " +
+                     text_of(most_points) + "; make grid.cell_m larger, or the region or points_per_cell smaller");
   }
 }
 
@@ -185,6 +237,17 @@ std::string region_name(const Scene& scene, const RegionOfScene& region) {
   return "region." + std::to_string(&region - scene.regions.data()) + " (of " + region.material + ")";
 }
 
+void expect_memory(const Scene& scene) {
+  double points = 0;
+  for (const auto& region : scene.regions) points += double(filling_of(scene, region).total);
+  const double needed = memory_of(scene, points, nodes_of(scene));
+  const double there = 1e-9 * double(sysconf(_SC_PHYS_PAGES)) * double(sysconf(_SC_PAGESIZE));
+  if (needed <= there) return;
+  throw InputError(text_of(points) + " material points and the nodes around them need " + text_of(needed) +
+                   " GB, and this machine has " + text_of(there) +
+                   " GB; make grid.cell_m larger, or a [[region]] or its points_per_cell smaller");
+}
+
 void check_scene(const Scene& scene, const std::string& path) {
   check_materials(scene, path);
   check_boundaries(scene, path);
@@ -192,6 +255,8 @@ void check_scene(const Scene& scene, const std::string& path) {
     throw InputError(path + ": there is no [[region]]; the scene has no material points");
   }
   check_sizes(scene, path);
+  check_grid(scene, path);
+  check_steps(scene, path);
   check_overlaps(scene, path);
   check_sides(scene, path);
   check_watched(scene, path);
@@ -240,6 +305,32 @@ double relative_speed(const Moving& a, const Moving& b) {
   return largest;
 }
 
+/// The box presses its soil by what it accelerates over the length of the soil, or by its speed, whichever is less.
+void check_shaking(const Scene& scene, const std::string& material, double modulus, double density, double fastest) {
+  const auto& shaking = scene.loads.shaking;
+  if (!shaking.any() || (scene.planes.empty() && scene.bodies.empty())) return;
+  double speed = std::abs(shaking.velocity), largest = shaking.velocity == 0 ? 0 : 1e300, now = 0;
+  const auto& record = shaking.record;
+  for (std::size_t k = 0; k < record.times.size(); ++k) {
+    largest = std::max(largest, std::abs(record.values[k]));
+    if (k == 0) continue;
+    now += 0.5 * (record.values[k] + record.values[k - 1]) * (record.times[k] - record.times[k - 1]);
+    speed = std::max(speed, std::abs(now));
+  }
+  double lowest = 1e300, highest = -1e300;
+  for (const auto& region : scene.regions) {
+    lowest = std::min(lowest, region.lower[std::size_t(shaking.axis)]);
+    highest = std::max(highest, region.upper[std::size_t(shaking.axis)]);
+  }
+  const double pressure = density * largest * (highest - lowest);
+  if (!(speed > fastest && pressure > largest_strain * modulus)) return;
+  throw InputError(std::string("loads.shaking.") + (record.times.empty() ? "velocity_m_s" : "record") +
+                   ": it moves the box at up to " + text_of(speed) + " m/s, and waves in material " + material +
+                   " at " + text_of(fastest / largest_strain) +
+                   " m/s: soil would be compressed by half or more at once; allowed: up to " + text_of(fastest) +
+                   " m/s; make it slower, or the material stiffer");
+}
+
 }  // namespace
 
 void check_loads(const Scene& scene, const std::string& material, double modulus, double density) {
@@ -269,7 +360,12 @@ void check_loads(const Scene& scene, const std::string& material, double modulus
     if (scene.planes.empty() && scene.bodies.empty()) break;
     refuse_pressure("loads.gravity_m_s2", text_of(scene.gravity), density * scene.gravity[i] * (highest - lowest));
   }
+  for (const auto& strip : scene.loads.strips) {
+    refuse_pressure("loads.strip.half_sine_Pa", text_of(strip.peak), strip.peak);
+    for (const double each : strip.history.values) refuse_pressure("loads.strip.history", text_of(each), each);
+  }
   const double fastest = largest_strain * std::sqrt(modulus / density);
+  check_shaking(scene, material, modulus, density, fastest);
   for (std::size_t a = 0; a < moving.size(); ++a) {
     for (std::size_t b = a + 1; b < moving.size(); ++b) {
       // Two bodies press what is between them from both sides.

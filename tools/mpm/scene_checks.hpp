@@ -17,9 +17,13 @@ Filling filling_of(const Scene& scene, const RegionOfScene& region);
 /// What a message calls a region, which has no name: region.0, as --set does.
 std::string region_name(const Scene& scene, const RegionOfScene& region);
 
-/// InputError if a name is there twice or not at all, regions overlap, have more points than memory, lie behind a plane
-/// or above the surface of a geostatic state, or a watched point is far from all of them.
+/// InputError if a name is there twice or not at all, regions overlap, have more points or nodes than allowed, waves
+/// ask for more steps than a run may have, regions lie behind a plane or above the surface of a geostatic state, or a
+/// watched point is far from all of them.
 void check_scene(const Scene& scene, const std::string& path);
+
+/// InputError if the points and the grid would need more memory than this machine has.
+void expect_memory(const Scene& scene);
 
 /// InputError if a load would strain a material by half at once, or more: gravity over the height of the soil and
 /// pressures against its modulus of plane waves (Pa), speeds of what meets against the speed of its waves. `density` in

@@ -36,8 +36,9 @@ void read_grains(Keys& keys, std::size_t d, RegionOfScene& region) {
   region.upper.assign(d, -1e300);
   const double half = 0.5 * region.largest_side();
   for (const auto& grain : region.grains) {
-    if (!(grain[d] > 0))
-      keys.wrong("rows_m", "has a grain of radius " + text_of(grain[d]) + "; radii must be positive");
+    if (!(grain[d] >= range_of("radius_m").least))
+      keys.wrong("rows_m", "has a grain of radius " + text_of(grain[d]) + "; radii must be positive, " +
+                               text_of(range_of("radius_m").least) + " m or more");
     for (std::size_t i = 0; i < d; ++i) {
       region.lower[i] = std::min(region.lower[i], grain[i] - half);
       region.upper[i] = std::max(region.upper[i], grain[i] + half);

@@ -56,7 +56,7 @@ std::vector<double> rotation_of(Keys& keys, int d) {
   if (d == 2) return {keys.number("rotation_deg") * degree};
   const auto values = keys.numbers("rotation_deg", 4);
   const Vec<3> axis(values[0], values[1], values[2]);
-  if (!(axis.norm() > 0)) keys.wrong("rotation_deg", "has no axis; give [x, y, z, angle]");
+  if (!(axis.norm() > 1e-9)) keys.wrong("rotation_deg", "has no axis; give [x, y, z, angle]");
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(values[3] * degree, axis.normalized()));
   return {turn.w(), turn.x(), turn.y(), turn.z()};
 }
@@ -71,7 +71,7 @@ void read_form(Keys& keys, int d, RockOfScene& rock) {
     rock.half_axes = keys.vector("half_axes_m", std::size_t(d), {});
     rock.blockiness = blockiness_of(keys, d);
     for (const double axis : rock.half_axes) {
-      if (keys.has("half_axes_m") && !(axis > 0)) keys.wrong("half_axes_m", "must be positive along every axis");
+      if (keys.has("half_axes_m")) keys.expect_positive("half_axes_m", axis);
     }
   } else {
     rock.form = RockOfScene::Form::polyhedron;
@@ -131,7 +131,9 @@ void read_rows(Keys& keys, int d, const RockOfScene& like, std::vector<RockOfSce
       if (d == 2) rock.rotation[0] *= degree;
     }
     const double least = round ? rock.radius : *std::min_element(rock.half_axes.begin(), rock.half_axes.end());
-    if (!(least > 0)) keys.wrong("rows_m", "has a rock of size " + text_of(least) + "; sizes must be positive");
+    if (!(least >= range_of("radius_m").least))
+      keys.wrong("rows_m", "has a rock of size " + text_of(least) + "; sizes must be positive, " +
+                               text_of(range_of("radius_m").least) + " m or more");
     if (d == 3 && !(Eigen::Map<const Vec<4>>(rock.rotation.data()).norm() > 0)) {
       keys.wrong("rows_m", "has a quaternion of length 0; give [1, 0, 0, 0] for a rock that is not turned");
     }
@@ -161,7 +163,7 @@ void read_group(Keys& keys, RocksOfScene& rocks, int d) {
   field.lower = keys.vector("lower_m", axes, {});
   field.upper = keys.vector("upper_m", axes, {});
   field.share = keys.positive("volume_share");
-  field.diameters = keys.rows("diameters_m", 2);
+  field.diameters = keys.rows("diameters_m", 2, {"_m", ""});
   field.spread = keys.number("spread", 0, 0, 0.9);
   field.aspect = keys.vector("aspect", axes, std::vector<double>(axes, 1));
   field.aligned = keys.choice("orientation", {"random", "aligned"}) == "aligned";
@@ -174,12 +176,15 @@ void read_group(Keys& keys, RocksOfScene& rocks, int d) {
   keys.finish();
   if (field.diameters.empty()) keys.wrong("diameters_m", "is missing; give rows [diameter in m, part by volume]");
   for (const auto& row : field.diameters) {
-    if (!(row[0] > 0 && row[1] > 0)) keys.wrong("diameters_m", "has a row that is not positive; give [diameter, part]");
+    if (!(row[0] >= range_of("_m").least && row[1] >= range_of("").least))
+      keys.wrong("diameters_m", "has the row " + text_of(row) + ", which is not positive; give [diameter, part], " +
+                                    text_of(range_of("_m").least) + " m or more");
   }
   if (field.share > 0.6) keys.wrong("volume_share", "is " + text_of(field.share) + "; allowed: up to 0.6");
   for (std::size_t i = 0; i < axes; ++i) {
     if (!(field.lower[i] < field.upper[i])) keys.wrong("upper_m", "must be above lower_m along every axis");
-    if (!(field.aspect[i] > 0)) keys.wrong("aspect", "must be positive along every axis");
+    if (!(field.aspect[i] >= 1e-3 && field.aspect[i] <= 1e3))
+      keys.wrong("aspect", "holds " + text_of(field.aspect[i]) + "; allowed: 0.001 to 1000 along every axis");
   }
   draw_rocks(field, rocks.all);
 }

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
+#include "tools/mpm/included.hpp"
 #include "tools/mpm/scene_checks.hpp"
 
 namespace mpm {
@@ -15,9 +16,9 @@ constexpr const char* dry_scene = "is of saturated soil, and the scene has no [f
 
 }  // namespace
 
-TimeHistory read_time_history(Keys& keys, const std::string& name) {
+TimeHistory read_time_history(Keys& keys, const std::string& name, const std::string& unit) {
   TimeHistory history;
-  for (const auto& row : keys.rows(name, 2)) {
+  for (const auto& row : keys.rows(name, 2, {"_s", unit})) {
     if (!history.times.empty() && row[0] <= history.times.back()) {
       keys.wrong(name, "must go forward in time, and goes from " + text_of(history.times.back()) + " to " +
                            text_of(row[0]) + " s; sort its rows, and leave out what is there twice");
@@ -35,7 +36,7 @@ Shaking read_shaking(Keys keys, int dimension) {
   std::vector<std::string> axes(axis_names, axis_names + dimension);
   const auto axis = keys.choice("axis", axes);
   shaking.axis = int(std::find(axes.begin(), axes.end(), axis) - axes.begin());
-  shaking.record = read_time_history(keys, "record");
+  shaking.record = read_time_history(keys, "record", "_m_s2");
   if (shaking.record.times.empty()) {
     shaking.velocity = keys.number("velocity_m_s");
     shaking.frequency = keys.positive("frequency_Hz");
@@ -52,7 +53,7 @@ Strip read_strip(Keys& keys) {
   Strip strip;
   strip.lower = keys.number("lower_m");
   strip.upper = keys.number("upper_m");
-  strip.history = read_time_history(keys, "history");
+  strip.history = read_time_history(keys, "history", "_Pa");
   strip.peak = keys.number("half_sine_Pa", 0);
   if (strip.peak != 0) strip.duration = keys.positive("half_sine_s");
   keys.finish();
@@ -76,7 +77,7 @@ std::optional<WaterOfScene> read_water(Keys& file, const Scene& scene) {
   if (keys.has("bulk_modulus_Pa")) options.bulk_modulus = keys.positive("bulk_modulus_Pa");
   options.drained_surface = keys.choice("free_surface", {"drained", "membrane"}) == "drained";
   options.thickness = scene.thickness;
-  water.porosity = keys.number("porosity", 0, 0, 0.99);
+  water.porosity = keys.number("porosity", 0, 0.01, 0.99);  // 0: not told
   if (keys.has("water_table_m")) {
     water.table = keys.number("water_table_m");
   } else if (scene.stress == Scene::Stress::geostatic) {
@@ -113,7 +114,8 @@ WaterBoundary read_water_boundary(Keys& keys, bool with_water) {
 
 void read_region_water(Keys& keys, const std::optional<WaterOfScene>& water, RegionOfScene& region, bool grains) {
   region.saturated = keys.boolean("saturated", water.has_value());
-  region.conductivity = keys.number("conductivity_m_s", water ? water->conductivity : 0, 1e-300);
+  region.conductivity =
+      keys.number("conductivity_m_s", water ? water->conductivity : 0, range_of("conductivity_m_s").least);
   for (const char* name : {"saturated", "conductivity_m_s"}) {
     if (keys.has(name) && !water) keys.wrong(name, dry_scene);
   }
@@ -140,12 +142,7 @@ void include_record(toml::table& file, const std::string& scene_path) {
   const auto name = (*shaking)["record_csv"].value<std::string>();
   if (!name) throw InputError(scene_path + ": loads.shaking.record_csv must be a text in quotation marks");
   const auto path = std::filesystem::path(scene_path).parent_path() / *name;
-  std::ifstream csv(path);
-  if (!csv) {
-    throw InputError(path.string() +
-                     ": cannot be read; loads.shaking.record_csv names a file beside the scene, of rows "
-                     "s,m/s^2");
-  }
+  std::istringstream csv(text_of_file(path, "loads.shaking.record_csv", "rows s,m/s^2"));
   toml::array rows;
   std::string line;
   for (long number = 1; std::getline(csv, line); ++number) {
@@ -157,7 +154,12 @@ void include_record(toml::table& file, const std::string& scene_path) {
       rows.push_back(toml::array{time, acceleration});
       continue;
     }
-    if (line.find_first_not_of(" \t\r") == std::string::npos || rows.empty()) continue;  // empty, or a header
+    std::istringstream again(line);
+    std::string first;
+    const bool none = !(again >> first);
+    char* end = nullptr;
+    std::strtod(first.c_str(), &end);
+    if (none || (rows.empty() && *end != 0)) continue;  // empty, or a header
     throw InputError(path.string() + ":" + std::to_string(number) +
                      ": is no row of a time in s and an acceleration in m/s^2; correct or remove it");
   }

@@ -11,8 +11,8 @@ std::optional<WaterOfScene> read_water(Keys& file, const Scene& scene);
 WaterBoundary read_water_boundary(Keys& keys, bool with_water);
 /// `grains`: of a table of grains, whose porosity dry soil has too.
 void read_region_water(Keys& keys, const std::optional<WaterOfScene>& water, RegionOfScene& region, bool grains);
-/// Rows of s and a value, forward in time; none if the key is not there.
-TimeHistory read_time_history(Keys& keys, const std::string& name);
+/// Rows of s and a value of that unit ("_Pa"), forward in time; none if the key is not there.
+TimeHistory read_time_history(Keys& keys, const std::string& name, const std::string& unit);
 /// loads.shaking and loads.strip.
 Loads read_loads(Keys& keys, const Scene& scene);
 /// Replaces loads.shaking.record_csv, a file beside the scene, by the rows that it holds.

@@ -62,12 +62,35 @@ void place_planes(const Scene& scene, Solver<D>& solver) {
   }
 }
 
+/// Contact is at points of the surface, a cell apart, which are visited each step.
+template <int D>
+void expect_countable_surface(const std::string& name, const BodyShape<D>& shape, const Vec<D>& cell) {
+  constexpr double most = 1e7;
+  double points = 0;
+  std::string key = "size_m";
+  if (const auto* box = std::get_if<Box<D>>(&shape)) {
+    for (int i = 0; i < D; ++i) {
+      double face = 2;
+      for (int j = 0; j < D; ++j) face *= j == i ? 1 : 2 * box->half[j] / cell[j];
+      points += face;
+    }
+  } else if (const auto* disc = std::get_if<Disc<D>>(&shape)) {
+    key = "radius_m";
+    points = 6.3 * disc->radius / cell.minCoeff();
+  }
+  if (points <= most) return;
+  throw InputError("body." + name + "." + key + ": the surface would have " + text_of(points) +
+                   " points of contact, a cell apart; allowed: up to " + text_of(most) +
+                   "; make the body smaller or grid.cell_m larger, or take a half_space");
+}
+
 template <int D>
 void place_bodies(const Scene& scene, Solver<D>& solver) {
   for (const auto& each : scene.bodies) {
     Body<D> body;
     body.name = each.name;
     body.shape = std::get<BodyShape<D>>(each.shape);
+    expect_countable_surface<D>(each.name, body.shape, solver.grid.cell);
     body.centre = vector_of<D>(each.centre);
     body.rough = each.rough;
     body.friction = each.friction;

@@ -54,7 +54,7 @@ std::vector<PlateSide> sides_of(const Solver<D>& solver, const Body<D>& body) {
 std::optional<PlateOfScene> read_plate(Keys& keys) {
   PlateOfScene plate;
   const double pressure = keys.number("pressure_Pa", 0);
-  plate.pressure = read_time_history(keys, "pressure_history");
+  plate.pressure = read_time_history(keys, "pressure_history", "_Pa");
   if (keys.has("pressure_Pa")) {
     if (!plate.pressure.times.empty())
       keys.wrong("pressure_history", "and pressure_Pa say the same thing twice; remove one of them");

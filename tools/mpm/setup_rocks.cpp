@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "tools/mpm/cut_point.hpp"
 #include "tools/mpm/rocks.hpp"
@@ -12,6 +13,17 @@ namespace {
 
 std::string name_of(const RockOfScene& rock, std::size_t number) {
   return rock.single ? "rock." + rock.name : "rock " + std::to_string(number) + " of rocks." + rock.name;
+}
+
+/// Of any form: so large that mass and inertia are numbers to divide by.
+template <int D>
+void expect_size(const std::string& name, const RockShape<D>& shape) {
+  const double across = 2 * std::min(shape.inner_radius(), shape.equivalent_radius());
+  const auto range = range_of("size_m");
+  if (across >= range.least && shape.bounding_radius() <= range.most) return;
+  throw InputError(name + ": is " + text_of(across) + " m across at its thinnest, and reaches " +
+                   text_of(shape.bounding_radius()) + " m from its centre; allowed: " + text_of(range.least) + " to " +
+                   text_of(range.most) + " m; give its sizes (radius_m, half_axes_m, file_stl) in m");
 }
 
 template <int D>
@@ -25,6 +37,7 @@ Rock<D> made(const RockOfScene& each, const RockMaterialOfScene& material, doubl
   Eigen::Quaterniond axes = Eigen::Quaterniond::Identity();
   rocks.shapes.push_back(shape_of<D>(each, &centre, &axes));
   const auto& shape = rocks.shapes.back();
+  expect_size<D>(name_of(each, rocks.all.size()), shape);
   auto& body = rock.body;
   body.mass = material.density * shape.volume() * thickness;
   body.inertia = material.density * thickness * shape.inertia();
@@ -63,6 +76,15 @@ void check_places(const Scene& scene, const Solver<D>& solver) {
   const auto walls = walls_at<D>(solver.grid, solver.planes, solver.bodies, 0);
   const auto& all = scene.rocks->all;
   const double size = point_size<D>(scene);
+  constexpr double most_places = 1e6;  // of the surface of a rock, a cell apart
+  for (std::size_t k = 0; k < all.size() && size > 0 && !rocks.soil.ghosts; ++k) {
+    const double radius = rocks.shapes[k].bounding_radius(), cells = radius / solver.grid.cell.minCoeff();
+    const double places = D == 2 ? 2 * std::numbers::pi * cells : 4 * std::numbers::pi * cells * cells;
+    if (places <= most_places) continue;
+    throw InputError(name_of(all[k], k) + ": reaches " + text_of(radius) + " m from its centre, and would have " +
+                     text_of(places) + " points of its surface, a cell apart; allowed: up to " + text_of(most_places) +
+                     "; make the rock smaller, or grid.cell_m larger");
+  }
   rocks.find_candidates(walls, Vec<D>::Zero(), 0);
   for (std::size_t k = 0; k < all.size(); ++k) {
     const double across = 2 * rocks.shapes[k].inner_radius();

@@ -119,7 +119,7 @@ void Solver<D>::find_supports() {
       high[0][i] = std::max(high[0][i], high[piece][i]);
     }
   }
-  const bool grown = grid.cover(low[0], high[0]);
+  const bool grown = grid.cover(low[0], high[0], Grid<D>::most_for(n));
   if (grown || planes.changed(time)) planes.rebuild(grid, time);
 }
 
@@ -242,6 +242,10 @@ void Solver<D>::take_changes(Phase<D> phase, double dt) {
   phase.planes.unfold(phase.grid);
   auto& nodes = phase.grid.nodes;
   const long n = long(nodes.size());
+  // Points fall by dt w, the work that nodes get is that of the mean velocity: heights are half a step late. So is the
+  // stress of MUSL, and the two nearly cancel.
+  const bool heights = &phase.grid == &grid && options.scheme == Scheme::usf;
+  const Vec<D> late = heights ? Vec<D>(0.5 * dt * options.gravity) : Vec<D>(Vec<D>::Zero());
   sums_.assign((n + chunk - 1) / chunk, 0);
   workers.for_each(std::int64_t(sums_.size()), [&](std::int64_t piece) {
     double gained = 0;  // not in place: neighbours share cache lines
@@ -252,9 +256,9 @@ void Solver<D>::take_changes(Phase<D> phase, double dt) {
       for (int i = 0; i < D; ++i) {
         const double mapped = node.a[i];
         node.a[i] = node.w[i] - mapped;
-        change += node.a[i] * (node.w[i] + mapped);
+        change += node.a[i] * (0.5 * (node.w[i] + mapped) + late[i]);
       }
-      gained += 0.5 * node.mass * change;
+      gained += node.mass * change;
     }
     sums_[piece] = gained;
   });

@@ -66,8 +66,9 @@ class Solver {
   Bodies<D> bodies;
   Options<D> options;
   /// J, change of energy at the nodes over all steps since the start; what the points have less was lost in mapping. It
-  /// is kinetic energy, and the half step by which stress lags velocity: 1/2 V sigma:(grad w - grad v) dt, of the
-  /// velocities w that one step ends with and v that mapping makes of them for the next.
+  /// is kinetic energy, and the half step by which stress and height lag velocity: 1/2 V sigma:(grad w - grad v) dt, of
+  /// the velocities w that one step ends with and v that mapping makes of them for the next, and (USF) 1/2 m g.(w - v)
+  /// dt, of v and w at the start and end of one step.
   double nodal_energy = 0;
   Loads loads;
   double load_work = 0;  ///< J, of `loads` on the soil and its water

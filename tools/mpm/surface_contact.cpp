@@ -136,8 +136,9 @@ bool Bodies<D>::hold(SurfacePoint& point, const Grid<D>& grid, double time) {
 /// linear functions do.
 template <int D>
 int Bodies<D>::surface_weights(double xi, double* weight) const {
+  if (shape != Shape::bspline) return hats_along_axis(xi, weight);
   double slope[3];
-  return shape_along_axis(shape == Shape::bspline ? Shape::bspline : Shape::linear, xi, 1, 0, weight, slope);
+  return shape_along_axis(Shape::bspline, xi, 1, 0, weight, slope);
 }
 
 template <int D>

@@ -48,6 +48,17 @@ std::string cause_of_step(const Solver<D>& solver) {
   };
   for (const auto& plane : solver.planes.all) drive("boundary." + plane.name, plane);
   for (const auto& body : solver.bodies.all) drive("body." + body.name, body);
+  for (std::size_t k = 0; solver.rocks && k < solver.rocks->all.size(); ++k) {
+    const double speed = solver.rocks->surface_speed(solver.rocks->all[k]);
+    if (speed <= driven) continue;
+    driven = speed;
+    of_driven = "rock " + std::to_string(k) + " (" + solver.rocks->all[k].name + "), whose surface moves at " +
+                text_of(speed) + " m/s";
+  }
+  if (solver.points.empty()) {
+    return (driven > 0 ? of_driven : "gravity of " + text_of(solver.options.gravity.norm()) + " m/s^2") +
+           ", in cells of " + text_of(solver.grid.cell.minCoeff()) + " m";
+  }
   const double own = solver.options.cfl / (wave + fastest);
   if (driven > 0 && 0.2 / driven < own) return of_driven;
   return (wave >= fastest ? of_wave : of_point) + ", in cells of " + text_of(solver.grid.cell.minCoeff()) + " m";
@@ -93,6 +104,21 @@ void watch_step(const Solver<D>& solver, double dt, Watched& seen, std::ostream&
 }
 
 template <int D>
+void watch_length(const Solver<D>& solver, double dt, double sub_steps, double duration) {
+  const double left = duration - solver.time, steps = left / dt * sub_steps;
+  if (steps <= most_steps) return;
+  std::string words = "at " + text_of(solver.time) + " s the time step is " + text_of(dt / sub_steps) + " s" +
+                      (sub_steps > 1 ? " (of the contacts of rocks)" : "") + ", and the " + text_of(left) +
+                      " s to time.duration_s would need " + text_of(steps) + " steps; allowed: up to " +
+                      text_of(most_steps) + ". ";
+  words += sub_steps > 1 ? "What asks for it: the stiffest contact of rocks; make rocks larger or softer"
+                         : "What asks for it: " + cause_of_step<D>(solver) + "; make material softer, or cells larger";
+  words += ", or time.duration_s shorter";
+  if (solver.steps == 0) throw InputError(words);
+  throw std::runtime_error(words + "; the run would stand still: it ends");
+}
+
+template <int D>
 void watch_energy(const Solver<D>& solver, const EnergyStart& start, Watched& seen, std::ostream& tell) {
   const auto b = energy_balance<D>(solver, start);
   for (const double energy : {b.kinetic, start.kinetic, b.potential, b.stress_work, b.pressure_work, b.boundary_work,
@@ -130,6 +156,8 @@ void watch_energy(const Solver<D>& solver, const EnergyStart& start, Watched& se
 
 template void watch_step<2>(const Solver<2>&, double, Watched&, std::ostream&);
 template void watch_step<3>(const Solver<3>&, double, Watched&, std::ostream&);
+template void watch_length<2>(const Solver<2>&, double, double, double);
+template void watch_length<3>(const Solver<3>&, double, double, double);
 template void watch_energy<2>(const Solver<2>&, const EnergyStart&, Watched&, std::ostream&);
 template void watch_energy<3>(const Solver<3>&, const EnergyStart&, Watched&, std::ostream&);
 

@@ -24,6 +24,14 @@ inline constexpr double warning_step = 1e-3, ending_step = 1e-6;
 template <int D>
 void watch_step(const Solver<D>& solver, double dt, Watched& seen, std::ostream& tell);
 
+/// Steps, and sub-steps of rocks, that a run may have before it: one that asks for more would never end.
+inline constexpr double most_steps = 1e11;
+
+/// Checks that steps of dt (s), with so many sub-steps of rocks each, lead to the end at `duration` (s).
+/// std::runtime_error: they would be more than most_steps; InputError: at the first step.
+template <int D>
+void watch_length(const Solver<D>& solver, double dt, double sub_steps, double duration);
+
 /// Checks the energy balance. std::runtime_error: more than ending_share comes from nothing.
 template <int D>
 void watch_energy(const Solver<D>& solver, const EnergyStart& start, Watched& seen, std::ostream& tell);

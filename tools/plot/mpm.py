@@ -48,12 +48,12 @@ def frames_of(run):
 
 
 def history_of(run):
-    """Columns of history.csv by their names."""
+    """Columns of history.csv by their names; an empty cell is nan."""
     path = pathlib.Path(run) / "history.csv"
     if not path.exists():
         raise ValueError(f"{run}: no history.csv there; give the folder of a run of rvelab-mpm")
     names = path.open().readline().strip().split(",")
-    return dict(zip(names, np.loadtxt(path, delimiter=",", skiprows=1, ndmin=2).T))
+    return dict(zip(names, np.atleast_2d(np.genfromtxt(path, delimiter=",", skip_header=1)).T))
 
 
 def named(column):

@@ -39,7 +39,7 @@ def run(name, scene, *options):
             subprocess.run([mpm, ROOT / "protocols/mpm" / scene, "-o", place, "--specimens", folder, "-q", *options],
                            stdout=file, check=True)
     names = history.open().readline().strip().split(",")
-    return dict(zip(names, np.loadtxt(history, delimiter=",", skiprows=1).T)), printed.read_text() if printed.exists() else ""
+    return dict(zip(names, np.atleast_2d(np.genfromtxt(history, delimiter=",", skip_header=1)).T)), printed.read_text() if printed.exists() else ""
 
 
 def between_plates(h, edges, begins):

@@ -85,7 +85,7 @@ def run(name, scene, *settings):
                    check=True, stdout=subprocess.DEVNULL)
     history = place / "history.csv"
     names = history.open().readline().strip().split(",")
-    return dict(zip(names, np.loadtxt(history, delimiter=",", skiprows=1).T)), sorted(place.glob("points_*.h5"))[-1]
+    return dict(zip(names, np.atleast_2d(np.genfromtxt(history, delimiter=",", skip_header=1)).T)), sorted(place.glob("points_*.h5"))[-1]
 
 
 def block(contact, height, plate):

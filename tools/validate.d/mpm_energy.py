@@ -57,7 +57,7 @@ def unexplained(run):
     """The largest share of energy from nothing, from a history and the first frame."""
     lines = (run / "history.csv").read_text().splitlines()
     names = lines[0].split(",")
-    h = dict(zip(names, np.array([[float(each) for each in line.split(",")] for line in lines[1:]]).T))
+    h = dict(zip(names, np.array([[float(each or "nan") for each in line.split(",")] for line in lines[1:]]).T))
     if not all(np.isfinite(values).all() for values in h.values()):
         return np.inf
     with h5py.File(run / "points_0000.h5") as file:

@@ -28,7 +28,7 @@ def told(options):
 
 def columns(path):
     names = path.open().readline().strip().split(",")
-    return dict(zip(names, np.loadtxt(path, delimiter=",", skiprows=1, ndmin=2).T))
+    return dict(zip(names, np.atleast_2d(np.genfromtxt(path, delimiter=",", skip_header=1)).T))
 
 
 def watched(name):
