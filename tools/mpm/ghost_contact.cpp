@@ -4,10 +4,12 @@
 //
 // of the volume V at the start (a radius that changes would do work that nobody pays; one that would overlap a rock
 // there is made to touch it), or the grain that it is by its table (an overlap of a twentieth stays), touches a rock by
-// rock_contact.hpp. The force f on it acts at the contact, r from the point: the nodes get N f + (f (x) r) grad N, the
-// first terms of N(x + r) f on nodes of the point itself. Momentum and angular momentum are kept; the printed eq. 29,
-// without the second term, loses r x f (`moment = false`). The velocity of the soil at the contact is v + A r, A its
-// gradient: what f does work on by that mapping.
+// rock_contact.hpp. The force f on it acts at the contact, r from the point: the nodes get N f + (f (x) r - r (x) f)/2
+// grad N, the force and its moment about the point on nodes of the point itself. Momentum and angular momentum are
+// kept; the printed eq. 29, without the second term, loses r x f (`moment = false`). The velocity of the soil at the
+// contact is v + W r, v and its spin W those of the grid there: what f does work on by that mapping. Of the point's own
+// velocity, which differs from the grid's, friction would book another slip than it does work on (a tenth of the work
+// of a rock that is dragged), and with all of f (x) r the ball, which is rigid, would be strained.
 #include <algorithm>
 #include <cmath>
 
@@ -18,6 +20,32 @@
 #include "tools/mpm/transfer.hpp"
 
 namespace mpm {
+
+/// m/s, of the soil where a ball touches: velocity(node, i) at the point, and its spin times the arm.
+template <int D, class Velocity>
+Vec<D> soil_velocity(const Grid<D>& grid, const Support<D>& support, const Vec<D>& arm, const Velocity& velocity) {
+  Vec<D> sum = Vec<D>::Zero();
+  Mat<D> gradient;
+  Lanes<D> L[D] = {};
+  each_row<D>(grid.nodes.data(), grid, support,
+              [&](const Node<D>* row, double across, const double* slope, const double*) {
+                Lanes<D> along = {}, steep = {};
+                for (int r = 0; r < 3; ++r) {
+                  for (int i = 0; i < D; ++i) {
+                    const double each = velocity(row[r], i);
+                    along[i] += support.weight[0][r] * each;
+                    steep[i] += support.slope[0][r] * each;
+                  }
+                }
+                for (int i = 0; i < D; ++i) sum[i] += along[i] * across;
+                add_gradient<D>(L, along, steep, across, slope);
+              });
+  for (int i = 0; i < D; ++i) {
+    for (int j = 0; j < D; ++j) gradient(i, j) = L[j][i];
+  }
+  return sum + 0.5 * (gradient - gradient.transpose()) * arm;
+}
+
 template <int D>
 void Solver<D>::touch_ghosts(double dt) {
   const double begin = wall_seconds();
@@ -57,7 +85,8 @@ void Solver<D>::touch_ghosts(double dt) {
     const auto& point = points[std::size_t(ghost.point)];
     auto& rock = rocks->all[std::size_t(ghost.rock)];
     const Vec<D> r = point.position + ghost.arm - rock.body.centre;
-    const Vec<D> speed = point.velocity + point.affine * ghost.arm;
+    const Vec<D> speed = soil_velocity<D>(grid, supports_[std::size_t(ghost.point)], ghost.arm,
+                                          [](const Node<D>& node, int i) { return node.v[i]; });
     const auto pair = rocks->ghost_constants(ghost.rock, rocks->balls[std::size_t(ghost.point)]);
     ghost.force = ghost.contact.advance(pair, ghost.overlap, ghost.normal, speed - rock.body.velocity_at(r), dt,
                                         rocks->ghost_loss);
@@ -76,28 +105,21 @@ void Solver<D>::give_ghost_forces() {
     Lanes<D> stress[D] = {}, force = {};
     for (int i = 0; i < D; ++i) {
       force[i] = ghost.force[i];
-      for (int j = 0; rocks->soil.moment && j < D; ++j) stress[j][i] = ghost.force[i] * ghost.arm[j];
+      for (int j = 0; rocks->soil.moment && j < D; ++j)
+        stress[j][i] = 0.5 * (ghost.force[i] * ghost.arm[j] - ghost.force[j] * ghost.arm[i]);
     }
     give_force<D>(grid, supports_[std::size_t(ghost.point)], stress, force);
   }
 }
 
-/// J, on the soil over a step: of the forces at the nodes over their mean velocities.
+/// J, on the soil over a step: of the forces over the mean velocities of the step.
 template <int D>
 double Solver<D>::ghost_work(double dt) const {
   double work = 0;
   for (const auto& ghost : rocks->ghosts) {
-    const auto& support = supports_[std::size_t(ghost.point)];
     const Vec<D> arm = rocks->soil.moment ? ghost.arm : Vec<D>(Vec<D>::Zero());
-    each_row<D>(grid.nodes.data(), grid, support,
-                [&](const Node<D>* row, double across, const double* slope, const double*) {
-                  double along = across;  // N and its slopes times the arm, but for the factor along x
-                  for (int j = 1; j < D; ++j) along += slope[j - 1] * arm[j];
-                  for (int r = 0; r < 3; ++r) {
-                    const double weight = support.weight[0][r] * along + support.slope[0][r] * across * arm[0];
-                    for (int i = 0; i < D; ++i) work += weight * ghost.force[i] * (row[r].w[i] - 0.5 * row[r].a[i]);
-                  }
-                });
+    work += ghost.force.dot(soil_velocity<D>(grid, supports_[std::size_t(ghost.point)], arm,
+                                             [](const Node<D>& node, int i) { return node.w[i] - 0.5 * node.a[i]; }));
   }
   return dt * work;
 }

@@ -54,8 +54,9 @@ void each_number(RockContact<D>& contact, const Visit& visit) {
 
 template <int D, class Visit>
 void each_total(Rocks<D>& rocks, const Visit& visit) {
-  for (double* value : {&rocks.first_energy, &rocks.contact_loss, &rocks.soil_work, &rocks.wall_work,
-                        &rocks.work_on_soil, &rocks.ghost_loss, &rocks.ghost_frequency, &rocks.wall_power}) {
+  for (double* value :
+       {&rocks.first_energy, &rocks.contact_loss, &rocks.soil_work, &rocks.wall_work, &rocks.work_on_soil,
+        &rocks.surface_loss, &rocks.ghost_loss, &rocks.ghost_frequency, &rocks.wall_power}) {
     visit(*value);
   }
   for (auto* of_walls : {&rocks.wall_impulse, &rocks.wall_force}) {

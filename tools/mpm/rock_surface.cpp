@@ -223,7 +223,9 @@ void Bodies<D>::hold_rock(std::size_t k, Grid<D>& grid, bool end) {
   push_rock(k, more, grid, end);
 }
 
-/// Impulse and work on the soil, and what the rocks get of it.
+/// Impulse and work on the soil, and what the rocks get of it. An impulse J that gives the soil the work A loses
+/// J.(U + U')/2 - A, U and U' the velocity of the rock there at the start and at the end of the step: over a step the
+/// rock has the sum of both impulses as a force.
 template <int D>
 void Bodies<D>::book_rocks(const Grid<D>& grid, const Planes<D>& planes) {
   const std::size_t first = surface_.size() - rocks->surface.size();
@@ -233,13 +235,19 @@ void Bodies<D>::book_rocks(const Grid<D>& grid, const Planes<D>& planes) {
     const Vec<D> impulse = point.at_start + point.at_end;
     rock.impulse -= impulse;
     rock.angular_impulse -= moment<D>(rocks->surface[k - first].r, impulse);
+    double work = 0;
     for (int j = 0; j < point.count; ++j) {
       const auto& node = grid.nodes[point.node[j]];
       for (int i = 0; i < D; ++i) {
         if (planes.holds(point.node[j], i)) continue;
-        rocks->work_on_soil += point.weight[j] * work_at(node, i, point.at_start[i], point.at_end[i]);
+        work += point.weight[j] * work_at(node, i, point.at_start[i], point.at_end[i]);
       }
     }
+    rocks->work_on_soil += work;
+    const auto& end = rocks->motion[std::size_t(point.body) - all.size()];
+    const Vec<D>& r = rocks->surface[k - first].r;
+    const Vec<D> mean = 0.5 * (rock.body.velocity_at(r) + end.velocity + spun<D>(end.spin, r));
+    rocks->surface_loss += impulse.dot(mean) - work;
   }
 }
 

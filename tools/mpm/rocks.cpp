@@ -242,8 +242,19 @@ void Rocks<D>::keep_ghosts(std::vector<Ghost>& now) {
   for (auto& old : ghosts) {
     const auto place = std::pair(old.point, old.rock);
     while (next != now.end() && std::pair(next->point, next->rock) < place) ++next;
-    if (next != now.end() && std::pair(next->point, next->rock) == place) next->contact = old.contact;
+    if (next != now.end() && std::pair(next->point, next->rock) == place)
+      next->contact = old.contact;
+    else
+      ghost_loss += old.contact.tangential_energy(ghost_constants(old.rock, balls[std::size_t(old.point)]));
   }
+}
+
+template <int D>
+double Rocks<D>::ghost_springs() const {
+  double sum = 0;
+  for (const auto& ghost : ghosts)
+    sum += ghost.contact.energy(ghost_constants(ghost.rock, balls[std::size_t(ghost.point)]));
+  return sum;
 }
 
 /// Without a dashpot: what soil takes up is its own.

@@ -89,6 +89,7 @@ class Rocks {
   double first_energy = 0;          ///< J, of all rocks at the start
   double contact_loss = 0, soil_work = 0, wall_work = 0;
   double work_on_soil = 0;           ///< J, of rocks on the soil
+  double surface_loss = 0;           ///< J, of impulses at the surface: friction, and soil that meets a rock
   double wall_power = 0;             ///< W, of moving walls at the end of the sub-step before
   std::vector<Vec<D>> wall_impulse;  ///< N s, of the rocks on each wall
   std::vector<Vec<D>> wall_force;    ///< N, of the rocks on each wall at the end of the sub-step before
@@ -174,8 +175,9 @@ class Rocks {
   std::vector<double> balls;  ///< m, radius of each point as a ball
   /// Of the next point. One that would overlap a rock is made so small that it touches it; a grain may by a twentieth.
   void add_ball(const Point<D>& point, double radius, bool grain);
-  double ghost_loss = 0;       ///< J, to friction with ghosts
-  double ghost_frequency = 0;  ///< 1/s, of the stiffest contact with a ghost that is or may come within a step
+  double ghost_loss = 0;         ///< J, to friction with ghosts
+  double ghost_springs() const;  ///< J, in the contacts with ghosts now
+  double ghost_frequency = 0;    ///< 1/s, of the stiffest contact with a ghost that is or may come within a step
   /// Contacts that go on take their memory along from `ghosts`.
   void keep_ghosts(std::vector<Ghost>& now);
   RockPair<D> ghost_constants(int rock, double radius) const;

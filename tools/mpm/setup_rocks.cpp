@@ -146,14 +146,32 @@ bool cut(const Rocks<D>& rocks, Point<D>& point) {
          });
 }
 
-/// Its ball, if it is in no rock by more than half.
+/// Its ball, if its middle is in no rock; a grain's, if that is in none by more than half. The ball of a point between
+/// which and a rock no other stands reaches the rock: on a lattice balls of one size touch few places of a rock, and it
+/// would lie loose in the soil.
 template <int D>
 bool give_ball(Rocks<D>& rocks, const Point<D>& point, double grain) {
-  const double radius = grain > 0 ? grain : ghost_radius<D>(point, rocks.soil.porosity), reach = 0.5 * radius;
-  for (const auto& rock : rocks.all) {
-    if (rocks.distance(rock, point.position, reach) < reach) return false;
+  if (grain > 0) {
+    const double reach = 0.5 * grain;
+    for (const auto& rock : rocks.all) {
+      if (rocks.distance(rock, point.position, reach) < reach) return false;
+    }
+    rocks.add_ball(point, grain, true);
+    return true;
   }
-  rocks.add_ball(point, radius, grain > 0);
+  double radius = ghost_radius<D>(point, rocks.soil.porosity);
+  const double farthest = 2 * point.half.norm();
+  for (const auto& rock : rocks.all) {
+    if (rocks.distance(rock, point.position, farthest) > farthest) continue;
+    Vec<D> outward;
+    const auto& shape = rocks.shapes[std::size_t(rock.shape)];
+    const double gap = shape.distance(to_body<D>(rock.body.orientation, point.position - rock.body.centre), outward);
+    if (gap < 0) return false;
+    // Its own domain, or where the next point along an axis would stand, reaches into the rock.
+    const Vec<D> along = to_world<D>(rock.body.orientation, outward).cwiseAbs().cwiseProduct(point.half);
+    if (gap < std::max(along.sum(), 2 * along.maxCoeff())) radius = std::max(radius, gap);
+  }
+  rocks.add_ball(point, radius, false);
   return true;
 }
 

@@ -341,9 +341,9 @@ void Solver<D>::step(double dt) {
   begin_step();
   bodies.place_plates(grid, planes, time);
   if (rocks) rocks->step = dt;
-  if (rocks && rocks->soil.ghosts) touch_ghosts(dt);
   map_momentum();
   start_velocities(solid());
+  if (rocks && rocks->soil.ghosts) touch_ghosts(dt);
   if (options.scheme == Scheme::usf) {
     gradients(dt);
     stresses(dt);

@@ -54,6 +54,19 @@ def between_plates(h, edges, begins):
     return axial[rows], volumetric[rows], q[rows]
 
 
+def energy_parts(h):
+    """Of a mixture between plates, over the largest work of the plates on soil and rocks: what contact of soil and rocks
+    takes; the most that mapping gains; the most that soil, rocks and their contact together leave open."""
+    if "rocks.soil_work_J" not in h:
+        plates, lost, open_parts = h["boundary_work_J"], 0 * h["residual_J"], np.abs(h["residual_J"])
+    else:
+        plates = h["boundary_work_J"] - h["rocks.work_on_soil_J"] + h["rocks.wall_work_J"]
+        lost = h["rocks.surface_loss_J"] + h["rocks.ghost_loss_J"] + h["rocks.ghost_springs_J"]
+        between = h["rocks.work_on_soil_J"] + h["rocks.soil_work_J"] + lost
+        open_parts = np.abs(h["residual_J"]) + np.abs(h["rocks.residual_J"]) + np.abs(between)
+    return np.array((lost[-1], max(0, -h["mapping_loss_J"].min()), open_parts.max())) / np.abs(plates).max()
+
+
 def peak_of(axial, q):
     """Stress (kPa) and strain where the running mean of three rows is largest, and the mean from 10 to 16 % (kPa)."""
     smooth = np.convolve(q, np.ones(3) / 3, "same")

@@ -142,8 +142,12 @@ def floating():
         verdict(f"{contact}: depth of the centre below the level over the radius", f"{depth / 0.5:.3f}", "0 +- 0.02",
                 abs(depth / 0.5) < 0.02)
         force, weight = h["rock.soil_force_y_N"][late].mean(), 1000 * np.pi * 0.25 * 9.81
-        verdict(f"{contact}: force of the mud over the weight", f"{force / weight:.4f}", "1 +- 0.001",
-                abs(force / weight - 1) < 1e-3)
+        # The disc still bobs a little: the mean force over a time T is weight + m (v' - v)/T by Newton's law.
+        first = np.flatnonzero(late)[0] - 1
+        faster = (h["rock.velocity_y_m_s"][-1] - h["rock.velocity_y_m_s"][first]) / (h["time_s"][-1] - h["time_s"][first]) / 9.81
+        verdict(f"{contact}: force of the mud, less what speeds the disc up, over the weight", f"{force / weight - faster:.4f}",
+                "1 +- 0.001", abs(force / weight - faster - 1) < 1e-3)
+        print(f"    with it {force / weight:.4f}")
 
 
 def same_files(a, b):
