@@ -147,9 +147,6 @@ constexpr double slow_growth = 1.5, slow_goes_on = 40;
 /// 6000 sub-steps: with 20 times 73 and 100 % of their errors were within the estimate, with 30 times 91 and 100 %.
 constexpr long creep_steps = 200;
 constexpr double creep_goes_on = 30;
-/// Added beyond the strain of the overlaps, over sqrt(x) K p u, u the mean on the way: at x = 70 and friction 0.05
-/// errors were 6 K p u, with the end in equilibrium.
-constexpr double way_margin = 1;
 /// Added, over what is allowed: resolved answers are no better known. Beyond the strain of the overlaps a path that was
 /// cut otherwise ends elsewhere by so much.
 constexpr double least_share = 0.03, least_share_of_long = 0.1;

@@ -160,11 +160,9 @@ void estimate_error(State& s, double allowed, const Judged& increment, Report& r
   judge_tolerance(report);
 }
 
-void estimate_way(State& s, double strain, double mean_ratio, Report& report) {
-  const double overlaps = strain / overlap_strain(s);
-  if (!(overlaps > 1)) return;
-  const double way = way_margin * std::sqrt(overlaps) * error_factor(s) * pressure_scale(s) * mean_ratio;
-  report.error_estimate += way;
+void estimate_way(State& s, double strain, double ratio_of_way, Report& report) {
+  const double way = std::min(strain / overlap_strain(s), 1.0) * expected_error(s, ratio_of_way);
+  report.error_estimate = std::sqrt(report.error_estimate * report.error_estimate + way * way);
   judge_tolerance(report);
 }
 

@@ -60,8 +60,11 @@ void estimate_error(State& state, double allowed, const Judged& increment, Repor
 void estimate_error(State& state, double network_change, const Matrix3& stress_before, const Judged& increment,
                     Report& report);
 
-/// An increment beyond the strain of the overlaps, of this mean unbalanced ratio: what it lagged by on its way has slid
-/// contacts, of which its end knows nothing. That is added to the estimate.
-void estimate_way(State& state, double strain, double mean_ratio, Report& report);
+/// What an increment lagged by on its way has slid contacts elsewhere than a slower one would have, of which its end
+/// knows nothing. A lag is gone after the 50 sub-steps to the next check (rest_steps), so that those of two checks are
+/// independent, and the errors they leave add by their squares, to each other and to that of the end: with
+/// `ratio_of_way`, the root of the sum of squares of the unbalanced ratios on the way, K p times that. Below the strain
+/// of the overlaps, x < 1, forces change by the part x, and about that part of the contacts may slide.
+void estimate_way(State& state, double strain, double ratio_of_way, Report& report);
 
 }  // namespace rvelab

@@ -63,8 +63,8 @@ class CheckedSteps {
     }
   }
   bool end_is_checked() const { return end_is_checked_; }
-  /// Unbalanced, of all checks.
-  double mean_ratio() const { return checks_ > 0 ? ratios_ / double(checks_) : 0; }
+  /// Root of the sum of squares of the unbalanced ratios that the checks before the end found.
+  double ratio_of_way() const { return std::sqrt(squares_); }
 
  private:
   /// Sub-steps until the next check; moves the fraction on.
@@ -101,8 +101,8 @@ class CheckedSteps {
 
   void check() {
     const OutOfBalance balance = check_.check();
-    ratios_ += s_.control().unbalanced_ratio;
-    ++checks_;
+    const double ratio = s_.control().unbalanced_ratio;
+    if (fraction_ < 1) squares_ += ratio * ratio;
     if (from_rest_) return;
     // Where the fewest steps rule, their strain is not that of the control, but it may still be found too large.
     const bool too_fast = s_.control().unbalanced_ratio > s_.control().target_unbalanced_ratio;
@@ -119,8 +119,7 @@ class CheckedSteps {
   const StrainPath& path_;
   double strain_, most_, fewest_;
   bool from_rest_;
-  double fraction_ = 0, before_ = 0, ratios_ = 0;
-  long checks_ = 0;
+  double fraction_ = 0, before_ = 0, squares_ = 0;
   bool by_strain_ = true;  ///< the strain per step decides their number
   bool end_is_checked_ = false;
 };
@@ -177,7 +176,7 @@ Report load_quasi_static(State& s, FrameSplit whole) {
   Judged judged{strain, control.unbalanced_ratio, relaxed.creep};
   judged.factor_from_rest = start.factor_from_rest;
   estimate_error(s, network, stress_before, judged, report);
-  estimate_way(s, strain, substeps.mean_ratio(), report);
+  estimate_way(s, strain, substeps.ratio_of_way(), report);
   note_slope(s, whole.stretch, stress_before, (s.cell().rotation.array() == start_frame.array()).all());
   if (!(whole.rotation.array() == Matrix3::Identity().array()).all()) {
     const Matrix3 turned = turned_since(start_frame, s.cell());
