@@ -70,6 +70,11 @@ std::string input_path(const std::string& name_or_path, InputKind kind) {
   if (const auto found = all.find(name_or_path); found != all.end()) return expect_kind(found->second, kind);
   std::vector<std::string> names;
   for (const auto& [name, path] : installed(kind)) names.push_back(name);
+  constexpr std::size_t longest_name = 80;  // what is longer is no misspelt name
+  if (name_or_path.size() > longest_name)
+    throw InputError("no " + noun + " \"" + name_or_path +
+                     "\" is installed; allowed: one of rvelab protocols, or the " + "path of a file " +
+                     (recipe ? "RECIPE" : "PROTOCOL") + ".toml");
   const std::string near = keys::nearest(name_or_path, names);
   throw InputError("no " + noun + " \"" + name_or_path + "\" is installed" +
                    (near.empty() ? "" : "; the nearest is " + near) + "; allowed: " +

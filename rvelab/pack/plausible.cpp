@@ -44,9 +44,13 @@ std::string stiffness_in_words(const ContactModel& model, const Material& materi
 std::string likely(const Pressed& pressed, const ContactModel& model, const Material& material, double overlap) {
   const LawParameter& stiffness = stiffness_of(model.law);
   const double given = material.*stiffness.value, power = stiffens(model.law) ? 1.5 : 1;
+  const std::vector<keys::Key>& known = keys::known_keys();
+  const auto key = std::find_if(known.begin(), known.end(),
+                                [&](const keys::Key& each) { return each.name == stiffness.parameter.key; });
   const auto stiffness_at = [&](double wanted) { return given * std::pow(overlap / wanted, power); };
-  std::string text = keys::likely_unit(stiffness.parameter.unit, given,
-                                       {{stiffness_at(most_usual_overlap), stiffness_at(least_usual_overlap)}});
+  std::string text = keys::likely_unit(
+      stiffness.parameter.unit, given,
+      {{stiffness_at(most_usual_overlap), std::min(stiffness_at(least_usual_overlap), key->usual.values.high)}});
   if (dimension_of(pressed.shape) == 2 && pressed.thickness > 20 * pressed.radius)
     text += "; the slab is " + in_words(pressed.thickness / (2 * pressed.radius)) +
             " diameters thick, and the force on a grain grows with it";

@@ -96,12 +96,12 @@ TEST_CASE("a word of thousands of letters is echoed in at most 80, whatever it s
   here.write("long_name.toml", "[test]\nname = \"" + word + "\"\n[[stage]]\nkind = \"" + word + "\"\n");
   here.write("long_key.toml", "[test]\n" + word + " = 1\n[" + word + "]\n");
   here.write("long_value.toml", "[pack]\nname = 1\nshape = \"" + word + "\"\n");
-  for (const std::string& arguments :
-       {word, "run " + word, "pack " + word + " -o T.h5", "run biaxial --" + word, "keys " + word,
-        "run biaxial --specimen " + word, "run biaxial --specimen S.h5 --set " + word + "=1",
-        "run biaxial --specimen S.h5 --set test.pressure_Pa=" + word, "run long_name.toml --specimen S.h5",
-        "run long_key.toml --specimen S.h5", "pack long_value.toml -o T.h5", "inspect " + word + ".h5",
-        "calibrate biaxial --specimen S.h5 --pressures " + word, "report " + word + " -o r.html"}) {
+  for (const std::string& arguments : std::vector<std::string>{
+           word, "run " + word, "pack " + word + " -o T.h5", "run biaxial --" + word, "keys " + word,
+           "run biaxial --specimen " + word, "run biaxial --specimen S.h5 --set " + word + "=1",
+           "run biaxial --specimen S.h5 --set test.pressure_Pa=" + word, "run long_name.toml --specimen S.h5",
+           "run long_key.toml --specimen S.h5", "pack long_value.toml -o T.h5", "inspect " + word + ".h5",
+           "calibrate biaxial --specimen S.h5 --pressures " + word, "report " + word + " -o r.html"}) {
     CAPTURE(arguments.substr(0, 40));
     const Outcome outcome = here.run(arguments);
     CHECK((outcome.code == 1 || outcome.code == 2));

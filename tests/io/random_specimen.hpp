@@ -108,9 +108,11 @@ struct Pairs {
     all(strains, strains2, first, first2, turns, turns2, place, place2, visits, visits2, largest, largest2);
   }
   void fields(records::Record& a, records::Record& b) {
-    auto& [k, l, m, n, o, p, q, r, s, balanced, thin, asked] = static_cast<records::RecordedState&>(a);
-    auto& [k2, l2, m2, n2, o2, p2, q2, r2, s2, balanced2, thin2, asked2] = static_cast<records::RecordedState&>(b);
+    auto& [k, l, m, n, o, p, q, r, s, balanced, estimate, thin, asked] = static_cast<records::RecordedState&>(a);
+    auto& [k2, l2, m2, n2, o2, p2, q2, r2, s2, balanced2, estimate2, thin2, asked2] =
+        static_cast<records::RecordedState&>(b);
     visit(balanced, balanced2);
+    visit(estimate, estimate2);
     visit(thin, thin2);
     all(k, k2, l, l2, m, m2, n, n2, o, o2, p, p2, q, q2, r, r2, s, s2);
     records::Quantities::for_each([&]<class Quantity>(std::type_identity<Quantity>, std::uint64_t) {
