@@ -2,7 +2,8 @@
 // ellipses and spheres of radii up to 1:10, friction 0 to 10, with and without rolling, linear and Hertz, kn/(p t) of
 // 1e2 to 1e6. From each, at rest and after 1 % and 5 % of drained compression, increments of 1e-6 to 1e-2: on, back,
 // turned, on with a rotation, anyhow. The constants of quasi_static/constants.hpp were fitted to packings of even
-// seeds.
+// seeds from 2 to 36. Seeds from 101 on are of five kinds and most of their increments long (first_of_kinds): 101 to
+// 110 were looked at when the error of the way was chosen (estimate_way), 111 to 120 afterwards.
 //
 // The truth is 2,000 to 20,000 sub-steps and relaxation to an unbalanced ratio of 1e-8. It is known where half as many
 // sub-steps of a copy whose grains are moved by the last bit change it by less than a third of what the tolerance
@@ -242,6 +243,9 @@ struct Increment {
   bool failed = false;
   std::string why;
 
+  bool long_one() const { return length >= 1e-3; }
+  /// Cells that came apart have no stress, which anyone finds.
+  bool stands() const { return truth.norm() > 0.01 * before.norm(); }
   double error() const { return (made.stress - truth).norm(); }
   bool chaotic() const { return spread > made.report.allowed_error / 3; }
 };
@@ -445,12 +449,15 @@ int main(int argc, char** argv) {
     constexpr const char* kinds[] = {"discs of little friction", "Hertz spheres of 1:4", "stiff spheres", "ellipses",
                                      "rolling discs"};
     for (std::size_t k = 0; k < 5; ++k)
-      print(std::string(kinds[k]) + ", from 1e-3 on", all,
-            [&](const Increment& i) { return i.seed % 5 == k && i.length >= 1e-3; });
+      print(std::string(kinds[k]) + ", long", all, [&](const Increment& i) { return i.seed % 5 == k && i.long_one(); });
+    print("long (1e-3 to 1e-2)", all, [](const Increment& i) { return i.long_one(); });
+    for (std::size_t k = 0; k < 5; ++k)
+      print(std::string(kinds[k]) + ", long, stress left", all,
+            [&](const Increment& i) { return i.seed % 5 == k && i.long_one() && i.stands(); });
     for (int k = 0; k < 3; ++k)
-      print("from 1e-3 on, after " + std::to_string(percents[k]) + " %", all,
-            [&](const Increment& i) { return i.state == k && i.length >= 1e-3; });
-    print("from 1e-3 on", all, [](const Increment& i) { return i.length >= 1e-3; });
+      print("long, stress left, after " + std::to_string(percents[k]) + " %", all,
+            [&](const Increment& i) { return i.state == k && i.long_one() && i.stands(); });
+    print("long, stress left", all, [](const Increment& i) { return i.long_one() && i.stands(); });
   }
   print("all", all, [](const Increment&) { return true; });
   return 0;
