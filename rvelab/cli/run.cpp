@@ -130,7 +130,7 @@ void add_costs(const protocol::TestRun& run, double wall, Listing& listing) {
   if (costs.judged > 0) {
     listing.add("mean_error_estimate", costs.mean_error, "of p");
     listing.add("largest_error_estimate", costs.largest_error,
-                "of p: so far the stress of a record may be from that of loading without any haste");
+                "of p: how far the stress of a record may be from that of infinitely slow loading");
   }
   if (costs.waited > 0)
     listing.add("waited_for_held_stress", double(costs.waited) / double(costs.substeps), "of the sub-steps");

@@ -138,7 +138,7 @@ def summary(folder):
     return rows
 
 
-ERROR_IN_WORDS = ("The error estimate is how far the stress of a record may be from that of the same loading without any haste, as a "
+ERROR_IN_WORDS = ("The error estimate is how far the stress of a record may be from that of infinitely slow loading, as a "
                   "share of the mean stress p; some 19 of 20 errors are smaller than their estimate.")
 
 
