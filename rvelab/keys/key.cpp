@@ -89,7 +89,9 @@ std::size_t mistakes_in(const std::vector<KeyError>& errors) {
 std::vector<std::string> doubts_in(const std::vector<KeyError>& errors) {
   std::vector<std::string> doubts;
   for (const KeyError& error : errors) {
-    const bool known = std::find(doubts.begin(), doubts.end(), error.message) != doubts.end();
+    const bool known = std::any_of(doubts.begin(), doubts.end(), [&](const std::string& doubt) {
+      return key_of_doubt(doubt) == key_of_doubt(error.message);
+    });
     if (error.doubt && !known) doubts.push_back(error.message);
   }
   return doubts;
@@ -98,7 +100,7 @@ std::vector<std::string> doubts_in(const std::vector<KeyError>& errors) {
 std::string key_of_doubt(const std::string& doubt) {
   const auto equals = doubt.find(" = ");
   if (equals == std::string::npos) return doubt;
-  const auto begin = doubt.find_last_of(". ", equals - 1);
+  const auto begin = doubt.rfind(' ', equals - 1);  // npos + 1 = 0
   return doubt.substr(begin + 1, equals - begin - 1);
 }
 

@@ -56,11 +56,11 @@ struct KeyError {
 /// How many are mistakes.
 std::size_t mistakes_in(const std::vector<KeyError>& errors);
 
-/// The messages of the doubts among them, each once. Without path and line: files of results hold them.
+/// The messages of the doubts among them, each key once. Without path and line: files of results hold them.
 std::vector<std::string> doubts_in(const std::vector<KeyError>& errors);
 
-/// The last name of the key that a doubt begins with, "friction" of "--set ...: material.sand.friction = 27 is
-/// unusual"; the whole text if it names none.
+/// The key that a doubt names, "material.friction" of "--set ...: material.friction = 27 is unusual"; the whole text if
+/// it names none.
 std::string key_of_doubt(const std::string& doubt);
 
 /// Them as comments in front of a text of TOML.

@@ -28,6 +28,8 @@ inline constexpr Interval steps{1, 1e12};
 /// Of pressures that grains are brought to, Pa: beyond any solid's stiffness, and squares of forces would overflow.
 /// Below 1 kPa, 6 cm of soil, kPa was likely left out.
 inline constexpr Range pressures{{0, 1e15, true, false}, {{1e3, 1e9}}};
+/// Of pressures that grains already bear when a stage begins.
+inline constexpr Range held_pressures{positive, pressures.usual};
 /// Of sizes of grains, m: colloids to boulders.
 inline constexpr Range radii{positive, {{1e-8, 1}}};
 /// Of coefficients that an angle in degrees may have been written for; from 100 on no slip is meant.

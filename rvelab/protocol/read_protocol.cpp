@@ -92,7 +92,7 @@ void read_specimen_name(TableReader& reader, Protocol& protocol) {
 }
 
 void read_calibrate(TableReader& reader, Protocol& protocol) {
-  protocol.calibration_pressures = reader.numbers("pressures_Pa", "Pa", {positive, pressures.usual},
+  protocol.calibration_pressures = reader.numbers("pressures_Pa", "Pa", held_pressures,
                                                   "pressures of `rvelab calibrate`; --pressures overrides them");
 }
 
@@ -126,7 +126,7 @@ void read_common(TableReader& reader, Stage& stage) {
 double largest_pressure(const TableReader& reader) {
   double largest = 0;
   for (const Key& key : reader.keys()) {
-    if (key.unit != "Pa" || key.interval.high != pressures.high || key.interval.low != 0) continue;
+    if (key.unit != "Pa" || key.usual.values.low != pressures.usual.values.low) continue;
     const toml::node* node = reader.resolved().get(key.name);
     if (node == nullptr) continue;
     if (node->is_number()) largest = std::max(largest, number_in(*node));
@@ -327,9 +327,13 @@ std::vector<std::string> unusual_in(const Protocol& protocol, const Specimen& sp
   for (const std::string& line : pack::unusual_overlaps(pack::pressed(used, pressure_words, protocol.largest_pressure),
                                                         used.contact, used.materials))
     of_specimen.push_back(line);
+  const auto last_name = [](const std::string& doubt) {
+    const std::string key = key_of_doubt(doubt);
+    return key.substr(key.rfind('.') + 1);
+  };
   for (const std::string& line : of_specimen) {
     const bool known = std::any_of(protocol.doubts.begin(), protocol.doubts.end(),
-                                   [&](const std::string& doubt) { return key_of_doubt(doubt) == key_of_doubt(line); });
+                                   [&](const std::string& doubt) { return last_name(doubt) == last_name(line); });
     if (!known) doubts.push_back(line);
   }
   return doubts;

@@ -27,7 +27,7 @@ struct Compression : KindOf<CompressionStage> {
                   "(undrained); zero_strain: oedometer");
     const bool held = stage.lateral == CompressionStage::Lateral::constant_stress;
     stage.lateral_pressure = pressure_of(
-        reader, "lateral_pressure_Pa", positive,
+        reader, "lateral_pressure_Pa", held_pressures,
         "lateral = constant_stress: lateral stress that is held, compression positive; the stage must start from it",
         protocol, held ? "" : "lateral = " + as_toml(laterals[std::size_t(stage.lateral)]));
     read_cycles(

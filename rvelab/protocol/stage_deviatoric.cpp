@@ -55,7 +55,7 @@ struct Deviatoric : KindOf<DeviatoricStage> {
     reader.number("lode_angle_deg", stage.lode_angle_deg, "degree", {-180, 180},
                   "3D: direction in the deviatoric plane; 0 compression along z, 60 extension along y");
     stage.pressure =
-        pressure_of(reader, "pressure_Pa", positive, "p, held constant; the stage must start from it", protocol);
+        pressure_of(reader, "pressure_Pa", held_pressures, "p, held constant; the stage must start from it", protocol);
     if (protocol.dimension == 2 && reader.has("lode_angle_deg"))
       reader.mistake("lode_angle_deg", "means nothing with test.dimension = 2; allowed: in 3D only; remove it");
   }

@@ -28,7 +28,7 @@ struct SimpleShear : KindOf<SimpleShearStage> {
                   "constant_volume: only the shear moves (undrained); constant_stress: sigma_bb is held (drained)");
     const bool held = stage.normal == SimpleShearStage::Normal::constant_stress;
     stage.normal_pressure = pressure_of(
-        reader, "normal_pressure_Pa", positive,
+        reader, "normal_pressure_Pa", held_pressures,
         "normal = constant_stress: normal stress that is held, compression positive; the stage must start from it",
         protocol, held ? "" : "normal = \"constant_volume\"");
     read_cycles(reader, stage.cycles, stage.to_strain, stage.record_every,

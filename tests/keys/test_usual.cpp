@@ -75,8 +75,8 @@ TEST_CASE("materials that were read elsewhere are looked at by what their law re
   REQUIRE(found.size() == 2);  // once a key
   CHECK_THAT(found[0], Contains("young_modulus_Pa = 70"));
   CHECK_THAT(found[1], Contains("friction = 30"));
-  CHECK(keys::key_of_doubt(found[1]) == "friction");
-  CHECK(keys::key_of_doubt("--set test.pressure_Pa=100: test.pressure_Pa = 100 is unusual") == "pressure_Pa");
+  CHECK(keys::key_of_doubt(found[1]) == "material.grain.friction");
+  CHECK(keys::key_of_doubt("--set test.pressure_Pa=100: test.pressure_Pa = 100 is unusual") == "test.pressure_Pa");
 }
 
 TEST_CASE("doubts are comments of TOML, on one line each, whatever a name holds") {
