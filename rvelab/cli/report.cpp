@@ -82,9 +82,7 @@ std::string Listing::text() const {
 
 void Listing::print(bool as_json) const { std::cout << (as_json ? json() : text()) << std::flush; }
 
-void tell(const std::string& text) {
-  std::cerr << "rvelab: " << io::message_line(text) << std::endl;
-}
+void tell(const std::string& text) { std::cerr << "rvelab: " << io::message_line(text) << std::endl; }
 
 Json row_major(const Eigen::MatrixXd& matrix) {
   Json rows = Json::array();

@@ -302,7 +302,7 @@ class Relations {
       if (std::isnormal(mass) && std::isnormal(inertia)) continue;
       refuse(of_grain("grains/radius_m", k) + " = " + in_words(radius) + " m and materials/density_kg_m3 = " +
              in_words(density) + " make a mass of " + in_words(mass) + " kg and an inertia of " + in_words(inertia) +
-             " kg m^2; allowed: numbers of double precision, 1e-307 to 1e307");
+             " kg m^2; allowed: numbers of double precision, 1e-307 to 1e307; are lengths in mm? give all in m");
     }
   }
 

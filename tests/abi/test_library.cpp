@@ -68,8 +68,8 @@ TEST_CASE("Installed and moved, the library is found by cmake and by pkg-config,
   done(RVELAB_CMAKE " --install " RVELAB_BUILD " --component library --prefix '" + (folder / "first") + "'");
   std::filesystem::rename(folder / "first", prefix);
   const std::string run = " '" + (folder / "s.h5") + "' 0.004";
-  done(RVELAB_CMAKE " -G '" RVELAB_GENERATOR "' -S " + source + " -B '" + (folder / "cmake") + "' -D CMAKE_PREFIX_PATH='" + prefix +
-       "' -D CMAKE_C_COMPILER=" RVELAB_C_COMPILER);
+  done(RVELAB_CMAKE " -G '" RVELAB_GENERATOR "' -S " + source + " -B '" + (folder / "cmake") +
+       "' -D CMAKE_PREFIX_PATH='" + prefix + "' -D CMAKE_C_COMPILER=" RVELAB_C_COMPILER);
   done(RVELAB_CMAKE " --build '" + (folder / "cmake") + "'");
   const std::string by_cmake = done("'" + (folder / "cmake/element_test") + "'" + run);
   const std::string library = std::filesystem::exists(prefix + "/lib/librvelab.so")

@@ -78,12 +78,18 @@ void open_state(Specimen specimen) {
   promise(other.save() == rve.save(), "a state that was saved and restored is another");
 }
 
+/// What a resolved file says, without its notes on unusual values, which name a key as it stands in each file.
+std::string_view without_notes(std::string_view resolved) {
+  while (resolved.starts_with("#")) resolved.remove_prefix(resolved.find('\n') + 1);
+  return resolved;
+}
+
 Answer check_protocol(View input) {
   const std::string text = text_of(input);
   return answer([&] {
     const protocol::Protocol protocol = protocol::parse_protocol(text, "fuzz.toml");
-    promise(protocol::parse_protocol(protocol.resolved, "fuzz.toml").resolved == protocol.resolved,
-            "a resolved protocol, read again, is another");
+    const std::string again = protocol::parse_protocol(protocol.resolved, "fuzz.toml").resolved;
+    promise(without_notes(again) == without_notes(protocol.resolved), "a resolved protocol, read again, is another");
     static const Specimen specimen = io::read_specimen(data_file("compat/specimen_1_4.h5"));
     protocol::with_overrides(protocol, specimen);
   });
@@ -93,11 +99,14 @@ Answer check_recipe(View input) {
   const std::string text = text_of(input);
   return answer([&] {
     const pack::RecipeFile recipe = pack::parse_recipe(text, "fuzz.toml");
-    const auto again = [](const std::string& resolved) { return pack::parse_recipe(resolved, "fuzz.toml").resolved; };
-    promise(again(recipe.resolved) == recipe.resolved, "a resolved recipe, read again, is another");
+    const auto is_kept = [](const std::string& resolved) {
+      const std::string again = pack::parse_recipe(resolved, "fuzz.toml").resolved;
+      return without_notes(again) == without_notes(resolved);
+    };
+    promise(is_kept(recipe.resolved), "a resolved recipe, read again, is another");
     const pack::RecipeFile member =
         recipe.member(7, recipe.pressures.empty() ? std::nullopt : std::optional(recipe.pressures[0]));
-    promise(again(member.resolved) == member.resolved, "a member of a family, read again, is another");
+    promise(is_kept(member.resolved), "a member of a family, read again, is another");
   });
 }
 

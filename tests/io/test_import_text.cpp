@@ -136,7 +136,7 @@ TEST_CASE("a table of spheres in one plane is told, and --dimension 2 reads disc
   CHECK_THAT(read_as("x,y,r\n0,0,0.1\n", discs).error, Contains("column z is missing"));
 }
 
-TEST_CASE("--dimension must be that of META.json, and contacts want ids") {
+TEST_CASE("The dimension asked for must be that of META.json, and contacts want ids") {
   io::ImportOptions options;
   options.dimension = 3;
   CHECK_THAT(input_error([&] { imported_packing("dense", options); }), Contains("--dimension 3 and dim = 2"));

@@ -75,8 +75,7 @@ TEST_CASE("shapes of rocks: sizes, blockiness, turns and held axes that are none
                Contains("rock.blockiness holds " + std::string(bad)));
   }
   CHECK_THAT(rocks_with({"rock.slab.blockiness=[51]"}), Contains("allowed: 2 (round) to 50 (a box)"));
-  CHECK_THAT(rocks_with({"rock.slab.half_axes_m=[0.5, 0]"}),
-             Contains("rock.half_axes_m is 0; it must be positive"));
+  CHECK_THAT(rocks_with({"rock.slab.half_axes_m=[0.5, 0]"}), Contains("rock.half_axes_m is 0; it must be positive"));
   CHECK_THAT(rocks_with({"rock.slab.half_axes_m=[0.5, 0.3, 0.3]"}), Contains("rock.half_axes_m must be 2 numbers"));
   CHECK_THAT(rocks_with({"rock.disc.radius_m=-1"}), Contains("rock.radius_m is -1; it must be positive"));
   CHECK_THAT(rocks_with({"rock.disc.held=[\"w\"]"}), Contains("rock.held names \"w\"; allowed: x, y, rotation"));

@@ -1,4 +1,5 @@
 // Rocks in runs of the program: the same bytes by any number of threads, and after a stop.
+#include <algorithm>
 #include <sstream>
 
 #include "tests/mpm/blocks.hpp"
@@ -162,6 +163,23 @@ frame_every_s = 0.01
 history_every_s = 0.001
 )";
 
+/// The values of a column of history.csv.
+std::vector<double> values_of(const std::string& history, const std::string& column) {
+  std::istringstream rows(history);
+  std::string row, cell;
+  std::getline(rows, row);
+  std::istringstream names(row);
+  std::size_t place = 0;
+  while (std::getline(names, cell, ',') && cell != column) ++place;
+  std::vector<double> values;
+  while (std::getline(rows, row)) {
+    std::istringstream cells(row);
+    for (std::size_t k = 0; k <= place; ++k) std::getline(cells, cell, ',');
+    values.push_back(std::stod(cell));
+  }
+  return values;
+}
+
 /// A value of the last row of history.csv.
 double last_value(const std::string& history, const std::string& column) {
   std::istringstream header(history.substr(0, history.find('\n')));
@@ -191,7 +209,8 @@ TEST_CASE("rocks that fall on soil leave the same bytes by any number of threads
     REQUIRE(bench.run({"--resume", bench.folder / "stopped", "-j", "2"}) == 0);
     bench.expect_same("one", "stopped", 10);
     const auto history = bytes_of(bench.folder / "one/history.csv");
-    CHECK(last_value(history, "rocks.soil_contacts") > 0);
+    const std::vector<double> contacts = values_of(history, "rocks.soil_contacts");
+    CHECK(std::count_if(contacts.begin(), contacts.end(), [](double each) { return each > 0; }) > 1);  // balls rebound
     CHECK(last_value(history, "ball.z_m") < 0.5);
     CHECK(last_value(history, "rocks.soil_work_J") < 0);
     CHECK(last_value(history, "rocks.contact_loss_J") > 0);

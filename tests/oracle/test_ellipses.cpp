@@ -175,8 +175,10 @@ TEST_CASE("Ellipses of impossible axes, orientation or slip are refused by name"
   refused([](Specimen& s) { s.grains.semi_minor[2] *= 1.01; }, "sqrt(semi_major semi_minor)");
   refused([](Specimen& s) { std::swap(s.grains.semi_major, s.grains.semi_minor); }, "semi_major >= semi_minor > 0");
   refused([](Specimen& s) { s.grains.semi_major[0] *= 4, s.grains.semi_minor[0] /= 4; }, "at most 10 times as long");
-  refused([](Specimen& s) { s.grains.orientation[4] *= 1.001; }, "a vector of length 1");
-  refused([](Specimen& s) { s.grains.orientation.pop_back(); }, "one for each grain where the shape is ellipse");
+  refused([](Specimen& s) { s.grains.orientation[4] *= 1.001; },
+          "grains/orientation[4] of grain 5 has the length 1.001; allowed: 1");
+  refused([](Specimen& s) { s.grains.orientation.pop_back(); },
+          "grains/orientation has 8 rows; allowed: 9, one for each grain");
   refused([](Specimen& s) { s.shape = Shape::disc; }, "else none");
   refused([](Specimen& s) { s.contact.slip = Slip::full_radius; }, "allowed for ellipses: \"consistent\"");
 }

@@ -147,11 +147,11 @@ TEST_CASE("a specimen in two units, or far from its cell, is refused when it is 
     CHECK_THROWS_WITH(Rve(millimetres), Contains("in mm?"));
     Specimen wide = s;
     wide.solver.skin = 1000;
-    CHECK_THROWS_WITH(Rve(wide), Contains("solver.skin"));
+    CHECK_THROWS_WITH(Rve(wide), Contains("solver/skin = 1000 is out of range"));
     Specimen far = s;
     far.grains.position[7][0] = 1e12;
     CHECK_THROWS_AS(Rve(far), InputError);
-    CHECK_THROWS_WITH(Rve(far), Contains("grain 8: position 1e+12 m"));
+    CHECK_THROWS_WITH(Rve(far), Contains("grains/position_m[7] of grain 8 is 1e+12 m"));
   }
 }
 

@@ -149,10 +149,11 @@ std::vector<double> clock_of(Progress progress) {
                    "; put the file back from a copy, or start the run anew");
 }
 
+/// Rows of `width` numbers. `undefined`: the column that may be NaN, where there is one.
 void expect_finite(const std::vector<double>& values, const std::string& name, std::size_t width,
-                   const std::string& folder) {
+                   const std::string& folder, std::size_t undefined = std::size_t(-1)) {
   for (std::size_t k = 0; k < values.size(); ++k) {
-    if (std::isfinite(values[k])) continue;
+    if (std::isfinite(values[k]) || (k % width == undefined && std::isnan(values[k]))) continue;
     const std::string column = width == 1 ? "" : ", " + std::to_string(k % width);
     not_a_state(folder, name + "[" + std::to_string(k / width) + column + "]", values[k], "a finite number");
   }
@@ -196,7 +197,7 @@ void read_water(Fluid<D>& water, const InputFile& file, const std::string& folde
   if (rows.size() != width * water.points.size()) {
     of_another_scene(folder, "saturated points", rows.size() / width, water.points.size());
   }
-  expect_finite(rows, "fluid_points", width, folder);
+  expect_finite(rows, "fluid_points", width, folder, width - 1);  // `liquefied`: NaN until it has
   for (auto& point : water.points) {
     each_field<D>(point, [&](double* values, int each) {
       for (int i = 0; i < each; ++i) values[i] = rows[at++];

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "rvelab/error.hpp"
+#include "rvelab/io/import/inputs.hpp"
 #include "rvelab/io/import/lammps_box.hpp"
 #include "rvelab/io/publish.hpp"
 #include "rvelab/io/utf8.hpp"

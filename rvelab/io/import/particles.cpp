@@ -55,8 +55,7 @@ int dimension_of(const CsvTable& table, bool lammps, const std::optional<int>& s
   if (options.dimension == 2 && flat != 'z') {
     const auto [low, high] = extent_of(table, "z");
     throw InputError(table.path() + ": --dimension 2 wants all centres at one z, and these are from " + exact(low) +
-                     " to " + exact(high) +
-                     " m; allowed: one z for discs; read them as spheres, or swap the columns");
+                     " to " + exact(high) + " m; allowed: one z for discs; read them as spheres, or swap the columns");
   }
   if (options.dimension) return 2;
   if (flat == 0) return 3;
