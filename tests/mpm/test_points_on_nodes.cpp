@@ -1,6 +1,9 @@
 // Material points exactly on nodes, edges and faces of the grid, with every shape function: nothing there is special.
+#include <sstream>
+
 #include "tests/catch.hpp"
 #include "tests/mpm/blocks.hpp"
+#include "tools/mpm/watch.hpp"
 
 using namespace mpm;
 using namespace mpm::test;
@@ -77,15 +80,15 @@ void expect_settling() {
       }
       solver->planes.all.push_back(roller<D>(D - 1, 0, true));
       const auto start = energy_start<D>(*solver);
+      Watched seen;
+      std::ostringstream warnings;
       double largest = 0, residual = 0, moved = 0, pressed = 0;
       while (solver->time < 0.25) {
-        const double dt = solver->stable_step();
-        solver->step(dt);
+        solver->step(solver->stable_step());
+        watch_energy<D>(*solver, start, seen, warnings);
         const auto b = energy_balance<D>(*solver, start);
         for (const double each : {b.kinetic, b.potential, b.stress_work}) largest = std::max(largest, std::abs(each));
         residual = std::max(residual, std::abs(b.residual));
-        // Beside the half step by which heights lag velocities.
-        CHECK(b.mapping_loss > -0.02 * largest - 0.75 * dt * 9.81 * b.momentum.norm());
         for (const auto& point : solver->points) {
           moved = std::max(moved, (point.position - point.first).norm());
           pressed = std::max(pressed, -point.stress(D - 1, D - 1));
@@ -94,6 +97,7 @@ void expect_settling() {
       const double weight = block_density * 9.81 * along * node_distance;
       // MUSL has stress and heights half a step late.
       CHECK(residual < (scheme == Scheme::usf ? 0.02 : 0.08) * largest);
+      CHECK(warnings.str().empty());
       CHECK(moved < 2.5 * weight * along * node_distance / soft_block.young);
       CHECK(moved > 0.3 * weight * along * node_distance / soft_block.young);
       CHECK(pressed < 2.5 * weight);
