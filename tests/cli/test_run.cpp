@@ -39,7 +39,7 @@ TEST_CASE("a run at a rate makes no estimate, and one that is complete took no t
   INFO(made.errors);
   REQUIRE(made.code == 0);
   CHECK(made.output.find("mean_error_estimate") == std::string::npos);
-  CHECK(nlohmann::json::parse(made.output)["error_estimate"] == std::vector<double>{0, 0, 0});
+  CHECK(nlohmann::json::parse(made.output)["records"]["error_estimate"] == std::vector<double>{0, 0, 0});
   CHECK(made.output.find("time_pairs_s") != std::string::npos);
   REQUIRE(here.run(test + " -o R.h5").code == 0);
   const Outcome again = here.run(test + " -o R.h5 --resume");

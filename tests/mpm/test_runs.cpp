@@ -135,7 +135,7 @@ TEST_CASE("a checkpoint that was edited and sealed again is refused by what is n
     std::vector<std::byte> image(bytes.size());
     std::memcpy(image.data(), bytes.data(), bytes.size());
     const auto rows = rvelab::io::hdf5::read(path, image).objects.at("/points").dataset->bytes;
-    const std::size_t at = bytes.find(std::string(reinterpret_cast<const char*>(rows.data()), rows.size()));
+    const std::size_t at = bytes.find(std::string(reinterpret_cast<const char*>(rows.data()), 11 * sizeof value));
     REQUIRE(at != std::string::npos);
     std::memcpy(bytes.data() + at + column * sizeof value, &value, sizeof value);
     std::memcpy(image.data(), bytes.data(), bytes.size());
