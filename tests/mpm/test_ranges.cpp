@@ -308,10 +308,6 @@ TEST_CASE("numbers that nothing has are refused by their key, and the others run
   CHECK(sweep(folder / "scene.toml") > 150);
 }
 
-TEST_CASE("numbers that nothing has are refused by their key, and the others run: a gully in space", "[slow]") {
-  CHECK(sweep(shipped("gully")) > 60);
-}
-
 TEST_CASE("a range is told with the value, its unit and what to do") {
   CHECK_THAT(outcome_of(other_keys, {"material.soil.young_modulus_Pa=1e300"}),
              Contains("material.young_modulus_Pa is 1e+300; allowed: ") &&
