@@ -154,7 +154,7 @@ TEST_CASE("Long increments of little friction and of wide spheres keep below an 
         ratios.push_back(response.report.error_estimate / error);
       }
   REQUIRE(ratios.size() >= 12);
-  CHECK(kept >= 0.95 * double(ratios.size()));
+  CHECK(double(kept) >= 0.975 * double(ratios.size()));  // with the mean lag instead 29 of 30 are
   std::nth_element(ratios.begin(), ratios.begin() + long(ratios.size() / 2), ratios.end());
   CHECK(ratios[ratios.size() / 2] < 15);
 }
