@@ -370,6 +370,32 @@ TEST_CASE("the friction angle that mohr.py draws is the one that run prints, in 
   }
 }
 
+TEST_CASE("of grains that stick mohr.py draws the envelope with a cohesion, as calibrate tells it") {
+  const Workplace here;
+  here.import_packing("dense_p20");
+  const std::string brief =
+      "calibrate biaxial --specimen S.h5 --pressures 10e3,20e3,40e3 --set stage.compression.to_strain=0.02 --json "
+      "--set contact.law=linear_adhesive --set material.adhesion_Pa=";
+  for (const char* adhesion : {"5e4", "0"}) {
+    CAPTURE(adhesion);
+    const std::string folder = std::string("K") + adhesion;
+    const Outcome run = here.run(brief + adhesion + " -o " + folder);
+    REQUIRE(run.code == 0);
+    const auto found = nlohmann::json::parse(run.output);
+    const std::string drawn = plot(here, "mohr", folder + " -o M.png").output;
+    CAPTURE(drawn);
+    const auto number_after = [&](const std::string& words) {
+      const std::size_t at = drawn.find(words);
+      return at == std::string::npos ? -1 : std::stod(drawn.substr(at + words.size()));
+    };
+    CHECK(number_after("peak friction angle ") == Approx(found["friction_angle_deg"].get<double>()).margin(6e-4));
+    if (found["cohesive"].get<bool>())
+      CHECK(number_after("cohesion ") == Approx(found["cohesion_Pa"].get<double>()).margin(1));
+    else
+      CHECK(number_after("cohesion ") == -1);
+  }
+}
+
 TEST_CASE("a plot script without its Python packages names the Debian package, exit code 1") {
   const Workplace here;
   for (const auto& entry : std::filesystem::directory_iterator(RVELAB_SOURCE_DIR "/tools/plot")) {

@@ -1,5 +1,5 @@
-// Soil met at the surface of rocks: as with bodies (surface_contact.cpp), and the impulses move the rock too. Declared
-// in bodies.hpp.
+// Soil met at the surface of rocks: as with bodies (surface_contact.cpp), and the impulses move the rock too. Found in
+// rock_touching.cpp, declared in bodies.hpp.
 //
 //   K J = -u,   K = (sum N_I^2/m_I) 1 + 1/M + (r x) I^-1 (r x)^T
 //
@@ -10,138 +10,8 @@
 
 #include "tools/mpm/clock.hpp"
 #include "tools/mpm/rocks.hpp"
-#include "tools/mpm/touching.hpp"
 
 namespace mpm {
-
-// Not in an anonymous namespace: lambdas of templates hold it.
-
-/// The outline of a rock where it stands.
-template <int D>
-struct RockOutline {
-  const RockShape<D>& shape;
-  Mat<D> axes;
-  Vec<D> half;  ///< m, of the box that holds it
-
-  explicit RockOutline(const RockShape<D>& of, const Rot<D>& orientation) : shape(of), axes(matrix_of(orientation)) {
-    for (int i = 0; i < D; ++i) half[i] = shape.height(Vec<D>::Unit(i));
-  }
-  /// m, from the surface to r from the centre; beyond `reach` a part of it, and no normal.
-  double distance(const Vec<D>& r, double reach, Vec<D>& outward) const {
-    const double length = r.norm(), beyond = length - shape.bounding_radius();
-    if (beyond > reach) return beyond;
-    if (shape.is_sphere()) {
-      outward = length > 0 ? Vec<D>(r / length) : Vec<D>(Vec<D>::Unit(D - 1));
-      return beyond;
-    }
-    // The box that holds the rock, and its tangent plane across r, are no farther than the rock itself.
-    const Vec<D> own = axes.transpose() * r;
-    double beside = (own.cwiseAbs() - half).maxCoeff();
-    if (beside > reach) return beside;
-    beside = length > 0 ? length - shape.height(own / length) : 0;
-    if (beside > reach) return beside;
-    const double distance = shape.distance(own, outward);
-    outward = (axes * outward).eval();
-    return distance;
-  }
-};
-
-namespace {
-constexpr int rock_sweeps = 8;
-}  // namespace
-
-/// What is found of one rock.
-template <int D>
-struct Bodies<D>::RockFound {
-  bool near_soil = false;
-  std::vector<SurfacePoint> points;
-  std::vector<typename Rocks<D>::SurfacePoint> of_rock;
-};
-
-template <int D>
-void Bodies<D>::detect_rocks(const Grid<D>& grid, const Planes<D>& planes, const std::vector<Point<D>>& soil) {
-  rocks->surface.clear();
-  if (rocks->soil.ghosts) return;
-  rocks->pressed.resize(rocks->all.size());
-  const double begin = wall_seconds();
-  const PointsByCell<D> points(grid, soil);
-  struct Foot {
-    Vec<D> place, normal;
-    double gap;
-  };
-  // More than half of the distance between points of soil.
-  const double cell = grid.cell.minCoeff(), near = 0.6 * cell, slack = early * cell;
-  // What a rock reads of a point, in the order in which it comes to them.
-  struct Near {
-    Vec<D> position, half;  ///< m
-    double reach;           ///< m, no farther does it touch, rounding included
-  };
-  std::vector<Near> near_points(soil.size());
-  const long chunks = (long(soil.size()) + chunk - 1) / chunk;
-  std::vector<double> widest(std::size_t(chunks), 0.0);
-  workers_->for_each(chunks, [&](std::int64_t piece) {
-    const std::size_t end = std::min(soil.size(), std::size_t(piece + 1) * chunk);
-    for (std::size_t k = std::size_t(piece) * chunk; k < end; ++k) {
-      const auto& point = soil[std::size_t(points.numbers()[k])];
-      const Vec<D> half = half_size<D>(point);
-      near_points[k] = {point.position, half, slack + (1 + 1e-12) * half.maxCoeff()};
-      widest[std::size_t(piece)] = std::max(widest[std::size_t(piece)], near_points[k].reach);
-    }
-  });
-  const double reach = chunks > 0 ? *std::max_element(widest.begin(), widest.end()) : 0;
-  for (std::size_t k = 0; k < rocks->shapes.size(); ++k) rocks->outline(int(k), outline_spacing * cell);
-  std::vector<RockFound> found(rocks->all.size());
-  workers_->for_each(std::int64_t(found.size()), [&](std::int64_t k) {
-    const auto& rock = rocks->all[std::size_t(k)];
-    const auto& shape = rocks->shapes[std::size_t(rock.shape)];
-    const RockOutline<D> outline(shape, rock.body.orientation);
-    RockFound& here = found[std::size_t(k)];
-    std::vector<Foot> feet;
-    points.each_entry_near(rock.body.centre, shape.bounding_radius() + reach, [&](long entry) {
-      const Near& point = near_points[std::size_t(entry)];
-      Vec<D> outward;
-      const Vec<D> r = point.position - rock.body.centre;
-      const double distance = outline.distance(r, point.reach, outward);
-      if (distance > point.reach) return;
-      const double gap = distance - point.half.cwiseProduct(outward).norm();
-      if (gap < slack) feet.push_back({r - distance * outward, outward, gap});
-    });
-    here.near_soil = !feet.empty();
-    if (!here.near_soil) return;
-    const auto& places = rocks->kept_outline(rock.shape);
-    rocks->pressed[std::size_t(k)].resize(places.size(), Vec<D>::Zero());
-    for (std::size_t number = 0; number < places.size(); ++number) {
-      const auto& place = places[number];
-      const Vec<D> r = to_world<D>(rock.body.orientation, place.at);
-      const Vec<D> normal = to_world<D>(rock.body.orientation, place.normal);
-      // From each place to the soil, whose end is plane about the foot of each point: the rounded edge of a block
-      // stands over it. Soil under a block does not touch its front: their normals differ.
-      double gap = 1e300;
-      for (const auto& foot : feet) {
-        const bool about = (foot.place - r).squaredNorm() < near * near && foot.normal.dot(normal) > 0.5;
-        if (about) gap = std::min(gap, foot.gap + foot.normal.dot(foot.place - r));
-      }
-      typename Grid<D>::Index nearest;
-      const Vec<D> at = rock.body.centre + r;
-      if (gap > slack || !nearest_node(grid, at, nearest) || planes.is_mirror(grid.flat(nearest))) continue;
-      SurfacePoint point;
-      point.body = int(all.size()) + int(k);
-      point.normal = normal;
-      if (!hold_at(grid, planes, point, 0, at)) continue;
-      const Mat<D> soil_part = point.mobility * Mat<D>::Identity();
-      const Mat<D> mobility = soil_part + rock.body.mobility(r, r);
-      here.points.push_back(point);
-      here.of_rock.push_back({r, mobility, mobility.inverse(), std::max(0.0, gap), number});
-    }
-  });
-  for (const RockFound& here : found) {
-    if (here.near_soil) sweeps_ = std::max(sweeps_, rock_sweeps);
-    surface_.insert(surface_.end(), here.points.begin(), here.points.end());
-    rocks->surface.insert(rocks->surface.end(), here.of_rock.begin(), here.of_rock.end());
-  }
-  rocks->soil_contacts = long(rocks->surface.size());
-  rocks->soil_seconds += wall_seconds() - begin;
-}
 
 template <int D>
 void Bodies<D>::predict_rocks(const Vec<D>& gravity, double dt) {
@@ -162,6 +32,7 @@ void Bodies<D>::press_rocks(Grid<D>& grid) {
       const auto& here = rocks->surface[k - first];
       const std::size_t number = std::size_t(point.body) - all.size();
       const auto& rock = rocks->all[number];
+      if (here.place == Rocks<D>::at_node) continue;
       point.now = rocks->step * to_world<D>(rock.body.orientation, rocks->pressed[number][here.place]);
       push_rock(k, point.now, grid, true);
     }
@@ -173,8 +44,9 @@ template <int D>
 void Bodies<D>::keep_pressed() {
   const std::size_t first = surface_.size() - rocks->surface.size();
   for (std::size_t k = first; k < surface_.size(); ++k) {
-    const std::size_t number = std::size_t(surface_[k].body) - all.size();
-    rocks->pressed[number][rocks->surface[k - first].place] =
+    const std::size_t number = std::size_t(surface_[k].body) - all.size(), place = rocks->surface[k - first].place;
+    if (place == Rocks<D>::at_node) continue;
+    rocks->pressed[number][place] =
         to_body<D>(rocks->all[number].body.orientation, Vec<D>(surface_[k].now / rocks->step));
   }
 }
@@ -192,10 +64,15 @@ void Bodies<D>::push_rock(std::size_t k, const Vec<D>& impulse, Grid<D>& grid, b
   motion.spin -= rock.spin_of(moment<D>(here.r, impulse));
 }
 
+/// At the start of a step nodes in rocks alone are held. Points of soil hardly feel what impulses at the surface do to
+/// nodes behind it: the next step would begin with the same velocity into the rock, and these would take it away again
+/// and strain the soil by what its points never do. Five rocks in 8 x 8 x 8 cells pressed from 50 to 200 kPa: mapping
+/// gains 11 % of the work of the stress with them, and takes 3 % without.
 template <int D>
 void Bodies<D>::hold_rock(std::size_t k, Grid<D>& grid, bool end) {
   auto& point = surface_[k];
   const auto& here = rocks->surface[k + rocks->surface.size() - surface_.size()];
+  if (!end && here.place != Rocks<D>::at_node) return;
   const auto& motion = rocks->motion[std::size_t(point.body) - all.size()];
   Vec<D> relative = velocity_at(grid, point, end) - motion.velocity - spun<D>(motion.spin, here.r);
   relative -= here.mobility * point.now;  // without this point's impulse
@@ -258,13 +135,12 @@ void Bodies<D>::start_rocks() {
   for (const auto& rock : rocks->all) rocks->motion.push_back({rock.body.velocity, rock.body.spin()});
 }
 
-#define MPM_INSTANTIATE(D)                                                                               \
-  template void Bodies<D>::detect_rocks(const Grid<D>&, const Planes<D>&, const std::vector<Point<D>>&); \
-  template void Bodies<D>::predict_rocks(const Vec<D>&, double);                                         \
-  template void Bodies<D>::press_rocks(Grid<D>&);                                                        \
-  template void Bodies<D>::keep_pressed();                                                               \
-  template void Bodies<D>::hold_rock(std::size_t, Grid<D>&, bool);                                       \
-  template void Bodies<D>::book_rocks(const Grid<D>&, const Planes<D>&);                                 \
+#define MPM_INSTANTIATE(D)                                               \
+  template void Bodies<D>::predict_rocks(const Vec<D>&, double);         \
+  template void Bodies<D>::press_rocks(Grid<D>&);                        \
+  template void Bodies<D>::keep_pressed();                               \
+  template void Bodies<D>::hold_rock(std::size_t, Grid<D>&, bool);       \
+  template void Bodies<D>::book_rocks(const Grid<D>&, const Planes<D>&); \
   template void Bodies<D>::start_rocks();
 MPM_INSTANTIATE(2)
 MPM_INSTANTIATE(3)

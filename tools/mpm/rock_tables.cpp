@@ -1,8 +1,10 @@
 // Places of rocks as [[rocks]] table reads them. Declared in rock_output.hpp.
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <map>
 #include <numbers>
+#include <stdexcept>
 
 #include "tools/mpm/rock_output.hpp"
 #include "tools/mpm/rocks.hpp"
@@ -48,6 +50,9 @@ void write_rock_tables(const Solver<D>& solver, const std::string& folder) {
     if (table.empty()) table = header_of<D>(round[rock.name]);
     const char* before = "";
     for (const double each : row_of<D>(shapes[std::size_t(rock.shape)], rock.body, round[rock.name])) {
+      if (!std::isfinite(each))
+        throw std::runtime_error("a rock of rocks." + rock.name + " stands nowhere at " + std::to_string(solver.time) +
+                                 " s; take a smaller time.cfl");
       char text[40];
       std::snprintf(text, sizeof text, "%s%.17g", before, each);
       table += text;

@@ -9,6 +9,7 @@
 
 #include <limits>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -141,8 +142,9 @@ class Rocks {
     Mat<D> mobility;    ///< m/s of N s, of soil and rock together
     Mat<D> resistance;  ///< its inverse
     double gap;         ///< m, to the soil
-    std::size_t place;  ///< number in the outline of the rock
+    std::size_t place;  ///< number in the outline of the rock; at_node: it is a node in the rock
   };
+  static constexpr std::size_t at_node = std::size_t(-1);
   /// N, of each rock at each place of its outline on the soil, at the end of the step before, along its principal
   /// axes: what the sweeps over surface points start from.
   std::vector<std::vector<Vec<D>>> pressed;
@@ -175,6 +177,15 @@ class Rocks {
   std::vector<double> balls;  ///< m, radius of each point as a ball
   /// Of the next point. One that would overlap a rock is made so small that it touches it; a grain may by a twentieth.
   void add_ball(const Point<D>& point, double radius, bool grain);
+  /// While points are placed: rocks that took the place of some, and balls with no other between them and a rock, that
+  /// rock, and m from their middle to it.
+  struct Beside {
+    std::size_t ball;
+    int rock;
+    double gap;
+  };
+  std::set<int> displacing;
+  std::vector<Beside> beside;
   double ghost_loss = 0;         ///< J, to friction with ghosts
   double ghost_springs() const;  ///< J, in the contacts with ghosts now
   double ghost_frequency = 0;    ///< 1/s, of the stiffest contact with a ghost that is or may come within a step

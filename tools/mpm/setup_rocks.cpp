@@ -146,33 +146,42 @@ bool cut(const Rocks<D>& rocks, Point<D>& point) {
          });
 }
 
-/// Its ball, if its middle is in no rock; a grain's, if that is in none by more than half. The ball of a point between
-/// which and a rock no other stands reaches the rock: on a lattice balls of one size touch few places of a rock, and it
-/// would lie loose in the soil.
+/// Its ball, if its middle is in no rock; a grain's, if that is in none by more than half.
 template <int D>
 bool give_ball(Rocks<D>& rocks, const Point<D>& point, double grain) {
-  if (grain > 0) {
-    const double reach = 0.5 * grain;
-    for (const auto& rock : rocks.all) {
-      if (rocks.distance(rock, point.position, reach) < reach) return false;
-    }
-    rocks.add_ball(point, grain, true);
-    return true;
-  }
-  double radius = ghost_radius<D>(point, rocks.soil.porosity);
-  const double farthest = 2 * point.half.norm();
-  for (const auto& rock : rocks.all) {
+  const double radius = grain > 0 ? grain : ghost_radius<D>(point, rocks.soil.porosity);
+  const double middle = grain > 0 ? 0.5 * grain : 0, farthest = std::max(middle, 2 * point.half.norm());
+  for (std::size_t k = 0; k < rocks.all.size(); ++k) {
+    const auto& rock = rocks.all[k];
     if (rocks.distance(rock, point.position, farthest) > farthest) continue;
     Vec<D> outward;
     const auto& shape = rocks.shapes[std::size_t(rock.shape)];
     const double gap = shape.distance(to_body<D>(rock.body.orientation, point.position - rock.body.centre), outward);
-    if (gap < 0) return false;
+    if (gap < middle) {
+      rocks.displacing.insert(int(k));
+      return false;
+    }
     // Its own domain, or where the next point along an axis would stand, reaches into the rock.
     const Vec<D> along = to_world<D>(rock.body.orientation, outward).cwiseAbs().cwiseProduct(point.half);
-    if (gap < std::max(along.sum(), 2 * along.maxCoeff())) radius = std::max(radius, gap);
+    if (grain == 0 && gap < std::max(along.sum(), 2 * along.maxCoeff()))
+      rocks.beside.push_back({rocks.balls.size(), int(k), gap});
   }
-  rocks.add_ball(point, radius, false);
+  rocks.add_ball(point, radius, grain > 0);
   return true;
+}
+
+/// The ball of a point between which and a rock in the soil no other stands reaches that rock: on a lattice balls of
+/// one size touch few places of a rock, and it would lie loose. A rock that lies on the soil finds it as flat as it is.
+template <int D>
+void widen_balls(Rocks<D>& rocks, const std::vector<Point<D>>& points) {
+  for (const auto& [ball, number, gap] : rocks.beside) {
+    if (!rocks.displacing.contains(number) || gap <= rocks.balls[ball]) continue;
+    double room = gap;
+    for (const auto& rock : rocks.all) room = std::min(room, rocks.distance(rock, points[ball].position, room));
+    rocks.balls[ball] = std::max(rocks.balls[ball], room);
+  }
+  rocks.beside.clear();
+  rocks.displacing.clear();
 }
 
 template <int D>
@@ -190,6 +199,7 @@ template <int D>
 void finish_rocks(const Scene& scene, Solver<D>& solver, std::vector<std::string>& told) {
   if (!solver.rocks) return;
   auto& rocks = *solver.rocks;
+  widen_balls<D>(rocks, solver.points);
   double volume = 0;
   for (const auto& rock : rocks.all) volume += rocks.shapes[std::size_t(rock.shape)].volume() * rocks.thickness;
   told.push_back(std::to_string(rocks.all.size()) + " rocks of " + text_of(volume) + " m3; " +

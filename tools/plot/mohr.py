@@ -5,9 +5,10 @@ Of each file the last drained compression or extension. Its peak is the record w
 unsmoothed; a test that ends before 15 % strain with its largest deviator at the end has none: the others are drawn, with a
 warning. Of several specimens at one pressure the circle of their mean state is drawn over thin ones of each. The envelope
 passes through the origin: t = s sin phi by least squares over the tests, s = (sigma_1 + sigma_3)/2,
-t = (sigma_1 - sigma_3)/2; of several specimens the mean of their angles with its 95 % interval (Student's) is drawn and
-printed beside it. Where all tests reach 15 % axial strain, the mean of their angles from 12 to 15 % is drawn too.
-Compression positive.
+t = (sigma_1 - sigma_3)/2; of a cohesive soil it is t = s sin phi + c cos phi, as calibrate has it: its grains stick, or the c
+of three tests and more is beyond twice its standard error and 5 % of their mean s. Of several specimens the mean of their
+angles with its 95 % interval (Student's) is drawn and printed beside it. Where all tests reach 15 % axial strain, the mean of
+their angles from 12 to 15 % is drawn too, secants through the origin. Compression positive.
 """
 
 import argparse
@@ -71,20 +72,50 @@ def student(freedom):
     return z + (z**3 + z) / (4 * freedom) + (5 * z**5 + 16 * z**3 + 3 * z) / (96 * freedom**2)
 
 
-def interval_of(tests):
-    """Mean of the peak angles of the specimens, radians, and half of its 95 % interval; None for a single specimen."""
+def straight_envelope(s, t):
+    """Angle (radians), cohesion and the standard error of it (Pa) of t = s sin phi + c cos phi by least squares, as
+    rvelab/calibrate/mohr.cpp; None for fewer than two different s. Of two tests the error is nan."""
+    off = s - s.mean()
+    if len(s) < 2 or not np.dot(off, off) > 0:
+        return None
+    slope = np.dot(off, t) / np.dot(off, off)
+    intercept, cosine = t.mean() - slope * s.mean(), math.sqrt(1 - slope**2)
+    variance = np.sum((t - intercept - slope * s)**2) / (len(s) - 2) if len(s) > 2 else math.nan
+    of_slope = variance / np.dot(off, off)
+    of_intercept = variance / len(s) + s.mean()**2 * of_slope
+    by_a, by_b = 1 / cosine, intercept * slope / cosine**3
+    square = by_a**2 * of_intercept + by_b**2 * of_slope - 2 * by_a * by_b * s.mean() * of_slope
+    return math.asin(slope), intercept / cosine, math.sqrt(max(0, square)) if square == square else math.nan
+
+
+def envelope(tests):
+    """Angle (radians) and cohesion (Pa) of the envelope of the peaks: through the origin where the soil has none."""
+    s, t = np.array([peak_state(test) for test in tests]).T
+    line = straight_envelope(s, t)
+    if line is not None and (any(test.origin.sticks for test in tests) or line[1] > max(2 * line[2], 0.05 * s.mean())):
+        return line[:2]
+    return math.asin(records.sine_through_origin(s, t)), 0.0
+
+
+def interval_of(tests, cohesive):
+    """Mean of the peak angles of the specimens, radians, and half of its 95 % interval; None for a single specimen, and for
+    specimens of a cohesive soil with one test each."""
     specimens = {}
     for test in tests:
         specimens.setdefault(test.origin.specimen, []).append(peak_state(test))
-    angles = np.array([math.asin(records.sine_through_origin(*np.array(states).T)) for states in specimens.values()])
+    if cohesive:
+        lines = [straight_envelope(*np.array(states).T) for states in specimens.values()]
+        angles = np.array([line[0] for line in lines if line is not None])
+    else:
+        angles = np.array([math.asin(records.sine_through_origin(*np.array(states).T)) for states in specimens.values()])
     if len(angles) < 2:
         return None
     return float(angles.mean()), student(len(angles) - 1) * float(angles.std(ddof=1)) / math.sqrt(len(angles)), len(angles)
 
 
-def line_of(axes, angle, right, label, **line):
-    """Draws tau = sigma tan phi, phi in radians."""
-    axes.plot([0, right], [0, right * math.tan(angle)], label=label, **line)
+def line_of(axes, angle, right, label, cohesion=0.0, **line):
+    """Draws tau = c + sigma tan phi, phi in radians, c in kPa."""
+    axes.plot([0, right], [cohesion, cohesion + right * math.tan(angle)], label=label, **line)
 
 
 def draw_circles(axes, drawn):
@@ -107,26 +138,30 @@ def draw_circles(axes, drawn):
 
 def draw_envelopes(axes, tests, right, colour="crimson", name=""):
     """Envelope of the peaks with its interval, and that of large strain; the words for both and the peak angle."""
-    peak = math.asin(records.sine_through_origin(*np.array([peak_state(test) for test in tests]).T))
-    interval = interval_of(tests)
+    peak, cohesion = envelope(tests)
+    interval = interval_of(tests, cohesion != 0)
     digits = 3 if interval is None else 1  # specimens scatter by degrees
     text = f"peak friction angle {math.degrees(peak):.{digits}f} degrees"
     before = f"{name}, " if name else ""
     label = f"{before}peak: $\\varphi$ = {math.degrees(peak):.1f}°"
     if interval is not None:
         mean, half, count = interval
-        axes.fill_between([0, right], [0, right * math.tan(mean - half)], [0, right * math.tan(mean + half)],
-                          color=colour, alpha=0.12, linewidth=0, label="95 % interval of the mean" if not name else None)
+        low, high = (np.array([cohesion / 1e3, cohesion / 1e3 + right * math.tan(angle)]) for angle in (mean - half, mean + half))
+        axes.fill_between([0, right], low, high, color=colour, alpha=0.12, linewidth=0,
+                          label="95 % interval of the mean" if not name else None)
         label = f"{before}peak: $\\varphi$ = {math.degrees(mean):.1f}° ± {math.degrees(half):.1f}°"
         text += f" ({count} specimens: {math.degrees(mean):.1f} +- {math.degrees(half):.1f}, 95 % interval of the mean)"
-    line_of(axes, interval[0] if interval else peak, right, label, color=colour, linewidth=1.6)
+    if cohesion:
+        label += f", c = {cohesion / 1e3:.3g} kPa"
+        text += f", cohesion {cohesion:.0f} Pa: the tangent angle of a cohesive soil"
+    line_of(axes, interval[0] if interval else peak, right, label, cohesion / 1e3, color=colour, linewidth=1.6)
     large = [large_strain_angle(test) for test in tests]
     if None not in large:
         mean = sum(large) / len(large)
         line_of(axes, mean, right, f"{before}12 to 15 % strain: $\\varphi$ = {math.degrees(mean):.1f}°",
                 color=colour if name else "0.35", linestyle=(0, (5, 3)))
         text += f", at large strain {math.degrees(mean):.{digits}f} degrees"
-    return (f"{name}: " if name else "") + text, peak
+    return (f"{name}: " if name else "") + text, cohesion / 1e3 + right * math.tan(peak)
 
 
 def sets_of(drawn):
@@ -159,9 +194,9 @@ def draw(stages, options):
     drawn = kinds.curves_of(tests, "group" if options.colour == "auto" and several_groups(tests) else options.colour)
     right = 1.06 * draw_circles(axes, drawn)
     found = [draw_envelopes(axes, own, right, colour, name) for own, colour, name in sets_of(drawn)]
-    text, peak = "; ".join(words for words, _ in found), max(angle for _, angle in found)
+    text, top = "; ".join(words for words, _ in found), max(height for _, height in found)
     axes.set_xlim(0, right)
-    axes.set_ylim(0, max(0.56 * right, right * math.tan(peak)))
+    axes.set_ylim(0, max(0.56 * right, top))
     axes.set_aspect("equal", adjustable="box")
     axes.set_xlabel("normal stress $\\sigma$, compression positive (kPa)")
     axes.set_ylabel("shear stress $\\tau$ (kPa)")

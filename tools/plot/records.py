@@ -55,6 +55,7 @@ class Origin:
     specimen: int  # checksum of the specimen that the test began with
     grains: int
     material: tuple  # contact law and parameters of the materials
+    sticks: bool  # whether its contacts pull
     settings: str  # the protocol without its pressures
     wall_seconds: float
     grain_steps: int
@@ -180,12 +181,13 @@ def without_pressures(table):
 def origin_of(file, path, protocol):
     """Origin of an open record file."""
     specimen = file["specimen"]
-    material = [specimen["contact/law"][()]]
+    material, sticks = [specimen["contact/law"][()]], False
     for name, values in specimen["materials"].items():
         if name != "name":
             material += [f"{name} {value:.6g}" for value in np.ravel(values[()])]
+            sticks = sticks or name in ("adhesion_Pa", "adhesion_N") and bool(np.any(values[()] > 0))
     return Origin(path.resolve().parent.name, int(file["provenance/specimen_crc32c"][()]), len(specimen["grains/radius_m"]),
-                  tuple(map(str, material)), str(without_pressures(protocol)), float(file["provenance/wall_seconds"][()]),
+                  tuple(map(str, material)), sticks, str(without_pressures(protocol)), float(file["provenance/wall_seconds"][()]),
                   int(file["test/grain_steps"][()]), bool(file["complete"][()]), texts(file["provenance/version"])[0])
 
 
