@@ -49,6 +49,7 @@ void expect_cut(const std::string& rock, double tolerance, double off = 0.05) {
     first += point.volume * point.position;
     least = std::min(least, model->solver.rocks->distance(model->solver.rocks->all[0], point.position, 1));
     CHECK(point.volume == Approx(std::pow(2.0, D) * point.half.prod()));
+    CHECK(point.volume >= 0.25 * std::pow(0.0625, D));
     CHECK(point.mass == Approx(1600 * point.volume));
   }
   CAPTURE(D, rock, stone);
