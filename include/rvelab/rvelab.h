@@ -47,7 +47,7 @@ extern "C" {
 /* ---- version ---- */
 
 #define RVELAB_ABI_MAJOR 1
-#define RVELAB_ABI_MINOR 1
+#define RVELAB_ABI_MINOR 2
 
 /* major << 16 | minor of the library at hand. Same major: a program built with an older header runs. */
 int32_t rvelab_abi_version(void);
@@ -67,13 +67,14 @@ int64_t rvelab_capabilities(void);
 
 /* ---- status: numbers are never reused ---- */
 
-/* Of several warnings NOT_QUASI_STATIC comes first, then TOLERANCE, CELL_THIN, TANGENT_AFFINE; the text of any tells of
+/* Of several warnings NOT_HELD comes first, then NOT_QUASI_STATIC, TOLERANCE, CELL_THIN, TANGENT_AFFINE; the text of any tells of
  * an affine tangent too. */
 #define RVELAB_OK 0
 #define RVELAB_W_TOLERANCE 1        /* dt = 0: the error to be expected, estimate/2, is above the tolerance    */
 #define RVELAB_W_NOT_QUASI_STATIC 2 /* dt = 0: the state is no equilibrium, the specimen flows or collapses */
 #define RVELAB_W_CELL_THIN 3        /* a height of the cell is below four mean diameters */
 #define RVELAB_W_TANGENT_AFFINE 4   /* the network has no elastic tangent; the affine one (stiffer) was written */
+#define RVELAB_W_NOT_HELD 5         /* dt > 0: a stress of a mixed target was missed by more than the tolerance */
 #define RVELAB_DISCARD (-1)         /* the increment cannot be made: state as before, try dt_scale times the step */
 #define RVELAB_E_INPUT (-2)         /* an argument is not allowed: not finite, det(I + dH) <= 0, dt < 0, bad option */
 #define RVELAB_E_NULL (-3)          /* a pointer that is needed is null */
@@ -222,6 +223,50 @@ int32_t rvelab_batch_init(rvelab_batch* batch, size_t struct_size);
  */
 int32_t rvelab_trial(rvelab_pool* pool, rvelab_batch* batch);
 
+/* ---- mixed targets and relaxation, since 1.2 ----
+ *
+ * What is asked of strain and stress together: rows A : d eps + B : d sigma = c, 3 in 2D (over xx, yy, xy) and 6 in 3D,
+ * d eps the symmetric part of dH, d sigma the change of the Cauchy stress over the step; A : d eps sums all nine
+ * entries. A drained biaxial test: d eps_yy and d eps_xy given (A), sigma_xx brought to its target (B). A stress is
+ * held by a servo within the sub-steps; rows that depend on each other are RVELAB_E_INPUT. At dt = 0 the step waits for
+ * the stress, and one that the grains cannot carry is RVELAB_DISCARD. */
+
+typedef struct rvelab_mixed {
+  uint32_t struct_size;
+  uint32_t flags;
+  int64_t n;
+  int64_t rows;     /* of each RVE, 3 or 6; row k of entry m is that of number rows m + k below */
+  double dt;        /* s, for all */
+  double tolerance; /* of rows with a stress, relative to their scale; 0: 0.005 */
+  /* in */
+  const int64_t* ids;    /* [n], each once */
+  const double* strain;  /* [9 rows n], A, symmetric */
+  const double* stress;  /* [9 rows n], B, symmetric; its unit and that of A are those of value over Pa and over 1 */
+  const double* value;   /* [rows n], c */
+  const double* scale;   /* [rows n]; of rows with a stress > 0: what the tolerance is relative to */
+  const double* missed;  /* [rows n] or null: part of value that the step before has left */
+  const double* spin;    /* [9 n] or null: skew part of dH */
+  /* out; what is null is not written */
+  double* sigma;          /* [9 n], not null */
+  double* dH;             /* [9 n]: what was applied */
+  double* held_error;     /* [n]: largest |A : d eps + B : d sigma - c|/scale; dt > 0: of the mean over the step */
+  double* error_estimate; /* [n], as of a batch */
+  int32_t* status;        /* [n] */
+  int64_t* tokens_out;    /* [n]: of the new committed states */
+} rvelab_mixed;
+
+/* Sets min(struct_size, own size) bytes to zero, and mixed->struct_size. struct_size = sizeof(rvelab_mixed). */
+int32_t rvelab_mixed_init(rvelab_mixed* mixed, size_t struct_size);
+
+/* Applies the target to the committed state of each id, whose end is the new one: trial and commit in one, a pending
+ * trial is reverted. Returns the worst status as rvelab_trial does; an RVE that failed is as before, and its outputs
+ * but status stay as they were. The same bits as the C++ call Rve::apply, and as the tests of the program. */
+int32_t rvelab_apply_mixed(rvelab_pool* pool, rvelab_mixed* mixed);
+
+/* Quasi-static sub-steps at a fixed cell until the unbalanced ratio is at most `unbalanced` or max_substeps are made
+ * (RVELAB_W_NOT_QUASI_STATIC then); a pending trial is reverted. sigma[9] or null. */
+int32_t rvelab_relax(rvelab_pool* pool, int64_t id, double unbalanced, int64_t max_substeps, double* sigma);
+
 /* The pending trials of n RVEs become their states. ids null: all that are pending (n is not read). All ids are checked
  * first, all or none: RVELAB_E_NO_TRIAL if one has none. */
 int32_t rvelab_commit(rvelab_pool* pool, int64_t n, const int64_t* ids);
@@ -257,6 +302,11 @@ typedef struct rvelab_info {
   int64_t bytes_trial;           /* held by its pending trial; 0 without */
   int64_t bytes_working;         /* held beside that between calls in quick succession; 0 at rest */
   int64_t token;                 /* of the committed state */
+  /* since 1.2 */
+  double sigma[9];       /* Pa, Cauchy stress, as a trial returns it: contact + reynolds */
+  double contact[9];     /* Pa, of the contact forces */
+  double reynolds[9];    /* Pa, of the velocity fluctuations */
+  double error_estimate; /* Pa, of sigma after the last step that was committed, as batch.error_estimate; 0 without one */
 } rvelab_info;
 
 /* Sets min(struct_size, own size) bytes to zero, and info->struct_size. struct_size = sizeof(rvelab_info). */
@@ -264,6 +314,43 @@ int32_t rvelab_info_init(rvelab_info* info, size_t struct_size);
 
 /* Fills info up to its struct_size. */
 int32_t rvelab_get_info(rvelab_pool* pool, int64_t id, rvelab_info* info);
+
+/* ---- arrays, since 1.2 ----
+ *
+ * What the committed state of an RVE holds, by name: measures of the cell by the names that records have, columns of its
+ * grains and contacts. Vectors and tensors are in the laboratory frame, velocities those of dt > 0 (zero after dt = 0).
+ * A contact joins the grains of rows i and j, i <= j, where j is shifted by lattice columns times image; force and
+ * moment are those on j; contacts are in the order of (i, j, image), and are those that touch now. */
+
+#define RVELAB_OF_CELL 0 /* one row */
+#define RVELAB_OF_GRAINS 1
+#define RVELAB_OF_CONTACTS 2
+
+#define RVELAB_DOUBLE 0
+#define RVELAB_INT64 1
+
+typedef struct rvelab_array {
+  uint32_t struct_size;
+  uint32_t flags;      /* written as zero */
+  const char* name;    /* as long as the library is loaded, as the next two */
+  const char* unit;    /* "1" of a pure number */
+  const char* meaning; /* in a few words */
+  int32_t of;          /* RVELAB_OF_CELL, RVELAB_OF_GRAINS or RVELAB_OF_CONTACTS */
+  int32_t type;        /* of an entry, RVELAB_DOUBLE or RVELAB_INT64: 8 bytes */
+  int64_t rows;        /* in this state */
+  int64_t columns;     /* 1; a vector 3, a tensor 9, row-major */
+} rvelab_array;
+
+/* Sets min(struct_size, own size) bytes to zero, and array->struct_size. struct_size = sizeof(rvelab_array). */
+int32_t rvelab_array_init(rvelab_array* array, size_t struct_size);
+
+/* All arrays of an RVE: *n of them, of which the first min(cap, *n) are described in arrays[cap] (null with cap = 0:
+ * count only). Entries of arrays are arrays[0].struct_size bytes apart, all of them as rvelab_array_init leaves them. */
+int32_t rvelab_list_arrays(rvelab_pool* pool, int64_t id, int64_t cap, rvelab_array* arrays, int64_t* n);
+
+/* Writes an array, row after row, to buf of cap bytes; *need (not null): 8 rows columns. buf null with cap = 0: only
+ * that. RVELAB_E_BUFFER if cap < *need. RVELAB_E_INPUT: no such name; the text names the nearest. */
+int32_t rvelab_get_array(rvelab_pool* pool, int64_t id, const char* name, void* buf, size_t cap, size_t* need);
 
 /* grain_steps[n]: grains times sub-steps made for each id in this pool: its cost. Trials that were reverted, discarded
  * or made again are included. */

@@ -24,6 +24,35 @@ int32_t rvelab_trial(rvelab_pool* pool, rvelab_batch* batch) {
   });
 }
 
+int32_t rvelab_mixed_init(rvelab_mixed* mixed, size_t struct_size) {
+  return at_c_boundary([&] { init_struct(mixed, "mixed", struct_size); });
+}
+
+int32_t rvelab_apply_mixed(rvelab_pool* pool, rvelab_mixed* mixed) {
+  return of_pool(pool, {{mixed, "mixed"}}, [&](pool::Pool& of) {
+    const rvelab_mixed given = read_struct(mixed);
+    if (given.n > 0)
+      expect_pointers({{given.ids, "mixed.ids"},
+                       {given.strain, "mixed.strain"},
+                       {given.stress, "mixed.stress"},
+                       {given.value, "mixed.value"},
+                       {given.scale, "mixed.scale"},
+                       {given.sigma, "mixed.sigma"}});
+    return pool::apply_mixed(of, given);
+  });
+}
+
+int32_t rvelab_relax(rvelab_pool* pool, int64_t id, double unbalanced, int64_t max_substeps, double* sigma) {
+  return of_pool(pool, {}, [&](pool::Pool& of) -> pool::Verdict {
+    const pool::RelaxDone done = of.at<&pool::Share::relax>(id, unbalanced, max_substeps);
+    if (sigma != nullptr) std::copy_n(done.sigma, 9, sigma);
+    if (done.reached != 0) return {};
+    return {pool::Status::not_quasi_static, "relax: the unbalanced ratio is " + in_words(done.unbalanced) + " after " +
+                                                std::to_string(done.substeps) + " sub-steps, not " +
+                                                in_words(unbalanced) + "; give more, or a larger ratio"};
+  });
+}
+
 int32_t rvelab_commit(rvelab_pool* pool, int64_t n, const int64_t* ids) {
   return of_pool(pool, {},
                  [&](pool::Pool& of) { of.commit(ids == nullptr ? std::span<const std::int64_t>() : ids_of(n, ids)); });

@@ -19,7 +19,8 @@ constexpr bool is_whole() {
   }
   return end == sizeof(Struct);
 }
-static_assert(is_whole<rvelab_pool_def>() && is_whole<rvelab_batch>() && is_whole<rvelab_info>());
+static_assert(is_whole<rvelab_pool_def>() && is_whole<rvelab_batch>() && is_whole<rvelab_info>() &&
+              is_whole<rvelab_array>() && is_whole<rvelab_mixed>());
 
 constexpr std::size_t least = 8, most = 65536;  ///< struct_size and flags; more than any struct will ever have
 

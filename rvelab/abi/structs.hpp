@@ -27,7 +27,14 @@ struct Field {
   each(struct_size) each(flags) each(dimension) each(grains) each(contacts) each(lattice) each(rotation) each(volume) \
       each(void_ratio) each(coordination_number) each(fabric) each(fabric_anisotropy) each(sliding_fraction) each(p)  \
           each(q) each(unbalanced_force_ratio) each(inertial_number) each(permeability_ratio) each(min_height_ratio)  \
-              each(grain_steps) each(bytes_resting) each(bytes_trial) each(bytes_working) each(token)
+              each(grain_steps) each(bytes_resting) each(bytes_trial) each(bytes_working) each(token) each(sigma)     \
+                  each(contact) each(reynolds) each(error_estimate)
+#define RVELAB_FIELDS_OF_MIXED(each)                                                                             \
+  each(struct_size) each(flags) each(n) each(rows) each(dt) each(tolerance) each(ids) each(strain) each(stress)  \
+      each(value) each(scale) each(missed) each(spin) each(sigma) each(dH) each(held_error) each(error_estimate) \
+          each(status) each(tokens_out)
+#define RVELAB_FIELDS_OF_ARRAY(each) \
+  each(struct_size) each(flags) each(name) each(unit) each(meaning) each(of) each(type) each(rows) each(columns)
 
 template <class Struct>
 struct Layout;
@@ -42,6 +49,8 @@ struct Layout;
 RVELAB_LAYOUT(rvelab_pool_def, RVELAB_FIELDS_OF_POOL_DEF)
 RVELAB_LAYOUT(rvelab_batch, RVELAB_FIELDS_OF_BATCH)
 RVELAB_LAYOUT(rvelab_info, RVELAB_FIELDS_OF_INFO)
+RVELAB_LAYOUT(rvelab_mixed, RVELAB_FIELDS_OF_MIXED)
+RVELAB_LAYOUT(rvelab_array, RVELAB_FIELDS_OF_ARRAY)
 #undef RVELAB_LAYOUT
 #undef RVELAB_FIELD
 

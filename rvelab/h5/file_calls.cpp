@@ -20,7 +20,7 @@ namespace {
 /// One row for each RVE.
 struct Rows {
   std::vector<std::int64_t> id, token, next_token;
-  std::vector<double> initial_void_ratio, inertial_number;
+  std::vector<double> initial_void_ratio, inertial_number, error_estimate;
 };
 
 /// One row for each trial that is kept, in the order of RVEs and tokens.
@@ -39,6 +39,7 @@ void describe(Archive& archive, AnyRows& rows, AnyTrials& trials, Numbers& tag, 
   archive.field("pool/next_token", rows.next_token, "1");
   archive.field("pool/initial_void_ratio", rows.initial_void_ratio, "1");
   archive.field("pool/inertial_number", rows.inertial_number, "1");
+  archive.later_field("pool/error_estimate_Pa", rows.error_estimate, "Pa", fields::InFiles{12});
   archive.field("pool/trials/rve", trials.rve, "1");
   archive.field("pool/trials/token", trials.token, "1");
   archive.field("pool/trials/dt_s", trials.dt, "s");
@@ -60,7 +61,8 @@ void write_pool(const std::string& path, const pool::Population& population, con
       rows.token.push_back(rve.tokens.committed());
       rows.next_token.push_back(rve.tokens.next());
       rows.initial_void_ratio.push_back(rve.initial_void_ratio);
-      rows.inertial_number.push_back(rve.inertial_number);
+      rows.inertial_number.push_back(rve.last.inertial_number);
+      rows.error_estimate.push_back(rve.last.error_estimate);
       for (int t = 0; t < rve.tokens.trials(); ++t) {
         const pool::TrialRecord& trial = rve.tokens.trial(t);
         trials.rve.push_back(std::int64_t(k));
@@ -91,14 +93,18 @@ pool::Population read_pool(const std::string& path, const pool::Pool::TakeState&
     if (!holds) throw InputError(path + ": " + what + "; the file is damaged: write it again");
   };
   const std::size_t n = rows.id.size(), kept = trials.rve.size();
+  if (rows.error_estimate.empty()) rows.error_estimate.resize(n);
   expect(tag.size() == 1 && tag[0] >= 0 && rows.token.size() == n && rows.next_token.size() == n &&
-             rows.initial_void_ratio.size() == n && rows.inertial_number.size() == n,
+             rows.initial_void_ratio.size() == n && rows.inertial_number.size() == n && rows.error_estimate.size() == n,
          "the datasets under /pool have different lengths");
   expect(trials.token.size() == kept && trials.dt.size() == kept && trials.displacement_gradient.size() == kept,
          "the datasets under /pool/trials have different lengths");
   std::size_t next = 0;
   for (std::size_t k = 0; k < n; ++k) {
-    pool::RveState rve{io::get_specimen(file, group_of(k)), {}, rows.initial_void_ratio[k], rows.inertial_number[k]};
+    pool::RveState rve{io::get_specimen(file, group_of(k)),
+                       {},
+                       rows.initial_void_ratio[k],
+                       {rows.inertial_number[k], rows.error_estimate[k]}};
     rve.tokens.restore(rows.token[k], rows.next_token[k]);
     for (; next < kept && trials.rve[next] == std::int64_t(k); ++next) {
       expect(rve.tokens.trials() < pool::Tokens::kept, "an RVE has more trials than are kept");

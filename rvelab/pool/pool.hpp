@@ -74,6 +74,9 @@ class Pool {
   virtual void commit(std::span<const std::int64_t> ids) = 0;
   virtual void revert(std::span<const std::int64_t> ids) = 0;
 
+  /// piece(k) for k below count, each once, on the threads of this process that there are. `piece` must not throw.
+  virtual void run_each(std::size_t count, const std::function<void(std::size_t)>& piece) = 0;
+
   virtual void cost(std::span<const std::int64_t> ids, std::int64_t* grain_steps) = 0;
 
   /// Shows the population, then the bytes of each RVE (to_bytes(RveState)) in the order of its ids.

@@ -8,7 +8,7 @@ namespace rvelab::pool {
 
 namespace {
 
-constexpr char magic[8] = {'r', 'v', 'e', 'p', 'o', 'o', 'l', '1'};
+constexpr char magic[8] = {'r', 'v', 'e', 'p', 'o', 'o', 'l', '2'};
 
 struct Head {
   char magic[8];
@@ -19,7 +19,7 @@ struct Head {
 /// As it lies in the bytes, without padding.
 struct Numbers {
   std::int64_t committed, next, trials;
-  double initial_void_ratio, inertial_number;
+  double initial_void_ratio, inertial_number, error_estimate;
 };
 struct Trial {
   std::int64_t token;
@@ -40,8 +40,8 @@ std::vector<std::byte> to_bytes(const RveState& state, std::span<const std::byte
   std::memcpy(head.magic, magic, sizeof magic);
   Packer packer;
   packer.make_room(sizeof head + head.length).put(head);
-  packer.put(
-      Numbers{tokens.committed(), tokens.next(), tokens.trials(), state.initial_void_ratio, state.inertial_number});
+  packer.put(Numbers{tokens.committed(), tokens.next(), tokens.trials(), state.initial_void_ratio,
+                     state.last.inertial_number, state.last.error_estimate});
   for (int k = 0; k < tokens.trials(); ++k) {
     const TrialRecord& record = tokens.trial(k);
     Trial trial{record.token, {}, record.dt};
@@ -75,7 +75,7 @@ RveState rve_state_of(std::span<const std::byte> bytes) {
     refuse("its tokens cannot be: it was damaged");
   RveState state;
   state.initial_void_ratio = numbers.initial_void_ratio;
-  state.inertial_number = numbers.inertial_number;
+  state.last = {numbers.inertial_number, numbers.error_estimate};
   state.tokens.restore(numbers.committed, numbers.next);
   expect_more(std::size_t(numbers.trials) * sizeof(Trial));
   for (std::int64_t k = 0; k < numbers.trials; ++k) {

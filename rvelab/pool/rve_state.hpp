@@ -50,6 +50,11 @@ class Tokens {
     committed_ = token;
     trials_ = 0;
   }
+  /// An increment that no trial was made of became the state. Returns its token.
+  std::int64_t go_on() {
+    commit(next_);
+    return next_++;
+  }
   /// As they were written down: the committed token, the next one, then add_again for each trial.
   void restore(std::int64_t committed, std::int64_t next) {
     commit(committed);
@@ -70,11 +75,17 @@ class Tokens {
   int trials_ = 0;
 };
 
+/// What a committed step, or a trial, leaves to be told of it (Report).
+struct LastStep {
+  double inertial_number = 0;
+  double error_estimate = 0;  ///< Pa, of the stress after it
+};
+
 struct RveState {
   Specimen specimen;
   Tokens tokens;
   double initial_void_ratio = 0;  ///< when the RVE was spawned
-  double inertial_number = 0;     ///< of the last committed step
+  LastStep last{};
 };
 
 /// Bitwise, for builds with the same fields: a head with magic, length and checksum, tokens, the bytes of Rve::save().

@@ -82,9 +82,9 @@ struct Resident {
   Rve rve;
   Tokens tokens;
   double initial_void_ratio = 0;
-  double inertial_number = 0;        ///< of the last committed step
-  double trial_inertial_number = 0;  ///< of the pending trial
-  bool pending = false;              ///< the last trial of `tokens` is; its state may have been let go of
+  LastStep last{};       ///< committed
+  LastStep trial{};      ///< pending
+  bool pending = false;  ///< the last trial of `tokens` is; its state may have been let go of
 };
 
 struct Slot {
@@ -94,6 +94,22 @@ struct Slot {
   std::atomic<std::uint64_t> grain_steps{0};  ///< made in this pool, trials included
   std::atomic<bool> allocated{false};
   std::uint64_t last_grain_steps = 0;  ///< of the last call: what the next will cost
+};
+
+/// Books what is made for an RVE from now on, failed trials too.
+class Cost {
+ public:
+  explicit Cost(Slot& slot) : slot_(slot), before_(slot.resident->rve.grain_steps_made()) {}
+  ~Cost() {
+    slot_.last_grain_steps = slot_.resident->rve.grain_steps_made() - before_;
+    slot_.grain_steps.fetch_add(slot_.last_grain_steps, std::memory_order_relaxed);
+  }
+  Cost(const Cost&) = delete;
+  Cost& operator=(const Cost&) = delete;
+
+ private:
+  Slot& slot_;
+  std::uint64_t before_;
 };
 
 /// What the ids of one process stand for. Changed only by calls that are alone in the pool: `add`, `remove` and what

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "rvelab/measure/measures.hpp"
+#include "rvelab/pool/arrays.hpp"
 #include "rvelab/pool/threaded_pool.hpp"
 
 namespace rvelab::pool {
@@ -14,13 +15,13 @@ double permeability(double void_ratio) { return void_ratio * void_ratio * void_r
 
 std::vector<std::byte> bytes_of(Resident& resident) {
   const Committed committed(resident.rve);
-  const RveState state{{}, resident.tokens, resident.initial_void_ratio, resident.inertial_number};
+  const RveState state{{}, resident.tokens, resident.initial_void_ratio, resident.last};
   return to_bytes(state, resident.rve.save());
 }
 
 std::unique_ptr<Resident> opened(const RveState& state) {
-  auto resident = std::make_unique<Resident>(
-      Resident{Rve(state.specimen), state.tokens, state.initial_void_ratio, state.inertial_number});
+  auto resident =
+      std::make_unique<Resident>(Resident{Rve(state.specimen), state.tokens, state.initial_void_ratio, state.last});
   resident->rve.release();
   return resident;
 }
@@ -37,7 +38,7 @@ rvelab_info ThreadedPool::info(std::int64_t id) {
   info.bytes_trial = resident.pending ? std::int64_t(memory.trial) : 0;
   info.bytes_working = std::int64_t(memory.working);
   info.token = resident.tokens.committed();
-  info.inertial_number = resident.inertial_number;
+  info.inertial_number = resident.last.inertial_number;
   const Committed committed(resident.rve);
   const Network network = resident.rve.network();
   const Matrix3 stress = resident.rve.stress();
@@ -60,7 +61,25 @@ rvelab_info ThreadedPool::info(std::int64_t id) {
   info.permeability_ratio = permeability(info.void_ratio) / permeability(resident.initial_void_ratio);
   info.min_height_ratio = heights(network.cell).minCoeff() / mean_diameter(network);
   info.grain_steps = std::int64_t(resident.rve.grain_steps());
+  store(stress, info.sigma);
+  store(resident.rve.contact_stress(), info.contact);
+  store(resident.rve.reynolds_stress(), info.reynolds);
+  info.error_estimate = resident.last.error_estimate;
   return info;
+}
+
+std::vector<std::int64_t> ThreadedPool::array_rows(std::int64_t id) {
+  const AtWork working(*this);
+  const Hold hold = held(id, ++serial_);
+  const Committed committed(hold.resident().rve);
+  return pool::array_rows(hold.resident().rve);
+}
+
+std::vector<std::byte> ThreadedPool::array(std::int64_t id, std::int64_t k) {
+  const AtWork working(*this);
+  const Hold hold = held(id, ++serial_);
+  const Committed committed(hold.resident().rve);
+  return array_of(hold.resident().rve, std::size_t(k));
 }
 
 void ThreadedPool::cost(std::span<const std::int64_t> ids, std::int64_t* grain_steps) {

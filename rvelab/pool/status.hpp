@@ -13,16 +13,17 @@
 namespace rvelab::pool {
 
 /// Enumerator and number of each status.
-#define RVELAB_STATUSES(each)                                                                                         \
-  each(ok, RVELAB_OK) each(tolerance_missed, RVELAB_W_TOLERANCE) each(not_quasi_static, RVELAB_W_NOT_QUASI_STATIC)    \
-      each(cell_thin, RVELAB_W_CELL_THIN) each(tangent_affine, RVELAB_W_TANGENT_AFFINE) each(discard, RVELAB_DISCARD) \
-          each(bad_input, RVELAB_E_INPUT) each(null_pointer, RVELAB_E_NULL) each(bad_id, RVELAB_E_ID)                 \
-              each(stale_token, RVELAB_E_STALE) each(duplicate, RVELAB_E_DUPLICATE) each(no_trial, RVELAB_E_NO_TRIAL) \
-                  each(busy, RVELAB_E_BUSY) each(forked, RVELAB_E_FORKED) each(no_memory, RVELAB_E_MEMORY)            \
-                      each(unsupported, RVELAB_E_UNSUPPORTED) each(small_buffer, RVELAB_E_BUFFER)                     \
-                          each(bad_snapshot, RVELAB_E_SNAPSHOT) each(bad_file, RVELAB_E_FILE)                         \
-                              each(no_library, RVELAB_E_LIBRARY) each(no_slot, RVELAB_E_LIMIT)                        \
-                                  each(internal, RVELAB_E_INTERNAL)
+#define RVELAB_STATUSES(each)                                                                                      \
+  each(ok, RVELAB_OK) each(tolerance_missed, RVELAB_W_TOLERANCE) each(not_quasi_static, RVELAB_W_NOT_QUASI_STATIC) \
+      each(cell_thin, RVELAB_W_CELL_THIN) each(tangent_affine, RVELAB_W_TANGENT_AFFINE)                            \
+          each(not_held, RVELAB_W_NOT_HELD) each(discard, RVELAB_DISCARD) each(bad_input, RVELAB_E_INPUT)          \
+              each(null_pointer, RVELAB_E_NULL) each(bad_id, RVELAB_E_ID) each(stale_token, RVELAB_E_STALE)        \
+                  each(duplicate, RVELAB_E_DUPLICATE) each(no_trial, RVELAB_E_NO_TRIAL) each(busy, RVELAB_E_BUSY)  \
+                      each(forked, RVELAB_E_FORKED) each(no_memory, RVELAB_E_MEMORY)                               \
+                          each(unsupported, RVELAB_E_UNSUPPORTED) each(small_buffer, RVELAB_E_BUFFER)              \
+                              each(bad_snapshot, RVELAB_E_SNAPSHOT) each(bad_file, RVELAB_E_FILE)                  \
+                                  each(no_library, RVELAB_E_LIBRARY) each(no_slot, RVELAB_E_LIMIT)                 \
+                                      each(internal, RVELAB_E_INTERNAL)
 
 #define RVELAB_ENUMERATOR(status, number) status = number,
 enum class Status : std::int32_t { RVELAB_STATUSES(RVELAB_ENUMERATOR) };

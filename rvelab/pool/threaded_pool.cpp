@@ -186,8 +186,8 @@ std::unique_ptr<Resident> ThreadedPool::copy_of(std::int64_t source) {
   std::unique_ptr<Resident> made;
   {
     const Committed committed(original.rve);
-    made = std::make_unique<Resident>(
-        Resident{original.rve, original.tokens, original.initial_void_ratio, original.inertial_number});
+    made =
+        std::make_unique<Resident>(Resident{original.rve, original.tokens, original.initial_void_ratio, original.last});
   }
   made->rve.release();
   return made;

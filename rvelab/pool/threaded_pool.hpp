@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "rvelab/pool/calls.hpp"
+#include "rvelab/pool/mixed.hpp"
 #include "rvelab/pool/pool.hpp"
 #include "rvelab/pool/slots.hpp"
 #include "rvelab/pool/team.hpp"
@@ -66,6 +67,7 @@ class ThreadedPool : public Pool {
   Verdict trial(const Batch& batch) override;
   void commit(std::span<const std::int64_t> ids) override;
   void revert(std::span<const std::int64_t> ids) override;
+  void run_each(std::size_t count, const std::function<void(std::size_t)>& piece) override { team_.run(count, piece); }
   void cost(std::span<const std::int64_t> ids, std::int64_t* grain_steps) override;
   void write(const std::function<void(const Population&, const StateOf&)>& writer) override;
   void read(const std::function<Population(const TakeState& take)>& reader) override;
@@ -75,6 +77,12 @@ class ThreadedPool : public Pool {
   /// Ends a template.
   virtual void release_template(std::int64_t of_template);
   virtual rvelab_info info(std::int64_t id);
+  /// mixed.hpp.
+  virtual MixedDone apply_mixed(std::int64_t id, const MixedSetting& setting, const std::vector<MixedRow>& rows);
+  virtual RelaxDone relax(std::int64_t id, double unbalanced, std::int64_t max_substeps);
+  /// Of the committed state (arrays.hpp).
+  virtual std::vector<std::int64_t> array_rows(std::int64_t id);
+  virtual std::vector<std::byte> array(std::int64_t id, std::int64_t k);
   /// The committed state with its tokens, as to_bytes(RveState), and back.
   virtual std::vector<std::byte> save(std::int64_t id);
   virtual void load(std::int64_t id, std::span<const std::byte> snapshot);
@@ -170,7 +178,8 @@ class ThreadedPool : public Pool {
 };
 
 /// What hosts and other ranks may call of a share. A new function is added here.
-using ShareCalls = CallList<&Share::release_template, &Share::info, &Share::save, &Share::load, &Share::add_template_as,
+using ShareCalls = CallList<&Share::release_template, &Share::info, &Share::apply_mixed, &Share::relax,
+                            &Share::array_rows, &Share::array, &Share::save, &Share::load, &Share::add_template_as,
                             &Share::spawn_as, &Share::clone_as, &Share::costs, &Share::pack, &Share::receive,
                             &Share::place, &Share::forget_received, &Share::give_up, &Share::prepare, &Share::settle>;
 

@@ -11,7 +11,7 @@
 
 #include "rvelab/measure/tangent.hpp"
 #include "rvelab/pool/threaded_pool.hpp"
-#include "rvelab/solver/quasi_static/constants.hpp"
+#include "rvelab/pool/warnings.hpp"
 
 namespace rvelab::pool {
 
@@ -19,34 +19,20 @@ namespace {
 
 constexpr double scale_after_discard = 0.5;
 
-/// Books what is made for an RVE from now on, failed trials too.
-class Cost {
- public:
-  explicit Cost(Slot& slot) : slot_(slot), before_(slot.resident->rve.grain_steps_made()) {}
-  ~Cost() {
-    slot_.last_grain_steps = slot_.resident->rve.grain_steps_made() - before_;
-    slot_.grain_steps.fetch_add(slot_.last_grain_steps, std::memory_order_relaxed);
-  }
-  Cost(const Cost&) = delete;
-  Cost& operator=(const Cost&) = delete;
-
- private:
-  Slot& slot_;
-  std::uint64_t before_;
-};
+LastStep last_step(const Report& report) { return {report.inertial_number, report.error_estimate}; }
 
 /// The trial is made again; it is pending then.
 void make_again(Slot& slot, const TrialRecord& record) {
   const Cost cost(slot);
   Resident& resident = *slot.resident;
   const Response response = resident.rve.attempt(record.displacement_gradient, record.dt);
-  resident.trial_inertial_number = response.report.inertial_number;
+  resident.trial = last_step(response.report);
 }
 
 /// The pending trial of that token is the state. Its RVE holds it.
 void commit_trial(Resident& resident, std::int64_t token) noexcept {
   resident.rve.commit();
-  resident.inertial_number = resident.trial_inertial_number;
+  resident.last = resident.trial;
   resident.tokens.commit(token);
   resident.pending = false;
 }
@@ -55,33 +41,6 @@ std::int64_t last_token(const Tokens& tokens) { return tokens.trial(tokens.trial
 
 /// Row-major, xx yy zz yz xz xy whatever the dimension.
 using Tangent = std::array<double, 36>;
-
-/// Whether a trial that was made gets a warning, and that warning.
-bool has_warning(const Report& report, double dt) {
-  return report.cell_thin || (dt == 0 && (!report.quasi_static || !report.tolerance_met));
-}
-Verdict warning_of(const Report& report, double dt) {
-  char text[320];
-  Status status = Status::cell_thin;
-  if (!report.quasi_static && dt == 0) {
-    status = Status::not_quasi_static;
-    std::snprintf(text, sizeof text,
-                  "the state is no equilibrium: the unbalanced ratio is %g; the specimen flows or collapses: take "
-                  "smaller steps, or give a time (dt > 0)",
-                  report.unbalanced_ratio);
-  } else if (dt == 0 && !report.tolerance_met) {
-    status = Status::tolerance_missed;
-    std::snprintf(text, sizeof text,
-                  "the stress has an expected error of %g Pa; the tolerance allows %g Pa: take it as it is, or widen "
-                  "tolerance_rel or tolerance_abs",
-                  report.error_estimate / constants::met_margin, report.allowed_error);
-  } else {
-    std::snprintf(text, sizeof text,
-                  "a height of the cell is below four mean diameters: it stands for less and less of the material; "
-                  "use a larger specimen");
-  }
-  return {status, text};
-}
 
 /// RVELAB_W_TANGENT_AFFINE: a warning that stands already keeps its place, and its text is extended.
 void add_affine_warning(Verdict& verdict) {
@@ -151,7 +110,7 @@ ThreadedPool::Outcome ThreadedPool::attempt(Slot& slot, const Matrix3& displacem
     throw;
   }
   outcome.token = resident.tokens.add(displacement_gradient, dt);
-  resident.trial_inertial_number = outcome.response.report.inertial_number;
+  resident.trial = last_step(outcome.response.report);
   resident.pending = true;
   called(slot, outcome.response.report.substeps);
   return outcome;

@@ -282,6 +282,11 @@ std::vector<std::int64_t> RankedPool::ids() {
   return ids_.all();
 }
 
+/// One call travels at a time.
+void RankedPool::run_each(std::size_t count, const std::function<void(std::size_t)>& piece) {
+  for (std::size_t k = 0; k < count; ++k) piece(k);
+}
+
 void RankedPool::cost(std::span<const std::int64_t> ids, std::int64_t* grain_steps) {
   const Lock lock = at_work();
   for (const std::int64_t id : ids) ids_.slot_of(id);

@@ -27,6 +27,7 @@ class RankedPool final : public pool::Pool {
   pool::Verdict trial(const pool::Batch& batch) override;
   void commit(std::span<const std::int64_t> ids) override;
   void revert(std::span<const std::int64_t> ids) override;
+  void run_each(std::size_t count, const std::function<void(std::size_t)>& piece) override;
   void cost(std::span<const std::int64_t> ids, std::int64_t* grain_steps) override;
   void write(const std::function<void(const pool::Population&, const StateOf&)>& writer) override;
   void read(const std::function<pool::Population(const TakeState& take)>& reader) override;

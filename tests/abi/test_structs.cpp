@@ -10,7 +10,7 @@ using Catch::Matchers::Contains;
 extern "C" int header_as_c11(void);
 
 // Version 1.0: nothing of this ever changes; later fields come behind.
-static_assert(sizeof(rvelab_pool_def) == 72 && sizeof(rvelab_batch) == 112 && sizeof(rvelab_info) == 376);
+static_assert(sizeof(rvelab_pool_def) == 72 && sizeof(rvelab_batch) == 112);
 static_assert(offsetof(rvelab_pool_def, workers) == 8 && offsetof(rvelab_pool_def, trial_memory) == 12);
 static_assert(offsetof(rvelab_pool_def, tolerance_rel) == 16 && offsetof(rvelab_pool_def, tolerance_abs) == 24);
 static_assert(offsetof(rvelab_pool_def, max_substeps) == 32 && offsetof(rvelab_pool_def, damping) == 40);
@@ -33,6 +33,17 @@ static_assert(offsetof(rvelab_info, inertial_number) == 312 && offsetof(rvelab_i
 static_assert(offsetof(rvelab_info, min_height_ratio) == 328 && offsetof(rvelab_info, grain_steps) == 336);
 static_assert(offsetof(rvelab_info, bytes_resting) == 344 && offsetof(rvelab_info, bytes_trial) == 352);
 static_assert(offsetof(rvelab_info, bytes_working) == 360 && offsetof(rvelab_info, token) == 368);
+// Version 1.2.
+static_assert(offsetof(rvelab_info, sigma) == 376 && offsetof(rvelab_info, contact) == 448);
+static_assert(offsetof(rvelab_info, reynolds) == 520 && offsetof(rvelab_info, error_estimate) == 592);
+static_assert(sizeof(rvelab_info) == 600 && sizeof(rvelab_array) == 56);
+static_assert(offsetof(rvelab_array, name) == 8 && offsetof(rvelab_array, unit) == 16);
+static_assert(offsetof(rvelab_array, meaning) == 24 && offsetof(rvelab_array, of) == 32);
+static_assert(offsetof(rvelab_array, type) == 36 && offsetof(rvelab_array, rows) == 40);
+static_assert(offsetof(rvelab_array, columns) == 48 && sizeof(rvelab_mixed) == 144);
+static_assert(offsetof(rvelab_mixed, rows) == 16 && offsetof(rvelab_mixed, tolerance) == 32);
+static_assert(offsetof(rvelab_mixed, ids) == 40 && offsetof(rvelab_mixed, spin) == 88);
+static_assert(offsetof(rvelab_mixed, sigma) == 96 && offsetof(rvelab_mixed, tokens_out) == 136);
 
 namespace {
 
@@ -80,6 +91,8 @@ TEST_CASE("init writes min(struct_size, own size) bytes") {
   check_init<rvelab_pool_def>(rvelab_pool_def_init);
   check_init<rvelab_batch>(rvelab_batch_init);
   check_init<rvelab_info>(rvelab_info_init);
+  check_init<rvelab_array>(rvelab_array_init);
+  check_init<rvelab_mixed>(rvelab_mixed_init);
 }
 
 TEST_CASE("A smaller struct has defaults in the missing fields, a larger one must be zero beyond") {
@@ -196,12 +209,13 @@ TEST_CASE("A struct_size that ends within a field is refused, and the text names
     rvelab_info info{};
     info.struct_size = std::uint32_t(size);
     const std::int32_t status = rvelab_get_info(host.pool, ids[0], &info);
-    const auto within = [&](std::size_t begin, std::size_t end) { return begin < size && size < end; };
-    const char* const tensor = within(offsetof(rvelab_info, lattice), offsetof(rvelab_info, rotation))  ? "lattice"
-                               : within(offsetof(rvelab_info, rotation), offsetof(rvelab_info, volume)) ? "rotation"
-                               : within(offsetof(rvelab_info, fabric), offsetof(rvelab_info, fabric_anisotropy))
-                                   ? "fabric"
-                                   : nullptr;
+    const std::pair<const char*, std::size_t> tensors[] = {
+        {"lattice", offsetof(rvelab_info, lattice)}, {"rotation", offsetof(rvelab_info, rotation)},
+        {"fabric", offsetof(rvelab_info, fabric)},   {"sigma", offsetof(rvelab_info, sigma)},
+        {"contact", offsetof(rvelab_info, contact)}, {"reynolds", offsetof(rvelab_info, reynolds)}};
+    const char* tensor = nullptr;
+    for (const auto& [name, begin] : tensors)
+      if (begin < size && size < begin + 9 * sizeof(double)) tensor = name;
     if (tensor != nullptr || size % 8 != 0) {
       CHECK(is_cut(status, size, tensor != nullptr ? tensor : ""));
       CHECK(info.dimension == 0);

@@ -65,6 +65,40 @@ class Arrays(unittest.TestCase):
         rve.apply([[0, 1e-3, 0], [0, 0, 0], [0, 0, 0]])
         self.assertGreater(np.abs(rve.positions - first).max(), 0)
 
+    def test_arrays_are_listed_with_unit_and_shape(self) -> None:
+        for name, specimen in specimens.items():
+            with self.subTest(name):
+                rve = rvelab.Rve(specimen)
+                arrays = rve.arrays()
+                self.assertEqual("grains/semi_major_m" in arrays, name == "ellipses")
+                for key, about in arrays.items():
+                    self.assertEqual(rve.array(key).shape, about.shape())
+                self.assertEqual(rve.array("contacts/i").dtype, np.int64)
+                self.assertEqual(arrays["grains/position_m"].unit, b"m")
+                self.assertAlmostEqual(float(rve.array("void_ratio")), rve.void_ratio, places=14)
+                np.testing.assert_array_equal(rve.stress, rve.sigma)
+                with self.assertRaisesRegex(rvelab.RvelabError, "grains/radius_m"):
+                    rve.array("grains/radius")
+
+    def test_a_drained_biaxial_test_by_held_steps_has_the_bits_of_run(self) -> None:
+        (folder / "consolidate.toml").write_text('[test]\nname = "c"\ndimension = 2\npressure_Pa = 20e3\n[[stage]]\n'
+                                                 'kind = "isotropic"\nshear = "zero_strain"\n')
+        (folder / "compress.toml").write_text('[test]\nname = "c"\ndimension = 2\npressure_Pa = 20e3\n[[stage]]\n'
+                                              'kind = "compression"\nto_strain = 0.005\nrecord_every = 0.0005\n')
+        rvelab.run(folder / "consolidate.toml", specimens["discs"], output=folder / "C.h5")
+        records = rvelab.run(folder / "compress.toml", folder / "C.h5", output=folder / "D.h5")
+        rve, deformation = rvelab.Rve(folder / "C.h5"), np.eye(3)
+        self.assertEqual(len(records["strain"]), 11)
+        for strain, stress in zip(records["strain"][1:], records["stress_Pa"][1:]):
+            dH = np.zeros((3, 3))
+            dH[1, 1] = (1 - strain) / deformation[1, 1] - 1
+            step = rve.apply_held(dH, {"xx": -20e3})
+            deformation = (np.eye(3) + step.dH[0]) @ deformation
+            self.assertEqual(step.sigma[0].tobytes(), np.ascontiguousarray(stress).tobytes())
+        with self.assertRaisesRegex(ValueError, "zz"):
+            rve.apply_held(dH, {"zz": -20e3})
+        self.assertLessEqual(abs(rve.relax(1e-4)[0, 0] + 20e3), 0.05 * 20e3)
+
     def test_the_stress_leaves_a_trial_pending(self) -> None:
         rve = rvelab.Rve(specimens["discs"])
         before = rve.stress

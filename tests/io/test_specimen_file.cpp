@@ -130,8 +130,8 @@ TEST_CASE("a newer format is refused, an older minor one of the same major is no
   CHECK(with_version("1.1").empty());
   CHECK(with_version("1.3").empty());
   CHECK(with_version("1.4").empty());
-  CHECK(with_version("1.11").empty());
-  CHECK_THAT(with_version("1.12"), Contains("1.12") && Contains("up to 1.11") && Contains("newer rvelab"));
+  CHECK(with_version("1.12").empty());
+  CHECK_THAT(with_version("1.13"), Contains("1.13") && Contains("up to 1.12") && Contains("newer rvelab"));
   CHECK_THAT(with_version("2.0"), Contains("2.0") && Contains("newer rvelab"));
   CHECK_THAT(with_version("one"), Contains("\"one\"") && Contains("major.minor"));
 }

@@ -85,7 +85,12 @@ TEST_CASE("a pool over ranks gives the bits, ids, tokens and costs of a pool in 
         const rvelab_info a = one.info(id), b = spread->at<&pool::Share::info>(there_of.at(id));
         CHECK((a.p == b.p && std::ranges::equal(a.fabric, b.fabric) && std::ranges::equal(a.lattice, b.lattice) &&
                a.token == b.token && a.contacts == b.contacts && a.grain_steps == b.grain_steps &&
-               a.inertial_number == b.inertial_number));
+               a.inertial_number == b.inertial_number && a.error_estimate == b.error_estimate));
+        const auto rows = one.array_rows(id);
+        CHECK(rows == spread->at<&pool::Share::array_rows>(there_of.at(id)));
+        for (std::size_t k = 0; k < rows.size(); ++k)
+          if (rows[k] >= 0 && k % 7 == 0)
+            CHECK(one.array(id, std::int64_t(k)) == spread->at<&pool::Share::array>(there_of.at(id), std::int64_t(k)));
         std::int64_t cost_here = 0, cost_there = 1;
         one.cost({&id, 1}, &cost_here);
         spread->cost({&there_of.at(id), 1}, &cost_there);

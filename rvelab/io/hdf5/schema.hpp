@@ -10,7 +10,7 @@ namespace rvelab::io {
 
 /// Version of the layout, major.minor. A later minor version adds; a later major version changes.
 inline constexpr int format_major = 1;
-inline constexpr int format_minor = 11;
+inline constexpr int format_minor = 12;
 /// Minor version of a file, or of a part of a journal. 0: not stated, as in journals before 1.10.
 int minor_version(const Hdf5File& file);
 /// Files from this minor version on are sealed.

@@ -15,14 +15,14 @@ dt     s; > 0: physical time, real inertia and rate; 0: quasi-static. 2D: z-comp
 Needs numpy and librvelab.so.1: named by RVELAB_LIBRARY, else in or beside this package, else found by the loader. The meaning
 of every call is that of include/rvelab/rvelab.h. Calls on different RVEs may run in threads: ctypes releases the
 interpreter's lock meanwhile."""
-from .library import (MEASURES, Batch, Discard, Info, OutOfMemory, RvelabError, RvelabWarning, StaleToken,
+from .library import (MEASURES, Array, Batch, Discard, Info, Mixed, OutOfMemory, RvelabError, RvelabWarning, StaleToken,
                       library as _library)
 from .pool import Pool
 from .rve import Contacts, Rve
 from .laboratory import Moment, Records, calibrate, ensemble, fit, pack, run
 from .figures import Picture, plot, report
 
-__all__ = ["Batch", "Contacts", "Discard", "Info", "MEASURES", "Moment", "OutOfMemory", "Picture", "Pool", "Records", "Rve",
+__all__ = ["Array", "Batch", "Contacts", "Discard", "Info", "MEASURES", "Mixed", "Moment", "OutOfMemory", "Picture", "Pool", "Records", "Rve",
            "RvelabError", "RvelabWarning", "StaleToken", "calibrate", "ensemble", "fit", "pack", "plot", "report",
            "run"]
 __version__ = _library.rvelab_version().decode()

@@ -70,11 +70,40 @@ class Info(ctypes.Structure):
                 ("void_ratio", c_double), ("coordination_number", c_double), ("fabric", 9 * c_double)] + [
         (name, c_double) for name in ("fabric_anisotropy", "sliding_fraction", "p", "q", "unbalanced_force_ratio",
                                       "inertial_number", "permeability_ratio", "min_height_ratio")] + [
-        (name, c_int64) for name in ("grain_steps", "bytes_resting", "bytes_trial", "bytes_working", "token")]
+        (name, c_int64) for name in ("grain_steps", "bytes_resting", "bytes_trial", "bytes_working", "token")] + [
+        (name, 9 * c_double) for name in ("sigma", "contact", "reynolds")] + [("error_estimate", c_double)]
 
     def __getattribute__(self, name: str) -> Any:
         value = super().__getattribute__(name)
         return np.array(value).reshape(3, 3) if isinstance(value, ctypes.Array) else value
+
+
+class MixedStruct(ctypes.Structure):
+    _fields_ = [("struct_size", c_uint32), ("flags", c_uint32), ("n", c_int64), ("rows", c_int64), ("dt", c_double),
+                ("tolerance", c_double)] + [
+        (name, c_void_p) for name in ("ids", "strain", "stress", "value", "scale", "missed", "spin", "sigma", "dH",
+                                      "held_error", "error_estimate", "status", "tokens_out")]
+
+
+class Mixed:
+    """What a mixed target gave n RVEs: sigma and dH, what was applied (n, 3, 3), held_error, error_estimate (Pa), status,
+    tokens (n). Rows of an RVE that failed are NaN, its token is 0."""
+
+    def __init__(self, n: int) -> None:
+        self.sigma, self.dH = np.full((n, 3, 3), np.nan), np.full((n, 3, 3), np.nan)
+        self.held_error, self.error_estimate = np.full(n, np.nan), np.full(n, np.nan)
+        self.status, self.tokens = np.zeros(n, np.int32), np.zeros(n, np.int64)
+
+
+class Array(ctypes.Structure):
+    """What rvelab_list_arrays tells of an array: name, unit, meaning, what it is of, and its extent in this state."""
+    _fields_ = [("struct_size", c_uint32), ("flags", c_uint32), ("name", c_char_p), ("unit", c_char_p),
+                ("meaning", c_char_p), ("of", c_int32), ("type", c_int32), ("rows", c_int64), ("columns", c_int64)]
+
+    def shape(self) -> tuple[int, ...]:
+        """That of numpy: () of a number of the cell, (n), (3, 3), (n, 3), (n, 3, 3)."""
+        rows = () if self.of == 0 else (self.rows,)
+        return rows + {1: (), 9: (3, 3)}.get(self.columns, (self.columns,))
 
 
 class Batch:
@@ -154,8 +183,8 @@ def id_of(given: Any) -> int:
     return int(given) if isinstance(given, (int, np.integer)) else int(numbers_of(given, "id")[0])
 
 
-def gradients_of(given: ArrayLike, shape: tuple[int, ...]) -> np.ndarray:
+def gradients_of(given: ArrayLike, shape: tuple[int, ...], what: str = "dH") -> np.ndarray:
     array = np.ascontiguousarray(given, np.float64)
     if array.shape != shape:
-        raise ValueError(f"dH has the shape {array.shape}; allowed: {shape}")
+        raise ValueError(f"{what} has the shape {array.shape}; allowed: {shape}")
     return array

@@ -9,8 +9,8 @@ from typing import Iterable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .library import (MEASURES, Batch, BatchStruct, Definition, Info, RvelabError, call, gradients_of, id_of, library,
-                      numbers_of)
+from .library import (MEASURES, Array, Batch, BatchStruct, Definition, Info, Mixed, MixedStruct, RvelabError, call,
+                      gradients_of, id_of, library, numbers_of)
 
 _pool, _number, _ids, _size = c_void_p, c_int64, c_void_p, c_size_t
 for _name, _arguments in {
@@ -20,7 +20,11 @@ for _name, _arguments in {
         "clone": (_pool, _number, c_void_p), "release": (_pool, _number, _ids), "ids": (_pool, _number, _ids, c_void_p),
         "batch_init": (c_void_p, _size), "apply": (_pool, _number, c_void_p, c_double, c_void_p),
         "trial": (_pool, c_void_p), "commit": (_pool, _number, _ids), "revert": (_pool, _number, _ids),
+        "mixed_init": (c_void_p, _size), "apply_mixed": (_pool, c_void_p),
+        "relax": (_pool, _number, c_double, _number, c_void_p),
         "info_init": (c_void_p, _size), "get_info": (_pool, _number, c_void_p),
+        "array_init": (c_void_p, _size), "list_arrays": (_pool, _number, _number, c_void_p, c_void_p),
+        "get_array": (_pool, _number, c_char_p, c_void_p, _size, c_void_p),
         "cost": (_pool, _number, _ids, c_void_p), "snapshot_save": (_pool, _number, c_void_p, _size, c_void_p),
         "snapshot_load": (_pool, _number, c_char_p, _size), "pool_write": (_pool, c_char_p),
         "pool_read": (_pool, c_char_p)}.items():
@@ -142,6 +146,34 @@ class Pool:
         self.commit(rves)
         return found
 
+    def apply_mixed(self, rves: ArrayLike, strain: ArrayLike, stress: ArrayLike, value: ArrayLike, scale: ArrayLike,
+                    dt: float = 0, missed: ArrayLike | None = None, spin: ArrayLike | None = None,
+                    tolerance: float = 0) -> Mixed:
+        """Trial and commit of n RVEs to rows A : d eps + B : d sigma = c, 3 in 2D, 6 in 3D: strain A and stress B
+        (n, rows, 3, 3), value c, scale and missed (n, rows), spin (n, 3, 3); see rvelab_mixed in rvelab.h. Raises if one
+        fails; error.batch then holds what the others gave."""
+        ids, mixed = numbers_of(rves, "ids"), MixedStruct()
+        n, rows = len(ids), np.shape(value)[-1]
+        given = {name: gradients_of(array, shape, name) for name, array, shape in (
+            ("strain", strain, (n, rows, 3, 3)), ("stress", stress, (n, rows, 3, 3)), ("value", value, (n, rows)),
+            ("scale", scale, (n, rows)), ("missed", missed, (n, rows)), ("spin", spin, (n, 3, 3))) if array is not None}
+        found = Mixed(n)
+        call("mixed_init", byref(mixed), sizeof(mixed))
+        mixed.n, mixed.rows, mixed.dt, mixed.tolerance, mixed.ids = n, rows, dt, tolerance, ids.ctypes.data
+        for name, array in given.items():
+            setattr(mixed, name, array.ctypes.data)
+        for name in ("sigma", "dH", "held_error", "error_estimate", "status"):
+            setattr(mixed, name, getattr(found, name).ctypes.data)
+        mixed.tokens_out = found.tokens.ctypes.data
+        call("apply_mixed", self._pool, byref(mixed), batch=found)
+        return found
+
+    def relax(self, rve: int, unbalanced: float, max_substeps: int = 100_000) -> np.ndarray:
+        """sigma (3, 3) after sub-steps at a fixed cell until the unbalanced ratio is so small; warns if it is not."""
+        sigma = np.empty((3, 3))
+        call("relax", self._pool, id_of(rve), unbalanced, max_substeps, sigma.ctypes.data)
+        return sigma
+
     def commit(self, rves: ArrayLike | None = None) -> None:
         """Pending trials become the states; None: all that are pending."""
         self._settle("commit", rves)
@@ -160,6 +192,27 @@ class Pool:
         call("info_init", byref(found), sizeof(found))
         call("get_info", self._pool, id_of(rve), byref(found))
         return found
+
+    def arrays(self, rve: int) -> dict[str, Array]:
+        """All arrays of the committed state by name: measures of the cell, columns of grains and contacts; unit,
+        meaning, shape() of each."""
+        n = c_int64()
+        call("list_arrays", self._pool, id_of(rve), 0, None, byref(n))
+        found = (Array * n.value)()
+        for each in found:
+            call("array_init", byref(each), sizeof(each))
+        call("list_arrays", self._pool, id_of(rve), n.value, byref(found), byref(n))
+        return {each.name.decode(): each for each in found}
+
+    def array(self, rve: int, name: str) -> np.ndarray:
+        """One of them, laboratory frame: "void_ratio", "grains/position_m" (n, 3), "contacts/force_N" (m, 3)."""
+        about, need = self.arrays(rve).get(name), c_size_t()
+        if about is None:
+            call("get_array", self._pool, id_of(rve), name.encode(), None, 0, byref(need))  # says which there are
+            raise RvelabError(f"no array {name}")
+        values = np.empty(about.shape(), np.int64 if about.type else np.float64)
+        call("get_array", self._pool, id_of(rve), name.encode(), values.ctypes.data, values.nbytes, byref(need))
+        return values
 
     def cost(self, rves: ArrayLike) -> np.ndarray:
         """Grains times sub-steps made for each RVE in this pool, (n), trials that were reverted included."""

@@ -2,20 +2,15 @@
 from __future__ import annotations
 
 import contextlib
-import csv
-import json
 import os
 import sys
-import tempfile
-from pathlib import Path
 from typing import Any, Iterable, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .library import Batch, Info, RvelabError
+from .library import Array, Batch, Info, Mixed, RvelabError
 from .pool import Pool
-from .program import ask
 
 _FIELDS = tuple(name for name, _ in Info._fields_ if name not in ("struct_size", "flags"))
 
@@ -27,7 +22,7 @@ class Contacts(NamedTuple):
     branch: np.ndarray  #: (c, 3) m, from the first grain to the image of the second that it touches
     normal: np.ndarray  #: (c, 3) unit vectors from the first grain to the second
     normal_force: np.ndarray  #: (c) N, compression positive
-    tangential_force: np.ndarray  #: (c, 3) N, on the second grain; without dashpots
+    tangential_force: np.ndarray  #: (c, 3) N, on the second grain; both forces with dashpots
 
 
 class Rve:
@@ -40,7 +35,7 @@ class Rve:
         if pool is not None and options:
             raise TypeError("options are those of a pool of its own: give them to the Pool")
         self.id, self._owns_pool, self._options = 0, pool is None, dict(options)
-        self._read: tuple[bytes, dict[str, Any]] | None = None
+        self._held: dict[str, float] | None = None  # by the last step
         self.pool = Pool(workers=1, **options) if pool is None else pool
         template = self.pool.template(source)
         try:
@@ -70,7 +65,36 @@ class Rve:
 
     def apply(self, dH: ArrayLike, dt: float = 0) -> np.ndarray:
         """sigma (3, 3), Pa, tension positive, after the increment of displacement gradient dH (3, 3) over dt, s."""
+        self._held = None
         return self.pool.apply(self.id, dH, dt)
+
+    def apply_held(self, dH: ArrayLike, held: dict[str, float], dt: float = 0, tolerance: float = 0) -> Mixed:
+        """An increment in which stresses come to given values, {"xx": -20e3} (Pa, tension positive), and all other
+        components, the spin included, follow dH (3, 3): a drained test holds its lateral stresses so. sigma[0] is the
+        stress, dH[0] what was applied. tolerance: relative to each stress; 0: 0.005. What a step of the same `held` just
+        before has missed is made good."""
+        dH, stress, d = np.asarray(dH, np.float64), self.stress, self.dimension
+        names = ["xx", "yy", "xy"] if d == 2 else ["xx", "yy", "zz", "yz", "xz", "xy"]
+        if not set(held) <= set(names):
+            raise ValueError(f"held names {sorted(set(held) - set(names))}; allowed: {', '.join(names)}")
+        A, B, c, scale = (np.zeros((1, len(names), *shape)) for shape in ((3, 3), (3, 3), (), ()))
+        for k, name in enumerate(names):
+            i, j = "xyz".index(name[0]), "xyz".index(name[1])
+            rows = B if name in held else A
+            rows[0, k, i, j] = rows[0, k, j, i] = 1 if i == j else 0.5
+            c[0, k] = 0.5 * (dH[i, j] + dH[j, i])
+            if name in held:
+                c[0, k] = held[name] - 0.5 * (stress[i, j] + stress[j, i])
+                scale[0, k] = max(abs(held[name]), 0.01 * abs(self.p))
+        missed = np.where(scale > 0, c, 0) if self._held == held else None
+        found = self.pool.apply_mixed(self.id, A, B, c, scale, dt, missed, 0.5 * (dH - dH.T)[np.newaxis], tolerance)
+        self._held = dict(held)
+        return found
+
+    def relax(self, unbalanced: float, max_substeps: int = 100_000) -> np.ndarray:
+        """sigma (3, 3) after sub-steps at a fixed cell until the unbalanced ratio is so small."""
+        self._held = None
+        return self.pool.relax(self.id, unbalanced, max_substeps)
 
     def trial(self, dH: ArrayLike, dt: float = 0, token: int | None = None, want: Iterable[str] = ()) -> Batch:
         """A Batch of one: what dH would give. It pends until commit(), revert() or the next call."""
@@ -78,6 +102,7 @@ class Rve:
 
     def commit(self) -> None:
         """The pending trial becomes the state."""
+        self._held = None
         self.pool.commit(self.id)
 
     def revert(self) -> None:
@@ -104,39 +129,39 @@ class Rve:
     @property
     def stress(self) -> np.ndarray:
         """(3, 3) Pa, Cauchy stress of the committed state, laboratory frame, tension positive. A pending trial stays."""
-        twin = self.pool.clone(self.id)
-        try:
-            return self.pool.trial(twin, np.zeros((1, 3, 3))).sigma[0].copy()
-        finally:
-            self.pool.release(twin)
+        return self.pool.info(self.id).sigma
 
     @property
     def positions(self) -> np.ndarray:
         """(n, 3) m, centres of the grains in the cell around the origin, laboratory frame."""
-        return self._grains()["positions"].copy()
+        info, positions = self.pool.info(self.id), self.array("grains/position_m")
+        cell = (info.rotation @ info.lattice)[:info.dimension, :info.dimension]
+        # A grain is held wherever it went; its images within the cell are the same grain.
+        parts = np.linalg.solve(cell, positions[:, :info.dimension].T)
+        positions[:, :info.dimension] -= (cell @ np.floor(parts + 0.5)).T
+        return positions
 
     @property
     def radii(self) -> np.ndarray:
         """(n) m; of an ellipse sqrt(a b)."""
-        return self._grains()["radii"].copy()
+        return self.array("grains/radius_m")
 
     @property
     def contacts(self) -> Contacts:
         """The contacts of the committed state: first, second, branch, normal, normal_force, tangential_force.
-        -(1/volume) sum of force (x) branch with force = normal_force normal + tangential_force is the stress, except for
-        dashpots and strain that waits for the next sub-step."""
-        return Contacts(*(array.copy() for array in self._grains()["contacts"]))
+        -(1/volume) sum of force (x) branch with force = normal_force normal + tangential_force is the stress of the
+        contacts."""
+        return Contacts(*(self.array("contacts/" + name) for name in (
+            "i", "j", "branch_m", "normal", "normal_force_N", "tangential_force_N")))
 
-    def _grains(self) -> dict[str, Any]:
-        """Grains and contacts as the program exports them; kept until the state is another."""
-        snapshot = self.snapshot()
-        if self._read is None or self._read[0] != snapshot:
-            with tempfile.TemporaryDirectory() as folder:
-                self.save(os.path.join(folder, "S.h5"))
-                stem = os.path.join(folder, "S")
-                ask(["export", stem + ".h5", "--format", "csv", "-o", stem])
-                self._read = snapshot, _read_csv(stem)
-        return self._read[1]
+    def arrays(self) -> dict[str, Array]:
+        """All arrays of the committed state by name, with unit, meaning and shape()."""
+        return self.pool.arrays(self.id)
+
+    def array(self, name: str) -> np.ndarray:
+        """One of them, laboratory frame: measures of the cell by the names of records ("void_ratio", "a_n"), columns of
+        grains and contacts ("grains/orientation", "contacts/force_N")."""
+        return self.pool.array(self.id, name)
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_") or name not in _FIELDS:
@@ -161,43 +186,3 @@ class Rve:
 
 def _from_snapshot(snapshot: bytes, options: dict[str, float]) -> Rve:
     return Rve(snapshot, **options)
-
-
-def _rows(path: str) -> list[dict[str, str]]:
-    with open(path) as file:
-        return list(csv.DictReader(line for line in file if not line.startswith("#")))
-
-
-def _columns(rows: list[dict[str, str]], names: list[str], kind: type = float) -> np.ndarray:
-    """(rows, 3), of 2D files with zeros for z."""
-    found = np.zeros((len(rows), 3), kind)
-    for k, name in enumerate(names):
-        if rows and name in rows[0]:
-            found[:, k] = [kind(row[name]) for row in rows]
-    return found
-
-
-def _read_csv(stem: str) -> dict[str, Any]:
-    """Arrays of the files that `rvelab export --format csv` writes."""
-    grains, touching = _rows(stem + ".particles.csv"), _rows(stem + ".contacts.csv")
-    meta = json.loads(Path(stem + ".json").read_text())
-    cell = np.zeros((3, 3))
-    cell[:meta["dim"], :meta["dim"]] = np.array(meta["hSize"])[:meta["dim"], :meta["dim"]]
-    row = {int(grain["id"]): k for k, grain in enumerate(grains)}
-    positions = _columns(grains, ["x", "y", "z"])
-    radii = np.array([float(grain["r"]) if "r" in grain else float(grain["radius"]) if "radius" in grain else
-                      (float(grain["a"]) * float(grain["b"])) ** 0.5 for grain in grains])
-    first = np.array([row[int(contact["id1"])] for contact in touching], int)
-    second = np.array([row[int(contact["id2"])] for contact in touching], int)
-    image = _columns(touching, ["sx", "sy", "sz"], int)
-    branch = positions[second] + image @ cell.T - positions[first]
-    normal = branch / np.linalg.norm(branch, axis=1, keepdims=True)
-    if touching and "nx" in touching[0]:  # ellipses
-        normal = _columns(touching, ["nx", "ny", "nz"])
-    force = np.array([float(contact["fn"]) for contact in touching])
-    # Files hold a grain wherever it went; its images within the cell are the same grain.
-    d = meta["dim"]
-    parts = np.linalg.solve(cell[:d, :d], positions[:, :d].T)
-    positions[:, :d] -= (cell[:d, :d] @ np.floor(parts + 0.5)).T
-    return {"positions": positions, "radii": radii,
-            "contacts": (first, second, branch, normal, force, _columns(touching, ["fsx", "fsy", "fsz"]))}

@@ -1,0 +1,134 @@
+#include "rvelab/pool/mixed.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+
+#include "rvelab/pool/threaded_pool.hpp"
+#include "rvelab/pool/warnings.hpp"
+
+namespace rvelab::pool {
+
+namespace {
+
+MixedTarget target_of(const MixedSetting& setting, const std::vector<MixedRow>& rows) {
+  MixedTarget target;
+  if (setting.tolerance != 0) target.tolerance = setting.tolerance;
+  target.spin = tensor_at(setting.spin);
+  for (const MixedRow& row : rows)
+    target.rows.push_back({tensor_at(row.strain), tensor_at(row.stress), row.value, row.scale, row.missed});
+  return target;
+}
+
+/// Of entry m.
+std::vector<MixedRow> rows_of(const rvelab_mixed& batch, std::size_t m) {
+  std::vector<MixedRow> rows(static_cast<std::size_t>(batch.rows));
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const std::size_t at = m * rows.size() + k;
+    std::copy_n(batch.strain + 9 * at, 9, rows[k].strain);
+    std::copy_n(batch.stress + 9 * at, 9, rows[k].stress);
+    rows[k].value = batch.value[at];
+    rows[k].scale = batch.scale[at];
+    rows[k].missed = batch.missed == nullptr ? 0 : batch.missed[at];
+  }
+  return rows;
+}
+
+void expect_mixed(const rvelab_mixed& batch) {
+  if (batch.n < 0) throw Refused(Status::bad_input, "mixed.n is " + std::to_string(batch.n) + "; allowed: 0 or more");
+  if (batch.rows != 3 && batch.rows != 6)
+    throw Refused(Status::bad_input, "mixed.rows is " + std::to_string(batch.rows) + "; allowed: 3 in 2D, 6 in 3D");
+  expect_time(batch.dt);
+  std::vector<std::int64_t> ids(batch.ids, batch.ids + batch.n);
+  std::sort(ids.begin(), ids.end());
+  const auto twice = std::adjacent_find(ids.begin(), ids.end());
+  if (twice != ids.end())
+    throw Refused(Status::duplicate, "apply_mixed: id " + std::to_string(*twice) + " stands twice");
+}
+
+}  // namespace
+
+Verdict apply_mixed(Pool& pool, const rvelab_mixed& batch) {
+  expect_mixed(batch);
+  const auto n = std::size_t(batch.n);
+  std::vector<Verdict> verdicts(n);
+  pool.run_each(n, [&](std::size_t m) {
+    try {
+      MixedSetting setting{batch.dt, batch.tolerance, {}};
+      if (batch.spin != nullptr) std::copy_n(batch.spin + 9 * m, 9, setting.spin);
+      const MixedDone done = pool.at<&Share::apply_mixed>(batch.ids[m], setting, rows_of(batch, m));
+      std::copy_n(done.sigma, 9, batch.sigma + 9 * m);
+      if (batch.dH != nullptr) std::copy_n(done.displacement_gradient, 9, batch.dH + 9 * m);
+      if (batch.held_error != nullptr) batch.held_error[m] = done.held_error;
+      if (batch.error_estimate != nullptr) batch.error_estimate[m] = done.error_estimate;
+      if (batch.tokens_out != nullptr) batch.tokens_out[m] = done.token;
+      verdicts[m] = {Status(done.status), done.text};
+    } catch (...) {
+      verdicts[m] = verdict_of_failure();
+    }
+  });
+  std::size_t worst = 0;
+  for (std::size_t m = 0; m < n; ++m) {
+    if (batch.status != nullptr) batch.status[m] = std::int32_t(verdicts[m].status);
+    if (severity(verdicts[m].status) > severity(verdicts[worst].status)) worst = m;
+  }
+  if (n == 0 || verdicts[worst].status == Status::ok) return {};
+  Verdict verdict = std::move(verdicts[worst]);
+  verdict.text = "entry " + std::to_string(worst) + " (id " + std::to_string(batch.ids[worst]) + "): " + verdict.text;
+  return verdict;
+}
+
+MixedDone ThreadedPool::apply_mixed(std::int64_t id, const MixedSetting& setting, const std::vector<MixedRow>& rows) {
+  const AtWork working(*this);
+  const Hold hold = held(id, ++serial_);
+  Resident& resident = hold.resident();
+  resident.pending = false;
+  hold.slot().allocated.store(true, std::memory_order_relaxed);
+  Response response;
+  {
+    const Cost cost(hold.slot());
+    response = resident.rve.apply(target_of(setting, rows), setting.dt);
+  }
+  MixedDone done{};
+  const Report& report = response.report;
+  store(response.stress, done.sigma);
+  store(response.displacement_gradient, done.displacement_gradient);
+  done.held_error = report.held_error;
+  done.error_estimate = report.error_estimate;
+  resident.last = {report.inertial_number, report.error_estimate};
+  done.token = resident.tokens.go_on();
+  const Verdict verdict = has_warning(report, setting.dt) ? warning_of(report, setting.dt) : Verdict();
+  done.status = std::int64_t(verdict.status);
+  std::snprintf(done.text, sizeof done.text, "%s", verdict.text.c_str());
+  called(hold.slot(), report.substeps);
+  return done;
+}
+
+RelaxDone ThreadedPool::relax(std::int64_t id, double unbalanced, std::int64_t max_substeps) {
+  if (!(unbalanced > 0 && std::isfinite(unbalanced)))
+    throw Refused(Status::bad_input, "relax: unbalanced is " + std::to_string(unbalanced) + "; allowed: above 0");
+  if (max_substeps < 1)
+    throw Refused(Status::bad_input, "relax: max_substeps is " + std::to_string(max_substeps) + "; allowed: 1 or more");
+  const AtWork working(*this);
+  const Hold hold = held(id, ++serial_);
+  Resident& resident = hold.resident();
+  resident.pending = false;
+  hold.slot().allocated.store(true, std::memory_order_relaxed);
+  RelaxDone done{};
+  Report report;
+  {
+    const Cost cost(hold.slot());
+    report = resident.rve.relax(unbalanced, long(max_substeps));
+  }
+  store(resident.rve.stress(), done.sigma);
+  done.unbalanced = report.unbalanced_ratio;
+  done.substeps = report.substeps;
+  done.reached = report.target_held;
+  resident.last = {};
+  resident.tokens.go_on();
+  called(hold.slot(), report.substeps);
+  return done;
+}
+
+}  // namespace rvelab::pool
