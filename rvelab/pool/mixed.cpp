@@ -83,6 +83,7 @@ MixedDone ThreadedPool::apply_mixed(std::int64_t id, const MixedSetting& setting
   const AtWork working(*this);
   const Hold hold = held(id, ++serial_);
   Resident& resident = hold.resident();
+  resident.rve.revert();
   resident.pending = false;
   hold.slot().allocated.store(true, std::memory_order_relaxed);
   Response response;
@@ -113,6 +114,7 @@ RelaxDone ThreadedPool::relax(std::int64_t id, double unbalanced, std::int64_t m
   const AtWork working(*this);
   const Hold hold = held(id, ++serial_);
   Resident& resident = hold.resident();
+  resident.rve.revert();
   resident.pending = false;
   hold.slot().allocated.store(true, std::memory_order_relaxed);
   RelaxDone done{};

@@ -48,7 +48,8 @@ class RvelabWarning(UserWarning):
 _warnings = {1: "the expected error of the stress is above the tolerance (error_estimate says by how much)",
              2: "the state is no equilibrium: the specimen flows or collapses",
              3: "a height of the cell is below four mean diameters",
-             4: "the contact network has no elastic tangent; the affine one, which is stiffer, was written"}
+             4: "the contact network has no elastic tangent; the affine one, which is stiffer, was written",
+             5: "a stress of the mixed target was missed by more than the tolerance"}
 
 
 class Definition(ctypes.Structure):
