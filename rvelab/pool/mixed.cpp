@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
+#include <new>
 
 #include "rvelab/pool/threaded_pool.hpp"
 #include "rvelab/pool/warnings.hpp"
@@ -19,6 +19,14 @@ MixedTarget target_of(const MixedSetting& setting, const std::vector<MixedRow>& 
   for (const MixedRow& row : rows)
     target.rows.push_back({tensor_at(row.strain), tensor_at(row.stress), row.value, row.scale, row.missed});
   return target;
+}
+
+/// Before what is there. Steps are made, and their statuses stand: without memory for words the text says less.
+void add_text(Verdict& verdict, const char* text) noexcept {
+  try {
+    verdict.text.insert(0, text);
+  } catch (const std::bad_alloc&) {
+  }
 }
 
 /// Of entry m.
@@ -63,7 +71,8 @@ Verdict apply_mixed(Pool& pool, const rvelab_mixed& batch) {
       if (batch.held_error != nullptr) batch.held_error[m] = done.held_error;
       if (batch.error_estimate != nullptr) batch.error_estimate[m] = done.error_estimate;
       if (batch.tokens_out != nullptr) batch.tokens_out[m] = done.token;
-      verdicts[m] = {Status(done.status), done.text};
+      verdicts[m].status = Status(done.status);
+      add_text(verdicts[m], done.text);
     } catch (...) {
       verdicts[m] = verdict_of_failure();
     }
@@ -75,7 +84,9 @@ Verdict apply_mixed(Pool& pool, const rvelab_mixed& batch) {
   }
   if (n == 0 || verdicts[worst].status == Status::ok) return {};
   Verdict verdict = std::move(verdicts[worst]);
-  verdict.text = "entry " + std::to_string(worst) + " (id " + std::to_string(batch.ids[worst]) + "): " + verdict.text;
+  char place[96];
+  std::snprintf(place, sizeof place, "entry %zu (id %lld): ", worst, static_cast<long long>(batch.ids[worst]));
+  add_text(verdict, place);
   return verdict;
 }
 

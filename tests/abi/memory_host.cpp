@@ -51,6 +51,34 @@ void make_trial(Host& h) {
 void release(Host& h, int n) { REQUIRE(rvelab_release(h.pool, n, h.numbers) == RVELAB_OK); }
 std::int32_t apply(Host& h, int k, double dt) { return rvelab_apply(h.pool, h.ids[k], increment, dt, h.values); }
 
+/// sigma_xx of the second RVE held, one normal strain given, the others none.
+struct Held {
+  double strain[54] = {}, stress[54] = {}, value[6] = {}, scale[6] = {};
+  rvelab_mixed mixed;
+} held;
+void hold_stress(Host& h) {
+  REQUIRE(rvelab_get_info(h.pool, h.ids[1], &h.info) == RVELAB_OK);
+  REQUIRE(rvelab_mixed_init(&held.mixed, sizeof held.mixed) == RVELAB_OK);
+  const int rows = h.info.dimension == 2 ? 3 : 6;
+  const int entries[6][2] = {{0, 0}, {1, 1}, {rows == 3 ? 0 : 2, rows == 3 ? 1 : 2}, {1, 2}, {0, 2}, {0, 1}};
+  for (int k = 0; k < rows; ++k) {
+    const auto [i, j] = entries[k];
+    double* const row = (k == 0 ? held.stress : held.strain) + 9 * k;
+    row[3 * i + j] = row[3 * j + i] = i == j ? 1 : 0.5;
+  }
+  held.value[1] = -1e-4;
+  held.scale[0] = h.info.p;
+  held.mixed.n = 1;
+  held.mixed.rows = rows;
+  held.mixed.ids = h.ids + 1;
+  held.mixed.strain = held.strain;
+  held.mixed.stress = held.stress;
+  held.mixed.value = held.value;
+  held.mixed.scale = held.scale;
+  held.mixed.sigma = h.values;
+  held.mixed.dH = h.values + 27;
+}
+
 const Call calls[] = {
     {"pool_create", Kind::one, 0, nothing, [](Host& h) { return rvelab_pool_create(&h.def, &h.other); },
      [](Host& h) {
@@ -106,6 +134,23 @@ const Call calls[] = {
      [](Host& h) { return rvelab_commit(h.pool, 3, h.ids); }, nothing},
     {"revert", Kind::one, 0, make_trial, [](Host& h) { return rvelab_revert(h.pool, 0, nullptr); }, nothing},
     {"get_info", Kind::one, 0, nothing, [](Host& h) { return rvelab_get_info(h.pool, h.ids[2], &h.info); }, nothing},
+    {"apply_mixed", Kind::one, 0, hold_stress, [](Host& h) { return rvelab_apply_mixed(h.pool, &held.mixed); },
+     nothing},
+    {"relax", Kind::one, 0, nothing, [](Host& h) { return rvelab_relax(h.pool, h.ids[1], 1e-9, 20, h.values); },
+     nothing},
+    {"list_arrays", Kind::one, 0, nothing,
+     [](Host& h) {
+       static rvelab_array arrays[100];
+       for (auto& each : arrays) REQUIRE(rvelab_array_init(&each, sizeof each) == RVELAB_OK);
+       return rvelab_list_arrays(h.pool, h.ids[2], 100, arrays, h.numbers);
+     },
+     nothing},
+    {"get_array", Kind::one, 0, nothing,
+     [](Host& h) {
+       std::size_t need = 0;
+       return rvelab_get_array(h.pool, h.ids[2], "contacts/force_N", h.saved.data(), h.saved.size(), &need);
+     },
+     nothing},
     {"cost", Kind::one, 0, nothing, [](Host& h) { return rvelab_cost(h.pool, 3, h.ids, h.numbers); }, nothing},
     {"snapshot_save", Kind::one, 0, nothing,
      [](Host& h) {
