@@ -100,6 +100,53 @@ TEST_CASE("a pool over ranks gives the bits, ids, tokens and costs of a pool in 
     }
 }
 
+TEST_CASE("mixed targets and relaxation over ranks have the bits and costs of a pool in one process") {
+  for (const int ranks : {1, 3}) {
+    pool::ThreadedPool one(one_thread());
+    const auto spread = over(ranks, one_thread());
+    std::vector<std::int64_t> here(5), there(5);
+    one.spawn(one.add_template(packed(5)), 5, here.data());
+    spread->spawn(spread->add_template(packed(5)), 5, there.data());
+    const double p = one.info(here[0]).p;
+    std::vector<double> strain(9 * 15), stress(9 * 15), value(15), scale(15);
+    for (std::size_t m = 0; m < 5; ++m) {  // sigma_xx held, eps_yy and eps_xy given
+      stress[27 * m] = strain[27 * m + 9 + 4] = 1;
+      strain[27 * m + 18 + 1] = strain[27 * m + 18 + 3] = 0.5;
+      value[3 * m + 1] = -1e-4 * double(m + 1);
+      scale[3 * m] = p;
+    }
+    const auto apply = [&](pool::Pool& pool, const std::vector<std::int64_t>& ids) {
+      std::vector<double> found(45 + 45 + 5);
+      std::vector<std::int64_t> tokens(5);
+      rvelab_mixed batch{};
+      batch.n = 5;
+      batch.rows = 3;
+      batch.ids = ids.data();
+      batch.strain = strain.data();
+      batch.stress = stress.data();
+      batch.value = value.data();
+      batch.scale = scale.data();
+      batch.sigma = found.data();
+      batch.dH = found.data() + 45;
+      batch.held_error = found.data() + 90;
+      batch.tokens_out = tokens.data();
+      CHECK(pool::apply_mixed(pool, batch).status == pool::Status::ok);
+      found.insert(found.end(), tokens.begin(), tokens.end());
+      return found;
+    };
+    CHECK(apply(one, here) == apply(*spread, there));
+    for (std::size_t m = 0; m < 5; ++m) {
+      const auto alone = one.relax(here[m], 1e-6, 50), apart = spread->at<&pool::Share::relax>(there[m], 1e-6, 50);
+      CHECK(std::memcmp(&alone, &apart, sizeof alone) == 0);
+      CHECK(one.save(here[m]) == spread->at<&pool::Share::save>(there[m]));
+      std::int64_t cost_here = 0, cost_there = 1;
+      one.cost({&here[m], 1}, &cost_here);
+      spread->cost({&there[m], 1}, &cost_there);
+      CHECK(cost_here == cost_there);
+    }
+  }
+}
+
 TEST_CASE("RVEs that move between ranks keep their pending trials") {
   const auto spread = over(2, one_thread());
   pool::ThreadedPool one(one_thread());
