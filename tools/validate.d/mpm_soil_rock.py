@@ -3,8 +3,9 @@
     mpm_soil_rock.py RVELAB FOLDER RESULTS [KPA...]
 
 The scene soil_rock_triaxial (Li et al. 2023, tables 6 to 8) at three quarters of the published edges, three drawings of
-the rocks (one at 800 kPa), contact at the surface; at 200 kPa one drawing with ghosts too. Default: all pressures. Runs that
-are whole in FOLDER are used again."""
+the rocks (one at 800 kPa), contact at the surface; at 200 kPa one drawing with ghosts too, and three of 20 mm at the share of
+the rocks of 10 mm: by the published shares the larger rocks are also the more. Default: all pressures. Runs that are whole in
+FOLDER are used again."""
 
 import h5py
 import numpy as np
@@ -32,13 +33,15 @@ def bound(young, share):
     return 9 * bulk * shear / (3 * bulk + shear) / young
 
 
-def tested(size, pressure, seed, ghosts=False):
+def tested(size, pressure, seed, ghosts=False, share=None):
     """q (Pa) at STRAINS, volumetric strain at the last, the largest q over the last, E over the soil's, parts of the work of
     the plates: lost by contact of soil and rocks, gained by mapping, left open; s a million."""
     options = [word for name, first in ((f"mm_{size}", size == 10), (f"kPa_{pressure}", pressure == 200)) if not first
                for word in ("--case", name)]
     name = f"soil_rock_{size}_{pressure}" + (f"_{seed}" if seed > 1 else "") + ("_ghosts" if ghosts else "")
     options += ["--set", f"rocks.coarse.seed={seed}"] * (seed > 1) + list(GHOSTS) * ghosts
+    if share:
+        name, options = f"{name}_share_{share}", options + ["--set", f"rocks.coarse.volume_share={share}"]
     h, printed = run(name, "soil_rock_triaxial.toml", "-j", "1", *options)
     axial, volumetric, q = between_plates(h, EDGES, BEGINS)
     rows = (axial > 0.002) & (axial < 0.006)
@@ -100,14 +103,20 @@ for pressure in pressures:
         found[pressure, size] = row(pressure, size, "surface", [tested(size, pressure, seed) for seed in SEEDS[pressure]])
     if pressure == 200:
         ghosts = {size: row(pressure, size, "ghost", [tested(size, pressure, 1, True)])[0][0] for size in SHARE}
+        alike = row(pressure, 20, "0.389", [tested(20, pressure, seed, share=SHARE[10]) for seed in SEEDS[200]])[0]
     print(f"      the soil alone yields at {SOIL[pressure][1]}")
 print()
+SHARES = "the published shares rise with the size (0.389, 0.398, 0.417)"
 for pressure in pressures:
     ends, still, stiff = zip(*(found[pressure, size] for size in SHARE))
     means, errors = [end.mean() for end in ends], [error(end) for end in ends]
     falls = all(means[k] - means[k + 1] > np.nan_to_num(np.hypot(errors[k], errors[k + 1])) for k in (0, 1))
     verdict(f"{pressure} kPa, 10, 15, 20 mm: q at 14.5 % falls beyond its standard errors",
-            ", ".join(f"{x:.0f} +- {told(e)}" for x, e in zip(means, errors)), "in order", falls)
+            ", ".join(f"{x:.0f} +- {told(e)}" for x, e in zip(means, errors)), "in order", falls,
+            200 in pressures and means[0] < means[2] and
+            abs(alike.mean() - found[200, 10][0].mean()) < 2 * np.hypot(error(alike), error(found[200, 10][0])),
+            f"{SHARES}, the soil is the same: rocks of 20 mm at 0.389 have {alike.mean():.0f} +- {told(error(alike))} kPa at 200 kPa, "
+            f"those of 10 mm {found[200, 10][0].mean():.0f} +- {told(error(found[200, 10][0]))}" if 200 in pressures else "")
     verdict(f"{pressure} kPa: largest q over that at 14.5 %: no peak", " ".join(f"{x.max():.3f}" for x in still), "1 to 1.02",
             max(x.max() for x in still) < 1.02)
     verdict(f"{pressure} kPa: least E over the bound of rough rigid spheres", " ".join(f"{x.min():.2f}" for x in stiff), "1 and more",
