@@ -67,8 +67,8 @@ int64_t rvelab_capabilities(void);
 
 /* ---- status: numbers are never reused ---- */
 
-/* Of several warnings NOT_HELD comes first, then NOT_QUASI_STATIC, TOLERANCE, CELL_THIN, TANGENT_AFFINE; the text of any tells of
- * an affine tangent too. */
+/* Of several warnings NOT_HELD comes first, then NOT_QUASI_STATIC, TOLERANCE, CELL_THIN, TANGENT_AFFINE; the text of
+ * any tells of an affine tangent too. */
 #define RVELAB_OK 0
 #define RVELAB_W_TOLERANCE 1        /* dt = 0: the error to be expected, estimate/2, is above the tolerance    */
 #define RVELAB_W_NOT_QUASI_STATIC 2 /* dt = 0: the state is no equilibrium, the specimen flows or collapses */
@@ -239,13 +239,13 @@ typedef struct rvelab_mixed {
   double dt;        /* s, for all */
   double tolerance; /* of rows with a stress, relative to their scale; 0: 0.005 */
   /* in */
-  const int64_t* ids;    /* [n], each once */
-  const double* strain;  /* [9 rows n], A, symmetric */
-  const double* stress;  /* [9 rows n], B, symmetric; its unit and that of A are those of value over Pa and over 1 */
-  const double* value;   /* [rows n], c */
-  const double* scale;   /* [rows n]; of rows with a stress > 0: what the tolerance is relative to */
-  const double* missed;  /* [rows n] or null: part of value that the step before has left */
-  const double* spin;    /* [9 n] or null: skew part of dH */
+  const int64_t* ids;   /* [n], each once */
+  const double* strain; /* [9 rows n], A, symmetric */
+  const double* stress; /* [9 rows n], B, symmetric; its unit and that of A are those of value over Pa and over 1 */
+  const double* value;  /* [rows n], c */
+  const double* scale;  /* [rows n]; of rows with a stress > 0: what the tolerance is relative to */
+  const double* missed; /* [rows n] or null: part of value that the step before has left */
+  const double* spin;   /* [9 n] or null: skew part of dH */
   /* out; what is null is not written */
   double* sigma;          /* [9 n], not null */
   double* dH;             /* [9 n]: what was applied */
@@ -303,10 +303,11 @@ typedef struct rvelab_info {
   int64_t bytes_working;         /* held beside that between calls in quick succession; 0 at rest */
   int64_t token;                 /* of the committed state */
   /* since 1.2 */
-  double sigma[9];       /* Pa, Cauchy stress, as a trial returns it: contact + reynolds */
-  double contact[9];     /* Pa, of the contact forces */
-  double reynolds[9];    /* Pa, of the velocity fluctuations */
-  double error_estimate; /* Pa, of sigma after the last step that was committed, as batch.error_estimate; 0 without one */
+  double sigma[9];    /* Pa, Cauchy stress, as a trial returns it: contact + reynolds */
+  double contact[9];  /* Pa, of the contact forces */
+  double reynolds[9]; /* Pa, of the velocity fluctuations */
+  double
+      error_estimate; /* Pa, of sigma after the last step that was committed, as batch.error_estimate; 0 without one */
 } rvelab_info;
 
 /* Sets min(struct_size, own size) bytes to zero, and info->struct_size. struct_size = sizeof(rvelab_info). */
@@ -317,9 +318,9 @@ int32_t rvelab_get_info(rvelab_pool* pool, int64_t id, rvelab_info* info);
 
 /* ---- arrays, since 1.2 ----
  *
- * What the committed state of an RVE holds, by name: measures of the cell by the names that records have, columns of its
- * grains and contacts. Vectors and tensors are in the laboratory frame, velocities those of dt > 0 (zero after dt = 0).
- * A contact joins the grains of rows i and j, i <= j, where j is shifted by lattice columns times image; force and
+ * What the committed state of an RVE holds, by name: measures of the cell by the names that records have, columns of
+ * its grains and contacts. Vectors and tensors are in the laboratory frame, velocities those of dt > 0 (zero after dt =
+ * 0). A contact joins the grains of rows i and j, i <= j, where j is shifted by lattice columns times image; force and
  * moment are those on j; contacts are in the order of (i, j, image), and are those that touch now. */
 
 #define RVELAB_OF_CELL 0 /* one row */
@@ -345,7 +346,8 @@ typedef struct rvelab_array {
 int32_t rvelab_array_init(rvelab_array* array, size_t struct_size);
 
 /* All arrays of an RVE: *n of them, of which the first min(cap, *n) are described in arrays[cap] (null with cap = 0:
- * count only). Entries of arrays are arrays[0].struct_size bytes apart, all of them as rvelab_array_init leaves them. */
+ * count only). Entries of arrays are arrays[0].struct_size bytes apart, all of them as rvelab_array_init leaves them.
+ */
 int32_t rvelab_list_arrays(rvelab_pool* pool, int64_t id, int64_t cap, rvelab_array* arrays, int64_t* n);
 
 /* Writes an array, row after row, to buf of cap bytes; *need (not null): 8 rows columns. buf null with cap = 0: only

@@ -90,57 +90,57 @@ Verdict apply_mixed(Pool& pool, const rvelab_mixed& batch) {
   return verdict;
 }
 
-MixedDone ThreadedPool::apply_mixed(std::int64_t id, const MixedSetting& setting, const std::vector<MixedRow>& rows) {
+/// One call that changes the committed state at once: change(rve) makes it and returns its report. Its token. What
+/// comes after the change asks for no memory.
+template <class Change>
+std::int64_t ThreadedPool::go_on(std::int64_t id, const Change& change) {
   const AtWork working(*this);
   const Hold hold = held(id, ++serial_);
   Resident& resident = hold.resident();
   resident.rve.revert();
   resident.pending = false;
   hold.slot().allocated.store(true, std::memory_order_relaxed);
-  Response response;
+  Report report;
   {
     const Cost cost(hold.slot());
-    response = resident.rve.apply(target_of(setting, rows), setting.dt);
+    report = change(resident.rve);
   }
-  MixedDone done{};
-  const Report& report = response.report;
-  store(response.stress, done.sigma);
-  store(response.displacement_gradient, done.displacement_gradient);
-  done.held_error = report.held_error;
-  done.error_estimate = report.error_estimate;
   resident.last = {report.inertial_number, report.error_estimate};
-  done.token = resident.tokens.go_on();
-  const Verdict verdict = has_warning(report, setting.dt) ? warning_of(report, setting.dt) : Verdict();
-  done.status = std::int64_t(verdict.status);
-  std::snprintf(done.text, sizeof done.text, "%s", verdict.text.c_str());
   called(hold.slot(), report.substeps);
+  return resident.tokens.go_on();
+}
+
+MixedDone ThreadedPool::apply_mixed(std::int64_t id, const MixedSetting& setting, const std::vector<MixedRow>& rows) {
+  const MixedTarget target = target_of(setting, rows);
+  MixedDone done{};
+  done.token = go_on(id, [&](Rve& rve) {
+    const Response response = rve.apply(target, setting.dt);
+    const Report& report = response.report;
+    store(response.stress, done.sigma);
+    store(response.displacement_gradient, done.displacement_gradient);
+    done.held_error = report.held_error;
+    done.error_estimate = report.error_estimate;
+    if (has_warning(report, setting.dt))
+      done.status = std::int64_t(write_warning(report, setting.dt, done.text, sizeof done.text));
+    return report;
+  });
   return done;
 }
 
 RelaxDone ThreadedPool::relax(std::int64_t id, double unbalanced, std::int64_t max_substeps) {
   if (!(unbalanced > 0 && std::isfinite(unbalanced)))
-    throw Refused(Status::bad_input, "relax: unbalanced is " + std::to_string(unbalanced) + "; allowed: above 0");
+    throw Refused(Status::bad_input, "relax: unbalanced is " + in_words(unbalanced) + "; allowed: above 0");
   if (max_substeps < 1)
     throw Refused(Status::bad_input, "relax: max_substeps is " + std::to_string(max_substeps) + "; allowed: 1 or more");
-  const AtWork working(*this);
-  const Hold hold = held(id, ++serial_);
-  Resident& resident = hold.resident();
-  resident.rve.revert();
-  resident.pending = false;
-  hold.slot().allocated.store(true, std::memory_order_relaxed);
   RelaxDone done{};
-  Report report;
-  {
-    const Cost cost(hold.slot());
-    report = resident.rve.relax(unbalanced, long(max_substeps));
-  }
-  store(resident.rve.stress(), done.sigma);
-  done.unbalanced = report.unbalanced_ratio;
-  done.substeps = report.substeps;
-  done.reached = report.target_held;
-  resident.last = {};
-  resident.tokens.go_on();
-  called(hold.slot(), report.substeps);
+  go_on(id, [&](Rve& rve) {
+    const Report report = rve.relax(unbalanced, long(max_substeps));
+    store(rve.stress(), done.sigma);
+    done.unbalanced = report.unbalanced_ratio;
+    done.substeps = report.substeps;
+    done.reached = report.target_held;
+    return report;
+  });
   return done;
 }
 

@@ -156,6 +156,8 @@ class ThreadedPool : public Pool {
   std::vector<Hold> all_pending(std::uint64_t call);
   void called(Slot& slot, long substeps) noexcept;
   void rest_another() noexcept;
+  template <class Change>
+  std::int64_t go_on(std::int64_t id, const Change& change);
   Outcome attempt(Slot& slot, const Matrix3& displacement_gradient, double dt, const Batch& wanted);
   void accept(Slot& slot, std::int64_t token, const Matrix3& displacement_gradient);
   void run_entry(Entry& entry, const Batch& batch) noexcept;
