@@ -1,5 +1,6 @@
 // Work on RVEs, their measures and snapshots, files of pools. Declared in c_boundary.hpp.
 #include <algorithm>
+#include <new>
 
 #include "rvelab/abi/c_boundary.hpp"
 #include "rvelab/abi/structs.hpp"
@@ -47,9 +48,14 @@ int32_t rvelab_relax(rvelab_pool* pool, int64_t id, double unbalanced, int64_t m
     const pool::RelaxDone done = of.at<&pool::Share::relax>(id, unbalanced, max_substeps);
     if (sigma != nullptr) std::copy_n(done.sigma, 9, sigma);
     if (done.reached != 0) return {};
-    return {pool::Status::not_quasi_static, "relax: the unbalanced ratio is " + in_words(done.unbalanced) + " after " +
-                                                std::to_string(done.substeps) + " sub-steps, not " +
-                                                in_words(unbalanced) + "; give more, or a larger ratio"};
+    pool::Verdict verdict{pool::Status::not_quasi_static, {}};
+    try {
+      verdict.text = "relax: the unbalanced ratio is " + in_words(done.unbalanced) + " after " +
+                     std::to_string(done.substeps) + " sub-steps, not " + in_words(unbalanced) +
+                     "; give more, or a larger ratio";
+    } catch (const std::bad_alloc&) {  // the steps are made: without memory for words the status says it
+    }
+    return verdict;
   });
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <new>
+#include <utility>
 
 #include "rvelab/pool/threaded_pool.hpp"
 #include "rvelab/pool/warnings.hpp"
@@ -134,8 +135,10 @@ RelaxDone ThreadedPool::relax(std::int64_t id, double unbalanced, std::int64_t m
     throw Refused(Status::bad_input, "relax: max_substeps is " + std::to_string(max_substeps) + "; allowed: 1 or more");
   RelaxDone done{};
   go_on(id, [&](Rve& rve) {
-    const Report report = rve.relax(unbalanced, long(max_substeps));
-    store(rve.stress(), done.sigma);
+    Rve relaxed(rve);  // to read its stress asks for memory, once the steps are made
+    const Report report = relaxed.relax(unbalanced, long(max_substeps));
+    store(relaxed.stress(), done.sigma);
+    rve = std::move(relaxed);
     done.unbalanced = report.unbalanced_ratio;
     done.substeps = report.substeps;
     done.reached = report.target_held;

@@ -50,6 +50,15 @@ TEST_CASE("Without memory at any one request, or from it on, every call is refus
   }
 }
 
+TEST_CASE("Mixed targets, relaxation and arrays are refused whole without each single request for memory") {
+  for (const char* call : {"apply_mixed", "relax", "list_arrays", "get_array"}) {
+    const std::string found = told(packed(Shape::disc, 4), 1, 1, call);
+    CAPTURE(found);
+    CHECK_THAT(found, !Contains("WRONG") && Contains(std::string(call) + ": "));
+    CHECK(found.substr(found.size() - 2) == "\n0");
+  }
+}
+
 TEST_CASE("Without memory at any one request, or from it on, files are read and written whole or not at all") {
   const std::string found = told(packed(Shape::disc, 4), 1, 61, "file");
   CAPTURE(found);
