@@ -63,7 +63,7 @@ int64_t rvelab_capabilities(void);
 #define RVELAB_CAN_TANGENT 4        /* batch.tangent */
 #define RVELAB_CAN_ERROR_ESTIMATE 8 /* batch.error_estimate */
 #define RVELAB_CAN_HOST_TASKS 16    /* pool_def.run_tasks */
-#define RVELAB_CAN_FILES 32         /* template_load, pool_write, pool_read, by way of librvelab-h5.so */
+#define RVELAB_CAN_FILES 32         /* template_load, pool_write, pool_read, parameters, by way of librvelab-h5.so */
 
 /* ---- status: numbers are never reused ---- */
 
@@ -353,6 +353,21 @@ int32_t rvelab_list_arrays(rvelab_pool* pool, int64_t id, int64_t cap, rvelab_ar
 /* Writes an array, row after row, to buf of cap bytes; *need (not null): 8 rows columns. buf null with cap = 0: only
  * that. RVELAB_E_BUFFER if cap < *need. RVELAB_E_INPUT: no such name; the text names the nearest. */
 int32_t rvelab_get_array(rvelab_pool* pool, int64_t id, const char* name, void* buf, size_t cap, size_t* need);
+
+/* ---- parameters, since 1.2 ----
+ *
+ * Of contact law, damping, solver and materials, by the keys of material files (`rvelab keys`), as text of TOML. By way
+ * of librvelab-h5.so. */
+
+/* All of them, in the tables [contact], [damping], [solver] and a [[material]] for each; *need (not null): bytes, with
+ * the zero at the end. text null with cap = 0: only that. RVELAB_E_BUFFER if cap < *need. */
+int32_t rvelab_get_parameters(rvelab_pool* pool, int64_t id, char* text, size_t cap, size_t* need);
+
+/* Sets the keys that the text has, "solver.relative_tolerance = 1e-3" or as rvelab_get_parameters writes them; all
+ * others stay. [material] is for all materials, [material.sand] for one. Grains, contacts and their forces stay as they
+ * are; the state has a new token, its trials are over, a pending one is reverted. RVELAB_E_INPUT names line, key, value
+ * and range: the RVE is then as before. */
+int32_t rvelab_set_parameters(rvelab_pool* pool, int64_t id, const char* toml);
 
 /* grain_steps[n]: grains times sub-steps made for each id in this pool: its cost. Trials that were reverted, discarded
  * or made again are included. */

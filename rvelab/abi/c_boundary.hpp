@@ -54,13 +54,16 @@ std::int32_t of_pool(rvelab_pool* handle, std::initializer_list<Needed> needed, 
   });
 }
 
-// Files by way of librvelab-h5.so, which is loaded at the first call for one: found beside the library that this code
-// is in, then as the loader finds it. Throws pool::Refused: no_library, or what the file led to.
+// Files, and texts of TOML, by way of librvelab-h5.so, which is loaded at the first call for one: found beside the
+// library that this code is in, then as the loader finds it. Throws pool::Refused: no_library, or what the file led to.
 
 /// The specimen of a specimen file, or the end state of a record file.
 Specimen read_specimen(const std::string& path);
 void write_pool(pool::Pool& pool, const std::string& path);
 void read_pool(pool::Pool& pool, const std::string& path);
+std::string parameters_text(const Specimen& specimen);
+/// InputError as keys::set_parameters.
+void set_parameters(Specimen& specimen, const std::string& text);
 
 // librvelab.so makes the share of a rank for librvelab-mpi.so, of the same version, and hands its pool to the host. No
 // part of the interface of the host.

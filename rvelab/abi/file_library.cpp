@@ -1,4 +1,4 @@
-// Files by way of librvelab-h5.so. Declared in c_boundary.hpp.
+// Files, and parameters as text, by way of librvelab-h5.so. Declared in c_boundary.hpp.
 
 #include <dlfcn.h>
 
@@ -40,7 +40,8 @@ const h5::FileCalls& file_calls() {
     if (library == nullptr) reasons += std::string("; ") + dlerror();
   }
   const auto refuse = [&](const std::string& what) {
-    throw Refused(Status::no_library, std::string("files are read and written by ") + library_name + ": " + what +
+    throw Refused(Status::no_library, std::string("files and texts are read and written by ") + library_name + ": " +
+                                          what +
                                           "; put the one of this version beside librvelab.so, or its folder into "
                                           "LD_LIBRARY_PATH");
   };
@@ -76,6 +77,10 @@ auto of_file(const Call& call) {
 Specimen read_specimen(const std::string& path) {
   return of_file([&](const h5::FileCalls& calls) { return calls.read_specimen(path); });
 }
+
+std::string parameters_text(const Specimen& specimen) { return file_calls().parameters_text(specimen); }
+
+void set_parameters(Specimen& specimen, const std::string& text) { file_calls().set_parameters(specimen, text); }
 
 void write_pool(pool::Pool& pool, const std::string& path) {
   pool.write([&](const pool::Population& population, const pool::Pool::StateOf& state) {

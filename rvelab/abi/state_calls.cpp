@@ -8,6 +8,20 @@
 using namespace rvelab;
 using namespace rvelab::abi;
 
+namespace {
+
+/// Their size to *need, and bytes to a buffer of cap, unless it is null. Refused (small_buffer).
+void copy_out(const char* call, std::span<const std::byte> bytes, void* buf, std::size_t cap, std::size_t* need) {
+  *need = bytes.size();
+  if (buf == nullptr) return;
+  if (cap < bytes.size())
+    throw pool::Refused(pool::Status::small_buffer, std::string(call) + ": cap is " + std::to_string(cap) +
+                                                        " bytes; needed: " + std::to_string(bytes.size()));
+  std::memcpy(buf, bytes.data(), bytes.size());
+}
+
+}  // namespace
+
 int32_t rvelab_apply(rvelab_pool* pool, int64_t id, const double* dH, double dt, double* sigma) {
   return of_pool(pool, {{dH, "dH"}, {sigma, "sigma"}},
                  [&](pool::Pool& of) { return of.apply(id, pool::tensor_at(dH), dt, sigma); });
@@ -82,6 +96,26 @@ int32_t rvelab_get_info(rvelab_pool* pool, int64_t id, rvelab_info* info) {
   });
 }
 
+int32_t rvelab_get_parameters(rvelab_pool* pool, int64_t id, char* text, size_t cap, size_t* need) {
+  return of_pool(
+      pool, {{need, "need"}, {cap > 0 ? text : static_cast<const void*>(need), "text"}}, [&](pool::Pool& of) {
+        const std::string found = parameters_text(pool::rve_state_of(of.at<&pool::Share::save>(id)).specimen);
+        copy_out("get_parameters", std::as_bytes(std::span(found.c_str(), found.size() + 1)), text, cap, need);
+      });
+}
+
+int32_t rvelab_set_parameters(rvelab_pool* pool, int64_t id, const char* toml) {
+  return of_pool(pool, {{toml, "toml"}}, [&](pool::Pool& of) {
+    pool::RveState state = pool::rve_state_of(of.at<&pool::Share::save>(id));
+    const std::int64_t token = state.tokens.committed();
+    set_parameters(state.specimen, toml);
+    state.tokens.go_on();
+    state.last.error_estimate = 0;
+    const auto bytes = pool::to_bytes(state, to_bytes(state.specimen));
+    of.at<&pool::Share::replace>(id, std::span<const std::byte>(bytes), token);
+  });
+}
+
 int32_t rvelab_cost(rvelab_pool* pool, int64_t n, const int64_t* ids, int64_t* grain_steps) {
   return of_pool(pool, {}, [&](pool::Pool& of) {
     const auto asked = ids_of(n, ids);
@@ -91,15 +125,8 @@ int32_t rvelab_cost(rvelab_pool* pool, int64_t n, const int64_t* ids, int64_t* g
 }
 
 int32_t rvelab_snapshot_save(rvelab_pool* pool, int64_t id, void* buf, size_t cap, size_t* need) {
-  return of_pool(pool, {{need, "need"}, {cap > 0 ? buf : need, "buf"}}, [&](pool::Pool& of) {
-    const std::vector<std::byte> bytes = of.at<&pool::Share::save>(id);
-    *need = bytes.size();
-    if (buf == nullptr) return;
-    if (cap < bytes.size())
-      throw pool::Refused(pool::Status::small_buffer, "snapshot_save: cap is " + std::to_string(cap) +
-                                                          " bytes; the snapshot takes " + std::to_string(bytes.size()));
-    std::memcpy(buf, bytes.data(), bytes.size());
-  });
+  return of_pool(pool, {{need, "need"}, {cap > 0 ? buf : need, "buf"}},
+                 [&](pool::Pool& of) { copy_out("snapshot_save", of.at<&pool::Share::save>(id), buf, cap, need); });
 }
 
 int32_t rvelab_snapshot_load(rvelab_pool* pool, int64_t id, const void* buf, size_t size) {

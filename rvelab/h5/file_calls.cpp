@@ -9,6 +9,7 @@
 #include "rvelab/io/hdf5/schema.hpp"
 #include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/io/version.hpp"
+#include "rvelab/keys/parameters.hpp"
 #include "rvelab/pool/pool.hpp"
 #include "rvelab/pool/rve_state.hpp"
 #include "rvelab/solver/snapshot.hpp"
@@ -128,6 +129,8 @@ Specimen read_specimen(const std::string& path) { return io::read_specimen(path,
 
 const rvelab::h5::FileCalls* rvelab_h5_file_calls() {
   using namespace rvelab::h5;
-  static const FileCalls calls{rvelab::io::version, read_specimen, write_pool, read_pool};
+  static const FileCalls calls{
+      rvelab::io::version,         read_specimen, write_pool, read_pool, rvelab::keys::parameters_text,
+      rvelab::keys::set_parameters};
   return &calls;
 }

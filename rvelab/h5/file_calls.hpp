@@ -1,5 +1,5 @@
-// librvelab-h5.so reads and writes files for librvelab.so, of the same version: values and exceptions cross between
-// them.
+// librvelab-h5.so reads and writes files, and parameters as text, for librvelab.so, of the same version: values and
+// exceptions cross between them.
 #pragma once
 
 #include <string>
@@ -16,6 +16,8 @@ struct FileCalls {
   Specimen (*read_specimen)(const std::string& path);
   void (*write_pool)(const std::string& path, const pool::Population& population, const pool::Pool::StateOf& state);
   pool::Population (*read_pool)(const std::string& path, const pool::Pool::TakeState& take);
+  std::string (*parameters_text)(const Specimen& specimen);  ///< this and the next: keys/parameters.hpp
+  void (*set_parameters)(Specimen& specimen, const std::string& text);
 };
 
 /// Name of the function that librvelab-h5.so exports.

@@ -267,9 +267,7 @@ void read_material_tables(const toml::table& file, Specimen& specimen, std::vect
   }
 }
 
-void read_material_file(const std::string& path, Specimen& specimen) {
-  const toml::table file = parse_toml_file(path);
-  std::vector<KeyError> errors;
+void expect_material_tables(const toml::table& file, std::vector<KeyError>& errors) {
   for (const auto& [key, value] : file) {
     const std::string name(key.str());
     const auto line = long(key.source().begin.line);
@@ -281,6 +279,12 @@ void read_material_file(const std::string& path, Specimen& specimen) {
                                   "] with its keys below; write it so"});
     }
   }
+}
+
+void read_material_file(const std::string& path, Specimen& specimen) {
+  const toml::table file = parse_toml_file(path);
+  std::vector<KeyError> errors;
+  expect_material_tables(file, errors);
   read_material_tables(file, specimen, errors);
   raise(path, errors);
 }

@@ -44,6 +44,9 @@ void read_table(Specimen& specimen, const std::string& name, const toml::table& 
 /// holds is the caller's. Mistakes as in read_table.
 void read_material_tables(const toml::table& file, Specimen& specimen, std::vector<KeyError>& errors);
 
+/// The file holds these tables and nothing else. Mistakes as in read_table.
+void expect_material_tables(const toml::table& file, std::vector<KeyError>& errors);
+
 /// Reads a material file: [[material]] (or one [material]), [contact], [damping], [solver], and nothing else.
 void read_material_file(const std::string& path, Specimen& specimen);
 

@@ -97,7 +97,18 @@ std::vector<std::byte> ThreadedPool::save(std::int64_t id) {
 
 void ThreadedPool::load(std::int64_t id, std::span<const std::byte> snapshot) {
   const AtWork working(*this);
+  take_state(held(id, ++serial_), snapshot);
+}
+
+void ThreadedPool::replace(std::int64_t id, std::span<const std::byte> snapshot, std::int64_t token) {
+  const AtWork working(*this);
   const Hold hold = held(id, ++serial_);
+  if (hold.resident().tokens.committed() != token)
+    throw Refused(Status::busy, "another call has changed the RVE meanwhile; call again");
+  take_state(hold, snapshot);
+}
+
+void ThreadedPool::take_state(const Hold& hold, std::span<const std::byte> snapshot) {
   std::unique_ptr<Resident> read = opened(rve_state_of(snapshot));
   hold.slot().allocated.store(false, std::memory_order_relaxed);
   std::swap(hold.slot().resident, read);

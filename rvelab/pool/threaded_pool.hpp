@@ -86,6 +86,8 @@ class ThreadedPool : public Pool {
   /// The committed state with its tokens, as to_bytes(RveState), and back.
   virtual std::vector<std::byte> save(std::int64_t id);
   virtual void load(std::int64_t id, std::span<const std::byte> snapshot);
+  /// The same, where the committed state is still that of `token`: Refused (busy) if another call has changed it since.
+  virtual void replace(std::int64_t id, std::span<const std::byte> snapshot, std::int64_t token);
 
   std::vector<std::int64_t> costs(std::span<const std::int64_t> ids) {
     std::vector<std::int64_t> made(ids.size());
@@ -153,6 +155,7 @@ class ThreadedPool : public Pool {
   std::unique_ptr<Resident> copy_of(std::int64_t source);
   Hold held(std::int64_t id, std::uint64_t call);
   std::vector<Hold> held(std::span<const std::int64_t> ids, std::uint64_t call);
+  void take_state(const Hold& hold, std::span<const std::byte> snapshot);
   std::vector<Hold> all_pending(std::uint64_t call);
   void called(Slot& slot, long substeps) noexcept;
   void rest_another() noexcept;
@@ -180,10 +183,11 @@ class ThreadedPool : public Pool {
 };
 
 /// What hosts and other ranks may call of a share. A new function is added here.
-using ShareCalls = CallList<&Share::release_template, &Share::info, &Share::apply_mixed, &Share::relax,
-                            &Share::array_rows, &Share::array, &Share::save, &Share::load, &Share::add_template_as,
-                            &Share::spawn_as, &Share::clone_as, &Share::costs, &Share::pack, &Share::receive,
-                            &Share::place, &Share::forget_received, &Share::give_up, &Share::prepare, &Share::settle>;
+using ShareCalls =
+    CallList<&Share::release_template, &Share::info, &Share::apply_mixed, &Share::relax, &Share::array_rows,
+             &Share::array, &Share::save, &Share::load, &Share::replace, &Share::add_template_as, &Share::spawn_as,
+             &Share::clone_as, &Share::costs, &Share::pack, &Share::receive, &Share::place, &Share::forget_received,
+             &Share::give_up, &Share::prepare, &Share::settle>;
 
 template <auto function, class... Arguments>
 auto Pool::at(std::int64_t id, const Arguments&... arguments) {

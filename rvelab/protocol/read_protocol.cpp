@@ -304,6 +304,8 @@ Specimen with_overrides(const Protocol& protocol, Specimen specimen) {
                      "; allowed: test.dimension = " + std::to_string(protocol.dimension) +
                      "; give another specimen or another protocol");
   }
+  const ContactModel contact = specimen.contact;
+  const std::vector<Material> materials = specimen.materials;
   std::vector<KeyError> errors;
   for (const char* name : override_tables) {
     if (const toml::table* table = protocol.overrides[name].as_table()) read_table(specimen, name, *table, errors);
@@ -316,7 +318,7 @@ Specimen with_overrides(const Protocol& protocol, Specimen specimen) {
   } catch (const InputError& error) {
     throw InputError(protocol.path + ": " + error.what());
   }
-  clear_forces_without_stiffness(specimen);  // a material that was given none here
+  fit_state_to_parameters(specimen, contact, materials);
   return specimen;
 }
 

@@ -397,6 +397,19 @@ void Relations::check_history(std::size_t k) const {
     expect_tangential(c.rolling_moment, parameters.kr * root, "contacts/rolling_moment_N_m", "N m");
 }
 
+/// Whether contacts of this specimen are as stiff as by another model and other materials.
+bool have_stiffness_of(const Specimen& s, const ContactModel& contact, const std::vector<Material>& materials) {
+  if (s.contact.law != contact.law || s.contact.rolling != contact.rolling ||
+      s.contact.hertz_radius != contact.hertz_radius || s.materials.size() != materials.size())
+    return false;
+  for (std::size_t m = 0; m < materials.size(); ++m) {
+    if (s.materials[m].rolling_stiffness != materials[m].rolling_stiffness) return false;
+    for (const LawParameter& each : law_parameters())
+      if (each.law == contact.law && s.materials[m].*each.value != materials[m].*each.value) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 bool is_permutation(const std::vector<std::int32_t>& order, std::size_t grains) {
@@ -409,9 +422,13 @@ bool is_permutation(const std::vector<std::int32_t>& order, std::size_t grains) 
   return true;
 }
 
-void clear_forces_without_stiffness(Specimen& s) {
+void fit_state_to_parameters(Specimen& s, const ContactModel& contact, const std::vector<Material>& materials) {
   for (Contact& c : s.contacts)
     if (!c.tangential_force.isZero(0) && !(parameters_of(s, c).kt > 0)) c.tangential_force.setZero();
+  if (have_stiffness_of(s, contact, materials)) return;
+  s.state.steps_since_scaling = -1;
+  s.state.scaled_mass.clear();
+  s.state.scaled_inverse_inertia.clear();
 }
 
 void check_specimen(const Specimen& s, const std::string& where) {

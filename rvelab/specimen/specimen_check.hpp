@@ -24,7 +24,9 @@ void check_specimen(const Specimen& specimen, const std::string& where = "specim
 /// Whether each of 0 .. grains - 1 comes once.
 bool is_permutation(const std::vector<std::int32_t>& order, std::size_t grains);
 
-/// Clears tangential forces of contacts whose materials give them no tangential stiffness.
-void clear_forces_without_stiffness(Specimen& specimen);
+/// Takes from a specimen what it keeps of other parameters than its present ones: tangential forces of contacts that
+/// have no tangential stiffness any more, and scaled masses where the stiffness of contacts has changed (with those of
+/// softer contacts a sub-step at dt = 0 is unstable). `contact`, `materials`: those that it had.
+void fit_state_to_parameters(Specimen& specimen, const ContactModel& contact, const std::vector<Material>& materials);
 
 }  // namespace rvelab

@@ -162,6 +162,17 @@ const Call calls[] = {
      [](Host& h) { return rvelab_snapshot_load(h.pool, h.ids[1], h.start[2].data(), h.start[2].size()); }, nothing},
     {"file: template_load", Kind::one, 0, nothing,
      [](Host& h) { return rvelab_template_load(h.pool, h.file.c_str(), h.numbers); }, nothing},
+    {"file: get_parameters", Kind::one, 0, nothing,
+     [](Host& h) {
+       std::size_t need = 0;
+       return rvelab_get_parameters(h.pool, h.ids[2], reinterpret_cast<char*>(h.saved.data()), h.saved.size(), &need);
+     },
+     nothing},
+    {"file: set_parameters", Kind::one, 0, make_trial,
+     [](Host& h) {
+       return rvelab_set_parameters(h.pool, h.ids[1], "material.friction = 0.3\n[solver]\nabsolute_tolerance = 1e-3");
+     },
+     nothing},
     {"file: pool_write", Kind::one, 0, nothing, [](Host& h) { return rvelab_pool_write(h.pool, h.now.c_str()); },
      nothing},
     {"file: pool_read", Kind::one, 0,

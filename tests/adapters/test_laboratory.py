@@ -56,6 +56,22 @@ class Arrays(unittest.TestCase):
         self.assertLess(np.abs(np.einsum("ci,ci->c", contacts.normal, contacts.tangential_force)).max(),
                         1e-12 * contacts.normal_force.max())
 
+    def test_parameters_that_are_set_are_those_of_the_test_that_a_protocol_overrides(self) -> None:
+        dH = [[0, 2e-4, 0], [0, 0, 0], [0, 0, 0]]
+        rve, other = rvelab.Rve(specimens["discs"]), rvelab.Rve(specimens["discs"])
+        before = rve.parameters()
+        self.assertEqual(before["material"][0]["name"], "sand")
+        rve.set_parameters({"material.friction": 0.1, "solver": {"relative_tolerance": 1e-3}})
+        after = rve.parameters()
+        self.assertEqual((after["material"][0]["friction"], after["solver"]["relative_tolerance"]), (0.1, 1e-3))
+        before["material"][0]["friction"], before["solver"]["relative_tolerance"] = 0.1, 1e-3
+        self.assertEqual(after, before)
+        other.set_parameters(after)
+        np.testing.assert_array_equal(rve.apply(dH), other.apply(dH))
+        with self.assertRaisesRegex(rvelab.RvelabError, "friction"):
+            rve.set_parameters({"material.frictoin": 0.1})
+        self.assertEqual(rve.parameters(), after)
+
     def test_arrays_are_those_of_the_state_and_the_callers_own(self) -> None:
         rve = rvelab.Rve(specimens["discs"])
         before = rve.positions

@@ -9,6 +9,7 @@
 #include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/io/journal/recorded_test.hpp"
 #include "rvelab/keys/material_toml.hpp"
+#include "rvelab/keys/parameters.hpp"
 #include "rvelab/measure/measures.hpp"
 #include "tests/io/exported.hpp"
 #include "tests/io/record_files.hpp"
@@ -79,7 +80,7 @@ TEST_CASE("every parameter goes through the material file, whatever law and dash
       }
       specimen.materials[1].name = "grès \"fin\"";
       Specimen read;
-      write_bytes(folder / "m.toml", io::material_file_text(specimen));
+      write_bytes(folder / "m.toml", keys::parameters_text(specimen));
       const std::string message = input_error([&] { keys::read_material_file(folder / "m.toml", read); });
       CAPTURE(name(law), name(dashpot), bytes_of(folder / "m.toml"), message);
       CHECK(message.empty());

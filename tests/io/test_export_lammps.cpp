@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "rvelab/keys/material_toml.hpp"
+#include "rvelab/keys/parameters.hpp"
 #include "tests/io/exported.hpp"
 
 using namespace rvelab;
@@ -37,7 +38,7 @@ TEST_CASE("a dump read back by the importer has the cell, the positions and the 
     const Specimen before = sheared(name);
     const io::ExportState state = state_of(before);
     io::export_lammps_dump({state_of(packing(name)), state}, folder / "s.dump");  // the last timestep counts
-    write_bytes(folder / "m.toml", io::material_file_text(before));
+    write_bytes(folder / "m.toml", keys::parameters_text(before));
     io::ImportOptions options;
     options.material_path = folder / "m.toml";
     const Specimen after = io::import_csv(folder / "s.dump", std::nullopt, std::nullopt, options);
@@ -61,7 +62,7 @@ TEST_CASE("dumps with diameters, with positions that are not wrapped, or in part
   for (const char* name : {"dense", "hertz"}) {
     const Specimen before = sheared(name);
     io::export_lammps_dump({state_of(before)}, folder / "s.dump");
-    write_bytes(folder / "m.toml", io::material_file_text(before));
+    write_bytes(folder / "m.toml", keys::parameters_text(before));
     io::ImportOptions options;
     options.material_path = folder / "m.toml";
     const Specimen usual = io::import_csv(folder / "s.dump", std::nullopt, std::nullopt, options);
@@ -146,7 +147,7 @@ TEST_CASE("a dump that is cut, not periodic or of unknown types is refused with 
   const Folder folder;
   io::export_lammps_dump({state_of(packing("dense"))}, folder / "s.dump");
   const std::string whole = bytes_of(folder / "s.dump");
-  write_bytes(folder / "m.toml", io::material_file_text(packing("dense")));
+  write_bytes(folder / "m.toml", keys::parameters_text(packing("dense")));
   const auto message = [&](std::string text, const std::string& materials = "") {
     write_bytes(folder / "t.dump", text);
     write_bytes(folder / "n.toml", bytes_of(folder / "m.toml") + materials);

@@ -226,6 +226,31 @@ TEST_CASE("Overrides reach the specimen and must fit it") {
   CHECK_THROWS_AS(protocol::with_overrides(protocol::parse_protocol(biaxial_text, "t"), specimen), InputError);
 }
 
+TEST_CASE("A stiffness that a test overrides parts the specimen from masses that were scaled for another") {
+  Specimen specimen;
+  specimen.shape = Shape::disc;
+  specimen.cell.dimension = 2;
+  specimen.materials.resize(1);
+  specimen.materials[0].young_modulus = 8e8;
+  specimen.state.steps_since_scaling = 3;
+  specimen.state.scaled_mass = specimen.state.scaled_inverse_inertia = {1.0, 2.0};
+  const auto overridden = [&](const std::string& line) {
+    return protocol::with_overrides(protocol::parse_protocol(biaxial_text + "[material]\n" + line + "\n", "t"),
+                                    specimen)
+        .state;
+  };
+  for (const char* same : {"friction = 0.3", "young_modulus_Pa = 8e8", "density_kg_m3 = 2000"}) {
+    INFO(same);
+    CHECK(overridden(same).steps_since_scaling == 3);
+    CHECK(overridden(same).scaled_mass == specimen.state.scaled_mass);
+  }
+  for (const char* other : {"young_modulus_Pa = 8e10", "stiffness_ratio = 0.7", "rolling_stiffness = 2"}) {
+    INFO(other);
+    CHECK(overridden(other).steps_since_scaling < 0);
+    CHECK(overridden(other).scaled_mass.empty());
+  }
+}
+
 TEST_CASE("Every protocol that comes with rvelab is one, and opens with what it is") {
   int found = 0;
   for (const auto& entry : std::filesystem::directory_iterator(RVELAB_SOURCE_DIR "/protocols")) {

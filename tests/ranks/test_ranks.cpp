@@ -138,7 +138,13 @@ TEST_CASE("mixed targets and relaxation over ranks have the bits and costs of a 
     for (std::size_t m = 0; m < 5; ++m) {
       const auto alone = one.relax(here[m], 1e-6, 50), apart = spread->at<&pool::Share::relax>(there[m], 1e-6, 50);
       CHECK(std::memcmp(&alone, &apart, sizeof alone) == 0);
-      CHECK(one.save(here[m]) == spread->at<&pool::Share::save>(there[m]));
+      const auto state = one.save(here[m]);
+      CHECK(state == spread->at<&pool::Share::save>(there[m]));
+      const std::span<const std::byte> bytes(state);
+      const std::int64_t token = one.info(here[m]).token;
+      spread->at<&pool::Share::replace>(there[m], bytes, token);
+      CHECK(state == spread->at<&pool::Share::save>(there[m]));
+      CHECK_THROWS_AS(spread->at<&pool::Share::replace>(there[m], bytes, token + 1), pool::Refused);
       std::int64_t cost_here = 0, cost_there = 1;
       one.cost({&here[m], 1}, &cost_here);
       spread->cost({&there[m], 1}, &cost_there);

@@ -10,6 +10,7 @@
 #include "rvelab/error.hpp"
 #include "rvelab/io/publish.hpp"
 #include "rvelab/io/version.hpp"
+#include "rvelab/keys/parameters.hpp"
 #include "rvelab/measure/stored_contact.hpp"
 #include "rvelab/solver/assembly/neighbour_list.hpp"
 
@@ -180,7 +181,7 @@ CsvExport export_csv(const Specimen& specimen, const std::string& stem) {
   const std::vector<Contact> contacts = touching_contacts(specimen);
   publish_text(files.contacts, text_of(specimen, contacts));
   publish_text(files.meta, meta_of(specimen, contacts.size()));
-  publish_text(files.material, material_file_text(specimen));
+  publish_text(files.material, keys::parameters_text(specimen));
   return files;
 }
 

@@ -90,7 +90,4 @@ CsvExport csv_files(const std::string& stem);
 /// two have the same.
 CsvExport export_csv(const Specimen& specimen, const std::string& stem);
 
-/// The material file (read_material_file) with all parameters of the specimen.
-std::string material_file_text(const Specimen& specimen);
-
 }  // namespace rvelab::io

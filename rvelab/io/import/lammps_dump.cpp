@@ -15,7 +15,7 @@ namespace {
 constexpr std::string_view item = "ITEM:";
 
 /// Where a timestep stands in the text, with what the items around it say.
-struct Frame {
+struct Timestep {
   std::size_t begin, end;
   long line;                             ///< number of the first one
   std::optional<std::int64_t> timestep;  ///< none: cut or no number
@@ -25,8 +25,8 @@ struct Frame {
 
 /// The timesteps of a dump: each begins with the first item after the atoms of the one before it. A last line that is
 /// cut within "ITEM:" begins one too.
-std::vector<Frame> frames_of(const std::string& path, std::string_view text) {
-  std::vector<Frame> frames;
+std::vector<Timestep> frames_of(const std::string& path, std::string_view text) {
+  std::vector<Timestep> frames;
   std::string units, units_place;
   bool atoms_before = true;
   for (TextLines lines(text); lines.next();) {
@@ -56,9 +56,9 @@ std::vector<Frame> frames_of(const std::string& path, std::string_view text) {
 }
 
 /// Reads one timestep and believes nothing that is not whole.
-class FrameReader {
+class TimestepReader {
  public:
-  FrameReader(const std::string& path, const Text& text, const Frame& frame)
+  TimestepReader(const std::string& path, const Text& text, const Timestep& frame)
       : path_(path),
         text_(text),
         lines_(std::string_view(*text).substr(0, frame.end).substr(frame.begin), frame.line) {}
@@ -248,13 +248,13 @@ class FrameReader {
   LammpsAtoms atoms_{};
 };
 
-LammpsAtoms whole_frame(const std::string& path, const Text& text, const Frame& frame) {
+LammpsAtoms whole_frame(const std::string& path, const Text& text, const Timestep& frame) {
   const double metres = frame.units.empty() ? 1 : metres_of(frame.units, frame.units_place);
-  return FrameReader(path, text, frame).read(metres);
+  return TimestepReader(path, text, frame).read(metres);
 }
 
 /// The last frame of a timestep; a run that went on from an earlier state has it twice.
-std::size_t frame_of(const std::string& path, const std::vector<Frame>& frames, std::int64_t timestep) {
+std::size_t frame_of(const std::string& path, const std::vector<Timestep>& frames, std::int64_t timestep) {
   for (std::size_t k = frames.size(); k-- > 0;) {
     if (frames[k].timestep == timestep) return k;
   }
@@ -271,7 +271,7 @@ std::size_t frame_of(const std::string& path, const std::vector<Frame>& frames, 
 }
 
 /// The end of a refusal: which timestep before a broken one can be had.
-std::string offer_before(const std::string& path, const Text& text, const std::vector<Frame>& frames,
+std::string offer_before(const std::string& path, const Text& text, const std::vector<Timestep>& frames,
                          std::size_t broken) {
   for (std::size_t k = broken; k-- > 0;) {
     if (!frames[k].timestep || frame_of(path, frames, *frames[k].timestep) != k) continue;
@@ -294,7 +294,7 @@ LammpsAtoms read_lammps_dump(const std::string& path, const Text& text, const st
                              const Tell& tell) {
   const auto frames = frames_of(path, *text);
   const std::size_t chosen = timestep ? frame_of(path, frames, *timestep) : frames.size() - 1;
-  const Frame& frame = frames[chosen];
+  const Timestep& frame = frames[chosen];
   if (!frame.units.empty()) metres_of(frame.units, frame.units_place);
   try {
     auto atoms = whole_frame(path, text, frame);

@@ -1,16 +1,19 @@
 """Many RVEs that are worked on together: Pool, over the C interface."""
 from __future__ import annotations
 
+import json
 import os
 import sys
+import tomllib
 from ctypes import byref, c_char_p, c_double, c_int64, c_size_t, c_void_p, create_string_buffer, sizeof
-from typing import Iterable
+from typing import Any, Iterable, Mapping
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from .library import (MEASURES, Array, Batch, BatchStruct, Definition, Info, Mixed, MixedStruct, RvelabError, call,
                       gradients_of, id_of, library, numbers_of)
+from .program import flat, plain
 
 _pool, _number, _ids, _size = c_void_p, c_int64, c_void_p, c_size_t
 for _name, _arguments in {
@@ -25,10 +28,21 @@ for _name, _arguments in {
         "info_init": (c_void_p, _size), "get_info": (_pool, _number, c_void_p),
         "array_init": (c_void_p, _size), "list_arrays": (_pool, _number, _number, c_void_p, c_void_p),
         "get_array": (_pool, _number, c_char_p, c_void_p, _size, c_void_p),
+        "get_parameters": (_pool, _number, c_char_p, _size, c_void_p), "set_parameters": (_pool, _number, c_char_p),
         "cost": (_pool, _number, _ids, c_void_p), "snapshot_save": (_pool, _number, c_void_p, _size, c_void_p),
         "snapshot_load": (_pool, _number, c_char_p, _size), "pool_write": (_pool, c_char_p),
         "pool_read": (_pool, c_char_p)}.items():
     getattr(library, "rvelab_" + _name).argtypes = _arguments
+
+
+def parameters_text(settings: Mapping[str, Any]) -> str:
+    """Settings as lines of TOML. A list of materials becomes the keys of each by its name."""
+    settings = dict(settings)
+    listed = settings.pop("material") if isinstance(settings.get("material"), list) else []
+    keys = flat(settings)
+    for material in listed:
+        keys.update({f"material.{json.dumps(material['name'])}.{key}": value for key, value in material.items()})
+    return "".join(f"{key} = {json.dumps(value, default=plain)}\n" for key, value in keys.items())
 
 
 class Pool:
@@ -213,6 +227,20 @@ class Pool:
         values = np.empty(about.shape(), np.int64 if about.type else np.float64)
         call("get_array", self._pool, id_of(rve), name.encode(), values.ctypes.data, values.nbytes, byref(need))
         return values
+
+    def parameters(self, rve: int) -> dict[str, Any]:
+        """Parameters of law, damping, solver and materials by their keys: {"contact": {"law": ...}, "damping": ...,
+        "solver": ..., "material": [{"name": ...}, ...]}."""
+        need = c_size_t()
+        call("get_parameters", self._pool, id_of(rve), None, 0, byref(need))
+        text = create_string_buffer(need.value)
+        call("get_parameters", self._pool, id_of(rve), text, need.value, byref(need))
+        return tomllib.loads(text.value.decode())
+
+    def set_parameters(self, rve: int, settings: Mapping[str, Any]) -> None:
+        """Sets some of them, all others stay: {"solver.relative_tolerance": 1e-3, "material.sand.friction": 0.4}, or
+        tables as parameters() returns them. The state has a new token; a pending trial is reverted."""
+        call("set_parameters", self._pool, id_of(rve), parameters_text(settings).encode())
 
     def cost(self, rves: ArrayLike) -> np.ndarray:
         """Grains times sub-steps made for each RVE in this pool, (n), trials that were reverted included."""

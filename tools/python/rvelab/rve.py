@@ -4,7 +4,7 @@ from __future__ import annotations
 import contextlib
 import os
 import sys
-from typing import Any, Iterable, NamedTuple
+from typing import Any, Iterable, Mapping, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -162,6 +162,14 @@ class Rve:
         """One of them, laboratory frame: measures of the cell by the names of records ("void_ratio", "a_n"), columns of
         grains and contacts ("grains/orientation", "contacts/force_N")."""
         return self.pool.array(self.id, name)
+
+    def parameters(self) -> dict[str, Any]:
+        """Parameters of law, damping, solver and materials by their keys, as tables (Pool.parameters)."""
+        return self.pool.parameters(self.id)
+
+    def set_parameters(self, settings: Mapping[str, Any]) -> None:
+        """Sets some of them: {"material.friction": 0.4}; all others stay (Pool.set_parameters)."""
+        self.pool.set_parameters(self.id, settings)
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_") or name not in _FIELDS:
