@@ -83,7 +83,7 @@ Books books_of(Solver<3>& solver, double until) {
   Books books;
   books.gained = soil.kinetic - start.kinetic + soil.stress_work + soil.mapping_loss + rock.kinetic - flew;
   books.came = rock.wall_work + soil.boundary_work - rocks.work_on_soil;
-  books.lost = rocks.surface_loss + rocks.ghost_loss + rocks.ghost_springs();
+  books.lost = rocks.surface_loss + rocks.ghost_loss + rocks.ghost_mapping + rocks.ghost_springs();
   books.largest = std::max({flew, std::abs(rock.wall_work), soil.stress_work});
   return books;
 }

@@ -42,7 +42,8 @@ void each_number(Rock<D>& rock, const Visit& visit) {
     (each(all), ...);
   };
   vectors(rock.body.centre, rock.body.velocity, rock.body.angular_momentum, rock.soil_force, rock.soil_torque,
-          rock.force, rock.torque, rock.mean_force, rock.mean_torque, rock.soil_impulse);
+          rock.mean_velocity, rock.mean_spin, rock.force, rock.torque, rock.mean_force, rock.mean_torque,
+          rock.soil_impulse);
 }
 
 template <int D, class Visit>
@@ -56,7 +57,7 @@ template <int D, class Visit>
 void each_total(Rocks<D>& rocks, const Visit& visit) {
   for (double* value :
        {&rocks.first_energy, &rocks.contact_loss, &rocks.soil_work, &rocks.wall_work, &rocks.work_on_soil,
-        &rocks.surface_loss, &rocks.ghost_loss, &rocks.ghost_frequency, &rocks.wall_power}) {
+        &rocks.surface_loss, &rocks.ghost_loss, &rocks.ghost_mapping, &rocks.ghost_frequency, &rocks.wall_power}) {
     visit(*value);
   }
   for (auto* of_walls : {&rocks.wall_impulse, &rocks.wall_force}) {
@@ -97,6 +98,7 @@ void write_rocks(const Solver<D>& solver, OutputFile& file) {
           visit(double(ghost.point));
           visit(ghost.rock);
           each_number<D>(ghost.contact, visit);
+          for (const double x : ghost.velocity) visit(x);
         }
       }));
   put("ghost_radii_m", rocks.balls);
@@ -145,6 +147,7 @@ void read_rocks(Solver<D>& solver, const InputFile& file, const std::string& fol
     ghost.point = long(take());
     ghost.rock = int(take());
     each_number<D>(ghost.contact, [&](double& value) { value = take(); });
+    for (double& x : ghost.velocity) x = take();
     rocks.ghosts.push_back(ghost);
   }
   const auto forces = file.read("surface_forces_N");

@@ -52,7 +52,8 @@ std::string rock_columns(const Solver<D>& solver) {
   if (!solver.rocks) return columns;
   for (const char* name : energies) columns.append(",rocks.").append(name);
   columns +=
-      ",rocks.work_on_soil_J,rocks.surface_loss_J,rocks.ghost_loss_J,rocks.ghost_springs_J,rocks.contacts,rocks.soil_"
+      ",rocks.work_on_soil_J,rocks.surface_loss_J,rocks.ghost_loss_J,rocks.ghost_mapping_J,rocks.ghost_springs_J,rocks."
+      "contacts,rocks.soil_"
       "contacts,rocks.sub_steps,rocks.virial_J,soil.virial_J";
   for (const auto& rock : solver.rocks->all) {
     if (!rock.single) continue;
@@ -73,10 +74,10 @@ void add_rock_values(const Solver<D>& solver, double since, std::vector<double>&
   if (!solver.rocks) return;
   const auto& rocks = *solver.rocks;
   const auto e = rocks.energy(solver.options.gravity);
-  row.insert(row.end(),
-             {e.kinetic, e.potential, e.springs, e.contact_loss, e.soil_work, e.wall_work, e.residual,
-              rocks.work_on_soil, rocks.surface_loss, rocks.ghost_loss, rocks.ghost_springs(), double(rocks.touching),
-              double(rocks.soil_contacts), double(rocks.sub_steps), rock_virial<D>(rocks), soil_virial<D>(solver)});
+  row.insert(row.end(), {e.kinetic, e.potential, e.springs, e.contact_loss, e.soil_work, e.wall_work, e.residual,
+                         rocks.work_on_soil, rocks.surface_loss, rocks.ghost_loss, rocks.ghost_mapping,
+                         rocks.ghost_springs(), double(rocks.touching), double(rocks.soil_contacts),
+                         double(rocks.sub_steps), rock_virial<D>(rocks), soil_virial<D>(solver)});
   const std::size_t first = D * solver.count_driven();
   std::size_t at = first;
   for (const auto& rock : rocks.all) {

@@ -150,18 +150,48 @@ void Rocks<D>::take_impulses(double dt) {
 
 template <int D>
 void Rocks<D>::kick(const Vec<D>& gravity, double dt) {
+  const double spread = soil.ghosts ? 0 : 1;  // push_by_soil
   for (auto& rock : all) {
-    const Vec<D> force = rock.force + rock.soil_force + rock.body.mass * gravity;
+    const Vec<D> force = rock.force + spread * rock.soil_force + rock.body.mass * gravity;
+    const auto torque = rock.torque + spread * rock.soil_torque;
     const Vec<D> held = (Vec<D>::Ones() - rock.body.free).cwiseProduct(force);
     wall_work -= dt * held.dot(rock.body.velocity);
-    if (!rock.body.turns) wall_work -= dt * (rock.torque + rock.soil_torque).dot(rock.body.spin());
-    rock.body.kick(force, rock.torque + rock.soil_torque, dt);
+    if (!rock.body.turns) wall_work -= dt * torque.dot(rock.body.spin());
+    rock.body.kick(force, torque, dt);
+  }
+}
+
+/// All of a step's impulse of balls at its start, as on the soil: spread over the step, the force of the overlap at its
+/// start would do more work on the rock than its spring gives.
+template <int D>
+void Rocks<D>::push_by_soil(double dt) {
+  for (auto& rock : all) {
+    auto& body = rock.body;
+    const Vec<D> velocity = body.velocity;
+    const auto spin = body.spin();
+    body.kick(rock.soil_force, rock.soil_torque, dt);
+    soil_work += 0.5 * dt * rock.soil_force.dot(velocity + body.velocity);
+    soil_work += 0.5 * dt * rock.soil_torque.dot(spin + body.spin());
+    const Vec<D> held = (Vec<D>::Ones() - body.free).cwiseProduct(rock.soil_force);
+    wall_work -= dt * held.dot(velocity);
+    if (!body.turns) wall_work -= dt * rock.soil_torque.dot(spin);
+    rock.mean_velocity.setZero();
+    rock.mean_spin.setZero();
+  }
+}
+
+template <int D>
+void Rocks<D>::add_to_means(double share) {
+  for (auto& rock : all) {
+    rock.mean_velocity += share * rock.body.velocity;
+    rock.mean_spin += share * rock.body.spin();
   }
 }
 
 /// Of velocities half a sub-step on.
 template <int D>
 void Rocks<D>::book_soil_work(double dt) {
+  if (soil.ghosts) return;
   for (auto& rock : all) {
     soil_work += dt * rock.soil_force.dot(rock.body.velocity);
     soil_work += dt * rock.soil_torque.dot(rock.body.spin());
@@ -243,7 +273,7 @@ void Rocks<D>::keep_ghosts(std::vector<Ghost>& now) {
     const auto place = std::pair(old.point, old.rock);
     while (next != now.end() && std::pair(next->point, next->rock) < place) ++next;
     if (next != now.end() && std::pair(next->point, next->rock) == place)
-      next->contact = old.contact;
+      next->contact = old.contact, next->velocity = old.velocity, next->lasts = true;
     else
       ghost_loss += old.contact.tangential_energy(ghost_constants(old.rock, balls[std::size_t(old.point)]));
   }

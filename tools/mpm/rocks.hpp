@@ -28,6 +28,8 @@ struct Rock {
   /// N s and N m s, of the soil over the step that is made, and its mean force and torque, N and N m.
   Vec<D> impulse = Vec<D>::Zero(), soil_force = Vec<D>::Zero();
   Spin<D> angular_impulse = Spin<D>::Zero(), soil_torque = Spin<D>::Zero();
+  Vec<D> mean_velocity = Vec<D>::Zero();  ///< m/s and rad/s, over the step before, beside balls
+  Spin<D> mean_spin = Spin<D>::Zero();
   /// N and N m, of rocks and walls: at the end of the sub-step before, and their means over the step before.
   Vec<D> force = Vec<D>::Zero(), mean_force = Vec<D>::Zero();
   Spin<D> torque = Spin<D>::Zero(), mean_torque = Spin<D>::Zero();
@@ -90,6 +92,7 @@ class Rocks {
   double first_energy = 0;          ///< J, of all rocks at the start
   double contact_loss = 0, soil_work = 0, wall_work = 0;
   double work_on_soil = 0;           ///< J, of rocks on the soil
+  double ghost_mapping = 0;          ///< J, of balls: work on soil whose velocity mapping takes (ghost_contact.cpp)
   double surface_loss = 0;           ///< J, of impulses at the surface: friction, and soil that meets a rock
   double wall_power = 0;             ///< W, of moving walls at the end of the sub-step before
   std::vector<Vec<D>> wall_impulse;  ///< N s, of the rocks on each wall
@@ -119,9 +122,11 @@ class Rocks {
     find_candidates(now, gravity, dt);
     const long n = sub_steps_for(now, gravity, dt);
     take_impulses(dt);
+    if (soil.ghosts) push_by_soil(dt);
     for (long k = 0; k < n; ++k) {
       kick(gravity, 0.5 * dt / double(n));
       plates.kick(wall_force, 0.5 * dt / double(n));
+      if (soil.ghosts) add_to_means(1.0 / double(n));
       for (auto& rock : all) rock.body.drift(dt / double(n));
       plates.drift(dt / double(n));
       book_soil_work(dt / double(n));
@@ -171,6 +176,10 @@ class Rocks {
     Vec<D> normal, arm;  ///< from the rock to the point; m, from the point to the contact
     double overlap = 0;  ///< m
     Vec<D> force;        ///< N, on the soil
+    /// m/s, of the soil at the contact, at the start and then at the end of a step: what moved it since the step
+    /// before.
+    Vec<D> velocity;
+    bool lasts = false;  ///< touched in the step before
     RockContact<D> contact;
   };
   std::vector<Ghost> ghosts;  ///< in the order of (point, rock)
@@ -202,6 +211,8 @@ class Rocks {
   void take_impulses(double dt);
   void kick(const Vec<D>& gravity, double dt);
   void book_soil_work(double dt);
+  void push_by_soil(double dt);
+  void add_to_means(double share);
   void contact_forces(const std::vector<Wall<D>>& walls, double dt, double share);
 
   std::vector<Spin<D>> spins_;                           ///< rad/s, and

@@ -135,7 +135,7 @@ class Solver {
   // ghost_contact.cpp
   void touch_ghosts(double dt);
   void give_ghost_forces();
-  double ghost_work(double dt) const;
+  double ghost_work(double dt);
   void advance_free(double dt);
   void advance_rocks(double dt);
   void rocks_alone(double dt);
