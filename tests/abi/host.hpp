@@ -13,7 +13,7 @@
 #include "rvelab/pool/rve_state.hpp"
 #include "rvelab/solver/rve.hpp"
 #include "tests/catch.hpp"
-#include "tests/oracle/specimens.hpp"
+#include "tests/specimens.hpp"
 
 namespace rvelab::test {
 

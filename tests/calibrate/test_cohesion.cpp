@@ -4,7 +4,7 @@
 #include "rvelab/calibrate/calibrate.hpp"
 #include "rvelab/measure/measures.hpp"
 #include "tests/catch.hpp"
-#include "tests/protocol/reference_specimen.hpp"
+#include "tests/reference_specimen.hpp"
 
 using namespace rvelab;
 

@@ -10,6 +10,7 @@
 
 #include "rvelab/error.hpp"
 #include "tests/catch.hpp"
+#include "tests/refusal.hpp"
 
 using namespace rvelab;
 
@@ -51,12 +52,7 @@ ContactModel model_of(Law law, bool rolling = false) {
 }
 
 std::string finding(const ContactModel& model, const Damping& damping, const std::vector<Material>& materials) {
-  try {
-    check_parameters(model, damping, materials);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return test::input_error([&] { check_parameters(model, damping, materials); });
 }
 
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
@@ -372,12 +368,6 @@ TEST_CASE("names go there and back", "[contact][quick]") {
   for (const LocalDampingForm form : {LocalDampingForm::vector, LocalDampingForm::component}) {
     CHECK(choice_from<LocalDampingForm>(name(form)) == form);
   }
-  CHECK_THROWS_AS(choice_from<Law>("hertz"), InputError);
-  try {
-    choice_from<Law>("hertz");
-  } catch (const InputError& error) {
-    CHECK(contains(error.what(), "\"hertz\""));
-    CHECK(contains(error.what(), "hertz_mindlin"));
-  }
+  CHECK(contains(test::input_error([] { choice_from<Law>("hertz"); }), "\"hertz\""));
   CHECK_THROWS_AS(choice_from<Slip>(""), InputError);
 }

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "tests/oracle/specimens.hpp"
+#include "tests/specimens.hpp"
 
 namespace rvelab::test {
 

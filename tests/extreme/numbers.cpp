@@ -172,7 +172,7 @@ void no_velocity(Rve& rve, Verdict& verdict) {
     std::vector<Vector3> velocity = still, spin = still;
     (spins ? spin : velocity).back()[spins ? 2 : 1] = spins ? infinity : not_a_number;
     std::string text;
-    const auto set = [&](Rve& r) { text = refusal<InputError>([&] { r.set_velocities(velocity, spin); }); };
+    const auto set = [&](Rve& r) { text = error_text<InputError>([&] { r.set_velocities(velocity, spin); }); };
     const auto before = rve.save();
     set(rve);
     verdict.refusal("a velocity that is no number", Refused{text, rve.save() == before});

@@ -14,7 +14,8 @@
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/solver/rve.hpp"
 #include "tests/extreme/verdict.hpp"
-#include "tests/oracle/specimens.hpp"
+#include "tests/refusal.hpp"
+#include "tests/specimens.hpp"
 
 namespace rvelab::test {
 
@@ -107,6 +108,11 @@ inline Matrix3 entry(int i, int k, double value) {
   Matrix3 m = Matrix3::Zero();
   m(i, k) = value;
   return m;
+}
+
+/// A component of the stress, symmetric, that changes by so much, Pa.
+inline MixedTarget::Row stress_row(int i, int k, double change, double scale) {
+  return {Matrix3::Zero(), entry(i, k, 0.5) + entry(k, i, 0.5), change, scale};
 }
 
 /// In 2D the plane part only.
@@ -241,17 +247,6 @@ void compare_with_resolved(const Specimen& start, const Path& path, double toler
 
 /// The stress of frictionless grains is the sum over all images within `range` cells.
 void compare_with_images(const Rve& rve, int range, double tolerance, Verdict& verdict);
-
-/// The message of an exception of type E that `work` throws; empty if it throws none.
-template <class E, class Work>
-std::string refusal(Work work) {
-  try {
-    work();
-  } catch (const E& error) {
-    return error.what();
-  }
-  return "";
-}
 
 inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 

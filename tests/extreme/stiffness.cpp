@@ -72,12 +72,7 @@ void refuses_orphaned_history(const Case&, Verdict& verdict) {
   rve.apply(2e-4 * shear_direction(2), 0);
   Specimen s = rve.specimen();
   for (Material& m : s.materials) m.tangential_stiffness = 0;
-  std::string text;
-  try {
-    Rve opened(s);
-  } catch (const Error& error) {
-    text = error.what();
-  }
+  const std::string text = error_text<Error>([&] { Rve{s}; });
   verdict.law("a tangential force where kt = 0 is refused on opening", !text.empty());
   if (!text.empty()) verdict.refusal("opening", Refused{text, true});
   if (!text.empty()) verdict.law("the refusal names the contact (" + text + ")", text.find("grains ") != text.npos);

@@ -1,5 +1,4 @@
 // Stiffness, friction, damping and size far from ordinary ones.
-#include "rvelab/io/import/csv.hpp"
 #include "tests/catch.hpp"
 #include "tests/extreme/specimens.hpp"
 
@@ -8,26 +7,15 @@ using namespace rvelab::test;
 
 namespace {
 
-/// YADE's dense packing: 400 discs at 100 kPa, at rest.
-Specimen dense() {
-  const std::string base = std::string(RVELAB_TEST_DATA) + "/yade/dense";
-  return io::import_csv(base + ".particles.csv", base + ".contacts.csv", base + ".json");
-}
-
-/// The same grains with springs and forces times `factor`.
+/// YADE's dense packing, 400 discs at 100 kPa, with springs and forces times `factor`.
 Specimen stiffened(double factor) {
-  Specimen s = dense();
+  Specimen s = reference_specimen("dense");
   for (Material& m : s.materials) m.young_modulus *= factor;
   for (Contact& c : s.contacts) {
     c.tangential_force *= factor;
     c.rolling_moment *= factor;
   }
   return s;
-}
-
-MixedTarget::Row stress_row(int i, int k, double change, double scale) {
-  Matrix3 component = entry(i, k, 0.5) + entry(k, i, 0.5);
-  return {Matrix3::Zero(), component, change, scale};
 }
 
 /// The stress change that brings the specimen to an isotropic pressure.
@@ -92,7 +80,7 @@ TEST_CASE("Grains 10,000 times stiffer are brought to the same stress, held ther
 }
 
 TEST_CASE("Without friction every force is along its normal and the stress is symmetric", "[extreme]") {
-  Specimen s = dense();
+  Specimen s = reference_specimen("dense");
   s.contact.rolling = false;
   s.materials[0].friction = 0;
   for (Contact& c : s.contacts) c.tangential_force.setZero();
@@ -115,7 +103,7 @@ TEST_CASE("Without friction every force is along its normal and the stress is sy
 }
 
 TEST_CASE("Friction of 10 is no slip until a contact opens: the stress is that of friction 1e6", "[extreme]") {
-  Specimen rough = dense(), stuck = dense();
+  Specimen rough = reference_specimen("dense"), stuck = reference_specimen("dense");
   rough.materials[0].friction = 10;
   stuck.materials[0].friction = 1e6;
   Rve a(rough), b(stuck);
@@ -240,7 +228,7 @@ TEST_CASE("Local damping of 0.9 ends at the balance that weak damping finds", "[
 
 TEST_CASE("The stress of velocities is the same whoever sums it, drift or not", "[extreme]") {
   // Local damping does not conserve momentum; the mean velocity that the next step takes out is no fluctuation.
-  Specimen s = dense();
+  Specimen s = reference_specimen("dense");
   s.damping.local = 0.9;
   Rve rve(s);
   const Response response = rve.apply(biaxial(1e-4), 1e-3);

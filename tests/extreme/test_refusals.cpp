@@ -36,7 +36,7 @@ TEST_CASE("NaN in a specimen is refused with the grain's name", "[extreme]") {
     const auto refused = [&](auto spoil) {
       Specimen s = good;
       spoil(s);
-      return refusal<InputError>([&] { Rve rve(s); });
+      return error_text<InputError>([&] { Rve rve(s); });
     };
     CHECK(contains(refused([&](Specimen& s) { s.grains.position[5][1] = bad; }), "grain 6"));
     CHECK(contains(refused([&](Specimen& s) { s.grains.velocity[5][0] = bad; }), "grain 6"));
@@ -59,7 +59,7 @@ TEST_CASE("A specimen that is none is refused", "[extreme]") {
   const auto refused = [&](auto spoil) {
     Specimen s = good;
     spoil(s);
-    return refusal<InputError>([&] { Rve rve(s); });
+    return error_text<InputError>([&] { Rve rve(s); });
   };
   CHECK(contains(refused([](Specimen& s) { s.grains = {}; }), "0 grains"));
   CHECK(contains(refused([](Specimen& s) { s.grains.radius[3] = 0; }),
@@ -109,7 +109,7 @@ TEST_CASE("A parameter out of range stops the opening with its key, value and ra
   for (const Case& one : cases) {
     Specimen s = triangular(4, 2, 1.95);
     one.spoil(s);
-    const std::string text = refusal<InputError>([&] { Rve rve(s); });
+    const std::string text = error_text<InputError>([&] { Rve rve(s); });
     CAPTURE(one.key, text);
     CHECK(contains(text, one.key + " = " + one.value));
     CHECK(contains(text, "allowed: " + one.range));
@@ -121,7 +121,7 @@ TEST_CASE("Compression until grains overlap by a quarter is refused and changes 
     Rve rve(triangular(4, 2, 1.95));
     const auto before = rve.save();
     // Spacing l: overlap over radius is 2 - l; l = 1.75 is reached at a strain of -0.1026.
-    const std::string text = refusal<IncrementFailed>([&] { rve.apply(isotropic(2, -0.11), dt); });
+    const std::string text = error_text<IncrementFailed>([&] { rve.apply(isotropic(2, -0.11), dt); });
     CAPTURE(dt, text);
     CHECK(contains(text, "max_overlap_ratio allows 0.25"));
     CHECK(contains(text, "compress less"));
@@ -141,7 +141,7 @@ TEST_CASE("A cell that becomes too slender is refused with vector, limit and rem
     const auto before = rve.save();
     const double squeeze = 0.495;
     const Matrix3 gradient = Vector3(1 / squeeze - 1, squeeze - 1, 0).asDiagonal();
-    const std::string text = refusal<IncrementFailed>([&] { rve.apply(gradient, dt); });
+    const std::string text = error_text<IncrementFailed>([&] { rve.apply(gradient, dt); });
     CAPTURE(dt, text);
     CHECK((rve.save() == before));
     CHECK(contains(text, "shortest lattice vector is 1.9"));
@@ -149,7 +149,7 @@ TEST_CASE("A cell that becomes too slender is refused with vector, limit and rem
     CHECK(contains(text, "oriented cell"));
   }
   // The same limit holds for what is opened.
-  CHECK(contains(refusal<InputError>([] { Rve rve(lone_grain_of_default_limit(1.95)); }),
+  CHECK(contains(error_text<InputError>([] { Rve rve(lone_grain_of_default_limit(1.95)); }),
                  "shortest lattice vector is 1.95 m"));
 }
 
@@ -159,7 +159,7 @@ TEST_CASE("An increment beyond the allowed number of sub-steps is refused and ch
   Rve rve(s);
   rve.apply(entry(0, 1, 1e-6), 0);
   const auto before = rve.save();
-  CHECK(contains(refusal<IncrementFailed>([&] { rve.apply(entry(0, 1, 1e-6), 1e6); }), "max_substeps"));
+  CHECK(contains(error_text<IncrementFailed>([&] { rve.apply(entry(0, 1, 1e-6), 1e6); }), "max_substeps"));
   CHECK((rve.save() == before));
 }
 
@@ -169,9 +169,9 @@ TEST_CASE("A damaged snapshot is refused and changes nothing", "[extreme]") {
   for (const std::size_t at : {std::size_t(0), std::size_t(9), before.size() / 2, before.size() - 1}) {
     auto damaged = before;
     damaged[at] ^= std::byte{1};
-    CHECK_FALSE(refusal<InputError>([&] { rve.restore(damaged); }).empty());
+    CHECK_FALSE(error_text<InputError>([&] { rve.restore(damaged); }).empty());
   }
   for (const std::size_t length : {std::size_t(0), std::size_t(7), std::size_t(15), before.size() - 1})
-    CHECK_FALSE(refusal<InputError>([&] { rve.restore(std::span(before).first(length)); }).empty());
+    CHECK_FALSE(error_text<InputError>([&] { rve.restore(std::span(before).first(length)); }).empty());
   CHECK((rve.save() == before));
 }

@@ -13,10 +13,6 @@ namespace {
 /// Frictionless, disordered, at rest under about 2e4 Pa.
 Specimen resting() { return packed(gas(2, spread_radii(40, 0.3), 0.4, 31), 2e4); }
 
-MixedTarget::Row stress_row(int i, int k, double change, double scale) {
-  return {Matrix3::Zero(), entry(i, k, 0.5) + entry(k, i, 0.5), change, scale};
-}
-
 const Matrix3 deviator = Vector3(2e-4, -4e-4, 0).asDiagonal();
 
 }  // namespace
@@ -75,8 +71,8 @@ TEST_CASE("A given time step beyond the critical one is refused with both, the s
     MixedTarget held;
     held.rows = {
         stress_row(0, 0, 0, p), stress_row(1, 1, 0, p), {entry(0, 1, 0.5) + entry(1, 0, 0.5), Matrix3::Zero(), 0, 0}};
-    for (const std::string& text : {refusal<IncrementFailed>([&] { rve.apply(deviator, dt); }),
-                                    refusal<IncrementFailed>([&] { rve.apply(held, dt); })}) {
+    for (const std::string& text : {error_text<IncrementFailed>([&] { rve.apply(deviator, dt); }),
+                                    error_text<IncrementFailed>([&] { rve.apply(held, dt); })}) {
       CHECK(contains(text, "solver.fixed_time_step_s = " + in_words(s.solver.fixed_time_step)));
       CHECK(contains(text, "above the critical step, "));
     }
@@ -103,7 +99,7 @@ TEST_CASE("A mixed target that asks for tension is not held, said so, and ends",
                      {entry(0, 1, 0.5) + entry(1, 0, 0.5), Matrix3::Zero(), 0, 0}};
       if (pull == in_proportion)
         for (const int k : {0, 1}) target.rows[std::size_t(k)] = stress_row(k, k, -1.5 * stress(k, k), p);
-      const std::string text = refusal<IncrementFailed>([&] {
+      const std::string text = error_text<IncrementFailed>([&] {
         const Response response = rve.apply(target, dt);
         CAPTURE(dt, int(pull), response.report.held_error, response.report.substeps);
         CHECK_FALSE(response.report.target_held);

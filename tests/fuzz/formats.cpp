@@ -1,7 +1,5 @@
 #include "tests/fuzz/formats.hpp"
 
-#include <zlib.h>
-
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -25,6 +23,7 @@
 #include "tests/fuzz/hdf5_edits.hpp"
 #include "tests/fuzz/journals.hpp"
 #include "tests/fuzz/seeds.hpp"
+#include "tests/gzipped.hpp"
 #include "tests/io/random_specimen.hpp"
 
 namespace rvelab::fuzz {
@@ -178,20 +177,6 @@ Answer check_text(View input) {
   });
 }
 
-std::string packed_by_gzip(const std::string& text) {
-  z_stream stream{};
-  if (deflateInit2(&stream, 1, Z_DEFLATED, 16 + MAX_WBITS, 8, Z_DEFAULT_STRATEGY) != Z_OK) std::abort();
-  std::string packed(deflateBound(&stream, text.size()), '\0');
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
-  stream.avail_in = static_cast<uInt>(text.size());
-  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
-  stream.avail_out = static_cast<uInt>(packed.size());
-  if (deflate(&stream, Z_FINISH) != Z_STREAM_END) std::abort();
-  packed.resize(stream.total_out);
-  deflateEnd(&stream);
-  return packed;
-}
-
 /// The packed file is what it holds; and changed in a byte or cut it is refused, or holds the same.
 Answer check_gz(View input) {
   const std::string text = text_of(input), path = file_of("p", text);
@@ -200,7 +185,7 @@ Answer check_gz(View input) {
     return answer([&] { number = import_other(path, text).grains.size(); });
   };
   const Answer plain = count(grains);
-  const std::string packed = packed_by_gzip(text);
+  const std::string packed = test::gzipped(text);
   file_of("p", packed);
   const bool packed_itself = text.starts_with("\x1f\x8b");
   promise(packed_itself || (count(grains_packed) == plain && grains_packed == grains),

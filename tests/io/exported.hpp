@@ -7,20 +7,15 @@
 
 #include "random_specimen.hpp"
 #include "rvelab/io/export/export.hpp"
-#include "rvelab/io/import/csv.hpp"
 #include "rvelab/solver/rve.hpp"
 #include "tests/catch.hpp"
+#include "tests/reference_specimen.hpp"
 
 namespace rvelab::test {
 
-inline Specimen packing(const std::string& name) {
-  const std::string stem = std::string(RVELAB_TEST_DATA) + "/yade/" + name;
-  return io::import_csv(stem + ".particles.csv", stem + ".contacts.csv", stem + ".json");
-}
-
 /// Sheared and turned, so that the lattice leans and the frame is not the laboratory's.
 inline Specimen sheared(const std::string& name) {
-  Rve rve(packing(name));
+  Rve rve(reference_specimen(name));
   Matrix3 dh = Matrix3::Zero();
   const int d = rve.cell().dimension;
   dh(0, d - 1) = 0.004;

@@ -88,11 +88,7 @@ inline Read read_as(const std::string& text, io::ImportOptions options = {}, con
   write_bytes(folder / "m.toml", sand);
   if (!options.material_path) options.material_path = folder / "m.toml";
   options.tell = [&](const std::string& said) { read.told.push_back(said); };
-  try {
-    read.specimen = io::import_csv(folder / name, std::nullopt, std::nullopt, options);
-  } catch (const InputError& error) {
-    read.error = error.what();
-  }
+  read.error = input_error([&] { read.specimen = io::import_csv(folder / name, std::nullopt, std::nullopt, options); });
   return read;
 }
 

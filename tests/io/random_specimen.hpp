@@ -19,12 +19,12 @@
 #include <type_traits>
 #include <vector>
 
-#include "rvelab/error.hpp"
 #include "rvelab/records/progress.hpp"
 #include "rvelab/records/record.hpp"
 #include "rvelab/specimen/specimen.hpp"
 #include "rvelab/specimen/specimen_fields.hpp"
 #include "tests/folder.hpp"
+#include "tests/refusal.hpp"
 
 namespace rvelab::test {
 
@@ -366,17 +366,6 @@ inline records::Checkpoint random_checkpoint(unsigned seed) {
   records::Checkpoint filled = checkpoint;
   Pairs<RandomFill>{RandomFill(seed + 1)}(filled, filled);
   return {filled.progress, checkpoint.specimen};
-}
-
-/// The message of the InputError that a call throws; "" if it throws none.
-template <class Call>
-std::string input_error(Call call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
 }
 
 }  // namespace rvelab::test

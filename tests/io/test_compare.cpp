@@ -55,13 +55,13 @@ TEST_CASE("every field of a specimen counts, down to its last bit") {
   const auto one_bit = [](double& value) { value = std::bit_cast<double>(std::bit_cast<std::uint64_t>(value) ^ 1); };
   Specimen changed = specimen;
   one_bit(changed.grains.position[3][1]);
-  CHECK_THAT(difference(changed), Contains("/grains/position_m[3, 1] differs") && Contains("b.h5"));
+  CHECK_THAT(difference(changed), Contains("/grains/position_m[3, 1] differs"));
   changed = specimen;
   one_bit(changed.state.last_step);
   CHECK_THAT(difference(changed), Contains("/state/last_step differs"));
   changed = specimen;
   changed.materials[1].name += "x";
-  CHECK_THAT(difference(changed), Contains("/materials/name[1] differs") && Contains("x\""));
+  CHECK_THAT(difference(changed), Contains("/materials/name[1] differs"));
   changed = specimen;
   changed.contacts.pop_back();
   CHECK_THAT(difference(changed), Contains("/contacts/") && Contains("another shape") && Contains("(30"));

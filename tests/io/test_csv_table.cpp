@@ -2,9 +2,9 @@
 // capitals, CRLF; and bytes that are no text.
 #include "rvelab/io/import/csv_table.hpp"
 
-#include "rvelab/error.hpp"
 #include "rvelab/io/utf8.hpp"
 #include "tests/catch.hpp"
+#include "tests/refusal.hpp"
 
 using namespace rvelab;
 using Catch::Matchers::Contains;
@@ -24,13 +24,10 @@ void expect_two_grains(const std::string& text) {
 }
 
 std::string message_of(const std::string& text) {
-  try {
+  return test::input_error([&] {
     const io::CsvTable table("grains.csv", text);
     for (std::size_t row = 0; row < table.rows(); ++row) static_cast<void>(table.number(row, table.column({"x"})));
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  });
 }
 
 }  // namespace

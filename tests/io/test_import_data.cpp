@@ -1,6 +1,5 @@
 // Data files of LAMMPS, and files that are packed by gzip: the same grains, or a refusal.
-#include <zlib.h>
-
+#include "tests/gzipped.hpp"
 #include "tests/io/four_spheres.hpp"
 
 using namespace rvelab;
@@ -13,20 +12,6 @@ std::string exchanged(std::string text, const std::string& from, const std::stri
   const auto at = text.find(from);
   REQUIRE(at != std::string::npos);
   return text.replace(at, from.size(), to);
-}
-
-std::string gzipped(const std::string& text) {
-  z_stream stream{};
-  REQUIRE(deflateInit2(&stream, 9, Z_DEFLATED, 16 + MAX_WBITS, 8, Z_DEFAULT_STRATEGY) == Z_OK);
-  std::string packed(deflateBound(&stream, text.size()), '\0');
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
-  stream.avail_in = static_cast<uInt>(text.size());
-  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
-  stream.avail_out = static_cast<uInt>(packed.size());
-  REQUIRE(deflate(&stream, Z_FINISH) == Z_STREAM_END);
-  packed.resize(stream.total_out);
-  deflateEnd(&stream);
-  return packed;
 }
 
 }  // namespace
@@ -75,8 +60,7 @@ TEST_CASE("a data file of a general triclinic box is the same packing") {
 
 TEST_CASE("another atom_style, and units without metres, are refused by name") {
   for (const std::string style : {"atomic", "ellipsoid", "hybrid sphere bond", "bpm/sphere"})
-    CHECK_THAT(read_as(data_of({}, " # " + style)).error,
-               Contains("Atoms # " + style) && Contains("atom_style sphere"));
+    CHECK_THAT(read_as(data_of({}, " # " + style)).error, Contains("Atoms # " + style));
   CHECK_THAT(read_as(exchanged(data_of({}, ""), "1 atom types", "3 ellipsoids")).error,
              Contains("ellipsoids are of another"));
   CHECK_THAT(read_as(exchanged(data_of({}, ""), "1 atom types", "3 bonds")).error, Contains("atoms with bonds"));

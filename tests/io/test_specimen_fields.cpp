@@ -258,8 +258,7 @@ TEST_CASE("one bit of any one field is seen by comparison, digest, snapshot and 
     CHECK(differing_fields(from_bytes(bytes), changed).empty());
 
     io::write_specimen(changed, folder / "b.h5");
-    CHECK_THAT(test::first_difference(folder / "a.h5", folder / "b.h5").value_or(""),
-               Contains("/" + change.path()) && Contains("differs"));
+    CHECK_THAT(test::first_difference(folder / "a.h5", folder / "b.h5").value_or(""), Contains("/" + change.path()));
     CHECK(differing_fields(stored(folder / "b.h5"), changed).empty());
   }
   Datasets described;

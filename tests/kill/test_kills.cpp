@@ -12,13 +12,13 @@
 #include <thread>
 
 #include "rvelab/io/hdf5/specimen_file.hpp"
-#include "rvelab/io/import/csv.hpp"
 #include "rvelab/io/journal/journal.hpp"
 #include "rvelab/io/journal/recorded_test.hpp"
 #include "tests/catch.hpp"
 #include "tests/child.hpp"
 #include "tests/io/random_specimen.hpp"
 #include "tests/io/same_contents.hpp"
+#include "tests/reference_specimen.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
@@ -29,8 +29,7 @@ namespace {
 class Victim {
  public:
   explicit Victim(const Folder& folder) : specimen_(folder / "s.h5"), protocol_(folder / "p.toml") {
-    const std::string path = RVELAB_TEST_DATA "/yade/dense_p20";
-    io::write_specimen(io::import_csv(path + ".particles.csv", path + ".contacts.csv", path + ".json", {}), specimen_);
+    io::write_specimen(reference_specimen("dense_p20"), specimen_);
     write_bytes(protocol_,
                 "[test]\nname = \"victim\"\n[output]\nsnapshots_every = 25\n"
                 "[[stage]]\nkind = \"isotropic\"\npressure_Pa = 22e3\nrecord = true\n"

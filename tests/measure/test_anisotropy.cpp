@@ -9,7 +9,7 @@
 #include "rvelab/measure/measures.hpp"
 #include "tests/catch.hpp"
 #include "tests/measure/crystals.hpp"
-#include "tests/oracle/specimens.hpp"
+#include "tests/specimens.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;

@@ -10,8 +10,8 @@
 #include "rvelab/pack/search.hpp"
 #include "rvelab/solver/kernels/ellipse_search.hpp"
 #include "tests/measure/reference_network.hpp"
-#include "tests/oracle/specimens.hpp"
 #include "tests/pack/recipes.hpp"
+#include "tests/specimens.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
@@ -253,11 +253,7 @@ TEST_CASE("Discs written as ellipses have the tangent of discs", "[measure]") {
 }
 
 TEST_CASE("Disordered ellipses: increments of 1e-7 meet the elastic tangent", "[measure]") {
-  Material m = linear_material(2e6, 1e6, 0.4);
-  m.young_modulus = 2e8;
-  m.poisson_ratio = 0.2;
-  m.rolling_stiffness = 0.8;
-  m.rolling_friction = 0.05;
+  const Material m = material_of_every_law();
   for (const auto& [law, radius] : {std::pair{Law::linear_given, HertzRadius::equivalent},
                                     {Law::hertz_mindlin, HertzRadius::equivalent},
                                     {Law::hertz_mindlin, HertzRadius::curvature}}) {

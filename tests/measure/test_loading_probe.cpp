@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "rvelab/io/import/csv.hpp"
 #include "rvelab/measure/acoustic.hpp"
 #include "rvelab/measure/probe.hpp"
 #include "rvelab/measure/tangent.hpp"
@@ -14,6 +13,7 @@
 #include "tests/catch.hpp"
 #include "tests/measure/crystals.hpp"
 #include "tests/measure/turned.hpp"
+#include "tests/reference_specimen.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
@@ -47,14 +47,6 @@ Specimen crystal(double overlap, double kn, double kt) {
     specimen.grains.spin.push_back(Vector3::Zero());
   }
   return specimen;
-}
-
-/// 1000 Hertz spheres at 100 kPa.
-Specimen packing(const std::vector<std::string>& settings) {
-  const std::string base = std::string(RVELAB_TEST_DATA) + "/yade/hertz";
-  io::ImportOptions options;
-  options.settings = settings;
-  return io::import_csv(base + ".particles.csv", base + ".contacts.csv", base + ".json", options);
 }
 
 double determinant(const Eigen::MatrixXd& stiffness, const Vector3& normal) {
@@ -94,7 +86,7 @@ TEST_CASE("loading probes of a face-centred crystal give its cubic constants and
 TEST_CASE("loading probes of spheres that do not slip: the elastic tangent, its weakest band, and both turned",
           "[measure][slow]") {
   // Hertz contacts stiffen by half of the change of their overlap, of which a probe of 1e-5 is a hundredth.
-  Specimen specimen = packing({"solver.relative_tolerance=1e-4", "solver.absolute_tolerance=1e-8"});
+  Specimen specimen = reference_specimen("hertz", {"solver.relative_tolerance=1e-4", "solver.absolute_tolerance=1e-8"});
   Rve rve(specimen);
   forbid_slip(rve);
   const Eigen::MatrixXd elastic = elastic_tangent(rve.network());
@@ -116,7 +108,7 @@ TEST_CASE("loading probes of spheres that do not slip: the elastic tangent, its 
 
 TEST_CASE("spheres that slide: the probe gives what loading gives, in a turned frame too, and less than unloading",
           "[measure][slow]") {
-  Rve rve(packing({}));
+  Rve rve(reference_specimen("hertz"));
   for (int k = 0; k < 6; ++k) rve.apply(1e-3 * compression, 0);
   const double size = 2e-4;
   const Matrix3 half = 0.5 * size * compression / compression.norm();

@@ -7,7 +7,7 @@
 
 #include "tests/catch.hpp"
 #include "tests/measure/crystals.hpp"
-#include "tests/oracle/specimens.hpp"
+#include "tests/specimens.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;

@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "rvelab/error.hpp"
-#include "rvelab/io/import/csv.hpp"
 #include "rvelab/measure/tangent.hpp"
 #include "rvelab/measure/tensor_order.hpp"
 #include "tests/catch.hpp"
 #include "tests/measure/reference_network.hpp"
+#include "tests/reference_specimen.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
@@ -18,11 +18,7 @@ using namespace rvelab::test;
 namespace {
 
 Rve open_packing(const std::string& name, const std::vector<std::string>& settings) {
-  const std::string base = std::string(RVELAB_TEST_DATA) + "/yade/" + name;
-  io::ImportOptions options;
-  options.settings = settings;
-  if (name == "soft100") options.settings.push_back("solver.max_overlap_ratio=0.3");  // its largest is 0.2504
-  Rve rve(io::import_csv(base + ".particles.csv", base + ".contacts.csv", base + ".json", options));
+  Rve rve(reference_specimen(name, settings));
   forbid_slip(rve);
   return rve;
 }
@@ -77,8 +73,7 @@ TEST_CASE("while no contact slips loading goes on with the elastic stiffness, in
 }
 
 TEST_CASE("the loading stiffness gives along its direction what loading gives, and less than unloading", "[measure]") {
-  const std::string base = std::string(RVELAB_TEST_DATA) + "/yade/dense";
-  Rve rve(io::import_csv(base + ".particles.csv", base + ".contacts.csv", base + ".json", {}));
+  Rve rve(reference_specimen("dense"));
   const Matrix3 direction = Vector3(0.5, -1, 0).asDiagonal();
   for (int k = 0; k < 10; ++k) rve.apply(1e-3 * direction, 0);  // until contacts slide
   const Matrix3 stress = rve.stress();

@@ -5,19 +5,15 @@
 #include <string>
 #include <vector>
 
-#include "rvelab/io/import/csv.hpp"
 #include "rvelab/solver/rve.hpp"
 #include "tests/oracle/reference_table.hpp"
+#include "tests/reference_specimen.hpp"
 
 namespace rvelab::test {
 
 /// A packing with its contacts, and YADE's slip convention.
 inline Specimen yade_packing(const std::string& name) {
-  io::ImportOptions options;
-  options.settings = {"contact.slip=full_radius_ratcheting"};
-  if (name == "soft100") options.settings.push_back("solver.max_overlap_ratio=0.3");  // its largest is 0.2504
-  const std::string stem = data_path("yade/" + name);
-  return io::import_csv(stem + ".particles.csv", stem + ".contacts.csv", stem + ".json", options);
+  return reference_specimen(name, {"contact.slip=full_radius_ratcheting"});
 }
 
 /// The stress that YADE reports for a packing, Pa, tension positive.

@@ -1,5 +1,5 @@
 // Two ellipses that collide: momentum, angular momentum and energy, with Hertz's radius from curvature too.
-#include "tests/oracle/specimens.hpp"
+#include "tests/specimens.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;

@@ -9,7 +9,7 @@
 // overlap ratio for a Hertz contact; Richardson's combination of two sizes takes it out. Where a Hertz-Mindlin contact
 // rescales its tangential force on unloading, the second order differs between the two directions and the error is
 // linear in the strain: the two sizes are then combined to take that out, at a smaller strain.
-#include "tests/oracle/specimens.hpp"
+#include "tests/specimens.hpp"
 
 #include "rvelab/measure/probe.hpp"
 #include "rvelab/measure/tangent.hpp"

@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "rvelab/error.hpp"
-#include "tests/oracle/specimens.hpp"
+#include "tests/specimens.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
@@ -20,15 +20,6 @@ Specimen as_ellipses(Specimen s) {
     s.grains.orientation.emplace_back(std::cos(double(g)), std::sin(double(g)), 0);
   }
   return s;
-}
-
-Material strong() {
-  Material m = linear_material(2e6, 1e6, 0.4);
-  m.young_modulus = 2e8;
-  m.poisson_ratio = 0.2;
-  m.rolling_stiffness = 0.8;
-  m.rolling_friction = 0.05;
-  return m;
 }
 
 /// The same ellipses with the ratio b/a of `aspect` and their areas.
@@ -91,7 +82,7 @@ TEST_CASE("The bound of the largest frequency of ellipses lies above it, and not
 
 TEST_CASE("The bound of the largest frequency holds with Hertz's radius from curvature") {
   const double aspect = GENERATE(0.1, 0.3, 0.743);
-  Specimen s = disordered(Shape::ellipse, 6, strong(), Law::hertz_mindlin, 0.5, 3);
+  Specimen s = disordered(Shape::ellipse, 6, material_of_every_law(), Law::hertz_mindlin, 0.5, 3);
   s.contact.hertz_radius = HertzRadius::curvature;
   s.solver.max_overlap_ratio = 10;
   const Rve rve(of_aspect(s, aspect));
@@ -106,7 +97,7 @@ TEST_CASE("Discs written as ellipses have the forces of discs") {
   const bool rolling = GENERATE(false, true);
   const Dashpot dashpot = GENERATE(Dashpot::none, Dashpot::restitution);
   CAPTURE(name(law), rolling, name(dashpot));
-  Specimen s = disordered(Shape::disc, 8, strong(), law, 0.53, 4);
+  Specimen s = disordered(Shape::disc, 8, material_of_every_law(), law, 0.53, 4);
   s.contact.rolling = rolling;
   s.damping.dashpot = dashpot;
   s.damping.restitution = 0.6;
@@ -154,7 +145,7 @@ TEST_CASE("A free ellipse turns by its spin, in a cell that turns too") {
 }
 
 TEST_CASE("A rigid turn of the cell at rest turns ellipses with it and leaves their contacts as they were") {
-  const Rve start(disordered(Shape::ellipse, 6, strong(), Law::linear_given, 0.53, 8));
+  const Rve start(disordered(Shape::ellipse, 6, material_of_every_law(), Law::linear_given, 0.53, 8));
   Rve turned(start);
   turned.apply(rotation_about_z(0.7) - Matrix3::Identity(), 0);
   const Network a = start.network(), b = turned.network();
@@ -165,7 +156,7 @@ TEST_CASE("A rigid turn of the cell at rest turns ellipses with it and leaves th
 }
 
 TEST_CASE("Ellipses of impossible axes, orientation or slip are refused by name") {
-  const Specimen good = disordered(Shape::ellipse, 3, strong(), Law::linear_given, 0.45, 1);
+  const Specimen good = disordered(Shape::ellipse, 3, material_of_every_law(), Law::linear_given, 0.45, 1);
   CHECK_NOTHROW(Rve(good));
   const auto refused = [&](const std::function<void(Specimen&)>& change, const std::string& text) {
     Specimen s = good;

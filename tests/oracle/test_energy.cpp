@@ -11,7 +11,7 @@
 
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/specimen/field_layout.hpp"
-#include "tests/oracle/specimens.hpp"
+#include "tests/specimens.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;

@@ -5,7 +5,7 @@
 #include <random>
 
 #include "rvelab/error.hpp"
-#include "tests/oracle/specimens.hpp"
+#include "tests/specimens.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;

@@ -6,8 +6,8 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/measure/measures.hpp"
-#include "tests/oracle/specimens.hpp"
 #include "tests/solver/brute_force.hpp"
+#include "tests/specimens.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;

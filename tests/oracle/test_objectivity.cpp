@@ -5,7 +5,7 @@
 // with strain: chaos).
 #include <Eigen/LU>
 
-#include "tests/oracle/specimens.hpp"
+#include "tests/specimens.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
@@ -42,7 +42,7 @@ double difference(const std::vector<Matrix3>& a, const std::vector<Matrix3>& b) 
 }
 
 const std::vector<Matrix3>& dense_path() {
-  static const std::vector<Matrix3> path = path_of(Rve(recorded("dense")));
+  static const std::vector<Matrix3> path = path_of(Rve(reference_specimen("dense")));
   return path;
 }
 
@@ -121,7 +121,7 @@ Specimen supercell(const Specimen& s, int nx, int ny) {
 
 TEST_CASE("a rigid rotation at dt = 0 turns the stress and leaves every grain and contact bitwise as it was") {
   const bool spheres = GENERATE(false, true);
-  Rve rve(recorded(spheres ? "hertz" : "dense"));
+  Rve rve(reference_specimen(spheres ? "hertz" : "dense"));
   rve.apply(0.2 * path_step, 0);  // some history on the contacts, velocities too
   const std::vector<std::byte> before = without_frame(rve);
   const Matrix3 stress = rve.stress();
@@ -141,7 +141,7 @@ TEST_CASE("a rigid rotation at dt = 0 turns the stress and leaves every grain an
 }
 
 TEST_CASE("quarter turns between the steps of a path permute the stress and change no bit of it") {
-  Rve still(recorded("dense")), turning(recorded("dense"));
+  Rve still(reference_specimen("dense")), turning(reference_specimen("dense"));
   Matrix3 quarter = gradient(0, -1, 1, 0), turned = Matrix3::Identity();
   quarter(2, 2) = 1;
   for (int k = 0; k < 6; ++k) {
@@ -175,7 +175,7 @@ TEST_CASE("quarter turns of spheres about all axes permute the stress and change
 }
 
 TEST_CASE("rotations between the steps of a path turn the stress with them, to 1e-10 of p") {
-  Rve rve(recorded("dense"));
+  Rve rve(reference_specimen("dense"));
   const double p = pressure(rve.stress(), 2);
   Matrix3 turned = Matrix3::Identity();
   for (int k = 0; k < path_length; ++k) {
@@ -189,7 +189,7 @@ TEST_CASE("rotations between the steps of a path turn the stress with them, to 1
 
 TEST_CASE("the spin of an increment turns the stress by exactly that spin") {
   // Straining within the cell, then turning, is one increment: F = R (I + dH).
-  Rve rve(recorded("dense"));
+  Rve rve(reference_specimen("dense"));
   const double p = pressure(rve.stress(), 2);
   Matrix3 turned = Matrix3::Identity();
   for (int k = 0; k < path_length; ++k) {
@@ -221,7 +221,7 @@ TEST_CASE("the frame stays a rotation over any number of increments with spin") 
 }
 
 TEST_CASE("a shift of the origin changes the stress by no more than round-off") {
-  const Specimen s = recorded("dense");
+  const Specimen s = reference_specimen("dense");
   const double p = pressure(Rve(s).stress(), 2);
   const double l = s.cell.lattice(0, 0);
   for (const Vector3& shift : {Vector3(0.123 * l, -0.391 * l, 0), Vector3(-2.71 * l, 3.14 * l, 0)})
@@ -229,7 +229,7 @@ TEST_CASE("a shift of the origin changes the stress by no more than round-off") 
 }
 
 TEST_CASE("a change of lattice basis changes the stress by no more than round-off") {
-  const Specimen s = recorded("dense");
+  const Specimen s = reference_specimen("dense");
   const double p = pressure(Rve(s).stress(), 2);
   Eigen::Matrix3i basis;
   SECTION("sheared by one period") { basis << 1, 1, 0, 0, 1, 0, 0, 0, 1; }
@@ -243,7 +243,7 @@ TEST_CASE("a change of lattice basis changes the stress by no more than round-of
 }
 
 TEST_CASE("an exchange of the cell vectors changes no bit under strain along the axes") {
-  const Specimen s = recorded("dense");
+  const Specimen s = reference_specimen("dense");
   Eigen::Matrix3i basis;
   basis << 0, -1, 0, 1, 0, 0, 0, 0, 1;
   Specimen other = in_basis(s, basis);
@@ -263,7 +263,7 @@ TEST_CASE("an exchange of the cell vectors changes no bit under strain along the
 TEST_CASE("a basis that turns the cell frame shows in the second order of an increment only") {
   // The lattice goes straight in the frame of its basis, so that on the way the strains of two frames differ by the
   // square of the increment, at its end not at all.
-  Specimen s = recorded("dense");
+  Specimen s = reference_specimen("dense");
   s.solver.fixed_substeps = 20;  // of both increments, so that they differ by their size alone
   const double p = pressure(Rve(s).stress(), 2);
   Eigen::Matrix3i basis;
@@ -282,14 +282,14 @@ TEST_CASE("a basis that turns the cell frame shows in the second order of an inc
 }
 
 TEST_CASE("a supercell of 2 x 2 periods has the stress of one") {
-  const Specimen s = recorded("dense");
+  const Specimen s = reference_specimen("dense");
   const double p = pressure(Rve(s).stress(), 2);
   CHECK(difference(path_of(Rve(supercell(s, 2, 2))), dense_path()) < 1e-10 * p);
 }
 
 TEST_CASE("the order of the grains in memory and their ids are names only") {
   // Reversed order turns every pair and every sum round: no bit is promised, round-off is.
-  const Specimen s = recorded("dense");
+  const Specimen s = reference_specimen("dense");
   const double p = pressure(Rve(s).stress(), 2);
   Specimen reversed = s;
   const int n = int(s.grains.size());

@@ -12,7 +12,7 @@
 #include <map>
 
 #include "tests/oracle/reference_table.hpp"
-#include "tests/oracle/specimens.hpp"
+#include "tests/specimens.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;

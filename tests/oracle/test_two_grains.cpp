@@ -1,7 +1,7 @@
 // Two grains alone in a large cell: collisions, and contacts driven along prescribed loops.
 #include <algorithm>
 
-#include "tests/oracle/specimens.hpp"
+#include "tests/specimens.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;

@@ -3,10 +3,10 @@
 #include <filesystem>
 #include <fstream>
 
-#include "rvelab/error.hpp"
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/pack/read_recipe.hpp"
 #include "tests/catch.hpp"
+#include "tests/refusal.hpp"
 
 using namespace rvelab;
 using Catch::Matchers::Contains;
@@ -66,12 +66,7 @@ friction = 0.3
 )";
 
 std::string message_of(const std::string& text, const std::vector<std::string>& assignments = {}) {
-  try {
-    pack::parse_recipe(text, "r.toml", assignments);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return test::input_error([&] { pack::parse_recipe(text, "r.toml", assignments); });
 }
 
 }  // namespace

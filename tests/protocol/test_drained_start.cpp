@@ -6,7 +6,7 @@
 #include "rvelab/measure/measures.hpp"
 #include "rvelab/protocol/run.hpp"
 #include "tests/catch.hpp"
-#include "tests/protocol/reference_specimen.hpp"
+#include "tests/reference_specimen.hpp"
 
 using namespace rvelab;
 using Catch::Matchers::Contains;

@@ -6,7 +6,7 @@
 #include "rvelab/protocol/run.hpp"
 #include "rvelab/protocol/stage_kinds.hpp"
 #include "tests/catch.hpp"
-#include "tests/protocol/reference_specimen.hpp"
+#include "tests/reference_specimen.hpp"
 
 using namespace rvelab;
 

@@ -8,8 +8,8 @@
 #include "rvelab/protocol/directions.hpp"
 #include "rvelab/protocol/run.hpp"
 #include "tests/catch.hpp"
-#include "tests/protocol/reference_specimen.hpp"
 #include "tests/protocol/texts.hpp"
+#include "tests/reference_specimen.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;

@@ -12,7 +12,7 @@
 #include "rvelab/io/journal/recorded_test.hpp"
 #include "tests/catch.hpp"
 #include "tests/io/record_files.hpp"
-#include "tests/protocol/reference_specimen.hpp"
+#include "tests/reference_specimen.hpp"
 
 using namespace rvelab;
 namespace fs = std::filesystem;

@@ -14,7 +14,7 @@
 #include "tests/child.hpp"
 #include "tests/io/random_specimen.hpp"
 #include "tests/io/same_contents.hpp"
-#include "tests/protocol/reference_specimen.hpp"
+#include "tests/reference_specimen.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;

@@ -8,7 +8,7 @@
 #include "rvelab/protocol/run.hpp"
 #include "tests/catch.hpp"
 #include "tests/io/random_specimen.hpp"
-#include "tests/protocol/reference_specimen.hpp"
+#include "tests/reference_specimen.hpp"
 
 using namespace rvelab;
 

@@ -10,8 +10,8 @@
 #include "rvelab/records/loading_direction.hpp"
 #include "rvelab/solver/rve.hpp"
 #include "tests/catch.hpp"
-#include "tests/protocol/reference_specimen.hpp"
 #include "tests/protocol/texts.hpp"
+#include "tests/reference_specimen.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
@@ -196,12 +196,7 @@ TEST_CASE("Physical loading runs at the inertial number that was asked for") {
 
 TEST_CASE("A stage that cannot reach its end says which stage and what it reached") {
   const auto message_of = [](const std::string& stages) {
-    try {
-      run_stages(stages, reference_specimen("dense"));
-    } catch (const Error& error) {
-      return std::string(error.what());
-    }
-    return std::string();
+    return error_text<Error>([&] { run_stages(stages, reference_specimen("dense")); });
   };
   const std::string relax =
       message_of("[[stage]]\nname = \"rest\"\nkind = \"relax\"\nunbalanced = 1e-17\nmax_steps = 30\n");
@@ -230,11 +225,6 @@ TEST_CASE("Tests at several pressures do not depend on the number of threads") {
   CHECK_THROWS_AS(calibrate::run_all(protocols, {specimens[0], specimens[1]}, 1), InputError);
   // The error of one test is the error of all, and names its pressure.
   protocols[1] = protocol::parse_protocol(text, "test.toml", {"test.dimension=3", "test.pressure_Pa=20e3"});
-  std::string message;
-  try {
-    calibrate::run_all(protocols, specimens, 2);
-  } catch (const InputError& error) {
-    message = error.what();
-  }
+  const std::string message = input_error([&] { calibrate::run_all(protocols, specimens, 2); });
   CHECK(message.find("p = 20000 Pa") != std::string::npos);
 }

@@ -4,7 +4,7 @@
 #include "rvelab/error.hpp"
 #include "rvelab/protocol/protocol.hpp"
 #include "tests/catch.hpp"
-#include "tests/protocol/reference_specimen.hpp"
+#include "tests/reference_specimen.hpp"
 
 using namespace rvelab;
 using Catch::Matchers::Contains;

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "rvelab/error.hpp"
 #include "rvelab/protocol/run.hpp"
+#include "tests/refusal.hpp"
 
 namespace rvelab::test {
 
@@ -17,12 +17,7 @@ inline protocol::TestRun run_stages(const std::string& stages, const Specimen& s
 
 /// The message of the InputError that the text gives; "" if it gives none.
 inline std::string message_of(const std::string& text, const std::vector<std::string>& assignments = {}) {
-  try {
-    protocol::parse_protocol(text, "test.toml", assignments);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return input_error([&] { protocol::parse_protocol(text, "test.toml", assignments); });
 }
 
 inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }

@@ -8,7 +8,7 @@
 
 #include "rvelab/ranks/ranked_pool.hpp"
 #include "tests/catch.hpp"
-#include "tests/oracle/specimens.hpp"
+#include "tests/specimens.hpp"
 
 namespace rvelab::test {
 

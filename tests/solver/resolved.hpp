@@ -1,7 +1,7 @@
 // Increments that are resolved so finely that their own error is far below any tolerance.
 #pragma once
 
-#include "tests/oracle/specimens.hpp"
+#include "tests/specimens.hpp"
 
 namespace rvelab::test {
 

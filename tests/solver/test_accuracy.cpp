@@ -15,7 +15,7 @@ namespace {
 /// The dense packing after a biaxial strain (constant lateral strain rate), resolved so finely that its own lag is far
 /// below the tolerances.
 Specimen dense_after(double strain) {
-  Specimen s = recorded("dense");
+  Specimen s = reference_specimen("dense");
   if (strain > 0) {
     s.solver.fixed_substeps = 2000;
     Rve rve(s);
@@ -119,7 +119,7 @@ TEST_CASE("Nine of ten long increments of packings at rest keep below their esti
   // What slides on the way is not seen in the balance at the end.
   int increments = 0, kept = 0;
   for (const char* packing : {"dense", "medium", "soft"}) {
-    const Specimen s = recorded(packing);
+    const Specimen s = reference_specimen(packing);
     for (const Matrix3& direction : {biaxial_step, Matrix3(-biaxial_step), shear_step, Matrix3(-shear_step)})
       for (const double size : {1.2e-3, 2e-3, 3e-3, 5e-3, 8e-3}) {
         Rve rve(s);
@@ -160,7 +160,7 @@ TEST_CASE("Long increments of little friction and of wide spheres keep below an 
 }
 
 TEST_CASE("What a coarser path lags by is made up for before an increment to a tolerance ends", "[solver]") {
-  Specimen s = recorded("dense");
+  Specimen s = reference_specimen("dense");
   s.solver.target_unbalanced = 5e-3;
   Rve coarse(s);
   for (int k = 0; k < 100; ++k) coarse.apply(2e-4 * biaxial_step, 0);
@@ -184,7 +184,7 @@ TEST_CASE("What a coarser path lags by is made up for before an increment to a t
 }
 
 TEST_CASE("A packing that few contacts hold is loaded from rest to its tolerance, like a dense one", "[solver]") {
-  const Specimen s = recorded("noroll");  // friction alone: near isostatic at 3 contacts a grain
+  const Specimen s = reference_specimen("noroll");  // friction alone: near isostatic at 3 contacts a grain
   int kept = 0, increments = 0;
   for (const Matrix3& direction : {biaxial_step, Matrix3(-biaxial_step), shear_step})
     for (const double size : {1e-6, 1e-5, 3e-5, 1e-4}) {
@@ -256,7 +256,7 @@ TEST_CASE("An increment that takes a specimen apart ends after a bounded number 
 }
 
 TEST_CASE("What a rest has shown is a part of the state: trials, copies and restarts go on bit for bit", "[solver]") {
-  Rve straight(recorded("dense")), restored(straight), tried(straight);
+  Rve straight(reference_specimen("dense")), restored(straight), tried(straight);
   bool measured = false;
   for (int k = 0; k < 24; ++k) {
     const Matrix3 increment = (k % 8 < 5 ? 2e-4 : -1e-4) * (k % 3 == 2 ? shear_step : biaxial_step);
@@ -272,14 +272,14 @@ TEST_CASE("What a rest has shown is a part of the state: trials, copies and rest
     const SolverState state = straight.specimen().state;
     measured = measured || (k > 3 && state.lag_factor > 0 && state.lag_steps == 0);
     const std::vector<std::byte> bytes = restored.save();
-    restored = Rve(recorded("dense"));
+    restored = Rve(reference_specimen("dense"));
     restored.restore(bytes);
   }
   CHECK(measured);
 }
 
 TEST_CASE("A rest costs a few of a hundred sub-steps of a path that goes on", "[solver]") {
-  Rve rve(recorded("dense"));
+  Rve rve(reference_specimen("dense"));
   for (int k = 0; k < 100; ++k) rve.apply(2e-5 * biaxial_step, 0);
   const std::uint64_t made = rve.grain_steps_made(), kept = rve.grain_steps();
   for (int k = 0; k < 400; ++k) rve.apply(1e-5 * biaxial_step, 0);
@@ -316,7 +316,7 @@ TEST_CASE("Stricter tolerances take more sub-steps and err less", "[solver]") {
 }
 
 TEST_CASE("A cell that has come apart is strained on in as many sub-steps as another", "[solver]") {
-  Rve rve(recorded("dense"));
+  Rve rve(reference_specimen("dense"));
   const auto pressure = [&] { return -0.5 * rve.stress().topLeftCorner<2, 2>().trace(); };
   for (int k = 0; k < 200 && pressure() > 20; ++k) rve.apply(gradient(1e-4, 0, 0, 0.5e-4), 0);
   REQUIRE(pressure() < 20);  // of 1e5
@@ -336,7 +336,7 @@ TEST_CASE("Under stress control the larger tolerance, times the pressure, is kep
     long substeps = 0;
   };
   const auto found = [](double relative, double absolute, double given) {
-    Specimen s = recorded("dense");
+    Specimen s = reference_specimen("dense");
     s.solver.relative_tolerance = relative;
     s.solver.absolute_tolerance = absolute;
     s.solver.target_unbalanced = given;

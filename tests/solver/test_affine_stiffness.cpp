@@ -3,7 +3,7 @@
 
 #include "rvelab/solver/assembly/affine_stiffness.hpp"
 #include "rvelab/solver/rve.hpp"
-#include "tests/oracle/specimens.hpp"
+#include "tests/specimens.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;

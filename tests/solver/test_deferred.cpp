@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "rvelab/error.hpp"
-#include "tests/oracle/specimens.hpp"
+#include "tests/specimens.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
@@ -16,7 +16,7 @@ const Matrix3 biaxial_path = gradient(0.45, 0, 0, -0.9), sheared_path = gradient
 
 /// The dense packing on a biaxial path of 2e-5, and then in pieces of 1e-7 until one of them is deferred.
 Rve on_its_way() {
-  Rve rve(recorded("dense"));
+  Rve rve(reference_specimen("dense"));
   for (int k = 0; k < 20; ++k) rve.apply(1e-6 * biaxial_path, 0);
   for (int k = 0; k < 100; ++k)
     if (rve.apply(1e-7 * biaxial_path, 0).report.substeps == 0) return rve;
@@ -42,7 +42,7 @@ Rest rest_of_path(Rve rve, const Matrix3& increment, int times) {
 }  // namespace
 
 TEST_CASE("Increments of 1e-7 and 1e-9 share sub-steps, and answer as the whole path", "[solver]") {
-  const Specimen s = recorded("dense");
+  const Specimen s = reference_specimen("dense");
   const Rest whole = rest_of_path(Rve(s), 1e-4 * biaxial_path, 1),
              fine = rest_of_path(Rve(s), 1e-7 * biaxial_path, 1000);
   CHECK(fine.substeps < 300);
@@ -53,7 +53,7 @@ TEST_CASE("Increments of 1e-7 and 1e-9 share sub-steps, and answer as the whole 
 }
 
 TEST_CASE("Strain that is deferred is in the cell, to the last bit that a product can hold", "[solver]") {
-  Rve rve(recorded("dense"));
+  Rve rve(reference_specimen("dense"));
   const Cell start = rve.cell();
   Matrix3 total = Matrix3::Identity();
   long deferred = 0;
@@ -144,7 +144,7 @@ TEST_CASE("A turn, a reversal, a rotation and a refusal meet deferred strain", "
 }
 
 TEST_CASE("No increment is deferred where none can be judged", "[solver]") {
-  Specimen s = recorded("dense");
+  Specimen s = reference_specimen("dense");
   s.solver.fixed_substeps = 1;
   CHECK(rest_of_path(Rve(s), 1e-9 * biaxial_path, 50).substeps == 50);
   s.solver.fixed_substeps = 0;

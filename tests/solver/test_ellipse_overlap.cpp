@@ -6,18 +6,12 @@
 #include "rvelab/solver/kernels/configuration.hpp"
 #include "tests/catch.hpp"
 #include "tests/oracle/ellipse_pairs.hpp"
+#include "tests/solver/instruction_set.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
 
 namespace {
-
-/// An instruction set while it lives.
-struct InstructionSet {
-  std::string before = std::getenv("RVELAB_ISA") ? std::getenv("RVELAB_ISA") : "";
-  explicit InstructionSet(const std::string& name) { setenv("RVELAB_ISA", name.c_str(), 1); }
-  ~InstructionSet() { before.empty() ? unsetenv("RVELAB_ISA") : setenv("RVELAB_ISA", before.c_str(), 1); }
-};
 
 /// Rows of the grains of some pairs, and the pairs as the kernels have them, in a cell of 4 m: every other one across
 /// its sides.

@@ -5,7 +5,7 @@ using namespace rvelab;
 using namespace rvelab::test;
 
 TEST_CASE("A path cut finely costs little more than the path in increments of 1e-4", "[solver]") {
-  const Specimen s = recorded("dense");
+  const Specimen s = reference_specimen("dense");
   const auto run = [&](long pieces) {
     Rve rve(s);
     Response last;
@@ -28,7 +28,7 @@ TEST_CASE("A path cut finely costs little more than the path in increments of 1e
 TEST_CASE("A path cut finely is not told to miss its tolerance piece by piece", "[solver]") {
   for (const long pieces : {20L, 200L, 2000L, 20'000L}) {
     CAPTURE(pieces);
-    Rve rve(recorded("dense"));
+    Rve rve(reference_specimen("dense"));
     long missed = 0;
     for (long k = 0; k < pieces; ++k)
       missed += rve.apply(2e-3 / double(pieces) * biaxial_step, 0).report.tolerance_met ? 0 : 1;
@@ -37,7 +37,7 @@ TEST_CASE("A path cut finely is not told to miss its tolerance piece by piece", 
 }
 
 TEST_CASE("A path that turns back, aside, or waits keeps to the resolved one, finely cut", "[solver]") {
-  const Specimen s = recorded("dense");
+  const Specimen s = reference_specimen("dense");
   const auto run = [&](long pieces, long substeps) {
     Specimen t = s;
     t.solver.fixed_substeps = substeps;
@@ -63,7 +63,7 @@ TEST_CASE("A path that turns back, aside, or waits keeps to the resolved one, fi
 }
 
 TEST_CASE("Tiny increments are no identity: they add up, save and restore bitwise", "[solver]") {
-  const Specimen s = recorded("dense");
+  const Specimen s = reference_specimen("dense");
   Rve straight(s), restored(s);
   for (int k = 0; k < 300; ++k) {
     const Matrix3 increment = (k / 100 == 1 ? -1e-7 : 1e-7) * biaxial_step;
@@ -80,7 +80,7 @@ TEST_CASE("Tiny increments are no identity: they add up, save and restore bitwis
 }
 
 TEST_CASE("A specimen that was never loaded is an equilibrium, and so is a pause", "[solver]") {
-  Rve rve(recorded("dense"));
+  Rve rve(reference_specimen("dense"));
   const Response first = rve.apply(Matrix3::Zero(), 0);
   CHECK(first.report.quasi_static);
   CHECK(first.report.allowed_error == Approx(1e-4 * 1e5).epsilon(0.01));

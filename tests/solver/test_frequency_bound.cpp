@@ -18,7 +18,7 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/solver/loading/collisions.hpp"
-#include "tests/oracle/specimens.hpp"
+#include "tests/specimens.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;

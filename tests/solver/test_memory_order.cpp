@@ -5,7 +5,7 @@
 #include "rvelab/error.hpp"
 #include "rvelab/solver/assembly/memory_order.hpp"
 #include "rvelab/specimen/specimen_check.hpp"
-#include "tests/oracle/specimens.hpp"
+#include "tests/specimens.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;

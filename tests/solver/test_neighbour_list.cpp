@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "tests/oracle/specimens.hpp"
+#include "tests/specimens.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;

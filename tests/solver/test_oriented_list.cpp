@@ -5,8 +5,8 @@
 
 #include "rvelab/solver/assembly/outline.hpp"
 #include "rvelab/solver/loading/stepping.hpp"
-#include "tests/oracle/specimens.hpp"
 #include "tests/solver/brute_force.hpp"
+#include "tests/specimens.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;

@@ -2,8 +2,8 @@
 // list follows its counts: a slow specimen shrinks its skin and stays right.
 #include <algorithm>
 
-#include "tests/oracle/specimens.hpp"
 #include "tests/solver/brute_force.hpp"
+#include "tests/specimens.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
@@ -39,7 +39,7 @@ double error(const Path& path, const Path& reference) {
 }  // namespace
 
 TEST_CASE("A stricter target_unbalanced takes more sub-steps and errs less", "[solver]") {
-  const Specimen s = recorded("dense");
+  const Specimen s = reference_specimen("dense");
   const double p0 = 1e5;
   const Path reference = sheared(s, 1e-3, 4000);
   const Path usual = sheared(s, 1e-3), strict = sheared(s, 1e-4);
@@ -50,7 +50,7 @@ TEST_CASE("A stricter target_unbalanced takes more sub-steps and errs less", "[s
 }
 
 TEST_CASE("A slow specimen fits its skin down, and its list stays complete", "[solver]") {
-  Specimen s = recorded("dense");
+  Specimen s = reference_specimen("dense");
   s.solver.skin = 0.3;
   Rve rve(s);
   for (int k = 0; k < 40; ++k) rve.apply(gradient(0, 1e-5, 0, 0), 0);

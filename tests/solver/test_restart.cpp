@@ -4,7 +4,8 @@
 
 #include "rvelab/error.hpp"
 #include "rvelab/specimen/field_layout.hpp"
-#include "tests/oracle/specimens.hpp"
+#include "tests/solver/instruction_set.hpp"
+#include "tests/specimens.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
@@ -19,11 +20,7 @@ struct Configuration {
 /// Configurations that carry different parts of the state: rolling moments, last overlaps, dashpot forces, 2D and 3D.
 std::vector<Configuration> configurations() {
   std::vector<Configuration> all;
-  Material m = linear_material(2e6, 1e6, 0.4);
-  m.young_modulus = 2e8;
-  m.poisson_ratio = 0.2;
-  m.rolling_stiffness = 0.8;
-  m.rolling_friction = 0.05;
+  const Material m = material_of_every_law();
   for (const Shape shape : {Shape::disc, Shape::sphere, Shape::ellipse}) {
     const int side = dimension_of(shape) == 2 ? 7 : 4;
     const bool round = shape != Shape::ellipse;  // which alone know other slips
@@ -282,31 +279,6 @@ TEST_CASE("computing the energy balance changes no bit of the motion") {
     CHECK(bool(Rve(a).save() == Rve(b).save()));
   }
 }
-
-namespace {
-
-/// Sets RVELAB_ISA for the Rves opened while it lives.
-class InstructionSet {
- public:
-  explicit InstructionSet(const char* name) {
-    const char* now = std::getenv("RVELAB_ISA");
-    had_ = now != nullptr;
-    if (had_) before_ = now;
-    setenv("RVELAB_ISA", name, 1);
-  }
-  ~InstructionSet() {
-    if (had_)
-      setenv("RVELAB_ISA", before_.c_str(), 1);
-    else
-      unsetenv("RVELAB_ISA");
-  }
-
- private:
-  bool had_;
-  std::string before_;
-};
-
-}  // namespace
 
 TEST_CASE("every instruction set gives the same bits over a biaxial path and a dynamic shear") {
   for (const Configuration& configuration : configurations()) {

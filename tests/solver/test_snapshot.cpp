@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "rvelab/error.hpp"
-#include "tests/oracle/specimens.hpp"
+#include "tests/refusal.hpp"
+#include "tests/specimens.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
@@ -41,14 +42,10 @@ TEST_CASE("a snapshot of another layout, cut short or damaged is refused in one 
   Rve rve(disordered(Shape::disc, 5, linear_material(2e6, 1e6, 0.4), Law::linear_given, 0.53, 3));
   const Bytes good = rve.save();
   const auto message = [&](const Bytes& bytes) -> std::string {
-    try {
-      rve.restore(bytes);
-    } catch (const InputError& error) {
-      CHECK(bool(rve.save() == good));
-      CHECK(std::string(error.what()).find('\n') == std::string::npos);
-      return error.what();
-    }
-    return "";
+    const std::string text = input_error([&] { rve.restore(bytes); });
+    if (!text.empty()) CHECK(bool(rve.save() == good));
+    CHECK(text.find('\n') == std::string::npos);
+    return text;
   };
   CHECK(message(good).empty());
   CHECK(message(fitting(good)).empty());

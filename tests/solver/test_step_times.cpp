@@ -1,13 +1,13 @@
 // Who asks where the time goes is told, and changes nothing.
 #include "rvelab/solver/loading/step_times.hpp"
-#include "tests/oracle/specimens.hpp"
+#include "tests/specimens.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
 
 TEST_CASE("The parts of the time make up no more than the calls, and measuring changes no bit", "[solver]") {
   const Matrix3 increment = gradient(4.5e-4, 0, 0, -9e-4);
-  Rve plain(recorded("dense")), timed(plain);
+  Rve plain(reference_specimen("dense")), timed(plain);
   StepTimes times;
   timed.measure_time(&times);
   for (int k = 0; k < 20; ++k) {
@@ -29,7 +29,7 @@ TEST_CASE("The parts of the time make up no more than the calls, and measuring c
 }
 
 TEST_CASE("Copies add their time to the same sums, and so does a state that was restored", "[solver]") {
-  Rve rve(recorded("dense"));
+  Rve rve(reference_specimen("dense"));
   StepTimes times;
   rve.measure_time(&times);
   Rve copy(rve);

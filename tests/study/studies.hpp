@@ -4,7 +4,7 @@
 #include <string>
 
 #include "rvelab/study/run_study.hpp"
-#include "tests/oracle/specimens.hpp"
+#include "tests/specimens.hpp"
 
 namespace rvelab::test {
 

@@ -1,5 +1,4 @@
-// Specimens and comparisons for the oracles: a few grains in a large cell, crystals, disordered packings, the recorded
-// packings of tests/data.
+// Specimens and comparisons: a few grains in a large cell, crystals, disordered packings, the packings of tests/data.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -9,9 +8,9 @@
 #include <random>
 #include <string>
 
-#include "rvelab/io/import/csv.hpp"
 #include "rvelab/solver/rve.hpp"
 #include "tests/catch.hpp"
+#include "tests/reference_specimen.hpp"
 
 namespace rvelab::test {
 
@@ -22,6 +21,16 @@ inline Material linear_material(double kn, double kt, double friction) {
   m.normal_stiffness = kn;
   m.tangential_stiffness = kt;
   m.friction = friction;
+  return m;
+}
+
+/// With the parameters of every law, and of rolling.
+inline Material material_of_every_law() {
+  Material m = linear_material(2e6, 1e6, 0.4);
+  m.young_modulus = 2e8;
+  m.poisson_ratio = 0.2;
+  m.rolling_stiffness = 0.8;
+  m.rolling_friction = 0.05;
   return m;
 }
 
@@ -88,13 +97,6 @@ inline Rve at_rest(const Specimen& s, double unbalanced = 1e-10) {
   const Report report = rve.relax(unbalanced, 2'000'000);
   REQUIRE(report.target_held);
   return rve;
-}
-
-inline Specimen recorded(const std::string& name, const std::vector<std::string>& settings = {}) {
-  const std::string stem = std::string(RVELAB_TEST_DATA) + "/yade/" + name;
-  io::ImportOptions options;
-  options.settings = settings;
-  return io::import_csv(stem + ".particles.csv", stem + ".contacts.csv", stem + ".json", options);
 }
 
 inline Matrix3 gradient(double xx, double xy, double yx, double yy) {
