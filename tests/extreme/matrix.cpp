@@ -77,14 +77,20 @@ std::vector<Case> combined(const Case& one, const Values& varied, const Values& 
   return found;
 }
 
-std::vector<Case> cases_of(const toml::table& table, const toml::table& limits) {
+/// A table whose keys are those of another where it has none.
+toml::table with_defaults(toml::table table, const toml::table& otherwise) {
+  for (const auto& [key, value] : otherwise)
+    if (!table.contains(key.str())) table.insert(key.str(), value);
+  return table;
+}
+
+std::vector<Case> cases_of(const toml::table& table) {
   static const std::set<std::string> known = {"name",      "experiment", "asked",    "invariant", "source",
                                               "tolerance", "may_refuse", "may_flag", "seconds",   "memory_MiB",
-                                              "quick",     "with",       "vary"};
+                                              "quick",     "with",       "vary",     "case"};
   for (const auto& [key, value] : table)
     if (!known.contains(std::string(key.str()))) throw Error("matrix: unknown key " + std::string(key.str()));
   const auto text = [&](const char* key) { return table[key].value<std::string>().value(); };
-  const auto limit = [&](const char* key) { return number(*(table.contains(key) ? table : limits).get(key)); };
   Case one;
   one.name = text("name");
   one.experiment = &experiment_named(text("experiment"));
@@ -95,8 +101,8 @@ std::vector<Case> cases_of(const toml::table& table, const toml::table& limits) 
   one.quick = table["quick"].value_or(!quick.empty());
   one.may_refuse = table["may_refuse"].value_or(false);
   one.may_flag = table["may_flag"].value_or(false);
-  one.seconds = limit("seconds");
-  one.memory_MiB = limit("memory_MiB");
+  one.seconds = table["seconds"].value<double>().value();
+  one.memory_MiB = table["memory_MiB"].value<double>().value();
   one.parameters = one.experiment->parameters;
   for (const auto& [key, values] : values_in(table.get("with"))) one.parameters.at(key) = values.at(0);
   for (const auto& [key, values] : quick)
@@ -110,8 +116,11 @@ std::vector<Case> cases_of(const toml::table& table, const toml::table& limits) 
 std::vector<Case> read_matrix(const std::string& path) {
   const toml::table file = toml::parse_file(path);
   std::vector<Case> cases;
-  for (const toml::node& table : *file["case"].as_array())
-    for (Case& one : cases_of(*table.as_table(), *file["limits"].as_table())) cases.push_back(std::move(one));
+  for (const toml::node& series : *file["series"].as_array()) {
+    const toml::table shared = with_defaults(*series.as_table(), *file["limits"].as_table());
+    for (const toml::node& one : *shared["case"].as_array())
+      for (Case& found : cases_of(with_defaults(*one.as_table(), shared))) cases.push_back(std::move(found));
+  }
   return cases;
 }
 

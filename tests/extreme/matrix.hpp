@@ -11,7 +11,7 @@ namespace rvelab::test {
 
 struct Experiment;
 
-/// One case. A table [[case]] with `vary` gives several.
+/// One case. A row of matrix.toml with `vary` gives several.
 struct Case {
   std::string name;  ///< "stiffness/kappa/kappa=1e4,shear=0"
   const Experiment* experiment = nullptr;

@@ -85,14 +85,13 @@ Case case_of(const Experiment& experiment) {
   return one;
 }
 
-/// The cases of a table with these further lines.
-std::vector<Case> read(const std::string& lines) {
+/// The cases of a row with these further keys.
+std::vector<Case> read(const std::string& keys) {
   const Folder folder;
-  write_bytes(
-      folder / "m.toml",
-      "[limits]\nseconds = 3\nmemory_MiB = 9\n[[case]]\nname = \"a\"\nexperiment = \"rate/slow\"\nasked = \"x\"\n"
-      "invariant = \"x\"\nsource = \"x\"\ntolerance = 1\n" +
-          lines);
+  write_bytes(folder / "m.toml",
+              "[limits]\nseconds = 3\nmemory_MiB = 9\n[[series]]\nexperiment = \"rate/slow\"\nasked = \"x\"\n"
+              "invariant = \"x\"\nsource = \"x\"\ntolerance = 1\ncase = [{name = \"a\", " +
+                  keys + "}]\n");
   return read_matrix(folder / "m.toml");
 }
 
@@ -142,23 +141,17 @@ TEST_CASE("the matrix", "[.]") {
   CHECK(count["WRONG"] == 0);
 }
 
-TEST_CASE("the matrix has at least 120 cases, 40 of them quick, all of different names") {
-  const auto cases = read_matrix();
+TEST_CASE("all cases of the matrix have different names, and end within a minute") {
   std::set<std::string> names;
-  std::size_t quick = 0;
-  for (const Case& one : cases) {
-    names.insert(one.name);
-    quick += one.quick ? 1 : 0;
+  for (const Case& one : read_matrix()) {
     CAPTURE(one.name);
+    CHECK(names.insert(one.name).second);
     CHECK(one.seconds <= 60);
   }
-  CHECK(cases.size() >= 120);
-  CHECK(quick >= 40);
-  CHECK(names.size() == cases.size());
 }
 
 TEST_CASE("a case with varied parameters is one for each combination") {
-  const auto cases = read("vary = {critical_steps = [1e4, 4.9e-324, 0.5, true]}\nquick = {critical_steps = [0.5]}\n");
+  const auto cases = read("vary = {critical_steps = [1e4, 4.9e-324, 0.5, true]}, quick = {critical_steps = [0.5]}");
   REQUIRE(cases.size() == 4);
   CHECK(cases[0].name == "a/critical_steps=1e4");
   CHECK(cases[1].name == "a/critical_steps=4.940656458e-324");
@@ -167,9 +160,9 @@ TEST_CASE("a case with varied parameters is one for each combination") {
   for (const Case& one : cases) CHECK(one.quick == (one("critical_steps") == 0.5));
   CHECK(cases[0]("local_damping") == 0.3);
   CHECK(cases[0].memory_MiB == 9);
-  CHECK(read("seconds = 5\n")[0].seconds == 5);
-  for (const char* wrong : {"tolerence = 2\n", "with = {kappa = 1}\n", "vary = {kappa = [1]}\n",
-                            "vary = {critical_steps = [1]}\nquick = {critical_steps = [2]}\n"})
+  CHECK(read("seconds = 5")[0].seconds == 5);
+  for (const char* wrong : {"tolerence = 2", "with = {kappa = 1}", "vary = {kappa = [1]}",
+                            "vary = {critical_steps = [1]}, quick = {critical_steps = [2]}"})
     CHECK_THROWS(read(wrong));
 }
 

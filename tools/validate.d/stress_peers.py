@@ -124,7 +124,7 @@ def main():
     options = arguments()
     rows = answers(options)
     with open(ROOT / "tests/extreme/matrix.toml", "rb") as file:
-        table = {one["name"]: one for one in tomllib.load(file)["case"]}
+        table = {one["name"]: {**series, **one} for series in tomllib.load(file)["series"] for one in series["case"]}
     cases = [Case(row["name"], table, options.gases) for row in rows]
     with tempfile.TemporaryDirectory() as folder:
         if not grains.has_damping("tsuji", folder):
