@@ -252,26 +252,28 @@ void run_bench(const BenchArguments& arguments) {
 
 }  // namespace
 
-Command bench_command() {
-  Command command{"bench", "Grain-steps per second of fixed cases"};
-  auto& arguments = command.runs(run_bench);
-  command.add("--case", arguments.wanted, "run this case only; give it again for more");
-  command.add("--batch", arguments.batch, "time a batch of so many cells of 400 discs instead of the cases")
-      .between(1, 1'000'000);
-  command.add("--grains", arguments.grains, "time a cell of about so many grains instead of the cases")
-      .between(20, 2'000'000);
-  command.add("--shape", arguments.shape, "of the grains of --grains").one_of({"disc", "sphere"});
-  command.add_threads(arguments.threads, "for a batch, and for cells of 30,000 grains or more");
-  command.add("--quick", arguments.quick, "a fifth of the work, three repeats");
-  command.add("--packings", arguments.folder, "folder: write the packings of the cases there, time nothing");
-  command.add_json(arguments.json);
-  command.notes = "Cases:\n";
-  for (const std::string& name : case_names()) command.notes += "  " + name + "\n";
-  command.notes +=
-      "Examples:\n"
-      "  rvelab bench --quick --json\n"
-      "  rvelab bench --case disc_400_linear --packings .";
-  return command;
+void add_bench(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand("bench", "Grain-steps per second of fixed cases");
+  const auto arguments = std::make_shared<BenchArguments>();
+  command.add_option("--case", arguments->wanted, "run this case only; give it again for more")
+      ->allow_extra_args(false);
+  command.add_option("--batch", arguments->batch, "time a batch of so many cells of 400 discs instead of the cases")
+      ->check(CLI::Range(1, 1'000'000));
+  command.add_option("--grains", arguments->grains, "time a cell of about so many grains instead of the cases")
+      ->check(CLI::Range(20, 2'000'000));
+  command.add_option("--shape", arguments->shape, "of the grains of --grains")
+      ->check(CLI::IsMember({"disc", "sphere"}));
+  add_threads(command, arguments->threads, "for a batch, and for cells of 30,000 grains or more");
+  command.add_flag("--quick", arguments->quick, "a fifth of the work, three repeats");
+  command.add_option("--packings", arguments->folder, "folder: write the packings of the cases there, time nothing");
+  add_json(command, arguments->json);
+  std::string names;
+  for (const std::string& name : case_names()) names += "  " + name + "\n";
+  command.footer("Cases:\n" + names +
+                 "Examples:\n"
+                 "  rvelab bench --quick --json\n"
+                 "  rvelab bench --case disc_400_linear --packings .");
+  command.callback([arguments] { run_bench(*arguments); });
 }
 
 }  // namespace rvelab::cli

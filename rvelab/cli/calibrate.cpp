@@ -381,19 +381,23 @@ void run_calibration(const CalibrateArguments& arguments) {
 
 }  // namespace
 
-Command calibrate_command() {
-  Command command{"calibrate", "Run a compression test at several pressures: friction angle, N_q"};
-  auto& arguments = command.runs(run_calibration);
-  command.add("--specimen", arguments.specimens,
-              "specimen, or \"S_*.h5\"; several: one for each pressure, or all at the one\n"
-              "pressure; with --every-pressure each at all pressures");
-  command.add("--pressures", arguments.pressures, "in Pa, 10e3,15e3,...; default: [calibrate] pressures_Pa");
-  command.add("--every-pressure", arguments.every_pressure, "test each specimen at every pressure");
-  command.add("-o,--output", arguments.folder,
-              "folder for the record files R_<pressure>.h5, summary.json and\nsummary.csv; made if it is missing");
-  arguments.test.add_to(command, "contact.slip=consistent", "tests at a time");
-  command.add("specimens", arguments.more, "further specimens");
-  command.notes =
+void add_calibrate(CLI::App& app) {
+  CLI::App& command =
+      *app.add_subcommand("calibrate", "Run a compression test at several pressures: friction angle, N_q");
+  const auto arguments = std::make_shared<CalibrateArguments>();
+  command
+      .add_option("--specimen", arguments->specimens,
+                  "specimen, or \"S_*.h5\"; several: one for each pressure, or all at the one\n"
+                  "pressure; with --every-pressure each at all pressures")
+      ->allow_extra_args(false);
+  command.add_option("--pressures", arguments->pressures, "in Pa, 10e3,15e3,...; default: [calibrate] pressures_Pa");
+  command.add_flag("--every-pressure", arguments->every_pressure, "test each specimen at every pressure");
+  command.add_option(
+      "-o,--output", arguments->folder,
+      "folder for the record files R_<pressure>.h5, summary.json and\nsummary.csv; made if it is missing");
+  arguments->test.add_to(command, "contact.slip=consistent", "tests at a time");
+  command.add_option("specimens", arguments->more, "further specimens");
+  command.footer(
       "secant_friction_angle: phi with sin phi = (sigma_1 - sigma_3)/(sigma_1 + sigma_3) at the peak, the record with\n"
       "the largest sigma_1 - sigma_3; over several tests by least squares through the origin.\n"
       "..._with_cohesion: the tangent angle, of the straight envelope of the peaks t = s sin phi + c cos phi, with\n"
@@ -411,8 +415,8 @@ Command calibrate_command() {
       "  rvelab calibrate biaxial --specimen dense.h5 --pressures 10e3,20e3,30e3\n"
       "  rvelab calibrate biaxial --specimen a.h5 --specimen b.h5 --pressures 10e3,20e3 -o records\n"
       "  rvelab calibrate biaxial --specimen S_1.h5 --specimen S_2.h5 --specimen S_3.h5 --every-pressure\n"
-      "  mpirun -np 8 rvelab calibrate biaxial 'S_*.h5' --every-pressure -o D --share";
-  return command;
+      "  mpirun -np 8 rvelab calibrate biaxial 'S_*.h5' --every-pressure -o D --share");
+  command.callback([arguments] { run_calibration(*arguments); });
 }
 
 }  // namespace rvelab::cli

@@ -1,8 +1,6 @@
 #include "rvelab/cli/command.hpp"
 
-#include <algorithm>
-#include <charconv>
-#include <type_traits>
+#include <sstream>
 
 #include "rvelab/error.hpp"
 #include "rvelab/keys/table_reader.hpp"
@@ -10,74 +8,65 @@
 namespace rvelab::cli {
 namespace {
 
-/// Whether the whole word is the number.
-template <class Number>
-bool reads(const std::string& word, Number& number) {
-  const char* last = word.data() + word.size();
-  const auto [end, error] = std::from_chars(word.data(), last, number);
-  return error == std::errc() && end == last;
+/// The nearest of the names to a whole word, and all of them.
+std::string nearest_of(const std::string& word, const std::vector<std::string>& names) {
+  const bool letter = word.starts_with("-") && !word.starts_with("--");
+  return (letter ? "" : "; the nearest is " + keys::nearest(word, names)) + "; allowed: " + keys::listed(names);
 }
 
-template <class Number>
-void read_number(const Option& option, const std::string& word, Number& value) {
-  const std::string allowed =
-      option.range ? "; allowed: " + in_words(option.range->first) + " to " + in_words(option.range->second) : "";
-  if (!reads(word, value))
-    option.refuse(word, (std::is_integral_v<Number> ? "is not a whole number" : "is not a number") + allowed);
-  if (option.range && !(double(value) >= option.range->first && double(value) <= option.range->second))
-    option.refuse(word, "is out of range" + allowed);
+std::vector<std::string> options_of(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+std::vector<std::string> subcommands_of(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  return names;
+}
+
+/// The first example of a subcommand's help.
+std::string example_of(const CLI::App& command) {
+  std::istringstream help(command.get_footer());
+  for (std::string line; std::getline(help, line);)
+    if (line.starts_with("  rvelab " + command.get_name())) return "; write for example: " + line.substr(2);
+  return "";
 }
 
 }  // namespace
 
-std::string Option::shown_value() const {
-  std::string text = type;
-  for (std::size_t k = 0; k < words.size(); ++k) text = (k == 0 ? "" : text + " | ") + words[k];
-  if (range) text += " from " + in_words(range->first) + " to " + in_words(range->second);
-  if (list && is_positional()) text += " ...";
-  if (!initial.empty()) text += ", default " + initial;
-  if (needed) text += ", required";
-  return text;
+void add_json(CLI::App& command, bool& json) { command.add_flag("--json", json, "print one JSON object"); }
+
+void add_force(CLI::App& command, bool& force, const std::string& what) {
+  command.add_flag("--force", force, "overwrite " + what);
 }
 
-void Option::refuse(const std::string& word, const std::string& why) const {
-  const std::size_t at = names.find("--");
-  throw InputError(names.substr(at == std::string::npos ? 0 : at) + ": " + word + " " + why);
+void add_threads(CLI::App& command, unsigned& threads, const std::string& help) {
+  command.add_option("--threads", threads, help)->check(CLI::Range(1, 4096));
 }
 
-void read_word(const Option&, const std::string&, bool& value) { value = true; }
-void read_word(const Option& option, const std::string& word, std::string& value) {
-  const auto& words = option.words;
-  if (!words.empty() && std::find(words.begin(), words.end(), word) == words.end())
-    option.refuse(word, "not in {" + keys::listed(words) + "}");
-  value = word;
-}
-void read_word(const Option& option, const std::string& word, double& value) { read_number(option, word, value); }
-void read_word(const Option& option, const std::string& word, long& value) { read_number(option, word, value); }
-void read_word(const Option& option, const std::string& word, std::size_t& value) { read_number(option, word, value); }
-void read_word(const Option& option, const std::string& word, unsigned& value) { read_number(option, word, value); }
-
-void read_word(const Option& option, const std::string& word, ThreeNumbers& value) {
-  const std::size_t first = word.find(','), second = word.find(',', first + 1);
-  const bool good = second != std::string::npos && reads(word.substr(0, first), value[0]) &&
-                    reads(word.substr(first + 1, second - first - 1), value[1]) &&
-                    reads(word.substr(second + 1), value[2]);
-  if (!good) option.refuse(word, "is not three numbers with commas between; write for example 1,1,0.5");
+void add_set(CLI::App& command, std::vector<std::string>& settings, const std::string& example) {
+  command.add_option("--set", settings, "KEY=VALUE, for example " + example + "; give it again for more")
+      ->allow_extra_args(false);
 }
 
-Command command_of_one_word(std::string name, std::string summary, const std::string& word, const std::string& help,
-                            bool required, std::string notes, std::function<void(const std::string&, bool json)> run) {
-  struct Arguments {
-    std::string word;
-    bool json = false;
-  };
-  const auto arguments = std::make_shared<Arguments>();
-  Command command{std::move(name), std::move(summary)};
-  command.notes = std::move(notes);
-  command.add(word, arguments->word, help).needed = required;
-  command.add_json(arguments->json);
-  command.run = [arguments, run = std::move(run)] { run(arguments->word, arguments->json); };
-  return command;
+void refuse(const CLI::App& app, const CLI::ParseError& error) {
+  const auto chosen = app.get_subcommands();
+  const bool of_program = chosen.empty() || !app.remaining().empty();
+  const CLI::App& command = of_program ? app : *chosen.front();
+  const std::string of = of_program ? "" : command.get_name() + ": ";
+  const std::string see = "; see rvelab " + (of_program ? "" : command.get_name() + " ") + "--help";
+  // Words that nothing takes come first: CLI11 would tell what is missing for want of them.
+  for (const std::string& given : command.remaining()) {
+    const std::string word = given.substr(0, given.find('='));
+    if (word.starts_with("-"))
+      throw InputError(of + "unknown option " + word + nearest_of(word, options_of(command)) + see);
+    if (of_program) throw InputError("unknown subcommand " + word + nearest_of(word, subcommands_of(app)) + see);
+  }
+  throw InputError(of + error.what() + example_of(command) + see);
 }
 
 }  // namespace rvelab::cli

@@ -31,20 +31,20 @@ void run_compare(const CompareArguments& arguments) {
 
 }  // namespace
 
-Command compare_command() {
-  Command command{"compare", "Tell whether two files hold the same, bit by bit"};
-  auto& arguments = command.runs(run_compare);
-  command.add("A.h5", arguments.a, "specimen or record file").required();
-  command.add("B.h5", arguments.b, "the other file").required();
-  command.add_json(arguments.json);
-  command.notes =
+void add_compare(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand("compare", "Tell whether two files hold the same, bit by bit");
+  const auto arguments = std::make_shared<CompareArguments>();
+  command.add_option("A.h5", arguments->a, "specimen or record file")->required();
+  command.add_option("B.h5", arguments->b, "the other file")->required();
+  add_json(command, arguments->json);
+  command.footer(
       "Every dataset and attribute outside /provenance is compared: name, type, shape, unit and bits. Exit code 0: "
       "the\n"
       "files are equal; 1: they are not, and the first difference is printed. After a run that was killed, use\n"
       "rvelab recover on its file first.\n\n"
       "Example:\n"
-      "  rvelab compare whole.h5 resumed.h5";
-  return command;
+      "  rvelab compare whole.h5 resumed.h5");
+  command.callback([arguments] { run_compare(*arguments); });
 }
 
 }  // namespace rvelab::cli

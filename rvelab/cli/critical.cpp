@@ -77,20 +77,22 @@ void run_critical(const CriticalArguments& arguments) {
 
 }  // namespace
 
-Command critical_command() {
-  Command command{"critical", "Fit the critical-state line to the ends of several tests"};
-  auto& arguments = command.runs(run_critical);
-  command.add("files", arguments.files, "record files of tests to large strain, at two pressures or more").required();
-  command.add("--from", arguments.from, "driving strain from which records count; without: the last 40 % of each test");
-  command.add_json(arguments.json);
-  command.notes =
+void add_critical(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand("critical", "Fit the critical-state line to the ends of several tests");
+  const auto arguments = std::make_shared<CriticalArguments>();
+  command.add_option("files", arguments->files, "record files of tests to large strain, at two pressures or more")
+      ->required();
+  command.add_option("--from", arguments->from,
+                     "driving strain from which records count; without: the last 40 % of each test");
+  add_json(command, arguments->json);
+  command.footer(
       "logarithmic: e_c = Gamma - lambda ln(p/1 kPa); power: e_c = Gamma - lambda (p/101.325 kPa)^0.7 (Li and Wang\n"
       "1998); deviation: root mean square of e less e_c. state_parameter: void ratio at the start less e_c there "
       "(Been\n"
       "and Jefferies 1985), by the line with the smaller deviation. void_ratio_change, from the first half of those\n"
       "records to the second, should be near zero.\n\n"
-      "Example:\n  rvelab critical R_*.h5 --from 2";
-  return command;
+      "Example:\n  rvelab critical R_*.h5 --from 2");
+  command.callback([arguments] { run_critical(*arguments); });
 }
 
 }  // namespace rvelab::cli

@@ -78,22 +78,22 @@ void run_export(const ExportArguments& arguments) {
 
 }  // namespace
 
-Command export_command() {
-  Command command{"export", "Write a specimen or a test for ParaView, OVITO, LAMMPS or YADE"};
-  auto& arguments = command.runs(run_export);
-  command.add("file", arguments.file, "specimen or record file, *.h5").required();
+void add_export(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand("export", "Write a specimen or a test for ParaView, OVITO, LAMMPS or YADE");
+  const auto arguments = std::make_shared<ExportArguments>();
+  command.add_option("file", arguments->file, "specimen or record file, *.h5")->required();
   command
-      .add("--format", arguments.format,
-           "xdmf: grains, contacts and cell for ParaView\n"
-           "lammps: dump of LAMMPS, which OVITO reads too\n"
-           "lammps-data: data file of LAMMPS\n"
-           "csv: particles, contacts and parameters, as rvelab import reads them")
-      .one_of({"xdmf", "lammps", "lammps-data", "csv"})
-      .required();
-  command.add("-o,--output", arguments.output, "file to write; csv: beginning of the file names").required();
-  command.add_force(arguments.force, "existing files");
-  command.add_json(arguments.json);
-  command.notes =
+      .add_option("--format", arguments->format,
+                  "xdmf: grains, contacts and cell for ParaView\n"
+                  "lammps: dump of LAMMPS, which OVITO reads too\n"
+                  "lammps-data: data file of LAMMPS\n"
+                  "csv: particles, contacts and parameters, as rvelab import reads them")
+      ->check(CLI::IsMember({"xdmf", "lammps", "lammps-data", "csv"}))
+      ->required();
+  command.add_option("-o,--output", arguments->output, "file to write; csv: beginning of the file names")->required();
+  add_force(command, arguments->force, "existing files");
+  add_json(command, arguments->json);
+  command.footer(
       "xdmf and lammps write every snapshot of a record file and its end state; the other formats write the last "
       "state.\n"
       "xdmf and csv are in the laboratory frame, lammps in the cell frame, whose lattice is upper triangular as "
@@ -102,8 +102,8 @@ Command export_command() {
       "Examples:\n"
       "  rvelab export dense.h5 --format csv -o dense\n"
       "  rvelab export R.h5 --format xdmf -o R.xdmf\n"
-      "  rvelab export R.h5 --format lammps -o R.dump";
-  return command;
+      "  rvelab export R.h5 --format lammps -o R.dump");
+  command.callback([arguments] { run_export(*arguments); });
 }
 
 }  // namespace rvelab::cli

@@ -233,31 +233,46 @@ void run_fit(const FitArguments& arguments) {
 
 }  // namespace
 
-Command fit_command() {
-  Command command{"fit", "Find parameters whose tests give what was measured; without a target: a sweep"};
-  auto& arguments = command.runs(run_fit);
-  command.add("protocol", arguments.protocol, "PROTOCOL.toml, or the name of an installed test: biaxial").required();
-  command.add("--vary", arguments.vary,
-              "KEY=low:high, or with :log behind it; up to 8 times;\nKEY=low:high:n without a target: a sweep");
-  command.add("--target", arguments.targets,
-              "MEASURE=value, =value+-standard error, MEASURE@pressure=value;\nfor example friction_angle_deg=30+-0.5");
-  command.add("--curve", arguments.curves, "measured curve, DATA.csv or DATA.csv@pressure");
-  command.add("--specimen", arguments.specimens, "specimens that all tests share, \"S_*.h5\"");
-  command.add("--same-specimens", arguments.same_specimens,
-              "the targets were measured on these very specimens (their mean), as those of\n"
-              "another code or of a scan; else on others of their kind");
-  command.add("--recipe", arguments.recipe, "or a recipe: each test packs its own specimen, whose keys may be varied");
-  command.add("--count", arguments.count, "specimens of the recipe, one a seed; default 5").between(1, 1'000'000);
-  command.add("--tests", arguments.tests, "tests to spend; default 24 and 16 for each parameter").between(8, 100'000);
-  command.add("--batch", arguments.batch, "tests between two evaluations of the results, default 8").between(1, 10'000);
-  command.add("-o,--output", arguments.folder, "folder for fit.json, fit.csv, curves.csv (sweep.csv) and tests/");
-  command.add_set(arguments.settings, "stage.compression.to_strain=0.05");
-  command.add_threads(arguments.threads, "tests at a time; default: one per core");
-  command.add("--force", arguments.force, "start anew in a folder that holds a fit");
-  command.add("--resume", arguments.resume, "continue a fit that was stopped, or spend more tests").not_with("--force");
-  command.add_json(arguments.json);
-  command.add("specimens", arguments.more, "further specimens");
-  command.notes =
+void add_fit(CLI::App& app) {
+  CLI::App& command =
+      *app.add_subcommand("fit", "Find parameters whose tests give what was measured; without a target: a sweep");
+  const auto arguments = std::make_shared<FitArguments>();
+  command.add_option("protocol", arguments->protocol, "PROTOCOL.toml, or the name of an installed test: biaxial")
+      ->required();
+  command
+      .add_option("--vary", arguments->vary,
+                  "KEY=low:high, or with :log behind it; up to 8 times;\nKEY=low:high:n without a target: a sweep")
+      ->allow_extra_args(false);
+  command
+      .add_option(
+          "--target", arguments->targets,
+          "MEASURE=value, =value+-standard error, MEASURE@pressure=value;\nfor example friction_angle_deg=30+-0.5")
+      ->allow_extra_args(false);
+  command.add_option("--curve", arguments->curves, "measured curve, DATA.csv or DATA.csv@pressure")
+      ->allow_extra_args(false);
+  command.add_option("--specimen", arguments->specimens, "specimens that all tests share, \"S_*.h5\"")
+      ->allow_extra_args(false);
+  command.add_flag("--same-specimens", arguments->same_specimens,
+                   "the targets were measured on these very specimens (their mean), as those of\n"
+                   "another code or of a scan; else on others of their kind");
+  command.add_option("--recipe", arguments->recipe,
+                     "or a recipe: each test packs its own specimen, whose keys may be varied");
+  command.add_option("--count", arguments->count, "specimens of the recipe, one a seed; default 5")
+      ->check(CLI::Range(1, 1'000'000));
+  command.add_option("--tests", arguments->tests, "tests to spend; default 24 and 16 for each parameter")
+      ->check(CLI::Range(8, 100'000));
+  command.add_option("--batch", arguments->batch, "tests between two evaluations of the results, default 8")
+      ->check(CLI::Range(1, 10'000));
+  command.add_option("-o,--output", arguments->folder,
+                     "folder for fit.json, fit.csv, curves.csv (sweep.csv) and tests/");
+  add_set(command, arguments->settings, "stage.compression.to_strain=0.05");
+  add_threads(command, arguments->threads, "tests at a time; default: one per core");
+  command.add_flag("--force", arguments->force, "start anew in a folder that holds a fit");
+  command.add_flag("--resume", arguments->resume, "continue a fit that was stopped, or spend more tests")
+      ->excludes("--force");
+  add_json(command, arguments->json);
+  command.add_option("specimens", arguments->more, "further specimens");
+  command.footer(
       "Tests scatter: fit learns the mean of each target as a function of the parameters (Gaussian processes), makes\n"
       "further tests where the parameters are likely, and prints mean and 95 % interval of each parameter, of a prior\n"
       "that is uniform in its range. The interval contains the error of the targets and that of the mean over\n"
@@ -269,8 +284,8 @@ Command fit_command() {
       "F\n"
       "  rvelab fit triaxial --recipe mine.toml --count 10 --curve data.csv@100e3 -o F \\\n"
       "    --vary material.friction=0.1:1 --vary target.void_ratio=0.6:0.75\n"
-      "  rvelab fit biaxial --specimen 'S_*.h5' --vary material.friction=0.1:0.9:5 -o F";
-  return command;
+      "  rvelab fit biaxial --specimen 'S_*.h5' --vary material.friction=0.1:0.9:5 -o F");
+  command.callback([arguments] { run_fit(*arguments); });
 }
 
 }  // namespace rvelab::cli

@@ -1,7 +1,7 @@
 // rvelab import: specimens from tables, as YADE scripts and spreadsheets write them, and from dumps and data files of
 // LAMMPS.
 // Declared in command.hpp.
-#include <array>
+#include <cstdio>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,7 +24,7 @@ namespace {
 
 struct ImportArguments {
   std::string inputs[3];
-  std::optional<std::array<double, 3>> cell;
+  std::optional<Vector3> cell;
   std::string material, output;
   std::optional<long> timestep, dimension;
   std::vector<std::string> settings;
@@ -52,6 +52,14 @@ Inputs sorted(const std::string (&files)[3]) {
   return inputs;
 }
 
+Vector3 edges_in(const std::string& text) {
+  Vector3 edges;
+  char beyond;
+  if (std::sscanf(text.c_str(), "%lf,%lf,%lf%c", &edges[0], &edges[1], &edges[2], &beyond) != 3)
+    throw CLI::ValidationError("--cell", text + " is not three numbers with commas between, as in 1,1,0.5");
+  return edges;
+}
+
 void run_import(const ImportArguments& arguments) {
   const Inputs inputs = sorted(arguments.inputs);
   expect_folder_of(arguments.output);
@@ -59,7 +67,7 @@ void run_import(const ImportArguments& arguments) {
   for (const auto& file : arguments.inputs) files.push_back(file);
   io::expect_output(arguments.output, arguments.force, files);
   io::ImportOptions options;
-  if (arguments.cell) options.cell = Vector3(arguments.cell->data());
+  options.cell = arguments.cell;
   if (!arguments.material.empty()) options.material_path = arguments.material;
   options.settings = arguments.settings;
   if (arguments.timestep) options.timestep = *arguments.timestep;
@@ -87,39 +95,44 @@ void run_import(const ImportArguments& arguments) {
 
 }  // namespace
 
-Command import_command() {
-  Command command{"import", "Make a specimen from tables, or from a dump or data file of LAMMPS"};
-  auto& arguments = command.runs(run_import);
+void add_import(CLI::App& app) {
+  CLI::App& command =
+      *app.add_subcommand("import", "Make a specimen from tables, or from a dump or data file of LAMMPS");
+  const auto arguments = std::make_shared<ImportArguments>();
   command
-      .add("PARTICLES.csv", arguments.inputs[0],
-           "columns [id,]x,y[,z] and r, radius or diameter, for ellipses a,b,angle; YADE's export.text; or a\n"
-           "text dump or data file (atom_style sphere) of LAMMPS in SI units; packed by gzip or not")
-      .required();
-  command.add("CONTACTS.csv", arguments.inputs[1], "columns id1,id2,sx,sy[,sz],fn,fsx,fsy[,fsz],mz");
-  command.add("META.json", arguments.inputs[2], "parameters and cell of the packing");
-  command.add("--timestep", arguments.timestep, "of a dump; without it the last one");
+      .add_option("PARTICLES.csv", arguments->inputs[0],
+                  "columns [id,]x,y[,z] and r, radius or diameter, for ellipses a,b,angle; YADE's export.text; or a\n"
+                  "text dump or data file (atom_style sphere) of LAMMPS in SI units; packed by gzip or not")
+      ->required();
+  command.add_option("CONTACTS.csv", arguments->inputs[1], "columns id1,id2,sx,sy[,sz],fn,fsx,fsy[,fsz],mz");
+  command.add_option("META.json", arguments->inputs[2], "parameters and cell of the packing");
+  command.add_option("--timestep", arguments->timestep, "of a dump; without it the last one");
   command
-      .add("--dimension", arguments.dimension,
-           "2 reads discs, 3 spheres; without it, centres at one z are discs in files of LAMMPS, and\n"
-           "a layer of spheres in tables")
-      .between(2, 3);
-  command.add("--cell", arguments.cell, "Lxx,Lyy,Lzz of a rectangular cell in m; in 2D Lzz is the thickness");
-  command.add("--material", arguments.material,
-              "TOML file with [[material]], [contact], [damping], [solver]; of several\n"
-              "materials, a column `material` of PARTICLES.csv names that of each grain");
-  command.add_set(arguments.settings, "contact.slip=full_radius_ratcheting");
-  command.add("-o,--output", arguments.output, "specimen file to write, S.h5").required();
-  command.add_force(arguments.force);
-  command.add_json(arguments.json);
-  command.notes =
+      .add_option("--dimension", arguments->dimension,
+                  "2 reads discs, 3 spheres; without it, centres at one z are discs in files of LAMMPS, and\n"
+                  "a layer of spheres in tables")
+      ->check(CLI::Range(2, 3));
+  const auto read_cell = [arguments](const std::string& text) { arguments->cell = edges_in(text); };
+  command
+      .add_option_function<std::string>("--cell", read_cell,
+                                        "Lxx,Lyy,Lzz of a rectangular cell in m; in 2D Lzz is the thickness")
+      ->type_name("NUMBER,NUMBER,NUMBER");
+  command.add_option("--material", arguments->material,
+                     "TOML file with [[material]], [contact], [damping], [solver]; of several\n"
+                     "materials, a column `material` of PARTICLES.csv names that of each grain");
+  add_set(command, arguments->settings, "contact.slip=full_radius_ratcheting");
+  command.add_option("-o,--output", arguments->output, "specimen file to write, S.h5")->required();
+  add_force(command, arguments->force);
+  add_json(command, arguments->json);
+  command.footer(
       "Examples:\n"
       "  rvelab import dense.particles.csv dense.contacts.csv dense.json -o dense.h5\n"
       "  rvelab import E.particles.csv E.contacts.csv E.json --material E.material.toml -o E.h5   (of rvelab export)\n"
       "  rvelab import init.csv --cell 2,2,2 --material sand.toml -o loose.h5\n"
       "  rvelab import relaxed.dump.gz --timestep 20000 --material sand.toml -o relaxed.h5\n"
       "  rvelab import sphere.data --material sand.toml -o sphere.h5\n"
-      "  rvelab import packing.txt --cell 0.01,0.01,0.02 --material sand.toml -o packing.h5   (of YADE's export.text)";
-  return command;
+      "  rvelab import packing.txt --cell 0.01,0.01,0.02 --material sand.toml -o packing.h5   (of YADE's export.text)");
+  command.callback([arguments] { run_import(*arguments); });
 }
 
 }  // namespace rvelab::cli

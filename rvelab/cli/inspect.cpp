@@ -111,10 +111,14 @@ void run_inspect(const std::string& path, bool as_json) {
 
 }  // namespace
 
-Command inspect_command() {
-  return command_of_one_word("inspect", "Show a specimen, or the last state of a test", "file",
-                             "specimen or record file, *.h5", true, "Example:\n  rvelab inspect dense.h5 --json",
-                             run_inspect);
+void add_inspect(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand("inspect", "Show a specimen, or the last state of a test");
+  const auto file = std::make_shared<std::string>();
+  const auto json = std::make_shared<bool>();
+  command.add_option("file", *file, "specimen or record file, *.h5")->required();
+  add_json(command, *json);
+  command.footer("Example:\n  rvelab inspect dense.h5 --json");
+  command.callback([file, json] { run_inspect(*file, *json); });
 }
 
 }  // namespace rvelab::cli

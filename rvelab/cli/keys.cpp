@@ -71,16 +71,19 @@ void run_keys(const std::string& pattern, bool json) {
 
 }  // namespace
 
-Command keys_command() {
-  return command_of_one_word(
-      "keys", "List the keys of protocols, recipes and material files", "pattern",
-      "part of a key, for example pressure or stage.compression", false,
+void add_keys(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand("keys", "List the keys of protocols, recipes and material files");
+  const auto pattern = std::make_shared<std::string>();
+  const auto json = std::make_shared<bool>();
+  command.add_option("pattern", *pattern, "part of a key, for example pressure or stage.compression");
+  add_json(command, *json);
+  command.footer(
       "A key of a stage stands in a file below [[stage]] with that kind; with --set it is stage.NAME.key. A key of\n"
       "[material] is material.key for all materials, material.NAME.key for one.\n\n"
       "Examples:\n"
       "  rvelab keys stage.compression\n"
-      "  rvelab keys pressure --json",
-      run_keys);
+      "  rvelab keys pressure --json");
+  command.callback([pattern, json] { run_keys(*pattern, *json); });
 }
 
 }  // namespace rvelab::cli

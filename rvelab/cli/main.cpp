@@ -87,42 +87,35 @@ int done(int code) {
 /// Before all other initialisers of the program.
 [[gnu::constructor(101)]] void catch_the_end() { std::set_terminate(end); }
 
-const rvelab::cli::About about{
-    .summary = "rvelab: granular specimens in a periodic cell, deformed increment by increment",
-    .notes =
-        "`rvelab SUBCOMMAND --help` explains a subcommand, with examples. A first test:\n"
-        "  rvelab pack pack_dense -o dense.h5\n"
-        "  rvelab run biaxial --specimen dense.h5 -o R.h5",
-    .version = std::string("rvelab ") + rvelab::io::version};
-
-/// In the order of the help.
-std::vector<rvelab::cli::Command> commands() {
-  using namespace rvelab::cli;
-  return {pack_command(),      import_command(),  inspect_command(), measure_command(),   probe_command(),
-          run_command(),       recover_command(), seal_command(),    calibrate_command(), critical_command(),
-          fit_command(),       study_command(),   report_command(),  compare_command(),   export_command(),
-          protocols_command(), keys_command(),    bench_command()};
-}
-
-/// Does what the command line asks for and returns the exit code. Throws on failure.
+/// Reads the command line, does what it asks for and returns the exit code. Throws on failure.
 int carried_out(int argc, char** argv) {
+  using namespace rvelab::cli;
   std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit of `ulimit -f` is an error like any other
-  const std::vector<rvelab::cli::Command> all = commands();
+  CLI::App app("rvelab: granular specimens in a periodic cell, deformed increment by increment", "rvelab");
+  app.set_version_flag("--version", std::string("rvelab ") + rvelab::io::version);
+  app.require_subcommand(1);
+  app.footer(
+      "`rvelab SUBCOMMAND --help` explains a subcommand, with examples. A first test:\n"
+      "  rvelab pack pack_dense -o dense.h5\n"
+      "  rvelab run biaxial --specimen dense.h5 -o R.h5");
+  for (const auto add : {add_pack, add_import, add_inspect, add_measure, add_probe, add_run, add_recover, add_seal,
+                         add_calibrate, add_critical, add_fit, add_study, add_report, add_compare, add_export,
+                         add_protocols, add_keys, add_bench})  // in the order of the help
+    add(app);
   if (argc < 2) {
-    std::cerr << rvelab::cli::help_of(all, about) << std::flush;
+    std::cerr << app.help() << std::flush;
     return users_mistake;
   }
-  const rvelab::cli::Asked asked = rvelab::cli::read_words(all, about, argc, argv);
-  if (asked.command == nullptr) {
-    std::cout << asked.text;
-    return done(0);
-  }
   try {
-    asked.command->run();
-    return done(0);
-  } catch (const rvelab::cli::Exit& exit) {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& asked) {  // help or version
+    app.exit(asked);
+  } catch (const CLI::ParseError& error) {
+    refuse(app, error);
+  } catch (const Exit& exit) {
     return done(exit.code);
   }
+  return done(0);
 }
 
 /// The exit code, and on failure one line on standard error.

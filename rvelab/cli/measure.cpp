@@ -155,10 +155,13 @@ void run_measure(const std::string& path, bool as_json) {
 
 }  // namespace
 
-Command measure_command() {
-  return command_of_one_word(
-      "measure", "Measure the contact network, and stability or loops of a test", "file",
-      "specimen or record file, *.h5", true,
+void add_measure(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand("measure", "Measure the contact network, and stability or loops of a test");
+  const auto file = std::make_shared<std::string>();
+  const auto json = std::make_shared<bool>();
+  command.add_option("file", *file, "specimen or record file, *.h5")->required();
+  add_json(command, *json);
+  command.footer(
       "a_c, a_n, a_t, a_l, a_lt: anisotropies of contact normals, normal forces, tangential forces, and of branches\n"
       "along and across the normals, along the deviator of the stress. q_over_p_predicted: what they make of q/p\n"
       "(Rothenburg and Bathurst 1989; Guo and Zhao 2013). Strong contacts bear more than the mean normal force\n"
@@ -169,8 +172,8 @@ Command measure_command() {
       "one: secant shear modulus and damping ratio of each loop. Of probes: least det of the acoustic tensor over "
       "that\n"
       "of the first.\n\n"
-      "Examples:\n  rvelab measure dense.h5\n  rvelab measure R.h5 --json",
-      run_measure);
+      "Examples:\n  rvelab measure dense.h5\n  rvelab measure R.h5 --json");
+  command.callback([file, json] { run_measure(*file, *json); });
 }
 
 }  // namespace rvelab::cli

@@ -187,26 +187,27 @@ void run_pack(const PackArguments& arguments) {
 
 }  // namespace
 
-Command pack_command() {
-  Command command{"pack", "Make specimens from a recipe in TOML"};
-  auto& arguments = command.runs(run_pack);
-  command.add("recipe", arguments.recipe, "RECIPE.toml, or the name of an installed recipe: pack_dense").required();
-  command.add("-o,--output", arguments.output, "specimen file to write, S.h5").required();
-  command.add("--count", arguments.count, "number of specimens, S_1.h5, S_2.h5, ..., each with the next seed")
-      .between(1, 1'000'000);
-  command.add_set(arguments.settings, "target.pressure_Pa=50e3");
-  command.add_threads(arguments.threads, "specimens or trial packings at a time; default: one per core");
-  command.add_force(arguments.force, "existing specimen files");
-  command.add_json(arguments.json);
-  command.notes =
+void add_pack(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand("pack", "Make specimens from a recipe in TOML");
+  const auto arguments = std::make_shared<PackArguments>();
+  command.add_option("recipe", arguments->recipe, "RECIPE.toml, or the name of an installed recipe: pack_dense")
+      ->required();
+  command.add_option("-o,--output", arguments->output, "specimen file to write, S.h5")->required();
+  command.add_option("--count", arguments->count, "number of specimens, S_1.h5, S_2.h5, ..., each with the next seed")
+      ->check(CLI::Range(1, 1'000'000));
+  add_set(command, arguments->settings, "target.pressure_Pa=50e3");
+  add_threads(command, arguments->threads, "specimens or trial packings at a time; default: one per core");
+  add_force(command, arguments->force, "existing specimen files");
+  add_json(command, arguments->json);
+  command.footer(
       "The same recipe gives the same bits on any number of threads. target.pressures_Pa makes one specimen for each\n"
       "pressure, S_20000Pa.h5 and so on. For the keys of a recipe: `rvelab keys pack`, `keys grains`, `keys target`,\n"
       "`keys preparation`.\n"
       "Examples:\n"
       "  rvelab pack pack_dense -o dense.h5\n"
       "  rvelab pack pack_loose -o loose.h5 --count 20 --set pack.number=1000\n"
-      "  rvelab pack mine.toml -o S.h5 --set target.void_ratio=0.2 --set pack.seed=7";
-  return command;
+      "  rvelab pack mine.toml -o S.h5 --set target.void_ratio=0.2 --set pack.seed=7");
+  command.callback([arguments] { run_pack(*arguments); });
 }
 
 }  // namespace rvelab::cli

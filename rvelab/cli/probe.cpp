@@ -131,30 +131,30 @@ void run_probe(const ProbeArguments& arguments) {
 
 }  // namespace
 
-Command probe_command() {
-  Command command{"probe", "Measure the stiffness of a specimen at small strain"};
-  auto& arguments = command.runs(run_probe);
-  command.add("file", arguments.file, "specimen file, *.h5").required();
-  command.add("--size", arguments.size, "strain of each probe")
-      .shows_default("1e-7; method loading: " + in_words(usual_loading_probe));
-  command.add("--no-slip", arguments.no_slip, "let no contact slide or roll over (friction 1e6)");
-  command.add("--bands", arguments.bands,
-              "add the weakest band: least det Q(n) of the acoustic tensor over that of the\n"
-              "elastic tangent; angle between its normal and the major stress, beside\n"
-              "45 + phi/2 (Coulomb), 45 + psi/2 (Roscoe) and their mean (Arthur)");
+void add_probe(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand("probe", "Measure the stiffness of a specimen at small strain");
+  const auto arguments = std::make_shared<ProbeArguments>();
+  command.add_option("file", arguments->file, "specimen file, *.h5")->required();
+  command.add_option("--size", arguments->size, "strain of each probe")
+      ->default_str("1e-7; method loading: " + in_words(usual_loading_probe));
+  command.add_flag("--no-slip", arguments->no_slip, "let no contact slide or roll over (friction 1e6)");
+  command.add_flag("--bands", arguments->bands,
+                   "add the weakest band: least det Q(n) of the acoustic tensor over that of the\n"
+                   "elastic tangent; angle between its normal and the major stress, beside\n"
+                   "45 + phi/2 (Coulomb), 45 + psi/2 (Roscoe) and their mean (Arthur)");
   command
-      .add("--method", arguments.method,
-           "dynamic: small increments, plus and minus, each relaxed\n"
-           "linear: elastic tangent of the contact network, without sliding\n"
-           "loading: increments that go on in the direction of the test, the second\n"
-           "half of each; needs a record file")
-      .one_of({"dynamic", "linear", "loading"})
-      .shows_default("dynamic; with --bands: loading");
-  command.add_json(arguments.json);
-  command.notes =
+      .add_option("--method", arguments->method,
+                  "dynamic: small increments, plus and minus, each relaxed\n"
+                  "linear: elastic tangent of the contact network, without sliding\n"
+                  "loading: increments that go on in the direction of the test, the second\n"
+                  "half of each; needs a record file")
+      ->check(CLI::IsMember({"dynamic", "linear", "loading"}))
+      ->default_str("dynamic; with --bands: loading");
+  add_json(command, arguments->json);
+  command.footer(
       "Examples:\n  rvelab probe dense.h5 --size 1e-7 --no-slip --json\n"
-      "  rvelab probe R.h5 --bands";
-  return command;
+      "  rvelab probe R.h5 --bands");
+  command.callback([arguments] { run_probe(*arguments); });
 }
 
 }  // namespace rvelab::cli

@@ -51,14 +51,19 @@ void run_protocols(const std::string& name, bool json) {
 
 }  // namespace
 
-Command protocols_command() {
-  return command_of_one_word("protocols", "List the tests and recipes that come with rvelab, or print one", "name",
-                             "print this one", false,
-                             "Examples:\n"
-                             "  rvelab protocols\n"
-                             "  rvelab protocols biaxial > mine.toml\n"
-                             "  rvelab protocols pack_dense > recipe.toml",
-                             run_protocols);
+void add_protocols(CLI::App& app) {
+  CLI::App& command =
+      *app.add_subcommand("protocols", "List the tests and recipes that come with rvelab, or print one");
+  const auto name = std::make_shared<std::string>();
+  const auto json = std::make_shared<bool>();
+  command.add_option("name", *name, "print this one");
+  add_json(command, *json);
+  command.footer(
+      "Examples:\n"
+      "  rvelab protocols\n"
+      "  rvelab protocols biaxial > mine.toml\n"
+      "  rvelab protocols pack_dense > recipe.toml");
+  command.callback([name, json] { run_protocols(*name, *json); });
 }
 
 }  // namespace rvelab::cli

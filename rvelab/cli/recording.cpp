@@ -1,30 +1,34 @@
 #include "rvelab/cli/recording.hpp"
 
 #include <chrono>
+#include <cmath>
 
 #include "rvelab/error.hpp"
 
 namespace rvelab::cli {
 
-void TestOptions::add_to(Command& command, const std::string& example, const std::string& threads_help) {
-  command.add("protocol", protocol, "PROTOCOL.toml, or the name of an installed test: biaxial").required();
-  command.add_set(settings, example);
-  command.add_threads(threads, threads_help + "; default: one per core");
-  command.add("--force", force, "overwrite existing record files; they are removed at once");
-  command.add("--resume", resume, "continue a stopped or killed test from its last checkpoint").not_with("--force");
+void TestOptions::add_to(CLI::App& command, const std::string& example, const std::string& threads_help) {
+  command.add_option("protocol", protocol, "PROTOCOL.toml, or the name of an installed test: biaxial")->required();
+  add_set(command, settings, example);
+  add_threads(command, threads, threads_help + "; default: one per core");
+  command.add_flag("--force", force, "overwrite existing record files; they are removed at once");
+  command.add_flag("--resume", resume, "continue a stopped or killed test from its last checkpoint")
+      ->excludes("--force");
   command
-      .add("--share", share,
-           "share the tests with other processes that are given the same command: ranks\n"
-           "of mpirun, or shells; as --resume, in a folder with locks that all see")
-      .not_with("--force");
+      .add_flag("--share", share,
+                "share the tests with other processes that are given the same command: ranks\n"
+                "of mpirun, or shells; as --resume, in a folder with locks that all see")
+      ->excludes("--force");
   command
-      .add("--checkpoint-every", checkpoint_every,
-           "seconds between checkpoints; default: as often as costs less than 1 % of the time")
-      .between(1e-3, 1e9);
-  command.add_json(json);
+      .add_option("--checkpoint-every", checkpoint_every,
+                  "seconds between checkpoints; default: as often as costs less than 1 % of the time")
+      ->check(CLI::Range(1e-3, 1e9));
+  add_json(command, json);
 }
 
 void TestOptions::expect_output(const std::string& output) const {
+  if (std::isnan(checkpoint_every))
+    throw InputError("--checkpoint-every nan is not a number of seconds; allowed: 0.001 to 1e9; leave it out");
   if (!output.empty()) return;
   const char* given = force                  ? "--force"
                       : resume               ? "--resume"

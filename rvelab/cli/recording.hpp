@@ -27,7 +27,7 @@ struct TestOptions {
   bool json = false;
 
   /// Adds them; `example` of --set, and what --threads stands for.
-  void add_to(Command& command, const std::string& example, const std::string& threads_help);
+  void add_to(CLI::App& command, const std::string& example, const std::string& threads_help);
   /// InputError if they are given without a place to write to.
   void expect_output(const std::string& output) const;
 };

@@ -48,17 +48,17 @@ void run_recover(const RecoverArguments& arguments) {
 
 }  // namespace
 
-Command recover_command() {
-  Command command{"recover", "Make a record file from what a stopped or killed run left"};
-  auto& arguments = command.runs(run_recover);
-  command.add("file", arguments.file, "record file R.h5 of the run, beside its R.h5.journal").required();
-  command.add("-o,--output", arguments.output, "record file to write; default: R.h5 itself");
-  command.add_force(arguments.force);
-  command.add_json(arguments.json);
-  command.notes =
+void add_recover(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand("recover", "Make a record file from what a stopped or killed run left");
+  const auto arguments = std::make_shared<RecoverArguments>();
+  command.add_option("file", arguments->file, "record file R.h5 of the run, beside its R.h5.journal")->required();
+  command.add_option("-o,--output", arguments->output, "record file to write; default: R.h5 itself");
+  add_force(command, arguments->force);
+  add_json(command, arguments->json);
+  command.footer(
       "The journal is kept: `rvelab run --resume` continues from it.\n"
-      "Examples:\n  rvelab recover R.h5\n  rvelab recover R.h5 -o so_far.h5";
-  return command;
+      "Examples:\n  rvelab recover R.h5\n  rvelab recover R.h5 -o so_far.h5");
+  command.callback([arguments] { run_recover(*arguments); });
 }
 
 }  // namespace rvelab::cli

@@ -94,15 +94,15 @@ void run_report_page(const ReportArguments& arguments) {
 
 }  // namespace
 
-Command report_command() {
-  Command command{"report", "Draw tests as one HTML page: curves, Mohr circles, chains, film"};
-  auto& arguments = command.runs(run_report_page);
-  command.add("records", arguments.inputs, "record files, or folders of them").required();
-  command.add("-o,--output", arguments.output, "page to write, report.html").required();
-  command.add("--title", arguments.title, "of the page; default: the names of the tests");
-  command.add_force(arguments.force, "an existing page");
-  command.add_json(arguments.json);
-  command.notes =
+void add_report(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand("report", "Draw tests as one HTML page: curves, Mohr circles, chains, film");
+  const auto arguments = std::make_shared<ReportArguments>();
+  command.add_option("records", arguments->inputs, "record files, or folders of them")->required();
+  command.add_option("-o,--output", arguments->output, "page to write, report.html")->required();
+  command.add_option("--title", arguments->title, "of the page; default: the names of the tests");
+  add_force(command, arguments->force, "an existing page");
+  add_json(command, arguments->json);
+  command.footer(
       "The page holds all of its figures and loads nothing. Tests that differ by their specimen alone are one curve, "
       "their\n"
       "mean, with a band of one standard deviation. It has a film where a test was run with\n"
@@ -110,8 +110,8 @@ Command report_command() {
       "/usr/bin/python3; for the film ffmpeg or Pillow.\n"
       "Examples:\n"
       "  rvelab report R.h5 -o report.html\n"
-      "  rvelab report records -o report.html --title \"Dense sand, biaxial tests\"";
-  return command;
+      "  rvelab report records -o report.html --title \"Dense sand, biaxial tests\"");
+  command.callback([arguments] { run_report_page(*arguments); });
 }
 
 }  // namespace rvelab::cli

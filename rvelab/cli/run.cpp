@@ -258,18 +258,22 @@ void run_test(const RunArguments& arguments) {
 
 }  // namespace
 
-Command run_command() {
-  Command command{"run", "Run a test, a protocol in TOML, on a specimen"};
-  auto& arguments = command.runs(run_test);
-  command.add("--specimen", arguments.specimens,
-              "specimen, or record file: its end state; default: [specimen] file of the protocol;\n"
-              "several of them, or \"S_*.h5\": an ensemble");
-  command.add("--against", arguments.against, "a second group of specimens; prints the differences of the means");
-  command.add("-o,--output", arguments.output,
-              "record file to write, R.h5; of several specimens the folder for records and summary");
-  arguments.test.add_to(command, "test.pressure_Pa=2e4", "for specimens of 30,000 grains or more; tests at a time");
-  command.add("specimens", arguments.more, "further specimens");
-  command.notes =
+void add_run(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand("run", "Run a test, a protocol in TOML, on a specimen");
+  const auto arguments = std::make_shared<RunArguments>();
+  command
+      .add_option("--specimen", arguments->specimens,
+                  "specimen, or record file: its end state; default: [specimen] file of the protocol;\n"
+                  "several of them, or \"S_*.h5\": an ensemble")
+      ->allow_extra_args(false);
+  command
+      .add_option("--against", arguments->against, "a second group of specimens; prints the differences of the means")
+      ->allow_extra_args(false);
+  command.add_option("-o,--output", arguments->output,
+                     "record file to write, R.h5; of several specimens the folder for records and summary");
+  arguments->test.add_to(command, "test.pressure_Pa=2e4", "for specimens of 30,000 grains or more; tests at a time");
+  command.add_option("specimens", arguments->more, "further specimens");
+  command.footer(
       "A specimen of less than 30,000 grains runs on one thread; `rvelab calibrate --threads` runs several tests at a\n"
       "time. Any number of threads gives the same bits. Each record is written to R.h5.journal at once, and R.h5 is "
       "brought\n"
@@ -290,8 +294,8 @@ Command run_command() {
       "  rvelab run biaxial --specimen dense.h5 -o R.h5 --resume\n"
       "  rvelab run biaxial --specimen 'S_*.h5' -o D\n"
       "  rvelab run biaxial --specimen 'dense_*.h5' --against 'loose_*.h5' -o D\n"
-      "  mpirun -np 8 rvelab run biaxial --specimen 'S_*.h5' -o D --share";
-  return command;
+      "  mpirun -np 8 rvelab run biaxial --specimen 'S_*.h5' -o D --share");
+  command.callback([arguments] { run_test(*arguments); });
 }
 
 }  // namespace rvelab::cli

@@ -30,21 +30,23 @@ void run_seal(const SealArguments& arguments) {
 
 }  // namespace
 
-Command seal_command() {
-  Command command{"seal", "Accept a file that another program has changed: write it with a new checksum"};
-  auto& arguments = command.runs(run_seal);
-  command.add("file", arguments.file, "specimen or record file, changed or made by another program").required();
-  command.add("-o,--output", arguments.output, "file to write, the same with a checksum").required();
-  command.add_force(arguments.force);
-  command.add_json(arguments.json);
-  command.notes =
+void add_seal(CLI::App& app) {
+  CLI::App& command =
+      *app.add_subcommand("seal", "Accept a file that another program has changed: write it with a new checksum");
+  const auto arguments = std::make_shared<SealArguments>();
+  command.add_option("file", arguments->file, "specimen or record file, changed or made by another program")
+      ->required();
+  command.add_option("-o,--output", arguments->output, "file to write, the same with a checksum")->required();
+  add_force(command, arguments->force);
+  add_json(command, arguments->json);
+  command.footer(
       "Files of rvelab end in a checksum; a file whose bytes do not match it is refused. A program that opens such a\n"
       "file for writing removes the checksum. If you meant the change, seal reads what rvelab knows of the file, "
       "checks\n"
       "it and writes it anew. It cannot tell an intended change from damage, so inspect the result.\n"
       "Example:\n"
-      "  rvelab seal edited.h5 -o S.h5";
-  return command;
+      "  rvelab seal edited.h5 -o S.h5");
+  command.callback([arguments] { run_seal(*arguments); });
 }
 
 }  // namespace rvelab::cli

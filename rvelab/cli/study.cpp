@@ -205,31 +205,36 @@ void run_study(const StudyArguments& arguments) {
 
 }  // namespace
 
-Command study_command() {
-  Command command{"study", "Run a test over a grid of settings: error against run time"};
-  auto& arguments = command.runs(run_study);
+void add_study(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand("study", "Run a test over a grid of settings: error against run time");
+  const auto arguments = std::make_shared<StudyArguments>();
   command
-      .add("test", arguments.what,
-           "PROTOCOL.toml or STUDY.toml, or the name of an installed one:\nbiaxial; tolerance, damping, time_step, "
-           "record_density")
-      .required();
-  command.add("specimen", arguments.specimens, "specimens; default: those of the study");
-  command.add("--vary", arguments.vary, "KEY=v1,v2,...; given several times: all combinations");
-  command.add("--reference", arguments.reference, "KEY=value of the reference, the best-resolved run");
-  command.add("--set", arguments.settings, "KEY=value of every run");
-  command.add("--repeat", arguments.repeats, "whole paths for each grid point and specimen, default 1; 0: none")
-      .between(0, 10'000);
+      .add_option(
+          "test", arguments->what,
+          "PROTOCOL.toml or STUDY.toml, or the name of an installed one:\nbiaxial; tolerance, damping, time_step, "
+          "record_density")
+      ->required();
+  command.add_option("specimen", arguments->specimens, "specimens; default: those of the study");
+  command.add_option("--vary", arguments->vary, "KEY=v1,v2,...; given several times: all combinations")
+      ->allow_extra_args(false);
+  command.add_option("--reference", arguments->reference, "KEY=value of the reference, the best-resolved run")
+      ->allow_extra_args(false);
+  command.add_option("--set", arguments->settings, "KEY=value of every run")->allow_extra_args(false);
   command
-      .add("--increments", arguments.increments,
-           "increments for each grid point and specimen, default 300;\neach starts from a state of the reference path; "
-           "0: none")
-      .between(0, 1'000'000);
-  command.add("-o,--output", arguments.folder, "folder for study.toml, study.csv, study.json and pieces/");
-  command.add_threads(arguments.threads, "default: one per core");
-  command.add("--force", arguments.force, "start anew in a folder that holds a study");
-  command.add("--resume", arguments.resume, "continue a study that was stopped").not_with("--force");
-  command.add_json(arguments.json);
-  command.notes =
+      .add_option("--repeat", arguments->repeats, "whole paths for each grid point and specimen, default 1; 0: none")
+      ->check(CLI::Range(0, 10'000));
+  command
+      .add_option(
+          "--increments", arguments->increments,
+          "increments for each grid point and specimen, default 300;\neach starts from a state of the reference path; "
+          "0: none")
+      ->check(CLI::Range(0, 1'000'000));
+  command.add_option("-o,--output", arguments->folder, "folder for study.toml, study.csv, study.json and pieces/");
+  add_threads(command, arguments->threads, "default: one per core");
+  command.add_flag("--force", arguments->force, "start anew in a folder that holds a study");
+  command.add_flag("--resume", arguments->resume, "continue a study that was stopped")->excludes("--force");
+  add_json(command, arguments->json);
+  command.footer(
       "The reference runs the path once. From states spread evenly over this path, each grid point makes the "
       "increment\n"
       "that the reference made from there. Its error is the difference of the two stresses over the mean pressure; at\n"
@@ -242,8 +247,8 @@ Command study_command() {
       "  rvelab study tolerance S.h5 -o F\n"
       "  rvelab study biaxial S.h5 --vary solver.relative_tolerance=0.1,0.01 -o F \\\n"
       "    --reference solver.target_unbalanced=3e-5 --reference solver.fixed_substeps=4000\n"
-      "  rvelab study F/study.toml -o F --resume";
-  return command;
+      "  rvelab study F/study.toml -o F --resume");
+  command.callback([arguments] { run_study(*arguments); });
 }
 
 }  // namespace rvelab::cli
