@@ -41,7 +41,6 @@ std::string read_file(const std::string& text, Specimen& specimen) {
 
 TEST_CASE("every key sets one field, from its own default, and no two keys the same but the documented pairs") {
   std::set<std::string> names;
-  int fields = 0;
   for (const keys::Key& key : keys::known_keys()) {
     CAPTURE(key.dotted());
     CHECK(names.insert(key.dotted()).second);
@@ -57,10 +56,7 @@ TEST_CASE("every key sets one field, from its own default, and no two keys the s
     if (key.name == "name") continue;
     CHECK(differences(before, specimen) == 0);
     if (!message.empty()) CHECK_THAT(message, Contains("out of range"));
-    ++fields;
   }
-  // 9 of a material's 10 fields with its two units of stiffness less name, 5 of contact, 9 + 1 of damping, 9 of solver.
-  CHECK(fields == 12 + 5 + 10 + 12);
 }
 
 TEST_CASE("assignments reach their fields") {

@@ -111,7 +111,7 @@ TEST_CASE("each room includes only those above it in rvelab/README.md") {
         FAIL_CHECK(file << " includes " << included << ", which is not above it");
     }
   }
-  CHECK(includes > 0);
+  CHECK(includes > 500);
 }
 
 TEST_CASE("no header includes itself by way of others") {
@@ -124,7 +124,7 @@ TEST_CASE("no header includes itself by way of others") {
     done[file] = true;
   };
   for (const std::string& file : code_under("rvelab")) visit(visit, file, "");
-  CHECK(!done.empty());
+  CHECK(done.size() > 200);
 }
 
 TEST_CASE("no two types of one namespace have one name") {
