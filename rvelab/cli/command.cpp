@@ -62,6 +62,7 @@ void refuse(const CLI::App& app, const CLI::ParseError& error) {
   // Words that nothing takes come first: CLI11 would tell what is missing for want of them.
   for (const std::string& given : command.remaining()) {
     const std::string word = given.substr(0, given.find('='));
+    if (word == "--") continue;
     if (word.starts_with("-"))
       throw InputError(of + "unknown option " + word + nearest_of(word, options_of(command)) + see);
     if (of_program) throw InputError("unknown subcommand " + word + nearest_of(word, subcommands_of(app)) + see);
