@@ -78,6 +78,17 @@ void TerminalLine::write(const std::string& line) {
   shown_ = true;
 }
 
+void ProgressReport::show(const protocol::Moment& moment) {
+  const auto& records = moment.result.records;
+  const auto now = Clock::now();
+  if (records.size() <= told_ || std::chrono::duration<double>(now - last_).count() < 0.2) return;
+  last_ = now;
+  told_ = records.size();
+  std::fprintf(stderr, "progress {\"records\": %zu, \"stage\": %d, \"strain\": %.17g}\n", told_, records.back().stage,
+               records.back().strain);
+  std::fflush(stderr);
+}
+
 void ProgressLine::done(std::size_t number) {
   const std::lock_guard lock(mutex_);
   Test& test = tests_[number];

@@ -27,6 +27,20 @@ class TerminalLine {
   std::mutex mutex_;
 };
 
+using Clock = std::chrono::steady_clock;
+
+/// The progress of one test for a program that reads it: at most five times a second a line of standard error,
+/// "progress " and a JSON object of the records made, the stage by its number from 0 and its driving strain at the last
+/// record.
+class ProgressReport {
+ public:
+  void show(const protocol::Moment& moment);
+
+ private:
+  Clock::time_point last_{};
+  std::size_t told_ = 0;  ///< records
+};
+
 /// The line of one test: stage, strain, stress ratio q/p, grain-steps per second, time left. Of several at a time: how
 /// many are done, time left, grain-steps per second of all, and the state of the one that reported last. At most five
 /// times a second. May be called from any thread.
@@ -42,7 +56,6 @@ class ProgressLine {
   void done(std::size_t number);
 
  private:
-  using Clock = std::chrono::steady_clock;
   struct Test {
     double part = 0;                      ///< of its records, 0 to 1
     double first_part = 0;                ///< that was there when it began (a resumed test)

@@ -32,6 +32,7 @@ namespace {
 struct RunArguments {
   std::vector<std::string> specimens, more, against;
   std::string output;
+  bool progress = false;
   TestOptions test;
 };
 
@@ -209,6 +210,8 @@ void run_test(const RunArguments& arguments) {
   auto words = arguments.specimens;
   words.insert(words.end(), arguments.more.begin(), arguments.more.end());
   const auto given = files_of(words), against = files_of(arguments.against);
+  if (arguments.progress && (given.size() > 1 || !against.empty()))
+    throw InputError("--progress is given with several specimens; allowed: with one; leave it out");
   if (given.size() > 1 || !against.empty()) return run_several(arguments, protocol, given, against);
   if (arguments.test.share)
     throw InputError("--share is given with one specimen; allowed: tests on several; give more, or leave --share out");
@@ -232,8 +235,12 @@ void run_test(const RunArguments& arguments) {
   double wall = 0;
   {
     ProgressLine line;
+    ProgressReport report;
     protocol::Watch watch;
-    watch.on_moment = [&](const protocol::Moment& moment) { line.show(0, "", moment); };
+    watch.on_moment = [&](const protocol::Moment& moment) {
+      if (arguments.progress) return report.show(moment);
+      line.show(0, "", moment);
+    };
     watch.stop = &stop_on_signals();
     std::unique_ptr<Workers> team;
     if (specimen.grains.size() >= least_shared_grains) {
@@ -272,6 +279,8 @@ void add_run(CLI::App& app) {
   command.add_option("-o,--output", arguments->output,
                      "record file to write, R.h5; of several specimens the folder for records and summary");
   arguments->test.add_to(command, "test.pressure_Pa=2e4", "for specimens of 30,000 grains or more; tests at a time");
+  command.add_flag("--progress", arguments->progress,
+                   "on standard error some times a second \"progress \" and a JSON object: records, stage, strain");
   command.add_option("specimens", arguments->more, "further specimens");
   command.footer(
       "A specimen of less than 30,000 grains runs on one thread; `rvelab calibrate --threads` runs several tests at a\n"

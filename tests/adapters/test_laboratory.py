@@ -162,7 +162,7 @@ class Laboratory(unittest.TestCase):
         further = rvelab.run("simple_shear", by_rve, {"stage.shear.to_strain": 1e-3})
         self.assertLess(np.abs(further["stress_Pa"][0] - by_rve["stress_Pa"][-1]).max(), 1e-3 * 50e3)
 
-    def test_progress_is_told_from_the_journal(self) -> None:
+    def test_progress_is_told_while_the_test_runs(self) -> None:
         moments = []
         records = rvelab.run("biaxial", specimens["discs"], {"stage.compression.to_strain": 0.15,
                                                             "stage.compression.record_every": 3e-5},

@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import os
-import struct
 import tempfile
 from pathlib import Path
 from typing import Any, Callable, Iterable, Mapping, NamedTuple, Sequence, Union
@@ -61,36 +60,6 @@ def _specimen(given: _PathLike | Rve | Records, folder: str) -> str:
     return path
 
 
-class _Journal:
-    """Calls back with each new state of a test, from the journal that the program appends its records to."""
-
-    def __init__(self, path: str, progress: Callable[[Moment], None]) -> None:
-        self._path, self._progress, self._offset = path, progress, 16  # behind the head
-
-    def __call__(self) -> None:
-        try:
-            with open(self._path, "rb") as file:
-                last = self._last_record(file)
-        except FileNotFoundError:  # not begun, or ended
-            return
-        if last is not None:
-            self._progress(last)
-
-    def _last_record(self, file: Any) -> Moment | None:
-        """The last whole record frame behind the offset: type 2, its number, stage and strain (rvelab/io/README.md)."""
-        last, end = None, file.seek(0, os.SEEK_END)
-        while self._offset + 16 <= end:
-            file.seek(self._offset)
-            kind, length, _ = struct.unpack("<IQI", file.read(16))
-            if self._offset + 16 + length > end:
-                break
-            if kind == 2:
-                number, stage, strain = struct.unpack("<Qid", file.read(20))
-                last = Moment(number + 1, stage, strain)
-            self._offset += 16 + length
-        return last
-
-
 def run(protocol: _PathLike, specimen: _PathLike | Rve | Records, settings: Mapping[str, Any] | None = None, *,
         output: _PathLike | None = None, progress: Callable[[Moment], None] | None = None, overwrite: bool = False,
         resume: bool = False, **more: Any) -> Records:
@@ -104,7 +73,7 @@ def run(protocol: _PathLike, specimen: _PathLike | Rve | Records, settings: Mapp
     file = os.fspath(output) if output is not None else os.path.join(kept.name, "R.h5")
     words = ["run", protocol, "--specimen", _specimen(specimen, kept.name), "-o", file, *words_of(settings, more)]
     words += ["--force"] * overwrite + ["--resume"] * resume
-    printed = ask(words, progress and _Journal(file + ".journal", progress))
+    printed = ask(words, None if progress is None else lambda told: progress(Moment(**told)))
     records = Records()
     for name, rows in printed.pop("records").items():
         column = np.array(rows)  # a number that is not finite is null in JSON

@@ -7,6 +7,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import threading
 import warnings
 import weakref
 from pathlib import Path
@@ -65,23 +66,27 @@ def plain(value: Any) -> Any:
     raise TypeError(f"a setting is {value!r}; allowed: numbers, texts, truth values and lists of them")
 
 
-def ask(words: Sequence[str | os.PathLike[str]], meanwhile: Callable[[], None] | None = None) -> Any:
+def ask(words: Sequence[str | os.PathLike[str]], progress: Callable[[dict[str, Any]], None] | None = None) -> Any:
     """Runs the program with --json and returns what it printed. Its warnings become RvelabWarning, its error
-    RvelabError. meanwhile is called some times a second."""
-    command = [program(), *map(os.fspath, words), "--json"]
+    RvelabError. progress: called with each of its lines of progress."""
+    command = [program(), *map(os.fspath, words), "--json", *(["--progress"] if progress is not None else [])]
+    printed, told = [], []
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as running:
+        reader = threading.Thread(target=lambda: printed.append(running.stdout.read()))
+        reader.start()
         try:
-            while True:
-                try:
-                    printed, told = running.communicate(timeout=None if meanwhile is None else 0.1)
-                    break
-                except subprocess.TimeoutExpired:
-                    meanwhile()
+            for line in running.stderr:
+                if progress is not None and line.startswith("progress {"):
+                    progress(json.loads(line.removeprefix("progress ")))
+                else:
+                    told.append(line)
         except BaseException:
             running.terminate()  # it keeps what it has recorded
             raise
+        finally:
+            reader.join()
     if running.returncode != 0:
-        raise RvelabError(told.strip() or f"{command[0]} ended with the exit code {running.returncode}")
-    for line in told.splitlines():
-        warnings.warn(line, RvelabWarning, stacklevel=3)
-    return json.loads(printed)
+        raise RvelabError("".join(told).strip() or f"{command[0]} ended with the exit code {running.returncode}")
+    for line in told:
+        warnings.warn(line.rstrip("\n"), RvelabWarning, stacklevel=3)
+    return json.loads(printed[0])
