@@ -3,13 +3,8 @@
 // RVELAB_NO_MEMORY_FROM=n in the environment: from the n-th on, no `new` finds memory.
 // fail_requests(k, lasting): the k-th request of any kind from now on, on any thread, finds none, and if `lasting` no
 // later one does; k = 0: all find some. A program that is to do without this library finds it by dlsym.
-// requests_made(): how many there were since.
-#include <atomic>
-#include <cerrno>
-#include <cstdlib>
-#include <new>
-
-// blocks_held(): those that were found and not given back.
+// fail_new_only(1): of these, `new` alone counts and fails; what libraries of C ask for is found.
+// requests_made(): how many there were since. blocks_held(): those that were found and not given back.
 #include <atomic>
 #include <cerrno>
 #include <cstdlib>
@@ -33,7 +28,7 @@ void __libc_free(void*);
 namespace {
 
 std::atomic<long> requests{0}, failing{0}, blocks{0};
-std::atomic<bool> fails_on{false};
+std::atomic<bool> fails_on{false}, new_only{false};
 
 /// Whether this request, of any kind, finds none.
 bool fails() {
@@ -76,22 +71,27 @@ extern "C" {
   fails_on = lasting != 0;
   failing = number;
 }
+[[gnu::visibility("default")]] void fail_new_only(int only) { new_only = only != 0; }
 [[gnu::visibility("default")]] long requests_made() { return requests; }
 [[gnu::visibility("default")]] long blocks_held() { return blocks; }
 }
 
 #if !defined(RVELAB_SHIM_BEFORE_SANITIZER)
 extern "C" {
-void* malloc(std::size_t size) { return fails() ? nullptr : counted(__libc_malloc(size)); }
-void* calloc(std::size_t count, std::size_t size) { return fails() ? nullptr : counted(__libc_calloc(count, size)); }
+void* malloc(std::size_t size) { return !new_only && fails() ? nullptr : counted(__libc_malloc(size)); }
+void* calloc(std::size_t count, std::size_t size) {
+  return !new_only && fails() ? nullptr : counted(__libc_calloc(count, size));
+}
 void* realloc(void* at, std::size_t size) {
-  if (fails()) return nullptr;
+  if (!new_only && fails()) return nullptr;
   void* const found = __libc_realloc(at, size);
   if (at == nullptr) return counted(found);
   if (size == 0) --blocks;
   return found;
 }
-void* memalign(std::size_t edge, std::size_t size) { return fails() ? nullptr : counted(__libc_memalign(edge, size)); }
+void* memalign(std::size_t edge, std::size_t size) {
+  return !new_only && fails() ? nullptr : counted(__libc_memalign(edge, size));
+}
 void* aligned_alloc(std::size_t edge, std::size_t size) { return memalign(edge, size); }
 int posix_memalign(void** at, std::size_t edge, std::size_t size) {
   void* const found = memalign(edge, size);

@@ -83,7 +83,7 @@ void write_pool(const std::string& path, const pool::Population& population, con
 /// Shows the bytes of each RVE to `take`, in the order of the ids. InputError: missing, damaged, of a newer format, no
 /// pool file.
 pool::Population read_pool(const std::string& path, const pool::Pool::TakeState& take) {
-  const auto file = io::Hdf5File::open(path, io::Seal::required);
+  const auto file = io::Hdf5File::open(path);
   io::check_format(file, io::pool_format);
   Rows rows;
   Trials trials;
@@ -121,16 +121,13 @@ pool::Population read_pool(const std::string& path, const pool::Pool::TakeState&
   return population;
 }
 
-Specimen read_specimen(const std::string& path) { return io::read_specimen(path, io::Seal::required); }
-
 }  // namespace
 
 }  // namespace rvelab::h5
 
 const rvelab::h5::FileCalls* rvelab_h5_file_calls() {
   using namespace rvelab::h5;
-  static const FileCalls calls{
-      rvelab::io::version,         read_specimen, write_pool, read_pool, rvelab::keys::parameters_text,
-      rvelab::keys::set_parameters};
+  static const FileCalls calls{rvelab::io::version, rvelab::io::read_specimen,     write_pool,
+                               read_pool,           rvelab::keys::parameters_text, rvelab::keys::set_parameters};
   return &calls;
 }

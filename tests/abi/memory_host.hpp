@@ -15,6 +15,7 @@ namespace {
 using Snapshot = std::vector<char>;
 
 void (*fail_requests)(long number, int lasting) = nullptr;
+void (*fail_new_only)(int only) = nullptr;
 long (*requests_made)() = nullptr;
 long (*blocks_held)() = nullptr;
 

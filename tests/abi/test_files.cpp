@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "rvelab/io/hdf5/schema.hpp"
+#include "rvelab/io/hdf5/seal.hpp"
 #include "rvelab/io/hdf5/specimen_file.hpp"
 #include "tests/abi/host.hpp"
 #include "tests/abi/no_memory.hpp"
@@ -213,7 +214,10 @@ TEST_CASE("wherever memory ends while a file is read or written, RVELAB_E_MEMORY
 TEST_CASE("a file without its seal is refused in a host, and the remedy named") {
   Host host;
   std::int64_t made = 0;
-  const std::string old = std::string(RVELAB_TEST_DATA) + "/compat/specimen_1_2.h5";
+  const Folder folder;
+  const std::string old = folder / "s.h5";
+  io::write_specimen(packed(Shape::disc, 5), old);
+  std::filesystem::resize_file(old, std::filesystem::file_size(old) - io::seal_bytes);
   CHECK(rvelab_template_load(host.pool, old.c_str(), &made) == RVELAB_E_FILE);
   CHECK_THAT(rvelab_last_error(), Contains("lacks the checksum") && Contains("rvelab seal " + old));
   CHECK(rvelab_pool_read(host.pool, old.c_str()) == RVELAB_E_FILE);

@@ -25,9 +25,9 @@ struct Format {
 
 /// protocol, recipe, material, csv (particles, contacts and META.json, with a line "====" between them; LAMMPS too),
 /// dump, data (of LAMMPS), text (tables of YADE and spreadsheets), gz (any of the three, packed, and the packed bytes
-/// changed), curve, specimen and records (the files as they are, with and without a seal), specimen_values and
-/// records_values (choices of what to change through HDF5's own writer, then sealed), journal, journal_values,
-/// snapshot.
+/// changed), curve, specimen and records (the files as they are), specimen_values and records_values (choices of what
+/// to change through HDF5's own writer, then sealed), journal, journal_values, snapshot, crafted (the bytes of a
+/// specimen file, sealed after they were changed).
 const std::vector<Format>& formats();
 
 }  // namespace rvelab::fuzz

@@ -21,8 +21,8 @@ struct Part {
 const std::vector<Part>& parts() {
   static const std::vector<Part> all = [] {
     constexpr std::size_t number = 8;
-    const Specimen specimen = io::read_specimen(data_file("compat/specimen_1_4.h5"));
-    const io::RecordedTest test = io::read_recorded_test(data_file("compat/records_1_4.h5"));
+    const io::RecordedTest test = seed_records();
+    const Specimen& specimen = test.checkpoint.specimen;
     const auto& result = test.result;
     std::vector<Part> made{
         {io::begin_frame, 0, io::encode_begin({result.protocol, test.provenance.protocol, result.stages, specimen})}};

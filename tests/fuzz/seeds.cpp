@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "rvelab/io/hdf5/seal.hpp"
 #include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/solver/rve.hpp"
 #include "tests/fuzz/journals.hpp"
+#include "tests/io/nine_discs.hpp"
 #include "tests/io/random_specimen.hpp"
 
 namespace rvelab::fuzz {
@@ -44,7 +46,31 @@ std::vector<Bytes> joined(std::vector<Bytes> first, const std::vector<Bytes>& se
 
 std::string data_file(const std::string& name) { return RVELAB_TEST_DATA "/" + name; }
 
-Bytes seed_file(const std::string& name) { return bytes_in(data_file(name)); }
+io::RecordedTest seed_records() {
+  io::RecordedTest test;
+  test.checkpoint.specimen = test::nine_discs();
+  test.provenance = io::provenance_of("[test]\n", test.checkpoint.specimen);
+  test.result = test::random_result(1, 3);
+  return test;
+}
+
+Bytes specimen_seed() {
+  static const Bytes made = [] {
+    const test::Folder folder;
+    io::write_specimen(test::nine_discs(), folder / "s.h5");
+    return bytes_in(folder / "s.h5");
+  }();
+  return made;
+}
+
+Bytes record_seed() {
+  static const Bytes made = [] {
+    const test::Folder folder;
+    io::write_recorded_test(seed_records(), folder / "r.h5");
+    return bytes_in(folder / "r.h5");
+  }();
+  return made;
+}
 
 std::vector<std::string> csv_parts(const std::string& text) {
   const std::string line = "====\n";
@@ -58,27 +84,30 @@ std::vector<std::string> csv_parts(const std::string& text) {
 }
 
 std::vector<Bytes> protocol_seeds() {
-  return joined(joined({seed_file("compat/test.toml")}, files_in(shipped, "[pack]", false)),
+  return joined(joined({bytes_in(data_file("nine_discs/test.toml"))}, files_in(shipped, "[pack]", false)),
                 files_in(corpus + "protocol"));
 }
 std::vector<Bytes> recipe_seeds() { return joined(files_in(shipped, "[pack]"), files_in(corpus + "recipe")); }
-std::vector<Bytes> material_seeds() { return joined({seed_file("compat/soil.toml")}, files_in(corpus + "material")); }
-std::vector<Bytes> csv_seeds() { return joined({seed_file("compat/grains.csv")}, files_in(corpus + "csv")); }
+std::vector<Bytes> material_seeds() {
+  return joined({bytes_in(data_file("nine_discs/soil.toml"))}, files_in(corpus + "material"));
+}
+std::vector<Bytes> csv_seeds() {
+  return joined({bytes_in(data_file("nine_discs/grains.csv"))}, files_in(corpus + "csv"));
+}
 std::vector<Bytes> dump_seeds() { return joined(files_in(corpus + "csv", "ITEM:"), files_in(corpus + "dump")); }
 std::vector<Bytes> data_seeds() { return files_in(corpus + "data"); }
 std::vector<Bytes> text_seeds() { return files_in(corpus + "text"); }
 std::vector<Bytes> gz_seeds() { return joined(joined(dump_seeds(), data_seeds()), text_seeds()); }
 std::vector<Bytes> curve_seeds() { return files_in(corpus + "curve"); }
 
-std::vector<Bytes> specimen_seeds() {
-  return {seed_file("compat/specimen_1_4.h5"), seed_file("compat/specimen_1_3.h5"), seed_file("compat/specimen_1_0.h5"),
-          seed_file("damaged/crashes.h5")};
+std::vector<Bytes> specimen_seeds() { return {specimen_seed()}; }
+std::vector<Bytes> crafted_seeds() {
+  const Bytes whole = specimen_seed();
+  return {Bytes(whole.begin(), whole.end() - std::ptrdiff_t(io::seal_bytes))};
 }
-std::vector<Bytes> record_seeds() {
-  return {seed_file("compat/records_1_4.h5"), seed_file("compat/records_1_3.h5"), seed_file("compat/records_1_0.h5")};
-}
+std::vector<Bytes> record_seeds() { return {record_seed()}; }
 std::vector<Bytes> journal_seeds() { return {whole_journal()}; }
-std::vector<Bytes> snapshot_seeds() { return {Rve(io::read_specimen(data_file("compat/specimen_1_4.h5"))).save()}; }
+std::vector<Bytes> snapshot_seeds() { return {Rve(test::nine_discs()).save()}; }
 
 std::vector<Bytes> choice_seeds() {
   std::vector<Bytes> seeds{{}};

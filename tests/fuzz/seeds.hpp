@@ -5,13 +5,18 @@
 #include <string>
 #include <vector>
 
+#include "rvelab/io/journal/recorded_test.hpp"
 #include "tests/fuzz/formats.hpp"
 
 namespace rvelab::fuzz {
 
-/// Path of a file in tests/data, and its bytes.
+/// Path of a file in tests/data.
 std::string data_file(const std::string& name);
-Bytes seed_file(const std::string& name);
+
+/// Files of nine discs, sealed.
+Bytes specimen_seed();
+Bytes record_seed();
+io::RecordedTest seed_records();
 
 /// Particles, contacts and META.json of one text; at least one part.
 std::vector<std::string> csv_parts(const std::string& text);
@@ -27,6 +32,8 @@ std::vector<Bytes> text_seeds();
 std::vector<Bytes> gz_seeds();
 std::vector<Bytes> curve_seeds();
 std::vector<Bytes> specimen_seeds();
+/// The bytes of a specimen file before its seal.
+std::vector<Bytes> crafted_seeds();
 std::vector<Bytes> record_seeds();
 std::vector<Bytes> journal_seeds();
 std::vector<Bytes> snapshot_seeds();

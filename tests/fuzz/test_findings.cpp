@@ -15,6 +15,7 @@
 #include "tests/catch.hpp"
 #include "tests/fuzz/formats.hpp"
 #include "tests/fuzz/seeds.hpp"
+#include "tests/io/nine_discs.hpp"
 #include "tests/io/random_specimen.hpp"
 
 using namespace rvelab;
@@ -24,7 +25,7 @@ using test::input_error;
 
 namespace {
 
-Specimen nine_grains() { return io::read_specimen(data_file("compat/specimen_1_4.h5")); }
+Specimen nine_grains() { return test::nine_discs(); }
 
 /// An HDF5 file as another program leaves it that changes something in it.
 template <class Change>
@@ -61,20 +62,18 @@ TEST_CASE("a whole number that no double holds is a number like any other") {
 TEST_CASE("a number beyond all doubles in META.json is a mistake of the file") {
   const test::Folder folder;
   test::write_bytes(folder / "m.json", "{\"dim\": 2, \"thickness_m\": 1e999}");
-  CHECK_THAT(input_error([&] { io::import_csv(data_file("compat/grains.csv"), {}, folder / "m.json"); }),
+  CHECK_THAT(input_error([&] { io::import_csv(data_file("nine_discs/grains.csv"), {}, folder / "m.json"); }),
              Contains("m.json: is not JSON") && Contains("1e999"));
 }
 
 TEST_CASE("a sealed file whose dataset says that it is larger than what is stored of it is refused by name") {
   const test::Folder folder;
-  const Bytes whole = seed_file("compat/specimen_1_4.h5");
+  const Bytes whole = specimen_seed();
   std::string bytes = changed(View(whole).first(whole.size() - io::seal_bytes), [](hid_t file) {
-    const hsize_t rows = hsize_t{1} << 40, chunk = 1;
-    const hid_t space = H5Screate_simple(1, &rows, nullptr), creation = H5Pcreate(H5P_DATASET_CREATE);
-    H5Pset_chunk(creation, 1, &chunk);
+    const hsize_t rows = hsize_t{1} << 40;  // none of which is written
+    const hid_t space = H5Screate_simple(1, &rows, nullptr);
     H5Ldelete(file, "/grains/radius_m", H5P_DEFAULT);
-    H5Dclose(H5Dcreate2(file, "/grains/radius_m", H5T_IEEE_F64LE, space, H5P_DEFAULT, creation, H5P_DEFAULT));
-    H5Pclose(creation);
+    H5Dclose(H5Dcreate2(file, "/grains/radius_m", H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
     H5Sclose(space);
   });
   const auto seal = io::seal_of(std::as_bytes(std::span(bytes)));

@@ -76,3 +76,4 @@ TEST_CASE("records with other values and a seal are taken or refused") { expect_
 TEST_CASE("damaged journals are taken or refused") { expect_no_finding("journal", 100); }
 TEST_CASE("journals with other values and checksums are taken or refused") { expect_no_finding("journal_values", 50); }
 TEST_CASE("damaged snapshots are taken or refused") { expect_no_finding("snapshot", 8000); }
+TEST_CASE("damaged specimen files with a seal that fits are taken or refused") { expect_no_finding("crafted", 400); }

@@ -15,20 +15,14 @@ using namespace rvelab::test;
 
 namespace {
 
-/// sigma_yy of the last record, Pa, as h5py reads it; a run of 2000 sub-steps a record ends at -276447.8787. Versions
-/// made the four increments in 274 sub-steps (to 1.5), 99 (to 1.8), 128 and 136.
+/// sigma_yy of the last record, Pa, as h5py reads it; a run of 2000 sub-steps a record ends at -276447.8787.
 const std::map<std::string, double> last_stress = {
-    {"1_0", -276447.8798136768},  {"1_1", -276447.8798136768},  {"1_2", -276447.8798136768},
-    {"1_3", -276447.8798136768},  {"1_4", -276447.8798136768},  {"1_5", -276447.8798136768},
-    {"1_6", -276447.88236294646}, {"1_7", -276447.88236294646}, {"1_8", -276447.88236294646},
-    {"1_9", -276447.878540981},   {"1_10", -276447.8731603987}, {"1_11", -276447.87447605334},
-    {"1_12", -276447.87447605334}};
+    {"1_10", -276447.8731603987}, {"1_11", -276447.87447605334}, {"1_12", -276447.87447605334}};
 
 }  // namespace
 
 TEST_CASE("files of every version of the format are read with all that they hold") {
-  for (const std::string version :
-       {"1_0", "1_1", "1_2", "1_3", "1_4", "1_5", "1_6", "1_7", "1_8", "1_9", "1_10", "1_11", "1_12"}) {
+  for (const std::string version : {"1_10", "1_11", "1_12"}) {
     CAPTURE(version);
     const Folder folder;
     const std::string kept = std::string(RVELAB_TEST_DATA) + "/compat/";
@@ -37,7 +31,7 @@ TEST_CASE("files of every version of the format are read with all that they hold
     std::string dotted = version;
     dotted[1] = '.';
     CHECK(io::Hdf5File::open(records).attribute("format_version") == dotted);
-    CHECK(io::Hdf5File::open(specimen).sealed() == (std::stoi(version.substr(2)) >= 4));
+    CHECK(io::Hdf5File::open(specimen).sealed());
 
     const Specimen start = io::read_specimen(specimen);
     REQUIRE(start.grains.size() == 9);
@@ -57,7 +51,7 @@ TEST_CASE("files of every version of the format are read with all that they hold
     CHECK(test.result.records.back().stress(1, 1) == end);
     CHECK(end == Approx(-276447.8787).epsilon(3e-8));
     CHECK(test.result.records[3].stage == 2);
-    CHECK(test.result.probes.size() == (version == "1_0" ? 0 : 1));
+    CHECK(test.result.probes.size() == 1);
     CHECK(test.provenance.protocol.find("constant_volume") != std::string::npos);
     CHECK(Rve(test.checkpoint.specimen).stress()(1, 1) == Approx(end).epsilon(1e-8));
   }

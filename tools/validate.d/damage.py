@@ -2,12 +2,10 @@
 """Single flipped bits in every kind of file that is read: damage.py PROGRAM [NUMBER].
 
 Packs a specimen, runs a test on it, exports CSV, and flips one bit at a time, seeded, NUMBER (1000) in each file:
-specimen, records, a journal without its record file, a pool. Each must be refused (exit code 2, one line) or leave what
+specimen, records, a journal without its record file. Each must be refused (exit code 2, one line) or leave what
 `inspect --json` prints as it is; of a journal the whole frames before the flip are taken, and stand for fewer records.
-The files of `import` and files of earlier versions have no checksum: there only crashes, endless runs and messages of
-several lines are counted as bad.
+The files of `import` have no checksum: there only crashes, endless runs and messages of several lines are counted as bad.
 """
-import gzip
 import json
 import pathlib
 import random
@@ -82,16 +80,10 @@ def main():
                       ["run", "small.toml", "--specimen", "S.h5", "-o", "R.h5"],
                       ["export", "S.h5", "--format", "csv", "-o", "E"]):
             subprocess.run([program, *words], cwd=work, check=True, capture_output=True)
-        older = pathlib.Path(__file__).resolve().parents[2] / "tests/data/compat"
-        pool = work / "pool.h5"
-        pool.write_bytes(gzip.decompress((older / "pool_1_8.h5.gz").read_bytes()))
         damaged = work / "damaged.h5"
         inspect = [program, "inspect", damaged, "--json"]
         for path in (work / "S.h5", work / "R.h5"):
             good &= flip(inspect, path, number, True, damaged)
-        good &= flip([program, "compare", damaged, pool, "--json"], pool, number, True, damaged)
-        for name in ("specimen_1_2.h5", "records_1_2.h5"):
-            good &= flip(inspect, older / name, number, False, damaged)
         damaged.unlink()
         good &= flip(inspect, journal_of(program, work), number, False, work / "damaged.h5.journal")
         tables = [work / name for name in ("E.particles.csv", "E.contacts.csv", "E.json", "E.material.toml")]

@@ -61,9 +61,11 @@ class Comparer {
   Comparer(const std::string& path_a, const std::string& path_b) : path_a_(path_a), path_b_(path_b) {}
 
   Comparison compare() {
-    const auto a = Hdf5File::open(path_a_), b = Hdf5File::open(path_b_);
+    const auto a = Hdf5File::open(path_a_, Seal::if_any), b = Hdf5File::open(path_b_, Seal::if_any);
     for (const auto* file : {&a, &b}) {
-      if (is_rvelab(*file)) checked_kind(*file);
+      if (!is_rvelab(*file)) continue;
+      file->expect_seal();
+      checked_kind(*file);
     }
     const auto &in_a = a.tree().objects, &in_b = b.tree().objects;
     auto names = names_in(in_a);

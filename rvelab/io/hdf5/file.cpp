@@ -87,6 +87,12 @@ std::string text_of(const hdf5::Object& object, const std::string& attribute) {
 
 }  // namespace
 
+std::string hdf5::name(Type type) {
+  if (type.kind == Kind::text) return "text";
+  const char* const kind = type.kind == Kind::floating ? "float" : type.kind == Kind::whole ? "int" : "uint";
+  return kind + std::to_string(8 * type.bytes);
+}
+
 std::string in_words(const Shape64& shape) {
   std::string text;
   for (const auto extent : shape) text += (text.empty() ? "" : ", ") + std::to_string(extent);
@@ -107,20 +113,23 @@ Hdf5File Hdf5File::open(const std::string& path, Seal seal) {
                      ": is not an HDF5 file; give a file that rvelab wrote (make one with `rvelab import` or "
                      "`rvelab run`)");
   }
-  if (!file.sealed_ && seal == Seal::required) {
-    throw InputError(
-        path +
-        ": lacks the checksum at its end, without which a library reads no file; take it over with `rvelab seal " +
-        path + " -o NEW.h5`");
-  }
-  file.tree_ = hdf5::read(path, std::move(bytes));
+  if (seal == Seal::required) file.expect_seal();
+  file.tree_ = hdf5::read(path, bytes);
   return file;
+}
+
+void Hdf5File::expect_seal() const {
+  if (sealed_) return;
+  throw InputError(path_ +
+                   ": lacks the checksum at its end: it is truncated, or another program has changed it; copy it "
+                   "again, or, if the change is meant, take it over with `rvelab seal " +
+                   path_ + " -o NEW.h5`");
 }
 
 Hdf5File Hdf5File::from_image(const std::string& path, std::span<const std::byte> bytes) {
   if (!begins_as_hdf5(bytes)) throw InputError(path + ": holds a part that is not HDF5; it is damaged");
   Hdf5File file(path, true);
-  file.tree_ = hdf5::read(path, {bytes.begin(), bytes.end()});
+  file.tree_ = hdf5::read(path, bytes);
   return file;
 }
 

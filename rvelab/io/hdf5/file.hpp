@@ -1,9 +1,8 @@
 // An HDF5 file as one small class: typed arrays, text and attributes by name; its errors as rvelab's own.
 //
-// A file is read whole, its seal is held against its bytes
-// (seal.hpp), and what is in it is taken apart in memory (tree.hpp), with every address held against the end of
-// the file. Files are built in memory and written by publish(), so that no HDF5 file is ever open for writing on disc
-// and a full disc is one plain error.
+// A file is read whole, its seal is held against its bytes (seal.hpp), and HDF5's library takes these bytes apart in
+// memory (tree.hpp). Files are built in memory and written by publish(), so that no HDF5 file is ever open for writing
+// on disc and a full disc is one plain error.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +31,7 @@ struct Hdf5Entry {
 /// The texts of a dataset or attribute, without what pads them.
 std::vector<std::string> texts_in(const hdf5::Values& values);
 
-/// Whether a file may lack its seal: what a library reads in a host must not.
+/// Whether a file may lack its seal: what is sealed anew, or compared and not rvelab's.
 enum class Seal { required, if_any };
 
 /// An HDF5 file in memory, move only. Names are full paths; groups between are made as needed. Scalars: double, int32,
@@ -41,7 +40,7 @@ class Hdf5File {
  public:
   /// Reads an existing file, once its seal was found to fit its bytes. InputError: missing, no regular file, not HDF5,
   /// damaged, with parts that rvelab does not write (tree.hpp), without the seal that is required.
-  static Hdf5File open(const std::string& path, Seal seal = Seal::if_any);
+  static Hdf5File open(const std::string& path, Seal seal = Seal::required);
   /// Reads bytes that a checksum vouches for, as image() gives them; `path` serves the messages only. InputError: not
   /// HDF5.
   static Hdf5File from_image(const std::string& path, std::span<const std::byte> bytes);
@@ -51,6 +50,8 @@ class Hdf5File {
   const std::string& path() const { return path_; }
   /// A checksum vouches for its bytes. False: opened without a seal, or made in memory.
   bool sealed() const { return sealed_; }
+  /// InputError: not sealed.
+  void expect_seal() const;
 
   /// Writes values, row-major, of the given shape, with the attribute `units`.
   template <class Scalar>

@@ -1,239 +1,255 @@
-// Groups, links and object headers of an HDF5 file. Declared in tree.hpp.
+// A tree from the bytes of an HDF5 file. Declared in tree.hpp.
+#include <algorithm>
 #include <set>
 
-#include "rvelab/io/hdf5/bytes.hpp"
+#include "rvelab/error.hpp"
+#include "rvelab/io/hdf5/library.hpp"
 #include "rvelab/io/hdf5/tree.hpp"
 
 namespace rvelab::io::hdf5 {
 namespace {
 
-constexpr const char* remedy_layout = "write the file with h5py's own settings (libver \"earliest\")";
-
-struct HeaderMessage {
-  std::uint16_t type;
-  std::uint8_t flags;
-  Part body;
-};
+std::string member(const std::string& group, const std::string& name) {
+  return (group == "/" ? group : group + "/") + name;
+}
 
 class Reader {
  public:
-  Reader(const std::string& path, Tree& tree)
-      : path_(path), tree_(tree), file_(tree.storage.back(), path), values_(file_, tree, path) {}
+  Reader(const std::string& path, std::span<const std::byte> file, Tree& tree)
+      : path_(path), file_(file), tree_(tree), numbers_(number_types()) {}
 
   void read() {
-    if (file_.size() < 96 || file_.byte(8) != 0 || file_.byte(13) != 8 || file_.byte(14) != 8) {
-      if (file_.size() < 96) file_.damaged("it is truncated");
-      throw InputError(path_ + ": is an HDF5 file of another layout (superblock of version " +
-                       std::to_string(file_.byte(8)) + "); allowed: 0, with addresses of 8 bytes; " + remedy_layout);
-    }
-    if (file_.address(24) != 0 || file_.address(40) > file_.size()) file_.damaged("it is truncated");
+    expect_superblock();
+    expect_memory(3 * file_.size());  // two copies of its own, and the values
+    const Handle access = access_in_memory(file_.size());
+    // The library copies them.
+    ok(H5Pset_file_image(access, const_cast<std::byte*>(file_.data()), file_.size()));
+    const Handle file(ok(H5Fopen(no_file, H5F_ACC_RDONLY, access)), H5Fclose);
+    const Handle root(ok(H5Gopen2(file, "/", H5P_DEFAULT)), H5Gclose);
+    H5O_info_t info;
+    ok(H5Oget_info2(root, &info, H5O_INFO_BASIC));
+    seen_.insert(info.addr);
     tree_.objects.clear();
-    object("/", file_.address(64), 0);
+    object(root, "/", 0);
   }
 
  private:
+  [[noreturn]] void damaged(const std::string& what) const {
+    throw InputError(path_ + ": is damaged (" + what +
+                     "); copy it again from where it was made, or write it again; nothing of it was read");
+  }
   [[noreturn]] void refuse(const std::string& object, const std::string& what, const std::string& remedy) const {
     throw InputError(path_ + ": " + object + " " + what + "; " + remedy);
   }
+  template <class Result>
+  Result ok(Result result) const {
+    if (result < 0) damaged(reason());
+    return result;
+  }
 
-  std::vector<HeaderMessage> messages_of(const std::string& name, std::uint64_t address) {
-    const Part head = file_.from(address);
-    if (head.begins("OHDR")) refuse(name, "is stored in a newer layout of HDF5", remedy_layout);
-    if (head.byte(0) != 1) head.damaged("the header of " + name + " is none");
-    const auto count = head.get<std::uint16_t>(2);
-    std::vector<Part> blocks{head.part(16, head.get<std::uint32_t>(8))};
-    std::vector<HeaderMessage> messages;
-    for (std::size_t block = 0, seen = 0; block < blocks.size(); ++block) {
-      const Part bytes = blocks[block];  // a copy: the list grows
-      for (std::uint64_t at = 0; at + 8 <= bytes.size() && seen < count; ++seen) {
-        const auto size = bytes.get<std::uint16_t>(at + 2);
-        const HeaderMessage message{bytes.get<std::uint16_t>(at), bytes.byte(at + 4), bytes.part(at + 8, size)};
-        if (++messages_ > file_.size() / 8) file_.damaged("headers lie in one another");
-        if (message.type == continuation_message)
-          blocks.push_back(file_.part(message.body.address(0), message.body.address(8)));
-        else
-          messages.push_back(message);
-        at += 8 + size;
+  /// What stands in the first bytes, before the library sees them: version 0, addresses and lengths of 8 bytes, counted
+  /// from the start, no block of a driver.
+  void expect_superblock() const {
+    if (file_.size() < 96) damaged("it is truncated");
+    const auto byte = [&](std::size_t at) { return std::to_integer<int>(file_[at]); };
+    const auto all = [&](std::size_t at, int value) {
+      for (std::size_t k = at; k < at + 8; ++k) {
+        if (byte(k) != value) return false;
+      }
+      return true;
+    };
+    if (byte(8) != 0 || byte(13) != 8 || byte(14) != 8) {
+      throw InputError(path_ + ": is an HDF5 file of another layout (superblock of version " + std::to_string(byte(8)) +
+                       "); allowed: 0, with addresses of 8 bytes; write the file with h5py's own settings (libver "
+                       "\"earliest\")");
+    }
+    if (!all(24, 0) || !all(48, 0xff)) damaged("its first block is none");
+  }
+
+  void object(hid_t opened, const std::string& name, int depth) {
+    Object& made = tree_.objects[name];
+    attributes(opened, name, made);
+    const H5I_type_t kind = H5Iget_type(opened);
+    if (kind == H5I_GROUP) return group(opened, name, depth);
+    if (kind != H5I_DATASET) refuse(name, "is neither a group nor a dataset", "it is not rvelab's: leave it out");
+    made.dataset = dataset(opened, path_ + ": dataset " + name);
+  }
+
+  struct Link {
+    std::string name;
+    H5L_type_t type;
+    haddr_t address;
+  };
+  /// What the library shows one by one; what is more than the file has room for ends it.
+  template <class Item>
+  struct List {
+    std::vector<Item> items;
+    std::size_t most;
+    bool no_memory = false;
+
+    template <class... Value>
+    herr_t add(Value... value) noexcept {
+      try {
+        if (items.size() == most) return -1;
+        items.push_back({value...});
+        return 0;
+      } catch (const std::bad_alloc&) {
+        no_memory = true;
+        return -1;
       }
     }
-    return messages;
+  };
+
+  template <class Item>
+  void shown(const List<Item>& list, herr_t result) const {
+    if (list.no_memory) throw std::bad_alloc();
+    ok(result);
   }
 
-  static const HeaderMessage* find(const std::vector<HeaderMessage>& messages, Message type) {
-    for (const HeaderMessage& message : messages) {
-      if (message.type == type) return &message;
+  void group(hid_t opened, const std::string& name, int depth) {
+    List<Link> links{{}, file_.size() / 16};
+    const auto add = [](hid_t, const char* link, const H5L_info_t* info, void* list) {
+      return static_cast<List<Link>*>(list)->add(link, info->type, info->u.address);
+    };
+    shown(links, H5Literate(opened, H5_INDEX_NAME, H5_ITER_INC, nullptr, add, &links));
+    for (const Link& link : links.items) {
+      const std::string path = member(name, link.name);
+      if (link.type != H5L_TYPE_HARD) refuse_link(opened, path, link);
+      if (link.name.empty() || link.name == "." || link.name.find('/') != std::string::npos ||
+          tree_.objects.contains(path)) {
+        damaged("a name in " + name + " is none, or is there twice");
+      }
+      if (depth == most_nested) {
+        refuse(path, "lies in more than " + std::to_string(most_nested) + " groups in one another",
+               "it is not rvelab's: leave it out");
+      }
+      if (!seen_.insert(link.address).second) {
+        refuse(path, "is a second name of an object or of a group that it lies in",
+               "allowed: one name for each; leave the second out");
+      }
+      const Handle next(ok(H5Oopen(opened, link.name.c_str(), H5P_DEFAULT)), H5Oclose);
+      object(next, path, depth + 1);
     }
-    return nullptr;
   }
 
-  void object(const std::string& name, std::uint64_t address, int depth) {
-    if (depth > most_nested) {
-      refuse(name, "lies in more than " + std::to_string(most_nested) + " groups in one another",
-             "it is not rvelab's: leave it out");
-    }
-    if (!seen_.insert(address).second) {
-      refuse(name, "is a second name of an object or of a group that it lies in",
-             "allowed: one name for each; leave the second out");
-    }
-    const auto messages = messages_of(name, address);
-    Object& made = tree_.objects[name];
-    attributes(name, messages, made);
-    if (find(messages, layout_message) != nullptr) return dataset(name, messages, made);
-    if (const auto* table = find(messages, symbol_table_message)) {
-      return group(name, table->body.address(0), table->body.address(8), depth);
-    }
-    if (find(messages, link_info_message) == nullptr) {
-      refuse(name, "is neither a group nor a dataset", "it is not rvelab's: leave it out");
-    }
-    newer_group(name, messages, depth);
+  [[noreturn]] void refuse_link(hid_t group, const std::string& path, const Link& link) const {
+    char value[256] = {};
+    const char* target = value;
+    H5Lget_val(group, link.name.c_str(), value, sizeof value - 1, H5P_DEFAULT);
+    const bool soft = link.type == H5L_TYPE_SOFT;
+    if (!soft) target = value + 1;  // a byte of flags, the name of the file, NUL, the name in it, NUL
+    refuse(path, std::string("is a link to another ") + (soft ? "name" : "file") + " (" + target + ")",
+           "allowed: objects of the file itself, each under one name; copy what is meant into its place");
   }
 
-  void dataset(const std::string& name, const std::vector<HeaderMessage>& messages, Object& made) {
-    const std::string what = path_ + ": dataset " + name;
-    if (find(messages, external_files_message) != nullptr) {
+  Values dataset(hid_t opened, const std::string& what) {
+    // Before the extents: those of a virtual dataset may be asked of other files.
+    const Handle creation(ok(H5Dget_create_plist(opened)), H5Pclose);
+    const H5D_layout_t layout = H5Pget_layout(creation);
+    if (layout == H5D_VIRTUAL) {
+      throw InputError(what + " is a virtual dataset, whose values lie in other places; allowed: values in the file " +
+                       "itself; copy them into it");
+    }
+    if (layout == H5D_CHUNKED) {
+      throw InputError(what + (ok(H5Pget_nfilters(creation)) > 0 ? " is compressed or filtered" : " is in chunks") +
+                       "; allowed: values in one piece, as they are; write it without chunks and filters");
+    }
+    if (ok(H5Pget_external_count(creation)) > 0) {
       throw InputError(what + " keeps its values in another file (external storage); allowed: values in the file " +
                        "itself; copy them into it");
     }
-    if (const auto* filters = find(messages, filters_message); filters != nullptr && filters->body.byte(1) > 0) {
-      throw InputError(what + " is compressed or filtered; allowed: values as they are; write it without filters");
-    }
-    const auto *type = find(messages, datatype_message), *shape = find(messages, dataspace_message);
-    if (type == nullptr || shape == nullptr) file_.damaged(name + " has no type or no extents");
-    expect_own(*type, what);
-    made.dataset = values_.by_layout(stored_type(type->body, what), stored_shape(shape->body, what),
-                                     find(messages, layout_message)->body, what);
+    const Handle type(ok(H5Dget_type(opened)), H5Tclose), space(ok(H5Dget_space(opened)), H5Sclose);
+    return values(type, space, H5Dget_storage_size(opened), what,
+                  [&](void* to) { return H5Dread(opened, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, to); });
   }
 
-  /// A type may be shared by objects: then the message says where it is.
-  static void expect_own(const HeaderMessage& message, const std::string& what) {
-    if ((message.flags & 2) != 0) {
+  void attributes(hid_t opened, const std::string& object, Object& made) {
+    struct Name {
+      std::string text;
+    };
+    List<Name> names{{}, file_.size() / 16};
+    const auto add = [](hid_t, const char* name, const H5A_info_t*, void* list) {
+      return static_cast<List<Name>*>(list)->add(name);
+    };
+    shown(names, H5Aiterate2(opened, H5_INDEX_NAME, H5_ITER_INC, nullptr, add, &names));
+    for (const auto& [name] : names.items) {
+      const std::string what = path_ + ": attribute " + name + " of " + object;
+      const Handle attribute(ok(H5Aopen(opened, name.c_str(), H5P_DEFAULT)), H5Aclose);
+      const Handle type(ok(H5Aget_type(attribute)), H5Tclose), space(ok(H5Aget_space(attribute)), H5Sclose);
+      made.attributes[name] = values(type, space, H5Aget_storage_size(attribute), what,
+                                     [&](void* to) { return H5Aread(attribute, type, to); });
+    }
+  }
+
+  /// `stored`: bytes that the file has of it. Their type in memory is that in the file: nothing is converted.
+  template <class ReadTo>
+  Values values(hid_t type, hid_t space, hsize_t stored, const std::string& what, ReadTo read_to) {
+    Values made{type_of(type, what), shape_of(space, what), {}};
+    std::uint64_t bytes = made.type.bytes;
+    for (const std::uint64_t extent : made.shape) {
+      if (extent > 0 && bytes > file_.size() / extent)
+        bytes = file_.size() + 1;
+      else
+        bytes *= extent;
+    }
+    if (std::find(made.shape.begin(), made.shape.end(), 0u) != made.shape.end()) return made;
+    if (bytes > stored || bytes > file_.size() - given_) {
+      throw InputError(what + " says that it is larger than what is stored of it; the file is damaged: write it again");
+    }
+    given_ += bytes;
+    auto& room = tree_.storage.emplace_back(bytes);
+    ok(read_to(room.data()));
+    made.bytes = room;
+    return made;
+  }
+
+  Type type_of(hid_t type, const std::string& what) const {
+    if (ok(H5Tcommitted(type)) > 0) {
       throw InputError(what + " has a type that lies elsewhere; allowed: a type of its own; write it without named " +
                        "types");
     }
-  }
-
-  void attributes(const std::string& name, const std::vector<HeaderMessage>& messages, Object& made) {
-    if (const auto* info = find(messages, attribute_info_message)) {
-      const bool ordered = (info->body.byte(1) & 1) != 0;
-      if (info->body.address(ordered ? 4 : 2) != nowhere) {
-        refuse(name, "keeps its attributes in a newer layout of HDF5", remedy_layout);
-      }
+    const H5T_class_t kind = H5Tget_class(type);
+    if (kind == H5T_STRING) {
+      if (ok(H5Tis_variable_str(type)) == 0) return {Kind::text, std::uint32_t(H5Tget_size(type))};
+      throw InputError(what + " holds text of variable length; allowed: of fixed length; write it so (in h5py as " +
+                       "numpy.bytes_)");
     }
-    for (const HeaderMessage& message : messages) {
-      if (message.type != attribute_message) continue;
-      const Part& body = message.body;
-      const auto version = body.byte(0);
-      if (version < 1 || version > 3) body.damaged("an attribute of " + name + " is of no known version");
-      const auto padded = [&](std::uint64_t size) { return version == 1 ? (size + 7) / 8 * 8 : size; };
-      const std::uint64_t name_size = body.get<std::uint16_t>(2), type_size = body.get<std::uint16_t>(4),
-                          shape_size = body.get<std::uint16_t>(6), at = version == 3 ? 9 : 8;
-      const std::string attribute = body.part(at, name_size).text_to_nul(0);
-      const std::string what = path_ + ": attribute " + attribute + " of " + name;
-      if (version > 1) expect_own({0, std::uint8_t((body.byte(1) & 3) != 0 ? 2 : 0), body}, what);
-      const std::uint64_t type_at = at + padded(name_size), shape_at = type_at + padded(type_size);
-      made.attributes[attribute] = values_.in_place(stored_type(body.part(type_at, type_size), what),
-                                                    stored_shape(body.part(shape_at, shape_size), what),
-                                                    body.from(shape_at + padded(shape_size)), what);
+    if (kind != H5T_INTEGER && kind != H5T_FLOAT) {
+      throw InputError(what + " holds values that are neither numbers nor text (such as compounds, enumerations, " +
+                       "truth values of h5py); it is not rvelab's: leave it out");
     }
-  }
-
-  void member(const std::string& group, const std::string& name, std::uint64_t header, int depth) {
-    const std::string path = (group == "/" ? "/" : group + "/") + name;
-    if (name.empty() || name.find('/') != std::string::npos || tree_.objects.contains(path)) {
-      file_.damaged("a name in " + group + " is none, or is there twice");
+    for (const NumberType& number : numbers_) {
+      if (H5Tequal(type, number.id) > 0) return number.type;
     }
-    object(path, header, depth + 1);
+    throw InputError(what +
+                     " holds numbers of another layout (big-endian, or of odd sizes); allowed: little-endian "
+                     "integers of 8, 16, 32 and 64 bits and floating-point numbers of 32 and 64; write them so");
   }
 
-  void group(const std::string& name, std::uint64_t tree, std::uint64_t heap, int depth) {
-    const Part head = file_.from(heap);
-    if (!head.begins("HEAP")) head.damaged("the names of " + name + " are not where they should be");
-    const Part names = file_.part(head.address(24), head.address(8));
-    constexpr int highest_level = 8;
-    node(name, tree, names, highest_level + 1, depth);
-  }
-
-  void node(const std::string& name, std::uint64_t address, const Part& names, int level_above, int depth) {
-    const Part bytes = file_.from(address);
-    if (!bytes.begins("TREE") || bytes.byte(4) != 0 || bytes.byte(5) >= level_above || !seen_.insert(address).second)
-      bytes.damaged("the index of " + name + " is none");
-    const auto entries = bytes.get<std::uint16_t>(6);
-    for (std::uint64_t k = 0; k < entries; ++k) {
-      const std::uint64_t child = bytes.address(32 + 16 * k);
-      if (bytes.byte(5) > 0)
-        node(name, child, names, bytes.byte(5), depth);
-      else
-        leaf(name, child, names, depth);
-    }
-  }
-
-  void leaf(const std::string& group, std::uint64_t address, const Part& names, int depth) {
-    const Part bytes = file_.from(address);
-    if (!bytes.begins("SNOD") || !seen_.insert(address).second) bytes.damaged("the index of " + group + " is none");
-    const auto entries = bytes.get<std::uint16_t>(6);
-    constexpr std::uint32_t soft = 2;
-    for (std::uint64_t k = 0; k < entries; ++k) {
-      const Part entry = bytes.part(8 + 40 * k, 40);
-      const std::string name = names.text_to_nul(entry.address(0));
-      if (entry.get<std::uint32_t>(16) == soft) {
-        refuse_link(group, name, names.text_to_nul(entry.get<std::uint32_t>(24)), false);
-      }
-      member(group, name, entry.address(8), depth);
-    }
-  }
-
-  [[noreturn]] void refuse_link(const std::string& group, const std::string& name, const std::string& target,
-                                bool external) const {
-    refuse(
-        (group == "/" ? "/" : group + "/") + name,
-        std::string("is a link to ") + (external ? "another file" : "another name") + " (" + target.substr(0, 60) + ")",
-        "allowed: objects of the file itself, each under one name; copy what is meant into its place");
-  }
-
-  /// A group that HDF5 has turned into its newer form, because a link of another file was put into it.
-  void newer_group(const std::string& name, const std::vector<HeaderMessage>& messages, int depth) {
-    const Part& info = find(messages, link_info_message)->body;
-    if (info.address((info.byte(1) & 1) != 0 ? 10 : 2) != nowhere) {
-      refuse(name, "keeps its members in a newer layout of HDF5 (external links, order of creation)",
-             "allowed: objects of the file itself; copy them to a file with h5py's own settings");
-    }
-    for (const HeaderMessage& message : messages) {
-      if (message.type == link_message) link(name, message.body, depth);
-    }
-  }
-
-  void link(const std::string& group, const Part& body, int depth) {
-    enum { hard = 0, soft = 1 };
-    const auto flags = body.byte(1);
-    std::uint64_t at = 2;
-    const int kind = (flags & 8) != 0 ? body.byte(at++) : int(hard);
-    at += ((flags & 4) != 0 ? 8 : 0) + ((flags & 16) != 0 ? 1 : 0);
-    std::uint64_t length = 0;
-    const int length_bytes = 1 << (flags & 3);
-    for (int k = 0; k < length_bytes; ++k) length |= std::uint64_t{body.byte(at++)} << (8 * k);
-    const std::string name = body.text(at, length);
-    at += length;
-    if (kind == hard) return member(group, name, body.address(at), depth);
-    const auto size = body.get<std::uint16_t>(at);
-    const bool external = kind != soft;
-    // Of another file: a byte of flags, its name, NUL, the name in it, NUL.
-    refuse_link(group, name, external ? body.part(at + 2, size).text_to_nul(1) : body.text(at + 2, size), external);
+  std::vector<std::uint64_t> shape_of(hid_t space, const std::string& what) const {
+    constexpr int most = 8;
+    if (H5Sget_simple_extent_type(space) == H5S_NULL) return {0};
+    const int dimensions = ok(H5Sget_simple_extent_ndims(space));
+    if (dimensions > most) throw InputError(what + " has more than 8 dimensions; it is not rvelab's: leave it out");
+    hsize_t extents[most];
+    ok(H5Sget_simple_extent_dims(space, extents, nullptr));
+    return {extents, extents + dimensions};
   }
 
   const std::string& path_;
+  std::span<const std::byte> file_;
   Tree& tree_;
-  Part file_;
-  ValueReader values_;
-  std::set<std::uint64_t> seen_;  ///< addresses of headers, nodes and leaves
-  std::uint64_t messages_ = 0;
+  std::vector<NumberType> numbers_;
+  std::set<haddr_t> seen_;   ///< objects
+  std::uint64_t given_ = 0;  ///< bytes of values so far
 };
 
 }  // namespace
 
-Tree read(const std::string& path, std::vector<std::byte> file) {
+Tree read(const std::string& path, std::span<const std::byte> file) {
+  const Turn turn;
   Tree tree;
-  tree.storage.push_back(std::move(file));
-  Reader(path, tree).read();
+  Reader(path, file, tree).read();
   return tree;
 }
 

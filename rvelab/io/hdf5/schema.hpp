@@ -13,25 +13,21 @@ inline constexpr int format_major = 1;
 inline constexpr int format_minor = 12;
 /// Minor version of a file, or of a part of a journal. 0: not stated, as in journals before 1.10.
 int minor_version(const Hdf5File& file);
-/// Files from this minor version on are sealed.
-inline constexpr int sealed_minor = 4;
 
 /// Sets the file's attributes `format` and `format_version`.
 void stamp(Hdf5File& file, FileKind kind);
 void stamp(Hdf5File& file, const std::string& format);
 
-/// Checks the attributes of a file that must be of this format, and its seal. InputError as checked_kind.
+/// Checks the attributes of a file that must be of this format. InputError as checked_kind.
 void check_format(const Hdf5File& file, const std::string& format);
 
 /// Format of the file of a pool (rvelab/h5), whose RVEs are groups of this one.
 inline constexpr const char* pool_format = "rvelab pool";
 inline constexpr const char* pool_rves = "/rves";
 
-/// Checks the attributes and returns the kind; a pool is of the kind specimen. InputError: not rvelab's, of a newer
-/// format, or of a format that is sealed without a seal.
+/// Checks the attributes and returns the kind; a pool is of the kind specimen. InputError: not rvelab's, or of a newer
+/// format.
 FileKind checked_kind(const Hdf5File& file);
-/// The same, with or without a seal.
-FileKind kind_without_seal(const Hdf5File& file);
 /// Whether its attribute `format` is one of rvelab's.
 bool is_rvelab(const Hdf5File& file);
 

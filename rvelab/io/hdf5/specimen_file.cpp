@@ -82,7 +82,7 @@ bool is_rvelab(const Hdf5File& file) {
   return format == specimen_format || format == records_format || format == pool_format;
 }
 
-FileKind kind_without_seal(const Hdf5File& file) {
+FileKind checked_kind(const Hdf5File& file) {
   const std::string format = file.attribute("format");
   if (!is_rvelab(file)) {
     throw InputError(file.path() + ": its attribute format is \"" + format + "\"; allowed: \"" + specimen_format +
@@ -92,31 +92,11 @@ FileKind kind_without_seal(const Hdf5File& file) {
   return format == records_format ? FileKind::records : FileKind::specimen;
 }
 
-namespace {
-
-void expect_seal(const Hdf5File& file) {
-  const auto [major, minor] = format_version(file);
-  if (!file.sealed() && (major > 1 || minor >= sealed_minor)) {
-    throw InputError(file.path() +
-                     ": lacks the checksum at its end: it is truncated, or another program has changed it; copy it "
-                     "again, or, if the change is meant, take it over with `rvelab seal " +
-                     file.path() + " -o NEW.h5`");
-  }
-}
-
-}  // namespace
-
-FileKind checked_kind(const Hdf5File& file) {
-  const FileKind kind = kind_without_seal(file);
-  expect_seal(file);
-  return kind;
-}
-
 void check_format(const Hdf5File& file, const std::string& format) {
   const std::string found = file.attribute("format");
   if (found != format)
     throw InputError(file.path() + ": its attribute format is \"" + found + "\"; allowed: \"" + format + "\"");
-  expect_seal(file);
+  format_version(file);
 }
 
 void put_specimen(Hdf5File& file, const std::string& group, const Specimen& specimen) {
@@ -138,7 +118,7 @@ Specimen get_specimen(const Hdf5File& file, const std::string& group) {
 }
 
 std::string specimen_group(const Hdf5File& file) {
-  if (kind_without_seal(file) == FileKind::records) return "/specimen";
+  if (checked_kind(file) == FileKind::records) return "/specimen";
   if (file.attribute("format") != pool_format) return "";
   const std::vector<std::string> rves = file.groups(pool_rves);
   if (rves.size() == 1) return std::string(pool_rves) + "/" + rves.front();
@@ -160,7 +140,7 @@ void write_specimen(const Specimen& specimen, const std::string& path, const Spe
 }
 
 std::optional<SpecimenOrigin> get_origin(const Hdf5File& file) {
-  if (kind_without_seal(file) != FileKind::specimen || !file.has("/provenance")) return std::nullopt;
+  if (checked_kind(file) != FileKind::specimen || !file.has("/provenance")) return std::nullopt;
   SpecimenOrigin origin;
   Reader reader(file, "");
   describe_origin(reader, origin);
@@ -169,15 +149,10 @@ std::optional<SpecimenOrigin> get_origin(const Hdf5File& file) {
   return origin;
 }
 
-std::optional<SpecimenOrigin> read_origin(const std::string& path) {
-  const auto file = Hdf5File::open(path);
-  checked_kind(file);
-  return get_origin(file);
-}
+std::optional<SpecimenOrigin> read_origin(const std::string& path) { return get_origin(Hdf5File::open(path)); }
 
-Specimen read_specimen(const std::string& path, Seal seal) {
-  const auto file = Hdf5File::open(path, seal);
-  checked_kind(file);
+Specimen read_specimen(const std::string& path) {
+  const auto file = Hdf5File::open(path);
   return get_specimen(file, specimen_group(file));
 }
 

@@ -32,8 +32,8 @@ std::optional<SpecimenOrigin> read_origin(const std::string& path);
 
 /// Reads the specimen of a specimen file, the end state of a record file, or the RVE of a pool file that holds it
 /// alone. Throws InputError naming the file and what is wrong: missing, not HDF5, truncated, of a newer format, not
-/// rvelab's, a field out of its range (check_specimen), a pool of many, without the seal that is required.
-Specimen read_specimen(const std::string& path, Seal seal = Seal::if_any);
+/// rvelab's, a field out of its range (check_specimen), a pool of many, without its seal.
+Specimen read_specimen(const std::string& path);
 
 /// Kind of an rvelab file. Throws InputError as read_specimen does.
 FileKind file_kind(const std::string& path);

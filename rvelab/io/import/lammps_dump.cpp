@@ -56,9 +56,9 @@ std::vector<Timestep> frames_of(const std::string& path, std::string_view text) 
 }
 
 /// Reads one timestep and believes nothing that is not whole.
-class TimestepReader {
+class FrameReader {
  public:
-  TimestepReader(const std::string& path, const Text& text, const Timestep& frame)
+  FrameReader(const std::string& path, const Text& text, const Timestep& frame)
       : path_(path),
         text_(text),
         lines_(std::string_view(*text).substr(0, frame.end).substr(frame.begin), frame.line) {}
@@ -250,7 +250,7 @@ class TimestepReader {
 
 LammpsAtoms whole_frame(const std::string& path, const Text& text, const Timestep& frame) {
   const double metres = frame.units.empty() ? 1 : metres_of(frame.units, frame.units_place);
-  return TimestepReader(path, text, frame).read(metres);
+  return FrameReader(path, text, frame).read(metres);
 }
 
 /// The last frame of a timestep; a run that went on from an earlier state has it twice.
