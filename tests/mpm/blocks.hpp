@@ -5,9 +5,9 @@
 #include <functional>
 #include <memory>
 
-#include "tools/mpm/elastic.hpp"
-#include "tools/mpm/energy.hpp"
-#include "tools/mpm/solver.hpp"
+#include "tools/mpm/materials/elastic.hpp"
+#include "tools/mpm/step/energy.hpp"
+#include "tools/mpm/step/solver.hpp"
 
 namespace mpm::test {
 

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "tools/mpm/rock_shape.hpp"
+#include "tools/mpm/shapes/shape.hpp"
 
 namespace mpm::test {
 

@@ -5,7 +5,7 @@
 
 #include "tests/catch.hpp"
 #include "tests/folder.hpp"
-#include "tools/mpm/setup.hpp"
+#include "tools/mpm/setup/setup.hpp"
 
 namespace mpm::test {
 

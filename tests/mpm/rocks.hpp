@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tests/mpm/blocks.hpp"
-#include "tools/mpm/rocks.hpp"
+#include "tools/mpm/rocks/rocks.hpp"
 
 namespace mpm::test {
 
@@ -25,7 +25,6 @@ Rock<D>& add_rock(Rocks<D>& rocks, const RockShape<D>& shape, double density, co
 template <int D>
 void put_rocks(Solver<D>& solver, std::unique_ptr<Rocks<D>> rocks) {
   solver.rocks = std::move(rocks);
-  solver.bodies.rocks = solver.rocks.get();
   for (const auto& point : solver.points) {
     solver.rocks->add_ball(point, ghost_radius<D>(point, solver.rocks->soil.porosity), false);
   }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tests/mpm/blocks.hpp"
-#include "tools/mpm/fluid.hpp"
+#include "tools/mpm/water/fluid.hpp"
 
 namespace mpm::test {
 

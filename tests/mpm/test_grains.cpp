@@ -7,11 +7,11 @@
 #include "tests/catch.hpp"
 #include "tests/child.hpp"
 #include "tests/folder.hpp"
-#include "tools/mpm/checkpoint.hpp"
-#include "tools/mpm/files.hpp"
-#include "tools/mpm/output.hpp"
-#include "tools/mpm/run.hpp"
-#include "tools/mpm/setup.hpp"
+#include "tools/mpm/app/run.hpp"
+#include "tools/mpm/files/hdf5.hpp"
+#include "tools/mpm/output/checkpoint.hpp"
+#include "tools/mpm/output/output.hpp"
+#include "tools/mpm/setup/setup.hpp"
 
 using namespace mpm;
 using rvelab::test::bytes_of;

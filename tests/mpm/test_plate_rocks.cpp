@@ -113,7 +113,7 @@ TEST_CASE("a plate that soil and a rock carry side by side settles as their stif
     ++samples;
   }
   // Soil in plane strain, free to one side: E/(1 - nu^2); the disc between two walls: half of pi/4 E*
-  // (rock_contact.hpp).
+  // (rocks/contact.hpp).
   const double of_soil = soil.young / (1 - 0.0625), of_rock = pi / 8 * 5e7 / (2 * (1 - 0.0625));
   CHECK(settled / samples == Approx(load / (of_soil + of_rock)).epsilon(0.01));
   const double took = solver->time - start;

@@ -6,8 +6,8 @@
 #include "tests/catch.hpp"
 #include "tests/folder.hpp"
 #include "tests/mpm/scene_runs.hpp"
-#include "tools/mpm/output.hpp"
-#include "tools/mpm/watch.hpp"
+#include "tools/mpm/output/output.hpp"
+#include "tools/mpm/step/watch.hpp"
 
 using namespace mpm;
 using namespace mpm::test;

@@ -4,7 +4,7 @@
 #include "tests/catch.hpp"
 #include "tests/child.hpp"
 #include "tests/folder.hpp"
-#include "tools/mpm/setup.hpp"
+#include "tools/mpm/setup/setup.hpp"
 
 using namespace mpm;
 using Catch::Matchers::Contains;

@@ -5,8 +5,8 @@
 #include "tests/mpm/blocks.hpp"
 #include "tests/mpm/rocks_alone.hpp"
 #include "tests/mpm/scene_runs.hpp"
-#include "tools/mpm/rocks.hpp"
-#include "tools/mpm/setup.hpp"
+#include "tools/mpm/rocks/rocks.hpp"
+#include "tools/mpm/setup/setup.hpp"
 
 using Catch::Matchers::Contains;
 using mpm::test::pi;

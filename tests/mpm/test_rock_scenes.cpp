@@ -5,7 +5,7 @@
 #include "tests/folder.hpp"
 #include "tests/mpm/rocks.hpp"
 #include "tests/mpm/rocks_alone.hpp"
-#include "tools/mpm/setup.hpp"
+#include "tools/mpm/setup/setup.hpp"
 
 using namespace mpm;
 using mpm::test::pi;

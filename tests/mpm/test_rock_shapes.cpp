@@ -2,7 +2,7 @@
 // itself, written down here, or to brute force.
 #include "tests/catch.hpp"
 #include "tests/mpm/rock_pairs.hpp"
-#include "tools/mpm/rock_shape_superquadric.hpp"
+#include "tools/mpm/shapes/superquadric.hpp"
 
 using namespace mpm;
 using namespace mpm::test;

@@ -3,7 +3,7 @@
 #include <fstream>
 
 #include "tests/mpm/scene_runs.hpp"
-#include "tools/mpm/setup.hpp"
+#include "tools/mpm/setup/setup.hpp"
 
 using namespace mpm;
 using Catch::Matchers::Contains;

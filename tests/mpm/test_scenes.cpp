@@ -8,7 +8,7 @@
 #include "tests/catch.hpp"
 #include "tests/child.hpp"
 #include "tests/folder.hpp"
-#include "tools/mpm/scene.hpp"
+#include "tools/mpm/scene/scene.hpp"
 
 using namespace mpm;
 using rvelab::test::bytes_of;

@@ -1,5 +1,5 @@
 #include "tests/catch.hpp"
-#include "tools/mpm/plastic.hpp"
+#include "tools/mpm/materials/plastic.hpp"
 
 using namespace mpm;
 

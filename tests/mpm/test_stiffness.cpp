@@ -4,8 +4,8 @@
 #include "tests/catch.hpp"
 #include "tests/child.hpp"
 #include "tests/folder.hpp"
-#include "tools/mpm/energy.hpp"
-#include "tools/mpm/setup.hpp"
+#include "tools/mpm/setup/setup.hpp"
+#include "tools/mpm/step/energy.hpp"
 
 using namespace mpm;
 using rvelab::test::Child;

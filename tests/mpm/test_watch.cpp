@@ -3,7 +3,7 @@
 
 #include "tests/catch.hpp"
 #include "tests/mpm/blocks.hpp"
-#include "tools/mpm/watch.hpp"
+#include "tools/mpm/step/watch.hpp"
 
 using namespace mpm;
 using namespace mpm::test;

@@ -1,5 +1,5 @@
 // Threads that share out pieces of work.
-#include "tools/mpm/workers.hpp"
+#include "tools/mpm/grid/workers.hpp"
 
 #include <algorithm>
 #include <array>

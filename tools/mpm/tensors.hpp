@@ -4,7 +4,6 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <stdexcept>
-#include <string>
 
 namespace mpm {
 
@@ -14,11 +13,6 @@ template <int D>
 using Mat = Eigen::Matrix<double, D, D>;
 
 inline constexpr const char* axis_names[3] = {"x", "y", "z"};
-
-/// An error that the user can correct: the program prints it in one line and ends with code 2.
-struct InputError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
 
 /// exp(L) - I: the finite map of a constant velocity gradient over a step (L is the gradient times the step). A
 /// rotation keeps its volume, which I + L does not.

@@ -1,0 +1,266 @@
+#include "tools/mpm/grid/workers.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "tools/mpm/error.hpp"
+#include "tools/mpm/grid/clock.hpp"
+
+namespace mpm {
+namespace {
+
+// The gate: threads inside, one bit whether more may come, number of the call.
+constexpr std::uint64_t inside = 0xffff, open = 0x10000, next_call = 0x20000;
+
+// s. A step has a score of calls, many of which are shorter than it takes to wake a thread. A thread that came too late
+// may have been given the core of the caller: it does not keep it for long.
+constexpr double until_sleep = 150e-6, until_sleep_late = 20e-6, until_help = 20e-6;
+// s. A loss as large as `loss` ends the sharing for `patience` times as long; gains are put by up to `most`, so that
+// one bad moment does not end it. A loop that is not done in `brief` alone has an account of its own.
+constexpr double loss = 5e-3, most = 20e-3, patience = 20, brief = 2e-3;
+
+void rest() {
+#if defined(__x86_64__)
+  __builtin_ia32_pause();
+#elif defined(__aarch64__)
+  asm volatile("yield");
+#endif
+}
+
+/// Whether it comes true within so many seconds. Never gives way: on a busy machine the core would be gone for a slice
+/// of the others' time, thousands of times what is waited for.
+template <class Condition>
+bool soon(double seconds, const Condition& condition) {
+  if (condition()) return true;
+  const double until = wall_seconds() + seconds;
+  do {
+    for (int k = 0; k < 16; ++k) {
+      rest();
+      if (condition()) return true;
+    }
+  } while (wall_seconds() < until);
+  return false;
+}
+
+}  // namespace
+
+WorkOrder::WorkOrder(std::int64_t pieces, const std::vector<Pair>& pairs)
+    : first(std::size_t(pieces) + 1, 0), before(pairs.size()) {
+  for (const auto& pair : pairs) ++first[std::size_t(pair.after) + 1];
+  for (std::size_t k = 1; k < first.size(); ++k) first[k] += first[k - 1];
+  auto next = first;
+  for (const auto& pair : pairs) before[std::size_t(next[std::size_t(pair.after)]++)] = pair.before;
+}
+
+Workers::Workers(int count) {
+  if (count <= 0) count = int(std::max(1u, std::thread::hardware_concurrency()));
+  try {
+    for (int k = 1; k < count; ++k) threads_.emplace_back([this, k] { serve(k); });
+  } catch (const std::exception&) {
+    const int started = this->count();
+    end();
+    throw InputError("-j " + std::to_string(count) + ": the system starts no more than " + std::to_string(started) +
+                     " threads here; give fewer");
+  }
+  parts_ = std::vector<Part>(count);
+}
+
+Workers::~Workers() { end(); }
+
+void Workers::end() {
+  {
+    const std::lock_guard lock(mutex_);
+    stop_ = true;
+  }
+  begin_.notify_all();
+  for (auto& thread : threads_) thread.join();
+}
+
+/// Alone or together. A loop that is begun alone and turns out long is gone on with together.
+void Workers::share(std::int64_t pieces, std::int64_t parts, const WorkOrder* order,
+                    const std::function<void(std::int64_t)>& work) {
+  if (threads_.empty() || pieces <= 1 || sharing == Sharing::never) {
+    for (std::int64_t k = 0; k < pieces; ++k) work(k);
+    return;
+  }
+  const double begin = wall_seconds();
+  double now = begin;
+  std::int64_t first = 0;
+  Account* account = &brief_;
+  if (sharing == Sharing::measured && now < brief_.alone_until) {
+    account = &long_;
+    while (first < pieces && (now < begin + brief || now < long_.alone_until || first == pieces - 1)) {
+      work(first++);
+      now = wall_seconds();
+    }
+    if (first == pieces) return;
+  }
+  work_ = &work;
+  order_ = order;
+  meet(first, pieces, parts);
+  work_ = nullptr;
+  if (failed_) {
+    failed_ = false;
+    std::rethrow_exception(std::exchange(failure_, nullptr));
+  }
+  book(*account, now);
+}
+
+/// Pieces from `first` on, with those that come.
+void Workers::meet(std::int64_t first, std::int64_t pieces, std::int64_t parts) {
+  own_parts_ = parts > 1;
+  for (std::int64_t k = 0; k < std::int64_t(parts_.size()); ++k) {
+    Part& part = parts_[std::size_t(k)];
+    part.next = k < parts ? first + (pieces - first) * k / parts : 0;
+    part.end = k < parts ? first + (pieces - first) * (k + 1) / parts : 0;
+    part.made = 0;
+    part.worked = part.waited = 0;
+  }
+  if (order_ != nullptr) {
+    done_.assign(std::size_t(pieces), 0);
+    std::fill_n(done_.begin(), first, 1);
+  }
+  gate_ += next_call + open;
+  if (sleeping_ > 0) {
+    // A thread on its way to sleep holds this until it can be woken.
+    { const std::lock_guard lock(mutex_); }
+    begin_.notify_all();
+  }
+  take(0);
+  gate_ -= open;
+  await(until_sleep, [this] { return (gate_ & inside) == 0; });
+}
+
+/// Alone it had taken the caller's time at work and that of the others: theirs by their clocks, but no more than the
+/// caller took for as many pieces, for they may have been off their cores meanwhile.
+void Workers::book(Account& account, double begin) const {
+  const double end = wall_seconds();
+  const Part& caller = parts_[0];
+  double alone = caller.worked;
+  for (std::size_t k = 1; k < parts_.size(); ++k) {
+    const Part& part = parts_[k];
+    const double by_pieces = caller.made > 0 ? caller.worked / double(caller.made) * double(part.made) : part.worked;
+    alone += std::min(part.worked, by_pieces);
+  }
+  account.balance = std::min(most, account.balance + alone - (end - begin));
+  if (account.balance > -loss) return;
+  account.alone_until = end - patience * account.balance;
+  account.balance = 0;
+}
+
+void Workers::take(int thread) {
+  Part& own = parts_[std::size_t(thread)];
+  const double begin = wall_seconds();
+  try {
+    make(own, own);
+    if (!own_parts_ || !others_finish(thread, own)) {
+      for (std::size_t k = 1; k < parts_.size(); ++k) make(parts_[(std::size_t(thread) + k) % parts_.size()], own);
+    }
+  } catch (...) {
+    fail();
+  }
+  own.worked = wall_seconds() - begin - own.waited;
+}
+
+/// Whether they begin all of their own. A piece that is taken over moves its points to this core's cache, and the next
+/// loop moves them back: a thread that is behind by less than a wake-up is waited for, if it has come.
+bool Workers::others_finish(int thread, Part& own) {
+  const auto all_begun = [this] {
+    return std::all_of(parts_.begin(), parts_.end(), [](const Part& part) { return part.next >= part.end; });
+  };
+  const auto nobody_came = [&] { return thread == 0 && (gate_ & inside) == 0; };
+  const double begin = wall_seconds();
+  soon(until_help, [&] { return all_begun() || nobody_came(); });
+  own.waited += wall_seconds() - begin;
+  return all_begun();
+}
+
+/// What is left of a part.
+void Workers::make(Part& from, Part& own) {
+  for (std::int64_t piece; (piece = from.next.fetch_add(1)) < from.end;) {
+    if (order_ != nullptr) await_before(piece, own);
+    if (failed_) return;
+    (*work_)(piece);
+    ++own.made;
+    if (order_ == nullptr) continue;
+    std::atomic_ref(done_[std::size_t(piece)]).store(1);
+    tell();
+  }
+}
+
+void Workers::await_before(std::int64_t piece, Part& own) {
+  for (auto k = order_->first[std::size_t(piece)]; k < order_->first[std::size_t(piece) + 1]; ++k) {
+    unsigned char& before = done_[std::size_t(order_->before[std::size_t(k)])];
+    const auto is_done = [&] { return std::atomic_ref(before).load() != 0 || failed_; };
+    if (is_done()) continue;
+    const double begin = wall_seconds();
+    await(until_sleep, is_done);
+    own.waited += wall_seconds() - begin;
+  }
+}
+
+/// Waits, after a while asleep, until tell() finds it true: a sleeper leaves its core to whom it waits for.
+template <class Condition>
+void Workers::await(double spinning, const Condition& condition) {
+  if (soon(spinning, condition)) return;
+  std::unique_lock lock(mutex_);
+  ++waiting_;
+  end_.wait(lock, condition);
+  --waiting_;
+}
+
+void Workers::tell() {
+  if (waiting_ == 0) return;
+  { const std::lock_guard lock(mutex_); }
+  end_.notify_all();
+}
+
+/// Nothing more is begun.
+void Workers::fail() {
+  for (Part& part : parts_) part.next = part.end;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!failed_) failure_ = std::current_exception();
+    failed_ = true;
+  }
+  end_.notify_all();
+}
+
+/// Into a call that this thread has not been in, if one is open.
+bool Workers::enter(std::uint64_t& seen) {
+  std::uint64_t gate = gate_;
+  while ((gate & open) != 0 && gate / next_call != seen) {
+    if (!gate_.compare_exchange_weak(gate, gate + 1)) continue;
+    seen = gate / next_call;
+    return true;
+  }
+  return false;
+}
+
+void Workers::serve(int thread) {
+  std::uint64_t seen = 0;
+  double patient = until_sleep;
+  while (!stop_) {
+    bool entered = false;
+    const auto called = [&] { return stop_ || (entered = enter(seen)); };
+    if (!soon(patient, called)) {
+      const auto is_open = [&] {
+        const std::uint64_t gate = gate_;
+        return stop_ || ((gate & open) != 0 && gate / next_call != seen);
+      };
+      std::unique_lock lock(mutex_);
+      ++sleeping_;
+      begin_.wait(lock, is_open);
+      --sleeping_;
+      patient = until_sleep_late;
+      continue;
+    }
+    if (!entered) return;
+    take(thread);
+    --gate_;
+    tell();
+    patient = until_sleep;
+  }
+}
+
+}  // namespace mpm

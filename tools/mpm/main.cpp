@@ -1,3 +1,0 @@
-#include "tools/mpm/program.hpp"
-
-int main(int argc, char** argv) { return mpm::program(argc, argv, {}); }
