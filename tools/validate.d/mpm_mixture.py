@@ -70,7 +70,7 @@ SLOW = ("--set", "time.duration_s=0.14", "--set", "body.top.motion=[[0,0,0,0],[0
 CELLS = {"3.75 mm": (), "1.875 mm": ("--set", "grid.cell_m=1.875e-3", "--set", "region.0.points_per_cell=1")}
 found, found_open = {}, {}
 # At the surface of rocks the soil starts at a quarter of the pressure, and the plates consolidate it, with GIMP
-# (tools/mpm/README.md, Limits).
+# (tools/mpm/rocks/README.md, Limits).
 MOVING = ", pressure_until_s=0.02, motion=[[0,0,0,0],[0.02,0,0,0],[0.022,0,0,-0.05]]"
 
 
