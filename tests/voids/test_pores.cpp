@@ -21,7 +21,7 @@ const double pi = std::acos(-1.0);
 
 /// 27 spheres of radius 0.5 that touch along the primitive vectors.
 struct Crystal {
-  Cell cell;
+  PeriodicCell cell;
   std::vector<Ball> balls;
 
   explicit Crystal(const Matrix3& primitive) {
@@ -108,10 +108,11 @@ TEST_CASE("pores of recorded packings touch as many grains as they need and are 
     const Specimen specimen = reference_specimen(name);
     const auto balls = balls_of(specimen);
     const int d = specimen.cell.dimension;
-    const PowerCells cells = power_cells(specimen.cell, balls);
-    const Pores found = pores(specimen.cell, balls, cells);
+    const PeriodicCell cell{d, specimen.cell.lattice};
+    const PowerCells cells = power_cells(cell, balls);
+    const Pores found = pores(cell, balls, cells);
     const double r = balls[0].radius;
-    const Copies copies = copies_within(specimen.cell, balls, 6 * r);
+    const Copies copies = copies_within(cell, balls, 6 * r);
     CAPTURE(name, found.bodies.size(), found.throats.size(), cells.simplices.size());
     CHECK(found.bodies.size() > 0.8 * cells.simplices.size());
     for (std::size_t k = 0; k < found.bodies.size(); k += 7) {

@@ -15,8 +15,8 @@ using namespace rvelab::voids;
 
 namespace {
 
-Cell cell_of(int dimension, const Matrix3& lattice) {
-  Cell cell;
+PeriodicCell cell_of(int dimension, const Matrix3& lattice) {
+  PeriodicCell cell;
   cell.dimension = dimension;
   cell.lattice = lattice;
   return cell;
@@ -29,7 +29,7 @@ Matrix3 sheared(double xy, double xz, double yz) {
   return lattice;
 }
 
-std::vector<Ball> random_balls(const Cell& cell, int count, double least, double most, unsigned seed) {
+std::vector<Ball> random_balls(const PeriodicCell& cell, int count, double least, double most, unsigned seed) {
   std::mt19937_64 engine(seed);
   const auto uniform = [&] { return double(engine() >> 11) * 0x1p-53; };
   std::vector<Ball> balls;
@@ -62,7 +62,7 @@ TEST_CASE("power cells fill a sheared cell, whatever the sizes of the grains") {
     for (const double shear : {0.0, 0.5, 2.7}) {
       for (const double most : {0.02, 0.1, 0.3}) {
         CAPTURE(d, shear, most);
-        Cell cell = cell_of(d, sheared(shear, d == 3 ? -0.6 * shear : 0, d == 3 ? 0.4 * shear : 0));
+        PeriodicCell cell = cell_of(d, sheared(shear, d == 3 ? -0.6 * shear : 0, d == 3 ? 0.4 * shear : 0));
         const auto balls = random_balls(cell, 200, 0.01, most, 7);
         const PowerCells cells = power_cells(cell, balls);
         CHECK(std::abs(sum_of(cells) / cell.volume() - 1) < 1e-12);
@@ -79,7 +79,7 @@ TEST_CASE("power cells fill a sheared cell, whatever the sizes of the grains") {
 
 TEST_CASE("the share of points that are nearest to a grain in power is its cell's share of the volume") {
   for (const int d : {2, 3}) {
-    const Cell cell = cell_of(d, sheared(1.4, d == 3 ? 0.5 : 0, d == 3 ? -0.7 : 0));
+    const PeriodicCell cell = cell_of(d, sheared(1.4, d == 3 ? 0.5 : 0, d == 3 ? -0.7 : 0));
     const auto balls = random_balls(cell, 12, 0.02, 0.25, 3);
     const PowerCells cells = power_cells(cell, balls);
     const Copies copies = copies_within(cell, balls, 1.5);
@@ -114,7 +114,7 @@ TEST_CASE("two grains of a row are parted by the planes of equal power, at their
 
 TEST_CASE("a lone grain has the whole cell, and one within another none") {
   for (const int d : {2, 3}) {
-    const Cell cell = cell_of(d, sheared(0.4, d == 3 ? 0.3 : 0, d == 3 ? 0.2 : 0));
+    const PeriodicCell cell = cell_of(d, sheared(0.4, d == 3 ? 0.3 : 0, d == 3 ? 0.2 : 0));
     CHECK(power_cells(cell, {{{0.1, 0.2, 0}, 0.3}}).volume[0] == Approx(cell.volume()).epsilon(1e-13));
     const PowerCells two = power_cells(cell, {{{0.1, 0.2, 0}, 0.4}, {{0.12, 0.2, 0}, 0.01}});
     CHECK(two.volume[0] == Approx(cell.volume()).epsilon(1e-13));
@@ -131,7 +131,7 @@ TEST_CASE("the cells of a crystal are equal, however its spheres lie on common s
     for (int x = 0; x < 3; ++x)
       for (int y = 0; y < 3; ++y)
         for (int z = 0; z < 3; ++z) balls.push_back({primitive * Vector3(x - 1, y - 1, z - 1), 0.5});
-    const Cell cell = cell_of(3, 3 * primitive);
+    const PeriodicCell cell = cell_of(3, 3 * primitive);
     for (const double volume : power_cells(cell, balls).volume)
       CHECK(volume == Approx(primitive.determinant()).epsilon(1e-10));
   }

@@ -7,13 +7,12 @@
 #include <iostream>
 #include <string>
 
-#include "rvelab/cli/report.hpp"
 #include "rvelab/error.hpp"
-#include "rvelab/io/journal/journal.hpp"
-#include "rvelab/io/journal/recorded_test.hpp"
 #include "rvelab/io/publish.hpp"
 #include "rvelab/io/utf8.hpp"
+#include "tools/voids/listing.hpp"
 #include "tools/voids/pores.hpp"
+#include "tools/voids/specimen.hpp"
 
 namespace rvelab::voids {
 namespace {
@@ -35,7 +34,7 @@ double quantile(std::vector<double> values, double share) {
 }
 
 /// Number, 10 %, 50 % and 90 % values; `unit` ends the keys.
-void add_distribution(cli::Listing& listing, const std::string& name, const std::vector<double>& values,
+void add_distribution(Listing& listing, const std::string& name, const std::vector<double>& values,
                       const std::string& unit) {
   const std::string end = unit.empty() ? "" : "_" + unit;
   for (const int percent : {10, 50, 90})
@@ -48,38 +47,27 @@ std::vector<double> radii(const std::vector<Pore>& pores) {
   return all;
 }
 
-std::vector<Ball> balls_of(const Specimen& specimen, const std::string& file) {
-  if (!is_round(specimen.shape))
-    throw InputError(file +
-                     ": the grains are ellipses; power cells are those of discs and spheres, and a cell by the "
-                     "circle of its area would cut an ellipse. Give a specimen of discs or spheres");
-  if (specimen.grains.size() == 0) throw InputError(file + ": holds no grain; give a specimen that has some");
-  std::vector<Ball> balls;
-  for (std::size_t k = 0; k < specimen.grains.size(); ++k)
-    balls.push_back({specimen.grains.position[k], specimen.grains.radius[k]});
-  return balls;
-}
-
 std::string line_of(const Vector3& place) {
   return io::exact(place[0]) + "," + io::exact(place[1]) + "," + io::exact(place[2]);
 }
 
-std::string pores_table(const Cell& cell, const std::vector<Pore>& pores) {
+std::string pores_table(const Matrix3& rotation, const std::vector<Pore>& pores) {
   std::string text = "x_m,y_m,z_m,radius_m\n";
-  for (const Pore& pore : pores) text += line_of(cell.rotation * pore.centre) + "," + io::exact(pore.radius) + "\n";
+  for (const Pore& pore : pores) text += line_of(rotation * pore.centre) + "," + io::exact(pore.radius) + "\n";
   return text;
 }
 
-std::string cells_table(const Specimen& specimen, const PowerCells& cells, const std::vector<double>& ratios) {
+std::string cells_table(const PackedGrains& grains, const PowerCells& cells, const std::vector<double>& ratios) {
   std::string text = "id,x_m,y_m,z_m,radius_m,cell_volume_m3,void_ratio\n";
-  for (std::size_t k = 0; k < ratios.size(); ++k)
-    text += std::to_string(specimen.grains.id[k]) + "," +
-            line_of(specimen.cell.rotation * specimen.grains.position[k]) + "," + io::exact(specimen.grains.radius[k]) +
-            "," + io::exact(cells.volume[k]) + "," + io::exact(ratios[k]) + "\n";
+  for (std::size_t k = 0; k < ratios.size(); ++k) {
+    const Ball& ball = grains.balls[k];
+    text += std::to_string(grains.id[k]) + "," + line_of(grains.rotation * ball.position) + "," +
+            io::exact(ball.radius) + "," + io::exact(cells.volume[k]) + "," + io::exact(ratios[k]) + "\n";
+  }
   return text;
 }
 
-void add_permeability(cli::Listing& listing, const std::vector<Ball>& balls, int dimension, double void_ratio,
+void add_permeability(Listing& listing, const std::vector<Ball>& balls, int dimension, double void_ratio,
                       double constant) {
   const double surface = specific_surface(balls, dimension), k = kozeny_carman(void_ratio, surface, constant);
   const double water = 9.81e6;  // rho g/mu of water at 20 degrees, 1/(m s)
@@ -95,9 +83,9 @@ int run(const Options& options) {
   if (!options.output.empty())
     for (const std::string& name : names)
       io::expect_output(name, options.force, {options.file, io::journal_of(options.file)});
-  const Specimen specimen = io::read_states(options.file).back().specimen;
-  const std::vector<Ball> balls = balls_of(specimen, options.file);
-  const Cell& cell = specimen.cell;
+  const PackedGrains grains = read_grains(options.file);
+  const std::vector<Ball>& balls = grains.balls;
+  const PeriodicCell& cell = grains.cell;
   const PowerCells cells = power_cells(cell, balls);
   const std::vector<double> ratios = local_void_ratios(cell, balls, cells);
   const Pores found = pores(cell, balls, cells);
@@ -106,7 +94,7 @@ int run(const Options& options) {
     sum += cells.volume[k];
     solid += cells.volume[k] / (1 + ratios[k]);
   }
-  cli::Listing listing;
+  Listing listing;
   listing.add("file", options.file);
   listing.add("grains", balls.size());
   listing.add("void_ratio", cell.volume() / solid - 1);
@@ -118,9 +106,9 @@ int run(const Options& options) {
   add_distribution(listing, "throat_radius", radii(found.throats), "m");
   add_permeability(listing, balls, cell.dimension, cell.volume() / solid - 1, options.kozeny_constant);
   if (!options.output.empty()) {
-    io::publish_text(names[0], cells_table(specimen, cells, ratios));
-    io::publish_text(names[1], pores_table(cell, found.bodies));
-    io::publish_text(names[2], pores_table(cell, found.throats));
+    io::publish_text(names[0], cells_table(grains, cells, ratios));
+    io::publish_text(names[1], pores_table(grains.rotation, found.bodies));
+    io::publish_text(names[2], pores_table(grains.rotation, found.throats));
     listing.add("written", names);
   }
   listing.print(options.json);

@@ -52,12 +52,12 @@ std::vector<Simplex> faces_of(const Simplex& simplex) {
 }
 
 struct Geometry {
-  const Cell& cell;
+  const PeriodicCell& cell;
   const std::vector<Ball>& balls;
 
   Ball at(const Corner& corner) const {
     const Ball& ball = balls[std::size_t(corner.ball)];
-    return {ball.position + translation(cell, corner.image), ball.radius};
+    return {ball.position + cell.translation(corner.image), ball.radius};
   }
   std::vector<Ball> at(const Simplex& simplex) const {
     std::vector<Ball> all;
@@ -140,7 +140,7 @@ bool touching_ball(const std::vector<Ball>& balls, Pore& found) {
   return any;
 }
 
-Pores pores(const Cell& cell, const std::vector<Ball>& balls, const PowerCells& cells) {
+Pores pores(const PeriodicCell& cell, const std::vector<Ball>& balls, const PowerCells& cells) {
   const Geometry geometry{cell, balls};
   const Neighbours neighbours(cells.simplices, balls.size());
   ByCorners bodies, throats;
@@ -155,7 +155,8 @@ Pores pores(const Cell& cell, const std::vector<Ball>& balls, const PowerCells& 
   return {listed(bodies), listed(throats)};
 }
 
-std::vector<double> local_void_ratios(const Cell& cell, const std::vector<Ball>& balls, const PowerCells& cells) {
+std::vector<double> local_void_ratios(const PeriodicCell& cell, const std::vector<Ball>& balls,
+                                      const PowerCells& cells) {
   std::vector<double> ratios;
   const double pi = std::numbers::pi;
   for (std::size_t k = 0; k < balls.size(); ++k) {

@@ -22,7 +22,7 @@ struct Pore {
 struct Pores {
   std::vector<Pore> bodies, throats;
 };
-Pores pores(const Cell& cell, const std::vector<Ball>& balls, const PowerCells& cells);
+Pores pores(const PeriodicCell& cell, const std::vector<Ball>& balls, const PowerCells& cells);
 
 /// Centre and radius of the sphere that touches spheres from outside: d + 1 of them in a space of `dimension` d = 1, 2
 /// or 3 (of points in the plane, z is the same; on the line, any direction). Of two the smaller one outside of all.
@@ -30,7 +30,8 @@ Pores pores(const Cell& cell, const std::vector<Ball>& balls, const PowerCells& 
 bool touching_ball(const std::vector<Ball>& balls, Pore& found);
 
 /// (V_i - v_i)/v_i of each cell; -1 where a grain has none.
-std::vector<double> local_void_ratios(const Cell& cell, const std::vector<Ball>& balls, const PowerCells& cells);
+std::vector<double> local_void_ratios(const PeriodicCell& cell, const std::vector<Ball>& balls,
+                                      const PowerCells& cells);
 
 /// Surface of the grains over their volume, 1/m.
 double specific_surface(const std::vector<Ball>& balls, int dimension);

@@ -57,7 +57,7 @@ Simplex canonical(Simplex corners) {
   return least;
 }
 
-Copies copies_within(const Cell& cell, const std::vector<Ball>& balls, double margin) {
+Copies copies_within(const PeriodicCell& cell, const std::vector<Ball>& balls, double margin) {
   Copies copies;
   copies.low = copies.high = balls.front().position;
   for (const Ball& ball : balls) {
@@ -83,7 +83,7 @@ Copies copies_within(const Cell& cell, const std::vector<Ball>& balls, double ma
         for (int nx = x0; nx <= x1; ++nx) {
           const Image image{nx, ny, nz};
           copies.corners.push_back({int(g), image});
-          copies.balls.push_back({x + translation(cell, image), balls[g].radius});
+          copies.balls.push_back({x + cell.translation(image), balls[g].radius});
         }
       }
     }
@@ -118,7 +118,7 @@ Vector3 orthocentre_of(const std::vector<Ball>& corners) {
   return corners[0].position + Vector3(CGAL::to_double(c[0]), CGAL::to_double(c[1]), CGAL::to_double(c[2]));
 }
 
-PowerCells power_cells(const Cell& cell, const std::vector<Ball>& balls) {
+PowerCells power_cells(const PeriodicCell& cell, const std::vector<Ball>& balls) {
   if (balls.empty()) throw Error("no grains: there are no cells of grains; give a specimen that has some");
   const double spacing =
       std::pow(cell.volume() / (cell.dimension == 2 ? cell.lattice(2, 2) : 1) / balls.size(), 1.0 / cell.dimension);

@@ -10,7 +10,7 @@
 #include <array>
 #include <vector>
 
-#include "rvelab/cell/cell.hpp"
+#include "tools/voids/cell.hpp"
 
 namespace rvelab::voids {
 
@@ -41,7 +41,7 @@ struct PowerCells {
 };
 
 /// Throws Error without a ball.
-PowerCells power_cells(const Cell& cell, const std::vector<Ball>& balls);
+PowerCells power_cells(const PeriodicCell& cell, const std::vector<Ball>& balls);
 
 // What the files of the plane and of space share.
 
@@ -52,7 +52,7 @@ struct Copies {
   std::vector<Ball> balls;
   double largest_radius = 0;
 };
-Copies copies_within(const Cell& cell, const std::vector<Ball>& balls, double margin);
+Copies copies_within(const PeriodicCell& cell, const std::vector<Ball>& balls, double margin);
 
 /// How far a ball about the orthocentre that a missing copy might reach stands out of the box, m; <= 0: not.
 double beyond(const Copies& copies, int dimension, const Vector3& orthocentre, const Ball& corner);
