@@ -34,15 +34,6 @@ class Folder {
   std::filesystem::path path_;
 };
 
-/// A kept file, out of its gzip into the folder where it is packed.
-inline std::string kept_file(const Folder& folder, const std::string& path) {
-  if (std::filesystem::exists(path)) return path;
-  const std::string whole = folder / std::filesystem::path(path).filename().string();
-  if (std::system(("gzip -dc '" + path + ".gz' >'" + whole + "'").c_str()) != 0)
-    throw Error(path + ".gz: no such file");
-  return whole;
-}
-
 inline void write_bytes(const std::string& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
 }

@@ -40,7 +40,7 @@ void describe(Archive& archive, AnyRows& rows, AnyTrials& trials, Numbers& tag, 
   archive.field("pool/next_token", rows.next_token, "1");
   archive.field("pool/initial_void_ratio", rows.initial_void_ratio, "1");
   archive.field("pool/inertial_number", rows.inertial_number, "1");
-  archive.later_field("pool/error_estimate_Pa", rows.error_estimate, "Pa", fields::InFiles{12});
+  archive.field("pool/error_estimate_Pa", rows.error_estimate, "Pa");
   archive.field("pool/trials/rve", trials.rve, "1");
   archive.field("pool/trials/token", trials.token, "1");
   archive.field("pool/trials/dt_s", trials.dt, "s");
@@ -49,7 +49,7 @@ void describe(Archive& archive, AnyRows& rows, AnyTrials& trials, Numbers& tag, 
 
 std::string group_of(std::size_t k) { return std::string(io::pool_rves) + "/" + std::to_string(k); }
 
-/// Writes a pool file, described in rvelab/io/README.md and read by every later version 1.x. `state(k)`: bytes of the
+/// Writes a pool file, described in rvelab/io/README.md. `state(k)`: bytes of the
 /// k-th RVE (pool::to_bytes). Throws InputError or Error as io::write_specimen; the file is then as it was.
 void write_pool(const std::string& path, const pool::Population& population, const pool::Pool::StateOf& state) {
   io::publish(path, [&](io::Hdf5File& file) {
@@ -80,7 +80,7 @@ void write_pool(const std::string& path, const pool::Population& population, con
   });
 }
 
-/// Shows the bytes of each RVE to `take`, in the order of the ids. InputError: missing, damaged, of a newer format, no
+/// Shows the bytes of each RVE to `take`, in the order of the ids. InputError: missing, damaged, of another format, no
 /// pool file.
 pool::Population read_pool(const std::string& path, const pool::Pool::TakeState& take) {
   const auto file = io::Hdf5File::open(path);
@@ -94,7 +94,6 @@ pool::Population read_pool(const std::string& path, const pool::Pool::TakeState&
     if (!holds) throw InputError(path + ": " + what + "; the file is damaged: write it again");
   };
   const std::size_t n = rows.id.size(), kept = trials.rve.size();
-  if (rows.error_estimate.empty()) rows.error_estimate.resize(n);
   expect(tag.size() == 1 && tag[0] >= 0 && rows.token.size() == n && rows.next_token.size() == n &&
              rows.initial_void_ratio.size() == n && rows.inertial_number.size() == n && rows.error_estimate.size() == n,
          "the datasets under /pool have different lengths");

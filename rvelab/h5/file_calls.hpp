@@ -10,7 +10,7 @@
 namespace rvelab::h5 {
 
 /// Each throws InputError or Error as io::read_specimen and io::write_specimen do. Files of pools are described in
-/// rvelab/io/README.md and read by every later version 1.x.
+/// rvelab/io/README.md.
 struct FileCalls {
   const char* version;  ///< of rvelab; both libraries must be of one
   Specimen (*read_specimen)(const std::string& path);

@@ -190,7 +190,7 @@ std::vector<KeyEntry> solver() {
             "shortest lattice vector allowed; 0: the largest grain's diameter"),
       entry(t, "max_overlap_ratio", "1", &SolverOptions::max_overlap_ratio, positive,
             "largest overlap over the smaller radius; more fails"),
-      entry(t, "ledger", "-", &SolverOptions::energy_balance, any, "computes the energy balance"),
+      entry(t, "energy_balance", "-", &SolverOptions::energy_balance, any, "computes the energy balance"),
   };
 }
 

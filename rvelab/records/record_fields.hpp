@@ -21,9 +21,6 @@ void describe_records(Archive& archive, Value& records) {
   const auto column = [](const char* name, auto member, const char* unit) {
     return fields::Field{name, in_record(member), unit};
   };
-  const auto later_column = [](const char* name, auto member, const char* unit, int since) {
-    return fields::Field{name, in_record(member), unit, fields::Rows::one, fields::InFiles{since}};
-  };
   archive.table("records", records,                                                      //
                 column("stage", &Record::stage, "1"),                                    //
                 column("strain", &Record::strain, "1"),                                  //
@@ -34,9 +31,9 @@ void describe_records(Archive& archive, Value& records) {
                 column("substeps", &Record::substeps, "1"),                              //
                 column("held_error", &Record::held_error, "1"),                          //
                 column("target_held", &Record::target_held, "1"),                        //
-                later_column("quasi_static", &Record::quasi_static, "1", 3),             //
-                later_column("cell_thin", &Record::cell_thin, "1", 10),                  //
-                later_column("error_estimate", &Record::error_estimate, "1", 11));
+                column("quasi_static", &Record::quasi_static, "1"),                      //
+                column("cell_thin", &Record::cell_thin, "1"),                            //
+                column("error_estimate", &Record::error_estimate, "1"));
   archive.choice("records", records, column("quantities", &Record::quantities, "1"));
   Quantities::for_each([&]<class Quantity>(std::type_identity<Quantity>, std::uint64_t bit) {
     archive.chosen("records", records, column(Quantity::text.name, Quantity::member, Quantity::text.unit),
@@ -64,12 +61,12 @@ void describe_progress(Archive& archive, Value& progress) {
   archive.field("checkpoint/rate_1_s", rate, "1/s");
   archive.field("checkpoint/deformation_gradient", deformation, "1");
   archive.field("checkpoint/stress_Pa", stress, "Pa");
-  archive.later_field("checkpoint/strain_sum", strain_sum, "1", fields::InFiles{2});
-  archive.later_field("checkpoint/first_stress_Pa", first_stress, "Pa", fields::InFiles{2});
-  archive.later_field("checkpoint/turns", turns, "1", fields::InFiles{2});
-  archive.later_field("checkpoint/place", place, "1", fields::InFiles{2});
-  archive.later_field("checkpoint/visits", visits, "1", fields::InFiles{2});
-  archive.later_field("checkpoint/largest", largest, "1", fields::InFiles{2});
+  archive.field("checkpoint/strain_sum", strain_sum, "1");
+  archive.field("checkpoint/first_stress_Pa", first_stress, "Pa");
+  archive.field("checkpoint/turns", turns, "1");
+  archive.field("checkpoint/place", place, "1");
+  archive.field("checkpoint/visits", visits, "1");
+  archive.field("checkpoint/largest", largest, "1");
   archive.field("checkpoint/axis", axis, "-");
   archive.field("checkpoint/pressure_Pa", pressure, "Pa");
   archive.field("checkpoint/first_grain_steps", first_grain_steps, "1");

@@ -23,12 +23,6 @@ namespace rvelab::fields {
 /// Entries of a field: one value, or a list with one for each grain. In a table each column has one for each row.
 enum class Rows { one, per_grain, per_grain_or_none };
 
-/// The minor version of the file format from which on files have a field. In a file of an earlier one it keeps the
-/// default of its struct; in a later one it must be there.
-struct InFiles {
-  int since = 0;
-};
-
 /// Where the vectors of a field lie in 2D: anywhere, in the plane (z = 0), along its normal (x = y = 0), or as the one
 /// component along the tangent of a contact (y = z = 0).
 enum class InPlane { any, along, normal, tangent };
@@ -42,7 +36,6 @@ struct Field {
   Value Owner::*member;
   const char* units;
   Rows rows = Rows::one;
-  InFiles in_files{};
   Interval allowed{-no_bound, no_bound};
   InPlane plane = InPlane::any;
 
@@ -82,8 +75,8 @@ Table(const char*, std::vector<Item> Owner::*) -> Table<Owner, Item>;
 template <class Struct>
 inline constexpr std::tuple<> members_of{};
 
-/// Name of a field after those of the parts that it lies in, "state/ledger/friction_J". Composed only when it is asked
-/// for: a snapshot does without.
+/// Name of a field after those of the parts that it lies in, "state/energy_balance/friction_J". Composed only when it
+/// is asked for: a snapshot does without.
 class Path {
  public:
   Path(const Path* within, const char* name) : within_(within), name_(name) {}

@@ -5,8 +5,7 @@
 // Each field states the range of its numbers where it is not every finite one (Field::within); of what a law reads, the
 // law does (contact/parameter.hpp). check_specimen holds them (specimen_check.hpp).
 //
-// A field that files did not have from the start says since which minor version they do, InFiles{10}: the default of
-// its struct must be what the version before it did. A new field is of the next version (io/schema.hpp).
+// A field that is added, taken away or renamed makes a new version of the file format (io/hdf5/schema.hpp).
 #pragma once
 
 #include <iterator>
@@ -34,9 +33,9 @@ constexpr auto fields_of_shape() {
   } else {
     constexpr auto& columns = By::template columns<List>;
     return []<std::size_t... k>(std::index_sequence<k...>) {
-      return std::tuple{Field<Grains, List<double>>{columns[k].dataset, columns[k].entries, "m",
-                                                    Rows::per_grain_or_none, InFiles{columns[k].since}}
-                            .within(positive_number)...};
+      return std::tuple{
+          Field<Grains, List<double>>{columns[k].dataset, columns[k].entries, "m", Rows::per_grain_or_none}.within(
+              positive_number)...};
     }
     (std::make_index_sequence<std::size(columns)>());
   }
@@ -56,8 +55,7 @@ inline constexpr auto members_of<Grains> = std::tuple_cat(
                Field{"velocity", &Grains::velocity, "m/s or m/step", Rows::per_grain}.lying(InPlane::along),
                Field{"spin", &Grains::spin, "rad/s or rad/step", Rows::per_grain}.lying(InPlane::normal)},
     own_fields(),
-    std::tuple{
-        Field{"orientation", &Grains::orientation, "1", Rows::per_grain_or_none, InFiles{8}}.lying(InPlane::along)});
+    std::tuple{Field{"orientation", &Grains::orientation, "1", Rows::per_grain_or_none}.lying(InPlane::along)});
 
 /// The columns of shapes are a base of Grains, one initialiser for all of them.
 template <>
@@ -78,8 +76,8 @@ template <class Group>
 constexpr auto stored_fields() {
   static_assert(std::size(Group::stored) == member_count<Group>(), "a constant of a law is not in its list `stored`");
   return []<std::size_t... k>(std::index_sequence<k...>) {
-    return std::tuple{Field<Material, double>{Group::stored[k].dataset, Group::stored[k].value, Group::stored[k].unit,
-                                              Rows::one, InFiles{Group::stored[k].since}}...};
+    return std::tuple{
+        Field<Material, double>{Group::stored[k].dataset, Group::stored[k].value, Group::stored[k].unit}...};
   }
   (std::make_index_sequence<std::size(Group::stored)>());
 }
@@ -113,7 +111,7 @@ inline constexpr auto members_of<ContactModel> = std::tuple{
     Field{"slip", &ContactModel::slip, "-"},
     Field{"rolling", &ContactModel::rolling, "1"},
     Field{"unload_rescale", &ContactModel::unload_rescale, "1"},
-    Field{"hertz_radius", &ContactModel::hertz_radius, "-", Rows::one, InFiles{9}},
+    Field{"hertz_radius", &ContactModel::hertz_radius, "-"},
 };
 
 template <>
@@ -134,17 +132,15 @@ inline constexpr auto members_of<SolverOptions> = std::tuple{
     Field{"skin", &SolverOptions::skin, "1"}.within({0, largest_skin_ratio, true, false}),
     Field{"time_step_factor", &SolverOptions::time_step_factor, "1"}.within({0, 1, true, true}),
     Field{"fixed_time_step_s", &SolverOptions::fixed_time_step, "s"}.within(number_from_zero),
-    Field{"collision_steps", &SolverOptions::collision_steps, "1", Rows::one, InFiles{3}}.within({0, 100'000}),
-    Field{"relative_tolerance", &SolverOptions::relative_tolerance, "1", Rows::one, InFiles{6}}.within(
-        {0, 1, true, false}),
-    Field{"absolute_tolerance", &SolverOptions::absolute_tolerance, "1", Rows::one, InFiles{6}}.within(
-        {0, 1, true, false}),
+    Field{"collision_steps", &SolverOptions::collision_steps, "1"}.within({0, 100'000}),
+    Field{"relative_tolerance", &SolverOptions::relative_tolerance, "1"}.within({0, 1, true, false}),
+    Field{"absolute_tolerance", &SolverOptions::absolute_tolerance, "1"}.within({0, 1, true, false}),
     Field{"target_unbalanced", &SolverOptions::target_unbalanced, "1"}.within(number_from_zero),
     Field{"fixed_substeps", &SolverOptions::fixed_substeps, "1"}.within(number_from_zero),
     Field{"max_substeps", &SolverOptions::max_substeps, "1"}.within(positive_number),
     Field{"min_height_m", &SolverOptions::min_height, "m"}.within(number_from_zero),
     Field{"max_overlap_ratio", &SolverOptions::max_overlap_ratio, "1"}.within(positive_number),
-    Field{"ledger", &SolverOptions::energy_balance, "1"},
+    Field{"energy_balance", &SolverOptions::energy_balance, "1"},
 };
 
 template <>
@@ -156,41 +152,39 @@ inline constexpr auto members_of<EnergyTerms> = std::tuple{
     Field{"local_damping_J", &EnergyTerms::local_damping, "J"},
     Field{"global_damping_J", &EnergyTerms::global_damping, "J"},
     Field{"law_loss_J", &EnergyTerms::law_loss, "J"},
-    Field{"zeroing_J", &EnergyTerms::removed_kinetic, "J"},
+    Field{"removed_kinetic_J", &EnergyTerms::removed_kinetic, "J"},
 };
 
 template <>
 inline constexpr auto members_of<SolverState> = std::tuple{
     Field{"has_reference", &SolverState::has_reference, "1"},
     Field{"list_lattice_m", &SolverState::list_lattice, "m"},
-    Field{"list_positions_m", &SolverState::list_positions, "m", Rows::per_grain_or_none, InFiles{1}},
+    Field{"list_positions_m", &SolverState::list_positions, "m", Rows::per_grain_or_none},
     Field{"list_travel_m", &SolverState::list_travel, "m"}.within(number_from_zero),
-    Field{"list_skin_m", &SolverState::list_skin, "m", Rows::one, InFiles{1}}.within(number_from_zero),
-    Field{"list_steps", &SolverState::list_steps, "1", Rows::one, InFiles{1}}.within(number_from_zero),
+    Field{"list_skin_m", &SolverState::list_skin, "m"}.within(number_from_zero),
+    Field{"list_steps", &SolverState::list_steps, "1"}.within(number_from_zero),
     Field{"strain_per_step", &SolverState::strain_per_step, "1"}.within(number_from_zero),
-    Field{"pace_target", &SolverState::target_unbalanced_ratio, "1", Rows::one, InFiles{6}}.within(number_from_zero),
-    Field{"leg_strain", &SolverState::strain_since_reversal, "1", Rows::one, InFiles{6}}.within(number_from_zero),
-    Field{"softness", &SolverState::network_stiffness_ratio, "1", Rows::one, InFiles{6}}.within(number_from_zero),
-    Field{"constraint_ratio", &SolverState::constraint_ratio, "1", Rows::one, InFiles{10}}.within(number_from_zero),
-    Field{"lag_factor", &SolverState::lag_factor, "1", Rows::one, InFiles{10}}.within(number_from_zero),
-    Field{"lag_strain", &SolverState::lag_strain, "1", Rows::one, InFiles{10}}.within(number_from_zero),
-    Field{"lag_steps", &SolverState::lag_steps, "1", Rows::one, InFiles{10}}.within(number_from_zero),
-    Field{"rest_steps", &SolverState::rest_steps, "1", Rows::one, InFiles{10}}.within(number_from_zero),
-    Field{"network_stiffness_Pa", &SolverState::network_stiffness, "Pa", Rows::one, InFiles{6}}.within(
-        number_from_zero),
-    Field{"interval_strain", &SolverState::interval_strain, "1", Rows::one, InFiles{6}}.within(number_from_zero),
-    Field{"interval_stress_Pa", &SolverState::interval_stress, "Pa", Rows::one, InFiles{6}},
-    Field{"unbalanced_ratio", &SolverState::unbalanced_ratio, "1", Rows::one, InFiles{6}}.within(number_from_zero),
-    Field{"deferred_stretch", &SolverState::deferred_stretch, "1", Rows::one, InFiles{7}},
-    Field{"stress_slope_Pa", &SolverState::stress_slope, "Pa", Rows::one, InFiles{7}},
-    Field{"slope_error_Pa", &SolverState::slope_error, "Pa", Rows::one, InFiles{7}}.within(number_from_zero),
-    Field{"look_steps", &SolverState::steps_since_scaling, "1", Rows::one, InFiles{6}},
-    Field{"scaled_mass", &SolverState::scaled_mass, "N/m", Rows::per_grain_or_none, InFiles{6}}.within(positive_number),
-    Field{"scaled_inverse_inertia", &SolverState::scaled_inverse_inertia, "1/(N m)", Rows::per_grain_or_none,
-          InFiles{6}}
-        .within(positive_number),
+    Field{"target_unbalanced_ratio", &SolverState::target_unbalanced_ratio, "1"}.within(number_from_zero),
+    Field{"strain_since_reversal", &SolverState::strain_since_reversal, "1"}.within(number_from_zero),
+    Field{"network_stiffness_ratio", &SolverState::network_stiffness_ratio, "1"}.within(number_from_zero),
+    Field{"constraint_ratio", &SolverState::constraint_ratio, "1"}.within(number_from_zero),
+    Field{"measured_error_factor", &SolverState::lag_factor, "1"}.within(number_from_zero),
+    Field{"strain_since_measurement", &SolverState::lag_strain, "1"}.within(number_from_zero),
+    Field{"steps_since_measurement", &SolverState::lag_steps, "1"}.within(number_from_zero),
+    Field{"steps_at_fixed_shape", &SolverState::rest_steps, "1"}.within(number_from_zero),
+    Field{"network_stiffness_Pa", &SolverState::network_stiffness, "Pa"}.within(number_from_zero),
+    Field{"interval_strain", &SolverState::interval_strain, "1"}.within(number_from_zero),
+    Field{"interval_stress_Pa", &SolverState::interval_stress, "Pa"},
+    Field{"unbalanced_ratio", &SolverState::unbalanced_ratio, "1"}.within(number_from_zero),
+    Field{"deferred_stretch", &SolverState::deferred_stretch, "1"},
+    Field{"stress_slope_Pa", &SolverState::stress_slope, "Pa"},
+    Field{"slope_error_Pa", &SolverState::slope_error, "Pa"}.within(number_from_zero),
+    Field{"steps_since_scaling", &SolverState::steps_since_scaling, "1"},
+    Field{"scaled_mass", &SolverState::scaled_mass, "N/m", Rows::per_grain_or_none}.within(positive_number),
+    Field{"scaled_inverse_inertia", &SolverState::scaled_inverse_inertia, "1/(N m)", Rows::per_grain_or_none}.within(
+        positive_number),
     Field{"servo_strain", &SolverState::servo_strain, "1"},
-    Field{"servo_rate_1_s", &SolverState::servo_rate, "1/s", Rows::one, InFiles{3}},
+    Field{"servo_rate_1_s", &SolverState::servo_rate, "1/s"},
     Field{"reference_contact_force_N", &SolverState::reference_contact_force, "N"},
     Field{"reference_overlap_m", &SolverState::reference_overlap, "m"},
     Field{"reference_pressure_Pa", &SolverState::reference_pressure, "Pa"},
@@ -201,8 +195,8 @@ inline constexpr auto members_of<SolverState> = std::tuple{
     Field{"mean_spin_rad_s", &SolverState::mean_spin, "rad/s"},
     Field{"grain_steps", &SolverState::grain_steps, "1"},
     Field{"list_builds", &SolverState::list_builds, "1"},
-    Field{"memory_order", &SolverState::memory_order, "1", Rows::per_grain_or_none, InFiles{3}},
-    Part{"ledger", &SolverState::energy_balance},
+    Field{"memory_order", &SolverState::memory_order, "1", Rows::per_grain_or_none},
+    Part{"energy_balance", &SolverState::energy_balance},
 };
 
 template <>

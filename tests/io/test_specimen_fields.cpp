@@ -18,7 +18,6 @@ using namespace rvelab;
 using namespace rvelab::test;
 using Catch::Matchers::Contains;
 using fields::Field;
-using fields::InFiles;
 using fields::Rows;
 
 namespace {
@@ -35,14 +34,8 @@ using Forgotten = Spring<1>;
 using Twice = Spring<2>;
 using SameName = Spring<3>;
 using ListAsValue = Spring<4>;
-
-/// A row of a table, as a version wrote it and as the next one reads it.
-struct Row {
+struct Undescribed {
   double radius = 0;
-};
-struct LaterRow {
-  double radius = 0;
-  double cohesion = 2.5;
 };
 
 }  // namespace
@@ -208,7 +201,7 @@ TEST_CASE("a struct is described if each of its members is, once and under a nam
   CHECK(!fields::describes_every_member<Twice>());
   CHECK(!fields::describes_every_member<SameName>());
   CHECK(!fields::describes_every_member<ListAsValue>());
-  CHECK(!fields::describes_every_member<Row>());  // not described at all
+  CHECK(!fields::describes_every_member<Undescribed>());  // not described at all
   CHECK(fields::member_count<Cell>() == 4);
   CHECK(fields::member_count<Contact>() == 6);  // its image is an array
   CHECK(fields::member_count<Specimen>() == 9);
@@ -233,7 +226,7 @@ TEST_CASE("the described fields are the datasets of a file, no more and no fewer
     CAPTURE(path);
     CHECK(described.found.contains(path));
   }
-  CHECK(described.found.at("/state/ledger/friction_J") == Dataset{"float64", "J", {}});
+  CHECK(described.found.at("/state/energy_balance/friction_J") == Dataset{"float64", "J", {}});
   CHECK(described.found.at("/cell/lattice_m") == Dataset{"float64", "m", {3, 3}});
   CHECK(described.found.at("/contacts/image") == Dataset{"int32", "1", {31, 3}});
 }
@@ -286,68 +279,4 @@ TEST_CASE("every field keeps every double: NaNs with what they carry, -0, infini
     CHECK(!test::first_difference(folder / "a.h5", folder / "b.h5"));
     CHECK_THAT(test::first_difference(folder / "a.h5", folder / "c.h5").value_or(""), Contains("differs"));
   }
-}
-
-namespace {
-
-struct LatestSince {
-  int latest = 0;
-
-  template <class Value, class Declared>
-  void field(const fields::Path&, const Value&, const Declared& field) {
-    latest = std::max(latest, field.in_files.since);
-  }
-  template <class Items, class... Columns>
-  void table(const fields::Path&, const Items&, const Columns&... columns) {
-    latest = std::max({latest, columns.in_files.since...});
-  }
-};
-
-}  // namespace
-
-TEST_CASE("no field is of a later version than the one that is written") {
-  LatestSince look;
-  Specimen specimen;
-  fields::visit(look, specimen);
-  CHECK(look.latest > 8);
-  CHECK(look.latest <= io::format_minor);
-}
-
-TEST_CASE("a column that was added later keeps its default in an older file, and does not change the digest of it") {
-  const Field later{"cohesion", &LaterRow::cohesion, "Pa", Rows::one, InFiles{10}};
-  const std::vector<Row> older{{1.5}, {2.5}};
-  std::vector<LaterRow> rows;
-  auto file = io::Hdf5File::in_memory("older.h5");
-  io::Writer(file, "").table("rows", older, Field{"radius", &Row::radius, "m"});
-  io::Reader(file, "").table("rows", rows, Field{"radius", &LaterRow::radius, "m"}, later);
-  REQUIRE(rows.size() == 2);
-  CHECK(rows[1].radius == 2.5);
-  CHECK(rows[1].cohesion == 2.5);
-
-  const auto sum = [&] {
-    io::Digest digest;
-    digest.table("rows", rows, Field{"radius", &LaterRow::radius, "m"}, later);
-    return digest.sum();
-  };
-  io::Digest as_it_was;
-  as_it_was.table("rows", older, Field{"radius", &Row::radius, "m"});
-  CHECK(sum() == as_it_was.sum());
-  rows[0].cohesion = 3;
-  CHECK(sum() != as_it_was.sum());
-
-  // From the version of the column on it must be there.
-  auto without = io::Hdf5File::in_memory("without.h5");
-  io::stamp(without, io::FileKind::specimen);
-  io::Writer(without, "").table("rows", older, Field{"radius", &Row::radius, "m"});
-  std::vector<LaterRow> none;
-  CHECK_THAT(input_error([&] {
-               io::Reader(without, "").table("rows", none, Field{"radius", &LaterRow::radius, "m"}, later);
-             }),
-             Contains("without.h5: dataset /rows/cohesion is missing"));
-
-  auto newer = io::Hdf5File::in_memory("newer.h5");
-  io::Writer(newer, "").table("rows", rows, Field{"radius", &LaterRow::radius, "m"}, later);
-  std::vector<LaterRow> read;
-  io::Reader(newer, "").table("rows", read, Field{"radius", &LaterRow::radius, "m"}, later);
-  CHECK(read.at(0).cohesion == 3);
 }

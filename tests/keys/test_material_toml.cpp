@@ -67,7 +67,7 @@ TEST_CASE("assignments reach their fields") {
         "material.gravel.density_kg_m3=2700", "material.normal_stiffness_N_m1_5=2e7",
         "material.tangential_stiffness_N_m=2_000_000", "damping.local=0.1", "damping.local_form='component'",
         "damping.dashpot=\"coefficient\"", "damping.normal_coefficient_N_s_m=20", "damping.no_tension=true",
-        "solver.fixed_substeps=17", "solver.skin=0.2", "solver.fixed_time_step_s=1e-5", "solver.ledger=true",
+        "solver.fixed_substeps=17", "solver.skin=0.2", "solver.fixed_time_step_s=1e-5", "solver.energy_balance=true",
         "material.sand.rolling_friction=0.05"}) {
     CAPTURE(assignment);
     keys::set_key(s, assignment);

@@ -32,7 +32,7 @@ TESTS = [
     ("triaxial", "triaxial", "yade/hertz", ["stage.compression.to_strain=0.005"]),
     ("biaxial without rolling", "biaxial", "yade/noroll", ["stage.compression.to_strain=0.01"]),
     ("biaxial of soft grains", "biaxial", "yade/soft", ["stage.compression.to_strain=0.01"]),
-    ("biaxial, ledger", "biaxial", DENSE, ["stage.compression.to_strain=0.003", "solver.ledger=true"]),
+    ("biaxial, energy balance", "biaxial", DENSE, ["stage.compression.to_strain=0.003", "solver.energy_balance=true"]),
     ("undrained", "biaxial_undrained", DENSE, []),
     ("oedometer", "oedometer", "yade/medium", []),
     ("simple shear, quasi-static", "simple_shear", DENSE, ["stage.shear.to_strain=0.05"]),

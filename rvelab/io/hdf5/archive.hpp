@@ -22,7 +22,6 @@ namespace rvelab::io {
 
 using fields::Field;
 using fields::from_text;
-using fields::InFiles;
 using fields::Layout;
 using fields::text_of;
 using fields::Textual;
@@ -34,11 +33,7 @@ struct Described {
 
   template <class Value, class Owner, class Member>
   void field(const fields::Path& path, Value& value, const Field<Owner, Member>& field) {
-    if (field.in_files.since == 0) {
-      archive.field(path.text(), value, field.units);
-    } else {
-      archive.later_field(path.text(), value, field.units, field.in_files, Owner{}.*field.member);
-    }
+    archive.field(path.text(), value, field.units);
   }
   template <class Items, class... Columns>
   void table(const fields::Path& path, Items& items, const Columns&... columns) {
@@ -60,10 +55,6 @@ class Writer {
   void field(const std::string& name, const std::vector<Value>& values, const std::string& units) {
     rows<Value>(
         name, values.size(), [&](std::size_t k) -> const Value& { return values[k]; }, {values.size()}, units);
-  }
-  template <class Value>
-  void later_field(const std::string& name, const Value& value, const std::string& units, InFiles, const Value& = {}) {
-    field(name, value, units);
   }
   template <class Item, class... Columns>
   void table(const std::string& group, const std::vector<Item>& items, const Columns&... columns) {
@@ -109,8 +100,7 @@ class Writer {
 /// Reads values from under a group of a file. InputError naming file and dataset if one is missing or does not fit.
 class Reader {
  public:
-  Reader(const Hdf5File& file, std::string group)
-      : file_(file), group_(std::move(group)), minor_(minor_version(file)) {}
+  Reader(const Hdf5File& file, std::string group) : file_(file), group_(std::move(group)) {}
 
   template <class Value>
   void field(const std::string& name, Value& value, const std::string&) {
@@ -124,13 +114,6 @@ class Reader {
     values.resize(size);
     rows<Value>(name, values.size(), [&](std::size_t k) -> Value& { return values[k]; });
   }
-  /// A field that files of earlier versions do not have: left as it is there.
-  template <class Value>
-  void later_field(const std::string& name, Value& value, const std::string& units, InFiles in_files,
-                   const Value& = {}) {
-    if (is_there(name, in_files)) field(name, value, units);
-  }
-  /// Columns that files of earlier versions do not have keep the default of their item; the first is always there.
   template <class Item, class First, class... Columns>
   void table(const std::string& group, std::vector<Item>& items, const First& first, const Columns&... columns) {
     items.assign(rows_of(group, first), Item{});
@@ -151,15 +134,8 @@ class Reader {
   template <class Item, class Member>
   void column(const std::string& group, std::vector<Item>& items, const Field<Item, Member>& column) {
     const std::string name = group + "/" + column.name;
-    if (!is_there(name, column.in_files)) return;
     expect_shape<Member>(name, {items.size()});
     rows<Member>(name, items.size(), [&](std::size_t k) -> Member& { return items[k].*column.member; });
-  }
-
-  /// False where the file is of a version before that of the field, and does not have it. From that version on what is
-  /// missing is refused, by those who read it.
-  bool is_there(const std::string& name, InFiles in_files) const {
-    return minor_ >= in_files.since || file_.has(group_ + "/" + name);
   }
 
   template <class Item, class Member>
@@ -205,12 +181,9 @@ class Reader {
 
   const Hdf5File& file_;
   std::string group_;
-  int minor_;
 };
 
-/// CRC-32C over the bits of all values, in the order of their description: equal for equal values on every machine. A
-/// field that was added later counts only where it is not the default, so that the digest of what an older file holds
-/// stays what it was.
+/// CRC-32C over the bits of all values, in the order of their description: equal for equal values on every machine.
 class Digest {
  public:
   std::uint32_t sum() const { return sum_; }
@@ -224,22 +197,13 @@ class Digest {
     add(std::uint64_t(values.size()));
     for (const Value& value : values) add(value);
   }
-  template <class Value>
-  void later_field(const std::string& name, const Value& value, const std::string& units, InFiles,
-                   const Value& initial) {
-    if (value != initial) field(name, value, units);
-  }
   template <class Item, class... Columns>
   void table(const std::string&, const std::vector<Item>& items, const Columns&... columns) {
     add(std::uint64_t(items.size()));
-    for (const Item& item : items) (entry(item, columns), ...);
+    for (const Item& item : items) (add(item.*columns.member), ...);
   }
 
  private:
-  template <class Item, class Member>
-  void entry(const Item& item, const Field<Item, Member>& column) {
-    if (column.in_files.since == 0 || item.*column.member != Item{}.*column.member) add(item.*column.member);
-  }
   template <class Value>
   void add(const Value& value) {
     if constexpr (Textual<Value>) {

@@ -8,15 +8,14 @@
 
 namespace rvelab::io {
 
-/// Version of the layout, major.minor. A later minor version adds; a later major version changes.
-inline constexpr int format_major = 1;
-inline constexpr int format_minor = 12;
-/// Minor version of a file, or of a part of a journal. 0: not stated, as in journals before 1.10.
-int minor_version(const Hdf5File& file);
+/// Version of the layout; no other one is read.
+inline constexpr const char* format_version = "2.0";
 
 /// Sets the file's attributes `format` and `format_version`.
 void stamp(Hdf5File& file, FileKind kind);
 void stamp(Hdf5File& file, const std::string& format);
+/// InputError: of another version.
+void expect_version(const Hdf5File& file);
 
 /// Checks the attributes of a file that must be of this format. InputError as checked_kind.
 void check_format(const Hdf5File& file, const std::string& format);
@@ -25,8 +24,8 @@ void check_format(const Hdf5File& file, const std::string& format);
 inline constexpr const char* pool_format = "rvelab pool";
 inline constexpr const char* pool_rves = "/rves";
 
-/// Checks the attributes and returns the kind; a pool is of the kind specimen. InputError: not rvelab's, or of a newer
-/// format.
+/// Checks the attributes and returns the kind; a pool is of the kind specimen. InputError: not rvelab's, or of another
+/// version.
 FileKind checked_kind(const Hdf5File& file);
 /// Whether its attribute `format` is one of rvelab's.
 bool is_rvelab(const Hdf5File& file);

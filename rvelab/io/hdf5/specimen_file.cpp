@@ -1,7 +1,5 @@
 #include "rvelab/io/hdf5/specimen_file.hpp"
 
-#include <charconv>
-
 #include "rvelab/error.hpp"
 #include "rvelab/io/hdf5/archive.hpp"
 #include "rvelab/io/hdf5/schema.hpp"
@@ -45,36 +43,14 @@ void stamp(Hdf5File& file, FileKind kind) {
 
 void stamp(Hdf5File& file, const std::string& format) {
   file.set_attribute("format", format);
-  file.set_attribute("format_version", std::to_string(format_major) + "." + std::to_string(format_minor));
+  file.set_attribute("format_version", format_version);
 }
 
-namespace {
-
-struct FormatVersion {
-  int major = 0, minor = 0;
-};
-
-FormatVersion format_version(const Hdf5File& file) {
-  const std::string text = file.attribute("format_version");
-  FormatVersion found;
-  const char* const end = text.data() + text.size();
-  const auto [dot, failed] = std::from_chars(text.data(), end, found.major);
-  if (failed != std::errc() || dot == end || *dot != '.' || std::from_chars(dot + 1, end, found.minor).ptr != end) {
-    throw InputError(file.path() + ": its attribute format_version is \"" + text +
-                     "\"; allowed: major.minor; the file is damaged: write it again");
-  }
-  if (found.major > format_major || (found.major == format_major && found.minor > format_minor)) {
-    throw InputError(file.path() + ": has the format version " + text + "; allowed: up to " +
-                     std::to_string(format_major) + "." + std::to_string(format_minor) +
-                     "; open it with a newer rvelab");
-  }
-  return found;
-}
-
-}  // namespace
-
-int minor_version(const Hdf5File& file) {
-  return file.attribute("format_version").empty() ? 0 : format_version(file).minor;
+void expect_version(const Hdf5File& file) {
+  const std::string found = file.attribute("format_version");
+  if (found == format_version) return;
+  throw InputError(file.path() + ": has the format version \"" + found + "\"; this program reads " + format_version +
+                   "; make the file again, a specimen of `rvelab pack` by the recipe in its /provenance");
 }
 
 bool is_rvelab(const Hdf5File& file) {
@@ -88,7 +64,7 @@ FileKind checked_kind(const Hdf5File& file) {
     throw InputError(file.path() + ": its attribute format is \"" + format + "\"; allowed: \"" + specimen_format +
                      "\", \"" + records_format + "\", \"" + pool_format + "\"; give a file that rvelab wrote");
   }
-  format_version(file);
+  expect_version(file);
   return format == records_format ? FileKind::records : FileKind::specimen;
 }
 
@@ -96,7 +72,7 @@ void check_format(const Hdf5File& file, const std::string& format) {
   const std::string found = file.attribute("format");
   if (found != format)
     throw InputError(file.path() + ": its attribute format is \"" + found + "\"; allowed: \"" + format + "\"");
-  format_version(file);
+  expect_version(file);
 }
 
 void put_specimen(Hdf5File& file, const std::string& group, const Specimen& specimen) {

@@ -168,6 +168,7 @@ struct Assembler {
 
   void begin(const Frame& frame) {
     const auto file = Hdf5File::from_image(path, frame.payload);
+    expect_version(file);
     journal.test.emplace();
     journal.test->complete = false;
     Reader reader(file, "");

@@ -33,9 +33,9 @@ void describe_test(Archive& archive, Value& test) {
   archive.field("provenance/protocol", test.provenance.protocol, "-");
   archive.field("provenance/version", test.provenance.version, "-");
   archive.field("provenance/compiler", test.provenance.compiler, "-");
-  archive.later_field("provenance/packages", test.provenance.packages, "-", InFiles{1});
-  archive.later_field("provenance/specimen_crc32c", test.provenance.specimen_crc32c, "1", InFiles{1});
-  archive.later_field("complete", test.complete, "1", InFiles{1});
+  archive.field("provenance/packages", test.provenance.packages, "-");
+  archive.field("provenance/specimen_crc32c", test.provenance.specimen_crc32c, "1");
+  archive.field("complete", test.complete, "1");
 }
 
 std::string snapshot_group(std::size_t record) {
@@ -71,7 +71,7 @@ RecordedTest test_in(const std::shared_ptr<const Hdf5File>& opened) {
   describe_test(reader, test);
   records::describe_records(reader, test.result.records);
   std::vector<std::string> quantities;
-  reader.later_field("test/quantities", quantities, "-", InFiles{10});
+  reader.field("test/quantities", quantities, "-");
   for (const std::string& name : quantities) file.shape("/records/" + name);  // says so if one is missing
   test.result.probes = get_probes(file);
   if (!test.complete) {
@@ -134,7 +134,6 @@ void put_probes(Hdf5File& file, const std::vector<records::ProbeResult>& probes)
 }
 
 std::vector<records::ProbeResult> get_probes(const Hdf5File& file) {
-  if (minor_version(file) == 0 && !file.has("/probes/stage")) return {};
   const auto stages = file.read_text("/probes/stage");
   const auto rows = file.read<double>("/probes/stiffness_Pa");
   const Shape64 shape = file.shape("/probes/stiffness_Pa");
