@@ -354,9 +354,8 @@ void run_calibration(const CalibrateArguments& arguments) {
         [&](std::size_t number, const protocol::Protocol& protocol, const Specimen& specimen) {
           protocol::Watch watch;
           watch.stop = &stop_on_signals();
-          watch.on_moment = [&, name = plan.name(number, specimens.size() > 1)](const protocol::Moment& moment) {
-            progress.show(number, name, moment);
-          };
+          watch.on_path_point = [&, name = plan.name(number, specimens.size() > 1)](
+                                    const protocol::PathPoint& reached) { progress.show(number, name, reached); };
           protocol::TestRun run = run_recorded(protocol, specimen, stores[number].get(), watch);
           if (run.complete) progress.done(number);
           return run;

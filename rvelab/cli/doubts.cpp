@@ -60,7 +60,7 @@ Doubtful doubtful_of(const std::vector<records::Record>& records, int dimension)
   return found;
 }
 
-void tell_of_doubts(const Specimen& specimen, const protocol::TestRun& run, const Doubtful& doubtful) {
+void warn_records(const Specimen& specimen, const protocol::TestRun& run, const Doubtful& doubtful) {
   const std::size_t records = run.result.records.size();
   // One record or two may be an avalanche of the specimen; more are the fault of the test's settings.
   if (20 * doubtful.either > long(records) && 2 * doubtful.without_pressure > doubtful.either)

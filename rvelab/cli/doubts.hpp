@@ -22,6 +22,6 @@ void tell_of_units(const std::string& file, const std::vector<std::string>& doub
 void tell_of_shear(const protocol::Protocol& protocol, const Specimen& specimen);
 
 /// After it: records that are doubtful or of a thin cell, waiting for held stresses, a cell that became low.
-void tell_of_doubts(const Specimen& specimen, const protocol::TestRun& run, const Doubtful& doubtful);
+void warn_records(const Specimen& specimen, const protocol::TestRun& run, const Doubtful& doubtful);
 
 }  // namespace rvelab::cli

@@ -140,7 +140,7 @@ Outcome carried_out(const Ensemble& ensemble, const std::vector<Planned>& tests,
       if (!test.file.empty()) store = open_shared_store(test.file, protocol, specimen, options);
       protocol::Watch watch;
       watch.stop = &stop_on_signals();
-      watch.on_moment = [&](const protocol::Moment& moment) { progress.show(k, test.name, moment); };
+      watch.on_path_point = [&](const protocol::PathPoint& reached) { progress.show(k, test.name, reached); };
       const protocol::TestRun run = run_recorded(protocol, specimen, store.get(), watch);
       if (!run.complete) return;
       progress.done(k);

@@ -137,7 +137,7 @@ std::string as_text(const FitSetup& setup, const FitOutcome& outcome) {
   return text + aligned(rows);
 }
 
-void tell_of_doubts(const FitSetup& setup, const FitOutcome& outcome, std::size_t failed) {
+void warn_fit(const FitSetup& setup, const FitOutcome& outcome, std::size_t failed) {
   if (setup.specimen_count == 1 && !setup.same_specimens)
     tell(
         "one specimen: how much others differ is assumed, a third of how much the tests differ; give ten, or "
@@ -175,7 +175,7 @@ void report_fit(const FitSetup& setup, const FitOutcome& outcome, const std::str
                 << "\nfigure  /usr/bin/python3 tools/plot/fit.py " << folder << " -o fit.png\n";
     std::cout << std::flush;
   }
-  tell_of_doubts(setup, outcome, failed);
+  warn_fit(setup, outcome, failed);
 }
 
 void report_sweep(const FitSetup& setup, const std::vector<FitTest>& tests, const std::vector<FitResult>& results,

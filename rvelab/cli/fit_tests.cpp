@@ -73,8 +73,8 @@ std::optional<FitResult> carried_out(const FitSetup& setup, const FitTest& test,
     for (const protocol::Protocol& protocol : protocols_of(setup, test.values)) {
       protocol::Watch watch;
       watch.stop = &stop_on_signals();
-      watch.on_moment = [&](const protocol::Moment& moment) {
-        progress.show(test.number, "test " + std::to_string(test.number + 1), moment);
+      watch.on_path_point = [&](const protocol::PathPoint& reached) {
+        progress.show(test.number, "test " + std::to_string(test.number + 1), reached);
       };
       const protocol::TestRun run = protocol::run_protocol(protocol, specimen, watch);
       if (!run.complete) return std::nullopt;

@@ -33,18 +33,18 @@ std::size_t terminal_width() {
 }
 
 /// Strain of the last record of the present stage, and q/p.
-std::string state_of(const protocol::Moment& moment) {
-  const records::TestResult& result = moment.result;
+std::string state_of(const protocol::PathPoint& reached) {
+  const records::TestResult& result = reached.result;
   std::string text;
   char part[64];
-  if (!result.records.empty() && result.records.back().stage == moment.progress.stage) {
+  if (!result.records.empty() && result.records.back().stage == reached.progress.stage) {
     std::snprintf(part, sizeof part, "  strain %.2f %%", 100 * result.records.back().strain);
     text += part;
   }
-  const int dimension = moment.rve.cell().dimension;
-  const double p = mean_pressure(moment.progress.stress, dimension);
+  const int dimension = reached.rve.cell().dimension;
+  const double p = mean_pressure(reached.progress.stress, dimension);
   if (p > 0) {
-    std::snprintf(part, sizeof part, "  q/p %.3f", deviatoric_stress(moment.progress.stress, dimension) / p);
+    std::snprintf(part, sizeof part, "  q/p %.3f", deviatoric_stress(reached.progress.stress, dimension) / p);
     text += part;
   }
   return text;
@@ -78,8 +78,8 @@ void TerminalLine::write(const std::string& line) {
   shown_ = true;
 }
 
-void ProgressReport::show(const protocol::Moment& moment) {
-  const auto& records = moment.result.records;
+void ProgressReport::show(const protocol::PathPoint& reached) {
+  const auto& records = reached.result.records;
   const auto now = Clock::now();
   if (records.size() <= told_ || std::chrono::duration<double>(now - last_).count() < 0.2) return;
   last_ = now;
@@ -97,22 +97,23 @@ void ProgressLine::done(std::size_t number) {
   test.finished = true;
 }
 
-void ProgressLine::show(std::size_t number, const std::string& name, const protocol::Moment& moment) {
+void ProgressLine::show(std::size_t number, const std::string& name, const protocol::PathPoint& reached) {
   if (!line_.on_terminal()) return;
   const std::lock_guard lock(mutex_);
   Test& test = tests_[number];
-  const records::TestResult& result = moment.result;
-  test.part =
-      moment.records_planned == 0 ? 0.0 : std::min(1.0, double(result.records.size()) / double(moment.records_planned));
+  const records::TestResult& result = reached.result;
+  test.part = reached.records_planned == 0
+                  ? 0.0
+                  : std::min(1.0, double(result.records.size()) / double(reached.records_planned));
   if (!test.begun) {
     test.begun = true;
     test.first_part = test.part;
-    test.first_grain_steps = moment.rve.grain_steps();
+    test.first_grain_steps = reached.rve.grain_steps();
   }
-  test.grain_steps = double(moment.rve.grain_steps() - test.first_grain_steps);
-  const auto stage = std::size_t(moment.progress.stage);
+  test.grain_steps = double(reached.rve.grain_steps() - test.first_grain_steps);
+  const auto stage = std::size_t(reached.progress.stage);
   const std::string stage_name = stage < result.stages.size() ? result.stages[stage] : std::string("done");
-  write_line((name.empty() ? stage_name : name) + state_of(moment));
+  write_line((name.empty() ? stage_name : name) + state_of(reached));
 }
 
 void ProgressLine::show(std::size_t number, const std::string& name, double part, double grain_steps) {

@@ -34,7 +34,7 @@ using Clock = std::chrono::steady_clock;
 /// record.
 class ProgressReport {
  public:
-  void show(const protocol::Moment& moment);
+  void show(const protocol::PathPoint& reached);
 
  private:
   Clock::time_point last_{};
@@ -50,7 +50,7 @@ class ProgressLine {
   explicit ProgressLine(std::size_t tests = 1, std::string noun = "tests") : noun_(std::move(noun)), tests_(tests) {}
 
   /// `name` of the test by its number, from 0; "": its stage.
-  void show(std::size_t number, const std::string& name, const protocol::Moment& moment);
+  void show(std::size_t number, const std::string& name, const protocol::PathPoint& reached);
   /// The same for other work: the part of it that is done, 0 to 1, and its grain-steps since it began.
   void show(std::size_t number, const std::string& name, double part, double grain_steps);
   void done(std::size_t number);

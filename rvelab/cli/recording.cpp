@@ -44,7 +44,7 @@ std::unique_ptr<io::RecordStore> open_store(const std::string& path, const proto
   const std::vector<std::string> doubts = protocol::unusual_in(protocol, specimen);
   io::RunStart start{protocol.name, keys::with_doubts(doubts, protocol.resolved), {}, specimen};
   for (const protocol::Stage& stage : protocol.stages) start.stages.push_back(stage.name);
-  return std::make_unique<io::RecordStore>(path, start, existing_of(options.force, options.resume || options.share),
+  return std::make_unique<io::RecordStore>(path, start, if_exists(options.force, options.resume || options.share),
                                            options.checkpoint_every);
 }
 
@@ -64,9 +64,9 @@ protocol::TestRun run_recorded(const protocol::Protocol& protocol, const Specime
   watch.on_snapshot = [&](std::size_t record, const Specimen& state) {
     timed([&] { store->put_snapshot(record, state); });
   };
-  watch.on_moment = [&, shown = watch.on_moment](const protocol::Moment& moment) {
-    if (shown) shown(moment);
-    timed([&] { store->offer([&] { return moment.checkpoint(); }); });
+  watch.on_path_point = [&, shown = watch.on_path_point](const protocol::PathPoint& reached) {
+    if (shown) shown(reached);
+    timed([&] { store->offer([&] { return reached.checkpoint(); }); });
   };
   try {
     protocol::TestRun run = store->checkpoint()

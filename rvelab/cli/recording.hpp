@@ -12,8 +12,8 @@
 namespace rvelab::cli {
 
 /// What --force and --resume say of files that are there.
-inline io::Existing existing_of(bool force, bool resume) {
-  return force ? io::Existing::overwrite : resume ? io::Existing::resume : io::Existing::refuse;
+inline io::IfExists if_exists(bool force, bool resume) {
+  return force ? io::IfExists::overwrite : resume ? io::IfExists::resume : io::IfExists::refuse;
 }
 
 /// What a command takes that runs a test and writes record files.
@@ -37,7 +37,8 @@ std::unique_ptr<io::RecordStore> open_store(const std::string& path, const proto
                                             const Specimen& specimen, const TestOptions& options);
 
 /// Runs a test, continues it, or returns it if it is complete already. `store` gets every record and checkpoint;
-/// nullptr: they are not kept. `watch` may have on_moment and stop. A test that is stopped or fails keeps its records.
+/// nullptr: they are not kept. `watch` may have on_path_point and stop. A test that is stopped or fails keeps its
+/// records.
 protocol::TestRun run_recorded(const protocol::Protocol& protocol, const Specimen& specimen, io::RecordStore* store,
                                protocol::Watch watch);
 

@@ -200,7 +200,7 @@ void report_run(const protocol::Protocol& protocol, const Specimen& specimen, co
   listing.add("grain_steps", result.grain_steps);
   add_costs(run, wall, listing);
   listing.print(json);
-  tell_of_doubts(specimen, run, doubtful);
+  warn_records(specimen, run, doubtful);
 }
 
 void run_test(const RunArguments& arguments) {
@@ -237,9 +237,9 @@ void run_test(const RunArguments& arguments) {
     ProgressLine line;
     ProgressReport report;
     protocol::Watch watch;
-    watch.on_moment = [&](const protocol::Moment& moment) {
-      if (arguments.progress) return report.show(moment);
-      line.show(0, "", moment);
+    watch.on_path_point = [&](const protocol::PathPoint& reached) {
+      if (arguments.progress) return report.show(reached);
+      line.show(0, "", reached);
     };
     watch.stop = &stop_on_signals();
     std::unique_ptr<Workers> team;

@@ -142,7 +142,7 @@ std::optional<StudyFolder> folder_for(const StudyArguments& arguments, const Loa
   }
   auto inputs = from.inputs;
   inputs.insert(inputs.end(), from.study.specimens.begin(), from.study.specimens.end());
-  return StudyFolder(arguments.folder, from.study, existing_of(arguments.force, arguments.resume), inputs);
+  return StudyFolder(arguments.folder, from.study, if_exists(arguments.force, arguments.resume), inputs);
 }
 
 void tell_failures(const study::StudySummary& summary, const study::Study& study) {

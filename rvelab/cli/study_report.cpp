@@ -257,19 +257,19 @@ void expect_same(const std::string& path, const study::Study& study) {
 
 }  // namespace
 
-StudyFolder::StudyFolder(const std::string& path, const study::Study& study, io::Existing existing,
+StudyFolder::StudyFolder(const std::string& path, const study::Study& study, io::IfExists existing,
                          const std::vector<std::string>& inputs)
     : path_(path) {
   const std::string own = file("study.toml");
   const bool there = fs::exists(own);
   for (const std::string& name : results) {
-    io::expect_output(file(name), existing != io::Existing::refuse, inputs, ", --resume to go on with a study");
+    io::expect_output(file(name), existing != io::IfExists::refuse, inputs, ", --resume to go on with a study");
   }
-  if (there && existing == io::Existing::resume) {
+  if (there && existing == io::IfExists::resume) {
     expect_same(own, study);
     return;
   }
-  io::expect_output(own, existing == io::Existing::overwrite, inputs, ", --resume to go on with the study");
+  io::expect_output(own, existing == io::IfExists::overwrite, inputs, ", --resume to go on with the study");
   make_folder((fs::path(path_) / "pieces").string());
   for (const auto& entry : fs::directory_iterator(fs::path(path_) / "pieces")) {
     if (entry.path().extension() == ".json") fs::remove(entry.path());

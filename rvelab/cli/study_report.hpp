@@ -25,7 +25,7 @@ class StudyFolder {
   /// Prepares the folder for a study, whose specimens are named relative to the present folder; makes it if missing.
   /// resume: it must hold the same study; overwrite: removes pieces and results. InputError: the folder cannot be used,
   /// holds another study, or a result would replace an input or, with `refuse`, an existing file.
-  StudyFolder(const std::string& path, const study::Study& study, io::Existing existing,
+  StudyFolder(const std::string& path, const study::Study& study, io::IfExists existing,
               const std::vector<std::string>& inputs);
 
   /// A piece that is there. InputError if its file is damaged.

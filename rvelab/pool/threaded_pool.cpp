@@ -99,7 +99,7 @@ void ThreadedPool::called(Slot& slot, long substeps) noexcept {
 
 /// Each call checks one other RVE: a round of calls checks all.
 void ThreadedPool::rest_another() noexcept {
-  Slot& slot = slots_[std::size_t(hand_.fetch_add(1, std::memory_order_relaxed) % slots_.size())];
+  Slot& slot = slots_[std::size_t(next_release_.fetch_add(1, std::memory_order_relaxed) % slots_.size())];
   const auto forgotten = [&] {
     return slot.allocated.load(std::memory_order_relaxed) &&
            clock_.load(std::memory_order_relaxed) >

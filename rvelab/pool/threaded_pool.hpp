@@ -174,12 +174,12 @@ class ThreadedPool : public Pool {
   Settling prepared_for_ = Settling::revert;
   std::vector<std::int64_t> prepared_;  ///< ids
   Templates templates_;
-  std::int64_t next_template_;            ///< number of this pool in the process << 32, and a count from 1
-  std::uint64_t process_;                 ///< forks before this process
-  std::atomic<int> calls_{0};             ///< at work; -1: one is alone
-  std::atomic<std::uint64_t> serial_{1};  ///< of calls
-  std::atomic<std::uint64_t> clock_{0};   ///< calls on RVEs
-  std::atomic<std::uint64_t> hand_{0};    ///< the next slot whose memory may be released
+  std::int64_t next_template_;                  ///< number of this pool in the process << 32, and a count from 1
+  std::uint64_t process_;                       ///< forks before this process
+  std::atomic<int> calls_{0};                   ///< at work; -1: one is alone
+  std::atomic<std::uint64_t> serial_{1};        ///< of calls
+  std::atomic<std::uint64_t> clock_{0};         ///< calls on RVEs
+  std::atomic<std::uint64_t> next_release_{0};  ///< the next slot whose memory may be released
 };
 
 /// What hosts and other ranks may call of a share. A new function is added here.

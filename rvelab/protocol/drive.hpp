@@ -145,7 +145,7 @@ class RunningTest {
   void record_now(double strain);  ///< a state that no increment led to
   void probed(const Eigen::MatrixXd& stiffness);
 
-  /// A moment at which the test can be left: calls the watcher; throws Interrupted on request.
+  /// A point at which the test can be left: calls the watcher; throws Interrupted on request.
   void pause();
 
   /// At the start of a stage that holds a stress: InputError unless the stress `name` (Pa, compression positive) is
@@ -181,7 +181,7 @@ class RunningTest {
   long snapshots_every_;
   std::uint64_t quantities_;
   std::size_t records_planned_;
-  double time_ = 0;  ///< s, see Moment::time
+  double time_ = 0;  ///< s, see PathPoint::time
 };
 
 /// InputError if a stage does not go with specimens of this dimension.

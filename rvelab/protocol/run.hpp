@@ -36,7 +36,7 @@ struct TestRun {
 };
 
 /// A running test between two increments, as its watcher sees it. Valid during the call only.
-struct Moment {
+struct PathPoint {
   const records::Progress& progress;
   const records::TestResult& result;  ///< so far
   const Rve& rve;
@@ -53,8 +53,8 @@ struct Watch {
   /// The state of a record, by its number from 0, where [output] snapshots_every asks for it.
   std::function<void(std::size_t record, const Specimen& state)> on_snapshot;
   /// After each increment, each stage, and about each second of a relaxation: here a checkpoint can be taken.
-  std::function<void(const Moment&)> on_moment;
-  /// Once true, the run ends within a sub-step at the last moment passed (a probe by the linear method ends first).
+  std::function<void(const PathPoint&)> on_path_point;
+  /// Once true, the run ends within a sub-step at the last point passed (a probe by the linear method ends first).
   const std::atomic<bool>* stop = nullptr;
   bool measure_time = false;  ///< fills in the times of TestRun::costs
   /// Shares the steps of a large specimen (Rve::share).

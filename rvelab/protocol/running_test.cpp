@@ -110,7 +110,7 @@ void RunningTest::step_done() {
 
 void RunningTest::pause() {
   clock();
-  if (watch_.on_moment) watch_.on_moment({run.progress, run.result, rve, records_planned_, time_});
+  if (watch_.on_path_point) watch_.on_path_point({run.progress, run.result, rve, records_planned_, time_});
   if (watch_.stop != nullptr && watch_.stop->load()) throw Interrupted();
 }
 

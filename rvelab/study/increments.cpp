@@ -23,14 +23,14 @@ class Keeping {
 
   explicit Keeping(std::size_t count) : count_(count) {}
 
-  /// Keeps the state of a moment if it is that of a record, and of one to be kept.
-  void take(const protocol::Moment& moment) {
-    const std::size_t records = moment.result.records.size();
+  /// Keeps the state at a point if it is that of a record, and of one to be kept.
+  void take(const protocol::PathPoint& reached) {
+    const std::size_t records = reached.result.records.size();
     if (records == times_.size()) return;
-    times_.resize(records, moment.time);
+    times_.resize(records, reached.time);
     const std::size_t record = records - 1;
     if (count_ == 0 || record % stride_ != 0) return;
-    met_.push_back({record, moment.progress.deformation, moment.rve.specimen()});
+    met_.push_back({record, reached.progress.deformation, reached.rve.specimen()});
     if (met_.size() <= 2 * count_) return;
     stride_ *= 2;
     std::erase_if(met_, [&](const Met& one) { return one.record % stride_ != 0; });
@@ -99,9 +99,9 @@ long parts_of(const protocol::Protocol& protocol, const protocol::Protocol& refe
 ReferencePath reference_path(const protocol::Protocol& protocol, const Specimen& specimen, std::size_t count,
                              const std::vector<long>& spans, protocol::Watch watch) {
   Keeping keeping(count);
-  watch.on_moment = [&, shown = watch.on_moment](const protocol::Moment& moment) {
-    if (shown) shown(moment);
-    keeping.take(moment);
+  watch.on_path_point = [&, shown = watch.on_path_point](const protocol::PathPoint& reached) {
+    if (shown) shown(reached);
+    keeping.take(reached);
   };
   ReferencePath path;
   path.run = protocol::run_protocol(protocol, specimen, watch);

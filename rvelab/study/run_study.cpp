@@ -92,12 +92,12 @@ class Running {
   protocol::Watch watch(std::size_t number, std::size_t point) {
     protocol::Watch watch;
     watch.stop = keeper_.stop;
-    watch.on_moment = [this, number, point,
-                       first = std::optional<std::uint64_t>()](const protocol::Moment& moment) mutable {
-      if (!first) first = moment.rve.grain_steps();
-      const double planned = double(std::max<std::size_t>(moment.records_planned, 1));
-      const double part = std::min(0.999, double(moment.result.records.size()) / planned);
-      tell(number, name(point), part, double(moment.rve.grain_steps() - *first));
+    watch.on_path_point = [this, number, point,
+                           first = std::optional<std::uint64_t>()](const protocol::PathPoint& reached) mutable {
+      if (!first) first = reached.rve.grain_steps();
+      const double planned = double(std::max<std::size_t>(reached.records_planned, 1));
+      const double part = std::min(0.999, double(reached.result.records.size()) / planned);
+      tell(number, name(point), part, double(reached.rve.grain_steps() - *first));
     };
     return watch;
   }

@@ -38,7 +38,7 @@ void record_some(const std::string& path, double checkpoint_every) {
   const pid_t child = fork();
   if (child == 0) {
     const records::TestResult result = random_result(3, 12);
-    auto* store = new io::RecordStore(path, start, io::Existing::refuse, checkpoint_every);
+    auto* store = new io::RecordStore(path, start, io::IfExists::refuse, checkpoint_every);
     for (std::size_t k = 0; k < 12; ++k) {
       store->put(result.records[k]);
       if (k % 4 == 3) store->offer([&] { return checkpoint_after(k + 1); });
@@ -58,7 +58,7 @@ constexpr double at_once = 1e-9, never = 1e9;
 TEST_CASE("before the first record there is no file, and a run that kept nothing leaves none") {
   const Folder folder;
   {
-    io::RecordStore store(folder / "r.h5", start, io::Existing::refuse, at_once);
+    io::RecordStore store(folder / "r.h5", start, io::IfExists::refuse, at_once);
     store.offer([] { return checkpoint_after(0); });
     CHECK(!std::filesystem::exists(folder / "r.h5"));
     CHECK(std::filesystem::exists(folder / "r.h5.journal"));
@@ -66,7 +66,7 @@ TEST_CASE("before the first record there is no file, and a run that kept nothing
     store.offer([] { return checkpoint_after(1); });
     CHECK(std::filesystem::exists(folder / "r.h5"));
   }
-  { io::RecordStore store(folder / "q.h5", start, io::Existing::refuse); }
+  { io::RecordStore store(folder / "q.h5", start, io::IfExists::refuse); }
   CHECK(!std::filesystem::exists(folder / "q.h5.journal"));
 }
 
@@ -75,7 +75,7 @@ TEST_CASE("a finished test is one complete file and nothing beside it") {
   records::TestResult result = random_result(4);
   result.stages = start.stages;
   {
-    io::RecordStore store(folder / "r.h5", start, io::Existing::refuse, at_once);
+    io::RecordStore store(folder / "r.h5", start, io::IfExists::refuse, at_once);
     for (const records::Record& record : result.records) store.put(record);
     for (const records::ProbeResult& probe : result.probes) store.put(probe);
     store.finish(result, random_specimen(5));
@@ -87,15 +87,15 @@ TEST_CASE("a finished test is one complete file and nothing beside it") {
   CHECK(differences(read.checkpoint.specimen, random_specimen(5)) == 0);
   CHECK(io::Hdf5File::open(folder / "r.h5").read<std::uint8_t>("/complete")[0] == 1);
   // Gone on with, there is nothing to do; of another protocol or specimen, it is refused.
-  CHECK(io::RecordStore(folder / "r.h5", start, io::Existing::resume).complete());
+  CHECK(io::RecordStore(folder / "r.h5", start, io::IfExists::resume).complete());
   CHECK(std::distance(std::filesystem::directory_iterator(folder / ""), {}) == 1);
   io::RunStart other = start;
   other.protocol_text = "[test]\nname = \"triaxial\"\n";
-  CHECK_THAT(input_error([&] { io::RecordStore(folder / "r.h5", other, io::Existing::resume); }),
+  CHECK_THAT(input_error([&] { io::RecordStore(folder / "r.h5", other, io::IfExists::resume); }),
              Contains("another protocol") && Contains("biaxial") && Contains("triaxial") && Contains("--force"));
   other = start;
   other.specimen.grains.radius[3] = -other.specimen.grains.radius[3];
-  CHECK_THAT(input_error([&] { io::RecordStore(folder / "r.h5", other, io::Existing::resume); }),
+  CHECK_THAT(input_error([&] { io::RecordStore(folder / "r.h5", other, io::IfExists::resume); }),
              Contains("another specimen"));
   CHECK(differences(test::read_records(folder / "r.h5"), result) == 0);
 }
@@ -108,10 +108,10 @@ TEST_CASE("what is there is refused without --force or --resume, and by a name f
   REQUIRE(!std::filesystem::exists(folder / "b.h5"));
   for (const std::string name : {"a.h5", "b.h5"}) {
     const std::string before = bytes_of(folder / (name + ".journal"));
-    CHECK_THAT(input_error([&] { io::RecordStore(folder / name, start, io::Existing::refuse); }),
+    CHECK_THAT(input_error([&] { io::RecordStore(folder / name, start, io::IfExists::refuse); }),
                Contains(name) && Contains("--resume") && Contains("--force"));
     CHECK(bytes_of(folder / (name + ".journal")) == before);
-    io::RecordStore overwritten(folder / name, start, io::Existing::overwrite);
+    io::RecordStore overwritten(folder / name, start, io::IfExists::overwrite);
     CHECK(!std::filesystem::exists(folder / name));
     CHECK(overwritten.test().result.records.empty());
     CHECK(!overwritten.checkpoint());
@@ -120,9 +120,9 @@ TEST_CASE("what is there is refused without --force or --resume, and by a name f
 
 TEST_CASE("two writers: the second is refused at once, and the first goes on") {
   const Folder folder;
-  io::RecordStore first(folder / "r.h5", start, io::Existing::refuse);
+  io::RecordStore first(folder / "r.h5", start, io::IfExists::refuse);
   first.put(random_result(2).records[0]);
-  for (const auto existing : {io::Existing::overwrite, io::Existing::resume}) {
+  for (const auto existing : {io::IfExists::overwrite, io::IfExists::resume}) {
     CHECK_THAT(input_error([&] { io::RecordStore(folder / "r.h5", start, existing); }), Contains("another rvelab"));
   }
   first.put(random_result(2).records[1]);
@@ -138,7 +138,7 @@ TEST_CASE("a killed test is gone on with from its last checkpoint, with all its 
     const records::TestResult written = random_result(3, 12);
     CHECK(test::read_records(path).records.size() == 12);
     if (every == at_once) CHECK(!io::read_recorded_test(path).complete);
-    io::RecordStore store(path, start, io::Existing::resume, never);
+    io::RecordStore store(path, start, io::IfExists::resume, never);
     CHECK(store.test().result.records.size() == 12);
     CHECK(store.test().snapshots.size() == 1);
     REQUIRE(store.checkpoint().has_value() == (every == at_once));
@@ -157,7 +157,7 @@ TEST_CASE("if other bits are computed than before, what was made from there on i
   const Folder folder;
   record_some(folder / "r.h5", never);
   const records::TestResult written = random_result(3, 12);
-  io::RecordStore store(folder / "r.h5", start, io::Existing::resume, never);
+  io::RecordStore store(folder / "r.h5", start, io::IfExists::resume, never);
   store.put(written.records[0]);
   store.put(random_result(9).records[0]);
   CHECK(store.test().snapshots.empty());
@@ -177,7 +177,7 @@ TEST_CASE("without its journal, or with a damaged one, a test goes on from its p
     if (damage == "only its header") write_bytes(path + ".journal", journal.substr(0, 16));
     CHECK(test::read_records(path).records.size() == 12);
     {
-      io::RecordStore store(path, start, io::Existing::resume, never);
+      io::RecordStore store(path, start, io::IfExists::resume, never);
       REQUIRE(store.checkpoint());
       CHECK(differences(*store.checkpoint(), checkpoint_after(12)) == 0);
       CHECK(store.test().result.records.size() == 12);
@@ -192,7 +192,7 @@ TEST_CASE("without its journal, or with a damaged one, a test goes on from its p
   std::string journal = bytes_of(folder / "d.h5.journal");
   journal[200] = static_cast<char>(journal[200] ^ 1);
   write_bytes(folder / "d.h5.journal", journal);
-  CHECK_THAT(input_error([&] { io::RecordStore(folder / "d.h5", start, io::Existing::resume); }),
+  CHECK_THAT(input_error([&] { io::RecordStore(folder / "d.h5", start, io::IfExists::resume); }),
              Contains("d.h5.journal"));
   CHECK(bytes_of(folder / "d.h5.journal") == journal);
 }
@@ -202,12 +202,12 @@ TEST_CASE("a complete file with a journal left beside it is complete") {
   record_some(folder / "r.h5", never);
   std::filesystem::copy_file(folder / "r.h5.journal", folder / "left");
   {
-    io::RecordStore store(folder / "r.h5", start, io::Existing::resume, never);
+    io::RecordStore store(folder / "r.h5", start, io::IfExists::resume, never);
     store.finish(random_result(3, 12), random_specimen(5));
   }
   std::filesystem::copy_file(folder / "left", folder / "r.h5.journal");
   CHECK(io::read_recorded_test(folder / "r.h5").complete);
-  CHECK(io::RecordStore(folder / "r.h5", start, io::Existing::resume).complete());
+  CHECK(io::RecordStore(folder / "r.h5", start, io::IfExists::resume).complete());
   CHECK(!std::filesystem::exists(folder / "r.h5.journal"));
 }
 
@@ -218,7 +218,7 @@ TEST_CASE("old checkpoints do not fill the disc") {
   checkpoint.progress.stage = 1;
   checkpoint.progress.phase = 1;
   {
-    io::RecordStore store(folder / "r.h5", start, io::Existing::refuse, at_once);
+    io::RecordStore store(folder / "r.h5", start, io::IfExists::refuse, at_once);
     for (const records::Record& record : result.records) store.put(record);
     store.put_snapshot(2, random_specimen(8));
     std::uintmax_t largest = 0, one = 0;

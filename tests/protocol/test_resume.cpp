@@ -61,7 +61,9 @@ struct Stop {
 /// Runs a test and keeps every moment of it.
 protocol::TestRun run_keeping(const protocol::Protocol& protocol, const Specimen& specimen, std::vector<Stop>& stops) {
   protocol::Watch watch;
-  watch.on_moment = [&](const protocol::Moment& moment) { stops.push_back({moment.checkpoint(), moment.result}); };
+  watch.on_path_point = [&](const protocol::PathPoint& reached) {
+    stops.push_back({reached.checkpoint(), reached.result});
+  };
   return protocol::run_protocol(protocol, specimen, watch);
 }
 

@@ -55,9 +55,9 @@ void expect_free(const std::string& path) {
 }
 
 /// The journal's name, if it may be taken.
-std::string place_for(const std::string& path, Existing existing) {
+std::string place_for(const std::string& path, IfExists existing) {
   expect_place(path);
-  if (existing == Existing::refuse) expect_free(path);
+  if (existing == IfExists::refuse) expect_free(path);
   return journal_of(path);
 }
 
@@ -79,15 +79,15 @@ bool same_bits(const records::ProbeResult& a, const records::ProbeResult& b) {
 
 }  // namespace
 
-RecordStore::RecordStore(const std::string& path, const RunStart& start, Existing existing, double checkpoint_every)
+RecordStore::RecordStore(const std::string& path, const RunStart& start, IfExists existing, double checkpoint_every)
     : path_(followed(path)), journal_(place_for(path, existing)), checkpoint_every_(checkpoint_every) {
-  if (existing == Existing::refuse) expect_free(path);  // once more, under the lock
+  if (existing == IfExists::refuse) expect_free(path);  // once more, under the lock
   const auto begin_time = Clock::now();
   // Left by a run that was killed while it wrote them.
   for (const std::string& whole : {path_, journal_.path()}) ::unlink((whole + ".tmp").c_str());
   kept_ = published_ = {begin_time, 0};
-  if (existing == Existing::resume) resume(start);
-  if (existing == Existing::resume && (test_.complete || journal_.size() > 0)) return;
+  if (existing == IfExists::resume) resume(start);
+  if (existing == IfExists::resume && (test_.complete || journal_.size() > 0)) return;
   try {
     ::unlink(path_.c_str());
     const auto begin = encode_begin(start);

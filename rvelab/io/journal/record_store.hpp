@@ -15,7 +15,7 @@
 namespace rvelab::io {
 
 /// What to do with an R.h5, or its journal, that is there already.
-enum class Existing {
+enum class IfExists {
   refuse,
   overwrite,
   resume  ///< go on from it; start where there is none
@@ -26,7 +26,7 @@ class RecordStore {
   /// Takes the place: InputError if something is there that `existing` does not allow, if it is of another protocol or
   /// specimen, or if the folder cannot be written to; Busy if another process writes there. `checkpoint_every`: s
   /// between checkpoints, each published; 0: as often as costs little.
-  RecordStore(const std::string& path, const RunStart& start, Existing existing, double checkpoint_every = 0);
+  RecordStore(const std::string& path, const RunStart& start, IfExists existing, double checkpoint_every = 0);
 
   RecordStore(const RecordStore&) = delete;
   RecordStore& operator=(const RecordStore&) = delete;

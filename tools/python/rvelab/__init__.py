@@ -19,10 +19,10 @@ from .library import (MEASURES, Array, Batch, Discard, Info, Mixed, OutOfMemory,
                       library as _library)
 from .pool import Pool
 from .rve import Contacts, Rve
-from .laboratory import Moment, Records, calibrate, ensemble, fit, pack, run
+from .laboratory import PathPoint, Records, calibrate, ensemble, fit, pack, run
 from .figures import Picture, plot, report
 
-__all__ = ["Array", "Batch", "Contacts", "Discard", "Info", "MEASURES", "Mixed", "Moment", "OutOfMemory", "Picture", "Pool", "Records", "Rve",
-           "RvelabError", "RvelabWarning", "StaleToken", "calibrate", "ensemble", "fit", "pack", "plot", "report",
-           "run"]
+__all__ = ["Array", "Batch", "Contacts", "Discard", "Info", "MEASURES", "Mixed", "OutOfMemory", "PathPoint", "Picture", "Pool",
+           "Records", "Rve", "RvelabError", "RvelabWarning", "StaleToken", "calibrate", "ensemble", "fit", "pack", "plot",
+           "report", "run"]
 __version__ = _library.rvelab_version().decode()

@@ -28,8 +28,8 @@ class Records(dict):
         return f"<rvelab.Records of {self.summary.get('protocol', 'a test')}: {n} records of\n {', '.join(self)}>"
 
 
-class Moment(NamedTuple):
-    """How far a test is."""
+class PathPoint(NamedTuple):
+    """How far a test is on its path."""
     records: int  #: made so far
     stage: int  #: number of the stage, from 0
     strain: float  #: driving strain of the stage at the last record
@@ -61,19 +61,19 @@ def _specimen(given: _PathLike | Rve | Records, folder: str) -> str:
 
 
 def run(protocol: _PathLike, specimen: _PathLike | Rve | Records, settings: Mapping[str, Any] | None = None, *,
-        output: _PathLike | None = None, progress: Callable[[Moment], None] | None = None, overwrite: bool = False,
+        output: _PathLike | None = None, progress: Callable[[PathPoint], None] | None = None, overwrite: bool = False,
         resume: bool = False, **more: Any) -> Records:
     """Runs a laboratory test: the name of an installed protocol ("biaxial") or a TOML file, on a specimen file, an Rve
     (its committed state, which stays as it is) or the end of other Records.
 
     settings: keys of the protocol with dots, {"test.pressure_Pa": 50e3}, or tables in tables, {"test": {...}}.
-    output: record file to keep. progress: called with a Moment some times a second. overwrite: an existing output; resume:
+    output: record file to keep. progress: called with a PathPoint some times a second. overwrite: an existing output; resume:
     go on with one that was stopped."""
     kept = Folder()
     file = os.fspath(output) if output is not None else os.path.join(kept.name, "R.h5")
     words = ["run", protocol, "--specimen", _specimen(specimen, kept.name), "-o", file, *words_of(settings, more)]
     words += ["--force"] * overwrite + ["--resume"] * resume
-    printed = ask(words, None if progress is None else lambda told: progress(Moment(**told)))
+    printed = ask(words, None if progress is None else lambda told: progress(PathPoint(**told)))
     records = Records()
     for name, rows in printed.pop("records").items():
         column = np.array(rows)  # a number that is not finite is null in JSON
@@ -82,7 +82,7 @@ def run(protocol: _PathLike, specimen: _PathLike | Rve | Records, settings: Mapp
     if output is None:
         records._kept = kept
     if progress is not None:
-        progress(Moment(len(records["strain"]), int(records["stage"][-1]) if "stage" in records else 0,
+        progress(PathPoint(len(records["strain"]), int(records["stage"][-1]) if "stage" in records else 0,
                         float(records["strain"][-1])))
     return records
 
