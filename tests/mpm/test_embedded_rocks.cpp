@@ -162,6 +162,32 @@ TEST_CASE("soil pressed between plates and rocks closes its energy: contact take
   CHECK(solver.rocks->surface_loss > 0);
 }
 
+TEST_CASE(
+    "balls against rocks that shake between plates close their energy: friction, springs and what mapping takes") {
+  std::vector<std::string> sets = {"region.0.upper_m=[0.04,0.04,0.04]",
+                                   "rocks.coarse.upper_m=[0.04,0.04,0.04]",
+                                   "rocks.coarse.volume_share=0.33",
+                                   "rocks.coarse.seed=1",
+                                   "rock_soil={contact=\"ghost\", friction=0.3, porosity=0.35, young_modulus_Pa=1e8}",
+                                   "body.top.motion=[[0,0,0,0],[0.012,0,0,0],[0.013,0,0,-0.4]]",
+                                   "body.top.pressure_until_s=0.012"};
+  const char* plates[] = {"right", "back", "top"};
+  const char* centres[] = {"[0.04,0,0]", "[0,0.04,0]", "[0,0,0.04]"};
+  for (int i = 0; i < 3; ++i) sets.push_back(std::string("body.") + plates[i] + ".centre_m=" + centres[i]);
+  const auto model = shipped("soil_rock_triaxial", {"mm_20"}, sets);
+  auto& solver = model->solver;
+  auto& rocks = *solver.rocks;
+  const auto lost = [&] { return rocks.ghost_loss + rocks.ghost_mapping + rocks.ghost_springs(); };
+  const auto open = [&] { return rocks.work_on_soil + rocks.energy(solver.options.gravity).soil_work + lost(); };
+  while (solver.time < 0.012) solver.step(solver.stable_step());
+  const double before = open(), lost_before = lost();
+  while (solver.time < 0.022) solver.step(solver.stable_step());  // to a strain of 9 %
+  CAPTURE(rocks.work_on_soil, rocks.ghost_loss, rocks.ghost_mapping, rocks.ghost_springs(), before);
+  REQUIRE(rocks.all.size() == 5);
+  REQUIRE(lost() - lost_before > 0.01);
+  CHECK(open() - before == Approx(0).margin(0.01 * (lost() - lost_before)));
+}
+
 TEST_CASE("balls beside a rock in the soil reach it, and those under a rock that lies on the soil stay alike") {
   const auto inside = model_of<3>(block<3>("radius_m = 0.3", "contact = \"ghost\""));
   const Balls beside = balls_beside(*inside);
