@@ -32,8 +32,8 @@ struct LinearAdhesiveForce : LinearForce {
 struct Adhesion {
   double adhesion_pressure = 0;  ///< Pa, >= 0
   double pull_off_force = 0;     ///< N, >= 0
-  static constexpr StoredConstant<Adhesion> stored[] = {{"adhesion_Pa", &Adhesion::adhesion_pressure, "Pa", 5},
-                                                        {"adhesion_N", &Adhesion::pull_off_force, "N", 5}};
+  static constexpr StoredConstant<Adhesion> stored[] = {{"adhesion_Pa", &Adhesion::adhesion_pressure, "Pa"},
+                                                        {"adhesion_N", &Adhesion::pull_off_force, "N"}};
 };
 
 struct LinearAdhesiveLaw {

@@ -24,14 +24,12 @@ struct Parameter {
   const char *meaning, *remedy;
 };
 
-/// One of a group of constants that materials carry for the laws that read it, as files store it. `since`: the minor
-/// version of files from which on they have it.
+/// One of a group of constants that materials carry for the laws that read it, as files store it.
 template <class Group>
 struct StoredConstant {
   const char* dataset;
   double Group::*value;
   const char* unit;
-  int since = 0;
 };
 
 /// Constants of one contact: f_n and the current stiffnesses follow from them and the overlap.

@@ -23,7 +23,6 @@ using One = T;
 template <class Columns, class Entries>
 struct OwnColumn {
   const char* dataset;  ///< name in specimen files and XDMF
-  int since;            ///< minor version of the file format that has it first
   const char* csv;      ///< name in CSV tables
   Entries Columns::*entries;
 };

@@ -20,8 +20,8 @@ struct Ellipse {
   };
   using Own = Columns<One>;
   template <template <class> class Of>
-  static constexpr OwnColumn<Columns<Of>, Of<double>> columns[] = {{"semi_major_m", 8, "a", &Columns<Of>::semi_major},
-                                                                   {"semi_minor_m", 8, "b", &Columns<Of>::semi_minor}};
+  static constexpr OwnColumn<Columns<Of>, Of<double>> columns[] = {{"semi_major_m", "a", &Columns<Of>::semi_major},
+                                                                   {"semi_minor_m", "b", &Columns<Of>::semi_minor}};
 
   static constexpr const char *allowed_lengths = "semi_major >= semi_minor > 0, at most 10 times as long",
                               *allowed_in_tables = "0 < b <= a <= 10 b";

@@ -78,15 +78,15 @@ struct SolverState {
   double target_unbalanced_ratio = 0;      ///< dt = 0: unbalanced ratio for which it was chosen
   double strain_since_reversal = 0;        ///< dt = 0: strain since the last reversal, up to a limit
   double network_stiffness_ratio =
-      1;                         ///< dt = 0: stiffness ratio |d sigma|/|C : d eps| of the last interval (accuracy.hpp)
-  double constraint_ratio = 0;   ///< dt = 0: constraints of the contacts over the degrees of freedom of the
-                                 ///< grains that have any, when the interval began; 0: not known
-  double lag_factor = 0;         ///< dt = 0: K of the last relaxation of a copy (accuracy.hpp); 0: not known
-  double lag_strain = 0;         ///< dt = 0: strain since then
-  std::int64_t lag_steps = 0;    ///< dt = 0: sub-steps since then
-  std::int64_t rest_steps = 0;   ///< dt = 0: sub-steps since the cell last changed its shape
-  double network_stiffness = 0;  ///< dt = 0: |C : d eps|/strain when it began, Pa
-  double interval_strain = 0;    ///< dt = 0: strain in the present interval
+      1;                        ///< dt = 0: stiffness ratio |d sigma|/|C : d eps| of the last interval (accuracy.hpp)
+  double constraint_ratio = 0;  ///< dt = 0: constraints of the contacts over the degrees of freedom of the
+                                ///< grains that have any, when the interval began; 0: not known
+  double measured_error_factor = 0;     ///< dt = 0: K of the last relaxation of a copy (accuracy.hpp); 0: not known
+  double strain_since_measurement = 0;  ///< dt = 0: strain since then
+  std::int64_t steps_since_measurement = 0;        ///< dt = 0: sub-steps since then
+  std::int64_t steps_at_fixed_shape = 0;           ///< dt = 0: sub-steps since the cell last changed its shape
+  double network_stiffness = 0;                    ///< dt = 0: |C : d eps|/strain when it began, Pa
+  double interval_strain = 0;                      ///< dt = 0: strain in the present interval
   Matrix3 interval_stress = Matrix3::Zero();       ///< dt = 0: stress when it began, cell frame, Pa
   double unbalanced_ratio = 0;                     ///< dt = 0: at the last equilibrium check
   Matrix3 deferred_stretch = Matrix3::Identity();  ///< dt = 0: deferred to the next sub-step; cell frame

@@ -270,7 +270,7 @@ TEST_CASE("What a rest has shown is a part of the state: trials, copies and rest
     CHECK(straight.save() == restored.save());
     CHECK(straight.save() == tried.save());
     const SolverState state = straight.specimen().state;
-    measured = measured || (k > 3 && state.lag_factor > 0 && state.lag_steps == 0);
+    measured = measured || (k > 3 && state.measured_error_factor > 0 && state.steps_since_measurement == 0);
     const std::vector<std::byte> bytes = restored.save();
     restored = Rve(reference_specimen("dense"));
     restored.restore(bytes);
@@ -293,11 +293,11 @@ TEST_CASE("A relaxation cut into calls is the same relaxation, the stop of grain
   Rve whole(s), cut(s);
   whole.relax(1e-40, 21'000);
   for (int k = 0; k < 21; ++k) cut.relax(1e-40, 1000);
-  CHECK(whole.specimen().state.rest_steps == 21'000);
+  CHECK(whole.specimen().state.steps_at_fixed_shape == 21'000);
   CHECK(whole.save() == cut.save());
   // Once the cell moves, the count begins anew.
   whole.apply(gradient(1e-6, 0, 0, 0), 0);
-  CHECK(whole.specimen().state.rest_steps == 0);
+  CHECK(whole.specimen().state.steps_at_fixed_shape == 0);
 }
 
 TEST_CASE("Stricter tolerances take more sub-steps and err less", "[solver]") {

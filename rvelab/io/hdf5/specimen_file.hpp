@@ -31,7 +31,7 @@ void write_specimen(const Specimen& specimen, const std::string& path, const Spe
 std::optional<SpecimenOrigin> read_origin(const std::string& path);
 
 /// Reads the specimen of a specimen file, the end state of a record file, or the RVE of a pool file that holds it
-/// alone. Throws InputError naming the file and what is wrong: missing, not HDF5, truncated, of a newer format, not
+/// alone. Throws InputError naming the file and what is wrong: missing, not HDF5, truncated, of another version, not
 /// rvelab's, a field out of its range (check_specimen), a pool of many, without its seal.
 Specimen read_specimen(const std::string& path);
 

@@ -323,8 +323,8 @@ Advanced SubSteps::make() {
   a_.state.grain_steps += std::uint64_t(made) * f_.size();
   if (!physical_) {
     a_.state.steps_since_scaling += made;
-    a_.state.lag_steps += made;
-    a_.state.rest_steps = what_.increment.rigid ? a_.state.rest_steps + made : 0;
+    a_.state.steps_since_measurement += made;
+    a_.state.steps_at_fixed_shape = what_.increment.rigid ? a_.state.steps_at_fixed_shape + made : 0;
   }
   turn_frame(a_.cell, path_.end_rotation);
   return {made, step_};

@@ -18,8 +18,8 @@ EquilibriumCheck::EquilibriumCheck(State& state) : state_(state) {
   if (!unknown_) return;
   state_.scale_masses();
   control.network_stiffness_ratio = 1;
-  control.lag_factor = control.lag_strain = 0;
-  control.lag_steps = control.rest_steps = 0;
+  control.measured_error_factor = control.strain_since_measurement = 0;
+  control.steps_since_measurement = control.steps_at_fixed_shape = 0;
   control.constraint_ratio = constraint_ratio(state_.model(), state_.assembly());
   begin_interval();
 }

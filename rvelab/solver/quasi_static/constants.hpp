@@ -122,8 +122,8 @@ constexpr long rest_period = 1000, changed_period = 100, first_period = 50;
 /// a shorter one would take three times as long and more.
 constexpr long long_increment = 200, least_increment = 10, least_start = 25;
 
-/// SolverState::lag_strain counts on from these: after a measurement whose change grows (slow_growth), after a turn,
-/// when what was measured is no longer so, and after a start from rest that was not measured.
+/// SolverState::strain_since_measurement counts on from these: after a measurement whose change grows (slow_growth),
+/// after a turn, when what was measured is no longer so, and after a start from rest that was not measured.
 constexpr double slow_mark = 1, turn_mark = 2, start_mark = 4;
 
 // Estimate of the error.

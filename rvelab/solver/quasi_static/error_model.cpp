@@ -55,7 +55,9 @@ double error_factor_of_start(const State& s) {
 }
 
 double factor_of_last_start(const State& s) {
-  return s.control().lag_factor == 0 && s.control().lag_strain == start_mark ? error_factor_of_start(s) : 0;
+  return s.control().measured_error_factor == 0 && s.control().strain_since_measurement == start_mark
+             ? error_factor_of_start(s)
+             : 0;
 }
 
 double target_ratio_of_start(State& s, double network, double factor) {
@@ -92,10 +94,12 @@ bool can_measure_lag(State& s) {
 bool lag_is_due(State& s, long substeps, bool from_rest) {
   const SolverState& control = s.control();
   if (from_rest) return substeps >= least_start && can_measure_lag(s);
-  const bool old = control.lag_steps >= (control.lag_factor > 0 ? rest_period : first_period);
+  const bool old = control.steps_since_measurement >= (control.measured_error_factor > 0 ? rest_period : first_period);
   if (!(old || substeps >= least_increment) || !can_measure_lag(s)) return false;
-  const double strain = control.lag_strain >= slow_mark ? control.lag_strain - slow_mark : control.lag_strain;
-  return old || control.lag_factor == 0 || (control.lag_steps >= changed_period && strain > overlap_strain(s));
+  const double strain = control.strain_since_measurement >= slow_mark ? control.strain_since_measurement - slow_mark
+                                                                      : control.strain_since_measurement;
+  return old || control.measured_error_factor == 0 ||
+         (control.steps_since_measurement >= changed_period && strain > overlap_strain(s));
 }
 
 /// Relaxes a copy, and notes in the state by what its stress was behind.
@@ -113,11 +117,11 @@ void measure_lag(State& s) {
   s.count(2 * part);
   SolverState& control = s.control();
   const double scale = pressure_scale(s), left = s.unbalanced_ratio(balance_of(s.model(), relaxed));
-  const double margin = control.lag_factor > 0 ? 1 : first_margin;
-  control.lag_factor = margin * (change + left_by_rest * left * scale) / (control.unbalanced_ratio * scale);
-  control.lag_steps = 0;
+  const double margin = control.measured_error_factor > 0 ? 1 : first_margin;
+  control.measured_error_factor = margin * (change + left_by_rest * left * scale) / (control.unbalanced_ratio * scale);
+  control.steps_since_measurement = 0;
   // A change that grows with time is the beginning of a slow one: estimate_error takes it for that.
-  control.lag_strain = changes[1] > slow_growth * changes[0] ? slow_mark : 0;
+  control.strain_since_measurement = changes[1] > slow_growth * changes[0] ? slow_mark : 0;
   control.constraint_ratio = constraint_ratio(s.model(), s.assembly());
 }
 
@@ -140,21 +144,23 @@ void estimate_error(State& s, double network, const Matrix3& stress_before, cons
 
 void estimate_error(State& s, double allowed, const Judged& increment, Report& report) {
   SolverState& control = s.control();
-  control.lag_strain += increment.strain;
+  control.strain_since_measurement += increment.strain;
   const bool from_rest = increment.factor_from_rest > 0;
   if (increment.strain > 0 && lag_is_due(s, report.substeps, from_rest)) measure_lag(s);
   report.allowed_error = allowed;
   const double scale = pressure_scale(s) * increment.unbalanced_ratio, overlap = overlap_strain(s);
-  const bool just_measured = control.lag_factor > 0 && control.lag_steps == 0;
-  const double begun = just_measured && control.lag_strain >= slow_mark ? slow_goes_on : 1;
+  const bool just_measured = control.measured_error_factor > 0 && control.steps_since_measurement == 0;
+  const double begun = just_measured && control.strain_since_measurement >= slow_mark ? slow_goes_on : 1;
   const double measured =
-      begun * measured_margin * control.lag_factor * scale * rested_growth(increment.strain, overlap);
-  const double margin = from_rest ? start_estimate_margin : control.lag_factor > 0 ? fitted_margin : unmeasured_margin;
+      begun * measured_margin * control.measured_error_factor * scale * rested_growth(increment.strain, overlap);
+  const double margin = from_rest                           ? start_estimate_margin
+                        : control.measured_error_factor > 0 ? fitted_margin
+                                                            : unmeasured_margin;
   const double factor = from_rest ? increment.factor_from_rest : error_factor(s);
   const double fitted = margin * factor * scale * error_growth(increment.strain, overlap);
   const double least = increment.strain > overlap ? least_share_of_long : least_share;
   const double lag = (just_measured ? measured : from_rest ? fitted : std::max(measured, fitted)) + increment.more;
-  if (from_rest && control.lag_factor == 0) control.lag_strain = start_mark;
+  if (from_rest && control.measured_error_factor == 0) control.strain_since_measurement = start_mark;
   report.error_estimate = std::sqrt(lag * lag + increment.apart * increment.apart) +
                           least * (increment.usual > 0 ? increment.usual : allowed);
   judge_tolerance(report);

@@ -133,7 +133,7 @@ void join_deferred(State& s, FrameSplit& increment) {
 /// Notes a turn of the path, before the increment that makes it.
 void note_direction(State& s, double strain, bool turns, bool back, bool reverses) {
   SolverState& control = s.control();
-  if (turns) control.lag_strain = turn_mark;
+  if (turns) control.strain_since_measurement = turn_mark;
   if (back) control.strain_since_reversal = 0;
   control.strain_since_reversal = std::min(control.strain_since_reversal + strain, judged_together);
   if (by_tolerance(s) && reverses) turn_back(s);

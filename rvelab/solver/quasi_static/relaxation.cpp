@@ -41,7 +41,7 @@ Report relax(State& s, double unbalanced, long max_steps) {
     report.unbalanced_ratio = s.control().unbalanced_ratio;
     if (report.unbalanced_ratio <= unbalanced || report.substeps >= max_steps) break;
     // The state counts the steps: a relaxation may be made in as many calls as one likes.
-    const bool patient = s.control().rest_steps < patience_of_damping;
+    const bool patient = s.control().steps_at_fixed_shape < patience_of_damping;
     const double before = patient ? 0 : kinetic_energy(s.model(), s.assembly());
     const long steps = std::min(relaxation_interval, max_steps - report.substeps);
     advance_fixed_cell(s, steps);
