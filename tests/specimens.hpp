@@ -51,8 +51,8 @@ inline void add_ellipse(Specimen& s, const Vector3& position, double a, double b
   s.grains.orientation.emplace_back(std::cos(angle), std::sin(angle), 0);
 }
 
-/// No grains yet: a square or cubic cell of the given edge, linear_given contacts.
-inline Specimen empty_specimen(Shape shape, double edge, const Material& material, Law law = Law::linear_given) {
+/// No grains yet: a square or cubic cell of the given edge, linear_stiffness contacts.
+inline Specimen empty_specimen(Shape shape, double edge, const Material& material, Law law = Law::linear_stiffness) {
   Specimen s;
   s.shape = shape;
   s.cell.dimension = dimension_of(shape);

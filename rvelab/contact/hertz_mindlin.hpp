@@ -8,11 +8,11 @@
 // curvature at the contact (hertz_curvature.hpp).
 #pragma once
 
-#include "rvelab/contact/hertz_given.hpp"
+#include "rvelab/contact/hertz_stiffness.hpp"
 
 namespace rvelab {
 
-struct HertzMindlinForce : HertzGivenForce {
+struct HertzMindlinForce : HertzStiffnessForce {
   static constexpr bool stores_root_overlap = true;
   static constexpr bool has_hertz_radius = true;
 

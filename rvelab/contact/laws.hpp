@@ -4,21 +4,21 @@
 // energy from the overlap, which the step kernels are compiled for.
 #pragma once
 
-#include "rvelab/contact/hertz_given.hpp"
 #include "rvelab/contact/hertz_mindlin.hpp"
+#include "rvelab/contact/hertz_stiffness.hpp"
 #include "rvelab/contact/linear.hpp"
 #include "rvelab/contact/linear_adhesive.hpp"
-#include "rvelab/contact/linear_given.hpp"
+#include "rvelab/contact/linear_stiffness.hpp"
 
 namespace rvelab {
 
 /// Normal and tangential law of all contacts of a specimen.
-enum class Law { linear, linear_given, hertz_mindlin, hertz_given, linear_adhesive };
+enum class Law { linear, linear_stiffness, hertz_mindlin, hertz_stiffness, linear_adhesive };
 
 template <class... Each>
 struct TypeList {};
 /// In the order of Law.
-using Laws = TypeList<LinearLaw, LinearGivenLaw, HertzMindlinLaw, HertzGivenLaw, LinearAdhesiveLaw>;
+using Laws = TypeList<LinearLaw, LinearStiffnessLaw, HertzMindlinLaw, HertzStiffnessLaw, LinearAdhesiveLaw>;
 
 template <class... Each>
 constexpr int count_of(TypeList<Each...>) {

@@ -123,7 +123,7 @@ template <class Choice>
 constexpr auto name(Choice choice) -> decltype(Named<Choice>::names[0] + 0) {
   return Named<Choice>::names[std::size_t(choice)];
 }
-/// "linear, linear_given, ...": the names of the values for which this holds.
+/// "linear, linear_stiffness, ...": the names of the values for which this holds.
 template <class Choice, class Holds>
 std::string names_where(const Holds& holds) {
   std::string names;

@@ -55,7 +55,7 @@ KeyEntry entry(const char* table, const char* name, const char* unit, Value Owne
   return {key, member};
 }
 
-/// What laws mean by a number that they read: "linear_given, hertz_given: kt".
+/// What laws mean by a number that they read: "linear_stiffness, hertz_stiffness: kt".
 std::string meaning_of(const char* key) {
   std::vector<std::pair<std::string, std::string>> meanings;  // a meaning, the laws that have it
   for (const LawParameter& each : law_parameters()) {

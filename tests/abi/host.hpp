@@ -51,7 +51,7 @@ inline const Specimen& packed(Shape shape, int side, std::uint64_t seed = 1) {
   const std::array<std::uint64_t, 3> key{std::uint64_t(shape), std::uint64_t(side), seed};
   const auto found = made.find(key);
   if (found != made.end()) return found->second;
-  Rve rve(disordered(shape, side, linear_material(2e6, 1e6, 0.4), Law::linear_given, 0.515, seed));
+  Rve rve(disordered(shape, side, linear_material(2e6, 1e6, 0.4), Law::linear_stiffness, 0.515, seed));
   rve.relax(1e-5, 100'000);
   rve.take_as_reference();
   return made.emplace(key, rve.specimen()).first->second;

@@ -19,7 +19,7 @@ using Catch::Matchers::Contains;
 
 TEST_CASE("A call that finds no memory, whichever request fails, says so and changes nothing") {
   Host host;
-  Specimen loose = disordered(Shape::disc, 4, linear_material(2e6, 1e6, 0.4), Law::linear_given, 0.515, 1);
+  Specimen loose = disordered(Shape::disc, 4, linear_material(2e6, 1e6, 0.4), Law::linear_stiffness, 0.515, 1);
   for (int k = 16; k-- > 0;) loose.state.memory_order.push_back(k);  // kept in an order, as large ones are
   Rve relaxed(loose);
   relaxed.relax(1e-5, 100'000);

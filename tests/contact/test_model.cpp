@@ -95,7 +95,7 @@ TEST_CASE("a contact with a frictionless spring on one side has no tangential st
   Material smooth = quartz();
   smooth.stiffness_ratio = 0;
   smooth.tangential_stiffness = 0;
-  for (const Law law : {Law::linear, Law::linear_given, Law::hertz_given}) {
+  for (const Law law : {Law::linear, Law::linear_stiffness, Law::hertz_stiffness}) {
     CHECK(mix(model_of(law), {}, quartz(), 1e-3, 1, smooth, 1e-3, 1, 0).kt == 0);
     CHECK(mix(model_of(law), {}, smooth, 1e-3, 1, smooth, 1e-3, 1, 0).kt == 0);
   }
@@ -120,7 +120,7 @@ TEST_CASE("Hertz and Mindlin stiffness from elastic constants", "[contact][quick
 }
 
 TEST_CASE("given stiffnesses of one material are the contact's own", "[contact][quick]") {
-  for (const Law law : {Law::linear_given, Law::hertz_given}) {
+  for (const Law law : {Law::linear_stiffness, Law::hertz_stiffness}) {
     const auto same = mix(model_of(law), {}, quartz(), 1e-3, 1, quartz(), 2e-3, 1, 0);
     CHECK(same.kn == 3e6);
     CHECK(same.kt == 2e6);
@@ -131,7 +131,7 @@ TEST_CASE("given stiffnesses of one material are the contact's own", "[contact][
 }
 
 TEST_CASE("rolling parameters: k_r = kt ri rj beta, cap min(eta_i ri, eta_j rj)", "[contact][quick]") {
-  for (const Law law : {Law::linear, Law::linear_given, Law::hertz_mindlin, Law::hertz_given}) {
+  for (const Law law : {Law::linear, Law::linear_stiffness, Law::hertz_mindlin, Law::hertz_stiffness}) {
     const auto pair = mix(model_of(law, true), {}, quartz(), 2e-3, 1, rubber(), 6e-3, 1, 0);
     CHECK(pair.kr == Approx(pair.kt * 2e-3 * 6e-3 * 0.4).epsilon(1e-14));
     CHECK(pair.moment_cap == Approx(0.05 * 2e-3).epsilon(1e-14));
@@ -145,7 +145,7 @@ TEST_CASE("action equals reaction: mixing does not depend on the order of the gr
   Damping damping;
   damping.dashpot = Dashpot::restitution;
   damping.restitution = 0.6;
-  for (const Law law : {Law::linear, Law::linear_given, Law::hertz_mindlin, Law::hertz_given}) {
+  for (const Law law : {Law::linear, Law::linear_stiffness, Law::hertz_mindlin, Law::hertz_stiffness}) {
     const auto ab = mix(model_of(law, true), damping, quartz(), 2e-3, 0.1, rubber(), 6e-3, 0.3, 0);
     const auto ba = mix(model_of(law, true), damping, rubber(), 6e-3, 0.3, quartz(), 2e-3, 0.1, 0);
     CHECK(ab.kn == ba.kn);
@@ -164,14 +164,14 @@ TEST_CASE("a restitution dashpot gives the rebound of its formula", "[contact][q
   SECTION("linear spring, the closed form: v'/v = exp(-pi zeta/sqrt(1 - zeta^2)) over half a damped period") {
     for (const double e : {1e-3, 0.05, 0.3, 0.5, 0.9, 0.99, 1.0}) {
       damping.restitution = e;
-      const auto pair = mix(model_of(Law::linear_given), damping, quartz(), 1e-3, mi, quartz(), 1e-3, mj, 0);
+      const auto pair = mix(model_of(Law::linear_stiffness), damping, quartz(), 1e-3, mi, quartz(), 1e-3, mj, 0);
       const double zeta = pair.cn / (2 * std::sqrt(reduced_mass * pair.kn));
       const double pi = std::acos(-1.0);
       CHECK(std::exp(-pi * zeta / std::sqrt(1 - zeta * zeta)) == Approx(e).epsilon(1e-13));
     }
   }
   SECTION("Hertz spring, by integration") {
-    for (const Law law : {Law::hertz_mindlin, Law::hertz_given}) {
+    for (const Law law : {Law::hertz_mindlin, Law::hertz_stiffness}) {
       for (const double e : {0.05, 0.3, 0.6, 0.8, 0.9}) {
         damping.restitution = e;
         const auto pair = mix(model_of(law), damping, quartz(), 1e-3, mi, quartz(), 1e-3, mj, 0);
@@ -184,7 +184,7 @@ TEST_CASE("a restitution dashpot gives the rebound of its formula", "[contact][q
     damping.no_tension = true;
     for (const double e : {0.05, 0.3, 0.6, 0.9, 0.99}) {
       damping.restitution = e;
-      const auto pair = mix(model_of(Law::linear_given), damping, quartz(), 1e-3, mi, quartz(), 1e-3, mj, 0);
+      const auto pair = mix(model_of(Law::linear_stiffness), damping, quartz(), 1e-3, mi, quartz(), 1e-3, mj, 0);
       // m* x'' = -k x - c x' by the midpoint rule, in units of 1/omega, until the force would pull.
       const double zeta = pair.cn / (2 * std::sqrt(reduced_mass * pair.kn)), dt = 1e-4;
       double x = 0, v = 1;
@@ -203,7 +203,7 @@ TEST_CASE("a restitution dashpot gives the rebound of its formula", "[contact][q
   }
   SECTION("tsuji, by integration: the polynomial alpha(e) with the reduced mass in place of one grain's") {
     damping.dashpot = Dashpot::tsuji;
-    for (const Law law : {Law::hertz_mindlin, Law::hertz_given}) {
+    for (const Law law : {Law::hertz_mindlin, Law::hertz_stiffness}) {
       for (const double e : {0.3, 0.6, 0.8, 0.9}) {
         damping.restitution = e;
         const auto pair = mix(model_of(law), damping, quartz(), 1e-3, mi, quartz(), 1e-3, mj, 0);
@@ -217,7 +217,7 @@ TEST_CASE("a restitution dashpot gives the rebound of its formula", "[contact][q
   }
   SECTION("an elastic impact has no dashpot") {
     damping.restitution = 1;
-    for (const Law law : {Law::linear, Law::linear_given, Law::hertz_mindlin, Law::hertz_given}) {
+    for (const Law law : {Law::linear, Law::linear_stiffness, Law::hertz_mindlin, Law::hertz_stiffness}) {
       CHECK(mix(model_of(law), damping, quartz(), 1e-3, mi, quartz(), 1e-3, mj, 0).cn == 0);
     }
   }
@@ -235,11 +235,11 @@ TEST_CASE("dashpot constants as stated", "[contact][quick]") {
   CHECK(constant(Law::linear, Dashpot::coefficient) == 7);
   CHECK(constant(Law::hertz_mindlin, Dashpot::viscoelastic) == Approx(7 * std::sqrt(0.75e-3) * reduced_mass));
   CHECK(dashpot_power(Law::linear, Dashpot::restitution) == 0);
-  CHECK(dashpot_power(Law::linear_given, Dashpot::coefficient) == 0);
+  CHECK(dashpot_power(Law::linear_stiffness, Dashpot::coefficient) == 0);
   CHECK(dashpot_power(Law::hertz_mindlin, Dashpot::coefficient) == 0);
-  CHECK(dashpot_power(Law::hertz_given, Dashpot::restitution) == 0.25);
+  CHECK(dashpot_power(Law::hertz_stiffness, Dashpot::restitution) == 0.25);
   CHECK(dashpot_power(Law::hertz_mindlin, Dashpot::restitution) == 0.25);
-  CHECK(dashpot_power(Law::hertz_given, Dashpot::viscoelastic) == 0.5);
+  CHECK(dashpot_power(Law::hertz_stiffness, Dashpot::viscoelastic) == 0.5);
 }
 
 TEST_CASE("a parameter out of range is named with value and range", "[contact][quick]") {
@@ -258,9 +258,9 @@ TEST_CASE("a parameter out of range is named with value and range", "[contact][q
                         {Law::linear, &Material::young_modulus, infinity, "young_modulus", "> 0 Pa"},
                         {Law::linear, &Material::stiffness_ratio, 10.5, "stiffness_ratio", "0 to 10"},
                         {Law::hertz_mindlin, &Material::poisson_ratio, 0.51, "poisson_ratio", "-0.99 to 0.5"},
-                        {Law::linear_given, &Material::normal_stiffness, 0, "normal_stiffness", "> 0 N/m"},
-                        {Law::hertz_given, &Material::normal_stiffness, -2, "normal_stiffness", "> 0 N/m^1.5"},
-                        {Law::linear_given, &Material::tangential_stiffness, -2, "tangential_stiffness", ">= 0"},
+                        {Law::linear_stiffness, &Material::normal_stiffness, 0, "normal_stiffness", "> 0 N/m"},
+                        {Law::hertz_stiffness, &Material::normal_stiffness, -2, "normal_stiffness", "> 0 N/m^1.5"},
+                        {Law::linear_stiffness, &Material::tangential_stiffness, -2, "tangential_stiffness", ">= 0"},
                         {Law::linear, &Material::friction, -0.1, "friction", "0 to 1e+06"},
                         {Law::linear, &Material::friction, 2e6, "friction", "0 to 1e+06"},
                         {Law::linear, &Material::rolling_stiffness, -1, "rolling_stiffness", ">= 0"},
@@ -328,12 +328,12 @@ TEST_CASE("only what is used is checked, and all that is wrong is said at once",
 TEST_CASE("a viscoelastic dashpot needs a Hertz law, a specimen needs a material", "[contact][quick]") {
   Damping damping;
   damping.dashpot = Dashpot::viscoelastic;
-  CHECK(contains(finding(model_of(Law::linear_given), damping, {quartz()}), "hertz_mindlin"));
+  CHECK(contains(finding(model_of(Law::linear_stiffness), damping, {quartz()}), "hertz_mindlin"));
   CHECK(contains(finding(model_of(Law::linear), damping, {quartz()}), "contact.law = linear"));
-  CHECK(finding(model_of(Law::hertz_given), damping, {quartz()}).empty());
+  CHECK(finding(model_of(Law::hertz_stiffness), damping, {quartz()}).empty());
   damping.dashpot = Dashpot::tsuji;
   CHECK(contains(finding(model_of(Law::linear), damping, {quartz()}), "use damping.dashpot = restitution"));
-  CHECK(finding(model_of(Law::hertz_given), damping, {quartz()}).empty());
+  CHECK(finding(model_of(Law::hertz_stiffness), damping, {quartz()}).empty());
   CHECK(contains(finding(model_of(Law::linear), {}, {}), "materials"));
 }
 
@@ -341,7 +341,7 @@ TEST_CASE("Hertz's radius from curvature needs a law whose stiffness holds a rad
   ContactModel model = model_of(Law::hertz_mindlin);
   model.hertz_radius = HertzRadius::curvature;
   CHECK(finding(model, {}, {quartz()}).empty());
-  for (const Law law : {Law::linear, Law::linear_given, Law::hertz_given, Law::linear_adhesive}) {
+  for (const Law law : {Law::linear, Law::linear_stiffness, Law::hertz_stiffness, Law::linear_adhesive}) {
     model.law = law;
     const std::string text = finding(model, {}, {quartz()});
     CAPTURE(text);
@@ -352,7 +352,7 @@ TEST_CASE("Hertz's radius from curvature needs a law whose stiffness holds a rad
 }
 
 TEST_CASE("names go there and back", "[contact][quick]") {
-  for (const Law law : {Law::linear, Law::linear_given, Law::hertz_mindlin, Law::hertz_given}) {
+  for (const Law law : {Law::linear, Law::linear_stiffness, Law::hertz_mindlin, Law::hertz_stiffness}) {
     CHECK(choice_from<Law>(name(law)) == law);
   }
   for (const Slip slip : {Slip::consistent, Slip::full_radius, Slip::full_radius_ratcheting}) {

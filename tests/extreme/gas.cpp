@@ -72,7 +72,7 @@ Specimen gas_specimen(const HardGas& hard, bool hertz, double duration, unsigned
   const double half_mass = 0.5 * s.materials[0].density * grain_volume(s.shape, 1, s.cell.lattice(2, 2));
   const double speed = 2, contact_time = duration / hard.collision_rate(1);  // a typical speed of approach, 2 sqrt(T)
   const double overlap = hertz ? contact_time * speed / 2.943275 : contact_time * speed / pi;
-  s.contact.law = hertz ? Law::hertz_given : Law::linear_given;
+  s.contact.law = hertz ? Law::hertz_stiffness : Law::linear_stiffness;
   s.materials[0].normal_stiffness = constant_for(hertz, overlap, half_mass, speed);
   s.solver.energy_balance = true;
   return s;

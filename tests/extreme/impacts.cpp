@@ -21,7 +21,7 @@ Specimen pair_of_grains(int dimension, bool hertz, double contact_stiffness) {
   grain.poisson_ratio = 0.2;
   Specimen s =
       specimen_of(cell_of(dimension, 20, 20, dimension == 2 ? 0.5 : 20), {{-2, 0, 0}, {2, 0, 0}}, {1, 1}, grain);
-  s.contact.law = hertz ? Law::hertz_mindlin : Law::linear_given;
+  s.contact.law = hertz ? Law::hertz_mindlin : Law::linear_stiffness;
   return s;
 }
 
@@ -29,14 +29,14 @@ double mass_of(const Specimen& s) { return s.materials[0].density * grain_volume
 
 /// d f_n/d overlap^power of the pair: kn in N/m, or 4/3 E* sqrt(r*) in N/m^1.5.
 double law_constant(const Specimen& s) {
-  if (s.contact.law == Law::linear_given) return s.materials[0].normal_stiffness;
+  if (s.contact.law == Law::linear_stiffness) return s.materials[0].normal_stiffness;
   const double nu = s.materials[0].poisson_ratio;
   return 4.0 / 3 * s.materials[0].young_modulus / (2 * (1 - nu * nu)) * std::sqrt(0.5);
 }
 
 /// Speed of separation over that of approach, one approach phase. NaN while they still touch, or have gone through.
 double rebound(Specimen s, double speed, double phase, Verdict& verdict) {
-  const bool hertz = s.contact.law != Law::linear_given;
+  const bool hertz = s.contact.law != Law::linear_stiffness;
   const Impact impact = impact_of(hertz, law_constant(s), 0.5 * mass_of(s), 2 * speed);
   const double gap = 2 * speed * impact.duration * (8 + phase);
   s.grains.position[0][0] = -1 - 0.5 * gap;
@@ -89,7 +89,7 @@ void restitution_beside_contact(const Case& asked, Verdict& verdict) {
   for (int k = 0; k < phases; ++k) {
     Specimen s = specimen_of(cell_of(3, 20, 20, 20), {{-2, 0, 0}, {2, 0, 0}, {-2, 6, 0}, {2, 6, 0}}, {1, 1, 1, 1});
     const double half_mass = 0.5 * mass_of(s);
-    s.contact.law = hertz ? Law::hertz_given : Law::linear_given;
+    s.contact.law = hertz ? Law::hertz_stiffness : Law::linear_stiffness;
     s.solver.time_step_factor = asked("time_step_factor");
     s.materials[0].normal_stiffness = constant_for(hertz, 0.02, half_mass, 2 * speed);
     const Impact impact = impact_of(hertz, s.materials[0].normal_stiffness, half_mass, 2 * speed);
@@ -117,7 +117,7 @@ void impact_too_hard(const Case& asked, Verdict& verdict) {
   for (int k = 0; k < 20; ++k) {
     Specimen s = pair_of_grains(int(asked("dimension")), hertz, 1e7);
     const double overlap = asked("overlap_over_limit") * s.solver.max_overlap_ratio;
-    s.contact.law = hertz ? Law::hertz_given : Law::linear_given;
+    s.contact.law = hertz ? Law::hertz_stiffness : Law::linear_stiffness;
     s.solver.time_step_factor = asked("time_step_factor");
     s.materials[0].normal_stiffness = constant_for(hertz, overlap, 0.5 * mass_of(s), 2 * speed);
     const double gap = 0.5 + 0.02 * k;

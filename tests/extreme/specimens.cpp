@@ -38,7 +38,7 @@ bool same_in_cell_frame(const Specimen& a, const Specimen& b) {
 double pressure_at(int dimension, double kappa) { return stiffness / (kappa * (dimension == 2 ? 0.5 : 2.0)); }
 
 double pressure_of_ratio(const Specimen& s, double kappa) {
-  if (s.contact.law == Law::linear_given) {
+  if (s.contact.law == Law::linear_stiffness) {
     const double length = s.cell.dimension == 2 ? s.cell.lattice(2, 2) : 2.0;
     return s.materials[0].normal_stiffness / (kappa * length);
   }
@@ -90,7 +90,7 @@ Specimen jammed(const Specimen& loose, double pressure) {
   s.solver.fixed_substeps = 100;
   Rve rve(s);
   // Grains are pressed together at a moderate stiffness ratio first: at a high one any increment is too large.
-  const double power = loose.contact.law == Law::linear_given ? 1 : 2.0 / 3;
+  const double power = loose.contact.law == Law::linear_stiffness ? 1 : 2.0 / 3;
   bring_together(rve, std::max(pressure, pressure_of_ratio(loose, 1e3)));
   bring_to(rve, pressure, power, std::pow(pressure_of_ratio(loose, 1), power));
   rve.relax(1e-8, 50'000);

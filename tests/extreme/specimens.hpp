@@ -40,7 +40,7 @@ inline Specimen specimen_of(const Cell& cell, const std::vector<Vector3>& positi
   s.shape = cell.dimension == 2 ? Shape::disc : Shape::sphere;
   s.cell = cell;
   s.materials = {grain};
-  s.contact.law = Law::linear_given;
+  s.contact.law = Law::linear_stiffness;
   for (std::size_t g = 0; g < positions.size(); ++g) add_grain(s, positions[g], radii[g]);
   return s;
 }

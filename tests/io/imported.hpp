@@ -22,7 +22,7 @@ inline nlohmann::json meta(const std::string& name) {
 }
 
 inline const std::string sand =
-    "[contact]\nlaw = \"hertz_given\"\n[[material]]\nname = \"sand\"\nnormal_stiffness_N_m1_5 = 2e7\n"
+    "[contact]\nlaw = \"hertz_stiffness\"\n[[material]]\nname = \"sand\"\nnormal_stiffness_N_m1_5 = 2e7\n"
     "tangential_stiffness_N_m = 2e6\nfriction = 0.3\n";
 
 struct LooseSpheres {

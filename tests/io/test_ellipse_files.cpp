@@ -23,7 +23,7 @@ const std::string hertz =
     "[contact]\nlaw = 'hertz_mindlin'\nhertz_radius = 'curvature'\n[[material]]\nname = 'soil'\n"
     "young_modulus_Pa = 2e9\npoisson_ratio = 0.25\nfriction = 0.6\n";
 const std::string material =
-    "[contact]\nlaw = 'linear_given'\n[[material]]\nname = 'soil'\nnormal_stiffness_N_m = 6e6\n"
+    "[contact]\nlaw = 'linear_stiffness'\n[[material]]\nname = 'soil'\nnormal_stiffness_N_m = 6e6\n"
     "tangential_stiffness_N_m = 6e6\nfriction = 0.6\n";
 
 /// Two ellipses that lie tip to tip, and two that stand on them: four contacts.

@@ -61,7 +61,7 @@ TEST_CASE("a sheared and turned state comes back through CSV to round-off, conta
 
 TEST_CASE("every parameter goes through the material file, whatever law and dashpot use it") {
   const Folder folder;
-  for (const Law law : {Law::linear, Law::linear_given, Law::hertz_mindlin, Law::hertz_given}) {
+  for (const Law law : {Law::linear, Law::linear_stiffness, Law::hertz_mindlin, Law::hertz_stiffness}) {
     for (const Dashpot dashpot : {Dashpot::none, Dashpot::coefficient, Dashpot::viscoelastic}) {
       Specimen specimen;
       specimen.contact = {law, Slip::full_radius, true, false};
@@ -72,7 +72,7 @@ TEST_CASE("every parameter goes through the material file, whatever law and dash
       specimen.solver.energy_balance = true;
       specimen.materials.resize(2);
       for (auto& material : specimen.materials) {
-        const bool given = law == Law::linear_given || law == Law::hertz_given;
+        const bool given = law == Law::linear_stiffness || law == Law::hertz_stiffness;
         (given ? material.normal_stiffness : material.young_modulus) = 7e8 / 3;
         material.tangential_stiffness = 1.0 / 3;
         material.poisson_ratio = 0.3;

@@ -198,7 +198,7 @@ TEST_CASE("particles of LAMMPS come in with --cell and --material, sorted by id"
   CHECK((s.grains.position[1] - Vector3(-0.1, -0.5, -0.5)).norm() < 1e-15);
   CHECK(s.cell.lattice == Matrix3(Vector3(2, 3, 4).asDiagonal()));
   CHECK(s.materials[0].normal_stiffness == 2e7);
-  CHECK(s.contact.law == Law::hertz_given);
+  CHECK(s.contact.law == Law::hertz_stiffness);
   const Specimen discs = LooseSpheres("id,x,y,radius\n1,0.1,0.2,0.2\n").specimen();
   CHECK(discs.shape == Shape::disc);
   CHECK(discs.cell.lattice(2, 2) == 4);  // the slab's thickness

@@ -104,7 +104,7 @@ std::string refusal(int dimension, Edit edit) {
 
 /// A loaded packing of spheres whose contacts hold tangential forces in space.
 Specimen sheared_spheres() {
-  Rve rve = at_rest(disordered(Shape::sphere, 4, linear_material(1e5, 5e4, 0.5), Law::linear_given, 0.51, 4), 1e-6);
+  Rve rve = at_rest(disordered(Shape::sphere, 4, linear_material(1e5, 5e4, 0.5), Law::linear_stiffness, 0.51, 4), 1e-6);
   rve.apply(gradient(0, 1e-3, 0, 0), 0);
   Specimen specimen = rve.specimen();
   REQUIRE(specimen.contacts.size() > 20);

@@ -62,7 +62,7 @@ TEST_CASE("every key sets one field, from its own default, and no two keys the s
 TEST_CASE("assignments reach their fields") {
   Specimen s = two_materials();
   for (const char* assignment :
-       {"contact.law=hertz_given", "contact.slip = full_radius_ratcheting", "contact.rolling=true",
+       {"contact.law=hertz_stiffness", "contact.slip = full_radius_ratcheting", "contact.rolling=true",
         "contact.unload_rescale=false", "contact.hertz_radius='curvature'", "material.friction=0.25",
         "material.gravel.density_kg_m3=2700", "material.normal_stiffness_N_m1_5=2e7",
         "material.tangential_stiffness_N_m=2_000_000", "damping.local=0.1", "damping.local_form='component'",
@@ -72,7 +72,7 @@ TEST_CASE("assignments reach their fields") {
     CAPTURE(assignment);
     keys::set_key(s, assignment);
   }
-  CHECK(s.contact.law == Law::hertz_given);
+  CHECK(s.contact.law == Law::hertz_stiffness);
   CHECK(s.contact.slip == Slip::full_radius_ratcheting);
   CHECK(s.contact.rolling);
   CHECK(!s.contact.unload_rescale);
@@ -137,9 +137,9 @@ TEST_CASE("an unknown key is answered with the nearest known one") {
 
 TEST_CASE("a stiffness in the unit of another law is refused") {
   Specimen s = two_materials();
-  keys::set_key(s, "contact.law=hertz_given");
+  keys::set_key(s, "contact.law=hertz_stiffness");
   CHECK_THAT(input_error([&] { keys::set_key(s, "material.normal_stiffness_N_m=1e6"); }),
-             Contains("hertz_given") && Contains("normal_stiffness_N_m1_5"));
+             Contains("hertz_stiffness") && Contains("normal_stiffness_N_m1_5"));
   keys::set_key(s, "damping.dashpot=viscoelastic");
   CHECK_THAT(input_error([&] { keys::set_key(s, "damping.normal_coefficient_N_s_m=20"); }),
              Contains("viscoelastic_1_m_s"));
@@ -151,14 +151,14 @@ TEST_CASE("a material file sets what it says, in whatever order its tables come"
                   "tangential_stiffness_N_m = 2e6\n"
                   "[[material]]\nname = \"gravel\"\nfriction_angle_deg = 45\n"
                   "[damping]\nlocal = 0\ndashpot = \"coefficient\"\nnormal_coefficient_N_s_m = 20\n"
-                  "[contact]\nlaw = \"hertz_given\"\nslip = \"full_radius\"\n"
+                  "[contact]\nlaw = \"hertz_stiffness\"\nslip = \"full_radius\"\n"
                   "[solver]\nskin = 0.05\n",
                   s)
             .empty());
   REQUIRE(s.materials.size() == 2);
   CHECK(s.materials[0].normal_stiffness == 2e7);
   CHECK(s.materials[1].friction == Approx(1).epsilon(1e-15));
-  CHECK(s.contact.law == Law::hertz_given);
+  CHECK(s.contact.law == Law::hertz_stiffness);
   CHECK(s.contact.slip == Slip::full_radius);
   CHECK(s.damping.normal_coefficient == 20);
   CHECK(s.solver.skin == 0.05);

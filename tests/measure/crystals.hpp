@@ -51,7 +51,7 @@ inline Network bravais(int dimension, const Matrix3& primitive, double diameter,
   network.cell.dimension = dimension;
   network.cell.lattice = repeat * primitive;
   if (dimension == 2) network.cell.lattice(2, 2) = 1;
-  network.model.law = Law::linear_given;
+  network.model.law = Law::linear_stiffness;
   const int layers = dimension == 3 ? repeat : 1;
   for (int x = 0; x < repeat; ++x) {
     for (int y = 0; y < repeat; ++y) {

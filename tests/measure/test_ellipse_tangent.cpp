@@ -92,7 +92,7 @@ Moved moved(const TwoEllipses& pair, const Vector9& q, const ContactState* first
 
 pack::Recipe rows(std::size_t number, double angle) {
   pack::Recipe recipe = ellipses(number);
-  recipe.contact.law = Law::linear_given;
+  recipe.contact.law = Law::linear_stiffness;
   recipe.materials[0].normal_stiffness = recipe.materials[0].tangential_stiffness = 6e6;
   recipe.materials[0].friction = 0.6;
   recipe.fractions[0].grading.smallest_radius = recipe.fractions[0].grading.largest_radius = 4.3e-3;
@@ -236,9 +236,9 @@ TEST_CASE("Discs written as ellipses have the tangent of discs", "[measure]") {
   m.rolling_friction = 0.05;
   m.young_modulus = 2e8;
   m.poisson_ratio = 0.2;
-  for (const Law law : {Law::linear_given, Law::hertz_mindlin}) {
+  for (const Law law : {Law::linear_stiffness, Law::hertz_mindlin}) {
     Specimen s = disordered(Shape::disc, 8, m, law, 0.53, 4);
-    s.contact.rolling = law == Law::linear_given;
+    s.contact.rolling = law == Law::linear_stiffness;
     Rve rve(s);
     REQUIRE(rve.relax(1e-8, 200'000).target_held);
     Network discs = rve.network(), same = discs;
@@ -254,13 +254,13 @@ TEST_CASE("Discs written as ellipses have the tangent of discs", "[measure]") {
 
 TEST_CASE("Disordered ellipses: increments of 1e-7 meet the elastic tangent", "[measure]") {
   const Material m = material_of_every_law();
-  for (const auto& [law, radius] : {std::pair{Law::linear_given, HertzRadius::equivalent},
+  for (const auto& [law, radius] : {std::pair{Law::linear_stiffness, HertzRadius::equivalent},
                                     {Law::hertz_mindlin, HertzRadius::equivalent},
                                     {Law::hertz_mindlin, HertzRadius::curvature}}) {
     CAPTURE(name(law), name(radius));
     Specimen s = disordered(Shape::ellipse, 6, m, law, 0.53, 8);
     s.contact.hertz_radius = radius;
-    s.contact.rolling = law == Law::linear_given;
+    s.contact.rolling = law == Law::linear_stiffness;
     s.contact.unload_rescale = false;  // the mean over loading and unloading is of 1e-5 at this size
     Rve rve(s);
     forbid_slip(rve);
@@ -302,6 +302,6 @@ TEST_CASE("The axis of stiffness turns with the bedding angle of a regular packi
 }
 
 TEST_CASE("The orientation fabric of round grains is not defined", "[measure]") {
-  const Rve rve(disordered(Shape::disc, 3, linear_material(2e6, 1e6, 0.4), Law::linear_given, 0.53, 4));
+  const Rve rve(disordered(Shape::disc, 3, linear_material(2e6, 1e6, 0.4), Law::linear_stiffness, 0.53, 4));
   CHECK(std::isnan(orientation_fabric(rve.network())(0, 0)));
 }

@@ -34,7 +34,7 @@ Specimen crystal(double overlap, double kn, double kt) {
   specimen.shape = Shape::sphere;
   specimen.cell = network.cell;
   specimen.cell.rotation = cube_along_axes(network.cell.lattice);
-  specimen.contact.law = Law::linear_given;
+  specimen.contact.law = Law::linear_stiffness;
   Material material;
   material.normal_stiffness = kn, material.tangential_stiffness = kt, material.friction = 1e6;
   specimen.materials = {material};

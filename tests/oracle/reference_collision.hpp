@@ -40,7 +40,7 @@ inline Specimen collision_specimen(const nlohmann::json& record) {
     m.young_modulus = model.at("E");
     m.poisson_ratio = model.at("nu");
   } else {
-    s.contact.law = normal == "hooke" ? Law::linear_given : Law::hertz_given;
+    s.contact.law = normal == "hooke" ? Law::linear_stiffness : Law::hertz_stiffness;
     m.normal_stiffness = model.at(normal == "hooke" ? "kn" : "k");
     m.tangential_stiffness = model.at("kt");
   }

@@ -7,7 +7,7 @@ using namespace rvelab::test;
 namespace {
 
 /// Two ellipses of aspect 0.5 and 0.7 that fly at each other off their axes, turning.
-Specimen colliding(double kt = 0, Law law = Law::linear_given, double friction = 1e6) {
+Specimen colliding(double kt = 0, Law law = Law::linear_stiffness, double friction = 1e6) {
   Material m = linear_material(1e6, kt, friction);
   m.young_modulus = 5e7;
   m.poisson_ratio = 0.2;

@@ -146,7 +146,7 @@ TEST_CASE("a square crystal has C11 = kn, C12 = f/l and C66 = kt/2 - f/l") {
 }
 
 TEST_CASE("a face-centred crystal of spheres has the tangent of its bonds, linear and Hertz-Mindlin") {
-  const Law law = GENERATE(Law::linear_given, Law::hertz_mindlin);
+  const Law law = GENERATE(Law::linear_stiffness, Law::hertz_mindlin);
   const bool unload_rescale = GENERATE(false, true);
   const double ratio = 1.01, d = ratio * spacing, overlap = d - spacing;
   Material m = linear_material(3e5, 1.2e5, 1e6);

@@ -70,7 +70,7 @@ TEST_CASE("The bound of the largest frequency of ellipses lies above it, and not
   Material m = linear_material(2e6, ratio * 2e6, 0.5);
   m.rolling_stiffness = 0.5;
   m.rolling_friction = 0.1;
-  Specimen s = disordered(Shape::ellipse, 4, m, Law::linear_given, 0.5, 3);
+  Specimen s = disordered(Shape::ellipse, 4, m, Law::linear_stiffness, 0.5, 3);
   s.solver.max_overlap_ratio = 10;
   s.contact.rolling = rolling;
   const Rve rve(of_aspect(s, aspect));
@@ -93,7 +93,7 @@ TEST_CASE("The bound of the largest frequency holds with Hertz's radius from cur
 }
 
 TEST_CASE("Discs written as ellipses have the forces of discs") {
-  const Law law = GENERATE(Law::linear_given, Law::linear, Law::hertz_mindlin);
+  const Law law = GENERATE(Law::linear_stiffness, Law::linear, Law::hertz_mindlin);
   const bool rolling = GENERATE(false, true);
   const Dashpot dashpot = GENERATE(Dashpot::none, Dashpot::restitution);
   CAPTURE(name(law), rolling, name(dashpot));
@@ -145,7 +145,7 @@ TEST_CASE("A free ellipse turns by its spin, in a cell that turns too") {
 }
 
 TEST_CASE("A rigid turn of the cell at rest turns ellipses with it and leaves their contacts as they were") {
-  const Rve start(disordered(Shape::ellipse, 6, material_of_every_law(), Law::linear_given, 0.53, 8));
+  const Rve start(disordered(Shape::ellipse, 6, material_of_every_law(), Law::linear_stiffness, 0.53, 8));
   Rve turned(start);
   turned.apply(rotation_about_z(0.7) - Matrix3::Identity(), 0);
   const Network a = start.network(), b = turned.network();
@@ -156,7 +156,7 @@ TEST_CASE("A rigid turn of the cell at rest turns ellipses with it and leaves th
 }
 
 TEST_CASE("Ellipses of impossible axes, orientation or slip are refused by name") {
-  const Specimen good = disordered(Shape::ellipse, 3, material_of_every_law(), Law::linear_given, 0.45, 1);
+  const Specimen good = disordered(Shape::ellipse, 3, material_of_every_law(), Law::linear_stiffness, 0.45, 1);
   CHECK_NOTHROW(Rve(good));
   const auto refused = [&](const std::function<void(Specimen&)>& change, const std::string& text) {
     Specimen s = good;

@@ -128,7 +128,7 @@ Matrix3 pattern(Shape shape, bool turning) {
 
 TEST_CASE("the energy balance of normal forces closes as the square of the time step") {
   const Shape shape = GENERATE(Shape::disc, Shape::sphere, Shape::ellipse);
-  const Law law = GENERATE(Law::linear_given, Law::hertz_given);
+  const Law law = GENERATE(Law::linear_stiffness, Law::hertz_stiffness);
   const bool turning = GENERATE(false, true);
   CAPTURE(fields::text_of(shape), name(law), turning);
   Specimen s = packing(shape, law);
@@ -144,7 +144,7 @@ TEST_CASE("the energy balance of normal forces closes as the square of the time 
 
 TEST_CASE("the energy balance of stuck contacts closes") {
   const Shape shape = GENERATE(Shape::disc, Shape::sphere, Shape::ellipse);
-  const Law law = GENERATE(Law::linear_given, Law::hertz_given, Law::hertz_mindlin);
+  const Law law = GENERATE(Law::linear_stiffness, Law::hertz_stiffness, Law::hertz_mindlin);
   const bool turning = GENERATE(false, true), rolling = GENERATE(false, true);
   CAPTURE(fields::text_of(shape), name(law), turning, rolling);
   Specimen s = packing(shape, law);
@@ -163,7 +163,7 @@ TEST_CASE("the energy balance of stuck contacts closes") {
 
 TEST_CASE("the energy balance of dashpots closes with the time step, and they only take") {
   const Shape shape = GENERATE(Shape::disc, Shape::sphere, Shape::ellipse);
-  const Law law = GENERATE(Law::linear_given, Law::hertz_mindlin);
+  const Law law = GENERATE(Law::linear_stiffness, Law::hertz_mindlin);
   const bool turning = GENERATE(false, true);
   CAPTURE(fields::text_of(shape), name(law), turning);
   Specimen s = packing(shape, law);
@@ -179,7 +179,7 @@ TEST_CASE("the energy balance of sliding and rolling contacts closes with the ti
   const Shape shape = GENERATE(Shape::disc, Shape::sphere, Shape::ellipse);
   const bool turning = GENERATE(false, true);
   CAPTURE(fields::text_of(shape), turning);
-  Specimen s = packing(shape, Law::hertz_given, 0.2, 0.02);
+  Specimen s = packing(shape, Law::hertz_stiffness, 0.2, 0.02);
   s.contact.rolling = true;
   const Flow f = flow(s, pattern(shape, turning), 1e-2);
   check_closed(f, 1e-4);
@@ -191,7 +191,7 @@ TEST_CASE("the energy balance of viscous and of local damping closes with the ti
   const Shape shape = GENERATE(Shape::disc, Shape::sphere, Shape::ellipse);
   const bool local = GENERATE(false, true), global = GENERATE(false, true);
   CAPTURE(fields::text_of(shape), local, global);
-  Specimen s = packing(shape, Law::hertz_given);
+  Specimen s = packing(shape, Law::hertz_stiffness);
   s.damping.local = local ? 0.2 : 0;
   s.damping.global_viscous = global ? 2 : 0;
   // A flow without spin: local damping acts on w', which is then the whole spin.
@@ -205,7 +205,7 @@ TEST_CASE("the energy balance of viscous and of local damping closes with the ti
 
 TEST_CASE("momentum stays zero to round-off without local and viscous damping") {
   const Shape shape = GENERATE(Shape::disc, Shape::sphere, Shape::ellipse);
-  Specimen s = packing(shape, Law::hertz_given, 0.3);
+  Specimen s = packing(shape, Law::hertz_stiffness, 0.3);
   s.damping.dashpot = Dashpot::coefficient;
   s.damping.normal_coefficient = 1;
   s.damping.tangential_ratio = 0.5;

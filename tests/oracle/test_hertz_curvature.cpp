@@ -293,6 +293,6 @@ TEST_CASE("Hertz's radius from curvature is refused where there is none, by name
   m.stiffness_ratio = 0.5;
   refused(disordered(Shape::disc, 3, m, Law::hertz_mindlin, 0.45, 1), "discs");
   refused(disordered(Shape::sphere, 3, m, Law::hertz_mindlin, 0.45, 1), "spheres");
-  for (const Law law : {Law::linear, Law::linear_given, Law::hertz_given, Law::linear_adhesive})
+  for (const Law law : {Law::linear, Law::linear_stiffness, Law::hertz_stiffness, Law::linear_adhesive})
     refused(disordered(Shape::ellipse, 3, m, law, 0.45, 1), "allowed: hertz_mindlin");
 }

@@ -27,7 +27,7 @@ Specimen start_of(const std::string& name) {
   m.tangential_stiffness = 2e6;
   m.friction = 0.3;
   s.materials = {m};
-  s.contact.law = Law::hertz_given;
+  s.contact.law = Law::hertz_stiffness;
   s.contact.slip = Slip::full_radius;
   s.damping.dashpot = Dashpot::coefficient;
   s.damping.normal_coefficient = 20;

@@ -19,7 +19,7 @@ Specimen sixteen(Shape shape) {
   Material m = linear_material(1e5, 5e4, 0.5);
   Specimen s;
   if (shape == Shape::disc) {
-    s = disordered(shape, 4, m, Law::linear_given, 0.56, 21);
+    s = disordered(shape, 4, m, Law::linear_stiffness, 0.56, 21);
   } else {
     // 4 x 2 x 2 sites of a lattice whose cell is a cube all the same: more equal edges keep images apart.
     s = empty_specimen(shape, 0.0252, m);

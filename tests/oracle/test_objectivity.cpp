@@ -155,7 +155,8 @@ TEST_CASE("quarter turns between the steps of a path permute the stress and chan
 }
 
 TEST_CASE("quarter turns of spheres about all axes permute the stress and change no bit of it") {
-  const Rve start = at_rest(disordered(Shape::sphere, 3, linear_material(2e6, 1e6, 0.5), Law::hertz_given, 0.52, 3));
+  const Rve start =
+      at_rest(disordered(Shape::sphere, 3, linear_material(2e6, 1e6, 0.5), Law::hertz_stiffness, 0.52, 3));
   Rve still(start), turning(start);
   Matrix3 turned = Matrix3::Identity();
   Matrix3 step = Matrix3::Zero();

@@ -24,7 +24,7 @@ constexpr double rate = 0.5;            // 1/s
 constexpr double duration = 0.2;        // s
 
 Specimen gas() {
-  Specimen s = empty_specimen(Shape::sphere, 2, linear_material(2e7, 2e6, 0.3), Law::hertz_given);
+  Specimen s = empty_specimen(Shape::sphere, 2, linear_material(2e7, 2e6, 0.3), Law::hertz_stiffness);
   s.damping.dashpot = Dashpot::coefficient;
   s.damping.normal_coefficient = 20;
   const RecordedTable start("lammps/sheared/n738_s1_start.csv");

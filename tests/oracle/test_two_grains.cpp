@@ -70,7 +70,7 @@ TEST_CASE("grains that stick hold each other longer, and part with all of their 
 TEST_CASE("a linear contact lasts pi sqrt(m*/k) and returns all of the speed") {
   const Shape shape = GENERATE(Shape::disc, Shape::sphere);
   const double speed = GENERATE(0.1, 2.0);
-  const Specimen s = two_grains(shape, linear_material(1e6, 0, 0), Law::linear_given, 1);
+  const Specimen s = two_grains(shape, linear_material(1e6, 0, 0), Law::linear_stiffness, 1);
   const double expected = pi * std::sqrt(0.5 * mass_of(s) / 1e6);
   const Collision found = collide(s, speed, expected, 2000);
   // Leapfrog: relative errors of order (omega dt)^2 = 2.5e-6, a twenty-fourth of it in the frequency.
@@ -81,7 +81,7 @@ TEST_CASE("a linear contact lasts pi sqrt(m*/k) and returns all of the speed") {
 TEST_CASE("a linear dashpot gives back the restitution that was asked for, at any speed") {
   const double e = GENERATE(0.9, 0.5, 0.2);
   const double speed = GENERATE(0.1, 2.0);
-  Specimen s = two_grains(Shape::sphere, linear_material(1e6, 0, 0), Law::linear_given, 1);
+  Specimen s = two_grains(Shape::sphere, linear_material(1e6, 0, 0), Law::linear_stiffness, 1);
   s.damping.dashpot = Dashpot::restitution;
   s.damping.restitution = e;
   const double half_mass = 0.5 * mass_of(s), zeta = -std::log(e) / std::sqrt(pi * pi + std::log(e) * std::log(e));
@@ -98,11 +98,11 @@ TEST_CASE("a Hertz contact lasts 2.943 delta_max over the speed and returns all 
   const double integral = std::sqrt(pi) * std::tgamma(0.4) / (2.5 * std::tgamma(0.9));
   CHECK(2 * integral == Approx(2.943275).epsilon(1e-6));
   const double speed = GENERATE(0.05, 1.0);
-  const Law law = GENERATE(Law::hertz_given, Law::hertz_mindlin);
+  const Law law = GENERATE(Law::hertz_stiffness, Law::hertz_mindlin);
   Material m = linear_material(2e7, 2e6, 0.3);
   m.young_modulus = 7e7;
   m.poisson_ratio = 0.25;
-  const double k = law == Law::hertz_given ? 2e7 : 4.0 / 3.0 * 0.5 * 7e7 / (1 - 0.25 * 0.25) * std::sqrt(0.05);
+  const double k = law == Law::hertz_stiffness ? 2e7 : 4.0 / 3.0 * 0.5 * 7e7 / (1 - 0.25 * 0.25) * std::sqrt(0.05);
   const Specimen s = two_grains(Shape::sphere, m, law, 1);
   const double deepest = std::pow(1.25 * 0.5 * mass_of(s) * speed * speed / k, 0.4);
   const double expected = 2 * integral * deepest / speed;
@@ -119,7 +119,7 @@ TEST_CASE("a Hertz contact with a dashpot in delta^1/4 rebounds by one ratio at 
   const double x = parameter;
   const double alpha = 1.2728 - 4.2783 * x + 11.087 * std::pow(x, 2) - 22.348 * std::pow(x, 3) +
                        27.467 * std::pow(x, 4) - 18.022 * std::pow(x, 5) + 4.8218 * std::pow(x, 6);
-  Specimen s = two_grains(Shape::sphere, linear_material(2e7, 0, 0), Law::hertz_given, 1);
+  Specimen s = two_grains(Shape::sphere, linear_material(2e7, 0, 0), Law::hertz_stiffness, 1);
   s.damping.dashpot = Dashpot::tsuji;
   s.damping.restitution = parameter;
   const double deepest = std::pow(1.25 * 0.5 * mass_of(s) * speed * speed / 2e7, 0.4);
@@ -129,7 +129,7 @@ TEST_CASE("a Hertz contact with a dashpot in delta^1/4 rebounds by one ratio at 
 
 TEST_CASE("a dashpot without tension never attracts, with it the end of a contact does") {
   const bool no_tension = GENERATE(true, false);
-  Specimen s = two_grains(Shape::sphere, linear_material(1e6, 0, 0), Law::linear_given, 0.001);
+  Specimen s = two_grains(Shape::sphere, linear_material(1e6, 0, 0), Law::linear_stiffness, 0.001);
   s.damping.dashpot = Dashpot::restitution;
   s.damping.restitution = 0.3;
   s.damping.no_tension = no_tension;
@@ -180,13 +180,13 @@ class Driven {
 
 TEST_CASE("a driven tangential loop follows k_t between the Coulomb bounds") {
   const Shape shape = GENERATE(Shape::disc, Shape::sphere);
-  const Law law = GENERATE(Law::linear_given, Law::hertz_given, Law::hertz_mindlin);
+  const Law law = GENERATE(Law::linear_stiffness, Law::hertz_stiffness, Law::hertz_mindlin);
   Material m = linear_material(2e6, 8e5, 0.4);
   m.young_modulus = 7e7;
   m.poisson_ratio = 0.25;
   const double overlap = 0.002, root = std::sqrt(overlap), arm = 0.1 - 0.5 * overlap;
   double fn = 2e6 * overlap, kt = 8e5;
-  if (law == Law::hertz_given) fn = 2e6 * overlap * root;
+  if (law == Law::hertz_stiffness) fn = 2e6 * overlap * root;
   if (law == Law::hertz_mindlin) {
     fn = 4.0 / 3.0 * (0.5 * 7e7 / (1 - 0.0625)) * std::sqrt(0.05) * overlap * root;
     kt = 8 * (7e7 / (4 * (2 - 0.25) * 1.25)) * std::sqrt(0.05) * root;
@@ -248,7 +248,7 @@ TEST_CASE("Hertz-Mindlin: an unloading normal force takes the tangential one alo
 
 TEST_CASE("a sliding force is mu f_n whatever the normal force does") {
   const Shape shape = GENERATE(Shape::disc, Shape::sphere);
-  Driven pair(shape, linear_material(2e6, 8e5, 0.4), Law::linear_given, 0.001);
+  Driven pair(shape, linear_material(2e6, 8e5, 0.4), Law::linear_stiffness, 0.001);
   const ContactState sliding = pair.drive(0, 0.05, 0.05);
   CHECK(sliding.tangential_force.norm() == Approx(0.4 * 2000).epsilon(1e-12));
   const ContactState harder = pair.drive(0.001, 0.05, 0.05);
@@ -264,7 +264,7 @@ TEST_CASE("a rolling moment is k_r times the relative turn, capped at eta r f_n,
   m.rolling_stiffness = 0.5;
   m.rolling_friction = 0.05;
   const double overlap = 0.001, fn = 2e6 * overlap, kr = 8e5 * 0.1 * 0.1 * 0.5, cap = 0.05 * 0.1 * fn;
-  Driven pair(shape, m, Law::linear_given, overlap, true);
+  Driven pair(shape, m, Law::linear_stiffness, overlap, true);
   const double yield = cap / kr;  // relative turn at the cap, rad
   const auto at = [&](double turn) { return pair.drive(0, -0.5 * turn, 0.5 * turn); };
   const ContactState first = at(0.7 * yield);
@@ -281,7 +281,7 @@ TEST_CASE("the twist of two spheres about their normal makes neither moment nor 
   m.rolling_stiffness = 0.5;
   m.rolling_friction = 0.05;
   m.density = 1e30;
-  Specimen s = two_grains(Shape::sphere, m, Law::linear_given, -0.001);
+  Specimen s = two_grains(Shape::sphere, m, Law::linear_stiffness, -0.001);
   s.contact.rolling = true;
   s.solver.fixed_time_step = 1e-3;
   Rve rve(s);

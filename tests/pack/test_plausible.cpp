@@ -45,9 +45,9 @@ TEST_CASE("a stiffness with which grains would overlap by their radius is refuse
     CHECK_THROWS_WITH(recipe_of("young_modulus_Pa = " + std::string(modulus)),
                       Contains("r.toml: ") && Contains("material.sand.young_modulus_Pa") && Contains("Pa") &&
                           Contains("target.pressure_Pa = 100000") && Contains("likely in"));
-  CHECK_THROWS_WITH(recipe_of("normal_stiffness_N_m = 6\ntangential_stiffness_N_m = 2", "20e3", "linear_given"),
+  CHECK_THROWS_WITH(recipe_of("normal_stiffness_N_m = 6\ntangential_stiffness_N_m = 2", "20e3", "linear_stiffness"),
                     Contains("normal_stiffness_N_m = 6") && Contains("MN/m"));
-  CHECK_THROWS_WITH(recipe_of("normal_stiffness_N_m1_5 = 20\ntangential_stiffness_N_m = 2", "100e3", "hertz_given",
+  CHECK_THROWS_WITH(recipe_of("normal_stiffness_N_m1_5 = 20\ntangential_stiffness_N_m = 2", "100e3", "hertz_stiffness",
                               "shape = \"sphere\"\nnumber = 100"),
                     Contains("normal_stiffness_N_m1_5 = 20"));
   CHECK_THROWS_WITH(recipe_of("young_modulus_Pa = 70\npoisson_ratio = 0.2", "100e3", "hertz_mindlin",

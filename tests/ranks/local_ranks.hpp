@@ -48,7 +48,7 @@ inline pool::Options one_thread() {
 inline const Specimen& packed(int side) {
   static std::map<int, Specimen> made;
   if (const auto found = made.find(side); found != made.end()) return found->second;
-  Rve rve(disordered(Shape::disc, side, linear_material(2e6, 1e6, 0.4), Law::linear_given, 0.515, 1));
+  Rve rve(disordered(Shape::disc, side, linear_material(2e6, 1e6, 0.4), Law::linear_stiffness, 0.515, 1));
   rve.relax(1e-5, 100'000);
   rve.take_as_reference();
   return made.emplace(side, rve.specimen()).first->second;

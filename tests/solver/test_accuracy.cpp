@@ -52,7 +52,7 @@ Specimen packed_grains(Shape shape, std::size_t number, double ratio, double fri
   m = linear_material(1e3 * 1e5 * recipe.thickness, 8e2 * 1e5 * recipe.thickness, friction);
   m.young_modulus = 3e9;
   m.poisson_ratio = 0.2;
-  recipe.contact.law = shape == Shape::sphere ? Law::hertz_mindlin : Law::linear_given;
+  recipe.contact.law = shape == Shape::sphere ? Law::hertz_mindlin : Law::linear_stiffness;
   recipe.stress = pack::isotropic_stress(1e5, shape);
   recipe.stress_tolerance = 2e-3;
   Workers alone(1);
@@ -289,7 +289,7 @@ TEST_CASE("A rest costs a few of a hundred sub-steps of a path that goes on", "[
 }
 
 TEST_CASE("A relaxation cut into calls is the same relaxation, the stop of grains that swing included", "[solver]") {
-  Specimen s = disordered(Shape::disc, 6, linear_material(1e6, 5e5, 0.3), Law::linear_given, 0.52, 3);
+  Specimen s = disordered(Shape::disc, 6, linear_material(1e6, 5e5, 0.3), Law::linear_stiffness, 0.52, 3);
   Rve whole(s), cut(s);
   whole.relax(1e-40, 21'000);
   for (int k = 0; k < 21; ++k) cut.relax(1e-40, 1000);

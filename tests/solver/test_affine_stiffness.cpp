@@ -31,11 +31,11 @@ TEST_CASE("The affine stiffness is the sum over contacts that move with the stra
   hertz.poisson_ratio = 0.3;
   hertz.friction = 0.5;
   const std::vector<Specimen> specimens = {
-      disordered(Shape::disc, 9, linear_material(2e6, 1e6, 0.4), Law::linear_given, 0.52, 3),
+      disordered(Shape::disc, 9, linear_material(2e6, 1e6, 0.4), Law::linear_stiffness, 0.52, 3),
       disordered(Shape::disc, 9, hertz, Law::hertz_mindlin, 0.51, 6),
-      disordered(Shape::ellipse, 9, linear_material(2e6, 1e6, 0.4), Law::linear_given, 0.52, 3),
+      disordered(Shape::ellipse, 9, linear_material(2e6, 1e6, 0.4), Law::linear_stiffness, 0.52, 3),
       disordered(Shape::sphere, 5, hertz, Law::hertz_mindlin, 0.51, 4),
-      disordered(Shape::sphere, 5, linear_material(2e6, 5e5, 0.4), Law::linear_given, 0.52, 8)};
+      disordered(Shape::sphere, 5, linear_material(2e6, 5e5, 0.4), Law::linear_stiffness, 0.52, 8)};
   std::mt19937_64 generator(1);
   std::normal_distribution<double> normal;
   for (const Specimen& start : specimens) {

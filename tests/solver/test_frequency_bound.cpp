@@ -33,7 +33,7 @@ struct Stiffness {
 Stiffness stiffness_between(const Specimen& s, double ri, double rj, double overlap) {
   const Material& m = s.materials[0];
   const double beta = s.contact.rolling ? m.rolling_stiffness : 0;
-  if (s.contact.law == Law::linear_given) {
+  if (s.contact.law == Law::linear_stiffness) {
     const double kn = m.normal_stiffness, kt = m.tangential_stiffness;
     return {kn, kt, kt * ri * rj * beta, kn * overlap};
   }
@@ -164,7 +164,7 @@ Specimen moving(Specimen start, double speed) {
 TEST_CASE("The bound of the largest frequency lies between it and its double, as Gershgorin says", "[solver]") {
   int networks = 0;
   for (const Shape shape : {Shape::disc, Shape::sphere})
-    for (const Law law : {Law::linear_given, Law::hertz_mindlin})
+    for (const Law law : {Law::linear_stiffness, Law::hertz_mindlin})
       for (const bool rolling : {false, true})
         for (const double ratio : {0.2, 1.0, 3.0})
           for (const int side : {1, 2, 3, 4})
@@ -191,7 +191,7 @@ TEST_CASE(
     "A given time step is taken up to 2 over the largest frequency, though it is beyond the bound, and refused above",
     "[solver]") {
   for (const Shape shape : {Shape::disc, Shape::sphere})
-    for (const Law law : {Law::linear_given, Law::hertz_mindlin})
+    for (const Law law : {Law::linear_stiffness, Law::hertz_mindlin})
       for (const bool rolling : {false, true}) {
         Specimen s = disordered(shape, 3, material_for(law, 1.0), law, 0.55, 1, 0.04);
         s.contact.rolling = rolling;
@@ -230,11 +230,11 @@ TEST_CASE("Row sums that collisions leave out would have asked for no shorter st
   hertz.poisson_ratio = 0.3;
   hertz.friction = 0.5;
   const std::vector<Specimen> specimens = {
-      disordered(Shape::disc, 9, linear_material(2e6, 1e6, 0.4), Law::linear_given, 0.52, 3),
+      disordered(Shape::disc, 9, linear_material(2e6, 1e6, 0.4), Law::linear_stiffness, 0.52, 3),
       disordered(Shape::disc, 9, hertz, Law::hertz_mindlin, 0.51, 6),
-      disordered(Shape::ellipse, 9, linear_material(2e6, 1e6, 0.4), Law::linear_given, 0.52, 3),
+      disordered(Shape::ellipse, 9, linear_material(2e6, 1e6, 0.4), Law::linear_stiffness, 0.52, 3),
       disordered(Shape::sphere, 5, hertz, Law::hertz_mindlin, 0.51, 4),
-      disordered(Shape::sphere, 5, linear_material(2e6, 5e5, 0.4), Law::linear_given, 0.52, 8)};
+      disordered(Shape::sphere, 5, linear_material(2e6, 5e5, 0.4), Law::linear_stiffness, 0.52, 8)};
   for (const Specimen& start : specimens) {
     for (const double speed : {1e-6, 1e-3, 0.1}) {
       CAPTURE(int(start.shape), int(start.contact.law), speed);

@@ -140,7 +140,7 @@ TEST_CASE("cells that are flat, skew or no longer numbers are refused") {
 
 TEST_CASE("a specimen in two units, or far from its cell, is refused when it is opened") {
   for (const Shape shape : {Shape::disc, Shape::sphere}) {
-    Specimen s = disordered(shape, 6, linear_material(1e6, 5e5, 0.3), Law::linear_given, 0.5, 3);
+    Specimen s = disordered(shape, 6, linear_material(1e6, 5e5, 0.3), Law::linear_stiffness, 0.5, 3);
     REQUIRE_NOTHROW(Rve(s));
     Specimen millimetres = s;
     for (double& radius : millimetres.grains.radius) radius *= 1000;
@@ -160,7 +160,7 @@ TEST_CASE("an expansion by tens of decades ends well or is refused, and changes 
   for (const Shape shape : {Shape::disc, Shape::sphere})
     for (const double factor : {1e10, 1e80, 1e100, 1e150}) {
       const int d = dimension_of(shape);
-      Rve rve(disordered(shape, 4, linear_material(1e6, 5e5, 0.3), Law::linear_given, 0.5, 3));
+      Rve rve(disordered(shape, 4, linear_material(1e6, 5e5, 0.3), Law::linear_stiffness, 0.5, 3));
       rve.relax(1e-4, 10'000);
       const auto before = rve.save();
       Matrix3 expansion = Matrix3::Zero();

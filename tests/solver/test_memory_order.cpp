@@ -17,7 +17,7 @@ Specimen large(Shape shape) {
   Material material = linear_material(2e6, 1e6, 0.4);
   material.rolling_stiffness = 1;
   material.rolling_friction = 0.2;
-  Specimen s = disordered(shape, dimension_of(shape) == 2 ? 46 : 13, material, Law::linear_given, 0.52, 3);
+  Specimen s = disordered(shape, dimension_of(shape) == 2 ? 46 : 13, material, Law::linear_stiffness, 0.52, 3);
   s.contact.rolling = true;
   std::vector<std::size_t> from(s.grains.size());
   std::iota(from.begin(), from.end(), std::size_t(0));
@@ -139,7 +139,7 @@ TEST_CASE("Neighbours in space are near in memory", "[solver]") {
 }
 
 TEST_CASE("A memory order that is no permutation is refused", "[solver]") {
-  Specimen s = disordered(Shape::disc, 6, linear_material(2e6, 1e6, 0.4), Law::linear_given, 0.52, 3);
+  Specimen s = disordered(Shape::disc, 6, linear_material(2e6, 1e6, 0.4), Law::linear_stiffness, 0.52, 3);
   s.state.memory_order = {0, 1, 2};
   CHECK_THROWS_WITH(Rve(s), Catch::Contains("state/memory_order has 3 rows; allowed: 36, one for each grain, or none"));
   s.state.memory_order.assign(36, 0);

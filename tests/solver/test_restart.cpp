@@ -24,7 +24,7 @@ std::vector<Configuration> configurations() {
   for (const Shape shape : {Shape::disc, Shape::sphere, Shape::ellipse}) {
     const int side = dimension_of(shape) == 2 ? 7 : 4;
     const bool round = shape != Shape::ellipse;  // which alone know other slips
-    Specimen s = disordered(shape, side, m, Law::linear_given, 0.53, 11);
+    Specimen s = disordered(shape, side, m, Law::linear_stiffness, 0.53, 11);
     all.push_back({"linear", s});
     s.contact.rolling = true;
     if (round) s.contact.slip = Slip::full_radius_ratcheting;
@@ -40,14 +40,14 @@ std::vector<Configuration> configurations() {
       s.contact.hertz_radius = HertzRadius::curvature;
       all.push_back({"hertz_mindlin of the curvature, rolling, dashpot", s});
     }
-    s = disordered(shape, side, m, Law::hertz_given, 0.53, 13);
+    s = disordered(shape, side, m, Law::hertz_stiffness, 0.53, 13);
     if (round) s.contact.slip = Slip::full_radius;
     s.damping.dashpot = Dashpot::coefficient;
     s.damping.normal_coefficient = 2;
     s.damping.local = 0.1;
     s.damping.global_viscous = 0.1;
     s.solver.energy_balance = true;
-    all.push_back({"hertz_given, dashpot, dampings, ledger", s});
+    all.push_back({"hertz_stiffness, dashpot, dampings, ledger", s});
   }
   return all;
 }

@@ -16,17 +16,18 @@ std::vector<Specimen> resting_configurations() {
   Material rolling = linear_material(2e6, 1e6, 0.4);
   rolling.rolling_stiffness = 1;
   rolling.rolling_friction = 0.2;
-  all.push_back(disordered(Shape::disc, 9, rolling, Law::linear_given, 0.52, 3));
+  all.push_back(disordered(Shape::disc, 9, rolling, Law::linear_stiffness, 0.52, 3));
   all.back().contact.rolling = true;
   Material hertz;
   hertz.young_modulus = 1e9;
   hertz.poisson_ratio = 0.3;
   hertz.friction = 0.5;
-  all.push_back(disordered(Shape::ellipse, 9, rolling, Law::linear_given, 0.52, 6));
+  all.push_back(disordered(Shape::ellipse, 9, rolling, Law::linear_stiffness, 0.52, 6));
   all.push_back(disordered(Shape::sphere, 5, hertz, Law::hertz_mindlin, 0.51, 4));
   all.back().damping.dashpot = Dashpot::viscoelastic;
   all.back().damping.normal_coefficient = 1e3;
-  all.push_back(disordered(Shape::sphere, 2, rolling, Law::linear_given, 0.52, 5));  // grains touch their own images
+  all.push_back(
+      disordered(Shape::sphere, 2, rolling, Law::linear_stiffness, 0.52, 5));  // grains touch their own images
   return all;
 }
 
@@ -127,7 +128,7 @@ TEST_CASE("A failed call leaves a resting Rve as it was", "[solver]") {
 }
 
 TEST_CASE("A resting disc cell holds state and list alone", "[solver]") {
-  Rve rve(disordered(Shape::disc, 20, linear_material(2e6, 1e6, 0.4), Law::linear_given, 0.52, 3));
+  Rve rve(disordered(Shape::disc, 20, linear_material(2e6, 1e6, 0.4), Law::linear_stiffness, 0.52, 3));
   rve.apply(step(2), 0);
   const double grains = double(rve.size());
   const Memory working = rve.memory();

@@ -39,7 +39,7 @@ Bytes fitting(const Bytes& bytes) {
 }  // namespace
 
 TEST_CASE("a snapshot of another layout, cut short or damaged is refused in one line that says which") {
-  Rve rve(disordered(Shape::disc, 5, linear_material(2e6, 1e6, 0.4), Law::linear_given, 0.53, 3));
+  Rve rve(disordered(Shape::disc, 5, linear_material(2e6, 1e6, 0.4), Law::linear_stiffness, 0.53, 3));
   const Bytes good = rve.save();
   const auto message = [&](const Bytes& bytes) -> std::string {
     const std::string text = input_error([&] { rve.restore(bytes); });
@@ -74,7 +74,7 @@ TEST_CASE("a snapshot of another layout, cut short or damaged is refused in one 
 }
 
 TEST_CASE("a length that the bytes cannot hold is refused before there is room made for it") {
-  Rve rve(disordered(Shape::disc, 5, linear_material(2e6, 1e6, 0.4), Law::linear_given, 0.53, 3));
+  Rve rve(disordered(Shape::disc, 5, linear_material(2e6, 1e6, 0.4), Law::linear_stiffness, 0.53, 3));
   const Bytes good = rve.save();
   std::size_t refused = 0;
   for (std::size_t at = sizeof(SnapshotHead); at + 8 <= good.size(); ++at) {

@@ -17,7 +17,7 @@ using namespace rvelab::test;
 TEST_CASE("A large cell has the same bits on any team of threads", "[solver]") {
   for (const Shape shape : {Shape::disc, Shape::sphere, Shape::ellipse}) {
     Specimen start = disordered(shape, dimension_of(shape) == 2 ? 175 : 32, linear_material(2e6, 1e6, 0.4),
-                                Law::linear_given, 0.52, 9);
+                                Law::linear_stiffness, 0.52, 9);
     REQUIRE(start.grains.size() >= least_shared_grains);
     start.damping.local = 0.1;
     start.solver.fixed_substeps = 12;
@@ -44,7 +44,7 @@ TEST_CASE("Pairs that are passed over come to touch, and to part again, as if th
   for (const Shape shape : {Shape::disc, Shape::sphere, Shape::ellipse}) {
     // Loose grains that fly about: contacts open and close among the pairs listed.
     Specimen start = disordered(shape, dimension_of(shape) == 2 ? 12 : 6, linear_material(2e6, 1e6, 0.4),
-                                Law::linear_given, 0.47, 4);
+                                Law::linear_stiffness, 0.47, 4);
     start.solver.skin = 0.4;
     start.damping.local = 0.1;
     std::mt19937_64 generator(8);
@@ -105,7 +105,7 @@ TEST_CASE("Pairs that are passed over come to touch, and to part again, as if th
 }
 
 TEST_CASE("Coming back to a saved state keeps the stop flag of the Rve", "[solver]") {
-  Rve rve(disordered(Shape::disc, 6, linear_material(2e6, 1e6, 0.4), Law::linear_given, 0.52, 3));
+  Rve rve(disordered(Shape::disc, 6, linear_material(2e6, 1e6, 0.4), Law::linear_stiffness, 0.52, 3));
   const std::atomic<bool> stop{true};
   rve.watch(&stop);
   rve.restore(rve.save());

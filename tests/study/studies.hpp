@@ -17,7 +17,7 @@ record_every = 0.0005
 )";
 
 inline Specimen few_discs(std::uint64_t seed = 1) {
-  Specimen specimen = disordered(Shape::disc, 6, linear_material(1e6, 5e5, 0.4), Law::linear_given, 0.52, seed);
+  Specimen specimen = disordered(Shape::disc, 6, linear_material(1e6, 5e5, 0.4), Law::linear_stiffness, 0.52, seed);
   Rve rve(specimen);
   rve.relax(1e-6, 100'000);
   rve.take_as_reference();

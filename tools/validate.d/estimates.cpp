@@ -85,7 +85,7 @@ Drawn drawn_recipe(std::uint64_t seed) {
                                            : random.power(-0.7, share < 0.9 ? 0 : 1);
   const bool hertz = r.shape != Shape::ellipse && random.chance(0.35);
   d.kappa = random.power(2, hertz ? 4.5 : 6);
-  r.contact.law = hertz ? Law::hertz_mindlin : Law::linear_given;
+  r.contact.law = hertz ? Law::hertz_mindlin : Law::linear_stiffness;
   m.normal_stiffness = d.kappa * pressure * (dimension == 2 ? thickness : 2 * mean_radius);
   m.tangential_stiffness = random(0.2, 1) * m.normal_stiffness;
   m.poisson_ratio = random(0, 0.4);
@@ -129,7 +129,7 @@ Drawn drawn_kind(std::uint64_t seed) {
   Material& m = r.materials[0];
   d.friction = m.friction = kind == 0 ? random(0.05, 0.09) : random(0.3, 0.5);
   d.kappa = kind == 2 ? random.power(3.7, 4) : random.power(2.9, 3.5);
-  r.contact.law = kind == 1 ? Law::hertz_mindlin : Law::linear_given;
+  r.contact.law = kind == 1 ? Law::hertz_mindlin : Law::linear_stiffness;
   m.normal_stiffness = d.kappa * pressure * (dimension == 2 ? thickness : 2 * mean_radius);
   m.tangential_stiffness = random(0.5, 0.9) * m.normal_stiffness;
   m.poisson_ratio = 0.2;

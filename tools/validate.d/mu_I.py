@@ -31,7 +31,7 @@ pressure_Pa = 1e4
 [preparation]
 friction = {prepared}
 [contact]
-law = "linear_given"
+law = "linear_stiffness"
 [damping]
 dashpot = "restitution"
 restitution = 0.1

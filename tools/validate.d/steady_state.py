@@ -107,7 +107,7 @@ def row_of(case, quantity, mean, own, expected, se, bound):
 def main():
     program, reference, work = sys.argv[1], pathlib.Path(sys.argv[2]) / "lammps/rve", pathlib.Path(sys.argv[3])
     work.mkdir(parents=True, exist_ok=True)
-    (work / "grains.toml").write_text('[contact]\nlaw = "hertz_given"\n[[material]]\nnormal_stiffness_N_m1_5 = 2e7\n')
+    (work / "grains.toml").write_text('[contact]\nlaw = "hertz_stiffness"\n[[material]]\nnormal_stiffness_N_m1_5 = 2e7\n')
     there = {}
     with open(reference / "steady_state.csv") as file:
         for row in csv.DictReader(file):

@@ -37,10 +37,10 @@ struct Model {
   Kernels quasi_static_kernels;                 ///< without the dashpot, whose time a sub-step of dt = 0 is not
   /// 1 without rolling stiffness; sqrt(4 kt r^2/(4 kt r^2 + 2 kr)) of typical grains: how much slower than the contacts
   /// grains answer that slip about a stiff rolling spring, once their inertia is scaled for that spring.
-  double softest_answer = 1;
+  double slip_frequency_ratio = 1;
   /// Of the constraint ratio at rest, what is left if contacts that roll count by grip_of their rolling friction: a
   /// rolling spring that yields at once holds as little as a contact of little friction.
-  double firm_share = 1;
+  double rolling_constraint_factor = 1;
   /// Grains of one size of all materials have contacts of one stiffness, within a factor of ten.
   bool alike_contacts = true;
   double hardening = 1;                     ///< d ln f_n/d ln overlap of typical grains: 1 linear, 3/2 Hertz

@@ -46,7 +46,7 @@ TypicalContact typical_contact(const Model& f) {
 }
 
 void set_typical_answers(Model& f) {
-  f.softest_answer = f.firm_share = 1;
+  f.slip_frequency_ratio = f.rolling_constraint_factor = 1;
   const PairParameters one = typical_pair(f).first;
   const auto [k, radius] = typical_contact(f);
   const double overlap = 1e-3 * radius;
@@ -59,9 +59,9 @@ void set_typical_answers(Model& f) {
   if (!f.contact.rolling) return;
   const int d = f.dimension();
   const double grip = grip_of(one.friction), rolling_grip = grip_of(one.moment_cap / radius);
-  f.firm_share = (1 + (d - 1) * (grip + rolling_grip)) / (1 + 2 * (d - 1) * grip);
+  f.rolling_constraint_factor = (1 + (d - 1) * (grip + rolling_grip)) / (1 + 2 * (d - 1) * grip);
   const double slip = 4 * k.tangential * radius * radius;
-  if (slip > 0) f.softest_answer = std::sqrt(slip / (slip + 2 * k.rolling));
+  if (slip > 0) f.slip_frequency_ratio = std::sqrt(slip / (slip + 2 * k.rolling));
 }
 
 }  // namespace rvelab

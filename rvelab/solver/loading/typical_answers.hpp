@@ -17,7 +17,7 @@ struct TypicalContact {
 };
 TypicalContact typical_contact(const Model& model);
 
-/// Sets softest_answer, firm_share, alike_contacts and hardening of the model.
+/// Sets slip_frequency_ratio, rolling_constraint_factor, alike_contacts and hardening of the model.
 void set_typical_answers(Model& model);
 
 }  // namespace rvelab

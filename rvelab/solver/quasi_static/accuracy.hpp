@@ -45,7 +45,7 @@ double allowed_error(double relative, double absolute, double stress_change, dou
 double error_per_unbalance(double stiffness_ratio, double constraint_ratio, double damping, int dimension);
 
 /// K of a start from rest, hardly damped: 0.1 + 3/(1 + 70 (c - 1)^2), c the constraint ratio times
-/// Model::firm_share.
+/// Model::rolling_constraint_factor.
 double error_per_unbalance_of_start(double constraint_ratio);
 
 /// max(1, x/0.3)^(3/4), x the strain of an increment over the mean overlap over d: a long increment has slid contacts

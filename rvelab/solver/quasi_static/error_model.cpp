@@ -51,7 +51,7 @@ double target_ratio(State& s, double network) {
 }
 
 double error_factor_of_start(const State& s) {
-  return error_per_unbalance_of_start(s.model().firm_share * s.control().constraint_ratio);
+  return error_per_unbalance_of_start(s.model().rolling_constraint_factor * s.control().constraint_ratio);
 }
 
 double factor_of_last_start(const State& s) {

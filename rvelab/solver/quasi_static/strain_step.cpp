@@ -59,7 +59,7 @@ void adapt_strain_step(State& s, const OutOfBalance& balance, double held_stress
   const double factor = std::clamp(root * std::sqrt(root), least_change_of_step, largest_change_of_step);
   const double overlap = scale_of_overlaps(s, balance) / (2 * s.model().mean_radius);
   const double largest = balance.touching > 0 ? largest_step_over_overlap * overlap : step_of_gas;
-  const double slow = smallest_over_largest_step * s.model().softest_answer *
+  const double slow = smallest_over_largest_step * s.model().slip_frequency_ratio *
                       std::clamp(per_ratio * control.target_unbalanced_ratio, least_share_of_smallest, 1.0);
   double smallest = slow * largest;
   // Where a stress is held far below the reference, the overlaps are judged by the stress that is asked for: the

@@ -5,11 +5,11 @@
 // delta^(3/2) = delta sqrt(delta): no libm in what touches state.
 #pragma once
 
-#include "rvelab/contact/linear_given.hpp"
+#include "rvelab/contact/linear_stiffness.hpp"
 
 namespace rvelab {
 
-struct HertzGivenForce : LinearForce {
+struct HertzStiffnessForce : LinearForce {
   static constexpr bool needs_root_overlap = true;
   using Impact = HertzImpact;
 
@@ -26,14 +26,14 @@ struct HertzGivenForce : LinearForce {
   }
 };
 
-struct HertzGivenLaw : GivenLaw {
-  static constexpr const char* name = "hertz_given";
-  using Force = HertzGivenForce;
+struct HertzStiffnessLaw : StiffnessLaw {
+  static constexpr const char* name = "hertz_stiffness";
+  using Force = HertzStiffnessForce;
 
   template <class Each>
   static void parameters(Each each) {
-    GivenLaw::parameters(each, {"normal_stiffness_N_m1_5", "normal_stiffness", "N/m^1.5", positive_number,
-                                "k of f_n = k overlap^1.5", "give the normal stiffness of a contact"});
+    StiffnessLaw::parameters(each, {"normal_stiffness_N_m1_5", "normal_stiffness", "N/m^1.5", positive_number,
+                                    "k of f_n = k overlap^1.5", "give the normal stiffness of a contact"});
   }
 };
 

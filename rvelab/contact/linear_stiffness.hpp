@@ -7,7 +7,7 @@
 namespace rvelab {
 
 struct GivenStiffness {
-  double normal_stiffness = 0;      ///< N/m (linear_given) or N/m^1.5 (hertz_given), > 0
+  double normal_stiffness = 0;      ///< N/m (linear_stiffness) or N/m^1.5 (hertz_stiffness), > 0
   double tangential_stiffness = 0;  ///< N/m, >= 0
   static constexpr StoredConstant<GivenStiffness> stored[] = {
       {"normal_stiffness", &GivenStiffness::normal_stiffness, "N/m or N/m^1.5"},
@@ -15,7 +15,7 @@ struct GivenStiffness {
 };
 
 /// What laws of given stiffnesses share; `normal` is their own.
-struct GivenLaw {
+struct StiffnessLaw {
   template <class Each>
   static void parameters(Each each, const Parameter& normal) {
     each(normal, &GivenStiffness::normal_stiffness);
@@ -30,14 +30,14 @@ struct GivenLaw {
   }
 };
 
-struct LinearGivenLaw : GivenLaw {
-  static constexpr const char* name = "linear_given";
+struct LinearStiffnessLaw : StiffnessLaw {
+  static constexpr const char* name = "linear_stiffness";
   using Force = LinearForce;
 
   template <class Each>
   static void parameters(Each each) {
-    GivenLaw::parameters(each, {"normal_stiffness_N_m", "normal_stiffness", "N/m", positive_number, "kn",
-                                "give the normal stiffness of a contact"});
+    StiffnessLaw::parameters(each, {"normal_stiffness_N_m", "normal_stiffness", "N/m", positive_number, "kn",
+                                    "give the normal stiffness of a contact"});
   }
 };
 
