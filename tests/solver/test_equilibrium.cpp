@@ -1,6 +1,7 @@
 // What a quasi-static increment says of itself: balance of forces and torques, and whether it is one at all.
 #include "tests/catch.hpp"
 #include "tests/extreme/specimens.hpp"
+#include "tests/refusal.hpp"
 
 using namespace rvelab;
 using namespace rvelab::test;
@@ -98,7 +99,7 @@ TEST_CASE("a tangential force without a stiffness is refused, and let go of wher
   Specimen held = rve.specimen();
   REQUIRE_FALSE(held.contacts.empty());
   held.materials[0].tangential_stiffness = 0;
-  const std::string text = refusal<InputError>([&] { Rve refused(held); });
+  const std::string text = input_error([&] { Rve refused(held); });
   CHECK(contains(text, "holds a tangential force of"));
   CHECK(contains(text, "clear the tangential forces"));
 

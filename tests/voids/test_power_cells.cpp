@@ -35,7 +35,7 @@ std::vector<Ball> random_balls(const PeriodicCell& cell, int count, double least
   std::vector<Ball> balls;
   for (int k = 0; k < count; ++k) {
     Vector3 at = cell.lattice * Vector3(uniform(), uniform(), cell.dimension == 3 ? uniform() : 0);
-    wrap(cell, at);
+    wrap(Cell{cell.dimension, cell.lattice}, at);
     balls.push_back({at, least + (most - least) * uniform()});
   }
   return balls;
@@ -89,7 +89,7 @@ TEST_CASE("the share of points that are nearest to a grain in power is its cell'
     std::vector<int> hits(balls.size(), 0);
     for (int k = 0; k < points; ++k) {
       Vector3 at = cell.lattice * Vector3(uniform(), uniform(), d == 3 ? uniform() : 0);
-      wrap(cell, at);
+      wrap(Cell{cell.dimension, cell.lattice}, at);
       ++hits[owner(copies, at)];
     }
     for (std::size_t k = 0; k < balls.size(); ++k) {
