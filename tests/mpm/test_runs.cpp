@@ -134,7 +134,8 @@ TEST_CASE("a checkpoint that was edited and sealed again is refused by what is n
     std::string bytes = whole.substr(0, whole.size() - rvelab::io::seal_bytes);
     std::vector<std::byte> image(bytes.size());
     std::memcpy(image.data(), bytes.data(), bytes.size());
-    const auto rows = rvelab::io::hdf5::read(path, image).objects.at("/points").dataset->bytes;
+    const auto tree = rvelab::io::hdf5::read(path, image);  // holds the bytes of its datasets
+    const auto rows = tree.objects.at("/points").dataset->bytes;
     const std::size_t at = bytes.find(std::string(reinterpret_cast<const char*>(rows.data()), 11 * sizeof value));
     REQUIRE(at != std::string::npos);
     std::memcpy(bytes.data() + at + column * sizeof value, &value, sizeof value);
