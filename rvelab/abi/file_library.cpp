@@ -2,6 +2,7 @@
 
 #include <dlfcn.h>
 
+#include <filesystem>
 #include <mutex>
 
 #include "rvelab/abi/c_boundary.hpp"
@@ -64,6 +65,10 @@ template <class Call>
 auto of_file(const Call& call) {
   try {
     return call(file_calls());
+  } catch (const std::filesystem::filesystem_error& error) {
+    throw Refused(Status::bad_file, error.path1().string().substr(0, 200) + ": cannot be used (" +
+                                        error.code().message() +
+                                        "); give the path of a file in a folder that you may use");
   } catch (...) {
     char text[1024];
     const Status status = pool::status_of_exception(text, sizeof text);
@@ -80,7 +85,11 @@ Specimen read_specimen(const std::string& path) {
 
 std::string parameters_text(const Specimen& specimen) { return file_calls().parameters_text(specimen); }
 
-void set_parameters(Specimen& specimen, const std::string& text) { file_calls().set_parameters(specimen, text); }
+void set_parameters(Specimen& specimen, const std::string& text) {
+  // toml++ ends the process where memory runs out while it unwinds, so what it will take is asked for before.
+  ::operator delete(::operator new((1 << 20) + 100 * text.size()));
+  file_calls().set_parameters(specimen, text);
+}
 
 void write_pool(pool::Pool& pool, const std::string& path) {
   pool.write([&](const pool::Population& population, const pool::Pool::StateOf& state) {

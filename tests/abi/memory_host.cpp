@@ -40,6 +40,7 @@ struct Call {
   std::function<void(Host&)> prepare;  ///< from Host::begin
   std::function<std::int32_t(Host&)> call;
   std::function<void(Host&)> undo;  ///< what Host::begin does not
+  bool lasting = true;              ///< is tried without all requests from one on, too
 };
 
 void nothing(Host&) {}
@@ -172,7 +173,7 @@ const Call calls[] = {
      [](Host& h) {
        return rvelab_set_parameters(h.pool, h.ids[1], "material.friction = 0.3\n[solver]\nabsolute_tolerance = 1e-3");
      },
-     nothing},
+     nothing, false},  // toml++ ends the process where it finds no memory while it unwinds
     {"file: pool_write", Kind::one, 0, nothing, [](Host& h) { return rvelab_pool_write(h.pool, h.now.c_str()); },
      nothing},
     {"file: pool_read", Kind::one, 0,
@@ -265,7 +266,7 @@ void run(const Call& call, const Options& options, bool all) {
     const bool met = try_without(call, host, expected);
     if (met) {
       progress->number += options.step(progress->number);
-    } else if (!progress->lasting) {
+    } else if (!progress->lasting && call.lasting) {
       progress->lasting = 1;
       progress->number = 1;
     } else {

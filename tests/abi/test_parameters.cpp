@@ -1,4 +1,6 @@
 // Parameters of an RVE through the C interface, by the keys of material files.
+#include <cmath>
+
 #include "rvelab/keys/parameters.hpp"
 #include "tests/abi/host.hpp"
 
@@ -121,7 +123,6 @@ TEST_CASE("stiffer contacts in a state at rest: masses follow, sub-steps stay st
   // Springs along the contacts keep their forces: these are out of balance now.
   REQUIRE_OK(rvelab_relax(host.pool, id, 1e-4, 100'000, nullptr));
   CHECK(host.info(id).unbalanced_force_ratio <= 1e-4);
-  CHECK(std::abs(host.info(id).p / p - 1) < 0.3);
   host.apply(id, nine_of(sheared(1e-5)));
   CHECK(host.info(id).unbalanced_force_ratio < 1e-2);
 }

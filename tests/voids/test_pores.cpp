@@ -181,7 +181,7 @@ TEST_CASE("The program refuses a specimen that is none by its field, and prints 
   CHECK_THAT(refused([](Specimen& s) { s.grains.radius[2] *= -1; }), Contains("/grains/radius_m[2] of grain"));
   for (const std::size_t length : {0, 200, 9000}) {
     const std::string said = refusal("a\x1b[31m\xff" + std::string(length, 'x'));
-    CHECK_THAT(said, Contains("rvelab-voids: a\\x1b[31m\\xff"));
+    CHECK_THAT(said, Contains("rvelab-voids: a?[31m?") && Contains("; give the path"));
     CHECK(std::count_if(said.begin(), said.end(), [](char c) { return c < ' ' || c > '~'; }) ==
           1);  // the end of the line
     CHECK(said.find(std::string(81, 'x')) == std::string::npos);
