@@ -81,8 +81,9 @@ TEST_CASE("a cell that gets thin is told of before and after the run, flagged in
   CHECK(tilted.errors.find("stage \"simple_shear\": beyond a shear strain of") != std::string::npos);
   CHECK(upright.errors.find("beyond a shear strain") == std::string::npos);
 
-  REQUIRE(here.run("import " + std::string(RVELAB_TEST_DATA) + "/nine_discs/grains.csv --cell 0.03,0.03,0.1 --material " +
-                   std::string(RVELAB_TEST_DATA) + "/nine_discs/soil.toml -o nine.h5")
+  REQUIRE(here.run("import " + std::string(RVELAB_TEST_DATA) +
+                   "/nine_discs/grains.csv --cell 0.03,0.03,0.1 --material " + std::string(RVELAB_TEST_DATA) +
+                   "/nine_discs/soil.toml -o nine.h5")
               .code == 0);
   const Outcome small = here.run("run shear.toml --specimen nine.h5 --json");
   INFO(small.errors);

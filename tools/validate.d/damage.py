@@ -2,11 +2,12 @@
 """Single flipped bits in every kind of file that is read: damage.py PROGRAM [NUMBER].
 
 Packs a specimen, runs a test on it, exports CSV, and flips one bit at a time, seeded, NUMBER (1000) in each file:
-specimen, records, a journal without its record file. Each must be refused (exit code 2, one line) or leave what
+specimen, records, a pool, a journal without its record file. Each must be refused (exit code 2, one line) or leave what
 `inspect --json` prints as it is; of a journal the whole frames before the flip are taken, and stand for fewer records.
 The files of `import` have no checksum: there only crashes, endless runs and messages of several lines are counted as bad.
 """
 import json
+import os
 import pathlib
 import random
 import subprocess
@@ -70,6 +71,15 @@ def journal_of(program, work):
     return journal
 
 
+def pool_of(program, work):
+    """A pool file of one RVE, by the Python package."""
+    root = pathlib.Path(__file__).resolve().parents[2]
+    subprocess.run([sys.executable, "-c", "import rvelab; rvelab.Rve('S.h5').save('P.h5')"], cwd=work, check=True,
+                   env={**os.environ, "PYTHONPATH": str(root / "tools/python"),
+                        "RVELAB_LIBRARY": str(program.parents[1] / "lib/librvelab.so.1")})
+    return work / "P.h5"
+
+
 def main():
     program, number = pathlib.Path(sys.argv[1]).resolve(), int(sys.argv[2]) if len(sys.argv) > 2 else 1000
     good = True
@@ -84,6 +94,8 @@ def main():
         inspect = [program, "inspect", damaged, "--json"]
         for path in (work / "S.h5", work / "R.h5"):
             good &= flip(inspect, path, number, True, damaged)
+        pool = pool_of(program, work)
+        good &= flip([program, "compare", damaged, pool, "--json"], pool, number, True, damaged)
         damaged.unlink()
         good &= flip(inspect, journal_of(program, work), number, False, work / "damaged.h5.journal")
         tables = [work / name for name in ("E.particles.csv", "E.contacts.csv", "E.json", "E.material.toml")]
