@@ -89,10 +89,10 @@ double wave_modulus_of(const GrainPool& pool, std::int64_t id) {
 
 double measured_modulus_of(const GrainPool& pool, std::int64_t id, int dimension) {
   constexpr double strain = 1e-5;
-  double sigma[9], largest = 0;
-  read_state(pool.get(), id, sigma, nullptr);
+  double largest = 0;
+  const rvelab_info at_rest = pool.info(id);
   for (int axis = 0; axis < dimension; ++axis) {
-    const double rest = sigma[4 * axis];
+    const double rest = at_rest.sigma[4 * axis];
     double slope[2];
     for (const int side : {0, 1}) {
       double dH[9] = {}, moved[9];

@@ -83,7 +83,7 @@ class SpecimenFamily {
   std::map<double, std::int64_t> prepared_;
 };
 
-/// Stress and, if not null, tangent of the state as it is, by a trial that is discarded.
+/// Stress and tangent of the state as it is, by a trial that is discarded.
 void read_state(rvelab_pool* pool, std::int64_t id, double* sigma, double* tangent);
 
 /// Pa: the largest of the moduli of plane waves along the axes, of the contact network.

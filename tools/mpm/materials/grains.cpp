@@ -40,14 +40,12 @@ Grains<D>::Grains(std::shared_ptr<GrainPool> pool, std::vector<std::int64_t> ids
 
 template <int D>
 void Grains<D>::read_stress(Point<D>* points) {
-  double sigma[9];
   double last = -1;
   for (std::size_t k = 0; k < ids_.size(); ++k) {
     const auto info = pool_->info(ids_[k]);
     if (info.p != last) wave_modulus_ = std::max(wave_modulus_, wave_modulus_of(*pool_, ids_[k]));
     last = info.p;
-    read_state(pool_->get(), ids_[k], sigma, nullptr);
-    points[k].stress = from_nine<D>(sigma);
+    points[k].stress = from_nine<D>(info.sigma);
     found_.compression = std::max(found_.compression, compression_of<D>(points[k]));
   }
   found_.first = found_.modulus = wave_modulus_;
