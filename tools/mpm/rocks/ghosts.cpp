@@ -87,6 +87,11 @@ void Rocks<D>::touch_ghosts(const Grid<D>& grid, const std::vector<Point<D>>& po
   std::sort(found.begin(), found.end(),
             [](const auto& a, const auto& b) { return a.point != b.point ? a.point < b.point : a.rock < b.rock; });
   keep_ghosts(found);
+  for (auto& rock : all) {
+    if (sub_steps > 0) break;  // the first step: none before
+    rock.mean_velocity = rock.body.velocity;
+    rock.mean_spin = rock.body.spin();
+  }
   for (auto& ghost : found) {
     const auto& point = points[std::size_t(ghost.point)];
     auto& rock = all[std::size_t(ghost.rock)];
