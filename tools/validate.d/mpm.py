@@ -61,7 +61,7 @@ def energy_parts(h):
         plates, lost, open_parts = h["boundary_work_J"], 0 * h["residual_J"], np.abs(h["residual_J"])
     else:
         plates = h["boundary_work_J"] - h["rocks.work_on_soil_J"] + h["rocks.wall_work_J"]
-        lost = sum(h[f"rocks.{part}_J"] for part in ("surface_loss", "ghost_loss", "ghost_mapping", "ghost_springs"))
+        lost = sum(h.get(f"rocks.{part}_J", 0) for part in ("surface_loss", "ghost_loss", "ghost_mapping", "ghost_springs"))
         between = h["rocks.work_on_soil_J"] + h["rocks.soil_work_J"] + lost
         open_parts = np.abs(h["residual_J"]) + np.abs(h["rocks.residual_J"]) + np.abs(between)
     return np.array((lost[-1], max(0, -h["mapping_loss_J"].min()), open_parts.max())) / np.abs(plates).max()
