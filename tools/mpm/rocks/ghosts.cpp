@@ -14,8 +14,10 @@
 // Energy. Overlap and slip are of what moved soil and rock over the step before: the velocity u of the grid at the end
 // of that step, the mean velocity of the rock over its sub-steps (with that of its end, where rocks shake against each
 // other, a tenth of what friction takes was not booked). Mapping has made another velocity, v, of u since, w at the end
-// of this step. The force does dt f.(v + w)/2 on the soil, and its spring gives dt f.(u + w)/2: the difference is
-// `ghost_mapping`, a part of what mapping takes. Declared in rocks.hpp.
+// of this step. The force does dt f.(v + w)/2 on the soil, and its spring gives dt f.(u + w)/2. The
+// rock gets the force over the whole step: f times its motion in this step, where the spring gives half of that and
+// half of its motion in the step before. Both differences are `ghost_mapping`. (All of the rock's impulse at the start
+// of the step would need none, and makes stiff rocks ring: their contacts took twice as much.) Declared in rocks.hpp.
 #include <algorithm>
 #include <cmath>
 
@@ -99,9 +101,10 @@ void Rocks<D>::touch_ghosts(const Grid<D>& grid, const std::vector<Point<D>>& po
     const Vec<D> start = soil_velocity<D>(grid, supports[std::size_t(ghost.point)], ghost.arm,
                                           [](const Node<D>& node, int i) { return node.a[i]; });  // as mapped
     const auto pair = ghost_constants(ghost.rock, balls[std::size_t(ghost.point)]);
-    const Vec<D> moved = rock.mean_velocity + spun<D>(rock.mean_spin, r);
+    ghost.from_centre = r;
+    ghost.moved = rock.mean_velocity + spun<D>(rock.mean_spin, r);
     const Vec<D> since = ghost.lasts ? ghost.velocity : start;
-    ghost.force = ghost.contact.advance(pair, ghost.overlap, ghost.normal, since - moved, dt, ghost_loss);
+    ghost.force = ghost.contact.advance(pair, ghost.overlap, ghost.normal, since - ghost.moved, dt, ghost_loss);
     ghost_mapping += 0.5 * dt * ghost.force.dot(since - start);
     ghost.velocity = start;
     rock.impulse -= dt * ghost.force;
@@ -142,11 +145,22 @@ double Rocks<D>::ghost_work(const Grid<D>& grid, const std::vector<Support<D>>& 
   return dt * work;
 }
 
+/// The rock's part of ghost_mapping, once its mean velocity over this step is known.
+template <int D>
+void Rocks<D>::book_ghosts(double dt) {
+  for (const auto& ghost : ghosts) {
+    const auto& rock = all[std::size_t(ghost.rock)];
+    const Vec<D> now = rock.mean_velocity + spun<D>(rock.mean_spin, ghost.from_centre);
+    ghost_mapping -= 0.5 * dt * ghost.force.dot(ghost.moved - now);
+  }
+}
+
 #define MPM_INSTANTIATE(D)                                                                                           \
   template void Rocks<D>::touch_ghosts(const Grid<D>&, const std::vector<Point<D>>&, const std::vector<Support<D>>&, \
                                        double);                                                                      \
   template void Rocks<D>::give_ghost_forces(Grid<D>&, const std::vector<Support<D>>&) const;                         \
-  template double Rocks<D>::ghost_work(const Grid<D>&, const std::vector<Support<D>>&, double);
+  template double Rocks<D>::ghost_work(const Grid<D>&, const std::vector<Support<D>>&, double);                      \
+  template void Rocks<D>::book_ghosts(double);
 MPM_INSTANTIATE(2)
 MPM_INSTANTIATE(3)
 #undef MPM_INSTANTIATE

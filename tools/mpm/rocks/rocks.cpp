@@ -150,31 +150,18 @@ void Rocks<D>::take_impulses(double dt) {
 
 template <int D>
 void Rocks<D>::kick(const Vec<D>& gravity, double dt) {
-  const double spread = soil.ghosts ? 0 : 1;  // push_by_soil
   for (auto& rock : all) {
-    const Vec<D> force = rock.force + spread * rock.soil_force + rock.body.mass * gravity;
-    const auto torque = rock.torque + spread * rock.soil_torque;
+    const Vec<D> force = rock.force + rock.soil_force + rock.body.mass * gravity;
     const Vec<D> held = (Vec<D>::Ones() - rock.body.free).cwiseProduct(force);
     wall_work -= dt * held.dot(rock.body.velocity);
-    if (!rock.body.turns) wall_work -= dt * torque.dot(rock.body.spin());
-    rock.body.kick(force, torque, dt);
+    if (!rock.body.turns) wall_work -= dt * (rock.torque + rock.soil_torque).dot(rock.body.spin());
+    rock.body.kick(force, rock.torque + rock.soil_torque, dt);
   }
 }
 
-/// All of a step's impulse of balls at its start, as on the soil: spread over the step, the force of the overlap at its
-/// start would do more work on the rock than its spring gives.
 template <int D>
-void Rocks<D>::push_by_soil(double dt) {
+void Rocks<D>::clear_means() {
   for (auto& rock : all) {
-    auto& body = rock.body;
-    const Vec<D> velocity = body.velocity;
-    const auto spin = body.spin();
-    body.kick(rock.soil_force, rock.soil_torque, dt);
-    soil_work += 0.5 * dt * rock.soil_force.dot(velocity + body.velocity);
-    soil_work += 0.5 * dt * rock.soil_torque.dot(spin + body.spin());
-    const Vec<D> held = (Vec<D>::Ones() - body.free).cwiseProduct(rock.soil_force);
-    wall_work -= dt * held.dot(velocity);
-    if (!body.turns) wall_work -= dt * rock.soil_torque.dot(spin);
     rock.mean_velocity.setZero();
     rock.mean_spin.setZero();
   }
@@ -191,7 +178,6 @@ void Rocks<D>::add_to_means(double share) {
 /// Of velocities half a sub-step on.
 template <int D>
 void Rocks<D>::book_soil_work(double dt) {
-  if (soil.ghosts) return;
   for (auto& rock : all) {
     soil_work += dt * rock.soil_force.dot(rock.body.velocity);
     soil_work += dt * rock.soil_torque.dot(rock.body.spin());

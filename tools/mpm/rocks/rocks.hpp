@@ -91,10 +91,10 @@ class Rocks {
   double steps_per_collision = 50;  ///< sub-steps of the shortest collision
   double first_energy = 0;          ///< J, of all rocks at the start
   double contact_loss = 0, soil_work = 0, wall_work = 0;
-  double work_on_soil = 0;           ///< J, of rocks on the soil
-  double ghost_mapping = 0;          ///< J, of balls: work on soil whose velocity mapping takes (ghosts.cpp)
-  double surface_loss = 0;           ///< J, of impulses at the surface: friction, and soil that meets a rock
-  double wall_power = 0;             ///< W, of moving walls at the end of the sub-step before
+  double work_on_soil = 0;   ///< J, of rocks on the soil
+  double ghost_mapping = 0;  ///< J, of balls: what steps of their forces differ by from the springs' work (ghosts.cpp)
+  double surface_loss = 0;   ///< J, of impulses at the surface: friction, and soil that meets a rock
+  double wall_power = 0;     ///< W, of moving walls at the end of the sub-step before
   std::vector<Vec<D>> wall_impulse;  ///< N s, of the rocks on each wall
   std::vector<Vec<D>> wall_force;    ///< N, of the rocks on each wall at the end of the sub-step before
   /// Wall time: of rocks among themselves; of soil against them (detection and sweeps, at the surface those over bodies
@@ -122,7 +122,7 @@ class Rocks {
     find_candidates(now, gravity, dt);
     const long n = sub_steps_for(now, gravity, dt);
     take_impulses(dt);
-    if (soil.ghosts) push_by_soil(dt);
+    if (soil.ghosts) clear_means();
     for (long k = 0; k < n; ++k) {
       kick(gravity, 0.5 * dt / double(n));
       plates.kick(wall_force, 0.5 * dt / double(n));
@@ -134,6 +134,7 @@ class Rocks {
       kick(gravity, 0.5 * dt / double(n));
       plates.kick(wall_force, 0.5 * dt / double(n));
     }
+    if (soil.ghosts) book_ghosts(dt);
     sub_steps += n;
   }
   RockEnergy energy(const Vec<D>& gravity) const;
@@ -199,7 +200,8 @@ class Rocks {
     /// m/s, of the soil at the contact, at the start and then at the end of a step: what moved it since the step
     /// before.
     Vec<D> velocity;
-    bool lasts = false;  ///< touched in the step before
+    Vec<D> from_centre, moved;  ///< of the rock at the contact: m, and m/s, its mean velocity over the step before
+    bool lasts = false;         ///< touched in the step before
     RockContact<D> contact;
   };
   std::vector<Ghost> ghosts;  ///< in the order of (point, rock)
@@ -240,7 +242,8 @@ class Rocks {
   void take_impulses(double dt);
   void kick(const Vec<D>& gravity, double dt);
   void book_soil_work(double dt);
-  void push_by_soil(double dt);
+  void clear_means();
+  void book_ghosts(double dt);
   void add_to_means(double share);
   void contact_forces(const std::vector<Wall<D>>& walls, double dt, double share);
   struct FoundOnRock;
