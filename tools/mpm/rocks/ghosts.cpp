@@ -12,12 +12,12 @@
 // of a rock that is dragged), and with all of f (x) r the ball, which is rigid, would be strained.
 //
 // Energy. Overlap and slip are of what moved soil and rock over the step before: the velocity u of the grid at the end
-// of that step, the mean velocity of the rock over its sub-steps (with that of its end, where rocks shake against each
-// other, a tenth of what friction takes was not booked). Mapping has made another velocity, v, of u since, w at the end
-// of this step. The force does dt f.(v + w)/2 on the soil, and its spring gives dt f.(u + w)/2. The
-// rock gets the force over the whole step: f times its motion in this step, where the spring gives half of that and
-// half of its motion in the step before. Both differences are `ghost_mapping`. (All of the rock's impulse at the start
-// of the step would need none, and makes stiff rocks ring: their contacts took twice as much.) Declared in rocks.hpp.
+// of that step, the mean velocity of the rock over its sub-steps (that of its end is another where rocks shake).
+// Mapping has made another velocity, v, of u since, w at the end of this step. The force does dt f.(v + w)/2 on the
+// soil, and its spring gives dt f.(u + w)/2. The rock gets the force over the whole step: f times its motion in this
+// step, where the spring gives half of that and half of its motion in the step before. Both differences are
+// `ghost_mapping`. (All of the rock's impulse at the start of the step would need none, and makes stiff rocks ring:
+// their contacts took twice as much.) Declared in rocks.hpp.
 #include <algorithm>
 #include <cmath>
 
