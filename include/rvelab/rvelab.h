@@ -173,7 +173,7 @@ int32_t rvelab_ids(rvelab_pool* pool, int64_t cap, int64_t* ids, int64_t* n);
 /* ---- work, one RVE ---- */
 
 /* Trial and commit in one: applies dH over dt to the committed state (a pending trial is reverted) and writes sigma[9].
- * The same bits as the C++ call Rve::apply. */
+ * The same bits as the C++ call Rve::apply. The error estimate is info.error_estimate (1.2). */
 int32_t rvelab_apply(rvelab_pool* pool, int64_t id, const double* dH, double dt, double* sigma);
 
 /* ---- work, many RVEs ----

@@ -27,8 +27,8 @@ int32_t rvelab_array_init(rvelab_array* array, size_t struct_size) {
   return at_c_boundary([&] { init_struct(array, "array", struct_size); });
 }
 
-int32_t rvelab_list_arrays(rvelab_pool* pool, int64_t id, int64_t cap, rvelab_array* arrays, int64_t* n) {
-  return of_pool(pool, {{n, "n"}, {cap > 0 ? static_cast<const void*>(arrays) : n, "arrays"}}, [&](pool::Pool& of) {
+int32_t rvelab_list_arrays(rvelab_pool* handle, int64_t id, int64_t cap, rvelab_array* arrays, int64_t* n) {
+  return of_pool(handle, {{n, "n"}, {cap > 0 ? static_cast<const void*>(arrays) : n, "arrays"}}, [&](pool::Pool& rves) {
     if (cap < 0) throw pool::Refused(pool::Status::bad_input, "list_arrays: cap is " + std::to_string(cap));
     const std::size_t size = cap > 0 ? read_struct(arrays).struct_size : 0;
     auto* const bytes = reinterpret_cast<unsigned char*>(arrays);
@@ -38,7 +38,7 @@ int32_t rvelab_list_arrays(rvelab_pool* pool, int64_t id, int64_t cap, rvelab_ar
                                                          "].struct_size is not that of arrays[0]; call "
                                                          "rvelab_array_init for each");
     }
-    const std::vector<std::int64_t> rows = of.at<&pool::Share::array_rows>(id);
+    const std::vector<std::int64_t> rows = rves.at<&pool::Share::array_rows>(id);
     const auto texts = pool::array_texts();
     *n = 0;
     for (std::size_t k = 0; k < rows.size(); ++k) {
@@ -51,16 +51,16 @@ int32_t rvelab_list_arrays(rvelab_pool* pool, int64_t id, int64_t cap, rvelab_ar
   });
 }
 
-int32_t rvelab_get_array(rvelab_pool* pool, int64_t id, const char* name, void* buf, size_t cap, size_t* need) {
-  return of_pool(pool, {{name, "name"}, {need, "need"}, {cap > 0 ? buf : need, "buf"}}, [&](pool::Pool& of) {
-    const std::vector<std::int64_t> rows = of.at<&pool::Share::array_rows>(id);
+int32_t rvelab_get_array(rvelab_pool* handle, int64_t id, const char* name, void* buf, size_t cap, size_t* need) {
+  return of_pool(handle, {{name, "name"}, {need, "need"}, {cap > 0 ? buf : need, "buf"}}, [&](pool::Pool& rves) {
+    const std::vector<std::int64_t> rows = rves.at<&pool::Share::array_rows>(id);
     const std::size_t k = array_named(name, rows);
     *need = 8 * std::size_t(rows[k] * pool::array_texts()[k].columns);
     if (buf == nullptr) return;
     if (cap < *need)
       throw pool::Refused(pool::Status::small_buffer, "get_array: cap is " + std::to_string(cap) + " bytes; " + name +
                                                           " takes " + std::to_string(*need));
-    const std::vector<std::byte> entries = of.at<&pool::Share::array>(id, std::int64_t(k));
+    const std::vector<std::byte> entries = rves.at<&pool::Share::array>(id, std::int64_t(k));
     std::memcpy(buf, entries.data(), entries.size());
   });
 }

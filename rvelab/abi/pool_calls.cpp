@@ -70,51 +70,51 @@ int32_t rvelab_pool_create(const rvelab_pool_def* def, rvelab_pool** pool) {
   });
 }
 
-int32_t rvelab_pool_destroy(rvelab_pool* pool) {
-  if (pool == nullptr) return RVELAB_OK;
-  return of_pool(pool, {}, [](pool::Pool& of) {
-    of.close();
-    delete &of;
+int32_t rvelab_pool_destroy(rvelab_pool* handle) {
+  if (handle == nullptr) return RVELAB_OK;
+  return of_pool(handle, {}, [](pool::Pool& rves) {
+    rves.close();
+    delete &rves;
   });
 }
 
-int32_t rvelab_template_load(rvelab_pool* pool, const char* path, int64_t* tmpl) {
-  return of_pool(pool, {{path, "path"}, {tmpl, "tmpl"}}, [&](pool::Pool& of) {
-    of.expect_this_process();
-    *tmpl = of.add_template(read_specimen(path));
+int32_t rvelab_template_load(rvelab_pool* handle, const char* path, int64_t* tmpl) {
+  return of_pool(handle, {{path, "path"}, {tmpl, "tmpl"}}, [&](pool::Pool& rves) {
+    rves.expect_this_process();
+    *tmpl = rves.add_template(read_specimen(path));
   });
 }
 
-int32_t rvelab_template_from_snapshot(rvelab_pool* pool, const void* buf, size_t size, int64_t* tmpl) {
-  return of_pool(pool, {{buf, "buf"}, {tmpl, "tmpl"}}, [&](pool::Pool& of) {
-    of.expect_this_process();
-    *tmpl = of.add_template(pool::rve_state_of({static_cast<const std::byte*>(buf), size}).specimen);
+int32_t rvelab_template_from_snapshot(rvelab_pool* handle, const void* buf, size_t size, int64_t* tmpl) {
+  return of_pool(handle, {{buf, "buf"}, {tmpl, "tmpl"}}, [&](pool::Pool& rves) {
+    rves.expect_this_process();
+    *tmpl = rves.add_template(pool::rve_state_of({static_cast<const std::byte*>(buf), size}).specimen);
   });
 }
 
-int32_t rvelab_template_release(rvelab_pool* pool, int64_t tmpl) {
-  return of_pool(pool, {}, [&](pool::Pool& of) { of.everywhere<&pool::Share::release_template>(tmpl); });
+int32_t rvelab_template_release(rvelab_pool* handle, int64_t tmpl) {
+  return of_pool(handle, {}, [&](pool::Pool& rves) { rves.everywhere<&pool::Share::release_template>(tmpl); });
 }
 
-int32_t rvelab_spawn(rvelab_pool* pool, int64_t tmpl, int64_t n, int64_t* ids) {
-  return of_pool(pool, {{n > 0 ? ids : &n, "ids"}}, [&](pool::Pool& of) { of.spawn(tmpl, n, ids); });
+int32_t rvelab_spawn(rvelab_pool* handle, int64_t tmpl, int64_t n, int64_t* ids) {
+  return of_pool(handle, {{n > 0 ? ids : &n, "ids"}}, [&](pool::Pool& rves) { rves.spawn(tmpl, n, ids); });
 }
 
-int32_t rvelab_clone(rvelab_pool* pool, int64_t src, int64_t* dst) {
-  return of_pool(pool, {{dst, "dst"}}, [&](pool::Pool& of) { *dst = of.clone(src); });
+int32_t rvelab_clone(rvelab_pool* handle, int64_t src, int64_t* dst) {
+  return of_pool(handle, {{dst, "dst"}}, [&](pool::Pool& rves) { *dst = rves.clone(src); });
 }
 
-int32_t rvelab_release(rvelab_pool* pool, int64_t n, const int64_t* ids) {
-  return of_pool(pool, {}, [&](pool::Pool& of) { of.release(ids_of(n, ids)); });
+int32_t rvelab_release(rvelab_pool* handle, int64_t n, const int64_t* ids) {
+  return of_pool(handle, {}, [&](pool::Pool& rves) { rves.release(ids_of(n, ids)); });
 }
 
-int32_t rvelab_ids(rvelab_pool* pool, int64_t cap, int64_t* ids, int64_t* n) {
-  return of_pool(pool, {{n, "n"}}, [&](pool::Pool& of) {
+int32_t rvelab_ids(rvelab_pool* handle, int64_t cap, int64_t* ids, int64_t* n) {
+  return of_pool(handle, {{n, "n"}}, [&](pool::Pool& rves) {
     if (cap < 0)
       throw pool::Refused(pool::Status::bad_input,
                           "rvelab_ids: cap is " + std::to_string(cap) + "; allowed: 0 or more");
     if (cap > 0) expect_pointers({{ids, "ids"}});
-    const std::vector<std::int64_t> all = of.ids();
+    const std::vector<std::int64_t> all = rves.ids();
     *n = std::int64_t(all.size());
     std::copy_n(all.begin(), std::min(*n, cap), ids);
   });

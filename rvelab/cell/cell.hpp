@@ -27,7 +27,8 @@ struct Cell {
   double volume() const;  ///< m^3, product of the diagonal
 };
 
-/// One increment of displacement gradient, split in the cell frame: Q^T (I + dH) Q = R U.
+/// One increment of displacement gradient, split in the cell frame: Q^T (I + dH) Q = R U. This is the QR decomposition,
+/// not the polar one: U is upper triangular, so that the lattice stays so, and R is not the rotation of the polar one.
 struct FrameSplit {
   Matrix3 rotation;  ///< R, proper rotation; the new frame is Q R
   Matrix3 stretch;   ///< U, upper triangular, positive diagonal; the new lattice is U L

@@ -119,7 +119,7 @@ Json entry(const Specimen& specimen, double grain_steps, bool quick, Workers& te
   out["most"] = speeds.back();
   out["grains"] = specimen.grains.size();
   out["contacts_per_grain"] = double(rve.network().contacts.size()) / n;
-  out["steps_per_list"] = double(state.grain_steps) / n / double(std::max<std::uint64_t>(1, state.list_builds));
+  out["steps_per_list"] = double(state.grain_steps) / n / double(std::max<std::uint64_t>(1, state.list.builds));
   out["bytes_per_grain"] = {
       {"state", double(memory.state) / n}, {"list", double(memory.list) / n}, {"working", double(memory.working) / n}};
   return out;

@@ -72,7 +72,7 @@ void add_model(Listing& listing, const Specimen& specimen) {
   if (has_hertz_curvature(specimen.shape)) listing.add("hertz_radius", name(specimen.contact.hertz_radius));
   listing.add("dashpot", name(specimen.damping.dashpot));
   listing.add("local_damping", specimen.damping.local);
-  listing.add("reference_pressure_Pa", specimen.state.reference_pressure, "Pa");
+  listing.add("reference_pressure_Pa", specimen.state.reference.pressure, "Pa");
   Json materials = Json::array();
   for (const Material& material : specimen.materials) materials.push_back(parameters_of(material, specimen.contact));
   listing.add("materials", std::move(materials));

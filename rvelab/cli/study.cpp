@@ -237,8 +237,9 @@ void add_study(CLI::App& app) {
   command.footer(
       "The reference runs the path once. From states spread evenly over this path, each grid point makes the "
       "increment\n"
-      "that the reference made from there. Its error is the difference of the two stresses over the mean pressure; at\n"
-      "dt = 0 the reference's answer is relaxed first. Whole paths differ by some per cent between runs that start "
+      "that the reference made from there. Its error is the difference of the two stresses over the mean pressure; in\n"
+      "quasi-static loading the reference's answer is relaxed first. Whole paths differ by some per cent between runs "
+      "that start "
       "one\n"
       "bit apart, so their results are means over --repeat paths; all but the first start with positions moved by\n"
       "1e-10 of the radius. FOLDER/study.toml holds the study: `rvelab study FOLDER/study.toml` runs it again.\n"

@@ -5,11 +5,10 @@
 //   p = 1/2  viscoelastic, cn = eta sqrt(r*) m* (LAMMPS' name and form),
 //   p = 1/4  restitution with Hertz laws, cn = sqrt(5) zeta sqrt(m* k); tsuji: cn = alpha sqrt(m* k) with the
 //            polynomial alpha(e) that LAMMPS fits to Tsuji et al. 1992, for its records.
-// zeta from the coefficient of restitution: impact.hpp. A dashpot acts at dt > 0 only: a sub-step at dt = 0 is no
-// second.
-// Local damping (Liang and Zhao 2019, eq. 29): f <- f - alpha |f| v/|v| on fluctuation velocities, or per component
-// f_k <- f_k - alpha |f_k| sign(v_k), which depends on the axes. v is the velocity half a step ahead, so that a grain
-// at rest feels (1 - alpha) of its force instead of a jump in sign.
+// zeta from the coefficient of restitution: impact.hpp. A dashpot acts at a rate only: a sub-step in quasi-static
+// loading is no second. Local damping (Liang and Zhao 2019, eq. 29): f <- f - alpha |f| v/|v| on fluctuation
+// velocities, or per component f_k <- f_k - alpha |f_k| sign(v_k), which depends on the axes. v is the velocity half a
+// step ahead, so that a grain at rest feels (1 - alpha) of its force instead of a jump in sign.
 #pragma once
 
 #include "rvelab/lanes/lanes.hpp"

@@ -44,8 +44,8 @@ struct ContactModel {
 
 /// Damping, apart from the law. All of it acts on fluctuation velocities v' and spins w'.
 struct Damping {
-  double local = 0;                 ///< Cundall's coefficient for dt > 0, 0 to < 1
-  double local_quasi_static = 0.3;  ///< the same for dt = 0, > 0 to < 1
+  double local = 0;                 ///< Cundall's coefficient at a rate, 0 to < 1
+  double local_quasi_static = 0.3;  ///< the same in quasi-static loading, > 0 to < 1
   LocalDampingForm local_form = LocalDampingForm::vector;
   Dashpot dashpot = Dashpot::none;
   double normal_coefficient = 0;  ///< coefficient: N s/m; viscoelastic: 1/(m s) (force eta sqrt(r* delta) m* v)
@@ -53,7 +53,7 @@ struct Damping {
                                   ///< LAMMPS' fit, which is met at 1 only
   double tangential_ratio = 0;    ///< tangential over normal dashpot coefficient, >= 0
   bool no_tension = false;        ///< cuts the normal force at zero, so that a dashpot never attracts
-  double global_viscous = 0;      ///< N s/m, force -c v' on each grain, dt > 0 only
+  double global_viscous = 0;      ///< N s/m, force -c v' on each grain, at a rate only
 };
 
 /// A number of a material that a law reads, and where it stands.

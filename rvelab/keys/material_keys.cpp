@@ -143,10 +143,11 @@ std::vector<KeyEntry> contacts() {
 std::vector<KeyEntry> damping() {
   const char* t = "damping";
   return {
-      entry(t, "local", "1", &Damping::local, below_one, "Cundall's damping for dt > 0"),
-      entry(t, "local_quasi_static", "1", &Damping::local_quasi_static, ratio, "Cundall's damping for dt = 0"),
+      entry(t, "local", "1", &Damping::local, below_one, "Cundall's damping at a rate"),
+      entry(t, "local_quasi_static", "1", &Damping::local_quasi_static, ratio,
+            "Cundall's damping in quasi-static loading"),
       entry(t, "local_form", "-", &Damping::local_form, any, "component: as in YADE, depends on the axes"),
-      entry(t, "dashpot", "-", &Damping::dashpot, any, "contact dashpot; acts at dt > 0 only"),
+      entry(t, "dashpot", "-", &Damping::dashpot, any, "contact dashpot; acts at a rate only"),
       entry(t, "normal_coefficient_N_s_m", "N s/m", &Damping::normal_coefficient, not_negative,
             "dashpot = coefficient: c_n"),
       entry(t, "viscoelastic_1_m_s", "1/(m s)", &Damping::normal_coefficient, not_negative,
@@ -158,7 +159,7 @@ std::vector<KeyEntry> damping() {
             "tangential over normal dashpot coefficient"),
       entry(t, "no_tension", "-", &Damping::no_tension, any, "cuts the normal force at zero: a dashpot never attracts"),
       entry(t, "global_viscous_N_s_m", "N s/m", &Damping::global_viscous, not_negative,
-            "force -c v' on each grain, dt > 0 only"),
+            "force -c v' on each grain, at a rate only"),
   };
 }
 
@@ -170,21 +171,26 @@ std::vector<KeyEntry> solver() {
       entry(t, "time_step_factor", "1", &SolverOptions::time_step_factor, ratio,
             "fraction of the critical step 2/omega_max"),
       entry(t, "fixed_time_step_s", "s", &SolverOptions::fixed_time_step, not_negative,
-            "dt > 0: equal steps of at most this; 0: from time_step_factor and collision_steps"),
+            "at a rate: equal steps of at most this; 0: from time_step_factor and collision_steps"),
       entry(t, "collision_steps", "1", &SolverOptions::collision_steps, {0, 100'000},
-            "dt > 0: sub-steps per collision where collisions carry the energy, 5 or more; 0: the critical step alone, "
+            "at a rate: sub-steps per collision where collisions carry the energy, 5 or more; 0: the critical step "
+            "alone, "
             "which may not resolve collisions"),
       entry(t, "relative_tolerance", "1", &SolverOptions::relative_tolerance, {0, 1, true, false},
-            "dt = 0: allowed error of the stress, over the larger of its change in the increment and a tenth of the "
+            "quasi-static: allowed error of the stress, over the larger of its change in the increment and a tenth of "
+            "the "
             "change of an elastic network; under stress control: over the mean pressure"),
       entry(t, "absolute_tolerance", "1", &SolverOptions::absolute_tolerance, {0, 1, true, false},
-            "dt = 0: allowed error in addition to that, over the mean pressure; under stress control: the larger of "
+            "quasi-static: allowed error in addition to that, over the mean pressure; under stress control: the larger "
+            "of "
             "the two tolerances"),
       entry(t, "target_unbalanced", "1", &SolverOptions::target_unbalanced, not_negative,
-            "dt = 0: if above 0, this unbalanced ratio determines the number of sub-steps, instead of the tolerances"),
-      entry(t, "fixed_substeps", "1", &SolverOptions::fixed_substeps, not_negative,
-            "dt = 0: number of sub-steps of every increment of strain; 0: by error control, as always under stress "
-            "control"),
+            "quasi-static: if above 0, this unbalanced ratio determines the number of sub-steps, instead of the "
+            "tolerances"),
+      entry(
+          t, "fixed_substeps", "1", &SolverOptions::fixed_substeps, not_negative,
+          "quasi-static: number of sub-steps of every increment of strain; 0: by error control, as always under stress "
+          "control"),
       entry(t, "max_substeps", "1", &SolverOptions::max_substeps, positive, "an increment that needs more fails"),
       entry(t, "min_height_m", "m", &SolverOptions::min_height, not_negative,
             "shortest lattice vector allowed; 0: the largest grain's diameter"),

@@ -47,7 +47,7 @@ Matrix3 contact_stress(const Network& network) {
 }
 
 Matrix3 reynolds_stress(const Network& network) {
-  if (network.quasi_static) return Matrix3::Zero();
+  if (network.loading == Loading::quasi_static) return Matrix3::Zero();
   Matrix3 sum = Matrix3::Zero();
   for (const GrainState& grain : network.grains) sum -= grain.mass * grain.velocity * grain.velocity.transpose();
   return in_laboratory(network, sum / network.cell.volume());
@@ -157,7 +157,7 @@ double elastic_energy(const Network& network) {
 }
 
 double kinetic_energy(const Network& network) {
-  if (network.quasi_static) return 0;
+  if (network.loading == Loading::quasi_static) return 0;
   double sum = 0;
   for (const GrainState& grain : network.grains) {
     const Vector3 spin = grain.spin + network.mean_spin;

@@ -213,7 +213,7 @@ Rve steered(const Rve& rve, const Recipe& recipe, const std::atomic<bool>* stop)
     overlap /= std::max(1.0, double(network.contacts.size()));
     const int d = network.dimension();
     const double rise = mean_pressure(*recipe.stress, d) / mean_pressure(contact_stress(network), d);
-    s.state.reference_overlap = 3 * overlap * std::clamp(rise, 1.0, 10.0);
+    s.state.reference.overlap = 3 * overlap * std::clamp(rise, 1.0, 10.0);
   }
   Rve other(s);
   other.watch(stop);

@@ -42,7 +42,9 @@ struct Read : records::MeasuredState {
   using records::MeasuredState::MeasuredState;
   Vector3 turned(const Vector3& vector) const { return network.cell.rotation * vector; }
   /// Of scaled masses velocities are none.
-  Vector3 moving(const Vector3& vector) const { return network.quasi_static ? Vector3::Zero().eval() : turned(vector); }
+  Vector3 moving(const Vector3& vector) const {
+    return network.loading == Loading::quasi_static ? Vector3::Zero().eval() : turned(vector);
+  }
   /// What a network does not hold.
   const Grains& grains() const {
     if (!grains_) grains_ = rve.specimen().grains;

@@ -66,7 +66,7 @@ class Pool {
   virtual void release(std::span<const std::int64_t> ids) = 0;
   virtual std::vector<std::int64_t> ids() = 0;
 
-  /// Trial and commit in one; what to say of it.
+  /// Trial and commit in one. Writes the Cauchy stress (9 doubles, row-major, Pa) to `stress`; returns status and text.
   virtual Verdict apply(std::int64_t id, const Matrix3& displacement_gradient, double dt, double* stress) = 0;
   /// The worst status; its text names index and id.
   virtual Verdict trial(const Batch& batch) = 0;

@@ -76,7 +76,7 @@ class Tokens {
 };
 
 /// What a committed step, or a trial, leaves to be told of it (Report).
-struct LastStep {
+struct StepFigures {
   double inertial_number = 0;
   double error_estimate = 0;  ///< Pa, of the stress after it
 };
@@ -85,7 +85,7 @@ struct RveState {
   Specimen specimen;
   Tokens tokens;
   double initial_void_ratio = 0;  ///< when the RVE was spawned
-  LastStep last{};
+  StepFigures last{};
 };
 
 /// Bitwise, for builds with the same fields: a head with magic, length and checksum, tokens, the bytes of Rve::save().

@@ -82,8 +82,8 @@ struct Resident {
   Rve rve;
   Tokens tokens;
   double initial_void_ratio = 0;
-  LastStep last{};       ///< committed
-  LastStep trial{};      ///< pending
+  StepFigures last{};    ///< committed
+  StepFigures trial{};   ///< pending
   bool pending = false;  ///< the last trial of `tokens` is; its state may have been let go of
 };
 

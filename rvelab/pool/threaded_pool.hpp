@@ -161,7 +161,7 @@ class ThreadedPool : public Pool {
   void rest_another() noexcept;
   template <class Change>
   std::int64_t go_on(std::int64_t id, const Change& change);
-  Outcome attempt(Slot& slot, const Matrix3& displacement_gradient, double dt, const Batch& wanted);
+  Outcome attempt(Slot& slot, const Matrix3& displacement_gradient, double dt, bool with_tangent);
   void accept(Slot& slot, std::int64_t token, const Matrix3& displacement_gradient);
   void run_entry(Entry& entry, const Batch& batch) noexcept;
   void expect_trials(std::span<const Hold> holds, std::span<const std::int64_t> ids,

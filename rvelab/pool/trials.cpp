@@ -19,14 +19,14 @@ namespace {
 
 constexpr double scale_after_discard = 0.5;
 
-LastStep last_step(const Report& report) { return {report.inertial_number, report.error_estimate}; }
+StepFigures figures_of(const Report& report) { return {report.inertial_number, report.error_estimate}; }
 
 /// The trial is made again; it is pending then.
 void make_again(Slot& slot, const TrialRecord& record) {
   const Cost cost(slot);
   Resident& resident = *slot.resident;
   const Response response = resident.rve.attempt(record.displacement_gradient, record.dt);
-  resident.trial = last_step(response.report);
+  resident.trial = figures_of(response.report);
 }
 
 /// The pending trial of that token is the state. Its RVE holds it.
@@ -91,7 +91,7 @@ struct ThreadedPool::Entry {
 
 /// Makes a trial from the committed state; it is pending then.
 ThreadedPool::Outcome ThreadedPool::attempt(Slot& slot, const Matrix3& displacement_gradient, double dt,
-                                            const Batch& wanted) {
+                                            bool with_tangent) {
   Resident& resident = *slot.resident;
   Rve& rve = resident.rve;
   rve.revert();
@@ -103,14 +103,13 @@ ThreadedPool::Outcome ThreadedPool::attempt(Slot& slot, const Matrix3& displacem
   try {
     const Report& report = outcome.response.report;
     if (has_warning(report, dt)) outcome.verdict = warning_of(report, dt);
-    if (wanted.tangent != nullptr && !write_tangent(rve.network(), outcome.tangent))
-      add_affine_warning(outcome.verdict);
+    if (with_tangent && !write_tangent(rve.network(), outcome.tangent)) add_affine_warning(outcome.verdict);
   } catch (...) {
     rve.revert();
     throw;
   }
   outcome.token = resident.tokens.add(displacement_gradient, dt);
-  resident.trial = last_step(outcome.response.report);
+  resident.trial = figures_of(outcome.response.report);
   resident.pending = true;
   called(slot, outcome.response.report.substeps);
   return outcome;
@@ -134,7 +133,7 @@ Verdict ThreadedPool::apply(std::int64_t id, const Matrix3& displacement_gradien
   const AtWork working(*this);
   expect_time(dt);
   const Hold hold = held(id, ++serial_);
-  Outcome outcome = attempt(hold.slot(), displacement_gradient, dt, {});
+  Outcome outcome = attempt(hold.slot(), displacement_gradient, dt, false);
   commit_trial(hold.resident(), outcome.token);
   store(outcome.response.stress, stress);
   return std::move(outcome.verdict);
@@ -145,7 +144,7 @@ void ThreadedPool::run_entry(Entry& entry, const Batch& batch) noexcept {
   try {
     const Matrix3 gradient = tensor_at(batch.dH + 9 * k);
     if (batch.tokens_in != nullptr) accept(*entry.slot, batch.tokens_in[k], gradient);
-    Outcome outcome = attempt(*entry.slot, gradient, batch.dt, batch);
+    Outcome outcome = attempt(*entry.slot, gradient, batch.dt, batch.tangent != nullptr);
     if (options_.trial_memory == RVELAB_TRIAL_RECOMPUTE) entry.slot->resident->rve.revert();
     const Response& response = outcome.response;
     store(response.stress, batch.sigma + 9 * k);

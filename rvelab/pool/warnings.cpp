@@ -14,13 +14,13 @@ Status write_warning(const Report& report, double dt, char* text, std::size_t si
                   "a stress of the mixed target was missed by %g of its scale: take smaller steps, a longer time, or a "
                   "wider tolerance",
                   report.held_error);
-  } else if (!report.quasi_static && dt == 0) {
+  } else if (!report.in_equilibrium && loading_of(dt) == Loading::quasi_static) {
     status = Status::not_quasi_static;
     std::snprintf(text, size,
                   "the state is no equilibrium: the unbalanced ratio is %g; the specimen flows or collapses: take "
                   "smaller steps, or give a time (dt > 0)",
                   report.unbalanced_ratio);
-  } else if (dt == 0 && !report.tolerance_met) {
+  } else if (loading_of(dt) == Loading::quasi_static && !report.tolerance_met) {
     status = Status::tolerance_missed;
     std::snprintf(text, size,
                   "the stress has an expected error of %g Pa; the tolerance allows %g Pa: take it as it is, or widen "

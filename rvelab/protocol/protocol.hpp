@@ -20,11 +20,11 @@ namespace rvelab::protocol {
 
 /// Time in driven stages (compression, simple shear, flow, deformation). All other stages are quasi-static.
 struct LoadingSettings {
-  bool physical = false;          ///< false: dt = 0; true: physical masses at the rate below
+  bool at_rate = false;           ///< false: quasi-static; true: physical masses at the rate below
   double rate = 0;                ///< 1/s, true rate of the driving strain; 0: from the inertial number
   double inertial_number = 0;     ///< I = rate d sqrt(rho/p), p at the start of the stage; 0: from the rate
   double held_tolerance = 0.005;  ///< a held stress may miss by this times max(|target|, 1 % of the stage's first p);
-                                  ///< physical: its mean over an increment may
+                                  ///< at a rate: its mean over an increment may
   static constexpr double held_tolerance_at_rate =
       0.05;  ///< default at a given rate, where collisions make it fluctuate
 };

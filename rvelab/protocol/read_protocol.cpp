@@ -42,29 +42,29 @@ void read_test(TableReader& reader, Protocol& protocol) {
 void read_loading(TableReader& reader, Protocol& protocol) {
   LoadingSettings& loading = protocol.loading;
   reader.choice(
-      "mode", loading.physical, {"quasi_static", "physical"},
-      "time in compression, simple shear, flow and deformation: quasi_static, or physical with true masses at "
+      "mode", loading.at_rate, {"quasi_static", "at_rate"},
+      "time in compression, simple shear, flow and deformation: quasi_static, or at_rate with physical masses at "
       "the given rate");
   const auto rate =
-      reader.optional_number("rate_1_s", "1/s", positive, "mode = physical: true rate of the driving strain");
+      reader.optional_number("rate_1_s", "1/s", positive, "mode = at_rate: true rate of the driving strain");
   const auto inertial_number = reader.optional_number(
       "inertial_number", "1", positive,
-      "mode = physical, in place of rate_1_s: I = rate d sqrt(rho/p) with p at the start of the stage");
+      "mode = at_rate, in place of rate_1_s: I = rate d sqrt(rho/p) with p at the start of the stage");
   const bool has_rate = reader.has("rate_1_s"), has_number = reader.has("inertial_number");
   loading.rate = rate.value_or(0);
   loading.inertial_number = inertial_number.value_or(0);
   if (has_rate && has_number)
     reader.mistake("inertial_number", "contradicts loading.rate_1_s; allowed: one of the two; remove one");
-  if (!loading.physical)
+  if (!loading.at_rate)
     reader.refuse(has_rate ? "rate_1_s" : "inertial_number",
-                  "contradicts loading.mode = \"quasi_static\", which has no rate; allowed: with mode = \"physical\" "
+                  "contradicts loading.mode = \"quasi_static\", which has no rate; allowed: with mode = \"at_rate\" "
                   "only; set the mode or remove the key");
-  if (loading.physical && !has_rate && !has_number && !reader.has_in_another_unit("rate_1_s"))
+  if (loading.at_rate && !has_rate && !has_number && !reader.has_in_another_unit("rate_1_s"))
     reader.mistake("mode", "needs a rate; allowed: rate_1_s or inertial_number beside it; add one of them");
   reader.number("held_tolerance", loading.held_tolerance, "1", ratio,
                 "allowed error of a held stress, over the larger of its target and 1 % of p at the start of the stage; "
-                "mode = physical: of its mean over an increment, by default 0.05");
-  if (!loading.physical || reader.has("held_tolerance")) return;
+                "mode = at_rate: of its mean over an increment, by default 0.05");
+  if (!loading.at_rate || reader.has("held_tolerance")) return;
   loading.held_tolerance = LoadingSettings::held_tolerance_at_rate;
   reader.resolve("held_tolerance", loading.held_tolerance);
 }

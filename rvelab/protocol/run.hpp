@@ -20,9 +20,9 @@ namespace rvelab::protocol {
 struct Costs {
   double grains = 0, pairs = 0, list = 0, control = 0;  ///< StepTimes; control: what calls took beyond the first three
   double files = 0;                                     ///< filled in by who keeps the records
-  long judged = 0;                                      ///< records at dt = 0 that an increment led to, at p > 0
-  double mean_error = 0, largest_error = 0;             ///< of those, Report::error_estimate over p
-  long substeps = 0, waited = 0;                        ///< Report::substeps and Report::waited of all increments
+  long judged = 0;                           ///< records in quasi-static loading that an increment led to, at p > 0
+  double mean_error = 0, largest_error = 0;  ///< of those, Report::error_estimate over p
+  long substeps = 0, waited = 0;             ///< Report::substeps and Report::waited of all increments
 };
 
 /// A test that was run, or stopped.
@@ -64,11 +64,11 @@ struct Watch {
 /// Records that all stages of a protocol make together, where no event ends one before its end.
 std::size_t planned_records(const Protocol& protocol);
 
-/// Runs all stages in order. Records lie at the fixed strains of their stage, none skipped or delayed. At dt = 0 each
-/// is of a state whose held stress is there; at dt > 0 one whose held stress was not there on average is kept and
-/// flagged (target_held = false). Throws InputError if specimen and protocol do not go together, or if a stage starts
-/// far from the stress that it holds; Error (IncrementFailed among them) if a stage cannot be carried out, a held
-/// stress that the grains cannot carry among the reasons, naming the stage and what was reached.
+/// Runs all stages in order. Records lie at the fixed strains of their stage, none skipped or delayed. In quasi-static
+/// loading each is of a state whose held stress is there; at a rate one whose held stress was not there on average is
+/// kept and flagged (target_held = false). Throws InputError if specimen and protocol do not go together, or if a stage
+/// starts far from the stress that it holds; Error (IncrementFailed among them) if a stage cannot be carried out, a
+/// held stress that the grains cannot carry among the reasons, naming the stage and what was reached.
 TestRun run_protocol(const Protocol& protocol, const Specimen& specimen, const Watch& watch = {});
 
 /// Goes on from a checkpoint of the same protocol: what follows is bitwise what the undisturbed run would have made.

@@ -73,7 +73,7 @@ void RunningTest::enter(const Stage& stage) {
   at.first_pressure = mean_pressure(at.stress, dimension());
   at.substeps = 0;
   at.rate = loading.rate;
-  if (loading.physical && loading.inertial_number > 0) {
+  if (loading.at_rate && loading.inertial_number > 0) {
     const Network network = rve.network();
     // I = rate d sqrt(rho/p), the inertial number (GDR MiDi 2004), with the driving strain's rate
     at.rate = at.first_pressure > 0 ? loading.inertial_number * std::sqrt(at.first_pressure / solid_density(network)) /
@@ -133,7 +133,7 @@ double RunningTest::held_scale(double target) const {
 }
 
 double RunningTest::time_for(double strain_increment) const {
-  if (!loading.physical) return 0;
+  if (!loading.at_rate) return 0;
   if (run.progress.rate > 0) return std::abs(strain_increment) / run.progress.rate;
   throw failed("loading.inertial_number gives no rate at p = " + std::to_string(run.progress.first_pressure) +
                " Pa; allowed: p > 0 at the start of the stage; give loading.rate_1_s");
@@ -225,7 +225,7 @@ void RunningTest::record(double strain, const Report& report) {
   record.substeps = run.progress.substeps;
   record.held_error = report.held_error;
   record.target_held = report.target_held;
-  record.quasi_static = report.quasi_static;
+  record.quasi_static = report.in_equilibrium;
   record.cell_thin = rve.cell_thin();
   run.progress.substeps = 0;
   note_error(report, record);

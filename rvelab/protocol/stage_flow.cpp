@@ -27,8 +27,7 @@ struct Flow : KindOf<FlowStage> {
 
   void read(TableReader& reader, Protocol& protocol) override {
     stage.gradient = reader.components(
-        "gradient", "1", "G of F = exp(s G), s the driving strain; physical loading: velocity gradient = rate G",
-        false);
+        "gradient", "1", "G of F = exp(s G), s the driving strain; at a rate: velocity gradient = rate G", false);
     if (protocol.dimension == 2 && !in_plane())
       reader.mistake("gradient", "leaves the plane of test.dimension = 2; allowed: xx, xy, yx, yy; remove the others");
     reader.required_number("to_strain", stage.to_strain, "1", positive, "s at which the stage ends");

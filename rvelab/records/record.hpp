@@ -22,10 +22,10 @@ struct RecordedState {
   double inertial_number = 0;
   long substeps = 0;         ///< made since the record before
   double held_error = 0;     ///< largest error of a held stress over its scale
-  bool target_held = true;   ///< false: kept, but the held stress was not within the tolerance (dt > 0)
-  bool quasi_static = true;  ///< dt = 0; false: kept, but no equilibrium (Report::quasi_static); dt > 0: not judged
+  bool target_held = true;   ///< false: kept, but the held stress was not within the tolerance (at a rate)
+  bool quasi_static = true;  ///< false: kept, but no equilibrium (Report::in_equilibrium); at a rate: not judged
 
-  double error_estimate = 0;  ///< Report::error_estimate over p; 0: not judged (dt > 0, no increment, no pressure)
+  double error_estimate = 0;  ///< Report::error_estimate over p; 0: not judged (at a rate, no increment, no pressure)
 
   bool cell_thin = false;  ///< a cell height is below four mean diameters: the record stands for less of the material
 

@@ -19,80 +19,80 @@ namespace rvelab {
 namespace {
 
 /// A state for a call that changes it: no trial is pending, all buffers are there.
-State& allocated(State& s) {
-  if (s.pending()) s.revert();
-  s.allocate();
-  return s;
+State& prepared_for_change(State& state) {
+  if (state.pending()) state.revert();
+  state.allocate();
+  return state;
 }
 
 /// Runs `work` as a trial, which is then pending; if it throws, the trial is reverted and the exception goes on, a
 /// CellError as IncrementFailed.
 template <class Work>
-auto tried(State& s, Trial::Changes changes, const Work& work) {
-  s.begin_trial(changes);
+auto run_as_trial(State& state, Trial::Changes changes, const Work& work) {
+  state.begin_trial(changes);
   try {
     return work();
   } catch (const CellError& error) {
-    s.revert();
+    state.revert();
     throw IncrementFailed(error.what());
   } catch (...) {
-    s.revert();
+    state.revert();
     throw;
   }
 }
 
 template <class Work>
-auto committed(State& s, const Work& work) {
-  auto result = tried(s, Trial::Changes::grains, work);
-  s.commit();
+auto run_and_commit(State& state, const Work& work) {
+  auto result = run_as_trial(state, Trial::Changes::grains, work);
+  state.commit();
   return result;
 }
 
 /// The same with the deferred strain made, for calls that change more than the strain.
-State& up_to_date(State& s) {
-  allocated(s);
-  if (s.has_deferred()) committed(s, [&] { return make_deferred(s); });
-  return s;
+State& apply_deferred_strain(State& state) {
+  prepared_for_change(state);
+  if (state.has_deferred()) run_and_commit(state, [&] { return apply_deferred(state); });
+  return state;
 }
 
 /// Asks a state that has its buffers. A const call changes nothing: a released state is asked by a copy.
 template <class Question>
-auto answer(const State& s, const Question& question) {
-  if (!s.released()) return question(s);
-  State copy = s;
+auto answer(const State& state, const Question& question) {
+  if (!state.released()) return question(state);
+  State copy = state;
   copy.allocate();
   return question(std::as_const(copy));
 }
 
 /// Contact stress, laboratory frame, Pa, with that of the deferred strain.
-Matrix3 strained_stress(const State& s) {
-  if (!s.has_deferred()) return s.contact_stress();
-  return s.contact_stress() + s.to_lab(extrapolated(s, s.control().deferred_stretch).stress);
+Matrix3 strained_stress(const State& state) {
+  if (!state.has_deferred()) return state.contact_stress();
+  return state.contact_stress() + state.to_lab(extrapolated(state, state.control().deferred.stretch).stress);
 }
 
-double inertial_number(const State& s, const Matrix3& gradient, double dt, const Matrix3& stress) {
-  const Model& f = s.model();
-  const int d = f.dimension();
+double inertial_number(const State& state, const Matrix3& gradient, double dt, const Matrix3& stress) {
+  const Model& model = state.model();
+  const int d = model.dimension();
   Matrix3 e = 0.5 * (gradient + gradient.transpose());
   const double mean = e.trace() / d;
   for (int k = 0; k < d; ++k) e(k, k) -= mean;
   double mass = 0, solid = 0;
-  for (std::size_t g = 0; g < f.size(); ++g) {
-    mass += f.mass[g];
-    solid += grain_volume(f.shape, f.radius[g], s.cell().lattice(2, 2));
+  for (std::size_t g = 0; g < model.size(); ++g) {
+    mass += model.mass[g];
+    solid += grain_volume(model.shape, model.radius[g], state.cell().lattice(2, 2));
   }
   const double p = mean_pressure(stress, d), rate = std::sqrt(2 * e.squaredNorm()) / dt;
-  if (p > 0) return rate * 2 * f.mean_radius * std::sqrt(mass / solid / p);
+  if (p > 0) return rate * 2 * model.mean_radius * std::sqrt(mass / solid / p);
   return rate > 0 ? std::numeric_limits<double>::infinity() : 0.0;
 }
 
-Response respond(State& s, const Report& report, const Matrix3& gradient, double dt) {
-  Matrix3 in_cell = s.stress();
-  if (s.has_deferred()) in_cell += extrapolated(s, s.control().deferred_stretch).stress;
-  const Matrix3 contact = s.to_lab(in_cell), reynolds = s.reynolds_stress();
+Response respond(State& state, const Report& report, const Matrix3& gradient, double dt) {
+  Matrix3 in_cell = state.stress();
+  if (state.has_deferred()) in_cell += extrapolated(state, state.control().deferred.stretch).stress;
+  const Matrix3 contact = state.to_lab(in_cell), reynolds = state.reynolds_stress();
   Response r{contact + reynolds, contact, reynolds, gradient, report};
-  r.report.cell_thin = s.is_thin(s.cell());
-  if (dt > 0) r.report.inertial_number = inertial_number(s, gradient, dt, r.stress);
+  r.report.cell_thin = state.is_thin(state.cell());
+  if (loading_of(dt) == Loading::at_rate) r.report.inertial_number = inertial_number(state, gradient, dt, r.stress);
   return r;
 }
 
@@ -103,15 +103,16 @@ struct Increment {
   FrameSplit split;
 };
 
-Report load(State& s, Increment increment) {
-  const bool quasi_static = increment.dt == 0;
-  if (quasi_static && increment.split.rigid) return load_rotation(s, increment.split, increment.gradient);
+Report load(State& state, Increment increment) {
+  const bool quasi_static = loading_of(increment.dt) == Loading::quasi_static;
+  if (quasi_static && increment.split.rigid) return load_rotation(state, increment.split, increment.gradient);
   long deferred = 0;
-  if (s.has_deferred() && !(quasi_static && joins_deferred(s, increment.split))) {
-    deferred = make_deferred(s);
-    increment.split = split_increment(s.cell(), increment.gradient);  // the lattice may have been reduced
+  if (state.has_deferred() && !(quasi_static && is_along_deferred(state, increment.split))) {
+    deferred = apply_deferred(state);
+    increment.split = split_increment(state.cell(), increment.gradient);  // the lattice may have been reduced
   }
-  Report report = quasi_static ? load_quasi_static(s, increment.split) : load_at_rate(s, increment.split, increment.dt);
+  Report report =
+      quasi_static ? load_quasi_static(state, increment.split) : load_at_rate(state, increment.split, increment.dt);
   report.substeps += deferred;
   return report;
 }
@@ -136,15 +137,15 @@ Rve& Rve::operator=(Rve&&) noexcept = default;
 Rve::~Rve() = default;
 
 Response Rve::attempt(const Matrix3& displacement_gradient, double dt) {
-  State& s = allocated(*state_);
+  State& state = prepared_for_change(*state_);
   expect_time(dt);
-  const CallClock clock(s.model().times);
-  const Increment increment{displacement_gradient, dt, split_increment(s.cell(), displacement_gradient)};
+  const CallClock clock(state.model().times);
+  const Increment increment{displacement_gradient, dt, split_increment(state.cell(), displacement_gradient)};
   // A deferred increment moves no grain: its trial is the cell alone.
-  const bool deferred = dt == 0 && may_defer(s, increment.split);
-  return tried(s, deferred ? Trial::Changes::deferred_strain : Trial::Changes::grains, [&] {
-    const Report report = deferred ? defer(s, increment.split) : load(s, increment);
-    return respond(s, report, displacement_gradient, dt);
+  const bool deferred = loading_of(dt) == Loading::quasi_static && may_defer(state, increment.split);
+  return run_as_trial(state, deferred ? Trial::Changes::deferred_strain : Trial::Changes::grains, [&] {
+    const Report report = deferred ? defer(state, increment.split) : load(state, increment);
+    return respond(state, report, displacement_gradient, dt);
   });
 }
 
@@ -155,23 +156,24 @@ Response Rve::apply(const Matrix3& displacement_gradient, double dt) {
 }
 
 Response Rve::apply(const MixedTarget& target, double dt) {
-  State& s = allocated(*state_);
+  State& state = prepared_for_change(*state_);
   expect_time(dt);
-  const CallClock clock(s.model().times);
-  return committed(s, [&] {
+  const CallClock clock(state.model().times);
+  return run_and_commit(state, [&] {
     Matrix3 gradient = Matrix3::Zero();
-    const long deferred = make_deferred(s);
-    s.control().stress_slope.setZero();
-    Report report = dt > 0 ? load_at_rate(s, target, dt, gradient) : load_quasi_static(s, target, gradient);
+    const long deferred = apply_deferred(state);
+    state.control().deferred.stress_slope.setZero();
+    Report report = loading_of(dt) == Loading::at_rate ? load_at_rate(state, target, dt, gradient)
+                                                       : load_quasi_static(state, target, gradient);
     report.substeps += deferred;
-    return respond(s, report, gradient, dt);
+    return respond(state, report, gradient, dt);
   });
 }
 
 Report Rve::relax(double unbalanced, long max_steps) {
-  State& s = allocated(*state_);
-  const CallClock clock(s.model().times);
-  return committed(s, [&] { return rvelab::relax(s, unbalanced, max_steps); });
+  State& state = prepared_for_change(*state_);
+  const CallClock clock(state.model().times);
+  return run_and_commit(state, [&] { return rvelab::relax(state, unbalanced, max_steps); });
 }
 
 bool Rve::pending() const { return state_->pending(); }
@@ -191,26 +193,30 @@ Memory Rve::memory() const { return state_->memory(); }
 
 Matrix3 Rve::contact_stress() const { return answer(*state_, strained_stress); }
 Matrix3 Rve::reynolds_stress() const {
-  return answer(*state_, [](const State& s) { return s.reynolds_stress(); });
+  return answer(*state_, [](const State& state) { return state.reynolds_stress(); });
 }
 Matrix3 Rve::stress() const {
-  return answer(*state_, [](const State& s) -> Matrix3 { return strained_stress(s) + s.reynolds_stress(); });
+  return answer(*state_,
+                [](const State& state) -> Matrix3 { return strained_stress(state) + state.reynolds_stress(); });
 }
 
 double Rve::unbalanced_ratio() const {
-  return answer(*state_, [](const State& s) { return s.unbalanced_ratio(balance_of(s.model(), s.assembly())); });
+  return answer(*state_,
+                [](const State& state) { return state.unbalanced_ratio(balance_of(state.model(), state.assembly())); });
 }
 
 double Rve::critical_time_step() const {
-  return answer(*state_, [](const State& s) { return critical_step(s.model(), row_sums(s.model(), s.assembly())); });
+  return answer(*state_, [](const State& state) {
+    return critical_step(state.model(), row_sums(state.model(), state.assembly()));
+  });
 }
 
 Network Rve::network() const {
-  const auto network = [](const State& s) { return network_of(s.model(), s.assembly()); };
+  const auto network = [](const State& state) { return network_of(state.model(), state.assembly()); };
   if (!state_->has_deferred()) return answer(*state_, network);
   State copy = *state_;
   try {
-    up_to_date(copy);
+    apply_deferred_strain(copy);
   } catch (const Error&) {  // the grains are shown as they are
   }
   return answer(copy, network);
@@ -219,39 +225,39 @@ Network Rve::network() const {
 const Cell& Rve::cell() const { return state_->strained_cell(); }
 bool Rve::cell_thin() const { return state_->is_thin(cell()); }
 std::size_t Rve::size() const { return state_->model().size(); }
-std::uint64_t Rve::grain_steps() const { return state_->control().grain_steps; }
+std::uint64_t Rve::grain_steps() const { return state_->assembly().state.grain_steps; }
 std::uint64_t Rve::grain_steps_made() const { return state_->grain_steps_made(); }
-double Rve::reference_pressure() const { return state_->control().reference_pressure; }
+double Rve::reference_pressure() const { return state_->reference().pressure; }
 
 void Rve::watch(const std::atomic<bool>* stop) { state_->watch(stop); }
 void Rve::share(Workers* team) { state_->share(team); }
 void Rve::measure_time(StepTimes* times) { state_->measure_time(times); }
 
 void Rve::set_materials(const std::vector<Material>& materials) {
-  State& s = allocated(*state_);
-  if (materials.size() != s.model().materials.size())
+  State& state = prepared_for_change(*state_);
+  if (materials.size() != state.model().materials.size())
     throw InputError("set_materials: " + std::to_string(materials.size()) + " materials; the specimen has " +
-                     std::to_string(s.model().materials.size()));
-  check_parameters(s.model().contact, s.model().damping, materials);
-  up_to_date(s).set_materials(materials);
+                     std::to_string(state.model().materials.size()));
+  check_parameters(state.model().contact, state.model().damping, materials);
+  apply_deferred_strain(state).set_materials(materials);
 }
 
 void Rve::set_velocities(const std::vector<Vector3>& velocity, const std::vector<Vector3>& spin) {
-  State& s = allocated(*state_);
+  State& state = prepared_for_change(*state_);
   if (velocity.size() != size() || spin.size() != size())
     throw InputError("set_velocities: " + std::to_string(velocity.size()) + " velocities and " +
                      std::to_string(spin.size()) + " spins; the specimen has " + std::to_string(size()) + " grains");
   for (std::size_t place = 0; place < size(); ++place) {
-    const std::size_t index = s.index_in_specimen(place);
+    const std::size_t index = state.index_in_specimen(place);
     if (!velocity[index].allFinite() || !spin[index].allFinite())
-      throw InputError("set_velocities: the velocity or spin of grain " + std::to_string(s.model().id[place]) +
+      throw InputError("set_velocities: the velocity or spin of grain " + std::to_string(state.model().id[place]) +
                        " is not finite; give finite numbers");
   }
-  up_to_date(s).set_velocities(velocity, spin);
+  apply_deferred_strain(state).set_velocities(velocity, spin);
 }
 
-void Rve::zero_velocities() { up_to_date(*state_).zero_velocities(); }
-void Rve::take_as_reference() { up_to_date(*state_).take_as_reference(); }
+void Rve::zero_velocities() { apply_deferred_strain(*state_).zero_velocities(); }
+void Rve::take_as_reference() { apply_deferred_strain(*state_).take_as_reference(); }
 
 Specimen Rve::specimen() const { return close_assembly(state_->model(), state_->assembly()); }
 std::vector<std::byte> Rve::save() const { return to_bytes(specimen()); }

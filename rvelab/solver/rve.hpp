@@ -58,8 +58,8 @@ class Rve {
   /// The same with a mixed target: the stress servo runs inside the sub-steps, and the response says which gradient it
   /// found. Throws InputError if the target is not a target (see MixedTarget), InvalidIncrement (dt is negative or not
   /// finite, or the strain that the rows ask for is no deformation) or IncrementFailed; the RVE is then exactly as it
-  /// was. At dt = 0 the target waits for a stress that is let go, and one that the grains cannot carry is an
-  /// IncrementFailed (quasi_static/recovery.hpp); at dt > 0 a stress that is missed is no error: Report::target_held
+  /// was. In quasi-static loading the target waits for a stress that is let go, and one that the grains cannot carry is
+  /// an IncrementFailed (quasi_static/recovery.hpp); at a rate a stress that is missed is no error: Report::target_held
   /// says so.
   Response apply(const MixedTarget& target, double dt);
 
@@ -70,7 +70,7 @@ class Rve {
 
   Matrix3 stress() const;             ///< Cauchy, laboratory frame, Pa
   Matrix3 contact_stress() const;     ///< (1/V) sum, laboratory frame, Pa
-  Matrix3 reynolds_stress() const;    ///< -(1/V) sum m v' v', laboratory frame, Pa; zero after dt = 0
+  Matrix3 reynolds_stress() const;    ///< -(1/V) sum m v' v', laboratory frame, Pa; zero after quasi-static loading
   double unbalanced_ratio() const;    ///< of the state as it is, see Report::unbalanced_ratio
   const Cell& cell() const;           ///< lattice (m) in its frame, and the frame's rotation to the laboratory
   bool cell_thin() const;             ///< a cell height is below four mean diameters
@@ -84,7 +84,7 @@ class Rve {
   /// the next sub-step, those of a copy that makes it.
   Network network() const;
   /// The whole state; Rve(specimen()) goes on as this one, bit for bit. Strain that is left to the next sub-step is in
-  /// state.deferred_stretch, not in the lattice.
+  /// state.control.deferred, not in the lattice.
   Specimen specimen() const;
 
   /// Releases the buffers that can be made again from state and list, about two thirds of the memory. The next call
@@ -119,7 +119,7 @@ class Rve {
   /// for each that the specimen has, in its order. InputError if their number differs or one is not allowed by the law
   /// (check_parameters in contact/model.hpp); the RVE is then as it was.
   void set_materials(const std::vector<Material>& materials);
-  /// Sets fluctuation velocities and spins (cell frame, m/s and rad/s), for dt > 0: one of each for every grain, in the
+  /// Sets fluctuation velocities and spins (cell frame, m/s and rad/s), at a rate: one of each for every grain, in the
   /// order of the specimen. In the plane the components out of it are left out. InputError if a number of entries is
   /// not size() or an entry is not finite; the RVE is then as it was.
   void set_velocities(const std::vector<Vector3>& velocity, const std::vector<Vector3>& spin);

@@ -172,9 +172,9 @@ class Relations {
 
   void check_lists() const {
     const SolverState& state = s.state;
-    if (state.scaled_mass.size() != state.scaled_inverse_inertia.size())
-      advise("state/scaled_mass has " + std::to_string(state.scaled_mass.size()) +
-             " rows, state/scaled_inverse_inertia " + std::to_string(state.scaled_inverse_inertia.size()) +
+    if (state.masses.mass.size() != state.masses.inverse_inertia.size())
+      advise("state/masses/mass has " + std::to_string(state.masses.mass.size()) +
+             " rows, state/masses/inverse_inertia " + std::to_string(state.masses.inverse_inertia.size()) +
              "; allowed: both one for each grain, or both none, and they are made anew");
     const std::size_t n = s.grains.size();
     if (!state.memory_order.empty() && !is_permutation(state.memory_order, n))
@@ -309,17 +309,18 @@ class Relations {
   /// Strain that is left to the next sub-step: less than a hundredth, since no sub-step is longer, and no more than
   /// one of them. A damaged one of many sub-steps would be made by const calls that show grains.
   void check_deferred() const {
-    const Matrix3& u = s.state.deferred_stretch;
+    const Matrix3& u = s.state.control.deferred.stretch;
     const bool upper = u(1, 0) == 0 && u(2, 0) == 0 && u(2, 1) == 0;
     const bool in_plane = s.cell.dimension == 3 || (u(0, 2) == 0 && u(1, 2) == 0 && u(2, 2) == 1);
     const double strain = (u - Matrix3::Identity()).norm();
     if (!upper || !in_plane || !(strain < 0.01))
       advise(
-          "state/deferred_stretch must be an upper triangular stretch within 0.01 of the identity, and in 2D leave z "
+          "state/control/deferred/stretch must be an upper triangular stretch within 0.01 of the identity, and in 2D "
+          "leave z "
           "alone; leave it the identity");
-    if (!(strain <= (1 + 1e-9) * s.state.strain_per_step))
-      advise("state/deferred_stretch is a strain of " + in_words(strain) +
-             ", more than a sub-step's, state/strain_per_step = " + in_words(s.state.strain_per_step) +
+    if (!(strain <= (1 + 1e-9) * s.state.control.strain_per_step))
+      advise("state/control/deferred/stretch is a strain of " + in_words(strain) +
+             ", more than a sub-step's, state/control/strain_per_step = " + in_words(s.state.control.strain_per_step) +
              "; leave it the identity");
   }
 
@@ -426,9 +427,7 @@ void fit_state_to_parameters(Specimen& s, const ContactModel& contact, const std
   for (Contact& c : s.contacts)
     if (!c.tangential_force.isZero(0) && !(parameters_of(s, c).kt > 0)) c.tangential_force.setZero();
   if (have_stiffness_of(s, contact, materials)) return;
-  s.state.steps_since_scaling = -1;
-  s.state.scaled_mass.clear();
-  s.state.scaled_inverse_inertia.clear();
+  s.state.masses = {};
 }
 
 void check_specimen(const Specimen& s, const std::string& where) {

@@ -26,7 +26,7 @@ bool is_permutation(const std::vector<std::int32_t>& order, std::size_t grains);
 
 /// Takes from a specimen what it keeps of other parameters than its present ones: tangential forces of contacts that
 /// have no tangential stiffness any more, and scaled masses where the stiffness of contacts has changed (with those of
-/// softer contacts a sub-step at dt = 0 is unstable). `contact`, `materials`: those that it had.
+/// softer contacts a sub-step in quasi-static loading is unstable). `contact`, `materials`: those that it had.
 void fit_state_to_parameters(Specimen& specimen, const ContactModel& contact, const std::vector<Material>& materials);
 
 }  // namespace rvelab

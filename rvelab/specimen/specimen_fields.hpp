@@ -1,6 +1,6 @@
-// Every field of a specimen, described once: snapshots, files and comparisons of specimens go through fields::visit
-// (described.hpp). Names, units and order are those of the file (rvelab/io/README.md); a member of a struct that has no
-// entry here does not compile.
+// The fields of a specimen, each described once: snapshots, files and comparisons of specimens go through fields::visit
+// (described.hpp). Those of the state of the solver lie with their owners. Names, units and order are those of the file
+// (rvelab/io/README.md); a member of a struct that has no entry does not compile.
 //
 // Each field states the range of its numbers where it is not every finite one (Field::within); of what a law reads, the
 // law does (contact/parameter.hpp). check_specimen holds them (specimen_check.hpp).
@@ -144,57 +144,14 @@ inline constexpr auto members_of<SolverOptions> = std::tuple{
 };
 
 template <>
-inline constexpr auto members_of<EnergyTerms> = std::tuple{
-    Field{"boundary_work_J", &EnergyTerms::boundary_work, "J"},
-    Field{"friction_J", &EnergyTerms::friction, "J"},
-    Field{"rolling_J", &EnergyTerms::rolling, "J"},
-    Field{"dashpot_J", &EnergyTerms::dashpot, "J"},
-    Field{"local_damping_J", &EnergyTerms::local_damping, "J"},
-    Field{"global_damping_J", &EnergyTerms::global_damping, "J"},
-    Field{"law_loss_J", &EnergyTerms::law_loss, "J"},
-    Field{"removed_kinetic_J", &EnergyTerms::removed_kinetic, "J"},
-};
-
-template <>
 inline constexpr auto members_of<SolverState> = std::tuple{
-    Field{"has_reference", &SolverState::has_reference, "1"},
-    Field{"list_lattice_m", &SolverState::list_lattice, "m"},
-    Field{"list_positions_m", &SolverState::list_positions, "m", Rows::per_grain_or_none},
-    Field{"list_travel_m", &SolverState::list_travel, "m"}.within(number_from_zero),
-    Field{"list_skin_m", &SolverState::list_skin, "m"}.within(number_from_zero),
-    Field{"list_steps", &SolverState::list_steps, "1"}.within(number_from_zero),
-    Field{"strain_per_step", &SolverState::strain_per_step, "1"}.within(number_from_zero),
-    Field{"target_unbalanced_ratio", &SolverState::target_unbalanced_ratio, "1"}.within(number_from_zero),
-    Field{"strain_since_reversal", &SolverState::strain_since_reversal, "1"}.within(number_from_zero),
-    Field{"network_stiffness_ratio", &SolverState::network_stiffness_ratio, "1"}.within(number_from_zero),
-    Field{"constraint_ratio", &SolverState::constraint_ratio, "1"}.within(number_from_zero),
-    Field{"measured_error_factor", &SolverState::measured_error_factor, "1"}.within(number_from_zero),
-    Field{"strain_since_measurement", &SolverState::strain_since_measurement, "1"}.within(number_from_zero),
-    Field{"steps_since_measurement", &SolverState::steps_since_measurement, "1"}.within(number_from_zero),
-    Field{"steps_at_fixed_shape", &SolverState::steps_at_fixed_shape, "1"}.within(number_from_zero),
-    Field{"network_stiffness_Pa", &SolverState::network_stiffness, "Pa"}.within(number_from_zero),
-    Field{"interval_strain", &SolverState::interval_strain, "1"}.within(number_from_zero),
-    Field{"interval_stress_Pa", &SolverState::interval_stress, "Pa"},
-    Field{"unbalanced_ratio", &SolverState::unbalanced_ratio, "1"}.within(number_from_zero),
-    Field{"deferred_stretch", &SolverState::deferred_stretch, "1"},
-    Field{"stress_slope_Pa", &SolverState::stress_slope, "Pa"},
-    Field{"slope_error_Pa", &SolverState::slope_error, "Pa"}.within(number_from_zero),
-    Field{"steps_since_scaling", &SolverState::steps_since_scaling, "1"},
-    Field{"scaled_mass", &SolverState::scaled_mass, "N/m", Rows::per_grain_or_none}.within(positive_number),
-    Field{"scaled_inverse_inertia", &SolverState::scaled_inverse_inertia, "1/(N m)", Rows::per_grain_or_none}.within(
-        positive_number),
-    Field{"servo_strain", &SolverState::servo_strain, "1"},
-    Field{"servo_rate_1_s", &SolverState::servo_rate, "1/s"},
-    Field{"reference_contact_force_N", &SolverState::reference_contact_force, "N"},
-    Field{"reference_overlap_m", &SolverState::reference_overlap, "m"},
-    Field{"reference_pressure_Pa", &SolverState::reference_pressure, "Pa"},
-    Field{"quasi_static", &SolverState::quasi_static, "1"},
-    Field{"last_rate", &SolverState::last_rate, "1/s or 1/step"},
-    Field{"last_step", &SolverState::last_step, "s or step"}.within(number_from_zero),
-    Field{"mean_velocity", &SolverState::mean_velocity, "m/s or m/step"},
-    Field{"mean_spin_rad_s", &SolverState::mean_spin, "rad/s"},
+    Part{"list", &SolverState::list},
+    Part{"last_step", &SolverState::last_step},
+    Part{"masses", &SolverState::masses},
+    Part{"control", &SolverState::control},
+    Part{"servo", &SolverState::servo},
+    Part{"reference", &SolverState::reference},
     Field{"grain_steps", &SolverState::grain_steps, "1"},
-    Field{"list_builds", &SolverState::list_builds, "1"},
     Field{"memory_order", &SolverState::memory_order, "1", Rows::per_grain_or_none},
     Part{"energy_balance", &SolverState::energy_balance},
 };

@@ -47,7 +47,7 @@ ReferencePath reference_path(const protocol::Protocol& protocol, const Specimen&
 // Errors of single increments: each from a state of the best-resolved path, with the deformation that the path made.
 //
 // The error of an increment is |sigma - sigma_r|, Frobenius norm, where sigma_r is the reference's answer: the same
-// increment from the same state with the reference settings, at dt = 0 then relaxed at fixed cell.
+// increment from the same state with the reference settings, in quasi-static loading then relaxed at fixed cell.
 
 /// How far the reference's answers are relaxed.
 struct Relaxation {
@@ -66,7 +66,7 @@ struct Opening {
 /// One increment from a state.
 struct Made {
   Matrix3 stress = Matrix3::Zero();  ///< Cauchy, Pa
-  double estimate = 0;               ///< Pa, of the error, as the last call gives it (Report); dt > 0: NaN
+  double estimate = 0;               ///< Pa, of the error, as the last call gives it (Report); at a rate: NaN
   double allowed = 0;                ///< Pa, the same of the error that the tolerances allow
   double seconds = 0;                ///< processor time of the calls, opening and relaxation left out
   double grain_steps = 0;            ///< of them

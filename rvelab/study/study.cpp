@@ -33,11 +33,11 @@ Rows rows_of(const Study& study) {
   return rows;
 }
 
-/// Steps of a physical loading are compared over the same time only.
+/// Steps of loading at a rate are compared over the same time only.
 void expect_same_loading(const protocol::Protocol& point, const protocol::Protocol& reference,
                          const std::string& name) {
   const protocol::LoadingSettings &a = point.loading, &b = reference.loading;
-  if (a.physical == b.physical && a.rate == b.rate && a.inertial_number == b.inertial_number) return;
+  if (a.at_rate == b.at_rate && a.rate == b.rate && a.inertial_number == b.inertial_number) return;
   throw InputError(name +
                    ": the loading ([loading] mode, rate_1_s, inertial_number) is not that of the reference, and "
                    "increments are compared at one rate; allowed: the same loading; give it to --reference too, or "

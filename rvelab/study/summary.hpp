@@ -19,7 +19,7 @@ struct ErrorSummary {
 /// exceed, and the largest.
 ErrorSummary summary_of(std::vector<double> errors);
 
-/// Quality of the error estimates. NaN: there are none (dt > 0).
+/// Quality of the error estimates. NaN: there are none (at a rate).
 struct EstimateSummary {
   double median_over_error = 0;  ///< of estimate over error
   double covered = 0;            ///< share of the increments whose error is at most the estimate

@@ -111,7 +111,7 @@ TEST_CASE("100,000 calls with detours: trials reverted, repeated, older tokens a
     }
     CHECK(equal);
     CHECK(replayed > wanted / 20);
-    const auto lists = host.state(straight).state.list_builds;
+    const auto lists = host.state(straight).state.list.builds;
     CHECK(lists > std::uint64_t(wanted) / 5000);
     CHECK(Rve(host.state(winding)).save() == Rve(host.state(straight)).save());
   }

@@ -35,7 +35,7 @@ TEST_CASE("a run at a rate makes no estimate, and one that is complete took no t
   const Workplace here;
   here.import_packing("dense_p20");
   const std::string test = "run biaxial --specimen S.h5 --set stage.compression.to_strain=0.001 --json";
-  const Outcome made = here.run(test + " --set loading.mode=physical --set loading.inertial_number=1e-2");
+  const Outcome made = here.run(test + " --set loading.mode=at_rate --set loading.inertial_number=1e-2");
   INFO(made.errors);
   REQUIRE(made.code == 0);
   CHECK(made.output.find("mean_error_estimate") == std::string::npos);

@@ -120,7 +120,7 @@ TEST_CASE("mistakes in the command of a study are told in one line that names ke
   expect_mistake(here.run(some + "--vary solver.time_step_factor=0.5,2"), "solver.time_step_factor=2: ");
   expect_mistake(here.run(some + "--vary solver.skin="), "--vary solver.skin= has no values; allowed: KEY=v1,v2");
   expect_mistake(here.run(some + "--vary solver.skin=0.1 --vary solver.skin=0.2"), "varies solver.skin twice");
-  expect_mistake(here.run(some + "--vary loading.mode=quasi_static,physical"), "loading.mode=physical: ");
+  expect_mistake(here.run(some + "--vary loading.mode=quasi_static,at_rate"), "loading.mode=at_rate: ");
   expect_mistake(here.run("study " + small_test + "--vary solver.skin=0.1"), "no reference is given");
   expect_mistake(here.run("study biaxial --reference solver.skin=0.1"), "no specimen is given");
   expect_mistake(here.run("study biaxial none.h5 --reference solver.skin=0.1"), "none.h5");

@@ -16,9 +16,9 @@ inline double energy_in(const Rve& rve, const Matrix3& rate = Matrix3::Zero()) {
   const Network network = rve.network();
   double kinetic = kinetic_energy(network);
   const SolverState state = rve.specimen().state;
-  if (!state.quasi_static && state.last_step > 0) {
+  if (state.last_step.loading == Loading::at_rate && state.last_step.length > 0) {
     Rve next(rve);
-    next.apply(rate * state.last_step, state.last_step);
+    next.apply(rate * state.last_step.length, state.last_step.length);
     kinetic = 0.5 * (kinetic + kinetic_energy(next.network()));
   }
   return kinetic + elastic_energy(network);

@@ -37,7 +37,7 @@ struct Refused {
 };
 
 /// The solver says of itself that what it returns is not what was asked for.
-inline bool flagged(const Report& report) { return !report.target_held || !report.quasi_static; }
+inline bool flagged(const Report& report) { return !report.target_held || !report.in_equilibrium; }
 
 /// A message that says what to do or what is allowed, not only what is wrong.
 bool names_remedy(const std::string& message);

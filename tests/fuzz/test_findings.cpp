@@ -121,11 +121,11 @@ TEST_CASE("a strain increment per sub-step out of all proportion leaves an incre
     for (const double pace : {1e-322, 1e-6, 1e300}) {
       CAPTURE(target, pace);
       Specimen specimen = nine_grains();
-      specimen.state.strain_per_step = pace;
-      specimen.state.target_unbalanced_ratio = target;
+      specimen.state.control.strain_per_step = pace;
+      specimen.state.control.target_unbalanced_ratio = target;
       Matrix3 increment = Matrix3::Zero();
       if (pace > 1)
-        specimen.state.deferred_stretch(1, 1) = 1.0087890625;
+        specimen.state.control.deferred.stretch(1, 1) = 1.0087890625;
       else
         increment(1, 1) = 1e-4;
       Rve rve(specimen);
@@ -141,10 +141,10 @@ TEST_CASE("a strain increment per sub-step out of all proportion leaves an incre
 // Who looked at the grains made it: 1e7 sub-steps and more.
 TEST_CASE("a deferred stretch of more than a sub-step is refused by name") {
   Specimen specimen = nine_grains();
-  specimen.state.strain_per_step = 1e-6;
-  specimen.state.deferred_stretch(1, 1) = 1 + 0.9e-6;
+  specimen.state.control.strain_per_step = 1e-6;
+  specimen.state.control.deferred.stretch(1, 1) = 1 + 0.9e-6;
   CHECK_NOTHROW(Rve(specimen).network());
-  specimen.state.deferred_stretch(1, 1) = 1 + 1.1e-6;
+  specimen.state.control.deferred.stretch(1, 1) = 1 + 1.1e-6;
   CHECK_THAT(input_error([&] { Rve{specimen}; }), Contains("strain_per_step = 1e-06"));
 }
 

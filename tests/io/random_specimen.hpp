@@ -171,10 +171,9 @@ class RandomFill {
   }
   void put(Shape& value) { value = Shape(bits_() % 2); }
   void put(Law& value) { value = Law(bits_() % 4); }
-  void put(Slip& value) { value = Slip(bits_() % 3); }
-  void put(Dashpot& value) { value = Dashpot(bits_() % 5); }
-  void put(HertzRadius& value) { value = HertzRadius(bits_() % 2); }
-  void put(LocalDampingForm& value) { value = LocalDampingForm(bits_() % 2); }
+  template <class Choice>
+  requires std::is_enum_v<Choice>
+  void put(Choice& value) { value = Choice(bits_() % std::size(Named<Choice>::names)); }
   void put(Vector3& value) {
     for (int k = 0; k < 3; ++k) put(value[k]);
   }
@@ -285,9 +284,9 @@ inline Specimen random_bits(unsigned seed, std::size_t grain_count = 17, std::si
   grains.semi_minor.resize(grain_count);
   for (auto* vectors : {&grains.position, &grains.velocity, &grains.spin, &grains.orientation})
     vectors->resize(grain_count);
-  specimen.state.list_positions.resize(grain_count);
-  specimen.state.scaled_mass.resize(grain_count);
-  specimen.state.scaled_inverse_inertia.resize(grain_count);
+  specimen.state.list.positions.resize(grain_count);
+  specimen.state.masses.mass.resize(grain_count);
+  specimen.state.masses.inverse_inertia.resize(grain_count);
   specimen.state.memory_order.resize(grain_count);
   specimen.contacts.resize(contact_count);
   specimen.materials.resize(3);
@@ -329,7 +328,7 @@ inline Specimen random_specimen(unsigned seed, std::size_t grain_count = 17, std
         material.*each.value = std::min(each.parameter.allowed.high, random.within({0.1, 1e9}));
   }
   s.solver.collision_steps = 5 + below(100);
-  s.state.deferred_stretch = Matrix3::Identity();
+  s.state.control.deferred.stretch = Matrix3::Identity();
   std::iota(s.state.memory_order.rbegin(), s.state.memory_order.rend(), 0);
 
   std::set<std::tuple<std::int32_t, std::int32_t, Image>> pairs;

@@ -53,7 +53,7 @@ TEST_CASE("an imported packing has the stress that was recorded with it") {
     }
     CHECK(s.grains.size() == meta(name)["n_particles"]);
     CHECK(s.contacts.size() == meta(name)["n_contacts"]);
-    CHECK(s.state.reference_pressure == 1e5);
+    CHECK(s.state.reference.pressure == 1e5);
   }
 }
 

@@ -250,9 +250,9 @@ TEST_CASE("grains have masses, ids that ascend and a place in the cell; lists ha
   CHECK_THAT(refusal(2, [](Specimen& s) { s.grains.spin.pop_back(); }), Contains("/grains/spin has 16 rows"));
   CHECK_THAT(refusal(2, [](Specimen& s) { s.grains.orientation.resize(17, Vector3::UnitX()); }),
              Contains("/grains/orientation has 17 rows"));
-  CHECK_THAT(refusal(2, [](Specimen& s) { s.state.list_positions.pop_back(); }),
-             Contains("/state/list_positions_m has 16 rows"));
-  CHECK_THAT(refusal(2, [](Specimen& s) { s.state.scaled_mass.clear(); }), Contains("/state/scaled_mass has 0 rows"));
+  CHECK_THAT(refusal(2, [](Specimen& s) { s.state.list.positions.pop_back(); }),
+             Contains("/state/list/positions_m has 16 rows"));
+  CHECK_THAT(refusal(2, [](Specimen& s) { s.state.masses.mass.clear(); }), Contains("/state/masses/mass has 0 rows"));
   CHECK_THAT(refusal(2, [](Specimen& s) { s.state.memory_order[0] = s.state.memory_order[1]; }),
              Contains("/state/memory_order is no permutation"));
 }

@@ -185,10 +185,10 @@ TEST_CASE("fluctuations carry stress and energy at a rate, none when quasi-stati
   for (GrainState& grain : network.grains) grain.mass = 2, grain.inertia = 0.5;
   network.grains[0].velocity = {3, 0, 0};
   network.grains[1].spin = {0, 0, 4};
-  network.quasi_static = true;
+  network.loading = Loading::quasi_static;
   CHECK(reynolds_stress(network) == Matrix3::Zero());
   CHECK(kinetic_energy(network) == 0);
-  network.quasi_static = false;
+  network.loading = Loading::at_rate;
   const Matrix3 stress = reynolds_stress(network);
   CHECK(stress(1, 1) == Approx(-2 * 9 / network.cell.volume()));
   CHECK(stress(0, 0) == Approx(0).margin(1e-12));

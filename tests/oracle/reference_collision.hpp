@@ -65,7 +65,7 @@ inline Specimen collision_specimen(const nlohmann::json& record) {
     s.grains.spin.push_back(vector_from(sphere.at("w")));
   }
   s.materials = {m};
-  s.state.quasi_static = false;
+  s.state.last_step.loading = Loading::at_rate;
   return s;
 }
 

@@ -18,8 +18,8 @@ Specimen colliding(double kt = 0, Law law = Law::linear_stiffness, double fricti
   const double ratio = (0.2 * 0.1) / (0.15 * 0.105);
   s.grains.velocity = {Vector3(0.5, 0.1, 0), Vector3(-0.5, -0.1, 0) * ratio};
   s.grains.spin = {Vector3(0, 0, 1), Vector3(0, 0, -2)};
-  s.state.quasi_static = false;
-  s.state.has_reference = false;
+  s.state.last_step.loading = Loading::at_rate;
+  s.state.list.built = false;
   return s;
 }
 

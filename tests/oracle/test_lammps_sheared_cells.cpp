@@ -32,7 +32,7 @@ Specimen start_of(const std::string& name) {
   s.damping.dashpot = Dashpot::coefficient;
   s.damping.normal_coefficient = 20;
   s.solver.fixed_time_step = time_step;
-  s.state.quasi_static = false;
+  s.state.last_step.loading = Loading::at_rate;
   const RecordedTable start("lammps/sheared/" + name + "_start.csv");
   for (std::size_t row = 0; row < start.rows(); ++row) {
     s.grains.id.push_back(std::int64_t(start.at(row, "id")));

@@ -74,8 +74,8 @@ Specimen in_basis(Specimen s, const Eigen::Matrix3i& basis) {
     for (int k = 0; k < 3; ++k) c.image[std::size_t(k)] = int(std::lround(n[k]));
   }
   // Not to be reduced before the path begins.
-  s.state.has_reference = true;
-  s.state.list_lattice = s.cell.lattice;
+  s.state.list.built = true;
+  s.state.list.lattice = s.cell.lattice;
   return s;
 }
 
@@ -239,7 +239,7 @@ TEST_CASE("a change of lattice basis changes the stress by no more than round-of
   CHECK(difference(path_of(Rve(other)), dense_path()) < 1e-10 * p);
   // The same, reduced on opening.
   Specimen anew = other;
-  anew.state.has_reference = false;
+  anew.state.list.built = false;
   CHECK(difference(path_of(Rve(anew)), dense_path()) < 1e-10 * p);
 }
 
@@ -253,7 +253,7 @@ TEST_CASE("an exchange of the cell vectors changes no bit under strain along the
   other.cell.lattice = Vector3(s.cell.lattice(1, 1), s.cell.lattice(0, 0), s.cell.lattice(2, 2)).asDiagonal();
   for (std::size_t g = 0; g < s.grains.size(); ++g)
     other.grains.position[g] = other.cell.rotation.transpose() * s.grains.position[g];
-  other.state.list_lattice = other.cell.lattice;
+  other.state.list.lattice = other.cell.lattice;
   Rve first(s), second(other);
   for (int k = 0; k < path_length; ++k) {
     const Matrix3 step = gradient(1e-5, 0, 0, -4e-5);

@@ -56,8 +56,8 @@ Specimen in_lattice_basis(Specimen s, const Eigen::Matrix3i& basis) {
   s.cell.lattice = (frame.transpose() * vectors).triangularView<Eigen::Upper>();
   s.cell.rotation = frame;
   for (Vector3& x : s.grains.position) x = frame.transpose() * x;
-  s.state.has_reference = true;
-  s.state.list_lattice = s.cell.lattice;
+  s.state.list.built = true;
+  s.state.list.lattice = s.cell.lattice;
   return s;
 }
 

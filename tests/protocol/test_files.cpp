@@ -71,7 +71,7 @@ TEST_CASE("Every protocol runs through all its stages") {
     CAPTURE(file);
     protocol::Protocol protocol = protocol::read_protocol(file, {"test.pressure_Pa=20e3"});
     for (protocol::Stage& stage : protocol.stages) shorten(stage);
-    const bool physical = protocol.loading.physical;
+    const bool physical = protocol.loading.at_rate;
     // Large shear brings its contacts; those of 3D otherwise start at their own pressure.
     if (protocol.dimension == 3) {
       for (protocol::Stage& stage : protocol.stages) {

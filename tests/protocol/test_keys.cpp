@@ -24,7 +24,7 @@ name = "all"
 dimension = 3
 pressure_Pa = 1e5
 [loading]
-mode = "physical"
+mode = "at_rate"
 rate_1_s = 0.1
 [specimen]
 file = "S.h5"

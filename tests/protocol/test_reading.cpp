@@ -43,7 +43,7 @@ TEST_CASE("What a protocol leaves out has the documented defaults") {
   CHECK(protocol.name == "biaxial");
   CHECK(protocol.pressure == 20e3);
   CHECK(protocol.uses_pressure);
-  CHECK_FALSE(protocol.loading.physical);
+  CHECK_FALSE(protocol.loading.at_rate);
   CHECK(protocol.loading.held_tolerance == 0.005);
   REQUIRE(protocol.stages.size() == 2);
   CHECK(protocol.stages[0].name == "isotropic");
@@ -89,7 +89,7 @@ name = "biaxial"
 presure_Pa = 20e3
 pressure_Pa = 20e3
 [loadings]
-mode = "physical"
+mode = "at_rate"
 [contact]
 slop = "consistent"
 [[stage]]
@@ -164,9 +164,9 @@ TEST_CASE("Keys that contradict each other are refused") {
     CHECK(lines(message) == 1);
     CHECK(contains(message, part));
   };
-  refused(biaxial_text + "[loading]\nmode = \"physical\"\nrate_1_s = 0.1\ninertial_number = 1e-3\n", "contradicts");
+  refused(biaxial_text + "[loading]\nmode = \"at_rate\"\nrate_1_s = 0.1\ninertial_number = 1e-3\n", "contradicts");
   refused(biaxial_text + "[loading]\nrate_1_s = 0.1\n", "contradicts loading.mode = \"quasi_static\"");
-  refused(biaxial_text + "[loading]\nmode = \"physical\"\n", "needs a rate");
+  refused(biaxial_text + "[loading]\nmode = \"at_rate\"\n", "needs a rate");
   refused(biaxial_text + "lateral = \"constant_volume\"\nlateral_pressure_Pa = 1e4\n", "contradicts lateral");
   refused(biaxial_text + "[[stage]]\nkind = \"simple_shear\"\nto_strain = 0.1\nnormal_pressure_Pa = 1e4\n",
           "contradicts normal");
@@ -232,22 +232,23 @@ TEST_CASE("A stiffness that a test overrides parts the specimen from masses that
   specimen.cell.dimension = 2;
   specimen.materials.resize(1);
   specimen.materials[0].young_modulus = 8e8;
-  specimen.state.steps_since_scaling = 3;
-  specimen.state.scaled_mass = specimen.state.scaled_inverse_inertia = {1.0, 2.0};
+  specimen.state.masses.in_use = true;
+  specimen.state.masses.steps = 3;
+  specimen.state.masses.mass = specimen.state.masses.inverse_inertia = {1.0, 2.0};
   const auto overridden = [&](const std::string& line) {
     return protocol::with_overrides(protocol::parse_protocol(biaxial_text + "[material]\n" + line + "\n", "t"),
                                     specimen)
-        .state;
+        .state.masses;
   };
   for (const char* same : {"friction = 0.3", "young_modulus_Pa = 8e8", "density_kg_m3 = 2000"}) {
     INFO(same);
-    CHECK(overridden(same).steps_since_scaling == 3);
-    CHECK(overridden(same).scaled_mass == specimen.state.scaled_mass);
+    CHECK(overridden(same).steps == 3);
+    CHECK(overridden(same).mass == specimen.state.masses.mass);
   }
   for (const char* other : {"young_modulus_Pa = 8e10", "stiffness_ratio = 0.7", "rolling_stiffness = 2"}) {
     INFO(other);
-    CHECK(overridden(other).steps_since_scaling < 0);
-    CHECK(overridden(other).scaled_mass.empty());
+    CHECK(!overridden(other).in_use);
+    CHECK(overridden(other).mass.empty());
   }
 }
 

@@ -173,7 +173,7 @@ TEST_CASE("a relaxation of several slices is gone on with in its middle") {
 TEST_CASE("physical loading goes on with its rate and its velocities") {
   const Specimen specimen = reference_specimen("dense_p20");
   const protocol::Protocol protocol = protocol_of(
-      "[test]\nname = \"fast\"\n[loading]\nmode = \"physical\"\ninertial_number = 2e-3\n"
+      "[test]\nname = \"fast\"\n[loading]\nmode = \"at_rate\"\ninertial_number = 2e-3\n"
       "[[stage]]\nkind = \"simple_shear\"\nto_strain = 0.004\n"
       "[[stage]]\nkind = \"compression\"\nto_strain = 0.001\nlateral = \"constant_volume\"\n");
   std::vector<Stop> stops;

@@ -139,7 +139,7 @@ TEST_CASE("A flow of simple shear is simple shear, and any flow keeps its expone
   }
   // F = exp(s G) of a triangular G has exponentials on its diagonal.
   const protocol::TestRun mixed = run_stages(
-      "[loading]\nmode = \"physical\"\nrate_1_s = 2\n"
+      "[loading]\nmode = \"at_rate\"\nrate_1_s = 2\n"
       "[[stage]]\nkind = \"flow\"\ngradient = {xy = 1, xx = -0.02}\nto_strain = 0.01\n",
       specimen);
   const Matrix3& f = mixed.result.records.back().deformation_gradient;
@@ -223,7 +223,7 @@ TEST_CASE("Oedometer and probes have the same moduli at small strain, 2 %") {
 
 TEST_CASE("A record measures what is asked for and nothing else; the parts of the stress add up") {
   const protocol::TestRun run = run_stages(
-      "[loading]\nmode = \"physical\"\nrate_1_s = 5\n"
+      "[loading]\nmode = \"at_rate\"\nrate_1_s = 5\n"
       "[output]\nquantities = [\"contact_stress_Pa\", \"reynolds_stress_Pa\", \"fabric\", \"kinetic_energy_J\"]\n"
       "[[stage]]\nkind = \"simple_shear\"\nto_strain = 0.004\n",
       reference_specimen("dense_p20"));

@@ -106,7 +106,7 @@ TEST_CASE("Increments keep below their estimate, and 35 of 36 to their tolerance
         const Response response = rve.apply(size * direction, 0);
         const double error = (response.stress - resolved_stress(s, size * direction)).norm();
         CHECK(error <= response.report.error_estimate);
-        CHECK(response.report.quasi_static);
+        CHECK(response.report.in_equilibrium);
         ++increments;
         kept += error <= response.report.allowed_error;
       }
@@ -214,7 +214,7 @@ TEST_CASE("Constraints are those of the contacts that hold, over the motions of 
     add_grain(s, {0.25 * spacing, (-0.5 + 1.0 / 3) * std::sqrt(0.75) * spacing, 0}, 1e-5);
     Rve rve(s);
     rve.apply(gradient(0, shear, 0, 0), 0);
-    return rve.specimen().state.constraint_ratio;
+    return rve.specimen().state.control.constraint_ratio;
   };
   CHECK(ratio(1e6, 1e-7) == Approx(2).epsilon(1e-4));
   CHECK(ratio(0, 1e-7) == Approx(1.5));
@@ -244,7 +244,7 @@ TEST_CASE("Of packings of low friction and of wide Hertz spheres most increments
 
 TEST_CASE("An increment that takes a specimen apart ends after a bounded number of sub-steps", "[solver]") {
   const Specimen s = packed_grains(Shape::disc, 80, 2, 0.05);
-  const double overlap = Rve(s).specimen().state.reference_overlap / 6e-3;  // mean diameter 6 mm
+  const double overlap = Rve(s).specimen().state.reference.overlap / 6e-3;  // mean diameter 6 mm
   long apart = 0;
   for (const double size : {1e-3, 3e-3, 1e-2}) {
     Rve rve(s);
@@ -270,7 +270,7 @@ TEST_CASE("What a rest has shown is a part of the state: trials, copies and rest
     CHECK(straight.save() == restored.save());
     CHECK(straight.save() == tried.save());
     const SolverState state = straight.specimen().state;
-    measured = measured || (k > 3 && state.measured_error_factor > 0 && state.steps_since_measurement == 0);
+    measured = measured || (k > 3 && state.control.lag.error_factor > 0 && state.control.lag.steps == 0);
     const std::vector<std::byte> bytes = restored.save();
     restored = Rve(reference_specimen("dense"));
     restored.restore(bytes);
@@ -293,11 +293,11 @@ TEST_CASE("A relaxation cut into calls is the same relaxation, the stop of grain
   Rve whole(s), cut(s);
   whole.relax(1e-40, 21'000);
   for (int k = 0; k < 21; ++k) cut.relax(1e-40, 1000);
-  CHECK(whole.specimen().state.steps_at_fixed_shape == 21'000);
+  CHECK(whole.specimen().state.control.steps_at_fixed_shape == 21'000);
   CHECK(whole.save() == cut.save());
   // Once the cell moves, the count begins anew.
   whole.apply(gradient(1e-6, 0, 0, 0), 0);
-  CHECK(whole.specimen().state.steps_at_fixed_shape == 0);
+  CHECK(whole.specimen().state.control.steps_at_fixed_shape == 0);
 }
 
 TEST_CASE("Stricter tolerances take more sub-steps and err less", "[solver]") {
@@ -358,7 +358,7 @@ TEST_CASE("Under stress control the larger tolerance, times the pressure, is kep
     const double pressure = -0.5 * (f.stress(0, 0) + f.stress(1, 1));
     CHECK(f.last.allowed_error == Approx(tolerance * pressure));
     CHECK(f.last.tolerance_met);
-    CHECK(f.unbalanced <= 3 * tolerance / 10);  // what Report::quasi_static allows
+    CHECK(f.unbalanced <= 3 * tolerance / 10);  // what Report::in_equilibrium allows
     CHECK(std::abs(f.stress(1, 1) - truth(1, 1)) <= f.last.allowed_error);
     CHECK(f.substeps > substeps);
     substeps = f.substeps;

@@ -82,7 +82,7 @@ TEST_CASE("Tiny increments are no identity: they add up, save and restore bitwis
 TEST_CASE("A specimen that was never loaded is an equilibrium, and so is a pause", "[solver]") {
   Rve rve(reference_specimen("dense"));
   const Response first = rve.apply(Matrix3::Zero(), 0);
-  CHECK(first.report.quasi_static);
+  CHECK(first.report.in_equilibrium);
   CHECK(first.report.allowed_error == Approx(1e-4 * 1e5).epsilon(0.01));
   CHECK(first.report.error_estimate < first.report.allowed_error);
   rve.apply(1e-4 * biaxial_step, 0);

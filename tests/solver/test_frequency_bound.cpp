@@ -153,7 +153,7 @@ Specimen moving(Specimen start, double speed) {
   std::mt19937_64 generator(7);
   std::normal_distribution<double> normal;
   const int d = start.cell.dimension;
-  start.state.quasi_static = false;
+  start.state.last_step.loading = Loading::at_rate;
   for (Vector3& velocity : start.grains.velocity)
     velocity = speed * Vector3(normal(generator), normal(generator), d == 3 ? normal(generator) : 0);
   return start;

@@ -33,7 +33,7 @@ Specimen spinning_needles() {
       s.grains.velocity.back() = 0.02 * Vector3(uniform(), uniform(), 0);
       s.grains.spin.back() = Vector3(0, 0, 3 * uniform());
     }
-  s.state.quasi_static = false;
+  s.state.last_step.loading = Loading::at_rate;
   return s;
 }
 
@@ -100,11 +100,11 @@ TEST_CASE("No overlapping pair of needles is missing from the list while they ar
   Opened opened(spinning_needles());
   const Model& f = opened.model;
   Assembly& a = opened.now;
-  begin_loading(f, a, Loading::physical);
+  begin_loading(f, a, Loading::at_rate);
   const double step = 2e-3;
   std::size_t touching = 0, missing = 0, turned = 0;
   for (int k = 0; k < 1000; ++k) {
-    advance(f, a, {split_increment(a.cell, step * flow), 1, step, Loading::physical});
+    advance(f, a, {split_increment(a.cell, step * flow), 1, step, Loading::at_rate});
     const std::set<ListedPair> listed = opened.listed();
     for (const ListedPair& pair : opened.candidates(0)) {
       if (!(opened.overlap(pair) > 0)) continue;
@@ -113,27 +113,27 @@ TEST_CASE("No overlapping pair of needles is missing from the list while they ar
     }
   }
   for (std::size_t g = 0; g < f.size(); ++g) turned += std::abs(a.orientation(f, g)[1]) > 0.5;
-  CAPTURE(flow, touching, turned, a.state.list_builds);
+  CAPTURE(flow, touching, turned, a.state.list.builds);
   CHECK(missing == 0);
   CHECK(touching > 300);
   CHECK(turned > f.size() / 4);     // what would not turn would need no care
-  CHECK(a.state.list_builds > 10);  // and a list made at every step would be whole anyway
-  CHECK(a.state.list_builds < 400);
+  CHECK(a.state.list.builds > 10);  // and a list made at every step would be whole anyway
+  CHECK(a.state.list.builds < 400);
 }
 
 TEST_CASE("Needles are listed where they are nearer than the skin, and seldom where they are not") {
   Opened opened(spinning_needles());
   const Model& f = opened.model;
   Assembly& a = opened.now;
-  begin_loading(f, a, Loading::physical);
+  begin_loading(f, a, Loading::at_rate);
   for (int k = 0; k < 5; ++k) {
     const Matrix3 flow = gradient(-0.15, 0.5, 0, -0.15);
-    advance(f, a, {split_increment(a.cell, 0.4 * flow), 200, 2e-3, Loading::physical});
+    advance(f, a, {split_increment(a.cell, 0.4 * flow), 200, 2e-3, Loading::at_rate});
     rebuild(f, a);
     const std::set<ListedPair> listed = opened.listed();
     std::size_t by_circles = 0, near = 0, missing = 0;
-    for (const ListedPair& pair : opened.candidates(a.state.list_skin)) {
-      const bool is_near = opened.overlap(pair) > -a.state.list_skin;
+    for (const ListedPair& pair : opened.candidates(a.state.list.skin)) {
+      const bool is_near = opened.overlap(pair) > -a.state.list.skin;
       ++by_circles;
       near += is_near;
       missing += is_near && listed.count(pair) == 0;

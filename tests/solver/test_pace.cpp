@@ -61,15 +61,15 @@ TEST_CASE("A slow specimen fits its skin down, and its list stays complete", "[s
     for (double r : now.grains.radius) sum += r;
     return sum / double(now.grains.size());
   }();
-  CHECK(now.state.list_skin < 0.1 * mean_radius);
-  CHECK(now.state.list_skin >= 0.01 * mean_radius * (1 - 1e-12));
+  CHECK(now.state.list.skin < 0.1 * mean_radius);
+  CHECK(now.state.list.skin >= 0.01 * mean_radius * (1 - 1e-12));
   // Every touching pair of all images is a contact, and no other.
   const auto touching = brute_force_pairs(now.cell, now.grains.position, now.grains.radius, 0);
   const Network network = rve.network();
   REQUIRE(network.contacts.size() == touching.size());
   // The way on does not depend on the skin: sums of forces do not know the list.
   Specimen wide = now;
-  wide.state.list_skin = 0.3 * mean_radius;
+  wide.state.list.skin = 0.3 * mean_radius;
   Rve other(wide);
   for (int k = 0; k < 5; ++k) {
     const Matrix3 a = rve.apply(gradient(0, 1e-5, 0, 0), 0).stress, b = other.apply(gradient(0, 1e-5, 0, 0), 0).stress;

@@ -28,7 +28,7 @@ TEST_CASE("A large cell has the same bits on any team of threads", "[solver]") {
       const auto saved = rve.save();
       rve.restore(saved);
       rve.apply(gradient(-1e-3, 6e-3, 0, -1e-3), 12 * rve.critical_time_step());
-      CHECK(rve.specimen().state.list_builds >= 3);  // the lists of the way are the team's too
+      CHECK(rve.specimen().state.list.builds >= 3);  // the lists of the way are the team's too
       return rve.save();
     };
     const auto alone = end_state(nullptr);
@@ -70,7 +70,7 @@ TEST_CASE("Pairs that are passed over come to touch, and to part again, as if th
     for (int step = 0; step < 150; ++step) {
       for (Assembly* a : {&passing, &computing}) {
         StepSums sums;
-        sweep_grains(f.kernels.dynamic[1], c, arrays_of(f, *a), arrays_of(a->pairs), long(a->mass.size()), nullptr,
+        sweep_grains(f.kernels.at_rate[1], c, arrays_of(f, *a), arrays_of(a->pairs), long(a->mass.size()), nullptr,
                      sums);
         sweep_pairs(f.kernels.pairs, c, arrays_of(a->pairs), a->rows.data(), long(a->pairs.padded()), nullptr);
         gather_pairs_that_touch(a->pairs);

@@ -128,12 +128,12 @@ TEST_CASE("every mistake of a grid point is refused before anything runs", "[stu
   // A key that is right by itself and does not go with the others at one point.
   CHECK_THAT(refusal([](auto& s) { s.grid = {{"loading.rate_1_s", {"1"}}}; }), Contains("loading.rate_1_s=1: "));
   CHECK_THAT(refusal([](auto& s) {
-               s.grid = {{"loading.mode", {"quasi_static", "physical"}}};
+               s.grid = {{"loading.mode", {"quasi_static", "at_rate"}}};
                s.settings = {};
              }),
-             Contains("loading.mode=physical: "));
+             Contains("loading.mode=at_rate: "));
   CHECK_THAT(refusal([](auto& s) {
-               s.settings = {"loading.mode=physical", "loading.rate_1_s=1"};
+               s.settings = {"loading.mode=at_rate", "loading.rate_1_s=1"};
                s.grid = {{"loading.rate_1_s", {"1", "2"}}};
              }),
              Contains("loading.rate_1_s=2: the loading"));

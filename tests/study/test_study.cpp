@@ -121,7 +121,7 @@ TEST_CASE("an increment of the coarsest records is made by all, in parts where r
 TEST_CASE("at a rate an increment takes the time that the path took; the reference's settings make it again bit by bit",
           "[study]") {
   study::Study study = small_study();
-  study.settings = {"loading.mode=physical", "loading.rate_1_s=0.5"};
+  study.settings = {"loading.mode=at_rate", "loading.rate_1_s=0.5"};
   study.reference = {"solver.time_step_factor=0.1"};
   study.grid = {{"solver.time_step_factor", {"0.1", "0.7"}}};
   study.repeats = 0;

@@ -111,7 +111,7 @@ void gather_and_integrate(benchmark::State& state, const std::string& name, Kern
   const GrainArrays grains = arrays_of(o.model, o.assembly);
   StepSums sums;
   for (auto _ : state)
-    sweep_grains(o.model.kernels.dynamic[std::size_t(damping)], o.constants, grains, arrays,
+    sweep_grains(o.model.kernels.at_rate[std::size_t(damping)], o.constants, grains, arrays,
                  long(o.assembly.mass.size()), nullptr, sums);
   o.assembly.rows = rows;
   per_grain(state, o);
@@ -152,7 +152,7 @@ void look_at_balance(benchmark::State& state, const std::string& name) {
 
 void look_at_stress(benchmark::State& state, const std::string& name) {
   Opened& o = packing(name);
-  for (auto _ : state) benchmark::DoNotOptimize(contact_moment(o.model, o.assembly));
+  for (auto _ : state) benchmark::DoNotOptimize(contact_virial(o.model, o.assembly));
   per_grain(state, o);
 }
 
@@ -188,7 +188,7 @@ int compare_widths() {
         if (of_pairs)
           sweep_pairs(of.pairs, o.constants, pairs, o.assembly.rows.data(), long(o.assembly.pairs.padded()), nullptr);
         else
-          sweep_grains(of.dynamic[std::size_t(KernelDamping::vector)], o.constants, grains, pairs,
+          sweep_grains(of.at_rate[std::size_t(KernelDamping::vector)], o.constants, grains, pairs,
                        long(o.assembly.mass.size()), nullptr, sums);
       }
       return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -30,7 +30,7 @@ def steady_state(stage):
         raise ValueError(f"{stage.path}: no simple shear one way; give records of `rvelab run mu_I`")
     if not np.median(stage.column("inertial_number")[1:]) > 0:
         raise ValueError(f"{stage.path}: the inertial number is 0: the shear was quasi-static; run it with "
-                         "loading.mode=physical, as mu_I does")
+                         "loading.mode=at_rate, as mu_I does")
     a, b = ("xyz".index(letter) for letter in stage.axis)
     steady = stage.strain > 0.4 * stage.strain[-1]
     if steady.sum() < 2 * BLOCKS:

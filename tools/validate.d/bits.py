@@ -38,12 +38,12 @@ TESTS = [
     ("simple shear, quasi-static", "simple_shear", DENSE, ["stage.shear.to_strain=0.05"]),
     ("simple shear, spheres", "simple_shear", "yade/hertz", ["stage.shear.to_strain=0.01"]),
     ("simple shear at a rate", "simple_shear", DENSE,
-     ["stage.shear.to_strain=0.02", "loading.mode=physical", "loading.inertial_number=1e-2"]),
+     ["stage.shear.to_strain=0.02", "loading.mode=at_rate", "loading.inertial_number=1e-2"]),
     ("spheres at a rate, restitution", "simple_shear", "yade/hertz",
-     ["stage.shear.to_strain=0.005", "loading.mode=physical", "loading.inertial_number=1e-2",
+     ["stage.shear.to_strain=0.005", "loading.mode=at_rate", "loading.inertial_number=1e-2",
       "damping.dashpot=restitution", "damping.restitution=0.5"]),
     ("held stress at a rate", "simple_shear_drained", DENSE,
-     ["stage.shear.to_strain=0.01", "loading.mode=physical", "loading.inertial_number=1e-2"]),
+     ["stage.shear.to_strain=0.01", "loading.mode=at_rate", "loading.inertial_number=1e-2"]),
     ("probe", "probe", DENSE, []),
 ]
 

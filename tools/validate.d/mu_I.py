@@ -48,7 +48,7 @@ SHEAR = """
 name = "shear"
 pressure_Pa = 1e4
 [loading]
-mode = "physical"
+mode = "at_rate"
 rate_1_s = {rate:.9g}
 [solver]
 max_overlap_ratio = 0.5
@@ -65,7 +65,7 @@ BIAXIAL = """
 name = "biaxial at a rate"
 pressure_Pa = 1e4
 [loading]
-mode = "physical"
+mode = "at_rate"
 inertial_number = 1e-2
 [[stage]]
 kind = "compression"

@@ -176,7 +176,7 @@ def simple_shear(program, work, recipes, at_rate):
         specimen = packed(program, work, recipe, *number)
         rate = "" if not at_rate else "rate_1_s = 5" if "qu" in recipe else "inertial_number = 0.3"
         begun = time.monotonic()
-        records, heights, errors, _ = run(program, work, specimen, mode="physical" if at_rate else "quasi_static", rate=rate,
+        records, heights, errors, _ = run(program, work, specimen, mode="at_rate" if at_rate else "quasi_static", rate=rate,
                                        kind="simple_shear", strain=1e4 if at_rate else 300, every=1 if at_rate else 0.1, more="")
         seconds = time.monotonic() - begun
         if records is None or errors:
@@ -202,7 +202,7 @@ def pure_shear(program, work, at_rate, recipe="pack_loose", number=400, seeds=5)
         for seed in range(1, seeds + 1):
             size = [f"pack.number={number}"] if number != 400 else []
             specimen = packed(program, work, recipe, *size, f"pack.cell={cell}", f"pack.seed={seed}")
-            records, last, errors, said = run(program, work, specimen, mode="physical" if at_rate else "quasi_static",
+            records, last, errors, said = run(program, work, specimen, mode="at_rate" if at_rate else "quasi_static",
                                         rate="inertial_number = 0.1" if at_rate else "", kind="compression",
                                         strain=1 - np.exp(-2), every=0.0025, more='lateral = "constant_volume"')
             if records is None or errors:

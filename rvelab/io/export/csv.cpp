@@ -162,7 +162,7 @@ std::string meta_of(const Specimen& specimen, std::size_t contacts) {
     meta["hSize"].push_back(row);
   }
   if (dimension == 2) meta["thickness_m"] = specimen.cell.lattice(2, 2);
-  meta["p0_Pa"] = specimen.state.reference_pressure;
+  meta["p0_Pa"] = specimen.state.reference.pressure;
   add_parameters(meta, specimen);
   return meta.dump(1) + "\n";
 }

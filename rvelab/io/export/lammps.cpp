@@ -14,7 +14,7 @@ std::string spaced(const Vector3& vector) { return exact(vector[0]) + " " + exac
 
 /// Fluctuation velocity or spin; those of a quasi-static state are per sub-step and mean nothing elsewhere.
 Vector3 physical(const ExportState& state, const Vector3& velocity) {
-  return state.network.quasi_static ? Vector3(Vector3::Zero()) : velocity;
+  return state.network.loading == Loading::quasi_static ? Vector3(Vector3::Zero()) : velocity;
 }
 
 /// LAMMPS counts atoms from 1: ids are moved up where the smallest is below.

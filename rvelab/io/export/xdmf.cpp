@@ -93,7 +93,7 @@ class Series {
     const Network& network = state.network;
     const Matrix3& turn = network.cell.rotation;
     const Box box(network.cell.lattice);
-    const double physical = network.quasi_static ? 0 : 1;
+    const double physical = network.loading == Loading::quasi_static ? 0 : 1;
     std::vector<double> points, radius, velocity, spin, stress;
     for (const GrainState& grain : network.grains) {
       append(points, turn * box.wrapped(grain.position));

@@ -9,7 +9,7 @@
 namespace rvelab::io {
 
 /// Version of the layout; no other one is read.
-inline constexpr const char* format_version = "2.0";
+inline constexpr const char* format_version = "2.1";
 
 /// Sets the file's attributes `format` and `format_version`.
 void stamp(Hdf5File& file, FileKind kind);

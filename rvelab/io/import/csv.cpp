@@ -269,7 +269,7 @@ Specimen import_csv(const std::string& particles_path, const std::optional<std::
   if (meta) {
     expect_rows(table, meta->particles, "n_particles", meta_json_path);
     if (meta->cell) take_cell(vectors, source, *meta->cell, *meta_json_path, "its hSize");
-    specimen.state.reference_pressure = meta->reference_pressure;
+    specimen.state.reference.pressure = meta->reference_pressure;
   }
   if (options.material_path) {
     keys::read_material_file(*options.material_path, specimen);

@@ -21,12 +21,12 @@ struct Coefficients {
 };
 
 template <Shape shape, class Of>
-Moments moments_of(const Model& f, const Assembly& a, const Of& coefficients) {
+Moments moments_of(const Model& model, const Assembly& assembly, const Of& coefficients) {
   constexpr int D = dimension_of(shape), pairs = D == 2 ? 3 : 6;
   constexpr int place[6] = {0, 1, D == 2 ? 5 : 2, 3, 4, 5};  // of the products of two components of n
   // Monomials of n of degree four and two; the servo renews its gain every few dozen sub-steps.
   double four[D][pairs] = {}, two[pairs] = {};
-  each_touching<shape>(f, a, [&](std::size_t p, const PairPlace& at) {
+  each_touching<shape>(model, assembly, [&](std::size_t p, const PairPlace& at) {
     const Branch& b = at.branch;
     const auto [kn, kt] = coefficients(p, at);
     const double part = (kn - kt) / (b.x * b.x + b.y * b.y + b.z * b.z);
@@ -61,7 +61,7 @@ Matrix6 strain_turn(const Matrix3& rotation) {
 /// sum kn (n b)(n b) + kt (t b)(t b) over contacts whose normal is not along the branch, with symmetric parts of the
 /// dyads: under eps such a contact changes by n . eps b along n and by t . eps b across it. Cell frame, in the plane.
 template <Shape shape, class Of>
-Matrix6 sum_over_outlines(const Model& f, const Assembly& a, const Of& coefficients) {
+Matrix6 sum_over_outlines(const Model& model, const Assembly& assembly, const Of& coefficients) {
   Matrix6 sum = Matrix6::Zero();
   const auto dyad = [](double x, double y, const Branch& b) {
     Vector6 components = Vector6::Zero();
@@ -70,7 +70,7 @@ Matrix6 sum_over_outlines(const Model& f, const Assembly& a, const Of& coefficie
     components[5] = 0.5 * (x * b.y + y * b.x);
     return components;
   };
-  each_touching<shape>(f, a, [&](std::size_t p, const OutlinePlace& at) {
+  each_touching<shape>(model, assembly, [&](std::size_t p, const OutlinePlace& at) {
     const auto [kn, kt] = coefficients(p, at);
     const Vector6 along = dyad(at.normal.x, at.normal.y, at.branch),
                   across = dyad(-at.normal.y, at.normal.x, at.branch);
@@ -80,10 +80,10 @@ Matrix6 sum_over_outlines(const Model& f, const Assembly& a, const Of& coefficie
 }
 
 template <Shape shape, class Of>
-Matrix6 sum_over_round(const Model& f, const Assembly& a, const Of& coefficients) {
+Matrix6 sum_over_round(const Model& model, const Assembly& assembly, const Of& coefficients) {
   // C_ijkl = sum l^2 [(kn - kt) n_i n_j n_k n_l
   //                   + kt/4 (n_i n_k d_jl + n_i n_l d_jk + n_j n_k d_il + n_j n_l d_ik)], see README.md.
-  const Moments m = moments_of<shape>(f, a, coefficients);
+  const Moments m = moments_of<shape>(model, assembly, coefficients);
   constexpr int first[6] = {0, 1, 2, 1, 0, 0}, second[6] = {0, 1, 2, 2, 2, 1};
   Matrix6 stiffness = m.fourth;
   for (int r = 0; r < 6; ++r)
@@ -96,15 +96,15 @@ Matrix6 sum_over_round(const Model& f, const Assembly& a, const Of& coefficients
 }
 
 template <class Of>
-Matrix6 affine_sum(const Model& f, const Assembly& a, const Of& coefficients) {
-  const Matrix6 stiffness = with_shape(f.shape, [&](auto shape) -> Matrix6 {
+Matrix6 affine_sum(const Model& model, const Assembly& assembly, const Of& coefficients) {
+  const Matrix6 stiffness = with_shape(model.shape, [&](auto shape) -> Matrix6 {
     if constexpr (is_round(shape.value))
-      return sum_over_round<shape.value>(f, a, coefficients);
+      return sum_over_round<shape.value>(model, assembly, coefficients);
     else
-      return sum_over_outlines<shape.value>(f, a, coefficients);
+      return sum_over_outlines<shape.value>(model, assembly, coefficients);
   });
-  const Matrix6 turn = strain_turn(a.cell.rotation);
-  return turn.transpose() * stiffness * turn / a.cell.volume();
+  const Matrix6 turn = strain_turn(assembly.cell.rotation);
+  return turn.transpose() * stiffness * turn / assembly.cell.volume();
 }
 
 }  // namespace
@@ -121,22 +121,22 @@ Vector6 strain_components(const Matrix3& m) {
   return e;
 }
 
-Matrix6 affine_stiffness(const Model& f, const Assembly& a) {
-  return with_force(f, [&](auto force) {
-    return affine_sum(f, a, [&](std::size_t p, const auto& at) -> Coefficients {
-      const ContactStiffness k = stiffness_of<decltype(force)>(f, parameters_of(f, a.pairs, p), at.overlap,
-                                                               hertz_radius_ratio(f, a.pairs, p, at));
+Matrix6 affine_stiffness(const Model& model, const Assembly& assembly) {
+  return with_force(model, [&](auto force) {
+    return affine_sum(model, assembly, [&](std::size_t p, const auto& at) -> Coefficients {
+      const ContactStiffness k = stiffness_of<decltype(force)>(
+          model, parameters_of(model, assembly.pairs, p), at.overlap, hertz_radius_ratio(model, assembly.pairs, p, at));
       return {k.normal, k.tangential};
     });
   });
 }
 
-Matrix6 affine_viscosity(const Model& f, const Assembly& a) {
-  if (f.damping.dashpot == Dashpot::none) return Matrix6::Zero();
-  return affine_sum(f, a, [&](std::size_t p, const auto& at) -> Coefficients {
-    const double root = root_overlap(at.overlap, hertz_radius_ratio(f, a.pairs, p, at));
-    const double c = dashpot_now(f, a.pairs.cn[p], root);
-    return {c, f.damping.tangential_ratio * c};
+Matrix6 affine_viscosity(const Model& model, const Assembly& assembly) {
+  if (model.damping.dashpot == Dashpot::none) return Matrix6::Zero();
+  return affine_sum(model, assembly, [&](std::size_t p, const auto& at) -> Coefficients {
+    const double root = root_overlap(at.overlap, hertz_radius_ratio(model, assembly.pairs, p, at));
+    const double c = dashpot_now(model, assembly.pairs.cn[p], root);
+    return {c, model.damping.tangential_ratio * c};
   });
 }
 

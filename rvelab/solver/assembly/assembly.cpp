@@ -11,43 +11,43 @@
 
 namespace rvelab {
 
-Vector3 Assembly::position(const Model& f, std::size_t g) const {
-  const double* row = rows.data() + g * f.row_length();
-  return {row[0], row[1], f.dimension() == 2 ? 0.0 : row[2]};
+Vector3 Assembly::position(const Model& model, std::size_t g) const {
+  const double* row = rows.data() + g * model.row_length();
+  return {row[0], row[1], model.dimension() == 2 ? 0.0 : row[2]};
 }
 
-Vector3 Assembly::velocity(const Model& f, std::size_t g) const {
-  const double* v = rows.data() + g * f.row_length() + f.velocity_offset();
-  return {v[0], v[1], f.dimension() == 2 ? 0.0 : v[2]};
+Vector3 Assembly::velocity(const Model& model, std::size_t g) const {
+  const double* v = rows.data() + g * model.row_length() + model.velocity_offset();
+  return {v[0], v[1], model.dimension() == 2 ? 0.0 : v[2]};
 }
 
-Vector3 Assembly::spin(const Model& f, std::size_t g) const {
-  const double* row = rows.data() + g * f.row_length();
-  return f.dimension() == 2 ? Vector3(0, 0, row[4]) : Vector3(row[8], row[9], row[10]);
+Vector3 Assembly::spin(const Model& model, std::size_t g) const {
+  const double* row = rows.data() + g * model.row_length();
+  return model.dimension() == 2 ? Vector3(0, 0, row[4]) : Vector3(row[8], row[9], row[10]);
 }
 
-void Assembly::set_velocity(const Model& f, std::size_t g, const Vector3& v, const Vector3& w) {
-  double* row = rows.data() + g * f.row_length();
-  for (int k = 0; k < f.dimension(); ++k) row[f.velocity_offset() + k] = v[k];
-  if (f.dimension() == 2) {
+void Assembly::set_velocity(const Model& model, std::size_t g, const Vector3& v, const Vector3& w) {
+  double* row = rows.data() + g * model.row_length();
+  for (int k = 0; k < model.dimension(); ++k) row[model.velocity_offset() + k] = v[k];
+  if (model.dimension() == 2) {
     row[4] = w[2];
   } else {
     for (int k = 0; k < 3; ++k) row[8 + k] = w[k];
   }
 }
 
-Vector3 Assembly::orientation(const Model& f, std::size_t g) const {
-  const double* row = rows.data() + g * f.row_length();
+Vector3 Assembly::orientation(const Model& model, std::size_t g) const {
+  const double* row = rows.data() + g * model.row_length();
   return {row[5], row[6], 0};
 }
 
-void complete_row(const Model& f, std::size_t g, double* row) {
-  with_shape(f.shape, [&](auto is) {
+void complete_row(const Model& model, std::size_t g, double* row) {
+  with_shape(model.shape, [&](auto is) {
     using By = typename decltype(is)::By;
     if constexpr (By::round)
-      By::complete_row(f.radius[g], row);
+      By::complete_row(model.radius[g], row);
     else
-      Outline<decltype(is)::value>::complete_row(own_of<By>(f.own, g), row);
+      Outline<decltype(is)::value>::complete_row(own_of<By>(model.own, g), row);
   });
 }
 
@@ -55,92 +55,91 @@ namespace {
 
 /// The lengths of grains that are not round, and what the grain loop makes of them.
 template <class By>
-void take_lengths(const Grains& grains, Model& f) {
-  each_own_column([](const auto&, auto& to, const auto& from) { to = from; }, f.own, grains);
-  f.outer_radius = reach_of(f.shape, grains);
+void take_lengths(const Grains& grains, Model& model) {
+  each_own_column([](const auto&, auto& to, const auto& from) { to = from; }, model.own, grains);
+  model.outer_radius = reach_of(model.shape, grains);
   std::vector<double> first(padded_to_lanes(grains.size()), 0.0), second = first;
   for (std::size_t g = 0; g < grains.size(); ++g) {
     const TurnValues values = By::turn_values(own_of<By>(grains, g));
     first[g] = values.first;
     second[g] = values.second;
   }
-  f.turn_first = std::move(first);
-  f.turn_second = std::move(second);
+  model.turn_first = std::move(first);
+  model.turn_second = std::move(second);
 }
 
-/// The masses that a specimen at dt = 0 brings; the arrays of the state are empty while it is open.
-void take_scaled_inertia(Assembly& a) {
-  SolverState& state = a.state;
-  const std::size_t n = state.scaled_mass.size();
-  if (!state.quasi_static || n == 0) state.steps_since_scaling = -1;  // a file of an earlier version, or dt > 0
-  if (state.steps_since_scaling >= 0) {
-    for (std::size_t g = 0; g < n; ++g) {
-      a.mass[g] = state.scaled_mass[g];
-      a.inverse_mass[g] = 1 / state.scaled_mass[g];
-      a.inverse_inertia[g] = state.scaled_inverse_inertia[g];
-    }
+/// The scaled masses that a specimen brings; the arrays of the state are empty while it is open.
+void take_scaled_inertia(Assembly& assembly) {
+  ScaledMasses& masses = assembly.state.masses;
+  if (assembly.state.last_step.loading == Loading::at_rate || masses.mass.empty()) masses = {};
+  for (std::size_t g = 0; masses.in_use && g < masses.mass.size(); ++g) {
+    assembly.mass[g] = masses.mass[g];
+    assembly.inverse_mass[g] = 1 / masses.mass[g];
+    assembly.inverse_inertia[g] = masses.inverse_inertia[g];
   }
-  state.scaled_mass = state.scaled_inverse_inertia = {};
+  masses.mass = masses.inverse_inertia = {};
 }
 
 }  // namespace
 
-void open_assembly(const Specimen& specimen, Model& f, Assembly& a) {
+void open_assembly(const Specimen& specimen, Model& model, Assembly& assembly) {
   check_specimen(specimen);
   const std::size_t n = specimen.grains.size(), padded = padded_to_lanes(n);
   std::vector<std::int32_t> order = specimen.state.memory_order;
   if (order.empty() && n >= least_ordered_grains) order = space_filling_order(specimen.cell, specimen.grains.position);
   const Specimen arranged = order.empty() ? Specimen() : in_memory_order(specimen, order);
   const Specimen& s = order.empty() ? specimen : arranged;
-  f.shape = s.shape;
-  f.materials = s.materials;
-  f.contact = s.contact;
-  f.damping = s.damping;
-  f.options = s.solver;
-  f.id = s.grains.id;
-  f.material = s.grains.material;
-  f.radius = s.grains.radius;
-  f.thickness = s.cell.lattice(2, 2);
+  model.shape = s.shape;
+  model.materials = s.materials;
+  model.contact = s.contact;
+  model.damping = s.damping;
+  model.options = s.solver;
+  model.id = s.grains.id;
+  model.material = s.grains.material;
+  model.radius = s.grains.radius;
+  model.thickness = s.cell.lattice(2, 2);
   const auto kernels_with = [&](bool dashpot) {
-    return kernels_for({f.shape, f.contact.law, f.contact.rolling, f.contact.slip, dashpot, f.contact.hertz_radius});
+    return kernels_for({model.shape, model.contact.law, model.contact.rolling, model.contact.slip, dashpot,
+                        model.contact.hertz_radius});
   };
-  f.kernels = kernels_with(f.damping.dashpot != Dashpot::none);
-  f.quasi_static_kernels = f.damping.dashpot == Dashpot::none ? f.kernels : kernels_with(false);
-  with_shape(f.shape, [&](auto is) {
+  model.kernels = kernels_with(model.damping.dashpot != Dashpot::none);
+  model.quasi_static_kernels = model.damping.dashpot == Dashpot::none ? model.kernels : kernels_with(false);
+  with_shape(model.shape, [&](auto is) {
     using By = typename decltype(is)::By;
-    if constexpr (!By::round) take_lengths<By>(s.grains, f);
+    if constexpr (!By::round) take_lengths<By>(s.grains, model);
   });
-  f.largest_reach = *std::max_element(f.reach().begin(), f.reach().end());
-  f.mean_radius = std::accumulate(f.radius.begin(), f.radius.end(), 0.0) / double(n);
-  f.largest_skin = f.options.skin * f.mean_radius;
-  f.min_height = f.options.min_height > 0 ? f.options.min_height : 2 * f.largest_reach;
+  model.largest_reach = *std::max_element(model.reach().begin(), model.reach().end());
+  model.mean_radius = std::accumulate(model.radius.begin(), model.radius.end(), 0.0) / double(n);
+  model.largest_skin = model.options.skin * model.mean_radius;
+  model.min_height = model.options.min_height > 0 ? model.options.min_height : 2 * model.largest_reach;
   std::vector<double> mass(n), inertia(n);
-  a.cell = s.cell;
-  a.state = s.state;
-  a.state.memory_order = std::move(order);
-  if (!(a.state.list_skin > 0 && a.state.list_skin < f.largest_skin)) a.state.list_skin = f.largest_skin;
-  a.rows.assign(padded * f.row_length(), 0.0);
-  for (Buffer* b : {&a.mass, &a.inverse_mass, &a.inverse_inertia}) b->assign(padded, 0.0);
+  assembly.cell = s.cell;
+  assembly.state = s.state;
+  assembly.state.memory_order = std::move(order);
+  if (!(assembly.state.list.skin > 0 && assembly.state.list.skin < model.largest_skin))
+    assembly.state.list.skin = model.largest_skin;
+  assembly.rows.assign(padded * model.row_length(), 0.0);
+  for (Buffer* b : {&assembly.mass, &assembly.inverse_mass, &assembly.inverse_inertia}) b->assign(padded, 0.0);
   for (std::size_t g = 0; g < n; ++g) {
-    const Material& m = f.materials[f.material[g]];
-    mass[g] = m.density * f.volume_of(g);
-    inertia[g] = f.inertia_of(g, mass[g]);
-    double* row = a.rows.data() + g * f.row_length();
-    for (int k = 0; k < f.dimension(); ++k) row[k] = s.grains.position[g][k];
-    if (!f.round()) {
+    const Material& m = model.materials[model.material[g]];
+    mass[g] = m.density * model.volume_of(g);
+    inertia[g] = model.inertia_of(g, mass[g]);
+    double* row = assembly.rows.data() + g * model.row_length();
+    for (int k = 0; k < model.dimension(); ++k) row[k] = s.grains.position[g][k];
+    if (!model.round()) {
       row[5] = s.grains.orientation[g][0];
       row[6] = s.grains.orientation[g][1];
     }
-    complete_row(f, g, row);
-    a.set_velocity(f, g, s.grains.velocity[g], s.grains.spin[g]);
+    complete_row(model, g, row);
+    assembly.set_velocity(model, g, s.grains.velocity[g], s.grains.spin[g]);
   }
-  f.mass = std::move(mass);
-  f.inertia = std::move(inertia);
-  take_scaled_inertia(a);
+  model.mass = std::move(mass);
+  model.inertia = std::move(inertia);
+  take_scaled_inertia(assembly);
 
   try {
-    list_with(f, s.contacts, a);
-    if (!a.state.has_reference) rebuild(f, a);
+    list_with(model, s.contacts, assembly);
+    if (!assembly.state.list.built) rebuild(model, assembly);
   } catch (const IncrementFailed& error) {
     throw InputError(std::string("specimen: ") + error.what());
   } catch (const CellError& error) {
@@ -148,38 +147,38 @@ void open_assembly(const Specimen& specimen, Model& f, Assembly& a) {
   }
 }
 
-Specimen close_assembly(const Model& f, const Assembly& a) {
+Specimen close_assembly(const Model& model, const Assembly& assembly) {
   Specimen s;
-  s.shape = f.shape;
-  s.cell = a.cell;
-  s.materials = f.materials;
-  s.contact = f.contact;
-  s.damping = f.damping;
-  s.solver = f.options;
-  s.state = a.state;
-  s.grains.id = f.id;
-  s.grains.radius = f.radius;
-  s.grains.material = f.material;
-  for (std::size_t g = 0; g < f.size(); ++g) {
-    s.grains.position.push_back(a.position(f, g));
-    s.grains.velocity.push_back(a.velocity(f, g));
-    s.grains.spin.push_back(a.spin(f, g));
+  s.shape = model.shape;
+  s.cell = assembly.cell;
+  s.materials = model.materials;
+  s.contact = model.contact;
+  s.damping = model.damping;
+  s.solver = model.options;
+  s.state = assembly.state;
+  s.grains.id = model.id;
+  s.grains.radius = model.radius;
+  s.grains.material = model.material;
+  for (std::size_t g = 0; g < model.size(); ++g) {
+    s.grains.position.push_back(assembly.position(model, g));
+    s.grains.velocity.push_back(assembly.velocity(model, g));
+    s.grains.spin.push_back(assembly.spin(model, g));
   }
-  if (!f.round()) {
-    each_own_column([](const auto&, auto& to, const auto& from) { to = from; }, s.grains, f.own);
-    for (std::size_t g = 0; g < f.size(); ++g) s.grains.orientation.push_back(a.orientation(f, g));
+  if (!model.round()) {
+    each_own_column([](const auto&, auto& to, const auto& from) { to = from; }, s.grains, model.own);
+    for (std::size_t g = 0; g < model.size(); ++g) s.grains.orientation.push_back(assembly.orientation(model, g));
   }
-  if (a.state.steps_since_scaling >= 0) {
-    const bool released = a.mass.empty();
-    for (std::size_t g = 0; g < f.size(); ++g) {
-      const double* row = a.rows.data() + g * std::size_t(f.row_length());
-      s.state.scaled_mass.push_back(released ? row[released_mass(f.shape)] : a.mass[g]);
-      s.state.scaled_inverse_inertia.push_back(released ? row[released_inverse_inertia(f.shape)]
-                                                        : a.inverse_inertia[g]);
+  if (assembly.state.masses.in_use) {
+    const bool released = assembly.mass.empty();
+    for (std::size_t g = 0; g < model.size(); ++g) {
+      const double* row = assembly.rows.data() + g * std::size_t(model.row_length());
+      s.state.masses.mass.push_back(released ? row[released_mass(model.shape)] : assembly.mass[g]);
+      s.state.masses.inverse_inertia.push_back(released ? row[released_inverse_inertia(model.shape)]
+                                                        : assembly.inverse_inertia[g]);
     }
   }
-  s.contacts = contacts_of(f, a.pairs);
-  return in_id_order(std::move(s), a.state.memory_order);
+  s.contacts = contacts_of(model, assembly.pairs);
+  return in_id_order(std::move(s), assembly.state.memory_order);
 }
 
 PairArrays arrays_of(PairTable& t) {
@@ -208,16 +207,16 @@ PairArrays arrays_of(PairTable& t) {
   return p;
 }
 
-GrainArrays arrays_of(const Model& f, Assembly& a) {
-  return {a.rows.data(),
-          a.mass.data(),
-          a.inverse_mass.data(),
-          a.inverse_inertia.data(),
-          a.pairs.slot_begin.data(),
-          a.pairs.gathered.data(),
-          a.pairs.tasks.data(),
-          f.turn_first.data(),
-          f.turn_second.data()};
+GrainArrays arrays_of(const Model& model, Assembly& assembly) {
+  return {assembly.rows.data(),
+          assembly.mass.data(),
+          assembly.inverse_mass.data(),
+          assembly.inverse_inertia.data(),
+          assembly.pairs.slot_begin.data(),
+          assembly.pairs.gathered.data(),
+          assembly.pairs.tasks.data(),
+          model.turn_first.data(),
+          model.turn_second.data()};
 }
 
 }  // namespace rvelab

@@ -33,13 +33,13 @@ struct Model {
   double largest_reach = 0;                     ///< m, of the circles around the grains
   double largest_skin = 0;                      ///< m
   double min_height = 0;                        ///< m
-  Kernels kernels;                              ///< as the specimen states them, for dt > 0
-  Kernels quasi_static_kernels;                 ///< without the dashpot, whose time a sub-step of dt = 0 is not
+  Kernels kernels;                              ///< as the specimen states them, at a rate
+  Kernels quasi_static_kernels;  ///< without the dashpot, whose time a sub-step of quasi-static loading is not
   /// 1 without rolling stiffness; sqrt(4 kt r^2/(4 kt r^2 + 2 kr)) of typical grains: how much slower than the contacts
   /// grains answer that slip about a stiff rolling spring, once their inertia is scaled for that spring.
   double slip_frequency_ratio = 1;
-  /// Of the constraint ratio at rest, what is left if contacts that roll count by grip_of their rolling friction: a
-  /// rolling spring that yields at once holds as little as a contact of little friction.
+  /// Factor on the constraint ratio at rest where contacts roll: a rolling spring counts by grip_of(rolling friction),
+  /// not by grip_of(friction), since one that yields at once holds as little as a contact of little friction.
   double rolling_constraint_factor = 1;
   /// Grains of one size of all materials have contacts of one stiffness, within a factor of ten.
   bool alike_contacts = true;
@@ -52,7 +52,9 @@ struct Model {
   std::size_t size() const { return id.size(); }
   /// The team where the assembly is large enough for one, else null.
   Workers* sharing() const { return size() >= least_shared_grains ? team : nullptr; }
-  const Kernels& kernels_at(bool quasi_static) const { return quasi_static ? quasi_static_kernels : kernels; }
+  const Kernels& kernels_at(Loading loading) const {
+    return loading == Loading::quasi_static ? quasi_static_kernels : kernels;
+  }
   bool radius_from_curvature() const { return contact.hertz_radius == HertzRadius::curvature; }
   /// Whether contacts keep sqrt(overlap) of the last sub-step.
   bool stores_root_overlap() const {
@@ -106,7 +108,7 @@ std::size_t bytes_of(const PairTable& pairs);
 /// What a trial began with and what seldom changes in one (trial.hpp): put here when something else takes its place.
 struct Replaced {
   PairTable list;
-  std::vector<Vector3> list_positions;  ///< SolverState::list_positions
+  std::vector<Vector3> list_positions;  ///< ListState::positions
   bool list_taken = false;
   Buffer mass, inverse_mass, inverse_inertia;
   bool masses_taken = false;
@@ -127,16 +129,16 @@ struct TrialLink {
 struct Assembly {
   Cell cell;
   Buffer rows;                                 ///< padded grain rows (kernels/configuration.hpp)
-  Buffer mass, inverse_mass, inverse_inertia;  ///< those in use: physical, or scaled at dt = 0
+  Buffer mass, inverse_mass, inverse_inertia;  ///< those in use: physical, or scaled in quasi-static loading
   PairTable pairs;
   SolverState state;
   TrialLink trial;
 
-  Vector3 position(const Model& f, std::size_t g) const;
-  Vector3 velocity(const Model& f, std::size_t g) const;  ///< fluctuation, in the units of the mode in use
-  Vector3 spin(const Model& f, std::size_t g) const;
-  Vector3 orientation(const Model& f, std::size_t g) const;  ///< of a grain that is not round
-  void set_velocity(const Model& f, std::size_t g, const Vector3& v, const Vector3& w);
+  Vector3 position(const Model& model, std::size_t g) const;
+  Vector3 velocity(const Model& model, std::size_t g) const;  ///< fluctuation, in the units of the mode in use
+  Vector3 spin(const Model& model, std::size_t g) const;
+  Vector3 orientation(const Model& model, std::size_t g) const;  ///< of a grain that is not round
+  void set_velocity(const Model& model, std::size_t g, const Vector3& v, const Vector3& w);
 };
 
 /// Puts into a grain row what does not move but turn with the grain, from the axis that stands there
@@ -188,8 +190,9 @@ UpperTriangle upper_triangle(const Matrix3& matrix);
 /// Velocity gradient of the cell (upper triangular, 1/s) and the mean spin that goes with it.
 void set_rate(const Matrix3& rate, StepConstants& constants);
 
-/// (1/V)-less sum of F_on_j (x) b over the pairs, N m, cell frame, from force rows and present positions.
-Matrix3 contact_moment(const Model& model, const Assembly& assembly);
+/// Sum of f (x) b over contacts, f the force on j, b the branch from i to j: minus the stress times the volume, N m.
+/// Cell frame, from force rows and present positions.
+Matrix3 contact_virial(const Model& model, const Assembly& assembly);
 
 /// Contact force on j of listed pair p as last computed, N.
 Vector3 force_of(const Model& model, const PairTable& pairs, std::size_t p);

@@ -13,11 +13,11 @@ namespace rvelab {
 namespace {
 
 /// Elastic stiffnesses and energies of a touching contact, from its pair parameters and history.
-void set_elastic(const Model& f, const PairTable& pairs, std::size_t p, double radius_ratio, ContactState& c) {
-  const PairParameters q = parameters_of(f, pairs, p);
-  with_force(f, [&](auto force) {
+void set_elastic(const Model& model, const PairTable& pairs, std::size_t p, double radius_ratio, ContactState& c) {
+  const PairParameters q = parameters_of(model, pairs, p);
+  with_force(model, [&](auto force) {
     using Force = decltype(force);
-    const ContactStiffness k = stiffness_of<Force>(f, q, c.overlap, radius_ratio);
+    const ContactStiffness k = stiffness_of<Force>(model, q, c.overlap, radius_ratio);
     c.normal_stiffness = k.normal;
     c.tangential_stiffness = k.tangential;
     c.rolling_stiffness = k.rolling;
@@ -25,16 +25,16 @@ void set_elastic(const Model& f, const PairTable& pairs, std::size_t p, double r
     c.elastic_energy = Force::normal_energy(q.kn, c.overlap, root_overlap(c.overlap, radius_ratio), q.law_constant);
   });
   double spring = 0;
-  for (int k = 0; k < f.tangential_components(); ++k) spring += pairs.tangential[k][p] * pairs.tangential[k][p];
+  for (int k = 0; k < model.tangential_components(); ++k) spring += pairs.tangential[k][p] * pairs.tangential[k][p];
   if (c.tangential_stiffness > 0) c.elastic_energy += 0.5 * spring / c.tangential_stiffness;
   if (c.rolling_stiffness > 0) c.elastic_energy += 0.5 * c.rolling_moment.squaredNorm() / c.rolling_stiffness;
 }
 
 /// Normal and arms: the contact point halves the overlap.
-void set_arms(const Model& f, const PairPlace& at, ContactState& c) {
+void set_arms(const Model& model, const PairPlace& at, ContactState& c) {
   c.normal = c.branch / at.length;
-  c.arm_i = (f.radius[std::size_t(c.i)] - 0.5 * at.overlap) * c.normal;
-  c.arm_j = -((f.radius[std::size_t(c.j)] - 0.5 * at.overlap) * c.normal);
+  c.arm_i = (model.radius[std::size_t(c.i)] - 0.5 * at.overlap) * c.normal;
+  c.arm_j = -((model.radius[std::size_t(c.j)] - 0.5 * at.overlap) * c.normal);
 }
 void set_arms(const Model&, const OutlinePlace& at, ContactState& c) {
   c.normal = {at.normal.x, at.normal.y, 0};
@@ -43,9 +43,9 @@ void set_arms(const Model&, const OutlinePlace& at, ContactState& c) {
   c.arm_j = -((at.reach_j - 0.5 * at.overlap) * c.normal + at.turn_j * across);
 }
 
-void add_torques(const Model& f, const ContactState& c, const Vector3& force, Network& net) {
+void add_torques(const Model& model, const ContactState& c, const Vector3& force, Network& net) {
   GrainState &i = net.grains[std::size_t(c.i)], &j = net.grains[std::size_t(c.j)];
-  if (!f.round()) {
+  if (!model.round()) {
     i.torque -= c.arm_i.cross(force) + c.rolling_moment;
     j.torque += c.arm_j.cross(force) + c.rolling_moment;
     return;
@@ -57,7 +57,7 @@ void add_torques(const Model& f, const ContactState& c, const Vector3& force, Ne
 
 /// A touching contact; `at` is its place.
 template <class Place>
-ContactState state_of(const Model& f, const PairTable& pairs, std::size_t p, const Place& at) {
+ContactState state_of(const Model& model, const PairTable& pairs, std::size_t p, const Place& at) {
   ContactState c;
   c.i = pairs.i[p];
   c.j = pairs.j[p];
@@ -65,47 +65,47 @@ ContactState state_of(const Model& f, const PairTable& pairs, std::size_t p, con
   c.branch = {at.branch.x, at.branch.y, at.branch.z};
   c.length = at.length;
   c.overlap = at.overlap;
-  set_arms(f, at, c);
-  const Vector3 force = force_of(f, pairs, p);
+  set_arms(model, at, c);
+  const Vector3 force = force_of(model, pairs, p);
   c.normal_force = force.dot(c.normal);
   c.tangential_force = force - c.normal_force * c.normal;
   c.rolling_moment.setZero();
-  if (f.contact.rolling) {
-    if (f.dimension() == 2)
+  if (model.contact.rolling) {
+    if (model.dimension() == 2)
       c.rolling_moment[2] = pairs.moment[0][p];
     else
       c.rolling_moment = {pairs.moment[0][p], pairs.moment[1][p], pairs.moment[2][p]};
     c.moment_cap = pairs.moment_cap[p];
   }
   c.friction = pairs.friction[p];
-  set_elastic(f, pairs, p, hertz_radius_ratio(f, pairs, p, at), c);
+  set_elastic(model, pairs, p, hertz_radius_ratio(model, pairs, p, at), c);
   return c;
 }
 
 template <Shape shape>
-void add_contacts(const Model& f, const Assembly& a, Network& net) {
-  each_touching<shape>(f, a, [&](std::size_t p, const auto& at) {
-    const ContactState c = state_of(f, a.pairs, p, at);
-    const Vector3 force = force_of(f, a.pairs, p);
+void add_contacts(const Model& model, const Assembly& assembly, Network& net) {
+  each_touching<shape>(model, assembly, [&](std::size_t p, const auto& at) {
+    const ContactState c = state_of(model, assembly.pairs, p, at);
+    const Vector3 force = force_of(model, assembly.pairs, p);
     net.grains[std::size_t(c.i)].resultant -= force;
     net.grains[std::size_t(c.j)].resultant += force;
-    add_torques(f, c, force, net);
+    add_torques(model, c, force, net);
     net.contacts.push_back(c);
   });
 }
 
 template <Shape shape>
-bool some_contact_must_slip(const Model& f, const Assembly& a) {
+bool some_contact_must_slip(const Model& model, const Assembly& assembly) {
   constexpr double most = 1 + 1e-6;  // a sliding contact is at its limit, give or take round-off
-  const PairPlaces<shape> pair(f, a);
-  return std::any_of(a.pairs.order.begin(), a.pairs.order.end(), [&](std::int32_t place) {
+  const PairPlaces<shape> pair(model, assembly);
+  return std::any_of(assembly.pairs.order.begin(), assembly.pairs.order.end(), [&](std::int32_t place) {
     const auto p = std::size_t(place);
     const auto at = pair(p);
     if (!(at.overlap > 0)) return false;
-    const ContactState c = state_of(f, a.pairs, p, at);
+    const ContactState c = state_of(model, assembly.pairs, p, at);
     const double pressing = most * std::abs(c.pressing_force);
     return c.tangential_force.norm() > c.friction * pressing ||
-           (f.contact.rolling && c.rolling_moment.norm() > c.moment_cap * pressing);
+           (model.contact.rolling && c.rolling_moment.norm() > c.moment_cap * pressing);
   });
 }
 
@@ -120,7 +120,7 @@ struct Held {
   bool slides, rolls;
 };
 template <Shape shape, class Force, class Place>
-Held held_by(const Model& f, const PairTable& pairs, std::size_t p, const Place& at) {
+Held held_by(const Model& model, const PairTable& pairs, std::size_t p, const Place& at) {
   constexpr int D = dimension_of(shape);
   const double* force = pairs.force.data() + p * std::size_t(force_row_length(D));
   const double fz = D == 2 ? 0.0 : force[2], nx = at.along().x / at.along_length(),
@@ -130,7 +130,7 @@ Held held_by(const Model& f, const PairTable& pairs, std::size_t p, const Place&
   const double pressing = std::abs(Force::pressing_force(normal, law_constant));
   const double tangential = length_of(force[0] - normal * nx, force[1] - normal * ny, fz - normal * nz);
   Held held{at_limit(tangential, pairs.friction[p] * pressing), true};
-  if (!f.contact.rolling) return held;
+  if (!model.contact.rolling) return held;
   const double moment = D == 2 ? std::abs(pairs.moment[0][p])
                                : length_of(pairs.moment[0][p], pairs.moment[D - 2][p], pairs.moment[D - 1][p]);
   held.rolls = at_limit(moment, pairs.moment_cap[p] * pressing);
@@ -139,27 +139,27 @@ Held held_by(const Model& f, const PairTable& pairs, std::size_t p, const Place&
 
 // A first increment asks for it, which may be of four sub-steps: with whole contact states it took more than two.
 template <Shape shape, class Force>
-double constraints_over_motions(const Model& f, const Assembly& a) {
-  const PairPlaces<shape> pair(f, a);
-  const int d = f.dimension(), turns = d == 2 ? 1 : 3;
-  std::vector<int> contacts(f.size(), 0);
+double constraints_over_motions(const Model& model, const Assembly& assembly) {
+  const PairPlaces<shape> pair(model, assembly);
+  const int d = model.dimension(), turns = d == 2 ? 1 : 3;
+  std::vector<int> contacts(model.size(), 0);
   std::vector<std::int32_t> touching;
-  touching.reserve(a.pairs.order.size());
-  for (const std::int32_t place : a.pairs.order) {
+  touching.reserve(assembly.pairs.order.size());
+  for (const std::int32_t place : assembly.pairs.order) {
     const auto p = std::size_t(place);
     if (pair.is_apart(p) || !(pair(p).overlap > 0)) continue;
     touching.push_back(place);
-    ++contacts[std::size_t(a.pairs.i[p])];
-    ++contacts[std::size_t(a.pairs.j[p])];
+    ++contacts[std::size_t(assembly.pairs.i[p])];
+    ++contacts[std::size_t(assembly.pairs.j[p])];
   }
   double constraints = 0, grip = 0, friction = 0, held = grip_of(friction);
   long counted = 0;
   for (const std::int32_t place : touching) {
     const auto p = std::size_t(place);
-    if (contacts[std::size_t(a.pairs.i[p])] < 2 || contacts[std::size_t(a.pairs.j[p])] < 2) continue;
-    const Held by = held_by<shape, Force>(f, a.pairs, p, pair(p));
-    if (a.pairs.friction[p] != friction) {
-      friction = a.pairs.friction[p];
+    if (contacts[std::size_t(assembly.pairs.i[p])] < 2 || contacts[std::size_t(assembly.pairs.j[p])] < 2) continue;
+    const Held by = held_by<shape, Force>(model, assembly.pairs, p, pair(p));
+    if (assembly.pairs.friction[p] != friction) {
+      friction = assembly.pairs.friction[p];
       held = grip_of(friction);
     }
     constraints += 1 + (by.slides ? 0 : (d - 1) * held) + (by.rolls ? 0 : (d - 1) * held);
@@ -168,38 +168,38 @@ double constraints_over_motions(const Model& f, const Assembly& a) {
   }
   if (counted == 0) return 0;
   // Round grains that nothing grips turn as they like.
-  const double turning = f.round() ? grip / double(counted) : 1;
+  const double turning = model.round() ? grip / double(counted) : 1;
   const auto grains = std::count_if(contacts.begin(), contacts.end(), [](int n) { return n >= 2; });
   return constraints / (double(grains) * (d + turns * turning));
 }
 
 }  // namespace
 
-Network network_of(const Model& f, const Assembly& a) {
+Network network_of(const Model& model, const Assembly& assembly) {
   Network net;
-  net.shape = f.shape;
-  net.cell = a.cell;
-  net.model = f.contact;
-  net.reference_contact_force = a.state.reference_contact_force;
-  net.reference_pressure = a.state.reference_pressure;
-  net.quasi_static = a.state.quasi_static;
-  if (!net.quasi_static) net.mean_spin = a.state.mean_spin;
-  net.grains.resize(f.size());
-  for (std::size_t g = 0; g < f.size(); ++g) {
+  net.shape = model.shape;
+  net.cell = assembly.cell;
+  net.model = model.contact;
+  net.reference_contact_force = assembly.state.reference.contact_force;
+  net.reference_pressure = assembly.state.reference.pressure;
+  net.loading = assembly.state.last_step.loading;
+  if (net.loading == Loading::at_rate) net.mean_spin = assembly.state.last_step.mean_spin;
+  net.grains.resize(model.size());
+  for (std::size_t g = 0; g < model.size(); ++g) {
     GrainState& grain = net.grains[g];
-    grain.radius = f.radius[g];
-    grain.mass = f.mass[g];
-    grain.inertia = f.inertia[g];
-    grain.position = a.position(f, g);
-    grain.velocity = a.velocity(f, g) - a.state.mean_velocity;
-    grain.spin = a.spin(f, g);
+    grain.radius = model.radius[g];
+    grain.mass = model.mass[g];
+    grain.inertia = model.inertia[g];
+    grain.position = assembly.position(model, g);
+    grain.velocity = assembly.velocity(model, g) - assembly.state.last_step.mean_velocity;
+    grain.spin = assembly.spin(model, g);
     grain.resultant.setZero();
-    if (f.round()) continue;
-    grain.orientation = a.orientation(f, g);
-    static_cast<OwnValues&>(grain) = own_of(f.shape, f.own, g);
+    if (model.round()) continue;
+    grain.orientation = assembly.orientation(model, g);
+    static_cast<OwnValues&>(grain) = own_of(model.shape, model.own, g);
   }
-  with_shape(f.shape, [&](auto shape) { add_contacts<shape.value>(f, a, net); });
-  return in_id_order(std::move(net), a.state.memory_order);
+  with_shape(model.shape, [&](auto shape) { add_contacts<shape.value>(model, assembly, net); });
+  return in_id_order(std::move(net), assembly.state.memory_order);
 }
 
 double grip_of(double friction) {
@@ -208,15 +208,16 @@ double grip_of(double friction) {
   return friction / (friction + half);
 }
 
-double constraint_ratio(const Model& f, const Assembly& a) {
-  return with_force(f, [&](auto force) {
-    return with_shape(f.shape,
-                      [&](auto shape) { return constraints_over_motions<shape.value, decltype(force)>(f, a); });
+double constraint_ratio(const Model& model, const Assembly& assembly) {
+  return with_force(model, [&](auto force) {
+    return with_shape(model.shape, [&](auto shape) {
+      return constraints_over_motions<shape.value, decltype(force)>(model, assembly);
+    });
   });
 }
 
-bool holds_more_than_friction(const Model& f, const Assembly& a) {
-  return with_shape(f.shape, [&](auto shape) { return some_contact_must_slip<shape.value>(f, a); });
+bool holds_more_than_friction(const Model& model, const Assembly& assembly) {
+  return with_shape(model.shape, [&](auto shape) { return some_contact_must_slip<shape.value>(model, assembly); });
 }
 
 }  // namespace rvelab

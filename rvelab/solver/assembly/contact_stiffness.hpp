@@ -9,15 +9,15 @@
 namespace rvelab {
 
 /// Parameters of a listed pair.
-inline PairParameters parameters_of(const Model& f, const PairTable& pairs, std::size_t p) {
-  const bool rolling = f.contact.rolling;
+inline PairParameters parameters_of(const Model& model, const PairTable& pairs, std::size_t p) {
+  const bool rolling = model.contact.rolling;
   return {pairs.kn[p],
           pairs.kt[p],
           pairs.law_constant.empty() ? 0 : pairs.law_constant[p],
           pairs.friction[p],
           rolling ? pairs.kr[p] : 0,
           rolling ? pairs.moment_cap[p] : 0,
-          f.damping.dashpot != Dashpot::none ? pairs.cn[p] : 0};
+          model.damping.dashpot != Dashpot::none ? pairs.cn[p] : 0};
 }
 
 /// Of one contact now: d f_n/d overlap, N/m; k_t, N/m; k_r, N m; normal dashpot coefficient, N s/m.
@@ -27,38 +27,38 @@ struct ContactStiffness {
 
 /// R*/r* of a listed pair that lies there: 1, but for Hertz's radius from curvature (contact/hertz_curvature.hpp).
 inline double hertz_radius_ratio(const Model&, const PairTable&, std::size_t, const PairPlace&) { return 1; }
-inline double hertz_radius_ratio(const Model& f, const PairTable& pairs, std::size_t p, const OutlinePlace& at) {
-  if (!f.radius_from_curvature()) return 1;
-  return at.hertz_radius_ratio(f.radius[std::size_t(pairs.i[p])], f.radius[std::size_t(pairs.j[p])]);
+inline double hertz_radius_ratio(const Model& model, const PairTable& pairs, std::size_t p, const OutlinePlace& at) {
+  if (!model.radius_from_curvature()) return 1;
+  return at.hertz_radius_ratio(model.radius[std::size_t(pairs.i[p])], model.radius[std::size_t(pairs.j[p])]);
 }
 /// The least and the largest that it can be, however the grains turn: tip to tip and flank to flank.
 struct RadiusRatios {
   double least = 1, largest = 1;
 };
-inline RadiusRatios hertz_radius_ratios(const Model& f, const PairTable& pairs, std::size_t p) {
-  if (!f.radius_from_curvature()) return {};
+inline RadiusRatios hertz_radius_ratios(const Model& model, const PairTable& pairs, std::size_t p) {
+  if (!model.radius_from_curvature()) return {};
   const auto i = std::size_t(pairs.i[p]), j = std::size_t(pairs.j[p]);
-  const Extent at_i = f.extent_of(i), at_j = f.extent_of(j);
-  return {hertz_radius_ratio(f.radius[i], at_i.outer, f.radius[j], at_j.outer),
-          hertz_radius_ratio(f.radius[i], at_i.inner, f.radius[j], at_j.inner)};
+  const Extent at_i = model.extent_of(i), at_j = model.extent_of(j);
+  return {hertz_radius_ratio(model.radius[i], at_i.outer, model.radius[j], at_j.outer),
+          hertz_radius_ratio(model.radius[i], at_i.inner, model.radius[j], at_j.inner)};
 }
 
 /// What laws take for sqrt(overlap), m^0.5.
 inline double root_overlap(double overlap, double radius_ratio) { return std::sqrt(overlap * radius_ratio); }
 
 /// c_n at an overlap whose square root is `root`, N s/m.
-inline double dashpot_now(const Model& f, double cn, double root) {
-  const double power = dashpot_power(f.contact.law, f.damping.dashpot);
+inline double dashpot_now(const Model& model, double cn, double root) {
+  const double power = dashpot_power(model.contact.law, model.damping.dashpot);
   return cn * (power == 0 ? 1.0 : (power == 0.5 ? root : std::sqrt(root)));
 }
 
 /// `Force`: that of the specimen's law (contact/laws.hpp). The overlap is > 0, m.
 template <class Force>
-ContactStiffness stiffness_of(const Model& f, const PairParameters& q, double overlap, double radius_ratio = 1) {
-  const bool dashpot = f.damping.dashpot != Dashpot::none;
+ContactStiffness stiffness_of(const Model& model, const PairParameters& q, double overlap, double radius_ratio = 1) {
+  const bool dashpot = model.damping.dashpot != Dashpot::none;
   const double root = Force::needs_root_overlap || dashpot ? root_overlap(overlap, radius_ratio) : 0;
   return {Force::normal_stiffness(q.kn, root), Force::tangential_stiffness(q.kt, root),
-          Force::tangential_stiffness(q.kr, root), dashpot ? dashpot_now(f, q.cn, root) : 0};
+          Force::tangential_stiffness(q.kr, root), dashpot ? dashpot_now(model, q.cn, root) : 0};
 }
 template <class Force>
 double normal_force_of(const PairParameters& q, double overlap, double radius_ratio = 1) {
@@ -68,8 +68,8 @@ double normal_force_of(const PairParameters& q, double overlap, double radius_ra
 
 /// call(Force{}) with the Force of the specimen's law.
 template <class Call>
-auto with_force(const Model& f, const Call& call) {
-  return with_law(f.contact.law, [&](auto law) { return call(typename decltype(law)::Force{}); });
+auto with_force(const Model& model, const Call& call) {
+  return with_law(model.contact.law, [&](auto law) { return call(typename decltype(law)::Force{}); });
 }
 
 }  // namespace rvelab

@@ -27,41 +27,42 @@ void set_rate(const Matrix3& rate, StepConstants& c) {
   c.spin[2] = -0.5 * rate(0, 1);
 }
 
-StepConstants base_constants(const Model& f, const Assembly& a) {
+StepConstants base_constants(const Model& model, const Assembly& assembly) {
   StepConstants c;
-  c.dt = a.state.last_step;
-  c.lattice = upper_triangle(a.cell.lattice);
-  set_rate(a.state.last_rate, c);
-  c.global_viscous = f.damping.global_viscous;
-  c.tangential_ratio = f.damping.tangential_ratio;
-  c.dashpot_quarters = int(4 * dashpot_power(f.contact.law, f.damping.dashpot));
-  c.no_tension = f.damping.no_tension;
-  c.unload_rescale = f.contact.unload_rescale;
+  c.dt = assembly.state.last_step.length;
+  c.lattice = upper_triangle(assembly.cell.lattice);
+  set_rate(assembly.state.last_step.rate, c);
+  c.global_viscous = model.damping.global_viscous;
+  c.tangential_ratio = model.damping.tangential_ratio;
+  c.dashpot_quarters = int(4 * dashpot_power(model.contact.law, model.damping.dashpot));
+  c.no_tension = model.damping.no_tension;
+  c.unload_rescale = model.contact.unload_rescale;
   return c;
 }
 
-void evaluate_forces(const Model& f, Assembly& a) {
-  const StepConstants c = base_constants(f, a);
-  f.kernels_at(a.state.quasi_static).evaluate(c, arrays_of(a.pairs), a.rows.data(), 0, long(a.pairs.padded()), nullptr);
-  gather_pairs_that_touch(a.pairs);
+void evaluate_forces(const Model& model, Assembly& assembly) {
+  const StepConstants c = base_constants(model, assembly);
+  model.kernels_at(assembly.state.last_step.loading)
+      .evaluate(c, arrays_of(assembly.pairs), assembly.rows.data(), 0, long(assembly.pairs.padded()), nullptr);
+  gather_pairs_that_touch(assembly.pairs);
 }
 
-Vector3 force_of(const Model& f, const PairTable& pairs, std::size_t p) {
-  const double* row = pairs.force.data() + p * force_row_length(f.dimension());
-  return {row[0], row[1], f.dimension() == 2 ? 0.0 : row[2]};
+Vector3 force_of(const Model& model, const PairTable& pairs, std::size_t p) {
+  const double* row = pairs.force.data() + p * force_row_length(model.dimension());
+  return {row[0], row[1], model.dimension() == 2 ? 0.0 : row[2]};
 }
 
 namespace {
 
 /// Moment of the pairs at `order` [first, last).
 template <Shape shape>
-Matrix3 moment_of(const Assembly& a, const PairGeometry<shape>& pair, std::size_t first, std::size_t last) {
+Matrix3 moment_of(const Assembly& assembly, const PairGeometry<shape>& pair, std::size_t first, std::size_t last) {
   constexpr int D = dimension_of(shape);
   constexpr std::size_t row = D == 2 ? 4 : 8;
-  const double* force = a.pairs.force.data();
+  const double* force = assembly.pairs.force.data();
   double m[9] = {};
   for (std::size_t k = first; k < last; ++k) {
-    const auto p = std::size_t(a.pairs.order[k]);
+    const auto p = std::size_t(assembly.pairs.order[k]);
     const Branch b = pair.branch(p);
     for (int r = 0; r < D; ++r) {
       m[3 * r] += force[row * p + std::size_t(r)] * b.x;
@@ -75,11 +76,11 @@ Matrix3 moment_of(const Assembly& a, const PairGeometry<shape>& pair, std::size_
 }
 
 template <Shape shape>
-Matrix3 moment_in(const Model& f, const Assembly& a) {
-  const PairGeometry<shape> pair(f, a);
-  std::vector<Matrix3> of_piece(pieces_in(a.pairs.listed));
-  in_pieces(a.pairs.listed, f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
-    of_piece[piece] = moment_of(a, pair, first, last);
+Matrix3 moment_in(const Model& model, const Assembly& assembly) {
+  const PairGeometry<shape> pair(model, assembly);
+  std::vector<Matrix3> of_piece(pieces_in(assembly.pairs.listed));
+  in_pieces(assembly.pairs.listed, model.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
+    of_piece[piece] = moment_of(assembly, pair, first, last);
   });
   Matrix3 sum = Matrix3::Zero();
   for (const Matrix3& piece : of_piece) sum += piece;
@@ -92,16 +93,16 @@ constexpr std::size_t resultant_row = D == 2 ? 3 : 6;
 
 /// Adds what contact p gives to one of its grains.
 template <int D>
-void add_resultant(const Model& f, const PairTable& pairs, std::size_t p, std::size_t g, bool as_j, double* r) {
+void add_resultant(const Model& model, const PairTable& pairs, std::size_t p, std::size_t g, bool as_j, double* r) {
   const double* row = pairs.force.data() + p * (D == 2 ? 4 : 8);
   for (std::size_t c = 0; c < D; ++c) r[c] = as_j ? r[c] + row[c] : r[c] - row[c];
   if constexpr (D == 2) {
-    r[2] += row[as_j ? 2 : 3] / f.radius[g];
+    r[2] += row[as_j ? 2 : 3] / model.radius[g];
   } else {
-    const double arm = row[3] / f.radius[g] - 1;  // torque -(r - delta/2) n x f_t on either grain
+    const double arm = row[3] / model.radius[g] - 1;  // torque -(r - delta/2) n x f_t on either grain
     for (std::size_t c = 0; c < 3; ++c) r[3 + c] += arm * row[4 + c];
-    if (!f.contact.rolling) return;
-    for (std::size_t c = 0; c < 3; ++c) r[3 + c] += (as_j ? 1 : -1) * pairs.moment[c][p] / f.radius[g];
+    if (!model.contact.rolling) return;
+    for (std::size_t c = 0; c < 3; ++c) r[3 + c] += (as_j ? 1 : -1) * pairs.moment[c][p] / model.radius[g];
   }
 }
 
@@ -114,14 +115,14 @@ struct ContactSums {
 
 /// Adds up the contacts at `order` [first, last), and their forces on each grain unless `resultants` is null.
 template <Shape shape>
-ContactSums contacts_in(const Model& f, const Assembly& a, const PairPlaces<shape>& pair, std::size_t first,
+ContactSums contacts_in(const Model& model, const Assembly& assembly, const PairPlaces<shape>& pair, std::size_t first,
                         std::size_t last, double* resultants) {
   constexpr int D = dimension_of(shape);
   ContactSums sums;
-  const double* force = a.pairs.force.data();
+  const double* force = assembly.pairs.force.data();
   for (std::size_t k = first; k < last; ++k) {
-    const auto p = std::size_t(a.pairs.order[k]);
-    const auto i = std::size_t(a.pairs.i[p]), j = std::size_t(a.pairs.j[p]);
+    const auto p = std::size_t(assembly.pairs.order[k]);
+    const auto i = std::size_t(assembly.pairs.i[p]), j = std::size_t(assembly.pairs.j[p]);
     const double overlap = pair(p).overlap;
     if (!std::isfinite(overlap)) sums.finite = false;
     if (!(overlap > 0)) continue;
@@ -129,29 +130,30 @@ ContactSums contacts_in(const Model& f, const Assembly& a, const PairPlaces<shap
     double squared = 0;
     for (std::size_t c = 0; c < D; ++c) squared += on_j[c] * on_j[c];
     if (resultants != nullptr) {
-      add_resultant<D>(f, a.pairs, p, i, false, resultants + resultant_row<D> * i);
-      add_resultant<D>(f, a.pairs, p, j, true, resultants + resultant_row<D> * j);
+      add_resultant<D>(model, assembly.pairs, p, i, false, resultants + resultant_row<D> * i);
+      add_resultant<D>(model, assembly.pairs, p, j, true, resultants + resultant_row<D> * j);
     }
     sums.force += std::sqrt(squared);
     sums.overlap += overlap;
     ++sums.touching;
-    sums.largest_overlap_ratio = std::max(sums.largest_overlap_ratio, overlap / std::min(f.radius[i], f.radius[j]));
+    sums.largest_overlap_ratio =
+        std::max(sums.largest_overlap_ratio, overlap / std::min(model.radius[i], model.radius[j]));
   }
   return sums;
 }
 
 /// Resultants of the grains [first, last), added in the same order as above; pairs that do not touch give nothing.
 template <Shape shape>
-void gather_resultants(const Model& f, const Assembly& a, const PairPlaces<shape>& pair, std::size_t first,
+void gather_resultants(const Model& model, const Assembly& assembly, const PairPlaces<shape>& pair, std::size_t first,
                        std::size_t last, double* resultants) {
   constexpr int D = dimension_of(shape);
-  each_pair_of_grains<D>(a.pairs, first, last, [&](std::size_t g, std::size_t p, bool as_j) {
+  each_pair_of_grains<D>(assembly.pairs, first, last, [&](std::size_t g, std::size_t p, bool as_j) {
     // The place of a pair that opened still holds the moment of rolling until the kernel passes by.
     if (!(pair(p).overlap > 0)) return;
-    const bool own_image = a.pairs.i[p] == a.pairs.j[p];
+    const bool own_image = assembly.pairs.i[p] == assembly.pairs.j[p];
     if (own_image && as_j) return;  // both at once where the grain is i, as above
-    add_resultant<D>(f, a.pairs, p, g, as_j, resultants + resultant_row<D> * g);
-    if (own_image) add_resultant<D>(f, a.pairs, p, g, true, resultants + resultant_row<D> * g);
+    add_resultant<D>(model, assembly.pairs, p, g, as_j, resultants + resultant_row<D> * g);
+    if (own_image) add_resultant<D>(model, assembly.pairs, p, g, true, resultants + resultant_row<D> * g);
   });
 }
 
@@ -161,7 +163,7 @@ struct GrainFigures {
 };
 
 template <int D>
-GrainFigures grains_in(const Model& f, const Assembly& a, std::size_t first, std::size_t last,
+GrainFigures grains_in(const Model& model, const Assembly& assembly, std::size_t first, std::size_t last,
                        const double* resultants) {
   GrainFigures figures;
   for (std::size_t g = first; g < last; ++g) {
@@ -169,28 +171,28 @@ GrainFigures grains_in(const Model& f, const Assembly& a, std::size_t first, std
     double force = 0, couple = 0;
     for (std::size_t c = 0; c < D; ++c) force += r[c] * r[c];
     for (std::size_t c = D; c < resultant_row<D>; ++c) couple += r[c] * r[c];
-    figures.resultants += std::sqrt(force) / double(f.size());
-    figures.couples += std::sqrt(couple) / double(f.size());
+    figures.resultants += std::sqrt(force) / double(model.size());
+    figures.couples += std::sqrt(couple) / double(model.size());
   }
-  const auto row = std::size_t(f.row_length());
-  for (std::size_t k = first * row; k < last * row; ++k) figures.squares += a.rows[k] * a.rows[k];
+  const auto row = std::size_t(model.row_length());
+  for (std::size_t k = first * row; k < last * row; ++k) figures.squares += assembly.rows[k] * assembly.rows[k];
   return figures;
 }
 
 template <Shape shape>
-OutOfBalance balance_in(const Model& f, const Assembly& a) {
+OutOfBalance balance_in(const Model& model, const Assembly& assembly) {
   constexpr int D = dimension_of(shape);
-  const PairPlaces<shape> pair(f, a);
-  const bool shared = f.sharing() != nullptr;
-  std::vector<double> resultants(resultant_row<D> * f.size(), 0.0);
-  std::vector<ContactSums> of_pairs(pieces_in(a.pairs.listed));
-  in_pieces(a.pairs.listed, f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
-    of_pairs[piece] = contacts_in(f, a, pair, first, last, shared ? nullptr : resultants.data());
+  const PairPlaces<shape> pair(model, assembly);
+  const bool shared = model.sharing() != nullptr;
+  std::vector<double> resultants(resultant_row<D> * model.size(), 0.0);
+  std::vector<ContactSums> of_pairs(pieces_in(assembly.pairs.listed));
+  in_pieces(assembly.pairs.listed, model.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
+    of_pairs[piece] = contacts_in(model, assembly, pair, first, last, shared ? nullptr : resultants.data());
   });
-  std::vector<GrainFigures> of_grains(pieces_in(f.size()));
-  in_pieces(f.size(), f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
-    if (shared) gather_resultants<shape>(f, a, pair, first, last, resultants.data());
-    of_grains[piece] = grains_in<D>(f, a, first, last, resultants.data());
+  std::vector<GrainFigures> of_grains(pieces_in(model.size()));
+  in_pieces(model.size(), model.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
+    if (shared) gather_resultants<shape>(model, assembly, pair, first, last, resultants.data());
+    of_grains[piece] = grains_in<D>(model, assembly, first, last, resultants.data());
   });
   OutOfBalance balance;
   double contact_force = 0, overlap_sum = 0, squares = 0;
@@ -217,20 +219,20 @@ OutOfBalance balance_in(const Model& f, const Assembly& a) {
 }
 
 template <Shape shape>
-std::vector<Resultant> resultants_in(const Model& f, const Assembly& a) {
+std::vector<Resultant> resultants_in(const Model& model, const Assembly& assembly) {
   constexpr int D = dimension_of(shape);
-  const PairPlaces<shape> pair(f, a);
-  std::vector<double> rows(resultant_row<D> * f.size(), 0.0);
-  std::vector<Resultant> resultants(f.size());
-  in_pieces(f.size(), f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
-    gather_resultants<shape>(f, a, pair, first, last, rows.data());
+  const PairPlaces<shape> pair(model, assembly);
+  std::vector<double> rows(resultant_row<D> * model.size(), 0.0);
+  std::vector<Resultant> resultants(model.size());
+  in_pieces(model.size(), model.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
+    gather_resultants<shape>(model, assembly, pair, first, last, rows.data());
     for (std::size_t g = first; g < last; ++g) {
       const double* r = rows.data() + resultant_row<D> * g;
       Resultant& of = resultants[g];
       if constexpr (D == 2) {
-        of = {{r[0], r[1], 0}, {0, 0, f.radius[g] * r[2]}};
+        of = {{r[0], r[1], 0}, {0, 0, model.radius[g] * r[2]}};
       } else {
-        of = {{r[0], r[1], r[2]}, f.radius[g] * Vector3(r[3], r[4], r[5])};
+        of = {{r[0], r[1], r[2]}, model.radius[g] * Vector3(r[3], r[4], r[5])};
       }
     }
   });
@@ -239,17 +241,17 @@ std::vector<Resultant> resultants_in(const Model& f, const Assembly& a) {
 
 }  // namespace
 
-Matrix3 contact_moment(const Model& f, const Assembly& a) {
+Matrix3 contact_virial(const Model& model, const Assembly& assembly) {
   // Called every few sub-steps under stress control.
-  return with_shape(f.shape, [&](auto shape) { return moment_in<shape.value>(f, a); });
+  return with_shape(model.shape, [&](auto shape) { return moment_in<shape.value>(model, assembly); });
 }
 
-std::vector<Resultant> resultants_of(const Model& f, const Assembly& a) {
-  return with_shape(f.shape, [&](auto shape) { return resultants_in<shape.value>(f, a); });
+std::vector<Resultant> resultants_of(const Model& model, const Assembly& assembly) {
+  return with_shape(model.shape, [&](auto shape) { return resultants_in<shape.value>(model, assembly); });
 }
 
-OutOfBalance balance_of(const Model& f, const Assembly& a) {
-  return with_shape(f.shape, [&](auto shape) { return balance_in<shape.value>(f, a); });
+OutOfBalance balance_of(const Model& model, const Assembly& assembly) {
+  return with_shape(model.shape, [&](auto shape) { return balance_in<shape.value>(model, assembly); });
 }
 
 double unbalanced_ratio(const OutOfBalance& balance, double reference_contact_force) {
@@ -257,13 +259,13 @@ double unbalanced_ratio(const OutOfBalance& balance, double reference_contact_fo
   return scale > 0 ? std::max(balance.mean_resultant, balance.mean_couple) / scale : 0.0;
 }
 
-void check_overlaps(const Model& f, const OutOfBalance& balance) {
+void check_overlaps(const Model& model, const OutOfBalance& balance) {
   if (!balance.finite)
     throw IncrementFailed("the increment led to values that are not finite; apply it in smaller parts");
-  if (balance.largest_overlap_ratio > f.options.max_overlap_ratio)
+  if (balance.largest_overlap_ratio > model.options.max_overlap_ratio)
     throw IncrementFailed("grains overlap by " + in_words(balance.largest_overlap_ratio) +
                           " of the smaller radius; solver.max_overlap_ratio allows " +
-                          in_words(f.options.max_overlap_ratio) + "; compress less or take stiffer grains");
+                          in_words(model.options.max_overlap_ratio) + "; compress less or take stiffer grains");
 }
 
 }  // namespace rvelab

@@ -23,22 +23,23 @@ void sort_by_key(std::vector<Contact>& contacts) {
   if (!std::is_sorted(contacts.begin(), contacts.end(), before)) std::sort(contacts.begin(), contacts.end(), before);
 }
 
-void store(const Model& f, PairTable& pairs, std::size_t p, const Contact& c) {
-  if (f.dimension() == 2) {
+void store(const Model& model, PairTable& pairs, std::size_t p, const Contact& c) {
+  if (model.dimension() == 2) {
     pairs.tangential[0][p] = c.tangential_force[0];
-    if (f.contact.rolling) pairs.moment[0][p] = c.rolling_moment[2];
+    if (model.contact.rolling) pairs.moment[0][p] = c.rolling_moment[2];
   } else {
     for (int k = 0; k < 3; ++k) pairs.tangential[k][p] = c.tangential_force[k];
-    if (f.contact.rolling)
+    if (model.contact.rolling)
       for (int k = 0; k < 3; ++k) pairs.moment[k][p] = c.rolling_moment[k];
   }
-  if (f.stores_root_overlap()) pairs.root_overlap[p] = c.last_root_overlap;
+  if (model.stores_root_overlap()) pairs.root_overlap[p] = c.last_root_overlap;
 }
 
 /// Pairs closer than the skin as the grains lie now.
-std::vector<ListedPair> near_pairs(const Model& f, const Assembly& a, double skin) {
-  std::vector<ListedPair> pairs = list_pairs(a.cell, a.rows.data(), f.row_length(), f.reach(), skin, f.sharing());
-  keep_near_outlines(f, a, skin, pairs);
+std::vector<ListedPair> near_pairs(const Model& model, const Assembly& assembly, double skin) {
+  std::vector<ListedPair> pairs =
+      list_pairs(assembly.cell, assembly.rows.data(), model.row_length(), model.reach(), skin, model.sharing());
+  keep_near_outlines(model, assembly, skin, pairs);
   return pairs;
 }
 
@@ -47,31 +48,31 @@ std::vector<ListedPair> near_pairs(const Model& f, const Assembly& a, double ski
 enum class Lost { dropped, refused };
 
 template <Shape shape>
-bool touches(const Model& f, const Assembly& a, const UpperTriangle& l, const ListedPair& pair) {
-  const double* xi = a.rows.data() + std::size_t(pair.i) * f.row_length();
-  const double* xj = a.rows.data() + std::size_t(pair.j) * f.row_length();
+bool touches(const Model& model, const Assembly& assembly, const UpperTriangle& l, const ListedPair& pair) {
+  const double* xi = assembly.rows.data() + std::size_t(pair.i) * model.row_length();
+  const double* xj = assembly.rows.data() + std::size_t(pair.j) * model.row_length();
   const Image& n = pair.image;
   const double x = xj[0] - xi[0] + l.xx * n[0] + l.xy * n[1] + l.xz * n[2];
   const double y = xj[1] - xi[1] + l.yy * n[1] + l.yz * n[2];
   const double z = dimension_of(shape) == 2 ? 0 : xj[2] - xi[2] + l.zz * n[2];
   if constexpr (!is_round(shape)) return Outline<shape>::place({x, y, 0}, xi, xj).overlap > 0;
-  const double radii = f.radius[std::size_t(pair.i)] + f.radius[std::size_t(pair.j)];
+  const double radii = model.radius[std::size_t(pair.i)] + model.radius[std::size_t(pair.j)];
   return x * x + y * y + z * z < radii * radii;
 }
 
 /// Places of the pairs of a new list in memory: first those that touch or have a history, and of these and the others
 /// first those without an image, so that few blocks of eight have one. The kernel that books losses adds up what all
 /// pairs lose as they lie, so with it they lie in order.
-void arrange(const Model& f, const Assembly& a, const std::vector<ListedPair>& listed,
+void arrange(const Model& model, const Assembly& assembly, const std::vector<ListedPair>& listed,
              const std::vector<const Contact*>& histories, PairTable& pairs) {
   const std::size_t n = listed.size();
-  const UpperTriangle l = upper_triangle(a.cell.lattice);
+  const UpperTriangle l = upper_triangle(assembly.cell.lattice);
   std::vector<std::uint8_t> group(n, 0);  // 0, 1 near, 2, 3 beyond, the odd ones with an image
-  if (!f.options.energy_balance)
-    with_shape(f.shape, [&](auto is) {
-      in_pieces(n, f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
+  if (!model.options.energy_balance)
+    with_shape(model.shape, [&](auto is) {
+      in_pieces(n, model.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
         for (std::size_t k = first; k < last; ++k) {
-          const bool near = histories[k] != nullptr || touches<decltype(is)::value>(f, a, l, listed[k]);
+          const bool near = histories[k] != nullptr || touches<decltype(is)::value>(model, assembly, l, listed[k]);
           group[k] = std::uint8_t((near ? 0 : 2) + int(is_shifted(listed[k].image)));
         }
       });
@@ -85,8 +86,8 @@ void arrange(const Model& f, const Assembly& a, const std::vector<ListedPair>& l
 }
 
 /// Makes the arrays of a new list and fills in the carried history, which is sorted by key.
-void fill(const Model& f, const std::vector<ListedPair>& listed, const std::vector<Contact>& carried, Lost lost,
-          Assembly& a) {
+void fill(const Model& model, const std::vector<ListedPair>& listed, const std::vector<Contact>& carried, Lost lost,
+          Assembly& assembly) {
   const std::size_t n = listed.size(), padded = padded_to_lanes(n);
   std::vector<const Contact*> histories(n, nullptr);
   std::size_t k = 0;
@@ -95,51 +96,51 @@ void fill(const Model& f, const std::vector<ListedPair>& listed, const std::vect
     if (k < n && listed[k] == key_of(c))
       histories[k] = &c;
     else if (lost == Lost::refused)
-      throw InputError("specimen: grains " + std::to_string(f.id[c.i]) + " and " + std::to_string(f.id[c.j]) +
+      throw InputError("specimen: grains " + std::to_string(model.id[c.i]) + " and " + std::to_string(model.id[c.j]) +
                        " have a contact history but lie apart by more than the skin: the history does not belong to "
                        "the positions");
   }
 
-  if (Replaced* kept = a.trial.replaced; kept != nullptr && !kept->list_taken) {
-    std::swap(a.pairs, kept->list);
-    std::swap(a.state.list_positions, kept->list_positions);
+  if (Replaced* kept = assembly.trial.replaced; kept != nullptr && !kept->list_taken) {
+    std::swap(assembly.pairs, kept->list);
+    std::swap(assembly.state.list.positions, kept->list_positions);
     kept->list_taken = true;
   }
-  PairTable& pairs = a.pairs;
+  PairTable& pairs = assembly.pairs;
   pairs.listed = n;
-  arrange(f, a, listed, histories, pairs);
+  arrange(model, assembly, listed, histories, pairs);
   pairs.i.resize(padded);
   pairs.j.resize(padded);
   pairs.image.resize(padded);
   for (std::size_t p = n; p < padded; ++p) {
-    pairs.i[p] = pairs.j[p] = std::int32_t(f.size());  // a padding grain: no extent, no mass
+    pairs.i[p] = pairs.j[p] = std::int32_t(model.size());  // a padding grain: no extent, no mass
     pairs.image[p] = Image{1, 0, 0};
   }
-  for (int component = 0; component < f.tangential_components(); ++component) {
+  for (int component = 0; component < model.tangential_components(); ++component) {
     pairs.tangential[component].assign(padded, 0.0);
-    if (f.contact.rolling) pairs.moment[component].assign(padded, 0.0);
+    if (model.contact.rolling) pairs.moment[component].assign(padded, 0.0);
   }
-  if (f.stores_root_overlap()) pairs.root_overlap.assign(padded, 0.0);
-  in_pieces(n, f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
+  if (model.stores_root_overlap()) pairs.root_overlap.assign(padded, 0.0);
+  in_pieces(n, model.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t q = first; q < last; ++q) {
       const auto p = std::size_t(pairs.order[q]);
       pairs.i[p] = listed[q].i;
       pairs.j[p] = listed[q].j;
       pairs.image[p] = listed[q].image;
-      if (histories[q] != nullptr) store(f, pairs, p, *histories[q]);
+      if (histories[q] != nullptr) store(model, pairs, p, *histories[q]);
     }
   });
-  derive_pairs(f, pairs);
-  fill_gather_table(padded_to_lanes(f.size()), force_row_length(f.dimension()), pairs);
+  derive_pairs(model, pairs);
+  fill_gather_table(padded_to_lanes(model.size()), force_row_length(model.dimension()), pairs);
 }
 
 /// The key of a pair after images changed; a grain's own image is kept pointing forward, forces turning round with it.
-void turn_round_if_needed(const Model& f, Contact& c) {
+void turn_round_if_needed(const Model& model, Contact& c) {
   if (c.i != c.j || points_forward(c.image)) return;
   for (int& n : c.image) n = -n;
   c.rolling_moment = -c.rolling_moment;
   // In 2D the component along t = (-n_y, n_x) keeps its sign: force and t both turn.
-  if (f.dimension() == 3) c.tangential_force = -c.tangential_force;
+  if (model.dimension() == 3) c.tangential_force = -c.tangential_force;
 }
 
 /// A velocity gradient less the rigid spin that cancels its lower triangle. Grains and branches share that spin, so no
@@ -154,11 +155,11 @@ Matrix3 without_lower_part(const Matrix3& rate) {
   return rest;
 }
 
-void rotate_rows(const Model& f, const Matrix3& turn, Buffer& rows) {
-  for (std::size_t g = 0; g < f.size(); ++g) {
-    double* row = rows.data() + g * f.row_length();
+void rotate_rows(const Model& model, const Matrix3& turn, Buffer& rows) {
+  for (std::size_t g = 0; g < model.size(); ++g) {
+    double* row = rows.data() + g * model.row_length();
     const auto rotate = [&](double* v) {
-      if (f.dimension() == 2) {
+      if (model.dimension() == 2) {
         const double x = turn(0, 0) * v[0] + turn(0, 1) * v[1], y = turn(1, 0) * v[0] + turn(1, 1) * v[1];
         v[0] = x;
         v[1] = y;
@@ -168,32 +169,32 @@ void rotate_rows(const Model& f, const Matrix3& turn, Buffer& rows) {
       }
     };
     rotate(row);
-    rotate(row + f.velocity_offset());
-    if (f.dimension() == 3) rotate(row + 8);
-    if (!f.round()) {
+    rotate(row + model.velocity_offset());
+    if (model.dimension() == 3) rotate(row + 8);
+    if (!model.round()) {
       rotate(row + 5);
-      complete_row(f, g, row);
+      complete_row(model, g, row);
     }
   }
 }
 
 }  // namespace
 
-std::vector<Contact> contacts_of(const Model& f, const PairTable& pairs) {
+std::vector<Contact> contacts_of(const Model& model, const PairTable& pairs) {
   std::vector<std::vector<Contact>> found(pieces_in(pairs.listed));
   const auto look_at = [&](std::size_t p, std::vector<Contact>& here) {
     Contact c{pairs.i[p], pairs.j[p], pairs.image[p]};
-    for (int k = 0; k < f.tangential_components(); ++k) c.tangential_force[k] = pairs.tangential[k][p];
-    if (f.contact.rolling) {
-      if (f.dimension() == 2)
+    for (int k = 0; k < model.tangential_components(); ++k) c.tangential_force[k] = pairs.tangential[k][p];
+    if (model.contact.rolling) {
+      if (model.dimension() == 2)
         c.rolling_moment[2] = pairs.moment[0][p];
       else
         for (int k = 0; k < 3; ++k) c.rolling_moment[k] = pairs.moment[k][p];
     }
-    if (f.stores_root_overlap()) c.last_root_overlap = pairs.root_overlap[p];
+    if (model.stores_root_overlap()) c.last_root_overlap = pairs.root_overlap[p];
     if (!c.tangential_force.isZero(0) || !c.rolling_moment.isZero(0) || c.last_root_overlap != 0) here.push_back(c);
   };
-  in_pieces(pairs.listed, f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
+  in_pieces(pairs.listed, model.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
     found[piece].reserve(last - first);
     for (std::size_t k = first; k < last; ++k) look_at(std::size_t(pairs.order[k]), found[piece]);
   });
@@ -203,71 +204,73 @@ std::vector<Contact> contacts_of(const Model& f, const PairTable& pairs) {
   return all;
 }
 
-void list_with(const Model& f, std::vector<Contact> contacts, Assembly& a) {
+void list_with(const Model& model, std::vector<Contact> contacts, Assembly& assembly) {
   sort_by_key(contacts);
   // The state says how far grains have come since the list of its run was made, and they may come back that far and as
   // far beyond before it is made anew: its pairs, of gaps below the skin then, have gaps below the skin and that now.
-  const double skin = a.state.list_skin, moved = a.state.has_reference ? skin - listed_gap(f, a) : 0;
-  fill(f, near_pairs(f, a, skin + std::min(std::max(0.0, moved), skin)), contacts, Lost::refused, a);
+  const double skin = assembly.state.list.skin,
+               moved = assembly.state.list.built ? skin - listed_gap(model, assembly) : 0;
+  fill(model, near_pairs(model, assembly, skin + std::min(std::max(0.0, moved), skin)), contacts, Lost::refused,
+       assembly);
 }
 
-void check_height(const Model& f, const Cell& cell) {
+void check_height(const Model& model, const Cell& cell) {
   const double shortest = shortest_vector(cell);
-  if (shortest < f.min_height) {
+  if (shortest < model.min_height) {
     std::ostringstream text;
     text << "cell too thin: the shortest lattice vector is " << shortest << " m, the limit solver.min_height_m is "
-         << f.min_height << " m; deform less, start from an oriented cell, or use a larger specimen";
+         << model.min_height << " m; deform less, start from an oriented cell, or use a larger specimen";
     throw IncrementFailed(text.str());
   }
 }
 
-Reduction rebuild(const Model& f, Assembly& a) {
-  std::vector<Contact> carried = contacts_of(f, a.pairs);
-  if (a.state.has_reference) a.state.list_skin = next_skin(f, a.state);
-  const Reduction reduction = reduced(a.cell);
+Reduction rebuild(const Model& model, Assembly& assembly) {
+  std::vector<Contact> carried = contacts_of(model, assembly.pairs);
+  if (assembly.state.list.built) assembly.state.list.skin = next_skin(model, assembly.state.list);
+  const Reduction reduction = reduced(assembly.cell);
   if (reduction.changed) {
-    apply_reduction(a.cell, reduction);
+    apply_reduction(assembly.cell, reduction);
     const Matrix3 back = reduction.rotation.transpose();
-    rotate_rows(f, back, a.rows);
-    a.state.mean_velocity = back * a.state.mean_velocity;
-    a.state.interval_stress = back * a.state.interval_stress * reduction.rotation;
-    a.state.last_rate = without_lower_part(back * a.state.last_rate * reduction.rotation);
+    rotate_rows(model, back, assembly.rows);
+    assembly.state.last_step.mean_velocity = back * assembly.state.last_step.mean_velocity;
+    assembly.state.control.interval.stress = back * assembly.state.control.interval.stress * reduction.rotation;
+    assembly.state.last_step.rate = without_lower_part(back * assembly.state.last_step.rate * reduction.rotation);
     for (Contact& c : carried) {
       const Eigen::Vector3i n = reduction.inverse_basis * Eigen::Vector3i(c.image[0], c.image[1], c.image[2]);
       c.image = {n[0], n[1], n[2]};
-      if (f.dimension() == 3) {
+      if (model.dimension() == 3) {
         c.tangential_force = back * c.tangential_force;
         c.rolling_moment = back * c.rolling_moment;
       }
     }
   }
-  check_height(f, a.cell);
-  std::vector<Image> moved(f.size(), Image{});
-  const Vector3 half = 0.5 * a.cell.lattice.diagonal();
-  in_pieces(f.size(), f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
+  check_height(model, assembly.cell);
+  std::vector<Image> moved(model.size(), Image{});
+  const Vector3 half = 0.5 * assembly.cell.lattice.diagonal();
+  in_pieces(model.size(), model.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t g = first; g < last; ++g) {
-      double* row = a.rows.data() + g * f.row_length();
+      double* row = assembly.rows.data() + g * model.row_length();
       bool inside = true;  // as most grains are: nothing to wrap
-      for (int k = 0; k < f.dimension(); ++k) inside &= row[k] >= -half[k] && row[k] < half[k];
+      for (int k = 0; k < model.dimension(); ++k) inside &= row[k] >= -half[k] && row[k] < half[k];
       if (inside) continue;
-      Vector3 x = a.position(f, g);
-      moved[g] = wrap(a.cell, x);
-      for (int k = 0; k < f.dimension(); ++k) row[k] = x[k];
+      Vector3 x = assembly.position(model, g);
+      moved[g] = wrap(assembly.cell, x);
+      for (int k = 0; k < model.dimension(); ++k) row[k] = x[k];
     }
   });
   for (Contact& c : carried) {
     for (int k = 0; k < 3; ++k) c.image[k] += moved[c.i][k] - moved[c.j][k];
-    turn_round_if_needed(f, c);
+    turn_round_if_needed(model, c);
   }
   sort_by_key(carried);
-  fill(f, near_pairs(f, a, a.state.list_skin), carried, Lost::dropped, a);
-  a.state.has_reference = true;
-  a.state.list_lattice = a.cell.lattice;
-  a.state.list_travel = 0;
-  a.state.list_steps = 0;
-  a.state.list_positions.resize(f.size());
-  for (std::size_t g = 0; g < f.size(); ++g) a.state.list_positions[g] = listed_place(f, a, g);
-  ++a.state.list_builds;
+  fill(model, near_pairs(model, assembly, assembly.state.list.skin), carried, Lost::dropped, assembly);
+  assembly.state.list.built = true;
+  assembly.state.list.lattice = assembly.cell.lattice;
+  assembly.state.list.travel = 0;
+  assembly.state.list.steps = 0;
+  assembly.state.list.positions.resize(model.size());
+  for (std::size_t g = 0; g < model.size(); ++g) assembly.state.list.positions[g] = listed_place(model, assembly, g);
+  ++assembly.state.list.builds;
   return reduction;
 }
 

@@ -65,9 +65,9 @@ Specimen rearranged(Specimen s, const std::vector<std::int32_t>& order) {
   rearrange(s.grains.spin, order);
   each_own_column([&](const auto&, auto& column) { rearrange(column, order); }, s.grains);
   rearrange(s.grains.orientation, order);
-  rearrange(s.state.list_positions, order);
-  rearrange(s.state.scaled_mass, order);
-  rearrange(s.state.scaled_inverse_inertia, order);
+  rearrange(s.state.list.positions, order);
+  rearrange(s.state.masses.mass, order);
+  rearrange(s.state.masses.inverse_inertia, order);
   renumber(s.contacts, inverse_of(order), s.shape);
   return s;
 }

@@ -31,7 +31,7 @@ struct ContactState {
 
 struct GrainState : OwnValues {
   double radius = 0, mass = 0, inertia = 0;  ///< m, kg, kg m^2
-  Vector3 position, velocity, spin;          ///< cell frame; fluctuation velocity and spin, physical (dt > 0)
+  Vector3 position, velocity, spin;          ///< cell frame; fluctuation velocity and spin, physical (at a rate)
   Vector3 resultant;                         ///< sum of contact forces, N
   Vector3 torque = Vector3::Zero();          ///< sum of contact torques, moments of rolling included, N m
   Vector3 orientation = Vector3::Zero();     ///< not round: along the long axis, cell frame
@@ -42,12 +42,12 @@ struct Network {
   Cell cell;
   ContactModel model;
   std::vector<GrainState> grains;
-  std::vector<ContactState> contacts;   ///< ordered by (i, j, image)
-  double reference_contact_force = 0;   ///< N, floor of the unbalanced ratio is 1e-3 of it
-  double reference_pressure = 0;        ///< Pa
-  Vector3 mean_spin = Vector3::Zero();  ///< axial(W + Omega) of the cell, rad/s, zero at dt = 0: a grain's whole spin
-                                        ///< is this and its fluctuation
-  bool quasi_static = true;             ///< velocities carry scaled masses: no kinetic stress
+  std::vector<ContactState> contacts;       ///< ordered by (i, j, image)
+  double reference_contact_force = 0;       ///< N, floor of the unbalanced ratio is 1e-3 of it
+  double reference_pressure = 0;            ///< Pa
+  Vector3 mean_spin = Vector3::Zero();      ///< axial(W + Omega) of the cell, rad/s, zero in quasi-static loading: a
+                                            ///< grain's whole spin is this and its fluctuation
+  Loading loading = Loading::quasi_static;  ///< quasi-static velocities carry scaled masses: no kinetic stress
   int dimension() const { return cell.dimension; }
 };
 

@@ -7,13 +7,13 @@ namespace rvelab {
 namespace {
 
 template <Shape shape>
-void keep_near(const Model& f, const Assembly& a, double skin, std::vector<ListedPair>& pairs) {
-  const UpperTriangle l = upper_triangle(a.cell.lattice);
+void keep_near(const Model& model, const Assembly& assembly, double skin, std::vector<ListedPair>& pairs) {
+  const UpperTriangle l = upper_triangle(assembly.cell.lattice);
   std::vector<std::uint8_t> near(pairs.size());
-  in_pieces(pairs.size(), f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
+  in_pieces(pairs.size(), model.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t k = first; k < last; ++k) {
-      const double *xi = a.rows.data() + std::size_t(pairs[k].i) * std::size_t(f.row_length()),
-                   *xj = a.rows.data() + std::size_t(pairs[k].j) * std::size_t(f.row_length());
+      const double *xi = assembly.rows.data() + std::size_t(pairs[k].i) * std::size_t(model.row_length()),
+                   *xj = assembly.rows.data() + std::size_t(pairs[k].j) * std::size_t(model.row_length());
       const Image& n = pairs[k].image;
       const double x = xj[0] - xi[0] + (l.xx * n[0] + l.xy * n[1]), y = xj[1] - xi[1] + l.yy * n[1];
       near[k] = !Outline<shape>::farther_apart_than(skin, {x, y, 0}, xi, xj);
@@ -27,9 +27,9 @@ void keep_near(const Model& f, const Assembly& a, double skin, std::vector<Liste
 
 }  // namespace
 
-void keep_near_outlines(const Model& f, const Assembly& a, double skin, std::vector<ListedPair>& pairs) {
-  with_shape(f.shape, [&](auto is) {
-    if constexpr (!decltype(is)::By::round) keep_near<decltype(is)::value>(f, a, skin, pairs);
+void keep_near_outlines(const Model& model, const Assembly& assembly, double skin, std::vector<ListedPair>& pairs) {
+  with_shape(model.shape, [&](auto is) {
+    if constexpr (!decltype(is)::By::round) keep_near<decltype(is)::value>(model, assembly, skin, pairs);
   });
 }
 

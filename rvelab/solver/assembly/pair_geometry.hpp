@@ -14,17 +14,17 @@ class PairGeometry {
  public:
   static constexpr int D = dimension_of(shape);
 
-  PairGeometry(const Model& f, const Assembly& a)
-      : rows_(a.rows.data()),
-        radius_(f.radius.data()),
-        i_(a.pairs.row_i.data()),
-        j_(a.pairs.row_j.data()),
-        grain_i_(a.pairs.i.data()),
-        grain_j_(a.pairs.j.data()),
-        near_(a.pairs.near),
-        touched_(a.pairs.touched.data()),
-        lattice_(upper_triangle(a.cell.lattice)) {
-    for (int k = 0; k < D; ++k) image_[k] = a.pairs.image_number[k].data();
+  PairGeometry(const Model& model, const Assembly& assembly)
+      : rows_(assembly.rows.data()),
+        radius_(model.radius.data()),
+        i_(assembly.pairs.row_i.data()),
+        j_(assembly.pairs.row_j.data()),
+        grain_i_(assembly.pairs.i.data()),
+        grain_j_(assembly.pairs.j.data()),
+        near_(assembly.pairs.near),
+        touched_(assembly.pairs.touched.data()),
+        lattice_(upper_triangle(assembly.cell.lattice)) {
+    for (int k = 0; k < D; ++k) image_[k] = assembly.pairs.image_number[k].data();
   }
 
   /// Of round grains.
@@ -34,7 +34,7 @@ class PairGeometry {
     return {b, length, (radius_[grain_i_[p]] + radius_[grain_j_[p]]) - length};
   }
   /// Known to be apart without a look, and without force: so were all eight pairs of its block when forces were
-  /// computed last, for these places of the grains (at dt > 0 400 discs and 1,000 spheres 1.01 times as fast).
+  /// computed last, for these places of the grains (at a rate 400 discs and 1,000 spheres 1.01 times as fast).
   bool is_apart(std::size_t p) const { return p >= near_ && touched_[p / 8] == 0; }
   /// Of outlines that are apart, by the direction of their distance.
   OutlinePlace nearest(std::size_t p, const OutlinePlace& apart) const {
@@ -60,12 +60,12 @@ class PairGeometry {
 };
 
 /// Where the pairs lie. Those of outlines are found side by side, by the lanes of the step kernels, when this is made
-/// (one by one they took a fifth of the time of ellipses at dt > 0).
+/// (one by one they took a fifth of the time of ellipses at a rate).
 template <Shape shape>
 class PairPlaces : public PairGeometry<shape> {
  public:
-  PairPlaces(const Model& f, const Assembly& a) : PairGeometry<shape>(f, a) {
-    if constexpr (!is_round(shape)) find(f, a);
+  PairPlaces(const Model& model, const Assembly& assembly) : PairGeometry<shape>(model, assembly) {
+    if constexpr (!is_round(shape)) find(model, assembly);
   }
 
   auto operator()(std::size_t p) const {
@@ -87,33 +87,33 @@ class PairPlaces : public PairGeometry<shape> {
   }
 
  private:
-  void find(const Model& f, const Assembly& a);
+  void find(const Model& model, const Assembly& assembly);
 
   std::unique_ptr<double[]> places_;
 };
 
 template <Shape shape>
-void PairPlaces<shape>::find(const Model& f, const Assembly& a) {
-  const std::size_t padded = a.pairs.padded();
+void PairPlaces<shape>::find(const Model& model, const Assembly& assembly) {
+  const std::size_t padded = assembly.pairs.padded();
   places_ = std::make_unique_for_overwrite<double[]>(place_row_length * padded);
   StepConstants c;
-  c.lattice = upper_triangle(a.cell.lattice);
+  c.lattice = upper_triangle(assembly.cell.lattice);
   PairArrays pairs;
-  pairs.row_i = a.pairs.row_i.data();
-  pairs.row_j = a.pairs.row_j.data();
-  for (int k = 0; k < dimension_of(shape); ++k) pairs.image[k] = a.pairs.image_number[k].data();
-  pairs.shifted = a.pairs.shifted.data();
-  const PlaceKernel find_places = f.kernels_at(a.state.quasi_static).places;
-  in_pieces(padded, f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
-    find_places(c, pairs, a.rows.data(), long(first), long(last), places_.get());
+  pairs.row_i = assembly.pairs.row_i.data();
+  pairs.row_j = assembly.pairs.row_j.data();
+  for (int k = 0; k < dimension_of(shape); ++k) pairs.image[k] = assembly.pairs.image_number[k].data();
+  pairs.shifted = assembly.pairs.shifted.data();
+  const PlaceKernel find_places = model.kernels_at(assembly.state.last_step.loading).places;
+  in_pieces(padded, model.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
+    find_places(c, pairs, assembly.rows.data(), long(first), long(last), places_.get());
   });
 }
 
 /// visit(p, place) for each listed pair that touches, in the order of every sum.
 template <Shape shape, class Visit>
-void each_touching(const Model& f, const Assembly& a, const Visit& visit) {
-  const PairPlaces<shape> pair(f, a);
-  for (const std::int32_t listed : a.pairs.order) {
+void each_touching(const Model& model, const Assembly& assembly, const Visit& visit) {
+  const PairPlaces<shape> pair(model, assembly);
+  for (const std::int32_t listed : assembly.pairs.order) {
     const auto p = std::size_t(listed);
     if (pair.is_apart(p)) continue;
     if (const auto at = pair(p); at.overlap > 0) visit(p, at);

@@ -15,63 +15,65 @@ std::size_t bytes_of(const PairTable& t) {
   return sum;
 }
 
-void set_pair_parameters(const Model& f, PairTable& pairs) {
+void set_pair_parameters(const Model& model, PairTable& pairs) {
   const std::size_t padded = pairs.padded();
-  const bool dashpot = f.damping.dashpot != Dashpot::none;
+  const bool dashpot = model.damping.dashpot != Dashpot::none;
   for (Buffer* b : {&pairs.kn, &pairs.kt, &pairs.friction}) b->assign(padded, 0.0);
-  if (f.contact.rolling)
+  if (model.contact.rolling)
     for (Buffer* b : {&pairs.kr, &pairs.moment_cap}) b->assign(padded, 0.0);
   if (dashpot) pairs.cn.assign(padded, 0.0);
-  const bool law_constant = with_law(f.contact.law, [](auto law) { return decltype(law)::Force::has_law_constant; });
+  const bool law_constant =
+      with_law(model.contact.law, [](auto law) { return decltype(law)::Force::has_law_constant; });
   if (law_constant) pairs.law_constant.assign(padded, 0.0);
   const auto set = [&](std::size_t p) {
     const auto i = std::size_t(pairs.i[p]), j = std::size_t(pairs.j[p]);
-    const PairParameters q = mix(f.contact, f.damping, f.materials[std::size_t(f.material[i])], f.radius[i], f.mass[i],
-                                 f.materials[std::size_t(f.material[j])], f.radius[j], f.mass[j],
-                                 grain_section(f.shape, std::min(f.radius[i], f.radius[j]), f.thickness));
+    const PairParameters q =
+        mix(model.contact, model.damping, model.materials[std::size_t(model.material[i])], model.radius[i],
+            model.mass[i], model.materials[std::size_t(model.material[j])], model.radius[j], model.mass[j],
+            grain_section(model.shape, std::min(model.radius[i], model.radius[j]), model.thickness));
     pairs.kn[p] = q.kn;
     pairs.kt[p] = q.kt;
     if (law_constant) pairs.law_constant[p] = q.law_constant;
     pairs.friction[p] = q.friction;
-    if (f.contact.rolling) {
+    if (model.contact.rolling) {
       pairs.kr[p] = q.kr;
       pairs.moment_cap[p] = q.moment_cap;
     }
     if (dashpot) pairs.cn[p] = q.cn;
   };
-  in_pieces(pairs.listed, f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
+  in_pieces(pairs.listed, model.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t p = first; p < last; ++p) set(p);
   });
 }
 
-void derive_pairs(const Model& f, PairTable& pairs) {
+void derive_pairs(const Model& model, PairTable& pairs) {
   const std::size_t padded = pairs.padded();
   pairs.row_i.resize(padded);
   pairs.row_j.resize(padded);
-  for (int k = 0; k < f.dimension(); ++k) pairs.image_number[k].resize(padded);
-  const bool radii = pairs_hold_radii(f.shape) || f.radius_from_curvature();
+  for (int k = 0; k < model.dimension(); ++k) pairs.image_number[k].resize(padded);
+  const bool radii = pairs_hold_radii(model.shape) || model.radius_from_curvature();
   if (radii) {
     pairs.radius_i.assign(padded, 0.0);
     pairs.radius_j.assign(padded, 0.0);
   }
-  in_pieces(padded, f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
+  in_pieces(padded, model.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t p = first; p < last; ++p) {
-      pairs.row_i[p] = pairs.i[p] * f.row_length();
-      pairs.row_j[p] = pairs.j[p] * f.row_length();
+      pairs.row_i[p] = pairs.i[p] * model.row_length();
+      pairs.row_j[p] = pairs.j[p] * model.row_length();
     }
-    for (int k = 0; k < f.dimension(); ++k)
+    for (int k = 0; k < model.dimension(); ++k)
       for (std::size_t p = first; p < last; ++p) pairs.image_number[k][p] = pairs.image[p][std::size_t(k)];
     if (!radii) return;
     for (std::size_t p = first; p < std::min(last, pairs.listed); ++p) {
-      pairs.radius_i[p] = f.radius[std::size_t(pairs.i[p])];
-      pairs.radius_j[p] = f.radius[std::size_t(pairs.j[p])];
+      pairs.radius_i[p] = model.radius[std::size_t(pairs.i[p])];
+      pairs.radius_j[p] = model.radius[std::size_t(pairs.j[p])];
     }
   });
   pairs.touched.assign(padded / 8, 0);
   pairs.shifted.assign(padded / 8, 0);
   for (std::size_t p = 0; p < padded; ++p) pairs.shifted[p / 8] |= std::uint8_t(is_shifted(pairs.image[p]));
-  pairs.force.assign(padded * std::size_t(force_row_length(f.dimension())), 0.0);
-  set_pair_parameters(f, pairs);
+  pairs.force.assign(padded * std::size_t(force_row_length(model.dimension())), 0.0);
+  set_pair_parameters(model, pairs);
 }
 
 }  // namespace rvelab

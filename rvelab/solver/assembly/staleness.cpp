@@ -18,7 +18,7 @@ constexpr double smallest_skin = 0.01;  ///< mean radii
 /// Sum of the two largest displacements of grains since the list was built, beside the affine motion, m. Of grains
 /// that are not round that of their outlines: what the turn moves them is added to what the centre moved.
 template <bool oriented>
-double measured_displacements(const Model& f, const Assembly& a, const Matrix3& f_since) {
+double measured_displacements(const Model& model, const Assembly& assembly, const Matrix3& f_since) {
   struct Largest {
     double most = 0, second = 0;
     void add(double squared) {
@@ -27,12 +27,12 @@ double measured_displacements(const Model& f, const Assembly& a, const Matrix3& 
     }
   };
   const UpperTriangle m = upper_triangle(f_since);
-  std::vector<Largest> of_piece(pieces_in(f.size()));
-  in_pieces(f.size(), f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
+  std::vector<Largest> of_piece(pieces_in(model.size()));
+  in_pieces(model.size(), model.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
     Largest here;
     for (std::size_t g = first; g < last; ++g) {
-      const double* x = a.rows.data() + g * f.row_length();
-      const Vector3& from = a.state.list_positions[g];
+      const double* x = assembly.rows.data() + g * model.row_length();
+      const Vector3& from = assembly.state.list.positions[g];
       if constexpr (oriented) {
         const double dx = x[0] - (m.xx * from[0] + m.xy * from[1]), dy = x[1] - m.yy * from[1];
         const double moved = std::sqrt(dx * dx + dy * dy) + outline_moved_by_turn(from[2], x);
@@ -40,7 +40,7 @@ double measured_displacements(const Model& f, const Assembly& a, const Matrix3& 
       } else {
         const double dx = x[0] - (m.xx * from[0] + m.xy * from[1] + m.xz * from[2]);
         const double dy = x[1] - (m.yy * from[1] + m.yz * from[2]);
-        const double dz = f.dimension() == 2 ? 0 : x[2] - m.zz * from[2];
+        const double dz = model.dimension() == 2 ? 0 : x[2] - m.zz * from[2];
         here.add(dx * dx + dy * dy + dz * dz);
       }
     }
@@ -56,42 +56,42 @@ double measured_displacements(const Model& f, const Assembly& a, const Matrix3& 
 
 }  // namespace
 
-double next_skin(const Model& f, const SolverState& state) {
-  double skin = state.list_skin;
-  if (state.list_steps >= old_list) skin *= 0.7;
-  if (state.list_steps < young_list) skin *= 1.4;
-  return std::clamp(skin, std::min(smallest_skin * f.mean_radius, f.largest_skin), f.largest_skin);
+double next_skin(const Model& model, const ListState& list) {
+  double skin = list.skin;
+  if (list.steps >= old_list) skin *= 0.7;
+  if (list.steps < young_list) skin *= 1.4;
+  return std::clamp(skin, std::min(smallest_skin * model.mean_radius, model.largest_skin), model.largest_skin);
 }
 
-Vector3 listed_place(const Model& f, const Assembly& a, std::size_t g) {
-  Vector3 place = a.position(f, g);
-  if (!f.round()) place[2] = noted_axis(a.orientation(f, g));
+Vector3 listed_place(const Model& model, const Assembly& assembly, std::size_t g) {
+  Vector3 place = assembly.position(model, g);
+  if (!model.round()) place[2] = noted_axis(assembly.orientation(model, g));
   return place;
 }
 
-double listed_gap(const Model& f, const Assembly& a) {
-  const Matrix3 f_since = a.cell.lattice * upper_inverse(a.state.list_lattice);
-  const double strain = (f_since - Matrix3::Identity()).norm(), reach = 2 * f.largest_reach;
-  return (1 - strain) * (reach + a.state.list_skin) - reach - 2 * (1 + strain) * a.state.list_travel;
+double listed_gap(const Model& model, const Assembly& assembly) {
+  const Matrix3 f_since = assembly.cell.lattice * upper_inverse(assembly.state.list.lattice);
+  const double strain = (f_since - Matrix3::Identity()).norm(), reach = 2 * model.largest_reach;
+  return (1 - strain) * (reach + assembly.state.list.skin) - reach - 2 * (1 + strain) * assembly.state.list.travel;
 }
 
-bool list_is_stale(const Model& f, Assembly& a, double margin) {
+bool list_is_stale(const Model& model, Assembly& assembly, double margin) {
   // A pair beyond reach r_i + r_j + skin when listed is, after the affine map F and two displacements of at most
   // `travel`, still beyond sigma_min(F) reach - 2 |F| travel, with sigma_min >= 1 - |F - I|, |F| <= 1 + |F - I|. The
   // same is allowed of outlines that are nearer but apart by the skin along some direction (oriented_bounds.hpp).
-  const Matrix3 f_since = a.cell.lattice * upper_inverse(a.state.list_lattice);
+  const Matrix3 f_since = assembly.cell.lattice * upper_inverse(assembly.state.list.lattice);
   const double strain = (f_since - Matrix3::Identity()).norm();
-  const double reach = 2 * f.largest_reach;
-  const double skin = a.state.list_skin, allowed = (1 - strain) * (reach + skin) - reach - margin;
-  if (a.state.list_steps >= old_list && next_skin(f, a.state) < skin) return true;
-  if (2 * (1 + strain) * a.state.list_travel < allowed) return false;
-  if (a.state.list_positions.size() != f.size()) return true;
+  const double reach = 2 * model.largest_reach;
+  const double skin = assembly.state.list.skin, allowed = (1 - strain) * (reach + skin) - reach - margin;
+  if (assembly.state.list.steps >= old_list && next_skin(model, assembly.state.list) < skin) return true;
+  if (2 * (1 + strain) * assembly.state.list.travel < allowed) return false;
+  if (assembly.state.list.positions.size() != model.size()) return true;
   // The bound sums the fastest grain of every step; what the grains really moved is a fifth of it (measured: a third of
   // the rebuilds). Looking is worth it while a tenth of the skin is left.
-  const double moved =
-      f.round() ? measured_displacements<false>(f, a, f_since) : measured_displacements<true>(f, a, f_since);
+  const double moved = model.round() ? measured_displacements<false>(model, assembly, f_since)
+                                     : measured_displacements<true>(model, assembly, f_since);
   if (!(moved < allowed - 0.1 * skin)) return true;
-  a.state.list_travel = moved / (2 * (1 + strain));
+  assembly.state.list.travel = moved / (2 * (1 + strain));
   return false;
 }
 

@@ -6,9 +6,9 @@
 namespace rvelab {
 
 /// The skin of the next list, m, by counts alone: no clock decides what is computed.
-double next_skin(const Model& model, const SolverState& state);
+double next_skin(const Model& model, const ListState& list);
 
-/// What SolverState::list_positions holds of a grain as it lies now.
+/// What ListState::positions holds of a grain as it lies now.
 Vector3 listed_place(const Model& model, const Assembly& assembly, std::size_t g);
 
 }  // namespace rvelab

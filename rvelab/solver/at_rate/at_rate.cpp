@@ -15,38 +15,38 @@ namespace rvelab {
 namespace {
 
 /// Sub-steps between checks: of an increment, and under stress control, where gains are renewed.
-constexpr long check_interval = 100, control_interval = 50;
+constexpr long rate_check_interval = 100, control_interval = 50;
 
 /// Sub-steps of a time, at most so long each.
 double steps_in(double time, double longest) { return std::ceil(time / longest * (1 - 1e-9)); }
 
-Advanced advance(State& s, const FrameSplit& increment, long steps, double step, bool deep) {
-  return s.advance(
-      {increment, steps, step, Loading::physical, s.model().options.fixed_time_step == 0, deep ? deep_check : 0});
+Advanced advance(State& state, const FrameSplit& increment, long steps, double step, bool deep) {
+  return state.advance(
+      {increment, steps, step, Loading::at_rate, state.model().options.fixed_time_step == 0, deep ? deep_check : 0});
 }
 
 /// A mixed target on its way.
 class RateControl {
  public:
   RateControl(State& state, const MixedTarget& target, double dt)
-      : s_(state),
+      : state_(state),
         target_(target),
         dt_(dt),
         servo_(target, state.model().dimension(), stress(), Servo::Missed::at_once),
         path_{target, state.model().dimension()} {
-    s_.begin_loading(Loading::physical);
+    state_.begin_loading(Loading::at_rate);
   }
 
   Report make(Matrix3& gradient);
 
  private:
-  Matrix3 stress() { return s_.to_lab(s_.stress()) + s_.reynolds_stress(); }
+  Matrix3 stress() { return state_.to_lab(state_.stress()) + state_.reynolds_stress(); }
   /// Checks, and renews time step and gains.
   void check();
   /// The servo's strain of the next sub-steps, in the time `time` (s); `share` of the target goes with them.
   Matrix3 next_strain(double share, double time);
 
-  State& s_;
+  State& state_;
   const MixedTarget& target_;
   const double dt_;
   Servo servo_;
@@ -57,10 +57,10 @@ class RateControl {
 };
 
 void RateControl::check() {
-  time_step_ = time_step(s_, s_.control().last_rate, control_interval, (1 - fraction_) * dt_);
-  servo_.set_stiffness(affine_stiffness(s_.model(), s_.assembly()),
-                       gas_stiffness(s_.model(), s_.cell(), s_.row_sums().floor_translation));
-  viscosity_ = affine_viscosity(s_.model(), s_.assembly());
+  time_step_ = time_step(state_, state_.last_step().rate, control_interval, (1 - fraction_) * dt_);
+  servo_.set_stiffness(affine_stiffness(state_.model(), state_.assembly()),
+                       gas_stiffness(state_.model(), state_.cell(), state_.row_sums().floor_translation));
+  viscosity_ = affine_viscosity(state_.model(), state_.assembly());
   gain_time_ = 0;
 }
 
@@ -69,12 +69,12 @@ Matrix3 RateControl::next_strain(double share, double time) {
     servo_.set_viscosity(viscosity_, time);
     gain_time_ = time;
   }
-  SolverState& control = s_.control();
+  ServoState& servo = state_.servo();
   const double wanted = servo_.predicted_strain() + target_.spin.norm();
   const double full = std::max(wanted * time / dt_, 1e-9);
   const Matrix3 change = servo_.next_strain_at_rate(fraction_, share * wanted, full, constants::largest_answer * full,
-                                                    path_.strain, stress(), control.servo_rate, control.servo_strain);
-  control.servo_rate = change / time;
+                                                    path_.strain, stress(), servo.rate, servo.strain);
+  servo.rate = change / time;
   return change;
 }
 
@@ -82,7 +82,7 @@ Report RateControl::make(Matrix3& gradient) {
   Report report;
   Vector6 mean_residual = Vector6::Zero();
   long since_check = 0;
-  const long most = s_.model().options.max_substeps;
+  const long most = state_.model().options.max_substeps;
   while (fraction_ < 1) {
     if (since_check >= time_step_.interval) {
       since_check = 0;
@@ -98,13 +98,13 @@ Report RateControl::make(Matrix3& gradient) {
     fraction_ = double(steps) == count ? 1.0 : fraction_ + share;
     const Matrix3 change = next_strain(share, double(steps) * step);
     const Advanced made =
-        advance(s_, split_increment(s_.cell(), path_.go_on(change, fraction_)), steps, step, time_step_.deep);
+        advance(state_, split_increment(state_.cell(), path_.go_on(change, fraction_)), steps, step, time_step_.deep);
     report.substeps += made.steps;
     since_check += made.step < 0.999 * step ? time_step_.interval : made.steps;
     mean_residual += share * servo_.residual(fraction_, path_.strain, stress());
   }
   gradient = path_.gradient;
-  report.unbalanced_ratio = s_.unbalanced_ratio(s_.checked_balance());
+  report.unbalanced_ratio = state_.unbalanced_ratio(state_.checked_balance());
   report.held_error = servo_.largest_error(mean_residual);
   report.target_held = report.held_error <= target_.tolerance;
   return report;
@@ -112,34 +112,34 @@ Report RateControl::make(Matrix3& gradient) {
 
 }  // namespace
 
-Report load_at_rate(State& s, const FrameSplit& whole, double dt) {
+Report load_at_rate(State& state, const FrameSplit& whole, double dt) {
   Report report;
-  s.begin_loading(Loading::physical);
-  s.control().stress_slope.setZero();
-  const Matrix3 start_frame = s.cell().rotation;
+  state.begin_loading(Loading::at_rate);
+  state.control().deferred.stress_slope.setZero();
+  const Matrix3 start_frame = state.cell().rotation;
   const StrainPath path(whole, true);
   double fraction = 0;
   Matrix3 done = Matrix3::Identity();
   while (fraction < 1) {
     const double left = 1 - fraction;
     const Matrix3 rate =
-        report.substeps == 0 ? Matrix3((whole.stretch - Matrix3::Identity()) / dt) : s.control().last_rate;
-    const TimeStep limit = time_step(s, rate, check_interval, dt);
+        report.substeps == 0 ? Matrix3((whole.stretch - Matrix3::Identity()) / dt) : state.last_step().rate;
+    const TimeStep limit = time_step(state, rate, rate_check_interval, dt);
     const long steps_left = long(std::clamp(steps_in(left * dt, limit.longest), 1.0, 1e15));
-    expect_substeps(s, report.substeps + steps_left);
+    expect_substeps(state, report.substeps + steps_left);
     const double step = left * dt / double(steps_left);
     const long steps = steps_left <= limit.interval + limit.interval / 2 ? steps_left : limit.interval;
     fraction = steps == steps_left ? 1.0 : fraction + left * double(steps) / double(steps_left);
     const Matrix3 next = path.at(fraction);
-    report.substeps += advance(s, next_part(start_frame, s.cell(), done, next), steps, step, limit.deep).steps;
+    report.substeps += advance(state, next_part(start_frame, state.cell(), done, next), steps, step, limit.deep).steps;
     done = next;
   }
-  report.unbalanced_ratio = s.unbalanced_ratio(s.checked_balance());
+  report.unbalanced_ratio = state.unbalanced_ratio(state.checked_balance());
   return report;
 }
 
-Report load_at_rate(State& s, const MixedTarget& target, double dt, Matrix3& gradient) {
-  return RateControl(s, target, dt).make(gradient);
+Report load_at_rate(State& state, const MixedTarget& target, double dt, Matrix3& gradient) {
+  return RateControl(state, target, dt).make(gradient);
 }
 
 }  // namespace rvelab

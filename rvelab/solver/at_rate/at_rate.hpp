@@ -1,4 +1,4 @@
-// Loading at a rate (dt > 0): physical masses, sub-steps of the critical step and of the collisions ahead.
+// Loading at a rate: physical masses, sub-steps of the critical step and of the collisions ahead.
 #pragma once
 
 #include "rvelab/solver/loading/mixed_target.hpp"

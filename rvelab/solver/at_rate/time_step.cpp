@@ -1,4 +1,4 @@
-// The sub-step at dt > 0. Declared in at_rate.hpp.
+// The sub-step at a rate. Declared in at_rate.hpp.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -22,15 +22,15 @@ struct Spring {
 };
 
 template <Shape shape, class Force>
-std::vector<Spring> springs_of(const Model& f, const Assembly& a) {
+std::vector<Spring> springs_of(const Model& model, const Assembly& assembly) {
   std::vector<Spring> springs;
-  each_touching<shape>(f, a, [&](std::size_t p, const auto& at) {
-    const auto i = std::size_t(a.pairs.i[p]), j = std::size_t(a.pairs.j[p]);
-    const ContactStiffness k =
-        stiffness_of<Force>(f, parameters_of(f, a.pairs, p), at.overlap, hertz_radius_ratio(f, a.pairs, p, at));
+  each_touching<shape>(model, assembly, [&](std::size_t p, const auto& at) {
+    const auto i = std::size_t(assembly.pairs.i[p]), j = std::size_t(assembly.pairs.j[p]);
+    const ContactStiffness k = stiffness_of<Force>(model, parameters_of(model, assembly.pairs, p), at.overlap,
+                                                   hertz_radius_ratio(model, assembly.pairs, p, at));
     const Branch& along = at.along();
     springs.push_back({i, j, Vector3(along.x, along.y, along.z) / at.along_length(), k.normal, k.tangential, k.rolling,
-                       f.radius[i] - at.overlap / 2, f.radius[j] - at.overlap / 2});
+                       model.radius[i] - at.overlap / 2, model.radius[j] - at.overlap / 2});
   });
   return springs;
 }
@@ -62,11 +62,11 @@ double stiffness_times(const std::vector<Spring>& springs, const Displacements& 
   return energy;
 }
 
-double largest_quotient(const Model& f, const std::vector<Spring>& springs) {
+double largest_quotient(const Model& model, const std::vector<Spring>& springs) {
   constexpr int iterations = 60;
-  const std::size_t n = f.size();
-  const int d = f.dimension();
-  const bool turns = f.round();
+  const std::size_t n = model.size();
+  const int d = model.dimension();
+  const bool turns = model.round();
   Displacements motion{std::vector<Vector3>(n, Vector3::Zero()), std::vector<Vector3>(n, Vector3::Zero())},
       forces = motion;
   std::uint64_t number = 1;
@@ -77,19 +77,19 @@ double largest_quotient(const Model& f, const std::vector<Spring>& springs) {
   for (std::size_t g = 0; g < n; ++g) {
     for (int k = 0; k < d; ++k) motion.shift[g][k] = drawn();
     if (turns)
-      for (int k = d == 2 ? 2 : 0; k < 3; ++k) motion.turn[g][k] = drawn() / f.radius[g];
+      for (int k = d == 2 ? 2 : 0; k < 3; ++k) motion.turn[g][k] = drawn() / model.radius[g];
   }
   double largest = 0;
   for (int iteration = 0; iteration < iterations; ++iteration) {
     double inertia = 0;
     for (std::size_t g = 0; g < n; ++g)
-      inertia += f.mass[g] * motion.shift[g].squaredNorm() + f.inertia[g] * motion.turn[g].squaredNorm();
+      inertia += model.mass[g] * motion.shift[g].squaredNorm() + model.inertia[g] * motion.turn[g].squaredNorm();
     if (!(inertia > 0)) break;
     largest = std::max(largest, stiffness_times(springs, motion, forces) / inertia);
     const double scale = 1 / std::sqrt(inertia);
     for (std::size_t g = 0; g < n; ++g) {
-      motion.shift[g] = forces.shift[g] * (scale / f.mass[g]);
-      motion.turn[g] = turns ? Vector3(forces.turn[g] * (scale / f.inertia[g])) : Vector3(Vector3::Zero());
+      motion.shift[g] = forces.shift[g] * (scale / model.mass[g]);
+      motion.turn[g] = turns ? Vector3(forces.turn[g] * (scale / model.inertia[g])) : Vector3(Vector3::Zero());
     }
   }
   return std::sqrt(largest);
@@ -99,22 +99,24 @@ double largest_quotient(const Model& f, const std::vector<Spring>& springs) {
 /// of small networks within 2 % of it. K holds the springs of the contacts as they are (loading/inertia.hpp), not the
 /// dashpots; of grains that are not round the translations only. A time step beyond 2 over it is unstable for certain,
 /// one beyond that of the row sums need not be. 0 without contacts. It takes as long as some hundred sub-steps.
-double frequency_reached(const Model& f, const Assembly& a) {
-  return with_force(f, [&](auto force) {
+double frequency_reached(const Model& model, const Assembly& assembly) {
+  return with_force(model, [&](auto force) {
     using Force = decltype(force);
-    return with_shape(f.shape, [&](auto shape) { return largest_quotient(f, springs_of<shape.value, Force>(f, a)); });
+    return with_shape(model.shape, [&](auto shape) {
+      return largest_quotient(model, springs_of<shape.value, Force>(model, assembly));
+    });
   });
 }
 
-void expect_stable(State& s, double step) {
+void expect_stable(State& state, double step) {
   // Of the springs: the bound with dashpots is several times below where restitution 0.1 errs. The row sums are a bound
   // from one side: YADE's step of its dense packing is 1.26 times theirs and stable.
-  RowSums springs = s.row_sums();
+  RowSums springs = state.row_sums();
   springs.dashpot.clear();
-  if (step <= critical_step(s.model(), springs)) return;
-  const double limit = 2 / frequency_reached(s.model(), s.assembly());
+  if (step <= critical_step(state.model(), springs)) return;
+  const double limit = 2 / frequency_reached(state.model(), state.assembly());
   if (step <= limit) return;
-  throw IncrementFailed("solver.fixed_time_step_s = " + in_words(s.model().options.fixed_time_step) +
+  throw IncrementFailed("solver.fixed_time_step_s = " + in_words(state.model().options.fixed_time_step) +
                         " s is above the critical step, " + in_words(limit) +
                         " s, of the contacts as they are: energy would come from nowhere; give at most 0.7 of it, or "
                         "0 for steps that follow the contacts");
@@ -122,25 +124,26 @@ void expect_stable(State& s, double step) {
 
 }  // namespace
 
-TimeStep time_step(State& s, const Matrix3& rate, long interval, double dt) {
-  const Model& f = s.model();
-  check_height(f, s.cell());  // lists do it too, but may live long
-  const double fixed = f.options.fixed_time_step;
+TimeStep time_step(State& state, const Matrix3& rate, long interval, double dt) {
+  const Model& model = state.model();
+  check_height(model, state.cell());  // lists do it too, but may live long
+  const double fixed = model.options.fixed_time_step;
   if (fixed > 0) {
-    const Collisions ahead = collisions_ahead(f, s.assembly(), nullptr, false, {rate, double(interval) * fixed, dt});
-    if (ahead.beyond) s.checked_balance();
-    expect_stable(s, std::min(fixed, dt));
+    const Collisions ahead =
+        collisions_ahead(model, state.assembly(), nullptr, false, {rate, double(interval) * fixed, dt});
+    if (ahead.beyond) state.checked_balance();
+    expect_stable(state, std::min(fixed, dt));
     return {fixed, interval, ahead.deep};
   }
-  double stable = f.options.time_step_factor * critical_step(f, with_floor(s.row_sums(), f));
+  double stable = model.options.time_step_factor * critical_step(model, with_floor(state.row_sums(), model));
   // Strong local damping takes (1 - alpha) to (1 + alpha) of the force as the motion turns: at 0.99 an eighth of the
   // energy came from nowhere at the critical step. (2 (1 - alpha))^(3/4): with the root the energy balance is open by
   // 1.7 %.
-  const double damping = 2 * (1 - f.damping.local);
+  const double damping = 2 * (1 - model.damping.local);
   if (damping < 1) stable *= std::sqrt(damping * std::sqrt(damping));
   const double horizon = std::min(double(interval) * stable, dt);
-  const Collisions ahead = collisions_ahead(f, s.assembly(), &s.row_sums(), true, {rate, horizon, dt});
-  if (ahead.beyond) s.checked_balance();
+  const Collisions ahead = collisions_ahead(model, state.assembly(), &state.row_sums(), true, {rate, horizon, dt});
+  if (ahead.beyond) state.checked_balance();
   const double longest = std::min(stable, ahead.step);
   const double steps = std::clamp(std::ceil(ahead.look / longest), 10.0, double(interval));
   return {longest, long(steps), ahead.deep};

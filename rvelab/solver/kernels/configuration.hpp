@@ -34,16 +34,16 @@ struct Dissipation {
 
 /// Constants of one sub-step (all in the cell frame).
 struct StepConstants {
-  double dt = 0;                 ///< s; 1 at dt = 0
+  double dt = 0;                 ///< s; 1 in quasi-static loading
   UpperTriangle lattice;         ///< L at the end of the step
   UpperTriangle rate;            ///< D+ = (L1 - L0)/dt L1^-1: branch velocity = dv' + D+ (b - dt/2 dv')
   double spin[3] = {};           ///< axial vector of skew D, at mid-step
   UpperTriangle map;             ///< A = L1 L0^-1
   UpperTriangle velocity_map;    ///< dt B, B = L_mid L0^-1: x1 = A x0 + dt B v'
-  double momentum_map[9] = {};   ///< P = (I + dt/2 G)^-1 (I - dt/2 G), G = D + 2 Omega (dt > 0 only)
+  double momentum_map[9] = {};   ///< P = (I + dt/2 G)^-1 (I - dt/2 G), G = D + 2 Omega (at a rate only)
   double force_map[9] = {};      ///< (I + dt/2 G)^-1
-  double spin_map[9] = {};       ///< the same rotation for spins, Omega only (3D, dt > 0)
-  double spin_shift[3] = {};     ///< added to w' each step (dt > 0): minus the change of axial(W + Omega)
+  double spin_map[9] = {};       ///< the same rotation for spins, Omega only (3D, at a rate)
+  double spin_shift[3] = {};     ///< added to w' each step (at a rate): minus the change of axial(W + Omega)
   double mean_velocity[3] = {};  ///< taken out of v' at the start of the step
   double local_damping = 0;
   double global_viscous = 0;    ///< N s/m
@@ -51,7 +51,7 @@ struct StepConstants {
   int dashpot_quarters = 0;     ///< power of the overlap in the dashpot coefficient, in quarters
   bool no_tension = false;
   bool unload_rescale = true;
-  bool losses = false;  ///< dt > 0: sums of what the dampings take are asked for
+  bool losses = false;  ///< at a rate: sums of what the dampings take are asked for
 };
 
 /// Listed pairs, padded with pairs that never touch to a multiple of eight. The first `near` of them touched when they
@@ -85,14 +85,13 @@ constexpr long chunk_grains = 64;
 struct GrainArrays {
   double* rows = nullptr;
   const double *mass = nullptr, *inverse_mass = nullptr, *inverse_inertia = nullptr;
-  /// Gather table. A grain has two tasks: to add up the force rows of the pairs in which it is j, and of those in which
-  /// it is i. The tasks of a chunk of grains are sorted by their number of pairs and done four at a time: block b has
-  /// slots [slot_begin[b], slot_begin[b + 1]) of four pairs each, a task with fewer pairs than its block has slots
-  /// pointing to a padding pair, whose force is zero. Loop lengths are seldom mispredicted so, and hardly a slot is
-  /// padding (against blocks of four neighbouring grains: spheres 32.6 ns a grain instead of 35.7, discs equal). Slots
-  /// hold where the force row of the pair starts, in doubles; tasks, four a block, where the sum of the task goes: four
-  /// times the place of the grain in its chunk, plus 4 chunk_grains for i. Slots of pairs that have not touched since
-  /// they were listed point to a padding pair too (PairTable::gathered).
+  /// Gather table. Grain g of a chunk has two tasks: the sum of the force rows where it is j, and of those where it is
+  /// i. The tasks of a chunk, sorted by their number of pairs, form blocks of four lanes. Lane k of block b adds the
+  /// force rows that begin at slots[4 s + k], s = slot_begin[b] to slot_begin[b + 1] - 1; a lane that runs out reads a
+  /// padding pair, whose force is zero, and so do pairs that have not touched since they were listed
+  /// (PairTable::gathered). tasks[4 b + k] is where the sum goes: 4 g as j, 4 (chunk_grains + g) as i. Loop lengths are
+  /// seldom mispredicted so (against blocks of four neighbouring grains: spheres 32.6 ns a grain instead of 35.7, discs
+  /// equal).
   const std::int32_t *slot_begin = nullptr, *slots = nullptr;
   const std::uint16_t* tasks = nullptr;
   const double *turn_first = nullptr, *turn_second = nullptr;  ///< not round: TurnValues (grains/description.hpp)
@@ -133,7 +132,7 @@ struct Kernels {
   PairKernel evaluate = nullptr;           ///< contact forces of the stored history, nothing advanced (scalar)
   PlaceKernel places = nullptr;            ///< shapes that are not round: where pairs are, for sums outside the loops
   GrainKernel quasi_static[3] = {};        ///< by KernelDamping
-  GrainKernel dynamic[3] = {};
+  GrainKernel at_rate[3] = {};
   int lanes = 1;
   const char* instruction_set = "scalar";
 };

@@ -38,7 +38,8 @@ inline __attribute__((always_inline)) void disc_places(const StepConstants& c, c
     store_as(s.ny.at + k, ny);
     store_as(s.overlap.at + k, radii - length);
     if constexpr (T::Advance || T::Dashpot) {
-      // Indices kept in registers until here would push out vectors (eight lanes: 147 instructions instead of 204).
+      // row_i, row_j kept in registers from above would spill vectors (eight lanes: 204 instructions, loaded again
+      // 147).
       read_memory_again();
       const V spin_i = gather_spins<W>(rows, p.row_i + at), spin_j = gather_spins<W>(rows, p.row_j + at);
       const V du = d[2], dv = d[3];

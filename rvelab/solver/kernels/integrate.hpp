@@ -13,10 +13,10 @@
 namespace rvelab {
 namespace {
 
-template <int W_, bool Rolling_, bool Dynamic_, KernelDamping damping_>
+template <int W_, bool Rolling_, bool AtRate_, KernelDamping damping_>
 struct GrainTraits {
   static constexpr int W = W_;
-  static constexpr bool Rolling = Rolling_, Dynamic = Dynamic_;
+  static constexpr bool Rolling = Rolling_, AtRate = AtRate_;
   static constexpr KernelDamping damping = damping_;
 };
 

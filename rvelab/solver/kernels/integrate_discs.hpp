@@ -61,7 +61,7 @@ inline __attribute__((always_inline)) void damp_discs(const StepConstants& c, co
       const V u = a[2] - c.mean_velocity[0], v = a[3] - c.mean_velocity[1];
       store_as(s.u.at + k, u);
       store_as(s.v.at + k, v);
-      if constexpr (T::Dynamic) {
+      if constexpr (T::AtRate) {
         if (c.global_viscous != 0.0) {
           fx = fx - c.global_viscous * u;
           fy = fy - c.global_viscous * v;
@@ -112,11 +112,11 @@ inline __attribute__((always_inline)) void move_discs(const StepConstants& c, co
           fy = damped_component(c.local_damping, fy, py);
         }
         torque = damped_component(c.local_damping, torque, pw);
-        if (T::Dynamic && c.losses)
+        if (T::AtRate && c.losses)
           lost_locally.add(part, c.dt * ((free_x - fx) * px + (free_y - fy) * py + (free_torque - torque) * pw));
       }
       const V ax = c.dt * (fx * inverse_mass), ay = c.dt * (fy * inverse_mass);
-      if constexpr (T::Dynamic) {
+      if constexpr (T::AtRate) {
         const V pu = (c.momentum_map[0] * u + c.momentum_map[1] * v) + (c.force_map[0] * ax + c.force_map[1] * ay);
         const V pv = (c.momentum_map[3] * u + c.momentum_map[4] * v) + (c.force_map[3] * ax + c.force_map[4] * ay);
         u = pu;

@@ -118,7 +118,7 @@ inline __attribute__((always_inline)) void damp_spheres(const StepConstants& c, 
       columns_of<W>(row + 8, 12, a);
       const Triple<V> w = {a[0], a[1], a[2]};
       s.spin.store(k, w);
-      if constexpr (T::Dynamic) {
+      if constexpr (T::AtRate) {
         if (c.global_viscous != 0.0) {
           f = plus(f, V{} - c.global_viscous, v);
           if (c.losses) lost_globally.add(part, c.dt * c.global_viscous * dot(v, v));
@@ -166,12 +166,12 @@ inline __attribute__((always_inline)) void move_spheres(const StepConstants& c, 
           t = {damped_component(c.local_damping, t.x, pw.x), damped_component(c.local_damping, t.y, pw.y),
                damped_component(c.local_damping, t.z, pw.z)};
         }
-        if (T::Dynamic && c.losses)
+        if (T::AtRate && c.losses)
           lost_locally.add(part, c.dt * (dot(plus(free_f, -one, f), pv) + dot(plus(free_t, -one, t), pw)));
       }
       Triple<V> v = s.velocity.load<V>(k), w = s.spin.load<V>(k);
       const Triple<V> a = times(dt, times(load_as<V>(g.inverse_mass + at), f));
-      if constexpr (T::Dynamic) {
+      if constexpr (T::AtRate) {
         v = plus(mapped(c.momentum_map, v), one, mapped(c.force_map, a));
         w = mapped(c.spin_map, w);
         w = {w.x + c.spin_shift[0], w.y + c.spin_shift[1], w.z + c.spin_shift[2]};

@@ -83,7 +83,7 @@ inline __attribute__((always_inline)) typename Lanes<W>::V gather_spins(const do
   return Lanes<W>::collected([=](int lane) { return rows[grain[lane] + 4]; });
 }
 
-/// What was read from the arrays handed in is read anew when it is asked for again.
+/// Compiler barrier: what was loaded before is loaded again.
 inline __attribute__((always_inline)) void read_memory_again() { asm volatile("" ::: "memory"); }
 
 /// Pairs of one chunk: the scratch of all passes stays in the first-level cache.

@@ -78,9 +78,9 @@ void set_grain_kernels(Kernels& kernels) {
   kernels.quasi_static[0] = grain_kernel<Pairs, GrainTraits<W, Rolling, false, none>>();
   kernels.quasi_static[1] = grain_kernel<Pairs, GrainTraits<W, Rolling, false, vector>>();
   kernels.quasi_static[2] = grain_kernel<Pairs, GrainTraits<W, Rolling, false, component>>();
-  kernels.dynamic[0] = grain_kernel<Pairs, GrainTraits<W, Rolling, true, none>>();
-  kernels.dynamic[1] = grain_kernel<Pairs, GrainTraits<W, Rolling, true, vector>>();
-  kernels.dynamic[2] = grain_kernel<Pairs, GrainTraits<W, Rolling, true, component>>();
+  kernels.at_rate[0] = grain_kernel<Pairs, GrainTraits<W, Rolling, true, none>>();
+  kernels.at_rate[1] = grain_kernel<Pairs, GrainTraits<W, Rolling, true, vector>>();
+  kernels.at_rate[2] = grain_kernel<Pairs, GrainTraits<W, Rolling, true, component>>();
 }
 
 /// The advancing kernels of one shape at W lanes; of the scalar reference those that do not advance too.

@@ -56,21 +56,23 @@ constexpr double pi = 3.14159265358979323846;
 double square(double x) { return x * x; }
 
 /// `Impact`: how the law's springs collide (contact/impact.hpp). What differs from pair to pair without a pattern is
-/// masked, not branched on (time at dt > 0 over that with branches and a balance at each look: 1,000 spheres 0.95, 400
+/// masked, not branched on (time at a rate over that with branches and a balance at each look: 1,000 spheres 0.95, 400
 /// discs 0.96).
 template <Shape shape, class Impact>
-PairExtremes pairs_in(const Model& f, const Assembly& a, const PairPlaces<shape>& pair, const Outlook& outlook,
-                      std::size_t first, std::size_t last) {
+PairExtremes pairs_in(const Model& model, const Assembly& assembly, const PairPlaces<shape>& pair,
+                      const Outlook& outlook, std::size_t first, std::size_t last) {
   constexpr int D = dimension_of(shape);
   PairExtremes found;
   const UpperTriangle rate = upper_triangle(outlook.rate);
-  const double horizon = outlook.horizon, increment = outlook.increment, known_gap = listed_gap(f, a);
-  const double* velocities = a.rows.data() + f.velocity_offset();
-  const double *masses = f.mass.data(), *radii = f.radius.data(), *kn = a.pairs.kn.data();
-  const std::int32_t *order = a.pairs.order.data(), *grain_i = a.pairs.i.data(), *grain_j = a.pairs.j.data();
-  const std::int32_t *row_i = a.pairs.row_i.data(), *row_j = a.pairs.row_j.data();
-  const bool curvature = f.radius_from_curvature(), dashpot = f.damping.dashpot != Dashpot::none;
-  const double power = dashpot_power(f.contact.law, f.damping.dashpot), allowed = f.options.max_overlap_ratio;
+  const double horizon = outlook.horizon, increment = outlook.increment, known_gap = listed_gap(model, assembly);
+  const double* velocities = assembly.rows.data() + model.velocity_offset();
+  const double *masses = model.mass.data(), *radii = model.radius.data(), *kn = assembly.pairs.kn.data();
+  const std::int32_t *order = assembly.pairs.order.data(), *grain_i = assembly.pairs.i.data(),
+                     *grain_j = assembly.pairs.j.data();
+  const std::int32_t *row_i = assembly.pairs.row_i.data(), *row_j = assembly.pairs.row_j.data();
+  const bool curvature = model.radius_from_curvature(), dashpot = model.damping.dashpot != Dashpot::none;
+  const double power = dashpot_power(model.contact.law, model.damping.dashpot),
+               allowed = model.options.max_overlap_ratio;
   for (std::size_t q = first; q < last; ++q) {
     const auto p = std::size_t(order[q]), i = std::size_t(grain_i[p]), j = std::size_t(grain_j[p]);
     const auto place = pair.within(p, known_gap);
@@ -97,8 +99,8 @@ PairExtremes pairs_in(const Model& f, const Assembly& a, const PairPlaces<shape>
     // Where grains will meet is not known: as stiff for the step as they can be, as soft for the depth.
     double k = kn[p], softest = k;
     if (curvature) {
-      const RadiusRatios ratios = hertz_radius_ratios(f, a.pairs, p);
-      k *= std::sqrt(overlap > 0 ? hertz_radius_ratio(f, a.pairs, p, place) : ratios.largest);
+      const RadiusRatios ratios = hertz_radius_ratios(model, assembly.pairs, p);
+      k *= std::sqrt(overlap > 0 ? hertz_radius_ratio(model, assembly.pairs, p, place) : ratios.largest);
       softest *= std::sqrt(ratios.least);
     }
     found.approach += 0.5 * mass * opening * opening;
@@ -110,7 +112,7 @@ PairExtremes pairs_in(const Model& f, const Assembly& a, const PairPlaces<shape>
     if (Impact::stiffens) found.impact = std::max(found.impact, Impact::measure(ratio, opening * opening));
     if (dashpot) {
       const double over = power == 0 ? mass : (power == 0.5 ? k : std::sqrt(mass * k));
-      found.damping = std::max(found.damping, a.pairs.cn[p] / over);
+      found.damping = std::max(found.damping, assembly.pairs.cn[p] / over);
     }
     if (travel - gap > limit)
       found.deep =
@@ -139,17 +141,17 @@ inline void add_pair(const PairTable& pairs, std::size_t p, double* on_i, double
 
 /// Resultant forces of all grains; on a team a piece of grains gathers its own, in the same order.
 template <int D>
-std::vector<double> resultants_in(const Model& f, const Assembly& a) {
-  std::vector<double> force(D * f.size(), 0.0);
-  const PairTable& pairs = a.pairs;
-  if (f.sharing() == nullptr) {
+std::vector<double> resultants_in(const Model& model, const Assembly& assembly) {
+  std::vector<double> force(D * model.size(), 0.0);
+  const PairTable& pairs = assembly.pairs;
+  if (model.sharing() == nullptr) {
     for (const std::int32_t place : pairs.order) {
       const auto p = std::size_t(place), i = std::size_t(pairs.i[p]), j = std::size_t(pairs.j[p]);
       if (i != j) add_pair<D>(pairs, p, force.data() + D * i, force.data() + D * j);
     }
     return force;
   }
-  in_pieces(f.size(), f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
+  in_pieces(model.size(), model.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
     each_pair_of_grains<D>(pairs, first, last, [&](std::size_t g, std::size_t p, bool as_j) {
       double* on_g = force.data() + D * g;
       if (pairs.i[p] != pairs.j[p]) add_pair<D>(pairs, p, as_j ? nullptr : on_g, as_j ? on_g : nullptr);
@@ -160,30 +162,32 @@ std::vector<double> resultants_in(const Model& f, const Assembly& a) {
 
 /// `stiffness`: the row sum of a grain, N/m.
 template <Shape shape, class Stiffness>
-GrainMotion grains_in(const Model& f, const Assembly& a, const Stiffness& stiffness, const std::vector<double>& force,
-                      std::size_t first, std::size_t last) {
+GrainMotion grains_in(const Model& model, const Assembly& assembly, const Stiffness& stiffness,
+                      const std::vector<double>& force, std::size_t first, std::size_t last) {
   constexpr int D = dimension_of(shape);
   GrainMotion motion;
   for (std::size_t g = first; g < last; ++g) {
-    const double* v = a.rows.data() + g * std::size_t(f.row_length()) + std::size_t(f.velocity_offset());
+    const double* v = assembly.rows.data() + g * std::size_t(model.row_length()) + std::size_t(model.velocity_offset());
     double resultant = 0, speed = 0;
     for (std::size_t c = 0; c < D; ++c) {
       resultant += square(force[D * g + c]);
       speed += square(v[c]);
     }
     if (resultant > 0) motion.resultants += resultant / stiffness(g);  // row sums count kn twice
-    motion.kinetic += 0.5 * f.mass[g] * speed;
-    if constexpr (!is_round(shape)) speed = square(std::sqrt(speed) + outline_speed_by_turn(v - f.velocity_offset()));
+    motion.kinetic += 0.5 * model.mass[g] * speed;
+    if constexpr (!is_round(shape))
+      speed = square(std::sqrt(speed) + outline_speed_by_turn(v - model.velocity_offset()));
     motion.fastest = std::max(motion.fastest, speed);
   }
   return motion;
 }
 
 template <Shape shape, class Stiffness>
-GrainMotion motion_of(const Model& f, const Assembly& a, const Stiffness& stiffness, const std::vector<double>& force) {
-  std::vector<GrainMotion> of_grains(pieces_in(f.size()));
-  in_pieces(f.size(), f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
-    of_grains[piece] = grains_in<shape>(f, a, stiffness, force, first, last);
+GrainMotion motion_of(const Model& model, const Assembly& assembly, const Stiffness& stiffness,
+                      const std::vector<double>& force) {
+  std::vector<GrainMotion> of_grains(pieces_in(model.size()));
+  in_pieces(model.size(), model.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
+    of_grains[piece] = grains_in<shape>(model, assembly, stiffness, force, first, last);
   });
   GrainMotion motion;
   for (const GrainMotion& piece : of_grains) {
@@ -196,16 +200,16 @@ GrainMotion motion_of(const Model& f, const Assembly& a, const Stiffness& stiffn
 
 /// No more than the row sum of any grain with contacts, N/m (inertia.cpp: its stiffest listed pair counts at a quarter
 /// of p0's overlap at least); 0: not known.
-double least_row_sum(const Model& f, const Assembly& a, double least_kn) {
-  if (f.radius_from_curvature()) return 0;
-  const double root = std::sqrt(0.25 * a.state.reference_overlap);
-  return 2 * with_force(f, [&](auto force) { return decltype(force)::normal_stiffness(least_kn, root); });
+double least_row_sum(const Model& model, const Assembly& assembly, double least_kn) {
+  if (model.radius_from_curvature()) return 0;
+  const double root = std::sqrt(0.25 * assembly.state.reference.overlap);
+  return 2 * with_force(model, [&](auto force) { return decltype(force)::normal_stiffness(least_kn, root); });
 }
 
 /// Longest sub-step that meets the restitution, s, of collisions of frequency omega.
-double dashpot_step(const Model& f, double damping, double omega) {
+double dashpot_step(const Model& model, double damping, double omega) {
   // At the overlap where omega^2 = 3/2 (k/m*) sqrt(delta).
-  const double power = dashpot_power(f.contact.law, f.damping.dashpot);
+  const double power = dashpot_power(model.contact.law, model.damping.dashpot);
   double gamma = damping;
   if (power == 0.25) gamma = damping * omega / std::sqrt(1.5);
   if (power == 0.5) gamma = damping * omega * omega / 1.5;
@@ -220,15 +224,15 @@ double dynamic_share(double moving, double elastic) { return moving < elastic ? 
 
 /// Steps that what the pairs and grains show asks for.
 template <class Impact>
-Collisions limited(const Model& f, const Assembly& a, const PairExtremes& all, const GrainMotion& motion,
+Collisions limited(const Model& model, const Assembly& assembly, const PairExtremes& all, const GrainMotion& motion,
                    const Outlook& outlook, Collisions found) {
   found.beyond = found.beyond || !std::isfinite(motion.kinetic + motion.resultants);
-  const double skin = a.state.list_skin;
-  const double speed = 2 * std::sqrt(motion.fastest) + outlook.rate.norm() * (2 * f.largest_reach + skin);
+  const double skin = assembly.state.list.skin;
+  const double speed = 2 * std::sqrt(motion.fastest) + outlook.rate.norm() * (2 * model.largest_reach + skin);
   const double flight = dynamic_share(motion.kinetic, all.elastic);
   if (speed * flight > 0) {
     // Nor may it cross what is left of the list's reach, beyond which nothing is known.
-    const double known = std::max(0.25 * listed_gap(f, a), 0.005 * skin);
+    const double known = std::max(0.25 * listed_gap(model, assembly), 0.005 * skin);
     found.step = std::min(flight_per_step * skin, known) / speed / flight;
     found.look = flight_per_look * skin / speed / flight;
   }
@@ -236,20 +240,21 @@ Collisions limited(const Model& f, const Assembly& a, const PairExtremes& all, c
   const double share = dynamic_share(all.approach + motion.resultants, all.elastic);
   const double omega = Impact::frequency(all.stiffness);
   if (!(omega * share > 0)) return found;
-  const double steps = double(f.options.collision_steps) * Impact::steps;
+  const double steps = double(model.options.collision_steps) * Impact::steps;
   found.step = std::min(found.step, pi / steps / omega / share);
   // A few fast grains among many at rest: half of the step at which the stiffest of their impacts would be unstable.
   if (all.impact > 0) found.step = std::min(found.step, 1 / Impact::frequency(all.impact));
-  if (all.damping > 0) found.step = std::min(found.step, dashpot_step(f, all.damping, omega) / (share * share));
+  if (all.damping > 0) found.step = std::min(found.step, dashpot_step(model, all.damping, omega) / (share * share));
   return found;
 }
 
 template <Shape shape, class Impact>
-Collisions ahead(const Model& f, const Assembly& a, const RowSums* known, bool find_step, const Outlook& outlook) {
-  const PairPlaces<shape> pair(f, a);
-  std::vector<PairExtremes> of_pairs(pieces_in(a.pairs.listed));
-  in_pieces(a.pairs.listed, f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
-    of_pairs[piece] = pairs_in<shape, Impact>(f, a, pair, outlook, first, last);
+Collisions ahead(const Model& model, const Assembly& assembly, const RowSums* known, bool find_step,
+                 const Outlook& outlook) {
+  const PairPlaces<shape> pair(model, assembly);
+  std::vector<PairExtremes> of_pairs(pieces_in(assembly.pairs.listed));
+  in_pieces(assembly.pairs.listed, model.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
+    of_pairs[piece] = pairs_in<shape, Impact>(model, assembly, pair, outlook, first, last);
   });
   PairExtremes all;
   for (const PairExtremes& piece : of_pairs) all.add(piece);
@@ -257,33 +262,34 @@ Collisions ahead(const Model& f, const Assembly& a, const RowSums* known, bool f
   found.step = found.look = std::numeric_limits<double>::infinity();
   found.deep = all.deep;
   found.beyond = all.beyond;
-  if (!find_step || f.options.collision_steps == 0) return found;
+  if (!find_step || model.options.collision_steps == 0) return found;
 
-  const std::vector<double> force = resultants_in<dimension_of(shape)>(f, a);
+  const std::vector<double> force = resultants_in<dimension_of(shape)>(model, assembly);
   // With the least sum that a grain can have the step comes out no longer: where even that one is not shorter than the
   // step in use, no sums are needed (400 discs 1.02, 1,000 spheres 1.04 times as fast).
-  const double least = known == nullptr && outlook.step > 0 ? least_row_sum(f, a, all.least_kn) : 0;
+  const double least = known == nullptr && outlook.step > 0 ? least_row_sum(model, assembly, all.least_kn) : 0;
   if (least > 0) {
     const GrainMotion motion = motion_of<shape>(
-        f, a, [&](std::size_t) { return least; }, force);
-    const Collisions sooner = limited<Impact>(f, a, all, motion, outlook, found);
+        model, assembly, [&](std::size_t) { return least; }, force);
+    const Collisions sooner = limited<Impact>(model, assembly, all, motion, outlook, found);
     if (!(sooner.step < outlook.step)) return sooner;
   }
   RowSums fresh;
-  if (known == nullptr) fresh = row_sums(f, a);
+  if (known == nullptr) fresh = row_sums(model, assembly);
   const double* stiffness = (known == nullptr ? fresh : *known).translation.data();
   const GrainMotion motion = motion_of<shape>(
-      f, a, [&](std::size_t g) { return stiffness[g]; }, force);
-  return limited<Impact>(f, a, all, motion, outlook, found);
+      model, assembly, [&](std::size_t g) { return stiffness[g]; }, force);
+  return limited<Impact>(model, assembly, all, motion, outlook, found);
 }
 
 }  // namespace
 
-Collisions collisions_ahead(const Model& f, const Assembly& a, const RowSums* sums, bool find_step,
+Collisions collisions_ahead(const Model& model, const Assembly& assembly, const RowSums* sums, bool find_step,
                             const Outlook& outlook) {
-  return with_law(f.contact.law, [&](auto law) {
+  return with_law(model.contact.law, [&](auto law) {
     using Impact = typename decltype(law)::Force::Impact;
-    return with_shape(f.shape, [&](auto shape) { return ahead<shape.value, Impact>(f, a, sums, find_step, outlook); });
+    return with_shape(
+        model.shape, [&](auto shape) { return ahead<shape.value, Impact>(model, assembly, sums, find_step, outlook); });
   });
 }
 

@@ -1,4 +1,4 @@
-// What the collisions under way and those that are coming ask of the time step at dt > 0.
+// What the collisions under way and those that are coming ask of the time step at a rate.
 //
 // The critical step is a limit of stability. A collision that it takes in two or three sub-steps ends with anything
 // from 0.7 to 1.3 of its energy: with leapfrog and a spring, energy after over energy before is
@@ -37,8 +37,8 @@ struct Outlook {
 };
 
 /// Goes through all listed pairs that touch, or that meet within the horizon at their present velocities. The
-/// velocities must be physical (dt > 0). Row sums are made where they are not at hand (null) and could matter: a step
-/// that is not shorter than the one in use is then a lower bound. With `find_step` false only `deep` is found.
+/// velocities must be physical (at a rate). Row sums are made where they are not at hand (null) and could matter: a
+/// step that is not shorter than the one in use is then a lower bound. With `find_step` false only `deep` is found.
 Collisions collisions_ahead(const Model& model, const Assembly& assembly, const RowSums* sums, bool find_step,
                             const Outlook& outlook);
 

@@ -126,16 +126,16 @@ class TermsOfPairs {
  public:
   static constexpr int D = dimension_of(shape);
 
-  TermsOfPairs(const Model& f, const Assembly& a)
-      : f_(f),
-        pairs_(a.pairs),
-        pair_(f, a),
-        kn_(a.pairs.kn.data()),
-        kt_(a.pairs.kt.data()),
-        kr_(f.contact.rolling ? a.pairs.kr.data() : nullptr),
-        cn_(f.damping.dashpot != Dashpot::none ? a.pairs.cn.data() : nullptr),
-        law_constant_(a.pairs.law_constant.empty() ? nullptr : a.pairs.law_constant.data()),
-        firm_overlap_(0.25 * a.state.reference_overlap) {}
+  TermsOfPairs(const Model& model, const Assembly& assembly)
+      : model_(model),
+        pairs_(assembly.pairs),
+        pair_(model, assembly),
+        kn_(assembly.pairs.kn.data()),
+        kt_(assembly.pairs.kt.data()),
+        kr_(model.contact.rolling ? assembly.pairs.kr.data() : nullptr),
+        cn_(model.damping.dashpot != Dashpot::none ? assembly.pairs.cn.data() : nullptr),
+        law_constant_(assembly.pairs.law_constant.empty() ? nullptr : assembly.pairs.law_constant.data()),
+        firm_overlap_(0.25 * assembly.state.reference.overlap) {}
 
   inline __attribute__((always_inline)) PairTerms<D> operator()(std::size_t p) const {
     decltype(pair_(p)) place{};  // of no overlap
@@ -144,14 +144,15 @@ class TermsOfPairs {
     double ratio = 1;
     // What may come to touch may do so where its curvature is least.
     if constexpr (!is_round(shape))
-      ratio = overlap > 0 ? hertz_radius_ratio(f_, pairs_, p, place) : hertz_radius_ratios(f_, pairs_, p).largest;
+      ratio =
+          overlap > 0 ? hertz_radius_ratio(model_, pairs_, p, place) : hertz_radius_ratios(model_, pairs_, p).largest;
     const PairParameters q{kn_[p], kt_[p],          law_constant_ ? law_constant_[p] : 0, 0, kr_ ? kr_[p] : 0,
                            0,      cn_ ? cn_[p] : 0};
-    PairTerms<D> t{rvelab::stiffness_of<Force>(f_, q, std::max(overlap, firm_overlap_), ratio)};
+    PairTerms<D> t{rvelab::stiffness_of<Force>(model_, q, std::max(overlap, firm_overlap_), ratio)};
     t.firm_translation = std::max(2 * t.firm.normal, 4 * t.firm.tangential);
     t.touching = overlap > 0;
     if (!t.touching) return t;
-    t.now = rvelab::stiffness_of<Force>(f_, q, overlap, ratio);
+    t.now = rvelab::stiffness_of<Force>(model_, q, overlap, ratio);
     // The force turning with the branch (initial stress) adds f_n / length to the tangential stiffness at most.
     const double kt = t.now.tangential + 0.5 * normal_force_of<Force>(q, overlap, ratio) / place.length;
     t.along = 2 * t.now.normal - 4 * kt;
@@ -172,7 +173,7 @@ class TermsOfPairs {
   }
 
  private:
-  const Model& f_;
+  const Model& model_;
   const PairTable& pairs_;
   PairPlaces<shape> pair_;
   const double *kn_, *kt_, *kr_, *cn_, *law_constant_;
@@ -185,13 +186,13 @@ double normal_to_translation(double kn, double turn, double r) { return 2 * kn *
 double normal_to_rotation(double kn, double turn, double r) { return 2 * kn * (turn * turn + turn * r); }
 
 template <Shape shape>
-inline __attribute__((always_inline)) void add(const Model& f, const PairTerms<dimension_of(shape)>& t, std::size_t g,
-                                               bool as_j, GrainSums<dimension_of(shape)>& sums) {
+inline __attribute__((always_inline)) void add(const Model& model, const PairTerms<dimension_of(shape)>& t,
+                                               std::size_t g, bool as_j, GrainSums<dimension_of(shape)>& sums) {
   constexpr int D = dimension_of(shape);
-  const double r = f.radius.data()[g];
+  const double r = model.radius.data()[g];
   if constexpr (!is_round(shape)) {
     // What may come to touch may do so anywhere.
-    const Extent extent = Description<shape>::extent(own_of<Description<shape>>(f.own, g));
+    const Extent extent = Description<shape>::extent(own_of<Description<shape>>(model.own, g));
     const double a = extent.outer, farthest = extent.turning, turn = t.turn[as_j];
     sums.stiffest = std::max(sums.stiffest, t.firm_translation + normal_to_translation(t.firm.normal, farthest, r));
     sums.stiffest_turn = std::max(sums.stiffest_turn, 4 * t.firm.tangential * a * a + 2 * t.firm.rolling +
@@ -208,8 +209,8 @@ inline __attribute__((always_inline)) void add(const Model& f, const PairTerms<d
     add_to<D>(sums.stiffness, t.stiffness);
     sums.rotation += 4 * t.now.tangential * r * r + 2 * t.now.rolling;
   }
-  if (f.damping.dashpot != Dashpot::none)
-    sums.dashpot += 2 * t.now.dashpot * std::max(1.0, 2 * f.damping.tangential_ratio);
+  if (model.damping.dashpot != Dashpot::none)
+    sums.dashpot += 2 * t.now.dashpot * std::max(1.0, 2 * model.damping.tangential_ratio);
 }
 
 /// Stiffnesses of the contacts, of which floors are medians.
@@ -229,33 +230,34 @@ struct Firmness {
 /// Sums of all grains. Each pair is visited once; by a team once for each of its grains, so that threads share
 /// nothing. A grain adds its pairs in the same order either way.
 template <Shape shape, class Force>
-std::vector<GrainSums<dimension_of(shape)>> sums_of_grains(const Model& f, const Assembly& a, Firmness& firmness) {
+std::vector<GrainSums<dimension_of(shape)>> sums_of_grains(const Model& model, const Assembly& assembly,
+                                                           Firmness& firmness) {
   constexpr int D = dimension_of(shape);
-  std::vector<GrainSums<D>> sums(f.size());
-  const TermsOfPairs<shape, Force> terms_of(f, a);
-  const double* radius = f.radius.data();
-  const std::int32_t *grain_i = a.pairs.i.data(), *grain_j = a.pairs.j.data();
-  if (f.sharing() == nullptr) {
-    firmness.expect(a.pairs.listed);
-    for (const std::int32_t place : a.pairs.order) {
+  std::vector<GrainSums<D>> sums(model.size());
+  const TermsOfPairs<shape, Force> terms_of(model, assembly);
+  const double* radius = model.radius.data();
+  const std::int32_t *grain_i = assembly.pairs.i.data(), *grain_j = assembly.pairs.j.data();
+  if (model.sharing() == nullptr) {
+    firmness.expect(assembly.pairs.listed);
+    for (const std::int32_t place : assembly.pairs.order) {
       const auto p = std::size_t(place), i = std::size_t(grain_i[p]), j = std::size_t(grain_j[p]);
       const PairTerms<D> t = terms_of(p);
-      add<shape>(f, t, i, false, sums[i]);
-      add<shape>(f, t, j, true, sums[j]);
+      add<shape>(model, t, i, false, sums[i]);
+      add<shape>(model, t, j, true, sums[j]);
       firmness.add(t, radius[i], radius[j]);
     }
     firmness.expect(firmness.count);
     return sums;
   }
-  std::vector<Firmness> of_piece(pieces_in(f.size()));
-  in_pieces(f.size(), f.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
+  std::vector<Firmness> of_piece(pieces_in(model.size()));
+  in_pieces(model.size(), model.sharing(), [&](std::size_t piece, std::size_t first, std::size_t last) {
     Firmness& own = of_piece[piece];
-    each_pair_of_grains<D>(a.pairs, first, last, [&](std::size_t g, std::size_t p, bool as_j) {
+    each_pair_of_grains<D>(assembly.pairs, first, last, [&](std::size_t g, std::size_t p, bool as_j) {
       const bool own_image = grain_i[p] == grain_j[p];
       if (own_image && as_j) return;  // both at once where the grain is i, as above
       const PairTerms<D> t = terms_of(p);
-      add<shape>(f, t, g, as_j, sums[g]);
-      if (own_image) add<shape>(f, t, g, true, sums[g]);
+      add<shape>(model, t, g, as_j, sums[g]);
+      if (own_image) add<shape>(model, t, g, true, sums[g]);
       if (as_j) return;
       if (own.count == own.translation.size()) own.expect(2 * own.count + 64);
       own.add(t, radius[std::size_t(grain_i[p])], radius[std::size_t(grain_j[p])]);
@@ -270,17 +272,17 @@ std::vector<GrainSums<dimension_of(shape)>> sums_of_grains(const Model& f, const
 }
 
 template <Shape shape, class Force>
-RowSums sums_over_pairs(const Model& f, const Assembly& a) {
+RowSums sums_over_pairs(const Model& model, const Assembly& assembly) {
   constexpr int D = dimension_of(shape);
-  const std::size_t n = f.size();
-  const bool dashpot = f.damping.dashpot != Dashpot::none;
+  const std::size_t n = model.size();
+  const bool dashpot = model.damping.dashpot != Dashpot::none;
   Firmness firmness;
-  const std::vector<GrainSums<D>> of_grain = sums_of_grains<shape, Force>(f, a, firmness);
+  const std::vector<GrainSums<D>> of_grain = sums_of_grains<shape, Force>(model, assembly, firmness);
   RowSums sums;
   sums.rotation.resize(n);
   sums.translation.resize(n);
   if (dashpot) sums.dashpot.resize(n);
-  in_pieces(n, f.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
+  in_pieces(n, model.sharing(), [&](std::size_t, std::size_t first, std::size_t last) {
     for (std::size_t g = first; g < last; g += 2) {
       const std::size_t next = std::min(g + 1, last - 1);
       const V2 largest = largest_eigenvalues(of_grain[g].stiffness, of_grain[next].stiffness);
@@ -294,7 +296,7 @@ RowSums sums_over_pairs(const Model& f, const Assembly& a) {
   });
   if (firmness.translation.empty()) {
     // Nothing touches: what two contacts of typical grains would have at a thousandth of a radius of overlap.
-    const auto [k, radius] = typical_contact(f);
+    const auto [k, radius] = typical_contact(model);
     firmness.translation.push_back(std::max(2 * k.normal, 4 * k.tangential));
     firmness.rotation.push_back(4 * k.tangential + 2 * k.rolling / (radius * radius));
   }
@@ -302,8 +304,8 @@ RowSums sums_over_pairs(const Model& f, const Assembly& a) {
   const auto find_median = [&](std::size_t which) {
     medians[which] = median(which == 0 ? firmness.translation : firmness.rotation);
   };
-  if (f.sharing() != nullptr)
-    f.sharing()->run(2, find_median);
+  if (model.sharing() != nullptr)
+    model.sharing()->run(2, find_median);
   else
     for (const std::size_t which : {0, 1}) find_median(which);
   sums.floor_translation = 2 * medians[0];
@@ -315,23 +317,24 @@ RowSums sums_over_pairs(const Model& f, const Assembly& a) {
 
 }  // namespace
 
-RowSums row_sums(const Model& f, const Assembly& a) {
-  return with_force(f, [&](auto force) {
+RowSums row_sums(const Model& model, const Assembly& assembly) {
+  return with_force(model, [&](auto force) {
     using Force = decltype(force);
-    return with_shape(f.shape, [&](auto shape) { return sums_over_pairs<shape.value, Force>(f, a); });
+    return with_shape(model.shape, [&](auto shape) { return sums_over_pairs<shape.value, Force>(model, assembly); });
   });
 }
 
-double critical_step(const Model& f, const RowSums& sums) {
+double critical_step(const Model& model, const RowSums& sums) {
   double smallest = std::numeric_limits<double>::infinity();
-  for (std::size_t g = 0; g < f.size(); ++g) {
-    const double by_translation = sums.translation[g] / f.mass[g], by_rotation = sums.rotation[g] / f.inertia[g];
+  for (std::size_t g = 0; g < model.size(); ++g) {
+    const double by_translation = sums.translation[g] / model.mass[g],
+                 by_rotation = sums.rotation[g] / model.inertia[g];
     const double omega = std::sqrt(std::max(by_translation, by_rotation));
     if (!(omega > 0)) continue;
     double step = 2 / omega;
     if (!sums.dashpot.empty()) {
-      const double rate =
-          std::max(sums.dashpot[g] / f.mass[g], sums.dashpot[g] * f.reach()[g] * f.reach()[g] / f.inertia[g]);
+      const double rate = std::max(sums.dashpot[g] / model.mass[g],
+                                   sums.dashpot[g] * model.reach()[g] * model.reach()[g] / model.inertia[g]);
       const double zeta = rate / (2 * omega);
       step *= std::sqrt(1 + zeta * zeta) - zeta;
     }
@@ -340,10 +343,10 @@ double critical_step(const Model& f, const RowSums& sums) {
   return smallest;
 }
 
-RowSums with_floor(RowSums sums, const Model& f) {
-  for (std::size_t g = 0; g < f.size(); ++g) {
+RowSums with_floor(RowSums sums, const Model& model) {
+  for (std::size_t g = 0; g < model.size(); ++g) {
     sums.translation[g] = std::max(sums.translation[g], sums.floor_translation);
-    sums.rotation[g] = std::max(sums.rotation[g], sums.floor_rotation * f.radius[g] * f.radius[g]);
+    sums.rotation[g] = std::max(sums.rotation[g], sums.floor_rotation * model.radius[g] * model.radius[g]);
   }
   return sums;
 }
@@ -353,39 +356,40 @@ namespace {
 double scaled(double row_sum, double floor, double factor) { return std::max(row_sum, floor) / (4 * factor * factor); }
 
 /// Of the state that a trial began with, before they become others.
-void keep_masses(const Assembly& a) {
-  Replaced* kept = a.trial.replaced;
+void keep_masses(const Assembly& assembly) {
+  Replaced* kept = assembly.trial.replaced;
   if (kept == nullptr || kept->masses_taken) return;
-  kept->mass = a.mass;
-  kept->inverse_mass = a.inverse_mass;
-  kept->inverse_inertia = a.inverse_inertia;
+  kept->mass = assembly.mass;
+  kept->inverse_mass = assembly.inverse_mass;
+  kept->inverse_inertia = assembly.inverse_inertia;
   kept->masses_taken = true;
 }
 
 }  // namespace
 
-void scale_inertia(const Model& f, const RowSums& sums, Assembly& a) {
-  keep_masses(a);
-  const double factor = f.options.time_step_factor;
-  for (std::size_t g = 0; g < f.size(); ++g) {
-    a.mass[g] = scaled(sums.translation[g], sums.floor_translation, factor);
-    const double inertia = scaled(sums.rotation[g], sums.floor_rotation * f.radius[g] * f.radius[g], factor);
-    a.inverse_mass[g] = 1 / a.mass[g];
-    a.inverse_inertia[g] = 1 / inertia;
+void scale_inertia(const Model& model, const RowSums& sums, Assembly& assembly) {
+  keep_masses(assembly);
+  const double factor = model.options.time_step_factor;
+  for (std::size_t g = 0; g < model.size(); ++g) {
+    assembly.mass[g] = scaled(sums.translation[g], sums.floor_translation, factor);
+    const double inertia = scaled(sums.rotation[g], sums.floor_rotation * model.radius[g] * model.radius[g], factor);
+    assembly.inverse_mass[g] = 1 / assembly.mass[g];
+    assembly.inverse_inertia[g] = 1 / inertia;
   }
 }
 
-double least_stiffness(const Model& f, const Assembly& a) {
-  const double factor = f.options.time_step_factor;
-  return 4 * factor * factor * *std::min_element(a.mass.begin(), a.mass.begin() + std::ptrdiff_t(f.size()));
+double least_stiffness(const Model& model, const Assembly& assembly) {
+  const double factor = model.options.time_step_factor;
+  return 4 * factor * factor *
+         *std::min_element(assembly.mass.begin(), assembly.mass.begin() + std::ptrdiff_t(model.size()));
 }
 
-void use_physical_inertia(const Model& f, Assembly& a) {
-  keep_masses(a);
-  for (std::size_t g = 0; g < f.size(); ++g) {
-    a.mass[g] = f.mass[g];
-    a.inverse_mass[g] = 1 / f.mass[g];
-    a.inverse_inertia[g] = 1 / f.inertia[g];
+void use_physical_inertia(const Model& model, Assembly& assembly) {
+  keep_masses(assembly);
+  for (std::size_t g = 0; g < model.size(); ++g) {
+    assembly.mass[g] = model.mass[g];
+    assembly.inverse_mass[g] = 1 / model.mass[g];
+    assembly.inverse_inertia[g] = 1 / model.inertia[g];
   }
 }
 

@@ -28,7 +28,7 @@ struct MixedTarget {
     Matrix3 stress = Matrix3::Zero();  ///< B, 1/Pa or dimensionless; units of c decide
     double value = 0;                  ///< c
     double scale = 0;                  ///< rows with stress: |residual| <= tolerance * scale counts as held; > 0
-    double missed = 0;  ///< part of `value` that the increment before has left; dt > 0: made good as fast
+    double missed = 0;  ///< part of `value` that the increment before has left; at a rate: made good as fast
                         ///< as the control can, the rest goes evenly over the increment
   };
   std::vector<Row> rows;
@@ -36,11 +36,12 @@ struct MixedTarget {
       Matrix3::Zero();       ///< dimensionless, laboratory frame: skew part of the increment of displacement gradient
   double volume_ratio = 0;   ///< > 0: det(I + dH), met to round-off by an isotropic strain beside the rows' (of
                              ///< second order in theirs where they prescribe the volume to first order)
-  double tolerance = 0.005;  ///< > 0, relative to each row's scale; dt > 0: of the mean over the increment, since the
-                             ///< stress of the moment fluctuates with the collisions
-  long wait = -1;  ///< dt = 0: < 0: the target waits until its stresses are held (quasi_static/recovery.hpp). Else
-                   ///< its end waits so many sub-steps, or a quarter of those that it took where that is
-                   ///< more, for callers that correct what is missed in rounds
+  double tolerance = 0.005;  ///< > 0, relative to each row's scale; at a rate: of the mean over the increment, since
+                             ///< the stress of the moment fluctuates with the collisions
+  /// Quasi-static: < 0: the target waits until its stresses are held (quasi_static/recovery.hpp). Else its end waits so
+  /// many sub-steps, or a quarter of those that it took where that is more, for callers that correct what is missed in
+  /// rounds.
+  long wait = -1;
 };
 
 }  // namespace rvelab

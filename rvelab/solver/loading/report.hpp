@@ -10,32 +10,33 @@ namespace rvelab {
 /// What was done, and in what state it ended. Of apply and of relax; what a call does not judge keeps its default.
 struct Report {
   long substeps = 0;            ///< 0: the strain is left to the next sub-step, see Rve::apply
-  long waited = 0;              ///< mixed targets, dt = 0: those of them in which the target stood still
+  long waited = 0;              ///< mixed targets, quasi-static: those of them in which the target stood still
   double unbalanced_ratio = 0;  ///< mean |resultant force|, or mean |torque|/r where larger, over max(mean contact
-                                ///< force, 1e-3 of the reference). dt = 0: when it was
+                                ///< force, 1e-3 of the reference). Quasi-static: when it was
                                 ///< measured last: at the end of an increment of 10 sub-steps or more, else up to 50
                                 ///< sub-steps before, or what a start since then leaves
-  double inertial_number = 0;   ///< dt > 0: sqrt(2 e:e) d sqrt(rho/p), infinite at p <= 0; dt = 0: zero
-  double held_error = 0;        ///< mixed targets: largest |residual| over its scale (dt > 0: of its mean over the
+  double inertial_number = 0;   ///< at a rate: sqrt(2 e:e) d sqrt(rho/p), infinite at p <= 0; quasi-static: zero
+  double held_error = 0;        ///< mixed targets: largest |residual| over its scale (at a rate: of its mean over the
                                 ///< increment), see MixedTarget
-  bool target_held = true;      ///< mixed targets: held_error <= tolerance; at dt = 0 always, but with a wait given.
-                                ///< relax: the unbalanced ratio that was asked for is reached
-  bool quasi_static = true;   ///< apply at dt = 0: the state is an equilibrium as far as was asked for: the unbalanced
-                              ///< ratio is within three times its target and the target is held. A state that flows
-                              ///< creeps beyond that: relaxed, its stress falls by some ten times the ratio
-  double error_estimate = 0;  ///< dt = 0: of the stress, Frobenius norm, Pa: 19 of 20 errors are below it
-  double allowed_error = 0;  ///< dt = 0: relative_tolerance max(|d sigma|, 0.1 |C : d eps|) + absolute_tolerance p, Pa,
-                             ///< p at least a thousandth of reference_pressure(). d sigma and d eps since the path
-                             ///< turned last, up to 1e-4 of strain, where those are more than the increment's: a path
-                             ///< cut finely is the same path. Mixed targets: the larger tolerance times p
-  bool tolerance_met = true;  ///< dt = 0: half of the estimate is at most allowed_error: 96 % of the errors then are
+  bool target_held = true;  ///< mixed targets: held_error <= tolerance; in quasi-static loading always, but with a wait
+                            ///< given. relax: the unbalanced ratio that was asked for is reached
+  bool in_equilibrium =
+      true;                   ///< apply in quasi-static loading: the state is an equilibrium as far as was asked for:
+                              ///< the unbalanced ratio is within three times its target and the target is held. A state
+                              ///< that flows creeps beyond that: relaxed, its stress falls by some ten times the ratio
+  double error_estimate = 0;  ///< quasi-static: of the stress, Frobenius norm, Pa: 19 of 20 errors are below it
+  double allowed_error = 0;   ///< quasi-static: relative_tolerance max(|d sigma|, 0.1 |C : d eps|) + absolute_tolerance
+                              ///< p, Pa, p at least a thousandth of reference_pressure(). d sigma and d eps since the
+                              ///< path turned last, up to 1e-4 of strain, where those are more than the increment's: a
+                              ///< path cut finely is the same path. Mixed targets: the larger tolerance times p
+  bool tolerance_met = true;  ///< quasi-static: half of the estimate is at most allowed_error: 96 % of the errors are
   bool cell_thin = false;     ///< a cell height is below four mean diameters
 };
 
 struct Response {
-  Matrix3 stress = Matrix3::Zero();                 ///< Cauchy, laboratory frame, tension positive, Pa
-  Matrix3 contact_stress = Matrix3::Zero();         ///< of the contact forces
-  Matrix3 reynolds_stress = Matrix3::Zero();        ///< dt = 0: zero, but after dt > 0 while only rotated
+  Matrix3 stress = Matrix3::Zero();           ///< Cauchy, laboratory frame, tension positive, Pa
+  Matrix3 contact_stress = Matrix3::Zero();   ///< of the contact forces
+  Matrix3 reynolds_stress = Matrix3::Zero();  ///< quasi-static: zero, but after loading at a rate while only rotated
   Matrix3 displacement_gradient = Matrix3::Zero();  ///< what was applied (mixed targets: what was found)
   Report report;
 };

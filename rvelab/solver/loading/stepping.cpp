@@ -75,7 +75,7 @@ void set_step(const Matrix3& l0, const Matrix3& l1, double dt, StepConstants& c,
   c.velocity_map = upper_triangle(dt * (middle * inverse_start));
 }
 
-/// Maps of velocity and spin at dt > 0 (solver/README.md, equations of motion): dv'/dt = f/m - (D + 2 Omega) v', dw/dt
+/// Maps of velocity and spin at a rate (solver/README.md, equations of motion): dv'/dt = f/m - (D + 2 Omega) v', dw/dt
 /// = T/I with w = w' + axial(W + Omega) held in axes that turn with Omega.
 void set_frame_terms(const Matrix3& rate_mid, const Vector3& omega, const Vector3& mean_spin_change, StepConstants& c) {
   const Matrix3 identity = Matrix3::Identity();
@@ -91,19 +91,19 @@ void set_frame_terms(const Matrix3& rate_mid, const Vector3& omega, const Vector
 }
 
 KernelDamping damping_kind(const Damping& d, Loading loading) {
-  const double alpha = loading == Loading::physical ? d.local : d.local_quasi_static;
+  const double alpha = loading == Loading::at_rate ? d.local : d.local_quasi_static;
   if (alpha == 0) return KernelDamping::none;
   return d.local_form == LocalDampingForm::vector ? KernelDamping::vector : KernelDamping::component;
 }
 
 /// Books one sub-step; `moment_before` is the contacts' moment at its start, and becomes that at its end.
-void book_step(const Model& f, Assembly& a, const Dissipation& lost, const StepSums& sums, double step, bool physical,
-               const Matrix3& gradient, Matrix3& moment_before) {
-  EnergyTerms& booked = a.state.energy_balance;
-  const Matrix3 moment = contact_moment(f, a);
+void book_step(const Model& model, Assembly& assembly, const Dissipation& lost, const StepSums& sums, double step,
+               bool physical, const Matrix3& gradient, Matrix3& moment_before) {
+  EnergyTerms& booked = assembly.state.energy_balance;
+  const Matrix3 moment = contact_virial(model, assembly);
   // V sigma = -sum F (x) b - sum m v' v'; the contact part by the trapezium, the kinetic one at the half step.
   Matrix3 work = -0.5 * (moment_before + moment);
-  if (physical) work += kinetic_moment(f, a);
+  if (physical) work += reynolds_stress_times_volume(model, assembly);
   booked.boundary_work += step * work.cwiseProduct(gradient).sum();
   booked.friction += lost.friction;
   booked.rolling += lost.rolling;
@@ -117,29 +117,32 @@ void book_step(const Model& f, Assembly& a, const Dissipation& lost, const StepS
 /// Velocities are those of the half step behind. Where the step changes that half step does too: v' <- v' + (dt_old -
 /// dt_new)/2 f/m (and w'), without which a Hertz impact gains 2 % of its energy from the steps that it asks for.
 /// Changes of less than a hundredth are let be.
-void shift_half_step(const Model& f, Assembly& a, double step) {
-  const double shift = 0.5 * (a.state.last_step - step);
-  if (f.options.fixed_time_step > 0 || !(a.state.last_step > 0) || std::abs(shift) < 0.005 * a.state.last_step) return;
-  const std::vector<Resultant> resultants = resultants_of(f, a);
-  for (std::size_t g = 0; g < f.size(); ++g)
-    a.set_velocity(f, g, a.velocity(f, g) + shift * a.inverse_mass[g] * resultants[g].force,
-                   a.spin(f, g) + shift * a.inverse_inertia[g] * resultants[g].torque);
-  a.state.last_step = step;
+void shift_half_step(const Model& model, Assembly& assembly, double step) {
+  const double shift = 0.5 * (assembly.state.last_step.length - step);
+  if (model.options.fixed_time_step > 0 || !(assembly.state.last_step.length > 0) ||
+      std::abs(shift) < 0.005 * assembly.state.last_step.length)
+    return;
+  const std::vector<Resultant> resultants = resultants_of(model, assembly);
+  for (std::size_t g = 0; g < model.size(); ++g)
+    assembly.set_velocity(model, g,
+                          assembly.velocity(model, g) + shift * assembly.inverse_mass[g] * resultants[g].force,
+                          assembly.spin(model, g) + shift * assembly.inverse_inertia[g] * resultants[g].torque);
+  assembly.state.last_step.length = step;
 }
 
 /// Divides the sub-steps that are left, so that the collisions that a new list shows are followed.
-void divide_rest(const Model& f, const Collisions& ahead, Assembly& a, LatticePath& path, double& step) {
+void divide_rest(const Model& model, const Collisions& ahead, Assembly& assembly, LatticePath& path, double& step) {
   if (!(ahead.step < step)) return;
   const double parts = std::ceil(step / ahead.step), left = double(path.steps - path.done) * parts;
-  if (left > double(f.options.max_substeps))
+  if (left > double(model.options.max_substeps))
     throw IncrementFailed("collisions in the increment need sub-steps of " + in_words(step / parts) +
-                          " s; solver.max_substeps = " + std::to_string(f.options.max_substeps) +
+                          " s; solver.max_substeps = " + std::to_string(model.options.max_substeps) +
                           " allows none so short; apply it in smaller parts or lower solver.collision_steps");
-  path.start = a.cell.lattice;
+  path.start = assembly.cell.lattice;
   path.steps = long(left);
   path.done = 0;
   step /= parts;
-  shift_half_step(f, a, step);
+  shift_half_step(model, assembly, step);
 }
 
 /// The sub-steps of one Advance.
@@ -160,13 +163,13 @@ class SubSteps {
   /// Whether the pairs may wait for the grains of the next sub-step, where nothing asks for forces before. A sub-step
   /// that is timed has both apart.
   bool can_wait(bool forces_asked, long made) const;
-  /// dt > 0: what the new list shows of collisions to come.
+  /// At a rate: what the new list shows of collisions to come.
   void look_ahead();
 
-  const Model& f_;
-  Assembly& a_;
+  const Model& model_;
+  Assembly& assembly_;
   const Advance& what_;
-  const bool physical_;
+  const bool at_rate_;
   const Kernels& kernels_;
   const GrainKernel move_;
   Workers* const team_;
@@ -184,105 +187,106 @@ class SubSteps {
   StepClock clock_;
 };
 
-GrainKernel grain_kernel(const Model& f, const Assembly& a, Loading loading) {
-  const auto kind = std::size_t(damping_kind(f.damping, loading));
-  const Kernels& kernels = f.kernels_at(a.state.quasi_static);
-  return loading == Loading::physical ? kernels.dynamic[kind] : kernels.quasi_static[kind];
+GrainKernel grain_kernel(const Model& model, const Assembly& assembly, Loading loading) {
+  const auto kind = std::size_t(damping_kind(model.damping, loading));
+  const Kernels& kernels = model.kernels_at(assembly.state.last_step.loading);
+  return loading == Loading::at_rate ? kernels.at_rate[kind] : kernels.quasi_static[kind];
 }
 
 SubSteps::SubSteps(const Model& model, Assembly& assembly, const Advance& what)
-    : f_(model),
-      a_(assembly),
+    : model_(model),
+      assembly_(assembly),
       what_(what),
-      physical_(what.loading == Loading::physical),
-      kernels_(f_.kernels_at(a_.state.quasi_static)),
-      move_(grain_kernel(f_, a_, what.loading)),
-      team_(f_.sharing()),
-      c_(base_constants(f_, a_)),
-      path_{a_.cell.lattice, what.increment.stretch * a_.cell.lattice, what.increment.rotation, 0, what.steps},
+      at_rate_(what.loading == Loading::at_rate),
+      kernels_(model_.kernels_at(assembly_.state.last_step.loading)),
+      move_(grain_kernel(model_, assembly_, what.loading)),
+      team_(model_.sharing()),
+      c_(base_constants(model_, assembly_)),
+      path_{assembly_.cell.lattice, what.increment.stretch * assembly_.cell.lattice, what.increment.rotation, 0,
+            what.steps},
       step_(what.step),
       check_every_(what.check_every),
-      in_one_sweep_(f_.size() >= least_grains_in_one_sweep && !f_.options.energy_balance &&
+      in_one_sweep_(model_.size() >= least_grains_in_one_sweep && !model_.options.energy_balance &&
                     (team_ == nullptr || team_->threads() == 1)),
-      clock_(f_.times) {
-  c_.losses = f_.options.energy_balance;
-  c_.local_damping = physical_ ? f_.damping.local : what.damping * f_.damping.local_quasi_static;
-  if (physical_) {
-    shift_half_step(f_, a_, step_);
+      clock_(model_.times) {
+  c_.losses = model_.options.energy_balance;
+  c_.local_damping = at_rate_ ? model_.damping.local : what.damping * model_.damping.local_quasi_static;
+  if (at_rate_) {
+    shift_half_step(model_, assembly_, step_);
     omega_ = rotation_vector(what.increment.rotation) / (step_ * double(what.steps));
   }
-  total_mass_ = std::accumulate(a_.mass.begin(), a_.mass.begin() + std::ptrdiff_t(f_.size()), 0.0);
+  total_mass_ = std::accumulate(assembly_.mass.begin(), assembly_.mass.begin() + std::ptrdiff_t(model_.size()), 0.0);
   take_list();
-  if (f_.options.energy_balance) moment_before_ = contact_moment(f_, a_);
+  if (model_.options.energy_balance) moment_before_ = contact_virial(model_, assembly_);
 }
 
 void SubSteps::move_cell() {
-  const Matrix3 before = a_.cell.lattice;
-  a_.cell.lattice = path_.lattice_after(++path_.done);
-  set_step(before, a_.cell.lattice, step_, c_, rate_end_, rate_mid_);
-  for (int k = 0; k < 3; ++k) c_.mean_velocity[k] = a_.state.mean_velocity[k];
-  if (!physical_) return;
+  const Matrix3 before = assembly_.cell.lattice;
+  assembly_.cell.lattice = path_.lattice_after(++path_.done);
+  set_step(before, assembly_.cell.lattice, step_, c_, rate_end_, rate_mid_);
+  for (int k = 0; k < 3; ++k) c_.mean_velocity[k] = assembly_.state.last_step.mean_velocity[k];
+  if (!at_rate_) return;
   const Vector3 mean_spin = axial(rate_mid_) + omega_;
-  set_frame_terms(rate_mid_, omega_, mean_spin - a_.state.mean_spin, c_);
-  a_.state.mean_spin = mean_spin;
+  set_frame_terms(rate_mid_, omega_, mean_spin - assembly_.state.last_step.mean_spin, c_);
+  assembly_.state.last_step.mean_spin = mean_spin;
 }
 
 void SubSteps::move_grains() {
   clock_.begin_grains();
   if (waiting_.any())
-    waiting_.sweep_with_grains(move_, c_, grains_, pairs_, long(a_.mass.size()), sums_);
+    waiting_.sweep_with_grains(move_, c_, grains_, pairs_, long(assembly_.mass.size()), sums_);
   else
-    sweep_grains(move_, c_, grains_, pairs_, long(a_.mass.size()), team_, sums_);
+    sweep_grains(move_, c_, grains_, pairs_, long(assembly_.mass.size()), team_, sums_);
   clock_.end_grains();
   // The rows that pad the lanes lose the mean velocity too, step after step; their speed must never count.
-  std::fill(a_.rows.begin() + std::ptrdiff_t(f_.size()) * f_.row_length(), a_.rows.end(), 0.0);
-  for (int k = 0; k < 3; ++k) a_.state.mean_velocity[k] = sums_.momentum[k] / total_mass_;
-  ++a_.state.list_steps;
-  a_.state.last_rate = rate_end_;
-  a_.state.last_step = step_;
+  std::fill(assembly_.rows.begin() + std::ptrdiff_t(model_.size()) * model_.row_length(), assembly_.rows.end(), 0.0);
+  for (int k = 0; k < 3; ++k) assembly_.state.last_step.mean_velocity[k] = sums_.momentum[k] / total_mass_;
+  ++assembly_.state.list.steps;
+  assembly_.state.last_step.rate = rate_end_;
+  assembly_.state.last_step.length = step_;
 }
 
 void SubSteps::take_list() {
-  pairs_ = arrays_of(a_.pairs);
-  grains_ = arrays_of(f_, a_);
-  if (in_one_sweep_) waiting_.arrange(kernels_.pairs, a_.pairs);
+  pairs_ = arrays_of(assembly_.pairs);
+  grains_ = arrays_of(model_, assembly_);
+  if (in_one_sweep_) waiting_.arrange(kernels_.pairs, assembly_.pairs);
 }
 
 void SubSteps::list_pairs_anew() {
   clock_.begin_list();
-  const Matrix3 lattice_before = a_.cell.lattice;
-  const Reduction reduction = rebuild(f_, a_);
+  const Matrix3 lattice_before = assembly_.cell.lattice;
+  const Reduction reduction = rebuild(model_, assembly_);
   if (reduction.changed) turn_with(reduction, lattice_before);
   take_list();
   clock_.end_list();
 }
 
 void SubSteps::turn_with(const Reduction& reduction, const Matrix3& lattice_before) {
-  const Matrix3 more = turn_path(path_, lattice_before, reduction, a_.cell);
+  const Matrix3 more = turn_path(path_, lattice_before, reduction, assembly_.cell);
   omega_ = reduction.rotation.transpose() * omega_;
-  a_.state.mean_spin = reduction.rotation.transpose() * a_.state.mean_spin;
+  assembly_.state.last_step.mean_spin = reduction.rotation.transpose() * assembly_.state.last_step.mean_spin;
   rate_mid_ = reduction.rotation.transpose() * rate_mid_ * reduction.rotation;
-  if (physical_ && path_.steps > 0) {
+  if (at_rate_ && path_.steps > 0) {
     const Vector3 faster = rotation_vector(more) / (step_ * double(path_.steps));
     omega_ += faster;
     rate_mid_ -= cross_matrix(faster);  // their sum is the velocity gradient of the step just made
   }
-  c_.lattice = upper_triangle(a_.cell.lattice);
-  set_rate(a_.state.last_rate, c_);
+  c_.lattice = upper_triangle(assembly_.cell.lattice);
+  set_rate(assembly_.state.last_step.rate, c_);
   moment_before_ = reduction.rotation.transpose() * moment_before_ * reduction.rotation;
 }
 
 void SubSteps::update_pairs() {
   Dissipation lost;
   clock_.begin_pairs();
-  if (f_.options.energy_balance)
-    kernels_.pairs_with_losses(c_, pairs_, a_.rows.data(), 0, long(a_.pairs.padded()), &lost);
+  if (model_.options.energy_balance)
+    kernels_.pairs_with_losses(c_, pairs_, assembly_.rows.data(), 0, long(assembly_.pairs.padded()), &lost);
   else
-    sweep_pairs(kernels_.pairs, c_, pairs_, a_.rows.data(), long(a_.pairs.padded()), team_);
-  gather_pairs_that_touch(a_.pairs);
+    sweep_pairs(kernels_.pairs, c_, pairs_, assembly_.rows.data(), long(assembly_.pairs.padded()), team_);
+  gather_pairs_that_touch(assembly_.pairs);
   clock_.end_pairs();
-  if (f_.options.energy_balance)
-    book_step(f_, a_, lost, sums_, step_, physical_, rate_mid_ + cross_matrix(omega_), moment_before_);
+  if (model_.options.energy_balance)
+    book_step(model_, assembly_, lost, sums_, step_, at_rate_, rate_mid_ + cross_matrix(omega_), moment_before_);
 }
 
 bool SubSteps::can_wait(bool forces_asked, long made) const {
@@ -292,24 +296,28 @@ bool SubSteps::can_wait(bool forces_asked, long made) const {
 
 void SubSteps::look_ahead() {
   const double rest = step_ * double(path_.steps - path_.done);
-  const Collisions ahead = collisions_ahead(f_, a_, nullptr, what_.follow_collisions,
-                                            {a_.state.last_rate, rest, std::numeric_limits<double>::infinity(), step_});
-  if (what_.follow_collisions) divide_rest(f_, ahead, a_, path_, step_);
+  const Collisions ahead =
+      collisions_ahead(model_, assembly_, nullptr, what_.follow_collisions,
+                       {assembly_.state.last_step.rate, rest, std::numeric_limits<double>::infinity(), step_});
+  if (what_.follow_collisions) divide_rest(model_, ahead, assembly_, path_, step_);
   if (ahead.deep) check_every_ = deep_check;
 }
+
+/// |B| of x <- A x + dt B v' (kernels/integrate.hpp) at most: B is the stretch of half a sub-step, below a hundredth.
+constexpr double largest_stretch = 1.01;
 
 Advanced SubSteps::make() {
   long made = 0, since_check = 0;
   for (; path_.done < path_.steps; ++made) {
     clock_.begin_step(made);
-    if (f_.stop != nullptr && f_.stop->load(std::memory_order_relaxed)) throw Interrupted();
+    if (model_.stop != nullptr && model_.stop->load(std::memory_order_relaxed)) throw Interrupted();
     move_cell();
     move_grains();
-    const double travel = 1.01 * step_ * std::sqrt(sums_.largest_speed_squared);
-    a_.state.list_travel += travel;
-    const bool stale = list_is_stale(f_, a_, what_.follow_collisions ? 2 * travel : 0.0);
+    const double travel = largest_stretch * step_ * std::sqrt(sums_.largest_speed_squared);
+    assembly_.state.list.travel += travel;
+    const bool stale = list_is_stale(model_, assembly_, what_.follow_collisions ? 2 * travel : 0.0);
     if (stale) list_pairs_anew();
-    const bool looks = stale && physical_;
+    const bool looks = stale && at_rate_;
     if (can_wait(looks || (check_every_ > 0 && since_check + 1 >= check_every_), made))
       waiting_.wait(c_);
     else
@@ -317,21 +325,24 @@ Advanced SubSteps::make() {
     if (looks) look_ahead();
     if (check_every_ > 0 && ++since_check >= check_every_) {
       since_check = 0;
-      check_overlaps(f_, balance_of(f_, a_));
+      check_overlaps(model_, balance_of(model_, assembly_));
     }
   }
-  a_.state.grain_steps += std::uint64_t(made) * f_.size();
-  if (!physical_) {
-    a_.state.steps_since_scaling += made;
-    a_.state.steps_since_measurement += made;
-    a_.state.steps_at_fixed_shape = what_.increment.rigid ? a_.state.steps_at_fixed_shape + made : 0;
+  assembly_.state.grain_steps += std::uint64_t(made) * model_.size();
+  if (!at_rate_) {
+    assembly_.state.masses.steps += made;
+    assembly_.state.control.lag.steps += made;
+    assembly_.state.control.steps_at_fixed_shape =
+        what_.increment.rigid ? assembly_.state.control.steps_at_fixed_shape + made : 0;
   }
-  turn_frame(a_.cell, path_.end_rotation);
+  turn_frame(assembly_.cell, path_.end_rotation);
   return {made, step_};
 }
 
 }  // namespace
 
-Advanced advance(const Model& f, Assembly& a, const Advance& what) { return SubSteps(f, a, what).make(); }
+Advanced advance(const Model& model, Assembly& assembly, const Advance& what) {
+  return SubSteps(model, assembly, what).make();
+}
 
 }  // namespace rvelab

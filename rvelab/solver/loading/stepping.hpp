@@ -10,11 +10,11 @@ namespace rvelab {
 struct Advance {
   FrameSplit increment;
   long steps = 1;
-  double step = 1;  ///< s; dt = 0: over that for which masses are scaled
+  double step = 1;  ///< s; quasi-static: over that for which masses are scaled
   Loading loading = Loading::quasi_static;
-  bool follow_collisions = false;  ///< dt > 0: a new list may show collisions that need finer sub-steps; made if so
+  bool follow_collisions = false;  ///< at a rate: a new list may show collisions that need finer sub-steps; made if so
   long check_every = 0;            ///< > 0: overlaps are checked every so many sub-steps, not at the end alone
-  double damping = 1;              ///< dt = 0: over Damping::local_quasi_static
+  double damping = 1;              ///< quasi-static: over Damping::local_quasi_static
 };
 
 /// What was done: with finer sub-steps there are more of them.

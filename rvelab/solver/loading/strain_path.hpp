@@ -11,14 +11,14 @@ Matrix3 rotation_matrix(const Vector3& rotation_vector);
 Vector3 rotation_vector(const Matrix3& rotation);
 
 /// The part of an increment done at fraction s, in the frame of its start (where quarter turns change no bit of it):
-/// straight in the stretch, geodesic in the rotation. At dt = 0 (not `turning`) the frame turns at the end, since
+/// straight in the stretch, geodesic in the rotation. Quasi-static (not `turning`) the frame turns at the end, since
 /// nothing depends on when.
 class StrainPath {
  public:
   StrainPath(const FrameSplit& increment, bool turning);
   Matrix3 at(double fraction) const;
-  /// Norm of Green's strain of the whole: what follows must not depend on the frame, as the norm of a triangular
-  /// stretch does.
+  /// Norm of the Green-Lagrange strain (U^T U - I)/2 of the whole: independent of the frame, which |U - I| of a
+  /// triangular U is not.
   double strain() const;
 
   FrameSplit whole;

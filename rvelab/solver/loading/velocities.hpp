@@ -7,8 +7,6 @@ namespace rvelab {
 
 struct RowSums;
 
-enum class Loading { quasi_static, physical };
-
 /// Sets the units of the stored velocities for a kind of loading, and the physical masses; those of quasi-static
 /// loading are the caller's to scale. Velocities end where the kind of loading changes.
 void begin_loading(const Model& model, Assembly& assembly, Loading loading);
@@ -16,13 +14,13 @@ void begin_loading(const Model& model, Assembly& assembly, Loading loading);
 /// scale_inertia with the change of kinetic energy booked.
 void rescale_inertia(const Model& model, const RowSums& sums, Assembly& assembly);
 
-/// Of the fluctuations with the masses in use, in units of the force law's energy (J, also at dt = 0).
+/// Of the fluctuations with the masses in use, in units of the force law's energy (J, also in quasi-static loading).
 double kinetic_energy(const Model& model, const Assembly& assembly);
 
 /// Sets all velocities to zero; books their energy where the energy balance is kept.
 void stop_grains(const Model& model, Assembly& assembly);
 
 /// Reynolds stress times volume, -sum m v' v', cell frame, with the masses in use.
-Matrix3 kinetic_moment(const Model& model, const Assembly& assembly);
+Matrix3 reynolds_stress_times_volume(const Model& model, const Assembly& assembly);
 
 }  // namespace rvelab

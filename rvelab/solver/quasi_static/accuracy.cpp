@@ -15,8 +15,9 @@ double strain_of_overlap(double pressure, double network_stiffness, double harde
   return hardening * share_of_directions * pressure / network_stiffness;
 }
 
-double allowed_error(double relative, double absolute, double stress_change, double network_change, double pressure) {
-  return relative * std::max(stress_change, least_change * network_change) + absolute * std::max(pressure, 0.0);
+double allowed_error(double relative, double absolute, double stress_change, double elastic_stress_change,
+                     double pressure) {
+  return relative * std::max(stress_change, least_change * elastic_stress_change) + absolute * std::max(pressure, 0.0);
 }
 
 double error_per_unbalance(double stiffness_ratio, double constraint_ratio, double damping, int dimension) {

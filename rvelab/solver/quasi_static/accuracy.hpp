@@ -1,4 +1,5 @@
-// Error of an increment at dt = 0: what is allowed, what is to be expected, and the sub-steps that this takes.
+// Error of an increment in quasi-static loading: what is allowed, what is to be expected, and the sub-steps that this
+// takes.
 //
 //   allowed = relative max(|d sigma|, 0.1 |C : d eps|) + absolute p      (two tolerances, as ODE solvers have them)
 //   error   = K p u,   K = max(1, 0.1 + 3 a) max(0.4 s^-m, 0.3 + 1.7/(1 + 70 (c - 1)^2)),
@@ -13,10 +14,10 @@
 //   states of the dense packing, forward, back and turned, against 10,000 sub-steps and relaxation: within a factor of
 //   two from five sub-steps on, where u alone is off by twenty. In space soft modes follow later: with m = 5/2 62 to
 //   72 % of the errors of 1000 spheres in a triaxial test lay within the estimate, with 7/2 87 to 92 %.
-// - c is the constraint ratio (assembly/contact_states.hpp): at rest s is 1 whatever the packing, and what is soft is
-// that few
-//   contacts hold a grain. Fitted to 21 packings of discs, spheres and ellipses (1e-7 to 3e-4, three directions): K is
-//   0.19 at c = 2.0, 0.35 at 1.7, 0.5 at 1.3, 1.2 to 1.7 at 1.1, 2.0 at 1.0, within a packing to a factor of 1.4.
+// - c is the constraint ratio (assembly/contact_states.hpp): at rest s is 1 whatever the packing, and a packing is soft
+//   where few contacts hold a grain. Fitted to 21 packings of discs, spheres and ellipses (1e-7 to 3e-4, three
+//   directions): K is 0.19 at c = 2.0, 0.35 at 1.7, 0.5 at 1.3, 1.2 to 1.7 at 1.1, 2.0 at 1.0, within a packing to a
+//   factor of 1.4.
 // - a is Cundall's damping, 0.3 in all of these: more of it leaves less vibration and more lag in u. Estimate over
 // error
 //   of a biaxial test at a = 0.1, 0.2, 0.5, 0.7 over that at 0.3: dense 2.1, 1.3, 0.6, 0.44, medium 2.9, 1.5, 0.64,
@@ -38,7 +39,8 @@ double strain_of_overlap(double pressure, double network_stiffness, double harde
 
 /// Pa. `relative` of the larger of the change of stress and a tenth of what the network would answer, and `absolute` of
 /// the pressure.
-double allowed_error(double relative, double absolute, double stress_change, double network_change, double pressure);
+double allowed_error(double relative, double absolute, double stress_change, double elastic_stress_change,
+                     double pressure);
 
 /// K above for a stiffness ratio s, c (0: not known), the local damping and the dimension. s is cut to 0.4 .. 1: under
 /// stress control flow changes no stress at all, and lags no more than at constant width; c to 1 at least.

@@ -26,7 +26,7 @@ class EquilibriumCheck {
   State& state_;
   /// Grains, contacts or parameters are others than those that masses were scaled for, and the state may be no
   /// equilibrium any more: friction lowered shows in the forces after a sub-step only.
-  bool unknown_;
+  bool not_yet_checked_;
 };
 
 }  // namespace rvelab

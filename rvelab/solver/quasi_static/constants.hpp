@@ -1,5 +1,5 @@
 // The constants of quasi-static loading, with what each was measured on. u is the unbalanced ratio, p the pressure, n a
-// number of sub-steps, x a strain over that of the overlaps. "At least", "at most" are of what the name says.
+// number of sub-steps, x a strain over that of the overlaps.
 #pragma once
 
 namespace rvelab::constants {
@@ -13,7 +13,8 @@ constexpr long check_interval = 50;
 constexpr long checked_steps = 10;
 constexpr double checked_strain = 1e-4;
 /// Increments in one direction are judged together up to this strain: a path cut finely is the same path. One direction
-/// is within acos(0.9) = 26 degrees: a straight path strays from it by less than a sub-step does.
+/// is within acos(0.9) = 26 degrees, in simple shear 50 (a triangular stretch is sqrt 2 times its strain there): a
+/// straight path strays from it by less than a sub-step does.
 constexpr double judged_together = 1e-4, same_direction = 0.9;
 /// Quasi-static up to this u over its target: 97 % of the checks of a dense biaxial test are within 2.
 constexpr double quasi_static_ratio = 3;
@@ -121,10 +122,6 @@ constexpr long rest_period = 1000, changed_period = 100, first_period = 50;
 /// n of an increment that is measured in any case, of the first that may be, and of a start from rest that may be:
 /// a shorter one would take three times as long and more.
 constexpr long long_increment = 200, least_increment = 10, least_start = 25;
-
-/// SolverState::strain_since_measurement counts on from these: after a measurement whose change grows (slow_growth),
-/// after a turn, when what was measured is no longer so, and after a start from rest that was not measured.
-constexpr double slow_mark = 1, turn_mark = 2, start_mark = 4;
 
 // Estimate of the error.
 

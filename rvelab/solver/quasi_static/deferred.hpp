@@ -1,6 +1,6 @@
-// Deferred strain: at dt = 0 an increment that is a small part of a sub-step is left to the next one, and its stress
-// follows from the slope of the stress over the increment before. A path in pieces of 1e-7 then takes 1.3 times the
-// sub-steps of one in pieces of 1e-5.
+// Deferred strain: in quasi-static loading an increment that is a small part of a sub-step is left to the next one, and
+// its stress follows from the slope of the stress over the increment before. A path in pieces of 1e-7 then takes 1.3
+// times the sub-steps of one in pieces of 1e-5.
 #pragma once
 
 #include "rvelab/solver/state/state.hpp"
@@ -12,7 +12,7 @@ bool may_defer(State& state, const FrameSplit& increment);
 /// Leaves it to the next sub-step. Moves no grain; cannot fail.
 Report defer(State& state, const FrameSplit& increment);
 /// Whether an increment can be made in one with what is deferred.
-bool joins_deferred(const State& state, const FrameSplit& increment);
+bool is_along_deferred(const State& state, const FrameSplit& increment);
 
 /// Change of the contact stress by a stretch of the cell that the grains have not made, cell frame, Pa, and what it may
 /// err by.

@@ -1,6 +1,6 @@
-// What the stress of an increment at dt = 0 may err by, and is expected to: the formulas of accuracy.hpp for a state.
-// Now and then a copy of the state relaxes for some sub-steps and shows by how much its stress lags; in between the
-// unbalanced ratio tells, by the factor that was found.
+// What the stress of an increment in quasi-static loading may err by, and is expected to: the formulas of accuracy.hpp
+// for a state. Now and then a copy of the state relaxes for some sub-steps and shows by how much its stress lags; in
+// between the unbalanced ratio tells, by the factor that was found.
 #pragma once
 
 #include "rvelab/solver/state/state.hpp"
@@ -14,23 +14,23 @@ double pressure(State& state);  ///< mean, Pa
 /// Scale of errors, Pa: the pressure, or a thousandth of the reference where it is less.
 double pressure_scale(State& state);
 /// |C : d eps| of a strain, Pa.
-double network_change(const State& state, double strain);
+double elastic_stress_change(const State& state, double strain);
 /// Strain that changes the contact forces by about as much as they are; infinite without a network.
 double overlap_strain(State& state);
 
 /// By the tolerances of the specimen, Pa; of a change of stress and |C : d eps|, Pa.
-double allowed_by_tolerances(State& state, double stress_change, double network_change);
+double allowed_by_tolerances(State& state, double stress_change, double elastic_change);
 /// The same where the stress changes as the path did so far.
-double allowed_on_path(State& state, double network_change);
+double allowed_on_path(State& state, double elastic_change);
 /// K, fitted.
-double error_factor(const State& state);
+double fitted_error_factor(const State& state);
 /// K p u for an unbalanced ratio u, Pa.
 double expected_error(State& state, double ratio);
 
 /// Unbalanced ratio that an increment of this |C : d eps| (Pa) may have, by tolerance or as given.
-double target_ratio(State& state, double network_change);
+double target_ratio(State& state, double elastic_change);
 /// The same of a start from rest, by tolerance, whose K is `factor`; and that.
-double target_ratio_of_start(State& state, double network_change, double factor);
+double target_ratio_of_start(State& state, double elastic_change, double factor);
 double error_factor_of_start(const State& state);
 /// That K if the last increment was such a start and was not measured, else 0.
 double factor_of_last_start(const State& state);
@@ -38,33 +38,33 @@ double factor_of_last_start(const State& state);
 double held_target_ratio(const State& state);
 double held_tolerance(const State& state);
 
-/// Sets report.quasi_static from its unbalanced ratio and whether its target is held; the target of the ratio is that
+/// Sets report.in_equilibrium from its unbalanced ratio and whether its target is held; the target of the ratio is that
 /// of the path, at least `least_target_ratio`.
 void judge_equilibrium(State& state, Report& report, double least_target_ratio = 0);
 
 /// An increment for which an estimate is made.
-struct Judged {
-  double strain = 0;            ///< of the increment; 0: no sub-step was made for it
-  double unbalanced_ratio = 0;  ///< at its end
-  double more = 0;              ///< Pa, what else its stress may err by
-  double apart = 0;             ///< Pa, an error that has nothing to do with the others: of an extrapolation
-  double usual = 0;             ///< Pa, allowed of an increment that answers as the path did; 0: what is allowed
-  double factor_from_rest = 0;  ///< K of a start from rest (strain_step.hpp); 0: another increment
+struct JudgedIncrement {
+  double strain = 0;               ///< of the increment; 0: no sub-step was made for it
+  double unbalanced_ratio = 0;     ///< at its end
+  double creep_error = 0;          ///< Pa, of a relaxation before a turn that was not complete; adds to the lag
+  double extrapolation_error = 0;  ///< Pa, of deferred strain; independent of the others
+  double allowed_of_path = 0;      ///< Pa, allowed of an increment that answers as the path did; 0: what is allowed
+  double start_error_factor = 0;   ///< K of a start from rest (strain_step.hpp); 0: another increment
 };
 
 /// Sets report.error_estimate, allowed_error and tolerance_met, with `allowed` in Pa.
-void estimate_error(State& state, double allowed, const Judged& increment, Report& report);
+void estimate_error(State& state, double allowed, const JudgedIncrement& increment, Report& report);
 
-/// The same, allowed by the tolerances: `network_change` (|C : d eps|, Pa) is that of the path which the increment is a
-/// piece of.
-void estimate_error(State& state, double network_change, const Matrix3& stress_before, const Judged& increment,
-                    Report& report);
+/// The same, allowed by the tolerances: `elastic_change` (|C : d eps|, Pa) is that of the path which the increment is a
+/// piece of. An increment of many sub-steps is measured before its strain counts as made since the last measurement.
+void estimate_by_tolerances(State& state, double elastic_change, const Matrix3& stress_before,
+                            const JudgedIncrement& increment, Report& report);
 
-/// What an increment lagged by on its way has slid contacts elsewhere than a slower one would have, of which its end
-/// knows nothing. A lag is gone after the 50 sub-steps to the next check (rest_steps), so that those of two checks are
-/// independent, and the errors they leave add by their squares, to each other and to that of the end: with
-/// `ratio_of_way`, the root of the sum of squares of the unbalanced ratios on the way, K p times that. Below the strain
-/// of the overlaps, x < 1, forces change by the part x, and about that part of the contacts may slide.
-void estimate_way(State& state, double strain, double ratio_of_way, Report& report);
+/// Adds the error that lags before the end have left: contacts slid elsewhere than in a slower increment. A lag is gone
+/// after the 50 sub-steps to the next check (rest_steps), so that those of two checks are independent, and the errors
+/// they leave add by their squares, to each other and to that of the end: with `path_unbalance`, the root of the sum of
+/// squares of the unbalanced ratios of the checks before the end, K p times that. Below the strain of the overlaps,
+/// x < 1, forces change by the part x, and about that part of the contacts may slide.
+void add_error_of_path(State& state, double strain, double path_unbalance, Report& report);
 
 }  // namespace rvelab

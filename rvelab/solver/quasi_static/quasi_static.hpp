@@ -1,4 +1,4 @@
-// Quasi-static loading (dt = 0) by a strain increment: choose the sub-steps, advance, check, estimate the error. The
+// Quasi-static loading by a strain increment: choose the sub-steps, advance, check, estimate the error. The
 // strain of a sub-step follows the unbalanced ratio; what ratio an increment may have, and how many sub-steps a start
 // or a turn takes, follows from its tolerance.
 #pragma once
@@ -8,12 +8,12 @@
 
 namespace rvelab {
 
-/// An increment in one with what is deferred. Throws IncrementFailed.
+/// Applies the increment together with any deferred strain. Throws IncrementFailed.
 Report load_quasi_static(State& state, FrameSplit increment);
 /// A rotation: grains and stress turn with the frame of the cell.
 Report load_rotation(State& state, const FrameSplit& increment, const Matrix3& displacement_gradient);
-/// Makes what is deferred; the number of sub-steps.
-long make_deferred(State& state);
+/// Applies the deferred strain; the number of sub-steps.
+long apply_deferred(State& state);
 /// A mixed target (stress_control.cpp); `gradient` is what was found. Throws as Rve::apply says.
 Report load_quasi_static(State& state, const MixedTarget& target, Matrix3& gradient);
 /// Rve::relax (relaxation.cpp).

@@ -1,5 +1,5 @@
-// Waiting for a held stress at dt = 0. In an avalanche the contact network gives way and the stress that is held falls,
-// to nothing where the cell comes apart. The strained directions then stand still until it is back.
+// Waiting for a held stress in quasi-static loading. In an avalanche the contact network gives way and the stress that
+// is held falls, to nothing where the cell comes apart. The strained directions then stand still until it is back.
 //
 // How fast the cell may close meanwhile follows from the contacts that the grains will have, not from those that are
 // left: by a few thousandths of their overlap a sub-step. Grains that meet at that speed overlap by as much (a sub-step

@@ -22,7 +22,7 @@ class Servo {
 
   /// Renews the gain; stiffness in the laboratory frame. `floor` (Pa) keeps it regular when nothing touches.
   void set_stiffness(const Matrix6& stiffness, double floor);
-  /// dt > 0, after set_stiffness: the dashpots, Pa s, for updates every `time` (s).
+  /// At a rate, after set_stiffness: the dashpots, Pa s, for updates every `time` (s).
   void set_viscosity(const Matrix6& viscosity, double time);
 
   /// Norm of the strain that the whole target asks for by the present gain.
@@ -35,7 +35,7 @@ class Servo {
   Matrix3 next_strain(double to, double planned_strain, double full_strain, double limit, const Matrix3& strain_so_far,
                       const Matrix3& stress, Matrix3& integral);
 
-  /// The same at dt > 0. The dashpots answer a rate and let go of it when it ends: an update changes the stress by
+  /// The same at a rate. The dashpots answer a rate and let go of it when it ends: an update changes the stress by
   /// K de + C (de/time - rate), with `rate` (1/s) that of the update before, and is solved for de. (With K alone a
   /// restitution of 0.1 made the servo swing by 1 to 5 times the stress that it held; with K + C/time for every strain
   /// it followed no faster than a collision, 4 to 16 % of scatter instead of 1 to 2.) The answer is cut at `limit`.

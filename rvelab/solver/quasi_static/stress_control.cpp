@@ -1,5 +1,6 @@
-// A mixed target at dt = 0: the servo runs inside the sub-steps, the strain per step follows the unbalanced ratio, and
-// the target waits for a stress that the grains let go (recovery.hpp). Declared in quasi_static.hpp.
+// A mixed target in quasi-static loading: the servo runs inside the sub-steps, the strain per step follows the
+// unbalanced ratio, and the target waits for a stress that the grains let go (recovery.hpp). Declared in
+// quasi_static.hpp.
 #include <algorithm>
 #include <string>
 
@@ -19,19 +20,19 @@ using namespace constants;
 namespace {
 
 /// Strain that the overlaps of grains which carry the held stress are worth.
-double strain_of_held(const State& s, const Servo& servo) {
+double strain_of_held(const State& state, const Servo& servo) {
   // p = f N d/V for some four contacts a grain in the plane, six in space.
-  const double diameter = 2 * s.model().mean_radius;
-  const double force = servo.held_stress() * s.cell().volume() / (double(s.model().size()) * diameter);
-  const double share = std::clamp(force / s.control().reference_contact_force, least_held_force, 1.0);
-  return share * s.control().reference_overlap / diameter;
+  const double diameter = 2 * state.model().mean_radius;
+  const double force = servo.held_stress() * state.cell().volume() / (double(state.model().size()) * diameter);
+  const double share = std::clamp(force / state.reference().contact_force, least_held_force, 1.0);
+  return share * state.reference().overlap / diameter;
 }
 
 /// A mixed target on its way.
 class StressControl {
  public:
   StressControl(State& state, const MixedTarget& target)
-      : s_(state),
+      : state_(state),
         target_(target),
         servo_(target, state.model().dimension(), stress(), Servo::Missed::evenly),
         check_(state),
@@ -41,7 +42,7 @@ class StressControl {
   Report make(Matrix3& gradient);
 
  private:
-  Matrix3 stress() { return s_.to_lab(s_.stress()) + s_.reynolds_stress(); }
+  Matrix3 stress() { return state_.to_lab(state_.stress()) + state_.reynolds_stress(); }
   /// The servo's strain of some sub-steps, and that of the target beside.
   Matrix3 next_strain(bool waiting);
   void expect_substeps() const;
@@ -49,7 +50,7 @@ class StressControl {
   void check(bool waiting, const Matrix3& change);
   Report judged();
 
-  State& s_;
+  State& state_;
   const MixedTarget& target_;
   Servo servo_;
   EquilibriumCheck check_;
@@ -63,16 +64,16 @@ class StressControl {
 
 Matrix3 StressControl::next_strain(bool waiting) {
   const double wanted = servo_.predicted_strain() + target_.spin.norm();
-  const double full = double(servo_interval) * s_.control().strain_per_step, left = 1 - fraction_;
+  const double full = double(servo_interval) * state_.control().strain_per_step, left = 1 - fraction_;
   const double advance_by = waiting ? 0.0 : wanted > 0 ? std::min(left, full / wanted) : left;
   const double closing = recovery_.under_way() ? double(servo_interval) * recovery_.closing() : 0.0;
   fraction_ = left - advance_by < 1e-12 ? 1.0 : fraction_ + advance_by;
   return servo_.next_strain(fraction_, advance_by * wanted, full, std::max(largest_answer * full, closing),
-                            path_.strain, stress(), s_.control().servo_strain);
+                            path_.strain, stress(), state_.servo().strain);
 }
 
 void StressControl::expect_substeps() const {
-  const long most = s_.model().options.max_substeps;
+  const long most = state_.model().options.max_substeps;
   if (report_.substeps <= most) return;
   throw IncrementFailed("the increment needs more than " + std::to_string(most) +
                         " sub-steps (solver.max_substeps); the held stress is off by " + in_words(report_.held_error) +
@@ -87,16 +88,17 @@ void StressControl::check(bool waiting, const Matrix3& change) {
   if (!checked_) return;
   const OutOfBalance balance = check_.check();
   // The strain per step is judged before a wait, in which the ratio says nothing of it.
-  if (!waiting) adapt_strain_step(s_, balance, servo_.held_stress());
-  recovery_.checked(2 * double(balance.touching) / double(s_.model().size()), change);
+  if (!waiting) adapt_strain_step(state_, balance, servo_.held_stress());
+  recovery_.checked(2 * double(balance.touching) / double(state_.model().size()), change);
 }
 
 Report StressControl::judged() {
   report_.waited = recovery_.substeps();
   report_.target_held = report_.held_error <= target_.tolerance;
-  report_.unbalanced_ratio = s_.control().unbalanced_ratio;
-  judge_equilibrium(s_, report_);
-  estimate_error(s_, held_tolerance(s_) * pressure_scale(s_), {strain_, report_.unbalanced_ratio, 0}, report_);
+  report_.unbalanced_ratio = state_.control().unbalanced_ratio;
+  judge_equilibrium(state_, report_);
+  estimate_error(state_, held_tolerance(state_) * pressure_scale(state_),
+                 {.strain = strain_, .unbalanced_ratio = report_.unbalanced_ratio}, report_);
   return report_;
 }
 
@@ -106,18 +108,19 @@ Report StressControl::make(Matrix3& gradient) {
     if (fraction_ >= 1 && report_.held_error <= target_.tolerance) break;
     recovery_.judge(report_.held_error);
     if (since_update_ == 0)
-      servo_.set_stiffness(affine_stiffness(s_.model(), s_.assembly()),
-                           gas_stiffness(s_.model(), s_.cell(), least_stiffness(s_.model(), s_.assembly())));
+      servo_.set_stiffness(
+          affine_stiffness(state_.model(), state_.assembly()),
+          gas_stiffness(state_.model(), state_.cell(), least_stiffness(state_.model(), state_.assembly())));
     if (report_.substeps == 0) {
       strain_ = servo_.predicted_strain();
-      set_target_ratio(s_, held_target_ratio(s_));
+      set_target_ratio(state_, held_target_ratio(state_));
     }
     const bool waiting = fraction_ >= 1 || recovery_.under_way();
     const long steps = waiting ? std::min(servo_interval, recovery_.patience(report_.substeps)) : servo_interval;
     if (steps <= 0) break;
     const Matrix3 change = next_strain(waiting);
-    s_.advance({split_increment(s_.cell(), path_.go_on(change, fraction_)), steps, 1, Loading::quasi_static});
-    s_.control().interval_strain += change.norm();
+    state_.advance({split_increment(state_.cell(), path_.go_on(change, fraction_)), steps, 1, Loading::quasi_static});
+    state_.control().interval.strain += change.norm();
     report_.substeps += steps;
     since_update_ += steps;
     if (waiting) recovery_.waited(steps, change);
@@ -131,8 +134,8 @@ Report StressControl::make(Matrix3& gradient) {
 
 }  // namespace
 
-Report load_quasi_static(State& s, const MixedTarget& target, Matrix3& gradient) {
-  return StressControl(s, target).make(gradient);
+Report load_quasi_static(State& state, const MixedTarget& target, Matrix3& gradient) {
+  return StressControl(state, target).make(gradient);
 }
 
 }  // namespace rvelab

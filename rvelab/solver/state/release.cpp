@@ -28,51 +28,52 @@ std::size_t bytes_of(const Array& array) {
 
 }  // namespace
 
-void put_masses_into_rows(const Model& f, Assembly& a) {
-  const std::size_t length = std::size_t(f.row_length());
-  if (a.state.steps_since_scaling < 0 || a.mass.empty()) return;
-  for (std::size_t g = 0; g < f.size(); ++g) {
-    a.rows[g * length + released_mass(f.shape)] = a.mass[g];
-    a.rows[g * length + released_inverse_inertia(f.shape)] = a.inverse_inertia[g];
+void put_masses_into_rows(const Model& model, Assembly& assembly) {
+  const std::size_t length = std::size_t(model.row_length());
+  if (!assembly.state.masses.in_use || assembly.mass.empty()) return;
+  for (std::size_t g = 0; g < model.size(); ++g) {
+    assembly.rows[g * length + released_mass(model.shape)] = assembly.mass[g];
+    assembly.rows[g * length + released_inverse_inertia(model.shape)] = assembly.inverse_inertia[g];
   }
 }
 
-void release_buffers(Assembly& a) {
-  each_working_array(a, [](auto& array) { array = std::remove_reference_t<decltype(array)>(); });
+void release_buffers(Assembly& assembly) {
+  each_working_array(assembly, [](auto& array) { array = std::remove_reference_t<decltype(array)>(); });
 }
 
-void rebuild_buffers(const Model& f, Assembly& a) {
+void rebuild_buffers(const Model& model, Assembly& assembly) {
   try {
-    derive_pairs(f, a.pairs);
-    leave_out_pairs_beyond(force_row_length(f.dimension()), a.pairs);
-    for (Buffer* b : {&a.mass, &a.inverse_mass, &a.inverse_inertia}) b->assign(padded_to_lanes(f.size()), 0.0);
+    derive_pairs(model, assembly.pairs);
+    leave_out_pairs_beyond(force_row_length(model.dimension()), assembly.pairs);
+    for (Buffer* b : {&assembly.mass, &assembly.inverse_mass, &assembly.inverse_inertia})
+      b->assign(padded_to_lanes(model.size()), 0.0);
   } catch (...) {  // no memory: it stays released, the masses in its rows
-    release_buffers(a);
+    release_buffers(assembly);
     throw;
   }
-  const std::size_t length = std::size_t(f.row_length());
-  if (a.state.steps_since_scaling < 0) {
-    use_physical_inertia(f, a);
+  const std::size_t length = std::size_t(model.row_length());
+  if (!assembly.state.masses.in_use) {
+    use_physical_inertia(model, assembly);
   } else {
-    for (std::size_t g = 0; g < f.size(); ++g) {
-      double* row = a.rows.data() + g * length;
-      a.mass[g] = row[released_mass(f.shape)];
-      a.inverse_mass[g] = 1 / a.mass[g];
-      a.inverse_inertia[g] = row[released_inverse_inertia(f.shape)];
-      complete_row(f, g, row);
+    for (std::size_t g = 0; g < model.size(); ++g) {
+      double* row = assembly.rows.data() + g * length;
+      assembly.mass[g] = row[released_mass(model.shape)];
+      assembly.inverse_mass[g] = 1 / assembly.mass[g];
+      assembly.inverse_inertia[g] = row[released_inverse_inertia(model.shape)];
+      complete_row(model, g, row);
     }
   }
-  evaluate_forces(f, a);
+  evaluate_forces(model, assembly);
 }
 
-Memory memory_of(const Assembly& a) {
-  const PairTable& t = a.pairs;
+Memory memory_of(const Assembly& assembly) {
+  const PairTable& t = assembly.pairs;
   Memory m;
-  m.state = bytes_of(a.rows) + bytes_of(t.root_overlap) + bytes_of(a.state.memory_order);
+  m.state = bytes_of(assembly.rows) + bytes_of(t.root_overlap) + bytes_of(assembly.state.memory_order);
   for (int k = 0; k < 3; ++k) m.state += bytes_of(t.tangential[k]) + bytes_of(t.moment[k]);
   m.list = bytes_of(t.i) + bytes_of(t.j) + bytes_of(t.image) + bytes_of(t.order) + bytes_of(t.slot_begin) +
-           bytes_of(t.slots) + bytes_of(t.tasks) + bytes_of(a.state.list_positions);
-  each_working_array(a, [&m](const auto& array) { m.working += bytes_of(array); });
+           bytes_of(t.slots) + bytes_of(t.tasks) + bytes_of(assembly.state.list.positions);
+  each_working_array(assembly, [&m](const auto& array) { m.working += bytes_of(array); });
   return m;
 }
 

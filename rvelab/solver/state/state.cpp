@@ -27,18 +27,19 @@ void expect_overlaps(const OutOfBalance& balance, double limit) {
 }
 
 /// Tangential springs that lose their stiffness let go; what they held is booked. `before`: their stiffnesses so far.
-void let_go_of_springs(const Model& f, const Buffer& before, Assembly& a) {
-  PairTable& pairs = a.pairs;
+void let_go_of_springs(const Model& model, const Buffer& before, Assembly& assembly) {
+  PairTable& pairs = assembly.pairs;
   for (const std::int32_t place : pairs.order) {
     const auto p = std::size_t(place);
     if (pairs.kt[p] > 0 || !(before[p] > 0)) continue;
-    const double root = f.stores_root_overlap() ? pairs.root_overlap[p] : 1.0;
+    const double root = model.stores_root_overlap() ? pairs.root_overlap[p] : 1.0;
     double squared = 0;
-    for (int k = 0; k < f.tangential_components(); ++k) {
+    for (int k = 0; k < model.tangential_components(); ++k) {
       squared += pairs.tangential[k][p] * pairs.tangential[k][p];
       pairs.tangential[k][p] = 0;
     }
-    if (f.options.energy_balance && squared > 0) a.state.energy_balance.law_loss += 0.5 * squared / (before[p] * root);
+    if (model.options.energy_balance && squared > 0)
+      assembly.state.energy_balance.law_loss += 0.5 * squared / (before[p] * root);
   }
 }
 
@@ -47,7 +48,7 @@ void let_go_of_springs(const Model& f, const Buffer& before, Assembly& a) {
 State::State(const Specimen& specimen) {
   open_assembly(specimen, model_, assembly_);
   set_typical_answers(model_);
-  if (control().steps_since_scaling < 0) use_physical_inertia(model_, assembly_);
+  if (!masses().in_use) use_physical_inertia(model_, assembly_);
   evaluate_forces(model_, assembly_);
   if (!out_of_balance().finite)
     throw InputError("specimen: contact forces are not finite; do two grains lie at one place?");
@@ -56,27 +57,27 @@ State::State(const Specimen& specimen) {
     throw InputError("specimen: its stress is not finite (cell volume " + in_words(cell().volume()) +
                      " m^3); are cell, masses or velocities in the wrong units? Give all in SI");
   set_strained_cell();
-  if (control().steps_since_scaling >= 0 && holds_more_than_friction(model_, assembly_)) {
-    control().steps_since_scaling = -1;
+  if (masses().in_use && holds_more_than_friction(model_, assembly_)) {
+    masses() = {};
     use_physical_inertia(model_, assembly_);
   }
-  if (!specimen.state.has_reference) set_missing_references();  // first opening
+  if (!specimen.state.list.built) set_missing_references();  // first opening
 }
 
 void State::set_missing_references() {
-  SolverState& state = control();
+  Reference& reference = assembly_.state.reference;
   const OutOfBalance& balance = out_of_balance();
-  if (state.reference_overlap == 0)
-    state.reference_overlap = balance.touching > 0 ? balance.mean_overlap : 1e-2 * model_.mean_radius;
-  if (state.reference_contact_force == 0)
-    state.reference_contact_force =
-        balance.touching > 0 ? balance.mean_contact_force : typical_normal_force(model_, state.reference_overlap);
-  if (state.reference_pressure == 0)
-    state.reference_pressure = std::max(0.0, mean_pressure(contact_stress() + reynolds_stress(), model_.dimension()));
+  if (reference.overlap == 0)
+    reference.overlap = balance.touching > 0 ? balance.mean_overlap : 1e-2 * model_.mean_radius;
+  if (reference.contact_force == 0)
+    reference.contact_force =
+        balance.touching > 0 ? balance.mean_contact_force : typical_normal_force(model_, reference.overlap);
+  if (reference.pressure == 0)
+    reference.pressure = std::max(0.0, mean_pressure(contact_stress() + reynolds_stress(), model_.dimension()));
 }
 
 const Matrix3& State::stress() {
-  return stress_.of(generation_, [this] { return Matrix3(-contact_moment(model_, assembly_) / cell().volume()); });
+  return stress_.of(generation_, [this] { return Matrix3(-contact_virial(model_, assembly_) / cell().volume()); });
 }
 
 const OutOfBalance& State::out_of_balance() {
@@ -99,14 +100,14 @@ void State::note_unbalanced_ratio() {
 }
 
 double State::unbalanced_ratio(const OutOfBalance& balance) const {
-  return rvelab::unbalanced_ratio(balance, control().reference_contact_force);
+  return rvelab::unbalanced_ratio(balance, reference().contact_force);
 }
 
-Matrix3 State::contact_stress() const { return to_lab(-contact_moment(model_, assembly_) / cell().volume()); }
+Matrix3 State::contact_stress() const { return to_lab(-contact_virial(model_, assembly_) / cell().volume()); }
 
 Matrix3 State::reynolds_stress() const {
-  if (control().quasi_static) return Matrix3::Zero();
-  return to_lab(kinetic_moment(model_, assembly_) / cell().volume());
+  if (last_step().loading == Loading::quasi_static) return Matrix3::Zero();
+  return to_lab(reynolds_stress_times_volume(model_, assembly_) / cell().volume());
 }
 
 Advanced State::advance(const Advance& what) {
@@ -116,8 +117,8 @@ Advanced State::advance(const Advance& what) {
 }
 
 void State::begin_loading(Loading loading) {
-  // Dashpots let go where the kind of loading changes. Masses and half steps are nothing that stresses know.
-  const bool changes = control().quasi_static != (loading == Loading::quasi_static);
+  // Where the kind of loading changes dashpot forces vanish; the stress does not depend on masses.
+  const bool changes = last_step().loading != loading;
   rvelab::begin_loading(model_, changes ? change() : assembly_, loading);
 }
 
@@ -132,23 +133,23 @@ void State::set_rotation(const Matrix3& rotation) {
 }
 
 void State::set_deferred(const Matrix3& stretch) {
-  control().deferred_stretch = stretch;
+  control().deferred.stretch = stretch;
   set_strained_cell();
 }
 
-void State::defer(const Matrix3& stretch, const Matrix3& frame_rotation) {
-  control().deferred_stretch = stretch;
+void State::set_deferred_and_turn(const Matrix3& stretch, const Matrix3& frame_rotation) {
+  control().deferred.stretch = stretch;
   turn(frame_rotation);
 }
 
 void State::set_strained_cell() {
   if (!has_deferred()) return;
   strained_cell_ = cell();
-  strained_cell_.lattice = control().deferred_stretch * cell().lattice;
+  strained_cell_.lattice = control().deferred.stretch * cell().lattice;
 }
 
 void State::set_materials(const std::vector<Material>& materials) {
-  Assembly& a = change();
+  Assembly& assembly = change();
   model_.materials = materials;
   std::vector<double> mass(model_.size()), inertia(model_.size());
   for (std::size_t g = 0; g < model_.size(); ++g) {
@@ -158,34 +159,34 @@ void State::set_materials(const std::vector<Material>& materials) {
   }
   model_.mass = std::move(mass);
   model_.inertia = std::move(inertia);
-  const Buffer before = a.pairs.kt;
-  set_pair_parameters(model_, a.pairs);
-  let_go_of_springs(model_, before, a);
+  const Buffer before = assembly.pairs.kt;
+  set_pair_parameters(model_, assembly.pairs);
+  let_go_of_springs(model_, before, assembly);
   set_typical_answers(model_);
-  a.state.steps_since_scaling = -1;
-  evaluate_forces(model_, a);
+  assembly.state.masses = {};
+  evaluate_forces(model_, assembly);
 }
 
 void State::set_velocities(const std::vector<Vector3>& velocity, const std::vector<Vector3>& spin) {
-  begin_loading(Loading::physical);
-  Assembly& a = change();
+  begin_loading(Loading::at_rate);
+  Assembly& assembly = change();
   for (std::size_t place = 0; place < model_.size(); ++place)
-    a.set_velocity(model_, place, velocity[index_in_specimen(place)], spin[index_in_specimen(place)]);
-  a.state.mean_velocity.setZero();
-  evaluate_forces(model_, a);
+    assembly.set_velocity(model_, place, velocity[index_in_specimen(place)], spin[index_in_specimen(place)]);
+  assembly.state.last_step.mean_velocity.setZero();
+  evaluate_forces(model_, assembly);
 }
 
 void State::zero_velocities() {
-  Assembly& a = change();
-  stop_grains(model_, a);
-  evaluate_forces(model_, a);
+  Assembly& assembly = change();
+  stop_grains(model_, assembly);
+  evaluate_forces(model_, assembly);
 }
 
 void State::take_as_reference() {
   SolverState& state = change().state;
-  state.reference_overlap = state.reference_contact_force = state.reference_pressure = 0;
+  state.reference = {};
   set_missing_references();
-  state.steps_since_scaling = -1;  // what a barely touching contact counts as goes with the reference
+  state.masses = {};  // what a barely touching contact counts as goes with the reference
 }
 
 void State::begin_trial(Trial::Changes changes) {

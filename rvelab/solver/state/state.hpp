@@ -55,9 +55,15 @@ class State {
     generation_ = ++last_generation_;
     return assembly_;
   }
-  /// What decides how an increment is made (strain per step, lag, slopes, interval). Nothing is derived from it.
-  SolverState& control() { return assembly_.state; }
-  const SolverState& control() const { return assembly_.state; }
+  // Parts of the state from which nothing is derived.
+  QuasiStaticControl& control() { return assembly_.state.control; }
+  const QuasiStaticControl& control() const { return assembly_.state.control; }
+  ServoState& servo() { return assembly_.state.servo; }
+  LastStep& last_step() { return assembly_.state.last_step; }
+  const LastStep& last_step() const { return assembly_.state.last_step; }
+  ScaledMasses& masses() { return assembly_.state.masses; }
+  const ScaledMasses& masses() const { return assembly_.state.masses; }
+  const Reference& reference() const { return assembly_.state.reference; }
 
   const Matrix3& stress();  ///< of the contacts, cell frame, Pa
   const OutOfBalance& out_of_balance();
@@ -72,12 +78,12 @@ class State {
 
   /// Index into the specimen's grains of the grain at a place in memory.
   std::size_t index_in_specimen(std::size_t place) const {
-    return control().memory_order.empty() ? place : std::size_t(control().memory_order[place]);
+    return assembly_.state.memory_order.empty() ? place : std::size_t(assembly_.state.memory_order[place]);
   }
 
   Matrix3 to_lab(const Matrix3& cell_frame) const { return cell().rotation * cell_frame * cell().rotation.transpose(); }
   Matrix3 contact_stress() const;   ///< laboratory frame, Pa; derived anew
-  Matrix3 reynolds_stress() const;  ///< laboratory frame, Pa; zero at dt = 0
+  Matrix3 reynolds_stress() const;  ///< laboratory frame, Pa; zero in quasi-static loading
   /// A cell height is below four mean diameters.
   bool is_thin(const Cell& cell) const { return heights(cell).minCoeff() < 8 * model_.mean_radius; }
 
@@ -88,17 +94,17 @@ class State {
   /// Masses of quasi-static loading from the present row sums; the second books the change of kinetic energy.
   void scale_masses() { scale_inertia(model_, row_sums(), assembly_); }
   void rescale_masses() { rescale_inertia(model_, row_sums(), assembly_); }
-  /// At dt = 0, where no force depends on a velocity.
+  /// In quasi-static loading, where no force depends on a velocity.
   void stop_quasi_static() { stop_grains(model_, assembly_); }
   /// Turns the frame of the cell.
   void turn(const Matrix3& frame_rotation);
   void set_rotation(const Matrix3& rotation);
 
   /// Strain that is applied but left to the next sub-step (quasi_static/deferred.hpp).
-  bool has_deferred() const { return !(control().deferred_stretch.array() == Matrix3::Identity().array()).all(); }
+  bool has_deferred() const { return !(control().deferred.stretch.array() == Matrix3::Identity().array()).all(); }
   void set_deferred(const Matrix3& stretch);
-  /// The same while the frame turns.
-  void defer(const Matrix3& stretch, const Matrix3& frame_rotation);
+  /// Sets the deferred stretch and turns the frame of the cell.
+  void set_deferred_and_turn(const Matrix3& stretch, const Matrix3& frame_rotation);
   /// The cell with it.
   const Cell& strained_cell() const { return has_deferred() ? strained_cell_ : cell(); }
 

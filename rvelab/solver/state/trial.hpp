@@ -22,7 +22,7 @@ class Trial {
 
   enum class Changes {
     grains,          ///< whatever a sub-step changes
-    deferred_strain  ///< SolverState::deferred_stretch and the cell's rotation, no more
+    deferred_strain  ///< the deferred stretch and the cell's rotation, no more
   };
   /// Notes what `assembly` is: its committed state.
   void begin(Assembly& assembly, Changes changes);

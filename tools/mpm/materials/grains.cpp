@@ -35,8 +35,8 @@ Mat<D> from_nine(const double* nine) {
 }  // namespace
 
 template <int D>
-Grains<D>::Grains(std::shared_ptr<GrainPool> pool, std::vector<std::int64_t> ids, bool physical, double gather)
-    : pool_(std::move(pool)), ids_(std::move(ids)), physical_(physical), gather_(physical ? 0 : gather) {}
+Grains<D>::Grains(std::shared_ptr<GrainPool> pool, std::vector<std::int64_t> ids, bool at_rate, double gather)
+    : pool_(std::move(pool)), ids_(std::move(ids)), at_rate_(at_rate), gather_(at_rate ? 0 : gather) {}
 
 template <int D>
 void Grains<D>::read_stress(Point<D>* points) {
@@ -65,7 +65,7 @@ void Grains<D>::follow_stiffness(const Point<D>* points, long count) {
   const double compression = count > 0 ? compression_of<D>(*most) : 0;
   if (compression > 2 * found_.compression || called - found_.called >= between_checks) {
     const auto id = ids_[std::size_t(most - points)];
-    const double now = physical_ ? wave_modulus_of(*pool_, id) : measured_modulus_of(*pool_, id, D);
+    const double now = at_rate_ ? wave_modulus_of(*pool_, id) : measured_modulus_of(*pool_, id, D);
     if (now > 0) found_.modulus = std::max(now, least * found_.first);
     // By a factor of 100 at most: a material in flight, almost without stress, would double it at every step.
     found_.compression = std::max(compression, 0.01 * found_.compression);
@@ -123,7 +123,7 @@ void Grains<D>::advance(Point<D>* points, long count, double dt, Workers&) {
   rvelab_batch batch;
   expect_ok(rvelab_batch_init(&batch, sizeof batch));
   batch.n = std::int64_t(n);
-  batch.dt = physical_ ? dt : 0;
+  batch.dt = at_rate_ ? dt : 0;
   batch.ids = batch_ids_.data();
   batch.dH = dH_.data();
   batch.sigma = sigma_.data();

@@ -12,10 +12,10 @@ namespace mpm {
 template <int D>
 class Grains : public Material<D> {
  public:
-  /// physical: the RVEs feel the time step (rate, inertia of grains); else they are quasi-static.
+  /// at_rate: the RVEs feel the time step (rate, inertia of grains); else they are quasi-static.
   /// gather: increments are summed until the largest entry of the gradient reaches this; the stress stays meanwhile. 0:
   /// each is applied at once.
-  Grains(std::shared_ptr<GrainPool> pool, std::vector<std::int64_t> ids, bool physical, double gather);
+  Grains(std::shared_ptr<GrainPool> pool, std::vector<std::int64_t> ids, bool at_rate, double gather);
   void advance(Point<D>* points, long count, double dt, Workers& workers) override;
   double wave_modulus() const override { return wave_modulus_; }
   Measures measures(long point) const override;
@@ -36,7 +36,7 @@ class Grains : public Material<D> {
   void apply_in_parts(Point<D>& point, std::int64_t id, const Mat<D>& gradient, double dt, double scale);
   std::shared_ptr<GrainPool> pool_;
   std::vector<std::int64_t> ids_;
-  bool physical_;
+  bool at_rate_;
   double gather_;
   double wave_modulus_ = 0;
   double earlier_ = 0;  ///< grain-steps before the run was resumed

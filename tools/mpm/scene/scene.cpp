@@ -14,11 +14,11 @@ GrainsOfScene read_grains(Keys& keys) {
   GrainsOfScene grains;
   grains.specimens = keys.texts("specimens");
   grains.density = keys.number("grain_density_kg_m3", 2650, 1e-3);
-  grains.physical = keys.choice("loading", {"quasi_static", "physical"}) == "physical";
+  grains.at_rate = keys.choice("loading", {"quasi_static", "at_rate"}) == "at_rate";
   grains.tolerance_rel = keys.number("tolerance_rel", 0, 0, 1);
   grains.tolerance_abs = keys.number("tolerance_abs", 0, 0, 1);
   grains.gather = keys.number("gather", 0, 0, 1e-3);
-  if (grains.gather > 0 && grains.physical) keys.wrong("gather", "is for quasi_static loading; remove it");
+  if (grains.gather > 0 && grains.at_rate) keys.wrong("gather", "is for quasi_static loading; remove it");
   return grains;
 }
 

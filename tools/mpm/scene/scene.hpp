@@ -19,7 +19,7 @@ namespace mpm {
 struct GrainsOfScene {
   std::vector<std::string> specimens;
   double density = 0;  ///< kg/m^3, of the grains themselves
-  bool physical = false;
+  bool at_rate = false;
   double tolerance_rel = 0, tolerance_abs = 0, gather = 0;
 };
 

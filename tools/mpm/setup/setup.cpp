@@ -205,7 +205,7 @@ std::shared_ptr<Grains<D>> load_grains(const Scene& scene, const MaterialOfScene
   }
   model.pressure_classes += long(family.classes()) - 1;
   family.release();
-  auto grains = std::make_shared<Grains<D>>(pool, std::move(ids), material.grains->physical, material.grains->gather);
+  auto grains = std::make_shared<Grains<D>>(pool, std::move(ids), material.grains->at_rate, material.grains->gather);
   grains->read_stress(points);
   return grains;
 }
@@ -330,7 +330,7 @@ void add_group(const Scene& scene, const MaterialOfScene& material, Model<D>& mo
     auto grains = stock.populate ? load_grains<D>(scene, material, model, pool, *stock.families.at(material.name),
                                                   stock.soils, points, group.count)
                                  : std::make_shared<Grains<D>>(pool, std::vector<std::int64_t>{},
-                                                               material.grains->physical, material.grains->gather);
+                                                               material.grains->at_rate, material.grains->gather);
     model.grains[material.name] = grains;
     group.material = grains;
   }
