@@ -240,6 +240,7 @@ struct Increment {
   double spread = 0;                                          ///< of the truth, Pa
   bool known = false;
   Response made;
+  std::uint64_t substeps = 0;  ///< that it took, those of copies too
   bool failed = false;
   std::string why;
 
@@ -335,6 +336,7 @@ std::vector<Increment> judged(std::uint64_t seed, std::size_t each, const std::s
         Rve rve(s);
         i.before = rve.stress();
         i.made = rve.apply(i.gradient, 0);
+        i.substeps = rve.grain_steps_made() / rve.size();
       } catch (const Error& error) {
         i.failed = true;
         i.why = error.what();
@@ -386,10 +388,10 @@ void write_lines(const std::vector<Increment>& all, const std::string& path) {
   if (out == nullptr) return;
   for (const Increment& i : all) {
     const Report& r = i.made.report;
-    std::fprintf(out, "%llu %d %zu %.4e %d %d %.6e %.6e %.6e %.6e %.6e %ld %d %.6e %.6e\n", (unsigned long long)i.seed,
-                 percents[i.state], i.direction, i.length, int(i.known), int(i.failed), i.error(), r.error_estimate,
-                 r.allowed_error, i.spread, r.unbalanced_ratio, r.substeps, int(r.tolerance_met),
-                 (i.truth - i.before).norm(), -i.before.trace());
+    std::fprintf(out, "%llu %d %zu %.4e %d %d %.6e %.6e %.6e %.6e %.6e %ld %d %.6e %.6e %llu\n",
+                 (unsigned long long)i.seed, percents[i.state], i.direction, i.length, int(i.known), int(i.failed),
+                 i.error(), r.error_estimate, r.allowed_error, i.spread, r.unbalanced_ratio, r.substeps,
+                 int(r.tolerance_met), (i.truth - i.before).norm(), -i.before.trace(), (unsigned long long)i.substeps);
     if (i.failed)
       std::fprintf(stderr, "seed %llu, %d %%, %s, %.2e: %s\n", (unsigned long long)i.seed, percents[i.state],
                    directions[i.direction], i.length, i.why.c_str());

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rvelab/contact/model.hpp"
+
 namespace rvelab {
 
 using namespace constants;
@@ -23,7 +25,7 @@ double allowed_error(double relative, double absolute, double stress_change, dou
 double error_per_unbalance(double stiffness_ratio, double constraint_ratio, double damping, int dimension) {
   const double s = std::clamp(stiffness_ratio, least_stiffness_ratio, 1.0);
   const double soft = stiff_factor / (s * s * std::sqrt(s)) / (dimension == 3 ? s : 1.0);
-  const double damped = std::max(1.0, undamped_factor + damped_factor * damping);
+  const double damped = std::max(1.0, damping / Damping{}.local_quasi_static);
   if (!(constraint_ratio > 0)) return damped * soft;
   const double beyond = std::max(constraint_ratio, 1.0) - 1;
   return damped * std::max(soft, hyperstatic_factor + isostatic_factor / (1 + isostatic_width * beyond * beyond));
@@ -35,13 +37,6 @@ double error_per_unbalance_of_start(double constraint_ratio) {
 }
 
 double error_growth(double strain, double strain_of_overlap) {
-  const double x = strain / strain_of_overlap / long_strain;
-  if (!(x > 1)) return 1;
-  const double root = std::sqrt(x);
-  return root * std::sqrt(root);
-}
-
-double rested_growth(double strain, double strain_of_overlap) {
   return std::sqrt(std::sqrt(std::sqrt(std::max(1.0, strain / strain_of_overlap))));
 }
 

@@ -12,21 +12,12 @@ struct CheckInterval {
   double network_stiffness = 0;      ///< |C : d eps|/strain then, Pa
 };
 
-/// What the strain since the last event counts from: a measurement, one whose change of stress still grew, a turn of
-/// the path, a start from rest that was not measured.
-enum class Since { measurement, growing_change, turn, start_from_rest };
-template <>
-struct Named<Since> {
-  static constexpr const char *key = "state/control/lag/since",
-                              *names[] = {"measurement", "growing_change", "turn", "start_from_rest"};
-};
-
 /// How far the stress lags behind, by the last relaxation of a copy (error_model.hpp).
 struct LagMeasurement {
-  double error_factor = 0;           ///< K: the lag over p u; 0: not measured yet
-  Since since = Since::measurement;  ///< where `strain` begins
-  double strain = 0;
-  std::int64_t steps = 0;  ///< sub-steps since the measurement
+  double error_factor = 0;  ///< K: the lag over p u; 0: not measured yet
+  bool grows = false;       ///< the change of stress still grew as it ended
+  double strain = 0;        ///< since then
+  std::int64_t steps = 0;   ///< sub-steps since then
 };
 
 /// Strain that is applied but left to the next sub-step, and the slope that extrapolates the stress (deferred.hpp).
@@ -42,8 +33,9 @@ struct QuasiStaticControl {
   double unbalanced_ratio = 0;         ///< at the last equilibrium check
   double strain_since_reversal = 0;    ///< up to constants::judged_together
   double stiffness_ratio = 1;          ///< |d sigma|/|C : d eps| of the last interval (accuracy.hpp)
-  double constraint_ratio = 0;  ///< constraints of the contacts over the degrees of freedom of the grains that have
-                                ///< any, when the interval began; 0: not known
+  double constraint_ratio = 0;     ///< constraints of the contacts over the degrees of freedom of the grains that have
+                                   ///< any, when the interval began; 0: not known
+  bool after_short_start = false;  ///< the last increment was a start from rest too short to be measured
   std::int64_t steps_at_fixed_shape = 0;  ///< sub-steps since the cell last changed its shape
   CheckInterval interval;
   LagMeasurement lag;
@@ -68,7 +60,7 @@ inline constexpr auto members_of<CheckInterval> = std::tuple{
 template <>
 inline constexpr auto members_of<LagMeasurement> = std::tuple{
     Field{"error_factor", &LagMeasurement::error_factor, "1"}.within(number_from_zero),
-    Field{"since", &LagMeasurement::since, "-"},
+    Field{"grows", &LagMeasurement::grows, "1"},
     Field{"strain", &LagMeasurement::strain, "1"}.within(number_from_zero),
     Field{"steps", &LagMeasurement::steps, "1"}.within(number_from_zero),
 };
@@ -88,6 +80,7 @@ inline constexpr auto members_of<QuasiStaticControl> = std::tuple{
     Field{"strain_since_reversal", &QuasiStaticControl::strain_since_reversal, "1"}.within(number_from_zero),
     Field{"stiffness_ratio", &QuasiStaticControl::stiffness_ratio, "1"}.within(number_from_zero),
     Field{"constraint_ratio", &QuasiStaticControl::constraint_ratio, "1"}.within(number_from_zero),
+    Field{"after_short_start", &QuasiStaticControl::after_short_start, "1"},
     Field{"steps_at_fixed_shape", &QuasiStaticControl::steps_at_fixed_shape, "1"}.within(number_from_zero),
     Part{"interval", &QuasiStaticControl::interval},
     Part{"lag", &QuasiStaticControl::lag},

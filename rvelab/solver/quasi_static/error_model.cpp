@@ -54,19 +54,17 @@ double target_ratio(State& state, double elastic_change) {
                     largest_target);
 }
 
+double target_ratio_of_start(State& state, double elastic_change, double factor) {
+  return std::clamp(allowed_on_path(state, elastic_change) / (start_margin * factor * pressure_scale(state)),
+                    least_target, largest_target_of_start);
+}
+
 double error_factor_of_start(const State& state) {
   return error_per_unbalance_of_start(state.model().rolling_constraint_factor * state.control().constraint_ratio);
 }
 
 double factor_of_last_start(const State& state) {
-  const LagMeasurement& lag = state.control().lag;
-  const bool after_start = lag.since == Since::start_from_rest && lag.strain == 0;
-  return after_start && lag.error_factor == 0 ? error_factor_of_start(state) : 0;
-}
-
-double target_ratio_of_start(State& state, double elastic_change, double factor) {
-  return std::clamp(allowed_on_path(state, elastic_change) / (start_margin * factor * pressure_scale(state)),
-                    least_target, largest_target_of_start);
+  return state.control().after_short_start ? error_factor_of_start(state) : 0;
 }
 
 double held_tolerance(const State& state) {
@@ -97,18 +95,17 @@ bool can_measure_lag(State& state) {
          pressure(state) > 0;
 }
 
-bool lag_is_due(State& state, long substeps, bool from_rest) {
+bool lag_is_due(State& state, long substeps) {
   const LagMeasurement& lag = state.control().lag;
-  if (from_rest) return substeps >= least_start && can_measure_lag(state);
-  const bool old = lag.steps >= (lag.error_factor > 0 ? rest_period : first_period);
-  if (!(old || substeps >= least_increment) || !can_measure_lag(state)) return false;
-  const bool changed = lag.since == Since::turn || lag.strain > overlap_strain(state);
-  return old || lag.error_factor == 0 || (lag.steps >= changed_period && changed);
+  const bool first = lag.error_factor == 0 && (substeps >= least_measured || lag.steps >= check_interval);
+  const bool changed = lag.steps >= changed_period && lag.strain > overlap_strain(state);
+  const bool due = first || changed || lag.steps >= measured_period;
+  return due && can_measure_lag(state);
 }
 
 /// Relaxes a copy, and notes in the state by what its stress was behind.
 void measure_lag(State& state) {
-  constexpr long part = rest_steps / 2;
+  constexpr long part = check_interval / 2;
   const FrameSplit still{Matrix3::Identity(), Matrix3::Identity(), true};
   const Matrix3 before = stress_in_lab(state.model(), state.assembly());
   Assembly relaxed = state.assembly();
@@ -117,14 +114,11 @@ void measure_lag(State& state) {
     advance(state.model(), relaxed, {still, part, 1, Loading::quasi_static});
     change = (stress_in_lab(state.model(), relaxed) - before).norm();
   }
-  const double change = std::max(changes[0], changes[1]);
   state.count(2 * part);
   QuasiStaticControl& control = state.control();
-  const double scale = pressure_scale(state), left = state.unbalanced_ratio(balance_of(state.model(), relaxed));
-  const double margin = control.lag.error_factor > 0 ? 1 : first_margin;
-  // A change that grows with time is the beginning of a slow one: estimate_error takes it for that.
-  const Since since = changes[1] > slow_growth * changes[0] ? Since::growing_change : Since::measurement;
-  control.lag = {margin * (change + left_by_rest * left * scale) / (control.unbalanced_ratio * scale), since};
+  const double left = state.unbalanced_ratio(balance_of(state.model(), relaxed)) * pressure_scale(state);
+  const double lag = std::max(changes[0], changes[1]) + left;
+  control.lag = {lag / (control.unbalanced_ratio * pressure_scale(state)), changes[1] > slow_growth * changes[0]};
   control.constraint_ratio = constraint_ratio(state.model(), state.assembly());
 }
 
@@ -136,7 +130,6 @@ void judge_tolerance(Report& report) {
 
 void estimate_by_tolerances(State& state, double elastic_change, const Matrix3& stress_before,
                             const JudgedIncrement& increment, Report& report) {
-  if (increment.strain > 0 && report.substeps >= long_increment && can_measure_lag(state)) measure_lag(state);
   double changed = (state.stress() - stress_before).norm();
   // A piece of a path is judged as its sub-steps are chosen (target_ratio), by what the path changes of the stress.
   if (elastic_change > elastic_stress_change(state, increment.strain))
@@ -147,28 +140,22 @@ void estimate_by_tolerances(State& state, double elastic_change, const Matrix3& 
 }
 
 void estimate_error(State& state, double allowed, const JudgedIncrement& increment, Report& report) {
-  LagMeasurement& lag = state.control().lag;
-  lag.strain += increment.strain;
-  const bool from_rest = increment.start_error_factor > 0;
-  if (increment.strain > 0 && lag_is_due(state, report.substeps, from_rest)) measure_lag(state);
-  report.allowed_error = allowed;
-  const double scale = pressure_scale(state) * increment.unbalanced_ratio, overlap = overlap_strain(state);
-  const bool known = lag.error_factor > 0, just_measured = known && lag.steps == 0;
-  const double to_come = just_measured && lag.since == Since::growing_change ? slow_goes_on : 1;
-  const double measured =
-      to_come * measured_margin * lag.error_factor * scale * rested_growth(increment.strain, overlap);
-  const double margin = from_rest ? start_estimate_margin : known ? fitted_margin : unmeasured_margin;
+  QuasiStaticControl& control = state.control();
+  control.lag.strain += increment.strain;
+  if (increment.strain > 0 && lag_is_due(state, report.substeps)) measure_lag(state);
+  const LagMeasurement& lag = control.lag;
+  const bool from_rest = increment.start_error_factor > 0, known = lag.error_factor > 0;
+  if (increment.strain > 0) control.after_short_start = from_rest && !known;
+  const double scale =
+      pressure_scale(state) * increment.unbalanced_ratio * error_growth(increment.strain, overlap_strain(state));
+  const double measured = lag.error_factor * scale;
   const double factor = from_rest ? increment.start_error_factor : fitted_error_factor(state);
-  const double fitted = margin * factor * scale * error_growth(increment.strain, overlap);
-  const double least = increment.strain > overlap ? least_share_of_long : least_share;
-  const double behind = (just_measured ? measured
-                         : from_rest   ? fitted
-                                       : std::max(measured, fitted)) +
-                        increment.creep_error;
-  // For factor_of_last_start: the state is the end of a start that was not measured.
-  if (from_rest && !known) lag = {0, Since::start_from_rest, 0, lag.steps};
+  double behind = std::max(measured, fitted_margin * factor * scale);
+  if (known && lag.steps == 0) behind = lag.grows ? slow_goes_on * measured : measured;
+  behind += increment.creep_error;
+  report.allowed_error = allowed;
   report.error_estimate = std::sqrt(behind * behind + increment.extrapolation_error * increment.extrapolation_error) +
-                          least * (increment.allowed_of_path > 0 ? increment.allowed_of_path : allowed);
+                          least_share * (increment.allowed_of_path > 0 ? increment.allowed_of_path : allowed);
   judge_tolerance(report);
 }
 

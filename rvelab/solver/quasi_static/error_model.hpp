@@ -29,12 +29,13 @@ double expected_error(State& state, double ratio);
 
 /// Unbalanced ratio that an increment of this |C : d eps| (Pa) may have, by tolerance or as given.
 double target_ratio(State& state, double elastic_change);
-/// The same of a start from rest, by tolerance, whose K is `factor`; and that.
+/// The same of a start from rest, by tolerance, whose K is `factor`.
 double target_ratio_of_start(State& state, double elastic_change, double factor);
+/// K of a start from rest in the elastic range.
 double error_factor_of_start(const State& state);
 /// That K if the last increment was such a start and was not measured, else 0.
 double factor_of_last_start(const State& state);
-/// The same of a path under stress control, and what its stress may err by, over p.
+/// Unbalanced ratio of a path under stress control, and what its stress may err by, over p.
 double held_target_ratio(const State& state);
 double held_tolerance(const State& state);
 
@@ -56,12 +57,12 @@ struct JudgedIncrement {
 void estimate_error(State& state, double allowed, const JudgedIncrement& increment, Report& report);
 
 /// The same, allowed by the tolerances: `elastic_change` (|C : d eps|, Pa) is that of the path which the increment is a
-/// piece of. An increment of many sub-steps is measured before its strain counts as made since the last measurement.
+/// piece of.
 void estimate_by_tolerances(State& state, double elastic_change, const Matrix3& stress_before,
                             const JudgedIncrement& increment, Report& report);
 
 /// Adds the error that lags before the end have left: contacts slid elsewhere than in a slower increment. A lag is gone
-/// after the 50 sub-steps to the next check (rest_steps), so that those of two checks are independent, and the errors
+/// after the 50 sub-steps to the next check, so that those of two checks are independent, and the errors
 /// they leave add by their squares, to each other and to that of the end: with `path_unbalance`, the root of the sum of
 /// squares of the unbalanced ratios of the checks before the end, K p times that. Below the strain of the overlaps,
 /// x < 1, forces change by the part x, and about that part of the contacts may slide.

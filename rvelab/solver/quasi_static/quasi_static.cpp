@@ -144,7 +144,6 @@ TurnOfPath turn_of(double strain, const Matrix3& change, const Matrix3& rate) {
 /// Notes a turn of the path, before the increment that makes it.
 void note_direction(State& state, double strain, const TurnOfPath& turn) {
   QuasiStaticControl& control = state.control();
-  if (turn.turns) control.lag = {control.lag.error_factor, Since::turn, 0, control.lag.steps};
   if (turn.starts_anew) control.strain_since_reversal = 0;
   control.strain_since_reversal = std::min(control.strain_since_reversal + strain, judged_together);
   if (by_tolerance(state) && turn.reverses) turn_back(state);

@@ -44,7 +44,7 @@ void Recovery::checked(double coordination, const Matrix3& last_strain) {
                           " while the target waited; give a smaller one, or prescribe the strain");
   if (!under_way_) return;
   growth_ = coordination < contacts_apart && error_ > stress_gone
-                ? std::min(growth_of_closing * growth_, most_growth_of_closing)
+                ? std::min(largest_change_of_step * growth_, most_growth_of_closing)
                 : std::max(1.0, 0.5 * growth_);
 }
 

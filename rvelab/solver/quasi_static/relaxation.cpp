@@ -43,7 +43,7 @@ Report relax(State& state, double unbalanced, long max_steps) {
     // The state counts the steps: a relaxation may be made in as many calls as one likes.
     const bool patient = state.control().steps_at_fixed_shape < patience_of_damping;
     const double before = patient ? 0 : kinetic_energy(state.model(), state.assembly());
-    const long steps = std::min(relaxation_interval, max_steps - report.substeps);
+    const long steps = std::min(check_interval / 2, max_steps - report.substeps);
     advance_fixed_cell(state, steps);
     report.substeps += steps;
     if (!patient && kinetic_energy(state.model(), state.assembly()) < before) state.stop_quasi_static();
@@ -64,9 +64,9 @@ Relaxed relax_before(State& state, EquilibriumCheck& check, double strain, bool 
   while (relaxed.steps < most_steps_before_turn && expected_error(state, state.control().unbalanced_ratio) >
                                                        (relaxed.steps > 0 ? 1 / step_margin : 1) * allowed) {
     stresses.push_back(state.stress());
-    advance_fixed_cell(state, relaxation_interval);
+    advance_fixed_cell(state, check_interval / 2);
     check.check();
-    relaxed.steps += relaxation_interval;
+    relaxed.steps += check_interval / 2;
   }
   if (relaxed.steps == 0) return relaxed;
   relaxed.creep = std::max((state.stress() - stresses[stresses.size() / 2]).norm(),

@@ -22,15 +22,15 @@ double first_strain_step(State& state) {
   return first_step_over_overlap * scale_of_overlaps(state, state.out_of_balance()) / (2 * state.model().mean_radius);
 }
 
-/// How many sub-steps a start needs so that it leaves no more than `target` of imbalance, `steps` at least; `rate` is
-/// the strain of the sub-step before it.
+/// How many sub-steps a start needs so that it leaves no more than `target` of imbalance, `steps` at least, and no more
+/// than `most` are looked for; `rate` is the strain of the sub-step before it.
 double steps_of_start(const Matrix3& change, double strain, const Matrix3& rate, double strain_of_overlap,
-                      double target, double steps) {
+                      double target, double steps, double most) {
   const double onward = change.cwiseProduct(rate).sum();
   if (onward > same_direction * change.norm() * rate.norm()) target *= onward_allowance;
   const double norm = change.norm();
   if (!(norm > 0)) return steps;
-  while (steps < most_steps_of_start) {
+  while (steps < most) {
     const double mismatch = (change - steps * rate).norm() / norm;
     if (unbalance_of_start(mismatch, strain, strain_of_overlap, steps) <= target) break;
     steps = std::max(steps + 1, std::floor(growth_of_search * steps));
@@ -74,15 +74,15 @@ void adapt_strain_step(State& state, const OutOfBalance& balance, double held_st
 }
 
 bool was_coarser(State& state, double elastic_change) {
-  return state.control().target_unbalanced_ratio > coarser_path * target_ratio(state, elastic_change);
+  return state.control().target_unbalanced_ratio > step_margin * target_ratio(state, elastic_change);
 }
 
 double most_substeps(State& state, double strain) {
   if (!by_tolerance(state)) return std::numeric_limits<double>::infinity();
   const SolverOptions& o = state.model().options;
   const double overlaps = strain * 2 * state.model().mean_radius / state.reference().overlap;
-  const double strictness =
-      std::max(1.0, std::min(default_relative / o.relative_tolerance, default_absolute / o.absolute_tolerance));
+  const double strictness = std::max(1.0, std::min(SolverOptions{}.relative_tolerance / o.relative_tolerance,
+                                                   SolverOptions{}.absolute_tolerance / o.absolute_tolerance));
   return std::max(strictness * (most_steps + most_steps_of_overlap * overlaps), 1.0);
 }
 
@@ -90,19 +90,19 @@ Start start_of(State& state, const Matrix3& change, double strain, double elasti
   const QuasiStaticControl& control = state.control();
   if (!by_tolerance(state)) return {double(turned_back ? fewest_steps_back : fewest_steps), 0};
   if (!(control.interval.network_stiffness > 0)) return {1, 0};
-  const double overlap = overlap_strain(state);
+  const double overlap = overlap_strain(state), most = most_substeps(state, strain);
   // Stiff grains among soft ones answer as slowly as these: at 1 : 10,000 a start of five sub-steps left u = 0.5.
   const bool elastic = state.model().alike_contacts && control.stiffness_ratio >= least_elastic_ratio &&
                        strain <= longest_elastic_strain * overlap;
   if (elastic && state.last_step().rate.isZero(0) && !turned_back) {
     const double factor = error_factor_of_start(state);
-    const double steps = steps_of_start(change, strain, state.last_step().rate, overlap,
-                                        target_ratio_of_start(state, elastic_change, factor), 1);
+    const double target = target_ratio_of_start(state, elastic_change, factor);
+    const double steps = steps_of_start(change, strain, state.last_step().rate, overlap, target, 1, most);
     if (steps <= longest_start) return {steps, unbalance_of_start(1, strain, overlap, steps), factor};
   }
   const double by_strain = std::max(1.0, std::ceil(strain / control.strain_per_step));
   const double steps =
-      steps_of_start(change, strain, state.last_step().rate, overlap, control.target_unbalanced_ratio, by_strain);
+      steps_of_start(change, strain, state.last_step().rate, overlap, control.target_unbalanced_ratio, by_strain, most);
   const double mismatch = (change - steps * state.last_step().rate).norm() / change.norm();
   return {steps, unbalance_of_start(mismatch, strain, overlap, steps)};
 }

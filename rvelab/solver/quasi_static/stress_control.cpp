@@ -82,7 +82,7 @@ void StressControl::expect_substeps() const {
 
 void StressControl::check(bool waiting, const Matrix3& change) {
   const bool arrived = !waiting && fraction_ >= 1;
-  const bool due = since_update_ >= (recovery_.under_way() ? recovery_interval : check_interval);
+  const bool due = since_update_ >= (recovery_.under_way() ? 2 * servo_interval : check_interval);
   if (due) since_update_ = 0;
   checked_ = due || (arrived && check_.is_due_at_end(report_.substeps, strain_));
   if (!checked_) return;
