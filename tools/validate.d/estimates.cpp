@@ -3,7 +3,7 @@
 // 1e2 to 1e6. From each, at rest and after 1 % and 5 % of drained compression, increments of 1e-6 to 1e-2: on, back,
 // turned, on with a rotation, anyhow. The constants of quasi_static/constants.hpp were fitted to packings of even
 // seeds from 2 to 36. Seeds from 101 on are of five kinds and most of their increments long (first_of_kinds): 101 to
-// 110 were looked at when the error of the way was chosen (estimate_way), 111 to 120 afterwards.
+// 110 were looked at when the error of the way was chosen (add_error_of_path), 111 to 120 afterwards.
 //
 // The truth is 2,000 to 20,000 sub-steps and relaxation to an unbalanced ratio of 1e-8. It is known where half as many
 // sub-steps of a copy whose grains are moved by the last bit change it by less than a third of what the tolerance

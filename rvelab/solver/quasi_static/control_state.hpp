@@ -34,7 +34,7 @@ struct QuasiStaticControl {
   double strain_since_reversal = 0;    ///< up to constants::judged_together
   double stiffness_ratio = 1;          ///< |d sigma|/|C : d eps| of the last interval (accuracy.hpp)
   double constraint_ratio = 0;     ///< constraints of the contacts over the degrees of freedom of the grains that have
-                                   ///< any, when the interval began; 0: not known
+                                   ///< any, when the lag was measured last; 0: not known
   bool after_short_start = false;  ///< the last increment was a start from rest too short to be measured
   std::int64_t steps_at_fixed_shape = 0;  ///< sub-steps since the cell last changed its shape
   CheckInterval interval;
