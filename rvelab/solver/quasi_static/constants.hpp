@@ -1,4 +1,4 @@
-// The constants of quasi-static loading, with what each was measured on; what a path loses without it stands in
+// The constants of quasi-static loading, with what each was measured on; what increments lose without it stands in
 // tools/validate.d/results/constants.txt. u is the unbalanced ratio, p the pressure, n a
 // number of sub-steps, x a strain over that of the overlaps.
 #pragma once
