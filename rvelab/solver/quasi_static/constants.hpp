@@ -1,6 +1,6 @@
 // The constants of quasi-static loading, with what each was measured on; what increments lose without it stands in
-// tools/validate.d/results/constants.txt. u is the unbalanced ratio, p the pressure, n a
-// number of sub-steps, x a strain over that of the overlaps.
+// tools/validate.d/results/constants.txt. u is the unbalanced ratio, p the pressure, n a number of sub-steps, x a
+// strain over that of the overlaps.
 #pragma once
 
 namespace rvelab::constants {
