@@ -4,7 +4,7 @@
     tools/validate.d/bits.py PROGRAM WORK [BITS.json] [--write]
 
 Runs imports of all packings, the calibration over five pressures, triaxial, oedometer, undrained and shear tests, tests
-at dt > 0 with and without dashpot, two packings and the quick cases of tests/extreme; hashes grains, contacts, cell and records as
+at a rate with and without dashpot, two packings and the quick cases of tests/extreme; hashes grains, contacts, cell and records as
 the files hold them. With BITS.json the hashes are compared (exit code 1 if one differs), with --write they are kept
 there. Equal on every instruction set and number of threads; not across versions that change an answer on purpose.
 """
