@@ -164,9 +164,9 @@ std::vector<protocol::TestRun> run_all(const std::vector<protocol::Protocol>& pr
   };
   if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
   std::vector<protocol::TestRun> runs(protocols.size());
-  Workers(unsigned(std::min<std::size_t>(threads, protocols.size()))).run(protocols.size(), [&](std::size_t k) {
-    runs[k] = run_one(k, protocols[k], specimens[number_of(k)], run);
-  });
+  Workers(unsigned(std::min<std::size_t>(threads, protocols.size())))
+      .for_each_in_turn(protocols.size(),
+                        [&](std::size_t k) { runs[k] = run_one(k, protocols[k], specimens[number_of(k)], run); });
   return runs;
 }
 

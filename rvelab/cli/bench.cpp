@@ -203,14 +203,14 @@ void run_batch(const BenchArguments& arguments) {
   };
   const auto increments = [&] {
     for (int increment = 0; increment < 4; ++increment)
-      workers.run(rves.size(), [&](std::size_t k) { rves[k].apply(gradients[k], dt); });
+      workers.for_each_in_turn(rves.size(), [&](std::size_t k) { rves[k].apply(gradients[k], dt); });
   };
   increments();  // warms up
   const auto speeds = speeds_of(
       arguments.quick ? 3 : 7, steps_made, [] {}, increments);
   Listing listing;
   listing.add("cells", rves.size());
-  listing.add("threads", workers.threads());
+  listing.add("threads", workers.count());
   listing.add("grain_steps_per_second", speeds[speeds.size() / 2]);
   listing.print(arguments.json);
 }

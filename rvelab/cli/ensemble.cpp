@@ -156,7 +156,7 @@ Outcome carried_out(const Ensemble& ensemble, const std::vector<Planned>& tests,
       outcome.failures[k] = test.name + ": " + error.what();
     }
   };
-  Workers(unsigned(std::min<std::size_t>(threads, tests.size()))).run(tests.size(), one);
+  Workers(unsigned(std::min<std::size_t>(threads, tests.size()))).for_each_in_turn(tests.size(), one);
   return outcome;
 }
 

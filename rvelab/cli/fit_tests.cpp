@@ -174,7 +174,7 @@ std::vector<FitResult> made(const FitSetup& setup, const std::vector<FitTest>& t
   std::vector<std::optional<FitResult>> results(tests.size());
   ProgressLine progress(planned);
   for (std::size_t k = 0; k < tests.front().number; ++k) progress.done(k);
-  Workers(at_a_time).run(tests.size(), [&](std::size_t k) {
+  Workers(at_a_time).for_each_in_turn(tests.size(), [&](std::size_t k) {
     if (stop_on_signals().load()) return;
     if (!folder.empty()) results[k] = kept(file_of(folder, tests[k].number), tests[k]);
     if (!results[k]) {

@@ -161,7 +161,7 @@ void run_pack(const PackArguments& arguments) {
       make(jobs.front(), workers, line, files);
     } else {
       Workers workers(unsigned(std::min<std::size_t>(threads, jobs.size())));
-      workers.run(jobs.size(), [&](std::size_t k) {
+      workers.for_each_in_turn(jobs.size(), [&](std::size_t k) {
         Workers alone(1);
         try {
           make(jobs[k], alone, line, files);

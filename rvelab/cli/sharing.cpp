@@ -75,7 +75,7 @@ bool shared_out(const std::vector<KeptTest>& tests, const TestOptions& options) 
   const auto count = [&](State state) { return std::count(states.begin(), states.end(), state); };
   const std::size_t first = tests.size() * ranks.rank / ranks.count;  // ranks begin apart
   for (bool told = false;; told = true) {
-    workers.run(tests.size(), [&](std::size_t k) {
+    workers.for_each_in_turn(tests.size(), [&](std::size_t k) {
       State& state = states[(first + k) % tests.size()];
       if (state == State::open || state == State::elsewhere)
         if (!stop.load()) state = taken(tests[(first + k) % tests.size()], options, stop);

@@ -165,7 +165,7 @@ class Search {
   std::optional<std::size_t> make(std::size_t first, std::size_t count) {
     failures_.resize(first + count);
     std::atomic<std::size_t> found{first + count};
-    workers_.run(count, [&](std::size_t k) {
+    workers_.for_each_in_turn(count, [&](std::size_t k) {
       const std::size_t number = first + k;
       if (number > found) return;  // an earlier one was accepted: nobody will look at this one
       Draw& made = draws_[number];

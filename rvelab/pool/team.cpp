@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <atomic>
 #include <string>
-#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -23,7 +22,7 @@ std::unique_ptr<Workers> started(unsigned threads) {
   std::unique_ptr<Workers> workers;
   try {
     workers = std::make_unique<Workers>(threads);
-  } catch (const std::system_error&) {  // no thread is to be had: the calling one does the work, with the same bits
+  } catch (const NotStarted&) {  // no thread is to be had: the calling one does the work, with the same bits
   } catch (...) {
     pthread_sigmask(SIG_SETMASK, &before, nullptr);
     throw;
@@ -77,7 +76,7 @@ void Team::run(std::size_t count, const std::function<void(std::size_t)>& piece)
   std::unique_lock lock(mutex_, std::defer_lock);
   if (count > 1 && threads_ > 1 && lock.try_lock()) {
     if (!workers_) workers_ = started(threads_);
-    if (workers_) return workers_->run(count, piece);
+    if (workers_) return workers_->for_each_in_turn(count, piece);
   }
   for (std::size_t k = 0; k < count; ++k) piece(k);
 }
@@ -87,7 +86,7 @@ void Team::share(std::size_t count, const std::function<void(std::size_t)>& piec
   if (count >= least) {
     std::unique_lock lock(mutex_, std::try_to_lock);
     if (lock && workers_)
-      return workers_->run((count + block - 1) / block, [&piece, count](std::size_t part) {
+      return workers_->for_each((count + block - 1) / block, [&piece, count](std::size_t part) {
         for (std::size_t k = part * block; k < std::min(count, (part + 1) * block); ++k) piece(k);
       });
   }

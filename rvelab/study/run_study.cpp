@@ -144,7 +144,7 @@ class Running {
         paths.emplace_back([this, point, s, r] { run_path(point, s, r); });
       }
     }
-    team_.run(paths.size(), [&](std::size_t k) { paths[k](); });
+    team_.for_each_in_turn(paths.size(), [&](std::size_t k) { paths[k](); });
     if (!with_states) return;
     if (!there(increments_piece(0, s))) answer(s);
     for (std::size_t point = 1; point <= points(); ++point) {
@@ -159,7 +159,7 @@ class Running {
     std::vector<std::string> failures(states_.size());
     std::size_t done = 0;
     double grain_steps = 0;
-    team_.run(states_.size(), [&](std::size_t k) {
+    team_.for_each_in_turn(states_.size(), [&](std::size_t k) {
       double made = 0;
       try {
         made = make(k);

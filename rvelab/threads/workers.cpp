@@ -1,125 +1,273 @@
 #include "rvelab/threads/workers.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
-#include <condition_variable>
-#include <exception>
-#include <mutex>
-#include <thread>
+#include <limits>
+#include <string>
+#include <system_error>
 #include <utility>
-#include <vector>
 
 namespace rvelab {
-
 namespace {
 
-/// Waits a little for what another thread is about to do: waking a thread that sleeps takes 10 to 50 us, as long as a
-/// sub-step of an RVE. Whether it came; if not, the caller sleeps.
-template <class Come>
-bool comes_soon(const Come& come) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::microseconds(50);
-  do {
-    for (int look = 0; look < 16; ++look) {
-      if (come()) return true;
+constexpr std::size_t no_piece = std::numeric_limits<std::size_t>::max();
+
+/// s, from any fixed moment.
+double wall_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+// The gate: threads inside, one bit whether more may come, number of the call.
+constexpr std::uint64_t inside = 0xffff, open = 0x10000, next_call = 0x20000;
+
+// s. A step has a score of calls, many of which are shorter than it takes to wake a thread. A thread that came too late
+// may have been given the core of the caller: it does not keep it for long.
+constexpr double until_sleep = 150e-6, until_sleep_late = 20e-6, until_help = 20e-6;
+// s. A loss as large as `loss` ends the sharing for `patience` times as long; gains are put by up to `most`, so that
+// one bad moment does not end it. A loop that is not done in `brief` alone has an account of its own.
+constexpr double loss = 5e-3, most = 20e-3, patience = 20, brief = 2e-3;
+
+void rest() {
 #if defined(__x86_64__)
-      __builtin_ia32_pause();
+  __builtin_ia32_pause();
+#elif defined(__aarch64__)
+  asm volatile("yield");
 #endif
+}
+
+/// Whether it comes true within so many seconds. Never gives way: on a busy machine the core would be gone for a slice
+/// of the others' time, thousands of times what is waited for.
+template <class Condition>
+bool soon(double seconds, const Condition& condition) {
+  if (condition()) return true;
+  const double until = wall_seconds() + seconds;
+  do {
+    for (int k = 0; k < 16; ++k) {
+      rest();
+      if (condition()) return true;
     }
-  } while (std::chrono::steady_clock::now() < end);
+  } while (wall_seconds() < until);
   return false;
 }
 
 }  // namespace
 
-struct Workers::Team {
-  std::mutex mutex;
-  std::condition_variable begin, end;
-  std::vector<std::thread> threads;  ///< without the caller
-  bool leaving = false;
-  bool waits_awake = false;             ///< there is a processor for each thread
-  std::atomic<std::uint64_t> round{0};  ///< rounds begun
-  std::atomic<std::size_t> busy{0};     ///< threads that have not finished the present round
+WorkOrder::WorkOrder(std::size_t pieces, const std::vector<Pair>& pairs) : first(pieces + 1, 0), before(pairs.size()) {
+  for (const auto& pair : pairs) ++first[pair.after + 1];
+  for (std::size_t k = 1; k < first.size(); ++k) first[k] += first[k - 1];
+  auto next = first;
+  for (const auto& pair : pairs) before[next[pair.after]++] = pair.before;
+}
 
-  const std::function<void(std::size_t)>* work = nullptr;
-  std::size_t count = 0;
-  std::atomic<std::size_t> next{0};
-  std::size_t failed_piece = 0;
-  std::exception_ptr failure;
-
-  /// Pieces are taken one by one: increments of unlike cost leave no thread idle.
-  void take_pieces() {
-    for (std::size_t piece = next++; piece < count; piece = next++) {
-      try {
-        (*work)(piece);
-      } catch (...) {
-        const std::lock_guard lock(mutex);
-        if (failure && failed_piece < piece) continue;
-        failure = std::current_exception();
-        failed_piece = piece;
-      }
-    }
-  }
-
-  void serve() {
-    std::uint64_t done = 0;
-    while (true) {
-      if (!waits_awake || !comes_soon([&] { return round != done; })) {
-        std::unique_lock lock(mutex);
-        begin.wait(lock, [&] { return leaving || round != done; });
-        if (leaving) return;
-      }
-      done = round;
-      take_pieces();
-      if (--busy == 0) {
-        const std::lock_guard lock(mutex);  // the caller is asleep, or has not looked yet
-        end.notify_one();
-      }
-    }
-  }
-
-  void leave() {
-    {
-      const std::lock_guard lock(mutex);
-      leaving = true;
-    }
-    begin.notify_all();
-    for (std::thread& thread : threads) thread.join();
-  }
-};
-
-Workers::Workers(unsigned threads) : team_(std::make_unique<Team>()) {
-  team_->waits_awake = threads <= std::thread::hardware_concurrency();
+Workers::Workers(unsigned threads) : parts_(std::max(1u, threads)), failed_piece_(no_piece) {
   try {
-    for (unsigned k = 1; k < threads; ++k) team_->threads.emplace_back([team = team_.get()] { team->serve(); });
-  } catch (...) {  // no memory or no thread to be had: those that are there would end the program
-    team_->leave();
+    for (std::size_t k = 1; k < threads; ++k) threads_.emplace_back([this, k] { serve(k); });
+  } catch (const std::system_error&) {
+    const unsigned started = count();
+    leave();
+    throw NotStarted(std::to_string(threads) + " threads (-j): the system starts no more than " +
+                     std::to_string(started) + " here; give fewer");
+  } catch (...) {  // no memory: the threads that are there would end the program
+    leave();
     throw;
   }
 }
 
-Workers::~Workers() { team_->leave(); }
+Workers::~Workers() { leave(); }
 
-unsigned Workers::threads() const { return unsigned(team_->threads.size()) + 1; }
-
-void Workers::run(std::size_t count, const std::function<void(std::size_t)>& work) {
-  Team& team = *team_;
+void Workers::leave() {
   {
-    const std::lock_guard lock(team.mutex);
-    team.work = &work;
-    team.count = count;
-    team.next = 0;
-    team.failure = nullptr;
-    team.busy = team.threads.size();
-    ++team.round;
+    const std::lock_guard lock(mutex_);
+    stop_ = true;
   }
-  team.begin.notify_all();
-  team.take_pieces();
-  if (!team.waits_awake || !comes_soon([&] { return team.busy == 0; })) {
-    std::unique_lock lock(team.mutex);
-    team.end.wait(lock, [&] { return team.busy == 0; });
+  begin_.notify_all();
+  for (auto& thread : threads_) thread.join();
+}
+
+void Workers::share(std::size_t pieces, std::size_t parts, const WorkOrder* order,
+                    const std::function<void(std::size_t)>& work) {
+  work_ = &work;
+  order_ = order;
+  if (threads_.empty() || pieces <= 1 || sharing == Sharing::never)
+    for (std::size_t k = 0; k < pieces; ++k) make(k);
+  else
+    together(pieces, parts);
+  work_ = nullptr;
+  if (failed_piece_ == no_piece) return;
+  failed_piece_ = no_piece;
+  std::rethrow_exception(std::exchange(failure_, nullptr));
+}
+
+/// Unless the account says alone. A loop that is begun alone and turns out long is gone on with together.
+void Workers::together(std::size_t pieces, std::size_t parts) {
+  const double begin = wall_seconds();
+  double now = begin;
+  std::size_t first = 0;
+  Account* account = &brief_;
+  if (sharing == Sharing::measured && now < brief_.alone_until) {
+    account = &long_;
+    while (first < pieces && (now < begin + brief || now < long_.alone_until || first == pieces - 1)) {
+      make(first++);
+      now = wall_seconds();
+    }
+    if (first == pieces) return;
   }
-  if (team.failure) std::rethrow_exception(std::exchange(team.failure, nullptr));
+  meet(first, pieces, parts);
+  book(*account, now);
+}
+
+/// One piece; after the failure of one that others may come after, those of higher numbers are left out.
+void Workers::make(std::size_t piece) {
+  if (order_ != nullptr && piece > failed_piece_) return;
+  try {
+    (*work_)(piece);
+  } catch (...) {
+    const std::lock_guard lock(mutex_);
+    if (piece > failed_piece_) return;
+    failed_piece_ = piece;
+    failure_ = std::current_exception();
+  }
+}
+
+/// Pieces from `first` on, with those that come.
+void Workers::meet(std::size_t first, std::size_t pieces, std::size_t parts) {
+  own_parts_ = parts > 1;
+  for (std::size_t k = 0; k < parts_.size(); ++k) {
+    Part& part = parts_[k];
+    part.next = k < parts ? first + (pieces - first) * k / parts : 0;
+    part.end = k < parts ? first + (pieces - first) * (k + 1) / parts : 0;
+    part.made = 0;
+    part.worked = part.waited = 0;
+  }
+  if (order_ != nullptr) {
+    done_.assign(pieces, 0);
+    std::fill_n(done_.begin(), first, 1);
+  }
+  gate_ += next_call + open;
+  if (sleeping_ > 0) {
+    // A thread on its way to sleep holds this until it can be woken.
+    { const std::lock_guard lock(mutex_); }
+    begin_.notify_all();
+  }
+  take(0);
+  gate_ -= open;
+  await(until_sleep, [this] { return (gate_ & inside) == 0; });
+}
+
+/// Alone it had taken the caller's time at work and that of the others: theirs by their clocks, but no more than the
+/// caller took for as many pieces, for they may have been off their cores meanwhile.
+void Workers::book(Account& account, double begin) const {
+  const double end = wall_seconds();
+  const Part& caller = parts_[0];
+  double alone = caller.worked;
+  for (std::size_t k = 1; k < parts_.size(); ++k) {
+    const Part& part = parts_[k];
+    const double by_pieces = caller.made > 0 ? caller.worked / double(caller.made) * double(part.made) : part.worked;
+    alone += std::min(part.worked, by_pieces);
+  }
+  account.balance = std::min(most, account.balance + alone - (end - begin));
+  if (account.balance > -loss) return;
+  account.alone_until = end - patience * account.balance;
+  account.balance = 0;
+}
+
+void Workers::take(std::size_t thread) {
+  Part& own = parts_[thread];
+  const double begin = wall_seconds();
+  take_from(own, own);
+  if (!own_parts_ || !others_finish(thread, own)) {
+    for (std::size_t k = 1; k < parts_.size(); ++k) take_from(parts_[(thread + k) % parts_.size()], own);
+  }
+  own.worked = wall_seconds() - begin - own.waited;
+}
+
+/// Whether they begin all of their own. A piece that is taken over moves its points to this core's cache, and the next
+/// loop moves them back: a thread that is behind by less than a wake-up is waited for, if it has come.
+bool Workers::others_finish(std::size_t thread, Part& own) {
+  const auto all_begun = [this] {
+    return std::all_of(parts_.begin(), parts_.end(), [](const Part& part) { return part.next >= part.end; });
+  };
+  const auto nobody_came = [&] { return thread == 0 && (gate_ & inside) == 0; };
+  const double begin = wall_seconds();
+  soon(until_help, [&] { return all_begun() || nobody_came(); });
+  own.waited += wall_seconds() - begin;
+  return all_begun();
+}
+
+/// What is left of a part.
+void Workers::take_from(Part& from, Part& own) {
+  for (std::size_t piece; (piece = from.next.fetch_add(1)) < from.end;) {
+    if (order_ != nullptr) await_before(piece, own);
+    make(piece);
+    ++own.made;
+    if (order_ == nullptr) continue;
+    std::atomic_ref(done_[piece]).store(1);
+    tell();
+  }
+}
+
+void Workers::await_before(std::size_t piece, Part& own) {
+  for (auto k = order_->first[piece]; k < order_->first[piece + 1]; ++k) {
+    unsigned char& before = done_[order_->before[k]];
+    const auto is_done = [&] { return std::atomic_ref(before).load() != 0; };
+    if (is_done()) continue;
+    const double begin = wall_seconds();
+    await(until_sleep, is_done);
+    own.waited += wall_seconds() - begin;
+  }
+}
+
+/// Waits, after a while asleep, until tell() finds it true: a sleeper leaves its core to whom it waits for.
+template <class Condition>
+void Workers::await(double spinning, const Condition& condition) {
+  if (soon(spinning, condition)) return;
+  std::unique_lock lock(mutex_);
+  ++waiting_;
+  end_.wait(lock, condition);
+  --waiting_;
+}
+
+void Workers::tell() {
+  if (waiting_ == 0) return;
+  { const std::lock_guard lock(mutex_); }
+  end_.notify_all();
+}
+
+/// Into a call that this thread has not been in, if one is open.
+bool Workers::enter(std::uint64_t& seen) {
+  std::uint64_t gate = gate_;
+  while ((gate & open) != 0 && gate / next_call != seen) {
+    if (!gate_.compare_exchange_weak(gate, gate + 1)) continue;
+    seen = gate / next_call;
+    return true;
+  }
+  return false;
+}
+
+void Workers::serve(std::size_t thread) {
+  std::uint64_t seen = 0;
+  double patient = until_sleep;
+  while (!stop_) {
+    bool entered = false;
+    const auto called = [&] { return stop_ || (entered = enter(seen)); };
+    if (!soon(patient, called)) {
+      const auto is_open = [&] {
+        const std::uint64_t gate = gate_;
+        return stop_ || ((gate & open) != 0 && gate / next_call != seen);
+      };
+      std::unique_lock lock(mutex_);
+      ++sleeping_;
+      begin_.wait(lock, is_open);
+      --sleeping_;
+      patient = until_sleep_late;
+      continue;
+    }
+    if (!entered) return;
+    take(thread);
+    --gate_;
+    tell();
+    patient = until_sleep;
+  }
 }
 
 }  // namespace rvelab

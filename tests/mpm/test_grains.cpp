@@ -46,7 +46,7 @@ TEST_CASE("grains in a point answer as the pure cell does along the same path, b
   auto model = set_up<2>(element({}), 2, folder.path());
   auto& solver = model->solver;
   // The pure cell: the state that was prepared for the points, alone in a pool of another host.
-  Workers workers(1);
+  rvelab::Workers workers(1);
   auto pool = std::make_shared<GrainPool>(workers, GrainOptions{});
   SpecimenFamily family(pool, {folder / "dense.h5"});
   const auto id = family.spawn(20e3);
@@ -73,7 +73,7 @@ TEST_CASE("loose grains that collapse on their way to a pressure are taken from 
               folder / "out", folder / "err");
   REQUIRE(child.wait() == 0);
   // By ratio 4935 Pa is nearer to 100 Pa than 1.5 Pa is; unloaded, these grains lose all contacts before.
-  Workers workers(1);
+  rvelab::Workers workers(1);
   auto pool = std::make_shared<GrainPool>(workers, GrainOptions{});
   SpecimenFamily alone(pool, {folder / "loose_4935Pa.h5"});
   CHECK_THROWS_WITH(alone.spawn(100), Catch::Matchers::Contains("does not come to 100 Pa; pack one nearer"));
@@ -84,7 +84,7 @@ TEST_CASE("loose grains that collapse on their way to a pressure are taken from 
 TEST_CASE("specimens come to a pressure as exactly in a scene of coarse tolerances") {
   const Folder folder;
   specimen(folder, "dense.h5");
-  Workers workers(1);
+  rvelab::Workers workers(1);
   GrainOptions coarse;
   coarse.tolerance_rel = 0.5;
   coarse.tolerance_abs = 0.05;
@@ -127,7 +127,7 @@ TEST_CASE("a single element strains evenly, and carries what its RVE carries und
   CHECK(high - low < 0.05 * (high - 1));
   CHECK(side == Approx(-20e3).epsilon(0.03));
   // The same axial strain by the element test of a host: side stress held with the tangent.
-  Workers workers(1);
+  rvelab::Workers workers(1);
   auto pool = std::make_shared<GrainPool>(workers, GrainOptions{});
   SpecimenFamily family(pool, {folder / "dense.h5"});
   const auto id = family.spawn(20e3);

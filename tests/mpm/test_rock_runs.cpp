@@ -229,7 +229,7 @@ TEST_CASE("threads that share the sweeps over the surfaces of many rocks leave t
 }
 
 TEST_CASE("sweeps over the surfaces of many rocks have the same bits, whether threads share them or not") {
-  using mpm::Workers;
+  using rvelab::Workers;
   const Folder folder;
   std::ofstream(folder / "scene.toml") << pressed_scene;
   const auto scene = mpm::read_scene(folder / "scene.toml", {}, {});

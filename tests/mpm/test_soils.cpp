@@ -144,7 +144,7 @@ TEST_CASE("softening ends without friction, and hardening at 89 degrees: stress 
 TEST_CASE("a soil sheared at constant volume reaches its strength, and takes its spin along") {
   Strength strength;
   strength.friction = 30 * radians;
-  Workers workers(1);
+  rvelab::Workers workers(1);
   Plastic<2> soil({2e7, 0.3}, strength, YieldSurface::mohr_coulomb, Cone::outer);
   Point<2> point;
   point.volume = 1;

@@ -96,7 +96,7 @@ motion = [[0, 0, 0], [0.1, 0, -0.1]]
 TEST_CASE("the wave modulus follows grains that stiffen, and that soften again, for less than 1 % of their sub-steps") {
   const Folder folder;
   hertz(folder);
-  Workers workers(2);
+  rvelab::Workers workers(2);
   auto pool = std::make_shared<GrainPool>(workers, GrainOptions{});
   SpecimenFamily family(pool, {folder / "hertz.h5"});
   std::vector<std::int64_t> ids;

@@ -10,7 +10,7 @@
 #include "rvelab/solver/assembly/neighbour_list.hpp"
 #include "rvelab/solver/kernels/configuration.hpp"
 #include "rvelab/specimen/specimen.hpp"
-#include "rvelab/threads/workers.hpp"
+#include "rvelab/threads/pieces.hpp"
 
 namespace rvelab {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "rvelab/cell/cell.hpp"
-#include "rvelab/threads/workers.hpp"
+#include "rvelab/threads/pieces.hpp"
 
 namespace rvelab {
 

@@ -305,7 +305,7 @@ RowSums sums_over_pairs(const Model& model, const Assembly& assembly) {
     medians[which] = median(which == 0 ? firmness.translation : firmness.rotation);
   };
   if (model.sharing() != nullptr)
-    model.sharing()->run(2, find_median);
+    model.sharing()->for_each(2, find_median);
   else
     for (const std::size_t which : {0, 1}) find_median(which);
   sums.floor_translation = 2 * medians[0];

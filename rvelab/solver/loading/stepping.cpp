@@ -207,7 +207,7 @@ SubSteps::SubSteps(const Model& model, Assembly& assembly, const Advance& what)
       step_(what.step),
       check_every_(what.check_every),
       in_one_sweep_(model_.size() >= least_grains_in_one_sweep && !model_.options.energy_balance &&
-                    (team_ == nullptr || team_->threads() == 1)),
+                    (team_ == nullptr || team_->count() == 1)),
       clock_(model_.times) {
   c_.losses = model_.options.energy_balance;
   c_.local_damping = at_rate_ ? model_.damping.local : what.damping * model_.damping.local_quasi_static;

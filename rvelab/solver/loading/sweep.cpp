@@ -20,7 +20,7 @@ constexpr std::size_t round_pieces = 64;
 template <class Work>
 void each_piece(std::size_t pieces, Workers* team, const Work& work) {
   if (team != nullptr && pieces > 1)
-    team->run(pieces, [&work](std::size_t piece) { work(piece); });
+    team->for_each(pieces, [&work](std::size_t piece) { work(piece); });
   else
     for (std::size_t piece = 0; piece < pieces; ++piece) work(piece);
 }

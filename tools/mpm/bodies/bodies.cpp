@@ -6,7 +6,7 @@ namespace mpm {
 
 template <int D>
 void Bodies<D>::detect_contact(const Grid<D>& grid, const Planes<D>& planes, const std::vector<Point<D>>& soil,
-                               double time, Workers& workers) {
+                               double time, rvelab::Workers& workers) {
   contacts_.clear();
   surface.clear();
   sweeps = 1;
@@ -24,7 +24,7 @@ void Bodies<D>::detect_contact(const Grid<D>& grid, const Planes<D>& planes, con
 
 /// Nodes in bodies with contact at nodes, in the order of the grid.
 template <int D>
-void Bodies<D>::detect_nodes(const Grid<D>& grid, const Planes<D>& planes, double time, Workers& workers) {
+void Bodies<D>::detect_nodes(const Grid<D>& grid, const Planes<D>& planes, double time, rvelab::Workers& workers) {
   const double touch = 1e-6 * grid.cell.minCoeff();
   std::vector<Vec<D>> centres;
   for (const auto& body : all) centres.push_back(body.centre_at(time));

@@ -15,12 +15,12 @@
 #include <string>
 #include <vector>
 
+#include "rvelab/threads/workers.hpp"
 #include "tools/mpm/bodies/planes.hpp"
 #include "tools/mpm/bodies/plate.hpp"
 #include "tools/mpm/bodies/shapes.hpp"
 #include "tools/mpm/bodies/surface_point.hpp"
 #include "tools/mpm/grid/point.hpp"
-#include "tools/mpm/grid/workers.hpp"
 
 namespace mpm {
 
@@ -65,7 +65,7 @@ class Bodies {
   /// Detects contact at this time (s): the points of surfaces that soil touches, and the nodes in bodies with contact
   /// at nodes. Mirror nodes are left out: they follow their images.
   void detect_contact(const Grid<D>& grid, const Planes<D>& planes, const std::vector<Point<D>>& soil, double time,
-                      Workers& workers);
+                      rvelab::Workers& workers);
   /// Holds the nodes: velocities v at the start of the step, w at its end; a is still the mapped velocity.
   void hold_nodes(Grid<D>& grid, double time, bool end);
   /// Holds the soil at one point of a surface, with the impulses at the others as they are now. Plates are left to
@@ -97,10 +97,10 @@ class Bodies {
   static constexpr long chunk = 1024;  ///< points or nodes of one piece of work
   template <class Outline>
   void detect_soil(const Grid<D>& grid, const Outline& outline, const Vec<D>& centre, const std::vector<Point<D>>& soil,
-                   Workers& workers);
+                   rvelab::Workers& workers);
   void detect_surface(const Grid<D>& grid, const Planes<D>& planes, const std::vector<Point<D>>& soil, int body,
-                      double time, Workers& workers);
-  void detect_nodes(const Grid<D>& grid, const Planes<D>& planes, double time, Workers& workers);
+                      double time, rvelab::Workers& workers);
+  void detect_nodes(const Grid<D>& grid, const Planes<D>& planes, double time, rvelab::Workers& workers);
   bool has_soil_near(const Grid<D>& grid, const typename Grid<D>::Index& node, unsigned char face) const;
   void hold_point(const Grid<D>& grid, const Planes<D>& planes, SurfacePoint<D>& point, double time, const Vec<D>& at,
                   unsigned char face);

@@ -35,7 +35,7 @@ unsigned char faces_touched(const Grid<D>& grid, const Outline& outline, const V
 template <int D>
 template <class Outline>
 void Bodies<D>::detect_soil(const Grid<D>& grid, const Outline& outline, const Vec<D>& centre,
-                            const std::vector<Point<D>>& soil, Workers& workers) {
+                            const std::vector<Point<D>>& soil, rvelab::Workers& workers) {
   soil_at_.assign(grid.nodes.size(), 0);
   const long n = long(soil.size());
   workers.for_each((n + chunk - 1) / chunk, [&](std::int64_t piece) {
@@ -49,7 +49,7 @@ void Bodies<D>::detect_soil(const Grid<D>& grid, const Outline& outline, const V
 
 template <int D>
 void Bodies<D>::detect_surface(const Grid<D>& grid, const Planes<D>& planes, const std::vector<Point<D>>& soil, int k,
-                               double time, Workers& workers) {
+                               double time, rvelab::Workers& workers) {
   const Vec<D> centre = all[k].centre_at(time);
   const auto detect = [&](const auto& outline) {
     detect_soil(grid, outline, centre, soil, workers);
@@ -147,7 +147,7 @@ void Bodies<D>::hold(SurfacePoint<D>& point, Grid<D>& grid, double time, bool en
 
 #define MPM_INSTANTIATE(D)                                                                                             \
   template void Bodies<D>::detect_surface(const Grid<D>&, const Planes<D>&, const std::vector<Point<D>>&, int, double, \
-                                          Workers&);                                                                   \
+                                          rvelab::Workers&);                                                           \
   template void Bodies<D>::hold(SurfacePoint<D>&, Grid<D>&, double, bool) const;                                       \
   template Vec<D> Bodies<D>::along_surface(const Body<D>&, const SurfacePoint<D>&, const Vec<D>&, double);
 MPM_INSTANTIATE(2)

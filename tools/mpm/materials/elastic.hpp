@@ -51,7 +51,7 @@ template <int D>
 class Elastic : public Material<D> {
  public:
   explicit Elastic(const ElasticModuli& moduli) : moduli_(moduli) {}
-  void advance(Point<D>* points, long count, double, Workers& workers) override {
+  void advance(Point<D>* points, long count, double, rvelab::Workers& workers) override {
     const double lame = moduli_.bulk() - 2 * moduli_.shear() / 3, twice_shear = 2 * moduli_.shear();
     workers.for_each((count + 1023) / 1024, [&](std::int64_t piece) {
       for (long k = piece * 1024; k < std::min(count, long(piece + 1) * 1024); ++k) {

@@ -10,7 +10,7 @@ namespace mpm {
 namespace {
 
 void run_tasks(void* host, rvelab_task task, void* work, std::int64_t count) {
-  static_cast<Workers*>(host)->for_each_in_turn(count, [&](std::int64_t k) { task(work, k); });
+  static_cast<rvelab::Workers*>(host)->for_each_in_turn(count, [&](std::int64_t k) { task(work, k); });
 }
 
 /// A trial of one RVE from its committed state; its status.
@@ -37,7 +37,7 @@ void read_state(rvelab_pool* pool, std::int64_t id, double* sigma, double* tange
   expect_ok(rvelab_revert(pool, 1, &id));
 }
 
-GrainPool::GrainPool(Workers& workers, const GrainOptions& options) {
+GrainPool::GrainPool(rvelab::Workers& workers, const GrainOptions& options) {
   rvelab_pool_def def;
   expect_ok(rvelab_pool_def_init(&def, sizeof def));
   def.tolerance_rel = options.tolerance_rel;
@@ -75,7 +75,7 @@ std::int64_t GrainPool::copy_from(const GrainPool& other, std::int64_t id) const
 
 void GrainPool::write_alone(std::int64_t id, const std::string& path) const {
   // In this process, also where the RVEs themselves are spread over ranks.
-  Workers here(1);
+  rvelab::Workers here(1);
   const GrainPool alone(here, {});
   alone.copy_from(*this, id);
   alone.write(path);

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/mpm/grid/workers.hpp"
+#include "rvelab/threads/workers.hpp"
 #include "tools/mpm/tensors.hpp"
 
 namespace mpm {
@@ -30,7 +30,7 @@ void expect_ok(std::int32_t status);
 /// A pool of RVEs that work with the threads of the driver.
 class GrainPool {
  public:
-  GrainPool(Workers& workers, const GrainOptions& options);
+  GrainPool(rvelab::Workers& workers, const GrainOptions& options);
   GrainPool(const GrainPool&) = delete;
   GrainPool& operator=(const GrainPool&) = delete;
   ~GrainPool();
@@ -77,7 +77,7 @@ class SpecimenFamily {
   /// Its copy in the pool of the scene.
   std::int64_t moved_to_scene(std::int64_t id);
   std::shared_ptr<GrainPool> pool_;
-  Workers thread_{1};
+  rvelab::Workers thread_{1};
   GrainPool preparation_;  ///< with the tolerances of the specimen, whatever those of the scene
   std::vector<Specimen> specimens_;
   std::map<double, std::int64_t> prepared_;

@@ -99,7 +99,7 @@ void Grains<D>::apply_in_parts(Point<D>& point, std::int64_t id, const Mat<D>& g
 }
 
 template <int D>
-void Grains<D>::advance(Point<D>* points, long count, double dt, Workers&) {
+void Grains<D>::advance(Point<D>* points, long count, double dt, rvelab::Workers&) {
   const auto begin = std::chrono::steady_clock::now();
   gathered_.resize(std::size_t(count), Mat<D>::Zero());
   chosen_.clear();

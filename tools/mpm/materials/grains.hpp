@@ -16,7 +16,7 @@ class Grains : public Material<D> {
   /// gather: increments are summed until the largest entry of the gradient reaches this; the stress stays meanwhile. 0:
   /// each is applied at once.
   Grains(std::shared_ptr<GrainPool> pool, std::vector<std::int64_t> ids, bool at_rate, double gather);
-  void advance(Point<D>* points, long count, double dt, Workers& workers) override;
+  void advance(Point<D>* points, long count, double dt, rvelab::Workers& workers) override;
   double wave_modulus() const override { return wave_modulus_; }
   Measures measures(long point) const override;
   void save(OutputFile& file, const std::string& name) const override;

@@ -3,8 +3,8 @@
 
 #include <string>
 
+#include "rvelab/threads/workers.hpp"
 #include "tools/mpm/grid/point.hpp"
-#include "tools/mpm/grid/workers.hpp"
 
 namespace mpm {
 
@@ -23,7 +23,7 @@ class Material {
   virtual ~Material() = default;
 
   /// Point::gradient is the velocity gradient times dt; writes stress and stress_zz.
-  virtual void advance(Point<D>* points, long count, double dt, Workers& workers) = 0;
+  virtual void advance(Point<D>* points, long count, double dt, rvelab::Workers& workers) = 0;
   /// Pa, the largest modulus of a plane wave, for the time step.
   virtual double wave_modulus() const = 0;
   virtual Measures measures(long point) const = 0;

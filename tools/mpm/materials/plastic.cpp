@@ -140,7 +140,7 @@ double return_to_mohr_coulomb(Mat<3>& stress, const ElasticModuli& moduli, doubl
 }
 
 template <int D>
-void Plastic<D>::advance(Point<D>* points, long count, double, Workers& workers) {
+void Plastic<D>::advance(Point<D>* points, long count, double, rvelab::Workers& workers) {
   plastic_.resize(std::size_t(count), 0.0);
   const double lame = moduli_.bulk() - 2 * moduli_.shear() / 3, twice_shear = 2 * moduli_.shear();
   workers.for_each((count + 255) / 256, [&](std::int64_t piece) {

@@ -48,7 +48,7 @@ class Plastic : public Material<D> {
  public:
   Plastic(const ElasticModuli& moduli, const Strength& strength, YieldSurface surface, Cone cone)
       : moduli_(moduli), strength_(strength), surface_(surface), cone_(cone) {}
-  void advance(Point<D>* points, long count, double dt, Workers& workers) override;
+  void advance(Point<D>* points, long count, double dt, rvelab::Workers& workers) override;
   double wave_modulus() const override { return moduli_.wave(); }
   Measures measures(long point) const override;
   void save(OutputFile& file, const std::string& name) const override;

@@ -167,7 +167,7 @@ class Rocks {
   // touching.cpp
   /// Finds `surface`; none with ghosts. shape: that of the grid.
   void detect_soil(const Grid<D>& grid, const Planes<D>& planes, Shape shape, const std::vector<Point<D>>& soil,
-                   Workers& workers);
+                   rvelab::Workers& workers);
   // surface.cpp
   /// Velocities that rocks have now; impulses of the start change them.
   void start_motion();

@@ -86,7 +86,7 @@ template <int D>
 class SoilEnds {
  public:
   /// slack: m, up to which a point touches; chunk: points of one piece of work.
-  SoilEnds(const Grid<D>& grid, const std::vector<Point<D>>& soil, double slack, long chunk, Workers& workers)
+  SoilEnds(const Grid<D>& grid, const std::vector<Point<D>>& soil, double slack, long chunk, rvelab::Workers& workers)
       : cells_(grid, soil), ends_(soil.size()), slack_(slack) {
     const long chunks = (long(soil.size()) + chunk - 1) / chunk;
     std::vector<double> widest(std::size_t(chunks), 0.0);
@@ -139,7 +139,7 @@ double gap_at(const std::vector<Foot<D>>& feet, double near, const Vec<D>& place
 
 template <int D>
 void Rocks<D>::detect_soil(const Grid<D>& grid, const Planes<D>& planes, Shape shape,
-                           const std::vector<Point<D>>& points, Workers& workers) {
+                           const std::vector<Point<D>>& points, rvelab::Workers& workers) {
   surface.clear();
   sweeps = 0;
   if (soil.ghosts) return;
@@ -198,7 +198,9 @@ void Rocks<D>::detect_soil(const Grid<D>& grid, const Planes<D>& planes, Shape s
   soil_seconds += wall_seconds() - begin;
 }
 
-template void Rocks<2>::detect_soil(const Grid<2>&, const Planes<2>&, Shape, const std::vector<Point<2>>&, Workers&);
-template void Rocks<3>::detect_soil(const Grid<3>&, const Planes<3>&, Shape, const std::vector<Point<3>>&, Workers&);
+template void Rocks<2>::detect_soil(const Grid<2>&, const Planes<2>&, Shape, const std::vector<Point<2>>&,
+                                    rvelab::Workers&);
+template void Rocks<3>::detect_soil(const Grid<3>&, const Planes<3>&, Shape, const std::vector<Point<3>>&,
+                                    rvelab::Workers&);
 
 }  // namespace mpm

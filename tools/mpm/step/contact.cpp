@@ -17,7 +17,7 @@ void each_surface_point(Bodies<D>& bodies, Rocks<D>* rocks, const Visit& visit) 
 
 template <int D>
 void SurfaceContact<D>::detect(const Grid<D>& grid, const Planes<D>& planes, Bodies<D>& bodies, Rocks<D>* rocks,
-                               const std::vector<Point<D>>& soil, double time, Workers& workers) {
+                               const std::vector<Point<D>>& soil, double time, rvelab::Workers& workers) {
   workers_ = &workers;
   runs_.clear();
   bodies.detect_contact(grid, planes, soil, time, workers);
@@ -56,7 +56,7 @@ void SurfaceContact<D>::order_runs(const Grid<D>& grid, const Bodies<D>& bodies,
   visited_by_.assign(grid.nodes.size(), -1);
   std::vector<Run> runs;
   std::vector<int> level, linked_to;  // by run: how many come before it in a row; the last one that comes after it
-  std::vector<WorkOrder::Pair> pairs;
+  std::vector<rvelab::WorkOrder::Pair> pairs;
   for (std::size_t first = 0; first < points; first = runs.back().last) {
     const int run = int(runs.size());
     runs.push_back({first, first});
@@ -66,24 +66,23 @@ void SurfaceContact<D>::order_runs(const Grid<D>& grid, const Bodies<D>& bodies,
       for (int j = 0; j < at(k).count; ++j) {
         const int before = std::exchange(visited_by_[std::size_t(at(k).node[j])], run);
         if (before < 0 || before == run || std::exchange(linked_to[std::size_t(before)], run) == run) continue;
-        pairs.push_back({before, run});
+        pairs.push_back({std::size_t(before), std::size_t(run)});
         level.back() = std::max(level.back(), level[std::size_t(before)] + 1);
       }
     }
   }
-  std::vector<std::int64_t> order(runs.size()), place(runs.size());
+  std::vector<std::size_t> order(runs.size()), place(runs.size());
   std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](auto a, auto b) { return level[std::size_t(a)] < level[std::size_t(b)]; });
+  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return level[a] < level[b]; });
   for (std::size_t k = 0; k < order.size(); ++k) {
-    runs_.push_back(runs[std::size_t(order[k])]);
-    place[std::size_t(order[k])] = std::int64_t(k);
+    runs_.push_back(runs[order[k]]);
+    place[order[k]] = k;
   }
-  const std::int64_t last = std::int64_t(runs.size()) - 1;
-  for (auto& [before, after] : pairs) before = place[std::size_t(before)], after = place[std::size_t(after)];
-  to_ = WorkOrder(last + 1, pairs);
+  const std::size_t last = runs.size() - 1;
+  for (auto& [before, after] : pairs) before = place[before], after = place[after];
+  to_ = rvelab::WorkOrder(last + 1, pairs);
   for (auto& [before, after] : pairs) before = last - std::exchange(after, last - before);
-  fro_ = WorkOrder(last + 1, pairs);
+  fro_ = rvelab::WorkOrder(last + 1, pairs);
 }
 
 /// Impulses that keep the soil from entering.

@@ -15,7 +15,7 @@ class SurfaceContact {
  public:
   /// At this time (s): the points that soil touches, and an order in which threads may sweep them.
   void detect(const Grid<D>& grid, const Planes<D>& planes, Bodies<D>& bodies, Rocks<D>* rocks,
-              const std::vector<Point<D>>& soil, double time, Workers& workers);
+              const std::vector<Point<D>>& soil, double time, rvelab::Workers& workers);
   /// Velocities v at the start of the step.
   void hold_start(Grid<D>& grid, Bodies<D>& bodies, Rocks<D>* rocks, double time);
   /// Velocities w at its end; a is still the mapped velocity. May be called again within a step.
@@ -36,11 +36,11 @@ class SurfaceContact {
     workers_->for_each_after(fro ? fro_ : to_,
                              [&](std::int64_t k) { visit(runs_[fro ? last - std::size_t(k) : std::size_t(k)]); });
   }
-  Workers* workers_ = nullptr;  ///< those of detect
+  rvelab::Workers* workers_ = nullptr;  ///< those of detect
   /// Of two runs that share a node the later one comes after the other: that is the same as one point after the other,
   /// to the bit. First those that come after none, then those that come after these alone, and so on. None: one run.
   std::vector<Run> runs_;
-  WorkOrder to_, fro_;           ///< of runs_, and of runs_ from the last to the first
+  rvelab::WorkOrder to_, fro_;   ///< of runs_, and of runs_ from the last to the first
   std::vector<int> visited_by_;  ///< by node: the last run so far
 };
 

@@ -41,7 +41,7 @@ struct Phase {
 template <int D>
 class Solver {
  public:
-  mutable Workers workers;  ///< first, so that it outlives what works with it
+  mutable rvelab::Workers workers;  ///< first, so that it outlives what works with it
   std::vector<Point<D>> points;
   std::vector<MaterialGroup<D>> groups;
   Grid<D> grid;
@@ -67,7 +67,9 @@ class Solver {
   std::unique_ptr<Fluid<D>> fluid;  ///< null: dry soil
   std::unique_ptr<Rocks<D>> rocks;  ///< null: none
 
-  explicit Solver(int threads) : workers(threads) {}
+  /// threads: 0: as many as the processor runs at once.
+  explicit Solver(int threads)
+      : workers(threads > 0 ? unsigned(threads) : std::max(1u, std::thread::hardware_concurrency())) {}
   const MaterialGroup<D>& group_of(long point) const;
   /// s, from the fastest wave and the fastest point, or from a body or plane that is faster than both.
   double stable_step() const;

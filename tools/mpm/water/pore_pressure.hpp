@@ -21,9 +21,9 @@
 #include <memory>
 #include <vector>
 
+#include "rvelab/threads/workers.hpp"
 #include "tools/mpm/bodies/planes.hpp"
 #include "tools/mpm/grid/shape.hpp"
-#include "tools/mpm/grid/workers.hpp"
 
 namespace mpm {
 
@@ -118,7 +118,8 @@ class PorePressure {
 
   /// D(v), m^3/s, of the velocities that `velocity(node)` gives: solid and fluid.
   template <class Velocity>
-  void divergence(const Grid<D>& grid, Workers& workers, const Velocity& velocity, std::vector<double>& d) const {
+  void divergence(const Grid<D>& grid, rvelab::Workers& workers, const Velocity& velocity,
+                  std::vector<double>& d) const {
     over_nodes(grid, workers, [&](long at, const Index& node) {
       if (roles[at] == Role::none) return;
       double sum = 0;
@@ -140,9 +141,9 @@ class PorePressure {
   /// dp (Pa) at the unknown nodes from L dp = right; that of given nodes stays. mobility[node * D + axis]: of nodes
   /// that mirror none. InputError if the pressure has no datum.
   void solve(const Grid<D>& grid, const std::vector<Mobility>& mobility, const std::vector<double>& right, double dt,
-             Workers& workers, std::vector<double>& dp);
+             rvelab::Workers& workers, std::vector<double>& dp);
   /// (S/(2 G dt) + C/dt) p, m^3/s.
-  void stored(const Grid<D>& grid, const std::vector<double>& p, double dt, Workers& workers,
+  void stored(const Grid<D>& grid, const std::vector<double>& p, double dt, rvelab::Workers& workers,
               std::vector<double>& rate) const;
   long unknowns() const { return long(unknown_.size()); }
 
@@ -166,7 +167,7 @@ class PorePressure {
   };
 
   template <class Work>
-  void over_nodes(const Grid<D>& grid, Workers& workers, const Work& work) const {
+  void over_nodes(const Grid<D>& grid, rvelab::Workers& workers, const Work& work) const {
     const long n = long(grid.nodes.size());
     workers.for_each((n + chunk - 1) / chunk, [&](std::int64_t piece) {
       for (long at = long(piece) * chunk; at < std::min(n, long(piece + 1) * chunk); ++at) work(at, grid.index(at));
@@ -221,7 +222,8 @@ class PorePressure {
   void add_cells(const Grid<D>& grid, const Index& node, double dt, double* row) const;
   void add_ties(const Grid<D>& grid, long at, double* row) const;
   void fill_row(const Grid<D>& grid, const std::vector<Mobility>& mobility, double dt, long at, double* row) const;
-  void expect_datum(const Grid<D>& grid, const std::vector<Mobility>& mobility, double dt, Workers& workers) const;
+  void expect_datum(const Grid<D>& grid, const std::vector<Mobility>& mobility, double dt,
+                    rvelab::Workers& workers) const;
   void solve_space(const Eigen::VectorXd& right, Eigen::VectorXd& solution) const;
 
   std::vector<Columns> columns_, folded_columns_;

@@ -119,7 +119,7 @@ void PorePressure<D>::add_ties(const Grid<D>& grid, long at, double* row) const 
 /// A uniform pressure must meet something: a given node, a free surface, storage.
 template <int D>
 void PorePressure<D>::expect_datum(const Grid<D>& grid, const std::vector<Mobility>& mobility, double dt,
-                                   Workers& workers) const {
+                                   rvelab::Workers& workers) const {
   for (const auto role : roles) {
     if (role == Role::given) return;
   }
@@ -147,7 +147,8 @@ void PorePressure<D>::expect_datum(const Grid<D>& grid, const std::vector<Mobili
 
 template <int D>
 void PorePressure<D>::solve(const Grid<D>& grid, const std::vector<Mobility>& mobility,
-                            const std::vector<double>& right, double dt, Workers& workers, std::vector<double>& dp) {
+                            const std::vector<double>& right, double dt, rvelab::Workers& workers,
+                            std::vector<double>& dp) {
   const auto* before = factor_.get();
   number_unknowns(grid);
   const long n = unknowns();
@@ -214,7 +215,7 @@ void PorePressure<D>::solve_space(const Eigen::VectorXd& right, Eigen::VectorXd&
 }
 
 template <int D>
-void PorePressure<D>::stored(const Grid<D>& grid, const std::vector<double>& p, double dt, Workers& workers,
+void PorePressure<D>::stored(const Grid<D>& grid, const std::vector<double>& p, double dt, rvelab::Workers& workers,
                              std::vector<double>& rate) const {
   over_nodes(grid, workers, [&](long at, const Index& node) {
     if (roles[at] == Role::none) return;
@@ -232,8 +233,8 @@ void PorePressure<D>::stored(const Grid<D>& grid, const std::vector<double>& p, 
 
 #define MPM_INSTANTIATE(D)                                                                                       \
   template void PorePressure<D>::solve(const Grid<D>&, const std::vector<Mobility>&, const std::vector<double>&, \
-                                       double, Workers&, std::vector<double>&);                                  \
-  template void PorePressure<D>::stored(const Grid<D>&, const std::vector<double>&, double, Workers&,            \
+                                       double, rvelab::Workers&, std::vector<double>&);                          \
+  template void PorePressure<D>::stored(const Grid<D>&, const std::vector<double>&, double, rvelab::Workers&,    \
                                         std::vector<double>&) const;
 MPM_INSTANTIATE(2)
 MPM_INSTANTIATE(3)

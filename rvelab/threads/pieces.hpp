@@ -1,0 +1,30 @@
+// Loops over many grains in pieces, shared by a team where it is worth its meetings.
+#pragma once
+
+#include <cstddef>
+
+#include "rvelab/threads/workers.hpp"
+
+namespace rvelab {
+
+/// Grains from which a team shares the work on one cell: two hand-overs a step cost some 20 us.
+constexpr std::size_t least_shared_grains = 30'000;
+
+/// Pieces of work that is done once a list, not once a step.
+constexpr std::size_t piece_length = 4096;
+constexpr std::size_t pieces_in(std::size_t count) { return (count + piece_length - 1) / piece_length; }
+
+/// Calls work(piece, first, last) for all pieces of `count` things; on the team if there is one.
+template <class Work>
+void in_pieces(std::size_t count, Workers* team, const Work& work) {
+  const auto one = [&](std::size_t k) {
+    const std::size_t end = (k + 1) * piece_length;
+    work(k, k * piece_length, end < count ? end : count);
+  };
+  if (team != nullptr && pieces_in(count) > 1)
+    team->for_each(pieces_in(count), [&one](std::size_t k) { one(k); });
+  else
+    for (std::size_t k = 0; k < pieces_in(count); ++k) one(k);
+}
+
+}  // namespace rvelab
