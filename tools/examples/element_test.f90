@@ -1,9 +1,10 @@
 ! Simple shear of one RVE at constant volume, by the C interface of rvelab:  element_test SPECIMEN.h5
 !
 ! Prints gamma and the stresses across the shear plane in Pa, tension positive. Matrices of the interface are row-major:
-! dH(2) is d(du_x)/dy. A negative status is an error; rvelab_last_error has its text.
+! dH(2) is d(du_x)/dy. A negative status is an error; rvelab_last_error has its text, which is printed.
 program element_test
   use, intrinsic :: iso_c_binding
+  use, intrinsic :: iso_fortran_env, only: error_unit
   implicit none
   interface
     integer(c_int32_t) function rvelab_pool_create(def, pool) bind(c)
@@ -34,6 +35,13 @@ program element_test
       import
       type(c_ptr), value :: pool
     end function
+    type(c_ptr) function rvelab_last_error() bind(c)
+      import
+    end function
+    integer(c_size_t) function strlen(text) bind(c)
+      import
+      type(c_ptr), value :: text
+    end function
   end interface
   type(c_ptr) :: pool
   integer(c_int64_t) :: specimen, ids(1)
@@ -43,14 +51,25 @@ program element_test
 
   if (command_argument_count() /= 1) error stop "element_test SPECIMEN.h5"
   call get_command_argument(1, path)
-  if (rvelab_pool_create(c_null_ptr, pool) < 0) error stop "no pool"
-  if (rvelab_template_load(pool, trim(path)//c_null_char, specimen) < 0) error stop "the specimen cannot be read"
-  if (rvelab_spawn(pool, specimen, 1_c_int64_t, ids) < 0) error stop "no RVE"
+  call expect(rvelab_pool_create(c_null_ptr, pool))
+  call expect(rvelab_template_load(pool, trim(path)//c_null_char, specimen))
+  call expect(rvelab_spawn(pool, specimen, 1_c_int64_t, ids))
   dH = 0
   dH(2) = 1d0/8192
   do step = 1, 40
-    if (rvelab_apply(pool, ids(1), dH, 0d0, sigma) < 0) error stop "the increment failed"
+    call expect(rvelab_apply(pool, ids(1), dH, 0d0, sigma))
     if (mod(step, 8) == 0) print "(f8.5, 2es24.16)", step*dH(2), sigma(2), sigma(5)
   end do
-  if (rvelab_pool_destroy(pool) < 0) error stop "the pool is at work"
+  call expect(rvelab_pool_destroy(pool))
+
+contains
+
+  subroutine expect(status)
+    integer(c_int32_t), intent(in) :: status
+    character(kind=c_char), pointer :: letters(:)
+    if (status >= 0) return
+    call c_f_pointer(rvelab_last_error(), letters, [strlen(rvelab_last_error())])
+    write (error_unit, "(*(a))") "element_test: ", letters
+    stop 1
+  end subroutine
 end program
