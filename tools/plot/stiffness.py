@@ -71,7 +71,8 @@ def draw(stages, options):
     kinds.log_axis(lower.xaxis, [amplitudes.min() / 2, 2 * amplitudes.max()])
     upper.set_title(f"Cyclic shear, $G_{{max}}$ = {records.plain(greatest / 1e6)} MPa ({source})", fontsize=11, loc="left")
     upper.set_ylabel("$G/G_{max}$")
-    upper.set_ylim(0, 1.1)
+    highest = max((loops[:, 1] / greatest).max() for _, loops in found)
+    upper.set_ylim(0, 1.1 * max(1, highest))  # above 1 where p has grown, or the first record is coarse
     lower.set_ylabel("damping ratio (%)")
     lower.set_ylim(bottom=0)
     lower.set_xlabel("amplitude of the shear strain $\\gamma$")
