@@ -124,6 +124,9 @@ void add_liquefaction(const protocol::Protocol& protocol, const protocol::TestRu
                                 " % of its start, and " + limit + " counts as liquefied");
 }
 
+/// Of p: an error above which the largest one is commented, beyond the scatter of peaks over specimens.
+constexpr double doubtful_error = 0.1;
+
 /// Where the time of this run went, and the error estimates of its stresses; nothing of a test that was complete
 /// before.
 void add_costs(const protocol::TestRun& run, double wall, Listing& listing) {
@@ -131,7 +134,9 @@ void add_costs(const protocol::TestRun& run, double wall, Listing& listing) {
   if (costs.judged > 0) {
     listing.add("mean_error_estimate", costs.mean_error, "of p");
     listing.add("largest_error_estimate", costs.largest_error,
-                "of p: how far the stress of a record may be from that of infinitely slow loading");
+                "of p at strain " + in_words(costs.largest_error_strain) +
+                    ": how far the stress of a record may be from that of infinitely slow loading" +
+                    (costs.largest_error > doubtful_error ? "; a lower solver.relative_tolerance resolves it" : ""));
   }
   if (costs.waited > 0)
     listing.add("waited_for_held_stress", double(costs.waited) / double(costs.substeps), "of the sub-steps");

@@ -78,6 +78,23 @@ std::string nearest(const std::string& word, const std::vector<std::string>& can
   return found == candidates.end() ? "" : *found;
 }
 
+std::string what_was_meant(const std::string& prefix, const std::string& word, const std::vector<std::string>& known) {
+  const std::string correct = "; correct the name or remove it";
+  const std::string near = nearest(word, known);
+  if (!near.empty() && edit_distance(word, near) < 2 * word.size())
+    return "the nearest known key is " + prefix + near + correct;
+  const std::vector<std::string> of_recipes{"pack", "grains", "target", "preparation"}, of_tests{"test", "stage"};
+  const auto is_one_of = [&](const auto& tables) {
+    return prefix.empty() && std::find(tables.begin(), tables.end(), word) != tables.end();
+  };
+  if (is_one_of(of_recipes)) return "it is of recipes, for rvelab pack; set it there, or remove it";
+  if (is_one_of(of_tests)) return "it is of tests, for rvelab run; set it there, or remove it";
+  if (known.size() > 16) return "no known key is near; rvelab keys lists them" + correct;
+  std::string all;
+  for (const std::string& name : known) all += (all.empty() ? "" : ", ") + prefix + name;
+  return "allowed: " + all + correct;
+}
+
 std::string choose_one(const std::string& word, const std::vector<std::string>& choices) {
   return "the nearest is " + nearest(word, choices) + "; choose one of these";
 }
@@ -214,7 +231,10 @@ void assign(toml::table& file, const std::string& assignment) {
     next = 2;
   }
   for (; next + 1 < parts.size(); ++next) {
-    if (!table->contains(parts[next])) table->insert(parts[next], toml::table{});
+    if (!table->contains(parts[next])) {  // made by a parse, so that it knows the assignment
+      put(*table, parts[next], "{}", assignment);
+      table->get(parts[next])->as_table()->is_inline(false);
+    }
     toml::node* inner = table->get(parts[next]);
     if (inner->is_array_of_tables() && next + 2 < parts.size()) {
       table = &find_in(inner->as_array(), parts[next], parts[next + 1], assignment);

@@ -96,6 +96,10 @@ double number_in(const toml::node& node);
 /// little); the first of several; "" if there are no candidates.
 std::string nearest(const std::string& word, const std::vector<std::string>& candidates);
 
+/// Which of the known names was meant by `word`, and the remedy: the nearest one where less than half of the letters
+/// differ; else all of them, or where they are listed. Of a table of another kind of file, what that file is for.
+std::string what_was_meant(const std::string& prefix, const std::string& word, const std::vector<std::string>& known);
+
 /// Remedy for a word that is none of the choices: "the nearest is simple_shear; choose one of these".
 std::string choose_one(const std::string& word, const std::vector<std::string>& choices);
 

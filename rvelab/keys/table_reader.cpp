@@ -14,8 +14,8 @@ namespace {
 
 void refuse_unknown(const toml::source_region& place, const std::string& prefix, const std::string& name,
                     const std::vector<std::string>& known, std::vector<KeyError>& errors) {
-  errors.push_back(key_error(place, "unknown key " + prefix + shortened(name) + "; the nearest known key is " + prefix +
-                                        nearest(name, known) + "; correct the name or remove it"));
+  errors.push_back(
+      key_error(place, "unknown key " + prefix + shortened(name) + "; " + what_was_meant(prefix, name, known)));
 }
 
 bool holds(const Choices& words, const std::string& word) {

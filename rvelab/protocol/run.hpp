@@ -22,6 +22,7 @@ struct Costs {
   double files = 0;                                     ///< filled in by who keeps the records
   long judged = 0;                           ///< records in quasi-static loading that an increment led to, at p > 0
   double mean_error = 0, largest_error = 0;  ///< of those, Report::error_estimate over p
+  double largest_error_strain = 0;           ///< of the record of the largest
   long substeps = 0, waited = 0;             ///< Report::substeps and Report::waited of all increments
 };
 

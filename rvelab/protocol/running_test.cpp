@@ -209,7 +209,9 @@ void RunningTest::note_error(const Report& report, records::Record& record) {
   Costs& costs = run.costs;
   const double error = record.error_estimate = report.error_estimate / p;
   costs.mean_error += (error - costs.mean_error) / double(++costs.judged);
-  costs.largest_error = std::max(costs.largest_error, error);
+  if (error <= costs.largest_error) return;
+  costs.largest_error = error;
+  costs.largest_error_strain = record.strain;
 }
 
 void RunningTest::record(double strain, const Report& report) {

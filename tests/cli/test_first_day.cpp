@@ -46,6 +46,11 @@ TEST_CASE("A key is sought by its meaning, and a per cent or a millimetre by wha
   const std::string run = "run biaxial --specimen S.h5 ";
   expect_mistake(here.run(run + "--set contact.frction=0.5"), "the nearest known key is material.friction");
   expect_mistake(here.run(run + "--set contact.slop=consistent"), "the nearest known key is contact.slip");
+  expect_mistake(here.run(run + "--set pack.number=4"),
+                 "--set pack.number=4: unknown key pack; it is of recipes, for rvelab pack");
+  const Outcome far_off = here.run(run + "--set zzqxzz.key=1");
+  CHECK(far_off.code == 2);
+  CHECK_THAT(far_off.errors, Contains("unknown key zzqxzz; ") && !Contains("nearest"));
   expect_mistake(here.run(run + "--set stage.compression.to_strain=10"), "if per cent was meant, write 0.1");
   expect_mistake(here.run(run + "--set damping.local=30"), "if per cent was meant, write 0.3");
   here.write("far.csv", "id,x,y,r\n0,0,0,1\n1,5,5,1\n2,5,0,0.9\n3,0,5,1.1\n");
