@@ -5,6 +5,7 @@
 //   before      SIGKILL instead of the call
 //   after       SIGKILL after the call
 //   enospc, eio the call fails with that error, and so does every later one of its kind
+// RVELAB_FAULT = "proc 1 unmounted": /proc/self/exe is not there, as where /proc is not mounted.
 #include <dlfcn.h>
 #include <unistd.h>
 
@@ -120,4 +121,11 @@ extern "C" int rename(const char* from, const char* to) noexcept {
 extern "C" int unlink(const char* path) noexcept {
   static auto* const real = next<int(const char*)>("unlink");
   return hit("unlink", path) ? meet([&] { return real(path); }) : real(path);
+}
+
+extern "C" ssize_t readlink(const char* path, char* to, size_t size) noexcept {
+  static auto* const real = next<ssize_t(const char*, char*, size_t)>("readlink");
+  if (std::strcmp(fault().call, "proc") != 0 || std::strcmp(path, "/proc/self/exe") != 0) return real(path, to, size);
+  errno = ENOENT;
+  return -1;
 }

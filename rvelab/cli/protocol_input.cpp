@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "rvelab/cli/program_place.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/keys/table_reader.hpp"
@@ -15,11 +16,7 @@ namespace {
 
 InputKind kind_of(const std::string& path) { return pack::is_recipe(path) ? InputKind::recipe : InputKind::protocol; }
 
-fs::path installed_folder() {
-  std::error_code ignored;
-  const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
-  return program.parent_path().parent_path() / "share/rvelab/protocols";
-}
+fs::path installed_folder() { return shared_folder("protocols"); }
 
 std::map<std::string, std::string> all_installed() {
   std::map<std::string, std::string> paths;

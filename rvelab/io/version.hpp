@@ -6,7 +6,7 @@
 namespace rvelab::io {
 
 /// Version of the library and the program, major.minor.patch.
-inline constexpr const char* version = "0.1.0";
+inline constexpr const char* version = "2.0.0";
 
 /// Name and version of the compiler, for example "gcc 12.2.0".
 inline std::string compiler() {

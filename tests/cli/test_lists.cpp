@@ -95,3 +95,27 @@ TEST_CASE("the program finds its protocols from where it is, and says when they 
   fs::create_symlink(moved, here / "linked");
   CHECK_THAT(here.run("protocols", here / "linked").output, Contains("mine  "));
 }
+
+TEST_CASE("where /proc is not mounted the program finds its protocols, by whatever path it was called") {
+  const Workplace here;
+  const auto called = [&](const std::string& how, const std::string& arguments) {
+    return here.run("-c '" + how + " " + arguments + "'", "/bin/sh");
+  };
+  const std::string listed = here.run("protocols").output;
+  const fs::path folder = fs::path(RVELAB_PROGRAM).parent_path();
+  fs::create_symlink(RVELAB_PROGRAM, here / "linked");
+  fs::create_directory_symlink(folder, here / "folder");
+  const std::string shim = "LD_PRELOAD=" RVELAB_FAULT_SHIM " RVELAB_FAULT=\"proc 1 unmounted\" ";
+  for (const std::string how : {shim + RVELAB_PROGRAM, shim + "./linked", shim + "folder/rvelab",
+                                "PATH=" + folder.string() + ":$PATH; " + shim + "rvelab"}) {
+    CAPTURE(how);
+    const Outcome outcome = called(how, "protocols");
+    CHECK(outcome.errors.empty());
+    CHECK(outcome.output == listed);
+  }
+  fs::create_directories(here / "moved/bin");
+  fs::copy_file(RVELAB_PROGRAM, here / "moved/bin/rvelab");
+  const Outcome none = called(shim + "moved/bin/rvelab", "protocols");
+  CHECK(none.code == 1);
+  CHECK_THAT(none.errors, Contains("moved/share/rvelab/protocols: no protocols are installed there"));
+}

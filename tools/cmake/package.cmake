@@ -29,16 +29,15 @@ file(GLOB python_modules CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tools/python/rv
 install(FILES ${PROJECT_SOURCE_DIR}/tools/python/micro_simulation.py DESTINATION lib/python3/dist-packages COMPONENT python)
 install(FILES ${python_modules} DESTINATION lib/python3/dist-packages/rvelab COMPONENT python)
 
-# The same as a wheel, with libraries, program, protocols and figures in it: build/release/wheel.
+# The same as a wheel, with libraries, programs, protocols and figures in it: build/release/wheel.
 find_program(DEBIAN_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
 if(DEBIAN_PYTHON)
-  add_custom_target(rvelab_wheel DEPENDS rvelab rvelab_shared rvelab_h5 rvelab_protocols
+  add_custom_target(rvelab_wheel DEPENDS rvelab rvelab-mpm rvelab_shared rvelab_h5 rvelab_protocols
                     COMMAND ${CMAKE_COMMAND} -E env RVELAB_BUILD=${PROJECT_BINARY_DIR} ${DEBIAN_PYTHON} -B
                             ${PROJECT_SOURCE_DIR}/tools/python/wheel_builder.py VERBATIM)
 endif()
 
 # Programs, which find their libraries beside them, and what they read.
-file(GLOB scenes CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/protocols/mpm/*.toml)
 set(installed_programs rvelab-mpm)
 if(TARGET rvelab-mpm-mpi)
   list(APPEND installed_programs rvelab-mpm-mpi)
@@ -46,7 +45,7 @@ if(TARGET rvelab-mpm-mpi)
 endif()
 if(TARGET rvelab-voids)
   list(APPEND installed_programs rvelab-voids)
-  install(TARGETS rvelab-voids RUNTIME DESTINATION bin COMPONENT voids EXCLUDE_FROM_ALL)
+  install(TARGETS rvelab-voids RUNTIME DESTINATION bin COMPONENT voids)
 endif()
 set_target_properties(${installed_programs} PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
 install(TARGETS rvelab rvelab-mpm RUNTIME DESTINATION bin COMPONENT program)
@@ -57,17 +56,72 @@ install(FILES ${studies} DESTINATION share/rvelab/protocols/studies COMPONENT pr
 install(FILES ${soils} DESTINATION share/rvelab/protocols/soils COMPONENT program)
 install(PROGRAMS ${plot_scripts} DESTINATION share/rvelab/plot COMPONENT program)
 
-# Manual page and completion, of what the program says of itself.
-set(manual ${PROJECT_BINARY_DIR}/manual)
-add_custom_command(OUTPUT ${manual}/rvelab.1 ${manual}/rvelab.bash DEPENDS rvelab tools/cmake/manual
-                   COMMAND ${PROJECT_SOURCE_DIR}/tools/cmake/manual $<TARGET_FILE:rvelab> ${manual} VERBATIM)
-add_custom_target(rvelab_manual ALL DEPENDS ${manual}/rvelab.1 ${manual}/rvelab.bash)
-install(FILES ${manual}/rvelab.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
-install(FILES ${manual}/rvelab.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME rvelab
-        COMPONENT program)
+# Manual pages and completions, of what the programs say of themselves: where they can run.
+set(documented rvelab rvelab-mpm)
+if(TARGET rvelab-voids)
+  list(APPEND documented rvelab-voids)
+endif()
+if(NOT CMAKE_CROSSCOMPILING)
+  set(manual ${PROJECT_BINARY_DIR}/manual)
+  set(manual_pages)
+  set(documented_files)
+  foreach(program IN LISTS documented)
+    list(APPEND manual_pages ${manual}/${program}.1 ${manual}/${program}.bash)
+    list(APPEND documented_files $<TARGET_FILE:${program}>)
+    set(component program)
+    if(program STREQUAL "rvelab-voids")
+      set(component voids)
+    endif()
+    install(FILES ${manual}/${program}.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT ${component})
+    install(FILES ${manual}/${program}.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
+            RENAME ${program} COMPONENT ${component})
+  endforeach()
+  add_custom_command(OUTPUT ${manual_pages} DEPENDS ${documented} tools/cmake/manual
+                     COMMAND ${PROJECT_SOURCE_DIR}/tools/cmake/manual ${manual} ${documented_files} VERBATIM)
+  add_custom_target(rvelab_manual ALL DEPENDS ${manual_pages})
+endif()
+if(TARGET rvelab-mpm-mpi)
+  file(CONFIGURE OUTPUT rvelab-mpm-mpi.1 CONTENT ".so man1/rvelab-mpm.1\n")
+  install(FILES ${PROJECT_BINARY_DIR}/rvelab-mpm-mpi.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT mpi)
+endif()
 
-# A Debian package of all of it, and one of librvelab-mpi, which needs Open MPI:
-# cpack --config build/release/CPackConfig.cmake (tools/validate package tries it).
+# All that is installed.
+set(packaged rvelab rvelab-mpm rvelab_shared rvelab_h5 rvelab_umat rvelab_protocols)
+foreach(target IN ITEMS rvelab-voids rvelab_mpi rvelab-mpm-mpi rvelab_manual)
+  if(TARGET ${target})
+    list(APPEND packaged ${target})
+  endif()
+endforeach()
+add_custom_target(rvelab_packaged DEPENDS ${packaged})
+
+# What to read: README.md and those that it leads to, in the folders that their links name; licences, also of what is
+# compiled in; examples and notebooks.
+file(GLOB_RECURSE readmes RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS include/*README.md rvelab/*README.md
+     protocols/*README.md tools/*README.md tools/bench/*.md)
+foreach(readme IN LISTS readmes ITEMS README.md CHANGELOG.md CITATION.cff)
+  get_filename_component(place ${readme} DIRECTORY)
+  install(FILES ${PROJECT_SOURCE_DIR}/${readme} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${place} COMPONENT program)
+endforeach()
+file(GLOB examples CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tools/examples/*)
+install(FILES ${examples} DESTINATION ${CMAKE_INSTALL_DOCDIR}/tools/examples COMPONENT program)
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT program)
+install(FILES ${PROJECT_SOURCE_DIR}/tools/cmake/copyright_voids DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/rvelab-voids
+        RENAME copyright COMPONENT voids)
+set(contained libeigen3-dev libcli11-dev nlohmann-json3-dev libtomlplusplus-dev)
+if(RVELAB_PORTABLE)
+  list(APPEND contained gcc-12-base)
+  install(FILES ${portable_libraries}/licences/hdf5 ${portable_libraries}/licences/zlib
+          DESTINATION ${CMAKE_INSTALL_DOCDIR}/licences COMPONENT program)
+endif()
+foreach(package IN LISTS contained)
+  if(EXISTS /usr/share/doc/${package}/copyright)  # as on Debian
+    install(FILES /usr/share/doc/${package}/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR}/licences RENAME ${package}
+            COMPONENT program)
+  endif()
+endforeach()
+
+# A Debian package of all of it, one of librvelab-mpi, which needs Open MPI, and one of rvelab-voids, which is under the
+# GPL: cpack --config build/release/CPackConfig.cmake; tools/package makes those that are given away.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME rvelab)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
@@ -81,12 +135,17 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}/lib)
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-numpy, python3-h5py, python3-matplotlib")
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_MAIN_PACKAGE_NAME rvelab)
-set(CPACK_DEBIAN_MAIN_FILE_NAME rvelab.deb)
+set(CPACK_DEBIAN_MAIN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_MAIN_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/tools/cmake/prerm)
 set(CPACK_DEBIAN_MPI_PACKAGE_NAME rvelab-mpi)
-set(CPACK_DEBIAN_MPI_FILE_NAME rvelab-mpi.deb)
+set(CPACK_DEBIAN_MPI_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_MPI_PACKAGE_DEPENDS "rvelab (= ${PROJECT_VERSION})")
 set(CPACK_DEBIAN_MPI_PACKAGE_RECOMMENDS openmpi-bin)
+set(CPACK_DEBIAN_VOIDS_PACKAGE_NAME rvelab-voids)
+set(CPACK_DEBIAN_VOIDS_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_VOIDS_PACKAGE_DEPENDS "rvelab (= ${PROJECT_VERSION})")
+set(CPACK_DEBIAN_VOIDS_PACKAGE_RECOMMENDS "")
+set(CPACK_COMPONENT_VOIDS_DESCRIPTION "local void ratios, pore sizes and permeability of granular specimens")
 set(CPACK_COMPONENT_MPI_DESCRIPTION "one pool of granular specimens over many processes, by Open MPI")
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)

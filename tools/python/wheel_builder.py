@@ -2,8 +2,10 @@
 """Makes the wheel of rvelab from a build: wheel_builder.py [FOLDER] (default: the folder build/release/wheel).
 
 It is the backend that pyproject.toml names, so `pip wheel --no-build-isolation --no-deps tools/python` and `pip install`
-work too, offline. The wheel holds the modules and, under rvelab/native, both libraries, the program, the protocols and the
-scripts of the figures. RVELAB_BUILD names another build. The same build gives the same bytes.
+work too, offline. The wheel holds the modules and, under rvelab/native, both libraries, the programs, the protocols and the
+scripts of the figures. RVELAB_BUILD names another build, or the prefix of an installation. The same build gives the same bytes.
+Its name says what it needs: manylinux_2_N of a portable build (tools/package), linux where it counts on libraries of this
+machine.
 """
 
 import base64
@@ -12,12 +14,15 @@ import os
 import pathlib
 import re
 import sys
-import sysconfig
 import tomllib
 import zipfile
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))  # pip imports this file from elsewhere
+from elf_needs import Needs, is_elf  # noqa: E402
+
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
+PROGRAMS = "bin/rvelab", "bin/rvelab-mpm"
 FIRST_DAY = (1980, 1, 1, 0, 0, 0)  # of the zip format: no dates in the wheel
 
 
@@ -29,7 +34,7 @@ def native_files():
     """(name in rvelab/native, file) of what the build made; SystemExit, naming it, if something is missing."""
     build = build_folder()
     found = [(f"lib/{name}", build / "lib" / name) for name in ("librvelab.so.1", "librvelab-h5.so.1")]
-    found.append(("bin/rvelab", build / "bin/rvelab"))
+    found += [(program, build / program) for program in PROGRAMS]
     for folder, ending in (("share/rvelab/protocols", "*.toml"), ("share/rvelab/plot", "*.py")):
         files = sorted((build / folder).rglob(ending))
         found += [(f"{folder}/{file.relative_to(build / folder)}", file) for file in files]
@@ -47,7 +52,14 @@ def version():
 
 
 def platform_tag():
-    return "py3-none-" + re.sub(r"[-.]", "_", sysconfig.get_platform())
+    return "py3-none-" + Needs([file for _, file in native_files() if is_elf(file)]).platform_tag()
+
+
+def licences():
+    """(name, bytes) of the licence of rvelab and, where an installation has them, of what is compiled in."""
+    yield "LICENSE", (ROOT / "LICENSE").read_bytes()
+    for file in sorted((build_folder() / "share/doc/rvelab/licences").glob("*")):
+        yield f"licences/{file.name}", file.read_bytes()
 
 
 def metadata(project):
@@ -67,13 +79,14 @@ def contents():
     for file in [HERE / "micro_simulation.py", *sorted((HERE / "rvelab").glob("*.py"))]:
         yield str(file.relative_to(HERE)), file.read_bytes(), False
     for name, file in native_files():
-        yield f"rvelab/native/{name}", file.read_bytes(), name == "bin/rvelab"
+        yield f"rvelab/native/{name}", file.read_bytes(), name in PROGRAMS
     yield f"{info}/METADATA", metadata(project).encode(), False
     wheel = f"Wheel-Version: 1.0\nGenerator: wheel_builder\nRoot-Is-Purelib: false\nTag: {platform_tag()}\n"
     yield f"{info}/WHEEL", wheel.encode(), False
     scripts = "".join(f"{name} = {place}\n" for name, place in project["scripts"].items())
     yield f"{info}/entry_points.txt", f"[console_scripts]\n{scripts}".encode(), False
-    yield f"{info}/LICENSE", (ROOT / "LICENSE").read_bytes(), False
+    for name, text in licences():
+        yield f"{info}/{name}", text, False
 
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):

@@ -1,5 +1,6 @@
 // rvelab-voids: local void ratios, pore sizes and an estimate of the permeability of a specimen. A program by itself
 // because CGAL's triangulations are under the GPL: rvelab and its libraries hold none of them.
+#include <rvelab/rvelab.h>
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -122,7 +123,9 @@ int main(int argc, char** argv) {
   CLI::App app{
       "rvelab-voids: local void ratios, pore sizes and permeability of a specimen of discs or spheres\n\n"
       "  rvelab-voids dense.h5\n"
-      "  rvelab-voids R.h5 -o voids      # voids.cells.csv, voids.bodies.csv, voids.throats.csv\n"};
+      "  rvelab-voids R.h5 -o voids      # voids.cells.csv, voids.bodies.csv, voids.throats.csv\n",
+      "rvelab-voids"};
+  app.set_version_flag("--version", std::string("rvelab-voids ") + rvelab_version());
   rvelab::voids::Options options;
   app.add_option("file", options.file, "Specimen file, or record file: its last state")->required();
   app.add_option("-o,--output", options.output, "What the names of the tables begin with; without: no tables");

@@ -4,6 +4,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <rvelab/rvelab.h>
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
@@ -93,7 +94,9 @@ int program(int argc, char** argv, const PoolSource& source) {
       "rvelab-mpm: the material point method with granular RVEs as its material\n\n"
       "  rvelab-mpm protocols/mpm/column.toml -o column\n"
       "  rvelab-mpm protocols/mpm/biaxial.toml --case M4 --specimens . -o M4\n"
-      "  rvelab-mpm --resume M4\n"};
+      "  rvelab-mpm --resume M4\n",
+      "rvelab-mpm"};
+  app.set_version_flag("--version", std::string("rvelab-mpm ") + rvelab_version());
   std::string scene, resume;
   std::vector<std::string> cases, assignments;
   RunOptions options;

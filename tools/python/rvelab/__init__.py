@@ -15,6 +15,15 @@ dt     s; > 0: physical time, real inertia and rate; 0: quasi-static. 2D: z-comp
 Needs numpy and librvelab.so.1: named by RVELAB_LIBRARY, else in or beside this package, else found by the loader. The meaning
 of every call is that of include/rvelab/rvelab.h. Calls on different RVEs may run in threads: ctypes releases the
 interpreter's lock meanwhile."""
+import sys as _sys
+
+try:
+    import numpy as _numpy  # noqa: F401
+except ModuleNotFoundError as missing:
+    if missing.name != "numpy":
+        raise
+    raise ImportError(f"rvelab needs numpy, which {_sys.executable or 'this Python'} does not have: apt-get install "
+                      "python3-numpy, or pip install numpy in the environment of this Python") from None
 from .library import (MEASURES, Array, Batch, Discard, Info, Mixed, OutOfMemory, RvelabError, RvelabWarning, StaleToken,
                       library as _library)
 from .pool import Pool

@@ -44,6 +44,12 @@ def main() -> None:
     os.execv(program(), [program(), *sys.argv[1:]])
 
 
+def main_mpm() -> None:
+    """The command `rvelab-mpm` of the wheel: becomes the program beside rvelab."""
+    beside = str(Path(program()).resolve().parent / "rvelab-mpm")
+    os.execv(beside, [beside, *sys.argv[1:]])
+
+
 def words_of(settings: Mapping[str, Any] | None, more: Mapping[str, Any]) -> list[str]:
     """--set KEY=VALUE for each key. Keys have dots ("test.pressure_Pa"), or are tables within tables."""
     words = []
