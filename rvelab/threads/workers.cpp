@@ -65,8 +65,8 @@ Workers::Workers(unsigned threads) : parts_(std::max(1u, threads)), failed_piece
   } catch (const std::system_error&) {
     const unsigned started = count();
     leave();
-    throw NotStarted(std::to_string(threads) + " threads (-j): the system starts no more than " +
-                     std::to_string(started) + " here; give fewer");
+    throw NotStarted(std::to_string(threads) + " threads: the system starts no more than " + std::to_string(started) +
+                     " here; lower --threads, or raise the limits (ulimit -u, ulimit -v)");
   } catch (...) {  // no memory: the threads that are there would end the program
     leave();
     throw;

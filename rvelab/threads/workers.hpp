@@ -33,8 +33,8 @@ struct WorkOrder {
 };
 
 /// The system gives fewer threads than were asked for.
-struct NotStarted : InputError {
-  using InputError::InputError;
+struct NotStarted : Error {
+  using Error::Error;
 };
 
 class Workers {

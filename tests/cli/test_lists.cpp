@@ -97,6 +97,7 @@ TEST_CASE("the program finds its protocols from where it is, and says when they 
 }
 
 TEST_CASE("where /proc is not mounted the program finds its protocols, by whatever path it was called") {
+  namespace fs = std::filesystem;
   const Workplace here;
   const auto called = [&](const std::string& how, const std::string& arguments) {
     return here.run("-c '" + how + " " + arguments + "'", "/bin/sh");
@@ -106,8 +107,8 @@ TEST_CASE("where /proc is not mounted the program finds its protocols, by whatev
   fs::create_symlink(RVELAB_PROGRAM, here / "linked");
   fs::create_directory_symlink(folder, here / "folder");
   const std::string shim = "LD_PRELOAD=" RVELAB_FAULT_SHIM " RVELAB_FAULT=\"proc 1 unmounted\" ";
-  for (const std::string how : {shim + RVELAB_PROGRAM, shim + "./linked", shim + "folder/rvelab",
-                                "PATH=" + folder.string() + ":$PATH; " + shim + "rvelab"}) {
+  for (const std::string& how : {shim + RVELAB_PROGRAM, shim + "./linked", shim + "folder/rvelab",
+                                 "PATH=" + folder.string() + ":$PATH; " + shim + "rvelab"}) {
     CAPTURE(how);
     const Outcome outcome = called(how, "protocols");
     CHECK(outcome.errors.empty());

@@ -259,6 +259,6 @@ TEST_CASE("a first signal stops a run with a checkpoint, and threads that the sy
                bench.folder / "block.toml", "-o", bench.folder / "b", "-j", "500"},
               bench.folder / "out", bench.folder / "err");
   CHECK(child.wait_for(60) == 2);
-  CHECK_THAT(bench.errors(), Contains("500 threads (-j): the system starts no more than ") && Contains("give fewer"));
+  CHECK_THAT(bench.errors(), Contains("500 threads: the system starts no more than ") && Contains("lower --threads"));
 #endif
 }

@@ -130,7 +130,7 @@ int program(int argc, char** argv, const PoolSource& source) {
     return fail(2, error.what() + std::string("; rvelab-mpm --help explains the options"));
   } catch (const InputError& error) {
     return fail(2, error.what());
-  } catch (const rvelab::InputError& error) {
+  } catch (const rvelab::NotStarted& error) {
     return fail(2, error.what());
   } catch (const std::filesystem::filesystem_error& error) {
     return fail(2, error.path1().string() + ": cannot be used (" + error.code().message() +
