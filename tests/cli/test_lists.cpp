@@ -97,6 +97,7 @@ TEST_CASE("the program finds its protocols from where it is, and says when they 
 }
 
 TEST_CASE("where /proc is not mounted the program finds its protocols, by whatever path it was called") {
+  namespace fs = std::filesystem;
   const Workplace here;
   const auto called = [&](const std::string& how, const std::string& arguments) {
     return here.run("-c '" + how + " " + arguments + "'", "/bin/sh");
