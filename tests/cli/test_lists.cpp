@@ -108,7 +108,7 @@ TEST_CASE("where /proc is not mounted the program finds its protocols, by whatev
   fs::create_directory_symlink(folder, here / "folder");
   const std::string shim = "LD_PRELOAD=" RVELAB_FAULT_SHIM " RVELAB_FAULT=\"proc 1 unmounted\" ";
   for (const std::string& how : {shim + RVELAB_PROGRAM, shim + "./linked", shim + "folder/rvelab",
-                                "PATH=" + folder.string() + ":$PATH; " + shim + "rvelab"}) {
+                                 "PATH=" + folder.string() + ":$PATH; " + shim + "rvelab"}) {
     CAPTURE(how);
     const Outcome outcome = called(how, "protocols");
     CHECK(outcome.errors.empty());
