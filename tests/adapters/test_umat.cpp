@@ -49,6 +49,19 @@ TEST_CASE("umat_ serves MOOSE: spheres, line searches, tangents in calls of thei
   expect_served("moose", true);
 }
 
+TEST_CASE(
+    "vumat_ gives the stress bits of the C interface, in parts where a step is too large, elastic before the first") {
+  unsetenv("RVELAB_UMAT");
+  for (const std::string name : {"discs", "spheres", "shear", "elastic", "parts", "refused"}) {
+    CAPTURE(name);
+    const Workplace here;
+    prepare(here, name == "spheres");
+    const Outcome outcome = here.run(name + " .", RVELAB_VUMAT_HOST);
+    CHECK(outcome.errors.empty());
+    CHECK(outcome.code == 0);
+  }
+}
+
 TEST_CASE("umat_ answers what it cannot do with NaN and one text in its log") { expect_served("refused", true); }
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // their runtimes allocate themselves

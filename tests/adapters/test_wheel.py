@@ -10,6 +10,9 @@ from pathlib import Path
 folder, build = Path(sys.argv[1]), sys.argv[2]
 del sys.argv[1:3]
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tools/python"))
+from elf_needs import Needs, is_elf  # noqa: E402
+
 # Nothing that leads to the checkout or its build.
 BARE = {name: value for name, value in os.environ.items() if not name.startswith(("RVELAB_", "PYTHONPATH"))}
 
@@ -56,6 +59,15 @@ class Wheel(unittest.TestCase):
             said = run(sys.executable, "-B", "-c", "import sys; sys.argv[1:] = ['--version']; from rvelab.program import main; "
                        "main()", PYTHONPATH=str(site))
             self.assertEqual(said.strip(), f"rvelab {version}")
+            said = run(sys.executable, "-B", "-c", "import sys; sys.argv[1:] = ['--version']; from rvelab.program import "
+                       "main_mpm; main_mpm()", PYTHONPATH=str(site))
+            self.assertEqual(said.strip(), f"rvelab-mpm {version}")
+            # Its name is true: manylinux if it counts on nothing but glibc and libgcc_s, and then on no newer glibc.
+            needs = Needs([file for file in (site / "rvelab/native").rglob("*") if file.is_file() and is_elf(file)])
+            tag = made[0].stem.split("-")[-1]
+            self.assertEqual(tag, needs.platform_tag())
+            self.assertEqual(tag.startswith("manylinux_2_"), not needs.others())
+            self.assertIn(f"Tag: py3-none-{tag}\n", next(site.glob("rvelab-*.dist-info/WHEEL")).read_text())
 
     def test_a_build_that_lacks_something_is_told(self) -> None:
         done = subprocess.run([sys.executable, "-B", ROOT / "tools/python/wheel_builder.py", folder / "none"], text=True,

@@ -40,7 +40,7 @@ const Material& Points::material(int number) const {
 }
 
 /// The caller holds population_ alone.
-const Points::Loaded& Points::loaded(int number) {
+Points::Loaded& Points::loaded(int number) {
   const auto found = templates_.find(number);
   if (found != templates_.end()) return found->second;
   Loaded made;
@@ -65,6 +65,25 @@ const Points::Loaded& Points::loaded(int number) {
 Matrix3 Points::first_stress(int number) {
   const std::unique_lock alone(population_);
   return loaded(number).stress;
+}
+
+Matrix6 Points::first_tangent(int number) {
+  const std::unique_lock alone(population_);
+  Loaded& specimen = loaded(number);
+  if (specimen.tangent) return *specimen.tangent;
+  std::int64_t id = 0;
+  expect_done(rvelab_spawn(pool_, specimen.number, 1, &id));
+  RowMajor3 sigma;
+  RowMajor6 tangent;
+  const RowMajor3 no_increment = RowMajor3::Zero();
+  rvelab_batch batch = batch_of_one(id, no_increment, 0, sigma);
+  batch.tangent = tangent.data();
+  const std::int32_t status = rvelab_trial(pool_, &batch);
+  const std::string text = status < RVELAB_OK ? rvelab_last_error() : "";
+  rvelab_release(pool_, 1, &id);
+  if (status < RVELAB_OK) throw std::runtime_error(std::string(rvelab_status_name(status)) + ": " + text);
+  specimen.tangent = in_order_of_hosts(tangent);
+  return *specimen.tangent;
 }
 
 std::int64_t Points::token_of(std::int64_t id) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <shared_mutex>
 #include <string>
@@ -41,6 +42,9 @@ class Points {
   /// Stress of the specimen of a material, Pa.
   Matrix3 first_stress(int material);
 
+  /// Elastic tangent of the specimen of a material, Pa, order of the host. It is made once.
+  Matrix6 first_tangent(int material);
+
   /// A new RVE, or, while its first step is not committed, the one that this point got before.
   Start spawn(int material, const PointName& name);
 
@@ -51,8 +55,9 @@ class Points {
   struct Loaded {
     std::int64_t number = 0;
     Matrix3 stress;
+    std::optional<Matrix6> tangent;
   };
-  const Loaded& loaded(int material);
+  Loaded& loaded(int material);
   std::int64_t token_of(std::int64_t id);
 
   Settings settings_;

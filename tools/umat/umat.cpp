@@ -1,63 +1,15 @@
 #include "tools/umat/umat.hpp"
 
 #include <Eigen/LU>
-#include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <stdexcept>
 #include <string>
 
-#include "tools/umat/points.hpp"
+#include "tools/umat/host_call.hpp"
 
 namespace umat {
 
 namespace {
-
-/// What PROPS says.
-struct Properties {
-  int material = 0;
-  bool corotational = false;  ///< stresses of the host are R^T sigma R, R of the polar decomposition of F
-  bool physical = false;      ///< DTIME is time; else it is ignored
-};
-
-std::string in_words(double value) {
-  std::string words = std::to_string(value);
-  if (std::nearbyint(value) == value && std::abs(value) < 1e15) words.resize(words.find_first_of(".,"));
-  return words;
-}
-
-Properties properties_of(const double* props, int n) {
-  if (props == nullptr || n < 1)
-    throw std::runtime_error("NPROPS is " + std::to_string(n) + "; give PROPS(1), the number of the material");
-  const auto option = [&](int k, const std::string& meaning) {
-    const double value = n > k ? props[k] : 0;
-    if (value != 0 && value != 1)
-      throw std::runtime_error("PROPS(" + std::to_string(k + 1) + ") is " + in_words(value) + "; allowed: " + meaning);
-    return value == 1;
-  };
-  if (!(props[0] >= 1 && props[0] < 1e9 && std::nearbyint(props[0]) == props[0]))
-    throw std::runtime_error("PROPS(1) is " + in_words(props[0]) + "; give the whole number of a material");
-  return {int(props[0]), option(1, "0 (global Cauchy stress, as Abaqus has it) or 1 (R^T sigma R, as CalculiX has it)"),
-          option(2, "0 (quasi-static) or 1 (DTIME is physical time)")};
-}
-
-/// STATEV(1) or (2) as an integer.
-std::int64_t whole(double value, const char* name) {
-  if (std::nearbyint(value) == value && std::abs(value) <= 9007199254740992.0) return std::int64_t(value);
-  throw std::runtime_error(std::string(name) + " is " + in_words(value) +
-                           ", no whole number; keep state variables in double precision, unchanged between calls");
-}
-
-int or_zero(const int* value) { return value == nullptr ? 0 : *value; }
-
-/// Host and library share one pool for the life of the process.
-Points& points() {
-  static Points& made = *[] {
-    const char* const named = std::getenv("RVELAB_UMAT");
-    return new Points(read_settings(named == nullptr ? "rvelab_umat.toml" : named));
-  }();
-  return made;
-}
 
 /// What a call says of its point, in the host's layout.
 struct Call {
@@ -89,30 +41,12 @@ Matrix3 increment_of(const double* dstran, const double* dfgrd0, const double* d
   return increment(F0, F1);
 }
 
-/// The specimen is in equilibrium with its own stress; a host that starts from another one would see a jump.
-void expect_first_stress(const Call& call) {
-  const Matrix3 own = call.R0.transpose() * points().first_stress(call.properties.material) * call.R0;
-  if (call.components.direct == 2 && own(2, 2) != 0)
-    throw std::runtime_error("NDI is 2 and the specimen is 3D; allowed: NDI = 3; use plane strain or solid elements");
-  double expected[6];
-  write_stress(own, call.components, expected);
-  const Matrix3 given = stress_of(call.stress, call.components);
-  if ((given - stress_of(expected, call.components)).norm() <= 0.01 * own.norm()) return;
-  std::string found, wanted;
-  for (int k = 0; k < call.components.size(); ++k) {
-    found += " " + in_words(call.stress[k]);
-    wanted += " " + in_words(expected[k]);
-  }
-  throw std::runtime_error("STRESS of the first call is" + found + " Pa; the specimen has" + wanted +
-                           " Pa; give that as initial stress (allowed: within 1 %), or a specimen packed to yours");
-}
-
 void update(const Call& call) {
   Points& all = points();
   const Material& material = all.material(call.properties.material);
-  Start start{whole(call.statev[0], "STATEV(1)"), whole(call.statev[1], "STATEV(2)")};
+  Start start{whole_state(call.statev[0], "STATEV(1)"), whole_state(call.statev[1], "STATEV(2)")};
   if (start.id == 0) {
-    expect_first_stress(call);
+    expect_first_stress(call.properties.material, call.stress, call.components, call.R0, "STRESS");
     start = all.spawn(call.properties.material, call.name);
   }
   const Step step = all.step(start, call.dH, call.dt, call.ddsdde != nullptr);

@@ -1,0 +1,38 @@
+// What the calls of a host have in common, whatever their arguments: properties, state variables, the first stress.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "tools/umat/points.hpp"
+
+namespace umat {
+
+/// What PROPS says.
+struct Properties {
+  int material = 0;
+  bool corotational = false;  ///< stresses of the host are R^T sigma R, R of the polar decomposition of F
+  bool physical = false;      ///< the host's time is time; else it is ignored
+};
+
+inline int or_zero(const int* value) { return value == nullptr ? 0 : *value; }
+
+/// Throws std::runtime_error that names the property, its value and what is allowed.
+Properties properties_of(const double* props, int n);
+
+/// A state variable as an integer; throws if it is none.
+std::int64_t whole_state(double value, const char* name);
+
+/// A number as a message tells it.
+std::string in_words(double value);
+
+/// The RVEs of this process: host and library share one pool for the life of it.
+Points& points();
+
+/// The specimen is in equilibrium with its own stress; a host that starts from another one would see a jump: throws
+/// unless `given`, in the host's components and axes, is within 1 % of it. R0: rotation of these axes. name: of the
+/// argument.
+void expect_first_stress(int material, const double* given, const Components& components, const Matrix3& R0,
+                         const char* name);
+
+}  // namespace umat
