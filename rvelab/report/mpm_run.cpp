@@ -130,7 +130,10 @@ Json history_of(const fs::path& path, std::vector<double>& times) {
                                                            {"_m", "m"},     {"_s", "s"}, {"_Pa", "kPa"}};
   for (std::size_t c = 0; c < names.size(); ++c) {
     if (std::all_of(columns[c].begin(), columns[c].end(), [](double v) { return v == 0 || std::isnan(v); })) continue;
-    std::string label = names[c], unit;
+    std::string label = names[c] == "kinetic_J"     ? "kinetic energy_J"
+                        : names[c] == "potential_J" ? "potential energy_J"
+                                                    : names[c];
+    std::string unit;
     for (const auto& [end, of] : units)
       if (unit.empty() && label.ends_with(end)) unit = of, label.erase(label.size() - std::string(end).size());
     std::replace(label.begin(), label.end(), '_', ' ');

@@ -88,7 +88,8 @@ Curves curves_of(const Test& test) {
   }();
   const std::string axis = test.recorded.result.axis;
   const std::string shear = axis.size() == 2 ? "sigma_" + axis : "q";
-  if (stage.kind == "isotropic" || stage.kind == "pressure_path") return {{"p", "void_ratio"}, {"strain", "p"}};
+  if (stage.kind == "isotropic" || stage.kind == "pressure_path")
+    return {{"p", "void_ratio"}, {"total_volumetric", "p"}};
   if (test.protocol.name.find("oedometer") != std::string::npos) return {{"p", "void_ratio"}, {"strain", "q_over_p"}};
   if (stage.kind == "envelope") return {{"sigma_xx", "sigma_yy"}, {"record", "q"}};
   if (cyclic) return {{"strain", shear}, {"p", shear}};
@@ -181,7 +182,7 @@ Page page_of(const std::vector<std::string>& inputs, const PageOptions& options)
   }
   const auto every = std::max<std::size_t>(1, std::size_t(std::ceil(bytes / options.largest_states)));
   if (every > 1)
-    page.remarks.push_back("every " + std::to_string(every) + "th state that the tests kept is in the page, " +
+    page.remarks.push_back("one of " + std::to_string(every) + " states that the tests kept is in the page, " +
                            in_three_digits(options.largest_states / 1e6) + " MB of states; --states-MB raises that");
   Json data{{"version", std::string(io::version)}, {"every", every}, {"sections", Json::array()}};
   for (const std::string& name : order) {

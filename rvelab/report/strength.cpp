@@ -64,8 +64,8 @@ Json strength_of(const std::vector<Test>& tests, const std::vector<Kind>& kinds,
     std::string words =
         (names[set].empty() ? "F" : names[set] + ": f") + std::string("riction angle ") + angle_in_words(*angle);
     if (angle->n > 1)
-      words += ", mean and standard error of " + counted(angle->n, "specimen") + " (95 % interval of the mean " +
-               in_three_digits(angle->low) + " to " + in_three_digits(angle->high) + ")";
+      words += ", mean and standard error of " + counted(angle->n, "specimen") +
+               (angle->n < 3 ? "" : " (95 % interval of the mean " + interval_in_words(angle->low, angle->high) + ")");
     if (cohesion != nullptr)
       words += ", the tangent of a cohesive soil with c = " +
                with_its_error(cohesion->mean / 1e3, cohesion->standard_error / 1e3) + " kPa";
@@ -81,8 +81,8 @@ Json strength_of(const std::vector<Test>& tests, const std::vector<Kind>& kinds,
                     {"set", set},
                     {"circles", std::move(circles)},
                     {"angle", number(angle->mean)},
-                    {"low", number(angle->low)},
-                    {"high", number(angle->high)},
+                    {"low", number(angle->mean - angle->standard_error)},
+                    {"high", number(angle->mean + angle->standard_error)},
                     {"text", angle_in_words(*angle)},
                     {"cohesion_kPa", number(cohesion != nullptr ? cohesion->mean / 1e3 : 0)},
                     {"large_strain", number(large)},

@@ -203,8 +203,7 @@ Results results_of(const std::vector<Test>& tests, const std::vector<Kind>& kind
     const InUnit shown = fitting_unit(value, unit);
     before.push_back(in_words(measure, shown.unit));
     before.push_back(with_its_error(shown.factor * value, shown.factor * error));
-    const double half = 0.5 * shown.factor * (high - low);
-    before.push_back(std::isfinite(half) ? "\u00b1 " + in_three_digits(half) : "");
+    before.push_back(interval_in_words(shown.factor * low, shown.factor * high));
     return before;
   };
   results.means = {{"pressure", "n", "measure", "mean \u00b1 standard error", "95 % interval of the mean"}};

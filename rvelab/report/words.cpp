@@ -7,6 +7,12 @@
 #include "rvelab/ensemble/statistics.hpp"
 
 namespace rvelab::report {
+namespace {
+
+/// With a minus sign in the place of the hyphen before a number.
+std::string with_minus(const std::string& text) { return text.starts_with('-') ? "\u2212" + text.substr(1) : text; }
+
+}  // namespace
 
 std::string in_three_digits(double value) {
   if (!std::isfinite(value)) return "-";
@@ -22,7 +28,7 @@ std::string in_three_digits(double value) {
     std::snprintf(text, sizeof text, "%.0f", std::round(value / std::pow(10.0, place - 2)) * std::pow(10.0, place - 2));
     whole = text;
   }
-  return whole + (power != 0 ? "e" + std::to_string(power) : "");
+  return with_minus(whole) + (power != 0 ? "e" + std::to_string(power) : "");
 }
 
 InUnit fitting_unit(double value, const std::string& unit) {
@@ -37,7 +43,19 @@ std::string with_its_error(double value, double error) {
   if (!std::isfinite(error) || error <= 0) return in_three_digits(value);
   std::string text = ensemble::with_error(value, error);
   if (const auto at = text.find("+-"); at != std::string::npos) text.replace(at, 2, "\u00b1");
-  return text;
+  return with_minus(text);
+}
+
+std::string interval_in_words(double low, double high) {
+  if (!std::isfinite(low) || !std::isfinite(high)) return "";
+  const auto in_digits_of = [](double value, double error) {
+    const std::string text = ensemble::with_error(value, error);
+    const std::size_t begin = text.starts_with('(') ? 1 : 0, end = text.find(')');
+    return with_minus(text.substr(begin, text.find(" +-") - begin) +
+                      (end == std::string::npos ? "" : text.substr(end + 1)));
+  };
+  const double half = 0.5 * (high - low);
+  return in_digits_of(low, half) + " to " + in_digits_of(high, half);
 }
 
 std::string counted(std::size_t number, const std::string& what) {

@@ -20,6 +20,9 @@ InUnit fitting_unit(double value, const std::string& unit);
 /// without an error.
 std::string with_its_error(double value, double error);
 
+/// "29.1 to 31.2", in the digits that half of it leaves; "" where it is not defined.
+std::string interval_in_words(double low, double high);
+
 /// "1 test", "3 tests".
 std::string counted(std::size_t number, const std::string& what);
 

@@ -39,14 +39,17 @@ export class Chart {
     this.logs = { y: document.createElement("input"), x: document.createElement("input") };
     for (const axis of ["y", "x"] as const) {
       const label = document.createElement("label"), log = document.createElement("label");
-      label.append(axis === "y" ? "y " : "against x ", this.choices[axis]);
+      label.append(axis, this.choices[axis]);
       this.choices[axis].className = axis;
       this.choices[axis].addEventListener("change", () => { this[axis] = this.choices[axis].value; this.draw(this.shown); });
       this.logs[axis].type = "checkbox";
       this.logs[axis].className = `log-${axis}`;
       this.logs[axis].addEventListener("change", () => this.draw(this.shown));
       log.append(this.logs[axis], " log");
-      bar.append(label, log);
+      const pair = document.createElement("span");
+      pair.className = "pair";
+      pair.append(label, log);
+      bar.append(pair);
     }
     const close = document.createElement("button");
     close.type = "button";
@@ -99,7 +102,7 @@ export class Chart {
     for (const line of this.lines) {
       values.push(...finite(line[axis]));
       if (axis === "x") continue;
-      for (const band of [line.scatter, line.interval, this.shown.estimate && !log ? line.error : undefined])
+      for (const band of [line.scatter, line.deviation, this.shown.estimate && !log ? line.error : undefined])
         band?.forEach((value, k) => Number.isFinite(value) && Number.isFinite(line.y[k])
           && values.push(line.y[k] - value, line.y[k] + value));
     }
@@ -123,8 +126,8 @@ export class Chart {
     this.offer(shown.section);
     this.lines = linesOf(shown.section, this.x, this.y, shown.stage, shown.way);
     this.plot?.destroy();
-    const axis = (label: string, size: number) => ({ label, labelSize: 20, size, stroke: ink(), font: "12px system-ui",
-      labelFont: "12px system-ui", grid: { stroke: faint(), width: 1 }, ticks: { stroke: faint(), width: 1 },
+    const axis = (label: string, size: number | uPlot.Axis.Size) => ({ label, labelSize: 20, size, stroke: ink(), font: "12px system-ui",
+      labelFont: "12px system-ui", grid: { stroke: faint(), width: 1 }, ticks: { stroke: faint(), width: 1, size: 5 },
       values: (_: uPlot, values: (number | null)[]) => values.map((value) => (value == null ? "" : shownTick(value))) });
     const scale = (name: "x" | "y") => ({ time: false, distr: (this.logs[name].checked ? 3 : 1) as 1 | 3,
       range: (): [number, number] => this.range(name) });
@@ -133,7 +136,7 @@ export class Chart {
       width: this.area.clientWidth || 300, height: this.height(), legend: { show: false }, padding: [10, 12, 0, 0],
       cursor: { points: { show: false }, x: false, y: false, drag: { x: true, y: true, uni: 20 } },
       scales: { x: scale("x"), y: scale("y") }, series: [{}, { show: true, scale: "y", paths: () => null, points: { show: false } }],
-      axes: [{ ...axis(this.label(this.x), 36), space: 60 }, { ...axis(this.label(this.y), 54) }],
+      axes: [{ ...axis(this.label(this.x), 36), space: 60 }, axis(this.label(this.y), (_, values) => 22 + 7.4 * Math.max(3, ...(values ?? []).map((text) => text.length)))],
       hooks: { draw: [(plot) => this.paint(plot)], setScale: [() => queueMicrotask(() => this.place())] },
     }, [reachX, [null, null]], this.area);
     this.plot.over.append(this.mark);
@@ -191,9 +194,9 @@ export class Chart {
       ctx.stroke();
       ctx.setLineDash([]);
       ctx.lineWidth = 1.4 * ratio;
-      if (line.interval)
+      if (line.deviation)
         for (const k of places(line, bars)) {
-          const x = X(line.x[k]), low = Y(line.y[k] - line.interval[k]), high = Y(line.y[k] + line.interval[k]), wide = 4 * ratio;
+          const x = X(line.x[k]), low = Y(line.y[k] - line.deviation[k]), high = Y(line.y[k] + line.deviation[k]), wide = 4 * ratio;
           ctx.stroke(new Path2D(`M${x} ${low}V${high}M${x - wide} ${low}h${2 * wide}M${x - wide} ${high}h${2 * wide}`));
         }
       ctx.fillStyle = style.colour;
@@ -222,7 +225,7 @@ export class Chart {
       this.legend.append(entry);
     }
     const notes = [];
-    if (this.lines.some((line) => line.scatter)) notes.push("band: one standard deviation of the tests; bars: 95 % interval of the mean");
+    if (this.lines.some((line) => line.scatter)) notes.push("band: one standard deviation of the tests; bars: standard error of the mean");
     if (this.shown.estimate && this.lines.some((line) => line.error)) notes.push("dark band: error estimate");
     if (notes.length) { const note = document.createElement("small"); note.textContent = notes.join("; "); this.legend.append(note); }
   }
@@ -280,10 +283,10 @@ export class Chart {
 
   private csv() {
     const rows: (string | number | undefined)[][] = [["group", "tests", this.label(this.x), this.label(this.y), "standard deviation",
-      "half of the 95 % interval of the mean", "error estimate"]];
+      "standard error of the mean", "error estimate"]];
     for (const line of this.lines)
       line.x.forEach((x, k) => rows.push([this.shown.section.kinds[line.kind].label, line.runs.map((run) => this.shown.section.runs[run].file).join(" "),
-        x, line.y[k], line.scatter?.[k], line.interval?.[k], line.error?.[k]]));
+        x, line.y[k], line.scatter?.[k], line.deviation?.[k], line.error?.[k]]));
     return csvOf(rows);
   }
 
@@ -301,9 +304,9 @@ export class Chart {
           ...rows.reverse().map((k): [number, number] => [line.x[k], line.y[k] - of[k]])], `fill="${style.colour}" fill-opacity="${alpha}"`, true);
       }
       plot.path(line.x.map((x, k) => [x, line.y[k]]), `stroke="${style.colour}" stroke-width="1.6" stroke-dasharray="${style.dash.join(" ")}"`);
-      if (line.interval)
+      if (line.deviation)
         for (const k of places(line, bars))
-          plot.path([[line.x[k], line.y[k] - line.interval[k]], [line.x[k], line.y[k] + line.interval[k]]], `stroke="${style.colour}" stroke-width="1.4"`);
+          plot.path([[line.x[k], line.y[k] - line.deviation[k]], [line.x[k], line.y[k] + line.deviation[k]]], `stroke="${style.colour}" stroke-width="1.4"`);
       if (this.shown.section.kinds.length > 1)
         for (const k of places(line, marks)) plot.symbol(style.symbol, line.x[k], line.y[k], style.colour);
     }

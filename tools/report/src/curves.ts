@@ -7,15 +7,12 @@ export interface Line {
   record: number[];                             // of the run; of a mean the driving strain instead
   mean: boolean;
   scatter?: number[];                           // standard deviation over the tests
-  interval?: number[];                          // half of the 95 % interval of the mean
+  deviation?: number[];                         // standard error of the mean
   error?: number[];                             // error estimate
 }
 export type Way = "mean" | "each";
 
 const grid = 200;
-// 97.5 % quantiles of Student's distribution for 1 to 10 degrees of freedom; beyond, an expansion.
-const student = [12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228];
-export const studentsT = (freedom: number) => student[freedom - 1] ?? 1.96 + 2.372 / freedom + 2.82 / freedom ** 2;
 
 /** Records of a run that lie in the stage (-1: all). */
 export function rowsOf(run: Run, stage: number): number[] {
@@ -43,8 +40,10 @@ function interpolated(x: number[], y: number[], where: number[]): number[] {
 function lineOfRun(section: Section, number: number, x: string, y: string, stage: number): Line | undefined {
   const run = section.runs[number], own = columnOf(run, y), rows = rowsOf(run, stage);
   if (!own || !columnOf(run, x) || !rows.length) return undefined;
-  return { kind: run.kind, label: run.file, runs: [number], x: at(columnOf(run, x)!.values, rows), y: at(own.values, rows),
-    record: rows, mean: false, error: own.errors ? at(own.errors, rows) : undefined };
+  // A stage begins a line of its own: strains count from its start.
+  const parts = rows.flatMap((row, k) => (k > 0 && run.stage && run.stage[row] !== run.stage[rows[k - 1]] ? [-1, row] : [row]));
+  return { kind: run.kind, label: run.file, runs: [number], x: at(columnOf(run, x)!.values, parts), y: at(own.values, parts),
+    record: parts, mean: false, error: own.errors ? at(own.errors, parts) : undefined };
 }
 
 export function drivingOf(run: Run): string {
@@ -58,7 +57,7 @@ export function linesOf(section: Section, x: string, y: string, stage: number, w
     const own = runs.map((k) => lineOfRun(section, k, x, y, stage)).filter((line) => line !== undefined);
     const driving = own.map((line) => {
       const run = section.runs[line.runs[0]];
-      return at(columnOf(run, drivingOf(run))?.values, line.record);
+      return at(columnOf(run, drivingOf(run))?.values, line.record.filter((row) => row >= 0));
     });
     if (way === "each" || own.length < 2 || !driving.every(goesOneWay)) {
       own.forEach((line) => { line.label = own.length > 1 ? `${kind.label}: ${line.label}` : kind.label || line.label; });
@@ -73,9 +72,8 @@ export function linesOf(section: Section, x: string, y: string, stage: number, w
     const mean = (rows: number[][]) => where.map((_, k) => rows.reduce((sum, row) => sum + row[k], 0) / rows.length);
     const ys = all((line) => line.y), middle = mean(ys);
     const scatter = middle.map((value, k) => Math.sqrt(ys.reduce((sum, row) => sum + (row[k] - value) ** 2, 0) / (ys.length - 1)));
-    const t = studentsT(ys.length - 1) / Math.sqrt(ys.length);
     lines.push({ kind: number, label: `${kind.label} (mean of ${own.length})`, runs, x: mean(all((line) => line.x)), y: middle,
-      record: where.map((value) => down * value), mean: true, scatter, interval: scatter.map((value) => t * value),
+      record: where.map((value) => down * value), mean: true, scatter, deviation: scatter.map((value) => value / Math.sqrt(ys.length)),
       error: own.every((line) => line.error) ? mean(all((line) => line.error!)) : undefined });
   });
   return lines;

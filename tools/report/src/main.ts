@@ -4,6 +4,7 @@ import { report, stateOf, type Section, type State, type Table } from "./data";
 import { recordAt, type Way } from "./curves";
 import { Chart, type Picked, type Shown } from "./chart";
 import { buttons } from "./download";
+import { loops } from "./loops";
 import { mohr } from "./mohr";
 import { rose } from "./rose";
 import { Specimen } from "./specimen";
@@ -16,7 +17,7 @@ const sectionChoice = element<"select">("section"), runChoice = element<"select"
 
 let shown: Shown;
 let charts: Chart[] = [];
-let roseText = { svg: "", csv: "" }, mohrText = { svg: "", csv: "" };
+let roseText = { svg: "", csv: "" }, mohrText = { svg: "", csv: "" }, loopsText = { svg: "", csv: "" };
 let current: State | undefined;
 
 const specimen = new Specimen((record) => move(record), (state) => { current = state; void drawRose(); });
@@ -59,6 +60,7 @@ function redraw() {
   charts.forEach((chart) => chart.draw(shown));
   specimen.paint();
   drawMohr();
+  drawLoops();
   void drawRose();
 }
 
@@ -112,6 +114,14 @@ function drawMohr() {
   element("mohr-words").textContent = found.words.join(" ");
 }
 
+function drawLoops() {
+  const found = loops(shown.section);
+  element("loops-panel").hidden = !found;
+  if (!found) return;
+  loopsText = found;
+  element("loops").innerHTML = found.svg;
+}
+
 async function drawRose() {
   const of = shown, pooled = element<"select">("rose-of").value === "kind";
   let states = current && current.contacts > 0 ? [current] : [];
@@ -156,14 +166,19 @@ function choose(number: number) {
   specimen.choose(section, run);
   section.curves.forEach(([x, y]) => addChart(x, y));
   fillTables(section);
+  element("specimen-head").textContent = section.kind === "mpm" ? "Material points" : "Specimen";
   drawMohr();
+  drawLoops();
   move(shown.record);
 }
 
 function begin() {
   element("title").textContent = report.title;
-  const tests = report.sections.reduce((sum, section) => sum + section.runs.length, 0);
-  element("about").textContent = `${tests} ${tests === 1 ? "test" : "tests"}, rvelab ${report.version}. Compression is positive.`;
+  const count = (kind: string, word: string) => {
+    const n = report.sections.filter((section) => section.kind === kind).reduce((sum, section) => sum + section.runs.length, 0);
+    return n ? `${n} ${word}${n === 1 ? "" : "s"}, ` : "";
+  };
+  element("about").textContent = `${count("test", "test")}${count("mpm", "MPM run")}rvelab ${report.version}. Compression is positive.`;
   sectionChoice.replaceChildren(...report.sections.map((section, k) => new Option(section.name, String(k))));
   element("section-box").hidden = report.sections.length < 2;
   sectionChoice.addEventListener("change", () => choose(+sectionChoice.value));
@@ -177,6 +192,7 @@ function begin() {
   element("add-chart").addEventListener("click", () => addChart(...(charts[charts.length - 1]?.axes() ?? shown.section.curves[0])));
   element("rose-of").addEventListener("change", () => void drawRose());
   element("mohr-downloads").append(buttons(() => "mohr_circles", () => mohrText.csv, () => mohrText.svg));
+  element("loops-downloads").append(buttons(() => "loops", () => loopsText.csv, () => loopsText.svg));
   element("rose-downloads").append(buttons(() => "contact_rose", () => roseText.csv, () => roseText.svg));
   element("theme").addEventListener("click", () => {
     const dark = getComputedStyle(document.documentElement).getPropertyValue("--dark").trim() === "1";

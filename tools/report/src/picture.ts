@@ -61,7 +61,7 @@ export function pictureOf(run: Run, state: State, field: Field | undefined, draw
       begin[3 * m + k] = state.position[3 * state.i[m] + k];
       end[3 * m + k] = begin[3 * m + k] + state.branch[3 * m + k];
     }
-    width[m] = radius * 0.16 * Math.min(8, state.force[m] / (mean || 1)) + 0.02 * radius;
+    width[m] = radius * (state.dimension === 2 ? 0.16 : 0.1) * Math.min(8, state.force[m] / (mean || 1)) + 0.02 * radius;
     own.set(chainColour === "friction" ? colour(state.friction[m], false).map((value) => value / 255)
       : state.force[m] > mean ? strong : weak, 3 * m);
   }

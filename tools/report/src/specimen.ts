@@ -90,6 +90,7 @@ export class Specimen {
     this.picture = pictureOf(this.run, this.state, this.field, draw, chainColour);
     this.viewer.show(this.picture, `${this.title()}: ${this.state.n} ${this.run.states.shape}s coloured by ${this.field?.label ?? "nothing"}; arrow keys move the view, + and - zoom, 0 resets`);
     this.scale(draw, chainColour);
+    element("stage").dataset.record = String(this.state.record);
   }
 
   private scale(draw: Draw, chainColour: ChainColour) {

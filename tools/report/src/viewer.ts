@@ -63,7 +63,7 @@ void main() { result = vec4(tint, 1.0); }`;
 /** Geometry of one quad, drawn once for each entry of its attributes; they are made longer when more are needed. */
 class Instances {
   readonly geometry = new InstancedBufferGeometry();
-  private room = 0;
+  private room = -1;
   constructor(corners: number[], private widths: Record<string, number>) {
     this.geometry.setAttribute("position", new BufferAttribute(new Float32Array(corners), 2));
     this.geometry.setIndex([0, 1, 2, 2, 1, 3]);
