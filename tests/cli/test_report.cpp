@@ -102,7 +102,7 @@ TEST_CASE("report names what is missing: records, a folder") {
   std::filesystem::create_directory(here / "empty");
   expect_mistake(here.run("report none.h5 -o page.html"), "none.h5: is not there");
   expect_mistake(here.run("report empty -o page.html"), "has no *.h5, nor history.csv");
-  expect_mistake(here.run("report S.h5 -o page.html"), "S.h5: not a record file of rvelab");
+  expect_mistake(here.run("report S.h5 -o page.html"), "S.h5: holds a specimen and no records");
   expect_mistake(here.run("report records -o none/page.html"), "none");
   expect_mistake(here.run("report records/b.h5 -o records/b.h5 --force"), "records/b.h5");
   expect_mistake(here.run("report records -o page.html --states-MB 0"), "--states-MB");

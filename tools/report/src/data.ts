@@ -45,21 +45,24 @@ function bytesOf(base64: string): Uint8Array<ArrayBuffer> {
   return bytes;
 }
 
-async function unpacked(base64: string): Promise<DataView> {
+async function unpacked(base64: string): Promise<DataView<ArrayBuffer>> {
   const stream = new Blob([bytesOf(base64)]).stream().pipeThrough(new DecompressionStream("deflate"));
   return new DataView(await new Response(stream).arrayBuffer());
 }
 
-/** Reads little-endian arrays one after the other. */
+/** Reads arrays one after the other. They are little-endian, as every machine with a browser is. */
 class Reader {
-  at = 0;
-  constructor(private view: DataView) {}
-  float32(n: number) { return Float32Array.from({ length: n }, () => this.view.getFloat32((this.at += 4) - 4, true)); }
-  uint16(n: number) { return Uint16Array.from({ length: n }, () => this.view.getUint16((this.at += 2) - 2, true)); }
-  uint32(n: number) { return Uint32Array.from({ length: n }, () => this.view.getUint32((this.at += 4) - 4, true)); }
-  uint8(n: number) { return Uint8Array.from({ length: n }, () => this.view.getUint8(this.at++)); }
+  private at = 0;
+  constructor(private view: DataView<ArrayBuffer>) {}
+  private next(bytes: number) { return this.view.buffer.slice(this.at, (this.at += bytes)); }
+  float32(n: number) { return new Float32Array(this.next(4 * n)); }
+  uint16(n: number) { return new Uint16Array(this.next(2 * n)); }
+  uint32(n: number) { return new Uint32Array(this.next(4 * n)); }
+  uint8(n: number) { return new Uint8Array(this.next(n)); }
   within(n: number, low: number, high: number) {
-    return Float32Array.from(this.uint16(n), (v) => (v === 65535 ? NaN : low + ((high - low) * v) / 65534));
+    const found = new Float32Array(n), step = (high - low) / 65534;
+    this.uint16(n).forEach((v, k) => { found[k] = v === 65535 ? NaN : low + step * v; });
+    return found;
   }
 }
 
@@ -78,13 +81,13 @@ async function read(run: Run, packed: PackedState, dimension: 2 | 3): Promise<St
   const reader = new Reader(await unpacked(packed.packed));
   const lattice = reader.float32(9);
   const part = Array.from({ length: dimension }, () => reader.uint16(n));
-  const along = (k: number, parts: number[]) =>
-    parts.reduce((sum, value, axis) => sum + lattice[3 * axis + k] * value, 0);
   const position = new Float32Array(3 * n), centre = states.centre ?? [0, 0, 0];
-  for (let g = 0; g < n; ++g) {
-    const parts = part.map((values) => values[g] / 65536 - 0.5);
-    for (let k = 0; k < dimension; ++k) position[3 * g + k] = along(k, parts) + centre[k];
-  }
+  for (let k = 0; k < dimension; ++k)
+    for (let g = 0; g < n; ++g) {
+      let sum = centre[k];
+      for (let axis = 0; axis < dimension; ++axis) sum += lattice[3 * axis + k] * (part[axis][g] / 65536 - 0.5);
+      position[3 * g + k] = sum;
+    }
   const half = new Float32Array(2 * n), angle = new Float32Array(n);
   if (shape === "ellipse") angle.set(Float32Array.from(reader.uint16(n), (v) => (v / 65536) * Math.PI));
   if (shape === "point") {
@@ -105,8 +108,10 @@ async function read(run: Run, packed: PackedState, dimension: 2 | 3): Promise<St
   const friction = Float32Array.from(reader.uint8(c), (v) => v / 255);
   const branch = new Float32Array(3 * c), normal = new Float32Array(3 * c);
   for (let m = 0; m < c; ++m) {
-    const parts = image.map((values, k) => part[k][j[m]] / 65536 - part[k][i[m]] / 65536 + values[m] - 128);
-    for (let k = 0; k < dimension; ++k) branch[3 * m + k] = along(k, parts);
+    for (let axis = 0; axis < dimension; ++axis) {
+      const along = (part[axis][j[m]] - part[axis][i[m]]) / 65536 + image[axis][m] - 128;
+      for (let k = 0; k < dimension; ++k) branch[3 * m + k] += lattice[3 * axis + k] * along;
+    }
     const length = Math.hypot(branch[3 * m], branch[3 * m + 1], branch[3 * m + 2]) || 1;
     for (let k = 0; k < 3; ++k) normal[3 * m + k] = branch[3 * m + k] / length;
   }

@@ -20,7 +20,13 @@ let charts: Chart[] = [];
 let roseText = { svg: "", csv: "" }, mohrText = { svg: "", csv: "" }, loopsText = { svg: "", csv: "" };
 let current: State | undefined;
 
-const specimen = new Specimen((record) => move(record), (state) => { current = state; void drawRose(); });
+// While the slider is dragged the rose waits.
+let roseWaits = 0;
+const specimen = new Specimen((record) => move(record), (state) => {
+  current = state;
+  clearTimeout(roseWaits);
+  roseWaits = window.setTimeout(() => void drawRose(), 120);
+});
 
 function move(record: number, run = shown.run) {
   if (run !== shown.run) {

@@ -96,13 +96,15 @@ export class Viewer {
   private chainMaterial = new RawShaderMaterial({ glslVersion: GLSL3, vertexShader: chainVertex, fragmentShader: chainFragment,
     uniforms: { lift: { value: 0 } } });
   private box = new LineSegments(new BufferGeometry(), new LineBasicMaterial());
+  private size = [0, 0, 0];
+  private waits = 0;
   private reach = 0;
   private dimension = 0;
   private picture?: Picture;
 
   constructor(readonly place: HTMLElement, private asSvg: (viewer: Viewer) => string) {
     try {
-      this.renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
+      this.renderer = new WebGLRenderer({ antialias: false, preserveDrawingBuffer: true });
     } catch {
       place.classList.add("no-webgl");
       new ResizeObserver(() => this.draw()).observe(place);
@@ -113,7 +115,6 @@ export class Viewer {
     canvas.tabIndex = 0;
     canvas.setAttribute("role", "img");
     place.append(canvas);
-    this.renderer.setPixelRatio(Math.min(2, devicePixelRatio || 1));
     for (const [geometry, material] of [[this.grains.geometry, this.grainMaterial], [this.chains.geometry, this.chainMaterial]] as const) {
       const mesh = new Mesh(geometry, material);
       mesh.frustumCulled = false;
@@ -211,8 +212,20 @@ export class Viewer {
     }
     (this.box.material as LineBasicMaterial).color = new Color(ink());
     this.renderer.setClearColor(paper());
-    this.renderer.setSize(width, height);
-    this.renderer.render(this.scene, this.camera);
+    this.render(width, height, 1);
+    clearTimeout(this.waits);
+    this.waits = window.setTimeout(() => this.render(width, height, 2), 180);
+  }
+
+  /** Coarse while things move, so that a computer without a graphics card follows; fine when they rest. */
+  private render(width: number, height: number, ratio: number) {
+    if (width !== this.size[0] || height !== this.size[1] || ratio !== this.size[2]) {
+      this.renderer!.setPixelRatio(ratio);
+      this.renderer!.setSize(width, height);
+      this.size = [width, height, ratio];
+    }
+    this.renderer!.render(this.scene, this.camera);
+    this.place.dataset.drawn = ratio > 1 ? "fine" : "coarse";
   }
 
   /** The camera holds the picture within the place, whatever its proportions. */
