@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <numbers>
 #include <sstream>
 
 #include "rvelab/cell/cell.hpp"
@@ -58,7 +59,8 @@ std::vector<double> values_of(const io::Hdf5File& file, const MpmField& field, s
 
 struct Frame {
   double time = 0;
-  std::vector<double> position, side;  ///< m
+  std::vector<double> position;             ///< m
+  std::vector<double> side, across, angle;  ///< sides of a stretched point, m, and the angle of the first
   std::vector<std::vector<double>> fields;
   Json rocks = Json::array();  ///< centre, half axes in the plane (in space: mean half axis twice), angle
 };
@@ -96,7 +98,21 @@ Frame read_frame(const fs::path& path, int& dimension) {
   const std::size_t n = volume.size();
   for (std::size_t k = 0; k < n; ++k)
     if (frame.position[3 * k + 2] != 0) dimension = 3;
-  for (const double each : volume) frame.side.push_back(dimension == 2 ? std::sqrt(each) : std::cbrt(each));
+  const std::vector<double> F = file.read<double>("/deformation_gradient");
+  for (std::size_t k = 0; k < n; ++k) {
+    // The rectangle along the principal stretches, at most three to one; in space a ball.
+    double stretch = 1, angle = 0;
+    if (dimension == 2) {
+      const Eigen::Matrix2d A{{F[9 * k], F[9 * k + 1]}, {F[9 * k + 3], F[9 * k + 4]}};
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(A * A.transpose());
+      stretch = std::min(3.0, std::sqrt(solver.eigenvalues()[1] / solver.eigenvalues()[0]));
+      angle = std::atan2(solver.eigenvectors()(1, 1), solver.eigenvectors()(0, 1));
+    }
+    const double side = dimension == 2 ? std::sqrt(volume[k]) : std::cbrt(volume[k]);
+    frame.side.push_back(side * std::sqrt(stretch));
+    frame.across.push_back(side / std::sqrt(stretch));
+    frame.angle.push_back(angle);
+  }
   for (const MpmField& field : mpm_fields) frame.fields.push_back(values_of(file, field, n));
   std::string rocks = path.filename().string();
   rocks.replace(0, 6, "rocks");
@@ -190,7 +206,8 @@ MpmRun read_mpm_run(const std::string& folder, double largest) {
       low[long(k % 3)] = std::min(low[long(k % 3)], frame.position[k]);
       high[long(k % 3)] = std::max(high[long(k % 3)], frame.position[k]);
     }
-    for (const double side : frame.side) smallest = std::min(smallest, side), widest = std::max(widest, side);
+    for (std::size_t k = 0; k < frame.side.size(); ++k)
+      smallest = std::min(smallest, frame.across[k]), widest = std::max(widest, frame.side[k]);
     for (std::size_t f = 0; f < std::size(mpm_fields); ++f)
       std::copy_if(frame.fields[f].begin(), frame.fields[f].end(), std::back_inserter(all[f]),
                    [](double v) { return std::isfinite(v); });
@@ -225,7 +242,9 @@ MpmRun read_mpm_run(const std::string& folder, double largest) {
     for (int k = 0; k < 9; ++k) packed.add(float(k % 4 == 0 ? size[k / 3] : 0));
     for (int k = 0; k < dimension; ++k)
       for (std::size_t g = 0; g < n; ++g) packed.add_part((frame.position[3 * g + std::size_t(k)] - low[k]) / size[k]);
-    for (const double side : frame.side) packed.add_within(side, smallest, widest);
+    for (const auto* sides : {&frame.side, &frame.across})
+      for (const double side : *sides) packed.add_within(side, smallest, widest);
+    for (const double angle : frame.angle) packed.add_part(angle / std::numbers::pi);
     for (const std::size_t f : shown)
       for (const double value : frame.fields[f]) packed.add_within(value, all[f].front(), all[f].back());
     const auto nearest = std::min_element(times.begin(), times.end(), [&](double one, double other) {

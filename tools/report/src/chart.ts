@@ -1,6 +1,6 @@
 // A chart: axes, zoom and ticks by uPlot; lines, bands and error bars of curves.ts; a mark at the record that is shown.
 import uPlot from "uplot";
-import { columnOf, shown, withUnit, type Section } from "./data";
+import { columnOf, shown, shownWithError, withUnit, type Section } from "./data";
 import { linesOf, type Line, type Way } from "./curves";
 import { buttons, csvOf } from "./download";
 import { faint, ink, styleOf } from "./palette";
@@ -242,7 +242,8 @@ export class Chart {
   private value(key: string) {
     const column = columnOf(this.shown.section.runs[this.shown.run], key);
     const error = column?.errors?.[this.shown.record];
-    return shown(column?.values[this.shown.record]) + (error != null ? ` \u00b1 ${shown(error)}` : "") + (column?.unit ? ` ${column.unit}` : "");
+    const value = column?.values[this.shown.record];
+    return (error != null && value != null ? shownWithError(value, error) : shown(value)) + (column?.unit ? ` ${column.unit}` : "");
   }
 
   private place() {

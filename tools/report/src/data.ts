@@ -92,7 +92,9 @@ async function read(run: Run, packed: PackedState, dimension: 2 | 3): Promise<St
   if (shape === "ellipse") angle.set(Float32Array.from(reader.uint16(n), (v) => (v / 65536) * Math.PI));
   if (shape === "point") {
     const side = reader.within(n, states.side![0], states.side![1]);
-    for (let g = 0; g < n; ++g) half[2 * g] = half[2 * g + 1] = side[g] / 2;
+    const across = reader.within(n, states.side![0], states.side![1]);
+    for (let g = 0; g < n; ++g) { half[2 * g] = side[g] / 2; half[2 * g + 1] = across[g] / 2; }
+    angle.set(Float32Array.from(reader.uint16(n), (v) => (v / 65536) * Math.PI));
   } else {
     const own = await sizes.get(run)!;
     for (let g = 0; g < n; ++g) {
@@ -152,5 +154,12 @@ export function shown(value: number | null | undefined): string {
   const size = Math.abs(value);
   const text = size >= 1e5 || size < 1e-3 ? value.toExponential(2) : Number(value.toPrecision(3)).toString();
   return text.replace("-", "\u2212");
+}
+/** A value in the digits that its error leaves, two of its own. */
+export function shownWithError(value: number, error: number): string {
+  const digits = 1 - Math.floor(Math.log10(error));
+  if (!(error > 0) || digits > 8 || Math.abs(value) >= 1e5) return `${shown(value)} \u00b1 ${shown(error)}`;
+  const places = Math.max(0, digits);
+  return `${value.toFixed(places)} \u00b1 ${error.toFixed(places)}`.replace("-", "\u2212");
 }
 export const withUnit = (label: string, unit: string) => (unit ? `${label} (${unit})` : label);

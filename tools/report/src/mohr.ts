@@ -39,7 +39,7 @@ export function mohr(section: Section, width: number): { svg: string; csv: strin
       for (const [s, t] of circle.states) rows.push([section.kinds[circle.kind].label, s, t, set.angle, set.cohesion_kPa]);
     }
     line(set.angle, `stroke="${colour}" stroke-width="1.8"`);
-    legend.push({ sample: `<path d="M0 0H36" stroke="${colour}" stroke-width="2"/>`, label: `${set.name ? set.name + ": " : ""}\u03c6 = ${set.text}` + (set.low != null ? "; shaded: \u00b1 standard error" : "") });
+    legend.push({ sample: `<path d="M0 0H36" stroke="${colour}" stroke-width="2"/>`, label: `${set.name ? set.name + ": " : ""}\u03c6 = ${set.text}` + (set.low != null ? " (shaded)" : "") });
     if (set.large_strain != null) {
       line(set.large_strain, `stroke="${colour}" stroke-width="1.4" stroke-dasharray="7 4"`);
       legend.push({ sample: `<path d="M0 0H36" stroke="${colour}" stroke-width="1.4" stroke-dasharray="7 4"/>`, label: `${set.name ? set.name + ": " : ""}at large strain` });

@@ -88,7 +88,7 @@ export function svgOfPicture(picture: Picture, viewer: Viewer, title: string): s
     const [x, y, z] = at(picture.position, g), a = scale * picture.half[2 * g], b = scale * picture.half[2 * g + 1];
     const look = `fill="${rgbOf(picture.colour, g)}" stroke="#000" stroke-opacity="0.45" stroke-width="0.6"`;
     const turn = ((-picture.angle[g] * 180) / Math.PI).toFixed(1);
-    pieces.push({ z, text: picture.kind === 3 ? `<rect x="${f(x - a)}" y="${f(y - b)}" width="${f(2 * a)}" height="${f(2 * b)}" fill="${rgbOf(picture.colour, g)}"/>`
+    pieces.push({ z, text: picture.kind === 3 ? `<rect x="${f(x - a)}" y="${f(y - b)}" width="${f(2 * a)}" height="${f(2 * b)}" transform="rotate(${turn} ${f(x)} ${f(y)})" fill="${rgbOf(picture.colour, g)}"/>`
       : picture.kind === 1 ? `<ellipse cx="${f(x)}" cy="${f(y)}" rx="${f(a)}" ry="${f(b)}" transform="rotate(${turn} ${f(x)} ${f(y)})" ${look}/>`
       : `<circle cx="${f(x)}" cy="${f(y)}" r="${f(a)}" ${look}/>` });
   }

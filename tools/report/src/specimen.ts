@@ -101,7 +101,10 @@ export class Specimen {
       strip.className = "strip";
       strip.style.background = `linear-gradient(to right, ${Array.from({ length: 11 }, (_, k) => css(colour(k / 10, about))).join(",")})`;
       line.className = "scale-line";
-      line.append(shown(low), strip, shown(high), ` ${label}`);
+      const range = document.createElement("span");
+      range.className = "range";
+      range.append(shown(low), strip, shown(high));
+      line.append(label, range);
       box.append(line);
     };
     if (this.field && draw !== "chains") {
@@ -112,7 +115,8 @@ export class Specimen {
       const mean = this.state!.force.reduce((sum, value) => sum + value, 0) / this.state!.contacts;
       if (chainColour === "friction") bar("tangential force over its limit", 0, 1, false);
       const text = document.createElement("span");
-      text.textContent = `Width of a chain: normal force, mean ${shown(mean)} N` + (chainColour === "force" ? "; orange: above the mean, grey: below." : ".");
+      text.textContent = `Width of a chain: normal force, mean ${shown(mean)} N` + (chainColour === "force" ? "; orange: above the mean, grey: below." : ".")
+        + (draw === "both" && this.state!.dimension === 3 ? " Grains are drawn at half of their size." : "");
       box.append(text);
     }
   }

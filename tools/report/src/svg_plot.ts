@@ -71,7 +71,7 @@ export class SvgPlot {
     }
     const below = 20 * legend.length, high = this.height + below;
     const rows = legend.map(({ sample, label }, k) =>
-      `<g transform="translate(${this.left} ${this.height + 8 + 20 * k})">${sample}<text x="44" y="4">${escaped(label)}</text></g>`);
+      `<g transform="translate(10 ${this.height + 8 + 20 * k})">${sample}<text x="44" y="4">${escaped(label)}</text></g>`);
     return `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${this.width} ${high}" role="img" font-family="system-ui, sans-serif" font-size="12" fill="${ink()}"><title>${escaped(title)}</title>`
       + `<rect width="${this.width}" height="${high}" fill="${paper()}"/><clipPath id="c"><rect x="${this.left}" y="${this.top}" width="${this.width - this.left - this.right}" height="${this.height - this.top - this.bottom}"/></clipPath>`
       + `<g stroke="${faint()}" stroke-width="0.7" fill="none">${grid.join("")}</g><g clip-path="url(#c)" fill="none">${this.parts.join("")}</g>`

@@ -15,7 +15,7 @@ void main() {
   at = position; tint = colour; radius = half_.x;
   vec4 middle = modelViewMatrix * vec4(centre, 1.0);
   vec2 corner = position * half_;
-  if (kind == 1) corner = mat2(cos(angle), sin(angle), -sin(angle), cos(angle)) * corner;
+  if (kind == 1 || kind == 3) corner = mat2(cos(angle), sin(angle), -sin(angle), cos(angle)) * corner;
   middle.xy += corner;
   depth = middle.z;
   gl_Position = projectionMatrix * middle;
@@ -232,7 +232,7 @@ export class Viewer {
   private frame(width: number, height: number) {
     const { low, high, dimension } = this.picture!;
     const wide = dimension === 3 ? this.reach : high[0] - low[0], tall = dimension === 3 ? this.reach : high[1] - low[1];
-    const scale = Math.max(wide / width, tall / height) * 0.52;
+    const scale = Math.max(wide / width, tall / height) * (dimension === 3 ? 0.42 : 0.52);
     Object.assign(this.camera, { left: -scale * width, right: scale * width, top: scale * height, bottom: -scale * height,
       near: -4 * this.reach, far: 4 * this.reach });
     this.camera.updateProjectionMatrix();
