@@ -7,7 +7,6 @@
 #include <map>
 
 #include "rvelab/error.hpp"
-#include "rvelab/io/hdf5/seal.hpp"
 #include "rvelab/io/version.hpp"
 #include "rvelab/report/mpm_run.hpp"
 #include "rvelab/report/states.hpp"
@@ -94,8 +93,8 @@ Curves curves_of(const Test& test) {
   if (stage.kind == "envelope") return {{"sigma_xx", "sigma_yy"}, {"record", "q"}};
   if (cyclic) return {{"strain", shear}, {"p", shear}};
   const double volume = std::abs(1 - last.back().deformation_gradient.determinant());
-  if (volume < 1e-6 && test.protocol.name.find("undrained") != std::string::npos) return {{"strain", "q"}, {"p", "q"}};
-  return {{"strain", "q_over_p"}, {"strain", volume < 1e-6 ? "p" : "volumetric_strain"}};
+  if (volume < 1e-6) return {{"strain", "q_over_p"}, {"p", "q"}};
+  return {{"strain", "q_over_p"}, {"strain", "volumetric_strain"}};
 }
 
 Json run_of(const Test& test, std::size_t kind, std::size_t every) {
@@ -174,13 +173,21 @@ Page page_of(const std::vector<std::string>& inputs, const PageOptions& options)
   std::vector<std::string> order;
   double bytes = 0;
   for (const auto& [path, group] : found.records) {
-    Test test = read_test(path, group);
+    std::optional<Test> read = read_test(path, group);
+    if (!read) {
+      page.remarks.push_back("left out: " + path + " holds no record");
+      continue;
+    }
+    Test& test = *read;
     bytes += bytes_of_states(test);
     const std::string name = test.recorded.result.protocol + ", " + std::to_string(test.dimension) + "D";
     if (!tests.contains(name)) order.push_back(name);
     tests[name].push_back(std::move(test));
   }
   const auto every = std::max<std::size_t>(1, std::size_t(std::ceil(bytes / options.largest_states)));
+  if (order.empty() && found.runs.empty())
+    throw InputError(found.records.front().first + (found.records.size() > 1 ? " and the others hold" : ": holds") +
+                     " no record; give tests that have made one (a test of probes alone makes none)");
   if (every > 1)
     page.remarks.push_back("one of " + std::to_string(every) + " states that the tests kept is in the page, " +
                            in_three_digits(options.largest_states / 1e6) + " MB of states; --states-MB raises that");

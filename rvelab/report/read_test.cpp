@@ -1,7 +1,6 @@
 // A record file as a page needs it. Declared in test.hpp.
 #include <filesystem>
 
-#include "rvelab/error.hpp"
 #include "rvelab/protocol/stage_kinds.hpp"
 #include "rvelab/report/test.hpp"
 
@@ -31,15 +30,13 @@ double pressure_of(const Test& test) {
 
 }  // namespace
 
-Test read_test(const std::string& path, const std::string& group) {
+std::optional<Test> read_test(const std::string& path, const std::string& group) {
   Test test;
   test.path = path;
   test.file = std::filesystem::path(path).filename().string();
   test.group = group;
   test.recorded = io::read_recorded_test(path);
-  if (test.records().empty())
-    throw InputError(path +
-                     ": holds no record; give a test that has made one, or let it go on: rvelab run ... --resume");
+  if (test.records().empty()) return {};
   test.protocol = protocol::parse_protocol(test.recorded.provenance.protocol, path);
   test.dimension = test.recorded.checkpoint.specimen.cell.dimension;
   test.measured = ensemble::measured(test.protocol, test.recorded.result, test.dimension);

@@ -1,6 +1,7 @@
 // A recorded test as a page tells it, and the tests of one name together. Compression is positive in a page.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,8 +30,8 @@ struct Test {
   std::vector<Matrix3> deformation;
 };
 
-/// Reads it. InputError: no record file, or one without records.
-Test read_test(const std::string& path, const std::string& group);
+/// Reads it; nothing where no record was made, as by a test of probes alone. InputError: no record file.
+std::optional<Test> read_test(const std::string& path, const std::string& group);
 
 /// A quantity over the records of a test.
 struct Column {

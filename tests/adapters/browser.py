@@ -11,6 +11,10 @@ import subprocess
 import tempfile
 import time
 
+# A page with a slider and nothing else, beside which others are timed.
+EMPTY = ("<!DOCTYPE html><title>empty</title><input type='range' max='200' id='slider'><div id='stage'></div>"
+         "<script>slider.oninput = () => stage.dataset.record = slider.value</script>")
+
 
 class Browser:
     def __init__(self, program: str, downloads: str | None = None) -> None:
@@ -122,6 +126,17 @@ class Browser:
         size = self.call("Page.getLayoutMetrics")["cssContentSize"]
         clip = {"x": 0, "y": 0, "width": size["width"], "height": size["height"], "scale": 1}
         return self.call("Page.captureScreenshot", format="png", captureBeyondViewport=True, clip=clip)["data"]
+
+    def answers_to_drags(self) -> list:
+        """Milliseconds from each of 30 movements of the slider of a report with 200 states to the next picture."""
+        return self.value("""(async () => { const slider = document.getElementById('slider'), times = [];
+          const stage = document.getElementById('stage');
+          for (let k = 0; k < 30; ++k) { slider.value = 5 + 6 * k; const begin = performance.now();
+            slider.dispatchEvent(new Event('input'));
+            while (stage.dataset.record != slider.value) await new Promise(done => setTimeout(done, 0));
+            await new Promise(done => requestAnimationFrame(() => setTimeout(done, 0)));
+            times.push(performance.now() - begin); }
+          return times; })()""")
 
     def complaints(self) -> list:
         """Errors and warnings of the page's console."""

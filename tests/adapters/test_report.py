@@ -17,7 +17,7 @@ import unittest
 import xml.etree.ElementTree as xml
 from pathlib import Path
 
-from browser import Browser
+from browser import EMPTY, Browser
 
 folder = Path(sys.argv.pop(1)).resolve() if len(sys.argv) > 1 else Path(".").resolve()
 browser_program = os.environ.get("CHROMIUM") or shutil.which("chromium")
@@ -341,22 +341,13 @@ class Large(unittest.TestCase):
         run("run", "biaxial", "--specimen", "large.h5", "-o", "large_test.h5", "--set", "stage.compression.to_strain=0.02", "--set",
             "stage.compression.record_every=1e-4", "--set", "output.snapshots_every=1", "--set", "solver.relative_tolerance=0.1")
         self.assertGreaterEqual(json.loads(run("report", "large_test.h5", "-o", "large.html", "--json"))["states"], 200)
-        (folder / "empty.html").write_text("<!DOCTYPE html><title>empty</title><input type='range' max='200' id='slider'>"
-                                           "<div id='stage'></div><script>slider.oninput = () => stage.dataset.record = slider.value"
-                                           "</script>")
-        drag = """(async () => { const slider = document.getElementById('slider'), stage = document.getElementById('stage'), times = [];
-          for (let k = 0; k < 30; ++k) { slider.value = 5 + 6 * k; const begin = performance.now();
-            slider.dispatchEvent(new Event('input'));
-            while (stage.dataset.record != slider.value) await new Promise(done => setTimeout(done, 0));
-            await new Promise(done => requestAnimationFrame(() => setTimeout(done, 0)));
-            times.push(performance.now() - begin); }
-          return times; })()"""
+        (folder / "empty.html").write_text(EMPTY)
         with Browser(browser_program) as browser:
             browser.open((folder / "empty.html").as_uri())
             empty = [browser.open((folder / "empty.html").as_uri()) for _ in range(3)]
-            empty_drag = statistics.median(browser.value(drag))
+            empty_drag = statistics.median(browser.answers_to_drags())
             opened = [browser.open((folder / "large.html").as_uri(), ready=READY) for _ in range(3)]
-            answers = browser.value(drag)
+            answers = browser.answers_to_drags()
             self.assertEqual(browser.complaints() + browser.requests(), [])
         opening, answer = statistics.median(opened), statistics.median(answers)
         print(f"1,000 grains x 200 records: opened in {opening:.2f} s (empty page {statistics.median(empty):.2f} s); a drag is "

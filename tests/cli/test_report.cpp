@@ -106,5 +106,10 @@ TEST_CASE("report names what is missing: records, a folder") {
   expect_mistake(here.run("report records -o none/page.html"), "none");
   expect_mistake(here.run("report records/b.h5 -o records/b.h5 --force"), "records/b.h5");
   expect_mistake(here.run("report records -o page.html --states-MB 0"), "--states-MB");
+  REQUIRE(here.run("run probe --specimen S.h5 -o records/probe.h5").code == 0);
+  expect_mistake(here.run("report records/probe.h5 -o page.html"), "holds no record");
   CHECK(!std::filesystem::exists(here / "page.html"));
+  const Outcome rest = here.run("report records -o page.html");
+  CHECK(rest.code == 0);
+  CHECK_THAT(rest.errors, Contains("left out: records/probe.h5 holds no record"));
 }

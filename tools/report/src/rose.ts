@@ -38,7 +38,7 @@ export function rose(states: State[], title: string): { svg: string; csv: string
       text += `<circle cx="${cx}" cy="150" r="${(R * ring / top).toFixed(1)}" stroke="${faint()}" fill="none"/><text x="${cx + 3}" y="${(150 - R * ring / top - 2).toFixed(1)}" font-size="9" fill-opacity="0.75">${shown(ring)}</text>`;
     values.forEach((value, k) => { text += `<path d="M${cx} 150L${at(k * width, value)}L${at((k + 0.5) * width, value)}L${at((k + 1) * width, value)}Z" fill="${fill}" fill-opacity="0.45" stroke="${fill}" stroke-width="0.6"/>`; });
     if (fit) text += `<path d="M${Array.from({ length: 121 }, (_, k) => at((k * Math.PI) / 60, fit((k * Math.PI) / 60))).join("L")}Z" fill="none" stroke="${other.colour}" stroke-width="1.8" stroke-dasharray="6 3"/>`;
-    return text + `<text x="${cx + R + 8}" y="154">${axes[0]}</text><text x="${cx}" y="${150 - R - 8}" text-anchor="middle">${axes[1]}</text><text x="${cx}" y="292" text-anchor="middle">${label}</text>`;
+    return text + `<text x="${cx + R + 8}" y="154">${axes[0]}</text><text x="${cx}" y="${150 - R - 16}" text-anchor="middle">${axes[1]}</text><text x="${cx}" y="292" text-anchor="middle">${label}</text>`;
   };
   const fit = (angle: number) => (1 + a * Math.cos(2 * (angle - direction))) / (2 * Math.PI);
   const top = 1.1 * Math.max(...density, fit(direction)), topForce = 1.1 * Math.max(...mean);
