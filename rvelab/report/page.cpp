@@ -7,6 +7,7 @@
 #include <map>
 
 #include "rvelab/error.hpp"
+#include "rvelab/io/hdf5/file.hpp"
 #include "rvelab/io/version.hpp"
 #include "rvelab/report/mpm_run.hpp"
 #include "rvelab/report/states.hpp"
@@ -21,8 +22,12 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Inputs {
-  std::vector<std::pair<std::string, std::string>> records;  ///< path, group
-  std::vector<std::string> runs;                             ///< folders of rvelab-mpm
+  struct File {
+    std::string path, group;
+    bool named;  ///< by itself, not by its folder
+  };
+  std::vector<File> records;
+  std::vector<std::string> runs;  ///< folders of rvelab-mpm
 };
 
 std::string name_of(const fs::path& folder) {
@@ -38,7 +43,7 @@ Inputs sorted_inputs(const std::vector<std::string>& inputs) {
                        ": is not there; give record files that rvelab run -o or calibrate -o wrote, their folder, "
                        "or a folder of rvelab-mpm");
     if (!fs::is_directory(input)) {
-      found.records.emplace_back(input, name_of(fs::absolute(input).parent_path()));
+      found.records.push_back({input, name_of(fs::absolute(input).parent_path()), true});
       continue;
     }
     if (is_mpm_run(input)) {
@@ -53,9 +58,14 @@ Inputs sorted_inputs(const std::vector<std::string>& inputs) {
                        ": has no *.h5, nor history.csv and points_*.h5 of rvelab-mpm; give a folder that rvelab "
                        "run -o, calibrate -o or rvelab-mpm -o wrote");
     std::sort(here.begin(), here.end());
-    for (const std::string& path : here) found.records.emplace_back(path, name_of(input));
+    for (const std::string& path : here) found.records.push_back({path, name_of(input), false});
   }
   return found;
+}
+
+/// Whether a file holds a specimen alone, which may lie beside the records of a folder.
+bool is_specimen(const std::string& path) {
+  return fs::exists(path) && io::Hdf5File::open(path).attribute("format") == "rvelab specimen";
 }
 
 Json as_json(const std::vector<Column>& columns) {
@@ -162,7 +172,7 @@ void put(std::string& html, const std::string& mark, const std::string& text) {
 
 std::vector<std::string> files_of(const std::vector<std::string>& inputs) {
   std::vector<std::string> files;
-  for (const auto& [path, group] : sorted_inputs(inputs).records) files.push_back(path);
+  for (const Inputs::File& file : sorted_inputs(inputs).records) files.push_back(file.path);
   return files;
 }
 
@@ -172,7 +182,8 @@ Page page_of(const std::vector<std::string>& inputs, const PageOptions& options)
   std::map<std::string, std::vector<Test>> tests;
   std::vector<std::string> order;
   double bytes = 0;
-  for (const auto& [path, group] : found.records) {
+  for (const auto& [path, group, named] : found.records) {
+    if (!named && is_specimen(path)) continue;
     std::optional<Test> read = read_test(path, group);
     if (!read) {
       page.remarks.push_back("left out: " + path + " holds no record");
@@ -186,7 +197,7 @@ Page page_of(const std::vector<std::string>& inputs, const PageOptions& options)
   }
   const auto every = std::max<std::size_t>(1, std::size_t(std::ceil(bytes / options.largest_states)));
   if (order.empty() && found.runs.empty())
-    throw InputError(found.records.front().first + (found.records.size() > 1 ? " and the others hold" : ": holds") +
+    throw InputError(found.records.front().path + (found.records.size() > 1 ? " and the others hold" : ": holds") +
                      " no record; give tests that have made one (a test of probes alone makes none)");
   if (every > 1)
     page.remarks.push_back("one of " + std::to_string(every) + " states that the tests kept is in the page, " +

@@ -17,14 +17,15 @@ EMPTY = ("<!DOCTYPE html><title>empty</title><input type='range' max='200' id='s
 
 
 class Browser:
-    def __init__(self, program: str, downloads: str | None = None) -> None:
+    def __init__(self, program: str, downloads: str | None = None, webgl: bool = True) -> None:
         self._profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
         to_child, self._write = os.pipe()
         self._read, from_child = os.pipe()
         for descriptor in (to_child, from_child):
             os.set_inheritable(descriptor, True)
         words = [program, "--headless", "--no-sandbox", "--disable-dev-shm-usage", "--remote-debugging-pipe", "--no-first-run",
-                 "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking",
+                 *(("--use-angle=swiftshader", "--enable-unsafe-swiftshader") if webgl else ("--disable-gpu", "--disable-3d-apis")),
+                 "--disable-background-networking",
                  f"--user-data-dir={self._profile.name}", "about:blank"]
         # The browser reads commands at descriptor 3 and answers at 4.
         self._process = subprocess.Popen(["sh", "-c", f'exec "$@" 3<&{to_child} 4>&{from_child}', "sh", *words],

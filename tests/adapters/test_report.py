@@ -333,6 +333,19 @@ class Phone(Page):
         self.assertEqual(small, 0)
 
 
+class WithoutWebgl(unittest.TestCase):
+    def test_a_browser_without_webgl_shows_the_specimen_as_svg(self) -> None:
+        with Browser(browser_program, webgl=False) as browser:
+            browser.open((folder / "space.html").as_uri(), ready=READY)
+            circle = "document.querySelector('#stage circle')"
+            self.assertEqual(browser.value("document.querySelectorAll('#stage circle').length"), 100)
+            before = browser.value(f"{circle}.outerHTML")
+            browser.value("document.getElementById('slider').focus()")
+            browser.press("ArrowLeft")
+            browser.wait(f"{circle}.outerHTML != {json.dumps(before)}")
+            self.assertEqual(browser.requests(), [])
+
+
 class Large(unittest.TestCase):
     """1,000 grains and 200 records with a state each, beside an empty page: machines differ."""
 

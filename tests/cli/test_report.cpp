@@ -112,4 +112,9 @@ TEST_CASE("report names what is missing: records, a folder") {
   const Outcome rest = here.run("report records -o page.html");
   CHECK(rest.code == 0);
   CHECK_THAT(rest.errors, Contains("left out: records/probe.h5 holds no record"));
+  // A specimen beside the records of a folder is none of them.
+  std::filesystem::copy(here / "S.h5", here / "records/S.h5");
+  const Outcome beside = here.run("report records -o page.html --force");
+  CHECK(beside.code == 0);
+  CHECK_THAT(beside.output, Contains("2 tests, "));
 }

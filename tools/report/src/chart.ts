@@ -12,8 +12,6 @@ export interface Picked { line: Line; point: number }
 const bars = 8;      // error bars of a mean
 const marks = 5;     // symbols of a line
 
-const finite = (values: number[]) => values.filter(Number.isFinite);
-
 /** Places along a line, evenly. */
 const places = (line: Line, count: number) =>
   Array.from({ length: Math.min(count, line.x.length) }, (_, k) => Math.round(((k + 0.5) / count) * (line.x.length - 1)));
@@ -98,23 +96,23 @@ export class Chart {
   /** Smallest and largest value with a margin; on a log axis of the positive ones. */
   private range(axis: "x" | "y"): [number, number] {
     const log = this.logs[axis].checked;
-    let values: number[] = [];
-    for (const line of this.lines) {
-      values.push(...finite(line[axis]));
-      if (axis === "x") continue;
-      for (const band of [line.scatter, line.deviation, this.shown.estimate && !log ? line.error : undefined])
-        band?.forEach((value, k) => Number.isFinite(value) && Number.isFinite(line.y[k])
-          && values.push(line.y[k] - value, line.y[k] + value));
+    // No spreading into calls: a test may have more records than a call takes arguments.
+    const reach = { low: Infinity, high: -Infinity };
+    const take = (value: number) => {
+      if (!Number.isFinite(value) || (log && value <= 0)) return;
+      reach.low = Math.min(reach.low, value);
+      reach.high = Math.max(reach.high, value);
+    };
+    for (const line of this.lines) line[axis].forEach(take);
+    if (reach.low > reach.high) return log ? [0.1, 1] : [0, 1];
+    if (axis === "y") {
+      // An estimate that is many times the values must not make them a flat line.
+      const by = 0.5 * (reach.high - reach.low || Math.abs(reach.high) || 1), least = reach.low - by, most = reach.high + by;
+      for (const line of this.lines)
+        for (const band of [line.scatter, line.deviation, this.shown.estimate && !log ? line.error : undefined])
+          band?.forEach((value, k) => [line.y[k] - value, line.y[k] + value].forEach((end) => { if (end >= least && end <= most) take(end); }));
     }
-    // An estimate that is many times the values must not make them a flat line.
-    if (axis === "y" && values.length) {
-      const own = this.lines.flatMap((line) => finite(line.y)), low = Math.min(...own), high = Math.max(...own);
-      const reach = high - low || Math.abs(high) || 1;
-      values = values.filter((value) => value >= low - 0.5 * reach && value <= high + 0.5 * reach);
-    }
-    if (log) values = values.filter((value) => value > 0);
-    if (!values.length) return log ? [0.1, 1] : [0, 1];
-    let low = values.reduce((a, b) => Math.min(a, b)), high = values.reduce((a, b) => Math.max(a, b));
+    let { low, high } = reach;
     if (log) return low < high ? [low / 1.05, high * 1.05] : [low / 2, high * 2];
     if (low === high) { const by = Math.abs(low) || 1; low -= by / 2; high += by / 2; }
     const margin = (axis === "x" ? 0.02 : 0.05) * (high - low);
