@@ -7,7 +7,7 @@
 #include <map>
 
 #include "rvelab/error.hpp"
-#include "rvelab/io/hdf5/file.hpp"
+#include "rvelab/io/hdf5/specimen_file.hpp"
 #include "rvelab/io/version.hpp"
 #include "rvelab/report/mpm_run.hpp"
 #include "rvelab/report/states.hpp"
@@ -65,7 +65,7 @@ Inputs sorted_inputs(const std::vector<std::string>& inputs) {
 
 /// Whether a file holds a specimen alone, which may lie beside the records of a folder.
 bool is_specimen(const std::string& path) {
-  return fs::exists(path) && io::Hdf5File::open(path).attribute("format") == "rvelab specimen";
+  return fs::exists(path) && io::file_kind(path) == io::FileKind::specimen;
 }
 
 Json as_json(const std::vector<Column>& columns) {

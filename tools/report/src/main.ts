@@ -77,6 +77,7 @@ function tableOf(rows: Table): HTMLElement {
     if (k === 0 && row.every((cell) => !cell)) return;
     const line = table.insertRow();
     row.forEach((cell, column) => {
+      if (rows.length > 1 && rows.slice(1).every((other) => !other[column])) return;  // says nothing
       const place = document.createElement(k === 0 || (column === 0 && rows[0].every((head) => !head)) ? "th" : "td");
       place.textContent = cell;
       line.append(place);
