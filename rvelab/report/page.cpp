@@ -64,9 +64,7 @@ Inputs sorted_inputs(const std::vector<std::string>& inputs) {
 }
 
 /// Whether a file holds a specimen alone, which may lie beside the records of a folder.
-bool is_specimen(const std::string& path) {
-  return fs::exists(path) && io::file_kind(path) == io::FileKind::specimen;
-}
+bool is_specimen(const std::string& path) { return fs::exists(path) && io::file_kind(path) == io::FileKind::specimen; }
 
 Json as_json(const std::vector<Column>& columns) {
   Json list = Json::array();
