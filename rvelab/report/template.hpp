@@ -1,0 +1,10 @@
+// tools/report/page.html, as it stands in this program.
+#pragma once
+
+#include <string_view>
+
+namespace rvelab::report {
+
+std::string_view page_template();
+
+}  // namespace rvelab::report
