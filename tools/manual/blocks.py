@@ -13,7 +13,7 @@ from pathlib import Path
 
 from pages import ROOT, Block, PageError, blocks_of, name_of, pages
 
-SECONDS = 120  # of a page
+SECONDS = 240  # of a page, on a machine with other work
 
 
 def checkout(folder: Path, build: Path) -> Path:
@@ -28,19 +28,27 @@ def checkout(folder: Path, build: Path) -> Path:
 
 def environment(folder: Path) -> dict[str, str]:
     return {**os.environ, "PATH": f"{folder}/build/release/bin:{os.environ['PATH']}",
-            "PYTHONPATH": f"{folder}/tools/python", "PYTHONDONTWRITEBYTECODE": "1", "MPLBACKEND": "Agg", "LC_ALL": "C.UTF-8"}
+            "PYTHONPATH": f"{folder}/tools/python", "PYTHONPYCACHEPREFIX": f"{folder}/build/pycache", "MPLBACKEND": "Agg", "LC_ALL": "C.UTF-8"}
 
 
 def outputs_of(page: Path, kept: Path) -> list[str]:
     """What each block of a page printed, empty where it did not run."""
-    return json.loads((kept / f"{page.stem}.json").read_text())
+    file = kept / f"{page.stem}.json"
+    if not file.exists():
+        raise PageError(f"{name_of(page)}: its blocks have not run to the end; run them first (without --only site)")
+    return json.loads(file.read_text())
 
 
-def _script(page: Path, found: list[Block], scratch: Path) -> str:
+def lacks(block: Block, folder: Path) -> bool:
+    """Whether the build is without a program that the block needs."""
+    return block.needs is not None and not (folder / "build/release/bin" / block.needs).exists()
+
+
+def _script(page: Path, found: list[Block], scratch: Path, folder: Path) -> str:
     """One shell for the whole page, so that what a block exports holds for the next."""
     lines = ["set -euo pipefail"]
     for number, block in enumerate(found):
-        if block.not_run or block.kind in ("text", "output"):
+        if block.not_run or block.kind in ("text", "output") or lacks(block, folder):
             continue
         source = scratch / f"{page.stem}_{number}"
         source.write_text(block.text)
@@ -60,7 +68,7 @@ def _script(page: Path, found: list[Block], scratch: Path) -> str:
     return "\n".join(lines) + "\n"
 
 
-def run_page(page: Path, folder: Path, kept: Path, seconds: float = SECONDS) -> float:
+def run_page(page: Path, folder: Path, kept: Path, seconds: float = SECONDS, tell=print) -> float:
     """Runs the blocks of one page, in order, in `folder`; what they printed goes to `kept`. PageError at the first that
     fails, with its place and what it printed. Returns the seconds it took."""
     found = blocks_of(page)
@@ -69,7 +77,7 @@ def run_page(page: Path, folder: Path, kept: Path, seconds: float = SECONDS) -> 
     (scratch / "at").write_text("-1")
     begin = time.monotonic()
     # A group of its own: what a block has left running ends with the page.
-    process = subprocess.Popen(["bash", "-c", _script(page, found, scratch)], cwd=folder, env=environment(folder),
+    process = subprocess.Popen(["bash", "-c", _script(page, found, scratch, folder)], cwd=folder, env=environment(folder),
                                start_new_session=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     late = False
     try:
@@ -79,9 +87,13 @@ def run_page(page: Path, folder: Path, kept: Path, seconds: float = SECONDS) -> 
         os.killpg(process.pid, signal.SIGKILL)
         said, _ = process.communicate()
     printed = []
-    for number, _block in enumerate(found):
+    for number in range(len(found)):
         out = scratch / f"{page.stem}_{number}.out"
-        printed.append(out.read_text(errors="replace") if out.exists() else "")
+        if lacks(found[number], folder):
+            tell(f"  left out: {found[number].place} needs {found[number].needs}, which this build lacks")
+            printed.append(f"({found[number].needs} was not built)\n")
+        else:
+            printed.append(out.read_text(errors="replace") if out.exists() else "")
     if process.returncode != 0:
         block = found[int((scratch / "at").read_text())]
         tail = (printed[found.index(block)] + said).strip().splitlines()[-15:]

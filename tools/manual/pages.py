@@ -9,7 +9,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PAGES = Path(__file__).resolve().parent / "pages"
 
 FENCE = re.compile(r"^(?P<indent> *)```(?P<kind>[a-z0-9+]*) *$")
-MARKER = re.compile(r"^ *<!-- (?P<what>not run|file|fails): (?P<value>.*\S) -->$")
+MARKER = re.compile(r"^ *<!-- (?P<what>not run|needs|file|fails): (?P<value>.*\S) -->$")
 RUN = {"bash", "python"}
 WRITTEN = {"c", "fortran", "toml", "cmake", "xml", "json", "ini"}
 SHOWN = {"text", "output"}
@@ -28,6 +28,7 @@ class Block:
     kind: str
     text: str
     not_run: str | None = None
+    needs: str | None = None  # a program without which the block is left out
     file: str | None = None
     fails: int = 0
 
@@ -63,15 +64,24 @@ def blocks_of(page: Path) -> list[Block]:
             what, value = marker["what"], marker["value"]
             if what == "not run":
                 block.not_run = value
+            elif what == "needs":
+                block.needs = value
             elif what == "file":
                 block.file = value
             elif not value.isdigit() or int(value) == 0:
                 raise PageError(f"{name_of(page)}:{at}: fails: {value} is no exit code; write a number above 0")
             else:
                 block.fails = int(value)
+        elif at and lines[at - 1].lstrip().startswith("<!--"):
+            raise PageError(f"{name_of(page)}:{at}: {lines[at - 1].strip()} is no marker; write <!-- not run: why -->, "
+                            "<!-- file: NAME -->, <!-- needs: PROGRAM --> or <!-- fails: N -->")
         _check(block, found)
         found.append(block)
         at = end + 1
+    for number, block in enumerate(found):
+        later = "".join(each.text for each in found[number + 1 :] if each.kind in RUN and not each.not_run)
+        if block.file and block.file.rsplit("/", 1)[-1] not in later:
+            raise PageError(f"{block.place}: {block.file} is a file that no block uses; add the command that does")
     return found
 
 

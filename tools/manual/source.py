@@ -107,6 +107,8 @@ class Source:
         name = site_name(path)
         depth = name.count("/")
         lines, out, at = read(path), [], 0
+        if not any(line.startswith("# ") for line in lines):
+            out += [f"# {name_of(path)}", ""]
         found = {block.line: (number, block) for number, block in enumerate(blocks_of(path))} if printed is not None else {}
         caption = None
         while at < len(lines):
