@@ -125,11 +125,12 @@ def _pieces(text: str):
         yield ("comment" if piece.startswith("/*") else "code"), piece, text[match.end():match.end() + 2]
 
 
-def c_api_page(header: Path) -> str:
+def c_api_page(header: Path, link) -> str:
     text = header.read_text(encoding="utf-8")
     out = ["# The C interface", "",
-           f"Made from [rvelab.h](../include/rvelab/rvelab.h), version {'.'.join(re.findall(r'RVELAB_ABI_M..OR (.)', text))}. "
-           "How a host uses it: [As a material, in C](host_c.md). Ranks of MPI: [rvelab_mpi.h](../include/rvelab/rvelab_mpi.h).", ""]
+           f"Made from {link(header)}, version {'.'.join(re.findall(r'RVELAB_ABI_M..OR (.)', text))}. "
+           "How a host uses it: [In C and C++](host_c.md). " + (
+               f"Ranks of MPI: {link(ranks)}." if (ranks := header.with_name("rvelab_mpi.h")).exists() else ""), ""]
     waiting: list[str] = []  # prose above a declaration
     defines: list[str] = []
     first = True
@@ -188,7 +189,8 @@ def c_api_page(header: Path) -> str:
     return "\n".join(out) + "\n"
 
 
-def write(build: Path, folder: Path) -> None:
+def write(build: Path, folder: Path, link) -> None:
+    """`link`: a file of the tree as a link of the site."""
     (folder / "keys.md").write_text(keys_page(build / "bin" / "rvelab"), encoding="utf-8")
     (folder / "commands.md").write_text(commands_page(build / "bin"), encoding="utf-8")
-    (folder / "c_api.md").write_text(c_api_page(ROOT / "include" / "rvelab" / "rvelab.h"), encoding="utf-8")
+    (folder / "c_api.md").write_text(c_api_page(ROOT / "include" / "rvelab" / "rvelab.h", link), encoding="utf-8")

@@ -49,19 +49,23 @@ class Source:
             shutil.rmtree(each, ignore_errors=True)
             each.mkdir(parents=True)
         self.errors: list[str] = []
-        self.seen: set[str] = set()  # files copied so far, by their name in the site
+        self.seen: set[Path] = set()  # files copied so far
 
     # ---- links ----
 
     def _file(self, path: Path, into: Path) -> str:
         """Copies a file of the tree beside the pages, once."""
         name = "/".join(path.relative_to(ROOT).parts)
-        if name not in self.seen:
-            self.seen.add(name)
-            target = into / name
+        target = into / name
+        if target not in self.seen:
+            self.seen.add(target)
             target.parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(path, target)
         return name
+
+    def link_to(self, path: Path) -> str:
+        """A link from a page of the first level to a file of the tree."""
+        return f'<a href="files/{html.escape(self._file(path, self.extra / "files"))}">{path.name}</a>'
 
     def _link(self, match: re.Match, page: Path, line: int, depth: int, drawn: Path | None) -> str:
         target, text = match["target"], match["text"]
@@ -94,11 +98,17 @@ class Source:
             return f"[{text}]({up}{site_name(path)}.md{'#' + anchor if anchor else ''})"
         return f'<a href="{up}files/{html.escape(self._file(path, self.extra / "files"))}">{text}</a>'
 
-    def _links(self, text: str, page: Path, line: int, depth: int, drawn: Path | None) -> str:
-        """Links outside of code spans."""
+    def _links(self, lines: list[str], page: Path, first: int, depth: int, drawn: Path | None) -> list[str]:
+        """Links outside of code spans, in lines that follow each other; a link may go over the end of a line."""
+        text = "\n".join(lines)
         spans = [match.span() for match in CODE.finditer(text)]
-        inside = lambda at: any(begin < at < end for begin, end in spans)
-        return LINK.sub(lambda m: m[0] if inside(m.start()) else self._link(m, page, line, depth, drawn), text)
+
+        def replaced(match: re.Match) -> str:
+            if any(begin < match.start() < end for begin, end in spans):
+                return match[0]
+            return self._link(match, page, first + text.count("\n", 0, match.start()), depth, drawn)
+
+        return LINK.sub(replaced, text).split("\n")
 
     # ---- pages ----
 
@@ -137,10 +147,11 @@ class Source:
                 out += ["", *(body if opening["kind"] != "output" else [indent + each for each in body]), f"{indent}````"]
                 caption, at = None, end + 1
                 continue
-            # a block of indented code holds no links
-            code = line.startswith("    ") and not line.lstrip().startswith(("-", "*", "|", "1.")) and not drawn
-            out.append(line if code else self._links(line, path, at + 1, depth, drawn))
-            at += 1
+            run = [line]
+            while at + len(run) < len(lines) and not MARKER.match(lines[at + len(run)]) and not FENCE.match(lines[at + len(run)]):
+                run.append(lines[at + len(run)])
+            out += self._links(run, path, at + 1, depth, drawn)
+            at += len(run)
         target = self.folder / f"{name}.md"
         target.parent.mkdir(parents=True, exist_ok=True)
         target.write_text("\n".join(out) + "\n", encoding="utf-8")
