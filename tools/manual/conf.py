@@ -20,5 +20,5 @@ html_css_files = ["style.css"]
 html_copy_source = False
 html_show_sourcelink = False
 html_last_updated_fmt = None
-# The tables of README files are wide; a word of one file is no reason to leave a figure out.
-nitpicky = True
+smartquotes = False  # "quasi_static" is a value with its quotation marks
+nitpicky = True  # a reference without a target is a warning

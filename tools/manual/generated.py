@@ -60,7 +60,7 @@ def keys_page(program: Path) -> str:
             if key["usual"]:
                 facts.append(f"usual: {key['usual']}")
             facts.append("required" if key["required"] else f"default {key['default']}" if key["default"] else "no default")
-            out += [f"`{key['key']}`", f": {plain('; '.join(facts))}", "", f"  {plain(key['meaning'])}", ""]
+            out += [f"`{key['key']}`", f": {plain(key['meaning'])}", "", f"  *{plain('; '.join(facts))}*", ""]
     return "\n".join(out)
 
 
@@ -108,7 +108,9 @@ def _prose(comment: str) -> list[str]:
     out = []
     for paragraph in _text(comment):
         if re.search(r"^\w+ {3,}\S", paragraph, re.M):
-            out += ["````text", paragraph, "````", ""]
+            for entry in re.split(r"\n(?=\w+ {2,}\S)", paragraph):  # lined up like a table: name, what it is
+                name, _, rest = entry.partition(" ")
+                out += [f"`{name}`", f": {plain(' '.join(rest.split()))}", ""]
         else:
             out += [plain(" ".join(line.strip() for line in paragraph.splitlines())), ""]
     return out
