@@ -27,9 +27,11 @@ def checkout(folder: Path, build: Path) -> Path:
 
 
 def environment(folder: Path) -> dict[str, str]:
+    # RVELAB_LIBRARY, RVELAB_PROGRAM: the package looks for build/release, and this build may have another name.
     return {**os.environ, "PATH": f"{folder}/build/release/bin:{os.environ['PATH']}",
             "PYTHONPATH": f"{folder}/tools/python", "RVELAB_PROGRAM": f"{folder}/build/release/bin/rvelab",
-            "RVELAB_LIBRARY": f"{folder}/build/release/lib/librvelab.so.1",  # also of a build with another name "PYTHONDONTWRITEBYTECODE": "1", "MPLBACKEND": "Agg", "LC_ALL": "C.UTF-8"}
+            "RVELAB_LIBRARY": f"{folder}/build/release/lib/librvelab.so.1", "PYTHONDONTWRITEBYTECODE": "1",
+            "MPLBACKEND": "Agg", "LC_ALL": "C.UTF-8"}
 
 
 def outputs_of(page: Path, kept: Path) -> list[str]:
