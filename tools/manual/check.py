@@ -93,6 +93,9 @@ def missing_entries(site: Path, build: Path) -> list[str]:
 
 def main(site: Path, build: Path) -> None:
     errors = dead_links(site) + missing_entries(site, build)
+    for path in site.rglob("*.html"):
+        if str(build) in path.read_text(encoding="utf-8"):
+            errors.append(f"{path.relative_to(site)}: names a folder of this machine, {build}")
     if not (site / "searchindex.js").is_file():
         errors.append("searchindex.js is missing: the site has no search")
     if errors:

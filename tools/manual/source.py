@@ -43,7 +43,9 @@ def site_name(path: Path) -> str:
 class Source:
     """The folder that Sphinx reads: `folder`; files beside the pages: `extra`."""
 
-    def __init__(self, work: Path) -> None:
+    def __init__(self, work: Path, build: Path) -> None:
+        # Paths of this machine in what programs print, and what they are for a reader.
+        self.places = {str(build): "build/release", str(work / "run") + "/": "", str(ROOT) + "/": ""}
         self.work, self.folder, self.extra = work, work / "source", work / "extra"
         for each in (self.folder, self.extra):
             shutil.rmtree(each, ignore_errors=True)
@@ -137,7 +139,8 @@ class Source:
                     if block.kind == "output":
                         all_blocks = [each for _, each in found.values()]
                         body = blocks.selected(block, blocks.printed_before(all_blocks, printed, number)).splitlines()
-                        body = [each.replace(str(self.work.resolve()), "/path/to/rvelab") for each in body]
+                        for there, shown in self.places.items():
+                            body = [each.replace(there, shown) for each in body]
                 indent, kind = opening["indent"], {"output": "text", "": "text"}.get(opening["kind"], opening["kind"])
                 out.append(f"{indent}````{{code-block}} {kind}")
                 if caption:
