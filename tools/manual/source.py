@@ -22,10 +22,13 @@ GENERATED = ("keys.md", "commands.md", "c_api.md")
 
 def tracked() -> list[Path]:
     """Markdown of the tree beside the pages: what git knows, or where there is no git what is there."""
-    listed = subprocess.run(["git", "-C", str(ROOT), "ls-files", "-co", "--exclude-standard", "*.md"], capture_output=True,
-                            text=True)
-    if listed.returncode == 0:
-        found = [ROOT / line for line in listed.stdout.splitlines()]
+    def git(*words: str) -> str:
+        done = subprocess.run(["git", "-C", str(ROOT), *words], capture_output=True, text=True)
+        return done.stdout if done.returncode == 0 else ""
+
+    top = git("rev-parse", "--show-toplevel").strip()  # a tree that was unpacked into the checkout of another has none
+    if top and Path(top).resolve() == ROOT:
+        found = [ROOT / line for line in git("ls-files", "-co", "--exclude-standard", "*.md").splitlines()]
     else:
         found = [path for path in ROOT.rglob("*.md") if "build" not in path.relative_to(ROOT).parts]
     return sorted(path for path in found if path.exists() and path.parent != PAGES)
