@@ -87,11 +87,12 @@ TEST_CASE("Installed and moved, the library is found by cmake and by pkg-config,
   // The example of README.md, as it stands there.
   std::istringstream readme(bytes_of(RVELAB_SOURCE_DIR "/README.md"));
   std::ofstream example(folder / "pkg/readme.c");
-  bool below = false;
+  bool inside = false;
   for (std::string line; std::getline(readme, line);) {
-    if (line.starts_with("#") && !line.starts_with("    "))
-      below = line == "## As the material of a continuum code: in C";
-    if (below && line.starts_with("    ")) example << line.substr(4) << "\n";
+    if (line.starts_with("```"))
+      inside = line == "```c";
+    else if (inside)
+      example << line << "\n";
   }
   example.close();
   std::filesystem::copy_file(folder / "s.h5", folder / "pkg/S.h5");

@@ -266,8 +266,8 @@ TEST_CASE("a place that cannot be written to is refused with its name") {
   CHECK_THAT(input_error([&] { io::Journal(folder / "missing/j"); }), Contains("No such file"));
 }
 
-TEST_CASE("the README lists the types of frames and the columns of a record") {
-  const std::string readme = bytes_of(std::string(RVELAB_SOURCE_DIR) + "/rvelab/io/README.md");
+TEST_CASE("the manual lists the types of frames and the columns of a record") {
+  const std::string readme = bytes_of(std::string(RVELAB_SOURCE_DIR) + "/tools/manual/pages/file_format.md");
   const std::vector<std::pair<const char*, std::uint32_t>> types{{"begin_frame", io::begin_frame},
                                                                  {"record_frame", io::record_frame},
                                                                  {"probe_frame", io::probe_frame},

@@ -63,7 +63,7 @@ TEST_CASE("provenance names the version and the compiler, and neither a date nor
 
 namespace {
 
-/// Rows of the README's tables that begin with a name like `wanted`: cells by name.
+/// Rows of the manual's tables that begin with a name like `wanted`: cells by name.
 std::map<std::string, std::vector<std::string>> documented(const std::string& readme, const std::string& first) {
   std::map<std::string, std::vector<std::string>> rows;
   std::istringstream text(readme);
@@ -80,7 +80,7 @@ std::map<std::string, std::vector<std::string>> documented(const std::string& re
   return rows;
 }
 
-/// Extents as the README writes them: numbers, and a letter for each that varies. The letters stand for different
+/// Extents as the manual writes them: numbers, and a letter for each that varies. The letters stand for different
 /// numbers here, so that one for the other is noticed.
 std::string in_readme(const io::Shape64& shape) {
   const std::map<std::uint64_t, std::string> letters{{17, "n"}, {31, "c"}, {23, "r"}, {2, "s"},
@@ -95,7 +95,7 @@ std::string in_readme(const io::Shape64& shape) {
 
 }  // namespace
 
-TEST_CASE("the README lists exactly the datasets of a file, with their types, shapes and units") {
+TEST_CASE("the manual lists exactly the datasets of a file, with their types, shapes and units") {
   const Folder folder;
   io::write_specimen(random_bits(8), folder / "s.h5");
   // The end state of another file stands for a snapshot.
@@ -108,7 +108,7 @@ TEST_CASE("the README lists exactly the datasets of a file, with their types, sh
   journal.begin();
   test.snapshots = {{12, folder / "snapshots", journal.append(io::snapshot_frame, snapshot), snapshot.size()}};
   io::write_recorded_test(test, folder / "r.h5");
-  const std::string readme = bytes_of(std::string(RVELAB_SOURCE_DIR) + "/rvelab/io/README.md");
+  const std::string readme = bytes_of(std::string(RVELAB_SOURCE_DIR) + "/tools/manual/pages/file_format.md");
   auto rows = documented(readme, "/");
   REQUIRE(rows.size() > 60);
 

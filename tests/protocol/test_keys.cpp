@@ -1,4 +1,4 @@
-// One table of keys: what is in it is read, what is read is in it, and the README says the same.
+// One table of keys: what is in it is read, what is read is in it.
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -256,21 +256,4 @@ TEST_CASE("a key in another unit of its quantity is answered with the right key 
   // Another quantity is no unit of this one.
   CHECK_THAT(answer("test.pressure_mm=1"),
              Contains("unknown key test.pressure_mm; the nearest known key is test.pressure_Pa"));
-}
-
-TEST_CASE("the README lists every key as the table has it") {
-  std::ifstream readme(RVELAB_SOURCE_DIR "/protocols/README.md");
-  std::map<std::string, std::string> rows;
-  bool below = false;
-  for (std::string line; std::getline(readme, line);) {
-    below = below || line == "## Every key";
-    if (!below || !line.starts_with("| ") || line.starts_with("| ---") || line.starts_with("| key ")) continue;
-    CHECK(rows.emplace(line.substr(2, line.find(' ', 2) - 2), line).second);
-  }
-  for (const keys::Key& key : protocol::all_keys()) {
-    const std::string initial = key.required ? " required " : key.initial.empty() ? " " : " " + key.initial + " ";
-    CHECK(rows[key.dotted()] == "| " + key.dotted() + " | " + key.unit + " | " + key.type + " |" + initial + "| " +
-                                    key.range + " | " + key.meaning + " |");
-  }
-  CHECK(rows.size() == protocol::all_keys().size());
 }

@@ -91,8 +91,8 @@ TEST_CASE("quantities keep the bits that journals of earlier versions name them 
   CHECK(asked<KineticEnergy> == 2048);
 }
 
-TEST_CASE("the README of the files has each quantity as the table has it") {
-  std::ifstream readme(RVELAB_SOURCE_DIR "/rvelab/io/README.md");
+TEST_CASE("the manual's file format has each quantity as the table has it") {
+  std::ifstream readme(RVELAB_SOURCE_DIR "/tools/manual/pages/file_format.md");
   std::set<std::string> lines;
   for (std::string line; std::getline(readme, line);) lines.insert(line);
   for (const QuantityRow& row : quantity_rows) {
