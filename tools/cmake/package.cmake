@@ -78,6 +78,16 @@ if(NOT CMAKE_CROSSCOMPILING)
   endforeach()
   add_custom_command(OUTPUT ${manual_pages} DEPENDS ${documented} tools/cmake/manual
                      COMMAND ${PROJECT_SOURCE_DIR}/tools/cmake/manual ${manual} ${documented_files} VERBATIM)
+  # Pages of the manual that the programs and the header write themselves, where there is a python3.
+  find_program(RVELAB_PYTHON3 python3)
+  if(RVELAB_PYTHON3)
+    set(written ${manual}/keys.md ${manual}/commands.md ${manual}/c_api.md)
+    add_custom_command(OUTPUT ${written} DEPENDS ${documented} tools/manual/generated.py include/rvelab/rvelab.h
+                       COMMAND ${RVELAB_PYTHON3} -B ${PROJECT_SOURCE_DIR}/tools/manual/generated.py ${PROJECT_BINARY_DIR}
+                               ${manual} VERBATIM)
+    install(FILES ${written} DESTINATION ${CMAKE_INSTALL_DOCDIR}/tools/manual/pages COMPONENT program)
+    list(APPEND manual_pages ${written})
+  endif()
   add_custom_target(rvelab_manual ALL DEPENDS ${manual_pages})
 endif()
 if(TARGET rvelab-mpm-mpi)
@@ -97,7 +107,7 @@ add_custom_target(rvelab_packaged DEPENDS ${packaged})
 # What to read: README.md and those that it leads to, in the folders that their links name; licences, also of what is
 # compiled in; examples and notebooks.
 file(GLOB_RECURSE readmes RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS include/*README.md rvelab/*README.md
-     protocols/*README.md tests/*README.md tools/*README.md tools/bench/*.md)
+     protocols/*README.md tests/*README.md tools/*README.md tools/bench/*.md tools/manual/pages/*.md)
 foreach(readme IN LISTS readmes ITEMS README.md CHANGELOG.md CITATION.cff)
   get_filename_component(place ${readme} DIRECTORY)
   install(FILES ${PROJECT_SOURCE_DIR}/${readme} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${place} COMPONENT program)

@@ -4,6 +4,7 @@ from __future__ import annotations
 import json
 import re
 import subprocess
+import sys
 from pathlib import Path
 
 from pages import ROOT, PageError
@@ -43,7 +44,7 @@ def heading(table: str, kinds: set[str]) -> str:
     return TABLES.get(table, f"[{table}]")
 
 
-def keys_page(program: Path) -> str:
+def keys_page(program: Path, scene_keys: str) -> str:
     keys = json.loads(_said(program, "keys", "--json"))["keys"]
     tables: dict[str, list[dict]] = {}
     for key in keys:
@@ -52,7 +53,7 @@ def keys_page(program: Path) -> str:
            f"The {len(keys)} keys of protocols, recipes and material files, as `rvelab keys` prints them; `rvelab keys WORD` prints "
            "those with WORD in their name. A default in brackets is computed. "
            "Defaults of contact, damping, solver and material are those of a new specimen: in a test, what is not set stays as the "
-           "specimen has it. Scenes of rvelab-mpm have [keys of their own](tree/tools_mpm_scene.md).", ""]
+           f"specimen has it. Scenes of rvelab-mpm have [keys of their own]({scene_keys}).", ""]
     for table, members in tables.items():
         out += [f"## {plain(heading(table, set(tables)))}", ""]
         for key in members:
@@ -191,8 +192,12 @@ def c_api_page(header: Path, link) -> str:
     return "\n".join(out) + "\n"
 
 
-def write(build: Path, folder: Path, link) -> None:
-    """`link`: a file of the tree as a link of the site."""
-    (folder / "keys.md").write_text(keys_page(build / "bin" / "rvelab"), encoding="utf-8")
+def write(build: Path, folder: Path, link, scene_keys: str = "tree/tools_mpm_scene.md") -> None:
+    """`link`: a file of the tree as a link of the site. `scene_keys`: where the keys of scenes stand."""
+    (folder / "keys.md").write_text(keys_page(build / "bin" / "rvelab", scene_keys), encoding="utf-8")
     (folder / "commands.md").write_text(commands_page(build / "bin"), encoding="utf-8")
     (folder / "c_api.md").write_text(c_api_page(ROOT / "include" / "rvelab" / "rvelab.h", link), encoding="utf-8")
+
+
+if __name__ == "__main__":  # generated.py BUILD FOLDER: the pages beside an installation's
+    write(Path(sys.argv[1]), Path(sys.argv[2]), lambda file: f"`{file.name}`", "../../mpm/scene/README.md")
