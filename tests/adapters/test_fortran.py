@@ -24,8 +24,15 @@ class FortranTest(unittest.TestCase):
 
     def test_an_error_ends_the_program_with_its_text(self) -> None:
         done = subprocess.run([program, "none.h5"], capture_output=True, text=True)
-        self.assertNotEqual(done.returncode, 0)
-        self.assertIn("none.h5", done.stderr)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("element_test: none.h5: no such file; give the path", done.stderr)
+
+    def test_wrong_arguments_are_told_without_a_backtrace(self) -> None:
+        for words in ([], [specimen, "2"]):
+            done = subprocess.run([program, *words], capture_output=True, text=True)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("usage: element_test SPECIMEN.h5", done.stderr)
+            self.assertNotIn("Backtrace", done.stderr)
 
 
 if __name__ == "__main__":

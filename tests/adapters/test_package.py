@@ -59,8 +59,9 @@ class Package(unittest.TestCase):
         self.assertEqual((doc / "copyright").read_text(), (ROOT / "LICENSE").read_text())
         for name in ("README.md", "CHANGELOG.md", "CITATION.cff", "protocols/README.md", "tools/mpm/README.md"):
             self.assertEqual((doc / name).read_bytes(), (ROOT / name).read_bytes())
-        for file in (ROOT / "tools/examples").iterdir():
-            self.assertTrue((doc / "tools/examples" / file.name).is_file(), file.name)
+        for file in (ROOT / "tools/examples").rglob("*"):
+            if file.is_file() and "__pycache__" not in file.parts:
+                self.assertTrue((doc / file.relative_to(ROOT)).is_file(), file.name)
         installed = {str(file.relative_to(self.prefix / "share/rvelab/protocols"))
                      for file in (self.prefix / "share/rvelab/protocols").rglob("*.toml")}
         self.assertEqual(installed, {str(file.relative_to(ROOT / "protocols")) for file in (ROOT / "protocols").rglob("*.toml")})

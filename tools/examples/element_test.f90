@@ -49,7 +49,10 @@ program element_test
   character(len=1024) :: path
   integer :: step
 
-  if (command_argument_count() /= 1) error stop "element_test SPECIMEN.h5"
+  if (command_argument_count() /= 1) then
+    write (error_unit, "(a)") "usage: element_test SPECIMEN.h5, a file of discs that rvelab pack wrote"
+    stop 2
+  end if
   call get_command_argument(1, path)
   call expect(rvelab_pool_create(c_null_ptr, pool))
   call expect(rvelab_template_load(pool, trim(path)//c_null_char, specimen))
@@ -64,6 +67,7 @@ program element_test
 
 contains
 
+  ! error stop alone would print a backtrace and not what was wrong.
   subroutine expect(status)
     integer(c_int32_t), intent(in) :: status
     character(kind=c_char), pointer :: letters(:)

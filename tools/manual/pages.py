@@ -11,7 +11,7 @@ PAGES = Path(__file__).resolve().parent / "pages"
 FENCE = re.compile(r"^(?P<indent> *)```(?P<kind>[a-z0-9+]*) *$")
 MARKER = re.compile(r"^ *<!-- (?P<what>not run|needs|file|fails): (?P<value>.*\S) -->$")
 RUN = {"bash", "python"}
-WRITTEN = {"c", "fortran", "toml", "cmake", "xml", "json", "ini"}
+WRITTEN = {"c", "cpp", "fortran", "toml", "cmake", "xml", "json", "ini"}
 SHOWN = {"text", "output"}
 COMMAND = re.compile(r"^\s*(\$ |rvelab(-mpm|-voids)? |tools/|cmake |ctest |apt|pip |python3 |/usr/bin/python3 |mpirun )")
 

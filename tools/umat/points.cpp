@@ -29,14 +29,15 @@ Points::Points(const Settings& settings) : settings_(settings) {
   expect_done(rvelab_pool_create(&settings_.pool, &pool_));
 }
 
-const Material& Points::material(int number) const {
+const Material& Points::material(int number, const char* property) const {
   const auto found = settings_.materials.find(number);
   if (found != settings_.materials.end()) return found->second;
   std::string allowed;
   for (const auto& [known, material] : settings_.materials)
     allowed += (allowed.empty() ? "" : ", ") + std::to_string(known);
-  throw std::runtime_error("PROPS(1) is " + std::to_string(number) + "; " + settings_.path + " has the materials " +
-                           allowed + "; correct it, or add [[material]] with number = " + std::to_string(number));
+  throw std::runtime_error(property + (" is " + std::to_string(number)) + "; " + settings_.path +
+                           " has the materials " + allowed +
+                           "; correct it, or add [[material]] with number = " + std::to_string(number));
 }
 
 /// The caller holds population_ alone.
@@ -110,6 +111,21 @@ Start Points::spawn(int number, const PointName& name) {
     rvelab_release(pool_, 1, &start.id);
     throw;
   }
+  return start;
+}
+
+Start Points::spawn_again(int number, std::int64_t tried) {
+  {
+    const std::unique_lock alone(population_);
+    const auto found = unnamed_.find({number, tried});
+    if (found != unnamed_.end()) {
+      if (token_of(tried) == found->second.token) return found->second;
+      unnamed_.erase(found);  // it has gone on
+    }
+  }
+  const Start start = spawn(number, {});
+  const std::unique_lock alone(population_);
+  unnamed_.emplace(std::pair{number, start.id}, start);
   return start;
 }
 

@@ -36,8 +36,9 @@ class Points {
  public:
   explicit Points(const Settings& settings);
 
-  /// The settings of a material. Throws std::runtime_error if there is none of that number.
-  const Material& material(int number) const;
+  /// The settings of a material. Throws std::runtime_error if there is none of that number, which the host calls
+  /// `property`.
+  const Material& material(int number, const char* property = "PROPS(1)") const;
 
   /// Stress of the specimen of a material, Pa.
   Matrix3 first_stress(int material);
@@ -47,6 +48,10 @@ class Points {
 
   /// A new RVE, or, while its first step is not committed, the one that this point got before.
   Start spawn(int material, const PointName& name);
+
+  /// The same for a host that names no points and keeps what a try of the first step returned: the RVE with that id, if
+  /// it is of this material and still where it began, else a new one.
+  Start spawn_again(int material, std::int64_t tried);
 
   /// One trial; on any thread.
   Step step(const Start& start, const Matrix3& dH, double dt, bool with_tangent);
@@ -65,6 +70,7 @@ class Points {
   std::shared_mutex population_;  ///< exclusive for spawning, which no work may stand beside
   std::map<int, Loaded> templates_;
   std::map<std::pair<int, PointName>, Start> first_steps_;  ///< points whose first step may come again
+  std::map<std::pair<int, std::int64_t>, Start> unnamed_;   ///< of spawn_again, by material and id
 };
 
 /// Appends a text to rvelab_umat.log in the working directory: each once, a hundred at most.
