@@ -90,6 +90,21 @@ TEST_CASE("a listing shows what is not defined as a dash, never as a number that
   CHECK_THAT(here.run("inspect S.h5 --json").output, Contains("\"fabric_anisotropy\": null"));
 }
 
+TEST_CASE("a listing has one number in the same few digits everywhere, JSON all of them") {
+  const Workplace here;
+  here.import_packing("dense_p20");
+  const std::string words = " biaxial --specimen S.h5 --set stage.compression.to_strain=0.02";
+  const auto json = nlohmann::json::parse(here.run("run" + words + " --json").output);
+  char angle[16];
+  std::snprintf(angle, sizeof angle, "%.1f", json.at("peak_friction_angle_deg").get<double>());
+  CHECK_THAT(here.run("run" + words).output, Contains("peak_friction_angle_deg  " + std::string(angle) + " degrees\n"));
+  const std::string calibrated = here.run("calibrate" + words + " --pressures 20e3,200e3").output;
+  CHECK_THAT(calibrated, Contains("  " + std::string(angle) + "  "));  // in the table of tests
+  CHECK_THAT(calibrated, !Catch::Matchers::Matches("[^]*[0-9]\\.[0-9]{4,} degrees[^]*"));
+  const std::string inspected = here.run("inspect S.h5").output;
+  CHECK_THAT(inspected, !Catch::Matchers::Matches("[^]*[0-9]e[+-]0[0-9][^]*") && Contains("20000 Pa"));
+}
+
 TEST_CASE("a run that keeps no records says so, one that keeps or prints them does not") {
   const Workplace here;
   here.import_packing("dense_p20");

@@ -205,7 +205,7 @@ def ticks_of_decade(low, high):
     """Multiples of a power of ten that make four numbers or more between low and high, the fewest that do."""
     finest = [1.0]
     for finest in ((1.0,), (1.0, 3.0), (1.0, 2.0, 5.0), (1.0, 2.0, 3.0, 5.0, 7.0), tuple(np.arange(1.0, 10.0)),
-                   tuple(np.arange(1.0, 10.0, 0.5)), tuple(np.arange(1.0, 10.0, 0.2))):
+                   tuple(np.arange(1.0, 10.0, 0.5)), tuple(np.arange(1.0, 10.0, 0.2)), tuple(np.arange(1.0, 10.0, 0.1))):
         powers = 10.0 ** np.arange(np.floor(np.log10(low)), np.ceil(np.log10(high)) + 1)
         places = np.outer(powers, finest)
         if np.sum((places >= low) & (places <= high)) >= 4:
