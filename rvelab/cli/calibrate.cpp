@@ -186,7 +186,7 @@ void add_statistics(const calibrate::Calibration& calibration, const std::vector
 std::string tests_table(const calibrate::Calibration& calibration) {
   std::vector<std::vector<std::string>> rows{{"specimen", "pressure, Pa", "secant angle", "at strain, %",
                                               "large strain", "sigma_1, kPa", "sigma_3, kPa", "flagged"}};
-  const auto angle = [](double value) { return in_digits(value, 3); };
+  const auto angle = angle_in_digits;
   for (const calibrate::PressureResult& test : calibration.per_pressure) {
     rows.push_back({std::to_string(test.specimen + 1), in_words(test.pressure), angle(test.friction_angle_deg),
                     in_digits(100 * test.peak_strain, 3), angle(test.large_strain_friction_angle_deg),

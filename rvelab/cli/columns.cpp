@@ -74,6 +74,8 @@ std::string with_digits(double value, int digits, bool zeros) {
 
 std::string in_digits(double value, int digits) { return with_digits(value, digits, false); }
 
+std::string angle_in_digits(double degrees) { return with_digits(degrees, 3, true); }
+
 std::string two_digits(double value) { return with_digits(value, 2, true); }
 
 }  // namespace rvelab::cli

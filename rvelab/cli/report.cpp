@@ -12,18 +12,18 @@ namespace rvelab::cli {
 namespace {
 
 /// Specimens scatter by per cents: more digits say nothing in a listing.
-constexpr int digits_of_a_number = 4, digits_of_an_angle = 3;
+std::string number_in_digits(double value) { return in_digits(value, 4); }
 
-/// One value on one line: text without quotation marks, numbers with so many digits.
-std::string on_one_line(const Json& value, int digits = digits_of_a_number) {
+/// One value on one line: text without quotation marks, its numbers by `shown`.
+std::string on_one_line(const Json& value, std::string (*shown)(double) = number_in_digits) {
   if (value.is_string()) return io::printable(value.get<std::string>());
-  if (value.is_number_float()) return in_digits(value.get<double>(), digits);
+  if (value.is_number_float()) return shown(value.get<double>());
   if (!value.is_structured()) return value.is_null() ? "-" : value.dump();
   std::string text;
   for (const auto& [key, item] : value.items()) {
     if (!text.empty()) text += value.is_object() ? ", " : "  ";
     const bool angle = value.is_object() && key.ends_with("_deg");
-    text += (value.is_object() ? key + " " : "") + on_one_line(item, angle ? digits_of_an_angle : digits);
+    text += (value.is_object() ? key + " " : "") + on_one_line(item, angle ? angle_in_digits : shown);
   }
   return text;
 }
@@ -68,8 +68,7 @@ std::string Listing::text() const {
       continue;
     }
     if (!has_rows(line.value)) {
-      const std::string shown =
-          on_one_line(line.value, line.unit == "degrees" ? digits_of_an_angle : digits_of_a_number);
+      const std::string shown = on_one_line(line.value, line.unit == "degrees" ? angle_in_digits : number_in_digits);
       put(line.key, shown, shown == "-" ? "" : line.unit);
       continue;
     }

@@ -32,7 +32,8 @@ output = { history_every_s = 0.01, frame_every_s = 0.01 }
 boundary = [{ name = "base", kind = "fixed", axis = "y", at_m = 0 }]
 region = [{ material = "soil", lower_m = [0, 0], upper_m = [0.5, 0.5] }]
 rock = [{ name = "long", material = "stone", shape = "superquadric", half_axes_m = [0.2, 0.1], centre_m = [0.3, 0.75] },
-        { name = "round", material = "stone", shape = "superquadric", half_axes_m = [0.1, 0.1], centre_m = [0.9, 0.3] }]
+        { name = "round", material = "stone", shape = "superquadric", half_axes_m = [0.12, 0.1], centre_m = [0.9, 0.3] }]
+rock_soil = { friction = 0.3 }
 
 [[material]]
 name = "soil"
@@ -380,8 +381,8 @@ class Rocks(Page):
             self.assertEqual(max(self.shapes("circle")) > 0, points)
         self.assertEqual(len(set(seen)), 3)
         box = self.box("#stage")
-        for part in [0.1 + 0.02 * k for k in range(40)]:
-            self.browser.click(box["x"] + part * box["width"], box["y"] + box["height"] * (0.3 + 0.4 * part))
+        for x, y in ((0.1 + 0.06 * i, 0.2 + 0.06 * j) for j in range(11) for i in range(14)):
+            self.browser.click(box["x"] + x * box["width"], box["y"] + y * box["height"])
             if self.text("told"):
                 break
         self.assertRegex(self.text("told"), r"Rock \d: centre at [^;]+ m; half axes [\d.]+, [\d.]+, [\d.]+ m")
@@ -391,7 +392,7 @@ class Rocks(Page):
         self.browser.wait("document.getElementById('scale').textContent.includes('2 rocks')")
         long, round_ = sorted(self.shapes("ellipse"), reverse=True)
         self.assertAlmostEqual(long[0] / long[1], 2, delta=0.05)
-        self.assertAlmostEqual(round_[0] / round_[1], 1, delta=0.05)
+        self.assertAlmostEqual(round_[0] / round_[1], 1.2, delta=0.05)
         self.assertGreater(len(self.shapes("rect")), 50)
         # A corner of the rectangle around the long rock is not of it: the ground of the page is seen there.
         grey = self.browser.value("""(() => { const c = document.querySelector('#stage canvas'), d = document.createElement('canvas');

@@ -1,6 +1,9 @@
 // What goes wrong outside rvelab is told in its words: one line of UTF-8 with the path and a remedy.
 #include <sys/resource.h>
 
+#include <nlohmann/json.hpp>
+#include <regex>
+
 #include "rvelab/io/utf8.hpp"
 #include "tests/cli/program.hpp"
 
@@ -100,9 +103,10 @@ TEST_CASE("a listing has one number in the same few digits everywhere, JSON all 
   CHECK_THAT(here.run("run" + words).output, Contains("peak_friction_angle_deg  " + std::string(angle) + " degrees\n"));
   const std::string calibrated = here.run("calibrate" + words + " --pressures 20e3,200e3").output;
   CHECK_THAT(calibrated, Contains("  " + std::string(angle) + "  "));  // in the table of tests
-  CHECK_THAT(calibrated, !Catch::Matchers::Matches("[^]*[0-9]\\.[0-9]{4,} degrees[^]*"));
+  CHECK(!std::regex_search(calibrated, std::regex("[0-9]\\.[0-9]{2,} degrees")));
   const std::string inspected = here.run("inspect S.h5").output;
-  CHECK_THAT(inspected, !Catch::Matchers::Matches("[^]*[0-9]e[+-]0[0-9][^]*") && Contains("20000 Pa"));
+  CHECK_THAT(inspected, Contains("p_Pa"));
+  CHECK(!std::regex_search(inspected, std::regex("[0-9]e[+-]0[0-9]")));
 }
 
 TEST_CASE("a run that keeps no records says so, one that keeps or prints them does not") {
