@@ -390,6 +390,7 @@ class Rocks(Page):
     def test_in_the_plane_rocks_are_ellipses_and_points_rectangles(self) -> None:
         self.choose("#section", "1")
         self.browser.wait("document.getElementById('scale').textContent.includes('2 rocks')")
+        self.pixels()  # until the page has come to rest: a click goes to a place
         long, round_ = sorted(self.shapes("ellipse"), reverse=True)
         self.assertAlmostEqual(long[0] / long[1], 2, delta=0.05)
         self.assertAlmostEqual(round_[0] / round_[1], 1.2, delta=0.05)
