@@ -185,12 +185,12 @@ void add_statistics(const calibrate::Calibration& calibration, const std::vector
 /// One line a test; the rest stands in --json.
 std::string tests_table(const calibrate::Calibration& calibration) {
   std::vector<std::vector<std::string>> rows{{"specimen", "pressure, Pa", "secant angle", "at strain, %",
-                                              "large strain", "sigma_1, Pa", "sigma_3, Pa", "flagged"}};
-  const auto angle = [](double value) { return std::isnan(value) ? "-" : in_words(std::round(100 * value) / 100); };
+                                              "large strain", "sigma_1, kPa", "sigma_3, kPa", "flagged"}};
+  const auto angle = angle_in_digits;
   for (const calibrate::PressureResult& test : calibration.per_pressure) {
     rows.push_back({std::to_string(test.specimen + 1), in_words(test.pressure), angle(test.friction_angle_deg),
-                    in_words(100 * test.peak_strain), angle(test.large_strain_friction_angle_deg),
-                    in_words(std::round(test.peak.major)), in_words(std::round(test.peak.minor)),
+                    in_digits(100 * test.peak_strain, 3), angle(test.large_strain_friction_angle_deg),
+                    in_digits(test.peak.major / 1e3, 4), in_digits(test.peak.minor / 1e3, 4),
                     std::to_string(test.flagged) + " of " + std::to_string(test.records)});
   }
   return aligned(rows);

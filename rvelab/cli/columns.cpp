@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
 
 #include "rvelab/ensemble/statistics.hpp"
 #include "rvelab/io/publish.hpp"
@@ -49,12 +51,31 @@ std::string in_digits_of(double value, double error) {
   return text.substr(1, text.find(" +-") - 1) + text.substr(text.find(')') + 1);
 }
 
-std::string two_digits(double value) {
-  if (!std::isfinite(value)) return "-";
-  std::ostringstream text;
-  text.precision(2);
-  text << value;
-  return text.str();
+namespace {
+
+/// Rounded to so many digits, in powers of a thousand from 1e5 on, as ensemble::with_error has them.
+std::string with_digits(double value, int digits, bool zeros) {
+  if (!std::isfinite(value)) return std::isnan(value) ? "-" : value > 0 ? "inf" : "-inf";
+  if (value == 0) return "0";
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*e", digits - 1, value);
+  const int place = std::atoi(std::strchr(text, 'e') + 1);
+  const int power = place >= 5 ? 3 * (place / 3) : place < -4 ? place : 0;
+  std::snprintf(text, sizeof text, "%.*f", std::max(0, digits - 1 - (place - power)), value / std::pow(10.0, power));
+  std::string number = text;
+  if (!zeros && number.find('.') != std::string::npos) {
+    number.erase(number.find_last_not_of('0') + 1);
+    if (number.back() == '.') number.pop_back();
+  }
+  return number + (power == 0 ? "" : "e" + std::to_string(power));
 }
+
+}  // namespace
+
+std::string in_digits(double value, int digits) { return with_digits(value, digits, false); }
+
+std::string angle_in_digits(double degrees) { return with_digits(degrees, 3, true); }
+
+std::string two_digits(double value) { return with_digits(value, 2, true); }
 
 }  // namespace rvelab::cli

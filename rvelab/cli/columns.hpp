@@ -18,6 +18,12 @@ std::string csv_cell(double value);
 /// A value in the digits that its error, or half of its interval, leaves it (ensemble::with_error).
 std::string in_digits_of(double value, double error);
 
+/// So many significant digits, without zeros at the end: 0.1874, 83682, 100e3, 35.25e6; "-" for NaN.
+std::string in_digits(double value, int digits);
+
+/// An angle, degrees, in three digits: 32.0, as figures have it.
+std::string angle_in_digits(double degrees);
+
 /// Two significant digits; "-" for NaN.
 std::string two_digits(double value);
 

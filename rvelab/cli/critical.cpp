@@ -1,10 +1,12 @@
 // rvelab critical: the critical-state line through the ends of several tests. Declared in command.hpp.
 #include <cmath>
+#include <iostream>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "rvelab/calibrate/mohr.hpp"
+#include "rvelab/cli/columns.hpp"
 #include "rvelab/cli/command.hpp"
 #include "rvelab/cli/report.hpp"
 #include "rvelab/ensemble/critical_state.hpp"
@@ -55,6 +57,8 @@ void run_critical(const CriticalArguments& arguments) {
                      power = fitted_line(states, LineForm::power);
   Listing listing;
   Json rows = Json::array();
+  std::vector<std::vector<std::string>> table{
+      {"file", "p, Pa", "void ratio", "its change", "q/p", "start p, Pa", "start void ratio", "state parameter"}};
   for (std::size_t k = 0; k < states.size(); ++k) {
     const CriticalState& state = states[k];
     const CriticalLine& nearer = power.deviation < logarithmic.deviation ? power : logarithmic;
@@ -66,12 +70,17 @@ void run_critical(const CriticalArguments& arguments) {
                     {"start_p_Pa", state.start_p},
                     {"start_void_ratio", state.start_void_ratio},
                     {"state_parameter", state.start_void_ratio - nearer.void_ratio(state.start_p)}});
+    const double parameter = rows.back()["state_parameter"].get<double>();
+    table.push_back({arguments.files[k], in_digits(state.p, 4), in_digits(state.void_ratio, 4),
+                     in_digits(state.void_ratio_change, 2), in_digits(state.stress_ratio, 3),
+                     in_digits(state.start_p, 4), in_digits(state.start_void_ratio, 4), in_digits(parameter, 3)});
   }
-  listing.add("states", std::move(rows));
+  listing.add_to_json("states", std::move(rows));
   add_critical_line(listing, "logarithmic", logarithmic);
   add_critical_line(listing, "power", power);
   if (!std::isnan(power.lambda))
     listing.add("state_parameter_of", power.deviation < logarithmic.deviation ? "power" : "logarithmic");
+  if (!arguments.json) std::cout << aligned(table) << "\n";
   listing.print(arguments.json);
 }
 

@@ -25,7 +25,8 @@ std::vector<keys::Key> keys_with(const std::string& pattern) {
     if (lower(key.dotted()).find(lower(pattern)) != std::string::npos) found.push_back(key);
   }
   if (found.empty()) {
-    throw InputError("no key holds \"" + pattern + "\"; the nearest known key is " + keys::nearest(pattern, names) +
+    const std::string near = keys::near_one(pattern, names);
+    throw InputError("no key holds \"" + pattern + "\"" + (near.empty() ? "" : "; the nearest known key is " + near) +
                      "; give a part of a key, or none to see all");
   }
   return found;

@@ -80,23 +80,19 @@ void add_instability(Listing& listing, const io::RecordedTest& test, int dimensi
   listing.add("roscoe_angle_deg", 45 + psi / 2, "degrees");
 }
 
-/// Loops of the last stage; G_max of the first probe, else the secant to the first record.
+/// Loops of the last stage.
 void add_loops(Listing& listing, const io::RecordedTest& test, const std::vector<ensemble::Loop>& loops,
                int dimension) {
-  double G_max = ensemble::initial_shear_modulus(calibrate::last_stage(test.result), test.result.axis, dimension);
-  const auto& probes = test.result.probes;
-  if (!probes.empty()) {
-    const Eigen::MatrixXd& stiffness = probes.front().stiffness;
-    G_max = stiffness.diagonal().tail(stiffness.rows() - dimension).mean();
-  }
-  listing.add("G_max_Pa", G_max, "Pa");
-  listing.add("G_max_of", probes.empty() ? "first record" : "probe");
+  const ensemble::ReferenceModulus G_max = ensemble::reference_modulus(calibrate::last_stage(test.result), loops,
+                                                                       test.result.probes, test.result.axis, dimension);
+  listing.add("G_max_Pa", G_max.G, "Pa");
+  listing.add("G_max_of", G_max.of);
   Json rows = Json::array();
   for (std::size_t k = 0; k < loops.size(); ++k)
     rows.push_back({{"loop", k + 1},
                     {"gamma", loops[k].gamma},
                     {"G_Pa", loops[k].G},
-                    {"G_over_G_max", loops[k].G / G_max},
+                    {"G_over_G_max", loops[k].G / G_max.G},
                     {"damping_ratio", loops[k].damping_ratio}});
   listing.add("loops", std::move(rows));
 }

@@ -111,9 +111,9 @@ std::string table_of(const std::vector<Job>& jobs) {
   std::vector<std::vector<std::string>> rows{
       {"file", "seed", "packing", "void ratio", "p, Pa", "contacts a grain", "overlap, %", "friction while packed"}};
   for (const Job& job : jobs) {
-    const auto shown = [&](const char* key) { return in_words(job.made[key].get<double>()); };
+    const auto shown = [&](const char* key) { return in_digits(job.made[key].get<double>(), 4); };
     rows.push_back({job.file, job.made["seed"].dump(), job.made["draw"].dump(), shown("void_ratio"),
-                    in_words(job.sizes.pressure), shown("coordination_number"),
+                    in_digits(job.sizes.pressure, 4), shown("coordination_number"),
                     two_digits(100 * job.sizes.proportions.mean_overlap), shown("preparation_friction")});
   }
   return aligned(rows);

@@ -72,9 +72,8 @@ std::string input_path(const std::string& name_or_path, InputKind kind) {
     throw InputError("no " + noun + " \"" + name_or_path +
                      "\" is installed; allowed: one of rvelab protocols, or the " + "path of a file " +
                      (recipe ? "RECIPE" : "PROTOCOL") + ".toml");
-  const std::string near = keys::nearest(name_or_path, names);
   throw InputError("no " + noun + " \"" + name_or_path + "\" is installed" +
-                   (near.empty() ? "" : "; the nearest is " + near) + "; allowed: " +
+                   keys::nearest_in_words(name_or_path, names) + "; allowed: " +
                    (all.empty() ? "none in " + installed_folder().string() + ", which is not there or empty; install it"
                                 : keys::listed(names)) +
                    ", or the path of a file " + (recipe ? "RECIPE" : "PROTOCOL") + ".toml; see rvelab protocols");

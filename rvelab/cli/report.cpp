@@ -3,28 +3,27 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
-#include <sstream>
 
+#include "rvelab/cli/columns.hpp"
 #include "rvelab/io/utf8.hpp"
 #include "rvelab/measure/measures.hpp"
 
 namespace rvelab::cli {
 namespace {
 
-/// One value on one line: text without quotation marks, numbers with six digits.
-std::string on_one_line(const Json& value) {
+/// Specimens scatter by per cents: more digits say nothing in a listing.
+std::string number_in_digits(double value) { return in_digits(value, 4); }
+
+/// One value on one line: text without quotation marks, its numbers by `shown`.
+std::string on_one_line(const Json& value, std::string (*shown)(double) = number_in_digits) {
   if (value.is_string()) return io::printable(value.get<std::string>());
-  if (value.is_number_float()) {
-    if (std::isnan(value.get<double>())) return "-";
-    std::ostringstream text;
-    text << value.get<double>();
-    return text.str();
-  }
+  if (value.is_number_float()) return shown(value.get<double>());
   if (!value.is_structured()) return value.is_null() ? "-" : value.dump();
   std::string text;
   for (const auto& [key, item] : value.items()) {
     if (!text.empty()) text += value.is_object() ? ", " : "  ";
-    text += (value.is_object() ? key + " " : "") + on_one_line(item);
+    const bool angle = value.is_object() && key.ends_with("_deg");
+    text += (value.is_object() ? key + " " : "") + on_one_line(item, angle ? angle_in_digits : shown);
   }
   return text;
 }
@@ -69,7 +68,7 @@ std::string Listing::text() const {
       continue;
     }
     if (!has_rows(line.value)) {
-      const std::string shown = on_one_line(line.value);
+      const std::string shown = on_one_line(line.value, line.unit == "degrees" ? angle_in_digits : number_in_digits);
       put(line.key, shown, shown == "-" ? "" : line.unit);
       continue;
     }
@@ -112,10 +111,8 @@ Json as_json(const Sizes& sizes) {
 }
 
 void add_proportions(Listing& listing, const Sizes& sizes) {
-  std::ostringstream text;
-  text.precision(4);
-  text << "mean diameter " << sizes.mean_diameter << " m, p " << sizes.pressure << " Pa, ";
-  listing.add_to_text("proportions", text.str() + in_words(sizes.proportions));
+  listing.add_to_text("proportions", "mean diameter " + in_digits(sizes.mean_diameter, 3) + " m, p " +
+                                         in_digits(sizes.pressure, 4) + " Pa, " + in_words(sizes.proportions));
   const Json json = as_json(sizes);
   for (const auto& [key, value] : json.items()) listing.add_to_json(key, value);
 }

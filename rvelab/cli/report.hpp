@@ -12,8 +12,8 @@ namespace rvelab::cli {
 
 using Json = nlohmann::ordered_json;
 
-/// Results of a command, in the order in which they were added. JSON keeps every bit of a number; the listing shows six
-/// digits. NaN means not defined: null in JSON, "-" in the listing. Arrays are row-major.
+/// Results of a command, in the order in which they were added. JSON keeps every bit of a number; the listing shows
+/// four digits, of angles three. NaN means not defined: null in JSON, "-" in the listing. Arrays are row-major.
 class Listing {
  public:
   /// `value`: number, text, boolean, array or object. `unit` stands in the listing only ("" for none); JSON keys end in

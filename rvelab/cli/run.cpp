@@ -136,7 +136,10 @@ void add_costs(const protocol::TestRun& run, double wall, Listing& listing) {
     listing.add("largest_error_estimate", costs.largest_error,
                 "of p at strain " + in_words(costs.largest_error_strain) +
                     ": how far the stress of a record may be from that of infinitely slow loading" +
-                    (costs.largest_error > doubtful_error ? "; a lower solver.relative_tolerance resolves it" : ""));
+                    (costs.largest_error > doubtful_error
+                         ? "; the grains rearrange within that record: judge the curve by the mean, or give a lower "
+                           "solver.relative_tolerance"
+                         : ""));
   }
   if (costs.waited > 0)
     listing.add("waited_for_held_stress", double(costs.waited) / double(costs.substeps), "of the sub-steps");

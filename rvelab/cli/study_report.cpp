@@ -6,11 +6,11 @@
 #include <fstream>
 #include <limits>
 #include <set>
-#include <sstream>
 
 #include "rvelab/cli/columns.hpp"
 #include "rvelab/cli/protocol_input.hpp"
 #include "rvelab/cli/report.hpp"
+#include "rvelab/ensemble/statistics.hpp"
 #include "rvelab/error.hpp"
 #include "rvelab/io/publish.hpp"
 #include "rvelab/io/utf8.hpp"
@@ -73,19 +73,7 @@ Json json_of(const Study& study, const PointSummary& point) {
   return json;
 }
 
-std::string rounded(double value, int digits = 3) {
-  if (std::isnan(value)) return "-";
-  std::ostringstream text;
-  text.precision(digits);
-  text << value;
-  return text.str();
-}
-
-/// Mean and standard error.
-std::string with_error(double mean, double error) {
-  if (std::isnan(error)) return rounded(mean, 5);
-  return rounded(mean, 5) + " +- " + rounded(error, 2);
-}
+std::string rounded(double value, int digits = 3) { return in_digits(value, digits); }
 
 std::vector<std::string> name_cells(const Study& study, const PointSummary& point) {
   std::vector<std::string> cells;
@@ -176,7 +164,7 @@ std::string paths_table(const Study& study, const StudySummary& summary) {
          table(study, summary, header, [&](const PointSummary& point) {
            std::vector<std::string> cells;
            for (std::size_t k = 0; k < point.means.size(); ++k) {
-             cells.push_back(with_error(point.means[k], point.standard_errors[k]));
+             cells.push_back(ensemble::with_error(point.means[k], point.standard_errors[k]));
            }
            if (study.increments == 0)
              cells.insert(cells.end(), {rounded(point.path_seconds), rounded(point.path_grain_steps)});

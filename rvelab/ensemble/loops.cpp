@@ -98,4 +98,17 @@ double initial_shear_modulus(std::span<const records::Record> stage, const std::
   return nan;
 }
 
+ReferenceModulus reference_modulus(std::span<const records::Record> stage, const std::vector<Loop>& loops,
+                                   const std::vector<records::ProbeResult>& probes, const std::string& axis,
+                                   int dimension) {
+  if (!probes.empty()) {
+    const Eigen::MatrixXd& stiffness = probes.front().stiffness;
+    return {stiffness.diagonal().tail(stiffness.rows() - dimension).mean(), "probe"};
+  }
+  ReferenceModulus found{initial_shear_modulus(stage, axis, dimension), "first record"};
+  for (const Loop& loop : loops)
+    if (!(found.G >= loop.G)) found = {loop.G, "stiffest loop"};
+  return found;
+}
+
 }  // namespace rvelab::ensemble

@@ -30,4 +30,16 @@ std::vector<Loop> loops_of(std::span<const records::Record> stage, const std::st
 double initial_shear_modulus(std::span<const records::Record> stage, const std::string& axis, int dimension,
                              double gamma = 0);
 
+/// G_max, Pa, and what gave it.
+struct ReferenceModulus {
+  double G = 0;
+  const char* of = "";  ///< "probe", "first record" or "stiffest loop"
+};
+
+/// G_max of a cyclic stage with these loops: the mean shear stiffness of the first probe of its test; else the secant
+/// to the first record, or the stiffest loop where that is stiffer, so that no loop is above it.
+ReferenceModulus reference_modulus(std::span<const records::Record> stage, const std::vector<Loop>& loops,
+                                   const std::vector<records::ProbeResult>& probes, const std::string& axis,
+                                   int dimension);
+
 }  // namespace rvelab::ensemble

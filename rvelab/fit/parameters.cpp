@@ -90,8 +90,8 @@ ScalarTarget parsed_target(const std::string& text) {
   if (std::find(known.begin(), known.end(), found.measure) == known.end()) {
     std::string all;
     for (const std::string& each : known) all += (all.empty() ? "" : ", ") + each;
-    throw InputError("--target " + text + ": no test gives " + found.measure + "; the nearest is " +
-                     keys::nearest(found.measure, known) + "; allowed: " + all + "; name one of these");
+    throw InputError("--target " + text + ": no test gives " + found.measure +
+                     keys::nearest_in_words(found.measure, known) + "; allowed: " + all + "; name one of these");
   }
   if (name.size() == 2) {
     const auto pressure = number_of(name[1]);

@@ -78,11 +78,27 @@ std::string nearest(const std::string& word, const std::vector<std::string>& can
   return found == candidates.end() ? "" : *found;
 }
 
+std::string near_one(const std::string& word, const std::vector<std::string>& candidates) {
+  const std::string found = nearest(word, candidates);
+  if (!found.empty() && edit_distance(word, found) < 2 * word.size()) return found;
+  constexpr std::size_t of_a_word = 4;  // letters: shorter ones are in many names
+  if (word.size() < of_a_word) return "";
+  const auto holds_it = [&](const std::string& candidate) {
+    return ("_" + candidate + "_").find("_" + word + "_") != std::string::npos;
+  };
+  const auto place = std::find_if(candidates.begin(), candidates.end(), holds_it);
+  return place == candidates.end() ? "" : *place;
+}
+
+std::string nearest_in_words(const std::string& word, const std::vector<std::string>& candidates) {
+  const std::string near = near_one(word, candidates);
+  return near.empty() ? "" : "; the nearest is " + near;
+}
+
 std::string what_was_meant(const std::string& prefix, const std::string& word, const std::vector<std::string>& known) {
   const std::string correct = "; correct the name or remove it";
-  const std::string near = nearest(word, known);
-  if (!near.empty() && edit_distance(word, near) < 2 * word.size())
-    return "the nearest known key is " + prefix + near + correct;
+  const std::string near = near_one(word, known);
+  if (!near.empty()) return "the nearest known key is " + prefix + near + correct;
   const std::vector<std::string> of_recipes{"pack", "grains", "target", "preparation"}, of_tests{"test", "stage"};
   const auto is_one_of = [&](const auto& tables) {
     return prefix.empty() && std::find(tables.begin(), tables.end(), word) != tables.end();
@@ -96,7 +112,8 @@ std::string what_was_meant(const std::string& prefix, const std::string& word, c
 }
 
 std::string choose_one(const std::string& word, const std::vector<std::string>& choices) {
-  return "the nearest is " + nearest(word, choices) + "; choose one of these";
+  const std::string near = near_one(word, choices);
+  return (near.empty() ? "" : "the nearest is " + near + "; ") + "choose one of these";
 }
 
 std::size_t mistakes_in(const std::vector<KeyError>& errors) {

@@ -96,11 +96,19 @@ double number_in(const toml::node& node);
 /// little); the first of several; "" if there are no candidates.
 std::string nearest(const std::string& word, const std::vector<std::string>& candidates);
 
-/// Which of the known names was meant by `word`, and the remedy: the nearest one where less than half of the letters
-/// differ; else all of them, or where they are listed. Of a table of another kind of file, what that file is for.
+/// The candidate that was meant by `word`: the nearest one where less than half of the letters differ, or one that has
+/// the word among its own ("tolerance": relative_tolerance); "" where none is near.
+std::string near_one(const std::string& word, const std::vector<std::string>& candidates);
+
+/// "; the nearest is biaxial", or "" where none is near.
+std::string nearest_in_words(const std::string& word, const std::vector<std::string>& candidates);
+
+/// Which of the known names was meant by `word`, and the remedy: one that is near; else all of them, or where they are
+/// listed. Of a table of another kind of file, what that file is for.
 std::string what_was_meant(const std::string& prefix, const std::string& word, const std::vector<std::string>& known);
 
-/// Remedy for a word that is none of the choices: "the nearest is simple_shear; choose one of these".
+/// Remedy for a word that is none of the choices: "the nearest is simple_shear; choose one of these", without the
+/// nearest where none is near.
 std::string choose_one(const std::string& word, const std::vector<std::string>& choices);
 
 /// Throws InputError with all mistakes (not doubts) in the order of their lines, one line of text each: "path:line:

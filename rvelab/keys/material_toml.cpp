@@ -113,27 +113,31 @@ void read_materials(Specimen& specimen, const toml::array& list, std::vector<Key
   specimen.materials = materials;
 }
 
-/// The known dotted key nearest to this one. A material's name ("material.sand.frictoin") is kept.
-std::string nearest_key(const std::string& dotted_key) {
+/// The known dotted key that was meant; "" where none is near. A material's name ("material.sand.frictoin") is kept.
+std::string near_key(const std::string& dotted_key) {
   const auto [dotted, material] = without_material_name(dotted_key);
-  const bool has_table = dotted.find('.') != std::string::npos;  // "friction" alone means some table's friction
-  std::vector<std::string> names;
-  for (const auto& key : known_keys()) names.push_back(has_table ? key.dotted() : key.name);
-  std::string found = nearest(dotted, names);
-  if (!has_table) {
-    const auto same = std::find(names.begin(), names.end(), found);
-    return known_keys()[std::size_t(same - names.begin())].dotted();
+  const auto point = dotted.find('.');
+  const std::string table = dotted.substr(0, point), name = dotted.substr(point == std::string::npos ? 0 : point + 1);
+  std::vector<std::string> own, all;
+  for (const Key& key : known_keys()) {
+    all.push_back(key.name);
+    if (key.table == table) own.push_back(key.name);
   }
   // A name that is one letter off in another table is meant, where the table itself has nothing as near.
-  const std::string name = dotted.substr(dotted.find('.') + 1);
-  const auto name_of = [](const std::string& key) { return key.substr(key.rfind('.') + 1); };
   constexpr std::size_t letter = 4;
-  if (edit_distance(name, name_of(found)) > 2 * letter) {
-    for (const Key& key : known_keys())
-      if (edit_distance(name, key.name) <= letter) return key.dotted();
+  std::string found = near_one(name, own), of_table = table;
+  const std::string elsewhere = nearest(name, all);
+  const bool one_letter_off = !elsewhere.empty() && edit_distance(name, elsewhere) <= letter;
+  if (one_letter_off && (found.empty() || edit_distance(name, found) > 2 * letter)) {
+    found = elsewhere;
+    of_table = known_keys()[std::size_t(std::find(all.begin(), all.end(), found) - all.begin())].table;
+  } else if (found.empty()) {
+    // The table may be the misspelt part, or none was given.
+    std::vector<std::string> whole;
+    for (const Key& key : known_keys()) whole.push_back(key.dotted());
+    return own.empty() ? near_one(dotted, whole) : "";
   }
-  if (!material.empty() && found.starts_with("material.")) found.insert(9, material + ".");
-  return found;
+  return of_table + (!material.empty() && of_table == "material" ? "." + material : "") + "." + found;
 }
 
 }  // namespace
@@ -163,8 +167,11 @@ void set_key(Specimen& specimen, const std::string& dotted_key, const toml::node
   const KeyEntry* entry = find_entry(dotted);
   if (entry == nullptr) {
     refuse_other_unit(dotted_key, dotted, material);
-    throw InputError("unknown key " + shortened(dotted_key) + "; the nearest known key is " + nearest_key(dotted_key) +
-                     "; correct the name or remove it");
+    const std::string near = near_key(dotted_key);
+    throw InputError(
+        "unknown key " + shortened(dotted_key) +
+        (near.empty() ? "; no known key is near; rvelab keys lists them" : "; the nearest known key is " + near) +
+        "; correct the name or remove it");
   }
   expect_unit(specimen, dotted_key, *entry);
   Material none;

@@ -17,6 +17,13 @@ std::string digits(const char* format, double value) {
   return text;
 }
 
+/// Three digits, large numbers without an exponent: 8400.
+std::string three_digits(double value) {
+  if (!(value >= 100)) return digits("%.3g", value);
+  const double step = std::pow(10.0, std::floor(std::log10(value)) - 2);
+  return digits("%.0f", step * std::round(value / step));
+}
+
 }  // namespace
 
 Proportions proportions_of(const Network& network) {
@@ -48,7 +55,7 @@ std::string in_words(const Proportions& p) {
   else
     text += "overlap " + digits("%.3g", p.mean_overlap) + " r (largest " + digits("%.3g", p.largest_overlap) + " r)";
   if (!std::isnan(p.stiffness_level))
-    text += std::string(", kn/(p ") + (p.dimension == 2 ? "t) " : "d) ") + digits("%.3g", p.stiffness_level);
+    text += std::string(", kn/(p ") + (p.dimension == 2 ? "t) " : "d) ") + three_digits(p.stiffness_level);
   text += ", cell ";
   for (int k = 0; k < p.dimension; ++k) text += (k > 0 ? " x " : "") + digits("%.3g", p.cell_edges[k]);
   return text + " diameters";

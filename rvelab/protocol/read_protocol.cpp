@@ -192,7 +192,7 @@ void expect_followers(const Protocol& protocol, const std::vector<const toml::ta
   const auto expect = [&](const std::string& where, const std::string& then, const toml::node* place) {
     if (then.empty() || std::find(names.begin(), names.end(), then) != names.end()) return;
     const std::string message = where + ".then = \"" + then + "\" names no stage; allowed: " + known +
-                                "; the nearest is " + nearest(then, names) + "; correct the name";
+                                nearest_in_words(then, names) + "; correct the name";
     errors.push_back(key_error(place->source(), message));
   };
   for (std::size_t s = 0; s < protocol.stages.size(); ++s) {

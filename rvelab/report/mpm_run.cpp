@@ -62,7 +62,7 @@ struct Frame {
   std::vector<double> position;             ///< m
   std::vector<double> side, across, angle;  ///< sides of a stretched point, m, and the angle of the first
   std::vector<std::vector<double>> fields;
-  Json rocks = Json::array();  ///< centre, half axes in the plane (in space: mean half axis twice), angle
+  Json rocks = Json::array();  ///< centre; in the plane half axes of the outline and angle, in space the half axes
 };
 
 Json rocks_of(const std::string& path, int dimension) {
@@ -73,18 +73,18 @@ Json rocks_of(const std::string& path, int dimension) {
   for (std::size_t k = 0; 3 * k < centres.size(); ++k) {
     Matrix3 A;
     for (int c = 0; c < 9; ++c) A(c / 3, c % 3) = axes[9 * k + std::size_t(c)];
-    double major = 0, minor = 0, angle = 0;
+    Json rock{number(centres[3 * k]), number(centres[3 * k + 1]), number(centres[3 * k + 2])};
     if (dimension == 2) {
       // The outline of A u, |u| = 1, is the ellipse of (A A^T) in the plane.
       const Eigen::Matrix2d plane = A.topLeftCorner<2, 2>();
       const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(plane * plane.transpose());
-      minor = std::sqrt(std::max(0.0, solver.eigenvalues()[0])), major = std::sqrt(solver.eigenvalues()[1]);
-      angle = std::atan2(solver.eigenvectors()(1, 1), solver.eigenvectors()(0, 1));
+      rock.push_back(number(std::sqrt(solver.eigenvalues()[1])));
+      rock.push_back(number(std::sqrt(std::max(0.0, solver.eigenvalues()[0]))));
+      rock.push_back(number(std::atan2(solver.eigenvectors()(1, 1), solver.eigenvectors()(0, 1))));
     } else {
-      major = minor = std::cbrt(std::abs(A.determinant()));
+      for (int c = 0; c < 9; ++c) rock.push_back(number(A(c % 3, c / 3)));  // one half axis after the other
     }
-    rocks.push_back({number(centres[3 * k]), number(centres[3 * k + 1]), number(centres[3 * k + 2]), number(major),
-                     number(minor), number(angle)});
+    rocks.push_back(std::move(rock));
   }
   return rocks;
 }

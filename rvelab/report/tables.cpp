@@ -6,6 +6,7 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <span>
 #include <sstream>
 
 #include "rvelab/calibrate/calibrate.hpp"
@@ -223,7 +224,7 @@ Results results_of(const std::vector<Test>& tests, const std::vector<Kind>& kind
 
 Table loops_of(const std::vector<Test>& tests) {
   Table rows{{"test", "stage", "loop", "amplitude of the shear strain (%)", "secant shear modulus (MPa)",
-              "damping ratio (%)"}};
+              "damping ratio (%)", "G/G_max", "G_max (MPa)", "G_max is of"}};
   for (const Test& test : tests) {
     const auto& records = test.records();
     for (std::size_t begin = 0, end = 0; begin < records.size(); begin = end) {
@@ -233,11 +234,15 @@ Table loops_of(const std::vector<Test>& tests) {
       const auto* compression = protocol::settings_of<protocol::CompressionStage>(stage);
       if (!(shear != nullptr && shear->cycles.count > 0) && !(compression != nullptr && compression->cycles.count > 0))
         continue;
-      const auto loops =
-          ensemble::loops_of({records.data() + begin, end - begin}, test.recorded.result.axis, test.dimension);
+      const std::span<const records::Record> whole{records.data() + begin, end - begin};
+      const std::string& axis = test.recorded.result.axis;
+      const auto loops = ensemble::loops_of(whole, axis, test.dimension);
+      const ensemble::ReferenceModulus G_max =
+          ensemble::reference_modulus(whole, loops, test.recorded.result.probes, axis, test.dimension);
       for (std::size_t k = 0; k < loops.size(); ++k)
         rows.push_back({test.file, stage.name, std::to_string(k + 1), in_three_digits(100 * loops[k].gamma),
-                        in_three_digits(loops[k].G / 1e6), in_three_digits(100 * loops[k].damping_ratio)});
+                        in_three_digits(loops[k].G / 1e6), in_three_digits(100 * loops[k].damping_ratio),
+                        in_three_digits(loops[k].G / G_max.G), in_three_digits(G_max.G / 1e6), G_max.of});
     }
   }
   return rows;

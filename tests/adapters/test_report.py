@@ -23,6 +23,31 @@ folder = Path(sys.argv.pop(1)).resolve() if len(sys.argv) > 1 else Path(".").res
 browser_program = os.environ.get("CHROMIUM") or shutil.which("chromium")
 scenes = Path(__file__).resolve().parents[2] / "protocols/mpm"
 READY = "document.documentElement.dataset.ready && document.getElementById('stage').dataset.record"
+ROCKS_IN_THE_PLANE = """
+scene = { name = "rocks", dimension = 2 }
+grid = { cell_m = 0.1 }
+time = { duration_s = 0.02 }
+loads = { gravity_m_s2 = [0, -9.81] }
+output = { history_every_s = 0.01, frame_every_s = 0.01 }
+boundary = [{ name = "base", kind = "fixed", axis = "y", at_m = 0 }]
+region = [{ material = "soil", lower_m = [0, 0], upper_m = [0.5, 0.5] }]
+rock = [{ name = "long", material = "stone", shape = "superquadric", half_axes_m = [0.2, 0.1], centre_m = [0.3, 0.75] },
+        { name = "round", material = "stone", shape = "superquadric", half_axes_m = [0.12, 0.1], centre_m = [0.9, 0.3] }]
+rock_soil = { friction = 0.3 }
+
+[[material]]
+name = "soil"
+kind = "elastic"
+density_kg_m3 = 1900
+young_modulus_Pa = 2e6
+poisson_ratio = 0.3
+
+[[rock_material]]
+name = "stone"
+density_kg_m3 = 2600
+young_modulus_Pa = 5e7
+poisson_ratio = 0.25
+"""
 SVG = "{http://www.w3.org/2000/svg}"
 
 
@@ -34,6 +59,7 @@ def setUpModule() -> None:
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     (folder / "downloads").mkdir()
+    (folder / "cycles").mkdir()
     tests = ("--set", "stage.compression.to_strain=0.06", "--set", "output.snapshots_every=10")
     for group, void_ratio in (("dense", 0.2), ("loose", 0.25)):
         run("pack", "pack_dense", "-o", f"{group}.h5", "--count", 2, "--set", "pack.number=64", "--set",
@@ -53,6 +79,14 @@ def setUpModule() -> None:
     run("report", "triaxial.h5", "-o", "space.html")
     run("report", "dense", "loose", "-o", "groups.html")
     run("report", "column", "-o", "mpm.html")
+    run(scenes / "boulders.toml", "--set", "time.duration_s=0.05", "-o", "boulders", program="RVELAB_MPM")
+    (folder / "rocks.toml").write_text(ROCKS_IN_THE_PLANE)
+    run("rocks.toml", "-o", "rocks", program="RVELAB_MPM")
+    run("report", "boulders", "rocks", "-o", "rocks.html")
+    for amplitude in ("2e-4", "2e-3"):
+        run("run", "cyclic_shear", "--specimen", "S_dense/S_1.h5", "-o", f"cycles/{amplitude}.h5", "--set", "stage.cycles.cycles=3",
+            "--set", f"stage.cycles.to_strain={amplitude}", "--set", "stage.cycles.record_every=1e-4")
+    run("report", "cycles", "-o", "cycles.html")
 
 
 class Page(unittest.TestCase):
@@ -322,6 +356,67 @@ class Mpm(Page):
         self.assertEqual(len(rows) - 1, len(history))
         for row, told in zip(rows[1:], history):
             self.assertAlmostEqual(float(row[3]), float(told["kinetic_J"]), delta=1e-4 * abs(float(told["kinetic_J"])) + 1e-12)
+
+
+class Rocks(Page):
+    page = "rocks.html"
+
+    def shapes(self, tag: str) -> list:
+        """Of the picture as SVG: half axes of its ellipses, or how large its circles and rectangles are."""
+        svg = xml.fromstring(self.download("#specimen-downloads .downloads button:nth-child(2)"))
+        if tag == "ellipse":
+            return [(float(each.get("rx")), float(each.get("ry"))) for each in svg.iter(f"{SVG}ellipse")]
+        size = {"circle": "r", "rect": "width"}[tag]
+        return [float(each.get(size)) for each in svg.iter(f"{SVG}{tag}") if "transform" in each.attrib or tag == "circle"]
+
+    def test_rocks_are_ellipsoids_of_their_half_axes_and_are_left_out_on_demand(self) -> None:
+        self.choose("#section", "0")
+        self.browser.wait("document.getElementById('scale').textContent.includes('5 rocks')")
+        seen = [self.pixels()]
+        self.assertEqual(len(self.shapes("ellipse")), 5)
+        for draw, rocks, points in (("grains", 0, True), ("chains", 5, False)):
+            self.choose("#draw", draw)
+            seen.append(self.pixels())
+            self.assertEqual(len(self.shapes("ellipse")), rocks)
+            self.assertEqual(max(self.shapes("circle")) > 0, points)
+        self.assertEqual(len(set(seen)), 3)
+        box = self.box("#stage")
+        for x, y in ((0.1 + 0.06 * i, 0.2 + 0.06 * j) for j in range(11) for i in range(14)):
+            self.browser.click(box["x"] + x * box["width"], box["y"] + y * box["height"])
+            if self.text("told"):
+                break
+        self.assertRegex(self.text("told"), r"Rock \d: centre at [^;]+ m; half axes [\d.]+, [\d.]+, [\d.]+ m")
+
+    def test_in_the_plane_rocks_are_ellipses_and_points_rectangles(self) -> None:
+        self.choose("#section", "1")
+        self.browser.wait("document.getElementById('scale').textContent.includes('2 rocks')")
+        self.pixels()  # until the page has come to rest: a click goes to a place
+        long, round_ = sorted(self.shapes("ellipse"), reverse=True)
+        self.assertAlmostEqual(long[0] / long[1], 2, delta=0.05)
+        self.assertAlmostEqual(round_[0] / round_[1], 1.2, delta=0.05)
+        self.assertGreater(len(self.shapes("rect")), 50)
+        # A corner of the rectangle around the long rock is not of it: the ground of the page is seen there.
+        grey = self.browser.value("""(() => { const c = document.querySelector('#stage canvas'), d = document.createElement('canvas');
+          d.width = c.width; d.height = c.height; const g = d.getContext('2d'); g.drawImage(c, 0, 0);
+          const p = g.getImageData(0, 0, d.width, d.height).data; let n = 0;
+          for (let k = 0; k < p.length; k += 4) n += p[k] === 153 && p[k + 1] === 153 && p[k + 2] === 153 ? 1 : 0;
+          return n / (c.width / c.clientWidth) ** 2; })()""")
+        # Rims are darker: of an ellipse the inner 85 % of its area are plain.
+        self.assertAlmostEqual(grey / (0.85 * math.pi * (long[0] * long[1] + round_[0] * round_[1])), 1, delta=0.1)
+
+
+class Cycles(Page):
+    page = "cycles.html"
+
+    def test_no_loop_is_stiffer_than_the_reference_and_both_tests_have_theirs(self) -> None:
+        rows = list(csv.DictReader(self.download("#loops-downloads button").splitlines()))
+        self.assertEqual({row["test"] for row in rows}, {"2e-4.h5", "2e-3.h5"})
+        for row in rows:
+            ratio = float(row["G/G_max"])
+            self.assertTrue(0 < ratio <= 1, row)
+            self.assertAlmostEqual(ratio, float(row["secant shear modulus (MPa)"]) / float(row["G_max (MPa)"]), delta=0.01)
+            self.assertIn(row["G_max is of"], ("first record", "stiffest loop"))
+        self.assertIn("G/G_max", self.text("loops"))
 
 
 class Phone(Page):

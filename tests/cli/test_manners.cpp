@@ -65,6 +65,22 @@ TEST_CASE("a misspelt subcommand or option is answered with the nearest one") {
   expect_mistake(here.run("--versoin"), "unknown option --versoin; the nearest is --version;");
 }
 
+TEST_CASE("a key or a name that is near nothing is answered with none, a word of a key with that key") {
+  const Workplace here;
+  here.import_packing("dense_p20");
+  const std::string test = "run biaxial --specimen S.h5 --set ";
+  for (const char* far : {"solver.gravity=9.81", "material.colour=3", "contact.zzzz=1"}) {
+    const Outcome outcome = here.run(test + far);
+    expect_mistake(outcome, "no known key is near; rvelab keys lists them");
+    CHECK_THAT(outcome.errors, !Contains("nearest"));
+  }
+  expect_mistake(here.run(test + "solver.tolerance=0.1"), "the nearest known key is solver.relative_tolerance;");
+  expect_mistake(here.run(test + "material.sand.frictoin=0.1"), "the nearest known key is material.sand.friction;");
+  expect_mistake(here.run(test + "stage.compression.lateral=zzzz"), "choose one of these");
+  for (const char* words : {"run zzzz --specimen S.h5", "keys qqqq"})
+    CHECK_THAT(here.run(words).errors, !Contains("nearest"));
+}
+
 TEST_CASE("a value that looks like an option belongs to the option before it") {
   const Workplace here;
   expect_mistake(here.run("inspect -x.h5"), "unknown option -x");

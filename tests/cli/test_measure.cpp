@@ -109,6 +109,8 @@ TEST_CASE("measure gives modulus and damping of each loop of a cyclic test, and 
     CHECK(loop.at("gamma").get<double>() == Approx(0.005).epsilon(0.01));
     CHECK(loop.at("G_over_G_max").get<double>() < 1);
     CHECK(loop.at("G_over_G_max").get<double>() > 0);
+    CHECK(loop.at("G_over_G_max").get<double>() ==
+          Approx(loop.at("G_Pa").get<double>() / json.at("G_max_Pa").get<double>()));
     // Of a solid that yields at once it is 2/pi (Masing); grains that are stuck dissipate nothing.
     CHECK(loop.at("damping_ratio").get<double>() > 0.01);
     CHECK(loop.at("damping_ratio").get<double>() < 0.64);

@@ -1,6 +1,9 @@
 // What goes wrong outside rvelab is told in its words: one line of UTF-8 with the path and a remedy.
 #include <sys/resource.h>
 
+#include <nlohmann/json.hpp>
+#include <regex>
+
 #include "rvelab/io/utf8.hpp"
 #include "tests/cli/program.hpp"
 
@@ -88,6 +91,22 @@ TEST_CASE("a listing shows what is not defined as a dash, never as a number that
   CHECK(shown.output.find("nan") == std::string::npos);
   CHECK_THAT(shown.output, Contains("fabric_anisotropy        -\n"));
   CHECK_THAT(here.run("inspect S.h5 --json").output, Contains("\"fabric_anisotropy\": null"));
+}
+
+TEST_CASE("a listing has one number in the same few digits everywhere, JSON all of them") {
+  const Workplace here;
+  here.import_packing("dense_p20");
+  const std::string words = " biaxial --specimen S.h5 --set stage.compression.to_strain=0.02";
+  const auto json = nlohmann::json::parse(here.run("run" + words + " --json").output);
+  char angle[16];
+  std::snprintf(angle, sizeof angle, "%.1f", json.at("peak_friction_angle_deg").get<double>());
+  CHECK_THAT(here.run("run" + words).output, Contains("peak_friction_angle_deg  " + std::string(angle) + " degrees\n"));
+  const std::string calibrated = here.run("calibrate" + words + " --pressures 20e3,200e3").output;
+  CHECK_THAT(calibrated, Contains("  " + std::string(angle) + "  "));  // in the table of tests
+  CHECK(!std::regex_search(calibrated, std::regex("[0-9]\\.[0-9]{2,} degrees")));
+  const std::string inspected = here.run("inspect S.h5").output;
+  CHECK_THAT(inspected, Contains("p_Pa"));
+  CHECK(!std::regex_search(inspected, std::regex("[0-9]e[+-]0[0-9]")));
 }
 
 TEST_CASE("a run that keeps no records says so, one that keeps or prints them does not") {

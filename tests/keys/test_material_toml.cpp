@@ -130,6 +130,8 @@ TEST_CASE("an unknown key is answered with the nearest known one") {
   CHECK_THAT(refused("material.sand.frictoin=0.3"), Contains("is material.sand.friction;"));
   CHECK_THAT(refused("young_modulus_MPa=100"), Contains("write material.young_modulus_Pa, 1 MPa = 1e6 Pa"));
   CHECK_THAT(refused("solver.maxsubsteps=9"), Contains("is solver.max_substeps;"));
+  CHECK_THAT(refused("solver.tolerance=9"), Contains("is solver.relative_tolerance;"));
+  CHECK_THAT(refused("solver.gravity=9"), Contains("no known key is near") && !Contains("nearest"));
   CHECK_THAT(refused("material.silt.friction=0.3"), Contains("silt") && Contains("sand, gravel"));
   CHECK(keys::nearest("kitten", {"sitting", "mitten", "bitten"}) == "mitten");
   CHECK(keys::nearest("x", {}).empty());

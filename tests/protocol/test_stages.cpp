@@ -82,7 +82,9 @@ TEST_CASE("An event names stages and quantities that are there, and only stages 
   CHECK_THAT(
       message_of(stage + "  quantity = \"q_Pa\"\n  above = 1\n  then = \"shaer\"\n"),
       Contains("t.toml:10: stage.compression.until.0.then = \"shaer\" names no stage; allowed: end, compression; "
-               "the nearest is end"));
+               "correct the name"));
+  CHECK_THAT(message_of(stage + "  quantity = \"q_Pa\"\n  above = 1\n  then = \"compresion\"\n"),
+             Contains("the nearest is compression"));
   CHECK_THAT(message_of(stage + "  quantity = \"qq\"\n  above = 1\n"),
              Contains("stage.compression.until.0.quantity = 'qq' is not known"));
   CHECK_THAT(message_of("[[stage]]\nkind = \"simple_sheer\"\n"), Contains("the nearest is simple_shear; choose one"));

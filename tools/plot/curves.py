@@ -155,7 +155,8 @@ def labels_of(kinds, stages, keys, varies, pressures):
         members = [stage for stage, key in zip(stages, keys) if key == kind]
         words = [kind[0]] if varies["group"] else []
         if varies["pressure"] or not any(varies[name] for name in ("group", "stage", "void")):
-            words.append(f"{records.plain(pressures[kind[2]] / 1e3)} kPa")
+            carried = pressures[kind[2]] > 1e-6  # Pa; a gas at a rate begins without contacts
+            words.append(f"{records.plain(pressures[kind[2]] / 1e3)} kPa" if carried else "no pressure at the start")
         if varies["stage"]:
             words.append(members[0].name)
         if varies["void"]:
@@ -194,13 +195,30 @@ def log_axis(axis, values):
     # Half of a tenth of the span beside the values.
     room = (high / low) ** 0.05
     (axis.axes.set_xlim if axis.axis_name == "x" else axis.axes.set_ylim)(low / room, high * room)
-    decades = np.log10(high / low)
-    subs = ((1.0,) if decades > 3 else (1.0, 2.0, 5.0) if decades > 0.7 else
-            tuple(np.arange(1.0, 10.0, 1.0 if decades > 0.3 else 0.2)))
-    axis.set_major_locator(ticker.LogLocator(base=10, subs=subs, numticks=30))
+    axis.set_major_locator(ticker.LogLocator(base=10, subs=ticks_of_decade(low / room, high * room), numticks=30))
     axis.set_minor_locator(ticker.LogLocator(base=10, subs=np.arange(1, 10), numticks=30))
     axis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value:g}"))
     axis.set_minor_formatter(ticker.NullFormatter())
+
+
+def ticks_of_decade(low, high):
+    """Multiples of a power of ten that make four numbers or more between low and high, the fewest that do."""
+    finest = [1.0]
+    for finest in ((1.0,), (1.0, 3.0), (1.0, 2.0, 5.0), (1.0, 2.0, 3.0, 5.0, 7.0), tuple(np.arange(1.0, 10.0)),
+                   tuple(np.arange(1.0, 10.0, 0.5)), tuple(np.arange(1.0, 10.0, 0.2)), tuple(np.arange(1.0, 10.0, 0.1))):
+        powers = 10.0 ** np.arange(np.floor(np.log10(low)), np.ceil(np.log10(high)) + 1)
+        places = np.outer(powers, finest)
+        if np.sum((places >= low) & (places <= high)) >= 4:
+            break
+    return finest
+
+
+def least_span(axes, axis, least):
+    """Widens an axis that would show round-off or a tolerance, and writes its numbers in full."""
+    low, high = axes.get_xlim() if axis == "x" else axes.get_ylim()
+    if high - low < least:
+        (axes.set_xlim if axis == "x" else axes.set_ylim)(0.5 * (low + high - least), 0.5 * (low + high + least))
+    axes.ticklabel_format(axis=axis, useOffset=False)
 
 
 def length_unit(size):

@@ -130,11 +130,11 @@ def draw_fits(axes, of_files, colour):
             axes.plot(ends / 1e3, at_zero - index * np.log10(ends), color=own, linewidth=2.2, alpha=0.5, zorder=1,
                       solid_capstyle="butt")
         name, index, error, low, high = mean_index(same, k)
-        range_of = f"{low / 1e3:.3g} to {high / 1e3:.3g} kPa"
+        range_of = f"{records.plain(low / 1e3)} to {records.plain(high / 1e3)} kPa"
         axes.plot([], [], color=own, linewidth=2.2, alpha=0.5,
-                  label=f"${name}$ = {index:.4f} ± {error:.1g}, {range_of}")
-        told.append(f"{NAMES[name]} {name} = {index:.4f} +- {error:.1g} ({range_of}; lambda "
-                    f"{index / math.log(10):.4f})")
+                  label=f"${name}$ = {records.with_error(index, error, ' ± ')}, {range_of}")
+        told.append(f"{NAMES[name]} {name} = {records.with_error(index, error)} ({range_of}; lambda "
+                    f"{records.plain(index / math.log(10))})")
     return told
 
 

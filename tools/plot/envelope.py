@@ -2,8 +2,8 @@
 """Response envelopes: envelope.py RECORDS.h5 -o envelope.png (every stage of kind envelope).
 
 Left, the strains of the probes, right, the changes of stress they made (or that made them), axial against lateral,
-compression positive; in 3D lateral is the root of two times the mean of the two (Rendulic plane). Colours go with the
-direction of the probe.
+compression positive; in 3D lateral is the root of two times the mean of the two (Rendulic plane). Colours and numbers go
+with the direction of the strain of the probe.
 """
 
 import argparse
@@ -21,6 +21,16 @@ def plane(tensor, dimension):
     return (tensor[:, 0, 0] + tensor[:, 1, 1]) / math.sqrt(2), tensor[:, 2, 2]
 
 
+def number_directions(axis, strain, lateral, axial, dimension):
+    """Every third probe with the direction of its strain, degrees from the lateral axis."""
+    across, along = plane(strain, dimension)
+    for k in range(0, len(axial), 3):
+        degrees = round(math.degrees(math.atan2(along[k], across[k]))) % 360
+        size = math.hypot(lateral[k], axial[k]) or 1
+        axis.annotate(f"{degrees}°", (lateral[k], axial[k]), xytext=(-13 * lateral[k] / size, -13 * axial[k] / size),
+                      textcoords="offset points", ha="center", va="center", fontsize=7, color="0.3")
+
+
 def draw(stages, options):
     stages = [stage for stage in stages if stage.kind == "envelope"]
     if not stages:
@@ -30,15 +40,17 @@ def draw(stages, options):
         identity = np.eye(stage.dimension)
         strain = identity - stage.deformation[1:]
         change = stage.stress[1:] - stage.stress[0]
-        names = ("y", "x") if stage.dimension == 2 else ("z", "\\sqrt{2}\\,r")
+        root, names = ("", ("y", "x")) if stage.dimension == 2 else ("\\sqrt{2}\\,", ("z", "r"))
         for axis, tensor, unit, letter in ((strains, 1e4 * strain, "$10^{-4}$", "\\varepsilon"),
                                            (stresses, change / 1e3, "kPa", "\\sigma")):
             lateral, axial = plane(tensor, stage.dimension)
             axis.plot(np.append(lateral, lateral[0]), np.append(axial, axial[0]), color="0.6", linewidth=0.9)
-            axis.scatter(lateral, axial, c=np.linspace(0, 1, len(axial), endpoint=False), cmap="hsv", s=16, zorder=3)
+            axis.scatter(lateral, axial, c=np.linspace(0, 1, len(axial), endpoint=False), cmap="twilight", vmax=1,
+                         edgecolor="0.35", linewidth=0.4, s=22, zorder=3)
+            number_directions(axis, strain, lateral, axial, stage.dimension)
             axis.plot(0, 0, "+", color="k")
             axis.set_aspect("equal", adjustable="datalim")
-            axis.set_xlabel(f"$\\Delta{letter}_{{{names[1]}}}$ ({unit})")
+            axis.set_xlabel(f"${root}\\Delta{letter}_{{{names[1]}}}$ ({unit})")
             axis.set_ylabel(f"$\\Delta{letter}_{{{names[0]}}}$ ({unit})")
         strains.set_title(stage.label, fontsize=10, loc="left")
     figure.suptitle("Response envelopes", fontsize=11, x=0.12, ha="left")

@@ -2,8 +2,8 @@
 """A film of grains and force chains, or of fields: film.py R.h5|RUN -o film.mp4 (or film.gif).
 
 Of a record file, its snapshots (run the test with --set output.snapshots_every=10) and its end: grains and force chains
-(--field chains), or grains coloured by their mean stress (--field p), and below q/p against the number of the record
-with the state of the frame marked. Of a folder that rvelab-mpm wrote, any field of its material points (--field eps_q, ...).
+(--field chains), or grains coloured by their mean stress (--field p), and below q/p against the strain of the
+stage with the state of the frame marked. Of a folder that rvelab-mpm wrote, any field of its material points (--field eps_q, ...).
 MP4 (H.264) is made by ffmpeg, GIF by Pillow; without -o MP4 where ffmpeg is there.
 """
 
@@ -110,15 +110,14 @@ def largest_pressure(found):
 
 
 def mark_state(axes, stages, state):
-    """q/p against the number of the record, and where the state is."""
-    here = None
+    """q/p against the driving strain of the stage that the state is of, and where in it the state is."""
     for stage in stages:
-        axes.plot(stage.first_record + np.arange(len(stage.strain)), stage.mobilised(), color="0.4", linewidth=1.0)
-        if 0 <= state.record - stage.first_record < len(stage.strain):
-            here = state.record, stage.mobilised()[state.record - stage.first_record]
-    if here:
-        axes.plot(*here, "o", color=chains.STRONG, markersize=6)
-    axes.set_xlabel("record")
+        here = state.record - stage.first_record
+        if not 0 <= here < len(stage.strain):
+            continue
+        axes.plot(100 * stage.strain, stage.mobilised(), color="0.4", linewidth=1.0)
+        axes.plot(100 * stage.strain[here], stage.mobilised()[here], "o", color=chains.STRONG, markersize=6)
+        axes.set_xlabel(stage.strain_in_words())
     axes.set_ylabel("$q/p$")
     axes.set_ylim(bottom=0)
 

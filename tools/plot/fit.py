@@ -139,6 +139,14 @@ def groups_of(rows):
     return list(groups.values())
 
 
+def measure_in_words(name, largest):
+    """Label of a measure with its unit, and the factor to that."""
+    for end, unit, factor in (("_deg", "degrees", 1), ("_Pa", "MPa" if largest >= 1e6 else "kPa", 1e-6 if largest >= 1e6 else 1e-3)):
+        if name.endswith(end):
+            return f"{name.removesuffix(end).replace('_', ' ')} ({unit})", factor
+    return name.replace("_", " "), 1
+
+
 def draw_sweep(rows, options):
     names = list(rows[0]) if rows else []
     measures = [name for name in names if name + "_standard_error" in names]
@@ -148,15 +156,19 @@ def draw_sweep(rows, options):
     figure, axes = panels(len(measures))
     others = list(dict.fromkeys(tuple(row[key] for key in keys[1:]) for row in rows))
     for panel, measure in zip(axes, measures):
+        words, scale = measure_in_words(measure, max(abs(float(row[measure])) for row in rows if row[measure]))
         for k, other in enumerate(others):
             own = [row for row in rows if tuple(row[key] for key in keys[1:]) == other and row[measure]]
             label = ", ".join(f"{key.split('.')[-1]} {float(value):.4g}" for key, value in zip(keys[1:], other))
-            panel.errorbar([float(row[keys[0]]) for row in own], [float(row[measure]) for row in own],
-                           yerr=[float(row[measure + "_standard_error"] or 0) for row in own], fmt="-o", markersize=3,
+            panel.errorbar([float(row[keys[0]]) for row in own], [scale * float(row[measure]) for row in own],
+                           yerr=[scale * float(row[measure + "_standard_error"] or 0) for row in own], fmt="-o", markersize=3,
                            capsize=2, color=kinds.QUALITATIVE[k % len(kinds.QUALITATIVE)], label=label or None)
         panel.ticklabel_format(axis="y", useOffset=False)
         panel.set_xlabel(keys[0], fontsize=9)
-        panel.set_ylabel(measure.replace("_", " "), fontsize=8)
+        panel.set_ylabel(words, fontsize=8)
+        varied = [float(row[keys[0]]) for row in rows]
+        if min(varied) > 0 and max(varied) >= 10 * min(varied):
+            kinds.log_axis(panel.xaxis, varied)
     if len(keys) > 1:
         kinds.legend(axes[min(2, len(axes) - 1)])
     figure.savefig(options.output)

@@ -88,6 +88,7 @@ def draw(stages, options):
     if p.min() < 0.5 * p[0]:
         decay.axhline(0.02, color="0.5", linewidth=0.8, linestyle="--", label="$p/p_0$ = 0.02, liquefied")
         decay.legend(fontsize=8, loc="upper right")
+    decay.set_title(f"lowest $p/p_0$ = {records.plain(p.min() / p[0])}, {cycles[-1]:.1f} cycles", fontsize=9, loc="left")
     decay.set_xlabel("cycles")
     decay.set_ylabel("$p/p_0$")
     decay.set_xlim(left=0)
@@ -99,7 +100,8 @@ def draw(stages, options):
         bar.ax.tick_params(length=0)
     figure.suptitle(f"{stage.test_in_words()}: {stage.label}", fontsize=11, x=0.06, ha="left")
     figure.savefig(options.output)
-    return f"{options.output}: {cycles[-1]:.1f} cycles, p from {p[0]:.4g} to {p[-1]:.4g} Pa, lowest {p.min():.4g} Pa"
+    return (f"{options.output}: {cycles[-1]:.1f} cycles, p from {records.plain(p[0] / 1e3)} to "
+            f"{records.plain(p[-1] / 1e3)} kPa, lowest {records.plain(p.min() / 1e3)} kPa")
 
 
 if __name__ == "__main__":

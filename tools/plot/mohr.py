@@ -7,7 +7,7 @@ warning. Of several specimens at one pressure the circle of their mean state is 
 passes through the origin: t = s sin phi by least squares over the tests, s = (sigma_1 + sigma_3)/2,
 t = (sigma_1 - sigma_3)/2; of a cohesive soil it is t = s sin phi + c cos phi, as calibrate has it: its grains stick, or the c
 of three tests and more is beyond twice its standard error and 5 % of their mean s. Of several specimens the mean of their
-angles with its 95 % interval (Student's) is drawn and printed beside it. Where all tests reach 15 % axial strain, the mean of
+angles with its 95 % interval (Student's) is drawn and printed instead. Where all tests reach 15 % axial strain, the mean of
 their angles from 12 to 15 % is drawn too, secants through the origin. Compression positive.
 """
 
@@ -79,6 +79,8 @@ def straight_envelope(s, t):
     if len(s) < 2 or not np.dot(off, off) > 0:
         return None
     slope = np.dot(off, t) / np.dot(off, off)
+    if not slope < 1:  # circles through one lateral stress
+        return None
     intercept, cosine = t.mean() - slope * s.mean(), math.sqrt(1 - slope**2)
     variance = np.sum((t - intercept - slope * s)**2) / (len(s) - 2) if len(s) > 2 else math.nan
     of_slope = variance / np.dot(off, off)
@@ -140,8 +142,7 @@ def draw_envelopes(axes, tests, right, colour="crimson", name=""):
     """Envelope of the peaks with its interval, and that of large strain; the words for both and the peak angle."""
     peak, cohesion = envelope(tests)
     interval = interval_of(tests, cohesion != 0)
-    digits = 3 if interval is None else 1  # specimens scatter by degrees
-    text = f"peak friction angle {math.degrees(peak):.{digits}f} degrees"
+    text = f"peak friction angle {math.degrees(peak):.1f} degrees"
     before = f"{name}, " if name else ""
     label = f"{before}peak: $\\varphi$ = {math.degrees(peak):.1f}°"
     if interval is not None:
@@ -150,7 +151,8 @@ def draw_envelopes(axes, tests, right, colour="crimson", name=""):
         axes.fill_between([0, right], low, high, color=colour, alpha=0.12, linewidth=0,
                           label="95 % interval of the mean" if not name else None)
         label = f"{before}peak: $\\varphi$ = {math.degrees(mean):.1f}° ± {math.degrees(half):.1f}°"
-        text += f" ({count} specimens: {math.degrees(mean):.1f} +- {math.degrees(half):.1f}, 95 % interval of the mean)"
+        text = (f"peak friction angle {math.degrees(mean):.1f} +- {math.degrees(half):.1f} degrees (mean of {count} specimens and "
+                "its 95 % interval)")
     if cohesion:
         label += f", c = {cohesion / 1e3:.3g} kPa"
         text += f", cohesion {cohesion:.0f} Pa: the tangent angle of a cohesive soil"
@@ -160,7 +162,7 @@ def draw_envelopes(axes, tests, right, colour="crimson", name=""):
         mean = sum(large) / len(large)
         line_of(axes, mean, right, f"{before}12 to 15 % strain: $\\varphi$ = {math.degrees(mean):.1f}°",
                 color=colour if name else "0.35", linestyle=(0, (5, 3)))
-        text += f", at large strain {math.degrees(mean):.{digits}f} degrees"
+        text += f", at large strain {math.degrees(mean):.1f} degrees"
     return (f"{name}: " if name else "") + text, cohesion / 1e3 + right * math.tan(peak)
 
 

@@ -22,6 +22,7 @@ import h5py
 import numpy as np
 import state as states
 from matplotlib.collections import PolyCollection
+from matplotlib.ticker import FuncFormatter
 
 # Label, colours, and whether zero is in the middle of the scale.
 FIELDS = {"eps_q": ("deviatoric strain $\\varepsilon_q$", "viridis", False),
@@ -30,10 +31,10 @@ FIELDS = {"eps_q": ("deviatoric strain $\\varepsilon_q$", "viridis", False),
           "rotation_deg": ("rotation (degrees, anticlockwise positive)", "RdBu_r", True),
           "fabric_anisotropy": ("fabric anisotropy $F_a$", "viridis", False),
           "velocity": ("speed (m/s)", "magma", False), "displacement": ("displacement (m)", "viridis", False),
-          "p_Pa": ("mean pressure $p$ (Pa)", "viridis", False), "q_Pa": ("deviator $q$ (Pa)", "viridis", False),
+          "p_Pa": ("mean pressure $p$ (kPa)", "viridis", False), "q_Pa": ("deviator $q$ (kPa)", "viridis", False),
           "plastic_strain": ("plastic strain", "viridis", False),
-          "pore_pressure_Pa": ("pore pressure (Pa)", "Blues", False),
-          "excess_pore_pressure_Pa": ("excess pore pressure (Pa)", "RdBu_r", True),
+          "pore_pressure_Pa": ("pore pressure (kPa)", "Blues", False),
+          "excess_pore_pressure_Pa": ("excess pore pressure (kPa)", "RdBu_r", True),
           "pore_pressure_ratio": ("excess pore pressure over $\\sigma'_{v0}$", "RdBu_r", True),
           "seepage": ("seepage (m/s)", "magma", False)}
 # Where the name of a field is not that of the dataset.
@@ -170,7 +171,8 @@ def draw(figure, frame, field, limits, box):
     axes.set_xlabel("x (m)")
     axes.set_ylabel("height (m)")
     axes.set_title(f"t = {time:.3g} s", fontsize=10)
-    figure.colorbar(patches, label=label, shrink=0.9, aspect=14)
+    in_kPa = FuncFormatter(lambda value, _: f"{value / 1e3:g}") if field.endswith("_Pa") else None
+    figure.colorbar(patches, label=label, shrink=0.9, aspect=14, format=in_kPa)
 
 
 def box_of(frames, field):
@@ -281,7 +283,7 @@ def main():
     parser.add_argument("--against", default="time", help="the same for the other axis: plate.displacement_y; default: time")
     parser.add_argument("--frame", type=int, default=-1, help="number of the frame; negative: from the end")
     parser.add_argument("--film", action="store_true", help="all frames, as GIF or MP4")
-    parser.add_argument("--limits", type=float, nargs=2, metavar=("LOW", "HIGH"), help="of the colours")
+    parser.add_argument("--limits", type=float, nargs=2, metavar=("LOW", "HIGH"), help="of the colours; pressures in Pa")
     parser.add_argument("-o", "--output", required=True)
     options = parser.parse_args()
     try:

@@ -55,12 +55,12 @@ def draw(stages, options):
         axes.set_ylabel(label)
     line = np.geomspace(inertial.min() / 2, 2 * inertial.max(), 100)  # a single flow has room around it too
     left.plot(line, 0.25 + 1.1 * line, color="0.5", label="$\\mu$ = 0.25 + 1.1 $I$ (da Cruz et al. 2005, discs)")
-    left.legend(fontsize=8)
+    left.legend(fontsize=8, loc="lower left", bbox_to_anchor=(-0.02, 0.99))  # above the points, wherever they are
     figure.suptitle("Steady shear at constant normal stress", fontsize=11, x=0.12, ha="left")
     figure.tight_layout()
     figure.savefig(options.output)
-    lines = [f"I {i:.4g}: mu {m:.4f} +- {dm:.4f}, void ratio {e:.4f} +- {de:.4f}" for i, (m, dm), (e, de) in flows]
-    return "\n".join(lines + [f"{options.output}: {len(flows)} flows"])
+    lines = [f"I {records.plain(i)}: mu {records.with_error(*mu)}, void ratio {records.with_error(*e)}" for i, mu, e in flows]
+    return "\n".join(lines + [f"{options.output}: {records.counted(len(flows), 'flow')}"])
 
 
 if __name__ == "__main__":

@@ -283,9 +283,23 @@ def sine_through_origin(s, t):
     return float(np.dot(s, t) / np.dot(s, s))
 
 
-def plain(value):
-    """A number as a label shows it: no trailing zeros."""
-    return f"{value:.4g}"
+def plain(value, digits=3):
+    """A number as a label shows it: few digits, no trailing zeros, no exponent where it can be read without."""
+    if not math.isfinite(value) or value == 0:
+        return f"{value:g}"
+    size = math.floor(math.log10(abs(value)))
+    if not -4 < size < 6:
+        return f"{value:.{digits}g}"
+    text = f"{round(value, digits - 1 - size):.{max(digits - 1 - size, 0)}f}"
+    return text.rstrip("0").rstrip(".") if "." in text else text
+
+
+def with_error(value, error, between=" +- "):
+    """A value and its error, this in two digits and the value to the same place; without an error three digits."""
+    if not (math.isfinite(error) and error > 0):
+        return plain(value)
+    places = min(max(1 - math.floor(math.log10(error)), 0), 12)
+    return f"{value:.{places}f}{between}{error:.{places}f}"
 
 
 def counted(number, noun):

@@ -46,7 +46,7 @@ def number_axes(rose, plane, top, every):
     """Circles with their numbers, and the names of the axes of the plane."""
     rose.set_ylim(0, top)
     ticks = np.arange(every, 0.9 * top, every)  # a number at the rim would run into those of the angles
-    rose.set_yticks(ticks, labels=[f"{tick:.3g}" for tick in ticks], fontsize=7, color="0.3")
+    rose.set_yticks(ticks, labels=[f"{tick:.3g}" for tick in ticks], fontsize=7, color="k")
     rose.set_rlabel_position(75)
     named = {0: "$" + "xyz"[plane[0]] + "$", 90: "$" + "xyz"[plane[1]] + "$"}
     rose.set_xticks(np.radians(np.arange(0, 360, 30)),
@@ -67,8 +67,8 @@ def draw_density(rose, plane, of, angle, weight, count):
     degrees = math.degrees(direction) % 180
     number_axes(rose, plane, 1.08 * max(float(density.max()), (1 + a) / (2 * math.pi)), 0.1)
     noun = "grains" if of == "orientations" else "contacts"
-    rose.set_title(f"density of {of}, $a$ = {a:.3f} at {degrees:.0f}°, {len(angle)} {noun}", fontsize=9, pad=12)
-    return f"a = {a:.4f} at {degrees:.1f} degrees, {len(angle)} {noun}"
+    rose.set_title(f"density of {of}, $a$ = {a:.2f} at {degrees:.0f}°, {len(angle)} {noun}", fontsize=9, pad=12)
+    return f"a = {a:.3f} at {degrees:.0f} degrees, {len(angle)} {noun}"
 
 
 def draw_row(figure, place, found, options):

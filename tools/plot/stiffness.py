@@ -3,7 +3,8 @@
 
 One point a loop of each cyclic stage: secant shear modulus G over G_max, and damping ratio, against the amplitude of the
 shear strain, as `rvelab measure` has them (rvelab/ensemble/loops.hpp). G_max: the mean shear stiffness of the first probe
-stage that a file holds, else the secant from the first record of a stage to its second, the median over the stages.
+stage that a file holds, else the secant from the first record of a stage to its second, the median over the stages, or the
+stiffest loop where it is stiffer. Above 1 are loops of a specimen whose p has grown since the probe.
 """
 
 import argparse
@@ -45,7 +46,7 @@ def loops_of(stage):
     return np.array(rows).reshape(-1, 3)
 
 
-def largest_modulus(stages):
+def largest_modulus(stages, loops):
     """G_max, Pa, and where it is from."""
     for path in dict.fromkeys(stage.path for stage in stages):
         with h5py.File(path) as file:
@@ -53,7 +54,8 @@ def largest_modulus(stages):
                 stiffness = file["probes/stiffness_Pa"][0]
                 return float(np.mean(np.diag(stiffness)[stages[0].dimension:])), "probe"
     secants = [(tau[1] - tau[0]) / (gamma[1] - gamma[0]) for gamma, tau in map(shear_of, stages)]
-    return float(np.median(secants)), "first record"
+    first, stiffest = float(np.median(secants)), float(loops[:, 1].max())
+    return (first, "first record") if first >= stiffest else (stiffest, "stiffest loop")
 
 
 def draw(stages, options):
@@ -61,26 +63,28 @@ def draw(stages, options):
     found = [(stage, loops) for stage, loops in found if len(loops)]
     if not found:
         raise ValueError(f"{stages[-1].path}: no whole loop; give records of cyclic_shear, or of a stage with cycles > 1")
-    greatest, source = largest_modulus([stage for stage, _ in found])
+    greatest, source = largest_modulus([stage for stage, _ in found], np.concatenate([loops for _, loops in found]))
     figure, (upper, lower) = plt.subplots(2, 1, figsize=(6.4, 6.2), sharex=True)
     for number, (stage, loops) in enumerate(found):
         style = {"color": kinds.QUALITATIVE[number % len(kinds.QUALITATIVE)], "markersize": 4}
-        upper.plot(loops[:, 0], loops[:, 1] / greatest, "o", label=stage.label, **style)
-        lower.plot(loops[:, 0], 100 * loops[:, 2], "o", **style)
-    amplitudes = np.concatenate([loops[:, 0] for _, loops in found])
+        upper.plot(100 * loops[:, 0], loops[:, 1] / greatest, "o", label=stage.label, **style)
+        lower.plot(100 * loops[:, 0], 100 * loops[:, 2], "o", **style)
+    amplitudes = 100 * np.concatenate([loops[:, 0] for _, loops in found])
     kinds.log_axis(lower.xaxis, [amplitudes.min() / 2, 2 * amplitudes.max()])
     upper.set_title(f"Cyclic shear, $G_{{max}}$ = {records.plain(greatest / 1e6)} MPa ({source})", fontsize=11, loc="left")
     upper.set_ylabel("$G/G_{max}$")
     highest = max((loops[:, 1] / greatest).max() for _, loops in found)
-    upper.set_ylim(0, 1.1 * max(1, highest))  # above 1 where p has grown, or the first record is coarse
+    upper.set_ylim(0, 1.1 * max(1, highest))
+    if highest > 1.02:
+        upper.axhline(1, color="0.5", linewidth=0.8, linestyle="--", label="above: $p$ has grown since the probe")
     lower.set_ylabel("damping ratio (%)")
-    lower.set_ylim(bottom=0)
-    lower.set_xlabel("amplitude of the shear strain $\\gamma$")
-    if len(found) > 1:
-        upper.legend(fontsize=8, loc="lower left")
+    lower.set_ylim(0, 110 * max(loops[:, 2].max() for _, loops in found))
+    lower.set_xlabel("amplitude of the shear strain $\\gamma$ (%)")
+    if len(found) > 1 or highest > 1.02:
+        kinds.legend(upper)
     figure.align_ylabels()
     figure.savefig(options.output)
-    return f"{options.output}: {records.counted(len(amplitudes), 'loop')}, G_max {records.plain(greatest)} Pa of the {source}"
+    return f"{options.output}: {records.counted(len(amplitudes), 'loop')}, G_max {records.plain(greatest / 1e6)} MPa of the {source}"
 
 
 if __name__ == "__main__":

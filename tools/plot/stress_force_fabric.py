@@ -28,8 +28,10 @@ def draw(stages, options):
     strain, measured, predicted = 100 * stage.strain, stage.mobilised(), stage.column("stress_force_fabric")
     strong = [row for row in STRONG if stage.has(row[0])]
     figure, axes = plt.subplots(3 if strong else 2, 1, figsize=(6.4, 7.6 if strong else 5.6), sharex=True)
-    axes[0].plot(strain, measured, color="C0", label="measured")
-    axes[0].plot(strain, predicted, color="C1", linestyle="--", label="of force and fabric")
+    for row in axes:
+        row.set_prop_cycle(color=kinds.QUALITATIVE, linestyle=(kinds.DASHES * 2)[:len(kinds.QUALITATIVE)])
+    axes[0].plot(strain, measured, label="measured")
+    axes[0].plot(strain, predicted, label="of force and fabric")
     axes[0].set_ylabel("$q/p$")
     for name, label in AMPLITUDES:
         if stage.has(name) and np.abs(stage.column(name)).max() > 1e-9:
@@ -43,7 +45,7 @@ def draw(stages, options):
         axes[2].set_ylabel("share of strong contacts")
         axes[2].set_ylim(0, 1.3)
     for row in axes:
-        row.legend(fontsize=8)
+        kinds.legend(row)
     axes[-1].set_xlabel(stage.strain_in_words())
     axes[0].set_title(f"{stage.test_in_words()}: {stage.label}", fontsize=11, loc="left")
     figure.align_ylabels()

@@ -15,6 +15,8 @@ import curves as kinds
 import matplotlib.pyplot as plt
 import numpy as np
 
+MANY = 400  # records of one path
+
 
 def deviatoric_plane(stress):
     """Coordinates of 3D stresses along and across the projection of the z axis."""
@@ -32,7 +34,8 @@ def draw_path(axes, curve, coordinates, label, each):
     alone = len(curve.stages) == 1 or each or curve.turns
     for stage in curve.stages:
         x, y = (column / 1e3 for column in coordinates(stage))
-        axes.plot(x, y, color=curve.colour, linestyle=curve.dashes, linewidth=1.2 if alone else 0.5,
+        width = 1.2 if len(x) < MANY else 0.5  # a long flow fills its plane with its path
+        axes.plot(x, y, color=curve.colour, linestyle=curve.dashes, linewidth=width if alone else 0.5,
                   alpha=1 if alone else 0.35)
         axes.plot(x[0], y[0], "o", color=curve.colour, markersize=4 if alone else 2)
     if not alone:
@@ -48,7 +51,7 @@ def draw_axes_of_plane(plane):
     for name, angle in (("$\\sigma_z$", 90), ("$\\sigma_x$", -30), ("$\\sigma_y$", 210)):
         end = reach * math.cos(math.radians(angle)), reach * math.sin(math.radians(angle))
         plane.plot([0, end[0]], [0, end[1]], color="0.7", linewidth=0.8)
-        plane.annotate(name, end, xytext=(3, 3), textcoords="offset points", color="0.4")
+        plane.annotate(name, 1.06 * np.array(end), ha="center", va="center", color="0.4")
     plane.set_title("deviatoric plane (kPa)", fontsize=10, loc="left")
 
 
@@ -64,6 +67,7 @@ def draw(stages, options):
     # Room beside a path that goes straight up.
     meridian.set_xlim(min(0, meridian.dataLim.x0), 1.05 * max(meridian.dataLim.x1, meridian.get_xlim()[1]))
     meridian.set_ylim(bottom=0)
+    plane.plot([], [], "o", color="0.3", markersize=4, label="start")
     averaged = not options.each and kinds.band_in_words(curves)
     kinds.legend(plane, "mean of n specimens,\nthin: each of them" if averaged else None)
     plane.set_aspect("equal", adjustable="datalim")

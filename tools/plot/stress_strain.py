@@ -3,8 +3,8 @@
 
 Every monotonic stage; stages of one test that continue the same strain are joined. Above, q/p
 against the driving strain, q = sqrt(s:s/2) in 2D (then q/p is the sine of the mobilised friction angle) and
-sqrt(3 s:s/2) in 3D. Below, volumetric strain 1 - V/V0, compression positive, so that dilation goes down. Tests that differ
-by their specimen alone are one curve, their mean, with a band of one standard deviation (curves.py); --each draws every
+sqrt(3 s:s/2) in 3D. Below, volumetric strain 1 - V/V0, compression positive, so that dilation goes down; of tests
+at constant volume the mean stress p. Tests that differ by their specimen alone are one curve, their mean, with a band of one standard deviation (curves.py); --each draws every
 one. Records at which a held stress was not held are crossed.
 """
 
@@ -13,7 +13,9 @@ import argparse
 import records  # first: it says which package is missing
 import curves as kinds
 import matplotlib.pyplot as plt
+import numpy as np
 
+ROUND_OFF = 1e-9  # of the volume
 REFUSED = {"pressure_path": "is isotropic compression, where q is zero: give it to e_log_p.py",
            "deformation": "has no driving strain: give it to stress_path.py"}
 
@@ -39,11 +41,21 @@ def cross_unheld(axes, curve):
 
 
 def draw_volume(axes, drawn, each):
+    """Volumetric strain, or where the volume of all tests is held the mean stress."""
+    stages = [stage for curve in drawn for stage in curve.stages]
+    held = all(np.abs(stage.volumetric_strain).max() < ROUND_OFF for stage in stages)
     for curve in drawn:
-        curve.draw(axes, lambda stage: stage.volumetric_strain, label=False, each=each, scale=(100, 100))
-    axes.axhline(0, color="0.5", linewidth=0.8, zorder=0.5)
-    axes.set_ylabel("volumetric strain $\\varepsilon_v$ (%)\ndilation negative")
-    strains = [stage.strain for curve in drawn for stage in curve.stages]
+        if held:
+            curve.draw(axes, lambda stage: stage.invariants()[0], label=False, each=each, scale=(100, 1e-3))
+        else:
+            curve.draw(axes, lambda stage: stage.volumetric_strain, label=False, each=each, scale=(100, 100))
+    if held:
+        axes.set_ylabel("mean stress $p$ (kPa)\nat constant volume")
+        axes.set_ylim(bottom=0)
+    else:
+        axes.axhline(0, color="0.5", linewidth=0.8, zorder=0.5)
+        axes.set_ylabel("volumetric strain $\\varepsilon_v$ (%)\ndilation negative")
+    strains = [stage.strain for stage in stages]
     if min(strain.min() for strain in strains) >= 0:
         axes.set_xlim(left=0)
     elif max(strain.max() for strain in strains) <= 0:

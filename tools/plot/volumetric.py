@@ -14,6 +14,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 SPAN = 1e-3  # of the axis of void ratio at least
+LEAST_RANGE_OF_P = 0.1  # of p: where it is held, its tolerance is not to fill the axis
 
 
 def draw_by_pressure(axes, drawn):
@@ -30,6 +31,8 @@ def draw_by_pressure(axes, drawn):
     carried = pressures[pressures > 0]
     if len(carried) and carried.max() > 3 * carried.min():
         kinds.log_axis(axes.xaxis, carried)
+    else:
+        kinds.least_span(axes, "x", LEAST_RANGE_OF_P * float(pressures.max()))
     axes.set_xlabel("mean stress $p$ (kPa)")
 
 
@@ -44,10 +47,7 @@ def draw(stages, options):
     by_strain.set_xlabel(strains[0] if len(strains) == 1 else "driving strain of the stage (%)")
     by_strain.set_ylabel("void ratio $e$")
     # At constant volume the void ratio changes by round-off alone: a level line, not its last digits.
-    low, high = by_strain.get_ylim()
-    if high - low < SPAN:
-        by_strain.set_ylim(0.5 * (low + high - SPAN), 0.5 * (low + high + SPAN))
-        by_strain.ticklabel_format(axis="y", useOffset=False)
+    kinds.least_span(by_strain, "y", SPAN)
     kinds.legend(by_pressure, None if options.each else kinds.band_in_words(drawn))
     by_strain.set_title("Volumetric curves", fontsize=11, loc="left")
     figure.tight_layout()

@@ -34,10 +34,12 @@ def make_pages():
     run(rvelab, "pack", "spheres.toml", "-o", "spheres.h5")
     run(rvelab, "run", "triaxial", "--specimen", "spheres.h5", "-o", "triaxial.h5", *tests)
     run(mpm, root / "protocols/mpm/column_soil.toml", "-o", "column")
+    run(mpm, root / "protocols/mpm/boulders.toml", "-o", "rocks", "--set", "time.duration_s=0.6")
     run(rvelab, "pack", "pack_dense", "-o", "large.h5", "--set", "pack.number=1000", "--set", "target.void_ratio=0.2")
     run(rvelab, "run", "biaxial", "--specimen", "large.h5", "-o", "large_test.h5", "--set", "stage.compression.to_strain=0.02",
         "--set", "stage.compression.record_every=1e-4", "--set", "output.snapshots_every=1")
-    for page, words in (("groups", ("dense", "loose")), ("space", ("triaxial.h5",)), ("mpm", ("column",)), ("large", ("large_test.h5",))):
+    for page, words in (("groups", ("dense", "loose")), ("space", ("triaxial.h5",)), ("mpm", ("column",)), ("rocks", ("rocks",)),
+                        ("large", ("large_test.h5",))):
         run(rvelab, "report", *words, "-o", f"{page}.html")
     (folder / "empty.html").write_text(EMPTY)
 
@@ -48,7 +50,7 @@ def address(page):
 
 make_pages()
 with Browser(shutil.which("chromium")) as browser:
-    for page, width, height in (("groups", 1280, 700), ("space", 1280, 620), ("mpm", 1280, 620), ("groups", 390, 700)):
+    for page, width, height in (("groups", 1280, 700), ("space", 1280, 620), ("mpm", 1280, 620), ("rocks", 1280, 620), ("groups", 390, 700)):
         browser.open(address(page), width, height, width < 500, READY)
         browser.picture(str(results / f"report_{page}_{width}.png"))
     empty = statistics.median(browser.open(address("empty")) for _ in range(5))

@@ -1,9 +1,9 @@
-// Secant shear modulus and damping of the loops of cyclic tests against the amplitude of the shear strain.
+// G/G_max and damping of the loops of cyclic tests against the amplitude of the shear strain.
 import type { Section } from "./data";
 import { csvOf } from "./download";
 import { symbols, styleOf } from "./palette";
 import { sample } from "./chart";
-import { SvgPlot } from "./svg_plot";
+import { escaped, SvgPlot } from "./svg_plot";
 
 export function loops(section: Section): { svg: string; csv: string } | undefined {
   const rows = (section.loops ?? []).slice(1).map((row) => ({ test: row[0], values: row.slice(3).map(Number) }));
@@ -19,10 +19,13 @@ export function loops(section: Section): { svg: string; csv: string } | undefine
     }
     return plot.text(`${label} against the amplitude of the shear strain`);
   };
-  const inner = (text: string, left: number) => `<g transform="translate(${left} 0)">${text.replace(/^<svg[^>]*>|<\/svg>$/g, "").replaceAll('"c"', `"c${left}"`).replaceAll("#c)", `#c${left})`)}</g>`;
-  const head = one(1, "secant shear modulus (MPa)").match(/^<svg[^>]*>/)![0];
-  const legend = tests.map((test, k) => `<g transform="translate(62 ${312 + 20 * k})">${sample(k, true).replace(/<\/?svg[^>]*>/g, "").replace(/<path d="M0 0H36".*?\/>/, "")}<text x="44" y="4">${test}</text></g>`);
-  const high = 320 + 20 * tests.length;
-  return { svg: `${head.replace(/viewBox="[^"]*"/, `viewBox="0 0 980 ${high}"`)}${inner(one(1, "secant shear modulus (MPa)"), 0)}${inner(one(2, "damping ratio (%)"), 490)}${legend.join("")}</svg>`,
+  const narrow = innerWidth < 700;  // one below the other
+  const inner = (text: string, number: number) => `<g transform="translate(${narrow ? 0 : 490 * number} ${narrow ? 310 * number : 0})">${text.replace(/^<svg[^>]*>|<\/svg>$/g, "").replaceAll('"c"', `"c${number}"`).replaceAll("#c)", `#c${number})`)}</g>`;
+  const ratio = one(3, "G/G_max"), head = ratio.match(/^<svg[^>]*>/)![0], top = narrow ? 620 : 310;
+  const legend = tests.map((test, k) => {
+    const [, , , , , , , modulus, of] = section.loops!.find((row) => row[0] === test)!;
+    return `<g transform="translate(62 ${top + 2 + 20 * k})">${sample(k, true).replace(/<\/?svg[^>]*>/g, "").replace(/<path d="M0 0H36".*?\/>/, "")}<text x="44" y="4">${escaped(`${test}: G_max ${modulus} MPa (${of})`)}</text></g>`;
+  });
+  return { svg: `${head.replace(/viewBox="[^"]*"/, `viewBox="0 0 ${narrow ? 480 : 980} ${top + 10 + 20 * tests.length}"`)}${inner(ratio, 0)}${inner(one(2, "damping ratio (%)"), 1)}${legend.join("")}</svg>`,
     csv: csvOf(section.loops!) };
 }

@@ -208,7 +208,7 @@ function begin() {
   });
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
   let width = innerWidth;
-  addEventListener("resize", () => { if (innerWidth !== width) { width = innerWidth; drawMohr(); } });
+  addEventListener("resize", () => { if (innerWidth !== width) { width = innerWidth; drawMohr(); drawLoops(); } });
   choose(0);
   document.documentElement.dataset.ready = "1";
 }

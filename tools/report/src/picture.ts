@@ -9,6 +9,8 @@ export type ChainColour = "force" | "friction";
 export interface Picture {
   of: unknown; dimension: 2 | 3; kind: number; count: number; largest: number;
   position: Float32Array; half: Float32Array; angle: Float32Array; colour: Float32Array;
+  rocks: number[][];    // in space: centre and three half axes, in metres
+  round: Float32Array;  // 0: a rectangle, as points in the plane; 1: a disc, an ellipse, a ball
   chains: number; begin: Float32Array; end: Float32Array; width: Float32Array; chainColour: Float32Array;
   edges: Float32Array; low: [number, number, number]; high: [number, number, number];
 }
@@ -28,13 +30,16 @@ function edgesOf(state: State, centre: number[]): Float32Array {
 
 export function pictureOf(run: Run, state: State, field: Field | undefined, draw: Draw, chainColour: ChainColour): Picture {
   const shape = run.states.shape, kind = { disc: 0, ellipse: 1, sphere: 2, point: state.dimension === 2 ? 3 : 2 }[shape];
-  const rocks = state.rocks.length, n = draw === "chains" ? 0 : state.n + rocks;
+  // Of points with rocks "chains" are the rocks. In the plane rocks are drawn as grains are, in space as ellipsoids.
+  const points = shape === "point", shownRocks = points && draw === "grains" ? [] : state.rocks;
+  const flatRocks = state.dimension === 2 ? shownRocks : [], rocks = flatRocks.length, n = draw === "chains" && !points ? 0 : state.n + rocks;
   const position = new Float32Array(3 * (state.n + rocks)), half = new Float32Array(2 * (state.n + rocks));
   const angle = new Float32Array(state.n + rocks), tint = new Float32Array(3 * (state.n + rocks));
+  const round = new Float32Array(state.n + rocks).fill(kind === 3 ? 0 : 1).fill(1, state.n);
   position.set(state.position);
   angle.set(state.angle);
-  // In space chains lie within the grains: these are drawn at half of their size.
-  const shrink = draw === "both" && state.dimension === 3 ? 0.5 : 1;
+  // In space chains lie within the grains, rocks within the points: these are drawn at half of their size.
+  const shrink = points && draw === "chains" ? 0 : draw === "both" && state.dimension === 3 ? 0.5 : 1;
   half.set(state.half.map((value) => value * shrink));
   const values = field && state.values.get(field.key);
   const reach = field?.about_zero ? Math.max(Math.abs(field.from), Math.abs(field.to)) : 0;
@@ -44,9 +49,9 @@ export function pictureOf(run: Run, state: State, field: Field | undefined, draw
     const rgb = colour(part, field?.about_zero ?? false);
     for (let k = 0; k < 3; ++k) tint[3 * g + k] = rgb[k] / 255;
   }
-  state.rocks.forEach((rock, k) => {
+  flatRocks.forEach((rock, k) => {
     const g = state.n + k;
-    position.set(state.dimension === 2 ? [rock[0], rock[1], 0] : rock.slice(0, 3), 3 * g);
+    position.set([rock[0], rock[1], 0], 3 * g);
     half.set([rock[3], rock[4]], 2 * g);
     angle[g] = rock[5];
     tint.set([0.6, 0.6, 0.6], 3 * g);
@@ -71,9 +76,15 @@ export function pictureOf(run: Run, state: State, field: Field | undefined, draw
     low[k % 3] = Math.min(low[k % 3], edges[k]);
     high[k % 3] = Math.max(high[k % 3], edges[k]);
   }
+  for (const rock of state.rocks)
+    for (let k = 0; k < state.dimension; ++k) {
+      const reach = state.dimension === 2 ? rock[3] : Math.hypot(rock[3 + k], rock[6 + k], rock[9 + k]);
+      low[k] = Math.min(low[k], rock[k] - reach);
+      high[k] = Math.max(high[k], rock[k] + reach);
+    }
   if (shape !== "point")
     for (let k = 0; k < state.dimension; ++k) { low[k] -= 1.5 * radius; high[k] += 1.5 * radius; }
-  return { of: run, dimension: state.dimension, kind, count: n, largest: half.reduce((a, b) => Math.max(a, b), 0), position, half, angle,
+  return { of: run, dimension: state.dimension, kind, count: n, largest: half.reduce((a, b) => Math.max(a, b), 0), position, half, angle, round, rocks: state.dimension === 3 ? shownRocks : [],
     colour: tint, chains: c, begin, end, width, chainColour: own, edges: shape === "point" ? new Float32Array(0) : edges, low, high };
 }
 
@@ -88,9 +99,19 @@ export function svgOfPicture(picture: Picture, viewer: Viewer, title: string): s
     const [x, y, z] = at(picture.position, g), a = scale * picture.half[2 * g], b = scale * picture.half[2 * g + 1];
     const look = `fill="${rgbOf(picture.colour, g)}" stroke="#000" stroke-opacity="0.45" stroke-width="0.6"`;
     const turn = ((-picture.angle[g] * 180) / Math.PI).toFixed(1);
-    pieces.push({ z, text: picture.kind === 3 ? `<rect x="${f(x - a)}" y="${f(y - b)}" width="${f(2 * a)}" height="${f(2 * b)}" transform="rotate(${turn} ${f(x)} ${f(y)})" fill="${rgbOf(picture.colour, g)}"/>`
-      : picture.kind === 1 ? `<ellipse cx="${f(x)}" cy="${f(y)}" rx="${f(a)}" ry="${f(b)}" transform="rotate(${turn} ${f(x)} ${f(y)})" ${look}/>`
+    pieces.push({ z, text: !picture.round[g] ? `<rect x="${f(x - a)}" y="${f(y - b)}" width="${f(2 * a)}" height="${f(2 * b)}" transform="rotate(${turn} ${f(x)} ${f(y)})" fill="${rgbOf(picture.colour, g)}"/>`
+      : a !== b ? `<ellipse cx="${f(x)}" cy="${f(y)}" rx="${f(a)}" ry="${f(b)}" transform="rotate(${turn} ${f(x)} ${f(y)})" ${look}/>`
       : `<circle cx="${f(x)}" cy="${f(y)}" r="${f(a)}" ${look}/>` });
+  }
+  for (const rock of picture.rocks) {
+    const [x, y, z] = viewer.project(rock[0], rock[1], rock[2]);
+    let xx = 0, xy = 0, yy = 0; // the outline of sum u_k v_k, |u| = 1, is the ellipse of sum v_k v_k^T
+    for (let k = 3; k < 12; k += 3) {
+      const [u, v] = viewer.project(rock[0] + rock[k], rock[1] + rock[k + 1], rock[2] + rock[k + 2]);
+      xx += (u - x) ** 2; xy += (u - x) * (v - y); yy += (v - y) ** 2;
+    }
+    const mean = (xx + yy) / 2, apart = Math.hypot((xx - yy) / 2, xy), turn = (Math.atan2(2 * xy, xx - yy) * 90) / Math.PI;
+    pieces.push({ z, text: `<ellipse cx="${f(x)}" cy="${f(y)}" rx="${f(Math.sqrt(mean + apart))}" ry="${f(Math.sqrt(Math.max(0, mean - apart)))}" transform="rotate(${turn.toFixed(1)} ${f(x)} ${f(y)})" fill="rgb(153,153,153)" stroke="#000" stroke-opacity="0.45" stroke-width="0.6"/>` });
   }
   for (let m = 0; m < picture.chains; ++m) {
     const [x, y, z] = at(picture.begin, m), [u, v, w] = at(picture.end, m);

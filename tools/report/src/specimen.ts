@@ -58,8 +58,12 @@ export class Specimen {
     this.quantity.replaceChildren(...run.states.fields.map((field) => new Option(withUnit(field.label, field.unit), field.key)), new Option("nothing", ""));
     if (run.states.fields.some((field) => field.key === keep)) this.quantity.value = keep;
     const point = run.states.shape === "point";
-    element("chain-choices").hidden = element("draw-choice").hidden = element("contacts-csv").hidden = point;
-    if (point) this.draws.value = "grains";
+    const rocks = run.states.states.some((state) => state.rocks?.length);
+    element("chain-choices").hidden = element("contacts-csv").hidden = point;
+    element("draw-choice").hidden = point && !rocks;
+    const words = point ? ["points and rocks", "points", "rocks"] : ["grains and chains", "grains", "force chains"];
+    [...this.draws.options].forEach((option, k) => { option.textContent = words[k]; });
+    if (point) this.draws.value = rocks ? "both" : "grains";
     this.slider.max = String(run.states.states.length - 1);
     const several = run.states.states.length > 1;
     element("time").hidden = !several;
@@ -111,6 +115,12 @@ export class Specimen {
       const reach = Math.max(Math.abs(this.field.from), Math.abs(this.field.to));
       bar(withUnit(this.field.label, this.field.unit), this.field.about_zero ? -reach : this.field.from, this.field.about_zero ? reach : this.field.to, this.field.about_zero);
     }
+    if (this.state!.rocks.length > 0 && draw !== "grains") {
+      const text = document.createElement("span");
+      text.textContent = `Grey: ${this.state!.rocks.length} rock${this.state!.rocks.length === 1 ? "" : "s"}, drawn as ${this.state!.dimension === 2 ? "ellipses" : "ellipsoids"} of their half axes.`
+        + (draw === "both" && this.state!.dimension === 3 ? " Points are drawn at half of their size." : "");
+      box.append(text);
+    }
     if (draw !== "grains" && this.state!.contacts > 0) {
       const mean = this.state!.force.reduce((sum, value) => sum + value, 0) / this.state!.contacts;
       if (chainColour === "friction") bar("tangential force over its limit", 0, 1, false);
@@ -140,15 +150,28 @@ export class Specimen {
   private tell(event: MouseEvent) {
     if (!this.picture || !this.state) return;
     const box = element("stage").getBoundingClientRect(), scale = this.viewer.pixelsPerMetre();
-    let best = Infinity, grain = -1;
-    for (let g = 0; g < Math.min(this.picture.count, this.state.n); ++g) {
-      const [x, y, z] = this.viewer.project(this.state.position[3 * g], this.state.position[3 * g + 1], this.state.position[3 * g + 2]);
+    let best = Infinity, found = -1;
+    this.picture.rocks.forEach((rock, k) => {
+      const [x, y, z] = this.viewer.project(rock[0], rock[1], rock[2]);
+      const size = scale * Math.cbrt([3, 6, 9].reduce((product, a) => product * Math.hypot(rock[a], rock[a + 1], rock[a + 2]), 1));
+      if (Math.hypot(event.clientX - box.left - x, event.clientY - box.top - y) <= size && z < best) { best = z; found = this.state!.n + k; }
+    });
+    for (let g = 0; g < this.picture.count; ++g) {
+      const [x, y, z] = this.viewer.project(this.picture.position[3 * g], this.picture.position[3 * g + 1], this.picture.position[3 * g + 2]);
       const r = Math.hypot(event.clientX - box.left - x, event.clientY - box.top - y);
-      if (r <= scale * this.picture.half[2 * g] && z < best) { best = z; grain = g; }
+      if (r <= scale * this.picture.half[2 * g] && (z < best || (g >= this.state.n && this.state.dimension === 2))) { best = z; found = g; }
     }
-    const state = this.state;
-    element("told").textContent = grain < 0 ? "" : `${this.run.states.shape === "point" ? "Point" : "Grain"} ${grain}: `
+    element("told").textContent = found < 0 ? "" : found < this.state.n ? this.grainInWords(found) : this.rockInWords(found - this.state.n);
+  }
+  private grainInWords(grain: number) {
+    const state = this.state!;
+    return `${this.run.states.shape === "point" ? "Point" : "Grain"} ${grain}: `
       + this.run.states.fields.map((field) => `${field.label.replace(/,.*| since.*/, "")} ${shown(state.values.get(field.key)![grain])} ${field.unit}`.trim()).join("; ");
+  }
+  private rockInWords(number: number) {
+    const rock = this.state!.rocks[number], flat = this.state!.dimension === 2;
+    const half = flat ? rock.slice(3, 5) : [3, 6, 9].map((k) => Math.hypot(rock[k], rock[k + 1], rock[k + 2]));
+    return `Rock ${number}: centre at ${rock.slice(0, flat ? 2 : 3).map(shown).join(", ")} m; half axes ${half.map(shown).join(", ")} m`;
   }
 
   private grainsAsCsv() {

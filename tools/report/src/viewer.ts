@@ -9,10 +9,10 @@ import type { Picture } from "./picture";
 const grainVertex = `precision highp float; precision highp int;
 uniform mat4 modelViewMatrix, projectionMatrix;
 uniform int kind;
-in vec2 position; in vec3 centre; in vec2 half_; in float angle; in vec3 colour;
-out vec2 at; out vec3 tint; out float depth; flat out float radius;
+in vec2 position; in vec3 centre; in vec2 half_; in float angle; in vec3 colour; in float round;
+out vec2 at; out vec3 tint; out float depth; flat out float radius; flat out float is_round;
 void main() {
-  at = position; tint = colour; radius = half_.x;
+  at = position; tint = colour; radius = half_.x; is_round = round;
   vec4 middle = modelViewMatrix * vec4(centre, 1.0);
   vec2 corner = position * half_;
   if (kind == 1 || kind == 3) corner = mat2(cos(angle), sin(angle), -sin(angle), cos(angle)) * corner;
@@ -22,13 +22,13 @@ void main() {
 }`;
 const grainFragment = `precision highp float; precision highp int;
 uniform mat4 projectionMatrix; uniform int kind; uniform float edge;
-in vec2 at; in vec3 tint; in float depth; flat in float radius;
+in vec2 at; in vec3 tint; in float depth; flat in float radius; flat in float is_round;
 out vec4 result;
 void main() {
   float r = dot(at, at);
   vec3 shade = tint;
   float z = depth;
-  if (kind != 3) {
+  if (is_round > 0.5) {
     if (r > 1.0) discard;
     if (kind == 2) {
       float high = sqrt(1.0 - r);
@@ -60,6 +60,36 @@ const chainFragment = `precision highp float; precision highp int;
 in vec3 tint; out vec4 result;
 void main() { result = vec4(tint, 1.0); }`;
 
+// An ellipsoid: the points p about its centre with p M p = 1, seen along z.
+const rockVertex = `precision highp float;
+uniform mat4 modelViewMatrix, projectionMatrix;
+in vec2 position; in vec3 centre; in vec3 first; in vec3 second; in vec3 third;
+out vec2 at; out float depth; flat out mat3 form;
+void main() {
+  mat3 axes = mat3(modelViewMatrix) * mat3(first, second, third), back = inverse(axes);
+  form = transpose(back) * back;
+  at = position * vec2(length(vec3(axes[0].x, axes[1].x, axes[2].x)), length(vec3(axes[0].y, axes[1].y, axes[2].y)));
+  vec4 middle = modelViewMatrix * vec4(centre, 1.0);
+  middle.xy += at;
+  depth = middle.z;
+  gl_Position = projectionMatrix * middle;
+}`;
+const rockFragment = `precision highp float;
+uniform mat4 projectionMatrix;
+in vec2 at; in float depth; flat in mat3 form;
+out vec4 result;
+void main() {
+  float b = form[0][2] * at.x + form[1][2] * at.y;
+  float c = form[0][0] * at.x * at.x + 2.0 * form[0][1] * at.x * at.y + form[1][1] * at.y * at.y - 1.0;
+  float root = b * b - form[2][2] * c;
+  if (root < 0.0) discard;
+  float z = (sqrt(root) - b) / form[2][2];
+  vec3 normal = normalize(form * vec3(at, z));
+  vec4 clip = projectionMatrix * vec4(0.0, 0.0, depth + z, 1.0);
+  gl_FragDepth = 0.5 * clip.z / clip.w + 0.5;
+  result = vec4(vec3(0.62) * (0.45 + 0.55 * max(0.0, dot(normal, normalize(vec3(-0.4, 0.6, 0.75))))), 1.0);
+}`;
+
 /** Geometry of one quad, drawn once for each entry of its attributes; they are made longer when more are needed. */
 class Instances {
   readonly geometry = new InstancedBufferGeometry();
@@ -89,8 +119,10 @@ export class Viewer {
   readonly controls?: OrbitControls;
   private renderer?: WebGLRenderer;
   private scene = new Scene();
-  private grains = new Instances([-1, -1, 1, -1, -1, 1, 1, 1], { centre: 3, half_: 2, angle: 1, colour: 3 });
+  private grains = new Instances([-1, -1, 1, -1, -1, 1, 1, 1], { centre: 3, half_: 2, angle: 1, colour: 3, round: 1 });
   private chains = new Instances([0, -0.5, 1, -0.5, 0, 0.5, 1, 0.5], { begin: 3, end: 3, width: 1, colour: 3 });
+  private rocks = new Instances([-1, -1, 1, -1, -1, 1, 1, 1], { centre: 3, first: 3, second: 3, third: 3 });
+  private rockMaterial = new RawShaderMaterial({ glslVersion: GLSL3, vertexShader: rockVertex, fragmentShader: rockFragment });
   private grainMaterial = new RawShaderMaterial({ glslVersion: GLSL3, vertexShader: grainVertex, fragmentShader: grainFragment,
     uniforms: { kind: { value: 0 }, edge: { value: 0.85 } } });
   private chainMaterial = new RawShaderMaterial({ glslVersion: GLSL3, vertexShader: chainVertex, fragmentShader: chainFragment,
@@ -115,7 +147,8 @@ export class Viewer {
     canvas.tabIndex = 0;
     canvas.setAttribute("role", "img");
     place.append(canvas);
-    for (const [geometry, material] of [[this.grains.geometry, this.grainMaterial], [this.chains.geometry, this.chainMaterial]] as const) {
+    for (const [geometry, material] of [[this.grains.geometry, this.grainMaterial], [this.chains.geometry, this.chainMaterial],
+      [this.rocks.geometry, this.rockMaterial]] as const) {
       const mesh = new Mesh(geometry, material);
       mesh.frustumCulled = false;
       this.scene.add(mesh);
@@ -190,7 +223,10 @@ export class Viewer {
     if (this.renderer) {
       this.grainMaterial.uniforms.kind.value = picture.kind;
       this.chainMaterial.uniforms.lift.value = picture.dimension === 2 ? picture.largest * 2 : 0;
-      this.grains.set(picture.count, { centre: picture.position, half_: picture.half, angle: picture.angle, colour: picture.colour });
+      this.grains.set(picture.count, { centre: picture.position, half_: picture.half, angle: picture.angle, colour: picture.colour,
+        round: picture.round });
+      const part = (from: number) => Float32Array.from(picture.rocks.flatMap((rock) => rock.slice(from, from + 3)));
+      this.rocks.set(picture.rocks.length, { centre: part(0), first: part(3), second: part(6), third: part(9) });
       this.chains.set(picture.chains, { begin: picture.begin, end: picture.end, width: picture.width, colour: picture.chainColour });
       this.box.geometry.dispose();
       this.box.geometry.setAttribute("position", new BufferAttribute(picture.edges, 3));
@@ -232,7 +268,7 @@ export class Viewer {
   private frame(width: number, height: number) {
     const { low, high, dimension } = this.picture!;
     const wide = dimension === 3 ? this.reach : high[0] - low[0], tall = dimension === 3 ? this.reach : high[1] - low[1];
-    const scale = Math.max(wide / width, tall / height) * (dimension === 3 ? 0.42 : 0.52);
+    const scale = Math.max(wide / width, tall / height) * (dimension === 3 ? 0.47 : 0.52);
     Object.assign(this.camera, { left: -scale * width, right: scale * width, top: scale * height, bottom: -scale * height,
       near: -4 * this.reach, far: 4 * this.reach });
     this.camera.updateProjectionMatrix();
