@@ -98,6 +98,8 @@ class Result:
                f"{len(os.sched_getaffinity(0))} cores, shared machine, one core used; processor times of stepping, medians of "
                f"{self.rounds} round{'s' if self.rounds > 1 else ''}." + (" Points of earlier runs were added." if self.added else ""))
         yield "Seconds to an error: the cheapest setting from which on all finer ones are within it; in brackets times that of the first code."
+        if "LIGGGHTS" in self.codes:
+            yield "LIGGGHTS prints no processor times: they are differences of two processes, and of no worth below 0.01 s."
         yield ""
         yield "| case | grains | bar | error | " + " | ".join(self.codes) + " |"
         yield "| --- " * (4 + len(self.codes)) + "|"
