@@ -130,7 +130,7 @@ inline double parameter(double gap, double rupture_gap) {
 
 }  // namespace bridge_detail
 
-/// What a bridge of given volume is, made once as it forms or as its volume changes (some microseconds).
+/// What a bridge of given volume is, made once as it forms or as its volume changes (a microsecond).
 struct VolumeBridge {
   double rupture_gap = 0;          ///< m
   double volume = 0, tension = 0;  ///< V, m^3; gamma, N/m
