@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "rvelab/error.hpp"
+#include "rvelab/solver/assembly/interactions.hpp"
 #include "rvelab/solver/assembly/listing.hpp"
 #include "rvelab/solver/assembly/memory_order.hpp"
 #include "rvelab/solver/assembly/outline.hpp"
@@ -138,7 +139,7 @@ void open_assembly(const Specimen& specimen, Model& model, Assembly& assembly) {
   take_scaled_inertia(assembly);
 
   try {
-    list_with(model, s.contacts, assembly);
+    list_with(model, s.contacts, s, assembly);
     if (!assembly.state.list.built) rebuild(model, assembly);
   } catch (const IncrementFailed& error) {
     throw InputError(std::string("specimen: ") + error.what());
@@ -178,6 +179,7 @@ Specimen close_assembly(const Model& model, const Assembly& assembly) {
     }
   }
   s.contacts = contacts_of(model, assembly.pairs);
+  static_cast<Interactions&>(s) = interactions_of(assembly.pairs);
   return in_id_order(std::move(s), assembly.state.memory_order);
 }
 

@@ -31,6 +31,11 @@ void fill_gather_table(std::size_t padded_grains, std::int32_t force_row, PairTa
     ++pairs_of[as_j(std::size_t(pairs.j[q]))];
     ++pairs_of[as_i(std::size_t(pairs.i[q]))];
   }
+  for (const InteractionTable& t : pairs.interactions)
+    for (std::size_t k = 0; k < t.count; ++k) {
+      ++pairs_of[as_j(std::size_t(t.j[k]))];
+      ++pairs_of[as_i(std::size_t(t.i[k]))];
+    }
   const std::size_t blocks = padded_grains / 2;
   pairs.slot_begin.assign(blocks + 1, 0);
   pairs.tasks.resize(4 * blocks);
@@ -57,6 +62,18 @@ void fill_gather_table(std::size_t padded_grains, std::int32_t force_row, PairTa
       next[task] += 4;
     }
   }
+  // Behind the pairs of each grain: in the plane one row each, in space one as j and one as i.
+  const auto put = [&](std::size_t task, std::size_t row) {
+    pairs.slots[std::size_t(next[task])] = std::int32_t(row);
+    next[task] += 4;
+  };
+  const std::size_t as_other = force_row == 4 ? 0 : std::size_t(force_row);
+  for (const InteractionTable& t : pairs.interactions)
+    for (std::size_t k = 0; k < t.count; ++k) {
+      const std::size_t row = t.force_at + k * (std::size_t(force_row) + as_other);
+      put(as_j(std::size_t(t.j[k])), row);
+      put(as_i(std::size_t(t.i[k])), row + as_other);
+    }
   leave_out_pairs_beyond(force_row, pairs);
 }
 

@@ -10,6 +10,7 @@
 #include "rvelab/contact/kinds.hpp"
 #include "rvelab/contact/laws.hpp"
 #include "rvelab/grains/shape.hpp"
+#include "rvelab/interaction/laws.hpp"
 
 namespace rvelab {
 
@@ -122,6 +123,10 @@ constexpr int place_row_length = 8;
 using PlaceKernel = void (*)(const StepConstants&, const PairArrays&, const double* grain_rows, long begin, long end,
                              double* places);
 
+/// Of the interactions [begin, end) of one kind, multiples of eight.
+using InteractionKernel = void (*)(const StepConstants&, const InteractionArrays&, const double* grain_rows, long begin,
+                                   long end);
+
 /// Form of local damping that an integration kernel is compiled for.
 enum class KernelDamping { none, vector, component };
 
@@ -133,6 +138,9 @@ struct Kernels {
   PlaceKernel places = nullptr;            ///< shapes that are not round: where pairs are, for sums outside the loops
   GrainKernel quasi_static[3] = {};        ///< by KernelDamping
   GrainKernel at_rate[3] = {};
+  /// By the kind of interaction (interaction/laws.hpp), round grains: as `pairs` and `evaluate`.
+  InteractionKernel interactions[interaction_kinds] = {};
+  InteractionKernel evaluate_interactions[interaction_kinds] = {};
   int lanes = 1;
   const char* instruction_set = "scalar";
 };

@@ -1,0 +1,12 @@
+// The laws of interactions other than contacts. A new law is a file of its own, like its neighbours, and a word here.
+#pragma once
+
+#include "rvelab/contact/laws.hpp"
+#include "rvelab/interaction/parallel_bond.hpp"
+
+namespace rvelab {
+
+using InteractionLaws = TypeList<ParallelBond>;
+constexpr int interaction_kinds = count_of(InteractionLaws{});
+
+}  // namespace rvelab
