@@ -106,6 +106,11 @@ void turn_vectors(Interaction<Law>& item, const Matrix3& turn) {
   });
 }
 
+/// A vector of an interaction in the laboratory frame; a component along the tangent of the plane stays what it is.
+inline Vector3 in_laboratory(const InteractionField& field, const Vector3& value, const Cell& cell) {
+  return field.turning == Turning::tangent && cell.dimension == 2 ? value : Vector3(cell.rotation * value);
+}
+
 /// By pair: order of lists, and whether two name one.
 template <class Item>
 auto pair_of(const Item& item) {

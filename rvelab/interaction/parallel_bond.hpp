@@ -71,14 +71,18 @@ struct ParallelBond {
 
   static constexpr double pi = 3.14159265358979323846;
 
-  /// Which bonds break, and how: stresses at the rim, Pa.
+  /// Which bonds break, and how. Both criteria times the section, and the bending moment times A R/I = m/R; squared, so
+  /// that no root and no division is left: `bending` is m beta |M_b|, `shearing` is |f_s| R, `twisting` beta m |M_t|/2.
   template <class V>
-  static inline __attribute__((always_inline)) V broken_by(V tension, V shear, V pressure, const InteractionArrays& p,
-                                                           long at) {
+  static inline __attribute__((always_inline)) V broken_by(V bending_squared, V shearing_squared, V twisting, V normal,
+                                                           V area, V r, const InteractionArrays& p, long at) {
     const V zero = V{}, one = zero + 1.0, two = zero + 2.0;
-    const V strength = load_as<V>(p.column[cohesion] + at) + load_as<V>(p.column[friction] + at) * pressure;
-    const V in_shear = (shear > ((strength > zero) ? strength : zero)) ? two : zero;
-    return (tension > load_as<V>(p.column[tensile_strength] + at)) ? one : in_shear;
+    const V tension = (load_as<V>(p.column[tensile_strength] + at) * area + normal) * r;
+    const V limit = load_as<V>(p.column[cohesion] + at) * area + load_as<V>(p.column[friction] + at) * normal;
+    const V shear = ((limit > zero) ? limit : zero) * r - twisting;
+    const auto in_tension = (tension < zero) | (bending_squared > tension * tension);
+    const auto in_shear = (shear < zero) | (shearing_squared > shear * shear);
+    return in_tension ? one : (in_shear ? two : zero);
   }
 
   /// Notes the energy of bonds that break now; `of(energy)` adds up that of their springs.
@@ -111,9 +115,8 @@ struct ParallelBond {
     if constexpr (Advance) {
       f.tangential = f.tangential - (ks * area) * m.slip;
       f.moment = f.moment - (kn * inertia) * m.turn;
-      const V pressure = f.normal / area;
-      const V bending = load_as<V>(p.column[moment_factor] + at) * magnitude_of(f.moment) * r / inertia;
-      const V how = broken_by<V>(bending - pressure, magnitude_of(f.tangential) / area, pressure, p, at);
+      const V bending = 3.0 * (load_as<V>(p.column[moment_factor] + at) * f.moment), shearing = f.tangential * r;
+      const V how = broken_by<V>(bending * bending, shearing * shearing, zero, f.normal, area, r, p, at);
       book(p, at, was, how, [&](auto energy) {
         return energy(f.normal * f.normal, kn * area) + energy(f.tangential * f.tangential, ks * area) +
                energy(f.moment * f.moment, kn * inertia);
@@ -151,10 +154,9 @@ struct ParallelBond {
       const V about = dot(m.n, m.turn);
       bending = plus(times(bent.factor, bent.vector), -(kn * inertia), plus(m.turn, -about, m.n));
       twist = twist - (ks * (2.0 * inertia)) * about;
-      const V pressure = f.normal / area, factor = load_as<V>(p.column[moment_factor] + at) * r / inertia;
-      const V how =
-          broken_by<V>(factor * square_root(dot(bending, bending)) - pressure,
-                       square_root(dot(shear, shear)) / area + (0.5 * factor) * magnitude_of(twist), pressure, p, at);
+      const V factor = load_as<V>(p.column[moment_factor] + at);
+      const V how = broken_by<V>((16.0 * (factor * factor)) * dot(bending, bending), dot(shear, shear) * (r * r),
+                                 (2.0 * factor) * magnitude_of(twist), f.normal, area, r, p, at);
       book(p, at, was, how, [&](auto energy) {
         return (energy(f.normal * f.normal, kn * area) + energy(dot(shear, shear), ks * area)) +
                (energy(dot(bending, bending), kn * inertia) + energy(twist * twist, (2.0 * ks) * inertia));
