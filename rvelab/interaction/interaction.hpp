@@ -56,6 +56,12 @@ void each_interaction_law(const Visit& visit) {
   each_interaction_law(visit, InteractionLaws{});
 }
 
+inline bool has_any(const Interactions& all) {
+  bool any = false;
+  each_interaction_law([&](auto, auto law) { any |= !static_cast<const ListOf<decltype(law)>&>(all).items.empty(); });
+  return any;
+}
+
 /// visit(field, value) for each field of an interaction, const or not, in the order of the law.
 template <class Law, class Item, class Visit>
 void each_field(Item& item, const Visit& visit) {

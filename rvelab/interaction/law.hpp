@@ -43,9 +43,10 @@ struct InteractionArrays {
   const double *radius_i = nullptr, *radius_j = nullptr;  ///< m
   double* column[most_interaction_columns] = {};          ///< the fields of the law, one after the other
   double thickness = 0;                                   ///< m, in the plane
-  /// Force rows, behind those of the pairs: in the plane one each, {fx, fy, T_j, T_i}; in space two, {fx, fy, fz, 2 r,
-  /// T/r, 0} as grain j and as grain i gather them, r the radius of that grain: they take 2 r (T/r) - r (T/r) = T.
+  /// Force rows behind those of the pairs, and alike: in the plane {fx, fy, T_j, T_i}, in space {fx, fy, fz, -gap/2, n
+  /// x f_t, 0} with the moment on j apart.
   double* force = nullptr;
+  double* moment[3] = {};
 };
 
 namespace {
@@ -70,7 +71,6 @@ struct SpaceTurn {
   V length;             ///< of the branch, m
   Triple<V> slip = {};  ///< of j against i across n half way along the branch, m
   Triple<V> turn = {};  ///< of j less that of i, rad
-  V twist = {};         ///< mean turn of both about n, rad
 };
 template <class V>
 struct SpaceForces {

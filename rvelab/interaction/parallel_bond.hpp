@@ -135,24 +135,22 @@ struct ParallelBond {
     return f;
   }
 
+  /// `turned`: shear force and bending moment, in the present tangent plane.
   template <bool Advance, class V>
   static inline __attribute__((always_inline)) SpaceForces<V> in_space(const InteractionArrays& p, long at,
-                                                                       const SpaceTurn<V>& m) {
+                                                                       const SpaceTurn<V>& m, const Triple<V>* turned) {
     const V zero = V{};
     const Triple<V> none = {zero, zero, zero};
     const V r = load_as<V>(p.column[radius] + at), area = pi * (r * r), inertia = area * (r * r) * 0.25;
     const V kn = load_as<V>(p.column[normal_stiffness] + at), ks = load_as<V>(p.column[shear_stiffness] + at);
     V was = load_as<V>(p.column[broken] + at), twist = load_as<V>(p.column[twisting_moment] + at);
-    Triple<V> shear = load_triple<V>(p.column + shear_force, at),
-              bending = load_triple<V>(p.column + bending_moment, at);
+    Triple<V> shear = turned[0], bending = turned[1];
     SpaceForces<V> f;
     f.normal = (kn * area) * (load_as<V>(p.column[length] + at) - m.length);
     if constexpr (Advance) {
-      const TurnedHistory<V> turned = turned_history(shear, m.n, m.twist, true);
-      shear = plus(times(turned.factor, turned.vector), -(ks * area), m.slip);
-      const TurnedHistory<V> bent = turned_history(bending, m.n, m.twist, true);
+      shear = plus(shear, -(ks * area), m.slip);
       const V about = dot(m.n, m.turn);
-      bending = plus(times(bent.factor, bent.vector), -(kn * inertia), plus(m.turn, -about, m.n));
+      bending = plus(bending, -(kn * inertia), plus(m.turn, -about, m.n));
       twist = twist - (ks * (2.0 * inertia)) * about;
       const V factor = load_as<V>(p.column[moment_factor] + at);
       const V how = broken_by<V>((16.0 * (factor * factor)) * dot(bending, bending), dot(shear, shear) * (r * r),

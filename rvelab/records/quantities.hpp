@@ -85,7 +85,7 @@ struct FabricAnisotropy {
 
 struct ContactStress {
   Matrix3 contact_stress = Matrix3::Zero();
-  static constexpr QuantityText text{"contact_stress_Pa", "Pa", "of the contact forces alone"};
+  static constexpr QuantityText text{"contact_stress_Pa", "Pa", "of the forces of contacts and bonds"};
   static constexpr auto member = &ContactStress::contact_stress;
   static Matrix3 measure(const MeasuredState& state) { return state.rve.contact_stress(); }
 };

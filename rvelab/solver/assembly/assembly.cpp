@@ -101,7 +101,7 @@ void open_assembly(const Specimen& specimen, Model& model, Assembly& assembly) {
   model.thickness = s.cell.lattice(2, 2);
   const auto kernels_with = [&](bool dashpot) {
     return kernels_for({model.shape, model.contact.law, model.contact.rolling, model.contact.slip, dashpot,
-                        model.contact.hertz_radius});
+                        model.contact.hertz_radius, model.dimension() == 3 && has_any(s)});
   };
   model.kernels = kernels_with(model.damping.dashpot != Dashpot::none);
   model.quasi_static_kernels = model.damping.dashpot == Dashpot::none ? model.kernels : kernels_with(false);

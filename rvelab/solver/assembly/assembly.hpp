@@ -85,7 +85,7 @@ struct InteractionTable {
   // What follows from these, the grains and the pairs.
   std::vector<std::int32_t> row_i, row_j;
   std::vector<Buffer> image_number, radius;  ///< three, and those of i and of j
-  std::size_t force_at = 0;                  ///< where its force rows begin among PairTable::force
+  std::size_t row_at = 0;                    ///< the first of its force rows, and in space of its moments, in PairTable
 
   std::size_t padded() const { return i.size(); }
 };

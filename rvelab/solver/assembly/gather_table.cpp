@@ -62,18 +62,13 @@ void fill_gather_table(std::size_t padded_grains, std::int32_t force_row, PairTa
       next[task] += 4;
     }
   }
-  // Behind the pairs of each grain: in the plane one row each, in space one as j and one as i.
-  const auto put = [&](std::size_t task, std::size_t row) {
-    pairs.slots[std::size_t(next[task])] = std::int32_t(row);
-    next[task] += 4;
-  };
-  const std::size_t as_other = force_row == 4 ? 0 : std::size_t(force_row);
+  // Behind the pairs of each grain.
   for (const InteractionTable& t : pairs.interactions)
-    for (std::size_t k = 0; k < t.count; ++k) {
-      const std::size_t row = t.force_at + k * (std::size_t(force_row) + as_other);
-      put(as_j(std::size_t(t.j[k])), row);
-      put(as_i(std::size_t(t.i[k])), row + as_other);
-    }
+    for (std::size_t k = 0; k < t.count; ++k)
+      for (const std::size_t task : {as_j(std::size_t(t.j[k])), as_i(std::size_t(t.i[k]))}) {
+        pairs.slots[std::size_t(next[task])] = force_row * std::int32_t(t.row_at + k);
+        next[task] += 4;
+      }
   leave_out_pairs_beyond(force_row, pairs);
 }
 

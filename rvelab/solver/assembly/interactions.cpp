@@ -30,7 +30,9 @@ InteractionArrays arrays_of(const Model& model, PairTable& pairs, InteractionTab
   a.radius_j = table.radius[1].data();
   for (std::size_t k = 0; k < table.column.size(); ++k) a.column[k] = table.column[k].data();
   a.thickness = model.dimension() == 2 ? model.thickness : 0;
-  a.force = pairs.force.data() + table.force_at;
+  a.force = pairs.force.data() + table.row_at * std::size_t(force_row_length(model.dimension()));
+  if (model.dimension() == 3)
+    for (std::size_t k = 0; k < 3; ++k) a.moment[k] = pairs.moment[k].data() + table.row_at;
   return a;
 }
 
@@ -116,20 +118,18 @@ void follow_wrapping(const std::vector<Image>& moved, int dimension, Interaction
   });
 }
 
-std::size_t interaction_rows(int dimension, const PairTable& pairs) {
+std::size_t interaction_rows(const PairTable& pairs) {
   std::size_t rows = 0;
-  for (const InteractionTable& t : pairs.interactions) rows += t.padded() * (dimension == 2 ? 1 : 2);
+  for (const InteractionTable& t : pairs.interactions) rows += t.padded();
   return rows;
 }
 
 void derive_interactions(const Model& model, PairTable& pairs) {
-  const int dimension = model.dimension();
-  const auto row = std::size_t(force_row_length(dimension));
-  std::size_t at = pairs.padded() * row;
-  pairs.force.assign(at + interaction_rows(dimension, pairs) * row, 0.0);
+  std::size_t row = pairs.padded();
+  pairs.force.assign((row + interaction_rows(pairs)) * std::size_t(force_row_length(model.dimension())), 0.0);
   for (InteractionTable& t : pairs.interactions) {
-    t.force_at = at;
-    at += t.padded() * row * (dimension == 2 ? 1 : 2);
+    t.row_at = row;
+    row += t.padded();
     t.row_i.resize(t.padded());
     t.row_j.resize(t.padded());
     t.image_number.assign(3, Buffer(t.padded(), 0.0));
@@ -184,15 +184,17 @@ std::vector<ActingInteraction> acting_interactions(const Model& model, const Ass
         const double half_gap = 0.5 * (a.length - (model.radius[a.i] + model.radius[a.j]));
         a.arm_i = model.radius[a.i] + half_gap;
         a.arm_j = model.radius[a.j] + half_gap;
-        const double* row = assembly.pairs.force.data() + t.force_at + k * (plane ? 4 : 16);
+        const double* row = assembly.pairs.force.data() + (t.row_at + k) * (plane ? 4 : 8);
         if (plane) {
           a.force = {row[0], row[1], 0};
           a.moment_j = {0, 0, row[2]};
           a.moment_i = {0, 0, row[3]};
         } else {
           a.force = {row[0], row[1], row[2]};
-          a.moment_j = model.radius[a.j] * Vector3(row[4], row[5], row[6]);
-          a.moment_i = model.radius[a.i] * Vector3(row[12], row[13], row[14]);
+          const Vector3 turning(row[4], row[5], row[6]);
+          for (int c = 0; c < 3; ++c) a.moment_j[c] = assembly.pairs.moment[c][t.row_at + k];
+          a.moment_i = -a.moment_j - a.arm_i * turning;
+          a.moment_j -= a.arm_j * turning;
         }
         a.normal_force = a.force.dot(a.normal);
         a.stiffness = Law::stiffness(column, plane ? model.thickness : 0);

@@ -14,7 +14,7 @@ void follow_reduction(const Reduction& reduction, int dimension, Interactions& i
 void follow_wrapping(const std::vector<Image>& moved, int dimension, Interactions& interactions);
 
 /// Force rows that they take.
-std::size_t interaction_rows(int dimension, const PairTable& pairs);
+std::size_t interaction_rows(const PairTable& pairs);
 /// Derived arrays, with the force rows of pairs and interactions (zero).
 void derive_interactions(const Model& model, PairTable& pairs);
 

@@ -21,6 +21,8 @@ struct KernelConfiguration {
   Slip slip = Slip::consistent;
   bool dashpot = false;
   HertzRadius hertz_radius = HertzRadius::equivalent;
+  bool moments =
+      false;  ///< interactions with moments act in space: the grain loop adds those up, as it does with rolling
 };
 
 /// Upper-triangular 3x3 matrix, in the order xx, xy, xz, yy, yz, zz.
