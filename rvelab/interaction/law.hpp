@@ -13,6 +13,8 @@
 
 namespace rvelab {
 
+constexpr Interval any_number{-no_bound, no_bound, true, true};
+
 /// How a number that an interaction keeps turns with its grains.
 enum class Turning {
   scalar,

@@ -52,17 +52,18 @@ struct ParallelBond {
 
   /// Of an intact bond; column(k): the value of column k. `thickness` (m): in the plane, else 0.
   template <class Columns>
-  static InteractionStiffness stiffness(const Columns& column, double thickness) {
+  static InteractionStiffness stiffness(const Columns& column, double /*gap*/, double thickness) {
     const double r = column(radius), area = thickness > 0 ? 2 * r * thickness : pi * r * r;
     const double inertia = area * r * r / (thickness > 0 ? 3 : 4);
     if (column(broken) != 0) return {};
     return {column(normal_stiffness) * area, column(shear_stiffness) * area, column(normal_stiffness) * inertia,
             thickness > 0 ? 0 : 2 * column(shear_stiffness) * inertia};
   }
-  /// Normal force, N, positive in compression, of an intact bond.
+  /// Its energy is that of linear springs, 1/2 f^2/k each.
+  static constexpr bool has_energy = false;
   template <class Columns>
-  static double normal_force(const Columns& column, double branch, double thickness) {
-    return stiffness(column, thickness).normal * (column(length) - branch);
+  static bool kept(const Columns&) {
+    return true;  // broken ones too: where they broke is a result
   }
   template <class Columns>
   static bool acts(const Columns& column) {

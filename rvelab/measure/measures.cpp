@@ -141,6 +141,12 @@ double mechanical_coordination_number(const Network& network) {
   return grains > 0 ? 2.0 * contacts / grains : not_defined;
 }
 
+double pore_volume(const Network& network) {
+  double solid = 0;
+  for (const GrainState& grain : network.grains) solid += solid_volume(network, grain);
+  return network.cell.volume() - solid;
+}
+
 double void_ratio(const Network& network) {
   return void_ratio_of(network, [](std::size_t) { return true; });
 }

@@ -74,6 +74,8 @@ double unbalanced_torque_ratio(const Network& network);
 
 /// Energy stored in contacts, J: normal, tangential and rolling springs.
 double elastic_energy(const Network& network);
+/// Volume of the cell less that of the grains, m^3; overlaps not subtracted.
+double pore_volume(const Network& network);
 
 /// sum m v'^2/2 + I w^2/2, J, with w the whole spin, as the energy balance counts it (with w' alone the balance of a
 /// shear at 300 to 1000 per s would miss 0.5 to 9 % of the work). Zero for a quasi-static network.

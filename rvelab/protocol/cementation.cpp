@@ -29,8 +29,20 @@ Uniform numbers_of(const Specimen& s, const Bond& bond, std::uint64_t seed) {
 
 }  // namespace
 
+double weibull_modulus(double scatter) {
+  const auto scatter_of = [](double m) {
+    return std::sqrt(std::expm1(std::lgamma(1 + 2 / m) - 2 * std::lgamma(1 + 1 / m)));
+  };
+  double low = 0.4, high = 2000;  // it falls as the modulus grows
+  for (int k = 0; k < 100; ++k) {
+    const double middle = std::sqrt(low * high);
+    (scatter_of(middle) > scatter ? low : high) = middle;
+  }
+  return std::sqrt(low * high);
+}
+
 double weibull_factor(double modulus, double draw) {
-  return modulus > 0 ? std::pow(-std::log1p(-draw), 1 / modulus) / std::tgamma(1 + 1 / modulus) : 1.0;
+  return std::pow(-std::log1p(-draw), 1 / modulus) / std::tgamma(1 + 1 / modulus);
 }
 
 Interactions cemented(const Rve& rve, const Cementation& cement) {
@@ -43,6 +55,7 @@ Interactions cemented(const Rve& rve, const Cementation& cement) {
   const std::vector<Bond> before = std::move(static_cast<ListOf<ParallelBond>&>(all).items);
   std::vector<Bond>& bonds = static_cast<ListOf<ParallelBond>&>(all).items;
   bonds.clear();
+  const double modulus = cement.strength_scatter > 0 ? weibull_modulus(cement.strength_scatter) : 0;
   auto old = before.begin();
   double columns[interaction_columns<ParallelBond>()];
   // A skin above the largest gap asked for: the list leaves out pairs at the skin itself.
@@ -65,7 +78,7 @@ Interactions cemented(const Rve& rve, const Cementation& cement) {
     Uniform draw = numbers_of(s, bond, cement.seed);
     if (length - (radius[i] + radius[j]) > cement.gap * smaller || !(draw() < cement.share)) continue;
     const double kn = cement.young_modulus / (radius[i] + radius[j]),
-                 strength = weibull_factor(cement.weibull_modulus, draw());
+                 strength = modulus > 0 ? weibull_factor(modulus, draw()) : 1.0;
     std::fill(std::begin(columns), std::end(columns), 0.0);
     columns[ParallelBond::length] = length;
     columns[ParallelBond::radius] = cement.radius * smaller;

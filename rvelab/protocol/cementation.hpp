@@ -18,13 +18,18 @@ struct Cementation {
   double shear_ratio = 0.4;  ///< ks/kn
   double tensile_strength = 0, cohesion = 0;  ///< Pa
   double friction_angle_deg = 0;
-  double moment_factor = 1;    ///< of the moments in the stress at the rim
-  double weibull_modulus = 0;  ///< of the scatter of both strengths between bonds, whose mean stays; 0: none
+  double moment_factor = 1;     ///< of the moments in the stress at the rim
+  double strength_scatter = 0;  ///< standard deviation of both strengths over their mean, between bonds: Weibull's
+                                ///< distribution; 0: none
 };
 
 /// Bonds of the state as it is, without force, beside those that it has: a pair that is bonded keeps its bond, one
 /// whose bond is broken gets a new one. The draw hangs on seed, ids and image alone.
 Interactions cemented(const Rve& rve, const Cementation& cement);
+
+/// Modulus m of the Weibull distribution whose standard deviation is this part of its mean, sqrt(Gamma(1 + 2/m)/Gamma(1
+/// + 1/m)^2 - 1); 0.001 to 2.
+double weibull_modulus(double scatter);
 
 /// Factor on the strength of a bond of Weibull's distribution with mean 1; `draw` in [0, 1).
 double weibull_factor(double modulus, double draw);

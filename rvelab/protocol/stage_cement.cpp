@@ -31,11 +31,12 @@ struct Cement : KindOf<Cementation> {
     reader.number("friction_angle_deg", stage.friction_angle_deg, "degrees", {0, 89},
                   "by which that grows with the pressure on the bond");
     reader.number("moment_factor", stage.moment_factor, "1", {0, 1}, "of the moments in the stress at the rim");
-    reader.number("weibull_modulus", stage.weibull_modulus, "1", {0, 1000},
-                  "of Weibull's distribution of both strengths, whose mean stays; 0: all bonds alike");
-    if (stage.weibull_modulus > 0 && stage.weibull_modulus < 0.5)
-      reader.mistake("weibull_modulus", in_words(stage.weibull_modulus) +
-                                            " is out of range; allowed: 0, or 0.5 to 1000; give 2 to 10 for scatter");
+    reader.number(
+        "strength_scatter", stage.strength_scatter, "1", {0, 2},
+        "standard deviation of both strengths between bonds over their mean: Weibull's distribution; 0: all alike");
+    if (stage.strength_scatter > 0 && stage.strength_scatter < 0.001)
+      reader.mistake("strength_scatter", in_words(stage.strength_scatter) +
+                                             " is out of range; allowed: 0, or 0.001 to 2; give 0.1 to 0.5 for cement");
   }
 
   void drive(RunningTest& test) const override { test.rve.set_interactions(cemented(test.rve, stage)); }

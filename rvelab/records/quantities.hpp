@@ -230,7 +230,7 @@ struct BondStress {
   Matrix3 bond_stress = Matrix3::Zero();
   static constexpr QuantityText text{"bond_stress_Pa", "Pa", "part of contact_stress_Pa that bonds bear"};
   static constexpr auto member = &BondStress::bond_stress;
-  static Matrix3 measure(const MeasuredState& state) { return interaction_stress(state.network, 0); }
+  static Matrix3 measure(const MeasuredState& state) { return interaction_stress(state.network, bonds_kind); }
 };
 
 struct BondReleasedEnergy {
@@ -240,6 +240,29 @@ struct BondReleasedEnergy {
   static double measure(const MeasuredState& state) {
     return sum_over_bonds(state, [](const double* c) { return c[ParallelBond::released]; });
   }
+};
+
+// Water (rvelab/interaction/bridge.hpp).
+
+struct Bridges {
+  double bridges = 0;
+  static constexpr QuantityText text{"bridges", "1", "of water between two grains"};
+  static constexpr auto member = &Bridges::bridges;
+  static double measure(const MeasuredState& state) { return double(state.bridges()); }
+};
+
+struct Saturation {
+  double saturation = 0;
+  static constexpr QuantityText text{"saturation", "1", "volume of the bridges over that of the pores"};
+  static constexpr auto member = &Saturation::saturation;
+  static double measure(const MeasuredState& state) { return state.water_volume() / pore_volume(state.network); }
+};
+
+struct BridgeStress {
+  Matrix3 bridge_stress = Matrix3::Zero();
+  static constexpr QuantityText text{"bridge_stress_Pa", "Pa", "part of contact_stress_Pa that bridges bear"};
+  static constexpr auto member = &BridgeStress::bridge_stress;
+  static Matrix3 measure(const MeasuredState& state) { return interaction_stress(state.network, bridges_kind); }
 };
 
 /// New ones come last: journals name what was asked for by the places here.
@@ -270,7 +293,10 @@ using Quantities = QuantityTable<  //
     BondsBrokenInTension,          //
     BondsBrokenInShear,            //
     BondStress,                    //
-    BondReleasedEnergy             //
+    BondReleasedEnergy,            //
+    Bridges,                       //
+    Saturation,                    //
+    BridgeStress                   //
     >;
 
 inline constexpr auto quantity_rows = Quantities::rows();

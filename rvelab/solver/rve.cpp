@@ -6,6 +6,7 @@
 
 #include "rvelab/cell/cell.hpp"
 #include "rvelab/error.hpp"
+#include "rvelab/interaction/bridge_of_pair.hpp"
 #include "rvelab/solver/assembly/contact_states.hpp"
 #include "rvelab/solver/assembly/interactions.hpp"
 #include "rvelab/solver/at_rate/at_rate.hpp"
@@ -256,6 +257,34 @@ void Rve::set_interactions(const Interactions& interactions) {
   changed.state.masses = {};  // they go with the stiffness
   open_instead(changed);
 }
+
+void Rve::set_water(const Water& water) {
+  apply_deferred_strain(prepared_for_change(*state_));
+  Specimen changed = specimen();
+  const bool plane = changed.cell.dimension == 2;
+  changed.water = {water};
+  // Bridges that are there stay, as those of the new water.
+  double columns[interaction_columns<CapillaryBridge>()];
+  for (auto& bridge : static_cast<ListOf<CapillaryBridge>&>(changed).items) {
+    make_bridge(water, changed.grains.radius[std::size_t(bridge.i)], changed.grains.radius[std::size_t(bridge.j)],
+                plane ? changed.cell.lattice(2, 2) : 0, columns);
+    columns[CapillaryBridge::present] = 1;
+    take_columns<CapillaryBridge>(columns, bridge);
+  }
+  changed.state.masses = {};
+  open_instead(changed);
+}
+
+void Rve::remove_water() {
+  apply_deferred_strain(prepared_for_change(*state_));
+  Specimen changed = specimen();
+  changed.water.clear();
+  static_cast<ListOf<CapillaryBridge>&>(changed).items.clear();
+  changed.state.masses = {};
+  open_instead(changed);
+}
+
+const Water* Rve::water() const { return state_->model().water.empty() ? nullptr : &state_->model().water.front(); }
 
 void Rve::set_velocities(const std::vector<Vector3>& velocity, const std::vector<Vector3>& spin) {
   State& state = prepared_for_change(*state_);

@@ -10,6 +10,7 @@
 #include "rvelab/grains/own_columns.hpp"
 #include "rvelab/grains/shape.hpp"
 #include "rvelab/interaction/interaction.hpp"
+#include "rvelab/interaction/water.hpp"
 #include "rvelab/solver/assembly/list_state.hpp"
 #include "rvelab/solver/loading/loading_state.hpp"
 #include "rvelab/solver/quasi_static/control_state.hpp"
@@ -84,6 +85,7 @@ struct Specimen : Interactions {
   SolverOptions solver;
   Grains grains;
   std::vector<Contact> contacts;
+  std::vector<Water> water;  ///< none or one: then pairs that touch get bridges
   SolverState state;
 };
 

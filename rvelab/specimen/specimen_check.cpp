@@ -359,6 +359,17 @@ class Relations {
   }
 
   void check_interactions() const {
+    if (s.water.size() > 1)
+      refuse("water has " + std::to_string(s.water.size()) + " rows; allowed: none, or one for all grains");
+    for (const Water& water : s.water)
+      if ((water.suction > 0) == (water.volume_ratio > 0))
+        refuse("water/suction_Pa = " + in_words(water.suction) +
+               ", water/volume_ratio = " + in_words(water.volume_ratio) + "; allowed: one of them above 0");
+    if (!s.water.empty() && s.cell.dimension == 2 && s.water.front().volume_ratio > 0)
+      refuse("water/volume_ratio = " + in_words(s.water.front().volume_ratio) +
+             " between discs; allowed: suction_Pa, which gives their bridges in closed form");
+    if (!s.water.empty() && !is_round(s.shape))
+      refuse("water between grains that are not round; allowed: between discs or spheres");
     each_interaction_law([&](auto, auto law) {
       using Law = decltype(law);
       const auto& items = static_cast<const ListOf<Law>&>(s).items;

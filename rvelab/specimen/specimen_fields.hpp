@@ -178,6 +178,16 @@ inline constexpr auto members_of<Interaction<Law, std::integer_sequence<int, n..
 template <class Law>
 inline constexpr bool left_out_where_empty<Interaction<Law>> = true;
 
+template <>
+inline constexpr auto members_of<Water> = std::tuple{
+    Field{"surface_tension_N_m", &Water::surface_tension, "N/m"}.within(positive_number),
+    Field{"contact_angle_deg", &Water::contact_angle_deg, "degrees"}.within({0, 45}),
+    Field{"suction_Pa", &Water::suction, "Pa"}.within(number_from_zero),
+    Field{"volume_ratio", &Water::volume_ratio, "1"}.within({0, 0.1}),
+};
+template <>
+inline constexpr bool left_out_where_empty<Water> = true;
+
 template <class... Laws>
 constexpr auto interaction_tables(TypeList<Laws...>) {
   return std::tuple{Table<Specimen, Interaction<Laws>>{Laws::name, &ListOf<Laws>::items}...};
@@ -189,7 +199,8 @@ inline constexpr auto members_of<Specimen> = std::tuple_cat(std::tuple{Field{"sh
                                                                        Part{"grains", &Specimen::grains},      //
                                                                        Table{"contacts", &Specimen::contacts}},
                                                             interaction_tables(InteractionLaws{}),
-                                                            std::tuple{Table{"materials", &Specimen::materials},  //
+                                                            std::tuple{Table{"water", &Specimen::water},          //
+                                                                       Table{"materials", &Specimen::materials},  //
                                                                        Part{"contact", &Specimen::contact},       //
                                                                        Part{"damping", &Specimen::damping},       //
                                                                        Part{"solver", &Specimen::solver},         //

@@ -191,7 +191,7 @@ TEST_CASE("every instruction set moves bonds by the same bits", "[bond]") {
     cement.gap = 0.05;
     cement.young_modulus = 1e8;
     cement.tensile_strength = cement.cohesion = 1e6;
-    cement.weibull_modulus = 3;
+    cement.strength_scatter = 0.36;
     packed.set_interactions(protocol::cemented(packed, cement));
     REQUIRE(bonds_of(packed).size() > packed.size());
     const Specimen cemented = packed.specimen();

@@ -123,10 +123,12 @@ void add_interactions(const Model& model, const Assembly& assembly, Network& net
     c.tangential_stiffness = a.stiffness.tangential;
     c.rolling_stiffness = a.stiffness.bending;
     c.twisting_stiffness = a.stiffness.twisting;
-    c.elastic_energy = (spring_energy(a.normal_force * a.normal_force, a.stiffness.normal) +
-                        spring_energy(c.tangential_force.squaredNorm(), a.stiffness.tangential)) +
-                       (spring_energy(c.rolling_moment.squaredNorm(), a.stiffness.bending) +
-                        spring_energy(c.twisting_moment * c.twisting_moment, a.stiffness.twisting));
+    c.elastic_energy = a.energy;
+    if (!a.has_energy)
+      c.elastic_energy = (spring_energy(a.normal_force * a.normal_force, a.stiffness.normal) +
+                          spring_energy(c.tangential_force.squaredNorm(), a.stiffness.tangential)) +
+                         (spring_energy(c.rolling_moment.squaredNorm(), a.stiffness.bending) +
+                          spring_energy(c.twisting_moment * c.twisting_moment, a.stiffness.twisting));
     net.grains[a.i].resultant -= a.force;
     net.grains[a.j].resultant += a.force;
     net.grains[a.i].torque += a.moment_i;

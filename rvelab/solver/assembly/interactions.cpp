@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rvelab/interaction/bridge_of_pair.hpp"
+
 namespace rvelab {
 
 namespace {
@@ -70,21 +72,22 @@ void set_interactions(const Model& model, const Interactions& from, PairTable& p
   });
 }
 
-Interactions interactions_of(const PairTable& pairs) {
+Interactions interactions_of(const PairTable& pairs, bool all) {
   Interactions found;
   each_interaction_law([&](auto kind, auto law) {
     using Law = decltype(law);
     for (const InteractionTable& t : pairs.interactions) {
       if (t.kind != kind) continue;
       auto& items = static_cast<ListOf<Law>&>(found).items;
-      items.resize(t.count);
       double values[interaction_columns<Law>()];
       for (std::size_t k = 0; k < t.count; ++k) {
-        items[k].i = t.i[k];
-        items[k].j = t.j[k];
-        items[k].image = t.image[k];
         for (std::size_t c = 0; c < t.column.size(); ++c) values[c] = t.column[c][k];
-        take_columns<Law>(values, items[k]);
+        if (!all && !Law::kept([&](int c) { return values[c]; })) continue;
+        Interaction<Law>& item = items.emplace_back();
+        item.i = t.i[k];
+        item.j = t.j[k];
+        item.image = t.image[k];
+        take_columns<Law>(values, item);
       }
     }
   });
@@ -116,6 +119,43 @@ void follow_wrapping(const std::vector<Image>& moved, int dimension, Interaction
     }
     sort<Law>(items);
   });
+}
+
+void prepare_bridges(const Model& model, const Assembly& assembly, const std::vector<ListedPair>& listed,
+                     Interactions& interactions) {
+  if (model.water.empty()) return;
+  using Bridge = Interaction<CapillaryBridge>;
+  std::vector<Bridge>& bridges = static_cast<ListOf<CapillaryBridge>&>(interactions).items;
+  const std::vector<Bridge> before = std::move(bridges);
+  bridges.clear();
+  auto old = before.begin();
+  double columns[interaction_columns<CapillaryBridge>()];
+  const auto is_present = [&](const Bridge& bridge) {
+    put_columns<CapillaryBridge>(bridge, columns);
+    return columns[CapillaryBridge::present] != 0;
+  };
+  for (const ListedPair& pair : listed) {
+    Bridge bridge;
+    bridge.i = pair.i;
+    bridge.j = pair.j;
+    bridge.image = pair.image;
+    for (; old != before.end() && pair_of(*old) < pair_of(bridge); ++old)
+      if (is_present(*old)) bridges.push_back(*old);
+    if (old != before.end() && pair_of(*old) == pair_of(bridge)) {
+      bridges.push_back(*old++);
+      continue;
+    }
+    make_bridge(model.water.front(), model.radius[std::size_t(pair.i)], model.radius[std::size_t(pair.j)],
+                model.dimension() == 2 ? model.thickness : 0, columns);
+    const auto i = std::size_t(pair.i), j = std::size_t(pair.j);
+    const Vector3 branch =
+        assembly.position(model, j) + translation(assembly.cell, pair.image) - assembly.position(model, i);
+    if (branch.norm() < model.radius[i] + model.radius[j]) columns[CapillaryBridge::present] = 1;
+    take_columns<CapillaryBridge>(columns, bridge);
+    bridges.push_back(bridge);
+  }
+  for (; old != before.end(); ++old)
+    if (is_present(*old)) bridges.push_back(*old);
 }
 
 std::size_t interaction_rows(const PairTable& pairs) {
@@ -197,7 +237,10 @@ std::vector<ActingInteraction> acting_interactions(const Model& model, const Ass
           a.moment_j -= a.arm_j * turning;
         }
         a.normal_force = a.force.dot(a.normal);
-        a.stiffness = Law::stiffness(column, plane ? model.thickness : 0);
+        const double thickness = plane ? model.thickness : 0;
+        a.stiffness = Law::stiffness(column, 2 * half_gap, thickness);
+        a.has_energy = Law::has_energy;
+        if constexpr (Law::has_energy) a.energy = Law::energy(column, 2 * half_gap, thickness);
         all.push_back(a);
       }
     });

@@ -8,7 +8,12 @@ namespace rvelab {
 
 /// Puts them into the table, in order; their derived arrays are made with those of the pairs.
 void set_interactions(const Model& model, const Interactions& from, PairTable& pairs);
-Interactions interactions_of(const PairTable& pairs);
+/// `all`: also what stands for pairs that are only near (bridges that are not there).
+Interactions interactions_of(const PairTable& pairs, bool all = false);
+/// Bridges that may form: each listed pair, in order, has one, present or not; those that are not present and not listed
+/// go. A pair that touches and had none is wetted. Nothing in a specimen without water.
+void prepare_bridges(const Model& model, const Assembly& assembly, const std::vector<ListedPair>& listed,
+                     Interactions& interactions);
 /// After the basis of the lattice changed, the frame turned by `turn`, grains g moved by moved[g] lattice vectors.
 void follow_reduction(const Reduction& reduction, int dimension, Interactions& interactions);
 void follow_wrapping(const std::vector<Image>& moved, int dimension, Interactions& interactions);
@@ -34,6 +39,8 @@ struct ActingInteraction {
   Vector3 moment_i, moment_j;   ///< N m, on either grain about its centre
   InteractionStiffness stiffness;
   double normal_force;  ///< N, positive in compression
+  bool has_energy = false;
+  double energy = 0;  ///< J, where the law has one by itself: else that of linear springs
 };
 /// In order, kind by kind, from the force rows as they stand.
 std::vector<ActingInteraction> acting_interactions(const Model& model, const Assembly& assembly);

@@ -88,7 +88,7 @@ void arrange(const Model& model, const Assembly& assembly, const std::vector<Lis
 
 /// Makes the arrays of a new list and fills in the carried history, which is sorted by key.
 void fill(const Model& model, const std::vector<ListedPair>& listed, const std::vector<Contact>& carried,
-          const Interactions& interactions, Lost lost, Assembly& assembly) {
+          Interactions interactions, Lost lost, Assembly& assembly) {
   const std::size_t n = listed.size(), padded = padded_to_lanes(n);
   std::vector<const Contact*> histories(n, nullptr);
   std::size_t k = 0;
@@ -117,6 +117,7 @@ void fill(const Model& model, const std::vector<ListedPair>& listed, const std::
     pairs.i[p] = pairs.j[p] = std::int32_t(model.size());  // a padding grain: no extent, no mass
     pairs.image[p] = Image{1, 0, 0};
   }
+  prepare_bridges(model, assembly, listed, interactions);
   set_interactions(model, interactions, pairs);
   // The grain loop reads a moment beside each force row in space.
   const std::size_t more = model.dimension() == 3 ? interaction_rows(pairs) : 0;
@@ -231,7 +232,7 @@ void check_height(const Model& model, const Cell& cell) {
 
 Reduction rebuild(const Model& model, Assembly& assembly) {
   std::vector<Contact> carried = contacts_of(model, assembly.pairs);
-  Interactions interactions = interactions_of(assembly.pairs);
+  Interactions interactions = interactions_of(assembly.pairs, true);
   if (assembly.state.list.built) assembly.state.list.skin = next_skin(model, assembly.state.list);
   const Reduction reduction = reduced(assembly.cell);
   if (reduction.changed) {
